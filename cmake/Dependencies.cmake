@@ -1,0 +1,31 @@
+# Every library we use, from Debian's packages. Imported targets are SYSTEM includes, so their warnings stay theirs.
+find_package(Eigen3 3.4 REQUIRED NO_MODULE)
+find_package(CHOLMOD 3 REQUIRED)
+find_package(TBB REQUIRED)
+find_package(fmt REQUIRED)
+find_package(nlohmann_json 3.11 REQUIRED)
+find_package(CLI11 REQUIRED)
+find_package(OpenSSL REQUIRED COMPONENTS Crypto)
+
+find_path(SPECTRA_INCLUDE_DIR Spectra/SymEigsSolver.h REQUIRED)
+find_path(VALIJSON_INCLUDE_DIR valijson/schema.hpp REQUIRED)
+find_path(GMP_INCLUDE_DIR gmpxx.h REQUIRED)
+find_library(GMP_LIBRARY gmp REQUIRED)
+find_library(GMPXX_LIBRARY gmpxx REQUIRED)
+
+function(bb_import name include)
+  add_library(bb::${name} INTERFACE IMPORTED GLOBAL)
+  set_target_properties(bb::${name} PROPERTIES INTERFACE_SYSTEM_INCLUDE_DIRECTORIES "${include}"
+    INTERFACE_LINK_LIBRARIES "${ARGN}")
+endfunction()
+bb_import(spectra "${SPECTRA_INCLUDE_DIR}" Eigen3::Eigen)
+bb_import(valijson "${VALIJSON_INCLUDE_DIR}")
+bb_import(gmp "${GMP_INCLUDE_DIR}" "${GMPXX_LIBRARY}" "${GMP_LIBRARY}")
+
+if(BB_TESTS)
+  find_package(GTest REQUIRED)
+  include(GoogleTest)
+endif()
+if(BB_BENCHMARKS)
+  find_package(benchmark REQUIRED)
+endif()

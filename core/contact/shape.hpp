@@ -1,0 +1,55 @@
+// What the pipeline knows of a barrier shape: one batch call. The shapes themselves live in barriers/shapes/.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/math/host_device.hpp"
+
+namespace bb {
+
+/// b(d; d_hat) and its derivatives in the unsquared gap d, for kappa = 1. Exactly 0 for d >= d_hat.
+template <class T>
+struct ShapeTerms {
+  T b;    // m^2
+  T db;   // m
+  T d2b;  // 1
+};
+
+/// Batch evaluation over columns: n gaps d > 0 (m) with their activation distances d_hat (m).
+template <class T>
+using ShapeBatch = void (*)(void* self, std::size_t n, const T* d, const T* d_hat, T* b, T* db, T* d2b);
+
+/// A shape as the registry hands it out; built-ins and plugins look the same. `self` is null for built-ins.
+struct Shape {
+  std::string name;
+  std::string doc;
+  int smoothness_at_d_hat = 0;    // number of continuous derivatives at d = d_hat
+  bool infinite_at_zero = false;  // b -> infinity as d -> 0
+  ShapeBatch<double> batch_double = nullptr;
+  ShapeBatch<float> batch_float = nullptr;
+  void* self = nullptr;
+};
+
+/// What the shape is evaluated on; part of a formulation's identity (DESIGN section 3).
+///   gap: b = f(d; d_hat).   squared_gap: b = f(d^2; d_hat^2) / d_hat^2, derivatives in d.
+enum class Argument { gap, squared_gap };
+
+/// A shape with its argument: the function that the pipeline, `eval` and the plots all call.
+struct BarrierFunction {
+  Shape shape;
+  Argument argument = Argument::gap;
+
+  /// Terms of n rows. Cost O(n), allocates nothing. Errors: none, total for d > 0, d_hat > 0.
+  void eval(std::size_t n, const double* d, const double* d_hat, double* b, double* db, double* d2b) const;
+  void eval(std::size_t n, const float* d, const float* d_hat, float* b, float* db, float* d2b) const;
+  ShapeTerms<double> eval(double d, double d_hat) const;
+  ShapeTerms<float> eval(float d, float d_hat) const;
+};
+
+std::string_view to_string(Argument argument);
+
+}  // namespace bb

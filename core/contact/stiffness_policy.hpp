@@ -1,0 +1,71 @@
+// What the pipeline knows of a stiffness policy: a batch call over columns that fills kappa (N/m).
+// The policies themselves live in barriers/stiffness/.
+#pragma once
+
+#include <cstddef>
+#include <memory>
+#include <string>
+#include <string_view>
+
+namespace bb {
+
+enum class Refresh { per_iteration, per_step };           // when kappa is computed anew
+enum class MassTerm { paper, inertia, none };             // DESIGN section 3, stiffness policies
+
+/// Columns of n contact rows, free vertices only; row r owns slots 4 r .. 4 r + n_free[r].
+struct StiffnessBatch {
+  std::size_t n = 0;
+  const int* n_free = nullptr;        // [n] 1..4
+  const double* weight = nullptr;     // [4 n] w_i of the free vertices
+  const double* normal = nullptr;     // [3 n] unit normal
+  const double* d = nullptr;          // [n] gap, m
+  const double* d_hat = nullptr;      // [n] m
+  const double* mass = nullptr;       // [4 n] lumped vertex masses, kg
+  const double* hessian = nullptr;    // [144 n] 12 x 12 column-major sub-matrix of the elastic Hessian, N/m; null
+                                      // unless the policy says needs_hessian
+  double dt = 0;                      // s
+  double c = 1;                       // the integrator's c: inertia weight is M/(c dt^2); 0 when quasi-static
+};
+
+/// Sums over the state that a policy with memory may read. grad_b: gradient of B with kappa = 1; grad_e: of E
+/// without B (both over free degrees of freedom).
+struct StiffnessGlobals {
+  double grad_b_dot_grad_e = 0;  // m N
+  double grad_b_sq = 0;          // m^2
+  double mean_contact_mass = 0;  // kg
+  double d2b_half = 0;           // b''(d_hat/2) for kappa = 1
+  double dt = 0, c = 1, d_hat = 0;
+};
+
+/// A stiffness policy of one run. Not thread-safe: one object a run, called by the step driver only.
+class StiffnessPolicy {
+ public:
+  virtual ~StiffnessPolicy() = default;
+  virtual std::string_view name() const = 0;
+  virtual Refresh refresh() const = 0;
+  virtual bool needs_hessian() const { return false; }
+  virtual bool needs_globals() const { return false; }
+
+  /// Called once, at the first iterate that has contacts, when needs_globals().
+  virtual void start(const StiffnessGlobals&) {}
+  /// kappa (N/m) of every row. Requires start() first when needs_globals().
+  virtual void fill(const StiffnessBatch& rows, double* kappa) const = 0;
+  /// Called after each accepted step with the smallest gap of every row relative to the stop level `park` (m):
+  /// lets a policy adapt between steps.
+  struct StepEnd {
+    double min_gap = 0;       // m, over rows; infinity without contacts
+    double min_gap_prev = 0;  // m, of the step before
+    double park = 0;          // m
+  };
+  virtual void end_step(const StepEnd&) {}
+
+  /// What the record keeps: kappa now, number of doublings, whether the bound was reached.
+  struct State {
+    double kappa_start = 0, kappa = 0;  // N/m, 0 when the policy has no single value
+    int doublings = 0;
+    bool saturated = false;
+  };
+  virtual State state() const { return {}; }
+};
+
+}  // namespace bb

@@ -1,0 +1,23 @@
+// Names for Eigen's fixed-size values. Everything stacked is vertex-major: x.col(i) is vertex i.
+#pragma once
+
+#include <Eigen/Core>
+
+#include "core/math/host_device.hpp"
+
+namespace bb {
+
+template <class T, int N>
+using Vec = Eigen::Matrix<T, N, 1>;
+template <class T, int R, int C>
+using Mat = Eigen::Matrix<T, R, C>;
+
+using Vec2d = Vec<double, 2>;
+using Vec3d = Vec<double, 3>;
+using Mat3d = Mat<double, 3, 3>;
+using VecXd = Eigen::VectorXd;
+
+/// [3 x n_vertices] positions (m), velocities (m/s) or forces (N); contiguous, 3 numbers a vertex.
+using Positions = Eigen::Matrix3Xd;
+
+}  // namespace bb
