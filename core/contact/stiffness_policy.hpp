@@ -9,22 +9,22 @@
 
 namespace bb {
 
-enum class Refresh { per_iteration, per_step };           // when kappa is computed anew
-enum class MassTerm { paper, inertia, none };             // DESIGN section 3, stiffness policies
+enum class Refresh { per_iteration, per_step };  // when kappa is computed anew
+enum class MassTerm { paper, inertia, none };    // DESIGN section 3, stiffness policies
 
 /// Columns of n contact rows, free vertices only; row r owns slots 4 r .. 4 r + n_free[r].
 struct StiffnessBatch {
   std::size_t n = 0;
-  const int* n_free = nullptr;        // [n] 1..4
-  const double* weight = nullptr;     // [4 n] w_i of the free vertices
-  const double* normal = nullptr;     // [3 n] unit normal
-  const double* d = nullptr;          // [n] gap, m
-  const double* d_hat = nullptr;      // [n] m
-  const double* mass = nullptr;       // [4 n] lumped vertex masses, kg
-  const double* hessian = nullptr;    // [144 n] 12 x 12 column-major sub-matrix of the elastic Hessian, N/m; null
-                                      // unless the policy says needs_hessian
-  double dt = 0;                      // s
-  double c = 1;                       // the integrator's c: inertia weight is M/(c dt^2); 0 when quasi-static
+  const int* n_free = nullptr;      // [n] 1..4
+  const double* weight = nullptr;   // [4 n] w_i of the free vertices
+  const double* normal = nullptr;   // [3 n] unit normal
+  const double* d = nullptr;        // [n] gap, m
+  const double* d_hat = nullptr;    // [n] m
+  const double* mass = nullptr;     // [4 n] lumped vertex masses, kg
+  const double* hessian = nullptr;  // [144 n] 12 x 12 column-major sub-matrix of the elastic Hessian, N/m;
+                                    // null unless the policy says needs_hessian
+  double dt = 0;  // s
+  double c = 1;   // the integrator's c: inertia weight is M/(c dt^2); 0 when quasi-static
 };
 
 /// Sums over the state that a policy with memory may read. grad_b: gradient of B with kappa = 1; grad_e: of E
@@ -50,8 +50,8 @@ class StiffnessPolicy {
   virtual void start(const StiffnessGlobals&) {}
   /// kappa (N/m) of every row. Requires start() first when needs_globals().
   virtual void fill(const StiffnessBatch& rows, double* kappa) const = 0;
-  /// Called after each accepted step with the smallest gap of every row relative to the stop level `park` (m):
-  /// lets a policy adapt between steps.
+  /// Called after each accepted step with the smallest gap of every row relative to the stop level `park`
+  /// (m): lets a policy adapt between steps.
   struct StepEnd {
     double min_gap = 0;       // m, over rows; infinity without contacts
     double min_gap_prev = 0;  // m, of the step before

@@ -1,0 +1,91 @@
+// Contact geometry of a scene: candidate pairs, rows of the contact table, the largest collision-free step.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/contact/contact_table.hpp"
+#include "core/scene/scene.hpp"
+
+namespace bb {
+
+enum class Mollifier { ipc, none };
+
+struct ContactOptions {
+  Mollifier mollifier = Mollifier::ipc;
+  double ccd_park = 1e-6;  // stop level in units of d_hat
+  int ccd_max_probes = 4096;
+};
+
+/// Largest step alpha in [0, 1] along x0 -> x1 that is proven free of contact below the stop level.
+struct StepBound {
+  double alpha = 1;
+  ContactKind kind = ContactKind::obstacle;  // of the limiting pair; key below
+  ContactKey key{-1, -1, -1, -1};
+  long long queries = 0, probes = 0, capped = 0, zero = 0;  // ACCD pairs asked, probes, cap hits, toi == 0
+};
+
+/// Owns the broad phase. All results are independent of the number of threads.
+class ContactSystem {
+ public:
+  ContactSystem(const Scene& scene, const ContactOptions& options);
+  ~ContactSystem();
+  /// False when the scene can have no contact: nothing is built, rows are empty, steps unbounded.
+  bool active() const;
+
+  /// Candidate pairs of every state on the segments x0 -> x1, boxes inflated by d_hat and offset. [3 x n] m.
+  /// Both find_rows and step_bound use them until the next call.
+  void update_candidates(const Positions& x0, const Positions& x1);
+
+  /// Rows with d < d_hat_row at x, merged with multiplicity, sorted; kappa, b, db, d2b are left at 0.
+  /// Requires x to lie in the swept region of the last update_candidates. Returns the smallest gap over all
+  /// rows (infinity without rows); a value <= 0 means that x is not feasible.
+  double find_rows(const Positions& x, ContactTable& rows, MollifiedTable& mollified) const;
+
+  /// All non-adjacent pairs, whatever rule keeps them from having a row.
+  StepBound step_bound(const Positions& x0, const Positions& x1) const;
+
+  struct Counts {
+    std::size_t point_triangle = 0, edge_edge = 0, point_point = 0, point_edge = 0, obstacle = 0;
+  };
+  Counts candidate_counts() const;
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+enum class HessianMode { gauss_newton, projected_full };
+
+/// Local gradients [12 n] and PSD Hessians [144 n, 12 x 12 column-major] of the rows on the compact free
+/// slots (slots beyond n_free are 0), from kappa, b', b'' in the table: m kappa b' w_i n and m kappa b'' w_i
+/// w_j n n^T, plus m kappa b' grad^2 d, projected, in mode projected_full. x: [3 x n]. Resizes the outputs,
+/// no other allocation.
+void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, std::vector<double>& grad,
+                   std::vector<double>& hess);
+void mollified_terms(const MollifiedTable& rows, const Positions& x, std::vector<double>& grad,
+                     std::vector<double>& hess);
+/// Energies m kappa b (and m kappa e b) of every row, J.
+void contact_energies(const ContactTable& rows, std::vector<double>& energy);
+void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy);
+
+/// kappa of earlier rows by key: rows already known keep theirs. Merge join over sorted keys, O(n).
+class KappaMemory {
+ public:
+  void clear();
+  void store(const ContactTable& rows, const MollifiedTable& mollified);
+  /// Fills kappa of the rows that are known; `missing` gets the indices of the others (row or mollified row).
+  void recall(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
+              std::vector<int>& missing_mollified) const;
+
+ private:
+  std::vector<ContactKey> key_, mollified_key_;
+  std::vector<ContactKind> kind_;
+  std::vector<double> kappa_, mollified_kappa_;
+};
+
+}  // namespace bb

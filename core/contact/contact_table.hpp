@@ -1,0 +1,57 @@
+// The contact table: one row a contact, columns of numbers. Geometry fills d and the weights, the stiffness
+// policy fills kappa, the shape fills b, b', b''; everything after is common code and knows no formulation.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "core/math/types.hpp"
+
+namespace bb {
+
+enum class ContactKind : std::uint8_t { point_point, point_edge, point_triangle, edge_edge, obstacle };
+
+/// Identity of a contact across iterations: sorted ids of all its vertices, given ones included, -1 padded in
+/// front; an obstacle o appears as -2 - o.
+using ContactKey = std::array<int, 4>;
+
+/// Rows are sorted by (key, kind), so that two tables can be joined by a merge.
+struct ContactTable {
+  std::vector<ContactKind> kind;
+  std::vector<ContactKey> key;
+  std::vector<int> stencil;  // [4 n] all vertices in role order (p t0 t1 t2, ea0 ea1 eb0 eb1), -1 padded
+  std::vector<double> stencil_weight;    // [4 n] w_i in the same order
+  std::vector<int> vertex;               // [4 n] free vertices only, compact, -1 padded
+  std::vector<double> weight;            // [4 n] their w_i, 0 padded
+  std::vector<int> n_free;               // [n] 1..4
+  std::vector<double> normal;            // [3 n] unit, grad_i d = w_i n
+  std::vector<double> d, d_hat, offset;  // [n] m; d = |r| - offset
+  std::vector<double> multiplicity;      // [n] number of pairs that realise the row
+  std::vector<double> kappa;             // [n] N/m
+  std::vector<double> b, db, d2b;        // [n] m^2, m, 1
+
+  std::size_t size() const { return d.size(); }
+  void resize(std::size_t n);
+};
+
+/// Edge-edge rows close to parallel: B gains the mollifier e(x); e b(d), full gradient, PSD-projected
+/// Hessian.
+struct MollifiedTable {
+  std::vector<ContactKey> key;
+  std::vector<int> stencil;  // [4 n] ea0 ea1 eb0 eb1
+  std::vector<int> vertex;   // [4 n] = stencil, -1 where the vertex is given
+  std::vector<double> eps;   // [n] threshold on |ea x eb|^2, m^4
+  std::vector<double> d, d_hat, offset, multiplicity, kappa, b, db, d2b;  // as above
+  // what a policy reads of a row: compact free columns, as in ContactTable
+  std::vector<int> free_vertex;  // [4 n]
+  std::vector<double> weight;    // [4 n]
+  std::vector<int> n_free;       // [n]
+  std::vector<double> normal;    // [3 n]
+
+  std::size_t size() const { return d.size(); }
+  void resize(std::size_t n);
+};
+
+}  // namespace bb

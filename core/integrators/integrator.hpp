@@ -1,0 +1,41 @@
+// What an integrator supplies: the weight c of the inertia term, the prediction x_tilde and the velocity
+// update. E(x) = 1/(2 c h^2) (x - x_tilde)^T M (x - x_tilde) - f^T (x - x_n) + ...   (DESIGN section 3)
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+
+#include "core/math/types.hpp"
+
+namespace bb {
+
+/// States at the ends of the last two steps. `steps` counts accepted steps; x_prev, v_prev need steps >= 1.
+/// a is the acceleration at x (m/s^2), kept for integrators that say needs_acceleration.
+struct History {
+  int steps = 0;
+  Positions x, v, a;  // [3 x n] m, m/s, m/s^2
+  Positions x_prev, v_prev;
+};
+
+struct Prediction {
+  double c = 1;       // inertia weight M/(c h^2); 0 means no inertia (quasi-static)
+  Positions x_tilde;  // [3 x n] m; holds no force
+};
+
+class Integrator {
+ public:
+  virtual ~Integrator() = default;
+  virtual std::string_view name() const = 0;
+  /// True when inertia is absent and the force is applied in load steps.
+  virtual bool quasi_static() const { return false; }
+  /// True when a_0 must be computed from the forces at the start and a kept.
+  virtual bool needs_acceleration() const { return false; }
+  /// Fills `out` without allocating after the first call. dt in s.
+  virtual void predict(const History& history, double dt, Prediction& out) const = 0;
+  /// Velocity and acceleration at the end of the step that reached x. v, a: [3 x n].
+  virtual void finish(const History& history, double dt, const Prediction& used, const Positions& x,
+                      Positions& v, Positions& a) const = 0;
+};
+
+}  // namespace bb

@@ -1,0 +1,75 @@
+// The Newton matrix as symmetric 3x3 blocks, and its restriction to the free degrees of freedom.
+// Pattern, gather maps and the symbolic state stay while the contact pattern stays.
+#pragma once
+
+#include <Eigen/SparseCore>
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/math/types.hpp"
+
+namespace bb {
+
+/// Which vertices the elements of one family touch: element e owns vertices[width e .. width e + width), -1 =
+/// none.
+struct Stencils {
+  int width = 0;
+  std::span<const int> vertices;
+  std::size_t size() const { return width == 0 ? 0 : vertices.size() / static_cast<std::size_t>(width); }
+};
+
+/// What a linear solver and a condition estimator see: lower triangle, free degrees of freedom only.
+struct ReducedSystem {
+  Eigen::SparseMatrix<double> lower;  // [n x n] column-major, lower triangle with diagonal
+  std::vector<int> block_start;  // [n_blocks + 1] degrees of freedom of one vertex are consecutive (1 to 3)
+  std::uint64_t pattern_id = 0;  // changes exactly when the pattern changes
+};
+
+class BlockSystem {
+ public:
+  /// fixed: [3 n_vertices], nonzero where the degree of freedom is prescribed or locked (eliminated).
+  BlockSystem(int n_vertices, const std::vector<std::uint8_t>& fixed);
+  ~BlockSystem();
+
+  /// Families that never change (elements). Called once.
+  void set_elements(std::vector<Stencils> families);
+  /// Families of this iterate (contacts). Returns true when the pattern changed; same stencils cost one
+  /// comparison. A contact stencil whose blocks all exist already does not change the pattern (pattern_id
+  /// stays).
+  bool set_contacts(std::vector<Stencils> families);
+
+  /// Values: one 9-vector a lower block. Stages add up in the order of the calls; fixed order, any thread
+  /// count.
+  using Values = std::vector<double>;
+  void clear();
+  void add_diagonal(std::span<const double> per_vertex);  // value * I3
+  void add_elements(std::size_t family,
+                    std::span<const double> hess);  // [size * (3w)^2] column-major local Hessians
+  void add_contacts(std::size_t family, std::span<const double> hess);
+  const Values& values() const;
+
+  /// Gradient gathers: g [3 x n] += local gradients [size * 3w].
+  void gather_elements(std::size_t family, std::span<const double> grad, Positions& g) const;
+  void gather_contacts(std::size_t family, std::span<const double> grad, Positions& g) const;
+
+  /// 3k x 3k sub-matrix of `values` on k <= 4 vertices, written into the top left of a 12 x 12 column-major
+  /// block (leading dimension 12); blocks between unconnected vertices are 0.
+  void submatrix(const Values& values, const int* vertices, int k, double* out) const;
+  /// y += A v over all vertices, fixed ones included (used to lift prescribed motion to the right-hand side).
+  void multiply_add(const Values& values, const Positions& v, Positions& y) const;
+
+  /// Restriction to the free degrees of freedom. The reference stays valid; values are overwritten by each
+  /// call.
+  const ReducedSystem& reduce(const Values& values);
+  int n_free() const;
+  void restrict_vector(const Positions& full, VecXd& reduced) const;
+  void expand_vector(const VecXd& reduced, Positions& full) const;  // leaves fixed entries as they are
+
+ private:
+  struct Data;
+  std::unique_ptr<Data> data_;
+};
+
+}  // namespace bb
