@@ -1,0 +1,51 @@
+// Checks all names first, so that a clash leaves the registries as they were.
+#include "barriers/plugins.hpp"
+
+#include <utility>
+#include <vector>
+
+#include "barriers/named_entries.hpp"
+#include "barriers/shapes/registry.hpp"
+#include "barriers/stiffness/registry.hpp"
+#include "core/integrators/registry.hpp"
+
+namespace bb {
+namespace {
+
+/// Appends a violation for every added name that is known, or given twice by the plugin itself.
+template <class Known, class Added>
+void check_names(const std::string& file, const std::string& kind, const std::vector<Known>& known,
+                 const std::vector<Added>& added, std::vector<Violation>& wrong) {
+  std::vector<std::string> taken = entry_names(known);
+  for (const Added& entry : added) {
+    for (const std::string& name : taken) {
+      if (name != entry.name) continue;
+      wrong.push_back({file, kind + " \"" + name + '"', "a name not yet taken by another " + kind});
+      break;
+    }
+    taken.push_back(entry.name);
+  }
+}
+
+}  // namespace
+
+Plugin register_plugin(const std::string& file) {
+  Plugin plugin = load_plugin(file);
+  std::vector<Violation> wrong;
+  check_names(file, "shape", shapes(), plugin.shapes, wrong);
+  check_names(file, "stiffness policy", stiffness_policies(), plugin.policies, wrong);
+  check_names(file, "integrator", integrators(), plugin.integrators, wrong);
+  if (!wrong.empty()) throw ConfigError(std::move(wrong));
+
+  for (const Shape& shape : plugin.shapes) register_shape(shape, file);
+  for (const PluginPolicy& policy : plugin.policies) {
+    const auto make = [policy](const StiffnessPolicyConfig& config) {
+      return policy.make(config.refresh, config.multiplier);
+    };
+    register_stiffness_policy({policy.name, policy.doc, make}, file);
+  }
+  for (const IntegratorEntry& integrator : plugin.integrators) register_integrator(integrator);
+  return plugin;
+}
+
+}  // namespace bb

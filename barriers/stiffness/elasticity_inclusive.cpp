@@ -1,0 +1,49 @@
+// Stiffness policy `elasticity_inclusive`: kappa of each contact from its masses and its elastic Hessian.
+#include "barriers/stiffness/elasticity_inclusive.hpp"
+
+#include "barriers/stiffness/registry.hpp"
+#include "core/math/error.hpp"
+
+namespace bb {
+namespace {
+
+class ElasticityInclusive final : public StiffnessPolicy {
+ public:
+  explicit ElasticityInclusive(const StiffnessPolicyConfig& config)
+      : mass_term_(config.mass_term),
+        elastic_term_(config.elastic_term),
+        refresh_(config.refresh),
+        multiplier_(config.multiplier) {}
+  std::string_view name() const override { return "elasticity_inclusive"; }
+  Refresh refresh() const override { return refresh_; }
+  bool needs_hessian() const override { return elastic_term_; }
+
+  void fill(const StiffnessBatch& rows, double* kappa) const override {
+    const ElasticityInclusiveRule rule{mass_term_, elastic_term_, rows.dt, rows.c};
+    for (std::size_t r = 0; r < rows.n; ++r) {
+      const double* hessian = elastic_term_ ? rows.hessian + 144 * r : nullptr;
+      kappa[r] = multiplier_ * elasticity_inclusive_kappa(rows.n_free[r], rows.weight + 4 * r,
+                                                          rows.normal + 3 * r, rows.d[r], rows.mass + 4 * r,
+                                                          hessian, 12, rule);
+    }
+  }
+
+ private:
+  MassTerm mass_term_;
+  bool elastic_term_;
+  Refresh refresh_;
+  double multiplier_;
+};
+
+}  // namespace
+
+std::unique_ptr<StiffnessPolicy> make_policy_elasticity_inclusive(const StiffnessPolicyConfig& config);
+std::unique_ptr<StiffnessPolicy> make_policy_elasticity_inclusive(const StiffnessPolicyConfig& config) {
+  if (config.mass_term == MassTerm::none && !config.elastic_term) {
+    throw ConfigError("stiffness_policy", "mass_term none with elastic_term false",
+                      "at least one term, else kappa is 0");
+  }
+  return std::make_unique<ElasticityInclusive>(config);
+}
+
+}  // namespace bb

@@ -1,0 +1,90 @@
+// Stiffness policy `ipc_adaptive`: one kappa for all contacts, chosen at the first iterate that has any and
+// doubled between steps while gaps stay near the stop level.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "barriers/stiffness/registry.hpp"
+#include "core/math/error.hpp"
+
+namespace bb {
+namespace {
+
+// A gap below this many stop levels at two step ends, and shrinking, asks for a doubling.
+constexpr double doubling_parks = 10;
+// kappa stays within [k, range k].
+constexpr double range = 100;
+
+/// kappa_0 = -(grad B_1 . grad E)/|grad B_1|^2, clamped to [k, 100 k], k = mean contact mass/(c dt^2 b''(d_hat/2)).
+/// Source: Li et al. 2020 (IPC), supplement on adaptive kappa; differs by: the scale k and the doubling rule.
+class IpcAdaptive final : public StiffnessPolicy {
+ public:
+  explicit IpcAdaptive(const StiffnessPolicyConfig& config)
+      : overrides_(config.ipc), multiplier_(config.multiplier) {}
+  std::string_view name() const override { return "ipc_adaptive"; }
+  Refresh refresh() const override { return Refresh::per_iteration; }
+  bool needs_globals() const override { return true; }
+
+  void start(const StiffnessGlobals& globals) override {
+    const bool has_scale = globals.c > 0 && globals.d2b_half > 0;
+    if (!has_scale && !(overrides_.kappa_min && overrides_.kappa_max)) {
+      throw ConfigError("stiffness_policy", "ipc_adaptive without inertia, or with b''(d_hat/2) not > 0",
+                        "an integrator with inertia, or both kappa_min and kappa_max");
+    }
+    const double k = has_scale ? globals.mean_contact_mass / (globals.c * globals.dt * globals.dt * globals.d2b_half)
+                               : 0.0;
+    const double low = overrides_.kappa_min.value_or(k);
+    max_ = std::max(low, overrides_.kappa_max.value_or(range * k));
+    const double balance = globals.grad_b_sq > 0 ? -globals.grad_b_dot_grad_e / globals.grad_b_sq : low;
+    start_ = kappa_ = std::clamp(balance, low, max_);
+    saturated_ = kappa_ >= max_;
+  }
+
+  void fill(const StiffnessBatch& rows, double* kappa) const override {
+    std::fill(kappa, kappa + rows.n, multiplier_ * kappa_);
+  }
+
+  void end_step(const StepEnd& end) override {
+    const double gap = overrides_.doubling_gap.value_or(doubling_parks * end.park);
+    const bool small = end.min_gap < gap && end.min_gap_prev < gap;
+    if (!small || !(end.min_gap < end.min_gap_prev) || !(kappa_ > 0) || saturated_) return;
+    kappa_ = std::min(2 * kappa_, max_);
+    saturated_ = kappa_ >= max_;
+    ++doublings_;
+  }
+
+  State state() const override {
+    return {multiplier_ * start_, multiplier_ * kappa_, doublings_, saturated_};
+  }
+
+ private:
+  StiffnessPolicyConfig::IpcOverrides overrides_;
+  double multiplier_;
+  double start_ = 0, kappa_ = 0, max_ = 0;
+  int doublings_ = 0;
+  bool saturated_ = false;
+};
+
+void require_positive(const std::optional<double>& value, const char* key) {
+  if (value && (!(*value > 0) || !std::isfinite(*value))) {
+    throw ConfigError(fmt::format("stiffness_policy/{}", key), fmt::format("{}", *value), "a number > 0");
+  }
+}
+
+}  // namespace
+
+std::unique_ptr<StiffnessPolicy> make_policy_ipc_adaptive(const StiffnessPolicyConfig& config);
+std::unique_ptr<StiffnessPolicy> make_policy_ipc_adaptive(const StiffnessPolicyConfig& config) {
+  require_positive(config.ipc.kappa_min, "kappa_min_N_per_m");
+  require_positive(config.ipc.kappa_max, "kappa_max_N_per_m");
+  require_positive(config.ipc.doubling_gap, "doubling_gap_m");
+  if (config.ipc.kappa_min && config.ipc.kappa_max && *config.ipc.kappa_min > *config.ipc.kappa_max) {
+    throw ConfigError("stiffness_policy/kappa_min_N_per_m", fmt::format("{}", *config.ipc.kappa_min),
+                      fmt::format("at most kappa_max_N_per_m = {}", *config.ipc.kappa_max));
+  }
+  return std::make_unique<IpcAdaptive>(config);
+}
+
+}  // namespace bb

@@ -1,0 +1,60 @@
+// Checks its input once, then only counts.
+#include "core/audit/audit.hpp"
+
+#include <string>
+#include <utility>
+
+#include "core/audit/predicates.hpp"
+#include "core/math/error.hpp"
+
+namespace bb::audit {
+namespace {
+
+void require_obstacles(const std::vector<AuditObstacle>& obstacles) {
+  for (std::size_t i = 0; i < obstacles.size(); ++i) {
+    const AuditObstacle& o = obstacles[i];
+    const std::string where = "audit obstacle " + std::to_string(i);
+    if (o.kind != ObstacleKind::plane && !(o.radius > 0.0 && o.radius < 1e100)) {
+      throw ConfigError(where, "radius " + std::to_string(o.radius), "a finite number > 0");
+    }
+    if (o.kind != ObstacleKind::sphere && !(o.axis.allFinite() && o.axis.norm() > 0.0)) {
+      throw ConfigError(where, "axis or normal without direction", "a finite vector that is not zero");
+    }
+    if (!o.point.allFinite()) throw ConfigError(where, "point that is not finite", "three finite numbers");
+  }
+}
+
+void require_indices(const AuditMesh& mesh, const std::vector<int>& vertices) {
+  const int lowest = mesh.triangles.size() > 0 ? mesh.triangles.minCoeff() : 0;
+  const int highest = mesh.triangles.size() > 0 ? mesh.triangles.maxCoeff() : 0;
+  if (lowest < 0 || (!vertices.empty() && vertices.front() < 0)) {
+    throw ConfigError("audit mesh", "a negative vertex index", "indices >= 0");
+  }
+  const int top = vertices.empty() ? highest : std::max(highest, vertices.back());
+  if (!mesh.fixed.empty() && static_cast<std::size_t>(top) >= mesh.fixed.size()) {
+    throw ConfigError("audit mesh", "vertex " + std::to_string(top), "below the number of flags");
+  }
+}
+
+}  // namespace
+
+Audit::Audit(AuditMesh mesh) : mesh_(std::move(mesh)), vertices_(colliding_vertices(mesh_)) {
+  require_indices(mesh_, vertices_);
+  require_obstacles(mesh_.obstacles);
+  ledger_.self_test_passed = predicates_self_test();
+}
+
+void Audit::check_state(const Positions& x, int step) {
+  ledger_.add(audit_state(mesh_, vertices_, x, ledger_.states == 0), step);
+}
+
+void Audit::check_motion(const Positions& x0, const Positions& x1, int step, double tolerance) {
+  ledger_.add(audit_motion(mesh_, vertices_, x0, x1, tolerance), step);
+}
+
+void Audit::set_obstacles(std::vector<AuditObstacle> obstacles) {
+  require_obstacles(obstacles);
+  mesh_.obstacles = std::move(obstacles);
+}
+
+}  // namespace bb::audit

@@ -1,0 +1,36 @@
+// The judge of a run. Newton hands it every accepted state and motion and never reads its verdict back: what
+// the audit finds goes to the record and changes no step. Includes nothing of the solver's geometry or
+// contact.
+#pragma once
+
+#include <vector>
+
+#include "core/audit/audit_ledger.hpp"
+
+namespace bb::audit {
+
+class Audit {
+ public:
+  /// Errors: ConfigError if an index is negative or beyond `fixed`, or a radius or an axis makes no obstacle.
+  explicit Audit(AuditMesh mesh);
+
+  /// Judges x [3 n_vertices], m. The first call includes pairs of wholly fixed primitives, later calls skip
+  /// them.
+  void check_state(const Positions& x, int step);
+
+  /// Judges the linear motion x0 -> x1, m, both ends as committed. @param tolerance m, a tenth of the park
+  /// distance
+  void check_motion(const Positions& x0, const Positions& x1, int step, double tolerance);
+
+  /// For obstacles that move between motions: the pose in which the next checks judge.
+  void set_obstacles(std::vector<AuditObstacle> obstacles);
+
+  const AuditLedger& ledger() const { return ledger_; }
+
+ private:
+  AuditMesh mesh_;
+  std::vector<int> vertices_;
+  AuditLedger ledger_;
+};
+
+}  // namespace bb::audit

@@ -1,0 +1,40 @@
+// The moving polygon of a pair in integers: proofs of separation and of passage without any rounding. Slow,
+// and asked only about spans that floating point could not settle.
+#pragma once
+
+#include <gmpxx.h>
+
+#include "core/audit/moving_pair.hpp"
+
+namespace bb::audit {
+
+template <class Pair>
+class ExactPolygon {
+ public:
+  static constexpr int dim = Pair::dim, n_corners = Pair::n_corners;
+  using Point = Vec<double, dim>;
+  using Integers = std::array<mpz_class, static_cast<std::size_t>(dim)>;
+
+  explicit ExactPolygon(const PairMotion<Pair>& m);
+
+  /// MovingPolygon::separates without allowance: exact for the doubles in `direction`.
+  bool separates(const Point& direction, const TimeSpan& span) const;
+
+  /// True only if the origin provably passes through the polygon's interior within the span: seen along the
+  /// fixed `direction` it stays strictly inside, and it is on opposite sides of the polygon's plane at the
+  /// two ends.
+  bool proves_passage(const Point& direction, const TimeSpan& span) const;
+
+ private:
+  /// 2^50 (1 - t) begin + 2^50 t end, a positive multiple of the corner.
+  Integers corner(int k, std::int64_t t) const;
+  int plane_side(std::int64_t t) const;
+
+  std::array<Integers, static_cast<std::size_t>(n_corners)> begin_, end_;
+};
+
+extern template class ExactPolygon<VertexTriangle>;
+extern template class ExactPolygon<EdgeEdge>;
+extern template class ExactPolygon<VertexEdge2d>;
+
+}  // namespace bb::audit

@@ -1,0 +1,83 @@
+// Depth-first bisection of time, earliest span first, with a cap on the number of spans.
+#include "core/audit/pair_verdict.hpp"
+
+#include <algorithm>
+#include <optional>
+
+#include "core/audit/exact_polygon.hpp"
+
+namespace bb::audit {
+namespace {
+
+// A pair in lasting contact would be split for ever; a proper pair needs some tens of spans.
+constexpr int max_spans = 2000;
+// A span in which nothing moves by more than this part of the pair's size is left to the integers: the
+// allowance of the floating certificate is a few 2^-50 of it.
+constexpr double rounding = 0x1p-50;
+
+/// Half a length more on either side, so that a hit exactly at a split is inside a span.
+TimeSpan widened(const TimeSpan& s) {
+  const std::int64_t half = std::max<std::int64_t>((s.end - s.begin) / 2, 1);
+  return {std::max<std::int64_t>(s.begin - half, 0), std::min(s.end + half, TimeSpan::one)};
+}
+
+template <class Pair>
+class Bisection {
+ public:
+  Bisection(const PairMotion<Pair>& motion, const MovingPolygon<Pair>& polygon, double tolerance)
+      : motion_(motion), polygon_(polygon), speed_(polygon.motion()), tolerance_(tolerance) {}
+
+  Verdict run() {
+    TimeSpan stack[64];
+    int top = 0;
+    stack[top++] = TimeSpan{};
+    bool doubt = false;
+    for (int spans = 0; top > 0; ++spans) {
+      if (spans == max_spans) return Verdict::unproven;
+      const TimeSpan span = stack[--top];
+      if (polygon_.any_separates(span)) continue;
+      const double moved = speed_ * span.length();
+      const bool last = span.end - span.begin == 1 || moved <= rounding * polygon_.size();
+      if ((last || moved <= tolerance_) && passes(span)) return Verdict::violation;
+      if (last) {
+        doubt = doubt || !separated_exactly(span);
+      } else {
+        stack[top++] = {span.middle(), span.end};
+        stack[top++] = {span.begin, span.middle()};
+      }
+    }
+    return doubt ? Verdict::unproven : Verdict::certified;
+  }
+
+ private:
+  const ExactPolygon<Pair>& exact() {
+    if (!exact_) exact_.emplace(motion_);
+    return *exact_;
+  }
+  bool passes(const TimeSpan& span) {
+    return exact().proves_passage(polygon_.normal(span.middle()), widened(span));
+  }
+  bool separated_exactly(const TimeSpan& span) {
+    return polygon_.any_direction(span.middle(), [&](const auto& n) { return exact().separates(n, span); });
+  }
+
+  const PairMotion<Pair>& motion_;
+  const MovingPolygon<Pair>& polygon_;
+  double speed_, tolerance_;
+  std::optional<ExactPolygon<Pair>> exact_;
+};
+
+}  // namespace
+
+template <class Pair>
+Verdict judge(const PairMotion<Pair>& motion, double tolerance) {
+  const MovingPolygon<Pair> polygon(motion);
+  if (polygon.axis_separates({}) || polygon.any_separates({})) return Verdict::certified;
+  return Bisection<Pair>(motion, polygon, tolerance).run();
+}
+
+template Verdict judge<VertexTriangle>(const PairMotion<VertexTriangle>&, double);
+template Verdict judge<EdgeEdge>(const PairMotion<EdgeEdge>&, double);
+template Verdict judge<VertexEdge2d>(const PairMotion<VertexEdge2d>&, double);
+
+}  // namespace bb::audit

@@ -1,0 +1,32 @@
+// One accepted state: exact signs of every non-adjacent edge-triangle pair (planar: boundary edges),
+// orientation of planar elements, and the side of every vertex to every obstacle.
+#pragma once
+
+#include <optional>
+
+#include "core/audit/surface.hpp"
+
+namespace bb::audit {
+
+struct StateAudit {
+  long pairs = 0;  // that met in the broad phase
+  long crossings = 0, touches = 0;
+  long inverted = 0;                  // planar elements with area <= 0
+  long obstacle_violations = 0;       // vertices strictly beyond an obstacle
+  bool finite = true;                 // false: nothing was judged
+  std::optional<PairName> first_bad;    // the lowest in PairName's order, touches aside
+  std::optional<PairName> first_touch;  // the same of the touches
+  void merge(const StateAudit& other);
+};
+
+/// Judges the state x [3 n_vertices], m. Pairs of wholly fixed primitives only if `include_fixed`; fixed
+/// vertices are not judged against obstacles. Deterministic. Cost: O(n log n + pairs).
+/// @param vertices the colliding vertices, as from colliding_vertices(mesh)
+StateAudit audit_state(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x,
+                       bool include_fixed);
+
+/// All vertices of edges and (in 3D) triangles and the listed points, ascending.
+
+std::vector<int> colliding_vertices(const AuditMesh& mesh);
+
+}  // namespace bb::audit

@@ -1,0 +1,52 @@
+// What the audit judges: vertices, edges, triangles and analytic obstacles. Plain data, no solver types.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/math/types.hpp"
+
+namespace bb::audit {
+
+enum class ObstacleKind { plane, sphere, cylinder };
+
+/// Half-space, ball or infinite cylinder. The numbers count as written: `axis` need not have length one.
+struct AuditObstacle {
+  ObstacleKind kind = ObstacleKind::plane;
+  Vec3d point = Vec3d::Zero();  // on the plane; centre; on the cylinder's axis (m)
+  Vec3d axis = Vec3d::UnitZ();  // plane: normal towards the allowed side; cylinder: direction; sphere: unused
+  double radius = 0.0;          // m; plane: unused
+  bool inside = false;          // sphere, cylinder: vertices must stay inside instead of outside
+};
+
+/// The collision surface. Pairs that share a vertex are exempt, and no others.
+struct AuditMesh {
+  Eigen::Matrix2Xi edges;  // every edge that collides: of the triangles, and of rods. Planar: boundary edges
+  Eigen::Matrix3Xi triangles;  // 3D: surface triangles. Planar: elements, judged for inversion only
+  std::vector<int> points;     // vertices that collide and belong to no edge or triangle (particles)
+  std::vector<std::uint8_t>
+      fixed;  // [n_vertices] or empty: given and never moving. Driven vertices are not fixed
+  std::vector<AuditObstacle> obstacles;
+  bool planar = false;  // the scene lives in x and y; z is ignored
+};
+
+/// What kind of test found something; the order is the order in which first offenders are named.
+enum class PairKind {
+  edge_triangle,
+  edge_edge_2d,
+  vertex_triangle,
+  edge_edge,
+  vertex_edge_2d,
+  vertex_obstacle,
+  inverted
+};
+
+/// An offender by its indices: edge, triangle and obstacle numbers, vertex ids; `inverted`: the triangle
+/// twice.
+struct PairName {
+  PairKind kind = PairKind::edge_triangle;
+  int first = -1, second = -1;
+  auto operator<=>(const PairName&) const = default;
+};
+
+}  // namespace bb::audit

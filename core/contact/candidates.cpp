@@ -1,0 +1,91 @@
+#include "core/contact/candidates.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+
+namespace bb {
+
+namespace {
+bool any(const std::vector<std::uint8_t>& flags) {
+  return std::find(flags.begin(), flags.end(), 1) != flags.end();
+}
+}  // namespace
+
+BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles)
+    : surface_(surface), obstacles_(std::move(obstacles)) {
+  const bool free_point = any(surface.points.free), free_edge = any(surface.edges.free);
+  obstacles_possible_ = !obstacles_.empty() && free_point;
+  if (surface.planar && surface.planar_pairs == PlanarPairs::vertex_vertex) {
+    points_.needed = surface.points.size() > 1 && free_point;
+  } else if (surface.planar) {
+    points_.needed = edges_.needed = surface.edges.size() > 0 && surface.points.size() > 2 &&
+                                     (free_point || free_edge);
+  } else {
+    triangles_.needed = surface.triangles.size() > 0 && surface.points.size() > 3 &&
+                        (free_point || any(surface.triangles.free));
+    points_.needed = triangles_.needed;
+    edges_.needed = surface.edges.size() > 1 && free_edge;
+  }
+  pairs_possible_ = points_.needed || edges_.needed;
+}
+
+template <int N>
+void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1) {
+  if (!tree.needed) return;
+  tree.boxes.resize(primitives.size());
+  tbb::parallel_for(std::size_t{0}, primitives.size(), [&](std::size_t i) {
+    Aabb box;
+    for (int v : primitives.vertices[i]) {
+      box.add(Vec3d(x0.col(v)));
+      box.add(Vec3d(x1.col(v)));
+    }
+    box.inflate(primitives.side[i].d_hat / 2 + primitives.side[i].offset);
+    tree.boxes[i] = box;
+  });
+  tree.bvh.update(tree.boxes, primitives.free);
+}
+
+void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& out) {
+  const Surface& s = surface_;
+  fit(points_, s.points, x0, x1);
+  fit(edges_, s.edges, x0, x1);
+  fit(triangles_, s.triangles, x0, x1);
+  const auto point = [&s](int i) { return s.points.vertices[static_cast<std::size_t>(i)][0]; };
+  const auto edge = [&s](int i) { return s.edges.vertices[static_cast<std::size_t>(i)]; };
+  const auto triangle = [&s](int i) { return s.triangles.vertices[static_cast<std::size_t>(i)]; };
+
+  if (s.planar && s.planar_pairs == PlanarPairs::vertex_vertex) {
+    finder_.find(points_.bvh, points_.bvh,
+                 [&](IndexPair p) { return !s.connected(point(p.first), point(p.second)); }, out.point_point);
+  } else if (s.planar) {
+    finder_.find(points_.bvh, edges_.bvh,
+                 [&](IndexPair p) { return !s.adjacent(point(p.first), edge(p.second)); }, out.point_edge);
+  } else {
+    finder_.find(points_.bvh, triangles_.bvh,
+                 [&](IndexPair p) { return s.disjoint(point(p.first), triangle(p.second)); },
+                 out.point_triangle);
+    finder_.find(edges_.bvh, edges_.bvh,
+                 [&](IndexPair p) { return s.disjoint(edge(p.first), edge(p.second)); }, out.edge_edge);
+  }
+  update_obstacles(x0, x1, out.obstacle);
+}
+
+void BroadPhase::update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out) {
+  out.clear();
+  if (!obstacles_possible_) return;
+  for (std::size_t i = 0; i < surface_.points.size(); ++i) {
+    if (!surface_.points.free[i]) continue;
+    const int v = surface_.points.vertices[i][0];
+    const Side side = surface_.points.side[i];
+    const Vec3d p0 = x0.col(v), p1 = x1.col(v);
+    for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+      // the gap falls by at most the way gone: a bound for any obstacle; 1e-12 covers rounding
+      const double start = surface_gap<double>(obstacles_[o], p0).d;
+      const double least = start - (p1 - p0).norm() - 1e-12 * (std::abs(start) + (p1 - p0).norm());
+      if (!(least > side.d_hat + side.offset)) out.push_back({static_cast<int>(i), static_cast<int>(o)});
+    }
+  }
+}
+
+}  // namespace bb

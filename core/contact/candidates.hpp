@@ -1,0 +1,44 @@
+// Broad phase of a scene: which pairs of primitives may come within their contact distance on a motion.
+#pragma once
+
+#include <vector>
+
+#include "core/contact/bvh.hpp"
+#include "core/contact/obstacle.hpp"
+#include "core/contact/surface.hpp"
+
+namespace bb {
+
+/// Pairs by index into the primitive lists of Surface, each list sorted; obstacle: (point, obstacle).
+struct Candidates {
+  std::vector<IndexPair> point_point, point_edge, point_triangle, edge_edge, obstacle;
+};
+
+/// Keeps one tree per kind of primitive that the scene's pairs need, and no other.
+class BroadPhase {
+ public:
+  BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles);
+
+  /// True when some pair or obstacle contact can exist at all.
+  bool active() const { return pairs_possible_ || obstacles_possible_; }
+  /// All pairs with a free vertex, not adjacent, that may come within d_hat + offset on x0 -> x1, and more.
+  void update(const Positions& x0, const Positions& x1, Candidates& out);
+
+ private:
+  struct Tree {
+    bool needed = false;
+    Bvh bvh;
+    std::vector<Aabb> boxes;
+  };
+  template <int N>
+  void fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1);
+  void update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out);
+
+  const Surface& surface_;
+  std::vector<AnalyticSurface<double>> obstacles_;
+  Tree points_, edges_, triangles_;
+  PairFinder finder_;
+  bool pairs_possible_ = false, obstacles_possible_ = false;
+};
+
+}  // namespace bb

@@ -1,0 +1,105 @@
+#include "core/contact/surface.hpp"
+
+#include <algorithm>
+
+namespace bb {
+
+namespace {
+
+/// Exact for equal values: pairs of one feature must agree bit for bit to be merged.
+double mean(const double* values, int n) {
+  double excess = 0;
+  for (int i = 1; i < n; ++i) excess += values[i] - values[0];
+  return values[0] + excess / n;
+}
+
+template <int N>
+void add(Primitives<N>& out, const Scene& scene, const std::vector<std::uint8_t>& vertex_free,
+         const std::array<int, N>& vertices) {
+  double d_hat[N], offset[N];
+  bool any_free = false;
+  for (int i = 0; i < N; ++i) {
+    const std::size_t v = static_cast<std::size_t>(vertices[static_cast<std::size_t>(i)]);
+    d_hat[i] = scene.d_hat[v];
+    offset[i] = scene.offset[v];
+    any_free = any_free || vertex_free[v] != 0;
+  }
+  out.vertices.push_back(vertices);
+  out.side.push_back({mean(d_hat, N), mean(offset, N)});
+  out.free.push_back(any_free ? 1 : 0);
+}
+
+std::array<int, 2> ascending(int a, int b) { return a < b ? std::array{a, b} : std::array{b, a}; }
+
+template <class T>
+void sort_unique(std::vector<T>& values) {
+  std::sort(values.begin(), values.end());
+  values.erase(std::unique(values.begin(), values.end()), values.end());
+}
+
+void add_sides(std::vector<std::array<int, 2>>& edges, const std::vector<std::array<int, 3>>& triangles) {
+  for (const auto& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) edges.push_back(ascending(t[k], t[(k + 1) % 3]));
+  }
+}
+
+}  // namespace
+
+Side combine(const Side& a, const Side& b) {
+  return {a.d_hat + (b.d_hat - a.d_hat) / 2, a.offset + b.offset};
+}
+
+Surface::Surface(const Scene& scene)
+    : vertex_free(static_cast<std::size_t>(scene.n_vertices()), 1),
+      planar(scene.planar),
+      planar_pairs(scene.planar_pairs) {
+  for (const Pin& pin : scene.pins) vertex_free[static_cast<std::size_t>(pin.vertex)] = 0;
+
+  std::vector<int> vertices = scene.surface_vertices;
+  sort_unique(vertices);
+  for (int v : vertices) add<1>(points, scene, vertex_free, {v});
+
+  std::vector<std::array<int, 2>> all_edges;
+  for (const auto& e : scene.surface_edges) all_edges.push_back(ascending(e[0], e[1]));
+  if (!planar) {
+    add_sides(all_edges, scene.surface_triangles);
+    for (const auto& t : scene.surface_triangles) add<3>(triangles, scene, vertex_free, t);
+  }
+  sort_unique(all_edges);
+  for (const auto& e : all_edges) add<2>(edges, scene, vertex_free, e);
+  if (planar) connect(scene);
+}
+
+void Surface::connect(const Scene& scene) {
+  if (planar_pairs == PlanarPairs::vertex_vertex) {
+    connected_ = edges.vertices;
+    add_sides(connected_, scene.membrane.triangles);
+    add_sides(connected_, scene.surface_triangles);
+    for (const auto& e : scene.springs.edges) {  // a spring between two bodies is a stitch, not a mesh edge
+      const std::size_t a = static_cast<std::size_t>(e[0]), b = static_cast<std::size_t>(e[1]);
+      if (scene.body[a] == scene.body[b]) connected_.push_back(ascending(e[0], e[1]));
+    }
+    sort_unique(connected_);
+    return;
+  }
+  for (const auto* list : {&scene.membrane.triangles, &scene.surface_triangles}) {
+    for (const auto& t : *list) {
+      for (std::size_t k = 0; k < 3; ++k) {
+        const auto e = ascending(t[k], t[(k + 1) % 3]);
+        opposite_.push_back({e[0], e[1], t[(k + 2) % 3]});
+      }
+    }
+  }
+  sort_unique(opposite_);
+}
+
+bool Surface::connected(int vertex, int other) const {
+  return std::binary_search(connected_.begin(), connected_.end(), ascending(vertex, other));
+}
+
+bool Surface::adjacent(int vertex, const std::array<int, 2>& edge) const {
+  return vertex == edge[0] || vertex == edge[1] ||
+         std::binary_search(opposite_.begin(), opposite_.end(), std::array{edge[0], edge[1], vertex});
+}
+
+}  // namespace bb

@@ -1,0 +1,60 @@
+// The collision primitives of a scene: which there are, which can move, which never pair, and the contact
+// distances of each. Fixed for a whole run.
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <vector>
+
+#include "core/geometry/pair.hpp"
+#include "core/scene/scene.hpp"
+
+namespace bb {
+
+/// Contact distances of one primitive: means over its vertices, m.
+struct Side {
+  double d_hat, offset;
+};
+
+/// Gap law of a pair: mean activation distance and summed offset of its two sides, m.
+Side combine(const Side& a, const Side& b);
+
+/// Primitives of one kind with N vertices each.
+template <int N>
+struct Primitives {
+  std::vector<std::array<int, N>> vertices;  // global ids; edges ascending
+  std::vector<Side> side;
+  std::vector<std::uint8_t> free;  // 1 when at least one vertex is free
+  std::size_t size() const { return vertices.size(); }
+};
+
+struct Surface {
+  explicit Surface(const Scene& scene);
+
+  std::vector<std::uint8_t> vertex_free;  // [n_vertices]
+  Primitives<1> points;
+  Primitives<2> edges;
+  Primitives<3> triangles;
+  bool planar;
+  PlanarPairs planar_pairs;
+
+  /// Planar: true when no pair of these may exist. Two vertices: one mesh edge joins them. A vertex (second
+  /// argument list) and an edge: the edge's own, or the third vertex of a triangle that has the edge.
+  bool connected(int vertex, int other) const;
+  bool adjacent(int vertex, const std::array<int, 2>& edge) const;
+  /// No common vertex; all that 3D pairs ask for.
+  static bool disjoint(int vertex, const std::array<int, 3>& triangle) {
+    return vertex != triangle[0] && vertex != triangle[1] && vertex != triangle[2];
+  }
+  static bool disjoint(const std::array<int, 2>& a, const std::array<int, 2>& b) {
+    return a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1];
+  }
+
+ private:
+  void connect(const Scene& scene);
+
+  std::vector<std::array<int, 2>> connected_;  // sorted mesh edges (vertex_vertex)
+  std::vector<std::array<int, 3>> opposite_;   // sorted (e0, e1, third vertex) (point_edge)
+};
+
+}  // namespace bb

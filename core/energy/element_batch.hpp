@@ -1,0 +1,45 @@
+// All elements of one energy of a scene, as Newton calls them. The physics is in the element headers; the
+// loops are in element_loop.hpp.
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/math/types.hpp"
+
+namespace bb {
+
+/// Local terms of n elements of w vertices: what the assembly scatters.
+struct LocalTerms {
+  std::vector<double> energy;  // [n] J
+  std::vector<double> grad;    // [3w n] N, vertex-major
+  std::vector<double> hess;    // [9w^2 n] N/m, 3w x 3w column-major, symmetric PSD
+
+  /// Makes room for n elements of w vertices; allocates only when it must grow.
+  void resize(std::size_t n, int width);
+};
+
+/// Results do not depend on the number of threads: every element writes its own slots.
+class EnergyBatch {
+ public:
+  EnergyBatch() = default;
+  EnergyBatch(const EnergyBatch&) = delete;
+  EnergyBatch& operator=(const EnergyBatch&) = delete;
+  virtual ~EnergyBatch() = default;
+
+  virtual std::string_view name() const = 0;
+  /// Vertices per element, w.
+  virtual int width() const = 0;
+  /// [w n] vertex indices, element-major.
+  virtual std::span<const int> vertices() const = 0;
+  /// Energies [n], J. Cost: O(n), allocates nothing.
+  virtual void values(const Positions& x, double* energy) const = 0;
+  /// Energies, gradients and PSD Hessians. Cost: O(n); out is resized once and never allocated again.
+  virtual void derivatives(const Positions& x, LocalTerms& out) const = 0;
+
+  std::size_t size() const { return vertices().size() / static_cast<std::size_t>(width()); }
+};
+
+}  // namespace bb

@@ -1,0 +1,58 @@
+// Parallel loops over elements: gather points, call the element function, write the element's own slots.
+#pragma once
+
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/energy/element_batch.hpp"
+#include "core/energy/terms.hpp"
+#include "core/math/error.hpp"
+
+namespace bb {
+
+/// Calls f(e) for every e in [0, n), in any order, on any thread.
+template <class F>
+void for_each_element(std::size_t n, const F& f) {
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, n, 64),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t e = range.begin(); e < range.end(); ++e) f(e);
+                    });
+}
+
+/// The W points of element e.
+template <int W>
+struct Points {
+  Vec3d x[W];
+  Points(const Positions& all, std::span<const int> vertices, std::size_t e) {
+    for (std::size_t i = 0; i < W; ++i) x[i] = all.col(vertices[W * e + i]);
+  }
+};
+
+template <int N>
+void store_terms(const ElementTerms<double, N>& terms, std::size_t e, LocalTerms& out) {
+  out.energy[e] = terms.energy;
+  std::copy_n(terms.grad.data(), N, out.grad.data() + N * e);
+  std::copy_n(terms.hess.data(), N * N, out.hess.data() + N * N * e);
+}
+
+/// ConfigError unless a column has one entry an element and, where `positive`, no entry that is not > 0.
+inline void check_column(const char* where, std::size_t n, const std::vector<double>& column, bool positive) {
+  if (column.size() != n) {
+    throw ConfigError(where, std::to_string(column.size()) + " entries",
+                      std::to_string(n) + ", one an element");
+  }
+  for (std::size_t e = 0; e < n; ++e) {
+    if (positive && !(column[e] > 0)) {
+      throw ConfigError(where, std::to_string(column[e]) + " in element " + std::to_string(e),
+                        "a number > 0");
+    }
+  }
+}
+
+}  // namespace bb

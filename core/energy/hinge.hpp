@@ -1,0 +1,144 @@
+// Dihedral bending of two triangles (e0 e1 v0), (e1 e0 v1) that share the edge e0 e1: quadratic in the angle.
+#pragma once
+
+#include "core/energy/terms.hpp"
+#include "core/math/psd.hpp"
+
+namespace bb {
+
+/// Angle in (-pi, pi] between the normals e x a and b x e (e = e1 - e0, a = v0 - e0, b = v1 - e0), 0 when
+/// flat, positive when the normals turn about +e from the first triangle to the second; by atan2, so that it
+/// keeps its digits near 0 and pi. Points in the order e0 e1 v0 v1. Host-device: yes. Total.
+template <class T>
+BB_HD T hinge_angle(const Vec<T, 3> (&x)[4]) {
+  using std::atan2;
+  const Vec<T, 3> e = x[1] - x[0], b = x[3] - x[0];
+  const Vec<T, 3> n0 = e.cross(Vec<T, 3>(x[2] - x[0])), n1 = b.cross(e);
+  return atan2(-e.norm() * n0.dot(b), n0.dot(n1));
+}
+
+/// theta - rest_angle brought to (-pi, pi]. Exact as it stands when already there.
+template <class T>
+BB_HD T hinge_deviation(T angle, T rest_angle) {
+  using std::remainder;
+  const T pi = T(3.14159265358979323846);
+  const T deviation = remainder(angle - rest_angle, T(2) * pi);
+  return deviation > -pi ? deviation : deviation + T(2) * pi;
+}
+
+/// Gradient and Hessian of the angle in the reduced variables (e, a, b), nine numbers.
+template <class T>
+struct HingeAngleTerms {
+  Vec<T, 9> grad;     // 1/m
+  Mat<T, 9, 9> hess;  // 1/m^2
+};
+
+template <class T>
+BB_HD Mat<T, 3, 3> cross_matrix(const Vec<T, 3>& v) {
+  Mat<T, 3, 3> out;
+  out << T(0), -v[2], v[1], v[2], T(0), -v[0], -v[1], v[0], T(0);
+  return out;
+}
+
+/// One side of the hinge, added with its sign: how far the vertex at `a` (slot 1 or 2) has turned about e.
+/// Its gradient is c in a and -t c in e, with c = |e| n/|n|^2, n = e x a, t = a.e/|e|^2; the Hessian is their
+/// derivative.
+template <class T>
+BB_HD void add_hinge_side(const Vec<T, 3>& e, const Vec<T, 3>& a, T sign, int slot, HingeAngleTerms<T>& out) {
+  const T e_sq = e.squaredNorm(), length = e.norm();
+  const Vec<T, 3> n = e.cross(a);
+  const T n_sq = n.squaredNorm();
+  const Vec<T, 3> c = length / n_sq * n;
+  const T t = a.dot(e) / e_sq;
+  const Mat<T, 3, 3> dc_dn = length / n_sq * (Mat<T, 3, 3>::Identity() - (T(2) / n_sq) * n * n.transpose());
+  const Mat<T, 3, 3> dc_da = dc_dn * cross_matrix<T>(e);
+  const Mat<T, 3, 3> dc_de = n * e.transpose() / (length * n_sq) - dc_dn * cross_matrix<T>(a);
+  const Vec<T, 3> dt_de = (a - T(2) * t * e) / e_sq;
+
+  const int row = 3 * slot;
+  out.grad.template segment<3>(row) += sign * c;
+  out.grad.template segment<3>(0) -= sign * t * c;
+  out.hess.template block<3, 3>(row, row) += sign * dc_da;
+  out.hess.template block<3, 3>(row, 0) += sign * dc_de;
+  out.hess.template block<3, 3>(0, row) += sign * dc_de.transpose();
+  out.hess.template block<3, 3>(0, 0) -= sign * (c * dt_de.transpose() + t * dc_de);
+}
+
+/// Exact first and second derivative of the angle. Not finite when a triangle has no area.
+/// Source: the gradient of Bridson et al. 2003 and Grinspun et al. 2003, differentiated once more; compare
+/// Tamstorf and Grinspun 2013.
+template <class T>
+BB_HD HingeAngleTerms<T> hinge_angle_terms(const Vec<T, 3> (&x)[4]) {
+  HingeAngleTerms<T> out;
+  out.grad.setZero();
+  out.hess.setZero();
+  const Vec<T, 3> e = x[1] - x[0];
+  add_hinge_side<T>(e, x[2] - x[0], T(-1), 1, out);
+  add_hinge_side<T>(e, x[3] - x[0], T(1), 2, out);
+  const Mat<T, 9, 9> transposed = out.hess.transpose();
+  out.hess = T(0.5) * (out.hess + transposed);
+  return out;
+}
+
+/// (A x 1_3) H (A x 1_3)^T for a small matrix A acting on points.
+template <class T, int N>
+BB_HD Mat<T, 3 * N, 3 * N> lift_points(const Mat<T, N, 3>& a, const Mat<T, 9, 9>& h) {
+  Mat<T, 3 * N, 9> left;
+  Mat<T, 3 * N, 3 * N> out;
+  for (int i = 0; i < N; ++i) {
+    left.template middleRows<3>(3 * i) = a(i, 0) * h.template middleRows<3>(0) +
+                                         a(i, 1) * h.template middleRows<3>(3) +
+                                         a(i, 2) * h.template middleRows<3>(6);
+  }
+  for (int i = 0; i < N; ++i) {
+    out.template middleCols<3>(3 * i) = a(i, 0) * left.template middleCols<3>(0) +
+                                        a(i, 1) * left.template middleCols<3>(3) +
+                                        a(i, 2) * left.template middleCols<3>(6);
+  }
+  for (int i = 0; i < 3 * N; ++i) {
+    for (int j = 0; j < i; ++j) out(j, i) = out(i, j);
+  }
+  return out;
+}
+
+/// Energy (J) k/2 (theta - theta0)^2, k in J, angles in rad, the difference taken in (-pi, pi]. Host-device:
+/// yes.
+template <class T>
+BB_HD T hinge_value(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle) {
+  const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
+  return stiffness / T(2) * deviation * deviation;
+}
+
+/// Energy, gradient and Hessian k (grad theta grad theta^T + (theta - theta0) grad^2 theta). Psd: exact
+/// projection of the 12 x 12 matrix, done on the 9 x 9 matrix left when the three translations, its null
+/// vectors, are split off by an orthonormal basis. Not finite when a triangle has no area. Host-device: yes.
+template <class T>
+BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle,
+                                      Projection projection) {
+  const HingeAngleTerms<T> angle = hinge_angle_terms<T>(x);
+  const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
+  const Mat<T, 9, 9> reduced = stiffness * (angle.grad * angle.grad.transpose() + deviation * angle.hess);
+  Mat<T, 4, 3> difference;  // (e, a, b) = difference^T (e0, e1, v0, v1)
+  difference << T(-1), T(-1), T(-1), T(1), T(0), T(0), T(0), T(1), T(0), T(0), T(0), T(1);
+
+  ElementTerms<T, 12> out;
+  out.energy = stiffness / T(2) * deviation * deviation;
+  for (int i = 0; i < 4; ++i) {
+    out.grad.template segment<3>(3 * i) = stiffness * deviation *
+                                          (difference(i, 0) * angle.grad.template segment<3>(0) +
+                                           difference(i, 1) * angle.grad.template segment<3>(3) +
+                                           difference(i, 2) * angle.grad.template segment<3>(6));
+  }
+  if (projection == Projection::none || deviation == T(0)) {  // k grad grad^T has no negative eigenvalue
+    out.hess = lift_points<T, 4>(difference, reduced);
+  } else {
+    Mat<T, 4, 3> basis;  // orthonormal, at right angles to (1, 1, 1, 1)
+    basis << T(1), T(1), T(1), T(1), T(-1), T(-1), T(-1), T(1), T(-1), T(-1), T(-1), T(1);
+    basis *= T(0.5);
+    const Mat<T, 3, 3> to_basis = basis.transpose() * difference;
+    out.hess = lift_points<T, 4>(basis, project_psd<T, 9>(lift_points<T, 3>(to_basis, reduced)));
+  }
+  return out;
+}
+
+}  // namespace bb

@@ -1,0 +1,69 @@
+// Loops over membrane triangles.
+#include "core/energy/membrane_batch.hpp"
+
+#include <cmath>
+
+#include "core/energy/element_loop.hpp"
+
+namespace bb {
+
+namespace {
+
+const MembraneModel<double>* known_model(std::string_view name) {
+  if (const MembraneModel<double>* model = find_membrane_model<double>(name)) return model;
+  std::string allowed = "one of";
+  for (const MembraneModel<double>& model : membrane_models<double>()) {
+    allowed += (allowed == "one of" ? " " : ", ") + std::string(model.name);
+  }
+  throw ConfigError("membrane/model", std::string(name), allowed);
+}
+
+}  // namespace
+
+std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int, 3>> triangles,
+                                                 const Positions& x_rest, bool planar, const Vec3d* warp) {
+  std::vector<TriangleRest<double>> rests;
+  rests.reserve(triangles.size());
+  for (const auto& [a, b, c] : triangles) {
+    const Vec3d x[3] = {x_rest.col(a), x_rest.col(b), x_rest.col(c)};
+    const Vec3d u = warp != nullptr ? *warp : Vec3d(x[1] - x[0]);
+    rests.push_back(planar ? planar_triangle_rest<double>(x, u) : triangle_rest<double>(x, u));
+    if (!(rests.back().area > 0 && rests.back().dm_inv.allFinite())) {
+      throw ConfigError("triangle " + std::to_string(rests.size() - 1),
+                        "no area, or no warp direction in its plane", "a rest triangle of area > 0");
+    }
+  }
+  return rests;
+}
+
+MembraneBatch::MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
+                             const Positions& x_rest, std::vector<double> lame_mu,
+                             std::vector<double> lame_lambda, bool planar, const Vec3d* warp)
+    : model_(known_model(model)),
+      planar_(planar),
+      rests_(triangle_rests(triangles, x_rest, planar, warp)),
+      lame_mu_(std::move(lame_mu)),
+      lame_lambda_(std::move(lame_lambda)) {
+  check_column("membrane/lame_mu", triangles.size(), lame_mu_, false);
+  check_column("membrane/lame_lambda", triangles.size(), lame_lambda_, false);
+  for (const auto& triangle : triangles) vertices_.insert(vertices_.end(), triangle.begin(), triangle.end());
+}
+
+void MembraneBatch::values(const Positions& x, double* energy) const {
+  const auto value = planar_ ? model_->value_planar : model_->value;
+  for_each_element(size(), [&](std::size_t e) {
+    const Points<3> p(x, vertices_, e);
+    energy[e] = value(rests_[e], p.x, lame_mu_[e], lame_lambda_[e]);
+  });
+}
+
+void MembraneBatch::derivatives(const Positions& x, LocalTerms& out) const {
+  out.resize(size(), width());
+  const auto terms = planar_ ? model_->terms_planar : model_->terms;
+  for_each_element(size(), [&](std::size_t e) {
+    const Points<3> p(x, vertices_, e);
+    store_terms(terms(rests_[e], p.x, lame_mu_[e], lame_lambda_[e], Projection::psd), e, out);
+  });
+}
+
+}  // namespace bb

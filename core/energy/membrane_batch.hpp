@@ -1,0 +1,40 @@
+// All membrane triangles of one model of a scene.
+#pragma once
+
+#include <array>
+
+#include "core/energy/element_batch.hpp"
+#include "core/energy/membrane_model.hpp"
+
+namespace bb {
+
+/// Rest data of triangles at x_rest [3 x n_vertices] (m). `warp`: one warp direction for all, or null for
+/// each triangle's first edge. ConfigError when a triangle has no area (or the warp direction is normal to
+/// it).
+std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int, 3>> triangles,
+                                                 const Positions& x_rest, bool planar, const Vec3d* warp);
+
+class MembraneBatch final : public EnergyBatch {
+ public:
+  /// @param model   a name of registry.inc        @param planar  F is 2x2 in the x-y plane, z has no terms
+  /// @param lame_mu, lame_lambda [n] N/m          @param warp    as in triangle_rests
+  /// ConfigError: unknown model, columns of another length, triangles without area.
+  MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
+                const Positions& x_rest, std::vector<double> lame_mu, std::vector<double> lame_lambda,
+                bool planar = false, const Vec3d* warp = nullptr);
+  std::string_view name() const override { return model_->name; }
+  int width() const override { return 3; }
+  std::span<const int> vertices() const override { return vertices_; }
+  std::span<const TriangleRest<double>> rests() const { return rests_; }
+  void values(const Positions& x, double* energy) const override;
+  void derivatives(const Positions& x, LocalTerms& out) const override;
+
+ private:
+  const MembraneModel<double>* model_;
+  bool planar_;
+  std::vector<int> vertices_;
+  std::vector<TriangleRest<double>> rests_;
+  std::vector<double> lame_mu_, lame_lambda_;
+};
+
+}  // namespace bb

@@ -1,0 +1,31 @@
+// Membrane models by name, as tables of element functions: what batches, eval and tests loop over.
+#pragma once
+
+#include <span>
+#include <string_view>
+
+#include "core/energy/triangle_membrane.hpp"
+
+namespace bb {
+
+/// One line of registry.inc. The functions are membrane_value and membrane_terms, F 3 x 2 in space, 2 x 2 in
+/// the x-y plane (det F signed, z rows and columns 0).
+template <class T>
+struct MembraneModel {
+  using Value = T (*)(const TriangleRest<T>&, const Vec<T, 3> (&)[3], T lame_mu, T lame_lambda);
+  using Terms = ElementTerms<T, 9> (*)(const TriangleRest<T>&, const Vec<T, 3> (&)[3], T lame_mu,
+                                       T lame_lambda, Projection);
+  std::string_view name, doc;
+  Value value, value_planar;
+  Terms terms, terms_planar;
+};
+
+/// Every registered model, in the order of registry.inc. T: float or double.
+template <class T>
+std::span<const MembraneModel<T>> membrane_models();
+
+/// The model of that name, or null.
+template <class T>
+const MembraneModel<T>* find_membrane_model(std::string_view name);
+
+}  // namespace bb

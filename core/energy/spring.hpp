@@ -1,0 +1,38 @@
+// A spring between two points.
+#pragma once
+
+#include "core/energy/terms.hpp"
+
+namespace bb {
+
+/// Energy (J) k/2 (l - l0)^2, l = |x1 - x0|; k in N/m, l0 in m. Host-device: yes. Total.
+template <class T>
+BB_HD T spring_value(const Vec<T, 3> (&x)[2], T stiffness, T rest_length) {
+  const T stretch = (x[1] - x[0]).norm() - rest_length;
+  return stiffness / T(2) * stretch * stretch;
+}
+
+/// Energy, gradient and Hessian k (n n^T + (1 - l0/l)(1 - n n^T)), n the unit direction; the transverse part
+/// is negative in compression. At l = 0 (a cusp unless l0 = 0) gradient and Hessian are those with n = 0.
+/// Host-device: yes. Total.
+template <class T>
+BB_HD ElementTerms<T, 6> spring_terms(const Vec<T, 3> (&x)[2], T stiffness, T rest_length,
+                                      Projection projection) {
+  const Vec<T, 3> difference = x[1] - x[0];
+  const T length = difference.norm();
+  const Vec<T, 3> n = length > T(0) ? Vec<T, 3>(difference / length) : Vec<T, 3>(Vec<T, 3>::Zero());
+  const T ratio = length > T(0) ? rest_length / length : (rest_length > T(0) ? T(1) : T(0));
+  T transverse = T(1) - ratio;
+  if (projection == Projection::psd && transverse < T(0)) transverse = T(0);
+  const Vec<T, 3> force = stiffness * (length - rest_length) * n;
+  const Mat<T, 3, 3> block =
+      stiffness * (transverse * Mat<T, 3, 3>::Identity() + (T(1) - transverse) * n * n.transpose());
+
+  ElementTerms<T, 6> out;
+  out.energy = spring_value<T>(x, stiffness, rest_length);
+  out.grad << -force, force;
+  out.hess << block, -block, -block, block;
+  return out;
+}
+
+}  // namespace bb

@@ -1,0 +1,94 @@
+// Strain limiting of one triangle: a barrier on the singular values of F. The barrier's shape is evaluated
+// outside, in batches, at the pseudo-gaps that `strain_gap` gives; its terms come back here as numbers.
+#pragma once
+
+#include "core/energy/isotropic.hpp"
+#include "core/energy/triangle_membrane.hpp"
+
+namespace bb {
+
+/// Where the barrier acts: above 1 + onset, never to reach 1 + onset + width.
+template <class T>
+struct StrainBand {
+  T onset;  // 1, >= 0
+  T width;  // 1, > 0; the barrier's activation distance
+};
+
+/// y = width - ((sigma - 1) - onset): the barrier's gap; >= width where inactive, <= 0 at or beyond the
+/// limit.
+template <class T>
+BB_HD T strain_gap(T sigma, const StrainBand<T>& band) {
+  return band.width - ((sigma - T(1)) - band.onset);
+}
+
+/// Barrier terms b(y_k), b'(y_k), b''(y_k) of both singular values, for stiffness 1.
+template <class T>
+struct StrainShape {
+  Vec<T, 2> b, db, d2b;
+};
+
+/// S = kappa sum_k b(y_k) as a density in singular values: dS/dsigma = -kappa b', d2S/dsigma2 = kappa b''.
+/// flip is the divided difference of dS/dsigma; where the sigmas agree to the cube root of the rounding error
+/// (relative to the smaller y, the scale on which b'' varies) the mean of both b'' is more exact than the
+/// quotient. kappa in J gives J. Host-device: yes. Total for y_k > 0.
+template <class T>
+BB_HD Density2<T> strain_limit_density(const Vec<T, 2>& sigma, const StrainBand<T>& band,
+                                       const StrainShape<T>& shape, T kappa) {
+  using std::abs, std::cbrt;
+  Density2<T> out;
+  out.psi = kappa * (shape.b[0] + shape.b[1]);
+  out.dpsi = -kappa * shape.db;
+  out.d2psi = Mat<T, 2, 2>::Zero();
+  for (int k = 0; k < 2; ++k) out.d2psi(k, k) = kappa * shape.d2b[k];
+  const T difference = sigma[0] - sigma[1], sum = sigma[0] + sigma[1];
+  const T close = cbrt(std::numeric_limits<T>::epsilon()) * abs(strain_gap(sigma[0], band));
+  out.flip = abs(difference) > close ? (out.dpsi[0] - out.dpsi[1]) / difference
+                                     : (out.d2psi(0, 0) + out.d2psi(1, 1)) / T(2);
+  out.twist = sum > T(0) ? (out.dpsi[0] + out.dpsi[1]) / sum : T(0);
+  return out;
+}
+
+/// Energy, gradient and Hessian of one strain-limited triangle; exact zeros when both singular values are
+/// inactive.
+/// @param svd    of F at x        @param shape  at y_k = strain_gap(sigma_k, band), all y_k > 0
+/// @param kappa  J
+/// Host-device: yes.
+template <int R, class T>
+BB_HD ElementTerms<T, 9> strain_limit_terms(const TriangleRest<T>& rest, const Svd<T, R, 2>& svd,
+                                            const StrainBand<T>& band, const StrainShape<T>& shape, T kappa,
+                                            Projection projection) {
+  if (!(strain_gap(svd.sigma[0], band) < band.width)) {
+    return {T(0), Vec<T, 9>::Zero(), Mat<T, 9, 9>::Zero()};
+  }
+  const Density2<T> density = strain_limit_density(svd.sigma, band, shape, kappa);
+  return pull_back<R, T>(rest, T(1), isotropic_terms<T, R>(svd, density, projection));
+}
+
+/// Whether both singular values at x are below the limit: the one test that step bound and energy share.
+template <int R, class T>
+BB_HD bool within_strain_limit(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3],
+                               const StrainBand<T>& band) {
+  return strain_gap(membrane_svd(deformation_gradient<R>(rest, x)).sigma[0], band) > T(0);
+}
+
+/// Largest alpha in [0, alpha_max] whose rounded state x + alpha dx is within the limit; 0 when x is not.
+/// sigma_max is convex along the step, so what is within the limit is one interval and bisection down to two
+/// neighbouring numbers finds its end without a tolerance: the next larger alpha is beyond the limit.
+/// Host-device: yes. Cost: one SVD when alpha_max is within, else about 60 in double.
+template <int R, class T>
+BB_HD T strain_step_bound(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3], const Vec<T, 3> (&dx)[3],
+                          const StrainBand<T>& band, T alpha_max = T(1)) {
+  const auto within = [&](T alpha) {
+    const Vec<T, 3> moved[3] = {x[0] + alpha * dx[0], x[1] + alpha * dx[1], x[2] + alpha * dx[2]};
+    return within_strain_limit<R>(rest, moved, band);
+  };
+  if (within(alpha_max)) return alpha_max;
+  if (!within(T(0))) return T(0);
+  T low = T(0), high = alpha_max;
+  for (T middle = high / T(2); low < middle && middle < high; middle = low + (high - low) / T(2)) {
+    (within(middle) ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace bb

@@ -1,0 +1,90 @@
+// All strain-limited triangles of a scene: singular values, barrier terms, step bound, kappa policies.
+#pragma once
+
+#include <array>
+#include <limits>
+
+#include "core/energy/element_batch.hpp"
+#include "core/energy/strain_limit.hpp"
+#include "core/energy/strain_stiffness.hpp"
+
+namespace bb {
+
+/// Not an EnergyBatch: its energy needs a barrier and kappa. One object a run; values, derivatives and
+/// measure write its columns, so one caller at a time. `Barrier` is a BarrierFunction
+/// (core/contact/shape.hpp) or anything with its batch call eval(n, d, d_hat, b, db, d2b).
+class StrainLimitBatch {
+ public:
+  /// @param onset, width [n] 1, width > 0. ConfigError: columns of another length or value, triangles without
+  /// area.
+  StrainLimitBatch(std::span<const std::array<int, 3>> triangles, const Positions& x_rest,
+                   std::vector<double> onset, std::vector<double> width, bool planar = false);
+
+  std::string_view name() const { return "strain_limit"; }
+  int width() const { return 3; }
+  std::size_t size() const { return bands_.size(); }
+  std::span<const int> vertices() const { return vertices_; }
+  std::span<const TriangleRest<double>> rests() const { return rests_; }
+
+  /// Singular values and pseudo-gaps at x, kept in sigma() and gaps(). Cost: one SVD an element.
+  void measure(const Positions& x);
+  std::span<const double> sigma() const { return sigma_; }  // [2n] descending within an element
+  std::span<const double> gaps() const { return gap_; }     // [2n] y; d_hat of the shape is the width
+  std::size_t n_active() const;                             // elements with a singular value above 1 + onset
+  double max_stretch() const;                               // largest sigma; 0 without elements
+  double min_gap() const;                                   // smallest y; infinity without elements
+
+  /// S_e [n], J; infinite at or beyond the limit. kappa [n], J. Measures.
+  template <class Barrier>
+  void values(const Positions& x, const Barrier& barrier, const double* kappa, double* energy) {
+    measure(x);
+    evaluate(barrier);
+    for (std::size_t e = 0; e < size(); ++e) energy[e] = kappa[e] * (b_[2 * e] + b_[2 * e + 1]);
+  }
+  /// Energies, gradients and PSD Hessians; exact zeros where inactive, not finite at or beyond the limit.
+  /// Measures.
+  template <class Barrier>
+  void derivatives(const Positions& x, const Barrier& barrier, const double* kappa, LocalTerms& out) {
+    measure(x);
+    evaluate(barrier);
+    fill_terms(x, kappa, out);
+  }
+
+  /// Largest alpha in [0, alpha_max] whose state x + alpha dx, rounded coordinate by coordinate, is within
+  /// every limit. Does not depend on the number of threads. Cost: one SVD an element, about 60 more for those
+  /// that would pass their limit.
+  double step_bound(const Positions& x, const Positions& dx, double alpha_max = 1) const;
+
+  /// kappa_e = k_s x rest area; k_s in N/m.
+  void fixed_stiffness(double k_s, double* kappa) const;
+  /// strain_stiffness of every element. y_min is that of the last measure.
+  /// @param x_start step start, m   @param hess [81 n] column-major   @param vertex_mass [n_vertices] kg
+  /// @param element_mass [n] kg
+  void elastic_stiffness(const Positions& x_start, const double* hess, const double* vertex_mass,
+                         const double* element_mass, const StrainStiffnessRule& rule, double* kappa) const;
+
+ private:
+  template <class Barrier>
+  void evaluate(const Barrier& barrier) {
+    for (std::size_t i = 0; i < gap_.size(); ++i) shape_gap_[i] = gap_[i] > 0 ? gap_[i] : width_[i];
+    barrier.eval(gap_.size(), shape_gap_.data(), width_.data(), b_.data(), db_.data(), d2b_.data());
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    for (std::size_t i = 0; i < gap_.size(); ++i) {
+      if (gap_[i] > 0) continue;
+      b_[i] = d2b_[i] = infinity;
+      db_[i] = -infinity;
+    }
+  }
+  void fill_terms(const Positions& x, const double* kappa, LocalTerms& out) const;
+
+  bool planar_;
+  std::vector<int> vertices_;
+  std::vector<TriangleRest<double>> rests_;
+  std::vector<StrainBand<double>> bands_;
+  std::vector<double> width_;         // [2n], both entries of an element equal
+  std::vector<double> sigma_, gap_;   // [2n]
+  std::vector<double> shape_gap_;     // [2n] gap_, or the width where the shape must not be asked
+  std::vector<double> b_, db_, d2b_;  // [2n] for kappa = 1
+};
+
+}  // namespace bb

@@ -1,0 +1,35 @@
+// Second-order backward differentiation for x' = v, M v' = force:
+//   x = (4 x_n - x_{n-1})/3 + (2h/3) v,   v = (4 v_n - v_{n-1})/3 + (2h/3) a
+// so c = 4/9, x_tilde = (4 x_n - x_{n-1})/3 + h (8 v_n - 2 v_{n-1})/9. The first step is implicit Euler.
+#include "core/integrators/registry.hpp"
+
+namespace bb {
+namespace {
+class Bdf2 final : public Integrator {
+ public:
+  std::string_view name() const override { return "bdf2"; }
+  void predict(const History& history, double dt, Prediction& out) const override {
+    if (history.steps == 0) {
+      out.c = 1;
+      out.x_tilde = history.x + dt * history.v;
+      return;
+    }
+    out.c = 4.0 / 9.0;
+    out.x_tilde = (4 * history.x - history.x_prev) / 3 + (dt / 9) * (8 * history.v - 2 * history.v_prev);
+  }
+  void finish(const History& history, double dt, const Prediction&, const Positions& x, Positions& v,
+              Positions& a) const override {
+    if (history.steps == 0) {
+      v = (x - history.x) / dt;
+      a = (v - history.v) / dt;
+      return;
+    }
+    v = (3 * x - 4 * history.x + history.x_prev) / (2 * dt);
+    a = (3 * v - 4 * history.v + history.v_prev) / (2 * dt);
+  }
+};
+}  // namespace
+
+std::unique_ptr<Integrator> make_bdf2() { return std::make_unique<Bdf2>(); }
+
+}  // namespace bb

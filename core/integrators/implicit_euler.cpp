@@ -1,0 +1,24 @@
+// Backward Euler. c = 1, x_tilde = x_n + h v_n, v = (x - x_n)/h. First order, dissipative, unconditionally
+// stable.
+#include "core/integrators/registry.hpp"
+
+namespace bb {
+namespace {
+class ImplicitEuler final : public Integrator {
+ public:
+  std::string_view name() const override { return "implicit_euler"; }
+  void predict(const History& history, double dt, Prediction& out) const override {
+    out.c = 1;
+    out.x_tilde = history.x + dt * history.v;
+  }
+  void finish(const History& history, double dt, const Prediction&, const Positions& x, Positions& v,
+              Positions& a) const override {
+    v = (x - history.x) / dt;
+    a = (v - history.v) / dt;
+  }
+};
+}  // namespace
+
+std::unique_ptr<Integrator> make_implicit_euler() { return std::make_unique<ImplicitEuler>(); }
+
+}  // namespace bb

@@ -1,0 +1,24 @@
+// No inertia (1/c = 0, stored as c = 0) and no velocity; the external force is applied in load steps.
+#include "core/integrators/registry.hpp"
+
+namespace bb {
+namespace {
+class QuasiStatic final : public Integrator {
+ public:
+  std::string_view name() const override { return "quasi_static"; }
+  bool quasi_static() const override { return true; }
+  void predict(const History& history, double, Prediction& out) const override {
+    out.c = 0;
+    out.x_tilde = history.x;
+  }
+  void finish(const History&, double, const Prediction&, const Positions& x, Positions& v,
+              Positions& a) const override {
+    v.setZero(3, x.cols());
+    a.setZero(3, x.cols());
+  }
+};
+}  // namespace
+
+std::unique_ptr<Integrator> make_quasi_static() { return std::make_unique<QuasiStatic>(); }
+
+}  // namespace bb

@@ -1,0 +1,115 @@
+// Eigenvalues and eigenvectors of small symmetric matrices (up to about 12 x 12) by cyclic Jacobi rotations.
+// Plain loops of bounded length, so that the device runs the same code; no library eigen-solver is called.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "core/math/types.hpp"
+
+namespace bb {
+
+/// Cosine, sine and tangent of the rotation that makes [app apq; apq aqq] diagonal, |angle| <= pi/4.
+/// Requires apq != 0.   Source: Golub and Van Loan, Matrix Computations, 8.5.2.
+template <class T>
+struct JacobiRotation {
+  T c, s, t;
+  BB_HD JacobiRotation(T app, T apq, T aqq) {
+    using std::abs, std::sqrt;
+    const T tau = (aqq - app) / (2 * apq);  // infinite when apq is negligible: then t = 0
+    t = (tau < 0 ? T(-1) : T(1)) / (abs(tau) + sqrt(1 + tau * tau));
+    c = 1 / sqrt(1 + t * t);
+    s = t * c;
+  }
+};
+
+namespace detail {
+
+/// Columns p and q of m become c p - s q and s p + c q.
+template <class T, int R, int C>
+BB_HD inline void rotate_columns(Mat<T, R, C>& m, int p, int q, T c, T s) {
+  for (int i = 0; i < R; ++i) {
+    const T mp = m(i, p), mq = m(i, q);
+    m(i, p) = c * mp - s * mq;
+    m(i, q) = s * mp + c * mq;
+  }
+}
+
+/// One rotation of the symmetric a that makes a(p, q) zero.
+template <class T, int N>
+BB_HD inline void rotate_symmetric(Mat<T, N, N>& a, int p, int q, const JacobiRotation<T>& r) {
+  a(p, p) -= r.t * a(p, q);
+  a(q, q) += r.t * a(p, q);
+  a(p, q) = a(q, p) = 0;
+  for (int i = 0; i < N; ++i) {
+    if (i == p || i == q) continue;
+    const T aip = a(i, p), aiq = a(i, q);
+    a(i, p) = a(p, i) = r.c * aip - r.s * aiq;
+    a(i, q) = a(q, i) = r.s * aip + r.c * aiq;
+  }
+}
+
+template <class T, int N>
+BB_HD inline void sort_ascending(Vec<T, N>& values, Mat<T, N, N>& vectors) {
+  for (int i = 0; i + 1 < N; ++i) {
+    int least = i;
+    for (int j = i + 1; j < N; ++j) {
+      if (values[j] < values[least]) least = j;
+    }
+    if (least == i) continue;
+    const T value = values[i];
+    values[i] = values[least];
+    values[least] = value;
+    for (int k = 0; k < N; ++k) {
+      const T entry = vectors(k, i);
+      vectors(k, i) = vectors(k, least);
+      vectors(k, least) = entry;
+    }
+  }
+}
+
+}  // namespace detail
+
+/// A = vectors diag(values) vectors^T of the symmetric part of A.
+/// @param values  ascending; error a few eps of the largest |A_ij|, of the value itself when A is well scaled
+/// @param vectors orthonormal columns (det +-1)
+/// Errors: none for finite A; a non-finite A gives non-finite values.   Host-device.
+/// Cost: 3 to 8 sweeps of N (N - 1) / 2 rotations, at most 16; no allocation.
+template <class T, int N>
+BB_HD inline void sym_eigen(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, N>& vectors) {
+  using std::abs;
+  constexpr T eps = std::numeric_limits<T>::epsilon();
+  constexpr int max_sweeps = 16;  // quadratic convergence: 8 were the most seen for N = 12
+  T scale = 0;
+  for (int j = 0; j < N; ++j) {
+    for (int i = 0; i < N; ++i) scale = scale < abs(A(i, j)) ? abs(A(i, j)) : scale;
+  }
+  const T unit = scale > 0 ? scale : T(1);
+  Mat<T, N, N> a;
+  for (int j = 0; j < N; ++j) {
+    for (int i = 0; i < N; ++i) a(i, j) = (A(i, j) / unit + A(j, i) / unit) / 2;
+  }
+  vectors.setIdentity();
+
+  // An entry is nothing when it is below rounding of both of its diagonal entries, or of rounding itself.
+  constexpr T relative_sq = eps * eps / 16;
+  constexpr T floor_sq = relative_sq * eps;
+  bool rotated = true;
+  for (int sweep = 0; sweep < max_sweeps && rotated; ++sweep) {
+    rotated = false;
+    for (int p = 0; p < N; ++p) {
+      for (int q = p + 1; q < N; ++q) {
+        const T apq_sq = a(p, q) * a(p, q);
+        if (!(apq_sq > floor_sq) || apq_sq <= relative_sq * abs(a(p, p) * a(q, q))) continue;
+        const JacobiRotation<T> r(a(p, p), a(p, q), a(q, q));
+        detail::rotate_symmetric(a, p, q, r);
+        detail::rotate_columns(vectors, p, q, r.c, r.s);
+        rotated = true;
+      }
+    }
+  }
+  for (int i = 0; i < N; ++i) values[i] = a(i, i) * unit;
+  detail::sort_ascending(values, vectors);
+}
+
+}  // namespace bb

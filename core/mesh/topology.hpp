@@ -1,0 +1,32 @@
+// Sets derived from a mesh: unique edges, boundary, interior edges with their opposite vertices, components.
+#pragma once
+
+#include <array>
+#include <span>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.hpp"
+
+namespace bb {
+
+/// Every edge of a triangle and every segment once, as (smaller, larger) index, sorted. Cost O(n log n).
+std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh);
+
+/// Edges of exactly one triangle, in the direction that the triangle runs through them, sorted by (smaller,
+/// larger).
+std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3>> triangles);
+
+/// e0 e1 v0 v1 of every edge with exactly two triangles: triangle 0 runs e0 -> e1 and has v0 opposite,
+/// triangle 1 has v1 opposite. Sorted by edge. An edge of three or more triangles (non-manifold) gives one
+/// hinge for each pair of consecutive triangles in index order.
+std::vector<std::array<int, 4>> edge_hinges(std::span<const std::array<int, 3>> triangles);
+
+/// Component of each vertex, numbered from 0 in order of their smallest vertex; vertices joined by edges.
+std::vector<int> connected_components(const TriangleMesh& mesh, int* n_components = nullptr);
+
+/// Sum of triangle areas, m^2.
+double surface_area(const TriangleMesh& mesh);
+/// (x1 - x0) x (x2 - x0) / 2, m^2.
+Vec3d area_vector(const Positions& x, const std::array<int, 3>& triangle);
+
+}  // namespace bb

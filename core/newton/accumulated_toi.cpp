@@ -1,0 +1,115 @@
+// One time step after Ando 2024 (A Cubic Barrier with Elasticity-Inclusive Dynamic Stiffness): E is never
+// evaluated, feasibility alone limits the step. Newton iterations on the same x_tilde accumulate the fraction
+// of the motion that was feasible, beta; once beta >= target the step is shortened to beta dt and one more
+// iteration with the shortened prediction reduces the error. Only with implicit Euler, whose prediction
+// scales with dt.
+#include <algorithm>
+#include <cmath>
+
+#include "core/newton/iteration.hpp"
+#include "core/newton/step_solver.hpp"
+
+namespace bb {
+namespace {
+
+class AccumulatedToi final : public StepSolver {
+ public:
+  explicit AccumulatedToi(const StepSolverOptions& options) : options_(options) {}
+  std::string_view name() const override { return "accumulated_toi"; }
+
+  StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
+                     StepObserver& observer) override {
+    task.integrator->predict(*task.history, task.dt, used);
+    system.begin_step(task.history->x, used, task.dt, task.load_factor);
+    target_ = task.history->x;
+    task.pose(task.dt, target_);
+
+    StepReport step;
+    step.step = task.step;
+    step.status = StepStatus::iteration_cap;
+    double beta = 0;
+    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+      const double advanced = iterate(system, step, task.step, iteration, observer);
+      if (step.status != StepStatus::iteration_cap) return step;
+      beta += std::max(0.0, 1.0 - beta) * advanced;
+      if (beta >= options_.target_toi && iteration + 1 >= options_.min_iterations) {
+        step.dt_used = beta * task.dt;
+        reduce_error(system, step, task, used, iteration + 1, observer);
+        return step;
+      }
+    }
+    step.dt_used = beta * task.dt;
+    return step;
+  }
+
+ private:
+  // One assemble, solve, bound, move. Returns the fraction of the Newton direction that was taken.
+  double iterate(NewtonSystem& system, StepReport& step, int step_index, int iteration,
+                 StepObserver& observer) {
+    IterationReport report = begin_iteration(system, step_index, iteration, observer);
+    report.linear = system.solve(target_, dx_, report.times);
+    measure_direction(system, dx_, report);
+    if (const auto failed = direction_failure(report, false)) {
+      step.status = *failed;
+      step.detail = std::string(to_string(report.linear.status));
+      finish_iteration(step, report, observer);
+      return 0;
+    }
+    const double largest = dx_.colwise().norm().maxCoeff();
+    const double scale = largest > options_.max_dx ? options_.max_dx / largest : 1.0;
+    dx_ *= scale;
+    const double alpha = feasible_step(system, report);
+    report.alpha = scale * alpha;
+    const bool moved = alpha > 0;
+    if (moved) system.accept();
+    finish_iteration(step, report, observer);
+    if (moved) {
+      observer.on_motion(x_before_, system.state().x, step_index);
+    } else {
+      step.status = poses_reached(system, target_) ? StepStatus::step_collapse : StepStatus::pin_infeasible;
+      step.detail = describe_bound(system, report);
+    }
+    return report.alpha;
+  }
+
+  // Bounds `extension` times the motion and takes that fraction of the motion itself, which backs off from
+  // contact.
+  double feasible_step(NewtonSystem& system, IterationReport& report) {
+    x_before_ = system.state().x;
+    dx_ *= options_.extension;
+    x_trial_.noalias() = x_before_ + dx_;
+    system.sweep(x_trial_, report.times);
+    report.bound = system.contact_bound(x_trial_, report.times);
+    report.alpha_ccd = report.bound.alpha;
+    report.alpha_limit = system.limit_bound(dx_, report.times);
+    double alpha = std::min(report.alpha_ccd, report.alpha_limit);
+    for (; alpha > 0; alpha = alpha < 1e-14 ? 0 : alpha / 2) {
+      x_trial_.noalias() = x_before_ + (alpha / options_.extension) * dx_;
+      ++report.line_search_trials;
+      if (system.try_state(x_trial_, report.times)) break;
+    }
+    return alpha;
+  }
+
+  // The last pass: the prediction belongs to the time that was reached.
+  void reduce_error(NewtonSystem& system, StepReport& step, const StepTask& task, Prediction& used,
+                    int iteration, StepObserver& observer) {
+    task.integrator->predict(*task.history, step.dt_used, used);
+    system.restart_step(used, step.dt_used);
+    target_ = system.state().x;
+    task.pose(step.dt_used, target_);
+    step.status = StepStatus::converged;
+    iterate(system, step, task.step, iteration, observer);
+  }
+
+  StepSolverOptions options_;
+  Positions target_, dx_, x_before_, x_trial_;
+};
+
+}  // namespace
+
+std::unique_ptr<StepSolver> make_accumulated_toi(const StepSolverOptions& options) {
+  return std::make_unique<AccumulatedToi>(options);
+}
+
+}  // namespace bb

@@ -1,0 +1,110 @@
+#include "core/newton/iteration.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace bb {
+
+IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, StepObserver& observer) {
+  IterationReport report;
+  report.step = step;
+  report.iteration = iteration;
+  system.assemble(report.times);
+  observer.on_matrix(system, step, iteration);
+
+  report.energy = system.energy();
+  report.grad_inf = system.grad_inf();
+  report.pattern_changed = system.pattern_changed();
+  report.contacts = system.contact_counts();
+  report.gap_min = system.state().gap_min;
+  report.max_stretch = system.max_stretch();
+  const auto columns = [&report](const auto& rows, bool& first) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      report.kappa_min = first ? rows.kappa[r] : std::min(report.kappa_min, rows.kappa[r]);
+      report.kappa_max = std::max(report.kappa_max, rows.kappa[r]);
+      report.curvature_max =
+          std::max(report.curvature_max, rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r]);
+      first = false;
+    }
+  };
+  bool first = true;
+  columns(system.state().rows, first);
+  columns(system.state().mollified, first);
+  return report;
+}
+
+void measure_direction(const NewtonSystem& system, const Positions& dx, IterationReport& report) {
+  const Positions& gradient = system.gradient();
+  double slope = 0;
+  report.dx_inf = 0;
+  for (Eigen::Index i = 0; i < dx.size(); ++i) {
+    if (system.fixed()[static_cast<std::size_t>(i)]) continue;
+    slope += gradient.data()[i] * dx.data()[i];
+    const double size = std::abs(dx.data()[i]);
+    report.dx_inf = size > report.dx_inf || std::isnan(size) ? size : report.dx_inf;
+  }
+  report.decrement = -slope;
+}
+
+std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend) {
+  if (report.linear.status != LinearStatus::ok) return StepStatus::linear_failed;
+  if (!std::isfinite(report.dx_inf) || !std::isfinite(report.decrement)) return StepStatus::non_finite;
+  if (must_descend && report.decrement <= 0) return StepStatus::not_descent;
+  return std::nullopt;
+}
+
+void finish_iteration(StepReport& step, const IterationReport& report, StepObserver& observer) {
+  ++step.iterations;
+  step.linear_iterations += report.linear.iterations;
+  step.line_search_trials += report.line_search_trials;
+  step.factorizations += report.linear.factorized;
+  step.analyses += report.linear.analyzed;
+  step.accepted_by_rounding += report.accepted_by_rounding;
+  step.alpha_min = std::min(step.alpha_min, report.alpha);
+  step.ccd_queries += report.bound.queries;
+  step.ccd_probes += report.bound.probes;
+  step.ccd_capped += report.bound.capped;
+  step.ccd_zero += report.bound.zero;
+  step.times += report.times;
+  observer.on_iteration(report);
+}
+
+bool poses_reached(const NewtonSystem& system, const Positions& target) {
+  for (const Pin& pin : system.scene().pins) {
+    if (system.state().x.col(pin.vertex) != target.col(pin.vertex)) return false;
+  }
+  return true;
+}
+
+std::string describe_bound(NewtonSystem& system, const IterationReport& report) {
+  if (report.alpha_limit < report.alpha_ccd) return "held by the strain limit";
+  return "held by " + system.contacts().describe(report.bound.key, report.bound.kind);
+}
+
+std::string describe_short_pin(const NewtonSystem& system, const Positions& target) {
+  const Scene& scene = system.scene();
+  for (const Pin& pin : scene.pins) {
+    if (system.state().x.col(pin.vertex) == target.col(pin.vertex)) continue;
+    const int body = scene.body[static_cast<std::size_t>(pin.vertex)];
+    return "pinned vertex " + std::to_string(pin.vertex) + " of body '" +
+           scene.bodies[static_cast<std::size_t>(body)].name + "' cannot reach its pose";
+  }
+  return {};
+}
+
+void measure_end(NewtonSystem& system, StepReport& step) {
+  const ContactTable& rows = system.state().rows;
+  step.contacts = system.contact_counts();
+  step.gap_min = system.state().gap_min;
+  step.gap_min_over_d_hat = std::numeric_limits<double>::infinity();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    step.gap_min_over_d_hat = std::min(step.gap_min_over_d_hat, rows.d[r] / rows.d_hat[r]);
+    step.force_max = std::max(step.force_max, -rows.kappa[r] * rows.db[r]);
+  }
+  step.max_stretch = system.max_stretch();
+  step.limit_tension_max = system.limit_tension_max();
+  if (step.status != StepStatus::converged) step.overload = system.overload();
+}
+
+}  // namespace bb

@@ -1,0 +1,29 @@
+// What every step solver does in an iteration: assemble, measure, report.
+#pragma once
+
+#include <optional>
+#include <string>
+
+#include "core/newton/newton_system.hpp"
+#include "core/newton/report.hpp"
+
+namespace bb {
+
+/// Assembles at system.state(), lets the observer look at the matrix and fills what is known before the
+/// solve.
+IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, StepObserver& observer);
+/// |dx|_inf and the decrement -g . dx over free degrees of freedom.
+void measure_direction(const NewtonSystem& system, const Positions& dx, IterationReport& report);
+/// The status that ends the step when the direction is of no use. must_descend: E has to decrease along it.
+std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend);
+/// Adds an iteration to its step and tells the observer.
+void finish_iteration(StepReport& step, const IterationReport& report, StepObserver& observer);
+
+bool poses_reached(const NewtonSystem& system, const Positions& target);
+std::string describe_bound(NewtonSystem& system, const IterationReport& report);
+std::string describe_short_pin(const NewtonSystem& system, const Positions& target);
+
+/// Fills what a step report says of its end state.
+void measure_end(NewtonSystem& system, StepReport& step);
+
+}  // namespace bb

@@ -1,0 +1,122 @@
+// One time step by projected Newton. Read this file first: it is the whole method.
+//
+//   1 assemble gradient and PSD matrix at x, kappa refreshed by its policy
+//   2 solve A dx = -g, prescribed motion lifted to the right-hand side
+//   3 stop when |dx|_inf / h < tol_velocity and every prescribed vertex is at its pose
+//   4 bound the step: ACCD over all pairs, strain limit
+//   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded
+//   6 accept
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/newton/iteration.hpp"
+#include "core/newton/step_solver.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double collapsed_step = 1e-8;   // a step below it counts as no progress
+constexpr int collapse_iterations = 10;   // that many in a row end the step
+constexpr double smallest_alpha = 1e-14;  // below it x does not move any more
+constexpr double rounding_factor = 64;    // a change of E below 64 eps sum |terms| is noise
+
+class LineSearch final : public StepSolver {
+ public:
+  explicit LineSearch(const StepSolverOptions& options) : options_(options) {}
+  std::string_view name() const override { return "line_search"; }
+
+  StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
+                     StepObserver& observer) override {
+    task.integrator->predict(*task.history, task.dt, used);
+    system.begin_step(task.history->x, used, task.dt, task.load_factor);
+    target_ = task.history->x;
+    task.pose(task.dt, target_);
+
+    StepReport step;
+    step.step = task.step;
+    step.dt_used = task.dt;
+    step.status = StepStatus::iteration_cap;
+    const double velocity_scale = task.integrator->quasi_static() ? 1.0 : task.dt;
+    int collapsed = 0;
+    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+      IterationReport report = begin_iteration(system, task.step, iteration, observer);
+      report.linear = system.solve(target_, dx_, report.times);
+      measure_direction(system, dx_, report);
+      const bool at_pose = poses_reached(system, target_);
+      const bool small = at_pose && report.dx_inf / velocity_scale < options_.tol_velocity;
+      if (const auto failed = direction_failure(report, at_pose && !small)) {
+        finish_iteration(step, report, observer);
+        step.status = *failed;
+        step.detail = std::string(to_string(report.linear.status));
+        return step;
+      }
+      const bool moved = search(system, report, at_pose);
+      finish_iteration(step, report, observer);
+      if (moved) observer.on_motion(x_before_, system.state().x, task.step);
+      if (small) {
+        step.status = StepStatus::converged;
+        return step;
+      }
+      if (!moved && report.alpha_ccd >= collapsed_step && report.alpha_limit >= collapsed_step) {
+        step.status = StepStatus::line_search_failed;
+        return step;
+      }
+      collapsed = report.alpha < collapsed_step ? collapsed + 1 : 0;
+      if (collapsed == collapse_iterations) {
+        step.status = at_pose ? StepStatus::step_collapse : StepStatus::pin_infeasible;
+        step.detail = at_pose ? describe_bound(system, report) : describe_short_pin(system, target_);
+        return step;
+      }
+    }
+    return step;
+  }
+
+ private:
+  // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its motion does
+  // work.
+  bool search(NewtonSystem& system, IterationReport& report, bool energy_test) {
+    x_before_ = system.state().x;
+    move(system, 1.0);
+    system.sweep(x_trial_, report.times);
+    report.bound = system.contact_bound(x_trial_, report.times);
+    report.alpha_ccd = report.bound.alpha;
+    report.alpha_limit = system.limit_bound(dx_, report.times);
+    double alpha = std::min({1.0, report.alpha_ccd, report.alpha_limit});
+    while (alpha > smallest_alpha) {
+      move(system, alpha);
+      ++report.line_search_trials;
+      if (const auto change = system.try_state(x_trial_, report.times)) {
+        const double noise = rounding_factor * std::numeric_limits<double>::epsilon() * change->magnitude;
+        const bool decrease = change->change <= -options_.armijo * alpha * report.decrement;
+        report.accepted_by_rounding = energy_test && !decrease && std::abs(change->change) <= noise;
+        if (decrease || !energy_test || report.accepted_by_rounding) {
+          report.alpha = alpha;
+          report.energy_change = change->change;
+          system.accept();
+          return true;
+        }
+      }
+      alpha /= 2;
+    }
+    return false;
+  }
+
+  // A full step puts every prescribed vertex exactly on its pose.
+  void move(const NewtonSystem& system, double alpha) {
+    x_trial_.noalias() = x_before_ + alpha * dx_;
+    if (alpha != 1.0) return;
+    for (const Pin& pin : system.scene().pins) x_trial_.col(pin.vertex) = target_.col(pin.vertex);
+  }
+
+  StepSolverOptions options_;
+  Positions target_, dx_, x_before_, x_trial_;
+};
+
+}  // namespace
+
+std::unique_ptr<StepSolver> make_line_search(const StepSolverOptions& options) {
+  return std::make_unique<LineSearch>(options);
+}
+
+}  // namespace bb

@@ -1,0 +1,52 @@
+// A method: formulation + integrator + step solver + linear solver, every default filled in. What differs
+// between two runs of a comparison stands here and in the scene, nowhere else.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+
+#include "core/contact/contact_system.hpp"
+#include "core/contact/shape.hpp"
+#include "core/contact/stiffness_policy.hpp"
+#include "core/integrators/integrator.hpp"
+#include "core/linear/linear_solver.hpp"
+
+namespace bb {
+
+/// Stiffness of the strain limit, J per element.
+struct LimitStiffness {
+  enum class Kind { fixed, elasticity_inclusive };
+  Kind kind = Kind::fixed;
+  double k_s = 0;                        // N/m, fixed: kappa_e = k_s x rest area
+  MassTerm mass_term = MassTerm::paper;  // elasticity_inclusive
+  Refresh refresh = Refresh::per_iteration;
+  double multiplier = 1;  // the matching scale s
+};
+
+struct StepSolverOptions {
+  std::string name = "line_search";
+  int max_iterations = 200;
+  double tol_velocity = 0;  // m/s: stop at |dx|_inf / h below it; quasi-static: m, without h
+  double armijo = 1e-4;
+  // accumulated_toi
+  double target_toi = 0.25;
+  int min_iterations = 1;
+  double max_dx = 1;        // m
+  double extension = 1.25;  // a full step must be free along this multiple of itself
+};
+
+struct Method {
+  BarrierFunction contact;
+  std::unique_ptr<StiffnessPolicy> stiffness;
+  BarrierFunction limit;
+  LimitStiffness limit_stiffness;
+  HessianMode hessian_mode = HessianMode::gauss_newton;
+  ContactOptions contact_options;
+  std::unique_ptr<Integrator> integrator;
+  StepSolverOptions step_solver;
+  LinearOptions linear;
+  bool keep_elastic_matrix = false;  // snapshot H even when no policy reads it (diagnostics, matching)
+};
+
+}  // namespace bb

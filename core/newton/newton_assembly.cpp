@@ -1,0 +1,228 @@
+// Gradient and matrix of the current state, in the order that DESIGN section 3 fixes: elastic, snapshot H,
+// inertia, limit, contact; and the solve with prescribed motion lifted to the right-hand side.
+#include <algorithm>
+#include <cmath>
+
+#include "core/newton/newton_system.hpp"
+
+namespace bb {
+
+void NewtonSystem::assemble(PhaseTimes& times) {
+  {
+    const ScopedPhase timer(times, Phase::elastic);
+    for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i]->derivatives(state_.x, local_[i]);
+  }
+  {
+    const ScopedPhase timer(times, Phase::assembly);
+    const ContactTable& rows = state_.rows;
+    pattern_changed_ = blocks_->set_contacts({{4, rows.vertex}, {4, state_.mollified.vertex}});
+    blocks_->clear();
+    for (std::size_t i = 0; i < elements_.size(); ++i) blocks_->add_elements(i, local_[i].hess);
+    if (need_elastic_) elastic_ = blocks_->values();
+  }
+  refresh_limit_stiffness();
+  gather_gradient();
+  {
+    const ScopedPhase timer(times, Phase::stiffness);
+    start_policy();
+    stiffness_.refresh(state_.rows, state_.mollified, *blocks_, elastic_);
+  }
+  {
+    const ScopedPhase timer(times, Phase::contact_terms);
+    fill_contact_terms();
+    evaluate_contact_energies(state_);
+  }
+  {
+    const ScopedPhase timer(times, Phase::assembly);
+    assemble_matrix();
+  }
+}
+
+// The matrix beyond the elastic part, and the contact gradient.
+void NewtonSystem::assemble_matrix() {
+  blocks_->add_diagonal(terms_.inertia);
+  if (keep_stages_) no_limit_ = blocks_->values();
+  if (limit_) blocks_->add_elements(elements_.size(), limit_local_.hess);
+  if (keep_stages_) no_contact_ = blocks_->values();
+  blocks_->add_contacts(0, contact_hess_);
+  blocks_->add_contacts(1, mollified_hess_);
+  full_ = blocks_->values();
+  gradient_ += contact_gradient_;
+}
+
+// Local terms of the current rows and the gradient of B, from the kappa that stands in the rows.
+void NewtonSystem::fill_contact_terms() {
+  evaluate_shape(state_.rows);
+  evaluate_shape(state_.mollified);
+  contact_terms(state_.rows, state_.x, method_.hessian_mode, contact_grad_, contact_hess_);
+  mollified_terms(state_.mollified, state_.x, mollified_grad_, mollified_hess_);
+  contact_gradient_.setZero(3, state_.x.cols());
+  blocks_->gather_contacts(0, contact_grad_, contact_gradient_);
+  blocks_->gather_contacts(1, mollified_grad_, contact_gradient_);
+}
+
+// Gradient of E without contact; elements' energies of the current state come along.
+void NewtonSystem::gather_gradient() {
+  gradient_.resize(3, state_.x.cols());
+  for (Eigen::Index i = 0; i < state_.x.cols(); ++i) {
+    gradient_.col(i) =
+        terms_.inertia[static_cast<std::size_t>(i)] * (state_.x.col(i) - terms_.x_tilde.col(i)) -
+        terms_.force.col(i);
+  }
+  for (std::size_t i = 0; i < elements_.size(); ++i) {
+    state_.element[i] = local_[i].energy;
+    blocks_->gather_elements(i, local_[i].grad, gradient_);
+  }
+  if (limit_) {
+    limit_->derivatives(state_.x, method_.limit, limit_kappa_, limit_local_);
+    state_.limit = limit_local_.energy;
+    blocks_->gather_elements(elements_.size(), limit_local_.grad, gradient_);
+  }
+}
+
+void NewtonSystem::refresh_limit_stiffness() {
+  if (!limit_) return;
+  const LimitStiffness& rule = method_.limit_stiffness;
+  if (limit_kappa_fresh_ && (rule.kind == LimitStiffness::Kind::fixed || rule.refresh == Refresh::per_step))
+    return;
+  if (rule.kind == LimitStiffness::Kind::fixed) {
+    limit_->fill_fixed(rule.k_s, limit_kappa_);
+  } else {
+    limit_->fill_elasticity_inclusive(rule, *blocks_, elastic_, scene_.mass, x_step_start_, state_.x, dt_, c_,
+                                      limit_kappa_);
+  }
+  limit_kappa_fresh_ = true;
+}
+
+// A policy with memory starts at the first iterate that has contacts: sums of grad B with kappa = 1 and grad
+// E_rest.
+void NewtonSystem::start_policy() {
+  StiffnessPolicy& policy = stiffness_.policy();
+  ContactTable& rows = state_.rows;
+  MollifiedTable& mollified = state_.mollified;
+  if (policy_started_ || !policy.needs_globals() || rows.size() + mollified.size() == 0) return;
+  std::fill(rows.kappa.begin(), rows.kappa.end(), 1.0);
+  std::fill(mollified.kappa.begin(), mollified.kappa.end(), 1.0);
+  fill_contact_terms();
+
+  StiffnessGlobals globals;
+  for (std::size_t i = 0; i < fixed_.size(); ++i) {
+    if (fixed_[i]) continue;
+    globals.grad_b_dot_grad_e += contact_gradient_.data()[i] * gradient_.data()[i];
+    globals.grad_b_sq += contact_gradient_.data()[i] * contact_gradient_.data()[i];
+  }
+  double mass = 0;
+  int count = 0;
+  for (const std::vector<int>* vertices : {&rows.vertex, &mollified.free_vertex}) {
+    for (const int vertex : *vertices) {
+      if (vertex < 0) continue;
+      mass += scene_.mass[static_cast<std::size_t>(vertex)];
+      ++count;
+    }
+  }
+  globals.mean_contact_mass = mass / count;
+  globals.d_hat = min_d_hat_;
+  globals.d2b_half = method_.contact.eval(globals.d_hat / 2, globals.d_hat).d2b;
+  globals.dt = dt_;
+  globals.c = c_;
+  policy.start(globals);
+  policy_started_ = true;
+}
+
+// What prescribed displacements add to the right-hand side: -A_fp dx_p for the elements, and the normal
+// coupling of every contact row to its given vertices, which have no matrix block. dx is 0 at free vertices.
+void NewtonSystem::lift(const Positions& dx, Positions& rhs) const {
+  Positions coupled = Positions::Zero(3, dx.cols());
+  blocks_->multiply_add(full_, dx, coupled);
+  const ContactTable& rows = state_.rows;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
+    double closing = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int vertex = rows.stencil[4 * r + k];
+      if (vertex >= 0) closing += rows.stencil_weight[4 * r + k] * normal.dot(dx.col(vertex));
+    }
+    if (closing == 0) continue;
+    const double curvature = rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r];
+    for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {
+      coupled.col(rows.vertex[4 * r + k]) += (curvature * closing * rows.weight[4 * r + k]) * normal;
+    }
+  }
+  rhs -= coupled;
+}
+
+LinearReport NewtonSystem::solve(const Positions& target, Positions& dx, PhaseTimes& times) {
+  dx.setZero(3, state_.x.cols());
+  work_ = -gradient_;
+  bool moving = false;
+  for (const Pin& pin : scene_.pins) {
+    dx.col(pin.vertex) = target.col(pin.vertex) - state_.x.col(pin.vertex);
+    moving = moving || !dx.col(pin.vertex).isZero(0);
+  }
+  const ReducedSystem* reduced = nullptr;
+  {
+    const ScopedPhase timer(times, Phase::assembly);
+    if (moving) lift(dx, work_);
+    blocks_->restrict_vector(work_, rhs_);
+    reduced = &blocks_->reduce(full_);
+  }
+  const LinearReport report = solver_->solve(*reduced, rhs_, solution_);
+  times[Phase::linear_analyze] += report.analyze_s;
+  times[Phase::linear_factor] += report.factor_s;
+  times[Phase::linear_solve] += report.solve_s;
+  if (report.status == LinearStatus::ok) blocks_->expand_vector(solution_, dx);
+  return report;
+}
+
+bool NewtonSystem::has_stage(MatrixStage stage) const {
+  switch (stage) {
+    case MatrixStage::full:
+      return true;
+    case MatrixStage::no_contact:
+      return keep_stages_ && state_.rows.size() + state_.mollified.size() > 0;
+    case MatrixStage::no_contact_no_limit:
+      return keep_stages_ && limit_ != nullptr;
+  }
+  return false;
+}
+
+const ReducedSystem& NewtonSystem::reduced(MatrixStage stage) {
+  switch (stage) {
+    case MatrixStage::full:
+      return blocks_->reduce(full_);
+    case MatrixStage::no_contact:
+      return blocks_->reduce(no_contact_);
+    case MatrixStage::no_contact_no_limit:
+      return blocks_->reduce(no_limit_);
+  }
+  return blocks_->reduce(full_);
+}
+
+// Largest |b'(d)| over 0 <= d < d_hat for kappa = 1, m. Sampled: on the squared argument the force has its
+// maximum inside the interval (at d_hat/sqrt(5) for the cubic), on the gap at 0.
+double NewtonSystem::contact_force_limit(double d_hat) const {
+  double largest = 0;
+  for (int i = 0; i < 64; ++i) largest = std::max(largest, -method_.contact.eval(d_hat * i / 64, d_hat).db);
+  return largest;
+}
+
+double NewtonSystem::overload() const {
+  if (method_.contact.shape.infinite_at_zero) return 0;
+  const ContactTable& rows = state_.rows;
+  const Positions rest = gradient_ - contact_gradient_;  // what contact has to balance
+  double largest = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
+    double push = 0, weight_sq = 0;
+    for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {
+      const double weight = rows.weight[4 * r + k];
+      push += weight * normal.dot(rest.col(rows.vertex[4 * r + k]));
+      weight_sq += weight * weight;
+    }
+    const double capacity = rows.multiplicity[r] * rows.kappa[r] * contact_force_limit(rows.d_hat[r]);
+    largest = std::max(largest, push / weight_sq / capacity);
+  }
+  return largest;
+}
+
+}  // namespace bb

@@ -1,0 +1,69 @@
+// What an iteration, a step and an observer say to each other: plain numbers, no JSON.
+#pragma once
+
+#include <string>
+
+#include "core/contact/contact_system.hpp"
+#include "core/linear/linear_solver.hpp"
+#include "core/newton/step_status.hpp"
+#include "core/record/phase_times.hpp"
+#include "core/record/trace_row.hpp"
+
+namespace bb {
+
+struct IterationReport {
+  int step = 0, iteration = 0;  // 0-based
+  double energy = 0;            // J, at the start of the iteration; contact with the kappa of this iteration
+  double energy_change = 0;     // J, accepted
+  double grad_inf = 0;          // N, free degrees of freedom
+  double dx_inf = 0;            // m, Newton direction
+  double decrement = 0;         // J, -g . dx
+  double alpha = 0, alpha_ccd = 1, alpha_limit = 1;
+  int line_search_trials = 0;
+  bool accepted_by_rounding = false;  // |change of E| below 64 eps sum |terms|
+  LinearReport linear;
+  ContactCounts contacts;
+  double gap_min = 0;                   // m; infinity without contacts
+  double kappa_min = 0, kappa_max = 0;  // N/m
+  double curvature_max = 0;             // N/m, largest m kappa b''
+  double max_stretch = 0;               // largest singular value of limited elements; 0 without
+  bool pattern_changed = false;
+  StepBound bound;
+  PhaseTimes times;
+};
+
+struct StepReport {
+  int step = 0;
+  double t = 0, dt_used = 0;  // s, at the end; accumulated_toi may shorten the step
+  StepStatus status = StepStatus::converged;
+  std::string detail;  // names the pin, the pair, the linear status
+  int iterations = 0, linear_iterations = 0, line_search_trials = 0, factorizations = 0, analyses = 0;
+  int accepted_by_rounding = 0;
+  double alpha_min = 1;
+  long long ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, ccd_zero = 0;
+  ContactCounts contacts;  // at the end of the step
+  double gap_min = 0;      // m
+  double gap_min_over_d_hat = 0;
+  double force_max = 0;          // N, largest kappa |b'| per unit multiplicity at the end of the step
+  double limit_tension_max = 0;  // N/m, largest (1/area) dS_e/dsigma
+  double overload = 0;           // largest load / capacity over rows; 0 when capacity is unbounded
+  double max_stretch = 0;
+  double kinetic_energy = 0;  // J
+  PhaseTimes times;
+};
+
+/// Looks on; every call is optional. Called between phases, its time is nobody's phase.
+class NewtonSystem;
+class StepObserver {
+ public:
+  virtual ~StepObserver() = default;
+  /// After assembly, before the solve: the matrices of this iteration are in `system`.
+  virtual void on_matrix(NewtonSystem&, int /*step*/, int /*iteration*/) {}
+  virtual void on_iteration(const IterationReport&) {}
+  /// An accepted line search, as rounded.
+  virtual void on_motion(const Positions& /*x0*/, const Positions& /*x1*/, int /*step*/) {}
+  /// A finished step; `system` holds the contact table of its end state.
+  virtual void on_step(NewtonSystem&, const StepReport&, const Positions& /*x*/) {}
+};
+
+}  // namespace bb

@@ -1,0 +1,101 @@
+#include "core/newton/simulation.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/newton/iteration.hpp"
+
+namespace bb {
+
+Simulation::Simulation(const Scene& scene, Method& method, double dt, int n_steps)
+    : scene_(scene),
+      method_(method),
+      dt_(dt),
+      n_steps_(n_steps),
+      system_(scene, method),
+      solver_(make_step_solver(method.step_solver)) {
+  history_.x = scene.x0;
+  history_.v = scene.v0;
+  history_.a.setZero(3, scene.x0.cols());
+  history_.x_prev = history_.x;
+  history_.v_prev = history_.v;
+}
+
+StepReport Simulation::step(StepObserver& observer) {
+  if (step_ == 0 && method_.integrator->needs_acceleration()) start_acceleration();
+  StepTask task;
+  task.step = step_;
+  task.dt = dt_;
+  task.load_factor = method_.integrator->quasi_static() ? static_cast<double>(step_ + 1) / n_steps_ : 1.0;
+  task.history = &history_;
+  task.integrator = method_.integrator.get();
+  task.pose = [this](double dt, Positions& target) {
+    for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, time_ + dt);
+  };
+  StepReport report = solver_->advance(system_, task, prediction_, observer);
+
+  remember(system_.state().x, report.dt_used);
+  report.t = time_;
+  measure_end(system_, report);
+  for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {
+    report.kinetic_energy += 0.5 * scene_.mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
+  }
+  end_policy_step();
+  observer.on_step(system_, report, history_.x);
+  ++step_;
+  return report;
+}
+
+// a_0 = M^-1 (f - grad(Psi + B + S)) at the start; 0 at prescribed degrees of freedom.
+void Simulation::start_acceleration() {
+  Prediction at_rest;
+  at_rest.c = 1;
+  at_rest.x_tilde = history_.x;
+  system_.begin_step(history_.x, at_rest, dt_, 1.0);
+  PhaseTimes ignored;
+  system_.assemble(ignored);
+  for (Eigen::Index i = 0; i < history_.a.cols(); ++i) {
+    const double mass = scene_.mass[static_cast<std::size_t>(i)];
+    for (Eigen::Index k = 0; k < 3; ++k) {
+      const bool fixed = system_.fixed()[static_cast<std::size_t>(3 * i + k)] != 0;
+      history_.a(k, i) = fixed ? 0 : -system_.gradient()(k, i) / mass;
+    }
+  }
+}
+
+void Simulation::remember(const Positions& x, double dt_used) {
+  if (dt_used > 0) {
+    method_.integrator->finish(history_, dt_used, prediction_, x, v_next_, a_next_);
+    history_.v_prev.swap(history_.v);
+    history_.v = v_next_;
+    history_.a = a_next_;
+  }
+  history_.x_prev.swap(history_.x);
+  history_.x = x;
+  ++history_.steps;
+  time_ += dt_used;
+}
+
+// A row is a reason to stiffen when it was below 10 park distances at two step ends in a row and is still
+// shrinking.
+void Simulation::end_policy_step() {
+  const ContactTable& rows = system_.state().rows;
+  StiffnessPolicy::StepEnd end;
+  end.min_gap = end.min_gap_prev = std::numeric_limits<double>::infinity();
+  std::size_t before = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    while (before < previous_key_.size() && previous_key_[before] < rows.key[r]) ++before;
+    if (before == previous_key_.size() || previous_key_[before] != rows.key[r]) continue;
+    const double park = method_.contact_options.ccd_park * rows.d_hat[r];
+    if (rows.d[r] < previous_gap_[before] && previous_gap_[before] < 10 * park && rows.d[r] < end.min_gap) {
+      end.min_gap = rows.d[r];
+      end.min_gap_prev = previous_gap_[before];
+      end.park = park;
+    }
+  }
+  method_.stiffness->end_step(end);
+  previous_key_ = rows.key;
+  previous_gap_ = rows.d;
+}
+
+}  // namespace bb

@@ -1,0 +1,43 @@
+// A step solver drives one time step to its end. One file each; line_search.cpp is the one to read first.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/newton/newton_system.hpp"
+#include "core/newton/report.hpp"
+
+namespace bb {
+
+/// What a step is asked to do.
+struct StepTask {
+  int step = 0;
+  double dt = 0;                     // s
+  double load_factor = 1;            // of the external force
+  const History* history = nullptr;  // state at the start
+  const Integrator* integrator = nullptr;
+  /// Pose of the prescribed vertices at the end of a step of length dt, written into their columns.
+  std::function<void(double dt, Positions& target)> pose;
+};
+
+class StepSolver {
+ public:
+  virtual ~StepSolver() = default;
+  virtual std::string_view name() const = 0;
+  /// Leaves the reached state in system.state(), and in `used` the prediction that it belongs to. The
+  /// report's counters, status and dt_used are filled; the rest is the caller's.
+  virtual StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
+                             StepObserver& observer) = 0;
+};
+
+struct StepSolverEntry {
+  std::string name, doc;
+  std::unique_ptr<StepSolver> (*make)(const StepSolverOptions&);
+};
+const std::vector<StepSolverEntry>& step_solvers();
+/// Throws ConfigError for an unknown name, listing the known ones.
+std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options);
+
+}  // namespace bb

@@ -1,0 +1,112 @@
+#include "core/newton/stiffness_update.hpp"
+
+#include <numeric>
+
+namespace bb {
+namespace {
+
+const std::vector<int>& free_vertices(const ContactTable& table) { return table.vertex; }
+const std::vector<int>& free_vertices(const MollifiedTable& table) { return table.free_vertex; }
+
+void all_rows(std::size_t n, std::vector<int>& rows) {
+  rows.resize(n);
+  std::iota(rows.begin(), rows.end(), 0);
+}
+
+}  // namespace
+
+StiffnessBatch PolicyColumns::batch(double dt, double c, bool with_hessian) const {
+  StiffnessBatch rows;
+  rows.n = d.size();
+  rows.n_free = n_free.data();
+  rows.weight = weight.data();
+  rows.normal = normal.data();
+  rows.d = d.data();
+  rows.d_hat = d_hat.data();
+  rows.mass = mass.data();
+  rows.hessian = with_hessian ? hessian.data() : nullptr;
+  rows.dt = dt;
+  rows.c = c;
+  return rows;
+}
+
+StiffnessUpdate::StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass)
+    : policy_(policy), mass_(mass) {}
+
+void StiffnessUpdate::set_time(double dt, double c) {
+  dt_ = dt;
+  c_ = c;
+}
+
+template <class Table>
+void StiffnessUpdate::gather(const Table& table, std::span<const int> rows, const BlockSystem& blocks,
+                             const BlockSystem::Values& elastic, bool at_d_hat, bool with_hessian) {
+  const std::size_t n = rows.size();
+  columns_.n_free.resize(n);
+  columns_.weight.resize(4 * n);
+  columns_.mass.resize(4 * n);
+  columns_.normal.resize(3 * n);
+  columns_.d.resize(n);
+  columns_.d_hat.resize(n);
+  if (with_hessian) columns_.hessian.resize(144 * n);
+  const std::vector<int>& vertices = free_vertices(table);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto r = static_cast<std::size_t>(rows[i]);
+    columns_.n_free[i] = table.n_free[r];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int vertex = vertices[4 * r + k];
+      columns_.weight[4 * i + k] = table.weight[4 * r + k];
+      columns_.mass[4 * i + k] = vertex < 0 ? 0.0 : mass_[static_cast<std::size_t>(vertex)];
+    }
+    for (std::size_t k = 0; k < 3; ++k) columns_.normal[3 * i + k] = table.normal[3 * r + k];
+    columns_.d_hat[i] = table.d_hat[r];
+    columns_.d[i] = at_d_hat ? table.d_hat[r] : table.d[r];
+    if (with_hessian) {
+      blocks.submatrix(elastic, &vertices[4 * r], table.n_free[r], &columns_.hessian[144 * i]);
+    }
+  }
+}
+
+template <class Table>
+void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const BlockSystem& blocks,
+                           const BlockSystem::Values& elastic, bool at_d_hat) {
+  if (rows.empty()) return;
+  const bool with_hessian = policy_.needs_hessian();
+  gather(table, rows, blocks, elastic, at_d_hat, with_hessian);
+  kappa_.resize(rows.size());
+  policy_.fill(columns_.batch(dt_, c_, with_hessian), kappa_.data());
+  for (std::size_t i = 0; i < rows.size(); ++i) table.kappa[static_cast<std::size_t>(rows[i])] = kappa_[i];
+}
+
+void StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                              const BlockSystem::Values& elastic) {
+  if (policy_.refresh() == Refresh::per_step) {
+    memory_.recall(rows, mollified, missing_, missing_mollified_);
+  } else {
+    all_rows(rows.size(), missing_);
+    all_rows(mollified.size(), missing_mollified_);
+    memory_.clear();
+  }
+  fill(rows, missing_, blocks, elastic, false);
+  fill(mollified, missing_mollified_, blocks, elastic, false);
+  memory_.store(rows, mollified);
+}
+
+void StiffnessUpdate::freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                             const BlockSystem::Values& elastic) {
+  memory_.recall(rows, mollified, missing_, missing_mollified_);
+  fill(rows, missing_, blocks, elastic, true);
+  fill(mollified, missing_mollified_, blocks, elastic, true);
+}
+
+void StiffnessUpdate::keep(const ContactTable& rows, const MollifiedTable& mollified) {
+  memory_.store(rows, mollified);
+}
+
+PolicyColumns StiffnessUpdate::columns(const ContactTable& rows, int row, const BlockSystem& blocks,
+                                       const BlockSystem::Values& elastic) {
+  gather(rows, std::span<const int>(&row, 1), blocks, elastic, false, !elastic.empty());
+  return columns_;
+}
+
+}  // namespace bb

@@ -1,0 +1,111 @@
+// Opens the library, checks what it offers, fills a Plugin.
+#include "core/plugin/plugin.hpp"
+
+#include <dlfcn.h>
+
+#include <filesystem>
+#include <string_view>
+#include <utility>
+
+#include "core/math/error.hpp"
+#include "core/plugin/barrierbench_plugin.h"
+#include "core/plugin/wrappers.hpp"
+
+namespace bb {
+namespace {
+
+using EntryPoint = const bb_plugin* (*)();
+constexpr const char* symbol = "barrierbench_plugin";
+
+bool is_snake_case(const char* name) {
+  if (!name || !(name[0] >= 'a' && name[0] <= 'z')) return false;
+  return std::string_view(name).find_first_not_of("abcdefghijklmnopqrstuvwxyz0123456789_") ==
+         std::string_view::npos;
+}
+
+std::string text(const char* string) { return string ? string : ""; }
+
+/// The plugin's table. Closes the library again when it is not one of ours.
+const bb_plugin& open_plugin(const std::string& file) {
+  // with a slash in it, dlopen never searches the library path
+  const std::string path = std::filesystem::absolute(file).string();
+  void* library = dlopen(path.c_str(), RTLD_NOW | RTLD_LOCAL);
+  if (!library) throw ConfigError(file, text(dlerror()), "a readable shared library");
+  const auto fail = [&](const std::string& found, const std::string& allowed) {
+    dlclose(library);
+    throw ConfigError(file, found, allowed);
+  };
+  const auto entry = reinterpret_cast<EntryPoint>(dlsym(library, symbol));
+  if (!entry) fail("no symbol " + std::string(symbol), "a library that exports " + std::string(symbol));
+  const bb_plugin* plugin = entry();
+  if (!plugin) fail(std::string(symbol) + "() = NULL", "a pointer to a bb_plugin");
+  if (plugin->abi_version != BB_PLUGIN_ABI_VERSION) {
+    fail("abi_version " + std::to_string(plugin->abi_version),
+         "abi_version " + std::to_string(BB_PLUGIN_ABI_VERSION));
+  }
+  return *plugin;
+}
+
+/// Adds what is wrong with one entry: its name and whether all of its calls are there.
+void check_entry(const std::string& file, const std::string& what, const char* name, bool has_calls,
+                 std::vector<Violation>& wrong) {
+  if (!is_snake_case(name)) {
+    wrong.push_back({file, what + " named \"" + text(name) + '"', "a snake_case name"});
+  } else if (!has_calls) {
+    wrong.push_back({file, what + " \"" + name + "\" with a NULL call", "every call given"});
+  }
+}
+
+void check(const std::string& file, const bb_plugin& p) {
+  std::vector<Violation> wrong;
+  for (std::size_t i = 0; i < p.n_shapes; ++i) {
+    const bb_plugin_shape& s = p.shapes[i];
+    check_entry(file, "shape", s.name, s.eval_double && s.eval_float, wrong);
+  }
+  for (std::size_t i = 0; i < p.n_policies; ++i) {
+    check_entry(file, "stiffness policy", p.policies[i].name, p.policies[i].fill, wrong);
+  }
+  for (std::size_t i = 0; i < p.n_integrators; ++i) {
+    const bb_plugin_integrator& s = p.integrators[i];
+    check_entry(file, "integrator", s.name, s.predict && s.finish, wrong);
+  }
+  if (p.n_shapes + p.n_policies + p.n_integrators == 0) {
+    wrong.push_back({file, "a plugin with no entry", "at least one shape, stiffness policy or integrator"});
+  }
+  if (!wrong.empty()) throw ConfigError(std::move(wrong));
+}
+
+Shape wrap_shape(const bb_plugin_shape& s) {
+  Shape shape;
+  shape.name = s.name;
+  shape.doc = text(s.doc);
+  shape.smoothness_at_d_hat = s.smoothness_at_d_hat;
+  shape.infinite_at_zero = s.infinite_at_zero != 0;
+  shape.batch_double = s.eval_double;
+  shape.batch_float = s.eval_float;
+  shape.self = s.self;
+  return shape;
+}
+
+}  // namespace
+
+Plugin load_plugin(const std::string& file) {
+  const bb_plugin& p = open_plugin(file);
+  check(file, p);
+  Plugin plugin{file, text(p.name), {}, {}, {}};
+  for (std::size_t i = 0; i < p.n_shapes; ++i) plugin.shapes.push_back(wrap_shape(p.shapes[i]));
+  for (std::size_t i = 0; i < p.n_policies; ++i) {
+    const bb_plugin_policy& policy = p.policies[i];
+    plugin.policies.push_back({policy.name, text(policy.doc), [&policy](Refresh refresh, double multiplier) {
+                                 return wrap_policy(policy, refresh, multiplier);
+                               }});
+  }
+  for (std::size_t i = 0; i < p.n_integrators; ++i) {
+    const bb_plugin_integrator& integrator = p.integrators[i];
+    plugin.integrators.push_back(
+        {integrator.name, text(integrator.doc), [&integrator] { return wrap_integrator(integrator); }});
+  }
+  return plugin;
+}
+
+}  // namespace bb

@@ -1,0 +1,34 @@
+// Loads a plugin (core/plugin/barrierbench_plugin.h) and wraps what it holds in the pipeline's own interfaces.
+// Registering the result is the caller's: barriers/plugins.hpp.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/contact/shape.hpp"
+#include "core/contact/stiffness_policy.hpp"
+#include "core/integrators/registry.hpp"
+
+namespace bb {
+
+/// A stiffness policy of a plugin. `multiplier` scales every kappa.
+struct PluginPolicy {
+  std::string name, doc;
+  std::function<std::unique_ptr<StiffnessPolicy>(Refresh refresh, double multiplier)> make;
+};
+
+struct Plugin {
+  std::string file, name;
+  std::vector<Shape> shapes;
+  std::vector<PluginPolicy> policies;
+  std::vector<IntegratorEntry> integrators;
+};
+
+/// Opens the library; it stays open until the process ends. Runs the plugin's code.
+/// Errors: ConfigError at the file: not a loadable library, no symbol barrierbench_plugin, another abi_version, an
+/// entry without a snake_case name or without one of its calls (all such entries at once).
+Plugin load_plugin(const std::string& file);
+
+}  // namespace bb

@@ -1,0 +1,120 @@
+// Files that are either whole or absent, and the trace. Every failure names path and cause.
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <cerrno>
+#include <cstring>
+
+#include "core/record/writer.hpp"
+
+namespace bb {
+namespace {
+
+namespace fs = std::filesystem;
+
+[[noreturn]] void fail_with(const fs::path& path, const char* what, int error) {
+  throw RecordError(path.string() + ": " + what + ": " + std::strerror(error));
+}
+
+/// A file descriptor that closes itself.
+class Descriptor {
+ public:
+  Descriptor(const fs::path& path, int flags) : fd_(::open(path.c_str(), flags, 0644)) {
+    if (fd_ < 0) fail_with(path, "cannot open", errno);
+  }
+  ~Descriptor() {
+    if (fd_ >= 0) ::close(fd_);
+  }
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  int get() const { return fd_; }
+  int close() {
+    const int result = ::close(fd_);
+    fd_ = -1;
+    return result;
+  }
+
+ private:
+  int fd_;
+};
+
+void write_and_sync(const fs::path& path, const std::string& text) {
+  Descriptor file(path, O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC);
+  std::size_t done = 0;
+  while (done < text.size()) {
+    const ::ssize_t n = ::write(file.get(), text.data() + done, text.size() - done);
+    if (n < 0 && errno == EINTR) continue;
+    if (n < 0) fail_with(path, "cannot write", errno);
+    done += static_cast<std::size_t>(n);
+  }
+  if (::fsync(file.get()) != 0) fail_with(path, "cannot write to the disk", errno);
+  if (file.close() != 0) fail_with(path, "cannot close", errno);
+}
+
+void sync_folder(const fs::path& folder) {
+  const Descriptor dir(folder, O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (::fsync(dir.get()) != 0 && errno != EINVAL) fail_with(folder, "cannot sync the folder", errno);
+}
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!folder.empty()) fs::create_directories(folder, error);
+  if (error) fail_with(folder, "cannot create the folder", error.value());
+}
+
+fs::path temp_beside(const fs::path& path) { return path.string() + ".tmp." + std::to_string(::getpid()); }
+
+}  // namespace
+
+void write_atomically(const fs::path& path, const std::string& text) {
+  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
+  make_folder(folder);
+  const fs::path temp = temp_beside(path);
+  try {
+    write_and_sync(temp, text);
+    if (::rename(temp.c_str(), path.c_str()) != 0) fail_with(path, "cannot rename into place", errno);
+  } catch (const RecordError&) {
+    ::unlink(temp.c_str());
+    throw;
+  }
+  sync_folder(folder);
+}
+
+void write_run(const fs::path& folder, const RunRecord& record) {
+  write_atomically(folder / "run.json", to_json(record));
+}
+
+void check_writable(const fs::path& folder) {
+  make_folder(folder);
+  const fs::path probe = temp_beside(folder / "probe");
+  try {
+    write_and_sync(probe, std::string(4096, ' '));
+  } catch (const RecordError&) {
+    ::unlink(probe.c_str());
+    throw;
+  }
+  ::unlink(probe.c_str());
+}
+
+TraceWriter::TraceWriter(const fs::path& folder) : path_(folder / "trace.jsonl") {
+  make_folder(folder);
+  file_ = std::fopen(path_.c_str(), "we");
+  if (file_ == nullptr) fail("cannot open");
+}
+
+TraceWriter::~TraceWriter() {
+  if (file_ != nullptr) std::fclose(file_);
+}
+
+void TraceWriter::fail(const char* what) const { fail_with(path_, what, errno); }
+
+void TraceWriter::add(const TraceRow& row) {
+  const std::string line = to_json(row) + "\n";
+  if (std::fwrite(line.data(), 1, line.size(), file_) != line.size()) fail("cannot write");
+}
+
+void TraceWriter::end_step() {
+  if (std::fflush(file_) != 0) fail("cannot write");
+}
+
+}  // namespace bb

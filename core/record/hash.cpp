@@ -1,0 +1,79 @@
+// SHA-256 of bytes, files, states and configs.
+#include <openssl/evp.h>
+
+#include <array>
+#include <bit>
+#include <cstdio>
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+
+#include "core/record/provenance.hpp"
+
+namespace bb {
+namespace {
+
+static_assert(std::endian::native == std::endian::little, "state_hash hashes memory as it lies");
+
+class Sha256 {
+ public:
+  Sha256() : context_(EVP_MD_CTX_new(), EVP_MD_CTX_free) {
+    if (context_ == nullptr || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1) {
+      throw std::runtime_error("sha256: OpenSSL refused to start");
+    }
+  }
+  void add(const void* data, std::size_t n) {
+    if (EVP_DigestUpdate(context_.get(), data, n) != 1) throw std::runtime_error("sha256: OpenSSL failed");
+  }
+  std::string hex() {
+    std::array<unsigned char, 32> digest{};
+    unsigned int n = 0;
+    EVP_DigestFinal_ex(context_.get(), digest.data(), &n);
+    static constexpr char kDigits[] = "0123456789abcdef";
+    std::string out;
+    for (unsigned char byte : digest) {
+      out += kDigits[byte >> 4];
+      out += kDigits[byte & 15];
+    }
+    return out;
+  }
+
+ private:
+  std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;
+};
+
+}  // namespace
+
+std::string sha256_hex(std::string_view bytes) {
+  Sha256 hash;
+  hash.add(bytes.data(), bytes.size());
+  return hash.hex();
+}
+
+std::string sha256_file(const std::string& path) {
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "re"), std::fclose);
+  if (file == nullptr) return {};
+  Sha256 hash;
+  std::vector<char> buffer(1 << 16);
+  while (const std::size_t n = std::fread(buffer.data(), 1, buffer.size(), file.get()))
+    hash.add(buffer.data(), n);
+  return std::ferror(file.get()) != 0 ? std::string() : hash.hex();
+}
+
+std::string state_hash(std::span<const double> values) {
+  Sha256 hash;
+  hash.add(values.data(), values.size_bytes());
+  return hash.hex();
+}
+
+std::string state_hash(const Positions& x) {
+  return state_hash(std::span<const double>(x.data(), static_cast<std::size_t>(x.size())));
+}
+
+std::string config_id(std::string_view config_json) {
+  const nlohmann::json j = nlohmann::json::parse(config_json, nullptr, false);  // sorts keys
+  if (j.is_discarded()) throw std::invalid_argument("config_id: not JSON");
+  return sha256_hex(j.dump());
+}
+
+}  // namespace bb

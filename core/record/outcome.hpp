@@ -1,0 +1,56 @@
+// The one word a run ends with. A failure is a result: it is named, recorded and plotted.
+#pragma once
+
+#include <array>
+#include <cstddef>
+#include <string_view>
+
+namespace bb {
+
+/// Ranked, most specific first: when several hold, the first in this order is the outcome.
+enum class Outcome {
+  invalid_scene,         // no first step
+  initial_intersection,  // no first step
+  penetration,           // the audit found a crossing or a violation
+  nan,                   // a non-finite energy, gradient or state
+  pin_infeasible,        // a driven vertex cannot reach its pose
+  ccd_cap,               // the step bound hit its probe cap and gave no progress
+  stall_overload,        // no progress with the contact load above the shape's capacity
+  newton_stall,          // a step ended at its iteration cap
+  linear_failure,        // the linear solver broke down
+  not_pd,                // the matrix was not positive definite
+  unproven,              // finished, but the audit could not certify every motion
+  timeout,
+  oom,
+  device_error,
+  killed,  // interrupted in the middle
+  ok,
+  count
+};
+
+inline constexpr std::array<std::string_view, static_cast<std::size_t>(Outcome::count)> kOutcomeNames = {
+    "invalid_scene",
+    "initial_intersection",
+    "penetration",
+    "nan",
+    "pin_infeasible",
+    "ccd_cap",
+    "stall_overload",
+    "newton_stall",
+    "linear_failure",
+    "not_pd",
+    "unproven",
+    "timeout",
+    "oom",
+    "device_error",
+    "killed",
+    "ok"};
+
+inline std::string_view to_string(Outcome outcome) {
+  return kOutcomeNames[static_cast<std::size_t>(outcome)];
+}
+
+/// The one of two that a run reports.
+inline Outcome worse(Outcome a, Outcome b) { return a < b ? a : b; }
+
+}  // namespace bb

@@ -1,0 +1,139 @@
+// Build, machine and ids of a record, read from the generated build info, /proc and the environment.
+#include "core/record/provenance.hpp"
+
+#include <dlfcn.h>
+#include <sys/resource.h>
+#include <sys/utsname.h>
+#include <unistd.h>
+
+#include <Eigen/Core>
+#include <cstdlib>
+#include <ctime>
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/record/build_info.hpp"
+
+extern "C" char** environ;
+
+namespace bb {
+namespace {
+
+std::string first_line(const char* path) {
+  std::ifstream in(path);
+  std::string line;
+  std::getline(in, line);
+  return line;
+}
+
+/// Value of the first line of `path` that starts with `key`, after the separator.
+std::string value_of(const char* path, std::string_view key, char separator) {
+  std::ifstream in(path);
+  for (std::string line; std::getline(in, line);) {
+    if (!line.starts_with(key)) continue;
+    const std::size_t at = line.find(separator);
+    if (at == std::string::npos) continue;
+    const std::size_t start = line.find_first_not_of(" \t\"", at + 1);
+    if (start == std::string::npos) return {};
+    return line.substr(start, line.find_last_not_of(" \t\"") + 1 - start);
+  }
+  return {};
+}
+
+/// The BLAS that the process has really loaded, and its threads: what the alternatives system chose.
+template <class Signature>
+Signature* loaded(const char* symbol) {
+  return reinterpret_cast<Signature*>(::dlsym(RTLD_DEFAULT, symbol));
+}
+
+std::string blas_version() {
+  auto* config = loaded<char*()>("openblas_get_config");
+  if (config == nullptr) return "not OpenBLAS";
+  std::string text = config();
+  Dl_info where{};
+  if (::dladdr(reinterpret_cast<void*>(config), &where) != 0 && where.dli_fname != nullptr) {
+    text += std::string(" at ") + where.dli_fname;
+  }
+  return text;
+}
+
+bool kept_variable(std::string_view name) {
+  for (std::string_view prefix : {"OMP_", "OPENBLAS_", "MKL_", "TBB_", "GOTO_", "BARRIERBENCH_", "BB_"}) {
+    if (name.starts_with(prefix)) return true;
+  }
+  return name == "LD_PRELOAD" || name == "LC_ALL";
+}
+
+}  // namespace
+
+Provenance collect_provenance(std::vector<std::string> argv, int threads) {
+  Provenance p;
+  p.tool_version = kBuildInfo.version;
+  p.git_commit = kBuildInfo.git_commit;
+  p.git_dirty = kBuildInfo.git_dirty;
+  p.compiler = kBuildInfo.compiler;
+  p.flags = kBuildInfo.flags;
+  p.build_type = kBuildInfo.build_type;
+#ifdef __FAST_MATH__
+  p.fast_math = true;
+#endif
+  p.fp_contract = "off";
+  p.libraries = {{"eigen", std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
+                               "." + std::to_string(EIGEN_MINOR_VERSION)},
+                 {"cholmod", kBuildInfo.cholmod},
+                 {"blas", blas_version()},
+                 {"tbb", kBuildInfo.tbb},
+                 {"fmt", kBuildInfo.fmt}};
+  p.argv = std::move(argv);
+  for (char** entry = environ; entry != nullptr && *entry != nullptr; ++entry) {
+    const std::string_view text(*entry);
+    const std::size_t at = text.find('=');
+    if (at != std::string_view::npos && kept_variable(text.substr(0, at))) {
+      p.env.emplace(text.substr(0, at), text.substr(at + 1));
+    }
+  }
+  p.threads = threads;
+  auto* blas_threads = loaded<int()>("openblas_get_num_threads");
+  p.blas_threads = blas_threads != nullptr ? blas_threads() : 0;
+  return p;
+}
+
+Machine collect_machine() {
+  Machine m;
+  m.cpu_model = value_of("/proc/cpuinfo", "model name", ':');
+  m.governor = first_line("/sys/devices/system/cpu/cpu0/cpufreq/scaling_governor");
+  m.os = value_of("/etc/os-release", "PRETTY_NAME", '=');
+  m.cores = static_cast<int>(::sysconf(_SC_NPROCESSORS_ONLN));
+  m.mem_bytes = std::strtoull(value_of("/proc/meminfo", "MemTotal", ':').c_str(), nullptr, 10) * 1024;
+  m.virtualised = value_of("/proc/cpuinfo", "flags", ':').find(" hypervisor") != std::string::npos;
+  if (::getloadavg(m.load_avg, 3) != 3) m.load_avg[0] = m.load_avg[1] = m.load_avg[2] = 0;
+  utsname name{};
+  if (::uname(&name) == 0) m.kernel = std::string(name.sysname) + " " + name.release + " " + name.machine;
+  return m;
+}
+
+void fill_ids(RunRecord& record) {
+  Ids& ids = record.ids;
+  ids.config_id = config_id(record.config_json);
+  ids.build_id = sha256_file("/proc/self/exe");
+  ids.machine_id = sha256_hex(record.machine.cpu_model + "\n" + std::to_string(record.machine.cores) + "\n" +
+                              record.machine.kernel);
+  ids.run_id = sha256_hex(ids.config_id + ids.build_id + ids.machine_id + std::to_string(ids.repetition));
+}
+
+std::uint64_t peak_rss_bytes() {
+  rusage usage{};
+  if (::getrusage(RUSAGE_SELF, &usage) != 0) return 0;
+  return static_cast<std::uint64_t>(usage.ru_maxrss) * 1024;
+}
+
+std::string utc_now() {
+  const std::time_t now = std::time(nullptr);
+  std::tm parts{};
+  ::gmtime_r(&now, &parts);
+  char text[32];
+  const std::size_t n = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
+  return std::string(text, n);
+}
+
+}  // namespace bb

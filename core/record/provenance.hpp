@@ -1,0 +1,41 @@
+// Where a number comes from: build, machine, hashes. Reads /proc and the environment; never fails, an unknown
+// value is an empty string or 0.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/math/types.hpp"
+#include "core/record/run_record.hpp"
+
+namespace bb {
+
+/// What this binary was built from, with argv and the thread settings of the environment.
+Provenance collect_provenance(std::vector<std::string> argv, int threads);
+Machine collect_machine();
+
+/// All ids of a run. Requires provenance, machine and config_json of the record to be filled; sets config_id,
+/// build_id, machine_id and run_id, keeps the rest.
+void fill_ids(RunRecord& record);
+
+/// SHA-256 as 64 lower-case hex digits.
+std::string sha256_hex(std::string_view bytes);
+/// Of a file; empty when it cannot be read.
+std::string sha256_file(const std::string& path);
+/// Of positions as little-endian float64 in memory order: equal exactly when the states are bit-identical.
+std::string state_hash(const Positions& x);
+std::string state_hash(std::span<const double> values);
+
+/// config_id of a resolved config: sha256 of its canonical form (keys sorted, no blanks).
+/// Errors: std::invalid_argument when it is not JSON.
+std::string config_id(std::string_view config_json);
+
+/// Peak resident memory of this process, bytes.
+std::uint64_t peak_rss_bytes();
+/// Now, as 2024-01-31T12:00:00Z.
+std::string utc_now();
+
+}  // namespace bb

@@ -1,0 +1,199 @@
+// What one run leaves behind, as plain values: run.json is exactly this struct (writer.hpp), the trace beside
+// it holds one TraceRow a Newton iteration. Keys and units: configs/schema/run.schema.json.
+#pragma once
+
+#include <cstdint>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/record/number.hpp"
+#include "core/record/outcome.hpp"
+#include "core/record/phase_times.hpp"
+#include "core/record/trace_row.hpp"
+
+namespace bb {
+
+/// MODEL.REVISION.ADDITION: removed or changed meaning, widened, added. Readers check the first number.
+inline constexpr const char* kRunSchemaVersion = "1.0.0";
+inline constexpr const char* kTraceSchemaVersion = "1.0.0";
+
+struct Ids {
+  std::string config_id;   // sha256 of the canonical resolved config
+  std::string run_id;      // sha256 of config_id, build_id, machine_id, repetition
+  std::string build_id;    // sha256 of the executable
+  std::string machine_id;  // sha256 of processor model, core count, kernel
+  std::string sweep_id;    // empty: none
+  int repetition = 0;
+  std::vector<std::string> parent_ids;  // runs this one was calibrated from (pilot)
+};
+
+struct Status {
+  Outcome outcome = Outcome::ok;
+  std::string detail;  // one sentence; empty when ok
+  int exit_code = 0;
+  std::string started_utc, ended_utc;  // ISO 8601
+};
+
+/// What tables group by; every value is derived from the config and never read back.
+struct Labels {
+  std::string scene, formulation, shape, argument, stiffness_policy, matching_rule;
+  std::string integrator, step_solver, linear_solver, preconditioner, precision;
+  double d_hat_m = 0, dt_s = 0;
+  std::string note;  // how the row of a table differs ("as_given", "scaled"), empty: nothing
+};
+
+/// Sizes of the scene after it was built.
+struct SceneSize {
+  std::size_t vertices = 0, free_dofs = 0, triangles = 0, springs = 0, hinges = 0, obstacles = 0;
+  double extent_m = 0;                             // largest side of the start box
+  std::map<std::string, std::string> mesh_sha256;  // file -> sha256
+};
+
+struct Provenance {
+  std::string tool_version, git_commit;
+  bool git_dirty = false;
+  std::string compiler, flags, build_type;
+  bool fast_math = false;
+  std::string fp_contract;
+  std::map<std::string, std::string> libraries;  // name -> version
+  std::vector<std::string> argv;
+  std::map<std::string, std::string> env;  // thread counts and the like
+  int threads = 1, blas_threads = 1;
+};
+
+struct Machine {
+  std::string cpu_model, governor, os, kernel;
+  int cores = 0;
+  std::uint64_t mem_bytes = 0;
+  double load_avg[3] = {0, 0, 0};
+  bool virtualised = false;
+};
+
+/// Order statistics of a sample; everything missing when n = 0.
+struct Stats {
+  std::size_t n = 0;
+  Number min, p05, median, p95, max, sum;
+};
+/// Linear interpolation between order statistics. Non-finite entries are left out. Cost O(n log n).
+Stats summarize(std::vector<double> sample);
+
+struct StepRecord {
+  int step = 0;
+  double t_s = 0;           // at the end of the step
+  std::string status;       // StepStatus word
+  std::string stop_reason;  // why Newton stopped
+  int newton_iterations = 0, linear_iterations = 0, linear_solves = 0, factorizations = 0, analyses = 0;
+  int line_search_trials = 0, rounding_accepts = 0, not_pd = 0;
+  long long ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, ccd_zero = 0;
+  ContactCounts contacts;  // at the end of the step
+  Number gap_min_m;        // smallest over the accepted states of the step
+  Number gap_min_rel;      // the same, d / d_hat
+  Number toi_min;          // smallest ACCD bound of the step
+  Number max_stretch;      // largest sigma - 1 over the accepted states
+  Number kappa_min_N_per_m, kappa_max_N_per_m;
+  Number contact_load_max_N, limit_load_max_N_per_m, contact_load_sum_N;
+  Number kinetic_J, elastic_J, limit_J, contact_J, gravity_J;  // at the end of the step
+  long long crossings = 0, violations = 0, unproven = 0, inverted = 0;
+  PhaseTimes time;
+};
+
+/// How kappa was chosen (DESIGN section 2.1).
+struct MatchingRecord {
+  std::string rule = "as_given";
+  Number theta;
+  Number load_N;              // per unit multiplicity, from the pilot
+  Number limit_load_N_per_m;  // the strain limit's
+  Number curvature_N_per_m, limit_curvature;
+  Number kappa_N_per_m;            // chosen; missing when the policy makes its own
+  Number limit_stiffness_N_per_m;  // k_s chosen
+  Number scale;                    // s applied to a policy that makes its own kappa
+  Number capacity_N;               // largest load the shape carries at that kappa; missing when unbounded
+  std::string pilot_run_id;
+};
+
+struct AuditRecord {
+  bool enabled = false;
+  long long states = 0, motions = 0;  // checked
+  long long crossings = 0, touches = 0, violations = 0, unproven = 0, inverted = 0;
+  int first_bad_step = -1, first_bad_iteration = -1;
+  std::vector<std::string> examples;  // the first few, in words
+  double seconds = 0;
+};
+
+struct Check {
+  std::string name;
+  Number value, bound;
+  bool pass = false;
+};
+struct Validity {
+  bool valid = false;  // every check passed
+  std::vector<Check> checks;
+};
+
+/// One line of the plan: what the scene needs, and what is neither allocated nor run.
+struct PlanItem {
+  std::string item;
+  bool active = false;
+  std::string reason;
+};
+struct Skipped {
+  std::string metric, reason;  // reason: not_applicable, not_requested, budget, dominated
+};
+
+/// What the stiffness policy did over the run.
+struct StiffnessRecord {
+  Number kappa_start_N_per_m, kappa_end_N_per_m;
+  int doublings = 0;
+  bool saturated = false;
+};
+
+struct Summary {
+  int steps = 0, steps_capped = 0;
+  long long newton_iterations = 0, linear_iterations = 0, linear_solves = 0, factorizations = 0, analyses = 0;
+  long long line_search_trials = 0, ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, not_pd = 0;
+  Stats newton_per_step, linear_per_solve, contacts, gap_min_rel;
+  Number gap_min_m, max_stretch, contact_load_max_N, limit_load_max_N_per_m;
+  StiffnessRecord stiffness;
+  /// log10 of cond over the run, key "<stage>/<scaling>"; statuses other than ok are counted, not averaged.
+  struct Conditioning {
+    Stats log10_cond, log10_lambda_min, log10_lambda_max;
+    std::map<std::string, int> statuses;
+  };
+  std::map<std::string, Conditioning> cond;
+  double wall_s = 0;
+  PhaseTimes time;  // valid as time only in the pass `time`
+  std::uint64_t peak_rss_bytes = 0;
+  std::string state_hash;  // sha256 of the final positions, little-endian float64
+};
+
+struct Artifact {
+  std::string path, kind, media_type, sha256;
+  std::uint64_t bytes = 0;
+};
+
+struct Passes {
+  bool time = false, diagnose = false, audit = false;
+};
+
+struct RunRecord {
+  Ids ids;
+  Status status;
+  Labels labels;
+  Passes passes;
+  std::string config_json = "{}";  // resolved, every default filled in
+  SceneSize scene;
+  Provenance provenance;
+  Machine machine;
+  std::vector<PlanItem> plan;
+  std::vector<Skipped> skipped;
+  MatchingRecord matching;
+  Summary summary;
+  std::vector<StepRecord> steps;
+  std::map<std::string, std::vector<double>> samples;  // raw repetitions, name with its unit
+  AuditRecord audit;
+  Validity validity;
+  std::vector<Artifact> artifacts;
+};
+
+}  // namespace bb

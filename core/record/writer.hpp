@@ -1,0 +1,55 @@
+// Writes run.json (all or nothing) and trace.jsonl (flushed once a step). The only file of core that knows
+// JSON's rules about records; readers live in analysis/.
+#pragma once
+
+#include <cstdio>
+#include <filesystem>
+#include <stdexcept>
+#include <string>
+
+#include "core/record/run_record.hpp"
+
+namespace bb {
+
+/// The output cannot be written: full disk, read-only folder. what() names the path and the cause.
+struct RecordError : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+/// run.json and one trace line as text; non-finite numbers are null plus "<name>_status".
+/// Errors: std::invalid_argument when config_json is not JSON.
+std::string to_json(const RunRecord& record);
+std::string to_json(const TraceRow& row);
+
+/// Replaces `path` by `text` or leaves it as it was: temp file beside it, fsync, rename, fsync of the folder.
+/// Creates missing folders. Errors: RecordError; the temp file is removed.
+void write_atomically(const std::filesystem::path& path, const std::string& text);
+
+/// write_atomically(folder / "run.json", to_json(record)).
+void write_run(const std::filesystem::path& folder, const RunRecord& record);
+
+/// Fails before the run rather than after it: creates the folder and writes, then removes, a probe file.
+/// Errors: RecordError.
+void check_writable(const std::filesystem::path& folder);
+
+/// folder/trace.jsonl, opened for writing anew.
+class TraceWriter {
+ public:
+  explicit TraceWriter(const std::filesystem::path& folder);
+  ~TraceWriter();
+  TraceWriter(const TraceWriter&) = delete;
+  TraceWriter& operator=(const TraceWriter&) = delete;
+
+  /// Buffers one line. Errors: RecordError.
+  void add(const TraceRow& row);
+  /// Hands the lines of the step to the system. Errors: RecordError.
+  void end_step();
+  const std::filesystem::path& path() const { return path_; }
+
+ private:
+  void fail(const char* what) const;
+  std::filesystem::path path_;
+  std::FILE* file_ = nullptr;
+};
+
+}  // namespace bb

@@ -1,0 +1,62 @@
+// What a body is before it becomes columns of a Scene: mesh, material, motion, pins.
+// Turned into a Scene by scene_builder.hpp.
+#pragma once
+
+#include <array>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.hpp"
+#include "core/scene/scene.hpp"
+
+namespace bb {
+
+/// Hard limit 1 + onset + width on the singular values of a membrane element (DESIGN section 3).
+struct StrainLimitSpec {
+  double onset = 0.01, width = 0.01;  // 1
+  /// A bare limit means onset = width = limit/2.
+  static StrainLimitSpec from_limit(double limit) { return {0.5 * limit, 0.5 * limit}; }
+};
+
+/// Material of a shell (triangles) or of rods (lone edges). Stiffness 0 switches a term off.
+struct Material {
+  std::string model = "corotational";    // membrane model; "none" for springs only
+  double density = 0.2;                  // kg/m^2 of triangles
+  double line_density = 0;               // kg/m of lone edges
+  double youngs = 1e5;                   // Pa when thickness is given, N/m (times thickness) otherwise
+  std::optional<double> thickness;       // m
+  double poisson = 0.3;                  // 1
+  double bending = 0;                    // J, stiffness of every hinge
+  double springs = 0;                    // N/m, on every unique edge
+  std::optional<StrainLimitSpec> limit;  // absent: no limit
+
+  /// Young's modulus times thickness, N/m.
+  double youngs_per_width() const { return youngs * thickness.value_or(1.0); }
+};
+
+/// Which vertices of a body are prescribed; a vertex is selected when any of the given ways selects it.
+struct PinSpec {
+  std::vector<int> indices;                 // of the body's own vertices
+  std::optional<std::array<Vec3d, 2>> box;  // closed box (min, max) in start positions, m
+  bool top_row = false;                     // vertices with the largest start y (planar) or z, exactly
+  bool all = false;
+  RigidMotion motion;  // static by default
+};
+
+enum class BodyKind { deformable, rigid };  // rigid: every vertex prescribed, no mass, no elements
+
+struct BodySpec {
+  std::string name;
+  BodyKind kind = BodyKind::deformable;
+  TriangleMesh mesh;               // rest shape, m
+  std::optional<Positions> start;  // start positions where they differ from the rest shape, m
+  Material material;               // deformable only
+  Vec3d velocity = Vec3d::Zero();  // m/s, free vertices
+  RigidMotion motion;              // rigid only
+  std::vector<PinSpec> pins;       // deformable only
+  double d_hat = 0;                // m, > 0
+  double offset = 0;               // m, >= 0
+};
+
+}  // namespace bb

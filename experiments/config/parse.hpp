@@ -1,0 +1,41 @@
+// JSON in, RunConfig out, and back. Every violation of a file is reported at once, each with
+// file#/json/pointer, the value found and the values allowed.
+#pragma once
+
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/scene.hpp"
+#include "experiments/config/run_config.hpp"
+
+namespace bb {
+
+/// Reads a config file. "extends": PATH (relative to the file) is merged underneath, object by object; then
+/// each override "/pointer=value" (value: JSON, or a bare word taken as a string) is set. Errors:
+/// ConfigError: unreadable file, JSON syntax (file:line), schema, unknown name (nearest suggested),
+///   contradiction, unknown override.   Cost: milliseconds; mesh files are hashed.
+RunConfig load_config(const std::string& path, std::span<const std::string> overrides = {});
+
+/// The same from text; `source` stands in messages, relative paths start at `folder`.
+RunConfig parse_config(const std::string& text, const std::string& source, const std::string& folder = ".",
+                       std::span<const std::string> overrides = {});
+
+/// Canonical JSON of a config: every default filled in, presets expanded, keys sorted, doubles that read back
+/// bit for bit, two-space indent. parse_config(resolved_json(c)) gives the same text.
+std::string resolved_json(const RunConfig& config);
+
+/// SHA-256 (hex) of the compact canonical JSON; mesh files count by content, not by place; threads do not
+/// count.
+std::string config_id(const RunConfig& config);
+
+/// The scene of a config: procedural, or from its bodies. Jitter applied. Deterministic.
+/// Errors: ConfigError (mesh files, scene checks).
+Scene build_scene(const RunConfig& config);
+
+/// The folder of presets, schema and scenes: $BARRIERBENCH_CONFIGS, else the one this program was built
+/// beside.
+std::string configs_folder();
+
+}  // namespace bb

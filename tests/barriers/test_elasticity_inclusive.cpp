@@ -1,0 +1,160 @@
+// The elasticity-inclusive formula against closed forms: point masses, a wall, given Hessian blocks.
+#include "barriers/stiffness/elasticity_inclusive.hpp"
+
+#include <gtest/gtest.h>
+
+#include <Eigen/Dense>
+#include <random>
+
+#include "barriers/stiffness/registry.hpp"
+#include "core/math/error.hpp"
+#include "core/math/types.hpp"
+
+namespace bb {
+namespace {
+
+using Mat12 = Eigen::Matrix<double, 12, 12>;
+
+/// A random row of n free vertices with a symmetric positive semi-definite Hessian.
+struct Row {
+  int n_free;
+  Eigen::Vector4d weight, mass;
+  Eigen::Vector3d normal;
+  double d = 3e-4, d_hat = 1e-3;
+  Mat12 hessian = Mat12::Zero();
+
+  Row(int n, unsigned seed) : n_free(n) {
+    std::mt19937 random(seed);
+    std::uniform_real_distribution<double> uniform(0.1, 1);
+    for (int i = 0; i < 4; ++i) {
+      weight[i] = i < n ? (i % 2 ? -1 : 1) * uniform(random) : 0;
+      mass[i] = i < n ? 1e-4 * uniform(random) : 0;
+    }
+    for (int k = 0; k < 3; ++k) normal[k] = uniform(random) - 0.5;
+    normal.normalize();
+    Eigen::MatrixXd root(3 * n, 3 * n);
+    for (int i = 0; i < root.size(); ++i) root(i) = uniform(random) - 0.4;
+    hessian.topLeftCorner(3 * n, 3 * n) = 40 * root * root.transpose();
+  }
+
+  double kappa(const ElasticityInclusiveRule& rule) const {
+    return elasticity_inclusive_kappa(n_free, weight.data(), normal.data(), d, mass.data(), hessian.data(), 12,
+                                      rule);
+  }
+};
+
+TEST(ElasticityInclusive, TwoFreePointMasses) {
+  const double weight[] = {1, -1}, normal[] = {0, 1, 0}, mass[] = {2e-3, 6e-3}, d = 1e-3, h = 0.01, c = 4.0 / 9;
+  const auto kappa = [&](const ElasticityInclusiveRule& rule) {
+    return elasticity_inclusive_kappa(2, weight, normal, d, mass, static_cast<const double*>(nullptr), 12, rule);
+  };
+  // w^T M w/(w^T w) = (m1 + m2)/2 = 4e-3 kg
+  EXPECT_NEAR(kappa({MassTerm::paper, false, h, c}), 4e-3 / 1e-6, 1e-9);
+  EXPECT_NEAR(kappa({MassTerm::inertia, false, h, c}), 4e-3 / (c * 1e-4), 1e-9);
+  EXPECT_EQ(kappa({MassTerm::inertia, false, h, 0}), 0);  // quasi-static: no inertia
+}
+
+TEST(ElasticityInclusive, OneVertexAtAWall) {
+  Row row(1, 3);
+  row.weight[0] = 1;
+  const Mat3d block = row.hessian.topLeftCorner<3, 3>();
+  const double normal_stiffness = row.normal.dot(block * row.normal);
+  ASSERT_GT(normal_stiffness, 1);
+
+  const double expected = row.mass[0] / (row.d * row.d) + normal_stiffness;
+  EXPECT_NEAR(row.kappa({MassTerm::paper, true, 0, 1}), expected, 1e-12 * expected);
+  EXPECT_NEAR(row.kappa({MassTerm::none, true, 0, 1}), normal_stiffness, 1e-12 * normal_stiffness);
+}
+
+TEST(ElasticityInclusive, IsTheRayleighQuotientOfTheWholeSubMatrix) {
+  for (const int n : {1, 2, 3, 4}) {
+    const Row row(n, 10u + static_cast<unsigned>(n));
+    Eigen::VectorXd w(3 * n), mass(3 * n);
+    for (int i = 0; i < n; ++i) {
+      w.segment<3>(3 * i) = row.weight[i] * row.normal;
+      mass.segment<3>(3 * i).setConstant(row.mass[i]);
+    }
+    const Eigen::MatrixXd h_el = row.hessian.topLeftCorner(3 * n, 3 * n);
+    const double h = 2e-3, c = 0.25;
+    const Eigen::MatrixXd matrix = h_el + Eigen::MatrixXd(mass.asDiagonal()) / (c * h * h);
+    const double expected = w.dot(matrix * w) / w.squaredNorm();
+
+    EXPECT_NEAR(row.kappa({MassTerm::inertia, true, h, c}), expected, 1e-12 * expected) << n;
+    Eigen::MatrixXd diagonal = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+    for (int i = 0; i < n; ++i) diagonal.block<3, 3>(3 * i, 3 * i) = h_el.block<3, 3>(3 * i, 3 * i);
+    const double without_coupling = w.dot(diagonal * w) / w.squaredNorm();
+    if (n > 1) EXPECT_GT(std::abs(row.kappa({MassTerm::none, true, h, c}) - without_coupling), 1e-3) << n;
+  }
+}
+
+TEST(ElasticityInclusive, DoesNotDependOnTheScaleOrSignOfTheWeights) {
+  const ElasticityInclusiveRule rule{MassTerm::paper, true, 0, 1};
+  for (const int n : {1, 2, 3, 4}) {
+    Row row(n, 30u + static_cast<unsigned>(n));
+    const double before = row.kappa(rule);
+    ASSERT_GT(before, 0);
+    row.weight *= -0.25;
+    EXPECT_DOUBLE_EQ(row.kappa(rule), before);
+  }
+}
+
+TEST(ElasticityInclusive, FloatAgreesWithDouble) {
+  const Row row(4, 51);
+  const ElasticityInclusiveRule rule{MassTerm::paper, true, 0, 1};
+  const Eigen::Matrix<float, 12, 12> hessian = row.hessian.cast<float>();
+  const Eigen::Vector4f weight = row.weight.cast<float>(), mass = row.mass.cast<float>();
+  const Eigen::Vector3f normal = row.normal.cast<float>();
+  const float single = elasticity_inclusive_kappa(4, weight.data(), normal.data(), static_cast<float>(row.d),
+                                                  mass.data(), hessian.data(), 12, rule);
+  EXPECT_NEAR(static_cast<double>(single), row.kappa(rule), 1e-5 * row.kappa(rule));
+}
+
+TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
+  StiffnessPolicyConfig config;
+  config.name = "elasticity_inclusive";
+  config.mass_term = MassTerm::inertia;
+  config.refresh = Refresh::per_step;
+  config.multiplier = 3;
+  const std::unique_ptr<StiffnessPolicy> policy = make_policy(config);
+  EXPECT_EQ(policy->name(), "elasticity_inclusive");
+  EXPECT_EQ(policy->refresh(), Refresh::per_step);
+  EXPECT_TRUE(policy->needs_hessian());
+  EXPECT_FALSE(policy->needs_globals());
+
+  std::vector<int> n_free;
+  std::vector<double> weight, normal, d, d_hat, mass, hessian;
+  std::vector<Row> rows;
+  for (int n = 1; n <= 4; ++n) {
+    rows.emplace_back(n, 70u + static_cast<unsigned>(n));
+    const Row& row = rows.back();
+    n_free.push_back(n);
+    weight.insert(weight.end(), row.weight.begin(), row.weight.end());
+    mass.insert(mass.end(), row.mass.begin(), row.mass.end());
+    normal.insert(normal.end(), row.normal.begin(), row.normal.end());
+    hessian.insert(hessian.end(), row.hessian.data(), row.hessian.data() + 144);
+    d.push_back(row.d);
+    d_hat.push_back(row.d_hat);
+  }
+  StiffnessBatch batch{4,           n_free.data(), weight.data(),  normal.data(), d.data(),
+                       d_hat.data(), mass.data(),   hessian.data(), 0.01,          0.25};
+  std::vector<double> kappa(4, -1);
+  policy->fill(batch, kappa.data());
+  for (std::size_t r = 0; r < 4; ++r) {
+    const double one = rows[r].kappa({MassTerm::inertia, true, 0.01, 0.25});
+    ASSERT_GT(one, 0);
+    EXPECT_EQ(kappa[r], 3 * one);
+  }
+
+  config.elastic_term = false;
+  const std::unique_ptr<StiffnessPolicy> massive = make_policy(config);
+  EXPECT_FALSE(massive->needs_hessian());
+  batch.hessian = nullptr;
+  massive->fill(batch, kappa.data());
+  EXPECT_EQ(kappa[0], 3 * rows[0].kappa({MassTerm::inertia, false, 0.01, 0.25}));
+
+  config.mass_term = MassTerm::none;
+  EXPECT_THROW(make_policy(config), ConfigError);
+}
+
+}  // namespace
+}  // namespace bb

@@ -1,0 +1,174 @@
+// The policies `fixed` and `ipc_adaptive`, and the factory.
+#include <gtest/gtest.h>
+
+#include <limits>
+
+#include "barriers/named_entries.hpp"
+#include "barriers/stiffness/registry.hpp"
+#include "core/math/error.hpp"
+
+namespace bb {
+namespace {
+
+std::vector<double> filled(const StiffnessPolicy& policy, std::size_t n) {
+  std::vector<double> kappa(n, -1);
+  StiffnessBatch rows;
+  rows.n = n;
+  policy.fill(rows, kappa.data());
+  return kappa;
+}
+
+std::unique_ptr<StiffnessPolicy> ipc(StiffnessPolicyConfig::IpcOverrides overrides = {}, double multiplier = 1) {
+  StiffnessPolicyConfig config;
+  config.name = "ipc_adaptive";
+  config.ipc = overrides;
+  config.multiplier = multiplier;
+  return make_policy(config);
+}
+
+/// k = 2e-3/(0.5 * 1e-4 * 8) = 5 N/m, so that the bounds are 5 and 500.
+StiffnessGlobals globals(double balance) {
+  StiffnessGlobals g;
+  g.grad_b_sq = 4e-6;
+  g.grad_b_dot_grad_e = -balance * g.grad_b_sq;
+  g.mean_contact_mass = 2e-3;
+  g.d2b_half = 8;
+  g.dt = 0.01;
+  g.c = 0.5;
+  g.d_hat = 1e-3;
+  return g;
+}
+
+const StiffnessPolicy::StepEnd pressed{4e-9, 5e-9, 1e-9};  // both below 10 parks, shrinking
+
+TEST(FixedPolicy, FillsEveryRow) {
+  StiffnessPolicyConfig config;
+  config.kappa = 12;
+  config.multiplier = 0.5;
+  const auto policy = make_policy(config);
+  EXPECT_EQ(policy->name(), "fixed");
+  EXPECT_FALSE(policy->needs_hessian());
+  EXPECT_FALSE(policy->needs_globals());
+  EXPECT_EQ(filled(*policy, 3), (std::vector<double>{6, 6, 6}));
+  EXPECT_EQ(policy->state().kappa, 6);
+  EXPECT_EQ(policy->state().kappa_start, 6);
+}
+
+TEST(IpcAdaptivePolicy, StartsAtTheBalanceWithinItsBounds) {
+  const auto start = [](double balance) {
+    const auto policy = ipc();
+    policy->start(globals(balance));
+    return policy->state();
+  };
+  EXPECT_DOUBLE_EQ(start(40).kappa, 40);
+  EXPECT_FALSE(start(40).saturated);
+  EXPECT_DOUBLE_EQ(start(1).kappa, 5);     // below k
+  EXPECT_DOUBLE_EQ(start(-70).kappa, 5);   // the forces do not press
+  EXPECT_DOUBLE_EQ(start(9000).kappa, 500);
+  EXPECT_TRUE(start(9000).saturated);
+
+  StiffnessGlobals no_gradient = globals(40);
+  no_gradient.grad_b_sq = 0;
+  const auto policy = ipc();
+  EXPECT_TRUE(policy->needs_globals());
+  policy->start(no_gradient);
+  EXPECT_DOUBLE_EQ(policy->state().kappa, 5);
+}
+
+TEST(IpcAdaptivePolicy, DoublesUpToItsBoundAndThenStays) {
+  const auto policy = ipc({}, 2.0);
+  policy->start(globals(40));
+  const std::vector<double> expected{80, 160, 320, 500, 500};
+  for (std::size_t i = 0; i < expected.size(); ++i) {
+    policy->end_step(pressed);
+    EXPECT_DOUBLE_EQ(policy->state().kappa, 2 * expected[i]) << i;
+    EXPECT_EQ(policy->state().saturated, expected[i] == 500) << i;
+  }
+  EXPECT_EQ(policy->state().doublings, 4);
+  EXPECT_DOUBLE_EQ(policy->state().kappa_start, 80);
+  EXPECT_DOUBLE_EQ(filled(*policy, 2)[1], 1000);
+}
+
+TEST(IpcAdaptivePolicy, DoublesOnlyWhenSmallTwiceAndShrinking) {
+  const double inf = std::numeric_limits<double>::infinity();
+  for (const StiffnessPolicy::StepEnd end : {StiffnessPolicy::StepEnd{5e-9, 4e-9, 1e-9},    // growing
+                                             StiffnessPolicy::StepEnd{4e-9, 4e-9, 1e-9},    // at rest
+                                             StiffnessPolicy::StepEnd{4e-9, 2e-8, 1e-9},    // small once
+                                             StiffnessPolicy::StepEnd{1e-8, 1.1e-8, 1e-9},  // not below 10 parks
+                                             StiffnessPolicy::StepEnd{inf, inf, 1e-9}}) {
+    const auto policy = ipc();
+    policy->start(globals(40));
+    policy->end_step(end);
+    EXPECT_DOUBLE_EQ(policy->state().kappa, 40);
+    policy->end_step(pressed);
+    EXPECT_DOUBLE_EQ(policy->state().kappa, 80);
+  }
+  const auto before_start = ipc();
+  before_start->end_step(pressed);
+  EXPECT_EQ(before_start->state().doublings, 0);
+}
+
+TEST(IpcAdaptivePolicy, TakesPublishedNumbersInstead) {
+  const auto policy = ipc({.kappa_min = 50, .kappa_max = 150, .doubling_gap = 1e-6});
+  policy->start(globals(40));
+  EXPECT_DOUBLE_EQ(policy->state().kappa, 50);
+  policy->end_step({4e-7, 5e-7, 1e-9});
+  EXPECT_DOUBLE_EQ(policy->state().kappa, 100);
+  policy->end_step({3e-7, 4e-7, 1e-9});
+  EXPECT_DOUBLE_EQ(policy->state().kappa, 150);
+  EXPECT_TRUE(policy->state().saturated);
+}
+
+TEST(IpcAdaptivePolicy, WithoutInertiaItNeedsBothBounds) {
+  StiffnessGlobals quasi_static = globals(40);
+  quasi_static.c = 0;
+  EXPECT_THROW(ipc()->start(quasi_static), ConfigError);
+  const auto policy = ipc({.kappa_min = 1, .kappa_max = 100, .doubling_gap = {}});
+  policy->start(quasi_static);
+  EXPECT_DOUBLE_EQ(policy->state().kappa, 40);
+}
+
+TEST(PolicyFactory, HoldsTheBuiltInsAndNamesTheNearest) {
+  const std::vector<std::string> names = entry_names(stiffness_policies());
+  const std::vector<std::string> expected{"fixed", "ipc_adaptive", "elasticity_inclusive"};
+  ASSERT_GE(names.size(), expected.size());
+  EXPECT_TRUE(std::equal(expected.begin(), expected.end(), names.begin()));
+
+  StiffnessPolicyConfig config;
+  config.name = "ipc_adaptiv";
+  try {
+    make_policy(config);
+    FAIL() << "no error";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("did you mean ipc_adaptive?"), std::string::npos) << error.what();
+  }
+}
+
+TEST(PolicyFactory, RefusesBadNumbers) {
+  StiffnessPolicyConfig config;
+  for (const double kappa : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
+    config.kappa = kappa;
+    EXPECT_THROW(make_policy(config), ConfigError) << kappa;
+  }
+  config.kappa = 1;
+  EXPECT_NO_THROW(make_policy(config));
+  config.multiplier = 0;
+  EXPECT_THROW(make_policy(config), ConfigError);
+  EXPECT_THROW(ipc({.kappa_min = 2, .kappa_max = 1, .doubling_gap = {}}), ConfigError);
+  EXPECT_THROW(ipc({.kappa_min = -2, .kappa_max = {}, .doubling_gap = {}}), ConfigError);
+  EXPECT_THROW(ipc({.kappa_min = {}, .kappa_max = {}, .doubling_gap = 0}), ConfigError);
+}
+
+TEST(PolicyNames, RoundTrip) {
+  for (const MassTerm term : {MassTerm::paper, MassTerm::inertia, MassTerm::none}) {
+    EXPECT_EQ(require_mass_term(to_string(term)), term);
+  }
+  for (const Refresh refresh : {Refresh::per_iteration, Refresh::per_step}) {
+    EXPECT_EQ(require_refresh(to_string(refresh)), refresh);
+  }
+  EXPECT_THROW(require_mass_term("papers"), ConfigError);
+  EXPECT_THROW(require_refresh("never"), ConfigError);
+}
+
+}  // namespace
+}  // namespace bb
