@@ -77,8 +77,6 @@ void BarrierFunction::eval(std::size_t n, const float* d, const float* d_hat, fl
 ShapeTerms<double> BarrierFunction::eval(double d, double d_hat) const { return eval_one(*this, d, d_hat); }
 ShapeTerms<float> BarrierFunction::eval(float d, float d_hat) const { return eval_one(*this, d, d_hat); }
 
-std::string_view to_string(Argument argument) {
-  return argument == Argument::gap ? "gap" : "squared_gap";
-}
+std::string_view to_string(Argument argument) { return argument == Argument::gap ? "gap" : "squared_gap"; }
 
 }  // namespace bb

@@ -51,8 +51,8 @@ void bisect(const BarrierFunction& barrier, double d_hat, Sample& near, Sample& 
   }
 }
 
-/// Gaps in units of d_hat from 1 down to 0: a factor of two apart towards both ends, evenly spaced between, so
-/// that the scale of any load is met and a hump wider than 1/256 is seen.
+/// Gaps in units of d_hat from 1 down to 0: a factor of two apart towards both ends, evenly spaced between,
+/// so that the scale of any load is met and a hump wider than 1/256 is seen.
 std::vector<double> ladder() {
   constexpr int even = 256;
   std::vector<double> u;
@@ -123,8 +123,8 @@ Equilibrium equilibrium(const BarrierFunction& barrier, double kappa, double d_h
   Sample far = *first;
   Sample near = first == samples.begin() ? sample(barrier, d_hat, d_hat) : *(first - 1);
   bisect(barrier, d_hat, near, far, carries);
-  // The root lies between two adjacent doubles: interpolate the curvature, which near d_hat varies by more than
-  // the rounding of d allows for.
+  // The root lies between two adjacent doubles: interpolate the curvature, which near d_hat varies by more
+  // than the rounding of d allows for.
   const double t = far.slope > near.slope && std::isfinite(far.slope)
                        ? (target - near.slope) / (far.slope - near.slope)
                        : 1.0;

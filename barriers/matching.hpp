@@ -9,17 +9,17 @@
 
 namespace bb {
 
-/// The kappa-free law of a shape: rho(u) = d_hat b''(d)/|b'(d)| at d = u d_hat, so that a contact at rest under
-/// load f has stiffness K = rho(u) f/d_hat. Errors: ConfigError unless 0 < u < 1 and b' is finite and not 0 there.
-/// Source: reference law of section 2.1 of the design, any shape.
+/// The kappa-free law of a shape: rho(u) = d_hat b''(d)/|b'(d)| at d = u d_hat, so that a contact at rest
+/// under load f has stiffness K = rho(u) f/d_hat. Errors: ConfigError unless 0 < u < 1 and b' is finite and
+/// not 0 there. Source: reference law of section 2.1 of the design, any shape.
 double rho(const BarrierFunction& barrier, double u);
 
 /// Rest state of one contact of stiffness kappa under a load.
 struct Equilibrium {
-  bool above_capacity = false;     // load >= capacity: no rest state, d and stiffness are absent
-  std::optional<double> d;         // m, the largest gap with kappa |b'(d)| = load
-  std::optional<double> stiffness; // N/m, K = kappa b''(d); negative where the force falls towards contact
-  std::optional<double> capacity;  // N, sup of kappa |b'|; absent when unbounded
+  bool above_capacity = false;      // load >= capacity: no rest state, d and stiffness are absent
+  std::optional<double> d;          // m, the largest gap with kappa |b'(d)| = load
+  std::optional<double> stiffness;  // N/m, K = kappa b''(d); negative where the force falls towards contact
+  std::optional<double> capacity;   // N, sup of kappa |b'|; absent when unbounded
 };
 
 /// Largest gap in balance, by scanning from d_hat down and bisection to adjacent doubles.
@@ -36,7 +36,8 @@ double match_equal_force(const BarrierFunction& barrier, double d_hat, double lo
 
 /// Matching rule equal_curvature: kappa (N/m) = curvature/b''(theta d_hat), curvature in N/m.
 /// Errors: ConfigError unless curvature > 0, d_hat > 0, 0 < theta < 1 and b'' is finite and > 0 there.
-double match_equal_curvature(const BarrierFunction& barrier, double d_hat, double curvature, double theta = 0.5);
+double match_equal_curvature(const BarrierFunction& barrier, double d_hat, double curvature,
+                             double theta = 0.5);
 
 /// Scale s of a policy that makes its own kappa, at the contact that carried the load:
 /// s = load/(kappa_policy |b'(theta d_hat)|), kappa_policy (N/m) the policy's value at d = theta d_hat.

@@ -37,7 +37,8 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   return nearest;
 }
 
-ConfigError unknown_name(std::string_view where, std::string_view found, const std::vector<std::string>& names) {
+ConfigError unknown_name(std::string_view where, std::string_view found,
+                         const std::vector<std::string>& names) {
   std::string allowed = "one of ";
   for (std::size_t i = 0; i < names.size(); ++i) allowed += (i ? ", " : "") + names[i];
   const std::string nearest = nearest_name(found, names);

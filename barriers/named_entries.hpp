@@ -9,12 +9,13 @@
 
 namespace bb {
 
-/// The name with the fewest edits (insert, delete, replace) from `name`; empty when none is within half of its
-/// length. Cost O(total length of names x length of name).
+/// The name with the fewest edits (insert, delete, replace) from `name`; empty when none is within half of
+/// its length. Cost O(total length of names x length of name).
 std::string nearest_name(std::string_view name, const std::vector<std::string>& names);
 
 /// ConfigError text: where, the name found, "one of a, b, c (did you mean b?)".
-ConfigError unknown_name(std::string_view where, std::string_view found, const std::vector<std::string>& names);
+ConfigError unknown_name(std::string_view where, std::string_view found,
+                         const std::vector<std::string>& names);
 
 template <class Entry>
 std::vector<std::string> entry_names(const std::vector<Entry>& entries) {
@@ -43,7 +44,8 @@ void append_entry(std::vector<Entry>& entries, Entry entry, std::string_view whe
   if (find_entry(entries, entry.name)) {
     std::string taken;
     for (const std::string& name : entry_names(entries)) taken += (taken.empty() ? "" : ", ") + name;
-    throw ConfigError(std::string(where), '"' + entry.name + '"', "a name not yet taken (taken: " + taken + ")");
+    throw ConfigError(std::string(where), '"' + entry.name + '"',
+                      "a name not yet taken (taken: " + taken + ")");
   }
   entries.push_back(std::move(entry));
 }

@@ -22,9 +22,9 @@ class ElasticityInclusive final : public StiffnessPolicy {
     const ElasticityInclusiveRule rule{mass_term_, elastic_term_, rows.dt, rows.c};
     for (std::size_t r = 0; r < rows.n; ++r) {
       const double* hessian = elastic_term_ ? rows.hessian + 144 * r : nullptr;
-      kappa[r] = multiplier_ * elasticity_inclusive_kappa(rows.n_free[r], rows.weight + 4 * r,
-                                                          rows.normal + 3 * r, rows.d[r], rows.mass + 4 * r,
-                                                          hessian, 12, rule);
+      kappa[r] =
+          multiplier_ * elasticity_inclusive_kappa(rows.n_free[r], rows.weight + 4 * r, rows.normal + 3 * r,
+                                                   rows.d[r], rows.mass + 4 * r, hessian, 12, rule);
     }
   }
 

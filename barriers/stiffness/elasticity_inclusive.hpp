@@ -23,8 +23,8 @@ struct ElasticityInclusiveRule {
 /// @param mass     [N] kg; read unless MassTerm::none
 /// @param hessian  column-major, leading dimension ld >= 3N, N/m; read when elastic_term
 /// Errors: none. Host-device. Cost: O(N^2), allocates nothing.
-/// Source: Ando 2024, section on elasticity-inclusive stiffness; differs by: off-diagonal blocks of H kept as in
-/// the published code, w over free vertices only.
+/// Source: Ando 2024, section on elasticity-inclusive stiffness; differs by: off-diagonal blocks of H kept as
+/// in the published code, w over free vertices only.
 template <class T>
 BB_HD T elasticity_inclusive_kappa(int n_free, const T* weight, const T* normal, T d, const T* mass,
                                    const T* hessian, int ld, const ElasticityInclusiveRule& rule) {

@@ -17,8 +17,9 @@ constexpr double doubling_parks = 10;
 // kappa stays within [k, range k].
 constexpr double range = 100;
 
-/// kappa_0 = -(grad B_1 . grad E)/|grad B_1|^2, clamped to [k, 100 k], k = mean contact mass/(c dt^2 b''(d_hat/2)).
-/// Source: Li et al. 2020 (IPC), supplement on adaptive kappa; differs by: the scale k and the doubling rule.
+/// kappa_0 = -(grad B_1 . grad E)/|grad B_1|^2, clamped to [k, 100 k], k = mean contact mass/(c dt^2
+/// b''(d_hat/2)). Source: Li et al. 2020 (IPC), supplement on adaptive kappa; differs by: the scale k and the
+/// doubling rule.
 class IpcAdaptive final : public StiffnessPolicy {
  public:
   explicit IpcAdaptive(const StiffnessPolicyConfig& config)
@@ -33,8 +34,9 @@ class IpcAdaptive final : public StiffnessPolicy {
       throw ConfigError("stiffness_policy", "ipc_adaptive without inertia, or with b''(d_hat/2) not > 0",
                         "an integrator with inertia, or both kappa_min and kappa_max");
     }
-    const double k = has_scale ? globals.mean_contact_mass / (globals.c * globals.dt * globals.dt * globals.d2b_half)
-                               : 0.0;
+    const double k =
+        has_scale ? globals.mean_contact_mass / (globals.c * globals.dt * globals.dt * globals.d2b_half)
+                  : 0.0;
     const double low = overrides_.kappa_min.value_or(k);
     max_ = std::max(low, overrides_.kappa_max.value_or(range * k));
     const double balance = globals.grad_b_sq > 0 ? -globals.grad_b_dot_grad_e / globals.grad_b_sq : low;

@@ -54,9 +54,12 @@ std::unique_ptr<StiffnessPolicy> make_policy(const StiffnessPolicyConfig& config
 
 std::string_view to_string(MassTerm mass_term) {
   switch (mass_term) {
-    case MassTerm::paper: return "paper";
-    case MassTerm::inertia: return "inertia";
-    case MassTerm::none: break;
+    case MassTerm::paper:
+      return "paper";
+    case MassTerm::inertia:
+      return "inertia";
+    case MassTerm::none:
+      break;
   }
   return "none";
 }

@@ -15,11 +15,11 @@ namespace bb {
 /// What makes a policy. A policy reads its own fields and ignores the others.
 struct StiffnessPolicyConfig {
   std::string name = "fixed";
-  double kappa = 0;                         // fixed: N/m, > 0
-  MassTerm mass_term = MassTerm::paper;     // elasticity_inclusive
-  bool elastic_term = true;                 // elasticity_inclusive
-  Refresh refresh = Refresh::per_iteration; // elasticity_inclusive and plugins
-  double multiplier = 1;                    // s of the matching rule: every kappa is multiplied by it
+  double kappa = 0;                          // fixed: N/m, > 0
+  MassTerm mass_term = MassTerm::paper;      // elasticity_inclusive
+  bool elastic_term = true;                  // elasticity_inclusive
+  Refresh refresh = Refresh::per_iteration;  // elasticity_inclusive and plugins
+  double multiplier = 1;                     // s of the matching rule: every kappa is multiplied by it
   /// ipc_adaptive: Li et al.'s own numbers instead of the rules of the design.
   struct IpcOverrides {
     std::optional<double> kappa_min, kappa_max;  // N/m, instead of k and 100 k
@@ -40,8 +40,8 @@ const std::vector<StiffnessPolicyEntry>& stiffness_policies();
 void register_stiffness_policy(StiffnessPolicyEntry entry, std::string_view where = "stiffness_policy");
 
 /// A policy for one run.
-/// Errors: ConfigError for an unknown name (with the names allowed and the nearest one), a multiplier or fixed
-/// kappa that is not a finite number > 0, overrides that are not > 0 or out of order.
+/// Errors: ConfigError for an unknown name (with the names allowed and the nearest one), a multiplier or
+/// fixed kappa that is not a finite number > 0, overrides that are not > 0 or out of order.
 std::unique_ptr<StiffnessPolicy> make_policy(const StiffnessPolicyConfig& config);
 
 std::string_view to_string(MassTerm mass_term);

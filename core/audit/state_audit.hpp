@@ -26,7 +26,6 @@ StateAudit audit_state(const AuditMesh& mesh, const std::vector<int>& vertices, 
                        bool include_fixed);
 
 /// All vertices of edges and (in 3D) triangles and the listed points, ascending.
-
 std::vector<int> colliding_vertices(const AuditMesh& mesh);
 
 }  // namespace bb::audit

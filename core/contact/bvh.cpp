@@ -8,7 +8,7 @@
 namespace bb {
 
 namespace {
-constexpr int leaf_size = 4;         // primitives a leaf: fewer nodes to refit, few box tests more
+constexpr int leaf_size = 4;  // primitives a leaf: fewer nodes to refit, few box tests more
 constexpr double rebuild_growth = 1.5;
 }  // namespace
 

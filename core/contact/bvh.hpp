@@ -28,8 +28,8 @@ class Bvh {
   };
 
   /// Takes the boxes of all n primitives; `free` says which of them a solver can move. The first call, and a
-  /// call with another n, builds: O(n log n). Later calls refit, O(n), and rebuild when the boxes of the inner
-  /// nodes, relative to those of the leaves, have grown by more than a half since the last build.
+  /// call with another n, builds: O(n log n). Later calls refit, O(n), and rebuild when the boxes of the
+  /// inner nodes, relative to those of the leaves, have grown by more than a half since the last build.
   void update(std::span<const Aabb> boxes, std::span<const std::uint8_t> free);
 
   const std::vector<Node>& nodes() const { return nodes_; }
@@ -108,8 +108,8 @@ class PairCollector {
 class PairFinder {
  public:
   /// All pairs (primitive of a, primitive of b) whose boxes overlap, of which at least one is free, and for
-  /// which keep(pair) holds. Sorted, so independent of threads and of the shape of the trees. When a and b are
-  /// the same object each unordered pair comes once, first < second.
+  /// which keep(pair) holds. Sorted, so independent of threads and of the shape of the trees. When a and b
+  /// are the same object each unordered pair comes once, first < second.
   template <class Keep>
   void find(const Bvh& a, const Bvh& b, const Keep& keep, std::vector<IndexPair>& pairs) {
     pairs.clear();

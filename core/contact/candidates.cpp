@@ -19,8 +19,8 @@ BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<doubl
   if (surface.planar && surface.planar_pairs == PlanarPairs::vertex_vertex) {
     points_.needed = surface.points.size() > 1 && free_point;
   } else if (surface.planar) {
-    points_.needed = edges_.needed = surface.edges.size() > 0 && surface.points.size() > 2 &&
-                                     (free_point || free_edge);
+    points_.needed = edges_.needed =
+        surface.edges.size() > 0 && surface.points.size() > 2 && (free_point || free_edge);
   } else {
     triangles_.needed = surface.triangles.size() > 0 && surface.points.size() > 3 &&
                         (free_point || any(surface.triangles.free));
@@ -56,17 +56,20 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
   const auto triangle = [&s](int i) { return s.triangles.vertices[static_cast<std::size_t>(i)]; };
 
   if (s.planar && s.planar_pairs == PlanarPairs::vertex_vertex) {
-    finder_.find(points_.bvh, points_.bvh,
-                 [&](IndexPair p) { return !s.connected(point(p.first), point(p.second)); }, out.point_point);
+    finder_.find(
+        points_.bvh, points_.bvh, [&](IndexPair p) { return !s.connected(point(p.first), point(p.second)); },
+        out.point_point);
   } else if (s.planar) {
-    finder_.find(points_.bvh, edges_.bvh,
-                 [&](IndexPair p) { return !s.adjacent(point(p.first), edge(p.second)); }, out.point_edge);
+    finder_.find(
+        points_.bvh, edges_.bvh, [&](IndexPair p) { return !s.adjacent(point(p.first), edge(p.second)); },
+        out.point_edge);
   } else {
-    finder_.find(points_.bvh, triangles_.bvh,
-                 [&](IndexPair p) { return s.disjoint(point(p.first), triangle(p.second)); },
-                 out.point_triangle);
-    finder_.find(edges_.bvh, edges_.bvh,
-                 [&](IndexPair p) { return s.disjoint(edge(p.first), edge(p.second)); }, out.edge_edge);
+    finder_.find(
+        points_.bvh, triangles_.bvh,
+        [&](IndexPair p) { return s.disjoint(point(p.first), triangle(p.second)); }, out.point_triangle);
+    finder_.find(
+        edges_.bvh, edges_.bvh, [&](IndexPair p) { return s.disjoint(edge(p.first), edge(p.second)); },
+        out.edge_edge);
   }
   update_obstacles(x0, x1, out.obstacle);
 }

@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,7 +30,17 @@ struct StepBound {
   long long queries = 0, probes = 0, capped = 0, zero = 0;  // ACCD pairs asked, probes, cap hits, toi == 0
 };
 
-/// Owns the broad phase. All results are independent of the number of threads.
+/// Owns the broad phase. All results are independent of the number of threads. The scene must outlive it. Not
+/// thread-safe, const members included: they share buffers; parallel inside.
+///
+/// Which pairs exist: every point-triangle and edge-edge pair without a common vertex, at least one vertex
+/// free; planar: every pair of vertices that no mesh edge joins, or every vertex and boundary edge of which
+/// the vertex is neither an end nor the third corner of a triangle with that edge. B is the sum over these
+/// pairs; where the closest feature of several is the same, they are one row with a multiplicity. In 3D the
+/// closest feature of a pair can be a vertex and an edge of its own triangle (two triangles that share the
+/// edge): that row is kept, because without it B would jump when the closest point crosses the edge, and the
+/// step bound, which keeps every pair, would act where no force does. The rest rule keeps it off until
+/// the triangle has lost a third of its height.
 class ContactSystem {
  public:
   ContactSystem(const Scene& scene, const ContactOptions& options);
@@ -54,6 +65,22 @@ class ContactSystem {
   };
   Counts candidate_counts() const;
 
+  /// A pair, named.
+  struct Overlap {
+    ContactKind kind;
+    ContactKey key;  // all vertices of the pair
+    double gap;      // m, <= 0 (or not a number)
+    std::string text;
+  };
+  /// Whether every candidate pair of the last update_candidates has a gap > 0 at x: for committed states.
+  bool feasible(const Positions& x) const;
+  /// The first pair of the scene with a gap <= 0 at x, none when x is a valid start. Replaces the candidates.
+  /// Distances only: a triangle that an edge pierces without touching is the audit's to find.
+  std::optional<Overlap> check_initial(const Positions& x);
+  /// "point_triangle: cloth[12], ball[3], ball[4], ball[7]": bodies and their own vertex numbers, obstacles
+  /// by name.
+  std::string describe(const ContactKey& key, ContactKind kind) const;
+
  private:
   struct Data;
   std::unique_ptr<Data> data_;
@@ -73,19 +100,33 @@ void mollified_terms(const MollifiedTable& rows, const Positions& x, std::vector
 void contact_energies(const ContactTable& rows, std::vector<double>& energy);
 void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy);
 
-/// kappa of earlier rows by key: rows already known keep theirs. Merge join over sorted keys, O(n).
+/// kappa of earlier rows by their sorted vertex ids (and by which of them are on which side): rows already
+/// known keep theirs. An edge-edge row keeps it when it becomes mollified and back. Merge joins, O(n).
 class KappaMemory {
  public:
-  void clear();
+  void clear() { entries_.clear(); }
+  /// Adds the rows that are not known yet; rows that are no longer in the tables stay known.
   void store(const ContactTable& rows, const MollifiedTable& mollified);
   /// Fills kappa of the rows that are known; `missing` gets the indices of the others (row or mollified row).
   void recall(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
               std::vector<int>& missing_mollified) const;
 
  private:
-  std::vector<ContactKey> key_, mollified_key_;
-  std::vector<ContactKind> kind_;
-  std::vector<double> kappa_, mollified_kappa_;
+  struct Entry {
+    ContactKey key;
+    ContactKind kind;
+    std::array<int, 4> stencil;
+    double kappa;
+    bool before(const Entry& other) const;
+  };
+  template <class Table>
+  static Entry entry(const Table& table, std::size_t row);
+  template <class Table>
+  void add(const Table& table);
+  template <class Table>
+  void fill(Table& table, std::vector<int>& missing) const;
+
+  std::vector<Entry> entries_, merged_;  // sorted, no two equal
 };
 
 }  // namespace bb

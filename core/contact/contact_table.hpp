@@ -31,6 +31,9 @@ struct ContactTable {
   std::vector<double> multiplicity;      // [n] number of pairs that realise the row
   std::vector<double> kappa;             // [n] N/m
   std::vector<double> b, db, d2b;        // [n] m^2, m, 1
+  // obstacle rows only, else 0: grad^2 d = curvature (I - n n^T - flat flat^T)
+  std::vector<double> curvature;  // [n] 1/m
+  std::vector<double> flat;       // [3 n] axis of a cylinder, else 0
 
   std::size_t size() const { return d.size(); }
   void resize(std::size_t n);

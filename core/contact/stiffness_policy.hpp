@@ -23,8 +23,8 @@ struct StiffnessBatch {
   const double* mass = nullptr;     // [4 n] lumped vertex masses, kg
   const double* hessian = nullptr;  // [144 n] 12 x 12 column-major sub-matrix of the elastic Hessian, N/m;
                                     // null unless the policy says needs_hessian
-  double dt = 0;  // s
-  double c = 1;   // the integrator's c: inertia weight is M/(c dt^2); 0 when quasi-static
+  double dt = 0;                    // s
+  double c = 1;                     // the integrator's c: inertia weight is M/(c dt^2); 0 when quasi-static
 };
 
 /// Sums over the state that a policy with memory may read. grad_b: gradient of B with kappa = 1; grad_e: of E

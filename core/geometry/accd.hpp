@@ -63,22 +63,65 @@ BB_HD inline T relative_speed(const Mat<T, 3, pair_points(K)>& dx) {
   return sqrt(speed_sq);
 }
 
-/// Time from now until the gap along the fixed unit direction n may fall below `level`; 0 when it proves
-/// nothing. The gap of the primitives is at least the least n . (x_i - x_j) over their vertices, each affine
-/// in time, so the first crossing is known exactly. Infinite when none of them falls.
+/// First t > 0 with a + b t + c t^2 = 0, for a > 0; infinite when there is none.
+template <class T>
+BB_HD inline T first_root(T a, T b, T c) {
+  using std::sqrt;
+  const T discriminant = b * b - 4 * a * c;
+  if (!(c < 0) && (!(b < 0) || discriminant < 0)) return std::numeric_limits<T>::infinity();
+  const T root = sqrt(discriminant);
+  return b > 0 ? (b + root) / (-2 * c) : 2 * a / (root - b);
+}
+
+/// The slowest turn of the unit normal n that keeps it at a right angle to the edges on which the closest
+/// points slide, 1 per unit of time; 0 for a vertex against a vertex.
+template <class T, int N>
+BB_HD inline Vec<T, 3> turn_of_normal(const Mat<T, 3, N>& x, const Mat<T, 3, N>& dx, const Vec<T, 3>& n,
+                                      Region region) {
+  const FreeEdges edges = free_edges(region);
+  if (edges.count == 0) return Vec<T, 3>::Zero();
+  const Vec<T, 3> e = x.col(edges.to[0]) - x.col(edges.from[0]);
+  const T tilt_e = n.dot(dx.col(edges.to[0]) - dx.col(edges.from[0]));
+  if (edges.count == 1) return e * (-tilt_e / e.squaredNorm());
+  const Vec<T, 3> f = x.col(edges.to[1]) - x.col(edges.from[1]);
+  const T tilt_f = n.dot(dx.col(edges.to[1]) - dx.col(edges.from[1]));
+  const Vec<T, 3> normal = accurate_cross(e, f);
+  return (accurate_cross(f, normal) * tilt_e + accurate_cross(normal, e) * tilt_f) / -normal.squaredNorm();
+}
+
+/// Time from now until the gap along the direction m(s) = n + s turn may fall below `level`; 0 when it proves
+/// nothing. The distance is at least the least m . (x_i - x_j)/|m| over the vertices of the two primitives;
+/// with |m| <= 1 + s^2 |turn|^2/2 that is one quadratic in time for each pair of vertices, affine for turn =
+/// 0. True for any turn; limited to about one radian, where rounding is no larger than without.
 template <PairKind K, class T>
 BB_HD inline T directional_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3, pair_points(K)>& dx,
-                                   const Vec<T, 3>& n, T level) {
-  T advance = std::numeric_limits<T>::infinity();
+                                   const Vec<T, 3>& n, const Vec<T, 3>& turn, T level) {
+  using std::sqrt;
+  const T turn_sq = turn.squaredNorm();
+  T advance = turn_sq > 0 ? 1 / sqrt(turn_sq) : std::numeric_limits<T>::infinity();
   for (int i = 0; i < pair_split(K); ++i) {
     for (int j = pair_split(K); j < pair_points(K); ++j) {
-      const T room = n.dot(x.col(i) - x.col(j)) - level;
-      const T rate = n.dot(dx.col(i) - dx.col(j));
+      const Vec<T, 3> r = x.col(i) - x.col(j), v = dx.col(i) - dx.col(j);
+      const T room = n.dot(r) - level;
       if (!(room > 0)) return T(0);
-      if (rate < 0 && room < -rate * advance) advance = room / -rate;
+      const T until = first_root<T>(room, n.dot(v) + turn.dot(r), turn.dot(v) - level * turn_sq / 2);
+      advance = until < advance ? until : advance;
     }
   }
   return advance;
+}
+
+/// The largest of the three proven advances: by speed, along the closest direction, along that direction
+/// turning.
+template <PairKind K, class T>
+BB_HD inline T proven_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3, pair_points(K)>& dx,
+                              const Closest<T, pair_points(K)>& closest, T by_speed, T level) {
+  const Vec<T, 3> n = closest.r / closest.d, still = Vec<T, 3>::Zero();
+  const Vec<T, 3> turn = turn_of_normal<T, pair_points(K)>(x, dx, n, closest.region);
+  const T fixed = directional_advance<K, T>(x, dx, n, still, level);
+  const T turning = directional_advance<K, T>(x, dx, n, turn, level);
+  const T directional = fixed > turning ? fixed : turning;
+  return by_speed > directional ? by_speed : directional;
 }
 
 }  // namespace detail
@@ -118,19 +161,14 @@ BB_HD inline AccdResult<T> accd(const Mat<T, 3, pair_points(K)>& x0, const Mat<T
       if (!(gap > ulp_floor)) return {T(0), true, probe, false, false};
       const T stop = park > ulp_floor ? park : ulp_floor;
       level = (gap < 2 * stop ? gap / 2 : stop) + rounding;
+      if (!(speed > 0)) return {T(1), false, probe, false, false};
     }
     const T room = gap - level;
     // Below rounding of the level there is nothing left to prove: t is where the pair stops.
-    if (!(room > rounding)) {
-      if (!(speed > 0)) return {T(1), false, probe, false, false};
-      if (probe > 1) return {t, true, probe, false, false};
-    }
-    const T by_speed = speed > 0 ? room / speed : std::numeric_limits<T>::infinity();
-    const Vec<T, 3> n = closest.r / closest.d;
-    const T by_direction = detail::directional_advance<K, T>(x, motion.dx, n, level + offset);
-    const T advance = (by_speed > by_direction ? by_speed : by_direction) * (1 - 4 * eps);
-    const T remaining = 1 - t;
-    if (advance > remaining) return {T(1), false, probe, false, false};
+    if (probe > 1 && !(room > rounding)) return {t, true, probe, false, false};
+    const T advance =
+        detail::proven_advance<K, T>(x, motion.dx, closest, room / speed, level + offset) * (1 - 4 * eps);
+    if (advance > 1 - t) return {T(1), false, probe, false, false};
     const T next = t + advance;
     if (!(next > t)) return {t, true, probe, false, false};
     t = next;

@@ -40,4 +40,34 @@ constexpr const char* region_name(Region region) {
   return names[static_cast<int>(region)];
 }
 
+/// What moves freely in a region: weight slides along up to two edges (from point `from` to point `to`).
+struct FreeEdges {
+  int count;
+  int from[2], to[2];
+};
+
+BB_HD constexpr FreeEdges free_edges(Region region) {
+  switch (region) {
+    case Region::p_e:
+    case Region::p_e01:
+      return {1, {1, 0}, {2, 0}};
+    case Region::p_e12:
+      return {1, {2, 0}, {3, 0}};
+    case Region::p_e20:
+      return {1, {3, 0}, {1, 0}};
+    case Region::p_t:
+      return {2, {1, 1}, {2, 3}};
+    case Region::ea_eb0:
+    case Region::ea_eb1:
+      return {1, {0, 0}, {1, 0}};
+    case Region::ea0_eb:
+    case Region::ea1_eb:
+      return {1, {2, 0}, {3, 0}};
+    case Region::ea_eb:
+      return {2, {0, 2}, {1, 3}};
+    default:
+      return {0, {0, 0}, {0, 0}};
+  }
+}
+
 }  // namespace bb

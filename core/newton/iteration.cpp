@@ -19,6 +19,8 @@ IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, S
   report.contacts = system.contact_counts();
   report.gap_min = system.state().gap_min;
   report.max_stretch = system.max_stretch();
+  report.limit_tension = system.limit_tension_max();
+  report.gap_min_rel = std::numeric_limits<double>::infinity();
   const auto columns = [&report](const auto& rows, bool& first) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       report.kappa_min = first ? rows.kappa[r] : std::min(report.kappa_min, rows.kappa[r]);
@@ -45,6 +47,8 @@ void measure_direction(const NewtonSystem& system, const Positions& dx, Iteratio
     report.dx_inf = size > report.dx_inf || std::isnan(size) ? size : report.dx_inf;
   }
   report.decrement = -slope;
+  report.n_free = static_cast<std::size_t>(system.n_free());
+  report.nnz = system.nnz();
 }
 
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend) {
@@ -62,6 +66,7 @@ void finish_iteration(StepReport& step, const IterationReport& report, StepObser
   step.analyses += report.linear.analyzed;
   step.accepted_by_rounding += report.accepted_by_rounding;
   step.alpha_min = std::min(step.alpha_min, report.alpha);
+  step.alpha_ccd_min = std::min(step.alpha_ccd_min, report.alpha_ccd);
   step.ccd_queries += report.bound.queries;
   step.ccd_probes += report.bound.probes;
   step.ccd_capped += report.bound.capped;
@@ -97,9 +102,7 @@ void measure_end(NewtonSystem& system, StepReport& step) {
   const ContactTable& rows = system.state().rows;
   step.contacts = system.contact_counts();
   step.gap_min = system.state().gap_min;
-  step.gap_min_over_d_hat = std::numeric_limits<double>::infinity();
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    step.gap_min_over_d_hat = std::min(step.gap_min_over_d_hat, rows.d[r] / rows.d_hat[r]);
     step.force_max = std::max(step.force_max, -rows.kappa[r] * rows.db[r]);
   }
   step.max_stretch = system.max_stretch();

@@ -74,7 +74,7 @@ void NewtonSystem::gather_gradient() {
     blocks_->gather_elements(i, local_[i].grad, gradient_);
   }
   if (limit_) {
-    limit_->derivatives(state_.x, method_.limit, limit_kappa_, limit_local_);
+    limit_->derivatives(state_.x, method_.limit, limit_kappa_.data(), limit_local_);
     state_.limit = limit_local_.energy;
     blocks_->gather_elements(elements_.size(), limit_local_.grad, gradient_);
   }
@@ -85,13 +85,22 @@ void NewtonSystem::refresh_limit_stiffness() {
   const LimitStiffness& rule = method_.limit_stiffness;
   if (limit_kappa_fresh_ && (rule.kind == LimitStiffness::Kind::fixed || rule.refresh == Refresh::per_step))
     return;
-  if (rule.kind == LimitStiffness::Kind::fixed) {
-    limit_->fill_fixed(rule.k_s, limit_kappa_);
-  } else {
-    limit_->fill_elasticity_inclusive(rule, *blocks_, elastic_, scene_.mass, x_step_start_, state_.x, dt_, c_,
-                                      limit_kappa_);
-  }
   limit_kappa_fresh_ = true;
+  if (rule.kind == LimitStiffness::Kind::fixed) {
+    limit_->fixed_stiffness(rule.k_s, limit_kappa_.data());
+    return;
+  }
+  limit_hess_.resize(81 * limit_->size());
+  Mat<double, 12, 12> block;
+  for (std::size_t e = 0; e < limit_->size(); ++e) {
+    blocks_->submatrix(elastic_, &limit_->vertices()[3 * e], 3, block.data());
+    Eigen::Map<Mat<double, 9, 9>>(&limit_hess_[81 * e]) = block.topLeftCorner<9, 9>();
+  }
+  limit_->measure(state_.x);
+  const StrainStiffnessRule terms{rule.mass_term, true, dt_, c_};
+  limit_->elastic_stiffness(terms_.x_n, limit_hess_.data(), scene_.mass.data(), scene_.limit.mass.data(),
+                            terms, limit_kappa_.data());
+  for (double& kappa : limit_kappa_) kappa *= rule.multiplier;
 }
 
 // A policy with memory starts at the first iterate that has contacts: sums of grad B with kappa = 1 and grad
@@ -165,6 +174,7 @@ LinearReport NewtonSystem::solve(const Positions& target, Positions& dx, PhaseTi
     if (moving) lift(dx, work_);
     blocks_->restrict_vector(work_, rhs_);
     reduced = &blocks_->reduce(full_);
+    nnz_ = static_cast<std::size_t>(reduced->lower.nonZeros());
   }
   const LinearReport report = solver_->solve(*reduced, rhs_, solution_);
   times[Phase::linear_analyze] += report.analyze_s;

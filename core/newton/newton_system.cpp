@@ -5,7 +5,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/math/error.hpp"
+#include "core/energy/hinge_batch.hpp"
+#include "core/energy/membrane_batch.hpp"
+#include "core/energy/spring_batch.hpp"
 
 namespace bb {
 
@@ -82,7 +84,6 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   }
   stiffness_.begin_step();
   restart_step(prediction, dt);
-  x_step_start_ = x_n;
   limit_kappa_fresh_ = false;
   state_.x = x_n;
   trial_.x = x_n;
@@ -104,7 +105,8 @@ void NewtonSystem::restart_step(const Prediction& prediction, double dt) {
 void NewtonSystem::evaluate_elements(EnergyState& state) const {
   for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i]->values(state.x, state.element[i].data());
   if (limit_) {
-    state.feasible = limit_->values(state.x, method_.limit, limit_kappa_, state.limit) && state.feasible;
+    limit_->values(state.x, method_.limit, limit_kappa_.data(), state.limit.data());
+    state.feasible = state.feasible && limit_->min_gap() > 0;
   }
 }
 
@@ -197,10 +199,25 @@ ContactCounts NewtonSystem::contact_counts() const {
   return counts;
 }
 
-double NewtonSystem::max_stretch() const { return limit_ ? limit_->max_stretch(state_.x) : 0; }
+double NewtonSystem::max_stretch() const {
+  if (!limit_) return 0;
+  limit_->measure(state_.x);
+  return limit_->max_stretch();
+}
 
 double NewtonSystem::limit_tension_max() const {
-  return limit_ ? limit_->tension_max(state_.x, method_.limit, limit_kappa_) : 0;
+  if (!limit_) return 0;
+  limit_->measure(state_.x);
+  double largest = 0;
+  for (std::size_t e = 0; e < limit_->size(); ++e) {
+    const double width = scene_.limit.width[e];
+    for (const double gap : limit_->gaps().subspan(2 * e, 2)) {
+      if (gap >= width) continue;
+      largest =
+          std::max(largest, -limit_kappa_[e] * method_.limit.eval(gap, width).db / limit_->rests()[e].area);
+    }
+  }
+  return largest;
 }
 
 }  // namespace bb

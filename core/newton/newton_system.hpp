@@ -60,6 +60,9 @@ class NewtonSystem {
   double grad_inf() const;
   ContactCounts contact_counts() const;
   bool pattern_changed() const { return pattern_changed_; }
+  int n_free() const { return blocks_->n_free(); }
+  /// Entries of the lower triangle that was solved last.
+  std::size_t nnz() const { return nnz_; }
   bool has_limit() const { return limit_ != nullptr; }
   double max_stretch() const;
   /// Largest (1/area) dS_e/dsigma over limited elements, N/m.
@@ -103,13 +106,13 @@ class NewtonSystem {
   StepTerms terms_;
   double dt_ = 0, c_ = 1;
   double min_d_hat_ = 0;
+  std::size_t nnz_ = 0;
   EnergyState state_, trial_;
 
   std::vector<LocalTerms> local_;
   LocalTerms limit_local_;
-  std::vector<double> limit_kappa_;
+  std::vector<double> limit_kappa_, limit_hess_;
   bool limit_kappa_fresh_ = false;
-  Positions x_step_start_;
   std::vector<double> contact_grad_, contact_hess_, mollified_grad_, mollified_hess_;
   Positions gradient_;  // of E
   Positions contact_gradient_;

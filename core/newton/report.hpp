@@ -23,9 +23,12 @@ struct IterationReport {
   bool accepted_by_rounding = false;  // |change of E| below 64 eps sum |terms|
   LinearReport linear;
   ContactCounts contacts;
-  double gap_min = 0;                   // m; infinity without contacts
+  double gap_min = 0, gap_min_rel = 0;  // m, d/d_hat; infinity without contacts
   double kappa_min = 0, kappa_max = 0;  // N/m
   double curvature_max = 0;             // N/m, largest m kappa b''
+  double force_max = 0;                 // N, largest kappa |b'| per unit multiplicity
+  double limit_tension = 0;             // N/m, largest (1/area) dS_e/dsigma
+  std::size_t n_free = 0, nnz = 0;      // of the matrix
   double max_stretch = 0;               // largest singular value of limited elements; 0 without
   bool pattern_changed = false;
   StepBound bound;
@@ -39,11 +42,10 @@ struct StepReport {
   std::string detail;  // names the pin, the pair, the linear status
   int iterations = 0, linear_iterations = 0, line_search_trials = 0, factorizations = 0, analyses = 0;
   int accepted_by_rounding = 0;
-  double alpha_min = 1;
+  double alpha_min = 1, alpha_ccd_min = 1;
   long long ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, ccd_zero = 0;
-  ContactCounts contacts;  // at the end of the step
-  double gap_min = 0;      // m
-  double gap_min_over_d_hat = 0;
+  ContactCounts contacts;        // at the end of the step
+  double gap_min = 0;            // m
   double force_max = 0;          // N, largest kappa |b'| per unit multiplicity at the end of the step
   double limit_tension_max = 0;  // N/m, largest (1/area) dS_e/dsigma
   double overload = 0;           // largest load / capacity over rows; 0 when capacity is unbounded

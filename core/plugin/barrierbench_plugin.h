@@ -1,6 +1,6 @@
 /* The plugin interface: shapes, stiffness policies and integrators from a shared library (--plugin FILE.so).
- * Plain C, batch calls over columns, SI units. A plugin exports one function, barrierbench_plugin, and everything
- * it returns lives as long as the process. Worked examples: examples/plugins/. */
+ * Plain C, batch calls over columns, SI units. A plugin exports one function, barrierbench_plugin, and
+ * everything it returns lives as long as the process. Worked examples: examples/plugins/. */
 #ifndef BARRIERBENCH_PLUGIN_H
 #define BARRIERBENCH_PLUGIN_H
 
@@ -14,20 +14,24 @@ extern "C" {
 /* Raised with every change of a struct or of the meaning of a field; any other number is refused. */
 #define BB_PLUGIN_ABI_VERSION 1u
 
-/* A barrier shape, for kappa = 1: b (m^2), b' (m), b'' (1) in the unsquared gap d (m); exactly 0 for d >= d_hat.
- * Called with n >= 0 rows, d >= 0, d_hat > 0. d = 0: the limit (inf, -inf, inf where b is unbounded). It must scale
- * as b(s d; s d_hat) = s^2 b(d; d_hat), which is what makes kappa a stiffness in N/m. Called from several threads. */
+/* A barrier shape, for kappa = 1: b (m^2), b' (m), b'' (1) in the unsquared gap d (m); exactly 0 for d >=
+ * d_hat. Called with n >= 0 rows, d >= 0, d_hat > 0. d = 0: the limit (inf, -inf, inf where b is unbounded).
+ * It must scale as b(s d; s d_hat) = s^2 b(d; d_hat), which is what makes kappa a stiffness in N/m. Called
+ * from several threads. */
 typedef struct bb_plugin_shape {
   const char* name; /* snake_case, not the name of another shape */
   const char* doc;
   int32_t smoothness_at_d_hat; /* number of continuous derivatives at d = d_hat */
   int32_t infinite_at_zero;    /* 1: b -> infinity as d -> 0 */
   void* self;                  /* handed to the calls */
-  void (*eval_double)(void* self, size_t n, const double* d, const double* d_hat, double* b, double* db, double* d2b);
-  void (*eval_float)(void* self, size_t n, const float* d, const float* d_hat, float* b, float* db, float* d2b);
+  void (*eval_double)(void* self, size_t n, const double* d, const double* d_hat, double* b, double* db,
+                      double* d2b);
+  void (*eval_float)(void* self, size_t n, const float* d, const float* d_hat, float* b, float* db,
+                     float* d2b);
 } bb_plugin_shape;
 
-/* Contact rows as a stiffness policy sees them: free vertices only; row r owns slots 4 r .. 4 r + n_free[r]. */
+/* Contact rows as a stiffness policy sees them: free vertices only; row r owns slots 4 r .. 4 r + n_free[r].
+ */
 typedef struct bb_plugin_rows {
   size_t n;
   const int32_t* n_free; /* [n] 1..4 */
@@ -36,12 +40,14 @@ typedef struct bb_plugin_rows {
   const double* d;       /* [n] gap, m */
   const double* d_hat;   /* [n] m */
   const double* mass;    /* [4 n] lumped vertex masses, kg */
-  const double* hessian; /* [144 n] 12 x 12 column-major PSD elastic Hessian blocks, N/m; NULL unless needs_hessian */
-  double h;              /* time step, s */
-  double c;              /* inertia weight M/(c h^2); 0: no inertia */
+  const double*
+      hessian; /* [144 n] 12 x 12 column-major PSD elastic Hessian blocks, N/m; NULL unless needs_hessian */
+  double h;    /* time step, s */
+  double c;    /* inertia weight M/(c h^2); 0: no inertia */
 } bb_plugin_rows;
 
-/* A stiffness policy: fills kappa (N/m, >= 0) of every row. When it is refreshed is the config's `refresh`. */
+/* A stiffness policy: fills kappa (N/m, >= 0) of every row. When it is refreshed is the config's `refresh`.
+ */
 typedef struct bb_plugin_policy {
   const char* name;
   const char* doc;
@@ -61,8 +67,8 @@ typedef struct bb_plugin_history {
   const double* v_prev; /* v_{n-1}; NULL while steps < 1 */
 } bb_plugin_history;
 
-/* An integrator: c > 0 and x_tilde of E(x) = 1/(2 c h^2) (x - x_tilde)^T M (x - x_tilde) - f^T (x - x_n) + ...,
- * x_tilde without any force; then v and a at the x that the step reached. */
+/* An integrator: c > 0 and x_tilde of E(x) = 1/(2 c h^2) (x - x_tilde)^T M (x - x_tilde) - f^T (x - x_n) +
+ * ..., x_tilde without any force; then v and a at the x that the step reached. */
 typedef struct bb_plugin_integrator {
   const char* name;
   const char* doc;
@@ -89,7 +95,8 @@ typedef struct bb_plugin {
 #if defined(__GNUC__)
 __attribute__((visibility("default")))
 #endif
-const bb_plugin* barrierbench_plugin(void);
+const bb_plugin*
+barrierbench_plugin(void);
 
 #ifdef __cplusplus
 }

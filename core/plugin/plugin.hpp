@@ -1,5 +1,5 @@
-// Loads a plugin (core/plugin/barrierbench_plugin.h) and wraps what it holds in the pipeline's own interfaces.
-// Registering the result is the caller's: barriers/plugins.hpp.
+// Loads a plugin (core/plugin/barrierbench_plugin.h) and wraps what it holds in the pipeline's own
+// interfaces. Registering the result is the caller's: barriers/plugins.hpp.
 #pragma once
 
 #include <functional>
@@ -27,8 +27,8 @@ struct Plugin {
 };
 
 /// Opens the library; it stays open until the process ends. Runs the plugin's code.
-/// Errors: ConfigError at the file: not a loadable library, no symbol barrierbench_plugin, another abi_version, an
-/// entry without a snake_case name or without one of its calls (all such entries at once).
+/// Errors: ConfigError at the file: not a loadable library, no symbol barrierbench_plugin, another
+/// abi_version, an entry without a snake_case name or without one of its calls (all such entries at once).
 Plugin load_plugin(const std::string& file);
 
 }  // namespace bb

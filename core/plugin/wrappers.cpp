@@ -55,7 +55,8 @@ class PluginIntegrator final : public Integrator {
     const bb_plugin_history columns = view(history);
     v.resize(3, x.cols());
     a.resize(3, x.cols());
-    integrator_.finish(integrator_.self, &columns, dt, used.c, used.x_tilde.data(), x.data(), v.data(), a.data());
+    integrator_.finish(integrator_.self, &columns, dt, used.c, used.x_tilde.data(), x.data(), v.data(),
+                       a.data());
   }
 
  private:
@@ -75,7 +76,8 @@ class PluginIntegrator final : public Integrator {
 
 }  // namespace
 
-std::unique_ptr<StiffnessPolicy> wrap_policy(const bb_plugin_policy& policy, Refresh refresh, double multiplier) {
+std::unique_ptr<StiffnessPolicy> wrap_policy(const bb_plugin_policy& policy, Refresh refresh,
+                                             double multiplier) {
   return std::make_unique<PluginStiffness>(policy, refresh, multiplier);
 }
 std::unique_ptr<Integrator> wrap_integrator(const bb_plugin_integrator& integrator) {

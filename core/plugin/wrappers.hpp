@@ -10,7 +10,8 @@
 namespace bb {
 
 /// The referenced table must outlive the result, as everything a plugin returns does.
-std::unique_ptr<StiffnessPolicy> wrap_policy(const bb_plugin_policy& policy, Refresh refresh, double multiplier);
+std::unique_ptr<StiffnessPolicy> wrap_policy(const bb_plugin_policy& policy, Refresh refresh,
+                                             double multiplier);
 
 /// predict throws ConfigError when the plugin answers with a c that is not a finite number > 0.
 std::unique_ptr<Integrator> wrap_integrator(const bb_plugin_integrator& integrator);

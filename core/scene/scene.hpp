@@ -55,6 +55,7 @@ struct HingePart {
 struct StrainLimitPart {
   std::vector<std::array<int, 3>> triangles;
   std::vector<double> onset, width;  // [n] 1
+  std::vector<double> mass;          // [n] element mass, kg
 };
 
 enum class ObstacleKind { plane, sphere, cylinder };

@@ -1,4 +1,5 @@
-// Example: an integrator. The theta method, between backward Euler (theta = 1) and the trapezoidal rule (1/2):
+// Example: an integrator. The theta method, between backward Euler (theta = 1) and the trapezoidal rule
+// (1/2):
 //   x = x_n + h ((1 - theta) v_n + theta v),   v = v_n + h ((1 - theta) a_n + theta a)
 // Putting v into x gives c = theta^2 and x_tilde = x_n + h v_n + h^2 theta (1 - theta) a_n.
 #include "core/plugin/barrierbench_plugin.h"
@@ -14,8 +15,8 @@ void predict(void*, const bb_plugin_history* history, double h, double* c, doubl
   }
 }
 
-void finish(void*, const bb_plugin_history* history, double h, double c, const double* x_tilde, const double* x,
-            double* v, double* a) {
+void finish(void*, const bb_plugin_history* history, double h, double c, const double* x_tilde,
+            const double* x, double* v, double* a) {
   for (size_t i = 0; i < 3 * history->n; ++i) {
     a[i] = (x[i] - x_tilde[i]) / (c * h * h);
     v[i] = history->v[i] + h * ((1 - theta) * history->a[i] + theta * a[i]);

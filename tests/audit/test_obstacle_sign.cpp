@@ -1,4 +1,5 @@
-// Sides of analytic obstacles, exactly on the surface included, and chords that leave the allowed set between ends.
+// Sides of analytic obstacles, exactly on the surface included, and chords that leave the allowed set between
+// ends.
 #include "core/audit/obstacle_sign.hpp"
 
 #include <gtest/gtest.h>
@@ -51,7 +52,8 @@ TEST(ObstacleHit, chord_through_a_ball_between_free_ends_is_found) {
 TEST(ObstacleHit, chord_past_a_tilted_cylinder_far_along_its_axis) {
   const Vec3d axis(1, 2, 2);
   const AuditObstacle c{ObstacleKind::cylinder, Vec3d(5, 0, 0), axis, 1.0, false};
-  const Vec3d across(2, -1, 0), side(2, 4, -5);  // orthogonal to the axis and to each other; |side| = 3 sqrt 5
+  const Vec3d across(2, -1, 0),
+      side(2, 4, -5);  // orthogonal to the axis and to each other; |side| = 3 sqrt 5
   const Vec3d far = c.point + 300.0 * axis;
   EXPECT_TRUE(obstacle_hit(c, far - 3.0 * across + 0.1 * side, far + 3.0 * across + 0.1 * side));
   EXPECT_FALSE(obstacle_hit(c, far - 3.0 * across + 0.2 * side, far + 3.0 * across + 0.2 * side));

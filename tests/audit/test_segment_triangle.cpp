@@ -1,4 +1,5 @@
-// The classes of a segment and a triangle on hand cases: general, coplanar, degenerate; invariance under relabelling.
+// The classes of a segment and a triangle on hand cases: general, coplanar, degenerate; invariance under
+// relabelling.
 #include "core/audit/segment_triangle.hpp"
 
 #include <gtest/gtest.h>
@@ -29,12 +30,12 @@ TEST(SegmentTriangle, boundary_contacts_touch) {
 }
 
 TEST(SegmentTriangle, coplanar_contacts_touch) {
-  EXPECT_EQ(against({-1, 1, 0}, {5, 1, 0}), touch);    // across
-  EXPECT_EQ(against({0.5, 0.5, 0}, {1, 1, 0}), touch); // wholly inside
-  EXPECT_EQ(against({-1, 0, 0}, {5, 0, 0}), touch);    // along an edge
-  EXPECT_EQ(against({-1, -1, 0}, {0, 0, 0}), touch);   // at a corner
+  EXPECT_EQ(against({-1, 1, 0}, {5, 1, 0}), touch);     // across
+  EXPECT_EQ(against({0.5, 0.5, 0}, {1, 1, 0}), touch);  // wholly inside
+  EXPECT_EQ(against({-1, 0, 0}, {5, 0, 0}), touch);     // along an edge
+  EXPECT_EQ(against({-1, -1, 0}, {0, 0, 0}), touch);    // at a corner
   EXPECT_EQ(against({3, 3, 0}, {5, 5, 0}), none);
-  EXPECT_EQ(against({5, 0, 0}, {6, 0, 0}), none);      // on an edge's line, beyond it
+  EXPECT_EQ(against({5, 0, 0}, {6, 0, 0}), none);  // on an edge's line, beyond it
 }
 
 TEST(SegmentTriangle, degenerate_input_touches_or_misses) {

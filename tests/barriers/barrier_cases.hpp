@@ -1,4 +1,5 @@
-// Shared by the tests of this room: every registered shape on both arguments, and gaps spaced towards both ends.
+// Shared by the tests of this room: every registered shape on both arguments, and gaps spaced towards both
+// ends.
 #pragma once
 
 #include <cmath>
@@ -35,6 +36,8 @@ inline std::vector<double> spaced_u(double low, double near, int per_decade = 3)
   return u;
 }
 
-inline double relative(double found, double expected) { return std::abs(found - expected) / std::abs(expected); }
+inline double relative(double found, double expected) {
+  return std::abs(found - expected) / std::abs(expected);
+}
 
 }  // namespace bb::test

@@ -88,7 +88,8 @@ TEST(EquilibriumLaws, TwoStageBelowAndAboveItsJoint) {
   }
 }
 
-/// kappa = m/d^2 (mass term of the paper): d = d_hat/(1 + s), K = 4 m s (1 + s)/d_hat^2, s = sqrt(f d_hat/(2 m)).
+/// kappa = m/d^2 (mass term of the paper): d = d_hat/(1 + s), K = 4 m s (1 + s)/d_hat^2, s = sqrt(f d_hat/(2
+/// m)).
 TEST(EquilibriumLaws, CubicWithStiffnessFromMass) {
   const double mass = 1e-7;
   for (const double f : {1e-6, 1e-4, 1e-2, 1.0}) {
@@ -103,8 +104,8 @@ TEST(EquilibriumLaws, CubicWithStiffnessFromMass) {
 TEST(EquilibriumLaws, PolynomialsOnTheSquareHaveAnInteriorMaximum) {
   const BarrierFunction cubic = barrier("cubic", Argument::squared_gap);
   const BarrierFunction quadratic = barrier("quadratic", Argument::squared_gap);
-  const double cubic_capacity = 4 / std::sqrt(5.0) * (16.0 / 25) * unit;      // 4 u (1 - u^2)^2, 5 u^2 = 1
-  const double quadratic_capacity = 4 / std::sqrt(3.0) * (2.0 / 3) * unit;    // 4 u (1 - u^2), 3 u^2 = 1
+  const double cubic_capacity = 4 / std::sqrt(5.0) * (16.0 / 25) * unit;    // 4 u (1 - u^2)^2, 5 u^2 = 1
+  const double quadratic_capacity = 4 / std::sqrt(3.0) * (2.0 / 3) * unit;  // 4 u (1 - u^2), 3 u^2 = 1
   for (const double share : {1e-12, 1e-6, 1e-3, 0.5, 0.99, 1 - 1e-9}) {
     const Equilibrium c = equilibrium(cubic, kappa, d_hat, share * cubic_capacity);
     ASSERT_FALSE(c.above_capacity);

@@ -92,7 +92,8 @@ TEST(Matching, RefusesWhatHasNoAnswer) {
 /// Each published form, written out, equals kappa b of the shape it is mapped to.
 TEST(Conventions, GiveTheSameEnergyAsThePublishedForm) {
   const double d_hat = 0.3, d = 0.12, constant = 17;
-  const double cubic = kappa_from_convention("kappa_a_J", constant, d_hat) * barrier("cubic").eval(d, d_hat).b;
+  const double cubic =
+      kappa_from_convention("kappa_a_J", constant, d_hat) * barrier("cubic").eval(d, d_hat).b;
   EXPECT_LT(relative(cubic, constant * std::pow(1 - d / d_hat, 3)), 1e-14);
 
   const double printed =

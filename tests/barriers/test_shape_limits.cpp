@@ -57,8 +57,8 @@ TEST(ShapeLimits, ScaleAsSquareMetresBitForBit) {
   }
 }
 
-/// The first derivative that jumps behaves as e^0 there, the one before as e^1: from b'' ~ e^p near d_hat, p is
-/// the declared number of continuous derivatives less one.
+/// The first derivative that jumps behaves as e^0 there, the one before as e^1: from b'' ~ e^p near d_hat, p
+/// is the declared number of continuous derivatives less one.
 TEST(ShapeLimits, SmoothnessAtDHatIsAsDeclared) {
   for (const BarrierFunction& fn : all_barriers()) {
     const double e = 1e-4;

@@ -51,7 +51,8 @@ TEST(ShapeRegistry, TakenNameIsRefused) {
 TEST(ShapeRegistry, ArgumentsByName) {
   EXPECT_EQ(require_argument("gap"), Argument::gap);
   EXPECT_EQ(require_argument("squared_gap"), Argument::squared_gap);
-  EXPECT_NE(message([] { require_argument("square_gap"); }).find("did you mean squared_gap?"), std::string::npos);
+  EXPECT_NE(message([] { require_argument("square_gap"); }).find("did you mean squared_gap?"),
+            std::string::npos);
 }
 
 TEST(NamedEntries, NearestCountsEdits) {

@@ -1,5 +1,5 @@
-// Derivatives and values of every shape: finite differences over a ladder of steps, and long double evaluation of
-// formulas written here once more, in the unexpanded form.
+// Derivatives and values of every shape: finite differences over a ladder of steps, and long double
+// evaluation of formulas written here once more, in the unexpanded form.
 #include <gtest/gtest.h>
 
 #include <functional>
@@ -50,21 +50,20 @@ struct Reference {
   std::function<Real(Real, Real)> b, db, d2b;
 };
 
-/// The formulas as the literature writes them; long double carries 64 bits, so that their cancellation near d_hat
-/// stays below what is asserted.
+/// The formulas as the literature writes them; long double carries 64 bits, so that their cancellation near
+/// d_hat stays below what is asserted.
 std::map<std::string, Reference> references() {
   const auto ln = [](Real d, Real dh) { return std::log(d / dh); };
   std::map<std::string, Reference> r;
   r["log"] = {[=](Real d, Real dh) { return -(d - dh) * (d - dh) * ln(d, dh); },
               [=](Real d, Real dh) { return (dh - d) * (2 * ln(d, dh) - dh / d + 1); },
               [=](Real d, Real dh) { return (dh / d + 2) * (dh / d) - 2 * ln(d, dh) - 3; }};
-  r["log_squared"] = {
-      [=](Real d, Real dh) { return (d - dh) * (d - dh) * ln(d, dh) * ln(d, dh); },
-      [=](Real d, Real dh) { return 2 * (d - dh) * ln(d, dh) * (ln(d, dh) + (d - dh) / d); },
-      [=](Real d, Real dh) {
-        const Real q = (d - dh) / d;
-        return 2 * ln(d, dh) * ln(d, dh) + 8 * q * ln(d, dh) + 2 * q * q * (1 - ln(d, dh));
-      }};
+  r["log_squared"] = {[=](Real d, Real dh) { return (d - dh) * (d - dh) * ln(d, dh) * ln(d, dh); },
+                      [=](Real d, Real dh) { return 2 * (d - dh) * ln(d, dh) * (ln(d, dh) + (d - dh) / d); },
+                      [=](Real d, Real dh) {
+                        const Real q = (d - dh) / d;
+                        return 2 * ln(d, dh) * ln(d, dh) + 8 * q * ln(d, dh) + 2 * q * q * (1 - ln(d, dh));
+                      }};
   r["quadratic"] = {[](Real d, Real dh) { return (dh - d) * (dh - d); },
                     [](Real d, Real dh) { return 2 * (d - dh); }, [](Real, Real) { return Real(2); }};
   r["cubic"] = {[](Real d, Real dh) { return -2 * (d - dh) * (d - dh) * (d - dh) / (3 * dh); },
@@ -87,13 +86,15 @@ TEST(Shapes, TermsMatchLongDoubleFormulas) {
       const ShapeTerms<double> at = fn.eval(d, d_hat);
       EXPECT_LT(relative(at.b, static_cast<double>(reference.b(d, d_hat))), 1e-14) << name << " u = " << u;
       EXPECT_LT(relative(at.db, static_cast<double>(reference.db(d, d_hat))), 1e-14) << name << " u = " << u;
-      EXPECT_LT(relative(at.d2b, static_cast<double>(reference.d2b(d, d_hat))), 1e-12) << name << " u = " << u;
+      EXPECT_LT(relative(at.d2b, static_cast<double>(reference.d2b(d, d_hat))), 1e-12)
+          << name << " u = " << u;
     }
   }
 }
 
 /// Leading terms for e = 1 - d/d_hat -> 0 of the shapes that are not polynomials:
-///   log: e^3, 3 e^2, 6 e;   log_squared: e^4, 4 e^3, 12 e^2; the next term is smaller by a factor of order e.
+///   log: e^3, 3 e^2, 6 e;   log_squared: e^4, 4 e^3, 12 e^2; the next term is smaller by a factor of order
+///   e.
 TEST(Shapes, KeepFullPrecisionUpToTheLastGapBelowDHat) {
   for (const double e : {1e-9, 1e-12, 1e-15}) {
     const double d = d_hat * (1 - e), exact = (d_hat - d) / d_hat;

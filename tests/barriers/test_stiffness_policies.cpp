@@ -18,7 +18,8 @@ std::vector<double> filled(const StiffnessPolicy& policy, std::size_t n) {
   return kappa;
 }
 
-std::unique_ptr<StiffnessPolicy> ipc(StiffnessPolicyConfig::IpcOverrides overrides = {}, double multiplier = 1) {
+std::unique_ptr<StiffnessPolicy> ipc(StiffnessPolicyConfig::IpcOverrides overrides = {},
+                                     double multiplier = 1) {
   StiffnessPolicyConfig config;
   config.name = "ipc_adaptive";
   config.ipc = overrides;
@@ -62,8 +63,8 @@ TEST(IpcAdaptivePolicy, StartsAtTheBalanceWithinItsBounds) {
   };
   EXPECT_DOUBLE_EQ(start(40).kappa, 40);
   EXPECT_FALSE(start(40).saturated);
-  EXPECT_DOUBLE_EQ(start(1).kappa, 5);     // below k
-  EXPECT_DOUBLE_EQ(start(-70).kappa, 5);   // the forces do not press
+  EXPECT_DOUBLE_EQ(start(1).kappa, 5);    // below k
+  EXPECT_DOUBLE_EQ(start(-70).kappa, 5);  // the forces do not press
   EXPECT_DOUBLE_EQ(start(9000).kappa, 500);
   EXPECT_TRUE(start(9000).saturated);
 
@@ -91,11 +92,12 @@ TEST(IpcAdaptivePolicy, DoublesUpToItsBoundAndThenStays) {
 
 TEST(IpcAdaptivePolicy, DoublesOnlyWhenSmallTwiceAndShrinking) {
   const double inf = std::numeric_limits<double>::infinity();
-  for (const StiffnessPolicy::StepEnd end : {StiffnessPolicy::StepEnd{5e-9, 4e-9, 1e-9},    // growing
-                                             StiffnessPolicy::StepEnd{4e-9, 4e-9, 1e-9},    // at rest
-                                             StiffnessPolicy::StepEnd{4e-9, 2e-8, 1e-9},    // small once
-                                             StiffnessPolicy::StepEnd{1e-8, 1.1e-8, 1e-9},  // not below 10 parks
-                                             StiffnessPolicy::StepEnd{inf, inf, 1e-9}}) {
+  for (const StiffnessPolicy::StepEnd end :
+       {StiffnessPolicy::StepEnd{5e-9, 4e-9, 1e-9},    // growing
+        StiffnessPolicy::StepEnd{4e-9, 4e-9, 1e-9},    // at rest
+        StiffnessPolicy::StepEnd{4e-9, 2e-8, 1e-9},    // small once
+        StiffnessPolicy::StepEnd{1e-8, 1.1e-8, 1e-9},  // not below 10 parks
+        StiffnessPolicy::StepEnd{inf, inf, 1e-9}}) {
     const auto policy = ipc();
     policy->start(globals(40));
     policy->end_step(end);
@@ -140,7 +142,8 @@ TEST(PolicyFactory, HoldsTheBuiltInsAndNamesTheNearest) {
     make_policy(config);
     FAIL() << "no error";
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("did you mean ipc_adaptive?"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("did you mean ipc_adaptive?"), std::string::npos)
+        << error.what();
   }
 }
 

@@ -1,0 +1,23 @@
+// Parallel loops over chunks of fixed size, so that what is gathered chunk by chunk does not depend on the
+// number of threads.
+#pragma once
+
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cstddef>
+
+namespace bb {
+
+constexpr std::size_t chunk_size = 512;  // pairs; about 0.1 ms of work
+
+constexpr std::size_t n_chunks(std::size_t n) { return (n + chunk_size - 1) / chunk_size; }
+
+/// Calls f(chunk, begin, end) for every chunk of [0, n), in parallel.
+template <class F>
+void for_each_chunk(std::size_t n, const F& f) {
+  tbb::parallel_for(std::size_t{0}, n_chunks(n),
+                    [&](std::size_t k) { f(k, k * chunk_size, std::min(n, (k + 1) * chunk_size)); });
+}
+
+}  // namespace bb

@@ -1,0 +1,56 @@
+// From one candidate pair to one contact row: the closest points of the pair, the feature that realises them,
+// the activation distance of the pair. Plain values; merging and tables are in row_builder.
+#pragma once
+
+#include <array>
+#include <cstddef>
+
+#include "core/contact/contact_table.hpp"
+#include "core/contact/pair_geometry.hpp"
+#include "core/geometry/region.hpp"
+#include "core/scene/scene.hpp"
+
+namespace bb {
+
+/// One pair's contribution to B. Rows of several pairs that agree in everything that `row_less` compares are
+/// one contact with a multiplicity.
+struct ContactRow {
+  ContactKind kind;
+  ContactKey key;
+  std::array<int, 4> stencil{-1, -1, -1, -1};
+  std::array<double, 4> weight{0, 0, 0, 0};
+  Vec3d normal;
+  double d, d_hat, offset;
+  double curvature = 0;
+  Vec3d flat = Vec3d::Zero();
+};
+
+/// Order of the table: key, kind, then what tells apart rows of the same vertices.
+bool row_less(const ContactRow& a, const ContactRow& b);
+
+/// Sorted ids, -1 padded in front.
+ContactKey contact_key(const std::array<int, 4>& stencil);
+
+/// Local points of the feature that realises a region, role order (point before edge), -1 padded.
+std::array<int, 4> feature_points(Region region);
+
+/// The row of a pair whose closest points are known: its feature in canonical order (the lower id first in a
+/// point-point row and within an edge).
+ContactRow make_row(const int* vertex, const double* weights, const Vec3d& r, double distance, Region region,
+                    const Side& law);
+
+/// Activation distance of a pair: d_hat, or two thirds of the gap at rest for a pair of one body that is
+/// closer than 1.5 d_hat there. A pair that touches or overlaps at rest keeps d_hat: its rest shape says
+/// nothing about a gap. Constant over a run, so B stays continuous.
+template <PairKind K>
+double row_d_hat(const Scene& scene, const ContactPair<K>& pair) {
+  const auto body = [&](std::size_t k) { return scene.body[static_cast<std::size_t>(pair.vertex[k])]; };
+  if (body(0) != body(static_cast<std::size_t>(pair_split(K)))) return pair.law.d_hat;
+  const auto rest = gather(scene.rest, pair.vertex);
+  const double reach = 1.5 * pair.law.d_hat;
+  if (pair_box_distance<K>(rest) - pair.law.offset >= reach) return pair.law.d_hat;
+  const double gap = closest_points<K, double>(rest).d - pair.law.offset;
+  return gap > 0 && gap < reach ? gap / 1.5 : pair.law.d_hat;
+}
+
+}  // namespace bb

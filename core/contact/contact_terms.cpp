@@ -1,0 +1,166 @@
+// Local energies, gradients and Hessians of the rows, from the columns of the tables alone.
+#include <oneapi/tbb/parallel_for.h>
+
+#include <algorithm>
+
+#include "core/contact/contact_system.hpp"
+#include "core/contact/pair_geometry.hpp"
+#include "core/geometry/distance_derivatives.hpp"
+#include "core/geometry/edge_edge_mollifier.hpp"
+#include "core/math/psd.hpp"
+
+namespace bb {
+
+namespace {
+
+using Hessian12 = Mat<double, 12, 12>;
+
+/// Leading block of 3 n x 3 n projected, the rest is 0 and stays so.
+void project_leading(int n_free, Hessian12& h) {
+  switch (n_free) {
+    case 1:
+      h.topLeftCorner<3, 3>() = project_psd<double, 3>(h.topLeftCorner<3, 3>());
+      break;
+    case 2:
+      h.topLeftCorner<6, 6>() = project_psd<double, 6>(h.topLeftCorner<6, 6>());
+      break;
+    case 3:
+      h.topLeftCorner<9, 9>() = project_psd<double, 9>(h.topLeftCorner<9, 9>());
+      break;
+    default:
+      h = project_psd<double, 12>(h);
+  }
+}
+
+/// Rows and columns of the free points of a [3 N x 3 N] matrix, added to the compact slots; `vertex` [4] are
+/// the compact ids, -1 padded, in stencil order.
+template <int N>
+void add_compact(const int* stencil, const int* vertex, const Mat<double, 3 * N, 3 * N>& full, double scale,
+                 Hessian12& out) {
+  int local[4] = {-1, -1, -1, -1}, n = 0;
+  for (int k = 0; k < N; ++k) {
+    if (n < 4 && vertex[n] >= 0 && stencil[k] == vertex[n]) local[n++] = k;
+  }
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      out.block<3, 3>(3 * i, 3 * j) += scale * full.template block<3, 3>(3 * local[i], 3 * local[j]);
+    }
+  }
+}
+
+/// scale * grad^2 d of a row, added to the compact slots; the closest points are those that the row keeps.
+template <PairKind K>
+void add_distance_hessian(const ContactTable& rows, std::size_t r, const Positions& x, double scale,
+                          Region interior, Hessian12& out) {
+  constexpr int n = pair_points(K);
+  std::array<int, n> vertex;
+  Closest<double, n> closest;
+  for (int k = 0; k < n; ++k) {
+    vertex[static_cast<std::size_t>(k)] = rows.stencil[4 * r + static_cast<std::size_t>(k)];
+    closest.weights[k] = rows.stencil_weight[4 * r + static_cast<std::size_t>(k)];
+  }
+  closest.d = rows.d[r] + rows.offset[r];
+  closest.r = closest.d * Vec3d::Map(&rows.normal[3 * r]);
+  closest.region = interior;
+  const auto derivatives = distance_derivatives<double, n>(gather(x, vertex), closest);
+  add_compact<n>(&rows.stencil[4 * r], &rows.vertex[4 * r], derivatives.hessian, scale, out);
+}
+
+void add_curvature(const ContactTable& rows, std::size_t r, const Positions& x, double scale,
+                   Hessian12& out) {
+  switch (rows.kind[r]) {
+    case ContactKind::point_point:
+      return add_distance_hessian<PairKind::point_point>(rows, r, x, scale, Region::p_p, out);
+    case ContactKind::point_edge:
+      return add_distance_hessian<PairKind::point_edge>(rows, r, x, scale, Region::p_e, out);
+    case ContactKind::point_triangle:
+      return add_distance_hessian<PairKind::point_triangle>(rows, r, x, scale, Region::p_t, out);
+    case ContactKind::edge_edge:
+      return add_distance_hessian<PairKind::edge_edge>(rows, r, x, scale, Region::ea_eb, out);
+    case ContactKind::obstacle: {
+      const Vec3d n = Vec3d::Map(&rows.normal[3 * r]), flat = Vec3d::Map(&rows.flat[3 * r]);
+      out.topLeftCorner<3, 3>() +=
+          scale * rows.curvature[r] * (Mat3d::Identity() - n * n.transpose() - flat * flat.transpose());
+    }
+  }
+}
+
+void row_terms(const ContactTable& rows, std::size_t r, const Positions& x, HessianMode mode, double* grad,
+               double* hess) {
+  const double scale = rows.multiplicity[r] * rows.kappa[r];
+  Vec<double, 12> g = Vec<double, 12>::Zero();
+  const Vec3d n = Vec3d::Map(&rows.normal[3 * r]);
+  for (int k = 0; k < rows.n_free[r]; ++k) {
+    g.segment<3>(3 * k) = rows.weight[4 * r + static_cast<std::size_t>(k)] * n;
+  }
+  Hessian12 h = (scale * rows.d2b[r]) * (g * g.transpose());
+  if (mode == HessianMode::projected_full && rows.db[r] != 0) {
+    add_curvature(rows, r, x, scale * rows.db[r], h);
+    project_leading(rows.n_free[r], h);
+  }
+  Vec<double, 12>::Map(grad) = (scale * rows.db[r]) * g;
+  Hessian12::Map(hess) = h;
+}
+
+Mat<double, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const Positions& x) {
+  return gather(x, std::array{rows.stencil[4 * r], rows.stencil[4 * r + 1], rows.stencil[4 * r + 2],
+                              rows.stencil[4 * r + 3]});
+}
+
+/// grad and hess of m kappa e(x) b(d(x)).
+void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positions& x, double* grad,
+                         double* hess) {
+  const Mat<double, 3, 4> points = mollified_points(rows, r, x);
+  const auto e = edge_edge_mollifier<double>(points, rows.eps[r]);
+  const auto d = distance_derivatives<double, 4>(points, closest_edge_edge<double>(points));
+  const double scale = rows.multiplicity[r] * rows.kappa[r];
+  const double b = scale * rows.b[r], db = scale * rows.db[r], d2b = scale * rows.d2b[r];
+  const Vec<double, 12> g = b * e.gradient + (db * e.value) * d.gradient;
+  const Hessian12 cross = db * e.gradient * d.gradient.transpose();
+  const Hessian12 full = b * e.hessian + cross + cross.transpose() +
+                         (d2b * e.value) * (d.gradient * d.gradient.transpose()) + (db * e.value) * d.hessian;
+  Hessian12 h = Hessian12::Zero();
+  add_compact<4>(&rows.stencil[4 * r], &rows.free_vertex[4 * r], full, 1, h);
+  project_leading(rows.n_free[r], h);
+
+  Vec<double, 12>::Map(grad).setZero();
+  int slot = 0;
+  for (int k = 0; k < 4; ++k) {
+    if (rows.vertex[4 * r + static_cast<std::size_t>(k)] < 0) continue;
+    Vec3d::Map(grad + 3 * slot++) = g.segment<3>(3 * k);
+  }
+  Hessian12::Map(hess) = h;
+}
+
+}  // namespace
+
+void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, std::vector<double>& grad,
+                   std::vector<double>& hess) {
+  grad.resize(12 * rows.size());
+  hess.resize(144 * rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(),
+                    [&](std::size_t r) { row_terms(rows, r, x, mode, &grad[12 * r], &hess[144 * r]); });
+}
+
+void mollified_terms(const MollifiedTable& rows, const Positions& x, std::vector<double>& grad,
+                     std::vector<double>& hess) {
+  grad.resize(12 * rows.size());
+  hess.resize(144 * rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(),
+                    [&](std::size_t r) { mollified_row_terms(rows, r, x, &grad[12 * r], &hess[144 * r]); });
+}
+
+void contact_energies(const ContactTable& rows, std::vector<double>& energy) {
+  energy.resize(rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) energy[r] = rows.multiplicity[r] * rows.kappa[r] * rows.b[r];
+}
+
+void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy) {
+  energy.resize(rows.size());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const double e = edge_edge_mollifier_value<double>(mollified_points(rows, r, x), rows.eps[r]);
+    energy[r] = rows.multiplicity[r] * rows.kappa[r] * e * rows.b[r];
+  }
+}
+
+}  // namespace bb

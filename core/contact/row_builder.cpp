@@ -1,0 +1,185 @@
+#include "core/contact/row_builder.hpp"
+
+#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_sort.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/contact/chunks.hpp"
+#include "core/geometry/edge_edge_mollifier.hpp"
+
+namespace bb {
+
+namespace {
+/// The smaller gap; one that is not a number counts as the worst.
+void lower(double& min_gap, double gap) {
+  if (std::isnan(gap)) gap = -std::numeric_limits<double>::infinity();
+  min_gap = std::min(min_gap, gap);
+}
+}  // namespace
+
+bool RowBuilder::moves(const ContactRow& row) const {
+  for (std::size_t k = 0; k < 4 && row.stencil[k] >= 0; ++k) {
+    if (row.weight[k] != 0 && surface_.vertex_free[static_cast<std::size_t>(row.stencil[k])]) return true;
+  }
+  return false;
+}
+
+template <PairKind K>
+void RowBuilder::add_pair(const Positions& x, IndexPair index, Part& part) const {
+  ContactPair<K> pair = contact_pair<K>(surface_, index);
+  const auto points = gather(x, pair.vertex);
+  if (pair_box_distance<K>(points) > pair.law.d_hat + pair.law.offset) return;
+  const auto closest = closest_points<K, double>(points);
+  if (closest.d - pair.law.offset >= pair.law.d_hat) return;
+  pair.law.d_hat = row_d_hat<K>(scene_, pair);
+  if (closest.d - pair.law.offset >= pair.law.d_hat) return;
+
+  if constexpr (K == PairKind::edge_edge) {
+    if (mollifier_ == Mollifier::ipc) {
+      const double eps = edge_edge_mollifier_threshold<double>(gather(scene_.rest, pair.vertex));
+      if (edge_edge_cross_squared<double>(points) < eps) {
+        MollifiedRow m{make_row(pair.vertex.data(), closest.weights.data(), closest.r, closest.d,
+                                Region::ea_eb, pair.law),
+                       eps};
+        if (!moves(m.row)) return;
+        lower(part.min_gap, m.row.d);
+        part.mollified.push_back(m);
+        return;
+      }
+    }
+  }
+  const ContactRow row =
+      make_row(pair.vertex.data(), closest.weights.data(), closest.r, closest.d, closest.region, pair.law);
+  if (!moves(row)) return;
+  lower(part.min_gap, row.d);
+  part.rows.push_back(row);
+}
+
+void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) const {
+  const std::size_t i = static_cast<std::size_t>(pair.first);
+  const int v = surface_.points.vertices[i][0];
+  const AnalyticSurface<double>& obstacle = obstacles_[static_cast<std::size_t>(pair.second)];
+  const SurfaceGap<double> gap = surface_gap<double>(obstacle, x.col(v));
+  const Side law = surface_.points.side[i];
+  if (gap.d - law.offset >= law.d_hat) return;
+  ContactRow row;
+  row.kind = ContactKind::obstacle;
+  row.key = {-1, -1, -2 - pair.second, v};
+  row.stencil[0] = v;
+  row.weight[0] = 1;
+  row.normal = gap.normal;
+  row.d = gap.d - law.offset;
+  row.d_hat = law.d_hat;
+  row.offset = law.offset;
+  row.curvature = gap.curvature;
+  row.flat = gap.flat;
+  lower(part.min_gap, row.d);
+  part.rows.push_back(row);
+}
+
+double RowBuilder::build(const Positions& x, const Candidates& candidates, ContactTable& rows,
+                         MollifiedTable& mollified) {
+  std::size_t n_parts = 0;
+  const auto in_parts = [&](const std::vector<IndexPair>& pairs, const auto& add) {
+    const std::size_t n = n_chunks(pairs.size());
+    if (parts_.size() < n_parts + n) parts_.resize(n_parts + n);
+    for_each_chunk(pairs.size(), [&, base = n_parts](std::size_t k, std::size_t begin, std::size_t end) {
+      Part& part = parts_[base + k];
+      part.rows.clear();
+      part.mollified.clear();
+      part.min_gap = std::numeric_limits<double>::infinity();
+      for (std::size_t i = begin; i < end; ++i) add(pairs[i], part);
+    });
+    n_parts += n;
+  };
+  for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
+    in_parts(pairs, [&](IndexPair pair, Part& part) { add_pair<K>(x, pair, part); });
+  });
+  in_parts(candidates.obstacle, [&](IndexPair pair, Part& part) { add_obstacle(x, pair, part); });
+
+  merge(n_parts, rows);
+  fill_mollified(n_parts, mollified);
+  double min_gap = std::numeric_limits<double>::infinity();
+  for (std::size_t k = 0; k < n_parts; ++k) min_gap = std::min(min_gap, parts_[k].min_gap);
+  return min_gap;
+}
+
+int RowBuilder::compact_free(const ContactRow& row, int* vertex, double* weight) const {
+  int n = 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    if (row.stencil[k] < 0 || !surface_.vertex_free[static_cast<std::size_t>(row.stencil[k])]) continue;
+    vertex[n] = row.stencil[k];
+    weight[n++] = row.weight[k];
+  }
+  std::fill(vertex + n, vertex + 4, -1);
+  std::fill(weight + n, weight + 4, 0.0);
+  return n;
+}
+
+void RowBuilder::merge(std::size_t n_parts, ContactTable& rows) {
+  sorted_.clear();
+  for (std::size_t k = 0; k < n_parts; ++k) {
+    for (const ContactRow& row : parts_[k].rows) sorted_.push_back(&row);
+  }
+  // Stable, so that a merged row takes its numbers from its first pair, whatever the threads do.
+  std::stable_sort(sorted_.begin(), sorted_.end(),
+                   [](const ContactRow* a, const ContactRow* b) { return row_less(*a, *b); });
+  first_.clear();
+  for (std::size_t i = 0; i < sorted_.size(); ++i) {
+    if (i == 0 || row_less(*sorted_[i - 1], *sorted_[i])) first_.push_back(i);
+  }
+  rows.resize(first_.size());
+  tbb::parallel_for(std::size_t{0}, first_.size(), [&](std::size_t r) {
+    const std::size_t end = r + 1 < first_.size() ? first_[r + 1] : sorted_.size();
+    fill(*sorted_[first_[r]], static_cast<double>(end - first_[r]), r, rows);
+  });
+}
+
+void RowBuilder::fill(const ContactRow& row, double multiplicity, std::size_t at, ContactTable& t) const {
+  t.kind[at] = row.kind;
+  t.key[at] = row.key;
+  std::copy(row.stencil.begin(), row.stencil.end(), &t.stencil[4 * at]);
+  std::copy(row.weight.begin(), row.weight.end(), &t.stencil_weight[4 * at]);
+  t.n_free[at] = compact_free(row, &t.vertex[4 * at], &t.weight[4 * at]);
+  for (std::size_t k = 0; k < 3; ++k) {
+    t.normal[3 * at + k] = row.normal[static_cast<int>(k)];
+    t.flat[3 * at + k] = row.flat[static_cast<int>(k)];
+  }
+  t.d[at] = row.d;
+  t.d_hat[at] = row.d_hat;
+  t.offset[at] = row.offset;
+  t.multiplicity[at] = multiplicity;
+  t.curvature[at] = row.curvature;
+  t.kappa[at] = t.b[at] = t.db[at] = t.d2b[at] = 0;
+}
+
+void RowBuilder::fill_mollified(std::size_t n_parts, MollifiedTable& out) {
+  sorted_mollified_.clear();
+  for (std::size_t k = 0; k < n_parts; ++k) {
+    sorted_mollified_.insert(sorted_mollified_.end(), parts_[k].mollified.begin(), parts_[k].mollified.end());
+  }
+  std::sort(sorted_mollified_.begin(), sorted_mollified_.end(),  // each pair once: no two are equal
+            [](const MollifiedRow& a, const MollifiedRow& b) { return row_less(a.row, b.row); });
+  out.resize(sorted_mollified_.size());
+  for (std::size_t at = 0; at < sorted_mollified_.size(); ++at) {
+    const ContactRow& row = sorted_mollified_[at].row;
+    out.key[at] = row.key;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int v = row.stencil[k];
+      out.stencil[4 * at + k] = v;
+      out.vertex[4 * at + k] = surface_.vertex_free[static_cast<std::size_t>(v)] ? v : -1;
+    }
+    out.n_free[at] = compact_free(row, &out.free_vertex[4 * at], &out.weight[4 * at]);
+    for (std::size_t k = 0; k < 3; ++k) out.normal[3 * at + k] = row.normal[static_cast<int>(k)];
+    out.eps[at] = sorted_mollified_[at].eps;
+    out.d[at] = row.d;
+    out.d_hat[at] = row.d_hat;
+    out.offset[at] = row.offset;
+    out.multiplicity[at] = 1;
+    out.kappa[at] = out.b[at] = out.db[at] = out.d2b[at] = 0;
+  }
+}
+
+}  // namespace bb

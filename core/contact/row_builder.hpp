@@ -1,0 +1,54 @@
+// Narrow phase: all candidate pairs to the two tables, merged, sorted, independent of the number of threads.
+#pragma once
+
+#include <limits>
+#include <vector>
+
+#include "core/contact/candidates.hpp"
+#include "core/contact/contact_row.hpp"
+#include "core/contact/contact_system.hpp"
+#include "core/contact/contact_table.hpp"
+
+namespace bb {
+
+/// Keeps its buffers between calls; not thread-safe, parallel inside.
+class RowBuilder {
+ public:
+  RowBuilder(const Scene& scene, const Surface& surface,
+             const std::vector<AnalyticSurface<double>>& obstacles, Mollifier mollifier)
+      : scene_(scene), surface_(surface), obstacles_(obstacles), mollifier_(mollifier) {}
+
+  /// See ContactSystem::find_rows.
+  double build(const Positions& x, const Candidates& candidates, ContactTable& rows,
+               MollifiedTable& mollified);
+
+ private:
+  struct MollifiedRow {
+    ContactRow row;  // all four vertices, weights of the clamped closest points
+    double eps;
+  };
+  struct Part {
+    std::vector<ContactRow> rows;
+    std::vector<MollifiedRow> mollified;
+    double min_gap = std::numeric_limits<double>::infinity();
+  };
+  template <PairKind K>
+  void add_pair(const Positions& x, IndexPair pair, Part& part) const;
+  void add_obstacle(const Positions& x, IndexPair pair, Part& part) const;
+  bool moves(const ContactRow& row) const;
+  int compact_free(const ContactRow& row, int* vertex, double* weight) const;
+  void merge(std::size_t n_parts, ContactTable& rows);
+  void fill(const ContactRow& row, double multiplicity, std::size_t at, ContactTable& rows) const;
+  void fill_mollified(std::size_t n_parts, MollifiedTable& out);
+
+  const Scene& scene_;
+  const Surface& surface_;
+  const std::vector<AnalyticSurface<double>>& obstacles_;
+  Mollifier mollifier_;
+  std::vector<Part> parts_;
+  std::vector<const ContactRow*> sorted_;
+  std::vector<std::size_t> first_;  // start of each group of equal rows in sorted_
+  std::vector<MollifiedRow> sorted_mollified_;
+};
+
+}  // namespace bb

@@ -1,0 +1,171 @@
+// A counting sort by column, then a small sort by row inside each column. The number of the contribution is the
+// lower half of the key, so equal rows stay in element order.
+#include "core/linear/gather_map.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <string>
+
+#include "core/linear/parallel.hpp"
+#include "core/math/error.hpp"
+
+namespace bb {
+namespace {
+
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+int row_of(std::uint64_t key) { return static_cast<int>(key >> 32); }
+constexpr int kGrain = 256;  // columns a task: some thousand contributions
+
+/// Turns counts shifted by one, [n + 1], into starts.
+void prefix_sum(std::vector<std::size_t>& start) {
+  for (std::size_t i = 1; i < start.size(); ++i) start[i] += start[i - 1];
+}
+
+}  // namespace
+
+bool GatherMap::same(const Stencils& stencils) const {
+  return stencils.width == width_ && std::equal(vertices_.begin(), vertices_.end(),
+                                                stencils.vertices.begin(), stencils.vertices.end());
+}
+
+void GatherMap::check(const Stencils& stencils, int n_vertices) const {
+  const std::size_t w = at(stencils.width);
+  if (stencils.width < 0 || (w == 0 && !stencils.vertices.empty()) ||
+      (w > 0 && stencils.vertices.size() % w != 0)) {
+    throw ConfigError("Stencils", "width " + std::to_string(stencils.width), "a divisor of the vertex count");
+  }
+  for (const int v : stencils.vertices) {
+    if (v < -1 || v >= n_vertices) {
+      throw ConfigError("Stencils", "vertex " + std::to_string(v), "-1 to n_vertices - 1");
+    }
+  }
+  if (stencils.size() * w * w > std::numeric_limits<std::uint32_t>::max()) {
+    throw ConfigError("Stencils", std::to_string(stencils.size()) + " elements", "2^32 blocks in a family");
+  }
+}
+
+void GatherMap::build(const Stencils& stencils, int n_vertices) {
+  check(stencils, n_vertices);
+  width_ = stencils.width;
+  vertices_.assign(stencils.vertices.begin(), stencils.vertices.end());
+  sort_contributions(n_vertices);
+  write_targets(n_vertices);
+  build_gradient_map(n_vertices);
+}
+
+void GatherMap::sort_contributions(int n_vertices) {
+  // Every ordered pair (a, b) of local vertices with vertex[a] >= vertex[b] is one lower contribution. A vertex
+  // that occurs twice gives both orders to its diagonal block, as the sum of the local Hessian demands.
+  const auto for_each_pair = [this](const auto& f) {
+    for (std::size_t e = 0, n = n_elements(), w = at(width_); e < n; ++e) {
+      const int* v = vertices_.data() + e * w;
+      for (std::size_t b = 0; b < w; ++b) {
+        if (v[b] < 0) continue;
+        for (std::size_t a = 0; a < w; ++a) {
+          if (v[a] >= v[b]) f(v[a], v[b], (e * w + b) * w + a);
+        }
+      }
+    }
+  };
+  key_start_.assign(at(n_vertices) + 1, 0);
+  for_each_pair([this](int, int column, std::size_t) { ++key_start_[at(column) + 1]; });
+  prefix_sum(key_start_);
+  key_.resize(key_start_.back());
+  cursor_.assign(key_start_.begin(), key_start_.end() - 1);
+  for_each_pair([this](int row, int column, std::size_t number) {
+    key_[cursor_[at(column)]++] = static_cast<std::uint64_t>(row) << 32 | number;
+  });
+  parallel_items(n_vertices, kGrain, [this](int c) {
+    std::sort(key_.data() + key_start_[at(c)], key_.data() + key_start_[at(c) + 1]);
+  });
+}
+
+void GatherMap::write_targets(int n_vertices) {
+  const auto first_of_row = [this](std::size_t begin, std::size_t k) {
+    return k == begin || row_of(key_[k]) != row_of(key_[k - 1]);
+  };
+  column_start_.resize(at(n_vertices) + 1);
+  column_start_[0] = 0;
+  parallel_items(n_vertices, kGrain, [&](int c) {
+    const std::size_t begin = key_start_[at(c)], end = key_start_[at(c) + 1];
+    int n = 0;
+    for (std::size_t k = begin; k < end; ++k) n += first_of_row(begin, k);
+    column_start_[at(c) + 1] = n;
+  });
+  for (std::size_t c = 1; c < column_start_.size(); ++c) column_start_[c] += column_start_[c - 1];
+  const std::size_t n_targets = at(column_start_.back());
+  row_.resize(n_targets);
+  block_.resize(n_targets);
+  source_start_.resize(n_targets + 1);
+  source_start_[n_targets] = key_.size();
+  source_.resize(key_.size());
+  const std::size_t w = at(width_);
+  parallel_items(n_vertices, kGrain, [&](int c) {
+    const std::size_t begin = key_start_[at(c)], end = key_start_[at(c) + 1];
+    std::size_t target = at(column_start_[at(c)]);
+    for (std::size_t k = begin; k < end; ++k) {
+      if (first_of_row(begin, k)) {
+        row_[target] = row_of(key_[k]);
+        source_start_[target++] = k;
+      }
+      const std::size_t number = key_[k] & 0xffffffffu, e = number / (w * w), ab = number % (w * w);
+      source_[k] = 9 * w * w * e + 9 * w * (ab / w) + 3 * (ab % w);
+    }
+  });
+}
+
+void GatherMap::build_gradient_map(int n_vertices) {
+  vertex_start_.assign(at(n_vertices) + 1, 0);
+  for (const int v : vertices_) {
+    if (v >= 0) ++vertex_start_[at(v) + 1];
+  }
+  prefix_sum(vertex_start_);
+  vertex_source_.resize(vertex_start_.back());
+  cursor_.assign(vertex_start_.begin(), vertex_start_.end() - 1);
+  for (std::size_t i = 0; i < vertices_.size(); ++i) {
+    if (vertices_[i] >= 0) vertex_source_[cursor_[at(vertices_[i])]++] = 3 * i;
+  }
+}
+
+void GatherMap::place(const BlockPattern& pattern) {
+  parallel_items(pattern.n_vertices(), kGrain, [&](int c) {
+    int block = pattern.column_start[at(c)];
+    for (int t = column_start_[at(c)]; t < column_start_[at(c) + 1]; ++t) {
+      while (pattern.row[at(block)] < row_[at(t)]) ++block;
+      block_[at(t)] = block;
+    }
+  });
+}
+
+void GatherMap::add_hessians(std::span<const double> hess, std::vector<double>& values) const {
+  const std::size_t ld = 3 * at(width_);
+  if (hess.size() != n_elements() * ld * ld) {
+    throw ConfigError("local Hessians", std::to_string(hess.size()) + " numbers", "size * (3 width)^2");
+  }
+  parallel_items(static_cast<int>(row_.size()), 1024, [&](int t) {
+    double* out = values.data() + 9 * at(block_[at(t)]);
+    double sum[9];
+    std::copy(out, out + 9, sum);
+    for (std::size_t k = source_start_[at(t)]; k < source_start_[at(t) + 1]; ++k) {
+      const double* local = hess.data() + source_[k];
+      for (std::size_t c = 0; c < 3; ++c) {
+        for (std::size_t r = 0; r < 3; ++r) sum[3 * c + r] += local[c * ld + r];
+      }
+    }
+    std::copy(sum, sum + 9, out);
+  });
+}
+
+void GatherMap::add_gradients(std::span<const double> grad, Positions& g) const {
+  if (grad.size() != 3 * vertices_.size()) {
+    throw ConfigError("local gradients", std::to_string(grad.size()) + " numbers", "size * 3 width");
+  }
+  if (vertices_.empty()) return;
+  parallel_items(static_cast<int>(g.cols()), 1024, [&](int v) {
+    for (std::size_t k = vertex_start_[at(v)]; k < vertex_start_[at(v) + 1]; ++k) {
+      g.col(v) += Eigen::Map<const Vec3d>(grad.data() + vertex_source_[k]);
+    }
+  });
+}
+
+}  // namespace bb

@@ -1,0 +1,57 @@
+// For one family of stencils: which local 3x3 Hessian blocks add up to which block of the matrix, and which
+// local gradients to which vertex. Every target owns its contributions in the order of the elements, so the
+// sum is the same for any number of threads.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "core/linear/block_pattern.hpp"
+#include "core/linear/block_system.hpp"
+
+namespace bb {
+
+class GatherMap {
+ public:
+  /// The same stencils as those of the last build.
+  bool same(const Stencils& stencils) const;
+  /// Errors: ConfigError for a vertex outside [-1, n_vertices). Cost: O(contributions), buffers are reused.
+  void build(const Stencils& stencils, int n_vertices);
+  /// Looks up the blocks in a pattern that holds all of them. Cost: O(blocks of the pattern).
+  void place(const BlockPattern& pattern);
+
+  /// Blocks touched, as columns of ascending rows.
+  std::span<const int> column_start() const { return column_start_; }
+  std::span<const int> rows() const { return row_; }
+
+  std::size_t n_elements() const {
+    return width_ == 0 ? 0 : vertices_.size() / static_cast<std::size_t>(width_);
+  }
+  int width() const { return width_; }
+  /// values [9 x blocks] += local Hessians [size * (3 width)^2], column-major.
+  void add_hessians(std::span<const double> hess, std::vector<double>& values) const;
+  /// g [3 x n] += local gradients [size * 3 width].
+  void add_gradients(std::span<const double> grad, Positions& g) const;
+
+ private:
+  void check(const Stencils& stencils, int n_vertices) const;
+  void sort_contributions(int n_vertices);
+  void write_targets(int n_vertices);
+  void build_gradient_map(int n_vertices);
+
+  int width_ = 0;
+  std::vector<int> vertices_;              // copy of the stencils
+  std::vector<int> column_start_;          // [n + 1] targets of a column
+  std::vector<int> row_;                   // [n_targets] ascending within a column
+  std::vector<int> block_;                 // [n_targets] index in the pattern
+  std::vector<std::size_t> source_start_;  // [n_targets + 1]
+  std::vector<std::size_t> source_;        // [n_contributions] offset of the 3x3 block in hess
+  std::vector<std::size_t> vertex_start_;  // [n + 1]
+  std::vector<std::size_t> vertex_source_;  // offset in grad
+  // scratch of build
+  std::vector<std::size_t> key_start_, cursor_;  // [n + 1]
+  std::vector<std::uint64_t> key_;               // row << 32 | number of the contribution
+};
+
+}  // namespace bb

@@ -1,0 +1,90 @@
+// condition: extreme eigenvalues of a sparse symmetric matrix, by the estimators of the diagnose pass.
+#include <random>
+
+#include "core/linear/condition.hpp"
+#include "core/linear/linear_solver.hpp"
+#include "experiments/eval/kinds.hpp"
+
+namespace bb::eval {
+namespace {
+
+constexpr int kLargestIndex = 999'999;  // keeps a mistyped index from asking for all memory
+constexpr int kLargestDense = 3000;     // tier 3 is for tests
+
+ReducedSystem system_field(Query& q) {
+  const std::vector<int> rows = q.indices("rows", kLargestIndex), cols = q.indices("cols", kLargestIndex);
+  const std::vector<double> values = q.list("values", rows.empty() ? -1 : static_cast<int>(rows.size()), kFinite);
+  ReducedSystem system;
+  if (q.wrong()) return system;
+  if (rows.size() != cols.size()) {
+    q.complain("cols", std::to_string(cols.size()) + " indices", "as many as rows: " + std::to_string(rows.size()));
+    return system;
+  }
+  int n = 0;
+  std::vector<Eigen::Triplet<double>> entries;
+  for (std::size_t k = 0; k < rows.size(); ++k) {
+    if (rows[k] < cols[k]) {
+      q.complain("cols/" + std::to_string(k), std::to_string(cols[k]) + " in row " + std::to_string(rows[k]),
+                 "the lower triangle: column <= row");
+      return system;
+    }
+    n = std::max(n, rows[k] + 1);
+    entries.emplace_back(rows[k], cols[k], values[k]);
+  }
+  system.lower.resize(n, n);
+  system.lower.setFromTriplets(entries.begin(), entries.end());
+  for (int i = 0; i < n; i += 3) system.block_start.push_back(i);
+  system.block_start.push_back(n);
+  system.pattern_id = 1;
+  return system;
+}
+
+/// Tier 0: Ritz values out of the PCG that the pipeline solves with, on a seeded right-hand side.
+ConditionEstimate ritz_estimate(const ReducedSystem& system, Scaling scaling) {
+  std::mt19937_64 random(1);
+  std::normal_distribution<double> normal;
+  VecXd b(system.lower.rows()), x;
+  for (double& v : b) v = normal(random);
+  LinearOptions options;
+  options.name = "pcg";
+  options.preconditioner = to_string(scaling);
+  return ritz_condition(make_linear_solver(options)->solve(system, b, x));
+}
+
+ConditionEstimate estimate(const ReducedSystem& system, Scaling scaling, int tier) {
+  if (tier == 0) return ritz_estimate(system, scaling);
+  ConditionOptions options;
+  options.tier = tier;
+  options.scaling = scaling;
+  return ConditionEstimator().estimate(system, options);
+}
+
+}  // namespace
+
+template <class T>
+Answer answer::condition(Query& q) {
+  const ReducedSystem system = system_field(q);
+  const std::string scaling = q.choice("scaling", {"none", "jacobi", "block_jacobi"});
+  const int tier = q.integer("tier", 0, 3);
+  if (tier == 3 && system.lower.rows() > kLargestDense) {
+    q.complain("tier", "3 on " + std::to_string(system.lower.rows()) + " rows",
+               "0 to 2, or at most " + std::to_string(kLargestDense) + " rows");
+  }
+  q.finish();
+  const ConditionEstimate e = estimate(system,
+                                       scaling == "none"     ? Scaling::none
+                                       : scaling == "jacobi" ? Scaling::jacobi
+                                                             : Scaling::block_jacobi,
+                                       tier);
+  Answer a;
+  a.number("lambda_min", e.lambda_min);
+  a.number("lambda_max", e.lambda_max);
+  a.number("cond", e.cond);
+  a.word("method", e.method);
+  a.status(to_string(e.status));
+  return a;
+}
+
+BB_EVAL_KIND(condition);
+
+}  // namespace bb::eval

@@ -1,0 +1,82 @@
+// energy: value, gradient, exact and projected Hessian of one element.
+#include "core/energy/hinge.hpp"
+#include "core/energy/membrane_model.hpp"
+#include "core/energy/spring.hpp"
+#include "experiments/eval/kinds.hpp"
+
+namespace bb::eval {
+namespace {
+
+template <class T, int N>
+struct Points {
+  Vec<T, 3> x[N];
+  Points(Query& q, const char* name) {
+    const Eigen::Matrix<T, 3, Eigen::Dynamic> columns = q.points<T>(name, N);
+    for (int i = 0; i < N; ++i) x[i] = columns.col(i);
+  }
+};
+
+template <class T, int N>
+Answer element_answer(const ElementTerms<T, N>& exact, const ElementTerms<T, N>& psd) {
+  Answer a;
+  a.number("energy", static_cast<double>(exact.energy));
+  a.vector("gradient", exact.grad);
+  a.matrix("hessian", exact.hess);
+  a.matrix("hessian_psd", psd.hess);
+  return a;
+}
+
+/// The rest triangle's first edge is the warp direction; only baraff_witkin depends on it.
+template <class T>
+Answer membrane(Query& q, const MembraneModel<T>& model) {
+  const Points<T, 3> rest(q, "rest"), x(q, "x");
+  const T mu = static_cast<T>(q.number("lame_mu", kNonNegative));
+  const T lambda = static_cast<T>(q.number("lame_lambda", kFinite));
+  const TriangleRest<T> triangle = triangle_rest<T>(rest.x, rest.x[1] - rest.x[0]);
+  if (!q.wrong() && !(triangle.area > T(0) && triangle.dm_inv.allFinite())) {
+    q.complain("rest", "a triangle without area", "three points that are not on one line");
+  }
+  q.finish();
+  return element_answer<T, 9>(model.terms(triangle, x.x, mu, lambda, Projection::none),
+                              model.terms(triangle, x.x, mu, lambda, Projection::psd));
+}
+
+template <class T>
+Answer spring(Query& q) {
+  const Points<T, 2> rest(q, "rest"), x(q, "x");
+  const T k = static_cast<T>(q.number("k", kNonNegative));
+  q.finish();
+  const T length = (rest.x[1] - rest.x[0]).norm();
+  return element_answer<T, 6>(spring_terms<T>(x.x, k, length, Projection::none),
+                              spring_terms<T>(x.x, k, length, Projection::psd));
+}
+
+/// The rest angle is a field of its own, so `rest` may be left out.
+template <class T>
+Answer hinge(Query& q) {
+  if (q.has("rest")) Points<T, 4>(q, "rest");
+  const Points<T, 4> x(q, "x");
+  const T k = static_cast<T>(q.number("k", kNonNegative));
+  const T angle = static_cast<T>(q.number("rest_angle", kFinite));
+  q.finish();
+  return element_answer<T, 12>(hinge_terms<T>(x.x, k, angle, Projection::none),
+                               hinge_terms<T>(x.x, k, angle, Projection::psd));
+}
+
+}  // namespace
+
+template <class T>
+Answer answer::energy(Query& q) {
+  std::vector<std::string> names;
+  for (const MembraneModel<T>& model : membrane_models<T>()) names.emplace_back(model.name);
+  names.insert(names.end(), {"spring", "hinge"});
+  const std::string name = q.choice("model", names);
+  if (q.wrong()) q.finish();  // which fields there are depends on the model
+  if (name == "spring") return spring<T>(q);
+  if (name == "hinge") return hinge<T>(q);
+  return membrane<T>(q, *find_membrane_model<T>(name));
+}
+
+BB_EVAL_KIND(energy);
+
+}  // namespace bb::eval

@@ -1,0 +1,45 @@
+#include "experiments/run/outcome.hpp"
+
+#include <fmt/format.h>
+
+namespace bb {
+namespace {
+
+// No progress: because some contact carries more than its barrier can, or for another reason.
+Verdict stalled(const StepReport& step) {
+  if (step.overload > 1) {
+    return {Outcome::stall_overload, fmt::format("step {}: load over capacity {:.3g} at a contact; {}",
+                                                 step.step, step.overload, step.detail)};
+  }
+  if (step.ccd_capped > 0 && step.status == StepStatus::step_collapse) {
+    return {Outcome::ccd_cap,
+            fmt::format("step {}: {} pairs reached the probe cap", step.step, step.ccd_capped)};
+  }
+  return {Outcome::newton_stall, fmt::format("step {}: {} after {} iterations {}", step.step,
+                                             to_string(step.status), step.iterations, step.detail)};
+}
+
+}  // namespace
+
+Verdict judge_step(const StepReport& step) {
+  switch (step.status) {
+    case StepStatus::converged:
+      return {};
+    case StepStatus::iteration_cap:
+    case StepStatus::step_collapse:
+    case StepStatus::line_search_failed:
+    case StepStatus::not_descent:
+      return stalled(step);
+    case StepStatus::pin_infeasible:
+      return {Outcome::pin_infeasible, step.detail};
+    case StepStatus::non_finite:
+      return {Outcome::nan, fmt::format("step {}: a non-finite direction", step.step)};
+    case StepStatus::linear_failed:
+      return {step.detail == to_string(LinearStatus::matrix_indefinite) ? Outcome::not_pd
+                                                                        : Outcome::linear_failure,
+              fmt::format("step {}: {}", step.step, step.detail)};
+  }
+  return {};
+}
+
+}  // namespace bb

@@ -1,0 +1,266 @@
+#include "experiments/run/recorder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "experiments/run/audit_mesh.hpp"
+
+namespace bb {
+namespace {
+
+struct StageName {
+  const char* config;
+  MatrixStage stage;
+};
+constexpr StageName stage_names[] = {{"full", MatrixStage::full},
+                                     {"without_contact", MatrixStage::no_contact},
+                                     {"without_contact_and_limit", MatrixStage::no_contact_no_limit}};
+
+Number gap_number(double gap) { return std::isinf(gap) ? Number::missing("no_contacts") : Number(gap); }
+
+double sum_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum;
+}
+
+// Smallest d/d_hat over the rows; infinity without rows.
+double smallest_relative_gap(const EnergyState& state) {
+  double smallest = std::numeric_limits<double>::infinity();
+  const auto scan = [&smallest](const auto& rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r) smallest = std::min(smallest, rows.d[r] / rows.d_hat[r]);
+  };
+  scan(state.rows);
+  scan(state.mollified);
+  return smallest;
+}
+
+void keep_smaller(Number& kept, double value) {
+  if (!std::isinf(value) && (!kept.finite() || value < kept.value)) kept = value;
+}
+
+}  // namespace
+
+Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace)
+    : config_(config), record_(record), trace_(trace) {
+  record_.audit.enabled = config.passes.audit;
+  if (config.passes.audit) {
+    audit_ = std::make_unique<audit::Audit>(make_audit_mesh(scene));
+    const double d_hat = *std::min_element(scene.d_hat.begin(), scene.d_hat.end());
+    audit_tolerance_ = 0.1 * config.contact.ccd_park * d_hat;
+    judge(scene.x0, -1);
+  }
+}
+
+Recorder::~Recorder() = default;
+
+void Recorder::judge(const Positions& x, int step) {
+  const double start = now_s();
+  audit_->check_state(x, step);
+  record_.audit.seconds += now_s() - start;
+}
+
+bool Recorder::due(int, int iteration) const {
+  if (!config_.passes.diagnose || iteration % std::max(1, config_.diagnose.every) != 0) return false;
+  return config_.diagnose.budget == 0 || condition_s_ < config_.diagnose.budget;
+}
+
+void Recorder::on_matrix(NewtonSystem& system, int step, int iteration) {
+  samples_.clear();
+  if (!due(step, iteration)) return;
+  const double start = now_s();
+  for (const std::string& name : config_.diagnose.stages) {
+    const auto* entry = std::find_if(std::begin(stage_names), std::end(stage_names),
+                                     [&name](const StageName& s) { return name == s.config; });
+    if (entry == std::end(stage_names) || !system.has_stage(entry->stage)) continue;
+    const ReducedSystem& reduced = system.reduced(entry->stage);
+    for (const Scaling scaling : config_.diagnose.scalings) {
+      ConditionSample sample;
+      sample.stage = entry->stage;
+      sample.scaling = scaling;
+      sample.tier = config_.diagnose.tier;
+      sample.estimate = estimator_.estimate(reduced, {config_.diagnose.tier, scaling, config_.diagnose.seed});
+      samples_.push_back(sample);
+    }
+  }
+  condition_s_ += now_s() - start;
+}
+
+TraceRow Recorder::trace_row(const IterationReport& report) const {
+  TraceRow row;
+  row.step = report.step;
+  row.iteration = report.iteration;
+  row.energy_J = report.energy;
+  row.energy_change_J = report.energy_change;
+  row.grad_inf_N = report.grad_inf;
+  row.dx_inf_m = report.dx_inf;
+  row.decrement_J = report.decrement / 2;
+  row.alpha = report.alpha;
+  row.alpha_ccd = report.alpha_ccd;
+  row.alpha_strain = report.alpha_limit;
+  row.line_search_trials = report.line_search_trials;
+  row.rounding_accept = report.accepted_by_rounding;
+  row.linear_status = std::string(to_string(report.linear.status));
+  row.linear_iterations = report.linear.iterations;
+  row.residual_true = report.linear.residual_true;
+  const bool iterative = report.linear.iterations > 0;
+  row.residual_recurrence =
+      iterative ? Number(report.linear.residual_recurrence) : Number::missing("direct_solver");
+  row.ritz_min = iterative ? Number(report.linear.ritz_min) : Number::missing("direct_solver");
+  row.ritz_max = iterative ? Number(report.linear.ritz_max) : Number::missing("direct_solver");
+  row.analyzed = report.linear.analyzed;
+  row.cond = samples_;
+  row.contacts = report.contacts;
+  row.gap_min_m = gap_number(report.gap_min);
+  row.gap_min_rel = gap_number(report.gap_min_rel);
+  const bool touching = report.contacts.total() > 0;
+  row.kappa_min_N_per_m = touching ? Number(report.kappa_min) : Number::missing("no_contacts");
+  row.kappa_max_N_per_m = touching ? Number(report.kappa_max) : Number::missing("no_contacts");
+  row.contact_curvature_max_N_per_m =
+      touching ? Number(report.curvature_max) : Number::missing("no_contacts");
+  row.contact_load_max_N = touching ? Number(report.force_max) : Number::missing("no_contacts");
+  row.max_stretch = report.max_stretch > 0 ? Number(report.max_stretch - 1) : Number::missing("no_limit");
+  row.limit_load_max_N_per_m =
+      report.max_stretch > 0 ? Number(report.limit_tension) : Number::missing("no_limit");
+  row.n_free = report.n_free;
+  row.nnz = report.nnz;
+  row.time = report.times;
+  return row;
+}
+
+void Recorder::on_iteration(const IterationReport& report) {
+  rows_.push_back(trace_row(report));
+  for (const ConditionSample& sample : samples_) {
+    const std::string key =
+        std::string(to_string(sample.stage)) + "/" + std::string(to_string(sample.scaling));
+    auto& summary = record_.summary.cond[key];
+    ++summary.statuses[std::string(to_string(sample.estimate.status))];
+    if (sample.estimate.status != ConditionStatus::ok) continue;
+    log10_cond_[key].push_back(std::log10(sample.estimate.cond));
+    log10_min_[key].push_back(std::log10(sample.estimate.lambda_min));
+    log10_max_[key].push_back(std::log10(sample.estimate.lambda_max));
+  }
+  samples_.clear();
+  linear_.push_back(report.linear.iterations);
+  keep_smaller(step_gap_, report.gap_min);
+  keep_smaller(step_gap_rel_, report.gap_min_rel);
+}
+
+void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
+  if (!audit_) return;
+  const double start = now_s();
+  audit_->check_motion(x0, x1, step, audit_tolerance_);
+  record_.audit.seconds += now_s() - start;
+  judge(x1, step);
+}
+
+void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions&) {
+  const EnergyState& state = system.state();
+  StepRecord step;
+  step.step = report.step;
+  step.t_s = report.t;
+  step.status = std::string(to_string(report.status));
+  step.stop_reason = report.detail;
+  step.newton_iterations = report.iterations;
+  step.linear_iterations = report.linear_iterations;
+  step.linear_solves = report.iterations;
+  step.factorizations = report.factorizations;
+  step.analyses = report.analyses;
+  step.line_search_trials = report.line_search_trials;
+  step.rounding_accepts = report.accepted_by_rounding;
+  step.ccd_queries = report.ccd_queries;
+  step.ccd_probes = report.ccd_probes;
+  step.ccd_capped = report.ccd_capped;
+  step.ccd_zero = report.ccd_zero;
+  step.contacts = report.contacts;
+  keep_smaller(step_gap_, report.gap_min);
+  keep_smaller(step_gap_rel_, smallest_relative_gap(state));
+  step.gap_min_m = step_gap_.finite() ? step_gap_ : Number::missing("no_contacts");
+  step.gap_min_rel = step_gap_rel_.finite() ? step_gap_rel_ : Number::missing("no_contacts");
+  step.toi_min = report.alpha_ccd_min;
+  step.max_stretch = report.max_stretch > 0 ? Number(report.max_stretch - 1) : Number::missing("no_limit");
+  const bool touching = report.contacts.total() > 0;
+  step.contact_load_max_N = touching ? Number(report.force_max) : Number::missing("no_contacts");
+  step.limit_load_max_N_per_m =
+      system.has_limit() ? Number(report.limit_tension_max) : Number::missing("no_limit");
+  step.kinetic_J = report.kinetic_energy;
+  double elastic = 0;
+  for (const auto& family : state.element) elastic += sum_of(family);
+  step.elastic_J = elastic;
+  step.limit_J = sum_of(state.limit);
+  step.contact_J = sum_of(state.contact) + sum_of(state.mollified_contact);
+  if (audit_) {
+    const audit::AuditLedger& ledger = audit_->ledger();
+    step.crossings = ledger.crossings - record_.audit.crossings;
+    step.violations = ledger.violations + ledger.obstacle_violations - record_.audit.violations;
+    step.unproven = ledger.unproven - record_.audit.unproven;
+    step.inverted = ledger.inverted - record_.audit.inverted;
+    record_.audit.crossings = ledger.crossings;
+    record_.audit.violations = ledger.violations + ledger.obstacle_violations;
+    record_.audit.unproven = ledger.unproven;
+    record_.audit.inverted = ledger.inverted;
+  }
+  step.time = report.times;
+  record_.steps.push_back(step);
+
+  newton_.push_back(report.iterations);
+  contacts_.push_back(static_cast<double>(report.contacts.total()));
+  if (step.gap_min_rel.finite()) gaps_.push_back(step.gap_min_rel.value);
+  step_gap_ = step_gap_rel_ = Number();
+  for (TraceRow& row : rows_) {
+    row.t_s = report.t;
+    if (trace_) trace_->add(row);
+  }
+  rows_.clear();
+  if (trace_) trace_->end_step();
+}
+
+void Recorder::finish() {
+  Summary& summary = record_.summary;
+  for (const StepRecord& step : record_.steps) {
+    ++summary.steps;
+    summary.steps_capped += step.status == "iteration_cap";
+    summary.newton_iterations += step.newton_iterations;
+    summary.linear_iterations += step.linear_iterations;
+    summary.linear_solves += step.linear_solves;
+    summary.factorizations += step.factorizations;
+    summary.analyses += step.analyses;
+    summary.line_search_trials += step.line_search_trials;
+    summary.ccd_queries += step.ccd_queries;
+    summary.ccd_probes += step.ccd_probes;
+    summary.ccd_capped += step.ccd_capped;
+    summary.time += step.time;
+    if (step.gap_min_m.finite()) keep_smaller(summary.gap_min_m, step.gap_min_m.value);
+    const auto keep_larger = [](Number& kept, const Number& value) {
+      if (value.finite() && (!kept.finite() || value.value > kept.value)) kept = value;
+    };
+    keep_larger(summary.max_stretch, step.max_stretch);
+    keep_larger(summary.contact_load_max_N, step.contact_load_max_N);
+    keep_larger(summary.limit_load_max_N_per_m, step.limit_load_max_N_per_m);
+  }
+  summary.newton_per_step = summarize(newton_);
+  summary.linear_per_solve = summarize(linear_);
+  summary.contacts = summarize(contacts_);
+  summary.gap_min_rel = summarize(gaps_);
+  for (auto& [key, cond] : summary.cond) {
+    cond.log10_cond = summarize(log10_cond_[key]);
+    cond.log10_lambda_min = summarize(log10_min_[key]);
+    cond.log10_lambda_max = summarize(log10_max_[key]);
+  }
+  if (!audit_) return;
+  const audit::AuditLedger& ledger = audit_->ledger();
+  record_.audit.states = ledger.states;
+  record_.audit.motions = ledger.motions;
+  record_.audit.touches = ledger.touches;
+  record_.audit.first_bad_step = ledger.first_bad_step;
+}
+
+bool Recorder::penetrated() const {
+  if (!audit_) return false;
+  const audit::AuditLedger& ledger = audit_->ledger();
+  return ledger.crossings + ledger.violations + ledger.obstacle_violations > 0;
+}
+
+bool Recorder::unproven() const { return audit_ && !audit_->ledger().ok() && !penetrated(); }
+
+}  // namespace bb

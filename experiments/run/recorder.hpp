@@ -1,0 +1,57 @@
+// Looks on at a simulation and turns what it sees into trace rows, step records, condition samples and the
+// audit's ledger. It changes nothing: the state hash is the same with and without it.
+#pragma once
+
+#include <map>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "core/audit/audit.hpp"
+#include "core/linear/condition.hpp"
+#include "core/newton/report.hpp"
+#include "core/record/run_record.hpp"
+#include "core/record/writer.hpp"
+#include "experiments/config/run_config.hpp"
+
+namespace bb {
+
+class Recorder final : public StepObserver {
+ public:
+  /// trace may be null (nothing is written). record is filled step by step.
+  Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace);
+  ~Recorder() override;
+
+  void on_matrix(NewtonSystem& system, int step, int iteration) override;
+  void on_iteration(const IterationReport& report) override;
+  void on_motion(const Positions& x0, const Positions& x1, int step) override;
+  void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override;
+
+  /// Sums over the run, once it is over.
+  void finish();
+
+  /// True when an accepted state or motion penetrates.
+  bool penetrated() const;
+  bool unproven() const;
+
+ private:
+  void judge(const Positions& x, int step);
+  TraceRow trace_row(const IterationReport& report) const;
+  bool due(int step, int iteration) const;
+
+  const RunConfig& config_;
+  RunRecord& record_;
+  TraceWriter* trace_;
+  std::unique_ptr<audit::Audit> audit_;
+  double audit_tolerance_ = 0;
+  ConditionEstimator estimator_;
+  std::vector<ConditionSample> samples_;  // of the iteration in progress
+  std::vector<TraceRow> rows_;            // of the step in progress
+  double condition_s_ = 0;
+  std::size_t n_free_ = 0, nnz_ = 0;
+  std::map<std::string, std::vector<double>> log10_cond_, log10_min_, log10_max_;
+  std::vector<double> newton_, linear_, contacts_, gaps_;
+  Number step_gap_, step_gap_rel_;
+};
+
+}  // namespace bb

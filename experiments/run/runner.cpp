@@ -1,0 +1,214 @@
+#include "experiments/run/runner.hpp"
+
+#include <fmt/format.h>
+#include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/math/error.hpp"
+#include "core/newton/simulation.hpp"
+#include "core/record/provenance.hpp"
+#include "core/record/writer.hpp"
+#include "core/scene/plan.hpp"
+#include "experiments/config/parse.hpp"
+#include "experiments/run/outcome.hpp"
+#include "experiments/run/pilot.hpp"
+#include "experiments/run/plan.hpp"
+#include "experiments/run/recorder.hpp"
+
+namespace bb {
+namespace {
+
+/// One simulation from start to end, seen by one observer.
+struct PassResult {
+  Verdict verdict;
+  std::string state_hash;
+  double wall_s = 0;
+  StiffnessPolicy::State stiffness;
+};
+
+PassResult run_pass(const RunConfig& config, const Scene& scene, const Calibration& calibration,
+                    const RunOptions& options, const char* pass, StepObserver& observer) {
+  Method method = make_method(config, calibration);
+  Simulation simulation(scene, method, config.time.dt, config.time.steps);
+  simulation.system().keep_stages(config.diagnose.stages.size() > 1 && config.passes.diagnose);
+  PassResult result;
+  const double start = now_s();
+  const double t_end = config.time.dt * config.time.steps * (1 - 1e-9);
+  Progress progress;
+  progress.label = run_label(config);
+  progress.pass = pass;
+  progress.steps = config.time.steps;
+  while (simulation.time() < t_end) {
+    if (options.interrupted && options.interrupted->load()) throw Interrupted{};
+    const StepReport step = simulation.step(observer);
+    result.verdict = judge_step(step);
+    if (options.progress) {
+      progress.step = static_cast<int>(std::lround(step.t / config.time.dt));
+      progress.newton = step.iterations;
+      progress.contacts = step.contacts.total();
+      progress.gap = step.gap_min;
+      progress.elapsed_s = now_s() - start;
+      progress.eta_s = progress.elapsed_s * std::max(0.0, t_end / simulation.time() - 1);
+      options.progress(progress);
+    }
+    if (result.verdict.outcome != Outcome::ok) break;
+  }
+  result.wall_s = now_s() - start;
+  result.state_hash = state_hash(simulation.history().x);
+  result.stiffness = method.stiffness->state();
+  return result;
+}
+
+void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& record) {
+  Labels& labels = record.labels;
+  labels.scene = config.scene.name;
+  labels.formulation = config.formulation.name.empty() ? config.formulation.shape : config.formulation.name;
+  labels.shape = config.formulation.shape;
+  labels.argument = std::string(to_string(config.formulation.argument));
+  labels.stiffness_policy = config.formulation.stiffness_policy.name;
+  labels.matching_rule = record.matching.rule;
+  labels.integrator = config.integrator;
+  labels.step_solver = config.step_solver.name;
+  labels.linear_solver = config.linear_solver.name;
+  labels.preconditioner = config.linear_solver.name == "pcg" ? config.linear_solver.preconditioner : "none";
+  labels.precision = config.precision;
+  labels.d_hat_m = config.formulation.d_hat;
+  labels.dt_s = config.time.dt;
+  labels.note = options.note;
+}
+
+void fill_scene(const RunConfig& config, const Scene& scene, RunRecord& record) {
+  SceneSize& size = record.scene;
+  size.vertices = static_cast<std::size_t>(scene.n_vertices());
+  const std::size_t per_vertex = scene.planar ? 2 : 3;
+  size.free_dofs = per_vertex * (size.vertices - scene.pins.size());
+  size.triangles = scene.membrane.triangles.size();
+  size.springs = scene.springs.edges.size();
+  size.hinges = scene.hinges.hinges.size();
+  size.obstacles = scene.obstacles.size();
+  size.extent_m = (scene.x0.rowwise().maxCoeff() - scene.x0.rowwise().minCoeff()).maxCoeff();
+  for (const BodyConfig& body : config.scene.bodies) {
+    if (!body.mesh.file.empty()) size.mesh_sha256[body.mesh.file] = body.mesh.sha256;
+  }
+}
+
+void fill_plan(const RunConfig& config, const Scene& scene, RunRecord& record) {
+  const Plan plan = plan_of(config, scene);
+  for (const auto& [name, item] : plan.items()) {
+    record.plan.push_back({std::string(name), item->needed, item->reason});
+  }
+  if (!config.passes.time) record.skipped.push_back({"time", "not_requested"});
+  if (!config.passes.diagnose) record.skipped.push_back({"cond", "not_requested"});
+  if (!config.passes.audit) record.skipped.push_back({"audit", "not_requested"});
+}
+
+void add_check(RunRecord& record, const std::string& name, Number value, Number bound, bool pass) {
+  record.validity.checks.push_back({name, value, bound, pass});
+}
+
+void fill_validity(RunRecord& record, const std::string& hash_time, const std::string& hash_seen) {
+  record.validity.valid = true;
+  if (record.audit.enabled) {
+    const auto bad =
+        static_cast<double>(record.audit.crossings + record.audit.violations + record.audit.unproven);
+    add_check(record, "audit_clean", bad, 0.0, bad == 0);
+  }
+  if (!hash_time.empty() && !hash_seen.empty()) {
+    const bool same = hash_time == hash_seen;
+    add_check(record, "state_hash_equal_in_all_passes", same ? 0.0 : 1.0, 0.0, same);
+  }
+  add_check(record, "outcome_ok", record.status.outcome == Outcome::ok ? 0.0 : 1.0, 0.0,
+            record.status.outcome == Outcome::ok);
+  for (const Check& check : record.validity.checks)
+    record.validity.valid = record.validity.valid && check.pass;
+}
+
+void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
+  if (worse(outcome, verdict.outcome) == outcome && outcome != verdict.outcome) verdict = {outcome, detail};
+}
+
+// The passes: `time` runs alone, `diagnose` and `audit` share a run, and none of their time is reported as a
+// time.
+void run_passes(const RunConfig& config, const Scene& scene, const Calibration& calibration,
+                const RunOptions& options, RunRecord& record) {
+  PassResult timed, seen;
+  const bool look = config.passes.diagnose || config.passes.audit || !config.passes.time;
+  RunRecord timing;  // the time pass keeps a record of its own: only its times and hash are used
+  if (config.passes.time) {
+    RunConfig bare = config;
+    bare.passes = {true, false, false};
+    Recorder observer(bare, scene, look ? timing : record, nullptr);
+    timed = run_pass(bare, scene, calibration, options, "time", observer);
+    observer.finish();
+    record.samples["wall_s"] = {timed.wall_s};
+  }
+  TraceWriter trace(options.folder);
+  Verdict verdict = timed.verdict;
+  if (look) {
+    Recorder observer(config, scene, record, &trace);
+    seen = run_pass(config, scene, calibration, options, "diagnose", observer);
+    observer.finish();
+    verdict = seen.verdict;
+    if (observer.penetrated())
+      merge(verdict, Outcome::penetration, "the audit found a crossing or a violation");
+    if (observer.unproven()) merge(verdict, Outcome::unproven, "the audit could not certify every motion");
+    if (config.passes.time) record.summary.time = timing.summary.time;
+  }
+  const PassResult& main = look ? seen : timed;
+  record.status.outcome = verdict.outcome;
+  record.status.detail = verdict.detail;
+  record.summary.wall_s = config.passes.time ? timed.wall_s : seen.wall_s;
+  record.summary.state_hash = main.state_hash;
+  if (main.stiffness.kappa > 0) {
+    record.summary.stiffness = {main.stiffness.kappa_start, main.stiffness.kappa, main.stiffness.doublings,
+                                main.stiffness.saturated};
+  }
+  fill_validity(record, timed.state_hash, seen.state_hash);
+}
+
+}  // namespace
+
+std::string run_label(const RunConfig& config) {
+  const std::string formulation =
+      config.formulation.name.empty() ? config.formulation.shape : config.formulation.name;
+  return fmt::format("{}-{}-{}", config.scene.name, formulation, config_id(config).substr(0, 8));
+}
+
+RunRecord run_config(const RunConfig& config, const RunOptions& options) {
+  const int threads = config.threads > 0 ? config.threads : oneapi::tbb::info::default_concurrency();
+  const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
+                                          static_cast<std::size_t>(threads));
+  RunRecord record;
+  record.status.started_utc = utc_now();
+  record.passes = {config.passes.time, config.passes.diagnose, config.passes.audit};
+  record.config_json = resolved_json(config);
+  record.provenance = collect_provenance(options.argv, threads);
+  record.machine = collect_machine();
+  record.ids.sweep_id = options.sweep_id;
+  fill_ids(record);
+  check_writable(options.folder);
+
+  const Scene scene = build_scene(config);
+  fill_scene(config, scene, record);
+  fill_plan(config, scene, record);
+  ContactSystem start(scene, {config.contact.mollifier, config.contact.ccd_park});
+  if (const auto overlap = start.check_initial(scene.x0)) {
+    record.matching.rule = "not_run";
+    record.status.outcome = Outcome::initial_intersection;
+    record.status.detail = *overlap;
+  } else {
+    const Calibration calibration = calibrate(config, scene, record.matching);
+    run_passes(config, scene, calibration, options, record);
+  }
+  fill_labels(config, options, record);
+  record.status.ended_utc = utc_now();
+  record.summary.peak_rss_bytes = peak_rss_bytes();
+  write_run(options.folder, record);
+  return record;
+}
+
+}  // namespace bb

@@ -1,0 +1,272 @@
+// The audit as Newton uses it, on scenes of a few triangles: states, motions, planar scenes, obstacles,
+// ledger.
+#include "core/audit/audit.hpp"
+
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <limits>
+#include <random>
+
+#include "core/math/error.hpp"
+
+namespace bb::audit {
+namespace {
+
+constexpr double tolerance = 1e-9;
+
+AuditMesh surface(const Eigen::Matrix3Xi& triangles) {
+  AuditMesh mesh;
+  mesh.triangles = triangles;
+  mesh.edges.resize(2, 3 * triangles.cols());  // shared edges twice: harmless
+  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
+    for (int k = 0; k < 3; ++k) mesh.edges.col(3 * t + k) << triangles(k, t), triangles((k + 1) % 3, t);
+  }
+  return mesh;
+}
+
+/// Vertices 0..3: a square sheet of two triangles at z = 0; 4..6: a small triangle above its first half.
+AuditMesh sheet_and_triangle() {
+  Eigen::Matrix3Xi t(3, 3);
+  t << 0, 0, 4,  //
+      1, 2, 5,   //
+      2, 3, 6;
+  return surface(t);
+}
+
+Positions sheet_and_triangle_at(double z) {
+  Positions x(3, 7);
+  x << -1, 1, 1, -1, 0.3, 0.5, 0.4,     //
+      -1, -1, 1, 1, -0.5, -0.45, -0.2,  //
+      0, 0, 0, 0, z, z + 0.01, z - 0.01;
+  return x;
+}
+
+TEST(Audit, clean_scene_is_ok_and_was_judged) {
+  Audit audit(sheet_and_triangle());
+  audit.check_state(sheet_and_triangle_at(0.5), 0);
+  audit.check_motion(sheet_and_triangle_at(0.5), sheet_and_triangle_at(0.02), 1, tolerance);
+  audit.check_state(sheet_and_triangle_at(0.02), 1);
+  EXPECT_TRUE(audit.ledger().ok());
+  EXPECT_EQ(audit.ledger().states, 2);
+  EXPECT_EQ(audit.ledger().motions, 1);
+  EXPECT_GT(audit.ledger().motion_pairs, 0);
+  EXPECT_EQ(audit.ledger().first_bad_step, -1);
+}
+
+TEST(Audit, triangle_that_jumps_through_a_sheet_is_a_violation_of_the_motion_only) {
+  Audit audit(sheet_and_triangle());
+  audit.check_state(sheet_and_triangle_at(0.5), 0);
+  audit.check_state(sheet_and_triangle_at(-0.5), 7);
+  EXPECT_TRUE(audit.ledger().ok()) << "both ends are free of crossings";
+  audit.check_motion(sheet_and_triangle_at(0.5), sheet_and_triangle_at(-0.5), 7, tolerance);
+  EXPECT_FALSE(audit.ledger().ok());
+  EXPECT_EQ(audit.ledger().violations, 3);
+  EXPECT_EQ(audit.ledger().unproven, 0);
+  EXPECT_EQ(audit.ledger().first_bad_step, 7);
+  EXPECT_EQ(audit.ledger().first_bad, (PairName{PairKind::vertex_triangle, 4, 0}));
+}
+
+TEST(Audit, crossing_state_names_its_first_pair) {
+  Audit audit(sheet_and_triangle());
+  audit.check_state(sheet_and_triangle_at(0.0), 3);
+  EXPECT_EQ(audit.ledger().crossings, 2);
+  EXPECT_EQ(audit.ledger().touches, 2);  // the vertex that lies in the sheet, on two edges
+  EXPECT_FALSE(audit.ledger().ok());
+  EXPECT_EQ(audit.ledger().first_bad_step, 3);
+  ASSERT_TRUE(audit.ledger().first_bad);
+  EXPECT_EQ(audit.ledger().first_bad->kind, PairKind::edge_triangle);
+  EXPECT_EQ(audit.ledger().first_bad->second, 0);
+}
+
+TEST(Audit, sliding_contact_is_certified) {
+  const AuditMesh mesh = sheet_and_triangle();
+  Positions x0 = sheet_and_triangle_at(0.0), x1 = x0;
+  x0.row(2).tail<3>().setConstant(1e-10);
+  x1.row(2).tail<3>().setConstant(1e-10);
+  x1.row(0).tail<3>().array() -= 3.0;  // across the sheet and over its border
+  const MotionAudit found = audit_motion(mesh, colliding_vertices(mesh), x0, x1, tolerance);
+  EXPECT_GT(found.pairs, 5);
+  EXPECT_EQ(found.certified, found.pairs);
+}
+
+TEST(Audit, fixed_pairs_are_judged_in_the_first_state_only) {
+  AuditMesh mesh = sheet_and_triangle();
+  mesh.fixed.assign(7, 1);
+  Audit audit(mesh);
+  audit.check_state(sheet_and_triangle_at(0.0), 0);
+  EXPECT_EQ(audit.ledger().crossings, 2);
+  audit.check_state(sheet_and_triangle_at(0.0), 1);
+  EXPECT_EQ(audit.ledger().crossings, 2);
+  mesh.fixed[4] = 0;  // one moving vertex: its pairs are judged always
+  Audit moving(mesh);
+  moving.check_state(sheet_and_triangle_at(0.0), 0);
+  moving.check_state(sheet_and_triangle_at(0.0), 1);
+  EXPECT_GT(moving.ledger().crossings, 2);
+}
+
+TEST(Audit, pairs_that_share_a_vertex_are_exempt_and_no_others) {
+  Eigen::Matrix3Xi t(3, 2);
+  t << 0, 0, 1, 3, 2, 4;  // triangles 0 1 2 and 0 3 4, folded through each other at vertex 0
+  Positions x(3, 5);
+  x << 0, 1, 1, 1, 1,      //
+      0, -1, 1, 0.1, 0.1,  //
+      0, 0, 0, -1, 1;
+  const AuditMesh mesh = surface(t);
+  const StateAudit found = audit_state(mesh, colliding_vertices(mesh), x, true);
+  EXPECT_EQ(found.crossings, 0);
+  EXPECT_GT(found.touches, 0);  // the far edges meet the other triangle's far edge
+}
+
+AuditMesh planar_elements() {
+  AuditMesh mesh;
+  mesh.planar = true;
+  mesh.triangles.resize(3, 2);
+  mesh.triangles << 0, 3, 1, 4, 2, 5;
+  mesh.edges.resize(2, 6);
+  mesh.edges << 0, 1, 2, 3, 4, 5,  //
+      1, 2, 0, 4, 5, 3;
+  return mesh;
+}
+
+Positions planar_at(double y) {
+  Positions x(3, 6);
+  x << 0, 4, 2, 1.1, 3.1, 2.2,       //
+      0, 0, 1, y + 1, y + 1, y + 2,  //
+      0, 0, 0, 9, 9, 9;              // z plays no part
+  return x;
+}
+
+TEST(Audit, planar_edges_cross_by_orient2d) {
+  Audit audit(planar_elements());
+  audit.check_state(planar_at(0.5), 0);
+  EXPECT_TRUE(audit.ledger().ok());
+  audit.check_state(planar_at(-0.5), 1);
+  EXPECT_GT(audit.ledger().crossings, 0);
+  EXPECT_EQ(audit.ledger().inverted, 0);
+  EXPECT_EQ(audit.ledger().first_bad->kind, PairKind::edge_edge_2d);
+}
+
+TEST(Audit, planar_vertex_through_an_edge_is_a_violation) {
+  const AuditMesh mesh = planar_elements();
+  const std::vector<int> vertices = colliding_vertices(mesh);
+  const MotionAudit through = audit_motion(mesh, vertices, planar_at(0.5), planar_at(-9.0), tolerance);
+  EXPECT_GT(through.violations, 0);
+  EXPECT_EQ(through.unproven, 0);
+  const MotionAudit free = audit_motion(mesh, vertices, planar_at(0.5), planar_at(1e-6), tolerance);
+  EXPECT_GT(free.pairs, 0);
+  EXPECT_EQ(free.certified, free.pairs);
+}
+
+TEST(Audit, inverted_elements_are_counted_apart) {
+  Audit audit(planar_elements());
+  Positions x = planar_at(5.0);
+  x(1, 5) = 4.0;  // the tip of the upper triangle below its base
+  audit.check_state(x, 0);
+  EXPECT_EQ(audit.ledger().inverted, 1);
+  EXPECT_TRUE(audit.ledger().ok());
+  x(1, 5) = 6.0;  // without area
+  audit.check_state(x, 1);
+  EXPECT_EQ(audit.ledger().inverted, 2);
+}
+
+TEST(Audit, obstacles_judge_vertices_outside_and_inside) {
+  AuditMesh mesh = sheet_and_triangle();
+  AuditObstacle ball{ObstacleKind::sphere, Vec3d(0, 0, -1.25), Vec3d::UnitZ(), 1.0, false};
+  mesh.obstacles = {ball};
+  Audit outside(mesh);
+  outside.check_state(sheet_and_triangle_at(0.5), 0);
+  EXPECT_TRUE(outside.ledger().ok());
+  outside.check_state(sheet_and_triangle_at(-0.6), 1);
+  EXPECT_EQ(outside.ledger().obstacle_violations, 3);
+  EXPECT_EQ(outside.ledger().first_bad, (PairName{PairKind::vertex_obstacle, 4, 0}));
+
+  ball.point.setZero(), ball.radius = 1.5, ball.inside = true;
+  mesh.obstacles = {ball};
+  Audit inside(mesh);
+  inside.check_state(sheet_and_triangle_at(0.5), 0);
+  EXPECT_TRUE(inside.ledger().ok());
+  inside.check_state(sheet_and_triangle_at(2.0), 1);
+  EXPECT_EQ(inside.ledger().obstacle_violations, 3);
+}
+
+TEST(Audit, obstacle_is_judged_along_the_motion) {
+  AuditMesh mesh = sheet_and_triangle();
+  mesh.obstacles = {{ObstacleKind::sphere, Vec3d(0.4, -0.4, 3.0), Vec3d::UnitZ(), 0.5, false}};
+  const MotionAudit found = audit_motion(mesh, colliding_vertices(mesh), sheet_and_triangle_at(0.5),
+                                         sheet_and_triangle_at(6.0), tolerance);
+  EXPECT_EQ(found.obstacle_violations, 3);
+  EXPECT_EQ(found.violations, 0);
+}
+
+TEST(Audit, moved_obstacle_is_judged_in_its_new_pose) {
+  AuditMesh mesh = sheet_and_triangle();
+  mesh.obstacles = {{ObstacleKind::plane, Vec3d(0, 0, -1), Vec3d::UnitZ(), 0.0, false}};
+  Audit audit(mesh);
+  audit.check_state(sheet_and_triangle_at(0.5), 0);
+  EXPECT_TRUE(audit.ledger().ok());
+  audit.set_obstacles({{ObstacleKind::plane, Vec3d(0, 0, 0.25), Vec3d::UnitZ(), 0.0, false}});
+  audit.check_state(sheet_and_triangle_at(0.5), 1);
+  EXPECT_EQ(audit.ledger().obstacle_violations, 4);
+}
+
+TEST(Audit, states_that_are_not_finite_are_not_ok) {
+  Audit audit(sheet_and_triangle());
+  Positions x = sheet_and_triangle_at(0.5);
+  x(0, 0) = std::numeric_limits<double>::quiet_NaN();
+  audit.check_state(x, 4);
+  EXPECT_FALSE(audit.ledger().ok());
+  EXPECT_EQ(audit.ledger().non_finite, 1);
+  EXPECT_EQ(audit.ledger().first_bad_step, 4);
+  audit.check_motion(sheet_and_triangle_at(0.5), x, 5, tolerance);
+  EXPECT_EQ(audit.ledger().non_finite, 2);
+}
+
+TEST(Audit, impossible_input_is_a_config_error) {
+  AuditMesh mesh = sheet_and_triangle();
+  mesh.obstacles = {{ObstacleKind::sphere, Vec3d::Zero(), Vec3d::UnitZ(), -1.0, false}};
+  EXPECT_THROW(Audit{mesh}, ConfigError);
+  mesh.obstacles = {{ObstacleKind::plane, Vec3d::Zero(), Vec3d::Zero(), 0.0, false}};
+  EXPECT_THROW(Audit{mesh}, ConfigError);
+  mesh.obstacles.clear();
+  mesh.fixed.assign(3, 0);
+  EXPECT_THROW(Audit{mesh}, ConfigError);
+}
+
+/// Triangles thrown into a box: many crossings and passages.
+TEST(Audit, counts_do_not_depend_on_the_number_of_threads) {
+  std::mt19937 random(31);
+  std::uniform_real_distribution<double> unit(0.0, 3.0);
+  constexpr int n = 150;
+  Eigen::Matrix3Xi t(3, n);
+  Positions x0(3, 3 * n), x1(3, 3 * n);
+  for (int i = 0; i < n; ++i) {
+    const Vec3d centre(unit(random), unit(random), unit(random)),
+        shift = 0.1 * Vec3d(unit(random), unit(random), 1);
+    for (int k = 0; k < 3; ++k) {
+      t(k, i) = 3 * i + k;
+      x0.col(3 * i + k) = centre + 0.2 * Vec3d(unit(random), unit(random), unit(random));
+      x1.col(3 * i + k) = x0.col(3 * i + k) + shift;
+    }
+  }
+  const AuditMesh mesh = surface(t);
+  const std::vector<int> vertices = colliding_vertices(mesh);
+  const auto both = [&](std::size_t threads) {
+    const tbb::global_control limit(tbb::global_control::max_allowed_parallelism, threads);
+    return std::pair{audit_state(mesh, vertices, x0, true), audit_motion(mesh, vertices, x0, x1, tolerance)};
+  };
+  const auto [state1, motion1] = both(1);
+  const auto [state4, motion4] = both(4);
+  EXPECT_GT(state1.crossings, 10);
+  EXPECT_GT(motion1.violations, 10);
+  EXPECT_EQ(motion1.pairs, motion1.certified + motion1.violations + motion1.unproven);
+  EXPECT_EQ(state1.crossings, state4.crossings);
+  EXPECT_EQ(state1.pairs, state4.pairs);
+  EXPECT_EQ(state1.first_bad, state4.first_bad);
+  EXPECT_EQ(motion1.violations, motion4.violations);
+  EXPECT_EQ(motion1.pairs, motion4.pairs);
+  EXPECT_EQ(motion1.first_bad, motion4.first_bad);
+}
+
+}  // namespace
+}  // namespace bb::audit

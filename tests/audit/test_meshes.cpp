@@ -1,0 +1,80 @@
+// The audit on real meshes: two cubes apart, close and intersecting, and one real step of a cloth on a ball.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <chrono>
+#include <cstdio>
+#include <cstdlib>
+
+#include "core/audit/audit.hpp"
+#include "tests/audit/ply.hpp"
+
+namespace bb::audit {
+namespace {
+
+namespace fs = std::filesystem;
+
+fs::path meshes() {
+  const char* named = std::getenv("BARRIERBENCH_DATA");
+  return fs::path(named ? named : BB_SOURCE_DIR "/../shared/data") / "meshes";
+}
+
+AuditMesh surface_of(const Ply& ply) {
+  std::vector<std::pair<int, int>> edges;
+  for (const auto& t : ply.triangles.colwise()) {
+    for (int k = 0; k < 3; ++k) edges.push_back(std::minmax(int{t[k]}, int{t[(k + 1) % 3]}));
+  }
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  AuditMesh mesh;
+  mesh.triangles = ply.triangles;
+  mesh.edges.resize(2, static_cast<Eigen::Index>(edges.size()));
+  for (std::size_t i = 0; i < edges.size(); ++i) {
+    mesh.edges.col(static_cast<Eigen::Index>(i)) << edges[i].first, edges[i].second;
+  }
+  return mesh;
+}
+
+StateAudit state_of(const char* name) {
+  const Ply ply = read_ply(meshes() / name);
+  const AuditMesh mesh = surface_of(ply);
+  return audit_state(mesh, colliding_vertices(mesh), ply.x, true);
+}
+
+TEST(Meshes, cubes_cross_only_where_they_intersect) {
+  if (!fs::is_directory(meshes())) GTEST_SKIP() << "no meshes at " << meshes();
+  for (const char* name : {"two-cubes-far.ply", "two-cubes-close.ply"}) {
+    const StateAudit found = state_of(name);
+    EXPECT_GT(found.pairs, 100) << name;
+    EXPECT_EQ(found.crossings, 0) << name;
+    EXPECT_EQ(found.touches, 0) << name;
+  }
+  EXPECT_GT(state_of("two-cubes-intersecting.ply").crossings, 0);
+}
+
+double milliseconds(std::chrono::steady_clock::time_point since) {
+  return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - since).count();
+}
+
+TEST(Meshes, cloth_on_a_ball_is_judged_in_seconds) {
+  if (!fs::is_directory(meshes())) GTEST_SKIP() << "no meshes at " << meshes();
+  const Ply before = read_ply(meshes() / "cloth_ball92.ply"), after = read_ply(meshes() / "cloth_ball93.ply");
+  const AuditMesh mesh = surface_of(before);
+  const std::vector<int> vertices = colliding_vertices(mesh);
+
+  auto start = std::chrono::steady_clock::now();
+  const StateAudit state = audit_state(mesh, vertices, before.x, true);
+  std::printf("state: %ld pairs, %ld crossings, %ld touches in %.0f ms\n", state.pairs, state.crossings,
+              state.touches, milliseconds(start));
+  start = std::chrono::steady_clock::now();
+  const MotionAudit motion = audit_motion(mesh, vertices, before.x, after.x, 1e-9);
+  std::printf("motion: %ld pairs, %ld certified, %ld violations, %ld unproven in %.0f ms\n", motion.pairs,
+              motion.certified, motion.violations, motion.unproven, milliseconds(start));
+
+  EXPECT_GT(state.pairs, 10000);
+  EXPECT_GT(motion.pairs, 10000);
+  EXPECT_EQ(motion.pairs, motion.certified + motion.violations + motion.unproven);
+}
+
+}  // namespace
+}  // namespace bb::audit

@@ -1,0 +1,78 @@
+// The presets of configs/formulations name what exists and mean what their publications wrote.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <set>
+
+#include "barriers/matching.hpp"
+#include "barriers/stiffness/registry.hpp"
+#include "tests/barriers/barrier_cases.hpp"
+
+namespace bb::test {
+namespace {
+
+using nlohmann::json;
+const std::filesystem::path folder = std::filesystem::path(BB_SOURCE_DIR) / "configs" / "formulations";
+
+json formulation(const std::string& name) {
+  std::ifstream file(folder / (name + ".json"));
+  return json::parse(file).at("formulation");
+}
+
+TEST(FormulationPresets, EveryFileNamesKnownParts) {
+  int files = 0;
+  std::set<std::string> shapes_used;
+  for (const auto& entry : std::filesystem::directory_iterator(folder)) {
+    std::ifstream file(entry.path());
+    const json preset = json::parse(file);
+    EXPECT_EQ(preset.at("name"), entry.path().stem().string());
+    EXPECT_FALSE(preset.at("doc").get<std::string>().empty());
+    const json& f = preset.at("formulation");
+    EXPECT_NO_THROW(require_shape(f.at("shape").get<std::string>())) << entry.path();
+    EXPECT_NO_THROW(require_argument(f.at("argument").get<std::string>())) << entry.path();
+    shapes_used.insert(f.at("shape").get<std::string>());
+
+    const json& policy = f.at("stiffness_policy");
+    StiffnessPolicyConfig config;
+    config.name = policy.at("name");
+    for (const auto& [key, value] : policy.items()) {
+      if (key.starts_with("kappa_")) config.kappa = kappa_from_convention(key, value, 1e-3);
+      if (key == "mass_term") config.mass_term = require_mass_term(value.get<std::string>());
+      if (key == "refresh") config.refresh = require_refresh(value.get<std::string>());
+    }
+    EXPECT_NO_THROW(make_policy(config)) << entry.path();
+    ++files;
+  }
+  EXPECT_GE(files, 10);
+  EXPECT_GE(shapes_used.size(), 5u);
+}
+
+TEST(FormulationPresets, PublishedOnesAreWhatTheyClaim) {
+  const json ipc = formulation("ipc2020");
+  EXPECT_EQ(ipc.at("shape"), "log");
+  EXPECT_EQ(ipc.at("argument"), "squared_gap");
+  EXPECT_EQ(ipc.at("stiffness_policy").at("name"), "ipc_adaptive");
+
+  const json dynamic = formulation("cubic_dynamic"), lagged = formulation("cubic_dynamic_lagged");
+  EXPECT_EQ(dynamic.at("stiffness_policy").at("mass_term"), "paper");
+  EXPECT_EQ(dynamic.at("stiffness_policy").at("refresh"), "per_iteration");
+  EXPECT_EQ(lagged.at("stiffness_policy").at("refresh"), "per_step");
+  json same = lagged;
+  same["stiffness_policy"]["refresh"] = "per_iteration";
+  EXPECT_EQ(same, dynamic);
+
+  // at d_hat = 1 mm the literal constants are near the 1000 N/m of the plain presets
+  EXPECT_DOUBLE_EQ(
+      kappa_from_convention("kappa_a_J", formulation("article_cubic").at("stiffness_policy").at("kappa_a_J"),
+                            1e-3),
+      1500);
+  EXPECT_DOUBLE_EQ(
+      kappa_from_convention("kappa_p_N",
+                            formulation("quadratic_as_printed").at("stiffness_policy").at("kappa_p_N"), 1e-3),
+      1000);
+}
+
+}  // namespace
+}  // namespace bb::test
