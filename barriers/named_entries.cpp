@@ -1,6 +1,9 @@
 // Nearest names and the text of the error for an unknown one.
 #include "barriers/named_entries.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <numeric>
 
@@ -39,11 +42,15 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 
 ConfigError unknown_name(std::string_view where, std::string_view found,
                          const std::vector<std::string>& names) {
-  std::string allowed = "one of ";
-  for (std::size_t i = 0; i < names.size(); ++i) allowed += (i ? ", " : "") + names[i];
+  std::string allowed = fmt::format("one of {}", fmt::join(names, ", "));
   const std::string nearest = nearest_name(found, names);
-  if (!nearest.empty()) allowed += " (did you mean " + nearest + "?)";
-  return ConfigError(std::string(where), '"' + std::string(found) + '"', allowed);
+  if (!nearest.empty()) allowed += fmt::format(" (did you mean {}?)", nearest);
+  return ConfigError(std::string(where), fmt::format("\"{}\"", found), allowed);
+}
+
+ConfigError taken_name(std::string_view where, std::string_view name, const std::vector<std::string>& names) {
+  return ConfigError(std::string(where), fmt::format("\"{}\"", name),
+                     fmt::format("a name not yet taken (taken: {})", fmt::join(names, ", ")));
 }
 
 }  // namespace bb

@@ -3,6 +3,7 @@
 
 #include <string>
 #include <string_view>
+#include <utility>
 #include <vector>
 
 #include "core/math/error.hpp"
@@ -16,6 +17,9 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
 /// ConfigError text: where, the name found, "one of a, b, c (did you mean b?)".
 ConfigError unknown_name(std::string_view where, std::string_view found,
                          const std::vector<std::string>& names);
+
+/// ConfigError text: where, the name found, the names that are taken.
+ConfigError taken_name(std::string_view where, std::string_view name, const std::vector<std::string>& names);
 
 template <class Entry>
 std::vector<std::string> entry_names(const std::vector<Entry>& entries) {
@@ -41,12 +45,7 @@ const Entry& require_entry(const std::vector<Entry>& entries, std::string_view n
 /// Errors: ConfigError at `where` when an entry of that name is there already.
 template <class Entry>
 void append_entry(std::vector<Entry>& entries, Entry entry, std::string_view where) {
-  if (find_entry(entries, entry.name)) {
-    std::string taken;
-    for (const std::string& name : entry_names(entries)) taken += (taken.empty() ? "" : ", ") + name;
-    throw ConfigError(std::string(where), '"' + entry.name + '"',
-                      "a name not yet taken (taken: " + taken + ")");
-  }
+  if (find_entry(entries, entry.name)) throw taken_name(where, entry.name, entry_names(entries));
   entries.push_back(std::move(entry));
 }
 

@@ -1,6 +1,8 @@
 // Checks all names first, so that a clash leaves the registries as they were.
 #include "barriers/plugins.hpp"
 
+#include <fmt/format.h>
+
 #include <utility>
 #include <vector>
 
@@ -14,13 +16,14 @@ namespace {
 
 /// Appends a violation for every added name that is known, or given twice by the plugin itself.
 template <class Known, class Added>
-void check_names(const std::string& file, const std::string& kind, const std::vector<Known>& known,
+void check_names(const std::string& file, const char* kind, const std::vector<Known>& known,
                  const std::vector<Added>& added, std::vector<Violation>& wrong) {
   std::vector<std::string> taken = entry_names(known);
   for (const Added& entry : added) {
     for (const std::string& name : taken) {
       if (name != entry.name) continue;
-      wrong.push_back({file, kind + " \"" + name + '"', "a name not yet taken by another " + kind});
+      wrong.push_back({file, fmt::format("{} \"{}\"", kind, name),
+                       fmt::format("a name not yet taken by another {}", kind)});
       break;
     }
     taken.push_back(entry.name);

@@ -1,6 +1,7 @@
 // Checks its input once, then only counts.
 #include "core/audit/audit.hpp"
 
+#include <algorithm>
 #include <string>
 #include <utility>
 

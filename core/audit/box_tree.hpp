@@ -3,6 +3,7 @@
 // ends.
 #pragma once
 
+#include <algorithm>
 #include <limits>
 #include <vector>
 

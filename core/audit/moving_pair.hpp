@@ -3,6 +3,8 @@
 // direction.
 #pragma once
 
+#include <Eigen/Geometry>
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>
@@ -110,6 +112,28 @@ class MovingPolygon {
 
   bool any_separates(const TimeSpan& span) const {
     return any_direction(span.middle(), [&](const Point& n) { return separates(n, span); });
+  }
+
+  /// ExactPolygon::proves_passage in plain floating point: a hint that the exact proof is worth its price.
+  bool seems_to_pass(const Point& direction, const TimeSpan& span) const {
+    Point a[n_corners], b[n_corners];
+    for (int k = 0; k < n_corners; ++k) a[k] = corner(k, span.begin), b[k] = corner(k, span.end);
+    if constexpr (dim == 2) {
+      const auto wedge = [](const Point& u, const Point& v) { return u[0] * v[1] - u[1] * v[0]; };
+      return wedge(a[0], a[1]) * wedge(b[0], b[1]) <= 0.0 &&
+             wedge(direction, a[0]) * wedge(direction, a[1]) <= 0.0;
+    } else {
+      if (a[0].dot(a[1].cross(a[2])) * b[0].dot(b[1].cross(b[2])) > 0.0) return false;
+      bool left = true, right = true;
+      for (int k = 0; k < n_corners; ++k) {
+        const int next = (k + 1) % n_corners;
+        const double at_begin = direction.dot(a[k].cross(a[next])),
+                     at_end = direction.dot(b[k].cross(b[next]));
+        left = left && at_begin >= 0.0 && at_end >= 0.0;
+        right = right && at_begin <= 0.0 && at_end <= 0.0;
+      }
+      return left || right;
+    }
   }
 
   /// Not normalised; of the plane (3D) or line (2D) through the polygon at time t, rounded.

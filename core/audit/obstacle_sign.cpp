@@ -5,6 +5,8 @@
 
 #include <gmpxx.h>
 
+#include <Eigen/Geometry>
+
 #include <array>
 #include <cmath>
 

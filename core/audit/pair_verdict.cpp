@@ -38,7 +38,7 @@ class Bisection {
       if (polygon_.any_separates(span)) continue;
       const double moved = speed_ * span.length();
       const bool last = span.end - span.begin == 1 || moved <= rounding * polygon_.size();
-      if ((last || moved <= tolerance_) && passes(span)) return Verdict::violation;
+      if (passes(span, last || moved <= tolerance_)) return Verdict::violation;
       if (last) {
         doubt = doubt || !separated_exactly(span);
       } else {
@@ -54,8 +54,14 @@ class Bisection {
     if (!exact_) exact_.emplace(motion_);
     return *exact_;
   }
-  bool passes(const TimeSpan& span) {
-    return exact().proves_passage(polygon_.normal(span.middle()), widened(span));
+  /// The span itself is tried too: widening may reach a turn of the pair.
+  bool passes(const TimeSpan& span, bool always_exact) {
+    const auto normal = polygon_.normal(span.middle());
+    for (const TimeSpan& s : {span, widened(span)}) {
+      if ((always_exact || polygon_.seems_to_pass(normal, s)) && exact().proves_passage(normal, s))
+        return true;
+    }
+    return false;
   }
   bool separated_exactly(const TimeSpan& span) {
     return polygon_.any_direction(span.middle(), [&](const auto& n) { return exact().separates(n, span); });

@@ -1,6 +1,7 @@
 // Floating filter first, integers where it cannot decide.
 #include "core/audit/predicates.hpp"
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstdint>

@@ -11,9 +11,9 @@ namespace bb::audit {
 struct StateAudit {
   long pairs = 0;  // that met in the broad phase
   long crossings = 0, touches = 0;
-  long inverted = 0;                  // planar elements with area <= 0
-  long obstacle_violations = 0;       // vertices strictly beyond an obstacle
-  bool finite = true;                 // false: nothing was judged
+  long inverted = 0;                    // planar elements with area <= 0
+  long obstacle_violations = 0;         // vertices strictly beyond an obstacle
+  bool finite = true;                   // false: nothing was judged
   std::optional<PairName> first_bad;    // the lowest in PairName's order, touches aside
   std::optional<PairName> first_touch;  // the same of the touches
   void merge(const StateAudit& other);

@@ -1,5 +1,5 @@
-// The block matrix: patterns and maps live in block_pattern, gather_map and reduction; this file keeps them in
-// step with the stencils.
+// The block matrix: patterns and maps live in block_pattern, gather_map and reduction; this file keeps them
+// in step with the stencils.
 #include "core/linear/block_system.hpp"
 
 #include <algorithm>

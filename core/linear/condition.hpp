@@ -2,7 +2,9 @@
 // that word is the contact stiffness.
 #pragma once
 
+#include <array>
 #include <cstdint>
+#include <memory>
 #include <string>
 #include <string_view>
 
@@ -21,6 +23,7 @@ struct ConditionEstimate {
   std::string method;            // "ritz", "inverse_power+lanczos", "shift_invert", "dense"
   double residual = 0;           // max |A v - lambda v| / |A| of the two pairs
   int solves = 0, products = 0;  // triangular solves, matrix products used
+  int factorizations = 0;        // beyond the first one shared by the scalings: shifted ones, see tier 2
   double seconds = 0;
 };
 
@@ -30,12 +33,22 @@ struct ConditionOptions {
   std::uint64_t seed = 1;  // of the start vector, recorded
 };
 
-/// Errors: none; failure is a status. Cost: tier 2 at most 25 solves and 40 products with one factorisation.
+/// Tier 0: what PCG leaves behind, LinearReport::ritz_min and ritz_max. Ritz values lie inside the spectrum,
+/// so the status is lower_bound; not_converged (all NaN) when there are none, as after a breakdown.
+ConditionEstimate condition_from_ritz(double ritz_min, double ritz_max);
+
+/// Errors: failure is a status; ConfigError only for a tier outside 1 to 3 and a malformed system.
+/// Cost: tier 1 one factorisation, 4 solves, 21 products. Tier 2 at most 25 solves and 40 products with one
+/// factorisation; where these leave an end of the spectrum unresolved (many eigenvalues within a percent of
+/// it), the same budget is spent round a second factorisation, shifted to that end. Tier 3: dense, n <= 3000,
+/// O(n^3).
 class ConditionEstimator {
  public:
   ConditionEstimator();
   ~ConditionEstimator();
   ConditionEstimate estimate(const ReducedSystem& system, const ConditionOptions& options);
+  /// The three scalings in the order none, jacobi, block_jacobi, from one factorisation of A.
+  std::array<ConditionEstimate, 3> estimate_all(const ReducedSystem& system, int tier, std::uint64_t seed);
 
  private:
   struct Data;

@@ -1,5 +1,5 @@
-// A counting sort by column, then a small sort by row inside each column. The number of the contribution is the
-// lower half of the key, so equal rows stay in element order.
+// A counting sort by column, then a small sort by row inside each column. The number of the contribution is
+// the lower half of the key, so equal rows stay in element order.
 #include "core/linear/gather_map.hpp"
 
 #include <algorithm>
@@ -24,8 +24,8 @@ void prefix_sum(std::vector<std::size_t>& start) {
 }  // namespace
 
 bool GatherMap::same(const Stencils& stencils) const {
-  return stencils.width == width_ && std::equal(vertices_.begin(), vertices_.end(),
-                                                stencils.vertices.begin(), stencils.vertices.end());
+  return stencils.width == width_ &&
+         std::equal(vertices_.begin(), vertices_.end(), stencils.vertices.begin(), stencils.vertices.end());
 }
 
 void GatherMap::check(const Stencils& stencils, int n_vertices) const {
@@ -54,8 +54,9 @@ void GatherMap::build(const Stencils& stencils, int n_vertices) {
 }
 
 void GatherMap::sort_contributions(int n_vertices) {
-  // Every ordered pair (a, b) of local vertices with vertex[a] >= vertex[b] is one lower contribution. A vertex
-  // that occurs twice gives both orders to its diagonal block, as the sum of the local Hessian demands.
+  // Every ordered pair (a, b) of local vertices with vertex[a] >= vertex[b] is one lower contribution. A
+  // vertex that occurs twice gives both orders to its diagonal block, as the sum of the local Hessian
+  // demands.
   const auto for_each_pair = [this](const auto& f) {
     for (std::size_t e = 0, n = n_elements(), w = at(width_); e < n; ++e) {
       const int* v = vertices_.data() + e * w;

@@ -41,13 +41,13 @@ class GatherMap {
   void build_gradient_map(int n_vertices);
 
   int width_ = 0;
-  std::vector<int> vertices_;              // copy of the stencils
-  std::vector<int> column_start_;          // [n + 1] targets of a column
-  std::vector<int> row_;                   // [n_targets] ascending within a column
-  std::vector<int> block_;                 // [n_targets] index in the pattern
-  std::vector<std::size_t> source_start_;  // [n_targets + 1]
-  std::vector<std::size_t> source_;        // [n_contributions] offset of the 3x3 block in hess
-  std::vector<std::size_t> vertex_start_;  // [n + 1]
+  std::vector<int> vertices_;               // copy of the stencils
+  std::vector<int> column_start_;           // [n + 1] targets of a column
+  std::vector<int> row_;                    // [n_targets] ascending within a column
+  std::vector<int> block_;                  // [n_targets] index in the pattern
+  std::vector<std::size_t> source_start_;   // [n_targets + 1]
+  std::vector<std::size_t> source_;         // [n_contributions] offset of the 3x3 block in hess
+  std::vector<std::size_t> vertex_start_;   // [n + 1]
   std::vector<std::size_t> vertex_source_;  // offset in grad
   // scratch of build
   std::vector<std::size_t> key_start_, cursor_;  // [n + 1]

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/linear/block_system.hpp"
 
@@ -28,6 +29,9 @@ struct LinearReport {
   double ritz_min = 0,
          ritz_max = 0;  // of the preconditioned matrix, from the CG coefficients; 0 when not available
   bool analyzed = false, factorized = false;
+  int restarts = 0;                 // pcg: times the true residual replaced a drifted recurrence
+  int preconditioner_shifts = 0;    // ic0: factorisations of A + shift diag(A) after a breakdown
+  double preconditioner_shift = 0;  // ic0: the shift in use
   double analyze_s = 0, factor_s = 0, solve_s = 0;
 };
 
@@ -49,5 +53,15 @@ class LinearSolver {
 
 /// Throws ConfigError for an unknown name, listing the registry.
 std::unique_ptr<LinearSolver> make_linear_solver(const LinearOptions& options);
+
+struct LinearSolverEntry {
+  std::string_view name, doc;
+};
+/// The registry, in its order.
+const std::vector<LinearSolverEntry>& linear_solvers();
+/// Preconditioners that pcg knows.
+const std::vector<std::string_view>& preconditioners();
+/// " (did you mean NAME?)" for the nearest name by edit distance, or "" when none is near.
+std::string did_you_mean(std::string_view found, const std::vector<std::string_view>& names);
 
 }  // namespace bb

@@ -88,8 +88,7 @@ void Reduction::build(const BlockPattern& pattern) {
 
 const ReducedSystem& Reduction::fill(const std::vector<double>& values) {
   double* out = system_.lower.valuePtr();
-  parallel_items(static_cast<int>(map_.size()), 16384,
-                 [&](int k) { out[k] = values[at(map_[at(k)])]; });
+  parallel_items(static_cast<int>(map_.size()), 16384, [&](int k) { out[k] = values[at(map_[at(k)])]; });
   return system_;
 }
 

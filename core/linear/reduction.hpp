@@ -1,5 +1,5 @@
-// The restriction of the block matrix to the free degrees of freedom, as a lower scalar matrix with a kept map
-// from block values to scalar values.
+// The restriction of the block matrix to the free degrees of freedom, as a lower scalar matrix with a kept
+// map from block values to scalar values.
 #pragma once
 
 #include <cstdint>

@@ -94,7 +94,8 @@ void NewtonSystem::refresh_limit_stiffness() {
   Mat<double, 12, 12> block;
   for (std::size_t e = 0; e < limit_->size(); ++e) {
     blocks_->submatrix(elastic_, &limit_->vertices()[3 * e], 3, block.data());
-    Eigen::Map<Mat<double, 9, 9>>(&limit_hess_[81 * e]) = block.topLeftCorner<9, 9>();
+    Eigen::Map<Mat<double, 9, 9>> target(&limit_hess_[81 * e]);
+    target = block.topLeftCorner<9, 9>();
   }
   limit_->measure(state_.x);
   const StrainStiffnessRule terms{rule.mass_term, true, dt_, c_};

@@ -2,6 +2,7 @@
 #include "core/plugin/plugin.hpp"
 
 #include <dlfcn.h>
+#include <fmt/format.h>
 
 #include <filesystem>
 #include <string_view>
@@ -36,23 +37,23 @@ const bb_plugin& open_plugin(const std::string& file) {
     throw ConfigError(file, found, allowed);
   };
   const auto entry = reinterpret_cast<EntryPoint>(dlsym(library, symbol));
-  if (!entry) fail("no symbol " + std::string(symbol), "a library that exports " + std::string(symbol));
+  if (!entry) fail(fmt::format("no symbol {}", symbol), fmt::format("a library that exports {}", symbol));
   const bb_plugin* plugin = entry();
-  if (!plugin) fail(std::string(symbol) + "() = NULL", "a pointer to a bb_plugin");
+  if (!plugin) fail(fmt::format("{}() = NULL", symbol), "a pointer to a bb_plugin");
   if (plugin->abi_version != BB_PLUGIN_ABI_VERSION) {
-    fail("abi_version " + std::to_string(plugin->abi_version),
-         "abi_version " + std::to_string(BB_PLUGIN_ABI_VERSION));
+    fail(fmt::format("abi_version {}", plugin->abi_version),
+         fmt::format("abi_version {}", BB_PLUGIN_ABI_VERSION));
   }
   return *plugin;
 }
 
 /// Adds what is wrong with one entry: its name and whether all of its calls are there.
-void check_entry(const std::string& file, const std::string& what, const char* name, bool has_calls,
+void check_entry(const std::string& file, const char* what, const char* name, bool has_calls,
                  std::vector<Violation>& wrong) {
   if (!is_snake_case(name)) {
-    wrong.push_back({file, what + " named \"" + text(name) + '"', "a snake_case name"});
+    wrong.push_back({file, fmt::format("{} named \"{}\"", what, text(name)), "a snake_case name"});
   } else if (!has_calls) {
-    wrong.push_back({file, what + " \"" + name + "\" with a NULL call", "every call given"});
+    wrong.push_back({file, fmt::format("{} \"{}\" with a NULL call", what, name), "every call given"});
   }
 }
 

@@ -1,9 +1,10 @@
 // Hands columns to a plugin's calls and back; no arithmetic beyond the matching multiplier.
 #include "core/plugin/wrappers.hpp"
 
+#include <fmt/format.h>
+
 #include <cmath>
 #include <cstdint>
-#include <string>
 #include <type_traits>
 
 #include "core/math/error.hpp"
@@ -45,7 +46,7 @@ class PluginIntegrator final : public Integrator {
     out.x_tilde.resize(3, history.x.cols());
     integrator_.predict(integrator_.self, &columns, dt, &out.c, out.x_tilde.data());
     if (!(out.c > 0) || !std::isfinite(out.c)) {
-      throw ConfigError("plugin integrator " + std::string(name()), "c = " + std::to_string(out.c),
+      throw ConfigError(fmt::format("plugin integrator {}", name()), fmt::format("c = {}", out.c),
                         "a finite c > 0");
     }
   }

@@ -262,7 +262,7 @@ std::string to_json(const RunRecord& r) {
   j["scene"] = scene(r.scene);
   j["provenance"] = provenance(r.provenance);
   j["machine"] = machine(r.machine);
-  j["plan"] = array_of(r.plan, [](const PlanItem& p) {
+  j["plan"] = array_of(r.plan, [](const PlanLine& p) {
     return Json{{"item", p.item}, {"active", p.active}, {"reason", p.reason}};
   });
   j["skipped"] = array_of(r.skipped, [](const Skipped& s) {

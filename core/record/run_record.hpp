@@ -132,7 +132,7 @@ struct Validity {
 };
 
 /// One line of the plan: what the scene needs, and what is neither allocated nor run.
-struct PlanItem {
+struct PlanLine {
   std::string item;
   bool active = false;
   std::string reason;
@@ -185,7 +185,7 @@ struct RunRecord {
   SceneSize scene;
   Provenance provenance;
   Machine machine;
-  std::vector<PlanItem> plan;
+  std::vector<PlanLine> plan;
   std::vector<Skipped> skipped;
   MatchingRecord matching;
   Summary summary;

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/newton/newton_system.hpp"
 #include "experiments/run/audit_mesh.hpp"
 
 namespace bb {

@@ -18,6 +18,7 @@
 #include "experiments/run/pilot.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/recorder.hpp"
+#include "experiments/run/start_check.hpp"
 
 namespace bb {
 namespace {
@@ -170,6 +171,27 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
   fill_validity(record, timed.state_hash, seen.state_hash);
 }
 
+// From the scene to the outcome. A scene that cannot start is an outcome too.
+void simulate(const RunConfig& config, const RunOptions& options, RunRecord& record) {
+  std::optional<Scene> scene;
+  try {
+    scene = build_scene(config);
+  } catch (const ConfigError& error) {
+    record.status.outcome = Outcome::invalid_scene;
+    record.status.detail = error.what();
+    return;
+  }
+  fill_scene(config, *scene, record);
+  fill_plan(config, *scene, record);
+  if (const auto overlap = initial_intersection(config, *scene)) {
+    record.status.outcome = Outcome::initial_intersection;
+    record.status.detail = *overlap;
+    return;
+  }
+  const Calibration calibration = calibrate(config, *scene, record.matching);
+  run_passes(config, *scene, calibration, options, record);
+}
+
 }  // namespace
 
 std::string run_label(const RunConfig& config) {
@@ -192,18 +214,7 @@ RunRecord run_config(const RunConfig& config, const RunOptions& options) {
   fill_ids(record);
   check_writable(options.folder);
 
-  const Scene scene = build_scene(config);
-  fill_scene(config, scene, record);
-  fill_plan(config, scene, record);
-  ContactSystem start(scene, {config.contact.mollifier, config.contact.ccd_park});
-  if (const auto overlap = start.check_initial(scene.x0)) {
-    record.matching.rule = "not_run";
-    record.status.outcome = Outcome::initial_intersection;
-    record.status.detail = *overlap;
-  } else {
-    const Calibration calibration = calibrate(config, scene, record.matching);
-    run_passes(config, scene, calibration, options, record);
-  }
+  simulate(config, options, record);
   fill_labels(config, options, record);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();

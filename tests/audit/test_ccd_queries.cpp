@@ -36,7 +36,7 @@ Vec3d read_row(const std::string& line, Query& query) {
   for (int k = 0; k < 3; ++k) {
     std::getline(in, top, ',');
     std::getline(in, bottom, ',');
-    mpq_class value(mpz_class(top), mpz_class(bottom));
+    mpq_class value{mpz_class(top), mpz_class(bottom)};
     value.canonicalize();
     point[k] = value.get_d();
     query.exact = query.exact && mpq_class(point[k]) == value;

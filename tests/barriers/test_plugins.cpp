@@ -1,9 +1,10 @@
 // Plugins: the worked examples and a copy of a built-in work; everything else is refused with file, found,
 // allowed.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <fstream>
-#include <functional>
 
 #include "barriers/named_entries.hpp"
 #include "barriers/plugins.hpp"
@@ -15,12 +16,8 @@
 namespace bb::test {
 namespace {
 
-std::string test_plugin(const std::string& name) {
-  return std::string(BB_PLUGIN_DIR) + "/plugin_" + name + ".so";
-}
-std::string example(const std::string& name) {
-  return std::string(BB_EXAMPLE_PLUGIN_DIR) + "/plugin_" + name + ".so";
-}
+std::string test_plugin(const char* name) { return fmt::format("{}/plugin_{}.so", BB_PLUGIN_DIR, name); }
+std::string example(const char* name) { return fmt::format("{}/plugin_{}.so", BB_EXAMPLE_PLUGIN_DIR, name); }
 
 /// Each file once per process: a second registration is a name clash by design.
 void register_once(const std::string& file) {
@@ -140,7 +137,7 @@ TEST(Plugins, UnreadableFileIsRefused) {
   expect_in(refusal(absent), absent + ": found ");
   expect_in(refusal(absent), "allowed: a readable shared library");
 
-  const std::string text_file = std::string(BB_PLUGIN_DIR) + "/not_a_library.so";
+  const std::string text_file = test_plugin("not_a_library");
   std::ofstream(text_file) << "plain text\n";
   expect_in(refusal(text_file), text_file + ": found ");
   expect_in(refusal(text_file), "allowed: a readable shared library");

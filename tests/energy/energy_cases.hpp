@@ -16,8 +16,9 @@ namespace bb::test {
 
 using Long = long double;
 
-/// Smallest relative error, over steps 1e-2 .. 1e-9, of fourth-order differences of f: R^N -> R^M against `jacobian`
-/// [M x N]; relative to its largest entry. Infinite when the jacobian is zero, so that nothing passes by being empty.
+/// Smallest relative error, over steps 1e-2 .. 1e-9, of fourth-order differences of f: R^N -> R^M against
+/// `jacobian` [M x N]; relative to its largest entry. Infinite when the jacobian is zero, so that nothing
+/// passes by being empty.
 template <int N, int M, class F>
 double jacobian_error(const F& f, const Vec<Long, N>& x, const Mat<double, M, N>& jacobian) {
   const double scale = jacobian.cwiseAbs().maxCoeff();

@@ -22,7 +22,7 @@ struct State {
   double s0, s1;
 };
 // near rest, stretched, compressed, equal values (also far from rest), nearly equal, thin
-const State states[] = {{1.01, 0.99}, {1.8, 1.2}, {0.6, 0.4}, {1, 1},     {1.3, 1.3},
+const State states[] = {{1.01, 0.99}, {1.8, 1.2}, {0.6, 0.4},    {1, 1},     {1.3, 1.3},
                         {0.7, 0.7},   {1.2, 0.5}, {1 + 1e-9, 1}, {1.4, 0.02}};
 // inverted, up to s0 + s1 -> 0
 const State inverted[] = {{1.1, -0.6}, {0.8, -0.79}, {0.5, -0.499999}};
@@ -34,7 +34,8 @@ void check_derivatives(const Mat<double, R, 2>& f, double tolerance) {
     return Vec<Long, 1>(Model::template value<Long, R>(Mat<Long, R, 2>(x.data()), lame_mu, lame_lambda));
   };
   const auto gradient = [](const Flat& x) {
-    const auto terms = Model::template terms<Long, R>(Mat<Long, R, 2>(x.data()), lame_mu, lame_lambda, Projection::none);
+    const auto terms =
+        Model::template terms<Long, R>(Mat<Long, R, 2>(x.data()), lame_mu, lame_lambda, Projection::none);
     return Flat(terms.pk1.reshaped());
   };
   const Flat x = f.reshaped().template cast<Long>();
@@ -110,7 +111,8 @@ Long closed_form(std::string_view name, const Mat<Long, R, 2>& f) {
   if (name == "corotational") return arap + lambda / 2 * trace * trace;
   if (name == "arap") return arap;
   if (name == "stvk") return mu * e.squaredNorm() + lambda / 2 * e.trace() * e.trace();
-  if (name == "stable_neo_hookean") return mu / 2 * (c.trace() - 2) - mu * (j - 1) + lambda / 2 * (j - 1) * (j - 1);
+  if (name == "stable_neo_hookean")
+    return mu / 2 * (c.trace() - 2) - mu * (j - 1) + lambda / 2 * (j - 1) * (j - 1);
   if (name == "baraff_witkin") {
     const Long u = std::sqrt(c(0, 0)) - 1, v = std::sqrt(c(1, 1)) - 1;
     return mu / 2 * (u * u + v * v) + lambda / 2 * c(0, 1) * c(0, 1);
@@ -153,13 +155,21 @@ TEST(Membrane, RestIsAStressFreeMinimum) {
     EXPECT_EQ(terms.psi, 0);
     EXPECT_TRUE(terms.pk1.isZero(0));
     EXPECT_GT(terms.hess(0, 0), 0);
-    // uniaxial stretch along u: mu and lambda of each model meet here, arap and baraff_witkin without lambda
-    const double expected = name == "baraff_witkin" ? lame_mu
-                            : name == "arap"        ? 2 * lame_mu
-                            : name == "stable_neo_hookean" ? lame_mu + lame_lambda
-                                                           : 2 * lame_mu + lame_lambda;
-    EXPECT_NEAR(terms.hess(0, 0), expected, 1e-12);
   });
+}
+
+template <class Model>
+double uniaxial_stiffness_at_rest() {
+  const Mat<double, 3, 2> f = Mat<double, 3, 2>::Identity();
+  return Model::template terms<double, 3>(f, lame_mu, lame_lambda, Projection::psd).hess(0, 0);
+}
+
+TEST(Membrane, UniaxialStiffnessAtRest) {
+  EXPECT_NEAR(uniaxial_stiffness_at_rest<membrane::corotational>(), 2 * lame_mu + lame_lambda, 1e-12);
+  EXPECT_NEAR(uniaxial_stiffness_at_rest<membrane::stvk>(), 2 * lame_mu + lame_lambda, 1e-12);
+  EXPECT_NEAR(uniaxial_stiffness_at_rest<membrane::arap>(), 2 * lame_mu, 1e-12);
+  EXPECT_NEAR(uniaxial_stiffness_at_rest<membrane::stable_neo_hookean>(), lame_mu + lame_lambda, 1e-12);
+  EXPECT_NEAR(uniaxial_stiffness_at_rest<membrane::baraff_witkin>(), lame_mu, 1e-12);
 }
 
 TEST(Membrane, TwistLimitOfSmoothModelsAtOppositeSingularValues) {
@@ -196,7 +206,8 @@ TEST(Membrane, FloatAgreesWithDouble) {
       SCOPED_TRACE(name);
       const auto f = random_gradient<3>(s.s0, s.s1, random);
       const auto exact = Model::template terms<double, 3>(f, lame_mu, lame_lambda, Projection::psd);
-      const auto single = Model::template terms<float, 3>(f.template cast<float>(), lame_mu, lame_lambda, Projection::psd);
+      const auto single =
+          Model::template terms<float, 3>(f.template cast<float>(), lame_mu, lame_lambda, Projection::psd);
       const double scale = exact.hess.cwiseAbs().maxCoeff();
       EXPECT_NEAR(static_cast<double>(single.psi), exact.psi, 1e-5 * exact.psi + 1e-7);
       EXPECT_LT(relative_difference(single.pk1.template cast<double>(), exact.pk1, scale), 1e-5);

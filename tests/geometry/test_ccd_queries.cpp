@@ -1,5 +1,6 @@
-// ACCD against the hand-made queries of Wang et al. 2021 (exact rational coordinates with ground truth): a false
-// negative is a tunnelled pair and forbidden; false positives (stopped below the ulp floor) are counted and shown.
+// ACCD against the hand-made queries of Wang et al. 2021 (exact rational coordinates with ground truth): a
+// false negative is a tunnelled pair and forbidden; false positives (stopped below the ulp floor) are counted
+// and shown.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 
@@ -89,9 +90,9 @@ void run_all(const std::string& folder) {
   }
 
   std::cout << bb::pair_name(K) << ": " << counts.queries << " queries, " << counts.positives << " positive, "
-            << counts.false_negatives << " false negatives, " << counts.false_positives << " false positives, "
-            << counts.capped << " capped, " << counts.probes << " probes, at most " << counts.most_probes
-            << "; coordinates rounded: " << n_inexact << "\n";
+            << counts.false_negatives << " false negatives, " << counts.false_positives
+            << " false positives, " << counts.capped << " capped, " << counts.probes << " probes, at most "
+            << counts.most_probes << "; coordinates rounded: " << n_inexact << "\n";
   testing::Test::RecordProperty("queries", counts.queries);
   testing::Test::RecordProperty("false_positives", counts.false_positives);
   testing::Test::RecordProperty("capped", counts.capped);

@@ -1,0 +1,38 @@
+// L of D = L L^T, D the identity, the diagonal, or the diagonal vertex blocks of A. The block-Jacobi
+// preconditioner and the scaled condition numbers are both made of it.
+#pragma once
+
+#include <vector>
+
+#include "core/linear/condition.hpp"
+#include "core/linear/linear_solver.hpp"
+
+namespace bb {
+
+class BlockScaling {
+ public:
+  /// @return ok | matrix_indefinite (a diagonal block, so A too, is not positive definite beyond rounding) |
+  ///         preconditioner_indefinite (a block is singular within rounding) | non_finite
+  /// Errors: ConfigError when block_start does not cut 0 .. n into blocks of 1 to 3.
+  LinearStatus setup(const ReducedSystem& system, Scaling scaling);
+  Scaling scaling() const { return scaling_; }
+
+  void multiply_lower(VecXd& x) const;  // x <- L x
+  void multiply_upper(VecXd& x) const;  // x <- L^T x
+  void solve_lower(VecXd& x) const;     // x <- L^-1 x
+  void solve_upper(VecXd& x) const;     // x <- L^-T x
+  /// u^T D u in long double.
+  long double quadratic(const VecXd& u) const;
+  /// matrix <- scale * matrix + shift * D. Every entry of D must be stored, which one of A's own is.
+  void add_to(Eigen::SparseMatrix<double>& matrix, double scale, double shift) const;
+
+ private:
+  void read_blocks(const ReducedSystem& system);
+  LinearStatus factorize_block(std::size_t block);
+
+  Scaling scaling_ = Scaling::none;
+  std::vector<int> start_;    // [n_blocks + 1]
+  std::vector<Mat3d> d_, l_;  // identity beyond the size of the block
+};
+
+}  // namespace bb

@@ -1,0 +1,52 @@
+// The direct solver of the registry: a CholmodFactor with its report.
+#include <chrono>
+#include <string>
+
+#include "core/linear/cholmod_factor.hpp"
+#include "core/math/error.hpp"
+
+namespace bb {
+namespace {
+
+class Cholmod final : public LinearSolver {
+ public:
+  std::string_view name() const override { return "cholmod"; }
+
+  LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
+    if (b.size() != system.lower.rows()) {
+      throw ConfigError("right-hand side", std::to_string(b.size()) + " entries", "one a row of the matrix");
+    }
+    LinearReport report;
+    x = VecXd::Zero(b.size());
+    if (b.size() == 0) return report;
+    report.status = factor_.factorize(system);
+    report.analyzed = factor_.analyzed_last();
+    report.factorized = report.status == LinearStatus::ok;
+    report.analyze_s = factor_.analyze_s();
+    report.factor_s = factor_.factor_s();
+    report.residual_true = 1;  // of x = 0
+    if (report.status != LinearStatus::ok) return report;
+    if (!b.allFinite()) {
+      report.status = LinearStatus::non_finite;
+      return report;
+    }
+    const auto start = std::chrono::steady_clock::now();
+    factor_.solve(b, x);
+    report.solve_s = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+    if (!x.allFinite()) report.status = LinearStatus::non_finite;
+    residual_ = b - system.lower.selfadjointView<Eigen::Lower>() * x;
+    const double b_norm = b.norm();
+    report.residual_true = b_norm > 0 ? residual_.norm() / b_norm : 0;
+    return report;
+  }
+
+ private:
+  CholmodFactor factor_;
+  VecXd residual_;
+};
+
+}  // namespace
+
+std::unique_ptr<LinearSolver> make_cholmod(const LinearOptions&) { return std::make_unique<Cholmod>(); }
+
+}  // namespace bb

@@ -1,0 +1,137 @@
+// The condition estimator: shares one factorisation between scalings and sends each request to its tier.
+#include "core/linear/condition.hpp"
+
+#include <chrono>
+#include <cmath>
+#include <limits>
+
+#include "core/linear/block_scaling.hpp"
+#include "core/linear/condition_dense.hpp"
+#include "core/linear/extreme_pairs.hpp"
+#include "core/math/error.hpp"
+
+namespace bb {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+
+ConditionEstimate unknown(ConditionStatus status, std::string method) {
+  ConditionEstimate e;
+  e.lambda_min = e.lambda_max = e.cond = e.residual = kNan;
+  e.status = status;
+  e.method = std::move(method);
+  return e;
+}
+
+bool has_full_diagonal(const Eigen::SparseMatrix<double>& lower) {
+  for (int j = 0; j < lower.cols(); ++j) {
+    const int begin = lower.outerIndexPtr()[j];
+    if (begin == lower.outerIndexPtr()[j + 1] || lower.innerIndexPtr()[begin] != j) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
+std::string_view to_string(ConditionStatus status) {
+  switch (status) {
+    case ConditionStatus::ok:
+      return "ok";
+    case ConditionStatus::lower_bound:
+      return "lower_bound";
+    case ConditionStatus::singular:
+      return "singular";
+    case ConditionStatus::not_pd:
+      return "not_pd";
+    case ConditionStatus::not_converged:
+      return "not_converged";
+  }
+  return "";
+}
+
+std::string_view to_string(Scaling scaling) {
+  switch (scaling) {
+    case Scaling::none:
+      return "none";
+    case Scaling::jacobi:
+      return "jacobi";
+    case Scaling::block_jacobi:
+      return "block_jacobi";
+  }
+  return "";
+}
+
+ConditionEstimate condition_from_ritz(double ritz_min, double ritz_max) {
+  ConditionEstimate e = unknown(ConditionStatus::not_converged, "ritz");
+  if (!(ritz_min > 0) || !(ritz_max >= ritz_min) || !std::isfinite(ritz_max)) return e;
+  e.lambda_min = ritz_min;
+  e.lambda_max = ritz_max;
+  e.status = ConditionStatus::lower_bound;
+  if (ritz_max <= 1e14 * ritz_min) e.cond = ritz_max / ritz_min;
+  return e;
+}
+
+struct ConditionEstimator::Data {
+  FactoredMatrix matrix;
+  ReducedSystem completed;  // a copy with explicit zeros, when a diagonal entry is not stored
+  BlockScaling scaling;
+
+  /// Checks, completes and, for tiers 1 and 2, factorises. Returns false for entries that are not finite.
+  bool prepare(const ReducedSystem& system, int tier) {
+    if (tier < 1 || tier > 3) throw ConfigError("condition tier", std::to_string(tier), "1, 2 or 3");
+    matrix.system = &system;
+    if (!has_full_diagonal(system.lower)) {
+      completed = system;
+      for (int j = 0; j < completed.lower.cols(); ++j) completed.lower.coeffRef(j, j) += 0.0;
+      completed.lower.makeCompressed();
+      completed.pattern_id = 0;
+      matrix.system = &completed;
+    }
+    matrix.product.update(*matrix.system);
+    if (!matrix.product.all_finite()) return false;
+    if (tier < 3 && matrix.product.n() > 0) {
+      matrix.positive = matrix.factor.factorize(*matrix.system) == LinearStatus::ok;
+    }
+    return true;
+  }
+
+  ConditionEstimate run(int tier, Scaling kind, std::uint64_t seed) {
+    const char* method = tier == 1 ? "inverse_power+lanczos" : tier == 2 ? "shift_invert" : "dense";
+    if (matrix.product.n() == 0) return unknown(ConditionStatus::not_converged, method);
+    const LinearStatus status = scaling.setup(*matrix.system, kind);
+    if (status == LinearStatus::matrix_indefinite) return unknown(ConditionStatus::not_pd, method);
+    if (status != LinearStatus::ok) return unknown(ConditionStatus::singular, method);
+    if (tier == 1) return estimate_tier1(matrix, scaling, seed);
+    if (tier == 2) return estimate_tier2(matrix, scaling, seed);
+    return estimate_dense(*matrix.system, scaling);
+  }
+};
+
+ConditionEstimator::ConditionEstimator() : data_(std::make_unique<Data>()) {}
+ConditionEstimator::~ConditionEstimator() = default;
+
+ConditionEstimate ConditionEstimator::estimate(const ReducedSystem& system, const ConditionOptions& options) {
+  const Clock::time_point start = Clock::now();
+  ConditionEstimate e = unknown(ConditionStatus::not_converged, "entries that are not finite");
+  if (data_->prepare(system, options.tier)) e = data_->run(options.tier, options.scaling, options.seed);
+  e.seconds = std::chrono::duration<double>(Clock::now() - start).count();
+  return e;
+}
+
+std::array<ConditionEstimate, 3> ConditionEstimator::estimate_all(const ReducedSystem& system, int tier,
+                                                                  std::uint64_t seed) {
+  std::array<ConditionEstimate, 3> all;
+  Clock::time_point start = Clock::now();
+  const bool finite = data_->prepare(system, tier);
+  for (std::size_t k = 0; k < all.size(); ++k) {
+    constexpr Scaling kScalings[] = {Scaling::none, Scaling::jacobi, Scaling::block_jacobi};
+    all[k] = finite ? data_->run(tier, kScalings[k], seed)
+                    : unknown(ConditionStatus::not_converged, "entries that are not finite");
+    all[k].seconds = std::chrono::duration<double>(Clock::now() - start).count();
+    start = Clock::now();  // the first scaling pays for the factorisation
+  }
+  return all;
+}
+
+}  // namespace bb

@@ -1,0 +1,227 @@
+#include "core/linear/extreme_pairs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/linear/lanczos.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double kTol = 2e-4;      // of an eigenvalue, relative; half of the 1e-3 promised is left to spare
+constexpr int kMaxSolves = 25;     // tier 2
+constexpr int kMaxProducts = 40;   // tier 2
+constexpr int kShiftedSolves = 5;  // round a shifted factor, plus one that polishes the vector
+constexpr double kRetryShift = 1e-8;  // of lambda_max, when A itself cannot be factorised
+
+/// B and its inverses, counting every use.
+class ScaledMatrix {
+ public:
+  ScaledMatrix(FactoredMatrix& matrix, const BlockScaling& scaling, ConditionEstimate& counts)
+      : m_(matrix), s_(scaling), counts_(counts) {}
+
+  void multiply(const VecXd& v, VecXd& out) {
+    u_ = v;
+    s_.solve_upper(u_);
+    m_.product.multiply(u_, out);
+    s_.solve_lower(out);
+    ++counts_.products;
+  }
+  void solve(CholmodFactor& factor, const VecXd& v, VecXd& out) {
+    u_ = v;
+    s_.multiply_lower(u_);
+    factor.solve(u_, out);
+    s_.multiply_upper(out);
+    ++counts_.solves;
+  }
+  /// Rayleigh quotient of B at v in long double: accurate to 1e-18 |B|, where double would leave 1e-16 |B|.
+  /// The residual |B v - lambda v| / |v| is raised in counts.residual, still absolute.
+  double rayleigh(const VecXd& v) {
+    u_ = v;
+    s_.solve_upper(u_);
+    m_.product.multiply_long(u_, au_);
+    ++counts_.products;
+    long double numerator = 0;
+    for (Eigen::Index i = 0; i < u_.size(); ++i) numerator += au_[static_cast<std::size_t>(i)] * u_[i];
+    const double lambda = static_cast<double>(numerator / s_.quadratic(u_));
+    VecXd bv(u_.size());
+    for (Eigen::Index i = 0; i < u_.size(); ++i)
+      bv[i] = static_cast<double>(au_[static_cast<std::size_t>(i)]);
+    s_.solve_lower(bv);
+    counts_.residual = std::max(counts_.residual, (bv - lambda * v).norm() / v.norm());
+    return lambda;
+  }
+  /// Factorises sign * (A - sigma D).
+  bool factorize_shifted(double sign, double sigma) {
+    m_.shifted_system.lower = m_.system->lower;
+    m_.shifted_system.pattern_id = m_.system->pattern_id;
+    s_.add_to(m_.shifted_system.lower, sign, -sign * sigma);
+    ++counts_.factorizations;
+    return m_.shifted.factorize(m_.shifted_system) == LinearStatus::ok;
+  }
+
+  FactoredMatrix& matrix() { return m_; }
+  Eigen::Index n() const { return m_.product.n(); }
+
+ private:
+  FactoredMatrix& m_;
+  const BlockScaling& s_;
+  ConditionEstimate& counts_;
+  VecXd u_;
+  std::vector<long double> au_;
+};
+
+/// One end of the spectrum on its way.
+struct End {
+  double lambda = kNan;
+  VecXd vector;
+  bool resolved = false;
+  double uncertainty = 0;  // residual relative to the eigenvalue of the operator in use
+};
+
+void take(const LanczosEnd& ritz, End& end) {
+  end.vector = ritz.vector;
+  end.resolved = ritz.converged(kTol);
+  end.uncertainty = ritz.residual / std::abs(ritz.value);
+}
+
+/// Shifts just beyond the end that `end` approximates from inside and repeats Lanczos from its vector. A
+/// factor that exists proves the shift to lie beyond the whole spectrum.
+/// @param sign +1 the small end, A - sigma D; -1 the large end, sigma D - A
+void resolve_by_shift(ScaledMatrix& b, double sign, End& end) {
+  double width = std::clamp(4 * end.uncertainty, 1e-3, 0.3);
+  double sigma = end.lambda * (1 - sign * width);
+  if (!b.factorize_shifted(sign, sigma)) {
+    width = std::min(8 * width, 0.9);
+    sigma = end.lambda * (1 - sign * width);
+    if (!b.factorize_shifted(sign, sigma)) return;
+  }
+  const auto op = [&b](const VecXd& x, VecXd& y) { b.solve(b.matrix().shifted, x, y); };
+  // d lambda / lambda = width * d theta / theta, so the operator's own tolerance may be wider by 1 / width.
+  const double tol = kTol / width;
+  const LanczosEnd ritz = lanczos_largest(op, end.vector, kShiftedSolves, std::min(tol, 0.05));
+  if (!(ritz.value > 0)) return;
+  end.lambda = sigma + sign / ritz.value;
+  end.uncertainty = width * ritz.residual / ritz.value;
+  end.resolved = ritz.converged(tol) || width <= 2 * kTol;
+  b.solve(b.matrix().shifted, ritz.vector, end.vector);
+}
+
+End largest_end(ScaledMatrix& b, std::uint64_t seed, int n_products, double& smallest_ritz) {
+  const auto op = [&b](const VecXd& x, VecXd& y) { b.multiply(x, y); };
+  const LanczosEnd ritz = lanczos_largest(op, seeded_vector(b.n(), seed), n_products, kTol);
+  smallest_ritz = ritz.smallest;
+  End end;
+  take(ritz, end);
+  end.lambda = ritz.value;
+  return end;
+}
+
+/// B + kRetryShift lambda_max is factorised in place of B; lambda_min may then be of either sign.
+void estimate_without_factor(ScaledMatrix& b, const End& top, double smallest_ritz, std::uint64_t seed,
+                             ConditionEstimate& e) {
+  e.method = "shift_invert, sigma = -1e-8 lambda_max";
+  e.status = ConditionStatus::not_pd;
+  e.lambda_min = smallest_ritz < 0 ? smallest_ritz : kNan;  // a negative Ritz value proves the point
+  e.cond = kNan;
+  const double sigma = -kRetryShift * top.lambda;
+  if (!(top.lambda > 0) || !b.factorize_shifted(1, sigma)) {
+    if (top.lambda == 0 && smallest_ritz == 0) e.status = ConditionStatus::singular;
+    return;
+  }
+  const auto op = [&b](const VecXd& x, VecXd& y) { b.solve(b.matrix().shifted, x, y); };
+  const LanczosEnd ritz = lanczos_largest(op, seeded_vector(b.n(), seed), kMaxSolves - 1, kTol);
+  VecXd v;
+  b.solve(b.matrix().shifted, ritz.vector, v);
+  v.normalize();
+  e.lambda_min = b.rayleigh(v);
+  classify(e, ritz.converged(kTol));
+}
+
+ConditionEstimate start_estimate(const char* method) {
+  ConditionEstimate e;
+  e.method = method;
+  e.lambda_min = e.lambda_max = e.cond = kNan;
+  return e;
+}
+
+}  // namespace
+
+void classify(ConditionEstimate& e, bool resolved) {
+  constexpr double kEps = std::numeric_limits<double>::epsilon();
+  e.cond = kNan;
+  if (!std::isfinite(e.lambda_min) || !std::isfinite(e.lambda_max)) {
+    e.status = ConditionStatus::not_converged;
+  } else if (e.lambda_min <= kEps * e.lambda_max) {
+    // Entries of A are known to eps |A|: a smaller eigenvalue has no sign of its own.
+    const bool negative = e.lambda_min < -1e-14 * std::abs(e.lambda_max) || e.lambda_max < 0;
+    e.status = negative ? ConditionStatus::not_pd : ConditionStatus::singular;
+  } else if (e.lambda_max > 1e14 * e.lambda_min) {
+    e.status = ConditionStatus::lower_bound;
+  } else {
+    e.cond = std::max(1.0, e.lambda_max / e.lambda_min);
+    e.status = resolved ? ConditionStatus::ok : ConditionStatus::lower_bound;
+  }
+}
+
+ConditionEstimate estimate_tier1(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed) {
+  ConditionEstimate e = start_estimate("inverse_power+lanczos");
+  ScaledMatrix b(matrix, scaling, e);
+  double smallest_ritz = 0;
+  const End top = largest_end(b, seed, 20, smallest_ritz);
+  // A Ritz value is inside the spectrum up to some eps |B|; 1e-12 covers that a thousand times.
+  e.lambda_max = top.lambda * (1 - 1e-12);
+  if (!matrix.positive) {
+    estimate_without_factor(b, top, smallest_ritz, seed + 1, e);
+  } else {
+    VecXd v = seeded_vector(b.n(), seed + 1), next;
+    for (int step = 0; step < 4; ++step) {
+      b.solve(matrix.factor, v, next);
+      v = next.normalized();
+    }
+    e.lambda_min = b.rayleigh(v);
+    classify(e, false);
+  }
+  e.residual /= std::abs(e.lambda_max);
+  return e;
+}
+
+ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed) {
+  ConditionEstimate e = start_estimate("shift_invert");
+  ScaledMatrix b(matrix, scaling, e);
+  double smallest_ritz = 0;
+  End top = largest_end(b, seed, kMaxProducts - 2, smallest_ritz);
+  e.lambda_max = top.lambda;
+  if (!matrix.positive) {
+    estimate_without_factor(b, top, smallest_ritz, seed + 1, e);
+    e.residual /= std::abs(e.lambda_max);
+    return e;
+  }
+  const int reserved = (top.resolved ? 1 : 2) * (kShiftedSolves + 1);
+  const auto op = [&b, &matrix](const VecXd& x, VecXd& y) { b.solve(matrix.factor, x, y); };
+  const LanczosEnd ritz = lanczos_largest(op, seeded_vector(b.n(), seed + 1), kMaxSolves - reserved, kTol);
+  End bottom;
+  take(ritz, bottom);
+  bottom.lambda = 1 / ritz.value;
+  if (bottom.resolved) {
+    b.solve(matrix.factor, ritz.vector, bottom.vector);  // damps what a product with B would magnify
+  } else if (ritz.value > 0) {
+    resolve_by_shift(b, 1, bottom);
+  }
+  if (!top.resolved && top.lambda > 0) resolve_by_shift(b, -1, top);
+  bottom.vector.normalize();
+  top.vector.normalize();
+  const double rayleigh_min = b.rayleigh(bottom.vector), rayleigh_max = b.rayleigh(top.vector);
+  // Solves leave an error of eps cond in 1 / theta; the Rayleigh quotient does not, once its vector is
+  // polished.
+  e.lambda_min = bottom.resolved ? rayleigh_min : bottom.lambda;
+  e.lambda_max = std::max(top.lambda, rayleigh_max);
+  if (e.factorizations > 0) e.method = "shift_invert, shifted to the end of the spectrum";
+  classify(e, bottom.resolved && top.resolved);
+  e.residual /= std::abs(e.lambda_max);
+  return e;
+}
+
+}  // namespace bb

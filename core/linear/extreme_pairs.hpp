@@ -1,0 +1,34 @@
+// The two ends of the spectrum of B = L^-1 A L^-T by solves and products: tiers 1 and 2 of the condition
+// estimate. The factor of A serves every scaling, since B^-1 = L^T A^-1 L.
+#pragma once
+
+#include "core/linear/block_scaling.hpp"
+#include "core/linear/cholmod_factor.hpp"
+#include "core/linear/condition.hpp"
+#include "core/linear/symmetric_product.hpp"
+
+namespace bb {
+
+/// What the estimator holds for one matrix.
+struct FactoredMatrix {
+  const ReducedSystem* system = nullptr;  // every diagonal entry stored
+  SymmetricProduct product;
+  CholmodFactor factor;   // of A
+  bool positive = false;  // the factorisation succeeded
+  CholmodFactor shifted;  // of +-(A - sigma D), when needed
+  ReducedSystem shifted_system;
+};
+
+/// Tier 1: four inverse-power steps and twenty Lanczos products. Both ends from inside the spectrum:
+/// lambda_min by a Rayleigh quotient in long double, lambda_max a Ritz value lowered by its rounding.
+ConditionEstimate estimate_tier1(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed);
+
+/// Tier 2: Lanczos with full reorthogonalisation on B and on B^-1; an end that stays unresolved is shifted
+/// to.
+ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed);
+
+/// cond and status from both ends; `resolved` is false where an end is only a bound.
+/// Above 1e14 cond is NaN and the status lower_bound; below the rounding of the entries of A it is singular.
+void classify(ConditionEstimate& estimate, bool resolved);
+
+}  // namespace bb

@@ -1,0 +1,39 @@
+// The header of a PLY file: format, elements and their properties. Private to core/mesh.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bb {
+
+enum class PlyFormat { ascii, little_endian, big_endian };
+enum class PlyType { int8, uint8, int16, uint16, int32, uint32, float32, float64 };
+
+std::size_t ply_size(PlyType type);
+
+struct PlyProperty {
+  std::string name;
+  bool is_list = false;
+  PlyType count = PlyType::uint8;  // list only
+  PlyType type = PlyType::float32;
+};
+
+struct PlyElement {
+  std::string name;
+  long long count = 0;
+  std::vector<PlyProperty> properties;
+  /// Index of a property, -1 when there is none.
+  int find(const std::string& property) const;
+};
+
+struct PlyHeader {
+  PlyFormat format = PlyFormat::ascii;
+  std::vector<PlyElement> elements;
+  std::size_t body = 0;     // offset of the first byte after the header
+  long long body_line = 0;  // and its line
+};
+
+/// Errors: ConfigError with file:line.
+PlyHeader parse_ply_header(const std::string& bytes, const std::string& name);
+
+}  // namespace bb

@@ -1,0 +1,158 @@
+// The rules every mesh obeys, whatever file it came from.
+#include "core/mesh/raw_mesh.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+#include <map>
+
+#include "core/math/error.hpp"
+#include "core/mesh/topology.hpp"
+
+namespace bb {
+
+void RawMesh::add_vertex(const Vec3d& x, long long place) {
+  vertices.push_back(x);
+  vertex_place.push_back(place);
+}
+void RawMesh::close_polygon(std::size_t first, long long place) {
+  first_corner.push_back(first);
+  polygon_place.push_back(place);
+}
+void RawMesh::add_segment(long long a, long long b, long long place) {
+  segments.push_back({a, b});
+  segment_place.push_back(place);
+}
+
+namespace {
+
+constexpr std::size_t max_violations = 20;  // enough to see a pattern, few enough to read
+
+class Assembler {
+ public:
+  explicit Assembler(const RawMesh& raw) : raw_(raw) {}
+
+  TriangleMesh run() {
+    copy_vertices();
+    for (std::size_t p = 0; p < raw_.first_corner.size(); ++p) add_polygon(p);
+    for (std::size_t s = 0; s < raw_.segments.size(); ++s) add_segment(s);
+    if (!violations_.empty()) throw ConfigError(std::move(violations_));
+    return std::move(mesh_);
+  }
+
+ private:
+  void complain(const char* element, long long place, std::string found, std::string allowed) {
+    if (violations_.size() >= max_violations) return;
+    violations_.push_back({raw_.places_are_lines ? fmt::format("{}:{}", raw_.name, place)
+                                                 : fmt::format("{}: {} {}", raw_.name, element, place),
+                           std::move(found), std::move(allowed)});
+  }
+
+  void copy_vertices() {
+    const std::size_t n = raw_.vertices.size();
+    if (n == 0) violations_.push_back({raw_.name, "no vertex", "at least one vertex"});
+    if (n > static_cast<std::size_t>(std::numeric_limits<int>::max())) {
+      throw ConfigError(raw_.name, fmt::format("{} vertices", n), "at most 2147483647 vertices");
+    }
+    mesh_.vertices.resize(3, static_cast<Eigen::Index>(n));
+    for (std::size_t i = 0; i < n; ++i) {
+      const Vec3d& x = raw_.vertices[i];
+      if (!x.allFinite()) {
+        complain("vertex", raw_.vertex_place[i], fmt::format("({}, {}, {})", x[0], x[1], x[2]),
+                 "finite coordinates");
+      }
+      mesh_.vertices.col(static_cast<Eigen::Index>(i)) = x;
+    }
+  }
+
+  bool in_range(const char* element, long long index, long long place) {
+    const auto n = static_cast<long long>(raw_.vertices.size());
+    if (index >= 0 && index < n) return true;
+    complain(element, place, fmt::format("vertex index {} (0-based)", index), fmt::format("0 to {}", n - 1));
+    return false;
+  }
+
+  void add_polygon(std::size_t p) {
+    const long long place = raw_.polygon_place[p];
+    const std::size_t begin = raw_.first_corner[p];
+    const std::size_t end = p + 1 < raw_.first_corner.size() ? raw_.first_corner[p + 1] : raw_.corners.size();
+    std::vector<int> polygon;
+    for (std::size_t c = begin; c < end; ++c) {
+      if (!in_range("face", raw_.corners[c], place)) return;
+      polygon.push_back(static_cast<int>(raw_.corners[c]));
+    }
+    if (polygon.size() < 3) {
+      return complain("face", place, fmt::format("{} corners", polygon.size()), "at least 3 corners");
+    }
+    std::vector<int> sorted = polygon;
+    std::sort(sorted.begin(), sorted.end());
+    const auto twice = std::adjacent_find(sorted.begin(), sorted.end());
+    if (twice != sorted.end()) {
+      return complain("face", place, fmt::format("a face with vertex {} twice", *twice), "distinct corners");
+    }
+    const auto [other, is_new] = faces_.try_emplace(std::move(sorted), place);
+    if (!is_new) {
+      return complain("face", place, fmt::format("the same corners as at {}", other->second),
+                      "each face once");
+    }
+    add_fan(polygon, place);
+  }
+
+  void add_fan(const std::vector<int>& polygon, long long place) {
+    Vec3d whole = Vec3d::Zero();
+    for (std::size_t k = 2; k < polygon.size(); ++k) {
+      whole += area_vector(mesh_.vertices, {polygon[0], polygon[k - 1], polygon[k]});
+    }
+    for (std::size_t k = 2; k < polygon.size(); ++k) {
+      const std::array<int, 3> triangle{polygon[0], polygon[k - 1], polygon[k]};
+      const Vec3d part = area_vector(mesh_.vertices, triangle);
+      if (!part.allFinite()) return;  // a corner was complained about already
+      if (is_flat(triangle, part)) {
+        return complain("face", place, "a face of zero area", "corners that do not lie on one line");
+      }
+      if (!(part.dot(whole) > 0)) {
+        return complain("face", place,
+                        fmt::format("a polygon of {} corners that is not convex", polygon.size()),
+                        "triangles and convex polygons");
+      }
+      mesh_.triangles.push_back(triangle);
+    }
+  }
+
+  /// Zero area up to the rounding of the cross product: below 4 eps of the squared longest edge, relative to
+  /// which coordinates are subtracted exactly or with one rounding.
+  bool is_flat(const std::array<int, 3>& t, const Vec3d& area) const {
+    double longest_sq = 0;
+    for (int k = 0; k < 3; ++k) {
+      const auto a = static_cast<std::size_t>(k), b = static_cast<std::size_t>((k + 1) % 3);
+      longest_sq = std::max(longest_sq, (mesh_.vertices.col(t[a]) - mesh_.vertices.col(t[b])).squaredNorm());
+    }
+    return area.norm() <= 4 * std::numeric_limits<double>::epsilon() * longest_sq;
+  }
+
+  void add_segment(std::size_t s) {
+    const auto [a, b] = raw_.segments[s];
+    const long long place = raw_.segment_place[s];
+    if (!in_range("edge", a, place) || !in_range("edge", b, place)) return;
+    if (a == b) return complain("edge", place, fmt::format("vertex {} twice", a), "two different vertices");
+    const auto [other, is_new] = edges_.try_emplace(std::minmax(a, b), place);
+    if (!is_new) {
+      return complain("edge", place, fmt::format("the same vertices as at {}", other->second),
+                      "each edge once");
+    }
+    mesh_.segments.push_back({static_cast<int>(a), static_cast<int>(b)});
+  }
+
+  const RawMesh& raw_;
+  TriangleMesh mesh_;
+  std::map<std::vector<int>, long long> faces_;
+  std::map<std::pair<long long, long long>, long long> edges_;
+  std::vector<Violation> violations_;
+};
+
+}  // namespace
+
+TriangleMesh assemble_mesh(const RawMesh& raw) { return Assembler(raw).run(); }
+
+}  // namespace bb

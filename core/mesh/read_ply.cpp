@@ -1,0 +1,194 @@
+// PLY bodies: one reader of values for text and one for bytes behind the same loop over elements and
+// properties.
+#include <bit>
+#include <cstring>
+
+#include "core/mesh/ply_header.hpp"
+#include "core/mesh/raw_mesh.hpp"
+#include "core/mesh/text_scanner.hpp"
+
+namespace bb {
+namespace {
+
+/// Values of one element after another, from text: one line an element.
+class AsciiValues {
+ public:
+  AsciiValues(const std::string& bytes, const PlyHeader& header, const std::string& name)
+      : scanner_(std::string_view(bytes).substr(header.body), name, header.body_line), name_(name) {}
+
+  void begin(const PlyElement& element, long long number) {
+    do {
+      if (!scanner_.next_line()) {
+        throw ConfigError(fmt::format("{}: {} {}", name_, element.name, number), "the end of the file",
+                          fmt::format("{} {} elements", element.count, element.name));
+      }
+    } while (scanner_.words().empty());
+    word_ = 0;
+  }
+  double real(PlyType) { return scanner_.number(word_++); }
+  long long integer(PlyType) { return scanner_.integer(word_++); }
+  void end() const {
+    if (word_ < scanner_.words().size()) {
+      scanner_.fail(fmt::format("{} words", scanner_.words().size()), fmt::format("{} words", word_));
+    }
+  }
+  long long place(long long) const { return scanner_.line(); }
+
+ private:
+  TextScanner scanner_;
+  std::string name_;
+  std::size_t word_ = 0;
+};
+
+class BinaryValues {
+ public:
+  BinaryValues(const std::string& bytes, const PlyHeader& header, const std::string& name)
+      : bytes_(bytes),
+        name_(name),
+        at_(header.body),
+        swap_((header.format == PlyFormat::big_endian) == (std::endian::native == std::endian::little)) {}
+
+  void begin(const PlyElement& element, long long number) {
+    element_ = &element;
+    number_ = number;
+  }
+  double real(PlyType type) {
+    if (type == PlyType::float32) return static_cast<double>(take<float>());
+    if (type == PlyType::float64) return take<double>();
+    return static_cast<double>(integer(type));
+  }
+  long long integer(PlyType type) {
+    switch (type) {
+      case PlyType::int8:
+        return take<std::int8_t>();
+      case PlyType::uint8:
+        return take<std::uint8_t>();
+      case PlyType::int16:
+        return take<std::int16_t>();
+      case PlyType::uint16:
+        return take<std::uint16_t>();
+      case PlyType::int32:
+        return take<std::int32_t>();
+      case PlyType::uint32:
+        return take<std::uint32_t>();
+      case PlyType::float32:
+      case PlyType::float64:
+        break;
+    }
+    throw ConfigError(fmt::format("{}: {} {}", name_, element_->name, number_), "a floating-point index",
+                      "an integer type");
+  }
+  void end() const {}
+  long long place(long long number) const { return number; }
+
+ private:
+  template <class T>
+  T take() {
+    if (bytes_.size() - at_ < sizeof(T)) {
+      throw ConfigError(fmt::format("{}: {} {}", name_, element_->name, number_),
+                        fmt::format("the end of the file after {} bytes", bytes_.size()),
+                        fmt::format("{} {} elements", element_->count, element_->name));
+    }
+    char raw[sizeof(T)];
+    for (std::size_t i = 0; i < sizeof(T); ++i) raw[swap_ ? sizeof(T) - 1 - i : i] = bytes_[at_ + i];
+    at_ += sizeof(T);
+    T value;
+    std::memcpy(&value, raw, sizeof(T));
+    return value;
+  }
+
+  const std::string& bytes_;
+  std::string name_;
+  std::size_t at_;
+  bool swap_;
+  const PlyElement* element_ = nullptr;
+  long long number_ = 0;
+};
+
+/// Where the values we keep stand in an element; -1 when the element has none of them.
+struct Slots {
+  int x = -1, y = -1, z = -1, list = -1, edge0 = -1, edge1 = -1;
+};
+
+Slots slots_of(const PlyElement& element, const std::string& name) {
+  Slots slots;
+  const auto need = [&](const char* property) {
+    const int at = element.find(property);
+    if (at < 0 || element.properties[static_cast<std::size_t>(at)].is_list) {
+      throw ConfigError(name, fmt::format("element {} without property {}", element.name, property),
+                        "a number of that name");
+    }
+    return at;
+  };
+  if (element.name == "vertex") {
+    slots.x = need("x"), slots.y = need("y"), slots.z = need("z");
+  } else if (element.name == "face") {
+    slots.list = std::max(element.find("vertex_indices"), element.find("vertex_index"));
+    if (slots.list < 0 || !element.properties[static_cast<std::size_t>(slots.list)].is_list) {
+      throw ConfigError(name, "element face without its corners", "property list ... vertex_indices");
+    }
+  } else if (element.name == "edge") {
+    slots.edge0 = need("vertex1"), slots.edge1 = need("vertex2");
+  }
+  return slots;
+}
+
+template <class Values>
+void read_element(Values& values, const PlyElement& element, const Slots& slots, long long number,
+                  RawMesh& mesh) {
+  Vec3d x = Vec3d::Zero();
+  std::array<long long, 2> edge{};
+  const std::size_t first = mesh.corners.size();
+  values.begin(element, number);
+  for (int p = 0; p < static_cast<int>(element.properties.size()); ++p) {
+    const PlyProperty& property = element.properties[static_cast<std::size_t>(p)];
+    if (property.is_list) {
+      const long long count = values.integer(property.count);
+      for (long long k = 0; k < count; ++k) {
+        if (p == slots.list) {
+          mesh.corners.push_back(values.integer(property.type));
+        } else {
+          values.real(property.type);
+        }
+      }
+    } else if (p == slots.edge0 || p == slots.edge1) {
+      edge[p == slots.edge0 ? 0 : 1] = values.integer(property.type);
+    } else {
+      const double value = values.real(property.type);
+      if (p == slots.x) x[0] = value;
+      if (p == slots.y) x[1] = value;
+      if (p == slots.z) x[2] = value;
+    }
+  }
+  values.end();
+  const long long place = values.place(number);
+  if (slots.x >= 0) mesh.add_vertex(x, place);
+  if (slots.list >= 0) mesh.close_polygon(first, place);
+  if (slots.edge0 >= 0) mesh.add_segment(edge[0], edge[1], place);
+}
+
+template <class Values>
+void read_body(const std::string& bytes, const PlyHeader& header, RawMesh& mesh) {
+  Values values(bytes, header, mesh.name);
+  for (const PlyElement& element : header.elements) {
+    const Slots slots = slots_of(element, mesh.name);
+    for (long long i = 0; i < element.count; ++i) read_element(values, element, slots, i, mesh);
+  }
+}
+
+}  // namespace
+
+RawMesh parse_ply(const std::string& bytes, const std::string& name) {
+  const PlyHeader header = parse_ply_header(bytes, name);
+  RawMesh mesh;
+  mesh.name = name;
+  mesh.places_are_lines = header.format == PlyFormat::ascii;
+  if (header.format == PlyFormat::ascii) {
+    read_body<AsciiValues>(bytes, header, mesh);
+  } else {
+    read_body<BinaryValues>(bytes, header, mesh);
+  }
+  return mesh;
+}
+
+}  // namespace bb

@@ -1,0 +1,112 @@
+#include "core/mesh/topology.hpp"
+
+#include <algorithm>
+#include <numeric>
+
+namespace bb {
+namespace {
+
+/// One side of a triangle: the edge it runs through and the corner opposite.
+struct Side {
+  int low, high;
+  int triangle;
+  int from, to, opposite;
+  bool operator<(const Side& other) const {
+    return std::tie(low, high, triangle) < std::tie(other.low, other.high, other.triangle);
+  }
+  bool same_edge(const Side& other) const { return low == other.low && high == other.high; }
+};
+
+std::vector<Side> sorted_sides(std::span<const std::array<int, 3>> triangles) {
+  std::vector<Side> sides;
+  sides.reserve(3 * triangles.size());
+  for (std::size_t t = 0; t < triangles.size(); ++t) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const int from = triangles[t][k], to = triangles[t][(k + 1) % 3];
+      sides.push_back(
+          {std::min(from, to), std::max(from, to), static_cast<int>(t), from, to, triangles[t][(k + 2) % 3]});
+    }
+  }
+  std::sort(sides.begin(), sides.end());
+  return sides;
+}
+
+int root_of(std::vector<int>& parent, int i) {
+  while (parent[static_cast<std::size_t>(i)] != i) {
+    int& p = parent[static_cast<std::size_t>(i)];
+    p = parent[static_cast<std::size_t>(p)];
+    i = p;
+  }
+  return i;
+}
+
+}  // namespace
+
+std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh) {
+  std::vector<std::array<int, 2>> edges;
+  edges.reserve(3 * mesh.triangles.size() + mesh.segments.size());
+  for (const auto& t : mesh.triangles) {
+    for (std::size_t k = 0; k < 3; ++k) {
+      const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
+      edges.push_back({low, high});
+    }
+  }
+  for (const auto& s : mesh.segments) edges.push_back({std::min(s[0], s[1]), std::max(s[0], s[1])});
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+  return edges;
+}
+
+std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3>> triangles) {
+  const std::vector<Side> sides = sorted_sides(triangles);
+  std::vector<std::array<int, 2>> edges;
+  for (std::size_t i = 0; i < sides.size();) {
+    std::size_t end = i + 1;
+    while (end < sides.size() && sides[end].same_edge(sides[i])) ++end;
+    if (end == i + 1) edges.push_back({sides[i].from, sides[i].to});
+    i = end;
+  }
+  return edges;
+}
+
+std::vector<std::array<int, 4>> edge_hinges(std::span<const std::array<int, 3>> triangles) {
+  const std::vector<Side> sides = sorted_sides(triangles);
+  std::vector<std::array<int, 4>> hinges;
+  for (std::size_t i = 1; i < sides.size(); ++i) {
+    const Side& a = sides[i - 1];
+    if (sides[i].same_edge(a)) hinges.push_back({a.from, a.to, a.opposite, sides[i].opposite});
+  }
+  return hinges;
+}
+
+std::vector<int> connected_components(const TriangleMesh& mesh, int* n_components) {
+  const auto n = static_cast<std::size_t>(mesh.n_vertices());
+  std::vector<int> parent(n);
+  std::iota(parent.begin(), parent.end(), 0);
+  for (const auto& edge : unique_edges(mesh)) {
+    const int a = root_of(parent, edge[0]), b = root_of(parent, edge[1]);
+    parent[static_cast<std::size_t>(std::max(a, b))] = std::min(a, b);
+  }
+  std::vector<int> component(n, -1);
+  int count = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto root = static_cast<std::size_t>(root_of(parent, static_cast<int>(i)));
+    if (component[root] < 0) component[root] = count++;
+    component[i] = component[root];
+  }
+  if (n_components) *n_components = count;
+  return component;
+}
+
+Vec3d area_vector(const Positions& x, const std::array<int, 3>& t) {
+  const Vec3d u = x.col(t[1]) - x.col(t[0]), v = x.col(t[2]) - x.col(t[0]);
+  return 0.5 * u.cross(v);
+}
+
+double surface_area(const TriangleMesh& mesh) {
+  double area = 0;
+  for (const auto& t : mesh.triangles) area += area_vector(mesh.vertices, t).norm();
+  return area;
+}
+
+}  // namespace bb

@@ -1,0 +1,78 @@
+#include "core/mesh/write_mesh.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <bit>
+#include <cerrno>
+#include <cstring>
+#include <filesystem>
+#include <fstream>
+#include <iterator>
+
+#include "core/math/error.hpp"
+
+namespace bb {
+namespace {
+
+/// Whole file or none: written beside its place, then renamed.
+void write_file(const std::string& path, const std::string& bytes) {
+  const std::string temporary = fmt::format("{}.tmp.{}", path, getpid());
+  std::ofstream file(temporary, std::ios::binary);
+  file.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  file.close();
+  std::error_code error;
+  if (file) std::filesystem::rename(temporary, path, error);
+  if (!file || error) {
+    const std::string cause = error ? error.message() : std::string(std::strerror(errno));
+    std::filesystem::remove(temporary, error);
+    throw ConfigError(path, "cannot be written: " + cause, "a place with room that may be written");
+  }
+}
+
+template <class T>
+void append(std::string& bytes, T value) {
+  char raw[sizeof(T)];
+  std::memcpy(raw, &value, sizeof(T));
+  if (std::endian::native == std::endian::big) std::reverse(raw, raw + sizeof(T));
+  bytes.append(raw, sizeof(T));
+}
+
+}  // namespace
+
+void write_obj(const std::string& path, const TriangleMesh& mesh) {
+  std::string text;
+  auto out = std::back_inserter(text);
+  for (int i = 0; i < mesh.n_vertices(); ++i) {
+    fmt::format_to(out, "v {:.17g} {:.17g} {:.17g}\n", mesh.vertices(0, i), mesh.vertices(1, i),
+                   mesh.vertices(2, i));
+  }
+  for (const auto& t : mesh.triangles) fmt::format_to(out, "f {} {} {}\n", t[0] + 1, t[1] + 1, t[2] + 1);
+  for (const auto& s : mesh.segments) fmt::format_to(out, "l {} {}\n", s[0] + 1, s[1] + 1);
+  write_file(path, text);
+}
+
+void write_ply(const std::string& path, const TriangleMesh& mesh) {
+  std::string bytes = fmt::format(
+      "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\n"
+      "property double z\nelement face {}\nproperty list uchar int vertex_indices\n",
+      mesh.n_vertices(), mesh.triangles.size());
+  if (!mesh.segments.empty()) {
+    bytes +=
+        fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", mesh.segments.size());
+  }
+  bytes += "end_header\n";
+  for (int i = 0; i < mesh.n_vertices(); ++i) {
+    for (int k = 0; k < 3; ++k) append(bytes, mesh.vertices(k, i));
+  }
+  for (const auto& t : mesh.triangles) {
+    append(bytes, std::uint8_t{3});
+    for (const int corner : t) append(bytes, static_cast<std::int32_t>(corner));
+  }
+  for (const auto& s : mesh.segments) {
+    for (const int end : s) append(bytes, static_cast<std::int32_t>(end));
+  }
+  write_file(path, bytes);
+}
+
+}  // namespace bb

@@ -1,0 +1,89 @@
+#include "experiments/cli/progress.hpp"
+
+#include <fmt/format.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <cstdio>
+
+namespace bb::cli {
+namespace {
+
+std::atomic<bool> stop{false};
+
+void on_signal(int) { stop.store(true); }
+
+std::string gap_text(double gap) { return std::isinf(gap) ? "-" : fmt::format("{:.2e} m", gap); }
+
+std::string number_text(const Number& number, const char* format) {
+  return number.finite() ? fmt::format(fmt::runtime(format), number.value) : "-";
+}
+
+std::string cond_text(const RunRecord& record, const std::string& key) {
+  const auto found = record.summary.cond.find(key);
+  if (found == record.summary.cond.end() || !found->second.log10_cond.max.finite()) return "-";
+  return fmt::format("1e{:.2f}", found->second.log10_cond.max.value);
+}
+
+}  // namespace
+
+ProgressLine::ProgressLine(const std::string& mode) {
+  if (mode == "plain") mode_ = Mode::plain;
+  if (mode == "auto" && isatty(STDERR_FILENO)) mode_ = Mode::rewrite;
+}
+
+ProgressLine::~ProgressLine() { clear(); }
+
+void ProgressLine::show(const Progress& progress) {
+  if (mode_ == Mode::none) return;
+  const double now = now_s();
+  const double period = mode_ == Mode::rewrite ? 0.2 : 10.0;
+  if (now - last_s_ < period && progress.step < progress.steps) return;
+  last_s_ = now;
+  const std::string line =
+      fmt::format("{} [{}] step {}/{}  newton {}  contacts {}  gap {}  eta {:.0f} s", progress.label,
+                  progress.pass, progress.step, progress.steps, progress.newton, progress.contacts,
+                  gap_text(progress.gap), progress.eta_s);
+  if (mode_ == Mode::rewrite) {
+    fmt::print(stderr, "\r\033[K{}", line);
+    dirty_ = true;
+  } else {
+    fmt::print(stderr, "{}\n", line);
+  }
+  std::fflush(stderr);
+}
+
+void ProgressLine::clear() {
+  if (!dirty_) return;
+  fmt::print(stderr, "\r\033[K");
+  std::fflush(stderr);
+  dirty_ = false;
+}
+
+const std::atomic<bool>& interrupted() { return stop; }
+
+void install_interrupt() {
+  std::signal(SIGINT, on_signal);
+  std::signal(SIGTERM, on_signal);
+}
+
+std::string summary_header() {
+  return fmt::format("{:<44} {:<18} {:>6} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}", "run", "outcome",
+                     "steps", "newton", "cond max", "cond bj", "gap/d_hat", "stretch", "crossings", "time s");
+}
+
+std::string summary_row(const RunRecord& record) {
+  const Summary& s = record.summary;
+  const std::string name =
+      record.labels.note.empty() ? record.labels.scene + " " + record.labels.formulation : record.labels.note;
+  return fmt::format(
+      "{:<44} {:<18} {:>6} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8.2f}", name,
+      to_string(record.status.outcome), s.steps, s.newton_iterations, cond_text(record, "full/none"),
+      cond_text(record, "full/block_jacobi"), number_text(s.gap_min_rel.min, "{:.3g}"),
+      number_text(s.max_stretch, "{:.4f}"),
+      record.audit.enabled ? fmt::format("{}", record.audit.crossings + record.audit.violations) : "-",
+      s.wall_s);
+}
+
+}  // namespace bb::cli

@@ -1,0 +1,48 @@
+// The verbs of the program: plain options in, exit code out (DESIGN section 6). main.cpp parses the command
+// line.
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace bb::cli {
+
+inline constexpr int exit_ok = 0;
+inline constexpr int exit_bad_input = 2;
+inline constexpr int exit_gate = 3;
+inline constexpr int exit_internal = 70;
+inline constexpr int exit_try_again = 75;
+
+struct CommonOptions {
+  std::vector<std::string> plugins;  // loaded before anything is parsed
+  std::vector<std::string> argv;     // for the record
+  std::string progress = "auto";     // auto, plain, none
+};
+
+struct RunVerb {
+  std::string config;
+  std::vector<std::string> set;  // "/pointer=value"
+  std::string out;               // folder; empty: results/runs/<label>
+};
+int run(const RunVerb& verb, const CommonOptions& common);
+
+struct SweepVerb {
+  std::string spec;
+  std::vector<std::string> set;
+  std::string out;       // empty: results/runs/<name of the sweep>
+  bool dry_run = false;  // print the expanded list, run nothing
+  bool again = false;    // run finished ids too
+};
+int sweep(const SweepVerb& verb, const CommonOptions& common);
+
+/// Parses, builds the scene and looks for intersections; runs nothing.
+int check(const RunVerb& verb);
+/// What the run would do and what it would skip, and why.
+int explain(const RunVerb& verb);
+/// Everything that can be named in a config: shapes, policies, integrators, solvers, scenes, formulations.
+int list(const std::string& what);
+/// The sweeps of configs/sweeps/demo_*.json, one after the other.
+int demo(const std::string& out, const CommonOptions& common);
+int eval(const std::string& file, bool schema);
+
+}  // namespace bb::cli

@@ -1,0 +1,136 @@
+// Small scenes for the contact tests, as plain numbers.
+#pragma once
+
+#include <array>
+#include <random>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/contact/contact_system.hpp"
+#include "core/contact/shape.hpp"
+
+namespace bb::test {
+
+using Triangles = std::vector<std::array<int, 3>>;
+using Edges = std::vector<std::array<int, 2>>;
+
+inline std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Appends a body; its surface is all of it. Returns its first vertex.
+inline int add_body(Scene& scene, const std::string& name, const std::vector<Vec3d>& vertices,
+                    const Triangles& triangles, double d_hat, bool given = false, double offset = 0) {
+  const int first = scene.n_vertices(), n = static_cast<int>(vertices.size());
+  const int body = static_cast<int>(scene.bodies.size());
+  scene.bodies.push_back({name, first, n});
+  scene.rest.conservativeResize(3, first + n);
+  for (int i = 0; i < n; ++i) {
+    scene.rest.col(first + i) = vertices[at(i)];
+    scene.mass.push_back(given ? 0 : 1);
+    scene.body.push_back(body);
+    scene.d_hat.push_back(d_hat);
+    scene.offset.push_back(offset);
+    scene.surface_vertices.push_back(first + i);
+    if (given) scene.pins.push_back({first + i, 0});
+  }
+  if (given && scene.motions.empty()) scene.motions.push_back({});
+  for (const auto& t : triangles) {
+    scene.surface_triangles.push_back({first + t[0], first + t[1], first + t[2]});
+  }
+  scene.x0 = scene.rest;
+  scene.v0 = Positions::Zero(3, first + n);
+  return first;
+}
+
+/// (nx + 1) x (ny + 1) vertices on z = 0, spacing h, each cell cut along the same diagonal.
+inline std::pair<std::vector<Vec3d>, Triangles> grid(int nx, int ny, double h, Vec3d origin = Vec3d::Zero()) {
+  std::vector<Vec3d> vertices;
+  Triangles triangles;
+  for (int j = 0; j <= ny; ++j) {
+    for (int i = 0; i <= nx; ++i) vertices.push_back(origin + h * Vec3d(i, j, 0));
+  }
+  const auto id = [nx](int i, int j) { return j * (nx + 1) + i; };
+  for (int j = 0; j < ny; ++j) {
+    for (int i = 0; i < nx; ++i) {
+      triangles.push_back({id(i, j), id(i + 1, j), id(i + 1, j + 1)});
+      triangles.push_back({id(i, j), id(i + 1, j + 1), id(i, j + 1)});
+    }
+  }
+  return {vertices, triangles};
+}
+
+/// Random triangles of size `size` in a box of size 1, three vertices each.
+inline std::pair<std::vector<Vec3d>, Triangles> soup(int n_triangles, double size, unsigned seed) {
+  std::mt19937_64 rng(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto point = [&] { return Vec3d(unit(rng), unit(rng), unit(rng)); };
+  std::vector<Vec3d> vertices;
+  Triangles triangles;
+  for (int t = 0; t < n_triangles; ++t) {
+    const Vec3d centre = point();
+    for (int k = 0; k < 3; ++k) vertices.push_back(centre + size * point());
+    triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  return {vertices, triangles};
+}
+
+inline Positions random_motion(const Positions& x, double size, unsigned seed) {
+  std::mt19937_64 rng(seed);
+  std::uniform_real_distribution<double> unit(-size, size);
+  Positions out = x;
+  for (Eigen::Index i = 0; i < out.size(); ++i) out.data()[i] += unit(rng);
+  return out;
+}
+
+/// Both tables of a state; candidates are updated at x.
+struct Rows {
+  ContactTable table;
+  MollifiedTable mollified;
+  double min_gap;
+};
+inline Rows rows_at(ContactSystem& contacts, const Positions& x) {
+  Rows out;
+  contacts.update_candidates(x, x);
+  out.min_gap = contacts.find_rows(x, out.table, out.mollified);
+  return out;
+}
+
+/// Index of the row with these sorted vertices and kind, -1 when there is none.
+inline int find_row(const ContactTable& t, const ContactKey& key, ContactKind kind) {
+  for (std::size_t r = 0; r < t.size(); ++r) {
+    if (t.key[r] == key && t.kind[r] == kind) return static_cast<int>(r);
+  }
+  return -1;
+}
+
+/// A shape of the tests' own: (d_hat - d)^2, or (d_hat - d)^3 where smoothness is needed.
+enum class TestShape { quadratic, cubic };
+template <class Table>
+void evaluate(Table& t, double kappa, TestShape shape = TestShape::quadratic) {
+  for (std::size_t r = 0; r < t.size(); ++r) {
+    const double y = t.d_hat[r] - t.d[r];
+    const bool cubic = shape == TestShape::cubic;
+    t.kappa[r] = kappa;
+    t.b[r] = cubic ? y * y * y / t.d_hat[r] : y * y;
+    t.db[r] = cubic ? -3 * y * y / t.d_hat[r] : -2 * y;
+    t.d2b[r] = cubic ? 6 * y / t.d_hat[r] : 2;
+  }
+}
+
+/// B at x with a given shape; also counts rows into *n_rows.
+inline double barrier(ContactSystem& contacts, const Positions& x, double kappa,
+                      TestShape shape = TestShape::quadratic, std::size_t* n_rows = nullptr) {
+  Rows rows = rows_at(contacts, x);
+  evaluate(rows.table, kappa, shape);
+  evaluate(rows.mollified, kappa, shape);
+  std::vector<double> energy, mollified;
+  contact_energies(rows.table, energy);
+  mollified_energies(rows.mollified, x, mollified);
+  if (n_rows != nullptr) *n_rows = energy.size() + mollified.size();
+  double sum = 0;
+  for (double e : energy) sum += e;
+  for (double e : mollified) sum += e;
+  return sum;
+}
+
+}  // namespace bb::test

@@ -1,0 +1,143 @@
+// Overlapping pairs of trees against the plain double loop.
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <random>
+
+#include "core/contact/bvh.hpp"
+
+namespace bb {
+namespace {
+
+std::vector<Aabb> random_boxes(int n, double size, unsigned seed) {
+  std::mt19937_64 rng(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto point = [&] { return Vec3d(unit(rng), unit(rng), unit(rng)); };
+  std::vector<Aabb> boxes(static_cast<std::size_t>(n));
+  for (Aabb& b : boxes) {
+    const Vec3d centre = point();
+    b.add(Vec3d(centre + size * point()));
+    b.add(Vec3d(centre + size * point()));
+    b.inflate(0.01);
+  }
+  return boxes;
+}
+
+std::vector<std::uint8_t> random_flags(int n, unsigned seed) {
+  std::mt19937_64 rng(seed);
+  std::vector<std::uint8_t> flags(static_cast<std::size_t>(n));
+  for (auto& f : flags) f = rng() % 3 == 0 ? 1 : 0;
+  return flags;
+}
+
+bool keep(IndexPair p) { return (p.first + p.second) % 7 != 0; }
+
+std::vector<IndexPair> brute_force(const std::vector<Aabb>& a, const std::vector<std::uint8_t>& free_a,
+                                   const std::vector<Aabb>& b, const std::vector<std::uint8_t>& free_b,
+                                   bool self) {
+  std::vector<IndexPair> pairs;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = self ? i + 1 : 0; j < b.size(); ++j) {
+      const IndexPair p{static_cast<int>(i), static_cast<int>(j)};
+      if ((free_a[i] || free_b[j]) && a[i].overlaps(b[j]) && keep(p)) pairs.push_back(p);
+    }
+  }
+  return pairs;
+}
+
+class BvhSizes : public testing::TestWithParam<int> {};
+
+TEST_P(BvhSizes, FindsWhatTheDoubleLoopFinds) {
+  const int n = GetParam(), m = n / 2 + 1;
+  const auto a = random_boxes(n, 0.1, 1), b = random_boxes(m, 0.2, 2);
+  const auto fa = random_flags(n, 3), fb = random_flags(m, 4);
+  Bvh ta, tb;
+  ta.update(a, fa);
+  tb.update(b, fb);
+
+  PairFinder finder;
+  std::vector<IndexPair> cross, self;
+  finder.find(ta, tb, keep, cross);
+  finder.find(ta, ta, keep, self);
+
+  EXPECT_EQ(cross, brute_force(a, fa, b, fb, false));
+  EXPECT_EQ(self, brute_force(a, fa, a, fa, true));
+  if (n >= 1000) {
+    EXPECT_GT(cross.size(), 100U);
+    EXPECT_GT(self.size(), 100U);
+  }
+}
+INSTANTIATE_TEST_SUITE_P(, BvhSizes, testing::Values(0, 1, 2, 4, 5, 31, 33, 257, 2000));
+
+TEST(Bvh, SamePairsForAnyNumberOfThreads) {
+  const auto boxes = random_boxes(3000, 0.1, 5);
+  const std::vector<std::uint8_t> free(boxes.size(), 1);
+  Bvh tree;
+  tree.update(boxes, free);
+  std::vector<IndexPair> reference;
+  for (std::size_t threads : {1, 2, 7}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    PairFinder finder;
+    std::vector<IndexPair> pairs;
+    finder.find(tree, tree, keep, pairs);
+    if (threads == 1) reference = pairs;
+    EXPECT_EQ(pairs, reference);
+  }
+  EXPECT_GT(reference.size(), 1000U);
+}
+
+TEST(Bvh, RefitsAfterSmallMotionAndRebuildsAfterLarge) {
+  auto boxes = random_boxes(2000, 0.02, 6);
+  const std::vector<std::uint8_t> free(boxes.size(), 1);
+  Bvh tree;
+  tree.update(boxes, free);
+  ASSERT_EQ(tree.builds(), 1);
+
+  std::mt19937_64 rng(7);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  const auto move = [&](double size) {
+    for (Aabb& b : boxes) {
+      const Vec3d shift = size * Vec3d(unit(rng), unit(rng), unit(rng));
+      b.lo += shift;
+      b.hi += shift;
+    }
+  };
+  const auto check = [&] {
+    PairFinder finder;
+    std::vector<IndexPair> pairs;
+    finder.find(tree, tree, keep, pairs);
+    EXPECT_EQ(pairs, brute_force(boxes, free, boxes, free, true));
+    EXPECT_GT(pairs.size(), 20U);
+  };
+  move(0.01);
+  tree.update(boxes, free);
+  EXPECT_EQ(tree.builds(), 1);
+  check();
+  move(1.0);
+  tree.update(boxes, free);
+  EXPECT_EQ(tree.builds(), 2);
+  check();
+}
+
+TEST(Aabb, InflationRoundsOutward) {
+  Aabb box;
+  box.add(Vec3d(0.1, -0.3, 1e6));
+  Aabb tight = box;
+  box.inflate(0);
+  for (int k = 0; k < 3; ++k) {
+    EXPECT_LT(box.lo[k], tight.lo[k]);
+    EXPECT_GT(box.hi[k], tight.hi[k]);
+  }
+  EXPECT_EQ(box_distance(tight, box), 0);
+}
+
+TEST(Aabb, DistanceOfBoxesIsAcrossTheGapAlone) {
+  Aabb a, b;
+  a.add(Vec3d(0, 0, 0));
+  a.add(Vec3d(1, 1, 1));
+  b.add(Vec3d(4, 5, 0.5));
+  EXPECT_EQ(box_distance(a, b), 5);
+}
+
+}  // namespace
+}  // namespace bb

@@ -1,0 +1,143 @@
+// Membrane, spring and hinge batches: what they store is what the element functions give, for any thread
+// count.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include <array>
+#include <memory>
+
+#include "core/energy/hinge.hpp"
+#include "core/energy/hinge_batch.hpp"
+#include "core/energy/membrane_batch.hpp"
+#include "core/energy/spring.hpp"
+#include "core/energy/spring_batch.hpp"
+#include "core/math/error.hpp"
+#include "tests/energy/energy_cases.hpp"
+#include "tests/energy/strip.hpp"
+
+namespace bb::test {
+namespace {
+
+void expect_stored(const LocalTerms& out, std::size_t e, double energy, const auto& grad, const auto& hess) {
+  EXPECT_EQ(out.energy[e], energy);
+  const auto n = static_cast<std::size_t>(grad.size());
+  ASSERT_GT(hess.cwiseAbs().maxCoeff(), 0);
+  for (std::size_t i = 0; i < n; ++i) EXPECT_EQ(out.grad[n * e + i], grad[static_cast<Eigen::Index>(i)]);
+  for (std::size_t i = 0; i < n * n; ++i) EXPECT_EQ(out.hess[n * n * e + i], hess.data()[i]);
+}
+
+/// Values and derivatives agree, one thread and many agree bit for bit, and a second call moves no memory.
+void expect_consistent(const EnergyBatch& batch, const Positions& x) {
+  SCOPED_TRACE(batch.name());
+  ASSERT_GT(batch.size(), 64u);  // more than one grain of the loop
+  LocalTerms many, one;
+  batch.derivatives(x, many);
+  std::vector<double> energy(batch.size());
+  batch.values(x, energy.data());
+  EXPECT_EQ(energy, many.energy);
+  {
+    const tbb::global_control serial(tbb::global_control::max_allowed_parallelism, 1);
+    batch.derivatives(x, one);
+  }
+  EXPECT_EQ(one.grad, many.grad);
+  EXPECT_EQ(one.hess, many.hess);
+  EXPECT_GT(*std::max_element(one.energy.begin(), one.energy.end()), 0);
+  const double* before = one.hess.data();
+  batch.derivatives(x, one);
+  EXPECT_EQ(before, one.hess.data());
+}
+
+TEST(MembraneBatch, StoresTheElementTermsOfEveryModel) {
+  const Strip strip(40);
+  const std::size_t n = strip.triangles.size();
+  std::vector<double> mu(n), lambda(n);
+  for (std::size_t e = 0; e < n; ++e) {
+    mu[e] = 1 + 0.1 * static_cast<double>(e);
+    lambda[e] = 2 - 0.01 * static_cast<double>(e);
+  }
+  for (const auto& model : membrane_models<double>()) {
+    for (const bool planar : {false, true}) {
+      const MembraneBatch batch(model.name, strip.triangles, strip.rest, mu, lambda, planar);
+      ASSERT_EQ(batch.size(), n);
+      expect_consistent(batch, strip.deformed);
+      LocalTerms out;
+      batch.derivatives(strip.deformed, out);
+      const auto& t = strip.triangles[7];
+      const Vec3d rest[3] = {strip.rest.col(t[0]), strip.rest.col(t[1]), strip.rest.col(t[2])};
+      const Vec3d x[3] = {strip.deformed.col(t[0]), strip.deformed.col(t[1]), strip.deformed.col(t[2])};
+      const Vec3d warp = rest[1] - rest[0];
+      const auto data = planar ? planar_triangle_rest<double>(rest, warp) : triangle_rest<double>(rest, warp);
+      const auto terms =
+          (planar ? model.terms_planar : model.terms)(data, x, mu[7], lambda[7], Projection::psd);
+      expect_stored(out, 7, terms.energy, terms.grad, terms.hess);
+    }
+  }
+}
+
+TEST(MembraneBatch, WarpDirectionReachesBaraffWitkin) {
+  const Strip strip(40);
+  const std::vector<double> ones(strip.triangles.size(), 1.0);
+  const Vec3d warp(1, 1, 0);
+  const MembraneBatch along_edge("baraff_witkin", strip.triangles, strip.rest, ones, ones);
+  const MembraneBatch along_warp("baraff_witkin", strip.triangles, strip.rest, ones, ones, false, &warp);
+  std::vector<double> a(along_edge.size()), b(along_warp.size());
+  along_edge.values(strip.deformed, a.data());
+  along_warp.values(strip.deformed, b.data());
+  EXPECT_GT(std::abs(a[3] - b[3]), 1e-4);
+}
+
+TEST(SpringBatch, StoresTheElementTerms) {
+  const Strip strip(100);
+  std::vector<double> k(strip.edges.size(), 3.0);
+  k[5] = 4.0;
+  const SpringBatch batch(strip.edges, strip.rest, k);
+  expect_consistent(batch, strip.deformed);
+  LocalTerms out;
+  batch.derivatives(strip.deformed, out);
+  const auto [a, b] = strip.edges[5];
+  const Vec3d x[2] = {strip.deformed.col(a), strip.deformed.col(b)};
+  const double rest_length = (strip.rest.col(b) - strip.rest.col(a)).norm();
+  const auto terms = spring_terms<double>(x, 4.0, rest_length, Projection::psd);
+  expect_stored(out, 5, terms.energy, terms.grad, terms.hess);
+}
+
+TEST(HingeBatch, StoresTheElementTerms) {
+  const Strip strip(80);
+  std::vector<double> k(strip.hinges.size(), 0.5);
+  k[9] = 0.25;
+  const std::vector<double> rest_angle = hinge_angles(strip.hinges, strip.rest);
+  const HingeBatch batch(strip.hinges, k, rest_angle);
+  expect_consistent(batch, strip.deformed);
+  LocalTerms out;
+  batch.derivatives(strip.deformed, out);
+  const auto [e0, e1, v0, v1] = strip.hinges[9];
+  const Vec3d x[4] = {strip.deformed.col(e0), strip.deformed.col(e1), strip.deformed.col(v0),
+                      strip.deformed.col(v1)};
+  const auto terms = hinge_terms<double>(x, 0.25, rest_angle[9], Projection::psd);
+  expect_stored(out, 9, terms.energy, terms.grad, terms.hess);
+  std::vector<double> at_rest(batch.size());
+  batch.values(strip.rest, at_rest.data());
+  EXPECT_EQ(*std::max_element(at_rest.begin(), at_rest.end()), 0);
+}
+
+TEST(Batches, BadInputIsAConfigError) {
+  const Strip strip(3);
+  const std::vector<double> ones(strip.triangles.size(), 1.0), short_column(1, 1.0);
+  EXPECT_THROW(MembraneBatch("corotationel", strip.triangles, strip.rest, ones, ones), ConfigError);
+  EXPECT_THROW(MembraneBatch("arap", strip.triangles, strip.rest, short_column, ones), ConfigError);
+  EXPECT_THROW(MembraneBatch("arap", strip.triangles, Positions::Zero(3, strip.rest.cols()), ones, ones),
+               ConfigError);
+  EXPECT_THROW(SpringBatch(strip.edges, strip.rest, short_column), ConfigError);
+  EXPECT_THROW(HingeBatch(strip.hinges, short_column, short_column), ConfigError);
+}
+
+TEST(Batches, EmptyIsAllowed) {
+  const SpringBatch batch({}, Positions(3, 0), {});
+  LocalTerms out;
+  batch.derivatives(Positions(3, 0), out);
+  EXPECT_EQ(batch.size(), 0u);
+  EXPECT_TRUE(out.hess.empty());
+}
+
+}  // namespace
+}  // namespace bb::test

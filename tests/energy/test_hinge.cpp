@@ -1,0 +1,162 @@
+// Hinges: angle, exact derivatives at flat, obtuse, folded and inverted shapes, wrapping, projection.
+#include <gtest/gtest.h>
+
+#include <numbers>
+
+#include "core/energy/hinge.hpp"
+#include "tests/energy/energy_cases.hpp"
+
+namespace bb::test {
+namespace {
+
+constexpr double stiffness = 0.7;
+constexpr double pi = std::numbers::pi;
+
+/// Edge along x; v0 at (a, h, 0), v1 at distance h1 turned so that the angle is `angle`; then rotated and
+/// shifted.
+Vec<double, 12> hinge_state(double angle, double a = 0.4, double h = 0.8, double b = 0.5, double h1 = 0.6) {
+  Vec<double, 12> x;
+  x << 0, 0, 0, 1.2, 0, 0, a, h, 0, b, -h1 * std::cos(angle), -h1 * std::sin(angle);
+  std::mt19937 random(1);
+  const Mat3d rotation = random_rotation(random);
+  for (int i = 0; i < 4; ++i) x.segment<3>(3 * i) = rotation * x.segment<3>(3 * i) + Vec3d(0.3, -0.2, 0.5);
+  return x;
+}
+
+struct Case {
+  const char* name;
+  Vec<double, 12> x;
+  double angle, rest_angle;
+};
+
+const Case cases[] = {
+    {"flat, at rest", hinge_state(0), 0, 0},
+    {"flat, bent rest", hinge_state(0), 0, 0.4},
+    {"nearly flat", hinge_state(1e-6), 1e-6, 0},
+    {"bent", hinge_state(0.7), 0.7, 0.1},
+    {"bent the other way", hinge_state(-1.3), -1.3, 0.1},
+    {"obtuse triangles", hinge_state(0.5, -0.9, 0.3, 2.5, 0.2), 0.5, 0},
+    {"folded", hinge_state(3.1), 3.1, 0},
+    {"folded past the wrap", hinge_state(-3.1), -3.1, 3.0},
+    {"sliver", hinge_state(0.9, 0.4, 1e-3, 0.5, 0.6), 0.9, 0},
+};
+
+double angle_of(const Vec<double, 12>& x) { return hinge_angle<double>(Points<double, 4>(x).x); }
+
+TEST(Hinge, AngleAndItsSign) {
+  for (const Case& c : cases) EXPECT_NEAR(angle_of(c.x), c.angle, 1e-12) << c.name;
+  const Vec3d raised[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 0.25}};
+  EXPECT_NEAR(hinge_angle<double>(raised), -std::atan(0.25), 1e-15);
+}
+
+TEST(Hinge, AngleKeepsItsDigitsNearFlat) {
+  const Vec3d raised[4] = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, -1, 1e-12}};
+  EXPECT_NEAR(hinge_angle<double>(raised), -1e-12, 1e-27);
+}
+
+TEST(Hinge, AngleDerivatives) {
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    const Vec<Long, 9> x = [&] {
+      Vec<Long, 9> r;
+      for (int i = 0; i < 3; ++i)
+        r.segment<3>(3 * i) = (c.x.segment<3>(3 * (i + 1)) - c.x.head<3>()).cast<Long>();
+      return r;
+    }();
+    const auto points = [](const Vec<Long, 9>& r) {
+      Vec<Long, 12> full;
+      full << 0, 0, 0, r;
+      return Points<Long, 4>(full);
+    };
+    // the independent angle: from the parts of v0 and v1 at right angles to the edge
+    const auto angle = [](const Vec<Long, 9>& r) {
+      const Vec<Long, 3> e = r.head<3>().normalized();
+      const Vec<Long, 3> a = r.segment<3>(3) - e.dot(r.segment<3>(3)) * e,
+                         b = e.dot(r.tail<3>()) * e - r.tail<3>();
+      return Vec<Long, 1>(std::atan2(e.dot(a.cross(b)), a.dot(b)));
+    };
+    const auto gradient = [&](const Vec<Long, 9>& r) { return hinge_angle_terms<Long>(points(r).x).grad; };
+    const auto terms = hinge_angle_terms<double>(Points<double, 4>(c.x).x);
+    const Mat<double, 1, 9> row = terms.grad.transpose();
+    EXPECT_LT((jacobian_error<9, 1>(angle, x, row)), 1e-9);
+    EXPECT_LT((jacobian_error<9, 9>(gradient, x, terms.hess)), 1e-9);
+  }
+}
+
+TEST(Hinge, EnergyDerivativesAndProjection) {
+  for (const Case& c : cases) {
+    SCOPED_TRACE(c.name);
+    const Points<double, 4> p(c.x);
+    const auto exact = hinge_terms<double>(p.x, stiffness, c.rest_angle, Projection::none);
+    const auto psd = hinge_terms<double>(p.x, stiffness, c.rest_angle, Projection::psd);
+    const auto value = [&](const Vec<Long, 12>& x) {
+      return Vec<Long, 1>(hinge_value<Long>(Points<Long, 4>(x).x, stiffness, c.rest_angle));
+    };
+    const auto gradient = [&](const Vec<Long, 12>& x) {
+      return hinge_terms<Long>(Points<Long, 4>(x).x, stiffness, c.rest_angle, Projection::none).grad;
+    };
+    const double scale = exact.hess.cwiseAbs().maxCoeff();
+    EXPECT_EQ(exact.energy, hinge_value<double>(p.x, stiffness, c.rest_angle));
+    if (c.angle == c.rest_angle) {
+      EXPECT_LT(exact.grad.norm(), 1e-14);
+    } else {
+      EXPECT_LT((jacobian_error<12, 1>(value, c.x.cast<Long>(), exact.grad.transpose())), 1e-8);
+    }
+    EXPECT_LT((jacobian_error<12, 12>(gradient, c.x.cast<Long>(), exact.hess)), 1e-8);
+    EXPECT_EQ(exact.hess, exact.hess.transpose());
+    EXPECT_EQ(psd.hess, psd.hess.transpose());
+    EXPECT_LT(relative_difference(psd.hess, clamped<12>(exact.hess), scale), 1e-10);
+    EXPECT_EQ(psd.grad, exact.grad);
+  }
+}
+
+TEST(Hinge, SomeStateIsIndefinite) {
+  const Points<double, 4> p(cases[3].x);
+  const auto exact = hinge_terms<double>(p.x, stiffness, 0.1, Projection::none);
+  const auto psd = hinge_terms<double>(p.x, stiffness, 0.1, Projection::psd);
+  EXPECT_GT((exact.hess - psd.hess).norm(), 0.01);
+}
+
+TEST(Hinge, DeviationIsTheShortWayRound) {
+  EXPECT_NEAR(hinge_deviation(-3.1, 3.0), 2 * pi - 6.1, 1e-15);
+  EXPECT_NEAR(hinge_deviation(3.1, -3.0), 6.1 - 2 * pi, 1e-15);
+  EXPECT_EQ(hinge_deviation(0.5, 0.25), 0.25);
+  EXPECT_EQ(hinge_deviation(0.0, pi), pi);
+  EXPECT_EQ(hinge_deviation(pi, 0.0), pi);
+}
+
+TEST(Hinge, NoForceOnTheWholeAndNoTorque) {
+  for (const Case& c : cases) {
+    if (c.angle == c.rest_angle) continue;
+    SCOPED_TRACE(c.name);
+    const auto terms =
+        hinge_terms<double>(Points<double, 4>(c.x).x, stiffness, c.rest_angle, Projection::psd);
+    Vec3d force = Vec3d::Zero(), torque = Vec3d::Zero();
+    for (int i = 0; i < 4; ++i) {
+      force += terms.grad.segment<3>(3 * i);
+      torque += c.x.segment<3>(3 * i).cross(terms.grad.segment<3>(3 * i));
+    }
+    const double scale = terms.grad.norm();
+    EXPECT_GT(scale, 0);
+    EXPECT_LT(force.norm(), 1e-13 * scale);
+    EXPECT_LT(torque.norm(), 1e-12 * scale);
+  }
+}
+
+TEST(Hinge, FloatAgreesWithDouble) {
+  for (const int i : {1, 3, 4, 5}) {
+    const Case& c = cases[i];
+    SCOPED_TRACE(c.name);
+    const auto exact =
+        hinge_terms<double>(Points<double, 4>(c.x).x, stiffness, c.rest_angle, Projection::psd);
+    const auto single =
+        hinge_terms<float>(Points<float, 4>(c.x).x, float(stiffness), float(c.rest_angle), Projection::psd);
+    const double scale = exact.hess.cwiseAbs().maxCoeff();
+    EXPECT_NEAR(static_cast<double>(single.energy), exact.energy, 1e-5 * exact.energy);
+    EXPECT_LT(relative_difference(single.grad.cast<double>(), exact.grad, scale), 1e-4);
+    EXPECT_LT(relative_difference(single.hess.cast<double>(), exact.hess, scale), 1e-4);
+  }
+}
+
+}  // namespace
+}  // namespace bb::test

@@ -1,0 +1,141 @@
+// Strain limit of a whole mesh: columns, terms, step bound over elements, kappa policies.
+#include <gtest/gtest.h>
+#include <tbb/global_control.h>
+
+#include "core/energy/strain_limit_batch.hpp"
+#include "core/math/error.hpp"
+#include "tests/energy/energy_cases.hpp"
+#include "tests/energy/strain_shapes.hpp"
+#include "tests/energy/strip.hpp"
+
+namespace bb::test {
+namespace {
+
+const BatchOf<LogStandIn> barrier;
+
+StrainLimitBatch make_batch(const Strip& strip, double onset, double width, bool planar = false) {
+  const std::size_t n = strip.triangles.size();
+  return StrainLimitBatch(strip.triangles, strip.rest, std::vector<double>(n, onset),
+                          std::vector<double>(n, width), planar);
+}
+
+TEST(StrainLimitBatch, ColumnsAndTermsAreThoseOfTheElements) {
+  const Strip strip(50);
+  for (const bool planar : {false, true}) {
+    StrainLimitBatch batch = make_batch(strip, 0.1, 0.9, planar);
+    std::vector<double> kappa(batch.size()), energy(batch.size());
+    batch.fixed_stiffness(5.0, kappa.data());
+    LocalTerms out;
+    batch.derivatives(strip.deformed, barrier, kappa.data(), out);
+    batch.values(strip.deformed, barrier, kappa.data(), energy.data());
+    EXPECT_GT(batch.n_active(), 5u);
+    EXPECT_LT(batch.n_active(), batch.size());
+    EXPECT_GT(batch.min_gap(), 0);
+    EXPECT_NEAR(batch.min_gap(), 0.9 - (batch.max_stretch() - 1 - 0.1), 1e-15);
+
+    double gradient_norm = 0;
+    for (std::size_t e = 0; e < batch.size(); ++e) {
+      const double expected = kappa[e] * (LogStandIn{}(batch.gaps()[2 * e], 0.9).b +
+                                          LogStandIn{}(batch.gaps()[2 * e + 1], 0.9).b);
+      EXPECT_NEAR(energy[e], expected, 1e-15);
+      EXPECT_NEAR(out.energy[e], expected, 1e-15);
+      const bool active = batch.sigma()[2 * e] > 1.1;
+      double norm = 0;
+      for (std::size_t i = 0; i < 9; ++i) norm += std::abs(out.grad[9 * e + i]);
+      EXPECT_EQ(active, norm > 0) << e;
+      gradient_norm += norm;
+    }
+    EXPECT_GT(gradient_norm, 0);
+  }
+}
+
+TEST(StrainLimitBatch, GradientIsTheDerivativeOfTheSum) {
+  const Strip strip(10);
+  StrainLimitBatch batch = make_batch(strip, 0.1, 0.9);
+  std::vector<double> kappa(batch.size(), 2.0), energy(batch.size());
+  LocalTerms out;
+  batch.derivatives(strip.deformed, barrier, kappa.data(), out);
+  Positions gradient = Positions::Zero(3, strip.rest.cols());
+  for (std::size_t slot = 0; slot < batch.vertices().size(); ++slot) {
+    for (int a = 0; a < 3; ++a)
+      gradient(a, batch.vertices()[slot]) += out.grad[3 * slot + static_cast<std::size_t>(a)];
+  }
+  const auto total = [&](const Positions& x) {
+    batch.values(x, barrier, kappa.data(), energy.data());
+    double sum = 0;
+    for (const double value : energy) sum += value;
+    return sum;
+  };
+  const Positions direction = Positions::Random(3, strip.rest.cols());
+  const double exact = gradient.cwiseProduct(direction).sum();
+  double best = 1;
+  for (double h = 1e-3; h > 1e-7; h /= 10) {
+    const double slope =
+        (total(strip.deformed + h * direction) - total(strip.deformed - h * direction)) / (2 * h);
+    best = std::min(best, std::abs(slope - exact) / std::abs(exact));
+  }
+  EXPECT_GT(std::abs(exact), 1e-3);
+  EXPECT_LT(best, 1e-7);
+}
+
+TEST(StrainLimitBatch, InfiniteBeyondTheLimit) {
+  const Strip strip(10);
+  StrainLimitBatch batch = make_batch(strip, 0.0, 0.05);
+  std::vector<double> kappa(batch.size(), 2.0), energy(batch.size());
+  batch.values(strip.deformed, barrier, kappa.data(), energy.data());
+  EXPECT_LT(batch.min_gap(), 0);
+  EXPECT_EQ(*std::max_element(energy.begin(), energy.end()), std::numeric_limits<double>::infinity());
+}
+
+TEST(StrainLimitBatch, StepBoundIsTheLastFeasibleNumberOfTheWholeMesh) {
+  const Strip strip(60);
+  for (const bool planar : {false, true}) {
+    StrainLimitBatch batch = make_batch(strip, 0.02, 0.1, planar);
+    const Positions dx = 3 * (strip.deformed - strip.rest);
+    const double alpha = batch.step_bound(strip.rest, dx);
+    ASSERT_GT(alpha, 0);
+    ASSERT_LT(alpha, 1);
+    batch.measure(strip.rest + alpha * dx);
+    EXPECT_GT(batch.min_gap(), 0);
+    batch.measure(strip.rest + std::nextafter(alpha, 1.0) * dx);
+    EXPECT_LE(batch.min_gap(), 0);
+    const tbb::global_control serial(tbb::global_control::max_allowed_parallelism, 1);
+    EXPECT_EQ(batch.step_bound(strip.rest, dx), alpha);
+    EXPECT_EQ(batch.step_bound(strip.rest, dx, alpha / 2), alpha / 2);
+    EXPECT_EQ(batch.step_bound(strip.rest, 1e-3 * dx), 1);
+  }
+}
+
+TEST(StrainLimitBatch, StiffnessPolicies) {
+  const Strip strip(10);
+  StrainLimitBatch batch = make_batch(strip, 0.1, 0.9);
+  const std::size_t n = batch.size();
+  std::vector<double> kappa(n);
+  batch.fixed_stiffness(5.0, kappa.data());
+  EXPECT_EQ(kappa[3], 5.0 * batch.rests()[3].area);
+
+  batch.measure(strip.deformed);
+  std::vector<double> hess(81 * n, 0.0), element_mass(n, 0.3);
+  for (std::size_t e = 0; e < n; ++e) {
+    for (std::size_t i = 0; i < 9; ++i) hess[81 * e + 10 * i] = 1 + static_cast<double>(e);
+  }
+  const std::vector<double> mass(static_cast<std::size_t>(strip.rest.cols()), 0.01);
+  batch.elastic_stiffness(strip.deformed, hess.data(), mass.data(), element_mass.data(), {}, kappa.data());
+  const auto& t = strip.triangles[4];
+  Vec3d centroid = Vec3d::Zero();
+  for (const int v : t) centroid += strip.deformed.col(v) / 3;
+  double w_sq = 0;
+  for (const int v : t) w_sq += (strip.deformed.col(v) - centroid).squaredNorm();
+  const double y = batch.gaps()[8];
+  EXPECT_NEAR(kappa[4], 5 * w_sq + 0.3 / (y * y), 1e-14);
+}
+
+TEST(StrainLimitBatch, BadColumnsAreConfigErrors) {
+  const Strip strip(3);
+  const std::vector<double> good(strip.triangles.size(), 0.1), bad(strip.triangles.size(), 0.0);
+  EXPECT_THROW(StrainLimitBatch(strip.triangles, strip.rest, good, bad), ConfigError);
+  EXPECT_THROW(StrainLimitBatch(strip.triangles, strip.rest, {0.1}, good), ConfigError);
+}
+
+}  // namespace
+}  // namespace bb::test
