@@ -19,6 +19,13 @@ std::array<mpz_class, 3> cross(const std::array<mpz_class, 3>& a, const std::arr
 }
 
 template <std::size_t N>
+std::array<mpz_class, N> minus(const std::array<mpz_class, N>& a, const std::array<mpz_class, N>& b) {
+  std::array<mpz_class, N> out;
+  for (std::size_t k = 0; k < N; ++k) out[k] = a[k] - b[k];
+  return out;
+}
+
+template <std::size_t N>
 std::array<mpz_class, N> integers(const Vec<double, static_cast<int>(N)>& v) {
   const std::vector<mpz_class> z = to_integers({v.data(), N});
   std::array<mpz_class, N> out;
@@ -56,17 +63,38 @@ typename ExactPolygon<Pair>::Integers ExactPolygon<Pair>::corner(int k, std::int
 }
 
 template <class Pair>
-bool ExactPolygon<Pair>::separates(const Point& direction, const TimeSpan& span) const {
-  const Integers n = integers<static_cast<std::size_t>(dim)>(direction);
+bool ExactPolygon<Pair>::separates(const Integers& direction, const TimeSpan& span) const {
   int side = 0;
   for (int k = 0; k < n_corners; ++k) {
     for (std::int64_t t : {span.begin, span.end}) {
-      const int s = sgn(dot(n, corner(k, t)));
+      const int s = sgn(dot(direction, corner(k, t)));
       if (s == 0 || s == -side) return false;
       side = s;
     }
   }
   return true;
+}
+
+template <class Pair>
+bool ExactPolygon<Pair>::any_separates(const TimeSpan& span) const {
+  const std::int64_t t = span.middle();
+  std::array<Integers, static_cast<std::size_t>(n_corners)> at, side;
+  for (std::size_t k = 0; k < at.size(); ++k) at[k] = corner(static_cast<int>(k), t);
+  for (std::size_t k = 0; k < at.size(); ++k) side[k] = minus(at[(k + 1) % at.size()], at[k]);
+  if constexpr (dim == 3) {
+    if (separates(cross(side[0], side[1]), span)) return true;
+  } else {
+    if (separates({mpz_class(-side[0][1]), side[0][0]}, span)) return true;
+  }
+  for (std::size_t k = 0; k < at.size(); ++k) {
+    if (separates(at[k], span)) return true;
+    // The part of the corner orthogonal to the side, times the side's squared length.
+    const mpz_class length_sq = dot(side[k], side[k]), along = dot(at[k], side[k]);
+    Integers foot;
+    for (std::size_t i = 0; i < foot.size(); ++i) foot[i] = at[k][i] * length_sq - side[k][i] * along;
+    if (separates(foot, span)) return true;
+  }
+  return false;
 }
 
 template <class Pair>

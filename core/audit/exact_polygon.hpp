@@ -17,8 +17,9 @@ class ExactPolygon {
 
   explicit ExactPolygon(const PairMotion<Pair>& m);
 
-  /// MovingPolygon::separates without allowance: exact for the doubles in `direction`.
-  bool separates(const Point& direction, const TimeSpan& span) const;
+  /// True only if one of the directions of MovingPolygon::any_direction, taken at the middle of the span
+  /// without rounding, strictly separates the origin from the polygon during the whole span.
+  bool any_separates(const TimeSpan& span) const;
 
   /// True only if the origin provably passes through the polygon's interior within the span: seen along the
   /// fixed `direction` it stays strictly inside, and it is on opposite sides of the polygon's plane at the
@@ -29,6 +30,7 @@ class ExactPolygon {
   /// 2^50 (1 - t) begin + 2^50 t end, a positive multiple of the corner.
   Integers corner(int k, std::int64_t t) const;
   int plane_side(std::int64_t t) const;
+  bool separates(const Integers& direction, const TimeSpan& span) const;
 
   std::array<Integers, static_cast<std::size_t>(n_corners)> begin_, end_;
 };

@@ -164,6 +164,10 @@ double ContactSystem::find_rows(const Positions& x, ContactTable& rows, Mollifie
 StepBound ContactSystem::step_bound(const Positions& x0, const Positions& x1) const {
   const Data& data = *data_;
   StepBound bound;
+  if (!(x0.allFinite() && x1.allFinite())) {
+    bound.alpha = 0;
+    return bound;
+  }
   const auto reduce = [&](const StepBound& part) { combine_bounds(bound, part); };
   for_each_kind(data.candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
     Data::over<StepBound>(
@@ -181,7 +185,7 @@ ContactSystem::Counts ContactSystem::candidate_counts() const {
           c.obstacle.size()};
 }
 
-bool ContactSystem::feasible(const Positions& x) const { return !data_->first_overlap(x); }
+bool ContactSystem::feasible(const Positions& x) const { return x.allFinite() && !data_->first_overlap(x); }
 
 std::optional<ContactSystem::Overlap> ContactSystem::check_initial(const Positions& x) {
   update_candidates(x, x);

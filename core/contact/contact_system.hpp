@@ -54,10 +54,12 @@ class ContactSystem {
 
   /// Rows with d < d_hat_row at x, merged with multiplicity, sorted; kappa, b, db, d2b are left at 0.
   /// Requires x to lie in the swept region of the last update_candidates. Returns the smallest gap over all
-  /// rows (infinity without rows); a value <= 0 means that x is not feasible.
+  /// rows (infinity without rows); a value <= 0 means that x is not feasible. x that is not finite: no rows
+  /// and -infinity.
   double find_rows(const Positions& x, ContactTable& rows, MollifiedTable& mollified) const;
 
-  /// All non-adjacent pairs, whatever rule keeps them from having a row.
+  /// All non-adjacent pairs, whatever rule keeps them from having a row. A motion that is not finite: alpha
+  /// 0.
   StepBound step_bound(const Positions& x0, const Positions& x1) const;
 
   struct Counts {
@@ -69,7 +71,7 @@ class ContactSystem {
   struct Overlap {
     ContactKind kind;
     ContactKey key;  // all vertices of the pair
-    double gap;      // m, <= 0 (or not a number)
+    double gap;      // m, <= 0
     std::string text;
   };
   /// Whether every candidate pair of the last update_candidates has a gap > 0 at x: for committed states.

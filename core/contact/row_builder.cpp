@@ -4,20 +4,11 @@
 #include <oneapi/tbb/parallel_sort.h>
 
 #include <algorithm>
-#include <cmath>
 
 #include "core/contact/chunks.hpp"
 #include "core/geometry/edge_edge_mollifier.hpp"
 
 namespace bb {
-
-namespace {
-/// The smaller gap; one that is not a number counts as the worst.
-void lower(double& min_gap, double gap) {
-  if (std::isnan(gap)) gap = -std::numeric_limits<double>::infinity();
-  min_gap = std::min(min_gap, gap);
-}
-}  // namespace
 
 bool RowBuilder::moves(const ContactRow& row) const {
   for (std::size_t k = 0; k < 4 && row.stencil[k] >= 0; ++k) {
@@ -44,7 +35,7 @@ void RowBuilder::add_pair(const Positions& x, IndexPair index, Part& part) const
                                 Region::ea_eb, pair.law),
                        eps};
         if (!moves(m.row)) return;
-        lower(part.min_gap, m.row.d);
+        part.min_gap = std::min(part.min_gap, m.row.d);
         part.mollified.push_back(m);
         return;
       }
@@ -53,7 +44,7 @@ void RowBuilder::add_pair(const Positions& x, IndexPair index, Part& part) const
   const ContactRow row =
       make_row(pair.vertex.data(), closest.weights.data(), closest.r, closest.d, closest.region, pair.law);
   if (!moves(row)) return;
-  lower(part.min_gap, row.d);
+  part.min_gap = std::min(part.min_gap, row.d);
   part.rows.push_back(row);
 }
 
@@ -75,12 +66,17 @@ void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) co
   row.offset = law.offset;
   row.curvature = gap.curvature;
   row.flat = gap.flat;
-  lower(part.min_gap, row.d);
+  part.min_gap = std::min(part.min_gap, row.d);
   part.rows.push_back(row);
 }
 
 double RowBuilder::build(const Positions& x, const Candidates& candidates, ContactTable& rows,
                          MollifiedTable& mollified) {
+  if (!x.allFinite()) {  // boxes and comparisons mean nothing then
+    rows.resize(0);
+    mollified.resize(0);
+    return -std::numeric_limits<double>::infinity();
+  }
   std::size_t n_parts = 0;
   const auto in_parts = [&](const std::vector<IndexPair>& pairs, const auto& add) {
     const std::size_t n = n_chunks(pairs.size());

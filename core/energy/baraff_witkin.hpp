@@ -33,9 +33,9 @@ struct BaraffWitkin {
       const Vec<T, R> direction = inverse * a;
       const T transverse = lame_mu * (T(1) - inverse);
       out.pk1.col(k) = lame_mu * (length - T(1)) * direction + lame_lambda * shear * b;
-      out.hess.template block<R, R>(R * k, R * k) = transverse * Mat<T, R, R>::Identity() +
-                                                    lame_mu * inverse * direction * direction.transpose() +
-                                                    lame_lambda * b * b.transpose();
+      out.hess.template block<R, R>(R * k, R * k) =
+          transverse * Mat<T, R, R>::Identity() + (lame_mu * inverse) * (direction * direction.transpose()) +
+          lame_lambda * (b * b.transpose());
     }
     const Mat<T, R, R> cross =
         lame_lambda * (shear * Mat<T, R, R>::Identity() + f.col(1) * f.col(0).transpose());

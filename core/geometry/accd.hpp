@@ -19,7 +19,7 @@ struct AccdResult {
   bool hit;               // false: all of [0, 1] is proven to stay above the stop level
   int probes;             // closest-point evaluations
   bool capped;            // stopped by max_probes: toi is the last proven time
-  bool overlap_at_start;  // gap <= 0 at time 0 (or not a number); then toi = 0
+  bool overlap_at_start;  // gap <= 0 at time 0; then toi = 0
 };
 
 namespace detail {
@@ -136,7 +136,7 @@ BB_HD inline T proven_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3
 /// @param max_probes  bound on the work of one query; reached only by pairs that slide just above the stop
 /// level
 /// @return toi > 0 unless the pair starts below the ulp floor; at toi the gap is at least the stop level
-/// Errors: none; a start or motion that is not finite gives hit, toi 0 or the last proven time.
+/// Errors: none; a motion that is not finite (or whose squares are not) gives hit and toi 0.
 /// Host-device.   Cost: 1 to 5 probes are usual; no allocation.
 /// Source: Li, Kaufman, Jiang 2021 (codimensional IPC), section 4 for the speed bound over all of a pair; the
 /// directional bound as in Ando's contact solver (2024, ppf-contact-solver).
@@ -149,6 +149,8 @@ BB_HD inline AccdResult<T> accd(const Mat<T, 3, pair_points(K)>& x0, const Mat<T
   // Centring, the motion and the distance each round by about an ulp of the local size in every coordinate.
   const T rounding = 4 * eps * motion.local;
   const T ulp_floor = 16 * eps * motion.largest;
+  const T extent = motion.x.squaredNorm() + motion.dx.squaredNorm();
+  if (!(extent < std::numeric_limits<T>::infinity())) return {T(0), true, 0, false, false};
   const T speed = detail::relative_speed<K, T>(motion.dx) * (1 + 4 * eps);
 
   T t = 0, level = 0;

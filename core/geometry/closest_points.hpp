@@ -151,6 +151,7 @@ BB_HD inline Closest<T, 4> closest_point_triangle(const Mat<T, 3, 4>& x) {
 
   Closest<T, 4> best;
   best.weights.setZero();
+  best.r = x.rowwise().sum();  // stands only when nothing is comparable: x is not finite
   best.d = std::numeric_limits<T>::infinity();
   best.region = Region::p_t0;
   const Vec<T, 3> q = x.col(0) - x.col(a), e = x.col(b) - x.col(a), f = x.col(c) - x.col(a);
@@ -181,6 +182,7 @@ template <class T>
 BB_HD inline Closest<T, 4> closest_edge_edge(const Mat<T, 3, 4>& x) {
   Closest<T, 4> best;
   best.weights.setZero();
+  best.r = x.rowwise().sum();  // stands only when nothing is comparable: x is not finite
   best.d = std::numeric_limits<T>::infinity();
   best.region = Region::ea0_eb0;
   const Vec<T, 3> q = x.col(0) - x.col(2), u = x.col(1) - x.col(0), v = x.col(3) - x.col(2);
@@ -205,7 +207,7 @@ BB_HD inline Closest<T, 4> closest_edge_edge(const Mat<T, 3, 4>& x) {
 }
 
 /// Closest points of a pair of kind K. @param x [3 x N] its points in the order of pair.hpp, m.
-/// Errors: none for finite x; a non-finite x gives a d that is not below any bound (NaN or infinite).
+/// Errors: none for finite x; what a non-finite x gives means nothing.
 /// Accuracy: d and r to a few eps of the pair's size (not of its distance from the origin); the direction of
 /// r to a few eps on points and edges, eps/sin of the two edges' angle in interior regions.
 template <PairKind K, class T>

@@ -11,6 +11,8 @@ namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTol = 2e-4;      // of an eigenvalue, relative; half of the 1e-3 promised is left to spare
+constexpr double kProof = 8e-4;    // of an eigenvalue, relative: distance of a shift that certifies it
+constexpr int kMaxProofs = 6;      // factorisations that certify one end
 constexpr int kMaxSolves = 25;     // tier 2
 constexpr int kMaxProducts = 40;   // tier 2
 constexpr int kShiftedSolves = 5;  // round a shifted factor, plus one that polishes the vector
@@ -78,7 +80,8 @@ struct End {
   double lambda = kNan;
   VecXd vector;
   bool resolved = false;
-  double uncertainty = 0;  // residual relative to the eigenvalue of the operator in use
+  double uncertainty = 0;       // residual relative to the eigenvalue of the operator in use
+  double proven_inside = kNan;  // the end is known to lie beyond this; NaN when nothing is proven
 };
 
 void take(const LanczosEnd& ritz, End& end) {
@@ -87,26 +90,44 @@ void take(const LanczosEnd& ritz, End& end) {
   end.uncertainty = ritz.residual / std::abs(ritz.value);
 }
 
+/// Where a factor proves the end of the spectrum to lie: between `outside` (the factor exists) and `inside`.
+/// Halved until it is kProof wide, first tried right beyond `inside`, where a Ritz value usually sits.
+void certify(ScaledMatrix& b, double sign, double outside, End& end) {
+  double inside = end.lambda;
+  const auto wide = [&] { return std::abs(inside - outside) > kProof * std::abs(inside); };
+  const double close = inside * (1 - sign * kProof);
+  for (int test = 0; test < kMaxProofs && wide(); ++test) {
+    const double sigma = test == 0 ? close : inside + (outside - inside) / 2;
+    (b.factorize_shifted(sign, sigma) ? outside : inside) = sigma;
+  }
+  end.resolved = !wide();
+  end.proven_inside = inside;
+  if (inside != end.lambda) end.lambda = inside + (outside - inside) / 2;
+}
+
 /// Shifts just beyond the end that `end` approximates from inside and repeats Lanczos from its vector. A
-/// factor that exists proves the shift to lie beyond the whole spectrum.
+/// factor that exists proves the shift to lie beyond the whole spectrum, one that does not exist that it lies
+/// inside.
 /// @param sign +1 the small end, A - sigma D; -1 the large end, sigma D - A
 void resolve_by_shift(ScaledMatrix& b, double sign, End& end) {
-  double width = std::clamp(4 * end.uncertainty, 1e-3, 0.3);
+  // Where eigenvalues lie dense the error is about a third of the residual; a failed factorisation tells if
+  // not.
+  double width = std::clamp(end.uncertainty, 5e-4, 0.3);
   double sigma = end.lambda * (1 - sign * width);
   if (!b.factorize_shifted(sign, sigma)) {
-    width = std::min(8 * width, 0.9);
+    width = std::min(6 * width, 0.9);
     sigma = end.lambda * (1 - sign * width);
     if (!b.factorize_shifted(sign, sigma)) return;
   }
   const auto op = [&b](const VecXd& x, VecXd& y) { b.solve(b.matrix().shifted, x, y); };
   // d lambda / lambda = width * d theta / theta, so the operator's own tolerance may be wider by 1 / width.
-  const double tol = kTol / width;
-  const LanczosEnd ritz = lanczos_largest(op, end.vector, kShiftedSolves, std::min(tol, 0.05));
+  const double tol = std::min(kTol / width, 0.05);
+  const LanczosEnd ritz = lanczos_largest(op, end.vector, kShiftedSolves, tol);
   if (!(ritz.value > 0)) return;
-  end.lambda = sigma + sign / ritz.value;
-  end.uncertainty = width * ritz.residual / ritz.value;
-  end.resolved = ritz.converged(tol) || width <= 2 * kTol;
   b.solve(b.matrix().shifted, ritz.vector, end.vector);
+  end.lambda = end.proven_inside = sigma + sign / ritz.value;
+  end.resolved = ritz.converged(tol);
+  if (!end.resolved) certify(b, sign, sigma, end);
 }
 
 End largest_end(ScaledMatrix& b, std::uint64_t seed, int n_products, double& smallest_ritz) {
@@ -215,9 +236,11 @@ ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& sca
   top.vector.normalize();
   const double rayleigh_min = b.rayleigh(bottom.vector), rayleigh_max = b.rayleigh(top.vector);
   // Solves leave an error of eps cond in 1 / theta; the Rayleigh quotient does not, once its vector is
-  // polished.
-  e.lambda_min = bottom.resolved ? rayleigh_min : bottom.lambda;
-  e.lambda_max = std::max(top.lambda, rayleigh_max);
+  // polished. It stands unless a factorisation has proven more.
+  const bool bottom_stands = bottom.resolved && !(rayleigh_min > bottom.proven_inside * (1 + 1e-12));
+  e.lambda_min = bottom_stands ? rayleigh_min : bottom.lambda;
+  const bool top_stands = !(rayleigh_max < top.proven_inside * (1 - 1e-12));
+  e.lambda_max = top_stands ? rayleigh_max : top.lambda;
   if (e.factorizations > 0) e.method = "shift_invert, shifted to the end of the spectrum";
   classify(e, bottom.resolved && top.resolved);
   e.residual /= std::abs(e.lambda_max);

@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "core/math/products.hpp"
+#include "core/math/scale.hpp"
 #include "core/math/sym_eigen.hpp"
 #include "core/math/types.hpp"
 
@@ -26,17 +27,6 @@ template <class T>
 using Svd33 = Svd<T, 3, 3>;
 
 namespace detail {
-
-/// Scale that brings the largest |F_ij| to 1; 1 for the zero matrix.
-template <class T, int M, int N>
-BB_HD inline T largest_entry(const Mat<T, M, N>& F) {
-  using std::abs;
-  T largest = 0;
-  for (int j = 0; j < N; ++j) {
-    for (int i = 0; i < M; ++i) largest = largest < abs(F(i, j)) ? abs(F(i, j)) : largest;
-  }
-  return largest > 0 ? largest : T(1);
-}
 
 /// Rotates the columns of w (and of v) until they are orthogonal relative to their own lengths, the longest
 /// first: w = F V with V a rotation. Source: Hestenes 1958; order of columns by de Rijk 1989.
@@ -92,7 +82,7 @@ BB_HD inline Vec<T, M> direction_or(const Vec<T, M>& w, const Vec<T, M>& fallbac
 /// Errors: none; a non-finite F gives non-finite factors.   Host-device.
 template <class T>
 BB_HD inline Svd22<T> svd_2x2(const Mat<T, 2, 2>& F) {
-  const T scale = detail::largest_entry(F);
+  const T scale = power_of_two_scale(F);
   const Mat<T, 2, 2> unit = F / scale;
   Mat<T, 2, 2> w = unit;
   Svd22<T> out;
@@ -113,7 +103,7 @@ BB_HD inline Svd22<T> svd_2x2(const Mat<T, 2, 2>& F) {
 /// Errors: none; a non-finite F gives non-finite factors.   Host-device.
 template <class T>
 BB_HD inline Svd32<T> svd_3x2(const Mat<T, 3, 2>& F) {
-  const T scale = detail::largest_entry(F);
+  const T scale = power_of_two_scale(F);
   const Mat<T, 3, 2> unit = F / scale;
   Mat<T, 3, 2> w = unit;
   Svd32<T> out;
@@ -135,7 +125,7 @@ BB_HD inline Svd32<T> svd_3x2(const Mat<T, 3, 2>& F) {
 /// Host-device.
 template <class T>
 BB_HD inline Svd33<T> svd_3x3(const Mat<T, 3, 3>& F) {
-  const T scale = detail::largest_entry(F);
+  const T scale = power_of_two_scale(F);
   Mat<T, 3, 3> w = F / scale;
   Svd33<T> out;
   detail::orthogonalise_columns(w, out.V);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/scale.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
@@ -80,11 +81,7 @@ BB_HD inline void sym_eigen(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, 
   using std::abs;
   constexpr T eps = std::numeric_limits<T>::epsilon();
   constexpr int max_sweeps = 16;  // quadratic convergence: 8 were the most seen for N = 12
-  T scale = 0;
-  for (int j = 0; j < N; ++j) {
-    for (int i = 0; i < N; ++i) scale = scale < abs(A(i, j)) ? abs(A(i, j)) : scale;
-  }
-  const T unit = scale > 0 ? scale : T(1);
+  const T unit = power_of_two_scale(A);
   Mat<T, N, N> a;
   for (int j = 0; j < N; ++j) {
     for (int i = 0; i < N; ++i) a(i, j) = (A(i, j) / unit + A(j, i) / unit) / 2;

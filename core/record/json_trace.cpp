@@ -24,6 +24,7 @@ Json condition(const ConditionSample& sample) {
   put(j, "residual", e.residual);
   j["solves"] = e.solves;
   j["products"] = e.products;
+  j["factorizations"] = e.factorizations;
   put(j, "time_s", e.seconds);
   return j;
 }

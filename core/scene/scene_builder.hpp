@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/math/error.hpp"
 #include "core/scene/body_spec.hpp"
 #include "core/scene/scene.hpp"
 
@@ -23,30 +24,35 @@ class SceneBuilder {
   /// `where` stands before every message, e.g. the file of the configuration.
   SceneBuilder(std::string name, bool planar, const Vec3d& gravity, std::string where);
 
-  /// Appends a body: mass of a vertex = density x a third of its rest triangles' areas + line density x half
-  /// of its segments. Elements all of whose vertices are prescribed are left out (they hold no unknown).
-  /// Returns the index of the body.
-  int add_body(const BodySpec& spec);
-  void add_obstacle(const Obstacle& obstacle);
+  /// Planar scenes only; before the first body.
   void set_planar_pairs(PlanarPairs pairs) { scene_.planar_pairs = pairs; }
 
-  /// Errors: ConfigError with all violations: no vertex, no free vertex, free vertex without mass, non-finite
-  /// value, a name used twice, pins that select nothing, a vertex pinned twice with different motions.
+  /// Appends a body: mass of a vertex = density x a third of its rest triangles' areas + line density x half
+  /// of its segments, 0 when prescribed. Elements all of whose vertices are prescribed hold no unknown and
+  /// are left out.
+  void add_body(const BodySpec& spec);
+  void add_obstacle(const Obstacle& obstacle);
+
+  /// Errors: ConfigError with all violations: no free vertex, free vertex without mass, non-finite value, a
+  /// name
+  ///   used twice, a material or obstacle out of range, pins that select nothing, a vertex pinned to two
+  ///   motions.
   Scene finish();
 
  private:
-  struct Range {
-    int body, first, count;
-  };
-  void add_violation(const std::string& what, const std::string& found, const std::string& allowed);
-  void check_name(const std::string& name);
-  void append_vertices(const BodySpec& spec);
-  void append_pins(const BodySpec& spec, int first);
-  void append_elements(const BodySpec& spec, int first);
-  void append_surface(const BodySpec& spec, int first);
-  void pin_vertices(const BodySpec& spec, const std::vector<int>& vertices, const RigidMotion& motion);
+  void complain(const std::string& what, std::string found, std::string allowed);
+  void check_name(const std::string& what, const std::string& name);
+  void append_vertices(const BodySpec& spec, const Positions& start);
+  void append_pins(const BodySpec& spec, const Positions& start, int first);
+  void pin_vertex(const std::string& body, int vertex, int motion);
   int motion_index(const RigidMotion& motion);
-  bool all_pinned(const int* vertices, int n, int first) const;
+  void append_masses(const BodySpec& spec, int first);
+  void append_membrane(const BodySpec& spec, int first);
+  void append_springs(const BodySpec& spec, int first);
+  void append_hinges(const BodySpec& spec, int first);
+  void append_surface(const BodySpec& spec, int first);
+  template <std::size_t n>
+  bool all_prescribed(const std::array<int, n>& vertices) const;
 
   Scene scene_;
   std::string where_;

@@ -12,10 +12,11 @@
 
 namespace bb {
 
-/// Reads a config file. "extends": PATH (relative to the file) is merged underneath, object by object; then
-/// each override "/pointer=value" (value: JSON, or a bare word taken as a string) is set. Errors:
-/// ConfigError: unreadable file, JSON syntax (file:line), schema, unknown name (nearest suggested),
-///   contradiction, unknown override.   Cost: milliseconds; mesh files are hashed.
+/// Reads a config file. "extends": PATH (relative to the file) is laid underneath, object by object; then
+/// each override "/pointer=value" (value: JSON, or a bare word taken as a string) is set, in order. A
+/// formulation or a scene whose name changes on the way starts anew, but the formulation keeps its d_hat_m.
+/// Errors: ConfigError: unreadable file, JSON syntax (file:line), schema, unknown name (nearest suggested),
+///   contradiction, bad override.   Cost: milliseconds; mesh files are hashed.
 RunConfig load_config(const std::string& path, std::span<const std::string> overrides = {});
 
 /// The same from text; `source` stands in messages, relative paths start at `folder`.
@@ -26,8 +27,7 @@ RunConfig parse_config(const std::string& text, const std::string& source, const
 /// bit for bit, two-space indent. parse_config(resolved_json(c)) gives the same text.
 std::string resolved_json(const RunConfig& config);
 
-/// SHA-256 (hex) of the compact canonical JSON; mesh files count by content, not by place; threads do not
-/// count.
+/// Identity of a run: config_id of core/record applied to resolved_json.
 std::string config_id(const RunConfig& config);
 
 /// The scene of a config: procedural, or from its bodies. Jitter applied. Deterministic.

@@ -2,12 +2,9 @@
 // and writes it. Member names are the JSON keys without their unit suffix; units stand behind each member.
 #pragma once
 
-#include <array>
 #include <cstdint>
-#include <map>
 #include <optional>
 #include <string>
-#include <variant>
 #include <vector>
 
 #include "core/contact/contact_system.hpp"
@@ -16,11 +13,9 @@
 #include "core/linear/condition.hpp"
 #include "core/linear/linear_solver.hpp"
 #include "core/scene/body_spec.hpp"
+#include "experiments/scenes/parameters.hpp"
 
 namespace bb {
-
-using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
-using ParameterMap = std::map<std::string, ParameterValue>;
 
 /// Where a mesh comes from: a generator with its parameters, or a file with its SHA-256.
 struct MeshSource {
@@ -47,10 +42,11 @@ struct BodyConfig {
 };
 
 struct SceneConfig {
-  std::string name;                    // registered scene, or "bodies"
-  ParameterMap parameters;             // registered scene: every declared parameter
-  bool planar = false;                 // the rest: "bodies" only
-  Vec3d gravity = Vec3d(0, 0, -9.81);  // m/s^2
+  std::string name;                             // registered scene, or "bodies"
+  ParameterMap parameters;                      // registered scene: every declared parameter
+  bool planar = false;                          // as the registered scene says, or as given with bodies
+  Vec3d gravity = Vec3d(0, 0, -9.81);           // m/s^2; registered scene: from its parameter
+  PlanarPairs pairs = PlanarPairs::point_edge;  // "bodies" only, like all that follows
   std::vector<BodyConfig> bodies;
   std::vector<Obstacle> obstacles;
 };

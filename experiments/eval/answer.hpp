@@ -1,5 +1,5 @@
-// One answer, written as it is filled: fields in the order in which they are set. Numbers round-trip; what is not
-// finite is null and gives the answer its status.
+// One answer, written as it is filled: fields in the order in which they are set. Numbers round-trip; what is
+// not finite is null and gives the answer its status.
 #pragma once
 
 #include <string>

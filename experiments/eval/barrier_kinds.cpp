@@ -1,5 +1,5 @@
-// shape, rho, equilibrium, match: the functions of one contact. The shape is evaluated in the precision of the query;
-// rho, rest states and matching are double in the pipeline, here too, on rounded input.
+// shape, rho, equilibrium, match: the functions of one contact. The shape is evaluated in the precision of
+// the query; rho, rest states and matching are double in the pipeline, here too, on rounded input.
 #include <limits>
 
 #include "barriers/matching.hpp"

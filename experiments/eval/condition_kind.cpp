@@ -13,11 +13,13 @@ constexpr int kLargestDense = 3000;     // tier 3 is for tests
 
 ReducedSystem system_field(Query& q) {
   const std::vector<int> rows = q.indices("rows", kLargestIndex), cols = q.indices("cols", kLargestIndex);
-  const std::vector<double> values = q.list("values", rows.empty() ? -1 : static_cast<int>(rows.size()), kFinite);
+  const std::vector<double> values =
+      q.list("values", rows.empty() ? -1 : static_cast<int>(rows.size()), kFinite);
   ReducedSystem system;
   if (q.wrong()) return system;
   if (rows.size() != cols.size()) {
-    q.complain("cols", std::to_string(cols.size()) + " indices", "as many as rows: " + std::to_string(rows.size()));
+    q.complain("cols", std::to_string(cols.size()) + " indices",
+               "as many as rows: " + std::to_string(rows.size()));
     return system;
   }
   int n = 0;
@@ -48,7 +50,10 @@ ConditionEstimate ritz_estimate(const ReducedSystem& system, Scaling scaling) {
   LinearOptions options;
   options.name = "pcg";
   options.preconditioner = to_string(scaling);
-  return ritz_condition(make_linear_solver(options)->solve(system, b, x));
+  const LinearReport report = make_linear_solver(options)->solve(system, b, x);
+  ConditionEstimate out = condition_from_ritz(report.ritz_min, report.ritz_max);
+  if (report.status == LinearStatus::matrix_indefinite) out.status = ConditionStatus::not_pd;
+  return out;
 }
 
 ConditionEstimate estimate(const ReducedSystem& system, Scaling scaling, int tier) {

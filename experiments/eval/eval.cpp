@@ -86,7 +86,8 @@ Line answer_line(std::string_view text) {
     if (!object.is_object()) throw ConfigError("/", "a line that is not an object", "one JSON object a line");
     scan(text, line);
     line.fields = answer_of(object).fields();
-  } catch (const json::out_of_range& e) {  // a number that no double holds; the rest is sound JSON up to there
+  } catch (
+      const json::out_of_range& e) {  // a number that no double holds; the rest is sound JSON up to there
     try {
       scan(text, line);
     } catch (const ConfigError&) {  // the number is the news

@@ -1,12 +1,13 @@
-// `eval`: single queries, one JSON object a line, answered by the functions that the pipeline runs. It is how a
-// user inspects a function and how other programs check this one. Kinds: registry.inc.
+// `eval`: single queries, one JSON object a line, answered by the functions that the pipeline runs. It is how
+// a user inspects a function and how other programs check this one. Kinds: registry.inc.
 #pragma once
 
 #include <iosfwd>
 
 namespace bb {
 
-/// Answers every line of `in` on `out`, in order; blank lines are not queries. A line that cannot be answered gets
+/// Answers every line of `in` on `out`, in order; blank lines are not queries. A line that cannot be answered
+/// gets
 /// {"id": ..., "error": ...} and the others are still answered; `err` gets one line that counts them.
 /// @return 0: all answered; 2: some were not; 75: `out` cannot be written. Errors: none.
 int run_eval(std::istream& in, std::ostream& out, std::ostream& err);

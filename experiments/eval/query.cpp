@@ -135,7 +135,9 @@ MatX<double> Query::rows(const char* name, int n_rows, int n_cols) {
     return dummy;
   }
   const json& first = (*v)[0];
-  const std::size_t width = n_cols >= 0 ? static_cast<std::size_t>(n_cols) : first.is_array() ? first.size() : 0;
+  const std::size_t width = n_cols >= 0        ? static_cast<std::size_t>(n_cols)
+                            : first.is_array() ? first.size()
+                                               : 0;
   MatX<double> out(static_cast<Eigen::Index>(v->size()), static_cast<Eigen::Index>(width));
   for (std::size_t i = 0; i < v->size(); ++i) {
     const json& row = (*v)[i];

@@ -1,5 +1,5 @@
-// Typed access to the fields of one query. Every wrong, missing or unknown field is collected and reported at once
-// by finish(). Keeps the JSON library out of the files that answer.
+// Typed access to the fields of one query. Every wrong, missing or unknown field is collected and reported at
+// once by finish(). Keeps the JSON library out of the files that answer.
 #pragma once
 
 #include <cmath>

@@ -1,4 +1,5 @@
-// stiffness: kappa of one contact by a stiffness policy. A field that cannot touch the answer may be left out.
+// stiffness: kappa of one contact by a stiffness policy. A field that cannot touch the answer may be left
+// out.
 #include "barriers/stiffness/elasticity_inclusive.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "experiments/eval/kinds.hpp"
@@ -38,7 +39,8 @@ ContactFields contact_fields(Query& q, const Needed& needed) {
   }
   if (wanted("gap", needed.gap)) c.gap = q.number("gap", kPositive);
   if (wanted("masses", needed.masses)) c.masses = q.list("masses", n, kNonNegative);
-  if (wanted("hessian", needed.hessian)) c.hessian = q.rows("hessian", n < 0 ? -1 : 3 * n, n < 0 ? -1 : 3 * n);
+  if (wanted("hessian", needed.hessian))
+    c.hessian = q.rows("hessian", n < 0 ? -1 : 3 * n, n < 0 ? -1 : 3 * n);
   return c;
 }
 

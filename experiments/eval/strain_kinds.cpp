@@ -51,7 +51,8 @@ LimitTerms<T> limit_terms(const BarrierFunction& barrier, const std::vector<doub
 
 template <class T>
 Mat<T, 3, 2> limit_pk1(const BarrierFunction& barrier, const Svd<T, 3, 2>& svd, const StrainBand<T>& band) {
-  const Density2<T> density = strain_limit_density<T>(svd.sigma, band, shape_at(barrier, svd.sigma, band), T(1));
+  const Density2<T> density =
+      strain_limit_density<T>(svd.sigma, band, shape_at(barrier, svd.sigma, band), T(1));
   return isotropic_terms<T, 3>(svd, density, Projection::none).pk1;
 }
 
@@ -74,7 +75,8 @@ Answer answer::strain_limit(Query& q) {
   const bool from_f = q.has("F");
   if (from_f && q.has("sigma")) q.complain("sigma", "sigma and F", "one of the two");
   const Mat<T, 3, 2> f = from_f ? Mat<T, 3, 2>(q.rows("F", 3, 2).cast<T>()) : Mat<T, 3, 2>::Zero();
-  std::vector<double> sigma = !from_f || q.has("sigma") ? q.list("sigma", -1, kFinite) : std::vector<double>();
+  std::vector<double> sigma =
+      !from_f || q.has("sigma") ? q.list("sigma", -1, kFinite) : std::vector<double>();
   q.finish();
 
   const Svd<T, 3, 2> svd = membrane_svd<T>(f);

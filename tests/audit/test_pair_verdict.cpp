@@ -103,13 +103,13 @@ TEST(PairVerdict, passage_proof_needs_opposite_sides_and_the_interior) {
   EXPECT_FALSE(ExactPolygon<VertexTriangle>(beside).proves_passage(Vec3d::UnitZ(), {}));
   const TimeSpan first_half{0, TimeSpan::one / 2 - 1};
   EXPECT_FALSE(ExactPolygon<VertexTriangle>(through).proves_passage(Vec3d::UnitZ(), first_half));
-  EXPECT_TRUE(ExactPolygon<VertexTriangle>(through).separates(Vec3d::UnitZ(), first_half));
+  EXPECT_TRUE(ExactPolygon<VertexTriangle>(through).any_separates(first_half));
 }
 
 /// Smallest |difference| polygon distance seen at n times: from above, by sampling the pair's parameters.
 double sampled_gap(const Points4& x0, const Points4& x1, bool edges) {
   double least = 1e300;
-  constexpr int n = 24;
+  constexpr int n = 16;
   for (int it = 0; it <= n; ++it) {
     Points4 x;
     for (std::size_t k = 0; k < 4; ++k) x[k] = x0[k] + it / double(n) * (x1[k] - x0[k]);
@@ -129,17 +129,17 @@ TEST(PairVerdict, random_motions_agree_with_sampling) {
   std::mt19937 random(21);
   std::uniform_real_distribution<double> unit(-1.0, 1.0);
   int count[2][3] = {};
-  for (int i = 0; i < 300; ++i) {
+  for (int i = 0; i < 600; ++i) {
     const bool edges = i % 2 == 1;
     Points4 x0, x1;
     for (std::size_t k = 0; k < 4; ++k) {
       x0[k] = Vec3d(unit(random), unit(random), unit(random));
-      x1[k] = x0[k] + 0.7 * Vec3d(unit(random), unit(random), unit(random));
+      x1[k] = x0[k] + 1.5 * Vec3d(unit(random), unit(random), unit(random));
     }
     const Verdict verdict = edges ? edge_edge(x0, x1) : vertex_triangle(x0, x1);
     const double gap = sampled_gap(x0, x1, edges);
     if (verdict == Verdict::violation) {
-      EXPECT_LT(gap, 0.25);  // half the spacing of the samples
+      EXPECT_LT(gap, 0.4);  // the spacing of the samples
     }
     if (verdict == Verdict::certified) {
       EXPECT_GT(gap, 0.0);
@@ -148,7 +148,7 @@ TEST(PairVerdict, random_motions_agree_with_sampling) {
   }
   for (const auto& c : count) {
     EXPECT_GT(c[0], 20);
-    EXPECT_GT(c[1], 5);
+    EXPECT_GT(c[1], 3);
     EXPECT_EQ(c[2], 0);
   }
 }

@@ -42,6 +42,15 @@ TEST(EquilibriumLaws, Cubic) {
   }
 }
 
+/// So close to d_hat the rounding of the gap alone would spoil K = 4 kappa e by up to 1e-6.
+TEST(EquilibriumLaws, StiffnessKeepsItsPrecisionUnderTinyLoads) {
+  for (const double share : {1e-20, 3e-18, 7e-16, 1e-14}) {
+    const double f = share * unit;
+    const Equilibrium rest = equilibrium(barrier("cubic"), kappa, d_hat, f);
+    expect_rest(rest, d_hat * (1 - std::sqrt(f / (2 * unit))), std::sqrt(8 * kappa * f / d_hat), f);
+  }
+}
+
 TEST(EquilibriumLaws, ArticlesCubicInItsOwnConstant) {
   const double kappa_a = 0.02;  // J
   const double in_n_per_m = kappa_from_convention("kappa_a_J", kappa_a, d_hat);

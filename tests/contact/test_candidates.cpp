@@ -50,8 +50,8 @@ void expect_contains(const std::vector<IndexPair>& all, const std::vector<IndexP
 
 Scene soup_scene() {
   Scene scene;
-  const auto [v1, t1] = soup(60, 0.15, 1);
-  const auto [v2, t2] = soup(40, 0.15, 2);
+  const auto [v1, t1] = soup(120, 0.15, 1);
+  const auto [v2, t2] = soup(80, 0.15, 2);
   add_body(scene, "free", v1, t1, 0.05);
   add_body(scene, "given", v2, t2, 0.1, true, 0.01);
   return scene;
@@ -61,7 +61,7 @@ TEST(Candidates, HoldEveryClosePairOfASoup) {
   const Scene scene = soup_scene();
   const Surface s(scene);
   Positions x1 = random_motion(scene.rest, 0.05, 3);
-  x1.rightCols(120) = scene.rest.rightCols(120);
+  x1.rightCols(240) = scene.rest.rightCols(240);
   const Candidates c = candidates_of(scene, scene.rest, x1);
 
   const auto disjoint_pt = [](const std::array<int, 1>& p, const std::array<int, 3>& t) {
@@ -72,8 +72,8 @@ TEST(Candidates, HoldEveryClosePairOfASoup) {
   };
   expect_contains(c.point_triangle, close_pairs<PairKind::point_triangle>(scene, s.points, s.triangles,
                                                                           scene.rest, x1, disjoint_pt));
-  expect_contains(c.edge_edge, close_pairs<PairKind::edge_edge>(scene, s.edges, s.edges, scene.rest, x1,
-                                                                disjoint_ee));
+  expect_contains(c.edge_edge,
+                  close_pairs<PairKind::edge_edge>(scene, s.edges, s.edges, scene.rest, x1, disjoint_ee));
 }
 
 TEST(Candidates, NeverHoldAdjacentOrWhollyGivenPairs) {

@@ -105,7 +105,9 @@ Long closed_form(std::string_view name, const Mat<Long, R, 2>& f) {
   Long j = 0;
   if constexpr (R == 2) j = f(0, 0) * f(1, 1) - f(0, 1) * f(1, 0);
   if constexpr (R == 3) j = Vec<Long, 3>(f.col(0)).cross(Vec<Long, 3>(f.col(1))).norm();
-  const Long trace = std::sqrt(c.trace() + 2 * j) - 2;  // s0 + s1 - 2
+  Long sum = std::sqrt(c.trace() + 2 * j);                                       // s0 + s1
+  if constexpr (R == 2) sum = std::hypot(f(0, 0) + f(1, 1), f(1, 0) - f(0, 1));  // without cancellation
+  const Long trace = sum - 2;
   const Long arap = mu * (c.trace() - 2 * (trace + 2) + 2);
   const Mat<Long, 2, 2> e = (c - Mat<Long, 2, 2>::Identity()) / 2;
   if (name == "corotational") return arap + lambda / 2 * trace * trace;
@@ -191,7 +193,6 @@ TEST(Membrane, CollapsedStatesAreFiniteAndPsd) {
       ASSERT_TRUE(terms.pk1.allFinite() && terms.hess.allFinite());
       const Eigen::SelfAdjointEigenSolver<Mat<double, 6, 6>> solver(terms.hess);
       EXPECT_GE(solver.eigenvalues()[0], -1e-12 * solver.eigenvalues()[5]);
-      EXPECT_GT(solver.eigenvalues()[5], 0);
     }
     const Mat<double, 2, 2> opposite = Vec2d(0.7, -0.7).asDiagonal();
     const auto planar = Model::template terms<double, 2>(opposite, lame_mu, lame_lambda, Projection::psd);
@@ -208,7 +209,7 @@ TEST(Membrane, FloatAgreesWithDouble) {
       const auto exact = Model::template terms<double, 3>(f, lame_mu, lame_lambda, Projection::psd);
       const auto single =
           Model::template terms<float, 3>(f.template cast<float>(), lame_mu, lame_lambda, Projection::psd);
-      const double scale = exact.hess.cwiseAbs().maxCoeff();
+      const double scale = lame_mu + lame_lambda;  // stvk in compression projects to the zero matrix
       EXPECT_NEAR(static_cast<double>(single.psi), exact.psi, 1e-5 * exact.psi + 1e-7);
       EXPECT_LT(relative_difference(single.pk1.template cast<double>(), exact.pk1, scale), 1e-5);
       EXPECT_LT(relative_difference(single.hess.template cast<double>(), exact.hess, scale), 1e-5);

@@ -1,0 +1,1 @@
+"""Records to tidy tables to figures."""

@@ -1,0 +1,1 @@
+"""One module a figure; each writes PNG, PDF and the plotted numbers as CSV."""

@@ -1,0 +1,53 @@
+"""Condition number of the Newton matrix over a run: raw and block-Jacobi-scaled, with both ends of the spectrum."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pandas as pd
+
+from analysis import style
+from analysis.load import Records, condition_of
+
+PANELS = (("cond", "condition number"), ("lambda_max", r"$\lambda_{\max}$"), ("lambda_min", r"$\lambda_{\min}$"))
+SCALINGS = (("none", "raw"), ("block_jacobi", "block-Jacobi-scaled"))
+UNITS = {"none": " (N/m)", "block_jacobi": ""}
+
+
+def _draw_bounds(axis, bounds: pd.DataFrame, row: pd.Series, field: str) -> None:
+    """Estimates that are only bounds stand apart, as open carets."""
+    color = style.look(row["formulation"], row["series"]).color
+    axis.plot(bounds["n"], bounds[field], linestyle="none", marker="2", markersize=4, color=color)
+
+
+def figure(records: Records, group: str, out: Path) -> list[Path]:
+    """One figure a group: columns raw and scaled, rows cond, lambda_max, lambda_min; x counts Newton iterations."""
+    runs = records.runs[records.runs["group"] == group]
+    fig, axes = plt.subplots(3, 2, figsize=(style.WIDE_IN, 6.2), sharex=True, layout="constrained")
+    numbers = []
+    for column, (scaling, title) in enumerate(SCALINGS):
+        for _, row in runs.iterrows():
+            estimates = condition_of(records, row["run"], scaling)
+            if estimates.empty:
+                continue
+            numbers.append(estimates.assign(group=group, series=row["series"], outcome=row["outcome"]))
+            sure, bound = estimates[estimates["status"] == "ok"], estimates[estimates["status"] == "lower_bound"]
+            for line, (field, _) in enumerate(PANELS):
+                style.draw(axes[line, column], sure["n"].to_numpy(), sure[field].to_numpy(), row)
+                _draw_bounds(axes[line, column], bound[bound[field].notna()], row, field)
+        for line, (field, name) in enumerate(PANELS):
+            axis = axes[line, column]
+            if axis.lines:
+                axis.set_yscale("log")
+            else:
+                style.not_measured(axis)
+            axis.set_ylabel(name + (UNITS[scaling] if field != "cond" else ""))
+        axes[0, column].set_title(title)
+        axes[-1, column].set_xlabel("Newton iteration of the run")
+    fig.suptitle(f"{group}: the matrix that is solved, every iteration estimated", fontsize=8)
+    style.legend_below(fig, axes[0, 0])
+    columns = ["group", "series", "outcome", "run", "n", "step", "iteration", "stage", "scaling"]
+    columns += [field for field, _ in PANELS] + ["status"]
+    table = pd.concat(numbers)[columns] if numbers else pd.DataFrame(columns=columns)
+    return style.save(fig, out / f"condition_{group}", table)

@@ -1,0 +1,45 @@
+"""All figures and the table of a folder of runs: python -m analysis.figures.demo RUNS [OUT]."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+from analysis.figures import barrier_shapes, condition, gaps, iterations
+from analysis.load import RecordError, load
+from analysis.table import as_text, summary_table
+
+
+def make_all(runs: Path, out: Path) -> str:
+    """Writes everything to `out`; returns the text for the terminal."""
+    records = load(runs)
+    paths = [path for group in sorted(records.runs["group"].unique())
+             for module in (condition, iterations, gaps) for path in module.figure(records, group, out)]
+    paths += barrier_shapes.figure(out)
+    table = summary_table(records)
+    table.to_csv(out / "table.csv", index=False)
+    failed = records.runs[records.runs["outcome"] != "ok"]
+    lines = [as_text(table), ""]
+    lines += [f"{r['group']}: {r['series']} ended {r['outcome']}: {r['detail']}" for _, r in failed.iterrows()]
+    figures = [path for path in paths if path.suffix == ".png"]
+    lines += [f"{len(figures)} figures (PNG, PDF, CSV of the plotted numbers) in {out}:"]
+    lines += [f"  {path}" for path in figures]
+    return "\n".join(lines)
+
+
+def main(arguments: list[str]) -> int:
+    if not 1 <= len(arguments) <= 2:
+        print("usage: python -m analysis.figures.demo RUNS [OUT]", file=sys.stderr)
+        return 2
+    runs = Path(arguments[0])
+    out = Path(arguments[1]) if len(arguments) == 2 else runs / "figures"
+    try:
+        print(make_all(runs, out))
+    except (RecordError, RuntimeError, OSError) as error:
+        print(f"figures: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,128 @@
+"""Records below a folder as tidy tables. Unknown fields are ignored, the schema's major version is checked."""
+
+from __future__ import annotations
+
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pandas as pd
+
+SCHEMA_NAME = "barrierbench.run"
+SCHEMA_MAJOR = 1
+COMPARABLE_RATIO = 2.0  # minimum gaps further apart than this compare nothing
+REFERENCE = ("log", "gap")  # shape and argument of the run that the others are compared with
+
+
+class RecordError(ValueError):
+    """A file that is not a record this version can read."""
+
+
+@dataclass
+class Records:
+    """`run` (the folder below the root) joins the tables; every other column keeps the record's own name."""
+
+    runs: pd.DataFrame  # one row a run
+    steps: pd.DataFrame  # one row a time step
+    trace: pd.DataFrame  # one row a Newton iteration, `n` counts them over the run
+    cond: pd.DataFrame  # one row a condition estimate
+
+
+def _scalars(mapping: dict) -> dict:
+    return {k: v for k, v in mapping.items() if not isinstance(v, (dict, list))}
+
+
+def _check_schema(record: dict, path: Path) -> None:
+    schema = record.get("schema", {})
+    major = str(schema.get("version", "")).split(".")[0]
+    if schema.get("name") != SCHEMA_NAME or major != str(SCHEMA_MAJOR):
+        raise RecordError(f"{path}: schema {schema}; this version reads {SCHEMA_NAME} {SCHEMA_MAJOR}.x.x")
+
+
+def _series(labels: dict) -> str:
+    """What a line of a figure is called: the case of its sweep, or the formulation."""
+    note = labels.get("note") or ""
+    case = note.split(": ", 1)[1] if ": " in note else note
+    return case or labels["formulation"]
+
+
+def _run_row(record: dict, run: str) -> dict:
+    labels, status, summary = record["labels"], record["status"], record["summary"]
+    row = {"run": run, "run_id": record["ids"]["run_id"], "config_id": record["ids"]["config_id"]}
+    row |= {"group": record["ids"].get("sweep_id") or labels["scene"], "series": _series(labels)}
+    row |= _scalars(labels) | {"outcome": status["outcome"], "detail": status["detail"], "valid": status["valid"]}
+    row |= _scalars(summary) | {"gap_min_rel": summary["gap_min_rel"]["min"]}
+    row |= {k: record["audit"][k] for k in ("enabled", "crossings", "violations", "unproven")}
+    row |= {"free_dofs": record["scene"]["free_dofs"], "extent_m": record["scene"]["extent_m"]}
+    row |= {f"matching_{k}": v for k, v in _scalars(record["matching"]).items()}
+    return row
+
+
+def _trace_lines(path: Path) -> list[dict]:
+    """A line torn by a crash can only be the last one: it is left out and said."""
+    if not path.exists():
+        return []
+    lines = path.read_text().splitlines()
+    rows = []
+    for number, line in enumerate(lines, 1):
+        try:
+            rows.append(json.loads(line))
+        except json.JSONDecodeError:
+            if number != len(lines):
+                raise RecordError(f"{path}:{number}: not JSON") from None
+            print(f"{path}:{number}: torn last line left out", file=sys.stderr)
+    return rows
+
+
+def _mark_comparable(runs: pd.DataFrame) -> pd.DataFrame:
+    """True where the minimum gap is within a factor 2 of the group's log run; a failed run compares nothing."""
+    runs["comparable"] = True
+    for _, rows in runs.groupby("group", sort=False):
+        is_reference = (rows["shape"] == REFERENCE[0]) & (rows["argument"] == REFERENCE[1]) & (rows["outcome"] == "ok")
+        reference = pd.to_numeric(rows.loc[is_reference, "gap_min_rel"]).dropna()
+        if reference.empty:
+            continue
+        gaps = pd.to_numeric(rows["gap_min_rel"])
+        ratio = gaps / reference.iloc[0]
+        runs.loc[rows.index, "comparable"] = ratio.between(1 / COMPARABLE_RATIO, COMPARABLE_RATIO) | gaps.isna()
+    return runs
+
+
+def load(root: str | Path) -> Records:
+    """Every run.json below `root`, in the order of their paths. Raises RecordError."""
+    root = Path(root)
+    runs, steps, trace, cond = [], [], [], []
+    for path in sorted(root.rglob("run.json")):
+        try:
+            record = json.loads(path.read_text())
+        except json.JSONDecodeError as error:
+            raise RecordError(f"{path}: not JSON: {error}") from None
+        _check_schema(record, path)
+        run = str(path.parent.relative_to(root))
+        runs.append(_run_row(record, run))
+        for step in record["steps"]:
+            steps.append({"run": run, **_scalars(step), "contacts": step["contacts"]["total"]})
+        for n, line in enumerate(_trace_lines(path.parent / "trace.jsonl")):
+            place = {"run": run, "n": n, "step": line["step"], "iteration": line["iteration"]}
+            trace.append({**place, **_scalars(line), "contacts": line["contacts"]["total"]})
+            cond.extend({**place, **_scalars(c)} for c in line["cond"])
+    if not runs:
+        raise RecordError(f"{root}: no run.json below this folder")
+    table = pd.DataFrame(runs)
+    table["series"] = _unique_series(table)
+    return Records(_mark_comparable(table), pd.DataFrame(steps), pd.DataFrame(trace), pd.DataFrame(cond))
+
+
+def _unique_series(runs: pd.DataFrame) -> pd.Series:
+    """Two runs of a group never share a name."""
+    count = runs.groupby(["group", "series"]).cumcount()
+    return runs["series"].where(count == 0, runs["series"] + " #" + (count + 1).astype(str))
+
+
+def condition_of(records: Records, run: str, scaling: str, stage: str = "full") -> pd.DataFrame:
+    """Condition estimates of one run, in the order of the iterations; empty when there are none."""
+    if records.cond.empty:
+        return records.cond
+    c = records.cond
+    return c[(c["run"] == run) & (c["scaling"] == scaling) & (c["stage"] == stage)].sort_values("n")

@@ -1,0 +1,125 @@
+"""One look for every figure: a formulation has one colour, one marker and one dash across the project."""
+
+from __future__ import annotations
+
+import zlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib
+
+matplotlib.use("Agg")
+import matplotlib.pyplot as plt  # noqa: E402
+import pandas as pd  # noqa: E402
+
+NARROW_IN, WIDE_IN = 3.33, 7.0
+
+plt.rcParams.update(
+    {
+        "font.size": 8,
+        "axes.titlesize": 8,
+        "axes.labelsize": 8,
+        "legend.fontsize": 7,
+        "xtick.labelsize": 7,
+        "ytick.labelsize": 7,
+        "lines.linewidth": 1.0,
+        "lines.markersize": 3.5,
+        "axes.spines.top": False,
+        "axes.spines.right": False,
+        "axes.grid": True,
+        "grid.linewidth": 0.3,
+        "grid.alpha": 0.6,
+        "pdf.fonttype": 42,
+        "svg.fonttype": "none",
+        "svg.hashsalt": "barrierbench",
+        "savefig.dpi": 200,
+    }
+)
+
+
+@dataclass(frozen=True)
+class Look:
+    color: str
+    marker: str
+    dash: object
+
+
+# Okabe-Ito colours.
+LOOKS = {
+    "log": Look("#0072B2", "o", "-"),
+    "quadratic": Look("#E69F00", "s", "--"),
+    "cubic": Look("#009E73", "^", "-."),
+    "cubic_dynamic": Look("#D55E00", "D", (0, (5, 1))),
+    "cubic_dynamic_lagged": Look("#CC79A7", "v", (0, (3, 1, 1, 1))),
+    "ipc2020": Look("#56B4E9", "P", ":"),
+    "log_squared": Look("#000000", "X", (0, (1, 1))),
+    "two_stage": Look("#A6761D", "<", (0, (5, 2, 1, 2))),
+    "article_cubic": Look("#999999", ">", "-."),
+    "quadratic_as_printed": Look("#8B4513", "h", "--"),
+}
+
+
+def look(formulation: str, series: str | None = None) -> Look:
+    """Of the formulation; a variant of it (another series name) keeps colour and marker and gets thin dots."""
+    base = LOOKS.get(formulation)
+    if base is None:
+        looks = list(LOOKS.values())
+        base = looks[zlib.crc32(formulation.encode()) % len(looks)]
+    if series is None or series == formulation:
+        return base
+    return Look(base.color, base.marker, (0, (1, 2)))
+
+
+def marks(length: int, wanted: int = 12) -> int:
+    """markevery: about `wanted` markers on a line of this length."""
+    return max(1, length // wanted)
+
+
+def name_of(row: pd.Series) -> str:
+    """The legend's text: a run that did not end ok or compares nothing says so."""
+    if row["outcome"] != "ok":
+        return f"{row['series']} ({row['outcome']})"
+    return row["series"] if row["comparable"] else f"{row['series']} (not_comparable)"
+
+
+def draw(axis, x, y, row: pd.Series, label: bool = True) -> None:
+    """One run's line. Hollow markers: the run failed or is not comparable; a failure ends in its word."""
+    style = look(row["formulation"], row["series"])
+    solid = row["outcome"] == "ok" and row["comparable"]
+    axis.plot(
+        x,
+        y,
+        color=style.color,
+        linestyle=style.dash,
+        marker=style.marker,
+        markevery=marks(len(x)),
+        markerfacecolor=style.color if solid else "none",
+        markeredgewidth=0.8,
+        label=name_of(row) if label else None,
+    )
+    if row["outcome"] != "ok" and len(x) > 0:
+        axis.annotate(
+            row["outcome"], (x[-1], y[-1]), xytext=(3, 0), textcoords="offset points", fontsize=6, color=style.color
+        )
+
+
+def not_measured(axis, text: str = "not measured") -> None:
+    axis.text(0.5, 0.5, text, ha="center", va="center", transform=axis.transAxes, color="#666666")
+
+
+def legend_below(fig, axis) -> None:
+    """One legend for the figure, below its panels."""
+    handles, labels = axis.get_legend_handles_labels()
+    if handles:
+        fig.legend(handles, labels, loc="outside lower center", ncols=min(4, len(labels)), frameon=False)
+
+
+def save(fig, stem: Path, numbers: pd.DataFrame) -> list[Path]:
+    """stem.png, stem.pdf and stem.csv; the same bytes for the same records."""
+    stem.parent.mkdir(parents=True, exist_ok=True)
+    paths = [stem.with_name(stem.name + suffix) for suffix in (".png", ".pdf", ".csv")]
+    fig.savefig(paths[0], metadata={"Software": None})
+    fig.savefig(paths[1], metadata={"CreationDate": None, "Producer": None, "Creator": None})
+    numbers.to_csv(paths[2], index=False)
+    plt.close(fig)
+    return paths

@@ -1,0 +1,78 @@
+"""The table of a set of runs: one row a run, failures included."""
+
+from __future__ import annotations
+
+import numpy as np
+import pandas as pd
+
+from analysis.load import Records, condition_of
+
+HEADINGS = {
+    "group": "scene",
+    "series": "formulation",
+    "verdict": "outcome",
+    "cond_raw_median": "cond raw med",
+    "cond_raw_max": "max",
+    "cond_bj_median": "cond bJ med",
+    "cond_bj_max": "max",
+    "newton_iterations": "Newton",
+    "linear_iterations": "PCG",
+    "gap_min_rel": "min gap/d_hat",
+    "crossings": "crossings",
+}
+
+
+def _cond(records: Records, run: str, scaling: str) -> tuple[float, float]:
+    """Median (of log10) and maximum over the iterations with status ok; NaN without any."""
+    c = condition_of(records, run, scaling)
+    values = c.loc[c["status"] == "ok", "cond"].to_numpy(dtype=float) if not c.empty else np.array([])
+    if len(values) == 0:
+        return float("nan"), float("nan")
+    return float(10 ** np.median(np.log10(values))), float(values.max())
+
+
+def summary_table(records: Records) -> pd.DataFrame:
+    rows = []
+    for _, run in records.runs.iterrows():
+        raw, scaled = _cond(records, run["run"], "none"), _cond(records, run["run"], "block_jacobi")
+        verdict = run["outcome"] if run["outcome"] != "ok" or run["comparable"] else "ok, not_comparable"
+        rows.append(
+            {
+                "group": run["group"],
+                "series": run["series"],
+                "verdict": verdict,
+                "cond_raw_median": raw[0],
+                "cond_raw_max": raw[1],
+                "cond_bj_median": scaled[0],
+                "cond_bj_max": scaled[1],
+                "newton_iterations": run["newton_iterations"],
+                "linear_iterations": run["linear_iterations"],
+                "gap_min_rel": run["gap_min_rel"],
+                "crossings": run["crossings"] if run["enabled"] else None,
+            }
+        )
+    return pd.DataFrame(rows)
+
+
+def _cell(name: str, value) -> str:
+    if value is None or (isinstance(value, float) and np.isnan(value)):
+        return "-"
+    if name.startswith("cond") or name == "gap_min_rel":
+        return f"{value:.2e}"
+    return str(int(value)) if isinstance(value, (int, float, np.number)) else str(value)
+
+
+def as_text(table: pd.DataFrame) -> str:
+    """Aligned columns for a terminal; a blank line between groups."""
+    cells = [[_cell(name, row[name]) for name in HEADINGS] for _, row in table.iterrows()]
+    rows = [list(HEADINGS.values()), *cells]
+    width = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS))]
+    lines, last = [], None
+    for k, row in enumerate(rows):
+        if k > 1 and row[0] != last:
+            lines.append("")
+        last = row[0]
+        left, right = row[:3], row[3:]
+        text = [c.ljust(w) for c, w in zip(left, width)] + [c.rjust(w) for c, w in zip(right, width[3:])]
+        lines.append("  ".join(text).rstrip())
+    return "\n".join(lines)

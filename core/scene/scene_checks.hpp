@@ -1,0 +1,20 @@
+// What bodies, obstacles and finished scenes must satisfy. Each check appends what it finds, none throws.
+// Private to core/scene.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/math/error.hpp"
+#include "core/scene/body_spec.hpp"
+
+namespace bb {
+
+void check_body(const BodySpec& spec, bool planar, const std::string& where, std::vector<Violation>& out);
+void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& where,
+                    std::vector<Violation>& out);
+/// pin_of: [n_vertices] -1 where free.
+void check_scene(const Scene& scene, const std::vector<int>& pin_of, const std::string& where,
+                 std::vector<Violation>& out);
+
+}  // namespace bb

@@ -1,0 +1,20 @@
+// Mesh generators that a config can name, with their parameter tables.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "core/mesh/triangle_mesh.hpp"
+#include "experiments/scenes/parameters.hpp"
+
+namespace bb {
+
+struct MeshGenerator {
+  std::string name, doc;
+  std::vector<Parameter> parameters;
+  TriangleMesh (*make)(const ParameterMap& complete) = nullptr;
+};
+
+const std::vector<MeshGenerator>& mesh_generators();
+
+}  // namespace bb

@@ -1,0 +1,83 @@
+#include "experiments/config/presets.hpp"
+
+#include <algorithm>
+#include <cstdlib>
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "barriers/named_entries.hpp"
+#include "experiments/config/document.hpp"
+#include "experiments/config/parse.hpp"
+
+namespace bb {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+json load_preset(const std::string& name) {
+  const std::string path = configs_folder() + "/formulations/" + name + ".json";
+  const json preset = parse_json(read_text_file(path), path);
+  if (!preset.is_object() || !preset.contains("formulation") || !preset["formulation"].is_object()) {
+    throw ConfigError(path, "no formulation", "an object with name, doc and formulation");
+  }
+  return preset;
+}
+
+std::vector<std::string> preset_names() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& file : fs::directory_iterator(configs_folder() + "/formulations", error)) {
+    if (file.path().extension() == ".json") names.push_back(file.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+/// A policy of another name replaces the preset's; a new kappa replaces the old one whatever its convention.
+void lay_over_policy(json& base, const json& over) {
+  if (over.contains("name") && over["name"] != base.value("name", json())) base = json::object();
+  const auto is_kappa = [](const std::string& key) { return key.starts_with("kappa_"); };
+  for (const auto& item : over.items()) {
+    if (!is_kappa(item.key())) continue;
+    for (auto it = base.begin(); it != base.end();) it = is_kappa(it.key()) ? base.erase(it) : std::next(it);
+    break;
+  }
+  base.update(over);
+}
+
+}  // namespace
+
+std::string configs_folder() {
+  const char* folder = std::getenv("BARRIERBENCH_CONFIGS");
+  return folder && *folder ? folder : BB_CONFIGS_DIR;
+}
+
+std::vector<PresetInfo> formulation_presets() {
+  std::vector<PresetInfo> out;
+  for (const std::string& name : preset_names()) out.push_back({name, load_preset(name).value("doc", "")});
+  return out;
+}
+
+void expand_preset(json& formulation, const std::string& source, std::vector<Violation>& violations) {
+  if (!formulation.contains("name")) return;
+  if (formulation.contains("shape") && formulation.contains("argument") &&
+      formulation.contains("stiffness_policy")) {
+    return;
+  }
+  const std::string name = formulation["name"].get<std::string>();
+  const std::vector<std::string> names = preset_names();
+  if (std::find(names.begin(), names.end(), name) == names.end()) {
+    const ConfigError error = unknown_name(source + "#/formulation/name", name, names);
+    violations.push_back(error.violations().front());
+    return;
+  }
+  json base = load_preset(name)["formulation"];
+  json policy = base.value("stiffness_policy", json::object());
+  if (formulation.contains("stiffness_policy")) lay_over_policy(policy, formulation["stiffness_policy"]);
+  base.update(formulation);
+  base["stiffness_policy"] = policy;
+  formulation = base;
+}
+
+}  // namespace bb

@@ -1,0 +1,73 @@
+// Cloth layers above a static sphere, close enough that all of them touch within a few steps.
+#include "core/mesh/generators.hpp"
+#include "experiments/scenes/procedural_scene.hpp"
+
+namespace bb {
+namespace {
+
+/// Lowest layer at start_gap above the sphere, whose top is the origin.
+void add_layers(SceneBuilder& builder, const ParameterMap& p, const SceneContext& context) {
+  const int n = integer(p, "n"), layers = integer(p, "layers");
+  const double width = number(p, "width_m");
+  for (int layer = 0; layer < layers; ++layer) {
+    BodySpec cloth;
+    cloth.name = "layer" + std::to_string(layer);
+    cloth.mesh = grid_mesh(n, n, width, width);
+    const double height = number(p, "start_gap_d_hat") + layer * number(p, "spacing_d_hat");
+    cloth.mesh.vertices.row(2).array() += height * context.d_hat;
+    cloth.material = cloth_material(p, context);
+    cloth.d_hat = context.d_hat;
+    builder.add_body(cloth);
+  }
+}
+
+void add_sphere(SceneBuilder& builder, const ParameterMap& p, const SceneContext& context) {
+  const double radius = number(p, "sphere_radius_m");
+  if (text(p, "sphere") == "mesh") {
+    BodySpec sphere;
+    sphere.name = "sphere";
+    sphere.kind = BodyKind::rigid;
+    sphere.mesh = icosphere_mesh(integer(p, "sphere_level"), radius);
+    sphere.mesh.vertices.row(2).array() -= radius;
+    sphere.d_hat = context.d_hat;
+    builder.add_body(sphere);
+  } else {
+    Obstacle sphere;
+    sphere.name = "sphere";
+    sphere.kind = ObstacleKind::sphere;
+    sphere.point = Vec3d(0, 0, -radius);
+    sphere.radius = radius;
+    builder.add_obstacle(sphere);
+  }
+}
+
+Scene build(const ParameterMap& p, const SceneContext& context) {
+  SceneBuilder builder("drape", false, Vec3d(0, 0, -number(p, "gravity_m_per_s2")), "scene drape");
+  add_layers(builder, p, context);
+  add_sphere(builder, p, context);
+  return builder.finish();
+}
+
+}  // namespace
+
+ProceduralScene make_scene_drape() {
+  ProceduralScene scene;
+  scene.defaults = {0.01, 100, 5e-3, 0.02};
+  scene.build = build;
+  scene.parameters = {
+      count("layers", 5, 1, 100, "number of cloths"),
+      count("n", 16, 2, 1000, "vertices along a side of each cloth"),
+      positive("width_m", "m", 1, "side of each cloth"),
+      number_in("spacing_d_hat", "d_hat", 1.5, 1, 1e6, "distance between neighbouring layers at the start"),
+      positive("start_gap_d_hat", "d_hat", 1.2, "gap between the sphere and the lowest layer at the start"),
+      word("sphere", {"analytic", "mesh"}, "an analytic sphere (acts on vertices) or a static icosphere"),
+      positive("sphere_radius_m", "m", 0.25, "radius of the sphere"),
+      count("sphere_level", 3, 0, 6, "subdivisions of the icosphere (sphere = mesh)"),
+      gravity_parameter(),
+  };
+  const std::vector<Parameter> cloth = cloth_parameters();
+  scene.parameters.insert(scene.parameters.end(), cloth.begin(), cloth.end());
+  return scene;
+}
+
+}  // namespace bb

@@ -1,0 +1,356 @@
+// Rows of the contact table: regions, merging, continuity of B, given vertices, rest rule, offsets.
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include "tests/contact/contact_scenes.hpp"
+
+namespace bb::test {
+namespace {
+
+constexpr double d_hat = 0.1;
+
+/// One triangle (0 0 0), (1 0 0), (0 1 0) as vertices 0 to 2 and a lone free vertex 3.
+Scene point_over_triangle(const Vec3d& p) {
+  Scene scene;
+  add_body(scene, "triangle", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)}, {{0, 1, 2}}, d_hat);
+  add_body(scene, "point", {p}, {}, d_hat);
+  return scene;
+}
+
+struct RegionCase {
+  Vec3d p;
+  ContactKey key;
+  ContactKind kind;
+  double d;
+};
+
+TEST(Rows, EveryRegionOfATriangle) {
+  const double s = std::sqrt(0.5);
+  const RegionCase cases[] = {
+      {{0.2, 0.3, 0.05}, {0, 1, 2, 3}, ContactKind::point_triangle, 0.05},
+      {{0.5, -0.03, 0.04}, {-1, 0, 1, 3}, ContactKind::point_edge, 0.05},
+      {{-0.03, 0.5, -0.04}, {-1, 0, 2, 3}, ContactKind::point_edge, 0.05},
+      {{0.5 + 0.05 * s, 0.5 + 0.05 * s, 0}, {-1, 1, 2, 3}, ContactKind::point_edge, 0.05},
+      {{-0.03, -0.04, 0}, {-1, -1, 0, 3}, ContactKind::point_point, 0.05},
+      {{1.05, -0.01, 0}, {-1, -1, 1, 3}, ContactKind::point_point, std::hypot(0.05, 0.01)},
+      {{-0.01, 1.05, 0}, {-1, -1, 2, 3}, ContactKind::point_point, std::hypot(0.05, 0.01)}};
+  for (const RegionCase& c : cases) {
+    const Scene scene = point_over_triangle(c.p);
+    ContactSystem contacts(scene, {});
+    const Rows rows = rows_at(contacts, scene.x0);
+    ASSERT_EQ(rows.table.size(), 1U);
+    const ContactTable& t = rows.table;
+    EXPECT_EQ(t.key[0], c.key);
+    EXPECT_EQ(t.kind[0], c.kind);
+    EXPECT_NEAR(t.d[0], c.d, 1e-15);
+    EXPECT_EQ(rows.min_gap, t.d[0]);
+    EXPECT_EQ(t.d_hat[0], d_hat);
+    EXPECT_EQ(t.multiplicity[0], 1);
+    // what the columns promise: r = sum w x is (d + offset) n, n is unit
+    Vec3d r = Vec3d::Zero();
+    double sum = 0;
+    for (std::size_t k = 0; k < 4 && t.stencil[k] >= 0; ++k) {
+      r += t.stencil_weight[k] * scene.x0.col(t.stencil[k]);
+      sum += t.stencil_weight[k];
+    }
+    EXPECT_NEAR((r - t.d[0] * Vec3d::Map(&t.normal[0])).norm(), 0, 1e-15);
+    EXPECT_NEAR(sum, 0, 1e-15);
+    EXPECT_NEAR(Vec3d::Map(&t.normal[0]).norm(), 1, 1e-15);
+  }
+}
+
+TEST(Rows, NoneBeyondTheActivationDistance) {
+  const Scene scene = point_over_triangle(Vec3d(0.2, 0.2, d_hat * 1.0001));
+  ContactSystem contacts(scene, {});
+  const Rows rows = rows_at(contacts, scene.x0);
+  EXPECT_EQ(rows.table.size(), 0U);
+  EXPECT_EQ(rows.min_gap, std::numeric_limits<double>::infinity());
+}
+
+/// Two rods of one edge each.
+Scene two_edges(const Vec3d& a0, const Vec3d& a1, const Vec3d& b0, const Vec3d& b1) {
+  Scene scene;
+  add_body(scene, "a", {a0, a1}, {}, d_hat);
+  add_body(scene, "b", {b0, b1}, {}, d_hat);
+  scene.surface_edges = {{0, 1}, {2, 3}};
+  return scene;
+}
+
+TEST(Rows, EveryRegionOfTwoEdges) {
+  struct Case {
+    Vec3d b0, b1;
+    ContactKey key;
+    ContactKind kind;
+    double d;
+  };
+  const Case cases[] = {{{0.5, -1, 0.05}, {0.5, 1, 0.05}, {0, 1, 2, 3}, ContactKind::edge_edge, 0.05},
+                        {{0.5, 0.05, 0}, {0.5, 1, 0}, {-1, 0, 1, 2}, ContactKind::point_edge, 0.05},
+                        {{0.5, -1, 0}, {0.5, -0.05, 0}, {-1, 0, 1, 3}, ContactKind::point_edge, 0.05},
+                        {{-0.05, -1, 0}, {-0.05, 1, 0}, {-1, 0, 2, 3}, ContactKind::point_edge, 0.05},
+                        {{1.05, -1, 0}, {1.05, 1, 0}, {-1, 1, 2, 3}, ContactKind::point_edge, 0.05},
+                        {{1.03, 0.04, 0}, {1.2, 1, 0}, {-1, -1, 1, 2}, ContactKind::point_point, 0.05},
+                        {{-0.2, 1, 0}, {-0.03, 0.04, 0}, {-1, -1, 0, 3}, ContactKind::point_point, 0.05}};
+  for (const Case& c : cases) {
+    const Scene scene = two_edges({0, 0, 0}, {1, 0, 0}, c.b0, c.b1);
+    ContactSystem contacts(scene, {});
+    const Rows rows = rows_at(contacts, scene.x0);
+    ASSERT_EQ(rows.table.size(), 1U);
+    EXPECT_EQ(rows.mollified.size(), 0U);
+    const ContactTable& t = rows.table;
+    EXPECT_EQ(t.key[0], c.key);
+    EXPECT_EQ(t.kind[0], c.kind);
+    EXPECT_NEAR(t.d[0], c.d, 1e-15);
+    Vec3d r = Vec3d::Zero();
+    for (std::size_t k = 0; k < 4 && t.stencil[k] >= 0; ++k) {
+      r += t.stencil_weight[k] * scene.x0.col(t.stencil[k]);
+    }
+    EXPECT_NEAR((r - t.d[0] * Vec3d::Map(&t.normal[0])).norm(), 0, 1e-15);
+    EXPECT_EQ(t.stencil_weight[0] > 0, true);
+  }
+}
+
+/// A 4 x 4 grid of unit cells and a free vertex (25) at p.
+Scene point_over_grid(const Vec3d& p, bool given = false, double offset = 0) {
+  Scene scene;
+  const auto [vertices, triangles] = grid(4, 4, 1.0);
+  add_body(scene, "sheet", vertices, triangles, d_hat, given, offset);
+  add_body(scene, "point", {p}, {}, d_hat);
+  return scene;
+}
+
+TEST(Rows, PairsOfOneFeatureAreMergedWithTheirNumber) {
+  // above vertex 12 (2, 2): six triangles have it as their closest point
+  const Scene over_vertex = point_over_grid(Vec3d(2, 2, 0.05));
+  ContactSystem contacts(over_vertex, {});
+  const Rows at_vertex = rows_at(contacts, over_vertex.x0);
+  double multiplicity = 0;
+  for (double m : at_vertex.table.multiplicity) multiplicity += m;
+  EXPECT_EQ(multiplicity, 6);
+  const int pp = find_row(at_vertex.table, {-1, -1, 12, 25}, ContactKind::point_point);
+  ASSERT_GE(pp, 0);
+  EXPECT_EQ(at_vertex.table.multiplicity[at(pp)], 6);
+
+  // above the straight edge 11-12, nearer to one side: that triangle's interior, and the edge for the other
+  const Scene beside = point_over_grid(Vec3d(1.5, 2.001, 0.05));
+  ContactSystem contacts2(beside, {});
+  const Rows rows = rows_at(contacts2, beside.x0);
+  EXPECT_EQ(rows.table.size(), 2U);
+  const int pe = find_row(rows.table, {-1, 11, 12, 25}, ContactKind::point_edge);
+  ASSERT_GE(pe, 0);
+  EXPECT_EQ(rows.table.multiplicity[at(pe)], 1);
+}
+
+TEST(Rows, BarrierIsContinuousWhereTheClosestFeatureChanges) {
+  const Scene scene = point_over_grid(Vec3d::Zero());
+  ContactSystem contacts(scene, {});
+  // across a straight edge, a diagonal, over a vertex, past the border, and off a corner of the sheet
+  const Vec3d from[] = {
+      {1.5, 1.99, 0.05}, {1.48, 1.52, 0.05}, {1.99, 1.985, 0.05}, {1.3, 0.01, 0.05}, {0.01, 0.01, 0.05}};
+  const Vec3d to[] = {
+      {1.5, 2.01, 0.05}, {1.52, 1.48, 0.05}, {2.01, 2.015, 0.05}, {1.3, -0.01, 0.05}, {-0.01, -0.01, 0.05}};
+  int changes = 0;
+  for (std::size_t path = 0; path < 5; ++path) {
+    const auto state = [&](double t) {
+      Positions x = scene.rest;
+      x.col(25) = from[path] + t * (to[path] - from[path]);
+      return x;
+    };
+    // bisect for every place where the keys change, then compare B on both sides of it
+    const auto keys = [&](double t) { return rows_at(contacts, state(t)).table.key; };
+    double left = 0;
+    for (int k = 1; k <= 20; ++k) {
+      double lo = left, hi = k / 20.0;
+      left = hi;
+      if (keys(lo) == keys(hi)) continue;
+      const auto at_lo = keys(lo);
+      for (int b = 0; b < 60; ++b) {
+        const double middle = (lo + hi) / 2;
+        (keys(middle) == at_lo ? lo : hi) = middle;
+      }
+      const double below = barrier(contacts, state(lo), 1), above = barrier(contacts, state(hi), 1);
+      EXPECT_GT(below, 1e-4);
+      EXPECT_NEAR(above, below, 1e-12 * below);
+      ++changes;
+    }
+  }
+  EXPECT_GE(changes, 5);
+}
+
+TEST(Rows, EdgesCrossingAGridKeepBContinuous) {
+  Scene scene;
+  const auto [vertices, triangles] = grid(3, 3, 1.0);
+  add_body(scene, "sheet", vertices, triangles, d_hat);
+  const int blade =
+      add_body(scene, "blade", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 0, 1)}, {{0, 1, 2}}, d_hat);
+  ContactSystem contacts(scene, {Mollifier::none});
+  const auto state = [&](double t) {
+    Positions x = scene.rest;
+    x.col(blade) = Vec3d(0.7 + 0.6 * t, 1.2 + 0.3 * t, 0.05);
+    x.col(blade + 1) = Vec3d(1.6 + 0.6 * t, 1.5 + 0.3 * t, 0.07);
+    x.col(blade + 2) = Vec3d(1.0, 1.2, 1.0);
+    return x;
+  };
+  // B is Lipschitz with a constant that all forces bound: no jump between neighbouring samples
+  double largest_step = 0, last = barrier(contacts, state(0), 1);
+  const int n = 400;
+  for (int k = 1; k <= n; ++k) {
+    const double next = barrier(contacts, state(1.0 * k / n), 1);
+    EXPECT_GT(next, 1e-4);
+    largest_step = std::max(largest_step, std::abs(next - last));
+    last = next;
+  }
+  // up to about 20 pairs, each with |b'| <= 2 d_hat, moved by 0.7/n
+  EXPECT_LT(largest_step, 20 * 2 * d_hat * 0.7 / n);
+}
+
+TEST(Rows, GivenVerticesHaveNoColumns) {
+  const Scene scene = point_over_grid(Vec3d(1.7, 1.2, 0.05), true);
+  ContactSystem contacts(scene, {});
+  const Rows rows = rows_at(contacts, scene.x0);
+  ASSERT_EQ(rows.table.size(), 1U);
+  const ContactTable& t = rows.table;
+  EXPECT_EQ(t.kind[0], ContactKind::point_triangle);
+  EXPECT_EQ(t.n_free[0], 1);
+  EXPECT_EQ(t.vertex, (std::vector<int>{25, -1, -1, -1}));
+  EXPECT_EQ(t.weight, (std::vector<double>{1, 0, 0, 0}));
+  EXPECT_EQ(t.key[0], (ContactKey{6, 7, 12, 25}));  // the identity keeps them
+
+  const Scene moving = point_over_grid(Vec3d(1.7, 1.2, 0.05), false);
+  ContactSystem contacts2(moving, {});
+  const Rows both = rows_at(contacts2, moving.x0);
+  ASSERT_EQ(both.table.size(), 1U);
+  EXPECT_EQ(both.table.n_free[0], 4);
+  EXPECT_NEAR(both.table.weight[1] + both.table.weight[2] + both.table.weight[3], -1, 1e-15);
+}
+
+TEST(Rows, NoneWhereTheClosestFeatureIsWhollyGiven) {
+  Scene scene;
+  add_body(scene, "cloth", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)}, {{0, 1, 2}}, d_hat);
+  scene.pins = {{0, 0}, {1, 0}};  // vertex 2 is free
+  scene.motions.push_back({});
+  add_body(scene, "given", {Vec3d(0.5, -0.05, 0)}, {}, d_hat, true);
+  ContactSystem contacts(scene, {});
+  EXPECT_EQ(rows_at(contacts, scene.x0).table.size(), 0U);
+  EXPECT_EQ(contacts.candidate_counts().point_triangle, 1U);
+}
+
+TEST(Rows, OffsetsAddUpAndDistancesAreMeans) {
+  Scene scene = point_over_triangle(Vec3d(0.25, 0.25, 0.07));
+  scene.offset = {0.01, 0.01, 0.01, 0.02};
+  scene.d_hat = {0.03, 0.03, 0.03, 0.07};
+  ContactSystem contacts(scene, {});
+  const Rows rows = rows_at(contacts, scene.x0);
+  ASSERT_EQ(rows.table.size(), 1U);
+  EXPECT_NEAR(rows.table.offset[0], 0.03, 1e-16);
+  EXPECT_NEAR(rows.table.d_hat[0], 0.05, 1e-16);
+  EXPECT_NEAR(rows.table.d[0], 0.04, 1e-15);
+}
+
+TEST(Rows, RestRuleShortensTheActivationDistanceOfOneBody) {
+  Scene scene;  // one body: a triangle and a vertex 0.06 above it at rest, then closer
+  const std::vector<Vec3d> vertices{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0.2, 0.2, 0.06}};
+  add_body(scene, "body", vertices, {{0, 1, 2}}, d_hat);
+  ContactSystem contacts(scene, {});
+  EXPECT_EQ(rows_at(contacts, scene.x0).table.size(), 0U);  // 0.06 > 0.06/1.5
+  Positions x = scene.x0;
+  x(2, 3) = 0.03;
+  const Rows rows = rows_at(contacts, x);
+  ASSERT_EQ(rows.table.size(), 1U);
+  EXPECT_NEAR(rows.table.d_hat[0], 0.04, 1e-15);
+
+  scene.body[3] = 1;  // two bodies: the rule does not hold
+  scene.bodies.push_back({"other", 3, 1});
+  ContactSystem apart(scene, {});
+  const Rows plain = rows_at(apart, x);
+  ASSERT_EQ(plain.table.size(), 1U);
+  EXPECT_EQ(plain.table.d_hat[0], d_hat);
+}
+
+TEST(Rows, AGridAtRestHasNoneHoweverLargeDHatIs) {
+  Scene scene;
+  const auto [vertices, triangles] = grid(6, 6, 0.1);
+  add_body(scene, "cloth", vertices, triangles, 0.5);
+  ContactSystem contacts(scene, {});
+  const Rows rows = rows_at(contacts, scene.x0);
+  EXPECT_GT(contacts.candidate_counts().point_triangle, 1000U);
+  EXPECT_EQ(rows.table.size() + rows.mollified.size(), 0U);
+}
+
+TEST(Rows, DifferentActivationDistancesAreNotMerged) {
+  // six triangles share the closest vertex; their mean activation distances differ
+  Scene scene = point_over_grid(Vec3d(2, 2, 0.05));
+  scene.d_hat[12] = 0.2;
+  scene.d_hat[6] = 0.17;  // corner of two of the six triangles round vertex 12
+  ContactSystem contacts(scene, {});
+  const Rows rows = rows_at(contacts, scene.x0);
+  double total = 0;
+  int n = 0;
+  for (std::size_t r = 0; r < rows.table.size(); ++r) {
+    EXPECT_EQ(rows.table.key[r], (ContactKey{-1, -1, 12, 25}));
+    total += rows.table.multiplicity[r];
+    ++n;
+  }
+  EXPECT_EQ(total, 6);
+  EXPECT_GE(n, 2);
+}
+
+TEST(Rows, SortedAndTheSameForAnyNumberOfThreads) {
+  Scene scene;
+  const auto [v1, t1] = soup(150, 0.2, 1);
+  add_body(scene, "a", v1, t1, 0.05);
+  const auto [v2, t2] = soup(150, 0.2, 2);
+  add_body(scene, "b", v2, t2, 0.05);
+  Rows reference;
+  for (std::size_t threads : {1, 2, 6}) {
+    const tbb::global_control control(tbb::global_control::max_allowed_parallelism, threads);
+    ContactSystem contacts(scene, {});
+    const Rows rows = rows_at(contacts, scene.x0);
+    if (threads == 1) reference = rows;
+    EXPECT_EQ(rows.table.key, reference.table.key);
+    EXPECT_EQ(rows.table.d, reference.table.d);
+    EXPECT_EQ(rows.table.weight, reference.table.weight);
+    EXPECT_EQ(rows.table.multiplicity, reference.table.multiplicity);
+    EXPECT_EQ(rows.mollified.key, reference.mollified.key);
+  }
+  const ContactTable& t = reference.table;
+  ASSERT_GT(t.size(), 200U);
+  for (std::size_t r = 1; r < t.size(); ++r) {
+    EXPECT_TRUE(t.key[r - 1] < t.key[r] || (t.key[r - 1] == t.key[r] && t.kind[r - 1] <= t.kind[r]));
+  }
+}
+
+TEST(Rows, ObstaclesActOnFreeVerticesWithASignedGap) {
+  Scene scene;
+  add_body(scene, "free", {Vec3d(0, 0, 0.05), Vec3d(1, 0, -0.02), Vec3d(2, 0, 0.2)}, {}, d_hat, false, 0.01);
+  add_body(scene, "given", {Vec3d(3, 0, 0.05)}, {}, d_hat, true);
+  scene.obstacles.push_back({});  // the plane z = 0
+  ContactSystem contacts(scene, {});
+  const Rows rows = rows_at(contacts, scene.x0);
+  ASSERT_EQ(rows.table.size(), 2U);
+  EXPECT_EQ(rows.table.key[0], (ContactKey{-1, -1, -2, 0}));
+  EXPECT_EQ(rows.table.key[1], (ContactKey{-1, -1, -2, 1}));
+  EXPECT_EQ(rows.table.kind[0], ContactKind::obstacle);
+  EXPECT_NEAR(rows.table.d[0], 0.04, 1e-16);
+  EXPECT_NEAR(rows.table.d[1], -0.03, 1e-16);
+  EXPECT_EQ(rows.min_gap, rows.table.d[1]);
+  EXPECT_EQ(rows.table.normal[2], 1);
+  EXPECT_EQ(rows.table.n_free[0], 1);
+}
+
+TEST(Rows, PlanarPointEdgeMergesAtACorner) {
+  Scene scene;
+  scene.planar = true;
+  scene.planar_pairs = PlanarPairs::point_edge;
+  add_body(scene, "corner", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)}, {}, d_hat);
+  scene.surface_edges = {{0, 1}, {0, 2}};
+  add_body(scene, "point", {Vec3d(-0.03, -0.04, 0)}, {}, d_hat);
+  ContactSystem contacts(scene, {});
+  const Rows rows = rows_at(contacts, scene.x0);
+  ASSERT_EQ(rows.table.size(), 1U);
+  EXPECT_EQ(rows.table.kind[0], ContactKind::point_point);
+  EXPECT_EQ(rows.table.multiplicity[0], 2);
+  EXPECT_NEAR(rows.table.d[0], 0.05, 1e-16);
+}
+
+}  // namespace
+}  // namespace bb::test

@@ -1,0 +1,176 @@
+// Condition estimates on matrices whose spectrum is known by construction.
+#include <Spectra/MatOp/SparseSymMatProd.h>
+#include <Spectra/SymEigsSolver.h>
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "core/linear/condition.hpp"
+#include "tests/linear/systems.hpp"
+
+namespace bb {
+namespace {
+
+ConditionEstimate estimate(const ReducedSystem& system, int tier, Scaling scaling = Scaling::none,
+                           std::uint64_t seed = 1) {
+  ConditionEstimator estimator;
+  return estimator.estimate(system, {tier, scaling, seed});
+}
+
+void print_row(const std::string& kind, int n, double cond, const ConditionEstimate& e) {
+  std::printf(
+      "%-18s %5d %8.0e  cond/truth - 1 %9.1e  min %9.1e  max %9.1e  %-11s solves %2d products %2d "
+      "factors +%d residual %.0e  %.3f s\n",
+      kind.c_str(), n, cond, e.cond / cond - 1, e.lambda_min * cond - 1, e.lambda_max - 1,
+      std::string(to_string(e.status)).c_str(), e.solves, e.products, e.factorizations, e.residual,
+      e.seconds);
+}
+
+void expect_close(const ConditionEstimate& e, double cond, const std::string& what) {
+  const double tol = cond > 1e10 ? 1e-2 : 1e-3;
+  EXPECT_EQ(e.status, ConditionStatus::ok) << what;
+  EXPECT_NEAR(e.cond / cond, 1, tol) << what;
+  EXPECT_NEAR(e.lambda_min * cond, 1, tol) << what;
+  EXPECT_NEAR(e.lambda_max, 1, tol) << what;
+}
+
+void expect_budget(const ConditionEstimate& e, const std::string& what) {
+  EXPECT_LE(e.solves, 25) << what;
+  EXPECT_LE(e.products, 40) << what;
+  EXPECT_GT(e.products, 0) << what;
+}
+
+TEST(Condition, Tiers2And3MeetKnownSpectraWhenDense) {
+  for (const int n : {30, 100, 300}) {
+    for (const double cond : {1e1, 1e3, 1e6, 1e10, 1e12}) {
+      for (const std::string& kind : spectrum_kinds()) {
+        const ReducedSystem system = from_dense(with_spectrum(spectrum(kind, n, cond), 3));
+        const std::string what = kind + " n " + std::to_string(n) + " cond " + std::to_string(cond);
+        const ConditionEstimate tier2 = estimate(system, 2);
+        print_row(kind, n, cond, tier2);
+        expect_close(tier2, cond, what + " tier 2");
+        expect_budget(tier2, what);
+        if (n <= 100) expect_close(estimate(system, 3), cond, what + " tier 3");
+      }
+    }
+  }
+}
+
+TEST(Condition, Tier2MeetsKnownSpectraWhenLargeAndSparse) {
+  for (const double cond : {1e2, 1e6, 1e10, 1e12}) {
+    for (const std::string& kind : spectrum_kinds()) {
+      const int n = 3000;
+      const ReducedSystem system = from_sparse(sparse_with_spectrum(spectrum(kind, n, cond), 3));
+      const ConditionEstimate e = estimate(system, 2);
+      print_row(kind, n, cond, e);
+      expect_close(e, cond, kind + " " + std::to_string(cond));
+      expect_budget(e, kind);
+    }
+  }
+}
+
+TEST(Condition, Tier2HoldsForOtherSeeds) {
+  for (std::uint64_t seed = 2; seed < 40; ++seed) {
+    for (const std::string& kind : spectrum_kinds()) {
+      const ReducedSystem system = from_dense(with_spectrum(spectrum(kind, 90, 1e4), 4));
+      const ConditionEstimate e = estimate(system, 2, Scaling::none, seed);
+      expect_close(e, 1e4, kind + " seed " + std::to_string(seed));
+      expect_budget(e, kind);
+    }
+  }
+}
+
+TEST(Condition, Tier1IsALowerBoundWithinAFewPercentOrWorse) {
+  double worst = 1;
+  for (const int n : {30, 300}) {
+    for (const double cond : {1e1, 1e4, 1e8, 1e12}) {
+      for (const std::string& kind : spectrum_kinds()) {
+        const ReducedSystem system = from_dense(with_spectrum(spectrum(kind, n, cond), 6));
+        const ConditionEstimate e = estimate(system, 1);
+        // The truth itself moves by the rounding of the entries: eps |A| against lambda_min.
+        const double slack = 1e-10 + 1e-16 * cond;
+        EXPECT_EQ(e.status, ConditionStatus::lower_bound) << kind;
+        EXPECT_LE(e.cond / cond, 1 + slack) << kind << " " << n << " " << cond;
+        EXPECT_LE(e.lambda_max, 1 + 1e-10) << kind;
+        EXPECT_GE(e.lambda_min * cond, 1 - slack) << kind;
+        EXPECT_EQ(e.solves, 4);
+        EXPECT_LE(e.products, 21);
+        worst = std::min(worst, e.cond / cond);
+      }
+    }
+  }
+  std::printf("tier 1: smallest cond / truth %.3f\n", worst);
+  EXPECT_GT(worst, 0.5);
+  EXPECT_LT(worst, 0.9999);  // it is a bound, not the value: the test has something to bound
+}
+
+/// Eigenvalues of L^-1 A L^-T by dense algebra, L from Eigen's own Cholesky of the blocks.
+VecXd dense_scaled(const ReducedSystem& system, Scaling scaling) {
+  const Eigen::MatrixXd a = dense(system);
+  Eigen::MatrixXd d = Eigen::MatrixXd::Identity(a.rows(), a.cols());
+  if (scaling == Scaling::jacobi) d = a.diagonal().asDiagonal();
+  if (scaling == Scaling::block_jacobi) {
+    for (std::size_t b = 0; b + 1 < system.block_start.size(); ++b) {
+      const int begin = system.block_start[b], size = system.block_start[b + 1] - begin;
+      d.block(begin, begin, size, size) = a.block(begin, begin, size, size);
+    }
+  }
+  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a, d, Eigen::EigenvaluesOnly);
+  return eigen.eigenvalues();
+}
+
+TEST(Condition, ScalingsMeetDenseAlgebra) {
+  Eigen::MatrixXd a = with_spectrum(spectrum("geometric", 100, 1e5), 8);
+  VecXd rows =
+      VecXd::NullaryExpr(100, [](Eigen::Index i) { return std::pow(10.0, static_cast<double>(i % 7)); });
+  a = (rows.asDiagonal() * a * rows.asDiagonal()).eval();
+  const ReducedSystem system = from_dense(a);  // 100 = 33 blocks of 3 and one of 1
+  ConditionEstimator estimator;
+  std::vector<double> truths;
+  for (const int tier : {2, 3}) {
+    for (const Scaling scaling : {Scaling::jacobi, Scaling::block_jacobi}) {
+      const VecXd truth = dense_scaled(system, scaling);
+      const double cond = truth[99] / truth[0];
+      const ConditionEstimate e = estimator.estimate(system, {tier, scaling, 1});
+      EXPECT_EQ(e.status, ConditionStatus::ok);
+      EXPECT_NEAR(e.cond / cond, 1, 1e-3) << to_string(scaling) << " tier " << tier;
+      EXPECT_NEAR(e.lambda_min / truth[0], 1, 1e-3);
+      EXPECT_NEAR(e.lambda_max / truth[99], 1, 1e-3);
+      truths.push_back(cond);
+    }
+  }
+  const double unscaled = dense_scaled(system, Scaling::none)[99] / dense_scaled(system, Scaling::none)[0];
+  EXPECT_GT(unscaled, 10 * truths[0]);                   // the scalings do something
+  EXPECT_GT(std::abs(truths[0] / truths[1] - 1), 0.01);  // and not the same
+}
+
+TEST(Condition, OneFactorisationServesAllScalings) {
+  const ReducedSystem system = grid_system(12, 1e-3, 42);
+  ConditionEstimator estimator;
+  const auto all = estimator.estimate_all(system, 2, 7);
+  const Scaling scalings[] = {Scaling::none, Scaling::jacobi, Scaling::block_jacobi};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const ConditionEstimate one = estimate(system, 2, scalings[k], 7);
+    const VecXd truth = dense_scaled(system, scalings[k]);
+    EXPECT_EQ(all[k].lambda_min, one.lambda_min);
+    EXPECT_EQ(all[k].lambda_max, one.lambda_max);
+    EXPECT_NEAR(all[k].cond / (truth[truth.size() - 1] / truth[0]), 1, 1e-3) << to_string(scalings[k]);
+    EXPECT_LT(all[k].residual, 1e-2);
+    print_row("grid " + std::string(to_string(scalings[k])), 432, truth[truth.size() - 1] / truth[0], all[k]);
+  }
+}
+
+TEST(Condition, LargestEigenvalueAgreesWithSpectra) {
+  const ReducedSystem system = grid_system(20, 1e-2, 1);
+  Spectra::SparseSymMatProd<double, Eigen::Lower> op(system.lower);
+  Spectra::SymEigsSolver<decltype(op)> spectra(op, 1, 30);
+  spectra.init();
+  spectra.compute(Spectra::SortRule::LargestAlge, 1000, 1e-10);
+  ASSERT_EQ(spectra.info(), Spectra::CompInfo::Successful);
+  const ConditionEstimate e = estimate(system, 2);
+  EXPECT_EQ(e.status, ConditionStatus::ok);
+  EXPECT_NEAR(e.lambda_max / spectra.eigenvalues()[0], 1, 1e-3);
+}
+
+}  // namespace
+}  // namespace bb

@@ -1,0 +1,70 @@
+// The registry: every solver meets a dense solution, unknown names are refused with a hint.
+#include "core/linear/linear_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include "core/math/error.hpp"
+#include "tests/linear/systems.hpp"
+
+namespace bb {
+namespace {
+
+TEST(LinearSolver, EverySolverOfTheRegistryMeetsTheDenseSolution) {
+  const ReducedSystem system = grid_system(8, 0.1, 1);
+  const VecXd b = random_vector(system.lower.rows(), 2);
+  const VecXd truth = dense(system).ldlt().solve(b);
+  ASSERT_GE(linear_solvers().size(), 2u);
+  for (const LinearSolverEntry& entry : linear_solvers()) {
+    LinearOptions options;
+    options.name = entry.name;
+    options.tol_rel = 1e-12;
+    const auto solver = make_linear_solver(options);
+    VecXd x;
+    const LinearReport report = solver->solve(system, b, x);
+    EXPECT_EQ(solver->name(), entry.name);
+    EXPECT_FALSE(entry.doc.empty());
+    EXPECT_EQ(report.status, LinearStatus::ok) << entry.name;
+    EXPECT_LT((x - truth).norm(), 1e-10 * truth.norm()) << entry.name;
+    EXPECT_LT(report.residual_true, 1e-12);
+    VecXd zero;
+    EXPECT_EQ(solver->solve(system, VecXd::Zero(b.size()), zero).status, LinearStatus::ok);
+    EXPECT_EQ(zero, VecXd::Zero(b.size()));
+    EXPECT_EQ(solver->solve(from_dense(Eigen::MatrixXd(0, 0)), VecXd(0), zero).status, LinearStatus::ok);
+    EXPECT_THROW(solver->solve(system, VecXd::Zero(3), zero), ConfigError);
+  }
+}
+
+std::string message(const LinearOptions& options) {
+  try {
+    make_linear_solver(options);
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(LinearSolver, UnknownNamesAreListedWithTheNearest) {
+  LinearOptions options;
+  options.name = "cholmid";
+  EXPECT_EQ(message(options),
+            "/linear_solver/name: found \"cholmid\"; allowed: one of cholmod, pcg (did you mean cholmod?)");
+  options.name = "multigrid";
+  EXPECT_EQ(message(options), "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, pcg");
+  options = {};
+  options.name = "pcg";
+  options.preconditioner = "block-jacobi";
+  EXPECT_NE(message(options).find("(did you mean block_jacobi?)"), std::string::npos);
+}
+
+TEST(LinearSolver, EveryStatusHasItsWord) {
+  std::vector<std::string_view> words;
+  for (int k = 0; k <= static_cast<int>(LinearStatus::iteration_cap); ++k) {
+    words.push_back(to_string(static_cast<LinearStatus>(k)));
+    EXPECT_FALSE(words.back().empty());
+  }
+  std::sort(words.begin(), words.end());
+  EXPECT_EQ(std::unique(words.begin(), words.end()), words.end());
+}
+
+}  // namespace
+}  // namespace bb

@@ -1,0 +1,60 @@
+// Scenes made by hand for the Newton tests: small enough that the answer is known.
+#pragma once
+
+#include <string>
+
+#include "barriers/shapes/registry.hpp"
+#include "barriers/stiffness/registry.hpp"
+#include "core/integrators/registry.hpp"
+#include "core/mesh/generators.hpp"
+#include "core/newton/method.hpp"
+#include "core/newton/simulation.hpp"
+#include "core/scene/scene_builder.hpp"
+
+namespace bb::test {
+
+inline Method fixed_method(const std::string& shape, double kappa,
+                           const std::string& integrator = "implicit_euler") {
+  Method method;
+  method.contact = {require_shape(shape), Argument::gap};
+  StiffnessPolicyConfig policy;
+  policy.kappa = kappa;
+  method.stiffness = make_policy(policy);
+  method.limit = {require_shape(shape), Argument::gap};
+  method.integrator = make_integrator(integrator);
+  method.step_solver.tol_velocity = 1e-6;
+  return method;
+}
+
+/// One free particle of mass m (kg) at height z (m) over the plane z = 0.
+inline Scene particle_over_plane(double mass, double height, double d_hat) {
+  Scene scene;
+  scene.name = "particle";
+  scene.bodies = {{"particle", 0, 1}};
+  scene.rest = scene.x0 = Vec3d(0, 0, height);
+  scene.v0 = Positions::Zero(3, 1);
+  scene.mass = {mass};
+  scene.body = {0};
+  scene.d_hat = {d_hat};
+  scene.offset = {0};
+  scene.gravity = Vec3d(0, 0, -10);
+  scene.surface_vertices = {0};
+  Obstacle plane;
+  plane.name = "floor";
+  scene.obstacles = {plane};
+  return scene;
+}
+
+/// A square cloth of n x n vertices and side 1 m, flat at height z; bending and a strain limit on request.
+inline BodySpec cloth_spec(int n, double height, double d_hat) {
+  BodySpec spec;
+  spec.name = "cloth";
+  spec.mesh = grid_mesh(n, n, 1.0, 1.0);
+  spec.mesh.vertices.row(2).array() += height;
+  spec.material.density = 0.3;
+  spec.material.youngs = 100;
+  spec.d_hat = d_hat;
+  return spec;
+}
+
+}  // namespace bb::test

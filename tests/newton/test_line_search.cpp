@@ -1,0 +1,146 @@
+// The projected-Newton step: quadratics in one step, energy never rises, momentum, determinism, reuse.
+#include <gtest/gtest.h>
+#include <oneapi/tbb/global_control.h>
+
+#include <cmath>
+
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb {
+namespace {
+
+Scene cloth_on_sphere(int n) {
+  SceneBuilder builder("cloth on sphere", false, Vec3d(0, 0, -9.81), "test");
+  BodySpec spec = test::cloth_spec(n, 0, 0.01);
+  spec.material.bending = 1e-4;
+  spec.material.limit = StrainLimitSpec::from_limit(0.05);
+  spec.velocity = Vec3d(0, 0, -1);
+  builder.add_body(spec);
+  Obstacle sphere;
+  sphere.name = "sphere";
+  sphere.kind = ObstacleKind::sphere;
+  sphere.point = Vec3d(0.003, 0.002, -0.312);
+  sphere.radius = 0.3;
+  builder.add_obstacle(sphere);
+  return builder.finish();
+}
+
+/// Asserts on every iteration that the accepted energy went down, up to what is called rounding.
+class EnergyWatch final : public StepObserver {
+ public:
+  void on_iteration(const IterationReport& report) override {
+    if (!report.accepted_by_rounding) {
+      EXPECT_LE(report.energy_change, 0) << report.step << "/" << report.iteration;
+    }
+    descents += report.energy_change < 0;
+    contacts += report.contacts.total();
+    stretched += report.max_stretch > 1.025;
+  }
+  int descents = 0, stretched = 0;
+  std::size_t contacts = 0;
+};
+
+TEST(LineSearch, energy_falls_in_every_iteration_of_a_draping_cloth) {
+  Scene scene = cloth_on_sphere(8);
+  for (const Shape& shape : shapes()) {
+    Method method = test::fixed_method(shape.name, 400);
+    method.limit_stiffness.k_s = 2e4;
+    Simulation simulation(scene, method, 0.01, 15);
+    EnergyWatch watch;
+    for (int i = 0; i < 15; ++i) {
+      const StepReport report = simulation.step(watch);
+      ASSERT_EQ(report.status, StepStatus::converged) << shape.name << " step " << i << " " << report.detail;
+      EXPECT_GT(report.gap_min, 0);
+      EXPECT_LT(report.max_stretch, 1.05);
+    }
+    EXPECT_GT(watch.contacts, 20U) << shape.name;
+    EXPECT_GT(watch.descents, 15) << shape.name;
+  }
+}
+
+TEST(LineSearch, free_fall_of_a_cloth_is_one_quadratic) {
+  SceneBuilder builder("falling cloth", false, Vec3d(0, 0, -9.81), "test");
+  builder.add_body(test::cloth_spec(5, 10, 0.001));
+  Scene scene = builder.finish();
+  Method method = test::fixed_method("log", 1);
+  Simulation simulation(scene, method, 0.01, 3);
+  StepObserver observer;
+  for (int i = 0; i < 3; ++i) {
+    const StepReport report = simulation.step(observer);
+    EXPECT_EQ(report.status, StepStatus::converged);
+    EXPECT_LE(report.iterations, 2);
+  }
+  const double fallen = simulation.history().x(2, 7) - scene.x0(2, 7);
+  EXPECT_NEAR(fallen, -9.81 * 1e-4 * (1 + 2 + 3), 1e-12);
+}
+
+TEST(LineSearch, an_unchanged_pattern_is_not_analysed_again) {
+  SceneBuilder builder("falling cloth", false, Vec3d(0, 0, -9.81), "test");
+  builder.add_body(test::cloth_spec(6, 10, 0.001));
+  Scene scene = builder.finish();
+  Method method = test::fixed_method("log", 1);
+  Simulation simulation(scene, method, 0.01, 2);
+  StepObserver observer;
+  const StepReport first = simulation.step(observer), second = simulation.step(observer);
+  EXPECT_EQ(first.analyses, 1);
+  EXPECT_EQ(second.analyses, 0);
+  EXPECT_GE(second.factorizations, 1);
+}
+
+TEST(LineSearch, threads_change_no_bit) {
+  Scene scene = cloth_on_sphere(10);
+  const auto final_state = [&scene](std::size_t threads) {
+    const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism, threads);
+    Method method = test::fixed_method("cubic", 2000);
+    method.limit_stiffness.k_s = 2e4;
+    Simulation simulation(scene, method, 0.01, 10);
+    StepObserver observer;
+    std::size_t contacts = 0;
+    for (int i = 0; i < 10; ++i) contacts += simulation.step(observer).contacts.total();
+    EXPECT_GT(contacts, 10U);
+    return simulation.history().x;
+  };
+  const Positions one = final_state(1), two = final_state(2);
+  EXPECT_TRUE((one.array() == two.array()).all());
+}
+
+TEST(LineSearch, accumulated_toi_reaches_the_same_state_without_contact) {
+  SceneBuilder builder("falling cloth", false, Vec3d(0, 0, -9.81), "test");
+  builder.add_body(test::cloth_spec(5, 10, 0.001));
+  Scene scene = builder.finish();
+  Method method = test::fixed_method("cubic", 1);
+  method.step_solver.name = "accumulated_toi";
+  Simulation simulation(scene, method, 0.01, 3);
+  StepObserver observer;
+  for (int i = 0; i < 3; ++i) {
+    const StepReport report = simulation.step(observer);
+    EXPECT_EQ(report.status, StepStatus::converged);
+    EXPECT_EQ(report.iterations, 2);  // one free Newton step and the error-reduction pass
+    EXPECT_EQ(report.dt_used, 0.01);
+  }
+  EXPECT_NEAR(simulation.history().x(2, 7) - scene.x0(2, 7), -9.81 * 1e-4 * 6, 1e-12);
+}
+
+TEST(LineSearch, accumulated_toi_drapes_without_touching) {
+  Scene scene = cloth_on_sphere(8);
+  Method method = test::fixed_method("cubic", 1);
+  StiffnessPolicyConfig policy;
+  policy.name = "elasticity_inclusive";
+  method.stiffness = make_policy(policy);
+  method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+  method.step_solver.name = "accumulated_toi";
+  Simulation simulation(scene, method, 0.01, 15);
+  StepObserver observer;
+  std::size_t contacts = 0;
+  for (int i = 0; i < 15; ++i) {
+    const StepReport report = simulation.step(observer);
+    ASSERT_EQ(report.status, StepStatus::converged) << report.detail;
+    contacts += report.contacts.total();
+    EXPECT_GT(report.gap_min, 0);
+    EXPECT_LT(report.max_stretch, 1.05);
+  }
+  EXPECT_GT(contacts, 10U);
+}
+
+}  // namespace
+}  // namespace bb

@@ -1,0 +1,90 @@
+// Prescribed vertices: exact poses, motion lifted to the right-hand side, a pose that cannot be reached.
+#include <gtest/gtest.h>
+
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb {
+namespace {
+
+PinSpec corners(std::vector<int> indices, const Vec3d& velocity) {
+  PinSpec pin;
+  pin.indices = std::move(indices);
+  pin.motion.velocity = velocity;
+  return pin;
+}
+
+TEST(Pins, driven_vertices_are_exactly_at_their_pose_and_a_rigid_motion_strains_nothing) {
+  SceneBuilder builder("driven cloth", false, Vec3d::Zero(), "test");
+  BodySpec spec = test::cloth_spec(4, 0, 0.001);
+  spec.velocity = Vec3d(0.5, 0, 0);
+  spec.pins = {corners({0, 3, 12, 15}, Vec3d(0.5, 0, 0))};
+  builder.add_body(spec);
+  Scene scene = builder.finish();
+  Method method = test::fixed_method("log", 1);
+  Simulation simulation(scene, method, 0.02, 5);
+  StepObserver observer;
+  for (int i = 0; i < 5; ++i) ASSERT_EQ(simulation.step(observer).status, StepStatus::converged);
+  for (const Pin& pin : scene.pins) {
+    EXPECT_EQ(simulation.history().x.col(pin.vertex), pin_pose(scene, pin, simulation.time()));
+  }
+  EXPECT_NEAR(simulation.history().x(0, 5) - scene.x0(0, 5), 0.05, 1e-12);
+}
+
+TEST(Pins, lifting_carries_the_interior_in_the_first_newton_step) {
+  SceneBuilder builder("driven cloth", false, Vec3d::Zero(), "test");
+  BodySpec spec = test::cloth_spec(4, 0, 0.001);
+  spec.material.youngs = 1e6;
+  spec.pins = {corners({0, 3, 12, 15}, Vec3d(0, 0.5, 0))};
+  builder.add_body(spec);
+  Scene scene = builder.finish();
+  Method method = test::fixed_method("log", 1);
+  method.step_solver.max_iterations = 1;
+  Simulation simulation(scene, method, 0.02, 1);
+  StepObserver observer;
+  simulation.step(observer);
+  EXPECT_NEAR(simulation.history().x(1, 5) - scene.x0(1, 5), 0.01, 1e-3);  // 0 without lifting
+}
+
+TEST(Pins, a_plate_that_moves_several_d_hat_a_step_pushes_a_free_cloth_ahead_of_it) {
+  SceneBuilder builder("plate under cloth", false, Vec3d::Zero(), "test");
+  builder.add_body(test::cloth_spec(4, 0.02, 0.01));
+  BodySpec plate = test::cloth_spec(2, 0, 0.01);
+  plate.name = "plate";
+  plate.kind = BodyKind::rigid;
+  plate.mesh.vertices.row(0) *= 1.3;
+  plate.mesh.vertices.row(1) *= 1.3;
+  plate.motion.velocity = Vec3d(0, 0, 3);
+  builder.add_body(plate);
+  Scene scene = builder.finish();
+  Method method = test::fixed_method("cubic", 2e4);
+  Simulation simulation(scene, method, 0.01, 5);
+  StepObserver observer;
+  for (int i = 0; i < 5; ++i) {
+    const StepReport report = simulation.step(observer);
+    ASSERT_EQ(report.status, StepStatus::converged) << report.detail;
+    EXPECT_GT(report.contacts.total(), 0U);
+  }
+  EXPECT_NEAR(simulation.history().x(2, 17), 0.15, 1e-15);             // the plate is where it was told to be
+  EXPECT_GT(simulation.history().x.row(2).head(16).minCoeff(), 0.15);  // and the cloth is above it
+}
+
+TEST(Pins, a_pose_beyond_the_strain_limit_is_named) {
+  SceneBuilder builder("torn cloth", false, Vec3d::Zero(), "test");
+  BodySpec spec = test::cloth_spec(3, 0, 0.001);
+  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  spec.pins = {corners({0, 3, 6}, Vec3d::Zero()), corners({2, 5, 8}, Vec3d(5, 0, 0))};
+  builder.add_body(spec);
+  Scene scene = builder.finish();
+  Method method = test::fixed_method("log", 1);
+  method.limit_stiffness.k_s = 10;
+  Simulation simulation(scene, method, 0.01, 2);
+  StepObserver observer;
+  StepReport report;
+  for (int i = 0; i < 2 && report.status == StepStatus::converged; ++i) report = simulation.step(observer);
+  EXPECT_EQ(report.status, StepStatus::pin_infeasible);
+  EXPECT_NE(report.detail.find("cloth"), std::string::npos) << report.detail;
+  EXPECT_LT(report.max_stretch, 1.02);
+}
+
+}  // namespace
+}  // namespace bb

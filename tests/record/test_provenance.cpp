@@ -1,0 +1,127 @@
+// Hashes, ids, statistics, timers, machine.
+#include "core/record/provenance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <filesystem>
+#include <fstream>
+#include <limits>
+#include <thread>
+
+#include "tests/record/sample_record.hpp"
+
+namespace bb {
+namespace {
+
+TEST(Sha256, KnownAnswers) {  // FIPS 180-4 examples
+  EXPECT_EQ(sha256_hex(""), "e3b0c44298fc1c149afbf4c8996fb92427ae41e4649b934ca495991b7852b855");
+  EXPECT_EQ(sha256_hex("abc"), "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad");
+  EXPECT_EQ(sha256_hex("abcdbcdecdefdefgefghfghighijhijkijkljklmklmnlmnomnopnopq"),
+            "248d6a61d20638b8e5c026930c3e6039a33ce45964ff2167f6ecedd419db06c1");
+  EXPECT_EQ(sha256_hex(std::string(1000000, 'a')),
+            "cdc76e5c9914fb9281a1c7e284d73e67f1809a48a497200e046d39ccc7112cd0");
+}
+
+TEST(Sha256, FilesAndMissingFiles) {
+  const std::string path = (std::filesystem::temp_directory_path() / "bb_sha_test").string();
+  std::ofstream(path) << "abc";
+  EXPECT_EQ(sha256_file(path), sha256_hex("abc"));
+  std::filesystem::remove(path);
+  EXPECT_EQ(sha256_file(path), "");
+}
+
+TEST(StateHash, IsOfTheBitsInLittleEndianOrder) {
+  Positions x(3, 1);
+  x << 1, -2, 0;
+  // 1.0, -2.0, 0.0 as IEEE 754 binary64, least significant byte first
+  const std::string bytes("\0\0\0\0\0\0\xf0\x3f\0\0\0\0\0\0\0\xc0\0\0\0\0\0\0\0\0", 24);
+  EXPECT_EQ(state_hash(x), sha256_hex(bytes));
+  x(2) = -0.0;
+  EXPECT_NE(state_hash(x), sha256_hex(bytes));
+}
+
+TEST(ConfigId, IgnoresBlanksAndTheOrderOfKeys) {
+  EXPECT_EQ(config_id(R"({"b": 1, "a": [1, 2.50]})"), config_id(R"({"a":[1,2.5],"b":1})"));
+  EXPECT_NE(config_id(R"({"a":[2.5,1],"b":1})"), config_id(R"({"a":[1,2.5],"b":1})"));
+  EXPECT_THROW(config_id("{"), std::invalid_argument);
+}
+
+TEST(Ids, NameConfigBuildMachineAndRepetition) {
+  RunRecord a = test::sample_record(), b = a;
+  fill_ids(a);
+  b.ids.repetition = 1;
+  fill_ids(b);
+  EXPECT_EQ(a.ids.config_id, config_id(a.config_json));
+  EXPECT_EQ(a.ids.build_id, sha256_file("/proc/self/exe"));
+  EXPECT_EQ(a.ids.build_id.size(), 64u);
+  EXPECT_EQ(a.ids.machine_id, b.ids.machine_id);
+  EXPECT_NE(a.ids.run_id, b.ids.run_id);
+  EXPECT_EQ(a.ids.parent_ids.size(), 1u);
+}
+
+TEST(Provenance, SaysWhatThisBinaryIs) {
+  const Provenance p = collect_provenance({"barrierbench", "run"}, 2);
+  EXPECT_EQ(p.argv.size(), 2u);
+  EXPECT_EQ(p.threads, 2);
+  EXPECT_NE(p.compiler, "");
+  EXPECT_NE(p.flags.find("-ffp-contract=off"), std::string::npos);
+  EXPECT_FALSE(p.fast_math);
+  for (const char* name : {"eigen", "cholmod", "blas", "tbb", "fmt"})
+    EXPECT_NE(p.libraries.at(name), "") << name;
+  EXPECT_TRUE(p.git_commit.empty() || p.git_commit.size() == 40) << p.git_commit;
+}
+
+TEST(Machine, IsFilled) {
+  const Machine m = collect_machine();
+  EXPECT_GE(m.cores, 1);
+  EXPECT_GT(m.mem_bytes, 1u << 20);
+  EXPECT_NE(m.kernel.find("Linux"), std::string::npos);
+  EXPECT_GT(peak_rss_bytes(), 1u << 20);
+}
+
+TEST(Time, UtcIsIso8601) {
+  const std::string now = utc_now();
+  ASSERT_EQ(now.size(), 20u);
+  EXPECT_EQ(now[10], 'T');
+  EXPECT_EQ(now.back(), 'Z');
+}
+
+TEST(Stats, QuantilesOfTheFiniteValues) {
+  const Stats s = summarize({5, 1, std::nan(""), 3, 2, 4, std::numeric_limits<double>::infinity()});
+  EXPECT_EQ(s.n, 5u);
+  EXPECT_EQ(s.min.value, 1);
+  EXPECT_EQ(s.median.value, 3);
+  EXPECT_EQ(s.max.value, 5);
+  EXPECT_EQ(s.sum.value, 15);
+  EXPECT_DOUBLE_EQ(s.p05.value, 1.2);
+  EXPECT_DOUBLE_EQ(s.p95.value, 4.8);
+  EXPECT_STREQ(summarize({}).median.status, "empty");
+}
+
+TEST(PhaseTimes, ScopesAddToTheirPhaseOnly) {
+  PhaseTimes times;
+  for (int i = 0; i < 2; ++i) {
+    const ScopedPhase scope(times, Phase::step_bound);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  EXPECT_GE(times[Phase::step_bound], 0.004);
+  EXPECT_EQ(times[Phase::elastic], 0);
+  times[Phase::audit] = 100;
+  EXPECT_LT(times.solve_s(), 100);
+  EXPECT_EQ(times.solve_s(), times[Phase::step_bound]);
+  PhaseTimes sum = times;
+  sum += times;
+  EXPECT_EQ(sum[Phase::audit], 200);
+}
+
+TEST(Outcome, TheMoreSpecificWordWins) {
+  EXPECT_EQ(worse(Outcome::ok, Outcome::newton_stall), Outcome::newton_stall);
+  EXPECT_EQ(worse(Outcome::penetration, Outcome::newton_stall), Outcome::penetration);
+  EXPECT_EQ(to_string(Outcome::ok), "ok");
+  EXPECT_EQ(to_string(Outcome::stall_overload), "stall_overload");
+  EXPECT_EQ(kOutcomeNames.back(), "ok");
+}
+
+}  // namespace
+}  // namespace bb
