@@ -3,12 +3,13 @@ set(CMAKE_CXX_STANDARD 20)
 set(CMAKE_CXX_STANDARD_REQUIRED ON)
 set(CMAKE_CXX_EXTENSIONS OFF)
 set(CMAKE_EXPORT_COMPILE_COMMANDS ON)
-set(CMAKE_POSITION_INDEPENDENT_CODE ON)
 if(NOT CMAKE_BUILD_TYPE)
   set(CMAKE_BUILD_TYPE Release CACHE STRING "" FORCE)
 endif()
 set(CMAKE_CXX_FLAGS_RELEASE "-O2 -DNDEBUG")
-set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g1")
+if(NOT CMAKE_CXX_FLAGS_DEBUG MATCHES "-O")
+  set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g1")
+endif()
 
 find_program(BB_CCACHE ccache)
 if(BB_CCACHE)
@@ -22,7 +23,7 @@ endif()
 add_library(bb_settings INTERFACE)
 target_include_directories(bb_settings INTERFACE "${PROJECT_SOURCE_DIR}")
 target_compile_options(bb_settings INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off>
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off -fPIC>
   $<$<AND:$<BOOL:${BB_NATIVE}>,$<COMPILE_LANGUAGE:CXX>>:-march=native>)
 # g++ 12 raises false warnings from Eigen and std::string under these two settings only.
 if(BB_SANITIZE OR BB_NATIVE)

@@ -31,7 +31,7 @@ class MotionJudge {
           const int e = static_cast<int>(i);
           const auto a = mesh_.edges.col(e);
           tree.query(box(a), [&](int f) {
-            if (f >= e || true) return;
+            if (f <= e) return;
             const auto b = mesh_.edges.col(f);
             if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return;
             pair<EdgeEdge>({a[0], a[1], b[0], b[1]}, {PairKind::edge_edge, e, f}, sum);

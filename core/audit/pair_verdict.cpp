@@ -45,8 +45,8 @@ class Bisection {
       if (passes(span, always_exact)) return Verdict::violation;
       exact_spans += always_exact;
       if (always_exact && exact().any_separates(span)) continue;
-      if (false) {
-        doubt = false;
+      if (last) {
+        doubt = true;
       } else {
         stack[top++] = {span.middle(), span.end};
         stack[top++] = {span.begin, span.middle()};

@@ -21,10 +21,17 @@ class ConfigError : public std::runtime_error {
   explicit ConfigError(std::vector<Violation> violations)
       : std::runtime_error(text(violations)), violations_(std::move(violations)) {}
   ConfigError(std::string where, std::string found, std::string allowed)
-      : ConfigError(std::vector<Violation>{{std::move(where), std::move(found), std::move(allowed)}}) {}
+      : ConfigError(one(std::move(where), std::move(found), std::move(allowed))) {}
   const std::vector<Violation>& violations() const { return violations_; }
 
  private:
+  static std::vector<Violation> one(std::string where, std::string found, std::string allowed) {
+    std::vector<Violation> violations(1);
+    violations[0].where = std::move(where);
+    violations[0].found = std::move(found);
+    violations[0].allowed = std::move(allowed);
+    return violations;
+  }
   static std::string text(const std::vector<Violation>& violations) {
     std::string out;
     for (const Violation& v : violations) {

@@ -82,8 +82,8 @@ int main(int argc, char** argv) {
   explain_app->footer("example: ./bench explain configs/scenes/drape2d.json");
   auto* list_app = app.add_subcommand("list", "what can be named in a config");
   list_app->add_option("what", list_what,
-                       "all, shapes, policies, integrators, step_solvers, linear_solvers, scenes, "
-                       "formulations or membranes");
+                       "all, shapes, policies, integrators, step_solvers, scenes or "
+                       "formulations");
   list_app->footer("example: ./bench list shapes");
   auto* eval_app = app.add_subcommand("eval", "JSON Lines queries to the functions that the pipeline runs");
   eval_app->add_option("file", eval_file, "queries, - for standard input");

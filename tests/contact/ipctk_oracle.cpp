@@ -1,0 +1,136 @@
+// contact_probe IN OUT: rows, potential, gradient, projected Hessian and collision-free step of a surface
+// whose vertices are all free, for comparison with an independent code (test_ipctk.py, which also documents
+// the layout of both files). The formulation is ipc2020: log on the squared gap, kappa = 1 N/m.
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+
+#include "barriers/shapes/registry.hpp"
+#include "core/contact/contact_system.hpp"
+
+namespace {
+
+using namespace bb;
+
+template <class T>
+void read(std::ifstream& in, T* values, std::size_t n) {
+  in.read(reinterpret_cast<char*>(values), static_cast<std::streamsize>(n * sizeof(T)));
+}
+template <class T>
+void write(std::ofstream& out, const T* values, std::size_t n) {
+  out.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(n * sizeof(T)));
+}
+
+struct Problem {
+  Scene scene;
+  Positions x1;
+  ContactOptions options;
+};
+
+Problem read_problem(const char* path) {
+  std::ifstream in(path, std::ios::binary);
+  std::int32_t n_vertices = 0, n_triangles = 0, mollify = 0;
+  double d_hat = 0;
+  read(in, &n_vertices, 1);
+  read(in, &n_triangles, 1);
+  read(in, &mollify, 1);
+  read(in, &d_hat, 1);
+  Problem p;
+  Scene& s = p.scene;
+  s.rest.resize(3, n_vertices);
+  s.x0.resize(3, n_vertices);
+  p.x1.resize(3, n_vertices);
+  for (Positions* x : {&s.rest, &s.x0, &p.x1}) read(in, x->data(), static_cast<std::size_t>(x->size()));
+  s.surface_triangles.resize(static_cast<std::size_t>(n_triangles));
+  read(in, s.surface_triangles.data()->data(), 3 * s.surface_triangles.size());
+  if (!in) s.surface_triangles.clear();
+  for (int v = 0; v < n_vertices; ++v) {
+    s.surface_vertices.push_back(v);
+    s.body.push_back(v);  // every vertex a body of its own: the rest rule does not act
+    s.d_hat.push_back(d_hat);
+    s.offset.push_back(0);
+  }
+  p.options.mollifier = mollify ? Mollifier::ipc : Mollifier::none;
+  return p;
+}
+
+template <class Table>
+void evaluate(Table& t, const BarrierFunction& barrier) {
+  barrier.eval(t.size(), t.d.data(), t.d_hat.data(), t.b.data(), t.db.data(), t.d2b.data());
+  std::fill(t.kappa.begin(), t.kappa.end(), 1.0);
+}
+
+struct Entry {
+  std::int32_t row, column;
+  double value;
+};
+
+void scatter(const std::vector<int>& vertex, const std::vector<double>& grad,
+             const std::vector<double>& hess, Positions& gradient, std::vector<Entry>& entries) {
+  for (std::size_t slot = 0; slot < vertex.size(); ++slot) {
+    const int v = vertex[slot];
+    if (v < 0) continue;
+    gradient.col(v) += Vec3d::Map(&grad[3 * slot]);
+    const std::size_t row = slot / 4, i = slot % 4;
+    for (std::size_t j = 0; j < 4; ++j) {
+      const int w = vertex[4 * row + j];
+      for (int a = 0; w >= 0 && a < 3; ++a) {
+        for (int b = 0; b < 3; ++b) {
+          const std::size_t at = 144 * row + 12 * (3 * j + static_cast<std::size_t>(b)) + 3 * i;
+          entries.push_back({3 * v + a, 3 * w + b, hess[at + static_cast<std::size_t>(a)]});
+        }
+      }
+    }
+  }
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  if (argc != 3) return 2;
+  const Problem p = read_problem(argv[1]);
+  if (p.scene.surface_triangles.empty()) return 2;
+  ContactSystem contacts(p.scene, p.options);
+  contacts.update_candidates(p.scene.x0, p.x1);
+  const StepBound bound = contacts.step_bound(p.scene.x0, p.x1);
+
+  ContactTable rows;
+  MollifiedTable mollified;
+  contacts.update_candidates(p.scene.x0, p.scene.x0);
+  const double min_gap = contacts.find_rows(p.scene.x0, rows, mollified);
+  const BarrierFunction barrier{require_shape("log"), Argument::squared_gap};
+  evaluate(rows, barrier);
+  evaluate(mollified, barrier);
+
+  double potential = 0;
+  std::vector<double> energy, grad, hess;
+  contact_energies(rows, energy);
+  for (double e : energy) potential += e;
+  mollified_energies(mollified, p.scene.x0, energy);
+  for (double e : energy) potential += e;
+  Positions gradient = Positions::Zero(3, p.scene.n_vertices());
+  std::vector<Entry> entries;
+  contact_terms(rows, p.scene.x0, HessianMode::projected_full, grad, hess);
+  scatter(rows.vertex, grad, hess, gradient, entries);
+  mollified_terms(mollified, p.scene.x0, grad, hess);
+  scatter(mollified.free_vertex, grad, hess, gradient, entries);
+
+  std::ofstream out(argv[2], std::ios::binary);
+  write(out, rows.stencil.data(), rows.stencil.size());
+  write(out, rows.d.data(), rows.size());
+  write(out, rows.multiplicity.data(), rows.size());
+  write(out, mollified.stencil.data(), mollified.stencil.size());
+  write(out, mollified.d.data(), mollified.size());
+  write(out, gradient.data(), static_cast<std::size_t>(gradient.size()));
+  for (const Entry& e : entries) {
+    write(out, &e.row, 1);
+    write(out, &e.column, 1);
+    write(out, &e.value, 1);
+  }
+  std::printf(
+      "{\"rows\": %zu, \"mollified\": %zu, \"entries\": %zu, \"potential\": %.17g, \"min_gap\": %.17g, "
+      "\"alpha\": %.17g, \"queries\": %lld, \"probes\": %lld, \"capped\": %lld, \"zero\": %lld}\n",
+      rows.size(), mollified.size(), entries.size(), potential, min_gap, bound.alpha, bound.queries,
+      bound.probes, bound.capped, bound.zero);
+  return out ? 0 : 1;
+}

@@ -1,0 +1,185 @@
+"""Rows, potential, derivatives and collision-free step against the IPC Toolkit (Python package ipctk).
+
+The toolkit works on squared distances without our factor: potential = d_hat^2 times ours (ipc2020, kappa = 1).
+Skipped when ipctk, the program contact_probe (BB_CONTACT_PROBE, else any build folder) or the data folder
+(BARRIERBENCH_DATA) is missing.
+"""
+
+import glob
+import json
+import os
+import pathlib
+import subprocess
+
+import numpy as np
+import pytest
+
+ipctk = pytest.importorskip("ipctk", reason="the oracle ipctk is not installed")
+
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+DATA = pathlib.Path(os.environ.get("BARRIERBENCH_DATA", ROOT / ".." / "shared" / "data"))
+PROBES = sorted(glob.glob(str(ROOT / "build" / "*" / "tests" / "contact" / "contact_probe")), key=os.path.getmtime)
+PROBE = os.environ.get("BB_CONTACT_PROBE", PROBES[-1] if PROBES else "")
+
+pytestmark = [
+    pytest.mark.skipif(not os.access(PROBE, os.X_OK), reason="contact_probe is not built"),
+    pytest.mark.skipif(not (DATA / "meshes").is_dir(), reason=f"no meshes in {DATA}"),
+]
+
+
+def read_ply(name):
+    """Vertices and triangles of a binary PLY with one scalar type for the coordinates."""
+    with open(DATA / "meshes" / f"{name}.ply", "rb") as file:
+        header = []
+        while not header or header[-1] != "end_header":
+            header.append(file.readline().decode().strip())
+        body = file.read()
+    order = ">" if any("big_endian" in line for line in header) else "<"
+    real = order + ("f8" if any("property double x" in line for line in header) else "f4")
+    count = [int(line.split()[2]) for line in header if line.startswith("element")]
+    n_bytes = 3 * count[0] * np.dtype(real).itemsize
+    vertices = np.frombuffer(body[:n_bytes], real).reshape(-1, 3).astype(float)
+    faces = np.frombuffer(body[n_bytes:], [("n", "u1"), ("v", order + "i4", 3)], count[1])
+    assert (faces["n"] == 3).all()
+    return vertices, faces["v"].astype(np.int32)
+
+
+def probe(tmp_path, rest, x0, x1, faces, d_hat, mollify=True):
+    """Runs contact_probe; what it found as a dictionary of arrays."""
+    source, target = tmp_path / "in.bin", tmp_path / "out.bin"
+    with open(source, "wb") as file:
+        np.array([len(rest), len(faces), mollify], "<i4").tofile(file)
+        np.array([d_hat], "<f8").tofile(file)
+        for x in (rest, x0, x1):
+            np.ascontiguousarray(x, "<f8").tofile(file)
+        np.ascontiguousarray(faces, "<i4").tofile(file)
+    answer = json.loads(subprocess.run([PROBE, source, target], check=True, capture_output=True).stdout)
+    n, m = answer["rows"], answer["mollified"]
+    with open(target, "rb") as file:
+        answer["stencil"] = np.fromfile(file, "<i4", 4 * n).reshape(-1, 4)
+        answer["d"] = np.fromfile(file, "<f8", n)
+        answer["multiplicity"] = np.fromfile(file, "<f8", n)
+        answer["mollified_stencil"] = np.fromfile(file, "<i4", 4 * m).reshape(-1, 4)
+        answer["mollified_d"] = np.fromfile(file, "<f8", m)
+        answer["gradient"] = np.fromfile(file, "<f8", 3 * len(rest))
+        entry = [("row", "<i4"), ("column", "<i4"), ("value", "<f8")]
+        answer["hessian"] = np.fromfile(file, entry, answer["entries"])
+    return answer
+
+
+def collision_mesh(rest, faces):
+    return ipctk.CollisionMesh(rest, ipctk.edges(faces), faces)
+
+
+def toolkit_rows(mesh, x, d_hat):
+    """The toolkit's collisions, and {vertices of both sides: (distance, weight)} apart for mollified ones."""
+    collisions = ipctk.NormalCollisions()
+    collisions.collision_set_type = ipctk.NormalCollisions.CollisionSetType.IPC
+    collisions.use_area_weighting = False
+    collisions.build(mesh, x, d_hat)
+    plain, mollified = {}, {}
+    for k in range(len(collisions)):
+        collision = collisions[k]
+        ids = [i for i in collision.vertex_ids(mesh.edges, mesh.faces) if i >= 0]
+        d = np.sqrt(collision.compute_distance(collision.dof(x, mesh.edges, mesh.faces)))
+        is_mollified = collisions.is_edge_edge(k) and collision.mollifier(
+            collision.dof(x, mesh.edges, mesh.faces)) < 1
+        key = sides(ids, collisions.is_edge_edge(k))
+        (mollified if is_mollified else plain)[key] = (d, collision.weight)
+    return collisions, plain, mollified
+
+
+def sides(ids, edges):
+    """Identity of a contact: the set of the vertices of each side."""
+    ids = [int(i) for i in ids]
+    split = 2 if edges else 1
+    return frozenset([frozenset(ids[:split]), frozenset(ids[split:])])
+
+
+def our_rows(answer):
+    plain = {}
+    kinds = {2: False, 3: False, 4: None}
+    for stencil, d, m in zip(answer["stencil"], answer["d"], answer["multiplicity"]):
+        ids = stencil[stencil >= 0]
+        if kinds[len(ids)] is None:  # point-triangle or edge-edge: the toolkit's keys tell
+            plain[sides(ids, False)] = plain[sides(ids, True)] = (d, m)
+        else:
+            plain[sides(ids, False)] = (d, m)
+    mollified = {sides(s, True): (d, 1.0) for s, d in zip(answer["mollified_stencil"], answer["mollified_d"])}
+    return plain, mollified
+
+
+def compare(tmp_path, rest, x, faces, d_hat):
+    """Asserts that everything agrees; returns the numbers of rows and of mollified rows."""
+    answer = probe(tmp_path, rest, x, x, faces, d_hat)
+    mesh = collision_mesh(rest, faces)
+    collisions, plain, mollified = toolkit_rows(mesh, x, d_hat)
+    ours, ours_mollified = our_rows(answer)
+    assert answer["rows"] == len(plain) and answer["mollified"] == len(mollified)
+    for mine, theirs in ((ours, plain), (ours_mollified, mollified)):
+        for key, (d, weight) in theirs.items():
+            assert key in mine
+            assert mine[key][0] == pytest.approx(d, abs=1e-12, rel=0)
+            assert mine[key][1] == weight
+
+    potential = ipctk.BarrierPotential(d_hat, 1.0)
+    scale = 1 / d_hat**2
+    assert answer["potential"] == pytest.approx(scale * potential(collisions, mesh, x), rel=1e-12)
+    gradient = scale * potential.gradient(collisions, mesh, x)
+    assert np.linalg.norm(gradient) > 0
+    assert np.linalg.norm(answer["gradient"] - gradient) <= 1e-10 * np.linalg.norm(gradient)
+
+    import scipy.sparse
+
+    hessian = scale * potential.hessian(collisions, mesh, x, ipctk.PSDProjectionMethod.CLAMP)
+    entries = answer["hessian"]
+    mine = scipy.sparse.coo_matrix((entries["value"], (entries["row"], entries["column"])), hessian.shape)
+    norm = scipy.sparse.linalg.norm
+    assert norm(hessian) > 0
+    assert norm(mine.tocsc() - hessian) <= 1e-9 * norm(hessian)
+    return answer["rows"], answer["mollified"]
+
+
+def test_two_cubes_have_mollified_pairs(tmp_path):
+    x, faces = read_ply("two-cubes-close")
+    rows, mollified = compare(tmp_path, x, x, faces, 1e-1)
+    assert rows > 50 and mollified > 50
+
+
+def test_turned_cube_has_none(tmp_path):
+    x, faces = read_ply("two-cubes-close")
+    rest, x = x.copy(), x.copy()
+    upper = x[:, 1] > x[:, 1].mean()
+    turn = np.array([[np.cos(0.3), 0, np.sin(0.3)], [0, 1, 0], [-np.sin(0.3), 0, np.cos(0.3)]])
+    centre = x[upper].mean(axis=0)
+    x[upper] = (x[upper] - centre) @ turn.T + centre
+    rows, mollified = compare(tmp_path, rest, x, faces, 1e-2)
+    assert rows > 20 and mollified == 0
+
+
+def test_bunny(tmp_path):
+    x, faces = read_ply("bunny")
+    rows, mollified = compare(tmp_path, x, x, faces, 1e-2 * np.ptp(x, axis=0).max())
+    assert rows > 1000 and mollified > 0
+
+
+def test_cloth_on_ball(tmp_path):
+    x, faces = read_ply("cloth_ball92")
+    rows, _ = compare(tmp_path, x, x, faces, 1e-3)
+    assert rows > 1000
+
+
+def test_collision_free_step_of_a_real_time_step(tmp_path):
+    x0, faces = read_ply("cloth_ball92")
+    x1, _ = read_ply("cloth_ball93")
+    # twice the real step, so that something is hit
+    for scale in (1, 2, 10):
+        end = x0 + scale * (x1 - x0)
+        answer = probe(tmp_path, x0, x0, end, faces, 1e-3)
+        mesh = collision_mesh(x0, faces)
+        theirs = ipctk.compute_collision_free_stepsize(mesh, x0, end, narrow_phase_ccd=ipctk.AdditiveCCD())
+        exact = ipctk.compute_collision_free_stepsize(
+            mesh, x0, end, narrow_phase_ccd=ipctk.TightInclusionCCD(tolerance=1e-9, conservative_rescaling=1 - 1e-12))
+        print(scale, answer["alpha"], theirs, exact, answer["queries"], answer["probes"])
+        assert 0.8 * theirs <= answer["alpha"]
+        assert answer["capped"] == 0 and answer["zero"] == 0
