@@ -1,6 +1,8 @@
 // Dihedral bending of two triangles (e0 e1 v0), (e1 e0 v1) that share the edge e0 e1: quadratic in the angle.
 #pragma once
 
+#include <cmath>
+
 #include "core/energy/terms.hpp"
 #include "core/math/psd.hpp"
 

@@ -2,6 +2,9 @@
 // outside, in batches, at the pseudo-gaps that `strain_gap` gives; its terms come back here as numbers.
 #pragma once
 
+#include <cmath>
+#include <limits>
+
 #include "core/energy/isotropic.hpp"
 #include "core/energy/triangle_membrane.hpp"
 

@@ -2,6 +2,8 @@
 // to gradient and Hessian in the nine coordinates.
 #pragma once
 
+#include <cmath>
+
 #include "core/energy/isotropic.hpp"
 
 namespace bb {

@@ -95,14 +95,15 @@ void take(const LanczosEnd& ritz, End& end) {
 void certify(ScaledMatrix& b, double sign, double outside, End& end) {
   double inside = end.lambda;
   const auto wide = [&] { return std::abs(inside - outside) > kProof * std::abs(inside); };
-  const double close = inside * (1 - sign * kProof);
+  const double close = inside * (1 - 0.99 * sign * kProof);
   for (int test = 0; test < kMaxProofs && wide(); ++test) {
     const double sigma = test == 0 ? close : inside + (outside - inside) / 2;
     (b.factorize_shifted(sign, sigma) ? outside : inside) = sigma;
   }
   end.resolved = !wide();
+  if (inside == end.lambda) return;
   end.proven_inside = inside;
-  if (inside != end.lambda) end.lambda = inside + (outside - inside) / 2;
+  end.lambda = inside + (outside - inside) / 2;
 }
 
 /// Shifts just beyond the end that `end` approximates from inside and repeats Lanczos from its vector. A
@@ -125,7 +126,7 @@ void resolve_by_shift(ScaledMatrix& b, double sign, End& end) {
   const LanczosEnd ritz = lanczos_largest(op, end.vector, kShiftedSolves, tol);
   if (!(ritz.value > 0)) return;
   b.solve(b.matrix().shifted, ritz.vector, end.vector);
-  end.lambda = end.proven_inside = sigma + sign / ritz.value;
+  end.lambda = sigma + sign / ritz.value;
   end.resolved = ritz.converged(tol);
   if (!end.resolved) certify(b, sign, sigma, end);
 }
@@ -237,9 +238,9 @@ ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& sca
   const double rayleigh_min = b.rayleigh(bottom.vector), rayleigh_max = b.rayleigh(top.vector);
   // Solves leave an error of eps cond in 1 / theta; the Rayleigh quotient does not, once its vector is
   // polished. It stands unless a factorisation has proven more.
-  const bool bottom_stands = bottom.resolved && !(rayleigh_min > bottom.proven_inside * (1 + 1e-12));
+  const bool bottom_stands = bottom.resolved && !(rayleigh_min > bottom.proven_inside);
   e.lambda_min = bottom_stands ? rayleigh_min : bottom.lambda;
-  const bool top_stands = !(rayleigh_max < top.proven_inside * (1 - 1e-12));
+  const bool top_stands = !(rayleigh_max < top.proven_inside);
   e.lambda_max = top_stands ? rayleigh_max : top.lambda;
   if (e.factorizations > 0) e.method = "shift_invert, shifted to the end of the spectrum";
   classify(e, bottom.resolved && top.resolved);

@@ -2,8 +2,6 @@
 // linear algebra, the best feasible one wins. Shares no formula with core/geometry.
 #pragma once
 
-#include <Eigen/Dense>
-#include <algorithm>
 #include <limits>
 #include <random>
 #include <string>
@@ -24,61 +22,16 @@ struct OracleClosest {
   Long least_weight = 0;  // of the chosen faces: how far from the border of its region
 };
 
-/// Minimises |sum w x| over one face of each primitive (bit i of `faces`: point i takes part) and keeps it if
-/// better.
-template <int N>
-void try_faces(const Points<Long, N>& x, int split, unsigned faces, OracleClosest<N>& best) {
-  int first = -1, second = -1, n = 0;
-  Eigen::Matrix<Long, 3, Eigen::Dynamic> directions(3, N);
-  std::array<int, N> moved{}, base{};
-  for (int i = 0; i < N; ++i) {
-    if ((faces >> i & 1U) == 0) continue;
-    int& origin = i < split ? first : second;
-    if (origin < 0) {
-      origin = i;
-      continue;
-    }
-    moved[static_cast<std::size_t>(n)] = i;
-    base[static_cast<std::size_t>(n)] = origin;
-    directions.col(n++) = (x.col(i) - x.col(origin)) * (i < split ? 1 : -1);
-  }
-  if (first < 0 || second < 0) return;
-  OracleClosest<N> candidate;
-  candidate.weights[first] = 1;
-  candidate.weights[second] = -1;
-  const Vec<Long, 3> r0 = x.col(first) - x.col(second);
-  if (n > 0) {
-    const Eigen::Matrix<Long, Eigen::Dynamic, 1> s = directions.leftCols(n).colPivHouseholderQr().solve(-r0);
-    for (int k = 0; k < n; ++k) {
-      const int i = moved[static_cast<std::size_t>(k)], origin = base[static_cast<std::size_t>(k)];
-      const Long sign = i < split ? 1 : -1;
-      candidate.weights[i] += sign * s[k];
-      candidate.weights[origin] -= sign * s[k];
-    }
-  }
-  candidate.least_weight = 1;
-  for (int i = 0; i < N; ++i) {
-    if ((faces >> i & 1U) == 0) continue;
-    candidate.least_weight = std::min(candidate.least_weight, candidate.weights[i] * (i < split ? 1 : -1));
-  }
-  if (!(candidate.least_weight >= 0)) return;
-  candidate.r = r0;
-  for (int k = 0; k < n; ++k) {
-    const int i = moved[static_cast<std::size_t>(k)];
-    candidate.r += directions.col(k) * candidate.weights[i] * (i < split ? 1 : -1);
-  }
-  candidate.d = candidate.r.norm();
-  if (candidate.d < best.d) best = candidate;
-}
+/// Over the first n columns, of which the first `split` are the first primitive; weights beyond n are 0.
+OracleClosest<4> enumerate_faces(const Points<Long, 4>& x, int n, int split);
 
 template <PairKind K, class T>
 OracleClosest<pair_points(K)> oracle_closest(const Points<T, pair_points(K)>& x) {
   constexpr int N = pair_points(K);
-  OracleClosest<N> best;
-  for (unsigned faces = 1; faces < (1U << N); ++faces) {
-    try_faces<N>(x.template cast<Long>(), pair_split(K), faces, best);
-  }
-  return best;
+  Points<Long, 4> padded = Points<Long, 4>::Zero();
+  padded.template leftCols<N>() = x.template cast<Long>();
+  const OracleClosest<4> best = enumerate_faces(padded, N, pair_split(K));
+  return {best.d, best.weights.template head<N>(), best.r, best.least_weight};
 }
 
 /// The word of the region in which exactly these weights are not zero.
@@ -111,11 +64,6 @@ Points<double, N> random_points(std::mt19937& rng) {
   return x;
 }
 
-inline Mat3d random_rotation(std::mt19937& rng) {
-  const Points<double, 3> x = random_points<3>(rng);
-  Mat3d q = Eigen::HouseholderQR<Mat3d>(x).householderQ();
-  if (q.determinant() < 0) q.col(0) *= -1;
-  return q;
-}
+Mat3d random_rotation(std::mt19937& rng);
 
 }  // namespace bb::test

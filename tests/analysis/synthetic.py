@@ -1,0 +1,58 @@
+"""A small set of records with known numbers: three formulations in one scene, one of them failed."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+STATS = {"n": 1, "min": 1.0, "p05": 1.0, "median": 1.0, "p95": 1.0, "max": 1.0, "sum": 1.0}
+CONTACTS = {"total": 3}
+
+
+def _trace_line(step: int, iteration: int, scale: float) -> dict:
+    def estimate(scaling: str, cond: float, status: str = "ok") -> dict:
+        return {"stage": "full", "scaling": scaling, "tier": 2, "lambda_min": 2.0, "lambda_max": 2.0 * cond,
+                "cond": cond, "status": status, "method": "shift_invert"}
+
+    last = iteration == 1
+    return {
+        "step": step, "iteration": iteration, "linear_iterations": 10 + step, "gap_min_rel": 0.5,
+        "contacts": CONTACTS, "time": {},
+        "cond": [estimate("none", scale * 10.0 ** (step + 1), "lower_bound" if last and step == 2 else "ok"),
+                 estimate("block_jacobi", scale * (step + 1))],
+    }
+
+
+def _step(step: int, gap: float | None) -> dict:
+    return {"step": step, "t_s": 0.01 * (step + 1), "newton_iterations": 2, "gap_min_m": None if gap is None else gap * 1e-2,
+            "gap_min_rel": gap, "contacts": CONTACTS, "time": {}}
+
+
+def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: str = "ok", note: str = "") -> dict:
+    shape = "log" if formulation == "log" else "cubic"
+    record = {
+        "schema": {"name": "barrierbench.run", "version": "1.4.0"},
+        "a_field_of_a_later_version": 1,
+        "ids": {"run_id": f"id_{formulation}", "config_id": f"config_{formulation}", "sweep_id": "strip"},
+        "status": {"outcome": outcome, "detail": "" if outcome == "ok" else "step 2 ended at its cap", "valid": outcome == "ok"},
+        "labels": {"scene": "drape2d", "formulation": formulation, "shape": shape, "argument": "gap", "note": note},
+        "summary": {"newton_iterations": 6, "linear_iterations": 66, "gap_min_rel": {**STATS, "min": gap}, "time": {}},
+        "audit": {"enabled": True, "crossings": 0, "violations": 0, "unproven": 0},
+        "scene": {"free_dofs": 30, "extent_m": 1.0},
+        "matching": {"rule": "equal_force"},
+        "steps": [_step(0, None), _step(1, 2 * gap), _step(2, gap)],
+    }
+    folder = root / formulation
+    folder.mkdir(parents=True)
+    (folder / "run.json").write_text(json.dumps(record))
+    lines = [_trace_line(step, iteration, scale) for step in range(3) for iteration in range(2)]
+    (folder / "trace.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    return record
+
+
+def write_set(root: Path) -> None:
+    """log and cubic comparable, cubic_dynamic three times closer, quadratic stalled."""
+    write_run(root, "log", 1.0, 0.10, note="strip: log")
+    write_run(root, "cubic", 2.0, 0.15, note="strip: cubic")
+    write_run(root, "cubic_dynamic", 3.0, 0.03, note="strip: cubic_dynamic")
+    write_run(root, "quadratic", 4.0, 0.12, outcome="newton_stall", note="strip: quadratic")

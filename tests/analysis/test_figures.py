@@ -1,0 +1,125 @@
+"""Figures: the files are there, the CSV holds the record's numbers, the bytes do not depend on the day."""
+
+import hashlib
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+
+from analysis import style
+from analysis.figures import barrier_shapes, condition, demo, gaps, iterations
+from analysis.load import load
+from analysis.table import as_text, summary_table
+from synthetic import write_set
+
+
+@pytest.fixture
+def records(tmp_path):
+    write_set(tmp_path / "runs")
+    return load(tmp_path / "runs")
+
+
+@pytest.mark.parametrize("module", [condition, iterations, gaps])
+def test_files_exist_and_are_the_same_twice(records, tmp_path, module):
+    paths = module.figure(records, "strip", tmp_path / "a")
+    again = module.figure(records, "strip", tmp_path / "b")
+
+    assert [p.suffix for p in paths] == [".png", ".pdf", ".csv"]
+    for one, two in zip(paths, again):
+        assert one.stat().st_size > 100
+        assert hashlib.sha256(one.read_bytes()).digest() == hashlib.sha256(two.read_bytes()).digest(), one
+
+
+def test_pdf_fonts_are_truetype(records, tmp_path):
+    pdf = gaps.figure(records, "strip", tmp_path)[1].read_bytes()
+
+    assert b"/Type3" not in pdf
+    assert b"CIDFontType2" in pdf
+
+
+def test_condition_numbers_beside_the_figure_are_the_traces(records, tmp_path):
+    table = pd.read_csv(condition.figure(records, "strip", tmp_path)[2])
+
+    assert len(table) == 4 * 6 * 2
+    for scaling in ("none", "block_jacobi"):
+        ours = table[(table["series"] == "cubic") & (table["scaling"] == scaling)]
+        theirs = records.cond[(records.cond["run"] == "cubic") & (records.cond["scaling"] == scaling)]
+        for field in ("cond", "lambda_min", "lambda_max", "status", "n"):
+            assert list(ours[field]) == list(theirs[field])
+
+
+def test_gaps_and_iterations_beside_the_figures_are_the_steps(records, tmp_path):
+    gap = pd.read_csv(gaps.figure(records, "strip", tmp_path)[2])
+    work = pd.read_csv(iterations.figure(records, "strip", tmp_path)[2])
+
+    assert list(gap[gap["series"] == "log"]["gap_min_rel"]) == [0.2, 0.1]
+    newton = work[(work["what"] == "newton_per_step") & (work["series"] == "log")]
+    pcg = work[(work["what"] == "pcg_per_solve") & (work["series"] == "log")]
+    assert list(newton["count"]) == [2, 2, 2]
+    assert list(pcg["count"]) == [10, 10, 11, 11, 12, 12]
+
+
+def test_failed_and_not_comparable_runs_are_hollow_and_named(records):
+    _, axis = plt.subplots()
+    runs = records.runs.set_index("series", drop=False)
+    for name in ("log", "cubic_dynamic", "quadratic"):
+        style.draw(axis, np.array([0, 1]), np.array([1.0, 2.0]), runs.loc[name])
+    log, dynamic, quadratic = axis.lines
+
+    assert log.get_markerfacecolor() == style.LOOKS["log"].color
+    assert dynamic.get_markerfacecolor() == "none"
+    assert quadratic.get_markerfacecolor() == "none"
+    assert dynamic.get_label() == "cubic_dynamic (not_comparable)"
+    assert quadratic.get_label() == "quadratic (newton_stall)"
+    assert [t.get_text() for t in axis.texts] == ["newton_stall"]
+    plt.close("all")
+
+
+def test_looks_differ_in_colour_marker_and_dash_pairwise():
+    looks = [(k.color, k.marker) for k in style.LOOKS.values()]
+    assert len({c for c, _ in looks}) == len(looks)
+    assert len({m for _, m in looks}) == len(looks)
+    assert style.look("never heard of") == style.look("never heard of")
+
+
+def test_table_takes_medians_of_the_logarithm_over_sure_values(records):
+    table = summary_table(records).set_index("series")
+
+    assert table.loc["log", "cond_raw_median"] == pytest.approx(100)  # 10, 10, 100, 100, 1000
+    assert table.loc["log", "cond_raw_max"] == 1000
+    assert table.loc["cubic", "cond_bj_median"] == pytest.approx(4)
+    assert table.loc["quadratic", "verdict"] == "newton_stall"
+    assert table.loc["cubic_dynamic", "verdict"] == "ok, not_comparable"
+    text = as_text(summary_table(records))
+    assert len(text.splitlines()) == 5
+    assert "1.00e+02" in text
+
+
+def test_barrier_shapes_come_from_the_program(program, tmp_path, monkeypatch):
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
+    table = pd.read_csv(barrier_shapes.figure(tmp_path)[2])
+
+    cubic = table[table["formulation"] == "cubic"]
+    np.testing.assert_allclose(cubic["minus_db"], 2 * (1 - cubic["u"]) ** 2, rtol=1e-12)
+    np.testing.assert_allclose(cubic["rho"], 2 / (1 - cubic["u"]), rtol=1e-12)
+    squared = table[table["formulation"] == "ipc2020"]
+    np.testing.assert_allclose(squared["b"], -((squared["u"] ** 2 - 1) ** 2) * np.log(squared["u"] ** 2), rtol=1e-12)
+
+
+def test_demo_makes_everything_and_names_failures(program, tmp_path, monkeypatch):
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
+    write_set(tmp_path / "runs")
+
+    text = demo.make_all(tmp_path / "runs", tmp_path / "out")
+
+    assert "strip: quadratic ended newton_stall: step 2 ended at its cap" in text
+    names = {p.name for p in (tmp_path / "out").iterdir()}
+    expected = {f"{stem}.{suffix}" for stem in ("condition_strip", "iterations_strip", "gaps_strip", "barrier_shapes")
+                for suffix in ("png", "pdf", "csv")}
+    assert names == expected | {"table.csv"}
+
+
+def test_a_folder_without_runs_is_one_clear_line(tmp_path, capsys):
+    assert demo.main([str(tmp_path)]) == 2
+    assert "no run.json" in capsys.readouterr().err

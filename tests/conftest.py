@@ -1,0 +1,26 @@
+"""What the Python tests share: the built program and the build folder."""
+
+import os
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT))
+sys.path.insert(0, str(ROOT / "tests" / "analysis"))
+
+
+@pytest.fixture(scope="session")
+def program() -> str:
+    """Path of the program; the test is skipped when it was not built."""
+    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
+    if not path.exists():
+        pytest.skip(f"{path} is not built")
+    return str(path)
+
+
+@pytest.fixture(scope="session")
+def build_folder(program) -> Path:
+    """The build folder that the program belongs to."""
+    return Path(program).parents[1]

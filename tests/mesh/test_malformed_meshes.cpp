@@ -1,0 +1,159 @@
+// Malformed meshes: each is refused with its place, what was found and what is allowed.
+#include <gtest/gtest.h>
+
+#include <ostream>
+
+#include "core/math/error.hpp"
+#include "core/mesh/read_mesh.hpp"
+#include "tests/mesh/mesh_bytes.hpp"
+
+namespace bb {
+
+struct BadMesh {
+  std::string label, name, bytes, where, found;
+};
+void PrintTo(const BadMesh& mesh, std::ostream* out) { *out << mesh.label; }
+
+namespace {
+
+using namespace test;
+
+class Malformed : public ::testing::TestWithParam<BadMesh> {};
+
+TEST_P(Malformed, is_refused_with_its_place) {
+  const BadMesh& mesh = GetParam();
+  try {
+    parse_mesh(mesh.bytes, mesh.name);
+    FAIL() << "accepted";
+  } catch (const ConfigError& error) {
+    ASSERT_FALSE(error.violations().empty());
+    EXPECT_EQ(error.violations().front().where, mesh.where);
+    EXPECT_NE(error.violations().front().found.find(mesh.found), std::string::npos)
+        << error.violations().front().found;
+    EXPECT_FALSE(error.violations().front().allowed.empty());
+  }
+}
+
+const std::string points = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 1 1 0\n";
+const std::string ply_start =
+    "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
+const std::string ply_faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
+
+/// A copy of a binary file with `value` at a place.
+template <class T>
+std::string with(std::string bytes, std::size_t at, T value) {
+  std::string raw;
+  append(raw, value, false);
+  return bytes.replace(at, raw.size(), raw);
+}
+const std::string ply_binary = tetrahedron_ply_binary<double>(false);
+const std::size_t ply_body = ply_binary.find("end_header\n") + 11;
+const std::size_t ply_first_face = ply_body + 4 * 25;
+
+INSTANTIATE_TEST_SUITE_P(
+    obj, Malformed,
+    ::testing::Values(
+        BadMesh{"word", "a.obj", "v 0 0 zero\n", "a.obj:1", "\"zero\""},
+        BadMesh{"short_vertex", "a.obj", points + "v 1 2\n", "a.obj:5", "3 words"},
+        BadMesh{"overflow", "a.obj", "v 0 0 1e999\n", "a.obj:1", "1e999"},
+        BadMesh{"nan", "a.obj", "v 0 0 0\nv nan 0 0\n", "a.obj:2", "nan"},
+        BadMesh{"inf", "a.obj", "v 0 0 0\nv 0 -inf 0\n", "a.obj:2", "inf"},
+        BadMesh{"high_index", "a.obj", points + "f 1 2 5\n", "a.obj:5", "vertex index 4"},
+        BadMesh{"zero_index", "a.obj", points + "f 0 1 2\n", "a.obj:5", "\"0\""},
+        BadMesh{"low_index", "a.obj", points + "f -5 1 2\n", "a.obj:5", "vertex index -1"},
+        BadMesh{"index_word", "a.obj", points + "f 1 2 x\n", "a.obj:5", "\"x\""},
+        BadMesh{"two_corners", "a.obj", points + "f 1 2\n", "a.obj:5", "2 corners"},
+        BadMesh{"repeated_index", "a.obj", points + "f 1 2 2\n", "a.obj:5", "vertex 1 twice"},
+        BadMesh{"zero_area", "a.obj", "v 0 0 0\nv 1 1 1\nv 3 3 3\nf 1 2 3\n", "a.obj:4", "zero area"},
+        BadMesh{"rounded_zero_area", "a.obj", "v 0 0 0\nv 0.1 0.2 0.3\nv 0.3 0.6 0.9\nf 1 2 3\n", "a.obj:4",
+                "zero area"},
+        BadMesh{"repeated_face", "a.obj", points + "f 1 2 3\n\nf 2 1 3\n", "a.obj:7", "same corners"},
+        BadMesh{"not_convex", "a.obj", "v 0 0 0\nv 2 0 0\nv 0.1 0.1 0\nv 0 2 0\nf 2 3 4 1\nf 1 2 4\n",
+                "a.obj:5", "not convex"},
+        BadMesh{"lone_point", "a.obj", points + "l 1\n", "a.obj:5", "one point"},
+        BadMesh{"loop_edge", "a.obj", points + "l 1 1\n", "a.obj:5", "twice"},
+        BadMesh{"repeated_edge", "a.obj", points + "l 1 2\nl 2 1\n", "a.obj:6", "same vertices"},
+        BadMesh{"empty", "a.obj", "", "a.obj", "no vertex"}),
+    [](const auto& info) { return info.param.label; });
+
+INSTANTIATE_TEST_SUITE_P(
+    ply, Malformed,
+    ::testing::Values(
+        BadMesh{"no_magic", "a.ply", "plx\n", "a.ply:1", "no \"ply\""},
+        BadMesh{"format", "a.ply", "ply\nformat text 1.0\n", "a.ply:2", "\"text\""},
+        BadMesh{"no_format", "a.ply", "ply\nend_header\n", "a.ply:2", "no format"},
+        BadMesh{"type", "a.ply", "ply\nformat ascii 1.0\nelement vertex 1\nproperty real x\n", "a.ply:4",
+                "\"real\""},
+        BadMesh{"count", "a.ply", "ply\nformat ascii 1.0\nelement vertex -1\n", "a.ply:3", "-1"},
+        BadMesh{"header_word", "a.ply", "ply\nformat ascii 1.0\nelements vertex 1\n", "a.ply:3",
+                "\"elements\""},
+        BadMesh{"open_header", "a.ply", ply_start, "a.ply", "without end_header"},
+        BadMesh{
+            "no_z", "a.ply",
+            "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nend_header\n0 0\n",
+            "a.ply", "without property z"},
+        BadMesh{"no_corners", "a.ply", ply_start + "element face 1\nproperty int flags\nend_header\n",
+                "a.ply", "without its corners"},
+        BadMesh{"truncated", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n", "a.ply: vertex 2",
+                "end of the file"},
+        BadMesh{"short_line", "a.ply", ply_start + ply_faces + "0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "a.ply:11",
+                "2 words"},
+        BadMesh{"long_line", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0 9\n0 1 0\n3 0 1 2\n", "a.ply:11",
+                "4 words"},
+        BadMesh{"fraction", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2.5\n", "a.ply:13",
+                "\"2.5\""},
+        BadMesh{"index", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "a.ply:13",
+                "index 3"},
+        BadMesh{"binary_truncated", "a.ply", ply_binary.substr(0, ply_binary.size() - 1), "a.ply: face 3",
+                "end of the file"},
+        BadMesh{"binary_nan", "a.ply",
+                with(ply_binary, ply_body + 25, std::numeric_limits<double>::quiet_NaN()), "a.ply: vertex 1",
+                "nan"},
+        BadMesh{"binary_index", "a.ply", with(ply_binary, ply_first_face + 13 + 1, std::int32_t{-1}),
+                "a.ply: face 1", "index -1"}),
+    [](const auto& info) { return info.param.label; });
+
+const std::string stl_ascii = tetrahedron_stl_ascii();
+const std::string stl_binary = tetrahedron_stl_binary();
+
+INSTANTIATE_TEST_SUITE_P(
+    stl, Malformed,
+    ::testing::Values(BadMesh{"truncated", "a.stl", stl_ascii.substr(0, stl_ascii.size() - 40), "a.stl:28",
+                              "end of the file"},
+                      BadMesh{"word", "a.stl", "solid\nfacets\n", "a.stl:2", "\"facets\""},
+                      BadMesh{"outside", "a.stl", "solid\nvertex 0 0 0\n", "a.stl:2", "outside"},
+                      BadMesh{"two_vertices", "a.stl", "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n",
+                              "a.stl:5", "2 vertices"},
+                      BadMesh{"not_solid", "a.stl", "solids are not what this is, and it is too short",
+                              "a.stl:1", "solids"},
+                      BadMesh{"binary_short", "a.stl", "binary", "a.stl", "6 bytes"},
+                      BadMesh{"binary_truncated", "a.stl", "x" + stl_binary.substr(1, stl_binary.size() - 3),
+                              "a.stl", "bytes"},
+                      BadMesh{"binary_nan", "a.stl",
+                              with(stl_binary, 84 + 50 + 12, std::numeric_limits<float>::quiet_NaN()),
+                              "a.stl: vertex 1", "nan"}),
+    [](const auto& info) { return info.param.label; });
+
+TEST(read_mesh, reports_several_violations_at_once) {
+  try {
+    parse_mesh(points + "f 1 2 9\nf 1 1 2\nf 1 2 3\nf 3 2 1\n", "a.obj");
+    FAIL() << "accepted";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.violations().size(), 3u) << error.what();
+  }
+}
+
+TEST(read_mesh, refuses_missing_files_and_unknown_extensions) {
+  EXPECT_THROW(read_mesh("/no/such/file.obj"), ConfigError);
+  EXPECT_THROW(read_mesh(BB_SOURCE_DIR), ConfigError);
+  try {
+    parse_mesh("", "mesh.step");
+    FAIL() << "accepted";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.violations().front().found, "extension \".step\"");
+    EXPECT_EQ(error.violations().front().allowed, "one of .obj, .ply, .stl");
+  }
+}
+
+}  // namespace
+}  // namespace bb

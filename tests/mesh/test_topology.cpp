@@ -1,0 +1,73 @@
+// Edges, boundary, hinges and components of small meshes worked out by hand.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "core/mesh/generators.hpp"
+#include "core/mesh/topology.hpp"
+
+namespace bb {
+namespace {
+
+// 2 - 3
+// | / |   two triangles (0, 1, 3) and (0, 3, 2), and a lone edge to vertex 4; vertex 5 stands alone
+// 0 - 1
+TriangleMesh two_triangles() {
+  TriangleMesh mesh = grid_mesh(2, 2, 1, 1);
+  mesh.vertices.conservativeResize(3, 6);
+  mesh.vertices.col(4) = Vec3d(2, 0, 0);
+  mesh.vertices.col(5) = Vec3d(3, 0, 0);
+  mesh.segments = {{4, 1}};
+  return mesh;
+}
+
+TEST(topology, lists_every_edge_once) {
+  EXPECT_EQ(unique_edges(two_triangles()),
+            (std::vector<std::array<int, 2>>{{0, 1}, {0, 2}, {0, 3}, {1, 3}, {1, 4}, {2, 3}}));
+}
+
+TEST(topology, directs_the_boundary_like_its_triangles) {
+  EXPECT_EQ(boundary_edges(two_triangles().triangles),
+            (std::vector<std::array<int, 2>>{{0, 1}, {2, 0}, {1, 3}, {3, 2}}));
+}
+
+TEST(topology, gives_a_hinge_its_two_opposite_vertices) {
+  // triangle (0, 1, 3) runs 3 -> 0 with 1 opposite; (0, 3, 2) has 2 opposite
+  EXPECT_EQ(edge_hinges(two_triangles().triangles), (std::vector<std::array<int, 4>>{{3, 0, 1, 2}}));
+}
+
+TEST(topology, joins_the_wings_of_a_non_manifold_edge_in_index_order) {
+  const std::vector<std::array<int, 3>> fan = {{0, 1, 2}, {0, 1, 3}, {0, 1, 4}};
+
+  EXPECT_EQ(edge_hinges(fan), (std::vector<std::array<int, 4>>{{0, 1, 2, 3}, {0, 1, 3, 4}}));
+  EXPECT_EQ(boundary_edges(fan).size(), 6u);
+}
+
+TEST(topology, numbers_components_by_their_smallest_vertex) {
+  int n = 0;
+
+  EXPECT_EQ(connected_components(two_triangles(), &n), (std::vector<int>{0, 0, 0, 0, 0, 1}));
+  EXPECT_EQ(n, 2);
+}
+
+TEST(topology, joins_long_chains) {
+  TriangleMesh chain = rod_mesh(1000, Vec3d::Zero(), Vec3d::UnitX());
+  std::reverse(chain.segments.begin(), chain.segments.end());
+  int n = 0;
+
+  connected_components(chain, &n);
+
+  EXPECT_EQ(n, 1);
+}
+
+TEST(topology, counts_the_hinges_of_a_grid) {
+  const TriangleMesh mesh = grid_mesh(5, 4, 1, 1);
+
+  const std::size_t interior = unique_edges(mesh).size() - boundary_edges(mesh.triangles).size();
+
+  EXPECT_EQ(edge_hinges(mesh.triangles).size(), interior);
+  EXPECT_EQ(interior, 12u + 4u * 2u + 3u * 3u);  // diagonals, inner rows, inner columns
+}
+
+}  // namespace
+}  // namespace bb

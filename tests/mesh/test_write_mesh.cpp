@@ -1,0 +1,56 @@
+// Writers: what is written reads back bit for bit, and nothing half-written stays.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "core/math/error.hpp"
+#include "core/mesh/generators.hpp"
+#include "core/mesh/read_mesh.hpp"
+#include "core/mesh/write_mesh.hpp"
+
+namespace bb {
+namespace {
+
+TriangleMesh sphere_with_a_tail() {
+  TriangleMesh mesh = icosphere_mesh(1, 0.3);
+  mesh.segments = {{0, 41}, {41, 7}};
+  return mesh;
+}
+
+class Written : public ::testing::TestWithParam<const char*> {};
+
+TEST_P(Written, reads_back_bit_for_bit) {
+  const TriangleMesh mesh = sphere_with_a_tail();
+  const std::string path = ::testing::TempDir() + "written" + GetParam();
+
+  (std::string(GetParam()) == ".obj" ? write_obj : write_ply)(path, mesh);
+  const TriangleMesh back = read_mesh(path);
+
+  EXPECT_EQ(back.vertices, mesh.vertices);
+  EXPECT_EQ(back.triangles, mesh.triangles);
+  EXPECT_EQ(back.segments, mesh.segments);
+  std::filesystem::remove(path);
+}
+INSTANTIATE_TEST_SUITE_P(write_mesh, Written, ::testing::Values(".obj", ".ply"));
+
+TEST(write_mesh, says_why_a_file_cannot_be_written) {
+  EXPECT_THROW(write_obj("/no/such/folder/a.obj", sphere_with_a_tail()), ConfigError);
+  EXPECT_THROW(write_ply("/no/such/folder/a.ply", sphere_with_a_tail()), ConfigError);
+}
+
+TEST(write_mesh, leaves_nothing_half_written) {
+  const std::filesystem::path folder = ::testing::TempDir() + "taken.ply";
+  std::filesystem::create_directory(folder);  // a folder stands where the file should
+
+  EXPECT_THROW(write_ply(folder, sphere_with_a_tail()), ConfigError);
+
+  int leftovers = 0;
+  for (const auto& file : std::filesystem::directory_iterator(::testing::TempDir())) {
+    leftovers += file.path().filename().string().starts_with("taken.ply.tmp") ? 1 : 0;
+  }
+  EXPECT_EQ(leftovers, 0);
+  std::filesystem::remove(folder);
+}
+
+}  // namespace
+}  // namespace bb
