@@ -65,8 +65,8 @@ struct Entry {
   double value;
 };
 
-void scatter(const std::vector<int>& vertex, const std::vector<double>& grad,
-             const std::vector<double>& hess, Positions& gradient, std::vector<Entry>& entries) {
+void scatter(const std::vector<int>& vertex, const std::vector<double>& grad, const std::vector<double>& hess,
+             Positions& gradient, std::vector<Entry>& entries) {
   for (std::size_t slot = 0; slot < vertex.size(); ++slot) {
     const int v = vertex[slot];
     if (v < 0) continue;
