@@ -23,7 +23,7 @@ endif()
 add_library(bb_settings INTERFACE)
 target_include_directories(bb_settings INTERFACE "${PROJECT_SOURCE_DIR}")
 target_compile_options(bb_settings INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -Werror -Wno-dangling-pointer -Wno-maybe-uninitialized -ffp-contract=off -fPIC>
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off -fPIC>
   $<$<AND:$<BOOL:${BB_NATIVE}>,$<COMPILE_LANGUAGE:CXX>>:-march=native>)
 # g++ 12 raises false warnings from Eigen and std::string under these two settings only.
 if(BB_SANITIZE OR BB_NATIVE)

@@ -37,10 +37,9 @@ struct BaraffWitkin {
           transverse * Mat<T, R, R>::Identity() + (lame_mu * inverse) * (direction * direction.transpose()) +
           lame_lambda * (b * b.transpose());
     }
-    const Mat<T, R, R> cross =
-        lame_lambda * (shear * Mat<T, R, R>::Identity() + f.col(1) * f.col(0).transpose());
-    out.hess.template block<R, R>(0, R) = cross;
-    out.hess.template block<R, R>(R, 0) = cross.transpose();
+    out.hess.template block<R, R>(R, 0) =
+        lame_lambda * (shear * Mat<T, R, R>::Identity() + f.col(0) * f.col(1).transpose());
+    mirror_lower<T, 2 * R>(out.hess);
     if (projection == Projection::psd) out.hess = project_psd<T, 2 * R>(out.hess);
     return out;
   }

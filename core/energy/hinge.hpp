@@ -97,9 +97,7 @@ BB_HD Mat<T, 3 * N, 3 * N> lift_points(const Mat<T, N, 3>& a, const Mat<T, 9, 9>
                                         a(i, 1) * left.template middleCols<3>(3) +
                                         a(i, 2) * left.template middleCols<3>(6);
   }
-  for (int i = 0; i < 3 * N; ++i) {
-    for (int j = 0; j < i; ++j) out(j, i) = out(i, j);
-  }
+  mirror_lower<T, 3 * N>(out);
   return out;
 }
 

@@ -77,9 +77,7 @@ BB_HD DensityTerms<T, R> isotropic_terms(const Svd<T, R, 2>& svd, const Density2
       add_mode<T, R>(eigenvalue, n * svd.V.col(k).transpose(), projection, out.hess);
     }
   }
-  for (int i = 0; i < 2 * R; ++i) {
-    for (int j = 0; j < i; ++j) out.hess(j, i) = out.hess(i, j);
-  }
+  mirror_lower<T, 2 * R>(out.hess);
   return out;
 }
 

@@ -25,8 +25,9 @@ BB_HD ElementTerms<T, 6> spring_terms(const Vec<T, 3> (&x)[2], T stiffness, T re
   T transverse = T(1) - ratio;
   if (projection == Projection::psd && transverse < T(0)) transverse = T(0);
   const Vec<T, 3> force = stiffness * (length - rest_length) * n;
-  const Mat<T, 3, 3> block =
+  Mat<T, 3, 3> block =
       stiffness * (transverse * Mat<T, 3, 3>::Identity() + (T(1) - transverse) * (n * n.transpose()));
+  mirror_lower<T, 3>(block);
 
   ElementTerms<T, 6> out;
   out.energy = spring_value<T>(x, stiffness, rest_length);

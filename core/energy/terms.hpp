@@ -10,6 +10,14 @@ namespace bb {
 /// matrix).
 enum class Projection { none, psd };
 
+/// Makes `m` symmetric bit for bit: its lower triangle is copied to the upper one.
+template <class T, int N>
+BB_HD void mirror_lower(Mat<T, N, N>& m) {
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < i; ++j) m(j, i) = m(i, j);
+  }
+}
+
 /// Terms of one element; N = 3 x number of points, point-major.
 template <class T, int N>
 struct ElementTerms {

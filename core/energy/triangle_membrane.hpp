@@ -85,9 +85,7 @@ BB_HD ElementTerms<T, 9> pull_back(const TriangleRest<T>& rest, T weight, const 
       out.hess.template block<R, R>(3 * i, 3 * k) = block;
     }
   }
-  for (int i = 0; i < 9; ++i) {
-    for (int j = 0; j < i; ++j) out.hess(j, i) = out.hess(i, j);
-  }
+  mirror_lower<T, 9>(out.hess);
   return out;
 }
 

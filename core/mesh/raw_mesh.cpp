@@ -59,7 +59,7 @@ class Assembler {
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3d& x = raw_.vertices[i];
       if (!x.allFinite()) {
-        complain("vertex", raw_.vertex_place[i], fmt::format("({}, {}, {})", x[0], x[1], x[2]),
+        complain(raw_.vertex_element, raw_.vertex_place[i], fmt::format("({}, {}, {})", x[0], x[1], x[2]),
                  "finite coordinates");
       }
       mesh_.vertices.col(static_cast<Eigen::Index>(i)) = x;

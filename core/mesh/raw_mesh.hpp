@@ -12,6 +12,7 @@ namespace bb {
 struct RawMesh {
   std::string name;              // file, for messages
   bool places_are_lines = true;  // places below: lines of a text file, otherwise element numbers (0-based)
+  const char* vertex_element = "vertex";  // what the place of a vertex counts, when not lines
   std::vector<Vec3d> vertices;
   std::vector<long long> vertex_place;
   std::vector<long long> corners;         // 0-based, of all polygons in a row

@@ -73,6 +73,7 @@ T little_endian(const std::string& bytes, std::size_t at) {
 
 void parse_binary(const std::string& bytes, RawMesh& mesh) {
   mesh.places_are_lines = false;
+  mesh.vertex_element = "face";
   if (bytes.size() < header_bytes) {
     throw ConfigError(mesh.name, fmt::format("{} bytes", bytes.size()),
                       "an STL header of 84 bytes, or ascii STL");

@@ -56,7 +56,8 @@ std::string Query::choice(const char* name, const std::vector<std::string>& allo
   const std::string found = word(name);
   if (violations_.size() == before) {
     if (std::find(allowed.begin(), allowed.end(), found) != allowed.end()) return found;
-    for (const Violation& v : unknown_name("/" + std::string(name), found, allowed).violations()) {
+    const ConfigError unknown = unknown_name("/" + std::string(name), found, allowed);
+    for (const Violation& v : unknown.violations()) {
       violations_.push_back(v);
     }
   }

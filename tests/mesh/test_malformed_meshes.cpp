@@ -118,7 +118,7 @@ const std::string stl_binary = tetrahedron_stl_binary();
 
 INSTANTIATE_TEST_SUITE_P(
     stl, Malformed,
-    ::testing::Values(BadMesh{"truncated", "a.stl", stl_ascii.substr(0, stl_ascii.size() - 40), "a.stl:28",
+    ::testing::Values(BadMesh{"truncated", "a.stl", stl_ascii.substr(0, stl_ascii.size() - 40), "a.stl:27",
                               "end of the file"},
                       BadMesh{"word", "a.stl", "solid\nfacets\n", "a.stl:2", "\"facets\""},
                       BadMesh{"outside", "a.stl", "solid\nvertex 0 0 0\n", "a.stl:2", "outside"},
@@ -131,7 +131,7 @@ INSTANTIATE_TEST_SUITE_P(
                               "a.stl", "bytes"},
                       BadMesh{"binary_nan", "a.stl",
                               with(stl_binary, 84 + 50 + 12, std::numeric_limits<float>::quiet_NaN()),
-                              "a.stl: vertex 1", "nan"}),
+                              "a.stl: face 1", "nan"}),
     [](const auto& info) { return info.param.label; });
 
 TEST(read_mesh, reports_several_violations_at_once) {

@@ -81,7 +81,7 @@ TEST(read_mesh, reads_past_unknown_ply_elements) {
 
 TEST(read_mesh, merges_stl_corners_only_when_they_are_equal) {
   std::string text = tetrahedron_stl_ascii();
-  text.replace(text.find("vertex 1.0"), 16, "vertex 1.0000001");
+  text.replace(text.find("vertex 1.0"), 15, "vertex 1.0000001");
 
   const TriangleMesh mesh = parse_mesh(text, "a.stl");
 
