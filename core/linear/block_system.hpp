@@ -24,7 +24,8 @@ struct Stencils {
 struct ReducedSystem {
   Eigen::SparseMatrix<double> lower;  // [n x n] column-major, lower triangle with diagonal
   std::vector<int> block_start;  // [n_blocks + 1] degrees of freedom of one vertex are consecutive (1 to 3)
-  std::uint64_t pattern_id = 0;  // changes exactly when the pattern changes
+  std::uint64_t pattern_id =
+      0;  // a hash of the pattern of lower: changes exactly with it; 0 = unknown, never reused
 };
 
 class BlockSystem {
@@ -35,9 +36,11 @@ class BlockSystem {
 
   /// Families that never change (elements). Called once.
   void set_elements(std::vector<Stencils> families);
-  /// Families of this iterate (contacts). Returns true when the pattern changed; same stencils cost one
-  /// comparison. A contact stencil whose blocks all exist already does not change the pattern (pattern_id
-  /// stays).
+  /// Families of this iterate (contacts). Returns true when the block pattern changed: values() is then zero,
+  /// of another length, and copies of it are void. Same stencils cost one comparison. A contact stencil whose
+  /// blocks all exist already does not change the pattern (pattern_id stays); blocks that no stencil asks for
+  /// any more leave it. Cost: linear in stencils and blocks; no allocation unless something outgrows its
+  /// buffer.
   bool set_contacts(std::vector<Stencils> families);
 
   /// Values: one 9-vector a lower block. Stages add up in the order of the calls; fixed order, any thread

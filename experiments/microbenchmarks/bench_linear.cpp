@@ -3,7 +3,9 @@
 // contacts.
 #include <benchmark/benchmark.h>
 
+#include <memory>
 #include <random>
+#include <vector>
 
 #include "core/linear/block_system.hpp"
 #include "core/linear/cholmod_factor.hpp"
