@@ -74,7 +74,7 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{"loop_edge", "a.obj", points + "l 1 1\n", "a.obj:5", "twice"},
         BadMesh{"repeated_edge", "a.obj", points + "l 1 2\nl 2 1\n", "a.obj:6", "same vertices"},
         BadMesh{"empty", "a.obj", "", "a.obj", "no vertex"}),
-    [](const auto& info) { return info.param.label; });
+    [](const auto& one) { return one.param.label; });
 
 INSTANTIATE_TEST_SUITE_P(
     ply, Malformed,
@@ -111,7 +111,7 @@ INSTANTIATE_TEST_SUITE_P(
                 "nan"},
         BadMesh{"binary_index", "a.ply", with(ply_binary, ply_first_face + 13 + 1, std::int32_t{-1}),
                 "a.ply: face 1", "index -1"}),
-    [](const auto& info) { return info.param.label; });
+    [](const auto& one) { return one.param.label; });
 
 const std::string stl_ascii = tetrahedron_stl_ascii();
 const std::string stl_binary = tetrahedron_stl_binary();
@@ -132,7 +132,7 @@ INSTANTIATE_TEST_SUITE_P(
                       BadMesh{"binary_nan", "a.stl",
                               with(stl_binary, 84 + 50 + 12, std::numeric_limits<float>::quiet_NaN()),
                               "a.stl: face 1", "nan"}),
-    [](const auto& info) { return info.param.label; });
+    [](const auto& one) { return one.param.label; });
 
 TEST(read_mesh, reports_several_violations_at_once) {
   try {

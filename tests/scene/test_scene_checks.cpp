@@ -1,0 +1,132 @@
+// Scenes that cannot be run are refused, all violations at once.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+
+#include "tests/scene/bodies.hpp"
+
+namespace bb {
+namespace {
+
+using namespace test;
+using ::testing::Test;
+
+void expect_complaint(const std::string& found, const std::string& expected) {
+  EXPECT_NE(found.find(expected), std::string::npos) << "found: " << found << "\nexpected: " << expected;
+}
+
+TEST(scene_checks, refuse_a_scene_without_free_vertices) {
+  expect_complaint(complaint({}), "no body");
+  expect_complaint(complaint({rigid_box("box")}), "no free vertex");
+  BodySpec held = cloth("held");
+  held.pins.emplace_back().all = true;
+  expect_complaint(complaint({held}), "no free vertex");
+}
+
+TEST(scene_checks, refuse_free_vertices_without_mass) {
+  BodySpec light = cloth("light");
+  light.material.density = 0;
+  BodySpec loose = cloth("loose", 1);
+  loose.mesh.vertices.conservativeResize(3, 13);
+  loose.mesh.vertices.col(12) = Vec3d(5, 5, 5);
+
+  const std::string found = complaint({light, loose});
+
+  expect_complaint(found, "body \"light\": found 12 free vertices without mass, the first is 0");
+  expect_complaint(found, "body \"loose\": found 1 free vertices without mass, the first is 12");
+}
+
+TEST(scene_checks, refuse_a_name_used_twice) {
+  Obstacle plane;
+  plane.name = "cloth";
+  plane.point = Vec3d(0, 0, -3);
+
+  expect_complaint(complaint({cloth("cloth"), cloth("cloth", 1)}), "a name used twice");
+  expect_complaint(complaint({cloth("cloth")}, {plane}), "a name used twice");
+}
+
+TEST(scene_checks, refuse_bad_meshes) {
+  BodySpec body = cloth("cloth");
+  body.mesh.vertices(1, 2) = std::nan("");
+  expect_complaint(complaint({body}), "non-finite coordinate");
+  body = cloth("cloth");
+  body.mesh.triangles[3][1] = 12;
+  expect_complaint(complaint({body}), "unknown vertex");
+  body = cloth("cloth");
+  body.mesh.vertices.col(0) = body.mesh.vertices.col(1);
+  expect_complaint(complaint({body}), "zero area");
+  body = cloth("cloth");
+  body.start = Positions::Zero(3, 3);
+  expect_complaint(complaint({body}), "do not fit");
+  EXPECT_EQ(complaint({cloth("cloth")}), "");
+}
+
+TEST(scene_checks, refuse_every_material_value_out_of_range_at_once) {
+  BodySpec body = cloth("cloth");
+  body.material.model = "neo";
+  body.material.youngs = -1;
+  body.material.poisson = 1;
+  body.material.density = std::numeric_limits<double>::infinity();
+  body.material.bending = -1;
+  body.material.limit = StrainLimitSpec{-0.1, 0};
+  body.d_hat = 0;
+
+  const std::string found = complaint({body});
+
+  for (const char* what : {"model", "youngs", "poisson", "density", "bending", "onset", "width", "d_hat"}) {
+    expect_complaint(found, std::string("/") + what);
+  }
+  expect_complaint(found, "one of none, corotational");
+}
+
+TEST(scene_checks, refuse_bad_pins_and_motions) {
+  BodySpec body = cloth("cloth");
+  body.pins.emplace_back().indices = {12};
+  expect_complaint(complaint({body}), "found vertex 12; allowed: 0 to 11");
+  body = cloth("cloth");
+  body.pins.emplace_back().box = {Vec3d(5, 5, 5), Vec3d(6, 6, 6)};
+  expect_complaint(complaint({body}), "no vertex selected");
+  body = cloth("cloth");
+  body.pins.resize(2);
+  body.pins[0].indices = {1};
+  body.pins[1].indices = {1};
+  body.pins[1].motion.velocity = Vec3d(1, 0, 0);
+  expect_complaint(complaint({body}), "two motions");
+  BodySpec box = rigid_box("box");
+  box.motion.axis = Vec3d(0, 0, 2);
+  box.motion.start = 2;
+  box.motion.end = 1;
+  expect_complaint(complaint({cloth("cloth", 1), box}), "unit axis");
+  expect_complaint(complaint({cloth("cloth", 1), box}), "end >= start");
+}
+
+TEST(scene_checks, refuse_what_leaves_the_plane_of_a_planar_scene) {
+  BodySpec body = cloth("cloth", 0.1);
+  body.material.bending = 1;
+  body.velocity = Vec3d(0, 0, 1);
+  Obstacle plane;
+  plane.name = "plane";
+  plane.axis = Vec3d::UnitZ();
+
+  const std::string found = complaint({body}, {plane}, true);
+
+  for (const char* what : {"/mesh", "/material/bending", "/velocity", "/axis"}) expect_complaint(found, what);
+}
+
+TEST(scene_checks, refuse_bad_obstacles) {
+  Obstacle sphere;
+  sphere.name = "sphere";
+  sphere.kind = ObstacleKind::sphere;
+  Obstacle plane;
+  plane.name = "plane";
+  plane.axis = Vec3d(0, 0, 3);
+
+  const std::string found = complaint({cloth("cloth")}, {sphere, plane});
+
+  expect_complaint(found, "\"sphere\"/radius: found 0; allowed: a number > 0");
+  expect_complaint(found, "\"plane\"/axis");
+}
+
+}  // namespace
+}  // namespace bb
