@@ -67,29 +67,36 @@ BB_HD ElementTerms<T, 9> strain_limit_terms(const TriangleRest<T>& rest, const S
   return pull_back<R, T>(rest, T(1), isotropic_terms<T, R>(svd, density, projection));
 }
 
-/// Whether both singular values at x are below the limit: the one test that step bound and energy share.
+/// Smallest pseudo-gap at x, the one number that step bound and energy share: > 0 within the limit.
 template <int R, class T>
-BB_HD bool within_strain_limit(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3],
-                               const StrainBand<T>& band) {
-  return strain_gap(membrane_svd(deformation_gradient<R>(rest, x)).sigma[0], band) > T(0);
+BB_HD T smallest_strain_gap(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3], const StrainBand<T>& band) {
+  return strain_gap(membrane_svd(deformation_gradient<R>(rest, x)).sigma[0], band);
 }
 
-/// Largest alpha in [0, alpha_max] whose rounded state x + alpha dx is within the limit; 0 when x is not.
-/// sigma_max is convex along the step, so what is within the limit is one interval and bisection down to two
-/// neighbouring numbers finds its end without a tolerance: the next larger alpha is beyond the limit.
+/// Largest alpha in [0, alpha_max] whose rounded state x + alpha dx keeps y above the stop level; 0 when x is
+/// at or beyond the limit. sigma_max is convex along the step, so what is within is one interval and
+/// bisection down to two neighbouring numbers finds its end without a tolerance: the next larger alpha is
+/// beyond.
+/// @param park  1, stop level in units of the width, as ACCD has one: 0 stops at the hard limit itself, where
+/// an unbounded barrier has curvatures that no factorisation survives. Half the start gap for an element that
+/// starts below 2 park.
 /// Host-device: yes. Cost: one SVD when alpha_max is within, else about 60 in double.
 template <int R, class T>
 BB_HD T strain_step_bound(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3], const Vec<T, 3> (&dx)[3],
-                          const StrainBand<T>& band, T alpha_max = T(1)) {
-  const auto within = [&](T alpha) {
+                          const StrainBand<T>& band, T alpha_max = T(1), T park = T(0)) {
+  const auto gap = [&](T alpha) {
     const Vec<T, 3> moved[3] = {x[0] + alpha * dx[0], x[1] + alpha * dx[1], x[2] + alpha * dx[2]};
-    return within_strain_limit<R>(rest, moved, band);
+    return smallest_strain_gap<R>(rest, moved, band);
   };
-  if (within(alpha_max)) return alpha_max;
-  if (!within(T(0))) return T(0);
+  T level = park * band.width;
+  if (gap(alpha_max) > level) return alpha_max;
+  const T start = gap(T(0));
+  if (!(start > T(0))) return T(0);
+  if (start < T(2) * level) level = start / T(2);
+  if (gap(alpha_max) > level) return alpha_max;
   T low = T(0), high = alpha_max;
   for (T middle = high / T(2); low < middle && middle < high; middle = low + (high - low) / T(2)) {
-    (within(middle) ? low : high) = middle;
+    (gap(middle) > level ? low : high) = middle;
   }
   return low;
 }

@@ -68,15 +68,17 @@ void StrainLimitBatch::fill_terms(const Positions& x, const double* kappa, Local
   });
 }
 
-double StrainLimitBatch::step_bound(const Positions& x, const Positions& dx, double alpha_max) const {
+double StrainLimitBatch::step_bound(const Positions& x, const Positions& dx, double alpha_max,
+                                    double park) const {
   const auto smallest = [&](double alpha) {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, size(), 64), alpha,
         [&](const tbb::blocked_range<std::size_t>& range, double bound) {
           for (std::size_t e = range.begin(); e < range.end(); ++e) {
             const Points<3> p(x, vertices_, e), step(dx, vertices_, e);
-            bound = std::min(bound, planar_ ? strain_step_bound<2>(rests_[e], p.x, step.x, bands_[e], alpha)
-                                            : strain_step_bound<3>(rests_[e], p.x, step.x, bands_[e], alpha));
+            bound = std::min(bound,
+                             planar_ ? strain_step_bound<2>(rests_[e], p.x, step.x, bands_[e], alpha, park)
+                                     : strain_step_bound<3>(rests_[e], p.x, step.x, bands_[e], alpha, park));
           }
           return bound;
         },

@@ -49,6 +49,7 @@ BB_HD inline SegmentFoot<T> segment_foot(const Vec<T, 3>& q, const Vec<T, 3>& u)
 template <class T>
 struct PlaneFoot {
   bool found;   // false when e and f are parallel to the last bit
+  bool clear;   // e and f are at least 1e-3 rad from parallel: an interior foot needs no rival
   T s, t;       // not clamped
   Vec<T, 3> r;  // r0 + s e + t f, along the common normal
 };
@@ -62,9 +63,9 @@ BB_HD inline PlaneFoot<T> plane_foot(const Vec<T, 3>& r0, const Vec<T, 3>& e, co
   constexpr int max_corrections = 4;
   const Vec<T, 3> n = accurate_cross(e, f);
   const T nn = n.squaredNorm();
-  if (!(nn > 0)) return {false, T(0), T(0), r0};
+  if (!(nn > 0)) return {false, false, T(0), T(0), r0};
 
-  PlaneFoot<T> foot{true, T(0), T(0), r0};
+  PlaneFoot<T> foot{true, nn > T(1e-6) * e.squaredNorm() * f.squaredNorm(), T(0), T(0), r0};
   const T size_sq = r0.squaredNorm();
   for (int k = 0; k < max_corrections; ++k) {
     const T s = -n.dot(accurate_cross(foot.r, f)) / nn, t = -n.dot(accurate_cross(e, foot.r)) / nn;
@@ -138,8 +139,9 @@ BB_HD inline void keep_closer(Closest<T, 4>& best, int point, int e0, int e1, T 
 }  // namespace detail
 
 /// Point-triangle. @param x [3 x 4] p t0 t1 t2, m; any triangle, zero area included.
-/// The interior solution stands against the three clamped edges; the smallest realised distance wins.
-/// Source: candidate scan and cross products as in the contact solver of Ando 2024 (ppf-contact-solver).
+/// The interior solution stands against the three clamped edges where its plane is uncertain; the smallest
+/// realised distance wins. Source: candidate scan and cross products as in the contact solver of Ando 2024
+/// (ppf-contact-solver).
 template <class T>
 BB_HD inline Closest<T, 4> closest_point_triangle(const Mat<T, 3, 4>& x) {
   const T edge_sq[3] = {(x.col(3) - x.col(2)).squaredNorm(), (x.col(1) - x.col(3)).squaredNorm(),
@@ -165,6 +167,10 @@ BB_HD inline Closest<T, 4> closest_point_triangle(const Mat<T, 3, 4>& x) {
     best.r = detail::along_normal<T>(foot.r, e, f);
     best.d = foot.r.norm();
     best.region = Region::p_t;
+    if (foot.clear) {
+      best.d = best.r.norm();
+      return best;
+    }
   }
   constexpr Region edge01[] = {Region::p_t0, Region::p_t1, Region::p_e01};
   constexpr Region edge12[] = {Region::p_t1, Region::p_t2, Region::p_e12};
@@ -177,7 +183,8 @@ BB_HD inline Closest<T, 4> closest_point_triangle(const Mat<T, 3, 4>& x) {
 }
 
 /// Edge-edge. @param x [3 x 4] ea0 ea1 eb0 eb1, m; any edges, parallel and zero-length ones included.
-/// The interior solution stands against the four clamped end points; the smallest realised distance wins.
+/// The interior solution stands against the four clamped end points where its plane is uncertain; the
+/// smallest realised distance wins.
 template <class T>
 BB_HD inline Closest<T, 4> closest_edge_edge(const Mat<T, 3, 4>& x) {
   Closest<T, 4> best;
@@ -193,6 +200,10 @@ BB_HD inline Closest<T, 4> closest_edge_edge(const Mat<T, 3, 4>& x) {
     best.r = detail::along_normal<T>(foot.r, u, v);
     best.d = foot.r.norm();
     best.region = Region::ea_eb;
+    if (foot.clear) {
+      best.d = best.r.norm();
+      return best;
+    }
   }
   constexpr Region a0[] = {Region::ea0_eb0, Region::ea0_eb1, Region::ea0_eb};
   constexpr Region a1[] = {Region::ea1_eb0, Region::ea1_eb1, Region::ea1_eb};

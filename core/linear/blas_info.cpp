@@ -24,7 +24,15 @@ bool is_openblas(const std::string& file) { return file.find("openblas") != std:
 
 }  // namespace
 
-void set_one_blas_thread() { openblas_set_num_threads(1); }
+void set_one_blas_thread() {
+  openblas_set_num_threads(1);
+  // CHOLMOD asks OpenMP for four threads by name, which only the nesting limit overrules. Looked up at run
+  // time: a CHOLMOD without OpenMP needs none of it.
+  using SetLevels = void (*)(int);
+  static const auto set_levels =
+      reinterpret_cast<SetLevels>(dlsym(RTLD_DEFAULT, "omp_set_max_active_levels"));
+  if (set_levels != nullptr) set_levels(0);
+}
 
 BlasInfo blas_info() {
   set_one_blas_thread();

@@ -15,7 +15,8 @@ struct BlasInfo {
   bool expected = false;
 };
 
-/// Sets one BLAS thread: two change the bits of a factor and were slower. Idempotent.
+/// Sets one BLAS thread: two change the bits of a factor and were slower. Sets one OpenMP thread for what the
+/// calling thread runs: CHOLMOD's own loops spin in their pool after every factorisation. Idempotent.
 void set_one_blas_thread();
 /// Calls set_one_blas_thread and reports. Cost: microseconds.
 BlasInfo blas_info();

@@ -78,6 +78,7 @@ CholmodFactor::~CholmodFactor() = default;
 
 LinearStatus CholmodFactor::factorize(const ReducedSystem& system) {
   Cholmod& c = *cholmod_;
+  set_one_blas_thread();  // the OpenMP part holds for the calling thread only
   cholmod_sparse a = view(system);
   const double* value = system.lower.valuePtr();
   analyze_s_ = factor_s_ = 0;

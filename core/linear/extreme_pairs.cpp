@@ -12,7 +12,8 @@ namespace {
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTol = 2e-4;      // of an eigenvalue, relative; half of the 1e-3 promised is left to spare
 constexpr double kProof = 8e-4;    // of an eigenvalue, relative: distance of a shift that certifies it
-constexpr int kMaxProofs = 6;      // factorisations that certify one end
+constexpr int kMaxShifts = 6;      // from the narrowest interval to the widest in steps of six
+constexpr int kMaxProofs = 12;     // factorisations that certify one end: from the widest interval to kProof
 constexpr int kMaxSolves = 25;     // tier 2
 constexpr int kMaxProducts = 40;   // tier 2
 constexpr int kShiftedSolves = 5;  // round a shifted factor, plus one that polishes the vector
@@ -93,7 +94,9 @@ void take(const LanczosEnd& ritz, End& end) {
 /// Where a factor proves the end of the spectrum to lie: between `outside` (the factor exists) and `inside`.
 /// Halved until it is kProof wide, first tried right beyond `inside`, where a Ritz value usually sits.
 void certify(ScaledMatrix& b, double sign, double outside, End& end) {
-  double inside = end.lambda;
+  // A failed shift may have proven more than the Ritz value.
+  const bool known = sign * (end.lambda - end.proven_inside) > 0;
+  double inside = known ? end.proven_inside : end.lambda;
   const auto wide = [&] { return std::abs(inside - outside) > kProof * std::abs(inside); };
   const double close = inside * (1 - 0.99 * sign * kProof);
   for (int test = 0; test < kMaxProofs && wide(); ++test) {
@@ -112,13 +115,15 @@ void certify(ScaledMatrix& b, double sign, double outside, End& end) {
 /// @param sign +1 the small end, A - sigma D; -1 the large end, sigma D - A
 void resolve_by_shift(ScaledMatrix& b, double sign, End& end) {
   // Where eigenvalues lie dense the error is about a third of the residual; a failed factorisation tells if
-  // not.
+  // not: the start vector had next to nothing of the last eigenvector.
   double width = std::clamp(end.uncertainty, 5e-4, 0.3);
-  double sigma = end.lambda * (1 - sign * width);
-  if (!b.factorize_shifted(sign, sigma)) {
+  const double start = end.lambda;
+  double sigma = start * (1 - sign * width);
+  for (int shift = 1; !b.factorize_shifted(sign, sigma); ++shift) {
+    if (shift == kMaxShifts) return;
+    end.proven_inside = sigma;
     width = std::min(6 * width, 0.9);
-    sigma = end.lambda * (1 - sign * width);
-    if (!b.factorize_shifted(sign, sigma)) return;
+    sigma = start * (1 - sign * width);
   }
   const auto op = [&b](const VecXd& x, VecXd& y) { b.solve(b.matrix().shifted, x, y); };
   // d lambda / lambda = width * d theta / theta, so the operator's own tolerance may be wider by 1 / width.
@@ -127,7 +132,8 @@ void resolve_by_shift(ScaledMatrix& b, double sign, End& end) {
   if (!(ritz.value > 0)) return;
   b.solve(b.matrix().shifted, ritz.vector, end.vector);
   end.lambda = sigma + sign / ritz.value;
-  end.resolved = ritz.converged(tol);
+  const bool disproven = sign * (end.lambda - end.proven_inside) > 0;
+  end.resolved = ritz.converged(tol) && !disproven;
   if (!end.resolved) certify(b, sign, sigma, end);
 }
 

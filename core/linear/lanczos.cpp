@@ -9,6 +9,10 @@
 namespace bb {
 namespace {
 
+/// Steps in a row that have to find the same end. A start vector with next to nothing of the last eigenvector
+/// converges to its neighbour first; each further step magnifies what is missing.
+constexpr int kHeld = 4;
+
 /// Ritz pair at the top of the k x k tridiagonal matrix; beta is what couples it to the next vector.
 void read_top(const VecXd& diagonal, const VecXd& off, int k, double beta, LanczosEnd& end, VecXd& weights) {
   Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> eigen;
@@ -35,6 +39,7 @@ LanczosEnd lanczos_largest(const SymmetricOperator& op, const VecXd& start, int 
   Eigen::MatrixXd basis(n, n_max);
   VecXd diagonal = VecXd::Zero(n_max), off = VecXd::Zero(n_max), weights, w, v = start.normalized();
   LanczosEnd end;
+  int held = 0;
   for (int j = 0; j < n_max; ++j) {
     basis.col(j) = v;
     op(v, w);
@@ -49,7 +54,8 @@ LanczosEnd lanczos_largest(const SymmetricOperator& op, const VecXd& start, int 
     const bool exhausted = !(beta > 1e-14 * diagonal.head(j + 1).cwiseAbs().maxCoeff()) || j + 1 == n;
     if (exhausted) beta = 0;
     read_top(diagonal, off, j + 1, beta, end, weights);
-    if (exhausted || !std::isfinite(end.value) || (j >= 3 && end.converged(tol))) break;
+    held = end.converged(tol) ? held + 1 : 0;
+    if (exhausted || !std::isfinite(end.value) || held == kHeld) break;
     off[j] = beta;
     v = w / beta;
   }

@@ -26,7 +26,7 @@ struct LanczosEnd {
 };
 
 /// @param start  any vector that is not orthogonal to the wanted one; not zero
-/// @param n_max  steps at most; ends early once converged(tol)
+/// @param n_max  steps at most; ends early once converged(tol) four times in a row
 /// Cost: steps products and O(n steps^2) flops; a basis of n x (steps + 1) doubles.
 LanczosEnd lanczos_largest(const SymmetricOperator& op, const VecXd& start, int n_max, double tol);
 

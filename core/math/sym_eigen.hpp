@@ -1,11 +1,13 @@
-// Eigenvalues and eigenvectors of small symmetric matrices (up to about 12 x 12) by cyclic Jacobi rotations.
-// Plain loops of bounded length, so that the device runs the same code; no library eigen-solver is called.
+// Eigenvalues and eigenvectors of small symmetric matrices: cyclic Jacobi rotations up to 4 x 4, tridiagonal
+// QL beyond (up to about 12 x 12). Plain loops of bounded length, so that the device runs the same code; no
+// library eigen-solver is called.
 #pragma once
 
 #include <cmath>
 #include <limits>
 
 #include "core/math/scale.hpp"
+#include "core/math/tridiagonal_eigen.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
@@ -69,43 +71,55 @@ BB_HD inline void sort_ascending(Vec<T, N>& values, Mat<T, N, N>& vectors) {
   }
 }
 
-}  // namespace detail
-
-/// A = vectors diag(values) vectors^T of the symmetric part of A.
-/// @param values  ascending; error a few eps of the largest |A_ij|, of the value itself when A is well scaled
-/// @param vectors orthonormal columns (det +-1)
-/// Errors: none for finite A; a non-finite A gives non-finite values.   Host-device.
-/// Cost: 3 to 8 sweeps of N (N - 1) / 2 rotations, at most 16; no allocation.
+/// Rotates a to diagonal form, its rotations into vectors; entries of a at most about 1.
+/// Cost: 3 to 8 sweeps of N (N - 1) / 2 rotations, at most 16.
 template <class T, int N>
-BB_HD inline void sym_eigen(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, N>& vectors) {
+BB_HD inline void jacobi_eigen(Mat<T, N, N>& a, Mat<T, N, N>& vectors) {
   using std::abs;
   constexpr T eps = std::numeric_limits<T>::epsilon();
-  constexpr int max_sweeps = 16;  // quadratic convergence: 8 were the most seen for N = 12
-  const T unit = power_of_two_scale(A);
-  Mat<T, N, N> a;
-  for (int j = 0; j < N; ++j) {
-    for (int i = 0; i < N; ++i) a(i, j) = (A(i, j) / unit + A(j, i) / unit) / 2;
-  }
-  vectors.setIdentity();
-
+  constexpr int max_sweeps = 16;  // convergence is quadratic
   // An entry is nothing when it is below rounding of both of its diagonal entries, or of rounding itself.
   constexpr T relative_sq = eps * eps / 16;
   constexpr T floor_sq = relative_sq * eps;
+  vectors.setIdentity();
   bool rotated = true;
   for (int sweep = 0; sweep < max_sweeps && rotated; ++sweep) {
     rotated = false;
     for (int p = 0; p < N; ++p) {
       for (int q = p + 1; q < N; ++q) {
         const T apq_sq = a(p, q) * a(p, q);
-        if (!(apq_sq > floor_sq) || apq_sq <= relative_sq * abs(a(p, p) * a(q, q))) continue;
+        if (apq_sq <= floor_sq || apq_sq <= relative_sq * abs(a(p, p) * a(q, q))) continue;
         const JacobiRotation<T> r(a(p, p), a(p, q), a(q, q));
-        detail::rotate_symmetric(a, p, q, r);
-        detail::rotate_columns(vectors, p, q, r.c, r.s);
+        rotate_symmetric(a, p, q, r);
+        rotate_columns(vectors, p, q, r.c, r.s);
         rotated = true;
       }
     }
   }
-  for (int i = 0; i < N; ++i) values[i] = a(i, i) * unit;
+}
+
+}  // namespace detail
+
+/// A = vectors diag(values) vectors^T of the symmetric part of A.
+/// @param values  ascending; error a few eps of the largest |A_ij|; with N <= 4 of the value itself when A is
+///                well scaled
+/// @param vectors orthonormal columns (det +-1)
+/// Errors: none for finite A; a non-finite A gives non-finite values.   Host-device.   Cost: O(N^3); no
+/// allocation.
+template <class T, int N>
+BB_HD inline void sym_eigen(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, N>& vectors) {
+  const T unit = power_of_two_scale(A);
+  Mat<T, N, N> a;
+  for (int j = 0; j < N; ++j) {
+    for (int i = 0; i < N; ++i) a(i, j) = (A(i, j) / unit + A(j, i) / unit) / 2;
+  }
+  if constexpr (N <= 4) {
+    detail::jacobi_eigen<T, N>(a, vectors);
+    values = a.diagonal();
+  } else {
+    detail::tridiagonal_eigen<T, N>(a, values, vectors);
+  }
+  values *= unit;
   detail::sort_ascending(values, vectors);
 }
 

@@ -169,10 +169,12 @@ void read_element(Values& values, const PlyElement& element, const Slots& slots,
 
 template <class Values>
 void read_body(const std::string& bytes, const PlyHeader& header, RawMesh& mesh) {
+  std::vector<Slots> slots;  // of every element first: the header is judged before the body
+  for (const PlyElement& element : header.elements) slots.push_back(slots_of(element, mesh.name));
   Values values(bytes, header, mesh.name);
-  for (const PlyElement& element : header.elements) {
-    const Slots slots = slots_of(element, mesh.name);
-    for (long long i = 0; i < element.count; ++i) read_element(values, element, slots, i, mesh);
+  for (std::size_t e = 0; e < slots.size(); ++e) {
+    const PlyElement& element = header.elements[e];
+    for (long long i = 0; i < element.count; ++i) read_element(values, element, slots[e], i, mesh);
   }
 }
 

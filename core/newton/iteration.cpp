@@ -27,6 +27,8 @@ IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, S
       report.kappa_max = std::max(report.kappa_max, rows.kappa[r]);
       report.curvature_max =
           std::max(report.curvature_max, rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r]);
+      report.force_max = std::max(report.force_max, -rows.kappa[r] * rows.db[r]);
+      report.gap_min_rel = std::min(report.gap_min_rel, rows.d[r] / rows.d_hat[r]);
       first = false;
     }
   };

@@ -3,7 +3,7 @@
 //   1 assemble gradient and PSD matrix at x, kappa refreshed by its policy
 //   2 solve A dx = -g, prescribed motion lifted to the right-hand side
 //   3 stop when |dx|_inf / h < tol_velocity and every prescribed vertex is at its pose
-//   4 bound the step: ACCD over all pairs, strain limit
+//   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded
 //   6 accept
 #include <algorithm>
@@ -82,7 +82,9 @@ class LineSearch final : public StepSolver {
     report.bound = system.contact_bound(x_trial_, report.times);
     report.alpha_ccd = report.bound.alpha;
     report.alpha_limit = system.limit_bound(dx_, report.times);
-    double alpha = std::min({1.0, report.alpha_ccd, report.alpha_limit});
+    // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
+    double alpha = std::min(report.alpha_ccd, report.alpha_limit);
+    if (alpha < 1) alpha *= options_.cap_fraction;
     while (alpha > smallest_alpha) {
       move(system, alpha);
       ++report.line_search_trials;

@@ -29,6 +29,7 @@ struct StepSolverOptions {
   int max_iterations = 200;
   double tol_velocity = 0;  // m/s: stop at |dx|_inf / h below it; quasi-static: m, without h
   double armijo = 1e-4;
+  double cap_fraction = 0.8;  // line_search: part of a binding contact or strain bound that is taken
   // accumulated_toi
   double target_toi = 0.25;
   int min_iterations = 1;

@@ -137,7 +137,7 @@ StepBound NewtonSystem::contact_bound(const Positions& x1, PhaseTimes& times) co
 
 double NewtonSystem::limit_bound(const Positions& dx, PhaseTimes& times) const {
   const ScopedPhase timer(times, Phase::strain_bound);
-  return limit_ ? limit_->step_bound(state_.x, dx) : 1.0;
+  return limit_ ? limit_->step_bound(state_.x, dx, 1.0, method_.contact_options.ccd_park) : 1.0;
 }
 
 std::optional<EnergyChange> NewtonSystem::try_state(const Positions& x, PhaseTimes& times) {

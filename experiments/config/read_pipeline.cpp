@@ -54,6 +54,7 @@ void read_step_solver(const json& section, const Reader& reader, bool literal, R
   out.max_iterations = section.value("max_iterations", out.max_iterations);
   out.tol_velocity = section.value("tol_velocity_m_per_s", default_tolerance(config));
   out.armijo = section.value("armijo", out.armijo);
+  out.cap_fraction = section.value("cap_fraction", out.cap_fraction);
   out.target_toi = section.value("target_toi", out.target_toi);
   out.min_newton_steps = section.value("min_newton_steps", out.min_newton_steps);
 }

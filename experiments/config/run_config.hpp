@@ -106,6 +106,7 @@ struct StepSolverConfig {
   int max_iterations = 500;
   double tol_velocity = 1e-4;  // m/s, |dx|_inf / dt; default 1e-4 d_hat/dt
   double armijo = 1e-4;
+  double cap_fraction = 0.8;
   double target_toi = 0.25;  // accumulated_toi
   int min_newton_steps = 1;  // accumulated_toi
 };

@@ -158,6 +158,7 @@ json to_json(const StepSolverConfig& solver) {
           {"max_iterations", solver.max_iterations},
           {"tol_velocity_m_per_s", solver.tol_velocity},
           {"armijo", solver.armijo},
+          {"cap_fraction", solver.cap_fraction},
           {"target_toi", solver.target_toi},
           {"min_newton_steps", solver.min_newton_steps}};
 }

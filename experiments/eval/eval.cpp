@@ -5,6 +5,7 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <set>
 #include <string>
 
 #include "experiments/eval/kinds.hpp"
@@ -60,13 +61,14 @@ struct Line {
 
 /// Id and duplicate names come from the text itself: the parser rounds long numbers and drops duplicates.
 void scan(std::string_view text, Line& line) {
-  std::map<std::string_view, int> seen;
-  for (const auto& [name, value] : top_level_members(text)) {
+  std::set<std::string> seen;
+  std::string twice;
+  for (const auto& [written, value] : top_level_members(text)) {
+    const std::string name = json::parse("\"" + std::string(written) + "\"").get<std::string>();
     if (name == "id") line.id = value;
-    if (++seen[name] > 1) {
-      throw ConfigError("/" + std::string(name), "the same field twice", "each field once");
-    }
+    if (!seen.insert(name).second) twice = name;
   }
+  if (!twice.empty()) throw ConfigError("/" + twice, "the same field twice", "each field once");
 }
 
 Answer answer_of(const json& object) {

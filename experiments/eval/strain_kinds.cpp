@@ -73,10 +73,11 @@ Answer answer::strain_limit(Query& q) {
   const StrainBand<T> band{static_cast<T>(q.number("onset", kNonNegative)),
                            static_cast<T>(q.number("width", kPositive))};
   const bool from_f = q.has("F");
-  if (from_f && q.has("sigma")) q.complain("sigma", "sigma and F", "one of the two");
+  const bool from_sigma = q.has("sigma");
+  if (from_f && from_sigma) q.complain("sigma", "sigma and F", "one of the two");
+  if (!from_f && !from_sigma) q.complain("sigma", "neither /sigma nor /F", "one of the two is required");
   const Mat<T, 3, 2> f = from_f ? Mat<T, 3, 2>(q.rows("F", 3, 2).cast<T>()) : Mat<T, 3, 2>::Zero();
-  std::vector<double> sigma =
-      !from_f || q.has("sigma") ? q.list("sigma", -1, kFinite) : std::vector<double>();
+  std::vector<double> sigma = from_sigma ? q.list("sigma", -1, kFinite) : std::vector<double>();
   q.finish();
 
   const Svd<T, 3, 2> svd = membrane_svd<T>(f);

@@ -51,6 +51,7 @@ StepSolverOptions step_solver_options(const RunConfig& config) {
   out.max_iterations = config.step_solver.max_iterations;
   out.tol_velocity = config.step_solver.tol_velocity;
   out.armijo = config.step_solver.armijo;
+  out.cap_fraction = config.step_solver.cap_fraction;
   out.target_toi = config.step_solver.target_toi;
   out.min_iterations = config.step_solver.min_newton_steps;
   return out;

@@ -1,5 +1,7 @@
 #include "experiments/run/pilot.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -20,6 +22,7 @@ struct Loads {
   double dt = 0, c = 1;
   PolicyColumns columns;  // of that contact
   std::string config_id;
+  std::string stopped;  // why it ended early; empty when it did not
 };
 
 class LoadObserver final : public StepObserver {
@@ -100,7 +103,11 @@ const Loads& run_pilot(const RunConfig& config, const Scene& scene) {
   Simulation simulation(scene, method, pilot.time.dt, pilot.time.steps);
   LoadObserver observer;
   for (int step = 0; step < pilot.time.steps; ++step) {
-    if (simulation.step(observer).status != StepStatus::converged) break;
+    const StepReport report = simulation.step(observer);
+    if (report.status == StepStatus::converged) continue;
+    observer.loads.stopped =
+        fmt::format(", which stopped at step {} with {} {}", step, to_string(report.status), report.detail);
+    break;
   }
   observer.loads.dt = pilot.time.dt;
   Prediction prediction;
@@ -128,9 +135,9 @@ struct Match {
   }
 };
 
-double required_load(double load, const std::string& where, const char* what) {
+double required_load(double load, const Loads& pilot, const std::string& where, const char* what) {
   if (load > 0) return load;
-  throw ConfigError(where, "no " + std::string(what) + " in the pilot",
+  throw ConfigError(where, fmt::format("no {} in the pilot{}", what, pilot.stopped),
                     "a load given here, or a scene that has one");
 }
 
@@ -173,10 +180,11 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, MatchingRecor
   if (load == 0 || (limited && limit_load == 0) || !needs_kappa(policy)) {
     pilot = &run_pilot(config, scene);
     record.pilot_run_id = pilot->config_id;
-    if (load == 0) load = required_load(pilot->contact, config.source + "#/matching/load_N", "contact");
+    if (load == 0)
+      load = required_load(pilot->contact, *pilot, config.source + "#/matching/load_N", "contact");
     if (limited && limit_load == 0) {
-      limit_load =
-          required_load(pilot->limit, config.source + "#/matching/limit_load_N_per_m", "active strain limit");
+      limit_load = required_load(pilot->limit, *pilot, config.source + "#/matching/limit_load_N_per_m",
+                                 "active strain limit");
     }
   }
   record.load_N = load;

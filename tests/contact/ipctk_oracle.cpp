@@ -97,7 +97,7 @@ int main(int argc, char** argv) {
   ContactTable rows;
   MollifiedTable mollified;
   contacts.update_candidates(p.scene.x0, p.scene.x0);
-  const double min_gap = contacts.find_rows(p.scene.x0, rows, mollified);
+  contacts.find_rows(p.scene.x0, rows, mollified);
   const BarrierFunction barrier{require_shape("log"), Argument::squared_gap};
   evaluate(rows, barrier);
   evaluate(mollified, barrier);
@@ -128,9 +128,9 @@ int main(int argc, char** argv) {
     write(out, &e.value, 1);
   }
   std::printf(
-      "{\"rows\": %zu, \"mollified\": %zu, \"entries\": %zu, \"potential\": %.17g, \"min_gap\": %.17g, "
+      "{\"rows\": %zu, \"mollified\": %zu, \"entries\": %zu, \"potential\": %.17g, "
       "\"alpha\": %.17g, \"queries\": %lld, \"probes\": %lld, \"capped\": %lld, \"zero\": %lld}\n",
-      rows.size(), mollified.size(), entries.size(), potential, min_gap, bound.alpha, bound.queries,
-      bound.probes, bound.capped, bound.zero);
+      rows.size(), mollified.size(), entries.size(), potential, bound.alpha, bound.queries, bound.probes,
+      bound.capped, bound.zero);
   return out ? 0 : 1;
 }

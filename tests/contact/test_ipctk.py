@@ -41,7 +41,9 @@ def read_ply(name):
     vertices = np.frombuffer(body[:n_bytes], real).reshape(-1, 3).astype(float)
     faces = np.frombuffer(body[n_bytes:], [("n", "u1"), ("v", order + "i4", 3)], count[1])
     assert (faces["n"] == 3).all()
-    return vertices, faces["v"].astype(np.int32)
+    # Vertices of no triangle go: the toolkit would pair them with each other.
+    used, corners = np.unique(faces["v"], return_inverse=True)
+    return vertices[used], corners.reshape(-1, 3).astype(np.int32)
 
 
 def probe(tmp_path, rest, x0, x1, faces, d_hat, mollify=True):
@@ -159,27 +161,50 @@ def test_turned_cube_has_none(tmp_path):
 
 def test_bunny(tmp_path):
     x, faces = read_ply("bunny")
-    rows, mollified = compare(tmp_path, x, x, faces, 1e-2 * np.ptp(x, axis=0).max())
-    assert rows > 1000 and mollified > 0
+    rows, mollified = compare(tmp_path, x, x, faces, 1.5e-2 * np.ptp(x, axis=0).max())
+    assert rows > 1000 and mollified > 10
 
 
 def test_cloth_on_ball(tmp_path):
     x, faces = read_ply("cloth_ball92")
-    rows, _ = compare(tmp_path, x, x, faces, 1e-3)
-    assert rows > 1000
+    rows, mollified = compare(tmp_path, x, x, faces, 1e-3)
+    assert rows > 1000 and mollified == 0
 
 
-def test_collision_free_step_of_a_real_time_step(tmp_path):
+def step_bounds(tmp_path, x0, x1, faces, d_hat):
+    """Our collision-free part of the step x0 -> x1 and that of the toolkit's ACCD.
+
+    Asserts that ours is below the exact time: Tight Inclusion, conservative and independent, proves the part before
+    it free of contact. It does not prove one percent more, so the bound is also close to that time.
+    """
+    answer = probe(tmp_path, x0, x0, x1, faces, d_hat)
+    mesh = collision_mesh(x0, faces)
+    theirs = ipctk.compute_collision_free_stepsize(mesh, x0, x1, narrow_phase_ccd=ipctk.AdditiveCCD())
+    exact = ipctk.TightInclusionCCD(tolerance=1e-9, conservative_rescaling=1 - 1e-12)
+    assert answer["capped"] == 0 and answer["zero"] == 0 and answer["queries"] > 0
+    for factor, free in ((1, True), (1.01, False)):
+        end = x0 + factor * answer["alpha"] * (x1 - x0)
+        proven = ipctk.compute_collision_free_stepsize(mesh, x0, end, narrow_phase_ccd=exact)
+        assert (proven == 1) == free, (factor, answer["alpha"], proven)
+    return answer["alpha"], theirs
+
+
+@pytest.mark.parametrize("scale", [1, 1e-5])
+def test_collision_free_step_of_a_real_time_step(tmp_path, scale):
     x0, faces = read_ply("cloth_ball92")
     x1, _ = read_ply("cloth_ball93")
-    # twice the real step, so that something is hit
-    for scale in (1, 2, 10):
-        end = x0 + scale * (x1 - x0)
-        answer = probe(tmp_path, x0, x0, end, faces, 1e-3)
-        mesh = collision_mesh(x0, faces)
-        theirs = ipctk.compute_collision_free_stepsize(mesh, x0, end, narrow_phase_ccd=ipctk.AdditiveCCD())
-        exact = ipctk.compute_collision_free_stepsize(
-            mesh, x0, end, narrow_phase_ccd=ipctk.TightInclusionCCD(tolerance=1e-9, conservative_rescaling=1 - 1e-12))
-        print(scale, answer["alpha"], theirs, exact, answer["queries"], answer["probes"])
-        assert 0.8 * theirs <= answer["alpha"]
-        assert answer["capped"] == 0 and answer["zero"] == 0
+    ours, theirs = step_bounds(tmp_path, x0, x0 + scale * (x1 - x0), faces, 1e-3)
+    assert 0 < theirs < 1
+    assert 0.8 * theirs <= ours < 1
+
+
+@pytest.mark.parametrize("shift", [1e-3, 0.37])
+def test_collision_free_step_of_two_cubes(tmp_path, shift):
+    """One cube through the other, and aside by `shift` of its height."""
+    x0, faces = read_ply("two-cubes-close")
+    upper = x0[:, 1] > x0[:, 1].mean()
+    height = np.ptp(x0[:, 1])
+    x1 = x0 + upper[:, None] * height * np.array([shift, -1, 0.7 * shift])
+    ours, theirs = step_bounds(tmp_path, x0, x1, faces, 1e-2)
+    assert 0 < theirs < 1
+    assert 0.8 * theirs <= ours < 1

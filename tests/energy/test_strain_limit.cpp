@@ -152,6 +152,22 @@ TEST(StrainLimit, StepBoundIsTheLastFeasibleNumber) {
   check_step_bound<double>(rest_state, 1e6 * stretched(1.3, 0.2));
 }
 
+// Where ACCD would stop: at the park level, or at half the start gap of an element already below it.
+TEST(StrainLimit, StepBoundKeepsTheParkLevel) {
+  const TriangleRest<double> rest = rest_triangle<double>();
+  const double park = 1e-3;
+  const auto end_gap = [&](const Vec<double, 9>& from, const Vec<double, 9>& to) {
+    const Points<double, 3> x(from), dx(Vec<double, 9>(to - from));
+    const double alpha = strain_step_bound<3>(rest, x.x, dx.x, band, 1.0, park);
+    EXPECT_LT(alpha, 1);
+    const Points<double, 3> end(Vec<double, 9>(from + alpha * (to - from)));
+    return smallest_strain_gap<3>(rest, end.x, band);
+  };
+  EXPECT_NEAR(end_gap(rest_state, stretched(1.3, 1)), park * band.width, 1e-15);
+  const Vec<double, 9> close = stretched(1 + band.onset + band.width * (1 - 1e-4), 1);
+  EXPECT_NEAR(end_gap(close, stretched(1.3, 1)), 0.5e-4 * band.width, 1e-15);
+}
+
 TEST(StrainLimit, StepBoundOfFreeAndOfInfeasibleSteps) {
   const TriangleRest<double> rest = rest_triangle<double>();
   const auto bound = [&](const Vec<double, 9>& from, const Vec<double, 9>& to) {

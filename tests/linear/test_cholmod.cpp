@@ -1,6 +1,8 @@
 // The sparse Cholesky factor: reuse of the analysis, causes of failure, the BLAS behind it.
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "core/linear/blas_info.hpp"
 #include "core/linear/cholmod_factor.hpp"
 #include "core/linear/linear_solver.hpp"
@@ -53,6 +55,19 @@ TEST(Cholmod, ReusesItsFactorBitForBit) {
   EXPECT_GT(first.norm(), 0);
   EXPECT_GT(factor.factor_nonzeros(), static_cast<double>(system.lower.nonZeros()));
   EXPECT_GT(factor.factor_flops(), 0);
+}
+
+/// CHOLMOD has OpenMP loops of its own, whose pool would spin beside our threads.
+TEST(Cholmod, StartsNoThread) {
+  const auto n_threads = [] {
+    const std::filesystem::directory_iterator tasks("/proc/self/task");
+    return std::distance(begin(tasks), end(tasks));
+  };
+  const ReducedSystem system = grid_system(60, 0.1, 5);
+  const auto before = n_threads();
+  CholmodFactor factor;
+  ASSERT_EQ(factor.factorize(system), LinearStatus::ok);
+  EXPECT_EQ(n_threads(), before);
 }
 
 TEST(Cholmod, CausesOfFailureAreTold) {

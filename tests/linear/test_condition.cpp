@@ -70,7 +70,10 @@ TEST(Condition, Tier2MeetsKnownSpectraWhenLargeAndSparse) {
 }
 
 TEST(Condition, Tier2HoldsForOtherSeeds) {
-  for (std::uint64_t seed = 2; seed < 40; ++seed) {
+  std::vector<std::uint64_t> seeds(38);
+  std::iota(seeds.begin(), seeds.end(), 2);
+  seeds.push_back(892);  // starts almost at a right angle to the wanted eigenvector of "geometric"
+  for (const std::uint64_t seed : seeds) {
     for (const std::string& kind : spectrum_kinds()) {
       const ReducedSystem system = from_dense(with_spectrum(spectrum(kind, 90, 1e4), 4));
       const ConditionEstimate e = estimate(system, 2, Scaling::none, seed);

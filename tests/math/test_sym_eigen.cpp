@@ -1,4 +1,5 @@
-// Jacobi eigenvalues against known spectra, for float and double and all sizes in use.
+// Eigenvalues, by Jacobi (up to 4) and by QL, against known spectra, for float and double and all sizes in
+// use.
 #include "core/math/sym_eigen.hpp"
 
 #include <gtest/gtest.h>
@@ -17,8 +18,9 @@ struct Case {
 };
 template <class C>
 class SymEigen : public testing::Test {};
-using Cases = testing::Types<Case<double, 2>, Case<double, 3>, Case<double, 9>, Case<double, 12>,
-                             Case<float, 2>, Case<float, 3>, Case<float, 12>>;
+using Cases =
+    testing::Types<Case<double, 2>, Case<double, 3>, Case<double, 5>, Case<double, 6>, Case<double, 9>,
+                   Case<double, 12>, Case<float, 2>, Case<float, 3>, Case<float, 12>>;
 TYPED_TEST_SUITE(SymEigen, Cases);
 
 template <class T, int N>
@@ -65,6 +67,37 @@ TYPED_TEST(SymEigen, RankOneZeroAndRepeated) {
   expect_decomposition<T, n>(Mat<T, n, n>::Zero());
   expect_decomposition<T, n>(T(3) * Mat<T, n, n>::Identity());
   expect_decomposition<T, n>(Mat<T, n, n>::Identity() - w * w.transpose() / w.squaredNorm());
+}
+
+/// Blocks that do not meet, and entries on many scales: the tridiagonal matrix splits.
+TYPED_TEST(SymEigen, DiagonalSplitAndGraded) {
+  using T = typename TypeParam::Scalar;
+  constexpr int n = TypeParam::n;
+  std::mt19937 rng(7);
+  Mat<T, n, n> a = random_symmetric<T, n>(rng);
+  expect_decomposition<T, n>(Mat<T, n, n>(a.diagonal().asDiagonal()));
+  Mat<T, n, n> split = a;
+  split.topRightCorner(n / 2, n - n / 2).setZero();
+  split.bottomLeftCorner(n - n / 2, n / 2).setZero();
+  expect_decomposition<T, n>(split);
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) a(i, j) *= std::pow(T(0.1), T(i + j));
+  }
+  expect_decomposition<T, n>(a);
+}
+
+/// As a device would see it: no endless loop, nothing that looks like an answer.
+TYPED_TEST(SymEigen, NonFiniteGivesNonFinite) {
+  using T = typename TypeParam::Scalar;
+  constexpr int n = TypeParam::n;
+  std::mt19937 rng(9);
+  for (const T bad : {std::numeric_limits<T>::quiet_NaN(), std::numeric_limits<T>::infinity()}) {
+    Mat<T, n, n> a = random_symmetric<T, n>(rng), vectors;
+    a(0, n - 1) = a(n - 1, 0) = bad;
+    Vec<T, n> values;
+    sym_eigen<T, n>(a, values, vectors);
+    EXPECT_FALSE(values.allFinite());
+  }
 }
 
 TYPED_TEST(SymEigen, ScaleIsFree) {

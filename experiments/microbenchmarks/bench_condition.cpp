@@ -1,0 +1,99 @@
+// Condition tiers on the matrix of a cloth: what each costs in triangular solves, products and numeric
+// factorisations of the same matrix.
+#include <algorithm>
+
+#include "core/linear/cholmod_factor.hpp"
+#include "core/linear/condition.hpp"
+#include "core/linear/linear_solver.hpp"
+#include "core/record/phase_times.hpp"
+#include "experiments/microbenchmarks/cloth_matrix.hpp"
+#include "experiments/microbenchmarks/microbenchmark.hpp"
+
+namespace bb::bench {
+namespace {
+
+constexpr Scaling kScalings[] = {Scaling::none, Scaling::jacobi, Scaling::block_jacobi};
+
+struct Matrix {
+  Cloth cloth;
+  std::unique_ptr<BlockSystem> blocks;
+  const ReducedSystem* system;
+  double factor_s;  // the fastest of five numeric factorisations
+
+  explicit Matrix(int side) : cloth(side), blocks(cloth.system()) {
+    blocks->set_contacts({cloth.contacts_a.stencils()});
+    system = &cloth.assemble(*blocks, cloth.contacts_a);
+    CholmodFactor factor;
+    factor.factorize(*system);
+    factor_s = factor.factor_s();
+    for (int i = 0; i < 4; ++i) {
+      factor.factorize(*system);
+      factor_s = std::min(factor_s, factor.factor_s());
+    }
+  }
+};
+
+void count(benchmark::State& state, const Matrix& matrix, const ConditionEstimate& estimate, double seconds) {
+  state.counters["solves"] = estimate.solves;
+  state.counters["products"] = estimate.products;
+  state.counters["factorizations"] = estimate.factorizations;
+  state.counters["cond"] = estimate.cond;
+  state.counters["per_factorization"] =
+      benchmark::Counter(seconds / matrix.factor_s, benchmark::Counter::kAvgIterations);
+  state.SetLabel(std::string(to_string(estimate.status)));
+}
+
+/// Tier 0 is what a PCG solve leaves behind: its time is that of the solve.
+void tier0(benchmark::State& state, const std::string& preconditioner) {
+  const Matrix matrix(static_cast<int>(state.range(0)));
+  LinearOptions options;
+  options.name = "pcg";
+  options.preconditioner = preconditioner;
+  const auto solver = make_linear_solver(options);
+  const VecXd b = VecXd::LinSpaced(matrix.system->lower.rows(), -1, 1);
+  VecXd x;
+  double seconds = 0;
+  ConditionEstimate estimate;
+  for (auto _ : state) {
+    const double start = now_s();
+    const LinearReport report = solver->solve(*matrix.system, b, x);
+    estimate = condition_from_ritz(report.ritz_min, report.ritz_max);
+    estimate.products = report.iterations;
+    seconds += now_s() - start;
+  }
+  count(state, matrix, estimate, seconds);
+}
+
+/// The factor is shared with a direct solver's: `per_factorization` includes it, so 1 is the price of the
+/// factor.
+void tier(benchmark::State& state, int number, Scaling scaling) {
+  const Matrix matrix(static_cast<int>(state.range(0)));
+  ConditionEstimator estimator;
+  double seconds = 0;
+  ConditionEstimate estimate = estimator.estimate(*matrix.system, {number, scaling, 1});  // warm-up: analysis
+  for (auto _ : state) {
+    estimate = estimator.estimate(*matrix.system, {number, scaling, 1});
+    seconds += estimate.seconds;
+  }
+  count(state, matrix, estimate, seconds);
+}
+
+}  // namespace
+
+void register_condition() {
+  const auto sizes = [](benchmark::internal::Benchmark* b) {
+    b->ArgName("side")->Arg(16)->Arg(107)->Unit(benchmark::kMillisecond);
+  };
+  for (const std::string_view preconditioner : preconditioners()) {
+    const std::string label(preconditioner);
+    sizes(add("condition/tier:0/" + label, [label](benchmark::State& state) { tier0(state, label); }));
+  }
+  for (const int number : {1, 2}) {
+    for (const Scaling scaling : kScalings) {
+      sizes(add("condition/tier:" + std::to_string(number) + "/" + std::string(to_string(scaling)),
+                [number, scaling](benchmark::State& state) { tier(state, number, scaling); }));
+    }
+  }
+}
+
+}  // namespace bb::bench

@@ -1,0 +1,112 @@
+// One element of every energy: all membrane models of the registry, springs, hinges, the strain limit.
+#include <functional>
+#include <memory>
+#include <vector>
+
+#include "barriers/shapes/registry.hpp"
+#include "core/energy/hinge_batch.hpp"
+#include "core/energy/membrane_batch.hpp"
+#include "core/energy/spring_batch.hpp"
+#include "core/energy/strain_limit_batch.hpp"
+#include "experiments/microbenchmarks/cloth_stack.hpp"
+#include "experiments/microbenchmarks/microbenchmark.hpp"
+
+namespace bb::bench {
+namespace {
+
+/// One sheet of 64 x 64 vertices, strained by about 3 % and bent.
+struct Sheet {
+  Scene scene = cloth_stack(1, 64);
+};
+
+void value(benchmark::State& state, const EnergyBatch& batch, const Positions& x) {
+  std::vector<double> energy(batch.size());
+  for (auto _ : state) {
+    batch.values(x, energy.data());
+    benchmark::DoNotOptimize(energy.data());
+    benchmark::ClobberMemory();
+  }
+  count_items(state, batch.size());
+}
+
+void derivatives(benchmark::State& state, const EnergyBatch& batch, const Positions& x) {
+  LocalTerms terms;
+  for (auto _ : state) {
+    batch.derivatives(x, terms);
+    benchmark::DoNotOptimize(terms.hess.data());
+    benchmark::ClobberMemory();
+  }
+  count_items(state, batch.size());
+}
+
+using MakeBatch = std::function<std::unique_ptr<EnergyBatch>(const Scene&)>;
+
+void register_batch(const std::string& name, const MakeBatch& make) {
+  add("energy/" + name + "/value", [make](benchmark::State& state) {
+    const Sheet sheet;
+    value(state, *make(sheet.scene), sheet.scene.x0);
+  });
+  add("energy/" + name + "/gradient_and_hessian", [make](benchmark::State& state) {
+    const Sheet sheet;
+    derivatives(state, *make(sheet.scene), sheet.scene.x0);
+  });
+}
+
+/// The limit of the sheet with the first shape of the registry; `terms` null for values.
+void strain_limit(benchmark::State& state, bool with_derivatives) {
+  const Sheet sheet;
+  const StrainLimitPart& part = sheet.scene.limit;
+  StrainLimitBatch batch(part.triangles, sheet.scene.rest, part.onset, part.width);
+  const BarrierFunction barrier{shapes().front(), Argument::gap};
+  const std::vector<double> kappa(batch.size(), 1.0);
+  LocalTerms terms;
+  terms.resize(batch.size(), 3);
+  for (auto _ : state) {
+    if (with_derivatives) {
+      batch.derivatives(sheet.scene.x0, barrier, kappa.data(), terms);
+    } else {
+      batch.values(sheet.scene.x0, barrier, kappa.data(), terms.energy.data());
+    }
+    benchmark::DoNotOptimize(terms.energy.data());
+    benchmark::ClobberMemory();
+  }
+  count_items(state, batch.size());
+  state.counters["active"] = static_cast<double>(batch.n_active());
+}
+
+void strain_bound(benchmark::State& state) {
+  const Sheet sheet;
+  const StrainLimitPart& part = sheet.scene.limit;
+  const StrainLimitBatch batch(part.triangles, sheet.scene.rest, part.onset, part.width);
+  const Positions dx = moved(sheet.scene.x0, 2e-3, 2) - sheet.scene.x0;
+  double alpha = 0;
+  for (auto _ : state) {
+    alpha = batch.step_bound(sheet.scene.x0, dx);
+    benchmark::DoNotOptimize(alpha);
+  }
+  count_items(state, batch.size());
+  state.counters["alpha"] = alpha;
+}
+
+}  // namespace
+
+void register_energies() {
+  for (const MembraneModel<double>& model : membrane_models<double>()) {
+    register_batch(std::string(model.name), [name = model.name](const Scene& scene) {
+      const MembranePart& part = scene.membrane;
+      return std::make_unique<MembraneBatch>(name, part.triangles, scene.rest, part.lame_mu,
+                                             part.lame_lambda);
+    });
+  }
+  register_batch("spring", [](const Scene& scene) {
+    return std::make_unique<SpringBatch>(scene.springs.edges, scene.rest, scene.springs.stiffness);
+  });
+  register_batch("hinge", [](const Scene& scene) {
+    return std::make_unique<HingeBatch>(scene.hinges.hinges, scene.hinges.stiffness, scene.hinges.rest_angle);
+  });
+  add("energy/strain_limit/value", [](benchmark::State& state) { strain_limit(state, false); });
+  add("energy/strain_limit/gradient_and_hessian", [](benchmark::State& state) { strain_limit(state, true); });
+  add("energy/strain_limit/step_bound", strain_bound);
+}
+
+}  // namespace bb::bench
