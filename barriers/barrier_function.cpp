@@ -35,8 +35,28 @@ void chain(bool infinite_at_zero, T d, T d_sq, T d_hat_sq, T& b, T& db, T& d2b) 
   b = b / d_hat_sq;
 }
 
+// The article's clamp hides penetration: its log has a constant force below 1e-10, its cubic no curvature.
+template <class T>
+void eval_literal(const Shape& shape, std::size_t n, const T* d, const T* d_hat, T* b, T* db, T* d2b) {
+  constexpr std::size_t chunk = 128;
+  const T lowest = shape.infinite_at_zero ? T(1e-10) : std::numeric_limits<T>::lowest();
+  T clamped[chunk];
+  for (std::size_t start = 0; start < n; start += chunk) {
+    const std::size_t m = std::min(chunk, n - start);
+    for (std::size_t i = 0; i < m; ++i) clamped[i] = std::max(d[start + i], lowest);
+    call(shape, m, clamped, d_hat + start, b + start, db + start, d2b + start);
+    for (std::size_t i = start; i < start + m; ++i) {
+      if (!shape.infinite_at_zero && d[i] <= 0) d2b[i] = 0;
+    }
+  }
+}
+
 template <class T>
 void eval_batch(const BarrierFunction& fn, std::size_t n, const T* d, const T* d_hat, T* b, T* db, T* d2b) {
+  if (fn.literal) {
+    eval_literal(fn.shape, n, d, d_hat, b, db, d2b);
+    return;
+  }
   if (fn.argument == Argument::gap) {
     call(fn.shape, n, d, d_hat, b, db, d2b);
     return;

@@ -1,4 +1,4 @@
-"""Work of a run: Newton iterations of each step, their distribution, and PCG iterations of each solve."""
+"""Work of a run: Newton iterations of each step, their distribution, and PCG iterations on each diagnosed matrix."""
 
 from __future__ import annotations
 
@@ -32,15 +32,16 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
             style.draw(axes[0], steps["step"].to_numpy(), newton, row)
             style.draw(axes[1], *_ecdf(newton), row)
             numbers.append(pd.DataFrame({"what": "newton_per_step", "series": row["series"], "at": steps["step"], "count": newton}))
-        if not trace.empty and (trace["linear_iterations"] > 0).any():
-            pcg = trace["linear_iterations"].to_numpy()
+        probes = trace[trace["probe_pcg_iterations"].notna()] if not trace.empty else trace
+        if not probes.empty:
+            pcg = probes["probe_pcg_iterations"].to_numpy(dtype=float)
             style.draw(axes[2], *_ecdf(pcg), row)
-            numbers.append(pd.DataFrame({"what": "pcg_per_solve", "series": row["series"], "at": trace["n"], "count": pcg}))
+            numbers.append(pd.DataFrame({"what": "probe_pcg", "series": row["series"], "at": probes["n"], "count": pcg}))
     axes[0].set(xlabel="time step", ylabel="Newton iterations")
     axes[1].set(xlabel="Newton iterations of a step", ylabel="share of steps", ylim=(0, 1.02))
-    axes[2].set(xlabel="PCG iterations of a solve", ylabel="share of solves", ylim=(0, 1.02))
+    axes[2].set(xlabel="block-Jacobi PCG iterations to 1e-6", ylabel="share of matrices", ylim=(0, 1.02))
     if not axes[2].lines:
-        style.not_measured(axes[2], "direct solver")
+        style.not_measured(axes[2])
     fig.suptitle(f"{group}: every step, every solve", fontsize=8)
     style.legend_below(fig, axes[0])
     columns = ["group", "what", "series", "at", "count"]

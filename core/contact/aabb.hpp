@@ -22,12 +22,13 @@ struct Aabb {
     hi = hi.cwiseMax(b.hi);
   }
   /// Grows by `margin` on every side and by what rounding may have lost: points of a swept segment are
-  /// themselves rounded, so two units in the last place rather than one.
+  /// themselves rounded, as is the sum here; four units in the last place are more than both.
   void inflate(double margin) {
-    constexpr double inf = std::numeric_limits<double>::infinity();
+    constexpr double ulps = 4 * std::numeric_limits<double>::epsilon();
+    constexpr double least = std::numeric_limits<double>::min();  // where an ulp is no fraction of the number
     for (int k = 0; k < 3; ++k) {
-      lo[k] = std::nextafter(std::nextafter(lo[k] - margin, -inf), -inf);
-      hi[k] = std::nextafter(std::nextafter(hi[k] + margin, inf), inf);
+      lo[k] -= margin + (ulps * (std::abs(lo[k]) + margin) + least);
+      hi[k] += margin + (ulps * (std::abs(hi[k]) + margin) + least);
     }
   }
   bool overlaps(const Aabb& b) const {

@@ -63,15 +63,16 @@ int Bvh::split(int begin, int end) {
 }
 
 void Bvh::refit() {
+  ordered_boxes_.resize(boxes_.size());
+  for (std::size_t i = 0; i < order_.size(); ++i) ordered_boxes_[i] = box(order_[i]);
   for (std::size_t k = nodes_.size(); k-- > 0;) {  // children come after their parent
     Node& node = nodes_[k];
     node.box = Aabb{};
     node.any_free = false;
     if (node.right < 0) {
       for (int i = node.begin; i < node.end; ++i) {
-        const int p = order_[static_cast<std::size_t>(i)];
-        node.box.add(box(p));
-        node.any_free = node.any_free || is_free(p);
+        node.box.add(box_in_order(i));
+        node.any_free = node.any_free || is_free(order_[static_cast<std::size_t>(i)]);
       }
     } else {
       const Node &left = nodes_[k + 1], &right = nodes_[static_cast<std::size_t>(node.right)];

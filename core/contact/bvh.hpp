@@ -35,6 +35,8 @@ class Bvh {
   const std::vector<Node>& nodes() const { return nodes_; }
   const std::vector<int>& order() const { return order_; }
   const Aabb& box(int primitive) const { return boxes_[static_cast<std::size_t>(primitive)]; }
+  /// box(order()[i]), from a column in the order of the leaves.
+  const Aabb& box_in_order(int i) const { return ordered_boxes_[static_cast<std::size_t>(i)]; }
   bool is_free(int primitive) const { return free_[static_cast<std::size_t>(primitive)] != 0; }
   int builds() const { return builds_; }
   /// Nodes of at most `size` primitives that together hold all: the units of parallel work.
@@ -46,7 +48,7 @@ class Bvh {
   void refit();
   double looseness() const;
 
-  std::vector<Aabb> boxes_;
+  std::vector<Aabb> boxes_, ordered_boxes_;
   std::vector<std::uint8_t> free_;
   std::vector<int> order_;
   std::vector<Node> nodes_;  // preorder
@@ -81,8 +83,8 @@ void subtree_pairs(const Bvh& a, int start, const Bvh& b, const Keep& keep, std:
       for (int i = na.begin; i < na.end; ++i) {
         for (int j = self && nb.begin <= i ? i + 1 : nb.begin; j < nb.end; ++j) {
           IndexPair pair{a.order()[static_cast<std::size_t>(i)], b.order()[static_cast<std::size_t>(j)]};
+          if (!a.box_in_order(i).overlaps(b.box_in_order(j))) continue;
           if (!(a.is_free(pair.first) || b.is_free(pair.second))) continue;
-          if (!a.box(pair.first).overlaps(b.box(pair.second))) continue;
           if (self && pair.first > pair.second) std::swap(pair.first, pair.second);
           if (keep(pair)) out.push_back(pair);
         }

@@ -66,6 +66,12 @@ class StrainLimitBatch {
  private:
   template <class Barrier>
   void evaluate(const Barrier& barrier) {
+    if constexpr (requires { barrier.literal; }) {
+      if (barrier.literal) {
+        barrier.eval(gap_.size(), gap_.data(), width_.data(), b_.data(), db_.data(), d2b_.data());
+        return;
+      }
+    }
     for (std::size_t i = 0; i < gap_.size(); ++i) shape_gap_[i] = gap_[i] > 0 ? gap_[i] : width_[i];
     barrier.eval(gap_.size(), shape_gap_.data(), width_.data(), b_.data(), db_.data(), d2b_.data());
     constexpr double infinity = std::numeric_limits<double>::infinity();

@@ -68,7 +68,7 @@ ConditionEstimate condition_from_ritz(double ritz_min, double ritz_max) {
   e.lambda_min = ritz_min;
   e.lambda_max = ritz_max;
   e.status = ConditionStatus::lower_bound;
-  if (ritz_max <= 1e14 * ritz_min) e.cond = ritz_max / ritz_min;
+  e.cond = std::min(ritz_max / ritz_min, largest_known_cond);
   return e;
 }
 

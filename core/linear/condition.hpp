@@ -17,6 +17,9 @@ enum class ConditionStatus { ok, lower_bound, singular, not_pd, not_converged };
 std::string_view to_string(ConditionStatus status);
 std::string_view to_string(Scaling scaling);
 
+/// Beyond it rounding decides lambda_min: such a matrix has this cond, as a lower bound.
+inline constexpr double largest_known_cond = 1e14;
+
 struct ConditionEstimate {
   double lambda_min = 0, lambda_max = 0, cond = 0;  // NaN where unknown
   ConditionStatus status = ConditionStatus::ok;

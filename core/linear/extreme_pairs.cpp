@@ -186,7 +186,8 @@ void classify(ConditionEstimate& e, bool resolved) {
     // Entries of A are known to eps |A|: a smaller eigenvalue has no sign of its own.
     const bool negative = e.lambda_min < -1e-14 * std::abs(e.lambda_max) || e.lambda_max < 0;
     e.status = negative ? ConditionStatus::not_pd : ConditionStatus::singular;
-  } else if (e.lambda_max > 1e14 * e.lambda_min) {
+  } else if (e.lambda_max > largest_known_cond * e.lambda_min) {
+    e.cond = largest_known_cond;
     e.status = ConditionStatus::lower_bound;
   } else {
     e.cond = std::max(1.0, e.lambda_max / e.lambda_min);

@@ -28,7 +28,7 @@ ConditionEstimate estimate_tier1(FactoredMatrix& matrix, const BlockScaling& sca
 ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed);
 
 /// cond and status from both ends; `resolved` is false where an end is only a bound.
-/// Above 1e14 cond is NaN and the status lower_bound; below the rounding of the entries of A it is singular.
+/// Above 1e14 cond is 1e14 and the status lower_bound; below the rounding of the entries of A it is singular.
 void classify(ConditionEstimate& estimate, bool resolved);
 
 }  // namespace bb

@@ -44,6 +44,7 @@ BB_HD inline void orthogonalise_columns(Mat<T, M, N>& w, Mat<T, N, N>& v) {
         if (w.col(p).squaredNorm() < w.col(q).squaredNorm()) {  // a quarter turn: swaps, stays a rotation
           rotate_columns(w, p, q, T(0), T(-1));
           rotate_columns(v, p, q, T(0), T(-1));
+          rotated = true;  // pairs seen before in this sweep are others now
         }
         const T pp = w.col(p).squaredNorm(), qq = w.col(q).squaredNorm(), pq = w.col(p).dot(w.col(q));
         if (!(abs(pq) > eps * sqrt(pp) * sqrt(qq))) continue;
@@ -135,7 +136,10 @@ BB_HD inline Svd33<T> svd_3x3(const Mat<T, 3, 3>& F) {
   const Vec<T, 3> u1 = detail::direction_or(second, detail::any_perpendicular(u0), s1);
   const Vec<T, 3> u2 = accurate_cross(u0, u1);
   out.U << u0, u1, u2;
-  out.sigma << s0 * scale, s1 * scale, u2.dot(w.col(2)) * scale;
+  s1 = s1 > s0 ? s0 : s1;  // ties keep their order whatever the rounding
+  T s2 = u2.dot(w.col(2));
+  s2 = s2 > s1 ? s1 : (s2 < -s1 ? -s1 : s2);
+  out.sigma << s0 * scale, s1 * scale, s2 * scale;
   return out;
 }
 

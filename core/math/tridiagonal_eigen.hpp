@@ -83,8 +83,9 @@ BB_HD inline void ql_sweep(int first, int last, Vec<T, N>& d, Vec<T, N>& e, Mat<
       e[last] = 0;
       return;
     }
-    s = f / r;
-    c = g / r;
+    const T inverse = 1 / r;
+    s = f * inverse;
+    c = g * inverse;
     const T shifted = d[i + 1] - p, h = (d[i] - shifted) * s + 2 * c * b;
     p = s * h;
     d[i + 1] = shifted + p;

@@ -109,7 +109,9 @@ void measure_end(NewtonSystem& system, StepReport& step) {
   }
   step.max_stretch = system.max_stretch();
   step.limit_tension_max = system.limit_tension_max();
-  if (step.status != StepStatus::converged) step.overload = system.overload();
+  if (step.status == StepStatus::converged) return;
+  step.overload = system.contact_overload();
+  step.limit_overload = system.limit_overload();
 }
 
 }  // namespace bb

@@ -185,6 +185,15 @@ LinearReport NewtonSystem::solve(const Positions& target, Positions& dx, PhaseTi
   return report;
 }
 
+double NewtonSystem::add_tikhonov(double relative, double absolute) {
+  const ReducedSystem& reduced = blocks_->reduce(full_);
+  const double mean = reduced.lower.diagonal().sum() / static_cast<double>(reduced.lower.rows());
+  const double eps = std::max(relative * mean, absolute);
+  blocks_->add_diagonal(std::vector<double>(scene_.mass.size(), eps));
+  full_ = blocks_->values();
+  return eps;
+}
+
 bool NewtonSystem::has_stage(MatrixStage stage) const {
   switch (stage) {
     case MatrixStage::full:
@@ -207,33 +216,6 @@ const ReducedSystem& NewtonSystem::reduced(MatrixStage stage) {
       return blocks_->reduce(no_limit_);
   }
   return blocks_->reduce(full_);
-}
-
-// Largest |b'(d)| over 0 <= d < d_hat for kappa = 1, m. Sampled: on the squared argument the force has its
-// maximum inside the interval (at d_hat/sqrt(5) for the cubic), on the gap at 0.
-double NewtonSystem::contact_force_limit(double d_hat) const {
-  double largest = 0;
-  for (int i = 0; i < 64; ++i) largest = std::max(largest, -method_.contact.eval(d_hat * i / 64, d_hat).db);
-  return largest;
-}
-
-double NewtonSystem::overload() const {
-  if (method_.contact.shape.infinite_at_zero) return 0;
-  const ContactTable& rows = state_.rows;
-  const Positions rest = gradient_ - contact_gradient_;  // what contact has to balance
-  double largest = 0;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
-    double push = 0, weight_sq = 0;
-    for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {
-      const double weight = rows.weight[4 * r + k];
-      push += weight * normal.dot(rest.col(rows.vertex[4 * r + k]));
-      weight_sq += weight * weight;
-    }
-    const double capacity = rows.multiplicity[r] * rows.kappa[r] * contact_force_limit(rows.d_hat[r]);
-    largest = std::max(largest, push / weight_sq / capacity);
-  }
-  return largest;
 }
 
 }  // namespace bb

@@ -106,7 +106,7 @@ void NewtonSystem::evaluate_elements(EnergyState& state) const {
   for (std::size_t i = 0; i < elements_.size(); ++i) elements_[i]->values(state.x, state.element[i].data());
   if (limit_) {
     limit_->values(state.x, method_.limit, limit_kappa_.data(), state.limit.data());
-    state.feasible = state.feasible && limit_->min_gap() > 0;
+    state.feasible = state.feasible && (method_.limit.literal || limit_->min_gap() > 0);
   }
 }
 
@@ -146,7 +146,8 @@ std::optional<EnergyChange> NewtonSystem::try_state(const Positions& x, PhaseTim
   {
     const ScopedPhase timer(times, Phase::contact_rows);
     trial_.gap_min = contacts_.find_rows(x, trial_.rows, trial_.mollified);
-    if (!(trial_.gap_min > 0)) return std::nullopt;
+    const bool anywhere = method_.contact.literal && std::isfinite(trial_.x.sum());
+    if (!(trial_.gap_min > 0) && !anywhere) return std::nullopt;
   }
   {
     const ScopedPhase timer(times, Phase::stiffness);

@@ -45,6 +45,9 @@ class NewtonSystem {
   void sweep(const Positions& x1, PhaseTimes& times);
   StepBound contact_bound(const Positions& x1, PhaseTimes& times) const;
   double limit_bound(const Positions& dx, PhaseTimes& times) const;
+  /// Adds eps I to the assembled matrix, eps = max(relative trace / n, absolute); returns eps. What observers
+  /// saw before is without it.
+  double add_tikhonov(double relative, double absolute);
   /// Evaluates E at x with kappa frozen. Returns the change against state(); an infeasible x has no change.
   std::optional<EnergyChange> try_state(const Positions& x, PhaseTimes& times);
   /// Makes the last tried state the current one.
@@ -67,8 +70,10 @@ class NewtonSystem {
   double max_stretch() const;
   /// Largest (1/area) dS_e/dsigma over limited elements, N/m.
   double limit_tension_max() const;
-  /// Largest estimated load over capacity (m kappa max|b'|) over rows; 0 when nothing is bounded.
-  double overload() const;
+  /// Largest estimated load over capacity, over contact rows and over limited elements; 0 when the barrier is
+  /// unbounded.
+  double contact_overload() const;
+  double limit_overload() const;
   const ReducedSystem& reduced(MatrixStage stage);
   bool has_stage(MatrixStage stage) const;
   void keep_stages(bool keep) { keep_stages_ = keep; }
@@ -89,7 +94,6 @@ class NewtonSystem {
   void refresh_limit_stiffness();
   void assemble_matrix();
   void fill_contact_terms();
-  double contact_force_limit(double d_hat) const;
   void gather_gradient();
   void lift(const Positions& dx, Positions& rhs) const;
 

@@ -48,7 +48,8 @@ struct StepReport {
   double gap_min = 0;            // m
   double force_max = 0;          // N, largest kappa |b'| per unit multiplicity at the end of the step
   double limit_tension_max = 0;  // N/m, largest (1/area) dS_e/dsigma
-  double overload = 0;           // largest load / capacity over rows; 0 when capacity is unbounded
+  double overload = 0;           // of a step without progress: largest load / capacity over contact rows,
+  double limit_overload = 0;     // and over limited elements; 0 when the capacity is unbounded
   double max_stretch = 0;
   double kinetic_energy = 0;  // J
   PhaseTimes times;

@@ -113,6 +113,8 @@ void put_step_contact(Json& j, const StepRecord& v) {
   put(j, "contact_load_max_N", v.contact_load_max_N);
   put(j, "contact_load_sum_N", v.contact_load_sum_N);
   put(j, "limit_load_max_N_per_m", v.limit_load_max_N_per_m);
+  put(j, "contact_overload", v.contact_overload);
+  put(j, "limit_overload", v.limit_overload);
 }
 
 void put_step_energy(Json& j, const StepRecord& v) {
@@ -211,6 +213,7 @@ Json summary(const Summary& v) {
             {"not_pd", v.not_pd},
             {"newton_per_step", stats(v.newton_per_step)},
             {"linear_per_solve", stats(v.linear_per_solve)},
+            {"probe_pcg", stats(v.probe_pcg)},
             {"contacts", stats(v.contacts)},
             {"gap_min_rel", stats(v.gap_min_rel)}};
   put(j, "gap_min_m", v.gap_min_m);

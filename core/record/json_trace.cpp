@@ -44,6 +44,7 @@ void put_linear(Json& j, const TraceRow& row) {
   put(j, "residual_recurrence", row.residual_recurrence);
   put(j, "ritz_min", row.ritz_min);
   put(j, "ritz_max", row.ritz_max);
+  put(j, "probe_pcg_iterations", row.probe_pcg_iterations);
   j["n_free"] = row.n_free;
   j["nnz"] = row.nnz;
   j["analyzed"] = row.analyzed;

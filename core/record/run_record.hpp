@@ -93,6 +93,7 @@ struct StepRecord {
   Number max_stretch;      // largest sigma - 1 over the accepted states
   Number kappa_min_N_per_m, kappa_max_N_per_m;
   Number contact_load_max_N, limit_load_max_N_per_m, contact_load_sum_N;
+  Number contact_overload, limit_overload;  // load / capacity of a step that made no progress
   Number kinetic_J, elastic_J, limit_J, contact_J, gravity_J;  // at the end of the step
   long long crossings = 0, violations = 0, unproven = 0, inverted = 0;
   PhaseTimes time;
@@ -152,10 +153,11 @@ struct Summary {
   int steps = 0, steps_capped = 0;
   long long newton_iterations = 0, linear_iterations = 0, linear_solves = 0, factorizations = 0, analyses = 0;
   long long line_search_trials = 0, ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, not_pd = 0;
-  Stats newton_per_step, linear_per_solve, contacts, gap_min_rel;
+  Stats newton_per_step, linear_per_solve, probe_pcg, contacts, gap_min_rel;
   Number gap_min_m, max_stretch, contact_load_max_N, limit_load_max_N_per_m;
   StiffnessRecord stiffness;
-  /// log10 of cond over the run, key "<stage>/<scaling>"; statuses other than ok are counted, not averaged.
+  /// log10 of cond over the run, key "<stage>/<scaling>"; lower bounds (1e14 at most) are
+  /// among the numbers, estimates without one are only counted.
   struct Conditioning {
     Stats log10_cond, log10_lambda_min, log10_lambda_max;
     std::map<std::string, int> statuses;

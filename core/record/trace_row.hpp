@@ -53,6 +53,7 @@ struct TraceRow {
   std::string linear_status = "ok";
   int linear_iterations = 0;
   Number residual_true, residual_recurrence;  // |b - A x| / |b|
+  Number probe_pcg_iterations;                // of block-Jacobi PCG on this matrix, fixed right-hand side
   Number ritz_min, ritz_max;                  // of the preconditioned matrix
   std::size_t n_free = 0, nnz = 0;            // degrees of freedom, entries of the lower triangle
   bool analyzed = false;                      // a symbolic analysis was done here

@@ -1,16 +1,16 @@
 #include <fmt/format.h>
 
-#include <filesystem>
 #include <functional>
-#include <set>
 
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
+#include "core/energy/membrane_model.hpp"
 #include "core/integrators/registry.hpp"
+#include "core/linear/linear_solver.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
 #include "experiments/cli/verbs.hpp"
-#include "experiments/config/parse.hpp"
+#include "experiments/config/presets.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb::cli {
@@ -20,15 +20,6 @@ template <class Entries>
 void print_entries(const char* title, const Entries& entries) {
   fmt::print("{}\n", title);
   for (const auto& entry : entries) fmt::print("  {:<22} {}\n", entry.name, entry.doc);
-}
-
-void print_formulations() {
-  fmt::print("formulations\n");
-  std::set<std::string> names;
-  for (const auto& file : std::filesystem::directory_iterator(configs_folder() + "/formulations")) {
-    names.insert(file.path().stem().string());
-  }
-  for (const std::string& name : names) fmt::print("  {}\n", name);
 }
 
 struct Section {
@@ -45,7 +36,9 @@ int list(const std::string& what) {
       {"integrators", [] { print_entries("integrators", integrators()); }},
       {"step_solvers", [] { print_entries("step_solvers", step_solvers()); }},
       {"scenes", [] { print_entries("scenes", procedural_scenes()); }},
-      {"formulations", print_formulations},
+      {"linear_solvers", [] { print_entries("linear_solvers", linear_solvers()); }},
+      {"membranes", [] { print_entries("membranes", membrane_models<double>()); }},
+      {"formulations", [] { print_entries("formulations", formulation_presets()); }},
   };
   bool known = what == "all";
   std::string names = "all";

@@ -23,7 +23,9 @@ std::string number_text(const Number& number, const char* format) {
 std::string cond_text(const RunRecord& record, const std::string& key) {
   const auto found = record.summary.cond.find(key);
   if (found == record.summary.cond.end() || !found->second.log10_cond.max.finite()) return "-";
-  return fmt::format("1e{:.2f}", found->second.log10_cond.max.value);
+  const auto& statuses = found->second.statuses;
+  const bool bounded = statuses.contains("lower_bound") || statuses.contains("singular");
+  return fmt::format("{}1e{:.2f}", bounded ? ">" : "", found->second.log10_cond.max.value);
 }
 
 }  // namespace

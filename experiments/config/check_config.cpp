@@ -19,14 +19,29 @@ struct Complain {
 
 void check_step_solver(const RunConfig& config, const Complain& complain) {
   const StepSolverConfig& solver = config.step_solver;
-  if (solver.name == "accumulated_toi" && config.integrator != "implicit_euler") {
+  const bool literal = solver.name == "article_literal";
+  if ((solver.name == "accumulated_toi" || literal) && config.integrator != "implicit_euler") {
     complain("/integrator/name", '"' + config.integrator + '"',
-             "implicit_euler: the step solver is accumulated_toi");
+             "implicit_euler: the step solver is " + solver.name);
+  }
+  if (literal && config.formulation.argument != Argument::gap) {
+    complain("/formulation/argument", "\"squared_gap\"", "gap: the step solver is article_literal");
+  }
+  if (literal && config.strain_limit.argument != Argument::gap) {
+    complain("/strain_limit/argument", "\"squared_gap\"", "gap: the step solver is article_literal");
   }
   if (solver.name == "accumulated_toi" && solver.min_newton_steps > solver.max_iterations) {
     complain("/step_solver/min_newton_steps", fmt::format("{}", solver.min_newton_steps),
              fmt::format("an integer <= max_iterations = {}", solver.max_iterations));
   }
+}
+
+/// kappa of ipc_adaptive starts from the inertia of the contacts, which a quasi-static step does not have.
+void check_policy(const RunConfig& config, const Complain& complain) {
+  if (config.integrator != "quasi_static" || config.formulation.stiffness_policy.name != "ipc_adaptive")
+    return;
+  complain("/formulation/stiffness_policy/name", "\"ipc_adaptive\"",
+           "another policy: it needs inertia, and the integrator is quasi_static");
 }
 
 /// Above this tolerance nothing falls: the first Newton step is already below it.
@@ -59,6 +74,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
                           std::vector<Violation>& violations) {
   const Complain complain{source, violations};
   check_step_solver(config, complain);
+  check_policy(config, complain);
   check_tolerance(config, complain);
   check_protocol(config, complain);
   if (config.passes.diagnose && config.diagnose.tier == 0 && config.linear_solver.name != "pcg") {

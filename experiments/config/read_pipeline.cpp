@@ -46,11 +46,8 @@ double default_tolerance(const RunConfig& config) {
 
 void read_step_solver(const json& section, const Reader& reader, bool literal, RunConfig& config) {
   StepSolverConfig& out = config.step_solver;
-  std::vector<std::string> names = step_solver_names;
-  if (std::find(names.begin(), names.end(), "article_literal") == names.end())
-    names.emplace_back("article_literal");
-  out.name =
-      read_name(section, literal ? "article_literal" : "line_search", names, "/step_solver/name", reader);
+  out.name = read_name(section, literal ? "article_literal" : "line_search", step_solver_names,
+                       "/step_solver/name", reader);
   out.max_iterations = section.value("max_iterations", out.max_iterations);
   out.tol_velocity = section.value("tol_velocity_m_per_s", default_tolerance(config));
   out.armijo = section.value("armijo", out.armijo);
@@ -79,6 +76,7 @@ void read_diagnose(const json& section, DiagnoseConfig& out) {
   out.every = section.value("every", out.every);
   out.stages = section.value("stages", out.stages);
   out.seed = section.value("seed", out.seed);
+  out.pcg = section.value("pcg", out.pcg);
   out.budget = section.value("budget_s", out.budget);
 }
 

@@ -121,6 +121,7 @@ struct DiagnoseConfig {
   int every = 1;                               // Newton iterations
   std::vector<std::string> stages = {"full"};  // full, without_contact, without_contact_and_limit
   std::uint64_t seed = 1;                      // of the start vector
+  bool pcg = true;                             // probe every diagnosed matrix with block-Jacobi PCG
   double budget = 0;                           // s over the whole run, 0: no bound
 };
 

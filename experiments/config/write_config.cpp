@@ -170,8 +170,9 @@ json to_json(const DiagnoseConfig& diagnose) {
                        : scaling == Scaling::jacobi ? "jacobi"
                                                     : "block_jacobi");
   }
-  return {{"tier", diagnose.tier},     {"scalings", scalings},  {"every", diagnose.every},
-          {"stages", diagnose.stages}, {"seed", diagnose.seed}, {"budget_s", diagnose.budget}};
+  return {{"tier", diagnose.tier},      {"scalings", scalings},  {"every", diagnose.every},
+          {"stages", diagnose.stages},  {"seed", diagnose.seed}, {"pcg", diagnose.pcg},
+          {"budget_s", diagnose.budget}};
 }
 
 }  // namespace

@@ -92,8 +92,8 @@ double Query::checked(const json& value, const std::string& where, const Range& 
   if (value.is_number()) {
     const double exact = value.get<double>();
     const double v = single_ ? static_cast<double>(static_cast<float>(exact)) : exact;
-    if (range.contains(v)) return v;
-    const bool lost = range.contains(exact);  // in range as double, not as float
+    if (range.contains(v)) return v == 0 ? 0 : v;  // -0 is the number 0
+    const bool lost = range.contains(exact);       // in range as double, not as float
     complain(where, shown(value), std::string(range.text) + (lost ? " after rounding to float" : ""));
   } else {
     complain(where, shown(value), range.text);

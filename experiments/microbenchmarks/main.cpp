@@ -18,7 +18,7 @@ int main(int argc, char** argv) {
   benchmark::AddCustomContext("threads", std::to_string(tbb::info::default_concurrency()));
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  benchmark::RunSpecifiedBenchmarks();
+  const std::size_t n_matching = benchmark::RunSpecifiedBenchmarks();
   benchmark::Shutdown();
-  return 0;
+  return n_matching > 0 ? 0 : 2;
 }

@@ -69,6 +69,7 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
     method.limit = {require_shape(config.strain_limit.shape), config.strain_limit.argument};
     method.limit_stiffness = limit_policy(config.strain_limit.stiffness_policy, calibration);
   }
+  method.contact.literal = method.limit.literal = config.step_solver.name == "article_literal";
   method.hessian_mode = config.contact.hessian_mode;
   method.contact_options.mollifier = config.contact.mollifier;
   method.contact_options.ccd_park = config.contact.ccd_park;

@@ -2,14 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace bb {
 namespace {
 
-// No progress: because some contact carries more than its barrier can, or for another reason.
+// No progress: because some contact or limited element carries more than its barrier can, or for another
+// reason.
 Verdict stalled(const StepReport& step) {
-  if (step.overload > 1) {
-    return {Outcome::stall_overload, fmt::format("step {}: load over capacity {:.3g} at a contact; {}",
-                                                 step.step, step.overload, step.detail)};
+  const double worst = std::max(step.overload, step.limit_overload);
+  if (worst > 1) {
+    return {Outcome::stall_overload,
+            fmt::format("step {}: load over capacity {:.3g} {}; {}, {} iterations {}", step.step, worst,
+                        step.overload >= step.limit_overload ? "at a contact" : "of the strain limit",
+                        to_string(step.status), step.iterations, step.detail)};
   }
   if (step.ccd_capped > 0 && step.status == StepStatus::step_collapse) {
     return {Outcome::ccd_cap,

@@ -5,6 +5,7 @@
 
 #include "core/newton/newton_system.hpp"
 #include "experiments/run/audit_mesh.hpp"
+#include "experiments/run/step_record.hpp"
 
 namespace bb {
 namespace {
@@ -18,12 +19,6 @@ constexpr StageName stage_names[] = {{"full", MatrixStage::full},
                                      {"without_contact_and_limit", MatrixStage::no_contact_no_limit}};
 
 Number gap_number(double gap) { return std::isinf(gap) ? Number::missing("no_contacts") : Number(gap); }
-
-double sum_of(const std::vector<double>& values) {
-  double sum = 0;
-  for (const double value : values) sum += value;
-  return sum;
-}
 
 // Smallest d/d_hat over the rows; infinity without rows.
 double smallest_relative_gap(const EnergyState& state) {
@@ -42,8 +37,9 @@ void keep_smaller(Number& kept, double value) {
 
 }  // namespace
 
-Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace)
-    : config_(config), record_(record), trace_(trace) {
+Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace,
+                   ArtifactWriter* artifacts)
+    : config_(config), record_(record), trace_(trace), artifacts_(artifacts), probe_(config.diagnose.seed) {
   record_.audit.enabled = config.passes.audit;
   if (config.passes.audit) {
     audit_ = std::make_unique<audit::Audit>(make_audit_mesh(scene));
@@ -68,6 +64,7 @@ bool Recorder::due(int, int iteration) const {
 
 void Recorder::on_matrix(NewtonSystem& system, int step, int iteration) {
   samples_.clear();
+  probed_ = Number::missing("not_due");
   if (!due(step, iteration)) return;
   const double start = now_s();
   for (const std::string& name : config_.diagnose.stages) {
@@ -84,6 +81,9 @@ void Recorder::on_matrix(NewtonSystem& system, int step, int iteration) {
       samples_.push_back(sample);
     }
   }
+  if (artifacts_ && config_.output.matrices)
+    artifacts_->matrix(system.reduced(MatrixStage::full), step, iteration);
+  if (config_.diagnose.pcg) probed_ = probe_.iterations(system.reduced(MatrixStage::full));
   condition_s_ += now_s() - start;
 }
 
@@ -109,6 +109,7 @@ TraceRow Recorder::trace_row(const IterationReport& report) const {
       iterative ? Number(report.linear.residual_recurrence) : Number::missing("direct_solver");
   row.ritz_min = iterative ? Number(report.linear.ritz_min) : Number::missing("direct_solver");
   row.ritz_max = iterative ? Number(report.linear.ritz_max) : Number::missing("direct_solver");
+  row.probe_pcg_iterations = probed_;
   row.analyzed = report.linear.analyzed;
   row.cond = samples_;
   row.contacts = report.contacts;
@@ -136,12 +137,13 @@ void Recorder::on_iteration(const IterationReport& report) {
         std::string(to_string(sample.stage)) + "/" + std::string(to_string(sample.scaling));
     auto& summary = record_.summary.cond[key];
     ++summary.statuses[std::string(to_string(sample.estimate.status))];
-    if (sample.estimate.status != ConditionStatus::ok) continue;
+    if (!std::isfinite(sample.estimate.cond)) continue;
     log10_cond_[key].push_back(std::log10(sample.estimate.cond));
     log10_min_[key].push_back(std::log10(sample.estimate.lambda_min));
     log10_max_[key].push_back(std::log10(sample.estimate.lambda_max));
   }
   samples_.clear();
+  if (probed_.finite()) probes_.push_back(probed_.value);
   linear_.push_back(report.linear.iterations);
   keep_smaller(step_gap_, report.gap_min);
   keep_smaller(step_gap_rel_, report.gap_min_rel);
@@ -155,41 +157,14 @@ void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
   judge(x1, step);
 }
 
-void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions&) {
-  const EnergyState& state = system.state();
-  StepRecord step;
-  step.step = report.step;
-  step.t_s = report.t;
-  step.status = std::string(to_string(report.status));
-  step.stop_reason = report.detail;
-  step.newton_iterations = report.iterations;
-  step.linear_iterations = report.linear_iterations;
-  step.linear_solves = report.iterations;
-  step.factorizations = report.factorizations;
-  step.analyses = report.analyses;
-  step.line_search_trials = report.line_search_trials;
-  step.rounding_accepts = report.accepted_by_rounding;
-  step.ccd_queries = report.ccd_queries;
-  step.ccd_probes = report.ccd_probes;
-  step.ccd_capped = report.ccd_capped;
-  step.ccd_zero = report.ccd_zero;
-  step.contacts = report.contacts;
+void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
+  const int every = config_.output.frames_every;
+  if (artifacts_ && every > 0 && report.step % every == 0) artifacts_->frame(x, report.step);
+  StepRecord step = step_record(system, report);
   keep_smaller(step_gap_, report.gap_min);
-  keep_smaller(step_gap_rel_, smallest_relative_gap(state));
+  keep_smaller(step_gap_rel_, smallest_relative_gap(system.state()));
   step.gap_min_m = step_gap_.finite() ? step_gap_ : Number::missing("no_contacts");
   step.gap_min_rel = step_gap_rel_.finite() ? step_gap_rel_ : Number::missing("no_contacts");
-  step.toi_min = report.alpha_ccd_min;
-  step.max_stretch = report.max_stretch > 0 ? Number(report.max_stretch - 1) : Number::missing("no_limit");
-  const bool touching = report.contacts.total() > 0;
-  step.contact_load_max_N = touching ? Number(report.force_max) : Number::missing("no_contacts");
-  step.limit_load_max_N_per_m =
-      system.has_limit() ? Number(report.limit_tension_max) : Number::missing("no_limit");
-  step.kinetic_J = report.kinetic_energy;
-  double elastic = 0;
-  for (const auto& family : state.element) elastic += sum_of(family);
-  step.elastic_J = elastic;
-  step.limit_J = sum_of(state.limit);
-  step.contact_J = sum_of(state.contact) + sum_of(state.mollified_contact);
   if (audit_) {
     const audit::AuditLedger& ledger = audit_->ledger();
     step.crossings = ledger.crossings - record_.audit.crossings;
@@ -201,7 +176,6 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
     record_.audit.unproven = ledger.unproven;
     record_.audit.inverted = ledger.inverted;
   }
-  step.time = report.times;
   record_.steps.push_back(step);
 
   newton_.push_back(report.iterations);
@@ -241,6 +215,7 @@ void Recorder::finish() {
   }
   summary.newton_per_step = summarize(newton_);
   summary.linear_per_solve = summarize(linear_);
+  summary.probe_pcg = summarize(probes_);
   summary.contacts = summarize(contacts_);
   summary.gap_min_rel = summarize(gaps_);
   for (auto& [key, cond] : summary.cond) {

@@ -13,13 +13,16 @@
 #include "core/record/run_record.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/config/run_config.hpp"
+#include "experiments/run/artifacts.hpp"
+#include "experiments/run/pcg_probe.hpp"
 
 namespace bb {
 
 class Recorder final : public StepObserver {
  public:
-  /// trace may be null (nothing is written). record is filled step by step.
-  Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace);
+  /// trace and artifacts may be null (nothing is written). record is filled step by step.
+  Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace,
+           ArtifactWriter* artifacts = nullptr);
   ~Recorder() override;
 
   void on_matrix(NewtonSystem& system, int step, int iteration) override;
@@ -42,6 +45,7 @@ class Recorder final : public StepObserver {
   const RunConfig& config_;
   RunRecord& record_;
   TraceWriter* trace_;
+  ArtifactWriter* artifacts_;
   std::unique_ptr<audit::Audit> audit_;
   double audit_tolerance_ = 0;
   ConditionEstimator estimator_;
@@ -50,7 +54,9 @@ class Recorder final : public StepObserver {
   double condition_s_ = 0;
   std::size_t n_free_ = 0, nnz_ = 0;
   std::map<std::string, std::vector<double>> log10_cond_, log10_min_, log10_max_;
-  std::vector<double> newton_, linear_, contacts_, gaps_;
+  PcgProbe probe_;
+  Number probed_;  // of the iteration in progress
+  std::vector<double> newton_, linear_, probes_, contacts_, gaps_;
   Number step_gap_, step_gap_rel_;
 };
 

@@ -148,11 +148,13 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     record.samples["wall_s"] = {timed.wall_s};
   }
   TraceWriter trace(options.folder);
+  ArtifactWriter artifacts(options.folder, scene);
   Verdict verdict = timed.verdict;
   if (look) {
-    Recorder observer(config, scene, record, &trace);
+    Recorder observer(config, scene, record, &trace, &artifacts);
     seen = run_pass(config, scene, calibration, options, "diagnose", observer);
     observer.finish();
+    record.artifacts = artifacts.written();
     verdict = seen.verdict;
     if (observer.penetrated())
       merge(verdict, Outcome::penetration, "the audit found a crossing or a violation");

@@ -16,7 +16,7 @@ def _trace_line(step: int, iteration: int, scale: float) -> dict:
 
     last = iteration == 1
     return {
-        "step": step, "iteration": iteration, "linear_iterations": 10 + step, "gap_min_rel": 0.5,
+        "step": step, "iteration": iteration, "linear_iterations": 10 + step, "probe_pcg_iterations": 10.0 + step, "gap_min_rel": 0.5,
         "contacts": CONTACTS, "time": {},
         "cond": [estimate("none", scale * 10.0 ** (step + 1), "lower_bound" if last and step == 2 else "ok"),
                  estimate("block_jacobi", scale * (step + 1))],
@@ -36,7 +36,7 @@ def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: s
         "ids": {"run_id": f"id_{formulation}", "config_id": f"config_{formulation}", "sweep_id": "strip"},
         "status": {"outcome": outcome, "detail": "" if outcome == "ok" else "step 2 ended at its cap", "valid": outcome == "ok"},
         "labels": {"scene": "drape2d", "formulation": formulation, "shape": shape, "argument": "gap", "note": note},
-        "summary": {"newton_iterations": 6, "linear_iterations": 66, "gap_min_rel": {**STATS, "min": gap}, "time": {}},
+        "summary": {"newton_iterations": 6, "linear_iterations": 66, "probe_pcg": STATS, "gap_min_rel": {**STATS, "min": gap}, "time": {}},
         "audit": {"enabled": True, "crossings": 0, "violations": 0, "unproven": 0},
         "scene": {"free_dofs": 30, "extent_m": 1.0},
         "matching": {"rule": "equal_force"},

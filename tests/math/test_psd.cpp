@@ -28,13 +28,15 @@ Mat<T, N, N> random_basis(std::mt19937& rng) {
   for (int j = 0; j < N; ++j) {
     for (int i = 0; i < N; ++i) a(i, j) = static_cast<T>(uniform(rng));
   }
-  return Eigen::HouseholderQR<Mat<T, N, N>>(a).householderQ();
+  using MatX = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;  // of fixed size it compiles for a minute
+  return MatX(Eigen::HouseholderQR<MatX>(a).householderQ());
 }
 
 /// Symmetric to the last bit.
 template <class T, int N>
 Mat<T, N, N> compose(const Mat<T, N, N>& q, const Vec<T, N>& values) {
-  const Mat<T, N, N> a = q * values.asDiagonal() * q.transpose();
+  const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> basis = q,
+                                                         a = basis * values.asDiagonal() * basis.transpose();
   return (a + a.transpose()) / 2;
 }
 
@@ -87,7 +89,7 @@ TYPED_TEST(ProjectPsd, MixedScales) {
   values[1] = T(-1e-3) * T(1e6);
   values[2] = -eps;
   const Mat<T, n, n> a = compose<T, n>(q, values), out = project_psd<T, n>(a);
-  const Eigen::SelfAdjointEigenSolver<Mat<double, n, n>> spectrum(out.template cast<double>());
+  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(Eigen::MatrixXd(out.template cast<double>()));
   EXPECT_NEAR(spectrum.eigenvalues()[n - 1], 1e6, 20.0 * eps * 1e6);
   EXPECT_GE(spectrum.eigenvalues()[0], -20.0 * eps * 1e6);
   EXPECT_GT((out - a).norm(), T(900));

@@ -102,6 +102,20 @@ TYPED_TEST(SvdOf, DegenerateInputHasOrthonormalFactors) {
   expect_svd<T, m, n>(r * T(1e30));
 }
 
+// Equal columns, orthogonal columns and repeated singular values of every kind: all matrices of -1, 0 and 1.
+TYPED_TEST(SvdOf, AllMatricesOfSmallIntegers) {
+  using T = typename TypeParam::Scalar;
+  constexpr int m = TypeParam::m, n = TypeParam::n;
+  int count = 1;
+  for (int k = 0; k < m * n; ++k) count *= 3;
+  for (int code = 0; code < count; ++code) {
+    Mat<T, m, n> F;
+    for (int k = 0, rest = code; k < m * n; ++k, rest /= 3) F(k % m, k / m) = static_cast<T>(rest % 3 - 1);
+    expect_svd<T, m, n>(F);
+    if (this->HasFailure()) return;
+  }
+}
+
 // 5e-19 is the rounding of the oracle. The area (or determinant) carries the small singular value: it is
 // right to its own digits.
 TYPED_TEST(SvdOf, SmallSingularValuesKeepTheirDigits) {

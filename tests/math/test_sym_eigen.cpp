@@ -37,13 +37,16 @@ template <class T, int N>
 void expect_decomposition(const Mat<T, N, N>& a) {
   const T eps = std::numeric_limits<T>::epsilon(), norm = a.norm();
   Vec<T, N> values;
-  Mat<T, N, N> vectors;
-  sym_eigen<T, N>(a, values, vectors);
+  Mat<T, N, N> fixed_vectors;
+  sym_eigen<T, N>(a, values, fixed_vectors);
 
-  EXPECT_LE((vectors * values.asDiagonal() * vectors.transpose() - a).norm(), 40 * eps * norm);
-  EXPECT_LE((vectors.transpose() * vectors - Mat<T, N, N>::Identity()).norm(), (10 * N) * eps);
-  using MatL = Eigen::Matrix<long double, N, N>;
-  const Eigen::SelfAdjointEigenSolver<MatL> oracle(a.template cast<long double>());
+  // Of dynamic size from here on: the compiler would unroll every product.
+  using MatX = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;
+  using MatXL = Eigen::Matrix<long double, Eigen::Dynamic, Eigen::Dynamic>;
+  const MatX vectors = fixed_vectors, matrix = a;
+  EXPECT_LE((vectors * values.asDiagonal() * vectors.transpose() - matrix).norm(), 40 * eps * norm);
+  EXPECT_LE((vectors.transpose() * vectors - MatX::Identity(N, N)).norm(), (10 * N) * eps);
+  const Eigen::SelfAdjointEigenSolver<MatXL> oracle(MatXL(matrix.template cast<long double>()));
   for (int i = 0; i < N; ++i) {
     EXPECT_NEAR(static_cast<double>(values[i]), static_cast<double>(oracle.eigenvalues()[i]),
                 10.0 * eps * norm);

@@ -1,0 +1,89 @@
+// One time step as the article "The Polynomial That Fixed 30 Years of Cloth Simulation" computes it: the
+// protocol that its figure is reproduced with, never one of a comparison. Newton with a Tikhonov term, Armijo
+// backtracking, and nothing that keeps a step free of contact or within the strain limit; the barriers are
+// evaluated past both (BarrierFunction::literal). What that hides, the audit finds.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/newton/iteration.hpp"
+#include "core/newton/step_solver.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double tikhonov_relative = 1e-6, tikhonov_absolute = 1e-8;
+constexpr double smallest_alpha = 1e-8;
+
+class ArticleLiteral final : public StepSolver {
+ public:
+  explicit ArticleLiteral(const StepSolverOptions& options) : options_(options) {}
+  std::string_view name() const override { return "article_literal"; }
+
+  StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
+                     StepObserver& observer) override {
+    task.integrator->predict(*task.history, task.dt, used);
+    system.begin_step(task.history->x, used, task.dt, task.load_factor);
+    target_ = task.history->x;
+    task.pose(task.dt, target_);
+
+    StepReport step;
+    step.step = task.step;
+    step.dt_used = task.dt;
+    step.status = StepStatus::iteration_cap;
+    for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
+      IterationReport report = begin_iteration(system, task.step, iteration, observer);
+      system.add_tikhonov(tikhonov_relative, tikhonov_absolute);
+      report.linear = system.solve(target_, dx_, report.times);
+      measure_direction(system, dx_, report);
+      const bool small = report.dx_inf / task.dt < options_.tol_velocity;
+      if (const auto failed = direction_failure(report, !small)) {
+        finish_iteration(step, report, observer);
+        step.status = *failed;
+        step.detail = std::string(to_string(report.linear.status));
+        return step;
+      }
+      const bool moved = backtrack(system, report);
+      finish_iteration(step, report, observer);
+      if (moved) observer.on_motion(x_before_, system.state().x, task.step);
+      if (small || !moved) {
+        step.status = small ? StepStatus::converged : StepStatus::line_search_failed;
+        return step;
+      }
+    }
+    return step;
+  }
+
+ private:
+  bool backtrack(NewtonSystem& system, IterationReport& report) {
+    x_before_ = system.state().x;
+    x_trial_.noalias() = x_before_ + dx_;
+    system.sweep(x_trial_, report.times);
+    for (double alpha = 1; alpha > smallest_alpha; alpha /= 2) {
+      x_trial_.noalias() = x_before_ + alpha * dx_;
+      ++report.line_search_trials;
+      const auto change = system.try_state(x_trial_, report.times);
+      if (!change) continue;
+      const double noise = 64 * std::numeric_limits<double>::epsilon() * change->magnitude;
+      const bool decrease = change->change <= -options_.armijo * alpha * report.decrement;
+      report.accepted_by_rounding = !decrease && std::abs(change->change) <= noise;
+      if (!decrease && !report.accepted_by_rounding) continue;
+      report.alpha = alpha;
+      report.energy_change = change->change;
+      system.accept();
+      return true;
+    }
+    return false;
+  }
+
+  StepSolverOptions options_;
+  Positions target_, dx_, x_before_, x_trial_;
+};
+
+}  // namespace
+
+std::unique_ptr<StepSolver> make_article_literal(const StepSolverOptions& options) {
+  return std::make_unique<ArticleLiteral>(options);
+}
+
+}  // namespace bb

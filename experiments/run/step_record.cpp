@@ -1,0 +1,82 @@
+#include "experiments/run/step_record.hpp"
+
+#include <algorithm>
+#include <limits>
+#include <numeric>
+
+namespace bb {
+namespace {
+
+double sum_of(const std::vector<double>& values) {
+  return std::accumulate(values.begin(), values.end(), 0.0);
+}
+
+// kappa and loads of the rows that the step ended with.
+void fill_contact(const EnergyState& state, const StepReport& report, StepRecord& step) {
+  double kappa_min = std::numeric_limits<double>::infinity(), kappa_max = 0, load = 0;
+  const auto scan = [&](const auto& rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      kappa_min = std::min(kappa_min, rows.kappa[r]);
+      kappa_max = std::max(kappa_max, rows.kappa[r]);
+      load -= rows.multiplicity[r] * rows.kappa[r] * rows.db[r];
+    }
+  };
+  scan(state.rows);
+  scan(state.mollified);
+  const bool touching = report.contacts.total() > 0;
+  const auto value = [touching](double x) { return touching ? Number(x) : Number::missing("no_contacts"); };
+  step.kappa_min_N_per_m = value(kappa_min);
+  step.kappa_max_N_per_m = value(kappa_max);
+  step.contact_load_max_N = value(report.force_max);
+  step.contact_load_sum_N = value(load);
+}
+
+void fill_energies(const NewtonSystem& system, const StepReport& report, StepRecord& step) {
+  const EnergyState& state = system.state();
+  const Scene& scene = system.scene();
+  step.kinetic_J = report.kinetic_energy;
+  double elastic = 0, gravity = 0;
+  for (const auto& family : state.element) elastic += sum_of(family);
+  for (std::size_t i = 0; i < scene.mass.size(); ++i) {
+    gravity -= scene.mass[i] * scene.gravity.dot(state.x.col(static_cast<Eigen::Index>(i)));
+  }
+  step.elastic_J = elastic;
+  step.limit_J = sum_of(state.limit);
+  step.contact_J = sum_of(state.contact) + sum_of(state.mollified_contact);
+  step.gravity_J = gravity;
+}
+
+}  // namespace
+
+StepRecord step_record(const NewtonSystem& system, const StepReport& report) {
+  StepRecord step;
+  step.step = report.step;
+  step.t_s = report.t;
+  step.status = std::string(to_string(report.status));
+  step.stop_reason = report.detail;
+  step.newton_iterations = report.iterations;
+  step.linear_iterations = report.linear_iterations;
+  step.linear_solves = report.iterations;
+  step.factorizations = report.factorizations;
+  step.analyses = report.analyses;
+  step.line_search_trials = report.line_search_trials;
+  step.rounding_accepts = report.accepted_by_rounding;
+  step.ccd_queries = report.ccd_queries;
+  step.ccd_probes = report.ccd_probes;
+  step.ccd_capped = report.ccd_capped;
+  step.ccd_zero = report.ccd_zero;
+  step.contacts = report.contacts;
+  step.toi_min = report.alpha_ccd_min;
+  step.max_stretch = report.max_stretch > 0 ? Number(report.max_stretch - 1) : Number::missing("no_limit");
+  step.limit_load_max_N_per_m =
+      system.has_limit() ? Number(report.limit_tension_max) : Number::missing("no_limit");
+  const bool converged = report.status == StepStatus::converged;
+  step.contact_overload = converged ? Number::missing("converged") : Number(report.overload);
+  step.limit_overload = converged ? Number::missing("converged") : Number(report.limit_overload);
+  fill_contact(system.state(), report, step);
+  fill_energies(system, report, step);
+  step.time = report.times;
+  return step;
+}
+
+}  // namespace bb
