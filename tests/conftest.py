@@ -17,7 +17,7 @@ def program() -> str:
     path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
     if not path.exists():
         pytest.skip(f"{path} is not built")
-    return str(path)
+    return str(path.resolve())
 
 
 @pytest.fixture(scope="session")

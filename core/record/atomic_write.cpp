@@ -12,8 +12,27 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// Trying again later does not help.
+bool lasts(int error) {
+  switch (error) {
+    case EACCES:
+    case EPERM:
+    case EROFS:
+    case ENOENT:
+    case ENOTDIR:
+    case EISDIR:
+    case EEXIST:
+    case ELOOP:
+    case ENAMETOOLONG:
+    case EINVAL:
+      return true;
+    default:
+      return false;
+  }
+}
+
 [[noreturn]] void fail_with(const fs::path& path, const char* what, int error) {
-  throw RecordError(path.string() + ": " + what + ": " + std::strerror(error));
+  throw RecordError(path.string() + ": " + what + ": " + std::strerror(error), lasts(error));
 }
 
 /// A file descriptor that closes itself.

@@ -11,9 +11,11 @@
 
 namespace bb {
 
-/// The output cannot be written: full disk, read-only folder. what() names the path and the cause.
+/// The output cannot be written. what() names the path and the cause.
 struct RecordError : std::runtime_error {
-  using std::runtime_error::runtime_error;
+  RecordError(const std::string& what, bool will_last) : std::runtime_error(what), lasting(will_last) {}
+  bool lasting;  // true: a path that can never be written (read-only, no folder); false: a full disk and the
+                 // like
 };
 
 /// run.json and one trace line as text; non-finite numbers are null plus "<name>_status".

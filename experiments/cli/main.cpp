@@ -23,7 +23,7 @@ int guarded(const std::function<int()>& verb) {
     return exit_bad_input;
   } catch (const bb::RecordError& error) {
     fmt::print(stderr, "{}\n", error.what());
-    return exit_try_again;
+    return error.lasting ? exit_bad_input : exit_try_again;
   } catch (const bb::Interrupted&) {
     fmt::print(stderr, "interrupted: no record was written; the same command runs it again\n");
     return exit_try_again;
@@ -100,8 +100,9 @@ int main(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? exit_ok : exit_bad_input;
   }
-  install_interrupt();
-  return guarded([&]() -> int {
+  // The verbs that ask whether to stop; the others end at the signal itself.
+  if (run_app->parsed() || sweep_app->parsed() || demo_app->parsed()) install_interrupt();
+  const int code = guarded([&]() -> int {
     for (const std::string& file : common.plugins) bb::register_plugin(file);
     if (run_app->parsed()) return run(run_verb, common);
     if (sweep_app->parsed()) return sweep(sweep_verb, common);
@@ -111,4 +112,7 @@ int main(int argc, char** argv) {
     if (eval_app->parsed()) return eval(eval_file, eval_schema);
     return demo(demo_out, common);
   });
+  if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
+  fmt::print(stderr, "the standard output cannot be written\n");
+  return code == exit_ok ? exit_try_again : code;
 }

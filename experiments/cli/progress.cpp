@@ -12,7 +12,10 @@ namespace {
 
 std::atomic<bool> stop{false};
 
-void on_signal(int) { stop.store(true); }
+void on_signal(int signal) {
+  stop.store(true);
+  std::signal(signal, SIG_DFL);  // asked twice: at once
+}
 
 std::string gap_text(double gap) { return std::isinf(gap) ? "-" : fmt::format("{:.2e} m", gap); }
 

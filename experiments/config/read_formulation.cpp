@@ -15,7 +15,7 @@ using nlohmann::json;
 std::string read_shape(const json& object, const std::string& fallback, const std::string& pointer,
                        const Reader& reader) {
   const std::string name = object.value("shape", fallback);
-  if (!find_shape(name))
+  if (object.contains("shape") && !find_shape(name))  // a wrong fallback was complained of where it stands
     reader.take(unknown_name(reader.source + "#" + pointer + "/shape", name, entry_names(shapes())));
   return name;
 }

@@ -1,4 +1,5 @@
 // condition: extreme eigenvalues of a sparse symmetric matrix, by the estimators of the diagnose pass.
+#include <limits>
 #include <random>
 
 #include "core/linear/condition.hpp"
@@ -52,7 +53,10 @@ ConditionEstimate ritz_estimate(const ReducedSystem& system, Scaling scaling) {
   options.preconditioner = to_string(scaling);
   const LinearReport report = make_linear_solver(options)->solve(system, b, x);
   ConditionEstimate out = condition_from_ritz(report.ritz_min, report.ritz_max);
-  if (report.status == LinearStatus::matrix_indefinite) out.status = ConditionStatus::not_pd;
+  if (report.status == LinearStatus::matrix_indefinite) {
+    out.status = ConditionStatus::not_pd;
+    out.cond = std::numeric_limits<double>::quiet_NaN();  // a ratio of positive Ritz values bounds nothing
+  }
   return out;
 }
 

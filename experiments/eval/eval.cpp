@@ -130,6 +130,10 @@ int run_eval(std::istream& in, std::ostream& out, std::ostream& err) {
       return 75;
     }
   }
+  if (in.bad()) {  // a folder, a broken disk
+    err << "eval: the queries cannot be read\n";
+    return 2;
+  }
   if (failed > 0) err << "eval: " << failed << " of " << queries << " queries could not be answered\n";
   return failed > 0 ? 2 : 0;
 }

@@ -318,6 +318,16 @@ TEST(EvalCondition, TiersScalingsAndErrors) {
                  {"scaling", "none"},
                  {"tier", 2}})["status"],
             "not_pd");
+  for (const int tier : {0, 1, 2, 3}) {  // eigenvalues 3 and -1; the Ritz value of tier 0 is positive
+    const json answer = ask({{"kind", "condition"},
+                             {"rows", {0, 1, 1}},
+                             {"cols", {0, 0, 1}},
+                             {"values", {1, 2, 1}},
+                             {"scaling", "none"},
+                             {"tier", tier}});
+    EXPECT_EQ(answer["status"], "not_pd") << tier;
+    EXPECT_TRUE(answer["cond"].is_null()) << tier;
+  }
 }
 
 }  // namespace

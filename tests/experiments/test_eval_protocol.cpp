@@ -128,6 +128,16 @@ TEST(EvalProtocol, TheSameFieldTwiceIsAnError) {
   EXPECT_EQ(reply.code, 2);
   EXPECT_EQ(reply.answers[0]["id"], 9);
   EXPECT_NE(reply.answers[0]["error"].get<std::string>().find("/d"), std::string::npos);
+  const Reply escaped = ask_text(std::string("{") + kCubic + R"(, "\u0064": 0.25, "\u0069d": 9})" + "\n");
+  EXPECT_EQ(escaped.code, 2);
+  EXPECT_EQ(escaped.answers[0]["id"], 9);
+}
+
+TEST(EvalProtocol, MinusZeroIsZero) {
+  for (const char* shape : {"log", "log_squared", "two_stage"}) {
+    json query = {{"kind", "shape"}, {"shape", shape}, {"d", -0.0}, {"d_hat", 1}};
+    EXPECT_EQ(ask(query)["status"], "infinite") << shape;
+  }
 }
 
 TEST(EvalProtocol, NumbersOutOfRangeKeepTheirId) {

@@ -1,0 +1,67 @@
+// Settings that are right one by one and wrong together.
+#include "tests/config/config_text.hpp"
+
+namespace bb::test {
+namespace {
+
+TEST(Contradictions, StepSolverAndIntegrator) {
+  json config = with(hang_config(), "/integrator/name", "bdf2");
+  EXPECT_EQ(parsed(config).integrator, "bdf2");
+  config["step_solver"]["name"] = "accumulated_toi";
+  expect_violation(config, "/integrator/name", "\"bdf2\"", "implicit_euler");
+  expect_violation(with(hang_config(), "/step_solver/name", "article_literal"), "/step_solver/name",
+                   "\"article_literal\"", "protocol article_literal");
+}
+
+TEST(Contradictions, AToleranceAtWhichNothingFalls) {
+  expect_violation(with(hang_config(), "/step_solver/tol_velocity_m_per_s", 1),
+                   "/step_solver/tol_velocity_m_per_s", "1", "0.1 min(d_hat, |g| dt^2/2)/dt");
+}
+
+TEST(Contradictions, ASettingThatThePolicyDoesNotRead) {
+  const std::string policy = "/formulation/stiffness_policy";
+  expect_violation(with(hang_config(), policy, {{"name", "ipc_adaptive"}, {"kappa_N_per_m", 5}}),
+                   policy + "/kappa_N_per_m", "5", "only the policy fixed takes a kappa");
+  expect_violation(
+      with(hang_config(), policy, {{"name", "fixed"}, {"kappa_N_per_m", 5}, {"mass_term", "none"}}),
+      policy + "/mass_term", "\"none\"", "fixed does not read it");
+}
+
+TEST(Contradictions, AConventionOfKappaOfAnotherFormulation) {
+  const std::string policy = "/formulation/stiffness_policy";
+  expect_violation(with(hang_config(), policy, {{"name", "fixed"}, {"kappa_a_J", 5}}), policy + "/kappa_a_J",
+                   "5", "shape cubic");
+  expect_violation(
+      with(hang_config(), policy, {{"name", "fixed"}, {"kappa_N_per_m", 5}, {"kappa_ipc_N_per_m3", 5}}),
+      policy + "/kappa_ipc_N_per_m3", "5", "kappa_N_per_m is given too");
+}
+
+TEST(Contradictions, LimitGivenTwice) {
+  expect_violation(with(hang_config(), "/strain_limit", {{"limit", 0.1}, {"onset", 0.1}, {"width", 0.1}}),
+                   "/strain_limit/limit", "0.1", "either limit, or onset and width");
+}
+
+TEST(Contradictions, DiagnosesWithoutTheirSource) {
+  json config = hang_config();
+  config["passes"] = {{"diagnose", true}};
+  config["diagnose"] = {{"tier", 0}};
+  expect_violation(config, "/diagnose/tier", "0", "pcg");
+  config["linear_solver"] = {{"name", "pcg"}};
+  EXPECT_EQ(parsed(config).diagnose.tier, 0);
+}
+
+TEST(Contradictions, BodiesOfOneKindWithKeysOfAnother) {
+  expect_violation(with(bodies_config(), "/scene/bodies/0/motion", {{"velocity_m_per_s", {0, 0, 1}}}),
+                   "/scene/bodies/0/motion", "motion of a deformable body", "kind rigid");
+  json rigid = with(bodies_config(), "/scene/bodies/0/kind", "rigid");
+  expect_violation(rigid, "/scene/bodies/0/pins", "pins of a rigid body", "every vertex");
+  const json plane = {{"name", "floor"}, {"kind", "plane"}, {"radius_m", 1}};
+  expect_violation(with(bodies_config(), "/scene/obstacles", json::array({plane})),
+                   "/scene/obstacles/0/radius_m", "a radius", "a plane has no radius");
+  json twice = bodies_config();
+  twice["scene"]["bodies"].push_back(twice["scene"]["bodies"][0]);
+  expect_violation(twice, "/scene/bodies/1/name", "\"cloth\"", "no other body");
+}
+
+}  // namespace
+}  // namespace bb::test
