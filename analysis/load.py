@@ -53,6 +53,7 @@ def _run_row(record: dict, run: str) -> dict:
     row |= {"group": record["ids"].get("sweep_id") or labels["scene"], "series": _series(labels)}
     row |= _scalars(labels) | {"outcome": status["outcome"], "detail": status["detail"], "valid": status["valid"]}
     row |= _scalars(summary) | {"gap_min_rel": summary["gap_min_rel"]["min"]}
+    row["first_contact"] = summary["first_contact"]
     row["probe_pcg"] = summary["probe_pcg"]["median"]
     row |= {k: record["audit"][k] for k in ("enabled", "crossings", "violations", "unproven")}
     row |= {"free_dofs": record["scene"]["free_dofs"], "extent_m": record["scene"]["extent_m"]}

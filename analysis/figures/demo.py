@@ -6,8 +6,28 @@ import sys
 from pathlib import Path
 
 from analysis.figures import barrier_shapes, condition, gaps, iterations
-from analysis.load import RecordError, load
+from analysis.load import RecordError, Records, load
 from analysis.table import as_text, summary_table
+
+
+MUST_END_OK = ("log", "cubic_dynamic_lagged")
+
+
+def broken_promises(records: Records) -> list[str]:
+    """What a demonstration promises and these runs do not keep; other sweeps promise nothing."""
+    lines = []
+    for _, run in records.runs.iterrows():
+        where = f"{run['group']}: {run['series']}"
+        if not str(run["group"]).startswith("demo_") or run["group"] == "demo_article":
+            continue
+        if run["formulation"] in MUST_END_OK and run["series"] == run["formulation"] and run["outcome"] != "ok":
+            lines.append(f"{where} has to end ok with the audit on, and ended {run['outcome']}")
+        if run["group"] == "demo_drape" and run["outcome"] == "ok":
+            layers = sorted(name for pair in run["first_contact"] for name in pair.split("|") if name.startswith("layer"))
+            touching = {f"layer{k}|layer{k + 1}" for k in range(len(set(layers)) - 1)} | {"layer0|sphere"}
+            missing = sorted(touching - set(run["first_contact"])) if len(set(layers)) >= 5 else ["five layers"]
+            lines += [f"{where} has no contact {pair}" for pair in missing]
+    return lines
 
 
 def make_all(runs: Path, out: Path) -> str:
@@ -35,10 +55,13 @@ def main(arguments: list[str]) -> int:
     out = Path(arguments[1]) if len(arguments) == 2 else runs / "figures"
     try:
         print(make_all(runs, out))
+        broken = broken_promises(load(runs))
     except (RecordError, RuntimeError, OSError) as error:
         print(f"figures: {error}", file=sys.stderr)
         return 2
-    return 0
+    for line in broken:
+        print(f"figures: {line}", file=sys.stderr)
+    return 1 if broken else 0
 
 
 if __name__ == "__main__":

@@ -112,6 +112,14 @@ class KappaMemory {
   /// Fills kappa of the rows that are known; `missing` gets the indices of the others (row or mollified row).
   void recall(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
               std::vector<int>& missing_mollified) const;
+  /// Gives rows that recall() reported missing the kappa of the contact they continue, and takes them off the
+  /// lists: when a closest point crosses to a neighbouring feature (another triangle of the same fan, an
+  /// edge, a vertex), a row ends and another begins, and E would jump there if the new one had a kappa of its
+  /// own. The contact continued has a vertex on each side in common and at most one vertex of the row not;
+  /// the most shared vertices win, then a row that is gone from the tables, then the first in order. Cost:
+  /// O(known log known) when a row is missing, else nothing.
+  void inherit(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
+               std::vector<int>& missing_mollified);
 
  private:
   struct Entry {
@@ -128,7 +136,16 @@ class KappaMemory {
   template <class Table>
   void fill(Table& table, std::vector<int>& missing) const;
 
-  std::vector<Entry> entries_, merged_;  // sorted, no two equal
+  void mark_present(const ContactTable& rows, const MollifiedTable& mollified);
+  void index_vertices();
+  /// The entry that the row continues, or null.
+  const Entry* continued(const Entry& row) const;
+  template <class Table>
+  void inherit_rows(Table& table, std::vector<int>& missing) const;
+
+  std::vector<Entry> entries_, merged_;         // sorted, no two equal
+  std::vector<std::uint8_t> present_;           // [entries] the trial has this very row
+  std::vector<std::pair<int, int>> of_vertex_;  // (vertex, entry), sorted
 };
 
 }  // namespace bb

@@ -1,26 +1,7 @@
 // The stiffness of rows that were there before, found again by identity.
-#include <algorithm>
-#include <tuple>
-#include <type_traits>
-
-#include "core/contact/contact_system.hpp"
+#include "core/contact/kappa_entry.hpp"
 
 namespace bb {
-
-bool KappaMemory::Entry::before(const Entry& other) const {
-  return std::tie(key, kind, stencil) < std::tie(other.key, other.kind, other.stencil);
-}
-
-template <class Table>
-KappaMemory::Entry KappaMemory::entry(const Table& table, std::size_t row) {
-  Entry e;
-  e.key = table.key[row];
-  e.kind = ContactKind::edge_edge;
-  if constexpr (std::is_same_v<Table, ContactTable>) e.kind = table.kind[row];
-  std::copy_n(table.stencil.begin() + static_cast<std::ptrdiff_t>(4 * row), 4, e.stencil.begin());
-  e.kappa = table.kappa[row];
-  return e;
-}
 
 template <class Table>
 void KappaMemory::add(const Table& table) {

@@ -95,6 +95,7 @@ void StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, con
 void StiffnessUpdate::freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                              const BlockSystem::Values& elastic) {
   memory_.recall(rows, mollified, missing_, missing_mollified_);
+  if (policy_.state().kappa == 0) memory_.inherit(rows, mollified, missing_, missing_mollified_);
   fill(rows, missing_, blocks, elastic, true);
   fill(mollified, missing_mollified_, blocks, elastic, true);
 }

@@ -35,8 +35,9 @@ class StiffnessUpdate {
   void refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                const BlockSystem::Values& elastic);
 
-  /// kappa of the rows of a trial state: known rows keep theirs, new ones get the policy's value at d = d_hat
-  /// with the same H, so that kappa does not depend on the trial.
+  /// kappa of the rows of a trial state: known rows keep theirs, rows that continue a known contact on a
+  /// neighbouring feature inherit its, new ones get the policy's value at d = d_hat with the same H, so that
+  /// kappa does not depend on the trial.
   void freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
               const BlockSystem::Values& elastic);
 

@@ -220,6 +220,7 @@ Json summary(const Summary& v) {
   put(j, "max_stretch", v.max_stretch);
   put(j, "contact_load_max_N", v.contact_load_max_N);
   put(j, "limit_load_max_N_per_m", v.limit_load_max_N_per_m);
+  j["first_contact"] = v.first_contact;
   j["stiffness"] = stiffness(v.stiffness);
   j["cond"] = conditioning(v);
   put(j, "wall_s", v.wall_s);

@@ -156,6 +156,8 @@ struct Summary {
   Stats newton_per_step, linear_per_solve, probe_pcg, contacts, gap_min_rel;
   Number gap_min_m, max_stretch, contact_load_max_N, limit_load_max_N_per_m;
   StiffnessRecord stiffness;
+  std::map<std::string, int>
+      first_contact;  // "body|body" or "body|obstacle" -> step at whose end it first touched
   /// log10 of cond over the run, key "<stage>/<scaling>"; lower bounds (1e14 at most) are
   /// among the numbers, estimates without one are only counted.
   struct Conditioning {

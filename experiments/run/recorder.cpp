@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <set>
 
 #include "core/newton/newton_system.hpp"
 #include "experiments/run/audit_mesh.hpp"
@@ -157,10 +158,29 @@ void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
   judge(x1, step);
 }
 
+void Recorder::note_contacts(const NewtonSystem& system, int step) {
+  const Scene& scene = system.scene();
+  const auto scan = [&](const auto& rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      std::set<std::string> names;
+      for (const int id : rows.key[r]) {
+        if (id >= 0)
+          names.insert(scene.bodies[static_cast<std::size_t>(scene.body[static_cast<std::size_t>(id)])].name);
+        if (id < -1) names.insert(scene.obstacles[static_cast<std::size_t>(-2 - id)].name);
+      }
+      const std::string second = *names.rbegin();  // a body's own name twice: self contact
+      record_.summary.first_contact.emplace(*names.begin() + "|" + second, step);
+    }
+  };
+  scan(system.state().rows);
+  scan(system.state().mollified);
+}
+
 void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
   const int every = config_.output.frames_every;
   if (artifacts_ && every > 0 && report.step % every == 0) artifacts_->frame(x, report.step);
   StepRecord step = step_record(system, report);
+  note_contacts(system, report.step);
   keep_smaller(step_gap_, report.gap_min);
   keep_smaller(step_gap_rel_, smallest_relative_gap(system.state()));
   step.gap_min_m = step_gap_.finite() ? step_gap_ : Number::missing("no_contacts");

@@ -41,6 +41,7 @@ class Recorder final : public StepObserver {
   void judge(const Positions& x, int step);
   TraceRow trace_row(const IterationReport& report) const;
   bool due(int step, int iteration) const;
+  void note_contacts(const NewtonSystem& system, int step);
 
   const RunConfig& config_;
   RunRecord& record_;
