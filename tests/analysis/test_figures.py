@@ -55,7 +55,7 @@ def test_gaps_and_iterations_beside_the_figures_are_the_steps(records, tmp_path)
 
     assert list(gap[gap["series"] == "log"]["gap_min_rel"]) == [0.2, 0.1]
     newton = work[(work["what"] == "newton_per_step") & (work["series"] == "log")]
-    pcg = work[(work["what"] == "pcg_per_solve") & (work["series"] == "log")]
+    pcg = work[(work["what"] == "probe_pcg") & (work["series"] == "log")]
     assert list(newton["count"]) == [2, 2, 2]
     assert list(pcg["count"]) == [10, 10, 11, 11, 12, 12]
 
