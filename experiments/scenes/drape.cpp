@@ -1,9 +1,20 @@
 // Cloth layers above a static sphere, close enough that all of them touch within a few steps.
+#include <cmath>
+#include <numbers>
+
 #include "core/mesh/generators.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb {
 namespace {
+
+/// Turns about the z axis.
+void turn(Positions& x, double angle) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    x.col(i) = Vec3d(c * x(0, i) - s * x(1, i), s * x(0, i) + c * x(1, i), x(2, i));
+  }
+}
 
 /// Lowest layer at start_gap above the sphere, whose top is the origin.
 void add_layers(SceneBuilder& builder, const ParameterMap& p, const SceneContext& context) {
@@ -13,6 +24,7 @@ void add_layers(SceneBuilder& builder, const ParameterMap& p, const SceneContext
     BodySpec cloth;
     cloth.name = "layer" + std::to_string(layer);
     cloth.mesh = grid_mesh(n, n, width, width);
+    turn(cloth.mesh.vertices, layer * number(p, "twist_deg") * std::numbers::pi / 180);
     const double height = number(p, "start_gap_d_hat") + layer * number(p, "spacing_d_hat");
     cloth.mesh.vertices.row(2).array() += height * context.d_hat;
     cloth.material = cloth_material(p, context);
@@ -60,6 +72,9 @@ ProceduralScene make_scene_drape() {
       positive("width_m", "m", 1, "side of each cloth"),
       number_in("spacing_d_hat", "d_hat", 1.5, 1, 1e6, "distance between neighbouring layers at the start"),
       positive("start_gap_d_hat", "d_hat", 1.2, "gap between the sphere and the lowest layer at the start"),
+      number_in("twist_deg", "deg", 9, -360, 360,
+                "turn of each layer against the one below; 0 puts vertex over vertex, every contact on a "
+                "feature boundary"),
       word("sphere", {"analytic", "mesh"}, "an analytic sphere (acts on vertices) or a static icosphere"),
       positive("sphere_radius_m", "m", 0.25, "radius of the sphere"),
       count("sphere_level", 3, 0, 6, "subdivisions of the icosphere (sphere = mesh)"),
