@@ -16,6 +16,7 @@ namespace bb {
 /// one contact with a multiplicity.
 struct ContactRow {
   ContactKind kind;
+  PairId pair = 0;
   ContactKey key;
   std::array<int, 4> stencil{-1, -1, -1, -1};
   std::array<double, 4> weight{0, 0, 0, 0};

@@ -102,50 +102,39 @@ void mollified_terms(const MollifiedTable& rows, const Positions& x, std::vector
 void contact_energies(const ContactTable& rows, std::vector<double>& energy);
 void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy);
 
-/// kappa of earlier rows by their sorted vertex ids (and by which of them are on which side): rows already
-/// known keep theirs. An edge-edge row keeps it when it becomes mollified and back. Merge joins, O(n).
+/// kappa of the pairs behind earlier rows. A row has the mean of its pairs, so m kappa is their sum: when the
+/// closest point of a pair crosses to a neighbouring feature, and its share moves from one row to another, B
+/// does not jump, as it would if kappa belonged to the row. An edge-edge pair keeps its kappa when it becomes
+/// mollified and back. Cost of every call O(pairs log pairs).
 class KappaMemory {
  public:
-  void clear() { entries_.clear(); }
-  /// Adds the rows that are not known yet; rows that are no longer in the tables stay known.
+  void clear() { known_.clear(); }
+  /// Adds the pairs that are not known yet; what is known stays. Requires recall() of the same tables before,
+  /// and kappa of the rows that it reported missing set (see complete()).
   void store(const ContactTable& rows, const MollifiedTable& mollified);
-  /// Fills kappa of the rows that are known; `missing` gets the indices of the others (row or mollified row).
+  /// Fills kappa of the rows whose pairs are all known; `missing` gets the indices of the others (row or
+  /// mollified row).
   void recall(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
               std::vector<int>& missing_mollified) const;
-  /// Gives rows that recall() reported missing the kappa of the contact they continue, and takes them off the
-  /// lists: when a closest point crosses to a neighbouring feature (another triangle of the same fan, an
-  /// edge, a vertex), a row ends and another begins, and E would jump there if the new one had a kappa of its
-  /// own. The contact continued has a vertex on each side in common and at most one vertex of the row not;
-  /// the most shared vertices win, then a row that is gone from the tables, then the first in order. Cost:
-  /// O(known log known) when a row is missing, else nothing.
-  void inherit(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
-               std::vector<int>& missing_mollified);
+  /// Rows that recall() reported missing come with kappa of a new pair; where some of their pairs are known
+  /// they leave with the mean over all.
+  void complete(ContactTable& rows, const std::vector<int>& missing) const;
 
  private:
-  struct Entry {
-    ContactKey key;
-    ContactKind kind;
-    std::array<int, 4> stencil;
+  struct Known {
+    PairId pair;
     double kappa;
-    bool before(const Entry& other) const;
   };
-  template <class Table>
-  static Entry entry(const Table& table, std::size_t row);
-  template <class Table>
-  void add(const Table& table);
-  template <class Table>
-  void fill(Table& table, std::vector<int>& missing) const;
+  const Known* find(PairId pair) const;
+  /// Sum over the known pairs of a row, and how many they are.
+  struct Share {
+    double sum = 0;
+    std::size_t n = 0;
+  };
+  Share share(const ContactTable& rows, std::size_t row) const;
 
-  void mark_present(const ContactTable& rows, const MollifiedTable& mollified);
-  void index_vertices();
-  /// The entry that the row continues, or null.
-  const Entry* continued(const Entry& row) const;
-  template <class Table>
-  void inherit_rows(Table& table, std::vector<int>& missing) const;
-
-  std::vector<Entry> entries_, merged_;         // sorted, no two equal
-  std::vector<std::uint8_t> present_;           // [entries] the trial has this very row
-  std::vector<std::pair<int, int>> of_vertex_;  // (vertex, entry), sorted
+  std::vector<Known> known_;           // sorted by pair
+  std::vector<Known> fresh_, merged_;  // buffers of store
 };
 
 }  // namespace bb

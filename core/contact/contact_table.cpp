@@ -8,6 +8,8 @@ void ContactTable::resize(std::size_t n) {
   for (auto* column : {&stencil, &vertex}) column->resize(4 * n);
   for (auto* column : {&stencil_weight, &weight}) column->resize(4 * n);
   n_free.resize(n);
+  pair_begin.resize(n + 1);
+  if (n == 0) pair.clear();
   for (auto* column : {&normal, &flat}) column->resize(3 * n);
   for (auto* column : {&d, &d_hat, &offset, &multiplicity, &kappa, &b, &db, &d2b, &curvature}) {
     column->resize(n);
@@ -19,6 +21,7 @@ void MollifiedTable::resize(std::size_t n) {
   for (auto* column : {&stencil, &vertex, &free_vertex}) column->resize(4 * n);
   weight.resize(4 * n);
   n_free.resize(n);
+  pair.resize(n);
   normal.resize(3 * n);
   for (auto* column : {&eps, &d, &d_hat, &offset, &multiplicity, &kappa, &b, &db, &d2b}) column->resize(n);
 }

@@ -17,6 +17,9 @@ enum class ContactKind : std::uint8_t { point_point, point_edge, point_triangle,
 /// front; an obstacle o appears as -2 - o.
 using ContactKey = std::array<int, 4>;
 
+/// Identity of one candidate pair over a whole run, whatever features realise it; compare only.
+using PairId = std::uint64_t;
+
 /// Rows are sorted by (key, kind), so that two tables can be joined by a merge.
 struct ContactTable {
   std::vector<ContactKind> kind;
@@ -29,8 +32,11 @@ struct ContactTable {
   std::vector<double> normal;            // [3 n] unit, grad_i d = w_i n
   std::vector<double> d, d_hat, offset;  // [n] m; d = |r| - offset
   std::vector<double> multiplicity;      // [n] number of pairs that realise the row
-  std::vector<double> kappa;             // [n] N/m
-  std::vector<double> b, db, d2b;        // [n] m^2, m, 1
+  std::vector<std::size_t>
+      pair_begin;  // [n + 1] those pairs are pair[pair_begin[r]] to pair[pair_begin[r + 1] - 1]
+  std::vector<PairId> pair;
+  std::vector<double> kappa;       // [n] N/m
+  std::vector<double> b, db, d2b;  // [n] m^2, m, 1
   // obstacle rows only, else 0: grad^2 d = curvature (I - n n^T - flat flat^T)
   std::vector<double> curvature;  // [n] 1/m
   std::vector<double> flat;       // [3 n] axis of a cylinder, else 0
@@ -46,6 +52,7 @@ struct MollifiedTable {
   std::vector<int> stencil;  // [4 n] ea0 ea1 eb0 eb1
   std::vector<int> vertex;   // [4 n] = stencil, -1 where the vertex is given
   std::vector<double> eps;   // [n] threshold on |ea x eb|^2, m^4
+  std::vector<PairId> pair;  // [n]
   std::vector<double> d, d_hat, offset, multiplicity, kappa, b, db, d2b;  // as above
   // what a policy reads of a row: compact free columns, as in ContactTable
   std::vector<int> free_vertex;  // [4 n]

@@ -1,49 +1,81 @@
-// The stiffness of rows that were there before, found again by identity.
-#include "core/contact/kappa_entry.hpp"
+// The stiffness of pairs that were there before, found again by identity.
+#include <algorithm>
+
+#include "core/contact/contact_system.hpp"
 
 namespace bb {
 
-template <class Table>
-void KappaMemory::add(const Table& table) {
-  if (table.size() == 0) return;
-  merged_.clear();
-  const auto append = [&](const Entry& e) {
-    if (merged_.empty() || merged_.back().before(e)) merged_.push_back(e);
-  };
-  std::size_t known = 0;
-  for (std::size_t r = 0; r < table.size(); ++r) {
-    const Entry e = entry(table, r);
-    while (known < entries_.size() && !e.before(entries_[known])) append(entries_[known++]);
-    append(e);
-  }
-  while (known < entries_.size()) append(entries_[known++]);
-  entries_.swap(merged_);
+const KappaMemory::Known* KappaMemory::find(PairId pair) const {
+  const auto at = std::lower_bound(known_.begin(), known_.end(), pair,
+                                   [](const Known& entry, PairId id) { return entry.pair < id; });
+  return at != known_.end() && at->pair == pair ? &*at : nullptr;
 }
 
-void KappaMemory::store(const ContactTable& rows, const MollifiedTable& mollified) {
-  add(rows);
-  add(mollified);
-}
-
-template <class Table>
-void KappaMemory::fill(Table& table, std::vector<int>& missing) const {
-  missing.clear();
-  std::size_t known = 0;
-  for (std::size_t r = 0; r < table.size(); ++r) {
-    const Entry e = entry(table, r);
-    while (known < entries_.size() && entries_[known].before(e)) ++known;
-    if (known < entries_.size() && !e.before(entries_[known])) {
-      table.kappa[r] = entries_[known].kappa;
-    } else {
-      missing.push_back(static_cast<int>(r));
+KappaMemory::Share KappaMemory::share(const ContactTable& rows, std::size_t row) const {
+  Share out;
+  for (std::size_t i = rows.pair_begin[row]; i < rows.pair_begin[row + 1]; ++i) {
+    if (const Known* entry = find(rows.pair[i])) {
+      out.sum += entry->kappa;
+      ++out.n;
     }
   }
+  return out;
 }
 
 void KappaMemory::recall(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
                          std::vector<int>& missing_mollified) const {
-  fill(rows, missing);
-  fill(mollified, missing_mollified);
+  missing.clear();
+  missing_mollified.clear();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::size_t n = rows.pair_begin[r + 1] - rows.pair_begin[r];
+    const Share known = share(rows, r);
+    if (known.n == n) {
+      rows.kappa[r] = known.sum / static_cast<double>(n);
+    } else {
+      missing.push_back(static_cast<int>(r));
+    }
+  }
+  for (std::size_t r = 0; r < mollified.size(); ++r) {
+    if (const Known* entry = find(mollified.pair[r])) {
+      mollified.kappa[r] = entry->kappa;
+    } else {
+      missing_mollified.push_back(static_cast<int>(r));
+    }
+  }
+}
+
+void KappaMemory::complete(ContactTable& rows, const std::vector<int>& missing) const {
+  for (const int row : missing) {
+    const auto r = static_cast<std::size_t>(row);
+    const Share known = share(rows, r);
+    if (known.n == 0) continue;
+    const std::size_t n = rows.pair_begin[r + 1] - rows.pair_begin[r];
+    rows.kappa[r] = (known.sum + static_cast<double>(n - known.n) * rows.kappa[r]) / static_cast<double>(n);
+  }
+}
+
+void KappaMemory::store(const ContactTable& rows, const MollifiedTable& mollified) {
+  fresh_.clear();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const std::size_t begin = rows.pair_begin[r], end = rows.pair_begin[r + 1];
+    const Share known = share(rows, r);
+    if (known.n == end - begin) continue;
+    // the inverse of complete()
+    const double kappa = (static_cast<double>(end - begin) * rows.kappa[r] - known.sum) /
+                         static_cast<double>(end - begin - known.n);
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!find(rows.pair[i])) fresh_.push_back({rows.pair[i], kappa});
+    }
+  }
+  for (std::size_t r = 0; r < mollified.size(); ++r) {
+    if (!find(mollified.pair[r])) fresh_.push_back({mollified.pair[r], mollified.kappa[r]});
+  }
+  if (fresh_.empty()) return;
+  const auto less = [](const Known& a, const Known& b) { return a.pair < b.pair; };
+  std::sort(fresh_.begin(), fresh_.end(), less);
+  merged_.resize(known_.size() + fresh_.size());
+  std::merge(known_.begin(), known_.end(), fresh_.begin(), fresh_.end(), merged_.begin(), less);
+  known_.swap(merged_);
 }
 
 }  // namespace bb

@@ -9,6 +9,16 @@
 #include "core/geometry/edge_edge_mollifier.hpp"
 
 namespace bb {
+namespace {
+
+// Primitives keep their index for a run, and there are fewer than 2^30 of each.
+PairId pair_id(int kind, IndexPair pair) {
+  return (static_cast<PairId>(kind) << 60) | (static_cast<PairId>(pair.first) << 30) |
+         static_cast<PairId>(pair.second);
+}
+constexpr int obstacle_kind = 4;  // after the four kinds of PairKind
+
+}  // namespace
 
 bool RowBuilder::moves(const ContactRow& row) const {
   for (std::size_t k = 0; k < 4 && row.stencil[k] >= 0; ++k) {
@@ -34,6 +44,7 @@ void RowBuilder::add_pair(const Positions& x, IndexPair index, Part& part) const
         MollifiedRow m{make_row(pair.vertex.data(), closest.weights.data(), closest.r, closest.d,
                                 Region::ea_eb, pair.law),
                        eps};
+        m.row.pair = pair_id(static_cast<int>(K), index);
         if (!moves(m.row)) return;
         part.min_gap = std::min(part.min_gap, m.row.d);
         part.mollified.push_back(m);
@@ -41,8 +52,9 @@ void RowBuilder::add_pair(const Positions& x, IndexPair index, Part& part) const
       }
     }
   }
-  const ContactRow row =
+  ContactRow row =
       make_row(pair.vertex.data(), closest.weights.data(), closest.r, closest.d, closest.region, pair.law);
+  row.pair = pair_id(static_cast<int>(K), index);
   if (!moves(row)) return;
   part.min_gap = std::min(part.min_gap, row.d);
   part.rows.push_back(row);
@@ -57,6 +69,7 @@ void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) co
   if (gap.d - law.offset >= law.d_hat) return;
   ContactRow row;
   row.kind = ContactKind::obstacle;
+  row.pair = pair_id(obstacle_kind, pair);
   row.key = {-1, -1, -2 - pair.second, v};
   row.stencil[0] = v;
   row.weight[0] = 1;
@@ -127,6 +140,10 @@ void RowBuilder::merge(std::size_t n_parts, ContactTable& rows) {
     if (i == 0 || row_less(*sorted_[i - 1], *sorted_[i])) first_.push_back(i);
   }
   rows.resize(first_.size());
+  rows.pair.resize(sorted_.size());
+  for (std::size_t i = 0; i < sorted_.size(); ++i) rows.pair[i] = sorted_[i]->pair;
+  std::copy(first_.begin(), first_.end(), rows.pair_begin.begin());
+  rows.pair_begin.back() = sorted_.size();
   tbb::parallel_for(std::size_t{0}, first_.size(), [&](std::size_t r) {
     const std::size_t end = r + 1 < first_.size() ? first_[r + 1] : sorted_.size();
     fill(*sorted_[first_[r]], static_cast<double>(end - first_[r]), r, rows);
@@ -170,6 +187,7 @@ void RowBuilder::fill_mollified(std::size_t n_parts, MollifiedTable& out) {
     out.n_free[at] = compact_free(row, &out.free_vertex[4 * at], &out.weight[4 * at]);
     for (std::size_t k = 0; k < 3; ++k) out.normal[3 * at + k] = row.normal[static_cast<int>(k)];
     out.eps[at] = sorted_mollified_[at].eps;
+    out.pair[at] = row.pair;
     out.d[at] = row.d;
     out.d_hat[at] = row.d_hat;
     out.offset[at] = row.offset;

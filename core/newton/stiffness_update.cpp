@@ -1,17 +1,10 @@
 #include "core/newton/stiffness_update.hpp"
 
-#include <numeric>
-
 namespace bb {
 namespace {
 
 const std::vector<int>& free_vertices(const ContactTable& table) { return table.vertex; }
 const std::vector<int>& free_vertices(const MollifiedTable& table) { return table.free_vertex; }
-
-void all_rows(std::size_t n, std::vector<int>& rows) {
-  rows.resize(n);
-  std::iota(rows.begin(), rows.end(), 0);
-}
 
 }  // namespace
 
@@ -78,30 +71,29 @@ void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const BlockS
   for (std::size_t i = 0; i < rows.size(); ++i) table.kappa[static_cast<std::size_t>(rows[i])] = kappa_[i];
 }
 
+void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                                   const BlockSystem::Values& elastic, bool at_d_hat) {
+  fill(rows, missing_, blocks, elastic, at_d_hat);
+  fill(mollified, missing_mollified_, blocks, elastic, at_d_hat);
+  memory_.complete(rows, missing_);
+}
+
 void StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                               const BlockSystem::Values& elastic) {
-  if (policy_.refresh() == Refresh::per_step) {
-    memory_.recall(rows, mollified, missing_, missing_mollified_);
-  } else {
-    all_rows(rows.size(), missing_);
-    all_rows(mollified.size(), missing_mollified_);
-    memory_.clear();
-  }
-  fill(rows, missing_, blocks, elastic, false);
-  fill(mollified, missing_mollified_, blocks, elastic, false);
-  memory_.store(rows, mollified);
+  if (uniform() || policy_.refresh() == Refresh::per_iteration) memory_.clear();
+  memory_.recall(rows, mollified, missing_, missing_mollified_);
+  fill_missing(rows, mollified, blocks, elastic, false);
+  keep(rows, mollified);
 }
 
 void StiffnessUpdate::freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                              const BlockSystem::Values& elastic) {
   memory_.recall(rows, mollified, missing_, missing_mollified_);
-  if (policy_.state().kappa == 0) memory_.inherit(rows, mollified, missing_, missing_mollified_);
-  fill(rows, missing_, blocks, elastic, true);
-  fill(mollified, missing_mollified_, blocks, elastic, true);
+  fill_missing(rows, mollified, blocks, elastic, true);
 }
 
 void StiffnessUpdate::keep(const ContactTable& rows, const MollifiedTable& mollified) {
-  memory_.store(rows, mollified);
+  if (!uniform()) memory_.store(rows, mollified);
 }
 
 PolicyColumns StiffnessUpdate::columns(const ContactTable& rows, int row, const BlockSystem& blocks,

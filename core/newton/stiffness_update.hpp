@@ -30,18 +30,17 @@ class StiffnessUpdate {
   void set_time(double dt, double c);
 
   /// kappa of the rows of a Newton iterate. elastic: values of the elastic matrix H, read only when the
-  /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a row had in
-  /// this step.
+  /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a pair had
+  /// in this step.
   void refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                const BlockSystem::Values& elastic);
 
-  /// kappa of the rows of a trial state: known rows keep theirs, rows that continue a known contact on a
-  /// neighbouring feature inherit its, new ones get the policy's value at d = d_hat with the same H, so that
-  /// kappa does not depend on the trial.
+  /// kappa of the rows of a trial state: known pairs keep theirs, new ones get the policy's value at d =
+  /// d_hat with the same H, so that kappa does not depend on the trial.
   void freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
               const BlockSystem::Values& elastic);
 
-  /// The rows of an accepted trial keep their kappa for the rest of the step.
+  /// The pairs of an accepted trial keep their kappa for the rest of the step.
   void keep(const ContactTable& rows, const MollifiedTable& mollified);
 
   StiffnessPolicy& policy() { return policy_; }
@@ -51,6 +50,10 @@ class StiffnessUpdate {
                         const BlockSystem::Values& elastic);
 
  private:
+  /// One kappa for all rows: nothing to remember.
+  bool uniform() const { return policy_.state().kappa > 0; }
+  void fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                    const BlockSystem::Values& elastic, bool at_d_hat);
   template <class Table>
   void gather(const Table& table, std::span<const int> rows, const BlockSystem& blocks,
               const BlockSystem::Values& elastic, bool at_d_hat, bool with_hessian);
