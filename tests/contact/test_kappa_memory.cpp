@@ -144,7 +144,7 @@ TEST(KappaMemory, GivesBackWhatItStoredAndReportsTheRest) {
   EXPECT_EQ(same.mollified.kappa, stored.mollified.kappa);
 
   Positions moved = scene.x0;
-  moved.rightCols(16).colwise() += Vec3d(0.1, 0.05, 0);
+  moved.rightCols(16).colwise() += Vec3d(0.24, 0.05, 0);
   Rows other = rows_at(contacts, moved);
   memory.recall(other.table, other.mollified, missing, missing_mollified);
   EXPECT_GT(missing.size(), 0U);

@@ -26,12 +26,18 @@ inline Method fixed_method(const std::string& shape, double kappa,
   return method;
 }
 
+inline Positions one_point(double x, double y, double z) {
+  Positions point(3, 1);
+  point << x, y, z;
+  return point;
+}
+
 /// One free particle of mass m (kg) at height z (m) over the plane z = 0.
 inline Scene particle_over_plane(double mass, double height, double d_hat) {
   Scene scene;
   scene.name = "particle";
   scene.bodies = {{"particle", 0, 1}};
-  scene.rest = scene.x0 = Vec3d(0, 0, height);
+  scene.rest = scene.x0 = one_point(0, 0, height);
   scene.v0 = Positions::Zero(3, 1);
   scene.mass = {mass};
   scene.body = {0};

@@ -12,7 +12,7 @@ namespace {
 
 constexpr double mass = 0.2, d_hat = 0.01, weight = 2.0;
 
-// Gap after 4 s; implicit Euler damps the bounce away.
+// Gap at the end; implicit Euler damps the bounce away.
 double resting_gap(const Scene& scene, Method& method, int steps, double dt, ContactCounts& contacts) {
   method.step_solver.tol_velocity = 1e-11;
   Simulation simulation(scene, method, dt, steps);
@@ -40,7 +40,7 @@ TEST(ContactEquilibrium, every_shape_and_argument_rests_where_its_force_is_the_w
       method.contact = barrier;
 
       ContactCounts contacts;
-      const double gap = resting_gap(scene, method, 400, 0.01, contacts);
+      const double gap = resting_gap(scene, method, 4000, 0.01, contacts);
 
       const auto expected = equilibrium(barrier, kappa, d_hat, weight);
       ASSERT_TRUE(expected.d.has_value());

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/newton/energy_state.hpp"
+#include "tests/newton/small_scenes.hpp"
 
 namespace bb {
 namespace {
@@ -10,15 +11,15 @@ StepTerms one_particle(double inertia) {
   StepTerms terms;
   terms.x_n = terms.x_tilde = Positions::Zero(3, 1);
   terms.inertia = {inertia};
-  terms.force = Vec3d(0, 0, -2);
+  terms.force = test::one_point(0, 0, -2);
   return terms;
 }
 
 TEST(EnergyState, change_is_the_difference_of_the_totals) {
   StepTerms terms = one_particle(3);
   EnergyState a, b;
-  a.x = Vec3d(0.1, 0, 0);
-  b.x = Vec3d(0.3, 0.2, -0.1);
+  a.x = test::one_point(0.1, 0, 0);
+  b.x = test::one_point(0.3, 0.2, -0.1);
   a.element = {{1.0, 2.0}};
   b.element = {{1.5, 0.25}};
   a.contact = {0.5};
@@ -33,7 +34,7 @@ TEST(EnergyState, a_change_far_below_the_rounding_of_the_total_is_seen) {
   StepTerms terms = one_particle(1e12);
   terms.force.setZero();
   EnergyState a, b;
-  a.x = Vec3d(1, 0, 0);
+  a.x = test::one_point(1, 0, 0);
   b.x = a.x;
   b.x(1) = 1e-9;  // moves E by 5e-7 J on top of 5e11 J
   const double change = energy_change(terms, a, b).change;
