@@ -89,7 +89,10 @@ Json stats(const Stats& v) {
 }
 
 Json matching(const MatchingRecord& v) {
-  Json j = {{"rule", v.rule}, {"pilot_run_id", v.pilot_run_id}};
+  Json j = {{"rule", v.rule},
+            {"load_source", v.load_source},
+            {"pilot_run_id", v.pilot_run_id},
+            {"pilot_note", v.pilot_note}};
   put(j, "theta", v.theta);
   put(j, "load_N", v.load_N);
   put(j, "limit_load_N_per_m", v.limit_load_N_per_m);

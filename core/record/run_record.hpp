@@ -110,7 +110,9 @@ struct MatchingRecord {
   Number limit_stiffness_N_per_m;  // k_s chosen
   Number scale;                    // s applied to a policy that makes its own kappa
   Number capacity_N;               // largest load the shape carries at that kappa; missing when unbounded
-  std::string pilot_run_id;
+  std::string load_source =
+      "none";  // of load_N: given, pilot, static_weight (the pilot met no contact), none
+  std::string pilot_run_id, pilot_note;  // the note says where a pilot stopped early
 };
 
 struct AuditRecord {

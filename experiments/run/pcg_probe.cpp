@@ -19,7 +19,8 @@ Number PcgProbe::iterations(const ReducedSystem& system) {
     for (double& value : b_) value = static_cast<double>(random() >> 11) * 0x1p-52 - 1;  // in [-1, 1)
   }
   const LinearReport report = solver_->solve(system, b_, x_);
-  if (report.status != LinearStatus::ok) return Number::missing(to_string(report.status).data());  // a literal
+  if (report.status != LinearStatus::ok)
+    return Number::missing(to_string(report.status).data());  // a literal
   return Number(report.iterations);
 }
 

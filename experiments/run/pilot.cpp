@@ -15,10 +15,17 @@
 namespace bb {
 namespace {
 
+/// What the weight alone asks for: the pilot starts from it, and it stands in where the pilot found nothing.
+struct StaticLoads {
+  double contact = 0;  // N per free vertex
+  double limit = 0;    // N/m, weight over the side of a square of the limited area; 0 without a limit
+};
+
 /// What the pilot leaves: largest loads over converged states, and the contact that carried the largest.
 struct Loads {
   double contact = 0;  // N, kappa |b'| per unit multiplicity
   double limit = 0;    // N/m
+  StaticLoads rest;
   double dt = 0, c = 1;
   PolicyColumns columns;  // of that contact
   std::string config_id;
@@ -43,14 +50,29 @@ class LoadObserver final : public StepObserver {
   Loads loads;
 };
 
-double free_weight(const Scene& scene, int& n_free) {
+StaticLoads static_loads(const RunConfig& config, const Scene& scene) {
   double mass = 0;
-  n_free = 0;
+  int n_free = 0;
   for (const double m : scene.mass) {
     mass += m;
     n_free += m > 0;
   }
-  return mass * scene.gravity.norm();
+  const double weight = mass * scene.gravity.norm();
+  if (weight == 0) {
+    throw ConfigError(config.source + "#/matching/load_N", "nothing",
+                      "a load in N: the scene has no weight from which a pilot could start");
+  }
+  StaticLoads out;
+  out.contact = weight / n_free;
+  if (scene.limit.triangles.empty()) return out;
+  double area = 0;
+  for (const auto& t : scene.limit.triangles) {
+    const Vec3d a = scene.rest.col(t[1]) - scene.rest.col(t[0]);
+    const Vec3d b = scene.rest.col(t[2]) - scene.rest.col(t[0]);
+    area += 0.5 * a.cross(b).norm();
+  }
+  out.limit = weight / std::sqrt(area);
+  return out;
 }
 
 // The pilot: log on the gap for contact and limit, kappa putting the static weight per contact at d_hat/2
@@ -70,43 +92,39 @@ RunConfig pilot_config(const RunConfig& config) {
   return pilot;
 }
 
-Calibration pilot_stiffness(const RunConfig& pilot, const Scene& scene) {
-  int n_free = 0;
-  const double weight = free_weight(scene, n_free);
-  if (weight == 0) {
-    throw ConfigError(pilot.source + "#/matching/load_N", "nothing",
-                      "a load in N: the scene has no weight from which a pilot could start");
-  }
+Calibration pilot_stiffness(const RunConfig& pilot, const Scene& scene, const StaticLoads& loads) {
   const BarrierFunction log{require_shape("log"), Argument::gap};
   Calibration out;
-  out.kappa = match_equal_force(log, pilot.formulation.d_hat, weight / n_free, 0.5);
-  if (!scene.limit.triangles.empty()) {
-    double area = 0;
-    for (const auto& t : scene.limit.triangles) {
-      const Vec3d a = scene.rest.col(t[1]) - scene.rest.col(t[0]);
-      const Vec3d b = scene.rest.col(t[2]) - scene.rest.col(t[0]);
-      area += 0.5 * a.cross(b).norm();
-    }
-    out.k_s = match_equal_force(log, scene.limit.width.front(), weight / std::sqrt(area), 0.5);
-  }
+  out.kappa = match_equal_force(log, pilot.formulation.d_hat, loads.contact, 0.5);
+  if (loads.limit > 0) out.k_s = match_equal_force(log, scene.limit.width.front(), loads.limit, 0.5);
   return out;
 }
 
-const Loads& run_pilot(const RunConfig& config, const Scene& scene) {
+const Loads& run_pilot(const RunConfig& config, const Scene& scene, const RunOptions& options) {
   static std::map<std::string, Loads> known;
   const RunConfig pilot = pilot_config(config);
   const std::string id = config_id(pilot);
   if (const auto found = known.find(id); found != known.end()) return found->second;
 
-  Method method = make_method(pilot, pilot_stiffness(pilot, scene));
+  const StaticLoads rest = static_loads(config, scene);
+  Method method = make_method(pilot, pilot_stiffness(pilot, scene, rest));
   method.keep_elastic_matrix = true;
   Simulation simulation(scene, method, pilot.time.dt, pilot.time.steps);
   LoadObserver observer;
+  observer.loads.rest = rest;
   for (int step = 0; step < pilot.time.steps; ++step) {
+    if (options.interrupted && options.interrupted->load()) throw Interrupted{};
     const StepReport report = simulation.step(observer);
+    if (options.progress) {
+      Progress progress{run_label(config), "pilot", step + 1, pilot.time.steps};
+      progress.newton = report.iterations;
+      progress.contacts = report.contacts.total();
+      progress.gap = report.gap_min;
+      options.progress(progress);
+    }
     if (report.status == StepStatus::converged) continue;
     observer.loads.stopped =
-        fmt::format(", which stopped at step {} with {} {}", step, to_string(report.status), report.detail);
+        fmt::format("the pilot stopped at step {} with {} {}", step, to_string(report.status), report.detail);
     break;
   }
   observer.loads.dt = pilot.time.dt;
@@ -135,12 +153,6 @@ struct Match {
   }
 };
 
-double required_load(double load, const Loads& pilot, const std::string& where, const char* what) {
-  if (load > 0) return load;
-  throw ConfigError(where, fmt::format("no {} in the pilot{}", what, pilot.stopped),
-                    "a load given here, or a scene that has one");
-}
-
 // kappa that the config's own policy would give the contact that carried the load, at d = theta d_hat.
 double policy_kappa(const RunConfig& config, const Loads& loads, double theta) {
   Method method = make_method(config, {});
@@ -158,7 +170,8 @@ double policy_kappa(const RunConfig& config, const Loads& loads, double theta) {
 
 }  // namespace
 
-Calibration calibrate(const RunConfig& config, const Scene& scene, MatchingRecord& record) {
+Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOptions& options,
+                      MatchingRecord& record) {
   const MatchingConfig& matching = config.matching;
   Calibration out;
   const PolicyConfig& policy = config.formulation.stiffness_policy;
@@ -176,16 +189,15 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, MatchingRecor
 
   record.theta = matching.theta;
   double load = matching.load.value_or(0), limit_load = matching.limit_load.value_or(0);
+  record.load_source = "given";
   const Loads* pilot = nullptr;
   if (load == 0 || (limited && limit_load == 0) || !needs_kappa(policy)) {
-    pilot = &run_pilot(config, scene);
+    pilot = &run_pilot(config, scene, options);
     record.pilot_run_id = pilot->config_id;
-    if (load == 0)
-      load = required_load(pilot->contact, *pilot, config.source + "#/matching/load_N", "contact");
-    if (limited && limit_load == 0) {
-      limit_load = required_load(pilot->limit, *pilot, config.source + "#/matching/limit_load_N_per_m",
-                                 "active strain limit");
-    }
+    record.pilot_note = pilot->stopped;
+    if (load == 0) record.load_source = pilot->contact > 0 ? "pilot" : "static_weight";
+    if (load == 0) load = pilot->contact > 0 ? pilot->contact : pilot->rest.contact;
+    if (limit_load == 0) limit_load = pilot->limit > 0 ? pilot->limit : pilot->rest.limit;
   }
   record.load_N = load;
 
@@ -198,7 +210,7 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, MatchingRecor
     out.kappa = match.stiffness(contact, d_hat);
     record.kappa_N_per_m = *out.kappa;
     if (const auto slope = max_slope(contact, d_hat)) record.capacity_N = *out.kappa * *slope;
-  } else {
+  } else if (pilot->contact > 0) {  // without a contact that carried a load, a policy stays as given
     out.scale = match_policy_scale(contact, d_hat, load, policy_kappa(config, *pilot, matching.theta),
                                    matching.theta);
     record.scale = out.scale;

@@ -190,7 +190,7 @@ void simulate(const RunConfig& config, const RunOptions& options, RunRecord& rec
     record.status.detail = *overlap;
     return;
   }
-  const Calibration calibration = calibrate(config, *scene, record.matching);
+  const Calibration calibration = calibrate(config, *scene, options, record.matching);
   run_passes(config, *scene, calibration, options, record);
 }
 

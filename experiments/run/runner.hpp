@@ -16,7 +16,7 @@ namespace bb {
 /// What a progress line shows.
 struct Progress {
   std::string label;      // scene and formulation
-  const char* pass = "";  // "time" or "diagnose"
+  const char* pass = "";  // "pilot", "time" or "diagnose"
   int step = 0, steps = 0;
   int newton = 0;  // iterations of the step
   std::size_t contacts = 0;
