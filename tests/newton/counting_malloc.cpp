@@ -1,0 +1,42 @@
+#include "tests/newton/counting_malloc.hpp"
+
+#include <atomic>
+#include <cstddef>
+
+#if defined(__GLIBC__) && !defined(__SANITIZE_ADDRESS__)
+namespace {
+std::atomic<long> count{0};
+}
+extern "C" {
+void* __libc_malloc(std::size_t);
+void* __libc_calloc(std::size_t, std::size_t);
+void* __libc_realloc(void*, std::size_t);
+void* __libc_memalign(std::size_t, std::size_t);
+
+void* malloc(std::size_t size) {
+  ++count;
+  return __libc_malloc(size);
+}
+void* calloc(std::size_t n, std::size_t size) {
+  ++count;
+  return __libc_calloc(n, size);
+}
+void* realloc(void* p, std::size_t size) {
+  ++count;
+  return __libc_realloc(p, size);
+}
+void* aligned_alloc(std::size_t alignment, std::size_t size) {
+  ++count;
+  return __libc_memalign(alignment, size);
+}
+}
+namespace bb::test {
+bool counts_mallocs() { return true; }
+long n_mallocs() { return count; }
+}  // namespace bb::test
+#else
+namespace bb::test {
+bool counts_mallocs() { return false; }
+long n_mallocs() { return 0; }
+}  // namespace bb::test
+#endif
