@@ -51,7 +51,7 @@ def _run_row(record: dict, run: str) -> dict:
     labels, status, summary = record["labels"], record["status"], record["summary"]
     row = {"run": run, "run_id": record["ids"]["run_id"], "config_id": record["ids"]["config_id"]}
     row |= {"group": record["ids"].get("sweep_id") or labels["scene"], "series": _series(labels)}
-    row |= _scalars(labels) | {"outcome": status["outcome"], "detail": status["detail"], "valid": status["valid"]}
+    row |= _scalars(labels) | {"outcome": status["outcome"], "started_utc": status["started_utc"], "detail": status["detail"], "valid": status["valid"]}
     row |= _scalars(summary) | {"gap_min_rel": summary["gap_min_rel"]["min"]}
     row["first_contact"] = summary["first_contact"]
     row["probe_pcg"] = summary["probe_pcg"]["median"]
@@ -111,7 +111,7 @@ def load(root: str | Path) -> Records:
             cond.extend({**place, **_scalars(c)} for c in line["cond"])
     if not runs:
         raise RecordError(f"{root}: no run.json below this folder")
-    table = pd.DataFrame(runs)
+    table = pd.DataFrame(runs).sort_values(["group", "started_utc"], kind="stable", ignore_index=True)
     table["series"] = _unique_series(table)
     return Records(_mark_comparable(table), pd.DataFrame(steps), pd.DataFrame(trace), pd.DataFrame(cond))
 

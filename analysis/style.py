@@ -13,6 +13,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import pandas as pd  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
+LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 
 plt.rcParams.update(
     {
@@ -82,7 +83,7 @@ def name_of(row: pd.Series) -> str:
     return row["series"] if row["comparable"] else f"{row['series']} (not_comparable)"
 
 
-def draw(axis, x, y, row: pd.Series, label: bool = True) -> None:
+def draw(axis, x, y, row: pd.Series, end_word: bool = True) -> None:
     """One run's line. Hollow markers: the run failed or is not comparable; a failure ends in its word."""
     style = look(row["formulation"], row["series"])
     solid = row["outcome"] == "ok" and row["comparable"]
@@ -95,9 +96,9 @@ def draw(axis, x, y, row: pd.Series, label: bool = True) -> None:
         markevery=marks(len(x)),
         markerfacecolor=style.color if solid else "none",
         markeredgewidth=0.8,
-        label=name_of(row) if label else None,
+        label=name_of(row),
     )
-    if row["outcome"] != "ok" and len(x) > 0:
+    if end_word and row["outcome"] != "ok" and len(x) > 0:
         axis.annotate(
             row["outcome"], (x[-1], y[-1]), xytext=(3, 0), textcoords="offset points", fontsize=6, color=style.color
         )
@@ -111,7 +112,15 @@ def legend_below(fig, axis) -> None:
     """One legend for the figure, below its panels."""
     handles, labels = axis.get_legend_handles_labels()
     if handles:
-        fig.legend(handles, labels, loc="outside lower center", ncols=min(4, len(labels)), frameon=False)
+        columns = max(1, min(len(labels), int(fig.get_figwidth() / LEGEND_COLUMN_IN)))
+        fig.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False)
+
+
+def log_if_decades(axis) -> None:
+    """A logarithmic axis where the data span a decade; a narrow range reads better on a linear one."""
+    values = [v for line in axis.lines for v in line.get_ydata() if v > 0]
+    if values and max(values) >= 10 * min(values):
+        axis.set_yscale("log")
 
 
 def save(fig, stem: Path, numbers: pd.DataFrame) -> list[Path]:

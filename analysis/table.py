@@ -7,6 +7,8 @@ import pandas as pd
 
 from analysis.load import Records, condition_of
 
+LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
+
 HEADINGS = {
     "group": "scene",
     "series": "formulation",
@@ -23,9 +25,11 @@ HEADINGS = {
 
 
 def _cond(records: Records, run: str, scaling: str) -> tuple[float, float]:
-    """Median (of log10) and maximum, lower bounds (1e14 at most) among them; NaN without any."""
+    """Median (of log10) and maximum, lower bounds among them, singular as 1e14; NaN without any."""
     c = condition_of(records, run, scaling)
-    values = c["cond"].dropna().to_numpy(dtype=float) if not c.empty else np.array([])
+    if c.empty:
+        return float("nan"), float("nan")
+    values = c["cond"].where(c["status"] != "singular", LARGEST_COND).dropna().to_numpy(dtype=float)
     if len(values) == 0:
         return float("nan"), float("nan")
     return float(10 ** np.median(np.log10(values))), float(values.max())

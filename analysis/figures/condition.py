@@ -21,11 +21,19 @@ def _draw_bounds(axis, bounds: pd.DataFrame, row: pd.Series, field: str) -> None
     axis.plot(bounds["n"], bounds[field], linestyle="none", marker="2", markersize=4, color=color)
 
 
+def _iterations_shown(records: Records, runs: pd.DataFrame) -> int:
+    """The longest run that ended ok: a stalled one iterates to its cap and would squeeze the rest."""
+    finished = runs.loc[runs["outcome"] == "ok", "run"]
+    rows = records.cond[records.cond["run"].isin(finished)] if not records.cond.empty else records.cond
+    return int(rows["n"].max()) if not rows.empty else 0
+
+
 def figure(records: Records, group: str, out: Path) -> list[Path]:
     """One figure a group: columns raw and scaled, rows cond, lambda_max, lambda_min; x counts Newton iterations."""
     runs = records.runs[records.runs["group"] == group]
     fig, axes = plt.subplots(3, 2, figsize=(style.WIDE_IN, 6.2), sharex=True, layout="constrained")
     numbers = []
+    shown = _iterations_shown(records, runs)
     for column, (scaling, title) in enumerate(SCALINGS):
         for _, row in runs.iterrows():
             estimates = condition_of(records, row["run"], scaling)
@@ -34,14 +42,16 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
             numbers.append(estimates.assign(group=group, series=row["series"], outcome=row["outcome"]))
             sure, bound = estimates[estimates["status"] == "ok"], estimates[estimates["status"] == "lower_bound"]
             for line, (field, _) in enumerate(PANELS):
-                style.draw(axes[line, column], sure["n"].to_numpy(), sure[field].to_numpy(), row)
+                drawn = sure[sure["n"] <= 1.1 * shown] if shown > 0 else sure
+                style.draw(axes[line, column], drawn["n"].to_numpy(), drawn[field].to_numpy(), row)
                 _draw_bounds(axes[line, column], bound[bound[field].notna()], row, field)
         for line, (field, name) in enumerate(PANELS):
             axis = axes[line, column]
-            if axis.lines:
-                axis.set_yscale("log")
-            else:
+            style.log_if_decades(axis)
+            if not axis.lines:
                 style.not_measured(axis)
+            elif shown > 0:
+                axis.set_xlim(-0.03 * shown, 1.12 * shown)
             axis.set_ylabel(name + (UNITS[scaling] if field != "cond" else ""))
         axes[0, column].set_title(title)
         axes[-1, column].set_xlabel("Newton iteration of the run")

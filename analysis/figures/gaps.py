@@ -15,7 +15,7 @@ MATCHED_AT = 0.1  # the gap at which equal_force makes the forces equal, d_hat
 
 def figure(records: Records, group: str, out: Path) -> list[Path]:
     runs = records.runs[records.runs["group"] == group]
-    fig, axis = plt.subplots(figsize=(style.NARROW_IN, 2.8), layout="constrained")
+    fig, axis = plt.subplots(figsize=(4.8, 3.2), layout="constrained")
     numbers = []
     for _, row in runs.iterrows():
         steps = records.steps[records.steps["run"] == row["run"]] if not records.steps.empty else records.steps

@@ -30,16 +30,19 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
         if not steps.empty:
             newton = steps["newton_iterations"].to_numpy()
             style.draw(axes[0], steps["step"].to_numpy(), newton, row)
-            style.draw(axes[1], *_ecdf(newton), row)
+            style.draw(axes[1], *_ecdf(newton), row, end_word=False)
             numbers.append(pd.DataFrame({"what": "newton_per_step", "series": row["series"], "at": steps["step"], "count": newton}))
         probes = trace[trace["probe_pcg_iterations"].notna()] if not trace.empty else trace
         if not probes.empty:
             pcg = probes["probe_pcg_iterations"].to_numpy(dtype=float)
-            style.draw(axes[2], *_ecdf(pcg), row)
+            style.draw(axes[2], *_ecdf(pcg), row, end_word=False)
             numbers.append(pd.DataFrame({"what": "probe_pcg", "series": row["series"], "at": probes["n"], "count": pcg}))
     axes[0].set(xlabel="time step", ylabel="Newton iterations")
     axes[1].set(xlabel="Newton iterations of a step", ylabel="share of steps", ylim=(0, 1.02))
-    axes[2].set(xlabel="block-Jacobi PCG iterations to 1e-6", ylabel="share of matrices", ylim=(0, 1.02))
+    axes[2].set(xlabel="block-Jacobi PCG iterations", ylabel="share of matrices", ylim=(0, 1.02))
+    style.log_if_decades(axes[0])
+    if axes[0].get_yscale() == "log":
+        axes[1].set_xscale("log")
     if not axes[2].lines:
         style.not_measured(axes[2])
     fig.suptitle(f"{group}: every step, every solve", fontsize=8)

@@ -128,12 +128,14 @@ std::uint64_t peak_rss_bytes() {
 }
 
 std::string utc_now() {
-  const std::time_t now = std::time(nullptr);
+  timespec now{};
+  std::timespec_get(&now, TIME_UTC);
   std::tm parts{};
-  ::gmtime_r(&now, &parts);
+  ::gmtime_r(&now.tv_sec, &parts);
   char text[32];
-  const std::size_t n = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%SZ", &parts);
-  return std::string(text, n);
+  const std::size_t n = std::strftime(text, sizeof text, "%Y-%m-%dT%H:%M:%S", &parts);
+  std::string milliseconds = std::to_string(1000 + now.tv_nsec / 1000000);  // padded by its leading 1
+  return std::string(text, n) + "." + milliseconds.substr(1) + "Z";
 }
 
 }  // namespace bb

@@ -27,8 +27,9 @@ std::string cond_text(const RunRecord& record, const std::string& key) {
   const auto found = record.summary.cond.find(key);
   if (found == record.summary.cond.end() || !found->second.log10_cond.max.finite()) return "-";
   const auto& statuses = found->second.statuses;
-  const bool bounded = statuses.contains("lower_bound") || statuses.contains("singular");
-  return fmt::format("{}1e{:.2f}", bounded ? ">" : "", found->second.log10_cond.max.value);
+  if (statuses.contains("singular")) return ">1e14";
+  return fmt::format("{}1e{:.2f}", statuses.contains("lower_bound") ? ">" : "",
+                     found->second.log10_cond.max.value);
 }
 
 }  // namespace

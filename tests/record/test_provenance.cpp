@@ -82,7 +82,7 @@ TEST(Machine, IsFilled) {
 
 TEST(Time, UtcIsIso8601) {
   const std::string now = utc_now();
-  ASSERT_EQ(now.size(), 20u);
+  ASSERT_EQ(now.size(), 24u);
   EXPECT_EQ(now[10], 'T');
   EXPECT_EQ(now.back(), 'Z');
 }
