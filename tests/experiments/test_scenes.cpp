@@ -1,0 +1,150 @@
+// Scenes as their users run them: from a config to a record, with the physics that has to come out.
+#include <gtest/gtest.h>
+
+#include <unistd.h>
+#include <cmath>
+
+#include <filesystem>
+
+#include "barriers/matching.hpp"
+#include "barriers/shapes/registry.hpp"
+#include "experiments/config/parse.hpp"
+#include "experiments/run/runner.hpp"
+#include "experiments/scenes/procedural_scene.hpp"
+#include "experiments/scenes/resting_block_1d.hpp"
+
+namespace bb {
+namespace {
+
+class Scenes : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    const ::testing::TestInfo* test = ::testing::UnitTest::GetInstance()->current_test_info();
+    folder_ = std::filesystem::temp_directory_path() /
+              ("barrierbench_scenes_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  RunRecord run(const std::string& text, std::vector<std::string> overrides = {}) const {
+    RunOptions options;
+    options.folder = folder_;
+    return run_config(parse_config(text, "test", ".", overrides), options);
+  }
+  std::filesystem::path folder_;
+};
+
+const std::vector<std::string> watched = {"/passes={\"time\": true, \"diagnose\": true, \"audit\": true}"};
+
+void expect_clean(const RunRecord& record, const std::string& what) {
+  EXPECT_EQ(record.status.outcome, Outcome::ok) << what << ": " << record.status.detail;
+  EXPECT_TRUE(record.validity.valid) << what;
+  EXPECT_GT(record.audit.motions, 0) << what;
+  EXPECT_EQ(record.audit.crossings + record.audit.violations + record.audit.unproven, 0) << what;
+}
+
+TEST_F(Scenes, AllOfTheRegistryTakeTheirFirstSteps) {
+  for (const ProceduralScene& scene : procedural_scenes()) {
+    const std::string text = R"({"schema": "barrierbench.config/1", "scene": {"name": ")" +
+                             std::string(scene.name) + R"("}, "formulation": "log",
+      "time": {"steps": 3}})";
+    const RunRecord record = run(text, watched);
+    expect_clean(record, std::string(scene.name));
+    EXPECT_EQ(record.summary.steps, 3);
+    EXPECT_GT(record.summary.newton_iterations, 2) << scene.name;
+  }
+}
+
+TEST_F(Scenes, RestingBlockRestsAtTheClosedForm) {
+  const double d_hat = 0.01, kappa = 1000;
+  for (const char* name : {"log", "quadratic", "cubic", "log_squared", "two_stage"}) {
+    const RunConfig config = parse_config(
+        R"({"schema": "barrierbench.config/1", "scene": {"name": "resting_block_1d"}, "formulation": {"argument": "gap", "shape": ")" +
+            std::string(name) +
+            R"(", "stiffness_policy": {"name": "fixed", "kappa_N_per_m": 1000}},
+          "time": {"steps": 600}, "step_solver": {"tol_velocity_m_per_s": 1e-9}})",
+        "test");
+    RunOptions options;
+    options.folder = folder_;
+    const RunRecord record = run_config(config, options);
+    ASSERT_EQ(record.status.outcome, Outcome::ok) << record.status.detail;
+    const BarrierFunction barrier{require_shape(name), Argument::gap};
+    const double load = resting_block_load(config.scene.parameters);
+    const auto expected = equilibrium(barrier, kappa, d_hat, load);
+    ASSERT_TRUE(expected.d.has_value());
+    EXPECT_NEAR(record.steps.back().gap_min_m.value / *expected.d, 1, 1e-6) << name;
+    EXPECT_NEAR(record.steps.back().contact_load_sum_N.value, 3 * load, 1e-5 * load) << name;
+  }
+}
+
+TEST_F(Scenes, DrapeBringsAllLayersAndTheSphereInContactWithoutACrossing) {
+  const std::string text =
+      R"({"schema": "barrierbench.config/1", "scene": {"name": "drape", "layers": 3, "n": 7}, "formulation": "log",
+    "time": {"steps": 12}})";
+  for (const char* sphere : {"\"analytic\"", "\"mesh\""}) {
+    std::vector<std::string> overrides = watched;
+    overrides.push_back(std::string("/scene/sphere=") + sphere);
+    const RunRecord record = run(text, overrides);
+    expect_clean(record, sphere);
+    for (const char* pair : {"layer0|sphere", "layer0|layer1", "layer1|layer2"}) {
+      EXPECT_TRUE(record.summary.first_contact.contains(pair)) << sphere << " " << pair;
+    }
+    EXPECT_GT(record.summary.max_stretch.value, 0.002);
+    EXPECT_LT(record.summary.max_stretch.value, 0.02);
+    EXPECT_GT(record.summary.gap_min_m.value, 0);
+  }
+}
+
+TEST_F(Scenes, EveryVariantOfDrape2dTouchesAndKeepsItsLimit) {
+  for (const char* variant : {"pinned", "free", "strip", "stack"}) {
+    for (const char* pairs : {"vertex_vertex", "point_edge"}) {
+      std::vector<std::string> overrides = watched;
+      overrides.push_back("/scene/variant=\"" + std::string(variant) + "\"");
+      overrides.push_back("/scene/pairs=\"" + std::string(pairs) + "\"");
+      const RunRecord record = run(
+          R"({"schema": "barrierbench.config/1", "scene": {"name": "drape2d", "n": 10}, "formulation": "cubic",
+        "matching": {"rule": "equal_force"}, "time": {"steps": 20}})",
+          overrides);
+      expect_clean(record, std::string(variant) + " " + pairs);
+      EXPECT_GT(record.summary.contacts.max.value, 0) << variant;
+      EXPECT_LT(record.summary.max_stretch.value, 0.02) << variant;
+      EXPECT_EQ(record.matching.load_source, "pilot") << variant;
+    }
+  }
+}
+
+TEST_F(Scenes, TheArticlesClampHidesAStretchBeyondTheLimit) {
+  std::vector<std::string> overrides = watched;
+  overrides.emplace_back("/time/steps=3");
+  const std::string text =
+      R"({"schema": "barrierbench.config/1", "scene": {"name": "drape2d", "variant": "pinned", "protocol": "article_literal"},
+    "formulation": {"name": "log", "stiffness_policy": {"kappa_N_per_m": 1}},
+    "strain_limit": {"shape": "log", "stiffness_policy": {"k_s_N_per_m": 1}},
+    "matching": {"rule": "as_given"}})";
+  const RunRecord record = run(text, overrides);
+
+  EXPECT_EQ(record.labels.step_solver, "article_literal");
+  EXPECT_GT(record.summary.max_stretch.value, 0.02);
+  EXPECT_GT(record.summary.cond.at("full/none").statuses.at("lower_bound"), 0);  // above 1e14
+  overrides.emplace_back("/scene/protocol=\"equal_force\"");
+  const RunRecord common = run(text, overrides);
+  EXPECT_LT(common.summary.max_stretch.value, 0.02);
+  EXPECT_LT(common.summary.cond.at("full/none").log10_cond.max.value, 14);
+}
+
+TEST_F(Scenes, AreBitIdenticalForAnyNumberOfThreadsAndRerunFromTheirRecord) {
+  for (const char* formulation : {"log", "cubic_dynamic_lagged"}) {
+    const std::string text =
+        R"({"schema": "barrierbench.config/1", "scene": {"name": "drape", "layers": 2, "n": 8}, "time": {"steps": 8},
+      "formulation": ")" +
+        std::string(formulation) + R"("})";
+    const RunRecord one = run(text, {"/threads=1"}), two = run(text, {"/threads=2"});
+    ASSERT_EQ(one.status.outcome, Outcome::ok) << one.status.detail;
+    EXPECT_GT(one.summary.contacts.max.value, 10);
+    EXPECT_EQ(one.summary.state_hash.size(), 64U);
+    EXPECT_EQ(one.summary.state_hash, two.summary.state_hash) << formulation;
+    EXPECT_EQ(run(one.config_json).summary.state_hash, one.summary.state_hash) << formulation;
+  }
+}
+
+}  // namespace
+}  // namespace bb
