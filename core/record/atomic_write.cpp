@@ -117,12 +117,17 @@ void check_writable(const fs::path& folder) {
 
 TraceWriter::TraceWriter(const fs::path& folder) : path_(folder / "trace.jsonl") {
   make_folder(folder);
-  file_ = std::fopen(path_.c_str(), "we");
+  part_ = path_;
+  part_ += ".part";
+  file_ = std::fopen(part_.c_str(), "we");
   if (file_ == nullptr) fail("cannot open");
 }
 
 TraceWriter::~TraceWriter() {
-  if (file_ != nullptr) std::fclose(file_);
+  if (file_ == nullptr) return;
+  std::fclose(file_);
+  std::error_code ignored;
+  fs::remove(part_, ignored);
 }
 
 void TraceWriter::fail(const char* what) const { fail_with(path_, what, errno); }
@@ -134,6 +139,13 @@ void TraceWriter::add(const TraceRow& row) {
 
 void TraceWriter::end_step() {
   if (std::fflush(file_) != 0) fail("cannot write");
+}
+
+void TraceWriter::finish() {
+  end_step();
+  std::fclose(file_);
+  file_ = nullptr;
+  if (std::rename(part_.c_str(), path_.c_str()) != 0) fail("cannot rename to");
 }
 
 }  // namespace bb

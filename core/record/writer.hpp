@@ -34,7 +34,8 @@ void write_run(const std::filesystem::path& folder, const RunRecord& record);
 /// Errors: RecordError.
 void check_writable(const std::filesystem::path& folder);
 
-/// folder/trace.jsonl, opened for writing anew.
+/// folder/trace.jsonl. Written as trace.jsonl.part, so that an earlier trace stays with its run.json until
+/// the new run is over; a run that never finishes leaves neither.
 class TraceWriter {
  public:
   explicit TraceWriter(const std::filesystem::path& folder);
@@ -46,11 +47,13 @@ class TraceWriter {
   void add(const TraceRow& row);
   /// Hands the lines of the step to the system. Errors: RecordError.
   void end_step();
+  /// Replaces the earlier trace; nothing can be added after it. Errors: RecordError.
+  void finish();
   const std::filesystem::path& path() const { return path_; }
 
  private:
   void fail(const char* what) const;
-  std::filesystem::path path_;
+  std::filesystem::path path_, part_;
   std::FILE* file_ = nullptr;
 };
 

@@ -154,6 +154,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     Recorder observer(config, scene, record, &trace, &artifacts);
     seen = run_pass(config, scene, calibration, options, "diagnose", observer);
     observer.finish();
+    trace.finish();
     record.artifacts = artifacts.written();
     verdict = seen.verdict;
     if (observer.penetrated())

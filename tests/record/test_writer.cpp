@@ -161,10 +161,29 @@ TEST_F(Writer, TraceIsOnDiskAfterEachStep) {
   TraceWriter trace(folder_);
   trace.add(test::sample_trace_row());
   trace.end_step();
+  EXPECT_FALSE(fs::exists(folder_ / "trace.jsonl"));
+  EXPECT_GT(fs::file_size(folder_ / "trace.jsonl.part"), 0U);  // a step is with the system at its end
+  trace.finish();
+  EXPECT_FALSE(fs::exists(folder_ / "trace.jsonl.part"));
   std::ifstream in(folder_ / "trace.jsonl");
   std::string line;
   ASSERT_TRUE(std::getline(in, line));
   EXPECT_EQ(json::parse(line)["step"], 3);
+}
+
+TEST_F(Writer, ATraceThatIsNotFinishedLeavesTheEarlierOne) {
+  fs::create_directories(folder_);
+  std::ofstream(folder_ / "trace.jsonl") << "earlier\n";
+  {
+    TraceWriter trace(folder_);
+    trace.add(test::sample_trace_row());
+    trace.end_step();
+  }
+  std::ifstream in(folder_ / "trace.jsonl");
+  std::string line;
+  ASSERT_TRUE(std::getline(in, line));
+  EXPECT_EQ(line, "earlier");
+  EXPECT_FALSE(fs::exists(folder_ / "trace.jsonl.part"));
 }
 
 TEST_F(Writer, ATraceOnAFullDiskIsNamed) {
@@ -193,7 +212,7 @@ TEST_F(Writer, SampleForTheSchemaTest) {
   TraceWriter trace(out);
   trace.add(test::sample_trace_row());
   trace.add(TraceRow());
-  trace.end_step();
+  trace.finish();
   EXPECT_TRUE(fs::exists(out / "run.json"));
 }
 
