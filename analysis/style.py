@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import logging
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,8 @@ import pandas as pd  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
+
+logging.getLogger("fontTools").setLevel(logging.ERROR)  # it comments on the missing date of the PDF
 
 plt.rcParams.update(
     {

@@ -55,7 +55,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
             axis.set_ylabel(name + (UNITS[scaling] if field != "cond" else ""))
         axes[0, column].set_title(title)
         axes[-1, column].set_xlabel("Newton iteration of the run")
-    fig.suptitle(f"{group}: the matrix that is solved, every iteration estimated", fontsize=8)
+    fig.suptitle(f"{group}: the matrix that is solved", fontsize=8)
     style.legend_below(fig, axes[0, 0])
     columns = ["group", "series", "outcome", "run", "n", "step", "iteration", "stage", "scaling"]
     columns += [field for field, _ in PANELS] + ["status"]

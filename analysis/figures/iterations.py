@@ -45,7 +45,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
         axes[1].set_xscale("log")
     if not axes[2].lines:
         style.not_measured(axes[2])
-    fig.suptitle(f"{group}: every step, every solve", fontsize=8)
+    fig.suptitle(f"{group}: work of every step and of every diagnosed matrix", fontsize=8)
     style.legend_below(fig, axes[0])
     columns = ["group", "what", "series", "at", "count"]
     table = pd.concat(numbers).assign(group=group)[columns] if numbers else pd.DataFrame(columns=columns)
