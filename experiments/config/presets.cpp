@@ -46,6 +46,17 @@ void lay_over_policy(json& base, const json& over) {
   base.update(over);
 }
 
+/// A record must not carry the name of a preset whose shape, argument or policy it replaced.
+bool is_another(const json& formulation, const json& preset) {
+  const auto policy = [](const json& j) {
+    return j.value("stiffness_policy", json::object()).value("name", json());
+  };
+  for (const char* key : {"shape", "argument"}) {
+    if (formulation.value(key, json()) != preset.value(key, json())) return true;
+  }
+  return policy(formulation) != policy(preset);
+}
+
 }  // namespace
 
 std::string configs_folder() {
@@ -61,22 +72,27 @@ std::vector<PresetInfo> formulation_presets() {
 
 void expand_preset(json& formulation, const std::string& source, std::vector<Violation>& violations) {
   if (!formulation.contains("name")) return;
-  if (formulation.contains("shape") && formulation.contains("argument") &&
-      formulation.contains("stiffness_policy")) {
-    return;
-  }
+  const bool whole = formulation.contains("shape") && formulation.contains("argument") &&
+                     formulation.contains("stiffness_policy");
   const std::string name = formulation["name"].get<std::string>();
   const std::vector<std::string> names = preset_names();
+  if (whole) {  // of the user's own making, or a resolved preset
+    const bool known = std::find(names.begin(), names.end(), name) != names.end();
+    if (known && is_another(formulation, load_preset(name)["formulation"])) formulation.erase("name");
+    return;
+  }
   if (std::find(names.begin(), names.end(), name) == names.end()) {
     const ConfigError error = unknown_name(source + "#/formulation/name", name, names);
     violations.push_back(error.violations().front());
     return;
   }
   json base = load_preset(name)["formulation"];
+  const json preset = base;
   json policy = base.value("stiffness_policy", json::object());
   if (formulation.contains("stiffness_policy")) lay_over_policy(policy, formulation["stiffness_policy"]);
   base.update(formulation);
   base["stiffness_policy"] = policy;
+  if (is_another(base, preset)) base.erase("name");
   formulation = base;
 }
 

@@ -133,6 +133,20 @@ TEST(Parse, OverridesAreSetInOrderAndJudgedLikeTheFile) {
   EXPECT_EQ(violations_of(hang_config().dump(), {"/time/dt_s=1e400"}).at(0).where, "a.json#/time/dt_s");
 }
 
+TEST(Parse, APresetWithAnotherShapeLosesItsName) {
+  EXPECT_EQ(parsed(hang_config(), {"/formulation=\"log\""}).formulation.name, "log");
+  EXPECT_EQ(parsed(hang_config(), {"/formulation=\"log\"", "/formulation/d_hat_m=0.02"}).formulation.name,
+            "log");
+  for (const char* other : {"/formulation/shape=\"cubic\"", "/formulation/argument=\"squared_gap\"",
+                            "/formulation/stiffness_policy={\"name\": \"elasticity_inclusive\"}"}) {
+    EXPECT_EQ(parsed(hang_config(), {"/formulation=\"log\"", other}).formulation.name, "") << other;
+  }
+  const RunConfig whole =
+      parsed(hang_config(), {"/formulation={\"name\": \"log\", \"shape\": \"cubic\", "
+                             "\"argument\": \"gap\", \"stiffness_policy\": {\"name\": \"fixed\"}}"});
+  EXPECT_EQ(whole.formulation.name, "");
+}
+
 TEST(Parse, MissingMeshFilesAreNamed) {
   const json config = with(bodies_config(), "/scene/bodies/0/mesh", {{"file", "nowhere.ply"}});
   const std::vector<Violation> violations = violations_of(config.dump());
