@@ -104,6 +104,29 @@ TEST(LineSearch, threads_change_no_bit) {
   EXPECT_TRUE((one.array() == two.array()).all());
 }
 
+/// The first iteration whose step a bound cut short.
+class CapWatch final : public StepObserver {
+ public:
+  void on_iteration(const IterationReport& report) override {
+    if (report.alpha_ccd < 1 && capped.alpha == 0 && report.line_search_trials == 1) capped = report;
+  }
+  IterationReport capped;
+};
+
+TEST(LineSearch, takes_its_fraction_of_a_binding_bound) {
+  for (const double fraction : {0.8, 0.5}) {
+    Scene scene = test::particle_over_plane(0.2, 0.02, 0.01);
+    scene.v0(2, 0) = -5;  // the prediction is far below the plane
+    Method method = test::fixed_method("log", 100);
+    method.step_solver.cap_fraction = fraction;
+    Simulation simulation(scene, method, 0.01, 1);
+    CapWatch watch;
+    ASSERT_EQ(simulation.step(watch).status, StepStatus::converged);
+    ASSERT_GT(watch.capped.alpha, 0);
+    EXPECT_DOUBLE_EQ(watch.capped.alpha, fraction * watch.capped.alpha_ccd);
+  }
+}
+
 TEST(LineSearch, accumulated_toi_reaches_the_same_state_without_contact) {
   SceneBuilder builder("falling cloth", false, Vec3d(0, 0, -9.81), "test");
   builder.add_body(test::cloth_spec(5, 10, 0.001));
