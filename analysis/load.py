@@ -11,6 +11,7 @@ import pandas as pd
 
 SCHEMA_NAME = "barrierbench.run"
 SCHEMA_MAJOR = 1
+LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
 COMPARABLE_RATIO = 2.0  # minimum gaps further apart than this compare nothing
 REFERENCE = ("log", "gap")  # shape and argument of the run that the others are compared with
 
@@ -78,16 +79,19 @@ def _trace_lines(path: Path) -> list[dict]:
 
 
 def _mark_comparable(runs: pd.DataFrame) -> pd.DataFrame:
-    """True where the minimum gap is within a factor 2 of the group's log run; a failed run compares nothing."""
+    """True where the minimum gap is within a factor 2 of the group's log run, one of the same matching rule first."""
     runs["comparable"] = True
     for _, rows in runs.groupby("group", sort=False):
         is_reference = (rows["shape"] == REFERENCE[0]) & (rows["argument"] == REFERENCE[1]) & (rows["outcome"] == "ok")
-        reference = pd.to_numeric(rows.loc[is_reference, "gap_min_rel"]).dropna()
-        if reference.empty:
+        references = rows[is_reference & pd.to_numeric(rows["gap_min_rel"]).notna()]
+        if references.empty:
             continue
-        gaps = pd.to_numeric(rows["gap_min_rel"])
-        ratio = gaps / reference.iloc[0]
-        runs.loc[rows.index, "comparable"] = ratio.between(1 / COMPARABLE_RATIO, COMPARABLE_RATIO) | gaps.isna()
+        for index, row in rows.iterrows():
+            same_rule = references[references["matching_rule"] == row["matching_rule"]]
+            reference = (same_rule if not same_rule.empty else references).iloc[0]
+            gap = pd.to_numeric(row["gap_min_rel"])
+            ratio = gap / reference["gap_min_rel"]
+            runs.loc[index, "comparable"] = pd.isna(gap) or 1 / COMPARABLE_RATIO <= ratio <= COMPARABLE_RATIO
     return runs
 
 

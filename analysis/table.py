@@ -5,9 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from analysis.load import Records, condition_of
-
-LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
+from analysis.load import LARGEST_COND, Records, condition_of
 
 HEADINGS = {
     "group": "scene",
@@ -63,7 +61,7 @@ def _cell(name: str, value) -> str:
         return "-"
     if name.startswith("cond") or name == "gap_min_rel":
         return f"{value:.2e}"
-    return str(int(value)) if isinstance(value, (int, float, np.number)) else str(value)
+    return f"{value:g}" if isinstance(value, (int, float, np.number)) else str(value)
 
 
 def as_text(table: pd.DataFrame) -> str:

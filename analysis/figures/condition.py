@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from analysis import style
-from analysis.load import Records, condition_of
+from analysis.load import LARGEST_COND, Records, condition_of
 
 PANELS = (("cond", "condition number"), ("lambda_max", r"$\lambda_{\max}$"), ("lambda_min", r"$\lambda_{\min}$"))
 SCALINGS = (("none", "raw"), ("block_jacobi", "block-Jacobi-scaled"))
@@ -16,7 +16,7 @@ UNITS = {"none": " (N/m)", "block_jacobi": ""}
 
 
 def _draw_bounds(axis, bounds: pd.DataFrame, row: pd.Series, field: str) -> None:
-    """Estimates that are only bounds stand apart, as open carets."""
+    """Estimates that are only bounds stand apart, as forks without a line."""
     color = style.look(row["formulation"], row["series"]).color
     axis.plot(bounds["n"], bounds[field], linestyle="none", marker="2", markersize=4, color=color)
 
@@ -36,11 +36,13 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     shown = _iterations_shown(records, runs)
     for column, (scaling, title) in enumerate(SCALINGS):
         for _, row in runs.iterrows():
-            estimates = condition_of(records, row["run"], scaling)
+            estimates = condition_of(records, row["run"], scaling).copy()
             if estimates.empty:
                 continue
             numbers.append(estimates.assign(group=group, series=row["series"], outcome=row["outcome"]))
-            sure, bound = estimates[estimates["status"] == "ok"], estimates[estimates["status"] == "lower_bound"]
+            estimates.loc[estimates["status"] == "singular", "cond"] = LARGEST_COND
+            sure = estimates[estimates["status"] == "ok"]
+            bound = estimates[estimates["status"].isin(["lower_bound", "singular"])]
             for line, (field, _) in enumerate(PANELS):
                 drawn = sure[sure["n"] <= 1.1 * shown] if shown > 0 else sure
                 style.draw(axes[line, column], drawn["n"].to_numpy(), drawn[field].to_numpy(), row)
@@ -55,7 +57,9 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
             axis.set_ylabel(name + (UNITS[scaling] if field != "cond" else ""))
         axes[0, column].set_title(title)
         axes[-1, column].set_xlabel("Newton iteration of the run")
-    fig.suptitle(f"{group}: the matrix that is solved", fontsize=8)
+    literal = not runs.empty and (runs["step_solver"] == "article_literal").all()
+    what = "the matrix before its Tikhonov term, as the article measures it" if literal else "the matrix that is solved"
+    fig.suptitle(f"{group}: {what}", fontsize=8)
     style.legend_below(fig, axes[0, 0])
     columns = ["group", "series", "outcome", "run", "n", "step", "iteration", "stage", "scaling"]
     columns += [field for field, _ in PANELS] + ["status"]

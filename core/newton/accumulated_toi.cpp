@@ -51,7 +51,7 @@ class AccumulatedToi final : public StepSolver {
     measure_direction(system, dx_, report);
     if (const auto failed = direction_failure(report, false)) {
       step.status = *failed;
-      step.detail = std::string(to_string(report.linear.status));
+      if (*failed == StepStatus::linear_failed) step.detail = std::string(to_string(report.linear.status));
       finish_iteration(step, report, observer);
       return 0;
     }

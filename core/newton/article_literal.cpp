@@ -40,7 +40,7 @@ class ArticleLiteral final : public StepSolver {
       if (const auto failed = direction_failure(report, !small)) {
         finish_iteration(step, report, observer);
         step.status = *failed;
-        step.detail = std::string(to_string(report.linear.status));
+        if (*failed == StepStatus::linear_failed) step.detail = std::string(to_string(report.linear.status));
         return step;
       }
       const bool moved = backtrack(system, report);

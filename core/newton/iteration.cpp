@@ -21,20 +21,23 @@ IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, S
   report.max_stretch = system.max_stretch();
   report.limit_tension = system.limit_tension_max();
   report.gap_min_rel = std::numeric_limits<double>::infinity();
-  const auto columns = [&report](const auto& rows, bool& first) {
+  const auto common = [&report](const auto& rows, bool& first) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       report.kappa_min = first ? rows.kappa[r] : std::min(report.kappa_min, rows.kappa[r]);
       report.kappa_max = std::max(report.kappa_max, rows.kappa[r]);
-      report.curvature_max =
-          std::max(report.curvature_max, rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r]);
-      report.force_max = std::max(report.force_max, -rows.kappa[r] * rows.db[r]);
       report.gap_min_rel = std::min(report.gap_min_rel, rows.d[r] / rows.d_hat[r]);
       first = false;
     }
   };
   bool first = true;
-  columns(system.state().rows, first);
-  columns(system.state().mollified, first);
+  common(system.state().rows, first);
+  common(system.state().mollified, first);
+  const ContactTable& rows =
+      system.state().rows;  // a mollified row has e(x) kappa |b'| and no load of its own
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    report.curvature_max = std::max(report.curvature_max, rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r]);
+    report.force_max = std::max(report.force_max, -rows.kappa[r] * rows.db[r]);
+  }
   return report;
 }
 
@@ -109,7 +112,13 @@ void measure_end(NewtonSystem& system, StepReport& step) {
   }
   step.max_stretch = system.max_stretch();
   step.limit_tension_max = system.limit_tension_max();
-  if (step.status == StepStatus::converged) return;
+  const bool stalled = step.status == StepStatus::iteration_cap || step.status == StepStatus::step_collapse ||
+                       step.status == StepStatus::line_search_failed ||
+                       step.status == StepStatus::not_descent;
+  if (!stalled) return;
+  PhaseTimes ignored;
+  system.assemble(ignored);  // the rows that were accepted last and their gradients, of one state
+  system.max_stretch();      // and the gaps of the limit
   step.overload = system.contact_overload();
   step.limit_overload = system.limit_overload();
 }

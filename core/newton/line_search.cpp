@@ -37,18 +37,17 @@ class LineSearch final : public StepSolver {
     step.step = task.step;
     step.dt_used = task.dt;
     step.status = StepStatus::iteration_cap;
-    const double velocity_scale = task.integrator->quasi_static() ? 1.0 : task.dt;
     int collapsed = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration, observer);
       report.linear = system.solve(target_, dx_, report.times);
       measure_direction(system, dx_, report);
       const bool at_pose = poses_reached(system, target_);
-      const bool small = at_pose && report.dx_inf / velocity_scale < options_.tol_velocity;
+      const bool small = at_pose && report.dx_inf / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(step, report, observer);
         step.status = *failed;
-        step.detail = std::string(to_string(report.linear.status));
+        if (*failed == StepStatus::linear_failed) step.detail = std::string(to_string(report.linear.status));
         return step;
       }
       const bool moved = search(system, report, at_pose);

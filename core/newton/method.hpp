@@ -21,13 +21,13 @@ struct LimitStiffness {
   double k_s = 0;                        // N/m, fixed: kappa_e = k_s x rest area
   MassTerm mass_term = MassTerm::paper;  // elasticity_inclusive
   Refresh refresh = Refresh::per_iteration;
-  double multiplier = 1;  // the matching scale s
+  double multiplier = 1;  // the config's own factor; matching does not scale a dynamic limit
 };
 
 struct StepSolverOptions {
   std::string name = "line_search";
   int max_iterations = 200;
-  double tol_velocity = 0;  // m/s: stop at |dx|_inf / h below it; quasi-static: m, without h
+  double tol_velocity = 0;  // m/s: stop at |dx|_inf / h below it
   double armijo = 1e-4;
   double cap_fraction = 0.8;  // line_search: part of a binding contact or strain bound that is taken
   // accumulated_toi

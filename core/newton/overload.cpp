@@ -1,5 +1,6 @@
-// How far a step that made no progress is beyond what bounded barriers can carry: the force that the rest of
-// the system puts on a row or on a limited element, over the largest force its barrier can answer with.
+// How far a step that made no progress is beyond what bounded barriers can carry: the force that everything
+// but contact puts on a row (everything but the limit on a limited element), over the largest force its
+// barrier can answer with. An estimate: it gives a row the whole load of its vertices.
 #include <algorithm>
 #include <limits>
 

@@ -49,7 +49,7 @@ StepReport Simulation::step(StepObserver& observer) {
 // a_0 = M^-1 (f - grad(Psi + B + S)) at the start; 0 at prescribed degrees of freedom.
 void Simulation::start_acceleration() {
   Prediction at_rest;
-  at_rest.c = 1;
+  method_.integrator->predict(history_, dt_, at_rest);  // for its c
   at_rest.x_tilde = history_.x;
   system_.begin_step(history_.x, at_rest, dt_, 1.0);
   PhaseTimes ignored;

@@ -167,7 +167,7 @@ struct Summary {
     std::map<std::string, int> statuses;
   };
   std::map<std::string, Conditioning> cond;
-  double wall_s = 0;
+  Number wall_s;    // of the pass `time`
   PhaseTimes time;  // valid as time only in the pass `time`
   std::uint64_t peak_rss_bytes = 0;
   std::string state_hash;  // sha256 of the final positions, little-endian float64

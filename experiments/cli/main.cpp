@@ -81,9 +81,10 @@ int main(int argc, char** argv) {
   config_arguments(explain_app, explain_verb);
   explain_app->footer("example: ./bench explain configs/scenes/drape2d.json");
   auto* list_app = app.add_subcommand("list", "what can be named in a config");
-  list_app->add_option("what", list_what,
-                       "all, shapes, policies, integrators, step_solvers, scenes or "
-                       "formulations");
+  list_app->add_option(
+      "what", list_what,
+      "all, shapes, policies, integrators, step_solvers, scenes, linear_solvers, membranes or "
+      "formulations");
   list_app->footer("example: ./bench list shapes");
   auto* eval_app = app.add_subcommand("eval", "JSON Lines queries to the functions that the pipeline runs");
   eval_app->add_option("file", eval_file, "queries, - for standard input");

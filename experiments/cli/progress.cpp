@@ -84,12 +84,11 @@ std::string summary_row(const RunRecord& record) {
   const std::string name =
       record.labels.note.empty() ? record.labels.scene + " " + record.labels.formulation : record.labels.note;
   return fmt::format(
-      "{:<44} {:<18} {:>6} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8.2f}", name,
-      to_string(record.status.outcome), s.steps, s.newton_iterations, cond_text(record, "full/none"),
-      cond_text(record, "full/block_jacobi"), number_text(s.gap_min_rel.min, "{:.3g}"),
-      number_text(s.max_stretch, "{:.4f}"),
+      "{:<44} {:<18} {:>6} {:>7} {:>9} {:>9} {:>9} {:>9} {:>9} {:>8}", name, to_string(record.status.outcome),
+      s.steps, s.newton_iterations, cond_text(record, "full/none"), cond_text(record, "full/block_jacobi"),
+      number_text(s.gap_min_rel.min, "{:.3g}"), number_text(s.max_stretch, "{:.4f}"),
       record.audit.enabled ? fmt::format("{}", record.audit.crossings + record.audit.violations) : "-",
-      s.wall_s);
+      number_text(s.wall_s, "{:.2f}"));
 }
 
 }  // namespace bb::cli

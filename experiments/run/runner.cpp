@@ -35,7 +35,9 @@ PassResult run_pass(const RunConfig& config, const Scene& scene, const Calibrati
                     const RunOptions& options, const char* pass, StepObserver& observer) {
   Method method = make_method(config, calibration);
   Simulation simulation(scene, method, config.time.dt, config.time.steps);
-  simulation.system().keep_stages(config.diagnose.stages.size() > 1 && config.passes.diagnose);
+  const std::vector<std::string>& stages = config.diagnose.stages;
+  const bool partial = std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s != "full"; });
+  simulation.system().keep_stages(partial && config.passes.diagnose);
   PassResult result;
   const double start = now_s();
   const double t_end = config.time.dt * config.time.steps * (1 - 1e-9);
@@ -111,7 +113,17 @@ void add_check(RunRecord& record, const std::string& name, Number value, Number 
   record.validity.checks.push_back({name, value, bound, pass});
 }
 
-void fill_validity(RunRecord& record, const std::string& hash_time, const std::string& hash_seen) {
+// The largest stretch that any limited element may have, minus 1; 0 without a limit.
+double hard_limit(const Scene& scene) {
+  double largest = 0;
+  for (std::size_t e = 0; e < scene.limit.width.size(); ++e) {
+    largest = std::max(largest, scene.limit.onset[e] + scene.limit.width[e]);
+  }
+  return largest;
+}
+
+void fill_validity(const Scene& scene, RunRecord& record, const std::string& hash_time,
+                   const std::string& hash_seen) {
   record.validity.valid = true;
   if (record.audit.enabled) {
     const auto bad =
@@ -121,6 +133,10 @@ void fill_validity(RunRecord& record, const std::string& hash_time, const std::s
   if (!hash_time.empty() && !hash_seen.empty()) {
     const bool same = hash_time == hash_seen;
     add_check(record, "state_hash_equal_in_all_passes", same ? 0.0 : 1.0, 0.0, same);
+  }
+  if (const double limit = hard_limit(scene); limit > 0 && record.summary.max_stretch.finite()) {
+    const double stretch = record.summary.max_stretch.value;
+    add_check(record, "strain_limit_kept", stretch, limit, stretch < limit);
   }
   add_check(record, "outcome_ok", record.status.outcome == Outcome::ok ? 0.0 : 1.0, 0.0,
             record.status.outcome == Outcome::ok);
@@ -137,7 +153,8 @@ void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
 void run_passes(const RunConfig& config, const Scene& scene, const Calibration& calibration,
                 const RunOptions& options, RunRecord& record) {
   PassResult timed, seen;
-  const bool look = config.passes.diagnose || config.passes.audit || !config.passes.time;
+  const bool look =
+      config.passes.diagnose || config.passes.audit || !config.passes.time || config.output.frames_every > 0;
   RunRecord timing;  // the time pass keeps a record of its own: only its times and hash are used
   if (config.passes.time) {
     RunConfig bare = config;
@@ -165,13 +182,13 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
   const PassResult& main = look ? seen : timed;
   record.status.outcome = verdict.outcome;
   record.status.detail = verdict.detail;
-  record.summary.wall_s = config.passes.time ? timed.wall_s : seen.wall_s;
+  record.summary.wall_s = config.passes.time ? Number(timed.wall_s) : Number::missing("not_requested");
   record.summary.state_hash = main.state_hash;
   if (main.stiffness.kappa > 0) {
     record.summary.stiffness = {main.stiffness.kappa_start, main.stiffness.kappa, main.stiffness.doublings,
                                 main.stiffness.saturated};
   }
-  fill_validity(record, timed.state_hash, seen.state_hash);
+  fill_validity(scene, record, timed.state_hash, seen.state_hash);
 }
 
 // From the scene to the outcome. A scene that cannot start is an outcome too.

@@ -18,11 +18,13 @@ void fill_contact(const EnergyState& state, const StepReport& report, StepRecord
     for (std::size_t r = 0; r < rows.size(); ++r) {
       kappa_min = std::min(kappa_min, rows.kappa[r]);
       kappa_max = std::max(kappa_max, rows.kappa[r]);
-      load -= rows.multiplicity[r] * rows.kappa[r] * rows.db[r];
     }
   };
   scan(state.rows);
   scan(state.mollified);
+  for (std::size_t r = 0; r < state.rows.size(); ++r) {  // mollified rows carry e(x) times as much: left out
+    load -= state.rows.multiplicity[r] * state.rows.kappa[r] * state.rows.db[r];
+  }
   const bool touching = report.contacts.total() > 0;
   const auto value = [touching](double x) { return touching ? Number(x) : Number::missing("no_contacts"); };
   step.kappa_min_N_per_m = value(kappa_min);

@@ -124,6 +124,7 @@ TEST_F(Scenes, TheArticlesClampHidesAStretchBeyondTheLimit) {
 
   EXPECT_EQ(record.labels.step_solver, "article_literal");
   EXPECT_GT(record.summary.max_stretch.value, 0.02);
+  EXPECT_FALSE(record.validity.valid);
   EXPECT_GT(record.summary.cond.at("full/none").statuses.at("lower_bound"), 0);  // above 1e14
   overrides.emplace_back("/scene/protocol=\"equal_force\"");
   const RunRecord common = run(text, overrides);
