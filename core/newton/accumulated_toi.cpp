@@ -19,14 +19,8 @@ class AccumulatedToi final : public StepSolver {
 
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
-    task.integrator->predict(*task.history, task.dt, used);
-    system.begin_step(task.history->x, used, task.dt, task.load_factor);
-    target_ = task.history->x;
-    task.pose(task.dt, target_);
-
-    StepReport step;
-    step.step = task.step;
-    step.status = StepStatus::iteration_cap;
+    StepReport step = start_step(system, task, used, target_);
+    step.dt_used = 0;  // until a part of it is reached
     double beta = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       const double advanced = iterate(system, step, task.step, iteration, observer);
@@ -50,8 +44,7 @@ class AccumulatedToi final : public StepSolver {
     report.linear = system.solve(target_, dx_, report.times);
     measure_direction(system, dx_, report);
     if (const auto failed = direction_failure(report, false)) {
-      step.status = *failed;
-      if (*failed == StepStatus::linear_failed) step.detail = std::string(to_string(report.linear.status));
+      fail_step(step, *failed, report);
       finish_iteration(step, report, observer);
       return 0;
     }

@@ -4,7 +4,6 @@
 // evaluated past both (BarrierFunction::literal). What that hides, the audit finds.
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/newton/iteration.hpp"
 #include "core/newton/step_solver.hpp"
@@ -22,15 +21,7 @@ class ArticleLiteral final : public StepSolver {
 
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
-    task.integrator->predict(*task.history, task.dt, used);
-    system.begin_step(task.history->x, used, task.dt, task.load_factor);
-    target_ = task.history->x;
-    task.pose(task.dt, target_);
-
-    StepReport step;
-    step.step = task.step;
-    step.dt_used = task.dt;
-    step.status = StepStatus::iteration_cap;
+    StepReport step = start_step(system, task, used, target_);
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration, observer);
       system.add_tikhonov(tikhonov_relative, tikhonov_absolute);
@@ -39,8 +30,7 @@ class ArticleLiteral final : public StepSolver {
       const bool small = report.dx_inf / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, !small)) {
         finish_iteration(step, report, observer);
-        step.status = *failed;
-        if (*failed == StepStatus::linear_failed) step.detail = std::string(to_string(report.linear.status));
+        fail_step(step, *failed, report);
         return step;
       }
       const bool moved = backtrack(system, report);
@@ -64,9 +54,8 @@ class ArticleLiteral final : public StepSolver {
       ++report.line_search_trials;
       const auto change = system.try_state(x_trial_, report.times);
       if (!change) continue;
-      const double noise = 64 * std::numeric_limits<double>::epsilon() * change->magnitude;
       const bool decrease = change->change <= -options_.armijo * alpha * report.decrement;
-      report.accepted_by_rounding = !decrease && std::abs(change->change) <= noise;
+      report.accepted_by_rounding = !decrease && within_rounding(*change);
       if (!decrease && !report.accepted_by_rounding) continue;
       report.alpha = alpha;
       report.energy_change = change->change;

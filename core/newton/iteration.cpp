@@ -6,6 +6,27 @@
 
 namespace bb {
 
+StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& used, Positions& target) {
+  task.integrator->predict(*task.history, task.dt, used);
+  system.begin_step(task.history->x, used, task.dt, task.load_factor);
+  target = task.history->x;
+  task.pose(task.dt, target);
+  StepReport step;
+  step.step = task.step;
+  step.dt_used = task.dt;
+  step.status = StepStatus::iteration_cap;
+  return step;
+}
+
+bool within_rounding(const EnergyChange& change) {
+  return std::abs(change.change) <= 64 * std::numeric_limits<double>::epsilon() * change.magnitude;
+}
+
+void fail_step(StepReport& step, StepStatus status, const IterationReport& report) {
+  step.status = status;
+  if (status == StepStatus::linear_failed) step.detail = std::string(to_string(report.linear.status));
+}
+
 IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, StepObserver& observer) {
   IterationReport report;
   report.step = step;

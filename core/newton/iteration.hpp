@@ -6,8 +6,17 @@
 
 #include "core/newton/newton_system.hpp"
 #include "core/newton/report.hpp"
+#include "core/newton/step_solver.hpp"
 
 namespace bb {
+
+/// Predicts, hands the step to the system and fills `target` with the end-of-step pose of every vertex. The
+/// report says iteration_cap until something better is known.
+StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& used, Positions& target);
+/// Whether a change of E is noise: below 64 eps sum |terms|.
+bool within_rounding(const EnergyChange& change);
+/// Ends a step whose direction was of no use.
+void fail_step(StepReport& step, StepStatus status, const IterationReport& report);
 
 /// Assembles at system.state(), lets the observer look at the matrix and fills what is known before the
 /// solve.

@@ -8,7 +8,6 @@
 //   6 accept
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "core/newton/iteration.hpp"
 #include "core/newton/step_solver.hpp"
@@ -19,7 +18,6 @@ namespace {
 constexpr double collapsed_step = 1e-8;   // a step below it counts as no progress
 constexpr int collapse_iterations = 10;   // that many in a row end the step
 constexpr double smallest_alpha = 1e-14;  // below it x does not move any more
-constexpr double rounding_factor = 64;    // a change of E below 64 eps sum |terms| is noise
 
 class LineSearch final : public StepSolver {
  public:
@@ -28,15 +26,7 @@ class LineSearch final : public StepSolver {
 
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
-    task.integrator->predict(*task.history, task.dt, used);
-    system.begin_step(task.history->x, used, task.dt, task.load_factor);
-    target_ = task.history->x;
-    task.pose(task.dt, target_);
-
-    StepReport step;
-    step.step = task.step;
-    step.dt_used = task.dt;
-    step.status = StepStatus::iteration_cap;
+    StepReport step = start_step(system, task, used, target_);
     int collapsed = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration, observer);
@@ -46,8 +36,7 @@ class LineSearch final : public StepSolver {
       const bool small = at_pose && report.dx_inf / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(step, report, observer);
-        step.status = *failed;
-        if (*failed == StepStatus::linear_failed) step.detail = std::string(to_string(report.linear.status));
+        fail_step(step, *failed, report);
         return step;
       }
       const bool moved = search(system, report, at_pose);
@@ -88,9 +77,8 @@ class LineSearch final : public StepSolver {
       move(system, alpha);
       ++report.line_search_trials;
       if (const auto change = system.try_state(x_trial_, report.times)) {
-        const double noise = rounding_factor * std::numeric_limits<double>::epsilon() * change->magnitude;
         const bool decrease = change->change <= -options_.armijo * alpha * report.decrement;
-        report.accepted_by_rounding = energy_test && !decrease && std::abs(change->change) <= noise;
+        report.accepted_by_rounding = energy_test && !decrease && within_rounding(*change);
         if (decrease || !energy_test || report.accepted_by_rounding) {
           report.alpha = alpha;
           report.energy_change = change->change;

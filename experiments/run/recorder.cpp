@@ -2,7 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
+#include <limits>
 
 #include "core/newton/newton_system.hpp"
 #include "experiments/run/audit_mesh.hpp"
@@ -160,16 +160,23 @@ void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
 
 void Recorder::note_contacts(const NewtonSystem& system, int step) {
   const Scene& scene = system.scene();
+  const auto n_bodies = static_cast<int>(scene.bodies.size());
+  const auto name = [&](int owner) {
+    return owner < n_bodies ? scene.bodies[static_cast<std::size_t>(owner)].name
+                            : scene.obstacles[static_cast<std::size_t>(owner - n_bodies)].name;
+  };
   const auto scan = [&](const auto& rows) {
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      std::set<std::string> names;
-      for (const int id : rows.key[r]) {
-        if (id >= 0)
-          names.insert(scene.bodies[static_cast<std::size_t>(scene.body[static_cast<std::size_t>(id)])].name);
-        if (id < -1) names.insert(scene.obstacles[static_cast<std::size_t>(-2 - id)].name);
+    for (const ContactKey& key : rows.key) {
+      int first = std::numeric_limits<int>::max(), second = -1;
+      for (const int id : key) {
+        if (id == -1) continue;
+        const int owner = id < 0 ? n_bodies - 2 - id : scene.body[static_cast<std::size_t>(id)];
+        first = std::min(first, owner);
+        second = std::max(second, owner);
       }
-      const std::string second = *names.rbegin();  // a body's own name twice: self contact
-      record_.summary.first_contact.emplace(*names.begin() + "|" + second, step);
+      if (!touching_.emplace(first, second).second) continue;
+      const std::string one = name(first), other = name(second);
+      record_.summary.first_contact.emplace(std::min(one, other) + "|" + std::max(one, other), step);
     }
   };
   scan(system.state().rows);

@@ -4,7 +4,9 @@
 
 #include <map>
 #include <memory>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/audit/audit.hpp"
@@ -55,6 +57,7 @@ class Recorder final : public StepObserver {
   double condition_s_ = 0;
   std::size_t n_free_ = 0, nnz_ = 0;
   std::map<std::string, std::vector<double>> log10_cond_, log10_min_, log10_max_;
+  std::set<std::pair<int, int>> touching_;  // bodies, then obstacles, that have been in contact
   PcgProbe probe_;
   Number probed_;  // of the iteration in progress
   std::vector<double> newton_, linear_, probes_, contacts_, gaps_;
