@@ -9,7 +9,6 @@ namespace bb::cli {
 
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_bad_input = 2;
-inline constexpr int exit_gate = 3;
 inline constexpr int exit_internal = 70;
 inline constexpr int exit_try_again = 75;
 
