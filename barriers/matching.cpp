@@ -146,12 +146,6 @@ double match_equal_curvature(const BarrierFunction& barrier, double d_hat, doubl
   return curvature / d2b;
 }
 
-double match_policy_scale(const BarrierFunction& barrier, double d_hat, double load, double kappa_policy,
-                          double theta) {
-  require(positive(kappa_policy), "kappa_policy", kappa_policy, "a number > 0");
-  return match_equal_force(barrier, d_hat, load, theta) / kappa_policy;
-}
-
 double kappa_from_convention(std::string_view key, double value, double d_hat) {
   struct Convention {
     std::string name;

@@ -11,7 +11,7 @@ namespace bb {
 
 /// The kappa-free law of a shape: rho(u) = d_hat b''(d)/|b'(d)| at d = u d_hat, so that a contact at rest
 /// under load f has stiffness K = rho(u) f/d_hat. Errors: ConfigError unless 0 < u < 1 and b' is finite and
-/// not 0 there. Source: reference law of section 2.1 of the design, any shape.
+/// not 0 there. Source: docs/design.md, Matching; any shape.
 double rho(const BarrierFunction& barrier, double u);
 
 /// Rest state of one contact of stiffness kappa under a load.
@@ -38,11 +38,6 @@ double match_equal_force(const BarrierFunction& barrier, double d_hat, double lo
 /// Errors: ConfigError unless curvature > 0, d_hat > 0, 0 < theta < 1 and b'' is finite and > 0 there.
 double match_equal_curvature(const BarrierFunction& barrier, double d_hat, double curvature,
                              double theta = 0.5);
-
-/// Scale s of a policy that makes its own kappa, at the contact that carried the load:
-/// s = load/(kappa_policy |b'(theta d_hat)|), kappa_policy (N/m) the policy's value at d = theta d_hat.
-double match_policy_scale(const BarrierFunction& barrier, double d_hat, double load, double kappa_policy,
-                          double theta = 0.1);
 
 /// kappa (N/m) from the constant of a published convention; `key` names it as configs do:
 ///   kappa_N_per_m        kappa itself

@@ -5,10 +5,9 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from analysis.figures import barrier_shapes, condition, gaps, iterations
+from analysis.figures import barrier_shapes, condition, gaps, iterations, kappa_cycle
 from analysis.load import RecordError, Records, load
 from analysis.table import as_text, summary_table
-
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged")
 
@@ -34,7 +33,7 @@ def make_all(runs: Path, out: Path) -> str:
     """Writes everything to `out`; returns the text for the terminal."""
     records = load(runs)
     paths = [path for group in sorted(records.runs["group"].unique())
-             for module in (condition, iterations, gaps) for path in module.figure(records, group, out)]
+             for module in (condition, iterations, gaps, kappa_cycle) for path in module.figure(records, group, out)]
     paths += barrier_shapes.figure(out)
     table = summary_table(records)
     table.to_csv(out / "table.csv", index=False)

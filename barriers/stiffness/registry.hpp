@@ -20,7 +20,7 @@ struct StiffnessPolicyConfig {
   bool elastic_term = true;                  // elasticity_inclusive
   Refresh refresh = Refresh::per_iteration;  // elasticity_inclusive and plugins
   double multiplier = 1;                     // s of the matching rule: every kappa is multiplied by it
-  /// ipc_adaptive: Li et al.'s own numbers instead of the rules of the design.
+  /// ipc_adaptive: numbers instead of the policy's own rules, as Li et al. 2020 have (docs/design.md).
   struct IpcOverrides {
     std::optional<double> kappa_min, kappa_max;  // N/m, instead of k and 100 k
     std::optional<double> doubling_gap;          // m, instead of 10 park distances

@@ -1,124 +1,172 @@
 #include "core/contact/bvh.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
-#include <oneapi/tbb/parallel_sort.h>
-
 #include <algorithm>
+#include <cmath>
+#include <numeric>
 
 namespace bb {
 
 namespace {
-constexpr int leaf_size = 4;  // primitives a leaf: fewer nodes to refit, few box tests more
+
 constexpr double rebuild_growth = 1.5;
+constexpr std::uint32_t width = BoxBlock::width;
+
+constexpr std::size_t n_nodes(std::size_t n) { return (n + width - 1) / width; }
+
+/// Where to cut a run of n > width primitives: in the middle, as far as whole children allow it.
+std::size_t left_part(std::size_t n) {
+  std::size_t child = width;
+  while (child * width < n) child *= width;
+  const std::size_t n_children = (n + child - 1) / child;
+  return child * (n_children / 2);
+}
+
+/// Twice the centre; a box that has none counts as at the origin, for every number must have its place.
+Vec3d centre(const Aabb& box) {
+  Vec3d out = box.lo + box.hi;
+  for (int c = 0; c < 3; ++c) out[c] = std::isnan(out[c]) ? 0 : out[c];
+  return out;
+}
+
+/// Those lanes of a node that are child `first` or a later one.
+LaneMask lanes_from(std::size_t first, std::size_t node) {
+  const std::size_t child = node * width;
+  return first > child ? ~LaneMask{0} << std::min<std::size_t>(first - child, width) : ~LaneMask{0};
+}
+
 }  // namespace
 
 void Bvh::update(std::span<const Aabb> boxes, std::span<const std::uint8_t> free) {
-  const bool first = boxes.size() != boxes_.size() || nodes_.empty();
-  boxes_.assign(boxes.begin(), boxes.end());
-  free_.assign(free.begin(), free.end());
-  if (boxes_.empty()) {
-    nodes_.clear();
+  if (boxes.empty()) {
+    order_.clear();
+    levels_.clear();
     return;
   }
-  if (!first) {
-    refit();
+  if (boxes.size() == order_.size()) {
+    refit(boxes, free);
     if (!(looseness() > rebuild_growth * built_looseness_)) return;
   }
-  build();
+  build(boxes);
+  refit(boxes, free);
+  built_looseness_ = looseness();
 }
 
-void Bvh::build() {
-  const int n = static_cast<int>(boxes_.size());
-  order_.resize(boxes_.size());
-  for (int i = 0; i < n; ++i) order_[static_cast<std::size_t>(i)] = i;
-  nodes_.clear();
-  split(0, n);
-  refit();
-  built_looseness_ = looseness();
+void Bvh::build(std::span<const Aabb> boxes) {
+  std::vector<Vec3d> centres(boxes.size());
+  std::transform(boxes.begin(), boxes.end(), centres.begin(), centre);
+  order_.resize(boxes.size());
+  std::iota(order_.begin(), order_.end(), 0);
+  split(centres, 0, order_.size());
+  levels_.clear();
+  for (std::size_t n = boxes.size(); n > 1 || levels_.size() < 2;) {
+    n = n_nodes(n);
+    levels_.push_back({std::vector<BoxBlock>(n), std::vector<LaneMask>(n)});
+  }
   ++builds_;
 }
 
-int Bvh::split(int begin, int end) {
-  const int id = static_cast<int>(nodes_.size());
-  nodes_.push_back({Aabb{}, begin, end, -1, false});
-  if (end - begin <= leaf_size) return id;
-
-  Aabb centres;
-  for (int i = begin; i < end; ++i) {
-    const Aabb& b = boxes_[static_cast<std::size_t>(order_[static_cast<std::size_t>(i)])];
-    centres.add(Vec3d(b.lo + b.hi));
-  }
+void Bvh::split(std::span<const Vec3d> centres, std::size_t begin, std::size_t end) {
+  if (end - begin <= width) return;
+  Aabb extent;
+  for (std::size_t i = begin; i < end; ++i) extent.add(centres[static_cast<std::size_t>(order_[i])]);
   int axis = 0;
-  (centres.hi - centres.lo).maxCoeff(&axis);
-  const int middle = begin + (end - begin) / 2;
-  std::nth_element(order_.begin() + begin, order_.begin() + middle, order_.begin() + end, [&](int p, int q) {
-    const Aabb &a = boxes_[static_cast<std::size_t>(p)], &b = boxes_[static_cast<std::size_t>(q)];
-    const double ca = a.lo[axis] + a.hi[axis], cb = b.lo[axis] + b.hi[axis];
-    return ca < cb || (ca == cb && p < q);
+  (extent.hi - extent.lo).maxCoeff(&axis);
+  const std::size_t middle = begin + left_part(end - begin);
+  const auto at = [this](std::size_t place) { return order_.begin() + static_cast<std::ptrdiff_t>(place); };
+  std::nth_element(at(begin), at(middle), at(end), [&](int p, int q) {
+    const double a = centres[static_cast<std::size_t>(p)][axis];
+    const double b = centres[static_cast<std::size_t>(q)][axis];
+    return a < b || (a == b && p < q);
   });
-  split(begin, middle);
-  const int right = split(middle, end);
-  nodes_[static_cast<std::size_t>(id)].right = right;
-  return id;
+  split(centres, begin, middle);
+  split(centres, middle, end);
 }
 
-void Bvh::refit() {
-  ordered_boxes_.resize(boxes_.size());
-  for (std::size_t i = 0; i < order_.size(); ++i) ordered_boxes_[i] = box(order_[i]);
-  for (std::size_t k = nodes_.size(); k-- > 0;) {  // children come after their parent
-    Node& node = nodes_[k];
-    node.box = Aabb{};
-    node.any_free = false;
-    if (node.right < 0) {
-      for (int i = node.begin; i < node.end; ++i) {
-        node.box.add(box_in_order(i));
-        node.any_free = node.any_free || is_free(order_[static_cast<std::size_t>(i)]);
+template <class BoxOf, class IsFree>
+void Bvh::Level::fill(std::size_t n, const BoxOf& box_of, const IsFree& is_free) {
+  for_each_chunk(boxes.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      free[node] = 0;
+      for (std::size_t child = node * width; child < std::min(n, (node + 1) * width); ++child) {
+        boxes[node].set(child % width, box_of(child));
+        free[node] |= static_cast<LaneMask>(is_free(child)) << (child % width);
       }
-    } else {
-      const Node &left = nodes_[k + 1], &right = nodes_[static_cast<std::size_t>(node.right)];
-      node.box.add(left.box);
-      node.box.add(right.box);
-      node.any_free = left.any_free || right.any_free;
     }
+  });
+}
+
+void Bvh::refit(std::span<const Aabb> boxes, std::span<const std::uint8_t> free) {
+  const auto at = [&](std::size_t place) { return static_cast<std::size_t>(order_[place]); };
+  levels_[0].fill(
+      order_.size(), [&](std::size_t place) { return boxes[at(place)]; },
+      [&](std::size_t place) { return free[at(place)] != 0; });
+  for (std::size_t l = 1; l < levels_.size(); ++l) {
+    const Level& below = levels_[l - 1];
+    levels_[l].fill(
+        below.boxes.size(), [&](std::size_t node) { return below.boxes[node].hull(); },
+        [&](std::size_t node) { return below.free[node] != 0; });
   }
+}
+
+std::span<const PlacePair> Bvh::overlaps(const Bvh& asking, std::size_t begin, std::size_t end,
+                                         PairSearch& search) const {
+  if (levels_.empty()) return {};
+  const bool self = this == &asking;
+  // nodes of level 0 against the tree, down to its nodes of level 0
+  search.start(begin / width, n_nodes(end));
+  for (std::size_t l = levels_.size() - 1; l > 0; --l) {
+    search.refine([&](PlacePair at) {
+      const auto [one, node] = at;
+      LaneMask lanes = levels_[l].overlaps(node, asking.levels_[1], one);
+      if (self) lanes &= lanes_from(std::size_t{width} * one >> (3 * l), node);
+      search.add(lanes, [=](std::uint32_t k) { return PlacePair{one, width * node + k}; });
+    });
+  }
+  // the places of those nodes one by one
+  search.refine([&](PlacePair at) {
+    const auto [one, node] = at;
+    const LaneMask lanes = asking.levels_[0].overlaps(one, levels_[1], node);
+    search.add(lanes, [=](std::uint32_t k) { return PlacePair{width * one + k, node}; });
+  });
+  // against the places of these
+  search.refine([&](PlacePair at) {
+    const auto [place, node] = at;
+    LaneMask lanes = levels_[0].overlaps(node, asking.levels_[0], place);
+    if (self) lanes &= lanes_from(std::size_t{place} + 1, node);
+    search.add(lanes, [=](std::uint32_t k) { return PlacePair{place, width * node + k}; });
+  });
+  return search.result();
 }
 
 double Bvh::looseness() const {
-  double inner = 0, leaves = 0;
-  for (const Node& node : nodes_) (node.right < 0 ? leaves : inner) += node.box.half_area();
-  double primitives = 0;
-  for (const Aabb& b : boxes_) primitives += b.half_area();
-  return primitives > 0 ? (inner + leaves) / primitives : 0;
-}
-
-void Bvh::cut(int size, std::vector<int>& out) const {
-  out.clear();
-  for (std::size_t k = 0; k < nodes_.size();) {
-    const Node& node = nodes_[k];
-    if (node.end - node.begin > size && node.right >= 0) {
-      ++k;
-      continue;
-    }
-    out.push_back(static_cast<int>(k));
-    while (k < nodes_.size() && nodes_[k].begin < node.end) ++k;  // skip its descendants
+  double nodes = 0, primitives = 0;
+  std::size_t n = order_.size();
+  for (std::size_t l = 0; l < levels_.size(); ++l) {
+    double& sum = l == 0 ? primitives : nodes;
+    for (std::size_t child = 0; child < n; ++child) sum += levels_[l].box(child).half_area();
+    n = levels_[l].boxes.size();
   }
+  return primitives > 0 ? nodes / primitives : 0;
 }
 
-namespace detail {
-
-void PairCollector::run(std::size_t n, Task task, const void* self, std::vector<IndexPair>& pairs) {
-  if (parts_.size() < n) parts_.resize(n);
-  if (stacks_.size() < n) stacks_.resize(n);
-  tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
-    parts_[k].clear();
-    task(self, k, stacks_[k], parts_[k]);
+void PairFinder::gather(std::size_t n_parts, std::size_t n, std::vector<IndexPair>& pairs) {
+  const auto for_each_pair = [&](const auto& f) {
+    for (std::size_t k = 0; k < n_parts; ++k) {
+      for (const IndexPair& pair : parts_[k].pairs) f(pair);
+    }
+  };
+  // By the first member: count, then every pair to its place; then each run by the second member.
+  end_.assign(n + 1, 0);
+  for_each_pair([&](IndexPair pair) { ++end_[static_cast<std::size_t>(pair.first) + 1]; });
+  std::partial_sum(end_.begin(), end_.end(), end_.begin());
+  pairs.resize(end_.back());
+  for_each_pair([&](IndexPair pair) { pairs[end_[static_cast<std::size_t>(pair.first)]++] = pair; });
+  for_each_chunk(n, [&](std::size_t, std::size_t begin, std::size_t end) {
+    const auto at = [&](std::size_t place) { return pairs.begin() + static_cast<std::ptrdiff_t>(place); };
+    for (std::size_t first = begin; first < end; ++first) {
+      std::sort(at(first == 0 ? 0 : end_[first - 1]), at(end_[first]));
+    }
   });
-  std::size_t total = 0;
-  for (std::size_t k = 0; k < n; ++k) total += parts_[k].size();
-  pairs.reserve(total);
-  for (std::size_t k = 0; k < n; ++k) pairs.insert(pairs.end(), parts_[k].begin(), parts_[k].end());
-  tbb::parallel_sort(pairs.begin(), pairs.end());  // no two are equal: the order is unique
 }
 
-}  // namespace detail
 }  // namespace bb

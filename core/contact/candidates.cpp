@@ -1,8 +1,10 @@
 #include "core/contact/candidates.hpp"
 
-#include <oneapi/tbb/parallel_for.h>
+#include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
+
+#include "core/contact/chunks.hpp"
 
 namespace bb {
 
@@ -34,23 +36,25 @@ template <int N>
 void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1) {
   if (!tree.needed) return;
   tree.boxes.resize(primitives.size());
-  tbb::parallel_for(std::size_t{0}, primitives.size(), [&](std::size_t i) {
-    Aabb box;
-    for (int v : primitives.vertices[i]) {
-      box.add(Vec3d(x0.col(v)));
-      box.add(Vec3d(x1.col(v)));
+  for_each_chunk(primitives.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Aabb box;
+      for (int v : primitives.vertices[i]) {
+        box.add(Vec3d(x0.col(v)));
+        box.add(Vec3d(x1.col(v)));
+      }
+      box.inflate(primitives.side[i].d_hat / 2 + primitives.side[i].offset);
+      tree.boxes[i] = box;
     }
-    box.inflate(primitives.side[i].d_hat / 2 + primitives.side[i].offset);
-    tree.boxes[i] = box;
   });
   tree.bvh.update(tree.boxes, primitives.free);
 }
 
 void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& out) {
   const Surface& s = surface_;
-  fit(points_, s.points, x0, x1);
-  fit(edges_, s.edges, x0, x1);
-  fit(triangles_, s.triangles, x0, x1);
+  tbb::parallel_invoke([&] { fit(edges_, s.edges, x0, x1); }, [&] { fit(triangles_, s.triangles, x0, x1); },
+                       [&] { fit(points_, s.points, x0, x1); },
+                       [&] { update_obstacles(x0, x1, out.obstacle); });
   const auto point = [&s](int i) { return s.points.vertices[static_cast<std::size_t>(i)][0]; };
   const auto edge = [&s](int i) { return s.edges.vertices[static_cast<std::size_t>(i)]; };
   const auto triangle = [&s](int i) { return s.triangles.vertices[static_cast<std::size_t>(i)]; };
@@ -71,7 +75,6 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
         edges_.bvh, edges_.bvh, [&](IndexPair p) { return s.disjoint(edge(p.first), edge(p.second)); },
         out.edge_edge);
   }
-  update_obstacles(x0, x1, out.obstacle);
 }
 
 void BroadPhase::update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out) {

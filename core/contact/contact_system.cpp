@@ -91,7 +91,7 @@ void ContactSystem::Data::bound_pair(const Positions& x0, const Positions& x1, I
   const auto p0 = gather(x0, pair.vertex), p1 = gather(x1, pair.vertex);
   const double park = options.ccd_park * pair.law.d_hat;
   if (proven_apart<K>(p0, p1, pair.law.offset, park)) return;
-  const AccdResult<double> r = accd<K, double>(p0, p1, pair.law.offset, park, options.ccd_max_probes);
+  const AccdResult<double> r = pair_toi<K>(p0, p1, pair.law.offset, park, options.ccd_max_probes);
   const double toi = r.hit ? r.toi : 1;
   StepBound one{toi, contact_kind<K>(), pair_key(pair.vertex), 1, r.probes, r.capped, toi == 0};
   combine_bounds(out, one);
@@ -112,7 +112,7 @@ std::optional<ContactSystem::Overlap> ContactSystem::Data::pair_overlap(const Po
                                                                         IndexPair index) const {
   const ContactPair<K> pair = contact_pair<K>(surface, index);
   const auto points = gather(x, pair.vertex);
-  if (pair_box_distance<K>(points) > pair.law.offset) return std::nullopt;
+  if (farther_than<K>(points, pair.law.offset)) return std::nullopt;
   const double gap = closest_points<K, double>(points).d - pair.law.offset;
   if (gap > 0) return std::nullopt;
   return Overlap{contact_kind<K>(), pair_key(pair.vertex), gap, {}};

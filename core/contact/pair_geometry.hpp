@@ -2,6 +2,7 @@
 // share.
 #pragma once
 
+#include <algorithm>
 #include <array>
 
 #include "core/contact/aabb.hpp"
@@ -52,6 +53,31 @@ double pair_box_distance(const Points&... points) {
   };
   (add(points), ...);
   return box_distance(a, b);
+}
+
+/// True when a plane between the two primitives proves that their distance, however it is rounded, is more
+/// than `reach`; false proves nothing. A few steps of Gilbert's method on the differences of their points,
+/// which settle nearly every pair that is not close: a tenth of the cost of the closest points.
+template <PairKind K>
+bool farther_than(const Mat<double, 3, pair_points(K)>& points, double reach) {
+  constexpr int N = pair_points(K), split = pair_split(K), steps = 4;
+  const Mat<double, 3, N> x = points.colwise() - points.col(0);
+  // closest points, and what follows here, are right to a few eps of the pair's size
+  const double level = reach + 1e-12 * (reach + x.cwiseAbs().maxCoeff());
+  Vec3d r =
+      x.template leftCols<split>().rowwise().mean() - x.template rightCols<N - split>().rowwise().mean();
+  for (int step = 0; step < steps; ++step) {
+    const Vec<double, N> height = x.transpose() * r;
+    int i = 0, j = split;  // the points nearest to such a plane with normal r
+    for (int k = 1; k < split; ++k) i = height[k] < height[i] ? k : i;
+    for (int k = split + 1; k < N; ++k) j = height[k] > height[j] ? k : j;
+    const double room = height[i] - height[j], r_sq = r.squaredNorm();
+    if (room > 0 && room * room > level * level * r_sq) return true;
+    // on to the point nearest to the origin between r and the difference of those two
+    const Vec3d to = x.col(i) - x.col(j) - r;
+    r += std::min(1.0, (r_sq - room) / to.squaredNorm()) * to;
+  }
+  return false;
 }
 
 /// Calls f.template operator()<K>(candidates of kind K) for the four kinds, in a fixed order.

@@ -31,7 +31,7 @@ template <PairKind K>
 void RowBuilder::add_pair(const Positions& x, IndexPair index, Part& part) const {
   ContactPair<K> pair = contact_pair<K>(surface_, index);
   const auto points = gather(x, pair.vertex);
-  if (pair_box_distance<K>(points) > pair.law.d_hat + pair.law.offset) return;
+  if (farther_than<K>(points, pair.law.d_hat + pair.law.offset)) return;
   const auto closest = closest_points<K, double>(points);
   if (closest.d - pair.law.offset >= pair.law.d_hat) return;
   pair.law.d_hat = row_d_hat<K>(scene_, pair);

@@ -34,7 +34,7 @@ struct Shape {
   void* self = nullptr;
 };
 
-/// What the shape is evaluated on; part of a formulation's identity (DESIGN section 3).
+/// What the shape is evaluated on; part of a formulation's identity (docs/design.md).
 ///   gap: b = f(d; d_hat).   squared_gap: b = f(d^2; d_hat^2) / d_hat^2, derivatives in d.
 enum class Argument { gap, squared_gap };
 

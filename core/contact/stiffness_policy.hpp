@@ -10,7 +10,7 @@
 namespace bb {
 
 enum class Refresh { per_iteration, per_step };  // when kappa is computed anew
-enum class MassTerm { paper, inertia, none };    // DESIGN section 3, stiffness policies
+enum class MassTerm { paper, inertia, none };    // docs/design.md, Stiffness policies
 
 /// Columns of n contact rows, free vertices only; row r owns slots 4 r .. 4 r + n_free[r].
 struct StiffnessBatch {
@@ -50,12 +50,13 @@ class StiffnessPolicy {
   virtual void start(const StiffnessGlobals&) {}
   /// kappa (N/m) of every row. Requires start() first when needs_globals().
   virtual void fill(const StiffnessBatch& rows, double* kappa) const = 0;
-  /// Called after each accepted step with the smallest gap of every row relative to the stop level `park`
-  /// (m): lets a policy adapt between steps.
+  /// Called after each accepted step with one pair: of those that have a row at the end of this step and of
+  /// the one before and whose gap shrinks, the pair whose gap before was smallest. Lets a policy adapt
+  /// between steps.
   struct StepEnd {
-    double min_gap = 0;       // m, over rows; infinity without contacts
+    double min_gap = 0;       // m; infinity when no pair shrinks
     double min_gap_prev = 0;  // m, of the step before
-    double park = 0;          // m
+    double park = 0;          // m, stop level of the pair's motions
   };
   virtual void end_step(const StepEnd&) {}
 

@@ -44,10 +44,10 @@ struct Surface {
   bool adjacent(int vertex, const std::array<int, 2>& edge) const;
   /// No common vertex; all that 3D pairs ask for.
   static bool disjoint(int vertex, const std::array<int, 3>& triangle) {
-    return vertex != triangle[0] && vertex != triangle[1] && vertex != triangle[2];
+    return (vertex != triangle[0]) & (vertex != triangle[1]) & (vertex != triangle[2]);
   }
   static bool disjoint(const std::array<int, 2>& a, const std::array<int, 2>& b) {
-    return a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1];
+    return (a[0] != b[0]) & (a[0] != b[1]) & (a[1] != b[0]) & (a[1] != b[1]);
   }
 
  private:

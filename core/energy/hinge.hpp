@@ -109,14 +109,11 @@ BB_HD T hinge_value(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle) {
   return stiffness / T(2) * deviation * deviation;
 }
 
-/// Energy, gradient and Hessian k (grad theta grad theta^T + (theta - theta0) grad^2 theta). Psd: exact
-/// projection of the 12 x 12 matrix, done on the 9 x 9 matrix left when the three translations, its null
-/// vectors, are split off by an orthonormal basis. Not finite when a triangle has no area. Host-device: yes.
+/// hinge_terms of a deviation theta - theta0 that is known. Lanes: yes.
 template <class T>
-BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle,
-                                      Projection projection) {
+BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T deviation,
+                                         Projection projection) {
   const HingeAngleTerms<T> angle = hinge_angle_terms<T>(x);
-  const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
   const Mat<T, 9, 9> reduced = stiffness * (angle.grad * angle.grad.transpose() + deviation * angle.hess);
   Mat<T, 4, 3> difference;  // (e, a, b) = difference^T (e0, e1, v0, v1)
   difference << T(-1), T(-1), T(-1), T(1), T(0), T(0), T(0), T(1), T(0), T(0), T(0), T(1);
@@ -129,7 +126,7 @@ BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T re
                                            difference(i, 1) * angle.grad.template segment<3>(3) +
                                            difference(i, 2) * angle.grad.template segment<3>(6));
   }
-  if (projection == Projection::none || deviation == T(0)) {  // k grad grad^T has no negative eigenvalue
+  if (projection == Projection::none || !any(!(deviation == T(0)))) {  // k grad grad^T is PSD as it stands
     out.hess = lift_points<T, 4>(difference, reduced);
   } else {
     Mat<T, 4, 3> basis;  // orthonormal, at right angles to (1, 1, 1, 1)
@@ -139,6 +136,16 @@ BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T re
     out.hess = lift_points<T, 4>(basis, project_psd<T, 9>(lift_points<T, 3>(to_basis, reduced)));
   }
   return out;
+}
+
+/// Energy, gradient and Hessian k (grad theta grad theta^T + (theta - theta0) grad^2 theta). Psd: exact
+/// projection of the 12 x 12 matrix, done on the 9 x 9 matrix left when the three translations, its null
+/// vectors, are split off by an orthonormal basis. Not finite when a triangle has no area. Host-device: yes.
+template <class T>
+BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle,
+                                      Projection projection) {
+  const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
+  return hinge_terms_at<T>(x, stiffness, deviation, projection);
 }
 
 }  // namespace bb

@@ -3,8 +3,39 @@
 
 #include "core/energy/element_loop.hpp"
 #include "core/energy/hinge.hpp"
+#include "core/math/lanes.hpp"
 
 namespace bb {
+
+namespace {
+
+// The projection's chain of square roots and divisions bounds a hinge: four run side by side.
+constexpr std::size_t kLanes = 4;
+using Real = Lanes<double, kLanes>;
+
+struct HingeGroup {
+  Vec<Real, 3> x[4];
+  Real stiffness, deviation;
+
+  void set(std::size_t lane, const Vec3d (&points)[4], double k, double turned) {
+    for (int i = 0; i < 4; ++i) {
+      for (int c = 0; c < 3; ++c) x[i][c].v[lane] = points[i][c];
+    }
+    stiffness.v[lane] = k;
+    deviation.v[lane] = turned;
+  }
+};
+
+void store(const ElementTerms<Real, 12>& terms, std::size_t first, std::size_t n, LocalTerms& out) {
+  for (std::size_t lane = 0; lane < n; ++lane) {
+    const std::size_t e = first + lane;
+    out.energy[e] = terms.energy.v[lane];
+    for (std::size_t k = 0; k < 12; ++k) out.grad[12 * e + k] = terms.grad.data()[k].v[lane];
+    for (std::size_t k = 0; k < 144; ++k) out.hess[144 * e + k] = terms.hess.data()[k].v[lane];
+  }
+}
+
+}  // namespace
 
 HingeBatch::HingeBatch(std::span<const std::array<int, 4>> hinges, std::vector<double> stiffness,
                        std::vector<double> rest_angle)
@@ -23,9 +54,15 @@ void HingeBatch::values(const Positions& x, double* energy) const {
 
 void HingeBatch::derivatives(const Positions& x, LocalTerms& out) const {
   out.resize(size(), width());
-  for_each_element(size(), [&](std::size_t e) {
-    const Points<4> p(x, vertices_, e);
-    store_terms(hinge_terms<double>(p.x, stiffness_[e], rest_angle_[e], Projection::psd), e, out);
+  for_each_element((size() + kLanes - 1) / kLanes, [&](std::size_t g) {
+    const std::size_t first = kLanes * g, n = std::min(kLanes, size() - first);
+    HingeGroup group;
+    for (std::size_t lane = 0; lane < kLanes; ++lane) {
+      const std::size_t e = first + std::min(lane, n - 1);  // lanes beyond the end repeat the last hinge
+      const Points<4> p(x, vertices_, e);
+      group.set(lane, p.x, stiffness_[e], hinge_deviation<double>(hinge_angle<double>(p.x), rest_angle_[e]));
+    }
+    store(hinge_terms_at<Real>(group.x, group.stiffness, group.deviation, Projection::psd), first, n, out);
   });
 }
 

@@ -2,24 +2,35 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
+#include "core/math/select.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
+
+/// The power of two in (m/2, m] for a finite m > 0, else 1; never so small that its inverse overflows.
+/// Host-device.
+template <class T>
+BB_HD inline T power_of_two_below(T m) {
+  using std::frexp, std::ldexp;
+  if (!(m > 0)) return T(1);
+  int exponent = 0;
+  frexp(m, &exponent);
+  constexpr int least = std::numeric_limits<T>::min_exponent + 2;
+  return ldexp(T(1), exponent > least ? exponent - 1 : least);
+}
 
 /// The power of two in (m/2, m], m the largest |A_ij|; 1 for the zero matrix. Keeps squares of entries of A /
 /// scale from over- and underflowing.   Host-device.
 template <class T, int R, int C>
 BB_HD inline T power_of_two_scale(const Mat<T, R, C>& A) {
-  using std::abs, std::frexp, std::ldexp;
-  T largest = 0;
+  using std::abs;
+  T largest(0);
   for (int j = 0; j < C; ++j) {
-    for (int i = 0; i < R; ++i) largest = largest < abs(A(i, j)) ? abs(A(i, j)) : largest;
+    for (int i = 0; i < R; ++i) largest = select(largest < abs(A(i, j)), abs(A(i, j)), largest);
   }
-  if (!(largest > 0)) return T(1);
-  int exponent = 0;
-  frexp(largest, &exponent);
-  return ldexp(T(1), exponent - 1);
+  return power_of_two_below(largest);
 }
 
 }  // namespace bb

@@ -100,18 +100,19 @@ BB_HD inline void jacobi_eigen(Mat<T, N, N>& a, Mat<T, N, N>& vectors) {
 
 }  // namespace detail
 
-/// A = vectors diag(values) vectors^T of the symmetric part of A.
-/// @param values  ascending; error a few eps of the largest |A_ij|; with N <= 4 of the value itself when A is
-///                well scaled
+/// A = vectors diag(values) vectors^T of the symmetric part of A, the eigenvalues in no order.
+/// @param values  error a few eps of the largest |A_ij|; with N <= 4 of the value itself when A is well
+/// scaled
 /// @param vectors orthonormal columns (det +-1)
-/// Errors: none for finite A; a non-finite A gives non-finite values.   Host-device.   Cost: O(N^3); no
-/// allocation.
+/// Errors: none for finite A; a non-finite A gives non-finite values.   Host-device; lanes from N = 5 on.
+/// Cost: O(N^3); no allocation.
 template <class T, int N>
-BB_HD inline void sym_eigen(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, N>& vectors) {
+BB_HD inline void eigen_unsorted(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, N>& vectors) {
   const T unit = power_of_two_scale(A);
+  const T half = T(0.5) / unit;  // exact
   Mat<T, N, N> a;
   for (int j = 0; j < N; ++j) {
-    for (int i = 0; i < N; ++i) a(i, j) = (A(i, j) / unit + A(j, i) / unit) / 2;
+    for (int i = j; i < N; ++i) a(i, j) = a(j, i) = A(i, j) * half + A(j, i) * half;
   }
   if constexpr (N <= 4) {
     detail::jacobi_eigen<T, N>(a, vectors);
@@ -120,6 +121,12 @@ BB_HD inline void sym_eigen(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, 
     detail::tridiagonal_eigen<T, N>(a, values, vectors);
   }
   values *= unit;
+}
+
+/// eigen_unsorted with the eigenvalues ascending. One number, no lanes.
+template <class T, int N>
+BB_HD inline void sym_eigen(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, N>& vectors) {
+  eigen_unsorted<T, N>(A, values, vectors);
   detail::sort_ascending(values, vectors);
 }
 

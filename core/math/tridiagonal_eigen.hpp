@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/select.hpp"
 #include "core/math/types.hpp"
 
 namespace bb::detail {
@@ -14,21 +15,22 @@ namespace bb::detail {
 template <class T, int N>
 struct Reflection {
   Vec<T, N> v = Vec<T, N>::Zero();  // entries before `first` are 0
-  T beta = 0, target = 0;
+  T beta = T(0), target = T(0);
 
   BB_HD Reflection() = default;
   BB_HD Reflection(const Mat<T, N, N>& a, int column) {
     using std::sqrt;
     const int first = column + 1;
-    T below = 0;
+    T below(0);
     for (int i = first + 1; i < N; ++i) below += a(i, column) * a(i, column);
     target = a(first, column);
-    if (below == 0) return;  // not for NaN, which has to come through
+    const MaskOf<T> done = below == T(0);  // not for NaN, which has to come through
+    if (!any(!done)) return;
     const T length = sqrt(below + target * target);
     for (int i = first + 1; i < N; ++i) v[i] = a(i, column);
-    v[first] = target > 0 ? target + length : target - length;
-    beta = 2 / (below + v[first] * v[first]);
-    target = target > 0 ? -length : length;
+    v[first] = select(target > T(0), target + length, target - length);
+    beta = select(done, T(0), T(2) / (below + v[first] * v[first]));
+    target = select(done, target, select(target > T(0), -length, length));
   }
 };
 
@@ -39,26 +41,26 @@ BB_HD inline void tridiagonalise(Mat<T, N, N>& a, Vec<T, N>& d, Vec<T, N>& e, Ma
   for (int k = 0; k + 2 < N; ++k) {
     const Reflection<T, N> r = reflections[k] = Reflection<T, N>(a, k);
     e[k] = r.target;
-    if (r.beta == 0) continue;
+    if (!any(!(r.beta == T(0)))) continue;
     Vec<T, N> p = Vec<T, N>::Zero();
     for (int j = k + 1; j < N; ++j) {
       for (int i = k + 1; i < N; ++i) p[i] += r.v[j] * a(i, j);
     }
     p *= r.beta;
-    const Vec<T, N> w = p - (r.beta / 2 * r.v.dot(p)) * r.v;
+    const Vec<T, N> w = p - (r.beta / T(2) * r.v.dot(p)) * r.v;
     for (int j = k + 1; j < N; ++j) {
       for (int i = k + 1; i < N; ++i) a(i, j) -= r.v[i] * w[j] + w[i] * r.v[j];
     }
   }
   d = a.diagonal();
   e[N - 2] = a(N - 1, N - 2);
-  e[N - 1] = 0;
+  e[N - 1] = T(0);
   q.setIdentity();
   for (int k = N - 3; k >= 0; --k) {
     const Reflection<T, N>& r = reflections[k];
-    if (r.beta == 0) continue;
+    if (!any(!(r.beta == T(0)))) continue;
     for (int j = k + 1; j < N; ++j) {
-      T sum = 0;
+      T sum(0);
       for (int i = k + 1; i < N; ++i) sum += r.v[i] * q(i, j);
       sum *= r.beta;
       for (int i = k + 1; i < N; ++i) q(i, j) -= sum * r.v[i];
@@ -66,56 +68,71 @@ BB_HD inline void tridiagonalise(Mat<T, N, N>& a, Vec<T, N>& d, Vec<T, N>& e, Ma
   }
 }
 
-/// One implicit QL sweep on rows first .. last of T with Wilkinson's shift; rotates the columns of q along.
+/// One implicit QL sweep with Wilkinson's shift on rows first .. last of T, last the first row from `first`
+/// on whose rotation is not `active` any more; rotates the columns of q along.
 template <class T, int N>
-BB_HD inline void ql_sweep(int first, int last, Vec<T, N>& d, Vec<T, N>& e, Mat<T, N, N>& q) {
+BB_HD inline void ql_sweep(int first, const MaskOf<T> (&active)[N], Vec<T, N>& d, Vec<T, N>& e,
+                           Mat<T, N, N>& q) {
   using std::sqrt;
-  T g = (d[first + 1] - d[first]) / (2 * e[first]);
-  const T root = sqrt(1 + g * g);
-  g = d[last] - d[first] + e[first] / (g + (g < 0 ? -root : root));
-  T s = 1, c = 1, p = 0;
-  for (int i = last - 1; i >= first; --i) {
+  const T slope = (d[first + 1] - d[first]) / (T(2) * e[first]);
+  const T root = sqrt(T(1) + slope * slope);
+  const T shift = e[first] / (slope + select(slope < T(0), -root, root));
+  T s(1), c(1), p(0), g(0);
+  MaskOf<T> whole = true;  // false from the row on where the matrix splits
+  for (int i = N - 2; i >= first; --i) {
+    if (!any(active[i])) continue;
+    const MaskOf<T> starts = active[i] && !active[i + 1];
+    g = select(starts, d[i + 1] - d[first] + shift, g);
+    const MaskOf<T> reached = active[i] && whole;
     const T f = s * e[i], b = c * e[i];
     const T r = sqrt(f * f + g * g);
-    e[i + 1] = r;
-    if (r == 0) {  // the matrix splits here
-      d[i + 1] -= p;
-      e[last] = 0;
-      return;
-    }
-    const T inverse = 1 / r;
-    s = f * inverse;
-    c = g * inverse;
-    const T shifted = d[i + 1] - p, h = (d[i] - shifted) * s + 2 * c * b;
-    p = s * h;
-    d[i + 1] = shifted + p;
-    g = c * h - b;
+    whole = whole && !(active[i] && r == T(0));
+    const MaskOf<T> turns = active[i] && whole;
+    e[i + 1] = select(reached && !starts, r, select(starts, T(0), e[i + 1]));
+    const T inverse = T(1) / r;
+    const T shifted = d[i + 1] - p;
+    s = select(turns, f * inverse, s);
+    c = select(turns, g * inverse, c);
+    const T h = (d[i] - shifted) * s + T(2) * c * b;
+    p = select(turns, s * h, p);
+    d[i + 1] = select(turns, shifted + p, select(reached, shifted, d[i + 1]));
+    g = select(turns, c * h - b, g);
+    const T cosine = select(turns, c, T(1)), sine = select(turns, s, T(0));
     const Vec<T, N> left = q.col(i), right = q.col(i + 1);
-    q.col(i + 1) = s * left + c * right;
-    q.col(i) = c * left - s * right;
+    q.col(i + 1) = sine * left + cosine * right;
+    q.col(i) = cosine * left - sine * right;
   }
-  d[first] -= p;
-  e[first] = g;
-  e[last] = 0;
+  const MaskOf<T> ends = active[first] && whole;
+  d[first] = select(ends, d[first] - p, d[first]);
+  e[first] = select(ends, g, e[first]);
 }
 
-/// a = q diag(d) q^T, in no order. a: symmetric, largest entry about 1; destroyed. An off-diagonal entry
-/// counts as 0 below rounding of its two neighbours on the diagonal, or below the square of rounding. Cost:
-/// about 2 sweeps an eigenvalue, at most 30.   Source: Golub and Van Loan, Matrix Computations, 8.3;
-/// EISPACK's tred2 and imtql2.
+/// Marks the rotations of the unreduced block that begins at `first`. An off-diagonal entry counts as 0 below
+/// rounding of its two neighbours on the diagonal, or below the square of rounding.
+template <class T, int N>
+BB_HD inline void mark_block(int first, const Vec<T, N>& d, const Vec<T, N>& e, MaskOf<T> (&active)[N]) {
+  using std::abs;
+  const T eps(std::numeric_limits<typename ScalarOf<T>::type>::epsilon());
+  MaskOf<T> coupled = true;
+  for (int i = first; i + 1 < N; ++i) {
+    coupled = coupled && !(abs(e[i]) <= eps / T(4) * (abs(d[i]) + abs(d[i + 1])) + eps * eps);
+    active[i] = coupled;
+  }
+}
+
+/// a = q diag(d) q^T, in no order. a: symmetric, largest entry about 1; destroyed. Cost: about 2 sweeps an
+/// eigenvalue, at most 30.   Source: Golub and Van Loan, Matrix Computations, 8.3; EISPACK's tred2 and
+/// imtql2.
 template <class T, int N>
 BB_HD inline void tridiagonal_eigen(Mat<T, N, N>& a, Vec<T, N>& d, Mat<T, N, N>& q) {
-  using std::abs;
-  constexpr T eps = std::numeric_limits<T>::epsilon();
   Vec<T, N> e;
   tridiagonalise<T, N>(a, d, e, q);
-  for (int first = 0; first < N; ++first) {
+  MaskOf<T> active[N] = {};
+  for (int first = 0; first + 1 < N; ++first) {
     for (int sweep = 0; sweep < 30; ++sweep) {
-      int last = first;
-      while (last + 1 < N && !(abs(e[last]) <= eps / 4 * (abs(d[last]) + abs(d[last + 1])) + eps * eps))
-        ++last;
-      if (last == first) break;
-      ql_sweep<T, N>(first, last, d, e, q);
+      mark_block<T, N>(first, d, e, active);
+      if (!any(active[first])) break;
+      ql_sweep<T, N>(first, active, d, e, q);
     }
   }
 }

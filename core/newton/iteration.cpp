@@ -2,9 +2,25 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace bb {
+namespace {
+
+constexpr double settled_kappa = 0.01;    // a change below it leaves Newton alone
+constexpr int unsettled_iterations = 10;  // that many above it in a row are a cycle, not a transient
+
+std::string describe_unsettled(const StepReport& step) {
+  char text[160];
+  std::snprintf(text, sizeof text,
+                "kappa does not settle: refreshed in every iteration, it still changes by a factor of %.3g "
+                "after %d iterations",
+                1 + step.kappa_change, step.iterations);
+  return text;
+}
+
+}  // namespace
 
 StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& used, Positions& target) {
   task.integrator->predict(*task.history, task.dt, used);
@@ -41,6 +57,7 @@ IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, S
   report.gap_min = system.state().gap_min;
   report.max_stretch = system.max_stretch();
   report.limit_tension = system.limit_tension_max();
+  report.kappa_change = system.kappa_change();
   report.gap_min_rel = std::numeric_limits<double>::infinity();
   const auto common = [&report](const auto& rows, bool& first) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -91,6 +108,8 @@ void finish_iteration(StepReport& step, const IterationReport& report, StepObser
   step.factorizations += report.linear.factorized;
   step.analyses += report.linear.analyzed;
   step.accepted_by_rounding += report.accepted_by_rounding;
+  step.kappa_unsettled = report.kappa_change > settled_kappa ? step.kappa_unsettled + 1 : 0;
+  step.kappa_change = report.kappa_change;
   step.alpha_min = std::min(step.alpha_min, report.alpha);
   step.alpha_ccd_min = std::min(step.alpha_ccd_min, report.alpha_ccd);
   step.ccd_queries += report.bound.queries;
@@ -137,10 +156,12 @@ void measure_end(NewtonSystem& system, StepReport& step) {
                        step.status == StepStatus::line_search_failed ||
                        step.status == StepStatus::not_descent;
   if (!stalled) return;
+  const bool cycling = step.kappa_unsettled >= unsettled_iterations;
+  if (cycling && step.detail.empty()) step.detail = describe_unsettled(step);
   PhaseTimes ignored;
   system.assemble(ignored);  // the rows that were accepted last and their gradients, of one state
   system.max_stretch();      // and the gaps of the limit
-  step.overload = system.contact_overload();
+  if (!cycling) step.overload = system.contact_overload();  // what a kappa that moves can carry is no number
   step.limit_overload = system.limit_overload();
 }
 

@@ -1,4 +1,4 @@
-// Gradient and matrix of the current state, in the order that DESIGN section 3 fixes: elastic, snapshot H,
+// Gradient and matrix of the current state, in the order that docs/design.md fixes: elastic, snapshot H,
 // inertia, limit, contact; and the solve with prescribed motion lifted to the right-hand side.
 #include <algorithm>
 #include <cmath>
@@ -20,12 +20,14 @@ void NewtonSystem::assemble(PhaseTimes& times) {
     for (std::size_t i = 0; i < elements_.size(); ++i) blocks_->add_elements(i, local_[i].hess);
     if (need_elastic_) elastic_ = blocks_->values();
   }
-  refresh_limit_stiffness();
+  const double limit_change = refresh_limit_stiffness();
   gather_gradient();
   {
     const ScopedPhase timer(times, Phase::stiffness);
     start_policy();
-    stiffness_.refresh(state_.rows, state_.mollified, *blocks_, elastic_);
+    const double change = stiffness_.refresh(state_.rows, state_.mollified, *blocks_, elastic_);
+    kappa_change_ = first_iterate_ ? 0 : std::max(change, limit_change);
+    first_iterate_ = false;
   }
   {
     const ScopedPhase timer(times, Phase::contact_terms);
@@ -80,16 +82,18 @@ void NewtonSystem::gather_gradient() {
   }
 }
 
-void NewtonSystem::refresh_limit_stiffness() {
-  if (!limit_) return;
+// Returns the largest relative change of an active element's kappa.
+double NewtonSystem::refresh_limit_stiffness() {
+  if (!limit_) return 0;
   const LimitStiffness& rule = method_.limit_stiffness;
   if (limit_kappa_fresh_ && (rule.kind == LimitStiffness::Kind::fixed || rule.refresh == Refresh::per_step))
-    return;
+    return 0;
   limit_kappa_fresh_ = true;
   if (rule.kind == LimitStiffness::Kind::fixed) {
     limit_->fixed_stiffness(rule.k_s, limit_kappa_.data());
-    return;
+    return 0;
   }
+  limit_kappa_before_ = limit_kappa_;
   limit_hess_.resize(81 * limit_->size());
   Mat<double, 12, 12> block;
   for (std::size_t e = 0; e < limit_->size(); ++e) {
@@ -102,6 +106,16 @@ void NewtonSystem::refresh_limit_stiffness() {
   limit_->elastic_stiffness(terms_.x_n, limit_hess_.data(), scene_.mass.data(), scene_.limit.mass.data(),
                             terms, limit_kappa_.data());
   for (double& kappa : limit_kappa_) kappa *= rule.multiplier;
+  return limit_kappa_change(limit_kappa_before_);
+}
+
+double NewtonSystem::limit_kappa_change(const std::vector<double>& before) const {
+  double change = 0;
+  for (std::size_t e = 0; e < before.size(); ++e) {
+    const double gap = std::min(limit_->gaps()[2 * e], limit_->gaps()[2 * e + 1]);
+    if (gap < scene_.limit.width[e]) change = std::max(change, relative_change(before[e], limit_kappa_[e]));
+  }
+  return change;
 }
 
 // A policy with memory starts at the first iterate that has contacts: sums of grad B with kappa = 1 and grad

@@ -85,6 +85,7 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   stiffness_.begin_step();
   restart_step(prediction, dt);
   limit_kappa_fresh_ = false;
+  first_iterate_ = true;
   state_.x = x_n;
   trial_.x = x_n;
   contacts_.update_candidates(x_n, x_n);

@@ -64,6 +64,9 @@ class NewtonSystem {
   ContactCounts contact_counts() const;
   bool pattern_changed() const { return pattern_changed_; }
   int n_free() const { return blocks_->n_free(); }
+  /// Largest relative change, max / min - 1, of a contact's or limited element's kappa since the line search
+  /// before, in the same step; 0 in a step's first iterate.
+  double kappa_change() const { return kappa_change_; }
   /// Entries of the lower triangle that was solved last.
   std::size_t nnz() const { return nnz_; }
   bool has_limit() const { return limit_ != nullptr; }
@@ -91,7 +94,8 @@ class NewtonSystem {
   void evaluate_shape(ContactTable& rows) const;
   void evaluate_shape(MollifiedTable& rows) const;
   void evaluate_contact_energies(EnergyState& state) const;
-  void refresh_limit_stiffness();
+  double refresh_limit_stiffness();
+  double limit_kappa_change(const std::vector<double>& before) const;
   void assemble_matrix();
   void fill_contact_terms();
   void gather_gradient();
@@ -115,8 +119,9 @@ class NewtonSystem {
 
   std::vector<LocalTerms> local_;
   LocalTerms limit_local_;
-  std::vector<double> limit_kappa_, limit_hess_;
-  bool limit_kappa_fresh_ = false;
+  std::vector<double> limit_kappa_, limit_kappa_before_, limit_hess_;
+  bool limit_kappa_fresh_ = false, first_iterate_ = true;
+  double kappa_change_ = 0;
   std::vector<double> contact_grad_, contact_hess_, mollified_grad_, mollified_hess_;
   Positions gradient_;  // of E
   Positions contact_gradient_;

@@ -25,6 +25,7 @@ struct IterationReport {
   ContactCounts contacts;
   double gap_min = 0, gap_min_rel = 0;  // m, d/d_hat; infinity without contacts
   double kappa_min = 0, kappa_max = 0;  // N/m
+  double kappa_change = 0;              // largest max/min - 1 since the line search before; 0 in iteration 0
   double curvature_max = 0;             // N/m, largest m kappa b''
   double force_max = 0;                 // N, largest kappa |b'| per unit multiplicity
   double limit_tension = 0;             // N/m, largest (1/area) dS_e/dsigma
@@ -42,6 +43,8 @@ struct StepReport {
   std::string detail;  // names the pin, the pair, the linear status
   int iterations = 0, linear_iterations = 0, line_search_trials = 0, factorizations = 0, analyses = 0;
   int accepted_by_rounding = 0;
+  double kappa_change = 0;  // of the last iteration
+  int kappa_unsettled = 0;  // last iterations in a row in which a kappa changed by more than 1 %
   double alpha_min = 1, alpha_ccd_min = 1;
   long long ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, ccd_zero = 0;
   ContactCounts contacts;        // at the end of the step

@@ -76,26 +76,39 @@ void Simulation::remember(const Positions& x, double dt_used) {
   time_ += dt_used;
 }
 
-// A row is a reason to stiffen when it was below 10 park distances at two step ends in a row and is still
-// shrinking.
+// What a policy may double kappa for: of the pairs that stood in a row at two step ends in a row and close
+// further, the one whose larger gap of the two is smallest.
 void Simulation::end_policy_step() {
-  const ContactTable& rows = system_.state().rows;
+  list_pair_gaps(system_.state());
   StiffnessPolicy::StepEnd end;
   end.min_gap = end.min_gap_prev = std::numeric_limits<double>::infinity();
-  std::size_t before = 0;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    while (before < previous_key_.size() && previous_key_[before] < rows.key[r]) ++before;
-    if (before == previous_key_.size() || previous_key_[before] != rows.key[r]) continue;
-    const double park = method_.contact_options.ccd_park * rows.d_hat[r];
-    if (rows.d[r] < previous_gap_[before] && previous_gap_[before] < 10 * park && rows.d[r] < end.min_gap) {
-      end.min_gap = rows.d[r];
-      end.min_gap_prev = previous_gap_[before];
-      end.park = park;
-    }
+  auto before = previous_gaps_.begin();
+  for (const PairGap& now : gaps_) {
+    while (before != previous_gaps_.end() && before->pair < now.pair) ++before;
+    if (before == previous_gaps_.end()) break;
+    if (before->pair != now.pair || !(now.gap < before->gap) || !(before->gap < end.min_gap_prev)) continue;
+    end.min_gap = now.gap;
+    end.min_gap_prev = before->gap;
+    end.park = now.park;
   }
   method_.stiffness->end_step(end);
-  previous_key_ = rows.key;
-  previous_gap_ = rows.d;
+  previous_gaps_.swap(gaps_);
+}
+
+void Simulation::list_pair_gaps(const EnergyState& state) {
+  const double park = method_.contact_options.ccd_park;
+  const ContactTable& rows = state.rows;
+  gaps_.clear();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t i = rows.pair_begin[r]; i < rows.pair_begin[r + 1]; ++i) {
+      gaps_.push_back({rows.pair[i], rows.d[r], park * rows.d_hat[r]});
+    }
+  }
+  const MollifiedTable& mollified = state.mollified;
+  for (std::size_t r = 0; r < mollified.size(); ++r) {
+    gaps_.push_back({mollified.pair[r], mollified.d[r], park * mollified.d_hat[r]});
+  }
+  std::sort(gaps_.begin(), gaps_.end(), [](const PairGap& a, const PairGap& b) { return a.pair < b.pair; });
 }
 
 }  // namespace bb

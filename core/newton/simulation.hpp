@@ -26,6 +26,7 @@ class Simulation {
  private:
   void start_acceleration();
   void end_policy_step();
+  void list_pair_gaps(const EnergyState& state);
   void remember(const Positions& x, double dt_used);
 
   const Scene& scene_;
@@ -37,9 +38,12 @@ class Simulation {
   History history_;
   Prediction prediction_;
   Positions v_next_, a_next_;
-  std::vector<ContactKey>
-      previous_key_;  // rows at the end of the step before, for policies that adapt between steps
-  std::vector<double> previous_gap_;
+  /// Of a pair in a row at a step end, for policies that adapt between steps.
+  struct PairGap {
+    PairId pair;
+    double gap, park;  // m
+  };
+  std::vector<PairGap> gaps_, previous_gaps_;  // by pair
 };
 
 }  // namespace bb

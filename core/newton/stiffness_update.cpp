@@ -78,12 +78,23 @@ void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified
   memory_.complete(rows, missing_);
 }
 
-void StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
-                              const BlockSystem::Values& elastic) {
+double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                                const BlockSystem::Values& elastic) {
+  before_.clear();
+  if (!uniform()) {
+    before_.assign(rows.kappa.begin(), rows.kappa.end());
+    before_.insert(before_.end(), mollified.kappa.begin(), mollified.kappa.end());
+  }
   if (uniform() || policy_.refresh() == Refresh::per_iteration) memory_.clear();
   memory_.recall(rows, mollified, missing_, missing_mollified_);
   fill_missing(rows, mollified, blocks, elastic, false);
   keep(rows, mollified);
+  double change = 0;
+  for (std::size_t i = 0; i < before_.size(); ++i) {
+    const double now = i < rows.size() ? rows.kappa[i] : mollified.kappa[i - rows.size()];
+    change = std::max(change, relative_change(before_[i], now));
+  }
+  return change;
 }
 
 void StiffnessUpdate::freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,

@@ -1,7 +1,8 @@
 // Feeds the contact table to the stiffness policy: when kappa is refreshed, kept, or given to a row that
-// appears during a line search (DESIGN section 3, stiffness policies). Knows no policy by name.
+// appears during a line search (docs/design.md). Knows no policy by name.
 #pragma once
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -19,6 +20,9 @@ struct PolicyColumns {
   StiffnessBatch batch(double dt, double c, bool with_hessian) const;
 };
 
+/// max(a, b) / min(a, b) - 1 of two positive numbers.
+inline double relative_change(double a, double b) { return std::max(a, b) / std::min(a, b) - 1; }
+
 class StiffnessUpdate {
  public:
   /// policy must outlive this object. mass: [n_vertices] kg.
@@ -31,9 +35,10 @@ class StiffnessUpdate {
 
   /// kappa of the rows of a Newton iterate. elastic: values of the elastic matrix H, read only when the
   /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a pair had
-  /// in this step.
-  void refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
-               const BlockSystem::Values& elastic);
+  /// in this step. Returns the largest relative_change of a row's kappa against the value it came with; 0 of
+  /// a policy that gives all rows one kappa.
+  double refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                 const BlockSystem::Values& elastic);
 
   /// kappa of the rows of a trial state: known pairs keep theirs, new ones get the policy's value at d =
   /// d_hat with the same H, so that kappa does not depend on the trial.
@@ -67,7 +72,7 @@ class StiffnessUpdate {
   KappaMemory memory_;
   PolicyColumns columns_;
   std::vector<int> missing_, missing_mollified_;
-  std::vector<double> kappa_;
+  std::vector<double> kappa_, before_;
 };
 
 }  // namespace bb

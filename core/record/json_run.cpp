@@ -95,12 +95,14 @@ Json matching(const MatchingRecord& v) {
             {"pilot_note", v.pilot_note}};
   put(j, "theta", v.theta);
   put(j, "load_N", v.load_N);
+  put(j, "d_hat_m", v.d_hat_m);
   put(j, "limit_load_N_per_m", v.limit_load_N_per_m);
   put(j, "curvature_N_per_m", v.curvature_N_per_m);
   put(j, "limit_curvature", v.limit_curvature);
   put(j, "kappa_N_per_m", v.kappa_N_per_m);
   put(j, "limit_stiffness_N_per_m", v.limit_stiffness_N_per_m);
   put(j, "scale", v.scale);
+  put(j, "limit_scale", v.limit_scale);
   put(j, "capacity_N", v.capacity_N);
   return j;
 }
@@ -227,7 +229,7 @@ Json summary(const Summary& v) {
   j["stiffness"] = stiffness(v.stiffness);
   j["cond"] = conditioning(v);
   put(j, "wall_s", v.wall_s);
-  put(j, "solve_s", v.time.solve_s());
+  put(j, "solve_s", v.solve_s);
   j["time"] = fields::phases(v.time);
   j["peak_rss_bytes"] = v.peak_rss_bytes;
   j["state_hash"] = v.state_hash;

@@ -15,7 +15,7 @@
 namespace bb {
 
 /// MODEL.REVISION.ADDITION: removed or changed meaning, widened, added. Readers check the first number.
-inline constexpr const char* kRunSchemaVersion = "1.0.0";
+inline constexpr const char* kRunSchemaVersion = "1.0.1";
 inline constexpr const char* kTraceSchemaVersion = "1.0.0";
 
 struct Ids {
@@ -96,19 +96,21 @@ struct StepRecord {
   Number contact_overload, limit_overload;  // load / capacity of a step that made no progress
   Number kinetic_J, elastic_J, limit_J, contact_J, gravity_J;  // at the end of the step
   long long crossings = 0, violations = 0, unproven = 0, inverted = 0;
-  PhaseTimes time;
+  PhaseTimes time;  // of the pass `time`; empty without it
 };
 
-/// How kappa was chosen (DESIGN section 2.1).
+/// How kappa was chosen (docs/design.md, Matching).
 struct MatchingRecord {
   std::string rule = "as_given";
   Number theta;
   Number load_N;              // per unit multiplicity, from the pilot
+  Number d_hat_m;             // at which it was matched: of the contact that carried a pilot's load
   Number limit_load_N_per_m;  // the strain limit's
   Number curvature_N_per_m, limit_curvature;
   Number kappa_N_per_m;            // chosen; missing when the policy makes its own
   Number limit_stiffness_N_per_m;  // k_s chosen
   Number scale;                    // s applied to a policy that makes its own kappa
+  Number limit_scale;              // s applied to a limit policy that makes its own kappa_e
   Number capacity_N;               // largest load the shape carries at that kappa; missing when unbounded
   std::string load_source =
       "none";  // of load_N: given, pilot, static_weight (the pilot met no contact), none
@@ -167,8 +169,8 @@ struct Summary {
     std::map<std::string, int> statuses;
   };
   std::map<std::string, Conditioning> cond;
-  Number wall_s;    // of the pass `time`
-  PhaseTimes time;  // valid as time only in the pass `time`
+  Number wall_s, solve_s;  // of the pass `time`; solve_s: analysis, factorisation and solution
+  PhaseTimes time;         // of the pass `time`; empty without it
   std::uint64_t peak_rss_bytes = 0;
   std::string state_hash;  // sha256 of the final positions, little-endian float64
 };

@@ -64,12 +64,13 @@ struct TraceRow {
   Number gap_min_m;    // over rows
   Number gap_min_rel;  // the same row's d / d_hat
   Number kappa_min_N_per_m, kappa_max_N_per_m;
+  Number kappa_change_rel;               // largest max/min - 1 of a kappa since the line search before
   Number contact_curvature_max_N_per_m;  // max m kappa b''
   Number contact_load_max_N;             // max kappa |b'| per unit multiplicity
   Number max_stretch;                    // max sigma - 1
   Number limit_load_max_N_per_m;         // max (1/area) dS_e/dsigma
 
-  PhaseTimes time;
+  PhaseTimes time;  // of the same iteration in the pass `time`; empty without it
 };
 
 }  // namespace bb

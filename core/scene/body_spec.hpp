@@ -12,7 +12,7 @@
 
 namespace bb {
 
-/// Hard limit 1 + onset + width on the singular values of a membrane element (DESIGN section 3).
+/// Hard limit 1 + onset + width on the singular values of a membrane element (docs/design.md).
 struct StrainLimitSpec {
   double onset = 0.01, width = 0.01;  // 1
   /// A bare limit means onset = width = limit/2.

@@ -92,6 +92,7 @@ std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
           {"preconditioner", &preconditioner},
           {"conditioning", &conditioning},
           {"audit", &audit},
+          {"trace", &trace},
           {"frames", &frames},
           {"matrices", &matrices}};
 }
@@ -122,6 +123,8 @@ Plan make_plan(const Scene& scene, const PlanOptions& options) {
       item(options.iterative_solver, "the linear solver is iterative", "the linear solver is direct");
   plan.conditioning = item(options.diagnose, "passes.diagnose", "passes.diagnose is off");
   plan.audit = item(options.audit, "passes.audit", "passes.audit is off");
+  plan.trace = item(options.trace, "a run is observed",
+                    "only the pass time: passes.diagnose, passes.audit or output.frames_every leave one");
   plan.frames = item(options.frames, "output.frames_every", "output.frames_every is 0");
   plan.matrices = item(options.matrices, "output.matrices", "output.matrices is off");
   return plan;

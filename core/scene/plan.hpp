@@ -23,7 +23,7 @@ struct PlanOptions {
   bool policy_needs_submatrix = false;  // contact or limit policy reads H
   bool collision_free_steps = true;     // false for a step solver without a step bound
   bool iterative_solver = false;        // linear solver is iterative
-  bool diagnose = false, audit = false, frames = false, matrices = false;
+  bool diagnose = false, audit = false, trace = false, frames = false, matrices = false;
 };
 
 struct Plan {
@@ -45,6 +45,7 @@ struct Plan {
   PlanItem preconditioner;    // iterative solver only
   PlanItem conditioning;      // condition numbers
   PlanItem audit;             // exact penetration checks
+  PlanItem trace;             // one line a Newton iteration
   PlanItem frames, matrices;  // files beside the record
 
   /// (name, item) in the order above; the names are those of the members.

@@ -9,6 +9,40 @@
 
 namespace bb::cli {
 
+namespace {
+
+/// What the config says of kappa, beside the name of the policy.
+std::string stiffness_text(const PolicyConfig& policy) {
+  std::string out = policy.name;
+  const auto add = [&out](const char* what, const std::optional<double>& value, const char* unit) {
+    if (value) out += fmt::format(", {} {:g} {}", what, *value, unit);
+  };
+  add("kappa", policy.kappa, "N/m");
+  add("k_s", policy.k_s, "N/m");
+  add("at least", policy.kappa_min, "N/m");
+  add("at most", policy.kappa_max, "N/m");
+  add("doubled below", policy.doubling_gap, "m");
+  if (policy.scale != 1) out += fmt::format(", times {:g}", policy.scale);
+  return out;
+}
+
+void print_formulation(const RunConfig& config) {
+  const FormulationConfig& contact = config.formulation;
+  const StrainLimitConfig& limit = config.strain_limit;
+  fmt::print("contact   {} on {}, d_hat {:g} m, {}\n", contact.shape, to_string(contact.argument),
+             contact.d_hat, stiffness_text(contact.stiffness_policy));
+  if (limit.enabled) {
+    fmt::print("limit     {} on {}, onset {:g}, width {:g}, {}\n", limit.shape, to_string(limit.argument),
+               limit.limit.onset, limit.limit.width, stiffness_text(limit.stiffness_policy));
+  }
+  fmt::print("matching  {}{}\n\n", to_string(config.matching.rule),
+             config.matching.rule == MatchingRule::as_given
+                 ? ""
+                 : fmt::format(", theta {:g}: a given stiffness is replaced", config.matching.theta));
+}
+
+}  // namespace
+
 int check(const RunVerb& verb) {
   const RunConfig config = load_config(verb.config, verb.set);
   const Scene scene = build_scene(config);
@@ -26,6 +60,7 @@ int explain(const RunVerb& verb) {
   fmt::print("{}\n  {} vertices ({} prescribed), {} membrane triangles, {} steps of {} s\n\n",
              run_label(config), scene.n_vertices(), scene.pins.size(), scene.membrane.triangles.size(),
              config.time.steps, config.time.dt);
+  print_formulation(config);
   for (const bool needed : {true, false}) {
     fmt::print("{}\n", needed ? "runs" : "skipped");
     for (const auto& [name, item] : plan.items()) {

@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "core/math/error.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/sweep_spec.hpp"
@@ -48,14 +49,25 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
   ProgressLine line(common.progress);
   fmt::print("{}\n", summary_header());
   std::fflush(stdout);
+  std::vector<Violation> violations;  // a case that cannot be run keeps nobody else from running
   for (const SweepCase& one : spec.cases) {
     const std::filesystem::path folder = out / folder_name(one);
     if (!verb.again && std::filesystem::exists(folder / "run.json")) {
       fmt::print("{:<44} already there\n", spec.name + ": " + one.label);
       continue;
     }
-    run_case(spec, one, folder, common, line);
+    try {
+      run_case(spec, one, folder, common, line);
+    } catch (const ConfigError& error) {
+      line.clear();
+      fmt::print("{:<44} no record\n", spec.name + ": " + one.label);
+      for (Violation v : error.violations()) {
+        v.where = verb.spec + " [" + one.label + "] " + v.where;
+        violations.push_back(std::move(v));
+      }
+    }
   }
+  if (!violations.empty()) throw ConfigError(violations);
   return exit_ok;
 }
 

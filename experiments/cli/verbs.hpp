@@ -1,4 +1,4 @@
-// The verbs of the program: plain options in, exit code out (DESIGN section 6). main.cpp parses the command
+// The verbs of the program: plain options in, exit code out (docs/design.md). main.cpp parses the command
 // line.
 #pragma once
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "barriers/named_entries.hpp"
+#include "barriers/shapes/registry.hpp"
+#include "experiments/config/policy_request.hpp"
 #include "experiments/config/reader.hpp"
 
 namespace bb {
@@ -12,10 +15,16 @@ namespace {
 struct Complain {
   const std::string& source;
   std::vector<Violation>& violations;
-  void operator()(const char* pointer, std::string found, std::string allowed) const {
+  void operator()(const std::string& pointer, std::string found, std::string allowed) const {
     violations.push_back({source + "#" + pointer, std::move(found), std::move(allowed)});
   }
 };
+
+/// Nothing for a name that was complained of where it stands.
+std::optional<BarrierFunction> barrier_of(const std::string& shape, Argument argument) {
+  const Shape* found = find_shape(shape);
+  return found ? std::optional<BarrierFunction>({*found, argument}) : std::nullopt;
+}
 
 void check_step_solver(const RunConfig& config, const Complain& complain) {
   const StepSolverConfig& solver = config.step_solver;
@@ -36,12 +45,96 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
   }
 }
 
-/// kappa of ipc_adaptive starts from the inertia of the contacts, which a quasi-static step does not have.
+/// The policy judges its own settings; what matching will supply stands as 1.
 void check_policy(const RunConfig& config, const Complain& complain) {
-  if (config.integrator != "quasi_static" || config.formulation.stiffness_policy.name != "ipc_adaptive")
+  const PolicyConfig& policy = config.formulation.stiffness_policy;
+  if (!find_entry(stiffness_policies(), policy.name)) return;  // complained of where it stands
+  try {
+    make_policy(policy_request(policy, policy.kappa.value_or(1)));
+  } catch (const ConfigError& error) {
+    for (const Violation& v : error.violations()) complain("/formulation/" + v.where, v.found, v.allowed);
+  }
+}
+
+/// kappa of ipc_adaptive starts from the inertia of the contacts and the curvature at d_hat/2, unless both of
+/// its bounds are given.
+void check_adaptive_start(const RunConfig& config, const Complain& complain) {
+  const PolicyConfig& policy = config.formulation.stiffness_policy;
+  if (policy.name != "ipc_adaptive" || (policy.kappa_min && policy.kappa_max)) return;
+  const std::string name = "/formulation/stiffness_policy/name", found = "\"ipc_adaptive\"";
+  if (config.integrator == "quasi_static") {
+    complain(name, found,
+             "another policy, or kappa_min_N_per_m and kappa_max_N_per_m: it starts from inertia, and the "
+             "integrator is quasi_static");
+  }
+  const double d_hat = config.formulation.d_hat;
+  const auto barrier = barrier_of(config.formulation.shape, config.formulation.argument);
+  if (barrier && !(barrier->eval(d_hat / 2, d_hat).d2b > 0)) {
+    complain(name, found,
+             fmt::format("another policy, or kappa_min_N_per_m and kappa_max_N_per_m: it starts from "
+                         "b''(d_hat/2), and that of {} on {} is not > 0",
+                         config.formulation.shape, to_string(config.formulation.argument)));
+  }
+}
+
+/// A barrier that matching asks for its slope at theta or its curvature at 1/2 of its width.
+struct MatchedBarrier {
+  const std::string& shape;
+  Argument argument;
+  double width;
+  const char* load_pointer;
+  std::optional<double> load;
+  const PolicyConfig& policy;
+};
+
+bool usable(double value) { return std::isfinite(value) && value > 0; }
+
+void check_matched_barrier(const MatchingConfig& matching, const MatchedBarrier& m,
+                           const Complain& complain) {
+  const auto function = barrier_of(m.shape, m.argument);
+  if (!function) return;  // complained of where it stands
+  const std::string name = fmt::format("{} on {}", m.shape, to_string(m.argument));
+  if (matching.rule == MatchingRule::equal_curvature) {
+    if (usable(function->eval(m.width / 2, m.width).d2b)) return;
+    complain("/matching/rule", "\"equal_curvature\"",
+             fmt::format("equal_force or as_given: b'' of {} is not > 0 at half its width", name));
     return;
-  complain("/formulation/stiffness_policy/name", "\"ipc_adaptive\"",
-           "another policy: it needs inertia, and the integrator is quasi_static");
+  }
+  const double slope = -function->eval(matching.theta * m.width, m.width).db;
+  if (!usable(slope)) {
+    complain("/matching/theta", fmt::format("{}", matching.theta),
+             fmt::format("a value where b' of {} is finite and not 0", name));
+  } else if (m.load && !usable(*m.load / slope)) {
+    complain(m.load_pointer, fmt::format("{}", *m.load),
+             fmt::format("a load that a stiffness of {} can be matched to", name));
+  }
+}
+
+/// Without weight no pilot can start: loads have to be given, and a policy that makes its own stiffness has
+/// nobody to ask about the contact that carried them.
+void check_pilot(const RunConfig& config, const MatchedBarrier& m, const Complain& complain) {
+  if (config.scene.gravity.norm() > 0) return;
+  if (!m.load) complain(m.load_pointer, "nothing", "a load: without gravity no pilot can start");
+  if (needs_kappa(m.policy)) return;
+  complain("/matching/rule", fmt::format("\"{}\"", to_string(config.matching.rule)),
+           fmt::format("as_given: policy {} is matched by a pilot, and without gravity none can start",
+                       m.policy.name));
+}
+
+void check_matching(const RunConfig& config, const Complain& complain) {
+  if (config.matching.rule == MatchingRule::as_given) return;
+  const FormulationConfig& contact = config.formulation;
+  const StrainLimitConfig& limit = config.strain_limit;
+  std::vector<MatchedBarrier> matched{{contact.shape, contact.argument, contact.d_hat, "/matching/load_N",
+                                       config.matching.load, contact.stiffness_policy}};
+  if (limit.enabled) {
+    matched.push_back({limit.shape, limit.argument, limit.limit.width, "/matching/limit_load_N_per_m",
+                       config.matching.limit_load, limit.stiffness_policy});
+  }
+  for (const MatchedBarrier& m : matched) {
+    check_matched_barrier(config.matching, m, complain);
+    check_pilot(config, m, complain);
+  }
 }
 
 /// Above this tolerance nothing falls: the first Newton step is already below it.
@@ -75,6 +168,8 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   const Complain complain{source, violations};
   check_step_solver(config, complain);
   check_policy(config, complain);
+  check_adaptive_start(config, complain);
+  check_matching(config, complain);
   check_tolerance(config, complain);
   check_protocol(config, complain);
   if (config.passes.diagnose && config.diagnose.tier == 0 && config.linear_solver.name != "pcg") {

@@ -35,9 +35,12 @@ std::vector<std::string> preset_names() {
 }
 
 /// A policy of another name replaces the preset's; a new kappa replaces the old one whatever its convention.
+/// The bounds of an adaptive kappa (kappa_min, kappa_max) are no conventions: each stands for itself.
 void lay_over_policy(json& base, const json& over) {
   if (over.contains("name") && over["name"] != base.value("name", json())) base = json::object();
-  const auto is_kappa = [](const std::string& key) { return key.starts_with("kappa_"); };
+  const auto is_kappa = [](const std::string& key) {
+    return key.starts_with("kappa_") && !key.starts_with("kappa_min_") && !key.starts_with("kappa_max_");
+  };
   for (const auto& item : over.items()) {
     if (!is_kappa(item.key())) continue;
     for (auto it = base.begin(); it != base.end();) it = is_kappa(it.key()) ? base.erase(it) : std::next(it);

@@ -72,6 +72,9 @@ void check_policy_keys(const json& object, const std::string& name, const std::s
     refuse("elastic_term");
   }
   if (silent) refuse("refresh");
+  if (name != "ipc_adaptive") {
+    for (const char* key : {"kappa_min_N_per_m", "kappa_max_N_per_m", "doubling_gap_m"}) refuse(key);
+  }
 }
 
 void read_policy(const json& object, const std::string& pointer, const Reader& reader,
@@ -88,6 +91,10 @@ void read_policy(const json& object, const std::string& pointer, const Reader& r
   policy.mass_term = require_mass_term(object.value("mass_term", "paper"));
   policy.elastic_term = object.value("elastic_term", true);
   policy.refresh = require_refresh(object.value("refresh", "per_iteration"));
+  if (policy.name != "ipc_adaptive") return;
+  policy.kappa_min = optional_number(object, "kappa_min_N_per_m");
+  policy.kappa_max = optional_number(object, "kappa_max_N_per_m");
+  policy.doubling_gap = optional_number(object, "doubling_gap_m");
 }
 
 /// The limit follows the contact's policy where it can.

@@ -57,9 +57,11 @@ struct PolicyConfig {
   std::optional<double> kappa;  // N/m; fixed. Absent: the matching rule supplies it
   std::optional<double> k_s;    // N/m; fixed, strain limit only. Absent: the matching rule supplies it
   double scale = 1;             // factor on every kappa of the policy
-  MassTerm mass_term = MassTerm::paper;      // elasticity_inclusive
-  bool elastic_term = true;                  // elasticity_inclusive
-  Refresh refresh = Refresh::per_iteration;  // elasticity_inclusive
+  MassTerm mass_term = MassTerm::paper;        // elasticity_inclusive
+  bool elastic_term = true;                    // elasticity_inclusive
+  Refresh refresh = Refresh::per_iteration;    // elasticity_inclusive
+  std::optional<double> kappa_min, kappa_max;  // N/m, ipc_adaptive: bounds instead of the policy's own
+  std::optional<double> doubling_gap;          // m, ipc_adaptive: instead of the policy's own
 };
 
 struct FormulationConfig {
@@ -79,8 +81,12 @@ struct StrainLimitConfig {
 };
 
 enum class MatchingRule { as_given, equal_force, equal_curvature };
+inline const char* to_string(MatchingRule rule) {
+  constexpr const char* names[] = {"as_given", "equal_force", "equal_curvature"};
+  return names[static_cast<int>(rule)];
+}
 
-/// DESIGN section 2.1. What is absent and needed is found by a pilot run.
+/// docs/design.md, Matching. What is absent and needed is found by a pilot run.
 struct MatchingConfig {
   MatchingRule rule = MatchingRule::as_given;
   double theta = 0.1;                     // gap / d_hat at which forces are equal

@@ -116,6 +116,9 @@ json to_json(const PolicyConfig& policy, bool limit) {
   json out = {{"name", policy.name}, {"scale", policy.scale}};
   if (policy.kappa) out["kappa_N_per_m"] = *policy.kappa;
   if (policy.k_s) out["k_s_N_per_m"] = *policy.k_s;
+  if (policy.kappa_min) out["kappa_min_N_per_m"] = *policy.kappa_min;
+  if (policy.kappa_max) out["kappa_max_N_per_m"] = *policy.kappa_max;
+  if (policy.doubling_gap) out["doubling_gap_m"] = *policy.doubling_gap;
   if (policy.name == "fixed" || policy.name == "ipc_adaptive") return out;
   out["refresh"] = to_string(policy.refresh);
   if (policy.name != "elasticity_inclusive") return out;
@@ -144,8 +147,7 @@ json to_json(const StrainLimitConfig& limit) {
 }
 
 json to_json(const MatchingConfig& matching) {
-  constexpr const char* rules[] = {"as_given", "equal_force", "equal_curvature"};
-  json out = {{"rule", rules[static_cast<int>(matching.rule)]}, {"theta", matching.theta}};
+  json out = {{"rule", to_string(matching.rule)}, {"theta", matching.theta}};
   if (matching.load) out["load_N"] = *matching.load;
   if (matching.limit_load) out["limit_load_N_per_m"] = *matching.limit_load;
   if (matching.curvature) out["curvature_N_per_m"] = *matching.curvature;

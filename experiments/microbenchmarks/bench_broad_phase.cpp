@@ -30,7 +30,7 @@ void build(benchmark::State& state) {
   for (auto _ : state) {
     Bvh bvh;
     bvh.update(stack.boxes, stack.surface.edges.free);
-    benchmark::DoNotOptimize(bvh.nodes().data());
+    benchmark::DoNotOptimize(bvh.primitive(0));
   }
   count_items(state, stack.boxes.size());
 }
@@ -41,7 +41,7 @@ void refit(benchmark::State& state) {
   bvh.update(stack.boxes, stack.surface.edges.free);
   for (auto _ : state) {
     bvh.update(stack.boxes, stack.surface.edges.free);
-    benchmark::DoNotOptimize(bvh.nodes().data());
+    benchmark::DoNotOptimize(bvh.primitive(0));
   }
   if (bvh.builds() != 1) state.SkipWithError("the tree was built again");
   count_items(state, stack.boxes.size());

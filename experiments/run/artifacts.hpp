@@ -13,8 +13,8 @@ namespace bb {
 class ArtifactWriter {
  public:
   ArtifactWriter(std::filesystem::path folder, const Scene& scene);
-  /// frames/step_000010.ply: all surfaces and segments of the scene. Errors: ConfigError or RecordError when
-  /// it cannot be written whole.
+  /// frames/step_000010.ply: all surfaces and segments of the scene. Errors: RecordError when it cannot be
+  /// written whole.
   void frame(const Positions& x, int step);
   /// matrices/step_000010_iteration_002.mtx: Matrix Market, symmetric, lower triangle, 17 digits.
   void matrix(const ReducedSystem& system, int step, int iteration);

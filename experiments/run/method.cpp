@@ -1,48 +1,18 @@
 #include "experiments/run/method.hpp"
 
 #include "barriers/shapes/registry.hpp"
-#include "barriers/stiffness/registry.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/math/error.hpp"
+#include "experiments/config/policy_request.hpp"
 
 namespace bb {
 namespace {
 
 double require_stiffness(const std::optional<double>& calibrated, const std::optional<double>& given,
-                         const char* where, const char* allowed) {
+                         const char* where) {
   if (calibrated) return *calibrated;
   if (given) return *given;
-  throw ConfigError(where, "nothing", allowed);
-}
-
-std::unique_ptr<StiffnessPolicy> contact_policy(const PolicyConfig& policy, const Calibration& calibration) {
-  StiffnessPolicyConfig out;
-  out.name = policy.name;
-  if (needs_kappa(policy)) {
-    out.kappa =
-        require_stiffness(calibration.kappa, policy.kappa, "/formulation/stiffness_policy/kappa_N_per_m",
-                          "a number > 0, or a matching rule other than as_given");
-  }
-  out.mass_term = policy.mass_term;
-  out.elastic_term = policy.elastic_term;
-  out.refresh = policy.refresh;
-  out.multiplier = policy.scale * calibration.scale;
-  return make_policy(out);
-}
-
-LimitStiffness limit_policy(const PolicyConfig& policy, const Calibration& calibration) {
-  LimitStiffness out;
-  if (needs_kappa(policy)) {
-    out.k_s = policy.scale * require_stiffness(calibration.k_s, policy.k_s,
-                                               "/strain_limit/stiffness_policy/k_s_N_per_m",
-                                               "a number > 0, or a matching rule other than as_given");
-    return out;
-  }
-  out.kind = LimitStiffness::Kind::elasticity_inclusive;
-  out.mass_term = policy.mass_term;
-  out.refresh = policy.refresh;
-  out.multiplier = policy.scale;
-  return out;
+  throw ConfigError(where, "nothing", "a number > 0, or a matching rule other than as_given");
 }
 
 StepSolverOptions step_solver_options(const RunConfig& config) {
@@ -59,15 +29,37 @@ StepSolverOptions step_solver_options(const RunConfig& config) {
 
 }  // namespace
 
-bool needs_kappa(const PolicyConfig& policy) { return policy.name == "fixed"; }
+std::unique_ptr<StiffnessPolicy> make_contact_policy(const PolicyConfig& policy,
+                                                     const Calibration& calibration) {
+  double kappa = 0;
+  if (needs_kappa(policy)) {
+    kappa = require_stiffness(calibration.kappa, policy.kappa, "/formulation/stiffness_policy/kappa_N_per_m");
+  }
+  return make_policy(policy_request(policy, kappa, calibration.scale));
+}
+
+LimitStiffness make_limit_policy(const PolicyConfig& policy, const Calibration& calibration) {
+  LimitStiffness out;
+  if (!calibration.limited) return out;
+  if (needs_kappa(policy)) {
+    out.k_s = policy.scale *
+              require_stiffness(calibration.k_s, policy.k_s, "/strain_limit/stiffness_policy/k_s_N_per_m");
+    return out;
+  }
+  out.kind = LimitStiffness::Kind::elasticity_inclusive;
+  out.mass_term = policy.mass_term;
+  out.refresh = policy.refresh;
+  out.multiplier = policy.scale * calibration.limit_scale;
+  return out;
+}
 
 Method make_method(const RunConfig& config, const Calibration& calibration) {
   Method method;
   method.contact = {require_shape(config.formulation.shape), config.formulation.argument};
-  method.stiffness = contact_policy(config.formulation.stiffness_policy, calibration);
+  method.stiffness = make_contact_policy(config.formulation.stiffness_policy, calibration);
   if (config.strain_limit.enabled) {
     method.limit = {require_shape(config.strain_limit.shape), config.strain_limit.argument};
-    method.limit_stiffness = limit_policy(config.strain_limit.stiffness_policy, calibration);
+    method.limit_stiffness = make_limit_policy(config.strain_limit.stiffness_policy, calibration);
   }
   method.contact.literal = method.limit.literal = config.step_solver.name == "article_literal";
   method.hessian_mode = config.contact.hessian_mode;

@@ -1,6 +1,7 @@
 // From a run's config and what matching found to the Method that Newton runs.
 #pragma once
 
+#include <memory>
 #include <optional>
 
 #include "core/newton/method.hpp"
@@ -13,12 +14,16 @@ struct Calibration {
   std::optional<double> kappa;  // N/m, fixed contact stiffness
   std::optional<double> k_s;    // N/m, fixed limit stiffness
   double scale = 1;             // factor on a contact policy that makes its own kappa
+  double limit_scale = 1;       // factor on a limit policy that makes its own kappa_e
+  bool limited = true;          // false: no element has a limit, so that its stiffness is never read
 };
 
 /// Errors: ConfigError when a fixed stiffness is neither given nor calibrated.
 Method make_method(const RunConfig& config, const Calibration& calibration);
 
-/// True when the contact (limit) stiffness is a number that somebody has to supply.
-bool needs_kappa(const PolicyConfig& policy);
+/// The two policies alone. Errors: as make_method.
+std::unique_ptr<StiffnessPolicy> make_contact_policy(const PolicyConfig& policy,
+                                                     const Calibration& calibration);
+LimitStiffness make_limit_policy(const PolicyConfig& policy, const Calibration& calibration);
 
 }  // namespace bb

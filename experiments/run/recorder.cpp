@@ -32,6 +32,11 @@ double smallest_relative_gap(const EnergyState& state) {
   return smallest;
 }
 
+// Empty beyond the end: a run that was timed may have stopped earlier.
+PhaseTimes time_of(const std::vector<PhaseTimes>& times, std::size_t n) {
+  return n < times.size() ? times[n] : PhaseTimes{};
+}
+
 void keep_smaller(Number& kept, double value) {
   if (!std::isinf(value) && (!kept.finite() || value < kept.value)) kept = value;
 }
@@ -119,6 +124,8 @@ TraceRow Recorder::trace_row(const IterationReport& report) const {
   const bool touching = report.contacts.total() > 0;
   row.kappa_min_N_per_m = touching ? Number(report.kappa_min) : Number::missing("no_contacts");
   row.kappa_max_N_per_m = touching ? Number(report.kappa_max) : Number::missing("no_contacts");
+  row.kappa_change_rel =
+      report.iteration > 0 ? Number(report.kappa_change) : Number::missing("first_iteration");
   row.contact_curvature_max_N_per_m =
       touching ? Number(report.curvature_max) : Number::missing("no_contacts");
   row.contact_load_max_N = touching ? Number(report.force_max) : Number::missing("no_contacts");
@@ -127,12 +134,13 @@ TraceRow Recorder::trace_row(const IterationReport& report) const {
       report.max_stretch > 0 ? Number(report.limit_tension) : Number::missing("no_limit");
   row.n_free = report.n_free;
   row.nnz = report.nnz;
-  row.time = report.times;
   return row;
 }
 
 void Recorder::on_iteration(const IterationReport& report) {
+  seen_.iterations.push_back(report.times);
   rows_.push_back(trace_row(report));
+  rows_.back().time = time_of(reported_->iterations, seen_.iterations.size() - 1);
   for (const ConditionSample& sample : samples_) {
     const std::string key =
         std::string(to_string(sample.stage)) + "/" + std::string(to_string(sample.scaling));
@@ -187,6 +195,8 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
   const int every = config_.output.frames_every;
   if (artifacts_ && every > 0 && report.step % every == 0) artifacts_->frame(x, report.step);
   StepRecord step = step_record(system, report);
+  seen_.steps.push_back(report.times);
+  step.time = time_of(reported_->steps, seen_.steps.size() - 1);
   note_contacts(system, report.step);
   keep_smaller(step_gap_, report.gap_min);
   keep_smaller(step_gap_rel_, smallest_relative_gap(system.state()));

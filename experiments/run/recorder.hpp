@@ -20,12 +20,22 @@
 
 namespace bb {
 
+/// Phase times of a run, step by step and iteration by iteration.
+struct RunTimes {
+  std::vector<PhaseTimes> steps, iterations;
+};
+
 class Recorder final : public StepObserver {
  public:
   /// trace and artifacts may be null (nothing is written). record is filled step by step.
   Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace,
            ArtifactWriter* artifacts = nullptr);
   ~Recorder() override;
+
+  /// What record and trace say of times: until this is called, what this recorder sees. A run that is looked
+  /// at reports those of the one that was timed, or none. `times` must outlive the recorder.
+  void report_times_of(const RunTimes& times) { reported_ = &times; }
+  const RunTimes& times() const { return seen_; }
 
   void on_matrix(NewtonSystem& system, int step, int iteration) override;
   void on_iteration(const IterationReport& report) override;
@@ -62,6 +72,8 @@ class Recorder final : public StepObserver {
   Number probed_;  // of the iteration in progress
   std::vector<double> newton_, linear_, probes_, contacts_, gaps_;
   Number step_gap_, step_gap_rel_;
+  RunTimes seen_;
+  const RunTimes* reported_ = &seen_;
 };
 
 }  // namespace bb

@@ -14,8 +14,8 @@
 #include "core/record/writer.hpp"
 #include "core/scene/plan.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/calibration.hpp"
 #include "experiments/run/outcome.hpp"
-#include "experiments/run/pilot.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/recorder.hpp"
 #include "experiments/run/start_check.hpp"
@@ -73,7 +73,7 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.shape = config.formulation.shape;
   labels.argument = std::string(to_string(config.formulation.argument));
   labels.stiffness_policy = config.formulation.stiffness_policy.name;
-  labels.matching_rule = record.matching.rule;
+  labels.matching_rule = to_string(config.matching.rule);
   labels.integrator = config.integrator;
   labels.step_solver = config.step_solver.name;
   labels.linear_solver = config.linear_solver.name;
@@ -107,6 +107,7 @@ void fill_plan(const RunConfig& config, const Scene& scene, RunRecord& record) {
   if (!config.passes.time) record.skipped.push_back({"time", "not_requested"});
   if (!config.passes.diagnose) record.skipped.push_back({"cond", "not_requested"});
   if (!config.passes.audit) record.skipped.push_back({"audit", "not_requested"});
+  if (!plan.trace.needed) record.skipped.push_back({"trace", "not_requested"});
 }
 
 void add_check(RunRecord& record, const std::string& name, Number value, Number bound, bool pass) {
@@ -153,9 +154,9 @@ void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
 void run_passes(const RunConfig& config, const Scene& scene, const Calibration& calibration,
                 const RunOptions& options, RunRecord& record) {
   PassResult timed, seen;
-  const bool look =
-      config.passes.diagnose || config.passes.audit || !config.passes.time || config.output.frames_every > 0;
+  const bool look = has_observed_run(config);
   RunRecord timing;  // the time pass keeps a record of its own: only its times and hash are used
+  RunTimes times;
   if (config.passes.time) {
     RunConfig bare = config;
     bare.passes = {true, false, false};
@@ -163,12 +164,14 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     timed = run_pass(bare, scene, calibration, options, "time", observer);
     observer.finish();
     record.samples["wall_s"] = {timed.wall_s};
+    times = observer.times();
   }
-  TraceWriter trace(options.folder);
-  ArtifactWriter artifacts(options.folder, scene);
   Verdict verdict = timed.verdict;
   if (look) {
+    TraceWriter trace(options.folder);
+    ArtifactWriter artifacts(options.folder, scene);
     Recorder observer(config, scene, record, &trace, &artifacts);
+    observer.report_times_of(times);
     seen = run_pass(config, scene, calibration, options, "diagnose", observer);
     observer.finish();
     trace.finish();
@@ -177,12 +180,13 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     if (observer.penetrated())
       merge(verdict, Outcome::penetration, "the audit found a crossing or a violation");
     if (observer.unproven()) merge(verdict, Outcome::unproven, "the audit could not certify every motion");
-    if (config.passes.time) record.summary.time = timing.summary.time;
   }
   const PassResult& main = look ? seen : timed;
   record.status.outcome = verdict.outcome;
   record.status.detail = verdict.detail;
-  record.summary.wall_s = config.passes.time ? Number(timed.wall_s) : Number::missing("not_requested");
+  const Number untimed = Number::missing("not_requested");
+  record.summary.wall_s = config.passes.time ? Number(timed.wall_s) : untimed;
+  record.summary.solve_s = config.passes.time ? Number(record.summary.time.solve_s()) : untimed;
   record.summary.state_hash = main.state_hash;
   if (main.stiffness.kappa > 0) {
     record.summary.stiffness = {main.stiffness.kappa_start, main.stiffness.kappa, main.stiffness.doublings,
@@ -191,25 +195,34 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
   fill_validity(scene, record, timed.state_hash, seen.state_hash);
 }
 
-// From the scene to the outcome. A scene that cannot start is an outcome too.
-void simulate(const RunConfig& config, const RunOptions& options, RunRecord& record) {
+// From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome too.
+// Returns whether there was a first step.
+bool simulate(const RunConfig& config, const RunOptions& options, RunRecord& record) {
   std::optional<Scene> scene;
   try {
     scene = build_scene(config);
   } catch (const ConfigError& error) {
     record.status.outcome = Outcome::invalid_scene;
     record.status.detail = error.what();
-    return;
+    return false;
   }
   fill_scene(config, *scene, record);
   fill_plan(config, *scene, record);
   if (const auto overlap = initial_intersection(config, *scene)) {
     record.status.outcome = Outcome::initial_intersection;
     record.status.detail = *overlap;
-    return;
+    return false;
   }
-  const Calibration calibration = calibrate(config, *scene, options, record.matching);
+  Calibration calibration;
+  try {
+    calibration = calibrate(config, *scene, options, record.matching);
+  } catch (const ConfigError& error) {  // of what only the scene or its pilot can tell: no first step
+    record.status.outcome = Outcome::invalid_scene;
+    record.status.detail = error.what();
+    return false;
+  }
   run_passes(config, *scene, calibration, options, record);
+  return true;
 }
 
 }  // namespace
@@ -234,7 +247,11 @@ RunRecord run_config(const RunConfig& config, const RunOptions& options) {
   fill_ids(record);
   check_writable(options.folder);
 
-  simulate(config, options, record);
+  const bool started = simulate(config, options, record);
+  if (!started || !has_observed_run(config)) {  // a trace that lies there is of an earlier run
+    std::error_code none_there;
+    std::filesystem::remove(options.folder / "trace.jsonl", none_there);
+  }
   fill_labels(config, options, record);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();

@@ -77,7 +77,6 @@ StepRecord step_record(const NewtonSystem& system, const StepReport& report) {
   step.limit_overload = converged ? Number::missing("converged") : Number(report.limit_overload);
   fill_contact(system.state(), report, step);
   fill_energies(system, report, step);
-  step.time = report.times;
   return step;
 }
 

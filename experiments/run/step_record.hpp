@@ -7,8 +7,8 @@
 
 namespace bb {
 
-/// Everything but the smallest gaps over the accepted states and the audit's counts, which only a Recorder
-/// that saw the whole step knows. Cost: one pass over rows and elements.
+/// Everything but the smallest gaps over the accepted states, the audit's counts and the times, which only a
+/// Recorder that saw the whole step knows. Cost: one pass over rows and elements.
 StepRecord step_record(const NewtonSystem& system, const StepReport& report);
 
 }  // namespace bb

@@ -17,7 +17,7 @@ def _trace_line(step: int, iteration: int, scale: float) -> dict:
     last = iteration == 1
     return {
         "step": step, "iteration": iteration, "linear_iterations": 10 + step, "probe_pcg_iterations": 10.0 + step, "gap_min_rel": 0.5,
-        "contacts": CONTACTS, "time": {},
+        "kappa_change_rel": None if iteration == 0 else 0.0, "contacts": CONTACTS, "time": {},
         "cond": [estimate("none", scale * 10.0 ** (step + 1), "lower_bound" if last and step == 2 else "ok"),
                  estimate("block_jacobi", scale * (step + 1))],
     }
@@ -48,6 +48,13 @@ def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: s
     lines = [_trace_line(step, iteration, scale) for step in range(3) for iteration in range(2)]
     (folder / "trace.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
     return record
+
+
+def write_cycle(folder: Path, change: float) -> None:
+    """Appends a step 3 in which the gap swings between two values and kappa changes by `change` each time."""
+    lines = [_trace_line(3, iteration, 1.0) | {"gap_min_rel": (0.1, 0.6)[iteration % 2], "kappa_change_rel": change} for iteration in range(12)]
+    with (folder / "trace.jsonl").open("a") as trace:
+        trace.writelines(json.dumps(line) + "\n" for line in lines)
 
 
 def write_set(root: Path) -> None:

@@ -8,10 +8,10 @@ import pandas as pd
 import pytest
 
 from analysis import style
-from analysis.figures import barrier_shapes, condition, demo, gaps, iterations
+from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle
 from analysis.load import load
 from analysis.table import as_text, summary_table
-from synthetic import write_set
+from synthetic import write_cycle, write_set
 
 
 @pytest.fixture
@@ -58,6 +58,24 @@ def test_gaps_and_iterations_beside_the_figures_are_the_steps(records, tmp_path)
     pcg = work[(work["what"] == "probe_pcg") & (work["series"] == "log")]
     assert list(newton["count"]) == [2, 2, 2]
     assert list(pcg["count"]) == [10, 10, 11, 11, 12, 12]
+
+
+def test_a_kappa_that_does_not_settle_is_drawn_in_its_step(tmp_path):
+    write_set(tmp_path / "runs")
+    write_cycle(tmp_path / "runs" / "quadratic", change=0.8)
+    table = pd.read_csv(kappa_cycle.figure(load(tmp_path / "runs"), "strip", tmp_path)[2])
+
+    assert set(table["step"]) == {3}
+    assert list(table["kappa_change_rel"]) == [0.8] * 12
+    assert list(table["gap_min_rel"]) == [0.1, 0.6] * 6
+
+
+@pytest.mark.parametrize(("run", "change"), [("quadratic", 1e-3), ("log", 0.8)])
+def test_a_kappa_that_settles_or_a_run_that_ended_ok_is_no_cycle(tmp_path, run, change):
+    write_set(tmp_path / "runs")
+    write_cycle(tmp_path / "runs" / run, change=change)
+
+    assert kappa_cycle.figure(load(tmp_path / "runs"), "strip", tmp_path) == []
 
 
 def test_failed_and_not_comparable_runs_are_hollow_and_named(records):

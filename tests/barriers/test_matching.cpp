@@ -73,12 +73,6 @@ TEST(Matching, EqualCurvatureRoundTrips) {
   EXPECT_DOUBLE_EQ(match_equal_curvature(barrier("cubic"), 7, 10, 0.5), 5.0);  // b'' = 2
 }
 
-TEST(Matching, PolicyScaleBringsThePolicyToTheLoad) {
-  const BarrierFunction fn = barrier("cubic");
-  const double s = match_policy_scale(fn, 1e-3, 0.2, 75, 0.1);
-  EXPECT_LT(relative(-s * 75 * fn.eval(1e-4, 1e-3).db, 0.2), 1e-15);
-}
-
 TEST(Matching, RefusesWhatHasNoAnswer) {
   EXPECT_THROW(match_equal_force(barrier("log"), 1e-3, 0), ConfigError);
   EXPECT_THROW(match_equal_force(barrier("log"), 0, 1), ConfigError);
@@ -86,7 +80,6 @@ TEST(Matching, RefusesWhatHasNoAnswer) {
   EXPECT_THROW(match_equal_curvature(barrier("log"), 1e-3, -1), ConfigError);
   // on the square the cubic's curvature is negative near contact
   EXPECT_THROW(match_equal_curvature(barrier("cubic", Argument::squared_gap), 1e-3, 1, 0.1), ConfigError);
-  EXPECT_THROW(match_policy_scale(barrier("log"), 1e-3, 1, 0), ConfigError);
 }
 
 /// Each published form, written out, equals kappa b of the shape it is mapped to.

@@ -43,7 +43,15 @@ TEST(ConfigId, EverySettingChangesIt) {
 }
 
 TEST(ConfigId, AResolvedConfigIsItsOwnResolution) {
-  std::vector<json> configs = {hang_config(), bodies_config()};
+  const json bounds = {{"name", "ipc_adaptive"},
+                       {"kappa_min_N_per_m", 5},
+                       {"kappa_max_N_per_m", 50},
+                       {"doubling_gap_m", 1e-9}};
+  std::vector<json> configs = {hang_config(), bodies_config(),
+                               with(hang_config(), "/formulation/stiffness_policy", bounds)};
+  EXPECT_EQ(json::parse(resolved_json(parsed(configs.back())))["formulation"]["stiffness_policy"],
+            json::parse(R"({"name": "ipc_adaptive", "scale": 1.0, "kappa_min_N_per_m": 5.0,
+                            "kappa_max_N_per_m": 50.0, "doubling_gap_m": 1e-9})"));
   for (const auto& file : std::filesystem::directory_iterator(configs_folder() + "/formulations")) {
     configs.push_back(with(hang_config(), "/formulation", file.path().stem().string()));
   }

@@ -27,6 +27,58 @@ TEST(Contradictions, ASettingThatThePolicyDoesNotRead) {
       policy + "/mass_term", "\"none\"", "fixed does not read it");
 }
 
+TEST(Contradictions, BoundsOfAnAdaptiveKappa) {
+  const std::string policy = "/formulation/stiffness_policy";
+  expect_violation(with(hang_config(), policy,
+                        {{"name", "ipc_adaptive"}, {"kappa_min_N_per_m", 5}, {"kappa_max_N_per_m", 4}}),
+                   policy + "/kappa_min_N_per_m", "5", "at most kappa_max_N_per_m = 4");
+  expect_violation(with(hang_config(), policy, {{"name", "elasticity_inclusive"}, {"doubling_gap_m", 1e-9}}),
+                   policy + "/doubling_gap_m", "1e-09", "elasticity_inclusive does not read it");
+}
+
+TEST(Contradictions, APolicyThatCouldNotStart) {
+  const std::string policy = "/formulation/stiffness_policy";
+  expect_violation(with(hang_config(), policy,
+                        {{"name", "elasticity_inclusive"}, {"mass_term", "none"}, {"elastic_term", false}}),
+                   policy, "mass_term none with elastic_term false", "else kappa is 0");
+
+  json slow = with(hang_config(), "/formulation", "ipc2020");
+  slow["integrator"] = {{"name", "quasi_static"}};
+  expect_violation(slow, policy + "/name", "\"ipc_adaptive\"", "it starts from inertia");
+  json concave = with(hang_config(), policy, {{"name", "ipc_adaptive"}});
+  concave["formulation"]["shape"] = "quadratic";
+  concave["formulation"]["argument"] = "squared_gap";
+  expect_violation(concave, policy + "/name", "\"ipc_adaptive\"", "quadratic on squared_gap is not > 0");
+  for (json config : {with(slow, "/formulation", {{"name", "ipc2020"}}), concave}) {
+    config["formulation"]["stiffness_policy"] = {
+        {"name", "ipc_adaptive"}, {"kappa_min_N_per_m", 4}, {"kappa_max_N_per_m", 5}};
+    EXPECT_EQ(parsed(config).formulation.stiffness_policy.kappa_max, 5);
+  }
+}
+
+TEST(Contradictions, MatchingWithoutWhatItAsksFor) {
+  json config = with(hang_config(), "/formulation/argument", "squared_gap");
+  config["formulation"]["shape"] = "quadratic";
+  config["strain_limit"] = {{"shape", "log"}, {"argument", "gap"}};
+  config["matching"] = {{"rule", "equal_curvature"}};
+  expect_violation(config, "/matching/rule", "\"equal_curvature\"", "quadratic on squared_gap is not > 0");
+  config["matching"] = {{"rule", "equal_force"}};
+  EXPECT_EQ(parsed(config).matching.rule, MatchingRule::equal_force);
+  config["matching"]["limit_load_N_per_m"] = 1e308;
+  config["strain_limit"]["limit"] = 1e-8;
+  expect_violation(config, "/matching/limit_load_N_per_m", "1e+308", "a load that a stiffness");
+}
+
+TEST(Contradictions, APilotWithoutWeight) {
+  json config = with(bodies_config(), "/scene/gravity_m_per_s2", {0, 0, 0});
+  config["matching"] = {{"rule", "equal_force"}};
+  expect_violation(config, "/matching/load_N", "nothing", "without gravity no pilot can start");
+  config["matching"]["load_N"] = 1;
+  EXPECT_EQ(parsed(config).matching.load, 1);
+  config["formulation"]["name"] = "cubic_dynamic";
+  expect_violation(config, "/matching/rule", "\"equal_force\"", "as_given: policy elasticity_inclusive");
+}
+
 TEST(Contradictions, AConventionOfKappaOfAnotherFormulation) {
   const std::string policy = "/formulation/stiffness_policy";
   expect_violation(with(hang_config(), policy, {{"name", "fixed"}, {"kappa_a_J", 5}}), policy + "/kappa_a_J",

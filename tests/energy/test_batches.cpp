@@ -102,23 +102,60 @@ TEST(SpringBatch, StoresTheElementTerms) {
   expect_stored(out, 5, terms.energy, terms.grad, terms.hess);
 }
 
+struct HingeStrip {
+  Strip strip{80};
+  std::vector<double> stiffness, rest_angle;
+  HingeStrip() : stiffness(strip.hinges.size(), 0.5), rest_angle(hinge_angles(strip.hinges, strip.rest)) {
+    for (std::size_t e = 0; e < stiffness.size(); ++e) stiffness[e] += 0.01 * static_cast<double>(e);
+  }
+  /// The first n hinges, beginning at `first`.
+  HingeBatch batch(std::size_t first, std::size_t n) const {
+    const auto cut = [&](const std::vector<double>& column) {
+      return std::vector<double>(&column[first], &column[first] + n);
+    };
+    return {{&strip.hinges[first], n}, cut(stiffness), cut(rest_angle)};
+  }
+};
+
+/// Four hinges run side by side, summed in another order than one alone: equal to rounding.
 TEST(HingeBatch, StoresTheElementTerms) {
-  const Strip strip(80);
-  std::vector<double> k(strip.hinges.size(), 0.5);
-  k[9] = 0.25;
-  const std::vector<double> rest_angle = hinge_angles(strip.hinges, strip.rest);
-  const HingeBatch batch(strip.hinges, k, rest_angle);
-  expect_consistent(batch, strip.deformed);
+  const HingeStrip hinges;
+  const Positions& x = hinges.strip.deformed;
+  const HingeBatch batch = hinges.batch(0, hinges.stiffness.size());
+  expect_consistent(batch, x);
   LocalTerms out;
-  batch.derivatives(strip.deformed, out);
-  const auto [e0, e1, v0, v1] = strip.hinges[9];
-  const Vec3d x[4] = {strip.deformed.col(e0), strip.deformed.col(e1), strip.deformed.col(v0),
-                      strip.deformed.col(v1)};
-  const auto terms = hinge_terms<double>(x, 0.25, rest_angle[9], Projection::psd);
-  expect_stored(out, 9, terms.energy, terms.grad, terms.hess);
+  batch.derivatives(x, out);
+  for (std::size_t e = 0; e < batch.size(); ++e) {
+    const auto [e0, e1, v0, v1] = hinges.strip.hinges[e];
+    const Vec3d points[4] = {x.col(e0), x.col(e1), x.col(v0), x.col(v1)};
+    const auto terms =
+        hinge_terms<double>(points, hinges.stiffness[e], hinges.rest_angle[e], Projection::psd);
+    EXPECT_EQ(out.energy[e], terms.energy);
+    const Eigen::Map<const Vec<double, 12>> grad(&out.grad[12 * e]);
+    const Eigen::Map<const Mat<double, 12, 12>> hess(&out.hess[144 * e]);
+    ASSERT_GT(terms.grad.norm(), 0);
+    EXPECT_LE((grad - terms.grad).norm(), 1e-14 * terms.grad.norm());
+    EXPECT_LE((hess - terms.hess).norm(), 1e-13 * terms.hess.norm());
+    EXPECT_EQ(hess, hess.transpose());
+  }
   std::vector<double> at_rest(batch.size());
-  batch.values(strip.rest, at_rest.data());
+  batch.values(hinges.strip.rest, at_rest.data());
   EXPECT_EQ(*std::max_element(at_rest.begin(), at_rest.end()), 0);
+}
+
+TEST(HingeBatch, AHingeDoesNotDependOnItsNeighboursInTheGroup) {
+  const HingeStrip hinges;
+  const Positions& x = hinges.strip.deformed;
+  LocalTerms all, part;
+  hinges.batch(0, hinges.stiffness.size()).derivatives(x, all);
+  for (const std::size_t first : {1u, 2u, 3u}) {
+    for (const std::size_t n : {1u, 2u, 3u, 5u, 8u}) {  // groups that are not full too
+      hinges.batch(first, n).derivatives(x, part);
+      EXPECT_TRUE(std::equal(part.energy.begin(), part.energy.end(), &all.energy[first]));
+      EXPECT_TRUE(std::equal(part.grad.begin(), part.grad.end(), &all.grad[12 * first]));
+      EXPECT_TRUE(std::equal(part.hess.begin(), part.hess.end(), &all.hess[144 * first]));
+    }
+  }
 }
 
 TEST(Batches, BadInputIsAConfigError) {

@@ -59,7 +59,7 @@ TEST(plan, follows_every_option) {
   box.motion.velocity = Vec3d(0, 0, 1);
   PlanOptions options;
   options.strain_limit = options.policy_needs_submatrix = options.iterative_solver = true;
-  options.diagnose = options.audit = options.frames = options.matrices = true;
+  options.diagnose = options.audit = options.trace = options.frames = options.matrices = true;
 
   const Plan plan = make_plan(scene_of({body, box}), options);
 

@@ -1,0 +1,105 @@
+// W numbers that are computed side by side, so that an element function templated on its scalar runs for W
+// elements at the price of one. No lane ever depends on another: each holds, bit for bit, what the scalar
+// code would have given.
+#pragma once
+
+#include <cmath>
+
+#include "core/math/scale.hpp"
+#include "core/math/select.hpp"
+#include "core/math/types.hpp"
+
+namespace bb {
+
+template <class T, int W>
+struct VectorOf {
+  typedef T type __attribute__((vector_size(W * sizeof(T))));
+};
+
+/// One truth value a lane; bits of a lane all set or all clear.
+template <class T, int W>
+struct LaneMask {
+  using Vector = typename VectorOf<T, W>::type;
+  using Bits = decltype(Vector() < Vector());
+  Bits bits;
+
+  LaneMask() : bits{} {}
+  LaneMask(Bits b) : bits(b) {}
+  LaneMask(bool b) : bits(b ? ~Bits{} : Bits{}) {}
+  LaneMask operator&&(const LaneMask& other) const { return bits & other.bits; }
+  LaneMask operator||(const LaneMask& other) const { return bits | other.bits; }
+  LaneMask operator!() const { return ~bits; }
+};
+
+template <class T, int W>
+struct Lanes {
+  using Vector = typename VectorOf<T, W>::type;
+  using Mask = LaneMask<T, W>;
+  Vector v;
+
+  Lanes() = default;
+  Lanes(Vector lanes) : v(lanes) {}
+  Lanes(T all) : v(all - Vector{}) {}
+  T operator[](int lane) const { return v[lane]; }
+
+  friend Lanes operator+(const Lanes& a, const Lanes& b) { return a.v + b.v; }
+  friend Lanes operator-(const Lanes& a, const Lanes& b) { return a.v - b.v; }
+  friend Lanes operator*(const Lanes& a, const Lanes& b) { return a.v * b.v; }
+  friend Lanes operator/(const Lanes& a, const Lanes& b) { return a.v / b.v; }
+  Lanes operator-() const { return -v; }
+  Lanes& operator+=(const Lanes& b) { return *this = *this + b; }
+  Lanes& operator-=(const Lanes& b) { return *this = *this - b; }
+  Lanes& operator*=(const Lanes& b) { return *this = *this * b; }
+  Lanes& operator/=(const Lanes& b) { return *this = *this / b; }
+
+  friend Mask operator<(const Lanes& a, const Lanes& b) { return Mask(a.v < b.v); }
+  friend Mask operator>(const Lanes& a, const Lanes& b) { return Mask(a.v > b.v); }
+  friend Mask operator<=(const Lanes& a, const Lanes& b) { return Mask(a.v <= b.v); }
+  friend Mask operator==(const Lanes& a, const Lanes& b) { return Mask(a.v == b.v); }
+};
+
+template <class T, int W>
+struct ScalarOf<Lanes<T, W>> {
+  using type = T;
+};
+
+template <class T, int W>
+Lanes<T, W> select(const LaneMask<T, W>& mask, const Lanes<T, W>& yes, const Lanes<T, W>& no) {
+  return mask.bits ? yes.v : no.v;
+}
+template <class T, int W>
+bool any(const LaneMask<T, W>& mask) {
+  bool out = false;
+  for (int lane = 0; lane < W; ++lane) out = out || mask.bits[lane] != 0;
+  return out;
+}
+
+template <class T, int W>
+Lanes<T, W> sqrt(const Lanes<T, W>& a) {
+  Lanes<T, W> out;
+  for (int lane = 0; lane < W; ++lane) out.v[lane] = std::sqrt(a.v[lane]);
+  return out;
+}
+template <class T, int W>
+Lanes<T, W> abs(const Lanes<T, W>& a) {
+  return select(a < Lanes<T, W>(T(0)), -a, a);
+}
+
+/// Lane by lane, as for a scalar.
+template <class T, int W>
+Lanes<T, W> power_of_two_below(const Lanes<T, W>& a) {
+  Lanes<T, W> out;
+  for (int lane = 0; lane < W; ++lane) out.v[lane] = power_of_two_below(a[lane]);
+  return out;
+}
+
+}  // namespace bb
+
+template <class T, int W>
+struct Eigen::NumTraits<bb::Lanes<T, W>> : Eigen::GenericNumTraits<T> {
+  using Real = bb::Lanes<T, W>;
+  using NonInteger = Real;
+  using Nested = Real;
+  using Literal = Real;
+  enum { RequireInitialization = 0 };
+};

@@ -1,0 +1,83 @@
+"""What each pass may leave: times come from the run that nobody looked at, a trace from the one that somebody did."""
+
+import json
+from pathlib import Path
+
+import pytest
+from test_cli import BLOCK, bench, refused, write
+
+PASSES = {"time only": (True, False), "audit only": (False, True), "both": (True, True)}
+
+
+def run(program: str, out: Path, *passes: bool) -> dict:
+    timed, audited = passes
+    settings = ["--set", f"/passes/time={json.dumps(timed)}", "--set", f"/passes/audit={json.dumps(audited)}"]
+    done = bench(program, "run", BLOCK, "--out", out, "--set", "/time/steps=3", *settings)
+    assert done.returncode == 0, done.stderr
+    return json.loads((out / "run.json").read_text())
+
+
+def trace(out: Path) -> list[dict]:
+    return [json.loads(line) for line in (out / "trace.jsonl").read_text().splitlines()]
+
+
+def test_no_time_of_an_observed_run_is_reported(program, tmp_path):
+    record = run(program, tmp_path, *PASSES["audit only"])
+    summary = record["summary"]
+    assert summary["wall_s"] is None and summary["solve_s"] is None
+    assert summary["wall_s_status"] == summary["solve_s_status"] == "not_requested"
+    assert summary["time"] == {} and "wall_s" not in record["samples"]
+    assert all(step["time"] == {} for step in record["steps"])
+    assert all(row["time"] == {} for row in trace(tmp_path))
+
+
+def test_the_times_of_the_timed_run_stand_beside_what_was_observed(program, tmp_path):
+    record = run(program, tmp_path, *PASSES["both"])
+    summary, rows = record["summary"], trace(tmp_path)
+    assert summary["wall_s"] > summary["solve_s"] > 0
+    for phase in ("elastic_s", "linear_factor_s"):
+        of_steps = sum(step["time"][phase] for step in record["steps"])
+        assert of_steps == pytest.approx(summary["time"][phase])
+        assert sum(row["time"][phase] for row in rows) == pytest.approx(of_steps)
+
+
+def test_a_trace_that_nobody_leaves_is_named_and_an_earlier_one_goes(program, tmp_path):
+    observed = run(program, tmp_path, *PASSES["both"])
+    assert len(trace(tmp_path)) == observed["summary"]["newton_iterations"]
+    assert {"item": "trace", "active": True, "reason": "a run is observed"} in observed["plan"]
+
+    record = run(program, tmp_path, *PASSES["time only"])
+    assert not (tmp_path / "trace.jsonl").exists()
+    assert {"metric": "trace", "reason": "not_requested"} in record["skipped"]
+    assert [p["active"] for p in record["plan"] if p["item"] == "trace"] == [False]
+    assert record["summary"]["state_hash"] == observed["summary"]["state_hash"]
+    assert record["steps"][0]["time"] and record["summary"]["solve_s"] > 0
+    explained = bench(program, "explain", BLOCK, "--set", "/passes/audit=false").stdout
+    assert "trace" in explained.split("skipped")[1]
+
+
+def test_frames_that_cannot_be_written(program, tmp_path):
+    write(tmp_path / "frames", "a file where a folder has to be")
+    done = bench(program, "run", BLOCK, "--out", tmp_path, "--set", "/time/steps=1", "--set", "/output/frames_every=1")
+    refused(done, "frames/step_000000.ply")
+
+
+def test_a_sweep_goes_on_after_a_case_that_fails_midway(program, build_folder, tmp_path):
+    plugin = build_folder / "tests/barriers/plugin_negative_weight.so"
+    if not plugin.exists():
+        pytest.skip(f"{plugin} is not built")
+    spec = write(tmp_path / "sweep.json", {
+        "schema": "barrierbench.sweep/1", "name": "integrators", "base": BLOCK,
+        "set": {"/time/steps": 2, "/matching/rule": "as_given"},
+        "axes": [{"pointer": "/integrator/name", "values": ["negative_weight", "implicit_euler"]}]})
+    done = bench(program, "--plugin", plugin, "sweep", spec, "--out", tmp_path / "out")
+    assert done.returncode == 2 and "[name=negative_weight]" in done.stderr and "c = -1" in done.stderr
+    assert "no record" in done.stdout
+    assert [json.loads(p.read_text())["labels"]["integrator"] for p in (tmp_path / "out").glob("*/run.json")] == ["implicit_euler"]
+
+
+def test_explain_names_the_bounds_of_an_adaptive_kappa(program):
+    done = bench(program, "explain", BLOCK, "--set", "/formulation=ipc2020", "--set",
+                 "/formulation/stiffness_policy/kappa_min_N_per_m=5", "--set", "/formulation/stiffness_policy/doubling_gap_m=1e-9")
+    assert done.returncode == 0, done.stderr
+    assert "ipc_adaptive, at least 5 N/m, doubled below 1e-09 m" in done.stdout

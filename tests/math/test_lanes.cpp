@@ -1,0 +1,97 @@
+// Numbers side by side: every lane gets what the scalar code gives, whatever its neighbours need.
+#include "core/math/lanes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <array>
+#include <limits>
+#include <random>
+
+#include "core/math/psd.hpp"
+
+namespace {
+
+using namespace bb;
+using Four = Lanes<double, 4>;
+using Matrix = Mat<double, 9, 9>;
+
+Four four(double a, double b, double c, double d) {
+  Four out;
+  out.v[0] = a, out.v[1] = b, out.v[2] = c, out.v[3] = d;
+  return out;
+}
+
+TEST(Lanes, ChoosesLaneByLane) {
+  const Four a = four(1, -2, 3, -4), zero(0.0);
+  const Four size = select(a < zero, -a, a), root = sqrt(size);
+  for (int lane = 0; lane < 4; ++lane) {
+    EXPECT_EQ(size[lane], lane + 1);
+    EXPECT_EQ(root[lane], std::sqrt(lane + 1.0));
+    EXPECT_EQ(abs(a)[lane], lane + 1);
+  }
+  EXPECT_TRUE(any(a < zero));
+  EXPECT_FALSE(any(size < zero));
+  EXPECT_FALSE(any(a < zero && a > zero));
+  EXPECT_FALSE(any(!(a < zero || a > zero)));
+}
+
+TEST(Lanes, PowersOfTwoAreExactAndHaveAnInverse) {
+  const Four p = power_of_two_below(four(3, 0, 1, std::numeric_limits<double>::denorm_min()));
+  EXPECT_EQ(p[0], 2);
+  EXPECT_EQ(p[1], 1);
+  EXPECT_EQ(p[2], 1);
+  EXPECT_TRUE(std::isfinite(1 / p[3]));
+}
+
+Matrix random_symmetric(std::mt19937& rng) {
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  Matrix a;
+  for (int j = 0; j < 9; ++j) {
+    for (int i = j; i < 9; ++i) a(i, j) = a(j, i) = uniform(rng);
+  }
+  return a;
+}
+
+/// Matrices that take other ways through the eigen-solver: definite, split, of rank one, indefinite.
+std::array<Matrix, 4> unlike(std::mt19937& rng) {
+  const Matrix a = random_symmetric(rng), b = random_symmetric(rng);
+  Matrix split = random_symmetric(rng);
+  split.topRightCorner<4, 5>().setZero();
+  split.bottomLeftCorner<5, 4>().setZero();
+  return {Matrix(a + 9 * Matrix::Identity()), split, Matrix(-b.col(0) * b.col(0).transpose()), b};
+}
+
+Mat<Four, 9, 9> side_by_side(const std::array<Matrix, 4>& in) {
+  Mat<Four, 9, 9> out;
+  for (int k = 0; k < 81; ++k) {
+    for (std::size_t lane = 0; lane < 4; ++lane) out.data()[k].v[lane] = in[lane].data()[k];
+  }
+  return out;
+}
+
+TEST(Lanes, EveryLaneIsProjectedAsIfAlone) {
+  std::mt19937 rng(11);
+  for (int repeat = 0; repeat < 20; ++repeat) {
+    const std::array<Matrix, 4> in = unlike(rng);
+    const Mat<Four, 9, 9> out = project_psd<Four, 9>(side_by_side(in));
+    const Mat<Four, 9, 9> turned = project_psd<Four, 9>(side_by_side({in[1], in[2], in[3], in[0]}));
+    for (int lane = 0; lane < 4; ++lane) {
+      const Matrix expected = project_psd<double, 9>(in[static_cast<std::size_t>(lane)]);
+      Matrix got, again;
+      for (int k = 0; k < 81; ++k) {
+        got.data()[k] = out.data()[k][lane];
+        again.data()[k] = turned.data()[k][(lane + 3) % 4];
+      }
+      EXPECT_LE((got - expected).norm(), 1e-14 * in[static_cast<std::size_t>(lane)].norm()) << lane;
+      EXPECT_EQ(got, again) << lane;
+      if (lane == 0) {
+        EXPECT_EQ(got, in[0]);  // definite: untouched, bit for bit
+      }
+      if (lane != 2) {
+        EXPECT_GT(expected.norm(), 0);
+      }
+    }
+  }
+}
+
+}  // namespace

@@ -1,0 +1,89 @@
+// Kappa refreshed in every iteration. A Newton step takes kappa for constant, so with kappa = m/d^2 and the
+// cubic its error is multiplied by rho = kappa'(d) b'(d) / (-J), J = m/dt^2 + kappa b''(d): by about
+// (d_hat - d)/d where inertia is small. Gaps above d_hat/2 converge, gaps below it cycle for ever.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <vector>
+
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double mass = 0.2, d_hat = 0.01, dt = 0.1;
+
+double kappa_of(double d) { return mass / (d * d); }
+double db(double d) { return -2 * (d_hat - d) * (d_hat - d) / d_hat; }
+double d2b(double d) { return 4 * (d_hat - d) / d_hat; }
+
+/// Factor by which one iteration multiplies the error at the fixed point d.
+double error_factor(double d) {
+  const double slope_of_kappa = -2 * kappa_of(d) / d;
+  return -slope_of_kappa * db(d) / (mass / (dt * dt) + kappa_of(d) * d2b(d));
+}
+
+struct Log final : StepObserver {
+  std::vector<double> dx, change;
+  void on_iteration(const IterationReport& report) override {
+    dx.push_back(report.dx_inf);
+    change.push_back(report.kappa_change);
+  }
+};
+
+/// One step from just above the gap at which the barrier carries the weight.
+StepReport step_near_rest(double gap, Refresh refresh, Log& log) {
+  Scene scene = test::particle_over_plane(mass, gap * (1 + 1e-5), d_hat);
+  scene.gravity = Vec3d(0, 0, kappa_of(gap) * db(gap) / mass);
+  Method method = test::fixed_method("cubic", 1);
+  StiffnessPolicyConfig policy;
+  policy.name = "elasticity_inclusive";
+  policy.refresh = refresh;
+  method.stiffness = make_policy(policy);
+  method.step_solver.tol_velocity = 1e-13;
+  method.step_solver.max_iterations = 60;
+  Simulation simulation(scene, method, dt, 1);
+  return simulation.step(log);
+}
+
+TEST(KappaCycle, a_gap_above_half_of_d_hat_converges_at_the_rate_of_the_dropped_derivative) {
+  const double gap = 0.7 * d_hat, factor = error_factor(gap);
+  ASSERT_LT(std::abs(factor), 0.5);
+  Log log;
+  const StepReport step = step_near_rest(gap, Refresh::per_iteration, log);
+  EXPECT_EQ(step.status, StepStatus::converged);
+  EXPECT_EQ(step.contacts.obstacle, 1U);
+  ASSERT_GT(log.dx.size(), 6U);
+  EXPECT_NEAR(log.dx[5] / log.dx[4], std::abs(factor), 1e-3);
+  EXPECT_GT(log.change[1], 0);
+  EXPECT_EQ(log.change[0], 0);
+}
+
+TEST(KappaCycle, a_gap_below_half_of_d_hat_never_converges_and_the_step_says_why) {
+  const double gap = 0.3 * d_hat, factor = error_factor(gap);
+  ASSERT_GT(std::abs(factor), 2);
+  Log log;
+  const StepReport step = step_near_rest(gap, Refresh::per_iteration, log);
+  EXPECT_NEAR(log.dx[3] / log.dx[2], std::abs(factor), 0.02);  // still close to the fixed point
+  EXPECT_EQ(step.status, StepStatus::iteration_cap);
+  EXPECT_NE(step.detail.find("kappa does not settle"), std::string::npos) << step.detail;
+  EXPECT_GT(log.change.back(), 0.01);
+  EXPECT_EQ(step.overload, 0);  // kappa moves, and with it what the row can carry
+
+  const std::size_t n = log.dx.size();
+  EXPECT_NEAR(log.dx[n - 1] / log.dx[n - 3], 1, 0.05);  // a cycle of two
+}
+
+TEST(KappaCycle, kept_for_the_step_both_converge) {
+  for (const double gap : {0.7 * d_hat, 0.3 * d_hat}) {
+    Log log;
+    const StepReport step = step_near_rest(gap, Refresh::per_step, log);
+    EXPECT_EQ(step.status, StepStatus::converged);
+    EXPECT_EQ(step.contacts.obstacle, 1U);
+    EXPECT_EQ(*std::max_element(log.change.begin(), log.change.end()), 0);
+  }
+}
+
+}  // namespace
+}  // namespace bb
