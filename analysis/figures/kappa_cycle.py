@@ -12,6 +12,7 @@ from analysis.load import Records
 
 SETTLED = 0.01  # core/newton/iteration.cpp: a change of kappa below it leaves Newton alone
 UNSETTLED_ITERATIONS = 10
+SHOWN = 60  # iterations; a cycle goes on as it has begun
 EDGE = 0.5  # of d_hat: below it kappa = m/d^2 with the cubic amplifies an error (docs/design.md)
 
 
@@ -47,7 +48,9 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     axes[0].axhline(EDGE, color="#666666", linewidth=0.5)
     axes[0].set(xlabel=f"Newton iteration of step {step}", ylabel=r"smallest gap / $\hat d$")
     axes[0].set_yscale("log")
-    axes[1].set(xlabel=f"Newton iteration of step {step}", ylabel=r"largest change of a $\kappa$, max/min $-$ 1")
+    for axis in axes:
+        axis.set_xlim(right=min(SHOWN, axis.get_xlim()[1]))
+    axes[1].set(xlabel=f"Newton iteration of step {step}", ylabel=r"largest change of a $\kappa$")
     if axes[1].lines and any(len(line.get_ydata()) for line in axes[1].lines):
         axes[1].set_yscale("log")
     fig.suptitle(f"{group}: kappa refreshed in every iteration does not settle", fontsize=8)

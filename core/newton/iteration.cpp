@@ -156,13 +156,17 @@ void measure_end(NewtonSystem& system, StepReport& step) {
                        step.status == StepStatus::line_search_failed ||
                        step.status == StepStatus::not_descent;
   if (!stalled) return;
-  const bool cycling = step.kappa_unsettled >= unsettled_iterations;
-  if (cycling && step.detail.empty()) step.detail = describe_unsettled(step);
+  if (step.kappa_unsettled >= unsettled_iterations) {  // what a kappa that moves can carry is no number
+    if (step.detail.empty()) step.detail = describe_unsettled(step);
+    return;
+  }
   PhaseTimes ignored;
   system.assemble(ignored);  // the rows that were accepted last and their gradients, of one state
-  system.max_stretch();      // and the gaps of the limit
-  if (!cycling) step.overload = system.contact_overload();  // what a kappa that moves can carry is no number
-  step.limit_overload = system.limit_overload();
+  Positions dx;              // prescribed vertices stay where they are
+  const bool solved = system.solve(system.state().x, dx, ignored).status == LinearStatus::ok;
+  if (!solved) dx.setZero();
+  step.overload = system.contact_overload(dx);
+  step.limit_overload = system.limit_overload(dx);
 }
 
 }  // namespace bb

@@ -74,9 +74,9 @@ class NewtonSystem {
   /// Largest (1/area) dS_e/dsigma over limited elements, N/m.
   double limit_tension_max() const;
   /// Largest estimated load over capacity, over contact rows and over limited elements; 0 when the barrier is
-  /// unbounded.
-  double contact_overload() const;
-  double limit_overload() const;
+  /// unbounded. dx: the Newton direction at state(), or 0.
+  double contact_overload(const Positions& dx) const;
+  double limit_overload(const Positions& dx);
   const ReducedSystem& reduced(MatrixStage stage);
   bool has_stage(MatrixStage stage) const;
   void keep_stages(bool keep) { keep_stages_ = keep; }
@@ -95,6 +95,7 @@ class NewtonSystem {
   void evaluate_shape(MollifiedTable& rows) const;
   void evaluate_contact_energies(EnergyState& state) const;
   double refresh_limit_stiffness();
+  double times_larger(std::size_t e, const Positions& others) const;
   double limit_kappa_change(const std::vector<double>& before) const;
   void assemble_matrix();
   void fill_contact_terms();

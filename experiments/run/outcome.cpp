@@ -7,22 +7,24 @@
 namespace bb {
 namespace {
 
+std::string because(const StepReport& step) { return step.detail.empty() ? "" : "; " + step.detail; }
+
 // No progress: because some contact or limited element carries more than its barrier can, or for another
 // reason.
 Verdict stalled(const StepReport& step) {
   const double worst = std::max(step.overload, step.limit_overload);
   if (worst > 1) {
     return {Outcome::stall_overload,
-            fmt::format("step {}: load over capacity {:.3g} {}; {}, {} iterations {}", step.step, worst,
+            fmt::format("step {}: load over capacity {:.3g} {}; {} after {} iterations{}", step.step, worst,
                         step.overload >= step.limit_overload ? "at a contact" : "of the strain limit",
-                        to_string(step.status), step.iterations, step.detail)};
+                        to_string(step.status), step.iterations, because(step))};
   }
   if (step.ccd_capped > 0 && step.status == StepStatus::step_collapse) {
     return {Outcome::ccd_cap,
             fmt::format("step {}: {} pairs reached the probe cap", step.step, step.ccd_capped)};
   }
-  return {Outcome::newton_stall, fmt::format("step {}: {} after {} iterations {}", step.step,
-                                             to_string(step.status), step.iterations, step.detail)};
+  return {Outcome::newton_stall, fmt::format("step {}: {} after {} iterations{}", step.step,
+                                             to_string(step.status), step.iterations, because(step))};
 }
 
 }  // namespace

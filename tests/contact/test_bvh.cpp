@@ -119,6 +119,48 @@ TEST(Bvh, RefitsAfterSmallMotionAndRebuildsAfterLarge) {
   check();
 }
 
+TEST(Bvh, ForgetsItsPrimitivesWhenThereAreNoneLeft) {
+  const auto boxes = random_boxes(20, 0.5, 8);
+  const std::vector<std::uint8_t> free(boxes.size(), 1);
+  Bvh full, emptied;
+  full.update(boxes, free);
+  emptied.update(boxes, free);
+  emptied.update({}, {});
+  PairFinder finder;
+  std::vector<IndexPair> pairs{{1, 2}};
+  finder.find(full, emptied, keep, pairs);
+  EXPECT_TRUE(pairs.empty());
+  finder.find(emptied, full, keep, pairs);
+  EXPECT_TRUE(pairs.empty());
+}
+
+TEST(BoxBlock, OverlapsWhatTheBoxesDoAndNothingInUnsetLanes) {
+  const auto boxes = random_boxes(300, 1.0, 9);
+  Aabb everything;
+  everything.add(Vec3d::Constant(-std::numeric_limits<double>::infinity()));
+  everything.add(Vec3d::Constant(std::numeric_limits<double>::infinity()));
+  BoxBlock asking;
+  asking.set(5, everything);
+  int hits = 0;
+  for (std::size_t first = 0; first + 6 < boxes.size(); first += 6) {
+    BoxBlock block;
+    for (std::size_t k = 0; k < 6; ++k) block.set(k, boxes[first + k]);
+    asking.set(2, boxes[first + 6]);
+    LaneMask expected = 0;
+    Aabb hull;
+    for (std::size_t k = 0; k < 6; ++k) {
+      expected |= static_cast<LaneMask>(boxes[first + k].overlaps(boxes[first + 6])) << k;
+      hull.add(boxes[first + k]);
+    }
+    EXPECT_EQ(block.overlaps(asking, 2), expected);
+    EXPECT_EQ(block.overlaps(asking, 5), 0x3fU);
+    EXPECT_EQ(block.hull().lo, hull.lo);
+    EXPECT_EQ(block.hull().hi, hull.hi);
+    hits += expected != 0 ? 1 : 0;
+  }
+  EXPECT_GT(hits, 10);
+}
+
 TEST(Aabb, InflationRoundsOutward) {
   Aabb box;
   box.add(Vec3d(0.1, -0.3, 1e6));

@@ -33,6 +33,64 @@ TEST(Failures, the_log_barrier_has_no_capacity) {
   }
 }
 
+/// A cloth hung from one side in a plane that gravity lies in, stretched by a single pull: the end of its
+/// last converged step or of the one that failed.
+StepReport hang(double k_s, int steps) {
+  SceneBuilder builder("hung cloth", false, Vec3d(0, -10, 0), "test");
+  BodySpec spec = test::cloth_spec(5, 0, 0.001);
+  spec.material.youngs = 1;  // carries nothing
+  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  PinSpec pin;
+  for (int v = 0; v < 25; ++v) {
+    if (spec.mesh.vertices(1, v) > spec.mesh.vertices.row(1).maxCoeff() - 1e-9) pin.indices.push_back(v);
+  }
+  spec.pins = {pin};
+  builder.add_body(spec);
+  Scene scene = builder.finish();
+  Method method = test::fixed_method("cubic", 1);
+  method.limit_stiffness.k_s = k_s;
+  Simulation simulation(scene, method, 0.01, steps);
+  StepObserver observer;
+  StepReport report;
+  for (int i = 0; i < steps && report.status == StepStatus::converged; ++i)
+    report = simulation.step(observer);
+  return report;
+}
+
+// The hem pulls row after row: inside, the forces of neighbours cancel and only their sum meets the weight.
+TEST(Failures, a_cloth_too_heavy_for_its_limit_is_an_overload_of_the_limit) {
+  const StepReport weak = hang(20, 40);  // 2 k_s width = 0.4 N/m against 3 N/m of weight
+  EXPECT_EQ(weak.status, StepStatus::step_collapse);
+  EXPECT_GT(weak.limit_overload, 2);
+  EXPECT_EQ(weak.overload, 0);
+  EXPECT_GT(weak.max_stretch, 1.0199);
+
+  const StepReport strong = hang(2e4, 40);
+  EXPECT_EQ(strong.status, StepStatus::converged);
+  EXPECT_GT(strong.limit_tension_max, 2);  // it does carry the weight
+}
+
+/// Every element is stretched alike, and the forces of neighbours cancel: only the Newton model sees that the
+/// middle has to stop both halves, at 4/s/0.01 s on 0.3 kg/m^2 a tension of up to 15 N/m against 2 k_s width
+/// = 6.
+TEST(Failures, a_load_that_neighbours_share_is_an_overload_of_the_limit) {
+  SceneBuilder builder("cloth that flies apart", false, Vec3d::Zero(), "test");
+  BodySpec spec = test::cloth_spec(9, 0, 0.001);
+  spec.material.youngs = 1;
+  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  builder.add_body(spec);
+  Scene scene = builder.finish();
+  const double middle = scene.x0.row(0).mean();
+  scene.v0.row(0) = 4 * (scene.x0.row(0).array() - middle);
+  Method method = test::fixed_method("cubic", 1);
+  method.limit_stiffness.k_s = 300;
+  Simulation simulation(scene, method, 0.01, 1);
+  StepObserver observer;
+  const StepReport report = simulation.step(observer);
+  EXPECT_EQ(report.status, StepStatus::step_collapse);
+  EXPECT_GT(report.limit_overload, 1);
+}
+
 TEST(Failures, the_iteration_cap_is_not_convergence) {
   Scene scene = test::particle_over_plane(0.2, 0.005, 0.01);
   Method method = test::fixed_method("log", 200);
