@@ -42,14 +42,13 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
         part = part[part["step"] == step]
         gap, change = (pd.to_numeric(part[key]).to_numpy(dtype=float) for key in ("gap_min_rel", "kappa_change_rel"))
         iteration = part["iteration"].to_numpy()
-        style.draw(axes[0], iteration, gap, row, end_word=False)
-        style.draw(axes[1], iteration[change > 0], change[change > 0], row, end_word=False)
+        shown = iteration <= SHOWN
+        style.draw(axes[0], iteration[shown], gap[shown], row, end_word=False)
+        style.draw(axes[1], iteration[shown & (change > 0)], change[shown & (change > 0)], row, end_word=False)
         numbers.append(pd.DataFrame({"series": row["series"], "iteration": iteration, "gap_min_rel": gap, "kappa_change_rel": change}))
     axes[0].axhline(EDGE, color="#666666", linewidth=0.5)
     axes[0].set(xlabel=f"Newton iteration of step {step}", ylabel=r"smallest gap / $\hat d$")
     axes[0].set_yscale("log")
-    for axis in axes:
-        axis.set_xlim(right=min(SHOWN, axis.get_xlim()[1]))
     axes[1].set(xlabel=f"Newton iteration of step {step}", ylabel=r"largest change of a $\kappa$")
     if axes[1].lines and any(len(line.get_ydata()) for line in axes[1].lines):
         axes[1].set_yscale("log")
