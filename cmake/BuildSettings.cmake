@@ -36,17 +36,15 @@ if(NOT BB_MARCH STREQUAL "BASELINE")
   set(BB_MARCH_FLAG "-march=${BB_MARCH}")
 endif()
 
-# The fused multiply-add setting is fixed: results must not depend on what the compiler contracts, and the
-# exact predicates of the audit are wrong if it does.
+# What decides the generated code beside the build type; records name it (core/record). The fused multiply-add
+# setting is fixed: results must not depend on what the compiler contracts, and the exact predicates of the audit
+# are wrong if it does. Nobody reads errno after mathematics, nor the floating-point flags; keeping them up to date
+# forbids vector square roots. No value changes.
+set(BB_CODE_FLAGS -ffp-contract=off -fPIC ${BB_MARCH_FLAG} -fno-math-errno -fno-trapping-math)
 add_library(bb_settings INTERFACE)
 target_include_directories(bb_settings INTERFACE "${PROJECT_SOURCE_DIR}")
 target_compile_options(bb_settings INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -Werror -ffp-contract=off -fPIC>
-  $<$<COMPILE_LANGUAGE:CXX>:${BB_MARCH_FLAG}>)
-# Nobody reads errno or the floating-point flags; keeping them up to date forbids vector square roots. No value
-# changes.
-target_compile_options(bb_settings INTERFACE
-  $<$<COMPILE_LANGUAGE:CXX>:-fno-math-errno -fno-trapping-math>)
+  $<$<COMPILE_LANGUAGE:CXX>:-Wall -Wextra -Wconversion -Wshadow -Werror ${BB_CODE_FLAGS}>)
 # g++ 12 raises false warnings from Eigen and std::string under these two settings only.
 if(BB_SANITIZE OR BB_MARCH_FLAG)
   target_compile_options(bb_settings INTERFACE

@@ -10,8 +10,9 @@ import pandas as pd
 from analysis import style
 from analysis.load import Records
 
-SETTLED = 0.01  # core/newton/iteration.cpp: a change of kappa below it leaves Newton alone
-UNSETTLED_ITERATIONS = 10
+# Copies of settled_kappa and unsettled_iterations in core/newton/iteration.cpp.
+SETTLED = 0.01  # a change of kappa below it leaves Newton alone
+UNSETTLED_ITERATIONS = 10  # that many above it in a row are a cycle
 SHOWN = 60  # iterations; a cycle goes on as it has begun
 EDGE = 0.5  # of d_hat: below it kappa = m/d^2 with the cubic amplifies an error (docs/design.md)
 

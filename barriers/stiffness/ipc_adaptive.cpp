@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 #include "barriers/stiffness/registry.hpp"
 #include "core/math/error.hpp"
@@ -37,8 +36,8 @@ class IpcAdaptive final : public StiffnessPolicy {
     const double k =
         has_scale ? globals.mean_contact_mass / (globals.c * globals.dt * globals.dt * globals.d2b_half)
                   : 0.0;
-    const double low = overrides_.kappa_min.value_or(k);
-    max_ = std::max(low, overrides_.kappa_max.value_or(range * k));
+    max_ = overrides_.kappa_max.value_or(std::max(range * k, overrides_.kappa_min.value_or(0.0)));
+    const double low = std::min(overrides_.kappa_min.value_or(k), max_);
     const double balance = globals.grad_b_sq > 0 ? -globals.grad_b_dot_grad_e / globals.grad_b_sq : low;
     start_ = kappa_ = std::clamp(balance, low, max_);
     saturated_ = kappa_ >= max_;
@@ -48,10 +47,14 @@ class IpcAdaptive final : public StiffnessPolicy {
     std::fill(kappa, kappa + rows.n, multiplier_ * kappa_);
   }
 
-  void end_step(const StepEnd& end) override {
-    const double gap = overrides_.doubling_gap.value_or(doubling_parks * end.park);
-    const bool small = end.min_gap < gap && end.min_gap_prev < gap;
-    if (!small || !(end.min_gap < end.min_gap_prev) || !(kappa_ > 0) || saturated_) return;
+  bool adapts() const override { return true; }
+
+  void end_step(std::span<const PairEnd> pairs) override {
+    const auto presses = [this](const PairEnd& pair) {
+      const double small = overrides_.doubling_gap.value_or(doubling_parks * pair.park);
+      return pair.gap < small && pair.gap_before < small && pair.gap < pair.gap_before;
+    };
+    if (!(kappa_ > 0) || saturated_ || std::none_of(pairs.begin(), pairs.end(), presses)) return;
     kappa_ = std::min(2 * kappa_, max_);
     saturated_ = kappa_ >= max_;
     ++doublings_;

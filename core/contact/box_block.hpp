@@ -11,7 +11,7 @@
 namespace bb {
 
 /// A set of lanes of a block, bit k for lane k.
-using LaneMask = std::uint32_t;
+using LaneSet = std::uint32_t;
 
 /// Lanes that were never set hold NaN: they overlap nothing, infinite boxes included.
 class alignas(64) BoxBlock {
@@ -35,14 +35,14 @@ class alignas(64) BoxBlock {
     return {Vec3d(lo_[0][k], lo_[1][k], lo_[2][k]), Vec3d(hi_[0][k], hi_[1][k], hi_[2][k])};
   }
   /// The lanes whose box overlaps lane j of another block, as Aabb::overlaps says.
-  LaneMask overlaps(const BoxBlock& other, std::size_t j) const {
+  LaneSet overlaps(const BoxBlock& other, std::size_t j) const {
     const double lo0 = other.lo_[0][j], lo1 = other.lo_[1][j], lo2 = other.lo_[2][j];
     const double hi0 = other.hi_[0][j], hi1 = other.hi_[1][j], hi2 = other.hi_[2][j];
-    LaneMask lanes = 0;
+    LaneSet lanes = 0;
     for (std::size_t k = 0; k < width; ++k) {  // & and not &&: the compiler turns the loop into vectors
       const bool overlap = (lo_[0][k] <= hi0) & (lo0 <= hi_[0][k]) & (lo_[1][k] <= hi1) & (lo1 <= hi_[1][k]) &
                            (lo_[2][k] <= hi2) & (lo2 <= hi_[2][k]);
-      lanes |= static_cast<LaneMask>(overlap) << k;
+      lanes |= static_cast<LaneSet>(overlap) << k;
     }
     return lanes;
   }

@@ -1,6 +1,7 @@
 #include "core/contact/bvh.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -29,9 +30,9 @@ Vec3d centre(const Aabb& box) {
 }
 
 /// Those lanes of a node that are child `first` or a later one.
-LaneMask lanes_from(std::size_t first, std::size_t node) {
+LaneSet lanes_from(std::size_t first, std::size_t node) {
   const std::size_t child = node * width;
-  return first > child ? ~LaneMask{0} << std::min<std::size_t>(first - child, width) : ~LaneMask{0};
+  return first > child ? ~LaneSet{0} << std::min<std::size_t>(first - child, width) : ~LaneSet{0};
 }
 
 }  // namespace
@@ -60,7 +61,7 @@ void Bvh::build(std::span<const Aabb> boxes) {
   levels_.clear();
   for (std::size_t n = boxes.size(); n > 1 || levels_.size() < 2;) {
     n = n_nodes(n);
-    levels_.push_back({std::vector<BoxBlock>(n), std::vector<LaneMask>(n)});
+    levels_.push_back({std::vector<BoxBlock>(n), std::vector<LaneSet>(n)});
   }
   ++builds_;
 }
@@ -89,7 +90,7 @@ void Bvh::Level::fill(std::size_t n, const BoxOf& box_of, const IsFree& is_free)
       free[node] = 0;
       for (std::size_t child = node * width; child < std::min(n, (node + 1) * width); ++child) {
         boxes[node].set(child % width, box_of(child));
-        free[node] |= static_cast<LaneMask>(is_free(child)) << (child % width);
+        free[node] |= static_cast<LaneSet>(is_free(child)) << (child % width);
       }
     }
   });
@@ -110,30 +111,28 @@ void Bvh::refit(std::span<const Aabb> boxes, std::span<const std::uint8_t> free)
 
 std::span<const PlacePair> Bvh::overlaps(const Bvh& asking, std::size_t begin, std::size_t end,
                                          PairSearch& search) const {
+  assert(begin % width == 0 && (end % width == 0 || end == asking.size()));
   if (levels_.empty()) return {};
   const bool self = this == &asking;
   // nodes of level 0 against the tree, down to its nodes of level 0
   search.start(begin / width, n_nodes(end));
   for (std::size_t l = levels_.size() - 1; l > 0; --l) {
     search.refine([&](PlacePair at) {
-      const auto [one, node] = at;
-      LaneMask lanes = levels_[l].overlaps(node, asking.levels_[1], one);
-      if (self) lanes &= lanes_from(std::size_t{width} * one >> (3 * l), node);
-      search.add(lanes, [=](std::uint32_t k) { return PlacePair{one, width * node + k}; });
+      LaneSet lanes = levels_[l].overlaps(at.asked, asking.levels_[1], at.asking);
+      if (self) lanes &= lanes_from(std::size_t{width} * at.asking >> (3 * l), at.asked);
+      search.add(lanes, [=](std::uint32_t k) { return PlacePair{at.asking, width * at.asked + k}; });
     });
   }
   // the places of those nodes one by one
   search.refine([&](PlacePair at) {
-    const auto [one, node] = at;
-    const LaneMask lanes = asking.levels_[0].overlaps(one, levels_[1], node);
-    search.add(lanes, [=](std::uint32_t k) { return PlacePair{width * one + k, node}; });
+    const LaneSet lanes = asking.levels_[0].overlaps(at.asking, levels_[1], at.asked);
+    search.add(lanes, [=](std::uint32_t k) { return PlacePair{width * at.asking + k, at.asked}; });
   });
   // against the places of these
   search.refine([&](PlacePair at) {
-    const auto [place, node] = at;
-    LaneMask lanes = levels_[0].overlaps(node, asking.levels_[0], place);
-    if (self) lanes &= lanes_from(std::size_t{place} + 1, node);
-    search.add(lanes, [=](std::uint32_t k) { return PlacePair{place, width * node + k}; });
+    LaneSet lanes = levels_[0].overlaps(at.asked, asking.levels_[0], at.asking);
+    if (self) lanes &= lanes_from(std::size_t{at.asking} + 1, at.asked);
+    search.add(lanes, [=](std::uint32_t k) { return PlacePair{at.asking, width * at.asked + k}; });
   });
   return search.result();
 }

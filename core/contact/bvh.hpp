@@ -44,7 +44,7 @@ class PairSearch {
   }
   /// Adds make(k) for every lane k. Which lanes are set is hard to foretell, so up to four take no branch.
   template <class Make>
-  void add(LaneMask lanes, const Make& make) {
+  void add(LaneSet lanes, const Make& make) {
     if (next_.size() < n_next_ + BoxBlock::width) next_.resize(2 * (n_next_ + BoxBlock::width));
     const auto n = static_cast<std::size_t>(std::popcount(lanes));
     PlacePair* const next = &next_[n_next_];
@@ -79,23 +79,24 @@ class Bvh {
   int builds() const { return builds_; }
 
   /// All (place in `asking`, place in this tree) with overlapping boxes, of which at least one is free, for
-  /// the places [begin, end) of `asking`, begin a multiple of eight. When that is this tree itself, only
-  /// pairs of ascending places. The result lies in the buffers.
+  /// the places [begin, end) of `asking`: begin a multiple of eight, end too unless it is asking.size(), for
+  /// whole nodes are asked. When that is this tree itself, only pairs of ascending places. The result lies in
+  /// the buffers.
   std::span<const PlacePair> overlaps(const Bvh& asking, std::size_t begin, std::size_t end,
                                       PairSearch& search) const;
 
  private:
   struct Level {
     std::vector<BoxBlock> boxes;
-    std::vector<LaneMask> free;  // lanes with a free primitive
+    std::vector<LaneSet> free;  // lanes with a free primitive
     /// Takes over n children.
     template <class BoxOf, class IsFree>
     void fill(std::size_t n, const BoxOf& box_of, const IsFree& is_free);
     Aabb box(std::size_t child) const { return boxes[child / BoxBlock::width].get(child % BoxBlock::width); }
     /// Children of a node that overlap a child of another level, one of the two with a free primitive.
-    LaneMask overlaps(std::size_t node, const Level& other, std::size_t child) const {
+    LaneSet overlaps(std::size_t node, const Level& other, std::size_t child) const {
       const std::size_t block = child / BoxBlock::width, lane = child % BoxBlock::width;
-      const LaneMask one_free = ((other.free[block] >> lane) & 1) != 0 ? ~LaneMask{0} : free[node];
+      const LaneSet one_free = ((other.free[block] >> lane) & 1) != 0 ? ~LaneSet{0} : free[node];
       return boxes[node].overlaps(other.boxes[block], lane) & one_free;
     }
   };

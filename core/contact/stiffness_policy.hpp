@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -50,15 +51,15 @@ class StiffnessPolicy {
   virtual void start(const StiffnessGlobals&) {}
   /// kappa (N/m) of every row. Requires start() first when needs_globals().
   virtual void fill(const StiffnessBatch& rows, double* kappa) const = 0;
-  /// Called after each accepted step with one pair: of those that have a row at the end of this step and of
-  /// the one before and whose gap shrinks, the pair whose gap before was smallest. Lets a policy adapt
-  /// between steps.
-  struct StepEnd {
-    double min_gap = 0;       // m; infinity when no pair shrinks
-    double min_gap_prev = 0;  // m, of the step before
-    double park = 0;          // m, stop level of the pair's motions
+  /// A pair that has a row at the end of this step and of the one before.
+  struct PairEnd {
+    double gap = 0, gap_before = 0;  // m
+    double park = 0;                 // m, ccd_park times the row's d_hat
   };
-  virtual void end_step(const StepEnd&) {}
+  /// Whether end_step has to be called: listing the pairs costs a sort a step.
+  virtual bool adapts() const { return false; }
+  /// Called after each step with all such pairs, by identity: lets a policy adapt between steps.
+  virtual void end_step(std::span<const PairEnd>) {}
 
   /// What the record keeps: kappa now, number of doublings, whether the bound was reached.
   struct State {

@@ -126,14 +126,16 @@ BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T
                                            difference(i, 1) * angle.grad.template segment<3>(3) +
                                            difference(i, 2) * angle.grad.template segment<3>(6));
   }
-  if (projection == Projection::none || !any(!(deviation == T(0)))) {  // k grad grad^T is PSD as it stands
-    out.hess = lift_points<T, 4>(difference, reduced);
-  } else {
+  const MaskOf<T> flat = deviation == T(0);  // then k grad grad^T is PSD as it stands
+  if (projection == Projection::none || any(flat)) out.hess = lift_points<T, 4>(difference, reduced);
+  if (projection == Projection::psd && any(!flat)) {
     Mat<T, 4, 3> basis;  // orthonormal, at right angles to (1, 1, 1, 1)
     basis << T(1), T(1), T(1), T(1), T(-1), T(-1), T(-1), T(1), T(-1), T(-1), T(-1), T(1);
     basis *= T(0.5);
     const Mat<T, 3, 3> to_basis = basis.transpose() * difference;
-    out.hess = lift_points<T, 4>(basis, project_psd<T, 9>(lift_points<T, 3>(to_basis, reduced)));
+    const Mat<T, 12, 12> projected =
+        lift_points<T, 4>(basis, project_psd<T, 9>(lift_points<T, 3>(to_basis, reduced)));
+    out.hess = any(flat) ? select_entries(flat, out.hess, projected) : projected;
   }
   return out;
 }

@@ -1,6 +1,6 @@
 // W numbers that are computed side by side, so that an element function templated on its scalar runs for W
-// elements at the price of one. No lane ever depends on another: each holds, bit for bit, what the scalar
-// code would have given.
+// elements at the price of little more than one. No lane depends on another. Eigen sums in another order than
+// for a plain number, so that a lane equals the scalar code to rounding.
 #pragma once
 
 #include <cmath>

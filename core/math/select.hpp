@@ -21,4 +21,14 @@ BB_HD inline T select(bool mask, T yes, T no) {
 }
 BB_HD inline bool any(bool mask) { return mask; }
 
+/// select, entry by entry.
+template <class Mask, class Matrix>
+BB_HD inline Matrix select_entries(const Mask& mask, const Matrix& yes, const Matrix& no) {
+  Matrix out;
+  for (int j = 0; j < Matrix::ColsAtCompileTime; ++j) {
+    for (int i = 0; i < Matrix::RowsAtCompileTime; ++i) out(i, j) = select(mask, yes(i, j), no(i, j));
+  }
+  return out;
+}
+
 }  // namespace bb

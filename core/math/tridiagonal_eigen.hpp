@@ -108,14 +108,14 @@ BB_HD inline void ql_sweep(int first, const MaskOf<T> (&active)[N], Vec<T, N>& d
 }
 
 /// Marks the rotations of the unreduced block that begins at `first`. An off-diagonal entry counts as 0 below
-/// rounding of its two neighbours on the diagonal, or below the square of rounding.
+/// rounding of its two neighbours on the diagonal or of the largest entry, which the reduction lost already.
 template <class T, int N>
 BB_HD inline void mark_block(int first, const Vec<T, N>& d, const Vec<T, N>& e, MaskOf<T> (&active)[N]) {
   using std::abs;
   const T eps(std::numeric_limits<typename ScalarOf<T>::type>::epsilon());
   MaskOf<T> coupled = true;
   for (int i = first; i + 1 < N; ++i) {
-    coupled = coupled && !(abs(e[i]) <= eps / T(4) * (abs(d[i]) + abs(d[i + 1])) + eps * eps);
+    coupled = coupled && !(abs(e[i]) <= eps / T(4) * (abs(d[i]) + abs(d[i + 1]) + T(0.25)));
     active[i] = coupled;
   }
 }

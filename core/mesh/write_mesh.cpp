@@ -52,7 +52,7 @@ void write_obj(const std::string& path, const TriangleMesh& mesh) {
   write_file(path, text);
 }
 
-void write_ply(const std::string& path, const TriangleMesh& mesh) {
+std::string ply_bytes(const TriangleMesh& mesh) {
   std::string bytes = fmt::format(
       "ply\nformat binary_little_endian 1.0\nelement vertex {}\nproperty double x\nproperty double y\n"
       "property double z\nelement face {}\nproperty list uchar int vertex_indices\n",
@@ -72,7 +72,7 @@ void write_ply(const std::string& path, const TriangleMesh& mesh) {
   for (const auto& s : mesh.segments) {
     for (const int end : s) append(bytes, static_cast<std::int32_t>(end));
   }
-  write_file(path, bytes);
+  return bytes;
 }
 
 }  // namespace bb

@@ -1,4 +1,4 @@
-// Mesh files written by us: OBJ for people, binary PLY for frames.
+// Meshes written by us: OBJ for people, binary PLY for frames.
 #pragma once
 
 #include <string>
@@ -11,8 +11,7 @@ namespace bb {
 /// Errors: ConfigError when the file cannot be written whole; nothing half-written stays.
 void write_obj(const std::string& path, const TriangleMesh& mesh);
 
-/// Binary little-endian PLY, double coordinates; segments as `edge` elements.
-/// Errors: as write_obj.
-void write_ply(const std::string& path, const TriangleMesh& mesh);
+/// The bytes of a binary little-endian PLY file, double coordinates; segments as `edge` elements.
+std::string ply_bytes(const TriangleMesh& mesh);
 
 }  // namespace bb

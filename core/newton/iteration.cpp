@@ -157,7 +157,7 @@ void measure_end(NewtonSystem& system, StepReport& step) {
                        step.status == StepStatus::not_descent;
   if (!stalled) return;
   if (step.kappa_unsettled >= unsettled_iterations) {  // what a kappa that moves can carry is no number
-    if (step.detail.empty()) step.detail = describe_unsettled(step);
+    step.detail = describe_unsettled(step) + (step.detail.empty() ? "" : "; " + step.detail);
     return;
   }
   PhaseTimes ignored;

@@ -21,7 +21,7 @@ struct LimitStiffness {
   double k_s = 0;                        // N/m, fixed: kappa_e = k_s x rest area
   MassTerm mass_term = MassTerm::paper;  // elasticity_inclusive
   Refresh refresh = Refresh::per_iteration;
-  double multiplier = 1;  // the config's own factor; matching does not scale a dynamic limit
+  double multiplier = 1;  // the config's own factor times s of the matching rule
 };
 
 struct StepSolverOptions {

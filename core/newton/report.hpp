@@ -1,6 +1,7 @@
 // What an iteration, a step and an observer say to each other: plain numbers, no JSON.
 #pragma once
 
+#include <optional>
 #include <string>
 
 #include "core/contact/contact_system.hpp"
@@ -51,8 +52,9 @@ struct StepReport {
   double gap_min = 0;            // m
   double force_max = 0;          // N, largest kappa |b'| per unit multiplicity at the end of the step
   double limit_tension_max = 0;  // N/m, largest (1/area) dS_e/dsigma
-  double overload = 0;           // of a step without progress: largest load / capacity over contact rows,
-  double limit_overload = 0;     // and over limited elements; 0 when the capacity is unbounded
+  // of a step without progress: largest load / capacity over contact rows, and over limited elements; 0 when
+  // the capacity is unbounded, absent when it was not measured
+  std::optional<double> overload, limit_overload;
   double max_stretch = 0;
   double kinetic_energy = 0;  // J
   PhaseTimes times;

@@ -1,7 +1,6 @@
 #include "core/newton/simulation.hpp"
 
 #include <algorithm>
-#include <limits>
 
 #include "core/newton/iteration.hpp"
 
@@ -76,22 +75,18 @@ void Simulation::remember(const Positions& x, double dt_used) {
   time_ += dt_used;
 }
 
-// What a policy may double kappa for: of the pairs that stood in a row at two step ends in a row and close
-// further, the one whose larger gap of the two is smallest.
+// The pairs with a row at two step ends in a row, for a policy that adapts between steps.
 void Simulation::end_policy_step() {
+  if (!method_.stiffness->adapts()) return;
   list_pair_gaps(system_.state());
-  StiffnessPolicy::StepEnd end;
-  end.min_gap = end.min_gap_prev = std::numeric_limits<double>::infinity();
+  pair_ends_.clear();
   auto before = previous_gaps_.begin();
   for (const PairGap& now : gaps_) {
     while (before != previous_gaps_.end() && before->pair < now.pair) ++before;
     if (before == previous_gaps_.end()) break;
-    if (before->pair != now.pair || !(now.gap < before->gap) || !(before->gap < end.min_gap_prev)) continue;
-    end.min_gap = now.gap;
-    end.min_gap_prev = before->gap;
-    end.park = now.park;
+    if (before->pair == now.pair) pair_ends_.push_back({now.gap, before->gap, now.park});
   }
-  method_.stiffness->end_step(end);
+  method_.stiffness->end_step(pair_ends_);
   previous_gaps_.swap(gaps_);
 }
 

@@ -44,6 +44,7 @@ class Simulation {
     double gap, park;  // m
   };
   std::vector<PairGap> gaps_, previous_gaps_;  // by pair
+  std::vector<StiffnessPolicy::PairEnd> pair_ends_;
 };
 
 }  // namespace bb

@@ -3,6 +3,8 @@
 namespace bb {
 namespace {
 
+constexpr double unknown = 0;  // as a kappa before: compared with nothing
+
 const std::vector<int>& free_vertices(const ContactTable& table) { return table.vertex; }
 const std::vector<int>& free_vertices(const MollifiedTable& table) { return table.free_vertex; }
 
@@ -84,6 +86,7 @@ double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, c
   if (!uniform()) {
     before_.assign(rows.kappa.begin(), rows.kappa.end());
     before_.insert(before_.end(), mollified.kappa.begin(), mollified.kappa.end());
+    forget_new(rows.size());
   }
   if (uniform() || policy_.refresh() == Refresh::per_iteration) memory_.clear();
   memory_.recall(rows, mollified, missing_, missing_mollified_);
@@ -95,6 +98,13 @@ double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, c
     change = std::max(change, relative_change(before_[i], now));
   }
   return change;
+}
+
+// Rows with a pair that the accepted trial met for the first time had its value at d_hat: no change of
+// theirs.
+void StiffnessUpdate::forget_new(std::size_t n_rows) {
+  for (const int row : missing_) before_[static_cast<std::size_t>(row)] = unknown;
+  for (const int row : missing_mollified_) before_[n_rows + static_cast<std::size_t>(row)] = unknown;
 }
 
 void StiffnessUpdate::freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,

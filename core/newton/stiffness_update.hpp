@@ -20,8 +20,10 @@ struct PolicyColumns {
   StiffnessBatch batch(double dt, double c, bool with_hessian) const;
 };
 
-/// max(a, b) / min(a, b) - 1 of two positive numbers.
-inline double relative_change(double a, double b) { return std::max(a, b) / std::min(a, b) - 1; }
+/// max(a, b) / min(a, b) - 1 of two positive numbers; 0 when one is not.
+inline double relative_change(double a, double b) {
+  return a > 0 && b > 0 ? std::max(a, b) / std::min(a, b) - 1 : 0;
+}
 
 class StiffnessUpdate {
  public:
@@ -59,6 +61,7 @@ class StiffnessUpdate {
   bool uniform() const { return policy_.state().kappa > 0; }
   void fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                     const BlockSystem::Values& elastic, bool at_d_hat);
+  void forget_new(std::size_t n_rows);
   template <class Table>
   void gather(const Table& table, std::span<const int> rows, const BlockSystem& blocks,
               const BlockSystem::Values& elastic, bool at_d_hat, bool with_hessian);

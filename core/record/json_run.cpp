@@ -91,6 +91,7 @@ Json stats(const Stats& v) {
 Json matching(const MatchingRecord& v) {
   Json j = {{"rule", v.rule},
             {"load_source", v.load_source},
+            {"limit_load_source", v.limit_load_source},
             {"pilot_run_id", v.pilot_run_id},
             {"pilot_note", v.pilot_note}};
   put(j, "theta", v.theta);

@@ -14,9 +14,10 @@
 
 namespace bb {
 
-/// MODEL.REVISION.ADDITION: removed or changed meaning, widened, added. Readers check the first number.
-inline constexpr const char* kRunSchemaVersion = "1.0.1";
-inline constexpr const char* kTraceSchemaVersion = "1.0.0";
+/// Of run.json and of the trace beside it. MODEL.REVISION.ADDITION: removed or changed meaning, widened,
+/// added. Readers check the first number; what an earlier version of the same model lacks is optional in the
+/// schemas.
+inline constexpr const char* kRunSchemaVersion = "1.1.0";
 
 struct Ids {
   std::string config_id;   // sha256 of the canonical resolved config
@@ -112,9 +113,10 @@ struct MatchingRecord {
   Number scale;                    // s applied to a policy that makes its own kappa
   Number limit_scale;              // s applied to a limit policy that makes its own kappa_e
   Number capacity_N;               // largest load the shape carries at that kappa; missing when unbounded
-  std::string load_source =
-      "none";  // of load_N: given, pilot, static_weight (the pilot met no contact), none
-  std::string pilot_run_id, pilot_note;  // the note says where a pilot stopped early
+  // of load_N and limit_load_N_per_m: given, pilot, static_weight (the pilot met none), none
+  std::string load_source = "none", limit_load_source = "none";
+  // the note says where a pilot stopped early, and which policies stay as given for want of a measured load
+  std::string pilot_run_id, pilot_note;
 };
 
 struct AuditRecord {

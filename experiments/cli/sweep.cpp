@@ -35,6 +35,12 @@ void run_case(const SweepSpec& spec, const SweepCase& one, const std::filesystem
   std::fflush(stdout);
 }
 
+/// An earlier run's, which `--again` did not replace.
+void remove_record(const std::filesystem::path& folder) {
+  std::error_code none_there;
+  for (const char* name : {"run.json", "trace.jsonl"}) std::filesystem::remove(folder / name, none_there);
+}
+
 }  // namespace
 
 int sweep(const SweepVerb& verb, const CommonOptions& common) {
@@ -60,6 +66,7 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
       run_case(spec, one, folder, common, line);
     } catch (const ConfigError& error) {
       line.clear();
+      remove_record(folder);
       fmt::print("{:<44} no record\n", spec.name + ": " + one.label);
       for (Violation v : error.violations()) {
         v.where = verb.spec + " [" + one.label + "] " + v.where;

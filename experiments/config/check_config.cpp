@@ -121,13 +121,22 @@ void check_pilot(const RunConfig& config, const MatchedBarrier& m, const Complai
                        m.policy.name));
 }
 
+/// False when no body of the scene can have a limited element.
+bool may_be_limited(const RunConfig& config) {
+  const auto& bodies = config.scene.bodies;
+  return config.strain_limit.enabled &&
+         (config.scene.name != "bodies" || std::any_of(bodies.begin(), bodies.end(), [](const BodyConfig& b) {
+            return b.limited && b.spec.kind != BodyKind::rigid;
+          }));
+}
+
 void check_matching(const RunConfig& config, const Complain& complain) {
   if (config.matching.rule == MatchingRule::as_given) return;
   const FormulationConfig& contact = config.formulation;
   const StrainLimitConfig& limit = config.strain_limit;
   std::vector<MatchedBarrier> matched{{contact.shape, contact.argument, contact.d_hat, "/matching/load_N",
                                        config.matching.load, contact.stiffness_policy}};
-  if (limit.enabled) {
+  if (may_be_limited(config)) {
     matched.push_back({limit.shape, limit.argument, limit.limit.width, "/matching/limit_load_N_per_m",
                        config.matching.limit_load, limit.stiffness_policy});
   }

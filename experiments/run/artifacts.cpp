@@ -2,7 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "core/math/error.hpp"
 #include "core/mesh/write_mesh.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
@@ -18,13 +17,7 @@ void ArtifactWriter::frame(const Positions& x, int step) {
   mesh.vertices = x;
   mesh.triangles = scene_.planar ? scene_.membrane.triangles : scene_.surface_triangles;
   if (mesh.triangles.empty()) mesh.segments = scene_.surface_edges;
-  std::error_code no_folder;
-  std::filesystem::create_directories((folder_ / relative).parent_path(), no_folder);
-  try {
-    write_ply((folder_ / relative).string(), mesh);
-  } catch (const ConfigError& error) {  // output, not input
-    throw RecordError(error.what(), static_cast<bool>(no_folder));
-  }
+  write_atomically(folder_ / relative, ply_bytes(mesh));
   keep(relative, "frame", "model/ply");
 }
 

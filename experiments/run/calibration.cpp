@@ -24,7 +24,7 @@ struct Match {
 
   double curvature_of_log(double width) const {
     if (curvature) return *curvature;
-    const BarrierFunction log{require_shape("log"), Argument::gap};
+    const BarrierFunction log = log_barrier();
     return match_equal_force(log, width, load, theta) * log.eval(width / 2, width).d2b;
   }
   double stiffness(const BarrierFunction& barrier, double width) const {
@@ -73,6 +73,11 @@ bool has_one_kappa(const PolicyConfig& policy) {
   return !needs_kappa(policy) && make_contact_policy(policy, {})->needs_globals();
 }
 
+/// Adds why a policy stays as given.
+void note(MatchingRecord& record, const char* why) {
+  record.pilot_note += (record.pilot_note.empty() ? "" : "; ") + std::string(why);
+}
+
 void match_contact(const Matching& m, Calibration& out) {
   const MatchingConfig& matching = m.config.matching;
   const PolicyConfig& policy = m.config.formulation.stiffness_policy;
@@ -98,12 +103,13 @@ void match_contact(const Matching& m, Calibration& out) {
     if (const auto slope = max_slope(barrier, d_hat)) m.record.capacity_N = kappa * *slope;
     return;
   }
-  if (!measured) return;
+  if (!measured) {
+    return note(m.record, "the contact policy stays as given: the pilot met no contact");
+  }
   if (has_one_kappa(policy)) {
     const std::optional<double> start = policy_start(m.config, m.scene, out, m.options);
     if (!start) {
-      m.record.pilot_note = "the policy stays as given: its own run never reached a contact";
-      return;
+      return note(m.record, "the contact policy stays as given: its own run never reached a contact");
     }
     out.scale = scale_of(kappa, *start, "kappa");
   } else {
@@ -118,7 +124,11 @@ void match_limit(const Matching& m, Calibration& out) {
   const bool measured = m.pilot && m.pilot->limit > 0;
   const double width = m.scene.limit.width.front();
   Match match{matching.rule, matching.theta, matching.limit_load.value_or(0), matching.limit_curvature};
-  if (!matching.limit_load) match.load = measured ? m.pilot->limit : m.pilot->rest.limit;
+  m.record.limit_load_source = "given";
+  if (!matching.limit_load) {
+    m.record.limit_load_source = measured ? "pilot" : "static_weight";
+    match.load = measured ? m.pilot->limit : m.pilot->rest.limit;
+  }
   m.record.limit_load_N_per_m = match.load;
   if (matching.rule == MatchingRule::equal_curvature) {
     m.record.limit_curvature = match.curvature_of_log(width);
@@ -127,7 +137,9 @@ void match_limit(const Matching& m, Calibration& out) {
   if (needs_kappa(m.config.strain_limit.stiffness_policy)) {
     out.k_s = k_s;
     m.record.limit_stiffness_N_per_m = k_s;
-  } else if (measured) {
+  } else if (!measured) {
+    note(m.record, "the limit's policy stays as given: the limit was never active in the pilot");
+  } else {
     const double own = kappa_of_element(m.config, *m.pilot, width, match.at());
     out.limit_scale = scale_of(k_s * m.pilot->element.area, own, "kappa_e");
     m.record.limit_scale = out.limit_scale;

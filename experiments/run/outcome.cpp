@@ -12,12 +12,13 @@ std::string because(const StepReport& step) { return step.detail.empty() ? "" : 
 // No progress: because some contact or limited element carries more than its barrier can, or for another
 // reason.
 Verdict stalled(const StepReport& step) {
-  const double worst = std::max(step.overload, step.limit_overload);
+  const double contact = step.overload.value_or(0), limit = step.limit_overload.value_or(0);
+  const double worst = std::max(contact, limit);
   if (worst > 1) {
     return {Outcome::stall_overload,
             fmt::format("step {}: load over capacity {:.3g} {}; {} after {} iterations{}", step.step, worst,
-                        step.overload >= step.limit_overload ? "at a contact" : "of the strain limit",
-                        to_string(step.status), step.iterations, because(step))};
+                        contact >= limit ? "at a contact" : "of the strain limit", to_string(step.status),
+                        step.iterations, because(step))};
   }
   if (step.ccd_capped > 0 && step.status == StepStatus::step_collapse) {
     return {Outcome::ccd_cap,

@@ -16,8 +16,6 @@
 namespace bb {
 namespace {
 
-BarrierFunction log_barrier() { return {require_shape("log"), Argument::gap}; }
-
 /// Keeps the largest loads over converged states with the contact and the element that carried them.
 class LoadObserver final : public StepObserver {
  public:
@@ -139,6 +137,8 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
 
 }  // namespace
 
+BarrierFunction log_barrier() { return {require_shape("log"), Argument::gap}; }
+
 const PilotLoads& run_pilot(const RunConfig& config, const Scene& scene, const RunOptions& options) {
   static std::map<std::string, PilotLoads> known;
   const RunConfig pilot = pilot_config(config);
@@ -157,7 +157,8 @@ const PilotLoads& run_pilot(const RunConfig& config, const Scene& scene, const R
     show(config, options, report);
     if (report.status == StepStatus::converged) continue;
     observer.loads.stopped =
-        fmt::format("the pilot stopped at step {} with {} {}", step, to_string(report.status), report.detail);
+        fmt::format("the pilot stopped at step {} with {}", step, to_string(report.status));
+    if (!report.detail.empty()) observer.loads.stopped += ": " + report.detail;
     break;
   }
   observer.loads.dt = pilot.time.dt;

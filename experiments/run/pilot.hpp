@@ -39,6 +39,9 @@ struct PilotLoads {
   std::string stopped;  // why it ended early; empty when it did not
 };
 
+/// The barrier of the pilot, to which the rules compare others.
+BarrierFunction log_barrier();
+
 /// Runs the pilot of this config, or returns the one that is known: pilots are kept by config id for the life
 /// of the process, so that the formulations of a sweep share one.
 /// Errors: ConfigError when the scene has no weight to start from; Interrupted.

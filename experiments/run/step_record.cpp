@@ -73,8 +73,14 @@ StepRecord step_record(const NewtonSystem& system, const StepReport& report) {
   step.limit_load_max_N_per_m =
       system.has_limit() ? Number(report.limit_tension_max) : Number::missing("no_limit");
   const bool converged = report.status == StepStatus::converged;
-  step.contact_overload = converged ? Number::missing("converged") : Number(report.overload);
-  step.limit_overload = converged ? Number::missing("converged") : Number(report.limit_overload);
+  const char* absent = converged                    ? "converged"
+                       : report.kappa_unsettled > 0 ? "kappa_unsettled"
+                                                    : "not_measured";
+  const auto measured = [absent](const std::optional<double>& load) {
+    return load ? Number(*load) : Number::missing(absent);
+  };
+  step.contact_overload = measured(report.overload);
+  step.limit_overload = measured(report.limit_overload);
   fill_contact(system.state(), report, step);
   fill_energies(system, report, step);
   return step;

@@ -40,7 +40,8 @@ StiffnessGlobals globals(double balance) {
   return g;
 }
 
-const StiffnessPolicy::StepEnd pressed{4e-9, 5e-9, 1e-9};  // both below 10 parks, shrinking
+using PairEnd = StiffnessPolicy::PairEnd;
+const std::vector<PairEnd> pressed{{4e-9, 5e-9, 1e-9}};  // both below 10 parks, shrinking
 
 TEST(FixedPolicy, FillsEveryRow) {
   StiffnessPolicyConfig config;
@@ -76,6 +77,15 @@ TEST(IpcAdaptivePolicy, StartsAtTheBalanceWithinItsBounds) {
   EXPECT_DOUBLE_EQ(policy->state().kappa, 5);
 }
 
+TEST(IpcAdaptivePolicy, AnUpperBoundBelowTheScaleHolds) {
+  StiffnessPolicyConfig::IpcOverrides overrides;
+  overrides.kappa_max = 2;  // k = 5
+  const auto policy = ipc(overrides);
+  policy->start(globals(40));
+  EXPECT_DOUBLE_EQ(policy->state().kappa, 2);
+  EXPECT_TRUE(policy->state().saturated);
+}
+
 TEST(IpcAdaptivePolicy, DoublesUpToItsBoundAndThenStays) {
   const auto policy = ipc({}, 2.0);
   policy->start(globals(40));
@@ -91,13 +101,14 @@ TEST(IpcAdaptivePolicy, DoublesUpToItsBoundAndThenStays) {
 }
 
 TEST(IpcAdaptivePolicy, DoublesOnlyWhenSmallTwiceAndShrinking) {
-  const double inf = std::numeric_limits<double>::infinity();
-  for (const StiffnessPolicy::StepEnd end :
-       {StiffnessPolicy::StepEnd{5e-9, 4e-9, 1e-9},    // growing
-        StiffnessPolicy::StepEnd{4e-9, 4e-9, 1e-9},    // at rest
-        StiffnessPolicy::StepEnd{4e-9, 2e-8, 1e-9},    // small once
-        StiffnessPolicy::StepEnd{1e-8, 1.1e-8, 1e-9},  // not below 10 parks
-        StiffnessPolicy::StepEnd{inf, inf, 1e-9}}) {
+  const std::vector<std::vector<PairEnd>> patient{
+      {},
+      {{5e-9, 4e-9, 1e-9}},                        // growing
+      {{4e-9, 4e-9, 1e-9}},                        // at rest
+      {{4e-9, 2e-8, 1e-9}},                        // small once
+      {{1e-8, 1.1e-8, 1e-9}},                      // not below 10 parks
+      {{2e-9, 3e-9, 1e-10}, {2e-7, 3e-7, 1e-8}}};  // each against its own
+  for (const std::vector<PairEnd>& end : patient) {
     const auto policy = ipc();
     policy->start(globals(40));
     policy->end_step(end);
@@ -114,9 +125,9 @@ TEST(IpcAdaptivePolicy, TakesPublishedNumbersInstead) {
   const auto policy = ipc({.kappa_min = 50, .kappa_max = 150, .doubling_gap = 1e-6});
   policy->start(globals(40));
   EXPECT_DOUBLE_EQ(policy->state().kappa, 50);
-  policy->end_step({4e-7, 5e-7, 1e-9});
+  policy->end_step(std::vector<PairEnd>{{4e-7, 5e-7, 1e-9}});
   EXPECT_DOUBLE_EQ(policy->state().kappa, 100);
-  policy->end_step({3e-7, 4e-7, 1e-9});
+  policy->end_step(std::vector<PairEnd>{{3e-7, 4e-7, 1e-9}});
   EXPECT_DOUBLE_EQ(policy->state().kappa, 150);
   EXPECT_TRUE(policy->state().saturated);
 }

@@ -79,6 +79,15 @@ TEST(Contradictions, APilotWithoutWeight) {
   expect_violation(config, "/matching/rule", "\"equal_force\"", "as_given: policy elasticity_inclusive");
 }
 
+TEST(Contradictions, ALimitOnNothingNeedsNoPilot) {
+  json config = with(bodies_config(), "/scene/gravity_m_per_s2", {0, 0, 0});
+  config["matching"] = {{"rule", "equal_force"}, {"load_N", 1}};
+  config["strain_limit"] = {{"limit", 0.1}};
+  expect_violation(config, "/matching/limit_load_N_per_m", "nothing", "without gravity no pilot can start");
+  config["scene"]["bodies"][0]["limited"] = false;
+  EXPECT_TRUE(parsed(config).strain_limit.enabled);
+}
+
 TEST(Contradictions, AConventionOfKappaOfAnotherFormulation) {
   const std::string policy = "/formulation/stiffness_policy";
   expect_violation(with(hang_config(), policy, {{"name", "fixed"}, {"kappa_a_J", 5}}), policy + "/kappa_a_J",

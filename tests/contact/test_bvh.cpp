@@ -67,7 +67,8 @@ TEST_P(BvhSizes, FindsWhatTheDoubleLoopFinds) {
     EXPECT_GT(self.size(), 100U);
   }
 }
-INSTANTIATE_TEST_SUITE_P(, BvhSizes, testing::Values(0, 1, 2, 4, 5, 31, 33, 257, 2000));
+INSTANTIATE_TEST_SUITE_P(, BvhSizes,
+                         testing::Values(0, 1, 2, 4, 5, 8, 9, 31, 33, 63, 64, 65, 257, 511, 512, 513, 2000));
 
 TEST(Bvh, SamePairsForAnyNumberOfThreads) {
   const auto boxes = random_boxes(3000, 0.1, 5);
@@ -146,10 +147,10 @@ TEST(BoxBlock, OverlapsWhatTheBoxesDoAndNothingInUnsetLanes) {
     BoxBlock block;
     for (std::size_t k = 0; k < 6; ++k) block.set(k, boxes[first + k]);
     asking.set(2, boxes[first + 6]);
-    LaneMask expected = 0;
+    LaneSet expected = 0;
     Aabb hull;
     for (std::size_t k = 0; k < 6; ++k) {
-      expected |= static_cast<LaneMask>(boxes[first + k].overlaps(boxes[first + 6])) << k;
+      expected |= static_cast<LaneSet>(boxes[first + k].overlaps(boxes[first + 6])) << k;
       hull.add(boxes[first + k]);
     }
     EXPECT_EQ(block.overlaps(asking, 2), expected);

@@ -132,6 +132,28 @@ TEST(Calibration, ALimitThatWasNeverActiveStaysAsGiven) {
   EXPECT_TRUE(c.calibration.limited);
   EXPECT_EQ(c.calibration.limit_scale, 1);
   EXPECT_FALSE(c.record.limit_scale.finite());
+  EXPECT_EQ(c.record.limit_load_source, "static_weight");
+  EXPECT_NE(c.record.pilot_note.find("the limit's policy stays as given"), std::string::npos)
+      << c.record.pilot_note;
+}
+
+TEST(Calibration, TheRecordSaysWhereTheLimitsLoadComesFrom) {
+  EXPECT_EQ(calibrated(block).record.limit_load_source, "none");
+  EXPECT_EQ(calibrated(hanging).record.limit_load_source, "pilot");
+  EXPECT_EQ(calibrated(hanging, {"/matching/limit_load_N_per_m=2"}).record.limit_load_source, "given");
+}
+
+/// Without a pilot's contact nobody can be asked, whatever the load.
+TEST(Calibration, TheRecordSaysWhenAPolicyStaysAsGiven) {
+  const std::string dynamic = R"(/formulation/stiffness_policy={"name": "elasticity_inclusive"})";
+  for (const char* load : {"/matching/load_N=0.5", "/matching/theta=0.1"}) {
+    const Calibrated c = calibrated(falling, {dynamic, "/time/steps=2", load});
+    EXPECT_EQ(c.calibration.scale, 1);
+    EXPECT_FALSE(c.record.scale.finite());
+    EXPECT_EQ(c.record.pilot_note, "the contact policy stays as given: the pilot met no contact") << load;
+  }
+  EXPECT_EQ(calibrated(falling, {dynamic}).record.pilot_note, "");
+  EXPECT_EQ(calibrated(falling, {"/time/steps=2"}).record.pilot_note, "");  // a fixed kappa from the weight
 }
 
 TEST(Calibration, ALimitOnNothingNeedsNoStiffness) {

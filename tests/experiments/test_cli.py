@@ -246,6 +246,31 @@ def test_a_full_output_folder(program, tmp_path, limit):
     assert not [p for p in (tmp_path / "out").iterdir() if p.name != "trace.jsonl"]
 
 
+@pytest.mark.parametrize("taken", ["frames", "frames/step_000000.ply"])
+def test_a_frame_that_can_never_be_written(program, tmp_path, taken):
+    """A file where the folder should be, a folder where the file should be."""
+    place = tmp_path / "out" / taken
+    place.parent.mkdir(parents=True)
+    if taken == "frames":
+        write(place, "")
+    else:
+        place.mkdir()
+    done = bench(program, "run", BLOCK, "--out", tmp_path / "out", "--set", "/time/steps=1", "--set", "/output/frames_every=1")
+    refused(done, str(place))
+    assert not [p for p in tmp_path.rglob("*") if ".tmp." in p.name]
+
+
+def test_a_disk_that_a_frame_fills(program, tmp_path):
+    def full():
+        signal.signal(signal.SIGXFSZ, signal.SIG_IGN)
+        resource.setrlimit(resource.RLIMIT_FSIZE, (6000, 6000))
+
+    config = bodies(tmp_path, {"generator": "grid", "n_x": 20, "n_y": 20}, output={"frames_every": 1})
+    done = bench(program, "run", config, "--out", tmp_path / "out", restore_signals=False, preexec_fn=full)
+    refused(done, "frames/step_", code=75)
+    assert list((tmp_path / "out/frames").iterdir()) == []
+
+
 def long_run(tmp_path) -> list:
     return ["run", BLOCK, "--out", str(tmp_path / "out"), "--set", "/time/steps=1000000"]
 
@@ -264,7 +289,10 @@ def test_an_interrupted_run_leaves_no_record(program, tmp_path, sent):
 
 
 def test_eval_ends_at_an_interrupt(program):
-    with subprocess.Popen([program, "eval"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True) as waiting:
+    def listening():  # a shell's background job would hand SIGINT on as ignored
+        signal.signal(signal.SIGINT, signal.SIG_DFL)
+
+    with subprocess.Popen([program, "eval"], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, preexec_fn=listening) as waiting:
         waiting.stdin.write('{"kind": "rho", "shape": "cubic", "u": 0.5}\n')
         waiting.stdin.flush()
         assert json.loads(waiting.stdout.readline())["rho"] == pytest.approx(4)  # at once, not at the end

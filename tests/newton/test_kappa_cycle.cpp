@@ -69,10 +69,26 @@ TEST(KappaCycle, a_gap_below_half_of_d_hat_never_converges_and_the_step_says_why
   EXPECT_EQ(step.status, StepStatus::iteration_cap);
   EXPECT_NE(step.detail.find("kappa does not settle"), std::string::npos) << step.detail;
   EXPECT_GT(log.change.back(), 0.01);
-  EXPECT_EQ(step.overload, 0);  // kappa moves, and with it what the row can carry
+  EXPECT_FALSE(step.overload.has_value());  // kappa moves, and with it what the row can carry
 
   const std::size_t n = log.dx.size();
   EXPECT_NEAR(log.dx[n - 1] / log.dx[n - 3], 1, 0.05);  // a cycle of two
+}
+
+TEST(KappaCycle, a_contact_that_appears_has_not_changed) {
+  Scene scene = test::particle_over_plane(mass, 1.1 * d_hat, d_hat);
+  scene.v0.col(0) = Vec3d(0, 0, -0.04);  // to 0.7 d_hat in one step without contact
+  scene.gravity.setZero();
+  Method method = test::fixed_method("cubic", 1);
+  StiffnessPolicyConfig policy;
+  policy.name = "elasticity_inclusive";
+  method.stiffness = make_policy(policy);
+  Simulation simulation(scene, method, dt, 1);
+  Log log;
+  ASSERT_EQ(simulation.step(log).contacts.obstacle, 1U);
+  ASSERT_GT(log.change.size(), 3U);
+  EXPECT_EQ(log.change[1], 0);  // the row is new: its value at d_hat was never one of a line search's start
+  EXPECT_GT(log.change.back(), 0);  // an old one by then
 }
 
 TEST(KappaCycle, kept_for_the_step_both_converge) {

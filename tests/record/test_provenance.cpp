@@ -65,7 +65,10 @@ TEST(Provenance, SaysWhatThisBinaryIs) {
   EXPECT_EQ(p.argv.size(), 2u);
   EXPECT_EQ(p.threads, 2);
   EXPECT_NE(p.compiler, "");
-  EXPECT_NE(p.flags.find("-ffp-contract=off"), std::string::npos);
+  for (const char* flag : {"-ffp-contract=off", "-fno-math-errno", "-fno-trapping-math"}) {
+    EXPECT_NE(p.flags.find(flag), std::string::npos) << flag << " in " << p.flags;
+  }
+  EXPECT_EQ(p.build_type == "Release", p.flags.find("hinge_batch.cpp: -O3") != std::string::npos) << p.flags;
   EXPECT_FALSE(p.fast_math);
   for (const char* name : {"eigen", "cholmod", "blas", "tbb", "fmt"})
     EXPECT_NE(p.libraries.at(name), "") << name;

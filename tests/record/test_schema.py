@@ -44,6 +44,21 @@ def test_a_record_that_lost_a_field_is_invalid(sample, pointer):
     assert not validator("run").is_valid(record)
 
 
+def test_what_earlier_versions_lack_is_optional(sample):
+    record = json.loads((sample / "run.json").read_text())
+    major, minor, _ = map(int, record["schema"]["version"].split("."))
+    assert (major, minor) >= (1, 1)
+    for field in ("d_hat_m", "limit_scale", "limit_load_source"):
+        del record["matching"][field]
+    record["schema"]["version"] = "1.0.0"
+    validator("run").validate(record)
+    record["schema"]["version"] = "2.0.0"
+    assert not validator("run").is_valid(record)
+    line = json.loads((sample / "trace.jsonl").read_text().splitlines()[0])
+    del line["kappa_change_rel"]
+    validator("trace").validate(line)
+
+
 def test_a_null_without_its_kind_of_field_is_invalid(sample):
     record = json.loads((sample / "run.json").read_text())
     record["steps"][0]["newton_iterations"] = None
