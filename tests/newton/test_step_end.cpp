@@ -68,7 +68,7 @@ TEST(StepEnd, lists_every_pair_with_both_gaps_and_its_own_stop_level) {
 
 TEST(StepEnd, leaves_a_pair_out_that_had_no_row_before) {
   Scene scene = two_particles();
-  scene.x0(2, 1) = scene.rest(2, 1) = 0.6 * d_hat;  // reaches its d_hat in the second step
+  scene.x0(2, 0) = scene.rest(2, 0) = 1.1 * d_hat;  // reaches its d_hat in the second step
   Heard heard;
   Method method = test::fixed_method("log", 1);
   method.stiffness = std::make_unique<Listening>(heard, true);
