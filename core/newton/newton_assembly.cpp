@@ -106,14 +106,15 @@ double NewtonSystem::refresh_limit_stiffness() {
   limit_->elastic_stiffness(terms_.x_n, limit_hess_.data(), scene_.mass.data(), scene_.limit.mass.data(),
                             terms, limit_kappa_.data());
   for (double& kappa : limit_kappa_) kappa *= rule.multiplier;
-  return limit_kappa_change(limit_kappa_before_);
+  return limit_kappa_change();
 }
 
-double NewtonSystem::limit_kappa_change(const std::vector<double>& before) const {
+double NewtonSystem::limit_kappa_change() const {
   double change = 0;
-  for (std::size_t e = 0; e < before.size(); ++e) {
+  for (std::size_t e = 0; e < limit_->size(); ++e) {
     const double gap = std::min(limit_->gaps()[2 * e], limit_->gaps()[2 * e + 1]);
-    if (gap < scene_.limit.width[e]) change = std::max(change, relative_change(before[e], limit_kappa_[e]));
+    if (!(gap < scene_.limit.width[e])) continue;
+    change = std::max(change, relative_change(limit_kappa_before_[e], limit_kappa_[e]));
   }
   return change;
 }

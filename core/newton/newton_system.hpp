@@ -96,7 +96,7 @@ class NewtonSystem {
   void evaluate_contact_energies(EnergyState& state) const;
   double refresh_limit_stiffness();
   double times_larger(std::size_t e, const Positions& others) const;
-  double limit_kappa_change(const std::vector<double>& before) const;
+  double limit_kappa_change() const;
   void assemble_matrix();
   void fill_contact_terms();
   void gather_gradient();

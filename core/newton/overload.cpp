@@ -65,9 +65,9 @@ double NewtonSystem::times_larger(std::size_t e, const Positions& others) const 
 
 double NewtonSystem::limit_overload(const Positions& dx) {
   if (!limit_ || method_.limit.shape.infinite_at_zero) return 0;
-  Positions others = -gradient_;
-  blocks_->gather_elements(elements_.size(), limit_local_.grad, others);
-  others = -others;  // gradient of everything but the limit
+  Positions limit_gradient = Positions::Zero(3, state_.x.cols());
+  blocks_->gather_elements(elements_.size(), limit_local_.grad, limit_gradient);
+  const Positions others = gradient_ - limit_gradient;  // what the limit has to balance
   limit_->measure(state_.x);
   const std::vector<double> gaps(limit_->gaps().begin(), limit_->gaps().end());
   limit_->measure(state_.x + dx);

@@ -82,13 +82,14 @@ void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified
 
 double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                                 const BlockSystem::Values& elastic) {
+  const bool anew = policy_.refresh() == Refresh::per_iteration;
   before_.clear();
-  if (!uniform()) {
+  if (anew && !uniform()) {
     before_.assign(rows.kappa.begin(), rows.kappa.end());
     before_.insert(before_.end(), mollified.kappa.begin(), mollified.kappa.end());
     forget_new(rows.size());
   }
-  if (uniform() || policy_.refresh() == Refresh::per_iteration) memory_.clear();
+  if (uniform() || anew) memory_.clear();
   memory_.recall(rows, mollified, missing_, missing_mollified_);
   fill_missing(rows, mollified, blocks, elastic, false);
   keep(rows, mollified);

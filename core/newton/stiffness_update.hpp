@@ -37,8 +37,8 @@ class StiffnessUpdate {
 
   /// kappa of the rows of a Newton iterate. elastic: values of the elastic matrix H, read only when the
   /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a pair had
-  /// in this step. Returns the largest relative_change of a row's kappa against the value it came with; 0 of
-  /// a policy that gives all rows one kappa.
+  /// in this step. Returns the largest relative_change of a row's kappa against the value it came with; 0
+  /// where the policy gives all rows one kappa or keeps it for the step.
   double refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                  const BlockSystem::Values& elastic);
 

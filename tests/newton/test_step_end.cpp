@@ -43,11 +43,16 @@ Scene two_particles() {
   return scene;
 }
 
+Method listening(Heard& heard, bool adapts) {
+  Method method = test::fixed_method("log", 1);
+  method.stiffness = std::make_unique<Listening>(heard, adapts);
+  return method;
+}
+
 TEST(StepEnd, lists_every_pair_with_both_gaps_and_its_own_stop_level) {
   const Scene scene = two_particles();
   Heard heard;
-  Method method = test::fixed_method("log", 1);
-  method.stiffness = std::make_unique<Listening>(heard, true);
+  Method method = listening(heard, true);
   Simulation simulation(scene, method, dt, 3);
   StepObserver observer;
   Positions before(3, 2);
@@ -70,8 +75,7 @@ TEST(StepEnd, leaves_a_pair_out_that_had_no_row_before) {
   Scene scene = two_particles();
   scene.x0(2, 0) = scene.rest(2, 0) = 1.1 * d_hat;  // reaches its d_hat in the second step
   Heard heard;
-  Method method = test::fixed_method("log", 1);
-  method.stiffness = std::make_unique<Listening>(heard, true);
+  Method method = listening(heard, true);
   Simulation simulation(scene, method, dt, 3);
   StepObserver observer;
   std::vector<std::size_t> rows;
@@ -84,8 +88,7 @@ TEST(StepEnd, leaves_a_pair_out_that_had_no_row_before) {
 TEST(StepEnd, does_not_disturb_a_policy_that_never_adapts) {
   const Scene scene = two_particles();
   Heard heard;
-  Method method = test::fixed_method("log", 1);
-  method.stiffness = std::make_unique<Listening>(heard, false);
+  Method method = listening(heard, false);
   Simulation simulation(scene, method, dt, 2);
   StepObserver observer;
   for (int i = 0; i < 2; ++i) ASSERT_EQ(simulation.step(observer).contacts.obstacle, 2U);
