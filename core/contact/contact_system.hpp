@@ -90,7 +90,7 @@ class ContactSystem {
 
 enum class HessianMode { gauss_newton, projected_full };
 
-/// Local gradients [12 n] and PSD Hessians [144 n, 12 x 12 column-major] of the rows on the compact free
+/// Local gradients [12 n] and PSD Hessians [90 n, lower blocks of 4 points] of the rows on the compact free
 /// slots (slots beyond n_free are 0), from kappa, b', b'' in the table: m kappa b' w_i n and m kappa b'' w_i
 /// w_j n n^T, plus m kappa b' grad^2 d, projected, in mode projected_full. x: [3 x n]. Resizes the outputs,
 /// no other allocation.

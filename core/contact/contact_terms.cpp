@@ -7,6 +7,7 @@
 #include "core/contact/pair_geometry.hpp"
 #include "core/geometry/distance_derivatives.hpp"
 #include "core/geometry/edge_edge_mollifier.hpp"
+#include "core/math/lower_blocks.hpp"
 #include "core/math/psd.hpp"
 
 namespace bb {
@@ -14,6 +15,7 @@ namespace bb {
 namespace {
 
 using Hessian12 = Mat<double, 12, 12>;
+constexpr std::size_t stored = 9 * n_lower_blocks(4);  // numbers a row
 
 /// Leading block of 3 n x 3 n projected, the rest is 0 and stays so.
 void project_leading(int n_free, Hessian12& h) {
@@ -93,13 +95,13 @@ void row_terms(const ContactTable& rows, std::size_t r, const Positions& x, Hess
   for (int k = 0; k < rows.n_free[r]; ++k) {
     g.segment<3>(3 * k) = rows.weight[4 * r + static_cast<std::size_t>(k)] * n;
   }
+  Vec<double, 12>::Map(grad) = (scale * rows.db[r]) * g;
   Hessian12 h = (scale * rows.d2b[r]) * (g * g.transpose());
   if (mode == HessianMode::projected_full && rows.db[r] != 0) {
     add_curvature(rows, r, x, scale * rows.db[r], h);
     project_leading(rows.n_free[r], h);
   }
-  Vec<double, 12>::Map(grad) = (scale * rows.db[r]) * g;
-  Hessian12::Map(hess) = h;
+  store_lower_blocks<4>(h, hess);
 }
 
 Mat<double, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const Positions& x) {
@@ -129,7 +131,7 @@ void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positi
     if (rows.vertex[4 * r + static_cast<std::size_t>(k)] < 0) continue;
     Vec3d::Map(grad + 3 * slot++) = g.segment<3>(3 * k);
   }
-  Hessian12::Map(hess) = h;
+  store_lower_blocks<4>(h, hess);
 }
 
 }  // namespace
@@ -137,17 +139,18 @@ void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positi
 void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, std::vector<double>& grad,
                    std::vector<double>& hess) {
   grad.resize(12 * rows.size());
-  hess.resize(144 * rows.size());
+  hess.resize(stored * rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(),
-                    [&](std::size_t r) { row_terms(rows, r, x, mode, &grad[12 * r], &hess[144 * r]); });
+                    [&](std::size_t r) { row_terms(rows, r, x, mode, &grad[12 * r], &hess[stored * r]); });
 }
 
 void mollified_terms(const MollifiedTable& rows, const Positions& x, std::vector<double>& grad,
                      std::vector<double>& hess) {
   grad.resize(12 * rows.size());
-  hess.resize(144 * rows.size());
-  tbb::parallel_for(std::size_t{0}, rows.size(),
-                    [&](std::size_t r) { mollified_row_terms(rows, r, x, &grad[12 * r], &hess[144 * r]); });
+  hess.resize(stored * rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
+    mollified_row_terms(rows, r, x, &grad[12 * r], &hess[stored * r]);
+  });
 }
 
 void contact_energies(const ContactTable& rows, std::vector<double>& energy) {

@@ -1,13 +1,15 @@
 // Storage of local terms.
 #include "core/energy/element_batch.hpp"
 
+#include "core/math/lower_blocks.hpp"
+
 namespace bb {
 
 void LocalTerms::resize(std::size_t n, int width) {
-  const std::size_t dofs = 3 * static_cast<std::size_t>(width);
+  const auto w = static_cast<std::size_t>(width);
   energy.resize(n);
-  grad.resize(n * dofs);
-  hess.resize(n * dofs * dofs);
+  grad.resize(3 * w * n);
+  hess.resize(9 * n_lower_blocks(w) * n);
 }
 
 }  // namespace bb

@@ -15,7 +15,7 @@ namespace bb {
 struct LocalTerms {
   std::vector<double> energy;  // [n] J
   std::vector<double> grad;    // [3w n] N, vertex-major
-  std::vector<double> hess;    // [9w^2 n] N/m, 3w x 3w column-major, symmetric PSD
+  std::vector<double> hess;    // [9w(w + 1)/2 n] N/m, PSD, its lower blocks (lower_blocks.hpp)
 
   /// Makes room for n elements of w vertices; allocates only when it must grow.
   void resize(std::size_t n, int width);

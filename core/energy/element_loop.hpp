@@ -13,6 +13,7 @@
 #include "core/energy/element_batch.hpp"
 #include "core/energy/terms.hpp"
 #include "core/math/error.hpp"
+#include "core/math/lower_blocks.hpp"
 
 namespace bb {
 
@@ -38,7 +39,7 @@ template <int N>
 void store_terms(const ElementTerms<double, N>& terms, std::size_t e, LocalTerms& out) {
   out.energy[e] = terms.energy;
   std::copy_n(terms.grad.data(), N, out.grad.data() + N * e);
-  std::copy_n(terms.hess.data(), N * N, out.hess.data() + N * N * e);
+  store_lower_blocks<N / 3>(terms.hess, out.hess.data() + 9 * n_lower_blocks(N / 3) * e);
 }
 
 /// ConfigError unless a column has one entry an element and, where `positive`, no entry that is not > 0.

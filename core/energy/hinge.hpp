@@ -101,6 +101,18 @@ BB_HD Mat<T, 3 * N, 3 * N> lift_points(const Mat<T, N, 3>& a, const Mat<T, 9, 9>
   return out;
 }
 
+/// All points moved along the edge in proportion to where they lie along it, in the coordinates of `basis`:
+/// keeps the angle and turns no normal, so that grad and Hessian of the angle send it to 0.
+template <class T>
+BB_HD Vec<T, 9> edge_stretch(const Vec<T, 3> (&x)[4], const Mat<T, 4, 3>& basis) {
+  const Vec<T, 3> e = x[1] - x[0];
+  Vec<T, 3> place = Vec<T, 3>::Zero();
+  for (int i = 1; i < 4; ++i) place += e.dot(Vec<T, 3>(x[i] - x[0])) * basis.row(i).transpose();
+  Vec<T, 9> out;
+  for (int k = 0; k < 3; ++k) out.template segment<3>(3 * k) = place[k] * e;
+  return out;
+}
+
 /// Energy (J) k/2 (theta - theta0)^2, k in J, angles in rad, the difference taken in (-pi, pi]. Host-device:
 /// yes.
 template <class T>
@@ -133,16 +145,16 @@ BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T
     basis << T(1), T(1), T(1), T(1), T(-1), T(-1), T(-1), T(1), T(-1), T(-1), T(-1), T(1);
     basis *= T(0.5);
     const Mat<T, 3, 3> to_basis = basis.transpose() * difference;
-    const Mat<T, 12, 12> projected =
-        lift_points<T, 4>(basis, project_psd<T, 9>(lift_points<T, 3>(to_basis, reduced)));
+    const Mat<T, 12, 12> projected = lift_points<T, 4>(
+        basis, project_psd_beside<T, 9>(lift_points<T, 3>(to_basis, reduced), edge_stretch<T>(x, basis)));
     out.hess = any(flat) ? select_entries(flat, out.hess, projected) : projected;
   }
   return out;
 }
 
 /// Energy, gradient and Hessian k (grad theta grad theta^T + (theta - theta0) grad^2 theta). Psd: exact
-/// projection of the 12 x 12 matrix, done on the 9 x 9 matrix left when the three translations, its null
-/// vectors, are split off by an orthonormal basis. Not finite when a triangle has no area. Host-device: yes.
+/// projection of the 12 x 12 matrix, done on the 8 x 8 matrix left when its null vectors, three translations
+/// and the stretch along the edge, are split off. Not finite when a triangle has no area. Host-device: yes.
 template <class T>
 BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle,
                                       Projection projection) {

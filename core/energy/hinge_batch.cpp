@@ -31,7 +31,8 @@ void store(const ElementTerms<Real, 12>& terms, std::size_t first, std::size_t n
     const std::size_t e = first + lane;
     out.energy[e] = terms.energy.v[lane];
     for (std::size_t k = 0; k < 12; ++k) out.grad[12 * e + k] = terms.grad.data()[k].v[lane];
-    for (std::size_t k = 0; k < 144; ++k) out.hess[144 * e + k] = terms.hess.data()[k].v[lane];
+    store_lower_blocks<4>(terms.hess, &out.hess[9 * n_lower_blocks(4) * e],
+                          [lane](const Real& entry) { return entry.v[lane]; });
   }
 }
 

@@ -49,7 +49,7 @@ class BlockSystem {
   void clear();
   void add_diagonal(std::span<const double> per_vertex);  // value * I3
   void add_elements(std::size_t family,
-                    std::span<const double> hess);  // [size * (3w)^2] column-major local Hessians
+                    std::span<const double> hess);  // [size * 9w(w + 1)/2] lower blocks
   void add_contacts(std::size_t family, std::span<const double> hess);
   const Values& values() const;
 

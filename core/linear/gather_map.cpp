@@ -8,6 +8,7 @@
 
 #include "core/linear/parallel.hpp"
 #include "core/math/error.hpp"
+#include "core/math/lower_blocks.hpp"
 
 namespace bb {
 namespace {
@@ -15,6 +16,9 @@ namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 int row_of(std::uint64_t key) { return static_cast<int>(key >> 32); }
 constexpr int kGrain = 256;  // columns a task: some thousand contributions
+
+// Where the entries of a block and of its transpose lie: no branch, the orientation is not predictable.
+constexpr std::uint8_t entry_order[2][9] = {{0, 1, 2, 3, 4, 5, 6, 7, 8}, {0, 3, 6, 1, 4, 7, 2, 5, 8}};
 
 /// Turns counts shifted by one, [n + 1], into starts.
 void prefix_sum(std::vector<std::size_t>& start) {
@@ -110,7 +114,9 @@ void GatherMap::write_targets(int n_vertices) {
         source_start_[target++] = k;
       }
       const std::size_t number = key_[k] & 0xffffffffu, e = number / (w * w), ab = number % (w * w);
-      source_[k] = 9 * w * w * e + 9 * w * (ab / w) + 3 * (ab % w);
+      const std::size_t a = ab % w, b = ab / w;
+      const std::size_t block = n_lower_blocks(w) * e + lower_block(w, std::max(a, b), std::min(a, b));
+      source_[k] = 2 * (9 * block) + (a < b ? 1 : 0);
     }
   });
 }
@@ -139,19 +145,18 @@ void GatherMap::place(const BlockPattern& pattern) {
 }
 
 void GatherMap::add_hessians(std::span<const double> hess, std::vector<double>& values) const {
-  const std::size_t ld = 3 * at(width_);
-  if (hess.size() != n_elements() * ld * ld) {
-    throw ConfigError("local Hessians", std::to_string(hess.size()) + " numbers", "size * (3 width)^2");
+  if (hess.size() != n_elements() * 9 * n_lower_blocks(at(width_))) {
+    throw ConfigError("local Hessians", std::to_string(hess.size()) + " numbers",
+                      "size * 9 width (width + 1)/2");
   }
   parallel_items(static_cast<int>(row_.size()), 1024, [&](int t) {
     double* out = values.data() + 9 * at(block_[at(t)]);
     double sum[9];
     std::copy(out, out + 9, sum);
     for (std::size_t k = source_start_[at(t)]; k < source_start_[at(t) + 1]; ++k) {
-      const double* local = hess.data() + source_[k];
-      for (std::size_t c = 0; c < 3; ++c) {
-        for (std::size_t r = 0; r < 3; ++r) sum[3 * c + r] += local[c * ld + r];
-      }
+      const double* local = hess.data() + source_[k] / 2;
+      const std::uint8_t(&entry)[9] = entry_order[source_[k] % 2];
+      for (std::size_t i = 0; i < 9; ++i) sum[i] += local[entry[i]];
     }
     std::copy(sum, sum + 9, out);
   });

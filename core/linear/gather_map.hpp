@@ -29,7 +29,7 @@ class GatherMap {
     return width_ == 0 ? 0 : vertices_.size() / static_cast<std::size_t>(width_);
   }
   int width() const { return width_; }
-  /// values [9 x blocks] += local Hessians [size * (3 width)^2], column-major.
+  /// values [9 x blocks] += local Hessians, their lower blocks [size * 9 width (width + 1)/2].
   void add_hessians(std::span<const double> hess, std::vector<double>& values) const;
   /// g [3 x n] += local gradients [size * 3 width].
   void add_gradients(std::span<const double> grad, Positions& g) const;
@@ -41,12 +41,12 @@ class GatherMap {
   void build_gradient_map(int n_vertices);
 
   int width_ = 0;
-  std::vector<int> vertices_;               // copy of the stencils
-  std::vector<int> column_start_;           // [n + 1] targets of a column
-  std::vector<int> row_;                    // [n_targets] ascending within a column
-  std::vector<int> block_;                  // [n_targets] index in the pattern
-  std::vector<std::size_t> source_start_;   // [n_targets + 1]
-  std::vector<std::size_t> source_;         // [n_contributions] offset of the 3x3 block in hess
+  std::vector<int> vertices_;              // copy of the stencils
+  std::vector<int> column_start_;          // [n + 1] targets of a column
+  std::vector<int> row_;                   // [n_targets] ascending within a column
+  std::vector<int> block_;                 // [n_targets] index in the pattern
+  std::vector<std::size_t> source_start_;  // [n_targets + 1]
+  std::vector<std::size_t> source_;  // [n_contributions] 2 * offset of the 3x3 block in hess, + 1: transposed
   std::vector<std::size_t> vertex_start_;   // [n + 1]
   std::vector<std::size_t> vertex_source_;  // offset in grad
   // scratch of build

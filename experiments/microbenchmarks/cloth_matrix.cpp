@@ -10,10 +10,8 @@ void Family::add(const std::vector<int>& v, const VecXd& weights, const Vec3d& n
   vertices.insert(vertices.end(), v.begin(), v.end());
   const Mat3d block = kappa * (n * n.transpose() + 0.1 * Mat3d::Identity());
   for (int j = 0; j < width; ++j) {
-    for (int c = 0; c < 3; ++c) {
-      for (int i = 0; i < width; ++i) {
-        for (int r = 0; r < 3; ++r) hess.push_back(weights[i] * weights[j] * block(r, c));
-      }
+    for (int i = j; i < width; ++i) {
+      for (int k = 0; k < 9; ++k) hess.push_back(weights[i] * weights[j] * block.data()[k]);
     }
   }
 }

@@ -71,14 +71,13 @@ void scatter(const std::vector<int>& vertex, const std::vector<double>& grad, co
     const int v = vertex[slot];
     if (v < 0) continue;
     gradient.col(v) += Vec3d::Map(&grad[3 * slot]);
-    const std::size_t row = slot / 4, i = slot % 4;
-    for (std::size_t j = 0; j < 4; ++j) {
-      const int w = vertex[4 * row + j];
+    const std::size_t row = slot / 4;
+    const int i = static_cast<int>(slot % 4);
+    const Eigen::MatrixXd h = test::from_lower_blocks(&hess[90 * row], 4);
+    for (int j = 0; j < 4; ++j) {
+      const int w = vertex[4 * row + static_cast<std::size_t>(j)];
       for (int a = 0; w >= 0 && a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) {
-          const std::size_t at = 144 * row + 12 * (3 * j + static_cast<std::size_t>(b)) + 3 * i;
-          entries.push_back({3 * v + a, 3 * w + b, hess[at + static_cast<std::size_t>(a)]});
-        }
+        for (int b = 0; b < 3; ++b) entries.push_back({3 * v + a, 3 * w + b, h(3 * i + a, 3 * j + b)});
       }
     }
   }

@@ -8,6 +8,7 @@
 #include "core/math/error.hpp"
 #include "tests/linear/counting_new.hpp"
 #include "tests/linear/systems.hpp"
+#include "tests/lower_blocks.hpp"
 
 namespace bb {
 namespace {
@@ -35,7 +36,7 @@ Family random_family(int width, int size, int n_vertices, unsigned seed, bool wi
     f.vertices.insert(f.vertices.end(), local.begin(), local.end());
     Eigen::MatrixXd h = Eigen::MatrixXd::NullaryExpr(3 * width, 3 * width, [&] { return uniform(random); });
     h = (h + h.transpose()).eval();
-    f.hess.insert(f.hess.end(), h.data(), h.data() + h.size());
+    test::append_lower_blocks(h, f.hess);
     for (int k = 0; k < 3 * width; ++k) f.grad.push_back(uniform(random));
   }
   return f;
@@ -43,9 +44,10 @@ Family random_family(int width, int size, int n_vertices, unsigned seed, bool wi
 
 void add_dense(const Family& f, Eigen::MatrixXd& a, Positions& g) {
   const int w = f.width, ld = 3 * w;
-  for (std::size_t e = 0; e < f.stencils().size(); ++e) {
+  const std::size_t n_elements = f.stencils().size();
+  for (std::size_t e = 0; e < n_elements; ++e) {
     const int* v = f.vertices.data() + e * static_cast<std::size_t>(w);
-    const Eigen::Map<const Eigen::MatrixXd> h(f.hess.data() + e * static_cast<std::size_t>(ld * ld), ld, ld);
+    const Eigen::MatrixXd h = test::from_lower_blocks(f.hess.data() + e * (f.hess.size() / n_elements), w);
     for (int i = 0; i < w; ++i) {
       if (v[i] < 0) continue;
       g.col(v[i]) += Eigen::Map<const Vec3d>(f.grad.data() + e * static_cast<std::size_t>(ld) + 3 * i);

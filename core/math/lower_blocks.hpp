@@ -1,0 +1,31 @@
+// A symmetric matrix of 3 x 3 blocks kept as its lower blocks, column by column: how local Hessians travel
+// from the elements and contacts to the assembly.
+#pragma once
+
+#include <cstddef>
+#include <functional>
+
+namespace bb {
+
+/// Blocks kept of a matrix on `width` points.
+constexpr std::size_t n_lower_blocks(std::size_t width) { return width * (width + 1) / 2; }
+
+/// Number of the block of points (a, b), width > a >= b; its nine entries, column-major, begin at 9 times it.
+constexpr std::size_t lower_block(std::size_t width, std::size_t a, std::size_t b) {
+  return b * (2 * width - b + 1) / 2 + (a - b);
+}
+
+/// The lower blocks of the 3 W x 3 W matrix m, entry by entry through `number`, written to blocks
+/// [9 n_lower_blocks(W)].
+template <int W, class Matrix, class Number = std::identity>
+void store_lower_blocks(const Matrix& m, double* blocks, const Number& number = {}) {
+  for (int b = 0; b < W; ++b) {
+    for (int a = b; a < W; ++a) {
+      for (int c = 0; c < 3; ++c) {
+        for (int r = 0; r < 3; ++r) *blocks++ = number(m(3 * a + r, 3 * b + c));
+      }
+    }
+  }
+}
+
+}  // namespace bb
