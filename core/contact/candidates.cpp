@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <limits>
 
 #include "core/contact/chunks.hpp"
 
@@ -11,6 +12,19 @@ namespace bb {
 namespace {
 bool any(const std::vector<std::uint8_t>& flags) {
   return std::find(flags.begin(), flags.end(), 1) != flags.end();
+}
+
+/// Mean of x1 - x0 over the free points; 0 when that is not finite.
+Vec3d common_motion(const Primitives<1>& points, const Positions& x0, const Positions& x1) {
+  Vec3d sum = Vec3d::Zero();
+  double n = 0;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (!points.free[i]) continue;
+    const int v = points.vertices[i][0];
+    sum += x1.col(v) - x0.col(v);
+    ++n;
+  }
+  return n > 0 && sum.allFinite() ? Vec3d(sum / n) : Vec3d(Vec3d::Zero());
 }
 }  // namespace
 
@@ -33,17 +47,19 @@ BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<doubl
 }
 
 template <int N>
-void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1) {
+void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
+                     const Vec3d& common) {
   if (!tree.needed) return;
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * common.norm();
   tree.boxes.resize(primitives.size());
   for_each_chunk(primitives.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Aabb box;
       for (int v : primitives.vertices[i]) {
         box.add(Vec3d(x0.col(v)));
-        box.add(Vec3d(x1.col(v)));
+        box.add(Vec3d(x1.col(v) - common));
       }
-      box.inflate(primitives.side[i].d_hat / 2 + primitives.side[i].offset);
+      box.inflate(primitives.side[i].d_hat / 2 + primitives.side[i].offset + rounding);
       tree.boxes[i] = box;
     }
   });
@@ -52,9 +68,12 @@ void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Position
 
 void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& out) {
   const Surface& s = surface_;
-  tbb::parallel_invoke([&] { fit(edges_, s.edges, x0, x1); }, [&] { fit(triangles_, s.triangles, x0, x1); },
-                       [&] { fit(points_, s.points, x0, x1); },
-                       [&] { update_obstacles(x0, x1, out.obstacle); });
+  // Which pairs come close depends on relative motion alone: what all points share, a fall say, would only
+  // make every box long.
+  const Vec3d common = common_motion(s.points, x0, x1);
+  tbb::parallel_invoke(
+      [&] { fit(edges_, s.edges, x0, x1, common); }, [&] { fit(triangles_, s.triangles, x0, x1, common); },
+      [&] { fit(points_, s.points, x0, x1, common); }, [&] { update_obstacles(x0, x1, out.obstacle); });
   const auto point = [&s](int i) { return s.points.vertices[static_cast<std::size_t>(i)][0]; };
   const auto edge = [&s](int i) { return s.edges.vertices[static_cast<std::size_t>(i)]; };
   const auto triangle = [&s](int i) { return s.triangles.vertices[static_cast<std::size_t>(i)]; };

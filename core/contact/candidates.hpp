@@ -31,7 +31,8 @@ class BroadPhase {
     std::vector<Aabb> boxes;
   };
   template <int N>
-  void fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1);
+  void fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
+           const Vec3d& common);
   void update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out);
 
   const Surface& surface_;

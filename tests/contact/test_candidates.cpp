@@ -76,6 +76,28 @@ TEST(Candidates, HoldEveryClosePairOfASoup) {
                   close_pairs<PairKind::edge_edge>(scene, s.edges, s.edges, scene.rest, x1, disjoint_ee));
 }
 
+/// A fall of all bodies, or of one onto another, is a motion like any other, but adds no pairs of its own.
+TEST(Candidates, DependOnRelativeMotion) {
+  const Scene scene = soup_scene();
+  const Surface s(scene);
+  const auto disjoint = [](const std::array<int, 2>& a, const std::array<int, 2>& b) {
+    return Surface::disjoint(a, b);
+  };
+  const Positions shaken = random_motion(scene.rest, 0.05, 3);
+  const Candidates still = candidates_of(scene, scene.rest, shaken);
+  Positions all = shaken, some = shaken;
+  all.colwise() += Vec3d(0.3, -2, 1e3);
+  const Candidates fallen = candidates_of(scene, scene.rest, all);
+  expect_contains(fallen.edge_edge,
+                  close_pairs<PairKind::edge_edge>(scene, s.edges, s.edges, scene.rest, all, disjoint));
+  EXPECT_LT(fallen.edge_edge.size(), 2 * still.edge_edge.size());
+
+  some.leftCols(360).colwise() += Vec3d(0, 0, 0.2);  // the free soup alone
+  const Candidates passed = candidates_of(scene, scene.rest, some);
+  const auto needed = close_pairs<PairKind::edge_edge>(scene, s.edges, s.edges, scene.rest, some, disjoint);
+  expect_contains(passed.edge_edge, needed);
+}
+
 TEST(Candidates, NeverHoldAdjacentOrWhollyGivenPairs) {
   Scene scene;
   const auto [vertices, triangles] = grid(6, 6, 0.1);
