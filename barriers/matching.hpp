@@ -27,9 +27,6 @@ struct Equilibrium {
 /// Errors: ConfigError for other values. Cost: about 2,000 evaluations of the shape.
 Equilibrium equilibrium(const BarrierFunction& barrier, double kappa, double d_hat, double load);
 
-/// sup over (0, d_hat) of |b'| in m, including the limit at 0; absent when unbounded.
-std::optional<double> max_slope(const BarrierFunction& barrier, double d_hat);
-
 /// Matching rule equal_force: kappa (N/m) = load/|b'(theta d_hat)|.
 /// Errors: ConfigError unless load > 0, d_hat > 0, 0 < theta < 1 and b' is finite and not 0 there.
 double match_equal_force(const BarrierFunction& barrier, double d_hat, double load, double theta = 0.1);
