@@ -185,8 +185,6 @@ ContactSystem::Counts ContactSystem::candidate_counts() const {
           c.obstacle.size()};
 }
 
-bool ContactSystem::feasible(const Positions& x) const { return x.allFinite() && !data_->first_overlap(x); }
-
 std::optional<ContactSystem::Overlap> ContactSystem::check_initial(const Positions& x) {
   update_candidates(x, x);
   std::optional<Overlap> found = data_->first_overlap(x);

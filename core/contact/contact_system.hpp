@@ -74,8 +74,6 @@ class ContactSystem {
     double gap;      // m, <= 0
     std::string text;
   };
-  /// Whether every candidate pair of the last update_candidates has a gap > 0 at x: for committed states.
-  bool feasible(const Positions& x) const;
   /// The first pair of the scene with a gap <= 0 at x, none when x is a valid start. Replaces the candidates.
   /// Distances only: a triangle that an edge pierces without touching is the audit's to find.
   std::optional<Overlap> check_initial(const Positions& x);
