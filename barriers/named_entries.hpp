@@ -24,6 +24,7 @@ ConfigError taken_name(std::string_view where, std::string_view name, const std:
 template <class Entry>
 std::vector<std::string> entry_names(const std::vector<Entry>& entries) {
   std::vector<std::string> names;
+  names.reserve(entries.size());
   for (const Entry& entry : entries) names.push_back(entry.name);
   return names;
 }

@@ -57,29 +57,23 @@ TEST(Hinge, AngleKeepsItsDigitsNearFlat) {
 TEST(Hinge, AngleDerivatives) {
   for (const Case& c : cases) {
     SCOPED_TRACE(c.name);
-    const Vec<Long, 9> x = [&] {
-      Vec<Long, 9> r;
-      for (int i = 0; i < 3; ++i)
-        r.segment<3>(3 * i) = (c.x.segment<3>(3 * (i + 1)) - c.x.head<3>()).cast<Long>();
-      return r;
-    }();
-    const auto points = [](const Vec<Long, 9>& r) {
-      Vec<Long, 12> full;
-      full << 0, 0, 0, r;
+    const VecXl x = (c.x.tail<9>() - c.x.head<3>().replicate<3, 1>()).cast<Long>();
+    const auto points = [](const VecXl& r) {
+      VecXl full = VecXl::Zero(12);
+      full.tail(9) = r;
       return Points<Long, 4>(full);
     };
     // the independent angle: from the parts of v0 and v1 at right angles to the edge
-    const auto angle = [](const Vec<Long, 9>& r) {
+    const auto angle = [](const VecXl& r) {
       const Vec<Long, 3> e = r.head<3>().normalized();
       const Vec<Long, 3> a = r.segment<3>(3) - e.dot(r.segment<3>(3)) * e,
                          b = e.dot(r.tail<3>()) * e - r.tail<3>();
-      return Vec<Long, 1>(std::atan2(e.dot(a.cross(b)), a.dot(b)));
+      return std::atan2(e.dot(a.cross(b)), a.dot(b));
     };
-    const auto gradient = [&](const Vec<Long, 9>& r) { return hinge_angle_terms<Long>(points(r).x).grad; };
+    const auto gradient = [&](const VecXl& r) { return hinge_angle_terms<Long>(points(r).x).grad; };
     const auto terms = hinge_angle_terms<double>(Points<double, 4>(c.x).x);
-    const Mat<double, 1, 9> row = terms.grad.transpose();
-    EXPECT_LT((jacobian_error<9, 1>(angle, x, row)), 1e-9);
-    EXPECT_LT((jacobian_error<9, 9>(gradient, x, terms.hess)), 1e-9);
+    EXPECT_LT(gradient_error(angle, x, terms.grad), 1e-9);
+    EXPECT_LT(jacobian_error(gradient, x, terms.hess), 1e-9);
   }
 }
 
@@ -89,10 +83,11 @@ TEST(Hinge, EnergyDerivativesAndProjection) {
     const Points<double, 4> p(c.x);
     const auto exact = hinge_terms<double>(p.x, stiffness, c.rest_angle, Projection::none);
     const auto psd = hinge_terms<double>(p.x, stiffness, c.rest_angle, Projection::psd);
-    const auto value = [&](const Vec<Long, 12>& x) {
-      return Vec<Long, 1>(hinge_value<Long>(Points<Long, 4>(x).x, stiffness, c.rest_angle));
+    const VecXl at = c.x.cast<Long>();
+    const auto value = [&](const VecXl& x) {
+      return hinge_value<Long>(Points<Long, 4>(x).x, stiffness, c.rest_angle);
     };
-    const auto gradient = [&](const Vec<Long, 12>& x) {
+    const auto gradient = [&](const VecXl& x) {
       return hinge_terms<Long>(Points<Long, 4>(x).x, stiffness, c.rest_angle, Projection::none).grad;
     };
     const double scale = exact.hess.cwiseAbs().maxCoeff();
@@ -100,12 +95,12 @@ TEST(Hinge, EnergyDerivativesAndProjection) {
     if (c.angle == c.rest_angle) {
       EXPECT_LT(exact.grad.norm(), 1e-14);
     } else {
-      EXPECT_LT((jacobian_error<12, 1>(value, c.x.cast<Long>(), exact.grad.transpose())), 1e-8);
+      EXPECT_LT(gradient_error(value, at, exact.grad), 1e-8);
     }
-    EXPECT_LT((jacobian_error<12, 12>(gradient, c.x.cast<Long>(), exact.hess)), 1e-8);
+    EXPECT_LT(jacobian_error(gradient, at, exact.hess), 1e-8);
     EXPECT_EQ(exact.hess, exact.hess.transpose());
     EXPECT_EQ(psd.hess, psd.hess.transpose());
-    EXPECT_LT(relative_difference(psd.hess, clamped<12>(exact.hess), scale), 1e-10);
+    EXPECT_LT(relative_difference(psd.hess, clamped(exact.hess), scale), 1e-10);
     EXPECT_EQ(psd.grad, exact.grad);
   }
 }

@@ -16,24 +16,23 @@ const Vec<double, 6> state{{0.1, 0.2, 0.3, 0.2, 0.4, 0.0}};
 
 TEST_P(SpringState, DerivativesAndProjection) {
   const double rest_length = GetParam();
-  const Vec<Long, 6> x = state.cast<Long>();
-  const auto closed_form = [&](const Vec<Long, 6>& at) {
+  const VecXl x = state.cast<Long>();
+  const auto closed_form = [&](const VecXl& at) {
     const Long stretch = (at.tail<3>() - at.head<3>()).norm() - Long(rest_length);
-    return Vec<Long, 1>(Long(stiffness) / 2 * stretch * stretch);
+    return Long(stiffness) / 2 * stretch * stretch;
   };
-  const auto gradient = [&](const Vec<Long, 6>& at) {
+  const auto gradient = [&](const VecXl& at) {
     return spring_terms<Long>(Points<Long, 2>(at).x, stiffness, rest_length, Projection::none).grad;
   };
   const Points<double, 2> p(state);
   const auto exact = spring_terms<double>(p.x, stiffness, rest_length, Projection::none);
   const auto psd = spring_terms<double>(p.x, stiffness, rest_length, Projection::psd);
-  const Mat<double, 1, 6> row = exact.grad.transpose();
-  EXPECT_LT((jacobian_error<6, 1>(closed_form, x, row)), 1e-10);
-  EXPECT_LT((jacobian_error<6, 6>(gradient, x, exact.hess)), 1e-10);
-  EXPECT_NEAR(exact.energy, static_cast<double>(closed_form(x)[0]), 1e-15);
+  EXPECT_LT(gradient_error(closed_form, x, exact.grad), 1e-10);
+  EXPECT_LT(jacobian_error(gradient, x, exact.hess), 1e-10);
+  EXPECT_NEAR(exact.energy, static_cast<double>(closed_form(x)), 1e-15);
   EXPECT_EQ(exact.energy, spring_value<double>(p.x, stiffness, rest_length));
   EXPECT_EQ(exact.hess, exact.hess.transpose());
-  EXPECT_LT(relative_difference(psd.hess, clamped<6>(exact.hess), stiffness), 1e-12);
+  EXPECT_LT(relative_difference(psd.hess, clamped(exact.hess), stiffness), 1e-12);
   EXPECT_EQ(psd.grad, exact.grad);
 
   const auto single =

@@ -1,8 +1,9 @@
 // The enumeration itself: compiled once for all tests.
 #include "tests/geometry/closest_oracle.hpp"
 
-#include <Eigen/Dense>
 #include <algorithm>
+
+#include "tests/oracle/dense.hpp"
 
 namespace bb::test {
 
@@ -13,7 +14,7 @@ namespace {
 OracleClosest<4> minimise_over(const Points<Long, 4>& x, int n, int split, unsigned faces) {
   int origin[2] = {-1, -1};  // of the first and the second primitive
   int moved[4], base[4], n_free = 0;
-  Eigen::Matrix<Long, 3, Eigen::Dynamic> directions(3, 4);
+  MatXl directions(3, 4);
   for (int i = 0; i < n; ++i) {
     if ((faces >> i & 1U) == 0) continue;
     int& start = origin[i < split ? 0 : 1];
@@ -31,8 +32,7 @@ OracleClosest<4> minimise_over(const Points<Long, 4>& x, int n, int split, unsig
   out.weights[origin[1]] = -1;
   out.r = x.col(origin[0]) - x.col(origin[1]);
   if (n_free > 0) {
-    const Eigen::Matrix<Long, Eigen::Dynamic, 1> s =
-        directions.leftCols(n_free).colPivHouseholderQr().solve(-out.r);
+    const VecXl s = least_squares(directions.leftCols(n_free), -out.r);
     for (int k = 0; k < n_free; ++k) {
       out.weights[moved[k]] += s[k];
       out.weights[base[k]] -= s[k];
@@ -60,8 +60,7 @@ OracleClosest<4> enumerate_faces(const Points<Long, 4>& x, int n, int split) {
 }
 
 Mat3d random_rotation(std::mt19937& rng) {
-  const Points<double, 3> x = random_points<3>(rng);
-  Mat3d q = Eigen::HouseholderQR<Mat3d>(x).householderQ();
+  Mat3d q = orthonormal_basis(random_points<3>(rng).cast<Long>()).cast<double>();
   if (q.determinant() < 0) q.col(0) *= -1;
   return q;
 }

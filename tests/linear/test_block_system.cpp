@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
+#include <random>
 #include <set>
 
 #include "core/linear/block_system.hpp"

@@ -4,9 +4,11 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <numeric>
 
 #include "core/linear/condition.hpp"
 #include "tests/linear/systems.hpp"
+#include "tests/oracle/dense.hpp"
 
 namespace bb {
 namespace {
@@ -118,8 +120,7 @@ VecXd dense_scaled(const ReducedSystem& system, Scaling scaling) {
       d.block(begin, begin, size, size) = a.block(begin, begin, size, size);
     }
   }
-  const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> eigen(a, d, Eigen::EigenvaluesOnly);
-  return eigen.eigenvalues();
+  return test::eigenvalues(a, d);
 }
 
 TEST(Condition, ScalingsMeetDenseAlgebra) {

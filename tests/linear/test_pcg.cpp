@@ -6,6 +6,7 @@
 #include "core/linear/cg_ritz.hpp"
 #include "core/linear/linear_solver.hpp"
 #include "tests/linear/systems.hpp"
+#include "tests/oracle/dense.hpp"
 
 namespace bb {
 namespace {
@@ -22,7 +23,7 @@ std::unique_ptr<LinearSolver> pcg(std::string_view preconditioner, double tol, i
 TEST(Pcg, EveryPreconditionerMeetsTheDenseSolution) {
   const ReducedSystem system = grid_system(12, 1e-2, 1);
   const VecXd b = random_vector(system.lower.rows(), 2);
-  const VecXd truth = dense(system).ldlt().solve(b);
+  const VecXd truth = test::solve(dense(system), b);
   std::vector<int> iterations;
   for (const std::string_view name : preconditioners()) {
     VecXd x;
@@ -120,9 +121,9 @@ TEST(Pcg, CapAndNonFiniteAreNamed) {
 
 TEST(Pcg, BrokenIncompleteFactorIsShiftedAndCounted) {
   // Kershaw's matrix (1978): positive definite, incomplete Cholesky breaks down.
-  Eigen::Matrix4d a;
+  Eigen::MatrixXd a(4, 4);
   a << 3, -2, 0, 2, -2, 3, -2, 0, 0, -2, 3, -2, 2, 0, -2, 3;
-  ASSERT_GT(Eigen::SelfAdjointEigenSolver<Eigen::Matrix4d>(a).eigenvalues()[0], 0);
+  ASSERT_GT(test::eigenvalues(a)[0], 0);
   ReducedSystem system = from_dense(a);
   VecXd x;
   const LinearReport report = pcg("ic0", 1e-12)->solve(system, VecXd::Ones(4), x);
@@ -150,8 +151,7 @@ TEST(Pcg, RitzValuesMeetTheEndsOfTheSpectrum) {
     Eigen::MatrixXd d = Eigen::MatrixXd::Identity(a.rows(), a.cols());
     if (name == "jacobi") d = a.diagonal().asDiagonal();
     for (int v = 0; name == "block_jacobi" && v < a.rows(); v += 3) d.block<3, 3>(v, v) = a.block<3, 3>(v, v);
-    const VecXd truth =
-        Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd>(a, d, Eigen::EigenvaluesOnly).eigenvalues();
+    const VecXd truth = test::eigenvalues(a, d);
     VecXd x;
     const LinearReport report = pcg(name, 1e-13)->solve(system, random_vector(a.rows(), 5), x);
     EXPECT_NEAR(report.ritz_min / truth[0], 1, 1e-3) << name;
@@ -163,13 +163,13 @@ TEST(Pcg, RitzValuesMeetTheEndsOfTheSpectrum) {
 
 TEST(CgRitz, MeetsTheDenseTridiagonalMatrix) {
   const std::vector<double> alpha = {0.5, 2e3, 1.5, 40, 0.01, 7}, beta = {0.3, 1e-4, 2, 0.7, 0.2};
-  Eigen::Matrix<long double, 6, 6> t = Eigen::Matrix<long double, 6, 6>::Zero();
+  test::MatXl t = test::MatXl::Zero(6, 6);
   for (int j = 0; j < 6; ++j) {
     const auto k = static_cast<std::size_t>(j);
     t(j, j) = 1.0L / alpha[k] + (j > 0 ? static_cast<long double>(beta[k - 1]) / alpha[k - 1] : 0);
     if (j < 5) t(j + 1, j) = t(j, j + 1) = std::sqrt(static_cast<long double>(beta[k])) / alpha[k];
   }
-  const auto eigen = Eigen::SelfAdjointEigenSolver<Eigen::Matrix<long double, 6, 6>>(t).eigenvalues().eval();
+  const test::VecXl eigen = test::eigenvalues(t);
   const RitzExtremes ritz = cg_ritz_extremes(alpha, beta);
   EXPECT_NEAR(ritz.min / static_cast<double>(eigen[0]), 1, 1e-11);
   EXPECT_NEAR(ritz.max / static_cast<double>(eigen[5]), 1, 1e-11);

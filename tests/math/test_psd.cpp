@@ -3,96 +3,126 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Dense>
+#include <limits>
 #include <random>
+#include <string>
+
+#include "tests/oracle/dense.hpp"
 
 namespace {
 
 using namespace bb;
+using namespace bb::test;
 
-template <class T, int Size>
-struct Case {
-  using Scalar = T;
-  static constexpr int n = Size;
+/// What project_psd made of `matrix`, the input rounded to its scalar.
+struct Projected {
+  MatXl matrix, out;
+  int n_clamped = -1;
 };
-template <class C>
-class ProjectPsd : public testing::Test {};
-using Cases =
-    testing::Types<Case<double, 3>, Case<double, 6>, Case<double, 9>, Case<double, 12>, Case<float, 12>>;
-TYPED_TEST_SUITE(ProjectPsd, Cases);
 
 template <class T, int N>
-Mat<T, N, N> random_basis(std::mt19937& rng) {
-  std::uniform_real_distribution<double> uniform(-1, 1);
-  Mat<T, N, N> a;
-  for (int j = 0; j < N; ++j) {
-    for (int i = 0; i < N; ++i) a(i, j) = static_cast<T>(uniform(rng));
-  }
-  using MatX = Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic>;  // of fixed size it compiles for a minute
-  return MatX(Eigen::HouseholderQR<MatX>(a).householderQ());
+Projected project(const MatXl& a) {
+  const Mat<T, N, N> matrix = a.cast<T>();
+  int n_clamped = -1;
+  const Mat<T, N, N> out = project_psd<T, N>(matrix, &n_clamped);
+  return {matrix.template cast<Long>(), out.template cast<Long>(), n_clamped};
 }
 
-/// Symmetric to the last bit.
+struct Case {
+  const char* scalar;
+  int n;
+  double eps;
+  Projected (*project)(const MatXl&);
+};
 template <class T, int N>
-Mat<T, N, N> compose(const Mat<T, N, N>& q, const Vec<T, N>& values) {
-  const Eigen::Matrix<T, Eigen::Dynamic, Eigen::Dynamic> basis = q,
-                                                         a = basis * values.asDiagonal() * basis.transpose();
+Case case_of(const char* scalar) {
+  return {scalar, N, std::numeric_limits<T>::epsilon(), &project<T, N>};
+}
+void PrintTo(const Case& c, std::ostream* out) { *out << c.scalar << " " << c.n; }
+
+class ProjectPsd : public testing::TestWithParam<Case> {
+ protected:
+  const int n = GetParam().n;
+  const double eps = GetParam().eps;
+
+  MatXl random_basis(std::mt19937& rng) const {
+    std::uniform_real_distribution<double> uniform(-1, 1);
+    return orthonormal_basis(MatXl::NullaryExpr(n, n, [&] { return uniform(rng); }));
+  }
+};
+INSTANTIATE_TEST_SUITE_P(All, ProjectPsd,
+                         testing::Values(case_of<double, 3>("double"), case_of<double, 6>("double"),
+                                         case_of<double, 9>("double"), case_of<double, 12>("double"),
+                                         case_of<float, 12>("float")),
+                         [](const auto& c) { return c.param.scalar + std::to_string(c.param.n); });
+
+/// Symmetric to the last bit.
+MatXl symmetric(const MatXl& basis, const VecXl& values) {
+  const MatXl a = compose(basis, values, basis);
   return (a + a.transpose()) / 2;
 }
 
-TYPED_TEST(ProjectPsd, ClampsTheNegativeEigenvaluesOnly) {
-  using T = typename TypeParam::Scalar;
-  constexpr int n = TypeParam::n;
-  const T eps = std::numeric_limits<T>::epsilon();
+TEST_P(ProjectPsd, ClampsTheNegativeEigenvaluesOnly) {
   std::mt19937 rng(7);
   for (int n_negative = 1; n_negative <= n; ++n_negative) {
-    const Mat<T, n, n> q = random_basis<T, n>(rng);
-    Vec<T, n> values, clamped;
+    const MatXl q = random_basis(rng);
+    VecXl values(n), positive(n);
     for (int i = 0; i < n; ++i) {
-      values[i] = static_cast<T>(i < n_negative ? -1 - i : 2 + i);
-      clamped[i] = i < n_negative ? T(0) : values[i];
+      values[i] = i < n_negative ? -1 - i : 2 + i;
+      positive[i] = i < n_negative ? 0 : values[i];
     }
-    int count = -1;
-    const Mat<T, n, n> out = project_psd<T, n>(compose<T, n>(q, values), &count);
+    const Projected p = GetParam().project(symmetric(q, values));
 
-    EXPECT_EQ(count, n_negative);
-    EXPECT_EQ(out, (Mat<T, n, n>(out.transpose())));
-    EXPECT_LE((out - compose<T, n>(q, clamped)).norm(), 200 * n * eps);
-    EXPECT_EQ(out.norm() == T(0), n_negative == n);
+    EXPECT_EQ(p.n_clamped, n_negative);
+    EXPECT_EQ(p.out, p.out.transpose());
+    EXPECT_LE((p.out - symmetric(q, positive)).norm(), 200 * n * eps);
+    EXPECT_EQ(p.out.norm() == 0, n_negative == n);
   }
 }
 
-TYPED_TEST(ProjectPsd, PositiveMatricesComeBackUnchanged) {
-  using T = typename TypeParam::Scalar;
-  constexpr int n = TypeParam::n;
+TEST_P(ProjectPsd, PositiveMatricesComeBackUnchanged) {
   std::mt19937 rng(11);
-  const Mat<T, n, n> q = random_basis<T, n>(rng);
-  Vec<T, n> values;
-  for (int i = 0; i < n; ++i) values[i] = static_cast<T>(1 + i);
-  const Mat<T, n, n> a = compose<T, n>(q, values);
-  int count = -1;
-  EXPECT_EQ((project_psd<T, n>(a, &count)), a);
-  EXPECT_EQ(count, 0);
-  EXPECT_EQ((project_psd<T, n>(Mat<T, n, n>::Zero(), &count)), (Mat<T, n, n>::Zero()));
-  EXPECT_EQ(count, 0);
+  const Projected p = GetParam().project(symmetric(random_basis(rng), VecXl::LinSpaced(n, 1, n)));
+  EXPECT_EQ(p.out, p.matrix);
+  EXPECT_GT(p.out.norm(), 1);
+  EXPECT_EQ(p.n_clamped, 0);
+  const Projected zero = GetParam().project(MatXl::Zero(n, n));
+  EXPECT_TRUE(zero.out.isZero(0));
+  EXPECT_EQ(zero.n_clamped, 0);
 }
 
 // Zero, rounding-sized and large eigenvalues together: nothing large is disturbed, nothing negative is left.
-TYPED_TEST(ProjectPsd, MixedScales) {
-  using T = typename TypeParam::Scalar;
-  constexpr int n = TypeParam::n;
-  const T eps = std::numeric_limits<T>::epsilon();
+TEST_P(ProjectPsd, MixedScales) {
   std::mt19937 rng(13);
-  const Mat<T, n, n> q = random_basis<T, n>(rng);
-  Vec<T, n> values = Vec<T, n>::Zero();
-  values[0] = T(1e6);
-  values[1] = T(-1e-3) * T(1e6);
+  VecXl values = VecXl::Zero(n);
+  values[0] = 1e6;
+  values[1] = -1e-3 * 1e6;
   values[2] = -eps;
-  const Mat<T, n, n> a = compose<T, n>(q, values), out = project_psd<T, n>(a);
-  const Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd> spectrum(Eigen::MatrixXd(out.template cast<double>()));
-  EXPECT_NEAR(spectrum.eigenvalues()[n - 1], 1e6, 20.0 * eps * 1e6);
-  EXPECT_GE(spectrum.eigenvalues()[0], -20.0 * eps * 1e6);
-  EXPECT_GT((out - a).norm(), T(900));
+  const Projected p = GetParam().project(symmetric(random_basis(rng), values));
+  const VecXl spectrum = eigenvalues(p.out);
+  EXPECT_NEAR(static_cast<double>(spectrum[n - 1]), 1e6, 20.0 * eps * 1e6);
+  EXPECT_GE(spectrum[0], -20.0 * eps * 1e6);
+  EXPECT_GT((p.out - p.matrix).norm(), 900);
+}
+
+/// A null vector that is split off changes nothing, wherever it points and however long it is.
+TEST(ProjectPsdBeside, EqualsTheProjectionOfTheWholeMatrix) {
+  std::mt19937 rng(17);
+  std::uniform_real_distribution<double> uniform(-1, 1);
+  for (int k = 0; k < 9; ++k) {
+    const MatXl q = orthonormal_basis(MatXl::NullaryExpr(9, 9, [&] { return uniform(rng); }));
+    VecXl values(9);
+    for (int i = 0; i < 9; ++i) values[i] = i == k ? 0 : (i % 2 == 0 ? 1 + i : -1 - i);
+    const Mat<double, 9, 9> a = symmetric(q, values).cast<double>();
+    for (const double length : {1e-3, -5.0}) {
+      const Vec<double, 9> u = (length * q.col(k)).cast<double>();
+      const Mat<double, 9, 9> out = project_psd_beside<double, 9>(a, u);
+      const MatXl truth = symmetric(q, values.cwiseMax(Long(0)));
+      ASSERT_GT(truth.norm(), 1);
+      EXPECT_LE((out.cast<Long>() - truth).norm(), 1e-14 * truth.norm());
+      EXPECT_EQ(out, out.transpose());
+    }
+  }
 }
 
 TEST(HasPositivePivots, TellsDefiniteFromIndefinite) {

@@ -1,0 +1,37 @@
+// Dense linear algebra by Eigen's own solvers in long double, for matrices of any size; shares nothing with
+// core/.
+#pragma once
+
+#include "core/math/types.hpp"
+
+namespace bb::test {
+
+using Long = long double;
+using MatXd = Eigen::MatrixXd;
+using VecXl = Eigen::Matrix<Long, Eigen::Dynamic, 1>;
+using MatXl = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
+
+/// Eigenvalues of a symmetric matrix, ascending.
+VecXd eigenvalues(const MatXd& a);
+VecXl eigenvalues(const MatXl& a);
+/// Those of a x = lambda d x, d symmetric positive definite.
+VecXd eigenvalues(const MatXd& a, const MatXd& d);
+/// Descending.
+VecXl singular_values(const MatXl& a);
+Long determinant(const MatXl& a);
+
+/// Negative eigenvalues of a symmetric matrix set to zero.
+MatXd clamped(const MatXd& a);
+/// a x = b, a symmetric.
+VecXd solve(const MatXd& a, const VecXd& b);
+/// The x of least |a x - b|; a of any rank and shape.
+VecXl least_squares(const MatXl& a, const VecXl& b);
+
+/// u diag(s) v^T.
+MatXl compose(const MatXl& u, const VecXl& s, const MatXl& v);
+/// |q^T q - 1|, Frobenius.
+Long orthonormality_error(const MatXl& q);
+/// Orthonormal columns that span those of a.
+MatXl orthonormal_basis(const MatXl& a);
+
+}  // namespace bb::test
