@@ -64,14 +64,14 @@ LOOKS = {
 
 
 def look(formulation: str, series: str | None = None) -> Look:
-    """Of the formulation; a variant of it (another series name) keeps colour and marker and gets thin dots."""
+    """Of the formulation; a variant of it (another series name) keeps colour and marker: scaled ones are dotted."""
     base = LOOKS.get(formulation)
     if base is None:
         looks = list(LOOKS.values())
         base = looks[zlib.crc32(formulation.encode()) % len(looks)]
     if series is None or series == formulation:
         return base
-    return Look(base.color, base.marker, (0, (1, 2)))
+    return Look(base.color, base.marker, (0, (1, 2)) if series.endswith(" x s") else (0, (6, 2, 1, 1)))
 
 
 def marks(length: int, wanted: int = 12) -> int:

@@ -3,6 +3,7 @@
 #include <oneapi/tbb/parallel_invoke.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/contact/chunks.hpp"
@@ -14,17 +15,21 @@ bool any(const std::vector<std::uint8_t>& flags) {
   return std::find(flags.begin(), flags.end(), 1) != flags.end();
 }
 
-/// Mean of x1 - x0 over the free points; 0 when that is not finite.
+/// Median of x1 - x0 over all points, a coordinate at a time: the frame in which the boxes are shortest. 0
+/// where that is not finite.
 Vec3d common_motion(const Primitives<1>& points, const Positions& x0, const Positions& x1) {
-  Vec3d sum = Vec3d::Zero();
-  double n = 0;
-  for (std::size_t i = 0; i < points.size(); ++i) {
-    if (!points.free[i]) continue;
-    const int v = points.vertices[i][0];
-    sum += x1.col(v) - x0.col(v);
-    ++n;
+  Vec3d out = Vec3d::Zero();
+  if (points.size() == 0) return out;
+  std::vector<double> moved(points.size());
+  const auto middle = moved.begin() + static_cast<std::ptrdiff_t>(moved.size() / 2);
+  for (int c = 0; c < 3; ++c) {
+    std::transform(points.vertices.begin(), points.vertices.end(), moved.begin(),
+                   [&](const std::array<int, 1>& v) { return x1(c, v[0]) - x0(c, v[0]); });
+    if (!std::all_of(moved.begin(), moved.end(), [](double m) { return std::isfinite(m); })) continue;
+    std::nth_element(moved.begin(), middle, moved.end());
+    out[c] = *middle;
   }
-  return n > 0 && sum.allFinite() ? Vec3d(sum / n) : Vec3d(Vec3d::Zero());
+  return out;
 }
 }  // namespace
 
@@ -50,7 +55,8 @@ template <int N>
 void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
                      const Vec3d& common) {
   if (!tree.needed) return;
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() * common.norm();
+  // inflate() knows the ulps of the box; x itself is larger by up to `common`, and rounded accordingly
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() * common.lpNorm<Eigen::Infinity>();
   tree.boxes.resize(primitives.size());
   for_each_chunk(primitives.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -68,7 +74,7 @@ void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Position
 
 void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& out) {
   const Surface& s = surface_;
-  // Which pairs come close depends on relative motion alone: what all points share, a fall say, would only
+  // Which pairs come close depends on relative motion alone: what most points share, a fall say, would only
   // make every box long.
   const Vec3d common = common_motion(s.points, x0, x1);
   tbb::parallel_invoke(

@@ -22,6 +22,7 @@ class BroadPhase {
   /// True when some pair or obstacle contact can exist at all.
   bool active() const { return pairs_possible_ || obstacles_possible_; }
   /// All pairs with a free vertex, not adjacent, that may come within d_hat + offset on x0 -> x1, and more.
+  /// All vertices move together: a state is (1 - t) x0 + t x1 with one t.
   void update(const Positions& x0, const Positions& x1, Candidates& out);
 
  private:

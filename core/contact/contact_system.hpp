@@ -48,12 +48,12 @@ class ContactSystem {
   /// False when the scene can have no contact: nothing is built, rows are empty, steps unbounded.
   bool active() const;
 
-  /// Candidate pairs of every state on the segments x0 -> x1, boxes inflated by d_hat and offset. [3 x n] m.
-  /// Both find_rows and step_bound use them until the next call.
+  /// Candidate pairs of every state (1 - t) x0 + t x1, one t in [0, 1] for all vertices, boxes inflated by
+  /// d_hat and offset. [3 x n] m. Both find_rows and step_bound use them until the next call.
   void update_candidates(const Positions& x0, const Positions& x1);
 
   /// Rows with d < d_hat_row at x, merged with multiplicity, sorted; kappa, b, db, d2b are left at 0.
-  /// Requires x to lie in the swept region of the last update_candidates. Returns the smallest gap over all
+  /// Requires x to be such a state of the last update_candidates. Returns the smallest gap over all
   /// rows (infinity without rows); a value <= 0 means that x is not feasible. x that is not finite: no rows
   /// and -infinity.
   double find_rows(const Positions& x, ContactTable& rows, MollifiedTable& mollified) const;

@@ -15,7 +15,7 @@ namespace bb {
 namespace {
 
 using Hessian12 = Mat<double, 12, 12>;
-constexpr std::size_t stored = 9 * n_lower_blocks(4);  // numbers a row
+constexpr std::size_t stored = n_lower_numbers(4);  // a row
 
 /// Leading block of 3 n x 3 n projected, the rest is 0 and stays so.
 void project_leading(int n_free, Hessian12& h) {
@@ -101,7 +101,7 @@ void row_terms(const ContactTable& rows, std::size_t r, const Positions& x, Hess
     add_curvature(rows, r, x, scale * rows.db[r], h);
     project_leading(rows.n_free[r], h);
   }
-  store_lower_blocks<4>(h, hess);
+  store_lower_blocks(4, h, hess);
 }
 
 Mat<double, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const Positions& x) {
@@ -131,7 +131,7 @@ void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positi
     if (rows.vertex[4 * r + static_cast<std::size_t>(k)] < 0) continue;
     Vec3d::Map(grad + 3 * slot++) = g.segment<3>(3 * k);
   }
-  store_lower_blocks<4>(h, hess);
+  store_lower_blocks(4, h, hess);
 }
 
 }  // namespace

@@ -32,7 +32,7 @@ void bisect_slope(const BarrierFunction& barrier, double d_hat, SlopeSample& nea
 std::vector<SlopeSample> scan_slope(const BarrierFunction& barrier, double d_hat);
 
 /// sup over (0, d_hat) of |b'| in m, including the limit at 0; absent when unbounded.
-/// Errors: ConfigError unless d_hat > 0. Cost: that of a scan.
+/// Requires d_hat > 0. Cost: that of a scan.
 std::optional<double> max_slope(const BarrierFunction& barrier, double d_hat);
 /// The same of a scan.
 std::optional<double> max_slope(const BarrierFunction& barrier, const std::vector<SlopeSample>& scan);

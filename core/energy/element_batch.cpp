@@ -9,7 +9,7 @@ void LocalTerms::resize(std::size_t n, int width) {
   const auto w = static_cast<std::size_t>(width);
   energy.resize(n);
   grad.resize(3 * w * n);
-  hess.resize(9 * n_lower_blocks(w) * n);
+  hess.resize(n_lower_numbers(w) * n);
 }
 
 }  // namespace bb

@@ -39,7 +39,7 @@ template <int N>
 void store_terms(const ElementTerms<double, N>& terms, std::size_t e, LocalTerms& out) {
   out.energy[e] = terms.energy;
   std::copy_n(terms.grad.data(), N, out.grad.data() + N * e);
-  store_lower_blocks<N / 3>(terms.hess, out.hess.data() + 9 * n_lower_blocks(N / 3) * e);
+  store_lower_blocks(N / 3, terms.hess, out.hess.data() + n_lower_numbers(N / 3) * e);
 }
 
 /// ConfigError unless a column has one entry an element and, where `positive`, no entry that is not > 0.

@@ -101,13 +101,17 @@ BB_HD Mat<T, 3 * N, 3 * N> lift_points(const Mat<T, N, 3>& a, const Mat<T, 9, 9>
   return out;
 }
 
-/// All points moved along the edge in proportion to where they lie along it, in the coordinates of `basis`:
-/// keeps the angle and turns no normal, so that grad and Hessian of the angle send it to 0.
+/// All points moved along the edge in proportion to where they lie along it, in the coordinates of `basis`,
+/// m. Keeps normals, heights and every t of add_hinge_side, so the whole gradient of the angle: its Hessian
+/// sends this motion to 0, and so does grad grad^T.
 template <class T>
 BB_HD Vec<T, 9> edge_stretch(const Vec<T, 3> (&x)[4], const Mat<T, 4, 3>& basis) {
   const Vec<T, 3> e = x[1] - x[0];
+  const T length_sq = e.squaredNorm();
   Vec<T, 3> place = Vec<T, 3>::Zero();
-  for (int i = 1; i < 4; ++i) place += e.dot(Vec<T, 3>(x[i] - x[0])) * basis.row(i).transpose();
+  for (int i = 1; i < 4; ++i) {
+    place += e.dot(Vec<T, 3>(x[i] - x[0])) / length_sq * basis.row(i).transpose();
+  }
   Vec<T, 9> out;
   for (int k = 0; k < 3; ++k) out.template segment<3>(3 * k) = place[k] * e;
   return out;

@@ -4,6 +4,7 @@
 #include "core/energy/element_loop.hpp"
 #include "core/energy/hinge.hpp"
 #include "core/math/lanes.hpp"
+#include "core/math/lower_blocks.hpp"
 
 namespace bb {
 
@@ -31,8 +32,8 @@ void store(const ElementTerms<Real, 12>& terms, std::size_t first, std::size_t n
     const std::size_t e = first + lane;
     out.energy[e] = terms.energy.v[lane];
     for (std::size_t k = 0; k < 12; ++k) out.grad[12 * e + k] = terms.grad.data()[k].v[lane];
-    store_lower_blocks<4>(terms.hess, &out.hess[9 * n_lower_blocks(4) * e],
-                          [lane](const Real& entry) { return entry.v[lane]; });
+    store_lower_blocks(4, terms.hess, &out.hess[n_lower_numbers(4) * e],
+                       [lane](const Real& entry) { return entry.v[lane]; });
   }
 }
 

@@ -145,7 +145,7 @@ void GatherMap::place(const BlockPattern& pattern) {
 }
 
 void GatherMap::add_hessians(std::span<const double> hess, std::vector<double>& values) const {
-  if (hess.size() != n_elements() * 9 * n_lower_blocks(at(width_))) {
+  if (hess.size() != n_elements() * n_lower_numbers(at(width_))) {
     throw ConfigError("local Hessians", std::to_string(hess.size()) + " numbers",
                       "size * 9 width (width + 1)/2");
   }

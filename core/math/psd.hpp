@@ -67,40 +67,22 @@ BB_HD inline Mat<T, N, N> project_psd(const Mat<T, N, N>& A, int* n_clamped = nu
   return out;
 }
 
-namespace detail {
-
-/// (I - beta v v^T) a (I - beta v v^T) of a symmetric a; symmetric bit for bit.
-template <class T, int N>
-BB_HD inline Mat<T, N, N> reflected(const Mat<T, N, N>& a, const Vec<T, N>& v, T beta) {
-  Vec<T, N> p = Vec<T, N>::Zero();
-  for (int j = 0; j < N; ++j) {
-    for (int i = 0; i < N; ++i) p[i] += v[j] * a(i, j);
-  }
-  p *= beta;
-  const Vec<T, N> w = p - (beta / T(2) * v.dot(p)) * v;
-  Mat<T, N, N> out;
-  for (int j = 0; j < N; ++j) {
-    for (int i = 0; i < N; ++i) out(i, j) = a(i, j) - (v[i] * w[j] + w[i] * v[j]);
-  }
-  return out;
-}
-
-}  // namespace detail
-
-/// project_psd of a symmetric A with A u = 0, u != 0 of any length, done on the complement of u. To rounding,
-/// also when no eigenvalue is negative.
-/// Host-device, lanes.   Cost: that of project_psd at N - 1, and 8 N^2.
+/// project_psd of a symmetric A with A u = 0, done on the complement of u. To rounding, also when no
+/// eigenvalue is negative. u != 0 of any length whose square is a normal number. Host-device, lanes.   Cost:
+/// that of project_psd at N - 1, and 8 N^2.
 template <class T, int N>
 BB_HD inline Mat<T, N, N> project_psd_beside(const Mat<T, N, N>& A, const Vec<T, N>& u) {
   const T length = u.norm();
   Vec<T, N> v = u;  // the reflection takes u to the first axis
   v[0] += select(u[0] < T(0), -length, length);
   const T beta = T(2) / v.squaredNorm();
-  const Mat<T, N, N> turned = detail::reflected<T, N>(A, v, beta);
-  Mat<T, N, N> projected = Mat<T, N, N>::Zero();
-  projected.template bottomRightCorner<N - 1, N - 1>() =
+  Mat<T, N, N> turned = A;
+  detail::reflect_symmetric<T, N>(0, v, beta, turned);
+  Mat<T, N, N> out = Mat<T, N, N>::Zero();
+  out.template bottomRightCorner<N - 1, N - 1>() =
       project_psd<T, N - 1>(turned.template bottomRightCorner<N - 1, N - 1>());
-  return detail::reflected<T, N>(projected, v, beta);
+  detail::reflect_symmetric<T, N>(0, v, beta, out);
+  return out;
 }
 
 }  // namespace bb

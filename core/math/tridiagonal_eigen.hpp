@@ -34,6 +34,21 @@ struct Reflection {
   }
 };
 
+/// (I - beta v v^T) a (I - beta v v^T) of a symmetric a, v zero before `first`: rows and columns from `first`
+/// on are written, and stay symmetric bit for bit.
+template <class T, int N>
+BB_HD inline void reflect_symmetric(int first, const Vec<T, N>& v, T beta, Mat<T, N, N>& a) {
+  Vec<T, N> p = Vec<T, N>::Zero();
+  for (int j = first; j < N; ++j) {
+    for (int i = first; i < N; ++i) p[i] += v[j] * a(i, j);
+  }
+  p *= beta;
+  const Vec<T, N> w = p - (beta / T(2) * v.dot(p)) * v;
+  for (int j = first; j < N; ++j) {
+    for (int i = first; i < N; ++i) a(i, j) -= v[i] * w[j] + w[i] * v[j];
+  }
+}
+
 /// A = q T q^T, T tridiagonal with diagonal d and e[i] = T(i, i + 1). Reads all of A, destroys it.
 template <class T, int N>
 BB_HD inline void tridiagonalise(Mat<T, N, N>& a, Vec<T, N>& d, Vec<T, N>& e, Mat<T, N, N>& q) {
@@ -42,15 +57,7 @@ BB_HD inline void tridiagonalise(Mat<T, N, N>& a, Vec<T, N>& d, Vec<T, N>& e, Ma
     const Reflection<T, N> r = reflections[k] = Reflection<T, N>(a, k);
     e[k] = r.target;
     if (!any(!(r.beta == T(0)))) continue;
-    Vec<T, N> p = Vec<T, N>::Zero();
-    for (int j = k + 1; j < N; ++j) {
-      for (int i = k + 1; i < N; ++i) p[i] += r.v[j] * a(i, j);
-    }
-    p *= r.beta;
-    const Vec<T, N> w = p - (r.beta / T(2) * r.v.dot(p)) * r.v;
-    for (int j = k + 1; j < N; ++j) {
-      for (int i = k + 1; i < N; ++i) a(i, j) -= r.v[i] * w[j] + w[i] * r.v[j];
-    }
+    reflect_symmetric<T, N>(k + 1, r.v, r.beta, a);
   }
   d = a.diagonal();
   e[N - 2] = a(N - 1, N - 2);

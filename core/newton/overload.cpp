@@ -11,22 +11,10 @@
 namespace bb {
 namespace {
 
-// sup |b'| for kappa = 1, m; infinite when unbounded. Most rows share one d_hat.
-class LargestSlope {
- public:
-  explicit LargestSlope(const BarrierFunction& barrier) : barrier_(barrier) {}
-  double operator()(double d_hat) {
-    if (d_hat != d_hat_) {
-      slope_ = max_slope(barrier_, d_hat).value_or(std::numeric_limits<double>::infinity());
-      d_hat_ = d_hat;
-    }
-    return slope_;
-  }
-
- private:
-  const BarrierFunction& barrier_;
-  double d_hat_ = -1, slope_ = 0;
-};
+// sup |b'| for kappa = 1 over d_hat, for b is d_hat^2 times a function of d/d_hat; infinite when unbounded.
+double largest_slope(const BarrierFunction& barrier) {
+  return max_slope(barrier, 1.0).value_or(std::numeric_limits<double>::infinity());
+}
 
 // |b'| that the Newton model asks for, at the gap `next` where its step would end: linear from d on, m.
 double newton_force(const BarrierFunction& barrier, double d, double next, double d_hat) {
@@ -40,7 +28,7 @@ double NewtonSystem::contact_overload(const Positions& dx) const {
   if (method_.contact.shape.infinite_at_zero) return 0;
   const ContactTable& rows = state_.rows;
   const Positions others = gradient_ - contact_gradient_;  // what contact has to balance
-  LargestSlope capacity_of(method_.contact);
+  const double slope = largest_slope(method_.contact);
   double largest = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
@@ -51,7 +39,7 @@ double NewtonSystem::contact_overload(const Positions& dx) const {
       opening += weight * normal.dot(dx.col(rows.vertex[4 * r + k]));
       weight_sq += weight * weight;
     }
-    const double capacity = capacity_of(rows.d_hat[r]);  // for kappa = 1
+    const double capacity = slope * rows.d_hat[r];  // for kappa = 1
     const double load = push / weight_sq / (rows.multiplicity[r] * rows.kappa[r]);
     const double model = newton_force(method_.contact, rows.d[r], rows.d[r] + opening, rows.d_hat[r]);
     largest = std::max({largest, load / capacity, model / capacity});
@@ -82,14 +70,14 @@ double NewtonSystem::limit_overload(const Positions& dx) {
   limit_->measure(state_.x);
   const std::vector<double> gaps(limit_->gaps().begin(), limit_->gaps().end());
   limit_->measure(state_.x + dx);
-  LargestSlope capacity_of(method_.limit);
+  const double slope = largest_slope(method_.limit);
   double largest = 0;
   for (std::size_t e = 0; e < limit_->size(); ++e) {
     const double width = scene_.limit.width[e];
     const double gap = std::min(gaps[2 * e], gaps[2 * e + 1]);
     const double next = std::min(limit_->gaps()[2 * e], limit_->gaps()[2 * e + 1]);
     if (!(gap < width)) continue;
-    const double capacity = capacity_of(width);
+    const double capacity = slope * width;
     const double share = -method_.limit.eval(gap, width).db / capacity;
     largest = std::max(
         {largest, share * times_larger(e, others), newton_force(method_.limit, gap, next, width) / capacity});

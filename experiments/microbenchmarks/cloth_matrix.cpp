@@ -3,17 +3,18 @@
 #include <algorithm>
 #include <random>
 
+#include "core/math/lower_blocks.hpp"
+
 namespace bb::bench {
 
 void Family::add(const std::vector<int>& v, const VecXd& weights, const Vec3d& n, double kappa) {
   width = static_cast<int>(v.size());
   vertices.insert(vertices.end(), v.begin(), v.end());
   const Mat3d block = kappa * (n * n.transpose() + 0.1 * Mat3d::Identity());
-  for (int j = 0; j < width; ++j) {
-    for (int i = j; i < width; ++i) {
-      for (int k = 0; k < 9; ++k) hess.push_back(weights[i] * weights[j] * block.data()[k]);
-    }
-  }
+  const auto entry = [&](int i, int j) { return weights[i / 3] * weights[j / 3] * block(i % 3, j % 3); };
+  const std::size_t at = hess.size();
+  hess.resize(at + n_lower_numbers(v.size()));
+  store_lower_blocks(width, entry, &hess[at]);
 }
 
 Cloth::Cloth(int vertices_a_side) : side(vertices_a_side), n(side * side) {

@@ -7,6 +7,8 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "core/contact/contact_system.hpp"
+#include "core/math/lower_blocks.hpp"
+#include "tests/oracle/lower_blocks.hpp"
 
 namespace {
 
@@ -67,17 +69,17 @@ struct Entry {
 
 void scatter(const std::vector<int>& vertex, const std::vector<double>& grad, const std::vector<double>& hess,
              Positions& gradient, std::vector<Entry>& entries) {
-  for (std::size_t slot = 0; slot < vertex.size(); ++slot) {
-    const int v = vertex[slot];
-    if (v < 0) continue;
-    gradient.col(v) += Vec3d::Map(&grad[3 * slot]);
-    const std::size_t row = slot / 4;
-    const int i = static_cast<int>(slot % 4);
-    const Eigen::MatrixXd h = test::from_lower_blocks(&hess[90 * row], 4);
-    for (int j = 0; j < 4; ++j) {
-      const int w = vertex[4 * row + static_cast<std::size_t>(j)];
-      for (int a = 0; w >= 0 && a < 3; ++a) {
-        for (int b = 0; b < 3; ++b) entries.push_back({3 * v + a, 3 * w + b, h(3 * i + a, 3 * j + b)});
+  for (std::size_t row = 0; row < vertex.size() / 4; ++row) {
+    const int* v = &vertex[4 * row];
+    const Eigen::MatrixXd h = test::from_lower_blocks(&hess[n_lower_numbers(4) * row], 4);
+    for (int i = 0; i < 4; ++i) {
+      if (v[i] < 0) continue;
+      gradient.col(v[i]) += Vec3d::Map(&grad[12 * row + 3 * static_cast<std::size_t>(i)]);
+      for (int j = 0; j < 4; ++j) {
+        for (int a = 0; v[j] >= 0 && a < 3; ++a) {
+          for (int b = 0; b < 3; ++b)
+            entries.push_back({3 * v[i] + a, 3 * v[j] + b, h(3 * i + a, 3 * j + b)});
+        }
       }
     }
   }

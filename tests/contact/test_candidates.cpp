@@ -76,7 +76,7 @@ TEST(Candidates, HoldEveryClosePairOfASoup) {
                   close_pairs<PairKind::edge_edge>(scene, s.edges, s.edges, scene.rest, x1, disjoint_ee));
 }
 
-/// A fall of all bodies, or of one onto another, is a motion like any other, but adds no pairs of its own.
+/// A fall of all bodies adds no pairs; a fall of one of them adds those that it passes.
 TEST(Candidates, DependOnRelativeMotion) {
   const Scene scene = soup_scene();
   const Surface s(scene);

@@ -15,7 +15,7 @@ Scene cloth_and_ball(double height) {
   return scene;
 }
 
-TEST(SmallestGap, IsPositiveExactlyInFeasibleStates) {
+TEST(SmallestGap, IsPositiveUntilTheBodiesTouch) {
   const Scene scene = cloth_and_ball(0.05);
   ContactSystem contacts(scene, {});
   Positions touching = scene.x0;

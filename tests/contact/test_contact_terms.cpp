@@ -3,8 +3,9 @@
 
 #include <Eigen/Eigenvalues>
 
+#include "core/math/lower_blocks.hpp"
 #include "tests/contact/contact_scenes.hpp"
-#include "tests/lower_blocks.hpp"
+#include "tests/oracle/lower_blocks.hpp"
 
 namespace bb::test {
 namespace {
@@ -21,7 +22,7 @@ struct Assembled {
 void scatter(const std::vector<int>& vertex, std::size_t n_rows, const std::vector<double>& grad,
              const std::vector<double>& hess, Assembled& out) {
   for (std::size_t r = 0; r < n_rows; ++r) {
-    const Matrix h = from_lower_blocks(&hess[90 * r], 4);
+    const Matrix h = from_lower_blocks(&hess[n_lower_numbers(4) * r], 4);
     for (int i = 0; i < 4; ++i) {
       const int vi = vertex[4 * r + at(i)];
       if (vi < 0) {

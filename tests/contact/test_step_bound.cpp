@@ -83,13 +83,13 @@ TEST(StepBound, SlidingAndSeparatingPairsAreFreeAndCheap) {
   EXPECT_EQ(cloth, 169);
 }
 
-/// Two sheets, each moved as a whole.
+/// Two sheets within d_hat of each other, each moved as a whole.
 struct TwoSheets {
   Scene scene;
   Positions x1;
   TwoSheets(const Vec3d& low, const Vec3d& high) {
     const auto [v1, t1] = grid(6, 6, 0.1);
-    const auto [v2, t2] = grid(6, 6, 0.1, Vec3d(0.03, 0.02, 0.02));
+    const auto [v2, t2] = grid(6, 6, 0.1, Vec3d(0.03, 0.02, d_hat / 2));
     add_body(scene, "low", v1, t1, d_hat);
     const int first = add_body(scene, "high", v2, t2, d_hat);
     x1 = scene.x0;
@@ -102,12 +102,17 @@ struct TwoSheets {
     const auto counts = contacts.candidate_counts();
     return static_cast<long long>(counts.point_triangle + counts.edge_edge);
   }
+  std::size_t n_rows() const {  // none within a sheet: its points are 10 d_hat apart
+    ContactSystem contacts(scene, {});
+    return rows_at(contacts, scene.x0).table.size();
+  }
 };
 
 TEST(StepBound, RigidMotionOfEverythingIsFreeAtOneProbeAPair) {
   const TwoSheets sheets({0.4, 0.3, 0.7}, {0.4, 0.3, 0.7});
   const StepBound b = bound(sheets.scene, sheets.x1);
   EXPECT_EQ(b.alpha, 1);
+  EXPECT_GT(sheets.n_rows(), 50U);
   EXPECT_GT(b.queries, 100);
   EXPECT_EQ(b.probes, b.queries);
 }
@@ -116,6 +121,7 @@ TEST(StepBound, MostPairsOfBodiesThatPartAskForNoQuery) {
   const TwoSheets sheets({-0.4, -0.3, -0.7}, {0.4, 0.3, 0.7});
   const StepBound b = bound(sheets.scene, sheets.x1);
   EXPECT_EQ(b.alpha, 1);
+  EXPECT_GT(sheets.n_rows(), 50U);
   EXPECT_GT(b.queries, 100);
   EXPECT_EQ(b.probes, b.queries);
   EXPECT_LT(10 * b.queries, sheets.n_pairs());

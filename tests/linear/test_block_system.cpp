@@ -9,7 +9,7 @@
 #include "core/math/error.hpp"
 #include "tests/linear/counting_new.hpp"
 #include "tests/linear/systems.hpp"
-#include "tests/lower_blocks.hpp"
+#include "tests/oracle/lower_blocks.hpp"
 
 namespace bb {
 namespace {

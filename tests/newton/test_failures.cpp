@@ -21,6 +21,21 @@ TEST(Failures, a_load_over_the_capacity_ends_the_step_and_is_measured) {
   EXPECT_GT(report.gap_min, 0);
 }
 
+TEST(Failures, the_capacity_is_that_of_the_largest_force_wherever_it_peaks) {
+  // cubic on the squared gap: no force at contact, the largest, 1.145 kappa d_hat = 0.1145 N, at
+  // d_hat/sqrt(5)
+  Scene scene = test::particle_over_plane(0.2, 0.0099, 0.01);
+  Method method = test::fixed_method("cubic", 10);
+  method.contact.argument = Argument::squared_gap;
+  Simulation simulation(scene, method, 0.01, 100);
+  StepObserver observer;
+  StepReport report;
+  for (int i = 0; i < 100 && report.status == StepStatus::converged; ++i) report = simulation.step(observer);
+  ASSERT_TRUE(report.overload.has_value());
+  EXPECT_GT(*report.overload, 2 / 0.1145 - 1);  // of the weight alone; the fall adds to it
+  EXPECT_LT(*report.overload, 10 * 2 / 0.1145);
+}
+
 TEST(Failures, the_log_barrier_has_no_capacity) {
   Scene scene = test::particle_over_plane(0.2, 0.0099, 0.01);
   Method method = test::fixed_method("log", 1);

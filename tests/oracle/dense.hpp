@@ -1,4 +1,4 @@
-// Dense linear algebra by Eigen's own solvers in long double, for matrices of any size; shares nothing with
+// Dense linear algebra by Eigen's own solvers in long double, for matrices of any size; no algorithm of
 // core/.
 #pragma once
 

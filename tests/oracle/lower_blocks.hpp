@@ -1,8 +1,9 @@
 // Whole matrices and their lower blocks, written without core/math/lower_blocks.hpp's numbering.
 #pragma once
 
-#include <Eigen/Dense>
 #include <vector>
+
+#include "core/math/types.hpp"
 
 namespace bb::test {
 

@@ -2,9 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
-
-#include "core/math/error.hpp"
 
 namespace bb {
 namespace {
@@ -55,9 +52,6 @@ std::optional<double> max_slope(const BarrierFunction& barrier, const std::vecto
 }
 
 std::optional<double> max_slope(const BarrierFunction& barrier, double d_hat) {
-  if (!(d_hat > 0 && std::isfinite(d_hat))) {
-    throw ConfigError("d_hat", std::to_string(d_hat), "a number > 0");
-  }
   return max_slope(barrier, scan_slope(barrier, d_hat));
 }
 
