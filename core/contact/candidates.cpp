@@ -16,11 +16,12 @@ bool any(const std::vector<std::uint8_t>& flags) {
 }
 
 /// Median of x1 - x0 over all points, a coordinate at a time: the frame in which the boxes are shortest. 0
-/// where that is not finite.
-Vec3d common_motion(const Primitives<1>& points, const Positions& x0, const Positions& x1) {
+/// where that is not finite. `moved`: a buffer.
+Vec3d common_motion(const Primitives<1>& points, const Positions& x0, const Positions& x1,
+                    std::vector<double>& moved) {
   Vec3d out = Vec3d::Zero();
   if (points.size() == 0) return out;
-  std::vector<double> moved(points.size());
+  moved.resize(points.size());
   const auto middle = moved.begin() + static_cast<std::ptrdiff_t>(moved.size() / 2);
   for (int c = 0; c < 3; ++c) {
     std::transform(points.vertices.begin(), points.vertices.end(), moved.begin(),
@@ -76,7 +77,7 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
   const Surface& s = surface_;
   // Which pairs come close depends on relative motion alone: what most points share, a fall say, would only
   // make every box long.
-  const Vec3d common = common_motion(s.points, x0, x1);
+  const Vec3d common = pairs_possible_ ? common_motion(s.points, x0, x1, moved_) : Vec3d::Zero();
   tbb::parallel_invoke(
       [&] { fit(edges_, s.edges, x0, x1, common); }, [&] { fit(triangles_, s.triangles, x0, x1, common); },
       [&] { fit(points_, s.points, x0, x1, common); }, [&] { update_obstacles(x0, x1, out.obstacle); });

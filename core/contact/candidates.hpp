@@ -40,6 +40,7 @@ class BroadPhase {
   std::vector<AnalyticSurface<double>> obstacles_;
   Tree points_, edges_, triangles_;
   PairFinder finder_;
+  std::vector<double> moved_;  // buffer of update
   bool pairs_possible_ = false, obstacles_possible_ = false;
 };
 

@@ -43,56 +43,59 @@ Scene two_particles() {
   return scene;
 }
 
-Method listening(Heard& heard, bool adapts) {
-  Method method = test::fixed_method("log", 1);
-  method.stiffness = std::make_unique<Listening>(heard, adapts);
-  return method;
-}
+/// A run of the two particles whose policy keeps what it is told.
+struct ListenedRun {
+  Heard heard;
+  Method method;
+  Simulation simulation;
+  StepObserver observer;
+
+  ListenedRun(const Scene& scene, bool adapts, int steps)
+      : method(listening(heard, adapts)), simulation(scene, method, dt, steps) {}
+  /// The rows at the end of the next step.
+  std::size_t step() { return simulation.step(observer).contacts.obstacle; }
+  static Method listening(Heard& heard, bool adapts) {
+    Method method = test::fixed_method("log", 1);
+    method.stiffness = std::make_unique<Listening>(heard, adapts);
+    return method;
+  }
+};
 
 TEST(StepEnd, lists_every_pair_with_both_gaps_and_its_own_stop_level) {
   const Scene scene = two_particles();
-  Heard heard;
-  Method method = listening(heard, true);
-  Simulation simulation(scene, method, dt, 3);
-  StepObserver observer;
+  ListenedRun run(scene, true, 3);
   Positions before(3, 2);
   for (int i = 0; i < 3; ++i) {
-    before = simulation.history().x;
-    ASSERT_EQ(simulation.step(observer).contacts.obstacle, 2U);
+    before = run.simulation.history().x;
+    ASSERT_EQ(run.step(), 2U);
   }
-  ASSERT_EQ(heard.size(), 3U);
-  EXPECT_TRUE(heard[0].empty());  // no step before
-  ASSERT_EQ(heard[2].size(), 2U);
+  ASSERT_EQ(run.heard.size(), 3U);
+  EXPECT_TRUE(run.heard[0].empty());  // no step before
+  ASSERT_EQ(run.heard[2].size(), 2U);
   for (const int v : {0, 1}) {
-    const StiffnessPolicy::PairEnd& pair = heard[2][static_cast<std::size_t>(v)];
-    EXPECT_EQ(pair.gap, simulation.history().x(2, v));
+    const StiffnessPolicy::PairEnd& pair = run.heard[2][static_cast<std::size_t>(v)];
+    EXPECT_EQ(pair.gap, run.simulation.history().x(2, v));
     EXPECT_EQ(pair.gap_before, before(2, v));
-    EXPECT_EQ(pair.park, method.contact_options.ccd_park * scene.d_hat[static_cast<std::size_t>(v)]);
+    EXPECT_EQ(pair.park, run.method.contact_options.ccd_park * scene.d_hat[static_cast<std::size_t>(v)]);
   }
 }
 
 TEST(StepEnd, leaves_a_pair_out_that_had_no_row_before) {
   Scene scene = two_particles();
   scene.x0(2, 0) = scene.rest(2, 0) = 1.1 * d_hat;  // reaches its d_hat in the second step
-  Heard heard;
-  Method method = listening(heard, true);
-  Simulation simulation(scene, method, dt, 3);
-  StepObserver observer;
+  ListenedRun run(scene, true, 3);
   std::vector<std::size_t> rows;
-  for (int i = 0; i < 3; ++i) rows.push_back(simulation.step(observer).contacts.obstacle);
+  for (int i = 0; i < 3; ++i) rows.push_back(run.step());
   ASSERT_EQ(rows, (std::vector<std::size_t>{1, 2, 2}));
-  EXPECT_EQ(heard[1].size(), 1U);
-  EXPECT_EQ(heard[2].size(), 2U);
+  EXPECT_EQ(run.heard[1].size(), 1U);
+  EXPECT_EQ(run.heard[2].size(), 2U);
 }
 
 TEST(StepEnd, does_not_disturb_a_policy_that_never_adapts) {
   const Scene scene = two_particles();
-  Heard heard;
-  Method method = listening(heard, false);
-  Simulation simulation(scene, method, dt, 2);
-  StepObserver observer;
-  for (int i = 0; i < 2; ++i) ASSERT_EQ(simulation.step(observer).contacts.obstacle, 2U);
-  EXPECT_TRUE(heard.empty());
+  ListenedRun run(scene, false, 2);
+  for (int i = 0; i < 2; ++i) ASSERT_EQ(run.step(), 2U);
+  EXPECT_TRUE(run.heard.empty());
 }
 
 }  // namespace
