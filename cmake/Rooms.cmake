@@ -29,7 +29,6 @@ function(bb_test name)
   add_executable(test_${name} ${ARG_SOURCES})
   target_link_libraries(test_${name} PRIVATE bb_pch ${ARG_DEPS} GTest::gtest GTest::gtest_main)
   target_precompile_headers(test_${name} REUSE_FROM bb_pch)
-  target_compile_definitions(test_${name} PRIVATE
-    BB_SOURCE_DIR="${PROJECT_SOURCE_DIR}" BB_BINARY_DIR="${PROJECT_BINARY_DIR}")
+  target_include_directories(test_${name} PRIVATE "${PROJECT_BINARY_DIR}/generated")
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
 endfunction()

@@ -11,6 +11,7 @@
 #include <string>
 
 #include "core/audit/pair_verdict.hpp"
+#include "tests/folders.hpp"
 
 namespace bb::audit {
 namespace {

@@ -8,6 +8,7 @@
 
 #include "core/audit/audit.hpp"
 #include "tests/audit/ply.hpp"
+#include "tests/folders.hpp"
 
 namespace bb::audit {
 namespace {

@@ -9,6 +9,7 @@
 #include "barriers/matching.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "tests/barriers/barrier_cases.hpp"
+#include "tests/folders.hpp"
 
 namespace bb::test {
 namespace {

@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "core/geometry/accd.hpp"
+#include "tests/folders.hpp"
 
 namespace {
 

@@ -5,6 +5,7 @@
 
 #include "core/math/error.hpp"
 #include "core/mesh/read_mesh.hpp"
+#include "tests/folders.hpp"
 #include "tests/mesh/mesh_bytes.hpp"
 
 namespace bb {

@@ -7,6 +7,7 @@
 
 #include "core/mesh/read_mesh.hpp"
 #include "core/mesh/topology.hpp"
+#include "tests/folders.hpp"
 #include "tests/mesh/mesh_bytes.hpp"
 
 namespace bb {

@@ -11,6 +11,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/record/writer.hpp"
+#include "tests/folders.hpp"
 #include "tests/record/sample_record.hpp"
 
 namespace bb {
