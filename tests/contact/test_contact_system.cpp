@@ -31,6 +31,29 @@ TEST(SmallestGap, IsPositiveUntilTheBodiesTouch) {
   EXPECT_LE(contacts.find_rows(broken, rows, mollified), 0);
 }
 
+/// Two rods that cross at an angle of 0.04, and a particle over a plane that is closer or not.
+TEST(SmallestGap, IsThatOfTheClosestRowOfEitherTable) {
+  for (const double height : {0.02, 0.08}) {
+    Scene scene;
+    add_body(scene, "rod", {Vec3d(-0.5, 0, 5), Vec3d(0.5, 0, 5)}, {}, 0.1);
+    add_body(scene, "other", {Vec3d(-0.5, -0.01, 5.05), Vec3d(0.5, 0.01, 5.05)}, {}, 0.1);
+    scene.surface_edges = {{0, 1}, {2, 3}};
+    add_body(scene, "particle", {Vec3d(0, 0, height)}, {}, 0.1);
+    Obstacle plane;
+    plane.name = "floor";
+    scene.obstacles = {plane};
+    ContactSystem contacts(scene, {});
+    const Rows rows = rows_at(contacts, scene.x0);
+    ASSERT_EQ(rows.mollified.size(), 1U);
+    ASSERT_EQ(rows.table.size(), 1U);
+    EXPECT_NEAR(rows.min_gap, std::min(0.05, height), 1e-12);
+
+    Positions touching = scene.x0;  // the rods alone make a state infeasible
+    touching.middleCols(2, 2).row(2).array() -= 0.05;
+    EXPECT_LE(rows_at(contacts, touching).min_gap, 0);
+  }
+}
+
 TEST(InitialCheck, NamesTheFirstPairThatTouches) {
   const Scene apart = cloth_and_ball(0.05);
   ContactSystem fine(apart, {});

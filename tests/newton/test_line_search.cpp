@@ -127,6 +127,42 @@ TEST(LineSearch, takes_its_fraction_of_a_binding_bound) {
   }
 }
 
+/// The first iteration of a step.
+class FirstIteration final : public StepObserver {
+ public:
+  void on_iteration(const IterationReport& report) override {
+    if (report.iteration == 0) first = report;
+  }
+  IterationReport first;
+};
+
+/// E of a falling particle is a quadratic: a step of alpha changes it by -(alpha - alpha^2/2) D, where D is
+/// the decrement -g . dx. Armijo asks for a fall of armijo alpha D, so alpha <= 2 (1 - armijo).
+TEST(LineSearch, takes_the_first_halved_step_whose_fall_is_armijos_share_of_the_slope) {
+  struct Case {
+    double armijo, alpha;
+    int trials;
+  };
+  for (const char* solver : {"line_search", "article_literal"}) {
+    for (const Case& c : {Case{0.4, 1, 1}, Case{0.6, 0.5, 2}, Case{0.9, 0.125, 4}}) {
+      Scene scene = test::particle_over_plane(0.2, 1, 0.01);
+      Method method = test::fixed_method("log", 1);
+      method.step_solver.name = solver;
+      method.step_solver.armijo = c.armijo;
+      Simulation simulation(scene, method, 0.01, 1);
+      FirstIteration watch;
+      simulation.step(watch);
+      const double decrement = watch.first.decrement;
+      ASSERT_GT(decrement, 0) << solver;
+      EXPECT_EQ(watch.first.alpha, c.alpha) << solver << " " << c.armijo;
+      EXPECT_EQ(watch.first.line_search_trials, c.trials) << solver << " " << c.armijo;
+      EXPECT_FALSE(watch.first.accepted_by_rounding) << solver << " " << c.armijo;
+      EXPECT_NEAR(watch.first.energy_change, -(c.alpha - c.alpha * c.alpha / 2) * decrement, 1e-5 * decrement)
+          << solver << " " << c.armijo;
+    }
+  }
+}
+
 TEST(LineSearch, accumulated_toi_reaches_the_same_state_without_contact) {
   SceneBuilder builder("falling cloth", false, Vec3d(0, 0, -9.81), "test");
   builder.add_body(test::cloth_spec(5, 10, 0.001));

@@ -1,0 +1,85 @@
+// Load over capacity of one contact row, by hand: every number that enters is known.
+#include <gtest/gtest.h>
+
+#include "tests/contact/contact_scenes.hpp"
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double d_hat = 0.01, gravity = 10, dt = 0.01;
+constexpr double capacity = 2 * d_hat;  // of the cubic: sup |b'| for kappa = 1, m
+
+/// load / capacity at the start of a step from rest, when the Newton direction is dx.
+double overload(const Scene& scene, double kappa, const Positions& dx, double* multiplicity = nullptr) {
+  Method method = test::fixed_method("cubic", kappa);
+  NewtonSystem system(scene, method);
+  Prediction at_rest;
+  at_rest.x_tilde = scene.x0;
+  system.begin_step(scene.x0, at_rest, dt, 1.0);
+  PhaseTimes times;
+  system.assemble(times);
+  EXPECT_EQ(system.contact_counts().total(), 1U);
+  if (multiplicity != nullptr) *multiplicity = system.state().rows.multiplicity.at(0);
+  return system.contact_overload(dx);
+}
+
+/// A free particle of 1 kg over the middle vertex of a given plate, where six triangles meet.
+Scene particle_over_a_plate() {
+  Scene scene;
+  const auto [vertices, triangles] = test::grid(2, 2, 1.0);
+  test::add_body(scene, "plate", vertices, triangles, d_hat, true);
+  test::add_body(scene, "particle", {Vec3d(1, 1, 0.4 * d_hat)}, {}, d_hat);
+  scene.gravity = Vec3d(0, 0, -gravity);
+  return scene;
+}
+
+TEST(Overload, pairs_that_realise_one_row_share_its_load) {
+  const Scene scene = particle_over_a_plate();
+  double multiplicity = 0;
+  const double measured = overload(scene, 1, Positions::Zero(3, scene.n_vertices()), &multiplicity);
+  ASSERT_EQ(multiplicity, 6);
+  EXPECT_NEAR(measured, gravity / 6 / capacity, 1e-9 * measured);
+  // twice the stiffness carries twice as much
+  EXPECT_NEAR(overload(scene, 2, Positions::Zero(3, scene.n_vertices())), measured / 2, 1e-9 * measured);
+}
+
+/// A free triangle of 3 kg that lies with its middle on a given point: the row acts at w_i = 1/3 of each
+/// vertex and has to carry the whole weight.
+TEST(Overload, a_row_carries_the_weight_of_all_its_vertices) {
+  Scene scene;
+  test::add_body(scene, "point", {Vec3d(1, 1, 0)}, {}, d_hat, true);
+  const double z = 0.4 * d_hat;
+  test::add_body(scene, "triangle", {Vec3d(0, 0, z), Vec3d(3, 0, z), Vec3d(0, 3, z)}, {{0, 1, 2}}, d_hat);
+  scene.gravity = Vec3d(0, 0, -gravity);
+  const double measured = overload(scene, 1, Positions::Zero(3, 4));
+  EXPECT_NEAR(measured, 3 * gravity / capacity, 1e-9 * measured);
+}
+
+/// Newton's model of the row is linear from d on: it asks for |b'(d)| + b''(d) times the closing of the gap.
+TEST(Overload, the_newton_model_asks_for_the_force_at_the_end_of_its_step) {
+  const Scene scene = particle_over_a_plate();
+  Positions dx = Positions::Zero(3, scene.n_vertices());
+  dx(2, 9) = -0.1;
+  const double depth = 0.6 * d_hat;
+  const double force = 2 / d_hat * depth * depth, slope = 4 / d_hat * depth;
+  EXPECT_NEAR(overload(scene, 1e9, dx), (force + slope * 0.1) / capacity, 1e-9);
+  dx(2, 9) = 0.1;  // opens: only the weight is left, of which so stiff a row carries any
+  EXPECT_LT(overload(scene, 1e9, dx), 1e-6);
+}
+
+TEST(Overload, an_unbounded_barrier_has_none) {
+  const Scene scene = particle_over_a_plate();
+  Method method = test::fixed_method("log", 1e-9);
+  NewtonSystem system(scene, method);
+  Prediction at_rest;
+  at_rest.x_tilde = scene.x0;
+  system.begin_step(scene.x0, at_rest, dt, 1.0);
+  PhaseTimes times;
+  system.assemble(times);
+  ASSERT_EQ(system.contact_counts().total(), 1U);
+  EXPECT_EQ(system.contact_overload(Positions::Zero(3, scene.n_vertices())), 0);
+}
+
+}  // namespace
+}  // namespace bb
