@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
-from analysis.load import LARGEST_COND, Records, condition_of
+from .load import LARGEST_COND, Records, condition_of
 
 HEADINGS = {
     "group": "scene",

@@ -11,7 +11,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from analysis import style
+from .. import style
 
 # Formulation whose look it takes -> shape, argument.
 SHAPES = {

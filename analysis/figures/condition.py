@@ -7,8 +7,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
-from analysis import style
-from analysis.load import LARGEST_COND, Records, condition_of
+from .. import style
+from ..load import LARGEST_COND, Records, condition_of
 
 PANELS = (("cond", "condition number"), ("lambda_max", r"$\lambda_{\max}$"), ("lambda_min", r"$\lambda_{\min}$"))
 SCALINGS = (("none", "raw"), ("block_jacobi", "block-Jacobi-scaled"))

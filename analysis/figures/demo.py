@@ -1,13 +1,13 @@
-"""All figures and the table of a folder of runs: python -m analysis.figures.demo RUNS [OUT]."""
+"""All figures and the table of a folder of runs: python -m barrierbench_analysis.figures.demo RUNS [OUT]."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-from analysis.figures import barrier_shapes, condition, gaps, iterations, kappa_cycle
-from analysis.load import RecordError, Records, load
-from analysis.table import as_text, summary_table
+from . import barrier_shapes, condition, gaps, iterations, kappa_cycle
+from ..load import RecordError, Records, load
+from ..table import as_text, summary_table
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged")
 
@@ -48,7 +48,7 @@ def make_all(runs: Path, out: Path) -> str:
 
 def main(arguments: list[str]) -> int:
     if not 1 <= len(arguments) <= 2:
-        print("usage: python -m analysis.figures.demo RUNS [OUT]", file=sys.stderr)
+        print("usage: python -m barrierbench_analysis.figures.demo RUNS [OUT]", file=sys.stderr)
         return 2
     runs = Path(arguments[0])
     out = Path(arguments[1]) if len(arguments) == 2 else runs / "figures"

@@ -7,8 +7,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
-from analysis import style
-from analysis.load import Records
+from .. import style
+from ..load import Records
 
 MATCHED_AT = 0.1  # the gap at which equal_force makes the forces equal, d_hat
 

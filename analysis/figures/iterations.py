@@ -8,8 +8,8 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from analysis import style
-from analysis.load import Records
+from .. import style
+from ..load import Records
 
 
 def _ecdf(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

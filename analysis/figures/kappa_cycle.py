@@ -7,8 +7,8 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
-from analysis import style
-from analysis.load import Records
+from .. import style
+from ..load import Records
 
 # Copies of settled_kappa and unsettled_iterations in core/newton/iteration.cpp.
 SETTLED = 0.01  # a change of kappa below it leaves Newton alone

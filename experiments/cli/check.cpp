@@ -1,7 +1,11 @@
 #include <fmt/format.h>
 
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
 #include "core/math/error.hpp"
 #include "experiments/cli/verbs.hpp"
+#include "experiments/config/document.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/runner.hpp"
@@ -41,6 +45,20 @@ void print_formulation(const RunConfig& config) {
                  : fmt::format(", theta {:g}: a given stiffness is replaced", config.matching.theta));
 }
 
+/// One line a number, word or list of the resolved config: pointer, value, and where the value is from.
+void print_settings(const RunVerb& verb, const RunConfig& config) {
+  std::vector<Violation> ignored;  // load_config has judged the same text
+  const std::string folder = std::filesystem::path(verb.config).parent_path().string();
+  const nlohmann::json given =
+      make_document(read_text_file(verb.config), verb.config, folder, verb.set, ignored);
+  const nlohmann::json flat = nlohmann::json::parse(resolved_json(config)).flatten();
+  fmt::print("\nevery setting of the run (* given by the config or --set; the others are defaults)\n");
+  for (const auto& [pointer, value] : flat.items()) {
+    const bool own = given.contains(nlohmann::json::json_pointer(pointer));
+    fmt::print("  {} {:<52} {}\n", own ? '*' : ' ', pointer, value.dump());
+  }
+}
+
 }  // namespace
 
 int check(const RunVerb& verb) {
@@ -67,6 +85,7 @@ int explain(const RunVerb& verb) {
       if (item->needed == needed) fmt::print("  {:<18} {}\n", name, item->reason);
     }
   }
+  print_settings(verb, config);
   return exit_ok;
 }
 

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "barriers/named_entries.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "core/energy/membrane_model.hpp"
@@ -10,6 +11,7 @@
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
 #include "experiments/cli/verbs.hpp"
+#include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/presets.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
@@ -22,33 +24,75 @@ void print_entries(const char* title, const Entries& entries) {
   for (const auto& entry : entries) fmt::print("  {:<22} {}\n", entry.name, entry.doc);
 }
 
+/// One line a parameter: key, default with its unit, what is allowed, meaning.
+void print_parameters(const std::vector<Parameter>& parameters) {
+  for (const Parameter& p : parameters) {
+    const bool bare = p.unit.empty() || p.unit == "1";
+    const std::string fallback = to_text(p.fallback) + (bare ? "" : " " + p.unit);
+    fmt::print("    {:<20} {:<16} {:<46} {}\n", p.name, fallback, allowed_text(p), p.doc);
+  }
+}
+
+constexpr const char* parameter_columns = "parameter, default, allowed values, meaning";
+
+void print_scenes() {
+  fmt::print("scenes (/scene/name; below each: {})\n", parameter_columns);
+  for (const ProceduralScene& scene : procedural_scenes()) {
+    const SceneDefaults& d = scene.defaults;
+    fmt::print("  {:<22} {}\n", scene.name, scene.doc);
+    fmt::print("    defaults: /time/dt_s {:g} s, /time/steps {}, /formulation/d_hat_m {:g} m, {}\n", d.dt,
+               d.steps, d.d_hat,
+               d.limit ? fmt::format("/strain_limit/limit {:g}", *d.limit) : "no strain limit");
+    print_parameters(scene.parameters);
+  }
+  fmt::print("  {:<22} {}\n", "bodies",
+             "meshes, pins and obstacles given as JSON: examples/scenes/README.md");
+}
+
+void print_generators() {
+  fmt::print("generators (/scene/bodies/N/mesh/generator; below each: {})\n", parameter_columns);
+  for (const MeshGenerator& generator : mesh_generators()) {
+    fmt::print("  {:<22} {}\n", generator.name, generator.doc);
+    print_parameters(generator.parameters);
+  }
+}
+
 struct Section {
   const char* name;
   std::function<void()> print;
 };
 
-}  // namespace
-
-int list(const std::string& what) {
-  const Section sections[] = {
+const std::vector<Section>& sections() {
+  static const std::vector<Section> list = {
       {"shapes", [] { print_entries("shapes", shapes()); }},
       {"policies", [] { print_entries("policies", stiffness_policies()); }},
       {"integrators", [] { print_entries("integrators", integrators()); }},
       {"step_solvers", [] { print_entries("step_solvers", step_solvers()); }},
-      {"scenes", [] { print_entries("scenes", procedural_scenes()); }},
+      {"scenes", print_scenes},
+      {"generators", print_generators},
       {"linear_solvers", [] { print_entries("linear_solvers", linear_solvers()); }},
       {"membranes", [] { print_entries("membranes", membrane_models<double>()); }},
       {"formulations", [] { print_entries("formulations", formulation_presets()); }},
   };
+  return list;
+}
+
+}  // namespace
+
+std::vector<std::string> list_sections() {
+  std::vector<std::string> names{"all"};
+  for (const Section& section : sections()) names.emplace_back(section.name);
+  return names;
+}
+
+int list(const std::string& what) {
   bool known = what == "all";
-  std::string names = "all";
-  for (const Section& section : sections) {
-    names += std::string(", ") + section.name;
+  for (const Section& section : sections()) {
     if (what != "all" && what != section.name) continue;
     section.print();
     known = true;
   }
-  if (!known) throw ConfigError("list", '"' + what + '"', names);
+  if (!known) throw unknown_name("list", what, list_sections());
   return exit_ok;
 }
 

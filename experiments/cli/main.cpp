@@ -3,8 +3,12 @@
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <sstream>
 
+#include "barriers/named_entries.hpp"
 #include "barriers/plugins.hpp"
 #include "core/math/error.hpp"
 #include "core/record/writer.hpp"
@@ -42,6 +46,61 @@ void config_arguments(CLI::App* app, RunVerb& verb) {
       ->allow_extra_args(false);
 }
 
+/// Options that every verb takes, before the verb and after it, so that the help of each verb shows them.
+void common_arguments(CLI::App& app, CommonOptions& common, std::vector<std::string>& plugins) {
+  app.add_option(
+         "--plugin", plugins,
+         "a shared library (.so) with shapes, stiffness policies or integrators, loaded before anything "
+         "is read; may be repeated (examples/plugins/README.md)")
+      ->allow_extra_args(false);
+  app.add_option("--progress", common.progress, "auto (on a terminal), plain (a line every 10 s) or none")
+      ->check(CLI::IsMember({"auto", "plain", "none"}));
+}
+
+/// The first word of the command line that is no option and no value of an option before the verb.
+std::string first_word(const std::vector<std::string>& argv) {
+  for (std::size_t i = 1; i < argv.size(); ++i) {
+    if (argv[i] == "--plugin" || argv[i] == "--progress") {
+      ++i;
+    } else if (!argv[i].starts_with("-")) {
+      return argv[i];
+    }
+  }
+  return "";
+}
+
+/// Errors: ConfigError with the nearest verb when the command line starts with a word that is none.
+/// BENCH_VERBS: verbs of the script ./bench, which it handles itself.
+void require_verb(const CLI::App& app, const std::vector<std::string>& argv) {
+  const std::string word = first_word(argv);
+  std::vector<std::string> verbs;
+  for (const CLI::App* verb : app.get_subcommands(nullptr)) verbs.push_back(verb->get_name());
+  if (word.empty() || std::find(verbs.begin(), verbs.end(), word) != verbs.end()) return;
+  std::istringstream of_script(std::getenv("BENCH_VERBS") ? std::getenv("BENCH_VERBS") : "");
+  for (std::string verb; of_script >> verb;) verbs.push_back(verb);
+  throw bb::unknown_name("bench", word, verbs);
+}
+
+constexpr const char* sweep_help =
+    R"(A sweep file is JSON (schema: configs/schema/sweep.schema.json), for example:
+{
+  "schema": "barrierbench.sweep/1",
+  "name": "my_sweep",
+  "base": "../scenes/drape.json",
+  "set": {"/time/steps": 12},
+  "axes": [
+    {"pointer": "/time/dt_s", "values": [0.01, 0.005]},
+    {"cases": [{"label": "log", "set": {"/formulation": "log"}},
+               {"label": "cubic", "set": {"/formulation": "cubic"}}]}
+  ]
+}
+
+name: the folder results/runs/my_sweep. base: a config, relative to this file. set: overrides of every case.
+An axis is either {pointer, values}, one setting with one case for each value, or {cases}, named cases that
+each set several. With more than one axis every combination is run: here 2 x 2 = 4 records.
+
+example: ./bench sweep configs/sweeps/demo_strip.json --dry-run)";
+
 }  // namespace
 
 int main(int argc, char** argv) {
@@ -49,17 +108,14 @@ int main(int argc, char** argv) {
   common.argv.assign(argv, argv + argc);
   RunVerb run_verb, check_verb, explain_verb;
   SweepVerb sweep_verb;
+  std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
   bool eval_schema = false;
 
   CLI::App app{"barrierbench: contact barriers compared in one Newton + ACCD pipeline"};
   app.name("bench");
   app.require_subcommand(1);
-  app.add_option("--plugin", common.plugins, "a plugin (.so) with shapes, stiffness policies or integrators")
-      ->allow_extra_args(false);
-  app.add_option("--progress", common.progress, "auto, plain or none")
-      ->check(CLI::IsMember({"auto", "plain", "none"}));
-  app.fallthrough();
+  common_arguments(app, common, plugins_before);
 
   auto* run_app = app.add_subcommand("run", "one config, one record");
   config_arguments(run_app, run_verb);
@@ -73,18 +129,15 @@ int main(int argc, char** argv) {
   sweep_app->add_option("--out", sweep_verb.out, "folder (default results/runs/<name>)");
   sweep_app->add_flag("--dry-run", sweep_verb.dry_run, "print what would run");
   sweep_app->add_flag("--again", sweep_verb.again, "run finished ones too");
-  sweep_app->footer("example: ./bench sweep configs/sweeps/demo_strip.json --dry-run");
+  sweep_app->footer(sweep_help);
   auto* check_app = app.add_subcommand("check", "parse a config, build its scene, look for intersections");
   config_arguments(check_app, check_verb);
   check_app->footer("example: ./bench check configs/scenes/drape.json");
   auto* explain_app = app.add_subcommand("explain", "what a run would do, what it would skip, and why");
   config_arguments(explain_app, explain_verb);
-  explain_app->footer("example: ./bench explain configs/scenes/drape2d.json");
+  explain_app->footer("example: ./bench explain configs/scenes/drape2d.json --set /time/dt_s=0.005");
   auto* list_app = app.add_subcommand("list", "what can be named in a config");
-  list_app->add_option(
-      "what", list_what,
-      "all, shapes, policies, integrators, step_solvers, scenes, linear_solvers, membranes or "
-      "formulations");
+  list_app->add_option("what", list_what, fmt::format("which section: {}", fmt::join(list_sections(), ", ")));
   list_app->footer("example: ./bench list shapes");
   auto* eval_app = app.add_subcommand("eval", "JSON Lines queries to the functions that the pipeline runs");
   eval_app->add_option("file", eval_file, "queries, - for standard input");
@@ -95,6 +148,11 @@ int main(int argc, char** argv) {
   demo_app->add_option("--out", demo_out, "folder of the records");
   demo_app->footer("example: ./bench demo");
 
+  for (CLI::App* verb : app.get_subcommands(nullptr)) common_arguments(*verb, common, plugins_after);
+
+  if (const int code = guarded([&] { return require_verb(app, common.argv), exit_ok; }); code != exit_ok) {
+    return code;
+  }
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
@@ -104,6 +162,8 @@ int main(int argc, char** argv) {
   // The verbs that ask whether to stop; the others end at the signal itself.
   if (run_app->parsed() || sweep_app->parsed() || demo_app->parsed()) install_interrupt();
   const int code = guarded([&]() -> int {
+    common.plugins = plugins_before;
+    common.plugins.insert(common.plugins.end(), plugins_after.begin(), plugins_after.end());
     for (const std::string& file : common.plugins) bb::register_plugin(file);
     if (run_app->parsed()) return run(run_verb, common);
     if (sweep_app->parsed()) return sweep(sweep_verb, common);

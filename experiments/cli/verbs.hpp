@@ -36,9 +36,11 @@ int sweep(const SweepVerb& verb, const CommonOptions& common);
 
 /// Parses, builds the scene and looks for intersections; runs nothing.
 int check(const RunVerb& verb);
-/// What the run would do and what it would skip, and why.
+/// What the run would do and what it would skip, and why; then every setting with its default filled in.
 int explain(const RunVerb& verb);
-/// Everything that can be named in a config: shapes, policies, integrators, solvers, scenes, formulations.
+/// Everything that can be named in a config, one section or "all"; scenes and mesh generators with their
+/// parameters. Errors: ConfigError for a section that is not in list_sections().
+std::vector<std::string> list_sections();
 int list(const std::string& what);
 /// The sweeps of configs/sweeps/demo_*.json, one after the other.
 int demo(const std::string& out, const CommonOptions& common);

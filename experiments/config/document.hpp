@@ -1,5 +1,6 @@
 // A config as a JSON document: text to value, `extends`, overrides, shorthands. Nothing is checked against
-// the schema here. Private to experiments/config.
+// the schema here. Outside this folder only `explain` reads it, to tell what a config gives from what it
+// leaves to defaults.
 #pragma once
 
 #include <nlohmann/json_fwd.hpp>

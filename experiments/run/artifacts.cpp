@@ -2,22 +2,133 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <nlohmann/json.hpp>
+
+#include "core/energy/triangle_membrane.hpp"
+#include "core/math/svd.hpp"
+#include "core/mesh/topology.hpp"
 #include "core/mesh/write_mesh.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 
 namespace bb {
 
-ArtifactWriter::ArtifactWriter(std::filesystem::path folder, const Scene& scene)
-    : folder_(std::move(folder)), scene_(scene) {}
+namespace {
 
-void ArtifactWriter::frame(const Positions& x, int step) {
-  const std::filesystem::path relative = fmt::format("frames/step_{:06}.ply", step);
+using nlohmann::json;
+
+json to_json(const Vec3d& v) { return json::array({v[0], v[1], v[2]}); }
+
+json to_json(const Obstacle& o) {
+  constexpr const char* kinds[] = {"plane", "sphere", "cylinder"};
+  json out = {{"name", o.name}, {"kind", kinds[static_cast<int>(o.kind)]}, {"point_m", to_json(o.point)}};
+  if (o.kind != ObstacleKind::sphere) out["axis"] = to_json(o.axis);
+  if (o.kind == ObstacleKind::plane) return out;
+  out["radius_m"] = o.radius;
+  out["inside"] = o.inside;
+  return out;
+}
+
+std::string scene_json(const Scene& scene) {
+  json out = {{"planar", scene.planar}, {"bodies", json::array()}, {"obstacles", json::array()}};
+  for (const Body& body : scene.bodies) out["bodies"].push_back(body.name);
+  for (const Obstacle& obstacle : scene.obstacles) out["obstacles"].push_back(to_json(obstacle));
+  return out.dump(2) + "\n";
+}
+
+/// Edges of the surface that are no side of a triangle. Both lists of `unique_edges` are sorted alike.
+std::vector<std::array<int, 2>> lone_edges(const Scene& scene) {
+  TriangleMesh triangles, all;
+  triangles.triangles = all.triangles = scene.surface_triangles;
+  all.segments = scene.surface_edges;
+  const auto sides = unique_edges(triangles), edges = unique_edges(all);
+  std::vector<std::array<int, 2>> rods;
+  std::set_difference(edges.begin(), edges.end(), sides.begin(), sides.end(), std::back_inserter(rods));
+  return rods;
+}
+
+void corners_of(const Positions& x, const std::array<int, 3>& triangle, Vec3d (&out)[3]) {
+  for (std::size_t k = 0; k < 3; ++k) out[k] = x.col(triangle[k]);
+}
+
+/// Largest singular value of F, minus 1, of every surface triangle; 0 for one that only moves.
+std::vector<double> stretches(const Scene& scene, const Positions& x) {
+  std::vector<double> out;
+  out.reserve(scene.surface_triangles.size());
+  for (const auto& triangle : scene.surface_triangles) {
+    Vec3d rest[3], now[3];
+    corners_of(scene.rest, triangle, rest);
+    corners_of(x, triangle, now);
+    const auto shape = triangle_rest<double>(rest, Vec3d(rest[1] - rest[0]));
+    out.push_back(svd_3x2<double>(deformation_gradient<3, double>(shape, now)).sigma.maxCoeff() - 1);
+  }
+  return out;
+}
+
+}  // namespace
+
+ContactFields contact_fields(const EnergyState& state, int n_vertices) {
+  const auto n = static_cast<std::size_t>(n_vertices);
+  ContactFields fields{std::vector<double>(n, 1.0), std::vector<double>(n, 0.0)};
+  const auto gather = [&fields](const auto& rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      for (const int id : rows.key[r]) {  // given vertices included; an obstacle is negative
+        if (id < 0) continue;
+        double& gap = fields.gap_rel[static_cast<std::size_t>(id)];
+        gap = std::min(gap, rows.d[r] / rows.d_hat[r]);
+      }
+    }
+  };
+  gather(state.rows);
+  gather(state.mollified);
+  const auto add_load = [&fields](const auto& rows, const std::vector<int>& vertex) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const double force = -rows.multiplicity[r] * rows.kappa[r] * rows.db[r];
+      for (std::size_t k = 4 * r; k < 4 * r + 4; ++k) {
+        if (vertex[k] >= 0)
+          fields.load[static_cast<std::size_t>(vertex[k])] += std::abs(rows.weight[k]) * force;
+      }
+    }
+  };
+  add_load(state.rows, state.rows.vertex);
+  add_load(state.mollified, state.mollified.free_vertex);
+  return fields;
+}
+
+ArtifactWriter::ArtifactWriter(std::filesystem::path folder, const Scene& scene)
+    : folder_(std::move(folder)), scene_(scene), rods_(lone_edges(scene)) {
+  for (const auto& t : scene.surface_triangles) {
+    triangle_body_.push_back(scene.body[static_cast<std::size_t>(t[0])]);
+  }
+}
+
+void ArtifactWriter::start() {
+  const std::filesystem::path relative = "frames/scene.json";
+  write_atomically(folder_ / relative, scene_json(scene_));
+  keep(relative, "frame_scene", "application/json");
+  write_frame("frames/start.ply", scene_.x0, nullptr);
+}
+
+void ArtifactWriter::frame(const Positions& x, int step, const ContactFields& fields) {
+  write_frame(fmt::format("frames/step_{:06}.ply", step), x, &fields);
+}
+
+void ArtifactWriter::write_frame(const std::filesystem::path& relative, const Positions& x,
+                                 const ContactFields* fields) {
   TriangleMesh mesh;
   mesh.vertices = x;
-  mesh.triangles = scene_.planar ? scene_.membrane.triangles : scene_.surface_triangles;
-  if (mesh.triangles.empty()) mesh.segments = scene_.surface_edges;
-  write_atomically(folder_ / relative, ply_bytes(mesh));
+  mesh.triangles = scene_.surface_triangles;
+  mesh.segments = rods_;
+  std::vector<PlyColumn> of_vertices{{"body", scene_.body}};
+  if (fields) {
+    of_vertices.push_back({"gap_rel", fields->gap_rel});
+    of_vertices.push_back({"load_N", fields->load});
+  }
+  const std::vector<PlyColumn> of_triangles{{"body", triangle_body_}, {"stretch", stretches(scene_, x)}};
+  write_atomically(folder_ / relative, ply_bytes(mesh, of_vertices, of_triangles));
   keep(relative, "frame", "model/ply");
 }
 

@@ -5,26 +5,48 @@
 #include <vector>
 
 #include "core/linear/block_system.hpp"
+#include "core/newton/energy_state.hpp"
 #include "core/record/run_record.hpp"
 #include "core/scene/scene.hpp"
 
 namespace bb {
 
+/// What contact does to each vertex in one state.
+struct ContactFields {
+  std::vector<double> gap_rel;  // [n vertices] smallest d/d_hat of the rows at the vertex; 1 without a row
+  std::vector<double> load;     // [n vertices] N, sum of |w_i| m kappa |b'| over those rows; 0 without a row
+};
+
+/// Both fields from the rows of a state. A nearly parallel edge pair counts with its full m kappa |b'|: its
+/// mollifier, which is at most 1, is left out.   Cost: O(vertices + rows).
+ContactFields contact_fields(const EnergyState& state, int n_vertices);
+
+/// Files of one run below `folder`/frames and `folder`/matrices.
+///
+/// A frame is a binary PLY file of all bodies: triangles, and rods as edges. Every vertex has `body` (index
+/// into the bodies of frames/scene.json), every triangle `body` and `stretch` (largest singular value of its
+/// deformation gradient, minus 1). At the end of a step vertices also have `gap_rel` and `load_N`, as in
+/// ContactFields. Errors of every function: RecordError when a file cannot be written whole.
 class ArtifactWriter {
  public:
   ArtifactWriter(std::filesystem::path folder, const Scene& scene);
-  /// frames/step_000010.ply: all surfaces and segments of the scene. Errors: RecordError when it cannot be
-  /// written whole.
-  void frame(const Positions& x, int step);
+  /// frames/scene.json: names of the bodies, and the analytic obstacles, which no frame repeats; and
+  /// frames/start.ply: the start positions.
+  void start();
+  /// frames/step_000010.ply: the end of step 10; the first step is 0.
+  void frame(const Positions& x, int step, const ContactFields& fields);
   /// matrices/step_000010_iteration_002.mtx: Matrix Market, symmetric, lower triangle, 17 digits.
   void matrix(const ReducedSystem& system, int step, int iteration);
   const std::vector<Artifact>& written() const { return written_; }
 
  private:
+  void write_frame(const std::filesystem::path& relative, const Positions& x, const ContactFields* fields);
   void keep(const std::filesystem::path& relative, const char* kind, const char* media_type);
 
   std::filesystem::path folder_;
   const Scene& scene_;
+  std::vector<std::array<int, 2>> rods_;  // edges of the surface that belong to no triangle
+  std::vector<int> triangle_body_;
   std::vector<Artifact> written_;
 };
 

@@ -47,6 +47,7 @@ Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& recor
                    ArtifactWriter* artifacts)
     : config_(config), record_(record), trace_(trace), artifacts_(artifacts), probe_(config.diagnose.seed) {
   record_.audit.enabled = config.passes.audit;
+  if (artifacts_ && config.output.frames_every > 0) artifacts_->start();
   if (config.passes.audit) {
     audit_ = std::make_unique<audit::Audit>(make_audit_mesh(scene));
     const double d_hat = *std::min_element(scene.d_hat.begin(), scene.d_hat.end());
@@ -193,7 +194,9 @@ void Recorder::note_contacts(const NewtonSystem& system, int step) {
 
 void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
   const int every = config_.output.frames_every;
-  if (artifacts_ && every > 0 && report.step % every == 0) artifacts_->frame(x, report.step);
+  if (artifacts_ && every > 0 && report.step % every == 0) {
+    artifacts_->frame(x, report.step, contact_fields(system.state(), system.scene().n_vertices()));
+  }
   StepRecord step = step_record(system, report);
   seen_.steps.push_back(report.times);
   step.time = time_of(reported_->steps, seen_.steps.size() - 1);

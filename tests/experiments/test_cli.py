@@ -60,6 +60,28 @@ def test_help_has_an_example(program, verb):
     done = bench(program, verb, "--help")
     assert done.returncode == 0 and done.stderr == ""
     assert "example: " in done.stdout and f"bench {verb}" in done.stdout
+    assert "--plugin" in done.stdout and "--progress" in done.stdout
+
+
+def test_the_help_of_sweep_shows_both_kinds_of_axes(program):
+    text = bench(program, "sweep", "--help").stdout
+    assert '{"pointer": "/time/dt_s", "values": [0.01, 0.005]}' in text
+    assert '{"cases": [{"label": "log"' in text and "sweep.schema.json" in text
+
+
+def test_the_sweep_of_the_help_runs(program, tmp_path):
+    text = bench(program, "sweep", "--help").stdout
+    spec = json.loads(text[text.index("{\n"):text.index("\n}\n") + 2])
+    spec["base"] = str(ROOT / "configs/scenes/drape.json")
+    planned = bench(program, "sweep", write(tmp_path / "sweep.json", spec), "--dry-run")
+    assert planned.returncode == 0, planned.stderr
+    assert len(planned.stdout.splitlines()) == 4
+
+
+@pytest.mark.parametrize(("word", "verb"), [("runn", "run"), ("swep", "sweep"), ("explian", "explain"), ("figure", "figures")])
+def test_a_mistyped_verb_gets_the_nearest(program, word, verb):
+    refused(bench(program, word, BLOCK, env={**os.environ, "BENCH_VERBS": "figures render"}), f"did you mean {verb}?", word)
+    refused(bench(program, "--progress", "none", word, BLOCK, env={**os.environ, "BENCH_VERBS": "figures"}), f"did you mean {verb}?")
 
 
 @pytest.mark.parametrize("arguments", [[], ["rnu", BLOCK], ["run"], ["run", BLOCK, "--sett", "/time/steps=1"],
@@ -75,6 +97,27 @@ def test_list_names_what_configs_may_name(program):
         assert name in done.stdout
     shapes = bench(program, "list", "shapes").stdout
     assert "cubic" in shapes and "drape2d" not in shapes
+
+
+@pytest.mark.parametrize(("section", "parts"), [
+    ("generators", ["icosphere", "radius_m             0.5 m            a number > 0 (m)", "closed               true             true or false", "vertices along x"]),
+    ("scenes", ["start_gap_d_hat      1.2 d_hat        a number > 0 (d_hat)", "a number >= 1 and <= 1000000 (d_hat)",
+                "/time/dt_s 0.01 s, /time/steps 100, /formulation/d_hat_m 0.005 m, /strain_limit/limit 0.02", "bodies"]),
+])
+def test_list_shows_parameters_with_defaults_units_and_ranges(program, section, parts):
+    text = bench(program, "list", section).stdout
+    for part in parts:
+        assert part in text
+    assert text.splitlines()[1:] and set(text.splitlines()) <= set(bench(program, "list").stdout.splitlines())
+
+
+def test_explain_shows_every_setting_and_who_gave_it(program):
+    text = bench(program, "explain", BLOCK, "--set", "/time/dt_s=0.005").stdout
+    settings = {line[4:].split()[0]: line for line in text.splitlines() if line[4:5] == "/"}
+    assert settings["/time/dt_s"].split() == ["*", "/time/dt_s", "0.005"]
+    assert settings["/scene/name"].startswith("  *")
+    assert settings["/step_solver/armijo"].split() == ["/step_solver/armijo", "0.0001"]
+    assert settings["/formulation/shape"].split() == ["/formulation/shape", '"log"'] and len(settings) > 40
 
 
 def test_answers_that_nobody_can_read(program):

@@ -38,6 +38,29 @@ TEST_P(Written, reads_back_bit_for_bit) {
 }
 INSTANTIATE_TEST_SUITE_P(write_mesh, Written, ::testing::Values(".obj", ".ply"));
 
+TEST(write_mesh, columns_stand_beside_what_is_read_back) {
+  const TriangleMesh mesh = sphere_with_a_tail();
+  std::vector<int> bodies(42);
+  std::vector<double> stretch(80);
+  for (std::size_t i = 0; i < bodies.size(); ++i) bodies[i] = static_cast<int>(i) - 7;
+  for (std::size_t i = 0; i < stretch.size(); ++i) stretch[i] = 0.25 * static_cast<double>(i);
+  const std::string bytes =
+      ply_bytes(mesh, {{"body", bodies}}, {{"body", std::vector<int>(80, 3)}, {"stretch", stretch}});
+  const std::string path = ::testing::TempDir() + "columns.ply";
+
+  std::ofstream(path, std::ios::binary) << bytes;
+  const TriangleMesh back = read_mesh(path);
+
+  EXPECT_EQ(back.vertices, mesh.vertices);
+  EXPECT_EQ(back.triangles, mesh.triangles);
+  EXPECT_EQ(back.segments, mesh.segments);
+  EXPECT_NE(bytes.find("property double z\nproperty int body\nelement face 80\n"), std::string::npos);
+  EXPECT_EQ(bytes.size() - ply_bytes(mesh).size(), 42 * 4 + 80 * (4 + 8) +
+                                                       std::string("property int body\n").size() * 2 +
+                                                       std::string("property double stretch\n").size());
+  std::filesystem::remove(path);
+}
+
 TEST(write_mesh, says_why_a_file_cannot_be_written) {
   EXPECT_THROW(write_obj("/no/such/folder/a.obj", sphere_with_a_tail()), ConfigError);
 }

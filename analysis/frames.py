@@ -1,0 +1,92 @@
+"""Frames of a run: the positions of all bodies at the start and at the ends of steps, with what is known there.
+
+A frame is the binary PLY file that `bench run --set /output/frames_every=N` leaves in `frames/`.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+TYPES = {"double": "<f8", "float": "<f4", "int": "<i4", "uchar": "u1"}
+
+
+class FrameError(ValueError):
+    """No frame, or a file that is none of ours."""
+
+
+@dataclass
+class Frame:
+    """One state. Lengths in m, `load_N` in N, `gap_rel` in units of d_hat, `stretch` relative to rest."""
+
+    vertices: np.ndarray  # [n, 3]
+    triangles: np.ndarray  # [m, 3] indices of vertices
+    edges: np.ndarray  # [k, 2] rods
+    of_vertices: dict[str, np.ndarray] = field(default_factory=dict)  # body; gap_rel and load_N after a step
+    of_triangles: dict[str, np.ndarray] = field(default_factory=dict)  # body, stretch
+
+
+def _elements(header: list[str], path: Path) -> list[tuple[str, int, np.dtype]]:
+    """Name, count and row type of every element."""
+    elements: list[tuple[str, int, list]] = []
+    for line in header:
+        words = line.split()
+        if words[:1] == ["element"]:
+            elements.append((words[1], int(words[2]), []))
+        elif words[:2] == ["property", "list"]:
+            elements[-1][2].extend([("corners", TYPES[words[2]]), (words[4], TYPES[words[3]], 3)])
+        elif words[:1] == ["property"]:
+            elements[-1][2].append((words[2], TYPES[words[1]]))
+    if "format binary_little_endian 1.0" not in header:
+        raise FrameError(f"{path}: not a binary little-endian PLY file")
+    return [(name, count, np.dtype(fields)) for name, count, fields in elements]
+
+
+def read_frame(path: str | Path) -> Frame:
+    """One PLY file as the program writes it (all faces are triangles). Raises FrameError."""
+    path = Path(path)
+    data = path.read_bytes()
+    head, mark, body = data.partition(b"end_header\n")
+    if not data.startswith(b"ply\n") or not mark:
+        raise FrameError(f"{path}: not a PLY file")
+    tables, at = {}, 0
+    for name, count, row in _elements(head.decode("ascii", "replace").splitlines(), path):
+        if at + count * row.itemsize > len(body):
+            raise FrameError(f"{path}: ends before its last {name}")
+        tables[name] = np.frombuffer(body, row, count, at)
+        at += count * row.itemsize
+    v, f, e = tables["vertex"], tables["face"], tables.get("edge")
+    if len(f) and (f["corners"] != 3).any():
+        raise FrameError(f"{path}: a face that is no triangle")
+    return Frame(
+        vertices=np.stack([v["x"], v["y"], v["z"]], axis=1),
+        triangles=np.array(f["vertex_indices"]).reshape(-1, 3),
+        edges=np.stack([e["vertex1"], e["vertex2"]], axis=1) if e is not None else np.zeros((0, 2), int),
+        of_vertices={n: v[n] for n in v.dtype.names if n not in "xyz"},
+        of_triangles={n: f[n] for n in f.dtype.names if n not in ("corners", "vertex_indices")},
+    )
+
+
+def frame_paths(run: str | Path) -> dict[int, Path]:
+    """Step -> file, in order; -1 is the start, 0 the end of the first step. Raises FrameError without any."""
+    folder = Path(run) / "frames"
+    found = {-1: folder / "start.ply"} if (folder / "start.ply").exists() else {}
+    for path in sorted(folder.glob("step_*.ply")):
+        if match := re.fullmatch(r"step_(\d+)", path.stem):
+            found[int(match[1])] = path
+    if not found:
+        raise FrameError(f"{run}: no frames; run the config with --set /output/frames_every=1")
+    return found
+
+
+def read_scene(run: str | Path) -> dict:
+    """frames/scene.json: `bodies` (names), `obstacles` (kind, point_m, axis, radius_m, inside), `planar`."""
+    path = Path(run) / "frames" / "scene.json"
+    try:
+        return json.loads(path.read_text())
+    except (OSError, json.JSONDecodeError) as error:
+        raise FrameError(f"{path}: {error}") from None

@@ -1,0 +1,272 @@
+"""A still of one step of a run, without a display: ./bench render RUN [--step N] [--color gap|stretch|load|body]."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize, to_rgb
+from matplotlib.patches import Patch
+
+from . import style
+from .captions import caption, origin, settings
+from .frames import Frame, FrameError, frame_paths, read_frame, read_scene
+from .obstacle_mesh import obstacle_mesh
+from .rasterizer import Camera, DepthBuffer, smooth_normals
+
+BODY_COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")  # Okabe-Ito
+OBSTACLE_COLOR = "#C9C9C9"
+OVERSAMPLING = 2  # pixels of the depth buffer for a pixel of the picture, each way
+LIGHT = np.array([0.35, -0.5, 1.0]) / np.linalg.norm([0.35, -0.5, 1.0])  # direction towards it
+AMBIENT, SHADOWED = 0.45, 0.55  # brightness away from the light; share of the light that a shadow leaves
+LINE_ALPHA, LINE_PIXELS = 0.28, 1.2  # sides of the triangles of bodies
+
+
+@dataclass(frozen=True)
+class Coloring:
+    """A field of a frame as colours: where it stands, how it is called, its unit factor and its colour map."""
+
+    element: str  # vertex or triangle
+    key: str
+    label: str
+    factor: float
+    colors: str
+    top: float | None  # end of the scale; None: the largest value of the frame
+
+
+COLORINGS = {
+    "gap": Coloring("vertex", "gap_rel", r"smallest gap of a vertex / $\hat d$ (1: no contact)", 1, "viridis_r", 1),
+    "load": Coloring("vertex", "load_N", "contact load of a vertex (N)", 1, "magma_r", None),
+    "stretch": Coloring("triangle", "stretch", "stretch of a triangle (%)", 100, "cividis", None),
+}
+
+
+@dataclass
+class Surfaces:
+    """All that is drawn, bodies first: points (m), triangles, and the colour of every corner of a triangle."""
+
+    points: np.ndarray  # [n, 3]
+    triangles: np.ndarray  # [m, 3]
+    corner_colors: np.ndarray  # [m, 3, 3] r g b in 0..1
+    n_body_triangles: int
+
+
+def _values(frame: Frame, coloring: Coloring) -> np.ndarray:
+    """[m, 3]: the field at the corners of every triangle. Raises FrameError when the frame has none."""
+    fields = frame.of_vertices if coloring.element == "vertex" else frame.of_triangles
+    if coloring.key not in fields:
+        raise FrameError(f"this frame has no {coloring.key}: nothing is solved before the first step; choose a step or --color body")
+    values = np.asarray(fields[coloring.key], float) * coloring.factor
+    return values[frame.triangles] if coloring.element == "vertex" else np.repeat(values[:, None], 3, axis=1)
+
+
+def _scale(values: np.ndarray, coloring: Coloring) -> Normalize:
+    top = coloring.top if coloring.top is not None else float(values.max(initial=0.0))
+    return Normalize(0, top if top > 0 else 1)
+
+
+def _body_colors(frame: Frame, color: str) -> tuple[np.ndarray, Normalize | None]:
+    """[m, 3, 3] colours of the corners, and the scale behind them (None for bodies)."""
+    if color == "body":
+        palette = np.array([to_rgb(c) for c in BODY_COLORS])
+        return np.repeat(palette[frame.of_triangles["body"] % len(palette)][:, None, :], 3, axis=1), None
+    coloring = COLORINGS[color]
+    values = _values(frame, coloring)
+    scale = _scale(values, coloring)
+    return plt.get_cmap(coloring.colors)(scale(values))[..., :3], scale
+
+
+def _rod_tubes(frame: Frame, radius: float) -> tuple[np.ndarray, np.ndarray]:
+    """Three-sided tubes around the edges, so that rods have pixels."""
+    points, triangles = [], []
+    for a, b in frame.vertices[frame.edges]:
+        axis = (b - a) / max(np.linalg.norm(b - a), 1e-300)
+        u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
+        u /= np.linalg.norm(u)
+        v = np.cross(axis, u)
+        first = 6 * len(points)
+        points.append([end + radius * (np.cos(t) * u + np.sin(t) * v) for end in (a, b) for t in (0, 2.0944, 4.18879)])
+        for k in range(3):
+            i, j = first + k, first + (k + 1) % 3
+            triangles += [[i, j, i + 3], [j, j + 3, i + 3]]
+    return np.array(points).reshape(-1, 3), np.array(triangles, int).reshape(-1, 3)
+
+
+def _assemble(frame: Frame, scene: dict, color: str, center: np.ndarray, reach: float) -> tuple[Surfaces, Normalize | None]:
+    colors, scale = _body_colors(frame, color)
+    points, triangles, corners = [frame.vertices], [frame.triangles], [colors]
+    n_body = len(frame.triangles)
+
+    def add(x: np.ndarray, t: np.ndarray, rgb: np.ndarray) -> None:
+        triangles.append(t + sum(len(p) for p in points))
+        points.append(x)
+        corners.append(np.broadcast_to(rgb, (len(t), 3, 3)))
+
+    if len(frame.edges):
+        tube, sides = _rod_tubes(frame, 0.006 * reach)
+        body = frame.of_vertices["body"][frame.edges[:, 0]].repeat(6)
+        palette = np.array([to_rgb(c) for c in BODY_COLORS])
+        add(tube, sides, palette[body % len(palette)][:, None, :] if color == "body" else np.zeros(3))
+    for obstacle in scene["obstacles"]:
+        add(*obstacle_mesh(obstacle, center, 1.6 * reach), np.array(to_rgb(OBSTACLE_COLOR)))
+    return Surfaces(np.concatenate(points), np.concatenate(triangles), np.concatenate(corners), n_body), scale
+
+
+def _shadow(surfaces: Surfaces, at: np.ndarray, center: np.ndarray, reach: float, pixels: int = 900) -> np.ndarray:
+    """True for the points `at` that another triangle hides from the light."""
+    camera = Camera(center + 10 * reach * LIGHT, center, np.array([0.0, 1.0, 0.0]), pixels / (5 * reach), (pixels / 2, pixels / 2), False)
+    buffer = DepthBuffer(pixels, pixels)
+    buffer.draw(camera.project(surfaces.points), surfaces.triangles)
+    seen = camera.project(at)
+    column, row = np.floor(seen[:, 0]).astype(int), np.floor(seen[:, 1]).astype(int)
+    inside = (column >= 0) & (column < pixels) & (row >= 0) & (row < pixels)
+    hidden = np.zeros(len(at), bool)
+    hidden[inside] = buffer.depth[row[inside], column[inside]] > seen[inside, 2] + 0.02 * reach
+    return hidden
+
+
+def _lines(buffer: DepthBuffer, projected: np.ndarray, surfaces: Surfaces, pixel: tuple) -> np.ndarray:
+    """Share of each pixel that a side of a body's triangle covers, about."""
+    owner, weights = buffer.owner[pixel], buffer.weights[pixel]
+    p = projected[surfaces.triangles[owner]][..., :2]
+    opposite = np.linalg.norm(p[:, (2, 0, 1)] - p[:, (1, 2, 0)], axis=-1)
+    area = np.abs(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]))
+    distance = (weights * (area[:, None] / np.maximum(opposite, 1e-9))).min(axis=1)
+    near = np.clip(1.5 - distance / (LINE_PIXELS * OVERSAMPLING / 2), 0, 1)
+    return LINE_ALPHA * near * (owner < surfaces.n_body_triangles)
+
+
+def _picture(surfaces: Surfaces, camera: Camera, size: tuple[int, int], planar: bool, center: np.ndarray, reach: float) -> np.ndarray:
+    """[height, width, 3] in 0..1: shaded by one light, with shadows; planar scenes flat."""
+    buffer = DepthBuffer(size[0] * OVERSAMPLING, size[1] * OVERSAMPLING)
+    projected = camera.project(surfaces.points)
+    buffer.draw(projected, surfaces.triangles)
+    image = np.ones((*buffer.owner.shape, 3))
+    pixel = np.nonzero(buffer.owner >= 0)
+    owner, weights = buffer.owner[pixel], buffer.weights[pixel]
+    color = np.einsum("nk,nkc->nc", weights, surfaces.corner_colors[owner])
+    if not planar:
+        corners = surfaces.triangles[owner]
+        x = np.einsum("nk,nkc->nc", weights, surfaces.points[corners])
+        normal = np.einsum("nk,nkc->nc", weights, smooth_normals(surfaces.points, surfaces.triangles)[corners])
+        normal *= np.sign(np.einsum("nc,nc->n", normal, camera.eye - x))[:, None]  # towards the camera
+        light = np.clip(normal @ LIGHT, 0, None) * np.where(_shadow(surfaces, x, center, reach), SHADOWED, 1)
+        color = color * (AMBIENT + (1 - AMBIENT) * light)[:, None]
+    image[pixel] = color * (1 - _lines(buffer, projected, surfaces, pixel))[:, None]
+    height, width = size[1], size[0]
+    return image.reshape(height, OVERSAMPLING, width, OVERSAMPLING, 3).mean(axis=(1, 3)).clip(0, 1)
+
+
+def _round_obstacles(scene: dict) -> np.ndarray:
+    """Ends of the spheres, so that they are in the picture; planes and cylinders have none."""
+    spheres = [o for o in scene["obstacles"] if o["kind"] == "sphere" and not o["inside"]]
+    return np.array([np.array(o["point_m"]) + s * o["radius_m"] * np.eye(3)[k] for o in spheres for k in range(3) for s in (-1, 1)]).reshape(-1, 3)
+
+
+def _camera(focus: np.ndarray, planar: bool, view: tuple[float, float], size: tuple[int, int]) -> Camera:
+    """A camera in direction `view` (azimuth, elevation in degrees) that has all points of `focus` in the picture."""
+    center = (focus.min(axis=0) + focus.max(axis=0)) / 2
+    reach = float(np.linalg.norm(focus - center, axis=1).max())
+    azimuth, elevation = np.radians(view)
+    direction = np.array([np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)])
+    up = np.array([0.0, 0.0, 1.0])
+    if planar:
+        direction, up = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
+    elif abs(direction[2]) > 0.999:
+        up = np.array([0.0, 1.0, 0.0])
+    eye = center + 4 * reach * direction
+    width, height = (OVERSAMPLING * s for s in size)
+    unit = Camera(eye, center, up, 1.0, (0.0, 0.0), not planar).project(focus)[:, :2]
+    low, high = unit.min(axis=0), unit.max(axis=0)
+    scale = 0.92 * float(np.min(np.array([width, height]) / np.maximum(high - low, 1e-9)))
+    middle = scale * (low + high) / 2
+    return Camera(eye, center, up, scale, (width / 2 - middle[0], height / 2 - middle[1]), not planar)
+
+
+def _annotate(fig, scene: dict, frame: Frame, color: str, scale: Normalize | None) -> None:
+    """Legend of the bodies, or the bar of the colours."""
+    axis = fig.axes[0]
+    patches = [Patch(color=OBSTACLE_COLOR, label=o["name"]) for o in scene["obstacles"]]
+    if scale is None:
+        patches = [Patch(color=BODY_COLORS[i % len(BODY_COLORS)], label=name) for i, name in enumerate(scene["bodies"])] + patches
+    else:
+        coloring = COLORINGS[color]
+        fig.colorbar(ScalarMappable(scale, coloring.colors), ax=axis, label=coloring.label, shrink=0.7, pad=0.01)
+    shown = patches if len(patches) <= 12 else patches[:11] + [Patch(color="none", label=f"and {len(patches) - 11} more")]
+    axis.legend(handles=shown, loc="upper left", frameon=False, fontsize=7)
+
+
+def _record(run: Path) -> dict:
+    try:
+        return json.loads((run / "run.json").read_text())
+    except (OSError, json.JSONDecodeError) as error:
+        raise FrameError(f"{run / 'run.json'}: {error}") from None
+
+
+def _when(record: dict, step: int) -> str:
+    if step < 0:
+        return "start"
+    return next((f"end of step {step}, t = {s['t_s']:g} s" for s in record["steps"] if s["step"] == step), f"end of step {step}")
+
+
+def render(run: str | Path, step: int | None = None, color: str = "body", out: str | Path | None = None,
+           view: tuple[float, float] = (-60.0, 22.0), size: tuple[int, int] = (1000, 720)) -> Path:
+    """Writes a PNG of one frame and its caption; returns the PNG.
+
+    run: folder of run.json. step: a step with a frame, -1 for the start; None: the last one. view: azimuth and
+    elevation of the camera, degrees. size: pixels of the picture without legend. Raises FrameError.
+    """
+    run = Path(run).parent if Path(run).name == "run.json" else Path(run)
+    record, paths, scene = _record(run), frame_paths(run), read_scene(run)
+    step = max(paths) if step is None else step
+    if step not in paths:
+        raise FrameError(f"{run}: no frame of step {step}; there are {', '.join(map(str, paths))} (-1: the start)")
+    frame = read_frame(paths[step])
+    focus = np.concatenate([frame.vertices, _round_obstacles(scene)])
+    camera = _camera(focus, scene["planar"], view, size)
+    reach = float(np.linalg.norm(focus - camera.target, axis=1).max())
+    surfaces, scale = _assemble(frame, scene, color, camera.target, reach)
+    picture = _picture(surfaces, camera, size, scene["planar"], camera.target, reach)
+    fig, axis = plt.subplots(figsize=(style.WIDE_IN, style.WIDE_IN * size[1] / size[0] + 0.2), layout="constrained")
+    axis.imshow(picture, interpolation="antialiased")
+    axis.set_axis_off()
+    what = f"{record['labels']['scene']}, {record['labels']['formulation']}, {_when(record, step)}"
+    axis.set_title(what)
+    _annotate(fig, scene, frame, color, scale)
+    name = "start" if step < 0 else f"step_{step:06}"
+    path = Path(out) if out else run / f"{name}_{color}.png"
+    path.parent.mkdir(parents=True, exist_ok=True)
+    fig.savefig(path, metadata={"Software": None})
+    plt.close(fig)
+    colored = "bodies in one colour each" if color == "body" else f"colour: {COLORINGS[color].label}"
+    path.with_suffix(".txt").write_text(caption(f"{what}. Shown: {colored}; obstacles grey; sides of triangles as thin lines.", [origin(record) | settings(record)]))
+    return path
+
+
+def main(arguments: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="bench render", description="A still (PNG) of one step of a run that kept frames (--set /output/frames_every=1).")
+    parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json")
+    parser.add_argument("--step", type=int, help="a step with a frame, -1: the start (default: the last)")
+    parser.add_argument("--color", choices=["body", *COLORINGS], default="body", help="what colours mean (default: body)")
+    parser.add_argument("--out", type=Path, help="the PNG (default: RUN/step_NNNNNN_COLOR.png)")
+    parser.add_argument("--view", type=float, nargs=2, default=(-60.0, 22.0), metavar=("AZIMUTH", "ELEVATION"), help="direction to the camera, degrees (default: -60 22)")
+    parser.add_argument("--size", type=int, nargs=2, default=(1000, 720), metavar=("WIDTH", "HEIGHT"), help="pixels (default: 1000 720)")
+    given = parser.parse_args(arguments)
+    if min(given.size) < 16 or max(given.size) > 8000:
+        parser.error("--size: from 16 to 8000 pixels")
+    try:
+        print(render(given.run, given.step, given.color, given.out, tuple(given.view), tuple(given.size)))
+    except (FrameError, OSError) as error:
+        print(f"render: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

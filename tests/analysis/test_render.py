@@ -1,0 +1,168 @@
+"""Frames read back as they were written, and stills whose pixels are what lies in front."""
+
+import json
+import subprocess
+import sys
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+
+from analysis import render
+from analysis.frames import FrameError, frame_paths, read_frame, read_scene
+from analysis.obstacle_mesh import obstacle_mesh
+from analysis.rasterizer import Camera, DepthBuffer
+
+SMALL = (120, 90)
+CLOTH_ON_SPHERE = {
+    "schema": "barrierbench.config/1",
+    "scene": {
+        "bodies": [
+            {"name": "cloth", "mesh": {"generator": "grid", "n_x": 6, "n_y": 6, "size_x_m": 0.4, "size_y_m": 0.4},
+             "transform": {"translate_m": [0, 0, 0.106]}, "velocity_m_per_s": [0, 0, -0.5]},
+            {"name": "rod", "mesh": {"generator": "rod", "n_segments": 3, "length_m": 0.2},
+             "transform": {"translate_m": [0, 0, 0.2]}, "limited": False,
+             "material": {"springs_N_per_m": 100, "line_density_kg_per_m": 0.1}},
+        ],
+        "obstacles": [{"name": "ball", "kind": "sphere", "point_m": [0, 0, 0], "radius_m": 0.1}],
+    },
+    "formulation": {"name": "log", "d_hat_m": 0.005},
+    "strain_limit": {"limit": 0.05},
+    "time": {"dt_s": 0.01, "steps": 5},
+    "output": {"frames_every": 2},
+}
+
+
+@pytest.fixture(scope="module")
+def run(program, tmp_path_factory):
+    """A cloth that has fallen onto a sphere, with frames of the start and of steps 0, 2 and 4."""
+    folder = tmp_path_factory.mktemp("render")
+    (folder / "config.json").write_text(json.dumps(CLOTH_ON_SPHERE))
+    done = subprocess.run([program, "run", folder / "config.json", "--out", folder / "out", "--set", "/passes/time=false"],
+                          capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 0, done.stderr
+    return folder / "out"
+
+
+# --- what the program leaves
+
+
+def test_frames_carry_bodies_rods_obstacles_and_the_start(run):
+    record, scene, paths = json.loads((run / "run.json").read_text()), read_scene(run), frame_paths(run)
+    assert record["status"]["outcome"] == "ok"
+    assert list(paths) == [-1, 0, 2, 4]
+    assert scene["bodies"] == ["cloth", "rod"] and scene["planar"] is False
+    assert scene["obstacles"] == [{"name": "ball", "kind": "sphere", "point_m": [0, 0, 0], "radius_m": 0.1, "inside": False}]
+    start = read_frame(paths[-1])
+    assert start.vertices.shape == (40, 3) and start.triangles.shape == (50, 3)
+    assert [list(e) for e in start.edges] == [[36, 37], [37, 38], [38, 39]]
+    assert list(start.of_vertices["body"]) == [0] * 36 + [1] * 4 and set(start.of_triangles["body"]) == {0}
+    np.testing.assert_array_equal(start.vertices[:36, 2], 0.106)
+    assert set(start.of_vertices) == {"body"} and abs(start.of_triangles["stretch"]).max() < 1e-14
+    named = {a["path"]: a for a in record["artifacts"]}
+    assert {"frames/scene.json", "frames/start.ply", "frames/step_000004.ply"} <= set(named)
+
+
+def test_fields_of_the_last_frame_are_those_of_its_step(run):
+    record, frame = json.loads((run / "run.json").read_text()), read_frame(frame_paths(run)[4])
+    step = record["steps"][4]
+    gap, load, stretch = frame.of_vertices["gap_rel"], frame.of_vertices["load_N"], frame.of_triangles["stretch"]
+    assert step["contacts"]["obstacle"] > 0
+    touched = gap < 1
+    assert 0 < touched.sum() < 36
+    height = np.linalg.norm(frame.vertices[:36], axis=1) - 0.1
+    np.testing.assert_allclose(gap[touched], height[touched[:36]] / 0.005, rtol=1e-9)
+    assert (load[touched] > 0).all() and (load[~touched] == 0).all()
+    assert load.max() == pytest.approx(step["contact_load_max_N"], rel=1e-9)
+    assert load.sum() == pytest.approx(step["contact_load_sum_N"], rel=1e-9)
+    assert stretch.max() == pytest.approx(step["max_stretch"], rel=1e-9) and stretch.max() > 1e-6
+
+
+def test_a_frame_is_a_mesh_that_a_config_can_name(program, run, tmp_path):
+    config = {"schema": "barrierbench.config/1", "formulation": {"name": "log", "d_hat_m": 0.005},
+              "scene": {"bodies": [{"name": "again", "mesh": {"file": str(run / "frames/step_000004.ply")},
+                                    "material": {"line_density_kg_per_m": 0.1, "springs_N_per_m": 10}}]}}
+    (tmp_path / "config.json").write_text(json.dumps(config))
+    done = subprocess.run([program, "check", tmp_path / "config.json"], capture_output=True, text=True, check=False, timeout=60)
+    assert done.returncode == 0 and "40 vertices" in done.stdout, done.stderr
+
+
+# --- pixels
+
+
+def test_the_nearer_triangle_owns_the_pixel():
+    camera = Camera(np.array([0.0, 0, 5]), np.zeros(3), np.array([0.0, 1, 0]), 100, (50.0, 50.0))
+    far = np.array([[-1.0, -1, 0], [1, -1, 0], [0, 2, 0]])
+    near = np.array([[-0.2, -0.2, 1], [0.2, -0.2, 1], [0, 0.4, 1]])
+    for order in ([0, 1], [1, 0]):
+        buffer = DepthBuffer(100, 100)
+        both = np.concatenate([far, near])
+        buffer.draw(camera.project(both), np.array([[0, 1, 2], [3, 4, 5]])[order])
+        assert order[buffer.owner[50, 50]] == 1  # the near one, in whatever order they come
+        assert order[buffer.owner[66, 50]] == 0  # below it
+        assert buffer.owner[0, 0] == -1
+
+
+@pytest.mark.parametrize("obstacle", [
+    {"kind": "sphere", "point_m": [1, 2, 3], "radius_m": 0.5},
+    {"kind": "cylinder", "point_m": [1, 2, 3], "axis": [0, 0.6, 0.8], "radius_m": 0.5},
+    {"kind": "plane", "point_m": [1, 2, 3], "axis": [0, 0.6, 0.8]},
+])
+def test_points_of_an_obstacle_lie_on_it(obstacle):
+    x, triangles = obstacle_mesh(obstacle, np.array([1.0, 2, 3.2]), 2.0)
+    q, axis = x - np.array(obstacle["point_m"]), np.array(obstacle.get("axis", [0, 0, 0]), float)
+    if obstacle["kind"] == "plane":
+        np.testing.assert_allclose(q @ axis, 0, atol=1e-12)
+    else:
+        np.testing.assert_allclose(np.linalg.norm(q - np.outer(q @ axis, axis), axis=1), 0.5, rtol=1e-12)
+    assert len(triangles) > 100 and triangles.max() == len(x) - 1
+
+
+@pytest.mark.parametrize("color", ["body", "gap", "load", "stretch"])
+def test_a_still_is_written_with_its_caption_and_is_the_same_twice(run, tmp_path, color):
+    one = render.render(run, color=color, out=tmp_path / "one.png", size=SMALL)
+    two = render.render(run / "run.json", step=4, color=color, out=tmp_path / "two.png", size=SMALL)
+    assert one.read_bytes() == two.read_bytes()
+    caption = one.with_suffix(".txt").read_text()
+    assert "end of step 4, t = 0.05 s" in caption and "d_hat_m 0.005" in caption and "Machine:" in caption
+    image = plt.imread(one)[..., :3]
+    assert image.std() > 0.05  # not one colour
+
+
+def test_colours_follow_the_field(run):
+    frame, scene = read_frame(frame_paths(run)[4]), read_scene(run)
+    surfaces, scale = render._assemble(frame, scene, "gap", np.zeros(3), 0.3)
+    touched = (frame.of_vertices["gap_rel"] < 1)[frame.triangles]
+    colors = surfaces.corner_colors[:50]
+    assert scale.vmax == 1 and touched.any() and not touched.all()
+    away = colors[~touched]
+    assert np.ptp(away, axis=0).max() == 0  # one colour without contact
+    assert np.abs(colors[touched] - away[0]).max(axis=1).min() > 0
+
+
+def test_what_cannot_be_drawn_is_said(run, tmp_path, capsys):
+    assert render.main([str(tmp_path)]) == 2
+    assert "run.json" in capsys.readouterr().err
+    assert render.main([str(run), "--step", "3"]) == 2
+    assert "there are -1, 0, 2, 4" in capsys.readouterr().err
+    assert render.main([str(run), "--step", "-1", "--color", "gap"]) == 2
+    assert "no gap_rel" in capsys.readouterr().err
+    (tmp_path / "run.json").write_text("{}")
+    with pytest.raises(FrameError, match="frames_every=1"):
+        render.render(tmp_path)
+
+
+@pytest.mark.parametrize("content", [b"", b"ply\nend_header\n", b"not a mesh", b"ply\nformat ascii 1.0\nend_header\n"])
+def test_files_that_are_no_frames(tmp_path, content):
+    (tmp_path / "a.ply").write_bytes(content)
+    with pytest.raises(FrameError, match="a.ply"):
+        read_frame(tmp_path / "a.ply")
+
+
+def test_the_package_needs_no_paths(tmp_path):
+    """What README shows, from another folder and without PYTHONPATH."""
+    done = subprocess.run([sys.executable, "-c", "from barrierbench_analysis import load; load('.')"], cwd=tmp_path,
+                          env={"PATH": "/usr/bin:/bin"}, capture_output=True, text=True, check=False, timeout=60)
+    if "No module named 'barrierbench_analysis'" in done.stderr:
+        pytest.skip("barrierbench_analysis is not installed (./bench setup)")
+    assert "no run.json below this folder" in done.stderr
