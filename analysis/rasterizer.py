@@ -71,11 +71,18 @@ class DepthBuffer:
             self.weights[window][seen] = np.stack([1 - u - v, u, v], axis=-1)[seen]
 
 
-def smooth_normals(x: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """[n, 3] unit normals of the vertices, the mean of their triangles' weighted by area; 0 without a triangle."""
+def _unit(v: np.ndarray) -> np.ndarray:
+    length = np.linalg.norm(v, axis=-1, keepdims=True)
+    return np.divide(v, length, out=np.zeros_like(v), where=length > 0)
+
+
+def corner_normals(x: np.ndarray, triangles: np.ndarray, crease_deg: float = 40.0) -> np.ndarray:
+    """[m, 3, 3] unit normals at the corners of every triangle: the mean over the triangles of the vertex, weighted
+    by area, or the triangle's own where the two differ by more than crease_deg (a sharp edge stays sharp)."""
     area = np.cross(x[triangles[:, 1]] - x[triangles[:, 0]], x[triangles[:, 2]] - x[triangles[:, 0]])
-    normals = np.zeros_like(x)
+    sums = np.zeros_like(x)
     for corner in range(3):
-        np.add.at(normals, triangles[:, corner], area)
-    length = np.linalg.norm(normals, axis=1, keepdims=True)
-    return np.divide(normals, length, out=np.zeros_like(normals), where=length > 0)
+        np.add.at(sums, triangles[:, corner], area)
+    smooth, own = _unit(sums)[triangles], np.repeat(_unit(area)[:, None, :], 3, axis=1)
+    sharp = np.einsum("mkc,mkc->mk", smooth, own) < np.cos(np.radians(crease_deg))
+    return np.where(sharp[..., None], own, smooth)

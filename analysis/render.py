@@ -18,7 +18,7 @@ from . import style
 from .captions import caption, origin, settings
 from .frames import Frame, FrameError, frame_paths, read_frame, read_scene
 from .obstacle_mesh import obstacle_mesh
-from .rasterizer import Camera, DepthBuffer, smooth_normals
+from .rasterizer import Camera, DepthBuffer, corner_normals
 
 BODY_COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")  # Okabe-Ito
 OBSTACLE_COLOR = "#C9C9C9"
@@ -55,6 +55,7 @@ class Surfaces:
     triangles: np.ndarray  # [m, 3]
     corner_colors: np.ndarray  # [m, 3, 3] r g b in 0..1
     n_body_triangles: int
+    behind: np.ndarray  # [n] m, by which a point is moved away from the camera when depths are compared
 
 
 def _values(frame: Frame, coloring: Coloring) -> np.ndarray:
@@ -98,12 +99,26 @@ def _rod_tubes(frame: Frame, radius: float) -> tuple[np.ndarray, np.ndarray]:
     return np.array(points).reshape(-1, 3), np.array(triangles, int).reshape(-1, 3)
 
 
+def _cut_depth(frame: Frame, obstacle: dict) -> float:
+    """How deep a flat triangle with its vertices on a round obstacle can cut into it, m.
+
+    Analytic obstacles act on vertices only, so the flat triangles between them do cut in; drawn as it is, the
+    obstacle would show through the cloth that lies on it.
+    """
+    if obstacle["kind"] == "plane" or not len(frame.triangles):
+        return 0.0
+    corners = frame.vertices[frame.triangles]
+    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1).max()
+    return float(min(longest**2 / (4 * obstacle["radius_m"]), obstacle["radius_m"]))
+
+
 def _assemble(frame: Frame, scene: dict, color: str, center: np.ndarray, reach: float) -> tuple[Surfaces, Normalize | None]:
     colors, scale = _body_colors(frame, color)
     points, triangles, corners = [frame.vertices], [frame.triangles], [colors]
-    n_body = len(frame.triangles)
+    behind, n_body = [np.zeros(len(frame.vertices))], len(frame.triangles)
 
-    def add(x: np.ndarray, t: np.ndarray, rgb: np.ndarray) -> None:
+    def add(x: np.ndarray, t: np.ndarray, rgb: np.ndarray, depth: float = 0.0) -> None:
+        behind.append(np.full(len(x), depth))
         triangles.append(t + sum(len(p) for p in points))
         points.append(x)
         corners.append(np.broadcast_to(rgb, (len(t), 3, 3)))
@@ -114,8 +129,8 @@ def _assemble(frame: Frame, scene: dict, color: str, center: np.ndarray, reach: 
         palette = np.array([to_rgb(c) for c in BODY_COLORS])
         add(tube, sides, palette[body % len(palette)][:, None, :] if color == "body" else np.zeros(3))
     for obstacle in scene["obstacles"]:
-        add(*obstacle_mesh(obstacle, center, 1.6 * reach), np.array(to_rgb(OBSTACLE_COLOR)))
-    return Surfaces(np.concatenate(points), np.concatenate(triangles), np.concatenate(corners), n_body), scale
+        add(*obstacle_mesh(obstacle, center, 1.6 * reach), np.array(to_rgb(OBSTACLE_COLOR)), _cut_depth(frame, obstacle))
+    return Surfaces(np.concatenate(points), np.concatenate(triangles), np.concatenate(corners), n_body, np.concatenate(behind)), scale
 
 
 def _shadow(surfaces: Surfaces, at: np.ndarray, center: np.ndarray, reach: float, pixels: int = 900) -> np.ndarray:
@@ -146,6 +161,9 @@ def _picture(surfaces: Surfaces, camera: Camera, size: tuple[int, int], planar: 
     """[height, width, 3] in 0..1: shaded by one light, with shadows; planar scenes flat."""
     buffer = DepthBuffer(size[0] * OVERSAMPLING, size[1] * OVERSAMPLING)
     projected = camera.project(surfaces.points)
+    away = surfaces.points - camera.eye
+    away *= (surfaces.behind / np.linalg.norm(away, axis=1))[:, None]
+    projected[:, 2] = camera.project(surfaces.points + away)[:, 2]
     buffer.draw(projected, surfaces.triangles)
     image = np.ones((*buffer.owner.shape, 3))
     pixel = np.nonzero(buffer.owner >= 0)
@@ -154,7 +172,7 @@ def _picture(surfaces: Surfaces, camera: Camera, size: tuple[int, int], planar: 
     if not planar:
         corners = surfaces.triangles[owner]
         x = np.einsum("nk,nkc->nc", weights, surfaces.points[corners])
-        normal = np.einsum("nk,nkc->nc", weights, smooth_normals(surfaces.points, surfaces.triangles)[corners])
+        normal = np.einsum("nk,nkc->nc", weights, corner_normals(surfaces.points, surfaces.triangles)[owner])
         normal *= np.sign(np.einsum("nc,nc->n", normal, camera.eye - x))[:, None]  # towards the camera
         light = np.clip(normal @ LIGHT, 0, None) * np.where(_shadow(surfaces, x, center, reach), SHADOWED, 1)
         color = color * (AMBIENT + (1 - AMBIENT) * light)[:, None]
@@ -192,7 +210,8 @@ def _camera(focus: np.ndarray, planar: bool, view: tuple[float, float], size: tu
 def _annotate(fig, scene: dict, frame: Frame, color: str, scale: Normalize | None) -> None:
     """Legend of the bodies, or the bar of the colours."""
     axis = fig.axes[0]
-    patches = [Patch(color=OBSTACLE_COLOR, label=o["name"]) for o in scene["obstacles"]]
+    names = ", ".join(o["name"] for o in scene["obstacles"])
+    patches = [Patch(color=OBSTACLE_COLOR, label=f"{names} (analytic)")] if names else []
     if scale is None:
         patches = [Patch(color=BODY_COLORS[i % len(BODY_COLORS)], label=name) for i, name in enumerate(scene["bodies"])] + patches
     else:
@@ -245,7 +264,7 @@ def render(run: str | Path, step: int | None = None, color: str = "body", out: s
     fig.savefig(path, metadata={"Software": None})
     plt.close(fig)
     colored = "bodies in one colour each" if color == "body" else f"colour: {COLORINGS[color].label}"
-    path.with_suffix(".txt").write_text(caption(f"{what}. Shown: {colored}; obstacles grey; sides of triangles as thin lines.", [origin(record) | settings(record)]))
+    path.with_suffix(".txt").write_text(caption(f"{what}. Shown: {colored}; analytic obstacles grey, behind the triangles that rest on them (they act on vertices only); sides of triangles as thin lines.", [origin(record) | settings(record)]))
     return path
 
 

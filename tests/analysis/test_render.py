@@ -79,7 +79,7 @@ def test_fields_of_the_last_frame_are_those_of_its_step(run):
 
 
 def test_a_frame_is_a_mesh_that_a_config_can_name(program, run, tmp_path):
-    config = {"schema": "barrierbench.config/1", "formulation": {"name": "log", "d_hat_m": 0.005},
+    config = {"schema": "barrierbench.config/1", "formulation": {"name": "log", "d_hat_m": 0.005}, "time": {"dt_s": 0.01, "steps": 1},
               "scene": {"bodies": [{"name": "again", "mesh": {"file": str(run / "frames/step_000004.ply")},
                                     "material": {"line_density_kg_per_m": 0.1, "springs_N_per_m": 10}}]}}
     (tmp_path / "config.json").write_text(json.dumps(config))

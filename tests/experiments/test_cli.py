@@ -310,8 +310,8 @@ def test_a_disk_that_a_frame_fills(program, tmp_path):
 
     config = bodies(tmp_path, {"generator": "grid", "n_x": 20, "n_y": 20}, output={"frames_every": 1})
     done = bench(program, "run", config, "--out", tmp_path / "out", restore_signals=False, preexec_fn=full)
-    refused(done, "frames/step_", code=75)
-    assert list((tmp_path / "out/frames").iterdir()) == []
+    refused(done, "frames/start.ply", code=75)
+    assert [p.name for p in (tmp_path / "out/frames").iterdir()] == ["scene.json"]  # small enough, and whole
 
 
 def long_run(tmp_path) -> list:
@@ -342,3 +342,9 @@ def test_eval_ends_at_an_interrupt(program):
         waiting.send_signal(signal.SIGINT)
         waiting.wait(timeout=10)
     assert waiting.returncode == -signal.SIGINT
+
+
+def test_the_sweep_of_readme_is_the_one_of_the_help(program):
+    text, readme = bench(program, "sweep", "--help").stdout, (ROOT / "README.md").read_text()
+    shown = text[text.index("{\n"):text.index("\n}\n") + 2]
+    assert f"```json\n{shown}\n```" in readme
