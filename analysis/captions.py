@@ -15,7 +15,7 @@ def origin(record: dict) -> dict:
         "cpu_model": machine.get("cpu_model") or "",
         "cores": machine.get("cores") or "",
         "threads": provenance.get("threads") or "",
-        "blas": provenance.get("blas_kernel") or provenance.get("libraries", {}).get("blas", "").split(" at ")[0],
+        "blas": provenance.get("blas", {}).get("kernel") or provenance.get("libraries", {}).get("blas", "").split(" at ")[0],
         "git_commit": (provenance.get("git_commit") or "")[:10],
         "started_utc": record.get("status", {}).get("started_utc") or "",
     }

@@ -58,6 +58,7 @@ def _run_row(record: dict, run: str) -> dict:
     row["probe_pcg"] = summary["probe_pcg"]["median"]
     row |= {k: record["audit"][k] for k in ("enabled", "crossings", "violations", "unproven")}
     row |= {"free_dofs": record["scene"]["free_dofs"], "extent_m": record["scene"]["extent_m"]}
+    row["blas_kernel"] = record["provenance"].get("blas", {}).get("kernel", "")  # empty: records before 2.0
     row |= {f"matching_{k}": v for k, v in _scalars(record["matching"]).items()}
     return row
 

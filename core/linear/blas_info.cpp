@@ -2,11 +2,14 @@
 
 #include <dlfcn.h>
 
+#include <cstdlib>
+
 extern "C" {
 void openblas_set_num_threads(int n);
 int openblas_get_num_threads(void);
 int openblas_get_parallel(void);
 char* openblas_get_config(void);
+char* openblas_get_corename(void);
 }
 
 namespace bb {
@@ -40,6 +43,9 @@ BlasInfo blas_info() {
   info.dgemm_library = library_of("dgemm_");
   info.dpotrf_library = library_of("dpotrf_");
   info.config = openblas_get_config();
+  info.kernel = openblas_get_corename();
+  const char* requested = std::getenv("OPENBLAS_CORETYPE");
+  info.requested = requested != nullptr && *requested != '\0' ? requested : "native";
   const int parallel = openblas_get_parallel();  // 0, 1, 2 by OpenBLAS's documentation
   info.parallel = parallel == 0 ? "serial" : parallel == 1 ? "pthread" : "openmp";
   info.threads = openblas_get_num_threads();

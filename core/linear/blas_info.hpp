@@ -8,6 +8,8 @@ namespace bb {
 struct BlasInfo {
   std::string dgemm_library, dpotrf_library;  // files that the dynamic linker resolved the symbols to
   std::string config;                         // openblas_get_config()
+  std::string kernel;                         // openblas_get_corename(): "Haswell", "SkylakeX", "Zen", ...
+  std::string requested;                      // OPENBLAS_CORETYPE; "native" when it is not set
   std::string parallel;                       // "serial", "pthread", "openmp"
   int threads = 0;                            // of BLAS, after set_one_blas_thread
   /// dgemm and dpotrf come from OpenBLAS, serial or pthread variant, one thread. The openmp variant was five

@@ -67,7 +67,13 @@ Json provenance(const Provenance& v) {
           {"argv", v.argv},
           {"env", v.env},
           {"threads", v.threads},
-          {"blas_threads", v.blas_threads}};
+          {"blas",
+           {{"kernel", v.blas.kernel},
+            {"requested", v.blas.requested},
+            {"config", v.blas.config},
+            {"library", v.blas.library},
+            {"threads", v.blas.threads}}},
+          {"blas_threads", v.blas.threads}};
 }
 
 Json machine(const Machine& v) {

@@ -1,7 +1,6 @@
 // Build, machine and ids of a record, read from the generated build info, /proc and the environment.
 #include "core/record/provenance.hpp"
 
-#include <dlfcn.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -12,6 +11,7 @@
 #include <fstream>
 #include <nlohmann/json.hpp>
 
+#include "core/linear/blas_info.hpp"
 #include "core/record/build_info.hpp"
 
 extern "C" char** environ;
@@ -40,21 +40,9 @@ std::string value_of(const char* path, std::string_view key, char separator) {
   return {};
 }
 
-/// The BLAS that the process has really loaded, and its threads: what the alternatives system chose.
-template <class Signature>
-Signature* loaded(const char* symbol) {
-  return reinterpret_cast<Signature*>(::dlsym(RTLD_DEFAULT, symbol));
-}
-
-std::string blas_version() {
-  auto* config = loaded<char*()>("openblas_get_config");
-  if (config == nullptr) return "not OpenBLAS";
-  std::string text = config();
-  Dl_info where{};
-  if (::dladdr(reinterpret_cast<void*>(config), &where) != 0 && where.dli_fname != nullptr) {
-    text += std::string(" at ") + where.dli_fname;
-  }
-  return text;
+BlasRecord blas_record() {
+  const BlasInfo info = blas_info();
+  return {info.kernel, info.requested, info.config, info.dgemm_library, info.threads};
 }
 
 bool kept_variable(std::string_view name) {
@@ -78,10 +66,11 @@ Provenance collect_provenance(std::vector<std::string> argv, int threads) {
   p.fast_math = true;
 #endif
   p.fp_contract = "off";
+  p.blas = blas_record();
   p.libraries = {{"eigen", std::to_string(EIGEN_WORLD_VERSION) + "." + std::to_string(EIGEN_MAJOR_VERSION) +
                                "." + std::to_string(EIGEN_MINOR_VERSION)},
                  {"cholmod", kBuildInfo.cholmod},
-                 {"blas", blas_version()},
+                 {"blas", p.blas.config + " at " + p.blas.library},
                  {"tbb", kBuildInfo.tbb},
                  {"fmt", kBuildInfo.fmt}};
   p.argv = std::move(argv);
@@ -93,8 +82,6 @@ Provenance collect_provenance(std::vector<std::string> argv, int threads) {
     }
   }
   p.threads = threads;
-  auto* blas_threads = loaded<int()>("openblas_get_num_threads");
-  p.blas_threads = blas_threads != nullptr ? blas_threads() : 0;
   return p;
 }
 

@@ -51,6 +51,15 @@ struct SceneSize {
   std::map<std::string, std::string> mesh_sha256;  // file -> sha256
 };
 
+/// The BLAS behind the factorisations: another kernel adds in another order and gives other bits.
+struct BlasRecord {
+  std::string kernel;     // the one that ran, in OpenBLAS's words: "Haswell", "SkylakeX"
+  std::string requested;  // OPENBLAS_CORETYPE; "native" without: OpenBLAS chose by the processor
+  std::string config;     // openblas_get_config()
+  std::string library;    // file that holds dgemm
+  int threads = 1;
+};
+
 struct Provenance {
   std::string tool_version, git_commit;
   bool git_dirty = false;
@@ -60,7 +69,8 @@ struct Provenance {
   std::map<std::string, std::string> libraries;  // name -> version
   std::vector<std::string> argv;
   std::map<std::string, std::string> env;  // thread counts and the like
-  int threads = 1, blas_threads = 1;
+  int threads = 1;
+  BlasRecord blas;
 };
 
 struct Machine {

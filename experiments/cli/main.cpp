@@ -55,12 +55,16 @@ void common_arguments(CLI::App& app, CommonOptions& common, std::vector<std::str
       ->allow_extra_args(false);
   app.add_option("--progress", common.progress, "auto (on a terminal), plain (a line every 10 s) or none")
       ->check(CLI::IsMember({"auto", "plain", "none"}));
+  app.add_option("--blas-kernel", common.blas_kernel,
+                 "haswell: the same factors on every x86-64-v3 machine (default, unless OPENBLAS_CORETYPE is "
+                 "set); native: what OpenBLAS picks by the processor")
+      ->check(CLI::IsMember({"haswell", "native"}));
 }
 
 /// The first word of the command line that is no option and no value of an option before the verb.
 std::string first_word(const std::vector<std::string>& argv) {
   for (std::size_t i = 1; i < argv.size(); ++i) {
-    if (argv[i] == "--plugin" || argv[i] == "--progress") {
+    if (argv[i] == "--plugin" || argv[i] == "--progress" || argv[i] == "--blas-kernel") {
       ++i;
     } else if (!argv[i].starts_with("-")) {
       return argv[i];
@@ -159,6 +163,10 @@ int main(int argc, char** argv) {
     const int code = app.exit(error);
     return code == 0 ? exit_ok : exit_bad_input;
   }
+  // Nothing was read so far: this may start the program again.
+  if (const int code = guarded([&] { return settle_blas_kernel(common.blas_kernel, common.argv), exit_ok; });
+      code != exit_ok)
+    return code;
   // The verbs that ask whether to stop; the others end at the signal itself.
   if (run_app->parsed() || sweep_app->parsed() || demo_app->parsed()) install_interrupt();
   const int code = guarded([&]() -> int {

@@ -16,6 +16,7 @@ struct CommonOptions {
   std::vector<std::string> plugins;  // loaded before anything is parsed
   std::vector<std::string> argv;     // for the record
   std::string progress = "auto";     // auto, plain, none
+  std::string blas_kernel;           // haswell, native, or empty: see settle_blas_kernel
 };
 
 struct RunVerb {
@@ -45,5 +46,12 @@ int list(const std::string& what);
 /// The sweeps of configs/sweeps/demo_*.json, one after the other.
 int demo(const std::string& out, const CommonOptions& common);
 int eval(const std::string& file, bool schema);
+
+/// Sees to the kernel of BLAS before anything is computed: may replace the process by itself with
+/// OPENBLAS_CORETYPE = Haswell, so nothing may have been read or written before.
+/// @param request  "haswell", "native" or empty: haswell where this machine can, unless OPENBLAS_CORETYPE
+///                 names another
+/// Errors: ConfigError when "haswell" was asked for and cannot run here.
+void settle_blas_kernel(const std::string& request, const std::vector<std::string>& argv);
 
 }  // namespace bb::cli

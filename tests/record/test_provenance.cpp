@@ -69,6 +69,10 @@ TEST(Provenance, SaysWhatThisBinaryIs) {
     EXPECT_NE(p.flags.find(flag), std::string::npos) << flag << " in " << p.flags;
   }
   EXPECT_EQ(p.build_type == "Release", p.flags.find("hinge_batch.cpp: -O3") != std::string::npos) << p.flags;
+  EXPECT_EQ(p.blas.threads, 1);  // also in the first record, before anything was factorised
+  EXPECT_NE(p.blas.kernel, "");
+  EXPECT_NE(p.blas.config.find("OpenBLAS"), std::string::npos) << p.blas.config;
+  EXPECT_NE(p.blas.library.find("blas"), std::string::npos) << p.blas.library;
   EXPECT_FALSE(p.fast_math);
   for (const char* name : {"eigen", "cholmod", "blas", "tbb", "fmt"})
     EXPECT_NE(p.libraries.at(name), "") << name;
