@@ -69,6 +69,26 @@ TEST(InitialCheck, NamesTheFirstPairThatTouches) {
   EXPECT_EQ(found->text, "point_triangle: cloth[0], cloth[1], cloth[4], tip[0]");
 }
 
+TEST(InitialCheck, TouchingIsNoValidStart) {
+  Scene scene;
+  const auto [vertices, triangles] = grid(2, 2, 1.0);
+  add_body(scene, "cloth", vertices, triangles, 0.1);
+  add_body(scene, "point", {Vec3d(1, 1, 0)}, {}, 0.1);  // exactly on a vertex
+  ContactSystem touching(scene, {});
+  ASSERT_TRUE(touching.check_initial(scene.x0).has_value());
+  EXPECT_EQ(touching.check_initial(scene.x0)->gap, 0);
+
+  Scene thick;
+  add_body(thick, "point", {Vec3d(0, 0, 0.03)}, {}, 0.1, false, 0.02);
+  thick.obstacles.push_back({});  // the plane z = 0
+  ContactSystem above(thick, {});
+  EXPECT_FALSE(above.check_initial(thick.x0).has_value());
+  thick.offset = {0.04};
+  ContactSystem inside(thick, {});
+  ASSERT_TRUE(inside.check_initial(thick.x0).has_value());
+  EXPECT_NEAR(inside.check_initial(thick.x0)->gap, -0.01, 1e-15);
+}
+
 TEST(InitialCheck, SeesObstaclesAndDescribesThemByName) {
   Scene scene = cloth_and_ball(0.05);
   Obstacle floor;

@@ -291,12 +291,14 @@ TEST(Rows, SortedAndTheSameForAnyNumberOfThreads) {
 
 TEST(Rows, ObstaclesActOnFreeVerticesWithASignedGap) {
   Scene scene;
-  add_body(scene, "free", {Vec3d(0, 0, 0.05), Vec3d(1, 0, -0.02), Vec3d(2, 0, 0.2)}, {}, d_hat, false, 0.01);
+  add_body(scene, "free", {Vec3d(0, 0, 0.05), Vec3d(1, 0, -0.02), Vec3d(2, 0, 0.2), Vec3d(4, 0, 0.105)}, {},
+           d_hat, false, 0.01);
   add_body(scene, "given", {Vec3d(3, 0, 0.05)}, {}, d_hat, true);
   scene.obstacles.push_back({});  // the plane z = 0
   ContactSystem contacts(scene, {});
   const Rows rows = rows_at(contacts, scene.x0);
-  ASSERT_EQ(rows.table.size(), 2U);
+  ASSERT_EQ(rows.table.size(), 3U);
+  EXPECT_NEAR(rows.table.d[2], 0.095, 1e-16);  // within d_hat by its offset alone
   EXPECT_EQ(rows.table.key[0], (ContactKey{-1, -1, -2, 0}));
   EXPECT_EQ(rows.table.key[1], (ContactKey{-1, -1, -2, 1}));
   EXPECT_EQ(rows.table.kind[0], ContactKind::obstacle);

@@ -161,6 +161,25 @@ TEST(StepBound, ObstaclesBoundFreeVertices) {
   EXPECT_EQ(contacts.describe(b.key, b.kind), "obstacle: ball, point[1]");
 }
 
+TEST(StepBound, NamesTheFirstOfTheContactsThatLimitAlikeAndNoneOfAFreeMotion) {
+  Scene scene;
+  add_body(scene, "points", {Vec3d(0, 0, 1), Vec3d(1, 0, 1), Vec3d(2, 0, 1)}, {}, 0.1);
+  scene.obstacles.push_back({});  // the plane z = 0
+  ContactSystem contacts(scene, {});
+  const auto bound = [&](double fall) {
+    Positions x1 = scene.x0;
+    x1.row(2).array() -= fall;
+    contacts.update_candidates(scene.x0, x1);
+    return contacts.step_bound(scene.x0, x1);
+  };
+  const StepBound stopped = bound(2);
+  EXPECT_NEAR(stopped.alpha, 0.5, 1e-6);
+  EXPECT_EQ(stopped.key, (ContactKey{-1, -1, -2, 0}));
+  const StepBound free = bound(0.95);
+  EXPECT_EQ(free.alpha, 1);
+  EXPECT_EQ(free.key, (ContactKey{-1, -1, -1, -1}));
+}
+
 TEST(StepBound, ZeroIsCountedWhenThePairTouchesAtTheStart) {
   const Scene scene = point_above_floor(0);
   Positions x1 = scene.x0;
