@@ -10,10 +10,8 @@ from pathlib import Path
 import pandas as pd
 
 SCHEMA_NAME = "barrierbench.run"
-SCHEMA_MAJOR = 1
+SCHEMA_MAJOR = 2
 LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
-COMPARABLE_RATIO = 2.0  # minimum gaps further apart than this compare nothing
-REFERENCE = ("log", "gap")  # shape and argument of the run that the others are compared with
 
 
 class RecordError(ValueError):
@@ -48,15 +46,24 @@ def _series(labels: dict) -> str:
     return case or labels["formulation"]
 
 
+def _comparability(found: dict) -> dict:
+    """As the program judged it (docs/design.md, Comparability): never computed here."""
+    names = {"verdict": "comparability", "reason": "comparability_reason", "reference_run": "reference_run",
+             "reference_gap_rel": "reference_gap_rel", "ratio": "gap_ratio", "max_ratio": "max_gap_ratio"}
+    return {column: found[key] for key, column in names.items()}
+
+
 def _run_row(record: dict, run: str) -> dict:
     labels, status, summary = record["labels"], record["status"], record["summary"]
-    row = {"run": run, "run_id": record["ids"]["run_id"], "config_id": record["ids"]["config_id"]}
+    row = {"run": run, "folder": Path(run).name, "run_id": record["ids"]["run_id"], "config_id": record["ids"]["config_id"]}
     row |= {"group": record["ids"].get("sweep_id") or labels["scene"], "series": _series(labels)}
     row |= _scalars(labels) | {"outcome": status["outcome"], "started_utc": status["started_utc"], "detail": status["detail"], "valid": status["valid"]}
     row |= _scalars(summary) | {"gap_min_rel": summary["gap_min_rel"]["min"]}
     row["first_contact"] = summary["first_contact"]
     row["probe_pcg"] = summary["probe_pcg"]["median"]
     row |= {k: record["audit"][k] for k in ("enabled", "crossings", "violations", "unproven")}
+    row |= {key: record["audit"][key] for key in ("judged", "obstacle_violations", "scene_faults")}
+    row |= _comparability(record["comparability"])
     row |= {"free_dofs": record["scene"]["free_dofs"], "extent_m": record["scene"]["extent_m"]}
     row["blas_kernel"] = record["provenance"].get("blas", {}).get("kernel", "")  # empty: records before 2.0
     row |= {f"matching_{k}": v for k, v in _scalars(record["matching"]).items()}
@@ -77,23 +84,6 @@ def _trace_lines(path: Path) -> list[dict]:
                 raise RecordError(f"{path}:{number}: not JSON") from None
             print(f"{path}:{number}: torn last line left out", file=sys.stderr)
     return rows
-
-
-def _mark_comparable(runs: pd.DataFrame) -> pd.DataFrame:
-    """True where the minimum gap is within a factor 2 of the group's log run, one of the same matching rule first."""
-    runs["comparable"] = True
-    for _, rows in runs.groupby("group", sort=False):
-        is_reference = (rows["shape"] == REFERENCE[0]) & (rows["argument"] == REFERENCE[1]) & (rows["outcome"] == "ok")
-        references = rows[is_reference & pd.to_numeric(rows["gap_min_rel"]).notna()]
-        if references.empty:
-            continue
-        for index, row in rows.iterrows():
-            same_rule = references[references["matching_rule"] == row["matching_rule"]]
-            reference = (same_rule if not same_rule.empty else references).iloc[0]
-            gap = pd.to_numeric(row["gap_min_rel"])
-            ratio = gap / reference["gap_min_rel"]
-            runs.loc[index, "comparable"] = pd.isna(gap) or 1 / COMPARABLE_RATIO <= ratio <= COMPARABLE_RATIO
-    return runs
 
 
 def load(root: str | Path) -> Records:
@@ -118,7 +108,7 @@ def load(root: str | Path) -> Records:
         raise RecordError(f"{root}: no run.json below this folder")
     table = pd.DataFrame(runs).sort_values(["group", "started_utc"], kind="stable", ignore_index=True)
     table["series"] = _unique_series(table)
-    return Records(_mark_comparable(table), pd.DataFrame(steps), pd.DataFrame(trace), pd.DataFrame(cond))
+    return Records(table, pd.DataFrame(steps), pd.DataFrame(trace), pd.DataFrame(cond))
 
 
 def _unique_series(runs: pd.DataFrame) -> pd.Series:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import logging
+import textwrap
 import zlib
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,6 +15,7 @@ import matplotlib.pyplot as plt  # noqa: E402
 import pandas as pd  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
+HOLLOW = r"hollow markers: the run failed, is not valid, or its smallest gap/$\hat d$ at converged step ends is not within a factor {ratio:g} of {reference}"
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # it comments on the missing date of the PDF
@@ -79,17 +81,23 @@ def marks(length: int, wanted: int = 12) -> int:
     return max(1, length // wanted)
 
 
-def name_of(row: pd.Series) -> str:
-    """The legend's text: a run that did not end ok or compares nothing says so."""
+def verdict_word(row: pd.Series) -> str:
+    """Why the markers of a run are hollow: its outcome, or the program's verdict on comparability; else empty."""
     if row["outcome"] != "ok":
-        return f"{row['series']} ({row['outcome']})"
-    return row["series"] if row["comparable"] else f"{row['series']} (not_comparable)"
+        return row["outcome"]
+    return row["comparability"] if row["comparability"] in ("not_valid", "not_comparable") else ""
+
+
+def name_of(row: pd.Series) -> str:
+    """The legend's text: the series, and the word of a run whose marker is hollow."""
+    word = verdict_word(row)
+    return f"{row['series']} ({word})" if word else row["series"]
 
 
 def draw(axis, x, y, row: pd.Series, end_word: bool = True) -> None:
-    """One run's line. Hollow markers: the run failed or is not comparable; a failure ends in its word."""
+    """One run's line. Hollow markers: see HOLLOW; a failure ends in its word."""
     style = look(row["formulation"], row["series"])
-    solid = row["outcome"] == "ok" and row["comparable"]
+    solid = not verdict_word(row)
     axis.plot(
         x,
         y,
@@ -111,12 +119,24 @@ def not_measured(axis, text: str = "not measured") -> None:
     axis.text(0.5, 0.5, text, ha="center", va="center", transform=axis.transAxes, color="#666666")
 
 
-def legend_below(fig, axis) -> None:
-    """One legend for the figure, below its panels."""
+def hollow_rule(runs: pd.DataFrame) -> str:
+    """The rule of hollow markers in words; empty where no run of the group has a reference."""
+    compared = runs[runs["reference_run"] != ""]
+    if compared.empty:
+        return ""
+    names = runs.drop_duplicates("run").set_index("folder")["series"]
+    references = " or ".join(dict.fromkeys(names.get(folder, folder) for folder in compared["reference_run"]))
+    text = HOLLOW.format(ratio=compared["max_gap_ratio"].iloc[0], reference=references)
+    return "\n".join(textwrap.wrap(text, 110))
+
+
+def legend_below(fig, axis, runs: pd.DataFrame | None = None) -> None:
+    """One legend for the figure, below its panels; with `runs`, the rule of hollow markers as its title."""
     handles, labels = axis.get_legend_handles_labels()
     if handles:
         columns = max(1, min(len(labels), int(fig.get_figwidth() / LEGEND_COLUMN_IN)))
-        fig.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False)
+        title = hollow_rule(runs) if runs is not None else ""
+        fig.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, title=title or None, title_fontsize=6)
 
 
 def log_if_decades(axis) -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pandas as pd
 
+from . import style
 from .load import LARGEST_COND, Records, condition_of
 
 HEADINGS = {
@@ -37,7 +38,8 @@ def summary_table(records: Records) -> pd.DataFrame:
     rows = []
     for _, run in records.runs.iterrows():
         raw, scaled = _cond(records, run["run"], "none"), _cond(records, run["run"], "block_jacobi")
-        verdict = run["outcome"] if run["outcome"] != "ok" or run["comparable"] else "ok, not_comparable"
+        word = style.verdict_word(run)
+        verdict = run["outcome"] if word in ("", run["outcome"]) else f"{run['outcome']}, {word}"
         rows.append(
             {
                 "group": run["group"],

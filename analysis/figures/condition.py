@@ -60,7 +60,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     literal = not runs.empty and (runs["step_solver"] == "article_literal").all()
     what = "the matrix before its Tikhonov term, as the article measures it" if literal else "the matrix that is solved"
     fig.suptitle(f"{group}: {what}", fontsize=8)
-    style.legend_below(fig, axes[0, 0])
+    style.legend_below(fig, axes[0, 0], runs)
     columns = ["group", "series", "outcome", "run", "n", "step", "iteration", "stage", "scaling"]
     columns += [field for field, _ in PANELS] + ["status"]
     table = pd.concat(numbers)[columns] if numbers else pd.DataFrame(columns=columns)

@@ -1,4 +1,4 @@
-"""Smallest gap of each time step in units of d_hat."""
+"""Smallest gap at the end of each converged time step in units of d_hat."""
 
 from __future__ import annotations
 
@@ -30,8 +30,8 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
         axis.set_yscale("log")
     else:
         style.not_measured(axis, "no contact")
-    axis.set(xlabel="time (s)", ylabel=r"smallest gap of the step / $\hat d$", title=group)
-    style.legend_below(fig, axis)
+    axis.set(xlabel="time (s)", ylabel=r"smallest gap at the end of the step / $\hat d$", title=group)
+    style.legend_below(fig, axis, runs)
     columns = ["group", "series", "run", "step", "t_s", "gap_min_m", "gap_min_rel"]
     table = pd.concat(numbers).assign(group=group)[columns] if numbers else pd.DataFrame(columns=columns)
     return style.save(fig, out / f"gaps_{group}", table)

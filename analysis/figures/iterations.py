@@ -46,7 +46,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     if not axes[2].lines:
         style.not_measured(axes[2])
     fig.suptitle(f"{group}: work of every step and of every diagnosed matrix", fontsize=8)
-    style.legend_below(fig, axes[0])
+    style.legend_below(fig, axes[0], runs)
     columns = ["group", "what", "series", "at", "count"]
     table = pd.concat(numbers).assign(group=group)[columns] if numbers else pd.DataFrame(columns=columns)
     return style.save(fig, out / f"iterations_{group}", table)

@@ -41,12 +41,12 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     for _, row in runs.iterrows():
         part = traces[row["run"]]
         part = part[part["step"] == step]
-        gap, change = (pd.to_numeric(part[key]).to_numpy(dtype=float) for key in ("gap_min_rel", "kappa_change_rel"))
+        gap, change = (pd.to_numeric(part[key]).to_numpy(dtype=float) for key in ("gap_min_iterates_rel", "kappa_change_rel"))
         iteration = part["iteration"].to_numpy()
         shown = iteration <= SHOWN
         style.draw(axes[0], iteration[shown], gap[shown], row, end_word=False)
         style.draw(axes[1], iteration[shown & (change > 0)], change[shown & (change > 0)], row, end_word=False)
-        numbers.append(pd.DataFrame({"series": row["series"], "iteration": iteration, "gap_min_rel": gap, "kappa_change_rel": change}))
+        numbers.append(pd.DataFrame({"series": row["series"], "iteration": iteration, "gap_min_iterates_rel": gap, "kappa_change_rel": change}))
     axes[0].axhline(EDGE, color="#666666", linewidth=0.5)
     axes[0].set(xlabel=f"Newton iteration of step {step}", ylabel=r"smallest gap / $\hat d$")
     axes[0].set_yscale("log")
@@ -54,5 +54,5 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     if axes[1].lines and any(len(line.get_ydata()) for line in axes[1].lines):
         axes[1].set_yscale("log")
     fig.suptitle(f"{group}: kappa refreshed in every iteration does not settle", fontsize=8)
-    style.legend_below(fig, axes[0])
+    style.legend_below(fig, axes[0], runs)
     return style.save(fig, out / f"kappa_cycle_{group}", pd.concat(numbers).assign(group=group, step=step))

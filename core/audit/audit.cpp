@@ -32,8 +32,14 @@ void require_indices(const AuditMesh& mesh, const std::vector<int>& vertices) {
     throw ConfigError("audit mesh", "a negative vertex index", "indices >= 0");
   }
   const int top = vertices.empty() ? highest : std::max(highest, vertices.back());
-  if (!mesh.fixed.empty() && static_cast<std::size_t>(top) >= mesh.fixed.size()) {
-    throw ConfigError("audit mesh", "vertex " + std::to_string(top), "below the number of flags");
+  for (const auto* flags : {&mesh.fixed, &mesh.prescribed}) {
+    if (!flags->empty() && static_cast<std::size_t>(top) >= flags->size()) {
+      throw ConfigError("audit mesh", "vertex " + std::to_string(top), "below the number of flags");
+    }
+  }
+  if (!mesh.opposite.empty() && static_cast<Eigen::Index>(mesh.opposite.size()) != mesh.edges.cols()) {
+    throw ConfigError("audit mesh", std::to_string(mesh.opposite.size()) + " opposite vertices",
+                      "one an edge, or none");
   }
 }
 
@@ -43,6 +49,8 @@ Audit::Audit(AuditMesh mesh) : mesh_(std::move(mesh)), vertices_(colliding_verti
   require_indices(mesh_, vertices_);
   require_obstacles(mesh_.obstacles);
   ledger_.self_test_passed = predicates_self_test();
+  ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()),
+                      static_cast<long>(mesh_.obstacles.size())};
 }
 
 void Audit::check_state(const Positions& x, int step) {
@@ -56,6 +64,7 @@ void Audit::check_motion(const Positions& x0, const Positions& x1, int step, dou
 void Audit::set_obstacles(std::vector<AuditObstacle> obstacles) {
   require_obstacles(obstacles);
   mesh_.obstacles = std::move(obstacles);
+  ledger_.subjects.obstacles = static_cast<long>(mesh_.obstacles.size());
 }
 
 }  // namespace bb::audit

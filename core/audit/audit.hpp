@@ -11,7 +11,8 @@ namespace bb::audit {
 
 class Audit {
  public:
-  /// Errors: ConfigError if an index is negative or beyond `fixed`, or a radius or an axis makes no obstacle.
+  /// Errors: ConfigError if an index is negative or beyond `fixed`, a radius or an axis makes no obstacle,
+  /// or the flags and opposite vertices do not fit the mesh.
   explicit Audit(AuditMesh mesh);
 
   /// Judges x [3 n_vertices], m. The first call includes pairs of wholly fixed primitives, later calls skip

@@ -1,4 +1,4 @@
-// What the audit of a whole run found, summed over its accepted states and motions.
+// What the audit of a whole run found, summed over its accepted states and motions, and what it judged.
 #pragma once
 
 #include <algorithm>
@@ -9,43 +9,72 @@
 
 namespace bb::audit {
 
-struct AuditLedger {
-  long states = 0, motions = 0;
-  long crossings = 0, touches = 0;    // of states
-  long motion_pairs = 0;              // judged
-  long violations = 0, unproven = 0;  // of motions
-  long inverted = 0;                  // planar elements, summed over states; not a penetration
-  long obstacle_violations = 0;       // of states and motions
-  long non_finite = 0;                // states and motions that could not be judged
-  bool self_test_passed = true;       // of the exact predicates on this machine
-  int first_bad_step = -1;            // first step at which ok() became false
-  std::optional<PairName> first_bad;  // and what was found there
+/// What there is to judge: sizes of the surface.
+struct AuditSubjects {
+  long edges = 0, triangles = 0, vertices = 0, obstacles = 0;
+};
 
-  /// No accepted state or motion penetrates, and every one of them was judged. Touches and inversions are
-  /// reported apart and do not enter.
-  bool ok() const {
-    return crossings == 0 && violations == 0 && unproven == 0 && obstacle_violations == 0 &&
-           non_finite == 0 && self_test_passed;
+struct AuditLedger {
+  AuditSubjects subjects;
+  long states = 0, motions = 0;
+  long state_pairs = 0, motion_pairs = 0;  // that met in the broad phase
+  long pair_queries = 0;                   // primitives compared with all that they may meet
+  long obstacle_queries = 0;               // vertices and their paths compared with an obstacle
+  long crossings = 0, touches = 0;         // of states
+  long violations = 0, unproven = 0;       // of motions
+  long inverted = 0;                       // planar elements, summed over states; not a penetration
+  long obstacle_violations = 0;            // of states and motions
+  long scene_faults = 0;         // of states and motions: prescribed primitives that cross, in no other count
+  long non_finite = 0;           // states and motions that could not be judged
+  bool self_test_passed = true;  // of the exact predicates on this machine
+  int first_bad_step = -1;       // first step at which clean() became false
+  int first_fault_step = -1;
+  std::optional<PairName> first_bad;    // and what was found there, if not a fault of the scene
+  std::optional<PairName> first_fault;  // the first fault of the scene
+
+  /// Number of primitives that were compared with all that they may meet, over all states and motions; boxes
+  /// decide most of them. 0 when no pair of the surface was, or obstacles are there and no vertex was judged
+  /// against one: every scene has a surface, so that such a run was not audited.
+  long judged() const {
+    const bool all_kinds = pair_queries > 0 && (subjects.obstacles == 0 || obstacle_queries > 0);
+    return all_kinds ? pair_queries + obstacle_queries : 0;
   }
+
+  /// Free vertices penetrated something.
+  bool penetrated() const { return crossings + violations + obstacle_violations > 0; }
+
+  /// Nothing bad was found. Says nothing of how much was judged.
+  bool clean() const {
+    return !penetrated() && unproven == 0 && scene_faults == 0 && non_finite == 0 && self_test_passed;
+  }
+
+  /// No accepted state or motion penetrates, every one of them was judged, and there was something to judge.
+  /// Touches and inversions are reported apart and do not enter.
+  bool ok() const { return clean() && judged() > 0; }
 
   void add(const StateAudit& s, int step) {
     ++states;
+    state_pairs += s.pairs, pair_queries += s.queries, obstacle_queries += s.obstacle_queries;
     crossings += s.crossings, touches += s.touches, inverted += s.inverted;
-    obstacle_violations += s.obstacle_violations, non_finite += s.finite ? 0 : 1;
-    note(step, s.first_bad);
+    obstacle_violations += s.obstacle_violations, scene_faults += s.scene_faults;
+    non_finite += s.finite ? 0 : 1;
+    note(step, s.first_bad, s.first_fault);
   }
   void add(const MotionAudit& m, int step) {
     ++motions;
-    motion_pairs += m.pairs, violations += m.violations, unproven += m.unproven;
-    obstacle_violations += m.obstacle_violations, non_finite += m.finite ? 0 : 1;
-    note(step, m.first_bad);
+    motion_pairs += m.pairs, pair_queries += m.queries, obstacle_queries += m.obstacle_queries;
+    violations += m.violations, unproven += m.unproven;
+    obstacle_violations += m.obstacle_violations, scene_faults += m.scene_faults;
+    non_finite += m.finite ? 0 : 1;
+    note(step, m.first_bad, m.first_fault);
   }
 
  private:
-  void note(int step, const std::optional<PairName>& name) {
-    if (ok() || first_bad_step >= 0) return;
-    first_bad_step = step;
-    first_bad = name;
+  void note(int step, const std::optional<PairName>& bad, const std::optional<PairName>& fault) {
+    if (!first_fault && fault) first_fault = fault, first_fault_step = step;
+    if (clean()) return;
+    if (first_bad_step < 0) first_bad_step = step;
+    if (!first_bad && bad && bad->kind != PairKind::inverted) first_bad = bad;
   }
 };
 

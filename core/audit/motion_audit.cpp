@@ -30,6 +30,7 @@ class MotionJudge {
         static_cast<std::size_t>(mesh_.edges.cols()), [&](std::size_t i, MotionAudit& sum) {
           const int e = static_cast<int>(i);
           const auto a = mesh_.edges.col(e);
+          ++sum.queries;
           tree.query(box(a), [&](int f) {
             if (f <= e) return;
             const auto b = mesh_.edges.col(f);
@@ -43,10 +44,13 @@ class MotionJudge {
     return tally_over<MotionAudit>(vertices_.size(), [&](std::size_t i, MotionAudit& sum) {
       const int v = vertices_[i];
       if (!moves(v)) return;
+      const bool given = mesh_.is_prescribed(v);
       for (std::size_t o = 0; o < mesh_.obstacles.size(); ++o) {
+        ++sum.obstacle_queries;
         if (!obstacle_hit(mesh_.obstacles[o], x0_.col(v), x1_.col(v))) continue;
-        ++sum.obstacle_violations;
-        keep_first(sum.first_bad, PairName{PairKind::vertex_obstacle, v, static_cast<int>(o)});
+        ++(given ? sum.scene_faults : sum.obstacle_violations);
+        keep_first(given ? sum.first_fault : sum.first_bad,
+                   PairName{PairKind::vertex_obstacle, v, static_cast<int>(o)});
       }
     });
   }
@@ -55,11 +59,15 @@ class MotionJudge {
   template <class Pair, class Ids>
   MotionAudit against_vertices(const Ids& primitives, PairKind kind) const {
     const BoxTree tree(boxes(primitives));
+    const long against = primitives.cols() > 0;
     return tally_over<MotionAudit>(vertices_.size(), [&](std::size_t i, MotionAudit& sum) {
       const int v = vertices_[i];
+      sum.queries += against;
       tree.query(box(Eigen::Matrix<int, 1, 1>(v)), [&](int f) {
         const auto ids = primitives.col(f);
         if (std::find(ids.begin(), ids.end(), v) != ids.end()) return;
+        if (mesh_.planar && !mesh_.opposite.empty() && mesh_.opposite[static_cast<std::size_t>(f)] == v)
+          return;
         std::array<int, Pair::n_points> points{v};
         std::copy(ids.begin(), ids.end(), points.begin() + 1);
         pair<Pair>(points, {kind, v, f}, sum);
@@ -77,6 +85,11 @@ class MotionJudge {
     }
     ++sum.pairs;
     const Verdict verdict = judge(motion, tolerance_);
+    if (verdict == Verdict::violation && mesh_.all_prescribed(ids)) {
+      ++sum.scene_faults;
+      keep_first(sum.first_fault, name);
+      return;
+    }
     if (verdict == Verdict::certified) {
       ++sum.certified;
       return;
@@ -112,9 +125,11 @@ class MotionJudge {
 void MotionAudit::merge(const MotionAudit& other) {
   pairs += other.pairs, certified += other.certified, violations += other.violations,
       unproven += other.unproven;
-  obstacle_violations += other.obstacle_violations;
+  queries += other.queries, obstacle_queries += other.obstacle_queries;
+  obstacle_violations += other.obstacle_violations, scene_faults += other.scene_faults;
   finite = finite && other.finite;
   keep_first(first_bad, other.first_bad);
+  keep_first(first_fault, other.first_fault);
 }
 
 MotionAudit audit_motion(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x0,

@@ -10,11 +10,15 @@
 namespace bb::audit {
 
 struct MotionAudit {
-  long pairs = 0;  // whose swept boxes meet and of which a vertex moved; = certified + violations + unproven
+  long pairs = 0;    // whose swept boxes meet and of which a vertex moved; = certified +
+                     // violations + unproven + those of scene_faults
+  long queries = 0;  // primitives compared with all that they may meet, by boxes at least
   long certified = 0, violations = 0, unproven = 0;
-  long obstacle_violations = 0;  // vertices whose path is strictly beyond an obstacle somewhere
+  long obstacle_queries = 0;     // paths of a vertex compared with an obstacle
+  long obstacle_violations = 0;  // free vertices whose path is strictly beyond an obstacle somewhere
+  long scene_faults = 0;         // passages and paths of that kind where every vertex is prescribed
   bool finite = true;            // false: nothing was judged
-  std::optional<PairName> first_bad;
+  std::optional<PairName> first_bad, first_fault;
   void merge(const MotionAudit& other);
 };
 

@@ -19,9 +19,11 @@ class StateJudge {
 
   StateAudit edges_and_triangles() const {
     const BoxTree tree(boxes(mesh_.triangles));
+    const long against = mesh_.triangles.cols() > 0;
     return tally_over<StateAudit>(static_cast<std::size_t>(mesh_.edges.cols()),
                                   [&](std::size_t i, StateAudit& sum) {
                                     const int e = static_cast<int>(i);
+                                    sum.queries += against;
                                     tree.query(box(mesh_.edges, e), [&](int t) { edge_triangle(e, t, sum); });
                                   });
   }
@@ -31,6 +33,7 @@ class StateJudge {
     return tally_over<StateAudit>(static_cast<std::size_t>(mesh_.edges.cols()),
                                   [&](std::size_t i, StateAudit& sum) {
                                     const int e = static_cast<int>(i);
+                                    ++sum.queries;
                                     tree.query(box(mesh_.edges, e), [&](int f) {
                                       if (f > e) edge_edge_2d(e, f, sum);
                                     });
@@ -51,20 +54,22 @@ class StateJudge {
   StateAudit obstacles(const std::vector<int>& vertices) const {
     return tally_over<StateAudit>(vertices.size(), [&](std::size_t i, StateAudit& sum) {
       const int v = vertices[i];
-      if (fixed(v)) return;
+      if (mesh_.is_fixed(v)) return;
+      const bool given = mesh_.is_prescribed(v);
       for (std::size_t o = 0; o < mesh_.obstacles.size(); ++o) {
+        ++sum.obstacle_queries;
         if (obstacle_side(mesh_.obstacles[o], x_.col(v)) >= 0) continue;
-        ++sum.obstacle_violations;
-        keep_first(sum.first_bad, PairName{PairKind::vertex_obstacle, v, static_cast<int>(o)});
+        ++(given ? sum.scene_faults : sum.obstacle_violations);
+        keep_first(given ? sum.first_fault : sum.first_bad,
+                   PairName{PairKind::vertex_obstacle, v, static_cast<int>(o)});
       }
     });
   }
 
  private:
-  bool fixed(int v) const { return !mesh_.fixed.empty() && mesh_.fixed[static_cast<std::size_t>(v)] != 0; }
   template <class Column>
   bool wholly_fixed(const Column& ids) const {
-    return std::all_of(ids.begin(), ids.end(), [this](int v) { return fixed(v); });
+    return std::all_of(ids.begin(), ids.end(), [this](int v) { return mesh_.is_fixed(v); });
   }
   template <class A, class B>
   bool exempt(const A& a, const B& b) const {
@@ -88,10 +93,15 @@ class StateJudge {
     return out;
   }
 
-  static void count(Crossing found, const PairName& name, StateAudit& sum) {
+  static void count(Crossing found, const PairName& name, bool prescribed, StateAudit& sum) {
     ++sum.pairs;
     if (found == Crossing::none) return;
     const bool crosses = found == Crossing::crossing;
+    if (crosses && prescribed) {
+      ++sum.scene_faults;
+      keep_first(sum.first_fault, name);
+      return;
+    }
     ++(crosses ? sum.crossings : sum.touches);
     keep_first(crosses ? sum.first_bad : sum.first_touch, name);
   }
@@ -100,13 +110,13 @@ class StateJudge {
     const auto q = mesh_.triangles.col(t);
     if (exempt(p, q)) return;
     count(segment_triangle(x_.col(p[0]), x_.col(p[1]), x_.col(q[0]), x_.col(q[1]), x_.col(q[2])),
-          {PairKind::edge_triangle, e, t}, sum);
+          {PairKind::edge_triangle, e, t}, mesh_.all_prescribed(p) && mesh_.all_prescribed(q), sum);
   }
   void edge_edge_2d(int e, int f, StateAudit& sum) const {
     const auto p = mesh_.edges.col(e), q = mesh_.edges.col(f);
     if (exempt(p, q)) return;
     count(segment_segment_2d(flat(p[0]), flat(p[1]), flat(q[0]), flat(q[1])), {PairKind::edge_edge_2d, e, f},
-          sum);
+          mesh_.all_prescribed(p) && mesh_.all_prescribed(q), sum);
   }
 
   const AuditMesh& mesh_;
@@ -117,11 +127,14 @@ class StateJudge {
 }  // namespace
 
 void StateAudit::merge(const StateAudit& other) {
-  pairs += other.pairs, crossings += other.crossings, touches += other.touches;
+  pairs += other.pairs, queries += other.queries, obstacle_queries += other.obstacle_queries;
+  crossings += other.crossings, touches += other.touches;
   inverted += other.inverted, obstacle_violations += other.obstacle_violations;
+  scene_faults += other.scene_faults;
   finite = finite && other.finite;
   keep_first(first_bad, other.first_bad);
   keep_first(first_touch, other.first_touch);
+  keep_first(first_fault, other.first_fault);
 }
 
 StateAudit audit_state(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x,

@@ -9,13 +9,17 @@
 namespace bb::audit {
 
 struct StateAudit {
-  long pairs = 0;  // that met in the broad phase
+  long pairs = 0;             // that met in the broad phase
+  long queries = 0;           // primitives compared with all that they may meet, by boxes at least
+  long obstacle_queries = 0;  // signs of a vertex to an obstacle
   long crossings = 0, touches = 0;
-  long inverted = 0;                    // planar elements with area <= 0
-  long obstacle_violations = 0;         // vertices strictly beyond an obstacle
-  bool finite = true;                   // false: nothing was judged
+  long inverted = 0;             // planar elements with area <= 0
+  long obstacle_violations = 0;  // free vertices strictly beyond an obstacle
+  long scene_faults = 0;         // crossings of prescribed primitives, driven vertices beyond an obstacle
+  bool finite = true;            // false: nothing was judged
   std::optional<PairName> first_bad;    // the lowest in PairName's order, touches aside
   std::optional<PairName> first_touch;  // the same of the touches
+  std::optional<PairName> first_fault;  // the same of the scene's faults, which are in no other count
   void merge(const StateAudit& other);
 };
 

@@ -1,6 +1,7 @@
 // What the audit judges: vertices, edges, triangles and analytic obstacles. Plain data, no solver types.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -19,15 +20,29 @@ struct AuditObstacle {
   bool inside = false;          // sphere, cylinder: vertices must stay inside instead of outside
 };
 
-/// The collision surface. Pairs that share a vertex are exempt, and no others.
+/// The whole surface of the bodies, whatever pairs a contact model makes of it. Pairs that share a vertex are
+/// exempt, and in planar scenes an edge and the third vertex of its own triangle: passing it inverts the
+/// triangle, which is counted as that. No others are.
 struct AuditMesh {
   Eigen::Matrix2Xi edges;  // every edge that collides: of the triangles, and of rods. Planar: boundary edges
   Eigen::Matrix3Xi triangles;  // 3D: surface triangles. Planar: elements, judged for inversion only
-  std::vector<int> points;     // vertices that collide and belong to no edge or triangle (particles)
+  std::vector<int> opposite;   // [n_edges] or empty, planar: third vertex of the edge's triangle, -1: a rod
+  std::vector<int> points;     // vertices of no edge (3D: nor triangle): particles, planar interior vertices
   std::vector<std::uint8_t>
       fixed;  // [n_vertices] or empty: given and never moving. Driven vertices are not fixed
+  std::vector<std::uint8_t> prescribed;  // [n_vertices] or empty: given, still or driven
   std::vector<AuditObstacle> obstacles;
   bool planar = false;  // the scene lives in x and y; z is ignored
+
+  bool is_fixed(int v) const { return !fixed.empty() && fixed[static_cast<std::size_t>(v)] != 0; }
+  bool is_prescribed(int v) const {
+    return !prescribed.empty() && prescribed[static_cast<std::size_t>(v)] != 0;
+  }
+  /// True if no vertex of the pair has unknowns: what happens there is decided by the scene alone.
+  template <class Ids>
+  bool all_prescribed(const Ids& ids) const {
+    return std::all_of(ids.begin(), ids.end(), [this](int v) { return is_prescribed(v); });
+  }
 };
 
 /// What kind of test found something; the order is the order in which first offenders are named.

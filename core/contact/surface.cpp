@@ -60,7 +60,9 @@ Surface::Surface(const Scene& scene)
   for (int v : vertices) add<1>(points, scene, vertex_free, {v});
 
   std::vector<std::array<int, 2>> all_edges;
-  for (const auto& e : scene.surface_edges) all_edges.push_back(ascending(e[0], e[1]));
+  if (!planar || planar_pairs == PlanarPairs::point_edge) {
+    for (const auto& e : scene.surface_edges) all_edges.push_back(ascending(e[0], e[1]));
+  }
   if (!planar) {
     add_sides(all_edges, scene.surface_triangles);
     for (const auto& t : scene.surface_triangles) add<3>(triangles, scene, vertex_free, t);
@@ -72,7 +74,7 @@ Surface::Surface(const Scene& scene)
 
 void Surface::connect(const Scene& scene) {
   if (planar_pairs == PlanarPairs::vertex_vertex) {
-    connected_ = edges.vertices;
+    for (const auto& e : scene.surface_edges) connected_.push_back(ascending(e[0], e[1]));
     add_sides(connected_, scene.membrane.triangles);
     add_sides(connected_, scene.surface_triangles);
     for (const auto& e : scene.springs.edges) {  // a spring between two bodies is a stitch, not a mesh edge

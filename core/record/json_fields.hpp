@@ -24,6 +24,7 @@ inline void put(Json& j, const std::string& name, const Number& n) {
 
 Json phases(const PhaseTimes& times);   // "<phase>_s", phases that took no time left out
 Json contacts(const ContactCounts& c);  // per kind and total
+Json comparability(const Comparability& c);
 
 /// Throws std::logic_error naming the place when a non-finite number is left in `j`: the JSON library would
 /// silently write null without a reason.

@@ -118,6 +118,8 @@ void put_step_contact(Json& j, const StepRecord& v) {
   j["contacts"] = fields::contacts(v.contacts);
   put(j, "gap_min_m", v.gap_min_m);
   put(j, "gap_min_rel", v.gap_min_rel);
+  put(j, "gap_min_iterates_m", v.gap_min_iterates_m);
+  put(j, "gap_min_iterates_rel", v.gap_min_iterates_rel);
   put(j, "toi_min", v.toi_min);
   put(j, "max_stretch", v.max_stretch);
   put(j, "kappa_min_N_per_m", v.kappa_min_N_per_m);
@@ -166,13 +168,23 @@ Json step(const StepRecord& v) {
 
 Json audit(const AuditRecord& v) {
   Json j = {{"enabled", v.enabled},
+            {"edges", v.edges},
+            {"triangles", v.triangles},
+            {"vertices", v.vertices},
+            {"obstacles", v.obstacles},
             {"states", v.states},
             {"motions", v.motions},
+            {"state_pairs", v.state_pairs},
+            {"motion_pairs", v.motion_pairs},
+            {"obstacle_queries", v.obstacle_queries},
+            {"judged", v.judged},
             {"crossings", v.crossings},
             {"touches", v.touches},
             {"violations", v.violations},
             {"unproven", v.unproven},
             {"inverted", v.inverted},
+            {"obstacle_violations", v.obstacle_violations},
+            {"scene_faults", v.scene_faults},
             {"first_bad_step", v.first_bad_step},
             {"first_bad_iteration", v.first_bad_iteration},
             {"examples", v.examples}};
@@ -229,6 +241,8 @@ Json summary(const Summary& v) {
             {"contacts", stats(v.contacts)},
             {"gap_min_rel", stats(v.gap_min_rel)}};
   put(j, "gap_min_m", v.gap_min_m);
+  put(j, "gap_min_iterates_m", v.gap_min_iterates_m);
+  put(j, "gap_min_iterates_rel", v.gap_min_iterates_rel);
   put(j, "max_stretch", v.max_stretch);
   put(j, "contact_load_max_N", v.contact_load_max_N);
   put(j, "limit_load_max_N_per_m", v.limit_load_max_N_per_m);
@@ -267,6 +281,18 @@ Json array_of(const List& list, Make make) {
 
 }  // namespace
 
+Json fields::comparability(const Comparability& v) {
+  Json j = {{"verdict", v.verdict},
+            {"reason", v.reason},
+            {"reference_run", v.reference_run},
+            {"reference_run_id", v.reference_run_id}};
+  put(j, "gap_rel", v.gap_rel);
+  put(j, "reference_gap_rel", v.reference_gap_rel);
+  put(j, "ratio", v.ratio);
+  put(j, "max_ratio", v.max_ratio);
+  return j;
+}
+
 std::string to_json(const RunRecord& r) {
   Json j;
   j["schema"] = {{"name", "barrierbench.run"}, {"version", kRunSchemaVersion}};
@@ -290,6 +316,7 @@ std::string to_json(const RunRecord& r) {
   j["samples"] = samples(r);
   j["audit"] = audit(r.audit);
   j["validity"] = validity(r.validity);
+  j["comparability"] = fields::comparability(r.comparability);
   j["artifacts"] = array_of(r.artifacts, [](const Artifact& a) {
     return Json{{"path", a.path},
                 {"kind", a.kind},

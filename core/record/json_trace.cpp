@@ -52,8 +52,8 @@ void put_linear(Json& j, const TraceRow& row) {
 
 void put_contact(Json& j, const TraceRow& row) {
   j["contacts"] = fields::contacts(row.contacts);
-  put(j, "gap_min_m", row.gap_min_m);
-  put(j, "gap_min_rel", row.gap_min_rel);
+  put(j, "gap_min_iterates_m", row.gap_min_iterates_m);
+  put(j, "gap_min_iterates_rel", row.gap_min_iterates_rel);
   put(j, "kappa_min_N_per_m", row.kappa_min_N_per_m);
   put(j, "kappa_max_N_per_m", row.kappa_max_N_per_m);
   put(j, "kappa_change_rel", row.kappa_change_rel);

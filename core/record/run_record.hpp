@@ -17,7 +17,7 @@ namespace bb {
 /// Of run.json and of the trace beside it. MODEL.REVISION.ADDITION: removed or changed meaning, widened,
 /// added. Readers check the first number; what an earlier version of the same model lacks is optional in the
 /// schemas.
-inline constexpr const char* kRunSchemaVersion = "1.1.0";
+inline constexpr const char* kRunSchemaVersion = "2.0.0";
 
 struct Ids {
   std::string config_id;   // sha256 of the canonical resolved config
@@ -98,10 +98,11 @@ struct StepRecord {
   int line_search_trials = 0, rounding_accepts = 0, not_pd = 0;
   long long ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, ccd_zero = 0;
   ContactCounts contacts;  // at the end of the step
-  Number gap_min_m;        // smallest over the accepted states of the step
-  Number gap_min_rel;      // the same, d / d_hat
-  Number toi_min;          // smallest ACCD bound of the step
-  Number max_stretch;      // largest sigma - 1 over the accepted states
+  Number gap_min_m;        // smallest at the end of the step; missing where the step did not converge
+  Number gap_min_rel;      // smallest d / d_hat of that state
+  Number gap_min_iterates_m, gap_min_iterates_rel;  // the same over the iterates of the step and its end
+  Number toi_min;                                   // smallest ACCD bound of the step
+  Number max_stretch;                               // largest sigma - 1 over the accepted states
   Number kappa_min_N_per_m, kappa_max_N_per_m;
   Number contact_load_max_N, limit_load_max_N_per_m, contact_load_sum_N;
   Number contact_overload, limit_overload;  // load / capacity of a step that made no progress
@@ -131,8 +132,14 @@ struct MatchingRecord {
 
 struct AuditRecord {
   bool enabled = false;
-  long long states = 0, motions = 0;  // checked
+  long long edges = 0, triangles = 0, vertices = 0, obstacles = 0;  // the surface that there is to judge
+  long long states = 0, motions = 0;                                // checked
+  long long state_pairs = 0, motion_pairs = 0;  // that met in the broad phase and were judged one by one
+  long long obstacle_queries = 0;               // signs of vertices, and of their paths, to an obstacle
+  long long judged = 0;  // primitives compared with all that they may meet, boxes included; 0: never ok
   long long crossings = 0, touches = 0, violations = 0, unproven = 0, inverted = 0;
+  long long obstacle_violations = 0;  // those of `violations` that an obstacle is part of
+  long long scene_faults = 0;         // crossings of prescribed primitives, in no other count
   int first_bad_step = -1, first_bad_iteration = -1;
   std::vector<std::string> examples;  // the first few, in words
   double seconds = 0;
@@ -165,12 +172,26 @@ struct StiffnessRecord {
   bool saturated = false;
 };
 
+/// Whether a run may be compared with the others of its sweep (docs/design.md, Comparability). Filled by
+/// one function, judge_comparability(); readers never compute it again.
+struct Comparability {
+  std::string verdict = "no_reference";  // comparable, not_comparable, no_reference, not_valid
+  std::string reason;                    // one sentence, never empty in a record
+  std::string reference_run;             // folder of the reference beside this run's; empty: none
+  std::string reference_run_id;
+  Number gap_rel, reference_gap_rel;  // smallest d/d_hat over converged step ends
+  Number ratio;                       // gap_rel / reference_gap_rel
+  double max_ratio = 2;               // comparable: ratio within [1/max_ratio, max_ratio]
+};
+
 struct Summary {
   int steps = 0, steps_capped = 0;
   long long newton_iterations = 0, linear_iterations = 0, linear_solves = 0, factorizations = 0, analyses = 0;
   long long line_search_trials = 0, ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, not_pd = 0;
   Stats newton_per_step, linear_per_solve, probe_pcg, contacts, gap_min_rel;
-  Number gap_min_m, max_stretch, contact_load_max_N, limit_load_max_N_per_m;
+  Number gap_min_m;                                 // over converged step ends, as gap_min_rel
+  Number gap_min_iterates_m, gap_min_iterates_rel;  // over all iterates
+  Number max_stretch, contact_load_max_N, limit_load_max_N_per_m;
   StiffnessRecord stiffness;
   std::map<std::string, int>
       first_contact;  // "body|body" or "body|obstacle" -> step at whose end it first touched
@@ -213,6 +234,7 @@ struct RunRecord {
   std::map<std::string, std::vector<double>> samples;  // raw repetitions, name with its unit
   AuditRecord audit;
   Validity validity;
+  Comparability comparability;
   std::vector<Artifact> artifacts;
 };
 

@@ -61,8 +61,7 @@ struct TraceRow {
   std::vector<ConditionSample> cond;  // empty when not due
 
   ContactCounts contacts;
-  Number gap_min_m;    // over rows
-  Number gap_min_rel;  // the same row's d / d_hat
+  Number gap_min_iterates_m, gap_min_iterates_rel;  // smallest d (m) and d / d_hat of this iterate
   Number kappa_min_N_per_m, kappa_max_N_per_m;
   Number kappa_change_rel;               // largest max/min - 1 of a kappa since the line search before
   Number contact_curvature_max_N_per_m;  // max m kappa b''

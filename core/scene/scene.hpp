@@ -89,7 +89,7 @@ struct Scene {
   StrainLimitPart limit;
 
   std::vector<std::array<int, 3>> surface_triangles;  // collision surface
-  std::vector<std::array<int, 2>> surface_edges;      // planar: boundary edges (point_edge) or none
+  std::vector<std::array<int, 2>> surface_edges;  // of triangles and rods; planar: boundary edges and rods
   std::vector<int> surface_vertices;
   std::vector<Obstacle> obstacles;
 

@@ -211,7 +211,7 @@ void SceneBuilder::append_surface(const BodySpec& spec, int first) {
   for (const auto& t : spec.mesh.triangles) scene_.surface_triangles.push_back(shifted(t, first));
   if (!scene_.planar) {
     for (const auto& e : unique_edges(spec.mesh)) scene_.surface_edges.push_back(shifted(e, first));
-  } else if (scene_.planar_pairs == PlanarPairs::point_edge) {
+  } else {  // whatever pairs contact makes of them
     for (const auto& e : boundary_edges(spec.mesh.triangles))
       scene_.surface_edges.push_back(shifted(e, first));
     for (const auto& s : spec.mesh.segments) scene_.surface_edges.push_back(shifted(s, first));

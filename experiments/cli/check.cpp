@@ -64,8 +64,8 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
 int check(const RunVerb& verb) {
   const RunConfig config = load_config(verb.config, verb.set);
   const Scene scene = build_scene(config);
-  if (const auto overlap = initial_intersection(config, scene)) {
-    throw ConfigError(verb.config + "#/scene", *overlap, "a start without intersections");
+  if (const auto failure = start_failure(config, scene, &interrupted())) {
+    throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
   fmt::print("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));
   return exit_ok;

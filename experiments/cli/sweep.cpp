@@ -9,6 +9,7 @@
 #include "experiments/cli/sweep_spec.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/comparability.hpp"
 
 namespace bb::cli {
 namespace {
@@ -33,6 +34,13 @@ void run_case(const SweepSpec& spec, const SweepCase& one, const std::filesystem
   fmt::print("{}\n", summary_row(record));
   if (record.status.outcome != Outcome::ok) fmt::print("  {}\n", record.status.detail);
   std::fflush(stdout);
+}
+
+/// Which runs may be compared, in every record of the sweep, those that were already there among them.
+void compare_cases(const SweepSpec& spec, const std::filesystem::path& out) {
+  std::vector<SweepMember> members;
+  for (const SweepCase& one : spec.cases) members.push_back({out / folder_name(one), one.reference});
+  write_comparability(members);
 }
 
 /// An earlier run's, which `--again` did not replace.
@@ -74,6 +82,7 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
       }
     }
   }
+  compare_cases(spec, out);
   if (!violations.empty()) throw ConfigError(violations);
   return exit_ok;
 }

@@ -26,6 +26,35 @@ json read_json(const std::string& path, std::string& text) {
   }
 }
 
+// Indices of the cases of an axis with "reference": true.
+std::vector<std::size_t> marked_cases(const json& axis) {
+  std::vector<std::size_t> out;
+  if (!axis.contains("cases")) return out;
+  for (std::size_t k = 0; k < axis["cases"].size(); ++k) {
+    const json& one = axis["cases"][k];
+    const auto found = one.is_object() ? one.find("reference") : one.end();
+    if (one.is_object() && found != one.end() && *found == json(true)) out.push_back(k);
+  }
+  return out;
+}
+
+// The case that differs from `index` in the axes with a mark only, where it is the marked one; the last axis
+// runs fastest. Nothing without any mark.
+std::optional<std::size_t> marked_reference(const json& axes, std::size_t index) {
+  std::size_t out = 0, stride = 1;
+  bool any = false;
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    const json& axis = axes[a];
+    const std::size_t n = axis.contains("pointer") ? axis["values"].size() : axis["cases"].size();
+    const std::vector<std::size_t> marked = marked_cases(axis);
+    any = any || !marked.empty();
+    out += stride * (marked.empty() ? index % n : marked.front());
+    index /= n;
+    stride *= n;
+  }
+  return any ? std::optional(out) : std::nullopt;
+}
+
 class SpecReader {
  public:
   SpecReader(std::string path, const json& spec) : path_(std::move(path)), spec_(spec) {}
@@ -67,9 +96,12 @@ class SpecReader {
     for (std::size_t k = 0; k < axis["cases"].size(); ++k) {
       const json& one = axis["cases"][k];
       const bool good = one.is_object() && one.contains("label") && one["label"].is_string() &&
-                        one.contains("set") && one["set"].is_object();
-      want(where + "/cases/" + std::to_string(k), good, "{label, set}");
+                        one.contains("set") && one["set"].is_object() &&
+                        (!one.contains("reference") || one["reference"].is_boolean());
+      want(where + "/cases/" + std::to_string(k), good, "{label, set} and perhaps reference: true");
     }
+    if (marked_cases(axis).size() > 1)
+      wrong(where, "more than one reference", "one case with reference: true");
   }
   void want(const std::string& pointer, bool good, const char* allowed) {
     if (good) return;
@@ -129,6 +161,9 @@ SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& ov
   if (spec.contains("set")) append_set(spec["set"], first.set);
   out.cases = {first};
   for (const json& axis : spec["axes"]) out.cases = extend(out.cases, axis);
+  for (std::size_t i = 0; i < out.cases.size(); ++i) {
+    out.cases[i].reference = marked_reference(spec["axes"], i);
+  }
 
   const auto base = std::filesystem::path(path).parent_path() / spec["base"].get<std::string>();
   std::vector<Violation> violations;

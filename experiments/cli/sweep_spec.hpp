@@ -1,6 +1,8 @@
 // A sweep as data: a base config and axes; every combination is one run.
 #pragma once
 
+#include <cstddef>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,6 +14,7 @@ struct SweepCase {
   std::string label;             // "log dt=0.01"
   std::vector<std::string> set;  // overrides "/pointer=value"
   RunConfig config;
+  std::optional<std::size_t> reference;  // the case it is compared with, where the file marks one
 };
 
 struct SweepSpec {
@@ -21,8 +24,10 @@ struct SweepSpec {
 };
 
 /// Reads {"schema": "barrierbench.sweep/1", "name", "base": PATH, "set": {pointer: value}, "axes":
-/// [{"pointer", "values"} or {"cases": [{"label", "set"}]}]} and resolves every case, so that a mistake in
-/// the last one is found before the first one runs. Errors: ConfigError with every violation.
+/// [{"pointer", "values"} or {"cases": [{"label", "set", "reference"}]}]} and resolves every case, so that a
+/// mistake in the last one is found before the first one runs. A case of an axis with "reference": true (one
+/// an axis at most) is what the others of that axis are compared with, at equal values of the other axes.
+/// Errors: ConfigError with every violation.
 SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& overrides);
 
 }  // namespace bb

@@ -1,7 +1,14 @@
 #include "experiments/run/audit_mesh.hpp"
 
+#include <algorithm>
+#include <map>
+
+#include "core/mesh/topology.hpp"
+
 namespace bb {
 namespace {
+
+using Edge = std::array<int, 2>;
 
 audit::AuditObstacle to_audit(const Obstacle& obstacle) {
   audit::AuditObstacle out;
@@ -15,37 +22,85 @@ audit::AuditObstacle to_audit(const Obstacle& obstacle) {
   return out;
 }
 
+template <std::size_t n>
+Eigen::Matrix<int, static_cast<int>(n), Eigen::Dynamic> columns(const std::vector<std::array<int, n>>& list) {
+  Eigen::Matrix<int, static_cast<int>(n), Eigen::Dynamic> out(n, static_cast<Eigen::Index>(list.size()));
+  for (std::size_t i = 0; i < list.size(); ++i) {
+    for (std::size_t k = 0; k < n; ++k)
+      out(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = list[i][k];
+  }
+  return out;
+}
+
+Edge ascending(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+
+// Third vertex of the triangles that have the edge; of a boundary edge there is one.
+std::map<Edge, int> third_vertices(const std::vector<std::array<int, 3>>& triangles) {
+  std::map<Edge, int> out;
+  for (const auto& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) out[ascending(t[k], t[(k + 1) % 3])] = t[(k + 2) % 3];
+  }
+  return out;
+}
+
+// From the triangles themselves, and rods from what the scene lists: each edge once, ascending.
+std::vector<Edge> edges_of(const Scene& scene) {
+  std::vector<Edge> out;
+  if (scene.planar) {
+    for (const auto& e : boundary_edges(scene.surface_triangles)) out.push_back(ascending(e[0], e[1]));
+  } else {
+    for (const auto& t : scene.surface_triangles) {
+      for (std::size_t k = 0; k < 3; ++k) out.push_back(ascending(t[k], t[(k + 1) % 3]));
+    }
+  }
+  for (const auto& e : scene.surface_edges) out.push_back(ascending(e[0], e[1]));
+  std::sort(out.begin(), out.end());
+  out.erase(std::unique(out.begin(), out.end()), out.end());
+  return out;
+}
+
+// Vertices of no edge; in space every vertex of a triangle has one.
+std::vector<int> points_of(const Scene& scene, const std::vector<Edge>& edges) {
+  std::vector<char> covered(static_cast<std::size_t>(scene.n_vertices()), 0);
+  for (const Edge& e : edges) {
+    for (const int v : e) covered[static_cast<std::size_t>(v)] = 1;
+  }
+  std::vector<int> out;
+  for (int v = 0; v < scene.n_vertices(); ++v) {
+    if (!covered[static_cast<std::size_t>(v)]) out.push_back(v);
+  }
+  return out;
+}
+
 }  // namespace
 
 audit::AuditMesh make_audit_mesh(const Scene& scene) {
   audit::AuditMesh mesh;
   mesh.planar = scene.planar;
-  const auto& triangles = scene.planar ? scene.membrane.triangles : scene.surface_triangles;
-  mesh.triangles.resize(3, static_cast<Eigen::Index>(triangles.size()));
-  for (std::size_t i = 0; i < triangles.size(); ++i) {
-    mesh.triangles.col(static_cast<Eigen::Index>(i)) << triangles[i][0], triangles[i][1], triangles[i][2];
-  }
-  mesh.edges.resize(2, static_cast<Eigen::Index>(scene.surface_edges.size()));
-  for (std::size_t i = 0; i < scene.surface_edges.size(); ++i) {
-    mesh.edges.col(static_cast<Eigen::Index>(i)) << scene.surface_edges[i][0], scene.surface_edges[i][1];
-  }
-  std::vector<std::uint8_t> covered(static_cast<std::size_t>(scene.n_vertices()), 0);
-  for (const auto& triangle : triangles) {
-    for (const int v : triangle) covered[static_cast<std::size_t>(v)] = 1;
-  }
-  for (const auto& edge : scene.surface_edges) {
-    for (const int v : edge) covered[static_cast<std::size_t>(v)] = 1;
-  }
-  for (const int v : scene.surface_vertices) {
-    if (!covered[static_cast<std::size_t>(v)]) mesh.points.push_back(v);
+  const std::vector<Edge> edges = edges_of(scene);
+  mesh.edges = columns(edges);
+  mesh.triangles = columns(scene.planar ? scene.membrane.triangles : scene.surface_triangles);
+  mesh.points = points_of(scene, edges);
+  if (scene.planar) {
+    const std::map<Edge, int> third = third_vertices(scene.surface_triangles);
+    for (const Edge& e : edges) {
+      const auto found = third.find(e);
+      mesh.opposite.push_back(found == third.end() ? -1 : found->second);
+    }
   }
   mesh.fixed.assign(static_cast<std::size_t>(scene.n_vertices()), 0);
+  mesh.prescribed = mesh.fixed;
   for (const Pin& pin : scene.pins) {
-    const bool still = scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
-    mesh.fixed[static_cast<std::size_t>(pin.vertex)] = still;
+    const auto v = static_cast<std::size_t>(pin.vertex);
+    mesh.prescribed[v] = 1;
+    mesh.fixed[v] = scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
   }
   for (const Obstacle& obstacle : scene.obstacles) mesh.obstacles.push_back(to_audit(obstacle));
   return mesh;
+}
+
+double audit_tolerance(const Scene& scene, double ccd_park) {
+  return 0.1 * ccd_park * *std::min_element(scene.d_hat.begin(), scene.d_hat.end());
 }
 
 }  // namespace bb

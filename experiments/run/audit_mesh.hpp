@@ -6,6 +6,12 @@
 
 namespace bb {
 
+/// The whole surface of all bodies, computed from their triangles and rods: never from the pairs that a
+/// contact model makes of it, so that the audit judges what the model leaves out. Planar: boundary edges and
+/// every vertex. Cost O(n log n).
 audit::AuditMesh make_audit_mesh(const Scene& scene);
+
+/// A tenth of the smallest distance (m) at which the solver's step bound stops; see Audit::check_motion.
+double audit_tolerance(const Scene& scene, double ccd_park);
 
 }  // namespace bb

@@ -6,6 +6,7 @@
 
 #include "core/newton/newton_system.hpp"
 #include "experiments/run/audit_mesh.hpp"
+#include "experiments/run/audit_verdict.hpp"
 #include "experiments/run/step_record.hpp"
 
 namespace bb {
@@ -45,13 +46,18 @@ void keep_smaller(Number& kept, double value) {
 
 Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& record, TraceWriter* trace,
                    ArtifactWriter* artifacts)
-    : config_(config), record_(record), trace_(trace), artifacts_(artifacts), probe_(config.diagnose.seed) {
+    : config_(config),
+      scene_(scene),
+      record_(record),
+      trace_(trace),
+      artifacts_(artifacts),
+      probe_(config.diagnose.seed) {
   record_.audit.enabled = config.passes.audit;
   if (artifacts_ && config.output.frames_every > 0) artifacts_->start();
   if (config.passes.audit) {
-    audit_ = std::make_unique<audit::Audit>(make_audit_mesh(scene));
-    const double d_hat = *std::min_element(scene.d_hat.begin(), scene.d_hat.end());
-    audit_tolerance_ = 0.1 * config.contact.ccd_park * d_hat;
+    audit_mesh_ = make_audit_mesh(scene);
+    audit_ = std::make_unique<audit::Audit>(audit_mesh_);
+    audit_tolerance_ = audit_tolerance(scene, config.contact.ccd_park);
     judge(scene.x0, -1);
   }
 }
@@ -120,8 +126,8 @@ TraceRow Recorder::trace_row(const IterationReport& report) const {
   row.analyzed = report.linear.analyzed;
   row.cond = samples_;
   row.contacts = report.contacts;
-  row.gap_min_m = gap_number(report.gap_min);
-  row.gap_min_rel = gap_number(report.gap_min_rel);
+  row.gap_min_iterates_m = gap_number(report.gap_min);
+  row.gap_min_iterates_rel = gap_number(report.gap_min_rel);
   const bool touching = report.contacts.total() > 0;
   row.kappa_min_N_per_m = touching ? Number(report.kappa_min) : Number::missing("no_contacts");
   row.kappa_max_N_per_m = touching ? Number(report.kappa_max) : Number::missing("no_contacts");
@@ -155,8 +161,8 @@ void Recorder::on_iteration(const IterationReport& report) {
   samples_.clear();
   if (probed_.finite()) probes_.push_back(probed_.value);
   linear_.push_back(report.linear.iterations);
-  keep_smaller(step_gap_, report.gap_min);
-  keep_smaller(step_gap_rel_, report.gap_min_rel);
+  keep_smaller(iterates_gap_, report.gap_min);
+  keep_smaller(iterates_gap_rel_, report.gap_min_rel);
 }
 
 void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
@@ -192,6 +198,22 @@ void Recorder::note_contacts(const NewtonSystem& system, int step) {
   scan(system.state().mollified);
 }
 
+// Gaps of the method are those of converged step ends; an iterate's are a matter of the path to them.
+void Recorder::fill_gaps(const NewtonSystem& system, const StepReport& report, StepRecord& step) {
+  const double gap_rel = smallest_relative_gap(system.state());
+  if (report.status == StepStatus::converged) {
+    step.gap_min_m = gap_number(report.gap_min);
+    step.gap_min_rel = gap_number(gap_rel);
+  } else {
+    step.gap_min_m = step.gap_min_rel = Number::missing("not_converged");
+  }
+  keep_smaller(iterates_gap_, report.gap_min);
+  keep_smaller(iterates_gap_rel_, gap_rel);
+  step.gap_min_iterates_m = iterates_gap_.finite() ? iterates_gap_ : Number::missing("no_contacts");
+  step.gap_min_iterates_rel = iterates_gap_rel_.finite() ? iterates_gap_rel_ : Number::missing("no_contacts");
+  iterates_gap_ = iterates_gap_rel_ = Number();
+}
+
 void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
   const int every = config_.output.frames_every;
   if (artifacts_ && every > 0 && report.step % every == 0) {
@@ -201,10 +223,7 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
   seen_.steps.push_back(report.times);
   step.time = time_of(reported_->steps, seen_.steps.size() - 1);
   note_contacts(system, report.step);
-  keep_smaller(step_gap_, report.gap_min);
-  keep_smaller(step_gap_rel_, smallest_relative_gap(system.state()));
-  step.gap_min_m = step_gap_.finite() ? step_gap_ : Number::missing("no_contacts");
-  step.gap_min_rel = step_gap_rel_.finite() ? step_gap_rel_ : Number::missing("no_contacts");
+  fill_gaps(system, report, step);
   if (audit_) {
     const audit::AuditLedger& ledger = audit_->ledger();
     step.crossings = ledger.crossings - record_.audit.crossings;
@@ -221,7 +240,6 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
   newton_.push_back(report.iterations);
   contacts_.push_back(static_cast<double>(report.contacts.total()));
   if (step.gap_min_rel.finite()) gaps_.push_back(step.gap_min_rel.value);
-  step_gap_ = step_gap_rel_ = Number();
   for (TraceRow& row : rows_) {
     row.t_s = report.t;
     if (trace_) trace_->add(row);
@@ -245,7 +263,12 @@ void Recorder::finish() {
     summary.ccd_probes += step.ccd_probes;
     summary.ccd_capped += step.ccd_capped;
     summary.time += step.time;
-    if (step.gap_min_m.finite()) keep_smaller(summary.gap_min_m, step.gap_min_m.value);
+    const auto keep_gap = [](Number& kept, const Number& gap) {
+      if (gap.finite()) keep_smaller(kept, gap.value);
+    };
+    keep_gap(summary.gap_min_m, step.gap_min_m);
+    keep_gap(summary.gap_min_iterates_m, step.gap_min_iterates_m);
+    keep_gap(summary.gap_min_iterates_rel, step.gap_min_iterates_rel);
     const auto keep_larger = [](Number& kept, const Number& value) {
       if (value.finite() && (!kept.finite() || value.value > kept.value)) kept = value;
     };
@@ -263,20 +286,37 @@ void Recorder::finish() {
     cond.log10_lambda_min = summarize(log10_min_[key]);
     cond.log10_lambda_max = summarize(log10_max_[key]);
   }
-  if (!audit_) return;
-  const audit::AuditLedger& ledger = audit_->ledger();
-  record_.audit.states = ledger.states;
-  record_.audit.motions = ledger.motions;
-  record_.audit.touches = ledger.touches;
-  record_.audit.first_bad_step = ledger.first_bad_step;
+  if (audit_) fill_audit();
 }
 
-bool Recorder::penetrated() const {
-  if (!audit_) return false;
+void Recorder::fill_audit() {
   const audit::AuditLedger& ledger = audit_->ledger();
-  return ledger.crossings + ledger.violations + ledger.obstacle_violations > 0;
+  AuditRecord& out = record_.audit;
+  out.edges = ledger.subjects.edges;
+  out.triangles = ledger.subjects.triangles;
+  out.vertices = ledger.subjects.vertices;
+  out.obstacles = ledger.subjects.obstacles;
+  out.states = ledger.states;
+  out.motions = ledger.motions;
+  out.state_pairs = ledger.state_pairs;
+  out.motion_pairs = ledger.motion_pairs;
+  out.obstacle_queries = ledger.obstacle_queries;
+  out.judged = ledger.judged();
+  out.crossings = ledger.crossings;
+  out.touches = ledger.touches;
+  out.violations = ledger.violations + ledger.obstacle_violations;
+  out.unproven = ledger.unproven;
+  out.inverted = ledger.inverted;
+  out.obstacle_violations = ledger.obstacle_violations;
+  out.scene_faults = ledger.scene_faults;
+  out.first_bad_step = ledger.first_bad_step;
+  for (const auto& found : {ledger.first_bad, ledger.first_fault}) {
+    if (found) out.examples.push_back(describe(scene_, audit_mesh_, *found));
+  }
 }
 
-bool Recorder::unproven() const { return audit_ && !audit_->ledger().ok() && !penetrated(); }
+Verdict Recorder::audit_verdict() const {
+  return audit_ ? judge_audit(scene_, audit_mesh_, audit_->ledger()) : Verdict();
+}
 
 }  // namespace bb

@@ -16,6 +16,7 @@
 #include "core/record/writer.hpp"
 #include "experiments/config/run_config.hpp"
 #include "experiments/run/artifacts.hpp"
+#include "experiments/run/outcome.hpp"
 #include "experiments/run/pcg_probe.hpp"
 
 namespace bb {
@@ -45,20 +46,23 @@ class Recorder final : public StepObserver {
   /// Sums over the run, once it is over.
   void finish();
 
-  /// True when an accepted state or motion penetrates.
-  bool penetrated() const;
-  bool unproven() const;
+  /// What the audit found, as an outcome; ok without the pass `audit`.
+  Verdict audit_verdict() const;
 
  private:
   void judge(const Positions& x, int step);
+  void fill_gaps(const NewtonSystem& system, const StepReport& report, StepRecord& step);
+  void fill_audit();
   TraceRow trace_row(const IterationReport& report) const;
   bool due(int step, int iteration) const;
   void note_contacts(const NewtonSystem& system, int step);
 
   const RunConfig& config_;
+  const Scene& scene_;
   RunRecord& record_;
   TraceWriter* trace_;
   ArtifactWriter* artifacts_;
+  audit::AuditMesh audit_mesh_;  // for names; empty without the pass `audit`
   std::unique_ptr<audit::Audit> audit_;
   double audit_tolerance_ = 0;
   ConditionEstimator estimator_;
@@ -71,7 +75,7 @@ class Recorder final : public StepObserver {
   PcgProbe probe_;
   Number probed_;  // of the iteration in progress
   std::vector<double> newton_, linear_, probes_, contacts_, gaps_;
-  Number step_gap_, step_gap_rel_;
+  Number iterates_gap_, iterates_gap_rel_;  // of the step in progress
   RunTimes seen_;
   const RunTimes* reported_ = &seen_;
 };

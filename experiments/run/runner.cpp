@@ -15,6 +15,7 @@
 #include "core/scene/plan.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
+#include "experiments/run/comparability.hpp"
 #include "experiments/run/outcome.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/recorder.hpp"
@@ -127,9 +128,11 @@ void fill_validity(const Scene& scene, RunRecord& record, const std::string& has
                    const std::string& hash_seen) {
   record.validity.valid = true;
   if (record.audit.enabled) {
-    const auto bad =
-        static_cast<double>(record.audit.crossings + record.audit.violations + record.audit.unproven);
+    const auto bad = static_cast<double>(record.audit.crossings + record.audit.violations +
+                                         record.audit.unproven + record.audit.scene_faults);
     add_check(record, "audit_clean", bad, 0.0, bad == 0);
+    const auto judged = static_cast<double>(record.audit.judged);
+    add_check(record, "audit_judged", judged, 1.0, judged > 0);
   }
   if (!hash_time.empty() && !hash_seen.empty()) {
     const bool same = hash_time == hash_seen;
@@ -177,9 +180,8 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     trace.finish();
     record.artifacts = artifacts.written();
     verdict = seen.verdict;
-    if (observer.penetrated())
-      merge(verdict, Outcome::penetration, "the audit found a crossing or a violation");
-    if (observer.unproven()) merge(verdict, Outcome::unproven, "the audit could not certify every motion");
+    const Verdict audited = observer.audit_verdict();
+    merge(verdict, audited.outcome, audited.detail);
   }
   const PassResult& main = look ? seen : timed;
   record.status.outcome = verdict.outcome;
@@ -208,9 +210,9 @@ bool simulate(const RunConfig& config, const RunOptions& options, RunRecord& rec
   }
   fill_scene(config, *scene, record);
   fill_plan(config, *scene, record);
-  if (const auto overlap = initial_intersection(config, *scene)) {
-    record.status.outcome = Outcome::initial_intersection;
-    record.status.detail = *overlap;
+  if (const auto failure = start_failure(config, *scene, options.interrupted)) {
+    record.status.outcome = failure->outcome;
+    record.status.detail = failure->detail;
     return false;
   }
   Calibration calibration;
@@ -253,6 +255,7 @@ RunRecord run_config(const RunConfig& config, const RunOptions& options) {
     std::filesystem::remove(options.folder / "trace.jsonl", none_there);
   }
   fill_labels(config, options, record);
+  record.comparability = judge_comparability(compared_run(record), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
   write_run(options.folder, record);

@@ -2,62 +2,93 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <span>
+#include <algorithm>
+#include <set>
 
 #include "core/audit/audit.hpp"
 #include "experiments/run/audit_mesh.hpp"
+#include "experiments/run/audit_verdict.hpp"
+#include "experiments/run/runner.hpp"
 
 namespace bb {
 namespace {
 
-std::string name_of(const Scene& scene, std::span<const int> vertices) {
-  const Body& body =
-      scene.bodies[static_cast<std::size_t>(scene.body[static_cast<std::size_t>(vertices.front())])];
-  std::string text = body.name + "[";
-  for (const int v : vertices) {
-    if (text.back() != '[') text += ' ';
-    text += std::to_string(v - body.first_vertex);
+// The primitives without a free vertex.
+audit::AuditMesh prescribed_part(const audit::AuditMesh& mesh) {
+  audit::AuditMesh out = mesh;
+  Eigen::Index n_edges = 0, n_triangles = 0;
+  out.opposite.clear();
+  for (Eigen::Index e = 0; e < mesh.edges.cols(); ++e) {
+    if (!mesh.all_prescribed(mesh.edges.col(e))) continue;
+    out.edges.col(n_edges++) = mesh.edges.col(e);
+    if (!mesh.opposite.empty()) out.opposite.push_back(mesh.opposite[static_cast<std::size_t>(e)]);
   }
-  return text + "]";
+  for (Eigen::Index t = 0; t < mesh.triangles.cols(); ++t) {
+    if (mesh.all_prescribed(mesh.triangles.col(t))) out.triangles.col(n_triangles++) = mesh.triangles.col(t);
+  }
+  out.edges.conservativeResize(2, n_edges);
+  out.triangles.conservativeResize(3, n_triangles);
+  out.points.clear();
+  for (int v = 0; v < static_cast<int>(mesh.prescribed.size()); ++v) {
+    if (mesh.is_prescribed(v)) out.points.push_back(v);
+  }
+  return out;
 }
 
-std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const audit::PairName& pair) {
-  const auto edge = [&](int i) {
-    return "edge " + name_of(scene, std::array{mesh.edges(0, i), mesh.edges(1, i)});
-  };
-  const auto triangle = [&](int i) {
-    return "triangle " +
-           name_of(scene, std::array{mesh.triangles(0, i), mesh.triangles(1, i), mesh.triangles(2, i)});
-  };
-  const auto vertex = [&](int v) { return "vertex " + name_of(scene, std::array{v}); };
-  switch (pair.kind) {
-    case audit::PairKind::edge_triangle:
-      return edge(pair.first) + " crosses " + triangle(pair.second);
-    case audit::PairKind::edge_edge_2d:
-      return edge(pair.first) + " crosses " + edge(pair.second);
-    case audit::PairKind::vertex_obstacle:
-      return vertex(pair.first) + " is on the wrong side of obstacle " +
-             scene.obstacles[static_cast<std::size_t>(pair.second)].name;
-    default:
-      return fmt::format("pair {} {}", pair.first, pair.second);
+// Prescribed vertices that move relative to each other, or to an obstacle, may cross.
+bool prescribed_may_cross(const Scene& scene) {
+  std::set<int> motions;
+  bool driven = false;
+  for (const Pin& pin : scene.pins) {
+    motions.insert(pin.motion);
+    driven = driven || !scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
   }
+  return driven && (motions.size() > 1 || !scene.obstacles.empty());
+}
+
+// The given motions, step by step, as a run would follow them: straight from pose to pose.
+std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene& scene,
+                                           const std::atomic<bool>* interrupted) {
+  if (!prescribed_may_cross(scene)) return std::nullopt;
+  const audit::AuditMesh mesh = prescribed_part(make_audit_mesh(scene));
+  audit::Audit judge(mesh);
+  const double tolerance = audit_tolerance(scene, config.contact.ccd_park);
+  double last_end = 0;  // from then on every motion has ended
+  for (const RigidMotion& motion : scene.motions) {
+    if (!motion.is_static()) last_end = std::max(last_end, motion.end);
+  }
+  Positions x0 = scene.x0, x1 = x0;
+  for (int step = 0; step < config.time.steps && step * config.time.dt < last_end; ++step) {
+    if (interrupted && interrupted->load()) throw Interrupted{};
+    for (const Pin& pin : scene.pins) x1.col(pin.vertex) = pin_pose(scene, pin, (step + 1) * config.time.dt);
+    judge.check_motion(x0, x1, step, tolerance);
+    judge.check_state(x1, step);
+    if (judge.ledger().scene_faults > 0) return judge_audit(scene, mesh, judge.ledger());
+    x0 = x1;
+  }
+  return std::nullopt;
 }
 
 }  // namespace
 
-std::optional<std::string> initial_intersection(const RunConfig& config, const Scene& scene) {
-  ContactSystem contacts(scene, {config.contact.mollifier, config.contact.ccd_park});
-  if (const auto overlap = contacts.check_initial(scene.x0)) {
-    return fmt::format("{} (gap {:.3g} m)", overlap->text, overlap->gap);
-  }
+std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene,
+                                     const std::atomic<bool>* interrupted) {
   const audit::AuditMesh mesh = make_audit_mesh(scene);
   audit::Audit judge(mesh);
-  judge.check_state(scene.x0, 0);
+  judge.check_state(scene.x0, -1);
   const audit::AuditLedger& ledger = judge.ledger();
-  if (ledger.ok()) return std::nullopt;
-  return ledger.first_bad ? describe(scene, mesh, *ledger.first_bad)
-                          : std::string("a state that cannot be judged");
+  if (ledger.scene_faults > 0) return judge_audit(scene, mesh, ledger);
+  ContactSystem contacts(scene, {config.contact.mollifier, config.contact.ccd_park});
+  if (const auto overlap = contacts.check_initial(scene.x0)) {
+    return Verdict{Outcome::initial_intersection,
+                   fmt::format("{} (gap {:.3g} m)", overlap->text, overlap->gap)};
+  }
+  if (!ledger.clean()) {
+    return Verdict{Outcome::initial_intersection, ledger.first_bad
+                                                      ? describe(scene, mesh, *ledger.first_bad)
+                                                      : std::string("a state that cannot be judged")};
+  }
+  return prescribed_crossing(config, scene, interrupted);
 }
 
 }  // namespace bb

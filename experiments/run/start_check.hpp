@@ -2,14 +2,20 @@
 // the wrong side of an obstacle. The last two are judged exactly, by the audit.
 #pragma once
 
+#include <atomic>
 #include <optional>
-#include <string>
 
 #include "experiments/config/run_config.hpp"
+#include "experiments/run/outcome.hpp"
 
 namespace bb {
 
-/// The first pair that touches or crosses at the start, in words; nothing when the start is valid.
-std::optional<std::string> initial_intersection(const RunConfig& config, const Scene& scene);
+/// Why there is no first step; nothing when the start is valid. invalid_scene: two prescribed primitives
+/// cross, at the start or where their given motions take them at the end of a step. initial_intersection: the
+/// first other pair that touches or crosses at the start.
+/// Cost: one audit of the surface, and one of the prescribed surface per step when prescribed bodies move
+/// relative to each other. Errors: Interrupted when `interrupted` (may be null) becomes true.
+std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene,
+                                     const std::atomic<bool>* interrupted = nullptr);
 
 }  // namespace bb

@@ -16,7 +16,7 @@ def _trace_line(step: int, iteration: int, scale: float) -> dict:
 
     last = iteration == 1
     return {
-        "step": step, "iteration": iteration, "linear_iterations": 10 + step, "probe_pcg_iterations": 10.0 + step, "gap_min_rel": 0.5,
+        "step": step, "iteration": iteration, "linear_iterations": 10 + step, "probe_pcg_iterations": 10.0 + step, "gap_min_iterates_rel": 0.5,
         "kappa_change_rel": None if iteration == 0 else 0.0, "contacts": CONTACTS, "time": {},
         "cond": [estimate("none", scale * 10.0 ** (step + 1), "lower_bound" if last and step == 2 else "ok"),
                  estimate("block_jacobi", scale * (step + 1))],
@@ -25,19 +25,25 @@ def _trace_line(step: int, iteration: int, scale: float) -> dict:
 
 def _step(step: int, gap: float | None) -> dict:
     return {"step": step, "t_s": 0.01 * (step + 1), "newton_iterations": 2, "gap_min_m": None if gap is None else gap * 1e-2,
-            "gap_min_rel": gap, "contacts": CONTACTS, "time": {}}
+            "gap_min_rel": gap, "gap_min_iterates_rel": None if gap is None else 0.9 * gap, "contacts": CONTACTS, "time": {}}
 
 
-def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: str = "ok", note: str = "") -> dict:
+def _comparability(gap: float, verdict: str) -> dict:
+    return {"verdict": verdict, "reason": "", "reference_run": "log", "reference_run_id": "id_log", "gap_rel": gap,
+            "reference_gap_rel": 0.1, "ratio": gap / 0.1, "max_ratio": 2.0}
+
+
+def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: str = "ok", note: str = "", verdict: str = "comparable") -> dict:
     shape = "log" if formulation == "log" else "cubic"
     record = {
-        "schema": {"name": "barrierbench.run", "version": "1.4.0"},
+        "schema": {"name": "barrierbench.run", "version": "2.4.0"},
         "a_field_of_a_later_version": 1,
         "ids": {"run_id": f"id_{formulation}", "config_id": f"config_{formulation}", "sweep_id": "strip"},
         "status": {"outcome": outcome, "started_utc": "2024-01-31T12:00:00Z", "detail": "" if outcome == "ok" else "step 2 ended at its cap", "valid": outcome == "ok"},
         "labels": {"step_solver": "line_search", "matching_rule": "equal_force", "scene": "drape2d", "formulation": formulation, "shape": shape, "argument": "gap", "note": note},
         "summary": {"newton_iterations": 6, "first_contact": {}, "linear_iterations": 66, "probe_pcg": STATS, "gap_min_rel": {**STATS, "min": gap}, "time": {}},
-        "audit": {"enabled": True, "crossings": 0, "violations": 0, "unproven": 0},
+        "audit": {"enabled": True, "judged": 9, "crossings": 0, "violations": 0, "unproven": 0, "obstacle_violations": 0, "scene_faults": 0},
+        "comparability": _comparability(gap, verdict),
         "scene": {"free_dofs": 30, "extent_m": 1.0},
         "matching": {"rule": "equal_force"},
         "steps": [_step(0, None), _step(1, 2 * gap), _step(2, gap)],
@@ -52,7 +58,7 @@ def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: s
 
 def write_cycle(folder: Path, change: float) -> None:
     """Appends a step 3 in which the gap swings between two values and kappa changes by `change` each time."""
-    lines = [_trace_line(3, iteration, 1.0) | {"gap_min_rel": (0.1, 0.6)[iteration % 2], "kappa_change_rel": change} for iteration in range(12)]
+    lines = [_trace_line(3, iteration, 1.0) | {"gap_min_iterates_rel": (0.1, 0.6)[iteration % 2], "kappa_change_rel": change} for iteration in range(12)]
     with (folder / "trace.jsonl").open("a") as trace:
         trace.writelines(json.dumps(line) + "\n" for line in lines)
 
@@ -61,5 +67,5 @@ def write_set(root: Path) -> None:
     """log and cubic comparable, cubic_dynamic three times closer, quadratic stalled."""
     write_run(root, "log", 1.0, 0.10, note="strip: log")
     write_run(root, "cubic", 2.0, 0.15, note="strip: cubic")
-    write_run(root, "cubic_dynamic", 3.0, 0.03, note="strip: cubic_dynamic")
-    write_run(root, "quadratic", 4.0, 0.12, outcome="newton_stall", note="strip: quadratic")
+    write_run(root, "cubic_dynamic", 3.0, 0.03, note="strip: cubic_dynamic", verdict="not_comparable")
+    write_run(root, "quadratic", 4.0, 0.12, outcome="newton_stall", note="strip: quadratic", verdict="not_valid")

@@ -11,7 +11,7 @@ from analysis import style
 from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle
 from analysis.load import load
 from analysis.table import as_text, summary_table
-from synthetic import write_cycle, write_set
+from synthetic import write_cycle, write_run, write_set
 
 
 @pytest.fixture
@@ -67,7 +67,7 @@ def test_a_kappa_that_does_not_settle_is_drawn_in_its_step(tmp_path):
 
     assert set(table["step"]) == {3}
     assert list(table["kappa_change_rel"]) == [0.8] * 12
-    assert list(table["gap_min_rel"]) == [0.1, 0.6] * 6
+    assert list(table["gap_min_iterates_rel"]) == [0.1, 0.6] * 6
 
 
 @pytest.mark.parametrize(("run", "change"), [("quadratic", 1e-3), ("log", 0.8)])
@@ -91,6 +91,28 @@ def test_failed_and_not_comparable_runs_are_hollow_and_named(records):
     assert dynamic.get_label() == "cubic_dynamic (not_comparable)"
     assert quadratic.get_label() == "quadratic (newton_stall)"
     assert [t.get_text() for t in axis.texts] == ["newton_stall"]
+    plt.close("all")
+
+
+def test_comparability_is_read_and_never_computed(tmp_path):
+    """Whatever the gaps are: an invalid run that is no failure, a reference far away, a run without a reference."""
+    write_run(tmp_path / "runs", "log", 1.0, 0.10, note="strip: log", verdict="not_valid")
+    write_run(tmp_path / "runs", "cubic", 2.0, 1e-6, note="strip: cubic")
+    write_run(tmp_path / "runs", "quadratic", 2.0, 0.1, note="strip: quadratic", verdict="no_reference")
+    runs = load(tmp_path / "runs").runs.set_index("series", drop=False)
+
+    assert [style.name_of(runs.loc[name]) for name in ("log", "cubic", "quadratic")] == ["log (not_valid)", "cubic", "quadratic"]
+    verdicts = summary_table(load(tmp_path / "runs")).set_index("series")["verdict"]
+    assert verdicts["log"] == "ok, not_valid" and verdicts["cubic"] == verdicts["quadratic"] == "ok"
+
+
+def test_the_legend_states_the_rule_of_hollow_markers_and_its_reference(records):
+    rule = style.hollow_rule(records.runs).replace("\n", " ")
+    assert "converged step ends" in rule and "factor 2 of log" in rule
+    fig, axis = plt.subplots()
+    style.draw(axis, np.array([0, 1]), np.array([1.0, 2.0]), records.runs.iloc[0])
+    style.legend_below(fig, axis, records.runs)
+    assert fig.legends[0].get_title().get_text() == style.hollow_rule(records.runs)
     plt.close("all")
 
 

@@ -150,6 +150,96 @@ TEST(Audit, planar_edges_cross_by_orient2d) {
   EXPECT_EQ(audit.ledger().first_bad->kind, PairKind::edge_edge_2d);
 }
 
+TEST(Audit, a_surface_of_which_nothing_was_judged_is_never_ok) {
+  EXPECT_FALSE(AuditLedger{}.ok());
+  AuditMesh no_edges = planar_elements();  // as a contact model without edge pairs would list it
+  no_edges.edges.resize(2, 0);
+  no_edges.points = {0, 1, 2, 3, 4, 5};
+  Audit blind(no_edges);
+  blind.check_state(planar_at(-0.5), 0);  // the triangles cross
+  blind.check_motion(planar_at(-0.5), planar_at(-9.0), 0, tolerance);
+  EXPECT_TRUE(blind.ledger().clean());
+  EXPECT_EQ(blind.ledger().judged(), 0);
+  EXPECT_FALSE(blind.ledger().ok());
+
+  no_edges.obstacles = {{ObstacleKind::sphere, Vec3d(0, -20, 0), Vec3d::UnitZ(), 1.0, false}};
+  Audit obstacle_only(no_edges);  // signs of obstacles do not stand in for the pairs of the surface
+  obstacle_only.check_state(planar_at(0.5), 0);
+  EXPECT_GT(obstacle_only.ledger().obstacle_queries, 0);
+  EXPECT_FALSE(obstacle_only.ledger().ok());
+
+  AuditMesh no_vertices = sheet_and_triangle();  // every vertex fixed: no sign of the obstacle is judged
+  no_vertices.fixed.assign(7, 1);
+  no_vertices.obstacles = {{ObstacleKind::plane, Vec3d(0, 0, -1), Vec3d::UnitZ(), 0.0, false}};
+  Audit surface_only(no_vertices);
+  surface_only.check_state(sheet_and_triangle_at(0.5), 0);
+  EXPECT_GT(surface_only.ledger().pair_queries, 0);
+  EXPECT_FALSE(surface_only.ledger().ok());
+}
+
+TEST(Audit, ledger_counts_what_there_is_and_what_was_judged) {
+  AuditMesh mesh = planar_elements();
+  mesh.obstacles = {{ObstacleKind::sphere, Vec3d(0, -20, 0), Vec3d::UnitZ(), 1.0, false}};
+  Audit audit(mesh);
+  audit.check_state(planar_at(0.5), 0);
+  const AuditLedger first = audit.ledger();
+  EXPECT_EQ(first.subjects.edges, 6);
+  EXPECT_EQ(first.subjects.triangles, 2);
+  EXPECT_EQ(first.subjects.vertices, 6);
+  EXPECT_EQ(first.subjects.obstacles, 1);
+  EXPECT_EQ(first.pair_queries, 6);      // every edge against all edges
+  EXPECT_EQ(first.obstacle_queries, 6);  // every vertex
+  EXPECT_EQ(first.judged(), 12);
+  audit.check_motion(planar_at(0.5), planar_at(0.4), 1, tolerance);
+  EXPECT_EQ(audit.ledger().pair_queries, 12);     // every vertex against all edges
+  EXPECT_EQ(audit.ledger().obstacle_queries, 9);  // the three that move
+  EXPECT_GT(audit.ledger().motion_pairs, 0);
+  EXPECT_TRUE(audit.ledger().ok());
+}
+
+TEST(Audit, prescribed_primitives_that_cross_are_a_fault_of_the_scene) {
+  AuditMesh mesh = sheet_and_triangle();
+  mesh.prescribed.assign(7, 1);
+  mesh.obstacles = {{ObstacleKind::plane, Vec3d(0, 0, -5), Vec3d::UnitZ(), 0.0, false}};
+  Audit state(mesh);
+  state.check_state(sheet_and_triangle_at(0.0), 2);
+  EXPECT_EQ(state.ledger().scene_faults, 1);
+  EXPECT_EQ(state.ledger().crossings, 0);
+  EXPECT_FALSE(state.ledger().penetrated());
+  EXPECT_FALSE(state.ledger().ok());
+  EXPECT_EQ(state.ledger().first_fault, (PairName{PairKind::edge_triangle, 7, 0}));
+  EXPECT_EQ(state.ledger().first_fault_step, 2);
+  EXPECT_FALSE(state.ledger().first_bad);
+
+  Audit motion(mesh);
+  motion.check_motion(sheet_and_triangle_at(0.5), sheet_and_triangle_at(-0.5), 3, tolerance);
+  EXPECT_EQ(motion.ledger().scene_faults, 3);
+  EXPECT_EQ(motion.ledger().violations, 0);
+  motion.check_state(sheet_and_triangle_at(-6), 4);  // driven beyond the plane
+  EXPECT_EQ(motion.ledger().scene_faults, 6);
+  EXPECT_EQ(motion.ledger().obstacle_violations, 0);
+
+  mesh.prescribed[5] = 0;  // one free vertex of the crossing edge: now the solver decides
+  Audit free(mesh);
+  free.check_state(sheet_and_triangle_at(0.0), 2);
+  EXPECT_EQ(free.ledger().scene_faults, 0);
+  EXPECT_EQ(free.ledger().crossings, 1);
+}
+
+TEST(Audit, a_vertex_through_the_edge_of_its_own_triangle_is_an_inversion) {
+  AuditMesh mesh = planar_elements();
+  Positions x0 = planar_at(5.0), x1 = x0;
+  x1(1, 5) = 4.0;  // the tip of the upper triangle below its base, edge 3
+  const MotionAudit judged = audit_motion(mesh, colliding_vertices(mesh), x0, x1, tolerance);
+  EXPECT_EQ(judged.violations, 1);
+  mesh.opposite = {2, 0, 1, 5, 3, 4};
+  const MotionAudit exempt = audit_motion(mesh, colliding_vertices(mesh), x0, x1, tolerance);
+  EXPECT_EQ(exempt.violations, 0);
+  EXPECT_EQ(audit_state(mesh, colliding_vertices(mesh), x1, true).inverted, 1);
+  EXPECT_GT(
+      audit_motion(mesh, colliding_vertices(mesh), planar_at(0.5), planar_at(-9.0), tolerance).violations, 0);
+}
+
 TEST(Audit, planar_vertex_through_an_edge_is_a_violation) {
   const AuditMesh mesh = planar_elements();
   const std::vector<int> vertices = colliding_vertices(mesh);

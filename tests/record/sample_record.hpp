@@ -14,7 +14,7 @@ inline TraceRow sample_trace_row() {
   row.alpha = 0.5;
   row.contacts.edge_edge = 2;
   row.contacts.obstacle = 3;
-  row.gap_min_m = 1e-3;
+  row.gap_min_iterates_m = 1e-3;
   ConditionSample raw;
   raw.estimate = {};
   raw.estimate.lambda_min = 2;
@@ -48,6 +48,7 @@ inline RunRecord sample_record() {
   r.matching.load_N = 0.3;
   StepRecord step;
   step.gap_min_m = 1.25e-3;
+  step.gap_min_iterates_m = 1e-3;
   step.newton_iterations = 4;
   step.status = "max_iterations";
   step.time[Phase::linear_factor] = 0.5;
@@ -57,7 +58,10 @@ inline RunRecord sample_record() {
   r.summary.cond["full/block_jacobi"].statuses["ok"] = 2;
   r.summary.state_hash = std::string(64, 'd');
   r.samples["total_s"] = {1.5, 1.25};
+  r.audit.judged = 12;
   r.audit.examples = {"edge 1 2 through triangle 3 4 5"};
+  r.comparability.verdict = "not_valid";
+  r.comparability.reason = "the run is not valid: its outcome is newton_stall";
   r.validity.checks = {{"steps_capped", 1, 0, false}};
   r.artifacts = {{"trace.jsonl", "trace", "application/x-ndjson", std::string(64, 'e'), 12}};
   return r;

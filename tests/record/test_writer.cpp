@@ -74,6 +74,10 @@ TEST_F(Writer, WritesEverythingItWasGiven) {
   EXPECT_EQ(j["status"]["outcome"], "newton_stall");
   EXPECT_EQ(j["config"], json::parse(record.config_json));
   EXPECT_EQ(j["steps"][0]["gap_min_m"], 1.25e-3);
+  EXPECT_EQ(j["steps"][0]["gap_min_iterates_m"], 1e-3);
+  EXPECT_EQ(j["audit"]["judged"], 12);
+  EXPECT_EQ(j["comparability"]["verdict"], "not_valid");
+  EXPECT_EQ(j["comparability"]["max_ratio"], 2.0);
   EXPECT_EQ(j["steps"][0]["time"]["linear_factor_s"], 0.5);
   EXPECT_EQ(j["summary"]["cond"]["full/block_jacobi"]["statuses"]["ok"], 2);
   EXPECT_EQ(j["samples"]["total_s"], json({1.5, 1.25}));

@@ -1,0 +1,97 @@
+#include "experiments/run/audit_verdict.hpp"
+
+#include <fmt/format.h>
+
+#include <array>
+#include <span>
+
+namespace bb {
+namespace {
+
+std::string name_of(const Scene& scene, std::span<const int> vertices) {
+  const Body& body =
+      scene.bodies[static_cast<std::size_t>(scene.body[static_cast<std::size_t>(vertices.front())])];
+  std::string text = body.name + "[";
+  for (const int v : vertices) {
+    if (text.back() != '[') text += ' ';
+    text += std::to_string(v - body.first_vertex);
+  }
+  return text + "]";
+}
+
+std::string when(int step) { return step < 0 ? "at the start" : fmt::format("in step {}", step); }
+
+std::string penetration(const Scene& scene, const audit::AuditMesh& mesh, const audit::AuditLedger& ledger) {
+  std::string text =
+      fmt::format("audit: {} crossings in states, {} passages in motions, {} beyond an obstacle",
+                  ledger.crossings, ledger.violations, ledger.obstacle_violations);
+  if (ledger.first_bad) {
+    text += fmt::format("; the first {}: {}", when(ledger.first_bad_step),
+                        describe(scene, mesh, *ledger.first_bad));
+  }
+  const bool no_edge_pairs = scene.planar && scene.planar_pairs == PlanarPairs::vertex_vertex;
+  if (no_edge_pairs && ledger.crossings + ledger.violations > 0) {
+    text +=
+        "; the contact model vertex_vertex has no edge pairs: it allows edges to cross, which is no failure "
+        "of "
+        "the solver";
+  }
+  return text;
+}
+
+std::string unproven(const audit::AuditLedger& ledger) {
+  if (!ledger.self_test_passed) return "audit: the exact predicates failed their test on this machine";
+  if (ledger.non_finite > 0) return fmt::format("audit: {} states or motions not finite", ledger.non_finite);
+  if (ledger.unproven > 0) {
+    return fmt::format("audit: {} of {} pairs in motion could not be certified", ledger.unproven,
+                       ledger.motion_pairs);
+  }
+  const audit::AuditSubjects& s = ledger.subjects;
+  return fmt::format(
+      "audit: nothing was judged of a surface of {} edges, {} triangles, {} vertices and {} obstacles",
+      s.edges, s.triangles, s.vertices, s.obstacles);
+}
+
+}  // namespace
+
+std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const audit::PairName& pair) {
+  const auto edge = [&](int i) {
+    return "edge " + name_of(scene, std::array{mesh.edges(0, i), mesh.edges(1, i)});
+  };
+  const auto triangle = [&](int i) {
+    return "triangle " +
+           name_of(scene, std::array{mesh.triangles(0, i), mesh.triangles(1, i), mesh.triangles(2, i)});
+  };
+  const auto vertex = [&](int v) { return "vertex " + name_of(scene, std::array{v}); };
+  switch (pair.kind) {
+    case audit::PairKind::edge_triangle:
+      return edge(pair.first) + " crosses " + triangle(pair.second);
+    case audit::PairKind::edge_edge_2d:
+      return edge(pair.first) + " crosses " + edge(pair.second);
+    case audit::PairKind::vertex_triangle:
+      return vertex(pair.first) + " passes through " + triangle(pair.second);
+    case audit::PairKind::edge_edge:
+      return edge(pair.first) + " passes through " + edge(pair.second);
+    case audit::PairKind::vertex_edge_2d:
+      return vertex(pair.first) + " passes through " + edge(pair.second);
+    case audit::PairKind::vertex_obstacle:
+      return vertex(pair.first) + " is on the wrong side of obstacle " +
+             scene.obstacles[static_cast<std::size_t>(pair.second)].name;
+    case audit::PairKind::inverted:
+      return triangle(pair.first) + " is inverted";
+  }
+  return {};
+}
+
+Verdict judge_audit(const Scene& scene, const audit::AuditMesh& mesh, const audit::AuditLedger& ledger) {
+  if (ledger.ok()) return {};
+  if (ledger.scene_faults > 0 && ledger.first_fault) {
+    return {Outcome::invalid_scene,
+            fmt::format("{}, and both are prescribed: {}", describe(scene, mesh, *ledger.first_fault),
+                        when(ledger.first_fault_step))};
+  }
+  if (ledger.penetrated()) return {Outcome::penetration, penetration(scene, mesh, ledger)};
+  return {Outcome::unproven, unproven(ledger)};
+}
+
+}  // namespace bb

@@ -1,0 +1,126 @@
+#include "experiments/run/comparability.hpp"
+
+#include <fmt/format.h>
+
+#include <fstream>
+#include <vector>
+
+#include "core/record/json_fields.hpp"
+#include "core/record/writer.hpp"
+
+namespace bb {
+namespace {
+
+using fields::Json;
+
+bool in_contact(const ComparedRun& run) { return run.gap_rel.finite(); }
+
+std::string reason_of(const Comparability& c) {
+  return fmt::format("smallest gap {:.3g} d_hat, {:.3g} times that of the reference: {}within a factor {:g}",
+                     c.gap_rel.value, c.ratio.value, c.verdict == "comparable" ? "" : "not ", c.max_ratio);
+}
+
+// Nothing where there is no record of this version: a missing, torn or older file.
+std::optional<Json> read_record(const std::filesystem::path& folder) {
+  std::ifstream in(folder / "run.json");
+  if (!in) return std::nullopt;
+  Json j = Json::parse(in, nullptr, false);
+  const bool readable = j.is_object() && j.contains("schema") && j["schema"].is_object() &&
+                        j["schema"].value("version", "") == kRunSchemaVersion && j.contains("comparability");
+  return readable ? std::optional(std::move(j)) : std::nullopt;
+}
+
+ComparedRun compared_run(const Json& j, const std::filesystem::path& folder) {
+  ComparedRun out;
+  out.folder = folder.filename().string();
+  out.run_id = j["ids"]["run_id"].get<std::string>();
+  out.outcome = j["status"]["outcome"].get<std::string>();
+  out.shape = j["labels"]["shape"].get<std::string>();
+  out.argument = j["labels"]["argument"].get<std::string>();
+  out.matching_rule = j["labels"]["matching_rule"].get<std::string>();
+  out.valid = j["status"]["valid"].get<bool>();
+  const Json& gap = j["summary"]["gap_min_rel"]["min"];
+  out.gap_rel = gap.is_number() ? Number(gap.get<double>()) : Number::missing("no_contacts");
+  return out;
+}
+
+}  // namespace
+
+ComparedRun compared_run(const RunRecord& record) {
+  ComparedRun out;
+  out.run_id = record.ids.run_id;
+  out.outcome = std::string(to_string(record.status.outcome));
+  out.shape = record.labels.shape;
+  out.argument = record.labels.argument;
+  out.matching_rule = record.labels.matching_rule;
+  out.valid = record.validity.valid;
+  out.gap_rel = record.summary.gap_min_rel.min;
+  if (!out.gap_rel.finite()) out.gap_rel = Number::missing("no_contacts");
+  return out;
+}
+
+Comparability judge_comparability(const ComparedRun& run, const std::optional<ComparedRun>& reference) {
+  Comparability out;
+  out.gap_rel = run.gap_rel;
+  out.reference_gap_rel = out.ratio = Number::missing("no_reference");
+  if (reference) {
+    out.reference_run = reference->folder;
+    out.reference_run_id = reference->run_id;
+    out.reference_gap_rel = reference->gap_rel;
+  }
+  const bool usable = reference && reference->valid && in_contact(*reference);
+  if (usable && in_contact(run)) out.ratio = run.gap_rel.value / reference->gap_rel.value;
+  if (!run.valid) {
+    out.verdict = "not_valid";
+    out.reason = "the run is not valid: its outcome is " + run.outcome;
+  } else if (!reference) {
+    out.verdict = "no_reference";
+    out.reason = "no valid run of a finished sweep to compare with";
+  } else if (!usable) {
+    out.verdict = "no_reference";
+    out.reason = reference->valid ? "the reference has no contact at the end of a converged step"
+                                  : "the reference is not valid: its outcome is " + reference->outcome;
+  } else if (!in_contact(run)) {
+    out.verdict = "not_comparable";
+    out.reason = "no contact at the end of a converged step, where the reference has some";
+  } else {
+    const double ratio = out.ratio.value;
+    out.verdict = ratio >= 1 / out.max_ratio && ratio <= out.max_ratio ? "comparable" : "not_comparable";
+    out.reason = run.folder == reference->folder ? "the reference itself" : reason_of(out);
+  }
+  return out;
+}
+
+std::optional<std::size_t> default_reference(std::span<const std::optional<ComparedRun>> runs,
+                                             std::size_t index) {
+  std::optional<std::size_t> first;
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (!runs[i] || !runs[i]->valid || !in_contact(*runs[i])) continue;
+    const bool log = runs[i]->shape == "log" && runs[i]->argument == "gap";
+    if (log && runs[index] && runs[i]->matching_rule == runs[index]->matching_rule) return i;
+    if (!first) first = i;
+  }
+  return first;
+}
+
+void write_comparability(std::span<const SweepMember> members) {
+  std::vector<std::optional<Json>> records;
+  std::vector<std::optional<ComparedRun>> runs;
+  for (const SweepMember& member : members) {
+    records.push_back(read_record(member.folder));
+    runs.push_back(records.back() ? std::optional(compared_run(*records.back(), member.folder))
+                                  : std::nullopt);
+  }
+  for (std::size_t i = 0; i < members.size(); ++i) {
+    if (!runs[i]) continue;
+    const auto chosen = members[i].reference ? members[i].reference : default_reference(runs, i);
+    const Comparability found = judge_comparability(*runs[i], chosen ? runs[*chosen] : std::nullopt);
+    Json now = fields::comparability(found);
+    Json& kept = (*records[i])["comparability"];
+    if (kept == now) continue;
+    kept = std::move(now);
+    write_atomically(members[i].folder / "run.json", records[i]->dump(1) + "\n");
+  }
+}
+
+}  // namespace bb

@@ -1,0 +1,47 @@
+// Which runs of a sweep may be compared with each other. Computed here and nowhere else: the record keeps the
+// verdict, and tables and figures read it.
+#pragma once
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+
+#include "core/record/run_record.hpp"
+
+namespace bb {
+
+/// What the comparison reads of a record.
+struct ComparedRun {
+  std::string folder;  // its name beside the other runs
+  std::string run_id, outcome, shape, argument, matching_rule;
+  bool valid = false;
+  Number gap_rel;  // smallest d/d_hat over converged step ends; missing without contact
+};
+ComparedRun compared_run(const RunRecord& record);
+
+/// The rule. not_valid: the run is not valid, so that nothing of it is compared. no_reference: there is none,
+/// or it is not valid, or never in contact at a converged step end. Otherwise comparable exactly if the
+/// smallest gap (d/d_hat, over converged step ends) is within a factor 2 of the reference's: barriers that
+/// keep their contacts at other distances do different work.
+/// @param reference the run itself may be its own reference
+Comparability judge_comparability(const ComparedRun& run, const std::optional<ComparedRun>& reference);
+
+/// Without a mark in the sweep's file: the first valid run in contact with the log barrier on the gap and the
+/// same matching rule; else the first valid run in contact; else none.
+std::optional<std::size_t> default_reference(std::span<const std::optional<ComparedRun>> runs,
+                                             std::size_t index);
+
+/// A case of a sweep: its folder, and the index of its reference where the sweep's file marks one.
+struct SweepMember {
+  std::filesystem::path folder;
+  std::optional<std::size_t> reference;
+};
+
+/// Writes `comparability` into every record of the sweep, those of earlier runs too, each as a whole; a
+/// record that says the same already is left alone. Folders without a readable record are passed over.
+/// Errors: RecordError.
+void write_comparability(std::span<const SweepMember> members);
+
+}  // namespace bb

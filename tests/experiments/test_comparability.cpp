@@ -1,0 +1,125 @@
+// The rule by which runs of a sweep may be compared, and where it is written.
+#include "experiments/run/comparability.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+#include <vector>
+
+#include "core/record/writer.hpp"
+
+namespace bb {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+ComparedRun run(const char* folder, double gap, bool valid = true, const char* shape = "log",
+                const char* rule = "equal_force") {
+  return {folder, std::string("id_") + folder, valid ? "ok" : "penetration", shape, "gap", rule, valid, gap};
+}
+ComparedRun untouched(const char* folder) {
+  ComparedRun out = run(folder, 0);
+  out.gap_rel = Number::missing("no_contacts");
+  return out;
+}
+
+TEST(Comparability, IsAFactorTwoOfTheReferenceEitherWay) {
+  const ComparedRun log = run("log", 0.1);
+  const auto verdict = [&](double gap) { return judge_comparability(run("other", gap), log).verdict; };
+  EXPECT_EQ(verdict(0.2), "comparable");
+  EXPECT_EQ(verdict(0.201), "not_comparable");
+  EXPECT_EQ(verdict(0.05), "comparable");
+  EXPECT_EQ(verdict(0.0499), "not_comparable");
+  const Comparability found = judge_comparability(run("other", 0.15), log);
+  EXPECT_EQ(found.reference_run, "log");
+  EXPECT_EQ(found.reference_run_id, "id_log");
+  EXPECT_DOUBLE_EQ(found.ratio.value, 1.5);
+  EXPECT_EQ(found.reference_gap_rel.value, 0.1);
+  EXPECT_EQ(judge_comparability(log, log).verdict, "comparable");
+}
+
+TEST(Comparability, AnInvalidRunIsNeitherComparedNorAReference) {
+  const ComparedRun bad = run("bad", 0.1, false), good = run("good", 0.1);
+  EXPECT_EQ(judge_comparability(bad, good).verdict, "not_valid");
+  EXPECT_EQ(judge_comparability(bad, std::nullopt).verdict, "not_valid");
+  EXPECT_EQ(judge_comparability(good, bad).verdict, "no_reference");
+  EXPECT_NE(judge_comparability(good, bad).reason.find("penetration"), std::string::npos);
+  EXPECT_EQ(judge_comparability(good, std::nullopt).verdict, "no_reference");
+}
+
+TEST(Comparability, ARunWithoutContactIsNotComparableToOneWithIt) {
+  EXPECT_EQ(judge_comparability(untouched("free"), run("log", 0.1)).verdict, "not_comparable");
+  EXPECT_EQ(judge_comparability(run("log", 0.1), untouched("free")).verdict, "no_reference");
+  EXPECT_EQ(judge_comparability(untouched("free"), run("log", 0.1)).ratio.status, "no_reference");
+}
+
+TEST(Comparability, DefaultReferenceIsTheLogOfTheSameRuleThatIsValid) {
+  const std::vector<std::optional<ComparedRun>> runs = {run("cubic as given", 0.3, true, "cubic", "as_given"),
+                                                        run("log broken", 0.1, false),
+                                                        std::nullopt,
+                                                        run("log", 0.1),
+                                                        run("log again", 0.1),
+                                                        run("log as given", 0.2, true, "log", "as_given")};
+  EXPECT_EQ(default_reference(runs, 1), 3U);
+  EXPECT_EQ(default_reference(runs, 4), 3U);
+  EXPECT_EQ(default_reference(runs, 0), 5U);
+  const std::vector<std::optional<ComparedRun>> one_valid = {run("log", 0.1, false), untouched("free"),
+                                                             run("cubic", 0.4, true, "cubic")};
+  EXPECT_EQ(default_reference(one_valid, 0), 2U);
+  EXPECT_EQ(judge_comparability(*one_valid[2], one_valid[2]).verdict, "comparable");
+  EXPECT_EQ(default_reference(std::vector<std::optional<ComparedRun>>{run("log", 0.1, false)}, 0),
+            std::nullopt);
+}
+
+class ComparabilityFiles : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    std::string pattern = (fs::temp_directory_path() / "bb_comparability_XXXXXX").string();
+    root_ = ::mkdtemp(pattern.data());
+  }
+  void TearDown() override { fs::remove_all(root_); }
+
+  void write(const char* name, double gap) const {
+    RunRecord r;
+    r.ids.run_id = std::string(64, 'a');
+    r.labels.shape = "log";
+    r.labels.argument = "gap";
+    r.validity.valid = true;
+    r.summary.gap_min_rel = summarize({gap, 0.9});
+    write_run(root_ / name, r);
+  }
+  json read(const char* name) const { return json::parse(std::ifstream(root_ / name / "run.json")); }
+  fs::path root_;
+};
+
+TEST_F(ComparabilityFiles, EveryRecordOfASweepGetsItAndOneThatSaysSoIsLeftAlone) {
+  write("log", 0.1), write("near", 0.15), write("far", 0.5);
+  fs::create_directories(root_ / "torn");
+  std::ofstream(root_ / "torn" / "run.json") << R"({"schema": )";
+  const std::vector<SweepMember> members = {{root_ / "far", {}},
+                                            {root_ / "torn", {}},
+                                            {root_ / "absent", {}},
+                                            {root_ / "log", {}},
+                                            {root_ / "near", 3U}};
+  const json before = read("near");
+  write_comparability(members);
+
+  EXPECT_EQ(read("far")["comparability"]["reference_run"], "far");  // the first: no mark
+  EXPECT_EQ(read("log")["comparability"]["verdict"], "not_comparable");
+  json after = read("near");
+  EXPECT_EQ(after["comparability"]["reference_run"], "log");
+  EXPECT_EQ(after["comparability"]["verdict"], "comparable");
+  after["comparability"] = before["comparability"];
+  EXPECT_EQ(after, before);  // nothing else of the record moved
+  EXPECT_FALSE(fs::exists(root_ / "absent"));
+
+  const auto written = fs::last_write_time(root_ / "near" / "run.json");
+  write_comparability(members);
+  EXPECT_EQ(fs::last_write_time(root_ / "near" / "run.json"), written);
+}
+
+}  // namespace
+}  // namespace bb
