@@ -66,6 +66,8 @@ TEST(JsonFields, OfAStep) {
   fill("inverted", step.inverted);
   fill("gap_min_m", step.gap_min_m);
   fill("gap_min_rel", step.gap_min_rel);
+  fill("gap_min_iterates_m", step.gap_min_iterates_m);
+  fill("gap_min_iterates_rel", step.gap_min_iterates_rel);
   fill("toi_min", step.toi_min);
   fill("max_stretch", step.max_stretch);
   fill("kappa_min_N_per_m", step.kappa_min_N_per_m);
@@ -99,6 +101,8 @@ TEST(JsonFields, OfTheSummary) {
   fill("ccd_probes", summary.ccd_probes);
   fill("ccd_capped", summary.ccd_capped);
   fill("gap_min_m", summary.gap_min_m);
+  fill("gap_min_iterates_m", summary.gap_min_iterates_m);
+  fill("gap_min_iterates_rel", summary.gap_min_iterates_rel);
   fill("max_stretch", summary.max_stretch);
   fill("contact_load_max_N", summary.contact_load_max_N);
   fill("limit_load_max_N_per_m", summary.limit_load_max_N_per_m);
@@ -163,6 +167,16 @@ TEST(JsonFields, OfMatchingAndAudit) {
   fill("capacity_N", matching.capacity_N);
   AuditRecord& audit = record.audit;
   Distinct judged;
+  judged("edges", audit.edges);
+  judged("triangles", audit.triangles);
+  judged("vertices", audit.vertices);
+  judged("obstacles", audit.obstacles);
+  judged("state_pairs", audit.state_pairs);
+  judged("motion_pairs", audit.motion_pairs);
+  judged("obstacle_queries", audit.obstacle_queries);
+  judged("judged", audit.judged);
+  judged("obstacle_violations", audit.obstacle_violations);
+  judged("scene_faults", audit.scene_faults);
   judged("states", audit.states);
   judged("motions", audit.motions);
   judged("crossings", audit.crossings);
@@ -174,6 +188,24 @@ TEST(JsonFields, OfMatchingAndAudit) {
   const json j = written(record);
   fill.expect_in(j["matching"]);
   judged.expect_in(j["audit"]);
+}
+
+TEST(JsonFields, OfComparability) {
+  RunRecord record = test::sample_record();
+  Comparability& found = record.comparability;
+  found.reference_run = "log-0123";
+  found.reference_run_id = "id";
+  Distinct fill;
+  fill("gap_rel", found.gap_rel);
+  fill("reference_gap_rel", found.reference_gap_rel);
+  fill("ratio", found.ratio);
+  fill("max_ratio", found.max_ratio);
+  const json j = written(record)["comparability"];
+  fill.expect_in(j);
+  EXPECT_EQ(j["verdict"], found.verdict);
+  EXPECT_EQ(j["reason"], found.reason);
+  EXPECT_EQ(j["reference_run"], "log-0123");
+  EXPECT_EQ(j["reference_run_id"], "id");
 }
 
 TEST(JsonFields, TheStatusIsThatOfTheChecks) {
@@ -212,6 +244,8 @@ TEST(JsonFields, OfATraceLine) {
   fill("ritz_min", row.ritz_min);
   fill("ritz_max", row.ritz_max);
   fill("probe_pcg_iterations", row.probe_pcg_iterations);
+  fill("gap_min_iterates_m", row.gap_min_iterates_m);
+  fill("gap_min_iterates_rel", row.gap_min_iterates_rel);
   fill("n_free", row.n_free);
   fill("nnz", row.nnz);
   fill("kappa_min_N_per_m", row.kappa_min_N_per_m);
