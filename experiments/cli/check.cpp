@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/math/error.hpp"
+#include "experiments/cli/progress.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/parse.hpp"

@@ -20,27 +20,37 @@ std::string reason_of(const Comparability& c) {
                      c.gap_rel.value, c.ratio.value, c.verdict == "comparable" ? "" : "not ", c.max_ratio);
 }
 
-// Nothing where there is no record of this version: a missing, torn or older file.
-std::optional<Json> read_record(const std::filesystem::path& folder) {
-  std::ifstream in(folder / "run.json");
-  if (!in) return std::nullopt;
-  Json j = Json::parse(in, nullptr, false);
-  const bool readable = j.is_object() && j.contains("schema") && j["schema"].is_object() &&
-                        j["schema"].value("version", "") == kRunSchemaVersion && j.contains("comparability");
-  return readable ? std::optional(std::move(j)) : std::nullopt;
-}
-
 ComparedRun compared_run(const Json& j, const std::filesystem::path& folder) {
   ComparedRun out;
   out.folder = folder.filename().string();
-  out.run_id = j["ids"]["run_id"].get<std::string>();
-  out.outcome = j["status"]["outcome"].get<std::string>();
-  out.shape = j["labels"]["shape"].get<std::string>();
-  out.argument = j["labels"]["argument"].get<std::string>();
-  out.matching_rule = j["labels"]["matching_rule"].get<std::string>();
-  out.valid = j["status"]["valid"].get<bool>();
-  const Json& gap = j["summary"]["gap_min_rel"]["min"];
+  out.run_id = j.at("ids").at("run_id").get<std::string>();
+  out.outcome = j.at("status").at("outcome").get<std::string>();
+  out.shape = j.at("labels").at("shape").get<std::string>();
+  out.argument = j.at("labels").at("argument").get<std::string>();
+  out.matching_rule = j.at("labels").at("matching_rule").get<std::string>();
+  out.valid = j.at("status").at("valid").get<bool>();
+  const Json& gap = j.at("summary").at("gap_min_rel").at("min");
   out.gap_rel = gap.is_number() ? Number(gap.get<double>()) : Number::missing("no_contacts");
+  return out;
+}
+
+struct Member {
+  Json record;
+  std::optional<ComparedRun> run;  // nothing where no record of this version can be read
+};
+
+Member read_member(const std::filesystem::path& folder) {
+  Member out;
+  std::ifstream in(folder / "run.json");
+  if (!in) return out;
+  try {
+    out.record = Json::parse(in);
+    if (out.record.at("schema").at("version") == kRunSchemaVersion && out.record.contains("comparability")) {
+      out.run = compared_run(out.record, folder);
+    }
+  } catch (const Json::exception&) {  // torn, or no record at all
+    out.run.reset();
+  }
   return out;
 }
 
@@ -104,22 +114,21 @@ std::optional<std::size_t> default_reference(std::span<const std::optional<Compa
 }
 
 void write_comparability(std::span<const SweepMember> members) {
-  std::vector<std::optional<Json>> records;
+  std::vector<Json> records;
   std::vector<std::optional<ComparedRun>> runs;
   for (const SweepMember& member : members) {
-    records.push_back(read_record(member.folder));
-    runs.push_back(records.back() ? std::optional(compared_run(*records.back(), member.folder))
-                                  : std::nullopt);
+    Member one = read_member(member.folder);
+    records.push_back(std::move(one.record));
+    runs.push_back(std::move(one.run));
   }
   for (std::size_t i = 0; i < members.size(); ++i) {
     if (!runs[i]) continue;
     const auto chosen = members[i].reference ? members[i].reference : default_reference(runs, i);
-    const Comparability found = judge_comparability(*runs[i], chosen ? runs[*chosen] : std::nullopt);
-    Json now = fields::comparability(found);
-    Json& kept = (*records[i])["comparability"];
-    if (kept == now) continue;
-    kept = std::move(now);
-    write_atomically(members[i].folder / "run.json", records[i]->dump(1) + "\n");
+    Json found = fields::comparability(judge_comparability(*runs[i], chosen ? runs[*chosen] : std::nullopt));
+    Json& kept = records[i]["comparability"];
+    if (kept == found) continue;
+    kept = std::move(found);
+    write_atomically(members[i].folder / "run.json", records[i].dump(1) + "\n");
   }
 }
 

@@ -56,14 +56,6 @@ Scene build(const ParameterMap& p, const SceneContext& context) {
   return builder.finish();
 }
 
-Parameter pairs_parameter() {
-  Parameter out = word("pairs", {"point_edge", "vertex_vertex"},
-                       "pairs of the planar self contact; vertex_vertex lets edges cross, which the audit "
-                       "counts; the default with protocol article_literal");
-  out.other_default = {"protocol", std::string("article_literal"), std::string("vertex_vertex")};
-  return out;
-}
-
 }  // namespace
 
 ProceduralScene make_scene_drape2d() {
@@ -77,7 +69,9 @@ ProceduralScene make_scene_drape2d() {
       word("protocol", {"equal_force", "article_literal"},
            "what is compared: matched forces in the common pipeline, or the article's own formulas and "
            "solver"),
-      pairs_parameter(),
+      word("pairs", {"point_edge", "vertex_vertex"},
+           "pairs of the planar self contact; vertex_vertex is the article's: edges may cross, which the "
+           "audit counts"),
       positive("width_m", "m", 1, "width of the sheet; cells are squares"),
       count("n", 10, 2, 2000, "resolution, see variant"),
       positive("youngs_N_per_m", "N/m", 100, "Young's modulus times thickness"),

@@ -108,12 +108,6 @@ ParameterMap complete_parameters(const std::vector<Parameter>& table, const Para
     }
     violations.push_back(std::move(violation));
   }
-  for (const Parameter& p : table) {
-    const auto& other = p.other_default;
-    if (other && !given.contains(p.name) && out.at(other->parameter) == other->when) {
-      out[p.name] = other->fallback;
-    }
-  }
   return out;
 }
 

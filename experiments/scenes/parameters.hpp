@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <limits>
 #include <map>
-#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -17,12 +16,6 @@ namespace bb {
 using ParameterValue = std::variant<bool, std::int64_t, double, std::string>;
 using ParameterMap = std::map<std::string, ParameterValue>;
 
-/// Another default, where another parameter of the table has the value `when`.
-struct OtherDefault {
-  std::string parameter;
-  ParameterValue when, fallback;
-};
-
 /// One row of a table; the type is that of the default.
 struct Parameter {
   std::string name;  // unit in the suffix, as everywhere in configs
@@ -33,7 +26,6 @@ struct Parameter {
   double high = std::numeric_limits<double>::infinity();
   bool low_open = false;           // low itself is not allowed
   std::vector<std::string> words;  // allowed words of a string parameter
-  std::optional<OtherDefault> other_default = std::nullopt;
 };
 
 /// Rows of the usual kinds.
