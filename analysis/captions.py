@@ -35,6 +35,8 @@ def _distinct(values: Iterable) -> str:
 def caption(shown: str, rows: list[dict]) -> str:
     """Wrapped text. `shown`: what the figure shows, in sentences; `rows`: origin() and settings() of its runs, merged."""
     lines = [shown]
+    if not rows:
+        return textwrap.fill(shown, 100) + "\n"
     named = {key: _distinct(row[key] for row in rows if key in row) for key in SETTINGS}
     lines.append("Settings: " + "; ".join(f"{key} {value}" for key, value in named.items() if value) + ".")
     place = {key: _distinct(row.get(key, "") for row in rows) for key in ("cpu_model", "cores", "threads", "blas", "git_commit")}

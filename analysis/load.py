@@ -9,6 +9,8 @@ from pathlib import Path
 
 import pandas as pd
 
+from .captions import origin
+
 SCHEMA_NAME = "barrierbench.run"
 SCHEMA_MAJOR = 2
 LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
@@ -59,6 +61,7 @@ def _run_row(record: dict, run: str) -> dict:
     row |= {"group": record["ids"].get("sweep_id") or labels["scene"], "series": _series(labels)}
     row |= _scalars(labels) | {"outcome": status["outcome"], "started_utc": status["started_utc"], "detail": status["detail"], "valid": status["valid"]}
     row |= _scalars(summary) | {"gap_min_rel": summary["gap_min_rel"]["min"]}
+    row |= origin(record)
     row["first_contact"] = summary["first_contact"]
     row["probe_pcg"] = summary["probe_pcg"]["median"]
     row |= {k: record["audit"][k] for k in ("enabled", "crossings", "violations", "unproven")}

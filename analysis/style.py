@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import colorsys
 import logging
 import textwrap
 import zlib
@@ -12,11 +13,19 @@ import matplotlib
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt  # noqa: E402
+import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
+from matplotlib.colors import to_hex, to_rgb  # noqa: E402
+
+from .captions import caption  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
 HOLLOW = r"hollow markers: the run failed, is not valid, or its smallest gap/$\hat d$ at converged step ends is not within a factor {ratio:g} of {reference}"
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
+LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
+LEAST_RATIO = 2.0  # a logarithmic axis never shows less
+REFERENCE = "reference"  # marks lines that are no data
+MARKERS = "A formulation has one colour and one marker in every figure; {hollow}"
 
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # it comments on the missing date of the PDF
 
@@ -65,15 +74,34 @@ LOOKS = {
 }
 
 
-def look(formulation: str, series: str | None = None) -> Look:
-    """Of the formulation; a variant of it (another series name) keeps colour and marker: scaled ones are dotted."""
+# Of the second, third, ... run of one formulation in a figure; then they start again with other shades.
+VARIANT_DASHES = ((0, (1, 2)), (0, (6, 2, 1, 1)), (0, (8, 2)), (0, (2, 1)), (0, (4, 1, 1, 1, 1, 1)))
+VARIANT_LIGHTNESS = (0.0, 0.22, -0.14, 0.34, -0.24, 0.12)  # added to that of the formulation's colour
+
+
+def _shade(color: str, lighter: float) -> str:
+    hue, lightness, saturation = colorsys.rgb_to_hls(*to_rgb(color))
+    return to_hex(colorsys.hls_to_rgb(hue, min(max(lightness + lighter, 0.12), 0.82), saturation))
+
+
+def look(formulation: str, variant: int = 0) -> Look:
+    """Of the formulation. A variant (another d_hat, another step solver) keeps hue and marker and has its own shade and dash."""
     base = LOOKS.get(formulation)
     if base is None:
         looks = list(LOOKS.values())
         base = looks[zlib.crc32(formulation.encode()) % len(looks)]
-    if series is None or series == formulation:
+    if variant == 0:
         return base
-    return Look(base.color, base.marker, (0, (1, 2)) if series.endswith(" x s") else (0, (6, 2, 1, 1)))
+    shade = VARIANT_LIGHTNESS[variant % len(VARIANT_LIGHTNESS)]
+    return Look(_shade(base.color, shade), base.marker, VARIANT_DASHES[(variant - 1) % len(VARIANT_DASHES)])
+
+
+def runs_of(runs: pd.DataFrame, group: str) -> pd.DataFrame:
+    """The runs of one figure, with `variant`: 0 for the first run of a formulation, the plain one before all others."""
+    chosen = runs[runs["group"] == group]
+    plain = chosen["series"] != chosen["formulation"]
+    order = chosen.assign(plain=plain).sort_values("plain", kind="stable")
+    return chosen.assign(variant=order.groupby("formulation").cumcount())
 
 
 def marks(length: int, wanted: int = 12) -> int:
@@ -94,15 +122,17 @@ def name_of(row: pd.Series) -> str:
     return f"{row['series']} ({word})" if word else row["series"]
 
 
-def draw(axis, x, y, row: pd.Series, end_word: bool = True) -> None:
-    """One run's line. Hollow markers: see HOLLOW; a failure ends in its word."""
-    style = look(row["formulation"], row["series"])
+def draw(axis, x, y, row: pd.Series, end_word: bool = True, steps: str = "default") -> None:
+    """One run's line. Hollow markers: see HOLLOW; a failure ends in its word. steps: matplotlib's drawstyle,
+    `steps-mid` for a count of each time step, `steps-post` for a share."""
+    style = look(row["formulation"], int(row.get("variant", 0)))
     solid = not verdict_word(row)
     axis.plot(
         x,
         y,
         color=style.color,
         linestyle=style.dash,
+        drawstyle=steps,
         marker=style.marker,
         markevery=marks(len(x)),
         markerfacecolor=style.color if solid else "none",
@@ -113,6 +143,12 @@ def draw(axis, x, y, row: pd.Series, end_word: bool = True) -> None:
         axis.annotate(
             row["outcome"], (x[-1], y[-1]), xytext=(3, 0), textcoords="offset points", fontsize=6, color=style.color
         )
+
+
+def marker_sentence(runs: pd.DataFrame) -> str:
+    """What the markers of a figure mean, for its caption."""
+    rule = hollow_rule(runs).replace("\n", " ")
+    return MARKERS.format(hollow=(rule or "hollow markers: the run failed or is not valid") + ".")
 
 
 def not_measured(axis, text: str = "not measured") -> None:
@@ -139,19 +175,68 @@ def legend_below(fig, axis, runs: pd.DataFrame | None = None) -> None:
         fig.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, title=title or None, title_fontsize=6)
 
 
+def letter_panels(axes) -> None:
+    """(a), (b), ... above the upper left corner of every panel, row by row."""
+    for letter, axis in zip("abcdefghijklmnopqrstuvwxyz", np.ravel(axes)):
+        axis.set_title(f"({letter})", loc="left", fontweight="bold")
+
+
+def reference_line(axis, y: float, label: str, dash: str = "-") -> None:
+    """A thin horizontal line with its meaning written on it, at the right end. It counts as no data, and the axis
+    reaches to it. After the scale of the axis is set."""
+    low, high = axis.get_ylim()
+    axis.set_ylim(min(low, y / 1.2), max(high, 1.2 * y))
+    axis.axhline(y, color="#666666", linewidth=0.5, linestyle=dash, gid=REFERENCE)
+    text = axis.annotate(label, (0.995, y), xycoords=("axes fraction", "data"), xytext=(0, 1), textcoords="offset points",
+                         ha="right", va="bottom", fontsize=6, color="#444444")
+    text.set_in_layout(False)
+
+
+def _numbers(axis, which: str) -> np.ndarray:
+    lines = [line for line in axis.lines if line.get_gid() != REFERENCE]
+    data = [np.asarray(line.get_xdata() if which == "x" else line.get_ydata(), float) for line in lines]
+    flat = np.concatenate(data) if data else np.array([])
+    return flat[np.isfinite(flat)]
+
+
 def log_if_decades(axis) -> None:
     """A logarithmic axis where the data span a decade; a narrow range reads better on a linear one."""
-    values = [v for line in axis.lines for v in line.get_ydata() if v > 0]
-    if values and max(values) >= 10 * min(values):
+    values = _numbers(axis, "y")
+    values = values[values > 0]
+    if len(values) and values.max() >= 10 * values.min():
         axis.set_yscale("log")
 
 
-def save(fig, stem: Path, numbers: pd.DataFrame) -> list[Path]:
-    """stem.png, stem.pdf and stem.csv; the same bytes for the same records."""
+def keep_span(axis, which: str = "y") -> None:
+    """Widens an axis whose data differ by little, so that a difference of 1% looks like one.
+
+    A linear axis spans at least LEAST_SPAN of its largest value, a logarithmic one at least LEAST_RATIO. After
+    the scale of the axis is set.
+    """
+    scale, limits = (axis.get_xscale(), axis.set_xlim) if which == "x" else (axis.get_yscale(), axis.set_ylim)
+    values = _numbers(axis, which)
+    if scale == "log":
+        values = values[values > 0]
+        if len(values) and values.max() < LEAST_RATIO * values.min():
+            middle = np.sqrt(values.max() * values.min())
+            limits(middle / LEAST_RATIO**0.5, middle * LEAST_RATIO**0.5)
+        return
+    least = LEAST_SPAN * np.abs(values).max(initial=0.0)
+    if len(values) and np.ptp(values) < least:
+        middle = (values.max() + values.min()) / 2
+        limits(middle - least / 2, middle + least / 2)
+
+
+def save(fig, stem: Path, numbers: pd.DataFrame, shown: str, runs: pd.DataFrame | None = None) -> list[Path]:
+    """stem.png, stem.pdf, stem.csv and the caption stem.txt; the same bytes for the same records.
+
+    shown: sentences on what the figure shows; runs: where settings, machine and day are taken from.
+    """
     stem.parent.mkdir(parents=True, exist_ok=True)
-    paths = [stem.with_name(stem.name + suffix) for suffix in (".png", ".pdf", ".csv")]
+    paths = [stem.with_name(stem.name + suffix) for suffix in (".png", ".pdf", ".csv", ".txt")]
     fig.savefig(paths[0], metadata={"Software": None})
     fig.savefig(paths[1], metadata={"CreationDate": None, "Producer": None, "Creator": None})
     numbers.to_csv(paths[2], index=False)
+    paths[3].write_text(caption(shown, [] if runs is None else runs.to_dict("records")))
     plt.close(fig)
     return paths

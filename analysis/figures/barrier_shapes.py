@@ -23,6 +23,11 @@ SHAPES = {
     "ipc2020": ("log", "squared_gap"),
 }
 PANELS = (("b", r"$b/\hat d^2$"), ("minus_db", r"$-b'/\hat d$"), ("d2b", r"$b''$"), ("rho", r"$\rho=\hat d\,b''/|b'|$"))
+SHOWN = (
+    "The barrier shapes over the gap d in units of d_hat, the gap at which contact begins, for stiffness 1: (a) the energy b, (b) the force -b', (c) the "
+    "curvature b'', (d) rho = d_hat b''/|b'|, curvature for the same force. ipc2020 is the log shape applied to the squared gap. "
+    "The numbers are the program's own (bench eval)."
+)
 
 
 def program() -> str:
@@ -78,5 +83,6 @@ def figure(out: Path) -> list[Path]:
     for axis, (_, title) in zip(axes, PANELS):
         axis.set(xlabel=r"$u=d/\hat d$", title=title, yscale="log")
     axes[3].set_xscale("log")
+    style.letter_panels(axes)
     style.legend_below(fig, axes[0])
-    return style.save(fig, out / "barrier_shapes", table)
+    return style.save(fig, out / "barrier_shapes", table, SHOWN)

@@ -12,51 +12,54 @@ from ..load import LARGEST_COND, Records, condition_of
 
 PANELS = (("cond", "condition number"), ("lambda_max", r"$\lambda_{\max}$"), ("lambda_min", r"$\lambda_{\min}$"))
 SCALINGS = (("none", "raw"), ("block_jacobi", "block-Jacobi-scaled"))
+SHOWN = (
+    "{group}: of {what}, left as it is (raw), right scaled by block Jacobi (each 3 x 3 diagonal block made the identity; 2 x 2 in planar scenes): "
+    "condition number (a, b), largest eigenvalue (c, d) and smallest eigenvalue (e, f). Every diagnosed Newton iteration of a step is drawn at its share "
+    "of that step, so that all runs stand at the same simulated time. Forks without a line are bounds: the true condition number is at least as large."
+)
 UNITS = {"none": " (N/m)", "block_jacobi": ""}
 
 
 def _draw_bounds(axis, bounds: pd.DataFrame, row: pd.Series, field: str) -> None:
     """Estimates that are only bounds stand apart, as forks without a line."""
-    color = style.look(row["formulation"], row["series"]).color
-    axis.plot(bounds["n"], bounds[field], linestyle="none", marker="2", markersize=4, color=color)
+    color = style.look(row["formulation"], int(row["variant"])).color
+    axis.plot(bounds["at"], bounds[field], linestyle="none", marker="2", markersize=4, color=color)
 
 
-def _iterations_shown(records: Records, runs: pd.DataFrame) -> int:
-    """The longest run that ended ok: a stalled one iterates to its cap and would squeeze the rest."""
-    finished = runs.loc[runs["outcome"] == "ok", "run"]
-    rows = records.cond[records.cond["run"].isin(finished)] if not records.cond.empty else records.cond
-    return int(rows["n"].max()) if not rows.empty else 0
+def _places(records: Records, run: str, estimates: pd.DataFrame) -> pd.Series:
+    """Step + iteration / (iterations of that step): nothing is cut off, and a stalled step squeezes no other one."""
+    length = records.trace[records.trace["run"] == run].groupby("step")["iteration"].max() + 1
+    return estimates["step"] + estimates["iteration"] / estimates["step"].map(length)
 
 
 def figure(records: Records, group: str, out: Path) -> list[Path]:
-    """One figure a group: columns raw and scaled, rows cond, lambda_max, lambda_min; x counts Newton iterations."""
-    runs = records.runs[records.runs["group"] == group]
+    """One figure a group: columns raw and scaled, rows cond, lambda_max, lambda_min; x is the time step."""
+    runs = style.runs_of(records.runs, group)
     fig, axes = plt.subplots(3, 2, figsize=(style.WIDE_IN, 6.2), sharex=True, layout="constrained")
     numbers = []
-    shown = _iterations_shown(records, runs)
     for column, (scaling, title) in enumerate(SCALINGS):
         for _, row in runs.iterrows():
             estimates = condition_of(records, row["run"], scaling).copy()
             if estimates.empty:
                 continue
+            estimates["at"] = _places(records, row["run"], estimates)
             numbers.append(estimates.assign(group=group, series=row["series"], outcome=row["outcome"]))
             estimates.loc[estimates["status"] == "singular", "cond"] = LARGEST_COND
             sure = estimates[estimates["status"] == "ok"]
             bound = estimates[estimates["status"].isin(["lower_bound", "singular"])]
             for line, (field, _) in enumerate(PANELS):
-                drawn = sure[sure["n"] <= 1.1 * shown] if shown > 0 else sure
-                style.draw(axes[line, column], drawn["n"].to_numpy(), drawn[field].to_numpy(), row)
+                style.draw(axes[line, column], sure["at"].to_numpy(), sure[field].to_numpy(), row, end_word=line == 0)
                 _draw_bounds(axes[line, column], bound[bound[field].notna()], row, field)
         for line, (field, name) in enumerate(PANELS):
             axis = axes[line, column]
             style.log_if_decades(axis)
+            style.keep_span(axis)
             if not axis.lines:
                 style.not_measured(axis)
-            elif shown > 0:
-                axis.set_xlim(-0.03 * shown, 1.12 * shown)
             axis.set_ylabel(name + (UNITS[scaling] if field != "cond" else ""))
         axes[0, column].set_title(title)
-        axes[-1, column].set_xlabel("Newton iteration of the run")
+        axes[-1, column].set_xlabel("time step (its Newton iterations evenly within it)")
+    style.letter_panels(axes)
     literal = not runs.empty and (runs["step_solver"] == "article_literal").all()
     what = "the matrix before its Tikhonov term, as the article measures it" if literal else "the matrix that is solved"
     fig.suptitle(f"{group}: {what}", fontsize=8)
@@ -64,4 +67,4 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     columns = ["group", "series", "outcome", "run", "n", "step", "iteration", "stage", "scaling"]
     columns += [field for field, _ in PANELS] + ["status"]
     table = pd.concat(numbers)[columns] if numbers else pd.DataFrame(columns=columns)
-    return style.save(fig, out / f"condition_{group}", table)
+    return style.save(fig, out / f"condition_{group}", table, f"{SHOWN.format(group=group, what=what)} {style.marker_sentence(runs)}", runs)

@@ -41,7 +41,7 @@ def make_all(runs: Path, out: Path) -> str:
     lines = [as_text(table), ""]
     lines += [f"{r['group']}: {r['series']} ended {r['outcome']}: {r['detail']}" for _, r in failed.iterrows()]
     figures = [path for path in paths if path.suffix == ".png"]
-    lines += [f"{len(figures)} figures (PNG, PDF, CSV of the plotted numbers) in {out}:"]
+    lines += [f"{len(figures)} figures (PNG, PDF, CSV of the plotted numbers, caption TXT) in {out}:"]
     lines += [f"  {path}" for path in figures]
     return "\n".join(lines)
 

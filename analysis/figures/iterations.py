@@ -12,9 +12,17 @@ from .. import style
 from ..load import Records
 
 
+SHOWN = (
+    "{group}: (a) Newton iterations of every time step; (b) the share of time steps that took at most so many; (c) the share of diagnosed "
+    "Newton matrices on which block-Jacobi preconditioned conjugate gradients (PCG), started from zero on one fixed right-hand side, took at most so many "
+    "iterations to a relative residual of 1e-6."
+)
+
+
 def _ecdf(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Corners of the share of values that are at most x, from 0 on; to be drawn with steps-post."""
     x = np.sort(values)
-    return x, np.arange(1, len(x) + 1) / max(1, len(x))
+    return np.concatenate([x[:1], x]), np.arange(len(x) + 1) / max(1, len(x))
 
 
 def _rows_of(table: pd.DataFrame, run: str) -> pd.DataFrame:
@@ -22,20 +30,20 @@ def _rows_of(table: pd.DataFrame, run: str) -> pd.DataFrame:
 
 
 def figure(records: Records, group: str, out: Path) -> list[Path]:
-    runs = records.runs[records.runs["group"] == group]
+    runs = style.runs_of(records.runs, group)
     fig, axes = plt.subplots(1, 3, figsize=(style.WIDE_IN, 2.6), layout="constrained")
     numbers = []
     for _, row in runs.iterrows():
         steps, trace = _rows_of(records.steps, row["run"]), _rows_of(records.trace, row["run"])
         if not steps.empty:
             newton = steps["newton_iterations"].to_numpy()
-            style.draw(axes[0], steps["step"].to_numpy(), newton, row)
-            style.draw(axes[1], *_ecdf(newton), row, end_word=False)
+            style.draw(axes[0], steps["step"].to_numpy(), newton, row, steps="steps-mid")
+            style.draw(axes[1], *_ecdf(newton), row, end_word=False, steps="steps-post")
             numbers.append(pd.DataFrame({"what": "newton_per_step", "series": row["series"], "at": steps["step"], "count": newton}))
         probes = trace[trace["probe_pcg_iterations"].notna()] if not trace.empty else trace
         if not probes.empty:
             pcg = probes["probe_pcg_iterations"].to_numpy(dtype=float)
-            style.draw(axes[2], *_ecdf(pcg), row, end_word=False)
+            style.draw(axes[2], *_ecdf(pcg), row, end_word=False, steps="steps-post")
             numbers.append(pd.DataFrame({"what": "probe_pcg", "series": row["series"], "at": probes["n"], "count": pcg}))
     axes[0].set(xlabel="time step", ylabel="Newton iterations")
     axes[1].set(xlabel="Newton iterations of a step", ylabel="share of steps", ylim=(0, 1.02))
@@ -43,10 +51,14 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     style.log_if_decades(axes[0])
     if axes[0].get_yscale() == "log":
         axes[1].set_xscale("log")
+    style.keep_span(axes[0])
+    style.keep_span(axes[1], "x")
+    style.keep_span(axes[2], "x")
+    style.letter_panels(axes)
     if not axes[2].lines:
         style.not_measured(axes[2])
     fig.suptitle(f"{group}: work of every step and of every diagnosed matrix", fontsize=8)
     style.legend_below(fig, axes[0], runs)
     columns = ["group", "what", "series", "at", "count"]
     table = pd.concat(numbers).assign(group=group)[columns] if numbers else pd.DataFrame(columns=columns)
-    return style.save(fig, out / f"iterations_{group}", table)
+    return style.save(fig, out / f"iterations_{group}", table, f"{SHOWN.format(group=group)} {style.marker_sentence(runs)}", runs)

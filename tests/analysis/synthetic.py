@@ -33,7 +33,7 @@ def _comparability(gap: float, verdict: str) -> dict:
             "reference_gap_rel": 0.1, "ratio": gap / 0.1, "max_ratio": 2.0}
 
 
-def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: str = "ok", note: str = "", verdict: str = "comparable") -> dict:
+def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: str = "ok", note: str = "", verdict: str = "comparable", folder: str = "") -> dict:
     shape = "log" if formulation == "log" else "cubic"
     record = {
         "schema": {"name": "barrierbench.run", "version": "2.4.0"},
@@ -45,14 +45,16 @@ def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: s
         "audit": {"enabled": True, "judged": 9, "crossings": 0, "violations": 0, "unproven": 0, "obstacle_violations": 0, "scene_faults": 0},
         "comparability": _comparability(gap, verdict),
         "scene": {"free_dofs": 30, "extent_m": 1.0},
-        "matching": {"rule": "equal_force"},
+        "matching": {"rule": "equal_force", "theta": 0.2},
+        "machine": {"cpu_model": "a cpu", "cores": 2},
+        "provenance": {"threads": 1, "git_commit": "0123456789abcdef", "libraries": {"blas": "OpenBLAS Haswell at /usr/lib/libopenblas.so"}},
         "steps": [_step(0, None), _step(1, 2 * gap), _step(2, gap)],
     }
-    folder = root / formulation
-    folder.mkdir(parents=True)
-    (folder / "run.json").write_text(json.dumps(record))
+    place = root / (folder or formulation)
+    place.mkdir(parents=True)
+    (place / "run.json").write_text(json.dumps(record))
     lines = [_trace_line(step, iteration, scale) for step in range(3) for iteration in range(2)]
-    (folder / "trace.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
+    (place / "trace.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
     return record
 
 
