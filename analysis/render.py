@@ -41,9 +41,9 @@ class Coloring:
 
 
 COLORINGS = {
-    "gap": Coloring("vertex", "gap_rel", r"smallest gap of a vertex / $\hat d$ (1: no contact)", 1, "viridis_r", 1),
+    "gap": Coloring("vertex", "gap_rel", r"smallest gap of a vertex / $\hat d$ (1: no contact)", 1, "YlGnBu_r", 1),
     "load": Coloring("vertex", "load_N", "contact load of a vertex (N)", 1, "magma_r", None),
-    "stretch": Coloring("triangle", "stretch", "stretch of a triangle (%)", 100, "cividis", None),
+    "stretch": Coloring("triangle", "stretch", "stretch of a triangle (%)", 100, "YlOrRd", None),
 }
 
 

@@ -20,7 +20,7 @@ from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 from .captions import caption  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
-HOLLOW = r"hollow markers: the run failed, is not valid, or its smallest gap/$\hat d$ at converged step ends is not within a factor {ratio:g} of {reference}"
+HOLLOW = r"hollow markers: the run failed, is not valid, or its smallest gap/$\hat{d}$ at converged step ends is not within a factor {ratio:g} of {reference}"
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
 LEAST_RATIO = 2.0  # a logarithmic axis never shows less
@@ -81,6 +81,7 @@ VARIANT_LIGHTNESS = (0.0, 0.22, -0.14, 0.34, -0.24, 0.12)  # added to that of th
 
 def _shade(color: str, lighter: float) -> str:
     hue, lightness, saturation = colorsys.rgb_to_hls(*to_rgb(color))
+    lighter = -lighter if lightness > 0.5 else lighter  # a pale colour gets darker, to stay readable
     return to_hex(colorsys.hls_to_rgb(hue, min(max(lightness + lighter, 0.12), 0.82), saturation))
 
 
@@ -147,7 +148,7 @@ def draw(axis, x, y, row: pd.Series, end_word: bool = True, steps: str = "defaul
 
 def marker_sentence(runs: pd.DataFrame) -> str:
     """What the markers of a figure mean, for its caption."""
-    rule = hollow_rule(runs).replace("\n", " ")
+    rule = hollow_rule(runs).replace("\n", " ").replace(r"$\hat{d}$", "d_hat")
     return MARKERS.format(hollow=(rule or "hollow markers: the run failed or is not valid") + ".")
 
 
@@ -188,7 +189,8 @@ def reference_line(axis, y: float, label: str, dash: str = "-") -> None:
     axis.set_ylim(min(low, y / 1.2), max(high, 1.2 * y))
     axis.axhline(y, color="#666666", linewidth=0.5, linestyle=dash, gid=REFERENCE)
     text = axis.annotate(label, (0.995, y), xycoords=("axes fraction", "data"), xytext=(0, 1), textcoords="offset points",
-                         ha="right", va="bottom", fontsize=6, color="#444444")
+                         ha="right", va="bottom", fontsize=6, color="#444444",
+                         bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5})
     text.set_in_layout(False)
 
 

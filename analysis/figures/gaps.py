@@ -24,7 +24,7 @@ def _matched_at(runs: pd.DataFrame) -> float | None:
 
 def figure(records: Records, group: str, out: Path) -> list[Path]:
     runs = style.runs_of(records.runs, group)
-    fig, axis = plt.subplots(figsize=(4.8, 3.2), layout="constrained")
+    fig, axis = plt.subplots(figsize=(5.6, 4.2), layout="constrained")
     numbers = []
     for _, row in runs.iterrows():
         steps = records.steps[records.steps["run"] == row["run"]] if not records.steps.empty else records.steps
@@ -41,7 +41,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     style.reference_line(axis, 1, r"$\hat d$: contact begins")
     if (theta := _matched_at(runs)) is not None:
         style.reference_line(axis, theta, rf"{theta:g} $\hat d$: forces are matched here", ":")
-    axis.set(xlabel="time (s)", ylabel=r"smallest gap at the end of the step / $\hat d$", title=group)
+    axis.set(xlabel="time (s)", ylabel=r"smallest gap / $\hat d$", title=group)
     style.legend_below(fig, axis, runs)
     columns = ["group", "series", "run", "step", "t_s", "gap_min_m", "gap_min_rel"]
     table = pd.concat(numbers).assign(group=group)[columns] if numbers else pd.DataFrame(columns=columns)

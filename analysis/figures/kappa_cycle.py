@@ -39,7 +39,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     if not steps:
         return []
     step = min(steps)
-    fig, axes = plt.subplots(1, 2, figsize=(style.WIDE_IN, 3.0), layout="constrained")
+    fig, axes = plt.subplots(1, 2, figsize=(style.WIDE_IN, 3.4), layout="constrained")
     numbers = []
     for _, row in runs.iterrows():
         part = traces[row["run"]]
@@ -57,7 +57,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     style.reference_line(axes[0], EDGE, r"$\hat d/2$: below it $\kappa = m/d^2$ amplifies errors")
     style.reference_line(axes[1], SETTLED, "1%: settled below", ":")
     axes[0].set_ylabel(r"smallest gap / $\hat d$")
-    axes[1].set_ylabel(r"largest relative change of a $\kappa$")
+    axes[1].set_ylabel(r"relative change of a $\kappa$")
     style.letter_panels(axes)
     fig.suptitle(f"{group}: kappa refreshed in every iteration does not settle", fontsize=8)
     style.legend_below(fig, axes[0], runs)
