@@ -13,7 +13,7 @@ from ..load import LARGEST_COND, Records, condition_of
 PANELS = (("cond", "condition number"), ("lambda_max", r"$\lambda_{\max}$"), ("lambda_min", r"$\lambda_{\min}$"))
 SCALINGS = (("none", "raw"), ("block_jacobi", "block-Jacobi-scaled"))
 SHOWN = (
-    "{group}: of {what}, left as it is (raw), right scaled by block Jacobi (each 3 x 3 diagonal block made the identity; 2 x 2 in planar scenes): "
+    "{group}: of {what}; left column: as it is (raw); right column: scaled by block Jacobi (each 3 x 3 diagonal block made the identity; 2 x 2 in planar scenes): "
     "condition number (a, b), largest eigenvalue (c, d) and smallest eigenvalue (e, f). Every diagnosed Newton iteration of a step is drawn at its share "
     "of that step, so that all runs stand at the same simulated time. Forks without a line are bounds: the true condition number is at least as large."
 )

@@ -10,7 +10,6 @@ import pandas as pd
 from .. import style
 from ..load import Records
 
-
 SHOWN = "{group}: the smallest gap between any two surfaces at the end of each converged time step, in units of d_hat, the gap at which contact begins. Steps without contact have no point."
 
 
