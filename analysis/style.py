@@ -20,7 +20,7 @@ from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 from .captions import caption  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
-HOLLOW = r"hollow markers: the run failed, is not valid, or its smallest gap/$\hat{d}$ at converged step ends is not within a factor {ratio:g} of {reference}"
+HOLLOW = r"hollow markers: the run failed, is not valid, or its smallest gap/$\hat{{d}}$ at converged step ends is not within a factor {ratio:g} of {reference}"
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
 LEAST_RATIO = 2.0  # a logarithmic axis never shows less
