@@ -1,0 +1,132 @@
+"""Every column of the tables against the field of the record that it is named after."""
+
+import json
+
+import pytest
+
+from analysis.load import RecordError, condition_of, load
+from analysis.table import as_text, summary_table
+from synthetic import write_run, write_set
+
+
+def edit(folder, change) -> None:
+    """Applies `change` to the record in `folder`."""
+    path = folder / "run.json"
+    record = json.loads(path.read_text())
+    change(record)
+    path.write_text(json.dumps(record))
+
+
+def edit_trace(folder, change) -> None:
+    path = folder / "trace.jsonl"
+    lines = [json.loads(line) for line in path.read_text().splitlines()]
+    for line in lines:
+        change(line)
+    path.write_text("".join(json.dumps(line) + "\n" for line in lines))
+
+
+def test_numbers_of_a_run_come_from_their_own_fields(tmp_path):
+    write_run(tmp_path, "cubic", 1.0, 0.25)
+
+    def distinct(record):
+        stats = {name: 100.0 + k for k, name in enumerate(("min", "p05", "median", "p95", "max", "sum"))}
+        record["summary"]["gap_min_rel"] = {"n": 3, **stats}
+        record["summary"]["probe_pcg"] = {"n": 3, **stats}
+        record["audit"] |= {"judged": 11, "crossings": 12, "violations": 13, "unproven": 14, "obstacle_violations": 15, "scene_faults": 16}
+        record["status"] |= {"valid": False, "detail": "why"}
+        record["scene"] = {"free_dofs": 17, "extent_m": 18.0}
+        record["matching"] = {"rule": "equal_force", "load_N": 19.0, "scale": 20.0}
+        record["comparability"] |= {"verdict": "not_comparable", "reason": "far", "reference_gap_rel": 21.0, "ratio": 22.0, "max_ratio": 23.0}
+
+    edit(tmp_path / "cubic", distinct)
+    run = load(tmp_path).runs.iloc[0]
+
+    assert run["gap_min_rel"] == 100 and run["probe_pcg"] == 102
+    assert [run[k] for k in ("judged", "crossings", "violations", "unproven", "obstacle_violations", "scene_faults")] == [11, 12, 13, 14, 15, 16]
+    assert not run["valid"] and run["detail"] == "why" and run["outcome"] == "ok"
+    assert (run["free_dofs"], run["extent_m"], run["matching_load_N"], run["matching_scale"]) == (17, 18, 19, 20)
+    assert run["matching_rule"] == "equal_force"
+    assert (run["comparability"], run["comparability_reason"], run["reference_run"]) == ("not_comparable", "far", "log")
+    assert (run["reference_gap_rel"], run["gap_ratio"], run["max_gap_ratio"]) == (21, 22, 23)
+    assert (run["run"], run["folder"], run["run_id"], run["config_id"]) == ("cubic", "cubic", "id_cubic", "config_cubic")
+
+
+def test_a_group_is_the_sweep_or_else_the_scene_and_a_series_the_case_or_else_the_formulation(tmp_path):
+    write_run(tmp_path, "log", 1.0, 0.1, note="strip: log, stiff")
+    write_run(tmp_path, "cubic", 1.0, 0.1, note="as_given")
+    write_run(tmp_path, "quadratic", 1.0, 0.1)
+    edit(tmp_path / "quadratic", lambda record: record["ids"].pop("sweep_id"))
+    runs = load(tmp_path).runs.set_index("run")
+
+    assert list(runs.loc[["log", "cubic", "quadratic"], "series"]) == ["log, stiff", "as_given", "quadratic"]
+    assert list(runs.loc[["log", "cubic", "quadratic"], "group"]) == ["strip", "strip", "drape2d"]
+
+
+def test_runs_stand_in_the_order_of_their_start_and_share_no_name(tmp_path):
+    for k, name in enumerate(("c", "a", "b")):
+        write_run(tmp_path / name, "log", 1.0, 0.1, note="strip: same")
+        edit(tmp_path / name / "log", lambda record, k=k: record["status"].update(started_utc=f"2024-01-31T12:00:0{k}Z"))
+    runs = load(tmp_path).runs
+
+    assert list(runs["run"]) == ["c/log", "a/log", "b/log"]
+    assert list(runs["series"]) == ["same", "same #2", "same #3"]
+
+
+def test_conditions_are_of_one_run_scaling_and_stage_in_the_order_of_the_iterations(tmp_path):
+    write_set(tmp_path)
+
+    def with_stage(line):
+        line["cond"].append(line["cond"][0] | {"stage": "no_contact", "cond": 5.0})
+
+    edit_trace(tmp_path / "cubic", with_stage)
+    records = load(tmp_path)
+    full = condition_of(records, "cubic", "none")
+
+    assert list(full["n"]) == list(range(6))
+    assert list(full["cond"]) == [20, 20, 200, 200, 2000, 2000]
+    assert set(full["scaling"]) == {"none"} and set(full["stage"]) == {"full"} and set(full["run"]) == {"cubic"}
+    assert list(condition_of(records, "cubic", "none", "no_contact")["cond"]) == [5] * 6
+    assert list(condition_of(records, "log", "block_jacobi")["cond"]) == [1, 1, 2, 2, 3, 3]
+
+
+def test_a_torn_last_line_is_left_out_and_said_and_any_other_is_an_error(tmp_path, capsys):
+    write_run(tmp_path, "log", 1.0, 0.1)
+    trace = tmp_path / "log" / "trace.jsonl"
+    whole = trace.read_text()
+    trace.write_text(whole + '{"step": 3, "itera')
+
+    assert len(load(tmp_path).trace) == 6
+    assert "torn last line left out" in capsys.readouterr().err
+    trace.write_text('{"step": 3, "itera\n' + whole)
+    with pytest.raises(RecordError, match="trace.jsonl:1: not JSON"):
+        load(tmp_path)
+
+
+def test_a_table_counts_singular_matrices_as_the_largest_cond_and_no_audit_as_unknown(tmp_path):
+    write_run(tmp_path, "log", 1.0, 0.1)
+    write_run(tmp_path, "cubic", 1.0, 0.2)
+
+    def singular(line):
+        if line["step"] == 0:
+            line["cond"][0] |= {"status": "singular", "cond": None}
+
+    edit_trace(tmp_path / "log", singular)
+    edit(tmp_path / "cubic", lambda record: record["audit"].update(enabled=False))
+    table = summary_table(load(tmp_path)).set_index("series")
+
+    assert table.loc["log", "cond_raw_max"] == 1e14
+    assert table.loc["log", "cond_raw_median"] == pytest.approx(1000)  # 1e2 1e2 1e3 1e3 1e14 1e14
+    assert table.loc["log", "cond_bj_max"] == 3
+    assert table.loc["log", "crossings"] == 0
+    assert table["crossings"].isna()["cubic"]
+    assert dict(table["gap_min_rel"]) == {"log": 0.1, "cubic": 0.2}
+    rows = as_text(summary_table(load(tmp_path))).splitlines()
+    assert [row.split()[-1] for row in rows if " cubic " in row] == ["-"]
+
+
+def test_hollow_runs_are_named_by_the_programs_own_verdict(tmp_path):
+    write_set(tmp_path)
+    edit(tmp_path / "cubic", lambda record: record["comparability"].update(verdict="not_valid"))
+    table = summary_table(load(tmp_path)).set_index("series")
+
+    assert dict(table["verdict"]) == {"log": "ok", "cubic": "ok, not_valid", "cubic_dynamic": "ok, not_comparable", "quadratic": "newton_stall"}
