@@ -1,5 +1,6 @@
 // Procedural meshes. All are centred at the origin unless said otherwise; closed surfaces are oriented
-// outwards.
+// outwards. Errors of all: ConfigError for a count or size out of range, and for a surface that does not fit
+// into the memory of this process (core/input/memory.hpp).
 #pragma once
 
 #include "core/mesh/triangle_mesh.hpp"

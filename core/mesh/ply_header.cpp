@@ -9,6 +9,8 @@ struct TypeName {
   const char* name;
   PlyType type;
 };
+constexpr std::size_t max_entries = 1000;  // elements of a file, properties of an element
+
 constexpr TypeName type_names[] = {
     {"char", PlyType::int8},      {"int8", PlyType::int8},       {"uchar", PlyType::uint8},
     {"uint8", PlyType::uint8},    {"short", PlyType::int16},     {"int16", PlyType::int16},
@@ -25,7 +27,14 @@ PlyType type_of(const TextScanner& scanner, std::size_t word) {
                "char, uchar, short, ushort, int, uint, float, double (or int8 to float64)");
 }
 
+/// Refuses lines with more or fewer words: what is read past may be what the author meant.
+void require_words(const TextScanner& scanner, std::size_t n, const char* allowed) {
+  if (scanner.words().size() != n) scanner.fail(fmt::format("{} words", scanner.words().size()), allowed);
+}
+
 PlyFormat format_of(const TextScanner& scanner) {
+  require_words(scanner, 3, "format NAME 1.0");
+  if (scanner.word(2) != "1.0") scanner.fail(fmt::format("version \"{}\"", scanner.word(2)), "1.0");
   if (scanner.word(1) == "ascii") return PlyFormat::ascii;
   if (scanner.word(1) == "binary_little_endian") return PlyFormat::little_endian;
   if (scanner.word(1) == "binary_big_endian") return PlyFormat::big_endian;
@@ -33,15 +42,24 @@ PlyFormat format_of(const TextScanner& scanner) {
                "ascii, binary_little_endian or binary_big_endian");
 }
 
-PlyElement element_of(const TextScanner& scanner) {
+PlyElement element_of(const TextScanner& scanner, const std::vector<PlyElement>& before) {
+  require_words(scanner, 3, "element NAME COUNT");
   PlyElement element;
   element.name = std::string(scanner.word(1));
   element.count = scanner.integer(2);
   if (element.count < 0) scanner.fail(fmt::format("{} elements", element.count), "a count >= 0");
+  if (before.size() == max_entries) scanner.fail("one element more", fmt::format("at most {}", max_entries));
+  for (const PlyElement& other : before) {
+    if (other.name == element.name)
+      scanner.fail(fmt::format("element {} twice", element.name), "each element once");
+  }
   return element;
 }
 
-PlyProperty property_of(const TextScanner& scanner) {
+/// vertex_index and vertex_indices are two words for one property.
+std::string_view one_name(std::string_view name) { return name == "vertex_index" ? "vertex_indices" : name; }
+
+PlyProperty property_of(const TextScanner& scanner, const PlyElement& element) {
   PlyProperty property;
   property.is_list = scanner.word(1) == "list";
   if (property.is_list) {
@@ -51,8 +69,14 @@ PlyProperty property_of(const TextScanner& scanner) {
   }
   const std::size_t at = property.is_list ? 3 : 1;
   property.type = type_of(scanner, at);
-  property.name = std::string(scanner.word(at + 1));
-  if (property.name.empty()) scanner.fail("a property without a name", "property TYPE NAME");
+  require_words(scanner, at + 2, property.is_list ? "property list TYPE TYPE NAME" : "property TYPE NAME");
+  property.name = std::string(one_name(scanner.word(at + 1)));
+  if (element.properties.size() == max_entries) {
+    scanner.fail("one property more", fmt::format("at most {}", max_entries));
+  }
+  if (element.find(property.name) >= 0) {
+    scanner.fail(fmt::format("property {} twice", property.name), "each property of an element once");
+  }
   return property;
 }
 
@@ -70,6 +94,14 @@ int PlyElement::find(const std::string& property) const {
   return -1;
 }
 
+std::size_t PlyElement::min_bytes(PlyFormat format) const {
+  std::size_t bytes = 0;
+  for (const PlyProperty& property : properties) {
+    bytes += format == PlyFormat::ascii ? 2 : ply_size(property.is_list ? property.count : property.type);
+  }
+  return bytes;
+}
+
 PlyHeader parse_ply_header(const std::string& bytes, const std::string& name) {
   PlyHeader header;
   TextScanner scanner(bytes, name);
@@ -80,13 +112,15 @@ PlyHeader parse_ply_header(const std::string& bytes, const std::string& name) {
   while (scanner.next_line()) {
     const std::string_view key = scanner.word(0);
     if (key == "format") {
+      if (has_format) scanner.fail("format twice", "one format line");
       header.format = format_of(scanner);
       has_format = true;
     } else if (key == "element") {
-      header.elements.push_back(element_of(scanner));
+      header.elements.push_back(element_of(scanner, header.elements));
     } else if (key == "property") {
       if (header.elements.empty()) scanner.fail("a property before any element", "element NAME COUNT first");
-      header.elements.back().properties.push_back(property_of(scanner));
+      PlyElement& element = header.elements.back();
+      element.properties.push_back(property_of(scanner, element));
     } else if (key == "end_header") {
       if (!has_format) scanner.fail("no format line", "format ascii 1.0 or a binary format");
       header.body = scanner.position();
@@ -97,6 +131,26 @@ PlyHeader parse_ply_header(const std::string& bytes, const std::string& name) {
     }
   }
   throw ConfigError(name, "a header without end_header", "a whole PLY header");
+}
+
+void check_counts(const PlyHeader& header, const std::string& bytes, const std::string& name) {
+  // the last line of a text may end without its line feed
+  auto left = static_cast<double>(bytes.size() - header.body + (header.format == PlyFormat::ascii ? 1 : 0));
+  for (const PlyElement& element : header.elements) {
+    if (element.count == 0) continue;
+    const auto each = static_cast<double>(element.min_bytes(header.format));
+    if (each == 0) {
+      throw ConfigError(name, fmt::format("{} {} elements without a property", element.count, element.name),
+                        "elements with properties, or a count of 0");
+    }
+    left -= each * static_cast<double>(element.count);
+    if (left < 0) {
+      throw ConfigError(
+          name, fmt::format("the end of the file: {} bytes behind the header", bytes.size() - header.body),
+          fmt::format("{} {} elements of at least {} bytes each, as the header says", element.count,
+                      element.name, each));
+    }
+  }
 }
 
 }  // namespace bb

@@ -8,6 +8,7 @@
 #include <map>
 
 #include "core/math/error.hpp"
+#include "core/mesh/bounds.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace bb {
@@ -58,9 +59,9 @@ class Assembler {
     mesh_.vertices.resize(3, static_cast<Eigen::Index>(n));
     for (std::size_t i = 0; i < n; ++i) {
       const Vec3d& x = raw_.vertices[i];
-      if (!x.allFinite()) {
+      if (!(x.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= max_coordinate)) {
         complain(raw_.vertex_element, raw_.vertex_place[i], fmt::format("({}, {}, {})", x[0], x[1], x[2]),
-                 "finite coordinates");
+                 fmt::format("finite coordinates between -{0} and {0}", max_coordinate));
       }
       mesh_.vertices.col(static_cast<Eigen::Index>(i)) = x;
     }
@@ -107,7 +108,7 @@ class Assembler {
     for (std::size_t k = 2; k < polygon.size(); ++k) {
       const std::array<int, 3> triangle{polygon[0], polygon[k - 1], polygon[k]};
       const Vec3d part = area_vector(mesh_.vertices, triangle);
-      if (!part.allFinite()) return;  // a corner was complained about already
+      if (!part.allFinite()) return;  // a corner beyond max_coordinate was complained about
       if (is_flat(triangle, part)) {
         return complain("face", place, "a face of zero area", "corners that do not lie on one line");
       }

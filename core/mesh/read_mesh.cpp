@@ -1,11 +1,8 @@
 #include "core/mesh/read_mesh.hpp"
 
-#include <cerrno>
-#include <cstring>
 #include <filesystem>
-#include <fstream>
-#include <sstream>
 
+#include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
 #include "core/mesh/raw_mesh.hpp"
 
@@ -22,16 +19,6 @@ TriangleMesh parse_mesh(const std::string& bytes, const std::string& name) {
   throw ConfigError(name, "extension \"" + extension + '"', "one of .obj, .ply, .stl");
 }
 
-TriangleMesh read_mesh(const std::string& path) {
-  std::error_code error;
-  if (!std::filesystem::is_regular_file(path, error)) {
-    throw ConfigError(path, "no such file", "a readable .obj, .ply or .stl file");
-  }
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream bytes;
-  bytes << file.rdbuf();
-  if (!file) throw ConfigError(path, std::string("unreadable: ") + std::strerror(errno), "a readable file");
-  return parse_mesh(bytes.str(), path);
-}
+TriangleMesh read_mesh(const std::string& path) { return parse_mesh(read_input_file(path, mesh_file), path); }
 
 }  // namespace bb

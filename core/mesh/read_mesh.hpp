@@ -16,8 +16,10 @@ namespace bb {
 /// @return vertices in file units, taken as m
 /// Errors: ConfigError naming file and line (text) or element and number (binary), at most 20 at once:
 /// missing file,
-///   unknown extension, malformed or truncated content, non-finite number, index out of range, degenerate
-///   face (repeated index, zero area), repeated face or segment, no vertex.
+///   unknown extension, malformed or truncated content, content behind the mesh, a header that announces more
+///   than the file holds, non-finite number, coordinate beyond max_coordinate, index out of range, degenerate
+///   face (repeated index, zero area), repeated face or segment, no vertex; no regular file, or one larger
+///   than mesh_file allows (core/input/read_file.hpp).
 /// Host only.   Cost: O(n log n), holds the file in memory.
 TriangleMesh read_mesh(const std::string& path);
 

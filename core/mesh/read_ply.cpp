@@ -33,6 +33,11 @@ class AsciiValues {
     }
   }
   long long place(long long) const { return scanner_.line(); }
+  void finish() {
+    while (scanner_.next_line()) {
+      if (!scanner_.words().empty()) scanner_.fail("data behind the last element", "the end of the file");
+    }
+  }
 
  private:
   TextScanner scanner_;
@@ -80,6 +85,11 @@ class BinaryValues {
   }
   void end() const {}
   long long place(long long number) const { return number; }
+  void finish() const {
+    if (at_ == bytes_.size()) return;
+    throw ConfigError(name_, fmt::format("{} bytes behind the last element", bytes_.size() - at_),
+                      "the end of the file");
+  }
 
  private:
   template <class T>
@@ -123,7 +133,7 @@ Slots slots_of(const PlyElement& element, const std::string& name) {
   if (element.name == "vertex") {
     slots.x = need("x"), slots.y = need("y"), slots.z = need("z");
   } else if (element.name == "face") {
-    slots.list = std::max(element.find("vertex_indices"), element.find("vertex_index"));
+    slots.list = element.find("vertex_indices");
     if (slots.list < 0 || !element.properties[static_cast<std::size_t>(slots.list)].is_list) {
       throw ConfigError(name, "element face without its corners", "property list ... vertex_indices");
     }
@@ -144,6 +154,10 @@ void read_element(Values& values, const PlyElement& element, const Slots& slots,
     const PlyProperty& property = element.properties[static_cast<std::size_t>(p)];
     if (property.is_list) {
       const long long count = values.integer(property.count);
+      if (count < 0) {
+        throw ConfigError(fmt::format("{}: {} {}", mesh.name, element.name, number),
+                          fmt::format("a list of {} entries", count), "a count >= 0");
+      }
       for (long long k = 0; k < count; ++k) {
         if (p == slots.list) {
           mesh.corners.push_back(values.integer(property.type));
@@ -171,11 +185,13 @@ template <class Values>
 void read_body(const std::string& bytes, const PlyHeader& header, RawMesh& mesh) {
   std::vector<Slots> slots;  // of every element first: the header is judged before the body
   for (const PlyElement& element : header.elements) slots.push_back(slots_of(element, mesh.name));
+  check_counts(header, bytes, mesh.name);
   Values values(bytes, header, mesh.name);
   for (std::size_t e = 0; e < slots.size(); ++e) {
     const PlyElement& element = header.elements[e];
     for (long long i = 0; i < element.count; ++i) read_element(values, element, slots[e], i, mesh);
   }
+  values.finish();
 }
 
 }  // namespace

@@ -35,11 +35,16 @@ void parse_ascii(const std::string& bytes, RawMesh& mesh) {
   bool in_facet = false, ended = false;
   while (scanner.next_line()) {
     const std::string_view key = scanner.word(0);
-    if (key == "facet") {
+    if (key == "solid") {
+      ended = false;
+    } else if (key == "facet") {
+      if (ended) scanner.fail("a facet behind endsolid", "solid, or the end of the file");
       if (in_facet) scanner.fail("facet inside a facet", "endfacet first");
       in_facet = true, first = mesh.corners.size();
     } else if (key == "vertex") {
       if (!in_facet) scanner.fail("vertex outside a facet", "facet first");
+      if (scanner.words().size() != 4)
+        scanner.fail(fmt::format("{} words", scanner.words().size()), "vertex X Y Z");
       merger.add_corner({scanner.number(1), scanner.number(2), scanner.number(3)}, scanner.line());
     } else if (key == "endfacet") {
       if (!in_facet || mesh.corners.size() - first != 3) {
@@ -49,7 +54,7 @@ void parse_ascii(const std::string& bytes, RawMesh& mesh) {
       in_facet = false;
     } else if (key == "endsolid") {
       ended = true;
-    } else if (key != "solid" && key != "outer" && key != "endloop" && !key.empty()) {
+    } else if (key != "outer" && key != "endloop" && !key.empty()) {
       scanner.fail(fmt::format("\"{}\"", key), "solid, facet, outer, vertex, endloop, endfacet or endsolid");
     }
   }

@@ -21,8 +21,8 @@ extern "C" {
 typedef struct bb_plugin_shape {
   const char* name; /* snake_case, not the name of another shape */
   const char* doc;
-  int32_t smoothness_at_d_hat; /* number of continuous derivatives at d = d_hat */
-  int32_t infinite_at_zero;    /* 1: b -> infinity as d -> 0 */
+  int32_t smoothness_at_d_hat; /* number of continuous derivatives at d = d_hat, 0 to 1000 */
+  int32_t infinite_at_zero;    /* 0 or 1; 1: b -> infinity as d -> 0 */
   void* self;                  /* handed to the calls */
   void (*eval_double)(void* self, size_t n, const double* d, const double* d_hat, double* b, double* db,
                       double* d2b);
@@ -79,7 +79,7 @@ typedef struct bb_plugin_integrator {
                  const double* x, double* v, double* a);
 } bb_plugin_integrator;
 
-/* What the library holds. Counts may be 0, their arrays then NULL. */
+/* What the library holds. Counts are 0 to 1000; the array of a count of 0 may be NULL. */
 typedef struct bb_plugin {
   uint32_t abi_version; /* BB_PLUGIN_ABI_VERSION of the header it was built with; read before anything else */
   const char* name;

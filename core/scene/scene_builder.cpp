@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/energy/hinge.hpp"
+#include "core/input/memory.hpp"
 #include "core/mesh/topology.hpp"
 #include "core/scene/pin_selection.hpp"
 #include "core/scene/scene_checks.hpp"
@@ -65,6 +66,10 @@ void SceneBuilder::add_body(const BodySpec& spec) {
   check_name("body", spec.name);
   const std::size_t before = violations_.size();
   check_body(spec, scene_.planar, where_, violations_);
+  require_memory(fmt::format("{}: body \"{}\"", where_, spec.name),
+                 {static_cast<double>(scene_.n_vertices()) + spec.mesh.n_vertices(),
+                  static_cast<double>(scene_.surface_triangles.size() + spec.mesh.triangles.size()),
+                  static_cast<double>(spec.mesh.segments.size())});
   if (violations_.size() != before) return;
   const int first = scene_.n_vertices();
   const Positions& start = spec.start ? *spec.start : spec.mesh.vertices;

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/energy/membrane_model.hpp"
+#include "core/mesh/bounds.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace bb {
@@ -22,6 +23,10 @@ struct Report {
     if (!good || !std::isfinite(found)) (*this)(what, fmt::format("{}", found), allowed);
   }
 };
+
+std::string allowed_coordinates() {
+  return fmt::format("finite coordinates between -{0} and {0} m", max_coordinate);
+}
 
 void check_model(const Report& report, const std::string& model) {
   if (model == "none" || find_membrane_model<double>(model)) return;
@@ -50,9 +55,12 @@ void check_material(const Report& report, const BodySpec& spec, bool planar) {
 void check_mesh(const Report& report, const BodySpec& spec, bool planar) {
   const int n = spec.mesh.n_vertices();
   if (n == 0) report("/mesh", "no vertex", "at least one vertex");
-  if (!spec.mesh.vertices.allFinite()) report("/mesh", "a non-finite coordinate", "finite coordinates");
-  if (spec.start && (spec.start->cols() != n || !spec.start->allFinite())) {
-    report("/start", "positions that do not fit the mesh", "one finite position a vertex");
+  if (!within_bounds(spec.mesh.vertices))
+    report("/mesh", "a coordinate that is too large", allowed_coordinates());
+  if (spec.start && spec.start->cols() != n) {
+    report("/start", "positions that do not fit the mesh", "one position a vertex");
+  } else if (spec.start && !within_bounds(*spec.start)) {
+    report("/start", "a coordinate that is too large", allowed_coordinates());
   }
   const auto out_of_range = [n](const auto& element) {
     return std::any_of(element.begin(), element.end(), [n](int v) { return v < 0 || v >= n; });
@@ -80,6 +88,8 @@ void check_motion(const Report& report, const std::string& what, const RigidMoti
 
 }  // namespace
 
+bool within_bounds(const Positions& x) { return (x.array().abs() <= max_coordinate).all(); }
+
 void check_body(const BodySpec& spec, bool planar, const std::string& where, std::vector<Violation>& out) {
   const Report report{fmt::format("{}: body \"{}\"", where, spec.name), out};
   check_mesh(report, spec, planar);
@@ -98,12 +108,14 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
 void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& where,
                     std::vector<Violation>& out) {
   const Report report{fmt::format("{}: obstacle \"{}\"", where, obstacle.name), out};
-  if (!obstacle.point.allFinite()) report("/point", "a non-finite value", "finite numbers");
+  if (!within_bounds(obstacle.point))
+    report("/point", "a coordinate that is too large", allowed_coordinates());
   if (obstacle.kind != ObstacleKind::sphere && !(std::abs(obstacle.axis.norm() - 1) <= 1e-9)) {
     report("/axis", "an axis of another length", "a unit vector");
   }
   if (obstacle.kind != ObstacleKind::plane) {
-    report.number("/radius", obstacle.radius, obstacle.radius > 0, "a number > 0");
+    report.number("/radius", obstacle.radius, obstacle.radius > 0 && obstacle.radius <= max_coordinate,
+                  "a number > 0 and <= 1e15 m");
   }
   if (!planar) return;
   if (obstacle.kind == ObstacleKind::plane && obstacle.axis[2] != 0) {

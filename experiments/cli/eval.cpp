@@ -1,9 +1,7 @@
-#include <fmt/format.h>
-
 #include <fstream>
 #include <iostream>
 
-#include "core/math/error.hpp"
+#include "core/input/read_file.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/eval/eval.hpp"
 
@@ -15,8 +13,8 @@ int eval(const std::string& file, bool schema) {
     return exit_ok;
   }
   if (file == "-") return run_eval(std::cin, std::cout, std::cerr);
+  require_regular_file(file, query_file);
   std::ifstream in(file);
-  if (!in) throw ConfigError(file, "nothing readable", "a file of JSON Lines, or - for standard input");
   return run_eval(in, std::cout, std::cerr);
 }
 

@@ -1,51 +1,50 @@
 #include "experiments/cli/sweep_spec.hpp"
 
-#include <filesystem>
-#include <fstream>
-#include <nlohmann/json.hpp>
-#include <sstream>
+#include <fmt/format.h>
 
+#include <filesystem>
+#include <nlohmann/json.hpp>
+
+#include "core/input/json.hpp"
+#include "core/input/names.hpp"
 #include "core/math/error.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/config/schema_check.hpp"
 
 namespace bb {
 namespace {
 
 using nlohmann::json;
 
-json read_json(const std::string& path, std::string& text) {
-  std::ifstream in(path);
-  if (!in) throw ConfigError(path, "nothing readable", "a sweep file");
-  std::ostringstream buffer;
-  buffer << in.rdbuf();
-  text = buffer.str();
-  try {
-    return json::parse(text);
-  } catch (const json::parse_error& error) {
-    throw ConfigError(path, error.what(), "valid JSON");
-  }
+constexpr std::size_t max_violations = 50;  // of all cases together; each is named once
+
+/// The entries of an axis: its values or its cases.
+const json& entries(const json& axis) { return axis.contains("cases") ? axis["cases"] : axis["values"]; }
+
+/// Combinations of all axes, as a double: the product may be beyond any integer.
+double count_cases(const json& axes) {
+  double count = 1;
+  for (const json& axis : axes) count *= static_cast<double>(entries(axis).size());
+  return count;
 }
 
-// Indices of the cases of an axis with "reference": true.
+/// Indices of the cases of an axis with "reference": true.
 std::vector<std::size_t> marked_cases(const json& axis) {
   std::vector<std::size_t> out;
-  if (!axis.contains("cases")) return out;
-  for (std::size_t k = 0; k < axis["cases"].size(); ++k) {
-    const json& one = axis["cases"][k];
-    const auto found = one.is_object() ? one.find("reference") : one.end();
-    if (one.is_object() && found != one.end() && *found == json(true)) out.push_back(k);
+  for (std::size_t k = 0; axis.contains("cases") && k < axis["cases"].size(); ++k) {
+    if (axis["cases"][k].value("reference", false)) out.push_back(k);
   }
   return out;
 }
 
-// The case that differs from `index` in the axes with a mark only, where it is the marked one; the last axis
-// runs fastest. Nothing without any mark.
+/// The case that differs from `index` in the axes with a mark only, where it is the marked one; the last axis
+/// runs fastest. Nothing without any mark.
 std::optional<std::size_t> marked_reference(const json& axes, std::size_t index) {
   std::size_t out = 0, stride = 1;
   bool any = false;
   for (std::size_t a = axes.size(); a-- > 0;) {
     const json& axis = axes[a];
-    const std::size_t n = axis.contains("pointer") ? axis["values"].size() : axis["cases"].size();
+    const std::size_t n = entries(axis).size();
     const std::vector<std::size_t> marked = marked_cases(axis);
     any = any || !marked.empty();
     out += stride * (marked.empty() ? index % n : marked.front());
@@ -55,78 +54,42 @@ std::optional<std::size_t> marked_reference(const json& axes, std::size_t index)
   return any ? std::optional(out) : std::nullopt;
 }
 
-class SpecReader {
- public:
-  SpecReader(std::string path, const json& spec) : path_(std::move(path)), spec_(spec) {}
-
-  // Every wrong key, type or value of the file itself.
-  void validate() {
-    if (!spec_.is_object()) fail("", spec_.type_name(), "an object");
-    for (const auto& [key, value] : spec_.items()) {
-      if (key != "schema" && key != "name" && key != "doc" && key != "base" && key != "set" &&
-          key != "axes") {
-        wrong("/" + key, "an unknown key", "schema, name, doc, base, set, axes");
-      }
+/// Everything that the file alone can tell, counted before anything is expanded.
+void check_spec(json spec, const std::string& path) {
+  std::vector<Violation> violations;
+  check_schema(spec, sweep_schema(), path, violations);
+  if (!violations.empty()) throw ConfigError(std::move(violations));
+  check_plain_name(path + "#/name", spec["name"].get<std::string>(), violations);
+  const json& axes = spec["axes"];
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    for (std::size_t k = 0; axes[i].contains("cases") && k < axes[i]["cases"].size(); ++k) {
+      check_plain_name(fmt::format("{}#/axes/{}/cases/{}/label", path, i, k),
+                       axes[i]["cases"][k]["label"].get<std::string>(), violations);
     }
-    want("/schema", spec_.value("schema", json()) == json("barrierbench.sweep/1"),
-         "\"barrierbench.sweep/1\"");
-    want("/name", spec_.contains("name") && spec_["name"].is_string(), "a name");
-    want("/base", spec_.contains("base") && spec_["base"].is_string(), "the path of a config");
-    want("/set", !spec_.contains("set") || spec_["set"].is_object(), "an object of pointer: value");
-    want("/axes", spec_.contains("axes") && spec_["axes"].is_array() && !spec_["axes"].empty(),
-         "a list of axes");
-    if (!violations_.empty()) throw ConfigError(violations_);
-    for (std::size_t i = 0; i < spec_["axes"].size(); ++i) validate_axis(i);
-    if (!violations_.empty()) throw ConfigError(violations_);
-  }
-
- private:
-  void validate_axis(std::size_t i) {
-    const json& axis = spec_["axes"][i];
-    const std::string where = "/axes/" + std::to_string(i);
-    if (axis.is_object() && axis.contains("pointer")) {
-      want(where + "/pointer", axis["pointer"].is_string(), "a JSON pointer");
-      want(where + "/values", axis.contains("values") && axis["values"].is_array() && !axis["values"].empty(),
-           "a list of values");
-      return;
+    if (marked_cases(axes[i]).size() > 1) {
+      violations.push_back(
+          {fmt::format("{}#/axes/{}", path, i), "more than one reference", "one case with reference: true"});
     }
-    if (!axis.is_object() || !axis.contains("cases") || !axis["cases"].is_array() || axis["cases"].empty()) {
-      return wrong(where, axis.dump(), "{pointer, values} or {cases: [{label, set}]}");
-    }
-    for (std::size_t k = 0; k < axis["cases"].size(); ++k) {
-      const json& one = axis["cases"][k];
-      const bool good = one.is_object() && one.contains("label") && one["label"].is_string() &&
-                        one.contains("set") && one["set"].is_object() &&
-                        (!one.contains("reference") || one["reference"].is_boolean());
-      want(where + "/cases/" + std::to_string(k), good, "{label, set} and perhaps reference: true");
-    }
-    if (marked_cases(axis).size() > 1)
-      wrong(where, "more than one reference", "one case with reference: true");
   }
-  void want(const std::string& pointer, bool good, const char* allowed) {
-    if (good) return;
-    const json::json_pointer at(pointer);
-    wrong(pointer, spec_.contains(at) ? spec_[at].dump() : "nothing", allowed);
+  if (const double n = count_cases(axes); n > static_cast<double>(max_sweep_cases)) {
+    violations.push_back({path + "#/axes", fmt::format("{} combinations", n),
+                          fmt::format("at most {} cases in one sweep", max_sweep_cases)});
   }
-  void wrong(const std::string& pointer, const std::string& found, const std::string& allowed) {
-    violations_.push_back({path_ + "#" + pointer, found, allowed});
-  }
-  [[noreturn]] void fail(const std::string& pointer, const std::string& found, const std::string& allowed) {
-    throw ConfigError(path_ + "#" + pointer, found, allowed);
-  }
-
-  std::string path_;
-  const json& spec_;
-  std::vector<Violation> violations_;
-};
+  if (!violations.empty()) throw ConfigError(std::move(violations));
+}
 
 void append_set(const json& set, std::vector<std::string>& overrides) {
   for (const auto& [pointer, value] : set.items()) overrides.push_back(pointer + "=" + value.dump());
 }
 
+/// KEY=VALUE. What a folder name cannot hold (paths) is replaced.
 std::string value_label(const std::string& pointer, const json& value) {
-  const std::string key = pointer.substr(pointer.rfind('/') + 1);
-  return key + "=" + (value.is_string() ? value.get<std::string>() : value.dump());
+  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  for (char& c : text) {
+    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
+  }
+  for (std::size_t at; (at = text.find("..")) != std::string::npos;) text.replace(at, 2, "_");
+  return pointer.substr(pointer.rfind('/') + 1) + "=" + text;
 }
 
 // The cases so far, each extended by every entry of one axis.
@@ -153,8 +116,9 @@ std::vector<SweepCase> extend(const std::vector<SweepCase>& cases, const json& a
 
 SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& overrides) {
   SweepSpec out;
-  const json spec = read_json(path, out.text);
-  SpecReader(path, spec).validate();
+  out.text = read_input_file(path, sweep_file);
+  const json spec = parse_json(out.text, path);
+  check_spec(spec, path);
   out.name = spec["name"].get<std::string>();
 
   SweepCase first;
@@ -168,12 +132,14 @@ SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& ov
   const auto base = std::filesystem::path(path).parent_path() / spec["base"].get<std::string>();
   std::vector<Violation> violations;
   for (SweepCase& one : out.cases) {
+    if (violations.size() >= max_violations) break;
+    check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
     one.set.insert(one.set.end(), overrides.begin(), overrides.end());
     try {
       one.config = load_config(base.string(), one.set);
     } catch (const ConfigError& error) {
       for (Violation v : error.violations()) {
-        v.where = path + " [" + one.label + "] " + v.where;
+        v.where = path + " [" + one.label.substr(0, max_name_bytes) + "] " + v.where;
         violations.push_back(std::move(v));
       }
     }

@@ -10,6 +10,9 @@
 
 namespace bb {
 
+/// Most combinations of the axes of one sweep.
+inline constexpr std::size_t max_sweep_cases = 10000;
+
 struct SweepCase {
   std::string label;             // "log dt=0.01"
   std::vector<std::string> set;  // overrides "/pointer=value"
@@ -23,11 +26,11 @@ struct SweepSpec {
   std::vector<SweepCase> cases;
 };
 
-/// Reads {"schema": "barrierbench.sweep/1", "name", "base": PATH, "set": {pointer: value}, "axes":
-/// [{"pointer", "values"} or {"cases": [{"label", "set", "reference"}]}]} and resolves every case, so that a
-/// mistake in the last one is found before the first one runs. A case of an axis with "reference": true (one
-/// an axis at most) is what the others of that axis are compared with, at equal values of the other axes.
-/// Errors: ConfigError with every violation.
+/// Reads a sweep file (configs/schema/sweep.schema.json) and resolves every case, so that a mistake in the
+/// last one is found before the first one runs. A case of an axis with "reference": true (one an axis at
+/// most) is what the others of that axis are compared with, at equal values of the other axes. Errors:
+/// ConfigError with the violations: of the file, of its size (max_sweep_cases, counted before anything is
+/// expanded), else of its cases.
 SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& overrides);
 
 }  // namespace bb

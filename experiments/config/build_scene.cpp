@@ -1,11 +1,17 @@
 // From a config to the numbers of its scene.
+#include <fmt/format.h>
+
 #include <Eigen/Geometry>
 #include <numbers>
 #include <random>
 
 #include "barriers/named_entries.hpp"
+#include "core/input/read_file.hpp"
+#include "core/mesh/bounds.hpp"
 #include "core/mesh/read_mesh.hpp"
+#include "core/record/provenance.hpp"
 #include "core/scene/scene_builder.hpp"
+#include "core/scene/scene_checks.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
@@ -13,9 +19,23 @@
 namespace bb {
 namespace {
 
-TriangleMesh make_mesh(const MeshSource& source) {
-  if (!source.file.empty()) return read_mesh(source.file);
-  return require_entry(mesh_generators(), source.generator, "mesh/generator").make(source.parameters);
+/// The mesh of a body; a file has to be the one whose hash the config has.
+TriangleMesh make_mesh(const MeshSource& source, const std::string& where) {
+  if (source.file.empty()) {
+    try {
+      return require_entry(mesh_generators(), source.generator, "mesh/generator").make(source.parameters);
+    } catch (const ConfigError& error) {
+      std::vector<Violation> violations = error.violations();
+      for (Violation& v : violations) v.where = where + ": " + v.where;
+      throw ConfigError(std::move(violations));
+    }
+  }
+  const std::string bytes = read_input_file(source.file, mesh_file);
+  if (sha256_hex(bytes) != source.sha256) {
+    throw ConfigError(source.file, "a file that has changed since the config was read",
+                      "SHA-256 " + source.sha256);
+  }
+  return parse_mesh(bytes, source.file);
 }
 
 void apply(const TransformConfig& transform, Positions& x) {
@@ -30,9 +50,10 @@ void apply(const TransformConfig& transform, Positions& x) {
 Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>& limit) {
   SceneBuilder builder("bodies", config.scene.planar, config.scene.gravity, config.source + "#/scene");
   builder.set_planar_pairs(config.scene.pairs);
-  for (const BodyConfig& body : config.scene.bodies) {
+  for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
+    const BodyConfig& body = config.scene.bodies[i];
     BodySpec spec = body.spec;
-    spec.mesh = make_mesh(body.mesh);
+    spec.mesh = make_mesh(body.mesh, fmt::format("{}#/scene/bodies/{}/mesh", config.source, i));
     apply(body.transform, spec.mesh.vertices);
     if (body.limited) spec.material.limit = limit;
     if (spec.d_hat == 0) spec.d_hat = config.formulation.d_hat;
@@ -59,6 +80,20 @@ void jitter(const SeedsConfig& seeds, Scene& scene) {
   }
 }
 
+/// Nothing starts, and nothing is driven, to where its coordinates lose their meaning. A prescribed vertex
+/// turns round an axis and moves along a line: it is farthest out at an end.
+void check_places(const RunConfig& config, const Scene& scene) {
+  const auto refuse = [&](const char* found) {
+    throw ConfigError(config.source + "#/scene", found,
+                      fmt::format("coordinates between -{0} and {0} m", max_coordinate));
+  };
+  if (!within_bounds(scene.x0)) refuse("a vertex that starts too far out (seeds.jitter_m)");
+  const double end = config.time.dt * config.time.steps;
+  for (const Pin& pin : scene.pins) {
+    if (!within_bounds(pin_pose(scene, pin, end))) refuse("a prescribed vertex that is driven too far out");
+  }
+}
+
 }  // namespace
 
 Scene build_scene(const RunConfig& config) {
@@ -73,6 +108,7 @@ Scene build_scene(const RunConfig& config) {
     scene = source.build(config.scene.parameters, {config.formulation.d_hat, limit});
   }
   jitter(config.seeds, scene);
+  check_places(config, scene);
   return scene;
 }
 

@@ -1,13 +1,15 @@
 #include "experiments/config/document.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
-#include <cerrno>
+#include <charconv>
 #include <cstring>
 #include <filesystem>
-#include <fstream>
 #include <nlohmann/json.hpp>
-#include <set>
-#include <sstream>
+
+#include "core/input/json.hpp"
+#include "core/input/names.hpp"
 
 namespace bb {
 namespace {
@@ -15,9 +17,9 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-std::string place(const std::string& text, const std::string& source, std::size_t byte) {
-  const auto end = text.begin() + static_cast<std::ptrdiff_t>(std::min(byte, text.size()));
-  return source + ":" + std::to_string(1 + std::count(text.begin(), end, '\n'));
+/// At most 60 bytes of a text, for messages.
+std::string shortened(const std::string& text) {
+  return text.size() <= 60 ? text : text.substr(0, 60) + "...";
 }
 
 /// "formulation": "NAME" means {"name": "NAME"}.
@@ -35,8 +37,11 @@ void absolute_mesh_paths(json& document, const std::string& folder) {
     json& mesh = body["mesh"];
     if (!mesh.contains("file") || !mesh["file"].is_string() || mesh["file"].get<std::string>().empty())
       continue;
-    mesh["file"] =
+    const std::string path =
         fs::absolute(fs::path(folder) / mesh["file"].get<std::string>()).lexically_normal().string();
+    if (!is_utf8(path))
+      throw ConfigError(path, "a path that is not UTF-8", "UTF-8: records name their meshes");
+    mesh["file"] = path;
   }
 }
 
@@ -67,6 +72,8 @@ void lay_over(json& base, const json& over) {
   }
 }
 
+constexpr std::size_t max_chain = 16;  // configs that extend one another
+
 json with_base(json document, const std::string& source, const std::string& folder,
                std::vector<std::string> chain) {
   expand_shorthands(document);
@@ -78,12 +85,17 @@ json with_base(json document, const std::string& source, const std::string& fold
   if (std::find(chain.begin(), chain.end(), path) != chain.end()) {
     throw ConfigError(source + "#/extends", '"' + path + '"', "a config that does not lead back to this one");
   }
+  if (chain.size() >= max_chain) {
+    throw ConfigError(source + "#/extends", '"' + path + '"',
+                      fmt::format("a chain of at most {} configs", max_chain));
+  }
   chain.push_back(path);
   std::string text;
   try {
-    text = read_text_file(path);
+    text = read_input_file(path, config_file);
   } catch (const ConfigError& error) {
-    throw ConfigError(source + "#/extends", '"' + path + '"', error.violations().front().allowed);
+    const Violation& wrong = error.violations().front();
+    throw ConfigError(source + "#/extends", '"' + path + "\": " + wrong.found, wrong.allowed);
   }
   json base = with_base(parse_json(text, path), path, fs::path(path).parent_path(), std::move(chain));
   document.erase("extends");
@@ -92,74 +104,91 @@ json with_base(json document, const std::string& source, const std::string& fold
   return base;
 }
 
+/// The value of an override: JSON, or a bare word. Text that starts like an array, an object or a string has
+/// to be one. Errors: JsonError.
+json override_value(const std::string& text, const std::string& source) {
+  if (!is_utf8(text)) throw JsonError(JsonFault::syntax, source, "bytes that are not UTF-8", "UTF-8");
+  try {
+    return parse_json(text, source);
+  } catch (const JsonError& error) {
+    const std::size_t first = text.find_first_not_of(" \t\r\n");
+    const bool structured = first != std::string::npos && std::strchr("[{\"", text[first]) != nullptr;
+    if (structured || error.fault() != JsonFault::syntax) throw;
+    return text;
+  }
+}
+
+std::vector<std::string> tokens_of(json::json_pointer pointer) {
+  std::vector<std::string> tokens;
+  for (; !pointer.empty(); pointer.pop_back()) tokens.insert(tokens.begin(), pointer.back());
+  return tokens;
+}
+
+/// The element of an array that a token names; null when there is none.
+json* element(json& array, const std::string& token) {
+  std::size_t index = 0;
+  const char* end = token.data() + token.size();
+  const auto [stop, error] = std::from_chars(token.data(), end, index);
+  return error == std::errc() && stop == end && index < array.size() ? &array[index] : nullptr;
+}
+
+/// The place that a pointer names. Keys of objects are made where they are missing, elements of arrays never:
+/// an array has the elements that its file gave it. Null when there is no such place.
+json* place_of(json& document, const std::vector<std::string>& tokens) {
+  json* at = &document;
+  for (const std::string& token : tokens) {
+    if (at->is_null()) *at = json::object();
+    if (!at->is_object() && !at->is_array()) return nullptr;
+    at = at->is_array() ? element(*at, token) : &(*at)[token];
+    if (at == nullptr) return nullptr;
+  }
+  return at;
+}
+
+/// False when there is no such place.
+bool set_value(json& document, const json::json_pointer& pointer, json value) {
+  const std::string name = pointer.to_string();
+  if (name != "/formulation" && name != "/formulation/name" && name != "/scene/name") {
+    json* place = place_of(document, tokens_of(pointer));
+    if (place != nullptr) *place = std::move(value);
+    return place != nullptr;
+  }
+  json over = json::object();
+  over[pointer] = std::move(value);
+  expand_shorthands(over);
+  drop_replaced(document, over);
+  lay_over(document, over);
+  return true;
+}
+
 void apply_override(json& document, const std::string& text, const std::string& folder,
                     std::vector<Violation>& violations) {
   const std::size_t equals = text.find('=');
+  const std::string where = "--set " + shortened(text);
   if (text.empty() || text[0] != '/' || equals == std::string::npos) {
-    violations.push_back({"--set " + text, '"' + text + '"', "/pointer=value, for example /time/dt_s=0.005"});
+    violations.push_back(
+        {where, '"' + shortened(text) + '"', "/pointer=value, for example /time/dt_s=0.005"});
     return;
   }
-  const std::string right = text.substr(equals + 1);
-  json value = json::parse(right, nullptr, false);
-  if (value.is_discarded()) value = right;  // a bare word
+  bool placed = false;
   try {
-    const json::json_pointer pointer(text.substr(0, equals));
-    const std::string name = pointer.to_string();
-    if (name == "/formulation" || name == "/formulation/name" || name == "/scene/name") {
-      json over = json::object();
-      over[pointer] = value;
-      expand_shorthands(over);
-      drop_replaced(document, over);
-      lay_over(document, over);
-    } else if (document.contains(pointer.parent_pointer()) && document[pointer.parent_pointer()].is_array()) {
-      document.at(pointer) = value;  // throws when there is no such element
-    } else {
-      document[pointer] = value;
-    }
-  } catch (const json::exception&) {
+    json value = override_value(text.substr(equals + 1), where);
+    placed = set_value(document, json::json_pointer(text.substr(0, equals)), std::move(value));
+  } catch (const JsonError& error) {
+    violations.push_back({where, error.violations().front().found, error.violations().front().allowed});
+    return;
+  } catch (const json::exception&) {  // no pointer
+  }
+  if (!placed) {
     violations.push_back(
-        {"--set " + text, '"' + text.substr(0, equals) + '"', "a pointer to a place of this config"});
+        {where, '"' + shortened(text.substr(0, equals)) + '"',
+         "a pointer to a place of this config: keys are made where they are missing, elements "
+         "of arrays are not"});
   }
   absolute_mesh_paths(document, folder);
 }
 
 }  // namespace
-
-std::string read_text_file(const std::string& path) {
-  std::error_code error;
-  if (!fs::is_regular_file(path, error)) throw ConfigError(path, "no such file", "a readable file");
-  std::ifstream file(path, std::ios::binary);
-  std::ostringstream text;
-  text << file.rdbuf();
-  if (!file) throw ConfigError(path, std::string("unreadable: ") + std::strerror(errno), "a readable file");
-  return text.str();
-}
-
-json parse_json(const std::string& text, const std::string& source) {
-  std::vector<std::set<std::string>> keys;  // of the objects that are open
-  std::string repeated;
-  const auto watch = [&](int, json::parse_event_t event, json& value) {
-    if (event == json::parse_event_t::object_start) keys.emplace_back();
-    if (event == json::parse_event_t::object_end) keys.pop_back();
-    if (event == json::parse_event_t::key && !keys.back().insert(value.get<std::string>()).second) {
-      repeated = value.get<std::string>();
-    }
-    return true;
-  };
-  try {
-    json document = json::parse(text, watch);
-    if (!repeated.empty())
-      throw ConfigError(source, "the key \"" + repeated + "\" twice in one object", "each key once");
-    return document;
-  } catch (const json::parse_error& error) {
-    std::string what = error.what();
-    const std::size_t colon = what.find(": ");
-    throw ConfigError(place(text, source, error.byte > 0 ? error.byte - 1 : 0),
-                      colon == std::string::npos ? what : what.substr(colon + 2), "JSON");
-  } catch (const json::out_of_range& error) {
-    throw ConfigError(source, error.what(), "numbers within the range of double");
-  }
-}
 
 json make_document(const std::string& text, const std::string& source, const std::string& folder,
                    std::span<const std::string> overrides, std::vector<Violation>& violations) {

@@ -12,15 +12,10 @@
 
 namespace bb {
 
-/// Errors: ConfigError at source:line for bad syntax or a key that stands twice in one object.
-nlohmann::json parse_json(const std::string& text, const std::string& source);
-
-/// Errors: ConfigError for an unreadable file.
-std::string read_text_file(const std::string& path);
-
 /// Text to a document: mesh paths made absolute from `folder`, "extends" laid underneath (and its own, in
-/// turn), then the overrides "/pointer=value". Violations of overrides are appended. Errors: ConfigError as
-/// parse_json, unreadable or circular `extends`.
+/// turn), then the overrides "/pointer=value": an override
+/// makes missing keys of objects, but never elements of an array. Violations of overrides are appended.
+/// Errors: ConfigError as parse_json, unreadable, circular or too long `extends`.
 nlohmann::json make_document(const std::string& text, const std::string& source, const std::string& folder,
                              std::span<const std::string> overrides, std::vector<Violation>& violations);
 

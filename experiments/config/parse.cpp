@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/input/read_file.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/presets.hpp"
 #include "experiments/config/reader.hpp"
@@ -29,7 +30,7 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   RunConfig config;
   config.source = source;
   const std::size_t before = violations.size();
-  check_schema(document, source, violations);
+  check_schema(document, config_schema(), source, violations);
   const Reader reader{source, violations, violations.size() == before};
   if (document.contains("formulation")) expand_preset(document["formulation"], source, violations);
 
@@ -62,7 +63,7 @@ RunConfig parse_config(const std::string& text, const std::string& source, const
 
 RunConfig load_config(const std::string& path, std::span<const std::string> overrides) {
   const std::string folder = std::filesystem::path(path).parent_path().string();
-  return parse_config(read_text_file(path), path, folder.empty() ? "." : folder, overrides);
+  return parse_config(read_input_file(path, config_file), path, folder.empty() ? "." : folder, overrides);
 }
 
 }  // namespace bb

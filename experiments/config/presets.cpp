@@ -6,8 +6,9 @@
 #include <nlohmann/json.hpp>
 
 #include "barriers/named_entries.hpp"
-#include "experiments/config/document.hpp"
+#include "core/input/json.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/config/schema_check.hpp"
 
 namespace bb {
 namespace {
@@ -17,10 +18,17 @@ namespace fs = std::filesystem;
 
 json load_preset(const std::string& name) {
   const std::string path = configs_folder() + "/formulations/" + name + ".json";
-  const json preset = parse_json(read_text_file(path), path);
+  const json preset = read_json_file(path, config_file);
   if (!preset.is_object() || !preset.contains("formulation") || !preset["formulation"].is_object()) {
     throw ConfigError(path, "no formulation", "an object with name, doc and formulation");
   }
+  if (!preset.value("doc", json("")).is_string())
+    throw ConfigError(path + "#/doc", preset["doc"].dump(), "a string");
+  json config = {
+      {"schema", "barrierbench.config/1"}, {"scene", json::object()}, {"formulation", preset["formulation"]}};
+  std::vector<Violation> violations;
+  check_schema(config, config_schema(), path, violations);
+  if (!violations.empty()) throw ConfigError(std::move(violations));
   return preset;
 }
 

@@ -5,6 +5,7 @@
 #include "barriers/named_entries.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
+#include "core/input/names.hpp"
 #include "experiments/config/reader.hpp"
 
 namespace bb {
@@ -146,6 +147,9 @@ bool read_limit_width(const json& object, const Reader& reader, std::optional<do
 void read_formulation(const json& object, const Reader& reader, double default_d_hat,
                       FormulationConfig& out) {
   out.name = object.value("name", "");
+  if (object.contains("name")) {
+    check_plain_name(reader.source + "#/formulation/name", out.name, reader.violations);
+  }
   out.d_hat = object.value("d_hat_m", default_d_hat);
   out.shape = read_shape(object, "log", "/formulation", reader);
   out.argument = object.value("argument", "gap") == "gap" ? Argument::gap : Argument::squared_gap;

@@ -4,6 +4,7 @@
 #include <set>
 
 #include "barriers/named_entries.hpp"
+#include "core/input/read_file.hpp"
 #include "core/record/provenance.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/reader.hpp"
@@ -93,10 +94,14 @@ MeshSource read_mesh_source(const json& object, const std::string& pointer, cons
     }
   }
   mesh.file = object["file"].get<std::string>();
-  mesh.sha256 = sha256_file(mesh.file);
-  if (mesh.sha256.empty()) {
-    reader.complain(pointer + "/file", '"' + mesh.file + '"', "a readable .obj, .ply or .stl file");
-  } else if (object.contains("sha256") && object["sha256"] != mesh.sha256) {
+  try {
+    mesh.sha256 = sha256_hex(read_input_file(mesh.file, mesh_file));
+  } catch (const ConfigError& error) {
+    const Violation& wrong = error.violations().front();
+    reader.complain(pointer + "/file", '"' + mesh.file + "\": " + wrong.found, wrong.allowed);
+    return mesh;
+  }
+  if (object.contains("sha256") && object["sha256"] != mesh.sha256) {
     reader.complain(pointer + "/sha256", object["sha256"].dump(),
                     "\"" + mesh.sha256 + "\", the hash of " + mesh.file);
   }

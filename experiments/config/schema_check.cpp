@@ -99,7 +99,11 @@ std::string allowed_text(const json& node, const json& found) {
                ? fmt::format(" of {} items", node["minItems"].dump())
                : fmt::format(" of at least {} items", node["minItems"].dump());
   }
+  if (node.contains("maxItems") && !node.contains("minItems")) {
+    out += fmt::format(" of at most {} items", node["maxItems"].dump());
+  }
   if (node.contains("minLength")) out += " that is not empty";
+  if (node.contains("maxLength")) out += fmt::format(" of at most {} bytes", node["maxLength"].dump());
   if (node.contains("unit") && node["unit"] != "1")
     out += fmt::format(" ({})", node["unit"].get<std::string>());
   return out;
@@ -107,20 +111,21 @@ std::string allowed_text(const json& node, const json& found) {
 
 class Collector {
  public:
-  Collector(json& document, const std::string& source, std::vector<Violation>& violations)
-      : document_(document),
-        source_(source),
-        violations_(violations),
-        schema_(json::parse(config_schema())) {}
+  Collector(json& document, json schema, const std::string& source, std::vector<Violation>& violations)
+      : document_(document), source_(source), violations_(violations), schema_(std::move(schema)) {}
 
   void take(const valijson::ValidationResults::Error& error) {
     const Path path = to_path(error.context);
-    if (error.description.starts_with("Failed to validate")) return;  // of a child, which has its own entry
+    if (error.description.starts_with("Failed to validate")) return take_choice(path);
+    if (error.description.starts_with("Target should not")) return;  // within a choice
     if (error.description.starts_with("Object contains a property")) return take_unknown_keys(path);
     if (error.description.starts_with("Missing required property '")) {
       const std::size_t begin = error.description.find('\'') + 1;
       Path child = path;
       child.push_back(error.description.substr(begin, error.description.find('\'', begin) - begin));
+      const json required = schema_at(schema_, path).value("required", json::array());
+      if (std::find(required.begin(), required.end(), json(child.back())) == required.end())
+        return;  // of a choice
       return report(child, "nothing", allowed_text(schema_at(schema_, child), json()));
     }
     const json& found = document_.at(json::json_pointer(pointer_text(path)));
@@ -147,6 +152,19 @@ class Collector {
     return document_.contains(pointer) ? &document_[pointer] : nullptr;
   }
 
+  /// "Failed to validate": none or several of the forms that the schema offers under oneOf; otherwise of a
+  /// child, which has its own entry.
+  void take_choice(const Path& path) {
+    const json node = schema_at(schema_, path);
+    if (!node.contains("oneOf")) return;
+    const json& found = document_.at(json::json_pointer(pointer_text(path)));
+    std::string keys;
+    for (const std::string& key : keys_of(found)) keys += (keys.empty() ? "" : ", ") + key;
+    report(path, "an object with " + (keys.empty() ? "nothing" : keys),
+           node.value("allowed", "another object"));
+    wrong_.push_back(path);
+  }
+
   void take_unknown_keys(const Path& path) {
     const std::vector<std::string> known =
         keys_of(schema_at(schema_, path).value("properties", json::object()));
@@ -168,7 +186,7 @@ class Collector {
   json& document_;
   const std::string& source_;
   std::vector<Violation>& violations_;
-  json schema_;
+  const json schema_;
   std::vector<Path> wrong_;
   std::set<std::string> seen_;
 };
@@ -184,9 +202,11 @@ valijson::ValidationResults validate(const json& document, const json& schema_te
 
 }  // namespace
 
-void check_schema(json& document, const std::string& source, std::vector<Violation>& violations) {
-  const valijson::ValidationResults results = validate(document, json::parse(config_schema()));
-  Collector collector(document, source, violations);
+void check_schema(json& document, const std::string& schema, const std::string& source,
+                  std::vector<Violation>& violations) {
+  json rules = json::parse(schema);
+  const valijson::ValidationResults results = validate(document, rules);
+  Collector collector(document, std::move(rules), source, violations);
   for (const auto& error : results) collector.take(error);
   collector.remove_wrong();
 }

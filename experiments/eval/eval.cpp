@@ -8,6 +8,7 @@
 #include <set>
 #include <string>
 
+#include "core/input/json.hpp"
 #include "experiments/eval/kinds.hpp"
 #include "experiments/eval/top_level.hpp"
 
@@ -59,7 +60,8 @@ struct Line {
   std::string error;   // empty: answered
 };
 
-/// Id and duplicate names come from the text itself: the parser rounds long numbers and drops duplicates.
+/// Id and repeated names come from the text itself: the parser rounds long numbers and knows no names of its
+/// own. Requires JSON whose strings are sound.
 void scan(std::string_view text, Line& line) {
   std::set<std::string> seen;
   std::string twice;
@@ -69,6 +71,24 @@ void scan(std::string_view text, Line& line) {
     if (!seen.insert(name).second) twice = name;
   }
   if (!twice.empty()) throw ConfigError("/" + twice, "the same field twice", "each field once");
+}
+
+/// What the JSON reader refused; the id is still found where the grammar holds up to it.
+void tell(const JsonError& error, std::string_view text, Line& line) {
+  const Violation& wrong = error.violations().front();
+  if (error.fault() == JsonFault::syntax) {
+    line.error = "found a line that is not JSON; allowed: one JSON object a line; " + wrong.found;
+    return;
+  }
+  line.error = error.fault() == JsonFault::number_range
+                   ? "found a number out of range; allowed: finite double precision; " + wrong.found
+                   : "found " + wrong.found + "; allowed: " + wrong.allowed;
+  try {
+    scan(text, line);
+  } catch (const ConfigError& repeated) {
+    if (error.fault() == JsonFault::repeated_key) line.error = text_of(repeated);
+  } catch (const json::exception&) {  // bad escapes beyond the place of the error
+  }
 }
 
 Answer answer_of(const json& object) {
@@ -81,22 +101,15 @@ Answer answer_of(const json& object) {
   return single ? kind.in_float(query) : kind.in_double(query);
 }
 
-Line answer_line(std::string_view text) {
+Line answer_line(const std::string& text) {
   Line line;
   try {
-    const json object = json::parse(text);
+    const json object = parse_json(text, "", LargeIntegers::rounded);  // an id may have any number of digits
     if (!object.is_object()) throw ConfigError("/", "a line that is not an object", "one JSON object a line");
     scan(text, line);
     line.fields = answer_of(object).fields();
-  } catch (
-      const json::out_of_range& e) {  // a number that no double holds; the rest is sound JSON up to there
-    try {
-      scan(text, line);
-    } catch (const ConfigError&) {  // the number is the news
-    }
-    line.error = std::string("found a number out of range; allowed: finite double precision; ") + e.what();
-  } catch (const json::parse_error& e) {
-    line.error = std::string("found a line that is not JSON; allowed: one JSON object a line; ") + e.what();
+  } catch (const JsonError& e) {
+    tell(e, text, line);
   } catch (const ConfigError& e) {
     line.error = text_of(e);
   } catch (const std::exception& e) {
@@ -113,12 +126,26 @@ std::string text_of(const Line& line) {
   return "{\"id\":" + line.id + "," + line.fields + "}";
 }
 
+/// std::getline with a bound: false at the end; `text` has max_query_bytes + 1 bytes when the line is longer.
+bool next_line(std::istream& in, std::string& text) {
+  text.clear();
+  for (char c = 0; text.size() <= max_query_bytes && in.get(c);) {
+    if (c == '\n') return true;
+    text.push_back(c);
+  }
+  return !text.empty();
+}
+
 }  // namespace
 }  // namespace eval
 
 int run_eval(std::istream& in, std::ostream& out, std::ostream& err) {
   std::size_t queries = 0, failed = 0;
-  for (std::string text; std::getline(in, text);) {
+  for (std::string text; eval::next_line(in, text);) {
+    if (text.size() > max_query_bytes) {
+      err << "eval: a line of more than " << max_query_bytes << " bytes; it and what follows is not read\n";
+      return 2;
+    }
     if (text.starts_with("\xEF\xBB\xBF")) text.erase(0, 3);  // byte order mark
     if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
     const eval::Line line = eval::answer_line(text);
@@ -130,7 +157,7 @@ int run_eval(std::istream& in, std::ostream& out, std::ostream& err) {
       return 75;
     }
   }
-  if (in.bad()) {  // a folder, a broken disk
+  if (in.bad()) {  // a broken disk
     err << "eval: the queries cannot be read\n";
     return 2;
   }

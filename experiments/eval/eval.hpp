@@ -2,14 +2,19 @@
 // a user inspects a function and how other programs check this one. Kinds: registry.inc.
 #pragma once
 
+#include <cstddef>
 #include <iosfwd>
 
 namespace bb {
 
+/// Longest query that is read.
+inline constexpr std::size_t max_query_bytes = std::size_t{16} << 20;
+
 /// Answers every line of `in` on `out`, in order; blank lines are not queries. A line that cannot be answered
 /// gets
 /// {"id": ..., "error": ...} and the others are still answered; `err` gets one line that counts them.
-/// @return 0: all answered; 2: some were not; 75: `out` cannot be written. Errors: none.
+/// @return 0: all answered; 2: some were not, or a line is longer than max_query_bytes, which ends the
+/// answers; 75: `out` cannot be written. Errors: none.
 int run_eval(std::istream& in, std::ostream& out, std::ostream& err);
 
 /// The JSON Schema of all kinds (configs/schema/eval.schema.json, baked in).

@@ -197,33 +197,25 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
   fill_validity(scene, record, timed.state_hash, seen.state_hash);
 }
 
-// From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome too.
-// Returns whether there was a first step.
-bool simulate(const RunConfig& config, const RunOptions& options, RunRecord& record) {
-  std::optional<Scene> scene;
-  try {
-    scene = build_scene(config);
-  } catch (const ConfigError& error) {
-    record.status.outcome = Outcome::invalid_scene;
-    record.status.detail = error.what();
-    return false;
-  }
-  fill_scene(config, *scene, record);
-  fill_plan(config, *scene, record);
-  if (const auto failure = start_failure(config, *scene, options.interrupted)) {
+// From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
+// geometry or its pilot can show that. Returns whether there was a first step.
+bool simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, RunRecord& record) {
+  fill_scene(config, scene, record);
+  fill_plan(config, scene, record);
+  if (const auto failure = start_failure(config, scene, options.interrupted)) {
     record.status.outcome = failure->outcome;
     record.status.detail = failure->detail;
     return false;
   }
   Calibration calibration;
   try {
-    calibration = calibrate(config, *scene, options, record.matching);
+    calibration = calibrate(config, scene, options, record.matching);
   } catch (const ConfigError& error) {  // of what only the scene or its pilot can tell: no first step
     record.status.outcome = Outcome::invalid_scene;
     record.status.detail = error.what();
     return false;
   }
-  run_passes(config, *scene, calibration, options, record);
+  run_passes(config, scene, calibration, options, record);
   return true;
 }
 
@@ -239,6 +231,8 @@ RunRecord run_config(const RunConfig& config, const RunOptions& options) {
   const int threads = config.threads > 0 ? config.threads : oneapi::tbb::info::default_concurrency();
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads));
+  // before anything is written: what config and files can tell is refused here
+  const Scene scene = build_scene(config);
   RunRecord record;
   record.status.started_utc = utc_now();
   record.passes = {config.passes.time, config.passes.diagnose, config.passes.audit};
@@ -249,7 +243,7 @@ RunRecord run_config(const RunConfig& config, const RunOptions& options) {
   fill_ids(record);
   check_writable(options.folder);
 
-  const bool started = simulate(config, options, record);
+  const bool started = simulate(config, scene, options, record);
   if (!started || !has_observed_run(config)) {  // a trace that lies there is of an earlier run
     std::error_code none_there;
     std::filesystem::remove(options.folder / "trace.jsonl", none_there);

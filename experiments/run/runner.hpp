@@ -37,7 +37,8 @@ struct RunOptions {
 struct Interrupted {};
 
 /// Runs and writes. The outcome is in the record, whatever it is.
-/// Errors: ConfigError (nothing is written), RecordError (output), Interrupted.
+/// Errors: ConfigError for what config and files can tell, as build_scene (nothing is written); RecordError
+/// (output), Interrupted.
 RunRecord run_config(const RunConfig& config, const RunOptions& options);
 
 /// scene-formulation-id8: the folder name of a run.

@@ -135,12 +135,12 @@ void expect_in(const std::string& text, const std::string& part) {
 TEST(Plugins, UnreadableFileIsRefused) {
   const std::string absent = test_plugin("that_is_not_there");
   expect_in(refusal(absent), absent + ": found ");
-  expect_in(refusal(absent), "allowed: a readable shared library");
+  expect_in(refusal(absent), "allowed: a shared library: a readable file");
 
   const std::string text_file = test_plugin("not_a_library");
   std::ofstream(text_file) << "plain text\n";
   expect_in(refusal(text_file), text_file + ": found ");
-  expect_in(refusal(text_file), "allowed: a readable shared library");
+  expect_in(refusal(text_file), "found no ELF header; allowed: a whole 64-bit ELF shared library");
 }
 
 TEST(Plugins, MissingSymbolAndOtherAbiAreRefused) {

@@ -130,7 +130,44 @@ TEST(Parse, OverridesAreSetInOrderAndJudgedLikeTheFile) {
     ASSERT_EQ(violations.size(), 1u) << wrong;
     EXPECT_EQ(violations[0].where, std::string("--set ") + wrong);
   }
-  EXPECT_EQ(violations_of(hang_config().dump(), {"/time/dt_s=1e400"}).at(0).where, "a.json#/time/dt_s");
+  EXPECT_EQ(violations_of(hang_config().dump(), {"/time/dt_s=1e400"}).at(0).where, "--set /time/dt_s=1e400");
+}
+
+TEST(Parse, OverridesMakeKeysButNeverElements) {
+  EXPECT_EQ(parsed(hang_config(), {"/seeds/main=3"}).seeds.main, 3u);
+  EXPECT_EQ(parsed(bodies_config(), {"/scene/bodies/0/offset_m=0.5"}).scene.bodies[0].spec.offset, 0.5);
+  EXPECT_EQ(violations_of(hang_config().dump(), {"/seeds/300000000=1"}).at(0).where,
+            "a.json#/seeds/300000000");
+  for (const char* wrong :
+       {"/scene/bodies/1/offset_m=1", "/scene/bodies/300000000=1", "/scene/bodies/-=1",
+        "/scene/bodies/-1/name=a", "/scene/bodies/18446744073709551616=1", "/time/dt_s/x=1"}) {
+    const std::vector<Violation> violations = violations_of(bodies_config().dump(), {wrong});
+    ASSERT_EQ(violations.size(), 1u) << wrong;
+    EXPECT_EQ(violations[0].where, std::string("--set ") + wrong);
+  }
+}
+
+TEST(Parse, ValuesOfOverridesAreJsonOrBareWords) {
+  EXPECT_EQ(parsed(hang_config(), {"/formulation=cubic"}).formulation.shape, "cubic");
+  EXPECT_EQ(parsed(hang_config(), {"/formulation=\"cubic\""}).formulation.shape, "cubic");
+  for (const char* wrong : {"/time={\"dt_s\": 1", "/time={\"dt_s\": 1, \"dt_s\": 2}",
+                            "/seeds/main=9007199254740993", "/formulation=\xff", "/formulation=\"cubic"}) {
+    const std::vector<Violation> violations = violations_of(hang_config().dump(), {wrong});
+    ASSERT_EQ(violations.size(), 1u) << wrong;
+    EXPECT_EQ(violations[0].where, std::string("--set ") + wrong);
+  }
+}
+
+TEST(Parse, ANameBecomesAFolderAndHasToBePlain) {
+  for (const char* wrong : {"../../up", "a/b", "..", ""}) {
+    json config = hang_config();
+    config["formulation"] = {
+        {"name", wrong}, {"shape", "log"}, {"argument", "gap"}, {"stiffness_policy", {{"name", "fixed"}}}};
+    const std::vector<Violation> violations = violations_of(config.dump());
+    ASSERT_EQ(violations.size(), 1u) << wrong;
+    EXPECT_EQ(violations[0].where, "a.json#/formulation/name");
+    EXPECT_NE(violations[0].allowed.find("folders are named after it"), std::string::npos);
+  }
 }
 
 TEST(Parse, APresetWithAnotherShapeLosesItsName) {

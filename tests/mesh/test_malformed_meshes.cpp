@@ -40,6 +40,24 @@ const std::string ply_start =
     "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float y\nproperty float z\n";
 const std::string ply_faces = "element face 1\nproperty list uchar int vertex_indices\nend_header\n";
 
+const std::string corner_list = "property list uchar int vertex_indices\n";
+
+/// A whole header of three vertices with more elements behind them, and three vertices.
+std::string announcing(const std::string& more) {
+  return ply_start + more + "end_header\n0 0 0\n1 0 0\n0 1 0\n";
+}
+
+/// PREFIX0SUFFIX PREFIX1SUFFIX ...
+std::string many(const std::string& prefix, int n, const std::string& suffix) {
+  std::string out;
+  for (int i = 0; i < n; ++i) out += prefix + std::to_string(i) + suffix;
+  return out;
+}
+
+std::string replaced(std::string text, const std::string& old, const std::string& by) {
+  return text.replace(text.find(old), old.size(), by);
+}
+
 /// A copy of a binary file with `value` at a place.
 template <class T>
 std::string with(std::string bytes, std::size_t at, T value) {
@@ -74,6 +92,9 @@ INSTANTIATE_TEST_SUITE_P(
         BadMesh{"lone_point", "a.obj", points + "l 1\n", "a.obj:5", "one point"},
         BadMesh{"loop_edge", "a.obj", points + "l 1 1\n", "a.obj:5", "twice"},
         BadMesh{"repeated_edge", "a.obj", points + "l 1 2\nl 2 1\n", "a.obj:6", "same vertices"},
+        BadMesh{"far", "a.obj", "v 0 0 0\nv 1e154 0 0\nv 0 1 0\nf 1 2 3\n", "a.obj:2", "1e+154"},
+        BadMesh{"just_too_far", "a.obj", "v 0 0 0\nv 0 -1.0000001e15 0\nv 0 1 0\nf 1 2 3\n", "a.obj:2",
+                "-1.00"},
         BadMesh{"empty", "a.obj", "", "a.obj", "no vertex"}),
     [](const auto& one) { return one.param.label; });
 
@@ -95,8 +116,9 @@ INSTANTIATE_TEST_SUITE_P(
             "a.ply", "without property z"},
         BadMesh{"no_corners", "a.ply", ply_start + "element face 1\nproperty int flags\nend_header\n",
                 "a.ply", "without its corners"},
-        BadMesh{"truncated", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n", "a.ply: vertex 2",
-                "end of the file"},
+        BadMesh{"truncated", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n", "a.ply", "end of the file"},
+        BadMesh{"truncated_late", "a.ply", ply_start + ply_faces + "0.000000 0 0\n1.00000 0 0\n",
+                "a.ply: vertex 2", "end of the file"},
         BadMesh{"short_line", "a.ply", ply_start + ply_faces + "0 0 0\n1 0\n0 1 0\n3 0 1 2\n", "a.ply:11",
                 "2 words"},
         BadMesh{"long_line", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0 9\n0 1 0\n3 0 1 2\n", "a.ply:11",
@@ -105,6 +127,43 @@ INSTANTIATE_TEST_SUITE_P(
                 "\"2.5\""},
         BadMesh{"index", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 3\n", "a.ply:13",
                 "index 3"},
+        BadMesh{"format_twice", "a.ply", "ply\nformat ascii 1.0\nformat ascii 1.0\n", "a.ply:3", "twice"},
+        BadMesh{"version", "a.ply", "ply\nformat ascii 2.0\n", "a.ply:2", "\"2.0\""},
+        BadMesh{"long_format", "a.ply", "ply\nformat ascii 1.0 1.0\n", "a.ply:2", "4 words"},
+        BadMesh{"element_twice", "a.ply", ply_start + "element vertex 3\n", "a.ply:7", "vertex twice"},
+        BadMesh{"property_twice", "a.ply", ply_start + "property double x\n", "a.ply:7", "x twice"},
+        BadMesh{"list_twice", "a.ply",
+                ply_start + "element face 0\nproperty list uchar int vertex_index\n"
+                            "property list uchar int vertex_indices\n",
+                "a.ply:9", "twice"},
+        BadMesh{"long_property", "a.ply", ply_start + "property float u v\n", "a.ply:7", "4 words"},
+        BadMesh{"huge_count", "a.ply", announcing("element face 1000000000000000000\n" + corner_list),
+                "a.ply", "end of the file"},
+        BadMesh{"count_beyond_integers", "a.ply",
+                announcing("element face 10000000000000000000\n" + corner_list), "a.ply:7",
+                "10000000000000000000"},
+        BadMesh{"one_too_many", "a.ply",
+                announcing("element edge 1\nproperty int vertex1\nproperty int vertex2\n"), "a.ply",
+                "end of the file"},
+        BadMesh{"no_properties", "a.ply", announcing("element mystery 1000000000000000000\n"), "a.ply",
+                "without a property"},
+        BadMesh{"many_elements", "a.ply", announcing(many("element e", 1001, " 0\n")), "a.ply:1006",
+                "one element more"},
+        BadMesh{"many_properties", "a.ply", announcing("element e 0\n" + many("property char p", 1001, "\n")),
+                "a.ply:1008", "one property more"},
+        BadMesh{"data_behind", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n\n7\n",
+                "a.ply:15", "behind the last element"},
+        BadMesh{"far", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 1e16\n0 1 0\n3 0 1 2\n", "a.ply:11",
+                "1e+16"},
+        BadMesh{"binary_behind", "a.ply", ply_binary + "\n", "a.ply", "1 bytes behind the last element"},
+        BadMesh{"binary_empty_lists", "a.ply",
+                "ply\nformat binary_little_endian 1.0\nelement face 1000000000000\n" + corner_list +
+                    "end_header\n",
+                "a.ply", "end of the file"},
+        BadMesh{"binary_negative_list", "a.ply",
+                with(replaced(ply_binary, "list uchar int", "list char int"), ply_first_face - 1,
+                     std::int8_t{-1}),
+                "a.ply: face 0", "a list of -1"},
         BadMesh{"binary_truncated", "a.ply", ply_binary.substr(0, ply_binary.size() - 1), "a.ply: face 3",
                 "end of the file"},
         BadMesh{"binary_nan", "a.ply",
@@ -119,20 +178,61 @@ const std::string stl_binary = tetrahedron_stl_binary();
 
 INSTANTIATE_TEST_SUITE_P(
     stl, Malformed,
-    ::testing::Values(BadMesh{"truncated", "a.stl", stl_ascii.substr(0, stl_ascii.size() - 40), "a.stl:27",
-                              "end of the file"},
-                      BadMesh{"word", "a.stl", "solid\nfacets\n", "a.stl:2", "\"facets\""},
-                      BadMesh{"outside", "a.stl", "solid\nvertex 0 0 0\n", "a.stl:2", "outside"},
-                      BadMesh{"two_vertices", "a.stl", "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n",
-                              "a.stl:5", "2 vertices"},
-                      BadMesh{"not_solid", "a.stl", "solids are not what this is, and it is too short",
-                              "a.stl:1", "solids"},
-                      BadMesh{"binary_short", "a.stl", "binary", "a.stl", "6 bytes"},
-                      BadMesh{"binary_truncated", "a.stl", "x" + stl_binary.substr(1, stl_binary.size() - 3),
-                              "a.stl", "bytes"},
-                      BadMesh{"binary_nan", "a.stl",
-                              with(stl_binary, 84 + 50 + 12, std::numeric_limits<float>::quiet_NaN()),
-                              "a.stl: face 1", "nan"}),
+    ::testing::Values(
+        BadMesh{"truncated", "a.stl", stl_ascii.substr(0, stl_ascii.size() - 40), "a.stl:27",
+                "end of the file"},
+        BadMesh{"word", "a.stl", "solid\nfacets\n", "a.stl:2", "\"facets\""},
+        BadMesh{"outside", "a.stl", "solid\nvertex 0 0 0\n", "a.stl:2", "outside"},
+        BadMesh{"behind_the_end", "a.stl", "solid\nendsolid\nfacet\n", "a.stl:3", "behind endsolid"},
+        BadMesh{"four_numbers", "a.stl", "solid\nfacet\nvertex 0 0 0 0\n", "a.stl:3", "5 words"},
+        BadMesh{"huge_count", "a.stl", with(stl_binary, 80, std::uint32_t{0xFFFFFFFF}), "a.stl", "284 bytes"},
+        BadMesh{"two_vertices", "a.stl", "solid\nfacet\nvertex 0 0 0\nvertex 1 0 0\nendfacet\n", "a.stl:5",
+                "2 vertices"},
+        BadMesh{"not_solid", "a.stl", "solids are not what this is, and it is too short", "a.stl:1",
+                "solids"},
+        BadMesh{"binary_short", "a.stl", "binary", "a.stl", "6 bytes"},
+        BadMesh{"format_twice", "a.ply", "ply\nformat ascii 1.0\nformat ascii 1.0\n", "a.ply:3", "twice"},
+        BadMesh{"version", "a.ply", "ply\nformat ascii 2.0\n", "a.ply:2", "\"2.0\""},
+        BadMesh{"long_format", "a.ply", "ply\nformat ascii 1.0 1.0\n", "a.ply:2", "4 words"},
+        BadMesh{"element_twice", "a.ply", ply_start + "element vertex 3\n", "a.ply:7", "vertex twice"},
+        BadMesh{"property_twice", "a.ply", ply_start + "property double x\n", "a.ply:7", "x twice"},
+        BadMesh{"list_twice", "a.ply",
+                ply_start + "element face 0\nproperty list uchar int vertex_index\n"
+                            "property list uchar int vertex_indices\n",
+                "a.ply:9", "twice"},
+        BadMesh{"long_property", "a.ply", ply_start + "property float u v\n", "a.ply:7", "4 words"},
+        BadMesh{"huge_count", "a.ply", announcing("element face 1000000000000000000\n" + corner_list),
+                "a.ply", "end of the file"},
+        BadMesh{"count_beyond_integers", "a.ply",
+                announcing("element face 10000000000000000000\n" + corner_list), "a.ply:7",
+                "10000000000000000000"},
+        BadMesh{"one_too_many", "a.ply",
+                announcing("element edge 1\nproperty int vertex1\nproperty int vertex2\n"), "a.ply",
+                "end of the file"},
+        BadMesh{"no_properties", "a.ply", announcing("element mystery 1000000000000000000\n"), "a.ply",
+                "without a property"},
+        BadMesh{"many_elements", "a.ply", announcing(many("element e", 1001, " 0\n")), "a.ply:1006",
+                "one element more"},
+        BadMesh{"many_properties", "a.ply", announcing("element e 0\n" + many("property char p", 1001, "\n")),
+                "a.ply:1008", "one property more"},
+        BadMesh{"data_behind", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 0\n0 1 0\n3 0 1 2\n\n7\n",
+                "a.ply:15", "behind the last element"},
+        BadMesh{"far", "a.ply", ply_start + ply_faces + "0 0 0\n1 0 1e16\n0 1 0\n3 0 1 2\n", "a.ply:11",
+                "1e+16"},
+        BadMesh{"binary_behind", "a.ply", ply_binary + "\n", "a.ply", "1 bytes behind the last element"},
+        BadMesh{"binary_empty_lists", "a.ply",
+                "ply\nformat binary_little_endian 1.0\nelement face 1000000000000\n" + corner_list +
+                    "end_header\n",
+                "a.ply", "end of the file"},
+        BadMesh{"binary_negative_list", "a.ply",
+                with(replaced(ply_binary, "list uchar int", "list char int"), ply_first_face - 1,
+                     std::int8_t{-1}),
+                "a.ply: face 0", "a list of -1"},
+        BadMesh{"binary_truncated", "a.stl", "x" + stl_binary.substr(1, stl_binary.size() - 3), "a.stl",
+                "bytes"},
+        BadMesh{"binary_nan", "a.stl",
+                with(stl_binary, 84 + 50 + 12, std::numeric_limits<float>::quiet_NaN()), "a.stl: face 1",
+                "nan"}),
     [](const auto& one) { return one.param.label; });
 
 TEST(read_mesh, reports_several_violations_at_once) {

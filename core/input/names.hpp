@@ -1,0 +1,22 @@
+// Names that a user gives and that become part of a path.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/math/error.hpp"
+
+namespace bb {
+
+/// Bytes; with a scene's name and an id behind it a folder name stays below the 255 of file systems.
+inline constexpr std::size_t max_name_bytes = 150;
+
+/// Appends a violation at `where` unless the name has 1 to max_name_bytes bytes, does not start with a dot,
+/// and holds no slash, no backslash, no "..", and no control character. Returns whether it was plain.
+bool check_plain_name(const std::string& where, std::string_view name, std::vector<Violation>& violations);
+
+/// True when the bytes are UTF-8, which JSON has to be.
+bool is_utf8(std::string_view text);
+
+}  // namespace bb

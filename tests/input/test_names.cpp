@@ -1,0 +1,50 @@
+// Names that become folders, and the memory that a scene may ask for.
+#include <gtest/gtest.h>
+
+#include "core/input/memory.hpp"
+#include "core/input/names.hpp"
+
+namespace bb {
+namespace {
+
+bool is_plain(const std::string& name) {
+  std::vector<Violation> violations;
+  const bool plain = check_plain_name("a.json#/name", name, violations);
+  EXPECT_EQ(violations.empty(), plain);
+  return plain;
+}
+
+TEST(Names, PlainOnesAreAcceptedOthersAreNot) {
+  for (const char* good :
+       {"a", "cubic_dynamic x s", "log, equal force", "dt_s=0.01", "\xc3\xa9t\xc3\xa9", "a.b"}) {
+    EXPECT_TRUE(is_plain(good)) << good;
+  }
+  for (const char* bad : {"", ".", "..", ".a", "a/b", "/a", "a\\b", "a..b", "../a", "a\nb", "a\x7f"}) {
+    EXPECT_FALSE(is_plain(bad)) << bad;
+  }
+  EXPECT_FALSE(is_plain(std::string("a\0b", 3)));
+  EXPECT_TRUE(is_plain(std::string(max_name_bytes, 'a')));
+  EXPECT_FALSE(is_plain(std::string(max_name_bytes + 1, 'a')));
+}
+
+TEST(Names, Utf8IsTold) {
+  EXPECT_TRUE(is_utf8("\xc3\xa9"));
+  EXPECT_FALSE(is_utf8("\xff"));
+  EXPECT_FALSE(is_utf8("\xc3"));
+}
+
+TEST(Memory, ASceneThatCannotFitIsRefusedWithItsEstimate) {
+  EXPECT_GT(memory_bytes(), std::uint64_t{1} << 28);
+  EXPECT_NO_THROW(require_memory("a", {1e5, 2e5, 0}));
+  EXPECT_GT(scene_bytes({1e5, 2e5, 0}), 1e5 * 3 * 8);
+  try {
+    require_memory("a", {4e12, 8e12, 0});
+    FAIL() << "accepted";
+  } catch (const ConfigError& error) {
+    EXPECT_NE(error.violations().front().found.find("GiB"), std::string::npos);
+    EXPECT_NE(error.violations().front().allowed.find("GiB"), std::string::npos);
+  }
+}
+
+}  // namespace
+}  // namespace bb
