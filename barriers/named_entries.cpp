@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <numeric>
 
+#include "core/input/names.hpp"
+
 namespace bb {
 namespace {
 
@@ -45,7 +47,7 @@ ConfigError unknown_name(std::string_view where, std::string_view found,
   std::string allowed = fmt::format("one of {}", fmt::join(names, ", "));
   const std::string nearest = nearest_name(found, names);
   if (!nearest.empty()) allowed += fmt::format(" (did you mean {}?)", nearest);
-  return ConfigError(std::string(where), fmt::format("\"{}\"", found), allowed);
+  return ConfigError(std::string(where), fmt::format("\"{}\"", shortened(found)), allowed);
 }
 
 ConfigError taken_name(std::string_view where, std::string_view name, const std::vector<std::string>& names) {

@@ -14,7 +14,7 @@
 namespace bb {
 namespace {
 
-constexpr double bytes_per_vertex = 400, bytes_per_triangle = 400, bytes_per_segment = 200;
+constexpr double bytes_per_vertex = 400, bytes_per_triangle = 800, bytes_per_segment = 400;
 
 constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max();
 

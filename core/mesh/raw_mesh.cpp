@@ -61,7 +61,7 @@ class Assembler {
       const Vec3d& x = raw_.vertices[i];
       if (!(x.cwiseAbs().maxCoeff<Eigen::PropagateNaN>() <= max_coordinate)) {
         complain(raw_.vertex_element, raw_.vertex_place[i], fmt::format("({}, {}, {})", x[0], x[1], x[2]),
-                 fmt::format("finite coordinates between -{0} and {0}", max_coordinate));
+                 fmt::format("finite coordinates between -{0:g} and {0:g}", max_coordinate));
       }
       mesh_.vertices.col(static_cast<Eigen::Index>(i)) = x;
     }

@@ -25,7 +25,7 @@ struct Report {
 };
 
 std::string allowed_coordinates() {
-  return fmt::format("finite coordinates between -{0} and {0} m", max_coordinate);
+  return fmt::format("finite coordinates between -{0:g} and {0:g} m", max_coordinate);
 }
 
 void check_model(const Report& report, const std::string& model) {

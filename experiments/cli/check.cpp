@@ -3,6 +3,7 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/verbs.hpp"
@@ -51,7 +52,7 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
   std::vector<Violation> ignored;  // load_config has judged the same text
   const std::string folder = std::filesystem::path(verb.config).parent_path().string();
   const nlohmann::json given =
-      make_document(read_text_file(verb.config), verb.config, folder, verb.set, ignored);
+      make_document(read_input_file(verb.config, config_file), verb.config, folder, verb.set, ignored);
   const nlohmann::json flat = nlohmann::json::parse(resolved_json(config)).flatten();
   fmt::print("\nevery setting of the run (* given by the config or --set; the others are defaults)\n");
   for (const auto& [pointer, value] : flat.items()) {

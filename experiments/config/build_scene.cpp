@@ -85,7 +85,7 @@ void jitter(const SeedsConfig& seeds, Scene& scene) {
 void check_places(const RunConfig& config, const Scene& scene) {
   const auto refuse = [&](const char* found) {
     throw ConfigError(config.source + "#/scene", found,
-                      fmt::format("coordinates between -{0} and {0} m", max_coordinate));
+                      fmt::format("coordinates between -{0:g} and {0:g} m", max_coordinate));
   };
   if (!within_bounds(scene.x0)) refuse("a vertex that starts too far out (seeds.jitter_m)");
   const double end = config.time.dt * config.time.steps;

@@ -17,11 +17,6 @@ namespace {
 using nlohmann::json;
 namespace fs = std::filesystem;
 
-/// At most 60 bytes of a text, for messages.
-std::string shortened(const std::string& text) {
-  return text.size() <= 60 ? text : text.substr(0, 60) + "...";
-}
-
 /// "formulation": "NAME" means {"name": "NAME"}.
 void expand_shorthands(json& document) {
   if (!document.is_object() || !document.contains("formulation")) return;

@@ -98,7 +98,7 @@ MeshSource read_mesh_source(const json& object, const std::string& pointer, cons
     mesh.sha256 = sha256_hex(read_input_file(mesh.file, mesh_file));
   } catch (const ConfigError& error) {
     const Violation& wrong = error.violations().front();
-    reader.complain(pointer + "/file", '"' + mesh.file + "\": " + wrong.found, wrong.allowed);
+    reader.complain(pointer + "/file", object["file"].dump() + ": " + wrong.found, wrong.allowed);
     return mesh;
   }
   if (object.contains("sha256") && object["sha256"] != mesh.sha256) {

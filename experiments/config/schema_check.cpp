@@ -11,6 +11,7 @@
 #include <valijson/validator.hpp>
 
 #include "barriers/named_entries.hpp"
+#include "core/input/names.hpp"
 
 namespace bb {
 namespace {
@@ -179,7 +180,8 @@ class Collector {
   }
 
   void report(const Path& path, std::string found, std::string allowed) {
-    const std::string where = source_ + "#" + pointer_text(path);
+    const std::string where = source_ + "#" + shortened(pointer_text(path));
+    found = shortened(found);
     if (seen_.insert(where).second) violations_.push_back({where, std::move(found), std::move(allowed)});
   }
 

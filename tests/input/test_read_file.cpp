@@ -1,6 +1,7 @@
 // Only regular files are opened, and no more of them is read than their kind allows.
 #include <gtest/gtest.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
