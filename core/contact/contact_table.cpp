@@ -11,7 +11,8 @@ void ContactTable::resize(std::size_t n) {
   pair_begin.resize(n + 1);
   if (n == 0) pair.clear();
   for (auto* column : {&normal, &flat}) column->resize(3 * n);
-  for (auto* column : {&d, &d_hat, &offset, &multiplicity, &kappa, &b, &db, &d2b, &curvature}) {
+  for (auto* column :
+       {&d, &d_hat, &offset, &multiplicity, &kappa, &kappa_before, &b, &db, &d2b, &curvature}) {
     column->resize(n);
   }
 }
@@ -23,7 +24,8 @@ void MollifiedTable::resize(std::size_t n) {
   n_free.resize(n);
   pair.resize(n);
   normal.resize(3 * n);
-  for (auto* column : {&eps, &d, &d_hat, &offset, &multiplicity, &kappa, &b, &db, &d2b}) column->resize(n);
+  for (auto* column : {&eps, &d, &d_hat, &offset, &multiplicity, &kappa, &kappa_before, &b, &db, &d2b})
+    column->resize(n);
 }
 
 }  // namespace bb

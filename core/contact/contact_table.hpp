@@ -35,7 +35,10 @@ struct ContactTable {
   std::vector<std::size_t>
       pair_begin;  // [n + 1] those pairs are pair[pair_begin[r]] to pair[pair_begin[r + 1] - 1]
   std::vector<PairId> pair;
-  std::vector<double> kappa;       // [n] N/m
+  std::vector<double> kappa;  // [n] N/m
+  /// [n] N/m: what kappa the row came with when its iterate was accepted; 0: it was not there before. Empty
+  /// of meaning in rows that no stiffness was given to.
+  std::vector<double> kappa_before;
   std::vector<double> b, db, d2b;  // [n] m^2, m, 1
   // obstacle rows only, else 0: grad^2 d = curvature (I - n n^T - flat flat^T)
   std::vector<double> curvature;  // [n] 1/m
@@ -53,7 +56,7 @@ struct MollifiedTable {
   std::vector<int> vertex;   // [4 n] = stencil, -1 where the vertex is given
   std::vector<double> eps;   // [n] threshold on |ea x eb|^2, m^4
   std::vector<PairId> pair;  // [n]
-  std::vector<double> d, d_hat, offset, multiplicity, kappa, b, db, d2b;  // as above
+  std::vector<double> d, d_hat, offset, multiplicity, kappa, kappa_before, b, db, d2b;  // as above
   // what a policy reads of a row: compact free columns, as in ContactTable
   std::vector<int> free_vertex;  // [4 n]
   std::vector<double> weight;    // [4 n]

@@ -109,9 +109,13 @@ Mat<double, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, co
                               rows.stencil[4 * r + 3]});
 }
 
-/// grad and hess of m kappa e(x) b(d(x)).
-void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positions& x, double* grad,
-                         double* hess) {
+struct MollifiedDerivatives {
+  Vec<double, 12> gradient;
+  Hessian12 hessian;
+};
+
+/// Of m kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
+MollifiedDerivatives mollified_derivatives(const MollifiedTable& rows, std::size_t r, const Positions& x) {
   const Mat<double, 3, 4> points = mollified_points(rows, r, x);
   const auto e = edge_edge_mollifier<double>(points, rows.eps[r]);
   const auto d = distance_derivatives<double, 4>(points, closest_edge_edge<double>(points));
@@ -121,6 +125,13 @@ void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positi
   const Hessian12 cross = db * e.gradient * d.gradient.transpose();
   const Hessian12 full = b * e.hessian + cross + cross.transpose() +
                          (d2b * e.value) * (d.gradient * d.gradient.transpose()) + (db * e.value) * d.hessian;
+  return {g, full};
+}
+
+/// grad and hess on the compact free slots.
+void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positions& x, double* grad,
+                         double* hess) {
+  const auto [g, full] = mollified_derivatives(rows, r, x);
   Hessian12 h = Hessian12::Zero();
   add_compact<4>(&rows.stencil[4 * r], &rows.free_vertex[4 * r], full, 1, h);
   project_leading(rows.n_free[r], h);
@@ -151,6 +162,38 @@ void mollified_terms(const MollifiedTable& rows, const Positions& x, std::vector
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
     mollified_row_terms(rows, r, x, &grad[12 * r], &hess[stored * r]);
   });
+}
+
+void add_given_motion(const ContactTable& rows, const Positions& motion, Positions& force) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
+    double closing = 0;
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int vertex = rows.stencil[4 * r + k];
+      if (vertex >= 0) closing += rows.stencil_weight[4 * r + k] * normal.dot(motion.col(vertex));
+    }
+    if (closing == 0) continue;
+    const double curvature = rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r];
+    for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {
+      force.col(rows.vertex[4 * r + k]) += (curvature * closing * rows.weight[4 * r + k]) * normal;
+    }
+  }
+}
+
+void add_given_motion(const MollifiedTable& rows, const Positions& x, const Positions& motion,
+                      Positions& force) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    Vec<double, 12> moved;
+    for (int k = 0; k < 4; ++k) {
+      moved.segment<3>(3 * k) = motion.col(rows.stencil[4 * r + static_cast<std::size_t>(k)]);
+    }
+    if (moved.isZero(0)) continue;
+    const Vec<double, 12> change = mollified_derivatives(rows, r, x).hessian * moved;
+    for (int k = 0; k < 4; ++k) {
+      const int vertex = rows.vertex[4 * r + static_cast<std::size_t>(k)];
+      if (vertex >= 0) force.col(vertex) += change.segment<3>(3 * k);
+    }
+  }
 }
 
 void contact_energies(const ContactTable& rows, std::vector<double>& energy) {

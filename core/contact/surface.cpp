@@ -75,7 +75,7 @@ Surface::Surface(const Scene& scene)
 void Surface::connect(const Scene& scene) {
   if (planar_pairs == PlanarPairs::vertex_vertex) {
     for (const auto& e : scene.surface_edges) connected_.push_back(ascending(e[0], e[1]));
-    add_sides(connected_, scene.membrane.triangles);
+    add_sides(connected_, scene.membrane_triangles());
     add_sides(connected_, scene.surface_triangles);
     for (const auto& e : scene.springs.edges) {  // a spring between two bodies is a stitch, not a mesh edge
       const std::size_t a = static_cast<std::size_t>(e[0]), b = static_cast<std::size_t>(e[1]);
@@ -84,7 +84,8 @@ void Surface::connect(const Scene& scene) {
     sort_unique(connected_);
     return;
   }
-  for (const auto* list : {&scene.membrane.triangles, &scene.surface_triangles}) {
+  const std::vector<std::array<int, 3>> elastic = scene.membrane_triangles();
+  for (const auto* list : {&elastic, &scene.surface_triangles}) {
     for (const auto& t : *list) {
       for (std::size_t k = 0; k < 3; ++k) {
         const auto e = ascending(t[k], t[(k + 1) % 3]);

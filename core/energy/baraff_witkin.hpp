@@ -12,6 +12,8 @@ namespace bb {
 /// 1/|F_k| were 0. Source: Baraff, Witkin 1998; Kim 2020 (A Finite Element Formulation of Baraff-Witkin
 /// Cloth).
 struct BaraffWitkin {
+  static constexpr bool anisotropic = true;  // psi depends on how the columns of F lie in the material
+
   template <class T, int R>
   BB_HD static T value(const Mat<T, R, 2>& f, T lame_mu, T lame_lambda) {
     const T stretch_u = f.col(0).norm() - T(1), stretch_v = f.col(1).norm() - T(1);

@@ -21,12 +21,17 @@ const MembraneModel<double>* known_model(std::string_view name) {
 }  // namespace
 
 std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int, 3>> triangles,
-                                                 const Positions& x_rest, bool planar, const Vec3d* warp) {
+                                                 const Positions& x_rest, bool planar,
+                                                 std::span<const Vec3d> warp) {
   std::vector<TriangleRest<double>> rests;
   rests.reserve(triangles.size());
+  if (!warp.empty() && warp.size() != triangles.size()) {
+    throw ConfigError("membrane/warp", std::to_string(warp.size()) + " directions",
+                      std::to_string(triangles.size()) + ", one a triangle");
+  }
   for (const auto& [a, b, c] : triangles) {
     const Vec3d x[3] = {x_rest.col(a), x_rest.col(b), x_rest.col(c)};
-    const Vec3d u = warp != nullptr ? *warp : Vec3d(x[1] - x[0]);
+    const Vec3d u = warp.empty() ? Vec3d(x[1] - x[0]) : warp[rests.size()];
     rests.push_back(planar ? planar_triangle_rest<double>(x, u) : triangle_rest<double>(x, u));
     if (!(rests.back().area > 0 && rests.back().dm_inv.allFinite())) {
       throw ConfigError("triangle " + std::to_string(rests.size() - 1),
@@ -38,7 +43,7 @@ std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int,
 
 MembraneBatch::MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
                              const Positions& x_rest, std::vector<double> lame_mu,
-                             std::vector<double> lame_lambda, bool planar, const Vec3d* warp)
+                             std::vector<double> lame_lambda, bool planar, std::span<const Vec3d> warp)
     : model_(known_model(model)),
       planar_(planar),
       rests_(triangle_rests(triangles, x_rest, planar, warp)),

@@ -8,11 +8,12 @@
 
 namespace bb {
 
-/// Rest data of triangles at x_rest [3 x n_vertices] (m). `warp`: one warp direction for all, or null for
-/// each triangle's first edge. ConfigError when a triangle has no area (or the warp direction is normal to
+/// Rest data of triangles at x_rest [3 x n_vertices] (m). `warp`: [n] warp directions, or empty for each
+/// triangle's first edge. ConfigError when a triangle has no area (or the warp direction is normal to
 /// it).
 std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int, 3>> triangles,
-                                                 const Positions& x_rest, bool planar, const Vec3d* warp);
+                                                 const Positions& x_rest, bool planar,
+                                                 std::span<const Vec3d> warp = {});
 
 class MembraneBatch final : public EnergyBatch {
  public:
@@ -21,7 +22,7 @@ class MembraneBatch final : public EnergyBatch {
   /// ConfigError: unknown model, columns of another length, triangles without area.
   MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
                 const Positions& x_rest, std::vector<double> lame_mu, std::vector<double> lame_lambda,
-                bool planar = false, const Vec3d* warp = nullptr);
+                bool planar = false, std::span<const Vec3d> warp = {});
   std::string_view name() const override { return model_->name; }
   int width() const override { return 3; }
   std::span<const int> vertices() const override { return vertices_; }

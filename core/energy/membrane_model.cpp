@@ -9,13 +9,12 @@ namespace {
 
 template <class Model, class T>
 constexpr MembraneModel<T> entry(std::string_view name, std::string_view doc) {
-  return {name,
-          doc,
-          &membrane_value<Model, 3, T>,
-          &membrane_value<Model, 2, T>,
-          &membrane_terms<Model, 3, T>,
-          &membrane_terms<Model, 2, T>};
+  return {name, doc, requires {Model::anisotropic;
 }
+, &membrane_value<Model, 3, T>, &membrane_value<Model, 2, T>, &membrane_terms<Model, 3, T>,
+    &membrane_terms<Model, 2, T>
+};  // namespace
+}  // namespace bb
 
 }  // namespace
 
@@ -35,6 +34,11 @@ const MembraneModel<T>* find_membrane_model(std::string_view name) {
     if (model.name == name) return &model;
   }
   return nullptr;
+}
+
+bool is_anisotropic(std::string_view name) {
+  const MembraneModel<double>* model = find_membrane_model<double>(name);
+  return model != nullptr && model->anisotropic;
 }
 
 template std::span<const MembraneModel<float>> membrane_models<float>();

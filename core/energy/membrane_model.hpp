@@ -16,6 +16,7 @@ struct MembraneModel {
   using Terms = ElementTerms<T, 9> (*)(const TriangleRest<T>&, const Vec<T, 3> (&)[3], T lame_mu,
                                        T lame_lambda, Projection);
   std::string_view name, doc;
+  bool anisotropic;  // the energy depends on the warp direction of the rest data
   Value value, value_planar;
   Terms terms, terms_planar;
 };
@@ -27,5 +28,7 @@ std::span<const MembraneModel<T>> membrane_models();
 /// The model of that name, or null.
 template <class T>
 const MembraneModel<T>* find_membrane_model(std::string_view name);
+/// Whether a model of that name depends on a warp direction.
+bool is_anisotropic(std::string_view name);
 
 }  // namespace bb

@@ -12,7 +12,7 @@ namespace bb {
 
 StrainLimitBatch::StrainLimitBatch(std::span<const std::array<int, 3>> triangles, const Positions& x_rest,
                                    std::vector<double> onset, std::vector<double> width, bool planar)
-    : planar_(planar), rests_(triangle_rests(triangles, x_rest, planar, nullptr)) {
+    : planar_(planar), rests_(triangle_rests(triangles, x_rest, planar)) {
   const std::size_t n = triangles.size();
   check_column("strain_limit/onset", n, onset, false);
   check_column("strain_limit/width", n, width, true);
@@ -26,6 +26,9 @@ StrainLimitBatch::StrainLimitBatch(std::span<const std::array<int, 3>> triangles
 }
 
 void StrainLimitBatch::measure(const Positions& x) {
+  if (x.cols() == measured_.cols() && x == measured_) return;
+  measured_ = x;
+  ++sweeps_;
   for_each_element(size(), [&](std::size_t e) {
     const Points<3> p(x, vertices_, e);
     const Vec2d sigma = planar_ ? membrane_svd(deformation_gradient<2>(rests_[e], p.x)).sigma

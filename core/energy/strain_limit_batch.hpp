@@ -26,8 +26,11 @@ class StrainLimitBatch {
   std::span<const int> vertices() const { return vertices_; }
   std::span<const TriangleRest<double>> rests() const { return rests_; }
 
-  /// Singular values and pseudo-gaps at x, kept in sigma() and gaps(). Cost: one SVD an element.
+  /// Singular values and pseudo-gaps at x, kept in sigma() and gaps(). Cost: one SVD an element; only a
+  /// comparison of positions when x is what was measured last.
   void measure(const Positions& x);
+  /// How many states were measured.
+  long long sweeps() const { return sweeps_; }
   std::span<const double> sigma() const { return sigma_; }  // [2n] descending within an element
   std::span<const double> gaps() const { return gap_; }     // [2n] y; d_hat of the shape is the width
   std::size_t n_active() const;                             // elements with a singular value above 1 + onset
@@ -84,6 +87,8 @@ class StrainLimitBatch {
   void fill_terms(const Positions& x, const double* kappa, LocalTerms& out) const;
 
   bool planar_;
+  Positions measured_;  // what sigma_ and gap_ belong to
+  long long sweeps_ = 0;
   std::vector<int> vertices_;
   std::vector<TriangleRest<double>> rests_;
   std::vector<StrainBand<double>> bands_;

@@ -41,11 +41,11 @@ class AccumulatedToi final : public StepSolver {
   double iterate(NewtonSystem& system, StepReport& step, int step_index, int iteration,
                  StepObserver& observer) {
     IterationReport report = begin_iteration(system, step_index, iteration, observer);
-    report.linear = system.solve(target_, dx_, report.times);
+    report.linear = system.solve(target_, dx_);
     measure_direction(system, dx_, report);
     if (const auto failed = direction_failure(report, false)) {
       fail_step(step, *failed, report);
-      finish_iteration(step, report, observer);
+      finish_iteration(system, step, report, observer);
       return 0;
     }
     const double largest = dx_.colwise().norm().maxCoeff();
@@ -55,7 +55,7 @@ class AccumulatedToi final : public StepSolver {
     report.alpha = scale * alpha;
     const bool moved = alpha > 0;
     if (moved) system.accept();
-    finish_iteration(step, report, observer);
+    finish_iteration(system, step, report, observer);
     if (moved) {
       observer.on_motion(x_before_, system.state().x, step_index);
     } else {
@@ -71,15 +71,15 @@ class AccumulatedToi final : public StepSolver {
     x_before_ = system.state().x;
     dx_ *= options_.extension;
     x_trial_.noalias() = x_before_ + dx_;
-    system.sweep(x_trial_, report.times);
-    report.bound = system.contact_bound(x_trial_, report.times);
+    system.sweep(x_trial_);
+    report.bound = system.contact_bound(x_trial_);
     report.alpha_ccd = report.bound.alpha;
-    report.alpha_limit = system.limit_bound(dx_, report.times);
+    report.alpha_limit = system.limit_bound(dx_);
     double alpha = std::min(report.alpha_ccd, report.alpha_limit);
     for (; alpha > 0; alpha = alpha < 1e-14 ? 0 : alpha / 2) {
       x_trial_.noalias() = x_before_ + (alpha / options_.extension) * dx_;
       ++report.line_search_trials;
-      if (system.try_state(x_trial_, report.times)) break;
+      if (system.try_state(x_trial_)) break;
     }
     return alpha;
   }
@@ -87,10 +87,13 @@ class AccumulatedToi final : public StepSolver {
   // The last pass: the prediction belongs to the time that was reached.
   void reduce_error(NewtonSystem& system, StepReport& step, const StepTask& task, Prediction& used,
                     int iteration, StepObserver& observer) {
-    task.integrator->predict(*task.history, step.dt_used, used);
-    system.restart_step(used, step.dt_used);
-    target_ = system.state().x;
-    task.pose(step.dt_used, target_);
+    {
+      const ScopedPhase timer(system.clock(), Phase::prediction);
+      task.integrator->predict(*task.history, step.dt_used, used);
+      system.restart_step(used, step.dt_used);
+      target_ = system.state().x;
+      task.pose(step.dt_used, target_);
+    }
     step.status = StepStatus::converged;
     iterate(system, step, task.step, iteration, observer);
   }

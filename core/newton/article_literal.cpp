@@ -25,16 +25,16 @@ class ArticleLiteral final : public StepSolver {
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration, observer);
       system.add_tikhonov(tikhonov_relative, tikhonov_absolute);
-      report.linear = system.solve(target_, dx_, report.times);
+      report.linear = system.solve(target_, dx_);
       measure_direction(system, dx_, report);
       const bool small = report.dx_inf / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, !small)) {
-        finish_iteration(step, report, observer);
+        finish_iteration(system, step, report, observer);
         fail_step(step, *failed, report);
         return step;
       }
       const bool moved = backtrack(system, report);
-      finish_iteration(step, report, observer);
+      finish_iteration(system, step, report, observer);
       if (moved) observer.on_motion(x_before_, system.state().x, task.step);
       if (small || !moved) {
         step.status = small ? StepStatus::converged : StepStatus::line_search_failed;
@@ -48,11 +48,11 @@ class ArticleLiteral final : public StepSolver {
   bool backtrack(NewtonSystem& system, IterationReport& report) {
     x_before_ = system.state().x;
     x_trial_.noalias() = x_before_ + dx_;
-    system.sweep(x_trial_, report.times);
+    system.sweep(x_trial_);
     for (double alpha = 1; alpha > smallest_alpha; alpha /= 2) {
       x_trial_.noalias() = x_before_ + alpha * dx_;
       ++report.line_search_trials;
-      const auto change = system.try_state(x_trial_, report.times);
+      const auto change = system.try_state(x_trial_);
       if (!change) continue;
       const bool decrease = change->change <= -options_.armijo * alpha * report.decrement;
       report.accepted_by_rounding = !decrease && within_rounding(*change);

@@ -11,18 +11,31 @@ namespace {
 constexpr double settled_kappa = 0.01;    // a change below it leaves Newton alone
 constexpr int unsettled_iterations = 10;  // that many above it in a row are a cycle, not a transient
 
-std::string describe_unsettled(const StepReport& step) {
-  char text[160];
-  std::snprintf(text, sizeof text,
-                "kappa does not settle: refreshed in every iteration, it still changes by a factor of %.3g "
-                "after %d iterations",
-                1 + step.kappa_change, step.iterations);
+bool cycles(int unsettled) { return unsettled >= unsettled_iterations; }
+
+std::string unsettled(const char* whose, double change, int iterations) {
+  char text[180];
+  std::snprintf(
+      text, sizeof text,
+      "%s kappa does not settle: refreshed in every iteration, it still changes by a factor of %.3g "
+      "after %d iterations",
+      whose, 1 + change, iterations);
   return text;
+}
+
+/// Names which kappa does not settle; empty when both do.
+std::string describe_unsettled(const StepReport& step) {
+  std::string text;
+  if (cycles(step.kappa_unsettled)) text = unsettled("the contacts'", step.kappa_change, step.iterations);
+  if (!cycles(step.limit_kappa_unsettled)) return text;
+  return text + (text.empty() ? "" : "; ") +
+         unsettled("the strain limit's", step.limit_kappa_change, step.iterations);
 }
 
 }  // namespace
 
 StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& used, Positions& target) {
+  const ScopedPhase timer(system.clock(), Phase::prediction);
   task.integrator->predict(*task.history, task.dt, used);
   system.begin_step(task.history->x, used, task.dt, task.load_factor);
   target = task.history->x;
@@ -47,7 +60,8 @@ IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, S
   IterationReport report;
   report.step = step;
   report.iteration = iteration;
-  system.assemble(report.times);
+  system.clock().lap();
+  system.assemble();
   observer.on_matrix(system, step, iteration);
 
   report.energy = system.energy();
@@ -58,6 +72,8 @@ IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, S
   report.max_stretch = system.max_stretch();
   report.limit_tension = system.limit_tension_max();
   report.kappa_change = system.kappa_change();
+  report.limit_kappa_change = system.limit_kappa_change();
+  report.limit_gap_min_rel = system.limit_gap_min_rel();
   report.gap_min_rel = std::numeric_limits<double>::infinity();
   const auto common = [&report](const auto& rows, bool& first) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -101,7 +117,9 @@ std::optional<StepStatus> direction_failure(const IterationReport& report, bool 
   return std::nullopt;
 }
 
-void finish_iteration(StepReport& step, const IterationReport& report, StepObserver& observer) {
+void finish_iteration(NewtonSystem& system, StepReport& step, IterationReport& report,
+                      StepObserver& observer) {
+  report.times = system.clock().lap();
   ++step.iterations;
   step.linear_iterations += report.linear.iterations;
   step.line_search_trials += report.line_search_trials;
@@ -110,13 +128,14 @@ void finish_iteration(StepReport& step, const IterationReport& report, StepObser
   step.accepted_by_rounding += report.accepted_by_rounding;
   step.kappa_unsettled = report.kappa_change > settled_kappa ? step.kappa_unsettled + 1 : 0;
   step.kappa_change = report.kappa_change;
+  step.limit_kappa_unsettled = report.limit_kappa_change > settled_kappa ? step.limit_kappa_unsettled + 1 : 0;
+  step.limit_kappa_change = report.limit_kappa_change;
   step.alpha_min = std::min(step.alpha_min, report.alpha);
   step.alpha_ccd_min = std::min(step.alpha_ccd_min, report.alpha_ccd);
   step.ccd_queries += report.bound.queries;
   step.ccd_probes += report.bound.probes;
   step.ccd_capped += report.bound.capped;
   step.ccd_zero += report.bound.zero;
-  step.times += report.times;
   observer.on_iteration(report);
 }
 
@@ -156,14 +175,13 @@ void measure_end(NewtonSystem& system, StepReport& step) {
                        step.status == StepStatus::line_search_failed ||
                        step.status == StepStatus::not_descent;
   if (!stalled) return;
-  if (step.kappa_unsettled >= unsettled_iterations) {  // what a kappa that moves can carry is no number
-    step.detail = describe_unsettled(step) + (step.detail.empty() ? "" : "; " + step.detail);
-    return;
+  if (const std::string moving = describe_unsettled(step); !moving.empty()) {
+    step.detail = moving + (step.detail.empty() ? "" : "; " + step.detail);
+    return;  // what a kappa that moves can carry is no number
   }
-  PhaseTimes ignored;
-  system.assemble(ignored);  // the rows that were accepted last and their gradients, of one state
-  Positions dx;              // prescribed vertices stay where they are
-  const bool solved = system.solve(system.state().x, dx, ignored).status == LinearStatus::ok;
+  system.assemble();  // the rows that were accepted last and their gradients, of one state
+  Positions dx;       // prescribed vertices stay where they are
+  const bool solved = system.solve(system.state().x, dx).status == LinearStatus::ok;
   if (!solved) dx.setZero();
   step.overload = system.contact_overload(dx);
   step.limit_overload = system.limit_overload(dx);

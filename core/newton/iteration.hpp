@@ -18,15 +18,16 @@ bool within_rounding(const EnergyChange& change);
 /// Ends a step whose direction was of no use.
 void fail_step(StepReport& step, StepStatus status, const IterationReport& report);
 
-/// Assembles at system.state(), lets the observer look at the matrix and fills what is known before the
-/// solve.
+/// Begins a lap of the system's clock, assembles at system.state(), lets the observer look at the matrix and
+/// fills what is known before the solve.
 IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, StepObserver& observer);
 /// |dx|_inf and the decrement -g . dx over free degrees of freedom.
 void measure_direction(const NewtonSystem& system, const Positions& dx, IterationReport& report);
 /// The status that ends the step when the direction is of no use. must_descend: E has to decrease along it.
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend);
-/// Adds an iteration to its step and tells the observer.
-void finish_iteration(StepReport& step, const IterationReport& report, StepObserver& observer);
+/// Ends the lap of the clock, adds an iteration to its step and tells the observer.
+void finish_iteration(NewtonSystem& system, StepReport& step, IterationReport& report,
+                      StepObserver& observer);
 
 bool poses_reached(const NewtonSystem& system, const Positions& target);
 std::string describe_bound(NewtonSystem& system, const IterationReport& report);

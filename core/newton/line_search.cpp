@@ -30,17 +30,17 @@ class LineSearch final : public StepSolver {
     int collapsed = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration, observer);
-      report.linear = system.solve(target_, dx_, report.times);
+      report.linear = system.solve(target_, dx_);
       measure_direction(system, dx_, report);
       const bool at_pose = poses_reached(system, target_);
       const bool small = at_pose && report.dx_inf / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
-        finish_iteration(step, report, observer);
+        finish_iteration(system, step, report, observer);
         fail_step(step, *failed, report);
         return step;
       }
       const bool moved = search(system, report, at_pose);
-      finish_iteration(step, report, observer);
+      finish_iteration(system, step, report, observer);
       if (moved) observer.on_motion(x_before_, system.state().x, task.step);
       if (small) {
         step.status = StepStatus::converged;
@@ -66,17 +66,17 @@ class LineSearch final : public StepSolver {
   bool search(NewtonSystem& system, IterationReport& report, bool energy_test) {
     x_before_ = system.state().x;
     move(system, 1.0);
-    system.sweep(x_trial_, report.times);
-    report.bound = system.contact_bound(x_trial_, report.times);
+    system.sweep(x_trial_);
+    report.bound = system.contact_bound(x_trial_);
     report.alpha_ccd = report.bound.alpha;
-    report.alpha_limit = system.limit_bound(dx_, report.times);
+    report.alpha_limit = system.limit_bound(dx_);
     // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
     double alpha = std::min(report.alpha_ccd, report.alpha_limit);
     if (alpha < 1) alpha *= options_.cap_fraction;
     while (alpha > smallest_alpha) {
       move(system, alpha);
       ++report.line_search_trials;
-      if (const auto change = system.try_state(x_trial_, report.times)) {
+      if (const auto change = system.try_state(x_trial_)) {
         const bool decrease = change->change <= -options_.armijo * alpha * report.decrement;
         report.accepted_by_rounding = energy_test && !decrease && within_rounding(*change);
         if (decrease || !energy_test || report.accepted_by_rounding) {

@@ -9,6 +9,7 @@
 #include "core/contact/contact_system.hpp"
 #include "core/contact/shape.hpp"
 #include "core/contact/stiffness_policy.hpp"
+#include "core/energy/strain_stiffness.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/linear/linear_solver.hpp"
 
@@ -20,8 +21,13 @@ struct LimitStiffness {
   Kind kind = Kind::fixed;
   double k_s = 0;                        // N/m, fixed: kappa_e = k_s x rest area
   MassTerm mass_term = MassTerm::paper;  // elasticity_inclusive
+  bool elastic_term = true;              // elasticity_inclusive
   Refresh refresh = Refresh::per_iteration;
   double multiplier = 1;  // the config's own factor times s of the matching rule
+
+  /// What elasticity_inclusive asks of one element, in a step of length dt (s) and inertia weight c.
+  StrainStiffnessRule rule(double dt, double c) const { return {mass_term, elastic_term, dt, c}; }
+  bool needs_hessian() const { return kind == Kind::elasticity_inclusive && elastic_term; }
 };
 
 struct StepSolverOptions {

@@ -36,17 +36,16 @@ NewtonSystem::NewtonSystem(const Scene& scene, Method& method)
       stiffness_(*method.stiffness, scene.mass) {
   min_d_hat_ = scene.d_hat.empty() ? 0 : *std::min_element(scene.d_hat.begin(), scene.d_hat.end());
   need_elastic_ = method.stiffness->needs_hessian() || method.keep_elastic_matrix ||
-                  (!scene.limit.triangles.empty() &&
-                   method.limit_stiffness.kind == LimitStiffness::Kind::elasticity_inclusive);
+                  (!scene.limit.triangles.empty() && method.limit_stiffness.needs_hessian());
   build_elements();
 }
 
 void NewtonSystem::build_elements() {
-  const MembranePart& membrane = scene_.membrane;
-  if (!membrane.triangles.empty()) {
+  for (const MembranePart& membrane : scene_.membranes) {
+    if (membrane.triangles.empty()) continue;
     elements_.push_back(std::make_unique<MembraneBatch>(membrane.model, membrane.triangles, scene_.rest,
-                                                        membrane.lame_mu, membrane.lame_lambda,
-                                                        scene_.planar));
+                                                        membrane.lame_mu, membrane.lame_lambda, scene_.planar,
+                                                        membrane.warp));
   }
   if (!scene_.springs.edges.empty()) {
     elements_.push_back(
@@ -77,6 +76,7 @@ void NewtonSystem::build_elements() {
 
 void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt,
                               double load_factor) {
+  const ScopedPhase timer(clock_, Phase::prediction);
   terms_.x_n = x_n;
   terms_.force.resize(3, x_n.cols());
   for (Eigen::Index i = 0; i < x_n.cols(); ++i) {
@@ -88,11 +88,13 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   first_iterate_ = true;
   state_.x = x_n;
   trial_.x = x_n;
-  contacts_.update_candidates(x_n, x_n);
+  sweep(x_n);
+  const ScopedPhase rows(clock_, Phase::contact_rows);
   state_.gap_min = contacts_.find_rows(x_n, state_.rows, state_.mollified);
 }
 
 void NewtonSystem::restart_step(const Prediction& prediction, double dt) {
+  const ScopedPhase timer(clock_, Phase::prediction);
   dt_ = dt;
   c_ = prediction.c;
   stiffness_.set_time(dt, c_);
@@ -126,35 +128,35 @@ void NewtonSystem::evaluate_contact_energies(EnergyState& state) const {
   mollified_energies(state.mollified, state.x, state.mollified_contact);
 }
 
-void NewtonSystem::sweep(const Positions& x1, PhaseTimes& times) {
-  const ScopedPhase timer(times, Phase::broad_phase);
+void NewtonSystem::sweep(const Positions& x1) {
+  const ScopedPhase timer(clock_, Phase::broad_phase);
   if (contacts_.active()) contacts_.update_candidates(state_.x, x1);
 }
 
-StepBound NewtonSystem::contact_bound(const Positions& x1, PhaseTimes& times) const {
-  const ScopedPhase timer(times, Phase::step_bound);
+StepBound NewtonSystem::contact_bound(const Positions& x1) const {
+  const ScopedPhase timer(clock_, Phase::step_bound);
   return contacts_.active() ? contacts_.step_bound(state_.x, x1) : StepBound{};
 }
 
-double NewtonSystem::limit_bound(const Positions& dx, PhaseTimes& times) const {
-  const ScopedPhase timer(times, Phase::strain_bound);
+double NewtonSystem::limit_bound(const Positions& dx) const {
+  const ScopedPhase timer(clock_, Phase::strain_bound);
   return limit_ ? limit_->step_bound(state_.x, dx, 1.0, method_.contact_options.ccd_park) : 1.0;
 }
 
-std::optional<EnergyChange> NewtonSystem::try_state(const Positions& x, PhaseTimes& times) {
-  trial_.x = x;
-  trial_.feasible = true;
+std::optional<EnergyChange> NewtonSystem::try_state(const Positions& x) {
   {
-    const ScopedPhase timer(times, Phase::contact_rows);
+    const ScopedPhase timer(clock_, Phase::contact_rows);
+    trial_.x = x;
+    trial_.feasible = true;
     trial_.gap_min = contacts_.find_rows(x, trial_.rows, trial_.mollified);
     const bool anywhere = method_.contact.literal && std::isfinite(trial_.x.sum());
     if (!(trial_.gap_min > 0) && !anywhere) return std::nullopt;
   }
   {
-    const ScopedPhase timer(times, Phase::stiffness);
+    const ScopedPhase timer(clock_, Phase::stiffness);
     stiffness_.freeze(trial_.rows, trial_.mollified, *blocks_, elastic_);
   }
-  const ScopedPhase timer(times, Phase::line_search);
+  const ScopedPhase timer(clock_, Phase::line_search);
   evaluate_shape(trial_.rows);
   evaluate_shape(trial_.mollified);
   evaluate_contact_energies(trial_);
@@ -164,6 +166,7 @@ std::optional<EnergyChange> NewtonSystem::try_state(const Positions& x, PhaseTim
 }
 
 void NewtonSystem::accept() {
+  const ScopedPhase timer(clock_, Phase::stiffness);
   std::swap(state_, trial_);
   stiffness_.keep(state_.rows, state_.mollified);
 }
@@ -203,12 +206,27 @@ ContactCounts NewtonSystem::contact_counts() const {
 
 double NewtonSystem::max_stretch() const {
   if (!limit_) return 0;
+  const ScopedPhase timer(clock_, Phase::strain_limit);
   limit_->measure(state_.x);
   return limit_->max_stretch();
 }
 
+double NewtonSystem::limit_gap_min_rel() const {
+  if (!limit_) return 0;
+  const ScopedPhase timer(clock_, Phase::strain_limit);
+  limit_->measure(state_.x);
+  double smallest = std::numeric_limits<double>::infinity();
+  for (std::size_t e = 0; e < limit_->size(); ++e) {
+    for (const double gap : limit_->gaps().subspan(2 * e, 2)) {
+      smallest = std::min(smallest, gap / scene_.limit.width[e]);
+    }
+  }
+  return smallest;
+}
+
 double NewtonSystem::limit_tension_max() const {
   if (!limit_) return 0;
+  const ScopedPhase timer(clock_, Phase::strain_limit);
   limit_->measure(state_.x);
   double largest = 0;
   for (std::size_t e = 0; e < limit_->size(); ++e) {

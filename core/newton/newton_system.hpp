@@ -34,28 +34,30 @@ class NewtonSystem {
   // --- an iterate
   // ---------------------------------------------------------------------------------------------
   /// Elastic terms, snapshot of H, kappa, limit, contact terms, gradient and matrix at state().x.
-  void assemble(PhaseTimes& times);
+  void assemble();
   /// Newton direction: A dx = -(g + lifted prescribed motion). target: [3 x n], read at prescribed vertices
   /// only.
-  LinearReport solve(const Positions& target, Positions& dx, PhaseTimes& times);
+  LinearReport solve(const Positions& target, Positions& dx);
 
   // --- the step along dx
   // --------------------------------------------------------------------------------------
   /// Prepares candidates for every state between state().x and x1.
-  void sweep(const Positions& x1, PhaseTimes& times);
-  StepBound contact_bound(const Positions& x1, PhaseTimes& times) const;
-  double limit_bound(const Positions& dx, PhaseTimes& times) const;
+  void sweep(const Positions& x1);
+  StepBound contact_bound(const Positions& x1) const;
+  double limit_bound(const Positions& dx) const;
   /// Adds eps I to the assembled matrix, eps = max(relative trace / n, absolute); returns eps. What observers
   /// saw before is without it.
   double add_tikhonov(double relative, double absolute);
   /// Evaluates E at x with kappa frozen. Returns the change against state(); an infeasible x has no change.
-  std::optional<EnergyChange> try_state(const Positions& x, PhaseTimes& times);
+  std::optional<EnergyChange> try_state(const Positions& x);
   /// Makes the last tried state the current one.
   void accept();
 
   // --- what observers and reports read
   // ------------------------------------------------------------------------
   const Scene& scene() const { return scene_; }
+  /// Charges what happens in this system and round it to phases; the calls below and above switch it.
+  PhaseClock& clock() const { return clock_; }
   const EnergyState& state() const { return state_; }
   const StepTerms& terms() const { return terms_; }
   const Positions& gradient() const { return gradient_; }
@@ -64,13 +66,19 @@ class NewtonSystem {
   ContactCounts contact_counts() const;
   bool pattern_changed() const { return pattern_changed_; }
   int n_free() const { return blocks_->n_free(); }
-  /// Largest relative change, max / min - 1, of a contact's or limited element's kappa since the line search
-  /// before, in the same step; 0 in a step's first iterate.
+  /// Largest relative change, max / min - 1, of a contact's kappa, and of an active limited element's, since
+  /// the line search before, in the same step; 0 in a step's first iterate.
   double kappa_change() const { return kappa_change_; }
+  double limit_kappa_change() const { return limit_kappa_change_; }
   /// Entries of the lower triangle that was solved last.
   std::size_t nnz() const { return nnz_; }
   bool has_limit() const { return limit_ != nullptr; }
+  /// Of limited elements: largest singular value; smallest distance y to the limit over its width, which is 1
+  /// or more where no element is active.
   double max_stretch() const;
+  double limit_gap_min_rel() const;
+  /// SVD sweeps over the limited elements so far: one a state that was measured.
+  long long limit_sweeps() const { return limit_ ? limit_->sweeps() : 0; }
   /// Largest (1/area) dS_e/dsigma over limited elements, N/m.
   double limit_tension_max() const;
   /// Largest estimated load over capacity, over contact rows and over limited elements; 0 when the barrier is
@@ -94,13 +102,15 @@ class NewtonSystem {
   void evaluate_shape(ContactTable& rows) const;
   void evaluate_shape(MollifiedTable& rows) const;
   void evaluate_contact_energies(EnergyState& state) const;
-  double refresh_limit_stiffness();
+  void refresh_limit_stiffness();
   double times_larger(std::size_t e, const Positions& others) const;
-  double limit_kappa_change() const;
+  double limit_change() const;
+  void assemble_limit();
   void assemble_matrix();
   void fill_contact_terms();
   void gather_gradient();
   void lift(const Positions& dx, Positions& rhs) const;
+  LinearReport solve_reduced(const ReducedSystem& reduced);
 
   const Scene& scene_;
   Method& method_;
@@ -122,7 +132,7 @@ class NewtonSystem {
   LocalTerms limit_local_;
   std::vector<double> limit_kappa_, limit_kappa_before_, limit_hess_;
   bool limit_kappa_fresh_ = false, first_iterate_ = true;
-  double kappa_change_ = 0;
+  double kappa_change_ = 0, limit_kappa_change_ = 0;
   std::vector<double> contact_grad_, contact_hess_, mollified_grad_, mollified_hess_;
   Positions gradient_;  // of E
   Positions contact_gradient_;
@@ -130,6 +140,7 @@ class NewtonSystem {
   bool keep_stages_ = false, pattern_changed_ = false, policy_started_ = false, need_elastic_ = false;
   VecXd rhs_, solution_;
   Positions work_;
+  mutable PhaseClock clock_;
 };
 
 }  // namespace bb

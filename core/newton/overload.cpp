@@ -4,6 +4,7 @@
 // how loads are shared but yields where the barrier would have to hold.
 #include <algorithm>
 #include <limits>
+#include <map>
 
 #include "core/contact/slope_scan.hpp"
 #include "core/newton/newton_system.hpp"
@@ -11,10 +12,21 @@
 namespace bb {
 namespace {
 
-// sup |b'| for kappa = 1 over d_hat, for b is d_hat^2 times a function of d/d_hat; infinite when unbounded.
-double largest_slope(const BarrierFunction& barrier) {
-  return max_slope(barrier, 1.0).value_or(std::numeric_limits<double>::infinity());
-}
+// sup |b'| for kappa = 1, m, at each d_hat that comes up; infinite when unbounded. Asked of the shape at
+// every d_hat: how it depends on it is the shape's own business.
+class LargestSlope {
+ public:
+  explicit LargestSlope(const BarrierFunction& barrier) : barrier_(barrier) {}
+  double operator()(double d_hat) {
+    const auto [at, is_new] = known_.try_emplace(d_hat);
+    if (is_new) at->second = max_slope(barrier_, d_hat).value_or(std::numeric_limits<double>::infinity());
+    return at->second;
+  }
+
+ private:
+  const BarrierFunction& barrier_;
+  std::map<double, double> known_;
+};
 
 // |b'| that the Newton model asks for, at the gap `next` where its step would end: linear from d on, m.
 double newton_force(const BarrierFunction& barrier, double d, double next, double d_hat) {
@@ -28,7 +40,7 @@ double NewtonSystem::contact_overload(const Positions& dx) const {
   if (method_.contact.shape.infinite_at_zero) return 0;
   const ContactTable& rows = state_.rows;
   const Positions others = gradient_ - contact_gradient_;  // what contact has to balance
-  const double slope = largest_slope(method_.contact);
+  LargestSlope slope(method_.contact);
   double largest = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
@@ -39,7 +51,7 @@ double NewtonSystem::contact_overload(const Positions& dx) const {
       opening += weight * normal.dot(dx.col(rows.vertex[4 * r + k]));
       weight_sq += weight * weight;
     }
-    const double capacity = slope * rows.d_hat[r];  // for kappa = 1
+    const double capacity = slope(rows.d_hat[r]);  // for kappa = 1
     const double load = push / weight_sq / (rows.multiplicity[r] * rows.kappa[r]);
     const double model = newton_force(method_.contact, rows.d[r], rows.d[r] + opening, rows.d_hat[r]);
     largest = std::max({largest, load / capacity, model / capacity});
@@ -70,14 +82,14 @@ double NewtonSystem::limit_overload(const Positions& dx) {
   limit_->measure(state_.x);
   const std::vector<double> gaps(limit_->gaps().begin(), limit_->gaps().end());
   limit_->measure(state_.x + dx);
-  const double slope = largest_slope(method_.limit);
+  LargestSlope slope(method_.limit);
   double largest = 0;
   for (std::size_t e = 0; e < limit_->size(); ++e) {
     const double width = scene_.limit.width[e];
     const double gap = std::min(gaps[2 * e], gaps[2 * e + 1]);
     const double next = std::min(limit_->gaps()[2 * e], limit_->gaps()[2 * e + 1]);
     if (!(gap < width)) continue;
-    const double capacity = slope * width;
+    const double capacity = slope(width);
     const double share = -method_.limit.eval(gap, width).db / capacity;
     largest = std::max(
         {largest, share * times_larger(e, others), newton_force(method_.limit, gap, next, width) / capacity});

@@ -26,15 +26,18 @@ struct IterationReport {
   ContactCounts contacts;
   double gap_min = 0, gap_min_rel = 0;  // m, d/d_hat; infinity without contacts
   double kappa_min = 0, kappa_max = 0;  // N/m
-  double kappa_change = 0;              // largest max/min - 1 since the line search before; 0 in iteration 0
-  double curvature_max = 0;             // N/m, largest m kappa b''
-  double force_max = 0;                 // N, largest kappa |b'| per unit multiplicity
-  double limit_tension = 0;             // N/m, largest (1/area) dS_e/dsigma
-  std::size_t n_free = 0, nnz = 0;      // of the matrix
-  double max_stretch = 0;               // largest singular value of limited elements; 0 without
+  /// Largest max/min - 1 of a contact's kappa, and of an active limited element's, since the line search
+  /// before; 0 in iteration 0.
+  double kappa_change = 0, limit_kappa_change = 0;
+  double limit_gap_min_rel = 0;     // smallest distance of a limited element to its limit, over the width
+  double curvature_max = 0;         // N/m, largest m kappa b''
+  double force_max = 0;             // N, largest kappa |b'| per unit multiplicity
+  double limit_tension = 0;         // N/m, largest (1/area) dS_e/dsigma
+  std::size_t n_free = 0, nnz = 0;  // of the matrix
+  double max_stretch = 0;           // largest singular value of limited elements; 0 without
   bool pattern_changed = false;
   StepBound bound;
-  PhaseTimes times;
+  PhaseTimes times;  // from its assembly to its end, what observers of the matrix took included
 };
 
 struct StepReport {
@@ -44,8 +47,9 @@ struct StepReport {
   std::string detail;  // names the pin, the pair, the linear status
   int iterations = 0, linear_iterations = 0, line_search_trials = 0, factorizations = 0, analyses = 0;
   int accepted_by_rounding = 0;
-  double kappa_change = 0;  // of the last iteration
-  int kappa_unsettled = 0;  // last iterations in a row in which a kappa changed by more than 1 %
+  double kappa_change = 0, limit_kappa_change = 0;  // of the last iteration
+  /// Last iterations in a row in which a contact's kappa, a limited element's, changed by more than 1 %.
+  int kappa_unsettled = 0, limit_kappa_unsettled = 0;
   double alpha_min = 1, alpha_ccd_min = 1;
   long long ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, ccd_zero = 0;
   ContactCounts contacts;        // at the end of the step
@@ -57,10 +61,10 @@ struct StepReport {
   std::optional<double> overload, limit_overload;
   double max_stretch = 0;
   double kinetic_energy = 0;  // J
-  PhaseTimes times;
+  PhaseTimes times;           // every moment of Simulation::step; on_step sees what came before it
 };
 
-/// Looks on; every call is optional. Called between phases, its time is nobody's phase.
+/// Looks on; every call is optional. Its time belongs to Phase::output.
 class NewtonSystem;
 class StepObserver {
  public:

@@ -6,6 +6,36 @@
 
 namespace bb {
 
+namespace {
+
+/// Charges an observer's time to Phase::output.
+class ChargedObserver final : public StepObserver {
+ public:
+  ChargedObserver(StepObserver& observer, PhaseClock& clock) : observer_(observer), clock_(clock) {}
+  void on_matrix(NewtonSystem& system, int step, int iteration) override {
+    const ScopedPhase timer(clock_, Phase::output);
+    observer_.on_matrix(system, step, iteration);
+  }
+  void on_iteration(const IterationReport& report) override {
+    const ScopedPhase timer(clock_, Phase::output);
+    observer_.on_iteration(report);
+  }
+  void on_motion(const Positions& x0, const Positions& x1, int step) override {
+    const ScopedPhase timer(clock_, Phase::output);
+    observer_.on_motion(x0, x1, step);
+  }
+  void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override {
+    const ScopedPhase timer(clock_, Phase::output);
+    observer_.on_step(system, report, x);
+  }
+
+ private:
+  StepObserver& observer_;
+  PhaseClock& clock_;
+};
+
+}  // namespace
+
 Simulation::Simulation(const Scene& scene, Method& method, double dt, int n_steps)
     : scene_(scene),
       method_(method),
@@ -21,6 +51,9 @@ Simulation::Simulation(const Scene& scene, Method& method, double dt, int n_step
 }
 
 StepReport Simulation::step(StepObserver& observer) {
+  PhaseClock& clock = system_.clock();
+  clock.restart(Phase::step_control);
+  ChargedObserver charged(observer, clock);
   if (step_ == 0 && method_.integrator->needs_acceleration()) start_acceleration();
   StepTask task;
   task.step = step_;
@@ -31,7 +64,7 @@ StepReport Simulation::step(StepObserver& observer) {
   task.pose = [this](double dt, Positions& target) {
     for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, time_ + dt);
   };
-  StepReport report = solver_->advance(system_, task, prediction_, observer);
+  StepReport report = solver_->advance(system_, task, prediction_, charged);
 
   remember(system_.state().x, report.dt_used);
   report.t = time_;
@@ -40,8 +73,10 @@ StepReport Simulation::step(StepObserver& observer) {
     report.kinetic_energy += 0.5 * scene_.mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
   }
   end_policy_step();
-  observer.on_step(system_, report, history_.x);
+  report.times = clock.read();
+  charged.on_step(system_, report, history_.x);
   ++step_;
+  report.times = clock.read();
   return report;
 }
 
@@ -51,8 +86,7 @@ void Simulation::start_acceleration() {
   method_.integrator->predict(history_, dt_, at_rest);  // for its c
   at_rest.x_tilde = history_.x;
   system_.begin_step(history_.x, at_rest, dt_, 1.0);
-  PhaseTimes ignored;
-  system_.assemble(ignored);
+  system_.assemble();
   for (Eigen::Index i = 0; i < history_.a.cols(); ++i) {
     const double mass = scene_.mass[static_cast<std::size_t>(i)];
     for (Eigen::Index k = 0; k < 3; ++k) {
@@ -63,6 +97,7 @@ void Simulation::start_acceleration() {
 }
 
 void Simulation::remember(const Positions& x, double dt_used) {
+  const ScopedPhase timer(system_.clock(), Phase::prediction);
   if (dt_used > 0) {
     method_.integrator->finish(history_, dt_used, prediction_, x, v_next_, a_next_);
     history_.v_prev.swap(history_.v);
@@ -78,6 +113,7 @@ void Simulation::remember(const Positions& x, double dt_used) {
 // The pairs with a row at two step ends in a row, for a policy that adapts between steps.
 void Simulation::end_policy_step() {
   if (!method_.stiffness->adapts()) return;
+  const ScopedPhase timer(system_.clock(), Phase::stiffness);
   list_pair_gaps(system_.state());
   pair_ends_.clear();
   auto before = previous_gaps_.begin();

@@ -3,10 +3,27 @@
 namespace bb {
 namespace {
 
-constexpr double unknown = 0;  // as a kappa before: compared with nothing
-
 const std::vector<int>& free_vertices(const ContactTable& table) { return table.vertex; }
 const std::vector<int>& free_vertices(const MollifiedTable& table) { return table.free_vertex; }
+
+/// Largest relative_change of a row since its iterate was accepted; from now on the rows are compared with
+/// what they have now, so that an iterate that is kept has not changed.
+template <class Table>
+double settle(Table& rows) {
+  double change = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    change = std::max(change, relative_change(rows.kappa_before[r], rows.kappa[r]));
+  }
+  rows.kappa_before = rows.kappa;
+  return change;
+}
+
+/// A row with a pair that no iterate had before has the value at d_hat: it is compared with nothing.
+template <class Table>
+void note_before(Table& rows, std::span<const int> missing) {
+  rows.kappa_before = rows.kappa;
+  for (const int row : missing) rows.kappa_before[static_cast<std::size_t>(row)] = 0;
+}
 
 }  // namespace
 
@@ -83,35 +100,20 @@ void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified
 double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                                 const BlockSystem::Values& elastic) {
   const bool anew = policy_.refresh() == Refresh::per_iteration;
-  before_.clear();
-  if (anew && !uniform()) {
-    before_.assign(rows.kappa.begin(), rows.kappa.end());
-    before_.insert(before_.end(), mollified.kappa.begin(), mollified.kappa.end());
-    forget_new(rows.size());
-  }
   if (uniform() || anew) memory_.clear();
   memory_.recall(rows, mollified, missing_, missing_mollified_);
   fill_missing(rows, mollified, blocks, elastic, false);
   keep(rows, mollified);
-  double change = 0;
-  for (std::size_t i = 0; i < before_.size(); ++i) {
-    const double now = i < rows.size() ? rows.kappa[i] : mollified.kappa[i - rows.size()];
-    change = std::max(change, relative_change(before_[i], now));
-  }
-  return change;
-}
-
-// Rows with a pair that the accepted trial met for the first time had its value at d_hat: no change of
-// theirs.
-void StiffnessUpdate::forget_new(std::size_t n_rows) {
-  for (const int row : missing_) before_[static_cast<std::size_t>(row)] = unknown;
-  for (const int row : missing_mollified_) before_[n_rows + static_cast<std::size_t>(row)] = unknown;
+  if (uniform() || !anew) return 0;
+  return std::max(settle(rows), settle(mollified));
 }
 
 void StiffnessUpdate::freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                              const BlockSystem::Values& elastic) {
   memory_.recall(rows, mollified, missing_, missing_mollified_);
   fill_missing(rows, mollified, blocks, elastic, true);
+  note_before(rows, missing_);
+  note_before(mollified, missing_mollified_);
 }
 
 void StiffnessUpdate::keep(const ContactTable& rows, const MollifiedTable& mollified) {

@@ -37,13 +37,14 @@ class StiffnessUpdate {
 
   /// kappa of the rows of a Newton iterate. elastic: values of the elastic matrix H, read only when the
   /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a pair had
-  /// in this step. Returns the largest relative_change of a row's kappa against the value it came with; 0
-  /// where the policy gives all rows one kappa or keeps it for the step.
+  /// in this step. Returns the largest relative_change of a row's kappa against its kappa_before; 0 where
+  /// the policy gives all rows one kappa or keeps it for the step.
   double refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                  const BlockSystem::Values& elastic);
 
   /// kappa of the rows of a trial state: known pairs keep theirs, new ones get the policy's value at d =
-  /// d_hat with the same H, so that kappa does not depend on the trial.
+  /// d_hat with the same H, so that kappa does not depend on the trial. Writes kappa_before too: what is
+  /// known of a trial stays in its own rows.
   void freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
               const BlockSystem::Values& elastic);
 
@@ -61,7 +62,6 @@ class StiffnessUpdate {
   bool uniform() const { return policy_.state().kappa > 0; }
   void fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                     const BlockSystem::Values& elastic, bool at_d_hat);
-  void forget_new(std::size_t n_rows);
   template <class Table>
   void gather(const Table& table, std::span<const int> rows, const BlockSystem& blocks,
               const BlockSystem::Values& elastic, bool at_d_hat, bool with_hessian);
@@ -75,7 +75,7 @@ class StiffnessUpdate {
   KappaMemory memory_;
   PolicyColumns columns_;
   std::vector<int> missing_, missing_mollified_;
-  std::vector<double> kappa_, before_;
+  std::vector<double> kappa_;
 };
 
 }  // namespace bb

@@ -98,7 +98,7 @@ Json matching(const MatchingRecord& v) {
   Json j = {{"rule", v.rule},
             {"load_source", v.load_source},
             {"limit_load_source", v.limit_load_source},
-            {"pilot_run_id", v.pilot_run_id},
+            {"pilot_config_id", v.pilot_config_id},
             {"pilot_note", v.pilot_note}};
   put(j, "theta", v.theta);
   put(j, "load_N", v.load_N);
@@ -162,6 +162,8 @@ Json step(const StepRecord& v) {
   put(j, "t_s", v.t_s);
   put_step_contact(j, v);
   put_step_energy(j, v);
+  put(j, "wall_s", v.wall_s);
+  put(j, "unaccounted_s", v.unaccounted_s);
   j["time"] = fields::phases(v.time);
   return j;
 }
@@ -251,6 +253,7 @@ Json summary(const Summary& v) {
   j["cond"] = conditioning(v);
   put(j, "wall_s", v.wall_s);
   put(j, "solve_s", v.solve_s);
+  put(j, "unaccounted_s", v.unaccounted_s);
   j["time"] = fields::phases(v.time);
   j["peak_rss_bytes"] = v.peak_rss_bytes;
   j["state_hash"] = v.state_hash;

@@ -57,6 +57,8 @@ void put_contact(Json& j, const TraceRow& row) {
   put(j, "kappa_min_N_per_m", row.kappa_min_N_per_m);
   put(j, "kappa_max_N_per_m", row.kappa_max_N_per_m);
   put(j, "kappa_change_rel", row.kappa_change_rel);
+  put(j, "limit_kappa_change_rel", row.limit_kappa_change_rel);
+  put(j, "limit_gap_min_rel", row.limit_gap_min_rel);
   put(j, "contact_curvature_max_N_per_m", row.contact_curvature_max_N_per_m);
   put(j, "contact_load_max_N", row.contact_load_max_N);
   put(j, "max_stretch", row.max_stretch);

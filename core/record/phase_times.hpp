@@ -1,32 +1,32 @@
-// Where the time of a step goes: named phases, and a scoped timer that adds to one of them.
+// Where the time of a step goes: named phases, and a clock that charges exactly one of them at any moment, so
+// that no moment is in none of them or in two.
 #pragma once
 
 #include <array>
 #include <chrono>
 #include <cstddef>
 #include <string_view>
+#include <utility>
 
 namespace bb {
 
-/// Phases do not nest: a scope that opens another phase inside itself counts that time twice.
 enum class Phase {
-  prediction,      // x_tilde, pins, start of a step
-  elastic,         // inertia, membrane, springs, hinges: values, gradients, Hessians
-  strain_limit,    // S: values, gradients, Hessians
+  prediction,      // x_tilde, forces and poses of pins at the start of a step, velocities at its end
+  elastic,         // membrane, springs, hinges: gradients and Hessians
+  strain_limit,    // S at an iterate: its stiffness, gradients, Hessians, loads
   broad_phase,     // candidate pairs
-  contact_rows,    // closest points, merging, shape
+  contact_rows,    // closest points, merging
   stiffness,       // kappa: policy and memory
-  contact_terms,   // local gradients and Hessians of B
-  assembly,        // gathers into gradient and block matrix, restriction
+  contact_terms,   // shape, local gradients and Hessians of B
+  assembly,        // gathers into gradient and block matrix, inertia, prescribed motion, restriction
   linear_analyze,  // symbolic
   linear_factor,   // numeric factorisation or preconditioner
-  linear_solve,    // triangular solves or PCG
+  linear_solve,    // triangular solves or PCG, residuals
   step_bound,      // ACCD
   strain_bound,    // bisection of the strain limit
-  line_search,     // trial energies
-  condition,       // diagnose pass only
-  audit,           // audit pass only
-  output,          // record, trace, frames
+  line_search,     // energies of trial states
+  step_control,    // the step solver itself: measures of iterate, direction and end state, decisions, copies
+  output,          // observers: record, trace, frames; of an observed run condition estimates and audit too
   count
 };
 inline constexpr std::size_t kPhases = static_cast<std::size_t>(Phase::count);
@@ -34,7 +34,7 @@ inline constexpr std::size_t kPhases = static_cast<std::size_t>(Phase::count);
 inline constexpr std::array<std::string_view, kPhases> kPhaseNames = {
     "prediction",    "elastic",     "strain_limit",   "broad_phase",   "contact_rows", "stiffness",
     "contact_terms", "assembly",    "linear_analyze", "linear_factor", "linear_solve", "step_bound",
-    "strain_bound",  "line_search", "condition",      "audit",         "output"};
+    "strain_bound",  "line_search", "step_control",   "output"};
 
 /// Seconds per phase.
 struct PhaseTimes {
@@ -46,12 +46,17 @@ struct PhaseTimes {
     for (std::size_t i = 0; i < kPhases; ++i) s[i] += other.s[i];
     return *this;
   }
-  /// Everything but diagnosis, audit and output: what may be reported as time.
-  double solve_s() const {
+  PhaseTimes& operator-=(const PhaseTimes& other) {
+    for (std::size_t i = 0; i < kPhases; ++i) s[i] -= other.s[i];
+    return *this;
+  }
+  double total_s() const {
     double sum = 0;
-    for (std::size_t i = 0; i < static_cast<std::size_t>(Phase::condition); ++i) sum += s[i];
+    for (const double seconds : s) sum += seconds;
     return sum;
   }
+  /// Everything but output: what may be reported as time of the method.
+  double solve_s() const { return total_s() - (*this)[Phase::output]; }
 };
 
 /// Seconds on the monotonic clock; only differences mean anything. About 25 ns.
@@ -60,17 +65,63 @@ inline double now_s() {
   return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
-/// Adds the life time of the scope to one phase.
+/// Charges every moment to one phase. Not thread-safe: one clock a simulation. Cost of a call: that of
+/// now_s().
+class PhaseClock {
+ public:
+  /// Sets all phases to zero and charges `phase` from now on.
+  void restart(Phase phase) {
+    times_ = lap_start_ = {};
+    phase_ = phase;
+    since_ = now_s();
+  }
+  /// Charges `next` from now on. Returns the phase that was charged until now.
+  Phase change(Phase next) {
+    charge();
+    return std::exchange(phase_, next);
+  }
+  /// Gives `seconds` that `from` was charged with to `to`: for a callee that measures its own parts.
+  void move(Phase from, Phase to, double seconds) {
+    charge();
+    times_[from] -= seconds;
+    times_[to] += seconds;
+  }
+  /// Seconds of every phase since restart(), up to now.
+  const PhaseTimes& read() {
+    charge();
+    return times_;
+  }
+  /// The same since the last lap() or restart().
+  PhaseTimes lap() {
+    PhaseTimes out = read();
+    out -= std::exchange(lap_start_, times_);
+    return out;
+  }
+
+ private:
+  void charge() {
+    const double now = now_s();
+    times_[phase_] += now - since_;
+    since_ = now;
+  }
+
+  PhaseTimes times_, lap_start_;
+  Phase phase_ = Phase::step_control;
+  double since_ = now_s();
+};
+
+/// Charges a phase until the end of the scope, then again the one that was charged before. Scopes may nest:
+/// the inner one's time is not the outer one's.
 class ScopedPhase {
  public:
-  ScopedPhase(PhaseTimes& times, Phase phase) : slot_(times[phase]), start_(now_s()) {}
-  ~ScopedPhase() { slot_ += now_s() - start_; }
+  ScopedPhase(PhaseClock& clock, Phase phase) : clock_(clock), before_(clock.change(phase)) {}
+  ~ScopedPhase() { clock_.change(before_); }
   ScopedPhase(const ScopedPhase&) = delete;
   ScopedPhase& operator=(const ScopedPhase&) = delete;
 
  private:
-  double& slot_;
-  double start_;
+  PhaseClock& clock_;
+  Phase before_;
 };
 
 }  // namespace bb

@@ -108,7 +108,10 @@ struct StepRecord {
   Number contact_overload, limit_overload;  // load / capacity of a step that made no progress
   Number kinetic_J, elastic_J, limit_J, contact_J, gravity_J;  // at the end of the step
   long long crossings = 0, violations = 0, unproven = 0, inverted = 0;
-  PhaseTimes time;  // of the pass `time`; empty without it
+  /// Of the pass `time`, empty without it: seconds of the step on a clock of its own, seconds of every phase,
+  /// and what the step took beyond their sum.
+  Number wall_s, unaccounted_s;
+  PhaseTimes time;
 };
 
 /// How kappa was chosen (docs/design.md, Matching).
@@ -127,7 +130,7 @@ struct MatchingRecord {
   // of load_N and limit_load_N_per_m: given, pilot, static_weight (the pilot met none), none
   std::string load_source = "none", limit_load_source = "none";
   // the note says where a pilot stopped early, and which policies stay as given for want of a measured load
-  std::string pilot_run_id, pilot_note;
+  std::string pilot_config_id, pilot_note;
 };
 
 struct AuditRecord {
@@ -195,15 +198,18 @@ struct Summary {
   StiffnessRecord stiffness;
   std::map<std::string, int>
       first_contact;  // "body|body" or "body|obstacle" -> step at whose end it first touched
-  /// log10 of cond over the run, key "<stage>/<scaling>"; lower bounds (1e14 at most) are
-  /// among the numbers, estimates without one are only counted.
+  /// Over all samples of the run, key "<stage>/<scaling>". log10_cond: a lower bound stands for its cond, and
+  /// a matrix that is singular or not positive definite has the bound 1e14; only an estimate that did not
+  /// converge has no number. The eigenvalues are those that are known. `statuses` counts every sample.
   struct Conditioning {
     Stats log10_cond, log10_lambda_min, log10_lambda_max;
     std::map<std::string, int> statuses;
   };
   std::map<std::string, Conditioning> cond;
-  Number wall_s, solve_s;  // of the pass `time`; solve_s: analysis, factorisation and solution
-  PhaseTimes time;         // of the pass `time`; empty without it
+  /// Of the pass `time`, sums over its steps: wall_s = sum of all phases + unaccounted_s; solve_s: of all
+  /// phases but output.
+  Number wall_s, solve_s, unaccounted_s;
+  PhaseTimes time;
   std::uint64_t peak_rss_bytes = 0;
   std::string state_hash;  // sha256 of the final positions, little-endian float64
 };

@@ -63,7 +63,9 @@ struct TraceRow {
   ContactCounts contacts;
   Number gap_min_iterates_m, gap_min_iterates_rel;  // smallest d (m) and d / d_hat of this iterate
   Number kappa_min_N_per_m, kappa_max_N_per_m;
-  Number kappa_change_rel;               // largest max/min - 1 of a kappa since the line search before
+  Number kappa_change_rel;        // largest max/min - 1 of a contact's kappa since the line search before
+  Number limit_kappa_change_rel;  // the same of an active limited element's
+  Number limit_gap_min_rel;       // smallest distance of an element to its limit, over the width
   Number contact_curvature_max_N_per_m;  // max m kappa b''
   Number contact_load_max_N;             // max kappa |b'| per unit multiplicity
   Number max_stretch;                    // max sigma - 1

@@ -22,6 +22,7 @@ struct StrainLimitSpec {
 /// Material of a shell (triangles) or of rods (lone edges). Stiffness 0 switches a term off.
 struct Material {
   std::string model = "corotational";    // membrane model; "none" for springs only
+  std::optional<Vec3d> warp_axis;        // unit; anisotropic models: warp direction at rest, absent: x
   double density = 0.2;                  // kg/m^2 of triangles
   double line_density = 0;               // kg/m of lone edges
   double youngs = 1e5;                   // Pa when thickness is given, N/m (times thickness) otherwise

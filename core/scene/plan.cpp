@@ -57,8 +57,8 @@ void plan_contact(Plan& plan, const Scene& scene, const Surfaces& surfaces, cons
 
 void plan_elements(Plan& plan, const Scene& scene, const PlanOptions& options) {
   const std::size_t limited = scene.limit.triangles.size();
-  plan.membrane = item(!scene.membrane.triangles.empty(),
-                       counted(scene.membrane.triangles.size(), "triangles"), "no membrane element");
+  const std::size_t triangles = scene.membrane_triangles().size();
+  plan.membrane = item(triangles > 0, counted(triangles, "triangles"), "no membrane element");
   plan.springs =
       item(!scene.springs.edges.empty(), counted(scene.springs.edges.size(), "springs"), "no spring");
   plan.hinges =

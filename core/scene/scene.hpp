@@ -36,11 +36,14 @@ struct Body {
   int first_vertex = 0, n_vertices = 0;
 };
 
-/// Membrane elements of one model. Lame parameters already multiplied by the thickness, N/m.
+/// Membrane elements of one model, of all bodies that have it. Lame parameters already multiplied by the
+/// thickness, N/m.
 struct MembranePart {
-  std::string model = "corotational";
+  std::string model;
   std::vector<std::array<int, 3>> triangles;
   std::vector<double> lame_mu, lame_lambda;  // [n] N/m
+  std::vector<Vec3d>
+      warp;  // anisotropic models: [n] direction, turned into the triangle's plane at rest; else empty
 };
 struct SpringPart {
   std::vector<std::array<int, 2>> edges;
@@ -83,7 +86,7 @@ struct Scene {
   std::vector<double> d_hat, offset;  // [n] m
   Vec3d gravity = Vec3d::Zero();      // m/s^2
 
-  MembranePart membrane;
+  std::vector<MembranePart> membranes;  // one a model in use, in the order in which bodies bring them
   SpringPart springs;
   HingePart hinges;
   StrainLimitPart limit;
@@ -97,6 +100,14 @@ struct Scene {
   std::vector<Pin> pins;  // one entry a prescribed vertex, each vertex at most once
 
   int n_vertices() const { return static_cast<int>(rest.cols()); }
+  /// Triangles of all membranes, part by part.
+  std::vector<std::array<int, 3>> membrane_triangles() const {
+    std::vector<std::array<int, 3>> all;
+    for (const MembranePart& part : membranes) {
+      all.insert(all.end(), part.triangles.begin(), part.triangles.end());
+    }
+    return all;
+  }
 };
 
 /// Pose of a prescribed vertex at time t (s).

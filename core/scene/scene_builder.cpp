@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/energy/hinge.hpp"
+#include "core/energy/membrane_model.hpp"
 #include "core/input/memory.hpp"
 #include "core/mesh/topology.hpp"
 #include "core/scene/pin_selection.hpp"
@@ -168,17 +169,48 @@ void SceneBuilder::append_masses(const BodySpec& spec, int first) {
   }
 }
 
+/// Index of the part of that model, added where there is none yet; -1 for the model none.
+int SceneBuilder::membrane_part(const std::string& model) {
+  if (model == "none") return -1;
+  std::vector<MembranePart>& parts = scene_.membranes;
+  const auto found =
+      std::find_if(parts.begin(), parts.end(), [&](const MembranePart& part) { return part.model == model; });
+  const auto index = static_cast<int>(found - parts.begin());
+  if (found == parts.end()) {
+    parts.emplace_back();
+    parts.back().model = model;
+  }
+  return index;
+}
+
+/// The warp axis needs a part in the plane of every triangle.
+void SceneBuilder::check_warp(const BodySpec& spec, const Vec3d& warp) {
+  for (std::size_t t = 0; t < spec.mesh.triangles.size(); ++t) {
+    const Vec3d normal = area_vector(spec.mesh.vertices, spec.mesh.triangles[t]).normalized();
+    if ((warp - normal.dot(warp) * normal).norm() > 1e-6) continue;
+    return complain(fmt::format("body \"{}\"/material/warp_axis", spec.name),
+                    fmt::format("[{}, {}, {}], the normal of triangle {}", warp[0], warp[1], warp[2], t),
+                    "an axis that is normal to no triangle of the rest shape");
+  }
+}
+
 void SceneBuilder::append_membrane(const BodySpec& spec, int first) {
+  if (spec.mesh.triangles.empty()) return;
   const Material& material = spec.material;
   const LameParameters lame = shell_lame(material.youngs_per_width(), material.poisson);
+  const int membrane = membrane_part(material.model);
+  const bool directed = is_anisotropic(material.model);
+  const Vec3d warp = material.warp_axis.value_or(Vec3d::UnitX());
+  if (directed) check_warp(spec, warp);
   for (const auto& local : spec.mesh.triangles) {
     const auto t = shifted(local, first);
     if (all_prescribed(t)) continue;
-    if (material.model != "none") {
-      scene_.membrane.model = material.model;
-      scene_.membrane.triangles.push_back(t);
-      scene_.membrane.lame_mu.push_back(lame.mu);
-      scene_.membrane.lame_lambda.push_back(lame.lambda);
+    if (membrane >= 0) {
+      MembranePart& part = scene_.membranes[static_cast<std::size_t>(membrane)];
+      part.triangles.push_back(t);
+      part.lame_mu.push_back(lame.mu);
+      part.lame_lambda.push_back(lame.lambda);
+      if (directed) part.warp.push_back(warp);
     }
     if (material.limit) {
       scene_.limit.triangles.push_back(t);

@@ -47,6 +47,8 @@ class SceneBuilder {
   void pin_vertex(const std::string& body, int vertex, int motion);
   int motion_index(const RigidMotion& motion);
   void append_masses(const BodySpec& spec, int first);
+  int membrane_part(const std::string& model);
+  void check_warp(const BodySpec& spec, const Vec3d& warp);
   void append_membrane(const BodySpec& spec, int first);
   void append_springs(const BodySpec& spec, int first);
   void append_hinges(const BodySpec& spec, int first);

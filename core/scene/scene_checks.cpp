@@ -35,9 +35,23 @@ void check_model(const Report& report, const std::string& model) {
   report("/material/model", '"' + model + '"', "one of " + names);
 }
 
+void check_warp_axis(const Report& report, const Material& m, bool planar) {
+  if (!m.warp_axis) return;
+  const Vec3d& axis = *m.warp_axis;
+  const std::string found = fmt::format("[{}, {}, {}]", axis[0], axis[1], axis[2]);
+  if (!is_anisotropic(m.model)) {
+    report("/material/warp_axis", found, "nothing: the model " + m.model + " has no direction");
+  } else if (!(std::abs(axis.norm() - 1) < 1e-9)) {
+    report("/material/warp_axis", found, "a unit vector");
+  } else if (planar && axis[2] != 0) {
+    report("/material/warp_axis", found, "z = 0: the scene is planar");
+  }
+}
+
 void check_material(const Report& report, const BodySpec& spec, bool planar) {
   const Material& m = spec.material;
   check_model(report, m.model);
+  check_warp_axis(report, m, planar);
   report.number("/material/density", m.density, m.density >= 0, "a number >= 0");
   report.number("/material/line_density", m.line_density, m.line_density >= 0, "a number >= 0");
   report.number("/material/youngs", m.youngs, m.youngs > 0, "a number > 0");

@@ -78,7 +78,7 @@ int explain(const RunVerb& verb) {
   const Scene scene = build_scene(config);
   const Plan plan = plan_of(config, scene);
   fmt::print("{}\n  {} vertices ({} prescribed), {} membrane triangles, {} steps of {} s\n\n",
-             run_label(config), scene.n_vertices(), scene.pins.size(), scene.membrane.triangles.size(),
+             run_label(config), scene.n_vertices(), scene.pins.size(), scene.membrane_triangles().size(),
              config.time.steps, config.time.dt);
   print_formulation(config);
   for (const bool needed : {true, false}) {

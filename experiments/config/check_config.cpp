@@ -159,6 +159,26 @@ void check_tolerance(const RunConfig& config, const Complain& complain) {
   }
 }
 
+/// Tier 0 reads what PCG saw: the spectrum of the full matrix scaled by its preconditioner, and nothing else.
+void check_ritz(const RunConfig& config, const Complain& complain) {
+  if (!config.passes.diagnose || config.diagnose.tier != 0) return;
+  const std::string& preconditioner = config.linear_solver.preconditioner;
+  const auto& stages = config.diagnose.stages;
+  const auto& scalings = config.diagnose.scalings;
+  const auto is_scaling = [&](Scaling s) { return to_string(s) == preconditioner; };
+  if (config.linear_solver.name != "pcg") {
+    complain("/diagnose/tier", "0", "1 or 2, or linear_solver pcg: tier 0 reads the Ritz values of PCG");
+  } else if (std::none_of(scalings.begin(), scalings.end(), is_scaling)) {
+    complain(
+        "/diagnose/tier", "0",
+        fmt::format("1 or 2, or a preconditioner among diagnose.scalings: tier 0 knows the matrix scaled by "
+                    "its preconditioner only, and that is {}",
+                    preconditioner));
+  } else if (std::find(stages.begin(), stages.end(), "full") == stages.end()) {
+    complain("/diagnose/stages", "no stage full", "full: tier 0 knows the matrix that PCG solves");
+  }
+}
+
 void check_protocol(const RunConfig& config, const Complain& complain) {
   const auto protocol = config.scene.parameters.find("protocol");
   const bool literal = protocol != config.scene.parameters.end() &&
@@ -181,9 +201,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   check_matching(config, complain);
   check_tolerance(config, complain);
   check_protocol(config, complain);
-  if (config.passes.diagnose && config.diagnose.tier == 0 && config.linear_solver.name != "pcg") {
-    complain("/diagnose/tier", "0", "1 or 2, or linear_solver pcg: tier 0 reads the Ritz values of PCG");
-  }
+  check_ritz(config, complain);
   if (config.output.matrices && !config.passes.diagnose) {
     complain("/output/matrices", "true",
              "false, or passes.diagnose true: matrices are those of diagnosed iterations");

@@ -104,6 +104,7 @@ PolicyConfig default_limit_policy(const FormulationConfig& formulation) {
   if (formulation.stiffness_policy.name != "elasticity_inclusive") return policy;
   policy.name = "elasticity_inclusive";
   policy.refresh = formulation.stiffness_policy.refresh;
+  policy.elastic_term = formulation.stiffness_policy.elastic_term;
   policy.mass_term =
       formulation.stiffness_policy.mass_term == MassTerm::paper ? MassTerm::paper : MassTerm::inertia;
   return policy;
@@ -121,6 +122,7 @@ void read_limit_policy(const json& object, const Reader& reader, PolicyConfig& p
   }
   policy.scale = object.value("scale", 1.0);
   policy.mass_term = require_mass_term(object.value("mass_term", std::string(to_string(policy.mass_term))));
+  policy.elastic_term = object.value("elastic_term", policy.elastic_term);
   policy.refresh = require_refresh(object.value("refresh", std::string(to_string(policy.refresh))));
 }
 

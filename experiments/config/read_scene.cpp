@@ -4,6 +4,7 @@
 #include <set>
 
 #include "barriers/named_entries.hpp"
+#include "core/energy/membrane_model.hpp"
 #include "core/input/read_file.hpp"
 #include "core/record/provenance.hpp"
 #include "experiments/config/mesh_generators.hpp"
@@ -111,6 +112,9 @@ MeshSource read_mesh_source(const json& object, const std::string& pointer, cons
 Material read_material(const json& object, const std::string& pointer, const Reader& reader) {
   Material m;
   m.model = object.value("model", m.model);
+  if (object.contains("warp_axis") || is_anisotropic(m.model)) {
+    m.warp_axis = read_axis(object, "warp_axis", Vec3d::UnitX(), pointer, reader);
+  }
   const bool pascal = object.contains("youngs_Pa"), thick = object.contains("thickness_m");
   if (pascal && object.contains("youngs_N_per_m")) {
     reader.complain(pointer, "youngs_Pa and youngs_N_per_m", "one of the two");

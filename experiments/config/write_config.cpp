@@ -46,6 +46,7 @@ json to_json(const Material& m) {
               {"springs_N_per_m", m.springs}};
   out[m.thickness ? "youngs_Pa" : "youngs_N_per_m"] = m.youngs;
   if (m.thickness) out["thickness_m"] = *m.thickness;
+  if (m.warp_axis) out["warp_axis"] = to_json(*m.warp_axis);
   return out;
 }
 
@@ -112,7 +113,7 @@ json to_json(const SceneConfig& scene) {
 }
 
 /// Only what the policy reads.
-json to_json(const PolicyConfig& policy, bool limit) {
+json to_json(const PolicyConfig& policy) {
   json out = {{"name", policy.name}, {"scale", policy.scale}};
   if (policy.kappa) out["kappa_N_per_m"] = *policy.kappa;
   if (policy.k_s) out["k_s_N_per_m"] = *policy.k_s;
@@ -123,14 +124,14 @@ json to_json(const PolicyConfig& policy, bool limit) {
   out["refresh"] = to_string(policy.refresh);
   if (policy.name != "elasticity_inclusive") return out;
   out["mass_term"] = to_string(policy.mass_term);
-  if (!limit) out["elastic_term"] = policy.elastic_term;
+  out["elastic_term"] = policy.elastic_term;
   return out;
 }
 
 json to_json(const FormulationConfig& formulation) {
   json out = {{"shape", formulation.shape},
               {"argument", to_string(formulation.argument)},
-              {"stiffness_policy", to_json(formulation.stiffness_policy, false)},
+              {"stiffness_policy", to_json(formulation.stiffness_policy)},
               {"d_hat_m", formulation.d_hat}};
   if (!formulation.name.empty()) out["name"] = formulation.name;
   return out;
@@ -141,7 +142,7 @@ json to_json(const StrainLimitConfig& limit) {
   return {{"enabled", true},
           {"shape", limit.shape},
           {"argument", to_string(limit.argument)},
-          {"stiffness_policy", to_json(limit.stiffness_policy, true)},
+          {"stiffness_policy", to_json(limit.stiffness_policy)},
           {"onset", limit.limit.onset},
           {"width", limit.limit.width}};
 }

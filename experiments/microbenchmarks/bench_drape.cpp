@@ -65,9 +65,8 @@ void triangular_solve(benchmark::State& state) {
 /// restriction.
 void assembly(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  PhaseTimes times;
   measure(state, drape, [&] {
-    drape.system().assemble(times);
+    drape.system().assemble();
     benchmark::DoNotOptimize(&drape.system().reduced(MatrixStage::full));
   });
   state.counters["rows"] = static_cast<double>(drape.n_rows());
@@ -75,8 +74,7 @@ void assembly(benchmark::State& state) {
 
 void broad_phase(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  PhaseTimes times;
-  measure(state, drape, [&] { drape.system().sweep(drape.x1, times); });
+  measure(state, drape, [&] { drape.system().sweep(drape.x1); });
   const ContactSystem::Counts counts = drape.system().contacts().candidate_counts();
   state.counters["candidates"] =
       static_cast<double>(counts.point_triangle + counts.edge_edge + counts.obstacle);
@@ -84,19 +82,17 @@ void broad_phase(benchmark::State& state) {
 
 void step_bound(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  PhaseTimes times;
-  drape.system().sweep(drape.x1, times);
+  drape.system().sweep(drape.x1);
   StepBound bound;
-  measure(state, drape, [&] { bound = drape.system().contact_bound(drape.x1, times); });
+  measure(state, drape, [&] { bound = drape.system().contact_bound(drape.x1); });
   state.counters["accd_queries"] = static_cast<double>(bound.queries);
   state.counters["probes"] = static_cast<double>(bound.probes);
 }
 
 void strain_bound(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  PhaseTimes times;
   double alpha = 0;
-  measure(state, drape, [&] { alpha = drape.system().limit_bound(drape.dx, times); });
+  measure(state, drape, [&] { alpha = drape.system().limit_bound(drape.dx); });
   state.counters["alpha"] = alpha;
 }
 
@@ -104,13 +100,11 @@ void strain_bound(benchmark::State& state) {
 void energy_evaluation(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   NewtonSystem& system = drape.system();
-  PhaseTimes times;
-  system.sweep(drape.x1, times);
-  const double alpha =
-      std::min(system.contact_bound(drape.x1, times).alpha, system.limit_bound(drape.dx, times));
+  system.sweep(drape.x1);
+  const double alpha = std::min(system.contact_bound(drape.x1).alpha, system.limit_bound(drape.dx));
   const Positions trial = system.state().x + 0.5 * alpha * drape.dx;
   bool feasible = true;
-  measure(state, drape, [&] { feasible = system.try_state(trial, times).has_value(); });
+  measure(state, drape, [&] { feasible = system.try_state(trial).has_value(); });
   if (!feasible) state.SkipWithError("the trial is not feasible");
 }
 

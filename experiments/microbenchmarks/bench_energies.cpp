@@ -93,7 +93,7 @@ void strain_bound(benchmark::State& state) {
 void register_energies() {
   for (const MembraneModel<double>& model : membrane_models<double>()) {
     register_batch(std::string(model.name), [name = model.name](const Scene& scene) {
-      const MembranePart& part = scene.membrane;
+      const MembranePart& part = scene.membranes.front();
       return std::make_unique<MembraneBatch>(name, part.triangles, scene.rest, part.lame_mu,
                                              part.lame_lambda);
     });

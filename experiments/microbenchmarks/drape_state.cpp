@@ -75,9 +75,8 @@ std::unique_ptr<DrapeState> make_state(int n) {
     state->simulation->step(nobody);
     state->all_layers_touch = all_touch(state->scene, state->system().state().rows);
   }
-  PhaseTimes ignored;
-  state->system().assemble(ignored);
-  state->system().solve(state->x(), state->dx, ignored);
+  state->system().assemble();
+  state->system().solve(state->x(), state->dx);
   state->x1 = state->x() + state->dx;
   state->factor_s = median_factor_s(state->system().reduced(MatrixStage::full));
   return state;

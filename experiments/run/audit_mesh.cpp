@@ -79,7 +79,7 @@ audit::AuditMesh make_audit_mesh(const Scene& scene) {
   mesh.planar = scene.planar;
   const std::vector<Edge> edges = edges_of(scene);
   mesh.edges = columns(edges);
-  mesh.triangles = columns(scene.planar ? scene.membrane.triangles : scene.surface_triangles);
+  mesh.triangles = columns(scene.planar ? scene.membrane_triangles() : scene.surface_triangles);
   mesh.points = points_of(scene, edges);
   if (scene.planar) {
     const std::map<Edge, int> third = third_vertices(scene.surface_triangles);

@@ -66,7 +66,7 @@ double kappa_of_row(const RunConfig& config, const PilotLoads& pilot, double u) 
 double kappa_of_element(const RunConfig& config, const PilotLoads& pilot, double width, double u) {
   const LimitStiffness limit = make_limit_policy(config.strain_limit.stiffness_policy, {});
   const LimitColumns& e = pilot.element;
-  const StrainStiffnessRule rule{limit.mass_term, true, pilot.dt, pilot.c};
+  const StrainStiffnessRule rule = limit.rule(pilot.dt, pilot.c);
   return strain_stiffness<double>(e.x, e.hessian, e.vertex_mass, e.element_mass, u * width, rule);
 }
 
@@ -173,7 +173,7 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOpti
   Matching matching{config, scene, options, record};
   if (needs_pilot(config, out.limited)) {
     matching.pilot = &run_pilot(config, scene, options);
-    record.pilot_run_id = matching.pilot->config_id;
+    record.pilot_config_id = matching.pilot->config_id;
     record.pilot_note = matching.pilot->stopped;
   }
   if (out.limited) match_limit(matching, out);  // first: the contact's policy may have to be followed

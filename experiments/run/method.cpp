@@ -48,6 +48,7 @@ LimitStiffness make_limit_policy(const PolicyConfig& policy, const Calibration& 
   }
   out.kind = LimitStiffness::Kind::elasticity_inclusive;
   out.mass_term = policy.mass_term;
+  out.elastic_term = policy.elastic_term;
   out.refresh = policy.refresh;
   out.multiplier = policy.scale * calibration.limit_scale;
   return out;

@@ -12,7 +12,7 @@ bool reads_elastic_matrix(const RunConfig& config) {
   any.kappa = any.k_s = 1;
   if (make_contact_policy(config.formulation.stiffness_policy, any)->needs_hessian()) return true;
   return config.strain_limit.enabled &&
-         make_limit_policy(config.strain_limit.stiffness_policy, any).kind != LimitStiffness::Kind::fixed;
+         make_limit_policy(config.strain_limit.stiffness_policy, any).needs_hessian();
 }
 
 }  // namespace

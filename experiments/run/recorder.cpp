@@ -33,6 +33,14 @@ double smallest_relative_gap(const EnergyState& state) {
   return smallest;
 }
 
+/// What the preconditioner of PCG makes of the matrix; nothing for one that is no scaling.
+std::optional<Scaling> scaling_of(const LinearOptions& solver) {
+  for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
+    if (solver.preconditioner == to_string(scaling)) return scaling;
+  }
+  return std::nullopt;
+}
+
 // Empty beyond the end: a run that was timed may have stopped earlier.
 PhaseTimes time_of(const std::vector<PhaseTimes>& times, std::size_t n) {
   return n < times.size() ? times[n] : PhaseTimes{};
@@ -78,9 +86,11 @@ bool Recorder::due(int, int iteration) const {
 void Recorder::on_matrix(NewtonSystem& system, int step, int iteration) {
   samples_.clear();
   probed_ = Number::missing("not_due");
-  if (!due(step, iteration)) return;
+  due_now_ = due(step, iteration);
+  if (!due_now_) return;
   const double start = now_s();
-  for (const std::string& name : config_.diagnose.stages) {
+  const bool before_solve = config_.diagnose.tier > 0;  // tier 0 reads what the solve leaves
+  for (const std::string& name : before_solve ? config_.diagnose.stages : std::vector<std::string>()) {
     const auto* entry = std::find_if(std::begin(stage_names), std::end(stage_names),
                                      [&name](const StageName& s) { return name == s.config; });
     if (entry == std::end(stage_names) || !system.has_stage(entry->stage)) continue;
@@ -98,6 +108,17 @@ void Recorder::on_matrix(NewtonSystem& system, int step, int iteration) {
     artifacts_->matrix(system.reduced(MatrixStage::full), step, iteration);
   if (config_.diagnose.pcg) probed_ = probe_.iterations(system.reduced(MatrixStage::full));
   condition_s_ += now_s() - start;
+}
+
+// Tier 0: the spectrum that PCG saw, which is that of the full matrix scaled by its preconditioner.
+void Recorder::add_ritz_sample(const LinearReport& linear) {
+  const std::optional<Scaling> scaling = scaling_of(config_.linear_solver);
+  if (!due_now_ || config_.diagnose.tier != 0 || !scaling) return;
+  ConditionSample sample;
+  sample.scaling = *scaling;
+  sample.tier = 0;
+  sample.estimate = condition_from_ritz(linear.ritz_min, linear.ritz_max);
+  samples_.push_back(sample);
 }
 
 TraceRow Recorder::trace_row(const IterationReport& report) const {
@@ -131,8 +152,13 @@ TraceRow Recorder::trace_row(const IterationReport& report) const {
   const bool touching = report.contacts.total() > 0;
   row.kappa_min_N_per_m = touching ? Number(report.kappa_min) : Number::missing("no_contacts");
   row.kappa_max_N_per_m = touching ? Number(report.kappa_max) : Number::missing("no_contacts");
-  row.kappa_change_rel =
-      report.iteration > 0 ? Number(report.kappa_change) : Number::missing("first_iteration");
+  const bool first = report.iteration == 0;
+  row.kappa_change_rel = first ? Number::missing("first_iteration") : Number(report.kappa_change);
+  const bool limited = report.max_stretch > 0;
+  row.limit_kappa_change_rel = !limited ? Number::missing("no_limit")
+                               : first  ? Number::missing("first_iteration")
+                                        : Number(report.limit_kappa_change);
+  row.limit_gap_min_rel = limited ? Number(report.limit_gap_min_rel) : Number::missing("no_limit");
   row.contact_curvature_max_N_per_m =
       touching ? Number(report.curvature_max) : Number::missing("no_contacts");
   row.contact_load_max_N = touching ? Number(report.force_max) : Number::missing("no_contacts");
@@ -145,19 +171,13 @@ TraceRow Recorder::trace_row(const IterationReport& report) const {
 }
 
 void Recorder::on_iteration(const IterationReport& report) {
-  seen_.iterations.push_back(report.times);
-  rows_.push_back(trace_row(report));
-  rows_.back().time = time_of(reported_->iterations, seen_.iterations.size() - 1);
-  for (const ConditionSample& sample : samples_) {
-    const std::string key =
-        std::string(to_string(sample.stage)) + "/" + std::string(to_string(sample.scaling));
-    auto& summary = record_.summary.cond[key];
-    ++summary.statuses[std::string(to_string(sample.estimate.status))];
-    if (!std::isfinite(sample.estimate.cond)) continue;
-    log10_cond_[key].push_back(std::log10(sample.estimate.cond));
-    log10_min_[key].push_back(std::log10(sample.estimate.lambda_min));
-    log10_max_[key].push_back(std::log10(sample.estimate.lambda_max));
+  seen_.push_back(report.times);
+  add_ritz_sample(report.linear);
+  if (trace_) {
+    rows_.push_back(trace_row(report));
+    rows_.back().time = time_of(*reported_, seen_.size() - 1);
   }
+  for (const ConditionSample& sample : samples_) cond_.add(sample);
   samples_.clear();
   if (probed_.finite()) probes_.push_back(probed_.value);
   linear_.push_back(report.linear.iterations);
@@ -220,8 +240,6 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
     artifacts_->frame(x, report.step, contact_fields(system.state(), system.scene().n_vertices()));
   }
   StepRecord step = step_record(system, report);
-  seen_.steps.push_back(report.times);
-  step.time = time_of(reported_->steps, seen_.steps.size() - 1);
   note_contacts(system, report.step);
   fill_gaps(system, report, step);
   if (audit_) {
@@ -242,7 +260,7 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
   if (step.gap_min_rel.finite()) gaps_.push_back(step.gap_min_rel.value);
   for (TraceRow& row : rows_) {
     row.t_s = report.t;
-    if (trace_) trace_->add(row);
+    trace_->add(row);
   }
   rows_.clear();
   if (trace_) trace_->end_step();
@@ -262,7 +280,6 @@ void Recorder::finish() {
     summary.ccd_queries += step.ccd_queries;
     summary.ccd_probes += step.ccd_probes;
     summary.ccd_capped += step.ccd_capped;
-    summary.time += step.time;
     const auto keep_gap = [](Number& kept, const Number& gap) {
       if (gap.finite()) keep_smaller(kept, gap.value);
     };
@@ -281,11 +298,7 @@ void Recorder::finish() {
   summary.probe_pcg = summarize(probes_);
   summary.contacts = summarize(contacts_);
   summary.gap_min_rel = summarize(gaps_);
-  for (auto& [key, cond] : summary.cond) {
-    cond.log10_cond = summarize(log10_cond_[key]);
-    cond.log10_lambda_min = summarize(log10_min_[key]);
-    cond.log10_lambda_max = summarize(log10_max_[key]);
-  }
+  summary.cond = cond_.summary();
   if (audit_) fill_audit();
 }
 

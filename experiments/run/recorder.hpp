@@ -2,7 +2,6 @@
 // audit's ledger. It changes nothing: the state hash is the same with and without it.
 #pragma once
 
-#include <map>
 #include <memory>
 #include <set>
 #include <string>
@@ -16,15 +15,11 @@
 #include "core/record/writer.hpp"
 #include "experiments/config/run_config.hpp"
 #include "experiments/run/artifacts.hpp"
+#include "experiments/run/cond_summary.hpp"
 #include "experiments/run/outcome.hpp"
 #include "experiments/run/pcg_probe.hpp"
 
 namespace bb {
-
-/// Phase times of a run, step by step and iteration by iteration.
-struct RunTimes {
-  std::vector<PhaseTimes> steps, iterations;
-};
 
 class Recorder final : public StepObserver {
  public:
@@ -33,10 +28,11 @@ class Recorder final : public StepObserver {
            ArtifactWriter* artifacts = nullptr);
   ~Recorder() override;
 
-  /// What record and trace say of times: until this is called, what this recorder sees. A run that is looked
-  /// at reports those of the one that was timed, or none. `times` must outlive the recorder.
-  void report_times_of(const RunTimes& times) { reported_ = &times; }
-  const RunTimes& times() const { return seen_; }
+  /// The times that the trace gives to the iterations: those of the run that was timed, in order, or none.
+  /// `times` must outlive the recorder.
+  void report_times(const std::vector<PhaseTimes>& times) { reported_ = &times; }
+  /// Of every iteration that this recorder saw.
+  const std::vector<PhaseTimes>& iteration_times() const { return seen_; }
 
   void on_matrix(NewtonSystem& system, int step, int iteration) override;
   void on_iteration(const IterationReport& report) override;
@@ -54,6 +50,7 @@ class Recorder final : public StepObserver {
   void fill_gaps(const NewtonSystem& system, const StepReport& report, StepRecord& step);
   void fill_audit();
   TraceRow trace_row(const IterationReport& report) const;
+  void add_ritz_sample(const LinearReport& linear);
   bool due(int step, int iteration) const;
   void note_contacts(const NewtonSystem& system, int step);
 
@@ -67,17 +64,18 @@ class Recorder final : public StepObserver {
   double audit_tolerance_ = 0;
   ConditionEstimator estimator_;
   std::vector<ConditionSample> samples_;  // of the iteration in progress
+  bool due_now_ = false;                  // whether it is diagnosed
   std::vector<TraceRow> rows_;            // of the step in progress
   double condition_s_ = 0;
   std::size_t n_free_ = 0, nnz_ = 0;
-  std::map<std::string, std::vector<double>> log10_cond_, log10_min_, log10_max_;
+  CondSummary cond_;
   std::set<std::pair<int, int>> touching_;  // bodies, then obstacles, that have been in contact
   PcgProbe probe_;
   Number probed_;  // of the iteration in progress
   std::vector<double> newton_, linear_, probes_, contacts_, gaps_;
   Number iterates_gap_, iterates_gap_rel_;  // of the step in progress
-  RunTimes seen_;
-  const RunTimes* reported_ = &seen_;
+  std::vector<PhaseTimes> seen_;
+  const std::vector<PhaseTimes>* reported_ = &seen_;
 };
 
 }  // namespace bb

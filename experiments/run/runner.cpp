@@ -8,6 +8,7 @@
 #include <cmath>
 #include <set>
 
+#include "core/linear/blas_info.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/simulation.hpp"
 #include "core/record/provenance.hpp"
@@ -28,7 +29,12 @@ namespace {
 struct PassResult {
   Verdict verdict;
   std::string state_hash;
-  double wall_s = 0;
+  struct StepTime {
+    double wall_s;  // on its own clock, round the whole step
+    PhaseTimes phases;
+  };
+  std::vector<StepTime> steps;
+  double wall_s = 0;  // of all steps
   StiffnessPolicy::State stiffness;
 };
 
@@ -48,7 +54,10 @@ PassResult run_pass(const RunConfig& config, const Scene& scene, const Calibrati
   progress.steps = config.time.steps;
   while (simulation.time() < t_end) {
     if (options.interrupted && options.interrupted->load()) throw Interrupted{};
+    const double step_start = now_s();
     const StepReport step = simulation.step(observer);
+    result.steps.push_back({now_s() - step_start, step.times});
+    result.wall_s += result.steps.back().wall_s;
     result.verdict = judge_step(step);
     if (options.progress) {
       progress.step = static_cast<int>(std::lround(step.t / config.time.dt));
@@ -61,7 +70,6 @@ PassResult run_pass(const RunConfig& config, const Scene& scene, const Calibrati
     }
     if (result.verdict.outcome != Outcome::ok) break;
   }
-  result.wall_s = now_s() - start;
   result.state_hash = state_hash(simulation.history().x);
   result.stiffness = method.stiffness->state();
   return result;
@@ -90,7 +98,7 @@ void fill_scene(const RunConfig& config, const Scene& scene, RunRecord& record) 
   size.vertices = static_cast<std::size_t>(scene.n_vertices());
   const std::size_t per_vertex = scene.planar ? 2 : 3;
   size.free_dofs = per_vertex * (size.vertices - scene.pins.size());
-  size.triangles = scene.membrane.triangles.size();
+  size.triangles = scene.membrane_triangles().size();
   size.springs = scene.springs.edges.size();
   size.hinges = scene.hinges.hinges.size();
   size.obstacles = scene.obstacles.size();
@@ -109,6 +117,26 @@ void fill_plan(const RunConfig& config, const Scene& scene, RunRecord& record) {
   if (!config.passes.diagnose) record.skipped.push_back({"cond", "not_requested"});
   if (!config.passes.audit) record.skipped.push_back({"audit", "not_requested"});
   if (!plan.trace.needed) record.skipped.push_back({"trace", "not_requested"});
+}
+
+/// Times of the pass that was timed; a step that it did not reach has none.
+void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
+  Summary& summary = record.summary;
+  const Number absent = Number::missing(requested ? "not_reached" : "not_requested");
+  for (std::size_t i = 0; i < record.steps.size(); ++i) {
+    StepRecord& step = record.steps[i];
+    step.wall_s = step.unaccounted_s = absent;
+    if (i >= timed.steps.size()) continue;
+    step.time = timed.steps[i].phases;
+    step.wall_s = timed.steps[i].wall_s;
+    step.unaccounted_s = timed.steps[i].wall_s - step.time.total_s();
+  }
+  summary.wall_s = summary.solve_s = summary.unaccounted_s = absent;
+  if (!requested) return;
+  for (const PassResult::StepTime& step : timed.steps) summary.time += step.phases;
+  summary.wall_s = timed.wall_s;
+  summary.solve_s = summary.time.solve_s();
+  summary.unaccounted_s = timed.wall_s - summary.time.total_s();
 }
 
 void add_check(RunRecord& record, const std::string& name, Number value, Number bound, bool pass) {
@@ -158,8 +186,8 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
                 const RunOptions& options, RunRecord& record) {
   PassResult timed, seen;
   const bool look = has_observed_run(config);
-  RunRecord timing;  // the time pass keeps a record of its own: only its times and hash are used
-  RunTimes times;
+  RunRecord timing;               // the time pass keeps a record of its own: only its times and hash are used
+  std::vector<PhaseTimes> times;  // of the iterations
   if (config.passes.time) {
     RunConfig bare = config;
     bare.passes = {true, false, false};
@@ -167,14 +195,14 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     timed = run_pass(bare, scene, calibration, options, "time", observer);
     observer.finish();
     record.samples["wall_s"] = {timed.wall_s};
-    times = observer.times();
+    times = observer.iteration_times();
   }
   Verdict verdict = timed.verdict;
   if (look) {
     TraceWriter trace(options.folder);
     ArtifactWriter artifacts(options.folder, scene);
     Recorder observer(config, scene, record, &trace, &artifacts);
-    observer.report_times_of(times);
+    observer.report_times(times);
     seen = run_pass(config, scene, calibration, options, "diagnose", observer);
     observer.finish();
     trace.finish();
@@ -186,9 +214,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
   const PassResult& main = look ? seen : timed;
   record.status.outcome = verdict.outcome;
   record.status.detail = verdict.detail;
-  const Number untimed = Number::missing("not_requested");
-  record.summary.wall_s = config.passes.time ? Number(timed.wall_s) : untimed;
-  record.summary.solve_s = config.passes.time ? Number(record.summary.time.solve_s()) : untimed;
+  fill_times(timed, config.passes.time, record);
   record.summary.state_hash = main.state_hash;
   if (main.stiffness.kappa > 0) {
     record.summary.stiffness = {main.stiffness.kappa_start, main.stiffness.kappa, main.stiffness.doublings,
@@ -231,6 +257,7 @@ RunRecord run_config(const RunConfig& config, const RunOptions& options) {
   const int threads = config.threads > 0 ? config.threads : oneapi::tbb::info::default_concurrency();
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(threads));
+  set_one_blas_thread();  // before the record says how many there are, and before anything computes
   // before anything is written: what config and files can tell is refused here
   const Scene scene = build_scene(config);
   RunRecord record;

@@ -73,9 +73,9 @@ StepRecord step_record(const NewtonSystem& system, const StepReport& report) {
   step.limit_load_max_N_per_m =
       system.has_limit() ? Number(report.limit_tension_max) : Number::missing("no_limit");
   const bool converged = report.status == StepStatus::converged;
-  const char* absent = converged                    ? "converged"
-                       : report.kappa_unsettled > 0 ? "kappa_unsettled"
-                                                    : "not_measured";
+  const char* absent = converged                                                   ? "converged"
+                       : report.kappa_unsettled + report.limit_kappa_unsettled > 0 ? "kappa_unsettled"
+                                                                                   : "not_measured";
   const auto measured = [absent](const std::optional<double>& load) {
     return load ? Number(*load) : Number::missing(absent);
   };

@@ -17,7 +17,7 @@ def _trace_line(step: int, iteration: int, scale: float) -> dict:
     last = iteration == 1
     return {
         "step": step, "iteration": iteration, "linear_iterations": 10 + step, "probe_pcg_iterations": 10.0 + step, "gap_min_iterates_rel": 0.5,
-        "kappa_change_rel": None if iteration == 0 else 0.0, "contacts": CONTACTS, "time": {},
+        "kappa_change_rel": None if iteration == 0 else 0.0, "limit_kappa_change_rel": None if iteration == 0 else 0.0, "limit_gap_min_rel": 0.9, "contacts": CONTACTS, "time": {},
         "cond": [estimate("none", scale * 10.0 ** (step + 1), "lower_bound" if last and step == 2 else "ok"),
                  estimate("block_jacobi", scale * (step + 1))],
     }
@@ -58,9 +58,10 @@ def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: s
     return record
 
 
-def write_cycle(folder: Path, change: float) -> None:
-    """Appends a step 3 in which the gap swings between two values and kappa changes by `change` each time."""
-    lines = [_trace_line(3, iteration, 1.0) | {"gap_min_iterates_rel": (0.1, 0.6)[iteration % 2], "kappa_change_rel": change} for iteration in range(12)]
+def write_cycle(folder: Path, change: float, whose: str = "") -> None:
+    """Appends a step 3 in which a gap swings between two values and its kappa changes by `change` each time; whose: "" or "limit_"."""
+    gap = "limit_gap_min_rel" if whose else "gap_min_iterates_rel"
+    lines = [_trace_line(3, iteration, 1.0) | {gap: (0.1, 0.6)[iteration % 2], f"{whose}kappa_change_rel": change} for iteration in range(12)]
     with (folder / "trace.jsonl").open("a") as trace:
         trace.writelines(json.dumps(line) + "\n" for line in lines)
 

@@ -61,11 +61,16 @@ def test_gaps_and_iterations_beside_the_figures_are_the_steps(records, tmp_path)
     assert list(pcg["count"]) == [10, 10, 11, 11, 12, 12]
 
 
-def test_a_kappa_that_does_not_settle_is_drawn_in_its_step(tmp_path):
+@pytest.mark.parametrize(("whose", "word"), [("", "contacts"), ("limit_", "strain limit")])
+def test_the_kappa_that_does_not_settle_is_drawn_in_its_step_over_its_own_gap(tmp_path, monkeypatch, whose, word):
+    titles, save = [], style.save
+    monkeypatch.setattr(style, "save", lambda fig, *rest: titles.append(fig.get_suptitle()) or save(fig, *rest))
     write_set(tmp_path / "runs")
-    write_cycle(tmp_path / "runs" / "quadratic", change=0.8)
+    write_cycle(tmp_path / "runs" / "quadratic", change=0.8, whose=whose)
     table = pd.read_csv(kappa_cycle.figure(load(tmp_path / "runs"), "strip", tmp_path)[2])
 
+    assert f"kappa of the {word}, refreshed" in titles[0]
+    assert set(table["kappa"]) == {word}
     assert set(table["step"]) == {3}
     assert list(table["kappa_change_rel"]) == [0.8] * 12
     assert list(table["gap_min_iterates_rel"]) == [0.1, 0.6] * 6

@@ -109,6 +109,23 @@ TEST(Contradictions, DiagnosesWithoutTheirSource) {
   expect_violation(config, "/diagnose/tier", "0", "pcg");
   config["linear_solver"] = {{"name", "pcg"}};
   EXPECT_EQ(parsed(config).diagnose.tier, 0);
+  config["diagnose"]["scalings"] = {"none"};
+  expect_violation(config, "/diagnose/tier", "0", "a preconditioner among diagnose.scalings");
+  config["linear_solver"]["preconditioner"] = "none";
+  EXPECT_EQ(parsed(config).diagnose.tier, 0);
+  config["diagnose"]["stages"] = {"without_contact"};
+  expect_violation(config, "/diagnose/stages", "no stage full", "the matrix that PCG solves");
+}
+
+TEST(Contradictions, ALimitThatFollowsTheContactPolicyFollowsAllOfIt) {
+  json config = hang_config();
+  config["strain_limit"] = {{"limit", 0.1}};
+  config["formulation"] = {{"shape", "cubic"},
+                           {"stiffness_policy", {{"name", "elasticity_inclusive"}, {"elastic_term", false}}}};
+  EXPECT_FALSE(parsed(config).strain_limit.stiffness_policy.elastic_term);
+  config["strain_limit"]["stiffness_policy"] = {{"elastic_term", true}};
+  EXPECT_TRUE(parsed(config).strain_limit.stiffness_policy.elastic_term);
+  EXPECT_FALSE(parsed(config).formulation.stiffness_policy.elastic_term);
 }
 
 TEST(Contradictions, BodiesOfOneKindWithKeysOfAnother) {

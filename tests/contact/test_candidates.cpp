@@ -143,7 +143,7 @@ Scene planar_scene(PlanarPairs pairs) {
   scene.planar_pairs = pairs;
   const auto [vertices, triangles] = grid(2, 2, 1.0);
   add_body(scene, "sheet", vertices, {}, 3.0);
-  scene.membrane.triangles = triangles;
+  scene.membranes.emplace_back().triangles = triangles;
   if (pairs == PlanarPairs::point_edge) {
     scene.surface_edges = {{0, 1}, {1, 2}, {2, 5}, {5, 8}, {8, 7}, {7, 6}, {6, 3}, {3, 0}};
     scene.surface_vertices = {0, 1, 2, 3, 5, 6, 7, 8};

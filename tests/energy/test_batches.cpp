@@ -84,14 +84,35 @@ TEST(MembraneBatch, StoresTheElementTermsOfEveryModel) {
 TEST(MembraneBatch, WarpDirectionReachesBaraffWitkin) {
   const Strip strip(40);
   const std::vector<double> ones(strip.triangles.size(), 1.0);
-  const Vec3d warp(1, 1, 0);
+  const std::vector<Vec3d> warp(strip.triangles.size(), Vec3d(1, 1, 0));
   const MembraneBatch along_edge("baraff_witkin", strip.triangles, strip.rest, ones, ones);
-  const MembraneBatch along_warp("baraff_witkin", strip.triangles, strip.rest, ones, ones, false, &warp);
+  const MembraneBatch along_warp("baraff_witkin", strip.triangles, strip.rest, ones, ones, false, warp);
   std::vector<double> a(along_edge.size()), b(along_warp.size());
   along_edge.values(strip.deformed, a.data());
   along_warp.values(strip.deformed, b.data());
   EXPECT_GT(std::abs(a[3] - b[3]), 0.01 * b[3]);
   EXPECT_GT(b[3], 0);
+}
+
+// Along the first edges, the diagonal of one half would be warp and a side of the other.
+TEST(MembraneBatch, BothHalvesOfASquareHaveOneEnergyUnderOneStretch) {
+  Positions rest(3, 4);
+  rest << 0, 1, 1, 0, 0, 0, 1, 1, 0, 0, 0, 0;
+  const std::vector<std::array<int, 3>> halves = {{0, 1, 2},
+                                                  {2, 0, 3}};  // the second begins with the diagonal
+  Positions x = rest;
+  x.row(0) *= 1.2;
+  x.row(1) *= 0.9;
+  const std::vector<double> ones(2, 1.0);
+  const std::vector<Vec3d> warp(2, Vec3d(1, 0, 0));
+  double along_axis[2], along_edge[2];
+  MembraneBatch("baraff_witkin", halves, rest, ones, ones, false, warp).values(x, along_axis);
+  MembraneBatch("baraff_witkin", halves, rest, ones, ones).values(x, along_edge);
+  EXPECT_NEAR(along_axis[0], along_axis[1], 1e-16);
+  EXPECT_NEAR(along_axis[0], 0.5 * 0.5 * (0.2 * 0.2 + 0.1 * 0.1), 1e-15);
+  EXPECT_GT(std::abs(along_edge[0] - along_edge[1]), 1e-3);
+  EXPECT_THROW(MembraneBatch("baraff_witkin", halves, rest, ones, ones, false, {warp.data(), 1}),
+               ConfigError);
 }
 
 TEST(SpringBatch, StoresTheElementTerms) {

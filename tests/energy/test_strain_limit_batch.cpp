@@ -49,6 +49,24 @@ TEST(StrainLimitBatch, ColumnsAndTermsAreThoseOfTheElements) {
   }
 }
 
+TEST(StrainLimitBatch, AStateThatWasMeasuredLastIsKnown) {
+  const Strip strip(10);
+  StrainLimitBatch batch = make_batch(strip, 0.1, 0.9), fresh = make_batch(strip, 0.1, 0.9);
+  const std::vector<double> kappa(batch.size(), 2.0);
+  std::vector<double> energy(batch.size());
+  LocalTerms out;
+  batch.values(strip.deformed, barrier, kappa.data(), energy.data());
+  batch.derivatives(strip.deformed, barrier, kappa.data(), out);
+  batch.measure(strip.deformed);
+  EXPECT_EQ(batch.sweeps(), 1);
+  Positions other = strip.deformed;
+  other(0, other.cols() - 1) += 0.01;
+  batch.measure(other);
+  fresh.measure(other);
+  EXPECT_EQ(batch.sweeps(), 2);
+  for (std::size_t i = 0; i < 2 * batch.size(); ++i) EXPECT_EQ(batch.sigma()[i], fresh.sigma()[i]) << i;
+}
+
 TEST(StrainLimitBatch, GradientIsTheDerivativeOfTheSum) {
   const Strip strip(10);
   StrainLimitBatch batch = make_batch(strip, 0.1, 0.9);

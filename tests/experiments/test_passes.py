@@ -83,3 +83,48 @@ def test_explain_names_the_bounds_of_an_adaptive_kappa(program):
                  "/formulation/stiffness_policy/kappa_min_N_per_m=5", "--set", "/formulation/stiffness_policy/doubling_gap_m=1e-9")
     assert done.returncode == 0, done.stderr
     assert "ipc_adaptive, at least 5 N/m, doubled below 1e-09 m" in done.stdout
+
+
+DRAPE = Path(BLOCK).parent / "drape.json"
+
+
+@pytest.fixture(scope="module")
+def drape(program, tmp_path_factory) -> dict:
+    """Two layers of a small drape beyond their first contacts, timed and audited."""
+    out = tmp_path_factory.mktemp("drape")
+    done = bench(program, "run", DRAPE, "--out", out, "--set", "/scene/n=8", "--set", "/scene/layers=2", "--set", "/time/steps=12",
+                 "--set", "/formulation=cubic_dynamic_lagged", "--set", "/matching/rule=as_given", "--set", "/step_solver/max_iterations=50")
+    assert done.returncode == 0, done.stderr
+    return json.loads((out / "run.json").read_text())
+
+
+def test_every_moment_of_a_step_belongs_to_a_phase(drape):
+    def adds_up(place: dict) -> bool:
+        return sum(place["time"].values()) + place["unaccounted_s"] == pytest.approx(place["wall_s"], abs=1e-12)
+
+    summary = drape["summary"]
+    assert max(step["contacts"]["total"] for step in drape["steps"]) > 0
+    assert adds_up(summary) and all(adds_up(step) for step in drape["steps"])
+    assert 0 <= summary["unaccounted_s"] < 0.02 * summary["wall_s"]
+    assert summary["wall_s"] == pytest.approx(sum(step["wall_s"] for step in drape["steps"]))
+    assert summary["solve_s"] == pytest.approx(sum(summary["time"].values()) - summary["time"]["output_s"])
+    phases = json.loads((DRAPE.parents[1] / "schema/run.schema.json").read_text())["$defs"]["phases"]["properties"]
+    assert set(summary["time"]) == set(phases), "a phase of the schema that a scene with all kinds of work never charges"
+
+
+def test_the_first_record_of_a_process_knows_its_blas_threads(drape):
+    assert drape["provenance"]["blas_threads"] == 1
+
+
+def test_tier_0_reads_the_ritz_values_of_every_solve(program, tmp_path):
+    settings = ["/linear_solver/name=pcg", "/diagnose/tier=0", "/passes/diagnose=true", "/time/steps=2", "/scene/n=6", "/scene/layers=1"]
+    done = bench(program, "run", DRAPE, "--out", tmp_path, *(word for setting in settings for word in ("--set", setting)))
+    assert done.returncode == 0, done.stderr
+    summary = json.loads((tmp_path / "run.json").read_text())["summary"]
+    rows = trace(tmp_path)
+    assert list(summary["cond"]) == ["full/block_jacobi"]
+    assert summary["cond"]["full/block_jacobi"]["statuses"] == {"lower_bound": len(rows)}
+    for row in rows:
+        estimate, = row["cond"]
+        assert estimate["tier"] == 0 and estimate["method"] == "ritz"
+        assert estimate["cond"] == pytest.approx(row["ritz_max"] / row["ritz_min"])

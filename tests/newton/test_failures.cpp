@@ -1,6 +1,8 @@
 // Failures are results: named, with the feasible state kept.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
 #include "tests/newton/small_scenes.hpp"
@@ -34,6 +36,30 @@ TEST(Failures, the_capacity_is_that_of_the_largest_force_wherever_it_peaks) {
   ASSERT_TRUE(report.overload.has_value());
   EXPECT_GT(*report.overload, 2 / 0.1145 - 1);  // of the weight alone; the fall adds to it
   EXPECT_LT(*report.overload, 10 * 2 / 0.1145);
+}
+
+/// b = (d_hat - d)^2 d_hat/(1 m), a shape that is not d_hat^2 times a function of d/d_hat.
+void steep(void*, std::size_t n, const double* d, const double* d_hat, double* b, double* db, double* d2b) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const double depth = std::max(0.0, d_hat[i] - d[i]);
+    b[i] = depth * depth * d_hat[i];
+    db[i] = -2 * depth * d_hat[i];
+    d2b[i] = depth > 0 ? 2 * d_hat[i] : 0;
+  }
+}
+
+TEST(Failures, the_capacity_is_asked_of_the_shape_at_the_d_hat_of_the_row) {
+  // capacity 2 kappa d_hat^2/(1 m) = 0.2 N against 2 N of weight
+  Scene scene = test::particle_over_plane(0.2, 0.0099, 0.01);
+  Method method = test::fixed_method("cubic", 1000);
+  method.contact.shape = Shape{"steep", "", 1, false, steep, nullptr, nullptr};
+  Simulation simulation(scene, method, 0.01, 100);
+  StepObserver observer;
+  StepReport report;
+  for (int i = 0; i < 100 && report.status == StepStatus::converged; ++i) report = simulation.step(observer);
+  ASSERT_NE(report.status, StepStatus::converged);
+  EXPECT_EQ(report.contacts.obstacle, 1U);
+  EXPECT_GT(report.overload.value_or(0), 2 / 0.2 - 1);  // of the weight alone; the fall adds to it
 }
 
 TEST(Failures, the_log_barrier_has_no_capacity) {

@@ -25,10 +25,12 @@ double error_factor(double d) {
 }
 
 struct Log final : StepObserver {
-  std::vector<double> dx, change;
+  std::vector<double> dx, change, limit_change, limit_gap;
   void on_iteration(const IterationReport& report) override {
     dx.push_back(report.dx_inf);
     change.push_back(report.kappa_change);
+    limit_change.push_back(report.limit_kappa_change);
+    limit_gap.push_back(report.limit_gap_min_rel);
   }
 };
 
@@ -67,7 +69,7 @@ TEST(KappaCycle, a_gap_below_half_of_d_hat_never_converges_and_the_step_says_why
   const StepReport step = step_near_rest(gap, Refresh::per_iteration, log);
   EXPECT_NEAR(log.dx[3] / log.dx[2], std::abs(factor), 0.02);  // still close to the fixed point
   EXPECT_EQ(step.status, StepStatus::iteration_cap);
-  EXPECT_NE(step.detail.find("kappa does not settle"), std::string::npos) << step.detail;
+  EXPECT_NE(step.detail.find("the contacts' kappa does not settle"), std::string::npos) << step.detail;
   EXPECT_GT(log.change.back(), 0.01);
   EXPECT_FALSE(step.overload.has_value());  // kappa moves, and with it what the row can carry
 
@@ -89,6 +91,35 @@ TEST(KappaCycle, a_contact_that_appears_has_not_changed) {
   ASSERT_GT(log.change.size(), 3U);
   EXPECT_EQ(log.change[1], 0);  // the row is new: its value at d_hat was never one of a line search's start
   EXPECT_GT(log.change.back(), 0);  // an old one by then
+}
+
+// A cloth that hangs from its top row with its limit at 0.3 of its width, kappa_e = m_e/y^2: the same cycle.
+TEST(KappaCycle, the_step_says_that_it_is_the_strain_limit_whose_kappa_does_not_settle) {
+  SceneBuilder builder("hung cloth", true, Vec3d(0, -2180, 0), "test");
+  BodySpec spec = test::cloth_spec(2, 0, 1e-4);
+  spec.material.youngs = 1;
+  spec.material.limit = StrainLimitSpec{0, 0.01};
+  PinSpec top;
+  top.top_row = true;
+  spec.pins = {top};
+  builder.add_body(spec);
+  const Scene scene = builder.finish();
+  Method method = test::fixed_method("cubic", 1);
+  method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+  method.limit_stiffness.elastic_term = false;
+  method.step_solver.max_iterations = 60;
+  Simulation simulation(scene, method, 0.1, 1);
+  Log log;
+  const StepReport step = simulation.step(log);
+  EXPECT_EQ(step.status, StepStatus::iteration_cap);
+  EXPECT_NE(step.detail.find("the strain limit's kappa does not settle"), std::string::npos) << step.detail;
+  EXPECT_EQ(step.detail.find("contacts' kappa"), std::string::npos) << step.detail;
+  EXPECT_EQ(*std::max_element(log.change.begin(), log.change.end()), 0);  // of the contacts: there are none
+  EXPECT_EQ(log.limit_change.front(), 0);
+  EXPECT_GT(log.limit_change.back(), 0.01);
+  EXPECT_GT(log.limit_gap.back(), 0);
+  EXPECT_LT(log.limit_gap.back(), 1);
+  EXPECT_FALSE(step.limit_overload.has_value());
 }
 
 TEST(KappaCycle, kept_for_the_step_both_converge) {

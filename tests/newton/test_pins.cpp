@@ -1,6 +1,8 @@
 // Prescribed vertices: exact poses, motion lifted to the right-hand side, a pose that cannot be reached.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb {
@@ -68,6 +70,64 @@ TEST(Pins, a_plate_that_moves_several_d_hat_a_step_pushes_a_free_cloth_ahead_of_
   EXPECT_GT(contacts, 0U);
   EXPECT_NEAR(simulation.history().x(2, 17), 0.15, 1e-15);             // the plate is where it was told to be
   EXPECT_GT(simulation.history().x.row(2).head(16).minCoeff(), 0.15);  // and the cloth is above it
+}
+
+/// A rod of one edge along x, turned by `angle` (rad) about z, far from the other at rest.
+BodySpec rod(const std::string& name, double angle, double height) {
+  BodySpec spec;
+  spec.name = name;
+  spec.mesh.vertices.resize(3, 2);
+  const Vec3d half = 0.5 * Vec3d(std::cos(angle), std::sin(angle), 0);
+  spec.mesh.vertices << -half, half;
+  spec.mesh.segments = {{0, 1}};
+  spec.start = spec.mesh.vertices;
+  spec.start->row(2).array() += height;
+  spec.mesh.vertices.row(2).array() += 100 * height;
+  spec.material.line_density = 0.1;
+  spec.material.springs = 10;
+  spec.d_hat = 0.02;
+  return spec;
+}
+
+// A nearly parallel pair carries the mollifier. The right-hand side has to know that its given edge moves:
+// the model's gradient after the motion of the pins alone is the gradient there, to first order.
+TEST(Pins, the_motion_of_a_given_edge_is_lifted_through_a_mollified_row) {
+  SceneBuilder builder("two rods", false, Vec3d::Zero(), "test");
+  BodySpec given = rod("given", 0, -0.004);
+  given.kind = BodyKind::rigid;
+  given.motion.velocity = Vec3d(0, 0, 1);
+  builder.add_body(given);
+  builder.add_body(rod("free", 0.02, 0.004));
+  Scene scene = builder.finish();
+  Method method = test::fixed_method("cubic", 500);
+  NewtonSystem system(scene, method);
+  Prediction prediction;
+  const Positions none = Positions::Zero(3, 4);
+  method.integrator->predict({0, scene.x0, scene.v0, none, scene.x0, scene.v0}, 0.01, prediction);
+  system.begin_step(scene.x0, prediction, 0.01, 1);
+  system.assemble();
+  ASSERT_EQ(system.contact_counts().mollified, 1U);
+  ASSERT_EQ(system.contact_counts().total(), 1U);
+  const Positions gradient = system.gradient();
+
+  const double motion = 1e-6;  // m
+  Positions target = scene.x0, dx;
+  for (const Pin& pin : scene.pins) target(2, pin.vertex) += motion;
+  ASSERT_EQ(system.solve(target, dx).status, LinearStatus::ok);
+  Positions free_motion = dx;
+  for (const Pin& pin : scene.pins) free_motion.col(pin.vertex).setZero();
+  VecXd moved, wanted;
+  system.blocks().restrict_vector(free_motion, moved);
+  const VecXd model = system.reduced(MatrixStage::full).lower.selfadjointView<Eigen::Lower>() * moved;
+
+  system.sweep(target);
+  ASSERT_TRUE(system.try_state(target).has_value());
+  system.accept();
+  system.assemble();
+  system.blocks().restrict_vector(-system.gradient(), wanted);
+  ASSERT_GT((system.gradient() - gradient).cwiseAbs().maxCoeff(), 1e-6);  // N: the motion is felt
+  EXPECT_LT((model - wanted).lpNorm<Eigen::Infinity>(),
+            1e-3 * (system.gradient() - gradient).cwiseAbs().maxCoeff());
 }
 
 TEST(Pins, a_pose_beyond_the_strain_limit_is_infeasible_and_names_the_pin) {

@@ -82,6 +82,8 @@ TEST(JsonFields, OfAStep) {
   fill("limit_J", step.limit_J);
   fill("contact_J", step.contact_J);
   fill("gravity_J", step.gravity_J);
+  fill("wall_s", step.wall_s);
+  fill("unaccounted_s", step.unaccounted_s);
   fill.expect_in(written(record)["steps"][0]);
 }
 
@@ -108,6 +110,7 @@ TEST(JsonFields, OfTheSummary) {
   fill("limit_load_max_N_per_m", summary.limit_load_max_N_per_m);
   fill("wall_s", summary.wall_s);
   fill("solve_s", summary.solve_s);
+  fill("unaccounted_s", summary.unaccounted_s);
   fill("peak_rss_bytes", summary.peak_rss_bytes);
   Distinct stiffness;
   stiffness("kappa_start_N_per_m", summary.stiffness.kappa_start_N_per_m);
@@ -251,6 +254,8 @@ TEST(JsonFields, OfATraceLine) {
   fill("kappa_min_N_per_m", row.kappa_min_N_per_m);
   fill("kappa_max_N_per_m", row.kappa_max_N_per_m);
   fill("kappa_change_rel", row.kappa_change_rel);
+  fill("limit_kappa_change_rel", row.limit_kappa_change_rel);
+  fill("limit_gap_min_rel", row.limit_gap_min_rel);
   fill("contact_curvature_max_N_per_m", row.contact_curvature_max_N_per_m);
   fill("contact_load_max_N", row.contact_load_max_N);
   fill("max_stretch", row.max_stretch);

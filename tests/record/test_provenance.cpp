@@ -106,20 +106,60 @@ TEST(Stats, QuantilesOfTheFiniteValues) {
   EXPECT_STREQ(summarize({}).median.status, "empty");
 }
 
-TEST(PhaseTimes, ScopesAddToTheirPhaseOnly) {
-  PhaseTimes times;
-  for (int i = 0; i < 2; ++i) {
-    const ScopedPhase scope(times, Phase::step_bound);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+void rest_2_ms() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
+
+TEST(PhaseClock, ChargesEveryMomentToOnePhase) {
+  PhaseClock clock;
+  rest_2_ms();
+  const double start = now_s();
+  clock.restart(Phase::step_control);  // what was before counts no more
+  rest_2_ms();
+  {
+    const ScopedPhase outer(clock, Phase::assembly);
+    rest_2_ms();
+    {
+      const ScopedPhase inner(clock, Phase::stiffness);
+      rest_2_ms();
+    }
+    rest_2_ms();
   }
-  EXPECT_GE(times[Phase::step_bound], 0.004);
+  rest_2_ms();
+  const PhaseTimes times = clock.read();
+  const double wall = now_s() - start;
+  EXPECT_GE(times[Phase::step_control], 0.004);
+  EXPECT_GE(times[Phase::assembly], 0.004);  // on both sides of the inner scope, without it
+  EXPECT_GE(times[Phase::stiffness], 0.002);
+  EXPECT_GE(wall, times.total_s());
+  EXPECT_LT(wall - times.total_s(), 1e-3);
   EXPECT_EQ(times[Phase::elastic], 0);
-  times[Phase::audit] = 100;
-  EXPECT_LT(times.solve_s(), 100);
-  EXPECT_EQ(times.solve_s(), times[Phase::step_bound]);
-  PhaseTimes sum = times;
-  sum += times;
-  EXPECT_EQ(sum[Phase::audit], 200);
+}
+
+TEST(PhaseClock, ALapIsWhatWasChargedSinceTheOneBefore) {
+  PhaseClock clock;
+  clock.restart(Phase::elastic);
+  rest_2_ms();
+  const PhaseTimes first = clock.lap();
+  clock.change(Phase::output);
+  rest_2_ms();
+  const PhaseTimes second = clock.lap();
+  EXPECT_GE(first[Phase::elastic], 0.002);
+  EXPECT_EQ(first[Phase::output], 0);
+  EXPECT_GE(second[Phase::output], 0.002);
+  PhaseTimes sum = first;
+  sum += second;
+  EXPECT_NEAR(sum.total_s(), clock.read().total_s(), 1e-3);
+  EXPECT_NEAR(sum.solve_s(), sum[Phase::elastic], 1e-9);  // observers are no time of the method
+}
+
+TEST(PhaseClock, GivesACalleesOwnPartToItsPhase) {
+  PhaseClock clock;
+  clock.restart(Phase::linear_solve);
+  rest_2_ms();
+  const double all = clock.read().total_s();
+  clock.move(Phase::linear_solve, Phase::linear_factor, 0.001);
+  EXPECT_EQ(clock.read()[Phase::linear_factor], 0.001);
+  EXPECT_GE(clock.read()[Phase::linear_solve], all - 0.001);
+  EXPECT_GT(clock.read()[Phase::linear_solve], 0);
 }
 
 TEST(Outcome, TheMoreSpecificWordWins) {

@@ -40,9 +40,45 @@ TEST(scene_builder, lumps_line_density_times_length) {
   EXPECT_NEAR(scene.mass[0], 0.075, 1e-16);
   EXPECT_EQ(scene.springs.edges.size(), 4u);
   EXPECT_EQ(scene.springs.stiffness, std::vector<double>(4, 50.0));
-  EXPECT_TRUE(scene.membrane.triangles.empty());
+  EXPECT_TRUE(scene.membranes.empty());
   EXPECT_EQ(scene.surface_edges.size(), 4u);
   EXPECT_EQ(scene.surface_vertices.size(), 5u);
+}
+
+TEST(scene_builder, keeps_the_membrane_model_of_every_body) {
+  BodySpec first = cloth("first"), second = cloth("second", 1), third = cloth("third", 2);
+  first.material.model = third.material.model = "stvk";
+  second.material.model = "baraff_witkin";
+  second.material.warp_axis = Vec3d(0.6, 0.8, 0);
+  third.material.youngs *= 2;
+
+  const Scene scene = scene_of({first, second, third});
+
+  ASSERT_EQ(scene.membranes.size(), 2u);
+  EXPECT_EQ(scene.membranes[0].model, "stvk");
+  EXPECT_EQ(scene.membranes[1].model, "baraff_witkin");
+  ASSERT_EQ(scene.membranes[0].triangles.size(), 24u);
+  ASSERT_EQ(scene.membranes[1].triangles.size(), 12u);
+  EXPECT_EQ(scene.membranes[0].triangles[12][0] / 12, 2);  // of the third body
+  EXPECT_EQ(scene.membranes[0].lame_mu[12], 2 * scene.membranes[0].lame_mu[0]);
+  EXPECT_TRUE(scene.membranes[0].warp.empty());
+  EXPECT_EQ(scene.membranes[1].warp, std::vector<Vec3d>(12, Vec3d(0.6, 0.8, 0)));
+  EXPECT_EQ(scene.membrane_triangles().size(), 36u);
+}
+
+TEST(scene_builder, wants_a_warp_axis_that_lies_in_every_triangle_and_only_where_it_is_read) {
+  BodySpec body = cloth("cloth");
+  body.material.model = "baraff_witkin";
+  body.material.warp_axis = Vec3d(0, 0, 1);
+  EXPECT_NE(complaint({body}).find("warp_axis"), std::string::npos) << complaint({body});
+  EXPECT_NE(complaint({body}).find("the normal of triangle 0"), std::string::npos);
+  body.material.warp_axis = Vec3d(0, 2, 0);
+  EXPECT_NE(complaint({body}).find("a unit vector"), std::string::npos);
+  body.material.warp_axis.reset();
+  EXPECT_EQ(scene_of({body}).membranes.at(0).warp.at(0), Vec3d(1, 0, 0));
+  body.material.model = "stvk";
+  body.material.warp_axis = Vec3d(0, 1, 0);
+  EXPECT_NE(complaint({body}).find("the model stvk has no direction"), std::string::npos);
 }
 
 TEST(scene_builder, multiplies_lame_parameters_by_the_thickness) {
@@ -53,9 +89,9 @@ TEST(scene_builder, multiplies_lame_parameters_by_the_thickness) {
 
   const Scene scene = scene_of({body});
 
-  ASSERT_EQ(scene.membrane.lame_mu.size(), 12u);
-  EXPECT_NEAR(scene.membrane.lame_mu[3], 240 / 2.5, 1e-12);
-  EXPECT_NEAR(scene.membrane.lame_lambda[3], 240 * 0.25 / (1 - 0.0625), 1e-12);
+  ASSERT_EQ(scene.membranes.at(0).lame_mu.size(), 12u);
+  EXPECT_NEAR(scene.membranes.at(0).lame_mu[3], 240 / 2.5, 1e-12);
+  EXPECT_NEAR(scene.membranes.at(0).lame_lambda[3], 240 * 0.25 / (1 - 0.0625), 1e-12);
 }
 
 TEST(scene_builder, gives_hinges_the_angle_of_the_rest_shape) {
@@ -117,7 +153,7 @@ TEST(scene_builder, appends_bodies_with_their_own_numbers) {
   EXPECT_EQ(scene.body[12], 1);
   EXPECT_EQ(scene.d_hat[12], 0.02);
   EXPECT_EQ(scene.offset[12], 0.005);
-  EXPECT_EQ(scene.membrane.triangles[12], (std::array<int, 3>{12, 13, 17}));
+  EXPECT_EQ(scene.membranes[0].triangles[12], (std::array<int, 3>{12, 13, 17}));
   EXPECT_EQ(scene.surface_triangles.size(), 24u);
   EXPECT_EQ(scene.surface_edges.size(), 2 * unique_edges(thick.mesh).size());
 }
@@ -127,7 +163,7 @@ TEST(scene_builder, leaves_a_rigid_body_without_mass_and_elements) {
 
   EXPECT_EQ(scene.pins.size(), 8u);
   EXPECT_EQ(scene.motions.size(), 1u);
-  EXPECT_EQ(scene.membrane.triangles.size(), 12u);
+  EXPECT_EQ(scene.membranes.at(0).triangles.size(), 12u);
   EXPECT_EQ(scene.surface_triangles.size(), 24u);
   for (int v = 12; v < 20; ++v) EXPECT_EQ(scene.mass[static_cast<std::size_t>(v)], 0);
 }
@@ -161,7 +197,7 @@ TEST(scene_builder, leaves_out_elements_that_hold_no_unknown) {
 
   const Scene scene = scene_of({body});
 
-  EXPECT_EQ(scene.membrane.triangles.size(), 11u);
+  EXPECT_EQ(scene.membranes.at(0).triangles.size(), 11u);
   EXPECT_EQ(scene.limit.triangles.size(), 11u);
   EXPECT_EQ(scene.springs.edges.size(), unique_edges(body.mesh).size() - 3);
   EXPECT_EQ(scene.surface_triangles.size(), 12u);

@@ -1,0 +1,28 @@
+// The condition numbers of a run in one table: every sample counts.
+#pragma once
+
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/record/run_record.hpp"
+
+namespace bb {
+
+class CondSummary {
+ public:
+  /// A matrix that is singular or not positive definite has no finite condition number: it counts with the
+  /// largest that is claimed, 1e14. An estimate that did not converge has no number and is only counted.
+  void add(const ConditionSample& sample);
+  /// By "<stage>/<scaling>".
+  std::map<std::string, Summary::Conditioning> summary() const;
+
+ private:
+  struct Samples {
+    std::vector<double> log10_cond, log10_min, log10_max;
+    std::map<std::string, int> statuses;
+  };
+  std::map<std::string, Samples> samples_;
+};
+
+}  // namespace bb
