@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import sys
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
 import pandas as pd
@@ -28,6 +28,7 @@ class Records:
     steps: pd.DataFrame  # one row a time step
     trace: pd.DataFrame  # one row a Newton iteration, `n` counts them over the run
     cond: pd.DataFrame  # one row a condition estimate
+    unreadable: list[str] = field(default_factory=list)  # records left out: "path: reason"
 
 
 def _scalars(mapping: dict) -> dict:
@@ -89,29 +90,50 @@ def _trace_lines(path: Path) -> list[dict]:
     return rows
 
 
+def _read(path: Path) -> dict:
+    """One run.json. Raises RecordError: torn or otherwise not JSON, no record, a version this one does not read."""
+    try:
+        record = json.loads(path.read_text())
+    except (OSError, ValueError) as error:  # ValueError: not JSON, not UTF-8
+        raise RecordError(f"{path}: not JSON: {error}") from None
+    if not isinstance(record, dict):
+        raise RecordError(f"{path}: not JSON of a record")
+    _check_schema(record, path)
+    return record
+
+
 def load(root: str | Path) -> Records:
-    """Every run.json below `root`, in the order of their paths. Raises RecordError."""
+    """Every record below `root`, in the order of their paths.
+
+    A run.json that cannot be read, torn by a crash or of another version, is left out: `unreadable` and a line on stderr name it.
+    Raises RecordError when no record can be read.
+    """
     root = Path(root)
-    runs, steps, trace, cond = [], [], [], []
+    runs, steps, trace, cond, unreadable = [], [], [], [], []
     for path in sorted(root.rglob("run.json")):
         try:
-            record = json.loads(path.read_text())
-        except json.JSONDecodeError as error:
-            raise RecordError(f"{path}: not JSON: {error}") from None
-        _check_schema(record, path)
+            record = _read(path)
+            lines = _trace_lines(path.parent / "trace.jsonl")
+        except RecordError as error:
+            unreadable.append(str(error))
+            continue
         run = str(path.parent.relative_to(root))
         runs.append(_run_row(record, run))
         for step in record["steps"]:
             steps.append({"run": run, **_scalars(step), "contacts": step["contacts"]["total"]})
-        for n, line in enumerate(_trace_lines(path.parent / "trace.jsonl")):
+        for n, line in enumerate(lines):
             place = {"run": run, "n": n, "step": line["step"], "iteration": line["iteration"]}
             trace.append({**place, **_scalars(line), "contacts": line["contacts"]["total"]})
             cond.extend({**place, **_scalars(c)} for c in line["cond"])
     if not runs:
-        raise RecordError(f"{root}: no run.json below this folder")
+        raise RecordError("\n".join([f"{root}: no run.json below this folder that can be read", *unreadable]))
+    for line in unreadable:
+        print(f"{line}; left out", file=sys.stderr)
+    if unreadable:
+        print(f"{root}: {len(unreadable)} of {len(unreadable) + len(runs)} records left out", file=sys.stderr)
     table = pd.DataFrame(runs).sort_values(["group", "started_utc"], kind="stable", ignore_index=True)
     table["series"] = _unique_series(table)
-    return Records(table, pd.DataFrame(steps), pd.DataFrame(trace), pd.DataFrame(cond))
+    return Records(table, pd.DataFrame(steps), pd.DataFrame(trace), pd.DataFrame(cond), unreadable)
 
 
 def _unique_series(runs: pd.DataFrame) -> pd.Series:

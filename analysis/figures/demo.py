@@ -31,7 +31,11 @@ def broken_promises(records: Records) -> list[str]:
 
 def make_all(runs: Path, out: Path) -> str:
     """Writes everything to `out`; returns the text for the terminal."""
-    records = load(runs)
+    return make_all_of(load(runs), out)
+
+
+def make_all_of(records: Records, out: Path) -> str:
+    """The same of records that are loaded."""
     paths = [path for group in sorted(records.runs["group"].unique())
              for module in (condition, iterations, gaps, kappa_cycle) for path in module.figure(records, group, out)]
     paths += barrier_shapes.figure(out)
@@ -53,8 +57,9 @@ def main(arguments: list[str]) -> int:
     runs = Path(arguments[0])
     out = Path(arguments[1]) if len(arguments) == 2 else runs / "figures"
     try:
-        print(make_all(runs, out))
-        broken = broken_promises(load(runs))
+        records = load(runs)
+        print(make_all_of(records, out))
+        broken = broken_promises(records)
     except (RecordError, RuntimeError, OSError) as error:
         print(f"figures: {error}", file=sys.stderr)
         return 2

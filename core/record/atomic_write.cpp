@@ -31,9 +31,19 @@ bool lasts(int error) {
   }
 }
 
-[[noreturn]] void fail_with(const fs::path& path, const char* what, int error) {
+}  // namespace
+
+void fail_with(const fs::path& path, const char* what, int error) {
   throw RecordError(path.string() + ": " + what + ": " + std::strerror(error), lasts(error));
 }
+
+void make_folder(const fs::path& folder) {
+  std::error_code error;
+  if (!folder.empty()) fs::create_directories(folder, error);
+  if (error) fail_with(folder, "cannot create the folder", error.value());
+}
+
+namespace {
 
 /// A file descriptor that closes itself.
 class Descriptor {
@@ -75,28 +85,40 @@ void sync_folder(const fs::path& folder) {
   if (::fsync(dir.get()) != 0 && errno != EINVAL) fail_with(folder, "cannot sync the folder", errno);
 }
 
-void make_folder(const fs::path& folder) {
-  std::error_code error;
-  if (!folder.empty()) fs::create_directories(folder, error);
-  if (error) fail_with(folder, "cannot create the folder", error.value());
-}
-
 fs::path temp_beside(const fs::path& path) { return path.string() + ".tmp." + std::to_string(::getpid()); }
+
+fs::path folder_of(const fs::path& path) {
+  return path.has_parent_path() ? path.parent_path() : fs::path(".");
+}
 
 }  // namespace
 
-void write_atomically(const fs::path& path, const std::string& text) {
-  const fs::path folder = path.has_parent_path() ? path.parent_path() : fs::path(".");
-  make_folder(folder);
-  const fs::path temp = temp_beside(path);
+StagedFile::StagedFile(const fs::path& path, const std::string& text)
+    : path_(path), temp_(temp_beside(path)) {
+  make_folder(folder_of(path));
   try {
-    write_and_sync(temp, text);
-    if (::rename(temp.c_str(), path.c_str()) != 0) fail_with(path, "cannot rename into place", errno);
+    write_and_sync(temp_, text);
   } catch (const RecordError&) {
-    ::unlink(temp.c_str());
+    ::unlink(temp_.c_str());
     throw;
   }
-  sync_folder(folder);
+}
+
+StagedFile::~StagedFile() {
+  if (!temp_.empty()) ::unlink(temp_.c_str());
+}
+
+void StagedFile::commit() {
+  if (::rename(temp_.c_str(), path_.c_str()) != 0) fail_with(path_, "cannot rename into place", errno);
+  temp_.clear();
+  sync_folder(folder_of(path_));
+}
+
+void write_atomically(const fs::path& path, const std::string& text) { StagedFile(path, text).commit(); }
+
+void move_into_place(const fs::path& from, const fs::path& to) {
+  make_folder(folder_of(to));
+  if (::rename(from.c_str(), to.c_str()) != 0) fail_with(to, "cannot rename into place", errno);
 }
 
 void write_run(const fs::path& folder, const RunRecord& record) {

@@ -4,6 +4,7 @@
 #include <array>
 #include <bit>
 #include <cstdio>
+#include <filesystem>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
@@ -42,6 +43,15 @@ class Sha256 {
   std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;
 };
 
+/// A file is known by its content and by the suffix that chooses its reader, never by where it lies.
+void drop_places(nlohmann::json& j) {
+  if (!j.is_structured()) return;
+  if (j.is_object() && j.contains("sha256") && j.contains("file") && j["file"].is_string()) {
+    j["file"] = std::filesystem::path(j["file"].get<std::string>()).extension().string();
+  }
+  for (nlohmann::json& inner : j) drop_places(inner);
+}
+
 }  // namespace
 
 std::string sha256_hex(std::string_view bytes) {
@@ -71,8 +81,10 @@ std::string state_hash(const Positions& x) {
 }
 
 std::string config_id(std::string_view config_json) {
-  const nlohmann::json j = nlohmann::json::parse(config_json, nullptr, false);  // sorts keys
+  nlohmann::json j = nlohmann::json::parse(config_json, nullptr, false);  // sorts keys
   if (j.is_discarded()) throw std::invalid_argument("config_id: not JSON");
+  if (j.is_object()) j.erase("threads");  // no bit of a result depends on it
+  drop_places(j);
   return sha256_hex(j.dump());
 }
 

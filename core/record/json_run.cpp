@@ -20,6 +20,7 @@ Json ids(const Ids& v) {
   Json j = {{"config_id", v.config_id},   {"run_id", v.run_id},         {"build_id", v.build_id},
             {"machine_id", v.machine_id}, {"repetition", v.repetition}, {"parent_ids", v.parent_ids}};
   if (!v.sweep_id.empty()) j["sweep_id"] = v.sweep_id;
+  if (!v.rerun_of.empty()) j["rerun_of"] = v.rerun_of;
   return j;
 }
 
@@ -55,6 +56,10 @@ Json scene(const SceneSize& v) {
 }
 
 Json provenance(const Provenance& v) {
+  Json plugins = Json::array();
+  for (const PluginFile& p : v.plugins) {
+    plugins.push_back({{"name", p.name}, {"file", p.file}, {"sha256", p.sha256}});
+  }
   return {{"tool_version", v.tool_version},
           {"git_commit", v.git_commit},
           {"git_dirty", v.git_dirty},
@@ -64,6 +69,7 @@ Json provenance(const Provenance& v) {
           {"fast_math", v.fast_math},
           {"fp_contract", v.fp_contract},
           {"libraries", v.libraries},
+          {"plugins", plugins},
           {"argv", v.argv},
           {"env", v.env},
           {"threads", v.threads},

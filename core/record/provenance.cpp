@@ -6,6 +6,7 @@
 #include <unistd.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 #include <fstream>
@@ -100,12 +101,22 @@ Machine collect_machine() {
 }
 
 void fill_ids(RunRecord& record) {
+  static const std::string this_program = sha256_file("/proc/self/exe");
   Ids& ids = record.ids;
   ids.config_id = config_id(record.config_json);
-  ids.build_id = sha256_file("/proc/self/exe");
+  ids.build_id = this_program;
   ids.machine_id = sha256_hex(record.machine.cpu_model + "\n" + std::to_string(record.machine.cores) + "\n" +
                               record.machine.kernel);
-  ids.run_id = sha256_hex(ids.config_id + ids.build_id + ids.machine_id + std::to_string(ids.repetition));
+  std::string parts = ids.config_id + "\n" + ids.build_id + "\n" + ids.machine_id + "\n" +
+                      std::to_string(record.provenance.threads) + "\n" + std::to_string(ids.repetition) +
+                      "\n";
+  for (const auto& [name, version] : record.provenance.libraries) parts += name + " " + version + "\n";
+  parts += "BLAS kernel " + record.provenance.blas.kernel + "\n";
+  std::vector<std::string> plugins;  // the order of --plugin means nothing
+  for (const PluginFile& plugin : record.provenance.plugins) plugins.push_back(plugin.sha256 + "\n");
+  std::sort(plugins.begin(), plugins.end());
+  for (const std::string& plugin : plugins) parts += plugin;
+  ids.run_id = sha256_hex(parts);
 }
 
 std::uint64_t peak_rss_bytes() {

@@ -18,7 +18,9 @@ Provenance collect_provenance(std::vector<std::string> argv, int threads);
 Machine collect_machine();
 
 /// All ids of a run. Requires provenance, machine and config_json of the record to be filled; sets config_id,
-/// build_id, machine_id and run_id, keeps the rest.
+/// build_id, machine_id and run_id, keeps the rest. The run_id covers all that made the record: config
+/// (meshes by content), executable, libraries with the BLAS kernel that runs, plugins by content, machine,
+/// number of threads (which changes times, no result) and repetition.
 void fill_ids(RunRecord& record);
 
 /// SHA-256 as 64 lower-case hex digits.
@@ -29,7 +31,8 @@ std::string sha256_file(const std::string& path);
 std::string state_hash(const Positions& x);
 std::string state_hash(std::span<const double> values);
 
-/// config_id of a resolved config: sha256 of its canonical form (keys sorted, no blanks).
+/// config_id of a resolved config: sha256 of its canonical form (keys sorted, no blanks), without `threads`
+/// and without the places of files: an object with `file` and `sha256` counts with its hash and its suffix.
 /// Errors: std::invalid_argument when it is not JSON.
 std::string config_id(std::string_view config_json);
 

@@ -21,10 +21,11 @@ inline constexpr const char* kRunSchemaVersion = "2.0.0";
 
 struct Ids {
   std::string config_id;   // sha256 of the canonical resolved config
-  std::string run_id;      // sha256 of config_id, build_id, machine_id, repetition
+  std::string run_id;      // sha256 of all that made the record (fill_ids)
   std::string build_id;    // sha256 of the executable
   std::string machine_id;  // sha256 of processor model, core count, kernel
   std::string sweep_id;    // empty: none
+  std::string rerun_of;    // run_id of the record that this run repeats; empty: none
   int repetition = 0;
   std::vector<std::string> parent_ids;  // runs this one was calibrated from (pilot)
 };
@@ -48,7 +49,12 @@ struct Labels {
 struct SceneSize {
   std::size_t vertices = 0, free_dofs = 0, triangles = 0, springs = 0, hinges = 0, obstacles = 0;
   double extent_m = 0;                             // largest side of the start box
-  std::map<std::string, std::string> mesh_sha256;  // file -> sha256
+  std::map<std::string, std::string> mesh_sha256;  // file, relative to the record's folder -> sha256
+};
+
+/// A plugin that was loaded. In a record `file` is relative to the folder of the record.
+struct PluginFile {
+  std::string name, file, sha256;
 };
 
 /// The BLAS behind the factorisations: another kernel adds in another order and gives other bits.
@@ -67,6 +73,7 @@ struct Provenance {
   bool fast_math = false;
   std::string fp_contract;
   std::map<std::string, std::string> libraries;  // name -> version
+  std::vector<PluginFile> plugins;
   std::vector<std::string> argv;
   std::map<std::string, std::string> env;  // thread counts and the like
   int threads = 1;

@@ -18,10 +18,33 @@ struct RecordError : std::runtime_error {
                  // like
 };
 
+/// Throws the RecordError "PATH: WHAT: cause of ERROR", error a value of errno.
+[[noreturn]] void fail_with(const std::filesystem::path& path, const char* what, int error);
+
+/// Creates missing folders. Errors: RecordError.
+void make_folder(const std::filesystem::path& folder);
+
 /// run.json and one trace line as text; non-finite numbers are null plus "<name>_status".
 /// Errors: std::invalid_argument when config_json is not JSON.
 std::string to_json(const RunRecord& record);
 std::string to_json(const TraceRow& row);
+
+/// A text that is whole on the disk, beside `path`, until commit() gives it its name; without commit() it
+/// goes. So whatever a full disk refuses is known before an earlier file is touched. Errors: RecordError.
+class StagedFile {
+ public:
+  StagedFile(const std::filesystem::path& path, const std::string& text);
+  ~StagedFile();
+  StagedFile(const StagedFile&) = delete;
+  StagedFile& operator=(const StagedFile&) = delete;
+  void commit();
+
+ private:
+  std::filesystem::path path_, temp_;
+};
+
+/// Renames, with the folder of `to` made first. Errors: RecordError naming `to`.
+void move_into_place(const std::filesystem::path& from, const std::filesystem::path& to);
 
 /// Replaces `path` by `text` or leaves it as it was: temp file beside it, fsync, rename, fsync of the folder.
 /// Creates missing folders. Errors: RecordError; the temp file is removed.

@@ -4,11 +4,11 @@
 #include <unistd.h>
 
 #include <cerrno>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
 #include "core/math/error.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/verbs.hpp"
 
 namespace bb::cli {
@@ -39,10 +39,10 @@ void settle_blas_kernel(const std::string& request, const std::vector<std::strin
   if (choice.action == BlasKernelAction::restart) choice.reason = restart(argv);
   if (choice.action == BlasKernelAction::keep) return;
   if (!request.empty()) throw ConfigError(flag, request, "native (" + choice.reason + ")");
-  fmt::print(stderr,
-             "note: BLAS runs its kernel {}, not {}, so results may differ from those of other machines: {} "
-             "({} native silences this note)\n",
-             facts.running, fixed_blas_kernel, choice.reason, flag);
+  say(fmt::format(
+      "note: BLAS runs its kernel {}, not {}, so results may differ from those of other machines: {} "
+      "({} native silences this note)\n",
+      facts.running, fixed_blas_kernel, choice.reason, flag));
 }
 
 }  // namespace bb::cli

@@ -11,31 +11,41 @@
 #include "barriers/named_entries.hpp"
 #include "barriers/plugins.hpp"
 #include "core/math/error.hpp"
+#include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/progress.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/verbs.hpp"
 
 namespace {
 
 using namespace bb::cli;
 
+/// Nobody can read what was answered; an error that happened before stays what it is.
+int unwritable_output(int code) {
+  say("the standard output cannot be written\n");
+  return code == exit_ok ? exit_try_again : code;
+}
+
 int guarded(const std::function<int()>& verb) {
   try {
     return verb();
   } catch (const bb::ConfigError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    say(fmt::format("{}\n", error.what()));
     return exit_bad_input;
   } catch (const bb::RecordError& error) {
-    fmt::print(stderr, "{}\n", error.what());
+    say(fmt::format("{}\n", error.what()));
     return error.lasting ? exit_bad_input : exit_try_again;
-  } catch (const bb::Interrupted&) {
-    fmt::print(stderr, "interrupted: no record was written; the same command runs it again\n");
+  } catch (const bb::Interrupted& stopped) {
+    const std::string nothing = "no record was written; the same command runs it again";
+    say(fmt::format("interrupted: {}\n", stopped.kept.empty() ? nothing : stopped.kept));
     return exit_try_again;
   } catch (const std::bad_alloc&) {
-    fmt::print(stderr, "out of memory\n");
+    say("out of memory\n");
     return exit_try_again;
   } catch (const std::exception& error) {
-    fmt::print(stderr, "internal error: {}\n", error.what());
+    if (std::ferror(stdout) != 0) return unwritable_output(exit_ok);
+    say(fmt::format("internal error: {}\n", error.what()));
     return exit_internal;
   }
 }
@@ -107,7 +117,13 @@ example: ./bench sweep configs/sweeps/demo_strip.json --dry-run)";
 
 }  // namespace
 
+bb::PluginFile bb::cli::load_plugin_file(const std::string& file) {
+  const std::string name = bb::register_plugin(file).name;  // refuses what is no regular file
+  return {name, file, bb::sha256_file(file)};
+}
+
 int main(int argc, char** argv) {
+  prepare_streams();
   CommonOptions common;
   common.argv.assign(argv, argv + argc);
   RunVerb run_verb, check_verb, explain_verb;
@@ -121,9 +137,10 @@ int main(int argc, char** argv) {
   app.require_subcommand(1);
   common_arguments(app, common, plugins_before);
 
-  auto* run_app = app.add_subcommand("run", "one config, one record");
+  auto* run_app = app.add_subcommand("run", "one config, one record; a record (run.json) repeats itself");
   config_arguments(run_app, run_verb);
   run_app->add_option("--out", run_verb.out, "folder of run.json (default results/runs/<label>)");
+  run_app->add_flag("--keep-inputs", run_verb.keep_inputs, "copy meshes and plugins beside the record");
   run_app->footer("example: ./bench run configs/scenes/drape2d.json --set /formulation=\"cubic\"");
   auto* sweep_app =
       app.add_subcommand("sweep", "a base config and axes: one record a run, finished ones skipped");
@@ -131,6 +148,7 @@ int main(int argc, char** argv) {
       ->required();
   sweep_app->add_option("--set", sweep_verb.set, "override in every case")->allow_extra_args(false);
   sweep_app->add_option("--out", sweep_verb.out, "folder (default results/runs/<name>)");
+  sweep_app->add_flag("--keep-inputs", sweep_verb.keep_inputs, "copy meshes and plugins beside each record");
   sweep_app->add_flag("--dry-run", sweep_verb.dry_run, "print what would run");
   sweep_app->add_flag("--again", sweep_verb.again, "run finished ones too");
   sweep_app->footer(sweep_help);
@@ -160,8 +178,12 @@ int main(int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::ParseError& error) {
-    const int code = app.exit(error);
-    return code == 0 ? exit_ok : exit_bad_input;
+    std::ostringstream answer, complaint;
+    const int code = app.exit(error, answer, complaint);
+    say(complaint.str());
+    std::fputs(answer.str().c_str(), stdout);
+    const bool written = std::fflush(stdout) == 0;
+    return code != 0 ? exit_bad_input : written ? exit_ok : unwritable_output(exit_ok);
   }
   // Nothing was read so far: this may start the program again.
   if (const int code = guarded([&] { return settle_blas_kernel(common.blas_kernel, common.argv), exit_ok; });
@@ -172,7 +194,7 @@ int main(int argc, char** argv) {
   const int code = guarded([&]() -> int {
     common.plugins = plugins_before;
     common.plugins.insert(common.plugins.end(), plugins_after.begin(), plugins_after.end());
-    for (const std::string& file : common.plugins) bb::register_plugin(file);
+    for (const std::string& file : common.plugins) common.loaded.push_back(load_plugin_file(file));
     if (run_app->parsed()) return run(run_verb, common);
     if (sweep_app->parsed()) return sweep(sweep_verb, common);
     if (check_app->parsed()) return check(check_verb);
@@ -182,6 +204,5 @@ int main(int argc, char** argv) {
     return demo(demo_out, common);
   });
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;
-  fmt::print(stderr, "the standard output cannot be written\n");
-  return code == exit_ok ? exit_try_again : code;
+  return unwritable_output(code);
 }

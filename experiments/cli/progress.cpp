@@ -5,7 +5,8 @@
 
 #include <cmath>
 #include <csignal>
-#include <cstdio>
+
+#include "experiments/cli/say.hpp"
 
 namespace bb::cli {
 namespace {
@@ -52,18 +53,16 @@ void ProgressLine::show(const Progress& progress) {
                   progress.pass, progress.step, progress.steps, progress.newton, progress.contacts,
                   gap_text(progress.gap), progress.eta_s);
   if (mode_ == Mode::rewrite) {
-    fmt::print(stderr, "\r\033[K{}", line);
+    say("\r\033[K" + line);
     dirty_ = true;
   } else {
-    fmt::print(stderr, "{}\n", line);
+    say(line + "\n");
   }
-  std::fflush(stderr);
 }
 
 void ProgressLine::clear() {
   if (!dirty_) return;
-  fmt::print(stderr, "\r\033[K");
-  std::fflush(stderr);
+  say("\r\033[K");
   dirty_ = false;
 }
 
@@ -72,6 +71,8 @@ const std::atomic<bool>& interrupted() { return stop; }
 void install_interrupt() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  // under nohup a hang-up is ignored, and stays so
+  if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }
 
 std::string summary_header() {

@@ -25,7 +25,7 @@ class ProgressLine {
   bool dirty_ = false;
 };
 
-/// Set by SIGINT and SIGTERM once install_interrupt() was called.
+/// Set by SIGINT, SIGTERM and SIGHUP once install_interrupt() was called.
 const std::atomic<bool>& interrupted();
 void install_interrupt();
 

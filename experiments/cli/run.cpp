@@ -8,19 +8,32 @@
 
 namespace bb::cli {
 
-int run(const RunVerb& verb, const CommonOptions& common) {
-  const RunConfig config = load_config(verb.config, verb.set);
+RunOptions run_options(const CommonOptions& common) {
   RunOptions options;
-  options.folder = verb.out.empty() ? "results/runs/" + run_label(config) : verb.out;
   options.argv = common.argv;
+  options.plugins = common.loaded;
+  options.interrupted = &interrupted();
+  return options;
+}
+
+RunRecord run_and_show(const RunConfig& config, RunOptions options, const CommonOptions& common) {
   ProgressLine line(common.progress);
   options.progress = [&line](const Progress& progress) { line.show(progress); };
-  options.interrupted = &interrupted();
-  const RunRecord record = run_config(config, options);
+  RunRecord record = run_config(config, options);
   line.clear();
   fmt::print("{}\n{}\n", summary_header(), summary_row(record));
   if (!record.status.detail.empty()) fmt::print("  {}\n", record.status.detail);
   fmt::print("{}\n", (options.folder / "run.json").string());
+  return record;
+}
+
+int run(const RunVerb& verb, const CommonOptions& common) {
+  if (const auto stored = read_stored_run(verb.config)) return rerun(*stored, verb, common);
+  const RunConfig config = load_config(verb.config, verb.set);
+  RunOptions options = run_options(common);
+  options.folder = verb.out.empty() ? "results/runs/" + run_label(config) : verb.out;
+  options.keep_inputs = verb.keep_inputs;
+  run_and_show(config, options, common);
   return exit_ok;
 }
 

@@ -1,9 +1,10 @@
 #include <fmt/format.h>
 
 #include <filesystem>
-#include <fstream>
 
 #include "core/math/error.hpp"
+#include "core/record/folder_lock.hpp"
+#include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/sweep_spec.hpp"
@@ -20,20 +21,79 @@ std::string folder_name(const SweepCase& one) {
   return name + "-" + config_id(one.config).substr(0, 8);
 }
 
-void run_case(const SweepSpec& spec, const SweepCase& one, const std::filesystem::path& folder,
-              const CommonOptions& common, ProgressLine& line) {
-  RunOptions options;
-  options.folder = folder;
-  options.argv = common.argv;
-  options.note = spec.name + ": " + one.label;
-  options.sweep_id = spec.name;
+/// What every case of one sweep shares.
+struct Sweep {
+  const SweepVerb& verb;
+  const CommonOptions& common;
+  SweepSpec spec;
+  std::filesystem::path out;
+  int kept = 0;  // records that are there, of spec.cases.size()
+};
+
+RunOptions case_options(const Sweep& sweep, const SweepCase& one) {
+  RunOptions options = run_options(sweep.common);
+  options.folder = sweep.out / folder_name(one);
+  options.note = sweep.spec.name + ": " + one.label;
+  options.sweep_id = sweep.spec.name;
+  options.keep_inputs = sweep.verb.keep_inputs;
+  return options;
+}
+
+/// Why an earlier record in the folder of a case does not stand for this run.
+std::string why_again(const StoredRun& stored, const RunRecord& now) {
+  std::string out;
+  for (const Difference& difference : differences(stored, now)) {
+    out += (out.empty() ? "" : "; ") + difference.what;
+  }
+  return out.empty() ? "another run_id" : out;
+}
+
+/// True when the record of this very run is there: run_id, config, program, plugins, libraries, machine. A
+/// record of another run, or one that cannot be read, is named and gives way.
+bool already_there(const Sweep& sweep, const SweepCase& one, const RunOptions& options) {
+  const std::filesystem::path file = options.folder / "run.json";
+  if (sweep.verb.again || !std::filesystem::exists(file)) return false;
+  const auto stored = read_stored_run(file);
+  const RunRecord now = identified(one.config, options);
+  if (stored && stored->run_id == now.ids.run_id && differences(*stored, now).empty()) return true;
+  fmt::print("{:<44} runs again: {}\n", options.note,
+             stored ? why_again(*stored, now) : "its run.json cannot be read");
+  return false;
+}
+
+void run_case(const SweepCase& one, RunOptions options, ProgressLine& line) {
   options.progress = [&line](const Progress& progress) { line.show(progress); };
-  options.interrupted = &interrupted();
   const RunRecord record = run_config(one.config, options);
   line.clear();
   fmt::print("{}\n", summary_row(record));
   if (record.status.outcome != Outcome::ok) fmt::print("  {}\n", record.status.detail);
   std::fflush(stdout);
+}
+
+/// Runs every case that can be run; returns what is wrong with the others.
+std::vector<Violation> run_cases(Sweep& sweep) {
+  ProgressLine line(sweep.common.progress);
+  std::vector<Violation> violations;  // a case that cannot be run keeps nobody else from running
+  for (const SweepCase& one : sweep.spec.cases) {
+    const RunOptions options = case_options(sweep, one);
+    try {
+      if (already_there(sweep, one, options)) {
+        fmt::print("{:<44} already there\n", options.note);
+      } else {
+        run_case(one, options, line);
+      }
+      ++sweep.kept;
+    } catch (const ConfigError& error) {
+      line.clear();
+      remove_earlier_run(options.folder);
+      fmt::print("{:<44} no record\n", options.note);
+      for (Violation v : error.violations()) {
+        v.where = sweep.verb.spec + " [" + one.label + "] " + v.where;
+        violations.push_back(std::move(v));
+      }
+    }
+  }
+  return violations;
 }
 
 /// Which runs may be compared, in every record of the sweep, those that were already there among them.
@@ -43,46 +103,31 @@ void compare_cases(const SweepSpec& spec, const std::filesystem::path& out) {
   write_comparability(members);
 }
 
-/// An earlier run's, which `--again` did not replace.
-void remove_record(const std::filesystem::path& folder) {
-  std::error_code none_there;
-  for (const char* name : {"run.json", "trace.jsonl"}) std::filesystem::remove(folder / name, none_there);
-}
-
 }  // namespace
 
 int sweep(const SweepVerb& verb, const CommonOptions& common) {
-  const SweepSpec spec = load_sweep(verb.spec, verb.set);
-  const std::filesystem::path out =
-      verb.out.empty() ? std::filesystem::path("results/runs") / spec.name : std::filesystem::path(verb.out);
+  Sweep sweep{verb, common, load_sweep(verb.spec, verb.set), {}};
+  sweep.out = verb.out.empty() ? std::filesystem::path("results/runs") / sweep.spec.name
+                               : std::filesystem::path(verb.out);
   if (verb.dry_run) {
-    for (const SweepCase& one : spec.cases) fmt::print("{}\n", (out / folder_name(one)).string());
+    for (const SweepCase& one : sweep.spec.cases) {
+      fmt::print("{}\n", (sweep.out / folder_name(one)).string());
+    }
     return exit_ok;
   }
-  write_atomically(out / "sweep.json", spec.text);
-  ProgressLine line(common.progress);
+  const FolderLock lock(sweep.out);
+  remove_unfinished(sweep.out);
+  write_atomically(sweep.out / "sweep.json", sweep.spec.text);
   fmt::print("{}\n", summary_header());
   std::fflush(stdout);
-  std::vector<Violation> violations;  // a case that cannot be run keeps nobody else from running
-  for (const SweepCase& one : spec.cases) {
-    const std::filesystem::path folder = out / folder_name(one);
-    if (!verb.again && std::filesystem::exists(folder / "run.json")) {
-      fmt::print("{:<44} already there\n", spec.name + ": " + one.label);
-      continue;
-    }
-    try {
-      run_case(spec, one, folder, common, line);
-    } catch (const ConfigError& error) {
-      line.clear();
-      remove_record(folder);
-      fmt::print("{:<44} no record\n", spec.name + ": " + one.label);
-      for (Violation v : error.violations()) {
-        v.where = verb.spec + " [" + one.label + "] " + v.where;
-        violations.push_back(std::move(v));
-      }
-    }
+  std::vector<Violation> violations;
+  try {
+    violations = run_cases(sweep);
+  } catch (const Interrupted&) {
+    throw Interrupted{fmt::format("{} of {} records kept in {}; the same command runs the rest", sweep.kept,
+                                  sweep.spec.cases.size(), sweep.out.string())};
   }
-  compare_cases(spec, out);
+  compare_cases(sweep.spec, sweep.out);
   if (!violations.empty()) throw ConfigError(violations);
   return exit_ok;
 }

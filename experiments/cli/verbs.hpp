@@ -5,15 +5,21 @@
 #include <string>
 #include <vector>
 
+#include "experiments/run/runner.hpp"
+#include "experiments/run/stored_run.hpp"
+
 namespace bb::cli {
 
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_bad_input = 2;
+inline constexpr int exit_no_match =
+    3;  // a record did not repeat itself and nothing that it names explains it
 inline constexpr int exit_internal = 70;
 inline constexpr int exit_try_again = 75;
 
 struct CommonOptions {
   std::vector<std::string> plugins;  // loaded before anything is parsed
+  std::vector<PluginFile> loaded;    // what they turned out to be
   std::vector<std::string> argv;     // for the record
   std::string progress = "auto";     // auto, plain, none
   std::string blas_kernel;           // haswell, native, or empty: see settle_blas_kernel
@@ -23,8 +29,24 @@ struct RunVerb {
   std::string config;
   std::vector<std::string> set;  // "/pointer=value"
   std::string out;               // folder; empty: results/runs/<label>
+  bool keep_inputs = false;      // copies of meshes and plugins beside the record
 };
+/// A config, or a record: rerun().
 int run(const RunVerb& verb, const CommonOptions& common);
+
+/// Runs the config inside a record in a folder of its own (empty `out`: results/runs/<label>-rerun, numbered
+/// when that is taken) and says whether the final state is the same, or what may have changed it. Meshes and
+/// plugins are those that the record names, unless verb.set or --plugin name others. exit_no_match when the
+/// state or the outcome differs and nothing explains it. Errors: ConfigError also when `out` is the folder of
+/// the record, and for meshes and plugins that are not there or have another content.
+int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& common);
+
+/// Registers a plugin; with its hash. Errors: as bb::register_plugin.
+PluginFile load_plugin_file(const std::string& file);
+
+RunOptions run_options(const CommonOptions& common);
+/// run_config with a progress line, then its row and its place on stdout.
+RunRecord run_and_show(const RunConfig& config, RunOptions options, const CommonOptions& common);
 
 struct SweepVerb {
   std::string spec;
@@ -32,6 +54,7 @@ struct SweepVerb {
   std::string out;       // empty: results/runs/<name of the sweep>
   bool dry_run = false;  // print the expanded list, run nothing
   bool again = false;    // run finished ids too
+  bool keep_inputs = false;
 };
 int sweep(const SweepVerb& verb, const CommonOptions& common);
 

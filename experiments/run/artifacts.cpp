@@ -12,6 +12,7 @@
 #include "core/mesh/topology.hpp"
 #include "core/mesh/write_mesh.hpp"
 #include "core/record/provenance.hpp"
+#include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
 
 namespace bb {
@@ -105,10 +106,10 @@ ArtifactWriter::ArtifactWriter(std::filesystem::path folder, const Scene& scene)
   }
 }
 
+ArtifactWriter::~ArtifactWriter() { remove_unfinished_artifacts(folder_); }
+
 void ArtifactWriter::start() {
-  const std::filesystem::path relative = "frames/scene.json";
-  write_atomically(folder_ / relative, scene_json(scene_));
-  keep(relative, "frame_scene", "application/json");
+  write("frames/scene.json", scene_json(scene_), "frame_scene", "application/json");
   write_frame("frames/start.ply", scene_.x0, nullptr);
 }
 
@@ -128,8 +129,7 @@ void ArtifactWriter::write_frame(const std::filesystem::path& relative, const Po
     of_vertices.push_back({"load_N", fields->load});
   }
   const std::vector<PlyColumn> of_triangles{{"body", triangle_body_}, {"stretch", stretches(scene_, x)}};
-  write_atomically(folder_ / relative, ply_bytes(mesh, of_vertices, of_triangles));
-  keep(relative, "frame", "model/ply");
+  write(relative, ply_bytes(mesh, of_vertices, of_triangles), "frame", "model/ply");
 }
 
 void ArtifactWriter::matrix(const ReducedSystem& system, int step, int iteration) {
@@ -143,17 +143,22 @@ void ArtifactWriter::matrix(const ReducedSystem& system, int step, int iteration
       fmt::format_to(std::back_inserter(text), "{} {} {:.17g}\n", it.row() + 1, it.col() + 1, it.value());
     }
   }
-  write_atomically(folder_ / relative, text);
-  keep(relative, "matrix", "text/x-matrix-market");
+  write(relative, text, "matrix", "text/x-matrix-market");
 }
 
-void ArtifactWriter::keep(const std::filesystem::path& relative, const char* kind, const char* media_type) {
+void ArtifactWriter::finish() {
+  for (const Artifact& file : written_) move_into_place(folder_ / part_of(file.path), folder_ / file.path);
+}
+
+void ArtifactWriter::write(const std::filesystem::path& relative, const std::string& bytes, const char* kind,
+                           const char* media_type) {
+  write_atomically(folder_ / part_of(relative), bytes);
   Artifact artifact;
   artifact.path = relative.generic_string();
   artifact.kind = kind;
   artifact.media_type = media_type;
-  artifact.sha256 = sha256_file((folder_ / relative).string());
-  artifact.bytes = std::filesystem::file_size(folder_ / relative);
+  artifact.sha256 = sha256_hex(bytes);
+  artifact.bytes = bytes.size();
   written_.push_back(std::move(artifact));
 }
 

@@ -27,9 +27,15 @@ ContactFields contact_fields(const EnergyState& state, int n_vertices);
 /// into the bodies of frames/scene.json), every triangle `body` and `stretch` (largest singular value of its
 /// deformation gradient, minus 1). At the end of a step vertices also have `gap_rel` and `load_N`, as in
 /// ContactFields. Errors of every function: RecordError when a file cannot be written whole.
+///
+/// Files lie in frames.part and matrices.part until finish(), so that those of an earlier run stay with its
+/// run.json until the new run is over; a run that never finishes leaves neither.
 class ArtifactWriter {
  public:
   ArtifactWriter(std::filesystem::path folder, const Scene& scene);
+  ~ArtifactWriter();
+  ArtifactWriter(const ArtifactWriter&) = delete;
+  ArtifactWriter& operator=(const ArtifactWriter&) = delete;
   /// frames/scene.json: names of the bodies, and the analytic obstacles, which no frame repeats; and
   /// frames/start.ply: the start positions.
   void start();
@@ -38,10 +44,13 @@ class ArtifactWriter {
   /// matrices/step_000010_iteration_002.mtx: Matrix Market, symmetric, lower triangle, 17 digits.
   void matrix(const ReducedSystem& system, int step, int iteration);
   const std::vector<Artifact>& written() const { return written_; }
+  /// Gives every file its name. Errors: RecordError.
+  void finish();
 
  private:
   void write_frame(const std::filesystem::path& relative, const Positions& x, const ContactFields* fields);
-  void keep(const std::filesystem::path& relative, const char* kind, const char* media_type);
+  void write(const std::filesystem::path& relative, const std::string& bytes, const char* kind,
+             const char* media_type);
 
   std::filesystem::path folder_;
   const Scene& scene_;

@@ -11,12 +11,15 @@
 #include "core/linear/blas_info.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/simulation.hpp"
+#include "core/record/folder_lock.hpp"
 #include "core/record/provenance.hpp"
+#include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
 #include "core/scene/plan.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/comparability.hpp"
+#include "experiments/run/input_files.hpp"
 #include "experiments/run/outcome.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/recorder.hpp"
@@ -93,7 +96,7 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.note = options.note;
 }
 
-void fill_scene(const RunConfig& config, const Scene& scene, RunRecord& record) {
+void fill_scene(const Scene& scene, RunRecord& record) {
   SceneSize& size = record.scene;
   size.vertices = static_cast<std::size_t>(scene.n_vertices());
   const std::size_t per_vertex = scene.planar ? 2 : 3;
@@ -103,10 +106,18 @@ void fill_scene(const RunConfig& config, const Scene& scene, RunRecord& record) 
   size.hinges = scene.hinges.hinges.size();
   size.obstacles = scene.obstacles.size();
   size.extent_m = (scene.x0.rowwise().maxCoeff() - scene.x0.rowwise().minCoeff()).maxCoeff();
-  for (const BodyConfig& body : config.scene.bodies) {
-    if (!body.mesh.file.empty()) size.mesh_sha256[body.mesh.file] = body.mesh.sha256;
-  }
 }
+
+/// Written beside the record; they get their names when the run is over.
+struct RunFiles {
+  std::optional<TraceWriter> trace;
+  std::optional<ArtifactWriter> artifacts;
+
+  void finish() {
+    if (trace) trace->finish();
+    if (artifacts) artifacts->finish();
+  }
+};
 
 void fill_plan(const RunConfig& config, const Scene& scene, RunRecord& record) {
   const Plan plan = plan_of(config, scene);
@@ -183,7 +194,7 @@ void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
 // The passes: `time` runs alone, `diagnose` and `audit` share a run, and none of their time is reported as a
 // time.
 void run_passes(const RunConfig& config, const Scene& scene, const Calibration& calibration,
-                const RunOptions& options, RunRecord& record) {
+                const RunOptions& options, RunRecord& record, RunFiles& files) {
   PassResult timed, seen;
   const bool look = has_observed_run(config);
   RunRecord timing;               // the time pass keeps a record of its own: only its times and hash are used
@@ -199,14 +210,13 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
   }
   Verdict verdict = timed.verdict;
   if (look) {
-    TraceWriter trace(options.folder);
-    ArtifactWriter artifacts(options.folder, scene);
-    Recorder observer(config, scene, record, &trace, &artifacts);
+    files.trace.emplace(options.folder);
+    files.artifacts.emplace(options.folder, scene);
+    Recorder observer(config, scene, record, &*files.trace, &*files.artifacts);
     observer.report_times(times);
     seen = run_pass(config, scene, calibration, options, "diagnose", observer);
     observer.finish();
-    trace.finish();
-    record.artifacts = artifacts.written();
+    record.artifacts = files.artifacts->written();
     verdict = seen.verdict;
     const Verdict audited = observer.audit_verdict();
     merge(verdict, audited.outcome, audited.detail);
@@ -224,14 +234,15 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
 }
 
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
-// geometry or its pilot can show that. Returns whether there was a first step.
-bool simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, RunRecord& record) {
-  fill_scene(config, scene, record);
+// geometry or its pilot can show that.
+void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, RunRecord& record,
+              RunFiles& files) {
+  fill_scene(scene, record);
   fill_plan(config, scene, record);
   if (const auto failure = start_failure(config, scene, options.interrupted)) {
     record.status.outcome = failure->outcome;
     record.status.detail = failure->detail;
-    return false;
+    return;
   }
   Calibration calibration;
   try {
@@ -239,10 +250,13 @@ bool simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
   } catch (const ConfigError& error) {  // of what only the scene or its pilot can tell: no first step
     record.status.outcome = Outcome::invalid_scene;
     record.status.detail = error.what();
-    return false;
+    return;
   }
-  run_passes(config, scene, calibration, options, record);
-  return true;
+  run_passes(config, scene, calibration, options, record, files);
+}
+
+int thread_count(const RunConfig& config) {
+  return config.threads > 0 ? config.threads : oneapi::tbb::info::default_concurrency();
 }
 
 }  // namespace
@@ -253,33 +267,49 @@ std::string run_label(const RunConfig& config) {
   return fmt::format("{}-{}-{}", config.scene.name, formulation, config_id(config).substr(0, 8));
 }
 
-RunRecord run_config(const RunConfig& config, const RunOptions& options) {
-  const int threads = config.threads > 0 ? config.threads : oneapi::tbb::info::default_concurrency();
+RunRecord identified(const RunConfig& config, const RunOptions& options) {
+  RunRecord record;
+  record.passes = {config.passes.time, config.passes.diagnose, config.passes.audit};
+  const RunConfig named = name_from(options.folder, config);
+  record.config_json = resolved_json(named);
+  for (const BodyConfig& body : named.scene.bodies) {
+    if (!body.mesh.file.empty()) record.scene.mesh_sha256[body.mesh.file] = body.mesh.sha256;
+  }
+  record.provenance = collect_provenance(options.argv, thread_count(config));
+  record.provenance.plugins = name_from(options.folder, options.plugins);
+  record.machine = collect_machine();
+  record.ids.sweep_id = options.sweep_id;
+  record.ids.rerun_of = options.rerun_of;
+  fill_ids(record);
+  return record;
+}
+
+RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
+  RunConfig config = asked;
+  RunOptions options = given;
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
-                                          static_cast<std::size_t>(threads));
+                                          static_cast<std::size_t>(thread_count(config)));
   set_one_blas_thread();  // before the record says how many there are, and before anything computes
   // before anything is written: what config and files can tell is refused here
   const Scene scene = build_scene(config);
-  RunRecord record;
-  record.status.started_utc = utc_now();
-  record.passes = {config.passes.time, config.passes.diagnose, config.passes.audit};
-  record.config_json = resolved_json(config);
-  record.provenance = collect_provenance(options.argv, threads);
-  record.machine = collect_machine();
-  record.ids.sweep_id = options.sweep_id;
-  fill_ids(record);
+  const std::string started_utc = utc_now();
+  const FolderLock lock(options.folder);
+  remove_unfinished(options.folder);
   check_writable(options.folder);
+  if (options.keep_inputs) copy_inputs(options.folder, config, options.plugins);
+  RunRecord record = identified(config, options);
+  record.status.started_utc = started_utc;
 
-  const bool started = simulate(config, scene, options, record);
-  if (!started || !has_observed_run(config)) {  // a trace that lies there is of an earlier run
-    std::error_code none_there;
-    std::filesystem::remove(options.folder / "trace.jsonl", none_there);
-  }
+  RunFiles files;
+  simulate(config, scene, options, record, files);
   fill_labels(config, options, record);
   record.comparability = judge_comparability(compared_run(record), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
-  write_run(options.folder, record);
+  StagedFile run_json(options.folder / "run.json", to_json(record));
+  remove_earlier_run(options.folder);
+  files.finish();
+  run_json.commit();
   return record;
 }
 

@@ -29,16 +29,25 @@ struct RunOptions {
   std::vector<std::string> argv;  // for the record
   std::string note;               // how the row of a table differs
   std::string sweep_id;
+  std::string rerun_of;                           // run_id of the record that is repeated
+  std::vector<PluginFile> plugins;                // loaded, `file` as a path that can be opened
+  bool keep_inputs = false;                       // copy meshes and plugins to inputs/ and name the copies
   std::function<void(const Progress&)> progress;  // may be empty
   const std::atomic<bool>* interrupted = nullptr;
 };
 
 /// Thrown when the run was interrupted: no run.json is written.
-struct Interrupted {};
+struct Interrupted {
+  std::string kept;  // what a sweep says of the records that it has; empty: nothing was kept
+};
 
-/// Runs and writes. The outcome is in the record, whatever it is.
+/// What is known before the run: config with its files named from options.folder, provenance, machine, ids.
+RunRecord identified(const RunConfig& config, const RunOptions& options);
+
+/// Runs and writes. The outcome is in the record, whatever it is. The folder is locked meanwhile; an earlier
+/// run in it stays as it is until this one is over, and then goes with its trace, frames and matrices.
 /// Errors: ConfigError for what config and files can tell, as build_scene (nothing is written); RecordError
-/// (output), Interrupted.
+///   (output, or another process has the folder); Interrupted.
 RunRecord run_config(const RunConfig& config, const RunOptions& options);
 
 /// scene-formulation-id8: the folder name of a run.

@@ -4,7 +4,9 @@ import json
 
 import pytest
 
+from analysis.figures import demo
 from analysis.load import RecordError, load
+from synthetic import write_set
 
 
 def test_an_empty_folder_is_named(tmp_path):
@@ -23,3 +25,32 @@ def test_a_file_that_is_not_json_is_named(tmp_path):
     (tmp_path / "run.json").write_text("{")
     with pytest.raises(RecordError, match="not JSON"):
         load(tmp_path)
+
+
+@pytest.mark.parametrize("torn", ["", "{", "half", "[]", "not text"])
+def test_a_torn_record_is_left_out_and_named(tmp_path, capsys, torn):
+    write_set(tmp_path)
+    path = tmp_path / "cubic" / "run.json"
+    text = path.read_text()
+    path.write_bytes(b"\xff\xfe" if torn == "not text" else (text[: len(text) // 2] if torn == "half" else torn).encode())
+    records = load(tmp_path)
+
+    assert sorted(records.runs["run"]) == ["cubic_dynamic", "log", "quadratic"]
+    assert len(records.unreadable) == 1 and str(path) in records.unreadable[0]
+    said = capsys.readouterr().err
+    assert said.count(str(path)) == 1 and "1 of 4 records left out" in said
+
+
+def test_figures_end_well_beside_a_torn_record_and_not_without_any(tmp_path, capsys):
+    write_set(tmp_path / "runs")
+    path = tmp_path / "runs" / "cubic" / "run.json"
+    path.write_text("{")
+    assert demo.main([str(tmp_path / "runs"), str(tmp_path / "out")]) == 0
+    said = capsys.readouterr()
+    assert said.err.count(str(path)) == 1 and "1 of 4 records left out" in said.err
+    assert "cubic_dynamic" in said.out and (tmp_path / "out" / "table.csv").exists()
+
+    for other in tmp_path.rglob("run.json"):
+        other.write_text("{")
+    assert demo.main([str(tmp_path / "runs"), str(tmp_path / "none")]) == 2
+    assert str(path) in capsys.readouterr().err

@@ -24,6 +24,12 @@ TEST(ConfigId, LabelsAndSpelledOutDefaultsDoNotChangeIt) {
   EXPECT_EQ(config_id(parsed(with(hang_config(), "/contact/ccd_park", 1e-6))), id);
 }
 
+TEST(ConfigId, ThreadsDoNotChangeItAndStandInTheResolvedConfig) {
+  const RunConfig three = parsed(with(hang_config(), "/threads", 3));
+  EXPECT_EQ(config_id(three), config_id(parsed(with(hang_config(), "/threads", 1))));
+  EXPECT_EQ(json::parse(resolved_json(three))["threads"], 3);
+}
+
 TEST(ConfigId, EverySettingChangesIt) {
   const std::string id = config_id(parsed(hang_config()));
   const std::vector<std::pair<std::string, json>> settings = {{"/scene/n", 5},

@@ -42,6 +42,8 @@ inline RunRecord sample_record() {
   r.passes.diagnose = true;
   r.config_json = R"({"time": {"dt_s": 0.01}, "scene": "hang"})";
   r.scene.mesh_sha256 = {{"a.obj", std::string(64, 'c')}};
+  r.provenance.plugins = {{"an example", "../p.so", std::string(64, 'f')}};
+  r.ids.rerun_of = std::string(64, 'b');
   r.plan = {{"contact", false, "no collision surface"}};
   r.skipped = {{"cond", "budget"}};
   r.matching.rule = "equal_force";

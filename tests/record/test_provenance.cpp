@@ -47,6 +47,44 @@ TEST(ConfigId, IgnoresBlanksAndTheOrderOfKeys) {
   EXPECT_THROW(config_id("{"), std::invalid_argument);
 }
 
+TEST(ConfigId, CoversFilesByContentAndNoThreads) {
+  const std::string a = R"({"threads": 1, "mesh": {"file": "/a/x.ply", "sha256": "11"}, "steps": 3})";
+  const auto with = [&a](const std::string& old_text, const std::string& new_text) {
+    std::string out = a;
+    out.replace(out.find(old_text), old_text.size(), new_text);
+    EXPECT_NE(out, a);
+    return config_id(out);
+  };
+  EXPECT_EQ(with("\"threads\": 1", "\"threads\": 7"), config_id(a));
+  EXPECT_EQ(with("/a/x.ply", "../b/y.ply"), config_id(a));
+  EXPECT_NE(with("x.ply", "x.obj"), config_id(a));  // the suffix chooses the reader
+  EXPECT_NE(with("11", "12"), config_id(a));
+  EXPECT_NE(with("3", "4"), config_id(a));
+  EXPECT_NE(config_id(R"({"file": "a.ply"})"),
+            config_id(R"({"file": "b.ply"})"));  // nothing says the content
+}
+
+/// Each alone changes the run_id.
+TEST(Ids, TheRunIdCoversAllThatMadeTheRecord) {
+  const auto id_of = [](auto change) {
+    RunRecord record = test::sample_record();
+    record.provenance.libraries = {{"blas", "OpenBLAS Haswell"}};
+    change(record);
+    fill_ids(record);
+    return record.ids.run_id;
+  };
+  const std::string id = id_of([](RunRecord&) {});
+  EXPECT_NE(id_of([](RunRecord& r) { r.config_json = "{}"; }), id);
+  EXPECT_NE(id_of([](RunRecord& r) { r.provenance.plugins[0].sha256 = std::string(64, 'a'); }), id);
+  EXPECT_NE(id_of([](RunRecord& r) { r.provenance.plugins.clear(); }), id);
+  EXPECT_NE(id_of([](RunRecord& r) { r.provenance.libraries["blas"] = "OpenBLAS SkylakeX"; }), id);
+  EXPECT_NE(id_of([](RunRecord& r) { r.provenance.threads = 5; }), id);
+  EXPECT_NE(id_of([](RunRecord& r) { r.machine.cpu_model = "another"; }), id);
+  EXPECT_NE(id_of([](RunRecord& r) { r.ids.repetition = 3; }), id);
+  EXPECT_EQ(id_of([](RunRecord& r) { r.provenance.plugins[0].file = "elsewhere.so"; }), id);
+  EXPECT_EQ(id_of([](RunRecord& r) { r.provenance.argv = {"other"}; }), id);
+}
+
 TEST(Ids, NameConfigBuildMachineAndRepetition) {
   RunRecord a = test::sample_record(), b = a;
   fill_ids(a);

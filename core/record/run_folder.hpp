@@ -1,0 +1,21 @@
+// What runs leave in their folder, and how it goes again: only names and contents that a run wrote.
+#pragma once
+
+#include <filesystem>
+
+namespace bb {
+
+/// Where a file of the folder lies until its run is over: the first folder of `relative` gets ".part".
+std::filesystem::path part_of(const std::filesystem::path& relative);
+
+/// Removes what a run that was killed left unfinished: *.tmp.PID of records, trace.jsonl.part, and the frames
+/// and matrices in frames.part, matrices.part. Requires that the folder is locked (folder_lock.hpp).
+void remove_unfinished(const std::filesystem::path& folder);
+/// The frames and matrices alone.
+void remove_unfinished_artifacts(const std::filesystem::path& folder);
+
+/// Removes the record of an earlier run, its trace, and every frame and matrix that it names, unless the
+/// content is another by now. Files that no record names, and kept inputs, stay. Never fails.
+void remove_earlier_run(const std::filesystem::path& folder);
+
+}  // namespace bb

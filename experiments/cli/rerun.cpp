@@ -1,0 +1,94 @@
+// `run RUN.json`: a record repeats itself and says whether the final state is the same, bit for bit.
+#include <fmt/format.h>
+
+#include <filesystem>
+
+#include "barriers/plugins.hpp"
+#include "core/math/error.hpp"
+#include "core/record/provenance.hpp"
+#include "experiments/cli/progress.hpp"
+#include "experiments/cli/verbs.hpp"
+#include "experiments/config/parse.hpp"
+
+namespace bb::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The plugins of the record that no --plugin stands in for, from where the record says that they are.
+/// Errors: ConfigError: not there, or another content.
+void load_plugins(const StoredRun& stored, std::vector<PluginFile>& loaded) {
+  for (std::size_t i = 0; i < stored.plugins.size(); ++i) {
+    const PluginFile& wanted = stored.plugins[i];
+    const bool given = std::any_of(loaded.begin(), loaded.end(), [&wanted](const PluginFile& p) {
+      return p.sha256 == wanted.sha256 || p.name == wanted.name;
+    });
+    if (given) continue;
+    const fs::path file = (stored.file.parent_path() / wanted.file).lexically_normal();
+    const std::string where = fmt::format("{}#/provenance/plugins/{}", stored.file.string(), i);
+    const std::string sha256 = fs::is_regular_file(file) ? sha256_file(file.string()) : std::string();
+    const std::string allowed =
+        fmt::format("the plugin \"{}\" with sha256 {} there, or another of this name with --plugin",
+                    wanted.name, wanted.sha256);
+    if (sha256.empty())
+      throw ConfigError(where + "/file", fmt::format("no file \"{}\"", file.string()), allowed);
+    if (sha256 != wanted.sha256) {
+      throw ConfigError(where + "/sha256", fmt::format("\"{}\" with sha256 {}", file.string(), sha256),
+                        allowed);
+    }
+    loaded.push_back(load_plugin_file(file.string()));
+  }
+}
+
+/// results/runs/LABEL-rerun, with a number when that is taken.
+fs::path fresh_folder(const std::string& label) {
+  const fs::path first = fs::path("results/runs") / (label + "-rerun");
+  fs::path folder = first;
+  for (int n = 2; fs::exists(folder); ++n) folder = first.string() + "-" + std::to_string(n);
+  return folder;
+}
+
+/// Prints the verdict; exit_no_match when nothing explains that the two differ.
+int compare(const StoredRun& stored, const RunRecord& record) {
+  const std::string outcome(to_string(record.status.outcome));
+  const bool same_state = record.summary.state_hash == stored.state_hash;
+  const bool same = same_state && outcome == stored.outcome;
+  std::string reasons;
+  for (const Difference& difference : differences(stored, record)) {
+    if (difference.changes_state) reasons += (reasons.empty() ? "" : "; ") + difference.what;
+  }
+  std::string verdict = stored.state_hash.empty() && same_state
+                            ? "as before there is no first step and no final state"
+                        : same_state ? fmt::format("the final state is the same, bit for bit (state_hash {})",
+                                                   stored.state_hash.substr(0, 8))
+                                     : "the final state differs";
+  if (outcome != stored.outcome)
+    verdict += fmt::format("; the outcome was {} and is {}", stored.outcome, outcome);
+  if (!same && reasons.empty()) verdict += ", and nothing that the records name explains it";
+  if (!same && !reasons.empty()) verdict += ", as it may: " + reasons;
+  if (same && !reasons.empty()) verdict += ", although it need not be: " + reasons;
+  fmt::print("rerun of {}: {}\n", stored.file.string(), verdict);
+  return same || !reasons.empty() ? exit_ok : exit_no_match;
+}
+
+}  // namespace
+
+int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& common) {
+  const fs::path home = stored.file.has_parent_path() ? stored.file.parent_path() : fs::path(".");
+  std::error_code none_there;
+  if (!verb.out.empty() && fs::equivalent(verb.out, home, none_there)) {
+    throw ConfigError("--out", fmt::format("\"{}\", the folder of the record itself", verb.out),
+                      "another folder: a rerun is compared with its record");
+  }
+  RunOptions options = run_options(common);
+  load_plugins(stored, options.plugins);
+  const RunConfig config =
+      parse_config(stored.config_json, stored.file.string() + " (config)", home.string(), verb.set);
+  options.folder = verb.out.empty() ? fresh_folder(run_label(config)) : fs::path(verb.out);
+  options.keep_inputs = verb.keep_inputs;
+  options.note = stored.note;
+  options.rerun_of = stored.run_id;
+  return compare(stored, run_and_show(config, options, common));
+}
+
+}  // namespace bb::cli

@@ -1,0 +1,16 @@
+// Words on stderr that can never end a run: a stderr that is closed, full or read by nobody is passed over.
+#pragma once
+
+#include <string_view>
+
+namespace bb::cli {
+
+/// Writes the text as it is.
+void say(std::string_view text);
+
+/// To be called first. A descriptor 0, 1 or 2 that the caller closed is taken, so that no file that is opened
+/// later gets its number and with it our output; writing to it still fails. A file that grows beyond the
+/// limit of the system (ulimit -f) is an error like a full disk, no signal.
+void prepare_streams();
+
+}  // namespace bb::cli

@@ -1,0 +1,53 @@
+#include "experiments/run/input_files.hpp"
+
+#include "core/input/read_file.hpp"
+#include "core/math/error.hpp"
+#include "core/record/provenance.hpp"
+#include "core/record/writer.hpp"
+
+namespace bb {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The name of the file itself stays: its suffix may be lost behind a link.
+std::string relative_name(const fs::path& folder, const fs::path& file) {
+  const fs::path place = fs::weakly_canonical(fs::absolute(file).parent_path()) / file.filename();
+  return place.lexically_relative(fs::weakly_canonical(fs::absolute(folder))).generic_string();
+}
+
+void copy_one(const fs::path& folder, const InputKind& kind, std::string& file, const std::string& sha256) {
+  const std::string prefix = sha256.substr(0, 8) + "-", name = fs::path(file).filename().string();
+  const fs::path copy = folder / "inputs" / (name.starts_with(prefix) ? name : prefix + name);
+  if (sha256_file(copy.string()) != sha256) {
+    const std::string bytes = read_input_file(file, kind);
+    if (sha256_hex(bytes) != sha256) {
+      throw ConfigError(file, "another content than when it was first read", "sha256 " + sha256);
+    }
+    write_atomically(copy, bytes);
+  }
+  file = copy.string();
+}
+
+}  // namespace
+
+RunConfig name_from(const fs::path& folder, RunConfig config) {
+  for (BodyConfig& body : config.scene.bodies) {
+    if (!body.mesh.file.empty()) body.mesh.file = relative_name(folder, body.mesh.file);
+  }
+  return config;
+}
+
+std::vector<PluginFile> name_from(const fs::path& folder, std::vector<PluginFile> plugins) {
+  for (PluginFile& plugin : plugins) plugin.file = relative_name(folder, plugin.file);
+  return plugins;
+}
+
+void copy_inputs(const fs::path& folder, RunConfig& config, std::vector<PluginFile>& plugins) {
+  for (BodyConfig& body : config.scene.bodies) {
+    if (!body.mesh.file.empty()) copy_one(folder, mesh_file, body.mesh.file, body.mesh.sha256);
+  }
+  for (PluginFile& plugin : plugins) copy_one(folder, plugin_file, plugin.file, plugin.sha256);
+}
+
+}  // namespace bb

@@ -1,0 +1,37 @@
+// A record on the disk as the program needs it again: to repeat the run, and to see whether a run that is
+// asked for was made by the same program from the same things.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/record/run_record.hpp"
+
+namespace bb {
+
+struct StoredRun {
+  std::filesystem::path file;
+  std::string config_json;  // mesh files relative to the record's folder
+  std::string config_id;    // computed anew from config_json
+  std::string run_id, build_id, machine_id, git_commit, cpu_model, note, outcome, state_hash;
+  int threads = 0;
+  std::map<std::string, std::string> libraries;
+  std::vector<PluginFile> plugins;  // file as in the record
+};
+
+/// Nothing when the file cannot be read, is not JSON (torn), or is no record of this project.
+std::optional<StoredRun> read_stored_run(const std::filesystem::path& file);
+
+/// One thing that made the stored run and is another one now.
+struct Difference {
+  std::string what;            // "another build (commit 1a2b3c4d, not 5e6f7a8b)"
+  bool changes_state = false;  // the final state may depend on it; false: only times do
+};
+/// In the order config, program, plugins, libraries with the BLAS kernel, processor, threads. Empty exactly
+/// when the ids agree, up to the repetition.
+std::vector<Difference> differences(const StoredRun& then, const RunRecord& now);
+
+}  // namespace bb

@@ -1,0 +1,219 @@
+"""Who may write to a folder, what an earlier run leaves there, and when a sweep says `already there`."""
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import time
+from contextlib import contextmanager
+from pathlib import Path
+
+import pytest
+
+from test_cli import BLOCK, bench, long_run, refused, sweep_spec, write
+
+FRAMES = ["--set", "/output/frames_every=1", "--set", "/passes/time=false"]
+MATRICES = ["--set", "/output/matrices=true", "--set", "/passes/diagnose=true"]
+HANG = str(Path(BLOCK).with_name("hang.json"))
+
+
+def wait_for(path: Path, process: subprocess.Popen) -> None:
+    for _ in range(1000):
+        if path.exists():
+            return
+        assert process.poll() is None, process.communicate()
+        time.sleep(0.01)
+    raise AssertionError(f"{path} did not appear")
+
+
+@contextmanager
+def start(program: str, *arguments, **options):
+    """A process that never outlives the test."""
+    command = [program, *map(str, arguments)]
+    with subprocess.Popen(command, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, **options) as process:
+        try:
+            yield process
+        finally:
+            process.kill()
+
+
+def names(folder: Path) -> list[str]:
+    return sorted(p.name for p in folder.iterdir())
+
+
+# --- already there
+
+
+def change(record: Path, section: str, field: str, value) -> None:
+    content = json.loads(record.read_text())
+    assert content[section][field] != value
+    content[section][field] = value
+    write(record, content)
+
+
+@pytest.mark.parametrize("section, field, value, reason", [
+    ("ids", "build_id", "b" * 64, "another build"),
+    ("ids", "run_id", "c" * 64, "another run_id"),
+    ("ids", "machine_id", "d" * 64, "another machine"),
+    ("provenance", "libraries", {"blas": "another"}, "another BLAS"),
+    ("provenance", "threads", 77, "another number of threads"),
+])
+def test_the_record_of_another_program_or_machine_does_not_stand_for_a_run(program, tmp_path, section, field, value, reason):
+    spec, out = sweep_spec(tmp_path, [1, 2]), tmp_path / "out"
+    assert bench(program, "sweep", spec, "--out", out).returncode == 0
+    one, two = sorted(out.glob("*/run.json"))
+    kept = two.stat().st_mtime_ns
+    change(one, section, field, value)
+    done = bench(program, "sweep", spec, "--out", out)
+    assert done.returncode == 0 and done.stdout.count("already there") == 1
+    assert "runs again: " in done.stdout and reason in done.stdout
+    assert json.loads(one.read_text())[section][field] != value
+    assert two.stat().st_mtime_ns == kept
+
+
+@pytest.mark.parametrize("content", ["", "{", '{"schema": {"name": "barrierbench.run"}}', "[]", "half"])
+def test_a_record_that_cannot_be_read_is_not_there(program, tmp_path, content):
+    spec, out = sweep_spec(tmp_path, [1]), tmp_path / "out"
+    bench(program, "sweep", spec, "--out", out)
+    (record,) = out.glob("*/run.json")
+    text = record.read_text()
+    write(record, text[: len(text) // 2] if content == "half" else content)
+    done = bench(program, "sweep", spec, "--out", out)
+    assert done.returncode == 0 and "cannot be read" in done.stdout and "already there" not in done.stdout
+    assert json.loads(record.read_text())["status"]["outcome"] == "ok"
+
+
+def test_another_plugin_of_the_same_name_is_another_run(program, build_folder, tmp_path):
+    built = build_folder / "examples/plugins/plugin_inverse_shape.so"
+    if not built.exists():
+        pytest.skip(f"{built} is not built")
+    plugin = Path(shutil.copy(built, tmp_path / "shape.so"))
+    sweep = ["--plugin", plugin, "sweep", sweep_spec(tmp_path, [1]), "--out", tmp_path / "out"]
+    assert bench(program, *sweep).returncode == 0
+    assert bench(program, *sweep).stdout.count("already there") == 1
+    with plugin.open("ab") as file:
+        file.write(b"\0")
+    done = bench(program, *sweep)
+    assert done.returncode == 0 and "another set of plugins" in done.stdout and "already there" not in done.stdout
+
+
+# --- one writer a folder
+
+
+@pytest.mark.parametrize("verb", ["run", "sweep"])
+def test_a_folder_has_one_writer(program, tmp_path, verb):
+    out = tmp_path / "out"
+    arguments = long_run(tmp_path) if verb == "run" else ["sweep", sweep_spec(tmp_path, [1000000]), "--out", out]
+    with start(program, *arguments) as first:
+        wait_for(out / "bench.lock", first)
+        time.sleep(0.2)
+        second = bench(program, *arguments)
+        refused(second, str(out), f"in use by process {first.pid} on ", code=75)
+        assert first.poll() is None
+        first.kill()
+        first.communicate()
+    short = ["run", BLOCK, "--set", "/time/steps=1"] if verb == "run" else ["sweep", sweep_spec(tmp_path, [1])]
+    after = bench(program, *short, "--out", out)
+    assert after.returncode == 0, after.stderr
+    assert not (out / "bench.lock").exists()
+
+
+@pytest.mark.parametrize("sent", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
+def test_an_interrupted_sweep_says_what_it_kept_and_goes_on(program, tmp_path, sent):
+    out = tmp_path / "out"
+    with start(program, "sweep", sweep_spec(tmp_path, [1, 2, 1000000]), "--out", out) as sweep:
+        for _ in range(1000):
+            if len(list(out.glob("*/run.json"))) == 2 and list(out.glob("*1000000*/bench.lock")):
+                break
+            time.sleep(0.01)
+        sweep.send_signal(sent)
+        _, err = sweep.communicate(timeout=30)
+    assert sweep.returncode == 75, err
+    assert "2 of 3 records kept" in err and str(out) in err and "the same command" in err
+    assert len(list(out.glob("*/run.json"))) == 2 and not list(out.rglob("*.part")) and not list(out.rglob("bench.lock"))
+    done = bench(program, "sweep", sweep_spec(tmp_path, [1, 2, 3]), "--out", out)
+    assert done.returncode == 0 and done.stdout.count("already there") == 2
+
+
+def test_a_hang_up_ends_a_run_as_a_termination_does(program, tmp_path):
+    with start(program, *long_run(tmp_path)) as run:
+        wait_for(tmp_path / "out/bench.lock", run)
+        time.sleep(0.2)
+        run.send_signal(signal.SIGHUP)
+        _, err = run.communicate(timeout=30)
+    assert run.returncode == 75 and "interrupted" in err
+    assert names(tmp_path / "out") == []
+
+
+def test_under_nohup_a_hang_up_is_ignored(program, tmp_path):
+    def nohup():
+        signal.signal(signal.SIGHUP, signal.SIG_IGN)
+
+    with start(program, *long_run(tmp_path), restore_signals=False, preexec_fn=nohup) as run:
+        wait_for(tmp_path / "out/bench.lock", run)
+        time.sleep(0.2)
+        run.send_signal(signal.SIGHUP)
+        time.sleep(0.5)
+        assert run.poll() is None
+        run.send_signal(signal.SIGTERM)
+        run.communicate(timeout=30)
+    assert run.returncode == 75
+
+
+# --- what an earlier run left
+
+
+def test_frames_and_matrices_of_an_earlier_run_go_and_nothing_else(program, tmp_path):
+    out = tmp_path / "out"
+    assert bench(program, "run", HANG, "--out", out, "--set", "/time/steps=3", *FRAMES, *MATRICES).returncode == 0
+    assert names(out / "frames") == ["scene.json", "start.ply", *(f"step_{k:06}.ply" for k in range(3))]
+    assert len(names(out / "matrices")) >= 3
+    mine = write(out / "frames/notes.txt", "mine")
+    changed = write(out / "frames/step_000002.ply", "edited by hand")
+    stranger = write(out / "matrices/step_000099_iteration_000.mtx", "of no run")
+    assert bench(program, "run", HANG, "--out", out, "--set", "/time/steps=1", *FRAMES).returncode == 0
+    record = json.loads((out / "run.json").read_text())
+    assert [a["path"] for a in record["artifacts"]] == ["frames/scene.json", "frames/start.ply", "frames/step_000000.ply"]
+    assert names(out / "frames") == ["notes.txt", "scene.json", "start.ply", "step_000000.ply", "step_000002.ply"]
+    assert names(out / "matrices") == [stranger.name]
+    assert mine.read_text() == "mine" and changed.read_text() == "edited by hand"
+
+
+def test_an_earlier_run_stays_whole_until_the_next_is_over(program, tmp_path):
+    out = tmp_path / "out"
+    short = ["run", BLOCK, "--out", out, "--set", "/time/steps=2", *FRAMES]
+    assert bench(program, *short).returncode == 0
+    before = {p: p.read_bytes() for p in out.rglob("*") if p.is_file()}
+    assert len(before) == 6
+    with start(program, *long_run(tmp_path), *FRAMES) as run:
+        wait_for(out / "frames.part", run)
+        time.sleep(0.2)
+        run.terminate()
+        run.communicate(timeout=30)
+    assert run.returncode == 75
+    assert {p: p.read_bytes() for p in out.rglob("*") if p.is_file()} == before
+    assert not (out / "frames.part").exists()
+
+
+def test_what_a_killed_run_left_goes_with_the_next(program, tmp_path):
+    out = tmp_path / "out"
+    with start(program, *long_run(tmp_path), *FRAMES) as run:
+        wait_for(out / "frames.part", run)
+        time.sleep(0.3)
+        run.kill()
+        run.communicate()
+    left = names(out)
+    assert "bench.lock" in left and "frames.part" in left
+    write(out / "frames.part/mine.txt", "mine")
+    write(out / f"run.json.tmp.{run.pid}", "{")
+    assert bench(program, "run", BLOCK, "--out", out, "--set", "/time/steps=1").returncode == 0
+    assert names(out) == ["frames.part", "run.json", "trace.jsonl"]
+    assert names(out / "frames.part") == ["mine.txt"]
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
+def test_a_folder_that_may_only_be_read(program, tmp_path):
+    tmp_path.chmod(0o555)
+    refused(bench(program, "run", BLOCK, "--out", tmp_path), "Permission denied")
+    tmp_path.chmod(0o755)
