@@ -26,12 +26,12 @@ struct ConditionEstimate {
   std::string method;            // "ritz", "inverse_power+lanczos", "shift_invert", "dense"
   double residual = 0;           // max |A v - lambda v| / |A| of the two pairs
   int solves = 0, products = 0;  // triangular solves, matrix products used
-  int factorizations = 0;        // beyond the first one shared by the scalings: shifted ones, see tier 2
+  int factorizations = 0;        // beyond the first one shared by the scalings: proofs and shifts of tier 2
   double seconds = 0;
 };
 
 struct ConditionOptions {
-  int tier = 2;  // 1 inverse power and Lanczos, 2 Spectra round the CHOLMOD factor, 3 dense (tests)
+  int tier = 2;  // 1 inverse power and Lanczos, 2 Lanczos round the CHOLMOD factor, 3 dense (tests)
   Scaling scaling = Scaling::none;
   std::uint64_t seed = 1;  // of the start vector, recorded
 };
@@ -41,9 +41,10 @@ struct ConditionOptions {
 ConditionEstimate condition_from_ritz(double ritz_min, double ritz_max);
 
 /// Errors: failure is a status; ConfigError only for a tier outside 1 to 3 and a malformed system.
-/// Cost: tier 1 one factorisation, 4 solves, 21 products. Tier 2 at most 25 solves and 40 products with one
-/// factorisation; where these leave an end of the spectrum unresolved (many eigenvalues within a percent of
-/// it), the same budget is spent round a second factorisation, shifted to that end. Tier 3: dense, n <= 3000,
+/// Cost: tier 1 one factorisation, 4 solves, 21 products. Tier 2 at most 25 solves and 40 products, and two
+/// factorisations or a few more: each end is proven by a factor of the matrix shifted 8e-4 beyond it, which
+/// exists only when no eigenvalue lies there. The proof is left out, and a small residual decides alone, for
+/// an eigenvalue below 1.25e-10 lambda_max, whose shift rounding would swallow. Tier 3: dense, n <= 3000,
 /// O(n^3).
 class ConditionEstimator {
  public:

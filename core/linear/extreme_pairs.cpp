@@ -10,9 +10,10 @@ namespace bb {
 namespace {
 
 constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
-constexpr double kTol = 2e-4;      // of an eigenvalue, relative; half of the 1e-3 promised is left to spare
-constexpr double kProof = 8e-4;    // of an eigenvalue, relative: distance of a shift that certifies it
-constexpr int kMaxShifts = 6;      // from the narrowest interval to the widest in steps of six
+constexpr double kTol = 2e-4;        // of an eigenvalue, relative; half of the 1e-3 promised is left to spare
+constexpr double kProof = 8e-4;      // of an eigenvalue, relative: distance of a shift that certifies it
+constexpr double kProvable = 1e-13;  // of lambda_max: a shift below it is decided by rounding
+constexpr int kMaxShifts = 6;        // from the narrowest interval to the widest in steps of six
 constexpr int kMaxProofs = 12;     // factorisations that certify one end: from the widest interval to kProof
 constexpr int kMaxSolves = 25;     // tier 2
 constexpr int kMaxProducts = 40;   // tier 2
@@ -81,6 +82,7 @@ struct End {
   double lambda = kNan;
   VecXd vector;
   bool resolved = false;
+  bool shifted = false;         // found round a factorisation of its own
   double uncertainty = 0;       // residual relative to the eigenvalue of the operator in use
   double proven_inside = kNan;  // the end is known to lie beyond this; NaN when nothing is proven
 };
@@ -109,11 +111,15 @@ void certify(ScaledMatrix& b, double sign, double outside, End& end) {
   end.lambda = inside + (outside - inside) / 2;
 }
 
+/// Whether the shift that proves an end stands out of the rounding of its factorisation.
+bool provable(const End& end, double largest) { return kProof * std::abs(end.lambda) > kProvable * largest; }
+
 /// Shifts just beyond the end that `end` approximates from inside and repeats Lanczos from its vector. A
 /// factor that exists proves the shift to lie beyond the whole spectrum, one that does not exist that it lies
 /// inside.
 /// @param sign +1 the small end, A - sigma D; -1 the large end, sigma D - A
-void resolve_by_shift(ScaledMatrix& b, double sign, End& end) {
+void resolve_by_shift(ScaledMatrix& b, double sign, double largest, End& end) {
+  end.shifted = true;
   // Where eigenvalues lie dense the error is about a third of the residual; a failed factorisation tells if
   // not: the start vector had next to nothing of the last eigenvector.
   double width = std::clamp(end.uncertainty, 5e-4, 0.3);
@@ -134,7 +140,20 @@ void resolve_by_shift(ScaledMatrix& b, double sign, End& end) {
   end.lambda = sigma + sign / ritz.value;
   const bool disproven = sign * (end.lambda - end.proven_inside) > 0;
   end.resolved = ritz.converged(tol) && !disproven;
-  if (!end.resolved) certify(b, sign, sigma, end);
+  if (!end.resolved || provable(end, largest)) certify(b, sign, sigma, end);
+}
+
+/// A small residual may belong to a neighbour of the end. A factor of the matrix shifted by kProof beyond it
+/// exists only when nothing lies there; without one the end is looked for again. Not asked where the shift is
+/// within the rounding of the factorisation.
+void prove_end(ScaledMatrix& b, double sign, double largest, End& end) {
+  if (!provable(end, largest)) return;
+  const double sigma = end.lambda * (1 - sign * kProof);
+  if (b.factorize_shifted(sign, sigma)) return;
+  end.resolved = false;
+  end.proven_inside = sigma;
+  end.uncertainty = 6 * kProof;
+  resolve_by_shift(b, sign, largest, end);
 }
 
 End largest_end(ScaledMatrix& b, std::uint64_t seed, int n_products, double& smallest_ritz) {
@@ -228,18 +247,24 @@ ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& sca
     e.residual /= std::abs(e.lambda_max);
     return e;
   }
-  const int reserved = (top.resolved ? 1 : 2) * (kShiftedSolves + 1);
+  if (top.resolved) {
+    prove_end(b, -1, top.lambda, top);
+  } else if (top.lambda > 0) {
+    resolve_by_shift(b, -1, top.lambda, top);
+  }
   const auto op = [&b, &matrix](const VecXd& x, VecXd& y) { b.solve(matrix.factor, x, y); };
-  const LanczosEnd ritz = lanczos_largest(op, seeded_vector(b.n(), seed + 1), kMaxSolves - reserved, kTol);
+  const int n_solves = kMaxSolves - e.solves - (kShiftedSolves + 1);  // the rest is for the shifted factor
+  const LanczosEnd ritz = lanczos_largest(op, seeded_vector(b.n(), seed + 1), n_solves, kTol);
   End bottom;
   take(ritz, bottom);
   bottom.lambda = 1 / ritz.value;
   if (bottom.resolved) {
-    b.solve(matrix.factor, ritz.vector, bottom.vector);  // damps what a product with B would magnify
+    prove_end(b, 1, top.lambda, bottom);
   } else if (ritz.value > 0) {
-    resolve_by_shift(b, 1, bottom);
+    resolve_by_shift(b, 1, top.lambda, bottom);
   }
-  if (!top.resolved && top.lambda > 0) resolve_by_shift(b, -1, top);
+  // Damps what a product with B would magnify.
+  if (!bottom.shifted) b.solve(matrix.factor, ritz.vector, bottom.vector);
   bottom.vector.normalize();
   top.vector.normalize();
   const double rayleigh_min = b.rayleigh(bottom.vector), rayleigh_max = b.rayleigh(top.vector);
@@ -249,7 +274,7 @@ ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& sca
   e.lambda_min = bottom_stands ? rayleigh_min : bottom.lambda;
   const bool top_stands = !(rayleigh_max < top.proven_inside);
   e.lambda_max = top_stands ? rayleigh_max : top.lambda;
-  if (e.factorizations > 0) e.method = "shift_invert, shifted to the end of the spectrum";
+  if (top.shifted || bottom.shifted) e.method = "shift_invert, shifted to the end of the spectrum";
   classify(e, bottom.resolved && top.resolved);
   e.residual /= std::abs(e.lambda_max);
   return e;

@@ -15,7 +15,7 @@ struct FactoredMatrix {
   SymmetricProduct product;
   CholmodFactor factor;   // of A
   bool positive = false;  // the factorisation succeeded
-  CholmodFactor shifted;  // of +-(A - sigma D), when needed
+  CholmodFactor shifted;  // of +-(A - sigma D), proofs and shifts
   ReducedSystem shifted_system;
 };
 
@@ -23,8 +23,8 @@ struct FactoredMatrix {
 /// lambda_min by a Rayleigh quotient in long double, lambda_max a Ritz value lowered by its rounding.
 ConditionEstimate estimate_tier1(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed);
 
-/// Tier 2: Lanczos with full reorthogonalisation on B and on B^-1; an end that stays unresolved is shifted
-/// to.
+/// Tier 2: Lanczos with full reorthogonalisation on B and on B^-1. A factorisation shifted just beyond each
+/// end proves that nothing lies there; an end that stays unresolved or is disproven is shifted to.
 ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed);
 
 /// cond and status from both ends; `resolved` is false where an end is only a bound.

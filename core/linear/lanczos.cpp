@@ -21,16 +21,13 @@ void read_top(const VecXd& diagonal, const VecXd& off, int k, double beta, Lancz
   end.smallest = eigen.eigenvalues()[0];
   weights = eigen.eigenvectors().col(k - 1);
   end.residual = std::abs(beta * weights[k - 1]);
-  end.gap = k > 1 ? end.value - eigen.eigenvalues()[k - 2] : std::abs(end.value);
 }
 
 }  // namespace
 
 bool LanczosEnd::converged(double tol) const {
   const double scale = std::abs(value);
-  if (!(scale > 0)) return false;
-  if (residual <= tol * scale) return true;
-  return residual <= 10 * tol * scale && residual * residual <= 0.1 * tol * scale * gap;
+  return scale > 0 && residual <= tol * scale;
 }
 
 LanczosEnd lanczos_largest(const SymmetricOperator& op, const VecXd& start, int n_max, double tol) {

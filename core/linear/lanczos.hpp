@@ -16,12 +16,10 @@ struct LanczosEnd {
   double value = 0;     // largest Ritz value: not above the largest eigenvalue, barring rounding
   double smallest = 0;  // smallest Ritz value
   double residual = 0;  // |C v - value v|, |v| = 1
-  double gap = 0;       // to the second Ritz value
   VecXd vector;         // the Ritz vector v
   int steps = 0;        // products used
-  /// Relative to |value|: either the residual itself is small, or its square over the gap (the error bound of
-  /// a Rayleigh quotient, Parlett 1998, 11.7) while the residual already rules out a second eigenvalue mixed
-  /// in.
+  /// The residual alone, relative to |value|. The gap to the second Ritz value would allow a larger one, but
+  /// it says nothing about an eigenvalue that the start vector has next to nothing of.
   bool converged(double tol) const;
 };
 

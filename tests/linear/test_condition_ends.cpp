@@ -1,0 +1,44 @@
+// The ends of the spectrum that tier 2 calls ok: never a neighbour of the end, whatever the start vector.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "core/linear/condition.hpp"
+#include "tests/linear/systems.hpp"
+
+namespace bb {
+namespace {
+
+/// Diagonal: the eigenvalues are the entries. Each end has one neighbour at the relative distance `gap`.
+ReducedSystem with_close_neighbours(int n, double gap) {
+  VecXd s(n);
+  for (int i = 0; i < n; ++i) s[i] = 0.95 * std::pow(10.0, -1.5 * (1 - static_cast<double>(i) / (n - 1)));
+  s[n - 1] = 1;
+  s[n - 2] = 1 - gap;
+  s[0] = 0.01;
+  s[1] = 0.01 * (1 + gap);
+  Eigen::SparseMatrix<double> a(n, n);
+  for (int i = 0; i < n; ++i) a.insert(i, i) = s[i];
+  return from_sparse(a);
+}
+
+TEST(ConditionEnds, ANeighbourIsNeverReportedAsOk) {
+  for (const double gap : {1.2e-3, 2.5e-3, 4e-3}) {
+    const ReducedSystem system = with_close_neighbours(90, gap);
+    ConditionEstimator estimator;
+    int n_ok = 0;
+    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+      const ConditionEstimate e = estimator.estimate(system, {2, Scaling::none, seed});
+      EXPECT_LE(e.solves, 25) << seed;
+      EXPECT_LE(e.products, 40) << seed;
+      if (e.status != ConditionStatus::ok) continue;
+      ++n_ok;
+      EXPECT_NEAR(e.lambda_max, 1, 1e-3) << "gap " << gap << " seed " << seed;
+      EXPECT_NEAR(e.lambda_min / 0.01, 1, 1e-3) << "gap " << gap << " seed " << seed;
+    }
+    EXPECT_GE(n_ok, 58) << gap;
+  }
+}
+
+}  // namespace
+}  // namespace bb
