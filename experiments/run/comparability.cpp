@@ -15,6 +15,12 @@ using fields::Json;
 
 bool in_contact(const ComparedRun& run) { return run.gap_rel.finite(); }
 
+void append(std::string& list, const std::string& name) { list += (list.empty() ? "" : ", ") + name; }
+
+std::string fault_of(const ComparedRun& run) {
+  return "outcome " + run.outcome + (run.failed.empty() ? "" : ", failed checks: " + run.failed);
+}
+
 std::string reason_of(const Comparability& c) {
   return fmt::format("smallest gap {:.3g} d_hat, {:.3g} times that of the reference: {}within a factor {:g}",
                      c.gap_rel.value, c.ratio.value, c.verdict == "comparable" ? "" : "not ", c.max_ratio);
@@ -29,6 +35,9 @@ ComparedRun compared_run(const Json& j, const std::filesystem::path& folder) {
   out.argument = j.at("labels").at("argument").get<std::string>();
   out.matching_rule = j.at("labels").at("matching_rule").get<std::string>();
   out.valid = j.at("status").at("valid").get<bool>();
+  for (const Json& check : j.at("validity").at("checks")) {
+    if (!check.at("pass").get<bool>()) append(out.failed, check.at("name").get<std::string>());
+  }
   const Json& gap = j.at("summary").at("gap_min_rel").at("min");
   out.gap_rel = gap.is_number() ? Number(gap.get<double>()) : Number::missing("no_contacts");
   return out;
@@ -64,6 +73,9 @@ ComparedRun compared_run(const RunRecord& record) {
   out.argument = record.labels.argument;
   out.matching_rule = record.labels.matching_rule;
   out.valid = record.validity.valid;
+  for (const Check& check : record.validity.checks) {
+    if (!check.pass) append(out.failed, check.name);
+  }
   out.gap_rel = record.summary.gap_min_rel.min;
   if (!out.gap_rel.finite()) out.gap_rel = Number::missing("no_contacts");
   return out;
@@ -82,14 +94,14 @@ Comparability judge_comparability(const ComparedRun& run, const std::optional<Co
   if (usable && in_contact(run)) out.ratio = run.gap_rel.value / reference->gap_rel.value;
   if (!run.valid) {
     out.verdict = "not_valid";
-    out.reason = "the run is not valid: its outcome is " + run.outcome;
+    out.reason = "the run is not valid: " + fault_of(run);
   } else if (!reference) {
     out.verdict = "no_reference";
     out.reason = "no valid run of a finished sweep to compare with";
   } else if (!usable) {
     out.verdict = "no_reference";
     out.reason = reference->valid ? "the reference has no contact at the end of a converged step"
-                                  : "the reference is not valid: its outcome is " + reference->outcome;
+                                  : "the reference is not valid: " + fault_of(*reference);
   } else if (!in_contact(run)) {
     out.verdict = "not_comparable";
     out.reason = "no contact at the end of a converged step, where the reference has some";

@@ -17,7 +17,8 @@ struct ComparedRun {
   std::string folder;  // its name beside the other runs
   std::string run_id, outcome, shape, argument, matching_rule;
   bool valid = false;
-  Number gap_rel;  // smallest d/d_hat over converged step ends; missing without contact
+  Number gap_rel;      // smallest d/d_hat over converged step ends; missing without contact
+  std::string failed;  // names of the validity checks that failed, joined by ", "
 };
 ComparedRun compared_run(const RunRecord& record);
 

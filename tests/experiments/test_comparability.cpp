@@ -18,7 +18,8 @@ using nlohmann::json;
 
 ComparedRun run(const char* folder, double gap, bool valid = true, const char* shape = "log",
                 const char* rule = "equal_force") {
-  return {folder, std::string("id_") + folder, valid ? "ok" : "penetration", shape, "gap", rule, valid, gap};
+  return {folder, std::string("id_") + folder, valid ? "ok" : "penetration", shape, "gap", rule, valid,
+          gap,    valid ? "" : "audit_clean"};
 }
 ComparedRun untouched(const char* folder) {
   ComparedRun out = run(folder, 0);
@@ -45,6 +46,7 @@ TEST(Comparability, AnInvalidRunIsNeitherComparedNorAReference) {
   const ComparedRun bad = run("bad", 0.1, false), good = run("good", 0.1);
   EXPECT_EQ(judge_comparability(bad, good).verdict, "not_valid");
   EXPECT_EQ(judge_comparability(bad, std::nullopt).verdict, "not_valid");
+  EXPECT_NE(judge_comparability(bad, good).reason.find("failed checks: audit_clean"), std::string::npos);
   EXPECT_EQ(judge_comparability(good, bad).verdict, "no_reference");
   EXPECT_NE(judge_comparability(good, bad).reason.find("penetration"), std::string::npos);
   EXPECT_EQ(judge_comparability(good, std::nullopt).verdict, "no_reference");
