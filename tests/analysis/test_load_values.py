@@ -4,9 +4,10 @@ import json
 
 import pytest
 
+from analysis.figures import kappa_cycle
 from analysis.load import RecordError, condition_of, load
 from analysis.table import as_text, summary_table
-from synthetic import write_run, write_set
+from synthetic import write_cycle, write_run, write_set
 
 
 def edit(folder, change) -> None:
@@ -130,3 +131,29 @@ def test_hollow_runs_are_named_by_the_programs_own_verdict(tmp_path):
     table = summary_table(load(tmp_path)).set_index("series")
 
     assert dict(table["verdict"]) == {"log": "ok", "cubic": "ok, not_valid", "cubic_dynamic": "ok, not_comparable", "quadratic": "newton_stall"}
+
+
+def test_the_median_condition_is_that_of_the_logarithms_for_each_scaling(tmp_path):
+    write_run(tmp_path, "log", 1.0, 0.1)
+
+    def two_values(line):
+        large = line["step"] > 0 and line["iteration"] == 1 or line["step"] == 2
+        line["cond"][0]["cond"], line["cond"][1]["cond"] = (1e6, 1e4) if large else (1e2, 1e2)
+
+    edit_trace(tmp_path / "log", two_values)
+    table = summary_table(load(tmp_path)).set_index("series")
+
+    assert table.loc["log", "cond_raw_median"] == pytest.approx(1e4)  # three of 1e2, three of 1e6
+    assert table.loc["log", "cond_bj_median"] == pytest.approx(1e3)
+    assert (table.loc["log", "cond_raw_max"], table.loc["log", "cond_bj_max"]) == (1e6, 1e4)
+
+
+def test_a_kappa_that_settles_within_the_last_iterations_is_no_cycle(tmp_path):
+    write_set(tmp_path / "runs")
+    folder = tmp_path / "runs" / "quadratic"
+    write_cycle(folder, change=0.8)
+    lines = (folder / "trace.jsonl").read_text().splitlines()
+    last = json.loads(lines[-1]) | {"kappa_change_rel": 1e-3}
+    (folder / "trace.jsonl").write_text("\n".join([*lines[:-1], json.dumps(last)]) + "\n")
+
+    assert kappa_cycle.figure(load(tmp_path / "runs"), "strip", tmp_path) == []
