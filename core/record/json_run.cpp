@@ -105,7 +105,13 @@ Json matching(const MatchingRecord& v) {
             {"load_source", v.load_source},
             {"limit_load_source", v.limit_load_source},
             {"pilot_config_id", v.pilot_config_id},
-            {"pilot_note", v.pilot_note}};
+            {"pilot_note", v.pilot_note},
+            {"contact", v.contact},
+            {"contacts_considered", v.contacts_considered},
+            {"limit_element", v.limit_element},
+            {"elements_considered", v.elements_considered}};
+  put(j, "contact_step", v.contact_step);
+  put(j, "limit_step", v.limit_step);
   put(j, "theta", v.theta);
   put(j, "load_N", v.load_N);
   put(j, "d_hat_m", v.d_hat_m);

@@ -125,9 +125,9 @@ struct StepRecord {
 struct MatchingRecord {
   std::string rule = "as_given";
   Number theta;
-  Number load_N;              // per unit multiplicity, from the pilot
-  Number d_hat_m;             // at which it was matched: of the contact that carried a pilot's load
-  Number limit_load_N_per_m;  // the strain limit's
+  Number load_N;              // per unit multiplicity; of a pilot, the load of `contact`
+  Number d_hat_m;             // at which it was matched: of `contact`
+  Number limit_load_N_per_m;  // the strain limit's; of a pilot, that of `limit_element`
   Number curvature_N_per_m, limit_curvature;
   Number kappa_N_per_m;            // chosen; missing when the policy makes its own
   Number limit_stiffness_N_per_m;  // k_s chosen
@@ -136,6 +136,11 @@ struct MatchingRecord {
   Number capacity_N;               // largest load the shape carries at that kappa; missing when unbounded
   // of load_N and limit_load_N_per_m: given, pilot, static_weight (the pilot met none), none
   std::string load_source = "none", limit_load_source = "none";
+  // the pilot's contact and limited element that asked for the most stiffness, the steps at whose ends they
+  // did, and how many of all steps were compared; missing where the pilot was not asked or met none
+  std::string contact, limit_element;
+  Number contact_step, limit_step;
+  long long contacts_considered = 0, elements_considered = 0;
   // the note says where a pilot stopped early, and which policies stay as given for want of a measured load
   std::string pilot_config_id, pilot_note;
 };

@@ -9,6 +9,7 @@
 #include "core/contact/slope_scan.hpp"
 #include "core/math/error.hpp"
 #include "experiments/config/policy_request.hpp"
+#include "experiments/run/pilot_demand.hpp"
 
 namespace bb {
 namespace {
@@ -40,34 +41,14 @@ struct Matching {
   const Scene& scene;
   const RunOptions& options;
   MatchingRecord& record;
-  const PilotLoads* pilot = nullptr;  // null: every load is given and nothing makes its own stiffness
+  const Pilot* pilot = nullptr;  // null: every load is given and nothing makes its own stiffness
 };
 
 /// s = matched stiffness / the policy's own.
 double scale_of(double matched, double own, const char* what) {
   if (own > 0 && std::isfinite(matched / own)) return matched / own;
-  throw ConfigError("matching", fmt::format("{} = {} where the pilot's largest load was carried", what, own),
+  throw ConfigError("matching", fmt::format("{} = {} where the policy starts", what, own),
                     "a stiffness > 0 there, or matching rule as_given");
-}
-
-/// kappa that the config's own policy gives the contact that carried the load, at a gap of u of that
-/// contact's d_hat. The factor `scale` of the config acts after matching, as it does on a fixed kappa.
-double kappa_of_row(const RunConfig& config, const PilotLoads& pilot, double u) {
-  PolicyConfig policy = config.formulation.stiffness_policy;
-  policy.scale = 1;
-  PolicyColumns row = pilot.row;
-  row.d[0] = u * row.d_hat[0];
-  double kappa = 0;
-  make_contact_policy(policy, {})->fill(row.batch(pilot.dt, pilot.c, !row.hessian.empty()), &kappa);
-  return kappa;
-}
-
-/// kappa_e (J) that the config's limit policy gives the element that carried the load, at a gap of u widths.
-double kappa_of_element(const RunConfig& config, const PilotLoads& pilot, double width, double u) {
-  const LimitStiffness limit = make_limit_policy(config.strain_limit.stiffness_policy, {});
-  const LimitColumns& e = pilot.element;
-  const StrainStiffnessRule rule = limit.rule(pilot.dt, pilot.c);
-  return strain_stiffness<double>(e.x, e.hessian, e.vertex_mass, e.element_mass, u * width, rule);
 }
 
 bool has_one_kappa(const PolicyConfig& policy) {
@@ -79,18 +60,50 @@ void note(MatchingRecord& record, const char* why) {
   record.pilot_note += (record.pilot_note.empty() ? "" : "; ") + std::string(why);
 }
 
+/// What the rule asks for a load and a width; a given load goes with a given width.
+MatchedStiffness matched_stiffness(const Match& match, const BarrierFunction& barrier, double given_width) {
+  return [match, &barrier, given_width](double load, double width) {
+    Match one = match;
+    if (match.load > 0) return one.stiffness(barrier, given_width);
+    one.load = load;
+    return one.stiffness(barrier, width);
+  };
+}
+
+/// The policy whose own kappa the contacts are asked for; null where the stiffness is one number.
+std::unique_ptr<StiffnessPolicy> asked_policy(const RunConfig& config) {
+  PolicyConfig policy = config.formulation.stiffness_policy;
+  if (needs_kappa(policy) || has_one_kappa(policy)) return nullptr;
+  policy.scale = 1;  // the config's factor acts after matching, as it does on a fixed kappa
+  return make_contact_policy(policy, {});
+}
+
+Demand ask_contacts(const Matching& m, const Match& match, const BarrierFunction& barrier) {
+  if (!m.pilot || (m.config.matching.load && needs_kappa(m.config.formulation.stiffness_policy))) return {};
+  const std::unique_ptr<StiffnessPolicy> policy = asked_policy(m.config);
+  const Demand demand =
+      contact_demand(*m.pilot, m.scene, matched_stiffness(match, barrier, m.config.formulation.d_hat),
+                     policy.get(), match.at());
+  m.record.contacts_considered = demand.considered;
+  if (demand.considered == 0) return demand;
+  m.record.contact = demand.where;
+  m.record.contact_step = demand.step;
+  return demand;
+}
+
 void match_contact(const Matching& m, Calibration& out) {
   const MatchingConfig& matching = m.config.matching;
   const PolicyConfig& policy = m.config.formulation.stiffness_policy;
   const BarrierFunction barrier{require_shape(m.config.formulation.shape), m.config.formulation.argument};
-  const bool measured = m.pilot && m.pilot->contact > 0;
   Match match{matching.rule, matching.theta, matching.load.value_or(0), matching.curvature};
+  const Demand demand = ask_contacts(m, match, barrier);
+  const bool measured = demand.considered > 0;
   double d_hat = m.config.formulation.d_hat;
   m.record.load_source = "given";
   if (!matching.load) {  // a measured load belongs to the contact that carried it, and so does the width
     m.record.load_source = measured ? "pilot" : "static_weight";
-    match.load = measured ? m.pilot->contact : m.pilot->rest.contact;
-    if (measured) d_hat = m.pilot->row.d_hat[0];
+    match.load = measured ? demand.load : m.pilot->rest.contact;
+    if (measured) d_hat = demand.width;
   }
   m.record.load_N = match.load;
   m.record.d_hat_m = d_hat;
@@ -114,40 +127,54 @@ void match_contact(const Matching& m, Calibration& out) {
     }
     out.scale = scale_of(kappa, *start, "kappa");
   } else {
-    out.scale = scale_of(kappa, kappa_of_row(m.config, *m.pilot, match.at()), "kappa");
+    out.scale = demand.largest;
   }
   m.record.scale = out.scale;
+}
+
+Demand ask_elements(const Matching& m, const Match& match, const BarrierFunction& barrier) {
+  const PolicyConfig& policy = m.config.strain_limit.stiffness_policy;
+  if (!m.pilot || (m.config.matching.limit_load && needs_kappa(policy))) return {};
+  LimitStiffness own;
+  if (!needs_kappa(policy)) own = make_limit_policy(policy, {});
+  const MatchedStiffness matched = matched_stiffness(match, barrier, m.scene.limit.width.front());
+  const Demand demand = limit_demand(*m.pilot, m.scene, matched, needs_kappa(policy) ? nullptr : &own);
+  m.record.elements_considered = demand.considered;
+  if (demand.considered == 0) return demand;
+  m.record.limit_element = demand.where;
+  m.record.limit_step = demand.step;
+  return demand;
 }
 
 void match_limit(const Matching& m, Calibration& out) {
   const MatchingConfig& matching = m.config.matching;
   const BarrierFunction barrier{require_shape(m.config.strain_limit.shape), m.config.strain_limit.argument};
-  const bool measured = m.pilot && m.pilot->limit > 0;
-  const double width = m.scene.limit.width.front();
   Match match{matching.rule, matching.theta, matching.limit_load.value_or(0), matching.limit_curvature};
+  const Demand demand = ask_elements(m, match, barrier);
+  const bool measured = demand.considered > 0;
+  double width = m.scene.limit.width.front();
   m.record.limit_load_source = "given";
   if (!matching.limit_load) {
     m.record.limit_load_source = measured ? "pilot" : "static_weight";
-    match.load = measured ? m.pilot->limit : m.pilot->rest.limit;
+    match.load = measured ? demand.load : m.pilot->rest.limit;
+    if (measured) width = demand.width;
   }
   m.record.limit_load_N_per_m = match.load;
   if (matching.rule == MatchingRule::equal_curvature) {
     m.record.limit_curvature = match.curvature_of_log(width);
   }
-  const double k_s = match.stiffness(barrier, width);
   if (needs_kappa(m.config.strain_limit.stiffness_policy)) {
-    out.k_s = k_s;
-    m.record.limit_stiffness_N_per_m = k_s;
+    out.k_s = match.stiffness(barrier, width);
+    m.record.limit_stiffness_N_per_m = *out.k_s;
   } else if (!measured) {
     note(m.record, "the limit's policy stays as given: the limit was never active in the pilot");
   } else {
-    const double own = kappa_of_element(m.config, *m.pilot, width, match.at());
-    out.limit_scale = scale_of(k_s * m.pilot->element.area, own, "kappa_e");
+    out.limit_scale = demand.largest;
     m.record.limit_scale = out.limit_scale;
   }
 }
 
-/// Whether a load is missing, or a policy has to be asked about the contact or element that carried it.
+/// Whether a load is missing, or a policy has to be asked about the contacts or elements that carried it.
 bool needs_pilot(const RunConfig& config, bool limited) {
   const bool contact = !config.matching.load || !needs_kappa(config.formulation.stiffness_policy);
   const bool limit = !config.matching.limit_load || !needs_kappa(config.strain_limit.stiffness_policy);

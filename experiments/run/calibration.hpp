@@ -10,8 +10,8 @@ namespace bb {
 /// The calibration of this config by its matching rule; the pilot runs when the rule needs what the config
 /// does not give. `record` gets every number that went into it. Where the pilot met no contact (or no active
 /// limit) the static weight stands in for a fixed stiffness, and a policy that makes its own stays as given;
-/// the record says so. Errors: ConfigError when the scene has no weight, or a policy gives the contact (the
-/// element) that carried the load no stiffness; Interrupted.
+/// the record says so. Errors: ConfigError when the scene has no weight, or a policy gives a contact (an
+/// element) that carried a load no stiffness; Interrupted.
 Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOptions& options,
                       MatchingRecord& record);
 

@@ -2,73 +2,17 @@
 
 #include <fmt/format.h>
 
-#include <algorithm>
 #include <cmath>
 #include <map>
 
 #include "barriers/matching.hpp"
 #include "barriers/shapes/registry.hpp"
-#include "core/energy/strain_limit_batch.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/simulation.hpp"
 #include "experiments/config/parse.hpp"
 
 namespace bb {
 namespace {
-
-/// Keeps the largest loads over converged states with the contact and the element that carried them.
-class LoadObserver final : public StepObserver {
- public:
-  explicit LoadObserver(const Scene& scene) : scene_(scene) {
-    if (scene.limit.triangles.empty()) return;
-    limit_.emplace(scene.limit.triangles, scene.rest, scene.limit.onset, scene.limit.width, scene.planar);
-  }
-
-  void on_step(NewtonSystem& system, const StepReport& step, const Positions& x) override {
-    if (step.status != StepStatus::converged) return;
-    if (step.force_max > loads.contact) {
-      loads.contact = step.force_max;
-      keep_row(system);
-    }
-    if (step.limit_tension_max > loads.limit) {
-      loads.limit = step.limit_tension_max;
-      keep_element(system, x);
-    }
-  }
-  PilotLoads loads;
-
- private:
-  void keep_row(NewtonSystem& system) {
-    const ContactTable& rows = system.state().rows;
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      if (-rows.kappa[r] * rows.db[r] < loads.contact) continue;
-      loads.row =
-          system.stiffness().columns(rows, static_cast<int>(r), system.blocks(), system.elastic_matrix());
-      return;
-    }
-  }
-
-  // k_s is the same everywhere in the pilot: the largest tension is where the gap to the limit is smallest.
-  void keep_element(NewtonSystem& system, const Positions& x) {
-    limit_->measure(x);
-    const auto gaps = limit_->gaps();
-    const auto e = static_cast<std::size_t>(std::min_element(gaps.begin(), gaps.end()) - gaps.begin()) / 2;
-    const int* vertices = &limit_->vertices()[3 * e];
-    LimitColumns& element = loads.element;
-    for (int k = 0; k < 3; ++k) {
-      element.x[k] = system.terms().x_n.col(vertices[k]);
-      element.vertex_mass[k] = scene_.mass[static_cast<std::size_t>(vertices[k])];
-    }
-    Mat<double, 12, 12> block = Mat<double, 12, 12>::Zero();
-    system.blocks().submatrix(system.elastic_matrix(), vertices, 3, block.data());
-    element.hessian = block.topLeftCorner<9, 9>();
-    element.element_mass = scene_.limit.mass[e];
-    element.area = limit_->rests()[e].area;
-  }
-
-  const Scene& scene_;
-  std::optional<StrainLimitBatch> limit_;
-};
 
 StaticLoads static_loads(const RunConfig& config, const Scene& scene) {
   double mass = 0;
@@ -139,34 +83,35 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
 
 BarrierFunction log_barrier() { return {require_shape("log"), Argument::gap}; }
 
-const PilotLoads& run_pilot(const RunConfig& config, const Scene& scene, const RunOptions& options) {
-  static std::map<std::string, PilotLoads> known;
-  const RunConfig pilot = pilot_config(config);
-  const std::string id = config_id(pilot);
-  if (const auto found = known.find(id); found != known.end()) return found->second;
+const Pilot& run_pilot(const RunConfig& config, const Scene& scene, const RunOptions& options) {
+  static std::map<std::string, Pilot> known;
+  Pilot pilot;
+  pilot.config = pilot_config(config);
+  pilot.config_id = config_id(pilot.config);
+  if (const auto found = known.find(pilot.config_id); found != known.end()) return found->second;
 
-  const StaticLoads rest = static_loads(config, scene);
-  Method method = make_method(pilot, pilot_stiffness(pilot, scene, rest));
-  method.keep_elastic_matrix = true;
-  Simulation simulation(scene, method, pilot.time.dt, pilot.time.steps);
-  LoadObserver observer(scene);
-  observer.loads.rest = rest;
-  for (int step = 0; step < pilot.time.steps; ++step) {
+  const double dt = pilot.config.time.dt;
+  pilot.rest = static_loads(config, scene);
+  pilot.stiffness = pilot_stiffness(pilot.config, scene, pilot.rest);
+  Method method = make_method(pilot.config, pilot.stiffness);
+  Simulation simulation(scene, method, dt, pilot.config.time.steps);
+  pilot.x.push_back(scene.x0);
+  StepObserver nobody;
+  for (int step = 0; step < pilot.config.time.steps; ++step) {
     look_up(options);
-    const StepReport report = simulation.step(observer);
+    const StepReport report = simulation.step(nobody);
     show(config, options, report);
-    if (report.status == StepStatus::converged) continue;
-    observer.loads.stopped =
-        fmt::format("the pilot stopped at step {} with {}", step, to_string(report.status));
-    if (!report.detail.empty()) observer.loads.stopped += ": " + report.detail;
-    break;
+    if (report.status != StepStatus::converged) {  // its state is in no balance: no load can be read from it
+      pilot.stopped = fmt::format("the pilot stopped at step {} with {}", step, to_string(report.status));
+      if (!report.detail.empty()) pilot.stopped += ": " + report.detail;
+      break;
+    }
+    pilot.x.push_back(simulation.history().x);
   }
-  observer.loads.dt = pilot.time.dt;
   Prediction prediction;
-  method.integrator->predict(simulation.history(), pilot.time.dt, prediction);
-  observer.loads.c = prediction.c;
-  observer.loads.config_id = id;
-  return known.emplace(id, std::move(observer.loads)).first->second;
+  method.integrator->predict(simulation.history(), dt, prediction);
+  pilot.c = prediction.c;
+  return known.emplace(pilot.config_id, std::move(pilot)).first->second;
 }
 
 std::optional<double> policy_start(const RunConfig& config, const Scene& scene,

@@ -1,0 +1,176 @@
+#include "experiments/run/pilot_demand.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/energy/strain_limit_batch.hpp"
+#include "core/math/error.hpp"
+#include "core/newton/newton_system.hpp"
+
+namespace bb {
+namespace {
+
+/// The states of a pilot once more, in a system that is never solved.
+class Replay {
+ public:
+  Replay(const Pilot& pilot, const Scene& scene)
+      : pilot_(pilot), method_(make_replayed(pilot)), system_(scene, method_) {}
+
+  /// The rows of the end of this step.
+  void find_rows(int step) { begin(end(step)); }
+  /// The same, with the H that a policy of this refresh reads while the step's end is reached.
+  void find_rows(int step, Refresh refresh) {
+    begin(refresh == Refresh::per_step ? start(step) : end(step));
+    system_.assemble();
+    if (refresh != Refresh::per_step) return;
+    system_.sweep(end(step));
+    if (!system_.try_state(end(step))) throw std::logic_error("a state of the pilot is infeasible");
+    system_.accept();
+  }
+
+  const Positions& start(int step) const { return pilot_.x[static_cast<std::size_t>(step)]; }
+  const Positions& end(int step) const { return pilot_.x[static_cast<std::size_t>(step) + 1]; }
+  const ContactTable& rows() const { return system_.state().rows; }
+  NewtonSystem& system() { return system_; }
+
+ private:
+  static Method make_replayed(const Pilot& pilot) {
+    Method method = make_method(pilot.config, pilot.stiffness);
+    method.keep_elastic_matrix = true;
+    return method;
+  }
+  void begin(const Positions& x) {
+    prediction_.c = pilot_.c;
+    prediction_.x_tilde = x;
+    system_.begin_step(x, prediction_, pilot_.config.time.dt, 1.0);
+  }
+
+  const Pilot& pilot_;
+  Method method_;
+  NewtonSystem system_;
+  Prediction prediction_;
+};
+
+/// own = 1 without a policy. Returns whether this is the largest demand so far; among equals the larger load.
+bool compare(double matched, double own, double load, double width, int step, Demand& out) {
+  ++out.considered;
+  const double demand = matched / own;
+  if (demand < out.largest || (demand == out.largest && load <= out.load)) return false;
+  out.largest = demand;
+  out.load = load;
+  out.width = width;
+  out.step = step;
+  return true;
+}
+
+[[noreturn]] void refuse(double own, const char* what, int step, const std::string& where) {
+  throw ConfigError(
+      "matching",
+      fmt::format("{} = {} at {}, which carries a load in step {} of the pilot", what, own, where, step),
+      "a stiffness > 0 there, or matching rule as_given");
+}
+
+/// kappa of this row by the policy, the smaller of its values at d_hat and at u d_hat.
+double own_kappa(const StiffnessPolicy& policy, int row, double u, const Pilot& pilot, Replay& replay) {
+  static const BlockSystem::Values no_hessian;
+  NewtonSystem& system = replay.system();
+  const bool with_hessian = policy.needs_hessian();
+  PolicyColumns columns = system.stiffness().columns(replay.rows(), row, system.blocks(),
+                                                     with_hessian ? system.elastic_matrix() : no_hessian);
+  double kappa[2];
+  for (int k = 0; k < 2; ++k) {
+    columns.d[0] = (k == 0 ? 1 : u) * columns.d_hat[0];
+    policy.fill(columns.batch(pilot.config.time.dt, pilot.c, with_hessian), &kappa[k]);
+  }
+  return std::min(kappa[0], kappa[1]);
+}
+
+std::string name_element(const Scene& scene, std::size_t e) {
+  std::string out = fmt::format("limited triangle {}", e);
+  const char* separator = ": ";
+  for (const int v : scene.limit.triangles[e]) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(scene.body[static_cast<std::size_t>(v)])];
+    out += fmt::format("{}{}[{}]", separator, body.name, v - body.first_vertex);
+    separator = ", ";
+  }
+  return out;
+}
+
+/// kappa_e/area (N/m) by the policy of the limit, with w from the start of the step, at the gap y.
+double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std::size_t e, double area,
+                           double y, const Pilot& pilot, const Positions& x_start, NewtonSystem& system) {
+  const std::array<int, 3>& vertices = scene.limit.triangles[e];
+  Vec3d x[3], mass;
+  for (int k = 0; k < 3; ++k) {
+    const int v = vertices[static_cast<std::size_t>(k)];
+    x[k] = x_start.col(v);
+    mass[k] = scene.mass[static_cast<std::size_t>(v)];
+  }
+  Mat<double, 12, 12> block = Mat<double, 12, 12>::Zero();
+  system.blocks().submatrix(system.elastic_matrix(), vertices.data(), 3, block.data());
+  const Mat<double, 9, 9> hessian = block.topLeftCorner<9, 9>();
+  const StrainStiffnessRule rule = limit.rule(pilot.config.time.dt, pilot.c);
+  return strain_stiffness<double>(x, hessian, mass, scene.limit.mass[e], y, rule) / area;
+}
+
+}  // namespace
+
+Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
+                      const StiffnessPolicy* own, double u) {
+  const BarrierFunction log = log_barrier();
+  Replay replay(pilot, scene);
+  Demand out;
+  for (int step = 0; step < pilot.steps(); ++step) {
+    if (own) {
+      replay.find_rows(step, own->refresh());
+    } else {
+      replay.find_rows(step);
+    }
+    const ContactTable& rows = replay.rows();
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const double load = -*pilot.stiffness.kappa * log.eval(rows.d[r], rows.d_hat[r]).db;
+      if (!(load > 0)) continue;
+      const auto where = [&] { return replay.system().contacts().describe(rows.key[r], rows.kind[r]); };
+      const double kappa = own ? own_kappa(*own, static_cast<int>(r), u, pilot, replay) : 1;
+      if (!(kappa > 0)) refuse(kappa, "kappa", step, where());
+      if (compare(matched(load, rows.d_hat[r]), kappa, load, rows.d_hat[r], step, out)) out.where = where();
+    }
+  }
+  return out;
+}
+
+Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
+                    const LimitStiffness* own) {
+  const BarrierFunction log = log_barrier();
+  const StrainLimitPart& part = scene.limit;
+  StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width, scene.planar);
+  Replay replay(pilot, scene);
+  Demand out;
+  std::vector<double> y_start(part.width.size());
+  for (int step = 0; step < pilot.steps(); ++step) {
+    if (own) replay.find_rows(step, own->refresh);
+    limit.measure(replay.start(step));
+    for (std::size_t e = 0; e < limit.size(); ++e)
+      y_start[e] = std::min(limit.gaps()[2 * e], limit.gaps()[2 * e + 1]);
+    limit.measure(replay.end(step));
+    for (std::size_t e = 0; e < limit.size(); ++e) {
+      const double y = std::min(limit.gaps()[2 * e], limit.gaps()[2 * e + 1]), width = part.width[e];
+      if (!(y < width)) continue;
+      const double area = limit.rests()[e].area;
+      const double load = -(*pilot.stiffness.k_s * area) * log.eval(y, width).db / area;
+      if (!(load > 0)) continue;
+      double k_s = 1;
+      if (own) {
+        const double softest = own->refresh == Refresh::per_step ? std::max(width, y_start[e]) : width;
+        k_s = own_limit_stiffness(*own, scene, e, area, softest, pilot, replay.start(step), replay.system());
+        if (!(k_s > 0)) refuse(k_s * area, "kappa_e", step, name_element(scene, e));
+      }
+      if (compare(matched(load, width), k_s, load, width, step, out)) out.where = name_element(scene, e);
+    }
+  }
+  return out;
+}
+
+}  // namespace bb

@@ -1,0 +1,39 @@
+// What the contacts and limited elements of a pilot ask of a stiffness: the largest demand over all of them,
+// at all converged step ends (docs/design.md, Matching).
+#pragma once
+
+#include <functional>
+#include <string>
+
+#include "experiments/run/pilot.hpp"
+
+namespace bb {
+
+/// The matching rule: stiffness (N/m) with which a barrier of this width carries this load.
+using MatchedStiffness = std::function<double(double load, double width)>;
+
+/// The contact or limited element that asks for the most.
+struct Demand {
+  double largest = 0;        // N/m, the matched stiffness; 1 with a policy: that over the policy's own
+  double load = 0;           // N per unit multiplicity, or N/m
+  double width = 0;          // its d_hat (m), or the width of its limit (1)
+  int step = -1;             // of the pilot, at whose end it carried the load
+  std::string where;         // names it
+  long long considered = 0;  // loads that were compared, over all steps; 0: the rest is void
+};
+
+/// The largest demand over the contacts. `own`: the policy that is to be scaled, or null. It is asked for the
+/// contact with the H that it reads: of the step's end when it is refreshed in every iteration, else of the
+/// step's start; and at d_hat, where a new pair gets its kappa, or at u d_hat if that gives less. Rows with a
+/// mollifier are left out: their load is e(x) times that of a row.
+/// Errors: ConfigError when `own` gives a contact that carried a load no stiffness.
+/// Cost: finding the rows of each step, and with `own` one assembly a step.
+Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
+                      const StiffnessPolicy* own, double u);
+
+/// The same over the limited elements. `own` is asked at the width of the limit; frozen for a step, at the
+/// gap of the step's start if that is wider. Requires a scene with limited elements.
+Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
+                    const LimitStiffness* own);
+
+}  // namespace bb
