@@ -231,7 +231,7 @@ TEST(Calibration, ADynamicLimitCarriesThePilotsLoads) {
     EXPECT_EQ(record.status.outcome, Outcome::ok) << record.status.detail;
     EXPECT_GT(record.summary.limit_load_max_N_per_m.value, 0);
   }
-  EXPECT_GT(scale[1], scale[0]);
+  EXPECT_GT(scale[1], 1.2 * scale[0]);  // 1.37: asked at the width alone, frozen or not makes no difference
 }
 
 TEST(Calibration, ALimitThatWasNeverActiveStaysAsGiven) {

@@ -22,7 +22,10 @@ TEST(PlanOf, AsksThePoliciesWhetherTheyReadTheElasticMatrix) {
   const std::string fixed_limit = R"(/strain_limit/stiffness_policy={"name": "fixed", "k_s_N_per_m": 1})";
   EXPECT_FALSE(planned(hang, {}).policy_submatrix.needed);
   EXPECT_TRUE(planned(hang, {dynamic, fixed_limit}).policy_submatrix.needed);
-  EXPECT_TRUE(planned(hang, {dynamic, mass}).policy_submatrix.needed);  // the limit's own policy
+  EXPECT_FALSE(
+      planned(hang, {dynamic, mass}).policy_submatrix.needed);  // the limit follows the contact's policy
+  const std::string own_limit = R"(/strain_limit/stiffness_policy/elastic_term=true)";
+  EXPECT_TRUE(planned(hang, {dynamic, mass, own_limit}).policy_submatrix.needed);
   EXPECT_FALSE(planned(hang, {dynamic, mass, fixed_limit}).policy_submatrix.needed);
   EXPECT_FALSE(planned(hang, {dynamic, mass, "/strain_limit/enabled=false"}).policy_submatrix.needed);
 }
