@@ -1,10 +1,10 @@
 #include "core/record/run_folder.hpp"
 
-#include <fstream>
 #include <nlohmann/json.hpp>
 #include <regex>
 #include <string>
 
+#include "core/input/json.hpp"
 #include "core/record/provenance.hpp"
 
 namespace bb {
@@ -63,8 +63,11 @@ void remove_unfinished_artifacts(const fs::path& folder) {
 
 void remove_earlier_run(const fs::path& folder) {
   std::error_code error;
-  std::ifstream in(folder / "run.json");
-  const json record = json::parse(in, nullptr, false);
+  json record;
+  try {
+    record = read_json_file((folder / "run.json").string(), record_file);
+  } catch (const ConfigError&) {  // none, or a torn one
+  }
   const json none = json::array();
   const json& artifacts = record.is_object() && record.contains("artifacts") ? record["artifacts"] : none;
   for (const json& artifact : artifacts) {

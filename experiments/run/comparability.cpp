@@ -2,9 +2,9 @@
 
 #include <fmt/format.h>
 
-#include <fstream>
 #include <vector>
 
+#include "core/input/json.hpp"
 #include "core/record/json_fields.hpp"
 #include "core/record/writer.hpp"
 
@@ -50,14 +50,18 @@ struct Member {
 
 Member read_member(const std::filesystem::path& folder) {
   Member out;
-  std::ifstream in(folder / "run.json");
-  if (!in) return out;
+  const std::string path = (folder / "run.json").string();
   try {
-    out.record = Json::parse(in);
+    const std::string text = read_input_file(path, record_file);
+    static_cast<void>(
+        parse_json(text, path, LargeIntegers::rounded));  // judged here, read in its order below
+    out.record = Json::parse(text);
     if (out.record.at("schema").at("version") == kRunSchemaVersion && out.record.contains("comparability")) {
       out.run = compared_run(out.record, folder);
     }
-  } catch (const Json::exception&) {  // torn, or no record at all
+  } catch (const ConfigError&) {  // torn, or no file to read
+    out.run.reset();
+  } catch (const Json::exception&) {  // no record
     out.run.reset();
   }
   return out;

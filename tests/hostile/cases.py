@@ -1,6 +1,7 @@
 """The table of hostile input: what is handed to the program, and what it has to answer."""
 
-import signal
+import os
+import resource
 from dataclasses import dataclass, field
 from typing import Callable, Optional
 
@@ -353,4 +354,31 @@ QUERIES = [
     query("id-of-30-digits", '{"id": %s, "kind": "rho", "shape": "cubic", "u": 0.5}\n' % ("9" * 30), '"id":' + "9" * 30, code=DONE),
 ]
 
-CASES = [*FILES, *JSON, *OVERRIDES, *SWEEPS, *MESHES, *SCENE_CASES, *PLUGINS, *QUERIES]
+# --- streams, limits and what lies in the output folder already
+
+def no_stderr() -> None:
+    os.close(2)
+
+
+def full_stderr() -> None:
+    os.dup2(os.open("/dev/full", os.O_WRONLY), 2)
+
+
+def small_files() -> None:
+    resource.setrlimit(resource.RLIMIT_FSIZE, (4000, 4000))
+
+
+SHORT = ("run", BLOCK, "--set", "/time/steps=1", "--out", "out")
+OUTPUTS = [
+    Case("stderr-closed", ("check", BLOCK, "--set", "/time/dt_s=-1"), prepare=no_stderr),
+    Case("stderr-full", ("check", BLOCK, "--set", "/time/dt_s=-1"), prepare=full_stderr),
+    Case("stderr-full-plugin", ("--plugin", "nowhere.so", "list"), prepare=full_stderr),
+    Case("files-of-4000-bytes", SHORT, code=INTERRUPTED_OR_FULL, says=("File too large",), prepare=small_files, writes=("out",)),
+    Case("out-run-json-a-fifo", SHORT, {"out/run.json": fifo}, code=DONE, writes=("out",)),
+    Case("out-run-json-nested", SHORT, {"out/run.json": nested(DEEP)}, code=DONE, writes=("out",)),
+    Case("out-a-file", SHORT, {"out": "text"}, says=("out",)),
+    Case("run-a-nested-record", ("run", "r.json", "--out", "out"), {"r.json": '{"schema": {"name": "barrierbench.run"}, "x": ' + nested(DEEP) + "}"},
+         says=("64 levels",)),
+]
+
+CASES = [*FILES, *JSON, *OVERRIDES, *SWEEPS, *MESHES, *SCENE_CASES, *PLUGINS, *QUERIES, *OUTPUTS]

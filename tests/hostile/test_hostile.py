@@ -59,7 +59,7 @@ def test_hostile(program: str, tmp_path: Path, case: Case):
 
     environment = {**os.environ, "OPENBLAS_NUM_THREADS": "2", **case.environment}
     done = subprocess.run([program, *case.command], cwd=tmp_path, env=environment, input=case.stdin, capture_output=True,
-                          check=False, timeout=case.seconds, preexec_fn=limits, restore_signals=not case.prepare)
+                          check=False, timeout=case.seconds, preexec_fn=limits)
 
     told = done.stderr.decode(errors="replace") + done.stdout.decode(errors="replace")
     assert done.returncode == case.code, (done.returncode, told[:2000])
