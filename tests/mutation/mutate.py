@@ -1,11 +1,12 @@
 """Puts plausible mistakes into the code one at a time and counts how many the tests catch.
 
-    ./bench mutate                        every mutant: about half a minute of one core each
+    ./bench mutate                        every mutant; what one build can hold together is built together (switches.py)
+    ./bench mutate --one-by-one           a build for every mutant: about half a minute of one core each
     ./bench mutate --only 'newton/*'      those whose room/name matches a pattern (repeatable)
     ./bench mutate --list                 the mutants, nothing is built
     ./bench mutate --check                only whether every text is still found, a second
     ./bench mutate --resume               keeps the verdicts of results.json that were made on this very tree
-    ./bench mutate --jobs 2               that many mutants at a time, each in a tree of its own
+    ./bench mutate --jobs 2               of those built one by one that many at a time, each in a tree of its own
 
 A mutant is an entry of one of the *.toml files beside this script:
 
@@ -29,16 +30,19 @@ from __future__ import annotations
 
 import argparse
 import fnmatch
-import hashlib
 import json
 import os
 import queue
+import re
 import subprocess
 import sys
 import threading
 import time
 from dataclasses import asdict, dataclass
 from pathlib import Path
+
+import switches
+from tree import Tree, first_failure, ran_nothing, tree_digest
 
 try:
     import tomllib
@@ -48,7 +52,6 @@ except ModuleNotFoundError:
 ROOT = Path(__file__).resolve().parents[2]
 HERE = Path(__file__).resolve().parent
 REQUIRED_RATE = 0.9
-PROGRAM = "experiments/barrierbench"  # below the build folder
 FIELDS = {"name", "file", "find", "replace", "breaks", "judges", "equivalent"}
 
 
@@ -114,93 +117,49 @@ def line_of(mutant: Mutant, text: str) -> int:
     return text.count("\n", 0, max(at, 0)) + 1 + same
 
 
-# ---------------------------------------------------------------- the copied tree
+# ---------------------------------------------------------------- mutants of one build
 
 
-def listed_files(root: Path) -> list[str]:
-    """Tracked files and untracked ones that git does not ignore."""
-    command = ["git", "-C", str(root), "ls-files", "-z", "--cached", "--others", "--exclude-standard"]
-    names = subprocess.run(command, capture_output=True, check=True, text=True).stdout.split("\0")
-    return sorted({name for name in names if name and (root / name).is_file()})
+@dataclass(frozen=True)
+class Switched:
+    """A mutant that a build holds beside others."""
+
+    mutant: Mutant
+    number: int  # the value of BB_MUTANT that switches it on
+    text: str  # of its file, unchanged
+    edit: switches.Edit
 
 
-def tree_digest(root: Path) -> str:
-    digest = hashlib.sha256()
-    for name in listed_files(root):
-        digest.update(name.encode() + b"\0" + hashlib.sha256((root / name).read_bytes()).digest())
-    return digest.hexdigest()
+def switched_rounds(mutants: list[Mutant]) -> list[list[Switched]]:
+    """Mutants that one build can hold; a mutant that overlaps another one's text goes into a later round."""
+    rounds: list[list[Switched]] = []
+    for number, mutant in enumerate(mutants, 1):
+        text = (ROOT / mutant.file).read_text()
+        edit = switches.switched(number, mutant.find, mutant.replace, text) if mutant.file.endswith(".cpp") and text.count(mutant.find) == 1 else None
+        if edit is None:
+            continue
+        one = Switched(mutant, number, text, edit)
+        free = (r for r in rounds if all(o.mutant.file != mutant.file or edit.end <= o.edit.start or edit.start >= o.edit.end for o in r))
+        place = next(free, None)
+        if place is None:
+            place = []
+            rounds.append(place)
+        place.append(one)
+    return rounds
 
 
-class Tree:
-    """A copy of the working tree with a release build of its own."""
-
-    def __init__(self, folder: Path, data: Path | None):
-        self.folder, self.build = folder, folder / "build" / "release"
-        self.environment = os.environ | {
-            "PYTHONPATH": str(folder),
-            "PYTHONDONTWRITEBYTECODE": "1",
-            "BARRIERBENCH_PROGRAM": str(self.build / PROGRAM),
-        }
-        if data is not None:
-            self.environment["BARRIERBENCH_DATA"] = str(data)
-
-    def synchronise(self, root: Path) -> None:
-        """Makes the copy equal to the working tree; files that are equal keep their times, so they are not rebuilt."""
-        wanted = listed_files(root)
-        for name in wanted:
-            target, content = self.folder / name, (root / name).read_bytes()
-            if not target.is_file() or target.read_bytes() != content:
-                target.parent.mkdir(parents=True, exist_ok=True)
-                target.write_bytes(content)
-                target.chmod((root / name).stat().st_mode)
-        for path in list(self.folder.rglob("*")):
-            name = path.relative_to(self.folder)
-            if path.is_file() and name.parts[0] not in ("build", ".git") and str(name) not in set(wanted):
-                path.unlink()
-
-    def run(self, command: list[str], timeout: float) -> tuple[int, str]:
-        """Exit code (124: out of time) and output, stderr included."""
-        try:
-            done = subprocess.run(command, cwd=self.folder, env=self.environment, timeout=timeout, check=False,
-                                  stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True, errors="replace")
-        except subprocess.TimeoutExpired:
-            return 124, f"out of time after {timeout:.0f} s"
-        return done.returncode, done.stdout
-
-    def configure(self) -> tuple[int, str]:
-        if (self.build / "build.ninja").exists():
-            return 0, ""
-        return self.run(["cmake", "--preset", "release", "-DBB_CUDA=OFF", "-DBB_BENCHMARKS=OFF"], 600)
-
-    def make(self, judges: list[str], jobs: int) -> tuple[int, str]:
-        targets = sorted({"barrierbench" if j.startswith("pytest:") else j.split(":")[0] for j in judges})
-        return self.run(["ninja", "-C", str(self.build), "-j", str(jobs), *targets], 3600)
-
-    def judge(self, name: str, timeout: float) -> tuple[int, str]:
-        """Runs one judge up to its first failure."""
-        kind, _, rest = name.partition(":")
-        if kind == "pytest":
-            return self.run([sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *rest.split()], timeout)
-        program = next(iter(self.build.glob(f"tests/*/{kind}")), None)
-        if program is None:
-            return 127, f"{kind} is not among the built tests"
-        return self.run([str(program), "--gtest_fail_fast", "--gtest_brief=1", *([f"--gtest_filter={rest}"] if rest else [])], timeout)
-
-
-def ran_nothing(name: str, code: int, output: str) -> bool:
-    """A judge whose filter or path matches no test judges nothing."""
-    if name.startswith("pytest:"):
-        return code == 5 or "no tests ran" in output
-    return "Running 0 tests" in output or "0 tests from 0 test suites" in output
-
-
-def first_failure(output: str) -> str:
-    """The line of a judge's output that names what failed."""
-    for mark in ("[  FAILED  ]", "FAILED ", "ERROR ", ": error:", "error:"):
-        for line in output.splitlines():
-            if mark in line:
-                return line.strip()[:160]
-    return (output.strip().splitlines() or [""])[-1][:160]
+def refused_numbers(tree: Tree, output: str) -> set[int]:
+    """Numbers of the mutants beside the lines that the compiler does not accept."""
+    numbers: set[int] = set()
+    for path, line in re.findall(r"^(\S+?\.cpp):(\d+):\d+: error:", output, re.MULTILINE):
+        lines = (tree.build / path).resolve().read_text().splitlines()
+        at = int(line) - 1
+        for near in (lines[at : at + 1], lines[max(0, at - 3) : at + 3]):
+            found = {int(k) for k in re.findall(r"bb_mutation::on\((\d+)\)", "\n".join(near))}
+            if found:
+                numbers |= found
+                break
+    return numbers
 
 
 # ---------------------------------------------------------------- verdicts
@@ -241,6 +200,10 @@ class Campaign:
             self.ask_judges(tree, mutant, verdict)
         finally:
             path.write_text(original)
+        return self.settled(mutant, verdict, start)
+
+    def settled(self, mutant: Mutant, verdict: Verdict, start: float) -> Verdict:
+        """The verdict with its time; a mutant that is declared equivalent has to survive."""
         if mutant.equivalent and verdict.verdict != "broken":
             caught = verdict.verdict == "caught"
             verdict.detail = f"declared equivalent, but {verdict.detail}" if caught else mutant.equivalent
@@ -248,9 +211,49 @@ class Campaign:
         verdict.seconds = round(time.monotonic() - start, 1)
         return verdict
 
-    def ask_judges(self, tree: Tree, mutant: Mutant, verdict: Verdict) -> None:
+    def note(self, verdict: Verdict) -> None:
+        with self.lock:
+            self.verdicts[verdict.label] = verdict
+            say(f"{verdict.verdict:<10} {verdict.label}  {verdict.seconds:.0f} s  {verdict.judge}  {verdict.detail}")
+            self.write()
+
+    def try_together(self, tree: Tree) -> str:
+        """Judges all mutants that one build can hold. Returns what is wrong with such a build, empty when it is green."""
+        for chosen in switched_rounds([m for m in self.mutants if m.label not in self.verdicts]):
+            built = self.build_together(tree, chosen)
+            judges = sorted({judge for one in built for judge in one.mutant.judges})
+            for judge in judges:
+                code, output = tree.judge(judge, 900)
+                if code != 0:
+                    return f"{judge} is not green in the build that holds all mutants, with none of them on: {first_failure(output)}"
+            for one in built:
+                start = time.monotonic()
+                verdict = Verdict(one.mutant.label, one.mutant.file, line_of(one.mutant, one.text), one.mutant.breaks, "survived")
+                tree.environment[switches.ENVIRONMENT] = str(one.number)
+                self.ask_judges(tree, one.mutant, verdict, build=False)
+                del tree.environment[switches.ENVIRONMENT]
+                self.note(self.settled(one.mutant, verdict, start))
+            tree.synchronise(ROOT)
+        return ""
+
+    def build_together(self, tree: Tree, chosen: list[Switched]) -> list[Switched]:
+        """Builds the judges of these mutants with all of them in. Leaves out, and returns without, what the compiler refuses."""
+        while chosen:
+            for file in {one.mutant.file for one in chosen}:
+                mine = [one for one in chosen if one.mutant.file == file]
+                tree.write(file, switches.apply(mine[0].text, [one.edit for one in mine]))
+            code, output = tree.make(sorted({judge for one in chosen for judge in one.mutant.judges}), max(self.ninja_jobs, 2))
+            if code == 0:
+                break
+            refused = refused_numbers(tree, output)
+            say(f"not together: {', '.join(one.mutant.label for one in chosen if one.number in refused) or first_failure(output)}")
+            tree.synchronise(ROOT)
+            chosen = [one for one in chosen if one.number not in refused] if refused else []
+        return chosen
+
+    def ask_judges(self, tree: Tree, mutant: Mutant, verdict: Verdict, build: bool = True) -> None:
         for judge in mutant.judges:  # built one by one: the first is mostly enough
-            code, output = tree.make([judge], self.ninja_jobs)
+            code, output = tree.make([judge], self.ninja_jobs) if build else (0, "")
             if code != 0:
                 verdict.verdict, verdict.detail = "broken", f"does not compile: {first_failure(output)}"
                 return
@@ -267,11 +270,7 @@ class Campaign:
             except queue.Empty:
                 return
             for mutant in group:
-                verdict = self.try_mutant(tree, mutant)
-                with self.lock:
-                    self.verdicts[mutant.label] = verdict
-                    say(f"{verdict.verdict:<10} {verdict.label}  {verdict.seconds:.0f} s  {verdict.judge}  {verdict.detail}")
-                    self.write()
+                self.note(self.try_mutant(tree, mutant))
 
     def ordered(self) -> list[Verdict]:
         return [self.verdicts[m.label] for m in self.mutants if m.label in self.verdicts]
@@ -323,6 +322,7 @@ def parse_arguments() -> argparse.Namespace:
     parser.add_argument("--list", action="store_true", help="the mutants, nothing is built")
     parser.add_argument("--check", action="store_true", help="only whether every text is found once")
     parser.add_argument("--resume", action="store_true", help="keep verdicts made on the very same files")
+    parser.add_argument("--one-by-one", action="store_true", help="a build for every mutant")
     parser.add_argument("--jobs", type=int, default=1, help="mutants at a time, each in its own copy of the tree (1)")
     parser.add_argument("--out", type=Path, default=ROOT / "build" / "mutation", help="folder of the copies and of results.json")
     return parser.parse_args()
@@ -380,6 +380,9 @@ def main() -> int:
         if wrong := campaign.check_baseline(tree):
             print(f"mutate: {wrong}", file=sys.stderr)
             return 2
+    if not arguments.one_by_one and (wrong := campaign.try_together(trees[0])):
+        print(f"mutate: {wrong}", file=sys.stderr)
+        return 2
     groups: dict[str, list[Mutant]] = {}
     for mutant in mutants:
         if mutant.label not in campaign.verdicts:

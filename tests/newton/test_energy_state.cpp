@@ -17,17 +17,51 @@ StepTerms one_particle(double inertia) {
 
 TEST(EnergyState, change_is_the_difference_of_the_totals) {
   StepTerms terms = one_particle(3);
+  terms.x_n = test::one_point(0.05, 0, 0.3);
+  terms.x_tilde = test::one_point(0, 0.1, -0.2);
   EnergyState a, b;
   a.x = test::one_point(0.1, 0, 0);
   b.x = test::one_point(0.3, 0.2, -0.1);
-  a.element = {{1.0, 2.0}};
-  b.element = {{1.5, 0.25}};
-  a.contact = {0.5};
-  b.contact = {0.25, 0.125};
-  const EnergyChange change = energy_change(terms, a, b);
-  ASSERT_NE(change.change, 0);
-  EXPECT_NEAR(change.change, total_energy(terms, b) - total_energy(terms, a), 1e-15);
-  EXPECT_GE(change.magnitude, std::abs(change.change));
+  const EnergyState a_alone = a, b_alone = b;
+  const double moved = energy_change(terms, a_alone, b_alone).change;
+  EXPECT_NEAR(moved, total_energy(terms, b_alone) - total_energy(terms, a_alone), 1e-15);
+  // every other term by itself, so that none is left out of both
+  struct Term {
+    std::vector<double> from, to;
+    std::vector<double>& (*of)(EnergyState&);
+  };
+  const auto element = [](EnergyState& s) -> std::vector<double>& { return s.element.emplace_back(); };
+  const auto limit = [](EnergyState& s) -> std::vector<double>& { return s.limit; };
+  const auto contact = [](EnergyState& s) -> std::vector<double>& { return s.contact; };
+  const auto mollified = [](EnergyState& s) -> std::vector<double>& { return s.mollified_contact; };
+  for (const Term& term : {Term{{1.0, 2.0}, {1.5, 0.25}, element}, Term{{3.0}, {5.0}, limit},
+                           Term{{0.5}, {0.25, 0.125}, contact}, Term{{0.75}, {}, mollified}}) {
+    EnergyState from = a_alone, to = b_alone;
+    term.of(from) = term.from;
+    term.of(to) = term.to;
+    double difference = 0, magnitude = 0;
+    for (const double e : term.to) difference += e, magnitude += e;
+    for (const double e : term.from) difference -= e, magnitude += e;
+    ASSERT_NE(difference, 0);
+    const EnergyChange change = energy_change(terms, from, to);
+    EXPECT_NEAR(change.change, moved + difference, 1e-15);
+    EXPECT_NEAR(change.change, total_energy(terms, to) - total_energy(terms, from), 1e-15);
+    EXPECT_NEAR(change.magnitude, energy_change(terms, a_alone, b_alone).magnitude + magnitude, 1e-15);
+  }
+}
+
+TEST(EnergyState, inertia_and_work_by_hand) {
+  StepTerms terms = one_particle(3);
+  terms.x_n = test::one_point(0.05, 0, 0.3);
+  terms.x_tilde = test::one_point(0, 0.1, -0.2);
+  EnergyState at;
+  at.x = terms.x_n;  // no work yet
+  const double inertia = 0.5 * 3 * (0.05 * 0.05 + 0.1 * 0.1 + 0.5 * 0.5);
+  EXPECT_NEAR(total_energy(terms, at), inertia, 1e-15);
+  EnergyState down = at;
+  down.x(2, 0) -= 0.5;  // to the height of x_tilde, 1 J of work
+  EXPECT_NEAR(energy_change(terms, at, down).change, -0.5 * 3 * 0.25 - 1, 1e-15);
+  EXPECT_NEAR(energy_change(terms, at, down).magnitude, inertia + (inertia - 0.5 * 3 * 0.25) + 1, 1e-15);
 }
 
 TEST(EnergyState, a_change_far_below_the_rounding_of_the_total_is_seen) {

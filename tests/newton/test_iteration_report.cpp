@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/newton/iteration.hpp"
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
@@ -62,6 +63,16 @@ TEST(IterationReport, a_load_is_one_pairs_and_a_curvature_is_the_rows) {
   const IterationReport& first = watch.reports.at(0);
   ASSERT_EQ(first.contacts.total(), 2U);
   EXPECT_NEAR(first.force_max, kappa * 2 / (2 * d_hat) * depth * depth, 1e-9);
+  StepReport at_start;
+  NewtonSystem system(scene, method);
+  Prediction at_rest;
+  at_rest.x_tilde = scene.x0;
+  system.begin_step(scene.x0, at_rest, 1e-3, 1.0);
+  system.assemble();
+  measure_end(system, at_start);
+  EXPECT_EQ(at_start.force_max, first.force_max);
+  EXPECT_EQ(at_start.contacts.total(), 2U);
+  EXPECT_EQ(at_start.gap_min, first.gap_min);
   EXPECT_NEAR(first.curvature_max, 6 * kappa * 4 / (2 * d_hat) * depth, 1e-6);  // six pairs
 }
 

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <vector>
 
+#include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb {
@@ -120,6 +121,45 @@ TEST(KappaCycle, the_step_says_that_it_is_the_strain_limit_whose_kappa_does_not_
   EXPECT_GT(log.limit_gap.back(), 0);
   EXPECT_LT(log.limit_gap.back(), 1);
   EXPECT_FALSE(step.limit_overload.has_value());
+}
+
+/// kappa = m/d^2 kept for a step: a contact that a line search met keeps the value at d_hat, at which it was
+/// met.
+TEST(KappaCycle, a_contact_that_a_line_search_meets_keeps_its_kappa_for_the_step) {
+  Scene scene = test::particle_over_plane(mass, 1.1 * d_hat, d_hat);
+  scene.v0.col(0) = Vec3d(0, 0, -0.04);
+  scene.gravity.setZero();
+  Method method = test::fixed_method("cubic", 1);
+  StiffnessPolicyConfig policy;
+  policy.name = "elasticity_inclusive";
+  policy.refresh = Refresh::per_step;
+  method.stiffness = make_policy(policy);
+  Simulation simulation(scene, method, dt, 1);
+  Log log;
+  ASSERT_EQ(simulation.step(log).contacts.obstacle, 1U);
+  ASSERT_GT(log.dx.size(), 2U);  // refreshed after it was met
+  ASSERT_LT(simulation.history().x(2, 0), 0.99 * d_hat);
+  EXPECT_NEAR(simulation.system().state().rows.kappa.at(0), kappa_of(d_hat), 1e-9 * kappa_of(d_hat));
+}
+
+/// Two rods that cross at an angle of 0.04 and close: their one row is mollified.
+TEST(KappaCycle, a_mollified_row_whose_kappa_moves_is_seen) {
+  Scene scene;
+  test::add_body(scene, "rod", {Vec3d(-0.5, 0, 0), Vec3d(0.5, 0, 0)}, {}, d_hat);
+  test::add_body(scene, "other", {Vec3d(-0.5, -0.01, 0.008), Vec3d(0.5, 0.01, 0.008)}, {}, d_hat);
+  scene.surface_edges = {{0, 1}, {2, 3}};
+  scene.v0.rightCols(2).row(2).setConstant(-0.02);
+  Method method = test::fixed_method("cubic", 1);
+  StiffnessPolicyConfig policy;
+  policy.name = "elasticity_inclusive";
+  method.stiffness = make_policy(policy);
+  Simulation simulation(scene, method, dt, 1);
+  Log log;
+  const StepReport report = simulation.step(log);
+  ASSERT_EQ(report.contacts.mollified, 1U);
+  ASSERT_EQ(report.contacts.total(), 1U);
+  EXPECT_EQ(log.change.at(0), 0);
+  EXPECT_GT(*std::max_element(log.change.begin(), log.change.end()), 0.01);
 }
 
 TEST(KappaCycle, kept_for_the_step_both_converge) {

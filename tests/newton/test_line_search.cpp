@@ -32,11 +32,16 @@ class EnergyWatch final : public StepObserver {
     if (!report.accepted_by_rounding) {
       EXPECT_LE(report.energy_change, 0) << report.step << "/" << report.iteration;
     }
+    if (report.accepted_by_rounding) {  // no descent by Armijo's measure
+      EXPECT_GT(report.energy_change, -1e-4 * report.alpha * report.decrement)
+          << report.step << "/" << report.iteration;
+      ++roundings;
+    }
     descents += report.energy_change < 0;
     contacts += report.contacts.total();
     stretched += report.max_stretch > 1.025;
   }
-  int descents = 0, stretched = 0;
+  int descents = 0, stretched = 0, roundings = 0;
   std::size_t contacts = 0;
 };
 
@@ -160,6 +165,97 @@ TEST(LineSearch, takes_the_first_halved_step_whose_fall_is_armijos_share_of_the_
       EXPECT_NEAR(watch.first.energy_change, -(c.alpha - c.alpha * c.alpha / 2) * decrement, 1e-5 * decrement)
           << solver << " " << c.armijo;
     }
+  }
+}
+
+/// The article's own solver adds eps I to the matrix, eps = 1e-6 of its mean diagonal entry, all of which are
+/// m/h^2.
+TEST(LineSearch, the_articles_direction_is_that_of_its_own_matrix) {
+  Scene scene = test::particle_over_plane(0.2, 1, 0.01);
+  Method method = test::fixed_method("log", 1);
+  method.step_solver.name = "article_literal";
+  const double dt = 0.01;
+  Simulation simulation(scene, method, dt, 1);
+  FirstIteration watch;
+  simulation.step(watch);
+  EXPECT_NEAR(watch.first.dx_inf / (10 * dt * dt) * (1 + 1e-6), 1, 1e-12);
+}
+
+/// The first iteration that the strain limit alone cuts short.
+class StrainWatch final : public StepObserver {
+ public:
+  void on_iteration(const IterationReport& report) override {
+    if (report.alpha_limit < 1 && report.alpha_ccd == 1 && capped.alpha == 0) capped = report;
+  }
+  IterationReport capped;
+};
+
+TEST(LineSearch, takes_its_fraction_of_a_binding_strain_bound_at_the_first_trial) {
+  SceneBuilder builder("cloth that flies apart", false, Vec3d::Zero(), "test");
+  BodySpec spec = test::cloth_spec(3, 0, 0.001);
+  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  builder.add_body(spec);
+  Scene scene = builder.finish();
+  scene.v0.row(0) = 10 * (scene.x0.row(0).array() - scene.x0.row(0).mean());
+  Method method = test::fixed_method("log", 1);
+  method.limit_stiffness.k_s = 300;
+  Simulation simulation(scene, method, 0.01, 1);
+  StrainWatch watch;
+  simulation.step(watch);
+  ASSERT_GT(watch.capped.alpha, 0);
+  EXPECT_DOUBLE_EQ(watch.capped.alpha, 0.8 * watch.capped.alpha_limit);
+  EXPECT_EQ(watch.capped.line_search_trials, 1);
+}
+
+/// Every |dx|_inf of a step.
+class DirectionWatch final : public StepObserver {
+ public:
+  void on_iteration(const IterationReport& report) override { dx.push_back(report.dx_inf); }
+  std::vector<double> dx;
+};
+
+TEST(LineSearch, stops_at_the_first_direction_that_is_slower_than_the_tolerance) {
+  for (const double tolerance : {1e-3, 1e-7}) {
+    Scene scene = test::particle_over_plane(0.2, 0.009, 0.01);
+    scene.v0(2, 0) = -0.5;
+    Method method = test::fixed_method("log", 200);
+    method.step_solver.tol_velocity = tolerance;
+    const double dt = 0.01;
+    Simulation simulation(scene, method, dt, 1);
+    DirectionWatch watch;
+    ASSERT_EQ(simulation.step(watch).status, StepStatus::converged);
+    ASSERT_GT(watch.dx.size(), 2U);
+    EXPECT_LT(watch.dx.back() / dt, tolerance);
+    watch.dx.pop_back();
+    for (const double dx : watch.dx) EXPECT_GE(dx / dt, tolerance);
+  }
+}
+
+/// A shape whose energy is a number in its first evaluation, that of the iterate, and in no trial.
+void once(void* calls, std::size_t n, const double*, const double* d_hat, double* b, double* db,
+          double* d2b) {
+  const bool first = (*static_cast<int*>(calls))++ == 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    b[i] = first ? 0 : std::nan("");
+    db[i] = -d_hat[i];
+    d2b[i] = 1;
+  }
+}
+
+TEST(LineSearch, a_direction_without_any_decrease_is_a_failed_line_search_at_once) {
+  for (const char* solver : {"line_search", "article_literal"}) {
+    const Scene scene = test::particle_over_plane(0.2, 0.5, 1);
+    Method method = test::fixed_method("cubic", 1);
+    int calls = 0;
+    method.contact.shape.batch_double = once;
+    method.contact.shape.self = &calls;
+    method.step_solver.name = solver;
+    Simulation simulation(scene, method, 0.01, 1);
+    StepObserver observer;
+    const StepReport report = simulation.step(observer);
+    EXPECT_EQ(report.status, StepStatus::line_search_failed) << solver << " " << report.detail;
+    EXPECT_EQ(report.iterations, 1);
+    EXPECT_EQ(simulation.history().x, scene.x0);
   }
 }
 

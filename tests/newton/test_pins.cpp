@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb {
@@ -128,6 +129,46 @@ TEST(Pins, the_motion_of_a_given_edge_is_lifted_through_a_mollified_row) {
   ASSERT_GT((system.gradient() - gradient).cwiseAbs().maxCoeff(), 1e-6);  // N: the motion is felt
   EXPECT_LT((model - wanted).lpNorm<Eigen::Infinity>(),
             1e-3 * (system.gradient() - gradient).cwiseAbs().maxCoeff());
+}
+
+/// A plate that rises by three times its distance to a free particle, both too far apart for a contact at the
+/// start: the first direction moves nothing that is free, and a bound keeps the plate short of its pose.
+TEST(Pins, a_step_converges_at_its_pose_only) {
+  Scene scene;
+  const auto [vertices, triangles] = test::grid(2, 2, 1.0);
+  test::add_body(scene, "plate", vertices, triangles, 0.001, true);
+  test::add_body(scene, "particle", {Vec3d(0.7, 0.4, 0.01)}, {}, 0.001);
+  scene.motions[0].velocity = Vec3d(0, 0, 3);
+  Method method = test::fixed_method("log", 50);
+  Simulation simulation(scene, method, 0.01, 1);
+  StepObserver observer;
+  ASSERT_EQ(simulation.step(observer).status, StepStatus::converged);
+  EXPECT_EQ(simulation.history().x(2, 0), 0.03);
+  EXPECT_GT(simulation.history().x(2, 9), 0.03);
+}
+
+/// x + (pose - x) is not always the pose: a full step puts a driven vertex on it all the same.
+TEST(Pins, one_full_step_reaches_a_pose_that_a_sum_would_miss) {
+  Scene scene;
+  test::add_body(scene, "pair", {Vec3d(0.7, 0, 0), Vec3d(0, 5, 0)}, {}, 0.001);
+  scene.pins = {{0, 0}};
+  scene.motions.resize(1);
+  scene.mass = {0, 1};
+  scene.gravity = Vec3d(0, 0, -10);
+  const Vec3d start = scene.x0.col(0);
+  Vec3d pose = start;
+  for (int turn = 100; turn < 200 && start + (pose - start) == pose; ++turn) {
+    scene.motions[0].angular_velocity = turn;
+    pose = pin_pose(scene, scene.pins[0], 0.01);
+  }
+  ASSERT_NE(Vec3d(start + (pose - start)), pose);
+  Method method = test::fixed_method("log", 1);
+  Simulation simulation(scene, method, 0.01, 1);
+  StepObserver observer;
+  const StepReport report = simulation.step(observer);
+  ASSERT_EQ(report.status, StepStatus::converged);
+  EXPECT_EQ(simulation.history().x.col(0), pose);
+  EXPECT_EQ(report.iterations, 2);  // the step and the one that finds nothing more to do
 }
 
 TEST(Pins, a_pose_beyond_the_strain_limit_is_infeasible_and_names_the_pin) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb {
@@ -78,6 +79,29 @@ TEST(StepEnd, lists_every_pair_with_both_gaps_and_its_own_stop_level) {
     EXPECT_EQ(pair.gap_before, before(2, v));
     EXPECT_EQ(pair.park, run.method.contact_options.ccd_park * scene.d_hat[static_cast<std::size_t>(v)]);
   }
+}
+
+/// Two rods that cross at an angle of 0.04, nearly parallel, and drift towards each other.
+TEST(StepEnd, lists_nearly_parallel_edges) {
+  Scene scene;
+  test::add_body(scene, "rod", {Vec3d(-0.5, 0, 0), Vec3d(0.5, 0, 0)}, {}, d_hat);
+  test::add_body(scene, "other", {Vec3d(-0.5, -0.01, 0.008), Vec3d(0.5, 0.01, 0.008)}, {}, d_hat);
+  scene.surface_edges = {{0, 1}, {2, 3}};
+  scene.v0.rightCols(2).row(2).setConstant(-0.1);
+  Heard heard;
+  Method method = ListenedRun::listening(heard, true);
+  Simulation simulation(scene, method, dt, 2);
+  StepObserver nobody;
+  const auto gap = [&] { return simulation.system().state().mollified.d.at(0); };
+  ASSERT_EQ(simulation.step(nobody).contacts.mollified, 1U);
+  const double before = gap();
+  ASSERT_EQ(simulation.step(nobody).contacts.mollified, 1U);
+  ASSERT_EQ(heard.size(), 2U);
+  ASSERT_EQ(heard[1].size(), 1U);
+  EXPECT_EQ(heard[1][0].gap, gap());
+  EXPECT_EQ(heard[1][0].gap_before, before);
+  EXPECT_LT(gap(), before);
+  EXPECT_EQ(heard[1][0].park, method.contact_options.ccd_park * d_hat);
 }
 
 TEST(StepEnd, leaves_a_pair_out_that_had_no_row_before) {

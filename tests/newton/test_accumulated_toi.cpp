@@ -1,0 +1,124 @@
+// The accumulated-time step: how far it gets, when it stops, what its last pass belongs to.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double dt = 0.01, speed = 1, gravity = 10;
+
+class Watch final : public StepObserver {
+ public:
+  void on_iteration(const IterationReport& report) override { reports.push_back(report); }
+  std::vector<IterationReport> reports;
+};
+
+struct Flight {
+  StepReport report;
+  Watch watch;
+  double time, z, v;
+};
+
+/// One step of a particle that falls freely with `speed` from 1 m, a step of about 1 cm.
+Flight fly(const StepSolverOptions& options) {
+  Scene scene = test::particle_over_plane(0.2, 1, 0.001);
+  scene.v0(2, 0) = -speed;
+  Method method = test::fixed_method("cubic", 1);
+  const double tolerance = method.step_solver.tol_velocity;
+  method.step_solver = options;
+  method.step_solver.name = "accumulated_toi";
+  method.step_solver.tol_velocity = tolerance;
+  Simulation simulation(scene, method, dt, 1);
+  Flight out;
+  out.report = simulation.step(out.watch);
+  out.time = simulation.time();
+  out.z = simulation.history().x(2, 0);
+  out.v = simulation.history().v(2, 0);
+  return out;
+}
+
+/// Implicit Euler over a step of length h.
+double fallen(double h) { return h * speed + h * h * gravity; }
+
+TEST(AccumulatedToi, a_step_shortened_by_its_largest_motion_ends_where_its_own_time_says) {
+  StepSolverOptions options;
+  options.max_dx = 0.4 * fallen(dt);
+  options.target_toi = 0.25;
+  const Flight flight = fly(options);
+  ASSERT_EQ(flight.report.status, StepStatus::converged);
+  EXPECT_EQ(flight.report.iterations, 2);
+  EXPECT_NEAR(flight.watch.reports[0].alpha, 0.4, 1e-12);
+  EXPECT_NEAR(flight.report.dt_used, 0.4 * dt, 1e-12);
+  EXPECT_NEAR(flight.time, 0.4 * dt, 1e-12);
+  EXPECT_NEAR(1 - flight.z, fallen(0.4 * dt), 1e-12);
+  EXPECT_NEAR(-flight.v, speed + gravity * 0.4 * dt, 1e-9);
+}
+
+TEST(AccumulatedToi, parts_accumulate_as_shares_of_what_is_left) {
+  StepSolverOptions options;
+  options.max_dx = 0.4 * fallen(dt);
+  options.target_toi = 0.9;
+  const Flight flight = fly(options);
+  // 0.4 of the motion twice, then the rest, which is shorter than max_dx: 0.4 + 0.6 * 2/3 + 0.2 * 1
+  ASSERT_EQ(flight.report.status, StepStatus::converged);
+  double beta = 0;
+  std::size_t used = 0;
+  for (; used < flight.watch.reports.size() && beta < options.target_toi; ++used) {
+    beta += (1 - beta) * flight.watch.reports[used].alpha;
+  }
+  EXPECT_EQ(used, 3U);
+  EXPECT_EQ(flight.report.iterations, 4);  // and the pass that reduces the error
+  EXPECT_NEAR(flight.report.dt_used, beta * dt, 1e-15);
+  EXPECT_NEAR(beta, 1, 1e-12);
+  EXPECT_NEAR(1 - flight.z, fallen(dt), 1e-12);
+}
+
+TEST(AccumulatedToi, makes_at_least_the_iterations_that_are_asked_for) {
+  for (const int least : {1, 2, 4}) {
+    StepSolverOptions options;
+    options.min_iterations = least;
+    const Flight flight = fly(options);
+    EXPECT_EQ(flight.report.iterations, least + 1);
+    EXPECT_NEAR(flight.report.dt_used, dt, 1e-15);
+  }
+}
+
+TEST(AccumulatedToi, a_step_that_runs_out_of_iterations_keeps_the_time_it_reached) {
+  StepSolverOptions options;
+  options.max_dx = 0.1 * fallen(dt);
+  options.target_toi = 0.9;
+  options.max_iterations = 2;
+  const Flight flight = fly(options);
+  EXPECT_EQ(flight.report.status, StepStatus::iteration_cap);
+  const double first = 0.1, second = 0.1 / 0.9;
+  EXPECT_NEAR(flight.report.dt_used, (first + (1 - first) * second) * dt, 1e-12);
+}
+
+/// A free step is Newton's, not `extension` times it; a bound one keeps that distance from the floor.
+TEST(AccumulatedToi, the_extension_is_room_that_is_kept_and_not_way_that_is_gone) {
+  StepSolverOptions options;
+  const Flight free = fly(options);
+  EXPECT_EQ(free.watch.reports[0].alpha, 1);
+  EXPECT_NEAR(1 - free.z, fallen(dt), 1e-12);
+
+  Scene scene = test::particle_over_plane(0.2, 0.02, 0.001);
+  scene.v0(2, 0) = -10;
+  Method method = test::fixed_method("cubic", 1);
+  method.step_solver.name = "accumulated_toi";
+  method.step_solver.max_iterations = 1;
+  Simulation simulation(scene, method, dt, 1);
+  Watch watch;
+  simulation.step(watch);
+  ASSERT_LT(watch.reports.at(0).alpha_ccd, 1);
+  const double way =
+      0.02 / (0.1 + gravity * dt * dt) / method.step_solver.extension;  // to the floor, of 1.25 times
+  EXPECT_NEAR(watch.reports[0].alpha, way, 1e-3 * way);
+  EXPECT_NEAR(scene.x0(2, 0) - simulation.history().x(2, 0), 0.02 / method.step_solver.extension, 1e-4);
+}
+
+}  // namespace
+}  // namespace bb

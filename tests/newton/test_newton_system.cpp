@@ -1,0 +1,178 @@
+// The system of one iterate by hand: which states are feasible, what the matrix holds, what is measured.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/contact/contact_scenes.hpp"
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double d_hat = 0.01, dt = 0.01;
+
+/// A system at the start of a step from rest.
+struct AtRest {
+  Method method;
+  NewtonSystem system;
+
+  AtRest(const Scene& scene, Method chosen, const Positions& x)
+      : method(std::move(chosen)), system(scene, method) {
+    Prediction at_rest;
+    at_rest.x_tilde = x;
+    system.begin_step(x, at_rest, dt, 1.0);
+  }
+};
+
+TEST(NewtonSystem, a_state_in_contact_or_beyond_it_has_no_energy) {
+  const Scene scene = test::particle_over_plane(0.2, 0.5 * d_hat, d_hat);
+  AtRest rest(scene, test::fixed_method("cubic", 10), scene.x0);
+  rest.system.assemble();
+  for (const double z : {0.0, -0.5 * d_hat}) {
+    const Positions x = test::one_point(0, 0, z);
+    rest.system.sweep(x);
+    EXPECT_FALSE(rest.system.try_state(x).has_value()) << z;
+  }
+  EXPECT_TRUE(rest.system.try_state(test::one_point(0, 0, 1e-6 * d_hat)).has_value());
+}
+
+/// One free triangle with legs of 2 m and a limit of 2 %, onset 1 %.
+Scene limited_triangle() {
+  SceneBuilder builder("triangle", false, Vec3d::Zero(), "test");
+  BodySpec spec;
+  spec.name = "triangle";
+  spec.mesh.vertices.resize(3, 3);
+  spec.mesh.vertices << 0, 2, 0, 0, 0, 2, 0, 0, 0;
+  spec.mesh.triangles = {{0, 1, 2}};
+  spec.material.youngs = 1;
+  spec.material.limit = StrainLimitSpec::from_limit(0.02);
+  spec.d_hat = d_hat;
+  builder.add_body(spec);
+  return builder.finish();
+}
+
+/// Stretched along x by 1 + strain.
+Positions stretched(const Scene& scene, double strain) {
+  Positions x = scene.rest;
+  x.row(0) *= 1 + strain;
+  return x;
+}
+
+TEST(NewtonSystem, a_state_at_its_strain_limit_or_beyond_has_no_energy) {
+  const Scene scene = limited_triangle();
+  Method method = test::fixed_method("cubic", 1);
+  method.limit_stiffness.k_s = 30;
+  AtRest rest(scene, std::move(method), scene.x0);
+  rest.system.assemble();
+  for (const double strain : {0.021, 0.1}) {
+    EXPECT_FALSE(rest.system.try_state(stretched(scene, strain)).has_value()) << strain;
+  }
+  EXPECT_TRUE(rest.system.try_state(stretched(scene, 0.019)).has_value());
+}
+
+TEST(NewtonSystem, the_tension_of_the_limit_is_the_force_per_width) {
+  const Scene scene = limited_triangle();
+  Method method = test::fixed_method("cubic", 1);
+  method.limit_stiffness.k_s = 30;
+  const double strain = 0.015, width = 0.01, beyond = strain - 0.01;
+  AtRest rest(scene, std::move(method), stretched(scene, strain));
+  rest.system.assemble();
+  EXPECT_NEAR(rest.system.max_stretch(), 1 + strain, 1e-12);
+  EXPECT_NEAR(rest.system.limit_tension_max(), 30 * 2 / width * beyond * beyond, 1e-9);
+  ASSERT_EQ(rest.system.state().limit.size(), 1U);
+  EXPECT_NEAR(rest.system.state().limit[0], 30 * 2.0 * 2 / (3 * width) * std::pow(beyond, 3),
+              1e-12);  // area 2
+}
+
+TEST(NewtonSystem, the_factor_of_a_limit_that_makes_its_own_stiffness_multiplies_it) {
+  const Scene scene = limited_triangle();
+  const auto energy = [&scene](double multiplier) {
+    Method method = test::fixed_method("cubic", 1);
+    method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+    method.limit_stiffness.multiplier = multiplier;
+    AtRest rest(scene, std::move(method), stretched(scene, 0.015));
+    rest.system.assemble();
+    return rest.system.state().limit.at(0);
+  };
+  ASSERT_GT(energy(1), 0);
+  EXPECT_NEAR(energy(3) / energy(1), 3, 1e-12);
+}
+
+TEST(NewtonSystem, planar_scenes_have_no_unknowns_out_of_their_plane) {
+  Scene scene = test::particle_over_plane(0.2, 1, d_hat);
+  scene.obstacles.clear();
+  for (const bool planar : {false, true}) {
+    scene.planar = planar;
+    Method method = test::fixed_method("cubic", 1);
+    const NewtonSystem system(scene, method);
+    EXPECT_EQ(system.fixed(), (std::vector<std::uint8_t>{0, 0, planar}));
+    EXPECT_EQ(system.n_free(), planar ? 2 : 3);
+  }
+}
+
+TEST(NewtonSystem, the_largest_gradient_is_that_of_free_vertices) {
+  Scene scene;
+  test::add_body(scene, "pair", {Vec3d(0, 0, 0), Vec3d(1, 0, 0)}, {}, d_hat);
+  scene.pins = {{0, 0}};
+  scene.motions.resize(1);
+  scene.mass = {5, 2};
+  scene.gravity = Vec3d(0, 0, -10);
+  AtRest rest(scene, test::fixed_method("cubic", 1), scene.x0);
+  rest.system.assemble();
+  EXPECT_EQ(rest.system.grad_inf(), 20);  // and not the 50 N that the pin holds
+}
+
+/// A particle of 0.2 kg in contact: M/h^2 with and without kappa b'' along z.
+TEST(NewtonSystem, stages_hold_the_terms_that_they_are_named_after) {
+  const Scene scene = test::particle_over_plane(0.2, 0.5 * d_hat, d_hat);
+  AtRest rest(scene, test::fixed_method("quadratic", 7), scene.x0);
+  rest.system.keep_stages(true);
+  rest.system.assemble();
+  const double inertia = 0.2 / (dt * dt), curvature = 7 * 2;
+  const auto vertical = [&rest](MatrixStage stage) { return rest.system.reduced(stage).lower.coeff(2, 2); };
+  EXPECT_DOUBLE_EQ(vertical(MatrixStage::full), inertia + curvature);
+  ASSERT_TRUE(rest.system.has_stage(MatrixStage::no_contact));
+  EXPECT_DOUBLE_EQ(vertical(MatrixStage::no_contact), inertia);
+  EXPECT_FALSE(rest.system.has_stage(MatrixStage::no_contact_no_limit));  // this scene has no limit
+
+  const double mean = inertia + curvature / 3;
+  EXPECT_NEAR(rest.system.add_tikhonov(1e-3, 1e-8), 1e-3 * mean, 1e-9);
+  EXPECT_NEAR(vertical(MatrixStage::full), inertia + curvature + 1e-3 * mean, 1e-9);
+  EXPECT_EQ(rest.system.add_tikhonov(1e-12, 0.5), 0.5);
+}
+
+TEST(NewtonSystem, without_the_limit_a_stage_has_only_elasticity_and_inertia) {
+  const Scene scene = limited_triangle();
+  Method method = test::fixed_method("cubic", 1);
+  method.limit_stiffness.k_s = 1e4;
+  AtRest rest(scene, std::move(method), stretched(scene, 0.015));
+  rest.system.keep_stages(true);
+  rest.system.assemble();
+  ASSERT_TRUE(rest.system.has_stage(MatrixStage::no_contact_no_limit));
+  const double with = rest.system.reduced(MatrixStage::full).lower.diagonal().sum();
+  const double without = rest.system.reduced(MatrixStage::no_contact_no_limit).lower.diagonal().sum();
+  EXPECT_GT(with, 2 * without);
+}
+
+/// A given plate that rises under a particle over its middle vertex, where six pairs are one row. Newton's
+/// model is linear: (m/h^2 + 6 kappa b'') dz = 6 kappa |b'| - m g + 6 kappa b'' rise.
+TEST(NewtonSystem, the_motion_of_a_given_vertex_reaches_a_merged_row_in_full) {
+  Scene scene;
+  const auto [vertices, triangles] = test::grid(2, 2, 1.0);
+  test::add_body(scene, "plate", vertices, triangles, d_hat, true);
+  test::add_body(scene, "particle", {Vec3d(1, 1, 0.5 * d_hat)}, {}, d_hat);
+  scene.gravity = Vec3d(0, 0, -10);
+  AtRest rest(scene, test::fixed_method("quadratic", 300), scene.x0);
+  rest.system.assemble();
+  ASSERT_EQ(rest.system.state().rows.size(), 1U);
+  ASSERT_EQ(rest.system.state().rows.multiplicity[0], 6);
+  const double rise = 0.002, curvature = 6 * 300 * 2, force = 6 * 300 * 2 * 0.5 * d_hat;
+  Positions target = scene.x0, dx;
+  target.leftCols(9).row(2).array() += rise;
+  ASSERT_EQ(rest.system.solve(target, dx).status, LinearStatus::ok);
+  EXPECT_NEAR(dx(2, 9), (force - 10 + curvature * rise) / (1 / (dt * dt) + curvature), 1e-12);
+  EXPECT_EQ(dx(2, 4), rise);
+}
+
+}  // namespace
+}  // namespace bb

@@ -1,0 +1,75 @@
+// What a policy that balances B against the rest of E is told, and how often.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <vector>
+
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double d_hat = 0.01, dt = 0.002;
+
+class Balancing final : public StiffnessPolicy {
+ public:
+  explicit Balancing(std::vector<StiffnessGlobals>& heard) : heard_(heard) {}
+  std::string_view name() const override { return "balancing"; }
+  Refresh refresh() const override { return Refresh::per_iteration; }
+  bool needs_globals() const override { return true; }
+  void start(const StiffnessGlobals& globals) override { heard_.push_back(globals); }
+  void fill(const StiffnessBatch& rows, double* kappa) const override { std::fill_n(kappa, rows.n, 30.0); }
+
+ private:
+  std::vector<StiffnessGlobals>& heard_;
+};
+
+/// Two particles over a plane, of 0.2 and 0.4 kg, and a third that is far above it.
+Scene three_particles() {
+  Scene scene = test::particle_over_plane(0.2, 0, d_hat);
+  scene.bodies = {{"particles", 0, 3}};
+  scene.x0.resize(3, 3);
+  scene.x0 << 0, 1, 2, 0, 0, 0, 0.4 * d_hat, 0.7 * d_hat, 1;
+  scene.rest = scene.x0;
+  scene.v0 = Positions::Zero(3, 3);
+  scene.mass = {0.2, 0.4, 100};
+  scene.body = {0, 0, 0};
+  scene.d_hat.assign(3, d_hat);
+  scene.offset.assign(3, 0);
+  scene.surface_vertices = {0, 1, 2};
+  return scene;
+}
+
+TEST(PolicyStart, is_once_a_run_with_the_sums_of_the_first_contacts) {
+  const Scene scene = three_particles();
+  std::vector<StiffnessGlobals> heard;
+  Method method = test::fixed_method("quadratic", 1, "newmark");
+  method.stiffness = std::make_unique<Balancing>(heard);
+  Simulation simulation(scene, method, dt, 3);
+  StepObserver nobody;
+  for (int i = 0; i < 3; ++i) ASSERT_EQ(simulation.step(nobody).status, StepStatus::converged);
+  ASSERT_EQ(heard.size(), 1U);
+  const double one = 2 * 0.6 * d_hat, other = 2 * 0.3 * d_hat;  // |b'| of the quadratic
+  EXPECT_NEAR(heard[0].grad_b_sq, one * one + other * other, 1e-15);
+  EXPECT_NEAR(heard[0].grad_b_dot_grad_e, -one * 2 - other * 4, 1e-12);  // against weights of 2 and 4 N
+  EXPECT_NEAR(heard[0].mean_contact_mass, 0.3, 1e-15);
+  EXPECT_EQ(heard[0].d2b_half, 2);
+  EXPECT_EQ(heard[0].d_hat, d_hat);
+  EXPECT_EQ(heard[0].dt, dt);
+  EXPECT_EQ(heard[0].c, 0.25);
+}
+
+TEST(PolicyStart, reads_the_curvature_at_half_of_d_hat) {
+  const Scene scene = three_particles();
+  std::vector<StiffnessGlobals> heard;
+  Method method = test::fixed_method("cubic", 1);
+  method.stiffness = std::make_unique<Balancing>(heard);
+  Simulation simulation(scene, method, dt, 1);
+  StepObserver nobody;
+  simulation.step(nobody);
+  ASSERT_EQ(heard.size(), 1U);
+  EXPECT_DOUBLE_EQ(heard[0].d2b_half, 2);  // 4 (1 - 1/2)
+}
+
+}  // namespace
+}  // namespace bb
