@@ -23,6 +23,10 @@ class Audit {
   /// distance
   void check_motion(const Positions& x0, const Positions& x1, int step, double tolerance);
 
+  /// Tells of a state that the run reached and that is not the end of the last judged motion: an audit with
+  /// such a hole is never ok.
+  void note_unjudged(int step) { ledger_.add_unjudged(step); }
+
   /// For obstacles that move between motions: the pose in which the next checks judge.
   void set_obstacles(std::vector<AuditObstacle> obstacles);
 

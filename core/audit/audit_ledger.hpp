@@ -26,6 +26,7 @@ struct AuditLedger {
   long obstacle_violations = 0;            // of states and motions
   long scene_faults = 0;         // of states and motions: prescribed primitives that cross, in no other count
   long non_finite = 0;           // states and motions that could not be judged
+  long unjudged = 0;             // states of the run that no judged motion led to
   bool self_test_passed = true;  // of the exact predicates on this machine
   int first_bad_step = -1;       // first step at which clean() became false
   int first_fault_step = -1;
@@ -45,7 +46,8 @@ struct AuditLedger {
 
   /// Nothing bad was found. Says nothing of how much was judged.
   bool clean() const {
-    return !penetrated() && unproven == 0 && scene_faults == 0 && non_finite == 0 && self_test_passed;
+    return !penetrated() && unproven == 0 && scene_faults == 0 && non_finite == 0 && unjudged == 0 &&
+           self_test_passed;
   }
 
   /// No accepted state or motion penetrates, every one of them was judged, and there was something to judge.
@@ -67,6 +69,11 @@ struct AuditLedger {
     obstacle_violations += m.obstacle_violations, scene_faults += m.scene_faults;
     non_finite += m.finite ? 0 : 1;
     note(step, m.first_bad, m.first_fault);
+  }
+  /// A state that the run reached, and that is not the end of the last judged motion.
+  void add_unjudged(int step) {
+    ++unjudged;
+    note(step, std::nullopt, std::nullopt);
   }
 
  private:

@@ -94,7 +94,11 @@ class MotionJudge {
       ++sum.certified;
       return;
     }
-    ++(verdict == Verdict::violation ? sum.violations : sum.unproven);
+    if (verdict == Verdict::unproven) {  // no offender: nothing was shown of this pair
+      ++sum.unproven;
+      return;
+    }
+    ++sum.violations;
     keep_first(sum.first_bad, name);
   }
 

@@ -7,14 +7,23 @@ namespace bb {
 
 namespace {
 
+// True for a model that says so; a model without the constant is isotropic.
+template <class Model>
+constexpr bool says_anisotropic() {
+  if constexpr (requires { Model::anisotropic; }) return Model::anisotropic;
+  return false;
+}
+
 template <class Model, class T>
 constexpr MembraneModel<T> entry(std::string_view name, std::string_view doc) {
-  return {name, doc, requires {Model::anisotropic;
+  return {name,
+          doc,
+          says_anisotropic<Model>(),
+          &membrane_value<Model, 3, T>,
+          &membrane_value<Model, 2, T>,
+          &membrane_terms<Model, 3, T>,
+          &membrane_terms<Model, 2, T>};
 }
-, &membrane_value<Model, 3, T>, &membrane_value<Model, 2, T>, &membrane_terms<Model, 3, T>,
-    &membrane_terms<Model, 2, T>
-};  // namespace
-}  // namespace bb
 
 }  // namespace
 

@@ -340,7 +340,8 @@ std::string to_json(const RunRecord& r) {
                 {"bytes", a.bytes}};
   });
   fields::require_finite(j);
-  return j.dump(1) + "\n";
+  // Bytes that are no UTF-8 (arguments, paths) are replaced: they must not cost the record.
+  return j.dump(1, ' ', false, decltype(j)::error_handler_t::replace) + "\n";
 }
 
 }  // namespace bb

@@ -67,7 +67,8 @@ void common_arguments(CLI::App& app, CommonOptions& common, std::vector<std::str
       ->check(CLI::IsMember({"auto", "plain", "none"}));
   app.add_option("--blas-kernel", common.blas_kernel,
                  "haswell: the same factors on every x86-64-v3 machine (default, unless OPENBLAS_CORETYPE is "
-                 "set); native: what OpenBLAS picks by the processor")
+                 "set); native: what OPENBLAS_CORETYPE names, else what OpenBLAS picks by the "
+                 "processor")
       ->check(CLI::IsMember({"haswell", "native"}));
 }
 
@@ -189,12 +190,12 @@ int main(int argc, char** argv) {
   if (const int code = guarded([&] { return settle_blas_kernel(common.blas_kernel, common.argv), exit_ok; });
       code != exit_ok)
     return code;
-  // The verbs that ask whether to stop; the others end at the signal itself.
-  if (run_app->parsed() || sweep_app->parsed() || demo_app->parsed()) install_interrupt();
   const int code = guarded([&]() -> int {
     common.plugins = plugins_before;
     common.plugins.insert(common.plugins.end(), plugins_after.begin(), plugins_after.end());
     for (const std::string& file : common.plugins) common.loaded.push_back(load_plugin_file(file));
+    // The verbs that ask whether to stop; the others, and the loading of plugins, end at the signal itself.
+    if (run_app->parsed() || sweep_app->parsed() || demo_app->parsed()) install_interrupt();
     if (run_app->parsed()) return run(run_verb, common);
     if (sweep_app->parsed()) return sweep(sweep_verb, common);
     if (check_app->parsed()) return check(check_verb);

@@ -15,6 +15,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// The folder from which the record names its files: without symbolic links, as the writer makes names.
+fs::path home_of(const StoredRun& stored) {
+  return fs::weakly_canonical(fs::absolute(stored.file)).parent_path();
+}
+
 /// The plugins of the record that no --plugin stands in for, from where the record says that they are.
 /// Errors: ConfigError: not there, or another content.
 void load_plugins(const StoredRun& stored, std::vector<PluginFile>& loaded) {
@@ -24,9 +29,9 @@ void load_plugins(const StoredRun& stored, std::vector<PluginFile>& loaded) {
       return p.sha256 == wanted.sha256 || p.name == wanted.name;
     });
     if (given) continue;
-    const fs::path file = (stored.file.parent_path() / wanted.file).lexically_normal();
+    const fs::path file = (home_of(stored) / wanted.file).lexically_normal();
     const std::string where = fmt::format("{}#/provenance/plugins/{}", stored.file.string(), i);
-    const std::string sha256 = fs::is_regular_file(file) ? sha256_file(file.string()) : std::string();
+    const std::string sha256 = sha256_file(file.string());  // empty: not there, or no regular file
     const std::string allowed =
         fmt::format("the plugin \"{}\" with sha256 {} there, or another of this name with --plugin",
                     wanted.name, wanted.sha256);
@@ -74,7 +79,7 @@ int compare(const StoredRun& stored, const RunRecord& record) {
 }  // namespace
 
 int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& common) {
-  const fs::path home = stored.file.has_parent_path() ? stored.file.parent_path() : fs::path(".");
+  const fs::path home = home_of(stored);
   std::error_code none_there;
   if (!verb.out.empty() && fs::equivalent(verb.out, home, none_there)) {
     throw ConfigError("--out", fmt::format("\"{}\", the folder of the record itself", verb.out),

@@ -95,7 +95,6 @@ ContactFields contact_fields(const EnergyState& state, int n_vertices) {
     }
   };
   add_load(state.rows, state.rows.vertex);
-  add_load(state.mollified, state.mollified.free_vertex);
   return fields;
 }
 

@@ -17,8 +17,8 @@ struct ContactFields {
   std::vector<double> load;     // [n vertices] N, sum of |w_i| m kappa |b'| over those rows; 0 without a row
 };
 
-/// Both fields from the rows of a state. A nearly parallel edge pair counts with its full m kappa |b'|: its
-/// mollifier, which is at most 1, is left out.   Cost: O(vertices + rows).
+/// Both fields from the rows of a state. A nearly parallel edge pair has a gap, but, as in the records, no
+/// load of its own: its mollifier scales m kappa |b'|.   Cost: O(vertices + rows).
 ContactFields contact_fields(const EnergyState& state, int n_vertices);
 
 /// Files of one run below `folder`/frames and `folder`/matrices.

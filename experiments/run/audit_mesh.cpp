@@ -79,7 +79,6 @@ audit::AuditMesh make_audit_mesh(const Scene& scene) {
   mesh.planar = scene.planar;
   const std::vector<Edge> edges = edges_of(scene);
   mesh.edges = columns(edges);
-  mesh.triangles = columns(scene.planar ? scene.membrane_triangles() : scene.surface_triangles);
   mesh.points = points_of(scene, edges);
   if (scene.planar) {
     const std::map<Edge, int> third = third_vertices(scene.surface_triangles);
@@ -95,6 +94,11 @@ audit::AuditMesh make_audit_mesh(const Scene& scene) {
     mesh.prescribed[v] = 1;
     mesh.fixed[v] = scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
   }
+  auto triangles = scene.surface_triangles;
+  if (scene.planar) {  // judged for inversion: what is prescribed cannot invert
+    std::erase_if(triangles, [&mesh](const auto& t) { return mesh.all_prescribed(t); });
+  }
+  mesh.triangles = columns(triangles);
   for (const Obstacle& obstacle : scene.obstacles) mesh.obstacles.push_back(to_audit(obstacle));
   return mesh;
 }

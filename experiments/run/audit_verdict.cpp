@@ -33,8 +33,7 @@ std::string penetration(const Scene& scene, const audit::AuditMesh& mesh, const 
   if (no_edge_pairs && ledger.crossings + ledger.violations > 0) {
     text +=
         "; the contact model vertex_vertex has no edge pairs: it allows edges to cross, which is no failure "
-        "of "
-        "the solver";
+        "of the solver";
   }
   return text;
 }
@@ -45,6 +44,10 @@ std::string unproven(const audit::AuditLedger& ledger) {
   if (ledger.unproven > 0) {
     return fmt::format("audit: {} of {} pairs in motion could not be certified", ledger.unproven,
                        ledger.motion_pairs);
+  }
+  if (ledger.unjudged > 0) {
+    return fmt::format("audit: {} states were reached by no judged motion, the first {}", ledger.unjudged,
+                       when(ledger.first_bad_step));
   }
   const audit::AuditSubjects& s = ledger.subjects;
   return fmt::format(

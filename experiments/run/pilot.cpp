@@ -99,6 +99,8 @@ const Pilot& run_pilot(const RunConfig& config, const Scene& scene, const RunOpt
   StepObserver nobody;
   for (int step = 0; step < pilot.config.time.steps; ++step) {
     look_up(options);
+    Prediction prediction;
+    method.integrator->predict(simulation.history(), dt, prediction);
     const StepReport report = simulation.step(nobody);
     show(config, options, report);
     if (report.status != StepStatus::converged) {  // its state is in no balance: no load can be read from it
@@ -107,10 +109,8 @@ const Pilot& run_pilot(const RunConfig& config, const Scene& scene, const RunOpt
       break;
     }
     pilot.x.push_back(simulation.history().x);
+    pilot.c.push_back(prediction.c);
   }
-  Prediction prediction;
-  method.integrator->predict(simulation.history(), dt, prediction);
-  pilot.c = prediction.c;
   return known.emplace(pilot.config_id, std::move(pilot)).first->second;
 }
 

@@ -22,7 +22,7 @@ struct Pilot {
   RunConfig config;       // its own
   Calibration stiffness;  // kappa and k_s of its log barriers
   StaticLoads rest;
-  double c = 1;              // inertia weight of the integrator
+  std::vector<double> c;     // inertia weight of the integrator in each converged step
   std::vector<Positions> x;  // m, at the start, then at the end of each converged step
   std::string config_id;
   std::string stopped;  // why it ended early; empty when it did not

@@ -19,10 +19,10 @@ class Replay {
       : pilot_(pilot), method_(make_replayed(pilot)), system_(scene, method_) {}
 
   /// The rows of the end of this step.
-  void find_rows(int step) { begin(end(step)); }
+  void find_rows(int step) { begin(end(step), step); }
   /// The same, with the H that a policy of this refresh reads while the step's end is reached.
   void find_rows(int step, Refresh refresh) {
-    begin(refresh == Refresh::per_step ? start(step) : end(step));
+    begin(refresh == Refresh::per_step ? start(step) : end(step), step);
     system_.assemble();
     if (refresh != Refresh::per_step) return;
     system_.sweep(end(step));
@@ -32,6 +32,7 @@ class Replay {
 
   const Positions& start(int step) const { return pilot_.x[static_cast<std::size_t>(step)]; }
   const Positions& end(int step) const { return pilot_.x[static_cast<std::size_t>(step) + 1]; }
+  double c(int step) const { return pilot_.c[static_cast<std::size_t>(step)]; }
   const ContactTable& rows() const { return system_.state().rows; }
   NewtonSystem& system() { return system_; }
 
@@ -41,8 +42,8 @@ class Replay {
     method.keep_elastic_matrix = true;
     return method;
   }
-  void begin(const Positions& x) {
-    prediction_.c = pilot_.c;
+  void begin(const Positions& x, int step) {
+    prediction_.c = c(step);
     prediction_.x_tilde = x;
     system_.begin_step(x, prediction_, pilot_.config.time.dt, 1.0);
   }
@@ -52,6 +53,11 @@ class Replay {
   NewtonSystem system_;
   Prediction prediction_;
 };
+
+/// Beyond this ratio a policy gives a contact no stiffness of its own: rounding has made its number.
+constexpr double largest_demand = 1e9;
+
+bool too_soft(double own, double matched) { return !(own > 0) || !(matched / own <= largest_demand); }
 
 /// own = 1 without a policy. Returns whether this is the largest demand so far; among equals the larger load.
 bool compare(double matched, double own, double load, double width, int step, Demand& out) {
@@ -73,7 +79,7 @@ bool compare(double matched, double own, double load, double width, int step, De
 }
 
 /// kappa of this row by the policy, the smaller of its values at d_hat and at u d_hat.
-double own_kappa(const StiffnessPolicy& policy, int row, double u, const Pilot& pilot, Replay& replay) {
+double own_kappa(const StiffnessPolicy& policy, int row, double u, double dt, double c, Replay& replay) {
   static const BlockSystem::Values no_hessian;
   NewtonSystem& system = replay.system();
   const bool with_hessian = policy.needs_hessian();
@@ -82,7 +88,7 @@ double own_kappa(const StiffnessPolicy& policy, int row, double u, const Pilot& 
   double kappa[2];
   for (int k = 0; k < 2; ++k) {
     columns.d[0] = (k == 0 ? 1 : u) * columns.d_hat[0];
-    policy.fill(columns.batch(pilot.config.time.dt, pilot.c, with_hessian), &kappa[k]);
+    policy.fill(columns.batch(dt, c, with_hessian), &kappa[k]);
   }
   return std::min(kappa[0], kappa[1]);
 }
@@ -100,7 +106,7 @@ std::string name_element(const Scene& scene, std::size_t e) {
 
 /// kappa_e/area (N/m) by the policy of the limit, with w from the start of the step, at the gap y.
 double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std::size_t e, double area,
-                           double y, const Pilot& pilot, const Positions& x_start, NewtonSystem& system) {
+                           double y, double dt, double c, const Positions& x_start, NewtonSystem& system) {
   const std::array<int, 3>& vertices = scene.limit.triangles[e];
   Vec3d x[3], mass;
   for (int k = 0; k < 3; ++k) {
@@ -111,7 +117,7 @@ double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std:
   Mat<double, 12, 12> block = Mat<double, 12, 12>::Zero();
   system.blocks().submatrix(system.elastic_matrix(), vertices.data(), 3, block.data());
   const Mat<double, 9, 9> hessian = block.topLeftCorner<9, 9>();
-  const StrainStiffnessRule rule = limit.rule(pilot.config.time.dt, pilot.c);
+  const StrainStiffnessRule rule = limit.rule(dt, c);
   return strain_stiffness<double>(x, hessian, mass, scene.limit.mass[e], y, rule) / area;
 }
 
@@ -120,6 +126,7 @@ double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std:
 Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
                       const StiffnessPolicy* own, double u) {
   const BarrierFunction log = log_barrier();
+  const double dt = pilot.config.time.dt;
   Replay replay(pilot, scene);
   Demand out;
   for (int step = 0; step < pilot.steps(); ++step) {
@@ -133,9 +140,10 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
       const double load = -*pilot.stiffness.kappa * log.eval(rows.d[r], rows.d_hat[r]).db;
       if (!(load > 0)) continue;
       const auto where = [&] { return replay.system().contacts().describe(rows.key[r], rows.kind[r]); };
-      const double kappa = own ? own_kappa(*own, static_cast<int>(r), u, pilot, replay) : 1;
-      if (!(kappa > 0)) refuse(kappa, "kappa", step, where());
-      if (compare(matched(load, rows.d_hat[r]), kappa, load, rows.d_hat[r], step, out)) out.where = where();
+      const double kappa = own ? own_kappa(*own, static_cast<int>(r), u, dt, replay.c(step), replay) : 1;
+      const double wanted = matched(load, rows.d_hat[r]);
+      if (own && too_soft(kappa, wanted)) refuse(kappa, "kappa", step, where());
+      if (compare(wanted, kappa, load, rows.d_hat[r], step, out)) out.where = where();
     }
   }
   return out;
@@ -146,6 +154,7 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
   const BarrierFunction log = log_barrier();
   const StrainLimitPart& part = scene.limit;
   StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width, scene.planar);
+  const double dt = pilot.config.time.dt;
   Replay replay(pilot, scene);
   Demand out;
   std::vector<double> y_start(part.width.size());
@@ -164,8 +173,9 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
       double k_s = 1;
       if (own) {
         const double softest = own->refresh == Refresh::per_step ? std::max(width, y_start[e]) : width;
-        k_s = own_limit_stiffness(*own, scene, e, area, softest, pilot, replay.start(step), replay.system());
-        if (!(k_s > 0)) refuse(k_s * area, "kappa_e", step, name_element(scene, e));
+        k_s = own_limit_stiffness(*own, scene, e, area, softest, dt, replay.c(step), replay.start(step),
+                                  replay.system());
+        if (too_soft(k_s, matched(load, width))) refuse(k_s * area, "kappa_e", step, name_element(scene, e));
       }
       if (compare(matched(load, width), k_s, load, width, step, out)) out.where = name_element(scene, e);
     }

@@ -75,6 +75,7 @@ Recorder::~Recorder() = default;
 void Recorder::judge(const Positions& x, int step) {
   const double start = now_s();
   audit_->check_state(x, step);
+  last_judged_ = x;
   record_.audit.seconds += now_s() - start;
 }
 
@@ -188,6 +189,7 @@ void Recorder::on_iteration(const IterationReport& report) {
 void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
   if (!audit_) return;
   const double start = now_s();
+  if (x0 != last_judged_) audit_->note_unjudged(step);
   audit_->check_motion(x0, x1, step, audit_tolerance_);
   record_.audit.seconds += now_s() - start;
   judge(x1, step);
@@ -235,6 +237,7 @@ void Recorder::fill_gaps(const NewtonSystem& system, const StepReport& report, S
 }
 
 void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
+  if (audit_ && x != last_judged_) audit_->note_unjudged(report.step);
   const int every = config_.output.frames_every;
   if (artifacts_ && every > 0 && report.step % every == 0) {
     artifacts_->frame(x, report.step, contact_fields(system.state(), system.scene().n_vertices()));

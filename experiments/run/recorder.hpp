@@ -62,6 +62,7 @@ class Recorder final : public StepObserver {
   audit::AuditMesh audit_mesh_;  // for names; empty without the pass `audit`
   std::unique_ptr<audit::Audit> audit_;
   double audit_tolerance_ = 0;
+  Positions last_judged_;  // by the audit: where the next motion has to start
   ConditionEstimator estimator_;
   std::vector<ConditionSample> samples_;  // of the iteration in progress
   bool due_now_ = false;                  // whether it is diagnosed

@@ -49,7 +49,7 @@ TEST(scene_checks, refuse_a_name_used_twice) {
 TEST(scene_checks, refuse_bad_meshes) {
   BodySpec body = cloth("cloth");
   body.mesh.vertices(1, 2) = std::nan("");
-  expect_complaint(complaint({body}), "non-finite coordinate");
+  expect_complaint(complaint({body}), "finite coordinates between");
   body = cloth("cloth");
   body.mesh.triangles[3][1] = 12;
   expect_complaint(complaint({body}), "unknown vertex");
