@@ -2,7 +2,10 @@
 // again.
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <limits>
 #include <nlohmann/json.hpp>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -224,6 +227,14 @@ TEST(JsonFields, TheStatusIsThatOfTheChecks) {
   EXPECT_EQ(check["value"], 1.5);
   EXPECT_EQ(check["bound"], 2.5);
   EXPECT_EQ(check["pass"], true);
+}
+
+TEST(JsonFields, ABareNumberThatIsNotFiniteIsRefused) {
+  for (const double value : {std::nan(""), -std::numeric_limits<double>::infinity()}) {
+    RunRecord record = test::sample_record();
+    record.machine.load_avg[1] = value;
+    EXPECT_THROW(to_json(record), std::logic_error);
+  }
 }
 
 TEST(JsonFields, OfATraceLine) {

@@ -27,6 +27,9 @@ TEST(Sha256, FilesAndMissingFiles) {
   const std::string path = (std::filesystem::temp_directory_path() / "bb_sha_test").string();
   std::ofstream(path) << "abc";
   EXPECT_EQ(sha256_file(path), sha256_hex("abc"));
+  const std::string long_text(200'000, 'x');  // more than one block of reading
+  std::ofstream(path) << long_text;
+  EXPECT_EQ(sha256_file(path), sha256_hex(long_text));
   std::filesystem::remove(path);
   EXPECT_EQ(sha256_file(path), "");
 }
@@ -142,6 +145,7 @@ TEST(Stats, QuantilesOfTheFiniteValues) {
   EXPECT_DOUBLE_EQ(s.p05.value, 1.2);
   EXPECT_DOUBLE_EQ(s.p95.value, 4.8);
   EXPECT_STREQ(summarize({}).median.status, "empty");
+  EXPECT_EQ(summarize({1, 2, 30}).median.value, 2);  // and not the mean
 }
 
 void rest_2_ms() { std::this_thread::sleep_for(std::chrono::milliseconds(2)); }
