@@ -1,0 +1,98 @@
+// A whole run on the smallest scene: what makes its record valid, and what ends it.
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/record/writer.hpp"
+#include "experiments/config/parse.hpp"
+#include "experiments/run/method.hpp"
+#include "experiments/run/runner.hpp"
+
+namespace bb {
+namespace {
+
+constexpr const char* block = R"({"schema": "barrierbench.config/1", "scene": {"name": "resting_block_1d"},
+  "formulation": {"name": "cubic", "d_hat_m": 0.01}, "matching": {"rule": "equal_force", "load_N": 1},
+  "time": {"steps": 3}})";
+
+RunRecord run(const std::vector<std::string>& overrides) {
+  RunOptions options;
+  options.folder =
+      std::filesystem::temp_directory_path() / ("barrierbench_run_config_" + std::to_string(::getpid()));
+  RunRecord record = run_config(parse_config(block, "test", ".", overrides), options);
+  std::filesystem::remove_all(options.folder);
+  return record;
+}
+
+const Check* check(const RunRecord& record, const std::string& name) {
+  const auto& all = record.validity.checks;
+  const auto found = std::find_if(all.begin(), all.end(), [&](const Check& c) { return c.name == name; });
+  return found == all.end() ? nullptr : &*found;
+}
+
+TEST(RunConfig, a_run_is_valid_when_every_check_passed) {
+  const RunRecord record = run({"/passes/time=true", "/passes/audit=true"});
+  EXPECT_EQ(record.status.outcome, Outcome::ok);
+  EXPECT_TRUE(record.validity.valid);
+  for (const char* name : {"audit_clean", "audit_judged", "state_hash_equal_in_all_passes", "outcome_ok"}) {
+    ASSERT_NE(check(record, name), nullptr) << name;
+    EXPECT_TRUE(check(record, name)->pass) << name;
+  }
+  EXPECT_EQ(check(record, "strain_limit_kept"), nullptr);  // there is no limit
+  EXPECT_GT(check(record, "audit_judged")->value.value, 0);
+  EXPECT_EQ(record.summary.steps, 3);
+  EXPECT_GT(record.summary.wall_s.value, 0);
+  EXPECT_EQ(record.labels.d_hat_m, 0.01);
+}
+
+TEST(RunConfig, a_run_ends_at_its_first_step_that_failed_and_is_not_valid) {
+  const RunRecord record = run({"/step_solver/max_iterations=1"});
+  EXPECT_EQ(record.status.outcome, Outcome::newton_stall);
+  EXPECT_EQ(record.summary.steps, 1);
+  EXPECT_EQ(record.summary.steps_capped, 1);
+  EXPECT_FALSE(record.validity.valid);
+  EXPECT_FALSE(check(record, "outcome_ok")->pass);
+  EXPECT_TRUE(check(record, "audit_clean")->pass);
+}
+
+TEST(RunConfig, the_method_has_every_number_of_its_config) {
+  const std::vector<std::string> overrides = {
+      "/contact/ccd_park=3e-5",        "/step_solver/armijo=0.02",
+      "/step_solver/cap_fraction=0.7", "/step_solver/max_iterations=17",
+      "/integrator/name=bdf2",         "/step_solver/tol_velocity_m_per_s=0.003"};
+  const RunConfig config = parse_config(block, "test", ".", overrides);
+  Calibration calibration;
+  calibration.kappa = 5;
+  const Method method = make_method(config, calibration);
+  EXPECT_EQ(method.contact_options.ccd_park, 3e-5);
+  EXPECT_EQ(method.step_solver.armijo, 0.02);
+  EXPECT_EQ(method.step_solver.cap_fraction, 0.7);
+  EXPECT_EQ(method.step_solver.max_iterations, 17);
+  EXPECT_EQ(method.step_solver.tol_velocity, 0.003);
+  EXPECT_EQ(method.integrator->name(), "bdf2");
+  EXPECT_FALSE(method.contact.literal);
+  EXPECT_FALSE(method.limit.literal);
+}
+
+TEST(RunConfig, factors_of_a_limit_multiply_what_it_is_given) {
+  PolicyConfig fixed;
+  fixed.name = "fixed";
+  fixed.k_s = 4;
+  fixed.scale = 3;
+  Calibration calibration;
+  calibration.limited = true;
+  EXPECT_EQ(make_limit_policy(fixed, calibration).k_s, 12);
+  calibration.k_s = 5;
+  EXPECT_EQ(make_limit_policy(fixed, calibration).k_s, 15);
+
+  PolicyConfig dynamic;
+  dynamic.name = "elasticity_inclusive";
+  dynamic.scale = 3;
+  calibration.limit_scale = 7;
+  EXPECT_EQ(make_limit_policy(dynamic, calibration).multiplier, 21);
+}
+
+}  // namespace
+}  // namespace bb
