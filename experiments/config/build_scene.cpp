@@ -80,8 +80,8 @@ void jitter(const SeedsConfig& seeds, Scene& scene) {
   }
 }
 
-/// Nothing starts, and nothing is driven, to where its coordinates lose their meaning. A prescribed vertex
-/// turns round an axis and moves along a line: it is farthest out at an end.
+/// Nothing starts, and nothing is driven, to where its coordinates lose their meaning. Prescribed vertices
+/// are checked in their last pose; before it, a turn can put them at most two radii farther out.
 void check_places(const RunConfig& config, const Scene& scene) {
   const auto refuse = [&](const char* found) {
     throw ConfigError(config.source + "#/scene", found,

@@ -68,7 +68,6 @@ class Recorder final : public StepObserver {
   bool due_now_ = false;                  // whether it is diagnosed
   std::vector<TraceRow> rows_;            // of the step in progress
   double condition_s_ = 0;
-  std::size_t n_free_ = 0, nnz_ = 0;
   CondSummary cond_;
   std::set<std::pair<int, int>> touching_;  // bodies, then obstacles, that have been in contact
   PcgProbe probe_;

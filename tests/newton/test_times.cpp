@@ -81,9 +81,7 @@ TEST(Times, a_state_of_the_limit_is_measured_once) {
   BodySpec spec = test::cloth_spec(5, 0, 0.001);
   spec.material.limit = StrainLimitSpec::from_limit(0.02);
   PinSpec top;
-  top.top_row = true;
   top.box = {Vec3d(-10, 0.49, -1), Vec3d(10, 10, 1)};
-  top.top_row = false;
   spec.pins = {top};
   builder.add_body(spec);
   const Scene scene = builder.finish();

@@ -53,13 +53,14 @@ TEST_F(RunFolder, AnEarlierRunGoesWithWhatItWrote) {
 }
 
 TEST_F(RunFolder, FilesOfOthersStay) {
-  const fs::path outside = write("../bb_outside.ply", "o");
+  const std::string beside = "../" + folder_.filename().string() + "_outside.ply";  // of this test alone
+  const fs::path outside = write(beside, "o");
   const std::vector<std::string> others = {"frames/holiday.ply", "notes.txt", "frames/step_1.ply",
                                            "inputs/a.ply"};
   for (const std::string& name : others) write(name, "of somebody");
   write("frames/step_000001.ply", "as written");
   std::vector<std::string> named = others;
-  named.insert(named.end(), {"frames/step_000001.ply", "../bb_outside.ply", outside.string()});
+  named.insert(named.end(), {"frames/step_000001.ply", beside, outside.string()});
   write_record(named);
   write("frames/step_000001.ply", "changed since");
   write("frames/step_000002.ply", "in no record");
