@@ -126,9 +126,10 @@ void finish_iteration(NewtonSystem& system, StepReport& step, IterationReport& r
   step.factorizations += report.linear.factorized;
   step.analyses += report.linear.analyzed;
   step.accepted_by_rounding += report.accepted_by_rounding;
-  step.kappa_unsettled = report.kappa_change > settled_kappa ? step.kappa_unsettled + 1 : 0;
+  step.kappa_unsettled = in_a_row(step.kappa_unsettled, report.kappa_change > settled_kappa);
   step.kappa_change = report.kappa_change;
-  step.limit_kappa_unsettled = report.limit_kappa_change > settled_kappa ? step.limit_kappa_unsettled + 1 : 0;
+  step.limit_kappa_unsettled =
+      in_a_row(step.limit_kappa_unsettled, report.limit_kappa_change > settled_kappa);
   step.limit_kappa_change = report.limit_kappa_change;
   step.alpha_min = std::min(step.alpha_min, report.alpha);
   step.alpha_ccd_min = std::min(step.alpha_ccd_min, report.alpha_ccd);

@@ -44,6 +44,7 @@ class Recorder final : public StepObserver {
 
   /// What the audit found, as an outcome; ok without the pass `audit`.
   Verdict audit_verdict() const;
+  bool audit_clean() const { return !audit_ || audit_->ledger().clean(); }
 
  private:
   void judge(const Positions& x, int step);

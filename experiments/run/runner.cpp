@@ -163,13 +163,13 @@ double hard_limit(const Scene& scene) {
   return largest;
 }
 
-void fill_validity(const Scene& scene, RunRecord& record, const std::string& hash_time,
+void fill_validity(const Scene& scene, RunRecord& record, bool clean, const std::string& hash_time,
                    const std::string& hash_seen) {
   record.validity.valid = true;
   if (record.audit.enabled) {
     const auto bad = static_cast<double>(record.audit.crossings + record.audit.violations +
                                          record.audit.unproven + record.audit.scene_faults);
-    add_check(record, "audit_clean", bad, 0.0, bad == 0);
+    add_check(record, "audit_clean", bad, 0.0, clean);
     const auto judged = static_cast<double>(record.audit.judged);
     add_check(record, "audit_judged", judged, 1.0, judged > 0);
   }
@@ -209,6 +209,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     times = observer.iteration_times();
   }
   Verdict verdict = timed.verdict;
+  bool clean = true;
   if (look) {
     files.trace.emplace(options.folder);
     files.artifacts.emplace(options.folder, scene);
@@ -218,6 +219,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     observer.finish();
     record.artifacts = files.artifacts->written();
     verdict = seen.verdict;
+    clean = observer.audit_clean();
     const Verdict audited = observer.audit_verdict();
     merge(verdict, audited.outcome, audited.detail);
   }
@@ -230,7 +232,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     record.summary.stiffness = {main.stiffness.kappa_start, main.stiffness.kappa, main.stiffness.doublings,
                                 main.stiffness.saturated};
   }
-  fill_validity(scene, record, timed.state_hash, seen.state_hash);
+  fill_validity(scene, record, clean, timed.state_hash, seen.state_hash);
 }
 
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
