@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "barriers/named_entries.hpp"
-#include "core/contact/slope_scan.hpp"
+#include "core/barrier/slope_scan.hpp"
 
 namespace bb {
 namespace {

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string_view>
 
-#include "core/contact/shape.hpp"
+#include "core/barrier/shape.hpp"
 
 namespace bb {
 

@@ -4,7 +4,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/contact/shape.hpp"
+#include "core/barrier/shape.hpp"
 
 namespace bb {
 

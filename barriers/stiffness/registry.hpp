@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/contact/stiffness_policy.hpp"
+#include "core/barrier/stiffness_policy.hpp"
 
 namespace bb {
 

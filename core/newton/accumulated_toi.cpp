@@ -57,10 +57,10 @@ class AccumulatedToi final : public StepSolver {
     if (moved) system.accept();
     finish_iteration(system, step, report, observer);
     if (moved) {
-      observer.on_motion(x_before_, system.state().x, step_index);
+      observer.on_motion(x_before_, system.x(), step_index);
     } else {
       step.status = poses_reached(system, target_) ? StepStatus::step_collapse : StepStatus::pin_infeasible;
-      step.detail = describe_bound(system, report);
+      step.detail = describe_bound(system);
     }
     return report.alpha;
   }
@@ -68,14 +68,11 @@ class AccumulatedToi final : public StepSolver {
   // Bounds `extension` times the motion and takes that fraction of the motion itself, which backs off from
   // contact.
   double feasible_step(NewtonSystem& system, IterationReport& report) {
-    x_before_ = system.state().x;
+    x_before_ = system.x();
     dx_ *= options_.extension;
     x_trial_.noalias() = x_before_ + dx_;
-    system.sweep(x_trial_);
-    report.bound = system.contact_bound(x_trial_);
-    report.alpha_ccd = report.bound.alpha;
-    report.alpha_limit = system.limit_bound(dx_);
-    double alpha = std::min(report.alpha_ccd, report.alpha_limit);
+    system.prepare(x_trial_, dx_);
+    double alpha = system.bound(x_trial_, dx_, report);
     for (; alpha > 0; alpha = alpha < 1e-14 ? 0 : alpha / 2) {
       x_trial_.noalias() = x_before_ + (alpha / options_.extension) * dx_;
       ++report.line_search_trials;
@@ -91,7 +88,7 @@ class AccumulatedToi final : public StepSolver {
       const ScopedPhase timer(system.clock(), Phase::prediction);
       task.integrator->predict(*task.history, step.dt_used, used);
       system.restart_step(used, step.dt_used);
-      target_ = system.state().x;
+      target_ = system.x();
       task.pose(step.dt_used, target_);
     }
     step.status = StepStatus::converged;

@@ -35,7 +35,7 @@ class ArticleLiteral final : public StepSolver {
       }
       const bool moved = backtrack(system, report);
       finish_iteration(system, step, report, observer);
-      if (moved) observer.on_motion(x_before_, system.state().x, task.step);
+      if (moved) observer.on_motion(x_before_, system.x(), task.step);
       if (small || !moved) {
         step.status = small ? StepStatus::converged : StepStatus::line_search_failed;
         return step;
@@ -46,9 +46,9 @@ class ArticleLiteral final : public StepSolver {
 
  private:
   bool backtrack(NewtonSystem& system, IterationReport& report) {
-    x_before_ = system.state().x;
+    x_before_ = system.x();
     x_trial_.noalias() = x_before_ + dx_;
-    system.sweep(x_trial_);
+    system.prepare(x_trial_, dx_);
     for (double alpha = 1; alpha > smallest_alpha; alpha /= 2) {
       x_trial_.noalias() = x_before_ + alpha * dx_;
       ++report.line_search_trials;

@@ -13,8 +13,6 @@ namespace bb {
 /// Predicts, hands the step to the system and fills `target` with the end-of-step pose of every vertex. The
 /// report says iteration_cap until something better is known.
 StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& used, Positions& target);
-/// How many iterations in a row something has held, after one more.
-inline int in_a_row(int before, bool holds) { return holds ? before + 1 : 0; }
 /// Whether a change of E is noise: below 64 eps sum |terms|.
 bool within_rounding(const EnergyChange& change);
 /// Ends a step whose direction was of no use.
@@ -32,7 +30,8 @@ void finish_iteration(NewtonSystem& system, StepReport& step, IterationReport& r
                       StepObserver& observer);
 
 bool poses_reached(const NewtonSystem& system, const Positions& target);
-std::string describe_bound(NewtonSystem& system, const IterationReport& report);
+/// What held the bound of the step taken last.
+std::string describe_bound(const NewtonSystem& system);
 std::string describe_short_pin(const NewtonSystem& system, const Positions& target);
 
 /// Fills what a step report says of its end state.

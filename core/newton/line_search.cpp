@@ -41,19 +41,19 @@ class LineSearch final : public StepSolver {
       }
       const bool moved = search(system, report, at_pose);
       finish_iteration(system, step, report, observer);
-      if (moved) observer.on_motion(x_before_, system.state().x, task.step);
+      if (moved) observer.on_motion(x_before_, system.x(), task.step);
       if (small) {
         step.status = StepStatus::converged;
         return step;
       }
-      if (!moved && report.alpha_ccd >= collapsed_step && report.alpha_limit >= collapsed_step) {
+      if (!moved && bound_ >= collapsed_step) {
         step.status = StepStatus::line_search_failed;
         return step;
       }
       collapsed = in_a_row(collapsed, report.alpha < collapsed_step);
       if (collapsed == collapse_iterations) {
         step.status = at_pose ? StepStatus::step_collapse : StepStatus::pin_infeasible;
-        step.detail = at_pose ? describe_bound(system, report) : describe_short_pin(system, target_);
+        step.detail = at_pose ? describe_bound(system) : describe_short_pin(system, target_);
         return step;
       }
     }
@@ -64,14 +64,12 @@ class LineSearch final : public StepSolver {
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its motion does
   // work.
   bool search(NewtonSystem& system, IterationReport& report, bool energy_test) {
-    x_before_ = system.state().x;
+    x_before_ = system.x();
     move(system, 1.0);
-    system.sweep(x_trial_);
-    report.bound = system.contact_bound(x_trial_);
-    report.alpha_ccd = report.bound.alpha;
-    report.alpha_limit = system.limit_bound(dx_);
+    system.prepare(x_trial_, dx_);
+    bound_ = system.bound(x_trial_, dx_, report);
     // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
-    double alpha = std::min(report.alpha_ccd, report.alpha_limit);
+    double alpha = bound_;
     if (alpha < 1) alpha *= options_.cap_fraction;
     while (alpha > smallest_alpha) {
       move(system, alpha);
@@ -99,6 +97,7 @@ class LineSearch final : public StepSolver {
   }
 
   StepSolverOptions options_;
+  double bound_ = 1;  // of the step taken last
   Positions target_, dx_, x_before_, x_trial_;
 };
 

@@ -6,12 +6,12 @@
 #include <random>
 
 #include "barriers/named_entries.hpp"
+#include "core/bodies/scene_builder.hpp"
+#include "core/bodies/scene_checks.hpp"
 #include "core/input/read_file.hpp"
 #include "core/mesh/bounds.hpp"
 #include "core/mesh/read_mesh.hpp"
 #include "core/record/provenance.hpp"
-#include "core/scene/scene_builder.hpp"
-#include "core/scene/scene_checks.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/scenes/procedural_scene.hpp"

@@ -7,12 +7,13 @@
 #include <string>
 #include <vector>
 
+#include "core/barrier/shape.hpp"
+#include "core/barrier/stiffness_policy.hpp"
+#include "core/bodies/body_spec.hpp"
 #include "core/contact/contact_system.hpp"
-#include "core/contact/shape.hpp"
-#include "core/contact/stiffness_policy.hpp"
+#include "core/contact/contact_terms.hpp"
 #include "core/linear/condition.hpp"
 #include "core/linear/linear_solver.hpp"
-#include "core/scene/body_spec.hpp"
 #include "experiments/scenes/parameters.hpp"
 
 namespace bb {

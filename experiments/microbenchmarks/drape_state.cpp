@@ -73,12 +73,12 @@ std::unique_ptr<DrapeState> make_state(int n) {
   StepObserver nobody;
   for (int step = 0; step < kMaxSteps && !state->all_layers_touch; ++step) {
     state->simulation->step(nobody);
-    state->all_layers_touch = all_touch(state->scene, state->system().state().rows);
+    state->all_layers_touch = all_touch(state->scene, contact_state(state->system().terms()).rows);
   }
   state->system().assemble();
   state->system().solve(state->x(), state->dx);
   state->x1 = state->x() + state->dx;
-  state->factor_s = median_factor_s(state->system().reduced(MatrixStage::full));
+  state->factor_s = median_factor_s(state->system().reduced());
   return state;
 }
 

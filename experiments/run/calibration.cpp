@@ -6,7 +6,7 @@
 
 #include "barriers/matching.hpp"
 #include "barriers/shapes/registry.hpp"
-#include "core/contact/slope_scan.hpp"
+#include "core/barrier/slope_scan.hpp"
 #include "core/math/error.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/run/pilot_demand.hpp"

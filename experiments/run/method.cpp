@@ -58,7 +58,8 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   Method method;
   method.contact = {require_shape(config.formulation.shape), config.formulation.argument};
   method.stiffness = make_contact_policy(config.formulation.stiffness_policy, calibration);
-  if (config.strain_limit.enabled) {
+  method.strain_limit = config.strain_limit.enabled;
+  if (method.strain_limit) {
     method.limit = {require_shape(config.strain_limit.shape), config.strain_limit.argument};
     method.limit_stiffness = make_limit_policy(config.strain_limit.stiffness_policy, calibration);
   }

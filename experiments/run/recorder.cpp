@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/newton/newton_system.hpp"
+#include "core/terms/contact.hpp"
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
 #include "experiments/run/step_record.hpp"
@@ -12,24 +13,28 @@
 namespace bb {
 namespace {
 
+/// A stage leaves out groups of terms; it is there when the last of them has elements.
 struct StageName {
   const char* config;
   MatrixStage stage;
+  TermSet left_out;
+  std::optional<TermGroup> last;
 };
-constexpr StageName stage_names[] = {{"full", MatrixStage::full},
-                                     {"without_contact", MatrixStage::no_contact},
-                                     {"without_contact_and_limit", MatrixStage::no_contact_no_limit}};
+constexpr StageName stage_names[] = {
+    {"full", MatrixStage::full, {}, {}},
+    {"without_contact", MatrixStage::no_contact, TermGroup::contact, TermGroup::contact},
+    {"without_contact_and_limit", MatrixStage::no_contact_no_limit,
+     TermSet(TermGroup::contact) | TermGroup::limit, TermGroup::limit}};
 
 Number gap_number(double gap) { return std::isinf(gap) ? Number::missing("no_contacts") : Number(gap); }
 
 // Smallest d/d_hat over the rows; infinity without rows.
-double smallest_relative_gap(const EnergyState& state) {
+double smallest_relative_gap(const ContactState& state) {
   double smallest = std::numeric_limits<double>::infinity();
   const auto scan = [&smallest](const auto& rows) {
     for (std::size_t r = 0; r < rows.size(); ++r) smallest = std::min(smallest, rows.d[r] / rows.d_hat[r]);
   };
-  scan(state.rows);
-  scan(state.mollified);
+  state.for_each_table(scan);
   return smallest;
 }
 
@@ -94,8 +99,8 @@ void Recorder::on_matrix(NewtonSystem& system, int step, int iteration) {
   for (const std::string& name : before_solve ? config_.diagnose.stages : std::vector<std::string>()) {
     const auto* entry = std::find_if(std::begin(stage_names), std::end(stage_names),
                                      [&name](const StageName& s) { return name == s.config; });
-    if (entry == std::end(stage_names) || !system.has_stage(entry->stage)) continue;
-    const ReducedSystem& reduced = system.reduced(entry->stage);
+    if (entry == std::end(stage_names) || (entry->last && !system.active(*entry->last))) continue;
+    const ReducedSystem& reduced = system.reduced(TermSet::all().without(entry->left_out));
     for (const Scaling scaling : config_.diagnose.scalings) {
       ConditionSample sample;
       sample.stage = entry->stage;
@@ -105,9 +110,8 @@ void Recorder::on_matrix(NewtonSystem& system, int step, int iteration) {
       samples_.push_back(sample);
     }
   }
-  if (artifacts_ && config_.output.matrices)
-    artifacts_->matrix(system.reduced(MatrixStage::full), step, iteration);
-  if (config_.diagnose.pcg) probed_ = probe_.iterations(system.reduced(MatrixStage::full));
+  if (artifacts_ && config_.output.matrices) artifacts_->matrix(system.reduced(), step, iteration);
+  if (config_.diagnose.pcg) probed_ = probe_.iterations(system.reduced());
   condition_s_ += now_s() - start;
 }
 
@@ -216,13 +220,12 @@ void Recorder::note_contacts(const NewtonSystem& system, int step) {
       record_.summary.first_contact.emplace(std::min(one, other) + "|" + std::max(one, other), step);
     }
   };
-  scan(system.state().rows);
-  scan(system.state().mollified);
+  contact_state(system.terms()).for_each_table(scan);
 }
 
 // Gaps of the method are those of converged step ends; an iterate's are a matter of the path to them.
 void Recorder::fill_gaps(const NewtonSystem& system, const StepReport& report, StepRecord& step) {
-  const double gap_rel = smallest_relative_gap(system.state());
+  const double gap_rel = smallest_relative_gap(contact_state(system.terms()));
   if (report.status == StepStatus::converged) {
     step.gap_min_m = gap_number(report.gap_min);
     step.gap_min_rel = gap_number(gap_rel);
@@ -240,7 +243,8 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
   if (audit_ && x != last_judged_) audit_->note_unjudged(report.step);
   const int every = config_.output.frames_every;
   if (artifacts_ && every > 0 && report.step % every == 0) {
-    artifacts_->frame(x, report.step, contact_fields(system.state(), system.scene().n_vertices()));
+    artifacts_->frame(x, report.step,
+                      contact_fields(contact_state(system.terms()), system.scene().n_vertices()));
   }
   StepRecord step = step_record(system, report);
   note_contacts(system, report.step);

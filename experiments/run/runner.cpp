@@ -15,7 +15,7 @@
 #include "core/record/provenance.hpp"
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
-#include "core/scene/plan.hpp"
+#include "core/terms/plan.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/comparability.hpp"
@@ -43,12 +43,9 @@ struct PassResult {
 };
 
 PassResult run_pass(const RunConfig& config, const Scene& scene, const Calibration& calibration,
-                    const RunOptions& options, const char* pass, StepObserver& observer) {
+                    const Plan& plan, const RunOptions& options, const char* pass, StepObserver& observer) {
   Method method = make_method(config, calibration);
-  Simulation simulation(scene, method, config.time.dt, config.time.steps);
-  const std::vector<std::string>& stages = config.diagnose.stages;
-  const bool partial = std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s != "full"; });
-  simulation.system().keep_stages(partial && config.passes.diagnose);
+  Simulation simulation(scene, method, plan, config.time.dt, config.time.steps);
   PassResult result;
   const double start = now_s();
   const double t_end = config.time.dt * config.time.steps * (1 - 1e-9);
@@ -120,14 +117,13 @@ struct RunFiles {
   }
 };
 
-void fill_plan(const RunConfig& config, const Scene& scene, RunRecord& record) {
-  const Plan plan = plan_of(config, scene);
+void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record) {
   for (const auto& [name, item] : plan.items()) {
     record.plan.push_back({std::string(name), item->needed, item->reason});
   }
   if (!config.passes.time) record.skipped.push_back({"time", "not_requested"});
-  if (!config.passes.diagnose) record.skipped.push_back({"cond", "not_requested"});
-  if (!config.passes.audit) record.skipped.push_back({"audit", "not_requested"});
+  if (!plan.conditioning.needed) record.skipped.push_back({"cond", "not_requested"});
+  if (!plan.audit.needed) record.skipped.push_back({"audit", "not_requested"});
   if (!plan.trace.needed) record.skipped.push_back({"trace", "not_requested"});
 }
 
@@ -157,7 +153,7 @@ void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
 
 // The passes: `time` runs alone, `diagnose` and `audit` share a run, and none of their time is reported as a
 // time.
-void run_passes(const RunConfig& config, const Scene& scene, const Calibration& calibration,
+void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
                 const RunOptions& options, RunRecord& record, RunFiles& files) {
   PassResult timed, seen;
   const bool look = has_observed_run(config);
@@ -167,7 +163,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     RunConfig bare = config;
     bare.passes = {true, false, false};
     Recorder observer(bare, scene, look ? timing : record, nullptr);
-    timed = run_pass(bare, scene, calibration, options, "time", observer);
+    timed = run_pass(bare, scene, calibration, plan, options, "time", observer);
     observer.finish();
     record.samples["wall_s"] = {timed.wall_s};
     times = observer.iteration_times();
@@ -179,7 +175,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     files.artifacts.emplace(options.folder, scene);
     Recorder observer(config, scene, record, &*files.trace, &*files.artifacts);
     observer.report_times(times);
-    seen = run_pass(config, scene, calibration, options, "diagnose", observer);
+    seen = run_pass(config, scene, calibration, plan, options, "diagnose", observer);
     observer.finish();
     record.artifacts = files.artifacts->written();
     verdict = seen.verdict;
@@ -204,7 +200,8 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
 void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, RunRecord& record,
               RunFiles& files) {
   fill_scene(scene, record);
-  fill_plan(config, scene, record);
+  const Plan plan = plan_of(config, scene);
+  fill_plan(config, plan, record);
   if (const auto failure = start_failure(config, scene, options.interrupted)) {
     record.status.outcome = failure->outcome;
     record.status.detail = failure->detail;
@@ -218,7 +215,7 @@ void simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
     record.status.detail = error.what();
     return;
   }
-  run_passes(config, scene, calibration, options, record, files);
+  run_passes(config, scene, plan, calibration, options, record, files);
 }
 
 int thread_count(const RunConfig& config) {

@@ -2,17 +2,14 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
+
+#include "core/terms/contact.hpp"
 
 namespace bb {
 namespace {
 
-double sum_of(const std::vector<double>& values) {
-  return std::accumulate(values.begin(), values.end(), 0.0);
-}
-
 // kappa and loads of the rows that the step ended with.
-void fill_contact(const EnergyState& state, const StepReport& report, StepRecord& step) {
+void fill_contact(const ContactState& state, const StepReport& report, StepRecord& step) {
   double kappa_min = std::numeric_limits<double>::infinity(), kappa_max = 0, load = 0;
   const auto scan = [&](const auto& rows) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -20,8 +17,7 @@ void fill_contact(const EnergyState& state, const StepReport& report, StepRecord
       kappa_max = std::max(kappa_max, rows.kappa[r]);
     }
   };
-  scan(state.rows);
-  scan(state.mollified);
+  state.for_each_table(scan);
   for (std::size_t r = 0; r < state.rows.size(); ++r) {  // mollified rows carry e(x) times as much: left out
     load -= state.rows.multiplicity[r] * state.rows.kappa[r] * state.rows.db[r];
   }
@@ -34,17 +30,15 @@ void fill_contact(const EnergyState& state, const StepReport& report, StepRecord
 }
 
 void fill_energies(const NewtonSystem& system, const StepReport& report, StepRecord& step) {
-  const EnergyState& state = system.state();
   const Scene& scene = system.scene();
   step.kinetic_J = report.kinetic_energy;
-  double elastic = 0, gravity = 0;
-  for (const auto& family : state.element) elastic += sum_of(family);
+  double gravity = 0;
   for (std::size_t i = 0; i < scene.mass.size(); ++i) {
-    gravity -= scene.mass[i] * scene.gravity.dot(state.x.col(static_cast<Eigen::Index>(i)));
+    gravity -= scene.mass[i] * scene.gravity.dot(system.x().col(static_cast<Eigen::Index>(i)));
   }
-  step.elastic_J = elastic;
-  step.limit_J = sum_of(state.limit);
-  step.contact_J = sum_of(state.contact) + sum_of(state.mollified_contact);
+  step.elastic_J = system.energy(TermGroup::elastic);
+  step.limit_J = system.energy(TermGroup::limit);
+  step.contact_J = system.energy(TermGroup::contact);
   step.gravity_J = gravity;
 }
 
@@ -71,7 +65,7 @@ StepRecord step_record(const NewtonSystem& system, const StepReport& report) {
   step.toi_min = report.alpha_ccd_min;
   step.max_stretch = report.max_stretch > 0 ? Number(report.max_stretch - 1) : Number::missing("no_limit");
   step.limit_load_max_N_per_m =
-      system.has_limit() ? Number(report.limit_tension_max) : Number::missing("no_limit");
+      system.active(TermGroup::limit) ? Number(report.limit_tension_max) : Number::missing("no_limit");
   const bool converged = report.status == StepStatus::converged;
   const char* absent = converged                                                   ? "converged"
                        : report.kappa_unsettled + report.limit_kappa_unsettled > 0 ? "kappa_unsettled"
@@ -81,7 +75,7 @@ StepRecord step_record(const NewtonSystem& system, const StepReport& report) {
   };
   step.contact_overload = measured(report.overload);
   step.limit_overload = measured(report.limit_overload);
-  fill_contact(system.state(), report, step);
+  fill_contact(contact_state(system.terms()), report, step);
   fill_energies(system, report, step);
   return step;
 }

@@ -6,7 +6,7 @@
 #include <string_view>
 #include <vector>
 
-#include "core/scene/scene_builder.hpp"
+#include "core/bodies/scene_builder.hpp"
 #include "experiments/scenes/parameters.hpp"
 
 namespace bb {

@@ -1,5 +1,5 @@
 // The largest force that a barrier has, on shapes whose maximum is known.
-#include "core/contact/slope_scan.hpp"
+#include "core/barrier/slope_scan.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@ namespace {
 
 Candidates candidates_of(const Scene& scene, const Positions& x0, const Positions& x1) {
   const Surface surface(scene);
-  BroadPhase broad_phase(surface, {});
+  BroadPhase broad_phase(surface, {}, plan_contact(scene));
   Candidates out;
   broad_phase.update(x0, x1, out);
   return out;

@@ -139,7 +139,7 @@ TEST(KappaCycle, a_contact_that_a_line_search_meets_keeps_its_kappa_for_the_step
   ASSERT_EQ(simulation.step(log).contacts.obstacle, 1U);
   ASSERT_GT(log.dx.size(), 2U);  // refreshed after it was met
   ASSERT_LT(simulation.history().x(2, 0), 0.99 * d_hat);
-  EXPECT_NEAR(simulation.system().state().rows.kappa.at(0), kappa_of(d_hat), 1e-9 * kappa_of(d_hat));
+  EXPECT_NEAR(test::rows_of(simulation.system()).rows.kappa.at(0), kappa_of(d_hat), 1e-9 * kappa_of(d_hat));
 }
 
 /// Two rods that cross at an angle of 0.04 and close: their one row is mollified.
