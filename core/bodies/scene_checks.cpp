@@ -8,6 +8,7 @@
 #include "core/energy/membrane_model.hpp"
 #include "core/mesh/bounds.hpp"
 #include "core/mesh/topology.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 namespace {
@@ -29,10 +30,10 @@ std::string allowed_coordinates() {
 }
 
 void check_model(const Report& report, const std::string& model) {
-  if (model == "none" || find_membrane_model<double>(model)) return;
-  std::string names = "none";
-  for (const auto& known : membrane_models<double>()) names += fmt::format(", {}", known.name);
-  report("/material/model", '"' + model + '"', "one of " + names);
+  std::vector<std::string> names = membrane_models<double>().names();
+  names.emplace_back("none");
+  if (std::find(names.begin(), names.end(), model) != names.end()) return;
+  report("/material/model", '"' + model + '"', one_of_text(model, names));
 }
 
 void check_warp_axis(const Report& report, const Material& m, bool planar) {

@@ -16,7 +16,8 @@ constexpr double smallest_alpha = 1e-8;
 
 class ArticleLiteral final : public StepSolver {
  public:
-  explicit ArticleLiteral(const StepSolverOptions& options) : options_(options) {}
+  explicit ArticleLiteral(const StepSolverOptions& options)
+      : options_(options), armijo_(number(options.parameters, "armijo")) {}
   std::string_view name() const override { return "article_literal"; }
 
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
@@ -54,7 +55,7 @@ class ArticleLiteral final : public StepSolver {
       ++report.line_search_trials;
       const auto change = system.try_state(x_trial_);
       if (!change) continue;
-      const bool decrease = change->change <= -options_.armijo * alpha * report.decrement;
+      const bool decrease = change->change <= -armijo_ * alpha * report.decrement;
       report.accepted_by_rounding = !decrease && within_rounding(*change);
       if (!decrease && !report.accepted_by_rounding) continue;
       report.alpha = alpha;
@@ -66,13 +67,19 @@ class ArticleLiteral final : public StepSolver {
   }
 
   StepSolverOptions options_;
+  double armijo_;
   Positions target_, dx_, x_before_, x_trial_;
 };
 
 }  // namespace
 
-std::unique_ptr<StepSolver> make_article_literal(const StepSolverOptions& options) {
-  return std::make_unique<ArticleLiteral>(options);
+StepSolverEntry step_solver_article_literal() {
+  StepSolverEntry entry;
+  entry.parameters = {{"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"}};
+  entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
+    return std::make_unique<ArticleLiteral>(options);
+  };
+  return entry;
 }
 
 }  // namespace bb

@@ -21,7 +21,10 @@ constexpr double smallest_alpha = 1e-14;  // below it x does not move any more
 
 class LineSearch final : public StepSolver {
  public:
-  explicit LineSearch(const StepSolverOptions& options) : options_(options) {}
+  explicit LineSearch(const StepSolverOptions& options)
+      : options_(options),
+        armijo_(number(options.parameters, "armijo")),
+        cap_fraction_(number(options.parameters, "cap_fraction")) {}
   std::string_view name() const override { return "line_search"; }
 
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
@@ -70,12 +73,12 @@ class LineSearch final : public StepSolver {
     bound_ = system.bound(x_trial_, dx_, report);
     // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
     double alpha = bound_;
-    if (alpha < 1) alpha *= options_.cap_fraction;
+    if (alpha < 1) alpha *= cap_fraction_;
     while (alpha > smallest_alpha) {
       move(system, alpha);
       ++report.line_search_trials;
       if (const auto change = system.try_state(x_trial_)) {
-        const bool decrease = change->change <= -options_.armijo * alpha * report.decrement;
+        const bool decrease = change->change <= -armijo_ * alpha * report.decrement;
         report.accepted_by_rounding = energy_test && !decrease && within_rounding(*change);
         if (decrease || !energy_test || report.accepted_by_rounding) {
           report.alpha = alpha;
@@ -97,14 +100,24 @@ class LineSearch final : public StepSolver {
   }
 
   StepSolverOptions options_;
+  double armijo_, cap_fraction_;
   double bound_ = 1;  // of the step taken last
   Positions target_, dx_, x_before_, x_trial_;
 };
 
 }  // namespace
 
-std::unique_ptr<StepSolver> make_line_search(const StepSolverOptions& options) {
-  return std::make_unique<LineSearch>(options);
+StepSolverEntry step_solver_line_search() {
+  StepSolverEntry entry;
+  entry.parameters = {
+      {"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"},
+      {"cap_fraction", open_low(number_in(0, 1, "1")), 0.8,
+       "part of a binding contact or strain bound that is taken; 1 goes to the stop level"},
+  };
+  entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
+    return std::make_unique<LineSearch>(options);
+  };
+  return entry;
 }
 
 }  // namespace bb

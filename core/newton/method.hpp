@@ -7,6 +7,7 @@
 
 #include "core/integrators/integrator.hpp"
 #include "core/linear/linear_solver.hpp"
+#include "core/parameters/parameter.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {
@@ -15,13 +16,7 @@ struct StepSolverOptions {
   std::string name = "line_search";
   int max_iterations = 200;
   double tol_velocity = 0;  // m/s: stop at |dx|_inf / h below it
-  double armijo = 1e-4;
-  double cap_fraction = 0.8;  // line_search: part of a binding contact or strain bound that is taken
-  // accumulated_toi
-  double target_toi = 0.25;
-  int min_iterations = 1;
-  double max_dx = 1;        // m
-  double extension = 1.25;  // a full step must be free along this multiple of itself
+  ParameterMap parameters;  // of the step solver of that name; what is left out has its default
 };
 
 struct Method : TermOptions {

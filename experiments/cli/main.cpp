@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "barriers/named_entries.hpp"
 #include "barriers/plugins.hpp"
 #include "core/math/error.hpp"
+#include "core/parameters/registry.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/progress.hpp"
@@ -131,7 +131,8 @@ int main(int argc, char** argv) {
   SweepVerb sweep_verb;
   std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
-  bool eval_schema = false;
+  std::string help_format = "config";
+  bool eval_schema = false, help_schema = false;
 
   CLI::App app{"barrierbench: contact barriers compared in one Newton + ACCD pipeline"};
   app.name("bench");
@@ -162,6 +163,11 @@ int main(int argc, char** argv) {
   auto* list_app = app.add_subcommand("list", "what can be named in a config");
   list_app->add_option("what", list_what, fmt::format("which section: {}", fmt::join(list_sections(), ", ")));
   list_app->footer("example: ./bench list shapes");
+  auto* help_app =
+      app.add_subcommand("help", "every setting of a file, from the lists that the program reads it by");
+  help_app->add_option("format", help_format, fmt::format("which file: {}", fmt::join(help_formats(), ", ")));
+  help_app->add_flag("--schema", help_schema, "print the JSON Schema instead");
+  help_app->footer("example: ./bench help config");
   auto* eval_app = app.add_subcommand("eval", "JSON Lines queries to the functions that the pipeline runs");
   eval_app->add_option("file", eval_file, "queries, - for standard input");
   eval_app->add_flag("--schema", eval_schema, "print the JSON Schema of all kinds");
@@ -201,6 +207,7 @@ int main(int argc, char** argv) {
     if (check_app->parsed()) return check(check_verb);
     if (explain_app->parsed()) return explain(explain_verb);
     if (list_app->parsed()) return list(list_what);
+    if (help_app->parsed()) return help(help_format, help_schema);
     if (eval_app->parsed()) return eval(eval_file, eval_schema);
     return demo(demo_out, common);
   });

@@ -8,8 +8,9 @@
 #include "core/input/json.hpp"
 #include "core/input/names.hpp"
 #include "core/math/error.hpp"
+#include "core/parameters/check.hpp"
+#include "experiments/config/config_list.hpp"
 #include "experiments/config/parse.hpp"
-#include "experiments/config/schema_check.hpp"
 
 namespace bb {
 namespace {
@@ -89,7 +90,10 @@ std::size_t group_of(const json& axes, std::size_t index) {
 /// Everything that the file alone can tell, counted before anything is expanded.
 void check_spec(json spec, const std::string& path) {
   std::vector<Violation> violations;
-  check_schema(spec, sweep_schema(), path, violations);
+  Rule rule;
+  rule.kind = Kind::object;
+  rule.list = [](const json&) { return sweep_list(); };
+  check_value(spec, rule, path + "#", violations);
   if (!violations.empty()) throw ConfigError(std::move(violations));
   check_plain_name(path + "#/name", spec["name"].get<std::string>(), violations);
   const json& axes = spec["axes"];

@@ -26,7 +26,7 @@ Calibration stiffness(const RunConfig& config, const Scene& scene) {
   double weight = 0;
   for (const double mass : scene.mass) weight += mass * scene.gravity.norm();
   const Method probe = make_method(config, {1.0, 1.0, 1.0});
-  const double d_hat = config.formulation.d_hat, width = config.strain_limit.limit.width;
+  const double d_hat = config.formulation.d_hat, width = config.strain_limit.width;
   const double per_vertex = weight / (scene.n_vertices() / 5.0);
   Calibration out;
   out.kappa = per_vertex / std::abs(probe.contact.eval(d_hat / 2, d_hat).db);

@@ -135,11 +135,11 @@ void match_contact(const Matching& m, Calibration& out) {
 
 Demand ask_elements(const Matching& m, const Match& match, const BarrierFunction& barrier) {
   const PolicyConfig& policy = m.config.strain_limit.stiffness_policy;
-  if (!m.pilot || (m.config.matching.limit_load && needs_kappa(policy))) return {};
+  if (!m.pilot || (m.config.matching.limit_load && needs_k_s(policy))) return {};
   LimitStiffness own;
-  if (!needs_kappa(policy)) own = make_limit_policy(policy, {});
+  if (!needs_k_s(policy)) own = make_limit_policy(policy, {});
   const MatchedStiffness matched = matched_stiffness(match, barrier, m.scene.limit.width.front());
-  const Demand demand = limit_demand(*m.pilot, m.scene, matched, needs_kappa(policy) ? nullptr : &own);
+  const Demand demand = limit_demand(*m.pilot, m.scene, matched, needs_k_s(policy) ? nullptr : &own);
   m.record.elements_considered = demand.considered;
   if (demand.considered == 0) return demand;
   m.record.limit_element = demand.where;
@@ -164,7 +164,7 @@ void match_limit(const Matching& m, Calibration& out) {
   if (matching.rule == MatchingRule::equal_curvature) {
     m.record.limit_curvature = match.curvature_of_log(width);
   }
-  if (needs_kappa(m.config.strain_limit.stiffness_policy)) {
+  if (needs_k_s(m.config.strain_limit.stiffness_policy)) {
     out.k_s = match.stiffness(barrier, width);
     m.record.limit_stiffness_N_per_m = *out.k_s;
   } else if (!measured) {
@@ -178,7 +178,7 @@ void match_limit(const Matching& m, Calibration& out) {
 /// Whether a load is missing, or a policy has to be asked about the contacts or elements that carried it.
 bool needs_pilot(const RunConfig& config, bool limited) {
   const bool contact = !config.matching.load || !needs_kappa(config.formulation.stiffness_policy);
-  const bool limit = !config.matching.limit_load || !needs_kappa(config.strain_limit.stiffness_policy);
+  const bool limit = !config.matching.limit_load || !needs_k_s(config.strain_limit.stiffness_policy);
   return contact || (limited && limit);
 }
 
@@ -192,8 +192,8 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOpti
   record.rule = to_string(rule);
   if (rule == MatchingRule::as_given) {
     const PolicyConfig& policy = config.formulation.stiffness_policy;
-    if (needs_kappa(policy) && policy.kappa) record.kappa_N_per_m = *policy.kappa;
-    const std::optional<double>& k_s = config.strain_limit.stiffness_policy.k_s;
+    if (const auto kappa = given_kappa(policy)) record.kappa_N_per_m = *kappa;
+    const std::optional<double> k_s = given_k_s(config.strain_limit.stiffness_policy);
     if (out.limited && k_s) record.limit_stiffness_N_per_m = *k_s;
     return out;
   }

@@ -39,9 +39,10 @@ double smallest_relative_gap(const ContactState& state) {
 }
 
 /// What the preconditioner of PCG makes of the matrix; nothing for one that is no scaling.
-std::optional<Scaling> scaling_of(const LinearOptions& solver) {
+std::optional<Scaling> scaling_of(const LinearSolverConfig& solver) {
+  const std::string preconditioner = preconditioner_of({solver.name, solver.parameters});
   for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
-    if (solver.preconditioner == to_string(scaling)) return scaling;
+    if (preconditioner == to_string(scaling)) return scaling;
   }
   return std::nullopt;
 }

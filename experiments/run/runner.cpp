@@ -84,10 +84,10 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.argument = std::string(to_string(config.formulation.argument));
   labels.stiffness_policy = config.formulation.stiffness_policy.name;
   labels.matching_rule = to_string(config.matching.rule);
-  labels.integrator = config.integrator;
+  labels.integrator = config.integrator.name;
   labels.step_solver = config.step_solver.name;
   labels.linear_solver = config.linear_solver.name;
-  labels.preconditioner = config.linear_solver.name == "pcg" ? config.linear_solver.preconditioner : "none";
+  labels.preconditioner = preconditioner_of({config.linear_solver.name, config.linear_solver.parameters});
   labels.precision = config.precision;
   labels.d_hat_m = config.formulation.d_hat;
   labels.dt_s = config.time.dt;

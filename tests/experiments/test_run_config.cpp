@@ -74,8 +74,8 @@ TEST(RunConfig, the_method_has_every_number_of_its_config) {
   calibration.kappa = 5;
   const Method method = make_method(config, calibration);
   EXPECT_EQ(method.contact_options.ccd_park, 3e-5);
-  EXPECT_EQ(method.step_solver.armijo, 0.02);
-  EXPECT_EQ(method.step_solver.cap_fraction, 0.7);
+  EXPECT_EQ(number(method.step_solver.parameters, "armijo"), 0.02);
+  EXPECT_EQ(number(method.step_solver.parameters, "cap_fraction"), 0.7);
   EXPECT_EQ(method.step_solver.max_iterations, 17);
   EXPECT_EQ(method.step_solver.tol_velocity, 0.003);
   EXPECT_EQ(method.integrator->name(), "bdf2");
@@ -86,7 +86,7 @@ TEST(RunConfig, the_method_has_every_number_of_its_config) {
 TEST(RunConfig, factors_of_a_limit_multiply_what_it_is_given) {
   PolicyConfig fixed;
   fixed.name = "fixed";
-  fixed.k_s = 4;
+  fixed.parameters["k_s_N_per_m"] = 4.0;
   fixed.scale = 3;
   Calibration calibration;
   calibration.limited = true;
@@ -96,6 +96,7 @@ TEST(RunConfig, factors_of_a_limit_multiply_what_it_is_given) {
 
   PolicyConfig dynamic;
   dynamic.name = "elasticity_inclusive";
+  dynamic.parameters = {{"mass_term", "paper"}, {"elastic_term", true}, {"refresh", "per_step"}};
   dynamic.scale = 3;
   calibration.limit_scale = 7;
   EXPECT_EQ(make_limit_policy(dynamic, calibration).multiplier, 21);

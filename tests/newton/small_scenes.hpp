@@ -19,7 +19,7 @@ inline Method fixed_method(const std::string& shape, double kappa,
   Method method;
   method.contact = {require_shape(shape), Argument::gap};
   StiffnessPolicyConfig policy;
-  policy.kappa = kappa;
+  policy.parameters["kappa_N_per_m"] = kappa;
   method.stiffness = make_policy(policy);
   method.limit = {require_shape(shape), Argument::gap};
   method.integrator = make_integrator(integrator);

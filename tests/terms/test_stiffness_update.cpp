@@ -13,8 +13,8 @@ constexpr double dt = 0.01;
 std::unique_ptr<StiffnessPolicy> inertia_policy() {
   StiffnessPolicyConfig config;
   config.name = "elasticity_inclusive";
-  config.mass_term = MassTerm::inertia;
-  config.elastic_term = false;
+  config.parameters["mass_term"] = "inertia";
+  config.parameters["elastic_term"] = false;
   return make_policy(config);
 }
 

@@ -1,5 +1,5 @@
 // Nearest names and the text of the error for an unknown one.
-#include "barriers/named_entries.hpp"
+#include "core/parameters/registry.hpp"
 
 #include <fmt/format.h>
 #include <fmt/ranges.h>
@@ -42,17 +42,15 @@ std::string nearest_name(std::string_view name, const std::vector<std::string>& 
   return nearest;
 }
 
-ConfigError unknown_name(std::string_view where, std::string_view found,
-                         const std::vector<std::string>& names) {
-  std::string allowed = fmt::format("one of {}", fmt::join(names, ", "));
+std::string one_of_text(std::string_view found, const std::vector<std::string>& names) {
   const std::string nearest = nearest_name(found, names);
-  if (!nearest.empty()) allowed += fmt::format(" (did you mean {}?)", nearest);
-  return ConfigError(std::string(where), fmt::format("\"{}\"", shortened(found)), allowed);
+  return fmt::format("one of {}{}", fmt::join(names, ", "),
+                     nearest.empty() ? "" : " (did you mean " + nearest + "?)");
 }
 
-ConfigError taken_name(std::string_view where, std::string_view name, const std::vector<std::string>& names) {
-  return ConfigError(std::string(where), fmt::format("\"{}\"", name),
-                     fmt::format("a name not yet taken (taken: {})", fmt::join(names, ", ")));
+ConfigError unknown_name(std::string_view where, std::string_view found,
+                         const std::vector<std::string>& names) {
+  return ConfigError(std::string(where), fmt::format("\"{}\"", shortened(found)), one_of_text(found, names));
 }
 
 }  // namespace bb
