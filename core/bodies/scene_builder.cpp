@@ -183,9 +183,10 @@ int SceneBuilder::membrane_part(const std::string& model) {
   return index;
 }
 
-/// The warp axis needs a part in the plane of every triangle.
-void SceneBuilder::check_warp(const BodySpec& spec, const Vec3d& warp) {
+/// The warp axis needs a part in the plane of every triangle that has an energy.
+void SceneBuilder::check_warp(const BodySpec& spec, const Vec3d& warp, int first) {
   for (std::size_t t = 0; t < spec.mesh.triangles.size(); ++t) {
+    if (all_prescribed(shifted(spec.mesh.triangles[t], first))) continue;
     const Vec3d normal = area_vector(spec.mesh.vertices, spec.mesh.triangles[t]).normalized();
     if ((warp - normal.dot(warp) * normal).norm() > 1e-6) continue;
     return complain(fmt::format("body \"{}\"/material/warp_axis", spec.name),
@@ -201,7 +202,7 @@ void SceneBuilder::append_membrane(const BodySpec& spec, int first) {
   const int membrane = membrane_part(material.model);
   const bool directed = is_anisotropic(material.model);
   const Vec3d warp = material.warp_axis.value_or(Vec3d::UnitX());
-  if (directed) check_warp(spec, warp);
+  if (directed) check_warp(spec, warp, first);
   for (const auto& local : spec.mesh.triangles) {
     const auto t = shifted(local, first);
     if (all_prescribed(t)) continue;

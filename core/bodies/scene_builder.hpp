@@ -48,7 +48,7 @@ class SceneBuilder {
   int motion_index(const RigidMotion& motion);
   void append_masses(const BodySpec& spec, int first);
   int membrane_part(const std::string& model);
-  void check_warp(const BodySpec& spec, const Vec3d& warp);
+  void check_warp(const BodySpec& spec, const Vec3d& warp, int first);
   void append_membrane(const BodySpec& spec, int first);
   void append_springs(const BodySpec& spec, int first);
   void append_hinges(const BodySpec& spec, int first);

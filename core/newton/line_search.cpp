@@ -50,7 +50,7 @@ class LineSearch final : public StepSolver {
         step.status = StepStatus::line_search_failed;
         return step;
       }
-      collapsed = report.alpha < collapsed_step ? collapsed + 1 : 0;
+      collapsed = in_a_row(collapsed, report.alpha < collapsed_step);
       if (collapsed == collapse_iterations) {
         step.status = at_pose ? StepStatus::step_collapse : StepStatus::pin_infeasible;
         step.detail = at_pose ? describe_bound(system) : describe_short_pin(system, target_);

@@ -154,7 +154,7 @@ struct AuditRecord {
   long long judged = 0;  // primitives compared with all that they may meet, boxes included; 0: never ok
   long long crossings = 0, touches = 0, violations = 0, unproven = 0, inverted = 0;
   long long obstacle_violations = 0;  // those of `violations` that an obstacle is part of
-  long long scene_faults = 0;         // crossings of prescribed primitives, in no other count
+  long long scene_faults = 0;  // prescribed primitives that cross or cannot be certified; in no other count
   int first_bad_step = -1, first_bad_iteration = -1;
   std::vector<std::string> examples;  // the first few, in words
   double seconds = 0;

@@ -24,9 +24,9 @@ std::string unsettled(const char* whose, double change, int iterations) {
 }  // namespace
 
 void StepNumbers::add(const IterateNumbers& iterate) {
-  kappa_unsettled = iterate.kappa_change > settled_kappa ? kappa_unsettled + 1 : 0;
+  kappa_unsettled = in_a_row(kappa_unsettled, iterate.kappa_change > settled_kappa);
   kappa_change = iterate.kappa_change;
-  limit_kappa_unsettled = iterate.limit_kappa_change > settled_kappa ? limit_kappa_unsettled + 1 : 0;
+  limit_kappa_unsettled = in_a_row(limit_kappa_unsettled, iterate.limit_kappa_change > settled_kappa);
   limit_kappa_change = iterate.limit_kappa_change;
   alpha_ccd_min = std::min(alpha_ccd_min, iterate.alpha_ccd);
   ccd_queries += iterate.bound.queries;

@@ -12,6 +12,9 @@
 
 namespace bb {
 
+/// How many iterations in a row something has held, after one more.
+inline int in_a_row(int before, bool holds) { return holds ? before + 1 : 0; }
+
 struct IterateNumbers {
   double alpha_ccd = 1, alpha_limit = 1;  // bounds of the step
   StepBound bound;                        // that of contact, with its pair and counters

@@ -41,7 +41,8 @@ struct Matching {
   const Scene& scene;
   const RunOptions& options;
   MatchingRecord& record;
-  const Pilot* pilot = nullptr;  // null: every load is given and nothing makes its own stiffness
+  std::shared_ptr<const Pilot> pilot =
+      nullptr;  // null: every load is given and nothing makes its own stiffness
 };
 
 /// s = matched stiffness / the policy's own.
@@ -199,7 +200,7 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOpti
   record.theta = config.matching.theta;
   Matching matching{config, scene, options, record};
   if (needs_pilot(config, out.limited)) {
-    matching.pilot = &run_pilot(config, scene, options);
+    matching.pilot = run_pilot(config, scene, options);
     record.pilot_config_id = matching.pilot->config_id;
     record.pilot_note = matching.pilot->stopped;
   }

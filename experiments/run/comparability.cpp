@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/input/json.hpp"
+#include "core/record/folder_lock.hpp"
 #include "core/record/json_fields.hpp"
 #include "core/record/writer.hpp"
 
@@ -17,7 +18,15 @@ bool in_contact(const ComparedRun& run) { return run.gap_rel.finite(); }
 
 void append(std::string& list, const std::string& name) { list += (list.empty() ? "" : ", ") + name; }
 
+ComparedRun without_record(const std::filesystem::path& folder) {
+  ComparedRun out;
+  out.folder = folder.filename().string();
+  out.gap_rel = Number::missing("no_record");
+  return out;
+}
+
 std::string fault_of(const ComparedRun& run) {
+  if (run.run_id.empty()) return "it left no record";
   return "outcome " + run.outcome + (run.failed.empty() ? "" : ", failed checks: " + run.failed);
 }
 
@@ -117,10 +126,12 @@ Comparability judge_comparability(const ComparedRun& run, const std::optional<Co
   return out;
 }
 
-std::optional<std::size_t> default_reference(std::span<const std::optional<ComparedRun>> runs,
+std::optional<std::size_t> default_reference(std::span<const SweepMember> members,
+                                             std::span<const std::optional<ComparedRun>> runs,
                                              std::size_t index) {
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (members[i].group != members[index].group) continue;
     if (!runs[i] || !runs[i]->valid || !in_contact(*runs[i])) continue;
     const bool log = runs[i]->shape == "log" && runs[i]->argument == "gap";
     if (log && runs[index] && runs[i]->matching_rule == runs[index]->matching_rule) return i;
@@ -133,17 +144,20 @@ void write_comparability(std::span<const SweepMember> members) {
   std::vector<Json> records;
   std::vector<std::optional<ComparedRun>> runs;
   for (const SweepMember& member : members) {
-    Member one = read_member(member.folder);
+    Member one = member.ran ? read_member(member.folder) : Member{};
     records.push_back(std::move(one.record));
     runs.push_back(std::move(one.run));
   }
   for (std::size_t i = 0; i < members.size(); ++i) {
     if (!runs[i]) continue;
-    const auto chosen = members[i].reference ? members[i].reference : default_reference(runs, i);
-    Json found = fields::comparability(judge_comparability(*runs[i], chosen ? runs[*chosen] : std::nullopt));
-    Json& kept = records[i]["comparability"];
-    if (kept == found) continue;
-    kept = std::move(found);
+    const auto chosen = members[i].reference ? members[i].reference : default_reference(members, runs, i);
+    std::optional<ComparedRun> reference;
+    if (chosen) reference = runs[*chosen] ? runs[*chosen] : without_record(members[*chosen].folder);
+    Json found = fields::comparability(judge_comparability(*runs[i], reference));
+    if (records[i]["comparability"] == found) continue;
+    const FolderLock lock(members[i].folder);
+    if (read_member(members[i].folder).record != records[i]) continue;  // another process ran the case again
+    records[i]["comparability"] = std::move(found);
     write_atomically(members[i].folder / "run.json", records[i].dump(1) + "\n");
   }
 }

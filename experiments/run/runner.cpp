@@ -24,6 +24,7 @@
 #include "experiments/run/plan.hpp"
 #include "experiments/run/recorder.hpp"
 #include "experiments/run/start_check.hpp"
+#include "experiments/run/validity.hpp"
 
 namespace bb {
 namespace {
@@ -146,43 +147,6 @@ void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
   summary.unaccounted_s = timed.wall_s - summary.time.total_s();
 }
 
-void add_check(RunRecord& record, const std::string& name, Number value, Number bound, bool pass) {
-  record.validity.checks.push_back({name, value, bound, pass});
-}
-
-// The largest stretch that any limited element may have, minus 1; 0 without a limit.
-double hard_limit(const Scene& scene) {
-  double largest = 0;
-  for (std::size_t e = 0; e < scene.limit.width.size(); ++e) {
-    largest = std::max(largest, scene.limit.onset[e] + scene.limit.width[e]);
-  }
-  return largest;
-}
-
-void fill_validity(const Scene& scene, RunRecord& record, const std::string& hash_time,
-                   const std::string& hash_seen) {
-  record.validity.valid = true;
-  if (record.audit.enabled) {
-    const auto bad = static_cast<double>(record.audit.crossings + record.audit.violations +
-                                         record.audit.unproven + record.audit.scene_faults);
-    add_check(record, "audit_clean", bad, 0.0, bad == 0);
-    const auto judged = static_cast<double>(record.audit.judged);
-    add_check(record, "audit_judged", judged, 1.0, judged > 0);
-  }
-  if (!hash_time.empty() && !hash_seen.empty()) {
-    const bool same = hash_time == hash_seen;
-    add_check(record, "state_hash_equal_in_all_passes", same ? 0.0 : 1.0, 0.0, same);
-  }
-  if (const double limit = hard_limit(scene); limit > 0 && record.summary.max_stretch.finite()) {
-    const double stretch = record.summary.max_stretch.value;
-    add_check(record, "strain_limit_kept", stretch, limit, stretch < limit);
-  }
-  add_check(record, "outcome_ok", record.status.outcome == Outcome::ok ? 0.0 : 1.0, 0.0,
-            record.status.outcome == Outcome::ok);
-  for (const Check& check : record.validity.checks)
-    record.validity.valid = record.validity.valid && check.pass;
-}
-
 void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
   if (worse(outcome, verdict.outcome) == outcome && outcome != verdict.outcome) verdict = {outcome, detail};
 }
@@ -205,6 +169,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, c
     times = observer.iteration_times();
   }
   Verdict verdict = timed.verdict;
+  std::optional<audit::AuditLedger> ledger;
   if (look) {
     files.trace.emplace(options.folder);
     files.artifacts.emplace(options.folder, scene);
@@ -214,6 +179,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, c
     observer.finish();
     record.artifacts = files.artifacts->written();
     verdict = seen.verdict;
+    if (observer.ledger()) ledger = *observer.ledger();
     const Verdict audited = observer.audit_verdict();
     merge(verdict, audited.outcome, audited.detail);
   }
@@ -226,7 +192,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, c
     record.summary.stiffness = {main.stiffness.kappa_start, main.stiffness.kappa, main.stiffness.doublings,
                                 main.stiffness.saturated};
   }
-  fill_validity(scene, record, timed.state_hash, seen.state_hash);
+  fill_validity(scene, ledger ? &*ledger : nullptr, timed.state_hash, seen.state_hash, record);
 }
 
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its

@@ -165,6 +165,7 @@ TEST(Candidates, PlanarVertexPairsAreThoseWithoutAMeshEdge) {
 TEST(Candidates, PlanarSpringsOfOneBodyAreMeshEdgesAndStitchesAreNot) {
   Scene scene;
   scene.planar = true;
+  scene.planar_pairs = PlanarPairs::vertex_vertex;
   add_body(scene, "rope", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(2, 0, 0)}, {}, 3.0);
   add_body(scene, "bead", {Vec3d(2, 1, 0)}, {}, 3.0);
   scene.springs.edges = {{0, 1}, {1, 2}, {2, 3}};

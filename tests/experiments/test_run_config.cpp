@@ -47,6 +47,13 @@ TEST(RunConfig, a_run_is_valid_when_every_check_passed) {
   EXPECT_EQ(record.labels.d_hat_m, 0.01);
 }
 
+TEST(RunConfig, a_planar_vertex_has_two_degrees_of_freedom) {
+  const RunRecord pinned =
+      run({R"(/scene={"name": "drape2d", "variant": "pinned", "n": 4})", "/time/steps=1"});
+  EXPECT_EQ(pinned.scene.vertices, 16U);
+  EXPECT_EQ(pinned.scene.free_dofs, 2 * 12U);  // the top row is pinned
+}
+
 TEST(RunConfig, a_run_ends_at_its_first_step_that_failed_and_is_not_valid) {
   const RunRecord record = run({"/step_solver/max_iterations=1"});
   EXPECT_EQ(record.status.outcome, Outcome::newton_stall);
