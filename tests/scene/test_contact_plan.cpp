@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/contact_plan.hpp"
-#include "tests/scene/bodies.hpp"
+#include "tests/bodies/bodies.hpp"
 
 namespace bb {
 namespace {

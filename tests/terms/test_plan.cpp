@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "tests/scene/bodies.hpp"
+#include "tests/bodies/bodies.hpp"
 #include "tests/terms/all_terms.hpp"
 
 namespace bb {
