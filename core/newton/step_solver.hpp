@@ -39,7 +39,7 @@ struct StepSolverEntry {
   std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
 };
 const Registry<StepSolverEntry>& step_solvers();
-/// Errors: ConfigError for an unknown name and for what own_parameters refuses.
+/// Errors: ConfigError for an unknown name. Ranges are checked where a config is read.
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options);
 
 }  // namespace bb
