@@ -74,8 +74,8 @@ class AccumulatedToi final : public StepSolver {
     system.sweep(x_trial_);
     report.bound = system.contact_bound(x_trial_);
     report.alpha_ccd = report.bound.alpha;
-    report.alpha_limit = system.limit_bound(dx_);
-    double alpha = std::min(report.alpha_ccd, report.alpha_limit);
+    report.alpha_strain = system.limit_bound(dx_);
+    double alpha = std::min(report.alpha_ccd, report.alpha_strain);
     for (; alpha > 0; alpha = alpha < 1e-14 ? 0 : alpha / 2) {
       x_trial_.noalias() = x_before_ + (alpha / options_.extension) * dx_;
       ++report.line_search_trials;

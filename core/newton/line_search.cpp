@@ -33,7 +33,7 @@ class LineSearch final : public StepSolver {
       report.linear = system.solve(target_, dx_);
       measure_direction(system, dx_, report);
       const bool at_pose = poses_reached(system, target_);
-      const bool small = at_pose && report.dx_inf / task.dt < options_.tol_velocity;
+      const bool small = at_pose && report.dx_inf_m / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
         fail_step(step, *failed, report);
@@ -46,7 +46,7 @@ class LineSearch final : public StepSolver {
         step.status = StepStatus::converged;
         return step;
       }
-      if (!moved && report.alpha_ccd >= collapsed_step && report.alpha_limit >= collapsed_step) {
+      if (!moved && report.alpha_ccd >= collapsed_step && report.alpha_strain >= collapsed_step) {
         step.status = StepStatus::line_search_failed;
         return step;
       }
@@ -69,19 +69,19 @@ class LineSearch final : public StepSolver {
     system.sweep(x_trial_);
     report.bound = system.contact_bound(x_trial_);
     report.alpha_ccd = report.bound.alpha;
-    report.alpha_limit = system.limit_bound(dx_);
+    report.alpha_strain = system.limit_bound(dx_);
     // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
-    double alpha = std::min(report.alpha_ccd, report.alpha_limit);
+    double alpha = std::min(report.alpha_ccd, report.alpha_strain);
     if (alpha < 1) alpha *= options_.cap_fraction;
     while (alpha > smallest_alpha) {
       move(system, alpha);
       ++report.line_search_trials;
       if (const auto change = system.try_state(x_trial_)) {
-        const bool decrease = change->change <= -options_.armijo * alpha * report.decrement;
-        report.accepted_by_rounding = energy_test && !decrease && within_rounding(*change);
-        if (decrease || !energy_test || report.accepted_by_rounding) {
+        const bool decrease = change->change <= -options_.armijo * alpha * (2 * report.decrement_J);
+        report.rounding_accepts = energy_test && !decrease && within_rounding(*change);
+        if (decrease || !energy_test || report.rounding_accepts) {
           report.alpha = alpha;
-          report.energy_change = change->change;
+          report.energy_change_J = change->change;
           system.accept();
           return true;
         }

@@ -213,9 +213,9 @@ bool NewtonSystem::has_stage(MatrixStage stage) const {
   switch (stage) {
     case MatrixStage::full:
       return true;
-    case MatrixStage::no_contact:
+    case MatrixStage::without_contact:
       return keep_stages_ && state_.rows.size() + state_.mollified.size() > 0;
-    case MatrixStage::no_contact_no_limit:
+    case MatrixStage::without_contact_and_limit:
       return keep_stages_ && limit_ != nullptr;
   }
   return false;
@@ -225,9 +225,9 @@ const ReducedSystem& NewtonSystem::reduced(MatrixStage stage) {
   switch (stage) {
     case MatrixStage::full:
       return blocks_->reduce(full_);
-    case MatrixStage::no_contact:
+    case MatrixStage::without_contact:
       return blocks_->reduce(no_contact_);
-    case MatrixStage::no_contact_no_limit:
+    case MatrixStage::without_contact_and_limit:
       return blocks_->reduce(no_limit_);
   }
   return blocks_->reduce(full_);

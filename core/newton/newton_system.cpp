@@ -224,7 +224,7 @@ double NewtonSystem::limit_gap_min_rel() const {
   return smallest;
 }
 
-double NewtonSystem::limit_tension_max() const {
+double NewtonSystem::limit_load_max() const {
   if (!limit_) return 0;
   const ScopedPhase timer(clock_, Phase::strain_limit);
   limit_->measure(state_.x);

@@ -73,14 +73,14 @@ class NewtonSystem {
   /// Entries of the lower triangle that was solved last.
   std::size_t nnz() const { return nnz_; }
   bool has_limit() const { return limit_ != nullptr; }
-  /// Of limited elements: largest singular value; smallest distance y to the limit over its width, which is 1
+  /// Of limited elements: largest sigma - 1; smallest distance y to the limit over its width, which is 1
   /// or more where no element is active.
   double max_stretch() const;
   double limit_gap_min_rel() const;
   /// SVD sweeps over the limited elements so far: one a state that was measured.
   long long limit_sweeps() const { return limit_ ? limit_->sweeps() : 0; }
   /// Largest (1/area) dS_e/dsigma over limited elements, N/m.
-  double limit_tension_max() const;
+  double limit_load_max() const;
   /// Largest estimated load over capacity, over contact rows and over limited elements; 0 when the barrier is
   /// unbounded. dx: the Newton direction at state(), or 0.
   double contact_overload(const Positions& dx) const;

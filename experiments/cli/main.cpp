@@ -131,7 +131,8 @@ int main(int argc, char** argv) {
   SweepVerb sweep_verb;
   std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
-  bool eval_schema = false;
+  std::string help_format = "record";
+  bool eval_schema = false, help_schema = false;
 
   CLI::App app{"barrierbench: contact barriers compared in one Newton + ACCD pipeline"};
   app.name("bench");
@@ -167,6 +168,11 @@ int main(int argc, char** argv) {
   eval_app->add_flag("--schema", eval_schema, "print the JSON Schema of all kinds");
   eval_app->footer(
       "example: echo '{\"kind\":\"shape\",\"shape\":\"log\",\"d\":0.5,\"d_hat\":1}' | ./bench eval");
+  auto* help_app =
+      app.add_subcommand("help", "every field of a file, from the list that the program writes it by");
+  help_app->add_option("format", help_format, fmt::format("which file: {}", fmt::join(help_formats(), ", ")));
+  help_app->add_flag("--schema", help_schema, "print the JSON Schema instead");
+  help_app->footer("example: ./bench help record");
   auto* demo_app = app.add_subcommand("demo", "the comparison of the README");
   demo_app->add_option("--out", demo_out, "folder of the records");
   demo_app->footer("example: ./bench demo");
@@ -202,6 +208,7 @@ int main(int argc, char** argv) {
     if (explain_app->parsed()) return explain(explain_verb);
     if (list_app->parsed()) return list(list_what);
     if (eval_app->parsed()) return eval(eval_file, eval_schema);
+    if (help_app->parsed()) return help(help_format, help_schema);
     return demo(demo_out, common);
   });
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;

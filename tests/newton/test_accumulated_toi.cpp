@@ -50,7 +50,7 @@ TEST(AccumulatedToi, a_step_shortened_by_its_largest_motion_ends_where_its_own_t
   options.target_toi = 0.25;
   const Flight flight = fly(options);
   ASSERT_EQ(flight.report.status, StepStatus::converged);
-  EXPECT_EQ(flight.report.iterations, 2);
+  EXPECT_EQ(flight.report.newton_iterations, 2);
   EXPECT_NEAR(flight.watch.reports[0].alpha, 0.4, 1e-12);
   EXPECT_NEAR(flight.report.dt_used, 0.4 * dt, 1e-12);
   EXPECT_NEAR(flight.time, 0.4 * dt, 1e-12);
@@ -71,7 +71,7 @@ TEST(AccumulatedToi, parts_accumulate_as_shares_of_what_is_left) {
     beta += (1 - beta) * flight.watch.reports[used].alpha;
   }
   EXPECT_EQ(used, 3U);
-  EXPECT_EQ(flight.report.iterations, 4);  // and the pass that reduces the error
+  EXPECT_EQ(flight.report.newton_iterations, 4);  // and the pass that reduces the error
   EXPECT_NEAR(flight.report.dt_used, beta * dt, 1e-15);
   EXPECT_NEAR(beta, 1, 1e-12);
   EXPECT_NEAR(1 - flight.z, fallen(dt), 1e-12);
@@ -82,7 +82,7 @@ TEST(AccumulatedToi, makes_at_least_the_iterations_that_are_asked_for) {
     StepSolverOptions options;
     options.min_iterations = least;
     const Flight flight = fly(options);
-    EXPECT_EQ(flight.report.iterations, least + 1);
+    EXPECT_EQ(flight.report.newton_iterations, least + 1);
     EXPECT_NEAR(flight.report.dt_used, dt, 1e-15);
   }
 }
