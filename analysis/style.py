@@ -25,7 +25,8 @@ LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
 LEAST_RATIO = 2.0  # a logarithmic axis never shows less
 REFERENCE = "reference"  # marks lines that are no data
-MARKERS = "A formulation has one colour and one marker in every figure; {hollow}"
+MARKERS = "A formulation has one colour and one marker in every figure; {hollow} A cross ends the line of a run that failed; the legend has its outcome."
+FAILURE = "failure"  # gid of that cross
 
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # it comments on the missing date of the PDF
 
@@ -123,8 +124,8 @@ def name_of(row: pd.Series) -> str:
     return f"{row['series']} ({word})" if word else row["series"]
 
 
-def draw(axis, x, y, row: pd.Series, end_word: bool = True, steps: str = "default") -> None:
-    """One run's line. Hollow markers: see HOLLOW; a failure ends in its word. steps: matplotlib's drawstyle,
+def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "default") -> None:
+    """One run's line. Hollow markers: see HOLLOW; a failure ends in a cross. steps: matplotlib's drawstyle,
     `steps-mid` for a count of each time step, `steps-post` for a share."""
     style = look(row["formulation"], int(row.get("variant", 0)))
     solid = not verdict_word(row)
@@ -140,10 +141,8 @@ def draw(axis, x, y, row: pd.Series, end_word: bool = True, steps: str = "defaul
         markeredgewidth=0.8,
         label=name_of(row),
     )
-    if end_word and row["outcome"] != "ok" and len(x) > 0:
-        axis.annotate(
-            row["outcome"], (x[-1], y[-1]), xytext=(3, 0), textcoords="offset points", fontsize=6, color=style.color
-        )
+    if end_mark and row["outcome"] != "ok" and len(x) > 0:
+        axis.plot(x[-1:], y[-1:], linestyle="none", marker="x", markersize=6, markeredgewidth=1.4, color=style.color, gid=FAILURE)
 
 
 def marker_sentence(runs: pd.DataFrame) -> str:

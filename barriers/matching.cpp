@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
-#include "barriers/named_entries.hpp"
-#include "core/contact/slope_scan.hpp"
+#include "core/barrier/slope_scan.hpp"
+#include "core/math/error.hpp"
 
 namespace bb {
 namespace {
@@ -83,19 +83,16 @@ double match_equal_curvature(const BarrierFunction& barrier, double d_hat, doubl
   return curvature / d2b;
 }
 
-double kappa_from_convention(std::string_view key, double value, double d_hat) {
-  struct Convention {
-    std::string name;
-    double kappa;
+const std::vector<KappaConvention>& kappa_conventions() {
+  static const std::vector<KappaConvention> list = {
+      {"kappa_a_J", "J", "kappa_a (1 - d/d_hat)^3, shape cubic", "cubic", "gap",
+       [](double value, double d_hat) { return 3 * value / (2 * d_hat * d_hat); }},
+      {"kappa_p_N", "N", "kappa_p/(2 d_hat) (d - d_hat)^2, shape quadratic", "quadratic", "gap",
+       [](double value, double d_hat) { return value / (2 * d_hat); }},
+      {"kappa_ipc_N_per_m3", "N/m^3", "kappa_IPC f(d^2; d_hat^2), argument squared_gap", "", "squared_gap",
+       [](double value, double d_hat) { return value * d_hat * d_hat; }},
   };
-  const std::vector<Convention> conventions{{"kappa_N_per_m", value},
-                                            {"kappa_a_J", 3 * value / (2 * d_hat * d_hat)},
-                                            {"kappa_p_N", value / (2 * d_hat)},
-                                            {"kappa_ipc_N_per_m3", value * d_hat * d_hat}};
-  const Convention& convention = require_entry(conventions, key, "stiffness_policy");
-  require(positive(value), convention.name.c_str(), value, "a number > 0");
-  require(positive(d_hat), "d_hat", d_hat, "a number > 0");
-  return convention.kappa;
+  return list;
 }
 
 }  // namespace bb

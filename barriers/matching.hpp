@@ -3,9 +3,10 @@
 #pragma once
 
 #include <optional>
-#include <string_view>
+#include <string>
+#include <vector>
 
-#include "core/contact/shape.hpp"
+#include "core/barrier/shape.hpp"
 
 namespace bb {
 
@@ -36,12 +37,14 @@ double match_equal_force(const BarrierFunction& barrier, double d_hat, double lo
 double match_equal_curvature(const BarrierFunction& barrier, double d_hat, double curvature,
                              double theta = 0.5);
 
-/// kappa (N/m) from the constant of a published convention; `key` names it as configs do:
-///   kappa_N_per_m        kappa itself
-///   kappa_a_J            kappa_a (1 - d/d_hat)^3 with shape cubic: 3 kappa_a/(2 d_hat^2)
-///   kappa_p_N            kappa_p/(2 d_hat) (d - d_hat)^2 with shape quadratic: kappa_p/(2 d_hat)
-///   kappa_ipc_N_per_m3   kappa_IPC f(d^2; d_hat^2) with argument squared_gap: kappa_IPC d_hat^2
-/// Errors: ConfigError at the key for another key, a value that is not > 0 or d_hat not > 0.
-double kappa_from_convention(std::string_view key, double value, double d_hat);
+/// A published constant that a fixed kappa can be given by instead, and the formulation it was published for.
+struct KappaConvention {
+  std::string name;  // of the setting
+  std::string unit, doc;
+  std::string shape;  // empty: any
+  std::string argument;
+  double (*kappa)(double value, double d_hat);  // N/m; both > 0
+};
+const std::vector<KappaConvention>& kappa_conventions();
 
 }  // namespace bb

@@ -6,19 +6,19 @@
 #include <utility>
 #include <vector>
 
-#include "barriers/named_entries.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "core/integrators/registry.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 namespace {
 
 /// Appends a violation for every added name that is known, or given twice by the plugin itself.
 template <class Known, class Added>
-void check_names(const std::string& file, const char* kind, const std::vector<Known>& known,
+void check_names(const std::string& file, const char* kind, const Registry<Known>& known,
                  const std::vector<Added>& added, std::vector<Violation>& wrong) {
-  std::vector<std::string> taken = entry_names(known);
+  std::vector<std::string> taken = known.names();
   for (const Added& entry : added) {
     for (const std::string& name : taken) {
       if (name != entry.name) continue;
@@ -40,14 +40,14 @@ Plugin register_plugin(const std::string& file) {
   check_names(file, "integrator", integrators(), plugin.integrators, wrong);
   if (!wrong.empty()) throw ConfigError(std::move(wrong));
 
-  for (const Shape& shape : plugin.shapes) register_shape(shape, file);
+  for (const Shape& shape : plugin.shapes) shapes().add(shape, file);
   for (const PluginPolicy& policy : plugin.policies) {
     const auto make = [policy](const StiffnessPolicyConfig& config) {
-      return policy.make(config.refresh, config.multiplier);
+      return policy.make(require_refresh(text(config.parameters, "refresh")), config.multiplier);
     };
-    register_stiffness_policy({policy.name, policy.doc, make}, file);
+    stiffness_policies().add({policy.name, policy.doc, {refresh_parameter()}, "", make}, file);
   }
-  for (const IntegratorEntry& integrator : plugin.integrators) register_integrator(integrator);
+  for (const IntegratorEntry& integrator : plugin.integrators) integrators().add(integrator, file);
   return plugin;
 }
 

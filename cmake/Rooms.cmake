@@ -10,13 +10,58 @@ target_precompile_headers(bb_pch PRIVATE
   <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> <algorithm> <array> <cmath> <cstdint> <functional> <memory>
   <optional> <span> <string> <string_view> <utility> <vector>)
 
-# bb_room(NAME [SOURCES ...] [DEPS ...]): library bb_NAME; without sources an interface library.
+# bb_declare_room(NAME FOLDER [DEPS ...]): the files below FOLDER include no room but those that DEPS names as bb_<room>.
+function(bb_declare_room name folder)
+  cmake_parse_arguments(ARG "" "" "DEPS" ${ARGN})
+  set(needs "")
+  foreach(dep IN LISTS ARG_DEPS)
+    if(dep MATCHES "^bb_(.*)$")
+      list(APPEND needs "${CMAKE_MATCH_1}")
+    endif()
+  endforeach()
+  if(NOT needs)
+    set(needs "-")
+  endif()
+  list(JOIN needs "," needs)
+  set_property(GLOBAL APPEND PROPERTY BB_ROOMS "${name}|${folder}|${needs}")
+endfunction()
+
+# bb_check_rooms(): a build refuses an #include of a room that is not named (RoomCheck.cmake). Called last.
+function(bb_check_rooms)
+  get_property(rooms GLOBAL PROPERTY BB_ROOMS)
+  list(JOIN rooms "\n" text)
+  file(CONFIGURE OUTPUT "${PROJECT_BINARY_DIR}/rooms.txt" CONTENT "${text}\n" @ONLY)
+  set(files "")
+  foreach(top core barriers experiments)
+    file(GLOB_RECURSE found "${PROJECT_SOURCE_DIR}/${top}/*.[hc]pp" "${PROJECT_SOURCE_DIR}/${top}/*.in")
+    list(APPEND files ${found})
+  endforeach()
+  set(stamp "${PROJECT_BINARY_DIR}/rooms.stamp")
+  add_custom_command(OUTPUT "${stamp}"
+    COMMAND "${CMAKE_COMMAND}" "-DROOMS=${PROJECT_BINARY_DIR}/rooms.txt" "-DSOURCE_DIR=${PROJECT_SOURCE_DIR}"
+      "-DSTAMP=${stamp}" -P "${PROJECT_SOURCE_DIR}/cmake/RoomCheck.cmake"
+    DEPENDS ${files} "${PROJECT_BINARY_DIR}/rooms.txt" "${PROJECT_SOURCE_DIR}/cmake/RoomCheck.cmake"
+    COMMENT "Checking that rooms include only rooms that they name" VERBATIM)
+  add_custom_target(bb_rooms ALL DEPENDS "${stamp}")
+  get_property(targets GLOBAL PROPERTY BB_ROOM_TARGETS)
+  foreach(target IN LISTS targets)
+    add_dependencies(${target} bb_rooms)
+  endforeach()
+endfunction()
+
+# bb_room(NAME [FOLDER path] [SOURCES ...] [DEPS ...]): library bb_NAME of the files in FOLDER (this one by default);
+# without sources an interface library. DEPS names every room that these files include.
 function(bb_room name)
-  cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
+  cmake_parse_arguments(ARG "" "FOLDER" "SOURCES;DEPS" ${ARGN})
+  if(NOT ARG_FOLDER)
+    file(RELATIVE_PATH ARG_FOLDER "${PROJECT_SOURCE_DIR}" "${CMAKE_CURRENT_SOURCE_DIR}")
+  endif()
+  bb_declare_room(${name} "${ARG_FOLDER}" DEPS ${ARG_DEPS})
   if(ARG_SOURCES)
     add_library(bb_${name} STATIC ${ARG_SOURCES})
     target_link_libraries(bb_${name} PUBLIC bb_pch ${ARG_DEPS})
     target_precompile_headers(bb_${name} REUSE_FROM bb_pch)
+    set_property(GLOBAL APPEND PROPERTY BB_ROOM_TARGETS bb_${name})
   else()
     add_library(bb_${name} INTERFACE)
     target_link_libraries(bb_${name} INTERFACE bb_settings Eigen3::Eigen ${ARG_DEPS})

@@ -48,7 +48,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
             sure = estimates[estimates["status"] == "ok"]
             bound = estimates[estimates["status"].isin(["lower_bound", "singular"])]
             for line, (field, _) in enumerate(PANELS):
-                style.draw(axes[line, column], sure["at"].to_numpy(), sure[field].to_numpy(), row, end_word=line == 0)
+                style.draw(axes[line, column], sure["at"].to_numpy(), sure[field].to_numpy(), row, end_mark=line == 0)
                 _draw_bounds(axes[line, column], bound[bound[field].notna()], row, field)
         for line, (field, name) in enumerate(PANELS):
             axis = axes[line, column]

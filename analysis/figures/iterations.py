@@ -38,12 +38,12 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
         if not steps.empty:
             newton = steps["newton_iterations"].to_numpy()
             style.draw(axes[0], steps["step"].to_numpy(), newton, row, steps="steps-mid")
-            style.draw(axes[1], *_ecdf(newton), row, end_word=False, steps="steps-post")
+            style.draw(axes[1], *_ecdf(newton), row, end_mark=False, steps="steps-post")
             numbers.append(pd.DataFrame({"what": "newton_per_step", "series": row["series"], "at": steps["step"], "count": newton}))
         probes = trace[trace["probe_pcg_iterations"].notna()] if not trace.empty else trace
         if not probes.empty:
             pcg = probes["probe_pcg_iterations"].to_numpy(dtype=float)
-            style.draw(axes[2], *_ecdf(pcg), row, end_word=False, steps="steps-post")
+            style.draw(axes[2], *_ecdf(pcg), row, end_mark=False, steps="steps-post")
             numbers.append(pd.DataFrame({"what": "probe_pcg", "series": row["series"], "at": probes["n"], "count": pcg}))
     axes[0].set(xlabel="time step", ylabel="Newton iterations")
     axes[1].set(xlabel="Newton iterations of a step", ylabel="share of steps", ylim=(0, 1.02))

@@ -62,8 +62,8 @@ def _draw(axes: np.ndarray, kappa: Kappa, step: int, runs: pd.DataFrame, traces:
         part = part[part["step"] == step]
         gap, change = (_column(part, key).to_numpy(dtype=float) for key in (kappa.gap, kappa.change))
         iteration = part["iteration"].to_numpy()
-        style.draw(axes[0], 1 + iteration, gap, row, end_word=False)
-        style.draw(axes[1], 1 + iteration[change > 0], change[change > 0], row, end_word=False)
+        style.draw(axes[0], 1 + iteration, gap, row, end_mark=False)
+        style.draw(axes[1], 1 + iteration[change > 0], change[change > 0], row, end_mark=False)
         numbers.append(pd.DataFrame({"series": row["series"], "kappa": kappa.whose, "step": step, "iteration": iteration,
                                      "gap_min_iterates_rel": gap, "kappa_change_rel": change}))
     for axis in axes:

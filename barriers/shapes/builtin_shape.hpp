@@ -5,7 +5,7 @@
 #include <string>
 #include <utility>
 
-#include "core/contact/shape.hpp"
+#include "core/barrier/shape.hpp"
 
 namespace bb {
 

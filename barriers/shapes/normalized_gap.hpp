@@ -3,7 +3,7 @@
 
 #include <cmath>
 
-#include "core/contact/shape.hpp"
+#include "core/barrier/shape.hpp"
 #include "core/math/host_device.hpp"
 
 namespace bb::shapes {

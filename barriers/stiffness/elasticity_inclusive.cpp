@@ -10,9 +10,9 @@ namespace {
 class ElasticityInclusive final : public StiffnessPolicy {
  public:
   explicit ElasticityInclusive(const StiffnessPolicyConfig& config)
-      : mass_term_(config.mass_term),
-        elastic_term_(config.elastic_term),
-        refresh_(config.refresh),
+      : mass_term_(require_mass_term(text(config.parameters, "mass_term"))),
+        elastic_term_(boolean(config.parameters, "elastic_term")),
+        refresh_(require_refresh(text(config.parameters, "refresh"))),
         multiplier_(config.multiplier) {}
   std::string_view name() const override { return "elasticity_inclusive"; }
   Refresh refresh() const override { return refresh_; }
@@ -37,13 +37,21 @@ class ElasticityInclusive final : public StiffnessPolicy {
 
 }  // namespace
 
-std::unique_ptr<StiffnessPolicy> make_policy_elasticity_inclusive(const StiffnessPolicyConfig& config);
-std::unique_ptr<StiffnessPolicy> make_policy_elasticity_inclusive(const StiffnessPolicyConfig& config) {
-  if (config.mass_term == MassTerm::none && !config.elastic_term) {
-    throw ConfigError("stiffness_policy", "mass_term none with elastic_term false",
-                      "at least one term, else kappa is 0");
-  }
-  return std::make_unique<ElasticityInclusive>(config);
+StiffnessPolicyEntry policy_elasticity_inclusive() {
+  StiffnessPolicyEntry entry;
+  entry.parameters = {
+      {"mass_term", word({"paper", "inertia", "none"}), "paper", "M/d^2 times 1 m^2/s^2, M/(c h^2), or 0"},
+      {"elastic_term", flag(), true, "whether the elastic Hessian counts"},
+      refresh_parameter(),
+  };
+  entry.make = [](const StiffnessPolicyConfig& config) -> std::unique_ptr<StiffnessPolicy> {
+    if (text(config.parameters, "mass_term") == "none" && !boolean(config.parameters, "elastic_term")) {
+      throw ConfigError("stiffness_policy", "mass_term none with elastic_term false",
+                        "at least one term, else kappa is 0");
+    }
+    return std::make_unique<ElasticityInclusive>(config);
+  };
+  return entry;
 }
 
 }  // namespace bb

@@ -2,7 +2,7 @@
 // `eval` call the same function.
 #pragma once
 
-#include "core/contact/stiffness_policy.hpp"
+#include "core/barrier/stiffness_policy.hpp"
 #include "core/math/host_device.hpp"
 
 namespace bb {

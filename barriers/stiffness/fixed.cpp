@@ -1,9 +1,7 @@
 // Stiffness policy `fixed`: the same kappa (N/m) for every contact and every iteration.
-#include <fmt/format.h>
-
 #include <algorithm>
-#include <cmath>
 
+#include "barriers/matching.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "core/math/error.hpp"
 
@@ -26,12 +24,20 @@ class Fixed final : public StiffnessPolicy {
 
 }  // namespace
 
-std::unique_ptr<StiffnessPolicy> make_policy_fixed(const StiffnessPolicyConfig& config);
-std::unique_ptr<StiffnessPolicy> make_policy_fixed(const StiffnessPolicyConfig& config) {
-  if (!(config.kappa > 0) || !std::isfinite(config.kappa)) {
-    throw ConfigError("stiffness_policy/kappa_N_per_m", fmt::format("{}", config.kappa), "a number > 0");
+StiffnessPolicyEntry policy_fixed() {
+  StiffnessPolicyEntry entry;
+  entry.parameters = {
+      {"kappa_N_per_m", positive("N/m"), no_default, "kappa; absent: the matching rule supplies it"}};
+  for (const KappaConvention& convention : kappa_conventions()) {
+    entry.parameters.push_back({convention.name, positive(convention.unit), no_default, convention.doc});
   }
-  return std::make_unique<Fixed>(config.kappa * config.multiplier);
+  entry.matched = "kappa_N_per_m";
+  entry.make = [](const StiffnessPolicyConfig& config) -> std::unique_ptr<StiffnessPolicy> {
+    const std::optional<double> kappa = optional_number(config.parameters, "kappa_N_per_m");
+    if (!kappa) throw ConfigError("stiffness_policy/kappa_N_per_m", "nothing", "a number > 0 (N/m)");
+    return std::make_unique<Fixed>(*kappa * config.multiplier);
+  };
+  return entry;
 }
 
 }  // namespace bb

@@ -5,26 +5,14 @@
 
 #include <array>
 #include <cmath>
-#include <utility>
-
-#include "barriers/named_entries.hpp"
 
 namespace bb {
 
-#define ENTRY(name, doc) std::unique_ptr<StiffnessPolicy> make_policy_##name(const StiffnessPolicyConfig&);
+#define ENTRY(name, doc) StiffnessPolicyEntry policy_##name();
 #include "barriers/stiffness/registry.inc"
 #undef ENTRY
 
 namespace {
-
-std::vector<StiffnessPolicyEntry>& mutable_policies() {
-#define ENTRY(name, doc) {#name, doc, &make_policy_##name},
-  static std::vector<StiffnessPolicyEntry> list{
-#include "barriers/stiffness/registry.inc"
-  };
-#undef ENTRY
-  return list;
-}
 
 /// The enumerator whose to_string is `name`.
 template <class Enum, std::size_t n>
@@ -39,17 +27,27 @@ Enum require_enum(const std::array<Enum, n>& all, std::string_view name, std::st
 
 }  // namespace
 
-const std::vector<StiffnessPolicyEntry>& stiffness_policies() { return mutable_policies(); }
-
-void register_stiffness_policy(StiffnessPolicyEntry entry, std::string_view where) {
-  append_entry(mutable_policies(), std::move(entry), where);
+Registry<StiffnessPolicyEntry>& stiffness_policies() {
+#define ENTRY(name, doc) named(policy_##name(), #name, doc),
+  static Registry<StiffnessPolicyEntry> all({
+#include "barriers/stiffness/registry.inc"
+  });
+#undef ENTRY
+  return all;
 }
 
 std::unique_ptr<StiffnessPolicy> make_policy(const StiffnessPolicyConfig& config) {
   if (!(config.multiplier > 0) || !std::isfinite(config.multiplier)) {
     throw ConfigError("stiffness_policy/multiplier", fmt::format("{}", config.multiplier), "a number > 0");
   }
-  return require_entry(stiffness_policies(), config.name, "stiffness_policy/name").make(config);
+  const StiffnessPolicyEntry& entry = stiffness_policies().require(config.name, "stiffness_policy/name");
+  StiffnessPolicyConfig complete = config;
+  complete.parameters = own_parameters(entry.parameters, config.parameters, "stiffness_policy");
+  return entry.make(complete);
+}
+
+Parameter refresh_parameter() {
+  return {"refresh", word({"per_iteration", "per_step"}), "per_iteration", "when kappa is computed anew"};
 }
 
 std::string_view to_string(MassTerm mass_term) {

@@ -3,46 +3,42 @@
 
 #include <functional>
 #include <memory>
-#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
-#include "core/contact/stiffness_policy.hpp"
+#include "core/barrier/stiffness_policy.hpp"
+#include "core/parameters/parameter.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 
-/// What makes a policy. A policy reads its own fields and ignores the others.
+/// What makes a policy.
 struct StiffnessPolicyConfig {
   std::string name = "fixed";
-  double kappa = 0;                          // fixed: N/m, > 0
-  MassTerm mass_term = MassTerm::paper;      // elasticity_inclusive
-  bool elastic_term = true;                  // elasticity_inclusive
-  Refresh refresh = Refresh::per_iteration;  // elasticity_inclusive and plugins
-  double multiplier = 1;                     // s of the matching rule: every kappa is multiplied by it
-  /// ipc_adaptive: numbers instead of the policy's own rules, as Li et al. 2020 have (docs/design.md).
-  struct IpcOverrides {
-    std::optional<double> kappa_min, kappa_max;  // N/m, instead of k and 100 k
-    std::optional<double> doubling_gap;          // m, instead of 10 park distances
-  } ipc;
+  ParameterMap parameters;  // of the policy of that name; what is left out has its default
+  double multiplier = 1;    // s of the matching rule: every kappa is multiplied by it
 };
 
 struct StiffnessPolicyEntry {
   std::string name, doc;
-  std::function<std::unique_ptr<StiffnessPolicy>(const StiffnessPolicyConfig&)> make;
+  std::vector<Parameter> parameters;  // its own, with defaults
+  /// The parameter that is the stiffness, N/m, which the matching rule supplies when it is left out; empty:
+  /// the policy makes its own kappa.
+  std::string matched;
+  std::function<std::unique_ptr<StiffnessPolicy>(const StiffnessPolicyConfig& complete)> make;
 };
 
 /// All policies, built-ins first, in the order of registry.inc. Host only.
-const std::vector<StiffnessPolicyEntry>& stiffness_policies();
+Registry<StiffnessPolicyEntry>& stiffness_policies();
 
-/// Adds a policy of a plugin. Not thread-safe: before the first run only.
-/// Errors: ConfigError at `where` when the name is taken.
-void register_stiffness_policy(StiffnessPolicyEntry entry, std::string_view where = "stiffness_policy");
-
-/// A policy for one run.
-/// Errors: ConfigError for an unknown name (with the names allowed and the nearest one), a multiplier or
-/// fixed kappa that is not a finite number > 0, overrides that are not > 0 or out of order.
+/// A policy for one run. Errors: ConfigError for an unknown name (with the names allowed and the nearest
+/// one), for what own_parameters refuses, for a multiplier that is not a finite number > 0, and for what the
+/// policy itself refuses.
 std::unique_ptr<StiffnessPolicy> make_policy(const StiffnessPolicyConfig& config);
+
+/// When kappa is computed anew, for policies that can.
+Parameter refresh_parameter();
 
 std::string_view to_string(MassTerm mass_term);
 std::string_view to_string(Refresh refresh);

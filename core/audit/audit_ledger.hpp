@@ -24,7 +24,7 @@ struct AuditLedger {
   long violations = 0, unproven = 0;       // of motions
   long inverted = 0;                       // planar elements, summed over states; not a penetration
   long obstacle_violations = 0;            // of states and motions
-  long scene_faults = 0;         // of states and motions: prescribed primitives that cross, in no other count
+  long scene_faults = 0;         // prescribed primitives that cross or cannot be certified; in no other count
   long non_finite = 0;           // states and motions that could not be judged
   long unjudged = 0;             // states of the run that no judged motion led to
   bool self_test_passed = true;  // of the exact predicates on this machine

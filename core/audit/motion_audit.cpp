@@ -85,13 +85,15 @@ class MotionJudge {
     }
     ++sum.pairs;
     const Verdict verdict = judge(motion, tolerance_);
-    if (verdict == Verdict::violation && mesh_.all_prescribed(ids)) {
-      ++sum.scene_faults;
-      keep_first(sum.first_fault, name);
-      return;
-    }
     if (verdict == Verdict::certified) {
       ++sum.certified;
+      return;
+    }
+    if (mesh_.all_prescribed(ids)) {  // the solver moves none of its vertices
+      PairName fault = name;
+      fault.proven = verdict == Verdict::violation;
+      ++sum.scene_faults;
+      keep_first(sum.first_fault, fault);
       return;
     }
     if (verdict == Verdict::unproven) {  // no offender: nothing was shown of this pair

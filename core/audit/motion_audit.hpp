@@ -16,8 +16,8 @@ struct MotionAudit {
   long certified = 0, violations = 0, unproven = 0;
   long obstacle_queries = 0;     // paths of a vertex compared with an obstacle
   long obstacle_violations = 0;  // free vertices whose path is strictly beyond an obstacle somewhere
-  long scene_faults = 0;         // passages and paths of that kind where every vertex is prescribed
-  bool finite = true;            // false: nothing was judged
+  long scene_faults = 0;  // the same where every vertex is prescribed: violations, unproven, paths beyond
+  bool finite = true;     // false: nothing was judged
   std::optional<PairName> first_bad, first_fault;
   void merge(const MotionAudit& other);
 };

@@ -57,10 +57,11 @@ enum class PairKind {
 };
 
 /// An offender by its indices: edge, triangle and obstacle numbers, vertex ids; `inverted`: the triangle
-/// twice.
+/// twice. Not proven: the pair could not be certified free, and no passage was shown either.
 struct PairName {
   PairKind kind = PairKind::edge_triangle;
   int first = -1, second = -1;
+  bool proven = true;
   auto operator<=>(const PairName&) const = default;
 };
 

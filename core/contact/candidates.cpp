@@ -11,10 +11,6 @@
 namespace bb {
 
 namespace {
-bool any(const std::vector<std::uint8_t>& flags) {
-  return std::find(flags.begin(), flags.end(), 1) != flags.end();
-}
-
 /// Median of x1 - x0 over all points, a coordinate at a time: the frame in which the boxes are shortest. 0
 /// where that is not finite. `moved`: a buffer.
 Vec3d common_motion(const Primitives<1>& points, const Positions& x0, const Positions& x1,
@@ -34,22 +30,12 @@ Vec3d common_motion(const Primitives<1>& points, const Positions& x0, const Posi
 }
 }  // namespace
 
-BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles)
-    : surface_(surface), obstacles_(std::move(obstacles)) {
-  const bool free_point = any(surface.points.free), free_edge = any(surface.edges.free);
-  obstacles_possible_ = !obstacles_.empty() && free_point;
-  if (surface.planar && surface.planar_pairs == PlanarPairs::vertex_vertex) {
-    points_.needed = surface.points.size() > 1 && free_point;
-  } else if (surface.planar) {
-    points_.needed = edges_.needed =
-        surface.edges.size() > 0 && surface.points.size() > 2 && (free_point || free_edge);
-  } else {
-    triangles_.needed = surface.triangles.size() > 0 && surface.points.size() > 3 &&
-                        (free_point || any(surface.triangles.free));
-    points_.needed = triangles_.needed;
-    edges_.needed = surface.edges.size() > 1 && free_edge;
-  }
-  pairs_possible_ = points_.needed || edges_.needed;
+BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles,
+                       const ContactPlan& plan)
+    : surface_(surface), obstacles_(std::move(obstacles)), plan_(plan) {
+  points_.needed = plan.point_point || plan.point_edge || plan.point_triangle;
+  edges_.needed = plan.point_edge || plan.edge_edge;
+  triangles_.needed = plan.point_triangle;
 }
 
 template <int N>
@@ -77,7 +63,7 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
   const Surface& s = surface_;
   // Which pairs come close depends on relative motion alone: what most points share, a fall say, would only
   // make every box long.
-  const Vec3d common = pairs_possible_ ? common_motion(s.points, x0, x1, moved_) : Vec3d::Zero();
+  const Vec3d common = plan_.pairs() ? common_motion(s.points, x0, x1, moved_) : Vec3d::Zero();
   tbb::parallel_invoke(
       [&] { fit(edges_, s.edges, x0, x1, common); }, [&] { fit(triangles_, s.triangles, x0, x1, common); },
       [&] { fit(points_, s.points, x0, x1, common); }, [&] { update_obstacles(x0, x1, out.obstacle); });
@@ -85,18 +71,22 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
   const auto edge = [&s](int i) { return s.edges.vertices[static_cast<std::size_t>(i)]; };
   const auto triangle = [&s](int i) { return s.triangles.vertices[static_cast<std::size_t>(i)]; };
 
-  if (s.planar && s.planar_pairs == PlanarPairs::vertex_vertex) {
+  if (plan_.point_point) {
     finder_.find(
         points_.bvh, points_.bvh, [&](IndexPair p) { return !s.connected(point(p.first), point(p.second)); },
         out.point_point);
-  } else if (s.planar) {
+  }
+  if (plan_.point_edge) {
     finder_.find(
         points_.bvh, edges_.bvh, [&](IndexPair p) { return !s.adjacent(point(p.first), edge(p.second)); },
         out.point_edge);
-  } else {
+  }
+  if (plan_.point_triangle) {
     finder_.find(
         points_.bvh, triangles_.bvh,
         [&](IndexPair p) { return s.disjoint(point(p.first), triangle(p.second)); }, out.point_triangle);
+  }
+  if (plan_.edge_edge) {
     finder_.find(
         edges_.bvh, edges_.bvh, [&](IndexPair p) { return s.disjoint(edge(p.first), edge(p.second)); },
         out.edge_edge);
@@ -105,7 +95,7 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
 
 void BroadPhase::update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out) {
   out.clear();
-  if (!obstacles_possible_) return;
+  if (!plan_.obstacles.needed) return;
   for (std::size_t i = 0; i < surface_.points.size(); ++i) {
     if (!surface_.points.free[i]) continue;
     const int v = surface_.points.vertices[i][0];

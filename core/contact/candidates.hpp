@@ -6,6 +6,7 @@
 #include "core/contact/bvh.hpp"
 #include "core/contact/obstacle.hpp"
 #include "core/contact/surface.hpp"
+#include "core/scene/contact_plan.hpp"
 
 namespace bb {
 
@@ -14,13 +15,14 @@ struct Candidates {
   std::vector<IndexPair> point_point, point_edge, point_triangle, edge_edge, obstacle;
 };
 
-/// Keeps one tree per kind of primitive that the scene's pairs need, and no other.
+/// Keeps one tree per kind of primitive that pairs of the plan need, and no other.
 class BroadPhase {
  public:
-  BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles);
+  /// plan: of the scene of the surface.
+  BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles, const ContactPlan& plan);
 
   /// True when some pair or obstacle contact can exist at all.
-  bool active() const { return pairs_possible_ || obstacles_possible_; }
+  bool active() const { return plan_.any(); }
   /// All pairs with a free vertex, not adjacent, that may come within d_hat + offset on x0 -> x1, and more.
   /// All vertices move together: a state is (1 - t) x0 + t x1 with one t.
   void update(const Positions& x0, const Positions& x1, Candidates& out);
@@ -41,7 +43,7 @@ class BroadPhase {
   Tree points_, edges_, triangles_;
   PairFinder finder_;
   std::vector<double> moved_;  // buffer of update
-  bool pairs_possible_ = false, obstacles_possible_ = false;
+  const ContactPlan plan_;
 };
 
 }  // namespace bb

@@ -49,12 +49,12 @@ void combine_bounds(StepBound& into, const StepBound& next) {
 }  // namespace
 
 struct ContactSystem::Data {
-  Data(const Scene& s, const ContactOptions& o)
+  Data(const Scene& s, const ContactOptions& o, const ContactPlan& plan)
       : scene(s),
         options(o),
         surface(s),
         obstacles(analytic_surfaces(s)),
-        broad_phase(surface, obstacles),
+        broad_phase(surface, obstacles, plan),
         builder(scene, surface, obstacles, o.mollifier) {}
 
   template <PairKind K>
@@ -147,8 +147,10 @@ std::optional<ContactSystem::Overlap> ContactSystem::Data::first_overlap(const P
   return first;
 }
 
+ContactSystem::ContactSystem(const Scene& scene, const ContactOptions& options, const ContactPlan& plan)
+    : data_(std::make_unique<Data>(scene, options, plan)) {}
 ContactSystem::ContactSystem(const Scene& scene, const ContactOptions& options)
-    : data_(std::make_unique<Data>(scene, options)) {}
+    : ContactSystem(scene, options, plan_contact(scene)) {}
 ContactSystem::~ContactSystem() = default;
 
 bool ContactSystem::active() const { return data_->broad_phase.active(); }

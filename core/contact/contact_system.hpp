@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "core/contact/contact_table.hpp"
+#include "core/scene/contact_plan.hpp"
 #include "core/scene/scene.hpp"
 
 namespace bb {
@@ -43,6 +44,8 @@ struct StepBound {
 /// the triangle has lost a third of its height.
 class ContactSystem {
  public:
+  /// plan: of the same scene; only what it has is built.
+  ContactSystem(const Scene& scene, const ContactOptions& options, const ContactPlan& plan);
   ContactSystem(const Scene& scene, const ContactOptions& options);
   ~ContactSystem();
   /// False when the scene can have no contact: nothing is built, rows are empty, steps unbounded.
@@ -84,62 +87,6 @@ class ContactSystem {
  private:
   struct Data;
   std::unique_ptr<Data> data_;
-};
-
-enum class HessianMode { gauss_newton, projected_full };
-
-/// Local gradients [12 n] and PSD Hessians [90 n, lower blocks of 4 points] of the rows on the compact free
-/// slots (slots beyond n_free are 0), from kappa, b', b'' in the table: m kappa b' w_i n and m kappa b'' w_i
-/// w_j n n^T, plus m kappa b' grad^2 d, projected, in mode projected_full. x: [3 x n]. Resizes the outputs,
-/// no other allocation.
-void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, std::vector<double>& grad,
-                   std::vector<double>& hess);
-void mollified_terms(const MollifiedTable& rows, const Positions& x, std::vector<double>& grad,
-                     std::vector<double>& hess);
-/// Adds to the free columns of `force` [3 x n] (N) how the gradient of B at x changes, to first order, when
-/// its given vertices move by `motion` [3 x n] (m, 0 at free vertices): they have no block in the matrix.
-/// Rows of both tables count; a ContactTable's by m kappa b'' w_i w_j n n^T in either Hessian mode, a
-/// mollified row's by its whole Hessian. From kappa, b', b'' in the tables. Cost O(rows).
-void add_given_motion(const ContactTable& rows, const Positions& motion, Positions& force);
-void add_given_motion(const MollifiedTable& rows, const Positions& x, const Positions& motion,
-                      Positions& force);
-/// Energies m kappa b (and m kappa e b) of every row, J.
-void contact_energies(const ContactTable& rows, std::vector<double>& energy);
-void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy);
-
-/// kappa of the pairs behind earlier rows. A row has the mean of its pairs, so m kappa is their sum: when the
-/// closest point of a pair crosses to a neighbouring feature, and its share moves from one row to another, B
-/// does not jump, as it would if kappa belonged to the row. An edge-edge pair keeps its kappa when it becomes
-/// mollified and back. Cost of every call O(pairs log pairs).
-class KappaMemory {
- public:
-  void clear() { known_.clear(); }
-  /// Adds the pairs that are not known yet; what is known stays. Requires recall() of the same tables before,
-  /// and kappa of the rows that it reported missing set (see complete()).
-  void store(const ContactTable& rows, const MollifiedTable& mollified);
-  /// Fills kappa of the rows whose pairs are all known; `missing` gets the indices of the others (row or
-  /// mollified row).
-  void recall(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
-              std::vector<int>& missing_mollified) const;
-  /// Rows that recall() reported missing come with kappa of a new pair; where some of their pairs are known
-  /// they leave with the mean over all.
-  void complete(ContactTable& rows, const std::vector<int>& missing) const;
-
- private:
-  struct Known {
-    PairId pair;
-    double kappa;
-  };
-  const Known* find(PairId pair) const;
-  /// Sum over the known pairs of a row, and how many they are.
-  struct Share {
-    double sum = 0;
-    std::size_t n = 0;
-  };
-  Share share(const ContactTable& rows, std::size_t row) const;
-
-  std::vector<Known> known_;           // sorted by pair
-  std::vector<Known> fresh_, merged_;  // buffers of store
 };
 
 }  // namespace bb

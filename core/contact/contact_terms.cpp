@@ -1,9 +1,8 @@
-// Local energies, gradients and Hessians of the rows, from the columns of the tables alone.
 #include <oneapi/tbb/parallel_for.h>
 
 #include <algorithm>
 
-#include "core/contact/contact_system.hpp"
+#include "core/contact/contact_terms.hpp"
 #include "core/contact/pair_geometry.hpp"
 #include "core/geometry/distance_derivatives.hpp"
 #include "core/geometry/edge_edge_mollifier.hpp"

@@ -1,7 +1,6 @@
-// The stiffness of pairs that were there before, found again by identity.
-#include <algorithm>
+#include "core/contact/kappa_memory.hpp"
 
-#include "core/contact/contact_system.hpp"
+#include <algorithm>
 
 namespace bb {
 

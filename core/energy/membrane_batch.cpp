@@ -7,19 +7,6 @@
 
 namespace bb {
 
-namespace {
-
-const MembraneModel<double>* known_model(std::string_view name) {
-  if (const MembraneModel<double>* model = find_membrane_model<double>(name)) return model;
-  std::string allowed = "one of";
-  for (const MembraneModel<double>& model : membrane_models<double>()) {
-    allowed += (allowed == "one of" ? " " : ", ") + std::string(model.name);
-  }
-  throw ConfigError("membrane/model", std::string(name), allowed);
-}
-
-}  // namespace
-
 std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int, 3>> triangles,
                                                  const Positions& x_rest, bool planar,
                                                  std::span<const Vec3d> warp) {
@@ -44,7 +31,7 @@ std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int,
 MembraneBatch::MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
                              const Positions& x_rest, std::vector<double> lame_mu,
                              std::vector<double> lame_lambda, bool planar, std::span<const Vec3d> warp)
-    : model_(known_model(model)),
+    : model_(&membrane_models<double>().require(model, "membrane/model")),
       planar_(planar),
       rests_(triangle_rests(triangles, x_rest, planar, warp)),
       lame_mu_(std::move(lame_mu)),

@@ -28,31 +28,21 @@ constexpr MembraneModel<T> entry(std::string_view name, std::string_view doc) {
 }  // namespace
 
 template <class T>
-std::span<const MembraneModel<T>> membrane_models() {
+const Registry<MembraneModel<T>>& membrane_models() {
 #define ENTRY(name, doc) entry<membrane::name, T>(#name, doc),
-  static constexpr MembraneModel<T> models[] = {
+  static const Registry<MembraneModel<T>> models({
 #include "core/energy/registry.inc"
-  };
+  });
 #undef ENTRY
   return models;
 }
 
-template <class T>
-const MembraneModel<T>* find_membrane_model(std::string_view name) {
-  for (const MembraneModel<T>& model : membrane_models<T>()) {
-    if (model.name == name) return &model;
-  }
-  return nullptr;
-}
-
 bool is_anisotropic(std::string_view name) {
-  const MembraneModel<double>* model = find_membrane_model<double>(name);
+  const MembraneModel<double>* model = membrane_models<double>().find(name);
   return model != nullptr && model->anisotropic;
 }
 
-template std::span<const MembraneModel<float>> membrane_models<float>();
-template std::span<const MembraneModel<double>> membrane_models<double>();
-template const MembraneModel<float>* find_membrane_model<float>(std::string_view);
-template const MembraneModel<double>* find_membrane_model<double>(std::string_view);
+template const Registry<MembraneModel<float>>& membrane_models<float>();
+template const Registry<MembraneModel<double>>& membrane_models<double>();
 
 }  // namespace bb

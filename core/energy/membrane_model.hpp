@@ -1,10 +1,10 @@
 // Membrane models by name, as tables of element functions: what batches, eval and tests loop over.
 #pragma once
 
-#include <span>
 #include <string_view>
 
 #include "core/energy/triangle_membrane.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 
@@ -23,11 +23,8 @@ struct MembraneModel {
 
 /// Every registered model, in the order of registry.inc. T: float or double.
 template <class T>
-std::span<const MembraneModel<T>> membrane_models();
+const Registry<MembraneModel<T>>& membrane_models();
 
-/// The model of that name, or null.
-template <class T>
-const MembraneModel<T>* find_membrane_model(std::string_view name);
 /// Whether a model of that name depends on a warp direction.
 bool is_anisotropic(std::string_view name);
 

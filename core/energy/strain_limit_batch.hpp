@@ -12,7 +12,7 @@ namespace bb {
 
 /// Not an EnergyBatch: its energy needs a barrier and kappa. One object a run; values, derivatives and
 /// measure write its columns, so one caller at a time. `Barrier` is a BarrierFunction
-/// (core/contact/shape.hpp) or anything with its batch call eval(n, d, d_hat, b, db, d2b).
+/// (core/barrier/shape.hpp) or anything with its batch call eval(n, d, d_hat, b, db, d2b).
 class StrainLimitBatch {
  public:
   /// @param onset, width [n] 1, width > 0. ConfigError: columns of another length or value, triangles without

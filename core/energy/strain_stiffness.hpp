@@ -1,7 +1,7 @@
 // Stiffness policies of strain limiting: kappa_e (J) of one element.
 #pragma once
 
-#include "core/contact/stiffness_policy.hpp"
+#include "core/barrier/stiffness_policy.hpp"
 #include "core/energy/terms.hpp"
 
 namespace bb {

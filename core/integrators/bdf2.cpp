@@ -30,6 +30,10 @@ class Bdf2 final : public Integrator {
 };
 }  // namespace
 
-std::unique_ptr<Integrator> make_bdf2() { return std::make_unique<Bdf2>(); }
+IntegratorEntry integrator_bdf2() {
+  IntegratorEntry entry;
+  entry.make = [](const ParameterMap&) -> std::unique_ptr<Integrator> { return std::make_unique<Bdf2>(); };
+  return entry;
+}
 
 }  // namespace bb

@@ -19,6 +19,12 @@ class ImplicitEuler final : public Integrator {
 };
 }  // namespace
 
-std::unique_ptr<Integrator> make_implicit_euler() { return std::make_unique<ImplicitEuler>(); }
+IntegratorEntry integrator_implicit_euler() {
+  IntegratorEntry entry;
+  entry.make = [](const ParameterMap&) -> std::unique_ptr<Integrator> {
+    return std::make_unique<ImplicitEuler>();
+  };
+  return entry;
+}
 
 }  // namespace bb

@@ -21,6 +21,10 @@ class Newmark final : public Integrator {
 };
 }  // namespace
 
-std::unique_ptr<Integrator> make_newmark() { return std::make_unique<Newmark>(); }
+IntegratorEntry integrator_newmark() {
+  IntegratorEntry entry;
+  entry.make = [](const ParameterMap&) -> std::unique_ptr<Integrator> { return std::make_unique<Newmark>(); };
+  return entry;
+}
 
 }  // namespace bb

@@ -19,6 +19,12 @@ class QuasiStatic final : public Integrator {
 };
 }  // namespace
 
-std::unique_ptr<Integrator> make_quasi_static() { return std::make_unique<QuasiStatic>(); }
+IntegratorEntry integrator_quasi_static() {
+  IntegratorEntry entry;
+  entry.make = [](const ParameterMap&) -> std::unique_ptr<Integrator> {
+    return std::make_unique<QuasiStatic>();
+  };
+  return entry;
+}
 
 }  // namespace bb

@@ -7,19 +7,20 @@
 #include <vector>
 
 #include "core/integrators/integrator.hpp"
+#include "core/parameters/parameter.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 
 struct IntegratorEntry {
   std::string name, doc;
-  std::function<std::unique_ptr<Integrator>()> make;
+  std::vector<Parameter> parameters;  // its own, with defaults
+  std::function<std::unique_ptr<Integrator>(const ParameterMap& complete)> make;
 };
 
 /// All integrators, built-ins first.
-const std::vector<IntegratorEntry>& integrators();
-/// Adds a plugin's integrator. Throws ConfigError when the name is taken.
-void register_integrator(IntegratorEntry entry);
-/// Throws ConfigError for an unknown name, listing the known ones.
-std::unique_ptr<Integrator> make_integrator(const std::string& name);
+Registry<IntegratorEntry>& integrators();
+/// Errors: ConfigError for an unknown name and for what own_parameters refuses.
+std::unique_ptr<Integrator> make_integrator(const std::string& name, const ParameterMap& parameters = {});
 
 }  // namespace bb

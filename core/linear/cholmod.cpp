@@ -47,6 +47,12 @@ class Cholmod final : public LinearSolver {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_cholmod(const LinearOptions&) { return std::make_unique<Cholmod>(); }
+LinearSolverEntry linear_solver_cholmod() {
+  LinearSolverEntry entry;
+  entry.make = [](const ParameterMap&) -> std::unique_ptr<LinearSolver> {
+    return std::make_unique<Cholmod>();
+  };
+  return entry;
+}
 
 }  // namespace bb

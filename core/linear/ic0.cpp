@@ -67,4 +67,10 @@ void Ic0::apply(const VecXd& r, VecXd& z) const {
   }
 }
 
+PreconditionerEntry preconditioner_ic0() {
+  PreconditionerEntry entry;
+  entry.make = [](const ParameterMap&) -> std::unique_ptr<Preconditioner> { return std::make_unique<Ic0>(); };
+  return entry;
+}
+
 }  // namespace bb

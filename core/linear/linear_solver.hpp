@@ -8,6 +8,8 @@
 #include <vector>
 
 #include "core/linear/block_system.hpp"
+#include "core/parameters/parameter.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 
@@ -37,9 +39,8 @@ struct LinearReport {
 
 struct LinearOptions {
   std::string name = "cholmod";
-  std::string preconditioner = "block_jacobi";  // pcg: none, jacobi, block_jacobi, ic0
-  double tol_rel = 1e-8;                        // pcg: |r| <= tol_rel |b|
-  int max_iterations = 10000;
+  ParameterMap
+      parameters;  // of the solver of that name and of its preconditioner; what is left out has its default
 };
 
 class LinearSolver {
@@ -51,17 +52,18 @@ class LinearSolver {
   virtual LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) = 0;
 };
 
-/// Throws ConfigError for an unknown name, listing the registry.
+/// Errors: ConfigError for an unknown name and for what own_parameters refuses.
 std::unique_ptr<LinearSolver> make_linear_solver(const LinearOptions& options);
 
 struct LinearSolverEntry {
-  std::string_view name, doc;
+  std::string name, doc;
+  std::vector<Parameter> parameters;  // its own, with defaults
+  std::unique_ptr<LinearSolver> (*make)(const ParameterMap& complete) = nullptr;
 };
 /// The registry, in its order.
-const std::vector<LinearSolverEntry>& linear_solvers();
-/// Preconditioners that pcg knows.
-const std::vector<std::string_view>& preconditioners();
-/// " (did you mean NAME?)" for the nearest name by edit distance, or "" when none is near.
-std::string did_you_mean(std::string_view found, const std::vector<std::string_view>& names);
+const Registry<LinearSolverEntry>& linear_solvers();
+
+/// The preconditioner of a solver that has one, "none" for the others.
+std::string preconditioner_of(const LinearOptions& options);
 
 }  // namespace bb

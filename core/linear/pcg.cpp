@@ -22,8 +22,10 @@ double seconds_since(Clock::time_point start) {
 
 class Pcg final : public LinearSolver {
  public:
-  explicit Pcg(const LinearOptions& options)
-      : options_(options), preconditioner_(make_preconditioner(options.preconditioner)) {}
+  explicit Pcg(const ParameterMap& parameters)
+      : tol_rel_(number(parameters, "tol_rel")),
+        max_iterations_(integer(parameters, "max_iterations")),
+        preconditioner_(make_preconditioner(text(parameters, "preconditioner"), parameters)) {}
   std::string_view name() const override { return "pcg"; }
   LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) override;
 
@@ -35,7 +37,8 @@ class Pcg final : public LinearSolver {
   double true_residual(const VecXd& b, const VecXd& x);
   void add_ritz(LinearReport& report) const;
 
-  LinearOptions options_;
+  double tol_rel_;
+  int max_iterations_;
   std::unique_ptr<Preconditioner> preconditioner_;
   SymmetricProduct product_;
   ChunkedDot dot_;
@@ -65,7 +68,7 @@ Pcg::End Pcg::run(VecXd& x, double target, LinearReport& report) {
   for (;; ++report.iterations) {
     if (!std::isfinite(rz)) return End::non_finite;
     if (rz <= 0) return End::preconditioner_indefinite;
-    if (report.iterations >= options_.max_iterations) return End::cap;
+    if (report.iterations >= max_iterations_) return End::cap;
     product_.multiply(p_, ap_);
     const double curvature = dot_(p_, ap_);
     if (!std::isfinite(curvature)) return End::non_finite;
@@ -95,7 +98,7 @@ Pcg::End Pcg::run(VecXd& x, double target, LinearReport& report) {
 }
 
 LinearStatus Pcg::iterate(const VecXd& b, VecXd& x, double b_norm, LinearReport& report) {
-  const double target = options_.tol_rel * b_norm;
+  const double target = tol_rel_ * b_norm;
   double last_true = std::numeric_limits<double>::infinity();
   r_ = b;
   for (;; ++report.restarts) {
@@ -146,8 +149,18 @@ LinearReport Pcg::solve(const ReducedSystem& system, const VecXd& b, VecXd& x) {
 
 }  // namespace
 
-std::unique_ptr<LinearSolver> make_pcg(const LinearOptions& options) {
-  return std::make_unique<Pcg>(options);
+LinearSolverEntry linear_solver_pcg() {
+  LinearSolverEntry entry;
+  entry.parameters = {
+      {"preconditioner", name_in([] { return preconditioners().names(); }), "block_jacobi",
+       "a registered preconditioner"},
+      {"tol_rel", open_high(open_low(number_in(0, 1, "1"))), 1e-8, "|r| <= tol_rel |b|"},
+      {"max_iterations", count(1, 1000000000), 10000, "cap on iterations of a solve"},
+  };
+  entry.make = [](const ParameterMap& complete) -> std::unique_ptr<LinearSolver> {
+    return std::make_unique<Pcg>(complete);
+  };
+  return entry;
 }
 
 }  // namespace bb

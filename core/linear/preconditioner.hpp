@@ -2,7 +2,8 @@
 #pragma once
 
 #include <memory>
-#include <string_view>
+#include <string>
+#include <vector>
 
 #include "core/linear/linear_solver.hpp"
 #include "core/linear/symmetric_product.hpp"
@@ -20,7 +21,14 @@ class Preconditioner {
   virtual double shift() const { return 0; }  // relative diagonal shift in use
 };
 
-/// Errors: ConfigError for an unknown name, listing the known ones.
-std::unique_ptr<Preconditioner> make_preconditioner(std::string_view name);
+struct PreconditionerEntry {
+  std::string name, doc;
+  std::vector<Parameter> parameters;  // its own, with defaults
+  std::unique_ptr<Preconditioner> (*make)(const ParameterMap& complete) = nullptr;
+};
+const Registry<PreconditionerEntry>& preconditioners();
+/// Errors: ConfigError for an unknown name and for what own_parameters refuses.
+std::unique_ptr<Preconditioner> make_preconditioner(const std::string& name,
+                                                    const ParameterMap& parameters = {});
 
 }  // namespace bb

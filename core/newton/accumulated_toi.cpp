@@ -12,9 +12,15 @@
 namespace bb {
 namespace {
 
+constexpr double max_dx = 1;        // m, of one iteration
+constexpr double extension = 1.25;  // a full step must be free along this multiple of itself
+
 class AccumulatedToi final : public StepSolver {
  public:
-  explicit AccumulatedToi(const StepSolverOptions& options) : options_(options) {}
+  explicit AccumulatedToi(const StepSolverOptions& options)
+      : options_(options),
+        target_toi_(number(options.parameters, "target_toi")),
+        min_newton_steps_(integer(options.parameters, "min_newton_steps")) {}
   std::string_view name() const override { return "accumulated_toi"; }
 
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
@@ -26,7 +32,7 @@ class AccumulatedToi final : public StepSolver {
       const double advanced = iterate(system, step, task.step, iteration, observer);
       if (step.status != StepStatus::iteration_cap) return step;
       beta += std::max(0.0, 1.0 - beta) * advanced;
-      if (beta >= options_.target_toi && iteration + 1 >= options_.min_iterations) {
+      if (beta >= target_toi_ && iteration + 1 >= min_newton_steps_) {
         step.dt_used = beta * task.dt;
         reduce_error(system, step, task, used, iteration + 1, observer);
         return step;
@@ -49,7 +55,7 @@ class AccumulatedToi final : public StepSolver {
       return 0;
     }
     const double largest = dx_.colwise().norm().maxCoeff();
-    const double scale = largest > options_.max_dx ? options_.max_dx / largest : 1.0;
+    const double scale = largest > max_dx ? max_dx / largest : 1.0;
     dx_ *= scale;
     const double alpha = feasible_step(system, report);
     report.alpha = scale * alpha;
@@ -57,10 +63,10 @@ class AccumulatedToi final : public StepSolver {
     if (moved) system.accept();
     finish_iteration(system, step, report, observer);
     if (moved) {
-      observer.on_motion(x_before_, system.state().x, step_index);
+      observer.on_motion(x_before_, system.x(), step_index);
     } else {
       step.status = poses_reached(system, target_) ? StepStatus::step_collapse : StepStatus::pin_infeasible;
-      step.detail = describe_bound(system, report);
+      step.detail = describe_bound(system);
     }
     return report.alpha;
   }
@@ -68,16 +74,13 @@ class AccumulatedToi final : public StepSolver {
   // Bounds `extension` times the motion and takes that fraction of the motion itself, which backs off from
   // contact.
   double feasible_step(NewtonSystem& system, IterationReport& report) {
-    x_before_ = system.state().x;
-    dx_ *= options_.extension;
+    x_before_ = system.x();
+    dx_ *= extension;
     x_trial_.noalias() = x_before_ + dx_;
-    system.sweep(x_trial_);
-    report.bound = system.contact_bound(x_trial_);
-    report.alpha_ccd = report.bound.alpha;
-    report.alpha_strain = system.limit_bound(dx_);
-    double alpha = std::min(report.alpha_ccd, report.alpha_strain);
+    system.prepare(x_trial_, dx_);
+    double alpha = system.bound(x_trial_, dx_, report);
     for (; alpha > 0; alpha = alpha < 1e-14 ? 0 : alpha / 2) {
-      x_trial_.noalias() = x_before_ + (alpha / options_.extension) * dx_;
+      x_trial_.noalias() = x_before_ + (alpha / extension) * dx_;
       ++report.line_search_trials;
       if (system.try_state(x_trial_)) break;
     }
@@ -91,7 +94,7 @@ class AccumulatedToi final : public StepSolver {
       const ScopedPhase timer(system.clock(), Phase::prediction);
       task.integrator->predict(*task.history, step.dt_used, used);
       system.restart_step(used, step.dt_used);
-      target_ = system.state().x;
+      target_ = system.x();
       task.pose(step.dt_used, target_);
     }
     step.status = StepStatus::converged;
@@ -99,13 +102,23 @@ class AccumulatedToi final : public StepSolver {
   }
 
   StepSolverOptions options_;
+  double target_toi_;
+  int min_newton_steps_;
   Positions target_, dx_, x_before_, x_trial_;
 };
 
 }  // namespace
 
-std::unique_ptr<StepSolver> make_accumulated_toi(const StepSolverOptions& options) {
-  return std::make_unique<AccumulatedToi>(options);
+StepSolverEntry step_solver_accumulated_toi() {
+  StepSolverEntry entry;
+  entry.parameters = {
+      {"target_toi", open_low(number_in(0, 1, "1")), 0.25, "accumulated time of impact that ends the step"},
+      {"min_newton_steps", count(1, 1000000), 1, "smallest number of iterations"},
+  };
+  entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
+    return std::make_unique<AccumulatedToi>(options);
+  };
+  return entry;
 }
 
 }  // namespace bb

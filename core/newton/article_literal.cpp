@@ -16,7 +16,8 @@ constexpr double smallest_alpha = 1e-8;
 
 class ArticleLiteral final : public StepSolver {
  public:
-  explicit ArticleLiteral(const StepSolverOptions& options) : options_(options) {}
+  explicit ArticleLiteral(const StepSolverOptions& options)
+      : options_(options), armijo_(number(options.parameters, "armijo")) {}
   std::string_view name() const override { return "article_literal"; }
 
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
@@ -35,7 +36,7 @@ class ArticleLiteral final : public StepSolver {
       }
       const bool moved = backtrack(system, report);
       finish_iteration(system, step, report, observer);
-      if (moved) observer.on_motion(x_before_, system.state().x, task.step);
+      if (moved) observer.on_motion(x_before_, system.x(), task.step);
       if (small || !moved) {
         step.status = small ? StepStatus::converged : StepStatus::line_search_failed;
         return step;
@@ -46,15 +47,15 @@ class ArticleLiteral final : public StepSolver {
 
  private:
   bool backtrack(NewtonSystem& system, IterationReport& report) {
-    x_before_ = system.state().x;
+    x_before_ = system.x();
     x_trial_.noalias() = x_before_ + dx_;
-    system.sweep(x_trial_);
+    system.prepare(x_trial_, dx_);
     for (double alpha = 1; alpha > smallest_alpha; alpha /= 2) {
       x_trial_.noalias() = x_before_ + alpha * dx_;
       ++report.line_search_trials;
       const auto change = system.try_state(x_trial_);
       if (!change) continue;
-      const bool decrease = change->change <= -options_.armijo * alpha * (2 * report.decrement_J);
+      const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
       report.rounding_accepts = !decrease && within_rounding(*change);
       if (!decrease && !report.rounding_accepts) continue;
       report.alpha = alpha;
@@ -66,13 +67,19 @@ class ArticleLiteral final : public StepSolver {
   }
 
   StepSolverOptions options_;
+  double armijo_;
   Positions target_, dx_, x_before_, x_trial_;
 };
 
 }  // namespace
 
-std::unique_ptr<StepSolver> make_article_literal(const StepSolverOptions& options) {
-  return std::make_unique<ArticleLiteral>(options);
+StepSolverEntry step_solver_article_literal() {
+  StepSolverEntry entry;
+  entry.parameters = {{"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"}};
+  entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
+    return std::make_unique<ArticleLiteral>(options);
+  };
+  return entry;
 }
 
 }  // namespace bb

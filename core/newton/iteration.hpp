@@ -30,7 +30,8 @@ void finish_iteration(NewtonSystem& system, StepReport& step, IterationReport& r
                       StepObserver& observer);
 
 bool poses_reached(const NewtonSystem& system, const Positions& target);
-std::string describe_bound(NewtonSystem& system, const IterationReport& report);
+/// What held the bound of the step taken last.
+std::string describe_bound(const NewtonSystem& system);
 std::string describe_short_pin(const NewtonSystem& system, const Positions& target);
 
 /// Fills what a step report says of its end state.

@@ -21,7 +21,10 @@ constexpr double smallest_alpha = 1e-14;  // below it x does not move any more
 
 class LineSearch final : public StepSolver {
  public:
-  explicit LineSearch(const StepSolverOptions& options) : options_(options) {}
+  explicit LineSearch(const StepSolverOptions& options)
+      : options_(options),
+        armijo_(number(options.parameters, "armijo")),
+        cap_fraction_(number(options.parameters, "cap_fraction")) {}
   std::string_view name() const override { return "line_search"; }
 
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
@@ -41,19 +44,19 @@ class LineSearch final : public StepSolver {
       }
       const bool moved = search(system, report, at_pose);
       finish_iteration(system, step, report, observer);
-      if (moved) observer.on_motion(x_before_, system.state().x, task.step);
+      if (moved) observer.on_motion(x_before_, system.x(), task.step);
       if (small) {
         step.status = StepStatus::converged;
         return step;
       }
-      if (!moved && report.alpha_ccd >= collapsed_step && report.alpha_strain >= collapsed_step) {
+      if (!moved && bound_ >= collapsed_step) {
         step.status = StepStatus::line_search_failed;
         return step;
       }
-      collapsed = report.alpha < collapsed_step ? collapsed + 1 : 0;
+      collapsed = in_a_row(collapsed, report.alpha < collapsed_step);
       if (collapsed == collapse_iterations) {
         step.status = at_pose ? StepStatus::step_collapse : StepStatus::pin_infeasible;
-        step.detail = at_pose ? describe_bound(system, report) : describe_short_pin(system, target_);
+        step.detail = at_pose ? describe_bound(system) : describe_short_pin(system, target_);
         return step;
       }
     }
@@ -64,20 +67,18 @@ class LineSearch final : public StepSolver {
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its motion does
   // work.
   bool search(NewtonSystem& system, IterationReport& report, bool energy_test) {
-    x_before_ = system.state().x;
+    x_before_ = system.x();
     move(system, 1.0);
-    system.sweep(x_trial_);
-    report.bound = system.contact_bound(x_trial_);
-    report.alpha_ccd = report.bound.alpha;
-    report.alpha_strain = system.limit_bound(dx_);
+    system.prepare(x_trial_, dx_);
+    bound_ = system.bound(x_trial_, dx_, report);
     // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
-    double alpha = std::min(report.alpha_ccd, report.alpha_strain);
-    if (alpha < 1) alpha *= options_.cap_fraction;
+    double alpha = bound_;
+    if (alpha < 1) alpha *= cap_fraction_;
     while (alpha > smallest_alpha) {
       move(system, alpha);
       ++report.line_search_trials;
       if (const auto change = system.try_state(x_trial_)) {
-        const bool decrease = change->change <= -options_.armijo * alpha * (2 * report.decrement_J);
+        const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
         report.rounding_accepts = energy_test && !decrease && within_rounding(*change);
         if (decrease || !energy_test || report.rounding_accepts) {
           report.alpha = alpha;
@@ -99,13 +100,24 @@ class LineSearch final : public StepSolver {
   }
 
   StepSolverOptions options_;
+  double armijo_, cap_fraction_;
+  double bound_ = 1;  // of the step taken last
   Positions target_, dx_, x_before_, x_trial_;
 };
 
 }  // namespace
 
-std::unique_ptr<StepSolver> make_line_search(const StepSolverOptions& options) {
-  return std::make_unique<LineSearch>(options);
+StepSolverEntry step_solver_line_search() {
+  StepSolverEntry entry;
+  entry.parameters = {
+      {"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"},
+      {"cap_fraction", open_low(number_in(0, 1, "1")), 0.8,
+       "part of a binding contact or strain bound that is taken; 1 goes to the stop level"},
+  };
+  entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
+    return std::make_unique<LineSearch>(options);
+  };
+  return entry;
 }
 
 }  // namespace bb

@@ -2,28 +2,22 @@
 // of them is in TraceRow and StepRecord (core/record).
 #pragma once
 
-#include <string>
-
-#include "core/contact/contact_system.hpp"
 #include "core/linear/linear_solver.hpp"
 #include "core/record/step_record.hpp"
+#include "core/terms/report.hpp"
 
 namespace bb {
 
 /// `time` is from its assembly to its end, what observers of the matrix took included.
-struct IterationReport : TraceRow {
+struct IterationReport : IterateNumbers {
   LinearReport linear;
-  StepBound bound;
   bool pattern_changed = false;
 };
 
 /// `detail` names the pin, the pair, the linear status. `time` has every moment of Simulation::step; on_step
 /// sees what came before it.
-struct StepReport : StepRecord {
+struct StepReport : StepNumbers {
   double dt_used = 0;  // s; accumulated_toi may shorten the step
-  /// Last iterations in a row in which a contact's kappa, a limited element's, changed by more than 1 %.
-  int kappa_unsettled = 0, limit_kappa_unsettled = 0;
-  double kappa_change = 0, limit_kappa_change = 0;  // of the last iteration, max/min - 1
 };
 
 /// Observer; override what you need. Callbacks are charged to Phase::output.

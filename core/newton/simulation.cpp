@@ -1,7 +1,5 @@
 #include "core/newton/simulation.hpp"
 
-#include <algorithm>
-
 #include "core/newton/iteration.hpp"
 
 namespace bb {
@@ -37,11 +35,14 @@ class ChargedObserver final : public StepObserver {
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, Method& method, double dt, int n_steps)
+    : Simulation(scene, method, make_plan(scene, method, {}), dt, n_steps) {}
+
+Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, double dt, int n_steps)
     : scene_(scene),
       method_(method),
       dt_(dt),
       n_steps_(n_steps),
-      system_(scene, method),
+      system_(scene, method, plan),
       solver_(make_step_solver(method.step_solver)) {
   history_.x = scene.x0;
   history_.v = scene.v0;
@@ -66,13 +67,13 @@ StepReport Simulation::step(StepObserver& observer) {
   };
   StepReport report = solver_->advance(system_, task, prediction_, charged);
 
-  remember(system_.state().x, report.dt_used);
+  remember(system_.x(), report.dt_used);
   report.t_s = time_;
   measure_end(system_, report);
   for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {
     report.kinetic_J += 0.5 * scene_.mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
   }
-  end_policy_step();
+  system_.end_step();
   report.time = clock.read();
   charged.on_step(system_, report, history_.x);
   ++step_;
@@ -108,38 +109,6 @@ void Simulation::remember(const Positions& x, double dt_used) {
   history_.x = x;
   ++history_.steps;
   time_ += dt_used;
-}
-
-// The pairs with a row at two step ends in a row, for a policy that adapts between steps.
-void Simulation::end_policy_step() {
-  if (!method_.stiffness->adapts()) return;
-  const ScopedPhase timer(system_.clock(), Phase::stiffness);
-  list_pair_gaps(system_.state());
-  pair_ends_.clear();
-  auto before = previous_gaps_.begin();
-  for (const PairGap& now : gaps_) {
-    while (before != previous_gaps_.end() && before->pair < now.pair) ++before;
-    if (before == previous_gaps_.end()) break;
-    if (before->pair == now.pair) pair_ends_.push_back({now.gap, before->gap, now.park});
-  }
-  method_.stiffness->end_step(pair_ends_);
-  previous_gaps_.swap(gaps_);
-}
-
-void Simulation::list_pair_gaps(const EnergyState& state) {
-  const double park = method_.contact_options.ccd_park;
-  const ContactTable& rows = state.rows;
-  gaps_.clear();
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t i = rows.pair_begin[r]; i < rows.pair_begin[r + 1]; ++i) {
-      gaps_.push_back({rows.pair[i], rows.d[r], park * rows.d_hat[r]});
-    }
-  }
-  const MollifiedTable& mollified = state.mollified;
-  for (std::size_t r = 0; r < mollified.size(); ++r) {
-    gaps_.push_back({mollified.pair[r], mollified.d[r], park * mollified.d_hat[r]});
-  }
-  std::sort(gaps_.begin(), gaps_.end(), [](const PairGap& a, const PairGap& b) { return a.pair < b.pair; });
 }
 
 }  // namespace bb

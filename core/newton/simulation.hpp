@@ -12,7 +12,10 @@ namespace bb {
 
 class Simulation {
  public:
-  /// scene and method must outlive the simulation. dt in s; n_steps gives the load steps of quasi_static.
+  /// scene and method must outlive the simulation. plan: of both. dt in s; n_steps gives the load steps of
+  /// quasi_static.
+  Simulation(const Scene& scene, Method& method, const Plan& plan, double dt, int n_steps);
+  /// With the plan of scene and method alone.
   Simulation(const Scene& scene, Method& method, double dt, int n_steps);
 
   /// Advances one time step. A status other than converged keeps the feasible state that was reached.
@@ -25,8 +28,6 @@ class Simulation {
 
  private:
   void start_acceleration();
-  void end_policy_step();
-  void list_pair_gaps(const EnergyState& state);
   void remember(const Positions& x, double dt_used);
 
   const Scene& scene_;
@@ -38,13 +39,6 @@ class Simulation {
   History history_;
   Prediction prediction_;
   Positions v_next_, a_next_;
-  /// Of a pair in a row at a step end, for policies that adapt between steps.
-  struct PairGap {
-    PairId pair;
-    double gap, park;  // m
-  };
-  std::vector<PairGap> gaps_, previous_gaps_;  // by pair
-  std::vector<StiffnessPolicy::PairEnd> pair_ends_;
 };
 
 }  // namespace bb

@@ -8,6 +8,7 @@
 
 #include "core/newton/newton_system.hpp"
 #include "core/newton/report.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 
@@ -34,10 +35,11 @@ class StepSolver {
 
 struct StepSolverEntry {
   std::string name, doc;
-  std::unique_ptr<StepSolver> (*make)(const StepSolverOptions&);
+  std::vector<Parameter> parameters;  // its own, with defaults
+  std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
 };
-const std::vector<StepSolverEntry>& step_solvers();
-/// Throws ConfigError for an unknown name, listing the known ones.
+const Registry<StepSolverEntry>& step_solvers();
+/// Errors: ConfigError for an unknown name and for what own_parameters refuses.
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options);
 
 }  // namespace bb

@@ -141,7 +141,9 @@ Plugin load_here(const std::string& file) {
   for (std::size_t i = 0; i < p.n_integrators; ++i) {
     const bb_plugin_integrator& integrator = p.integrators[i];
     plugin.integrators.push_back(
-        {integrator.name, text(integrator.doc), [&integrator] { return wrap_integrator(integrator); }});
+        {integrator.name, text(integrator.doc), {}, [&integrator](const ParameterMap&) {
+           return wrap_integrator(integrator);
+         }});
   }
   return plugin;
 }

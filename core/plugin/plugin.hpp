@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "core/contact/shape.hpp"
-#include "core/contact/stiffness_policy.hpp"
+#include "core/barrier/shape.hpp"
+#include "core/barrier/stiffness_policy.hpp"
 #include "core/integrators/registry.hpp"
 
 namespace bb {

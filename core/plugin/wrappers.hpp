@@ -3,7 +3,7 @@
 
 #include <memory>
 
-#include "core/contact/stiffness_policy.hpp"
+#include "core/barrier/stiffness_policy.hpp"
 #include "core/integrators/integrator.hpp"
 #include "core/plugin/barrierbench_plugin.h"
 

@@ -4,6 +4,7 @@
 
 #include <cerrno>
 #include <cstring>
+#include <utility>
 
 #include "core/record/writer.hpp"
 
@@ -135,6 +136,16 @@ void check_writable(const fs::path& folder) {
     throw;
   }
   ::unlink(probe.c_str());
+  std::error_code absent;
+  for (const char* name : {"run.json", "trace.jsonl"}) {
+    if (fs::is_directory(folder / name, absent)) fail_with(folder / name, "in the way of a file", EISDIR);
+  }
+  for (const char* name : {"frames", "matrices"}) {
+    const fs::file_status found = fs::status(folder / name, absent);
+    if (fs::exists(found) && !fs::is_directory(found)) {
+      fail_with(folder / name, "in the way of a folder", ENOTDIR);
+    }
+  }
 }
 
 TraceWriter::TraceWriter(const fs::path& folder) : path_(folder / "trace.jsonl") {
@@ -165,8 +176,8 @@ void TraceWriter::end_step() {
 
 void TraceWriter::finish() {
   end_step();
-  std::fclose(file_);
-  file_ = nullptr;
+  if (::fsync(::fileno(file_)) != 0) fail("cannot write to the disk");
+  if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot close");
   if (std::rename(part_.c_str(), path_.c_str()) != 0) fail("cannot rename to");
 }
 

@@ -65,7 +65,8 @@ void remove_earlier_run(const fs::path& folder) {
   std::error_code error;
   json record;
   try {
-    record = read_json_file((folder / "run.json").string(), record_file);
+    const std::string file = (folder / "run.json").string();
+    record = parse_json(read_input_file(file, record_file), file, LargeIntegers::rounded);
   } catch (const ConfigError&) {  // none, or a torn one
   }
   const json none = json::array();

@@ -284,7 +284,7 @@ struct AuditRecord {
   BB_FIELD(long long, unproven, "motions that could not be certified") = 0;
   BB_FIELD(long long, inverted, "planar elements, summed over states") = 0;
   BB_FIELD(long long, obstacle_violations, "those of violations that an obstacle is part of") = 0;
-  BB_FIELD(long long, scene_faults, "crossings of prescribed primitives, in no other count") = 0;
+  BB_FIELD(long long, scene_faults, "prescribed primitives that cross or cannot be certified; in no other count") = 0;
   BB_FIELD(int, first_bad_step, "-1: none", "-1") = -1;
   BB_FIELD(double, time_s, "what the checks took") = 0;
   BB_RECORD_END;

@@ -59,8 +59,9 @@ void write_atomically(const std::filesystem::path& path, const std::string& text
 /// write_atomically(folder / "run.json", to_json(record)).
 void write_run(const std::filesystem::path& folder, const RunRecord& record);
 
-/// Fails before the run rather than after it: creates the folder and writes, then removes, a probe file.
-/// Errors: RecordError.
+/// Fails before the run rather than after it: creates the folder, writes and removes a probe file, and sees
+/// that no folder has the name of a file that the run ends with (run.json, trace.jsonl), and no file that of
+/// a folder (frames, matrices). Errors: RecordError.
 void check_writable(const std::filesystem::path& folder);
 
 /// folder/trace.jsonl. Written as trace.jsonl.part, so that an earlier trace stays with its run.json until

@@ -77,7 +77,7 @@ enum class PlanarPairs { vertex_vertex, point_edge };
 struct Scene {
   std::string name;
   bool planar = false;  // x-y plane, z locked, F is 2x2
-  PlanarPairs planar_pairs = PlanarPairs::vertex_vertex;
+  PlanarPairs planar_pairs = PlanarPairs::point_edge;
 
   std::vector<Body> bodies;
   Positions rest, x0, v0;             // [3 x n] rest, start (m), start velocity (m/s)

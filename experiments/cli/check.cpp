@@ -17,17 +17,10 @@ namespace bb::cli {
 
 namespace {
 
-/// What the config says of kappa, beside the name of the policy.
+/// The policy with what the config gives of its parameters.
 std::string stiffness_text(const PolicyConfig& policy) {
   std::string out = policy.name;
-  const auto add = [&out](const char* what, const std::optional<double>& value, const char* unit) {
-    if (value) out += fmt::format(", {} {:g} {}", what, *value, unit);
-  };
-  add("kappa", policy.kappa, "N/m");
-  add("k_s", policy.k_s, "N/m");
-  add("at least", policy.kappa_min, "N/m");
-  add("at most", policy.kappa_max, "N/m");
-  add("doubled below", policy.doubling_gap, "m");
+  for (const auto& [name, value] : policy.parameters) out += fmt::format(", {} {}", name, to_text(value));
   if (policy.scale != 1) out += fmt::format(", times {:g}", policy.scale);
   return out;
 }
@@ -39,7 +32,7 @@ void print_formulation(const RunConfig& config) {
              contact.d_hat, stiffness_text(contact.stiffness_policy));
   if (limit.enabled) {
     fmt::print("limit     {} on {}, onset {:g}, width {:g}, {}\n", limit.shape, to_string(limit.argument),
-               limit.limit.onset, limit.limit.width, stiffness_text(limit.stiffness_policy));
+               limit.onset, limit.width, stiffness_text(limit.stiffness_policy));
   }
   fmt::print("matching  {}{}\n\n", to_string(config.matching.rule),
              config.matching.rule == MatchingRule::as_given

@@ -1,35 +1,69 @@
 #include <fmt/format.h>
 
-#include "barriers/named_entries.hpp"
+#include <array>
+#include <nlohmann/json.hpp>
+
+#include "core/math/error.hpp"
+#include "core/parameters/check.hpp"
+#include "core/parameters/registry.hpp"
 #include "core/record/schema.hpp"
 #include "experiments/cli/verbs.hpp"
+#include "experiments/config/config_list.hpp"
 
 namespace bb::cli {
 namespace {
 
 struct Format {
   const char* name;
-  std::string (*text)();
+  ParameterList (*list)();      // of what is read
+  std::string (*dictionary)();  // of what is written, and its schema
   std::string (*schema)();
 };
-constexpr Format formats[] = {{"record", run_dictionary, run_schema},
-                              {"trace", trace_dictionary, trace_schema}};
+constexpr std::array formats{Format{"config", config_list, nullptr, nullptr},
+                             Format{"sweep", sweep_list, nullptr, nullptr},
+                             Format{"record", nullptr, run_dictionary, run_schema},
+                             Format{"trace", nullptr, trace_dictionary, trace_schema}};
+
+/// The default as it would be given, or in words, or that there has to be a value, or nothing.
+std::string default_text(const Parameter& row) {
+  if (row.rule.required) return "required";
+  if (!row.rule.computed.empty()) return row.rule.computed;
+  return to_text(row.fallback);
+}
+
+/// One line a setting, below the doc of the object that holds it.
+void print_list(const std::string& pointer, const ParameterList& list) {
+  fmt::print("\n{}: {}\n", pointer.empty() ? "/" : pointer, list.doc);
+  for (const Parameter& row : list.rows) {
+    if (row.rule.list) continue;
+    fmt::print("  {:<26} {:<24} {}\n", row.name, default_text(row), allowed_text(row.rule));
+    if (!row.doc.empty()) fmt::print("  {:<26} {}\n", "", row.doc);
+  }
+  for (const Parameter& row : list.rows) {
+    if (!row.rule.list) continue;
+    print_list(pointer + "/" + row.name + (row.rule.kind == Kind::objects ? "/N" : ""),
+               row.rule.list(nlohmann::json::object()));
+  }
+}
 
 }  // namespace
 
-std::vector<std::string> help_formats() {
-  std::vector<std::string> names;
-  for (const Format& format : formats) names.emplace_back(format.name);
-  return names;
-}
+std::vector<std::string> help_formats() { return names_of(formats); }
 
 int help(const std::string& format, bool schema) {
-  for (const Format& known : formats) {
-    if (format != known.name) continue;
-    fmt::print("{}", schema ? known.schema() : known.text());
+  const Format* known = find_named(formats, format);
+  if (known == nullptr) throw unknown_name("help", format, help_formats());
+  if (known->dictionary != nullptr) {
+    fmt::print("{}", schema ? known->schema() : known->dictionary());
     return exit_ok;
   }
-  throw unknown_name("help", format, help_formats());
+  if (schema) {
+    fmt::print("{}\n", schema_document(format).dump(1));
+    return exit_ok;
+  }
+  fmt::print("every setting of a {}: name, default, what is allowed; below it what it means\n", format);
+  print_list("", known->list());
+  return exit_ok;
 }
 
 }  // namespace bb::cli

@@ -2,15 +2,16 @@
 
 #include <functional>
 
-#include "barriers/named_entries.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "core/energy/membrane_model.hpp"
 #include "core/integrators/registry.hpp"
-#include "core/linear/linear_solver.hpp"
+#include "core/linear/preconditioner.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
+#include "core/parameters/registry.hpp"
 #include "experiments/cli/verbs.hpp"
+#include "experiments/config/limit_policies.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/presets.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
@@ -18,18 +19,22 @@
 namespace bb::cli {
 namespace {
 
-template <class Entries>
-void print_entries(const char* title, const Entries& entries) {
-  fmt::print("{}\n", title);
-  for (const auto& entry : entries) fmt::print("  {:<22} {}\n", entry.name, entry.doc);
-}
-
 /// One line a parameter: key, default with its unit, what is allowed, meaning.
 void print_parameters(const std::vector<Parameter>& parameters) {
   for (const Parameter& p : parameters) {
-    const bool bare = p.unit.empty() || p.unit == "1";
-    const std::string fallback = to_text(p.fallback) + (bare ? "" : " " + p.unit);
-    fmt::print("    {:<20} {:<16} {:<46} {}\n", p.name, fallback, allowed_text(p), p.doc);
+    const std::string fallback = to_text(p.fallback);
+    const bool bare = fallback.empty() || p.rule.unit.empty() || p.rule.unit == "1";
+    fmt::print("    {:<20} {:<16} {:<46} {}\n", p.name, fallback + (bare ? "" : " " + p.rule.unit),
+               allowed_text(p.rule), p.doc);
+  }
+}
+
+template <class Entries>
+void print_entries(const char* title, const Entries& entries) {
+  fmt::print("{}\n", title);
+  for (const auto& entry : entries) {
+    fmt::print("  {:<22} {}\n", entry.name, entry.doc);
+    if constexpr (requires { entry.parameters; }) print_parameters(entry.parameters);
   }
 }
 
@@ -65,12 +70,17 @@ struct Section {
 const std::vector<Section>& sections() {
   static const std::vector<Section> list = {
       {"shapes", [] { print_entries("shapes", shapes()); }},
-      {"policies", [] { print_entries("policies", stiffness_policies()); }},
+      {"policies",
+       [] {
+         print_entries("policies (/formulation/stiffness_policy)", stiffness_policies());
+         print_entries("policies of the limit (/strain_limit/stiffness_policy)", limit_policies());
+       }},
       {"integrators", [] { print_entries("integrators", integrators()); }},
       {"step_solvers", [] { print_entries("step_solvers", step_solvers()); }},
       {"scenes", print_scenes},
       {"generators", print_generators},
       {"linear_solvers", [] { print_entries("linear_solvers", linear_solvers()); }},
+      {"preconditioners", [] { print_entries("preconditioners", preconditioners()); }},
       {"membranes", [] { print_entries("membranes", membrane_models<double>()); }},
       {"formulations", [] { print_entries("formulations", formulation_presets()); }},
   };

@@ -8,9 +8,9 @@
 #include <cstdlib>
 #include <sstream>
 
-#include "barriers/named_entries.hpp"
 #include "barriers/plugins.hpp"
 #include "core/math/error.hpp"
+#include "core/parameters/registry.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/progress.hpp"
@@ -131,7 +131,7 @@ int main(int argc, char** argv) {
   SweepVerb sweep_verb;
   std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
-  std::string help_format = "record";
+  std::string help_format = "config";
   bool eval_schema = false, help_schema = false;
 
   CLI::App app{"barrierbench: contact barriers compared in one Newton + ACCD pipeline"};
@@ -163,16 +163,16 @@ int main(int argc, char** argv) {
   auto* list_app = app.add_subcommand("list", "what can be named in a config");
   list_app->add_option("what", list_what, fmt::format("which section: {}", fmt::join(list_sections(), ", ")));
   list_app->footer("example: ./bench list shapes");
+  auto* help_app = app.add_subcommand(
+      "help", "every setting or field of a file, from the lists that the program reads and writes it by");
+  help_app->add_option("format", help_format, fmt::format("which file: {}", fmt::join(help_formats(), ", ")));
+  help_app->add_flag("--schema", help_schema, "print the JSON Schema instead");
+  help_app->footer("examples: ./bench help config, ./bench help record");
   auto* eval_app = app.add_subcommand("eval", "JSON Lines queries to the functions that the pipeline runs");
   eval_app->add_option("file", eval_file, "queries, - for standard input");
   eval_app->add_flag("--schema", eval_schema, "print the JSON Schema of all kinds");
   eval_app->footer(
       "example: echo '{\"kind\":\"shape\",\"shape\":\"log\",\"d\":0.5,\"d_hat\":1}' | ./bench eval");
-  auto* help_app =
-      app.add_subcommand("help", "every field of a file, from the list that the program writes it by");
-  help_app->add_option("format", help_format, fmt::format("which file: {}", fmt::join(help_formats(), ", ")));
-  help_app->add_flag("--schema", help_schema, "print the JSON Schema instead");
-  help_app->footer("example: ./bench help record");
   auto* demo_app = app.add_subcommand("demo", "the comparison of the README");
   demo_app->add_option("--out", demo_out, "folder of the records");
   demo_app->footer("example: ./bench demo");

@@ -49,7 +49,8 @@ void load_plugins(const StoredRun& stored, std::vector<PluginFile>& loaded) {
 fs::path fresh_folder(const std::string& label) {
   const fs::path first = fs::path("results/runs") / (label + "-rerun");
   fs::path folder = first;
-  for (int n = 2; fs::exists(folder); ++n) folder = first.string() + "-" + std::to_string(n);
+  std::error_code unreachable;
+  for (int n = 2; fs::exists(folder, unreachable); ++n) folder = first.string() + "-" + std::to_string(n);
   return folder;
 }
 

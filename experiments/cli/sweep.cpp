@@ -27,7 +27,8 @@ struct Sweep {
   const CommonOptions& common;
   SweepSpec spec;
   std::filesystem::path out;
-  int kept = 0;  // records that are there, of spec.cases.size()
+  std::vector<bool> refused;  // one a case
+  int kept = 0;               // records that are there, of spec.cases.size()
 };
 
 RunOptions case_options(const Sweep& sweep, const SweepCase& one) {
@@ -52,7 +53,8 @@ std::string why_again(const RunRecord& stored, const RunRecord& now) {
 /// record of another run, or one that cannot be read, is named and gives way.
 bool already_there(const Sweep& sweep, const SweepCase& one, const RunOptions& options) {
   const std::filesystem::path file = options.folder / "run.json";
-  if (sweep.verb.again || !std::filesystem::exists(file)) return false;
+  std::error_code unreachable;
+  if (sweep.verb.again || !std::filesystem::exists(file, unreachable)) return false;
   const RunRecord now = identified(one.config, options);
   std::string why = "its run.json cannot be read";
   try {
@@ -80,7 +82,8 @@ void run_case(const SweepCase& one, RunOptions options, ProgressLine& line) {
 std::vector<Violation> run_cases(Sweep& sweep) {
   ProgressLine line(sweep.common.progress);
   std::vector<Violation> violations;  // a case that cannot be run keeps nobody else from running
-  for (const SweepCase& one : sweep.spec.cases) {
+  for (std::size_t i = 0; i < sweep.spec.cases.size(); ++i) {
+    const SweepCase& one = sweep.spec.cases[i];
     const RunOptions options = case_options(sweep, one);
     try {
       if (already_there(sweep, one, options)) {
@@ -91,8 +94,10 @@ std::vector<Violation> run_cases(Sweep& sweep) {
       ++sweep.kept;
     } catch (const ConfigError& error) {
       line.clear();
-      remove_earlier_run(options.folder);
-      fmt::print("{:<44} no record\n", options.note);
+      sweep.refused[i] = true;
+      std::error_code unreachable;
+      const bool earlier = std::filesystem::exists(options.folder / "run.json", unreachable);
+      fmt::print("{:<44} no record{}\n", options.note, earlier ? "; the one of an earlier sweep stays" : "");
       for (Violation v : error.violations()) {
         v.where = sweep.verb.spec + " [" + one.label + "] " + v.where;
         violations.push_back(std::move(v));
@@ -103,16 +108,20 @@ std::vector<Violation> run_cases(Sweep& sweep) {
 }
 
 /// Which runs may be compared, in every record of the sweep, those that were already there among them.
-void compare_cases(const SweepSpec& spec, const std::filesystem::path& out) {
+void compare_cases(const Sweep& sweep) {
   std::vector<SweepMember> members;
-  for (const SweepCase& one : spec.cases) members.push_back({out / folder_name(one), one.reference});
+  for (std::size_t i = 0; i < sweep.spec.cases.size(); ++i) {
+    const SweepCase& one = sweep.spec.cases[i];
+    members.push_back({sweep.out / folder_name(one), one.reference, one.group, !sweep.refused[i]});
+  }
   write_comparability(members);
 }
 
 }  // namespace
 
 int sweep(const SweepVerb& verb, const CommonOptions& common) {
-  Sweep sweep{verb, common, load_sweep(verb.spec, verb.set), {}};
+  Sweep sweep{verb, common, load_sweep(verb.spec, verb.set), {}, {}};
+  sweep.refused.resize(sweep.spec.cases.size());
   sweep.out = verb.out.empty() ? std::filesystem::path("results/runs") / sweep.spec.name
                                : std::filesystem::path(verb.out);
   if (verb.dry_run) {
@@ -133,7 +142,7 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
     throw Interrupted{fmt::format("{} of {} records kept in {}; the same command runs the rest", sweep.kept,
                                   sweep.spec.cases.size(), sweep.out.string())};
   }
-  compare_cases(sweep.spec, sweep.out);
+  compare_cases(sweep);
   if (!violations.empty()) throw ConfigError(violations);
   return exit_ok;
 }

@@ -8,8 +8,9 @@
 #include "core/input/json.hpp"
 #include "core/input/names.hpp"
 #include "core/math/error.hpp"
+#include "core/parameters/check.hpp"
+#include "experiments/config/config_list.hpp"
 #include "experiments/config/parse.hpp"
-#include "experiments/config/schema_check.hpp"
 
 namespace bb {
 namespace {
@@ -54,10 +55,45 @@ std::optional<std::size_t> marked_reference(const json& axes, std::size_t index)
   return any ? std::optional(out) : std::nullopt;
 }
 
+/// Whether an axis changes what is compared (formulation, strain limit, matching), and not the problem that
+/// it is compared on. One entry that does is enough.
+bool changes_formulation(const json& axis) {
+  const auto compared = [](const std::string& pointer) {
+    for (const char* section : {"/formulation", "/strain_limit", "/matching"}) {
+      if (pointer == section || pointer.starts_with(std::string(section) + "/")) return true;
+    }
+    return false;
+  };
+  if (axis.contains("pointer")) return compared(axis["pointer"].get<std::string>());
+  for (const json& one : axis["cases"]) {
+    for (const auto& [pointer, value] : one["set"].items()) {
+      if (compared(pointer)) return true;
+    }
+  }
+  return false;
+}
+
+/// The number of the combination of all axes that change the problem; the last axis runs fastest.
+std::size_t group_of(const json& axes, std::size_t index) {
+  std::size_t out = 0, stride = 1;
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    const std::size_t n = entries(axes[a]).size();
+    if (!changes_formulation(axes[a])) {
+      out += stride * (index % n);
+      stride *= n;
+    }
+    index /= n;
+  }
+  return out;
+}
+
 /// Everything that the file alone can tell, counted before anything is expanded.
 void check_spec(json spec, const std::string& path) {
   std::vector<Violation> violations;
-  check_schema(spec, sweep_schema(), path, violations);
+  Rule rule;
+  rule.kind = Kind::object;
+  rule.list = [](const json&) { return sweep_list(); };
+  check_value(spec, rule, path + "#", violations);
   if (!violations.empty()) throw ConfigError(std::move(violations));
   check_plain_name(path + "#/name", spec["name"].get<std::string>(), violations);
   const json& axes = spec["axes"];
@@ -127,6 +163,7 @@ SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& ov
   for (const json& axis : spec["axes"]) out.cases = extend(out.cases, axis);
   for (std::size_t i = 0; i < out.cases.size(); ++i) {
     out.cases[i].reference = marked_reference(spec["axes"], i);
+    out.cases[i].group = group_of(spec["axes"], i);
   }
 
   const auto base = std::filesystem::path(path).parent_path() / spec["base"].get<std::string>();

@@ -18,6 +18,7 @@ struct SweepCase {
   std::vector<std::string> set;  // overrides "/pointer=value"
   RunConfig config;
   std::optional<std::size_t> reference;  // the case it is compared with, where the file marks one
+  std::size_t group = 0;  // the same for cases that differ in formulation, strain limit and matching only
 };
 
 struct SweepSpec {

@@ -66,13 +66,13 @@ int explain(const RunVerb& verb);
 /// parameters. Errors: ConfigError for a section that is not in list_sections().
 std::vector<std::string> list_sections();
 int list(const std::string& what);
+/// Every setting of a format that is read, every field of one that is written, with what it means; or the JSON
+/// Schema of it. Errors: ConfigError for another format.
+std::vector<std::string> help_formats();
+int help(const std::string& format, bool schema);
 /// The sweeps of configs/sweeps/demo_*.json, one after the other.
 int demo(const std::string& out, const CommonOptions& common);
 int eval(const std::string& file, bool schema);
-/// Every field of a file that the program writes, or its JSON Schema. Errors: ConfigError for a format that
-/// is not in help_formats().
-std::vector<std::string> help_formats();
-int help(const std::string& format, bool schema);
 
 /// Sees to the kernel of BLAS before anything is computed: may replace the process by itself with
 /// OPENBLAS_CORETYPE = Haswell, so nothing may have been read or written before.

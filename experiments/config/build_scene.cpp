@@ -5,13 +5,13 @@
 #include <numbers>
 #include <random>
 
-#include "barriers/named_entries.hpp"
+#include "core/bodies/scene_builder.hpp"
+#include "core/bodies/scene_checks.hpp"
 #include "core/input/read_file.hpp"
 #include "core/mesh/bounds.hpp"
 #include "core/mesh/read_mesh.hpp"
+#include "core/parameters/registry.hpp"
 #include "core/record/provenance.hpp"
-#include "core/scene/scene_builder.hpp"
-#include "core/scene/scene_checks.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
@@ -23,7 +23,7 @@ namespace {
 TriangleMesh make_mesh(const MeshSource& source, const std::string& where) {
   if (source.file.empty()) {
     try {
-      return require_entry(mesh_generators(), source.generator, "mesh/generator").make(source.parameters);
+      return mesh_generators().require(source.generator, "mesh/generator").make(source.parameters);
     } catch (const ConfigError& error) {
       std::vector<Violation> violations = error.violations();
       for (Violation& v : violations) v.where = where + ": " + v.where;
@@ -56,7 +56,7 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     spec.mesh = make_mesh(body.mesh, fmt::format("{}#/scene/bodies/{}/mesh", config.source, i));
     apply(body.transform, spec.mesh.vertices);
     if (body.limited) spec.material.limit = limit;
-    if (spec.d_hat == 0) spec.d_hat = config.formulation.d_hat;
+    spec.d_hat = body.d_hat.value_or(config.formulation.d_hat);
     builder.add_body(spec);
   }
   for (const Obstacle& obstacle : config.scene.obstacles) builder.add_obstacle(obstacle);
@@ -98,13 +98,13 @@ void check_places(const RunConfig& config, const Scene& scene) {
 
 Scene build_scene(const RunConfig& config) {
   std::optional<StrainLimitSpec> limit;
-  if (config.strain_limit.enabled) limit = config.strain_limit.limit;
+  if (config.strain_limit.enabled) limit = {config.strain_limit.onset, config.strain_limit.width};
   Scene scene;
   if (config.scene.name == "bodies") {
     scene = build_bodies(config, limit);
   } else {
     const ProceduralScene& source =
-        require_entry(procedural_scenes(), config.scene.name, config.source + "#/scene/name");
+        procedural_scenes().require(config.scene.name, config.source + "#/scene/name");
     scene = source.build(config.scene.parameters, {config.formulation.d_hat, limit});
   }
   jitter(config.seeds, scene);

@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-#include "barriers/named_entries.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/config/reader.hpp"
@@ -22,15 +21,15 @@ struct Complain {
 
 /// Nothing for a name that was complained of where it stands.
 std::optional<BarrierFunction> barrier_of(const std::string& shape, Argument argument) {
-  const Shape* found = find_shape(shape);
+  const Shape* found = shapes().find(shape);
   return found ? std::optional<BarrierFunction>({*found, argument}) : std::nullopt;
 }
 
 void check_step_solver(const RunConfig& config, const Complain& complain) {
   const StepSolverConfig& solver = config.step_solver;
   const bool literal = solver.name == "article_literal";
-  if ((solver.name == "accumulated_toi" || literal) && config.integrator != "implicit_euler") {
-    complain("/integrator/name", '"' + config.integrator + '"',
+  if ((solver.name == "accumulated_toi" || literal) && config.integrator.name != "implicit_euler") {
+    complain("/integrator/name", '"' + config.integrator.name + '"',
              "implicit_euler: the step solver is " + solver.name);
   }
   if (literal && config.formulation.argument != Argument::gap) {
@@ -39,8 +38,9 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
   if (literal && config.strain_limit.argument != Argument::gap) {
     complain("/strain_limit/argument", "\"squared_gap\"", "gap: the step solver is article_literal");
   }
-  if (solver.name == "accumulated_toi" && solver.min_newton_steps > solver.max_iterations) {
-    complain("/step_solver/min_newton_steps", fmt::format("{}", solver.min_newton_steps),
+  const int min_newton_steps = integer(solver.parameters, "min_newton_steps");
+  if (solver.name == "accumulated_toi" && min_newton_steps > solver.max_iterations) {
+    complain("/step_solver/min_newton_steps", fmt::format("{}", min_newton_steps),
              fmt::format("an integer <= max_iterations = {}", solver.max_iterations));
   }
 }
@@ -48,21 +48,24 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
 /// The policy judges its own settings; what matching will supply stands as 1.
 void check_policy(const RunConfig& config, const Complain& complain) {
   const PolicyConfig& policy = config.formulation.stiffness_policy;
-  if (!find_entry(stiffness_policies(), policy.name)) return;  // complained of where it stands
   try {
-    make_policy(policy_request(policy, policy.kappa.value_or(1)));
+    make_policy(policy_request(policy, given_kappa(policy).value_or(1)));
   } catch (const ConfigError& error) {
     for (const Violation& v : error.violations()) complain("/formulation/" + v.where, v.found, v.allowed);
   }
+}
+
+bool given_both_bounds(const PolicyConfig& policy) {
+  return policy.parameters.contains("kappa_min_N_per_m") && policy.parameters.contains("kappa_max_N_per_m");
 }
 
 /// kappa of ipc_adaptive starts from the inertia of the contacts and the curvature at d_hat/2, unless both of
 /// its bounds are given.
 void check_adaptive_start(const RunConfig& config, const Complain& complain) {
   const PolicyConfig& policy = config.formulation.stiffness_policy;
-  if (policy.name != "ipc_adaptive" || (policy.kappa_min && policy.kappa_max)) return;
+  if (policy.name != "ipc_adaptive" || given_both_bounds(policy)) return;
   const std::string name = "/formulation/stiffness_policy/name", found = "\"ipc_adaptive\"";
-  if (config.integrator == "quasi_static") {
+  if (config.integrator.name == "quasi_static") {
     complain(name, found,
              "another policy, or kappa_min_N_per_m and kappa_max_N_per_m: it starts from inertia, and the "
              "integrator is quasi_static");
@@ -85,6 +88,7 @@ struct MatchedBarrier {
   const char* load_pointer;
   std::optional<double> load;
   const PolicyConfig& policy;
+  bool by_number;  // the rule supplies the policy's stiffness, and asks nothing of it
 };
 
 bool usable(double value) { return std::isfinite(value) && value > 0; }
@@ -115,7 +119,7 @@ void check_matched_barrier(const MatchingConfig& matching, const MatchedBarrier&
 void check_pilot(const RunConfig& config, const MatchedBarrier& m, const Complain& complain) {
   if (config.scene.gravity.norm() > 0) return;
   if (!m.load) complain(m.load_pointer, "nothing", "a load: without gravity no pilot can start");
-  if (needs_kappa(m.policy)) return;
+  if (m.by_number) return;
   complain("/matching/rule", fmt::format("\"{}\"", to_string(config.matching.rule)),
            fmt::format("as_given: policy {} is matched by a pilot, and without gravity none can start",
                        m.policy.name));
@@ -135,10 +139,12 @@ void check_matching(const RunConfig& config, const Complain& complain) {
   const FormulationConfig& contact = config.formulation;
   const StrainLimitConfig& limit = config.strain_limit;
   std::vector<MatchedBarrier> matched{{contact.shape, contact.argument, contact.d_hat, "/matching/load_N",
-                                       config.matching.load, contact.stiffness_policy}};
+                                       config.matching.load, contact.stiffness_policy,
+                                       needs_kappa(contact.stiffness_policy)}};
   if (may_be_limited(config)) {
-    matched.push_back({limit.shape, limit.argument, limit.limit.width, "/matching/limit_load_N_per_m",
-                       config.matching.limit_load, limit.stiffness_policy});
+    matched.push_back({limit.shape, limit.argument, limit.width, "/matching/limit_load_N_per_m",
+                       config.matching.limit_load, limit.stiffness_policy,
+                       needs_k_s(limit.stiffness_policy)});
   }
   for (const MatchedBarrier& m : matched) {
     check_matched_barrier(config.matching, m, complain);
@@ -149,7 +155,7 @@ void check_matching(const RunConfig& config, const Complain& complain) {
 /// Above this tolerance nothing falls: the first Newton step is already below it.
 void check_tolerance(const RunConfig& config, const Complain& complain) {
   const double dt = config.time.dt, fall = 0.5 * config.scene.gravity.norm() * dt * dt;
-  const bool falls = fall > 0 && config.integrator != "quasi_static";
+  const bool falls = fall > 0 && config.integrator.name != "quasi_static";
   const double length = falls ? std::min(config.formulation.d_hat, fall) : config.formulation.d_hat;
   const double largest = 0.1 * length / dt;
   constexpr double rounding = 1 + 1e-12;  // the default sits exactly on the bound when the fall decides
@@ -162,7 +168,7 @@ void check_tolerance(const RunConfig& config, const Complain& complain) {
 /// Tier 0 reads what PCG saw: the spectrum of the full matrix scaled by its preconditioner, and nothing else.
 void check_ritz(const RunConfig& config, const Complain& complain) {
   if (!config.passes.diagnose || config.diagnose.tier != 0) return;
-  const std::string& preconditioner = config.linear_solver.preconditioner;
+  const std::string& preconditioner = text(config.linear_solver.parameters, "preconditioner");
   const auto& stages = config.diagnose.stages;
   const auto& scalings = config.diagnose.scalings;
   const auto is_scaling = [&](Scaling s) { return to_string(s) == preconditioner; };

@@ -5,7 +5,8 @@
 #include <vector>
 
 #include "core/mesh/triangle_mesh.hpp"
-#include "experiments/scenes/parameters.hpp"
+#include "core/parameters/parameter.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 
@@ -15,6 +16,6 @@ struct MeshGenerator {
   TriangleMesh (*make)(const ParameterMap& complete) = nullptr;
 };
 
-const std::vector<MeshGenerator>& mesh_generators();
+const Registry<MeshGenerator>& mesh_generators();
 
 }  // namespace bb

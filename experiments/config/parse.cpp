@@ -4,10 +4,11 @@
 #include <nlohmann/json.hpp>
 
 #include "core/input/read_file.hpp"
+#include "core/record/provenance.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/presets.hpp"
 #include "experiments/config/reader.hpp"
-#include "experiments/config/schema_check.hpp"
+#include "experiments/config/sections.hpp"
 
 namespace bb {
 namespace {
@@ -26,26 +27,47 @@ void require_scales(const json& document, const Reader& reader) {
   }
 }
 
+/// 1e-4 d_hat, and never more than a tenth of the fall in one step from rest (the bound that
+/// check_contradictions holds a given tolerance to).
+double default_tolerance(const RunConfig& config) {
+  const double dt = config.time.dt, fall = 0.5 * config.scene.gravity.norm() * dt * dt;
+  const double length = 1e-4 * config.formulation.d_hat;
+  return (fall > 0 && config.integrator.name != "quasi_static" ? std::min(length, 0.1 * fall) : length) / dt;
+}
+
+/// Whether the scene follows the drape article's own protocol.
+bool is_literal(const SceneConfig& scene) {
+  const auto protocol = scene.parameters.find("protocol");
+  return protocol != scene.parameters.end() &&
+         protocol->second == ParameterValue(std::string("article_literal"));
+}
+
 RunConfig read_document(json document, const std::string& source, std::vector<Violation>& violations) {
   RunConfig config;
   config.source = source;
   const std::size_t before = violations.size();
-  check_schema(document, config_schema(), source, violations);
+  if (!check_value(document, settings_of<RunConfig>().rule(), source + "#", violations)) {
+    document = json::object();
+  }
   const Reader reader{source, violations, violations.size() == before};
   if (document.contains("formulation")) expand_preset(document["formulation"], source, violations);
 
   const ProceduralScene* scene = read_scene(child(document, "scene"), reader, config.scene);
   const SceneDefaults defaults = scene ? scene->defaults : SceneDefaults();
   if (config.scene.name == "bodies") require_scales(document, reader);
-  const auto protocol = config.scene.parameters.find("protocol");
-  const bool literal = protocol != config.scene.parameters.end() &&
-                       protocol->second == ParameterValue(std::string("article_literal"));
+  const bool literal = is_literal(config.scene);
+  config.time = {defaults.dt, defaults.steps};
+  config.formulation.d_hat = defaults.d_hat;
+  if (literal) config.step_solver.name = "article_literal";
 
-  read_formulation(child(document, "formulation"), reader, defaults.d_hat, config.formulation);
-  read_strain_limit(child(document, "strain_limit"), reader, config.formulation, defaults.limit,
-                    config.strain_limit);
-  read_matching(child(document, "matching"), reader, literal, config);
-  read_pipeline(document, reader, defaults, literal, config);
+  settings_of<RunConfig>().read(document, config);
+  settle_formulation(child(document, "formulation"), reader, config.formulation);
+  settle_strain_limit(child(document, "strain_limit"), reader, config.formulation, defaults.limit,
+                      config.strain_limit);
+  settle_matching(child(document, "matching"), reader, literal, config);
+  if (!child(document, "step_solver").contains("tol_velocity_m_per_s")) {
+    config.step_solver.tol_velocity = default_tolerance(config);
+  }
   check_contradictions(config, source, violations);
   return config;
 }
@@ -65,5 +87,9 @@ RunConfig load_config(const std::string& path, std::span<const std::string> over
   const std::string folder = std::filesystem::path(path).parent_path().string();
   return parse_config(read_input_file(path, config_file), path, folder.empty() ? "." : folder, overrides);
 }
+
+std::string resolved_json(const RunConfig& config) { return settings_of<RunConfig>().write(config).dump(2); }
+
+std::string config_id(const RunConfig& config) { return config_id(std::string_view(resolved_json(config))); }
 
 }  // namespace bb

@@ -5,10 +5,10 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
-#include "barriers/named_entries.hpp"
 #include "core/input/json.hpp"
+#include "core/parameters/registry.hpp"
 #include "experiments/config/parse.hpp"
-#include "experiments/config/schema_check.hpp"
+#include "experiments/config/sections.hpp"
 
 namespace bb {
 namespace {
@@ -18,16 +18,15 @@ namespace fs = std::filesystem;
 
 json load_preset(const std::string& name) {
   const std::string path = configs_folder() + "/formulations/" + name + ".json";
-  const json preset = read_json_file(path, config_file);
+  json preset = read_json_file(path, config_file);
   if (!preset.is_object() || !preset.contains("formulation") || !preset["formulation"].is_object()) {
     throw ConfigError(path, "no formulation", "an object with name, doc and formulation");
   }
   if (!preset.value("doc", json("")).is_string())
     throw ConfigError(path + "#/doc", preset["doc"].dump(), "a string");
-  json config = {
-      {"schema", "barrierbench.config/1"}, {"scene", json::object()}, {"formulation", preset["formulation"]}};
   std::vector<Violation> violations;
-  check_schema(config, config_schema(), path, violations);
+  check_value(preset["formulation"], settings_of<FormulationConfig>().rule(), path + "#/formulation",
+              violations);
   if (!violations.empty()) throw ConfigError(std::move(violations));
   return preset;
 }

@@ -1,67 +1,31 @@
-// Writing numbers so that they read back to the same bits.
 #include "experiments/eval/answer.hpp"
 
-#include <charconv>
 #include <cmath>
 
 namespace bb::eval {
 
-void Answer::key(std::string_view name) {
-  if (!text_.empty()) text_ += ',';
-  text_ += '"';
-  text_ += name;
-  text_ += "\":";
+nlohmann::ordered_json Answer::value(double v) {
+  if (std::isfinite(v)) return v == 0 ? 0.0 : v;  // never -0
+  if (non_finite_.empty() || std::isnan(v)) non_finite_ = std::isnan(v) ? "nan" : "infinite";
+  return nullptr;
 }
 
-void Answer::value(double v) {
-  if (!std::isfinite(v)) {
-    if (non_finite_.empty() || std::isnan(v)) non_finite_ = std::isnan(v) ? "nan" : "infinite";
-    text_ += "null";
-    return;
-  }
-  char digits[32];
-  const auto end = std::to_chars(digits, digits + sizeof digits, v == 0 ? 0.0 : v).ptr;  // never -0
-  const std::string_view shortest(digits, static_cast<std::size_t>(end - digits));
-  text_ += shortest;
-  if (shortest.find_first_of(".e") == std::string_view::npos) text_ += ".0";
-}
+void Answer::number(const char* name, double v) { fields_[name] = value(v); }
+void Answer::null(const char* name) { fields_[name] = nullptr; }
+void Answer::flag(const char* name, bool v) { fields_[name] = v; }
+void Answer::word(const char* name, std::string_view v) { fields_[name] = v; }
 
-void Answer::number(std::string_view name, double v) {
-  key(name);
-  value(v);
-}
-
-void Answer::null(std::string_view name) {
-  key(name);
-  text_ += "null";
-}
-
-void Answer::flag(std::string_view name, bool v) {
-  key(name);
-  text_ += v ? "true" : "false";
-}
-
-void Answer::word(std::string_view name, std::string_view v) {
-  key(name);
-  text_ += '"';
-  text_ += v;
-  text_ += '"';
-}
-
-void Answer::list(std::string_view name, const std::vector<double>& values) {
-  key(name);
-  text_ += '[';
-  for (std::size_t i = 0; i < values.size(); ++i) {
-    if (i > 0) text_ += ',';
-    value(values[i]);
-  }
-  text_ += ']';
+void Answer::list(const char* name, const std::vector<double>& values) {
+  nlohmann::ordered_json& list = fields_[name] = nlohmann::ordered_json::array();
+  for (const double v : values) list.push_back(value(v));
 }
 
 std::string Answer::fields() const {
+  nlohmann::ordered_json all = fields_;
   const std::string_view word = status_.empty() ? non_finite_ : std::string_view(status_);
-  if (word.empty()) return text_;
-  return text_ + (text_.empty() ? "" : ",") + "\"status\":\"" + std::string(word) + '"';
+  if (!word.empty()) all["status"] = word;
+  const std::string text = all.dump();
+  return text.substr(1, text.size() - 2);
 }
 
 }  // namespace bb::eval

@@ -1,14 +1,13 @@
 // The fields `shape` and `argument`, common to several kinds.
 #pragma once
 
-#include "barriers/named_entries.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "experiments/eval/query.hpp"
 
 namespace bb::eval {
 
 /// Any registered shape, plugins included; the first one when the field is wrong.
-inline Shape shape_field(Query& q) { return *find_shape(q.choice("shape", entry_names(shapes()))); }
+inline Shape shape_field(Query& q) { return shapes().require(q.choice("shape", shapes().names()), "/shape"); }
 
 inline BarrierFunction barrier_field(Query& q) {
   const Shape shape = shape_field(q);

@@ -50,7 +50,7 @@ ConditionEstimate ritz_estimate(const ReducedSystem& system, Scaling scaling) {
   for (double& v : b) v = normal(random);
   LinearOptions options;
   options.name = "pcg";
-  options.preconditioner = to_string(scaling);
+  options.parameters["preconditioner"] = std::string(to_string(scaling));
   const LinearReport report = make_linear_solver(options)->solve(system, b, x);
   ConditionEstimate out = condition_from_ritz(report.ritz_min, report.ritz_max);
   if (report.status == LinearStatus::matrix_indefinite) {

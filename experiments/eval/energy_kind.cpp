@@ -67,14 +67,13 @@ Answer hinge(Query& q) {
 
 template <class T>
 Answer answer::energy(Query& q) {
-  std::vector<std::string> names;
-  for (const MembraneModel<T>& model : membrane_models<T>()) names.emplace_back(model.name);
+  std::vector<std::string> names = membrane_models<T>().names();
   names.insert(names.end(), {"spring", "hinge"});
   const std::string name = q.choice("model", names);
   if (q.wrong()) q.finish();  // which fields there are depends on the model
   if (name == "spring") return spring<T>(q);
   if (name == "hinge") return hinge<T>(q);
-  return membrane<T>(q, *find_membrane_model<T>(name));
+  return membrane<T>(q, *membrane_models<T>().find(name));
 }
 
 BB_EVAL_KIND(energy);

@@ -2,13 +2,13 @@
 #include "experiments/eval/eval.hpp"
 
 #include <istream>
-#include <map>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <set>
 #include <string>
 
 #include "core/input/json.hpp"
+#include "core/parameters/registry.hpp"
 #include "experiments/eval/kinds.hpp"
 #include "experiments/eval/top_level.hpp"
 
@@ -20,24 +20,17 @@ using nlohmann::json;
 
 using Function = Answer (*)(Query&);
 struct Kind {
+  std::string name, doc;
   Function in_double, in_float;
 };
 
-const std::map<std::string, Kind, std::less<>>& kinds() {
-  static const std::map<std::string, Kind, std::less<>> table = {
-#define ENTRY(name, doc) {#name, {answer::name<double>, answer::name<float>}},
+const Registry<Kind>& kinds() {
+#define ENTRY(name, doc) {#name, doc, answer::name<double>, answer::name<float>},
+  static const Registry<Kind> all({
 #include "experiments/eval/registry.inc"
+  });
 #undef ENTRY
-  };
-  return table;
-}
-
-std::vector<std::string> kind_names() {
-  return {
-#define ENTRY(name, doc) #name,
-#include "experiments/eval/registry.inc"
-#undef ENTRY
-  };
+  return all;
 }
 
 std::string quoted(const std::string& text) {
@@ -93,11 +86,11 @@ void tell(const JsonError& error, std::string_view text, Line& line) {
 
 Answer answer_of(const json& object) {
   Query head(object, false);
-  const std::string name = head.choice("kind", kind_names());
+  const std::string name = head.choice("kind", kinds().names());
   const bool single = head.choice_or("precision", {"double", "float"}) == "float";
   if (head.wrong()) head.finish();
   Query query(object, single);
-  const Kind& kind = kinds().find(name)->second;
+  const Kind& kind = kinds().require(name, "/kind");
   return single ? kind.in_float(query) : kind.in_double(query);
 }
 

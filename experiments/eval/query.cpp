@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
-#include "barriers/named_entries.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb::eval {
 namespace {
@@ -57,9 +57,7 @@ std::string Query::choice(const char* name, const std::vector<std::string>& allo
   if (violations_.size() == before) {
     if (std::find(allowed.begin(), allowed.end(), found) != allowed.end()) return found;
     const ConfigError unknown = unknown_name("/" + std::string(name), found, allowed);
-    for (const Violation& v : unknown.violations()) {
-      violations_.push_back(v);
-    }
+    violations_.push_back(unknown.violations().front());
   }
   return allowed.front();
 }
@@ -179,8 +177,7 @@ std::vector<int> Query::indices(const char* name, int high) {
 void Query::finish() {
   for (const auto& [key, value] : object_.items()) {
     if (known_.contains(key)) continue;
-    const ConfigError error = unknown_name("/" + key, "this field", {known_.begin(), known_.end()});
-    complain(key, "a field that this kind does not have", error.violations().front().allowed);
+    complain(key, "a field that this kind does not have", one_of_text(key, {known_.begin(), known_.end()}));
   }
   if (!violations_.empty()) throw ConfigError(violations_);
 }

@@ -76,7 +76,7 @@ Answer elasticity_inclusive(Query& q) {
 template <class T>
 Answer fixed(Query& q) {
   StiffnessPolicyConfig config;
-  config.kappa = q.number("kappa", kPositive);
+  config.parameters["kappa_N_per_m"] = q.number("kappa", kPositive);
   contact_fields(q, {false, false, false, false});
   q.finish();
   StiffnessBatch one;

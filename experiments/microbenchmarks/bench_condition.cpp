@@ -4,7 +4,7 @@
 
 #include "core/linear/cholmod_factor.hpp"
 #include "core/linear/condition.hpp"
-#include "core/linear/linear_solver.hpp"
+#include "core/linear/preconditioner.hpp"
 #include "core/record/phase_times.hpp"
 #include "experiments/microbenchmarks/cloth_matrix.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
@@ -48,7 +48,7 @@ void tier0(benchmark::State& state, const std::string& preconditioner) {
   const Matrix matrix(static_cast<int>(state.range(0)));
   LinearOptions options;
   options.name = "pcg";
-  options.preconditioner = preconditioner;
+  options.parameters["preconditioner"] = preconditioner;
   const auto solver = make_linear_solver(options);
   const VecXd b = VecXd::LinSpaced(matrix.system->lower.rows(), -1, 1);
   VecXd x;
@@ -84,8 +84,7 @@ void register_condition() {
   const auto sizes = [](benchmark::internal::Benchmark* b) {
     b->ArgName("side")->Arg(16)->Arg(107)->Unit(benchmark::kMillisecond);
   };
-  for (const std::string_view preconditioner : preconditioners()) {
-    const std::string label(preconditioner);
+  for (const std::string& label : preconditioners().names()) {
     sizes(add("condition/tier:0/" + label, [label](benchmark::State& state) { tier0(state, label); }));
   }
   for (const int number : {1, 2}) {

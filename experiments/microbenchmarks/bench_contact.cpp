@@ -3,6 +3,7 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "core/contact/contact_system.hpp"
+#include "core/contact/contact_terms.hpp"
 #include "core/linear/block_system.hpp"
 #include "experiments/microbenchmarks/cloth_stack.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"

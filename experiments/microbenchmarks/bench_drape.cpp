@@ -2,6 +2,7 @@
 // one numeric factorisation of the same matrix. The goal: everything but the linear solve costs at most half
 // of one.
 #include "core/linear/cholmod_factor.hpp"
+#include "core/terms/strain_limit.hpp"
 #include "experiments/microbenchmarks/drape_state.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 
@@ -12,6 +13,17 @@ DrapeState& drape_of(benchmark::State& state) {
   DrapeState& drape = drape_state(static_cast<int>(state.range(0)));
   if (!drape.all_layers_touch) state.SkipWithError("not all layers came into contact");
   return drape;
+}
+
+template <class T>
+T& term_of(DrapeState& drape) {
+  return *drape.system().terms().find<T>();
+}
+
+/// The step bound of one term.
+template <class T>
+void bound_of(DrapeState& drape, IterateNumbers& report) {
+  term_of<T>(drape).bound({drape.x(), drape.x1, drape.dx}, report, drape.system().clock());
 }
 
 /// Runs `part` in the loop and reports its time per factorisation.
@@ -29,7 +41,7 @@ void measure(benchmark::State& state, const DrapeState& drape, const Part& part)
 
 void symbolic_analysis(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  const ReducedSystem& matrix = drape.system().reduced(MatrixStage::full);
+  const ReducedSystem& matrix = drape.system().reduced();
   double seconds = 0;
   for (auto _ : state) {
     CholmodFactor factor;
@@ -43,7 +55,7 @@ void symbolic_analysis(benchmark::State& state) {
 
 void numeric_factorization(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  const ReducedSystem& matrix = drape.system().reduced(MatrixStage::full);
+  const ReducedSystem& matrix = drape.system().reduced();
   CholmodFactor factor;
   factor.factorize(matrix);
   measure(state, drape, [&] { factor.factorize(matrix); });
@@ -55,7 +67,7 @@ void numeric_factorization(benchmark::State& state) {
 void triangular_solve(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   CholmodFactor factor;
-  factor.factorize(drape.system().reduced(MatrixStage::full));
+  factor.factorize(drape.system().reduced());
   const VecXd b = VecXd::LinSpaced(drape.system().n_free(), -1, 1);
   VecXd x;
   measure(state, drape, [&] { factor.solve(b, x); });
@@ -67,42 +79,43 @@ void assembly(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   measure(state, drape, [&] {
     drape.system().assemble();
-    benchmark::DoNotOptimize(&drape.system().reduced(MatrixStage::full));
+    benchmark::DoNotOptimize(&drape.system().reduced());
   });
   state.counters["rows"] = static_cast<double>(drape.n_rows());
 }
 
 void broad_phase(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  measure(state, drape, [&] { drape.system().sweep(drape.x1); });
-  const ContactSystem::Counts counts = drape.system().contacts().candidate_counts();
+  measure(state, drape, [&] { drape.system().prepare(drape.x1, drape.dx); });
+  const ContactSystem::Counts counts = term_of<ContactTerm>(drape).contacts().candidate_counts();
   state.counters["candidates"] =
       static_cast<double>(counts.point_triangle + counts.edge_edge + counts.obstacle);
 }
 
 void step_bound(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  drape.system().sweep(drape.x1);
-  StepBound bound;
-  measure(state, drape, [&] { bound = drape.system().contact_bound(drape.x1); });
-  state.counters["accd_queries"] = static_cast<double>(bound.queries);
-  state.counters["probes"] = static_cast<double>(bound.probes);
+  drape.system().prepare(drape.x1, drape.dx);
+  IterateNumbers report;
+  measure(state, drape, [&] { bound_of<ContactTerm>(drape, report); });
+  state.counters["accd_queries"] = static_cast<double>(report.bound.queries);
+  state.counters["probes"] = static_cast<double>(report.bound.probes);
 }
 
 void strain_bound(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  double alpha = 0;
-  measure(state, drape, [&] { alpha = drape.system().limit_bound(drape.dx); });
-  state.counters["alpha"] = alpha;
+  IterateNumbers report;
+  measure(state, drape, [&] { bound_of<StrainLimitTerm>(drape, report); });
+  state.counters["alpha"] = report.alpha_strain;
 }
 
 /// A trial of the line search: rows, kappa and every energy at the largest feasible step.
 void energy_evaluation(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   NewtonSystem& system = drape.system();
-  system.sweep(drape.x1);
-  const double alpha = std::min(system.contact_bound(drape.x1).alpha, system.limit_bound(drape.dx));
-  const Positions trial = system.state().x + 0.5 * alpha * drape.dx;
+  system.prepare(drape.x1, drape.dx);
+  IterationReport report;
+  const double alpha = system.bound(drape.x1, drape.dx, report);
+  const Positions trial = system.x() + 0.5 * alpha * drape.dx;
   bool feasible = true;
   measure(state, drape, [&] { feasible = system.try_state(trial).has_value(); });
   if (!feasible) state.SkipWithError("the trial is not feasible");

@@ -5,7 +5,7 @@
 
 #include "core/linear/block_system.hpp"
 #include "core/linear/cholmod_factor.hpp"
-#include "core/linear/linear_solver.hpp"
+#include "core/linear/preconditioner.hpp"
 #include "experiments/microbenchmarks/cloth_matrix.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 
@@ -69,8 +69,7 @@ void solve(benchmark::State& state, const std::string& name, const std::string& 
   const ReducedSystem& system = cloth.assemble(*s, cloth.contacts_a);
   LinearOptions options;
   options.name = name;
-  options.preconditioner = preconditioner;
-  options.tol_rel = 1e-6;
+  options.parameters = {{"preconditioner", preconditioner}, {"tol_rel", 1e-6}};
   const auto solver = make_linear_solver(options);
   const VecXd b = VecXd::LinSpaced(system.lower.rows(), -1, 1);
   VecXd x;
@@ -98,8 +97,8 @@ void register_linear() {
   register_sizes("linear/cholmod_refactorize", cholmod_refactorize);
   for (const LinearSolverEntry& solver : linear_solvers()) {
     const bool iterative = solver.name == "pcg";
-    for (const std::string_view preconditioner : preconditioners()) {
-      const std::string name(solver.name), label(preconditioner);
+    for (const std::string& label : preconditioners().names()) {
+      const std::string& name = solver.name;
       add("linear/solve/" + name + (iterative ? "/" + label : ""),
           [name, label](benchmark::State& state) { solve(state, name, label); })
           ->ArgName("side")

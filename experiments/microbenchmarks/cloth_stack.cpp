@@ -2,8 +2,8 @@
 
 #include <random>
 
+#include "core/bodies/scene_builder.hpp"
 #include "core/mesh/generators.hpp"
-#include "core/scene/scene_builder.hpp"
 
 namespace bb::bench {
 

@@ -26,7 +26,7 @@ Calibration stiffness(const RunConfig& config, const Scene& scene) {
   double weight = 0;
   for (const double mass : scene.mass) weight += mass * scene.gravity.norm();
   const Method probe = make_method(config, {1.0, 1.0, 1.0});
-  const double d_hat = config.formulation.d_hat, width = config.strain_limit.limit.width;
+  const double d_hat = config.formulation.d_hat, width = config.strain_limit.width;
   const double per_vertex = weight / (scene.n_vertices() / 5.0);
   Calibration out;
   out.kappa = per_vertex / std::abs(probe.contact.eval(d_hat / 2, d_hat).db);
@@ -73,12 +73,12 @@ std::unique_ptr<DrapeState> make_state(int n) {
   StepObserver nobody;
   for (int step = 0; step < kMaxSteps && !state->all_layers_touch; ++step) {
     state->simulation->step(nobody);
-    state->all_layers_touch = all_touch(state->scene, state->system().state().rows);
+    state->all_layers_touch = all_touch(state->scene, contact_state(state->system().terms()).rows);
   }
   state->system().assemble();
   state->system().solve(state->x(), state->dx);
   state->x1 = state->x() + state->dx;
-  state->factor_s = median_factor_s(state->system().reduced(MatrixStage::full));
+  state->factor_s = median_factor_s(state->system().reduced());
   return state;
 }
 

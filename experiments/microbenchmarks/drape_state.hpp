@@ -4,6 +4,7 @@
 #include <memory>
 
 #include "core/newton/simulation.hpp"
+#include "core/terms/contact.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb::bench {
@@ -21,8 +22,8 @@ struct DrapeState {
   bool all_layers_touch = false;
 
   NewtonSystem& system() { return simulation->system(); }
-  const Positions& x() { return system().state().x; }
-  std::size_t n_rows() { return system().state().rows.size() + system().state().mollified.size(); }
+  const Positions& x() { return system().x(); }
+  std::size_t n_rows() { return contact_state(system().terms()).size(); }
 };
 
 /// 5 x n^2 vertices. Runs steps of a few Newton iterations until the sphere and every two neighbouring layers

@@ -71,7 +71,7 @@ std::vector<double> stretches(const Scene& scene, const Positions& x) {
 
 }  // namespace
 
-ContactFields contact_fields(const EnergyState& state, int n_vertices) {
+ContactFields contact_fields(const ContactState& state, int n_vertices) {
   const auto n = static_cast<std::size_t>(n_vertices);
   ContactFields fields{std::vector<double>(n, 1.0), std::vector<double>(n, 0.0)};
   const auto gather = [&fields](const auto& rows) {

@@ -5,9 +5,9 @@
 #include <vector>
 
 #include "core/linear/block_system.hpp"
-#include "core/newton/energy_state.hpp"
 #include "core/record/run_record.hpp"
 #include "core/scene/scene.hpp"
+#include "core/terms/contact.hpp"
 
 namespace bb {
 
@@ -19,7 +19,7 @@ struct ContactFields {
 
 /// Both fields from the rows of a state. A nearly parallel edge pair has a gap, but, as in the records, no
 /// load of its own: its mollifier scales m kappa |b'|.   Cost: O(vertices + rows).
-ContactFields contact_fields(const EnergyState& state, int n_vertices);
+ContactFields contact_fields(const ContactState& state, int n_vertices);
 
 /// Files of one run below `folder`/frames and `folder`/matrices.
 ///

@@ -66,17 +66,18 @@ std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const aud
            name_of(scene, std::array{mesh.triangles(0, i), mesh.triangles(1, i), mesh.triangles(2, i)});
   };
   const auto vertex = [&](int v) { return "vertex " + name_of(scene, std::array{v}); };
+  const std::string passes = pair.proven ? " passes through " : " cannot be certified not to pass through ";
   switch (pair.kind) {
     case audit::PairKind::edge_triangle:
       return edge(pair.first) + " crosses " + triangle(pair.second);
     case audit::PairKind::edge_edge_2d:
       return edge(pair.first) + " crosses " + edge(pair.second);
     case audit::PairKind::vertex_triangle:
-      return vertex(pair.first) + " passes through " + triangle(pair.second);
+      return vertex(pair.first) + passes + triangle(pair.second);
     case audit::PairKind::edge_edge:
-      return edge(pair.first) + " passes through " + edge(pair.second);
+      return edge(pair.first) + passes + edge(pair.second);
     case audit::PairKind::vertex_edge_2d:
-      return vertex(pair.first) + " passes through " + edge(pair.second);
+      return vertex(pair.first) + passes + edge(pair.second);
     case audit::PairKind::vertex_obstacle:
       return vertex(pair.first) + " is on the wrong side of obstacle " +
              scene.obstacles[static_cast<std::size_t>(pair.second)].name;

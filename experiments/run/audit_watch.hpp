@@ -16,6 +16,7 @@ class AuditWatch {
   void on_motion(const Positions& x0, const Positions& x1, int step);
   /// Fills the counts of the step that ended at x.
   void on_step(const Positions& x, StepRecord& step);
+  const audit::AuditLedger& ledger() const { return audit_.ledger(); }
   /// What was found, as an outcome.
   Verdict verdict() const;
 

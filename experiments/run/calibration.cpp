@@ -6,7 +6,7 @@
 
 #include "barriers/matching.hpp"
 #include "barriers/shapes/registry.hpp"
-#include "core/contact/slope_scan.hpp"
+#include "core/barrier/slope_scan.hpp"
 #include "core/math/error.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/run/pilot_demand.hpp"
@@ -41,7 +41,8 @@ struct Matching {
   const Scene& scene;
   const RunOptions& options;
   MatchingRecord& record;
-  const Pilot* pilot = nullptr;  // null: every load is given and nothing makes its own stiffness
+  std::shared_ptr<const Pilot> pilot =
+      nullptr;  // null: every load is given and nothing makes its own stiffness
 };
 
 /// s = matched stiffness / the policy's own.
@@ -134,11 +135,11 @@ void match_contact(const Matching& m, Calibration& out) {
 
 Demand ask_elements(const Matching& m, const Match& match, const BarrierFunction& barrier) {
   const PolicyConfig& policy = m.config.strain_limit.stiffness_policy;
-  if (!m.pilot || (m.config.matching.limit_load && needs_kappa(policy))) return {};
+  if (!m.pilot || (m.config.matching.limit_load && needs_k_s(policy))) return {};
   LimitStiffness own;
-  if (!needs_kappa(policy)) own = make_limit_policy(policy, {});
+  if (!needs_k_s(policy)) own = make_limit_policy(policy, {});
   const MatchedStiffness matched = matched_stiffness(match, barrier, m.scene.limit.width.front());
-  const Demand demand = limit_demand(*m.pilot, m.scene, matched, needs_kappa(policy) ? nullptr : &own);
+  const Demand demand = limit_demand(*m.pilot, m.scene, matched, needs_k_s(policy) ? nullptr : &own);
   m.record.elements_considered = demand.considered;
   if (demand.considered == 0) return demand;
   m.record.limit_element = demand.where;
@@ -163,7 +164,7 @@ void match_limit(const Matching& m, Calibration& out) {
   if (matching.rule == MatchingRule::equal_curvature) {
     m.record.limit_curvature = match.curvature_of_log(width);
   }
-  if (needs_kappa(m.config.strain_limit.stiffness_policy)) {
+  if (needs_k_s(m.config.strain_limit.stiffness_policy)) {
     out.k_s = match.stiffness(barrier, width);
     m.record.limit_stiffness_N_per_m = *out.k_s;
   } else if (!measured) {
@@ -177,7 +178,7 @@ void match_limit(const Matching& m, Calibration& out) {
 /// Whether a load is missing, or a policy has to be asked about the contacts or elements that carried it.
 bool needs_pilot(const RunConfig& config, bool limited) {
   const bool contact = !config.matching.load || !needs_kappa(config.formulation.stiffness_policy);
-  const bool limit = !config.matching.limit_load || !needs_kappa(config.strain_limit.stiffness_policy);
+  const bool limit = !config.matching.limit_load || !needs_k_s(config.strain_limit.stiffness_policy);
   return contact || (limited && limit);
 }
 
@@ -191,15 +192,15 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOpti
   record.rule = to_string(rule);
   if (rule == MatchingRule::as_given) {
     const PolicyConfig& policy = config.formulation.stiffness_policy;
-    if (needs_kappa(policy) && policy.kappa) record.kappa_N_per_m = *policy.kappa;
-    const std::optional<double>& k_s = config.strain_limit.stiffness_policy.k_s;
+    if (const auto kappa = given_kappa(policy)) record.kappa_N_per_m = *kappa;
+    const std::optional<double> k_s = given_k_s(config.strain_limit.stiffness_policy);
     if (out.limited && k_s) record.limit_stiffness_N_per_m = *k_s;
     return out;
   }
   record.theta = config.matching.theta;
   Matching matching{config, scene, options, record};
   if (needs_pilot(config, out.limited)) {
-    matching.pilot = &run_pilot(config, scene, options);
+    matching.pilot = run_pilot(config, scene, options);
     record.pilot_config_id = matching.pilot->config_id;
     record.pilot_note = matching.pilot->stopped;
   }

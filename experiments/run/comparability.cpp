@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "core/math/error.hpp"
+#include "core/record/folder_lock.hpp"
 #include "core/record/writer.hpp"
 
 namespace bb {
@@ -14,7 +15,15 @@ bool in_contact(const ComparedRun& run) { return run.gap_rel.finite(); }
 
 void append(std::string& list, const std::string& name) { list += (list.empty() ? "" : ", ") + name; }
 
+ComparedRun without_record(const std::filesystem::path& folder) {
+  ComparedRun out;
+  out.folder = folder.filename().string();
+  out.gap_rel = Number::missing("no_record");
+  return out;
+}
+
 std::string fault_of(const ComparedRun& run) {
+  if (run.run_id.empty()) return "it left no record";
   return "outcome " + run.outcome + (run.failed.empty() ? "" : ", failed checks: " + run.failed);
 }
 
@@ -85,10 +94,12 @@ Comparability judge_comparability(const ComparedRun& run, const std::optional<Co
   return out;
 }
 
-std::optional<std::size_t> default_reference(std::span<const std::optional<ComparedRun>> runs,
+std::optional<std::size_t> default_reference(std::span<const SweepMember> members,
+                                             std::span<const std::optional<ComparedRun>> runs,
                                              std::size_t index) {
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < runs.size(); ++i) {
+    if (members[i].group != members[index].group) continue;
     if (!runs[i] || !runs[i]->valid || !in_contact(*runs[i])) continue;
     const bool log = runs[i]->shape == "log" && runs[i]->argument == "gap";
     if (log && runs[index] && runs[i]->matching_rule == runs[index]->matching_rule) return i;
@@ -101,16 +112,23 @@ void write_comparability(std::span<const SweepMember> members) {
   std::vector<std::optional<RunRecord>> records;
   std::vector<std::optional<ComparedRun>> runs;
   for (const SweepMember& member : members) {
-    records.push_back(read_member(member.folder));
+    records.push_back(member.ran ? read_member(member.folder) : std::nullopt);
     runs.push_back(std::nullopt);
     if (records.back()) runs.back() = compared_run(*records.back(), member.folder);
   }
   for (std::size_t i = 0; i < members.size(); ++i) {
     if (!runs[i]) continue;
+    const auto chosen = members[i].reference ? members[i].reference : default_reference(members, runs, i);
+    std::optional<ComparedRun> reference;
+    if (chosen) reference = runs[*chosen] ? runs[*chosen] : without_record(members[*chosen].folder);
+    RunRecord judged = *records[i];
+    judged.comparability = judge_comparability(*runs[i], reference);
     const std::string before = to_json(*records[i]);
-    const auto chosen = members[i].reference ? members[i].reference : default_reference(runs, i);
-    records[i]->comparability = judge_comparability(*runs[i], chosen ? runs[*chosen] : std::nullopt);
-    if (to_json(*records[i]) != before) write_run(members[i].folder, *records[i]);
+    if (to_json(judged) == before) continue;
+    const FolderLock lock(members[i].folder);
+    const auto now = read_member(members[i].folder);
+    if (!now || to_json(*now) != before) continue;  // another process ran the case again
+    write_run(members[i].folder, judged);
   }
 }
 

@@ -26,23 +26,29 @@ ComparedRun compared_run(const RunRecord& record, const std::filesystem::path& f
 /// or it is not valid, or never in contact at a converged step end. Otherwise comparable exactly if the
 /// smallest gap (d/d_hat, over converged step ends) is within a factor 2 of the reference's: barriers that
 /// keep their contacts at other distances do different work.
-/// @param reference the run itself may be its own reference
+/// @param reference the run itself may be its own reference; without a run_id it is one that left no record
 Comparability judge_comparability(const ComparedRun& run, const std::optional<ComparedRun>& reference);
 
-/// Without a mark in the sweep's file: the first valid run in contact with the log barrier on the gap and the
-/// same matching rule; else the first valid run in contact; else none.
-std::optional<std::size_t> default_reference(std::span<const std::optional<ComparedRun>> runs,
-                                             std::size_t index);
-
-/// A case of a sweep: its folder, and the index of its reference where the sweep's file marks one.
+/// A case of a sweep: its folder, the index of its reference where the sweep's file marks one, and the number
+/// of the scene, step length and so on that it shares with the cases it may be compared with.
 struct SweepMember {
   std::filesystem::path folder;
   std::optional<std::size_t> reference;
+  std::size_t group = 0;
+  bool ran = true;  // false: the case was refused, and a record in its folder is of an earlier sweep
 };
 
-/// Writes `comparability` into every record of the sweep, those of earlier runs too, each as a whole; a
-/// record that says the same already is left alone. Folders without a readable record are passed over.
-/// Errors: RecordError.
+/// Without a mark in the sweep's file: of the members of the same group the first valid run in contact with
+/// the log barrier on the gap and the same matching rule; else the first valid run in contact; else none.
+/// runs: one a member.
+std::optional<std::size_t> default_reference(std::span<const SweepMember> members,
+                                             std::span<const std::optional<ComparedRun>> runs,
+                                             std::size_t index);
+
+/// Writes `comparability` into every record of the sweep, those of earlier runs too, each as a whole and with
+/// its folder locked; a record that says the same already is left alone, and so is one that changed since it
+/// was read. Folders without a readable record are passed over. Errors: RecordError, also where another
+/// process holds a folder.
 void write_comparability(std::span<const SweepMember> members);
 
 }  // namespace bb

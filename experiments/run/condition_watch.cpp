@@ -9,10 +9,22 @@
 namespace bb {
 namespace {
 
+/// A stage leaves out groups of terms; it is there when the last of them has elements.
+struct Stage {
+  MatrixStage name;
+  TermSet left_out;
+  std::optional<TermGroup> last;
+};
+constexpr Stage stages[] = {{MatrixStage::full, {}, {}},
+                            {MatrixStage::without_contact, TermGroup::contact, TermGroup::contact},
+                            {MatrixStage::without_contact_and_limit,
+                             TermSet(TermGroup::contact) | TermGroup::limit, TermGroup::limit}};
+
 /// What the preconditioner of PCG makes of the matrix; nothing for one that is no scaling.
-std::optional<Scaling> scaling_of(const LinearOptions& solver) {
+std::optional<Scaling> scaling_of(const LinearSolverConfig& solver) {
+  const std::string preconditioner = preconditioner_of({solver.name, solver.parameters});
   for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
-    if (solver.preconditioner == to_string(scaling)) return scaling;
+    if (preconditioner == to_string(scaling)) return scaling;
   }
   return std::nullopt;
 }
@@ -36,10 +48,8 @@ bool ConditionWatch::due(int iteration) const {
   return config_.diagnose.budget == 0 || spent_s_ < config_.diagnose.budget;
 }
 
-void ConditionWatch::estimate(NewtonSystem& system, MatrixStage stage) {
-  if (!system.has_stage(stage)) return;
+void ConditionWatch::estimate(const ReducedSystem& matrix, MatrixStage stage) {
   const int tier = config_.diagnose.tier;
-  const ReducedSystem& matrix = system.reduced(stage);
   for (const Scaling scaling : config_.diagnose.scalings) {
     samples_.push_back(
         sample_of(stage, scaling, tier, estimator_.estimate(matrix, {tier, scaling, config_.diagnose.seed})));
@@ -54,14 +64,14 @@ void ConditionWatch::on_matrix(NewtonSystem& system, int step, int iteration) {
   const double start = now_s();
   if (config_.diagnose.tier > 0) {  // tier 0 reads what the solve leaves
     for (const std::string& name : config_.diagnose.stages) {
-      for (int i = 0; i < n_words<MatrixStage>; ++i) {
-        if (name == to_string(static_cast<MatrixStage>(i))) estimate(system, static_cast<MatrixStage>(i));
+      for (const Stage& stage : stages) {
+        if (name != to_string(stage.name) || (stage.last && !system.active(*stage.last))) continue;
+        estimate(system.reduced(TermSet::all().without(stage.left_out)), stage.name);
       }
     }
   }
-  if (artifacts_ && config_.output.matrices)
-    artifacts_->matrix(system.reduced(MatrixStage::full), step, iteration);
-  if (config_.diagnose.pcg) probed_ = probe_.iterations(system.reduced(MatrixStage::full));
+  if (artifacts_ && config_.output.matrices) artifacts_->matrix(system.reduced(), step, iteration);
+  if (config_.diagnose.pcg) probed_ = probe_.iterations(system.reduced());
   spent_s_ += now_s() - start;
 }
 

@@ -27,7 +27,7 @@ class ConditionWatch {
 
  private:
   bool due(int iteration) const;
-  void estimate(NewtonSystem& system, MatrixStage stage);
+  void estimate(const ReducedSystem& matrix, MatrixStage stage);
 
   const RunConfig& config_;
   ArtifactWriter* artifacts_;

@@ -10,7 +10,7 @@ const std::string& FirstContacts::name(int owner) const {
   return i < n ? scene_.bodies[i].name : scene_.obstacles[i - n].name;
 }
 
-void FirstContacts::note(const EnergyState& state, int step, CountMap& first) {
+void FirstContacts::note(const ContactState& state, int step, CountMap& first) {
   const auto n_bodies = static_cast<int>(scene_.bodies.size());
   const auto scan = [&](const auto& rows) {
     for (const ContactKey& key : rows.key) {
@@ -26,8 +26,7 @@ void FirstContacts::note(const EnergyState& state, int step, CountMap& first) {
       first.emplace(one + "|" + other, step);
     }
   };
-  scan(state.rows);
-  scan(state.mollified);
+  state.for_each_table(scan);
 }
 
 }  // namespace bb

@@ -4,9 +4,9 @@
 #include <set>
 #include <utility>
 
-#include "core/newton/energy_state.hpp"
 #include "core/record/run_record.hpp"
 #include "core/scene/scene.hpp"
+#include "core/terms/contact.hpp"
 
 namespace bb {
 
@@ -16,7 +16,7 @@ class FirstContacts {
   explicit FirstContacts(const Scene& scene) : scene_(scene) {}
   /// Enters `step` into `first` for every pair that has a row in `state` for the first time. Keys:
   /// "body|body" or "body|obstacle", the names sorted.
-  void note(const EnergyState& state, int step, CountMap& first);
+  void note(const ContactState& state, int step, CountMap& first);
 
  private:
   const std::string& name(int owner) const;

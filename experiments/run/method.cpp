@@ -20,10 +20,7 @@ StepSolverOptions step_solver_options(const RunConfig& config) {
   out.name = config.step_solver.name;
   out.max_iterations = config.step_solver.max_iterations;
   out.tol_velocity = config.step_solver.tol_velocity;
-  out.armijo = config.step_solver.armijo;
-  out.cap_fraction = config.step_solver.cap_fraction;
-  out.target_toi = config.step_solver.target_toi;
-  out.min_iterations = config.step_solver.min_newton_steps;
+  out.parameters = config.step_solver.parameters;
   return out;
 }
 
@@ -33,7 +30,8 @@ std::unique_ptr<StiffnessPolicy> make_contact_policy(const PolicyConfig& policy,
                                                      const Calibration& calibration) {
   double kappa = 0;
   if (needs_kappa(policy)) {
-    kappa = require_stiffness(calibration.kappa, policy.kappa, "/formulation/stiffness_policy/kappa_N_per_m");
+    kappa = require_stiffness(calibration.kappa, given_kappa(policy),
+                              "/formulation/stiffness_policy/kappa_N_per_m");
   }
   return make_policy(policy_request(policy, kappa, calibration.scale));
 }
@@ -41,15 +39,15 @@ std::unique_ptr<StiffnessPolicy> make_contact_policy(const PolicyConfig& policy,
 LimitStiffness make_limit_policy(const PolicyConfig& policy, const Calibration& calibration) {
   LimitStiffness out;
   if (!calibration.limited) return out;
-  if (needs_kappa(policy)) {
-    out.k_s = policy.scale *
-              require_stiffness(calibration.k_s, policy.k_s, "/strain_limit/stiffness_policy/k_s_N_per_m");
+  if (needs_k_s(policy)) {
+    out.k_s = policy.scale * require_stiffness(calibration.k_s, given_k_s(policy),
+                                               "/strain_limit/stiffness_policy/k_s_N_per_m");
     return out;
   }
   out.kind = LimitStiffness::Kind::elasticity_inclusive;
-  out.mass_term = policy.mass_term;
-  out.elastic_term = policy.elastic_term;
-  out.refresh = policy.refresh;
+  out.mass_term = require_mass_term(text(policy.parameters, "mass_term"));
+  out.elastic_term = boolean(policy.parameters, "elastic_term");
+  out.refresh = require_refresh(text(policy.parameters, "refresh"));
   out.multiplier = policy.scale * calibration.limit_scale;
   return out;
 }
@@ -58,7 +56,8 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   Method method;
   method.contact = {require_shape(config.formulation.shape), config.formulation.argument};
   method.stiffness = make_contact_policy(config.formulation.stiffness_policy, calibration);
-  if (config.strain_limit.enabled) {
+  method.strain_limit = config.strain_limit.enabled;
+  if (method.strain_limit) {
     method.limit = {require_shape(config.strain_limit.shape), config.strain_limit.argument};
     method.limit_stiffness = make_limit_policy(config.strain_limit.stiffness_policy, calibration);
   }
@@ -66,9 +65,9 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   method.hessian_mode = config.contact.hessian_mode;
   method.contact_options.mollifier = config.contact.mollifier;
   method.contact_options.ccd_park = config.contact.ccd_park;
-  method.integrator = make_integrator(config.integrator);
+  method.integrator = make_integrator(config.integrator.name, config.integrator.parameters);
   method.step_solver = step_solver_options(config);
-  method.linear = config.linear_solver;
+  method.linear = {config.linear_solver.name, config.linear_solver.parameters};
   return method;
 }
 

@@ -2,8 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
-#include <map>
 
 #include "barriers/matching.hpp"
 #include "barriers/shapes/registry.hpp"
@@ -87,12 +87,31 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
 
 BarrierFunction log_barrier() { return {require_shape("log"), Argument::gap}; }
 
-const Pilot& run_pilot(const RunConfig& config, const Scene& scene, const RunOptions& options) {
-  static std::map<std::string, Pilot> known;
+std::shared_ptr<const Pilot> PilotCache::find(const std::string& config_id) {
+  const auto found = std::find_if(known_.begin(), known_.end(),
+                                  [&](const auto& pilot) { return pilot->config_id == config_id; });
+  if (found == known_.end()) return nullptr;
+  std::rotate(found, std::next(found), known_.end());
+  return known_.back();
+}
+
+std::shared_ptr<const Pilot> PilotCache::keep(Pilot pilot) {
+  known_.push_back(std::make_shared<const Pilot>(std::move(pilot)));
+  std::size_t total = 0, first = known_.size();
+  while (first > 0 && (first == known_.size() || total + known_[first - 1]->bytes() <= bytes_)) {
+    total += known_[--first]->bytes();
+  }
+  known_.erase(known_.begin(), known_.begin() + static_cast<std::ptrdiff_t>(first));
+  return known_.back();
+}
+
+std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& scene,
+                                       const RunOptions& options) {
+  static PilotCache cache(std::size_t{256} << 20);
   Pilot pilot;
   pilot.config = pilot_config(config);
   pilot.config_id = config_id(pilot.config);
-  if (const auto found = known.find(pilot.config_id); found != known.end()) return found->second;
+  if (auto known = cache.find(pilot.config_id)) return known;
 
   const double dt = pilot.config.time.dt;
   pilot.rest = static_loads(config, scene);
@@ -115,7 +134,7 @@ const Pilot& run_pilot(const RunConfig& config, const Scene& scene, const RunOpt
     pilot.x.push_back(simulation.history().x);
     pilot.c.push_back(prediction.c);
   }
-  return known.emplace(pilot.config_id, std::move(pilot)).first->second;
+  return cache.keep(std::move(pilot));
 }
 
 std::optional<double> policy_start(const RunConfig& config, const Scene& scene,

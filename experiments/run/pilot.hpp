@@ -2,6 +2,7 @@
 // elements carry loads (pilot_demand.hpp), from which a matching rule makes stiffness (calibration.hpp).
 #pragma once
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -28,15 +29,34 @@ struct Pilot {
   std::string stopped;  // why it ended early; empty when it did not
 
   int steps() const { return static_cast<int>(x.size()) - 1; }
+  std::size_t bytes() const {
+    return x.empty() ? 0 : x.size() * sizeof(double) * static_cast<std::size_t>(x[0].size());
+  }
 };
 
 /// The barrier of the pilot, to which the rules compare others.
 BarrierFunction log_barrier();
 
-/// Runs the pilot of this config, or returns the one that is known: pilots are kept by config id for the life
-/// of the process, so that the formulations of a sweep share one.
+/// Pilots by config id, so that the formulations of a sweep share one. Not thread-safe.
+class PilotCache {
+ public:
+  /// The states of all pilots that are kept take at most so many bytes; the last one is kept whatever it
+  /// takes.
+  explicit PilotCache(std::size_t bytes) : bytes_(bytes) {}
+  /// Null when it is not known, or not any more.
+  std::shared_ptr<const Pilot> find(const std::string& config_id);
+  /// Keeps it and drops those that were not asked for longest.
+  std::shared_ptr<const Pilot> keep(Pilot pilot);
+
+ private:
+  std::size_t bytes_;
+  std::vector<std::shared_ptr<const Pilot>> known_;  // asked for last: at the end
+};
+
+/// Runs the pilot of this config, or returns the one that is known: 256 MiB of them are kept.
 /// Errors: ConfigError when the scene has no weight to start from; Interrupted.
-const Pilot& run_pilot(const RunConfig& config, const Scene& scene, const RunOptions& options);
+std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& scene,
+                                       const RunOptions& options);
 
 /// kappa (N/m) from which a policy with one global kappa starts in the run of this very config, unscaled:
 /// the run is followed to its first contact, up to which the scale cannot change it. Nothing when it meets

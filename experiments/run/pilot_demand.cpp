@@ -8,6 +8,7 @@
 #include "core/energy/strain_limit_batch.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/newton_system.hpp"
+#include "core/terms/contact.hpp"
 
 namespace bb {
 namespace {
@@ -16,7 +17,7 @@ namespace {
 class Replay {
  public:
   Replay(const Pilot& pilot, const Scene& scene)
-      : pilot_(pilot), method_(make_replayed(pilot)), system_(scene, method_) {}
+      : pilot_(pilot), method_(make_method(pilot.config, pilot.stiffness)), system_(scene, method_) {}
 
   /// The rows of the end of this step.
   void find_rows(int step) { begin(end(step), step); }
@@ -24,8 +25,9 @@ class Replay {
   void find_rows(int step, Refresh refresh) {
     begin(refresh == Refresh::per_step ? start(step) : end(step), step);
     system_.assemble();
+    elastic_ = system_.matrix(TermGroup::elastic);
     if (refresh != Refresh::per_step) return;
-    system_.sweep(end(step));
+    system_.prepare(end(step), end(step) - start(step));
     if (!system_.try_state(end(step))) throw std::logic_error("a state of the pilot is infeasible");
     system_.accept();
   }
@@ -33,15 +35,14 @@ class Replay {
   const Positions& start(int step) const { return pilot_.x[static_cast<std::size_t>(step)]; }
   const Positions& end(int step) const { return pilot_.x[static_cast<std::size_t>(step) + 1]; }
   double c(int step) const { return pilot_.c[static_cast<std::size_t>(step)]; }
-  const ContactTable& rows() const { return system_.state().rows; }
-  NewtonSystem& system() { return system_; }
+  const ContactTable& rows() const { return contact_state(system_.terms()).rows; }
+  /// Requires rows.
+  ContactTerm& contact() const { return *system_.terms().find<ContactTerm>(); }
+  /// H of the last find_rows with a refresh, and the system whose pattern it has.
+  const BlockSystem::Values& elastic() const { return elastic_; }
+  const BlockSystem& blocks() const { return system_.blocks(); }
 
  private:
-  static Method make_replayed(const Pilot& pilot) {
-    Method method = make_method(pilot.config, pilot.stiffness);
-    method.keep_elastic_matrix = true;
-    return method;
-  }
   void begin(const Positions& x, int step) {
     prediction_.c = c(step);
     prediction_.x_tilde = x;
@@ -52,6 +53,7 @@ class Replay {
   Method method_;
   NewtonSystem system_;
   Prediction prediction_;
+  BlockSystem::Values elastic_;
 };
 
 /// Beyond this ratio a policy gives a contact no stiffness of its own: rounding has made its number.
@@ -81,10 +83,9 @@ bool compare(double matched, double own, double load, double width, int step, De
 /// kappa of this row by the policy, the smaller of its values at d_hat and at u d_hat.
 double own_kappa(const StiffnessPolicy& policy, int row, double u, double dt, double c, Replay& replay) {
   static const BlockSystem::Values no_hessian;
-  NewtonSystem& system = replay.system();
   const bool with_hessian = policy.needs_hessian();
-  PolicyColumns columns = system.stiffness().columns(replay.rows(), row, system.blocks(),
-                                                     with_hessian ? system.elastic_matrix() : no_hessian);
+  PolicyColumns columns = replay.contact().stiffness().columns(replay.rows(), row, replay.blocks(),
+                                                               with_hessian ? replay.elastic() : no_hessian);
   double kappa[2];
   for (int k = 0; k < 2; ++k) {
     columns.d[0] = (k == 0 ? 1 : u) * columns.d_hat[0];
@@ -106,7 +107,7 @@ std::string name_element(const Scene& scene, std::size_t e) {
 
 /// kappa_e/area (N/m) by the policy of the limit, with w from the start of the step, at the gap y.
 double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std::size_t e, double area,
-                           double y, double dt, double c, const Positions& x_start, NewtonSystem& system) {
+                           double y, double dt, double c, const Positions& x_start, const Replay& replay) {
   const std::array<int, 3>& vertices = scene.limit.triangles[e];
   Vec3d x[3], mass;
   for (int k = 0; k < 3; ++k) {
@@ -115,7 +116,7 @@ double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std:
     mass[k] = scene.mass[static_cast<std::size_t>(v)];
   }
   Mat<double, 12, 12> block = Mat<double, 12, 12>::Zero();
-  system.blocks().submatrix(system.elastic_matrix(), vertices.data(), 3, block.data());
+  replay.blocks().submatrix(replay.elastic(), vertices.data(), 3, block.data());
   const Mat<double, 9, 9> hessian = block.topLeftCorner<9, 9>();
   const StrainStiffnessRule rule = limit.rule(dt, c);
   return strain_stiffness<double>(x, hessian, mass, scene.limit.mass[e], y, rule) / area;
@@ -139,7 +140,7 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const double load = -*pilot.stiffness.kappa * log.eval(rows.d[r], rows.d_hat[r]).db;
       if (!(load > 0)) continue;
-      const auto where = [&] { return replay.system().contacts().describe(rows.key[r], rows.kind[r]); };
+      const auto where = [&] { return replay.contact().contacts().describe(rows.key[r], rows.kind[r]); };
       const double kappa = own ? own_kappa(*own, static_cast<int>(r), u, dt, replay.c(step), replay) : 1;
       const double wanted = matched(load, rows.d_hat[r]);
       if (own && too_soft(kappa, wanted)) refuse(kappa, "kappa", step, where());
@@ -174,7 +175,7 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
       if (own) {
         const double softest = own->refresh == Refresh::per_step ? std::max(width, y_start[e]) : width;
         k_s = own_limit_stiffness(*own, scene, e, area, softest, dt, replay.c(step), replay.start(step),
-                                  replay.system());
+                                  replay);
         if (too_soft(k_s, matched(load, width))) refuse(k_s * area, "kappa_e", step, name_element(scene, e));
       }
       if (compare(matched(load, width), k_s, load, width, step, out)) out.where = name_element(scene, e);

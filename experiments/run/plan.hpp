@@ -1,7 +1,7 @@
 // The plan of a config: the scene's needs and the options' together.
 #pragma once
 
-#include "core/scene/plan.hpp"
+#include "core/terms/plan.hpp"
 #include "experiments/config/run_config.hpp"
 
 namespace bb {

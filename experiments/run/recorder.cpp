@@ -1,6 +1,7 @@
 #include "experiments/run/recorder.hpp"
 
 #include "core/newton/newton_system.hpp"
+#include "core/terms/contact.hpp"
 #include "experiments/run/run_summary.hpp"
 #include "experiments/run/step_energies.hpp"
 
@@ -38,15 +39,16 @@ void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
 }
 
 void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
+  const ContactState& contact = contact_state(system.terms());
   const int every = config_.output.frames_every;
   if (artifacts_ && every > 0 && report.step % every == 0) {
-    artifacts_->frame(x, report.step, contact_fields(system.state(), system.scene().n_vertices()));
+    artifacts_->frame(x, report.step, contact_fields(contact, system.scene().n_vertices()));
   }
   StepRecord step = report;
   step.time = {};  // that of the timed run is filled in when the runs are over
   fill_energies(system, step);
   if (audit_) audit_->on_step(x, step);
-  first_contacts_.note(system.state(), report.step, record_.summary.first_contact);
+  first_contacts_.note(contact, report.step, record_.summary.first_contact);
   record_.steps.push_back(std::move(step));
   if (!trace_) return;
   for (TraceRow& row : rows_) {

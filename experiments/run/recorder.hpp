@@ -39,6 +39,8 @@ class Recorder final : public StepObserver {
 
   /// What the audit found, as an outcome; ok without the pass `audit`.
   Verdict audit_verdict() const;
+  /// Of the audit; null without the pass `audit`.
+  const audit::AuditLedger* ledger() const { return audit_ ? &audit_->ledger() : nullptr; }
 
  private:
   const RunConfig& config_;

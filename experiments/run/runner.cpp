@@ -15,7 +15,7 @@
 #include "core/record/provenance.hpp"
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
-#include "core/scene/plan.hpp"
+#include "core/terms/plan.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/comparability.hpp"
@@ -24,6 +24,7 @@
 #include "experiments/run/plan.hpp"
 #include "experiments/run/recorder.hpp"
 #include "experiments/run/start_check.hpp"
+#include "experiments/run/validity.hpp"
 
 namespace bb {
 namespace {
@@ -42,12 +43,9 @@ struct PassResult {
 };
 
 PassResult run_pass(const RunConfig& config, const Scene& scene, const Calibration& calibration,
-                    const RunOptions& options, const char* pass, StepObserver& observer) {
+                    const Plan& plan, const RunOptions& options, const char* pass, StepObserver& observer) {
   Method method = make_method(config, calibration);
-  Simulation simulation(scene, method, config.time.dt, config.time.steps);
-  const std::vector<std::string>& stages = config.diagnose.stages;
-  const bool partial = std::any_of(stages.begin(), stages.end(), [](const auto& s) { return s != "full"; });
-  simulation.system().keep_stages(partial && config.passes.diagnose);
+  Simulation simulation(scene, method, plan, config.time.dt, config.time.steps);
   PassResult result;
   const double start = now_s();
   const double t_end = config.time.dt * config.time.steps * (1 - 1e-9);
@@ -86,10 +84,10 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.argument = std::string(to_string(config.formulation.argument));
   labels.stiffness_policy = config.formulation.stiffness_policy.name;
   labels.matching_rule = to_string(config.matching.rule);
-  labels.integrator = config.integrator;
+  labels.integrator = config.integrator.name;
   labels.step_solver = config.step_solver.name;
   labels.linear_solver = config.linear_solver.name;
-  labels.preconditioner = config.linear_solver.name == "pcg" ? config.linear_solver.preconditioner : "none";
+  labels.preconditioner = preconditioner_of({config.linear_solver.name, config.linear_solver.parameters});
   labels.precision = config.precision;
   labels.d_hat_m = config.formulation.d_hat;
   labels.dt_s = config.time.dt;
@@ -119,14 +117,13 @@ struct RunFiles {
   }
 };
 
-void fill_plan(const RunConfig& config, const Scene& scene, RunRecord& record) {
-  const Plan plan = plan_of(config, scene);
+void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record) {
   for (const auto& [name, item] : plan.items()) {
     record.plan.push_back({std::string(name), item->needed, item->reason});
   }
   if (!config.passes.time) record.skipped.push_back({"time", "not_requested"});
-  if (!config.passes.diagnose) record.skipped.push_back({"cond", "not_requested"});
-  if (!config.passes.audit) record.skipped.push_back({"audit", "not_requested"});
+  if (!plan.conditioning.needed) record.skipped.push_back({"cond", "not_requested"});
+  if (!plan.audit.needed) record.skipped.push_back({"audit", "not_requested"});
   if (!plan.trace.needed) record.skipped.push_back({"trace", "not_requested"});
 }
 
@@ -150,51 +147,13 @@ void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
   summary.unaccounted_s = timed.wall_s - summary.time.total_s();
 }
 
-void add_check(RunRecord& record, const std::string& name, Number value, Number bound, bool pass) {
-  record.validity.checks.push_back({name, value, bound, pass});
-}
-
-// The largest stretch that any limited element may have, minus 1; 0 without a limit.
-double hard_limit(const Scene& scene) {
-  double largest = 0;
-  for (std::size_t e = 0; e < scene.limit.width.size(); ++e) {
-    largest = std::max(largest, scene.limit.onset[e] + scene.limit.width[e]);
-  }
-  return largest;
-}
-
-void fill_validity(const Scene& scene, RunRecord& record, const std::string& hash_time,
-                   const std::string& hash_seen) {
-  record.validity.valid = true;
-  if (record.audit.enabled) {
-    const auto bad = static_cast<double>(record.audit.crossings + record.audit.violations +
-                                         record.audit.unproven + record.audit.scene_faults);
-    add_check(record, "audit_clean", bad, 0.0, bad == 0);
-    const auto judged = static_cast<double>(record.audit.judged);
-    add_check(record, "audit_judged", judged, 1.0, judged > 0);
-  }
-  if (!hash_time.empty() && !hash_seen.empty()) {
-    const bool same = hash_time == hash_seen;
-    add_check(record, "state_hash_equal_in_all_passes", same ? 0.0 : 1.0, 0.0, same);
-  }
-  if (const double limit = hard_limit(scene); limit > 0 && record.summary.max_stretch.finite()) {
-    const double stretch = record.summary.max_stretch.value;
-    add_check(record, "strain_limit_kept", stretch, limit, stretch < limit);
-  }
-  add_check(record, "outcome_ok", record.status.outcome == Outcome::ok ? 0.0 : 1.0, 0.0,
-            record.status.outcome == Outcome::ok);
-  for (const Check& check : record.validity.checks)
-    record.validity.valid = record.validity.valid && check.pass;
-  record.status.valid = record.validity.valid;
-}
-
 void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
   if (worse(outcome, verdict.outcome) == outcome && outcome != verdict.outcome) verdict = {outcome, detail};
 }
 
 // The passes: `time` runs alone, `diagnose` and `audit` share a run, and none of their time is reported as a
 // time.
-void run_passes(const RunConfig& config, const Scene& scene, const Calibration& calibration,
+void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
                 const RunOptions& options, RunRecord& record, RunFiles& files) {
   PassResult timed, seen;
   const bool look = has_observed_run(config);
@@ -204,21 +163,23 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     RunConfig bare = config;
     bare.passes = {true, false, false};
     Recorder observer(bare, scene, look ? timing : record, nullptr);
-    timed = run_pass(bare, scene, calibration, options, "time", observer);
+    timed = run_pass(bare, scene, calibration, plan, options, "time", observer);
     observer.finish();
     record.samples["wall_s"] = {timed.wall_s};
     times = observer.iteration_times();
   }
   Verdict verdict = timed.verdict;
+  std::optional<audit::AuditLedger> ledger;
   if (look) {
     files.trace.emplace(options.folder);
     files.artifacts.emplace(options.folder, scene);
     Recorder observer(config, scene, record, &*files.trace, &*files.artifacts);
     observer.report_times(times);
-    seen = run_pass(config, scene, calibration, options, "diagnose", observer);
+    seen = run_pass(config, scene, calibration, plan, options, "diagnose", observer);
     observer.finish();
     record.artifacts = files.artifacts->written();
     verdict = seen.verdict;
+    if (observer.ledger()) ledger = *observer.ledger();
     const Verdict audited = observer.audit_verdict();
     merge(verdict, audited.outcome, audited.detail);
   }
@@ -231,7 +192,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
     record.summary.stiffness = {main.stiffness.kappa_start, main.stiffness.kappa, main.stiffness.doublings,
                                 main.stiffness.saturated};
   }
-  fill_validity(scene, record, timed.state_hash, seen.state_hash);
+  fill_validity(scene, ledger ? &*ledger : nullptr, timed.state_hash, seen.state_hash, record);
 }
 
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
@@ -239,7 +200,8 @@ void run_passes(const RunConfig& config, const Scene& scene, const Calibration& 
 void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, RunRecord& record,
               RunFiles& files) {
   fill_scene(scene, record);
-  fill_plan(config, scene, record);
+  const Plan plan = plan_of(config, scene);
+  fill_plan(config, plan, record);
   if (const auto failure = start_failure(config, scene, options.interrupted)) {
     record.status.outcome = failure->outcome;
     record.status.detail = failure->detail;
@@ -253,7 +215,7 @@ void simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
     record.status.detail = error.what();
     return;
   }
-  run_passes(config, scene, calibration, options, record, files);
+  run_passes(config, scene, plan, calibration, options, record, files);
 }
 
 int thread_count(const RunConfig& config) {

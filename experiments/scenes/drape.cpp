@@ -67,17 +67,18 @@ ProceduralScene make_scene_drape() {
   scene.defaults = {0.01, 100, 5e-3, 0.02};
   scene.build = build;
   scene.parameters = {
-      count("layers", 5, 1, 100, "number of cloths"),
-      count("n", 16, 2, 1000, "vertices along a side of each cloth"),
-      positive("width_m", "m", 1, "side of each cloth"),
-      number_in("spacing_d_hat", "d_hat", 1.5, 1, 1e6, "distance between neighbouring layers at the start"),
-      positive("start_gap_d_hat", "d_hat", 1.2, "gap between the sphere and the lowest layer at the start"),
-      number_in("twist_deg", "deg", 9, -360, 360,
-                "turn of each layer against the one below; 0 puts vertex over vertex, every contact on a "
-                "feature boundary"),
-      word("sphere", {"analytic", "mesh"}, "an analytic sphere (acts on vertices) or a static icosphere"),
-      positive("sphere_radius_m", "m", 0.25, "radius of the sphere"),
-      count("sphere_level", 3, 0, 6, "subdivisions of the icosphere (sphere = mesh)"),
+      {"layers", count(1, 100), 5, "number of cloths"},
+      {"n", count(2, 1000), 16, "vertices along a side of each cloth"},
+      {"width_m", positive("m"), 1, "side of each cloth"},
+      {"spacing_d_hat", number_in(1, 1e6, "d_hat"), 1.5, "distance between neighbouring layers at the start"},
+      {"start_gap_d_hat", positive("d_hat"), 1.2, "gap between the sphere and the lowest layer at the start"},
+      {"twist_deg", number_in(-360, 360, "deg"), 9,
+       "turn of each layer against the one below; 0 puts vertex over vertex, every contact on a "
+       "feature boundary"},
+      {"sphere", word({"analytic", "mesh"}), "analytic",
+       "an analytic sphere (acts on vertices) or a static icosphere"},
+      {"sphere_radius_m", positive("m"), 0.25, "radius of the sphere"},
+      {"sphere_level", count(0, 6), 3, "subdivisions of the icosphere (sphere = mesh)"},
       gravity_parameter(),
   };
   const std::vector<Parameter> cloth = cloth_parameters();

@@ -64,23 +64,23 @@ ProceduralScene make_scene_drape2d() {
   scene.defaults = {0.01, 40, 0.01, 0.02};
   scene.build = build;
   scene.parameters = {
-      word("variant", {"pinned", "free", "strip", "stack"},
-           "n x n with its top row held, n x n free, 3n x 3 draped over the disk, three 2n x 2 sheets"),
-      word("protocol", {"equal_force", "article_literal"},
-           "what is compared: matched forces in the common pipeline, or the article's own formulas and "
-           "solver"),
-      word("pairs", {"point_edge", "vertex_vertex"},
-           "pairs of the planar self contact; vertex_vertex is the article's: edges may cross, which the "
-           "audit counts"),
-      positive("width_m", "m", 1, "width of the sheet; cells are squares"),
-      count("n", 10, 2, 2000, "resolution, see variant"),
-      positive("youngs_N_per_m", "N/m", 100, "Young's modulus times thickness"),
-      number_in("poisson", "1", 0.3, 0, 0.49, "Poisson's ratio, plane stress"),
-      positive("density_kg_per_m2", "kg/m^2", 0.3, "mass per area"),
-      positive("disk_radius_m", "m", 0.3, "radius of the disk, centred at the origin"),
-      positive("start_gap_d_hat", "d_hat", 1.2,
-               "gap at the start: between sheet and disk, and between sheets"),
-      any_number("start_speed_m_per_s", "m/s", 1, "speed at the start, downwards"),
+      {"variant", word({"pinned", "free", "strip", "stack"}), "pinned",
+       "n x n with its top row held, n x n free, 3n x 3 draped over the disk, three 2n x 2 sheets"},
+      {"protocol", word({"equal_force", "article_literal"}), "equal_force",
+       "what is compared: matched forces in the common pipeline, or the article's own formulas and "
+       "solver"},
+      {"pairs", word({"point_edge", "vertex_vertex"}), "point_edge",
+       "pairs of the planar self contact; vertex_vertex is the article's: edges may cross, which the "
+       "audit counts"},
+      {"width_m", positive("m"), 1, "width of the sheet; cells are squares"},
+      {"n", count(2, 2000), 10, "resolution, see variant"},
+      {"youngs_N_per_m", positive("N/m"), 100, "Young's modulus times thickness"},
+      {"poisson", number_in(0, 0.49, "1"), 0.3, "Poisson's ratio, plane stress"},
+      {"density_kg_per_m2", positive("kg/m^2"), 0.3, "mass per area"},
+      {"disk_radius_m", positive("m"), 0.3, "radius of the disk, centred at the origin"},
+      {"start_gap_d_hat", positive("d_hat"), 1.2,
+       "gap at the start: between sheet and disk, and between sheets"},
+      {"start_speed_m_per_s", any_number("m/s"), 1, "speed at the start, downwards"},
       gravity_parameter(),
   };
   return scene;

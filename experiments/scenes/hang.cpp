@@ -26,8 +26,8 @@ ProceduralScene make_scene_hang() {
   scene.defaults = {0.01, 100, 5e-3, 0.05};
   scene.build = build;
   scene.parameters = {
-      count("n", 16, 2, 1000, "vertices along a side"),
-      positive("width_m", "m", 1, "side of the cloth"),
+      {"n", count(2, 1000), 16, "vertices along a side"},
+      {"width_m", positive("m"), 1, "side of the cloth"},
       gravity_parameter(),
   };
   const std::vector<Parameter> cloth = cloth_parameters();

@@ -3,11 +3,11 @@
 
 #include <optional>
 #include <string>
-#include <string_view>
 #include <vector>
 
-#include "core/scene/scene_builder.hpp"
-#include "experiments/scenes/parameters.hpp"
+#include "core/bodies/scene_builder.hpp"
+#include "core/parameters/parameter.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 
@@ -35,9 +35,7 @@ struct ProceduralScene {
 };
 
 /// All scenes, in the order of registry.inc.
-const std::vector<ProceduralScene>& procedural_scenes();
-/// nullptr when there is none.
-const ProceduralScene* find_procedural_scene(std::string_view name);
+const Registry<ProceduralScene>& procedural_scenes();
 
 /// Downward gravity of a complete parameter map, m/s^2.
 Vec3d gravity_of(const ProceduralScene& scene, const ParameterMap& parameters);

@@ -49,9 +49,9 @@ ProceduralScene make_scene_resting_block_1d() {
   scene.defaults = {0.01, 200, 0.01, std::nullopt};
   scene.build = build;
   scene.parameters = {
-      positive("mass_kg", "kg", 0.3, "mass of the block"),
-      positive("youngs_N_per_m", "N/m", 100, "Young's modulus times thickness; never strained"),
-      positive("start_gap_d_hat", "d_hat", 0.9, "gap at the start"),
+      {"mass_kg", positive("kg"), 0.3, "mass of the block"},
+      {"youngs_N_per_m", positive("N/m"), 100, "Young's modulus times thickness; never strained"},
+      {"start_gap_d_hat", positive("d_hat"), 0.9, "gap at the start"},
       gravity_parameter(),
   };
   return scene;

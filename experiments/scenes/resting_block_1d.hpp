@@ -1,7 +1,7 @@
 // The closed form behind the scene resting_block_1d.
 #pragma once
 
-#include "experiments/scenes/parameters.hpp"
+#include "core/parameters/parameter.hpp"
 
 namespace bb {
 

@@ -51,15 +51,16 @@ ProceduralScene make_scene_sphere_on_sheet() {
   scene.defaults = {0.01, 50, 5e-3, 0.05};
   scene.build = build;
   scene.parameters = {
-      count("n", 17, 3, 1000, "vertices along a side of the sheet"),
-      positive("width_m", "m", 1, "side of the sheet"),
-      positive("sphere_radius_m", "m", 0.15, "radius of the sphere"),
-      count("sphere_level", 2, 0, 6, "subdivisions of the icosphere"),
-      positive("sphere_youngs_N_per_m", "N/m", 2000, "Young's modulus times thickness of the sphere's shell"),
-      positive("sphere_density_kg_per_m2", "kg/m^2", 1, "mass per area of the sphere's shell"),
-      non_negative("sphere_bending_J", "J", 1e-3, "hinge stiffness of the sphere's shell"),
-      positive("start_gap_d_hat", "d_hat", 1.2, "gap between sheet and sphere at the start"),
-      any_number("start_speed_m_per_s", "m/s", 1, "speed of the sphere at the start, downwards"),
+      {"n", count(3, 1000), 17, "vertices along a side of the sheet"},
+      {"width_m", positive("m"), 1, "side of the sheet"},
+      {"sphere_radius_m", positive("m"), 0.15, "radius of the sphere"},
+      {"sphere_level", count(0, 6), 2, "subdivisions of the icosphere"},
+      {"sphere_youngs_N_per_m", positive("N/m"), 2000,
+       "Young's modulus times thickness of the sphere's shell"},
+      {"sphere_density_kg_per_m2", positive("kg/m^2"), 1, "mass per area of the sphere's shell"},
+      {"sphere_bending_J", non_negative("J"), 1e-3, "hinge stiffness of the sphere's shell"},
+      {"start_gap_d_hat", positive("d_hat"), 1.2, "gap between sheet and sphere at the start"},
+      {"start_speed_m_per_s", any_number("m/s"), 1, "speed of the sphere at the start, downwards"},
       gravity_parameter(),
   };
   const std::vector<Parameter> cloth = cloth_parameters();

@@ -89,14 +89,16 @@ def test_failed_and_not_comparable_runs_are_hollow_and_named(records):
     runs = records.runs.set_index("series", drop=False)
     for name in ("log", "cubic_dynamic", "quadratic"):
         style.draw(axis, np.array([0, 1]), np.array([1.0, 2.0]), runs.loc[name])
-    log, dynamic, quadratic = axis.lines
+    log, dynamic, quadratic, failure = axis.lines
 
     assert log.get_markerfacecolor() == style.LOOKS["log"].color
     assert dynamic.get_markerfacecolor() == "none"
     assert quadratic.get_markerfacecolor() == "none"
     assert dynamic.get_label() == "cubic_dynamic (not_comparable)"
     assert quadratic.get_label() == "quadratic (newton_stall)"
-    assert [t.get_text() for t in axis.texts] == ["newton_stall"]
+    assert failure.get_gid() == style.FAILURE and failure.get_marker() == "x"
+    assert failure.get_xydata().tolist() == [[1, 2.0]] and failure.get_color() == quadratic.get_color()
+    assert len(axis.get_legend_handles_labels()[1]) == 3 and not axis.texts
     plt.close("all")
 
 
@@ -210,7 +212,8 @@ def test_steps_are_drawn_as_steps_and_shares_start_at_0(records, tmp_path, monke
     monkeypatch.setattr(style, "save", lambda fig, *_: figures.append(fig))
     iterations.figure(records, "strip", tmp_path)
     of_steps, shares, pcg = figures[0].axes
-    assert {line.get_drawstyle() for line in of_steps.lines} == {"steps-mid"}
+    runs = [line for line in of_steps.lines if line.get_gid() != style.FAILURE]
+    assert {line.get_drawstyle() for line in runs} == {"steps-mid"}
     assert {line.get_drawstyle() for axis in (shares, pcg) for line in axis.lines} == {"steps-post"}
     for line in (*shares.lines, *pcg.lines):
         assert line.get_ydata()[0] == 0 and line.get_ydata()[-1] == 1

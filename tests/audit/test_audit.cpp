@@ -226,6 +226,22 @@ TEST(Audit, prescribed_primitives_that_cross_are_a_fault_of_the_scene) {
   EXPECT_EQ(free.ledger().crossings, 1);
 }
 
+TEST(Audit, prescribed_primitives_that_cannot_be_certified_are_no_failure_of_the_solver) {
+  AuditMesh mesh = sheet_and_triangle();
+  const auto touching = [&mesh] {  // the lowest corner comes to rest on the sheet
+    return audit_motion(mesh, colliding_vertices(mesh), sheet_and_triangle_at(0.5),
+                        sheet_and_triangle_at(0.01), tolerance);
+  };
+  EXPECT_EQ(touching().unproven, 1);
+  EXPECT_EQ(touching().scene_faults, 0);
+  mesh.prescribed.assign(7, 1);
+  const MotionAudit given = touching();
+  EXPECT_EQ(given.unproven, 0);
+  EXPECT_EQ(given.scene_faults, 1);
+  EXPECT_EQ(given.first_fault, (PairName{PairKind::vertex_triangle, 6, 0, false}));
+  EXPECT_EQ(given.pairs, given.certified + given.scene_faults);
+}
+
 TEST(Audit, a_vertex_through_the_edge_of_its_own_triangle_is_an_inversion) {
   AuditMesh mesh = planar_elements();
   Positions x0 = planar_at(5.0), x1 = x0;

@@ -115,8 +115,8 @@ TEST(ElasticityInclusive, FloatAgreesWithDouble) {
 TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
   StiffnessPolicyConfig config;
   config.name = "elasticity_inclusive";
-  config.mass_term = MassTerm::inertia;
-  config.refresh = Refresh::per_step;
+  config.parameters["mass_term"] = "inertia";
+  config.parameters["refresh"] = "per_step";
   config.multiplier = 3;
   const std::unique_ptr<StiffnessPolicy> policy = make_policy(config);
   EXPECT_EQ(policy->name(), "elasticity_inclusive");
@@ -148,14 +148,14 @@ TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
     EXPECT_EQ(kappa[r], 3 * one);
   }
 
-  config.elastic_term = false;
+  config.parameters["elastic_term"] = false;
   const std::unique_ptr<StiffnessPolicy> massive = make_policy(config);
   EXPECT_FALSE(massive->needs_hessian());
   batch.hessian = nullptr;
   massive->fill(batch, kappa.data());
   EXPECT_EQ(kappa[0], 3 * rows[0].kappa({MassTerm::inertia, false, 0.01, 0.25}));
 
-  config.mass_term = MassTerm::none;
+  config.parameters["mass_term"] = "none";
   EXPECT_THROW(make_policy(config), ConfigError);
 }
 

@@ -53,7 +53,7 @@ TEST(EquilibriumLaws, StiffnessKeepsItsPrecisionUnderTinyLoads) {
 
 TEST(EquilibriumLaws, ArticlesCubicInItsOwnConstant) {
   const double kappa_a = 0.02;  // J
-  const double in_n_per_m = kappa_from_convention("kappa_a_J", kappa_a, d_hat);
+  const double in_n_per_m = find_named(kappa_conventions(), "kappa_a_J")->kappa(kappa_a, d_hat);
   for (const double share : {1e-8, 1e-3, 0.2, 0.9}) {
     const double capacity = 3 * kappa_a / d_hat, f = share * capacity;
     const Equilibrium rest = equilibrium(barrier("cubic"), in_n_per_m, d_hat, f);

@@ -6,11 +6,11 @@
 #include <cstring>
 #include <fstream>
 
-#include "barriers/named_entries.hpp"
 #include "barriers/plugins.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "core/math/error.hpp"
+#include "core/parameters/registry.hpp"
 #include "tests/barriers/barrier_cases.hpp"
 
 namespace bb::test {
@@ -69,7 +69,7 @@ TEST(Plugins, ExamplePolicyFillsKappa) {
   register_once(example("effective_mass_policy"));
   StiffnessPolicyConfig config;
   config.name = "effective_mass";
-  config.refresh = Refresh::per_step;
+  config.parameters["refresh"] = "per_step";
   config.multiplier = 10;
   const auto policy = make_policy(config);
   EXPECT_EQ(policy->name(), "effective_mass");
@@ -158,7 +158,7 @@ TEST(Plugins, TakenNamesAreAllNamedAndNothingIsRegistered) {
   expect_in(text, "integrator \"bdf2\"");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3) << text;
   EXPECT_EQ(shapes().size(), n_shapes);
-  EXPECT_EQ(find_shape("fresh_shape"), nullptr);
+  EXPECT_EQ(shapes().find("fresh_shape"), nullptr);
 
   register_once(test_plugin("cubic_copy"));
   expect_in(refusal(test_plugin("cubic_copy")), "found shape \"cubic_copy\"");
@@ -169,7 +169,7 @@ TEST(Plugins, EntriesWithoutNameOrCallAreAllNamed) {
   expect_in(text, "shape \"half_a_shape\" with a NULL call");
   expect_in(text, "stiffness policy named \"\"");
   expect_in(text, "integrator named \"Theta\"");
-  EXPECT_EQ(find_shape("half_a_shape"), nullptr);
+  EXPECT_EQ(shapes().find("half_a_shape"), nullptr);
 }
 
 }  // namespace

@@ -1,9 +1,9 @@
 // Look-up of shapes by name, and the error that names the nearest one.
 #include <gtest/gtest.h>
 
-#include "barriers/named_entries.hpp"
 #include "barriers/shapes/registry.hpp"
 #include "core/math/error.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 namespace {
@@ -18,7 +18,7 @@ std::string message(const std::function<void()>& call) {
 }
 
 TEST(ShapeRegistry, HoldsTheFiveBuiltInsInOrder) {
-  const std::vector<std::string> names = entry_names(shapes());
+  const std::vector<std::string> names = shapes().names();
   ASSERT_GE(names.size(), 5u);
   const std::vector<std::string> expected{"log", "log_squared", "quadratic", "cubic", "two_stage"};
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), names.begin()));
@@ -26,9 +26,9 @@ TEST(ShapeRegistry, HoldsTheFiveBuiltInsInOrder) {
     EXPECT_FALSE(shape.doc.empty()) << shape.name;
     EXPECT_NE(shape.batch_double, nullptr) << shape.name;
     EXPECT_NE(shape.batch_float, nullptr) << shape.name;
-    EXPECT_EQ(find_shape(shape.name), &shape);
+    EXPECT_EQ(shapes().find(shape.name), &shape);
   }
-  EXPECT_EQ(find_shape("nothing"), nullptr);
+  EXPECT_EQ(shapes().find("nothing"), nullptr);
 }
 
 TEST(ShapeRegistry, UnknownNameGetsTheNamesAllowedAndTheNearest) {
@@ -43,7 +43,7 @@ TEST(ShapeRegistry, UnknownNameGetsTheNamesAllowedAndTheNearest) {
 TEST(ShapeRegistry, TakenNameIsRefused) {
   Shape shape = require_shape("log");
   const std::size_t before = shapes().size();
-  const std::string text = message([&] { register_shape(shape, "my.so"); });
+  const std::string text = message([&] { shapes().add(shape, "my.so"); });
   EXPECT_NE(text.find("my.so: found \"log\""), std::string::npos) << text;
   EXPECT_EQ(shapes().size(), before);
 }
@@ -53,12 +53,6 @@ TEST(ShapeRegistry, ArgumentsByName) {
   EXPECT_EQ(require_argument("squared_gap"), Argument::squared_gap);
   EXPECT_NE(message([] { require_argument("square_gap"); }).find("did you mean squared_gap?"),
             std::string::npos);
-}
-
-TEST(NamedEntries, NearestCountsEdits) {
-  EXPECT_EQ(nearest_name("lgo", {"log", "cubic"}), "");  // two edits of three letters are no resemblance
-  EXPECT_EQ(nearest_name("lo", {"log", "cubic"}), "log");
-  EXPECT_EQ(nearest_name("two-stage", {"log", "two_stage"}), "two_stage");
 }
 
 }  // namespace

@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include "barriers/named_entries.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "core/math/error.hpp"
+#include "core/parameters/registry.hpp"
 
 namespace bb {
 namespace {
@@ -18,11 +18,10 @@ std::vector<double> filled(const StiffnessPolicy& policy, std::size_t n) {
   return kappa;
 }
 
-std::unique_ptr<StiffnessPolicy> ipc(StiffnessPolicyConfig::IpcOverrides overrides = {},
-                                     double multiplier = 1) {
+std::unique_ptr<StiffnessPolicy> ipc(const ParameterMap& overrides = {}, double multiplier = 1) {
   StiffnessPolicyConfig config;
   config.name = "ipc_adaptive";
-  config.ipc = overrides;
+  config.parameters = overrides;
   config.multiplier = multiplier;
   return make_policy(config);
 }
@@ -45,7 +44,7 @@ const std::vector<PairEnd> pressed{{4e-9, 5e-9, 1e-9}};  // both below 10 parks,
 
 TEST(FixedPolicy, FillsEveryRow) {
   StiffnessPolicyConfig config;
-  config.kappa = 12;
+  config.parameters["kappa_N_per_m"] = 12;
   config.multiplier = 0.5;
   const auto policy = make_policy(config);
   EXPECT_EQ(policy->name(), "fixed");
@@ -78,9 +77,7 @@ TEST(IpcAdaptivePolicy, StartsAtTheBalanceWithinItsBounds) {
 }
 
 TEST(IpcAdaptivePolicy, AnUpperBoundBelowTheScaleHolds) {
-  StiffnessPolicyConfig::IpcOverrides overrides;
-  overrides.kappa_max = 2;  // k = 5
-  const auto policy = ipc(overrides);
+  const auto policy = ipc({{"kappa_max_N_per_m", 2}});  // k = 5
   policy->start(globals(40));
   EXPECT_DOUBLE_EQ(policy->state().kappa, 2);
   EXPECT_TRUE(policy->state().saturated);
@@ -122,7 +119,7 @@ TEST(IpcAdaptivePolicy, DoublesOnlyWhenSmallTwiceAndShrinking) {
 }
 
 TEST(IpcAdaptivePolicy, TakesPublishedNumbersInstead) {
-  const auto policy = ipc({.kappa_min = 50, .kappa_max = 150, .doubling_gap = 1e-6});
+  const auto policy = ipc({{"kappa_min_N_per_m", 50}, {"kappa_max_N_per_m", 150}, {"doubling_gap_m", 1e-6}});
   policy->start(globals(40));
   EXPECT_DOUBLE_EQ(policy->state().kappa, 50);
   policy->end_step(std::vector<PairEnd>{{4e-7, 5e-7, 1e-9}});
@@ -136,13 +133,13 @@ TEST(IpcAdaptivePolicy, WithoutInertiaItNeedsBothBounds) {
   StiffnessGlobals quasi_static = globals(40);
   quasi_static.c = 0;
   EXPECT_THROW(ipc()->start(quasi_static), ConfigError);
-  const auto policy = ipc({.kappa_min = 1, .kappa_max = 100, .doubling_gap = {}});
+  const auto policy = ipc({{"kappa_min_N_per_m", 1}, {"kappa_max_N_per_m", 100}});
   policy->start(quasi_static);
   EXPECT_DOUBLE_EQ(policy->state().kappa, 40);
 }
 
 TEST(PolicyFactory, HoldsTheBuiltInsAndNamesTheNearest) {
-  const std::vector<std::string> names = entry_names(stiffness_policies());
+  const std::vector<std::string> names = stiffness_policies().names();
   const std::vector<std::string> expected{"fixed", "ipc_adaptive", "elasticity_inclusive"};
   ASSERT_GE(names.size(), expected.size());
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), names.begin()));
@@ -161,16 +158,16 @@ TEST(PolicyFactory, HoldsTheBuiltInsAndNamesTheNearest) {
 TEST(PolicyFactory, RefusesBadNumbers) {
   StiffnessPolicyConfig config;
   for (const double kappa : {0.0, -1.0, static_cast<double>(NAN), static_cast<double>(INFINITY)}) {
-    config.kappa = kappa;
+    config.parameters["kappa_N_per_m"] = kappa;
     EXPECT_THROW(make_policy(config), ConfigError) << kappa;
   }
-  config.kappa = 1;
+  config.parameters["kappa_N_per_m"] = 1;
   EXPECT_NO_THROW(make_policy(config));
   config.multiplier = 0;
   EXPECT_THROW(make_policy(config), ConfigError);
-  EXPECT_THROW(ipc({.kappa_min = 2, .kappa_max = 1, .doubling_gap = {}}), ConfigError);
-  EXPECT_THROW(ipc({.kappa_min = -2, .kappa_max = {}, .doubling_gap = {}}), ConfigError);
-  EXPECT_THROW(ipc({.kappa_min = {}, .kappa_max = {}, .doubling_gap = 0}), ConfigError);
+  EXPECT_THROW(ipc({{"kappa_min_N_per_m", 2}, {"kappa_max_N_per_m", 1}}), ConfigError);
+  EXPECT_THROW(ipc({{"kappa_min_N_per_m", -2}}), ConfigError);
+  EXPECT_THROW(ipc({{"doubling_gap_m", 0}}), ConfigError);
 }
 
 TEST(PolicyNames, RoundTrip) {

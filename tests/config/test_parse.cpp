@@ -46,7 +46,7 @@ TEST(Parse, WrongTypesAndRangesAreNamedWithTheirUnit) {
       {"/formulation/stiffness_policy/kappa_N_per_m", 0, "a number > 0 (N/m)"},
       {"/strain_limit/limit", 0, "a number > 0"},
       {"/threads", -1, "an integer >= 0"},
-      {"/passes/audit", "yes", "a boolean"},
+      {"/passes/audit", "yes", "true or false"},
       {"/diagnose/scalings/0", "jacoby", "(did you mean jacobi?)"},
       {"/contact/hessian_mode", "gauss", "one of gauss_newton, projected_full"},
       {"/schema", "barrierbench.config/2", "barrierbench.config/1"},
@@ -75,7 +75,7 @@ TEST(Parse, UnknownNamesSuggestTheNearest) {
     expect_violation(with(hang_config(), wrong.pointer, wrong.value), wrong.pointer, wrong.value.dump(),
                      wrong.allowed);
   }
-  expect_violation(with(hang_config(), "/scene/widht_m", 1), "/scene/widht_m", "\"widht_m\"",
+  expect_violation(with(hang_config(), "/scene/widht_m", 1), "/scene/widht_m", "the unknown key \"widht_m\"",
                    "(did you mean width_m?)");
   expect_violation(with(bodies_config(), "/scene/bodies/0/mesh/generator", "gird"),
                    "/scene/bodies/0/mesh/generator", "\"gird\"", "(did you mean grid?)");

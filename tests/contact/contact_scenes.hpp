@@ -7,8 +7,10 @@
 #include <utility>
 #include <vector>
 
+#include "core/barrier/shape.hpp"
 #include "core/contact/contact_system.hpp"
-#include "core/contact/shape.hpp"
+#include "core/contact/contact_terms.hpp"
+#include "core/contact/kappa_memory.hpp"
 
 namespace bb::test {
 

@@ -7,6 +7,7 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "core/contact/contact_system.hpp"
+#include "core/contact/contact_terms.hpp"
 #include "core/math/lower_blocks.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 

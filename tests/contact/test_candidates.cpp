@@ -11,7 +11,7 @@ namespace {
 
 Candidates candidates_of(const Scene& scene, const Positions& x0, const Positions& x1) {
   const Surface surface(scene);
-  BroadPhase broad_phase(surface, {});
+  BroadPhase broad_phase(surface, {}, plan_contact(scene));
   Candidates out;
   broad_phase.update(x0, x1, out);
   return out;
@@ -165,6 +165,7 @@ TEST(Candidates, PlanarVertexPairsAreThoseWithoutAMeshEdge) {
 TEST(Candidates, PlanarSpringsOfOneBodyAreMeshEdgesAndStitchesAreNot) {
   Scene scene;
   scene.planar = true;
+  scene.planar_pairs = PlanarPairs::vertex_vertex;
   add_body(scene, "rope", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(2, 0, 0)}, {}, 3.0);
   add_body(scene, "bead", {Vec3d(2, 1, 0)}, {}, 3.0);
   scene.springs.edges = {{0, 1}, {1, 2}, {2, 3}};

@@ -31,6 +31,20 @@ TEST(SmallestGap, IsPositiveUntilTheBodiesTouch) {
   EXPECT_LE(contacts.find_rows(broken, rows, mollified), 0);
 }
 
+TEST(StepBound, OfAMotionThatIsNotFiniteIsNothing) {
+  const Scene scene = cloth_and_ball(0.05);
+  ContactSystem contacts(scene, {});
+  contacts.update_candidates(scene.x0, scene.x0);
+  EXPECT_EQ(contacts.step_bound(scene.x0, scene.x0).alpha, 1);
+  for (const double value :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+    Positions broken = scene.x0;
+    broken(0, 4) = value;
+    EXPECT_EQ(contacts.step_bound(scene.x0, broken).alpha, 0);
+    EXPECT_EQ(contacts.step_bound(broken, scene.x0).alpha, 0);
+  }
+}
+
 /// Two rods that cross at an angle of 0.04, and a particle over a plane that is closer or not.
 TEST(SmallestGap, IsThatOfTheClosestRowOfEitherTable) {
   for (const double height : {0.02, 0.08}) {

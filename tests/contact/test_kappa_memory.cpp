@@ -87,6 +87,31 @@ TEST(KappaMemory, ARowOfKnownAndNewPairsHasTheirMean) {
   EXPECT_EQ(one.table.kappa[0], 3);
 }
 
+/// A point above the corner of three triangles; one of the three pairs is known.
+TEST(KappaMemory, EveryNewPairOfARowCounts) {
+  Scene scene;
+  add_body(scene, "point", {Vec3d(0, 0, 0.05)}, {}, 0.1);
+  scene.surface_vertices = {0};
+  add_body(scene, "fan", {Vec3d(0, 0, 0), Vec3d(1, 0, -1), Vec3d(-1, 1, -1), Vec3d(-1, -1, -1)},
+           {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}, 0.1);
+  ContactSystem contacts(scene, {});
+  Rows rows = rows_at(contacts, scene.x0);
+  ASSERT_EQ(rows.table.size(), 1U);
+  ASSERT_EQ(rows.table.multiplicity[0], 3);
+  Rows one = rows;
+  one.table.pair = {rows.table.pair[1]};
+  one.table.pair_begin = {0, 1};
+  one.table.kappa[0] = 7;
+  KappaMemory memory;
+  memory.store(one.table, one.mollified);
+
+  std::vector<int> missing, missing_mollified;
+  memory.recall(rows.table, rows.mollified, missing, missing_mollified);
+  rows.table.kappa[0] = 3;
+  memory.complete(rows.table, missing);
+  EXPECT_DOUBLE_EQ(rows.table.kappa[0], (7 + 3 + 3) / 3.0);
+}
+
 /// Tables of a state with kappa = 1, 2, 3, ... in row order.
 Rows numbered(ContactSystem& contacts, const Positions& x) {
   Rows rows = rows_at(contacts, x);

@@ -42,7 +42,7 @@ void check_derivatives(std::string_view name, bool planar, MembraneModel<Long>::
   const auto gradient = [&](const VecXl& at) {
     return terms_at(rest, Points<Long, 3>(at).x, lame_mu, lame_lambda, Projection::none).grad;
   };
-  const auto* model = find_membrane_model<double>(name);
+  const auto* model = membrane_models<double>().find(name);
   ASSERT_NE(model, nullptr);
   const auto terms = terms_of<double>(*model, planar, deformed_state, Projection::none);
   EXPECT_LT(gradient_error(value, x, terms.grad), 1e-10);
@@ -129,7 +129,7 @@ TEST(MembraneModel, WarpIsTheFirstAxis) {
 TEST(MembraneModel, FloatRunsTheSameFunction) {
   for (const auto& model : membrane_models<float>()) {
     SCOPED_TRACE(model.name);
-    const auto* reference = find_membrane_model<double>(model.name);
+    const auto* reference = membrane_models<double>().find(model.name);
     ASSERT_NE(reference, nullptr);
     for (const bool planar : {false, true}) {
       const auto exact = terms_of<double>(*reference, planar, deformed_state, Projection::psd);
@@ -142,7 +142,7 @@ TEST(MembraneModel, FloatRunsTheSameFunction) {
   }
 }
 
-TEST(MembraneModel, UnknownNameIsNull) { EXPECT_EQ(find_membrane_model<double>("corotationel"), nullptr); }
+TEST(MembraneModel, UnknownNameIsNull) { EXPECT_EQ(membrane_models<double>().find("corotationel"), nullptr); }
 
 }  // namespace
 }  // namespace bb::test

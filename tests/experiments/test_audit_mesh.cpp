@@ -64,6 +64,9 @@ TEST(AuditVerdict, SaysWhatTheContactModelAllows) {
   EXPECT_EQ(fault.outcome, Outcome::invalid_scene);
   EXPECT_NE(fault.detail.find("sheet0["), std::string::npos) << fault.detail;
   EXPECT_NE(fault.detail.find("sheet1["), std::string::npos) << fault.detail;
+  ledger.first_fault = audit::PairName{audit::PairKind::vertex_edge_2d, 0, 41, false};
+  const std::string close = judge_audit(scene, mesh, ledger).detail;
+  EXPECT_NE(close.find("cannot be certified not to pass through"), std::string::npos) << close;
 }
 
 }  // namespace

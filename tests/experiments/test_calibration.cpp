@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <memory>
 
 #include "barriers/shapes/registry.hpp"
 #include "experiments/config/parse.hpp"
@@ -79,11 +80,13 @@ RunRecord run(const RunConfig& config) {
 struct VertexLoad {
   double load, mass, d_hat;  // N, kg, m
   int body;
+  std::size_t step;
 };
 
 /// Every load over the converged step ends of the pilot.
 std::vector<VertexLoad> loads_on_plane(const Calibrated& c) {
-  const Pilot& pilot = run_pilot(c.config, c.scene, {});
+  const std::shared_ptr<const Pilot> kept = run_pilot(c.config, c.scene, {});
+  const Pilot& pilot = *kept;
   std::vector<VertexLoad> out;
   for (std::size_t step = 1; step < pilot.x.size(); ++step) {
     for (int v = 0; v < c.scene.n_vertices(); ++v) {
@@ -91,7 +94,7 @@ std::vector<VertexLoad> loads_on_plane(const Calibrated& c) {
       const double d = pilot.x[step](2, v), d_hat = c.scene.d_hat[i];
       if (d >= d_hat) continue;
       out.push_back({*pilot.stiffness.kappa * -log_barrier().eval(d, d_hat).db, c.scene.mass[i], d_hat,
-                     c.scene.body[i]});
+                     c.scene.body[i], step - 1});
     }
   }
   return out;
@@ -117,6 +120,27 @@ TEST(Calibration, EveryContactOfThePilotIsCarriedAtTheta) {
   EXPECT_NE(c.record.contact.find("light["), std::string::npos) << c.record.contact;
   EXPECT_LT(c.record.load_N.value, largest->load);
   EXPECT_GE(c.record.contact_step.value, 0);
+}
+
+/// kappa = m/(c h^2) with c = 1 in the step that starts BDF2 and 4/9 in the others: the light cloth hits the
+/// plane in the first one and bounces, the heavy one comes to rest on it.
+TEST(Calibration, APolicyWithTheInertiaTermIsAskedWithTheWeightOfEachStep) {
+  const Calibrated c = calibrated(
+      two_masses, {R"(/integrator/name="bdf2")", R"(/formulation/stiffness_policy/mass_term="inertia")"});
+  double tightest = 0, with_one = 0, with_the_other = 0;
+  std::size_t in_first_step = 0;
+  for (const VertexLoad& one : loads_on_plane(c)) {
+    const double needed = one.load * 0.01 * 0.01 / (one.mass * slope("cubic", 0.001, 0.01));  // s of c = 1
+    with_one = std::max(with_one, needed);
+    with_the_other = std::max(with_the_other, needed * 4 / 9);
+    tightest = std::max(tightest, one.step == 0 ? needed : needed * 4 / 9);
+    in_first_step += one.step == 0;
+  }
+  EXPECT_GT(in_first_step, 0U);
+  EXPECT_GT(tightest, 0);
+  EXPECT_NEAR(c.calibration.scale / tightest, 1, 1e-9);
+  EXPECT_LT(tightest, 0.99 * with_one);
+  EXPECT_GT(tightest, 1.01 * with_the_other);
 }
 
 /// With s from the contact of the largest load alone, the other one overloads.
@@ -154,7 +178,8 @@ TEST(Calibration, ThePilotTakesNoLoadFromAStepThatDidNotConverge) {
   const std::string cubic = R"(/formulation={"name": "cubic", "d_hat_m": 0.01})";
   const std::string later = "/scene/bodies/1/transform/translate_m=[3, 0, 0.08]";
   const Calibrated capped = calibrated(two_masses, {cubic, later, "/step_solver/max_iterations=4"});
-  const Pilot& pilot = run_pilot(capped.config, capped.scene, {});
+  const std::shared_ptr<const Pilot> kept = run_pilot(capped.config, capped.scene, {});
+  const Pilot& pilot = *kept;
   ASSERT_NE(pilot.stopped.find("iteration_cap"), std::string::npos) << pilot.stopped;
   ASSERT_GT(pilot.steps(), 0);
   EXPECT_NE(pilot.stopped.find("step " + std::to_string(pilot.steps()) + " "), std::string::npos)
@@ -162,7 +187,7 @@ TEST(Calibration, ThePilotTakesNoLoadFromAStepThatDidNotConverge) {
   EXPECT_EQ(capped.record.pilot_note, pilot.stopped);
   const Calibrated shorter =
       calibrated(two_masses, {cubic, later, "/time/steps=" + std::to_string(pilot.steps())});
-  EXPECT_EQ(run_pilot(shorter.config, shorter.scene, {}).stopped, "");
+  EXPECT_EQ(run_pilot(shorter.config, shorter.scene, {})->stopped, "");
   EXPECT_GT(capped.record.contacts_considered, 0);
   EXPECT_EQ(capped.record.contacts_considered, shorter.record.contacts_considered);
   EXPECT_EQ(capped.record.load_N.value, shorter.record.load_N.value);
@@ -232,6 +257,74 @@ TEST(Calibration, ADynamicLimitCarriesThePilotsLoads) {
     EXPECT_GT(record.summary.limit_load_max_N_per_m.value, 0);
   }
   EXPECT_GT(scale[1], 1.2 * scale[0]);  // 1.37: asked at the width alone, frozen or not makes no difference
+}
+
+/// kappa_e = w^T M w/(c h^2) by hand for every element that the pilot stretched into its limit, and the load
+/// that it carried there: s makes the neediest one as stiff as the fixed limit matched to its load.
+TEST(Calibration, TheScaleOfADynamicLimitIsThatOfItsNeediestElement) {
+  const Calibrated c = calibrated(
+      R"({"schema": "barrierbench.config/1", "scene": {"name": "drape2d", "variant": "pinned"},
+    "formulation": "cubic", "strain_limit": {"shape": "cubic", "stiffness_policy":
+      {"name": "elasticity_inclusive", "mass_term": "inertia", "elastic_term": false}},
+    "matching": {"rule": "equal_force"}, "time": {"steps": 30}})");
+  const std::shared_ptr<const Pilot> pilot = run_pilot(c.config, c.scene, {});
+  const double h = c.config.time.dt;
+  double needed = 0, smallest_area = 1, largest_area = 0;
+  long long active = 0;
+  for (std::size_t step = 0; step + 1 < pilot->x.size(); ++step) {
+    for (std::size_t e = 0; e < c.scene.limit.triangles.size(); ++e) {
+      const auto& t = c.scene.limit.triangles[e];
+      Eigen::Matrix2d rest, now;
+      Eigen::Matrix<double, 2, 3> start;
+      for (int k = 0; k < 3; ++k) start.col(k) = pilot->x[step].col(t[static_cast<std::size_t>(k)]).head<2>();
+      for (int k = 0; k < 2; ++k) {
+        rest.col(k) =
+            (c.scene.rest.col(t[static_cast<std::size_t>(k) + 1]) - c.scene.rest.col(t[0])).head<2>();
+        now.col(k) =
+            (pilot->x[step + 1].col(t[static_cast<std::size_t>(k) + 1]) - pilot->x[step + 1].col(t[0]))
+                .head<2>();
+      }
+      const double width = c.scene.limit.width[e], area = std::abs(rest.determinant()) / 2;
+      const double sigma = Eigen::JacobiSVD<Eigen::Matrix2d>(now * rest.inverse()).singularValues()[0];
+      const double y = width - (sigma - 1 - c.scene.limit.onset[e]);
+      if (!(y < width)) continue;
+      ++active;
+      smallest_area = std::min(smallest_area, area), largest_area = std::max(largest_area, area);
+      double kappa = 0;
+      for (int k = 0; k < 3; ++k) {
+        kappa += c.scene.mass[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])] *
+                 (start.col(k) - start.rowwise().mean()).squaredNorm() / (h * h);
+      }
+      const double load = *pilot->stiffness.k_s * -log_barrier().eval(y, width).db;  // N/m
+      needed = std::max(needed, load * area / (kappa * slope("cubic", 0.1 * width, width)));
+    }
+  }
+  EXPECT_GT(active, 100);
+  EXPECT_EQ(c.record.elements_considered, active);
+  EXPECT_LT(largest_area, 0.5);  // else a forgotten area shows nothing
+  EXPECT_NEAR(c.calibration.limit_scale / needed, 1, 1e-6);
+}
+
+TEST(PilotCache, KeepsWhatWasAskedForLastWithinItsBytes) {
+  const auto pilot = [](const char* id, int states) {
+    Pilot out;
+    out.config_id = id;
+    out.x.assign(static_cast<std::size_t>(states), Positions::Zero(3, 10));  // 240 bytes each
+    return out;
+  };
+  PilotCache cache(1000);
+  cache.keep(pilot("a", 2));
+  cache.keep(pilot("b", 2));
+  ASSERT_NE(cache.find("a"), nullptr);
+  const auto held = cache.find("b");
+  EXPECT_NE(cache.find("a"), nullptr);
+  cache.keep(pilot("c", 1));  // 1200 bytes with both: b was not asked for longest
+  EXPECT_EQ(cache.find("b"), nullptr);
+  EXPECT_NE(cache.find("a"), nullptr);
+  EXPECT_EQ(held->config_id, "b");  // whoever has it keeps it
+  EXPECT_EQ(cache.keep(pilot("large", 100))->config_id, "large");
+  EXPECT_NE(cache.find("large"), nullptr);
+  EXPECT_EQ(cache.find("a"), nullptr);
 }
 
 TEST(Calibration, ALimitThatWasNeverActiveStaysAsGiven) {

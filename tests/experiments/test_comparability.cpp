@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <vector>
 
+#include "core/record/folder_lock.hpp"
 #include "core/record/writer.hpp"
 
 namespace bb {
@@ -65,15 +66,27 @@ TEST(Comparability, DefaultReferenceIsTheLogOfTheSameRuleThatIsValid) {
                                                         run("log", 0.1),
                                                         run("log again", 0.1),
                                                         run("log as given", 0.2, true, "log", "as_given")};
-  EXPECT_EQ(default_reference(runs, 1), 3U);
-  EXPECT_EQ(default_reference(runs, 4), 3U);
-  EXPECT_EQ(default_reference(runs, 0), 5U);
+  const std::vector<SweepMember> one_group(runs.size());
+  EXPECT_EQ(default_reference(one_group, runs, 1), 3U);
+  EXPECT_EQ(default_reference(one_group, runs, 4), 3U);
+  EXPECT_EQ(default_reference(one_group, runs, 0), 5U);
   const std::vector<std::optional<ComparedRun>> one_valid = {run("log", 0.1, false), untouched("free"),
                                                              run("cubic", 0.4, true, "cubic")};
-  EXPECT_EQ(default_reference(one_valid, 0), 2U);
+  EXPECT_EQ(default_reference(std::vector<SweepMember>(3), one_valid, 0), 2U);
   EXPECT_EQ(judge_comparability(*one_valid[2], one_valid[2]).verdict, "comparable");
-  EXPECT_EQ(default_reference(std::vector<std::optional<ComparedRun>>{run("log", 0.1, false)}, 0),
+  EXPECT_EQ(default_reference(std::vector<SweepMember>(1),
+                              std::vector<std::optional<ComparedRun>>{run("log", 0.1, false)}, 0),
             std::nullopt);
+}
+
+TEST(Comparability, DefaultReferenceIsOfTheSameGroup) {
+  const std::vector<std::optional<ComparedRun>> runs = {
+      run("log fine", 0.1), run("cubic fine", 0.1, true, "cubic"), run("log coarse", 0.1),
+      run("cubic coarse", 0.1, true, "cubic"), run("cubic alone", 0.1, true, "cubic")};
+  const std::vector<SweepMember> members = {{"", {}, 0}, {"", {}, 0}, {"", {}, 1}, {"", {}, 1}, {"", {}, 2}};
+  EXPECT_EQ(default_reference(members, runs, 1), 0U);
+  EXPECT_EQ(default_reference(members, runs, 3), 2U);
+  EXPECT_EQ(default_reference(members, runs, 4), 4U);
 }
 
 class ComparabilityFiles : public ::testing::Test {
@@ -118,9 +131,29 @@ TEST_F(ComparabilityFiles, EveryRecordOfASweepGetsItAndOneThatSaysSoIsLeftAlone)
   EXPECT_EQ(after, before);  // nothing else of the record moved
   EXPECT_FALSE(fs::exists(root_ / "absent"));
 
+  EXPECT_FALSE(fs::exists(root_ / "near" / "bench.lock"));
+
   const auto written = fs::last_write_time(root_ / "near" / "run.json");
   write_comparability(members);
   EXPECT_EQ(fs::last_write_time(root_ / "near" / "run.json"), written);
+}
+
+TEST_F(ComparabilityFiles, AMarkedReferenceThatLeftNoRecordIsNamed) {
+  write("near", 0.15), write("refused", 0.1);
+  write_comparability(std::vector<SweepMember>{{root_ / "near", 1U}, {root_ / "refused", {}, 0, false}});
+  const json found = read("near")["comparability"];
+  EXPECT_EQ(found["verdict"], "no_reference");
+  EXPECT_EQ(found["reference_run"], "refused");
+  EXPECT_NE(found["reason"].get<std::string>().find("left no record"), std::string::npos) << found["reason"];
+  EXPECT_EQ(read("refused")["comparability"]["reference_run"], "");  // of an earlier sweep: left alone
+}
+
+TEST_F(ComparabilityFiles, AFolderThatAnotherProcessHoldsIsNotWrittenTo) {
+  write("log", 0.1);
+  const std::vector<SweepMember> members = {{root_ / "log", {}}};
+  const FolderLock held(root_ / "log");
+  EXPECT_THROW(write_comparability(members), RecordError);
+  EXPECT_EQ(read("log")["comparability"]["reference_run"], "");
 }
 
 }  // namespace

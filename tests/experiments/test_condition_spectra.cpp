@@ -88,8 +88,8 @@ class Comparison final : public StepObserver {
  public:
   void on_matrix(NewtonSystem& system, int step, int iteration) override {
     if (iteration % 2 != 0) return;
-    with_contact += system.contact_counts().total() > 0;
-    const ReducedSystem& matrix = system.reduced(MatrixStage::full);
+    with_contact += system.active(TermGroup::contact);
+    const ReducedSystem& matrix = system.reduced();
     for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
       SCOPED_TRACE(std::string(to_string(scaling)) + ", step " + std::to_string(step) + ", iteration " +
                    std::to_string(iteration));

@@ -212,6 +212,22 @@ def test_what_a_killed_run_left_goes_with_the_next(program, tmp_path):
     assert names(out / "frames.part") == ["mine.txt"]
 
 
+@pytest.mark.parametrize("name", ["run.json", "trace.jsonl", "frames", "matrices"])
+def test_what_is_in_the_way_is_named_before_the_first_step(program, tmp_path, name):
+    """Found at the end, it would cost the new run and the earlier one."""
+    earlier = write(tmp_path / "run.json", "{}") if name != "run.json" else None
+    in_the_way = tmp_path / name
+    if "." in name:
+        in_the_way.mkdir()
+    else:
+        in_the_way.write_text("mine")
+    done = bench(program, "run", BLOCK, "--out", tmp_path, *FRAMES)
+    refused(done, str(in_the_way), "in the way")
+    assert "step" not in done.stdout
+    assert earlier is None or earlier.read_text() == "{}"
+    assert in_the_way.is_dir() if "." in name else in_the_way.read_text() == "mine"
+
+
 @pytest.mark.skipif(os.geteuid() == 0, reason="root may write everywhere")
 def test_a_folder_that_may_only_be_read(program, tmp_path):
     tmp_path.chmod(0o555)

@@ -68,14 +68,28 @@ def test_a_sweep_goes_on_after_a_case_that_fails_midway(program, build_folder, t
     assert done.returncode == 2 and "[name=negative_weight]" in done.stderr and "c = -1" in done.stderr
     assert "no record" in done.stdout
     assert [json.loads(p.read_text())["labels"]["integrator"] for p in (tmp_path / "out").glob("*/run.json")] == ["implicit_euler"]
-    # what an earlier build left there is no record of a case that now ends in an error
+    # what an earlier build left there stays, but takes no part in the sweep
     failed, = (tmp_path / "out").glob("name=negative_weight-*")
     for name in ("run.json", "trace.jsonl"):
         write(failed / name, "{}")
     again = bench(program, "--plugin", plugin, "sweep", spec, "--out", tmp_path / "out", "--again")
-    assert again.returncode == 2 and again.stdout.count("no record") == 1
-    assert list(failed.iterdir()) == []
-    assert len(list((tmp_path / "out").glob("*/run.json"))) == 1
+    assert again.returncode == 2 and again.stdout.count("no record; the one of an earlier sweep stays") == 1
+    assert sorted((p.name, p.read_text()) for p in failed.iterdir()) == [("run.json", "{}"), ("trace.jsonl", "{}")]
+    ran = json.loads(next((tmp_path / "out").glob("name=implicit_euler-*/run.json")).read_text())
+    assert ran["comparability"]["reference_run"].startswith("name=implicit_euler-")
+
+
+def test_a_default_reference_is_of_the_same_step_length(program, tmp_path):
+    spec = write(tmp_path / "sweep.json", {
+        "schema": "barrierbench.sweep/1", "name": "steps", "base": BLOCK, "set": {"/time/steps": 4},
+        "axes": [{"pointer": "/time/dt_s", "values": [0.01, 0.005]},
+                 {"pointer": "/formulation", "values": ["cubic", "log"]}]})
+    assert bench(program, "sweep", spec, "--out", tmp_path / "out").returncode == 0
+    runs = [json.loads(p.read_text()) for p in (tmp_path / "out").glob("*/run.json")]
+    assert len(runs) == 4
+    for run in runs:
+        reference = run["comparability"]["reference_run"]
+        assert "formulation=log" in reference and f"dt_s={run['labels']['dt_s']}" in reference
 
 
 def test_explain_names_the_bounds_of_an_adaptive_kappa(program):

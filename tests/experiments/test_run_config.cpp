@@ -57,6 +57,13 @@ TEST(RunConfig, a_run_is_valid_when_every_check_passed) {
   EXPECT_EQ(record.labels.d_hat_m, 0.01);
 }
 
+TEST(RunConfig, a_planar_vertex_has_two_degrees_of_freedom) {
+  const RunRecord pinned =
+      run({R"(/scene={"name": "drape2d", "variant": "pinned", "n": 4})", "/time/steps=1"});
+  EXPECT_EQ(pinned.scene.vertices, 16U);
+  EXPECT_EQ(pinned.scene.free_dofs, 2 * 12U);  // the top row is pinned
+}
+
 TEST(RunConfig, a_run_ends_at_its_first_step_that_failed_and_is_not_valid) {
   const RunRecord record = run({"/step_solver/max_iterations=1"});
   EXPECT_EQ(record.status.outcome, Outcome::newton_stall);
@@ -78,8 +85,8 @@ TEST(RunConfig, the_method_has_every_number_of_its_config) {
   calibration.kappa = 5;
   const Method method = make_method(config, calibration);
   EXPECT_EQ(method.contact_options.ccd_park, 3e-5);
-  EXPECT_EQ(method.step_solver.armijo, 0.02);
-  EXPECT_EQ(method.step_solver.cap_fraction, 0.7);
+  EXPECT_EQ(number(method.step_solver.parameters, "armijo"), 0.02);
+  EXPECT_EQ(number(method.step_solver.parameters, "cap_fraction"), 0.7);
   EXPECT_EQ(method.step_solver.max_iterations, 17);
   EXPECT_EQ(method.step_solver.tol_velocity, 0.003);
   EXPECT_EQ(method.integrator->name(), "bdf2");
@@ -90,7 +97,7 @@ TEST(RunConfig, the_method_has_every_number_of_its_config) {
 TEST(RunConfig, factors_of_a_limit_multiply_what_it_is_given) {
   PolicyConfig fixed;
   fixed.name = "fixed";
-  fixed.k_s = 4;
+  fixed.parameters["k_s_N_per_m"] = 4.0;
   fixed.scale = 3;
   Calibration calibration;
   calibration.limited = true;
@@ -100,6 +107,7 @@ TEST(RunConfig, factors_of_a_limit_multiply_what_it_is_given) {
 
   PolicyConfig dynamic;
   dynamic.name = "elasticity_inclusive";
+  dynamic.parameters = {{"mass_term", "paper"}, {"elastic_term", true}, {"refresh", "per_step"}};
   dynamic.scale = 3;
   calibration.limit_scale = 7;
   EXPECT_EQ(make_limit_policy(dynamic, calibration).multiplier, 21);

@@ -18,7 +18,7 @@ TEST(LinearSolver, EverySolverOfTheRegistryMeetsTheDenseSolution) {
   for (const LinearSolverEntry& entry : linear_solvers()) {
     LinearOptions options;
     options.name = entry.name;
-    options.tol_rel = 1e-12;
+    options.parameters["tol_rel"] = 1e-12;
     const auto solver = make_linear_solver(options);
     VecXd x;
     const LinearReport report = solver->solve(system, b, x);
@@ -53,7 +53,7 @@ TEST(LinearSolver, UnknownNamesAreListedWithTheNearest) {
   EXPECT_EQ(message(options), "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, pcg");
   options = {};
   options.name = "pcg";
-  options.preconditioner = "block-jacobi";
+  options.parameters["preconditioner"] = "block-jacobi";
   EXPECT_NE(message(options).find("(did you mean block_jacobi?)"), std::string::npos);
 }
 

@@ -5,18 +5,17 @@
 
 #include "core/linear/cg_ritz.hpp"
 #include "core/linear/linear_solver.hpp"
+#include "core/linear/preconditioner.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
 namespace bb {
 namespace {
 
-std::unique_ptr<LinearSolver> pcg(std::string_view preconditioner, double tol, int cap = 10000) {
+std::unique_ptr<LinearSolver> pcg(const std::string& preconditioner, double tol, int cap = 10000) {
   LinearOptions options;
   options.name = "pcg";
-  options.preconditioner = preconditioner;
-  options.tol_rel = tol;
-  options.max_iterations = cap;
+  options.parameters = {{"preconditioner", preconditioner}, {"tol_rel", tol}, {"max_iterations", cap}};
   return make_linear_solver(options);
 }
 
@@ -25,7 +24,7 @@ TEST(Pcg, EveryPreconditionerMeetsTheDenseSolution) {
   const VecXd b = random_vector(system.lower.rows(), 2);
   const VecXd truth = test::solve(dense(system), b);
   std::vector<int> iterations;
-  for (const std::string_view name : preconditioners()) {
+  for (const std::string& name : preconditioners().names()) {
     VecXd x;
     const LinearReport report = pcg(name, 1e-11)->solve(system, b, x);
     EXPECT_EQ(report.status, LinearStatus::ok) << name;
@@ -66,7 +65,7 @@ TEST(Pcg, IndefiniteMatrixIsNamed) {
   }
   Eigen::MatrixXd a = Eigen::MatrixXd::Identity(9, 9);
   a(4, 4) = -1;
-  for (const std::string_view name : preconditioners()) {
+  for (const std::string& name : preconditioners().names()) {
     VecXd x;
     EXPECT_EQ(pcg(name, 1e-10)->solve(from_dense(a), VecXd::Ones(9), x).status,
               LinearStatus::matrix_indefinite)

@@ -5,11 +5,12 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
+#include "core/bodies/scene_builder.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/newton/method.hpp"
 #include "core/newton/simulation.hpp"
-#include "core/scene/scene_builder.hpp"
+#include "core/terms/contact.hpp"
 
 namespace bb::test {
 
@@ -18,7 +19,7 @@ inline Method fixed_method(const std::string& shape, double kappa,
   Method method;
   method.contact = {require_shape(shape), Argument::gap};
   StiffnessPolicyConfig policy;
-  policy.kappa = kappa;
+  policy.parameters["kappa_N_per_m"] = kappa;
   method.stiffness = make_policy(policy);
   method.limit = {require_shape(shape), Argument::gap};
   method.integrator = make_integrator(integrator);
@@ -30,6 +31,16 @@ inline Positions one_point(double x, double y, double z) {
   Positions point(3, 1);
   point << x, y, z;
   return point;
+}
+
+/// The rows of the iterate.
+inline const ContactState& rows_of(const NewtonSystem& system) { return contact_state(system.terms()); }
+
+/// What the terms say of the iterate.
+inline IterateNumbers reported(const NewtonSystem& system) {
+  IterateNumbers out;
+  system.report(out);
+  return out;
 }
 
 /// One free particle of mass m (kg) at height z (m) over the plane z = 0.

@@ -56,8 +56,8 @@ Result allocations_per_iteration(int n, const char* policy_name) {
   method.limit_stiffness.k_s = 1e3;
   StiffnessPolicyConfig policy;
   policy.name = policy_name;
-  policy.kappa = 200;
-  policy.refresh = Refresh::per_step;
+  policy.parameters["kappa_N_per_m"] = 200;
+  policy.parameters["refresh"] = "per_step";
   method.stiffness = make_policy(policy);
   method.step_solver.tol_velocity = 1e-7;
   Simulation simulation(scene, method, 0.005, 16);

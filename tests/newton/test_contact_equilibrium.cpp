@@ -59,7 +59,7 @@ TEST(ContactEquilibrium, dynamic_stiffness_rests_at_the_closed_form) {
     Method method = test::fixed_method("cubic", 1);
     StiffnessPolicyConfig policy;
     policy.name = "elasticity_inclusive";
-    policy.refresh = refresh;
+    policy.parameters["refresh"] = std::string(to_string(refresh));
     method.stiffness = make_policy(policy);
 
     ContactCounts contacts;

@@ -30,6 +30,16 @@ TEST(Iteration, a_change_of_64_roundings_of_the_terms_is_noise_in_either_directi
   EXPECT_FALSE(within_rounding({nan, 5}));
 }
 
+TEST(Iteration, what_does_not_hold_in_a_row_starts_the_count_anew) {
+  int count = 0, longest = 0;
+  for (const bool holds : {true, true, true, false, true, true}) {
+    count = in_a_row(count, holds);
+    longest = std::max(longest, count);
+  }
+  EXPECT_EQ(longest, 3);
+  EXPECT_EQ(count, 2);
+}
+
 TEST(Iteration, a_direction_fails_when_it_is_unsolved_not_finite_or_uphill) {
   IterationReport report;
   report.dx_inf_m = 1;

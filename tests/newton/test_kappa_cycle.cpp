@@ -42,7 +42,7 @@ StepReport step_near_rest(double gap, Refresh refresh, Log& log) {
   Method method = test::fixed_method("cubic", 1);
   StiffnessPolicyConfig policy;
   policy.name = "elasticity_inclusive";
-  policy.refresh = refresh;
+  policy.parameters["refresh"] = std::string(to_string(refresh));
   method.stiffness = make_policy(policy);
   method.step_solver.tol_velocity = 1e-13;
   method.step_solver.max_iterations = 60;
@@ -132,14 +132,14 @@ TEST(KappaCycle, a_contact_that_a_line_search_meets_keeps_its_kappa_for_the_step
   Method method = test::fixed_method("cubic", 1);
   StiffnessPolicyConfig policy;
   policy.name = "elasticity_inclusive";
-  policy.refresh = Refresh::per_step;
+  policy.parameters["refresh"] = "per_step";
   method.stiffness = make_policy(policy);
   Simulation simulation(scene, method, dt, 1);
   Log log;
   ASSERT_EQ(simulation.step(log).contacts.obstacle, 1U);
   ASSERT_GT(log.dx.size(), 2U);  // refreshed after it was met
   ASSERT_LT(simulation.history().x(2, 0), 0.99 * d_hat);
-  EXPECT_NEAR(simulation.system().state().rows.kappa.at(0), kappa_of(d_hat), 1e-9 * kappa_of(d_hat));
+  EXPECT_NEAR(test::rows_of(simulation.system()).rows.kappa.at(0), kappa_of(d_hat), 1e-9 * kappa_of(d_hat));
 }
 
 /// Two rods that cross at an angle of 0.04 and close: their one row is mollified.

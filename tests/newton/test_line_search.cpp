@@ -123,7 +123,7 @@ TEST(LineSearch, takes_its_fraction_of_a_binding_bound) {
     Scene scene = test::particle_over_plane(0.2, 0.02, 0.01);
     scene.v0(2, 0) = -5;  // the prediction is far below the plane
     Method method = test::fixed_method("log", 100);
-    method.step_solver.cap_fraction = fraction;
+    method.step_solver.parameters["cap_fraction"] = fraction;
     Simulation simulation(scene, method, 0.01, 1);
     CapWatch watch;
     ASSERT_EQ(simulation.step(watch).status, StepStatus::converged);
@@ -153,7 +153,7 @@ TEST(LineSearch, takes_the_first_halved_step_whose_fall_is_armijos_share_of_the_
       Scene scene = test::particle_over_plane(0.2, 1, 0.01);
       Method method = test::fixed_method("log", 1);
       method.step_solver.name = solver;
-      method.step_solver.armijo = c.armijo;
+      method.step_solver.parameters["armijo"] = c.armijo;
       Simulation simulation(scene, method, 0.01, 1);
       FirstIteration watch;
       simulation.step(watch);

@@ -10,6 +10,7 @@ namespace bb {
 namespace {
 
 constexpr double d_hat = 0.01, dt = 0.01;
+constexpr TermSet without_contact = TermSet::all().without(TermGroup::contact);
 
 /// A system at the start of a step from rest.
 struct AtRest {
@@ -30,7 +31,7 @@ TEST(NewtonSystem, a_state_in_contact_or_beyond_it_has_no_energy) {
   rest.system.assemble();
   for (const double z : {0.0, -0.5 * d_hat}) {
     const Positions x = test::one_point(0, 0, z);
-    rest.system.sweep(x);
+    rest.system.prepare(x, x - scene.x0);
     EXPECT_FALSE(rest.system.try_state(x).has_value()) << z;
   }
   EXPECT_TRUE(rest.system.try_state(test::one_point(0, 0, 1e-6 * d_hat)).has_value());
@@ -77,10 +78,10 @@ TEST(NewtonSystem, the_tension_of_the_limit_is_the_force_per_width) {
   const double strain = 0.015, width = 0.01, beyond = strain - 0.01;
   AtRest rest(scene, std::move(method), stretched(scene, strain));
   rest.system.assemble();
-  EXPECT_NEAR(rest.system.max_stretch(), strain, 1e-12);
-  EXPECT_NEAR(rest.system.limit_load_max(), 30 * 2 / width * beyond * beyond, 1e-9);
-  ASSERT_EQ(rest.system.state().limit.size(), 1U);
-  EXPECT_NEAR(rest.system.state().limit[0], 30 * 2.0 * 2 / (3 * width) * std::pow(beyond, 3),
+  const IterateNumbers said = test::reported(rest.system);
+  EXPECT_NEAR(said.max_stretch.value, strain, 1e-12);
+  EXPECT_NEAR(said.limit_load_max_N_per_m.value, 30 * 2 / width * beyond * beyond, 1e-9);
+  EXPECT_NEAR(rest.system.energy(TermGroup::limit), 30 * 2.0 * 2 / (3 * width) * std::pow(beyond, 3),
               1e-12);  // area 2
 }
 
@@ -92,7 +93,7 @@ TEST(NewtonSystem, the_factor_of_a_limit_that_makes_its_own_stiffness_multiplies
     method.limit_stiffness.multiplier = multiplier;
     AtRest rest(scene, std::move(method), stretched(scene, 0.015));
     rest.system.assemble();
-    return rest.system.state().limit.at(0);
+    return rest.system.energy(TermGroup::limit);
   };
   ASSERT_GT(energy(1), 0);
   EXPECT_NEAR(energy(3) / energy(1), 3, 1e-12);
@@ -126,18 +127,18 @@ TEST(NewtonSystem, the_largest_gradient_is_that_of_free_vertices) {
 TEST(NewtonSystem, stages_hold_the_terms_that_they_are_named_after) {
   const Scene scene = test::particle_over_plane(0.2, 0.5 * d_hat, d_hat);
   AtRest rest(scene, test::fixed_method("quadratic", 7), scene.x0);
-  rest.system.keep_stages(true);
   rest.system.assemble();
   const double inertia = 0.2 / (dt * dt), curvature = 7 * 2;
-  const auto vertical = [&rest](MatrixStage stage) { return rest.system.reduced(stage).lower.coeff(2, 2); };
-  EXPECT_DOUBLE_EQ(vertical(MatrixStage::full), inertia + curvature);
-  ASSERT_TRUE(rest.system.has_stage(MatrixStage::without_contact));
-  EXPECT_DOUBLE_EQ(vertical(MatrixStage::without_contact), inertia);
-  EXPECT_FALSE(rest.system.has_stage(MatrixStage::without_contact_and_limit));  // this scene has no limit
+  const auto vertical = [&rest](TermSet set) { return rest.system.reduced(set).lower.coeff(2, 2); };
+  EXPECT_DOUBLE_EQ(vertical(TermSet::all()), inertia + curvature);
+  EXPECT_TRUE(rest.system.active(TermGroup::contact));
+  EXPECT_DOUBLE_EQ(vertical(without_contact), inertia);
+  EXPECT_DOUBLE_EQ(vertical(TermGroup::contact), curvature);
+  EXPECT_FALSE(rest.system.active(TermGroup::limit));
 
   const double mean = inertia + curvature / 3;
   EXPECT_NEAR(rest.system.add_tikhonov(1e-3, 1e-8), 1e-3 * mean, 1e-9);
-  EXPECT_NEAR(vertical(MatrixStage::full), inertia + curvature + 1e-3 * mean, 1e-9);
+  EXPECT_NEAR(vertical(TermSet::all()), inertia + curvature + 1e-3 * mean, 1e-9);
   EXPECT_EQ(rest.system.add_tikhonov(1e-12, 0.5), 0.5);
 }
 
@@ -146,11 +147,11 @@ TEST(NewtonSystem, without_the_limit_a_stage_has_only_elasticity_and_inertia) {
   Method method = test::fixed_method("cubic", 1);
   method.limit_stiffness.k_s = 1e4;
   AtRest rest(scene, std::move(method), stretched(scene, 0.015));
-  rest.system.keep_stages(true);
   rest.system.assemble();
-  ASSERT_TRUE(rest.system.has_stage(MatrixStage::without_contact_and_limit));
-  const double with = rest.system.reduced(MatrixStage::full).lower.diagonal().sum();
-  const double without = rest.system.reduced(MatrixStage::without_contact_and_limit).lower.diagonal().sum();
+  ASSERT_TRUE(rest.system.active(TermGroup::limit));
+  const double with = rest.system.reduced().lower.diagonal().sum();
+  const double without =
+      rest.system.reduced(without_contact.without(TermGroup::limit)).lower.diagonal().sum();
   EXPECT_GT(with, 2 * without);
 }
 
@@ -164,8 +165,8 @@ TEST(NewtonSystem, the_motion_of_a_given_vertex_reaches_a_merged_row_in_full) {
   scene.gravity = Vec3d(0, 0, -10);
   AtRest rest(scene, test::fixed_method("quadratic", 300), scene.x0);
   rest.system.assemble();
-  ASSERT_EQ(rest.system.state().rows.size(), 1U);
-  ASSERT_EQ(rest.system.state().rows.multiplicity[0], 6);
+  ASSERT_EQ(test::rows_of(rest.system).rows.size(), 1U);
+  ASSERT_EQ(test::rows_of(rest.system).rows.multiplicity[0], 6);
   const double rise = 0.002, curvature = 6 * 300 * 2, force = 6 * 300 * 2 * 0.5 * d_hat;
   Positions target = scene.x0, dx;
   target.leftCols(9).row(2).array() += rise;

@@ -18,9 +18,11 @@ double overload(const Scene& scene, double kappa, const Positions& dx, double* m
   at_rest.x_tilde = scene.x0;
   system.begin_step(scene.x0, at_rest, dt, 1.0);
   system.assemble();
-  EXPECT_EQ(system.contact_counts().total(), 1U);
-  if (multiplicity != nullptr) *multiplicity = system.state().rows.multiplicity.at(0);
-  return system.contact_overload(dx);
+  EXPECT_EQ(test::reported(system).contacts.total(), 1U);
+  if (multiplicity != nullptr) *multiplicity = test::rows_of(system).rows.multiplicity.at(0);
+  StepNumbers out;
+  system.report_overload(dx, out);
+  return out.contact_overload.value;
 }
 
 /// A free particle of 1 kg over the middle vertex of a given plate, where six triangles meet.
@@ -75,8 +77,10 @@ TEST(Overload, an_unbounded_barrier_has_none) {
   at_rest.x_tilde = scene.x0;
   system.begin_step(scene.x0, at_rest, dt, 1.0);
   system.assemble();
-  ASSERT_EQ(system.contact_counts().total(), 1U);
-  EXPECT_EQ(system.contact_overload(Positions::Zero(3, scene.n_vertices())), 0);
+  ASSERT_EQ(test::reported(system).contacts.total(), 1U);
+  StepNumbers out;
+  system.report_overload(Positions::Zero(3, scene.n_vertices()), out);
+  EXPECT_EQ(out.contact_overload.value, 0);
 }
 
 }  // namespace

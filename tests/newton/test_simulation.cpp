@@ -132,7 +132,7 @@ Method kept_for_the_step() {
   Method method = test::fixed_method("cubic", 1);
   StiffnessPolicyConfig policy;
   policy.name = "elasticity_inclusive";
-  policy.refresh = Refresh::per_step;
+  policy.parameters["refresh"] = "per_step";
   method.stiffness = make_policy(policy);
   method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
   method.limit_stiffness.refresh = Refresh::per_step;

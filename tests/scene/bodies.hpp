@@ -1,9 +1,9 @@
 // Small bodies for the tests of the scene room.
 #pragma once
 
+#include "core/bodies/scene_builder.hpp"
 #include "core/math/error.hpp"
 #include "core/mesh/generators.hpp"
-#include "core/scene/scene_builder.hpp"
 
 namespace bb::test {
 

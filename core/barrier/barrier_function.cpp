@@ -1,0 +1,102 @@
+// A shape on its argument: the implementation of core/barrier/shape.hpp, one code for float and double.
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+#include "core/barrier/shape.hpp"
+
+namespace bb {
+namespace {
+
+void call(const Shape& shape, std::size_t n, const double* d, const double* d_hat, double* b, double* db,
+          double* d2b) {
+  shape.batch_double(shape.self, n, d, d_hat, b, db, d2b);
+}
+void call(const Shape& shape, std::size_t n, const float* d, const float* d_hat, float* b, float* db,
+          float* d2b) {
+  shape.batch_float(shape.self, n, d, d_hat, b, db, d2b);
+}
+
+/// Chain rule from f(D; D_hat), D = d^2, to b(d) = f(d^2; d_hat^2)/d_hat^2; d2f is f''.
+///   b' = 2 d f'/d_hat^2,   b'' = (2 f' + 4 d^2 f'')/d_hat^2
+/// Where d^2 is 0 the limit of a shape that is infinite there is (inf, -inf, inf), else the f'' term is 0.
+template <class T>
+void chain(bool infinite_at_zero, T d, T d_sq, T d_hat_sq, T& b, T& db, T& d2b) {
+  if (d_sq == T(0)) {
+    const T inf = std::numeric_limits<T>::infinity();
+    const T slope = db;
+    b = infinite_at_zero ? inf : b / d_hat_sq;
+    db = infinite_at_zero ? -inf : T(0);
+    d2b = infinite_at_zero ? inf : T(2) * slope / d_hat_sq;
+    return;
+  }
+  d2b = (T(2) * db + T(4) * d_sq * d2b) / d_hat_sq;
+  db = T(2) * d * db / d_hat_sq;
+  b = b / d_hat_sq;
+}
+
+// The article's clamp hides penetration: its log has a constant force below 1e-10, its cubic no curvature.
+template <class T>
+void eval_literal(const Shape& shape, std::size_t n, const T* d, const T* d_hat, T* b, T* db, T* d2b) {
+  constexpr std::size_t chunk = 128;
+  const T lowest = shape.infinite_at_zero ? T(1e-10) : std::numeric_limits<T>::lowest();
+  T clamped[chunk];
+  for (std::size_t start = 0; start < n; start += chunk) {
+    const std::size_t m = std::min(chunk, n - start);
+    for (std::size_t i = 0; i < m; ++i) clamped[i] = std::max(d[start + i], lowest);
+    call(shape, m, clamped, d_hat + start, b + start, db + start, d2b + start);
+    for (std::size_t i = start; i < start + m; ++i) {
+      if (!shape.infinite_at_zero && d[i] <= 0) d2b[i] = 0;
+    }
+  }
+}
+
+template <class T>
+void eval_batch(const BarrierFunction& fn, std::size_t n, const T* d, const T* d_hat, T* b, T* db, T* d2b) {
+  if (fn.literal) {
+    eval_literal(fn.shape, n, d, d_hat, b, db, d2b);
+    return;
+  }
+  if (fn.argument == Argument::gap) {
+    call(fn.shape, n, d, d_hat, b, db, d2b);
+    return;
+  }
+  constexpr std::size_t chunk = 128;  // two stack columns of at most 1 KiB
+  T d_sq[chunk], d_hat_sq[chunk];
+  for (std::size_t start = 0; start < n; start += chunk) {
+    const std::size_t m = std::min(chunk, n - start);
+    for (std::size_t i = 0; i < m; ++i) {
+      d_sq[i] = d[start + i] * d[start + i];
+      d_hat_sq[i] = d_hat[start + i] * d_hat[start + i];
+    }
+    call(fn.shape, m, d_sq, d_hat_sq, b + start, db + start, d2b + start);
+    for (std::size_t i = 0; i < m; ++i) {
+      const std::size_t k = start + i;
+      chain(fn.shape.infinite_at_zero, d[k], d_sq[i], d_hat_sq[i], b[k], db[k], d2b[k]);
+    }
+  }
+}
+
+template <class T>
+ShapeTerms<T> eval_one(const BarrierFunction& fn, T d, T d_hat) {
+  ShapeTerms<T> terms;
+  eval_batch(fn, 1, &d, &d_hat, &terms.b, &terms.db, &terms.d2b);
+  return terms;
+}
+
+}  // namespace
+
+void BarrierFunction::eval(std::size_t n, const double* d, const double* d_hat, double* b, double* db,
+                           double* d2b) const {
+  eval_batch(*this, n, d, d_hat, b, db, d2b);
+}
+void BarrierFunction::eval(std::size_t n, const float* d, const float* d_hat, float* b, float* db,
+                           float* d2b) const {
+  eval_batch(*this, n, d, d_hat, b, db, d2b);
+}
+ShapeTerms<double> BarrierFunction::eval(double d, double d_hat) const { return eval_one(*this, d, d_hat); }
+ShapeTerms<float> BarrierFunction::eval(float d, float d_hat) const { return eval_one(*this, d, d_hat); }
+
+std::string_view to_string(Argument argument) { return argument == Argument::gap ? "gap" : "squared_gap"; }
+
+}  // namespace bb

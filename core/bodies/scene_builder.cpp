@@ -1,0 +1,272 @@
+#include "core/bodies/scene_builder.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/bodies/pin_selection.hpp"
+#include "core/bodies/scene_checks.hpp"
+#include "core/energy/hinge.hpp"
+#include "core/energy/membrane_model.hpp"
+#include "core/input/memory.hpp"
+#include "core/mesh/topology.hpp"
+
+namespace bb {
+namespace {
+
+template <std::size_t n>
+std::array<int, n> shifted(std::array<int, n> vertices, int first) {
+  for (int& v : vertices) v += first;
+  return vertices;
+}
+
+/// Velocity that a prescribed vertex has at the start of the run.
+Vec3d start_velocity(const RigidMotion& motion, const Vec3d& x) {
+  if (motion.start > 0 || motion.end <= 0) return Vec3d::Zero();
+  return motion.velocity + motion.angular_velocity * motion.axis.cross(Vec3d(x - motion.center));
+}
+
+void append_columns(Positions& all, const Positions& more) {
+  const Eigen::Index n = all.cols();
+  all.conservativeResize(3, n + more.cols());
+  all.rightCols(more.cols()) = more;
+}
+
+}  // namespace
+
+LameParameters shell_lame(double youngs_per_width, double poisson) {
+  return {youngs_per_width / (2 * (1 + poisson)), youngs_per_width * poisson / (1 - poisson * poisson)};
+}
+
+SceneBuilder::SceneBuilder(std::string name, bool planar, const Vec3d& gravity, std::string where)
+    : where_(std::move(where)) {
+  scene_.name = std::move(name);
+  scene_.planar = planar;
+  scene_.gravity = gravity;
+  scene_.rest.resize(3, 0);
+  scene_.x0.resize(3, 0);
+  scene_.v0.resize(3, 0);
+  if (!gravity.allFinite()) complain("gravity", "a non-finite value", "finite numbers");
+  if (planar && gravity[2] != 0) complain("gravity", "a z component", "x and y only: the scene is planar");
+}
+
+void SceneBuilder::complain(const std::string& what, std::string found, std::string allowed) {
+  violations_.push_back({where_ + ": " + what, std::move(found), std::move(allowed)});
+}
+
+void SceneBuilder::check_name(const std::string& what, const std::string& name) {
+  if (name.empty()) complain(what, "no name", "a name");
+  if (std::find(names_.begin(), names_.end(), name) != names_.end()) {
+    complain(what + " \"" + name + '"', "a name used twice", "one body or obstacle a name");
+  }
+  names_.push_back(name);
+}
+
+void SceneBuilder::add_body(const BodySpec& spec) {
+  check_name("body", spec.name);
+  const std::size_t before = violations_.size();
+  check_body(spec, scene_.planar, where_, violations_);
+  require_memory(fmt::format("{}: body \"{}\"", where_, spec.name),
+                 {static_cast<double>(scene_.n_vertices()) + spec.mesh.n_vertices(),
+                  static_cast<double>(scene_.surface_triangles.size() + spec.mesh.triangles.size()),
+                  static_cast<double>(spec.mesh.segments.size())});
+  if (violations_.size() != before) return;
+  const int first = scene_.n_vertices();
+  const Positions& start = spec.start ? *spec.start : spec.mesh.vertices;
+  append_vertices(spec, start);
+  append_pins(spec, start, first);
+  if (spec.kind == BodyKind::deformable) {
+    append_masses(spec, first);
+    append_membrane(spec, first);
+    append_springs(spec, first);
+    append_hinges(spec, first);
+  }
+  append_surface(spec, first);
+}
+
+void SceneBuilder::append_vertices(const BodySpec& spec, const Positions& start) {
+  const auto n = static_cast<std::size_t>(spec.mesh.n_vertices());
+  const int body = static_cast<int>(scene_.bodies.size());
+  scene_.bodies.push_back({spec.name, scene_.n_vertices(), static_cast<int>(n)});
+  append_columns(scene_.rest, spec.mesh.vertices);
+  append_columns(scene_.x0, start);
+  const Vec3d velocity = spec.kind == BodyKind::deformable ? spec.velocity : Vec3d(Vec3d::Zero());
+  append_columns(scene_.v0, velocity.replicate(1, static_cast<Eigen::Index>(n)));
+  scene_.mass.resize(scene_.mass.size() + n, 0.0);
+  scene_.body.resize(scene_.body.size() + n, body);
+  scene_.d_hat.resize(scene_.d_hat.size() + n, spec.d_hat);
+  scene_.offset.resize(scene_.offset.size() + n, spec.offset);
+  pin_of_.resize(pin_of_.size() + n, -1);
+}
+
+int SceneBuilder::motion_index(const RigidMotion& motion) {
+  for (std::size_t i = 0; i < scene_.motions.size(); ++i) {
+    if (same_motion(scene_.motions[i], motion)) return static_cast<int>(i);
+  }
+  scene_.motions.push_back(motion);
+  return static_cast<int>(scene_.motions.size()) - 1;
+}
+
+void SceneBuilder::pin_vertex(const std::string& body, int vertex, int motion) {
+  int& pin = pin_of_[static_cast<std::size_t>(vertex)];
+  if (pin >= 0) {
+    if (scene_.pins[static_cast<std::size_t>(pin)].motion != motion) {
+      complain("pins of body \"" + body + '"', fmt::format("two motions for scene vertex {}", vertex),
+               "one motion");
+    }
+    return;
+  }
+  pin = static_cast<int>(scene_.pins.size());
+  scene_.pins.push_back({vertex, motion});
+  scene_.v0.col(vertex) =
+      start_velocity(scene_.motions[static_cast<std::size_t>(motion)], scene_.x0.col(vertex));
+}
+
+void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int first) {
+  if (spec.kind == BodyKind::rigid) {
+    const int motion = motion_index(spec.motion);
+    for (int v = 0; v < spec.mesh.n_vertices(); ++v) pin_vertex(spec.name, first + v, motion);
+    return;
+  }
+  for (std::size_t p = 0; p < spec.pins.size(); ++p) {
+    const std::vector<int> selected = select_vertices(spec.pins[p], start, scene_.planar);
+    if (selected.empty()) {
+      complain(fmt::format("pins/{} of body \"{}\"", p, spec.name), "no vertex selected",
+               "at least one vertex");
+      continue;
+    }
+    const int motion = motion_index(spec.pins[p].motion);
+    for (const int v : selected) {
+      if (v < spec.mesh.n_vertices()) {
+        pin_vertex(spec.name, first + v, motion);
+      } else {
+        complain(fmt::format("pins/{} of body \"{}\"", p, spec.name), fmt::format("vertex {}", v),
+                 fmt::format("0 to {}", spec.mesh.n_vertices() - 1));
+      }
+    }
+  }
+}
+
+template <std::size_t n>
+bool SceneBuilder::all_prescribed(const std::array<int, n>& vertices) const {
+  return std::all_of(vertices.begin(), vertices.end(),
+                     [this](int v) { return pin_of_[static_cast<std::size_t>(v)] >= 0; });
+}
+
+void SceneBuilder::append_masses(const BodySpec& spec, int first) {
+  const auto add = [&](int v, double mass) {
+    const auto vertex = static_cast<std::size_t>(first + v);
+    if (pin_of_[vertex] < 0) scene_.mass[vertex] += mass;
+  };
+  for (const auto& t : spec.mesh.triangles) {
+    const double third = spec.material.density * area_vector(spec.mesh.vertices, t).norm() / 3;
+    for (const int v : t) add(v, third);
+  }
+  for (const auto& s : spec.mesh.segments) {
+    const double length = (spec.mesh.vertices.col(s[1]) - spec.mesh.vertices.col(s[0])).norm();
+    for (const int v : s) add(v, 0.5 * spec.material.line_density * length);
+  }
+}
+
+/// Index of the part of that model, added where there is none yet; -1 for the model none.
+int SceneBuilder::membrane_part(const std::string& model) {
+  if (model == "none") return -1;
+  std::vector<MembranePart>& parts = scene_.membranes;
+  const auto found =
+      std::find_if(parts.begin(), parts.end(), [&](const MembranePart& part) { return part.model == model; });
+  const auto index = static_cast<int>(found - parts.begin());
+  if (found == parts.end()) {
+    parts.emplace_back();
+    parts.back().model = model;
+  }
+  return index;
+}
+
+/// The warp axis needs a part in the plane of every triangle that has an energy.
+void SceneBuilder::check_warp(const BodySpec& spec, const Vec3d& warp, int first) {
+  for (std::size_t t = 0; t < spec.mesh.triangles.size(); ++t) {
+    if (all_prescribed(shifted(spec.mesh.triangles[t], first))) continue;
+    const Vec3d normal = area_vector(spec.mesh.vertices, spec.mesh.triangles[t]).normalized();
+    if ((warp - normal.dot(warp) * normal).norm() > 1e-6) continue;
+    return complain(fmt::format("body \"{}\"/material/warp_axis", spec.name),
+                    fmt::format("[{}, {}, {}], the normal of triangle {}", warp[0], warp[1], warp[2], t),
+                    "an axis that is normal to no triangle of the rest shape");
+  }
+}
+
+void SceneBuilder::append_membrane(const BodySpec& spec, int first) {
+  if (spec.mesh.triangles.empty()) return;
+  const Material& material = spec.material;
+  const LameParameters lame = shell_lame(material.youngs_per_width(), material.poisson);
+  const int membrane = membrane_part(material.model);
+  const bool directed = is_anisotropic(material.model);
+  const Vec3d warp = material.warp_axis.value_or(Vec3d::UnitX());
+  if (directed) check_warp(spec, warp, first);
+  for (const auto& local : spec.mesh.triangles) {
+    const auto t = shifted(local, first);
+    if (all_prescribed(t)) continue;
+    if (membrane >= 0) {
+      MembranePart& part = scene_.membranes[static_cast<std::size_t>(membrane)];
+      part.triangles.push_back(t);
+      part.lame_mu.push_back(lame.mu);
+      part.lame_lambda.push_back(lame.lambda);
+      if (directed) part.warp.push_back(warp);
+    }
+    if (material.limit) {
+      scene_.limit.triangles.push_back(t);
+      scene_.limit.onset.push_back(material.limit->onset);
+      scene_.limit.width.push_back(material.limit->width);
+      scene_.limit.mass.push_back(material.density * area_vector(spec.mesh.vertices, local).norm());
+    }
+  }
+}
+
+void SceneBuilder::append_springs(const BodySpec& spec, int first) {
+  if (spec.material.springs == 0) return;
+  for (const auto& local : unique_edges(spec.mesh)) {
+    const auto edge = shifted(local, first);
+    if (all_prescribed(edge)) continue;
+    scene_.springs.edges.push_back(edge);
+    scene_.springs.stiffness.push_back(spec.material.springs);
+  }
+}
+
+void SceneBuilder::append_hinges(const BodySpec& spec, int first) {
+  if (spec.material.bending == 0) return;
+  for (const auto& local : edge_hinges(spec.mesh.triangles)) {
+    const auto hinge = shifted(local, first);
+    if (all_prescribed(hinge)) continue;
+    Vec3d x[4];
+    for (std::size_t k = 0; k < 4; ++k) x[k] = spec.mesh.vertices.col(local[k]);
+    scene_.hinges.hinges.push_back(hinge);
+    scene_.hinges.stiffness.push_back(spec.material.bending);
+    scene_.hinges.rest_angle.push_back(hinge_angle(x));
+  }
+}
+
+void SceneBuilder::append_surface(const BodySpec& spec, int first) {
+  for (const auto& t : spec.mesh.triangles) scene_.surface_triangles.push_back(shifted(t, first));
+  if (!scene_.planar) {
+    for (const auto& e : unique_edges(spec.mesh)) scene_.surface_edges.push_back(shifted(e, first));
+  } else {  // whatever pairs contact makes of them
+    for (const auto& e : boundary_edges(spec.mesh.triangles))
+      scene_.surface_edges.push_back(shifted(e, first));
+    for (const auto& s : spec.mesh.segments) scene_.surface_edges.push_back(shifted(s, first));
+  }
+  for (int v = 0; v < spec.mesh.n_vertices(); ++v) scene_.surface_vertices.push_back(first + v);
+}
+
+void SceneBuilder::add_obstacle(const Obstacle& obstacle) {
+  check_name("obstacle", obstacle.name);
+  check_obstacle(obstacle, scene_.planar, where_, violations_);
+  scene_.obstacles.push_back(obstacle);
+}
+
+Scene SceneBuilder::finish() {
+  check_scene(scene_, pin_of_, where_, violations_);
+  if (!violations_.empty()) throw ConfigError(std::move(violations_));
+  return std::move(scene_);
+}
+
+}  // namespace bb

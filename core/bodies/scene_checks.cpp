@@ -1,0 +1,167 @@
+#include "core/bodies/scene_checks.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "core/energy/membrane_model.hpp"
+#include "core/mesh/bounds.hpp"
+#include "core/mesh/topology.hpp"
+#include "core/parameters/registry.hpp"
+
+namespace bb {
+namespace {
+
+/// Appends violations that share a prefix.
+struct Report {
+  std::string prefix;
+  std::vector<Violation>& out;
+  void operator()(const std::string& what, std::string found, std::string allowed) const {
+    out.push_back({prefix + what, std::move(found), std::move(allowed)});
+  }
+  void number(const std::string& what, double found, bool good, const char* allowed) const {
+    if (!good || !std::isfinite(found)) (*this)(what, fmt::format("{}", found), allowed);
+  }
+};
+
+std::string allowed_coordinates() {
+  return fmt::format("finite coordinates between -{0:g} and {0:g} m", max_coordinate);
+}
+
+void check_model(const Report& report, const std::string& model) {
+  std::vector<std::string> names = membrane_models<double>().names();
+  names.emplace_back("none");
+  if (std::find(names.begin(), names.end(), model) != names.end()) return;
+  report("/material/model", '"' + model + '"', one_of_text(model, names));
+}
+
+void check_warp_axis(const Report& report, const Material& m, bool planar) {
+  if (!m.warp_axis) return;
+  const Vec3d& axis = *m.warp_axis;
+  const std::string found = fmt::format("[{}, {}, {}]", axis[0], axis[1], axis[2]);
+  if (!is_anisotropic(m.model)) {
+    report("/material/warp_axis", found, "nothing: the model " + m.model + " has no direction");
+  } else if (!(std::abs(axis.norm() - 1) < 1e-9)) {
+    report("/material/warp_axis", found, "a unit vector");
+  } else if (planar && axis[2] != 0) {
+    report("/material/warp_axis", found, "z = 0: the scene is planar");
+  }
+}
+
+void check_material(const Report& report, const BodySpec& spec, bool planar) {
+  const Material& m = spec.material;
+  check_model(report, m.model);
+  check_warp_axis(report, m, planar);
+  report.number("/material/density", m.density, m.density >= 0, "a number >= 0");
+  report.number("/material/line_density", m.line_density, m.line_density >= 0, "a number >= 0");
+  report.number("/material/youngs", m.youngs, m.youngs > 0, "a number > 0");
+  report.number("/material/thickness", m.thickness.value_or(1), m.thickness.value_or(1) > 0, "a number > 0");
+  report.number("/material/poisson", m.poisson, m.poisson > -1 && m.poisson < 1, "a number > -1 and < 1");
+  report.number("/material/bending", m.bending, m.bending >= 0, "a number >= 0");
+  report.number("/material/springs", m.springs, m.springs >= 0, "a number >= 0");
+  if (planar && m.bending > 0)
+    report("/material/bending", fmt::format("{}", m.bending), "0: the scene is planar");
+  if (!m.limit) return;
+  report.number("/limit/onset", m.limit->onset, m.limit->onset >= 0, "a number >= 0");
+  report.number("/limit/width", m.limit->width, m.limit->width > 0, "a number > 0");
+}
+
+void check_mesh(const Report& report, const BodySpec& spec, bool planar) {
+  const int n = spec.mesh.n_vertices();
+  if (n == 0) report("/mesh", "no vertex", "at least one vertex");
+  if (!within_bounds(spec.mesh.vertices))
+    report("/mesh", "a coordinate that is too large", allowed_coordinates());
+  if (spec.start && spec.start->cols() != n) {
+    report("/start", "positions that do not fit the mesh", "one position a vertex");
+  } else if (spec.start && !within_bounds(*spec.start)) {
+    report("/start", "a coordinate that is too large", allowed_coordinates());
+  }
+  const auto out_of_range = [n](const auto& element) {
+    return std::any_of(element.begin(), element.end(), [n](int v) { return v < 0 || v >= n; });
+  };
+  if (std::any_of(spec.mesh.triangles.begin(), spec.mesh.triangles.end(), out_of_range) ||
+      std::any_of(spec.mesh.segments.begin(), spec.mesh.segments.end(), out_of_range)) {
+    report("/mesh", "an element with an unknown vertex", fmt::format("vertices 0 to {}", n - 1));
+  } else if (std::any_of(spec.mesh.triangles.begin(), spec.mesh.triangles.end(),
+                         [&](const auto& t) { return !(area_vector(spec.mesh.vertices, t).norm() > 0); })) {
+    report("/mesh", "a triangle of zero area", "triangles of positive area");
+  }
+  const auto off_plane = [](const Positions& x) { return x.cols() > 0 && !x.row(2).isZero(0); };
+  if (planar && (off_plane(spec.mesh.vertices) || (spec.start && off_plane(*spec.start)))) {
+    report("/mesh", "a vertex with z != 0", "z = 0: the scene is planar");
+  }
+}
+
+void check_motion(const Report& report, const std::string& what, const RigidMotion& motion) {
+  const bool finite = motion.velocity.allFinite() && motion.center.allFinite() && motion.axis.allFinite() &&
+                      std::isfinite(motion.angular_velocity) && std::isfinite(motion.start);
+  if (!finite || std::isnan(motion.end)) report(what, "a non-finite motion", "finite numbers");
+  if (!(motion.end >= motion.start)) report(what, "an end before the start", "end >= start");
+  if (std::abs(motion.axis.norm() - 1) > 1e-9) report(what, "an axis of another length", "a unit axis");
+}
+
+}  // namespace
+
+bool within_bounds(const Positions& x) { return (x.array().abs() <= max_coordinate).all(); }
+
+void check_body(const BodySpec& spec, bool planar, const std::string& where, std::vector<Violation>& out) {
+  const Report report{fmt::format("{}: body \"{}\"", where, spec.name), out};
+  check_mesh(report, spec, planar);
+  report.number("/d_hat", spec.d_hat, spec.d_hat > 0, "a number > 0");
+  report.number("/offset", spec.offset, spec.offset >= 0, "a number >= 0");
+  if (!spec.velocity.allFinite()) report("/velocity", "a non-finite value", "finite numbers");
+  if (planar && spec.velocity[2] != 0) report("/velocity", "a z component", "0: the scene is planar");
+  if (spec.kind == BodyKind::rigid) {
+    check_motion(report, "/motion", spec.motion);
+  } else {
+    check_material(report, spec, planar);
+    for (const PinSpec& pin : spec.pins) check_motion(report, "/pins/motion", pin.motion);
+  }
+}
+
+void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& where,
+                    std::vector<Violation>& out) {
+  const Report report{fmt::format("{}: obstacle \"{}\"", where, obstacle.name), out};
+  if (!within_bounds(obstacle.point))
+    report("/point", "a coordinate that is too large", allowed_coordinates());
+  if (obstacle.kind != ObstacleKind::sphere && !(std::abs(obstacle.axis.norm() - 1) <= 1e-9)) {
+    report("/axis", "an axis of another length", "a unit vector");
+  }
+  if (obstacle.kind != ObstacleKind::plane) {
+    report.number("/radius", obstacle.radius, obstacle.radius > 0 && obstacle.radius <= max_coordinate,
+                  "a number > 0 and <= 1e15 m");
+  }
+  if (!planar) return;
+  if (obstacle.kind == ObstacleKind::plane && obstacle.axis[2] != 0) {
+    report("/axis", "a normal with a z component", "a normal in the x-y plane: the scene is planar");
+  }
+  if (obstacle.kind == ObstacleKind::sphere && obstacle.point[2] != 0) {
+    report("/point", "a centre with z != 0", "z = 0: the scene is planar");
+  }
+}
+
+void check_scene(const Scene& scene, const std::vector<int>& pin_of, const std::string& where,
+                 std::vector<Violation>& out) {
+  const Report report{where + ": ", out};
+  if (scene.bodies.empty() && out.empty()) return report("scene", "no body", "at least one deformable body");
+  if (!out.empty()) return;  // bodies were left out: what follows would mislead
+  if (std::count(pin_of.begin(), pin_of.end(), -1) == 0) {
+    report("scene", "no free vertex", "at least one vertex that is not prescribed");
+  }
+  for (const Body& body : scene.bodies) {
+    int n_bad = 0, first_bad = -1;
+    for (int v = body.first_vertex; v < body.first_vertex + body.n_vertices; ++v) {
+      const auto i = static_cast<std::size_t>(v);
+      if (pin_of[i] >= 0 || (scene.mass[i] > 0 && std::isfinite(scene.mass[i]))) continue;
+      if (n_bad++ == 0) first_bad = v - body.first_vertex;
+    }
+    if (n_bad > 0) {
+      report(fmt::format("body \"{}\"", body.name),
+             fmt::format("{} free vertices without mass, the first is {}", n_bad, first_bad),
+             "positive mass: density > 0 and every free vertex in an element");
+    }
+  }
+}
+
+}  // namespace bb

@@ -1,0 +1,41 @@
+// The preconditioners that are a block diagonal: none, jacobi and block_jacobi.
+#include "core/linear/block_scaling.hpp"
+#include "core/linear/preconditioner.hpp"
+
+namespace bb {
+namespace {
+
+/// M = D = L L^T.
+class Scaled final : public Preconditioner {
+ public:
+  explicit Scaled(Scaling scaling) : kind_(scaling) {}
+  LinearStatus setup(const ReducedSystem& system, const SymmetricProduct&) override {
+    return scaling_.setup(system, kind_);
+  }
+  void apply(const VecXd& r, VecXd& z) const override {
+    z = r;
+    scaling_.solve_lower(z);
+    scaling_.solve_upper(z);
+  }
+
+ private:
+  Scaling kind_;
+  BlockScaling scaling_;
+};
+
+template <Scaling scaling>
+PreconditionerEntry scaled() {
+  PreconditionerEntry entry;
+  entry.make = [](const ParameterMap&) -> std::unique_ptr<Preconditioner> {
+    return std::make_unique<Scaled>(scaling);
+  };
+  return entry;
+}
+
+}  // namespace
+
+PreconditionerEntry preconditioner_none() { return scaled<Scaling::none>(); }
+PreconditionerEntry preconditioner_jacobi() { return scaled<Scaling::jacobi>(); }
+PreconditionerEntry preconditioner_block_jacobi() { return scaled<Scaling::block_jacobi>(); }
+
+}  // namespace bb

@@ -1,0 +1,28 @@
+// E and its change between iterate and trial, summed over the parts of all terms.
+#pragma once
+
+#include <vector>
+
+#include "core/terms/term.hpp"
+
+namespace bb {
+
+struct EnergyChange {
+  double change = 0;     // E(trial) - E(iterate), J
+  double magnitude = 0;  // sum of |parts|, J: rounding noise is some multiple of eps times this
+};
+
+/// Parts of terms on vertices are summed vertex by vertex, then those of the others term by term, all in the
+/// order of the list: a sum does not depend on the number of threads. Keeps its buffers. Cost O(parts).
+class EnergySums {
+ public:
+  /// From the iterate x0 to the trial x1.
+  EnergyChange change(const TermList& terms, const Positions& x0, const Positions& x1);
+  /// E at the iterate, J.
+  double total(const TermList& terms);
+
+ private:
+  std::vector<EnergyParts> parts_;  // one a term
+};
+
+}  // namespace bb

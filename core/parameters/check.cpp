@@ -1,0 +1,190 @@
+#include "core/parameters/check.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <set>
+
+#include "core/input/names.hpp"
+#include "core/parameters/registry.hpp"
+
+namespace bb {
+namespace {
+
+using nlohmann::json;
+
+bool report(const json& found, const std::string& allowed, const std::string& where,
+            std::vector<Violation>& violations) {
+  violations.push_back({where, shortened(found.dump()), allowed});
+  return false;
+}
+
+bool in_range(const Rule& rule, double value) {
+  return std::isfinite(value) && (rule.low_open ? value > rule.low : value >= rule.low) &&
+         (rule.high_open ? value < rule.high : value <= rule.high);
+}
+
+bool size_fits(const Rule& rule, std::size_t size) {
+  return size >= rule.min_size && (rule.max_size == 0 || size <= rule.max_size);
+}
+
+bool check_word(const json& value, const Rule& rule, const std::string& where,
+                std::vector<Violation>& violations) {
+  const std::vector<std::string> words = rule.words();
+  const std::string found = value.is_string() ? value.get<std::string>() : "";
+  if (value.is_string() && std::find(words.begin(), words.end(), found) != words.end()) return true;
+  Rule alone = rule;
+  alone.kind = Kind::word;
+  return report(value, words.size() > 1 ? one_of_text(found, words) : allowed_text(alone), where, violations);
+}
+
+/// Every element by the same rule; what is wrong is named by its index.
+bool check_elements(json& array, const Rule& element, const std::string& where,
+                    std::vector<Violation>& violations) {
+  bool right = true;
+  for (std::size_t i = 0; i < array.size(); ++i) {
+    right = check_value(array[i], element, fmt::format("{}/{}", where, i), violations) && right;
+  }
+  return right;
+}
+
+bool check_array(json& value, const Rule& rule, const std::string& where,
+                 std::vector<Violation>& violations) {
+  const bool three = rule.kind == Kind::vector || rule.kind == Kind::direction;
+  const std::size_t exact = three ? 3 : rule.kind == Kind::box ? 2 : 0;
+  const bool fits =
+      value.is_array() && size_fits(rule, value.size()) && (exact == 0 || value.size() == exact);
+  if (!fits) return report(value, allowed_text(rule), where, violations);
+  if (rule.kind == Kind::values) return true;
+  Rule element = rule;
+  element.kind = rule.kind == Kind::words      ? Kind::word
+                 : rule.kind == Kind::integers ? Kind::integer
+                 : rule.kind == Kind::box      ? Kind::vector
+                 : rule.kind == Kind::objects  ? Kind::object
+                                               : Kind::number;
+  if (!check_elements(value, element, where, violations)) return false;
+  const bool zero = rule.kind == Kind::direction &&
+                    std::all_of(value.begin(), value.end(), [](const json& v) { return v == 0; });
+  const bool twice =
+      rule.kind == Kind::words && std::set<json>(value.begin(), value.end()).size() < value.size();
+  return !zero && !twice ? true : report(value, allowed_text(rule), where, violations);
+}
+
+/// Whether the keys make up one of the forms and nothing of another.
+bool has_form(const json& object, const ParameterList& list) {
+  const auto count = [&](const std::vector<std::string>& form) {
+    return std::count_if(form.begin(), form.end(),
+                         [&](const std::string& key) { return object.contains(key); });
+  };
+  std::size_t whole = 0, touched = 0;
+  for (const std::vector<std::string>& form : list.forms) {
+    const auto n = static_cast<std::size_t>(count(form));
+    whole += n == form.size() ? 1 : 0;
+    touched += n > 0 ? 1 : 0;
+  }
+  return list.forms.empty() || (whole == 1 && touched == 1);
+}
+
+std::string keys_text(const json& object) {
+  std::vector<std::string> keys;
+  for (const auto& item : object.items()) keys.push_back(item.key());
+  return shortened(
+      fmt::format("an object with {}", keys.empty() ? "nothing" : fmt::to_string(fmt::join(keys, ", "))));
+}
+
+}  // namespace
+
+bool check_value(json& value, const Rule& rule, const std::string& where,
+                 std::vector<Violation>& violations) {
+  switch (rule.kind) {
+    case Kind::boolean:
+      return value.is_boolean() || report(value, allowed_text(rule), where, violations);
+    case Kind::integer:
+      return (value.is_number_integer() && in_range(rule, value.get<double>())) ||
+             report(value, allowed_text(rule), where, violations);
+    case Kind::number:
+      return (value.is_number() && in_range(rule, value.get<double>())) ||
+             report(value, allowed_text(rule), where, violations);
+    case Kind::text:
+      return (value.is_string() && size_fits(rule, value.get_ref<const std::string&>().size())) ||
+             report(value, allowed_text(rule), where, violations);
+    case Kind::word:
+      return check_word(value, rule, where, violations);
+    case Kind::object:
+      if (!value.is_object()) return report(value, allowed_text(rule), where, violations);
+      check_object(value, rule.list(value), where, violations);
+      return true;
+    default:
+      return check_array(value, rule, where, violations);
+  }
+}
+
+void check_object(json& object, const ParameterList& list, const std::string& where,
+                  std::vector<Violation>& violations) {
+  const bool formed = has_form(object, list);
+  if (!formed) violations.push_back({where, keys_text(object), list.forms_text});
+  std::vector<std::string> wrong;
+  for (auto& [key, value] : object.items()) {
+    const std::string at = where + "/" + shortened(key);
+    if (const Parameter* row = find_named(list.rows, key)) {
+      if (!check_value(value, row->rule, at, violations)) wrong.push_back(key);
+    } else if (!list.open) {
+      violations.push_back(
+          {at, fmt::format("the unknown key \"{}\"", shortened(key)), one_of_text(key, names_of(list.rows))});
+      wrong.push_back(key);
+    }
+  }
+  for (const Parameter& row : list.rows) {
+    if (!row.rule.required || object.contains(row.name)) continue;
+    violations.push_back({where + "/" + row.name, "nothing", allowed_text(row.rule)});
+  }
+  for (const std::string& key : wrong) object.erase(key);
+}
+
+ParameterValue to_value(const Rule& rule, const json& value) {
+  switch (rule.kind) {
+    case Kind::boolean:
+      return value.get<bool>();
+    case Kind::integer:
+      return value.get<std::int64_t>();
+    case Kind::number:
+      return value.get<double>();
+    case Kind::words:
+      return value.get<std::vector<std::string>>();
+    case Kind::vector:
+    case Kind::direction:
+    case Kind::integers:
+      return value.get<std::vector<double>>();
+    default:
+      return value.get<std::string>();
+  }
+}
+
+ParameterMap to_map(const std::vector<Parameter>& rows, const json& object) {
+  ParameterMap out;
+  for (const Parameter& row : rows) {
+    const json value = object.contains(row.name) ? object[row.name] : to_json(row.fallback);
+    if (!value.is_null()) out[row.name] = to_value(row.rule, value);
+  }
+  return out;
+}
+
+json to_json(const ParameterValue& value) {
+  if (std::holds_alternative<std::monostate>(value)) return nullptr;
+  json out;
+  std::visit(
+      [&out](const auto& held) {
+        if constexpr (!std::is_same_v<std::decay_t<decltype(held)>, std::monostate>) out = held;
+      },
+      value);
+  return out;
+}
+
+json to_json(const ParameterMap& parameters) {
+  json out = json::object();
+  for (const auto& [name, value] : parameters) out[name] = to_json(value);
+  return out;
+}
+
+}  // namespace bb

@@ -1,0 +1,119 @@
+#include "core/scene/contact_plan.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
+namespace bb {
+namespace {
+
+using Flags = std::vector<char>;
+
+bool is_set(const Flags& flags, int vertex) { return flags[static_cast<std::size_t>(vertex)] != 0; }
+
+/// How many primitives of one kind there are, on how many vertices, and whether one of them can move.
+struct Primitives {
+  std::size_t n = 0, n_vertices = 0;
+  bool free = false;
+};
+
+template <std::size_t N>
+void add(const std::vector<std::array<int, N>>& list, const Flags& is_free, std::set<int>& vertices,
+         Primitives& out) {
+  out.n += list.size();
+  for (const auto& primitive : list) {
+    for (const int vertex : primitive) {
+      vertices.insert(vertex);
+      out.free = out.free || is_set(is_free, vertex);
+    }
+  }
+  out.n_vertices = vertices.size();
+}
+
+Primitives count_points(const Scene& scene, const Flags& is_free) {
+  Primitives out;
+  std::set<int> vertices(scene.surface_vertices.begin(), scene.surface_vertices.end());
+  out.n = out.n_vertices = vertices.size();
+  out.free = std::any_of(vertices.begin(), vertices.end(), [&](int v) { return is_set(is_free, v); });
+  return out;
+}
+
+// Sides of triangles count in space, where they are in pairs of edges.
+Primitives count_edges(const Scene& scene, const Flags& is_free) {
+  Primitives out;
+  std::set<int> vertices;
+  add(scene.surface_edges, is_free, vertices, out);
+  if (!scene.planar) {
+    add(scene.surface_triangles, is_free, vertices, out);
+    out.n += 2 * scene.surface_triangles.size();
+  }
+  return out;
+}
+
+Primitives count_triangles(const Scene& scene, const Flags& is_free) {
+  Primitives out;
+  std::set<int> vertices;
+  add(scene.surface_triangles, is_free, vertices, out);
+  return out;
+}
+
+/// Counts of bodies by what they can touch.
+struct Bodies {
+  int deformable = 0;         // bodies with at least one free vertex
+  int given = 0;              // bodies without
+  bool pairs_in_one = false;  // a deformable body with vertices that are not neighbours
+};
+
+Bodies count_bodies(const Scene& scene, const Flags& is_free) {
+  const int few = scene.planar ? 1 : 3;  // so many vertices of one body never make a pair
+  Bodies out;
+  for (const Body& body : scene.bodies) {
+    const auto begin = is_free.begin() + body.first_vertex;
+    const bool deformable = std::any_of(begin, begin + body.n_vertices, [](char f) { return f != 0; });
+    ++(deformable ? out.deformable : out.given);
+    out.pairs_in_one = out.pairs_in_one || (deformable && body.n_vertices > few);
+  }
+  return out;
+}
+
+void plan_pairs(const Scene& scene, const Primitives& points, const Flags& is_free, ContactPlan& plan) {
+  if (scene.planar && scene.planar_pairs == PlanarPairs::vertex_vertex) {
+    plan.point_point = points.n > 1 && points.free;
+    return;
+  }
+  const Primitives edges = count_edges(scene, is_free);
+  if (scene.planar) {
+    plan.point_edge = edges.n > 0 && points.n > 2 && (points.free || edges.free);
+    return;
+  }
+  const Primitives triangles = count_triangles(scene, is_free);
+  plan.point_triangle = triangles.n > 0 && points.n > 3 && (points.free || triangles.free);
+  plan.edge_edge = edges.n > 1 && edges.n_vertices > 3 && edges.free;
+}
+
+}  // namespace
+
+PlanItem plan_item(bool needed, std::string yes, std::string no) {
+  return {needed, std::move(needed ? yes : no)};
+}
+
+ContactPlan plan_contact(const Scene& scene) {
+  Flags is_free(static_cast<std::size_t>(scene.n_vertices()), 1);
+  for (const Pin& pin : scene.pins) is_free[static_cast<std::size_t>(pin.vertex)] = 0;
+  const Primitives points = count_points(scene, is_free);
+  const Bodies bodies = count_bodies(scene, is_free);
+  ContactPlan plan;
+  plan_pairs(scene, points, is_free, plan);
+  plan.self_contact = plan_item(plan.pairs() && (bodies.pairs_in_one || bodies.deformable > 1),
+                                fmt::format("{} deformable bodies", bodies.deformable),
+                                "one deformable body without two elements that share no vertex");
+  plan.given_surfaces = plan_item(plan.pairs() && bodies.given > 0 && bodies.deformable > 0,
+                                  fmt::format("{} prescribed bodies", bodies.given), "no prescribed body");
+  plan.obstacles = plan_item(!scene.obstacles.empty() && points.free,
+                             fmt::format("{} analytic obstacles", scene.obstacles.size()),
+                             scene.obstacles.empty() ? "no analytic obstacle" : "no free surface vertex");
+  return plan;
+}
+
+}  // namespace bb

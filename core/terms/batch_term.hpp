@@ -1,0 +1,27 @@
+// An elastic term whose mathematics is an EnergyBatch (core/energy).
+#pragma once
+
+#include "core/terms/term.hpp"
+
+namespace bb {
+
+class BatchTerm final : public Term {
+ public:
+  /// name: that of registry.inc.
+  BatchTerm(std::string_view name, std::unique_ptr<EnergyBatch> batch);
+  std::string_view name() const override { return name_; }
+  TermGroup group() const override { return TermGroup::elastic; }
+  Phase phase() const override { return Phase::elastic; }
+  void linearise(const Positions& x, const TermContext&) override {
+    batch_->derivatives(x, families_[0].local);
+  }
+  void evaluate(const Positions& x, const TermContext&) override {
+    batch_->values(x, families_[0].trial_energy.data());
+  }
+
+ private:
+  std::string_view name_;
+  std::unique_ptr<EnergyBatch> batch_;
+};
+
+}  // namespace bb

@@ -1,0 +1,133 @@
+// The contact term from iterate to iterate. Its stiffness policy is in contact_policy.cpp, what it says of
+// itself in contact_report.cpp.
+#include "core/terms/contact.hpp"
+
+#include "core/terms/registry.hpp"
+
+namespace bb {
+
+ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const ContactPlan& plan,
+                         const std::vector<std::uint8_t>& fixed)
+    : scene_(scene),
+      options_(options),
+      fixed_(fixed),
+      contacts_(scene, options.contact_options, plan),
+      stiffness_(*options.stiffness, scene.mass) {
+  families_.resize(2);
+  use_state();
+}
+
+// Local terms are on the compact free slots of either table.
+void ContactTerm::use_state() {
+  families_[0].stencils = {4, state_.rows.vertex};
+  families_[1].stencils = {4, state_.mollified.free_vertex};
+}
+
+void ContactTerm::begin_step(const StepFrame& frame, PhaseClock& clock) {
+  stiffness_.begin_step();
+  change_frame(frame);
+  first_iterate_ = true;
+  {
+    const ScopedPhase timer(clock, Phase::broad_phase);
+    contacts_.update_candidates(frame.x_n, frame.x_n);
+  }
+  const ScopedPhase timer(clock, Phase::contact_rows);
+  state_.gap_min = contacts_.find_rows(frame.x_n, state_.rows, state_.mollified);
+  use_state();
+}
+
+void ContactTerm::change_frame(const StepFrame& frame) {
+  dt_ = frame.dt;
+  c_ = frame.c;
+  stiffness_.set_time(frame.dt, frame.c);
+}
+
+void ContactTerm::linearise(const Positions& x, const TermContext& context) {
+  {
+    const ScopedPhase timer(context.clock, Phase::stiffness);
+    start_policy(x, context);
+    const double change = stiffness_.refresh(state_.rows, state_.mollified, context.blocks, context.elastic);
+    kappa_change_ = first_iterate_ ? 0 : change;
+    first_iterate_ = false;
+  }
+  fill_local(x);
+  contact_energies(state_.rows, families_[0].local.energy);
+  mollified_energies(state_.mollified, x, families_[1].local.energy);
+}
+
+void ContactTerm::fill_shape(ContactState& state) const {
+  const auto fill = [this](auto& rows) {
+    options_.contact.eval(rows.size(), rows.d.data(), rows.d_hat.data(), rows.b.data(), rows.db.data(),
+                          rows.d2b.data());
+  };
+  fill(state.rows);
+  fill(state.mollified);
+}
+
+// Gradients and Hessians of the current rows, from the kappa that they have.
+void ContactTerm::fill_local(const Positions& x) {
+  fill_shape(state_);
+  LocalTerms &local = families_[0].local, &mollified = families_[1].local;
+  contact_terms(state_.rows, x, options_.hessian_mode, local.grad, local.hess);
+  mollified_terms(state_.mollified, x, mollified.grad, mollified.hess);
+}
+
+void ContactTerm::add_given_motion(const Positions& x, const Positions& motion, Positions& force) const {
+  bb::add_given_motion(state_.rows, motion, force);
+  bb::add_given_motion(state_.mollified, x, motion, force);
+}
+
+void ContactTerm::prepare(const Motion& motion, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::broad_phase);
+  contacts_.update_candidates(motion.x0, motion.x1);
+}
+
+double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::step_bound);
+  bound_ = contacts_.step_bound(motion.x0, motion.x1);
+  report.bound = bound_;
+  report.alpha_ccd = bound_.alpha;
+  return bound_.alpha;
+}
+
+std::string ContactTerm::describe_bound() const { return contacts_.describe(bound_.key, bound_.kind); }
+
+bool ContactTerm::admits(const Positions& x, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::contact_rows);
+  trial_.gap_min = contacts_.find_rows(x, trial_.rows, trial_.mollified);
+  return trial_.gap_min > 0 || options_.contact.literal;
+}
+
+void ContactTerm::evaluate(const Positions& x, const TermContext& context) {
+  {
+    const ScopedPhase timer(context.clock, Phase::stiffness);
+    stiffness_.freeze(trial_.rows, trial_.mollified, context.blocks, context.elastic);
+  }
+  fill_shape(trial_);
+  contact_energies(trial_.rows, families_[0].trial_energy);
+  mollified_energies(trial_.mollified, x, families_[1].trial_energy);
+}
+
+void ContactTerm::accept(PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::stiffness);
+  Term::accept(clock);
+  std::swap(state_, trial_);
+  use_state();
+  stiffness_.keep(state_.rows, state_.mollified);
+}
+
+const ContactState& contact_state(const TermList& terms) {
+  static const ContactState none;
+  const ContactTerm* term = terms.find<ContactTerm>();
+  return term ? term->state() : none;
+}
+
+PlanItem needs_contact(const TermNeeds& needs) {
+  return plan_item(needs.contacts.any(), "something can touch", "nothing can touch");
+}
+
+void make_contact(const TermInputs& inputs, TermList& terms) {
+  terms.add(std::make_unique<ContactTerm>(inputs.scene, inputs.options, inputs.contacts, inputs.fixed));
+}
+
+}  // namespace bb

@@ -1,0 +1,93 @@
+// The contact term B. Contact rows and mollified rows are one term with two families: they share the broad
+// phase and the memory of kappa, since an edge-edge pair keeps its kappa when it becomes mollified and back.
+#pragma once
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+#include "core/contact/contact_system.hpp"
+#include "core/scene/contact_plan.hpp"
+#include "core/terms/stiffness_update.hpp"
+#include "core/terms/term.hpp"
+#include "core/terms/term_options.hpp"
+
+namespace bb {
+
+/// Rows of one state.
+struct ContactState {
+  ContactTable rows;
+  MollifiedTable mollified;
+  double gap_min = std::numeric_limits<double>::infinity();  // m; infinity without rows
+
+  std::size_t size() const { return rows.size() + mollified.size(); }
+  /// f(rows), f(mollified).
+  template <class F>
+  void for_each_table(const F& f) const {
+    f(rows);
+    f(mollified);
+  }
+};
+
+class ContactTerm final : public Term {
+ public:
+  /// All arguments must outlive the term. fixed: [3 n] prescribed or locked degrees of freedom.
+  ContactTerm(const Scene& scene, TermOptions& options, const ContactPlan& plan,
+              const std::vector<std::uint8_t>& fixed);
+  std::string_view name() const override { return "contact"; }
+  TermGroup group() const override { return TermGroup::contact; }
+  Phase phase() const override { return Phase::contact_terms; }
+  bool fixed_stencils() const override { return false; }
+
+  void begin_step(const StepFrame& frame, PhaseClock& clock) override;
+  void change_frame(const StepFrame& frame) override;
+  /// Tells a policy that adapts which pairs had a row at two step ends in a row.
+  void end_step(PhaseClock& clock) override;
+  void linearise(const Positions& x, const TermContext& context) override;
+  void add_given_motion(const Positions& x, const Positions& motion, Positions& force) const override;
+  void prepare(const Motion& motion, PhaseClock& clock) override;
+  double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
+  std::string describe_bound() const override;
+  bool admits(const Positions& x, PhaseClock& clock) override;
+  void evaluate(const Positions& x, const TermContext& context) override;
+  void accept(PhaseClock& clock) override;
+  void report(const Positions& x, IterateNumbers& out, PhaseClock& clock) override;
+  void report_end(const Positions& x, StepNumbers& out, PhaseClock& clock) override;
+  void report_overload(const Positions& x, const Positions& others, const Positions& dx,
+                       StepNumbers& out) override;
+
+  const ContactState& state() const { return state_; }
+  const ContactSystem& contacts() const { return contacts_; }
+  StiffnessUpdate& stiffness() { return stiffness_; }
+
+ private:
+  void use_state();
+  void fill_shape(ContactState& state) const;
+  void fill_local(const Positions& x);
+  void start_policy(const Positions& x, const TermContext& context);
+  StiffnessGlobals policy_globals(const Positions& others) const;
+  void list_pair_gaps();
+
+  const Scene& scene_;
+  TermOptions& options_;
+  const std::vector<std::uint8_t>& fixed_;
+  ContactSystem contacts_;
+  StiffnessUpdate stiffness_;
+  ContactState state_, trial_;
+  double dt_ = 0, c_ = 1;
+  double kappa_change_ = 0;
+  bool first_iterate_ = true, policy_started_ = false;
+  StepBound bound_;
+  /// Of a pair in a row at a step end, for policies that adapt between steps.
+  struct PairGap {
+    PairId pair;
+    double gap, park;  // m
+  };
+  std::vector<PairGap> gaps_, previous_gaps_;  // by pair
+  std::vector<StiffnessPolicy::PairEnd> pair_ends_;
+};
+
+/// The rows among these terms; empty tables where the plan has no contact.
+const ContactState& contact_state(const TermList& terms);
+
+}  // namespace bb

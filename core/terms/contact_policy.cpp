@@ -1,0 +1,89 @@
+// What the contact term tells its stiffness policy at its start and between steps (docs/design.md, Stiffness
+// policies).
+#include <algorithm>
+
+#include "core/terms/contact.hpp"
+
+namespace bb {
+namespace {
+
+// Local gradients onto the vertices, in the order of the rows.
+void scatter(const TermFamily& family, Positions& gradient) {
+  const std::span<const int> vertices = family.stencils.vertices;
+  for (std::size_t i = 0; i < vertices.size(); ++i) {
+    if (vertices[i] >= 0) gradient.col(vertices[i]) += Vec3d::Map(&family.local.grad[3 * i]);
+  }
+}
+
+}  // namespace
+
+// A policy with memory starts at the first iterate that has contacts, from B with kappa = 1 and the gradient
+// of everything else.
+void ContactTerm::start_policy(const Positions& x, const TermContext& context) {
+  StiffnessPolicy& policy = stiffness_.policy();
+  if (policy_started_ || !policy.needs_globals() || state_.size() == 0) return;
+  std::fill(state_.rows.kappa.begin(), state_.rows.kappa.end(), 1.0);
+  std::fill(state_.mollified.kappa.begin(), state_.mollified.kappa.end(), 1.0);
+  fill_local(x);
+  policy.start(policy_globals(context.gradient));
+  policy_started_ = true;
+}
+
+StiffnessGlobals ContactTerm::policy_globals(const Positions& others) const {
+  StiffnessGlobals globals;
+  Positions own = Positions::Zero(3, others.cols());
+  for (const TermFamily& family : families_) scatter(family, own);
+  for (std::size_t i = 0; i < fixed_.size(); ++i) {
+    if (fixed_[i]) continue;
+    globals.grad_b_dot_grad_e += own.data()[i] * others.data()[i];
+    globals.grad_b_sq += own.data()[i] * own.data()[i];
+  }
+  double mass = 0;
+  int count = 0;
+  for (const std::vector<int>* vertices : {&state_.rows.vertex, &state_.mollified.free_vertex}) {
+    for (const int vertex : *vertices) {
+      if (vertex < 0) continue;
+      mass += scene_.mass[static_cast<std::size_t>(vertex)];
+      ++count;
+    }
+  }
+  globals.mean_contact_mass = mass / count;
+  globals.d_hat = *std::min_element(scene_.d_hat.begin(), scene_.d_hat.end());
+  globals.d2b_half = options_.contact.eval(globals.d_hat / 2, globals.d_hat).d2b;
+  globals.dt = dt_;
+  globals.c = c_;
+  return globals;
+}
+
+void ContactTerm::end_step(PhaseClock& clock) {
+  if (!stiffness_.policy().adapts()) return;
+  const ScopedPhase timer(clock, Phase::stiffness);
+  list_pair_gaps();
+  pair_ends_.clear();
+  auto before = previous_gaps_.begin();
+  for (const PairGap& now : gaps_) {
+    while (before != previous_gaps_.end() && before->pair < now.pair) ++before;
+    if (before == previous_gaps_.end()) break;
+    if (before->pair == now.pair) pair_ends_.push_back({now.gap, before->gap, now.park});
+  }
+  stiffness_.policy().end_step(pair_ends_);
+  previous_gaps_.swap(gaps_);
+}
+
+void ContactTerm::list_pair_gaps() {
+  const double park = options_.contact_options.ccd_park;
+  const ContactTable& rows = state_.rows;
+  gaps_.clear();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    for (std::size_t i = rows.pair_begin[r]; i < rows.pair_begin[r + 1]; ++i) {
+      gaps_.push_back({rows.pair[i], rows.d[r], park * rows.d_hat[r]});
+    }
+  }
+  const MollifiedTable& mollified = state_.mollified;
+  for (std::size_t r = 0; r < mollified.size(); ++r) {
+    gaps_.push_back({mollified.pair[r], mollified.d[r], park * mollified.d_hat[r]});
+  }
+  std::sort(gaps_.begin(), gaps_.end(), [](const PairGap& a, const PairGap& b) { return a.pair < b.pair; });
+}
+
+}  // namespace bb

@@ -1,0 +1,120 @@
+// What the contact term says of its rows: counts, gaps, kappa, loads.
+#include <algorithm>
+#include <limits>
+
+#include "core/terms/barrier_load.hpp"
+#include "core/terms/contact.hpp"
+
+namespace bb {
+namespace {
+
+ContactCounts count_contacts(const ContactState& state) {
+  ContactCounts counts;
+  for (const ContactKind kind : state.rows.kind) {
+    switch (kind) {
+      case ContactKind::point_point:
+        ++counts.point_point;
+        break;
+      case ContactKind::point_edge:
+        ++counts.point_edge;
+        break;
+      case ContactKind::point_triangle:
+        ++counts.point_triangle;
+        break;
+      case ContactKind::edge_edge:
+        ++counts.edge_edge;
+        break;
+      case ContactKind::obstacle:
+        ++counts.obstacle;
+        break;
+    }
+  }
+  counts.mollified = state.mollified.size();
+  return counts;
+}
+
+struct RowNumbers {
+  double gap_min_rel = std::numeric_limits<double>::infinity();
+  double kappa_min = std::numeric_limits<double>::infinity(), kappa_max = 0;
+  double load_max = 0, load_sum = 0, curvature_max = 0;
+};
+
+// Loads and curvature without mollified rows: such a row has e(x) kappa |b'| and no load of its own.
+RowNumbers measure(const ContactState& state) {
+  RowNumbers out;
+  state.for_each_table([&out](const auto& rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      out.kappa_min = std::min(out.kappa_min, rows.kappa[r]);
+      out.kappa_max = std::max(out.kappa_max, rows.kappa[r]);
+      out.gap_min_rel = std::min(out.gap_min_rel, rows.d[r] / rows.d_hat[r]);
+    }
+  });
+  const ContactTable& rows = state.rows;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    out.curvature_max = std::max(out.curvature_max, rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r]);
+    out.load_max = std::max(out.load_max, -rows.kappa[r] * rows.db[r]);
+    out.load_sum -= rows.multiplicity[r] * rows.kappa[r] * rows.db[r];
+  }
+  return out;
+}
+
+// What an iterate and the end of a step both say, where there are rows.
+template <class Numbers>
+void fill(const RowNumbers& rows, Numbers& out) {
+  out.kappa_min_N_per_m = rows.kappa_min;
+  out.kappa_max_N_per_m = rows.kappa_max;
+  out.contact_load_max_N = rows.load_max;
+}
+
+}  // namespace
+
+void ContactTerm::report(const Positions&, IterateNumbers& out, PhaseClock&) {
+  out.kappa_change_rel = kappa_change_;
+  out.contacts = count_contacts(state_);
+  if (out.contacts.total() == 0) return;
+  const RowNumbers rows = measure(state_);
+  fill(rows, out);
+  out.gap_min_iterates_m = state_.gap_min;
+  out.gap_min_iterates_rel = rows.gap_min_rel;
+  out.contact_curvature_max_N_per_m = rows.curvature_max;
+}
+
+void ContactTerm::report_end(const Positions&, StepNumbers& out, PhaseClock&) {
+  out.contacts = count_contacts(state_);
+  if (out.contacts.total() == 0) return;
+  const RowNumbers rows = measure(state_);
+  fill(rows, out);
+  out.contact_load_sum_N = rows.load_sum;
+  out.gap_min_m = state_.gap_min;
+  out.gap_min_rel = rows.gap_min_rel;
+}
+
+// The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and
+// the force at which the Newton model would come to rest, which knows how loads are shared but yields where
+// the barrier would have to hold.
+void ContactTerm::report_overload(const Positions&, const Positions& others, const Positions& dx,
+                                  StepNumbers& out) {
+  out.contact_overload = 0;
+  const BarrierFunction& barrier = options_.contact;
+  if (barrier.shape.infinite_at_zero) return;
+  const ContactTable& rows = state_.rows;
+  LargestSlope slope(barrier);
+  double largest = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
+    double push = 0, weight_sq = 0, opening = 0;
+    for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {
+      const double weight = rows.weight[4 * r + k];
+      push += weight * normal.dot(others.col(rows.vertex[4 * r + k]));
+      opening += weight * normal.dot(dx.col(rows.vertex[4 * r + k]));
+      weight_sq += weight * weight;
+    }
+    const double capacity = slope(rows.d_hat[r]);  // for kappa = 1
+    const double load = push / weight_sq / (rows.multiplicity[r] * rows.kappa[r]);
+    const double model = newton_force(barrier, rows.d[r], rows.d[r] + opening, rows.d_hat[r]);
+    largest = std::max({largest, load / capacity, model / capacity});
+  }
+  out.contact_overload = largest;
+}
+
+}  // namespace bb

@@ -1,0 +1,71 @@
+// Work of the weight: -f . (x - x_n), one element a vertex. No Hessian.
+#include <cmath>
+#include <numeric>
+
+#include "core/terms/registry.hpp"
+
+namespace bb {
+namespace {
+
+class ExternalForce final : public Term {
+ public:
+  explicit ExternalForce(const Scene& scene) : scene_(scene), vertices_(scene.mass.size()) {
+    std::iota(vertices_.begin(), vertices_.end(), 0);
+    TermFamily& family = families_.emplace_back();
+    family.stencils = {1, vertices_};
+    family.local.energy.resize(vertices_.size());
+    family.local.grad.resize(3 * vertices_.size());
+    family.trial_energy.resize(vertices_.size());
+  }
+
+  std::string_view name() const override { return "external_force"; }
+  TermGroup group() const override { return TermGroup::load; }
+  Phase phase() const override { return Phase::assembly; }
+  bool on_vertices() const override { return true; }
+
+  void begin_step(const StepFrame& frame, PhaseClock&) override {
+    x_n_ = frame.x_n;
+    force_.resize(3, x_n_.cols());
+    for (Eigen::Index i = 0; i < x_n_.cols(); ++i) {
+      force_.col(i) = (frame.load_factor * scene_.mass[static_cast<std::size_t>(i)]) * scene_.gravity;
+    }
+    Positions::Map(families_[0].local.grad.data(), 3, x_n_.cols()) = -force_;
+  }
+
+  void linearise(const Positions& x, const TermContext&) override {
+    fill_energies(x, families_[0].local.energy);
+  }
+  void evaluate(const Positions& x, const TermContext&) override {
+    fill_energies(x, families_[0].trial_energy);
+  }
+  void change(const Positions& x0, const Positions& x1, EnergyParts& out) const override {
+    for (Eigen::Index i = 0; i < x0.cols(); ++i) {
+      const Vec3d step = x1.col(i) - x0.col(i);
+      const double work = force_.col(i).dot(step);
+      out.add(-work, std::abs(work));
+    }
+  }
+
+ private:
+  void fill_energies(const Positions& x, std::vector<double>& energy) const {
+    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+      energy[static_cast<std::size_t>(i)] = -force_.col(i).dot(x.col(i) - x_n_.col(i));
+    }
+  }
+
+  const Scene& scene_;
+  std::vector<int> vertices_;
+  Positions x_n_, force_;  // m, N
+};
+
+}  // namespace
+
+PlanItem needs_external_force(const TermNeeds& needs) {
+  return plan_item(!needs.scene.gravity.isZero(0), "the scene has gravity", "no gravity");
+}
+
+void make_external_force(const TermInputs& inputs, TermList& terms) {
+  terms.add(std::make_unique<ExternalForce>(inputs.scene));
+}
+
+}  // namespace bb

@@ -1,0 +1,85 @@
+// Inertia: 1/(2 c h^2) |x - x_tilde|_M^2, one element a vertex.
+#include <numeric>
+
+#include "core/terms/registry.hpp"
+
+namespace bb {
+namespace {
+
+class Inertia final : public Term {
+ public:
+  explicit Inertia(const Scene& scene) : mass_(scene.mass), vertices_(mass_.size()), weight_(mass_.size()) {
+    std::iota(vertices_.begin(), vertices_.end(), 0);
+    TermFamily& family = families_.emplace_back();
+    family.stencils = {1, vertices_};
+    family.local.resize(vertices_.size(), 1);
+    family.trial_energy.resize(vertices_.size());
+  }
+
+  std::string_view name() const override { return "inertia"; }
+  TermGroup group() const override { return TermGroup::load; }
+  Phase phase() const override { return Phase::assembly; }
+  bool on_vertices() const override { return true; }
+
+  void change_frame(const StepFrame& frame) override {
+    x_tilde_ = frame.x_tilde;
+    std::vector<double>& hess = families_[0].local.hess;
+    for (std::size_t i = 0; i < weight_.size(); ++i) {
+      weight_[i] = frame.c == 0 ? 0 : mass_[i] / (frame.c * frame.dt * frame.dt);
+      for (std::size_t k = 0; k < 3; ++k) hess[9 * i + 4 * k] = weight_[i];
+    }
+  }
+
+  void linearise(const Positions& x, const TermContext&) override {
+    LocalTerms& local = families_[0].local;
+    fill_energies(x, local.energy);
+    for (std::size_t i = 0; i < weight_.size(); ++i) {
+      Vec3d::Map(&local.grad[3 * i]) = weight_[i] * off_target(x, i);
+    }
+  }
+  void evaluate(const Positions& x, const TermContext&) override {
+    fill_energies(x, families_[0].trial_energy);
+  }
+
+  // A square of differences, not a difference of squares.
+  void change(const Positions& x0, const Positions& x1, EnergyParts& out) const override {
+    for (std::size_t i = 0; i < weight_.size(); ++i) {
+      if (weight_[i] == 0) {
+        out.add(0, 0);
+        continue;
+      }
+      const auto v = static_cast<Eigen::Index>(i);
+      const Vec3d from = off_target(x0, i), to = off_target(x1, i), step = x1.col(v) - x0.col(v);
+      out.add(0.5 * weight_[i] * step.dot(from + to),
+              0.5 * weight_[i] * (from.squaredNorm() + to.squaredNorm()));
+    }
+  }
+
+ private:
+  Vec3d off_target(const Positions& x, std::size_t i) const {
+    const auto v = static_cast<Eigen::Index>(i);
+    return x.col(v) - x_tilde_.col(v);
+  }
+  void fill_energies(const Positions& x, std::vector<double>& energy) const {
+    for (std::size_t i = 0; i < weight_.size(); ++i) {
+      energy[i] = weight_[i] == 0 ? 0 : 0.5 * weight_[i] * off_target(x, i).squaredNorm();
+    }
+  }
+
+  const std::vector<double>& mass_;  // [n] kg, 0 for prescribed vertices
+  std::vector<int> vertices_;
+  std::vector<double> weight_;  // [n] m_i/(c h^2), N/m
+  Positions x_tilde_;
+};
+
+}  // namespace
+
+PlanItem needs_inertia(const TermNeeds& needs) {
+  return plan_item(!needs.scene.mass.empty(), "vertices have mass", "no vertex");
+}
+
+void make_inertia(const TermInputs& inputs, TermList& terms) {
+  terms.add(std::make_unique<Inertia>(inputs.scene));
+}
+
+}  // namespace bb

@@ -1,0 +1,103 @@
+#include "core/terms/plan.hpp"
+
+#include <fmt/format.h>
+
+#include <stdexcept>
+
+namespace bb {
+namespace {
+
+void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const PlanOptions& options) {
+  const bool contact = plan.term("contact").needed;
+  plan.broad_phase = plan_item(plan.contacts.pairs(), "pairs of surfaces", "no pair of surfaces");
+  plan.step_bound = plan_item(contact && options.collision_free_steps, "every step stays free of contact",
+                              contact ? "the step solver has no step bound" : "nothing can touch");
+  const bool mollified = terms.contact_options.mollifier != Mollifier::none;
+  plan.mollifier = plan_item(plan.contacts.edge_edge && mollified, "edge pairs may be parallel",
+                             mollified ? "no edge-edge pairs" : "contact.mollifier is none");
+  const bool contact_reads = contact && terms.stiffness && terms.stiffness->needs_hessian();
+  const bool limit_reads = plan.term("strain_limit").needed && terms.limit_stiffness.needs_hessian();
+  plan.policy_submatrix =
+      plan_item(contact_reads || limit_reads, "a stiffness policy reads the elastic matrix",
+                "no stiffness policy of a term in use reads it");
+  bool moving = false;
+  for (const Pin& pin : scene.pins) {
+    moving = moving || !scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
+  }
+  plan.pins = plan_item(!scene.pins.empty(), fmt::format("{} prescribed vertices", scene.pins.size()),
+                        "no prescribed vertex");
+  plan.pin_lifting = plan_item(moving, "prescribed vertices move", "no prescribed vertex moves");
+  plan.planar_lock = plan_item(scene.planar, "the scene is planar", "the scene is not planar");
+}
+
+void plan_passes(Plan& plan, const PlanOptions& options) {
+  plan.preconditioner =
+      plan_item(options.iterative_solver, "the linear solver is iterative", "the linear solver is direct");
+  plan.conditioning = plan_item(options.diagnose, "passes.diagnose", "passes.diagnose is off");
+  plan.audit = plan_item(options.audit, "passes.audit", "passes.audit is off");
+  plan.trace =
+      plan_item(options.trace, "a run is observed",
+                "only the pass time: passes.diagnose, passes.audit or output.frames_every leave one");
+  plan.frames = plan_item(options.frames, "output.frames_every", "output.frames_every is 0");
+  plan.matrices = plan_item(options.matrices, "output.matrices", "output.matrices is off");
+}
+
+}  // namespace
+
+const PlanItem& Plan::term(std::string_view name) const {
+  for (std::size_t i = 0; i < terms.size(); ++i) {
+    if (term_entries()[i].name == name) return terms[i];
+  }
+  throw std::logic_error("the plan has no term " + std::string(name));
+}
+
+std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
+  std::vector<std::pair<std::string_view, const PlanItem*>> out;
+  for (std::size_t i = 0; i < terms.size(); ++i) out.emplace_back(term_entries()[i].name, &terms[i]);
+  out.insert(out.end(), {{"self_contact", &contacts.self_contact},
+                         {"given_surfaces", &contacts.given_surfaces},
+                         {"obstacles", &contacts.obstacles},
+                         {"broad_phase", &broad_phase},
+                         {"step_bound", &step_bound},
+                         {"mollifier", &mollifier},
+                         {"policy_submatrix", &policy_submatrix},
+                         {"pins", &pins},
+                         {"pin_lifting", &pin_lifting},
+                         {"planar_lock", &planar_lock},
+                         {"preconditioner", &preconditioner},
+                         {"conditioning", &conditioning},
+                         {"audit", &audit},
+                         {"trace", &trace},
+                         {"frames", &frames},
+                         {"matrices", &matrices}});
+  return out;
+}
+
+std::vector<Plan::Skip> Plan::skipped() const {
+  std::vector<Skip> out;
+  for (const auto& [name, entry] : items()) {
+    if (!entry->needed) out.push_back({std::string(name), entry->reason});
+  }
+  return out;
+}
+
+Plan make_plan(const Scene& scene, const TermOptions& terms, const PlanOptions& options) {
+  Plan plan;
+  plan.contacts = plan_contact(scene);
+  for (const TermEntry& entry : term_entries()) {
+    plan.terms.push_back(entry.needs({scene, terms, plan.contacts}));
+  }
+  plan_steps(plan, scene, terms, options);
+  plan_passes(plan, options);
+  return plan;
+}
+
+TermList make_terms(const Plan& plan, const TermInputs& inputs) {
+  TermList terms;
+  for (std::size_t i = 0; i < plan.terms.size(); ++i) {
+    if (plan.terms[i].needed) term_entries()[i].make(inputs, terms);
+  }
+  return terms;
+}
+
+}  // namespace bb

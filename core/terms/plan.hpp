@@ -1,0 +1,56 @@
+// The plan of a run: what its scene and its options need, and why. Made once; the broad phase, the terms and
+// the passes ask it, and what is not needed is neither allocated nor run. `bench explain` prints it and the
+// record keeps what was skipped.
+#pragma once
+
+#include <string>
+#include <string_view>
+#include <utility>
+#include <vector>
+
+#include "core/scene/contact_plan.hpp"
+#include "core/scene/scene.hpp"
+#include "core/terms/registry.hpp"
+
+namespace bb {
+
+/// What the options outside the terms decide.
+struct PlanOptions {
+  bool collision_free_steps = true;  // false for a step solver without a step bound
+  bool iterative_solver = false;     // linear solver is iterative
+  bool diagnose = false, audit = false, trace = false, frames = false, matrices = false;
+};
+
+struct Plan {
+  std::vector<PlanItem> terms;  // of term_entries(), in their order
+  ContactPlan contacts;         // what contact is made of
+  PlanItem broad_phase;         // pairs of surfaces
+  PlanItem step_bound;          // ACCD along every step
+  PlanItem mollifier;           // near-parallel edge-edge pairs
+  PlanItem policy_submatrix;    // H, which a stiffness policy reads
+  PlanItem pins;                // eliminated degrees of freedom
+  PlanItem pin_lifting;         // prescribed motion on the right-hand side
+  PlanItem planar_lock;         // third axis eliminated
+  PlanItem preconditioner;      // iterative solver only
+  PlanItem conditioning;        // condition numbers
+  PlanItem audit;               // exact penetration checks
+  PlanItem trace;               // one line a Newton iteration
+  PlanItem frames, matrices;    // files beside the record
+
+  /// That of the term of this name. Requires a name of term_entries().
+  const PlanItem& term(std::string_view name) const;
+  /// (name, item): the terms, then the others in the order above; the names are those of the members.
+  std::vector<std::pair<std::string_view, const PlanItem*>> items() const;
+  struct Skip {
+    std::string what, why;
+  };
+  std::vector<Skip> skipped() const;
+};
+
+/// Errors: none.   Cost: O(vertices + elements + surface log surface).
+Plan make_plan(const Scene& scene, const TermOptions& terms, const PlanOptions& options);
+
+/// The terms that the plan needs, in the order of registry.inc.
+TermList make_terms(const Plan& plan, const TermInputs& inputs);
+
+}  // namespace bb

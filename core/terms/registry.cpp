@@ -1,0 +1,20 @@
+#include "core/terms/registry.hpp"
+
+namespace bb {
+
+#define ENTRY(name, doc)                   \
+  PlanItem needs_##name(const TermNeeds&); \
+  void make_##name(const TermInputs&, TermList&);
+#include "core/terms/registry.inc"
+#undef ENTRY
+
+std::span<const TermEntry> term_entries() {
+  static constexpr TermEntry all[] = {
+#define ENTRY(name, doc) {#name, doc, needs_##name, make_##name},
+#include "core/terms/registry.inc"
+#undef ENTRY
+  };
+  return all;
+}
+
+}  // namespace bb

@@ -1,0 +1,42 @@
+// The terms of E by name: what a scene needs of each, and how it is made.
+#pragma once
+
+#include <cstdint>
+#include <span>
+#include <string_view>
+#include <vector>
+
+#include "core/scene/contact_plan.hpp"
+#include "core/scene/scene.hpp"
+#include "core/terms/term.hpp"
+#include "core/terms/term_options.hpp"
+
+namespace bb {
+
+/// What a term decides from whether it is needed.
+struct TermNeeds {
+  const Scene& scene;
+  const TermOptions& options;
+  const ContactPlan& contacts;
+};
+
+/// What a term is made from. All of it outlives the term.
+struct TermInputs {
+  const Scene& scene;
+  TermOptions& options;
+  const ContactPlan& contacts;
+  const std::vector<std::uint8_t>& fixed;  // [3 n] prescribed or locked degrees of freedom
+};
+
+/// One line of registry.inc; the file of that name defines needs_<name>() and make_<name>().
+struct TermEntry {
+  std::string_view name, doc;
+  PlanItem (*needs)(const TermNeeds&);
+  /// Adds the terms, one or more. Called when the plan says that they are needed.
+  void (*make)(const TermInputs&, TermList&);
+};
+
+/// In the order of registry.inc.
+std::span<const TermEntry> term_entries();
+
+}  // namespace bb

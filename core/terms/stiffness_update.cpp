@@ -1,0 +1,129 @@
+#include "core/terms/stiffness_update.hpp"
+
+namespace bb {
+namespace {
+
+const std::vector<int>& free_vertices(const ContactTable& table) { return table.vertex; }
+const std::vector<int>& free_vertices(const MollifiedTable& table) { return table.free_vertex; }
+
+/// Largest relative_change of a row since its iterate was accepted; from now on the rows are compared with
+/// what they have now, so that an iterate that is kept has not changed.
+template <class Table>
+double settle(Table& rows) {
+  double change = 0;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    change = std::max(change, relative_change(rows.kappa_before[r], rows.kappa[r]));
+  }
+  rows.kappa_before = rows.kappa;
+  return change;
+}
+
+/// A row with a pair that no iterate had before has the value at d_hat: it is compared with nothing.
+template <class Table>
+void note_before(Table& rows, std::span<const int> missing) {
+  rows.kappa_before = rows.kappa;
+  for (const int row : missing) rows.kappa_before[static_cast<std::size_t>(row)] = 0;
+}
+
+}  // namespace
+
+StiffnessBatch PolicyColumns::batch(double dt, double c, bool with_hessian) const {
+  StiffnessBatch rows;
+  rows.n = d.size();
+  rows.n_free = n_free.data();
+  rows.weight = weight.data();
+  rows.normal = normal.data();
+  rows.d = d.data();
+  rows.d_hat = d_hat.data();
+  rows.mass = mass.data();
+  rows.hessian = with_hessian ? hessian.data() : nullptr;
+  rows.dt = dt;
+  rows.c = c;
+  return rows;
+}
+
+StiffnessUpdate::StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass)
+    : policy_(policy), mass_(mass) {}
+
+void StiffnessUpdate::set_time(double dt, double c) {
+  dt_ = dt;
+  c_ = c;
+}
+
+template <class Table>
+void StiffnessUpdate::gather(const Table& table, std::span<const int> rows, const BlockSystem& blocks,
+                             const BlockSystem::Values& elastic, bool at_d_hat, bool with_hessian) {
+  const std::size_t n = rows.size();
+  columns_.n_free.resize(n);
+  columns_.weight.resize(4 * n);
+  columns_.mass.resize(4 * n);
+  columns_.normal.resize(3 * n);
+  columns_.d.resize(n);
+  columns_.d_hat.resize(n);
+  if (with_hessian) columns_.hessian.resize(144 * n);
+  const std::vector<int>& vertices = free_vertices(table);
+  for (std::size_t i = 0; i < n; ++i) {
+    const auto r = static_cast<std::size_t>(rows[i]);
+    columns_.n_free[i] = table.n_free[r];
+    for (std::size_t k = 0; k < 4; ++k) {
+      const int vertex = vertices[4 * r + k];
+      columns_.weight[4 * i + k] = table.weight[4 * r + k];
+      columns_.mass[4 * i + k] = vertex < 0 ? 0.0 : mass_[static_cast<std::size_t>(vertex)];
+    }
+    for (std::size_t k = 0; k < 3; ++k) columns_.normal[3 * i + k] = table.normal[3 * r + k];
+    columns_.d_hat[i] = table.d_hat[r];
+    columns_.d[i] = at_d_hat ? table.d_hat[r] : table.d[r];
+    if (with_hessian) {
+      blocks.submatrix(elastic, &vertices[4 * r], table.n_free[r], &columns_.hessian[144 * i]);
+    }
+  }
+}
+
+template <class Table>
+void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const BlockSystem& blocks,
+                           const BlockSystem::Values& elastic, bool at_d_hat) {
+  if (rows.empty()) return;
+  const bool with_hessian = policy_.needs_hessian();
+  gather(table, rows, blocks, elastic, at_d_hat, with_hessian);
+  kappa_.resize(rows.size());
+  policy_.fill(columns_.batch(dt_, c_, with_hessian), kappa_.data());
+  for (std::size_t i = 0; i < rows.size(); ++i) table.kappa[static_cast<std::size_t>(rows[i])] = kappa_[i];
+}
+
+void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                                   const BlockSystem::Values& elastic, bool at_d_hat) {
+  fill(rows, missing_, blocks, elastic, at_d_hat);
+  fill(mollified, missing_mollified_, blocks, elastic, at_d_hat);
+  memory_.complete(rows, missing_);
+}
+
+double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                                const BlockSystem::Values& elastic) {
+  const bool anew = policy_.refresh() == Refresh::per_iteration;
+  if (uniform() || anew) memory_.clear();
+  memory_.recall(rows, mollified, missing_, missing_mollified_);
+  fill_missing(rows, mollified, blocks, elastic, false);
+  keep(rows, mollified);
+  if (uniform() || !anew) return 0;
+  return std::max(settle(rows), settle(mollified));
+}
+
+void StiffnessUpdate::freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                             const BlockSystem::Values& elastic) {
+  memory_.recall(rows, mollified, missing_, missing_mollified_);
+  fill_missing(rows, mollified, blocks, elastic, true);
+  note_before(rows, missing_);
+  note_before(mollified, missing_mollified_);
+}
+
+void StiffnessUpdate::keep(const ContactTable& rows, const MollifiedTable& mollified) {
+  if (!uniform()) memory_.store(rows, mollified);
+}
+
+PolicyColumns StiffnessUpdate::columns(const ContactTable& rows, int row, const BlockSystem& blocks,
+                                       const BlockSystem::Values& elastic) {
+  gather(rows, std::span<const int>(&row, 1), blocks, elastic, false, !elastic.empty());
+  return columns_;
+}
+
+}  // namespace bb

@@ -1,0 +1,80 @@
+// Feeds the contact table to the stiffness policy: when kappa is refreshed, kept, or given to a row that
+// appears during a line search (docs/design.md). Knows no policy by name.
+#pragma once
+
+#include <algorithm>
+#include <span>
+#include <vector>
+
+#include "core/barrier/stiffness_policy.hpp"
+#include "core/contact/kappa_memory.hpp"
+#include "core/linear/block_system.hpp"
+
+namespace bb {
+
+/// Owned columns behind a StiffnessBatch; reused, so no allocation once they have grown.
+struct PolicyColumns {
+  std::vector<int> n_free;
+  std::vector<double> weight, normal, d, d_hat, mass, hessian;
+  StiffnessBatch batch(double dt, double c, bool with_hessian) const;
+};
+
+/// max(a, b) / min(a, b) - 1 of two positive numbers; 0 when one is not.
+inline double relative_change(double a, double b) {
+  return a > 0 && b > 0 ? std::max(a, b) / std::min(a, b) - 1 : 0;
+}
+
+class StiffnessUpdate {
+ public:
+  /// policy must outlive this object. mass: [n_vertices] kg.
+  StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass);
+
+  /// Forgets the kappa of the step before.
+  void begin_step() { memory_.clear(); }
+  /// Step length (s) and inertia weight c that policies read.
+  void set_time(double dt, double c);
+
+  /// kappa of the rows of a Newton iterate. elastic: values of the elastic matrix H, read only when the
+  /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a pair had
+  /// in this step. Returns the largest relative_change of a row's kappa against its kappa_before; 0 where
+  /// the policy gives all rows one kappa or keeps it for the step.
+  double refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                 const BlockSystem::Values& elastic);
+
+  /// kappa of the rows of a trial state: known pairs keep theirs, new ones get the policy's value at d =
+  /// d_hat with the same H, so that kappa does not depend on the trial. Writes kappa_before too: what is
+  /// known of a trial stays in its own rows.
+  void freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+              const BlockSystem::Values& elastic);
+
+  /// The pairs of an accepted trial keep their kappa for the rest of the step.
+  void keep(const ContactTable& rows, const MollifiedTable& mollified);
+
+  StiffnessPolicy& policy() { return policy_; }
+
+  /// Columns of one row as the policy sees it (for matching at the contact that carried the load).
+  PolicyColumns columns(const ContactTable& rows, int row, const BlockSystem& blocks,
+                        const BlockSystem::Values& elastic);
+
+ private:
+  /// One kappa for all rows: nothing to remember.
+  bool uniform() const { return policy_.state().kappa > 0; }
+  void fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
+                    const BlockSystem::Values& elastic, bool at_d_hat);
+  template <class Table>
+  void gather(const Table& table, std::span<const int> rows, const BlockSystem& blocks,
+              const BlockSystem::Values& elastic, bool at_d_hat, bool with_hessian);
+  template <class Table>
+  void fill(Table& table, std::span<const int> rows, const BlockSystem& blocks,
+            const BlockSystem::Values& elastic, bool at_d_hat);
+
+  StiffnessPolicy& policy_;
+  std::span<const double> mass_;
+  double dt_ = 0, c_ = 1;
+  KappaMemory memory_;
+  PolicyColumns columns_;
+  std::vector<int> missing_, missing_mollified_;
+  std::vector<double> kappa_;
+};
+
+}  // namespace bb

@@ -1,0 +1,179 @@
+#include "core/terms/strain_limit.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <limits>
+
+#include "core/terms/barrier_load.hpp"
+#include "core/terms/registry.hpp"
+#include "core/terms/stiffness_update.hpp"
+
+namespace bb {
+
+StrainLimitTerm::StrainLimitTerm(const Scene& scene, const TermOptions& options,
+                                 const std::vector<std::uint8_t>& fixed)
+    : scene_(scene),
+      options_(options),
+      fixed_(fixed),
+      batch_(scene.limit.triangles, scene.rest, scene.limit.onset, scene.limit.width, scene.planar),
+      kappa_(batch_.size()) {
+  TermFamily& family = families_.emplace_back();
+  family.stencils = {3, batch_.vertices()};
+  family.local.resize(batch_.size(), 3);
+  family.trial_energy.resize(batch_.size());
+}
+
+void StrainLimitTerm::begin_step(const StepFrame& frame, PhaseClock&) {
+  x_n_ = frame.x_n;
+  change_frame(frame);
+  kappa_fresh_ = false;
+  first_iterate_ = true;
+}
+
+void StrainLimitTerm::change_frame(const StepFrame& frame) {
+  dt_ = frame.dt;
+  c_ = frame.c;
+}
+
+void StrainLimitTerm::linearise(const Positions& x, const TermContext& context) {
+  kappa_change_ = 0;
+  refresh_stiffness(x, context);
+  first_iterate_ = false;
+  batch_.derivatives(x, options_.limit, kappa_.data(), families_[0].local);
+}
+
+void StrainLimitTerm::refresh_stiffness(const Positions& x, const TermContext& context) {
+  const LimitStiffness& rule = options_.limit_stiffness;
+  if (kappa_fresh_ && (rule.kind == LimitStiffness::Kind::fixed || rule.refresh == Refresh::per_step)) return;
+  kappa_fresh_ = true;
+  if (rule.kind == LimitStiffness::Kind::fixed) {
+    batch_.fixed_stiffness(rule.k_s, kappa_.data());
+    return;
+  }
+  kappa_before_ = kappa_;
+  hess_.resize(81 * batch_.size());
+  Mat<double, 12, 12> block;
+  for (std::size_t e = 0; rule.elastic_term && e < batch_.size(); ++e) {
+    context.blocks.submatrix(context.elastic, &batch_.vertices()[3 * e], 3, block.data());
+    Eigen::Map<Mat<double, 9, 9>> target(&hess_[81 * e]);
+    target = block.topLeftCorner<9, 9>();
+  }
+  batch_.measure(x);
+  batch_.elastic_stiffness(x_n_, hess_.data(), scene_.mass.data(), scene_.limit.mass.data(),
+                           rule.rule(dt_, c_), kappa_.data());
+  for (double& kappa : kappa_) kappa *= rule.multiplier;
+  kappa_change_ = first_iterate_ ? 0 : stiffness_change();
+}
+
+double StrainLimitTerm::smaller_gap(std::size_t e) const {
+  return std::min(batch_.gaps()[2 * e], batch_.gaps()[2 * e + 1]);
+}
+
+// Largest relative change of an active element's kappa.
+double StrainLimitTerm::stiffness_change() const {
+  double change = 0;
+  for (std::size_t e = 0; e < batch_.size(); ++e) {
+    if (!(smaller_gap(e) < scene_.limit.width[e])) continue;
+    change = std::max(change, relative_change(kappa_before_[e], kappa_[e]));
+  }
+  return change;
+}
+
+double StrainLimitTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::strain_bound);
+  report.alpha_strain = batch_.step_bound(motion.x0, motion.dx, 1.0, options_.contact_options.ccd_park);
+  return report.alpha_strain;
+}
+
+bool StrainLimitTerm::admits(const Positions& x, PhaseClock&) {
+  batch_.measure(x);
+  return options_.limit.literal || batch_.min_gap() > 0;
+}
+
+void StrainLimitTerm::evaluate(const Positions& x, const TermContext&) {
+  batch_.values(x, options_.limit, kappa_.data(), families_[0].trial_energy.data());
+}
+
+double StrainLimitTerm::load_max() const {
+  double largest = 0;
+  for (std::size_t e = 0; e < batch_.size(); ++e) {
+    const double width = scene_.limit.width[e];
+    for (const double gap : batch_.gaps().subspan(2 * e, 2)) {
+      if (gap >= width) continue;
+      largest = std::max(largest, -kappa_[e] * options_.limit.eval(gap, width).db / batch_.rests()[e].area);
+    }
+  }
+  return largest;
+}
+
+void StrainLimitTerm::report(const Positions& x, IterateNumbers& out, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::strain_limit);
+  batch_.measure(x);
+  out.max_stretch = batch_.max_stretch();
+  out.limit_load_max_N_per_m = load_max();
+  out.limit_kappa_change_rel = kappa_change_;
+  double gap = std::numeric_limits<double>::infinity();
+  for (std::size_t e = 0; e < batch_.size(); ++e) {
+    gap = std::min(gap, smaller_gap(e) / scene_.limit.width[e]);
+  }
+  out.limit_gap_min_rel = gap;
+}
+
+void StrainLimitTerm::report_end(const Positions& x, StepNumbers& out, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::strain_limit);
+  batch_.measure(x);
+  out.max_stretch = batch_.max_stretch();
+  out.limit_load_max_N_per_m = load_max();
+}
+
+// Of element e on its own: how many times larger its force would have to be to balance the rest along itself.
+double StrainLimitTerm::times_larger(std::size_t e, const Positions& others) const {
+  const std::vector<double>& gradient = families_[0].local.grad;
+  double needed = 0, own = 0;
+  for (std::size_t k = 0; k < 3; ++k) {
+    const auto v = static_cast<std::size_t>(batch_.vertices()[3 * e + k]);
+    for (std::size_t c = 0; c < 3; ++c) {
+      if (fixed_[3 * v + c]) continue;  // carried by the pin
+      const double g = gradient[9 * e + 3 * k + c];
+      needed -= g * others.data()[3 * v + c];
+      own += g * g;
+    }
+  }
+  return own > std::numeric_limits<double>::min() ? needed / own : 0;
+}
+
+// The larger of two estimates: what everything but the limit puts on an element on its own, and the force at
+// which the Newton model would come to rest.
+void StrainLimitTerm::report_overload(const Positions& x, const Positions& others, const Positions& dx,
+                                      StepNumbers& out) {
+  out.limit_overload = 0;
+  if (options_.limit.shape.infinite_at_zero) return;
+  batch_.measure(x);
+  const std::vector<double> gaps(batch_.gaps().begin(), batch_.gaps().end());
+  batch_.measure(x + dx);
+  LargestSlope slope(options_.limit);
+  double largest = 0;
+  for (std::size_t e = 0; e < batch_.size(); ++e) {
+    const double width = scene_.limit.width[e], gap = std::min(gaps[2 * e], gaps[2 * e + 1]);
+    if (!(gap < width)) continue;
+    const double capacity = slope(width);
+    const double share = -options_.limit.eval(gap, width).db / capacity;
+    largest = std::max({largest, share * times_larger(e, others),
+                        newton_force(options_.limit, gap, smaller_gap(e), width) / capacity});
+  }
+  batch_.measure(x);
+  out.limit_overload = largest;
+}
+
+PlanItem needs_strain_limit(const TermNeeds& needs) {
+  const std::size_t n = needs.scene.limit.triangles.size();
+  return plan_item(needs.options.strain_limit && n > 0, fmt::format("{} limited triangles", n),
+                   needs.options.strain_limit ? "no limited triangle" : "strain_limit is not enabled");
+}
+
+void make_strain_limit(const TermInputs& inputs, TermList& terms) {
+  terms.add(std::make_unique<StrainLimitTerm>(inputs.scene, inputs.options, inputs.fixed));
+}
+
+}  // namespace bb

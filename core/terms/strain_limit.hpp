@@ -1,0 +1,55 @@
+// The strain limit S as a term: barrier, stiffness per element, exact step bound.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/energy/strain_limit_batch.hpp"
+#include "core/scene/scene.hpp"
+#include "core/terms/term.hpp"
+#include "core/terms/term_options.hpp"
+
+namespace bb {
+
+class StrainLimitTerm final : public Term {
+ public:
+  /// All arguments must outlive the term. fixed: [3 n] prescribed or locked degrees of freedom.
+  StrainLimitTerm(const Scene& scene, const TermOptions& options, const std::vector<std::uint8_t>& fixed);
+  std::string_view name() const override { return "strain_limit"; }
+  TermGroup group() const override { return TermGroup::limit; }
+  Phase phase() const override { return Phase::strain_limit; }
+
+  void begin_step(const StepFrame& frame, PhaseClock& clock) override;
+  void change_frame(const StepFrame& frame) override;
+  void linearise(const Positions& x, const TermContext& context) override;
+  double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
+  std::string describe_bound() const override { return "the strain limit"; }
+  bool admits(const Positions& x, PhaseClock& clock) override;
+  void evaluate(const Positions& x, const TermContext& context) override;
+  void report(const Positions& x, IterateNumbers& out, PhaseClock& clock) override;
+  void report_end(const Positions& x, StepNumbers& out, PhaseClock& clock) override;
+  void report_overload(const Positions& x, const Positions& others, const Positions& dx,
+                       StepNumbers& out) override;
+
+  /// SVD sweeps over the limited elements so far: one a state that was measured.
+  long long sweeps() const { return batch_.sweeps(); }
+
+ private:
+  void refresh_stiffness(const Positions& x, const TermContext& context);
+  double stiffness_change() const;
+  double smaller_gap(std::size_t e) const;
+  double load_max() const;
+  double times_larger(std::size_t e, const Positions& others) const;
+
+  const Scene& scene_;
+  const TermOptions& options_;
+  const std::vector<std::uint8_t>& fixed_;
+  StrainLimitBatch batch_;
+  Positions x_n_;
+  double dt_ = 0, c_ = 1;
+  std::vector<double> kappa_, kappa_before_, hess_;  // J, J, [81 n] N/m
+  bool kappa_fresh_ = false, first_iterate_ = true;
+  double kappa_change_ = 0;
+};
+
+}  // namespace bb

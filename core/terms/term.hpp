@@ -1,0 +1,151 @@
+// A term of E, the incremental potential: what Newton knows of it (docs/design.md, Terms). A term is one file
+// of this room and one line of registry.inc. It owns what it computes: local terms at the iterate, energies
+// of the iterate and of the trial state.
+#pragma once
+
+#include <memory>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/energy/element_batch.hpp"
+#include "core/linear/block_system.hpp"
+#include "core/math/types.hpp"
+#include "core/record/phase_times.hpp"
+#include "core/terms/report.hpp"
+#include "core/terms/term_set.hpp"
+
+namespace bb {
+
+/// One time step, the same for all terms.
+struct StepFrame {
+  Positions x_n, x_tilde;  // [3 x n] m
+  double dt = 0;           // s
+  double c = 1;            // inertia weight M/(c dt^2); 0 when quasi-static
+  double load_factor = 1;  // of the external force
+};
+
+/// What a term may read of the others while it is linearised at an iterate, or evaluated at a trial state.
+struct TermContext {
+  const BlockSystem& blocks;           // pattern of the iterate's matrix
+  const BlockSystem::Values& elastic;  // H at the iterate; empty unless the plan has policy_submatrix
+  const Positions& gradient;           // N, at the iterate: of the terms before this one (of all, in a trial)
+  PhaseClock& clock;
+};
+
+/// Straight motion of a whole step: x0 -> x1, x1 - x0 = dx up to rounding; x1 is exact at prescribed
+/// vertices.
+struct Motion {
+  const Positions &x0, &x1, &dx;
+};
+
+/// Elements of one shape: who they touch, and what they are at the iterate.
+struct TermFamily {
+  Stencils stencils;
+  LocalTerms local;                  // hess stays empty where a term has no Hessian
+  std::vector<double> trial_energy;  // [n elements of the trial state] J
+};
+
+/// What E changes by from the iterate to the trial, in parts that are summed one by one: a difference of
+/// large sums would lose the decrease that the line search looks for.
+struct EnergyParts {
+  std::vector<double> change, magnitude;  // J; rounding noise is some multiple of eps times the magnitudes
+
+  void clear();
+  void add(double part, double size);
+};
+
+class Term {
+ public:
+  Term() = default;
+  Term(const Term&) = delete;
+  Term& operator=(const Term&) = delete;
+  virtual ~Term() = default;
+
+  /// That of its line in registry.inc.
+  virtual std::string_view name() const = 0;
+  virtual TermGroup group() const = 0;
+  /// What linearising is charged to.
+  virtual Phase phase() const = 0;
+
+  // --- structure
+  /// One entry a kind of element, always as many, in a fixed order.
+  std::span<const TermFamily> families() const { return families_; }
+  /// Elements of the iterate.
+  std::size_t size() const;
+  /// False when elements come and go: their stencils are read anew at every iterate, and their gradient is
+  /// summed by itself before it is added to that of the other terms.
+  virtual bool fixed_stencils() const { return true; }
+  /// True when the elements are the vertices: the energies of such terms are summed vertex by vertex.
+  virtual bool on_vertices() const { return false; }
+
+  // --- a step
+  /// A step from frame.x_n begins: it is the iterate now, and what belongs to the step before is forgotten.
+  virtual void begin_step(const StepFrame& frame, PhaseClock&) { change_frame(frame); }
+  /// The same step and iterate with another prediction and length.
+  virtual void change_frame(const StepFrame&) {}
+  /// The step is over.
+  virtual void end_step(PhaseClock&) {}
+
+  // --- an iterate
+  /// Energies, gradients and PSD Hessians of all families at the iterate x. Elastic terms come first and read
+  /// nothing of the context.
+  virtual void linearise(const Positions& x, const TermContext& context) = 0;
+  /// Adds to the free columns of `force` (N) how this term's gradient changes, to first order, when
+  /// prescribed vertices move by `motion` (m, 0 at free vertices), as far as it is in no block of the matrix.
+  virtual void add_given_motion(const Positions& /*x*/, const Positions& /*motion*/,
+                                Positions& /*force*/) const {}
+
+  // --- a motion
+  /// Before bound() and trials along it.
+  virtual void prepare(const Motion&, PhaseClock&) {}
+  /// Largest alpha in [0, 1] up to which the motion is feasible. Says it in the report too.
+  virtual double bound(const Motion&, IterateNumbers&, PhaseClock&) { return 1; }
+  /// What held the last bound() below 1.
+  virtual std::string describe_bound() const { return {}; }
+
+  // --- a trial state x, every number of it finite
+  /// Whether x is feasible.
+  virtual bool admits(const Positions& /*x*/, PhaseClock&) { return true; }
+  /// Energies at the trial, after admits(). What changes with the iterate only, like kappa, stays as it is.
+  virtual void evaluate(const Positions& x, const TermContext& context) = 0;
+  /// The parts of E(trial x1) - E(iterate x0), in the order of the elements. Appends.
+  virtual void change(const Positions& x0, const Positions& x1, EnergyParts& out) const;
+  /// The trial becomes the iterate.
+  virtual void accept(PhaseClock& clock);
+
+  // --- what is said of it, at the iterate x
+  virtual void report(const Positions& /*x*/, IterateNumbers&, PhaseClock&) {}
+  virtual void report_end(const Positions& /*x*/, StepNumbers&, PhaseClock&) {}
+  /// How many times the largest force of a bounded barrier the loads of a step without progress are. others:
+  /// gradient of all other terms at the iterate x. dx: the Newton direction there, or 0.
+  virtual void report_overload(const Positions& /*x*/, const Positions& /*others*/, const Positions& /*dx*/,
+                               StepNumbers&) {}
+
+ protected:
+  std::vector<TermFamily> families_;
+};
+
+/// The terms of a run in the order of registry.inc, which is that of the sums.
+class TermList {
+ public:
+  void add(std::unique_ptr<Term> term) { terms_.push_back(std::move(term)); }
+  auto begin() const { return terms_.begin(); }
+  auto end() const { return terms_.end(); }
+  std::size_t size() const { return terms_.size(); }
+  const Term& operator[](std::size_t i) const { return *terms_[i]; }
+  /// The first term of that class, or null.
+  template <class T>
+  T* find() const {
+    for (const auto& term : terms_) {
+      if (T* found = dynamic_cast<T*>(term.get())) return found;
+    }
+    return nullptr;
+  }
+
+ private:
+  std::vector<std::unique_ptr<Term>> terms_;
+};
+
+}  // namespace bb

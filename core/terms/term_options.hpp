@@ -1,0 +1,40 @@
+// What a run chooses of its terms: barriers, stiffness, how contacts are computed. What differs between two
+// runs of a comparison is here and in the rest of the method (core/newton/method.hpp).
+#pragma once
+
+#include <memory>
+
+#include "core/barrier/shape.hpp"
+#include "core/barrier/stiffness_policy.hpp"
+#include "core/contact/contact_system.hpp"
+#include "core/contact/contact_terms.hpp"
+#include "core/energy/strain_stiffness.hpp"
+
+namespace bb {
+
+/// Stiffness of the strain limit, J per element.
+struct LimitStiffness {
+  enum class Kind { fixed, elasticity_inclusive };
+  Kind kind = Kind::fixed;
+  double k_s = 0;                        // N/m, fixed: kappa_e = k_s x rest area
+  MassTerm mass_term = MassTerm::paper;  // elasticity_inclusive
+  bool elastic_term = true;              // elasticity_inclusive
+  Refresh refresh = Refresh::per_iteration;
+  double multiplier = 1;  // the config's own factor times s of the matching rule
+
+  /// What elasticity_inclusive asks of one element, in a step of length dt (s) and inertia weight c.
+  StrainStiffnessRule rule(double dt, double c) const { return {mass_term, elastic_term, dt, c}; }
+  bool needs_hessian() const { return kind == Kind::elasticity_inclusive && elastic_term; }
+};
+
+struct TermOptions {
+  BarrierFunction contact;
+  std::unique_ptr<StiffnessPolicy> stiffness;
+  HessianMode hessian_mode = HessianMode::gauss_newton;
+  ContactOptions contact_options;
+  bool strain_limit = true;  // false: limits of the scene are left out
+  BarrierFunction limit;
+  LimitStiffness limit_stiffness;
+};
+
+}  // namespace bb

@@ -1,0 +1,63 @@
+// The words of the enumerations that a config names.
+#pragma once
+
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "core/parameters/parameter.hpp"
+#include "experiments/config/run_config.hpp"
+
+namespace bb {
+
+template <class E>
+using EnumWords = std::vector<std::pair<E, std::string>>;
+
+inline EnumWords<Argument> words_of(Argument) {
+  return {{Argument::gap, "gap"}, {Argument::squared_gap, "squared_gap"}};
+}
+inline EnumWords<MatchingRule> words_of(MatchingRule) {
+  return {{MatchingRule::as_given, "as_given"},
+          {MatchingRule::equal_force, "equal_force"},
+          {MatchingRule::equal_curvature, "equal_curvature"}};
+}
+inline EnumWords<Mollifier> words_of(Mollifier) {
+  return {{Mollifier::ipc, "ipc"}, {Mollifier::none, "none"}};
+}
+inline EnumWords<HessianMode> words_of(HessianMode) {
+  return {{HessianMode::gauss_newton, "gauss_newton"}, {HessianMode::projected_full, "projected_full"}};
+}
+inline EnumWords<Scaling> words_of(Scaling) {
+  return {{Scaling::none, "none"}, {Scaling::jacobi, "jacobi"}, {Scaling::block_jacobi, "block_jacobi"}};
+}
+inline EnumWords<BodyKind> words_of(BodyKind) {
+  return {{BodyKind::deformable, "deformable"}, {BodyKind::rigid, "rigid"}};
+}
+inline EnumWords<PlanarPairs> words_of(PlanarPairs) {
+  return {{PlanarPairs::point_edge, "point_edge"}, {PlanarPairs::vertex_vertex, "vertex_vertex"}};
+}
+inline EnumWords<ObstacleKind> words_of(ObstacleKind) {
+  return {
+      {ObstacleKind::plane, "plane"}, {ObstacleKind::sphere, "sphere"}, {ObstacleKind::cylinder, "cylinder"}};
+}
+
+template <class E>
+std::string word_of(E value) {
+  for (const auto& [each, text] : words_of(value)) {
+    if (each == value) return text;
+  }
+  return "";
+}
+
+template <class E>
+Rule one_of() {
+  std::vector<std::string> out;
+  for (const auto& [each, text] : words_of(E())) out.push_back(text);
+  return word(std::move(out));
+}
+template <class E>
+Rule some_of() {
+  return words(one_of<E>().words());
+}
+
+}  // namespace bb

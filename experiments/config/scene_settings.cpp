@@ -1,0 +1,155 @@
+// The lists of a scene: bodies with what belongs to them, obstacles (scene.inc); and which list rules a scene
+// or a mesh.
+#include <limits>
+
+#include "experiments/config/mesh_generators.hpp"
+#include "experiments/config/sections.hpp"
+#include "experiments/scenes/procedural_scene.hpp"
+
+namespace bb {
+namespace {
+
+using nlohmann::json;
+
+constexpr double config_youngs = 100;  // N/m, of a material that says nothing
+
+/// The one member `youngs` has two names: times thickness where there is none.
+void add_youngs(Settings<Material>& out) {
+  out.add_row(
+      {"youngs_Pa", positive("Pa"), no_default, "Young's modulus; needs thickness_m."},
+      [](const json* given, Material& m) { m.youngs = given ? given->get<double>() : config_youngs; },
+      [](const Material& m) { return m.thickness ? json(m.youngs) : json(); });
+  out.add_row(
+      {"youngs_N_per_m", positive("N/m"), config_youngs, "Young's modulus times thickness."},
+      [](const json* given, Material& m) { m.youngs = given ? given->get<double>() : m.youngs; },
+      [](const Material& m) { return m.thickness ? json() : json(m.youngs); });
+}
+
+/// Read by read_scene, which opens its file.
+void add_mesh(Settings<BodyConfig>& out) {
+  out.add_row({"mesh", required(mesh_rule()), no_default, ""}, nullptr, [](const BodyConfig& body) {
+    if (!body.mesh.file.empty()) return json{{"file", body.mesh.file}, {"sha256", body.mesh.sha256}};
+    json made = to_json(body.mesh.parameters);
+    made["generator"] = body.mesh.generator;
+    return made;
+  });
+}
+
+Rule listed(Kind kind, Rule element) {
+  element.kind = kind;
+  return element;
+}
+
+}  // namespace
+
+#define SECTION(type, doc)   \
+  template <>                \
+  Settings<type> list_of() { \
+    using S = type;          \
+    Settings<S> out(doc);
+#define ACCESS(member) \
+  [](auto& s) -> auto& { return s.member; }
+#define ROW(member, name, rule, doc) out.add(name, rule, doc, ACCESS(member));
+#define NEST(member, name, type) out.nest(name, settings_of<type>(), ACCESS(member));
+#define ALL(member, name, doc, most, type) out.nest_all(name, doc, most, settings_of<type>(), ACCESS(member));
+#define EXTRA(add) add(out);
+#define END_SECTION \
+  return out;       \
+  }
+#include "experiments/config/scene.inc"
+
+namespace {
+
+std::vector<std::string> scene_names() {
+  std::vector<std::string> names = procedural_scenes().names();
+  names.emplace_back("bodies");
+  return names;
+}
+
+Parameter name_row() {
+  return {"name", required(name_in(scene_names)), no_default, "A registered scene, or \"bodies\"."};
+}
+
+ParameterList scene_list(const json& scene) {
+  const std::string name = scene.contains("name")
+                               ? scene["name"].is_string() ? scene["name"].get<std::string>() : ""
+                           : scene.contains("bodies") ? "bodies"
+                                                      : "";
+  if (const ProceduralScene* found = procedural_scenes().find(name)) {
+    ParameterList list{found->doc, {name_row()}, false, {}, ""};
+    list.rows.insert(list.rows.end(), found->parameters.begin(), found->parameters.end());
+    return list;
+  }
+  ParameterList list = settings_of<SceneConfig>().rows();
+  list.rows.front() = name_row();
+  list.rows.front().rule.required = name != "bodies";
+  list.open = name != "bodies";
+  if (list.open) {
+    list.doc =
+        "A registered scene: its name and its parameters (`bench list scenes`). Or a scene given as bodies: "
+        "bodies, "
+        "obstacles, gravity_m_per_s2, planar.";
+  }
+  return list;
+}
+
+ParameterList mesh_list(const json& mesh) {
+  const Parameter generator{"generator", name_in([] { return mesh_generators().names(); }), no_default,
+                            "A mesh generator (`bench list generators`)."};
+  const Parameter file{"file", text_up_to(0), no_default, "Path of a mesh file."};
+  const Parameter sha256{"sha256", any_text(), no_default, "Expected SHA-256 of the file (hex)."};
+  const std::string doc =
+      "{\"generator\": NAME, parameters...} or {\"file\": PATH} (.obj, .ply, .stl, relative to the config).";
+  ParameterList list{
+      doc, {generator, file, sha256}, true, {{"generator"}, {"file"}}, "either file or generator"};
+  if (mesh.contains("file") && !mesh.contains("generator")) list.rows.erase(list.rows.begin());
+  list.open = !mesh.contains("file");
+  const bool named = mesh.contains("generator") && mesh["generator"].is_string() && !mesh.contains("file");
+  const MeshGenerator* made = named ? mesh_generators().find(mesh["generator"].get<std::string>()) : nullptr;
+  if (made == nullptr) return list;
+  list.rows = {generator};
+  list.rows.insert(list.rows.end(), made->parameters.begin(), made->parameters.end());
+  list.open = false;
+  return list;
+}
+
+Rule ruled_by(ParameterList (*list)(const json&)) {
+  Rule rule;
+  rule.kind = Kind::object;
+  rule.list = list;
+  return rule;
+}
+
+}  // namespace
+
+Rule scene_rule() { return ruled_by(scene_list); }
+Rule mesh_rule() { return ruled_by(mesh_list); }
+
+json scene_json(const SceneConfig& scene) {
+  if (scene.name != "bodies") {
+    json out = to_json(scene.parameters);
+    out["name"] = scene.name;
+    return out;
+  }
+  json out = settings_of<SceneConfig>().write(scene);
+  if (!scene.planar) out.erase("pairs");
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    for (const std::string& key : keys_of_others(scene.bodies[i].spec.kind)) out["bodies"][i].erase(key);
+  }
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    for (const std::string& key : keys_of_others(scene.obstacles[i].kind)) out["obstacles"][i].erase(key);
+  }
+  return out;
+}
+
+std::vector<std::string> keys_of_others(BodyKind kind) {
+  if (kind == BodyKind::rigid) return {"material", "velocity_m_per_s", "pins", "limited"};
+  return {"motion"};
+}
+std::vector<std::string> keys_of_others(ObstacleKind kind) {
+  if (kind == ObstacleKind::plane) return {"radius_m", "inside"};
+  if (kind == ObstacleKind::sphere) return {"axis"};
+  return {};
+}
+
+}  // namespace bb

@@ -1,0 +1,111 @@
+// The sections of settings.inc as lists, the policies, and the document that holds them all.
+#include "experiments/config/sections.hpp"
+
+#include "barriers/shapes/registry.hpp"
+#include "barriers/stiffness/registry.hpp"
+#include "core/input/json.hpp"
+#include "core/integrators/registry.hpp"
+#include "core/linear/preconditioner.hpp"
+#include "core/newton/step_solver.hpp"
+#include "experiments/config/config_list.hpp"
+#include "experiments/config/limit_policies.hpp"
+
+namespace bb {
+namespace {
+
+template <class... Registries>
+std::vector<Parameter> rows_of_each(const Registries&... registries) {
+  std::vector<Parameter> all;
+  const auto append = [&all](std::vector<Parameter> rows) {
+    all.insert(all.end(), rows.begin(), rows.end());
+  };
+  (append(rows_of_all(registries)), ...);
+  return all;
+}
+
+template <class Entry>
+Settings<PolicyConfig> policy_settings(const Registry<Entry>& registry, std::string doc) {
+  Settings<PolicyConfig> out(std::move(doc));
+  out.add("name", name_in([&registry] { return registry.names(); }), "A registered stiffness policy.",
+          &PolicyConfig::name);
+  out.add("scale", positive("1"), "Factor on every kappa.", &PolicyConfig::scale);
+  out.own(rows_of_all(registry), &PolicyConfig::parameters);
+  return out;
+}
+
+}  // namespace
+
+const Settings<PolicyConfig>& contact_policy_settings() {
+  static const Settings<PolicyConfig> list = policy_settings(
+      stiffness_policies(), "Rule that gives every contact its kappa, with the parameters of that policy.");
+  return list;
+}
+const Settings<PolicyConfig>& limit_policy_settings() {
+  static const Settings<PolicyConfig> list =
+      policy_settings(limit_policies(),
+                      "Rule that gives every element its kappa_e. Default: the formulation's, or fixed where "
+                      "the limit does not "
+                      "have it.");
+  return list;
+}
+
+#define SECTION(type, doc)   \
+  template <>                \
+  Settings<type> list_of() { \
+    using S = type;          \
+    Settings<S> out(doc);
+#define SETTING(type, member, name, rule, doc, ...) out.add(name, rule, doc, &S::member);
+#define NEST(type, member, name, settings) out.nest(name, settings, &S::member);
+#define OWN(...) out.own(rows_of_each(__VA_ARGS__), &S::parameters);
+#define END_SECTION \
+  return out;       \
+  }
+#include "experiments/config/settings.inc"
+
+template <>
+Settings<RunConfig> list_of() {
+  using C = RunConfig;
+  Settings<C> out(
+      "Everything one run is made of. What is left out takes the default of the scene, then the default "
+      "written "
+      "here. Lengths in m, times in s, masses in kg; the unit of each number stands in its key and in the "
+      "annotation \"unit\". Names of shapes, policies, integrators, solvers, scenes and mesh generators "
+      "are open: "
+      "`bench list` shows them.");
+  out.add_row({"schema", required(word({"barrierbench.config/1"})), no_default, "Version of this format."},
+              nullptr, [](const C&) { return "barrierbench.config/1"; });
+  out.add_row({"name", any_text(), no_default, "Free label; no part of the identity of a run."});
+  out.add_row({"doc", any_text(), no_default, "Free text; no part of the identity of a run."});
+  out.add_row({"extends", any_text(), no_default,
+               "Path of a config, relative to this file, that this one is laid over, object by object."});
+  out.add_row({"scene", required(scene_rule()), no_default, ""}, nullptr,
+              [](const C& config) { return scene_json(config.scene); });
+  out.nest("formulation", settings_of<FormulationConfig>(), &C::formulation, "the name of a preset");
+  out.add_row(
+      {"strain_limit", settings_of<StrainLimitConfig>().rule(), no_default, ""},
+      [](const nlohmann::json* given, C& config) {
+        settings_of<StrainLimitConfig>().read(given ? *given : nlohmann::json::object(), config.strain_limit);
+      },
+      [](const C& config) {
+        if (!config.strain_limit.enabled) return nlohmann::json{{"enabled", false}};
+        return settings_of<StrainLimitConfig>().write(config.strain_limit);
+      });
+  out.nest("matching", settings_of<MatchingConfig>(), &C::matching);
+  out.nest("contact", settings_of<ContactConfig>(), &C::contact);
+  out.nest("integrator", settings_of<IntegratorConfig>(), &C::integrator);
+  out.nest("time", settings_of<TimeConfig>(), &C::time);
+  out.nest("step_solver", settings_of<StepSolverConfig>(), &C::step_solver);
+  out.nest("linear_solver", settings_of<LinearSolverConfig>(), &C::linear_solver);
+  out.add("precision", word({"double"}), "Scalar of the whole pipeline.", &C::precision);
+  out.nest("passes", settings_of<PassesConfig>(), &C::passes);
+  out.nest("diagnose", settings_of<DiagnoseConfig>(), &C::diagnose);
+  out.nest("seeds", settings_of<SeedsConfig>(), &C::seeds);
+  out.nest("output", settings_of<OutputConfig>(), &C::output);
+  out.add("threads", count(0, 4096), "Threads of the loops; 0: all cores. Never changes a result.",
+          &C::threads);
+  return out;
+}
+
+ParameterList config_list() { return settings_of<RunConfig>().rows(); }
+
+}  // namespace bb

@@ -1,0 +1,136 @@
+// The formulation, the strain limit and the matching rule: defaults that follow other settings, and settings
+// that exclude each other.
+#include <fmt/format.h>
+
+#include "barriers/matching.hpp"
+#include "core/input/names.hpp"
+#include "experiments/config/limit_policies.hpp"
+#include "experiments/config/policy_request.hpp"
+#include "experiments/config/reader.hpp"
+#include "experiments/config/sections.hpp"
+
+namespace bb {
+namespace {
+
+using nlohmann::json;
+
+/// Leaves the policy with its own parameters; complains of given ones that only other policies read.
+template <class Entry>
+void keep_own(const json& object, const Registry<Entry>& registry, const std::string& pointer,
+              const Reader& reader, PolicyConfig& policy) {
+  const Entry& entry = registry.require(policy.name, pointer);
+  policy.parameters = to_map(entry.parameters, object);
+  for (const auto& [key, value] : object.items()) {
+    if (!reader.complete || key == "name" || key == "scale" || find_named(entry.parameters, key)) continue;
+    reader.complain(pointer + "/" + key, value.dump(),
+                    "nothing: the policy " + policy.name + " does not read it");
+  }
+}
+
+/// A published constant becomes the kappa that it stands for.
+void convert_kappa(const json& object, const std::string& pointer, const Reader& reader,
+                   const FormulationConfig& formulation, PolicyConfig& policy) {
+  std::string used = object.contains("kappa_N_per_m") ? "kappa_N_per_m" : "";
+  for (const KappaConvention& convention : kappa_conventions()) {
+    const std::optional<double> constant = optional_number(policy.parameters, convention.name);
+    policy.parameters.erase(convention.name);
+    if (!constant) continue;
+    const std::string where = pointer + "/" + convention.name, found = object[convention.name].dump();
+    if (!used.empty()) {
+      reader.complain(where, found, "nothing: " + used + " is given too");
+    } else if ((!convention.shape.empty() && formulation.shape != convention.shape) ||
+               to_string(formulation.argument) != convention.argument) {
+      reader.complain(where, found,
+                      fmt::format("kappa_N_per_m: this convention goes with {}argument {}",
+                                  convention.shape.empty() ? "" : "shape " + convention.shape + " and ",
+                                  convention.argument));
+    } else {
+      policy.parameters["kappa_N_per_m"] = convention.kappa(*constant, formulation.d_hat);
+    }
+    used = convention.name;
+  }
+}
+
+/// The limit follows the contact's policy where it has it, with all its settings.
+json followed(const json& object, const PolicyConfig& contact) {
+  const LimitPolicyEntry* same = limit_policies().find(contact.name);
+  const bool another = object.contains("name") && object["name"] != contact.name;
+  if (same == nullptr || !same->matched.empty() || another) return object;
+  json out = to_json(contact.parameters);
+  if (out.value("mass_term", "") == "none") out["mass_term"] = "inertia";  // a limit needs a mass
+  out["name"] = contact.name;
+  out.update(object);
+  return out;
+}
+
+/// True when a limit was found; onset and width are then set.
+bool settle_width(const json& object, const Reader& reader, std::optional<double> fallback,
+                  StrainLimitConfig& out) {
+  const bool onset = object.contains("onset"), width = object.contains("width");
+  if (object.contains("limit") && (onset || width)) {
+    reader.complain("/strain_limit/limit", object["limit"].dump(), "either limit, or onset and width");
+  } else if (onset != width) {
+    reader.missing(onset ? "/strain_limit/width" : "/strain_limit/onset", "onset and width together");
+  }
+  const std::optional<double> bare = object.contains("limit") ? out.limit : fallback;
+  out.limit.reset();
+  if (onset && width) return true;
+  if (bare) out.onset = out.width = *bare / 2;
+  return bare.has_value();
+}
+
+}  // namespace
+
+void settle_formulation(const json& object, const Reader& reader, FormulationConfig& out) {
+  if (object.contains("name")) {
+    check_plain_name(reader.source + "#/formulation/name", object["name"].get<std::string>(),
+                     reader.violations);
+  }
+  const std::string pointer = "/formulation/stiffness_policy";
+  const json& policy = child(object, "stiffness_policy");
+  keep_own(policy, stiffness_policies(), pointer, reader, out.stiffness_policy);
+  convert_kappa(policy, pointer, reader, out, out.stiffness_policy);
+}
+
+void settle_strain_limit(const json& object, const Reader& reader, const FormulationConfig& formulation,
+                         std::optional<double> default_limit, StrainLimitConfig& out) {
+  if (!object.contains("shape")) out.shape = formulation.shape;
+  if (!object.contains("argument")) out.argument = formulation.argument;
+  const json policy = followed(child(object, "stiffness_policy"), formulation.stiffness_policy);
+  out.stiffness_policy.name = policy.value("name", out.stiffness_policy.name);
+  keep_own(policy, limit_policies(), "/strain_limit/stiffness_policy", reader, out.stiffness_policy);
+  const bool has_limit = settle_width(object, reader, default_limit, out);
+  if (!object.contains("enabled")) out.enabled = has_limit;
+  if (out.enabled && !has_limit) {
+    reader.missing("/strain_limit/limit",
+                   "a number > 0 and <= 10, or onset and width: this scene has no default");
+  }
+}
+
+void settle_matching(const json& object, const Reader& reader, bool literal, RunConfig& config) {
+  const PolicyConfig& contact = config.formulation.stiffness_policy;
+  const PolicyConfig& limit = config.strain_limit.stiffness_policy;
+  const bool contact_given = !needs_kappa(contact) || given_kappa(contact);
+  const bool limit_given = !config.strain_limit.enabled || !needs_k_s(limit) || given_k_s(limit);
+  const bool as_given = literal || (contact_given && limit_given);
+  MatchingConfig& out = config.matching;
+  if (!object.contains("rule")) out.rule = as_given ? MatchingRule::as_given : MatchingRule::equal_force;
+  if (out.rule != MatchingRule::equal_curvature) {
+    for (const char* key : {"curvature_N_per_m", "limit_curvature_N_per_m"}) {
+      if (!object.contains(key)) continue;
+      reader.complain(std::string("/matching/") + key, object[key].dump(),
+                      std::string("nothing: the rule is ") + to_string(out.rule));
+    }
+  }
+  if (out.rule != MatchingRule::as_given) return;
+  if (!contact_given) {
+    reader.missing("/formulation/stiffness_policy/kappa_N_per_m",
+                   "a number > 0 (N/m), or matching rule equal_force");
+  }
+  if (!limit_given) {
+    reader.missing("/strain_limit/stiffness_policy/k_s_N_per_m",
+                   "a number > 0 (N/m), or matching rule equal_force");
+  }
+}
+
+}  // namespace bb

@@ -1,0 +1,47 @@
+#include "experiments/run/validity.hpp"
+
+#include <algorithm>
+
+namespace bb {
+namespace {
+
+void add_check(RunRecord& record, const char* name, double value, double bound, bool pass) {
+  record.validity.checks.push_back({name, value, bound, pass});
+}
+
+// The largest stretch that any limited element may have, minus 1; 0 without a limit.
+double hard_limit(const Scene& scene) {
+  double largest = 0;
+  for (std::size_t e = 0; e < scene.limit.width.size(); ++e) {
+    largest = std::max(largest, scene.limit.onset[e] + scene.limit.width[e]);
+  }
+  return largest;
+}
+
+}  // namespace
+
+void fill_validity(const Scene& scene, const audit::AuditLedger* ledger, const std::string& hash_time,
+                   const std::string& hash_seen, RunRecord& record) {
+  if (ledger) {
+    const auto found = static_cast<double>(ledger->crossings + ledger->violations + ledger->unproven +
+                                           ledger->obstacle_violations + ledger->scene_faults +
+                                           ledger->non_finite + ledger->unjudged);
+    add_check(record, "audit_clean", found, 0.0, ledger->clean());
+    add_check(record, "audit_judged", static_cast<double>(ledger->judged()), 1.0, ledger->judged() > 0);
+  }
+  if (!hash_time.empty() && !hash_seen.empty()) {
+    const bool same = hash_time == hash_seen;
+    add_check(record, "state_hash_equal_in_all_passes", same ? 0.0 : 1.0, 0.0, same);
+  }
+  if (const double limit = hard_limit(scene); limit > 0 && record.summary.max_stretch.finite()) {
+    const double stretch = record.summary.max_stretch.value;
+    add_check(record, "strain_limit_kept", stretch, limit, stretch < limit);
+  }
+  const bool ok = record.status.outcome == Outcome::ok;
+  add_check(record, "outcome_ok", ok ? 0.0 : 1.0, 0.0, ok);
+  record.validity.valid = std::all_of(record.validity.checks.begin(), record.validity.checks.end(),
+                                      [](const Check& check) { return check.pass; });
+  record.status.valid = record.validity.valid;
+}
+
+}  // namespace bb

@@ -1,0 +1,40 @@
+"""The JSON Schemas of configs and sweeps, which the program makes from its lists, against the files of the tree."""
+
+import json
+from pathlib import Path
+
+import jsonschema
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+FILES = [*(("config", path) for folder in ("configs/scenes", "examples/scenes") for path in sorted((ROOT / folder).glob("*.json"))),
+         *(("sweep", path) for path in sorted((ROOT / "configs/sweeps").glob("*.json")))]
+
+
+def validator(name: str) -> jsonschema.Draft7Validator:
+    schema = json.loads((ROOT / f"configs/schema/{name}.schema.json").read_text())
+    jsonschema.Draft7Validator.check_schema(schema)
+    return jsonschema.Draft7Validator(schema)
+
+
+def test_there_are_files():
+    assert {name for name, _ in FILES} == {"config", "sweep"} and len(FILES) > 8
+
+
+@pytest.mark.parametrize("name, path", FILES, ids=lambda value: getattr(value, "stem", value))
+def test_files_of_the_tree_fit(name, path):
+    validator(name).validate(json.loads(path.read_text()))
+
+
+@pytest.mark.parametrize("change", [{"tim": {}}, {"time": {"dt_s": 0}}, {"time": {"steps": 1.5}}, {"threads": 4097}, {"formulation": 3},
+                                    {"diagnose": {"scalings": ["none", "none"]}}, {"contact": {"mollifier": "ipcc"}}, {"scene": None},
+                                    {"scene": {"bodies": [{"name": "a"}]}}, {"scene": {"obstacles": [{"name": "a", "kind": "cube"}]}}])
+def test_wrong_configs_do_not_fit(change):
+    config = {"schema": "barrierbench.config/1", "scene": {"name": "hang"}}
+    validator("config").validate(config)
+    assert not validator("config").is_valid({**config, **change})
+
+
+@pytest.mark.parametrize("axis", [{}, {"pointer": "/a"}, {"pointer": "/a", "values": [1], "cases": [{"label": "a", "set": {}}]}])
+def test_an_axis_of_no_form_does_not_fit(axis):
+    assert not validator("sweep").is_valid({"schema": "barrierbench.sweep/1", "name": "a", "base": "b", "axes": [axis]})

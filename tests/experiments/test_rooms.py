@@ -1,0 +1,45 @@
+"""What the build refuses: an include of a room that is not named, a room named for nothing, a circle."""
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+pytestmark = pytest.mark.skipif(not shutil.which("cmake"), reason="cmake is not here")
+
+
+def check(folder: Path, rooms: str, files: dict[str, str]) -> subprocess.CompletedProcess:
+    for name, text in files.items():
+        (folder / name).parent.mkdir(parents=True, exist_ok=True)
+        (folder / name).write_text(text)
+    (folder / "rooms.txt").write_text(rooms)
+    return subprocess.run(["cmake", f"-DROOMS={folder}/rooms.txt", f"-DSOURCE_DIR={folder}", "-DPRINT=ON",
+                           "-P", str(ROOT / "cmake/RoomCheck.cmake")],
+                          capture_output=True, text=True, env={**os.environ, "COLUMNS": "200"}, check=False)
+
+
+LOW = {"core/low/a.hpp": "#pragma once\n"}
+HIGH = {"core/high/b.cpp": '#include <vector>\n#include "core/low/a.hpp"\n'}
+
+
+def test_a_declared_include_passes_and_the_graph_is_printed(tmp_path):
+    done = check(tmp_path, "low|core/low|-\nhigh|core/high|low\n", LOW | HIGH)
+    assert done.returncode == 0, done.stderr
+    assert [line.split()[0] for line in done.stdout.splitlines() if "files" in line] == ["low", "high"]
+
+
+@pytest.mark.parametrize("rooms, files, words", [
+    ("low|core/low|-\nhigh|core/high|-\n", LOW | HIGH, ["core/high/b.cpp", "core/low/a.hpp", "'low'"]),
+    ("low|core/low|-\nhigh|core/high|low\n", LOW | {"core/high/b.cpp": "int b;\n"}, ["core/high", "includes nothing"]),
+    ("low|core/low|high\nhigh|core/high|low\n", HIGH | {"core/low/a.hpp": '#include "core/high/b.hpp"\n'},
+     ["circle", "low", "high"]),
+    ("low|core/low|-\nnone|core/none|-\n", HIGH | LOW, ["core/none", "no files"]),
+], ids=["undeclared", "unused", "circle", "empty"])
+def test_what_is_not_declared_is_refused(tmp_path, rooms, files, words):
+    done = check(tmp_path, rooms, files)
+    assert done.returncode != 0
+    text = " ".join(done.stderr.split())
+    for word in words:
+        assert word in text

@@ -1,0 +1,69 @@
+// Which contacts a scene can have at all.
+#include <gtest/gtest.h>
+
+#include "core/scene/contact_plan.hpp"
+#include "tests/scene/bodies.hpp"
+
+namespace bb {
+namespace {
+
+using namespace test;
+
+/// A chain of free vertices at distance 1.
+BodySpec rod(int n) {
+  BodySpec body;
+  body.name = "rod";
+  body.mesh.vertices = Positions::Zero(3, n);
+  for (int i = 0; i < n; ++i) body.mesh.vertices(0, i) = i;
+  for (int i = 0; i + 1 < n; ++i) body.mesh.segments.push_back({i, i + 1});
+  body.material.line_density = 1;
+  body.material.springs = 1;
+  body.material.model = "none";
+  body.d_hat = 0.01;
+  return body;
+}
+
+BodySpec triangle() {
+  BodySpec body;
+  body.name = "triangle";
+  body.mesh.vertices = Positions::Identity(3, 3);
+  body.mesh.triangles = {{0, 1, 2}};
+  body.d_hat = 0.01;
+  return body;
+}
+
+TEST(ContactPlan, of_cloth_over_a_box_has_pairs_in_space_of_both_kinds) {
+  const ContactPlan plan = plan_contact(scene_of({cloth("cloth", 1), rigid_box("box")}));
+  EXPECT_TRUE(plan.point_triangle && plan.edge_edge);
+  EXPECT_FALSE(plan.point_point || plan.point_edge);
+  EXPECT_TRUE(plan.self_contact.needed && plan.given_surfaces.needed);
+  EXPECT_FALSE(plan.obstacles.needed);
+}
+
+TEST(ContactPlan, of_elements_that_all_share_a_vertex_is_empty) {
+  EXPECT_FALSE(plan_contact(scene_of({triangle()})).any());
+  EXPECT_FALSE(plan_contact(scene_of({rod(3)})).any());  // two edges with one end in common
+  EXPECT_TRUE(plan_contact(scene_of({rod(4)})).edge_edge);
+}
+
+TEST(ContactPlan, of_a_chain_in_the_plane_has_its_ends) {
+  Scene scene = scene_of({rod(3)}, true);
+  EXPECT_TRUE(plan_contact(scene).point_point);
+  EXPECT_TRUE(plan_contact(scene).self_contact.needed);
+  scene.planar_pairs = PlanarPairs::point_edge;
+  EXPECT_TRUE(plan_contact(scene).point_edge);
+  EXPECT_FALSE(plan_contact(scene).point_point);
+}
+
+TEST(ContactPlan, of_a_scene_without_free_surface_is_empty) {
+  Scene scene = scene_of({cloth("cloth")});
+  scene.obstacles.emplace_back();
+  EXPECT_TRUE(plan_contact(scene).obstacles.needed);
+  scene.motions.resize(1);
+  for (int v = 0; v < scene.n_vertices(); ++v) scene.pins.push_back({v, 0});
+  EXPECT_FALSE(plan_contact(scene).any());
+  EXPECT_EQ(plan_contact(scene).obstacles.reason, "no free surface vertex");
+}
+
+}  // namespace
+}  // namespace bb

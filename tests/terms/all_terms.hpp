@@ -1,0 +1,102 @@
+// A scene that needs every registered term, and its terms at a state, without Newton.
+#pragma once
+
+#include <string>
+
+#include "barriers/shapes/registry.hpp"
+#include "barriers/stiffness/registry.hpp"
+#include "core/bodies/scene_builder.hpp"
+#include "core/mesh/generators.hpp"
+#include "core/terms/plan.hpp"
+
+namespace bb::test {
+
+inline TermOptions term_options() {
+  TermOptions options;
+  options.contact = {require_shape("cubic"), Argument::gap};
+  StiffnessPolicyConfig policy;
+  policy.kappa = 40;
+  options.stiffness = make_policy(policy);
+  options.limit = {require_shape("cubic"), Argument::gap};
+  options.limit_stiffness.k_s = 30;
+  return options;
+}
+
+/// Two small cloths with bending, springs and a strain limit, the lower one close above a floor, the upper
+/// one close above the lower.
+inline Scene scene_with_everything() {
+  constexpr double d_hat = 0.05;
+  SceneBuilder builder("everything", false, Vec3d(0, 0, -10), "test");
+  for (int layer = 0; layer < 2; ++layer) {
+    BodySpec body;
+    body.name = "cloth" + std::to_string(layer);
+    body.mesh = grid_mesh(3, 3, 1.0, 1.0);
+    body.mesh.vertices.row(2).array() += 0.02 + 0.03 * layer;
+    body.mesh.vertices.row(0) *= 1 + 0.03 * layer;  // vertices not above vertices
+    body.material.density = 0.3;
+    body.material.youngs = 20;
+    body.material.bending = 0.01;
+    body.material.springs = 3;
+    body.material.limit = StrainLimitSpec{0.001, 0.2};
+    body.d_hat = d_hat;
+    builder.add_body(body);
+  }
+  Obstacle floor;
+  floor.name = "floor";
+  builder.add_obstacle(floor);
+  return builder.finish();
+}
+
+/// A little away from rest, so that no term is at its minimum.
+inline Positions disturbed(const Scene& scene, double size) {
+  Positions x = scene.x0;
+  for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    for (Eigen::Index k = 0; k < 3; ++k)
+      x(k, i) += size * std::sin(1.7 * static_cast<double>(3 * i + k) + 0.4);
+  }
+  return x;
+}
+
+/// The terms of a scene at the start of a step.
+struct TermsOf {
+  Scene scene;
+  TermOptions options = term_options();
+  Plan plan;
+  std::vector<std::uint8_t> fixed;
+  BlockSystem blocks;
+  BlockSystem::Values no_elastic;
+  Positions no_gradient;
+  PhaseClock clock;
+  TermList terms;
+
+  TermsOf(Scene given, const Positions& x_n, const StepFrame& frame)
+      : scene(std::move(given)),
+        plan(make_plan(scene, options, {})),
+        fixed(3 * scene.mass.size(), 0),
+        blocks(scene.n_vertices(), fixed),
+        terms(make_terms(plan, {scene, options, plan.contacts, fixed})) {
+    no_gradient.setZero(3, x_n.cols());
+    for (const auto& term : terms) term->begin_step(frame, clock);
+  }
+  TermContext context() const { return {blocks, no_elastic, no_gradient, const_cast<PhaseClock&>(clock)}; }
+};
+
+inline double sum_of(const std::vector<double>& values) {
+  double sum = 0;
+  for (const double value : values) sum += value;
+  return sum;
+}
+
+inline double iterate_energy(const Term& term) {
+  double sum = 0;
+  for (const TermFamily& family : term.families()) sum += sum_of(family.local.energy);
+  return sum;
+}
+
+inline double trial_energy(const Term& term) {
+  double sum = 0;
+  for (const TermFamily& family : term.families()) sum += sum_of(family.trial_energy);
+  return sum;
+}
+
+}  // namespace bb::test

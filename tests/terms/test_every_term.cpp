@@ -1,0 +1,147 @@
+// What every registered term has to hold, in a loop over the registry: a new term is tested without a line
+// here, as long as scene_with_everything() needs it.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/terms/all_terms.hpp"
+
+namespace bb {
+namespace {
+
+/// All terms at an iterate that is a little away from where the step began.
+struct AtIterate : test::TermsOf {
+  Positions x;
+
+  AtIterate() : AtIterate(test::scene_with_everything()) {}
+  explicit AtIterate(const Scene& all) : TermsOf(all, all.x0, frame(all)), x(test::disturbed(scene, 0.004)) {
+    trial(x);
+    for (const auto& term : terms) term->accept(clock);
+    for (const auto& term : terms) term->linearise(x, context());
+  }
+  static StepFrame frame(const Scene& scene) {
+    StepFrame out;
+    out.x_n = scene.x0;
+    out.x_tilde = scene.x0;
+    out.x_tilde.row(2).array() -= 0.01;
+    out.dt = 0.05;
+    return out;
+  }
+  void trial(const Positions& to) {
+    const Positions dx = to - scene.x0;
+    for (const auto& term : terms) {
+      term->prepare({scene.x0, to, dx}, clock);
+      ASSERT_TRUE(term->admits(to, clock)) << term->name();
+      term->evaluate(to, context());
+    }
+  }
+};
+
+Positions gradient_of(const Term& term, Eigen::Index n_vertices) {
+  Positions out = Positions::Zero(3, n_vertices);
+  for (const TermFamily& family : term.families()) {
+    const std::span<const int> vertices = family.stencils.vertices;
+    for (std::size_t i = 0; i < vertices.size(); ++i) {
+      if (vertices[i] >= 0) out.col(vertices[i]) += Vec3d::Map(&family.local.grad[3 * i]);
+    }
+  }
+  return out;
+}
+
+TEST(EveryTerm, is_needed_by_the_scene_of_this_test_and_made_from_the_plan) {
+  const AtIterate at;
+  std::size_t n = 0;
+  for (const TermEntry& entry : term_entries()) {
+    EXPECT_TRUE(at.plan.term(entry.name).needed) << entry.name;
+    const bool made = std::any_of(at.terms.begin(), at.terms.end(), [&](const auto& term) {
+      return term->name() == entry.name && term->size() > 0;
+    });
+    EXPECT_TRUE(made) << entry.name;
+    ++n;
+  }
+  EXPECT_EQ(at.terms.size(), n);  // one membrane model
+}
+
+TEST(EveryTerm, says_why_it_is_not_needed) {
+  const Scene empty;
+  const TermOptions options = test::term_options();
+  const Plan plan = make_plan(empty, options, {});
+  for (const PlanItem& item : plan.terms) {
+    EXPECT_FALSE(item.needed);
+    EXPECT_FALSE(item.reason.empty());
+  }
+  EXPECT_EQ(plan.terms.size(), term_entries().size());
+}
+
+TEST(EveryTerm, has_the_gradient_of_its_energy) {
+  AtIterate at;
+  const double h = 1e-6;
+  for (const auto& term : at.terms) {
+    const Positions gradient = gradient_of(*term, at.x.cols());
+    ASSERT_GT(gradient.norm(), 1e-6) << term->name();
+    Positions numeric(3, at.x.cols());
+    for (Eigen::Index i = 0; i < at.x.size(); ++i) {
+      double energy[2];
+      for (const int side : {0, 1}) {
+        Positions to = at.x;
+        to.data()[i] += side == 0 ? -h : h;
+        ASSERT_TRUE(term->admits(to, at.clock));
+        term->evaluate(to, at.context());
+        energy[side] = test::trial_energy(*term);
+      }
+      numeric.data()[i] = (energy[1] - energy[0]) / (2 * h);
+    }
+    EXPECT_LT((numeric - gradient).norm(), 1e-5 * gradient.norm()) << term->name();
+  }
+}
+
+TEST(EveryTerm, changes_by_the_difference_of_its_energies) {
+  AtIterate at;
+  const Positions to = test::disturbed(at.scene, 0.006);
+  at.trial(to);
+  for (const auto& term : at.terms) {
+    EnergyParts parts;
+    term->change(at.x, to, parts);
+    const double expected = test::trial_energy(*term) - test::iterate_energy(*term);
+    ASSERT_NE(expected, 0) << term->name();
+    const double size = test::sum_of(parts.magnitude);
+    EXPECT_NEAR(test::sum_of(parts.change), expected, 1e-13 * size) << term->name();
+    EXPECT_GE(size * (1 + 1e-12), std::abs(expected)) << term->name();
+  }
+}
+
+TEST(EveryTerm, has_the_energy_of_the_trial_once_it_is_accepted) {
+  AtIterate at;
+  const Positions to = test::disturbed(at.scene, 0.006);
+  at.trial(to);
+  for (const auto& term : at.terms) {
+    const double energy = test::trial_energy(*term);
+    term->accept(at.clock);
+    EXPECT_EQ(test::iterate_energy(*term), energy) << term->name();
+  }
+}
+
+TEST(EveryTerm, allows_a_motion_up_to_its_bound_and_says_what_held_it) {
+  AtIterate at;
+  Positions dx = Positions::Zero(3, at.x.cols());
+  dx.row(2).setConstant(-1);    // through the floor
+  dx.row(0) = 3 * at.x.row(0);  // and far beyond the limit
+  const Positions x1 = at.x + dx;
+  int bounded = 0;
+  for (const auto& term : at.terms) {
+    IterateNumbers report;
+    const Motion motion{at.x, x1, dx};
+    term->prepare(motion, at.clock);
+    const double alpha = term->bound(motion, report, at.clock);
+    EXPECT_EQ(alpha, std::min(report.alpha_ccd, report.alpha_strain)) << term->name();
+    if (alpha == 1) continue;
+    ++bounded;
+    EXPECT_FALSE(term->describe_bound().empty()) << term->name();
+    EXPECT_TRUE(term->admits(at.x + 0.99 * alpha * dx, at.clock)) << term->name();
+    EXPECT_FALSE(term->admits(at.x + dx, at.clock)) << term->name();
+  }
+  EXPECT_EQ(bounded, 2);  // contact and strain limit
+}
+
+}  // namespace
+}  // namespace bb

@@ -1,0 +1,129 @@
+// The plan says what a scene needs, and why the rest is skipped.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "tests/scene/bodies.hpp"
+#include "tests/terms/all_terms.hpp"
+
+namespace bb {
+namespace {
+
+using namespace test;
+
+Scene one_triangle(bool above_a_plane) {
+  BodySpec body;
+  body.name = "triangle";
+  body.mesh.vertices = Positions::Identity(3, 3);
+  body.mesh.triangles = {{0, 1, 2}};
+  body.d_hat = 0.01;
+  SceneBuilder builder("test", false, down, "test");
+  builder.add_body(body);
+  Obstacle plane;
+  plane.name = "plane";
+  plane.point = Vec3d(0, 0, -1);
+  if (above_a_plane) builder.add_obstacle(plane);
+  return builder.finish();
+}
+
+Plan plan_of(const Scene& scene, const TermOptions& terms = {}, const PlanOptions& options = {}) {
+  return make_plan(scene, terms, options);
+}
+
+/// What is needed beside inertia and weight, which every scene here has.
+std::set<std::string> needed(const Plan& plan) {
+  std::set<std::string> names;
+  for (const auto& [name, item] : plan.items()) {
+    if (item->needed) names.emplace(name);
+  }
+  for (const char* load : {"inertia", "external_force"}) {
+    EXPECT_EQ(names.erase(load), 1U) << load;
+  }
+  return names;
+}
+
+TEST(plan, of_a_lone_triangle_is_its_membrane_alone) {
+  EXPECT_EQ(needed(plan_of(one_triangle(false))), (std::set<std::string>{"membrane"}));
+}
+
+TEST(plan, of_an_obstacle_has_no_broad_phase) {
+  EXPECT_EQ(needed(plan_of(one_triangle(true))),
+            (std::set<std::string>{"contact", "step_bound", "obstacles", "membrane"}));
+}
+
+TEST(plan, of_cloth_on_a_box_has_pairs_pins_and_columns_that_are_given) {
+  const Plan plan = plan_of(scene_of({cloth("cloth", 1), rigid_box("box")}));
+
+  EXPECT_EQ(needed(plan), (std::set<std::string>{"contact", "broad_phase", "step_bound", "self_contact",
+                                                 "given_surfaces", "mollifier", "membrane", "pins"}));
+}
+
+TEST(plan, follows_every_option) {
+  BodySpec body = cloth("cloth", 1);
+  body.material.bending = 1;
+  body.material.springs = 1;
+  body.material.limit = StrainLimitSpec{};
+  BodySpec box = rigid_box("box");
+  box.motion.velocity = Vec3d(0, 0, 1);
+  TermOptions terms;
+  terms.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+  PlanOptions options;
+  options.iterative_solver = true;
+  options.diagnose = options.audit = options.trace = options.frames = options.matrices = true;
+
+  const Plan plan = plan_of(scene_of({body, box}), terms, options);
+
+  std::set<std::string> missing;
+  for (const Plan::Skip& skip : plan.skipped()) missing.insert(skip.what);
+  EXPECT_EQ(missing, (std::set<std::string>{"obstacles", "planar_lock"}));
+}
+
+TEST(plan, gives_a_reason_for_every_item_and_lists_each_once) {
+  const Plan plan = plan_of(one_triangle(false));
+
+  std::set<std::string_view> names;
+  for (const auto& [name, item] : plan.items()) {
+    EXPECT_FALSE(item->reason.empty()) << name;
+    EXPECT_TRUE(names.insert(name).second) << name;
+  }
+  EXPECT_EQ(plan.skipped().size() + 3, names.size());  // inertia, weight, membrane
+}
+
+TEST(plan, skips_the_step_bound_of_a_solver_without_one) {
+  TermOptions terms;
+  terms.contact_options.mollifier = Mollifier::none;
+  PlanOptions options;
+  options.collision_free_steps = false;
+
+  const Plan plan = plan_of(scene_of({cloth("cloth")}), terms, options);
+
+  EXPECT_TRUE(plan.term("contact").needed);
+  EXPECT_FALSE(plan.step_bound.needed);
+  EXPECT_EQ(plan.step_bound.reason, "the step solver has no step bound");
+  EXPECT_EQ(plan.mollifier.reason, "contact.mollifier is none");
+}
+
+TEST(plan, of_a_planar_scene_locks_the_third_axis_and_has_no_edge_pairs) {
+  const Plan plan = plan_of(scene_of({cloth("cloth")}, true));
+
+  EXPECT_TRUE(plan.planar_lock.needed);
+  EXPECT_FALSE(plan.mollifier.needed);
+}
+
+TEST(plan, keeps_the_submatrix_for_a_limit_without_contact) {
+  BodySpec body;
+  body.name = "triangle";
+  body.mesh.vertices = Positions::Identity(3, 3);
+  body.mesh.triangles = {{0, 1, 2}};
+  body.material.limit = StrainLimitSpec{};
+  body.d_hat = 0.01;
+  TermOptions terms;
+  terms.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+
+  EXPECT_TRUE(plan_of(scene_of({body}), terms).policy_submatrix.needed);
+  terms.strain_limit = false;
+  EXPECT_FALSE(plan_of(scene_of({body}), terms).policy_submatrix.needed);
+}
+
+}  // namespace
+}  // namespace bb
