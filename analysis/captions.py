@@ -8,42 +8,26 @@ from collections.abc import Iterable
 SETTINGS = ("scene", "matching_rule", "step_solver", "integrator", "linear_solver", "d_hat_m", "dt_s")
 
 
-def origin(record: dict) -> dict:
-    """Where a record comes from: machine, kernel of the BLAS library, program, day. Empty text where it is not said."""
-    provenance, machine = record.get("provenance", {}), record.get("machine", {})
-    return {
-        "cpu_model": machine.get("cpu_model") or "",
-        "cores": machine.get("cores") or "",
-        "threads": provenance.get("threads") or "",
-        "blas": provenance.get("blas", {}).get("kernel") or provenance.get("libraries", {}).get("blas", "").split(" at ")[0],
-        "git_commit": (provenance.get("git_commit") or "")[:10],
-        "started_utc": record.get("status", {}).get("started_utc") or "",
-    }
+PLACE = ("machine_cpu_model", "machine_cores", "provenance_threads", "provenance_blas_kernel", "provenance_git_commit")
 
 
-def settings(record: dict) -> dict:
-    """The settings that a reader of a figure needs, with their units in the keys."""
-    labels = record.get("labels", {})
-    return {key: labels[key] for key in SETTINGS if labels.get(key) not in (None, "")}
-
-
-def _distinct(values: Iterable) -> str:
+def _distinct(rows: Iterable[dict], column: str) -> str:
     """Each value once, in order of appearance."""
-    return ", ".join(dict.fromkeys(str(v) for v in values if str(v) != ""))
+    return ", ".join(dict.fromkeys(str(row[column]) for row in rows if row.get(column) not in (None, "")))
 
 
 def caption(shown: str, rows: list[dict]) -> str:
-    """Wrapped text. `shown`: what the figure shows, in sentences; `rows`: origin() and settings() of its runs, merged."""
+    """Wrapped text. `shown`: what the figure shows, in sentences; `rows`: its runs, as in load.run_row()."""
     lines = [shown]
     if not rows:
         return textwrap.fill(shown, 100) + "\n"
-    named = {key: _distinct(row[key] for row in rows if key in row) for key in SETTINGS}
-    lines.append("Settings: " + "; ".join(f"{key} {value}" for key, value in named.items() if value) + ".")
-    place = {key: _distinct(row.get(key, "") for row in rows) for key in ("cpu_model", "cores", "threads", "blas", "git_commit")}
+    named = {column: _distinct(rows, column) for column in SETTINGS}
+    lines.append("Settings: " + "; ".join(f"{column} {value}" for column, value in named.items() if value) + ".")
+    cpu, cores, threads, blas, commit = (_distinct(rows, column) for column in PLACE)
     lines.append(
-        f"Machine: {place['cpu_model'] or 'not recorded'}, {place['cores'] or '?'} cores, {place['threads'] or '?'} threads; "
-        f"BLAS: {place['blas'] or 'not recorded'}; program: commit {place['git_commit'] or 'not recorded'}."
+        f"Machine: {cpu or 'not recorded'}, {cores or '?'} cores, {threads or '?'} threads; "
+        f"BLAS: {blas or 'not recorded'}; program: commit {commit[:10] or 'not recorded'}."
     )
-    days = sorted({str(row.get("started_utc", ""))[:10] for row in rows} - {""})
+    days = sorted({str(row.get("started_utc") or "")[:10] for row in rows} - {""})
     lines.append(f"Recorded: {' to '.join(dict.fromkeys((days[0], days[-1]))) if days else 'no date'} (UTC), {len(rows)} run{'s' if len(rows) != 1 else ''}.")
     return "\n\n".join(textwrap.fill(line, 100) for line in lines) + "\n"

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from .captions import origin
+from . import fields
 
-SCHEMA_NAME = "barrierbench.run"
-SCHEMA_MAJOR = 2
+VERSION = fields.schema("run")["$defs"]["SchemaId"]["properties"]
+SCHEMA_NAME, SCHEMA_MAJOR = VERSION["name"]["enum"][0], VERSION["version"]["pattern"].strip("^").split("\\.")[0]
 LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
 
 
@@ -22,7 +22,7 @@ class RecordError(ValueError):
 
 @dataclass
 class Records:
-    """`run` (the folder below the root) joins the tables; every other column keeps the record's own name."""
+    """`run` (the folder below the root) joins the tables; the other columns are those of fields.columns()."""
 
     runs: pd.DataFrame  # one row a run
     steps: pd.DataFrame  # one row a time step
@@ -31,15 +31,11 @@ class Records:
     unreadable: list[str] = field(default_factory=list)  # records left out: "path: reason"
 
 
-def _scalars(mapping: dict) -> dict:
-    return {k: v for k, v in mapping.items() if not isinstance(v, (dict, list))}
-
-
 def _check_schema(record: dict, path: Path) -> None:
     schema = record.get("schema", {})
     major = str(schema.get("version", "")).split(".")[0]
-    if schema.get("name") != SCHEMA_NAME or major != str(SCHEMA_MAJOR):
-        raise RecordError(f"{path}: schema {schema}; this version reads {SCHEMA_NAME} {SCHEMA_MAJOR}.x.x")
+    if schema.get("name") != SCHEMA_NAME or major != SCHEMA_MAJOR:
+        raise RecordError(f"{path}: schema {schema}; this version reads {SCHEMA_NAME} {SCHEMA_MAJOR}.x.y")
 
 
 def _series(labels: dict) -> str:
@@ -49,28 +45,11 @@ def _series(labels: dict) -> str:
     return case or labels["formulation"]
 
 
-def _comparability(found: dict) -> dict:
-    """As the program judged it (docs/design.md, Comparability): never computed here."""
-    names = {"verdict": "comparability", "reason": "comparability_reason", "reference_run": "reference_run",
-             "reference_gap_rel": "reference_gap_rel", "ratio": "gap_ratio", "max_ratio": "max_gap_ratio"}
-    return {column: found[key] for key, column in names.items()}
-
-
-def _run_row(record: dict, run: str) -> dict:
-    labels, status, summary = record["labels"], record["status"], record["summary"]
-    row = {"run": run, "folder": Path(run).name, "run_id": record["ids"]["run_id"], "config_id": record["ids"]["config_id"]}
-    row |= {"group": record["ids"].get("sweep_id") or labels["scene"], "series": _series(labels)}
-    row |= _scalars(labels) | {"outcome": status["outcome"], "started_utc": status["started_utc"], "detail": status["detail"], "valid": status["valid"]}
-    row |= _scalars(summary) | {"gap_min_rel": summary["gap_min_rel"]["min"]}
-    row |= origin(record)
-    row["first_contact"] = summary["first_contact"]
-    row["probe_pcg"] = summary["probe_pcg"]["median"]
-    row |= {k: record["audit"][k] for k in ("enabled", "crossings", "violations", "unproven")}
-    row |= {key: record["audit"][key] for key in ("judged", "obstacle_violations", "scene_faults")}
-    row |= _comparability(record["comparability"])
-    row |= {"free_dofs": record["scene"]["free_dofs"], "extent_m": record["scene"]["extent_m"]}
-    row["blas_kernel"] = record["provenance"].get("blas", {}).get("kernel", "")  # empty: records before 2.0
-    row |= {f"matching_{k}": v for k, v in _scalars(record["matching"]).items()}
+def run_row(record: dict, run: str = "") -> dict:
+    """A row of `runs`: the fields of the record, and where it belongs."""
+    row = fields.row("runs", record)
+    row |= {"run": run, "folder": Path(run).name, "series": _series(record["labels"])}
+    row["group"] = row["sweep_id"] or row["scene"]
     return row
 
 
@@ -90,7 +69,7 @@ def _trace_lines(path: Path) -> list[dict]:
     return rows
 
 
-def _read(path: Path) -> dict:
+def read_record(path: Path) -> dict:
     """One run.json. Raises RecordError: torn or otherwise not JSON, no record, a version this one does not read."""
     try:
         record = json.loads(path.read_text())
@@ -112,19 +91,19 @@ def load(root: str | Path) -> Records:
     runs, steps, trace, cond, unreadable = [], [], [], [], []
     for path in sorted(root.rglob("run.json")):
         try:
-            record = _read(path)
+            record = read_record(path)
             lines = _trace_lines(path.parent / "trace.jsonl")
         except RecordError as error:
             unreadable.append(str(error))
             continue
         run = str(path.parent.relative_to(root))
-        runs.append(_run_row(record, run))
+        runs.append(run_row(record, run))
         for step in record["steps"]:
-            steps.append({"run": run, **_scalars(step), "contacts": step["contacts"]["total"]})
+            steps.append({"run": run, **fields.row("steps", step)})
         for n, line in enumerate(lines):
             place = {"run": run, "n": n, "step": line["step"], "iteration": line["iteration"]}
-            trace.append({**place, **_scalars(line), "contacts": line["contacts"]["total"]})
-            cond.extend({**place, **_scalars(c)} for c in line["cond"])
+            trace.append({**place, **fields.row("trace", line)})
+            cond.extend({**place, **fields.row("cond", sample)} for sample in line["cond"])
     if not runs:
         raise RecordError("\n".join([f"{root}: no run.json below this folder that can be read", *unreadable]))
     for line in unreadable:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 from dataclasses import dataclass
 from pathlib import Path
@@ -15,8 +14,9 @@ from matplotlib.colors import Normalize, to_rgb
 from matplotlib.patches import Patch
 
 from . import style
-from .captions import caption, origin, settings
+from .captions import caption
 from .frames import Frame, FrameError, frame_paths, read_frame, read_scene
+from .load import RecordError, read_record, run_row
 from .obstacle_mesh import obstacle_mesh
 from .rasterizer import Camera, DepthBuffer, corner_normals
 
@@ -223,9 +223,9 @@ def _annotate(fig, scene: dict, frame: Frame, color: str, scale: Normalize | Non
 
 def _record(run: Path) -> dict:
     try:
-        return json.loads((run / "run.json").read_text())
-    except (OSError, json.JSONDecodeError) as error:
-        raise FrameError(f"{run / 'run.json'}: {error}") from None
+        return read_record(run / "run.json")
+    except RecordError as error:
+        raise FrameError(str(error)) from None
 
 
 def _when(record: dict, step: int) -> str:
@@ -264,7 +264,7 @@ def render(run: str | Path, step: int | None = None, color: str = "body", out: s
     fig.savefig(path, metadata={"Software": None})
     plt.close(fig)
     colored = "bodies in one colour each" if color == "body" else f"colour: {COLORINGS[color].label}"
-    path.with_suffix(".txt").write_text(caption(f"{what}. Shown: {colored}; analytic obstacles grey, behind the triangles that rest on them (they act on vertices only); sides of triangles as thin lines.", [origin(record) | settings(record)]))
+    path.with_suffix(".txt").write_text(caption(f"{what}. Shown: {colored}; analytic obstacles grey, behind the triangles that rest on them (they act on vertices only); sides of triangles as thin lines.", [run_row(record)]))
     return path
 
 

@@ -115,7 +115,7 @@ def verdict_word(row: pd.Series) -> str:
     """Why the markers of a run are hollow: its outcome, or the program's verdict on comparability; else empty."""
     if row["outcome"] != "ok":
         return row["outcome"]
-    return row["comparability"] if row["comparability"] in ("not_valid", "not_comparable") else ""
+    return row["comparability_verdict"] if row["comparability_verdict"] in ("not_valid", "not_comparable") else ""
 
 
 def name_of(row: pd.Series) -> str:
@@ -157,12 +157,12 @@ def not_measured(axis, text: str = "not measured") -> None:
 
 def hollow_rule(runs: pd.DataFrame) -> str:
     """The rule of hollow markers in words; empty where no run of the group has a reference."""
-    compared = runs[runs["reference_run"] != ""]
+    compared = runs[runs["comparability_reference_run"] != ""]
     if compared.empty:
         return ""
     names = runs.drop_duplicates("run").set_index("folder")["series"]
-    references = " or ".join(dict.fromkeys(names.get(folder, folder) for folder in compared["reference_run"]))
-    text = HOLLOW.format(ratio=compared["max_gap_ratio"].iloc[0], reference=references)
+    references = " or ".join(dict.fromkeys(names.get(folder, folder) for folder in compared["comparability_reference_run"]))
+    text = HOLLOW.format(ratio=compared["comparability_max_ratio"].iloc[0], reference=references)
     return "\n".join(textwrap.wrap(text, 110))
 
 

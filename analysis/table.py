@@ -50,9 +50,9 @@ def summary_table(records: Records) -> pd.DataFrame:
                 "cond_bj_median": scaled[0],
                 "cond_bj_max": scaled[1],
                 "newton_iterations": run["newton_iterations"],
-                "probe_pcg": run["probe_pcg"],
-                "gap_min_rel": run["gap_min_rel"],
-                "crossings": run["crossings"] if run["enabled"] else None,
+                "probe_pcg": run["probe_pcg_median"],
+                "gap_min_rel": run["gap_min_rel_min"],
+                "crossings": run["audit_crossings"] if run["audit_enabled"] else None,
             }
         )
     return pd.DataFrame(rows)

@@ -47,7 +47,7 @@ std::size_t StrainLimitBatch::n_active() const {
 }
 
 double StrainLimitBatch::max_stretch() const {
-  return sigma_.empty() ? 0.0 : *std::max_element(sigma_.begin(), sigma_.end());
+  return sigma_.empty() ? 0.0 : *std::max_element(sigma_.begin(), sigma_.end()) - 1;
 }
 
 double StrainLimitBatch::min_gap() const {

@@ -34,7 +34,7 @@ class StrainLimitBatch {
   std::span<const double> sigma() const { return sigma_; }  // [2n] descending within an element
   std::span<const double> gaps() const { return gap_; }     // [2n] y; d_hat of the shape is the width
   std::size_t n_active() const;                             // elements with a singular value above 1 + onset
-  double max_stretch() const;                               // largest sigma; 0 without elements
+  double max_stretch() const;                               // largest sigma - 1; 0 without elements
   double min_gap() const;                                   // smallest y; infinity without elements
 
   /// S_e [n], J; infinite at or beyond the limit. kappa [n], J. Measures.

@@ -28,7 +28,7 @@ class ArticleLiteral final : public StepSolver {
       system.add_tikhonov(tikhonov_relative, tikhonov_absolute);
       report.linear = system.solve(target_, dx_);
       measure_direction(system, dx_, report);
-      const bool small = report.dx_inf / task.dt < options_.tol_velocity;
+      const bool small = report.dx_inf_m / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, !small)) {
         finish_iteration(system, step, report, observer);
         fail_step(step, *failed, report);
@@ -55,11 +55,11 @@ class ArticleLiteral final : public StepSolver {
       ++report.line_search_trials;
       const auto change = system.try_state(x_trial_);
       if (!change) continue;
-      const bool decrease = change->change <= -armijo_ * alpha * report.decrement;
-      report.accepted_by_rounding = !decrease && within_rounding(*change);
-      if (!decrease && !report.accepted_by_rounding) continue;
+      const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
+      report.rounding_accepts = !decrease && within_rounding(*change);
+      if (!decrease && !report.rounding_accepts) continue;
       report.alpha = alpha;
-      report.energy_change = change->change;
+      report.energy_change_J = change->change;
       system.accept();
       return true;
     }

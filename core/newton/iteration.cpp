@@ -5,6 +5,30 @@
 #include <limits>
 
 namespace bb {
+namespace {
+
+/// What the linear solver and the step bound did, in the words of the trace.
+void fill_work(IterationReport& report) {
+  const LinearReport& linear = report.linear;
+  report.linear_status = linear.status;
+  report.residual_true = linear.residual_true;
+  const auto iterative = [&linear](double value) {
+    return linear.iterations > 0 ? Number(value) : Number::missing("direct_solver");
+  };
+  report.residual_recurrence = iterative(linear.residual_recurrence);
+  report.ritz_min = iterative(linear.ritz_min);
+  report.ritz_max = iterative(linear.ritz_max);
+  report.linear_solves = 1;
+  report.linear_iterations = linear.iterations;
+  report.factorizations = linear.factorized;
+  report.analyses = linear.analyzed;
+  report.ccd_queries = report.bound.queries;
+  report.ccd_probes = report.bound.probes;
+  report.ccd_capped = report.bound.capped;
+  report.ccd_zero = report.bound.zero;
+}
+
+}  // namespace
 
 StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& used, Positions& target) {
   const ScopedPhase timer(system.clock(), Phase::prediction);
@@ -36,46 +60,42 @@ IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, S
   system.assemble();
   observer.on_matrix(system, step, iteration);
 
-  report.energy = system.energy();
-  report.grad_inf = system.grad_inf();
+  report.energy_J = system.energy();
+  report.grad_inf_N = system.grad_inf();
   report.pattern_changed = system.pattern_changed();
   system.report(report);
+  if (iteration == 0) report.forget_changes();
   return report;
 }
 
 void measure_direction(const NewtonSystem& system, const Positions& dx, IterationReport& report) {
   const Positions& gradient = system.gradient();
   double slope = 0;
-  report.dx_inf = 0;
+  report.dx_inf_m = 0;
   for (Eigen::Index i = 0; i < dx.size(); ++i) {
     if (system.fixed()[static_cast<std::size_t>(i)]) continue;
     slope += gradient.data()[i] * dx.data()[i];
     const double size = std::abs(dx.data()[i]);
-    report.dx_inf = size > report.dx_inf || std::isnan(size) ? size : report.dx_inf;
+    report.dx_inf_m = size > report.dx_inf_m || std::isnan(size) ? size : report.dx_inf_m;
   }
-  report.decrement = -slope;
+  report.decrement_J = -slope / 2;
   report.n_free = static_cast<std::size_t>(system.n_free());
   report.nnz = system.nnz();
 }
 
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend) {
   if (report.linear.status != LinearStatus::ok) return StepStatus::linear_failed;
-  if (!std::isfinite(report.dx_inf) || !std::isfinite(report.decrement)) return StepStatus::non_finite;
-  if (must_descend && report.decrement <= 0) return StepStatus::not_descent;
+  if (!std::isfinite(report.dx_inf_m) || !std::isfinite(report.decrement_J)) return StepStatus::non_finite;
+  if (must_descend && report.decrement_J <= 0) return StepStatus::not_descent;
   return std::nullopt;
 }
 
 void finish_iteration(NewtonSystem& system, StepReport& step, IterationReport& report,
                       StepObserver& observer) {
-  report.times = system.clock().lap();
-  ++step.iterations;
-  step.linear_iterations += report.linear.iterations;
-  step.line_search_trials += report.line_search_trials;
-  step.factorizations += report.linear.factorized;
-  step.analyses += report.linear.analyzed;
-  step.accepted_by_rounding += report.accepted_by_rounding;
+  report.time = system.clock().lap();
+  fill_work(report);
+  ++step.newton_iterations;
   step.add(report);
-  step.alpha_min = std::min(step.alpha_min, report.alpha);
   observer.on_iteration(report);
 }
 
@@ -104,12 +124,14 @@ std::string describe_short_pin(const NewtonSystem& system, const Positions& targ
 
 void measure_end(NewtonSystem& system, StepReport& step) {
   system.report_end(step);
+  step.close();
   const bool stalled = step.status == StepStatus::iteration_cap || step.status == StepStatus::step_collapse ||
                        step.status == StepStatus::line_search_failed ||
                        step.status == StepStatus::not_descent;
   if (!stalled) return;
-  if (const std::string moving = step.describe_unsettled(step.iterations); !moving.empty()) {
+  if (const std::string moving = step.describe_unsettled(); !moving.empty()) {
     step.detail = moving + (step.detail.empty() ? "" : "; " + step.detail);
+    step.contact_overload = step.limit_overload = Number::missing("kappa_unsettled");
     return;  // what a kappa that moves can carry is no number
   }
   system.assemble();  // the rows that were accepted last and their gradients, of one state

@@ -36,7 +36,7 @@ class LineSearch final : public StepSolver {
       report.linear = system.solve(target_, dx_);
       measure_direction(system, dx_, report);
       const bool at_pose = poses_reached(system, target_);
-      const bool small = at_pose && report.dx_inf / task.dt < options_.tol_velocity;
+      const bool small = at_pose && report.dx_inf_m / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
         fail_step(step, *failed, report);
@@ -78,11 +78,11 @@ class LineSearch final : public StepSolver {
       move(system, alpha);
       ++report.line_search_trials;
       if (const auto change = system.try_state(x_trial_)) {
-        const bool decrease = change->change <= -armijo_ * alpha * report.decrement;
-        report.accepted_by_rounding = energy_test && !decrease && within_rounding(*change);
-        if (decrease || !energy_test || report.accepted_by_rounding) {
+        const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
+        report.rounding_accepts = energy_test && !decrease && within_rounding(*change);
+        if (decrease || !energy_test || report.rounding_accepts) {
           report.alpha = alpha;
-          report.energy_change = change->change;
+          report.energy_change_J = change->change;
           system.accept();
           return true;
         }

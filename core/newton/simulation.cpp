@@ -68,16 +68,16 @@ StepReport Simulation::step(StepObserver& observer) {
   StepReport report = solver_->advance(system_, task, prediction_, charged);
 
   remember(system_.x(), report.dt_used);
-  report.t = time_;
+  report.t_s = time_;
   measure_end(system_, report);
   for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {
-    report.kinetic_energy += 0.5 * scene_.mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
+    report.kinetic_J += 0.5 * scene_.mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
   }
   system_.end_step();
-  report.times = clock.read();
+  report.time = clock.read();
   charged.on_step(system_, report, history_.x);
   ++step_;
-  report.times = clock.read();
+  report.time = clock.read();
   return report;
 }
 

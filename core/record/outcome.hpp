@@ -2,8 +2,9 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <string_view>
+
+#include "core/record/field.hpp"
 
 namespace bb {
 
@@ -20,34 +21,16 @@ enum class Outcome {
   linear_failure,        // the linear solver broke down
   not_pd,                // the matrix was not positive definite
   unproven,              // finished, but the audit could not certify every motion
-  timeout,
-  oom,
-  device_error,
-  killed,  // interrupted in the middle
-  ok,
-  count
+  ok
 };
+template <>
+inline constexpr int n_words<Outcome> = 12;
 
-inline constexpr std::array<std::string_view, static_cast<std::size_t>(Outcome::count)> kOutcomeNames = {
-    "invalid_scene",
-    "initial_intersection",
-    "penetration",
-    "nan",
-    "pin_infeasible",
-    "ccd_cap",
-    "stall_overload",
-    "newton_stall",
-    "linear_failure",
-    "not_pd",
-    "unproven",
-    "timeout",
-    "oom",
-    "device_error",
-    "killed",
-    "ok"};
-
-inline std::string_view to_string(Outcome outcome) {
-  return kOutcomeNames[static_cast<std::size_t>(outcome)];
+constexpr std::string_view to_string(Outcome outcome) {
+  constexpr std::array<std::string_view, n_words<Outcome>> words = {
+      "invalid_scene",  "initial_intersection", "penetration",    "nan",    "pin_infeasible", "ccd_cap",
+      "stall_overload", "newton_stall",         "linear_failure", "not_pd", "unproven",       "ok"};
+  return words[static_cast<std::size_t>(outcome)];
 }
 
 /// The one of two that a run reports.

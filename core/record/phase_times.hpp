@@ -10,31 +10,39 @@
 
 namespace bb {
 
+/// Every phase with what belongs to it.
+#define BB_PHASES(PHASE)                                                                                   \
+  PHASE(prediction, "x_tilde, forces and poses of pins at the start of a step, velocities at its end")     \
+  PHASE(elastic, "membranes, springs, hinges: gradients and Hessians")                                     \
+  PHASE(strain_limit, "S at an iterate: its stiffness, gradients, Hessians, loads")                        \
+  PHASE(broad_phase, "candidate pairs")                                                                    \
+  PHASE(contact_rows, "closest points, merging")                                                           \
+  PHASE(stiffness, "kappa: policy and memory")                                                             \
+  PHASE(contact_terms, "shape, local gradients and Hessians of B")                                         \
+  PHASE(assembly, "gathers into gradient and block matrix, inertia, prescribed motion, restriction")       \
+  PHASE(linear_analyze, "symbolic analysis")                                                               \
+  PHASE(linear_factor, "numeric factorisation or preconditioner")                                          \
+  PHASE(linear_solve, "triangular solves or PCG, residuals")                                               \
+  PHASE(step_bound, "ACCD")                                                                                \
+  PHASE(strain_bound, "bisection of the strain limit")                                                     \
+  PHASE(line_search, "energies of trial states")                                                           \
+  PHASE(step_control, "the step solver itself: measures of iterate, direction and end, decisions, copies") \
+  PHASE(output, "observers: record, trace, frames; of an observed run condition estimates and audit too")
+
 enum class Phase {
-  prediction,      // x_tilde, forces and poses of pins at the start of a step, velocities at its end
-  elastic,         // membrane, springs, hinges: gradients and Hessians
-  strain_limit,    // S at an iterate: its stiffness, gradients, Hessians, loads
-  broad_phase,     // candidate pairs
-  contact_rows,    // closest points, merging
-  stiffness,       // kappa: policy and memory
-  contact_terms,   // shape, local gradients and Hessians of B
-  assembly,        // gathers into gradient and block matrix, inertia, prescribed motion, restriction
-  linear_analyze,  // symbolic
-  linear_factor,   // numeric factorisation or preconditioner
-  linear_solve,    // triangular solves or PCG, residuals
-  step_bound,      // ACCD
-  strain_bound,    // bisection of the strain limit
-  line_search,     // energies of trial states
-  step_control,    // the step solver itself: measures of iterate, direction and end state, decisions, copies
-  output,          // observers: record, trace, frames; of an observed run condition estimates and audit too
-  count
+#define BB_PHASE(name, doc) name,
+  BB_PHASES(BB_PHASE)
+#undef BB_PHASE
+      count
 };
 inline constexpr std::size_t kPhases = static_cast<std::size_t>(Phase::count);
 
-inline constexpr std::array<std::string_view, kPhases> kPhaseNames = {
-    "prediction",    "elastic",     "strain_limit",   "broad_phase",   "contact_rows", "stiffness",
-    "contact_terms", "assembly",    "linear_analyze", "linear_factor", "linear_solve", "step_bound",
-    "strain_bound",  "line_search", "step_control",   "output"};
+#define BB_PHASE(name, doc) #name,
+inline constexpr std::array<std::string_view, kPhases> kPhaseNames = {BB_PHASES(BB_PHASE)};
+#undef BB_PHASE
+#define BB_PHASE(name, doc) doc,
+inline constexpr std::array<std::string_view, kPhases> kPhaseDocs = {BB_PHASES(BB_PHASE)};
+#undef BB_PHASE
 
 /// Seconds per phase.
 struct PhaseTimes {

@@ -94,7 +94,7 @@ Machine collect_machine() {
   m.cores = static_cast<int>(::sysconf(_SC_NPROCESSORS_ONLN));
   m.mem_bytes = std::strtoull(value_of("/proc/meminfo", "MemTotal", ':').c_str(), nullptr, 10) * 1024;
   m.virtualised = value_of("/proc/cpuinfo", "flags", ':').find(" hypervisor") != std::string::npos;
-  if (::getloadavg(m.load_avg, 3) != 3) m.load_avg[0] = m.load_avg[1] = m.load_avg[2] = 0;
+  if (::getloadavg(m.load_avg.data(), 3) != 3) m.load_avg = {};
   utsname name{};
   if (::uname(&name) == 0) m.kernel = std::string(name.sysname) + " " + name.release + " " + name.machine;
   return m;
@@ -103,13 +103,12 @@ Machine collect_machine() {
 void fill_ids(RunRecord& record) {
   static const std::string this_program = sha256_file("/proc/self/exe");
   Ids& ids = record.ids;
-  ids.config_id = config_id(record.config_json);
+  ids.config_id = config_id(record.config.text);
   ids.build_id = this_program;
   ids.machine_id = sha256_hex(record.machine.cpu_model + "\n" + std::to_string(record.machine.cores) + "\n" +
                               record.machine.kernel);
   std::string parts = ids.config_id + "\n" + ids.build_id + "\n" + ids.machine_id + "\n" +
-                      std::to_string(record.provenance.threads) + "\n" + std::to_string(ids.repetition) +
-                      "\n";
+                      std::to_string(record.provenance.threads) + "\n";
   for (const auto& [name, version] : record.provenance.libraries) parts += name + " " + version + "\n";
   parts += "BLAS kernel " + record.provenance.blas.kernel + "\n";
   std::vector<std::string> plugins;  // the order of --plugin means nothing

@@ -17,10 +17,10 @@ namespace bb {
 Provenance collect_provenance(std::vector<std::string> argv, int threads);
 Machine collect_machine();
 
-/// All ids of a run. Requires provenance, machine and config_json of the record to be filled; sets config_id,
+/// All ids of a run. Requires provenance, machine and config of the record to be filled; sets config_id,
 /// build_id, machine_id and run_id, keeps the rest. The run_id covers all that made the record: config
 /// (meshes by content), executable, libraries with the BLAS kernel that runs, plugins by content, machine,
-/// number of threads (which changes times, no result) and repetition.
+/// and number of threads (which changes times, no result).
 void fill_ids(RunRecord& record);
 
 /// SHA-256 as 64 lower-case hex digits.

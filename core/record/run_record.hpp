@@ -1,259 +1,360 @@
 // What one run leaves behind, as plain values: run.json is exactly this struct (writer.hpp), the trace beside
-// it holds one TraceRow a Newton iteration. Keys and units: configs/schema/run.schema.json.
+// it holds one TraceRow a Newton iteration.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
-#include "core/record/number.hpp"
 #include "core/record/outcome.hpp"
-#include "core/record/phase_times.hpp"
-#include "core/record/trace_row.hpp"
+#include "core/record/step_record.hpp"
 
 namespace bb {
 
 /// Of run.json and of the trace beside it. MODEL.REVISION.ADDITION: removed or changed meaning, widened,
-/// added. Readers check the first number; what an earlier version of the same model lacks is optional in the
-/// schemas.
-inline constexpr const char* kRunSchemaVersion = "2.0.0";
+/// added. Readers refuse another first number.
+inline constexpr const char* run_schema_name = "barrierbench.run";
+inline constexpr const char* run_schema_version = "3.0.0";
+
+using TextMap = std::map<std::string, std::string>;
+using CountMap = std::map<std::string, int>;
+using SampleMap = std::map<std::string, std::vector<double>>;
+
+inline constexpr const char* sha256_or_empty = "^([0-9a-f]{64})?$";
+
+/// A JSON object kept as its text.
+struct JsonText {
+  std::string text = "{}";
+};
+
+struct SchemaId {
+  BB_RECORD(SchemaId, "what the file is");
+  BB_FIELD(std::string, name, "always the same", "barrierbench.run") = run_schema_name;
+  BB_FIELD(std::string, version, "model.revision.addition", "^3\\.[0-9]+\\.[0-9]+$") = run_schema_version;
+  BB_RECORD_END;
+};
 
 struct Ids {
-  std::string config_id;   // sha256 of the canonical resolved config
-  std::string run_id;      // sha256 of all that made the record (fill_ids)
-  std::string build_id;    // sha256 of the executable
-  std::string machine_id;  // sha256 of processor model, core count, kernel
-  std::string sweep_id;    // empty: none
-  std::string rerun_of;    // run_id of the record that this run repeats; empty: none
-  int repetition = 0;
-  std::vector<std::string> parent_ids;  // runs this one was calibrated from (pilot)
+  BB_RECORD(Ids, "sha256 of what made the record");
+  BB_FIELD(std::string, config_id,
+           "of the canonical resolved config without threads; files by content and suffix", sha256_or_empty);
+  BB_FIELD(std::string, run_id, "of all: config, executable, libraries, plugins, machine, threads",
+           sha256_or_empty);
+  BB_FIELD(std::string, build_id, "of the executable", sha256_or_empty);
+  BB_FIELD(std::string, machine_id, "of processor model, core count and kernel of the system",
+           sha256_or_empty);
+  BB_FIELD(std::optional<std::string>, sweep_id, "of the sweep that the run is a case of");
+  BB_FIELD(std::optional<std::string>, rerun_of, "run_id of the record that this run repeats",
+           sha256_or_empty);
+  BB_RECORD_END;
 };
 
 struct Status {
-  Outcome outcome = Outcome::ok;
-  std::string detail;  // one sentence; empty when ok
-  int exit_code = 0;
-  std::string started_utc, ended_utc;  // ISO 8601
+  BB_RECORD(Status, "how the run ended");
+  BB_FIELD(Outcome, outcome, "of several that hold, the first in the order of this list") = Outcome::ok;
+  BB_FIELD(std::string, detail, "one sentence; empty when ok");
+  BB_FIELD(bool, valid, "every check of `validity` passed") = false;
+  BB_FIELD(int, exit_code, "of the program") = 0;
+  BB_FIELD(std::string, started_utc, "ISO 8601");
+  BB_FIELD(std::string, ended_utc, "ISO 8601");
+  BB_RECORD_END;
 };
 
-/// What tables group by; every value is derived from the config and never read back.
 struct Labels {
-  std::string scene, formulation, shape, argument, stiffness_policy, matching_rule;
-  std::string integrator, step_solver, linear_solver, preconditioner, precision;
-  double d_hat_m = 0, dt_s = 0;
-  std::string note;  // how the row of a table differs ("as_given", "scaled"), empty: nothing
+  BB_RECORD(Labels, "what tables group by; derived from the config, never read back");
+  BB_FIELD(std::string, scene, "name of the scene");
+  BB_FIELD(std::string, formulation, "name of the preset, or the shape");
+  BB_FIELD(std::string, shape, "b(d; d_hat)");
+  BB_FIELD(std::string, argument, "what the shape is applied to");
+  BB_FIELD(std::string, stiffness_policy, "how contacts get their kappa");
+  BB_FIELD(std::string, matching_rule, "how stiffnesses are made comparable");
+  BB_FIELD(std::string, integrator, "time integrator");
+  BB_FIELD(std::string, step_solver, "order of events in a step");
+  BB_FIELD(std::string, linear_solver, "of the Newton step");
+  BB_FIELD(std::string, preconditioner, "of pcg; none for others");
+  BB_FIELD(std::string, precision, "of the solver");
+  BB_FIELD(double, d_hat_m, "width of the contact barrier") = 0;
+  BB_FIELD(double, dt_s, "time step") = 0;
+  BB_FIELD(std::string, note, "how a row of a table differs; empty: nothing");
+  BB_RECORD_END;
 };
 
-/// Sizes of the scene after it was built.
+struct Passes {
+  BB_RECORD(Passes, "what was asked for");
+  BB_FIELD(bool, time, "a run of its own, timed") = false;
+  BB_FIELD(bool, diagnose, "condition estimates and trace") = false;
+  BB_FIELD(bool, audit, "exact checks of every state and motion") = false;
+  BB_RECORD_END;
+};
+
 struct SceneSize {
-  std::size_t vertices = 0, free_dofs = 0, triangles = 0, springs = 0, hinges = 0, obstacles = 0;
-  double extent_m = 0;                             // largest side of the start box
-  std::map<std::string, std::string> mesh_sha256;  // file, relative to the record's folder -> sha256
+  BB_RECORD(SceneSize, "sizes of the scene that was built");
+  BB_FIELD(std::size_t, vertices, "given and free") = 0;
+  BB_FIELD(std::size_t, free_dofs, "degrees of freedom of vertices that are not prescribed") = 0;
+  BB_FIELD(std::size_t, triangles, "with a membrane") = 0;
+  BB_FIELD(std::size_t, springs, "edges with a spring") = 0;
+  BB_FIELD(std::size_t, hinges, "edges that resist bending") = 0;
+  BB_FIELD(std::size_t, obstacles, "analytic surfaces") = 0;
+  BB_FIELD(double, extent_m, "largest side of the start box") = 0;
+  BB_FIELD(TextMap, mesh_sha256, "mesh file, relative to the folder of this record -> sha256");
+  BB_RECORD_END;
 };
 
-/// A plugin that was loaded. In a record `file` is relative to the folder of the record.
 struct PluginFile {
-  std::string name, file, sha256;
+  BB_RECORD(PluginFile, "a plugin that was loaded");
+  BB_FIELD(std::string, name, "that it gives itself");
+  BB_FIELD(std::string, file, "relative to the folder of this record");
+  BB_FIELD(std::string, sha256, "of the file", "^[0-9a-f]{64}$");
+  BB_RECORD_END;
 };
 
-/// The BLAS behind the factorisations: another kernel adds in another order and gives other bits.
 struct BlasRecord {
-  std::string kernel;     // the one that ran, in OpenBLAS's words: "Haswell", "SkylakeX"
-  std::string requested;  // OPENBLAS_CORETYPE; "native" without: OpenBLAS chose by the processor
-  std::string config;     // openblas_get_config()
-  std::string library;    // file that holds dgemm
-  int threads = 1;
+  BB_RECORD(BlasRecord, "the BLAS behind the factorisations: another kernel gives other bits");
+  BB_FIELD(std::string, kernel, "of OpenBLAS, the one that ran: Haswell, SkylakeX");
+  BB_FIELD(std::string, requested, "OPENBLAS_CORETYPE; native: OpenBLAS chose by the processor");
+  BB_FIELD(std::string, config, "openblas_get_config()");
+  BB_FIELD(std::string, library, "file that holds dgemm");
+  BB_FIELD(int, threads, "of BLAS") = 1;
+  BB_RECORD_END;
 };
 
 struct Provenance {
-  std::string tool_version, git_commit;
-  bool git_dirty = false;
-  std::string compiler, flags, build_type;
-  bool fast_math = false;
-  std::string fp_contract;
-  std::map<std::string, std::string> libraries;  // name -> version
-  std::vector<PluginFile> plugins;
-  std::vector<std::string> argv;
-  std::map<std::string, std::string> env;  // thread counts and the like
-  int threads = 1;
-  BlasRecord blas;
+  BB_RECORD(Provenance, "the program that made the record");
+  BB_FIELD(std::string, tool_version, "of barrierbench");
+  BB_FIELD(std::string, git_commit, "of the tree that was built");
+  BB_FIELD(bool, git_dirty, "whether files differed from it") = false;
+  BB_FIELD(std::string, compiler, "name and version");
+  BB_FIELD(std::string, flags, "that decide the generated code");
+  BB_FIELD(std::string, build_type, "of CMake");
+  BB_FIELD(bool, fast_math, "whether the compiler could reorder sums") = false;
+  BB_FIELD(std::string, fp_contract, "whether it fused multiply and add");
+  BB_FIELD(TextMap, libraries, "name -> version");
+  BB_FIELD(std::vector<PluginFile>, plugins, "every plugin that was loaded");
+  BB_FIELD(std::vector<std::string>, argv, "the command");
+  BB_FIELD(TextMap, env, "variables of thread counts and the like");
+  BB_FIELD(int, threads, "of the program") = 1;
+  BB_FIELD(BlasRecord, blas, "linear algebra of dense blocks");
+  BB_RECORD_END;
 };
 
 struct Machine {
-  std::string cpu_model, governor, os, kernel;
-  int cores = 0;
-  std::uint64_t mem_bytes = 0;
-  double load_avg[3] = {0, 0, 0};
-  bool virtualised = false;
+  BB_RECORD(Machine, "where it ran");
+  BB_FIELD(std::string, cpu_model, "of /proc/cpuinfo");
+  BB_FIELD(int, cores, "online") = 0;
+  BB_FIELD(std::string, governor, "of the clock; empty: unknown");
+  using Load = std::array<double, 3>;
+  BB_FIELD(Load, load_avg, "of 1, 5 and 15 minutes at the start") = {0, 0, 0};
+  BB_FIELD(std::uint64_t, mem_bytes, "physical memory") = 0;
+  BB_FIELD(std::string, os, "of /etc/os-release");
+  BB_FIELD(std::string, kernel, "of the system");
+  BB_FIELD(bool, virtualised, "whether a hypervisor is below") = false;
+  BB_RECORD_END;
 };
 
-/// Order statistics of a sample; everything missing when n = 0.
+struct PlanLine {
+  BB_RECORD(PlanLine, "what the scene needs, and what is neither allocated nor run");
+  BB_FIELD(std::string, item, "a part of the program");
+  BB_FIELD(bool, active, "whether it runs") = false;
+  BB_FIELD(std::string, reason, "why, or why not");
+  BB_RECORD_END;
+};
+
+struct Skipped {
+  BB_RECORD(Skipped, "a measure that the record lacks");
+  BB_FIELD(std::string, metric, "time, cond, audit, trace");
+  BB_FIELD(std::string, reason, "why", "not_requested");
+  BB_RECORD_END;
+};
+
+struct MatchingRecord {
+  BB_RECORD(MatchingRecord, "how stiffness was chosen (docs/design.md, Matching)");
+  BB_FIELD(std::string, rule, "matching rule") = "as_given";
+  BB_FIELD(std::string, load_source, "of load_N", "given pilot static_weight none") = "none";
+  BB_FIELD(std::string, limit_load_source, "of limit_load_N_per_m",
+           "given pilot static_weight none") = "none";
+  BB_FIELD(std::string, pilot_config_id, "config_id of the pilot; empty: none", sha256_or_empty);
+  BB_FIELD(std::string, pilot_note,
+           "where the pilot stopped early; which policies stay as given for want of a measured load");
+  BB_FIELD(std::string, contact,
+           "the pilot's contact that asked for the most stiffness; empty: none was compared");
+  BB_FIELD(Number, contact_step, "step of the pilot, from 0, at whose end it did");
+  BB_FIELD(long long, contacts_considered,
+           "contacts with a load, over all converged step ends of the pilot") = 0;
+  BB_FIELD(std::string, limit_element, "the pilot's limited element that asked for the most; empty: none");
+  BB_FIELD(Number, limit_step, "step of the pilot at whose end it did");
+  BB_FIELD(long long, elements_considered, "limited elements with a load, over the same step ends") = 0;
+  BB_FIELD(Number, theta, "fraction of d_hat at which equal_force matches");
+  BB_FIELD(Number, load_N, "per unit multiplicity; of a pilot, the load of `contact`");
+  BB_FIELD(Number, d_hat_m, "at which the load was matched: of `contact`, else the formulation's");
+  BB_FIELD(Number, limit_load_N_per_m, "of the strain limit; of a pilot, the load of `limit_element`");
+  BB_FIELD(Number, curvature_N_per_m, "that equal_curvature matched");
+  BB_FIELD(Number, limit_curvature, "the same of the strain limit");
+  BB_FIELD(Number, kappa_N_per_m, "chosen; absent where the policy makes its own");
+  BB_FIELD(Number, limit_stiffness_N_per_m, "k_s chosen");
+  BB_FIELD(Number, scale, "factor on a contact policy that makes its own kappa; absent: as given");
+  BB_FIELD(Number, limit_scale, "factor on a limit policy that makes its own kappa_e; absent: as given");
+  BB_FIELD(Number, capacity_N, "largest load of the shape at that kappa; absent: unbounded");
+  BB_RECORD_END;
+};
+
 struct Stats {
-  std::size_t n = 0;
-  Number min, p05, median, p95, max, sum;
+  BB_RECORD(Stats, "order statistics of the finite values of a sample");
+  BB_FIELD(std::size_t, n, "number of values") = 0;
+  BB_FIELD(Number, min, "smallest", "empty");
+  BB_FIELD(Number, p05, "5th percentile, interpolated", "empty");
+  BB_FIELD(Number, median, "50th percentile", "empty");
+  BB_FIELD(Number, p95, "95th percentile", "empty");
+  BB_FIELD(Number, max, "largest", "empty");
+  BB_FIELD(Number, sum, "sum", "empty");
+  BB_RECORD_END;
 };
 /// Linear interpolation between order statistics. Non-finite entries are left out. Cost O(n log n).
 Stats summarize(std::vector<double> sample);
 
-struct StepRecord {
-  int step = 0;
-  double t_s = 0;           // at the end of the step
-  std::string status;       // StepStatus word
-  std::string stop_reason;  // why Newton stopped
-  int newton_iterations = 0, linear_iterations = 0, linear_solves = 0, factorizations = 0, analyses = 0;
-  int line_search_trials = 0, rounding_accepts = 0, not_pd = 0;
-  long long ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, ccd_zero = 0;
-  ContactCounts contacts;  // at the end of the step
-  Number gap_min_m;        // smallest at the end of the step; missing where the step did not converge
-  Number gap_min_rel;      // smallest d / d_hat of that state
-  Number gap_min_iterates_m, gap_min_iterates_rel;  // the same over the iterates of the step and its end
-  Number toi_min;                                   // smallest ACCD bound of the step
-  Number max_stretch;                               // largest sigma - 1 over the accepted states
-  Number kappa_min_N_per_m, kappa_max_N_per_m;
-  Number contact_load_max_N, limit_load_max_N_per_m, contact_load_sum_N;
-  Number contact_overload, limit_overload;  // load / capacity of a step that made no progress
-  Number kinetic_J, elastic_J, limit_J, contact_J, gravity_J;  // at the end of the step
-  long long crossings = 0, violations = 0, unproven = 0, inverted = 0;
-  /// Of the pass `time`, empty without it: seconds of the step on a clock of its own, seconds of every phase,
-  /// and what the step took beyond their sum.
-  Number wall_s, unaccounted_s;
-  PhaseTimes time;
+struct StiffnessRecord {
+  BB_RECORD(StiffnessRecord, "what the stiffness policy did over the run");
+  BB_FIELD(Number, kappa_start_N_per_m, "of a policy with one global kappa: its first");
+  BB_FIELD(Number, kappa_end_N_per_m, "its last");
+  BB_FIELD(int, doublings, "times it doubled kappa") = 0;
+  BB_FIELD(bool, saturated, "whether it ran into its upper bound") = false;
+  BB_RECORD_END;
 };
 
-/// How kappa was chosen (docs/design.md, Matching).
-struct MatchingRecord {
-  std::string rule = "as_given";
-  Number theta;
-  Number load_N;              // per unit multiplicity; of a pilot, the load of `contact`
-  Number d_hat_m;             // at which it was matched: of `contact`
-  Number limit_load_N_per_m;  // the strain limit's; of a pilot, that of `limit_element`
-  Number curvature_N_per_m, limit_curvature;
-  Number kappa_N_per_m;            // chosen; missing when the policy makes its own
-  Number limit_stiffness_N_per_m;  // k_s chosen
-  Number scale;                    // s applied to a policy that makes its own kappa
-  Number limit_scale;              // s applied to a limit policy that makes its own kappa_e
-  Number capacity_N;               // largest load the shape carries at that kappa; missing when unbounded
-  // of load_N and limit_load_N_per_m: given, pilot, static_weight (the pilot met none), none
-  std::string load_source = "none", limit_load_source = "none";
-  // the pilot's contact and limited element that asked for the most stiffness, the steps at whose ends they
-  // did, and how many of all steps were compared; missing where the pilot was not asked or met none
-  std::string contact, limit_element;
-  Number contact_step, limit_step;
-  long long contacts_considered = 0, elements_considered = 0;
-  // the note says where a pilot stopped early, and which policies stay as given for want of a measured load
-  std::string pilot_config_id, pilot_note;
+struct Conditioning {
+  BB_RECORD(Conditioning, "condition estimates of one stage and scaling over the run");
+  BB_FIELD(Stats, log10_cond,
+           "1e14 for a matrix that is singular or not positive definite; lower bounds count");
+  BB_FIELD(Stats, log10_lambda_min, "of the eigenvalues that are known");
+  BB_FIELD(Stats, log10_lambda_max, "of the eigenvalues that are known");
+  BB_FIELD(CountMap, statuses, "status -> number of samples, all of them");
+  BB_RECORD_END;
+};
+using CondMap = std::map<std::string, Conditioning>;
+
+struct Summary : WorkCounts {
+  using BaseRecord = WorkCounts;
+  BB_RECORD(Summary, "the run in numbers");
+  BB_FIELD(int, steps, "that were run") = 0;
+  BB_FIELD(int, steps_capped, "that ended at their iteration cap") = 0;
+  BB_FIELD(long long, newton_iterations, "over all steps") = 0;
+  BB_FIELD(Stats, newton_per_step, "Newton iterations of a step");
+  BB_FIELD(Stats, linear_per_solve, "iterations of the linear solver");
+  BB_FIELD(Stats, probe_pcg, "probe_pcg_iterations of the trace");
+  BB_FIELD(Stats, contacts, "rows at the end of a step");
+  BB_FIELD(Stats, gap_min_rel, "smallest d / d_hat of each converged step end");
+  BB_FIELD(Number, gap_min_m, "smallest gap over converged step ends");
+  BB_FIELD(Number, gap_min_iterates_m, "smallest gap over all iterates");
+  BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat over all iterates");
+  BB_FIELD(CountMap, first_contact,
+           "body|body or body|obstacle -> step at whose end they first had an active contact row");
+  BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element over step ends");
+  BB_FIELD(Number, contact_load_max_N, "largest of the steps");
+  BB_FIELD(Number, limit_load_max_N_per_m, "largest of the steps");
+  BB_FIELD(StiffnessRecord, stiffness, "policies with one global kappa");
+  BB_FIELD(CondMap, cond, "stage/scaling -> condition numbers");
+  BB_FIELD(Number, wall_s, "of the steps of the pass `time`", "not_requested");
+  BB_FIELD(Number, solve_s, "sum of all phases but output", "not_requested");
+  BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases", "not_requested");
+  BB_FIELD(PhaseTimes, time, "sums over the steps of the pass `time`; empty without it");
+  BB_FIELD(std::uint64_t, peak_rss_bytes, "resident memory of the process") = 0;
+  BB_FIELD(std::string, state_hash, "sha256 of the final positions, little-endian float64", sha256_or_empty);
+  BB_RECORD_END;
 };
 
 struct AuditRecord {
-  bool enabled = false;
-  long long edges = 0, triangles = 0, vertices = 0, obstacles = 0;  // the surface that there is to judge
-  long long states = 0, motions = 0;                                // checked
-  long long state_pairs = 0, motion_pairs = 0;  // that met in the broad phase and were judged one by one
-  long long obstacle_queries = 0;               // signs of vertices, and of their paths, to an obstacle
-  long long judged = 0;  // primitives compared with all that they may meet, boxes included; 0: never ok
-  long long crossings = 0, touches = 0, violations = 0, unproven = 0, inverted = 0;
-  long long obstacle_violations = 0;  // those of `violations` that an obstacle is part of
-  long long scene_faults = 0;  // prescribed primitives that cross or cannot be certified; in no other count
-  int first_bad_step = -1, first_bad_iteration = -1;
-  std::vector<std::string> examples;  // the first few, in words
-  double seconds = 0;
+  BB_RECORD(AuditRecord, "what the audit judged and found");
+  BB_FIELD(bool, enabled, "whether the pass `audit` ran") = false;
+  BB_FIELD(long long, edges, "of the surface; planar: boundary edges and rods") = 0;
+  BB_FIELD(long long, triangles, "of the surface; planar: elements, judged for inversion") = 0;
+  BB_FIELD(long long, vertices, "of the surface") = 0;
+  BB_FIELD(long long, obstacles, "analytic surfaces") = 0;
+  BB_FIELD(long long, states, "that were checked") = 0;
+  BB_FIELD(long long, motions, "that were checked") = 0;
+  BB_FIELD(long long, state_pairs, "met in the broad phase of states, judged one by one") = 0;
+  BB_FIELD(long long, motion_pairs, "met in the broad phase of motions, judged one by one") = 0;
+  BB_FIELD(long long, obstacle_queries, "of vertices in states and of their paths in motions") = 0;
+  BB_FIELD(long long, judged,
+           "primitives compared with all that they may meet, boxes included; 0: never ok") = 0;
+  BB_FIELD(long long, crossings, "edges through triangles, in states") = 0;
+  BB_FIELD(long long, touches, "pairs at distance 0, in states") = 0;
+  BB_FIELD(long long, violations, "motions through each other, and vertices in or through obstacles") = 0;
+  BB_FIELD(long long, unproven, "motions that could not be certified") = 0;
+  BB_FIELD(long long, inverted, "planar elements, summed over states") = 0;
+  BB_FIELD(long long, obstacle_violations, "those of violations that an obstacle is part of") = 0;
+  BB_FIELD(long long, scene_faults, "prescribed primitives that cross or cannot be certified; in no other count") = 0;
+  BB_FIELD(int, first_bad_step, "-1: none", "-1") = -1;
+  BB_FIELD(double, time_s, "what the checks took") = 0;
+  BB_RECORD_END;
 };
 
 struct Check {
-  std::string name;
-  Number value, bound;
-  bool pass = false;
+  BB_RECORD(Check, "one check of a run");
+  BB_FIELD(std::string, name, "what is checked");
+  BB_FIELD(Number, value, "found");
+  BB_FIELD(Number, bound, "allowed");
+  BB_FIELD(bool, pass, "whether the value keeps the bound") = false;
+  BB_RECORD_END;
 };
+
 struct Validity {
-  bool valid = false;  // every check passed
-  std::vector<Check> checks;
+  BB_RECORD(Validity, "whether the run counts");
+  BB_FIELD(bool, valid, "every check passed") = false;
+  BB_FIELD(std::vector<Check>, checks, "one by one");
+  BB_RECORD_END;
 };
 
-/// One line of the plan: what the scene needs, and what is neither allocated nor run.
-struct PlanLine {
-  std::string item;
-  bool active = false;
-  std::string reason;
-};
-struct Skipped {
-  std::string metric, reason;  // reason: not_applicable, not_requested, budget, dominated
-};
-
-/// What the stiffness policy did over the run.
-struct StiffnessRecord {
-  Number kappa_start_N_per_m, kappa_end_N_per_m;
-  int doublings = 0;
-  bool saturated = false;
-};
-
-/// Whether a run may be compared with the others of its sweep (docs/design.md, Comparability). Filled by
-/// one function, judge_comparability(); readers never compute it again.
+/// Filled by one function, judge_comparability(); readers never compute it again.
 struct Comparability {
-  std::string verdict = "no_reference";  // comparable, not_comparable, no_reference, not_valid
-  std::string reason;                    // one sentence, never empty in a record
-  std::string reference_run;             // folder of the reference beside this run's; empty: none
-  std::string reference_run_id;
-  Number gap_rel, reference_gap_rel;  // smallest d/d_hat over converged step ends
-  Number ratio;                       // gap_rel / reference_gap_rel
-  double max_ratio = 2;               // comparable: ratio within [1/max_ratio, max_ratio]
-};
-
-struct Summary {
-  int steps = 0, steps_capped = 0;
-  long long newton_iterations = 0, linear_iterations = 0, linear_solves = 0, factorizations = 0, analyses = 0;
-  long long line_search_trials = 0, ccd_queries = 0, ccd_probes = 0, ccd_capped = 0, not_pd = 0;
-  Stats newton_per_step, linear_per_solve, probe_pcg, contacts, gap_min_rel;
-  Number gap_min_m;                                 // over converged step ends, as gap_min_rel
-  Number gap_min_iterates_m, gap_min_iterates_rel;  // over all iterates
-  Number max_stretch, contact_load_max_N, limit_load_max_N_per_m;
-  StiffnessRecord stiffness;
-  std::map<std::string, int>
-      first_contact;  // "body|body" or "body|obstacle" -> step at whose end it first touched
-  /// Over all samples of the run, key "<stage>/<scaling>". log10_cond: a lower bound stands for its cond, and
-  /// a matrix that is singular or not positive definite has the bound 1e14; only an estimate that did not
-  /// converge has no number. The eigenvalues are those that are known. `statuses` counts every sample.
-  struct Conditioning {
-    Stats log10_cond, log10_lambda_min, log10_lambda_max;
-    std::map<std::string, int> statuses;
-  };
-  std::map<std::string, Conditioning> cond;
-  /// Of the pass `time`, sums over its steps: wall_s = sum of all phases + unaccounted_s; solve_s: of all
-  /// phases but output.
-  Number wall_s, solve_s, unaccounted_s;
-  PhaseTimes time;
-  std::uint64_t peak_rss_bytes = 0;
-  std::string state_hash;  // sha256 of the final positions, little-endian float64
+  BB_RECORD(Comparability, "whether the run may be compared with the others of its sweep");
+  BB_FIELD(std::string, verdict, "docs/design.md, Comparability",
+           "comparable not_comparable no_reference not_valid") = "no_reference";
+  BB_FIELD(std::string, reason, "one sentence");
+  BB_FIELD(std::string, reference_run, "folder of the reference, beside this run's; empty: none");
+  BB_FIELD(std::string, reference_run_id, "its run_id", sha256_or_empty);
+  BB_FIELD(Number, gap_rel, "smallest d / d_hat over converged step ends", "no_contacts");
+  BB_FIELD(Number, reference_gap_rel, "the same of the reference", "no_contacts no_reference");
+  BB_FIELD(Number, ratio, "gap_rel / reference_gap_rel", "no_reference");
+  BB_FIELD(double, max_ratio, "comparable: ratio within [1/max_ratio, max_ratio]") = 2;
+  BB_RECORD_END;
 };
 
 struct Artifact {
-  std::string path, kind, media_type, sha256;
-  std::uint64_t bytes = 0;
-};
-
-struct Passes {
-  bool time = false, diagnose = false, audit = false;
+  BB_RECORD(Artifact, "a file of the run beside run.json");
+  BB_FIELD(std::string, path, "relative to the folder of this record");
+  BB_FIELD(std::string, kind, "what it is", "frame frame_scene matrix");
+  BB_FIELD(std::string, media_type, "of its format");
+  BB_FIELD(std::string, sha256, "of its bytes", sha256_or_empty);
+  BB_FIELD(std::uint64_t, bytes, "its size") = 0;
+  BB_RECORD_END;
 };
 
 struct RunRecord {
-  Ids ids;
-  Status status;
-  Labels labels;
-  Passes passes;
-  std::string config_json = "{}";  // resolved, every default filled in
-  SceneSize scene;
-  Provenance provenance;
-  Machine machine;
-  std::vector<PlanLine> plan;
-  std::vector<Skipped> skipped;
-  MatchingRecord matching;
-  Summary summary;
-  std::vector<StepRecord> steps;
-  std::map<std::string, std::vector<double>> samples;  // raw repetitions, name with its unit
-  AuditRecord audit;
-  Validity validity;
-  Comparability comparability;
-  std::vector<Artifact> artifacts;
+  BB_RECORD(RunRecord, "run.json of one run; the version is that of the trace beside it too");
+  BB_FIELD(SchemaId, schema, "what the file is");
+  BB_FIELD(Ids, ids, "what made it, as hashes");
+  BB_FIELD(Status, status, "how it ended");
+  BB_FIELD(Labels, labels, "what tables group by");
+  BB_FIELD(Passes, passes, "what was asked for");
+  BB_FIELD(JsonText, config,
+           "resolved, every default filled in, mesh files relative to the folder of this record: `bench run "
+           "run.json` repeats the run");
+  BB_FIELD(SceneSize, scene, "sizes");
+  BB_FIELD(Provenance, provenance, "the program");
+  BB_FIELD(Machine, machine, "where it ran");
+  BB_FIELD(std::vector<PlanLine>, plan, "what ran and what did not");
+  BB_FIELD(std::vector<Skipped>, skipped, "what the record lacks");
+  BB_FIELD(MatchingRecord, matching, "how stiffness was chosen");
+  BB_FIELD(Summary, summary, "the run in numbers");
+  BB_FIELD(std::vector<StepRecord>, steps, "one by one");
+  BB_FIELD(SampleMap, samples, "raw repetitions, name with its unit -> values");
+  BB_FIELD(AuditRecord, audit, "what was judged");
+  BB_FIELD(Validity, validity, "whether the run counts");
+  BB_FIELD(Comparability, comparability, "whether it may be compared");
+  BB_FIELD(std::vector<Artifact>, artifacts, "files beside it");
+  BB_RECORD_END;
 };
 
 }  // namespace bb

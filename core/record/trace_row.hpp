@@ -1,5 +1,5 @@
-// One Newton iteration as the trace keeps it. Units in the names; `cond` is a condition number, `kappa` a
-// contact stiffness.
+// One Newton iteration as the trace keeps it: one line of trace.jsonl. `cond` is a condition number, `kappa`
+// a contact stiffness.
 #pragma once
 
 #include <cstddef>
@@ -8,70 +8,129 @@
 #include <vector>
 
 #include "core/linear/condition.hpp"
+#include "core/linear/linear_solver.hpp"
+#include "core/record/field.hpp"
 #include "core/record/number.hpp"
 #include "core/record/phase_times.hpp"
 
 namespace bb {
 
 /// Which terms the matrix of a condition estimate holds.
-enum class MatrixStage { full, no_contact, no_contact_no_limit };
-inline std::string_view to_string(MatrixStage stage) {
+enum class MatrixStage { full, without_contact, without_contact_and_limit };
+constexpr std::string_view to_string(MatrixStage stage) {
   if (stage == MatrixStage::full) return "full";
-  return stage == MatrixStage::no_contact ? "no_contact" : "no_contact_no_limit";
+  return stage == MatrixStage::without_contact ? "without_contact" : "without_contact_and_limit";
 }
+template <>
+inline constexpr int n_words<MatrixStage> = 3;
+template <>
+inline constexpr int n_words<Scaling> = 3;
+template <>
+inline constexpr int n_words<ConditionStatus> = 5;
+template <>
+inline constexpr int n_words<LinearStatus> = 6;
+
+inline constexpr const char* no_eigenvalue = "lower_bound singular not_pd not_converged";
 
 struct ConditionSample {
-  MatrixStage stage = MatrixStage::full;
-  Scaling scaling = Scaling::none;
-  int tier = 2;
-  ConditionEstimate estimate;
+  BB_RECORD(ConditionSample, "an estimate of a condition number");
+  BB_FIELD(MatrixStage, stage, "the terms that the matrix holds") = MatrixStage::full;
+  BB_FIELD(Scaling, scaling, "of the matrix, before the estimate") = Scaling::none;
+  BB_FIELD(int, tier, "0 Ritz values, 1 inverse power and Lanczos, 2 Lanczos round the factor, 3 dense") = 2;
+  BB_FIELD(Number, lambda_min, "smallest eigenvalue", no_eigenvalue);
+  BB_FIELD(Number, lambda_max, "largest eigenvalue", no_eigenvalue);
+  BB_FIELD(Number, cond, "lambda_max / lambda_min, at most 1e14", no_eigenvalue);
+  BB_FIELD(ConditionStatus, status, "lower_bound: cond is at least that") = ConditionStatus::ok;
+  BB_FIELD(std::string, method, "ritz, inverse_power+lanczos, shift_invert, dense");
+  BB_FIELD(double, residual, "largest |A v - lambda v| / |A| of both pairs") = 0;
+  BB_FIELD(int, solves, "triangular solves") = 0;
+  BB_FIELD(int, products, "matrix products") = 0;
+  BB_FIELD(int, factorizations, "beyond the first, which the scalings share") = 0;
+  BB_FIELD(double, time_s, "what the estimate took") = 0;
+  BB_RECORD_END;
 };
 
 struct ContactCounts {
-  std::size_t point_point = 0, point_edge = 0, point_triangle = 0, edge_edge = 0, obstacle = 0, mollified = 0;
-  std::size_t total() const {
+  BB_RECORD(ContactCounts, "contact rows by the kind of their pair");
+  BB_FIELD(std::size_t, point_point, "two vertices") = 0;
+  BB_FIELD(std::size_t, point_edge, "vertex and edge") = 0;
+  BB_FIELD(std::size_t, point_triangle, "vertex and triangle") = 0;
+  BB_FIELD(std::size_t, edge_edge, "two edges") = 0;
+  BB_FIELD(std::size_t, obstacle, "vertex and analytic obstacle") = 0;
+  BB_FIELD(std::size_t, mollified, "two nearly parallel edges") = 0;
+  BB_DERIVED(std::size_t, total, "all of them") {
     return point_point + point_edge + point_triangle + edge_edge + obstacle + mollified;
+  }
+  BB_RECORD_END;
+};
+
+/// Counted in an iteration, summed over a step and over a run.
+struct WorkCounts {
+  BB_RECORD(WorkCounts, "work that was done");
+  BB_FIELD(long long, linear_solves, "linear systems solved") = 0;
+  BB_FIELD(long long, linear_iterations, "iterations of the linear solver; 0: a direct one") = 0;
+  BB_FIELD(long long, factorizations, "numeric factorisations, of a matrix or a preconditioner") = 0;
+  BB_FIELD(long long, analyses, "symbolic analyses") = 0;
+  BB_FIELD(long long, line_search_trials, "states that a line search tried") = 0;
+  BB_FIELD(long long, rounding_accepts, "steps taken because the change of E was below rounding") = 0;
+  BB_FIELD(long long, ccd_queries, "pairs that ACCD bounded") = 0;
+  BB_FIELD(long long, ccd_probes, "distances that ACCD computed") = 0;
+  BB_FIELD(long long, ccd_capped, "pairs that reached the probe cap") = 0;
+  BB_FIELD(long long, ccd_zero, "pairs that allowed no motion") = 0;
+  BB_RECORD_END;
+
+  WorkCounts& operator+=(const WorkCounts& other) {
+    for_each_field<WorkCounts>([&](const FieldText&, auto count) { this->*count += other.*count; });
+    return *this;
   }
 };
 
-struct TraceRow {
-  int step = 0, iteration = 0;  // both from 0
-  double t_s = 0;               // simulated time at the end of the step
-
-  Number energy_J;         // E before the update
-  Number energy_change_J;  // accepted, compared as a difference
-  Number grad_inf_N;
-  Number dx_inf_m;     // full Newton direction, before alpha
-  Number decrement_J;  // -g^T dx / 2
-
-  Number alpha;         // accepted
-  Number alpha_ccd;     // ACCD bound
-  Number alpha_strain;  // bound of the strain limit
-  int line_search_trials = 0;
-  bool rounding_accept = false;  // accepted because the change was below rounding
-
-  std::string linear_status = "ok";
-  int linear_iterations = 0;
-  Number residual_true, residual_recurrence;  // |b - A x| / |b|
-  Number probe_pcg_iterations;                // of block-Jacobi PCG on this matrix, fixed right-hand side
-  Number ritz_min, ritz_max;                  // of the preconditioned matrix
-  std::size_t n_free = 0, nnz = 0;            // degrees of freedom, entries of the lower triangle
-  bool analyzed = false;                      // a symbolic analysis was done here
-
-  std::vector<ConditionSample> cond;  // empty when not due
-
-  ContactCounts contacts;
-  Number gap_min_iterates_m, gap_min_iterates_rel;  // smallest d (m) and d / d_hat of this iterate
-  Number kappa_min_N_per_m, kappa_max_N_per_m;
-  Number kappa_change_rel;        // largest max/min - 1 of a contact's kappa since the line search before
-  Number limit_kappa_change_rel;  // the same of an active limited element's
-  Number limit_gap_min_rel;       // smallest distance of an element to its limit, over the width
-  Number contact_curvature_max_N_per_m;  // max m kappa b''
-  Number contact_load_max_N;             // max kappa |b'| per unit multiplicity
-  Number max_stretch;                    // max sigma - 1
-  Number limit_load_max_N_per_m;         // max (1/area) dS_e/dsigma
-
-  PhaseTimes time;  // of the same iteration in the pass `time`; empty without it
+struct TraceRow : WorkCounts {
+  using BaseRecord = WorkCounts;
+  BB_RECORD(TraceRow, "one Newton iteration: a line of trace.jsonl, of the version of run.json beside it");
+  BB_FIELD(int, step, "from 0") = 0;
+  BB_FIELD(int, iteration, "of the step, from 0") = 0;
+  BB_FIELD(double, t_s, "simulated time at the end of the step") = 0;
+  BB_FIELD(double, energy_J, "E before the update, contact with the kappa of this iteration") = 0;
+  BB_FIELD(double, energy_change_J, "of the accepted update, compared as a difference") = 0;
+  BB_FIELD(double, grad_inf_N, "largest entry of the gradient, free degrees of freedom") = 0;
+  BB_FIELD(double, dx_inf_m, "largest entry of the full Newton direction, before alpha") = 0;
+  BB_FIELD(double, decrement_J, "-g . dx / 2") = 0;
+  BB_FIELD(double, alpha, "accepted fraction of the direction") = 0;
+  BB_FIELD(double, alpha_ccd, "bound of ACCD") = 1;
+  BB_FIELD(double, alpha_strain, "bound of the strain limit") = 1;
+  BB_FIELD(LinearStatus, linear_status, "of the linear solver") = LinearStatus::ok;
+  BB_FIELD(double, residual_true, "|b - A x| / |b|") = 0;
+  BB_FIELD(Number, residual_recurrence, "the same from the recurrence", "direct_solver");
+  BB_FIELD(Number, ritz_min, "smallest Ritz value of the preconditioned matrix", "direct_solver");
+  BB_FIELD(Number, ritz_max, "largest of them", "direct_solver");
+  BB_FIELD(Number, probe_pcg_iterations,
+           "of PCG with block Jacobi on this matrix and a fixed right-hand side",
+           "not_due matrix_indefinite preconditioner_indefinite tolerance_below_rounding non_finite "
+           "iteration_cap");
+  BB_FIELD(std::size_t, n_free, "degrees of freedom of the matrix") = 0;
+  BB_FIELD(std::size_t, nnz, "entries of its lower triangle") = 0;
+  BB_FIELD(ContactCounts, contacts, "of this iterate");
+  BB_FIELD(Number, gap_min_iterates_m, "smallest gap of this iterate", "no_contacts");
+  BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat of this iterate", "no_contacts");
+  BB_FIELD(Number, kappa_min_N_per_m, "smallest kappa of a row", "no_contacts");
+  BB_FIELD(Number, kappa_max_N_per_m, "largest kappa of a row", "no_contacts");
+  BB_FIELD(Number, kappa_change_rel,
+           "largest max/min - 1 of a contact's kappa since the line search before; above 0 for iterations on "
+           "end: the refresh of kappa cycles",
+           "first_iteration");
+  BB_FIELD(Number, limit_kappa_change_rel, "the same of a limited element that is active",
+           "first_iteration no_limit");
+  BB_FIELD(Number, limit_gap_min_rel,
+           "smallest distance of an element to its limit over its width; 1 or more: none is active",
+           "no_limit");
+  BB_FIELD(Number, contact_curvature_max_N_per_m, "largest m kappa b''", "no_contacts");
+  BB_FIELD(Number, contact_load_max_N, "largest kappa |b'| per unit multiplicity", "no_contacts");
+  BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element", "no_limit");
+  BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma", "no_limit");
+  BB_FIELD(std::vector<ConditionSample>, cond, "condition estimates; empty when not due");
+  BB_FIELD(PhaseTimes, time, "of the same iteration in the pass `time`; empty without it");
+  BB_RECORD_END;
 };
 
 }  // namespace bb

@@ -1,9 +1,9 @@
-// Writes run.json (all or nothing) and trace.jsonl (flushed once a step). The only file of core that knows
-// JSON's rules about records; readers live in analysis/.
+// Writes run.json (all or nothing) and trace.jsonl (flushed once a step), and reads run.json again.
 #pragma once
 
 #include <cstdio>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 #include <string>
 
@@ -25,9 +25,15 @@ struct RecordError : std::runtime_error {
 void make_folder(const std::filesystem::path& folder);
 
 /// run.json and one trace line as text; non-finite numbers are null plus "<name>_status".
-/// Errors: std::invalid_argument when config_json is not JSON.
+/// Errors: std::invalid_argument when config is not JSON; std::logic_error for a bare number that is not
+/// finite.
 std::string to_json(const RunRecord& record);
 std::string to_json(const TraceRow& row);
+
+/// The record in `file`; nothing when it cannot be read, is not JSON (torn), or is no record of this project.
+/// Errors: ConfigError at the version when its first number is another one, at a field that is missing or of
+/// another type. A record of an earlier version may lack fields; unknown fields are left out.
+std::optional<RunRecord> read_run(const std::filesystem::path& file);
 
 /// A text that is whole on the disk, beside `path`, until commit() gives it its name; without commit() it
 /// goes. So whatever a full disk refuses is known before an earlier file is touched. Errors: RecordError.
@@ -73,7 +79,6 @@ class TraceWriter {
   void end_step();
   /// Replaces the earlier trace; nothing can be added after it. Errors: RecordError.
   void finish();
-  const std::filesystem::path& path() const { return path_; }
 
  private:
   void fail(const char* what) const;

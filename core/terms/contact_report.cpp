@@ -1,5 +1,6 @@
 // What the contact term says of its rows: counts, gaps, kappa, loads.
 #include <algorithm>
+#include <limits>
 
 #include "core/terms/barrier_load.hpp"
 #include "core/terms/contact.hpp"
@@ -32,39 +33,60 @@ ContactCounts count_contacts(const ContactState& state) {
   return counts;
 }
 
-// A mollified row has e(x) kappa |b'| and no load of its own: left out.
-double force_max(const ContactTable& rows) {
-  double largest = 0;
-  for (std::size_t r = 0; r < rows.size(); ++r) largest = std::max(largest, -rows.kappa[r] * rows.db[r]);
-  return largest;
+struct RowNumbers {
+  double gap_min_rel = std::numeric_limits<double>::infinity();
+  double kappa_min = std::numeric_limits<double>::infinity(), kappa_max = 0;
+  double load_max = 0, load_sum = 0, curvature_max = 0;
+};
+
+// Loads and curvature without mollified rows: such a row has e(x) kappa |b'| and no load of its own.
+RowNumbers measure(const ContactState& state) {
+  RowNumbers out;
+  state.for_each_table([&out](const auto& rows) {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      out.kappa_min = std::min(out.kappa_min, rows.kappa[r]);
+      out.kappa_max = std::max(out.kappa_max, rows.kappa[r]);
+      out.gap_min_rel = std::min(out.gap_min_rel, rows.d[r] / rows.d_hat[r]);
+    }
+  });
+  const ContactTable& rows = state.rows;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    out.curvature_max = std::max(out.curvature_max, rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r]);
+    out.load_max = std::max(out.load_max, -rows.kappa[r] * rows.db[r]);
+    out.load_sum -= rows.multiplicity[r] * rows.kappa[r] * rows.db[r];
+  }
+  return out;
+}
+
+// What an iterate and the end of a step both say, where there are rows.
+template <class Numbers>
+void fill(const RowNumbers& rows, Numbers& out) {
+  out.kappa_min_N_per_m = rows.kappa_min;
+  out.kappa_max_N_per_m = rows.kappa_max;
+  out.contact_load_max_N = rows.load_max;
 }
 
 }  // namespace
 
 void ContactTerm::report(const Positions&, IterateNumbers& out, PhaseClock&) {
+  out.kappa_change_rel = kappa_change_;
   out.contacts = count_contacts(state_);
-  out.gap_min = state_.gap_min;
-  out.kappa_change = kappa_change_;
-  bool first = true;
-  state_.for_each_table([&](const auto& rows) {
-    for (std::size_t r = 0; r < rows.size(); ++r) {
-      out.kappa_min = first ? rows.kappa[r] : std::min(out.kappa_min, rows.kappa[r]);
-      out.kappa_max = std::max(out.kappa_max, rows.kappa[r]);
-      out.gap_min_rel = std::min(out.gap_min_rel, rows.d[r] / rows.d_hat[r]);
-      first = false;
-    }
-  });
-  const ContactTable& rows = state_.rows;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    out.curvature_max = std::max(out.curvature_max, rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r]);
-  }
-  out.force_max = force_max(rows);
+  if (out.contacts.total() == 0) return;
+  const RowNumbers rows = measure(state_);
+  fill(rows, out);
+  out.gap_min_iterates_m = state_.gap_min;
+  out.gap_min_iterates_rel = rows.gap_min_rel;
+  out.contact_curvature_max_N_per_m = rows.curvature_max;
 }
 
 void ContactTerm::report_end(const Positions&, StepNumbers& out, PhaseClock&) {
   out.contacts = count_contacts(state_);
-  out.gap_min = state_.gap_min;
-  out.force_max = force_max(state_.rows);
+  if (out.contacts.total() == 0) return;
+  const RowNumbers rows = measure(state_);
+  fill(rows, out);
+  out.contact_load_sum_N = rows.load_sum;
+  out.gap_min_m = state_.gap_min;
+  out.gap_min_rel = rows.gap_min_rel;
 }
 
 // The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and
@@ -72,7 +94,7 @@ void ContactTerm::report_end(const Positions&, StepNumbers& out, PhaseClock&) {
 // the barrier would have to hold.
 void ContactTerm::report_overload(const Positions&, const Positions& others, const Positions& dx,
                                   StepNumbers& out) {
-  out.overload = 0;
+  out.contact_overload = 0;
   const BarrierFunction& barrier = options_.contact;
   if (barrier.shape.infinite_at_zero) return;
   const ContactTable& rows = state_.rows;
@@ -92,7 +114,7 @@ void ContactTerm::report_overload(const Positions&, const Positions& others, con
     const double model = newton_force(barrier, rows.d[r], rows.d[r] + opening, rows.d_hat[r]);
     largest = std::max({largest, load / capacity, model / capacity});
   }
-  out.overload = largest;
+  out.contact_overload = largest;
 }
 
 }  // namespace bb

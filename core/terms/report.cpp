@@ -21,25 +21,57 @@ std::string unsettled(const char* whose, double change, int iterations) {
   return text;
 }
 
-}  // namespace
-
-void StepNumbers::add(const IterateNumbers& iterate) {
-  kappa_unsettled = in_a_row(kappa_unsettled, iterate.kappa_change > settled_kappa);
-  kappa_change = iterate.kappa_change;
-  limit_kappa_unsettled = in_a_row(limit_kappa_unsettled, iterate.limit_kappa_change > settled_kappa);
-  limit_kappa_change = iterate.limit_kappa_change;
-  alpha_ccd_min = std::min(alpha_ccd_min, iterate.alpha_ccd);
-  ccd_queries += iterate.bound.queries;
-  ccd_probes += iterate.bound.probes;
-  ccd_capped += iterate.bound.capped;
-  ccd_zero += iterate.bound.zero;
+/// Counts on or starts again; returns the change, 0 where there is none.
+double follow(const Number& change, int& unsettled) {
+  const double value = change.finite() ? change.value : 0;
+  unsettled = in_a_row(unsettled, value > settled_kappa);
+  return value;
 }
 
-std::string StepNumbers::describe_unsettled(int iterations) const {
+}  // namespace
+
+IterateNumbers::IterateNumbers() {
+  gap_min_iterates_m = gap_min_iterates_rel = kappa_min_N_per_m = kappa_max_N_per_m =
+      contact_curvature_max_N_per_m = contact_load_max_N = Number::missing("no_contacts");
+  kappa_change_rel = 0;
+  limit_kappa_change_rel = limit_gap_min_rel = max_stretch = limit_load_max_N_per_m =
+      Number::missing("no_limit");
+}
+
+void IterateNumbers::forget_changes() {
+  kappa_change_rel = Number::missing("first_iteration");
+  if (limit_kappa_change_rel.finite()) limit_kappa_change_rel = Number::missing("first_iteration");
+}
+
+StepNumbers::StepNumbers() {
+  gap_min_m = gap_min_rel = gap_min_iterates_m = gap_min_iterates_rel = kappa_min_N_per_m =
+      kappa_max_N_per_m = contact_load_max_N = contact_load_sum_N = Number::missing("no_contacts");
+  max_stretch = limit_load_max_N_per_m = Number::missing("no_limit");
+}
+
+void StepNumbers::add(const IterateNumbers& iterate) {
+  *this += iterate;
+  kappa_change = follow(iterate.kappa_change_rel, kappa_unsettled);
+  limit_kappa_change = follow(iterate.limit_kappa_change_rel, limit_kappa_unsettled);
+  alpha_ccd_min = std::min(alpha_ccd_min, iterate.alpha_ccd);
+  keep_smaller(gap_min_iterates_m, iterate.gap_min_iterates_m);
+  keep_smaller(gap_min_iterates_rel, iterate.gap_min_iterates_rel);
+}
+
+void StepNumbers::close() {
+  keep_smaller(gap_min_iterates_m, gap_min_m);
+  keep_smaller(gap_min_iterates_rel, gap_min_rel);
+  const bool converged = status == StepStatus::converged;
+  if (!converged) gap_min_m = gap_min_rel = Number::missing("not_converged");
+  contact_overload = limit_overload = Number::missing(converged ? "converged" : "not_measured");
+}
+
+std::string StepNumbers::describe_unsettled() const {
   std::string text;
-  if (cycles(kappa_unsettled)) text = unsettled("the contacts'", kappa_change, iterations);
+  if (cycles(kappa_unsettled)) text = unsettled("the contacts'", kappa_change, newton_iterations);
   if (!cycles(limit_kappa_unsettled)) return text;
-  return text + (text.empty() ? "" : "; ") + unsettled("the strain limit's", limit_kappa_change, iterations);
+  return text + (text.empty() ? "" : "; ") +
+         unsettled("the strain limit's", limit_kappa_change, newton_iterations);
 }
 
 }  // namespace bb

@@ -82,8 +82,8 @@ double StrainLimitTerm::stiffness_change() const {
 
 double StrainLimitTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_bound);
-  report.alpha_limit = batch_.step_bound(motion.x0, motion.dx, 1.0, options_.contact_options.ccd_park);
-  return report.alpha_limit;
+  report.alpha_strain = batch_.step_bound(motion.x0, motion.dx, 1.0, options_.contact_options.ccd_park);
+  return report.alpha_strain;
 }
 
 bool StrainLimitTerm::admits(const Positions& x, PhaseClock&) {
@@ -95,7 +95,7 @@ void StrainLimitTerm::evaluate(const Positions& x, const TermContext&) {
   batch_.values(x, options_.limit, kappa_.data(), families_[0].trial_energy.data());
 }
 
-double StrainLimitTerm::tension_max() const {
+double StrainLimitTerm::load_max() const {
   double largest = 0;
   for (std::size_t e = 0; e < batch_.size(); ++e) {
     const double width = scene_.limit.width[e];
@@ -111,19 +111,20 @@ void StrainLimitTerm::report(const Positions& x, IterateNumbers& out, PhaseClock
   const ScopedPhase timer(clock, Phase::strain_limit);
   batch_.measure(x);
   out.max_stretch = batch_.max_stretch();
-  out.limit_tension = tension_max();
-  out.limit_kappa_change = kappa_change_;
-  out.limit_gap_min_rel = std::numeric_limits<double>::infinity();
+  out.limit_load_max_N_per_m = load_max();
+  out.limit_kappa_change_rel = kappa_change_;
+  double gap = std::numeric_limits<double>::infinity();
   for (std::size_t e = 0; e < batch_.size(); ++e) {
-    out.limit_gap_min_rel = std::min(out.limit_gap_min_rel, smaller_gap(e) / scene_.limit.width[e]);
+    gap = std::min(gap, smaller_gap(e) / scene_.limit.width[e]);
   }
+  out.limit_gap_min_rel = gap;
 }
 
 void StrainLimitTerm::report_end(const Positions& x, StepNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_limit);
   batch_.measure(x);
   out.max_stretch = batch_.max_stretch();
-  out.limit_tension_max = tension_max();
+  out.limit_load_max_N_per_m = load_max();
 }
 
 // Of element e on its own: how many times larger its force would have to be to balance the rest along itself.

@@ -38,7 +38,7 @@ class StrainLimitTerm final : public Term {
   void refresh_stiffness(const Positions& x, const TermContext& context);
   double stiffness_change() const;
   double smaller_gap(std::size_t e) const;
-  double tension_max() const;
+  double load_max() const;
   double times_larger(std::size_t e, const Positions& others) const;
 
   const Scene& scene_;

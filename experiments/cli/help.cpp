@@ -6,6 +6,7 @@
 #include "core/math/error.hpp"
 #include "core/parameters/check.hpp"
 #include "core/parameters/registry.hpp"
+#include "core/record/schema.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/config_list.hpp"
 
@@ -14,9 +15,14 @@ namespace {
 
 struct Format {
   const char* name;
-  ParameterList (*list)();
+  ParameterList (*list)();      // of what is read
+  std::string (*dictionary)();  // of what is written, and its schema
+  std::string (*schema)();
 };
-constexpr std::array formats{Format{"config", config_list}, Format{"sweep", sweep_list}};
+constexpr std::array formats{Format{"config", config_list, nullptr, nullptr},
+                             Format{"sweep", sweep_list, nullptr, nullptr},
+                             Format{"record", nullptr, run_dictionary, run_schema},
+                             Format{"trace", nullptr, trace_dictionary, trace_schema}};
 
 /// The default as it would be given, or in words, or that there has to be a value, or nothing.
 std::string default_text(const Parameter& row) {
@@ -47,6 +53,10 @@ std::vector<std::string> help_formats() { return names_of(formats); }
 int help(const std::string& format, bool schema) {
   const Format* known = find_named(formats, format);
   if (known == nullptr) throw unknown_name("help", format, help_formats());
+  if (known->dictionary != nullptr) {
+    fmt::print("{}", schema ? known->schema() : known->dictionary());
+    return exit_ok;
+  }
   if (schema) {
     fmt::print("{}\n", schema_document(format).dump(1));
     return exit_ok;

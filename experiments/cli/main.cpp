@@ -163,11 +163,11 @@ int main(int argc, char** argv) {
   auto* list_app = app.add_subcommand("list", "what can be named in a config");
   list_app->add_option("what", list_what, fmt::format("which section: {}", fmt::join(list_sections(), ", ")));
   list_app->footer("example: ./bench list shapes");
-  auto* help_app =
-      app.add_subcommand("help", "every setting of a file, from the lists that the program reads it by");
+  auto* help_app = app.add_subcommand(
+      "help", "every setting or field of a file, from the lists that the program reads and writes it by");
   help_app->add_option("format", help_format, fmt::format("which file: {}", fmt::join(help_formats(), ", ")));
   help_app->add_flag("--schema", help_schema, "print the JSON Schema instead");
-  help_app->footer("example: ./bench help config");
+  help_app->footer("examples: ./bench help config, ./bench help record");
   auto* eval_app = app.add_subcommand("eval", "JSON Lines queries to the functions that the pipeline runs");
   eval_app->add_option("file", eval_file, "queries, - for standard input");
   eval_app->add_flag("--schema", eval_schema, "print the JSON Schema of all kinds");
@@ -207,8 +207,8 @@ int main(int argc, char** argv) {
     if (check_app->parsed()) return check(check_verb);
     if (explain_app->parsed()) return explain(explain_verb);
     if (list_app->parsed()) return list(list_what);
-    if (help_app->parsed()) return help(help_format, help_schema);
     if (eval_app->parsed()) return eval(eval_file, eval_schema);
+    if (help_app->parsed()) return help(help_format, help_schema);
     return demo(demo_out, common);
   });
   if (std::fflush(stdout) == 0 && std::ferror(stdout) == 0) return code;

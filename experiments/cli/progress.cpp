@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
-#include <cmath>
 #include <csignal>
 
 #include "experiments/cli/say.hpp"
@@ -17,8 +16,6 @@ void on_signal(int signal) {
   stop.store(true);
   std::signal(signal, SIG_DFL);  // asked twice: at once
 }
-
-std::string gap_text(double gap) { return std::isinf(gap) ? "-" : fmt::format("{:.2e} m", gap); }
 
 std::string number_text(const Number& number, const char* format) {
   return number.finite() ? fmt::format(fmt::runtime(format), number.value) : "-";
@@ -50,7 +47,7 @@ void ProgressLine::show(const Progress& progress) {
   const std::string line =
       fmt::format("{} [{}] step {}/{}  newton {}  contacts {}  gap {}  eta {:.0f} s", progress.label,
                   progress.pass, progress.step, progress.steps, progress.newton, progress.contacts,
-                  gap_text(progress.gap), progress.eta_s);
+                  number_text(progress.gap, "{:.2e} m"), progress.eta_s);
   if (mode_ == Mode::rewrite) {
     say("\r\033[K" + line);
     dirty_ = true;

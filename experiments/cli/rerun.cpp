@@ -23,8 +23,8 @@ fs::path home_of(const StoredRun& stored) {
 /// The plugins of the record that no --plugin stands in for, from where the record says that they are.
 /// Errors: ConfigError: not there, or another content.
 void load_plugins(const StoredRun& stored, std::vector<PluginFile>& loaded) {
-  for (std::size_t i = 0; i < stored.plugins.size(); ++i) {
-    const PluginFile& wanted = stored.plugins[i];
+  for (std::size_t i = 0; i < stored.record.provenance.plugins.size(); ++i) {
+    const PluginFile& wanted = stored.record.provenance.plugins[i];
     const bool given = std::any_of(loaded.begin(), loaded.end(), [&wanted](const PluginFile& p) {
       return p.sha256 == wanted.sha256 || p.name == wanted.name;
     });
@@ -56,20 +56,20 @@ fs::path fresh_folder(const std::string& label) {
 
 /// Prints the verdict; exit_no_match when nothing explains that the two differ.
 int compare(const StoredRun& stored, const RunRecord& record) {
-  const std::string outcome(to_string(record.status.outcome));
-  const bool same_state = record.summary.state_hash == stored.state_hash;
-  const bool same = same_state && outcome == stored.outcome;
+  const Outcome outcome = record.status.outcome, then = stored.record.status.outcome;
+  const std::string& hash = stored.record.summary.state_hash;
+  const bool same_state = record.summary.state_hash == hash;
+  const bool same = same_state && outcome == then;
   std::string reasons;
-  for (const Difference& difference : differences(stored, record)) {
+  for (const Difference& difference : differences(stored.record, record)) {
     if (difference.changes_state) reasons += (reasons.empty() ? "" : "; ") + difference.what;
   }
-  std::string verdict = stored.state_hash.empty() && same_state
-                            ? "as before there is no first step and no final state"
+  std::string verdict = hash.empty() && same_state ? "as before there is no first step and no final state"
                         : same_state ? fmt::format("the final state is the same, bit for bit (state_hash {})",
-                                                   stored.state_hash.substr(0, 8))
+                                                   hash.substr(0, 8))
                                      : "the final state differs";
-  if (outcome != stored.outcome)
-    verdict += fmt::format("; the outcome was {} and is {}", stored.outcome, outcome);
+  if (outcome != then)
+    verdict += fmt::format("; the outcome was {} and is {}", to_string(then), to_string(outcome));
   if (!same && reasons.empty()) verdict += ", and nothing that the records name explains it";
   if (!same && !reasons.empty()) verdict += ", as it may: " + reasons;
   if (same && !reasons.empty()) verdict += ", although it need not be: " + reasons;
@@ -89,11 +89,11 @@ int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& com
   RunOptions options = run_options(common);
   load_plugins(stored, options.plugins);
   const RunConfig config =
-      parse_config(stored.config_json, stored.file.string() + " (config)", home.string(), verb.set);
+      parse_config(stored.record.config.text, stored.file.string() + " (config)", home.string(), verb.set);
   options.folder = verb.out.empty() ? fresh_folder(run_label(config)) : fs::path(verb.out);
   options.keep_inputs = verb.keep_inputs;
-  options.note = stored.note;
-  options.rerun_of = stored.run_id;
+  options.note = stored.record.labels.note;
+  options.rerun_of = stored.record.ids.run_id;
   return compare(stored, run_and_show(config, options, common));
 }
 

@@ -41,7 +41,7 @@ RunOptions case_options(const Sweep& sweep, const SweepCase& one) {
 }
 
 /// Why an earlier record in the folder of a case does not stand for this run.
-std::string why_again(const StoredRun& stored, const RunRecord& now) {
+std::string why_again(const RunRecord& stored, const RunRecord& now) {
   std::string out;
   for (const Difference& difference : differences(stored, now)) {
     out += (out.empty() ? "" : "; ") + difference.what;
@@ -55,11 +55,17 @@ bool already_there(const Sweep& sweep, const SweepCase& one, const RunOptions& o
   const std::filesystem::path file = options.folder / "run.json";
   std::error_code unreachable;
   if (sweep.verb.again || !std::filesystem::exists(file, unreachable)) return false;
-  const auto stored = read_stored_run(file);
   const RunRecord now = identified(one.config, options);
-  if (stored && stored->run_id == now.ids.run_id && differences(*stored, now).empty()) return true;
-  fmt::print("{:<44} runs again: {}\n", options.note,
-             stored ? why_again(*stored, now) : "its run.json cannot be read");
+  std::string why = "its run.json cannot be read";
+  try {
+    const auto stored = read_stored_run(file);
+    if (stored && stored->record.ids.run_id == now.ids.run_id && differences(stored->record, now).empty())
+      return true;
+    if (stored) why = why_again(stored->record, now);
+  } catch (const ConfigError& error) {
+    why = error.what();
+  }
+  fmt::print("{:<44} runs again: {}\n", options.note, why);
   return false;
 }
 

@@ -105,7 +105,7 @@ void strain_bound(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   IterateNumbers report;
   measure(state, drape, [&] { bound_of<StrainLimitTerm>(drape, report); });
-  state.counters["alpha"] = report.alpha_limit;
+  state.counters["alpha"] = report.alpha_strain;
 }
 
 /// A trial of the line search: rows, kappa and every energy at the largest feasible step.
@@ -128,16 +128,16 @@ void newton_iteration(benchmark::State& state) {
   StepObserver nobody;
   StepReport report;
   for (auto _ : state) report = drape.simulation->step(nobody);
-  const PhaseTimes& times = report.times;
-  const double n = report.iterations;
+  const PhaseTimes& times = report.time;
+  const double n = report.newton_iterations;
   const double linear_s =
       times[Phase::linear_analyze] + times[Phase::linear_factor] + times[Phase::linear_solve];
   for (std::size_t phase = 0; phase < kPhases; ++phase) {
     if (times.s[phase] > 0) state.counters[std::string(kPhaseNames[phase]) + "_s"] = times.s[phase] / n;
   }
   state.counters["iterations"] = n;
-  state.counters["trials"] = report.line_search_trials / n;
-  state.counters["analyses"] = report.analyses / n;
+  state.counters["trials"] = static_cast<double>(report.line_search_trials) / n;
+  state.counters["analyses"] = static_cast<double>(report.analyses) / n;
   state.counters["all_but_linear_per_factorization"] =
       (times.solve_s() - linear_s) / times[Phase::linear_factor];
 }

@@ -4,15 +4,12 @@
 
 #include <vector>
 
-#include "core/input/json.hpp"
+#include "core/math/error.hpp"
 #include "core/record/folder_lock.hpp"
-#include "core/record/json_fields.hpp"
 #include "core/record/writer.hpp"
 
 namespace bb {
 namespace {
-
-using fields::Json;
 
 bool in_contact(const ComparedRun& run) { return run.gap_rel.finite(); }
 
@@ -35,51 +32,22 @@ std::string reason_of(const Comparability& c) {
                      c.gap_rel.value, c.ratio.value, c.verdict == "comparable" ? "" : "not ", c.max_ratio);
 }
 
-ComparedRun compared_run(const Json& j, const std::filesystem::path& folder) {
-  ComparedRun out;
-  out.folder = folder.filename().string();
-  out.run_id = j.at("ids").at("run_id").get<std::string>();
-  out.outcome = j.at("status").at("outcome").get<std::string>();
-  out.shape = j.at("labels").at("shape").get<std::string>();
-  out.argument = j.at("labels").at("argument").get<std::string>();
-  out.matching_rule = j.at("labels").at("matching_rule").get<std::string>();
-  out.valid = j.at("status").at("valid").get<bool>();
-  for (const Json& check : j.at("validity").at("checks")) {
-    if (!check.at("pass").get<bool>()) append(out.failed, check.at("name").get<std::string>());
-  }
-  const Json& gap = j.at("summary").at("gap_min_rel").at("min");
-  out.gap_rel = gap.is_number() ? Number(gap.get<double>()) : Number::missing("no_contacts");
-  return out;
-}
-
-struct Member {
-  Json record;
-  std::optional<ComparedRun> run;  // nothing where no record of this version can be read
-};
-
-Member read_member(const std::filesystem::path& folder) {
-  Member out;
-  const std::string path = (folder / "run.json").string();
+/// Nothing where no record of this very version can be read: what is written again would lose what this
+/// program does not know.
+std::optional<RunRecord> read_member(const std::filesystem::path& folder) {
   try {
-    const std::string text = read_input_file(path, record_file);
-    static_cast<void>(
-        parse_json(text, path, LargeIntegers::rounded));  // judged here, read in its order below
-    out.record = Json::parse(text);
-    if (out.record.at("schema").at("version") == kRunSchemaVersion && out.record.contains("comparability")) {
-      out.run = compared_run(out.record, folder);
-    }
-  } catch (const ConfigError&) {  // torn, or no file to read
-    out.run.reset();
-  } catch (const Json::exception&) {  // no record
-    out.run.reset();
+    auto record = read_run(folder / "run.json");
+    if (record && record->schema.version == run_schema_version) return record;
+  } catch (const ConfigError&) {
   }
-  return out;
+  return {};
 }
 
 }  // namespace
 
-ComparedRun compared_run(const RunRecord& record) {
+ComparedRun compared_run(const RunRecord& record, const std::filesystem::path& folder) {
   ComparedRun out;
+  out.folder = folder.filename().string();
   out.run_id = record.ids.run_id;
   out.outcome = std::string(to_string(record.status.outcome));
   out.shape = record.labels.shape;
@@ -141,24 +109,26 @@ std::optional<std::size_t> default_reference(std::span<const SweepMember> member
 }
 
 void write_comparability(std::span<const SweepMember> members) {
-  std::vector<Json> records;
+  std::vector<std::optional<RunRecord>> records;
   std::vector<std::optional<ComparedRun>> runs;
   for (const SweepMember& member : members) {
-    Member one = member.ran ? read_member(member.folder) : Member{};
-    records.push_back(std::move(one.record));
-    runs.push_back(std::move(one.run));
+    records.push_back(member.ran ? read_member(member.folder) : std::nullopt);
+    runs.push_back(std::nullopt);
+    if (records.back()) runs.back() = compared_run(*records.back(), member.folder);
   }
   for (std::size_t i = 0; i < members.size(); ++i) {
     if (!runs[i]) continue;
     const auto chosen = members[i].reference ? members[i].reference : default_reference(members, runs, i);
     std::optional<ComparedRun> reference;
     if (chosen) reference = runs[*chosen] ? runs[*chosen] : without_record(members[*chosen].folder);
-    Json found = fields::comparability(judge_comparability(*runs[i], reference));
-    if (records[i]["comparability"] == found) continue;
+    RunRecord judged = *records[i];
+    judged.comparability = judge_comparability(*runs[i], reference);
+    const std::string before = to_json(*records[i]);
+    if (to_json(judged) == before) continue;
     const FolderLock lock(members[i].folder);
-    if (read_member(members[i].folder).record != records[i]) continue;  // another process ran the case again
-    records[i]["comparability"] = std::move(found);
-    write_atomically(members[i].folder / "run.json", records[i].dump(1) + "\n");
+    const auto now = read_member(members[i].folder);
+    if (!now || to_json(*now) != before) continue;  // another process ran the case again
+    write_run(members[i].folder, judged);
   }
 }
 

@@ -20,7 +20,7 @@ struct ComparedRun {
   Number gap_rel;      // smallest d/d_hat over converged step ends; missing without contact
   std::string failed;  // names of the validity checks that failed, joined by ", "
 };
-ComparedRun compared_run(const RunRecord& record);
+ComparedRun compared_run(const RunRecord& record, const std::filesystem::path& folder);
 
 /// The rule. not_valid: the run is not valid, so that nothing of it is compared. no_reference: there is none,
 /// or it is not valid, or never in contact at a converged step end. Otherwise comparable exactly if the

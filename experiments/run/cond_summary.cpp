@@ -3,23 +3,29 @@
 #include <cmath>
 
 namespace bb {
+namespace {
 
-void CondSummary::add(const ConditionSample& sample) {
-  const ConditionEstimate& e = sample.estimate;
-  Samples& samples =
-      samples_[std::string(to_string(sample.stage)) + "/" + std::string(to_string(sample.scaling))];
-  ++samples.statuses[std::string(to_string(e.status))];
-  const bool unbounded = e.status == ConditionStatus::singular || e.status == ConditionStatus::not_pd;
-  const double cond = unbounded ? largest_known_cond : e.cond;
-  if (std::isfinite(cond)) samples.log10_cond.push_back(std::log10(cond));
-  if (e.lambda_min > 0) samples.log10_min.push_back(std::log10(e.lambda_min));
-  if (e.lambda_max > 0) samples.log10_max.push_back(std::log10(e.lambda_max));
+void add_log10(std::vector<double>& list, const Number& n) {
+  if (n.finite() && n.value > 0) list.push_back(std::log10(n.value));
 }
 
-std::map<std::string, Summary::Conditioning> CondSummary::summary() const {
-  std::map<std::string, Summary::Conditioning> out;
+}  // namespace
+
+void CondSummary::add(const ConditionSample& sample) {
+  Samples& samples =
+      samples_[std::string(to_string(sample.stage)) + "/" + std::string(to_string(sample.scaling))];
+  ++samples.statuses[std::string(to_string(sample.status))];
+  const bool unbounded =
+      sample.status == ConditionStatus::singular || sample.status == ConditionStatus::not_pd;
+  add_log10(samples.cond, unbounded ? Number(largest_known_cond) : sample.cond);
+  add_log10(samples.lambda_min, sample.lambda_min);
+  add_log10(samples.lambda_max, sample.lambda_max);
+}
+
+CondMap CondSummary::summary() const {
+  CondMap out;
   for (const auto& [key, samples] : samples_) {
-    out[key] = {summarize(samples.log10_cond), summarize(samples.log10_min), summarize(samples.log10_max),
+    out[key] = {summarize(samples.cond), summarize(samples.lambda_min), summarize(samples.lambda_max),
                 samples.statuses};
   }
   return out;

@@ -15,12 +15,12 @@ class CondSummary {
   /// largest that is claimed, 1e14. An estimate that did not converge has no number and is only counted.
   void add(const ConditionSample& sample);
   /// By "<stage>/<scaling>".
-  std::map<std::string, Summary::Conditioning> summary() const;
+  CondMap summary() const;
 
  private:
   struct Samples {
-    std::vector<double> log10_cond, log10_min, log10_max;
-    std::map<std::string, int> statuses;
+    std::vector<double> cond, lambda_min, lambda_max;  // log10
+    CountMap statuses;
   };
   std::map<std::string, Samples> samples_;
 };

@@ -9,23 +9,25 @@ namespace {
 
 std::string because(const StepReport& step) { return step.detail.empty() ? "" : "; " + step.detail; }
 
+double load_of(const Number& overload) { return overload.finite() ? overload.value : 0; }
+
 // No progress: because some contact or limited element carries more than its barrier can, or for another
 // reason.
 Verdict stalled(const StepReport& step) {
-  const double contact = step.overload.value_or(0), limit = step.limit_overload.value_or(0);
+  const double contact = load_of(step.contact_overload), limit = load_of(step.limit_overload);
   const double worst = std::max(contact, limit);
   if (worst > 1) {
     return {Outcome::stall_overload,
             fmt::format("step {}: load over capacity {:.3g} {}; {} after {} iterations{}", step.step, worst,
                         contact >= limit ? "at a contact" : "of the strain limit", to_string(step.status),
-                        step.iterations, because(step))};
+                        step.newton_iterations, because(step))};
   }
   if (step.ccd_capped > 0 && step.status == StepStatus::step_collapse) {
     return {Outcome::ccd_cap,
             fmt::format("step {}: {} pairs reached the probe cap", step.step, step.ccd_capped)};
   }
   return {Outcome::newton_stall, fmt::format("step {}: {} after {} iterations{}", step.step,
-                                             to_string(step.status), step.iterations, because(step))};
+                                             to_string(step.status), step.newton_iterations, because(step))};
 }
 
 }  // namespace

@@ -72,10 +72,14 @@ void look_up(const RunOptions& options) {
 
 void show(const RunConfig& config, const RunOptions& options, const StepReport& step) {
   if (!options.progress) return;
-  Progress progress{run_label(config), "pilot", step.step + 1, config.time.steps};
-  progress.newton = step.iterations;
+  Progress progress;
+  progress.label = run_label(config);
+  progress.pass = "pilot";
+  progress.step = step.step + 1;
+  progress.steps = config.time.steps;
+  progress.newton = step.newton_iterations;
   progress.contacts = step.contacts.total();
-  progress.gap = step.gap_min;
+  progress.gap = step.gap_min_m;
   options.progress(progress);
 }
 

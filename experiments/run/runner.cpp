@@ -57,14 +57,14 @@ PassResult run_pass(const RunConfig& config, const Scene& scene, const Calibrati
     if (options.interrupted && options.interrupted->load()) throw Interrupted{};
     const double step_start = now_s();
     const StepReport step = simulation.step(observer);
-    result.steps.push_back({now_s() - step_start, step.times});
+    result.steps.push_back({now_s() - step_start, step.time});
     result.wall_s += result.steps.back().wall_s;
     result.verdict = judge_step(step);
     if (options.progress) {
-      progress.step = static_cast<int>(std::lround(step.t / config.time.dt));
-      progress.newton = step.iterations;
+      progress.step = static_cast<int>(std::lround(step.t_s / config.time.dt));
+      progress.newton = step.newton_iterations;
       progress.contacts = step.contacts.total();
-      progress.gap = step.gap_min;
+      progress.gap = step.gap_min_m;
       progress.elapsed_s = now_s() - start;
       progress.eta_s = progress.elapsed_s * std::max(0.0, t_end / simulation.time() - 1);
       options.progress(progress);
@@ -234,15 +234,15 @@ RunRecord identified(const RunConfig& config, const RunOptions& options) {
   RunRecord record;
   record.passes = {config.passes.time, config.passes.diagnose, config.passes.audit};
   const RunConfig named = name_from(options.folder, config);
-  record.config_json = resolved_json(named);
+  record.config.text = resolved_json(named);
   for (const BodyConfig& body : named.scene.bodies) {
     if (!body.mesh.file.empty()) record.scene.mesh_sha256[body.mesh.file] = body.mesh.sha256;
   }
   record.provenance = collect_provenance(options.argv, thread_count(config));
   record.provenance.plugins = name_from(options.folder, options.plugins);
   record.machine = collect_machine();
-  record.ids.sweep_id = options.sweep_id;
-  record.ids.rerun_of = options.rerun_of;
+  if (!options.sweep_id.empty()) record.ids.sweep_id = options.sweep_id;
+  if (!options.rerun_of.empty()) record.ids.rerun_of = options.rerun_of;
   fill_ids(record);
   return record;
 }
@@ -266,7 +266,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   RunFiles files;
   simulate(config, scene, options, record, files);
   fill_labels(config, options, record);
-  record.comparability = judge_comparability(compared_run(record), std::nullopt);
+  record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
   StagedFile run_json(options.folder / "run.json", to_json(record));

@@ -20,7 +20,7 @@ struct Progress {
   int step = 0, steps = 0;
   int newton = 0;  // iterations of the step
   std::size_t contacts = 0;
-  double gap = 0;  // m; infinity without contacts
+  Number gap;  // m, at the end of the step
   double elapsed_s = 0, eta_s = 0;
 };
 

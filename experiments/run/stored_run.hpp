@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -14,15 +13,10 @@ namespace bb {
 
 struct StoredRun {
   std::filesystem::path file;
-  std::string config_json;  // mesh files relative to the record's folder
-  std::string config_id;    // computed anew from config_json
-  std::string run_id, build_id, machine_id, git_commit, cpu_model, note, outcome, state_hash;
-  int threads = 0;
-  std::map<std::string, std::string> libraries;
-  std::vector<PluginFile> plugins;  // file as in the record
+  RunRecord record;  // config_id computed anew; names of files are relative to the record's folder
 };
 
-/// Nothing when the file cannot be read, is not JSON (torn), or is no record of this project.
+/// read_run, with its errors.
 std::optional<StoredRun> read_stored_run(const std::filesystem::path& file);
 
 /// One thing that made the stored run and is another one now.
@@ -31,7 +25,7 @@ struct Difference {
   bool changes_state = false;  // the final state may depend on it; false: only times do
 };
 /// In the order config, program, plugins, libraries with the BLAS kernel, processor, threads. Empty exactly
-/// when the ids agree, up to the repetition.
-std::vector<Difference> differences(const StoredRun& then, const RunRecord& now);
+/// when the ids agree.
+std::vector<Difference> differences(const RunRecord& then, const RunRecord& now);
 
 }  // namespace bb

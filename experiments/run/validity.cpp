@@ -41,6 +41,7 @@ void fill_validity(const Scene& scene, const audit::AuditLedger* ledger, const s
   add_check(record, "outcome_ok", ok ? 0.0 : 1.0, 0.0, ok);
   record.validity.valid = std::all_of(record.validity.checks.begin(), record.validity.checks.end(),
                                       [](const Check& check) { return check.pass; });
+  record.status.valid = record.validity.valid;
 }
 
 }  // namespace bb

@@ -36,7 +36,7 @@ def _comparability(gap: float, verdict: str) -> dict:
 def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: str = "ok", note: str = "", verdict: str = "comparable", folder: str = "") -> dict:
     shape = "log" if formulation == "log" else "cubic"
     record = {
-        "schema": {"name": "barrierbench.run", "version": "2.4.0"},
+        "schema": {"name": "barrierbench.run", "version": "3.4.0"},
         "a_field_of_a_later_version": 1,
         "ids": {"run_id": f"id_{formulation}", "config_id": f"config_{formulation}", "sweep_id": "strip"},
         "status": {"outcome": outcome, "started_utc": "2024-01-31T12:00:00Z", "detail": "" if outcome == "ok" else "step 2 ended at its cap", "valid": outcome == "ok"},
@@ -47,7 +47,7 @@ def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: s
         "scene": {"free_dofs": 30, "extent_m": 1.0},
         "matching": {"rule": "equal_force", "theta": 0.2},
         "machine": {"cpu_model": "a cpu", "cores": 2},
-        "provenance": {"threads": 1, "git_commit": "0123456789abcdef", "libraries": {"blas": "OpenBLAS Haswell at /usr/lib/libopenblas.so"}},
+        "provenance": {"threads": 1, "git_commit": "0123456789abcdef", "blas": {"kernel": "Haswell"}},
         "steps": [_step(0, None), _step(1, 2 * gap), _step(2, gap)],
     }
     place = root / (folder or formulation)

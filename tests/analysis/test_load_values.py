@@ -42,13 +42,13 @@ def test_numbers_of_a_run_come_from_their_own_fields(tmp_path):
     edit(tmp_path / "cubic", distinct)
     run = load(tmp_path).runs.iloc[0]
 
-    assert run["gap_min_rel"] == 100 and run["probe_pcg"] == 102
-    assert [run[k] for k in ("judged", "crossings", "violations", "unproven", "obstacle_violations", "scene_faults")] == [11, 12, 13, 14, 15, 16]
+    assert run["gap_min_rel_min"] == 100 and run["probe_pcg_median"] == 102
+    assert [run[f"audit_{k}"] for k in ("judged", "crossings", "violations", "unproven", "obstacle_violations", "scene_faults")] == [11, 12, 13, 14, 15, 16]
     assert not run["valid"] and run["detail"] == "why" and run["outcome"] == "ok"
-    assert (run["free_dofs"], run["extent_m"], run["matching_load_N"], run["matching_scale"]) == (17, 18, 19, 20)
+    assert (run["scene_free_dofs"], run["scene_extent_m"], run["matching_load_N"], run["matching_scale"]) == (17, 18, 19, 20)
     assert run["matching_rule"] == "equal_force"
-    assert (run["comparability"], run["comparability_reason"], run["reference_run"]) == ("not_comparable", "far", "log")
-    assert (run["reference_gap_rel"], run["gap_ratio"], run["max_gap_ratio"]) == (21, 22, 23)
+    assert (run["comparability_verdict"], run["comparability_reason"], run["comparability_reference_run"]) == ("not_comparable", "far", "log")
+    assert (run["comparability_reference_gap_rel"], run["comparability_ratio"], run["comparability_max_ratio"]) == (21, 22, 23)
     assert (run["run"], run["folder"], run["run_id"], run["config_id"]) == ("cubic", "cubic", "id_cubic", "config_cubic")
 
 
@@ -77,7 +77,7 @@ def test_conditions_are_of_one_run_scaling_and_stage_in_the_order_of_the_iterati
     write_set(tmp_path)
 
     def with_stage(line):
-        line["cond"].append(line["cond"][0] | {"stage": "no_contact", "cond": 5.0})
+        line["cond"].append(line["cond"][0] | {"stage": "without_contact", "cond": 5.0})
 
     edit_trace(tmp_path / "cubic", with_stage)
     records = load(tmp_path)
@@ -86,7 +86,7 @@ def test_conditions_are_of_one_run_scaling_and_stage_in_the_order_of_the_iterati
     assert list(full["n"]) == list(range(6))
     assert list(full["cond"]) == [20, 20, 200, 200, 2000, 2000]
     assert set(full["scaling"]) == {"none"} and set(full["stage"]) == {"full"} and set(full["run"]) == {"cubic"}
-    assert list(condition_of(records, "cubic", "none", "no_contact")["cond"]) == [5] * 6
+    assert list(condition_of(records, "cubic", "none", "without_contact")["cond"]) == [5] * 6
     assert list(condition_of(records, "log", "block_jacobi")["cond"]) == [1, 1, 2, 2, 3, 3]
 
 

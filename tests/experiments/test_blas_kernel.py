@@ -31,7 +31,7 @@ def run(program: str, out: Path, *arguments: str, **environment: str) -> dict:
 
 def kernel(record: dict) -> tuple[str, str]:
     blas = record["provenance"]["blas"]
-    assert blas["threads"] == record["provenance"]["blas_threads"] == 1
+    assert blas["threads"] == 1
     assert blas["config"].startswith("OpenBLAS") and "blas" in blas["library"]
     return blas["kernel"], blas["requested"]
 

@@ -102,7 +102,7 @@ class ComparabilityFiles : public ::testing::Test {
     r.ids.run_id = std::string(64, 'a');
     r.labels.shape = "log";
     r.labels.argument = "gap";
-    r.validity.valid = true;
+    r.status.valid = r.validity.valid = true;
     r.summary.gap_min_rel = summarize({gap, 0.9});
     write_run(root_ / name, r);
   }

@@ -10,10 +10,10 @@ namespace {
 
 ConditionSample sample(ConditionStatus status, double lambda_min, double lambda_max, double cond) {
   ConditionSample out;
-  out.estimate.status = status;
-  out.estimate.lambda_min = lambda_min;
-  out.estimate.lambda_max = lambda_max;
-  out.estimate.cond = cond;
+  out.status = status;
+  out.lambda_min = lambda_min;
+  out.lambda_max = lambda_max;
+  out.cond = cond;
   return out;
 }
 

@@ -8,13 +8,12 @@
 namespace bb {
 namespace {
 
-StepReport ended(StepStatus status, std::optional<double> contact = std::nullopt,
-                 std::optional<double> limit = std::nullopt) {
+StepReport ended(StepStatus status, Number contact = Number(), Number limit = Number()) {
   StepReport step;
   step.step = 7;
   step.status = status;
-  step.iterations = 12;
-  step.overload = contact;
+  step.newton_iterations = 12;
+  step.contact_overload = contact;
   step.limit_overload = limit;
   return step;
 }
@@ -47,9 +46,9 @@ TEST(JudgeStep, the_probe_cap_is_blamed_for_a_collapse_that_nothing_else_explain
   capped.ccd_capped = 3;
   EXPECT_EQ(judge_step(capped).outcome, Outcome::ccd_cap);
   EXPECT_NE(judge_step(capped).detail.find("3 pairs"), std::string::npos);
-  capped.overload = 2;
+  capped.contact_overload = 2;
   EXPECT_EQ(judge_step(capped).outcome, Outcome::stall_overload);
-  capped.overload = 0.5;
+  capped.contact_overload = 0.5;
   capped.status = StepStatus::iteration_cap;  // it made progress
   EXPECT_EQ(judge_step(capped).outcome, Outcome::newton_stall);
 }

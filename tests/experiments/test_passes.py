@@ -122,12 +122,12 @@ def test_every_moment_of_a_step_belongs_to_a_phase(drape):
     assert 0 <= summary["unaccounted_s"] < 0.02 * summary["wall_s"]
     assert summary["wall_s"] == pytest.approx(sum(step["wall_s"] for step in drape["steps"]))
     assert summary["solve_s"] == pytest.approx(sum(summary["time"].values()) - summary["time"]["output_s"])
-    phases = json.loads((DRAPE.parents[1] / "schema/run.schema.json").read_text())["$defs"]["phases"]["properties"]
+    phases = json.loads((DRAPE.parents[1] / "schema/run.schema.json").read_text())["$defs"]["PhaseTimes"]["properties"]
     assert set(summary["time"]) == set(phases), "a phase of the schema that a scene with all kinds of work never charges"
 
 
 def test_the_first_record_of_a_process_knows_its_blas_threads(drape):
-    assert drape["provenance"]["blas_threads"] == 1
+    assert drape["provenance"]["blas"]["threads"] == 1
 
 
 def test_tier_0_reads_the_ritz_values_of_every_solve(program, tmp_path):

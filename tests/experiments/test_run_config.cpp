@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <fstream>
+#include <iterator>
 
 #include "core/record/writer.hpp"
 #include "experiments/config/parse.hpp"
@@ -22,6 +24,13 @@ RunRecord run(const std::vector<std::string>& overrides) {
   options.folder =
       std::filesystem::temp_directory_path() / ("barrierbench_run_config_" + std::to_string(::getpid()));
   RunRecord record = run_config(parse_config(block, "test", ".", overrides), options);
+  const std::filesystem::path file = options.folder / "run.json";
+  const auto read = read_run(file);
+  EXPECT_TRUE(read.has_value());
+  if (read) {
+    std::ifstream in(file);
+    EXPECT_EQ(to_json(*read), std::string(std::istreambuf_iterator<char>(in), {}));
+  }
   std::filesystem::remove_all(options.folder);
   return record;
 }
@@ -36,6 +45,7 @@ TEST(RunConfig, a_run_is_valid_when_every_check_passed) {
   const RunRecord record = run({"/passes/time=true", "/passes/audit=true"});
   EXPECT_EQ(record.status.outcome, Outcome::ok);
   EXPECT_TRUE(record.validity.valid);
+  EXPECT_TRUE(record.status.valid);
   for (const char* name : {"audit_clean", "audit_judged", "state_hash_equal_in_all_passes", "outcome_ok"}) {
     ASSERT_NE(check(record, name), nullptr) << name;
     EXPECT_TRUE(check(record, name)->pass) << name;
@@ -60,6 +70,7 @@ TEST(RunConfig, a_run_ends_at_its_first_step_that_failed_and_is_not_valid) {
   EXPECT_EQ(record.summary.steps, 1);
   EXPECT_EQ(record.summary.steps_capped, 1);
   EXPECT_FALSE(record.validity.valid);
+  EXPECT_FALSE(record.status.valid);
   EXPECT_FALSE(check(record, "outcome_ok")->pass);
   EXPECT_TRUE(check(record, "audit_clean")->pass);
 }

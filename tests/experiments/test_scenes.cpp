@@ -225,7 +225,7 @@ TEST_F(Scenes, GapsOfARunAreThoseOfConvergedStepEnds) {
   const StepRecord& last = capped.steps.back();
   ASSERT_GT(last.contacts.total(), 0U);
   EXPECT_FALSE(last.gap_min_rel.finite());
-  EXPECT_EQ(last.gap_min_m.status, "not_converged");
+  EXPECT_STREQ(last.gap_min_m.status, "not_converged");
   EXPECT_TRUE(last.gap_min_iterates_rel.finite());
   EXPECT_EQ(capped.comparability.verdict, "not_valid");
 }
@@ -241,7 +241,7 @@ TEST_F(Scenes, AreBitIdenticalForAnyNumberOfThreadsAndRerunFromTheirRecord) {
     EXPECT_GT(one.summary.contacts.max.value, 10);
     EXPECT_EQ(one.summary.state_hash.size(), 64U);
     EXPECT_EQ(one.summary.state_hash, two.summary.state_hash) << formulation;
-    EXPECT_EQ(run(one.config_json).summary.state_hash, one.summary.state_hash) << formulation;
+    EXPECT_EQ(run(one.config.text).summary.state_hash, one.summary.state_hash) << formulation;
   }
 }
 

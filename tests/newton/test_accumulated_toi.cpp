@@ -55,7 +55,7 @@ TEST(AccumulatedToi, a_step_shortened_by_its_largest_motion_ends_where_its_own_t
   const double speed = speed_for(0.4);
   const Flight flight = fly(options, speed);
   ASSERT_EQ(flight.report.status, StepStatus::converged);
-  EXPECT_EQ(flight.report.iterations, 2);
+  EXPECT_EQ(flight.report.newton_iterations, 2);
   EXPECT_NEAR(flight.watch.reports[0].alpha, 0.4, 1e-12);
   EXPECT_NEAR(flight.report.dt_used, 0.4 * dt, 1e-12);
   EXPECT_NEAR(flight.time, 0.4 * dt, 1e-12);
@@ -76,7 +76,7 @@ TEST(AccumulatedToi, parts_accumulate_as_shares_of_what_is_left) {
     beta += (1 - beta) * flight.watch.reports[used].alpha;
   }
   EXPECT_EQ(used, 3U);
-  EXPECT_EQ(flight.report.iterations, 4);  // and the pass that reduces the error
+  EXPECT_EQ(flight.report.newton_iterations, 4);  // and the pass that reduces the error
   EXPECT_NEAR(flight.report.dt_used, beta * dt, 1e-15);
   EXPECT_NEAR(beta, 1, 1e-12);
   EXPECT_NEAR(height - flight.z, fallen(dt, speed), 1e-12);
@@ -87,7 +87,7 @@ TEST(AccumulatedToi, makes_at_least_the_iterations_that_are_asked_for) {
     StepSolverOptions options;
     options.parameters["min_newton_steps"] = least;
     const Flight flight = fly(options, 1);
-    EXPECT_EQ(flight.report.iterations, least + 1);
+    EXPECT_EQ(flight.report.newton_iterations, least + 1);
     EXPECT_NEAR(flight.report.dt_used, dt, 1e-15);
   }
 }

@@ -24,7 +24,7 @@ double resting_gap(const Scene& scene, Method& method, int steps, double dt, Con
     if (report.status != StepStatus::converged) break;
   }
   contacts = report.contacts;
-  return report.gap_min;
+  return report.gap_min_m.value;
 }
 
 TEST(ContactEquilibrium, every_shape_and_argument_rests_where_its_force_is_the_weight) {

@@ -46,10 +46,10 @@ TEST(IterationReport, the_smallest_gap_is_that_of_a_mollified_row_where_it_is_th
     const IterationReport& first = watch.reports.at(0);
     ASSERT_EQ(first.contacts.mollified, 1U);
     ASSERT_EQ(first.contacts.point_point, 1U);
-    EXPECT_NEAR(first.gap_min, c.smallest, 1e-12);
-    EXPECT_NEAR(first.gap_min_rel, c.relative, 1e-9);
-    EXPECT_EQ(first.kappa_min, kappa);
-    EXPECT_EQ(first.kappa_max, kappa);
+    EXPECT_NEAR(first.gap_min_iterates_m.value, c.smallest, 1e-12);
+    EXPECT_NEAR(first.gap_min_iterates_rel.value, c.relative, 1e-9);
+    EXPECT_EQ(first.kappa_min_N_per_m.value, kappa);
+    EXPECT_EQ(first.kappa_max_N_per_m.value, kappa);
   }
 }
 
@@ -62,7 +62,7 @@ TEST(IterationReport, a_load_is_one_pairs_and_a_curvature_is_the_rows) {
   simulation.step(watch);
   const IterationReport& first = watch.reports.at(0);
   ASSERT_EQ(first.contacts.total(), 2U);
-  EXPECT_NEAR(first.force_max, kappa * 2 / (2 * d_hat) * depth * depth, 1e-9);
+  EXPECT_NEAR(first.contact_load_max_N.value, kappa * 2 / (2 * d_hat) * depth * depth, 1e-9);
   StepReport at_start;
   NewtonSystem system(scene, method);
   Prediction at_rest;
@@ -70,10 +70,11 @@ TEST(IterationReport, a_load_is_one_pairs_and_a_curvature_is_the_rows) {
   system.begin_step(scene.x0, at_rest, 1e-3, 1.0);
   system.assemble();
   measure_end(system, at_start);
-  EXPECT_EQ(at_start.force_max, first.force_max);
+  EXPECT_EQ(at_start.contact_load_max_N.value, first.contact_load_max_N.value);
   EXPECT_EQ(at_start.contacts.total(), 2U);
-  EXPECT_EQ(at_start.gap_min, first.gap_min);
-  EXPECT_NEAR(first.curvature_max, 6 * kappa * 4 / (2 * d_hat) * depth, 1e-6);  // six pairs
+  EXPECT_EQ(at_start.gap_min_m.value, first.gap_min_iterates_m.value);
+  EXPECT_NEAR(first.contact_curvature_max_N_per_m.value, 6 * kappa * 4 / (2 * d_hat) * depth,
+              1e-6);  // six pairs
 }
 
 }  // namespace

@@ -22,7 +22,7 @@ double overload(const Scene& scene, double kappa, const Positions& dx, double* m
   if (multiplicity != nullptr) *multiplicity = test::rows_of(system).rows.multiplicity.at(0);
   StepNumbers out;
   system.report_overload(dx, out);
-  return out.overload.value();
+  return out.contact_overload.value;
 }
 
 /// A free particle of 1 kg over the middle vertex of a given plate, where six triangles meet.
@@ -80,7 +80,7 @@ TEST(Overload, an_unbounded_barrier_has_none) {
   ASSERT_EQ(test::reported(system).contacts.total(), 1U);
   StepNumbers out;
   system.report_overload(Positions::Zero(3, scene.n_vertices()), out);
-  EXPECT_EQ(out.overload, 0);
+  EXPECT_EQ(out.contact_overload.value, 0);
 }
 
 }  // namespace

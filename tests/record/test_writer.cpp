@@ -65,22 +65,17 @@ std::string failure_of(Action action) {
   return {};
 }
 
-TEST_F(Writer, WritesEverythingItWasGiven) {
+TEST_F(Writer, WritesIntoAFolderThatIsNotThere) {
   const RunRecord record = test::sample_record();
   write_run(folder_ / "a" / "b", record);
-
   const json j = read("a/b/run.json");
-  EXPECT_EQ(j["schema"]["version"], kRunSchemaVersion);
+  EXPECT_EQ(j["schema"]["version"], run_schema_version);
   EXPECT_EQ(j["status"]["outcome"], "newton_stall");
-  EXPECT_EQ(j["config"], json::parse(record.config_json));
-  EXPECT_EQ(j["steps"][0]["gap_min_m"], 1.25e-3);
-  EXPECT_EQ(j["steps"][0]["gap_min_iterates_m"], 1e-3);
-  EXPECT_EQ(j["audit"]["judged"], 12);
-  EXPECT_EQ(j["comparability"]["verdict"], "not_valid");
-  EXPECT_EQ(j["comparability"]["max_ratio"], 2.0);
-  EXPECT_EQ(j["steps"][0]["time"]["linear_factor_s"], 0.5);
+  EXPECT_EQ(j["config"], json::parse(record.config.text));
+  EXPECT_EQ(j["ids"]["sweep_id"], "strip");
+  EXPECT_FALSE(j["ids"].contains("rerun_of"));
+  EXPECT_EQ(j["steps"][0]["time"], json({{"linear_factor_s", 0.5}}));
   EXPECT_EQ(j["summary"]["cond"]["full/block_jacobi"]["statuses"]["ok"], 2);
-  EXPECT_EQ(j["samples"]["total_s"], json({1.5, 1.25}));
 }
 
 TEST_F(Writer, ReplacesAnOldRecordAsAWhole) {
@@ -94,32 +89,32 @@ TEST_F(Writer, ReplacesAnOldRecordAsAWhole) {
 
 TEST_F(Writer, NonFiniteNumbersAreNullWithAReason) {
   RunRecord record = test::sample_record();
-  record.steps[0].gap_min_m = Number::missing("no_contacts");
-  record.steps[0].toi_min = std::numeric_limits<double>::infinity();
+  record.steps[0].alpha_ccd_min = std::numeric_limits<double>::infinity();
   record.steps[0].elastic_J = -std::numeric_limits<double>::infinity();
   record.summary.wall_s = std::nan("");
-  record.samples["total_s"] = {1, std::nan("")};
   const json j = json::parse(to_json(record));
   EXPECT_TRUE(j["steps"][0]["gap_min_m"].is_null());
-  EXPECT_EQ(j["steps"][0]["gap_min_m_status"], "no_contacts");
-  EXPECT_EQ(j["steps"][0]["toi_min_status"], "infinite");
+  EXPECT_EQ(j["steps"][0]["gap_min_m_status"], "not_converged");
+  EXPECT_EQ(j["steps"][0]["alpha_ccd_min_status"], "infinite");
   EXPECT_EQ(j["steps"][0]["elastic_J_status"], "minus_infinite");
   EXPECT_EQ(j["summary"]["wall_s_status"], "nan");
-  EXPECT_TRUE(j["samples"]["total_s"][1].is_null());
-  EXPECT_TRUE(j["samples"].contains("total_s_status"));
+  EXPECT_FALSE(j["steps"][0].contains("gap_min_iterates_m_status"));
 }
 
-TEST_F(Writer, TraceKeepsUnknownEigenvaluesNamed) {
-  TraceRow row = test::sample_trace_row();
-  row.cond[0].estimate.cond = std::nan("");
-  row.cond[0].estimate.status = ConditionStatus::lower_bound;
-  const json j = json::parse(to_json(row));
+TEST_F(Writer, ANumberThatIsNotFiniteWhereNoReasonFitsIsRefused) {
+  for (const double value : {std::nan(""), -std::numeric_limits<double>::infinity()}) {
+    RunRecord record = test::sample_record();
+    record.machine.load_avg[1] = value;
+    EXPECT_THROW(to_json(record), std::logic_error);
+  }
+}
+
+TEST_F(Writer, ATraceLineNamesUnknownEigenvaluesAndCountsAllContacts) {
+  const json j = json::parse(to_json(test::sample_trace_row()));
   EXPECT_TRUE(j["cond"][0]["cond"].is_null());
   EXPECT_EQ(j["cond"][0]["cond_status"], "lower_bound");
-  EXPECT_EQ(j["cond"][0]["status"], "lower_bound");
-  EXPECT_EQ(j["cond"][1]["scaling"], "block_jacobi");
-  EXPECT_EQ(j["alpha_strain_status"], "not_measured");
-  EXPECT_EQ(j["contacts"]["total"], 5);
+  EXPECT_EQ(j["max_stretch_status"], "not_measured");
+  EXPECT_EQ(j["contacts"]["total"], 2);
 }
 
 TEST_F(Writer, AFullDiskIsNamedAndLeavesNothing) {
@@ -206,19 +201,8 @@ TEST_F(Writer, ATraceOnAFullDiskIsNamed) {
 
 TEST_F(Writer, AConfigThatIsNotJsonIsRefused) {
   RunRecord record = test::sample_record();
-  record.config_json = "{";
+  record.config.text = "{";
   EXPECT_THROW(to_json(record), std::invalid_argument);
-}
-
-/// The Python tests validate these two files against configs/schema.
-TEST_F(Writer, SampleForTheSchemaTest) {
-  const fs::path out = fs::path(BB_BINARY_DIR) / "sample_record";
-  write_run(out, test::sample_record());
-  TraceWriter trace(out);
-  trace.add(test::sample_trace_row());
-  trace.add(TraceRow());
-  trace.finish();
-  EXPECT_TRUE(fs::exists(out / "run.json"));
 }
 
 }  // namespace

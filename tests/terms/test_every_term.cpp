@@ -133,7 +133,7 @@ TEST(EveryTerm, allows_a_motion_up_to_its_bound_and_says_what_held_it) {
     const Motion motion{at.x, x1, dx};
     term->prepare(motion, at.clock);
     const double alpha = term->bound(motion, report, at.clock);
-    EXPECT_EQ(alpha, std::min(report.alpha_ccd, report.alpha_limit)) << term->name();
+    EXPECT_EQ(alpha, std::min(report.alpha_ccd, report.alpha_strain)) << term->name();
     if (alpha == 1) continue;
     ++bounded;
     EXPECT_FALSE(term->describe_bound().empty()) << term->name();

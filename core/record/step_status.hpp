@@ -1,7 +1,10 @@
 // How a time step ended. A failure is a result: it is returned and recorded, never thrown.
 #pragma once
 
+#include <array>
 #include <string_view>
+
+#include "core/record/field.hpp"
 
 namespace bb {
 
@@ -15,27 +18,14 @@ enum class StepStatus {
   pin_infeasible,      // a prescribed vertex cannot reach its pose
   non_finite
 };
+template <>
+inline constexpr int n_words<StepStatus> = 8;
 
 constexpr std::string_view to_string(StepStatus status) {
-  switch (status) {
-    case StepStatus::converged:
-      return "converged";
-    case StepStatus::iteration_cap:
-      return "iteration_cap";
-    case StepStatus::step_collapse:
-      return "step_collapse";
-    case StepStatus::line_search_failed:
-      return "line_search_failed";
-    case StepStatus::not_descent:
-      return "not_descent";
-    case StepStatus::linear_failed:
-      return "linear_failed";
-    case StepStatus::pin_infeasible:
-      return "pin_infeasible";
-    case StepStatus::non_finite:
-      return "non_finite";
-  }
-  return "unknown";
+  constexpr std::array<std::string_view, n_words<StepStatus>> words = {
+      "converged",   "iteration_cap", "step_collapse",  "line_search_failed",
+      "not_descent", "linear_failed", "pin_infeasible", "non_finite"};
+  return words[static_cast<std::size_t>(status)];
 }
 
 }  // namespace bb

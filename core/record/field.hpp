@@ -1,0 +1,74 @@
+// Fields of records. A struct declares each of its members with one BB_FIELD; JSON (json.hpp), JSON Schema
+// and data dictionary (schema.hpp) are made from these lines.
+#pragma once
+
+#include <type_traits>
+#include <utility>
+
+namespace bb {
+
+/// What a field says of itself. The end of its name is its unit (unit_of in schema.hpp).
+struct FieldText {
+  const char* name;
+  const char* doc;
+  /// Of a Number: the words that say why there is none, with blanks between; each may also be one of
+  /// absent_words. Of a string: the words that it may be, or a pattern that begins with '^'; "": any text. Of
+  /// an integer: its minimum, 0 without.
+  const char* allowed = "";
+};
+
+/// Why a double of any field may be null, and a Number of any field.
+inline constexpr const char* non_finite_words = "nan infinite minus_infinite";
+inline constexpr const char* absent_words = "not_measured nan infinite minus_infinite";
+
+template <int>
+struct FieldLine {};
+
+/// First in a record struct, BB_RECORD_END last: the fields between them are its list. A struct with the
+/// fields of another one derives from it and names it as BaseRecord.
+#define BB_RECORD(Type, text)                       \
+  using Self = Type;                                \
+  static constexpr const char* record_name = #Type; \
+  static constexpr const char* record_doc = text;   \
+  static constexpr int first_line = __LINE__
+#define BB_RECORD_END static constexpr int last_line = __LINE__
+
+/// BB_FIELD(type, name, doc [, allowed]) [= initial value]: a member; its name is that of the JSON field.
+#define BB_FIELD(Type, name, ...)                                 \
+  static constexpr auto field(FieldLine<__LINE__>) {              \
+    return std::pair{FieldText{#name, __VA_ARGS__}, &Self::name}; \
+  }                                                               \
+  Type name
+/// BB_DERIVED(type, name, doc) { body }: a field that is computed, and written but not read.
+#define BB_DERIVED(Type, name, ...)                               \
+  static constexpr auto field(FieldLine<__LINE__>) {              \
+    return std::pair{FieldText{#name, __VA_ARGS__}, &Self::name}; \
+  }                                                               \
+  Type name() const
+
+template <class T>
+concept Record = requires {
+  T::record_name;
+};
+
+template <class T, int Line, class Visitor>
+void visit_line(Visitor& visitor) {
+  if constexpr (requires { T::field(FieldLine<Line>{}); }) {
+    constexpr auto field = T::field(FieldLine<Line>{});
+    visitor(field.first, field.second);
+  }
+}
+
+/// visitor(FieldText, pointer to member) for every field of T in order, those of its BaseRecord last.
+template <Record T, class Visitor>
+void for_each_field(Visitor&& visitor) {
+  [&]<int... I>(std::integer_sequence<int, I...>) { (visit_line<T, T::first_line + 1 + I>(visitor), ...); }
+  (std::make_integer_sequence<int, T::last_line - T::first_line>{});
+  if constexpr (requires { typename T::BaseRecord; }) for_each_field<typename T::BaseRecord>(visitor);
+}
+
+/// Number of enumerators, from 0, of an enum that a record writes as a word; to_string(E) gives the word.
+template <class E>
+inline constexpr int n_words = 0;
+
+}  // namespace bb

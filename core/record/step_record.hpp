@@ -1,0 +1,54 @@
+// One time step as the record keeps it.
+#pragma once
+
+#include <string>
+
+#include "core/record/step_status.hpp"
+#include "core/record/trace_row.hpp"
+
+namespace bb {
+
+inline constexpr const char* no_load_measured = "converged kappa_unsettled";
+
+struct StepRecord : WorkCounts {
+  using BaseRecord = WorkCounts;
+  BB_RECORD(StepRecord, "one time step");
+  BB_FIELD(int, step, "from 0") = 0;
+  BB_FIELD(double, t_s, "simulated time at its end") = 0;
+  BB_FIELD(StepStatus, status, "how it ended") = StepStatus::converged;
+  BB_FIELD(std::string, detail,
+           "what held it: the pin, the pair, the linear status; empty when it converged");
+  BB_FIELD(int, newton_iterations, "Newton iterations") = 0;
+  BB_FIELD(ContactCounts, contacts, "at its end");
+  BB_FIELD(Number, gap_min_m, "smallest gap at its end", "no_contacts not_converged");
+  BB_FIELD(Number, gap_min_rel, "smallest d / d_hat of that state", "no_contacts not_converged");
+  BB_FIELD(Number, gap_min_iterates_m, "smallest gap of its iterates and its end", "no_contacts");
+  BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat of the same states", "no_contacts");
+  BB_FIELD(double, alpha_ccd_min, "smallest bound of ACCD") = 1;
+  BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element at its end", "no_limit");
+  BB_FIELD(Number, kappa_min_N_per_m, "smallest kappa of a row at its end", "no_contacts");
+  BB_FIELD(Number, kappa_max_N_per_m, "largest kappa of a row at its end", "no_contacts");
+  BB_FIELD(Number, contact_load_max_N, "largest kappa |b'| per unit multiplicity at its end", "no_contacts");
+  BB_FIELD(Number, contact_load_sum_N, "sum of m kappa |b'| at its end, without mollified rows",
+           "no_contacts");
+  BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma at its end", "no_limit");
+  BB_FIELD(Number, contact_overload,
+           "largest load / capacity of a row where no progress was made; 0: unbounded capacity",
+           no_load_measured);
+  BB_FIELD(Number, limit_overload, "the same of a limited element", no_load_measured);
+  BB_FIELD(double, kinetic_J, "kinetic energy at its end") = 0;
+  BB_FIELD(double, elastic_J, "elastic energy at its end") = 0;
+  BB_FIELD(double, limit_J, "S at its end") = 0;
+  BB_FIELD(double, contact_J, "B at its end") = 0;
+  BB_FIELD(double, gravity_J, "potential of gravity at its end") = 0;
+  BB_FIELD(long long, crossings, "that the audit found in its states") = 0;
+  BB_FIELD(long long, violations, "that the audit found in its motions and at obstacles") = 0;
+  BB_FIELD(long long, unproven, "motions that the audit could not certify") = 0;
+  BB_FIELD(long long, inverted, "planar elements, summed over its states") = 0;
+  BB_FIELD(Number, wall_s, "in the pass `time`, on a clock of its own", "not_reached not_requested");
+  BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases", "not_reached not_requested");
+  BB_FIELD(PhaseTimes, time, "of the pass `time`; empty without it");
+  BB_RECORD_END;
+};
+
+}  // namespace bb

@@ -1,0 +1,67 @@
+#include "experiments/run/audit_watch.hpp"
+
+#include "core/record/phase_times.hpp"
+#include "experiments/run/audit_mesh.hpp"
+#include "experiments/run/audit_verdict.hpp"
+
+namespace bb {
+
+AuditWatch::AuditWatch(const Scene& scene, double ccd_park, AuditRecord& record)
+    : scene_(scene),
+      record_(record),
+      mesh_(make_audit_mesh(scene)),
+      audit_(mesh_),
+      tolerance_(audit_tolerance(scene, ccd_park)) {
+  judge(scene.x0, -1);
+}
+
+void AuditWatch::judge(const Positions& x, int step) {
+  const double start = now_s();
+  audit_.check_state(x, step);
+  last_judged_ = x;
+  record_.time_s += now_s() - start;
+}
+
+void AuditWatch::on_motion(const Positions& x0, const Positions& x1, int step) {
+  const double start = now_s();
+  if (x0 != last_judged_) audit_.note_unjudged(step);
+  audit_.check_motion(x0, x1, step, tolerance_);
+  record_.time_s += now_s() - start;
+  judge(x1, step);
+}
+
+void AuditWatch::on_step(const Positions& x, StepRecord& step) {
+  if (x != last_judged_) audit_.note_unjudged(step.step);
+  const AuditRecord before = record_;
+  fill_record();
+  step.crossings = record_.crossings - before.crossings;
+  step.violations = record_.violations - before.violations;
+  step.unproven = record_.unproven - before.unproven;
+  step.inverted = record_.inverted - before.inverted;
+}
+
+void AuditWatch::fill_record() {
+  const audit::AuditLedger& ledger = audit_.ledger();
+  record_.edges = ledger.subjects.edges;
+  record_.triangles = ledger.subjects.triangles;
+  record_.vertices = ledger.subjects.vertices;
+  record_.obstacles = ledger.subjects.obstacles;
+  record_.states = ledger.states;
+  record_.motions = ledger.motions;
+  record_.state_pairs = ledger.state_pairs;
+  record_.motion_pairs = ledger.motion_pairs;
+  record_.obstacle_queries = ledger.obstacle_queries;
+  record_.judged = ledger.judged();
+  record_.crossings = ledger.crossings;
+  record_.touches = ledger.touches;
+  record_.violations = ledger.violations + ledger.obstacle_violations;
+  record_.unproven = ledger.unproven;
+  record_.inverted = ledger.inverted;
+  record_.obstacle_violations = ledger.obstacle_violations;
+  record_.scene_faults = ledger.scene_faults;
+  record_.first_bad_step = ledger.first_bad_step;
+}
+
+Verdict AuditWatch::verdict() const { return judge_audit(scene_, mesh_, audit_.ledger()); }
+
+}  // namespace bb

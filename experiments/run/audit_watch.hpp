@@ -1,0 +1,35 @@
+// The pass `audit`: every state and motion of a run goes to the audit, its ledger to the record.
+#pragma once
+
+#include "core/audit/audit.hpp"
+#include "core/record/run_record.hpp"
+#include "experiments/config/run_config.hpp"
+#include "experiments/run/outcome.hpp"
+
+namespace bb {
+
+class AuditWatch {
+ public:
+  /// Judges the start. scene and record must outlive it.
+  AuditWatch(const Scene& scene, double ccd_park, AuditRecord& record);
+
+  void on_motion(const Positions& x0, const Positions& x1, int step);
+  /// Fills the counts of the step that ended at x.
+  void on_step(const Positions& x, StepRecord& step);
+  const audit::AuditLedger& ledger() const { return audit_.ledger(); }
+  /// What was found, as an outcome.
+  Verdict verdict() const;
+
+ private:
+  void judge(const Positions& x, int step);
+  void fill_record();
+
+  const Scene& scene_;
+  AuditRecord& record_;
+  audit::AuditMesh mesh_;  // for names
+  audit::Audit audit_;
+  double tolerance_ = 0;
+  Positions last_judged_;  // where the next motion has to start
+};
+
+}  // namespace bb

@@ -1,0 +1,96 @@
+#include "experiments/run/condition_watch.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <optional>
+
+#include "core/newton/newton_system.hpp"
+
+namespace bb {
+namespace {
+
+/// A stage leaves out groups of terms; it is there when the last of them has elements.
+struct Stage {
+  MatrixStage name;
+  TermSet left_out;
+  std::optional<TermGroup> last;
+};
+constexpr Stage stages[] = {{MatrixStage::full, {}, {}},
+                            {MatrixStage::without_contact, TermGroup::contact, TermGroup::contact},
+                            {MatrixStage::without_contact_and_limit,
+                             TermSet(TermGroup::contact) | TermGroup::limit, TermGroup::limit}};
+
+/// What the preconditioner of PCG makes of the matrix; nothing for one that is no scaling.
+std::optional<Scaling> scaling_of(const LinearSolverConfig& solver) {
+  const std::string preconditioner = preconditioner_of({solver.name, solver.parameters});
+  for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
+    if (preconditioner == to_string(scaling)) return scaling;
+  }
+  return std::nullopt;
+}
+
+/// A value that is unknown is absent for the reason that the estimate itself gives.
+ConditionSample sample_of(MatrixStage stage, Scaling scaling, int tier, const ConditionEstimate& e) {
+  const auto known = [&e](double v) {
+    return std::isfinite(v) ? Number(v) : Number::missing(to_string(e.status).data());  // a literal
+  };
+  return {stage,    scaling,    tier,     known(e.lambda_min), known(e.lambda_max), known(e.cond), e.status,
+          e.method, e.residual, e.solves, e.products,          e.factorizations,    e.seconds};
+}
+
+}  // namespace
+
+ConditionWatch::ConditionWatch(const RunConfig& config, ArtifactWriter* artifacts)
+    : config_(config), artifacts_(artifacts), probe_(config.diagnose.seed) {}
+
+bool ConditionWatch::due(int iteration) const {
+  if (!config_.passes.diagnose || iteration % std::max(1, config_.diagnose.every) != 0) return false;
+  return config_.diagnose.budget == 0 || spent_s_ < config_.diagnose.budget;
+}
+
+void ConditionWatch::estimate(const ReducedSystem& matrix, MatrixStage stage) {
+  const int tier = config_.diagnose.tier;
+  for (const Scaling scaling : config_.diagnose.scalings) {
+    samples_.push_back(
+        sample_of(stage, scaling, tier, estimator_.estimate(matrix, {tier, scaling, config_.diagnose.seed})));
+  }
+}
+
+void ConditionWatch::on_matrix(NewtonSystem& system, int step, int iteration) {
+  samples_.clear();
+  probed_ = Number::missing("not_due");
+  due_ = due(iteration);
+  if (!due_) return;
+  const double start = now_s();
+  if (config_.diagnose.tier > 0) {  // tier 0 reads what the solve leaves
+    for (const std::string& name : config_.diagnose.stages) {
+      for (const Stage& stage : stages) {
+        if (name != to_string(stage.name) || (stage.last && !system.active(*stage.last))) continue;
+        estimate(system.reduced(TermSet::all().without(stage.left_out)), stage.name);
+      }
+    }
+  }
+  if (artifacts_ && config_.output.matrices) artifacts_->matrix(system.reduced(), step, iteration);
+  if (config_.diagnose.pcg) probed_ = probe_.iterations(system.reduced());
+  spent_s_ += now_s() - start;
+}
+
+void ConditionWatch::on_iteration(const LinearReport& linear, TraceRow& row) {
+  const std::optional<Scaling> scaling = scaling_of(config_.linear_solver);
+  if (due_ && config_.diagnose.tier == 0 && scaling) {  // the full matrix scaled by the preconditioner
+    samples_.push_back(
+        sample_of(MatrixStage::full, *scaling, 0, condition_from_ritz(linear.ritz_min, linear.ritz_max)));
+  }
+  for (const ConditionSample& sample : samples_) cond_.add(sample);
+  if (probed_.finite()) probes_.push_back(probed_.value);
+  row.probe_pcg_iterations = probed_;
+  row.cond = std::move(samples_);
+  samples_.clear();
+}
+
+void ConditionWatch::fill(Summary& summary) const {
+  summary.cond = cond_.summary();
+  summary.probe_pcg = summarize(probes_);
+}
+
+}  // namespace bb

@@ -1,0 +1,44 @@
+// The pass `diagnose`: condition estimates, PCG probes and matrix files of the iterations that are due.
+#pragma once
+
+#include <vector>
+
+#include "core/linear/condition.hpp"
+#include "core/newton/report.hpp"
+#include "core/record/run_record.hpp"
+#include "experiments/config/run_config.hpp"
+#include "experiments/run/artifacts.hpp"
+#include "experiments/run/cond_summary.hpp"
+#include "experiments/run/pcg_probe.hpp"
+
+namespace bb {
+
+class ConditionWatch {
+ public:
+  /// `artifacts` gets matrices where the config asks for them; may be null.
+  ConditionWatch(const RunConfig& config, ArtifactWriter* artifacts);
+
+  /// After assembly: estimates of the stages and scalings of the config, none when the iteration is not due.
+  void on_matrix(NewtonSystem& system, int step, int iteration);
+  /// After the solve: fills `cond` and `probe_pcg_iterations` of its row.
+  void on_iteration(const LinearReport& linear, TraceRow& row);
+  /// `cond` and `probe_pcg` of the run so far.
+  void fill(Summary& summary) const;
+
+ private:
+  bool due(int iteration) const;
+  void estimate(const ReducedSystem& matrix, MatrixStage stage);
+
+  const RunConfig& config_;
+  ArtifactWriter* artifacts_;
+  ConditionEstimator estimator_;
+  PcgProbe probe_;
+  bool due_ = false;  // of the iteration in progress, as the next two
+  std::vector<ConditionSample> samples_;
+  Number probed_;
+  CondSummary cond_;
+  std::vector<double> probes_;
+  double spent_s_ = 0;
+};
+
+}  // namespace bb

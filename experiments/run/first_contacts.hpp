@@ -1,0 +1,28 @@
+// Which bodies touched, and when they first did.
+#pragma once
+
+#include <set>
+#include <utility>
+
+#include "core/record/run_record.hpp"
+#include "core/scene/scene.hpp"
+#include "core/terms/contact.hpp"
+
+namespace bb {
+
+class FirstContacts {
+ public:
+  /// The scene must outlive it.
+  explicit FirstContacts(const Scene& scene) : scene_(scene) {}
+  /// Enters `step` into `first` for every pair that has a row in `state` for the first time. Keys:
+  /// "body|body" or "body|obstacle", the names sorted.
+  void note(const ContactState& state, int step, CountMap& first);
+
+ private:
+  const std::string& name(int owner) const;
+
+  const Scene& scene_;
+  std::set<std::pair<int, int>> touched_;  // bodies, then obstacles
+};
+
+}  // namespace bb

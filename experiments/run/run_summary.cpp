@@ -1,0 +1,28 @@
+#include "experiments/run/run_summary.hpp"
+
+namespace bb {
+
+void summarize_steps(RunRecord& record) {
+  Summary& summary = record.summary;
+  std::vector<double> newton, contacts, gaps;
+  for (const StepRecord& step : record.steps) {
+    ++summary.steps;
+    summary.steps_capped += step.status == StepStatus::iteration_cap;
+    summary.newton_iterations += step.newton_iterations;
+    summary += step;
+    newton.push_back(step.newton_iterations);
+    contacts.push_back(static_cast<double>(step.contacts.total()));
+    if (step.gap_min_rel.finite()) gaps.push_back(step.gap_min_rel.value);
+    keep_smaller(summary.gap_min_m, step.gap_min_m);
+    keep_smaller(summary.gap_min_iterates_m, step.gap_min_iterates_m);
+    keep_smaller(summary.gap_min_iterates_rel, step.gap_min_iterates_rel);
+    keep_larger(summary.max_stretch, step.max_stretch);
+    keep_larger(summary.contact_load_max_N, step.contact_load_max_N);
+    keep_larger(summary.limit_load_max_N_per_m, step.limit_load_max_N_per_m);
+  }
+  summary.newton_per_step = summarize(newton);
+  summary.contacts = summarize(contacts);
+  summary.gap_min_rel = summarize(gaps);
+}
+
+}  // namespace bb

@@ -1,0 +1,16 @@
+#include "experiments/run/step_energies.hpp"
+
+namespace bb {
+
+void fill_energies(const NewtonSystem& system, StepRecord& step) {
+  const Scene& scene = system.scene();
+  step.gravity_J = 0;
+  for (std::size_t i = 0; i < scene.mass.size(); ++i) {
+    step.gravity_J -= scene.mass[i] * scene.gravity.dot(system.x().col(static_cast<Eigen::Index>(i)));
+  }
+  step.elastic_J = system.energy(TermGroup::elastic);
+  step.limit_J = system.energy(TermGroup::limit);
+  step.contact_J = system.energy(TermGroup::contact);
+}
+
+}  // namespace bb
