@@ -27,7 +27,7 @@ class StepSolver {
  public:
   virtual ~StepSolver() = default;
   virtual std::string_view name() const = 0;
-  /// Leaves the reached state in system.state(), and in `used` the prediction that it belongs to. The
+  /// Leaves the reached state in system.x(), and in `used` the prediction that it belongs to. The
   /// report's counters, status and dt_used are filled; the rest is the caller's.
   virtual StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                              StepObserver& observer) = 0;
