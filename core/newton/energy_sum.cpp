@@ -19,19 +19,20 @@ class Sum {
   double sum_ = 0, carry_ = 0;
 };
 
-/// Calls f(i, part) for every part of every term i in the order of the sums.
-template <class F>
-void for_each_part(const TermList& terms, const std::vector<EnergyParts>& parts, const F& f) {
+/// Calls f(term, its part) for every part of every term in the order of the sums; n(i): how many parts term i
+/// has.
+template <class Count, class F>
+void for_each_part(const TermList& terms, const Count& n, const F& f) {
   std::vector<std::size_t> on_vertices, others;
   for (std::size_t i = 0; i < terms.size(); ++i) {
     (terms[i].on_vertices() ? on_vertices : others).push_back(i);
   }
-  const std::size_t n_vertices = on_vertices.empty() ? 0 : parts[on_vertices[0]].change.size();
+  const std::size_t n_vertices = on_vertices.empty() ? 0 : n(on_vertices[0]);
   for (std::size_t v = 0; v < n_vertices; ++v) {
     for (const std::size_t i : on_vertices) f(i, v);
   }
   for (const std::size_t i : others) {
-    for (std::size_t e = 0; e < parts[i].change.size(); ++e) f(i, e);
+    for (std::size_t e = 0; e < n(i); ++e) f(i, e);
   }
 }
 
@@ -45,23 +46,29 @@ EnergyChange EnergySums::change(const TermList& terms, const Positions& x0, cons
   }
   Sum sum;
   double magnitude = 0;
-  for_each_part(terms, parts_, [&](std::size_t i, std::size_t part) {
-    sum.add(parts_[i].change[part]);
-    magnitude += parts_[i].magnitude[part];
-  });
+  for_each_part(
+      terms, [&](std::size_t i) { return parts_[i].size(); },
+      [&](std::size_t i, std::size_t k) {
+        sum.add(parts_[i][k].change);
+        magnitude += parts_[i][k].magnitude;
+      });
   return {sum.value(), magnitude};
 }
 
-double EnergySums::total(const TermList& terms) {
-  parts_.resize(terms.size());
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    parts_[i].clear();
-    for (const TermFamily& family : terms[i].families()) {
-      for (const double energy : family.local.energy) parts_[i].add(energy, 0);
-    }
-  }
+double total_energy(const TermList& terms) {
+  // of terms on vertices, which have one family, by element; of the others family by family
   Sum sum;
-  for_each_part(terms, parts_, [&](std::size_t i, std::size_t part) { sum.add(parts_[i].change[part]); });
+  const auto energies = [&](std::size_t i) -> const std::vector<double>& {
+    return terms[i].families()[0].local.energy;
+  };
+  for_each_part(
+      terms, [&](std::size_t i) { return terms[i].on_vertices() ? energies(i).size() : 1; },
+      [&](std::size_t i, std::size_t k) {
+        if (terms[i].on_vertices()) return sum.add(energies(i)[k]);
+        for (const TermFamily& family : terms[i].families()) {
+          for (const double energy : family.local.energy) sum.add(energy);
+        }
+      });
   return sum.value();
 }
 

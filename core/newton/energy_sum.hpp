@@ -18,11 +18,12 @@ class EnergySums {
  public:
   /// From the iterate x0 to the trial x1.
   EnergyChange change(const TermList& terms, const Positions& x0, const Positions& x1);
-  /// E at the iterate, J.
-  double total(const TermList& terms);
 
  private:
   std::vector<EnergyParts> parts_;  // one a term
 };
+
+/// E at the iterate, J, in the same order.
+double total_energy(const TermList& terms);
 
 }  // namespace bb

@@ -18,7 +18,7 @@ bool within_rounding(const EnergyChange& change);
 /// Ends a step whose direction was of no use.
 void fail_step(StepReport& step, StepStatus status, const IterationReport& report);
 
-/// Begins a lap of the system's clock, assembles at system.state(), lets the observer look at the matrix and
+/// Begins a lap of the system's clock, assembles at system.x(), lets the observer look at the matrix and
 /// fills what is known before the solve.
 IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, StepObserver& observer);
 /// |dx|_inf and the decrement -g . dx over free degrees of freedom.

@@ -68,7 +68,7 @@ class NewtonSystem {
   const Positions& gradient() const { return gradient_; }
   double grad_inf() const;
   /// E at the iterate, J; for the record only.
-  double energy() const { return sums_.total(terms_); }
+  double energy() const { return total_energy(terms_); }
   /// The parts of E that a group has, J, each family summed for itself.
   double energy(TermGroup group) const;
   bool pattern_changed() const { return pattern_changed_; }
@@ -121,7 +121,7 @@ class NewtonSystem {
   Positions gradient_;  // of E; while it is summed, of the terms so far
   Positions part_, work_;
   BlockSystem::Values elastic_, full_;  // H where the plan needs it; all terms
-  mutable EnergySums sums_;
+  EnergySums sums_;
   const Term* holder_ = nullptr;  // of the last bound
   std::size_t nnz_ = 0;
   bool pattern_changed_ = false;

@@ -1,4 +1,5 @@
 #include "core/newton/step_solver.hpp"
+#include "core/parameters/check.hpp"
 
 namespace bb {
 
@@ -18,7 +19,7 @@ const Registry<StepSolverEntry>& step_solvers() {
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options) {
   const StepSolverEntry& entry = step_solvers().require(options.name, "/step_solver/name");
   StepSolverOptions complete = options;
-  complete.parameters = own_parameters(entry.parameters, options.parameters, "/step_solver");
+  complete.parameters = to_map(entry.parameters, to_json(options.parameters));
   return entry.make(complete);
 }
 

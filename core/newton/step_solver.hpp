@@ -27,7 +27,7 @@ class StepSolver {
  public:
   virtual ~StepSolver() = default;
   virtual std::string_view name() const = 0;
-  /// Leaves the reached state in system.state(), and in `used` the prediction that it belongs to. The
+  /// Leaves the reached state in system.x(), and in `used` the prediction that it belongs to. The
   /// report's counters, status and dt_used are filled; the rest is the caller's.
   virtual StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                              StepObserver& observer) = 0;
@@ -39,7 +39,7 @@ struct StepSolverEntry {
   std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
 };
 const Registry<StepSolverEntry>& step_solvers();
-/// Errors: ConfigError for an unknown name and for what own_parameters refuses.
+/// Errors: ConfigError for an unknown name. Ranges are checked where a config is read.
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options);
 
 }  // namespace bb

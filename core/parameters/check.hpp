@@ -19,8 +19,8 @@ void check_object(nlohmann::json& object, const ParameterList& list, const std::
 bool check_value(nlohmann::json& value, const Rule& rule, const std::string& where,
                  std::vector<Violation>& violations);
 
-/// The rows' values in a checked object, with their defaults. Rows that are absent and have none are left
-/// out.
+/// The rows' values in a checked object, with their defaults; without rows that are neither given nor have
+/// a default.
 ParameterMap to_map(const std::vector<Parameter>& rows, const nlohmann::json& object);
 /// One value of a checked object; whole numbers are taken where a number is due.
 ParameterValue to_value(const Rule& rule, const nlohmann::json& value);

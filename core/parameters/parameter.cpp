@@ -49,7 +49,8 @@ std::string kind_text(const Rule& rule) {
     case Kind::number:
       return "a number" + range_text(rule);
     case Kind::text:
-      return "a string" + size_text(rule, "bytes");
+      return "a string" +
+             (rule.min_size == 1 && rule.max_size == 0 ? " that is not empty" : size_text(rule, "bytes"));
     case Kind::word:
       return one_of(rule);
     case Kind::words:

@@ -1,5 +1,5 @@
-// Entries by name: the lines of a registry.inc, then what plugins added. One template, one text for a wrong
-// name.
+// Entries by name: the lines of a registry.inc, then what plugins added. One template for all of them, and
+// one text for a name that is not there.
 #pragma once
 
 #include <string>

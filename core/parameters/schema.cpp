@@ -104,7 +104,8 @@ nlohmann::ordered_json schema_of(const ParameterList& list) {
     if (row.rule.required) required.push_back(row.name);
     json one;
     if (const std::string doc = description(row); !doc.empty()) one["description"] = doc;
-    for (auto& [key, value] : rule_schema(row.rule).items()) {
+    const json keywords = rule_schema(row.rule);
+    for (const auto& [key, value] : keywords.items()) {
       if (!one.contains(key)) one[key] = value;
     }
     const nlohmann::json fallback = to_json(row.fallback);

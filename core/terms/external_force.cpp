@@ -42,7 +42,7 @@ class ExternalForce final : public Term {
     for (Eigen::Index i = 0; i < x0.cols(); ++i) {
       const Vec3d step = x1.col(i) - x0.col(i);
       const double work = force_.col(i).dot(step);
-      out.add(-work, std::abs(work));
+      out.push_back({-work, std::abs(work)});
     }
   }
 

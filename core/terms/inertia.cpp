@@ -45,13 +45,13 @@ class Inertia final : public Term {
   void change(const Positions& x0, const Positions& x1, EnergyParts& out) const override {
     for (std::size_t i = 0; i < weight_.size(); ++i) {
       if (weight_[i] == 0) {
-        out.add(0, 0);
+        out.push_back({0, 0});
         continue;
       }
       const auto v = static_cast<Eigen::Index>(i);
       const Vec3d from = off_target(x0, i), to = off_target(x1, i), step = x1.col(v) - x0.col(v);
-      out.add(0.5 * weight_[i] * step.dot(from + to),
-              0.5 * weight_[i] * (from.squaredNorm() + to.squaredNorm()));
+      out.push_back({0.5 * weight_[i] * step.dot(from + to),
+                     0.5 * weight_[i] * (from.squaredNorm() + to.squaredNorm())});
     }
   }
 

@@ -7,16 +7,6 @@
 
 namespace bb {
 
-void EnergyParts::clear() {
-  change.clear();
-  magnitude.clear();
-}
-
-void EnergyParts::add(double part, double size) {
-  change.push_back(part);
-  magnitude.push_back(size);
-}
-
 std::size_t Term::size() const {
   std::size_t n = 0;
   for (const TermFamily& family : families_) n += family.stencils.size();
@@ -28,12 +18,12 @@ void Term::change(const Positions&, const Positions&, EnergyParts& out) const {
     const std::vector<double>&from = family.local.energy, &to = family.trial_energy;
     if (fixed_stencils()) {
       for (std::size_t e = 0; e < from.size(); ++e) {
-        out.add(to[e] - from[e], std::abs(from[e]) + std::abs(to[e]));
+        out.push_back({to[e] - from[e], std::abs(from[e]) + std::abs(to[e])});
       }
       continue;
     }
-    for (const double energy : from) out.add(-energy, std::abs(energy));
-    for (const double energy : to) out.add(energy, std::abs(energy));
+    for (const double energy : from) out.push_back({-energy, std::abs(energy)});
+    for (const double energy : to) out.push_back({energy, std::abs(energy)});
   }
 }
 

@@ -49,12 +49,10 @@ struct TermFamily {
 
 /// What E changes by from the iterate to the trial, in parts that are summed one by one: a difference of
 /// large sums would lose the decrease that the line search looks for.
-struct EnergyParts {
-  std::vector<double> change, magnitude;  // J; rounding noise is some multiple of eps times the magnitudes
-
-  void clear();
-  void add(double part, double size);
+struct EnergyPart {
+  double change, magnitude;  // J; rounding noise is some multiple of eps times the magnitudes
 };
+using EnergyParts = std::vector<EnergyPart>;
 
 class Term {
  public:

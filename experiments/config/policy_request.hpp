@@ -1,5 +1,5 @@
-// What matching has to know of a config's policies, and from there to what the registry of stiffness policies
-// makes.
+// What matching has to know of a config's policies, and the request from which the registry of stiffness
+// policies makes one.
 #pragma once
 
 #include <optional>

@@ -59,18 +59,17 @@ void settle_material(const json& object, const std::string& pointer, const Reade
 }
 
 /// Settings that only bodies or obstacles of another kind have.
-template <class Kind>
-void check_kind(const json& object, Kind kind, const std::string& pointer, const char* allowed,
-                const Reader& reader) {
-  for (const std::string& key : keys_of_others(kind)) {
+void check_kind(const json& object, const std::vector<std::string>& of_others, const std::string& kind,
+                const std::string& pointer, const char* allowed, const Reader& reader) {
+  for (const std::string& key : of_others) {
     if (!reader.complete || !object.contains(key) || object[key] == false) continue;
-    reader.complain(pointer + "/" + key, fmt::format("{} of a {}", key, word_of(kind)), allowed);
+    reader.complain(pointer + "/" + key, fmt::format("{} of a {}", key, kind), allowed);
   }
 }
 
 void settle_body(const json& object, const std::string& pointer, const Reader& reader, BodyConfig& body) {
   BodySpec& spec = body.spec;
-  check_kind(object, spec.kind, pointer,
+  check_kind(object, keys_of_others(spec.kind), word_of(spec.kind) + " body", pointer,
              spec.kind == BodyKind::rigid ? "motion: every vertex of a rigid body is prescribed"
                                           : "pins with a motion, or kind rigid",
              reader);
@@ -89,7 +88,8 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
 
 void check_obstacle(const json& object, const std::string& pointer, const Reader& reader,
                     const Obstacle& obstacle) {
-  check_kind(object, obstacle.kind, pointer, "another kind of obstacle, or nothing", reader);
+  check_kind(object, keys_of_others(obstacle.kind), word_of(obstacle.kind), pointer,
+             "another kind of obstacle, or nothing", reader);
   if (obstacle.kind != ObstacleKind::plane && !object.contains("radius_m")) {
     reader.missing(pointer + "/radius_m", "a number > 0 (m)");
   }

@@ -1,6 +1,6 @@
 // Everything one run is made of, as plain values with every default filled in. No JSON here: parse.hpp reads
-// and writes it. The sections are made from the lines of settings.inc, which say unit, default and meaning of
-// each member.
+// and writes it. The sections are made from the lines of settings.inc; there each member has its unit,
+// default and meaning.
 #pragma once
 
 #include <cstdint>

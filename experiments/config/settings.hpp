@@ -96,8 +96,8 @@ class Settings {
             [access](const S& from) { return give(std::invoke(access, from)); });
   }
 
-  /// An object of settings of its own. `settings` outlives this list. `or_text`: what a string in its place
-  /// names.
+  /// An object of settings of its own. `settings` outlives this list. `or_text` says what a string in its
+  /// place names.
   template <class M, class Access>
   void nest(std::string name, const Settings<M>& settings, Access access, std::string or_text = "") {
     Rule rule = settings.rule();

@@ -115,8 +115,8 @@ TEST(ElasticityInclusive, FloatAgreesWithDouble) {
 TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
   StiffnessPolicyConfig config;
   config.name = "elasticity_inclusive";
-  config.parameters["mass_term"] = "inertia";
-  config.parameters["refresh"] = "per_step";
+  config.parameters.emplace("mass_term", "inertia");
+  config.parameters.emplace("refresh", "per_step");
   config.multiplier = 3;
   const std::unique_ptr<StiffnessPolicy> policy = make_policy(config);
   EXPECT_EQ(policy->name(), "elasticity_inclusive");
@@ -155,7 +155,7 @@ TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
   massive->fill(batch, kappa.data());
   EXPECT_EQ(kappa[0], 3 * rows[0].kappa({MassTerm::inertia, false, 0.01, 0.25}));
 
-  config.parameters["mass_term"] = "none";
+  config.parameters.insert_or_assign("mass_term", "none");
   EXPECT_THROW(make_policy(config), ConfigError);
 }
 

@@ -69,7 +69,7 @@ TEST(Plugins, ExamplePolicyFillsKappa) {
   register_once(example("effective_mass_policy"));
   StiffnessPolicyConfig config;
   config.name = "effective_mass";
-  config.parameters["refresh"] = "per_step";
+  config.parameters.emplace("refresh", "per_step");
   config.multiplier = 10;
   const auto policy = make_policy(config);
   EXPECT_EQ(policy->name(), "effective_mass");

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/math/error.hpp"
 #include "experiments/config/parse.hpp"
 
 namespace bb::test {

@@ -1,6 +1,8 @@
 // Every setting of every section, from the lists that the program reads configs by: given wrongly, twice,
 // under a wrong name, or not at all.
 #include <fstream>
+#include <map>
+#include <set>
 #include <sstream>
 
 #include "barriers/stiffness/registry.hpp"

@@ -4,6 +4,7 @@
 #include <random>
 
 #include "core/contact/obstacle.hpp"
+#include "core/contact/pair_motion.hpp"
 
 namespace bb {
 namespace {
@@ -22,6 +23,27 @@ std::vector<Obstacle> all_kinds() {
   return {make(ObstacleKind::plane, false), make(ObstacleKind::sphere, false),
           make(ObstacleKind::sphere, true), make(ObstacleKind::cylinder, false),
           make(ObstacleKind::cylinder, true)};
+}
+
+/// A vertex that falls from `height` to -height over a floor whose point is so far along x.
+double falling(double height, double park, double far) {
+  Obstacle floor;
+  floor.point = Vec3d(far, 0, 0);
+  floor.axis = Vec3d::UnitZ();
+  return obstacle_toi(analytic_surface<double>(floor), Vec3d(far, 0, height), Vec3d(far, 0, -height), 0, park);
+}
+
+TEST(Obstacle, AVertexStopsAtTheParkOrAtHalfItsGap) {
+  EXPECT_NEAR(falling(1, 1e-3, 0), (1 - 1e-3) / 2, 1e-12);
+  EXPECT_NEAR(falling(1.5e-3, 1e-3, 0), 0.25, 1e-12);  // below twice the park
+  EXPECT_NEAR(falling(0.5e-3, 1e-3, 0), 0.25, 1e-12);  // below the park itself: it can move all the same
+  EXPECT_EQ(falling(0, 1e-3, 0), 0);
+}
+
+TEST(Obstacle, FarFromTheOriginAVertexStopsAboveItsRounding) {
+  const double far = 1e6, floor = ulp_floor(far);
+  EXPECT_GT(floor, 1e-9);
+  EXPECT_NEAR(falling(1, 1e-15, far), (1 - floor) / 2, 0.1 * floor);
 }
 
 TEST(Obstacle, GapAndNormalByHand) {

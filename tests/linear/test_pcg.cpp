@@ -58,7 +58,7 @@ TEST(Pcg, IndefiniteMatrixIsNamed) {
   s[0] = -0.004;
   const ReducedSystem system = from_dense(with_spectrum(s, 3));
   ASSERT_GT(dense(system).diagonal().minCoeff(), 0);
-  for (const std::string_view name : {"none", "jacobi"}) {
+  for (const std::string name : {"none", "jacobi"}) {
     VecXd x;
     EXPECT_EQ(pcg(name, 1e-10)->solve(system, random_vector(60, 1), x).status,
               LinearStatus::matrix_indefinite);
@@ -144,7 +144,7 @@ TEST(Pcg, IncompleteFactorIsExactWithoutFill) {
 }
 
 TEST(Pcg, RitzValuesMeetTheEndsOfTheSpectrum) {
-  for (const std::string_view name : {"none", "jacobi", "block_jacobi"}) {
+  for (const std::string name : {"none", "jacobi", "block_jacobi"}) {
     const ReducedSystem system = grid_system(7, 1e-2, 1);
     const Eigen::MatrixXd a = dense(system);
     Eigen::MatrixXd d = Eigen::MatrixXd::Identity(a.rows(), a.cols());

@@ -9,7 +9,7 @@
 namespace bb {
 namespace {
 
-constexpr double dt = 0.01, speed = 1, gravity = 10;
+constexpr double dt = 0.01, gravity = 10;
 
 class Watch final : public StepObserver {
  public:
@@ -23,9 +23,14 @@ struct Flight {
   double time, z, v;
 };
 
-/// One step of a particle that falls freely with `speed` from 1 m, a step of about 1 cm.
-Flight fly(const StepSolverOptions& options) {
-  Scene scene = test::particle_over_plane(0.2, 1, 0.001);
+/// Speed at which the largest motion of one iteration, 1 m, is that share of a free step.
+double speed_for(double share) { return (1 / share - dt * dt * gravity) / dt; }
+
+constexpr double height = 100;  // m, of the particle at the start
+
+/// One step of a particle that falls freely.
+Flight fly(const StepSolverOptions& options, double speed) {
+  Scene scene = test::particle_over_plane(0.2, height, 0.001);
   scene.v0(2, 0) = -speed;
   Method method = test::fixed_method("cubic", 1);
   const double tolerance = method.step_solver.tol_velocity;
@@ -42,46 +47,46 @@ Flight fly(const StepSolverOptions& options) {
 }
 
 /// Implicit Euler over a step of length h.
-double fallen(double h) { return h * speed + h * h * gravity; }
+double fallen(double h, double speed) { return h * speed + h * h * gravity; }
 
 TEST(AccumulatedToi, a_step_shortened_by_its_largest_motion_ends_where_its_own_time_says) {
   StepSolverOptions options;
-  options.max_dx = 0.4 * fallen(dt);
-  options.target_toi = 0.25;
-  const Flight flight = fly(options);
+  options.parameters["target_toi"] = 0.25;
+  const double speed = speed_for(0.4);
+  const Flight flight = fly(options, speed);
   ASSERT_EQ(flight.report.status, StepStatus::converged);
   EXPECT_EQ(flight.report.newton_iterations, 2);
   EXPECT_NEAR(flight.watch.reports[0].alpha, 0.4, 1e-12);
   EXPECT_NEAR(flight.report.dt_used, 0.4 * dt, 1e-12);
   EXPECT_NEAR(flight.time, 0.4 * dt, 1e-12);
-  EXPECT_NEAR(1 - flight.z, fallen(0.4 * dt), 1e-12);
+  EXPECT_NEAR(height - flight.z, fallen(0.4 * dt, speed), 1e-12);
   EXPECT_NEAR(-flight.v, speed + gravity * 0.4 * dt, 1e-9);
 }
 
 TEST(AccumulatedToi, parts_accumulate_as_shares_of_what_is_left) {
   StepSolverOptions options;
-  options.max_dx = 0.4 * fallen(dt);
-  options.target_toi = 0.9;
-  const Flight flight = fly(options);
-  // 0.4 of the motion twice, then the rest, which is shorter than max_dx: 0.4 + 0.6 * 2/3 + 0.2 * 1
+  const double target = 0.9, speed = speed_for(0.4);
+  options.parameters["target_toi"] = target;
+  const Flight flight = fly(options, speed);
+  // 0.4 of the motion twice, then the rest, which is shorter than 1 m: 0.4 + 0.6 * 2/3 + 0.2 * 1
   ASSERT_EQ(flight.report.status, StepStatus::converged);
   double beta = 0;
   std::size_t used = 0;
-  for (; used < flight.watch.reports.size() && beta < options.target_toi; ++used) {
+  for (; used < flight.watch.reports.size() && beta < target; ++used) {
     beta += (1 - beta) * flight.watch.reports[used].alpha;
   }
   EXPECT_EQ(used, 3U);
   EXPECT_EQ(flight.report.newton_iterations, 4);  // and the pass that reduces the error
   EXPECT_NEAR(flight.report.dt_used, beta * dt, 1e-15);
   EXPECT_NEAR(beta, 1, 1e-12);
-  EXPECT_NEAR(1 - flight.z, fallen(dt), 1e-12);
+  EXPECT_NEAR(height - flight.z, fallen(dt, speed), 1e-12);
 }
 
 TEST(AccumulatedToi, makes_at_least_the_iterations_that_are_asked_for) {
   for (const int least : {1, 2, 4}) {
     StepSolverOptions options;
-    options.min_iterations = least;
-    const Flight flight = fly(options);
+    options.parameters["min_newton_steps"] = least;
+    const Flight flight = fly(options, 1);
     EXPECT_EQ(flight.report.newton_iterations, least + 1);
     EXPECT_NEAR(flight.report.dt_used, dt, 1e-15);
   }
@@ -89,10 +94,9 @@ TEST(AccumulatedToi, makes_at_least_the_iterations_that_are_asked_for) {
 
 TEST(AccumulatedToi, a_step_that_runs_out_of_iterations_keeps_the_time_it_reached) {
   StepSolverOptions options;
-  options.max_dx = 0.1 * fallen(dt);
-  options.target_toi = 0.9;
+  options.parameters["target_toi"] = 0.9;
   options.max_iterations = 2;
-  const Flight flight = fly(options);
+  const Flight flight = fly(options, speed_for(0.1));
   EXPECT_EQ(flight.report.status, StepStatus::iteration_cap);
   const double first = 0.1, second = 0.1 / 0.9;
   EXPECT_NEAR(flight.report.dt_used, (first + (1 - first) * second) * dt, 1e-12);
@@ -101,9 +105,9 @@ TEST(AccumulatedToi, a_step_that_runs_out_of_iterations_keeps_the_time_it_reache
 /// A free step is Newton's, not `extension` times it; a bound one keeps that distance from the floor.
 TEST(AccumulatedToi, the_extension_is_room_that_is_kept_and_not_way_that_is_gone) {
   StepSolverOptions options;
-  const Flight free = fly(options);
+  const Flight free = fly(options, 1);
   EXPECT_EQ(free.watch.reports[0].alpha, 1);
-  EXPECT_NEAR(1 - free.z, fallen(dt), 1e-12);
+  EXPECT_NEAR(height - free.z, fallen(dt, 1), 1e-12);
 
   Scene scene = test::particle_over_plane(0.2, 0.02, 0.001);
   scene.v0(2, 0) = -10;

@@ -57,7 +57,7 @@ Result allocations_per_iteration(int n, const char* policy_name) {
   StiffnessPolicyConfig policy;
   policy.name = policy_name;
   policy.parameters["kappa_N_per_m"] = 200;
-  policy.parameters["refresh"] = "per_step";
+  policy.parameters.emplace("refresh", "per_step");
   method.stiffness = make_policy(policy);
   method.step_solver.tol_velocity = 1e-7;
   Simulation simulation(scene, method, 0.005, 16);

@@ -37,7 +37,7 @@ struct Sums {
 Sums sums_of(TermList terms) {
   EnergySums sums;
   const Positions none;
-  const double total = sums.total(terms);
+  const double total = total_energy(terms);
   return {sums.change(terms, none, none), total};
 }
 

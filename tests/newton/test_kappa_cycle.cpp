@@ -42,7 +42,7 @@ StepReport step_near_rest(double gap, Refresh refresh, Log& log) {
   Method method = test::fixed_method("cubic", 1);
   StiffnessPolicyConfig policy;
   policy.name = "elasticity_inclusive";
-  policy.parameters["refresh"] = std::string(to_string(refresh));
+  policy.parameters.emplace("refresh", std::string(to_string(refresh)));
   method.stiffness = make_policy(policy);
   method.step_solver.tol_velocity = 1e-13;
   method.step_solver.max_iterations = 60;
@@ -132,7 +132,7 @@ TEST(KappaCycle, a_contact_that_a_line_search_meets_keeps_its_kappa_for_the_step
   Method method = test::fixed_method("cubic", 1);
   StiffnessPolicyConfig policy;
   policy.name = "elasticity_inclusive";
-  policy.parameters["refresh"] = "per_step";
+  policy.parameters.emplace("refresh", "per_step");
   method.stiffness = make_policy(policy);
   Simulation simulation(scene, method, dt, 1);
   Log log;

@@ -2,7 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "core/scene/contact_plan.hpp"
-#include "tests/scene/bodies.hpp"
+#include "tests/bodies/bodies.hpp"
 
 namespace bb {
 namespace {
@@ -48,6 +48,7 @@ TEST(ContactPlan, of_elements_that_all_share_a_vertex_is_empty) {
 
 TEST(ContactPlan, of_a_chain_in_the_plane_has_its_ends) {
   Scene scene = scene_of({rod(3)}, true);
+  scene.planar_pairs = PlanarPairs::vertex_vertex;
   EXPECT_TRUE(plan_contact(scene).point_point);
   EXPECT_TRUE(plan_contact(scene).self_contact.needed);
   scene.planar_pairs = PlanarPairs::point_edge;

@@ -87,6 +87,18 @@ inline double sum_of(const std::vector<double>& values) {
   return sum;
 }
 
+inline double change_of(const EnergyParts& parts) {
+  double sum = 0;
+  for (const EnergyPart& part : parts) sum += part.change;
+  return sum;
+}
+
+inline double magnitude_of(const EnergyParts& parts) {
+  double sum = 0;
+  for (const EnergyPart& part : parts) sum += part.magnitude;
+  return sum;
+}
+
 inline double iterate_energy(const Term& term) {
   double sum = 0;
   for (const TermFamily& family : term.families()) sum += sum_of(family.local.energy);

@@ -104,8 +104,8 @@ TEST(EveryTerm, changes_by_the_difference_of_its_energies) {
     term->change(at.x, to, parts);
     const double expected = test::trial_energy(*term) - test::iterate_energy(*term);
     ASSERT_NE(expected, 0) << term->name();
-    const double size = test::sum_of(parts.magnitude);
-    EXPECT_NEAR(test::sum_of(parts.change), expected, 1e-13 * size) << term->name();
+    const double size = test::magnitude_of(parts);
+    EXPECT_NEAR(test::change_of(parts), expected, 1e-13 * size) << term->name();
     EXPECT_GE(size * (1 + 1e-12), std::abs(expected)) << term->name();
   }
 }

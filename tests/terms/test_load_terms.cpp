@@ -49,9 +49,9 @@ TEST(LoadTerms, inertia_and_work_by_hand) {
   Positions down = x_n;
   down(2, 0) -= 0.5;  // to the height of x_tilde, 1 J of work
   const EnergyParts parts = particle.change(x_n, down);
-  EXPECT_NEAR(test::sum_of(parts.change), -0.5 * 3 * 0.25 - 1, 1e-15);
-  EXPECT_NEAR(test::sum_of(parts.change), particle.energy(down) - particle.energy(x_n), 1e-15);
-  EXPECT_NEAR(test::sum_of(parts.magnitude), inertia + (inertia - 0.5 * 3 * 0.25) + 1, 1e-15);
+  EXPECT_NEAR(test::change_of(parts), -0.5 * 3 * 0.25 - 1, 1e-15);
+  EXPECT_NEAR(test::change_of(parts), particle.energy(down) - particle.energy(x_n), 1e-15);
+  EXPECT_NEAR(test::magnitude_of(parts), inertia + (inertia - 0.5 * 3 * 0.25) + 1, 1e-15);
 }
 
 TEST(LoadTerms, a_change_far_below_the_rounding_of_the_total_is_seen) {
@@ -59,7 +59,7 @@ TEST(LoadTerms, a_change_far_below_the_rounding_of_the_total_is_seen) {
   const Particle particle(1e12, false, origin, origin);
   ASSERT_EQ(particle.terms.size(), 1U);
   const Positions x0 = one_point(1, 0, 0), x1 = one_point(1, 1e-9, 0);  // 5e-7 J on top of 5e11 J
-  EXPECT_NEAR(test::sum_of(particle.change(x0, x1).change), 0.5 * 1e12 * 1e-18, 1e-12);
+  EXPECT_NEAR(test::change_of(particle.change(x0, x1)), 0.5 * 1e12 * 1e-18, 1e-12);
 }
 
 TEST(LoadTerms, the_weight_grows_with_the_load_factor) {

@@ -3,7 +3,7 @@
 
 #include <set>
 
-#include "tests/scene/bodies.hpp"
+#include "tests/bodies/bodies.hpp"
 #include "tests/terms/all_terms.hpp"
 
 namespace bb {
@@ -65,7 +65,7 @@ TEST(plan, follows_every_option) {
   body.material.limit = StrainLimitSpec{};
   BodySpec box = rigid_box("box");
   box.motion.velocity = Vec3d(0, 0, 1);
-  TermOptions terms;
+  TermOptions terms = term_options();
   terms.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
   PlanOptions options;
   options.iterative_solver = true;

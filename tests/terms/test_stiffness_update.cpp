@@ -13,7 +13,7 @@ constexpr double dt = 0.01;
 std::unique_ptr<StiffnessPolicy> inertia_policy() {
   StiffnessPolicyConfig config;
   config.name = "elasticity_inclusive";
-  config.parameters["mass_term"] = "inertia";
+  config.parameters.emplace("mass_term", "inertia");
   config.parameters["elastic_term"] = false;
   return make_policy(config);
 }

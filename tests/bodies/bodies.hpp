@@ -1,4 +1,4 @@
-// Small bodies for the tests of the scene room.
+// Small bodies for the tests of bodies, scenes and plans.
 #pragma once
 
 #include "core/bodies/scene_builder.hpp"

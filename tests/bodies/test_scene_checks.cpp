@@ -4,7 +4,7 @@
 #include <cmath>
 #include <limits>
 
-#include "tests/scene/bodies.hpp"
+#include "tests/bodies/bodies.hpp"
 
 namespace bb {
 namespace {

@@ -6,7 +6,7 @@
 #include <numeric>
 
 #include "core/mesh/topology.hpp"
-#include "tests/scene/bodies.hpp"
+#include "tests/bodies/bodies.hpp"
 
 namespace bb {
 namespace {
