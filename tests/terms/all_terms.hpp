@@ -15,7 +15,7 @@ inline TermOptions term_options() {
   TermOptions options;
   options.contact = {require_shape("cubic"), Argument::gap};
   StiffnessPolicyConfig policy;
-  policy.kappa = 40;
+  policy.parameters["kappa_N_per_m"] = 40.0;
   options.stiffness = make_policy(policy);
   options.limit = {require_shape("cubic"), Argument::gap};
   options.limit_stiffness.k_s = 30;
