@@ -77,7 +77,7 @@ TEST(scene_checks, refuse_every_material_value_out_of_range_at_once) {
   for (const char* what : {"model", "youngs", "poisson", "density", "bending", "onset", "width", "d_hat"}) {
     expect_complaint(found, std::string("/") + what);
   }
-  expect_complaint(found, "one of none, corotational");
+  expect_complaint(found, "one of corotational, arap, stvk, stable_neo_hookean, baraff_witkin, none");
 }
 
 TEST(scene_checks, refuse_bad_pins_and_motions) {

@@ -223,7 +223,7 @@ TEST(Recorder, a_trace_line_is_the_iteration_that_newton_reported) {
   Scene scene = test::particle_over_plane(mass, 0.9 * d_hat, d_hat);
   scene.v0(2, 0) = -1;
   Method method = test::fixed_method("cubic", kappa);
-  const RunConfig config = observed({"/passes/audit=false", "/diagnose/pcg=false"});
+  const RunConfig config = observed({"/passes/audit=false", "/passes/diagnose=true", "/diagnose/pcg=false"});
   RunRecord record;
   std::vector<IterationReport> reports;
   {
@@ -254,11 +254,13 @@ TEST(Recorder, a_trace_line_is_the_iteration_that_newton_reported) {
   EXPECT_EQ(n, reports.size());
 }
 
-/// A direct solver leaves no Ritz values to read.
+/// The config has PCG and the method a direct solver, which leaves no Ritz values to read.
 TEST(Recorder, an_estimate_without_a_value_is_counted_and_is_no_condition_number) {
   const Scene scene = test::particle_over_plane(mass, 0.9 * d_hat, d_hat);
   Method method = test::fixed_method("cubic", kappa);
-  const RunConfig config = observed({"/passes/audit=false", "/diagnose/pcg=false", "/diagnose/tier=0"});
+  const RunConfig config =
+      observed({"/passes/audit=false", "/passes/diagnose=true", "/diagnose/pcg=false", "/diagnose/tier=0",
+                R"(/linear_solver={"name": "pcg", "preconditioner": "block_jacobi"})"});
   RunRecord record;
   Recorder recorder(config, scene, record, nullptr);
   Simulation simulation(scene, method, dt, 1);
