@@ -147,7 +147,7 @@ def test_what_cannot_be_drawn_is_said(run, tmp_path, capsys):
     assert "there are -1, 0, 2, 4" in capsys.readouterr().err
     assert render.main([str(run), "--step", "-1", "--color", "gap"]) == 2
     assert "no gap_rel" in capsys.readouterr().err
-    (tmp_path / "run.json").write_text("{}")
+    (tmp_path / "run.json").write_text('{"schema": {"name": "barrierbench.run", "version": "3.0.0"}}')
     with pytest.raises(FrameError, match="frames_every=1"):
         render.render(tmp_path)
 

@@ -96,7 +96,7 @@ def test_explain_names_the_bounds_of_an_adaptive_kappa(program):
     done = bench(program, "explain", BLOCK, "--set", "/formulation=ipc2020", "--set",
                  "/formulation/stiffness_policy/kappa_min_N_per_m=5", "--set", "/formulation/stiffness_policy/doubling_gap_m=1e-9")
     assert done.returncode == 0, done.stderr
-    assert "ipc_adaptive, at least 5 N/m, doubled below 1e-09 m" in done.stdout
+    assert "ipc_adaptive, doubling_gap_m 1e-09, kappa_min_N_per_m 5.0" in done.stdout
 
 
 DRAPE = Path(BLOCK).parent / "drape.json"
