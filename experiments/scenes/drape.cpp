@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/input/memory.hpp"
 #include "core/mesh/generators.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
@@ -19,6 +20,8 @@ void turn(Positions& x, double angle) {
 /// Lowest layer at start_gap above the sphere, whose top is the origin.
 void add_layers(SceneBuilder& builder, const ParameterMap& p, const SceneContext& context) {
   const int n = integer(p, "n"), layers = integer(p, "layers");
+  require_memory("scene drape: n, layers",  // of all layers, before the first is made
+                 {1.0 * layers * n * n, 2.0 * layers * (n - 1) * (n - 1), 0});
   const double width = number(p, "width_m");
   for (int layer = 0; layer < layers; ++layer) {
     BodySpec cloth;

@@ -56,7 +56,7 @@ TEST(Comparability, AnInvalidRunIsNeitherComparedNorAReference) {
 TEST(Comparability, ARunWithoutContactIsNotComparableToOneWithIt) {
   EXPECT_EQ(judge_comparability(untouched("free"), run("log", 0.1)).verdict, "not_comparable");
   EXPECT_EQ(judge_comparability(run("log", 0.1), untouched("free")).verdict, "no_reference");
-  EXPECT_EQ(judge_comparability(untouched("free"), run("log", 0.1)).ratio.status, "no_reference");
+  EXPECT_STREQ(judge_comparability(untouched("free"), run("log", 0.1)).ratio.status, "no_reference");
 }
 
 TEST(Comparability, DefaultReferenceIsTheLogOfTheSameRuleThatIsValid) {
