@@ -38,7 +38,12 @@ def columns(table: str) -> dict[str, tuple[tuple[str, ...], str]]:
     document = schema("run" if table in ("runs", "steps") else "trace")
     record = {"runs": document, "steps": document["$defs"].get("StepRecord"), "trace": document,
               "cond": document["$defs"].get("ConditionSample")}[table]
-    return {_column(path): (path, doc) for path, doc in _leaves(document, record)}
+    found = {}
+    for path, doc in _leaves(document, record):
+        if _column(path) in found:
+            raise ValueError(f"{table}: {'/'.join(path)} and {'/'.join(found[_column(path)][0])} are both {_column(path)}")
+        found[_column(path)] = path, doc
+    return found
 
 
 def row(table: str, record: dict) -> dict:

@@ -60,7 +60,6 @@ class NewtonSystem {
 
   // --- what observers and reports read
   const Scene& scene() const { return scene_; }
-  const Plan& plan() const { return plan_; }
   const TermList& terms() const { return terms_; }
   /// Charges what happens in this system and round it to phases; the calls below and above switch it.
   PhaseClock& clock() const { return clock_; }

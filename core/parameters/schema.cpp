@@ -73,7 +73,7 @@ json rule_schema(const Rule& rule) {
     case Kind::object:
       break;
   }
-  out = schema_of(rule.list(nlohmann::json::object()));
+  out = schema_of(rule.list(nullptr));  // no object: what any of them may hold
   if (!rule.or_text.empty()) out["type"] = {"string", "object"};
   return out;
 }

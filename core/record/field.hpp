@@ -1,5 +1,5 @@
-// Fields of records. A struct declares each of its members with one BB_FIELD; JSON (json.hpp), JSON Schema
-// and data dictionary (schema.hpp) are made from these lines.
+// Fields of records. A struct declares each of its members with one BB_FIELD; JSON (write_json.cpp,
+// read_json.cpp), JSON Schema and data dictionary (schema.hpp) are made from these lines.
 #pragma once
 
 #include <type_traits>

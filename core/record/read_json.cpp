@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <concepts>
+#include <cstdint>
 #include <cstdio>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
+#include <utility>
 
 #include "core/input/json.hpp"
 #include "core/input/names.hpp"
@@ -41,6 +43,13 @@ void get(const Place& place, const Json& j, bool& out) {
 template <std::integral T>
 void get(const Place& place, const Json& j, T& out) {
   if (!j.is_number_integer()) refuse(place, j, "an integer");
+  const bool fits = j.is_number_unsigned() ? std::in_range<T>(j.get<std::uint64_t>())
+                                           : std::in_range<T>(j.get<std::int64_t>());
+  if (!fits) {
+    refuse(place, j,
+           fmt::format("an integer from {} to {}", std::numeric_limits<T>::min(),
+                       std::numeric_limits<T>::max()));
+  }
   out = j.get<T>();
 }
 void get(const Place& place, const Json& j, double& out) {

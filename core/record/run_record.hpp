@@ -57,7 +57,6 @@ struct Status {
   BB_FIELD(Outcome, outcome, "of several that hold, the first in the order of this list") = Outcome::ok;
   BB_FIELD(std::string, detail, "one sentence; empty when ok");
   BB_FIELD(bool, valid, "every check of `validity` passed") = false;
-  BB_FIELD(int, exit_code, "of the program") = 0;
   BB_FIELD(std::string, started_utc, "ISO 8601");
   BB_FIELD(std::string, ended_utc, "ISO 8601");
   BB_RECORD_END;
@@ -70,7 +69,6 @@ struct Labels {
   BB_FIELD(std::string, shape, "b(d; d_hat)");
   BB_FIELD(std::string, argument, "what the shape is applied to");
   BB_FIELD(std::string, stiffness_policy, "how contacts get their kappa");
-  BB_FIELD(std::string, matching_rule, "how stiffnesses are made comparable");
   BB_FIELD(std::string, integrator, "time integrator");
   BB_FIELD(std::string, step_solver, "order of events in a step");
   BB_FIELD(std::string, linear_solver, "of the Newton step");
@@ -284,7 +282,8 @@ struct AuditRecord {
   BB_FIELD(long long, unproven, "motions that could not be certified") = 0;
   BB_FIELD(long long, inverted, "planar elements, summed over states") = 0;
   BB_FIELD(long long, obstacle_violations, "those of violations that an obstacle is part of") = 0;
-  BB_FIELD(long long, scene_faults, "prescribed primitives that cross or cannot be certified; in no other count") = 0;
+  BB_FIELD(long long, scene_faults,
+           "prescribed primitives that cross or cannot be certified; in no other count") = 0;
   BB_FIELD(int, first_bad_step, "-1: none", "-1") = -1;
   BB_FIELD(double, time_s, "what the checks took") = 0;
   BB_RECORD_END;

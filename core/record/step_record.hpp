@@ -33,7 +33,7 @@ struct StepRecord : WorkCounts {
            "no_contacts");
   BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma at its end", "no_limit");
   BB_FIELD(Number, contact_overload,
-           "largest load / capacity of a row where no progress was made; 0: unbounded capacity",
+           "largest load / capacity of a row where no progress was made; 0: unbounded capacity, or no load",
            no_load_measured);
   BB_FIELD(Number, limit_overload, "the same of a limited element", no_load_measured);
   BB_FIELD(double, kinetic_J, "kinetic energy at its end") = 0;

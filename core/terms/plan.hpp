@@ -1,6 +1,6 @@
-// The plan of a run: what its scene and its options need, and why. Made once; the broad phase, the terms and
-// the passes ask it, and what is not needed is neither allocated nor run. `bench explain` prints it and the
-// record keeps what was skipped.
+// The plan of a run: what its scene and its options need, and why. Made once. Terms are made from it, the
+// broad phase reads its contact plan; the other items describe what passes and options decide. `bench
+// explain` prints it and the record keeps every item.
 #pragma once
 
 #include <string>

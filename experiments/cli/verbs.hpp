@@ -66,8 +66,8 @@ int explain(const RunVerb& verb);
 /// parameters. Errors: ConfigError for a section that is not in list_sections().
 std::vector<std::string> list_sections();
 int list(const std::string& what);
-/// Every setting of a format that is read, every field of one that is written, with what it means; or the JSON
-/// Schema of it. Errors: ConfigError for another format.
+/// Every setting of a format that is read, every field of one that is written, with what it means; or the
+/// JSON Schema of it. Errors: ConfigError for another format.
 std::vector<std::string> help_formats();
 int help(const std::string& format, bool schema);
 /// The sweeps of configs/sweeps/demo_*.json, one after the other.

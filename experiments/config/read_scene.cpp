@@ -49,6 +49,7 @@ void check_motion(const RigidMotion& motion, const std::string& pointer, const R
 
 void settle_material(const json& object, const std::string& pointer, const Reader& reader, Material& m) {
   if (!m.warp_axis && is_anisotropic(m.model)) m.warp_axis = Vec3d::UnitX();
+  if (!reader.complete) return;  // one of the two may be there and wrong
   const bool pascal = object.contains("youngs_Pa"), thick = object.contains("thickness_m");
   if (pascal && object.contains("youngs_N_per_m")) {
     reader.complain(pointer, "youngs_Pa and youngs_N_per_m", "one of the two");

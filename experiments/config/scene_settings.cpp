@@ -82,7 +82,7 @@ ParameterList scene_list(const json& scene) {
   }
   ParameterList list = settings_of<SceneConfig>().rows();
   list.rows.front() = name_row();
-  list.rows.front().rule.required = name != "bodies";
+  list.rows.front().rule.required = name != "bodies" && scene.is_object();  // null: the schema of any scene
   list.open = name != "bodies";
   if (list.open) {
     list.doc =

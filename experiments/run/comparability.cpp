@@ -18,7 +18,7 @@ void append(std::string& list, const std::string& name) { list += (list.empty() 
 ComparedRun without_record(const std::filesystem::path& folder) {
   ComparedRun out;
   out.folder = folder.filename().string();
-  out.gap_rel = Number::missing("no_record");
+  out.gap_rel = Number::missing("no_reference");
   return out;
 }
 
@@ -52,7 +52,7 @@ ComparedRun compared_run(const RunRecord& record, const std::filesystem::path& f
   out.outcome = std::string(to_string(record.status.outcome));
   out.shape = record.labels.shape;
   out.argument = record.labels.argument;
-  out.matching_rule = record.labels.matching_rule;
+  out.matching_rule = record.matching.rule;
   out.valid = record.validity.valid;
   for (const Check& check : record.validity.checks) {
     if (!check.pass) append(out.failed, check.name);

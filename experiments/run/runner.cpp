@@ -83,7 +83,6 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.shape = config.formulation.shape;
   labels.argument = std::string(to_string(config.formulation.argument));
   labels.stiffness_policy = config.formulation.stiffness_policy.name;
-  labels.matching_rule = to_string(config.matching.rule);
   labels.integrator = config.integrator.name;
   labels.step_solver = config.step_solver.name;
   labels.linear_solver = config.linear_solver.name;
@@ -200,6 +199,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, c
 void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, RunRecord& record,
               RunFiles& files) {
   fill_scene(scene, record);
+  record.matching.rule = to_string(config.matching.rule);
   const Plan plan = plan_of(config, scene);
   fill_plan(config, plan, record);
   if (const auto failure = start_failure(config, scene, options.interrupted)) {

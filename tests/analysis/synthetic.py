@@ -40,7 +40,7 @@ def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: s
         "a_field_of_a_later_version": 1,
         "ids": {"run_id": f"id_{formulation}", "config_id": f"config_{formulation}", "sweep_id": "strip"},
         "status": {"outcome": outcome, "started_utc": "2024-01-31T12:00:00Z", "detail": "" if outcome == "ok" else "step 2 ended at its cap", "valid": outcome == "ok"},
-        "labels": {"step_solver": "line_search", "matching_rule": "equal_force", "scene": "drape2d", "formulation": formulation, "shape": shape, "argument": "gap", "note": note},
+        "labels": {"step_solver": "line_search", "scene": "drape2d", "formulation": formulation, "shape": shape, "argument": "gap", "note": note},
         "summary": {"newton_iterations": 6, "first_contact": {}, "linear_iterations": 66, "probe_pcg": STATS, "gap_min_rel": {**STATS, "min": gap}, "time": {}},
         "audit": {"enabled": True, "judged": 9, "crossings": 0, "violations": 0, "unproven": 0, "obstacle_violations": 0, "scene_faults": 0},
         "comparability": _comparability(gap, verdict),

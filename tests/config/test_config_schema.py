@@ -28,10 +28,12 @@ def test_files_of_the_tree_fit(name, path):
 
 @pytest.mark.parametrize("change", [{"tim": {}}, {"time": {"dt_s": 0}}, {"time": {"steps": 1.5}}, {"threads": 4097}, {"formulation": 3},
                                     {"diagnose": {"scalings": ["none", "none"]}}, {"contact": {"mollifier": "ipcc"}}, {"scene": None},
-                                    {"scene": {"bodies": [{"name": "a"}]}}, {"scene": {"obstacles": [{"name": "a", "kind": "cube"}]}}])
+                                    {"scene": {"bodies": [{"name": "a"}]}},
+                                    {"scene": {"bodies": [], "obstacles": [{"name": "a", "kind": "cube"}]}}])
 def test_wrong_configs_do_not_fit(change):
     config = {"schema": "barrierbench.config/1", "scene": {"name": "hang"}}
     validator("config").validate(config)
+    validator("config").validate({**config, "scene": {"bodies": [{"name": "a", "mesh": {"generator": "grid"}}]}})
     assert not validator("config").is_valid({**config, **change})
 
 

@@ -30,7 +30,8 @@ double falling(double height, double park, double far) {
   Obstacle floor;
   floor.point = Vec3d(far, 0, 0);
   floor.axis = Vec3d::UnitZ();
-  return obstacle_toi(analytic_surface<double>(floor), Vec3d(far, 0, height), Vec3d(far, 0, -height), 0, park);
+  return obstacle_toi(analytic_surface<double>(floor), Vec3d(far, 0, height), Vec3d(far, 0, -height), 0,
+                      park);
 }
 
 TEST(Obstacle, AVertexStopsAtTheParkOrAtHalfItsGap) {

@@ -396,7 +396,7 @@ TEST(Calibration, WhatOnlyThePilotTellsIsAnOutcome) {
   const RunRecord record = run(parsed(block, {"/formulation/stiffness_policy/mass_term=none"}));
   EXPECT_EQ(record.status.outcome, Outcome::invalid_scene);
   EXPECT_NE(record.status.detail.find("matching: found kappa = "), std::string::npos) << record.status.detail;
-  EXPECT_EQ(record.labels.matching_rule, "equal_force");
+  EXPECT_EQ(record.matching.rule, "equal_force");
   EXPECT_EQ(record.summary.steps, 0);
 }
 

@@ -144,6 +144,7 @@ TEST_F(ComparabilityFiles, AMarkedReferenceThatLeftNoRecordIsNamed) {
   const json found = read("near")["comparability"];
   EXPECT_EQ(found["verdict"], "no_reference");
   EXPECT_EQ(found["reference_run"], "refused");
+  EXPECT_EQ(found["reference_gap_rel_status"], "no_reference");  // a word of its field's list
   EXPECT_NE(found["reason"].get<std::string>().find("left no record"), std::string::npos) << found["reason"];
   EXPECT_EQ(read("refused")["comparability"]["reference_run"], "");  // of an earlier sweep: left alone
 }
