@@ -11,7 +11,7 @@
 namespace bb {
 namespace {
 
-// A gap below this many stop levels at two step ends, and shrinking, asks for a doubling.
+// A gap below this many stop levels at two step ends, and shrinking, doubles kappa.
 constexpr double doubling_parks = 10;
 // kappa stays within [k, range k].
 constexpr double range = 100;

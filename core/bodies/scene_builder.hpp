@@ -21,7 +21,7 @@ LameParameters shell_lame(double youngs_per_width, double poisson);
 /// them are reported at once.
 class SceneBuilder {
  public:
-  /// `where` stands before every message, e.g. the file of the configuration.
+  /// `where` begins every message, e.g. the file of the configuration.
   SceneBuilder(std::string name, bool planar, const Vec3d& gravity, std::string where);
 
   /// Planar scenes only; before the first body.

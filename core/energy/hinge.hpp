@@ -19,7 +19,7 @@ BB_HD T hinge_angle(const Vec<T, 3> (&x)[4]) {
   return atan2(-e.norm() * n0.dot(b), n0.dot(n1));
 }
 
-/// theta - rest_angle brought to (-pi, pi]. Exact as it stands when already there.
+/// theta - rest_angle brought to (-pi, pi]. Unchanged when already there.
 template <class T>
 BB_HD T hinge_deviation(T angle, T rest_angle) {
   using std::remainder;
@@ -142,7 +142,7 @@ BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T
                                            difference(i, 1) * angle.grad.template segment<3>(3) +
                                            difference(i, 2) * angle.grad.template segment<3>(6));
   }
-  const MaskOf<T> flat = deviation == T(0);  // then k grad grad^T is PSD as it stands
+  const MaskOf<T> flat = deviation == T(0);  // then k grad grad^T is PSD without projection
   if (projection == Projection::none || any(flat)) out.hess = lift_points<T, 4>(difference, reduced);
   if (projection == Projection::psd && any(!flat)) {
     Mat<T, 4, 3> basis;  // orthonormal, at right angles to (1, 1, 1, 1)

@@ -61,7 +61,7 @@ void StrainLimitBatch::fill_terms(const Positions& x, const double* kappa, Local
     const std::size_t i = 2 * e;
     const StrainShape<double> shape{{b_[i], b_[i + 1]}, {db_[i], db_[i + 1]}, {d2b_[i], d2b_[i + 1]}};
     const auto terms = [&]<int R>() {
-      // an inactive element asks for no SVD; its factors are not read
+      // an inactive element needs no SVD; its factors are not read
       const bool active = gap_[i] < width_[i];
       const Svd<double, R, 2> svd = active ? membrane_svd(deformation_gradient<R>(rests_[e], p.x))
                                            : Svd<double, R, 2>{{}, {sigma_[i], sigma_[i + 1]}, {}};

@@ -139,7 +139,7 @@ BB_HD inline void keep_closer(Closest<T, 4>& best, int point, int e0, int e1, T 
 }  // namespace detail
 
 /// Point-triangle. @param x [3 x 4] p t0 t1 t2, m; any triangle, zero area included.
-/// The interior solution stands against the three clamped edges where its plane is uncertain; the smallest
+/// The interior solution is compared with the three clamped edges where its plane is uncertain; the smallest
 /// realised distance wins. Source: candidate scan and cross products as in the contact solver of Ando 2024
 /// (ppf-contact-solver).
 template <class T>
@@ -153,7 +153,7 @@ BB_HD inline Closest<T, 4> closest_point_triangle(const Mat<T, 3, 4>& x) {
 
   Closest<T, 4> best;
   best.weights.setZero();
-  best.r = x.rowwise().sum();  // stands only when nothing is comparable: x is not finite
+  best.r = x.rowwise().sum();  // kept only when nothing is comparable: x is not finite
   best.d = std::numeric_limits<T>::infinity();
   best.region = Region::p_t0;
   const Vec<T, 3> q = x.col(0) - x.col(a), e = x.col(b) - x.col(a), f = x.col(c) - x.col(a);
@@ -183,13 +183,13 @@ BB_HD inline Closest<T, 4> closest_point_triangle(const Mat<T, 3, 4>& x) {
 }
 
 /// Edge-edge. @param x [3 x 4] ea0 ea1 eb0 eb1, m; any edges, parallel and zero-length ones included.
-/// The interior solution stands against the four clamped end points where its plane is uncertain; the
+/// The interior solution is compared with the four clamped end points where its plane is uncertain; the
 /// smallest realised distance wins.
 template <class T>
 BB_HD inline Closest<T, 4> closest_edge_edge(const Mat<T, 3, 4>& x) {
   Closest<T, 4> best;
   best.weights.setZero();
-  best.r = x.rowwise().sum();  // stands only when nothing is comparable: x is not finite
+  best.r = x.rowwise().sum();  // kept only when nothing is comparable: x is not finite
   best.d = std::numeric_limits<T>::infinity();
   best.region = Region::ea0_eb0;
   const Vec<T, 3> q = x.col(0) - x.col(2), u = x.col(1) - x.col(0), v = x.col(3) - x.col(2);

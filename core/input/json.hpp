@@ -30,8 +30,8 @@ class JsonError : public ConfigError {
 /// Whether integers beyond max_json_integer are refused, or read as the nearest double like any other number.
 enum class LargeIntegers { refused, rounded };
 
-/// Text to a value. Errors: JsonError for bad syntax, a number beyond double, a key that stands twice in one
-/// object, more than max_json_depth levels, an integer beyond max_json_integer. Cost O(length).
+/// Text to a value. Errors: JsonError for bad syntax, a number beyond double, a key that is there twice in
+/// one object, more than max_json_depth levels, an integer beyond max_json_integer. Cost O(length).
 nlohmann::json parse_json(const std::string& text, const std::string& source,
                           LargeIntegers large_integers = LargeIntegers::refused);
 

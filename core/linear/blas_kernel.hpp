@@ -30,7 +30,7 @@ struct BlasKernelChoice {
 };
 
 /// @param request  "haswell", "native", or nothing: what OPENBLAS_CORETYPE names if it is set, else haswell
-/// Pure. Never asks for a second restart: with OPENBLAS_CORETYPE = Haswell and another kernel it refuses.
+/// Pure. Never restarts twice: with OPENBLAS_CORETYPE = Haswell and another kernel it refuses.
 BlasKernelChoice choose_blas_kernel(const std::optional<std::string>& request, const BlasKernelFacts& facts);
 
 }  // namespace bb

@@ -38,7 +38,7 @@ class BlockSystem {
   void set_elements(std::vector<Stencils> families);
   /// Families of this iterate (contacts). Returns true when the block pattern changed: values() is then zero,
   /// of another length, and copies of it are void. Same stencils cost one comparison. A contact stencil whose
-  /// blocks all exist already does not change the pattern (pattern_id stays); blocks that no stencil asks for
+  /// blocks all exist already does not change the pattern (pattern_id stays); blocks of no stencil
   /// any more leave it. Cost: linear in stencils and blocks; no allocation unless something outgrows its
   /// buffer.
   bool set_contacts(std::vector<Stencils> families);

@@ -111,7 +111,7 @@ void certify(ScaledMatrix& b, double sign, double outside, End& end) {
   end.lambda = inside + (outside - inside) / 2;
 }
 
-/// Whether the shift that proves an end stands out of the rounding of its factorisation.
+/// Whether the shift that proves an end is above the rounding of its factorisation.
 bool provable(const End& end, double largest) { return kProof * std::abs(end.lambda) > kProvable * largest; }
 
 /// Shifts just beyond the end that `end` approximates from inside and repeats Lanczos from its vector. A
@@ -269,7 +269,7 @@ ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& sca
   top.vector.normalize();
   const double rayleigh_min = b.rayleigh(bottom.vector), rayleigh_max = b.rayleigh(top.vector);
   // Solves leave an error of eps cond in 1 / theta; the Rayleigh quotient does not, once its vector is
-  // polished. It stands unless a factorisation has proven more.
+  // polished. Kept unless a factorisation has proven more.
   const bool bottom_stands = bottom.resolved && !(rayleigh_min > bottom.proven_inside);
   e.lambda_min = bottom_stands ? rayleigh_min : bottom.lambda;
   const bool top_stands = !(rayleigh_max < top.proven_inside);

@@ -23,7 +23,7 @@ namespace bb {
 /// Host only.   Cost: O(n log n), holds the file in memory.
 TriangleMesh read_mesh(const std::string& path);
 
-/// The same from bytes; `name` stands in messages and its extension decides the format.
+/// The same from bytes; `name` is used in messages and its extension decides the format.
 TriangleMesh parse_mesh(const std::string& bytes, const std::string& name);
 
 }  // namespace bb

@@ -20,7 +20,7 @@ class LargestSlope {
   std::map<double, double> known_;
 };
 
-/// |b'| that the Newton model asks for, at the gap `next` where its step would end: linear from d on, m.
+/// |b'| of the Newton model at the gap `next` where its step would end: linear from d on, m.
 double newton_force(const BarrierFunction& barrier, double d, double next, double d_hat);
 
 }  // namespace bb

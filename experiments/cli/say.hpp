@@ -1,4 +1,4 @@
-// Words on stderr that can never end a run: a stderr that is closed, full or read by nobody is passed over.
+// Words on stderr that can never end a run: a stderr that is closed, full or not read is passed over.
 #pragma once
 
 #include <string_view>

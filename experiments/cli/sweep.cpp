@@ -81,7 +81,7 @@ void run_case(const SweepCase& one, RunOptions options, ProgressLine& line) {
 /// Runs every case that can be run; returns what is wrong with the others.
 std::vector<Violation> run_cases(Sweep& sweep) {
   ProgressLine line(sweep.common.progress);
-  std::vector<Violation> violations;  // a case that cannot be run keeps nobody else from running
+  std::vector<Violation> violations;  // a case that cannot be run stops no other
   for (std::size_t i = 0; i < sweep.spec.cases.size(); ++i) {
     const SweepCase& one = sweep.spec.cases[i];
     const RunOptions options = case_options(sweep, one);

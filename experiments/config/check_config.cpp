@@ -19,7 +19,7 @@ struct Complain {
   }
 };
 
-/// Nothing for a name that was complained of where it stands.
+/// Nothing for an unknown name: it has a violation already.
 std::optional<BarrierFunction> barrier_of(const std::string& shape, Argument argument) {
   const Shape* found = shapes().find(shape);
   return found ? std::optional<BarrierFunction>({*found, argument}) : std::nullopt;
@@ -45,7 +45,7 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
   }
 }
 
-/// The policy judges its own settings; what matching will supply stands as 1.
+/// The policy judges its own settings; what matching will supply is 1 here.
 void check_policy(const RunConfig& config, const Complain& complain) {
   const PolicyConfig& policy = config.formulation.stiffness_policy;
   try {
@@ -80,7 +80,7 @@ void check_adaptive_start(const RunConfig& config, const Complain& complain) {
   }
 }
 
-/// A barrier that matching asks for its slope at theta or its curvature at 1/2 of its width.
+/// A barrier of which matching reads its slope at theta or its curvature at 1/2 of its width.
 struct MatchedBarrier {
   const std::string& shape;
   Argument argument;
@@ -96,7 +96,7 @@ bool usable(double value) { return std::isfinite(value) && value > 0; }
 void check_matched_barrier(const MatchingConfig& matching, const MatchedBarrier& m,
                            const Complain& complain) {
   const auto function = barrier_of(m.shape, m.argument);
-  if (!function) return;  // complained of where it stands
+  if (!function) return;  // it has a violation already
   const std::string name = fmt::format("{} on {}", m.shape, to_string(m.argument));
   if (matching.rule == MatchingRule::equal_curvature) {
     if (usable(function->eval(m.width / 2, m.width).d2b)) return;

@@ -19,7 +19,7 @@ namespace bb {
 ///   contradiction, bad override.   Cost: milliseconds; mesh files are hashed.
 RunConfig load_config(const std::string& path, std::span<const std::string> overrides = {});
 
-/// The same from text; `source` stands in messages, relative paths start at `folder`.
+/// The same from text; `source` is used in messages, relative paths start at `folder`.
 RunConfig parse_config(const std::string& text, const std::string& source, const std::string& folder = ".",
                        std::span<const std::string> overrides = {});
 

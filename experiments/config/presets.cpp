@@ -42,7 +42,7 @@ std::vector<std::string> preset_names() {
 }
 
 /// A policy of another name replaces the preset's; a new kappa replaces the old one whatever its convention.
-/// The bounds of an adaptive kappa (kappa_min, kappa_max) are no conventions: each stands for itself.
+/// The bounds of an adaptive kappa (kappa_min, kappa_max) are no conventions and are kept as given.
 void lay_over_policy(json& base, const json& over) {
   if (over.contains("name") && over["name"] != base.value("name", json())) base = json::object();
   const auto is_kappa = [](const std::string& key) {

@@ -27,7 +27,7 @@ void keep_own(const json& object, const Registry<Entry>& registry, const std::st
   }
 }
 
-/// A published constant becomes the kappa that it stands for.
+/// A published constant becomes the kappa that it means.
 void convert_kappa(const json& object, const std::string& pointer, const Reader& reader,
                    const FormulationConfig& formulation, PolicyConfig& policy) {
   std::string used = object.contains("kappa_N_per_m") ? "kappa_N_per_m" : "";

@@ -15,7 +15,7 @@ namespace answer {
 #undef ENTRY
 }  // namespace answer
 
-/// Instantiates a kind for both precisions; stands at the end of the file that defines it.
+/// Instantiates a kind for both precisions; at the end of the file that defines it.
 #define BB_EVAL_KIND(name)                      \
   template Answer answer::name<double>(Query&); \
   template Answer answer::name<float>(Query&)

@@ -61,7 +61,7 @@ void note(MatchingRecord& record, const char* why) {
   record.pilot_note += (record.pilot_note.empty() ? "" : "; ") + std::string(why);
 }
 
-/// What the rule asks for a load and a width; a given load goes with a given width.
+/// The stiffness of the rule for a load and a width; a given load goes with a given width.
 MatchedStiffness matched_stiffness(const Match& match, const BarrierFunction& barrier, double given_width) {
   return [match, &barrier, given_width](double load, double width) {
     Match one = match;

@@ -15,7 +15,7 @@ namespace bb {
 
 class ConditionWatch {
  public:
-  /// `artifacts` gets matrices where the config asks for them; may be null.
+  /// `artifacts` gets matrices where the config has them; may be null.
   ConditionWatch(const RunConfig& config, ArtifactWriter* artifacts);
 
   /// After assembly: estimates of the stages and scalings of the config, none when the iteration is not due.

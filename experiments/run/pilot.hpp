@@ -12,7 +12,7 @@
 
 namespace bb {
 
-/// What the weight alone asks for: the pilot starts from it, and it stands in where the pilot found nothing.
+/// Loads of the weight alone: the pilot starts from them, and they are used where the pilot found nothing.
 struct StaticLoads {
   double contact = 0;  // N per free vertex
   double limit = 0;    // N/m, weight over the side of a square of the limited area; 0 without a limit

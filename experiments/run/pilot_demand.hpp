@@ -12,7 +12,7 @@ namespace bb {
 /// The matching rule: stiffness (N/m) with which a barrier of this width carries this load.
 using MatchedStiffness = std::function<double(double load, double width)>;
 
-/// The contact or limited element that asks for the most.
+/// The contact or limited element with the largest demand.
 struct Demand {
   double largest = 0;        // N/m, the matched stiffness; 1 with a policy: that over the policy's own
   double load = 0;           // N per unit multiplicity, or N/m

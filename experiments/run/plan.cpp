@@ -5,7 +5,7 @@
 namespace bb {
 namespace {
 
-/// The terms that the config asks for. The numbers of their stiffness do not matter to a plan.
+/// The terms of the config. The numbers of their stiffness do not matter to a plan.
 Method uncalibrated(const RunConfig& config) {
   Calibration any;
   any.kappa = any.k_s = 1;

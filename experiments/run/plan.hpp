@@ -6,7 +6,7 @@
 
 namespace bb {
 
-/// True when somebody looks on at a run: for diagnose, audit or frames, or because none is timed. That run
+/// True when a run is observed: for diagnose, audit or frames, or because none is timed. That run
 /// leaves the trace; none of its times is reported as a time.
 bool has_observed_run(const RunConfig& config);
 

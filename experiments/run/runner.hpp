@@ -1,4 +1,4 @@
-// Runs one resolved config: matching, the passes it asks for, and the record it leaves.
+// Runs one resolved config: matching, its passes, and the record it leaves.
 #pragma once
 
 #include <atomic>
