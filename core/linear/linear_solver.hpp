@@ -25,6 +25,7 @@ std::string_view to_string(LinearStatus status);
 
 struct LinearReport {
   LinearStatus status = LinearStatus::ok;
+  bool iterative = false;
   int iterations = 0;              // 0 for direct solvers
   double residual_true = 0;        // |b - A x| / |b|, 2-norm
   double residual_recurrence = 0;  // the same from the recurrence (iterative)
@@ -58,6 +59,7 @@ std::unique_ptr<LinearSolver> make_linear_solver(const LinearOptions& options);
 struct LinearSolverEntry {
   std::string name, doc;
   std::vector<Parameter> parameters;  // its own, with defaults
+  bool iterative = false;
   std::unique_ptr<LinearSolver> (*make)(const ParameterMap& complete) = nullptr;
 };
 /// The registry, in its order.

@@ -123,6 +123,7 @@ LinearReport Pcg::solve(const ReducedSystem& system, const VecXd& b, VecXd& x) {
     throw ConfigError("right-hand side", std::to_string(b.size()) + " entries", "one a row of the matrix");
   }
   LinearReport report;
+  report.iterative = true;
   x = VecXd::Zero(b.size());
   const Clock::time_point start = Clock::now();
   product_.update(system);
@@ -151,6 +152,7 @@ LinearReport Pcg::solve(const ReducedSystem& system, const VecXd& b, VecXd& x) {
 
 LinearSolverEntry linear_solver_pcg() {
   LinearSolverEntry entry;
+  entry.iterative = true;
   entry.parameters = {
       {"preconditioner", name_in([] { return preconditioners().names(); }), "block_jacobi",
        "a registered preconditioner"},

@@ -4,7 +4,6 @@
 // iteration with the shortened prediction reduces the error. Only with implicit Euler, whose prediction
 // scales with dt.
 #include <algorithm>
-#include <cmath>
 
 #include "core/newton/iteration.hpp"
 #include "core/newton/step_solver.hpp"

@@ -2,8 +2,6 @@
 // protocol that its figure is reproduced with, never one of a comparison. Newton with a Tikhonov term, Armijo
 // backtracking, and nothing that keeps a step free of contact or within the strain limit; the barriers are
 // evaluated past both (BarrierFunction::literal). What that hides, the audit finds.
-#include <algorithm>
-#include <cmath>
 
 #include "core/newton/iteration.hpp"
 #include "core/newton/step_solver.hpp"
@@ -76,6 +74,7 @@ class ArticleLiteral final : public StepSolver {
 StepSolverEntry step_solver_article_literal() {
   StepSolverEntry entry;
   entry.parameters = {{"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"}};
+  entry.bounds_steps = false;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<ArticleLiteral>(options);
   };

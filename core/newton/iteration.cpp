@@ -1,6 +1,5 @@
 #include "core/newton/iteration.hpp"
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -12,12 +11,13 @@ void fill_work(IterationReport& report) {
   const LinearReport& linear = report.linear;
   report.linear_status = linear.status;
   report.residual_true = linear.residual_true;
-  const auto iterative = [&linear](double value) {
-    return linear.iterations > 0 ? Number(value) : Number::missing("direct_solver");
-  };
-  report.residual_recurrence = iterative(linear.residual_recurrence);
-  report.ritz_min = iterative(linear.ritz_min);
-  report.ritz_max = iterative(linear.ritz_max);
+  report.residual_recurrence = report.ritz_min = report.ritz_max = Number::missing("direct_solver");
+  if (linear.iterative) {
+    report.residual_recurrence = linear.residual_recurrence;
+    const bool known = linear.ritz_max != 0;  // not where the solve ended before its first iteration
+    report.ritz_min = known ? Number(linear.ritz_min) : Number::missing("not_measured");
+    report.ritz_max = known ? Number(linear.ritz_max) : Number::missing("not_measured");
+  }
   report.linear_solves = 1;
   report.linear_iterations = linear.iterations;
   report.factorizations = linear.factorized;

@@ -6,8 +6,6 @@
 //   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded
 //   6 accept
-#include <algorithm>
-#include <cmath>
 
 #include "core/newton/iteration.hpp"
 #include "core/newton/step_solver.hpp"

@@ -1,7 +1,6 @@
 // Gradient and matrix of the iterate, summed in the order that docs/design.md fixes; and the solve with
 // prescribed motion lifted to the right-hand side.
 #include <algorithm>
-#include <cmath>
 
 #include "core/newton/newton_system.hpp"
 

@@ -36,6 +36,7 @@ class StepSolver {
 struct StepSolverEntry {
   std::string name, doc;
   std::vector<Parameter> parameters;  // its own, with defaults
+  bool bounds_steps = true;  // false: steps may pass through surfaces, barriers are read beyond their end
   std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
 };
 const Registry<StepSolverEntry>& step_solvers();

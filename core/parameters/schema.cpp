@@ -1,5 +1,4 @@
 // JSON Schema out of a list.
-#include <array>
 #include <cmath>
 
 #include "core/parameters/check.hpp"

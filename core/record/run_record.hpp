@@ -18,6 +18,7 @@ namespace bb {
 /// added. Readers refuse another first number.
 inline constexpr const char* run_schema_name = "barrierbench.run";
 inline constexpr const char* run_schema_version = "3.0.0";
+static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 using TextMap = std::map<std::string, std::string>;
 using CountMap = std::map<std::string, int>;

@@ -68,7 +68,7 @@ struct ContactCounts {
 struct WorkCounts {
   BB_RECORD(WorkCounts, "work that was done");
   BB_FIELD(long long, linear_solves, "linear systems solved") = 0;
-  BB_FIELD(long long, linear_iterations, "iterations of the linear solver; 0: a direct one") = 0;
+  BB_FIELD(long long, linear_iterations, "iterations of the linear solver; a direct one has none") = 0;
   BB_FIELD(long long, factorizations, "numeric factorisations, of a matrix or a preconditioner") = 0;
   BB_FIELD(long long, analyses, "symbolic analyses") = 0;
   BB_FIELD(long long, line_search_trials, "states that a line search tried") = 0;

@@ -73,14 +73,6 @@ std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
   return out;
 }
 
-std::vector<Plan::Skip> Plan::skipped() const {
-  std::vector<Skip> out;
-  for (const auto& [name, entry] : items()) {
-    if (!entry->needed) out.push_back({std::string(name), entry->reason});
-  }
-  return out;
-}
-
 Plan make_plan(const Scene& scene, const TermOptions& terms, const PlanOptions& options) {
   Plan plan;
   plan.contacts = plan_contact(scene);

@@ -41,10 +41,6 @@ struct Plan {
   const PlanItem& term(std::string_view name) const;
   /// (name, item): the terms, then the others in the order above; the names are those of the members.
   std::vector<std::pair<std::string_view, const PlanItem*>> items() const;
-  struct Skip {
-    std::string what, why;
-  };
-  std::vector<Skip> skipped() const;
 };
 
 /// Errors: none.   Cost: O(vertices + elements + surface log surface).

@@ -1,6 +1,7 @@
 // `run RUN.json`: a record repeats itself and says whether the final state is the same, bit for bit.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 
 #include "barriers/plugins.hpp"

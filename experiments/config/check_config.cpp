@@ -186,9 +186,7 @@ void check_ritz(const RunConfig& config, const Complain& complain) {
 }
 
 void check_protocol(const RunConfig& config, const Complain& complain) {
-  const auto protocol = config.scene.parameters.find("protocol");
-  const bool literal = protocol != config.scene.parameters.end() &&
-                       protocol->second == ParameterValue(std::string("article_literal"));
+  const bool literal = follows_article(config.scene);
   if (literal == (config.step_solver.name == "article_literal")) return;
   complain("/step_solver/name", '"' + config.step_solver.name + '"',
            literal
@@ -197,6 +195,12 @@ void check_protocol(const RunConfig& config, const Complain& complain) {
 }
 
 }  // namespace
+
+bool follows_article(const SceneConfig& scene) {
+  const auto protocol = scene.parameters.find("protocol");
+  return protocol != scene.parameters.end() &&
+         protocol->second == ParameterValue(std::string("article_literal"));
+}
 
 void check_contradictions(const RunConfig& config, const std::string& source,
                           std::vector<Violation>& violations) {

@@ -35,13 +35,6 @@ double default_tolerance(const RunConfig& config) {
   return (fall > 0 && config.integrator.name != "quasi_static" ? std::min(length, 0.1 * fall) : length) / dt;
 }
 
-/// Whether the scene follows the drape article's own protocol.
-bool is_literal(const SceneConfig& scene) {
-  const auto protocol = scene.parameters.find("protocol");
-  return protocol != scene.parameters.end() &&
-         protocol->second == ParameterValue(std::string("article_literal"));
-}
-
 RunConfig read_document(json document, const std::string& source, std::vector<Violation>& violations) {
   RunConfig config;
   config.source = source;
@@ -55,7 +48,7 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   const ProceduralScene* scene = read_scene(child(document, "scene"), reader, config.scene);
   const SceneDefaults defaults = scene ? scene->defaults : SceneDefaults();
   if (config.scene.name == "bodies") require_scales(document, reader);
-  const bool literal = is_literal(config.scene);
+  const bool literal = follows_article(config.scene);
   config.time = {defaults.dt, defaults.steps};
   config.formulation.d_hat = defaults.d_hat;
   if (literal) config.step_solver.name = "article_literal";

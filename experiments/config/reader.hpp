@@ -42,6 +42,9 @@ void settle_strain_limit(const nlohmann::json& object, const Reader& reader,
                          StrainLimitConfig& limit);
 void settle_matching(const nlohmann::json& object, const Reader& reader, bool literal, RunConfig& config);
 
+/// Whether the scene follows the protocol of the drape article.
+bool follows_article(const SceneConfig& scene);
+
 /// Contradictions between sections (check_config.cpp); no JSON.
 void check_contradictions(const RunConfig& config, const std::string& source,
                           std::vector<Violation>& violations);

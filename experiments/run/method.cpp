@@ -3,6 +3,7 @@
 #include "barriers/shapes/registry.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/math/error.hpp"
+#include "core/newton/step_solver.hpp"
 #include "experiments/config/policy_request.hpp"
 
 namespace bb {
@@ -61,7 +62,8 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
     method.limit = {require_shape(config.strain_limit.shape), config.strain_limit.argument};
     method.limit_stiffness = make_limit_policy(config.strain_limit.stiffness_policy, calibration);
   }
-  method.contact.literal = method.limit.literal = config.step_solver.name == "article_literal";
+  method.contact.literal = method.limit.literal =
+      !step_solvers().require(config.step_solver.name, "/step_solver/name").bounds_steps;
   method.hessian_mode = config.contact.hessian_mode;
   method.contact_options.mollifier = config.contact.mollifier;
   method.contact_options.ccd_park = config.contact.ccd_park;

@@ -1,5 +1,7 @@
 #include "experiments/run/plan.hpp"
 
+#include "core/linear/linear_solver.hpp"
+#include "core/newton/step_solver.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {
@@ -21,8 +23,10 @@ bool has_observed_run(const RunConfig& config) {
 
 Plan plan_of(const RunConfig& config, const Scene& scene) {
   PlanOptions options;
-  options.collision_free_steps = config.step_solver.name != "article_literal";
-  options.iterative_solver = config.linear_solver.name == "pcg";
+  options.collision_free_steps =
+      step_solvers().require(config.step_solver.name, "/step_solver/name").bounds_steps;
+  options.iterative_solver =
+      linear_solvers().require(config.linear_solver.name, "/linear_solver/name").iterative;
   options.diagnose = config.passes.diagnose;
   options.audit = config.passes.audit;
   options.trace = has_observed_run(config);

@@ -6,7 +6,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <set>
 
 #include "core/linear/blas_info.hpp"
 #include "core/math/error.hpp"

@@ -1,7 +1,6 @@
 // Whether the numbers of a run may be used: checks of its record, each with value and bound.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "core/audit/audit_ledger.hpp"

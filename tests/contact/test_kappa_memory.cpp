@@ -36,6 +36,17 @@ double barrier_energy(const Rows& rows) {
   return energy;
 }
 
+/// A memory in which one pair of the only row has kappa = 7; `one` becomes the row with that pair alone.
+KappaMemory knows_one_pair(const Rows& rows, std::size_t pair, Rows& one) {
+  one = rows;
+  one.table.pair = {rows.table.pair[pair]};
+  one.table.pair_begin = {0, 1};
+  one.table.kappa[0] = 7;
+  KappaMemory memory;
+  memory.store(one.table, one.mollified);
+  return memory;
+}
+
 TEST(KappaMemory, BIsContinuousWhereAPointSlidesOverAnEdge) {
   const Scene scene = point_over_fan();
   ContactSystem contacts(scene, {});
@@ -65,13 +76,8 @@ TEST(KappaMemory, ARowOfKnownAndNewPairsHasTheirMean) {
   Rows rows = at(contacts, scene, 0);  // over the edge: both triangles' pairs in one row
   ASSERT_EQ(rows.table.size(), 1U);
   ASSERT_EQ(rows.table.multiplicity[0], 2);
-  Rows one = rows;
-  one.table.resize(1);
-  one.table.pair = {rows.table.pair[0]};
-  one.table.pair_begin = {0, 1};
-  one.table.kappa[0] = 7;
-  KappaMemory memory;
-  memory.store(one.table, one.mollified);
+  Rows one;
+  KappaMemory memory = knows_one_pair(rows, 0, one);
 
   std::vector<int> missing, missing_mollified;
   memory.recall(rows.table, rows.mollified, missing, missing_mollified);
@@ -98,12 +104,8 @@ TEST(KappaMemory, EveryNewPairOfARowCounts) {
   Rows rows = rows_at(contacts, scene.x0);
   ASSERT_EQ(rows.table.size(), 1U);
   ASSERT_EQ(rows.table.multiplicity[0], 3);
-  Rows one = rows;
-  one.table.pair = {rows.table.pair[1]};
-  one.table.pair_begin = {0, 1};
-  one.table.kappa[0] = 7;
-  KappaMemory memory;
-  memory.store(one.table, one.mollified);
+  Rows one;
+  const KappaMemory memory = knows_one_pair(rows, 1, one);
 
   std::vector<int> missing, missing_mollified;
   memory.recall(rows.table, rows.mollified, missing, missing_mollified);

@@ -2,8 +2,11 @@
 // here, as long as scene_with_everything() needs it.
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 
+#include "core/math/lower_blocks.hpp"
 #include "tests/terms/all_terms.hpp"
 
 namespace bb {
@@ -36,6 +39,16 @@ struct AtIterate : test::TermsOf {
     }
   }
 };
+
+/// Ascending, of the symmetric matrix on `width` points with these lower blocks.
+Eigen::VectorXd eigenvalues(int width, const double* blocks) {
+  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(3 * width, 3 * width);
+  for (int b = 0; b < width; ++b) {
+    for (int a = b; a < width; ++a, blocks += 9)
+      lower.block<3, 3>(3 * a, 3 * b) = Mat<double, 3, 3>::Map(blocks);
+  }
+  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lower, Eigen::EigenvaluesOnly).eigenvalues();
+}
 
 Positions gradient_of(const Term& term, Eigen::Index n_vertices) {
   Positions out = Positions::Zero(3, n_vertices);
@@ -93,6 +106,26 @@ TEST(EveryTerm, has_the_gradient_of_its_energy) {
     }
     EXPECT_LT((numeric - gradient).norm(), 1e-5 * gradient.norm()) << term->name();
   }
+}
+
+/// What projection leaves: lower blocks of a matrix that has no negative eigenvalue and is not 0.
+TEST(EveryTerm, has_psd_hessians_unless_it_is_linear) {
+  const AtIterate at;
+  std::size_t judged = 0;
+  for (const auto& term : at.terms) {
+    double largest = 0;
+    for (const TermFamily& family : term->families()) {
+      const std::size_t stride = n_lower_numbers(static_cast<std::size_t>(family.stencils.width));
+      for (std::size_t at_block = 0; at_block < family.local.hess.size(); at_block += stride) {
+        const Eigen::VectorXd values = eigenvalues(family.stencils.width, &family.local.hess[at_block]);
+        EXPECT_GE(values[0], -1e-9 * values[values.size() - 1]) << term->name();
+        largest = std::max(largest, values[values.size() - 1]);
+        ++judged;
+      }
+    }
+    EXPECT_EQ(largest > 0, term->name() != "external_force") << term->name();
+  }
+  EXPECT_GT(judged, 30U);
 }
 
 TEST(EveryTerm, changes_by_the_difference_of_its_energies) {
