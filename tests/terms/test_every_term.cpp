@@ -18,6 +18,10 @@ struct AtIterate : test::TermsOf {
 
   AtIterate() : AtIterate(test::scene_with_everything()) {}
   explicit AtIterate(const Scene& all) : TermsOf(all, all.x0, frame(all)), x(test::disturbed(scene, 0.004)) {
+    move_to(x);
+  }
+  void move_to(const Positions& to) {
+    x = to;
     trial(x);
     for (const auto& term : terms) term->accept(clock);
     for (const auto& term : terms) term->linearise(x, context());
@@ -126,6 +130,52 @@ TEST(EveryTerm, has_psd_hessians_unless_it_is_linear) {
     EXPECT_EQ(largest > 0, term->name() != "external_force") << term->name();
   }
   EXPECT_GT(judged, 30U);
+}
+
+/// dx^T H dx over all elements, H with the lower blocks of each.
+double curvature_along(const Term& term, const Positions& dx) {
+  double sum = 0;
+  for (const TermFamily& family : term.families()) {
+    const auto width = static_cast<std::size_t>(family.stencils.width);
+    const double* block = family.local.hess.data();
+    for (std::size_t e = 0; e < family.stencils.size() && !family.local.hess.empty(); ++e) {
+      const auto of = [&](std::size_t a) -> Vec3d {
+        const int vertex = family.stencils.vertices[width * e + a];
+        return vertex < 0 ? Vec3d::Zero() : Vec3d(dx.col(vertex));
+      };
+      for (std::size_t b = 0; b < width; ++b) {
+        for (std::size_t a = b; a < width; ++a, block += 9) {
+          sum += (a == b ? 1 : 2) * of(a).dot(Mat<double, 3, 3>::Map(block) * of(b));
+        }
+      }
+    }
+  }
+  return sum;
+}
+
+/// Projection only adds curvature: along any direction H has at least what the gradient's difference shows.
+TEST(EveryTerm, has_no_less_curvature_than_its_gradient_shows) {
+  const AtIterate at;
+  const double h = 1e-5;
+  std::size_t curved = 0;
+  for (int seed = 0; seed < 3; ++seed) {
+    Positions dx = at.x;
+    for (Eigen::Index i = 0; i < dx.size(); ++i)
+      dx.data()[i] = std::sin(2.3 * static_cast<double>(i + 50 * seed));
+    AtIterate before, after;
+    before.move_to(at.x - h * dx);
+    after.move_to(at.x + h * dx);
+    for (std::size_t i = 0; i < at.terms.size(); ++i) {
+      const double shown = (gradient_of(after.terms[i], dx.cols()) - gradient_of(before.terms[i], dx.cols()))
+                               .cwiseProduct(dx)
+                               .sum() /
+                           (2 * h);
+      const double had = curvature_along(at.terms[i], dx);
+      EXPECT_GE(had, shown - 1e-4 * std::abs(shown) - 1e-9) << at.terms[i].name();
+      curved += shown > 1e-6;
+    }
+  }
+  EXPECT_GT(curved, 9U);  // three directions, and more than half of the terms
 }
 
 TEST(EveryTerm, changes_by_the_difference_of_its_energies) {
