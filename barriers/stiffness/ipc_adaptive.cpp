@@ -17,8 +17,8 @@ constexpr double doubling_parks = 10;
 constexpr double range = 100;
 
 /// kappa_0 = -(grad B_1 . grad E)/|grad B_1|^2, clamped to [k, 100 k], k = mean contact mass/(c dt^2
-/// b''(d_hat/2)). Source: Li et al. 2020 (IPC), supplement on adaptive kappa; differs by: the scale k and the
-/// doubling rule.
+/// b''(d_hat/2)). Source: Li et al. 2020 (IPC), supplement on adaptive kappa; differs by: the scale k and
+/// the doubling rule.
 class IpcAdaptive final : public StiffnessPolicy {
  public:
   explicit IpcAdaptive(const StiffnessPolicyConfig& config)

@@ -1,6 +1,6 @@
-// The judge of a run. Newton hands it every accepted state and motion and never reads its verdict back: what
-// the audit finds goes to the record and changes no step. Includes nothing of the solver's geometry or
-// contact.
+// The judge of a run. Newton hands it every accepted state and motion and never reads its verdict back:
+// what the audit finds goes to the record and changes no step. Includes nothing of the solver's
+// geometry or contact.
 #pragma once
 
 #include <vector>
@@ -15,12 +15,12 @@ class Audit {
   /// or the flags and opposite vertices do not fit the mesh.
   explicit Audit(AuditMesh mesh);
 
-  /// Judges x [3 n_vertices], m. The first call includes pairs of wholly fixed primitives, later calls skip
-  /// them.
+  /// Judges x [3 n_vertices], m. The first call includes pairs of wholly fixed primitives, later
+  /// calls skip them.
   void check_state(const Positions& x, int step);
 
-  /// Judges the linear motion x0 -> x1, m, both ends as committed. @param tolerance m, a tenth of the park
-  /// distance
+  /// Judges the linear motion x0 -> x1, m, both ends as committed. @param tolerance m, a tenth of
+  /// the park distance
   void check_motion(const Positions& x0, const Positions& x1, int step, double tolerance);
 
   /// Tells of a state that the run reached and that is not the end of the last judged motion: an audit with

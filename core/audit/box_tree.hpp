@@ -1,6 +1,6 @@
-// Broad phase: a tree of axis-aligned boxes over primitives in Morton order. Box ends are input doubles, so
-// that nothing is rounded and no inflation is needed: the hull of a linear motion lies in the box of its
-// ends.
+// Broad phase: a tree of axis-aligned boxes over primitives in Morton order. Box ends are input
+// doubles, so that nothing is rounded and no inflation is needed: the hull of a linear motion lies in
+// the box of its ends.
 #pragma once
 
 #include <algorithm>

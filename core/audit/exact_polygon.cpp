@@ -1,5 +1,5 @@
-// Integer arithmetic of one pair. Every vector carries a positive factor of its own; signs of products are
-// kept.
+// Integer arithmetic of one pair. Every vector carries a positive factor of its own; signs of
+// products are kept.
 #include "core/audit/exact_polygon.hpp"
 
 #include "core/audit/exact_integers.hpp"

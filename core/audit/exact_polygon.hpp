@@ -21,9 +21,9 @@ class ExactPolygon {
   /// without rounding, strictly separates the origin from the polygon during the whole span.
   bool any_separates(const TimeSpan& span) const;
 
-  /// True only if the origin provably passes through the polygon's interior within the span: seen along the
-  /// fixed `direction` it stays strictly inside, and it is on opposite sides of the polygon's plane at the
-  /// two ends.
+  /// True only if the origin provably passes through the polygon's interior within the span: seen along
+  /// the fixed `direction` it stays strictly inside, and it is on opposite sides of the polygon's plane at
+  /// the two ends.
   bool proves_passage(const Point& direction, const TimeSpan& span) const;
 
  private:

@@ -1,6 +1,6 @@
-// One accepted motion x0 -> x1, linear, both ends as rounded: every non-adjacent vertex-triangle and
-// edge-edge pair (planar: vertex and boundary edge) certified free, or proven to pass through, or left
-// unproven.
+// One accepted motion x0 -> x1, linear, both ends as rounded: every non-adjacent vertex-triangle
+// and edge-edge pair (planar: vertex and boundary edge) certified free, or proven to pass through,
+// or left unproven.
 #pragma once
 
 #include <optional>

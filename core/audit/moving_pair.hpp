@@ -1,6 +1,6 @@
 // A pair of primitives in straight motion, seen as one moving convex polygon: the differences of their
-// vertices. The primitives meet at a time exactly when the polygon contains the origin. Separation by a fixed
-// direction.
+// vertices. The primitives meet at a time exactly when the polygon contains the origin. Separation by
+// a fixed direction.
 #pragma once
 
 #include <Eigen/Geometry>
@@ -67,8 +67,8 @@ class MovingPolygon {
   /// True only if `direction` proves that the origin is outside the polygon during the whole span: every
   /// corner's height n.D(t) is affine in t, so both ends of the span decide. Each height passes one
   /// difference, one product, at most dim - 1 sums, one product with t or 1 - t and one sum, each 2^-53
-  /// relative to |n|.bound: at most 8 x 2^-53. Underflow adds less than 2^-1000. Not-a-number and overflow
-  /// compare false.
+  /// relative to |n|.bound: at most 8 x 2^-53. Underflow adds less than 2^-1000. Not-a-number and
+  /// overflow compare false.
   bool separates(const Point& direction, const TimeSpan& span) const {
     const double allowance = 0x1p-50 * direction.cwiseAbs().dot(bound_) + 0x1p-1000;
     const double tb = TimeSpan::fraction(span.begin), te = TimeSpan::fraction(span.end);
@@ -92,8 +92,8 @@ class MovingPolygon {
   }
 
   /// Offers directions to `accept` until it returns true: the polygon's normal, the directions from the
-  /// origin to its corners and perpendicular to its sides, all at time t. The closest point's direction is
-  /// among them.
+  /// origin to its corners and perpendicular to its sides, all at time t. The closest point's direction
+  /// is among them.
   template <class F>
   bool any_direction(std::int64_t t, F&& accept) const {
     Point d[n_corners];

@@ -1,6 +1,6 @@
 // Floating filter first, rationals where it cannot decide. A quadric's sign is |W|^2 - R^2 with W = x -
-// centre for the sphere, W = (x - point) x axis for the cylinder: affine in x, so a motion gives a quadratic
-// in time.
+// centre for the sphere, W = (x - point) x axis for the cylinder: affine in x, so a motion gives a
+// quadratic in time.
 #include "core/audit/obstacle_sign.hpp"
 
 #include <gmpxx.h>
@@ -15,8 +15,8 @@ namespace {
 
 using Rational3 = std::array<mpq_class, 3>;
 
-// Fewer than 30 relative roundings of 2^-53 enter any sum of terms below; underflow is covered as in
-// predicates.cpp.
+// Fewer than 30 relative roundings of 2^-53 enter any sum of terms below; underflow is covered
+// as in predicates.cpp.
 constexpr double filter = 0x1p-47;
 constexpr double underflow = 0x1p-500;
 

@@ -1,6 +1,6 @@
 // Continuous collision detection of one pair over one accepted motion: certified free, proven hit, or
-// unproven. Independent of the solver's ACCD: spans of time are bisected until a fixed direction separates
-// the pair.
+// unproven. Independent of the solver's ACCD: spans of time are bisected until a fixed direction
+// separates the pair.
 #pragma once
 
 #include "core/audit/moving_pair.hpp"
@@ -14,8 +14,8 @@ enum class Verdict { certified, violation, unproven };
 ///   explicit
 ///              allowance, or integers). violation: proven by exact signs that they pass through each other.
 ///   unproven:  neither; a mere touch, or more spans than the cap.
-/// @param tolerance m, >= 0: spans that move less are also tried by exact signs; below it spans are still
-/// bisected
+/// @param tolerance m, >= 0: spans that move less are also tried by exact signs; below it spans
+/// are still bisected
 ///                  down to rounding, so that gaps smaller than the tolerance are certified
 /// Errors: none; input must be finite. Cost: about 0.1 us where an axis separates, 1 us where the pair is
 /// near. Source: the inclusion idea of Snyder et al. 1993 and Wang et al. 2021; here the boxes in (u, v) are

@@ -34,9 +34,9 @@ std::vector<mpz_class> to_integers(std::span<const double> values) {
 
 namespace {
 
-// A term of a determinant passes 8 roundings in 3D (3 differences, 3 for its product and minor, 2 sums) and 4
-// in 2D, each at most 2^-53 relative; the permanent is itself rounded down by at most as many. 2^-49 covers
-// both twice.
+// A term of a determinant passes 8 roundings in 3D (3 differences, 3 for its product and minor, 2 sums) and
+// 4 in 2D, each at most 2^-53 relative; the permanent is itself rounded down by at most as many. 2^-49
+// covers both twice.
 constexpr double filter = 0x1p-49;
 // Underflow adds at most 2^-1070 (1 + largest factor); with factors below 2^300 that is below this.
 constexpr double underflow = 0x1p-700;
@@ -86,8 +86,8 @@ int orient3d(const Vec3d& a, const Vec3d& b, const Vec3d& c, const Vec3d& d) {
                            std::abs(r[2]) * (std::abs(m2l) + std::abs(m2r));
   const double factor = r.cwiseAbs().cwiseMax(s.cwiseAbs()).cwiseMax(t.cwiseAbs()).maxCoeff();
   if (std::abs(det) > filter * permanent + underflow && factor < largest) return sign_of(det);
-  // A plane of constant coordinate, or coincident points: differences of doubles are zero only if exactly
-  // zero.
+  // A plane of constant coordinate, or coincident points: differences of doubles are zero only
+  // if exactly zero.
   for (int k = 0; k < 3; ++k) {
     if (r[k] == 0.0 && s[k] == 0.0 && t[k] == 0.0) return 0;
   }

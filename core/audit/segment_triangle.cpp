@@ -63,8 +63,8 @@ Crossing segment_segment_2d(const Vec2d& p, const Vec2d& q, const Vec2d& a, cons
   const int sp = orient2d(a, b, p), sq = orient2d(a, b, q);
   if (sp * sq > 0) return Crossing::none;
   // With a zero sign the closed segments meet: on one line their boxes do; elsewhere the lines meet in one
-  // point, which either pair of signs puts into its segment. A degenerate segment has both signs of its own
-  // line zero.
+  // point, which either pair of signs puts into its segment. A degenerate segment has both signs of its
+  // own line zero.
   return sa * sb < 0 && sp * sq < 0 ? Crossing::crossing : Crossing::touch;
 }
 

@@ -1,13 +1,13 @@
-// Whether a segment meets a triangle (3D) or another segment (2D), by exact signs alone: no division, no
-// tolerance.
+// Whether a segment meets a triangle (3D) or another segment (2D), by exact signs alone: no
+// division, no tolerance.
 #pragma once
 
 #include "core/math/types.hpp"
 
 namespace bb::audit {
 
-/// crossing: the relative interiors meet in one point transversally; touch: the closed sets meet in any other
-/// way.
+/// crossing: the relative interiors meet in one point transversally; touch: the closed sets meet in
+/// any other way.
 enum class Crossing { none, touch, crossing };
 
 /// Closed segment p q against closed triangle a b c. `crossing` iff p and q lie strictly on opposite sides of

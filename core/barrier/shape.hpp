@@ -46,8 +46,8 @@ struct BarrierFunction {
   /// evaluated at max(d, 1e-10), a bounded one by its formula below contact too, its curvature 0 for d <= 0.
   bool literal = false;
 
-  /// Terms of n rows. Cost O(n), allocates nothing. Errors: none, total for d > 0, d_hat > 0; literal: any
-  /// finite d.
+  /// Terms of n rows. Cost O(n), allocates nothing. Errors: none, total for d > 0, d_hat > 0; literal:
+  /// any finite d.
   void eval(std::size_t n, const double* d, const double* d_hat, double* b, double* db, double* d2b) const;
   void eval(std::size_t n, const float* d, const float* d_hat, float* b, float* db, float* d2b) const;
   ShapeTerms<double> eval(double d, double d_hat) const;

@@ -33,8 +33,8 @@ class SceneBuilder {
   void add_body(const BodySpec& spec);
   void add_obstacle(const Obstacle& obstacle);
 
-  /// Errors: ConfigError with all violations: no free vertex, free vertex without mass, non-finite value, a
-  /// name
+  /// Errors: ConfigError with all violations: no free vertex, free vertex without mass, non-finite
+  /// value, a name
   ///   used twice, a material or obstacle out of range, pins that select nothing, a vertex pinned to two
   ///   motions.
   Scene finish();

@@ -80,8 +80,8 @@ class Bvh {
 
   /// All (place in `asking`, place in this tree) with overlapping boxes, of which at least one is free, for
   /// the places [begin, end) of `asking`: begin a multiple of eight, end too unless it is asking.size(), for
-  /// whole nodes are asked. When that is this tree itself, only pairs of ascending places. The result lies in
-  /// the buffers.
+  /// whole nodes are asked. When that is this tree itself, only pairs of ascending places. The result lies
+  /// in the buffers.
   std::span<const PlacePair> overlaps(const Bvh& asking, std::size_t begin, std::size_t end,
                                       PairSearch& search) const;
 

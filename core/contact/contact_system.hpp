@@ -57,12 +57,12 @@ class ContactSystem {
 
   /// Rows with d < d_hat_row at x, merged with multiplicity, sorted; kappa, b, db, d2b are left at 0.
   /// Requires x to be such a state of the last update_candidates. Returns the smallest gap over all
-  /// rows (infinity without rows); a value <= 0 means that x is not feasible. x that is not finite: no rows
-  /// and -infinity.
+  /// rows (infinity without rows); a value <= 0 means that x is not feasible. x that is not finite: no
+  /// rows and -infinity.
   double find_rows(const Positions& x, ContactTable& rows, MollifiedTable& mollified) const;
 
-  /// All non-adjacent pairs, whatever rule keeps them from having a row. A motion that is not finite: alpha
-  /// 0.
+  /// All non-adjacent pairs, whatever rule keeps them from having a row. A motion that is not
+  /// finite: alpha 0.
   StepBound step_bound(const Positions& x0, const Positions& x1) const;
 
   struct Counts {
@@ -80,8 +80,8 @@ class ContactSystem {
   /// The first pair of the scene with a gap <= 0 at x, none when x is a valid start. Replaces the candidates.
   /// Distances only: a triangle that an edge pierces without touching is the audit's to find.
   std::optional<Overlap> check_initial(const Positions& x);
-  /// "point_triangle: cloth[12], ball[3], ball[4], ball[7]": bodies and their own vertex numbers, obstacles
-  /// by name.
+  /// "point_triangle: cloth[12], ball[3], ball[4], ball[7]": bodies and their own vertex numbers,
+  /// obstacles by name.
   std::string describe(const ContactKey& key, ContactKind kind) const;
 
  private:

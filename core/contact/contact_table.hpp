@@ -48,8 +48,8 @@ struct ContactTable {
   void resize(std::size_t n);
 };
 
-/// Edge-edge rows close to parallel: B gains the mollifier e(x); e b(d), full gradient, PSD-projected
-/// Hessian.
+/// Edge-edge rows close to parallel: B gains the mollifier e(x); e b(d), full
+/// gradient, PSD-projected Hessian.
 struct MollifiedTable {
   std::vector<ContactKey> key;
   std::vector<int> stencil;  // [4 n] ea0 ea1 eb0 eb1

@@ -17,8 +17,8 @@ class KappaMemory {
   /// Adds the pairs that are not known yet; what is known stays. Requires recall() of the same tables before,
   /// and kappa of the rows that it reported missing set (see complete()).
   void store(const ContactTable& rows, const MollifiedTable& mollified);
-  /// Fills kappa of the rows whose pairs are all known; `missing` gets the indices of the others (row or
-  /// mollified row).
+  /// Fills kappa of the rows whose pairs are all known; `missing` gets the indices of the others (row
+  /// or mollified row).
   void recall(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
               std::vector<int>& missing_mollified) const;
   /// Rows that recall() reported missing come with kappa of a new pair; where some of their pairs are known

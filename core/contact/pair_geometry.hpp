@@ -1,5 +1,5 @@
-// A candidate pair as points and contact distances, whatever its kind: what the rows and the step bound
-// share.
+// A candidate pair as points and contact distances, whatever its kind: what the rows and the
+// step bound share.
 #pragma once
 
 #include <algorithm>

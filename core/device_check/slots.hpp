@@ -1,5 +1,5 @@
-// Memory of a check kernel: values are read from `in` and written to `out`, so that nothing is optimised
-// away.
+// Memory of a check kernel: values are read from `in` and written to `out`, so that nothing
+// is optimised away.
 #pragma once
 
 #include "core/math/types.hpp"

@@ -7,10 +7,10 @@
 
 namespace bb {
 
-/// psi = mu/2 ((|F_u|-1)^2 + (|F_v|-1)^2) + lambda/2 (F_u.F_v)^2. Psd: the whole 2R x 2R Hessian is
-/// projected. Host-device: yes. Total; a column of length 0 (where the energy has a cusp) counts as if
-/// 1/|F_k| were 0. Source: Baraff, Witkin 1998; Kim 2020 (A Finite Element Formulation of Baraff-Witkin
-/// Cloth).
+/// psi = mu/2 ((|F_u|-1)^2 + (|F_v|-1)^2) + lambda/2 (F_u.F_v)^2. Psd: the whole 2R x 2R Hessian
+/// is projected. Host-device: yes. Total; a column of length 0 (where the energy has a cusp)
+/// counts as if 1/|F_k| were 0. Source: Baraff, Witkin 1998; Kim 2020 (A Finite Element
+/// Formulation of Baraff-Witkin Cloth).
 struct BaraffWitkin {
   static constexpr bool anisotropic = true;  // psi depends on how the columns of F lie in the material
 

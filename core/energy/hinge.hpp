@@ -42,9 +42,9 @@ BB_HD Mat<T, 3, 3> cross_matrix(const Vec<T, 3>& v) {
   return out;
 }
 
-/// One side of the hinge, added with its sign: how far the vertex at `a` (slot 1 or 2) has turned about e.
-/// Its gradient is c in a and -t c in e, with c = |e| n/|n|^2, n = e x a, t = a.e/|e|^2; the Hessian is their
-/// derivative.
+/// One side of the hinge, added with its sign: how far the vertex at `a` (slot 1 or 2) has turned about
+/// e. Its gradient is c in a and -t c in e, with c = |e| n/|n|^2, n = e x a, t = a.e/|e|^2; the Hessian
+/// is their derivative.
 template <class T>
 BB_HD void add_hinge_side(const Vec<T, 3>& e, const Vec<T, 3>& a, T sign, int slot, HingeAngleTerms<T>& out) {
   const T e_sq = e.squaredNorm(), length = e.norm();
@@ -117,8 +117,8 @@ BB_HD Vec<T, 9> edge_stretch(const Vec<T, 3> (&x)[4], const Mat<T, 4, 3>& basis)
   return out;
 }
 
-/// Energy (J) k/2 (theta - theta0)^2, k in J, angles in rad, the difference taken in (-pi, pi]. Host-device:
-/// yes.
+/// Energy (J) k/2 (theta - theta0)^2, k in J, angles in rad, the difference taken in (-pi,
+/// pi]. Host-device: yes.
 template <class T>
 BB_HD T hinge_value(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle) {
   const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);

@@ -81,8 +81,8 @@ BB_HD DensityTerms<T, R> isotropic_terms(const Svd<T, R, 2>& svd, const Density2
   return out;
 }
 
-/// A membrane model made of a density in singular values: the interface that every line of registry.inc
-/// offers.
+/// A membrane model made of a density in singular values: the interface that every line
+/// of registry.inc offers.
 template <class Density>
 struct Isotropic {
   /// psi(F), in the units of the Lame parameters. Host-device: yes.

@@ -9,8 +9,8 @@ namespace bb {
 
 class SpringBatch final : public EnergyBatch {
  public:
-  /// @param stiffness [n] N/m; the rest lengths are those at x_rest (m). ConfigError: column of another
-  /// length.
+  /// @param stiffness [n] N/m; the rest lengths are those at x_rest (m). ConfigError: column
+  /// of another length.
   SpringBatch(std::span<const std::array<int, 2>> edges, const Positions& x_rest,
               std::vector<double> stiffness);
   std::string_view name() const override { return "spring"; }

@@ -5,9 +5,9 @@
 
 namespace bb {
 
-/// psi = mu/2 (|F|^2 - 2) - mu (J-1) + lambda/2 (J-1)^2, J = s0 s1; evaluated as mu/2 (s0-s1)^2 + lambda/2
-/// (J-1)^2, the same function without cancellation near rest. A polynomial in a 2x2 F. Host-device: yes.
-/// Total.
+/// psi = mu/2 (|F|^2 - 2) - mu (J-1) + lambda/2 (J-1)^2, J = s0 s1; evaluated as mu/2 (s0-s1)^2 +
+/// lambda/2 (J-1)^2, the same function without cancellation near rest. A polynomial in a 2x2 F.
+/// Host-device: yes. Total.
 struct StableNeoHookean {
   template <class T>
   BB_HD static Density2<T> eval(const Vec<T, 2>& s, T lame_mu, T lame_lambda) {

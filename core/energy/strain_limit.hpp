@@ -17,8 +17,8 @@ struct StrainBand {
   T width;  // 1, > 0; the barrier's activation distance
 };
 
-/// y = width - ((sigma - 1) - onset): the barrier's gap; >= width where inactive, <= 0 at or beyond the
-/// limit.
+/// y = width - ((sigma - 1) - onset): the barrier's gap; >= width where inactive, <= 0 at or
+/// beyond the limit.
 template <class T>
 BB_HD T strain_gap(T sigma, const StrainBand<T>& band) {
   return band.width - ((sigma - T(1)) - band.onset);

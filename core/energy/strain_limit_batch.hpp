@@ -15,8 +15,8 @@ namespace bb {
 /// (core/barrier/shape.hpp) or anything with its batch call eval(n, d, d_hat, b, db, d2b).
 class StrainLimitBatch {
  public:
-  /// @param onset, width [n] 1, width > 0. ConfigError: columns of another length or value, triangles without
-  /// area.
+  /// @param onset, width [n] 1, width > 0. ConfigError: columns of another length or value,
+  /// triangles without area.
   StrainLimitBatch(std::span<const std::array<int, 3>> triangles, const Positions& x_rest,
                    std::vector<double> onset, std::vector<double> width, bool planar = false);
 
@@ -44,8 +44,8 @@ class StrainLimitBatch {
     evaluate(barrier);
     for (std::size_t e = 0; e < size(); ++e) energy[e] = kappa[e] * (b_[2 * e] + b_[2 * e + 1]);
   }
-  /// Energies, gradients and PSD Hessians; exact zeros where inactive, not finite at or beyond the limit.
-  /// Measures.
+  /// Energies, gradients and PSD Hessians; exact zeros where inactive, not finite at or beyond
+  /// the limit. Measures.
   template <class Barrier>
   void derivatives(const Positions& x, const Barrier& barrier, const double* kappa, LocalTerms& out) {
     measure(x);

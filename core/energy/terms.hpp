@@ -5,9 +5,9 @@
 
 namespace bb {
 
-/// none: the exact second derivative. psd: its negative eigenvalues set to 0 (membranes and strain limiting:
-/// those of d2psi/dF2, before the constant chain rule to the vertices; springs and hinges: those of the whole
-/// matrix).
+/// none: the exact second derivative. psd: its negative eigenvalues set to 0 (membranes and strain
+/// limiting: those of d2psi/dF2, before the constant chain rule to the vertices; springs and hinges: those
+/// of the whole matrix).
 enum class Projection { none, psd };
 
 /// Makes `m` symmetric bit for bit: its lower triangle is copied to the upper one.

@@ -1,6 +1,6 @@
-// Additive continuous collision detection of ONE pair: how far it may move along straight vertex paths before
-// its gap falls to a stop level. Every advance is proven; nothing is extrapolated. One code for float and
-// double.
+// Additive continuous collision detection of ONE pair: how far it may move along straight vertex paths
+// before its gap falls to a stop level. Every advance is proven; nothing is extrapolated. One code for
+// float and double.
 #pragma once
 
 #include <cmath>
@@ -111,8 +111,8 @@ BB_HD inline T directional_advance(const Mat<T, 3, pair_points(K)>& x, const Mat
   return advance;
 }
 
-/// The largest of the three proven advances: by speed, along the closest direction, along that direction
-/// turning.
+/// The largest of the three proven advances: by speed, along the closest direction, along
+/// that direction turning.
 template <PairKind K, class T>
 BB_HD inline T proven_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3, pair_points(K)>& dx,
                               const Closest<T, pair_points(K)>& closest, T by_speed, T level) {

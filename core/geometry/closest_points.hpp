@@ -139,9 +139,9 @@ BB_HD inline void keep_closer(Closest<T, 4>& best, int point, int e0, int e1, T 
 }  // namespace detail
 
 /// Point-triangle. @param x [3 x 4] p t0 t1 t2, m; any triangle, zero area included.
-/// The interior solution is compared with the three clamped edges where its plane is uncertain; the smallest
-/// realised distance wins. Source: candidate scan and cross products as in the contact solver of Ando 2024
-/// (ppf-contact-solver).
+/// The interior solution is compared with the three clamped edges where its plane is uncertain; the
+/// smallest realised distance wins. Source: candidate scan and cross products as in the contact solver of
+/// Ando 2024 (ppf-contact-solver).
 template <class T>
 BB_HD inline Closest<T, 4> closest_point_triangle(const Mat<T, 3, 4>& x) {
   const T edge_sq[3] = {(x.col(3) - x.col(2)).squaredNorm(), (x.col(1) - x.col(3)).squaredNorm(),

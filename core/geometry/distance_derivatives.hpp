@@ -1,6 +1,6 @@
-// Gradient and Hessian of the distance d, and of d^2, of a pair in its closest region: one formula for every
-// kind. The distance is not twice differentiable where regions meet; each side has the derivatives of its
-// region.
+// Gradient and Hessian of the distance d, and of d^2, of a pair in its closest region: one formula for
+// every kind. The distance is not twice differentiable where regions meet; each side has the derivatives
+// of its region.
 #pragma once
 
 #include <cmath>

@@ -1,5 +1,5 @@
-// The mollifier of Li et al. 2020 (IPC, eq. 24): takes the contact of two edges to zero, C1, as they become
-// parallel.
+// The mollifier of Li et al. 2020 (IPC, eq. 24): takes the contact of two edges to zero, C1, as
+// they become parallel.
 #pragma once
 
 #include "core/math/products.hpp"

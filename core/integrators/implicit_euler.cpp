@@ -1,5 +1,5 @@
-// Backward Euler. c = 1, x_tilde = x_n + h v_n, v = (x - x_n)/h. First order, dissipative, unconditionally
-// stable.
+// Backward Euler. c = 1, x_tilde = x_n + h v_n, v = (x - x_n)/h. First order,
+// dissipative, unconditionally stable.
 #include "core/integrators/registry.hpp"
 
 namespace bb {

@@ -12,8 +12,8 @@
 
 namespace bb {
 
-/// Which vertices the elements of one family touch: element e owns vertices[width e .. width e + width), -1 =
-/// none.
+/// Which vertices the elements of one family touch: element e owns vertices[width e .. width e + width),
+/// -1 = none.
 struct Stencils {
   int width = 0;
   std::span<const int> vertices;
@@ -39,12 +39,12 @@ class BlockSystem {
   /// Families of this iterate (contacts). Returns true when the block pattern changed: values() is then zero,
   /// of another length, and copies of it are void. Same stencils cost one comparison. A contact stencil whose
   /// blocks all exist already does not change the pattern (pattern_id stays); blocks of no stencil
-  /// any more leave it. Cost: linear in stencils and blocks; no allocation unless something outgrows its
-  /// buffer.
+  /// any more leave it. Cost: linear in stencils and blocks; no allocation unless something
+  /// outgrows its buffer.
   bool set_contacts(std::vector<Stencils> families);
 
-  /// Values: one 9-vector a lower block. Stages add up in the order of the calls; fixed order, any thread
-  /// count.
+  /// Values: one 9-vector a lower block. Stages add up in the order of the calls; fixed order,
+  /// any thread count.
   using Values = std::vector<double>;
   void clear();
   void add_diagonal(std::span<const double> per_vertex);  // value * I3
@@ -63,8 +63,8 @@ class BlockSystem {
   /// y += A v over all vertices, fixed ones included (used to lift prescribed motion to the right-hand side).
   void multiply_add(const Values& values, const Positions& v, Positions& y) const;
 
-  /// Restriction to the free degrees of freedom. The reference stays valid; values are overwritten by each
-  /// call.
+  /// Restriction to the free degrees of freedom. The reference stays valid; values are overwritten
+  /// by each call.
   const ReducedSystem& reduce(const Values& values);
   int n_free() const;
   void restrict_vector(const Positions& full, VecXd& reduced) const;

@@ -41,11 +41,11 @@ struct ConditionOptions {
 ConditionEstimate condition_from_ritz(double ritz_min, double ritz_max);
 
 /// Errors: failure is a status; ConfigError only for a tier outside 1 to 3 and a malformed system.
-/// Cost: tier 1 one factorisation, 4 solves, 21 products. Tier 2 at most 25 solves and 40 products, and two
-/// factorisations or a few more: each end is proven by a factor of the matrix shifted 8e-4 beyond it, which
-/// exists only when no eigenvalue lies there. The proof is left out, and a small residual decides alone, for
-/// an eigenvalue below 1.25e-10 lambda_max, whose shift rounding would swallow. Tier 3: dense, n <= 3000,
-/// O(n^3).
+/// Cost: tier 1 one factorisation, 4 solves, 21 products. Tier 2 at most 25 solves and 40 products, and
+/// two factorisations or a few more: each end is proven by a factor of the matrix shifted 8e-4 beyond it,
+/// which exists only when no eigenvalue lies there. The proof is left out, and a small residual decides
+/// alone, for an eigenvalue below 1.25e-10 lambda_max, whose shift rounding would swallow. Tier 3: dense,
+/// n <= 3000, O(n^3).
 class ConditionEstimator {
  public:
   ConditionEstimator();

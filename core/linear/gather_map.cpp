@@ -58,9 +58,9 @@ void GatherMap::build(const Stencils& stencils, int n_vertices) {
 }
 
 void GatherMap::sort_contributions(int n_vertices) {
-  // Every ordered pair (a, b) of local vertices with vertex[a] >= vertex[b] is one lower contribution. A
-  // vertex that occurs twice gives both orders to its diagonal block, as the sum of the local Hessian
-  // demands.
+  // Every ordered pair (a, b) of local vertices with vertex[a] >= vertex[b] is one lower
+  // contribution. A vertex that occurs twice gives both orders to its diagonal block, as the sum of
+  // the local Hessian demands.
   const auto for_each_pair = [this](const auto& f) {
     for (std::size_t e = 0, n = n_elements(), w = at(width_); e < n; ++e) {
       const int* v = vertices_.data() + e * w;

@@ -12,8 +12,8 @@ namespace bb {
 /// Source: Meijerink, van der Vorst 1977; shift: Manteuffel 1980, sequence after Lin, More 1999.
 class Ic0 final : public Preconditioner {
  public:
-  /// @return ok | matrix_indefinite (a diagonal entry <= 0) | preconditioner_indefinite (all shifts broke
-  /// down)
+  /// @return ok | matrix_indefinite (a diagonal entry <= 0) | preconditioner_indefinite (all
+  /// shifts broke down)
   LinearStatus setup(const ReducedSystem& system, const SymmetricProduct& rows) override;
   void apply(const VecXd& r, VecXd& z) const override;
   int shifts() const override { return shifts_; }

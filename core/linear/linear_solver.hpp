@@ -1,5 +1,5 @@
-// A linear solver of the Newton step: A x = b, A symmetric positive definite. Breakdown is a status with its
-// cause.
+// A linear solver of the Newton step: A x = b, A symmetric positive definite. Breakdown is a status
+// with its cause.
 #pragma once
 
 #include <memory>
@@ -48,8 +48,8 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
-  /// x is resized to b. Analysis is reused while pattern_id stays. Never silently falls back to another
-  /// method.
+  /// x is resized to b. Analysis is reused while pattern_id stays. Never silently falls back
+  /// to another method.
   virtual LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) = 0;
 };
 

@@ -1,5 +1,5 @@
-// Preconditioned conjugate gradients from x = 0. Every way to fail has its own status; the true residual
-// decides.
+// Preconditioned conjugate gradients from x = 0. Every way to fail has its own status; the
+// true residual decides.
 #include <chrono>
 #include <cmath>
 #include <limits>
@@ -110,8 +110,8 @@ LinearStatus Pcg::iterate(const VecXd& b, VecXd& x, double b_norm, LinearReport&
     if (end == End::non_finite || !std::isfinite(residual)) return LinearStatus::non_finite;
     if (residual <= target) return LinearStatus::ok;
     if (end == End::cap) return LinearStatus::iteration_cap;
-    // The recurrence claims more than the solution holds. Start again from the true residual while that
-    // helps.
+    // The recurrence claims more than the solution holds. Start again from the true residual
+    // while that helps.
     if (end == End::truncated || residual > 0.5 * last_true) return LinearStatus::tolerance_below_rounding;
     last_true = residual;
     r_ = ap_;

@@ -1,5 +1,5 @@
-// The one host-device macro. Element math is compiled by the C++ and by the CUDA compiler from the same
-// source.
+// The one host-device macro. Element math is compiled by the C++ and by the CUDA compiler from
+// the same source.
 #pragma once
 
 #ifdef __CUDACC__

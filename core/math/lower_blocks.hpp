@@ -16,8 +16,8 @@ constexpr std::size_t lower_block(std::size_t width, std::size_t a, std::size_t 
   return b * (2 * width - b + 1) / 2 + (a - b);
 }
 
-/// The lower blocks of the 3 width x 3 width matrix m, entry by entry through `number`, written to blocks
-/// [n_lower_numbers(width)].
+/// The lower blocks of the 3 width x 3 width matrix m, entry by entry through `number`, written
+/// to blocks [n_lower_numbers(width)].
 template <class Matrix, class Number = std::identity>
 void store_lower_blocks(int width, const Matrix& m, double* blocks, const Number& number = {}) {
   for (int b = 0; b < width; ++b) {

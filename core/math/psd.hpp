@@ -9,8 +9,8 @@
 
 namespace bb {
 
-/// True when Cholesky's pivots of the lower triangle of A are all positive: then no eigenvalue is below
-/// rounding.
+/// True when Cholesky's pivots of the lower triangle of A are all positive: then no eigenvalue
+/// is below rounding.
 template <class T, int N>
 BB_HD inline MaskOf<T> has_positive_pivots(const Mat<T, N, N>& A) {
   using std::sqrt;

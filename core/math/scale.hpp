@@ -9,8 +9,8 @@
 
 namespace bb {
 
-/// The power of two in (m/2, m] for a finite m > 0, 1 for 0; never so small that its inverse overflows.
-/// Host-device.
+/// The power of two in (m/2, m] for a finite m > 0, 1 for 0; never so small that its
+/// inverse overflows. Host-device.
 template <class T>
 BB_HD inline T power_of_two_below(T m) {
   using std::frexp, std::ldexp;

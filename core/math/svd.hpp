@@ -121,9 +121,9 @@ BB_HD inline Svd32<T> svd_3x2(const Mat<T, 3, 2>& F) {
 }
 
 /// Rotation variant: det U = det V = 1, sigma_0 >= sigma_1 >= |sigma_2|, the sign of det F on sigma_2.
-/// Singular values to a few eps of sigma_0, better when F is a scaled orthogonal basis; factors orthonormal
-/// for every finite F, zero and rank 1 included. Errors: none; a non-finite F gives non-finite factors.
-/// Host-device.
+/// Singular values to a few eps of sigma_0, better when F is a scaled orthogonal basis; factors
+/// orthonormal for every finite F, zero and rank 1 included. Errors: none; a non-finite F gives
+/// non-finite factors. Host-device.
 template <class T>
 BB_HD inline Svd33<T> svd_3x3(const Mat<T, 3, 3>& F) {
   const T scale = power_of_two_scale(F);

@@ -14,8 +14,8 @@ namespace bb {
 ///   become lone segments. STL corners with equal coordinates become one vertex. Normals, colours, texture
 ///   coordinates, groups and unknown PLY elements are read past.
 /// @return vertices in file units, taken as m
-/// Errors: ConfigError naming file and line (text) or element and number (binary), at most 20 at once:
-/// missing file,
+/// Errors: ConfigError naming file and line (text) or element and number (binary), at most 20 at
+/// once: missing file,
 ///   unknown extension, malformed or truncated content, content behind the mesh, a header that announces more
 ///   than the file holds, non-finite number, coordinate beyond max_coordinate, index out of range, degenerate
 ///   face (repeated index, zero area), repeated face or segment, no vertex; no regular file, or one larger

@@ -1,5 +1,5 @@
-// PLY bodies: one reader of values for text and one for bytes behind the same loop over elements and
-// properties.
+// PLY bodies: one reader of values for text and one for bytes behind the same loop over
+// elements and properties.
 #include <bit>
 #include <cstring>
 

@@ -1,5 +1,5 @@
-// STL, ascii and binary. It has no indices: corners with equal coordinates become one vertex, nothing else
-// does.
+// STL, ascii and binary. It has no indices: corners with equal coordinates become one vertex,
+// nothing else does.
 #include <bit>
 #include <cstring>
 #include <map>
@@ -61,8 +61,8 @@ void parse_ascii(const std::string& bytes, RawMesh& mesh) {
   if (in_facet || !ended) scanner.fail("the end of the file", "endfacet and endsolid");
 }
 
-/// 80 bytes of comment, a 32-bit count, then 50 bytes a triangle: normal, three corners, 16 bits;
-/// little-endian.
+/// 80 bytes of comment, a 32-bit count, then 50 bytes a triangle: normal, three corners,
+/// 16 bits; little-endian.
 constexpr std::size_t header_bytes = 84, triangle_bytes = 50;
 
 template <class T>

@@ -1,5 +1,5 @@
-// Lines and words of a text file, with line numbers and numbers that say what is wrong with them. Private to
-// core/mesh.
+// Lines and words of a text file, with line numbers and numbers that say what is wrong with them.
+// Private to core/mesh.
 #pragma once
 
 #include <fmt/format.h>
@@ -19,8 +19,8 @@ class TextScanner {
   TextScanner(std::string_view text, std::string name, long long first_line = 1)
       : text_(text), name_(std::move(name)), next_line_(first_line) {}
 
-  /// Splits the next line into words (blanks and tabs; a carriage return ends it). False at the end of the
-  /// text.
+  /// Splits the next line into words (blanks and tabs; a carriage return ends it). False at the end
+  /// of the text.
   bool next_line() {
     if (position_ >= text_.size()) return false;
     std::size_t end = text_.find('\n', position_);

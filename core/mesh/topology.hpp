@@ -12,8 +12,8 @@ namespace bb {
 /// Every edge of a triangle and every segment once, as (smaller, larger) index, sorted. Cost O(n log n).
 std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh);
 
-/// Edges of exactly one triangle, in the direction that the triangle runs through them, sorted by (smaller,
-/// larger).
+/// Edges of exactly one triangle, in the direction that the triangle runs through them, sorted
+/// by (smaller, larger).
 std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3>> triangles);
 
 /// e0 e1 v0 v1 of every edge with exactly two triangles: triangle 0 runs e0 -> e1 and has v0 opposite,

@@ -70,8 +70,8 @@ class AccumulatedToi final : public StepSolver {
     return report.alpha;
   }
 
-  // Bounds `extension` times the motion and takes that fraction of the motion itself, which backs off from
-  // contact.
+  // Bounds `extension` times the motion and takes that fraction of the motion itself, which backs
+  // off from contact.
   double feasible_step(NewtonSystem& system, IterationReport& report) {
     x_before_ = system.x();
     dx_ *= extension;

@@ -19,8 +19,8 @@ class Sum {
   double sum_ = 0, carry_ = 0;
 };
 
-/// Calls f(term, its part) for every part of every term in the order of the sums; n(i): how many parts term i
-/// has.
+/// Calls f(term, its part) for every part of every term in the order of the sums; n(i): how many parts
+/// term i has.
 template <class Count, class F>
 void for_each_part(const TermList& terms, const Count& n, const F& f) {
   std::vector<std::size_t> on_vertices, others;

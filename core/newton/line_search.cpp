@@ -62,8 +62,8 @@ class LineSearch final : public StepSolver {
   }
 
  private:
-  // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its motion does
-  // work.
+  // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its
+  // motion does work.
   bool search(NewtonSystem& system, IterationReport& report, bool energy_test) {
     x_before_ = system.x();
     move(system, 1.0);

@@ -1,6 +1,6 @@
-// E as a sum of terms at one iterate and one trial state: what a step solver calls, and what is read of it.
-// It knows no term by name; the step solvers (line_search.cpp, accumulated_toi.cpp) hold the order of the
-// calls.
+// E as a sum of terms at one iterate and one trial state: what a step solver calls, and what is read of
+// it. It knows no term by name; the step solvers (line_search.cpp, accumulated_toi.cpp) hold the order
+// of the calls.
 #pragma once
 
 #include <cstdint>
@@ -40,15 +40,15 @@ class NewtonSystem {
   /// Adds eps I to the assembled matrix, eps = max(relative trace / n, absolute); returns eps. What observers
   /// saw before is without it.
   double add_tikhonov(double relative, double absolute);
-  /// Newton direction: A dx = -(g + lifted prescribed motion). target: [3 x n], read at prescribed vertices
-  /// only.
+  /// Newton direction: A dx = -(g + lifted prescribed motion). target: [3 x n], read at
+  /// prescribed vertices only.
   LinearReport solve(const Positions& target, Positions& dx);
 
   // --- the step along dx
   /// Prepares bound() and trials on the way to x1 = x() + dx.
   void prepare(const Positions& x1, const Positions& dx);
-  /// Largest feasible fraction of that way, the smallest that any term allows; each says its own in the
-  /// report.
+  /// Largest feasible fraction of that way, the smallest that any term allows; each says its own
+  /// in the report.
   double bound(const Positions& x1, const Positions& dx, IterationReport& report);
   /// What held the last bound(); empty where nothing did.
   std::string describe_bound() const { return holder_ ? holder_->describe_bound() : std::string(); }

@@ -1,5 +1,5 @@
-// A run: steps one after the other, each by the step solver, with the integrator's prediction and velocity
-// update.
+// A run: steps one after the other, each by the step solver, with the integrator's prediction
+// and velocity update.
 #pragma once
 
 #include <memory>
@@ -12,8 +12,8 @@ namespace bb {
 
 class Simulation {
  public:
-  /// scene and method must outlive the simulation. plan: of both. dt in s; n_steps gives the load steps of
-  /// quasi_static.
+  /// scene and method must outlive the simulation. plan: of both. dt in s; n_steps gives the load
+  /// steps of quasi_static.
   Simulation(const Scene& scene, Method& method, const Plan& plan, double dt, int n_steps);
   /// With the plan of scene and method alone.
   Simulation(const Scene& scene, Method& method, double dt, int n_steps);

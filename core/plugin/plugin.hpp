@@ -26,11 +26,11 @@ struct Plugin {
   std::vector<IntegratorEntry> integrators;
 };
 
-/// Opens the library, in a child process first; it stays open until the process ends. Runs the plugin's code.
-/// Errors: ConfigError at the file: no regular file, not a whole or not a loadable library, one that crashes,
-/// exits or hangs while it is loaded, no symbol barrierbench_plugin, another abi_version; and all entries at
-/// once that have no snake_case name or lack one of their calls, a NULL array, a flag or a smoothness out of
-/// range.
+/// Opens the library, in a child process first; it stays open until the process ends. Runs the plugin's
+/// code. Errors: ConfigError at the file: no regular file, not a whole or not a loadable library, one that
+/// crashes, exits or hangs while it is loaded, no symbol barrierbench_plugin, another abi_version; and all
+/// entries at once that have no snake_case name or lack one of their calls, a NULL array, a flag or a
+/// smoothness out of range.
 Plugin load_plugin(const std::string& file);
 
 }  // namespace bb

@@ -1,5 +1,5 @@
-// What the configuration and the build baked into this binary; build_info.cpp is generated
-// (build_info.cmake).
+// What the configuration and the build baked into this binary; build_info.cpp
+// is generated (build_info.cmake).
 #pragma once
 
 namespace bb {

@@ -73,8 +73,8 @@ inline double now_s() {
   return std::chrono::duration<double>(Clock::now().time_since_epoch()).count();
 }
 
-/// Charges every moment to one phase. Not thread-safe: one clock a simulation. Cost of a call: that of
-/// now_s().
+/// Charges every moment to one phase. Not thread-safe: one clock a simulation. Cost of a call:
+/// that of now_s().
 class PhaseClock {
  public:
   /// Sets all phases to zero and charges `phase` from now on.

@@ -1,5 +1,5 @@
-// JSON -> RunRecord, by the lists of fields. Unknown fields are left out; every other fault is named with its
-// place.
+// JSON -> RunRecord, by the lists of fields. Unknown fields are left out; every other fault is named
+// with its place.
 #include <fmt/format.h>
 
 #include <concepts>

@@ -2,13 +2,13 @@
 // it holds one TraceRow a Newton iteration.
 #pragma once
 
-#include <array>
 #include <cstdint>
 #include <map>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "core/record/made_by.hpp"
 #include "core/record/outcome.hpp"
 #include "core/record/step_record.hpp"
 
@@ -20,7 +20,6 @@ inline constexpr const char* run_schema_name = "barrierbench.run";
 inline constexpr const char* run_schema_version = "3.0.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
-using TextMap = std::map<std::string, std::string>;
 using CountMap = std::map<std::string, int>;
 using SampleMap = std::map<std::string, std::vector<double>>;
 
@@ -99,57 +98,6 @@ struct SceneSize {
   BB_FIELD(std::size_t, obstacles, "analytic surfaces") = 0;
   BB_FIELD(double, extent_m, "largest side of the start box") = 0;
   BB_FIELD(TextMap, mesh_sha256, "mesh file, relative to the folder of this record -> sha256");
-  BB_RECORD_END;
-};
-
-struct PluginFile {
-  BB_RECORD(PluginFile, "a plugin that was loaded");
-  BB_FIELD(std::string, name, "that it gives itself");
-  BB_FIELD(std::string, file, "relative to the folder of this record");
-  BB_FIELD(std::string, sha256, "of the file", "^[0-9a-f]{64}$");
-  BB_RECORD_END;
-};
-
-struct BlasRecord {
-  BB_RECORD(BlasRecord, "the BLAS behind the factorisations: another kernel gives other bits");
-  BB_FIELD(std::string, kernel, "of OpenBLAS, the one that ran: Haswell, SkylakeX");
-  BB_FIELD(std::string, requested, "OPENBLAS_CORETYPE; native: OpenBLAS chose by the processor");
-  BB_FIELD(std::string, config, "openblas_get_config()");
-  BB_FIELD(std::string, library, "file that holds dgemm");
-  BB_FIELD(int, threads, "of BLAS") = 1;
-  BB_RECORD_END;
-};
-
-struct Provenance {
-  BB_RECORD(Provenance, "the program that made the record");
-  BB_FIELD(std::string, tool_version, "of barrierbench");
-  BB_FIELD(std::string, git_commit, "of the tree that was built");
-  BB_FIELD(bool, git_dirty, "whether files differed from it") = false;
-  BB_FIELD(std::string, compiler, "name and version");
-  BB_FIELD(std::string, flags, "that decide the generated code");
-  BB_FIELD(std::string, build_type, "of CMake");
-  BB_FIELD(bool, fast_math, "whether the compiler could reorder sums") = false;
-  BB_FIELD(std::string, fp_contract, "whether it fused multiply and add");
-  BB_FIELD(TextMap, libraries, "name -> version");
-  BB_FIELD(std::vector<PluginFile>, plugins, "every plugin that was loaded");
-  BB_FIELD(std::vector<std::string>, argv, "the command");
-  BB_FIELD(TextMap, env, "variables of thread counts and the like");
-  BB_FIELD(int, threads, "of the program") = 1;
-  BB_FIELD(BlasRecord, blas, "linear algebra of dense blocks");
-  BB_RECORD_END;
-};
-
-struct Machine {
-  BB_RECORD(Machine, "where it ran");
-  BB_FIELD(std::string, cpu_model, "of /proc/cpuinfo");
-  BB_FIELD(int, cores, "online") = 0;
-  BB_FIELD(std::string, governor, "of the clock; empty: unknown");
-  using Load = std::array<double, 3>;
-  BB_FIELD(Load, load_avg, "of 1, 5 and 15 minutes at the start") = {0, 0, 0};
-  BB_FIELD(std::uint64_t, mem_bytes, "physical memory") = 0;
-  BB_FIELD(std::string, os, "of /etc/os-release");
-  BB_FIELD(std::string, kernel, "of the system");
-  BB_FIELD(bool, virtualised, "whether a hypervisor is below") = false;
   BB_RECORD_END;
 };
 

@@ -72,8 +72,8 @@ Json json_of(const T& v) {
   return j;
 }
 
-/// Throws std::logic_error for a number that is not finite: the JSON library would write null without a
-/// reason.
+/// Throws std::logic_error for a number that is not finite: the JSON library would write null
+/// without a reason.
 void require_finite(const Json& j) {
   if (j.is_number_float() && !std::isfinite(j.get<double>())) {
     throw std::logic_error("record: a non-finite number without a status");

@@ -25,8 +25,8 @@ struct RecordError : std::runtime_error {
 void make_folder(const std::filesystem::path& folder);
 
 /// run.json and one trace line as text; non-finite numbers are null plus "<name>_status".
-/// Errors: std::invalid_argument when config is not JSON; std::logic_error for a bare number that is not
-/// finite.
+/// Errors: std::invalid_argument when config is not JSON; std::logic_error for a bare number that
+/// is not finite.
 std::string to_json(const RunRecord& record);
 std::string to_json(const TraceRow& row);
 

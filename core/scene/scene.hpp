@@ -24,8 +24,8 @@ struct RigidMotion {
   bool is_static() const { return velocity.isZero(0) && angular_velocity == 0; }
 };
 
-/// A vertex whose position is prescribed exactly (static mesh, driven mesh, pin). Also the names that errors
-/// use.
+/// A vertex whose position is prescribed exactly (static mesh, driven mesh, pin). Also the names
+/// that errors use.
 struct Pin {
   int vertex = 0;
   int motion = 0;  // index into Scene::motions
@@ -36,8 +36,8 @@ struct Body {
   int first_vertex = 0, n_vertices = 0;
 };
 
-/// Membrane elements of one model, of all bodies that have it. Lame parameters already multiplied by the
-/// thickness, N/m.
+/// Membrane elements of one model, of all bodies that have it. Lame parameters already multiplied by
+/// the thickness, N/m.
 struct MembranePart {
   std::string model;
   std::vector<std::array<int, 3>> triangles;

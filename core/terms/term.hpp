@@ -34,8 +34,8 @@ struct TermContext {
   PhaseClock& clock;
 };
 
-/// Straight motion of a whole step: x0 -> x1, x1 - x0 = dx up to rounding; x1 is exact at prescribed
-/// vertices.
+/// Straight motion of a whole step: x0 -> x1, x1 - x0 = dx up to rounding; x1 is exact
+/// at prescribed vertices.
 struct Motion {
   const Positions &x0, &x1, &dx;
 };

@@ -1,5 +1,5 @@
-// Groups of terms, and sets of groups: H is the set `elastic`, a stage of the diagnosis is everything without
-// some groups.
+// Groups of terms, and sets of groups: H is the set `elastic`, a stage of the diagnosis is everything
+// without some groups.
 #pragma once
 
 namespace bb {

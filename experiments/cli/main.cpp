@@ -1,5 +1,5 @@
-// The command line: parses flags, loads plugins, turns exceptions into exit codes. No other file prints
-// errors.
+// The command line: parses flags, loads plugins, turns exceptions into exit codes. No other
+// file prints errors.
 #include <fmt/format.h>
 
 #include <CLI/CLI.hpp>

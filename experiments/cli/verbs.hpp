@@ -1,5 +1,5 @@
-// The verbs of the program: plain options in, exit code out (docs/design.md). main.cpp parses the command
-// line.
+// The verbs of the program: plain options in, exit code out (docs/design.md). main.cpp parses
+// the command line.
 #pragma once
 
 #include <string>

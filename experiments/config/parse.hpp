@@ -34,8 +34,8 @@ std::string config_id(const RunConfig& config);
 /// Errors: ConfigError (mesh files, scene checks).
 Scene build_scene(const RunConfig& config);
 
-/// The folder of presets, schema and scenes: $BARRIERBENCH_CONFIGS, else the one this program was built
-/// beside.
+/// The folder of presets, schema and scenes: $BARRIERBENCH_CONFIGS, else the one this program
+/// was built beside.
 std::string configs_folder();
 
 }  // namespace bb

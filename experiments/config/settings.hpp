@@ -43,8 +43,8 @@ void take(const nlohmann::json& value, T& out) {
   }
 }
 
-/// What stands in a resolved config; null where nothing does: an optional without value, an empty text or
-/// list, infinity.
+/// What stands in a resolved config; null where nothing does: an optional without value, an empty text
+/// or list, infinity.
 template <class T>
 nlohmann::json give(const T& value) {
   using nlohmann::json;
@@ -96,8 +96,8 @@ class Settings {
             [access](const S& from) { return give(std::invoke(access, from)); });
   }
 
-  /// An object of settings of its own. `settings` outlives this list. `or_text` says what a string in its
-  /// place names.
+  /// An object of settings of its own. `settings` outlives this list. `or_text` says what a string in
+  /// its place names.
   template <class M, class Access>
   void nest(std::string name, const Settings<M>& settings, Access access, std::string or_text = "") {
     Rule rule = settings.rule();

@@ -1,5 +1,5 @@
-// stiffness: kappa of one contact by a stiffness policy. A field that cannot touch the answer may be left
-// out.
+// stiffness: kappa of one contact by a stiffness policy. A field that cannot touch the answer may
+// be left out.
 #include "barriers/stiffness/elasticity_inclusive.hpp"
 #include "barriers/stiffness/registry.hpp"
 #include "experiments/eval/kinds.hpp"

@@ -64,8 +64,8 @@ void tier0(benchmark::State& state, const std::string& preconditioner) {
   count(state, matrix, estimate, seconds);
 }
 
-/// The factor is shared with a direct solver's: `per_factorization` includes it, so 1 is the price of the
-/// factor.
+/// The factor is shared with a direct solver's: `per_factorization` includes it, so 1 is the price
+/// of the factor.
 void tier(benchmark::State& state, int number, Scaling scaling) {
   const Matrix matrix(static_cast<int>(state.range(0)));
   ConditionEstimator estimator;

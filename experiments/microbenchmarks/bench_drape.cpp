@@ -1,6 +1,6 @@
 // One Newton iteration of the drape scene, part by part. `per_factorization` is a part's time over that of
-// one numeric factorisation of the same matrix. The goal: everything but the linear solve costs at most half
-// of one.
+// one numeric factorisation of the same matrix. The goal: everything but the linear solve costs at most
+// half of one.
 #include "core/linear/cholmod_factor.hpp"
 #include "core/terms/strain_limit.hpp"
 #include "experiments/microbenchmarks/drape_state.hpp"
@@ -73,8 +73,8 @@ void triangular_solve(benchmark::State& state) {
   measure(state, drape, [&] { factor.solve(b, x); });
 }
 
-/// Elements, contact terms, gradient and matrix at a state whose contact pattern is known, and its
-/// restriction.
+/// Elements, contact terms, gradient and matrix at a state whose contact pattern is known,
+/// and its restriction.
 void assembly(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   measure(state, drape, [&] {

@@ -1,5 +1,5 @@
-// The linear room on a generated cloth grid with contacts: assembly, factorisation, every solver with every
-// preconditioner.
+// The linear room on a generated cloth grid with contacts: assembly, factorisation, every solver
+// with every preconditioner.
 #include <memory>
 #include <vector>
 

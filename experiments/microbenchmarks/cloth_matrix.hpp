@@ -1,5 +1,5 @@
-// The Newton matrix of a cloth-like block system: a grid of triangles and hinges, folded on itself by
-// contacts.
+// The Newton matrix of a cloth-like block system: a grid of triangles and hinges, folded on
+// itself by contacts.
 #pragma once
 
 #include <memory>

@@ -5,9 +5,9 @@
 
 namespace bb::bench {
 
-/// `layers` sheets of n x n vertices and side 1 m, half a d_hat (5 mm) apart, each shifted a little in its
-/// plane and every vertex moved at random by a tenth of d_hat: all kinds of rows occur. Start positions in
-/// scene.x0.
+/// `layers` sheets of n x n vertices and side 1 m, half a d_hat (5 mm) apart, each shifted a little in
+/// its plane and every vertex moved at random by a tenth of d_hat: all kinds of rows occur. Start
+/// positions in scene.x0.
 Scene cloth_stack(int layers, int n);
 
 /// x moved at random by up to `size` (m) in every coordinate.

@@ -1,5 +1,5 @@
-// The Google Benchmark suite. All subjects of registry.inc; seeds are fixed, so two runs ask the same
-// questions.
+// The Google Benchmark suite. All subjects of registry.inc; seeds are fixed, so two runs ask
+// the same questions.
 #include <oneapi/tbb/info.h>
 
 #include "core/linear/blas_info.hpp"

@@ -1,5 +1,5 @@
-// Matching (docs/design.md): from the loads of a pilot, or from given ones, to the stiffness of contact and
-// limit.
+// Matching (docs/design.md): from the loads of a pilot, or from given ones, to the stiffness of
+// contact and limit.
 #pragma once
 
 #include "core/record/run_record.hpp"

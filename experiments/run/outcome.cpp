@@ -11,8 +11,8 @@ std::string because(const StepReport& step) { return step.detail.empty() ? "" : 
 
 double load_of(const Number& overload) { return overload.finite() ? overload.value : 0; }
 
-// No progress: because some contact or limited element carries more than its barrier can, or for another
-// reason.
+// No progress: because some contact or limited element carries more than its barrier can, or
+// for another reason.
 Verdict stalled(const StepReport& step) {
   const double contact = load_of(step.contact_overload), limit = load_of(step.limit_overload);
   const double worst = std::max(contact, limit);

@@ -40,8 +40,8 @@ BarrierFunction log_barrier();
 /// Pilots by config id, so that the formulations of a sweep share one. Not thread-safe.
 class PilotCache {
  public:
-  /// The states of all pilots that are kept take at most so many bytes; the last one is kept whatever it
-  /// takes.
+  /// The states of all pilots that are kept take at most so many bytes; the last one is kept
+  /// whatever it takes.
   explicit PilotCache(std::size_t bytes) : bytes_(bytes) {}
   /// Null when it is not known, or not any more.
   std::shared_ptr<const Pilot> find(const std::string& config_id);

@@ -149,8 +149,8 @@ void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
   if (worse(outcome, verdict.outcome) == outcome && outcome != verdict.outcome) verdict = {outcome, detail};
 }
 
-// The passes: `time` runs alone, `diagnose` and `audit` share a run, and none of their time is reported as a
-// time.
+// The passes: `time` runs alone, `diagnose` and `audit` share a run, and none of their time is reported
+// as a time.
 void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
                 const RunOptions& options, RunRecord& record, RunFiles& files) {
   PassResult timed, seen;

@@ -1,5 +1,5 @@
-// One equilateral triangle above a plane: three equal contacts under a third of the weight each, and nothing
-// else.
+// One equilateral triangle above a plane: three equal contacts under a third of the weight each,
+// and nothing else.
 #include "experiments/scenes/resting_block_1d.hpp"
 
 #include <cmath>

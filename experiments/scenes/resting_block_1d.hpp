@@ -5,9 +5,9 @@
 
 namespace bb {
 
-/// Load of each of the three contacts at rest, N: a third of the weight. All vertices hang at one height, so
-/// no element is strained and the gap d solves kappa |b'(d)| = load; each contact then has stiffness kappa
-/// b''(d).
+/// Load of each of the three contacts at rest, N: a third of the weight. All vertices hang at one
+/// height, so no element is strained and the gap d solves kappa |b'(d)| = load; each contact then has
+/// stiffness kappa b''(d).
 double resting_block_load(const ParameterMap& parameters);
 
 }  // namespace bb

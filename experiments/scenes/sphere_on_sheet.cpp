@@ -1,5 +1,5 @@
-// A hollow elastic sphere falling onto a sheet that is held along its rim: two deformable bodies of unlike
-// stiffness.
+// A hollow elastic sphere falling onto a sheet that is held along its rim: two deformable bodies
+// of unlike stiffness.
 #include <cmath>
 
 #include "core/mesh/generators.hpp"

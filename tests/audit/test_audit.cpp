@@ -1,5 +1,5 @@
-// The audit as Newton uses it, on scenes of a few triangles: states, motions, planar scenes, obstacles,
-// ledger.
+// The audit as Newton uses it, on scenes of a few triangles: states, motions, planar
+// scenes, obstacles, ledger.
 #include "core/audit/audit.hpp"
 
 #include <gtest/gtest.h>

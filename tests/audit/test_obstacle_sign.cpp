@@ -1,5 +1,5 @@
-// Sides of analytic obstacles, exactly on the surface included, and chords that leave the allowed set between
-// ends.
+// Sides of analytic obstacles, exactly on the surface included, and chords that leave the allowed
+// set between ends.
 #include "core/audit/obstacle_sign.hpp"
 
 #include <gtest/gtest.h>

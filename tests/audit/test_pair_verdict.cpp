@@ -1,5 +1,5 @@
-// Verdicts of single pairs in motion: hand cases, sliding, ulp gaps, and random motions against dense
-// sampling.
+// Verdicts of single pairs in motion: hand cases, sliding, ulp gaps, and random motions
+// against dense sampling.
 #include "core/audit/pair_verdict.hpp"
 
 #include <gtest/gtest.h>

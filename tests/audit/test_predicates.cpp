@@ -1,5 +1,5 @@
-// Signs of determinants: hand cases, extreme scales, and the filter against integers on near-degenerate
-// input.
+// Signs of determinants: hand cases, extreme scales, and the filter against integers
+// on near-degenerate input.
 #include "core/audit/predicates.hpp"
 
 #include <gtest/gtest.h>

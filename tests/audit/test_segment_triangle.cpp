@@ -1,5 +1,5 @@
-// The classes of a segment and a triangle on hand cases: general, coplanar, degenerate; invariance under
-// relabelling.
+// The classes of a segment and a triangle on hand cases: general, coplanar, degenerate;
+// invariance under relabelling.
 #include "core/audit/segment_triangle.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// Shared by the tests of this room: every registered shape on both arguments, and gaps spaced towards both
-// ends.
+// Shared by the tests of this room: every registered shape on both arguments, and gaps spaced
+// towards both ends.
 #pragma once
 
 #include <cmath>

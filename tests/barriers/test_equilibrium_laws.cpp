@@ -99,8 +99,8 @@ TEST(EquilibriumLaws, TwoStageBelowAndAboveItsJoint) {
   }
 }
 
-/// kappa = m/d^2 (mass term of the paper): d = d_hat/(1 + s), K = 4 m s (1 + s)/d_hat^2, s = sqrt(f d_hat/(2
-/// m)).
+/// kappa = m/d^2 (mass term of the paper): d = d_hat/(1 + s), K = 4 m s (1 + s)/d_hat^2, s =
+/// sqrt(f d_hat/(2 m)).
 TEST(EquilibriumLaws, CubicWithStiffnessFromMass) {
   const double mass = 1e-7;
   for (const double f : {1e-6, 1e-4, 1e-2, 1.0}) {

@@ -1,5 +1,5 @@
-// Plugins: the worked examples and a copy of a built-in work; everything else is refused with file, found,
-// allowed.
+// Plugins: the worked examples and a copy of a built-in work; everything else is refused with
+// file, found, allowed.
 #include <fmt/format.h>
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
-// A row that continues a contact on a neighbouring feature keeps its stiffness, so that B does not jump
-// there.
+// A row that continues a contact on a neighbouring feature keeps its stiffness, so that B does
+// not jump there.
 #include <gtest/gtest.h>
 
 #include <algorithm>

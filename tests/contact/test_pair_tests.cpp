@@ -8,8 +8,8 @@
 namespace bb {
 namespace {
 
-/// Random pairs of all shapes: primitives of any size, at any distance, some of them flat, far from the
-/// origin.
+/// Random pairs of all shapes: primitives of any size, at any distance, some of them flat, far
+/// from the origin.
 class Pairs {
  public:
   template <PairKind K>

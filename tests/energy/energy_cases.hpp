@@ -1,5 +1,5 @@
-// What the energy tests share: points of stacked vectors, random rotations, and the loop over the registry of
-// membrane models.
+// What the energy tests share: points of stacked vectors, random rotations, and the loop over the registry
+// of membrane models.
 #pragma once
 
 #include <random>

@@ -1,5 +1,5 @@
-// Membrane, spring and hinge batches: what they store is what the element functions give, for any thread
-// count.
+// Membrane, spring and hinge batches: what they store is what the element functions give, for
+// any thread count.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 

@@ -12,8 +12,8 @@ namespace {
 constexpr double stiffness = 0.7;
 constexpr double pi = std::numbers::pi;
 
-/// Edge along x; v0 at (a, h, 0), v1 at distance h1 turned so that the angle is `angle`; then rotated and
-/// shifted.
+/// Edge along x; v0 at (a, h, 0), v1 at distance h1 turned so that the angle is `angle`; then
+/// rotated and shifted.
 Vec<double, 12> hinge_state(double angle, double a = 0.4, double h = 0.8, double b = 0.5, double h1 = 0.6) {
   Vec<double, 12> x;
   x << 0, 0, 0, 1.2, 0, 0, a, h, 0, b, -h1 * std::cos(angle), -h1 * std::sin(angle);

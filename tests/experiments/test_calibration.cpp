@@ -1,107 +1,14 @@
-// Matching from config to stiffness: what every formulation carries of the loads that the pilot met.
-#include <gtest/gtest.h>
-#include <unistd.h>
-
+// Matching of contacts from config to stiffness: what every formulation carries of the loads that
+// the pilot met.
 #include <algorithm>
 #include <cmath>
-#include <filesystem>
-#include <memory>
 
-#include "barriers/shapes/registry.hpp"
-#include "experiments/config/parse.hpp"
-#include "experiments/run/calibration.hpp"
+#include "tests/experiments/calibrated.hpp"
 
 namespace bb {
 namespace {
 
-/// The block of 0.3 kg on its three corners, already in contact: every number can be written down.
-constexpr const char* block = R"({"schema": "barrierbench.config/1", "scene": {"name": "resting_block_1d"},
-  "formulation": {"name": "cubic_dynamic", "d_hat_m": 0.01}, "matching": {"rule": "equal_force"},
-  "time": {"steps": 20}})";
-
-/// A cloth whose own d_hat is not the formulation's, dropped on a plane that it meets after some steps.
-constexpr const char* falling = R"({"schema": "barrierbench.config/1",
-  "scene": {"bodies": [{"name": "cloth", "mesh": {"generator": "grid", "n_x": 3, "n_y": 3}, "d_hat_m": 0.004,
-                        "transform": {"translate_m": [0, 0, 0.03]}}],
-            "obstacles": [{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}]},
-  "formulation": {"name": "cubic", "d_hat_m": 0.01}, "matching": {"rule": "equal_force"},
-  "time": {"dt_s": 0.01, "steps": 20}})";
-
-/// Two cloths without stiffness against the normal fall on a plane: the heavy one has the largest load, the
-/// light and fast one the largest load for its mass.
-constexpr const char* two_masses = R"({"schema": "barrierbench.config/1",
-  "scene": {"bodies": [{"name": "heavy", "mesh": {"generator": "grid", "n_x": 2, "n_y": 2}, "material": {"density_kg_per_m2": 2},
-                        "velocity_m_per_s": [0, 0, -0.1], "transform": {"translate_m": [0, 0, 0.015]}},
-                       {"name": "light", "mesh": {"generator": "grid", "n_x": 2, "n_y": 2}, "material": {"density_kg_per_m2": 0.2},
-                        "velocity_m_per_s": [0, 0, -2], "transform": {"translate_m": [3, 0, 0.0115]}}],
-            "obstacles": [{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}]},
-  "formulation": {"name": "cubic_dynamic_lagged", "d_hat_m": 0.01,
-                  "stiffness_policy": {"name": "elasticity_inclusive", "elastic_term": false, "refresh": "per_step"}},
-  "matching": {"rule": "equal_force"}, "time": {"dt_s": 0.01, "steps": 12}})";
-
-/// A cloth that hangs from two corners, its limit stiff by elasticity.
-constexpr const char* hanging = R"({"schema": "barrierbench.config/1", "scene": {"name": "hang", "n": 4},
-  "formulation": "cubic_dynamic", "matching": {"rule": "equal_force"}, "strain_limit": {"limit": 0.01},
-  "time": {"steps": 25}})";
-
-RunConfig parsed(const char* text, const std::vector<std::string>& overrides) {
-  return parse_config(text, "test", ".", overrides);
-}
-
-struct Calibrated {
-  RunConfig config;
-  Scene scene;
-  MatchingRecord record;
-  Calibration calibration;
-};
-
-Calibrated calibrated(const char* text, const std::vector<std::string>& overrides = {}) {
-  Calibrated out{parsed(text, overrides), {}, {}, {}};
-  out.scene = build_scene(out.config);
-  out.calibration = calibrate(out.config, out.scene, {}, out.record);
-  return out;
-}
-
-double slope(const char* shape, double d, double d_hat) {
-  return -BarrierFunction{require_shape(shape), Argument::gap}.eval(d, d_hat).db;
-}
-
-RunRecord run(const RunConfig& config) {
-  RunOptions options;
-  const auto* test = ::testing::UnitTest::GetInstance()->current_test_info();
-  options.folder = std::filesystem::temp_directory_path() /
-                   ("barrierbench_run_" + std::string(test->name()) + "_" + std::to_string(::getpid()));
-  RunRecord record = run_config(config, options);
-  std::filesystem::remove_all(options.folder);
-  return record;
-}
-
-/// A load of the pilot and the vertex that carried it, on the plane z = 0.
-struct VertexLoad {
-  double load, mass, d_hat;  // N, kg, m
-  int body;
-  std::size_t step;
-};
-
-/// Every load over the converged step ends of the pilot.
-std::vector<VertexLoad> loads_on_plane(const Calibrated& c) {
-  const std::shared_ptr<const Pilot> kept = run_pilot(c.config, c.scene, {});
-  const Pilot& pilot = *kept;
-  std::vector<VertexLoad> out;
-  for (std::size_t step = 1; step < pilot.x.size(); ++step) {
-    for (int v = 0; v < c.scene.n_vertices(); ++v) {
-      const auto i = static_cast<std::size_t>(v);
-      const double d = pilot.x[step](2, v), d_hat = c.scene.d_hat[i];
-      if (d >= d_hat) continue;
-      out.push_back({*pilot.stiffness.kappa * -log_barrier().eval(d, d_hat).db, c.scene.mass[i], d_hat,
-                     c.scene.body[i], step - 1});
-    }
-  }
-  return out;
-}
-
-/// The smallest that a policy kappa = m/d^2 can be inside the support: at d_hat.
-double softest(double mass, double d_hat) { return mass / (d_hat * d_hat); }
+using namespace test;
 
 TEST(Calibration, EveryContactOfThePilotIsCarriedAtTheta) {
   const Calibrated c = calibrated(two_masses);
@@ -234,115 +141,6 @@ TEST(Calibration, OneKappaCarriesTheLoadsOfEveryDHat) {
   EXPECT_LT(c.record.load_N.value, largest);  // else the test shows nothing
 }
 
-/// The limit of the pinned sheet: at its width, and frozen for a step at the wider gap that a slack element
-/// had at the step's start, its own stiffness times s carries what the pilot carried.
-TEST(Calibration, ADynamicLimitCarriesThePilotsLoads) {
-  const std::string text =
-      R"({"schema": "barrierbench.config/1", "scene": {"name": "drape2d", "variant": "pinned"},
-    "formulation": "cubic_dynamic", "strain_limit": {"shape": "cubic"}, "matching": {"rule": "equal_force"}})";
-  double scale[2];
-  for (const bool lagged : {false, true}) {
-    std::vector<std::string> changes;
-    if (lagged) changes = {"/formulation=cubic_dynamic_lagged"};
-    const Calibrated c = calibrated(text.c_str(), changes);
-    EXPECT_EQ(c.record.limit_load_source, "pilot");
-    EXPECT_GT(c.record.elements_considered, 100);
-    EXPECT_NE(c.record.limit_element.find("sheet["), std::string::npos) << c.record.limit_element;
-    EXPECT_GE(c.record.limit_step.value, 0);
-    EXPECT_EQ(c.record.limit_scale.value, c.calibration.limit_scale);
-    EXPECT_EQ(make_method(c.config, c.calibration).limit_stiffness.multiplier, c.calibration.limit_scale);
-    scale[lagged] = c.calibration.limit_scale;
-    const RunRecord record = run(c.config);
-    EXPECT_EQ(record.status.outcome, Outcome::ok) << record.status.detail;
-    EXPECT_GT(record.summary.limit_load_max_N_per_m.value, 0);
-  }
-  EXPECT_GT(scale[1], 1.2 * scale[0]);  // 1.37: asked at the width alone, frozen or not makes no difference
-}
-
-/// kappa_e = w^T M w/(c h^2) by hand for every element that the pilot stretched into its limit, and the load
-/// that it carried there: s makes the neediest one as stiff as the fixed limit matched to its load.
-TEST(Calibration, TheScaleOfADynamicLimitIsThatOfItsNeediestElement) {
-  const Calibrated c = calibrated(
-      R"({"schema": "barrierbench.config/1", "scene": {"name": "drape2d", "variant": "pinned"},
-    "formulation": "cubic", "strain_limit": {"shape": "cubic", "stiffness_policy":
-      {"name": "elasticity_inclusive", "mass_term": "inertia", "elastic_term": false}},
-    "matching": {"rule": "equal_force"}, "time": {"steps": 30}})");
-  const std::shared_ptr<const Pilot> pilot = run_pilot(c.config, c.scene, {});
-  const double h = c.config.time.dt;
-  double needed = 0, smallest_area = 1, largest_area = 0;
-  long long active = 0;
-  for (std::size_t step = 0; step + 1 < pilot->x.size(); ++step) {
-    for (std::size_t e = 0; e < c.scene.limit.triangles.size(); ++e) {
-      const auto& t = c.scene.limit.triangles[e];
-      Eigen::Matrix2d rest, now;
-      Eigen::Matrix<double, 2, 3> start;
-      for (int k = 0; k < 3; ++k) start.col(k) = pilot->x[step].col(t[static_cast<std::size_t>(k)]).head<2>();
-      for (int k = 0; k < 2; ++k) {
-        rest.col(k) =
-            (c.scene.rest.col(t[static_cast<std::size_t>(k) + 1]) - c.scene.rest.col(t[0])).head<2>();
-        now.col(k) =
-            (pilot->x[step + 1].col(t[static_cast<std::size_t>(k) + 1]) - pilot->x[step + 1].col(t[0]))
-                .head<2>();
-      }
-      const double width = c.scene.limit.width[e], area = std::abs(rest.determinant()) / 2;
-      const double sigma = Eigen::JacobiSVD<Eigen::Matrix2d>(now * rest.inverse()).singularValues()[0];
-      const double y = width - (sigma - 1 - c.scene.limit.onset[e]);
-      if (!(y < width)) continue;
-      ++active;
-      smallest_area = std::min(smallest_area, area), largest_area = std::max(largest_area, area);
-      double kappa = 0;
-      for (int k = 0; k < 3; ++k) {
-        kappa += c.scene.mass[static_cast<std::size_t>(t[static_cast<std::size_t>(k)])] *
-                 (start.col(k) - start.rowwise().mean()).squaredNorm() / (h * h);
-      }
-      const double load = *pilot->stiffness.k_s * -log_barrier().eval(y, width).db;  // N/m
-      needed = std::max(needed, load * area / (kappa * slope("cubic", 0.1 * width, width)));
-    }
-  }
-  EXPECT_GT(active, 100);
-  EXPECT_EQ(c.record.elements_considered, active);
-  EXPECT_LT(largest_area, 0.5);  // else a forgotten area shows nothing
-  EXPECT_NEAR(c.calibration.limit_scale / needed, 1, 1e-6);
-}
-
-TEST(PilotCache, KeepsWhatWasAskedForLastWithinItsBytes) {
-  const auto pilot = [](const char* id, int states) {
-    Pilot out;
-    out.config_id = id;
-    out.x.assign(static_cast<std::size_t>(states), Positions::Zero(3, 10));  // 240 bytes each
-    return out;
-  };
-  PilotCache cache(1000);
-  cache.keep(pilot("a", 2));
-  cache.keep(pilot("b", 2));
-  ASSERT_NE(cache.find("a"), nullptr);
-  const auto held = cache.find("b");
-  EXPECT_NE(cache.find("a"), nullptr);
-  cache.keep(pilot("c", 1));  // 1200 bytes with both: b was not asked for longest
-  EXPECT_EQ(cache.find("b"), nullptr);
-  EXPECT_NE(cache.find("a"), nullptr);
-  EXPECT_EQ(held->config_id, "b");  // whoever has it keeps it
-  EXPECT_EQ(cache.keep(pilot("large", 100))->config_id, "large");
-  EXPECT_NE(cache.find("large"), nullptr);
-  EXPECT_EQ(cache.find("a"), nullptr);
-}
-
-TEST(Calibration, ALimitThatWasNeverActiveStaysAsGiven) {
-  const Calibrated c = calibrated(block, {"/strain_limit/limit=0.5"});
-  EXPECT_TRUE(c.calibration.limited);
-  EXPECT_EQ(c.calibration.limit_scale, 1);
-  EXPECT_FALSE(c.record.limit_scale.finite());
-  EXPECT_EQ(c.record.limit_load_source, "static_weight");
-  EXPECT_NE(c.record.pilot_note.find("the limit's policy stays as given"), std::string::npos)
-      << c.record.pilot_note;
-}
-
-TEST(Calibration, TheRecordSaysWhereTheLimitsLoadComesFrom) {
-  EXPECT_EQ(calibrated(block).record.limit_load_source, "none");
-  EXPECT_EQ(calibrated(hanging).record.limit_load_source, "pilot");
-  EXPECT_EQ(calibrated(hanging, {"/matching/limit_load_N_per_m=2"}).record.limit_load_source, "given");
-}
-
 /// Without a pilot's contact nobody can be asked, whatever the load.
 TEST(Calibration, TheRecordSaysWhenAPolicyStaysAsGiven) {
   const std::string dynamic = R"(/formulation/stiffness_policy={"name": "elasticity_inclusive"})";
@@ -356,13 +154,6 @@ TEST(Calibration, TheRecordSaysWhenAPolicyStaysAsGiven) {
   }
   EXPECT_EQ(calibrated(falling, {dynamic}).record.pilot_note, "");
   EXPECT_EQ(calibrated(falling, {"/time/steps=2"}).record.pilot_note, "");  // a fixed kappa from the weight
-}
-
-TEST(Calibration, ALimitOnNothingNeedsNoStiffness) {
-  const RunConfig config =
-      parsed(falling, {"/strain_limit/limit=0.1", "/scene/bodies/0/limited=false", "/time/steps=8"});
-  const RunRecord record = run(config);
-  EXPECT_EQ(record.status.outcome, Outcome::ok) << record.status.detail;
 }
 
 TEST(Calibration, AnAdaptiveKappaStartsAtTheMatchedValue) {

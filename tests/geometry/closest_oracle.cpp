@@ -9,8 +9,8 @@ namespace bb::test {
 
 namespace {
 
-/// Minimises |sum w x| over one face of each primitive (bit i of `faces`: point i takes part), without
-/// bounds.
+/// Minimises |sum w x| over one face of each primitive (bit i of `faces`: point i takes
+/// part), without bounds.
 OracleClosest<4> minimise_over(const Points<Long, 4>& x, int n, int split, unsigned faces) {
   int origin[2] = {-1, -1};  // of the first and the second primitive
   int moved[4], base[4], n_free = 0;

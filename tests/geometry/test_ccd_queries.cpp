@@ -1,6 +1,6 @@
 // ACCD against the hand-made queries of Wang et al. 2021 (exact rational coordinates with ground truth): a
-// false negative is a tunnelled pair and forbidden; false positives (stopped below the ulp floor) are counted
-// and shown.
+// false negative is a tunnelled pair and forbidden; false positives (stopped below the ulp floor) are
+// counted and shown.
 #include <gmpxx.h>
 #include <gtest/gtest.h>
 

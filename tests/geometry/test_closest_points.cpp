@@ -1,5 +1,5 @@
-// Closest points of all kinds of pairs against enumeration in long double: regions, their borders, degenerate
-// shapes, invariance.
+// Closest points of all kinds of pairs against enumeration in long double: regions, their borders,
+// degenerate shapes, invariance.
 #include "core/geometry/closest_points.hpp"
 
 #include <gtest/gtest.h>

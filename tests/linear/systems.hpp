@@ -23,8 +23,8 @@ Eigen::SparseMatrix<double> sparse_with_spectrum(const VecXd& spectrum, unsigned
 VecXd spectrum(const std::string& kind, int n, double cond, unsigned seed = 5);
 const std::vector<std::string>& spectrum_kinds();
 
-/// A well-conditioned symmetric positive definite sparse matrix: a grid of m x m vertices with 3 unknowns
-/// each.
+/// A well-conditioned symmetric positive definite sparse matrix: a grid of m x m vertices with
+/// 3 unknowns each.
 ReducedSystem grid_system(int m, double diagonal, std::uint64_t id = 0);
 
 VecXd random_vector(Eigen::Index n, unsigned seed);

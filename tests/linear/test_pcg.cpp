@@ -1,5 +1,5 @@
-// Conjugate gradients: preconditioners against a dense solution, every cause of failure provoked, Ritz
-// values.
+// Conjugate gradients: preconditioners against a dense solution, every cause of failure
+// provoked, Ritz values.
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 

@@ -1,5 +1,5 @@
-// Eigenvalues, by Jacobi (up to 4) and by QL, against known spectra, for float and double and all sizes in
-// use.
+// Eigenvalues, by Jacobi (up to 4) and by QL, against known spectra, for float and double and all
+// sizes in use.
 #include "core/math/sym_eigen.hpp"
 
 #include <gtest/gtest.h>

@@ -1,5 +1,5 @@
-// A particle that comes to rest on a plane: the gap has to be the one at which the barrier carries the
-// weight.
+// A particle that comes to rest on a plane: the gap has to be the one at which the barrier
+// carries the weight.
 #include <gtest/gtest.h>
 
 #include <cmath>

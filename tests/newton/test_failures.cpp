@@ -24,8 +24,8 @@ TEST(Failures, a_load_over_the_capacity_ends_the_step_and_is_measured) {
 }
 
 TEST(Failures, the_capacity_is_that_of_the_largest_force_wherever_it_peaks) {
-  // cubic on the squared gap: no force at contact, the largest, 1.145 kappa d_hat = 0.1145 N, at
-  // d_hat/sqrt(5)
+  // cubic on the squared gap: no force at contact, the largest, 1.145 kappa d_hat = 0.1145
+  // N, at d_hat/sqrt(5)
   Scene scene = test::particle_over_plane(0.2, 0.0099, 0.01);
   Method method = test::fixed_method("cubic", 10);
   method.contact.argument = Argument::squared_gap;
@@ -111,9 +111,9 @@ TEST(Failures, a_cloth_too_heavy_for_its_limit_is_an_overload_of_the_limit) {
   EXPECT_GT(strong.limit_load_max_N_per_m.value, 2);  // it does carry the weight
 }
 
-/// Every element is stretched alike, and the forces of neighbours cancel: only the Newton model sees that the
-/// middle has to stop both halves, at 4/s/0.01 s on 0.3 kg/m^2 a tension of up to 15 N/m against 2 k_s width
-/// = 6.
+/// Every element is stretched alike, and the forces of neighbours cancel: only the Newton model sees that
+/// the middle has to stop both halves, at 4/s/0.01 s on 0.3 kg/m^2 a tension of up to 15 N/m against 2 k_s
+/// width = 6.
 TEST(Failures, a_load_that_neighbours_share_is_an_overload_of_the_limit) {
   SceneBuilder builder("cloth that flies apart", false, Vec3d::Zero(), "test");
   BodySpec spec = test::cloth_spec(9, 0, 0.001);

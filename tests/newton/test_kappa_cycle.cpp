@@ -123,8 +123,8 @@ TEST(KappaCycle, the_step_says_that_it_is_the_strain_limit_whose_kappa_does_not_
   EXPECT_FALSE(step.limit_overload.finite());
 }
 
-/// kappa = m/d^2 kept for a step: a contact that a line search met keeps the value at d_hat, at which it was
-/// met.
+/// kappa = m/d^2 kept for a step: a contact that a line search met keeps the value at d_hat, at which
+/// it was met.
 TEST(KappaCycle, a_contact_that_a_line_search_meets_keeps_its_kappa_for_the_step) {
   Scene scene = test::particle_over_plane(mass, 1.1 * d_hat, d_hat);
   scene.v0.col(0) = Vec3d(0, 0, -0.04);

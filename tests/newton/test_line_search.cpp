@@ -172,8 +172,8 @@ TEST(LineSearch, takes_the_first_halved_step_whose_fall_is_armijos_share_of_the_
   }
 }
 
-/// The article's own solver adds eps I to the matrix, eps = 1e-6 of its mean diagonal entry, all of which are
-/// m/h^2.
+/// The article's own solver adds eps I to the matrix, eps = 1e-6 of its mean diagonal entry, all of
+/// which are m/h^2.
 TEST(LineSearch, the_articles_direction_is_that_of_its_own_matrix) {
   Scene scene = test::particle_over_plane(0.2, 1, 0.01);
   Method method = test::fixed_method("log", 1);

@@ -110,8 +110,8 @@ TEST(Simulation, load_steps_end_with_the_whole_load) {
   }
 }
 
-/// A cloth hung from two corners that stretches into its limit and meets a floor: with policies kept for a
-/// step.
+/// A cloth hung from two corners that stretches into its limit and meets a floor: with policies kept
+/// for a step.
 Scene hung_cloth() {
   SceneBuilder builder("hung cloth", false, Vec3d(0, 0, -10), "test");
   BodySpec spec = test::cloth_spec(4, 0.004, d_hat);

@@ -1,5 +1,5 @@
-// Dense linear algebra by Eigen's own solvers in long double, for matrices of any size; no algorithm of
-// core/.
+// Dense linear algebra by Eigen's own solvers in long double, for matrices of any size; no
+// algorithm of core/.
 #pragma once
 
 #include "core/math/types.hpp"

@@ -7,8 +7,8 @@
 
 namespace bb::test {
 
-/// The symmetric 3 w x 3 w matrix whose lower blocks, nine numbers each and column by column, begin at
-/// `blocks`.
+/// The symmetric 3 w x 3 w matrix whose lower blocks, nine numbers each and column by column,
+/// begin at `blocks`.
 inline Eigen::MatrixXd from_lower_blocks(const double* blocks, int w) {
   Eigen::MatrixXd m(3 * w, 3 * w);
   for (int b = 0; b < w; ++b) {
