@@ -63,7 +63,7 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
   const Surface& s = surface_;
   // Which pairs come close depends on relative motion alone: what most points share, a fall say, would only
   // make every box long.
-  const Vec3d common = plan_.pairs() ? common_motion(s.points, x0, x1, moved_) : Vec3d::Zero();
+  const Vec3d common = plan_.broad_phase.needed ? common_motion(s.points, x0, x1, moved_) : Vec3d::Zero();
   tbb::parallel_invoke(
       [&] { fit(edges_, s.edges, x0, x1, common); }, [&] { fit(triangles_, s.triangles, x0, x1, common); },
       [&] { fit(points_, s.points, x0, x1, common); }, [&] { update_obstacles(x0, x1, out.obstacle); });

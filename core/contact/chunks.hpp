@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <vector>
 
 namespace bb {
 
@@ -18,6 +19,16 @@ template <class F>
 void for_each_chunk(std::size_t n, const F& f) {
   tbb::parallel_for(std::size_t{0}, n_chunks(n),
                     [&](std::size_t k) { f(k, k * chunk_size, std::min(n, (k + 1) * chunk_size)); });
+}
+
+/// Runs add(item, result) over all items in chunks and reduce(result) over the chunks in order.
+template <class Result, class Items, class Add, class Reduce>
+void over_chunks(const Items& items, const Add& add, const Reduce& reduce) {
+  std::vector<Result> results(n_chunks(items.size()));
+  for_each_chunk(items.size(), [&](std::size_t k, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) add(items[i], results[k]);
+  });
+  for (const Result& r : results) reduce(r);
 }
 
 }  // namespace bb

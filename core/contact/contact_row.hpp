@@ -2,6 +2,7 @@
 // the activation distance of the pair. Plain values; merging and tables are in row_builder.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
@@ -31,6 +32,20 @@ bool row_less(const ContactRow& a, const ContactRow& b);
 
 /// Sorted ids, -1 padded in front.
 ContactKey contact_key(const std::array<int, 4>& stencil);
+
+template <PairKind K>
+constexpr ContactKind contact_kind() {
+  constexpr ContactKind kinds[] = {ContactKind::point_point, ContactKind::point_edge,
+                                   ContactKind::point_triangle, ContactKind::edge_edge};
+  return kinds[static_cast<int>(K)];
+}
+
+template <std::size_t N>
+ContactKey pair_key(const std::array<int, N>& vertex) {
+  std::array<int, 4> padded{-1, -1, -1, -1};
+  std::copy(vertex.begin(), vertex.end(), padded.begin());
+  return contact_key(padded);
+}
 
 /// Local points of the feature that realises a region, role order (point before edge), -1 padded.
 std::array<int, 4> feature_points(Region region);

@@ -1,34 +1,22 @@
 // Contact geometry of a scene: candidate pairs, rows of the contact table, the largest collision-free step.
 #pragma once
 
-#include <array>
-#include <cstdint>
-#include <limits>
+#include <cstddef>
 #include <memory>
 #include <optional>
-#include <string>
-#include <vector>
 
 #include "core/contact/contact_table.hpp"
+#include "core/contact/overlap.hpp"
+#include "core/contact/step_bound.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/scene/scene.hpp"
 
 namespace bb {
 
-enum class Mollifier { ipc, none };
-
 struct ContactOptions {
   Mollifier mollifier = Mollifier::ipc;
   double ccd_park = 1e-6;  // stop level in units of d_hat
   int ccd_max_probes = 4096;
-};
-
-/// Largest step alpha in [0, 1] along x0 -> x1 that is proven free of contact below the stop level.
-struct StepBound {
-  double alpha = 1;
-  ContactKind kind = ContactKind::obstacle;  // of the limiting pair; key below
-  ContactKey key{-1, -1, -1, -1};
-  long long queries = 0, probes = 0, capped = 0, zero = 0;  // ACCD pairs asked, probes, cap hits, toi == 0
 };
 
 /// Owns the broad phase. All results are independent of the number of threads. The scene must outlive it. Not
@@ -70,19 +58,9 @@ class ContactSystem {
   };
   Counts candidate_counts() const;
 
-  /// A pair, named.
-  struct Overlap {
-    ContactKind kind;
-    ContactKey key;  // all vertices of the pair
-    double gap;      // m, <= 0
-    std::string text;
-  };
-  /// The first pair of the scene with a gap <= 0 at x, none when x is a valid start. Replaces the candidates.
-  /// Distances only: a triangle that an edge pierces without touching is the audit's to find.
+  /// The first pair of the scene that overlaps at x, named; none when x is a valid start. Replaces the
+  /// candidates.
   std::optional<Overlap> check_initial(const Positions& x);
-  /// "point_triangle: cloth[12], ball[3], ball[4], ball[7]": bodies and their own vertex numbers,
-  /// obstacles by name.
-  std::string describe(const ContactKey& key, ContactKind kind) const;
 
  private:
   struct Data;

@@ -17,6 +17,8 @@ enum class ContactKind : std::uint8_t { point_point, point_edge, point_triangle,
 /// front; an obstacle o appears as -2 - o.
 using ContactKey = std::array<int, 4>;
 
+inline ContactKey obstacle_key(int obstacle, int vertex) { return {-1, -1, -2 - obstacle, vertex}; }
+
 /// Identity of one candidate pair over a whole run, whatever features realise it; compare only.
 using PairId = std::uint64_t;
 

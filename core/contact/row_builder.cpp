@@ -38,7 +38,7 @@ void RowBuilder::add_pair(const Positions& x, IndexPair index, Part& part) const
   if (closest.d - pair.law.offset >= pair.law.d_hat) return;
 
   if constexpr (K == PairKind::edge_edge) {
-    if (mollifier_ == Mollifier::ipc) {
+    if (mollified_) {
       const double eps = edge_edge_mollifier_threshold<double>(gather(scene_.rest, pair.vertex));
       if (edge_edge_cross_squared<double>(points) < eps) {
         MollifiedRow m{make_row(pair.vertex.data(), closest.weights.data(), closest.r, closest.d,
@@ -70,7 +70,7 @@ void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) co
   ContactRow row;
   row.kind = ContactKind::obstacle;
   row.pair = pair_id(obstacle_kind, pair);
-  row.key = {-1, -1, -2 - pair.second, v};
+  row.key = obstacle_key(pair.second, v);
   row.stencil[0] = v;
   row.weight[0] = 1;
   row.normal = gap.normal;

@@ -6,7 +6,6 @@
 
 #include "core/contact/candidates.hpp"
 #include "core/contact/contact_row.hpp"
-#include "core/contact/contact_system.hpp"
 #include "core/contact/contact_table.hpp"
 
 namespace bb {
@@ -15,8 +14,8 @@ namespace bb {
 class RowBuilder {
  public:
   RowBuilder(const Scene& scene, const Surface& surface,
-             const std::vector<AnalyticSurface<double>>& obstacles, Mollifier mollifier)
-      : scene_(scene), surface_(surface), obstacles_(obstacles), mollifier_(mollifier) {}
+             const std::vector<AnalyticSurface<double>>& obstacles, const ContactPlan& plan)
+      : scene_(scene), surface_(surface), obstacles_(obstacles), mollified_(plan.mollifier.needed) {}
 
   /// See ContactSystem::find_rows.
   double build(const Positions& x, const Candidates& candidates, ContactTable& rows,
@@ -44,7 +43,7 @@ class RowBuilder {
   const Scene& scene_;
   const Surface& surface_;
   const std::vector<AnalyticSurface<double>>& obstacles_;
-  Mollifier mollifier_;
+  const bool mollified_;
   std::vector<Part> parts_;
   std::vector<const ContactRow*> sorted_;
   std::vector<std::size_t> first_;  // start of each group of equal rows in sorted_

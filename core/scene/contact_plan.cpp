@@ -98,17 +98,22 @@ PlanItem plan_item(bool needed, std::string yes, std::string no) {
   return {needed, std::move(needed ? yes : no)};
 }
 
-ContactPlan plan_contact(const Scene& scene) {
+ContactPlan plan_contact(const Scene& scene, Mollifier mollifier) {
   Flags is_free(static_cast<std::size_t>(scene.n_vertices()), 1);
   for (const Pin& pin : scene.pins) is_free[static_cast<std::size_t>(pin.vertex)] = 0;
   const Primitives points = count_points(scene, is_free);
   const Bodies bodies = count_bodies(scene, is_free);
   ContactPlan plan;
   plan_pairs(scene, points, is_free, plan);
-  plan.self_contact = plan_item(plan.pairs() && (bodies.pairs_in_one || bodies.deformable > 1),
+  const bool pairs = plan.point_point || plan.point_edge || plan.point_triangle || plan.edge_edge;
+  plan.broad_phase = plan_item(pairs, "pairs of surfaces", "no pair of surfaces");
+  const bool mollify = mollifier != Mollifier::none;
+  plan.mollifier = plan_item(plan.edge_edge && mollify, "edge pairs may be parallel",
+                             mollify ? "no edge-edge pairs" : "contact.mollifier is none");
+  plan.self_contact = plan_item(pairs && (bodies.pairs_in_one || bodies.deformable > 1),
                                 fmt::format("{} deformable bodies", bodies.deformable),
                                 "one deformable body without two elements that share no vertex");
-  plan.given_surfaces = plan_item(plan.pairs() && bodies.given > 0 && bodies.deformable > 0,
+  plan.given_surfaces = plan_item(pairs && bodies.given > 0 && bodies.deformable > 0,
                                   fmt::format("{} prescribed bodies", bodies.given), "no prescribed body");
   plan.obstacles = plan_item(!scene.obstacles.empty() && points.free,
                              fmt::format("{} analytic obstacles", scene.obstacles.size()),

@@ -15,6 +15,10 @@ struct PlanItem {
 /// needed with `yes`, or not with `no`.
 PlanItem plan_item(bool needed, std::string yes, std::string no);
 
+/// What keeps the energy of nearly parallel edge-edge pairs smooth: the mollifier of Li et al. 2020 (IPC), or
+/// nothing.
+enum class Mollifier { ipc, none };
+
 struct ContactPlan {
   PlanItem self_contact;    // a deformable body against itself or another one
   PlanItem given_surfaces;  // static or driven meshes: columns of contacts without unknowns
@@ -22,11 +26,13 @@ struct ContactPlan {
   // kinds of pairs of surfaces, with at least one free vertex and none in common
   bool point_point = false, point_edge = false, point_triangle = false, edge_edge = false;
 
-  bool pairs() const { return point_point || point_edge || point_triangle || edge_edge; }
-  bool any() const { return pairs() || obstacles.needed; }
+  PlanItem broad_phase;  // some kind of pair
+  PlanItem mollifier;    // of edge-edge pairs
+
+  bool any() const { return broad_phase.needed || obstacles.needed; }
 };
 
 /// Errors: none.   Cost: O(surface log surface).
-ContactPlan plan_contact(const Scene& scene);
+ContactPlan plan_contact(const Scene& scene, Mollifier mollifier = Mollifier::ipc);
 
 }  // namespace bb

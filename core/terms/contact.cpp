@@ -2,6 +2,7 @@
 // itself in contact_report.cpp.
 #include "core/terms/contact.hpp"
 
+#include "core/contact/pair_name.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
@@ -90,7 +91,7 @@ double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClo
   return bound_.alpha;
 }
 
-std::string ContactTerm::describe_bound() const { return contacts_.describe(bound_.key, bound_.kind); }
+std::string ContactTerm::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
 
 bool ContactTerm::admits(const Positions& x, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);

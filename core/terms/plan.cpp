@@ -9,12 +9,8 @@ namespace {
 
 void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const PlanOptions& options) {
   const bool contact = plan.term("contact").needed;
-  plan.broad_phase = plan_item(plan.contacts.pairs(), "pairs of surfaces", "no pair of surfaces");
   plan.step_bound = plan_item(contact && options.collision_free_steps, "every step stays free of contact",
                               contact ? "the step solver has no step bound" : "nothing can touch");
-  const bool mollified = terms.contact_options.mollifier != Mollifier::none;
-  plan.mollifier = plan_item(plan.contacts.edge_edge && mollified, "edge pairs may be parallel",
-                             mollified ? "no edge-edge pairs" : "contact.mollifier is none");
   const bool contact_reads = contact && terms.stiffness && terms.stiffness->needs_hessian();
   const bool limit_reads = plan.term("strain_limit").needed && terms.limit_stiffness.needs_hessian();
   plan.policy_submatrix =
@@ -57,9 +53,9 @@ std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
   out.insert(out.end(), {{"self_contact", &contacts.self_contact},
                          {"given_surfaces", &contacts.given_surfaces},
                          {"obstacles", &contacts.obstacles},
-                         {"broad_phase", &broad_phase},
+                         {"broad_phase", &contacts.broad_phase},
                          {"step_bound", &step_bound},
-                         {"mollifier", &mollifier},
+                         {"mollifier", &contacts.mollifier},
                          {"policy_submatrix", &policy_submatrix},
                          {"pins", &pins},
                          {"pin_lifting", &pin_lifting},
@@ -75,7 +71,7 @@ std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
 
 Plan make_plan(const Scene& scene, const TermOptions& terms, const PlanOptions& options) {
   Plan plan;
-  plan.contacts = plan_contact(scene);
+  plan.contacts = plan_contact(scene, terms.contact_options.mollifier);
   for (const TermEntry& entry : term_entries()) {
     plan.terms.push_back(entry.needs({scene, terms, plan.contacts}));
   }

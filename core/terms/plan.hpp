@@ -1,6 +1,6 @@
 // The plan of a run: what its scene and its options need, and why. Made once. Terms are made from it, the
-// broad phase reads its contact plan; the other items describe what passes and options decide. `bench
-// explain` prints it and the record keeps every item.
+// contact room reads its contact plan, the system H, pins and axes. Step bound, preconditioner and passes are
+// decided by options and only described here. `bench explain` prints it and the record keeps every item.
 #pragma once
 
 #include <string>
@@ -24,9 +24,7 @@ struct PlanOptions {
 struct Plan {
   std::vector<PlanItem> terms;  // of term_entries(), in their order
   ContactPlan contacts;         // what contact is made of
-  PlanItem broad_phase;         // pairs of surfaces
   PlanItem step_bound;          // ACCD along every step
-  PlanItem mollifier;           // near-parallel edge-edge pairs
   PlanItem policy_submatrix;    // H, which a stiffness policy reads
   PlanItem pins;                // eliminated degrees of freedom
   PlanItem pin_lifting;         // prescribed motion on the right-hand side

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <stdexcept>
 
+#include "core/contact/pair_name.hpp"
 #include "core/energy/strain_limit_batch.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/newton_system.hpp"
@@ -140,7 +141,7 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const double load = -*pilot.stiffness.kappa * log.eval(rows.d[r], rows.d_hat[r]).db;
       if (!(load > 0)) continue;
-      const auto where = [&] { return replay.contact().contacts().describe(rows.key[r], rows.kind[r]); };
+      const auto where = [&] { return pair_name(scene, rows.key[r], rows.kind[r]); };
       const double kappa = own ? own_kappa(*own, static_cast<int>(r), u, dt, replay.c(step), replay) : 1;
       const double wanted = matched(load, rows.d_hat[r]);
       if (own && too_soft(kappa, wanted)) refuse(kappa, "kappa", step, where());

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include "core/contact/pair_name.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
 namespace bb::test {
@@ -158,7 +159,7 @@ TEST(StepBound, ObstaclesBoundFreeVertices) {
   EXPECT_NEAR(b.alpha, 0.5, 1e-7);
   EXPECT_EQ(b.kind, ContactKind::obstacle);
   EXPECT_EQ(b.key, (ContactKey{-1, -1, -3, 1}));
-  EXPECT_EQ(contacts.describe(b.key, b.kind), "obstacle: ball, point[1]");
+  EXPECT_EQ(pair_name(scene, b.key, b.kind), "obstacle: ball, point[1]");
 }
 
 TEST(StepBound, NamesTheFirstOfTheContactsThatLimitAlikeAndNoneOfAFreeMotion) {

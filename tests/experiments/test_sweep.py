@@ -3,9 +3,10 @@
 import json
 from pathlib import Path
 
+import jsonschema
 import pytest
 
-from test_cli import BLOCK, bench, refused, sweep_spec, write
+from test_cli import BLOCK, ROOT, bench, refused, sweep_spec, write
 
 
 def test_sweep_skips_what_is_finished(program, tmp_path):

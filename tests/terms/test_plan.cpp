@@ -104,14 +104,14 @@ TEST(plan, skips_the_step_bound_of_a_solver_without_one) {
   EXPECT_TRUE(plan.term("contact").needed);
   EXPECT_FALSE(plan.step_bound.needed);
   EXPECT_EQ(plan.step_bound.reason, "the step solver has no step bound");
-  EXPECT_EQ(plan.mollifier.reason, "contact.mollifier is none");
+  EXPECT_EQ(plan.contacts.mollifier.reason, "contact.mollifier is none");
 }
 
 TEST(plan, of_a_planar_scene_locks_the_third_axis_and_has_no_edge_pairs) {
   const Plan plan = plan_of(scene_of({cloth("cloth")}, true));
 
   EXPECT_TRUE(plan.planar_lock.needed);
-  EXPECT_FALSE(plan.mollifier.needed);
+  EXPECT_FALSE(plan.contacts.mollifier.needed);
 }
 
 TEST(plan, keeps_the_submatrix_for_a_limit_without_contact) {
