@@ -17,19 +17,19 @@ using Hessian12 = Mat<double, 12, 12>;
 constexpr std::size_t stored = n_lower_numbers(4);  // a row
 
 /// Leading block of 3 n x 3 n projected, the rest is 0 and stays so.
-void project_leading(int n_free, Hessian12& h) {
+void project_leading(int n_free, Projection projection, Hessian12& h) {
   switch (n_free) {
     case 1:
-      h.topLeftCorner<3, 3>() = project_psd<double, 3>(h.topLeftCorner<3, 3>());
+      h.topLeftCorner<3, 3>() = project<double, 3>(h.topLeftCorner<3, 3>(), projection);
       break;
     case 2:
-      h.topLeftCorner<6, 6>() = project_psd<double, 6>(h.topLeftCorner<6, 6>());
+      h.topLeftCorner<6, 6>() = project<double, 6>(h.topLeftCorner<6, 6>(), projection);
       break;
     case 3:
-      h.topLeftCorner<9, 9>() = project_psd<double, 9>(h.topLeftCorner<9, 9>());
+      h.topLeftCorner<9, 9>() = project<double, 9>(h.topLeftCorner<9, 9>(), projection);
       break;
     default:
-      h = project_psd<double, 12>(h);
+      h = project<double, 12>(h, projection);
   }
 }
 
@@ -86,8 +86,8 @@ void add_curvature(const ContactTable& rows, std::size_t r, const Positions& x, 
   }
 }
 
-void row_terms(const ContactTable& rows, std::size_t r, const Positions& x, HessianMode mode, double* grad,
-               double* hess) {
+void row_terms(const ContactTable& rows, std::size_t r, const Positions& x, HessianMode mode,
+               Projection projection, double* grad, double* hess) {
   const double scale = rows.multiplicity[r] * rows.kappa[r];
   Vec<double, 12> g = Vec<double, 12>::Zero();
   const Vec3d n = Vec3d::Map(&rows.normal[3 * r]);
@@ -98,7 +98,7 @@ void row_terms(const ContactTable& rows, std::size_t r, const Positions& x, Hess
   Hessian12 h = (scale * rows.d2b[r]) * (g * g.transpose());
   if (mode == HessianMode::projected_full && rows.db[r] != 0) {
     add_curvature(rows, r, x, scale * rows.db[r], h);
-    project_leading(rows.n_free[r], h);
+    project_leading(rows.n_free[r], projection, h);
   }
   store_lower_blocks(4, h, hess);
 }
@@ -128,12 +128,12 @@ MollifiedDerivatives mollified_derivatives(const MollifiedTable& rows, std::size
 }
 
 /// grad and hess on the compact free slots.
-void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positions& x, double* grad,
-                         double* hess) {
+void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positions& x, Projection projection,
+                         double* grad, double* hess) {
   const auto [g, full] = mollified_derivatives(rows, r, x);
   Hessian12 h = Hessian12::Zero();
   add_compact<4>(&rows.stencil[4 * r], &rows.free_vertex[4 * r], full, 1, h);
-  project_leading(rows.n_free[r], h);
+  project_leading(rows.n_free[r], projection, h);
 
   Vec<double, 12>::Map(grad).setZero();
   int slot = 0;
@@ -146,20 +146,21 @@ void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positi
 
 }  // namespace
 
-void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, std::vector<double>& grad,
-                   std::vector<double>& hess) {
-  grad.resize(12 * rows.size());
-  hess.resize(stored * rows.size());
-  tbb::parallel_for(std::size_t{0}, rows.size(),
-                    [&](std::size_t r) { row_terms(rows, r, x, mode, &grad[12 * r], &hess[stored * r]); });
-}
-
-void mollified_terms(const MollifiedTable& rows, const Positions& x, std::vector<double>& grad,
-                     std::vector<double>& hess) {
+void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, Projection projection,
+                   std::vector<double>& grad, std::vector<double>& hess) {
   grad.resize(12 * rows.size());
   hess.resize(stored * rows.size());
   tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
-    mollified_row_terms(rows, r, x, &grad[12 * r], &hess[stored * r]);
+    row_terms(rows, r, x, mode, projection, &grad[12 * r], &hess[stored * r]);
+  });
+}
+
+void mollified_terms(const MollifiedTable& rows, const Positions& x, Projection projection,
+                     std::vector<double>& grad, std::vector<double>& hess) {
+  grad.resize(12 * rows.size());
+  hess.resize(stored * rows.size());
+  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
+    mollified_row_terms(rows, r, x, projection, &grad[12 * r], &hess[stored * r]);
   });
 }
 

@@ -24,7 +24,7 @@ __device__ void eigen_and_projection(Slots<T>& slots) {
   Mat<T, N, N> vectors;
   sym_eigen<T, N>(a, values, vectors);
   int n_clamped = 0;
-  slots.write(project_psd<T, N>(a, &n_clamped));
+  slots.write(project<T, N>(a, Projection::psd, &n_clamped));
   slots.write(values), slots.write(vectors), slots.write(T(n_clamped));
 }
 template <class T>

@@ -7,8 +7,8 @@
 
 namespace bb {
 
-/// psi = mu/2 ((|F_u|-1)^2 + (|F_v|-1)^2) + lambda/2 (F_u.F_v)^2. Psd: the whole 2R x 2R Hessian
-/// is projected. Host-device: yes. Total; a column of length 0 (where the energy has a cusp)
+/// psi = mu/2 ((|F_u|-1)^2 + (|F_v|-1)^2) + lambda/2 (F_u.F_v)^2. Projections take the whole 2R x 2R
+/// Hessian. Host-device: yes. Total; a column of length 0 (where the energy has a cusp)
 /// counts as if 1/|F_k| were 0. Source: Baraff, Witkin 1998; Kim 2020 (A Finite Element
 /// Formulation of Baraff-Witkin Cloth).
 struct BaraffWitkin {
@@ -42,7 +42,7 @@ struct BaraffWitkin {
     out.hess.template block<R, R>(R, 0) =
         lame_lambda * (shear * Mat<T, R, R>::Identity() + f.col(0) * f.col(1).transpose());
     mirror_lower<T, 2 * R>(out.hess);
-    if (projection == Projection::psd) out.hess = project_psd<T, 2 * R>(out.hess);
+    out.hess = project<T, 2 * R>(out.hess, projection);
     return out;
   }
 };

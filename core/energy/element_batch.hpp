@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/math/projection.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
@@ -15,7 +16,7 @@ namespace bb {
 struct LocalTerms {
   std::vector<double> energy;  // [n] J
   std::vector<double> grad;    // [3w n] N, vertex-major
-  std::vector<double> hess;    // [9w(w + 1)/2 n] N/m, PSD, its lower blocks (lower_blocks.hpp)
+  std::vector<double> hess;    // [9w(w + 1)/2 n] N/m, lower blocks (lower_blocks.hpp)
 
   /// Makes room for n elements of w vertices; allocates only when it must grow.
   void resize(std::size_t n, int width);
@@ -36,8 +37,8 @@ class EnergyBatch {
   virtual std::span<const int> vertices() const = 0;
   /// Energies [n], J. Cost: O(n), allocates nothing.
   virtual void values(const Positions& x, double* energy) const = 0;
-  /// Energies, gradients and PSD Hessians. Cost: O(n); out is resized once and never allocated again.
-  virtual void derivatives(const Positions& x, LocalTerms& out) const = 0;
+  /// Energies, gradients and Hessians, projected element by element. Cost: O(n); out is resized once and never allocated again.
+  virtual void derivatives(const Positions& x, Projection projection, LocalTerms& out) const = 0;
 
   std::size_t size() const { return vertices().size() / static_cast<std::size_t>(width()); }
 };

@@ -144,20 +144,21 @@ BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T
   }
   const MaskOf<T> flat = deviation == T(0);  // then k grad grad^T is PSD without projection
   if (projection == Projection::none || any(flat)) out.hess = lift_points<T, 4>(difference, reduced);
-  if (projection == Projection::psd && any(!flat)) {
+  if (projection != Projection::none && any(!flat)) {
     Mat<T, 4, 3> basis;  // orthonormal, at right angles to (1, 1, 1, 1)
     basis << T(1), T(1), T(1), T(1), T(-1), T(-1), T(-1), T(1), T(-1), T(-1), T(-1), T(1);
     basis *= T(0.5);
     const Mat<T, 3, 3> to_basis = basis.transpose() * difference;
     const Mat<T, 12, 12> projected = lift_points<T, 4>(
-        basis, project_psd_beside<T, 9>(lift_points<T, 3>(to_basis, reduced), edge_stretch<T>(x, basis)));
+        basis,
+        project_beside<T, 9>(lift_points<T, 3>(to_basis, reduced), edge_stretch<T>(x, basis), projection));
     out.hess = any(flat) ? select_entries(flat, out.hess, projected) : projected;
   }
   return out;
 }
 
-/// Energy, gradient and Hessian k (grad theta grad theta^T + (theta - theta0) grad^2 theta). Psd: exact
-/// projection of the 12 x 12 matrix, done on the 8 x 8 matrix left when its null vectors, three translations
+/// Energy, gradient and Hessian k (grad theta grad theta^T + (theta - theta0) grad^2 theta). Projections are
+/// those of the 12 x 12 matrix, done on the 8 x 8 matrix left when its null vectors, three translations
 /// and the stretch along the edge, are split off. Not finite when a triangle has no area. Host-device: yes.
 template <class T>
 BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle,

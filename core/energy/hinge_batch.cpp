@@ -54,7 +54,7 @@ void HingeBatch::values(const Positions& x, double* energy) const {
   });
 }
 
-void HingeBatch::derivatives(const Positions& x, LocalTerms& out) const {
+void HingeBatch::derivatives(const Positions& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
   for_each_element((size() + kLanes - 1) / kLanes, [&](std::size_t g) {
     const std::size_t first = kLanes * g, n = std::min(kLanes, size() - first);
@@ -64,7 +64,7 @@ void HingeBatch::derivatives(const Positions& x, LocalTerms& out) const {
       const Points<4> p(x, vertices_, e);
       group.set(lane, p.x, stiffness_[e], hinge_deviation<double>(hinge_angle<double>(p.x), rest_angle_[e]));
     }
-    store(hinge_terms_at<Real>(group.x, group.stiffness, group.deviation, Projection::psd), first, n, out);
+    store(hinge_terms_at<Real>(group.x, group.stiffness, group.deviation, projection), first, n, out);
   });
 }
 

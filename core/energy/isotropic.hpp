@@ -1,5 +1,5 @@
 // The eigen-filtered machinery of isotropic membranes: from the derivatives of psi in the singular values to
-// dpsi/dF and d2psi/dF2 in closed form, exact or with its negative eigenvalues set to 0.
+// dpsi/dF and d2psi/dF2 in closed form, exact or with its negative eigenvalues projected.
 #pragma once
 
 #include "core/energy/density.hpp"
@@ -28,13 +28,14 @@ BB_HD Svd<T, 3, 2> membrane_svd(const Mat<T, 3, 2>& f) {
   return svd_3x2(f);
 }
 
-/// Adds eigenvalue * vec(mode) vec(mode)^T, |mode| = 1.
+/// Adds the projected eigenvalue * vec(mode) vec(mode)^T, |mode| = 1.
 template <class T, int R>
 BB_HD void add_mode(T eigenvalue, const Mat<T, R, 2>& mode, Projection projection,
                     Mat<T, 2 * R, 2 * R>& hess) {
-  if (projection == Projection::psd && !(eigenvalue > T(0))) return;
+  const T projected = project_eigenvalue(eigenvalue, projection);
+  if (projected == T(0)) return;
   for (int i = 0; i < 2 * R; ++i) {
-    const T scaled = eigenvalue * mode.data()[i];
+    const T scaled = projected * mode.data()[i];
     for (int j = 0; j <= i; ++j) hess(i, j) += scaled * mode.data()[j];
   }
 }

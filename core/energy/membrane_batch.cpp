@@ -49,12 +49,12 @@ void MembraneBatch::values(const Positions& x, double* energy) const {
   });
 }
 
-void MembraneBatch::derivatives(const Positions& x, LocalTerms& out) const {
+void MembraneBatch::derivatives(const Positions& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
   const auto terms = planar_ ? model_->terms_planar : model_->terms;
   for_each_element(size(), [&](std::size_t e) {
     const Points<3> p(x, vertices_, e);
-    store_terms(terms(rests_[e], p.x, lame_mu_[e], lame_lambda_[e], Projection::psd), e, out);
+    store_terms(terms(rests_[e], p.x, lame_mu_[e], lame_lambda_[e], projection), e, out);
   });
 }
 

@@ -28,7 +28,7 @@ class MembraneBatch final : public EnergyBatch {
   std::span<const int> vertices() const override { return vertices_; }
   std::span<const TriangleRest<double>> rests() const { return rests_; }
   void values(const Positions& x, double* energy) const override;
-  void derivatives(const Positions& x, LocalTerms& out) const override;
+  void derivatives(const Positions& x, Projection projection, LocalTerms& out) const override;
 
  private:
   const MembraneModel<double>* model_;

@@ -22,8 +22,7 @@ BB_HD ElementTerms<T, 6> spring_terms(const Vec<T, 3> (&x)[2], T stiffness, T re
   const T length = difference.norm();
   const Vec<T, 3> n = length > T(0) ? Vec<T, 3>(difference / length) : Vec<T, 3>(Vec<T, 3>::Zero());
   const T ratio = length > T(0) ? rest_length / length : (rest_length > T(0) ? T(1) : T(0));
-  T transverse = T(1) - ratio;
-  if (projection == Projection::psd && transverse < T(0)) transverse = T(0);
+  const T transverse = project_eigenvalue(T(1) - ratio, projection);
   const Vec<T, 3> force = stiffness * (length - rest_length) * n;
   Mat<T, 3, 3> block =
       stiffness * (transverse * Mat<T, 3, 3>::Identity() + (T(1) - transverse) * (n * n.transpose()));

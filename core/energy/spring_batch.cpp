@@ -23,11 +23,11 @@ void SpringBatch::values(const Positions& x, double* energy) const {
   });
 }
 
-void SpringBatch::derivatives(const Positions& x, LocalTerms& out) const {
+void SpringBatch::derivatives(const Positions& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
   for_each_element(size(), [&](std::size_t e) {
     const Points<2> p(x, vertices_, e);
-    store_terms(spring_terms<double>(p.x, stiffness_[e], rest_length_[e], Projection::psd), e, out);
+    store_terms(spring_terms<double>(p.x, stiffness_[e], rest_length_[e], projection), e, out);
   });
 }
 

@@ -17,7 +17,7 @@ class SpringBatch final : public EnergyBatch {
   int width() const override { return 2; }
   std::span<const int> vertices() const override { return vertices_; }
   void values(const Positions& x, double* energy) const override;
-  void derivatives(const Positions& x, LocalTerms& out) const override;
+  void derivatives(const Positions& x, Projection projection, LocalTerms& out) const override;
 
  private:
   std::vector<int> vertices_;

@@ -54,7 +54,8 @@ double StrainLimitBatch::min_gap() const {
   return gap_.empty() ? std::numeric_limits<double>::infinity() : *std::min_element(gap_.begin(), gap_.end());
 }
 
-void StrainLimitBatch::fill_terms(const Positions& x, const double* kappa, LocalTerms& out) const {
+void StrainLimitBatch::fill_terms(const Positions& x, const double* kappa, Projection projection,
+                                  LocalTerms& out) const {
   out.resize(size(), width());
   for_each_element(size(), [&](std::size_t e) {
     const Points<3> p(x, vertices_, e);
@@ -65,7 +66,7 @@ void StrainLimitBatch::fill_terms(const Positions& x, const double* kappa, Local
       const bool active = gap_[i] < width_[i];
       const Svd<double, R, 2> svd = active ? membrane_svd(deformation_gradient<R>(rests_[e], p.x))
                                            : Svd<double, R, 2>{{}, {sigma_[i], sigma_[i + 1]}, {}};
-      return strain_limit_terms<R, double>(rests_[e], svd, bands_[e], shape, kappa[e], Projection::psd);
+      return strain_limit_terms<R, double>(rests_[e], svd, bands_[e], shape, kappa[e], projection);
     };
     store_terms(planar_ ? terms.template operator()<2>() : terms.template operator()<3>(), e, out);
   });

@@ -44,13 +44,14 @@ class StrainLimitBatch {
     evaluate(barrier);
     for (std::size_t e = 0; e < size(); ++e) energy[e] = kappa[e] * (b_[2 * e] + b_[2 * e + 1]);
   }
-  /// Energies, gradients and PSD Hessians; exact zeros where inactive, not finite at or beyond
-  /// the limit. Measures.
+  /// Energies, gradients and Hessians; exact zeros where inactive, not finite at or beyond the limit.
+  /// Measures.
   template <class Barrier>
-  void derivatives(const Positions& x, const Barrier& barrier, const double* kappa, LocalTerms& out) {
+  void derivatives(const Positions& x, const Barrier& barrier, const double* kappa, Projection projection,
+                   LocalTerms& out) {
     measure(x);
     evaluate(barrier);
-    fill_terms(x, kappa, out);
+    fill_terms(x, kappa, projection, out);
   }
 
   /// Largest alpha in [0, alpha_max] whose state x + alpha dx, rounded coordinate by coordinate, keeps every
@@ -84,7 +85,7 @@ class StrainLimitBatch {
       db_[i] = -infinity;
     }
   }
-  void fill_terms(const Positions& x, const double* kappa, LocalTerms& out) const;
+  void fill_terms(const Positions& x, const double* kappa, Projection projection, LocalTerms& out) const;
 
   bool planar_;
   Positions measured_;  // what sigma_ and gap_ belong to

@@ -1,14 +1,10 @@
-// What every element energy returns, and whether its Hessian is the exact or the projected one.
+// What every element energy returns.
 #pragma once
 
+#include "core/math/projection.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
-
-/// none: the exact second derivative. psd: its negative eigenvalues set to 0 (membranes and strain
-/// limiting: those of d2psi/dF2, before the constant chain rule to the vertices; springs and hinges: those
-/// of the whole matrix).
-enum class Projection { none, psd };
 
 /// Makes `m` symmetric bit for bit: its lower triangle is copied to the upper one.
 template <class T, int N>
@@ -18,7 +14,9 @@ BB_HD void mirror_lower(Mat<T, N, N>& m) {
   }
 }
 
-/// Terms of one element; N = 3 x number of points, point-major.
+/// Terms of one element; N = 3 x number of points, point-major. Which eigenvalues a projected Hessian has:
+/// membranes and strain limits project d2psi/dF2, before the constant chain rule to the vertices; springs and
+/// hinges the whole matrix.
 template <class T, int N>
 struct ElementTerms {
   T energy;           // J

@@ -1,9 +1,10 @@
-// The nearest positive semi-definite matrix: negative eigenvalues of a small symmetric matrix are set to
-// zero. Used for element and contact Hessians before assembly.
+// Small symmetric matrices made positive semi-definite: their negative eigenvalues are set to zero, or change
+// sign. Used for element and contact Hessians before assembly.
 #pragma once
 
 #include <cmath>
 
+#include "core/math/projection.hpp"
 #include "core/math/sym_eigen.hpp"
 #include "core/math/types.hpp"
 
@@ -31,15 +32,17 @@ BB_HD inline MaskOf<T> has_positive_pivots(const Mat<T, N, N>& A) {
   return positive;
 }
 
-/// V max(Lambda, 0) V^T of the symmetric matrix A = V Lambda V^T, the nearest in the Frobenius norm.
-/// @param n_clamped  when not null: how many eigenvalues were negative (those of rounding size included); of
-///                   lanes: how many of the N were so in any
-/// @return           A itself, bit for bit, when none was
-/// Errors: none.   Host-device.   Cost: N^3/6 when A is positive definite, else sym_eigen.
+/// The symmetric matrix A = V Lambda V^T with its eigenvalues projected; psd gives the nearest positive
+/// semi-definite matrix in the Frobenius norm.
+/// @param n_negative  when not null: how many eigenvalues were negative (those of rounding size included); of
+///                    lanes: how many of the N were so in any; 0 with Projection::none
+/// @return            A itself, bit for bit, when none was
+/// Errors: none.   Host-device, lanes.   Cost: N^3/6 when A is positive definite, else sym_eigen.
 /// Source: Higham 1988, Computing a nearest symmetric positive semidefinite matrix.
 template <class T, int N>
-BB_HD inline Mat<T, N, N> project_psd(const Mat<T, N, N>& A, int* n_clamped = nullptr) {
-  if (n_clamped != nullptr) *n_clamped = 0;
+BB_HD inline Mat<T, N, N> project(const Mat<T, N, N>& A, Projection projection, int* n_negative = nullptr) {
+  if (n_negative != nullptr) *n_negative = 0;
+  if (projection == Projection::none) return A;
   const MaskOf<T> positive = has_positive_pivots<T, N>(A);
   if (!any(!positive)) return A;
   Vec<T, N> values;
@@ -49,9 +52,9 @@ BB_HD inline Mat<T, N, N> project_psd(const Mat<T, N, N>& A, int* n_clamped = nu
   Mat<T, N, N> out = Mat<T, N, N>::Zero();
   for (int k = 0; k < N; ++k) {
     const MaskOf<T> negative = values[k] < T(0) && !positive;
-    if (any(negative) && n_clamped != nullptr) ++*n_clamped;
+    if (any(negative) && n_negative != nullptr) ++*n_negative;
     keep = keep && !negative;
-    const T value = select(negative, T(0), values[k]);
+    const T value = project_eigenvalue(values[k], projection);
     if (!any(!(value == T(0)))) continue;
     for (int j = 0; j < N; ++j) {
       const T scaled = value * vectors(j, k);
@@ -67,11 +70,11 @@ BB_HD inline Mat<T, N, N> project_psd(const Mat<T, N, N>& A, int* n_clamped = nu
   return out;
 }
 
-/// project_psd of a symmetric A with A u = 0, done on the complement of u. To rounding, also when no
+/// project() of a symmetric A with A u = 0, done on the complement of u. To rounding, also when no
 /// eigenvalue is negative. u != 0 of any length whose square is a normal number. Host-device, lanes.   Cost:
-/// that of project_psd at N - 1, and 8 N^2.
+/// that of project() at N - 1, and 8 N^2.
 template <class T, int N>
-BB_HD inline Mat<T, N, N> project_psd_beside(const Mat<T, N, N>& A, const Vec<T, N>& u) {
+BB_HD inline Mat<T, N, N> project_beside(const Mat<T, N, N>& A, const Vec<T, N>& u, Projection projection) {
   const T length = u.norm();
   Vec<T, N> v = u;  // the reflection takes u to the first axis
   v[0] += select(u[0] < T(0), -length, length);
@@ -80,7 +83,7 @@ BB_HD inline Mat<T, N, N> project_psd_beside(const Mat<T, N, N>& A, const Vec<T,
   detail::reflect_symmetric<T, N>(0, v, beta, turned);
   Mat<T, N, N> out = Mat<T, N, N>::Zero();
   out.template bottomRightCorner<N - 1, N - 1>() =
-      project_psd<T, N - 1>(turned.template bottomRightCorner<N - 1, N - 1>());
+      project<T, N - 1>(turned.template bottomRightCorner<N - 1, N - 1>(), projection);
   detail::reflect_symmetric<T, N>(0, v, beta, out);
   return out;
 }

@@ -45,9 +45,8 @@ class AccumulatedToi final : public StepSolver {
   // One assemble, solve, bound, move. Returns the fraction of the Newton direction that was taken.
   double iterate(NewtonSystem& system, StepReport& step, int step_index, int iteration,
                  StepObserver& observer) {
-    IterationReport report = begin_iteration(system, step_index, iteration, observer);
-    report.linear = system.solve(target_, dx_);
-    measure_direction(system, dx_, report);
+    IterationReport report = begin_iteration(system, step_index, iteration);
+    find_direction(system, target_, dx_, report, observer);
     if (const auto failed = direction_failure(report, false)) {
       fail_step(step, *failed, report);
       finish_iteration(system, step, report, observer);

@@ -22,10 +22,9 @@ class ArticleLiteral final : public StepSolver {
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used, target_);
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
-      IterationReport report = begin_iteration(system, task.step, iteration, observer);
+      IterationReport report = begin_iteration(system, task.step, iteration);
       system.add_tikhonov(tikhonov_relative, tikhonov_absolute);
-      report.linear = system.solve(target_, dx_);
-      measure_direction(system, dx_, report);
+      find_direction(system, target_, dx_, report, observer);
       const bool small = report.dx_inf_m / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, !small)) {
         finish_iteration(system, step, report, observer);

@@ -8,7 +8,7 @@ namespace {
 
 /// What the linear solver and the step bound did, in the words of the trace.
 void fill_work(IterationReport& report) {
-  const LinearReport& linear = report.linear;
+  const LinearReport& linear = report.solve.linear;
   report.linear_status = linear.status;
   report.residual_true = linear.residual_true;
   report.residual_recurrence = report.ritz_min = report.ritz_max = Number::missing("direct_solver");
@@ -18,10 +18,12 @@ void fill_work(IterationReport& report) {
     report.ritz_min = known ? Number(linear.ritz_min) : Number::missing("not_measured");
     report.ritz_max = known ? Number(linear.ritz_max) : Number::missing("not_measured");
   }
-  report.linear_solves = 1;
+  report.hessian_t = report.solve.t;
+  report.hessian_fallbacks = report.solve.fallbacks();
+  report.linear_solves = report.solve.attempts;
   report.linear_iterations = linear.iterations;
-  report.factorizations = linear.factorized;
-  report.analyses = linear.analyzed;
+  report.factorizations = report.solve.factorizations;
+  report.analyses = report.solve.analyses;
   report.ccd_queries = report.bound.queries;
   report.ccd_probes = report.bound.probes;
   report.ccd_capped = report.bound.capped;
@@ -49,17 +51,15 @@ bool within_rounding(const EnergyChange& change) {
 
 void fail_step(StepReport& step, StepStatus status, const IterationReport& report) {
   step.status = status;
-  if (status == StepStatus::linear_failed) step.detail = std::string(to_string(report.linear.status));
+  if (status == StepStatus::linear_failed) step.detail = std::string(to_string(report.solve.linear.status));
 }
 
-IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, StepObserver& observer) {
+IterationReport begin_iteration(NewtonSystem& system, int step, int iteration) {
   IterationReport report;
   report.step = step;
   report.iteration = iteration;
   system.clock().lap();
   system.assemble();
-  observer.on_matrix(system, step, iteration);
-
   report.energy_J = system.energy();
   report.grad_inf_N = system.grad_inf();
   report.pattern_changed = system.pattern_changed();
@@ -68,7 +68,9 @@ IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, S
   return report;
 }
 
-void measure_direction(const NewtonSystem& system, const Positions& dx, IterationReport& report) {
+void find_direction(NewtonSystem& system, const Positions& target, Positions& dx, IterationReport& report,
+                    StepObserver& observer) {
+  report.solve = system.solve(target, dx);
   const Positions& gradient = system.gradient();
   double slope = 0;
   report.dx_inf_m = 0;
@@ -81,10 +83,11 @@ void measure_direction(const NewtonSystem& system, const Positions& dx, Iteratio
   report.decrement_J = -slope / 2;
   report.n_free = static_cast<std::size_t>(system.n_free());
   report.nnz = system.nnz();
+  observer.on_matrix(system, report.step, report.iteration);
 }
 
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend) {
-  if (report.linear.status != LinearStatus::ok) return StepStatus::linear_failed;
+  if (report.solve.linear.status != LinearStatus::ok) return StepStatus::linear_failed;
   if (!std::isfinite(report.dx_inf_m) || !std::isfinite(report.decrement_J)) return StepStatus::non_finite;
   if (must_descend && report.decrement_J <= 0) return StepStatus::not_descent;
   return std::nullopt;
@@ -136,7 +139,7 @@ void measure_end(NewtonSystem& system, StepReport& step) {
   }
   system.assemble();  // the rows that were accepted last and their gradients, of one state
   Positions dx;       // prescribed vertices stay where they are
-  const bool solved = system.solve(system.x(), dx).status == LinearStatus::ok;
+  const bool solved = system.solve(system.x(), dx).linear.status == LinearStatus::ok;
   if (!solved) dx.setZero();
   step.begin_overload();
   system.report_overload(dx, step);

@@ -18,11 +18,12 @@ bool within_rounding(const EnergyChange& change);
 /// Ends a step whose direction was of no use.
 void fail_step(StepReport& step, StepStatus status, const IterationReport& report);
 
-/// Begins a lap of the system's clock, assembles at system.x(), lets the observer look at the matrix and
-/// fills what is known before the solve.
-IterationReport begin_iteration(NewtonSystem& system, int step, int iteration, StepObserver& observer);
-/// |dx|_inf and the decrement -g . dx over free degrees of freedom.
-void measure_direction(const NewtonSystem& system, const Positions& dx, IterationReport& report);
+/// Begins a lap of the system's clock, assembles at system.x() and fills what is known before the solve.
+IterationReport begin_iteration(NewtonSystem& system, int step, int iteration);
+/// Solves for dx, fills |dx|_inf and the decrement -g . dx / 2 over free degrees of freedom, and lets the
+/// observer look at the matrices.
+void find_direction(NewtonSystem& system, const Positions& target, Positions& dx, IterationReport& report,
+                    StepObserver& observer);
 /// The status that ends the step when the direction is of no use. must_descend: E has to decrease along it.
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend);
 /// Ends the lap of the clock, adds an iteration to its step and tells the observer.

@@ -1,12 +1,17 @@
-// One time step by projected Newton. Read this file first: it is the whole method.
+// One time step by Newton's method. Read this file first: it is the whole method.
 //
-//   1 assemble gradient and PSD matrix at x, kappa refreshed by its policy
-//   2 solve A dx = -g, prescribed motion lifted to the right-hand side
-//   3 stop when |dx|_inf / h < tol_velocity and every prescribed vertex is at its pose
+//   1 assemble gradient and Hessian at x, kappa refreshed by its policy
+//   2 solve A dx = -g, prescribed motion lifted to the right-hand side; A is the Hessian, as near to the exact
+//     one as positive definiteness allows
+//   3 stop when the estimated error of x + dx is below h tol_velocity, every prescribed vertex is at its pose
+//     and E curves upwards along dx
 //   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded
 //   6 accept
 
+#include <fmt/format.h>
+
+#include "core/newton/error_estimate.hpp"
 #include "core/newton/iteration.hpp"
 #include "core/newton/step_solver.hpp"
 
@@ -28,22 +33,25 @@ class LineSearch final : public StepSolver {
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used, target_);
+    const double tolerance = options_.tol_velocity * task.dt;  // m
+    error_.reset(system.x());
     int collapsed = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
-      IterationReport report = begin_iteration(system, task.step, iteration, observer);
-      report.linear = system.solve(target_, dx_);
-      measure_direction(system, dx_, report);
+      IterationReport report = begin_iteration(system, task.step, iteration);
+      find_direction(system, target_, dx_, report, observer);
       const bool at_pose = poses_reached(system, target_);
-      const bool small = at_pose && report.dx_inf_m / task.dt < options_.tol_velocity;
+      const bool small = estimate_error(report) < tolerance && at_pose && !at_saddle(system, dx_);
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
         fail_step(step, *failed, report);
         return step;
       }
       const bool moved = search(system, report, at_pose);
+      error_.took(report.alpha);
       finish_iteration(system, step, report, observer);
       if (moved) observer.on_motion(x_before_, system.x(), task.step);
-      if (small) {
+      // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
+      if (small && (report.alpha == 1 || report.dx_inf_m < tolerance)) {
         step.status = StepStatus::converged;
         return step;
       }
@@ -58,10 +66,27 @@ class LineSearch final : public StepSolver {
         return step;
       }
     }
+    step.still_falling = error_.still_falling();
+    step.detail = fmt::format("|dx| {:.3g} m, {}", error_.last(),
+                              step.still_falling ? "still falling" : "no longer falling");
     return step;
   }
 
  private:
+  // Of x + dx, m.
+  double estimate_error(IterationReport& report) {
+    error_.add(report.dx_inf_m);
+    report.contraction = error_.contraction();
+    report.error_estimate_m = error_.error();
+    return error_.error();
+  }
+
+  // The matrix that was solved is positive definite; where it is not the exact one, E may still curve
+  // downwards along dx, and x + dx is no minimum.
+  static bool at_saddle(NewtonSystem& system, const Positions& dx) {
+    return !system.solved_is_exact() && system.exact_curvature(dx) < 0;
+  }
+
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its
   // motion does work.
   bool search(NewtonSystem& system, IterationReport& report, bool energy_test) {
@@ -100,6 +125,7 @@ class LineSearch final : public StepSolver {
   StepSolverOptions options_;
   double armijo_, cap_fraction_;
   double bound_ = 1;  // of the step taken last
+  ErrorEstimate error_;
   Positions target_, dx_, x_before_, x_trial_;
 };
 

@@ -2,12 +2,15 @@
 // between two runs of a comparison is here and in the scene.
 #pragma once
 
+#include <functional>
+#include <map>
 #include <memory>
 #include <string>
 
 #include "core/integrators/integrator.hpp"
 #include "core/linear/linear_solver.hpp"
 #include "core/parameters/parameter.hpp"
+#include "core/terms/step_hessian.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb {
@@ -20,6 +23,7 @@ struct StepSolverOptions {
 };
 
 struct Method : TermOptions {
+  std::map<std::string, StepHessian, std::less<>> step_hessian;  // by term; what is left out is clamped
   std::unique_ptr<Integrator> integrator;
   StepSolverOptions step_solver;
   LinearOptions linear;

@@ -20,6 +20,17 @@ std::vector<std::uint8_t> fixed_dofs(const Scene& scene, const Plan& plan) {
   return fixed;
 }
 
+StepHessian choice_of(const Term& term, const Method& method) {
+  const auto found = method.step_hessian.find(term.name());
+  return found == method.step_hessian.end() ? StepHessian::clamped : found->second;
+}
+
+std::vector<StepHessian> choices_of(const TermList& terms, const Method& method) {
+  std::vector<StepHessian> out;
+  for (const auto& term : terms) out.push_back(choice_of(*term, method));
+  return out;
+}
+
 }  // namespace
 
 NewtonSystem::NewtonSystem(const Scene& scene, Method& method, const Plan& plan)
@@ -27,31 +38,32 @@ NewtonSystem::NewtonSystem(const Scene& scene, Method& method, const Plan& plan)
       plan_(plan),
       fixed_(fixed_dofs(scene, plan_)),
       terms_(make_terms(plan_, {scene, method, plan_.contacts, fixed_})),
+      level_(choices_of(terms_, method)),
       blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed_)),
       solver_(make_linear_solver(method.linear)) {
-  set_fixed_families();
+  set_fixed_families(method);
 }
 
 NewtonSystem::NewtonSystem(const Scene& scene, Method& method)
     : NewtonSystem(scene, method, make_plan(scene, method, {})) {}
 
 // Families that come and go are numbered apart from those that stay.
-void NewtonSystem::set_fixed_families() {
+void NewtonSystem::set_fixed_families(const Method& method) {
   std::vector<Stencils> families;
   std::size_t n_changing = 0;
   for (const auto& term : terms_) {
-    if (!term->fixed_stencils()) {
-      slots_.push_back({term.get(), n_changing});
+    const bool fixed = term->fixed_stencils();
+    slots_.push_back({term.get(), fixed ? families.size() : n_changing, choice_of(*term, method), false});
+    matrix_order_.push_back(matrix_order_.size());
+    if (!fixed) {
       n_changing += term->families().size();
       continue;
     }
-    slots_.push_back({term.get(), families.size()});
     for (const TermFamily& family : term->families()) families.push_back(family.stencils);
   }
   blocks_->set_elements(families);
-  matrix_order_ = slots_;
   std::stable_partition(matrix_order_.begin(), matrix_order_.end(),
-                        [](const Slot& slot) { return slot.term->group() == TermGroup::elastic; });
+                        [this](std::size_t i) { return slots_[i].term->group() == TermGroup::elastic; });
 }
 
 void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt,
@@ -59,6 +71,8 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   const ScopedPhase timer(clock_, Phase::prediction);
   frame_ = {x_n, prediction.x_tilde, dt, prediction.c, load_factor};
   x_ = x_n;
+  level_.reset();
+  served_at_once_ = false;
   for (const auto& term : terms_) term->begin_step(frame_, clock_);
 }
 

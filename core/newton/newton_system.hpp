@@ -12,6 +12,7 @@
 #include "core/integrators/integrator.hpp"
 #include "core/linear/block_system.hpp"
 #include "core/newton/energy_sum.hpp"
+#include "core/newton/hessian_level.hpp"
 #include "core/newton/method.hpp"
 #include "core/newton/report.hpp"
 #include "core/scene/scene.hpp"
@@ -37,12 +38,16 @@ class NewtonSystem {
   // --- an iterate
   /// Every term at x(), then gradient and matrix. Order of the sums: docs/design.md, Terms.
   void assemble();
-  /// Adds eps I to the assembled matrix, eps = max(relative trace / n, absolute); returns eps. What observers
-  /// saw before is without it.
+  /// Adds eps I to the assembled matrix, eps = max(relative trace / n, absolute); returns eps. It stays until
+  /// the next assemble(), in the matrix that is solved only.
   double add_tikhonov(double relative, double absolute);
-  /// Newton direction: A dx = -(g + lifted prescribed motion). target: [3 x n], read at
-  /// prescribed vertices only.
-  LinearReport solve(const Positions& target, Positions& dx);
+  /// Newton direction: A dx = -(g + lifted prescribed motion). target: [3 x n], read at prescribed vertices
+  /// only. While the matrix is not positive definite, or dx does not descend, the Hessian is brought nearer to
+  /// the clamped one as its terms' choices allow (StepHessian). Cost: an assembly and a solve an attempt.
+  SolveReport solve(const Positions& target, Positions& dx);
+  /// dx^T H dx, J, of the exact Hessian where a term began with it, of its own choice elsewhere. Requires
+  /// assemble() at x(). Cost: an assembly.
+  double exact_curvature(const Positions& dx);
 
   // --- the step along dx
   /// Prepares bound() and trials on the way to x1 = x() + dx.
@@ -79,10 +84,18 @@ class NewtonSystem {
   const BlockSystem& blocks() const { return *blocks_; }
   /// Whether a group has elements at the iterate.
   bool active(TermGroup group) const;
-  /// The matrix of some terms at the iterate that was assembled last; valid until the next such call.
-  const BlockSystem::Values& matrix(TermSet set);
-  /// The same without eliminated degrees of freedom; all terms with what add_tikhonov added.
-  const ReducedSystem& reduced(TermSet set = TermSet::all());
+  /// The matrix that was solved last, without eliminated degrees of freedom; valid until the next call of
+  /// these two.
+  const ReducedSystem& solved();
+  /// That of some terms with every element clamped. Cost: an assembly, and the clamped elements if no attempt
+  /// needed them.
+  const ReducedSystem& clamped(TermSet set = TermSet::all());
+  /// The same with eliminated degrees of freedom.
+  const BlockSystem::Values& clamped_values(TermSet set);
+  /// Whether no element of the solved matrix was clamped that its choice begins with exact.
+  bool solved_is_exact() const { return level_.exact(); }
+  /// Whether the two are one: no term began with another Hessian, or the last attempt clamped all.
+  bool solved_is_clamped() const { return level_.all_clamped() && shift_ == 0; }
   /// What the terms say of the iterate, of the end of a step, of a step without progress (dx: the Newton
   /// direction, or 0).
   void report(IterateNumbers& out) const;
@@ -94,24 +107,35 @@ class NewtonSystem {
   struct Slot {
     Term* term;
     std::size_t first;
+    StepHessian hessian;
+    bool clamped;  // the term's clamped Hessians are those of this iterate
   };
-  TermContext context() const { return {*blocks_, elastic_, gradient_, clock_}; }
-  void set_fixed_families();
+  TermContext context(StepHessian hessian = StepHessian::clamped) const {
+    return {*blocks_, elastic_, gradient_, first_projection(hessian), clock_};
+  }
+  void set_fixed_families(const Method& method);
   bool set_changing_families();
-  void linearise(Term& term);
+  void linearise(Slot& slot);
   void add_families(const Slot& slot, Positions& gradient) const;
   void add_gradient(const Slot& slot);
-  void add_matrix(const Slot& slot);
-  void add_matrices(TermSet set);
+  void clamp(Slot& slot);
+  template <class HessianOf>
+  void sum_matrices(TermSet set, const HessianOf& hessian_of);
+  void sum_clamped(TermSet set);
+  void fill_matrix();
+  double largest_force();
   void lift(const Positions& dx, Positions& rhs);
-  LinearReport solve_reduced(const ReducedSystem& reduced);
+  bool direction(const Positions& target, Positions& dx, SolveReport& report);
+  void solve_reduced(SolveReport& report);
 
   const Scene& scene_;
   const Plan plan_;
   const std::vector<std::uint8_t> fixed_;
   TermList terms_;
-  std::vector<Slot> slots_;         // one a term
-  std::vector<Slot> matrix_order_;  // H first, since its snapshot is taken there
+  std::vector<Slot> slots_;                // one a term
+  std::vector<std::size_t> matrix_order_;  // of the slots: H first, since its snapshot is taken there
+  HessianLevel level_;
+  bool served_at_once_ = false;  // the first matrix of the last solve did: the next may be nearer to exact
   std::unique_ptr<BlockSystem> blocks_;
   std::unique_ptr<LinearSolver> solver_;
 
@@ -123,6 +147,9 @@ class NewtonSystem {
   EnergySums sums_;
   const Term* holder_ = nullptr;  // of the last bound
   std::size_t nnz_ = 0;
+  double shift_ = 0;           // N/m, what add_tikhonov added
+  std::vector<double> force_;  // [n] N, |g| of each free vertex
+  std::vector<double> hess_buffer_;
   bool pattern_changed_ = false;
   VecXd rhs_, solution_;
   mutable PhaseClock clock_;

@@ -8,16 +8,26 @@
 
 namespace bb {
 
+/// The attempts at one Newton system: the matrix is changed until it is positive definite and the direction
+/// descends.
+struct SolveReport {
+  LinearReport linear;  // of the last attempt; its counts and seconds are sums over all
+  int attempts = 0, factorizations = 0, analyses = 0;
+  double t = 0;  // of the matrix that was solved, 0 exact to 1 clamped
+  int fallbacks() const { return attempts - 1; }
+};
+
 /// `time` is from its assembly to its end, what observers of the matrix took included.
 struct IterationReport : IterateNumbers {
-  LinearReport linear;
+  SolveReport solve;
   bool pattern_changed = false;
 };
 
 /// `detail` names the pin, the pair, the linear status. `time` has every moment of Simulation::step; on_step
 /// sees what came before it.
 struct StepReport : StepNumbers {
-  double dt_used = 0;  // s; accumulated_toi may shorten the step
+  double dt_used = 0;          // s; accumulated_toi may shorten the step
+  bool still_falling = false;  // |dx| was, when the cap on iterations was reached
 };
 
 /// Observer; override what you need. Callbacks are charged to Phase::output.
@@ -25,7 +35,7 @@ class NewtonSystem;
 class StepObserver {
  public:
   virtual ~StepObserver() = default;
-  /// After assembly, before the solve: the matrices of this iteration are in `system`.
+  /// After the solve, before the step: the matrices of this iteration are in `system`.
   virtual void on_matrix(NewtonSystem&, int /*step*/, int /*iteration*/) {}
   virtual void on_iteration(const IterationReport&) {}
   /// An accepted line search, as rounded.

@@ -17,7 +17,7 @@ namespace bb {
 /// Of run.json and of the trace beside it. MODEL.REVISION.ADDITION: removed or changed meaning, widened,
 /// added. Readers refuse another first number.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.0.0";
+inline constexpr const char* run_schema_version = "3.1.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 using CountMap = std::map<std::string, int>;
@@ -201,7 +201,9 @@ struct Summary : WorkCounts {
   BB_FIELD(Number, contact_load_max_N, "largest of the steps");
   BB_FIELD(Number, limit_load_max_N_per_m, "largest of the steps");
   BB_FIELD(StiffnessRecord, stiffness, "policies with one global kappa");
-  BB_FIELD(CondMap, cond, "stage/scaling -> condition numbers");
+  BB_FIELD(CondMap, cond,
+           "stage/scaling -> condition numbers of clamped matrices, solved/stage/scaling of those that were "
+           "solved where they differ");
   BB_FIELD(Number, wall_s, "of the steps of the pass `time`", "not_requested");
   BB_FIELD(Number, solve_s, "sum of all phases but output", "not_requested");
   BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases", "not_requested");

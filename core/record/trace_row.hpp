@@ -30,10 +30,21 @@ inline constexpr int n_words<ConditionStatus> = 5;
 template <>
 inline constexpr int n_words<LinearStatus> = 6;
 
+/// Which Hessian of its terms it holds.
+enum class MatrixForm { clamped, solved };
+constexpr std::string_view to_string(MatrixForm form) {
+  return form == MatrixForm::clamped ? "clamped" : "solved";
+}
+template <>
+inline constexpr int n_words<MatrixForm> = 2;
+
 inline constexpr const char* no_eigenvalue = "lower_bound singular not_pd not_converged";
 
 struct ConditionSample {
   BB_RECORD(ConditionSample, "an estimate of a condition number");
+  BB_FIELD(MatrixForm, matrix,
+           "clamped: of positive semi-definite elements, as papers compare it. solved: the one that was "
+           "factorised, where it is another") = MatrixForm::clamped;
   BB_FIELD(MatrixStage, stage, "the terms that the matrix holds") = MatrixStage::full;
   BB_FIELD(Scaling, scaling, "of the matrix, before the estimate") = Scaling::none;
   BB_FIELD(int, tier, "0 Ritz values, 1 inverse power and Lanczos, 2 Lanczos round the factor, 3 dense") = 2;
@@ -67,7 +78,11 @@ struct ContactCounts {
 /// Counted in an iteration, summed over a step and over a run.
 struct WorkCounts {
   BB_RECORD(WorkCounts, "work that was done");
-  BB_FIELD(long long, linear_solves, "linear systems solved") = 0;
+  BB_FIELD(long long, linear_solves, "linear systems solved, failed attempts included") = 0;
+  BB_FIELD(
+      long long, hessian_fallbacks,
+      "attempts whose matrix was not positive definite, or whose direction did not descend, and that were "
+      "followed by one nearer to the clamped Hessian") = 0;
   BB_FIELD(long long, linear_iterations, "iterations of the linear solver; a direct one has none") = 0;
   BB_FIELD(long long, factorizations, "numeric factorisations, of a matrix or a preconditioner") = 0;
   BB_FIELD(long long, analyses, "symbolic analyses") = 0;
@@ -96,6 +111,12 @@ struct TraceRow : WorkCounts {
   BB_FIELD(double, grad_inf_N, "largest entry of the gradient, free degrees of freedom") = 0;
   BB_FIELD(double, dx_inf_m, "largest entry of the full Newton direction, before alpha") = 0;
   BB_FIELD(double, decrement_J, "-g . dx / 2") = 0;
+  BB_FIELD(double, hessian_t, "of the matrix that was solved: 0 exact, 1 clamped, where a term blends") = 0;
+  BB_FIELD(Number, contraction,
+           "|dx| over that of the iteration before, at least the square of the ratio before",
+           "first_iteration shortened_step not_estimated");
+  BB_FIELD(Number, error_estimate_m,
+           "|dx| q/(1 - q), q the contraction: of the state after the full direction", "not_estimated");
   BB_FIELD(double, alpha, "accepted fraction of the direction") = 0;
   BB_FIELD(double, alpha_ccd, "bound of ACCD") = 1;
   BB_FIELD(double, alpha_strain, "bound of the strain limit") = 1;

@@ -12,9 +12,10 @@ class BatchTerm final : public Term {
   std::string_view name() const override { return name_; }
   TermGroup group() const override { return TermGroup::elastic; }
   Phase phase() const override { return Phase::elastic; }
-  void linearise(const Positions& x, const TermContext&) override {
-    batch_->derivatives(x, families_[0].local);
+  void linearise(const Positions& x, const TermContext& context) override {
+    batch_->derivatives(x, context.projection, families_[0].local);
   }
+  void clamp(const Positions& x) override { batch_->derivatives(x, Projection::psd, families_[0].clamped); }
   void evaluate(const Positions& x, const TermContext&) override {
     batch_->values(x, families_[0].trial_energy.data());
   }

@@ -51,7 +51,7 @@ void ContactTerm::linearise(const Positions& x, const TermContext& context) {
     kappa_change_ = first_iterate_ ? 0 : change;
     first_iterate_ = false;
   }
-  fill_local(x);
+  fill_local(x, context.projection);
   contact_energies(state_.rows, families_[0].local.energy);
   mollified_energies(state_.mollified, x, families_[1].local.energy);
 }
@@ -66,11 +66,17 @@ void ContactTerm::fill_shape(ContactState& state) const {
 }
 
 // Gradients and Hessians of the current rows, from the kappa that they have.
-void ContactTerm::fill_local(const Positions& x) {
+void ContactTerm::fill_local(const Positions& x, Projection projection) {
   fill_shape(state_);
   LocalTerms &local = families_[0].local, &mollified = families_[1].local;
-  contact_terms(state_.rows, x, options_.hessian_mode, local.grad, local.hess);
-  mollified_terms(state_.mollified, x, mollified.grad, mollified.hess);
+  contact_terms(state_.rows, x, options_.hessian_mode, projection, local.grad, local.hess);
+  mollified_terms(state_.mollified, x, projection, mollified.grad, mollified.hess);
+}
+
+void ContactTerm::clamp(const Positions& x) {
+  LocalTerms &rows = families_[0].clamped, &mollified = families_[1].clamped;
+  contact_terms(state_.rows, x, options_.hessian_mode, Projection::psd, rows.grad, rows.hess);
+  mollified_terms(state_.mollified, x, Projection::psd, mollified.grad, mollified.hess);
 }
 
 void ContactTerm::add_given_motion(const Positions& x, const Positions& motion, Positions& force) const {

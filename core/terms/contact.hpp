@@ -44,6 +44,7 @@ class ContactTerm final : public Term {
   /// Tells a policy that adapts which pairs had a row at two step ends in a row.
   void end_step(PhaseClock& clock) override;
   void linearise(const Positions& x, const TermContext& context) override;
+  void clamp(const Positions& x) override;
   void add_given_motion(const Positions& x, const Positions& motion, Positions& force) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
@@ -63,7 +64,7 @@ class ContactTerm final : public Term {
  private:
   void use_state();
   void fill_shape(ContactState& state) const;
-  void fill_local(const Positions& x);
+  void fill_local(const Positions& x, Projection projection);
   void start_policy(const Positions& x, const TermContext& context);
   StiffnessGlobals policy_globals(const Positions& others) const;
   void list_pair_gaps();

@@ -24,7 +24,7 @@ void ContactTerm::start_policy(const Positions& x, const TermContext& context) {
   if (policy_started_ || !policy.needs_globals() || state_.size() == 0) return;
   std::fill(state_.rows.kappa.begin(), state_.rows.kappa.end(), 1.0);
   std::fill(state_.mollified.kappa.begin(), state_.mollified.kappa.end(), 1.0);
-  fill_local(x);
+  fill_local(x, context.projection);
   policy.start(policy_globals(context.gradient));
   policy_started_ = true;
 }

@@ -2,7 +2,7 @@
 
 namespace bb {
 
-#define ENTRY(name, doc)                   \
+#define ENTRY(name, doc, convex)           \
   PlanItem needs_##name(const TermNeeds&); \
   void make_##name(const TermInputs&, TermList&);
 #include "core/terms/registry.inc"
@@ -10,7 +10,7 @@ namespace bb {
 
 std::span<const TermEntry> term_entries() {
   static constexpr TermEntry all[] = {
-#define ENTRY(name, doc) {#name, doc, needs_##name, make_##name},
+#define ENTRY(name, doc, convex) {#name, doc, convex, needs_##name, make_##name},
 #include "core/terms/registry.inc"
 #undef ENTRY
   };

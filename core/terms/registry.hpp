@@ -31,6 +31,7 @@ struct TermInputs {
 /// One line of registry.inc; the file of that name defines needs_<name>() and make_<name>().
 struct TermEntry {
   std::string_view name, doc;
+  bool convex;  // no element's Hessian has a negative eigenvalue, at any state
   PlanItem (*needs)(const TermNeeds&);
   /// Adds the terms, one or more. Called when the plan says that they are needed.
   void (*make)(const TermInputs&, TermList&);

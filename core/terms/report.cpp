@@ -33,6 +33,7 @@ double follow(const Number& change, int& unsettled) {
 IterateNumbers::IterateNumbers() {
   gap_min_iterates_m = gap_min_iterates_rel = kappa_min_N_per_m = kappa_max_N_per_m =
       contact_curvature_max_N_per_m = contact_load_max_N = Number::missing("no_contacts");
+  contraction = error_estimate_m = Number::missing("not_estimated");
   kappa_change_rel = 0;
   limit_kappa_change_rel = limit_gap_min_rel = max_stretch = limit_load_max_N_per_m =
       Number::missing("no_limit");

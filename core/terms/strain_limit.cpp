@@ -40,7 +40,11 @@ void StrainLimitTerm::linearise(const Positions& x, const TermContext& context) 
   kappa_change_ = 0;
   refresh_stiffness(x, context);
   first_iterate_ = false;
-  batch_.derivatives(x, options_.limit, kappa_.data(), families_[0].local);
+  batch_.derivatives(x, options_.limit, kappa_.data(), context.projection, families_[0].local);
+}
+
+void StrainLimitTerm::clamp(const Positions& x) {
+  batch_.derivatives(x, options_.limit, kappa_.data(), Projection::psd, families_[0].clamped);
 }
 
 void StrainLimitTerm::refresh_stiffness(const Positions& x, const TermContext& context) {

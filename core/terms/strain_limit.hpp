@@ -22,6 +22,7 @@ class StrainLimitTerm final : public Term {
   void begin_step(const StepFrame& frame, PhaseClock& clock) override;
   void change_frame(const StepFrame& frame) override;
   void linearise(const Positions& x, const TermContext& context) override;
+  void clamp(const Positions& x) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
   std::string describe_bound() const override { return "the strain limit"; }
   bool admits(const Positions& x, PhaseClock& clock) override;

@@ -31,6 +31,7 @@ struct TermContext {
   const BlockSystem& blocks;           // pattern of the iterate's matrix
   const BlockSystem::Values& elastic;  // H at the iterate; empty unless the plan has policy_submatrix
   const Positions& gradient;           // N, at the iterate: of the terms before this one (of all, in a trial)
+  Projection projection;               // of the Hessian of every element
   PhaseClock& clock;
 };
 
@@ -44,6 +45,7 @@ struct Motion {
 struct TermFamily {
   Stencils stencils;
   LocalTerms local;                  // hess stays empty where a term has no Hessian
+  LocalTerms clamped;                // what clamp() fills; only its hess is read
   std::vector<double> trial_energy;  // [n elements of the trial state] J
 };
 
@@ -87,9 +89,12 @@ class Term {
   virtual void end_step(PhaseClock&) {}
 
   // --- an iterate
-  /// Energies, gradients and PSD Hessians of all families at the iterate x. Elastic terms come first and read
-  /// nothing of the context.
+  /// Energies, gradients and Hessians of all families at the iterate x. Elastic terms come first and read of
+  /// the context only the projection; convex terms (registry.inc) need none.
   virtual void linearise(const Positions& x, const TermContext& context) = 0;
+  /// Fills `clamped` of all families with the Hessians of the same iterate under Projection::psd. Convex
+  /// terms have nothing to do.
+  virtual void clamp(const Positions& /*x*/) {}
   /// Adds to the free columns of `force` (N) how this term's gradient changes, to first order, when
   /// prescribed vertices move by `motion` (m, 0 at free vertices), as far as it is in no block of the matrix.
   virtual void add_given_motion(const Positions& /*x*/, const Positions& /*motion*/,

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "barriers/shapes/registry.hpp"
+#include "core/terms/step_hessian.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/config/reader.hpp"
 
@@ -42,6 +43,15 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
   if (solver.name == "accumulated_toi" && min_newton_steps > solver.max_iterations) {
     complain("/step_solver/min_newton_steps", fmt::format("{}", min_newton_steps),
              fmt::format("an integer <= max_iterations = {}", solver.max_iterations));
+  }
+}
+
+/// The article's solver adds its own term to a matrix that has to be positive semi-definite.
+void check_hessians(const RunConfig& config, const Complain& complain) {
+  if (config.step_solver.name != "article_literal") return;
+  for (const auto& [term, value] : config.hessian.parameters) {
+    if (to_text(value) == to_string(StepHessian::clamped)) continue;
+    complain("/hessian/" + term, '"' + to_text(value) + '"', "clamped: the step solver is article_literal");
   }
 }
 
@@ -206,6 +216,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
                           std::vector<Violation>& violations) {
   const Complain complain{source, violations};
   check_step_solver(config, complain);
+  check_hessians(config, complain);
   check_policy(config, complain);
   check_adaptive_start(config, complain);
   check_matching(config, complain);

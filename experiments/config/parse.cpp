@@ -5,6 +5,7 @@
 
 #include "core/input/read_file.hpp"
 #include "core/record/provenance.hpp"
+#include "core/terms/step_hessian.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/presets.hpp"
 #include "experiments/config/reader.hpp"
@@ -35,6 +36,19 @@ double default_tolerance(const RunConfig& config) {
   return (fall > 0 && config.integrator.name != "quasi_static" ? std::min(length, 0.1 * fall) : length) / dt;
 }
 
+/// What is left out: a step solver that tests energies goes down from any state, the others keep to
+/// matrices that are positive semi-definite term by term.
+void fill_hessians(const json& document, RunConfig& config) {
+  const bool line_search = config.step_solver.name == "line_search";
+  if (line_search && !child(document, "contact").contains("hessian_mode")) {
+    config.contact.hessian_mode = HessianMode::projected_full;
+  }
+  const StepHessian fallback = line_search ? StepHessian::blend : StepHessian::clamped;
+  for (const HessianChoice& choice : hessian_choices()) {
+    config.hessian.parameters.try_emplace(choice.name, std::string(to_string(fallback)));
+  }
+}
+
 RunConfig read_document(json document, const std::string& source, std::vector<Violation>& violations) {
   RunConfig config;
   config.source = source;
@@ -61,6 +75,7 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   if (!child(document, "step_solver").contains("tol_velocity_m_per_s")) {
     config.step_solver.tol_velocity = default_tolerance(config);
   }
+  fill_hessians(document, config);
   check_contradictions(config, source, violations);
   return config;
 }

@@ -78,6 +78,7 @@ struct RunConfig {
   IntegratorConfig integrator;
   TimeConfig time;
   StepSolverConfig step_solver;
+  HessianConfig hessian;
   LinearSolverConfig linear_solver;
   std::string precision = "double";
   PassesConfig passes;

@@ -7,6 +7,7 @@
 #include "core/integrators/registry.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "core/newton/step_solver.hpp"
+#include "core/terms/step_hessian.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/config/limit_policies.hpp"
 
@@ -95,6 +96,7 @@ Settings<RunConfig> list_of() {
   out.nest("integrator", settings_of<IntegratorConfig>(), &C::integrator);
   out.nest("time", settings_of<TimeConfig>(), &C::time);
   out.nest("step_solver", settings_of<StepSolverConfig>(), &C::step_solver);
+  out.nest("hessian", settings_of<HessianConfig>(), &C::hessian);
   out.nest("linear_solver", settings_of<LinearSolverConfig>(), &C::linear_solver);
   out.add("precision", word({"double"}), "Scalar of the whole pipeline.", &C::precision);
   out.nest("passes", settings_of<PassesConfig>(), &C::passes);

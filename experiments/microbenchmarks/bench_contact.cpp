@@ -75,7 +75,7 @@ void value(benchmark::State& state) {
 void gradient_and_hessian(benchmark::State& state, HessianMode mode) {
   Contacts contacts;
   for (auto _ : state) {
-    contact_terms(contacts.rows, contacts.scene.x0, mode, contacts.grad, contacts.hess);
+    contact_terms(contacts.rows, contacts.scene.x0, mode, Projection::psd, contacts.grad, contacts.hess);
     benchmark::DoNotOptimize(contacts.hess.data());
     benchmark::ClobberMemory();
   }
@@ -95,7 +95,7 @@ void mollified_value(benchmark::State& state) {
 void mollified_gradient_and_hessian(benchmark::State& state) {
   Contacts contacts;
   for (auto _ : state) {
-    mollified_terms(contacts.mollified, contacts.scene.x0, contacts.grad, contacts.hess);
+    mollified_terms(contacts.mollified, contacts.scene.x0, Projection::psd, contacts.grad, contacts.hess);
     benchmark::DoNotOptimize(contacts.hess.data());
     benchmark::ClobberMemory();
   }
@@ -105,7 +105,8 @@ void mollified_gradient_and_hessian(benchmark::State& state) {
 void assemble(benchmark::State& state) {
   Contacts contacts;
   const int n = contacts.scene.n_vertices();
-  contact_terms(contacts.rows, contacts.scene.x0, HessianMode::gauss_newton, contacts.grad, contacts.hess);
+  contact_terms(contacts.rows, contacts.scene.x0, HessianMode::gauss_newton, Projection::psd, contacts.grad,
+                contacts.hess);
   BlockSystem blocks(n, std::vector<std::uint8_t>(3 * static_cast<std::size_t>(n), 0));
   blocks.set_elements({});
   Positions gradient = Positions::Zero(3, n);

@@ -32,7 +32,7 @@ void value(benchmark::State& state, const EnergyBatch& batch, const Positions& x
 void derivatives(benchmark::State& state, const EnergyBatch& batch, const Positions& x) {
   LocalTerms terms;
   for (auto _ : state) {
-    batch.derivatives(x, terms);
+    batch.derivatives(x, Projection::psd, terms);
     benchmark::DoNotOptimize(terms.hess.data());
     benchmark::ClobberMemory();
   }
@@ -63,7 +63,7 @@ void strain_limit(benchmark::State& state, bool with_derivatives) {
   terms.resize(batch.size(), 3);
   for (auto _ : state) {
     if (with_derivatives) {
-      batch.derivatives(sheet.scene.x0, barrier, kappa.data(), terms);
+      batch.derivatives(sheet.scene.x0, barrier, kappa.data(), Projection::psd, terms);
     } else {
       batch.values(sheet.scene.x0, barrier, kappa.data(), terms.energy.data());
     }

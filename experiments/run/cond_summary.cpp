@@ -12,8 +12,9 @@ void add_log10(std::vector<double>& list, const Number& n) {
 }  // namespace
 
 void CondSummary::add(const ConditionSample& sample) {
+  const std::string form = sample.matrix == MatrixForm::clamped ? "" : "solved/";
   Samples& samples =
-      samples_[std::string(to_string(sample.stage)) + "/" + std::string(to_string(sample.scaling))];
+      samples_[form + std::string(to_string(sample.stage)) + "/" + std::string(to_string(sample.scaling))];
   ++samples.statuses[std::string(to_string(sample.status))];
   const bool unbounded =
       sample.status == ConditionStatus::singular || sample.status == ConditionStatus::not_pd;

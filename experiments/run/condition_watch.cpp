@@ -30,12 +30,13 @@ std::optional<Scaling> scaling_of(const LinearSolverConfig& solver) {
 }
 
 /// A value that is unknown is absent for the reason that the estimate itself gives.
-ConditionSample sample_of(MatrixStage stage, Scaling scaling, int tier, const ConditionEstimate& e) {
+ConditionSample sample_of(MatrixForm matrix, MatrixStage stage, Scaling scaling, int tier,
+                          const ConditionEstimate& e) {
   const auto known = [&e](double v) {
     return std::isfinite(v) ? Number(v) : Number::missing(to_string(e.status).data());  // a literal
   };
-  return {stage,    scaling,    tier,     known(e.lambda_min), known(e.lambda_max), known(e.cond), e.status,
-          e.method, e.residual, e.solves, e.products,          e.factorizations,    e.seconds};
+  return {matrix,   stage,    scaling,    tier,     known(e.lambda_min), known(e.lambda_max), known(e.cond),
+          e.status, e.method, e.residual, e.solves, e.products,          e.factorizations,    e.seconds};
 }
 
 }  // namespace
@@ -48,11 +49,11 @@ bool ConditionWatch::due(int iteration) const {
   return config_.diagnose.budget == 0 || spent_s_ < config_.diagnose.budget;
 }
 
-void ConditionWatch::estimate(const ReducedSystem& matrix, MatrixStage stage) {
+void ConditionWatch::estimate(const ReducedSystem& matrix, MatrixForm form, MatrixStage stage) {
   const int tier = config_.diagnose.tier;
   for (const Scaling scaling : config_.diagnose.scalings) {
-    samples_.push_back(
-        sample_of(stage, scaling, tier, estimator_.estimate(matrix, {tier, scaling, config_.diagnose.seed})));
+    samples_.push_back(sample_of(form, stage, scaling, tier,
+                                 estimator_.estimate(matrix, {tier, scaling, config_.diagnose.seed})));
   }
 }
 
@@ -61,25 +62,28 @@ void ConditionWatch::on_matrix(NewtonSystem& system, int step, int iteration) {
   probed_ = Number::missing("not_due");
   due_ = due(iteration);
   if (!due_) return;
+  form_ = system.solved_is_clamped() ? MatrixForm::clamped : MatrixForm::solved;
   const double start = now_s();
   if (config_.diagnose.tier > 0) {  // tier 0 reads what the solve leaves
     for (const std::string& name : config_.diagnose.stages) {
       for (const Stage& stage : stages) {
         if (name != to_string(stage.name) || (stage.last && !system.active(*stage.last))) continue;
-        estimate(system.reduced(TermSet::all().without(stage.left_out)), stage.name);
+        estimate(system.clamped(TermSet::all().without(stage.left_out)), MatrixForm::clamped, stage.name);
+        if (stage.name != MatrixStage::full || system.solved_is_clamped()) continue;
+        estimate(system.solved(), MatrixForm::solved, stage.name);
       }
     }
   }
-  if (artifacts_ && config_.output.matrices) artifacts_->matrix(system.reduced(), step, iteration);
-  if (config_.diagnose.pcg) probed_ = probe_.iterations(system.reduced());
+  if (artifacts_ && config_.output.matrices) artifacts_->matrix(system.solved(), step, iteration);
+  if (config_.diagnose.pcg) probed_ = probe_.iterations(system.solved());
   spent_s_ += now_s() - start;
 }
 
 void ConditionWatch::on_iteration(const LinearReport& linear, TraceRow& row) {
   const std::optional<Scaling> scaling = scaling_of(config_.linear_solver);
   if (due_ && config_.diagnose.tier == 0 && scaling) {  // the full matrix scaled by the preconditioner
-    samples_.push_back(
-        sample_of(MatrixStage::full, *scaling, 0, condition_from_ritz(linear.ritz_min, linear.ritz_max)));
+    samples_.push_back(sample_of(form_, MatrixStage::full, *scaling, 0,
+                                 condition_from_ritz(linear.ritz_min, linear.ritz_max)));
   }
   for (const ConditionSample& sample : samples_) cond_.add(sample);
   if (probed_.finite()) probes_.push_back(probed_.value);

@@ -18,22 +18,23 @@ class ConditionWatch {
   /// `artifacts` gets matrices where the config has them; may be null.
   ConditionWatch(const RunConfig& config, ArtifactWriter* artifacts);
 
-  /// After assembly: estimates of the stages and scalings of the config, none when the iteration is not due.
+  /// After the solve: estimates of the stages and scalings of the config, none when the iteration is not due.
   void on_matrix(NewtonSystem& system, int step, int iteration);
-  /// After the solve: fills `cond` and `probe_pcg_iterations` of its row.
+  /// At the end of the iteration: fills `cond` and `probe_pcg_iterations` of its row.
   void on_iteration(const LinearReport& linear, TraceRow& row);
   /// `cond` and `probe_pcg` of the run so far.
   void fill(Summary& summary) const;
 
  private:
   bool due(int iteration) const;
-  void estimate(const ReducedSystem& matrix, MatrixStage stage);
+  void estimate(const ReducedSystem& matrix, MatrixForm form, MatrixStage stage);
 
   const RunConfig& config_;
   ArtifactWriter* artifacts_;
   ConditionEstimator estimator_;
   PcgProbe probe_;
-  bool due_ = false;  // of the iteration in progress, as the next two
+  bool due_ = false;                       // of the iteration in progress, as the next three
+  MatrixForm form_ = MatrixForm::clamped;  // of the matrix that was solved
   std::vector<ConditionSample> samples_;
   Number probed_;
   CondSummary cond_;

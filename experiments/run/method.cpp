@@ -69,6 +69,9 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   method.contact_options.ccd_park = config.contact.ccd_park;
   method.integrator = make_integrator(config.integrator.name, config.integrator.parameters);
   method.step_solver = step_solver_options(config);
+  for (const HessianChoice& choice : hessian_choices()) {
+    method.step_hessian[choice.name] = step_hessian_of(text(config.hessian.parameters, choice.name));
+  }
   method.linear = {config.linear_solver.name, config.linear_solver.parameters};
   return method;
 }

@@ -16,7 +16,8 @@ double load_of(const Number& overload) { return overload.finite() ? overload.val
 Verdict stalled(const StepReport& step) {
   const double contact = load_of(step.contact_overload), limit = load_of(step.limit_overload);
   const double worst = std::max(contact, limit);
-  if (worst > 1) {
+  // with |dx| still falling it is the cap that ended the step, not the load
+  if (worst > 1 && !step.still_falling) {
     return {Outcome::stall_overload,
             fmt::format("step {}: load over capacity {:.3g} {}; {} after {} iterations{}", step.step, worst,
                         contact >= limit ? "at a contact" : "of the strain limit", to_string(step.status),

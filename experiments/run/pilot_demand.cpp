@@ -26,7 +26,7 @@ class Replay {
   void find_rows(int step, Refresh refresh) {
     begin(refresh == Refresh::per_step ? start(step) : end(step), step);
     system_.assemble();
-    elastic_ = system_.matrix(TermGroup::elastic);
+    elastic_ = system_.clamped_values(TermGroup::elastic);
     if (refresh != Refresh::per_step) return;
     system_.prepare(end(step), end(step) - start(step));
     if (!system_.try_state(end(step))) throw std::logic_error("a state of the pilot is infeasible");

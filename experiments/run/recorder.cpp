@@ -26,11 +26,11 @@ void Recorder::on_matrix(NewtonSystem& system, int step, int iteration) {
 
 void Recorder::on_iteration(const IterationReport& report) {
   seen_.push_back(report.time);
-  linear_.push_back(report.linear.iterations);
+  linear_.push_back(report.solve.linear.iterations);
   TraceRow row = report;
   const std::size_t n = seen_.size() - 1;  // a run that was timed may have stopped earlier
   row.time = n < reported_->size() ? (*reported_)[n] : PhaseTimes{};
-  condition_.on_iteration(report.linear, row);
+  condition_.on_iteration(report.solve.linear, row);
   if (trace_) rows_.push_back(std::move(row));
 }
 

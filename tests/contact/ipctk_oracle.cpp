@@ -112,9 +112,9 @@ int main(int argc, char** argv) {
   for (double e : energy) potential += e;
   Positions gradient = Positions::Zero(3, p.scene.n_vertices());
   std::vector<Entry> entries;
-  contact_terms(rows, p.scene.x0, HessianMode::projected_full, grad, hess);
+  contact_terms(rows, p.scene.x0, HessianMode::projected_full, Projection::psd, grad, hess);
   scatter(rows.vertex, grad, hess, gradient, entries);
-  mollified_terms(mollified, p.scene.x0, grad, hess);
+  mollified_terms(mollified, p.scene.x0, Projection::psd, grad, hess);
   scatter(mollified.free_vertex, grad, hess, gradient, entries);
 
   std::ofstream out(argv[2], std::ios::binary);

@@ -47,9 +47,9 @@ Assembled assemble(ContactSystem& contacts, const Positions& x, HessianMode mode
   Assembled out{VecXd::Zero(x.size()), Matrix::Zero(x.size(), x.size()),
                 rows.table.size() + rows.mollified.size()};
   std::vector<double> grad(1, 7.0), hess(1, 7.0);
-  contact_terms(rows.table, x, mode, grad, hess);
+  contact_terms(rows.table, x, mode, Projection::psd, grad, hess);
   scatter(rows.table.vertex, rows.table.size(), grad, hess, out);
-  mollified_terms(rows.mollified, x, grad, hess);
+  mollified_terms(rows.mollified, x, Projection::psd, grad, hess);
   scatter(rows.mollified.free_vertex, rows.mollified.size(), grad, hess, out);
   return out;
 }

@@ -38,19 +38,19 @@ void expect_consistent(const EnergyBatch& batch, const Positions& x) {
   SCOPED_TRACE(batch.name());
   ASSERT_GT(batch.size(), 64u);  // more than one grain of the loop
   LocalTerms many, one;
-  batch.derivatives(x, many);
+  batch.derivatives(x, Projection::psd, many);
   std::vector<double> energy(batch.size());
   batch.values(x, energy.data());
   EXPECT_EQ(energy, many.energy);
   {
     const tbb::global_control serial(tbb::global_control::max_allowed_parallelism, 1);
-    batch.derivatives(x, one);
+    batch.derivatives(x, Projection::psd, one);
   }
   EXPECT_EQ(one.grad, many.grad);
   EXPECT_EQ(one.hess, many.hess);
   EXPECT_GT(*std::max_element(one.energy.begin(), one.energy.end()), 0);
   const double* before = one.hess.data();
-  batch.derivatives(x, one);
+  batch.derivatives(x, Projection::psd, one);
   EXPECT_EQ(before, one.hess.data());
 }
 
@@ -68,7 +68,7 @@ TEST(MembraneBatch, StoresTheElementTermsOfEveryModel) {
       ASSERT_EQ(batch.size(), n);
       expect_consistent(batch, strip.deformed);
       LocalTerms out;
-      batch.derivatives(strip.deformed, out);
+      batch.derivatives(strip.deformed, Projection::psd, out);
       const auto& t = strip.triangles[7];
       const Vec3d rest[3] = {strip.rest.col(t[0]), strip.rest.col(t[1]), strip.rest.col(t[2])};
       const Vec3d x[3] = {strip.deformed.col(t[0]), strip.deformed.col(t[1]), strip.deformed.col(t[2])};
@@ -122,7 +122,7 @@ TEST(SpringBatch, StoresTheElementTerms) {
   const SpringBatch batch(strip.edges, strip.rest, k);
   expect_consistent(batch, strip.deformed);
   LocalTerms out;
-  batch.derivatives(strip.deformed, out);
+  batch.derivatives(strip.deformed, Projection::psd, out);
   const auto [a, b] = strip.edges[5];
   const Vec3d x[2] = {strip.deformed.col(a), strip.deformed.col(b)};
   const double rest_length = (strip.rest.col(b) - strip.rest.col(a)).norm();
@@ -152,7 +152,7 @@ TEST(HingeBatch, StoresTheElementTerms) {
   const HingeBatch batch = hinges.batch(0, hinges.stiffness.size());
   expect_consistent(batch, x);
   LocalTerms out;
-  batch.derivatives(x, out);
+  batch.derivatives(x, Projection::psd, out);
   for (std::size_t e = 0; e < batch.size(); ++e) {
     const auto [e0, e1, v0, v1] = hinges.strip.hinges[e];
     const Vec3d points[4] = {x.col(e0), x.col(e1), x.col(v0), x.col(v1)};
@@ -177,10 +177,10 @@ TEST(HingeBatch, AHingeDoesNotDependOnItsNeighboursInTheGroup) {
   const std::vector<double> angle = hinge_angles(hinges.strip.hinges, x);
   for (std::size_t e = 1; e < angle.size(); e += 3) hinges.rest_angle[e] = angle[e];  // exactly at rest
   LocalTerms all, part;
-  hinges.batch(0, hinges.stiffness.size()).derivatives(x, all);
+  hinges.batch(0, hinges.stiffness.size()).derivatives(x, Projection::psd, all);
   for (const std::size_t first : {1u, 2u, 3u}) {
     for (const std::size_t n : {1u, 2u, 3u, 5u, 8u}) {  // groups that are not full too
-      hinges.batch(first, n).derivatives(x, part);
+      hinges.batch(first, n).derivatives(x, Projection::psd, part);
       EXPECT_TRUE(std::equal(part.energy.begin(), part.energy.end(), &all.energy[first]));
       EXPECT_TRUE(std::equal(part.grad.begin(), part.grad.end(), &all.grad[12 * first]));
       EXPECT_TRUE(std::equal(part.hess.begin(), part.hess.end(), &all.hess[n_lower_numbers(4) * first]));
@@ -202,7 +202,7 @@ TEST(Batches, BadInputIsAConfigError) {
 TEST(Batches, EmptyIsAllowed) {
   const SpringBatch batch({}, Positions(3, 0), {});
   LocalTerms out;
-  batch.derivatives(Positions(3, 0), out);
+  batch.derivatives(Positions(3, 0), Projection::psd, out);
   EXPECT_EQ(batch.size(), 0u);
   EXPECT_TRUE(out.hess.empty());
 }

@@ -26,7 +26,7 @@ TEST(StrainLimitBatch, ColumnsAndTermsAreThoseOfTheElements) {
     std::vector<double> kappa(batch.size()), energy(batch.size());
     batch.fixed_stiffness(5.0, kappa.data());
     LocalTerms out;
-    batch.derivatives(strip.deformed, barrier, kappa.data(), out);
+    batch.derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, out);
     batch.values(strip.deformed, barrier, kappa.data(), energy.data());
     EXPECT_GT(batch.n_active(), 5u);
     EXPECT_LT(batch.n_active(), batch.size());
@@ -56,7 +56,7 @@ TEST(StrainLimitBatch, AStateThatWasMeasuredLastIsKnown) {
   std::vector<double> energy(batch.size());
   LocalTerms out;
   batch.values(strip.deformed, barrier, kappa.data(), energy.data());
-  batch.derivatives(strip.deformed, barrier, kappa.data(), out);
+  batch.derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, out);
   batch.measure(strip.deformed);
   EXPECT_EQ(batch.sweeps(), 1);
   Positions other = strip.deformed;
@@ -72,7 +72,7 @@ TEST(StrainLimitBatch, GradientIsTheDerivativeOfTheSum) {
   StrainLimitBatch batch = make_batch(strip, 0.1, 0.9);
   std::vector<double> kappa(batch.size(), 2.0), energy(batch.size());
   LocalTerms out;
-  batch.derivatives(strip.deformed, barrier, kappa.data(), out);
+  batch.derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, out);
   Positions gradient = Positions::Zero(3, strip.rest.cols());
   for (std::size_t slot = 0; slot < batch.vertices().size(); ++slot) {
     for (int a = 0; a < 3; ++a)

@@ -89,7 +89,7 @@ class Comparison final : public StepObserver {
   void on_matrix(NewtonSystem& system, int step, int iteration) override {
     if (iteration % 2 != 0) return;
     with_contact += system.active(TermGroup::contact);
-    const ReducedSystem& matrix = system.reduced();
+    const ReducedSystem& matrix = system.solved();
     for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
       SCOPED_TRACE(std::string(to_string(scaling)) + ", step " + std::to_string(step) + ", iteration " +
                    std::to_string(iteration));

@@ -73,10 +73,11 @@ TEST(Lanes, EveryLaneIsProjectedAsIfAlone) {
   std::mt19937 rng(11);
   for (int repeat = 0; repeat < 20; ++repeat) {
     const std::array<Matrix, 4> in = unlike(rng);
-    const Mat<Four, 9, 9> out = project_psd<Four, 9>(side_by_side(in));
-    const Mat<Four, 9, 9> turned = project_psd<Four, 9>(side_by_side({in[1], in[2], in[3], in[0]}));
+    const Mat<Four, 9, 9> out = project<Four, 9>(side_by_side(in), Projection::psd);
+    const Mat<Four, 9, 9> turned =
+        project<Four, 9>(side_by_side({in[1], in[2], in[3], in[0]}), Projection::psd);
     for (int lane = 0; lane < 4; ++lane) {
-      const Matrix expected = project_psd<double, 9>(in[static_cast<std::size_t>(lane)]);
+      const Matrix expected = project<double, 9>(in[static_cast<std::size_t>(lane)], Projection::psd);
       Matrix got, again;
       for (int k = 0; k < 81; ++k) {
         got.data()[k] = out.data()[k][lane];

@@ -14,7 +14,7 @@ namespace {
 using namespace bb;
 using namespace bb::test;
 
-/// What project_psd made of `matrix`, the input rounded to its scalar.
+/// What project(.., psd) made of `matrix`, the input rounded to its scalar.
 struct Projected {
   MatXl matrix, out;
   int n_clamped = -1;
@@ -24,7 +24,7 @@ template <class T, int N>
 Projected project(const MatXl& a) {
   const Mat<T, N, N> matrix = a.cast<T>();
   int n_clamped = -1;
-  const Mat<T, N, N> out = project_psd<T, N>(matrix, &n_clamped);
+  const Mat<T, N, N> out = bb::project<T, N>(matrix, Projection::psd, &n_clamped);
   return {matrix.template cast<Long>(), out.template cast<Long>(), n_clamped};
 }
 
@@ -116,7 +116,7 @@ TEST(ProjectPsdBeside, EqualsTheProjectionOfTheWholeMatrix) {
     const Mat<double, 9, 9> a = symmetric(q, values).cast<double>();
     for (const double length : {1e-3, -5.0}) {
       const Vec<double, 9> u = (length * q.col(k)).cast<double>();
-      const Mat<double, 9, 9> out = project_psd_beside<double, 9>(a, u);
+      const Mat<double, 9, 9> out = project_beside<double, 9>(a, u, Projection::psd);
       const MatXl truth = symmetric(q, values.cwiseMax(Long(0)));
       ASSERT_GT(truth.norm(), 1);
       EXPECT_LE((out.cast<Long>() - truth).norm(), 1e-14 * truth.norm());

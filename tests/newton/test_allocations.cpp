@@ -32,7 +32,7 @@ class Watch final : public StepObserver {
  public:
   void on_iteration(const IterationReport& report) override {
     const long now = test::n_mallocs();
-    if (report.iteration > 0 && !report.pattern_changed && !report.linear.analyzed) {
+    if (report.iteration > 0 && !report.pattern_changed && !report.solve.linear.analyzed) {
       counts.push_back(now - last_);
       contacts = std::max(contacts, report.contacts.total());
     }

@@ -59,7 +59,7 @@ TEST(Iteration, a_direction_fails_when_it_is_unsolved_not_finite_or_uphill) {
     EXPECT_EQ(direction_failure(broken, false), StepStatus::non_finite);
   }
   IterationReport unsolved = report;
-  unsolved.linear.status = LinearStatus::matrix_indefinite;
+  unsolved.solve.linear.status = LinearStatus::matrix_indefinite;
   EXPECT_EQ(direction_failure(unsolved, false), StepStatus::linear_failed);
 }
 

@@ -114,12 +114,12 @@ TEST(Pins, the_motion_of_a_given_edge_is_lifted_through_a_mollified_row) {
   const double motion = 1e-6;  // m
   Positions target = scene.x0, dx;
   for (const Pin& pin : scene.pins) target(2, pin.vertex) += motion;
-  ASSERT_EQ(system.solve(target, dx).status, LinearStatus::ok);
+  ASSERT_EQ(system.solve(target, dx).linear.status, LinearStatus::ok);
   Positions free_motion = dx;
   for (const Pin& pin : scene.pins) free_motion.col(pin.vertex).setZero();
   VecXd moved, wanted;
   system.blocks().restrict_vector(free_motion, moved);
-  const VecXd model = system.reduced().lower.selfadjointView<Eigen::Lower>() * moved;
+  const VecXd model = system.solved().lower.selfadjointView<Eigen::Lower>() * moved;
 
   system.prepare(target, target - scene.x0);
   ASSERT_TRUE(system.try_state(target).has_value());

@@ -78,7 +78,9 @@ struct TermsOf {
     no_gradient.setZero(3, x_n.cols());
     for (const auto& term : terms) term->begin_step(frame, clock);
   }
-  TermContext context() const { return {blocks, no_elastic, no_gradient, const_cast<PhaseClock&>(clock)}; }
+  TermContext context(Projection projection = Projection::psd) const {
+    return {blocks, no_elastic, no_gradient, projection, const_cast<PhaseClock&>(clock)};
+  }
 };
 
 inline double sum_of(const std::vector<double>& values) {

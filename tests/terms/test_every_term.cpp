@@ -2,68 +2,16 @@
 // here, as long as scene_with_everything() needs it.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
 
 #include "core/math/lower_blocks.hpp"
-#include "tests/terms/all_terms.hpp"
+#include "tests/terms/at_iterate.hpp"
 
 namespace bb {
 namespace {
 
-/// All terms at an iterate that is a little away from where the step began.
-struct AtIterate : test::TermsOf {
-  Positions x;
-
-  AtIterate() : AtIterate(test::scene_with_everything()) {}
-  explicit AtIterate(const Scene& all) : TermsOf(all, all.x0, frame(all)), x(test::disturbed(scene, 0.004)) {
-    move_to(x);
-  }
-  void move_to(const Positions& to) {
-    x = to;
-    trial(x);
-    for (const auto& term : terms) term->accept(clock);
-    for (const auto& term : terms) term->linearise(x, context());
-  }
-  static StepFrame frame(const Scene& scene) {
-    StepFrame out;
-    out.x_n = scene.x0;
-    out.x_tilde = scene.x0;
-    out.x_tilde.row(2).array() -= 0.01;
-    out.dt = 0.05;
-    return out;
-  }
-  void trial(const Positions& to) {
-    const Positions dx = to - scene.x0;
-    for (const auto& term : terms) {
-      term->prepare({scene.x0, to, dx}, clock);
-      ASSERT_TRUE(term->admits(to, clock)) << term->name();
-      term->evaluate(to, context());
-    }
-  }
-};
-
-/// Ascending, of the symmetric matrix on `width` points with these lower blocks.
-Eigen::VectorXd eigenvalues(int width, const double* blocks) {
-  Eigen::MatrixXd lower = Eigen::MatrixXd::Zero(3 * width, 3 * width);
-  for (int b = 0; b < width; ++b) {
-    for (int a = b; a < width; ++a, blocks += 9)
-      lower.block<3, 3>(3 * a, 3 * b) = Mat<double, 3, 3>::Map(blocks);
-  }
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lower, Eigen::EigenvaluesOnly).eigenvalues();
-}
-
-Positions gradient_of(const Term& term, Eigen::Index n_vertices) {
-  Positions out = Positions::Zero(3, n_vertices);
-  for (const TermFamily& family : term.families()) {
-    const std::span<const int> vertices = family.stencils.vertices;
-    for (std::size_t i = 0; i < vertices.size(); ++i) {
-      if (vertices[i] >= 0) out.col(vertices[i]) += Vec3d::Map(&family.local.grad[3 * i]);
-    }
-  }
-  return out;
-}
+using test::AtIterate, test::curvature_along, test::gradient_of;
 
 TEST(EveryTerm, is_needed_by_the_scene_of_this_test_and_made_from_the_plan) {
   const AtIterate at;
@@ -121,7 +69,7 @@ TEST(EveryTerm, has_psd_hessians_unless_it_is_linear) {
     for (const TermFamily& family : term->families()) {
       const std::size_t stride = n_lower_numbers(static_cast<std::size_t>(family.stencils.width));
       for (std::size_t at_block = 0; at_block < family.local.hess.size(); at_block += stride) {
-        const Eigen::VectorXd values = eigenvalues(family.stencils.width, &family.local.hess[at_block]);
+        const Eigen::VectorXd values = test::eigenvalues(family.stencils.width, &family.local.hess[at_block]);
         EXPECT_GE(values[0], -1e-9 * values[values.size() - 1]) << term->name();
         largest = std::max(largest, values[values.size() - 1]);
         ++judged;
@@ -130,27 +78,6 @@ TEST(EveryTerm, has_psd_hessians_unless_it_is_linear) {
     EXPECT_EQ(largest > 0, term->name() != "external_force") << term->name();
   }
   EXPECT_GT(judged, 30U);
-}
-
-/// dx^T H dx over all elements, H with the lower blocks of each.
-double curvature_along(const Term& term, const Positions& dx) {
-  double sum = 0;
-  for (const TermFamily& family : term.families()) {
-    const auto width = static_cast<std::size_t>(family.stencils.width);
-    const double* block = family.local.hess.data();
-    for (std::size_t e = 0; e < family.stencils.size() && !family.local.hess.empty(); ++e) {
-      const auto of = [&](std::size_t a) -> Vec3d {
-        const int vertex = family.stencils.vertices[width * e + a];
-        return vertex < 0 ? Vec3d::Zero() : Vec3d(dx.col(vertex));
-      };
-      for (std::size_t b = 0; b < width; ++b) {
-        for (std::size_t a = b; a < width; ++a, block += 9) {
-          sum += (a == b ? 1 : 2) * of(a).dot(Mat<double, 3, 3>::Map(block) * of(b));
-        }
-      }
-    }
-  }
-  return sum;
 }
 
 /// Projection only adds curvature: along any direction H has at least what the gradient's difference shows.

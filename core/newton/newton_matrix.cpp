@@ -1,0 +1,153 @@
+// The Newton matrix of the iterate at the level that makes it positive definite, and its solve with
+// prescribed motion lifted to the right-hand side.
+#include <algorithm>
+
+#include "core/newton/newton_system.hpp"
+
+namespace bb {
+
+void NewtonSystem::clamp(Slot& slot) {
+  if (slot.clamped || slot.hessian == StepHessian::clamped) return;
+  const ScopedPhase timer(clock_, slot.term->phase());
+  slot.term->clamp(x_);
+  slot.clamped = true;
+}
+
+// The sum of hessian_of(slot, family), lower blocks [elements], over the terms of a set. Left in blocks_.
+template <class HessianOf>
+void NewtonSystem::sum_matrices(TermSet set, const HessianOf& hessian_of) {
+  const ScopedPhase timer(clock_, Phase::assembly);
+  blocks_->clear();
+  for (const std::size_t i : matrix_order_) {
+    const Slot& slot = slots_[i];
+    if (!set.has(slot.term->group())) continue;
+    std::size_t index = slot.first;
+    for (const TermFamily& family : slot.term->families()) {
+      const std::size_t number = index++;
+      if (family.local.hess.empty()) continue;
+      const std::span<const double> hess = hessian_of(slot, family);
+      slot.term->fixed_stencils() ? blocks_->add_elements(number, hess) : blocks_->add_contacts(number, hess);
+    }
+  }
+}
+
+void NewtonSystem::sum_clamped(TermSet set) {
+  for (Slot& slot : slots_) {
+    if (set.has(slot.term->group())) clamp(slot);
+  }
+  sum_matrices(set, [](const Slot& slot, const TermFamily& family) -> std::span<const double> {
+    return slot.hessian == StepHessian::clamped ? family.local.hess : family.clamped.hess;
+  });
+}
+
+// At the level of the next attempt.
+void NewtonSystem::fill_matrix() {
+  for (Slot& slot : slots_) {
+    if (needs_clamped(slot.hessian, level_)) clamp(slot);
+  }
+  sum_matrices(TermSet::all(), [this](const Slot& slot, const TermFamily& family) {
+    return hessian_at(family, slot.hessian, level_, force_, hess_buffer_);
+  });
+  const ScopedPhase timer(clock_, Phase::assembly);
+  if (shift_ > 0) blocks_->add_diagonal(std::vector<double>(scene_.mass.size(), shift_));
+  full_ = blocks_->values();
+}
+
+// Of a vertex, over its free degrees of freedom.
+double NewtonSystem::largest_force() {
+  force_.resize(fixed_.size() / 3);
+  double largest = 0;
+  for (std::size_t v = 0; v < force_.size(); ++v) {
+    Vec3d g = gradient_.col(static_cast<Eigen::Index>(v));
+    for (std::size_t k = 0; k < 3; ++k) {
+      if (fixed_[3 * v + k]) g[static_cast<Eigen::Index>(k)] = 0;
+    }
+    force_[v] = g.norm();
+    largest = std::max(largest, force_[v]);
+  }
+  return largest;
+}
+
+const ReducedSystem& NewtonSystem::solved() { return blocks_->reduce(full_); }
+
+const BlockSystem::Values& NewtonSystem::clamped_values(TermSet set) {
+  sum_clamped(set);
+  return blocks_->values();
+}
+
+const ReducedSystem& NewtonSystem::clamped(TermSet set) { return blocks_->reduce(clamped_values(set)); }
+
+double NewtonSystem::exact_curvature(const Positions& dx) {
+  sum_matrices(TermSet::all(), [](const Slot&, const TermFamily& family) -> std::span<const double> {
+    return family.local.hess;
+  });
+  part_.setZero(3, dx.cols());
+  blocks_->multiply_add(blocks_->values(), dx, part_);
+  return part_.cwiseProduct(dx).sum();
+}
+
+double NewtonSystem::add_tikhonov(double relative, double absolute) {
+  const ReducedSystem& reduced = blocks_->reduce(full_);
+  const double mean = reduced.lower.diagonal().sum() / static_cast<double>(reduced.lower.rows());
+  shift_ = std::max(relative * mean, absolute);
+  fill_matrix();
+  return shift_;
+}
+
+// What prescribed displacements add to the right-hand side: -A_fp dx_p for the blocks of the matrix, and what
+// terms add for given vertices that have none. dx is 0 at free vertices.
+void NewtonSystem::lift(const Positions& dx, Positions& rhs) {
+  part_.setZero(3, dx.cols());
+  blocks_->multiply_add(full_, dx, part_);
+  for (const auto& term : terms_) term->add_given_motion(x_, dx, part_);
+  rhs -= part_;
+}
+
+SolveReport NewtonSystem::solve(const Positions& target, Positions& dx) {
+  const double residual = largest_force();
+  SolveReport report;
+  while (!direction(target, dx, report)) {
+    if (level_.last() || report.linear.status == LinearStatus::non_finite) break;
+    level_.raise(residual);
+    fill_matrix();
+  }
+  served_at_once_ = report.attempts == 1;
+  return report;
+}
+
+// One attempt. False when the matrix is not positive definite, or dx does not descend: that is asked for only
+// where no prescribed motion does work.
+bool NewtonSystem::direction(const Positions& target, Positions& dx, SolveReport& report) {
+  const ScopedPhase timer(clock_, Phase::assembly);
+  dx.setZero(3, x_.cols());
+  work_ = -gradient_;
+  bool moving = false;
+  for (const Pin& pin : scene_.pins) {
+    dx.col(pin.vertex) = target.col(pin.vertex) - x_.col(pin.vertex);
+    moving = moving || !dx.col(pin.vertex).isZero(0);
+  }
+  if (moving) lift(dx, work_);
+  blocks_->restrict_vector(work_, rhs_);
+  report.t = level_.t();
+  solve_reduced(report);
+  if (report.linear.status != LinearStatus::ok) return false;
+  blocks_->expand_vector(solution_, dx);
+  return moving || rhs_.dot(solution_) > 0 || rhs_.isZero(0);
+}
+
+// The solver measures its own parts; what is neither analysis nor factorisation is solution.
+void NewtonSystem::solve_reduced(SolveReport& report) {
+  const ReducedSystem& reduced = blocks_->reduce(full_);
+  nnz_ = static_cast<std::size_t>(reduced.lower.nonZeros());
+  const ScopedPhase timer(clock_, Phase::linear_solve);
+  LinearReport linear = solver_->solve(reduced, rhs_, solution_);
+  clock_.move(Phase::linear_solve, Phase::linear_analyze, linear.analyze_s);
+  clock_.move(Phase::linear_solve, Phase::linear_factor, linear.factor_s);
+  ++report.attempts;
+  report.factorizations += linear.factorized ? 1 : 0;
+  report.analyses += linear.analyzed ? 1 : 0;
+  linear.iterations += report.linear.iterations;
+  report.linear = linear;
+}
+
+}  // namespace bb

@@ -1,0 +1,140 @@
+// Every choice of Hessian on one step of a cloth that buckles: the same state, within the tolerance that the
+// step was asked for, by different ways.
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb {
+namespace {
+
+constexpr double dt = 0.01, tolerance = 1e-6 * dt;  // s, m
+
+/// A cloth just above a floor, compressed in its plane and wavy, so that it buckles; contacts are active.
+Scene buckling_cloth() {
+  SceneBuilder builder("buckling cloth", false, Vec3d(0, 0, -9.81), "test");
+  BodySpec spec = test::cloth_spec(9, 0, 0.02);
+  spec.material.youngs = 20000;
+  spec.material.bending = 1e-3;
+  builder.add_body(spec);
+  Obstacle floor;
+  floor.name = "floor";
+  floor.point = Vec3d(0, 0, -0.012);
+  builder.add_obstacle(floor);
+  Scene scene = builder.finish();
+  for (Eigen::Index i = 0; i < scene.x0.cols(); ++i) {
+    const double x = scene.x0(0, i), y = scene.x0(1, i);
+    scene.x0(2, i) += 0.004 * (1 + std::sin(9 * x + 2 * y) * std::cos(7 * y - 1));
+    scene.x0.col(i).head<2>() *= 0.95;
+  }
+  return scene;
+}
+
+Method method_with(StepHessian hessian, double tol_velocity = 1e-6) {
+  Method method = test::fixed_method("log", 30);
+  method.hessian_mode = HessianMode::projected_full;
+  for (const HessianChoice& choice : hessian_choices()) method.step_hessian[choice.name] = hessian;
+  method.step_solver.tol_velocity = tol_velocity;
+  method.step_solver.max_iterations = 2000;  // clamped matrices converge linearly
+  return method;
+}
+
+class Watch final : public StepObserver {
+ public:
+  void on_matrix(NewtonSystem& system, int, int) override {
+    differ += system.solved_is_clamped() ? 0 : 1;
+    contacts = std::max(contacts, test::rows_of(system).size());
+  }
+  void on_iteration(const IterationReport& report) override {
+    dx.push_back(report.dx_inf_m);
+    largest_t = std::max(largest_t, report.hessian_t);
+    estimate = report.error_estimate_m.value;
+  }
+  std::vector<double> dx;
+  std::size_t contacts = 0;
+  int differ = 0;
+  double largest_t = 0, estimate = 0;
+};
+
+struct OneStep {
+  Scene scene = buckling_cloth();
+  Method method;
+  Simulation simulation;
+  Watch watch;
+  StepReport report;
+
+  explicit OneStep(Method given)
+      : method(std::move(given)), simulation(scene, method, dt, 1), report(simulation.step(watch)) {}
+  const Positions& x() const { return simulation.history().x; }
+};
+
+/// The same step to a thousandth of the tolerance.
+const Positions& reference() {
+  static const Positions x = OneStep(method_with(StepHessian::blend, 1e-9)).x();
+  return x;
+}
+
+class HessianModes : public testing::TestWithParam<StepHessian> {};
+INSTANTIATE_TEST_SUITE_P(All, HessianModes, testing::ValuesIn(all_step_hessians),
+                         [](const auto& one) { return std::string(to_string(one.param)); });
+
+TEST_P(HessianModes, reach_one_state_within_three_tolerances) {
+  const OneStep step(method_with(GetParam()));
+  ASSERT_EQ(step.report.status, StepStatus::converged) << step.report.detail;
+  ASSERT_GT(step.watch.contacts, 5U);
+  ASSERT_GT((step.x() - step.scene.x0).cwiseAbs().maxCoeff(), 1e5 * tolerance);
+  EXPECT_LT((step.x() - reference()).cwiseAbs().maxCoeff(), 3 * tolerance);
+  EXPECT_LT(step.watch.estimate, tolerance);
+}
+
+TEST_P(HessianModes, say_what_they_tried) {
+  const OneStep step(method_with(GetParam()));
+  const bool fixed = GetParam() == StepHessian::clamped || GetParam() == StepHessian::absolute;
+  EXPECT_EQ(step.report.hessian_fallbacks > 0, !fixed);
+  EXPECT_EQ(step.report.linear_solves, step.report.newton_iterations + step.report.hessian_fallbacks);
+  EXPECT_EQ(step.watch.differ > 0, GetParam() != StepHessian::clamped);
+  const bool blends = GetParam() == StepHessian::blend || GetParam() == StepHessian::exact_or_clamped;
+  if (blends) {
+    EXPECT_GT(step.watch.largest_t, 0);
+  }
+}
+
+TEST(BucklingStep, the_exact_hessian_ends_quadratically_and_in_fewer_iterations) {
+  const OneStep blend(method_with(StepHessian::blend)), clamped(method_with(StepHessian::clamped));
+  ASSERT_GE(blend.watch.dx.size(), 3U);
+  const auto n = blend.watch.dx.size();
+  EXPECT_LT(blend.watch.dx[n - 1], 0.1 * blend.watch.dx[n - 2]);
+  EXPECT_LT(2 * blend.report.newton_iterations, clamped.report.newton_iterations);
+}
+
+/// At the start of the step the cloth curves downwards in some direction that the clamped matrix hides.
+TEST(BucklingStep, exact_curvature_sees_the_saddle_that_the_clamped_matrix_hides) {
+  Scene scene = buckling_cloth();
+  Method method = method_with(StepHessian::blend);
+  NewtonSystem system(scene, method);
+  Prediction prediction;
+  prediction.x_tilde = scene.x0;
+  prediction.c = 1;
+  system.begin_step(scene.x0, prediction, dt, 1);
+  system.assemble();
+  double lowest = 0;
+  for (int k = 0; k < 40; ++k) {
+    Positions dx = Positions::Zero(3, scene.x0.cols());
+    for (Eigen::Index i = 0; i < dx.cols(); ++i) {
+      const double x = scene.rest(0, i), y = scene.rest(1, i);
+      dx(2, i) = std::sin((3 + k % 8) * 3.1 * x + k) * std::sin((3 + k / 8) * 3.1 * y);
+    }
+    const double exact = system.exact_curvature(dx);
+    const VecXd reduced = dx.reshaped();
+    const double clamped = reduced.dot(system.clamped().lower.selfadjointView<Eigen::Lower>() * reduced);
+    EXPECT_GE(clamped, 0);
+    EXPECT_LE(exact, clamped * (1 + 1e-12));
+    lowest = std::min(lowest, exact);
+  }
+  EXPECT_LT(lowest, 0);
+}
+
+}  // namespace
+}  // namespace bb
