@@ -121,9 +121,11 @@ def _unique_series(runs: pd.DataFrame) -> pd.Series:
     return runs["series"].where(count == 0, runs["series"] + " #" + (count + 1).astype(str))
 
 
-def condition_of(records: Records, run: str, scaling: str, stage: str = "full") -> pd.DataFrame:
-    """Condition estimates of one run, in the order of the iterations; empty when there are none."""
+def condition_of(records: Records, run: str, scaling: str, stage: str = "full", matrix: str = "clamped") -> pd.DataFrame:
+    """Condition estimates of one run, in the order of the iterations; empty when there are none. matrix: "clamped", or "solved" for
+    the matrices that were factorised where they differ. Records before version 3.1 have clamped ones only."""
     if records.cond.empty:
         return records.cond
     c = records.cond
-    return c[(c["run"] == run) & (c["scaling"] == scaling) & (c["stage"] == stage)].sort_values("n")
+    form = c["matrix"].fillna("clamped") if "matrix" in c else "clamped"
+    return c[(c["run"] == run) & (c["scaling"] == scaling) & (c["stage"] == stage) & (form == matrix)].sort_values("n")

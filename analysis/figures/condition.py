@@ -61,7 +61,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
         axes[-1, column].set_xlabel("time step (its Newton iterations evenly within it)")
     style.letter_panels(axes)
     literal = not runs.empty and (runs["step_solver"] == "article_literal").all()
-    what = "the matrix before its Tikhonov term, as the article measures it" if literal else "the matrix that is solved"
+    what = "the matrix before its Tikhonov term, as the article measures it" if literal else "the Newton matrix with every element clamped"
     fig.suptitle(f"{group}: {what}", fontsize=8)
     style.legend_below(fig, axes[0, 0], runs)
     columns = ["group", "series", "outcome", "run", "n", "step", "iteration", "stage", "scaling"]

@@ -51,6 +51,12 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
   history_.v_prev = history_.v;
 }
 
+void Simulation::resume(const History& history, int step, double time) {
+  history_ = history;
+  step_ = step;
+  time_ = time;
+}
+
 StepReport Simulation::step(StepObserver& observer) {
   PhaseClock& clock = system_.clock();
   clock.restart(Phase::step_control);

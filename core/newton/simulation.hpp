@@ -18,6 +18,8 @@ class Simulation {
   /// With the plan of scene and method alone.
   Simulation(const Scene& scene, Method& method, double dt, int n_steps);
 
+  /// Goes on from a state of another simulation of the same scene, in front of its step `step` at `time` s.
+  void resume(const History& history, int step, double time);
   /// Advances one time step. A status other than converged keeps the feasible state that was reached.
   StepReport step(StepObserver& observer);
 

@@ -129,6 +129,7 @@ int main(int argc, char** argv) {
   common.argv.assign(argv, argv + argc);
   RunVerb run_verb, check_verb, explain_verb;
   SweepVerb sweep_verb;
+  StepsVerb steps_verb;
   std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
   std::string help_format = "config";
@@ -154,6 +155,16 @@ int main(int argc, char** argv) {
   sweep_app->add_flag("--dry-run", sweep_verb.dry_run, "print what would run");
   sweep_app->add_flag("--again", sweep_verb.again, "run finished ones too");
   sweep_app->footer(sweep_help);
+  auto* steps_app = app.add_subcommand(
+      "steps", "single steps of a run from one state, by every choice of Hessian: iterations and errors");
+  steps_app->add_option("config", steps_verb.config, "a config file")->required();
+  steps_app->add_option("--set", steps_verb.set, "override: /pointer=value")->allow_extra_args(false);
+  steps_app->add_option("--at", steps_verb.at, "steps, from 0, ascending, with commas between")
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  steps_app->add_option("--out", steps_verb.out, "JSON file with every |dx|, for ./bench figures");
+  steps_app->footer("example: ./bench steps configs/scenes/drape.json --at 11,21 --out steps.json");
   auto* check_app = app.add_subcommand("check", "parse a config, build its scene, look for intersections");
   config_arguments(check_app, check_verb);
   check_app->footer("example: ./bench check configs/scenes/drape.json");
@@ -201,9 +212,12 @@ int main(int argc, char** argv) {
     common.plugins.insert(common.plugins.end(), plugins_after.begin(), plugins_after.end());
     for (const std::string& file : common.plugins) common.loaded.push_back(load_plugin_file(file));
     // The verbs that ask whether to stop; the others, and the loading of plugins, end at the signal itself.
-    if (run_app->parsed() || sweep_app->parsed() || demo_app->parsed()) install_interrupt();
+    if (run_app->parsed() || sweep_app->parsed() || demo_app->parsed() || steps_app->parsed()) {
+      install_interrupt();
+    }
     if (run_app->parsed()) return run(run_verb, common);
     if (sweep_app->parsed()) return sweep(sweep_verb, common);
+    if (steps_app->parsed()) return steps(steps_verb, common);
     if (check_app->parsed()) return check(check_verb);
     if (explain_app->parsed()) return explain(explain_verb);
     if (list_app->parsed()) return list(list_what);

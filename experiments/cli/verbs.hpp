@@ -58,6 +58,15 @@ struct SweepVerb {
 };
 int sweep(const SweepVerb& verb, const CommonOptions& common);
 
+struct StepsVerb {
+  std::string config;
+  std::vector<std::string> set;
+  std::vector<int> at;  // steps, from 0
+  std::string out;      // JSON file; empty: none
+};
+/// Single steps of a run with every choice of Hessian: study_steps() as a table.
+int steps(const StepsVerb& verb, const CommonOptions& common);
+
 /// Parses, builds the scene and looks for intersections; runs nothing.
 int check(const RunVerb& verb);
 /// What the run would do and what it would skip, and why; then every setting with its default filled in.

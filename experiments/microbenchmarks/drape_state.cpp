@@ -78,7 +78,7 @@ std::unique_ptr<DrapeState> make_state(int n) {
   state->system().assemble();
   state->system().solve(state->x(), state->dx);
   state->x1 = state->x() + state->dx;
-  state->factor_s = median_factor_s(state->system().reduced());
+  state->factor_s = median_factor_s(state->system().solved());
   return state;
 }
 

@@ -1,0 +1,89 @@
+"""Residual curves of single time steps, one line a choice of Hessian, from the file that `./bench steps --out` writes."""
+
+from __future__ import annotations
+
+import argparse
+import json
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import pandas as pd
+
+from .. import style
+
+SCHEMA = "barrierbench.steps/1"
+# colour and dash of each choice; black is the default of line_search
+LOOKS = {
+    "clamped": ("#0072b2", "-"),
+    "absolute": ("#56b4e9", "--"),
+    "exact_or_clamped": ("#d55e00", "-."),
+    "progressive": ("#009e73", "--"),
+    "blend": ("#000000", "-"),
+}
+SHOWN = (
+    "{scene}, {formulation}: largest entry of the Newton direction over the iterations of single time steps, each step from one state with every "
+    "choice of Hessian for all terms; both axes logarithmic. Dashed line: the tolerance; a step ends when its estimated error, not |dx|, is below. A cross: "
+    "not converged."
+)
+
+
+def read_steps(path: Path) -> dict:
+    """The file as it is. Raises ValueError with the place when it is none of `./bench steps --out`."""
+    try:
+        data = json.loads(path.read_text())
+    except json.JSONDecodeError as error:
+        raise ValueError(f"{path}: not JSON ({error}); a file of ./bench steps --out is needed") from error
+    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+        raise ValueError(f"{path}: schema is {data.get('schema') if isinstance(data, dict) else None!r}; allowed: {SCHEMA!r}")
+    if not data.get("trials"):
+        raise ValueError(f"{path}: no trials")
+    return data
+
+
+def numbers(data: dict) -> pd.DataFrame:
+    """One row an iteration."""
+    rows = []
+    for trial in data["trials"]:
+        for k, dx in enumerate(trial["dx_inf_m"]):
+            rows.append({"step": trial["step"], "hessian": trial["hessian"], "iteration": k + 1, "dx_inf_m": dx, "status": trial["status"],
+                         "tolerance_m": trial["tolerance_m"]})
+    return pd.DataFrame(rows)
+
+
+def figure(data: dict, stem: Path) -> list[Path]:
+    """One panel a step. Returns the files that were written."""
+    table = numbers(data)
+    steps = sorted(table["step"].unique())
+    fig, axes = plt.subplots(1, len(steps), figsize=(style.WIDE_IN, 2.9), sharey=True, squeeze=False, layout="constrained")
+    for axis, step in zip(axes[0], steps):
+        for hessian, part in table[table["step"] == step].groupby("hessian", sort=False):
+            color, dash = LOOKS[hessian]
+            axis.plot(part["iteration"], part["dx_inf_m"], dash, color=color, linewidth=1.1, label=hessian)
+            if part["status"].iloc[0] != "converged":
+                axis.plot(part["iteration"].iloc[-1:], part["dx_inf_m"].iloc[-1:], "x", color=color)
+        axis.set(xscale="log", yscale="log", xlabel=f"Newton iteration of step {step}, counted from 1")
+    for axis in axes[0]:  # the axes share y: its limits are set when all lines are there
+        style.reference_line(axis, table["tolerance_m"].iloc[0], "tolerance", "--")
+    axes[0, 0].set_ylabel(r"$|\Delta x|_\infty$ (m)")
+    style.letter_panels(axes)
+    style.legend_below(fig, axes[0, 0])
+    config = data["config"]
+    formulation = config["formulation"].get("name") or config["formulation"]["shape"]
+    return style.save(fig, stem, table, SHOWN.format(scene=config["scene"].get("name", "bodies"), formulation=formulation))
+
+
+def main() -> None:
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("file", type=Path)
+    parser.add_argument("out", type=Path, nargs="?", help="folder of the figure; default: that of the file")
+    given = parser.parse_args()
+    try:
+        data = read_steps(given.file)
+    except (OSError, ValueError) as error:
+        raise SystemExit(f"figures: {error}") from error
+    for path in figure(data, (given.out or given.file.parent) / given.file.stem):
+        print(path)
+
+
+if __name__ == "__main__":
+    main()
