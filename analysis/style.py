@@ -67,6 +67,8 @@ LOOKS = {
     "cubic": Look("#009E73", "^", "-."),
     "cubic_dynamic": Look("#D55E00", "D", (0, (5, 1))),
     "cubic_dynamic_lagged": Look("#CC79A7", "v", (0, (3, 1, 1, 1))),
+    "cubic_dynamic_consistent": Look("#332288", "*", (0, (4, 1, 2, 1))),
+    "cubic_dynamic_consistent_scaled": Look("#882255", "p", (0, (2, 1, 4, 1))),
     "ipc2020": Look("#56B4E9", "P", ":"),
     "log_squared": Look("#000000", "X", (0, (1, 1))),
     "two_stage": Look("#A6761D", "<", (0, (5, 2, 1, 2))),

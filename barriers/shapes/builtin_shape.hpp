@@ -5,6 +5,7 @@
 #include <string>
 #include <utility>
 
+#include "barriers/shapes/gap_potential.hpp"
 #include "core/barrier/shape.hpp"
 
 namespace bb {
@@ -20,6 +21,17 @@ void shape_batch(void*, std::size_t n, const T* d, const T* d_hat, T* b, T* db, 
   }
 }
 
+/// The same of its potential.
+template <class S, class T>
+void potential_batch(void*, std::size_t n, const T* d, const T* d_hat, T* b, T* db, T* d2b) {
+  for (std::size_t i = 0; i < n; ++i) {
+    const ShapeTerms<T> terms = shapes::potential_terms<S>(d[i], d_hat[i]);
+    b[i] = terms.b;
+    db[i] = terms.db;
+    d2b[i] = terms.d2b;
+  }
+}
+
 template <class S>
 Shape builtin_shape(std::string name, std::string doc) {
   Shape shape;
@@ -29,6 +41,10 @@ Shape builtin_shape(std::string name, std::string doc) {
   shape.infinite_at_zero = S::infinite_at_zero;
   shape.batch_double = &shape_batch<S, double>;
   shape.batch_float = &shape_batch<S, float>;
+  if constexpr (shapes::HasPotential<S>) {
+    shape.potential_double = &potential_batch<S, double>;
+    shape.potential_float = &potential_batch<S, float>;
+  }
   return shape;
 }
 

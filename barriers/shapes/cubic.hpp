@@ -4,7 +4,7 @@
 // Source: Ando 2024, "A Cubic Barrier with Elasticity-Inclusive Dynamic Stiffness".
 #pragma once
 
-#include "barriers/shapes/normalized_gap.hpp"
+#include "barriers/shapes/gap_potential.hpp"
 
 namespace bb::shapes {
 
@@ -18,6 +18,12 @@ struct Cubic {
     if (d >= d_hat) return {T(0), T(0), T(0)};
     const T e = NormalizedGap<T>(d, d_hat).e;
     return {d_hat * d_hat * (T(2) / T(3) * (e * e * e)), -d_hat * (T(2) * e * e), T(4) * e};
+  }
+
+  /// psi, the potential of b'/d^2: 2 (1/u - u + 2 ln u).
+  template <class T>
+  BB_HD static T psi(const NormalizedGap<T>& gap) {
+    return T(2) * inverse_gap_excess(gap);
   }
 };
 

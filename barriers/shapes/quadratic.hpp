@@ -4,7 +4,7 @@
 // Source: Ando 2024 (cubic barrier), the quadratic it is compared with, in its corrected scale.
 #pragma once
 
-#include "barriers/shapes/normalized_gap.hpp"
+#include "barriers/shapes/gap_potential.hpp"
 
 namespace bb::shapes {
 
@@ -18,6 +18,12 @@ struct Quadratic {
     if (d >= d_hat) return {T(0), T(0), T(0)};
     const T e = NormalizedGap<T>(d, d_hat).e;
     return {d_hat * d_hat * (e * e), -d_hat * (T(2) * e), T(2)};
+  }
+
+  /// psi, the potential of b'/d^2: 2 (1/u - 1 + ln u) = (1/u - u + 2 ln u) + e^2/u, of which no term is negative.
+  template <class T>
+  BB_HD static T psi(const NormalizedGap<T>& gap) {
+    return inverse_gap_excess(gap) + gap.e * gap.e / gap.u;
   }
 };
 

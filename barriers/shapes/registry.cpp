@@ -1,6 +1,8 @@
 // The list of shapes, filled once from registry.inc.
 #include "barriers/shapes/registry.hpp"
 
+#include "core/barrier/folded_barrier.hpp"
+
 namespace bb {
 
 #define ENTRY(name, doc) Shape make_shape_##name(const char*, const char*);
@@ -18,6 +20,14 @@ Registry<Shape>& shapes() {
 
 const Shape& require_shape(std::string_view name, std::string_view where) {
   return shapes().require(name, where);
+}
+
+std::string shapes_with_potential() {
+  std::string names;
+  for (const Shape& shape : shapes()) {
+    if (has_potential({shape, Argument::gap})) names += (names.empty() ? "" : ", ") + shape.name;
+  }
+  return names;
 }
 
 Argument require_argument(std::string_view name, std::string_view where) {

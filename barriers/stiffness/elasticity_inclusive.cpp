@@ -13,25 +13,42 @@ class ElasticityInclusive final : public StiffnessPolicy {
       : mass_term_(require_mass_term(text(config.parameters, "mass_term"))),
         elastic_term_(boolean(config.parameters, "elastic_term")),
         refresh_(require_refresh(text(config.parameters, "refresh"))),
+        derivative_(require_derivative(text(config.parameters, "derivative"))),
         multiplier_(config.multiplier) {}
   std::string_view name() const override { return "elasticity_inclusive"; }
   Refresh refresh() const override { return refresh_; }
   bool needs_hessian() const override { return elastic_term_; }
+  bool has_potential() const override { return derivative_ == KappaDerivative::included; }
 
   void fill(const StiffnessBatch& rows, double* kappa) const override {
-    const ElasticityInclusiveRule rule{mass_term_, elastic_term_, rows.dt, rows.c};
     for (std::size_t r = 0; r < rows.n; ++r) {
-      const double* hessian = elastic_term_ ? rows.hessian + 144 * r : nullptr;
-      kappa[r] =
-          multiplier_ * elasticity_inclusive_kappa(rows.n_free[r], rows.weight + 4 * r, rows.normal + 3 * r,
-                                                   rows.d[r], rows.mass + 4 * r, hessian, 12, rule);
+      kappa[r] = multiplier_ * elasticity_inclusive_kappa(
+                                   rows.n_free[r], rows.weight + 4 * r, rows.normal + 3 * r, rows.d[r],
+                                   rows.d_hat[r], rows.mass + 4 * r, hessian(rows, r), 12, rule(rows));
+    }
+  }
+
+  void fill_parts(const StiffnessBatch& rows, KappaParts* parts) const override {
+    for (std::size_t r = 0; r < rows.n; ++r) {
+      const KappaParts one =
+          elasticity_inclusive_parts(rows.n_free[r], rows.weight + 4 * r, rows.normal + 3 * r, rows.d_hat[r],
+                                     rows.mass + 4 * r, hessian(rows, r), 12, rule(rows));
+      parts[r] = {multiplier_ * one.fixed, multiplier_ * one.per_gap_sq};
     }
   }
 
  private:
+  ElasticityInclusiveRule rule(const StiffnessBatch& rows) const {
+    return {mass_term_, elastic_term_, rows.dt, rows.c};
+  }
+  const double* hessian(const StiffnessBatch& rows, std::size_t r) const {
+    return elastic_term_ ? rows.hessian + 144 * r : nullptr;
+  }
+
   MassTerm mass_term_;
   bool elastic_term_;
   Refresh refresh_;
+  KappaDerivative derivative_;
   double multiplier_;
 };
 
@@ -40,15 +57,18 @@ class ElasticityInclusive final : public StiffnessPolicy {
 StiffnessPolicyEntry policy_elasticity_inclusive() {
   StiffnessPolicyEntry entry;
   entry.parameters = {
-      {"mass_term", word({"paper", "inertia", "none"}), "paper", "M/d^2 times 1 m^2/s^2, M/(c h^2), or 0"},
+      {"mass_term", word({"paper", "inertia", "scaled", "none"}), "paper",
+       "M/d^2 times 1 m^2/s^2, M/(c h^2), M/(c h^2) (d_hat/d)^2, or 0"},
       {"elastic_term", flag(), true, "whether the elastic Hessian counts"},
       refresh_parameter(),
+      derivative_parameter(),
   };
   entry.make = [](const StiffnessPolicyConfig& config) -> std::unique_ptr<StiffnessPolicy> {
     if (text(config.parameters, "mass_term") == "none" && !boolean(config.parameters, "elastic_term")) {
       throw ConfigError("stiffness_policy", "mass_term none with elastic_term false",
                         "at least one term, else kappa is 0");
     }
+    check_derivative(config.parameters, "stiffness_policy");
     return std::make_unique<ElasticityInclusive>(config);
   };
   return entry;

@@ -50,12 +50,34 @@ Parameter refresh_parameter() {
   return {"refresh", word({"per_iteration", "per_step"}), "per_iteration", "when kappa is computed anew"};
 }
 
+Parameter derivative_parameter() {
+  return {"derivative", word({"dropped", "included"}), "dropped",
+          "kappa'(d) left out of the curvature, or the force derived from its potential"};
+}
+
+void check_derivative(const ParameterMap& parameters, const std::string& where) {
+  if (require_derivative(text(parameters, "derivative")) == KappaDerivative::dropped) return;
+  const std::string &mass_term = text(parameters, "mass_term"), &refresh = text(parameters, "refresh");
+  std::vector<Violation> violations;
+  if (!depends_on_gap(require_mass_term(mass_term))) {
+    violations.push_back({where + "/derivative", fmt::format("\"included\" with mass_term {}", mass_term),
+                          "dropped, or mass_term paper or scaled: this kappa does not depend on the gap"});
+  }
+  if (require_refresh(refresh) != Refresh::per_step) {
+    violations.push_back({where + "/refresh", fmt::format("\"{}\"", refresh),
+                          "per_step, or derivative dropped: a potential is frozen for a step"});
+  }
+  if (!violations.empty()) throw ConfigError(violations);
+}
+
 std::string_view to_string(MassTerm mass_term) {
   switch (mass_term) {
     case MassTerm::paper:
       return "paper";
     case MassTerm::inertia:
       return "inertia";
+    case MassTerm::scaled:
+      return "scaled";
     case MassTerm::none:
       break;
   }
@@ -64,11 +86,18 @@ std::string_view to_string(MassTerm mass_term) {
 std::string_view to_string(Refresh refresh) {
   return refresh == Refresh::per_iteration ? "per_iteration" : "per_step";
 }
+std::string_view to_string(KappaDerivative derivative) {
+  return derivative == KappaDerivative::dropped ? "dropped" : "included";
+}
 MassTerm require_mass_term(std::string_view name, std::string_view where) {
-  return require_enum(std::array{MassTerm::paper, MassTerm::inertia, MassTerm::none}, name, where);
+  return require_enum(std::array{MassTerm::paper, MassTerm::inertia, MassTerm::scaled, MassTerm::none}, name,
+                      where);
 }
 Refresh require_refresh(std::string_view name, std::string_view where) {
   return require_enum(std::array{Refresh::per_iteration, Refresh::per_step}, name, where);
+}
+KappaDerivative require_derivative(std::string_view name, std::string_view where) {
+  return require_enum(std::array{KappaDerivative::dropped, KappaDerivative::included}, name, where);
 }
 
 }  // namespace bb

@@ -40,10 +40,18 @@ std::unique_ptr<StiffnessPolicy> make_policy(const StiffnessPolicyConfig& config
 /// When kappa is computed anew, for policies that can.
 Parameter refresh_parameter();
 
+/// What becomes of kappa'(d), for policies whose kappa depends on the gap.
+Parameter derivative_parameter();
+/// derivative `included` goes with refresh per_step and a mass term that depends on the gap. Errors: ConfigError
+/// below `where`. parameters: with mass_term, refresh and derivative.
+void check_derivative(const ParameterMap& parameters, const std::string& where);
+
 std::string_view to_string(MassTerm mass_term);
 std::string_view to_string(Refresh refresh);
+std::string_view to_string(KappaDerivative derivative);
 /// Errors: ConfigError at `where` with the names allowed.
 MassTerm require_mass_term(std::string_view name, std::string_view where = "mass_term");
 Refresh require_refresh(std::string_view name, std::string_view where = "refresh");
+KappaDerivative require_derivative(std::string_view name, std::string_view where = "derivative");
 
 }  // namespace bb

@@ -31,6 +31,10 @@ struct Shape {
   bool infinite_at_zero = false;  // b -> infinity as d -> 0
   ShapeBatch<double> batch_double = nullptr;
   ShapeBatch<float> batch_float = nullptr;
+  /// d_hat^2 psi and its derivatives in d, psi the potential of b'/d^2: psi' = b'/d^2, 0 from d_hat on. So
+  /// (kappa/d_hat^2) times it is the energy of the force (kappa/d^2) b', and infinite at 0. Null: no closed form.
+  ShapeBatch<double> potential_double = nullptr;
+  ShapeBatch<float> potential_float = nullptr;
   void* self = nullptr;
 };
 

@@ -8,10 +8,29 @@
 #include <string>
 #include <string_view>
 
+#include "core/math/host_device.hpp"
+
 namespace bb {
 
-enum class Refresh { per_iteration, per_step };  // when kappa is computed anew
-enum class MassTerm { paper, inertia, none };    // docs/design.md, Stiffness policies
+enum class Refresh { per_iteration, per_step };        // when kappa is computed anew
+enum class MassTerm { paper, inertia, scaled, none };  // docs/design.md, Stiffness policies
+/// What becomes of kappa'(d): left out of the curvature, kappa being a number, or included, the force kappa(d)
+/// b'(d) being derived from its potential (core/barrier/folded_barrier.hpp).
+enum class KappaDerivative { dropped, included };
+
+/// Whether this mass term falls with the gap, as 1/d^2.
+constexpr bool depends_on_gap(MassTerm term) { return term == MassTerm::paper || term == MassTerm::scaled; }
+
+/// kappa as a function of the gap alone: fixed + per_gap_sq/d^2. Of a strain limit the gap is y and both parts
+/// are in J.
+template <class T>
+struct KappaPartsOf {
+  T fixed = T(0);       // N/m
+  T per_gap_sq = T(0);  // N m
+  /// kappa at the gap d (m); d is read only where kappa depends on it.
+  BB_HD T at(T d) const { return per_gap_sq == T(0) ? fixed : fixed + per_gap_sq / (d * d); }
+};
+using KappaParts = KappaPartsOf<double>;
 
 /// Columns of n contact rows, free vertices only; row r owns slots 4 r .. 4 r + n_free[r].
 struct StiffnessBatch {
@@ -51,6 +70,11 @@ class StiffnessPolicy {
   virtual void start(const StiffnessGlobals&) {}
   /// kappa (N/m) of every row. Requires start() first when needs_globals().
   virtual void fill(const StiffnessBatch& rows, double* kappa) const = 0;
+  /// Whether B has to be the potential of kappa(d) b'(d): kappa's dependence on the gap is then part of B, and
+  /// all else of kappa is frozen for the step, pair by pair. Such a policy is refreshed per step.
+  virtual bool has_potential() const { return false; }
+  /// kappa of every row as a function of its gap; d is not read. Called when has_potential().
+  virtual void fill_parts(const StiffnessBatch&, KappaParts*) const {}
   /// A pair that has a row at the end of this step and of the one before.
   struct PairEnd {
     double gap = 0, gap_before = 0;  // m

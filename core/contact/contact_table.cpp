@@ -8,6 +8,7 @@ void ContactTable::resize(std::size_t n) {
   for (auto* column : {&stencil, &vertex}) column->resize(4 * n);
   for (auto* column : {&stencil_weight, &weight}) column->resize(4 * n);
   n_free.resize(n);
+  parts.resize(n);
   pair_begin.resize(n + 1);
   if (n == 0) pair.clear();
   for (auto* column : {&normal, &flat}) column->resize(3 * n);
@@ -23,6 +24,7 @@ void MollifiedTable::resize(std::size_t n) {
   weight.resize(4 * n);
   n_free.resize(n);
   pair.resize(n);
+  parts.resize(n);
   normal.resize(3 * n);
   for (auto* column : {&eps, &d, &d_hat, &offset, &multiplicity, &kappa, &kappa_before, &b, &db, &d2b})
     column->resize(n);

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "core/barrier/stiffness_policy.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
@@ -37,11 +38,14 @@ struct ContactTable {
   std::vector<std::size_t>
       pair_begin;  // [n + 1] those pairs are pair[pair_begin[r]] to pair[pair_begin[r + 1] - 1]
   std::vector<PairId> pair;
-  std::vector<double> kappa;  // [n] N/m
+  std::vector<KappaParts> parts;  // [n] kappa as a function of d, mean over the pairs
+  std::vector<double> kappa;      // [n] N/m, parts at d
   /// [n] N/m: what kappa the row came with when its iterate was accepted; 0: it was not there before. Empty
   /// of meaning in rows that no stiffness was given to.
   std::vector<double> kappa_before;
-  std::vector<double> b, db, d2b;  // [n] m^2, m, 1
+  /// [n] m^2, m, 1. kappa times these are energy, force and curvature, kappa'(d) included where the policy has a
+  /// potential.
+  std::vector<double> b, db, d2b;
   // obstacle rows only, else 0: grad^2 d = curvature (I - n n^T - flat flat^T)
   std::vector<double> curvature;  // [n] 1/m
   std::vector<double> flat;       // [3 n] axis of a cylinder, else 0
@@ -58,6 +62,7 @@ struct MollifiedTable {
   std::vector<int> vertex;   // [4 n] = stencil, -1 where the vertex is given
   std::vector<double> eps;   // [n] threshold on |ea x eb|^2, m^4
   std::vector<PairId> pair;  // [n]
+  std::vector<KappaParts> parts;
   std::vector<double> d, d_hat, offset, multiplicity, kappa, kappa_before, b, db, d2b;  // as above
   // what a policy reads of a row: compact free columns, as in ContactTable
   std::vector<int> free_vertex;  // [4 n]

@@ -3,6 +3,19 @@
 #include <algorithm>
 
 namespace bb {
+namespace {
+
+template <class Table>
+void set_kappa(Table& rows, std::size_t r) {
+  rows.kappa[r] = rows.parts[r].at(rows.d[r]);
+}
+
+/// (a x + b y)/n, part by part.
+KappaParts combined(double a, const KappaParts& x, double b, const KappaParts& y, double n) {
+  return {(a * x.fixed + b * y.fixed) / n, (a * x.per_gap_sq + b * y.per_gap_sq) / n};
+}
+
+}  // namespace
 
 const KappaMemory::Known* KappaMemory::find(PairId pair) const {
   const auto at = std::lower_bound(known_.begin(), known_.end(), pair,
@@ -14,7 +27,8 @@ KappaMemory::Share KappaMemory::share(const ContactTable& rows, std::size_t row)
   Share out;
   for (std::size_t i = rows.pair_begin[row]; i < rows.pair_begin[row + 1]; ++i) {
     if (const Known* entry = find(rows.pair[i])) {
-      out.sum += entry->kappa;
+      out.sum.fixed += entry->parts.fixed;
+      out.sum.per_gap_sq += entry->parts.per_gap_sq;
       ++out.n;
     }
   }
@@ -29,28 +43,35 @@ void KappaMemory::recall(ContactTable& rows, MollifiedTable& mollified, std::vec
     const std::size_t n = rows.pair_begin[r + 1] - rows.pair_begin[r];
     const Share known = share(rows, r);
     if (known.n == n) {
-      rows.kappa[r] = known.sum / static_cast<double>(n);
+      rows.parts[r] = combined(1, known.sum, 0, {}, static_cast<double>(n));
+      set_kappa(rows, r);
     } else {
       missing.push_back(static_cast<int>(r));
     }
   }
   for (std::size_t r = 0; r < mollified.size(); ++r) {
     if (const Known* entry = find(mollified.pair[r])) {
-      mollified.kappa[r] = entry->kappa;
+      mollified.parts[r] = entry->parts;
+      set_kappa(mollified, r);
     } else {
       missing_mollified.push_back(static_cast<int>(r));
     }
   }
 }
 
-void KappaMemory::complete(ContactTable& rows, const std::vector<int>& missing) const {
+void KappaMemory::complete(ContactTable& rows, const std::vector<int>& missing, MollifiedTable& mollified,
+                           const std::vector<int>& missing_mollified) const {
   for (const int row : missing) {
     const auto r = static_cast<std::size_t>(row);
     const Share known = share(rows, r);
-    if (known.n == 0) continue;
     const std::size_t n = rows.pair_begin[r + 1] - rows.pair_begin[r];
-    rows.kappa[r] = (known.sum + static_cast<double>(n - known.n) * rows.kappa[r]) / static_cast<double>(n);
+    if (known.n > 0) {
+      rows.parts[r] =
+          combined(1, known.sum, static_cast<double>(n - known.n), rows.parts[r], static_cast<double>(n));
+    }
+    set_kappa(rows, r);
   }
+  for (const int row : missing_mollified) set_kappa(mollified, static_cast<std::size_t>(row));
 }
 
 void KappaMemory::store(const ContactTable& rows, const MollifiedTable& mollified) {
@@ -60,14 +81,14 @@ void KappaMemory::store(const ContactTable& rows, const MollifiedTable& mollifie
     const Share known = share(rows, r);
     if (known.n == end - begin) continue;
     // the inverse of complete()
-    const double kappa = (static_cast<double>(end - begin) * rows.kappa[r] - known.sum) /
-                         static_cast<double>(end - begin - known.n);
+    const KappaParts parts = combined(static_cast<double>(end - begin), rows.parts[r], -1, known.sum,
+                                      static_cast<double>(end - begin - known.n));
     for (std::size_t i = begin; i < end; ++i) {
-      if (!find(rows.pair[i])) fresh_.push_back({rows.pair[i], kappa});
+      if (!find(rows.pair[i])) fresh_.push_back({rows.pair[i], parts});
     }
   }
   for (std::size_t r = 0; r < mollified.size(); ++r) {
-    if (!find(mollified.pair[r])) fresh_.push_back({mollified.pair[r], mollified.kappa[r]});
+    if (!find(mollified.pair[r])) fresh_.push_back({mollified.pair[r], mollified.parts[r]});
   }
   if (fresh_.empty()) return;
   const auto less = [](const Known& a, const Known& b) { return a.pair < b.pair; };

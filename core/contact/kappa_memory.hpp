@@ -15,25 +15,26 @@ class KappaMemory {
  public:
   void clear() { known_.clear(); }
   /// Adds the pairs that are not known yet; what is known stays. Requires recall() of the same tables before,
-  /// and kappa of the rows that it reported missing set (see complete()).
+  /// and parts of the rows that it reported missing set (see complete()).
   void store(const ContactTable& rows, const MollifiedTable& mollified);
-  /// Fills kappa of the rows whose pairs are all known; `missing` gets the indices of the others (row
+  /// Fills parts and kappa of the rows whose pairs are all known; `missing` gets the indices of the others (row
   /// or mollified row).
   void recall(ContactTable& rows, MollifiedTable& mollified, std::vector<int>& missing,
               std::vector<int>& missing_mollified) const;
-  /// Rows that recall() reported missing come with kappa of a new pair; where some of their pairs are known
-  /// they leave with the mean over all.
-  void complete(ContactTable& rows, const std::vector<int>& missing) const;
+  /// Rows that recall() reported missing come with the parts of a new pair; where some of their pairs are known
+  /// they leave with the mean over all. kappa of them all is set from the parts.
+  void complete(ContactTable& rows, const std::vector<int>& missing, MollifiedTable& mollified,
+                const std::vector<int>& missing_mollified) const;
 
  private:
   struct Known {
     PairId pair;
-    double kappa;
+    KappaParts parts;
   };
   const Known* find(PairId pair) const;
   /// Sum over the known pairs of a row, and how many they are.
   struct Share {
-    double sum = 0;
+    KappaParts sum;
     std::size_t n = 0;
   };
   Share share(const ContactTable& rows, std::size_t row) const;

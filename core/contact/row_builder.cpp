@@ -165,6 +165,7 @@ void RowBuilder::fill(const ContactRow& row, double multiplicity, std::size_t at
   t.offset[at] = row.offset;
   t.multiplicity[at] = multiplicity;
   t.curvature[at] = row.curvature;
+  t.parts[at] = {};
   t.kappa[at] = t.kappa_before[at] = t.b[at] = t.db[at] = t.d2b[at] = 0;
 }
 
@@ -192,6 +193,7 @@ void RowBuilder::fill_mollified(std::size_t n_parts, MollifiedTable& out) {
     out.d_hat[at] = row.d_hat;
     out.offset[at] = row.offset;
     out.multiplicity[at] = 1;
+    out.parts[at] = {};
     out.kappa[at] = out.kappa_before[at] = out.b[at] = out.db[at] = out.d2b[at] = 0;
   }
 }

@@ -102,14 +102,13 @@ void StrainLimitBatch::fixed_stiffness(double k_s, double* kappa) const {
 
 void StrainLimitBatch::elastic_stiffness(const Positions& x_start, const double* hess,
                                          const double* vertex_mass, const double* element_mass,
-                                         const StrainStiffnessRule& rule, double* kappa) const {
+                                         const StrainStiffnessRule& rule, KappaParts* kappa) const {
   for_each_element(size(), [&](std::size_t e) {
     const Points<3> p(x_start, vertices_, e);
     const Mat<double, 9, 9> h = Eigen::Map<const Mat<double, 9, 9>>(hess + 81 * e);
     const int* v = vertices_.data() + 3 * e;
     const Vec3d mass(vertex_mass[v[0]], vertex_mass[v[1]], vertex_mass[v[2]]);
-    kappa[e] =
-        strain_stiffness<double>(p.x, h, mass, element_mass[e], std::min(gap_[2 * e], gap_[2 * e + 1]), rule);
+    kappa[e] = strain_stiffness<double>(p.x, h, mass, element_mass[e], width_[2 * e], rule);
   });
 }
 

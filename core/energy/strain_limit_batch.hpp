@@ -39,7 +39,7 @@ class StrainLimitBatch {
 
   /// S_e [n], J; infinite at or beyond the limit. kappa [n], J. Measures.
   template <class Barrier>
-  void values(const Positions& x, const Barrier& barrier, const double* kappa, double* energy) {
+  void values(const Positions& x, Barrier& barrier, const double* kappa, double* energy) {
     measure(x);
     evaluate(barrier);
     for (std::size_t e = 0; e < size(); ++e) energy[e] = kappa[e] * (b_[2 * e] + b_[2 * e + 1]);
@@ -47,7 +47,7 @@ class StrainLimitBatch {
   /// Energies, gradients and Hessians; exact zeros where inactive, not finite at or beyond the limit.
   /// Measures.
   template <class Barrier>
-  void derivatives(const Positions& x, const Barrier& barrier, const double* kappa, Projection projection,
+  void derivatives(const Positions& x, Barrier& barrier, const double* kappa, Projection projection,
                    LocalTerms& out) {
     measure(x);
     evaluate(barrier);
@@ -61,15 +61,16 @@ class StrainLimitBatch {
 
   /// kappa_e = k_s x rest area; k_s in N/m.
   void fixed_stiffness(double k_s, double* kappa) const;
-  /// strain_stiffness of every element. y_min is that of the last measure.
+  /// strain_stiffness of every element, as functions of its pseudo-gap.
   /// @param x_start step start, m   @param hess [81 n] column-major   @param vertex_mass [n_vertices] kg
   /// @param element_mass [n] kg
   void elastic_stiffness(const Positions& x_start, const double* hess, const double* vertex_mass,
-                         const double* element_mass, const StrainStiffnessRule& rule, double* kappa) const;
+                         const double* element_mass, const StrainStiffnessRule& rule,
+                         KappaParts* kappa) const;
 
  private:
   template <class Barrier>
-  void evaluate(const Barrier& barrier) {
+  void evaluate(Barrier& barrier) {
     if constexpr (requires { barrier.literal; }) {
       if (barrier.literal) {
         barrier.eval(gap_.size(), gap_.data(), width_.data(), b_.data(), db_.data(), d2b_.data());

@@ -124,12 +124,15 @@ void BlockSystem::gather_contacts(std::size_t family, std::span<const double> gr
   family_of(data_->contacts, data_->n_contact_families, family).add_gradients(grad, g);
 }
 
-void BlockSystem::submatrix(const Values& values, const int* vertices, int k, double* out) const {
+namespace {
+
+void submatrix_of(const BlockPattern& pattern, const BlockSystem::Values& values, const int* vertices, int k,
+                  double* out) {
   Eigen::Map<Mat<double, 12, 12>> result(out);
   for (int b = 0; b < k; ++b) {
     for (int a = b; a < k; ++a) {
       const int row = std::max(vertices[a], vertices[b]), column = std::min(vertices[a], vertices[b]);
-      const int block = data_->pattern.find(row, column);
+      const int block = pattern.find(row, column);
       Mat3d value = Mat3d::Zero();
       if (block >= 0) value = ConstBlock(values.data() + 9 * at(block));
       if (vertices[a] < vertices[b]) value.transposeInPlace();
@@ -137,6 +140,30 @@ void BlockSystem::submatrix(const Values& values, const int* vertices, int k, do
       result.block<3, 3>(3 * b, 3 * a) = value.transpose();
     }
   }
+}
+
+}  // namespace
+
+void BlockSystem::submatrix(const Values& values, const int* vertices, int k, double* out) const {
+  submatrix_of(data_->pattern, values, vertices, k, out);
+}
+
+void BlockSystem::element_values(const Values& values, Values& out) const {
+  const BlockPattern &elements = data_->element_pattern, &all = data_->pattern;
+  out.resize(9 * elements.row.size());
+  for (int c = 0; c < data_->n_vertices; ++c) {
+    std::size_t from = at(all.column_start[at(c)]);
+    const std::size_t end = at(elements.column_start[at(c) + 1]);
+    for (std::size_t b = at(elements.column_start[at(c)]); b < end; ++b, ++from) {
+      while (all.row[from] != elements.row[b]) ++from;  // elements are part of all
+      std::copy_n(values.data() + 9 * from, 9, out.data() + 9 * b);
+    }
+  }
+}
+
+void BlockSystem::element_submatrix(const Values& element_values, const int* vertices, int k,
+                                    double* out) const {
+  submatrix_of(data_->element_pattern, element_values, vertices, k, out);
 }
 
 void BlockSystem::multiply_add(const Values& values, const Positions& v, Positions& y) const {

@@ -60,6 +60,11 @@ class BlockSystem {
   /// 3k x 3k sub-matrix of `values` on k <= 4 vertices, written into the top left of a 12 x 12 column-major
   /// block (leading dimension 12); blocks between unconnected vertices are 0.
   void submatrix(const Values& values, const int* vertices, int k, double* out) const;
+  /// Copies the blocks of `values` that elements have, in an order that no contact changes: such a copy stays
+  /// valid when the pattern changes.
+  void element_values(const Values& values, Values& out) const;
+  /// submatrix() of such a copy.
+  void element_submatrix(const Values& element_values, const int* vertices, int k, double* out) const;
   /// y += A v over all vertices, fixed ones included (used to lift prescribed motion to the right-hand side).
   void multiply_add(const Values& values, const Positions& v, Positions& y) const;
 

@@ -15,8 +15,24 @@ ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const Contact
       contacts_(scene, options.contact_options, plan),
       stiffness_(*options.stiffness, scene.mass) {
   families_.resize(2);
+  if (options.stiffness->has_potential()) folded_.emplace(options.contact);
   use_state();
 }
+
+namespace {
+
+// kappa b is the energy then, kappa b' and kappa b'' its derivatives.
+template <class Table>
+void fill_folded(FoldedBarrier& barrier, Table& rows) {
+  barrier.eval(rows.size(), rows.d.data(), rows.d_hat.data(), rows.parts.data(), rows.b.data(),
+               rows.db.data(), rows.d2b.data());
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (!(rows.kappa[r] > 0)) continue;  // without stiffness all three are 0
+    for (auto* column : {&rows.b, &rows.db, &rows.d2b}) (*column)[r] /= rows.kappa[r];
+  }
+}
+
+}  // namespace
 
 // Local terms are on the compact free slots of either table.
 void ContactTerm::use_state() {
@@ -56,8 +72,9 @@ void ContactTerm::linearise(const Positions& x, const TermContext& context) {
   mollified_energies(state_.mollified, x, families_[1].local.energy);
 }
 
-void ContactTerm::fill_shape(ContactState& state) const {
+void ContactTerm::fill_shape(ContactState& state) {
   const auto fill = [this](auto& rows) {
+    if (folded_) return fill_folded(*folded_, rows);
     options_.contact.eval(rows.size(), rows.d.data(), rows.d_hat.data(), rows.b.data(), rows.db.data(),
                           rows.d2b.data());
   };

@@ -4,8 +4,10 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <vector>
 
+#include "core/barrier/folded_barrier.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/terms/stiffness_update.hpp"
@@ -63,7 +65,7 @@ class ContactTerm final : public Term {
 
  private:
   void use_state();
-  void fill_shape(ContactState& state) const;
+  void fill_shape(ContactState& state);
   void fill_local(const Positions& x, Projection projection);
   void start_policy(const Positions& x, const TermContext& context);
   StiffnessGlobals policy_globals(const Positions& others) const;
@@ -74,6 +76,7 @@ class ContactTerm final : public Term {
   const std::vector<std::uint8_t>& fixed_;
   ContactSystem contacts_;
   StiffnessUpdate stiffness_;
+  std::optional<FoldedBarrier> folded_;  // where the policy has a potential
   ContactState state_, trial_;
   double dt_ = 0, c_ = 1;
   double kappa_change_ = 0;

@@ -96,7 +96,7 @@ void ContactTerm::report_overload(const Positions&, const Positions& others, con
                                   StepNumbers& out) {
   out.contact_overload = 0;
   const BarrierFunction& barrier = options_.contact;
-  if (barrier.shape.infinite_at_zero) return;
+  if (barrier.shape.infinite_at_zero || folded_) return;
   const ContactTable& rows = state_.rows;
   LargestSlope slope(barrier);
   double largest = 0;

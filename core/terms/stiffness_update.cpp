@@ -50,9 +50,31 @@ void StiffnessUpdate::set_time(double dt, double c) {
   c_ = c;
 }
 
+void StiffnessUpdate::begin_step() {
+  memory_.clear();
+  has_step_elastic_ = false;
+}
+
+StiffnessUpdate::Hessian StiffnessUpdate::hessian_of(const BlockSystem& blocks,
+                                                     const BlockSystem::Values& elastic) {
+  if (!policy_.needs_hessian()) return {blocks};
+  if (!policy_.has_potential()) return {blocks, &elastic};
+  if (!has_step_elastic_) blocks.element_values(elastic, step_elastic_);
+  has_step_elastic_ = true;
+  return {blocks, &step_elastic_, true};
+}
+
+void StiffnessUpdate::Hessian::submatrix(const int* vertices, int k, double* out) const {
+  if (of_elements) {
+    blocks.element_submatrix(*values, vertices, k, out);
+  } else {
+    blocks.submatrix(*values, vertices, k, out);
+  }
+}
+
 template <class Table>
-void StiffnessUpdate::gather(const Table& table, std::span<const int> rows, const BlockSystem& blocks,
-                             const BlockSystem::Values& elastic, bool at_d_hat, bool with_hessian) {
+void StiffnessUpdate::gather(const Table& table, std::span<const int> rows, const Hessian& hessian,
+                             bool at_d_hat) {
   const std::size_t n = rows.size();
   columns_.n_free.resize(n);
   columns_.weight.resize(4 * n);
@@ -60,7 +82,7 @@ void StiffnessUpdate::gather(const Table& table, std::span<const int> rows, cons
   columns_.normal.resize(3 * n);
   columns_.d.resize(n);
   columns_.d_hat.resize(n);
-  if (with_hessian) columns_.hessian.resize(144 * n);
+  if (hessian.values) columns_.hessian.resize(144 * n);
   const std::vector<int>& vertices = free_vertices(table);
   for (std::size_t i = 0; i < n; ++i) {
     const auto r = static_cast<std::size_t>(rows[i]);
@@ -73,28 +95,33 @@ void StiffnessUpdate::gather(const Table& table, std::span<const int> rows, cons
     for (std::size_t k = 0; k < 3; ++k) columns_.normal[3 * i + k] = table.normal[3 * r + k];
     columns_.d_hat[i] = table.d_hat[r];
     columns_.d[i] = at_d_hat ? table.d_hat[r] : table.d[r];
-    if (with_hessian) {
-      blocks.submatrix(elastic, &vertices[4 * r], table.n_free[r], &columns_.hessian[144 * i]);
-    }
+    if (hessian.values) hessian.submatrix(&vertices[4 * r], table.n_free[r], &columns_.hessian[144 * i]);
   }
 }
 
+// The parts of these rows, as one new pair would have them.
 template <class Table>
-void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const BlockSystem& blocks,
-                           const BlockSystem::Values& elastic, bool at_d_hat) {
+void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const Hessian& hessian, bool at_d_hat) {
   if (rows.empty()) return;
-  const bool with_hessian = policy_.needs_hessian();
-  gather(table, rows, blocks, elastic, at_d_hat, with_hessian);
-  kappa_.resize(rows.size());
-  policy_.fill(columns_.batch(dt_, c_, with_hessian), kappa_.data());
-  for (std::size_t i = 0; i < rows.size(); ++i) table.kappa[static_cast<std::size_t>(rows[i])] = kappa_[i];
+  gather(table, rows, hessian, at_d_hat);
+  const StiffnessBatch batch = columns_.batch(dt_, c_, hessian.values != nullptr);
+  parts_.assign(rows.size(), {});
+  if (policy_.has_potential()) {
+    policy_.fill_parts(batch, parts_.data());
+  } else {
+    kappa_.resize(rows.size());
+    policy_.fill(batch, kappa_.data());
+    for (std::size_t i = 0; i < rows.size(); ++i) parts_[i].fixed = kappa_[i];
+  }
+  for (std::size_t i = 0; i < rows.size(); ++i) table.parts[static_cast<std::size_t>(rows[i])] = parts_[i];
 }
 
 void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                                    const BlockSystem::Values& elastic, bool at_d_hat) {
-  fill(rows, missing_, blocks, elastic, at_d_hat);
-  fill(mollified, missing_mollified_, blocks, elastic, at_d_hat);
-  memory_.complete(rows, missing_);
+  const Hessian hessian = hessian_of(blocks, elastic);
+  fill(rows, missing_, hessian, at_d_hat);
+  fill(mollified, missing_mollified_, hessian, at_d_hat);
+  memory_.complete(rows, missing_, mollified, missing_mollified_);
 }
 
 double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
@@ -114,6 +141,7 @@ void StiffnessUpdate::freeze(ContactTable& rows, MollifiedTable& mollified, cons
   fill_missing(rows, mollified, blocks, elastic, true);
   note_before(rows, missing_);
   note_before(mollified, missing_mollified_);
+  if (policy_.has_potential()) keep(rows, mollified);
 }
 
 void StiffnessUpdate::keep(const ContactTable& rows, const MollifiedTable& mollified) {
@@ -122,7 +150,8 @@ void StiffnessUpdate::keep(const ContactTable& rows, const MollifiedTable& molli
 
 PolicyColumns StiffnessUpdate::columns(const ContactTable& rows, int row, const BlockSystem& blocks,
                                        const BlockSystem::Values& elastic) {
-  gather(rows, std::span<const int>(&row, 1), blocks, elastic, false, !elastic.empty());
+  const Hessian hessian{blocks, elastic.empty() ? nullptr : &elastic};
+  gather(rows, std::span<const int>(&row, 1), hessian, false);
   return columns_;
 }
 

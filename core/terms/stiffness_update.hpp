@@ -29,21 +29,23 @@ class StiffnessUpdate {
   /// policy must outlive this object. mass: [n_vertices] kg.
   StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass);
 
-  /// Forgets the kappa of the step before.
-  void begin_step() { memory_.clear(); }
+  /// Forgets the kappa and the H of the step before.
+  void begin_step();
   /// Step length (s) and inertia weight c that policies read.
   void set_time(double dt, double c);
 
   /// kappa of the rows of a Newton iterate. elastic: values of the elastic matrix H, read only when the
   /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a pair had
-  /// in this step. Returns the largest relative_change of a row's kappa against its kappa_before; 0 where
+  /// in this step; a policy with a potential reads the H of the step's first iterate all through it. Returns the largest relative_change of a row's kappa against its kappa_before; 0 where
   /// the policy gives all rows one kappa or keeps it for the step.
   double refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                  const BlockSystem::Values& elastic);
 
   /// kappa of the rows of a trial state: known pairs keep theirs, new ones get the policy's value at d =
   /// d_hat with the same H, so that kappa does not depend on the trial. Writes kappa_before too: what is
-  /// known of a trial stays in its own rows.
+  /// known of a trial stays in its own rows. Only of a policy with a potential a new pair is known from then on,
+  /// whether the trial is accepted or not: its weights belong to the state where it was first met, and E has to
+  /// be one function of x for the rest of the step.
   void freeze(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
               const BlockSystem::Values& elastic);
 
@@ -61,12 +63,19 @@ class StiffnessUpdate {
   bool uniform() const { return policy_.state().kappa > 0; }
   void fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                     const BlockSystem::Values& elastic, bool at_d_hat);
+  /// Where sub-matrices of H come from; without values none are read.
+  struct Hessian {
+    const BlockSystem& blocks;
+    const BlockSystem::Values* values = nullptr;
+    bool of_elements = false;  // values as element_values() has them
+    void submatrix(const int* vertices, int k, double* out) const;
+  };
   template <class Table>
-  void gather(const Table& table, std::span<const int> rows, const BlockSystem& blocks,
-              const BlockSystem::Values& elastic, bool at_d_hat, bool with_hessian);
+  void gather(const Table& table, std::span<const int> rows, const Hessian& hessian, bool at_d_hat);
+  /// Of the iterate, or for a policy with a potential of the step's first one.
+  Hessian hessian_of(const BlockSystem& blocks, const BlockSystem::Values& elastic);
   template <class Table>
-  void fill(Table& table, std::span<const int> rows, const BlockSystem& blocks,
-            const BlockSystem::Values& elastic, bool at_d_hat);
+  void fill(Table& table, std::span<const int> rows, const Hessian& hessian, bool at_d_hat);
 
   StiffnessPolicy& policy_;
   std::span<const double> mass_;
@@ -75,6 +84,9 @@ class StiffnessUpdate {
   PolicyColumns columns_;
   std::vector<int> missing_, missing_mollified_;
   std::vector<double> kappa_;
+  std::vector<KappaParts> parts_;
+  BlockSystem::Values step_elastic_;  // H of the step's first iterate, as element_values() has it
+  bool has_step_elastic_ = false;
 };
 
 }  // namespace bb

@@ -18,6 +18,9 @@ StrainLimitTerm::StrainLimitTerm(const Scene& scene, const TermOptions& options,
       fixed_(fixed),
       batch_(scene.limit.triangles, scene.rest, scene.limit.onset, scene.limit.width, scene.planar),
       kappa_(batch_.size()) {
+  if (options.limit_stiffness.has_potential()) {
+    folded_.emplace(Folded{FoldedBarrier(options.limit), std::vector<KappaParts>(2 * batch_.size())});
+  }
   TermFamily& family = families_.emplace_back();
   family.stencils = {3, batch_.vertices()};
   family.local.resize(batch_.size(), 3);
@@ -40,11 +43,17 @@ void StrainLimitTerm::linearise(const Positions& x, const TermContext& context) 
   kappa_change_ = 0;
   refresh_stiffness(x, context);
   first_iterate_ = false;
-  batch_.derivatives(x, options_.limit, kappa_.data(), context.projection, families_[0].local);
+  fill(x, context.projection, families_[0].local);
 }
 
-void StrainLimitTerm::clamp(const Positions& x) {
-  batch_.derivatives(x, options_.limit, kappa_.data(), Projection::psd, families_[0].clamped);
+void StrainLimitTerm::clamp(const Positions& x) { fill(x, Projection::psd, families_[0].clamped); }
+
+void StrainLimitTerm::fill(const Positions& x, Projection projection, LocalTerms& out) {
+  if (folded_) {
+    batch_.derivatives(x, *folded_, kappa_.data(), projection, out);
+  } else {
+    batch_.derivatives(x, options_.limit, kappa_.data(), projection, out);
+  }
 }
 
 void StrainLimitTerm::refresh_stiffness(const Positions& x, const TermContext& context) {
@@ -63,11 +72,21 @@ void StrainLimitTerm::refresh_stiffness(const Positions& x, const TermContext& c
     Eigen::Map<Mat<double, 9, 9>> target(&hess_[81 * e]);
     target = block.topLeftCorner<9, 9>();
   }
-  batch_.measure(x);
+  parts_.resize(batch_.size());
   batch_.elastic_stiffness(x_n_, hess_.data(), scene_.mass.data(), scene_.limit.mass.data(),
-                           rule.rule(dt_, c_), kappa_.data());
-  for (double& kappa : kappa_) kappa *= rule.multiplier;
+                           rule.rule(dt_, c_), parts_.data());
+  if (folded_) return fold(rule.multiplier);
+  batch_.measure(x);
+  for (std::size_t e = 0; e < batch_.size(); ++e) kappa_[e] = parts_[e].at(smaller_gap(e)) * rule.multiplier;
   kappa_change_ = first_iterate_ ? 0 : stiffness_change();
+}
+
+void StrainLimitTerm::fold(double multiplier) {
+  folded_->parts.clear();
+  for (const KappaParts& one : parts_) {
+    folded_->parts.insert(folded_->parts.end(), 2, {multiplier * one.fixed, multiplier * one.per_gap_sq});
+  }
+  std::fill(kappa_.begin(), kappa_.end(), 1.0);
 }
 
 double StrainLimitTerm::smaller_gap(std::size_t e) const {
@@ -96,7 +115,18 @@ bool StrainLimitTerm::admits(const Positions& x, PhaseClock&) {
 }
 
 void StrainLimitTerm::evaluate(const Positions& x, const TermContext&) {
-  batch_.values(x, options_.limit, kappa_.data(), families_[0].trial_energy.data());
+  std::vector<double>& energy = families_[0].trial_energy;
+  if (folded_) {
+    batch_.values(x, *folded_, kappa_.data(), energy.data());
+  } else {
+    batch_.values(x, options_.limit, kappa_.data(), energy.data());
+  }
+}
+
+// |dS_e/dsigma| at a pseudo-gap, J.
+double StrainLimitTerm::force(std::size_t e, double gap) const {
+  const double kappa = folded_ ? folded_->parts[2 * e].at(gap) : kappa_[e];
+  return -kappa * options_.limit.eval(gap, scene_.limit.width[e]).db;
 }
 
 double StrainLimitTerm::load_max() const {
@@ -105,7 +135,7 @@ double StrainLimitTerm::load_max() const {
     const double width = scene_.limit.width[e];
     for (const double gap : batch_.gaps().subspan(2 * e, 2)) {
       if (gap >= width) continue;
-      largest = std::max(largest, -kappa_[e] * options_.limit.eval(gap, width).db / batch_.rests()[e].area);
+      largest = std::max(largest, force(e, gap) / batch_.rests()[e].area);
     }
   }
   return largest;
@@ -152,7 +182,7 @@ double StrainLimitTerm::times_larger(std::size_t e, const Positions& others) con
 void StrainLimitTerm::report_overload(const Positions& x, const Positions& others, const Positions& dx,
                                       StepNumbers& out) {
   out.limit_overload = 0;
-  if (options_.limit.shape.infinite_at_zero) return;
+  if (options_.limit.shape.infinite_at_zero || folded_) return;
   batch_.measure(x);
   const std::vector<double> gaps(batch_.gaps().begin(), batch_.gaps().end());
   batch_.measure(x + dx);

@@ -2,8 +2,10 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
+#include "core/barrier/folded_barrier.hpp"
 #include "core/energy/strain_limit_batch.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/term.hpp"
@@ -37,8 +39,11 @@ class StrainLimitTerm final : public Term {
 
  private:
   void refresh_stiffness(const Positions& x, const TermContext& context);
+  void fill(const Positions& x, Projection projection, LocalTerms& out);
+  void fold(double multiplier);
   double stiffness_change() const;
   double smaller_gap(std::size_t e) const;
+  double force(std::size_t e, double gap) const;
   double load_max() const;
   double times_larger(std::size_t e, const Positions& others) const;
 
@@ -48,7 +53,18 @@ class StrainLimitTerm final : public Term {
   StrainLimitBatch batch_;
   Positions x_n_;
   double dt_ = 0, c_ = 1;
-  std::vector<double> kappa_, kappa_before_, hess_;  // J, J, [81 n] N/m
+  /// kappa_e(y) (J) with its potential, as the batch asks a barrier: at both pseudo-gaps of every element.
+  struct Folded {
+    FoldedBarrier barrier;
+    std::vector<KappaParts> parts;  // [2 n] both of an element equal
+    void eval(std::size_t n, const double* y, const double* width, double* s, double* ds, double* d2s) {
+      barrier.eval(n, y, width, parts.data(), s, ds, d2s);
+    }
+  };
+  std::optional<Folded> folded_;   // where kappa_e has a potential
+  std::vector<KappaParts> parts_;  // [n] J
+  std::vector<double> kappa_;      // [n] J, parts_ at the smaller pseudo-gap; 1 where folded_ has it
+  std::vector<double> kappa_before_, hess_;  // [n] J, [81 n] N/m
   bool kappa_fresh_ = false, first_iterate_ = true;
   double kappa_change_ = 0;
 };

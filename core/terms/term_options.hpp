@@ -20,10 +20,14 @@ struct LimitStiffness {
   MassTerm mass_term = MassTerm::paper;  // elasticity_inclusive
   bool elastic_term = true;              // elasticity_inclusive
   Refresh refresh = Refresh::per_iteration;
+  KappaDerivative derivative = KappaDerivative::dropped;  // included: refreshed per step
   double multiplier = 1;  // the config's own factor times s of the matching rule
 
   /// What elasticity_inclusive asks of one element, in a step of length dt (s) and inertia weight c.
   StrainStiffnessRule rule(double dt, double c) const { return {mass_term, elastic_term, dt, c}; }
+  bool has_potential() const {
+    return kind == Kind::elasticity_inclusive && derivative == KappaDerivative::included;
+  }
   bool needs_hessian() const { return kind == Kind::elasticity_inclusive && elastic_term; }
 };
 

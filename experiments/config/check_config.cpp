@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "barriers/shapes/registry.hpp"
+#include "core/barrier/folded_barrier.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/config/reader.hpp"
@@ -62,6 +63,40 @@ void check_policy(const RunConfig& config, const Complain& complain) {
     make_policy(policy_request(policy, given_kappa(policy).value_or(1)));
   } catch (const ConfigError& error) {
     for (const Violation& v : error.violations()) complain("/formulation/" + v.where, v.found, v.allowed);
+  }
+}
+
+/// derivative `included` asks for a shape with a potential; of the limit's policy, which no registry makes, all
+/// that goes with it.
+void check_potential(const std::string& section, const std::string& shape, Argument argument,
+                     const PolicyConfig& policy, bool literal, const Complain& complain) {
+  const auto derivative = policy.parameters.find("derivative");
+  if (derivative == policy.parameters.end() ||
+      derivative->second != ParameterValue(std::string("included"))) {
+    return;
+  }
+  const std::string pointer = section + "/stiffness_policy/derivative";
+  const auto barrier = barrier_of(shape, argument);
+  if (barrier && !has_potential(*barrier)) {
+    complain(pointer, fmt::format("\"included\" with {} on {}", shape, to_string(argument)),
+             "dropped, or argument gap and one of the shapes with a potential: " + shapes_with_potential());
+  }
+  if (literal) complain(pointer, "\"included\"", "dropped: the step solver is article_literal");
+}
+
+void check_potentials(const RunConfig& config, const Complain& complain) {
+  const bool literal = config.step_solver.name == "article_literal";
+  const FormulationConfig& contact = config.formulation;
+  check_potential("/formulation", contact.shape, contact.argument, contact.stiffness_policy, literal,
+                  complain);
+  const StrainLimitConfig& limit = config.strain_limit;
+  if (!limit.enabled) return;
+  check_potential("/strain_limit", limit.shape, limit.argument, limit.stiffness_policy, literal, complain);
+  if (limit.stiffness_policy.name != "elasticity_inclusive") return;
+  try {
+    check_derivative(limit.stiffness_policy.parameters, "stiffness_policy");
+  } catch (const ConfigError& error) {
+    for (const Violation& v : error.violations()) complain("/strain_limit/" + v.where, v.found, v.allowed);
   }
 }
 
@@ -218,6 +253,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   check_step_solver(config, complain);
   check_hessians(config, complain);
   check_policy(config, complain);
+  check_potentials(config, complain);
   check_adaptive_start(config, complain);
   check_matching(config, complain);
   check_tolerance(config, complain);

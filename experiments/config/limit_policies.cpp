@@ -12,9 +12,11 @@ const Registry<LimitPolicyEntry>& limit_policies() {
        "k_s_N_per_m"},
       {"elasticity_inclusive",
        "kappa_e from the element's Hessian and mass",
-       {{"mass_term", word({"paper", "inertia"}), "paper", "m_e/y_min^2 times 1 m^2/s^2, or M/(c h^2)"},
+       {{"mass_term", word({"paper", "inertia", "scaled"}), "paper",
+         "m_e/y^2 times 1 m^2/s^2, M/(c h^2), or M/(c h^2) (width/y)^2"},
         {"elastic_term", flag(), true, "whether the elastic Hessian counts"},
-        refresh_parameter()},
+        refresh_parameter(),
+        derivative_parameter()},
        ""},
   });
   return all;

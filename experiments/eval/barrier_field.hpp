@@ -2,6 +2,7 @@
 #pragma once
 
 #include "barriers/shapes/registry.hpp"
+#include "core/barrier/folded_barrier.hpp"
 #include "experiments/eval/query.hpp"
 
 namespace bb::eval {
@@ -13,6 +14,18 @@ inline BarrierFunction barrier_field(Query& q) {
   const Shape shape = shape_field(q);
   const bool squared = q.choice_or("argument", {"gap", "squared_gap"}) == "squared_gap";
   return {shape, squared ? Argument::squared_gap : Argument::gap};
+}
+
+/// The same with the field `derivative`; included: the potential of kappa (d_hat/d)^2 b'(d), kappa being the
+/// stiffness at d_hat, as a barrier of its own.
+inline BarrierFunction barrier_with_derivative(Query& q) {
+  const BarrierFunction barrier = barrier_field(q);
+  if (q.choice_or("derivative", {"dropped", "included"}) == "dropped") return barrier;
+  if (has_potential(barrier)) return potential_of(barrier);
+  q.complain("derivative",
+             "included with " + barrier.shape.name + " on " + std::string(to_string(barrier.argument)),
+             "dropped, or argument gap and one of the shapes with a potential: " + shapes_with_potential());
+  return barrier;
 }
 
 }  // namespace bb::eval

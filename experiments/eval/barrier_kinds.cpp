@@ -25,7 +25,7 @@ Answer answer::shape(Query& q) {
 
 template <class T>
 Answer answer::rho(Query& q) {
-  const BarrierFunction barrier = barrier_field(q);
+  const BarrierFunction barrier = barrier_with_derivative(q);
   const double u = q.number("u", kUnitOpen);
   q.finish();
   Answer a;
@@ -35,7 +35,7 @@ Answer answer::rho(Query& q) {
 
 template <class T>
 Answer answer::equilibrium(Query& q) {
-  const BarrierFunction barrier = barrier_field(q);
+  const BarrierFunction barrier = barrier_with_derivative(q);
   const double kappa = q.number("kappa", kPositive);
   const double d_hat = q.number("d_hat", kPositive);
   const double load = q.number("load", kPositive);

@@ -11,12 +11,12 @@ namespace {
 struct ContactFields {
   std::vector<double> weights, normal, masses;
   MatX<double> hessian;
-  double gap = 1;
+  double gap = 1, d_hat = 1;
 };
 
 /// Reads what is there; `needed` says which fields must be.
 struct Needed {
-  bool stencil, gap, masses, hessian;
+  bool stencil, gap, d_hat, masses, hessian;
 };
 
 ContactFields contact_fields(Query& q, const Needed& needed) {
@@ -38,6 +38,7 @@ ContactFields contact_fields(Query& q, const Needed& needed) {
     }
   }
   if (wanted("gap", needed.gap)) c.gap = q.number("gap", kPositive);
+  if (wanted("d_hat", needed.d_hat)) c.d_hat = q.number("d_hat", kPositive);
   if (wanted("masses", needed.masses)) c.masses = q.list("masses", n, kNonNegative);
   if (wanted("hessian", needed.hessian))
     c.hessian = q.rows("hessian", n < 0 ? -1 : 3 * n, n < 0 ? -1 : 3 * n);
@@ -52,24 +53,25 @@ std::vector<T> rounded(const std::vector<double>& values) {
 template <class T>
 Answer elasticity_inclusive(Query& q) {
   ElasticityInclusiveRule rule;
-  rule.mass_term = require_mass_term(q.choice("mass_term", {"paper", "inertia", "none"}), "/mass_term");
+  rule.mass_term =
+      require_mass_term(q.choice("mass_term", {"paper", "inertia", "scaled", "none"}), "/mass_term");
   rule.elastic_term = q.flag_or("elastic_term", true);
-  const bool inertia = rule.mass_term == MassTerm::inertia;
-  if (inertia) {
+  const bool scaled = rule.mass_term == MassTerm::scaled;
+  if (scaled || rule.mass_term == MassTerm::inertia) {
     rule.dt = q.number("dt", kPositive);
     rule.c = q.number("c", kPositive);
   }
-  const bool paper = rule.mass_term == MassTerm::paper;
-  const ContactFields c = contact_fields(q, {true, paper, paper || inertia, rule.elastic_term});
+  const bool gap = depends_on_gap(rule.mass_term), mass = rule.mass_term != MassTerm::none;
+  const ContactFields c = contact_fields(q, {true, gap, scaled, mass, rule.elastic_term});
   q.finish();
 
   const auto weights = rounded<T>(c.weights), normal = rounded<T>(c.normal), masses = rounded<T>(c.masses);
   const MatX<T> hessian = c.hessian.cast<T>();
   const int n = static_cast<int>(weights.size());
   Answer a;
-  a.number("kappa", static_cast<double>(elasticity_inclusive_kappa<T>(n, weights.data(), normal.data(),
-                                                                      static_cast<T>(c.gap), masses.data(),
-                                                                      hessian.data(), 3 * n, rule)));
+  a.number("kappa", static_cast<double>(elasticity_inclusive_kappa<T>(
+                        n, weights.data(), normal.data(), static_cast<T>(c.gap), static_cast<T>(c.d_hat),
+                        masses.data(), hessian.data(), 3 * n, rule)));
   return a;
 }
 
@@ -77,7 +79,7 @@ template <class T>
 Answer fixed(Query& q) {
   StiffnessPolicyConfig config;
   config.parameters["kappa_N_per_m"] = q.number("kappa", kPositive);
-  contact_fields(q, {false, false, false, false});
+  contact_fields(q, {false, false, false, false, false});
   q.finish();
   StiffnessBatch one;
   one.n = 1;

@@ -120,7 +120,8 @@ double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std:
   replay.blocks().submatrix(replay.elastic(), vertices.data(), 3, block.data());
   const Mat<double, 9, 9> hessian = block.topLeftCorner<9, 9>();
   const StrainStiffnessRule rule = limit.rule(dt, c);
-  return strain_stiffness<double>(x, hessian, mass, scene.limit.mass[e], y, rule) / area;
+  return strain_stiffness<double>(x, hessian, mass, scene.limit.mass[e], scene.limit.width[e], rule).at(y) /
+         area;
 }
 
 }  // namespace
@@ -174,7 +175,8 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
       if (!(load > 0)) continue;
       double k_s = 1;
       if (own) {
-        const double softest = own->refresh == Refresh::per_step ? std::max(width, y_start[e]) : width;
+        const bool frozen = own->refresh == Refresh::per_step && !own->has_potential();
+        const double softest = frozen ? std::max(width, y_start[e]) : width;
         k_s = own_limit_stiffness(*own, scene, e, area, softest, dt, replay.c(step), replay.start(step),
                                   replay);
         if (too_soft(k_s, matched(load, width))) refuse(k_s * area, "kappa_e", step, name_element(scene, e));

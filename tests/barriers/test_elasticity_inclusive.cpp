@@ -38,8 +38,8 @@ struct Row {
   }
 
   double kappa(const ElasticityInclusiveRule& rule) const {
-    return elasticity_inclusive_kappa(n_free, weight.data(), normal.data(), d, mass.data(), hessian.data(),
-                                      12, rule);
+    return elasticity_inclusive_kappa(n_free, weight.data(), normal.data(), d, d_hat, mass.data(),
+                                      hessian.data(), 12, rule);
   }
 };
 
@@ -47,13 +47,15 @@ TEST(ElasticityInclusive, TwoFreePointMasses) {
   const double weight[] = {1, -1}, normal[] = {0, 1, 0}, mass[] = {2e-3, 6e-3}, d = 1e-3, h = 0.01,
                c = 4.0 / 9;
   const auto kappa = [&](const ElasticityInclusiveRule& rule) {
-    return elasticity_inclusive_kappa(2, weight, normal, d, mass, static_cast<const double*>(nullptr), 12,
-                                      rule);
+    return elasticity_inclusive_kappa(2, weight, normal, d, 3 * d, mass, static_cast<const double*>(nullptr),
+                                      12, rule);
   };
   // w^T M w/(w^T w) = (m1 + m2)/2 = 4e-3 kg
   EXPECT_NEAR(kappa({MassTerm::paper, false, h, c}), 4e-3 / 1e-6, 1e-9);
   EXPECT_NEAR(kappa({MassTerm::inertia, false, h, c}), 4e-3 / (c * 1e-4), 1e-9);
+  EXPECT_NEAR(kappa({MassTerm::scaled, false, h, c}), 9 * 4e-3 / (c * 1e-4), 1e-9);  // at d_hat/3
   EXPECT_EQ(kappa({MassTerm::inertia, false, h, 0}), 0);  // quasi-static: no inertia
+  EXPECT_EQ(kappa({MassTerm::scaled, false, h, 0}), 0);
 }
 
 TEST(ElasticityInclusive, OneVertexAtAWall) {
@@ -107,9 +109,29 @@ TEST(ElasticityInclusive, FloatAgreesWithDouble) {
   const Eigen::Matrix<float, 12, 12> hessian = row.hessian.cast<float>();
   const Eigen::Vector4f weight = row.weight.cast<float>(), mass = row.mass.cast<float>();
   const Eigen::Vector3f normal = row.normal.cast<float>();
-  const float single = elasticity_inclusive_kappa(4, weight.data(), normal.data(), static_cast<float>(row.d),
-                                                  mass.data(), hessian.data(), 12, rule);
+  const float single =
+      elasticity_inclusive_kappa(4, weight.data(), normal.data(), static_cast<float>(row.d),
+                                 static_cast<float>(row.d_hat), mass.data(), hessian.data(), 12, rule);
   EXPECT_NEAR(static_cast<double>(single), row.kappa(rule), 1e-5 * row.kappa(rule));
+}
+
+TEST(ElasticityInclusive, AsAFunctionOfTheGapItIsTheSameKappa) {
+  int falls = 0;
+  for (const MassTerm term : {MassTerm::paper, MassTerm::inertia, MassTerm::scaled, MassTerm::none}) {
+    Row row(3, 41);
+    const ElasticityInclusiveRule rule{term, true, 0.01, 0.25};
+    const KappaParts parts =
+        elasticity_inclusive_parts(row.n_free, row.weight.data(), row.normal.data(), row.d_hat,
+                                   row.mass.data(), row.hessian.data(), 12, rule);
+    EXPECT_GT(parts.fixed, 0);
+    EXPECT_EQ(parts.per_gap_sq > 0, depends_on_gap(term));
+    falls += parts.per_gap_sq > 0;
+    for (const double d : {1e-6, 3e-4, 9.9e-4}) {
+      row.d = d;
+      EXPECT_NEAR(parts.at(d), row.kappa(rule), 1e-12 * row.kappa(rule));
+    }
+  }
+  EXPECT_EQ(falls, 2);
 }
 
 TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
@@ -155,6 +177,20 @@ TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
   massive->fill(batch, kappa.data());
   EXPECT_EQ(kappa[0], 3 * rows[0].kappa({MassTerm::inertia, false, 0.01, 0.25}));
 
+  EXPECT_FALSE(massive->has_potential());
+  config.parameters.insert_or_assign("mass_term", "scaled");
+  config.parameters.insert_or_assign("derivative", "included");
+  const std::unique_ptr<StiffnessPolicy> folded = make_policy(config);
+  EXPECT_TRUE(folded->has_potential());
+  std::vector<KappaParts> parts(4);
+  batch.d = nullptr;  // not read
+  folded->fill_parts(batch, parts.data());
+  for (std::size_t r = 0; r < 4; ++r) {
+    const double one = 3 * rows[r].kappa({MassTerm::scaled, false, 0.01, 0.25});
+    EXPECT_NEAR(parts[r].at(rows[r].d), one, 1e-12 * one);
+  }
+
+  config.parameters.insert_or_assign("derivative", "dropped");
   config.parameters.insert_or_assign("mass_term", "none");
   EXPECT_THROW(make_policy(config), ConfigError);
 }

@@ -46,12 +46,13 @@ TEST(FormulationPresets, EveryFileNamesKnownParts) {
     config.name = policy.at("name");
     for (const auto& [key, value] : policy.items()) {
       if (key.starts_with("kappa_")) config.parameters["kappa_N_per_m"] = kappa_of(key, value);
-      if (key == "mass_term" || key == "refresh") config.parameters[key] = value.get<std::string>();
+      if (key == "mass_term" || key == "refresh" || key == "derivative")
+        config.parameters[key] = value.get<std::string>();
     }
     EXPECT_NO_THROW(make_policy(config)) << entry.path();
     ++files;
   }
-  EXPECT_GE(files, 10);
+  EXPECT_GE(files, 12);
   EXPECT_GE(shapes_used.size(), 5u);
 }
 
@@ -68,6 +69,16 @@ TEST(FormulationPresets, PublishedOnesAreWhatTheyClaim) {
   json same = lagged;
   same["stiffness_policy"]["refresh"] = "per_iteration";
   EXPECT_EQ(same, dynamic);
+
+  const json consistent = formulation("cubic_dynamic_consistent");
+  json published = consistent;
+  EXPECT_EQ(published["stiffness_policy"]["derivative"], "included");
+  published["stiffness_policy"].erase("derivative");
+  EXPECT_EQ(published, lagged);
+  json sister = formulation("cubic_dynamic_consistent_scaled");
+  EXPECT_EQ(sister["stiffness_policy"]["mass_term"], "scaled");
+  sister["stiffness_policy"]["mass_term"] = "paper";
+  EXPECT_EQ(sister, consistent);
 
   // at d_hat = 1 mm the literal constants are near the 1000 N/m of the plain presets
   EXPECT_DOUBLE_EQ(kappa_of("kappa_a_J", formulation("article_cubic").at("stiffness_policy").at("kappa_a_J")),

@@ -171,7 +171,7 @@ TEST(PolicyFactory, RefusesBadNumbers) {
 }
 
 TEST(PolicyNames, RoundTrip) {
-  for (const MassTerm term : {MassTerm::paper, MassTerm::inertia, MassTerm::none}) {
+  for (const MassTerm term : {MassTerm::paper, MassTerm::inertia, MassTerm::scaled, MassTerm::none}) {
     EXPECT_EQ(require_mass_term(to_string(term)), term);
   }
   for (const Refresh refresh : {Refresh::per_iteration, Refresh::per_step}) {

@@ -56,6 +56,39 @@ TEST(Contradictions, APolicyThatCouldNotStart) {
   }
 }
 
+TEST(Contradictions, AStiffnessThatHasNoPotential) {
+  const std::string policy = "/formulation/stiffness_policy";
+  json config = hang_config();
+  config["formulation"] = {{"name", "cubic_dynamic_consistent"}};
+  EXPECT_EQ(text(parsed(config).formulation.stiffness_policy.parameters, "derivative"), "included");
+  // the limit follows the contacts
+  const RunConfig limited = parsed(with(config, "/strain_limit", {{"limit", 0.1}}));
+  EXPECT_EQ(text(limited.strain_limit.stiffness_policy.parameters, "derivative"), "included");
+
+  json log = with(config, "/strain_limit", {{"shape", "cubic"}, {"limit", 0.1}});
+  log["formulation"]["shape"] = "log";
+  expect_violation(log, policy + "/derivative", "\"included\" with log on gap",
+                   "argument gap and one of the shapes with a potential: quadratic, cubic");
+  json squared = with(config, "/strain_limit", {{"argument", "gap"}, {"limit", 0.1}});
+  squared["formulation"]["argument"] = "squared_gap";
+  expect_violation(squared, policy + "/derivative", "\"included\" with cubic on squared_gap", "argument gap");
+  json often = with(config, "/strain_limit/stiffness_policy", {{"refresh", "per_step"}});
+  often["strain_limit"]["limit"] = 0.1;
+  often["formulation"]["stiffness_policy"] = {{"refresh", "per_iteration"}};
+  expect_violation(often, policy + "/refresh", "\"per_iteration\"", "per_step, or derivative dropped");
+
+  const std::string limit = "/strain_limit/stiffness_policy";
+  json two_stage = with(config, "/strain_limit", {{"shape", "two_stage"}, {"limit", 0.1}});
+  expect_violation(two_stage, limit + "/derivative", "\"included\" with two_stage on gap", "cubic");
+  two_stage["strain_limit"]["stiffness_policy"] = {{"derivative", "dropped"}};
+  EXPECT_EQ(parsed(two_stage).strain_limit.shape, "two_stage");
+  json own = with(config, "/strain_limit", {{"limit", 0.1}});
+  own["strain_limit"]["stiffness_policy"] = {{"refresh", "per_iteration"}};
+  expect_violation(own, limit + "/refresh", "\"per_iteration\"", "per_step");
+  own["strain_limit"]["stiffness_policy"] = {{"mass_term", "inertia"}};
+  expect_violation(own, limit + "/derivative", "\"included\" with mass_term inertia", "paper or scaled");
+}
+
 TEST(Contradictions, MatchingWithoutWhatItAsksFor) {
   json config = with(hang_config(), "/formulation/argument", "squared_gap");
   config["formulation"]["shape"] = "quadratic";

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "tests/contact/contact_scenes.hpp"
@@ -41,7 +42,7 @@ KappaMemory knows_one_pair(const Rows& rows, std::size_t pair, Rows& one) {
   one = rows;
   one.table.pair = {rows.table.pair[pair]};
   one.table.pair_begin = {0, 1};
-  one.table.kappa[0] = 7;
+  one.table.parts[0] = {7, 0};
   KappaMemory memory;
   memory.store(one.table, one.mollified);
   return memory;
@@ -55,6 +56,7 @@ TEST(KappaMemory, BIsContinuousWhereAPointSlidesOverAnEdge) {
   ASSERT_EQ(after.table.size(), 2U);
   for (std::size_t r = 0; r < 2; ++r) {
     before.table.kappa[r] = before.table.kind[r] == ContactKind::point_triangle ? 7 : 3;
+    before.table.parts[r].fixed = before.table.kappa[r];
   }
   KappaMemory memory;
   memory.store(before.table, before.mollified);
@@ -82,15 +84,18 @@ TEST(KappaMemory, ARowOfKnownAndNewPairsHasTheirMean) {
   std::vector<int> missing, missing_mollified;
   memory.recall(rows.table, rows.mollified, missing, missing_mollified);
   ASSERT_EQ(missing, std::vector<int>{0});
-  rows.table.kappa[0] = 3;  // what the policy gives the new pair
-  memory.complete(rows.table, missing);
-  EXPECT_EQ(rows.table.kappa[0], 5);
+  rows.table.parts[0] = {3, 0.01};  // what the policy gives the new pair
+  memory.complete(rows.table, missing, rows.mollified, missing_mollified);
+  const double fallen = 0.01 / std::pow(rows.table.d[0], 2);
+  EXPECT_EQ(rows.table.parts[0].fixed, 5);
+  EXPECT_EQ(rows.table.parts[0].per_gap_sq, 0.005);
+  EXPECT_DOUBLE_EQ(rows.table.kappa[0], 5 + fallen / 2);
 
   memory.store(rows.table, rows.mollified);  // the new pair is known with 3, not with the mean
   one.table.pair = {rows.table.pair[1]};
   memory.recall(one.table, one.mollified, missing, missing_mollified);
   EXPECT_TRUE(missing.empty());
-  EXPECT_EQ(one.table.kappa[0], 3);
+  EXPECT_DOUBLE_EQ(one.table.kappa[0], 3 + fallen);
 }
 
 /// A point above the corner of three triangles; one of the three pairs is known.
@@ -109,17 +114,23 @@ TEST(KappaMemory, EveryNewPairOfARowCounts) {
 
   std::vector<int> missing, missing_mollified;
   memory.recall(rows.table, rows.mollified, missing, missing_mollified);
-  rows.table.kappa[0] = 3;
-  memory.complete(rows.table, missing);
+  rows.table.parts[0] = {3, 0};
+  memory.complete(rows.table, missing, rows.mollified, missing_mollified);
   EXPECT_DOUBLE_EQ(rows.table.kappa[0], (7 + 3 + 3) / 3.0);
+}
+
+template <class Table>
+void set_kappa(Table& table, std::size_t r, double kappa) {
+  table.parts[r] = {kappa, 0};
+  table.kappa[r] = kappa;
 }
 
 /// Tables of a state with kappa = 1, 2, 3, ... in row order.
 Rows numbered(ContactSystem& contacts, const Positions& x) {
   Rows rows = rows_at(contacts, x);
-  for (std::size_t r = 0; r < rows.table.size(); ++r) rows.table.kappa[r] = static_cast<double>(r + 1);
+  for (std::size_t r = 0; r < rows.table.size(); ++r) set_kappa(rows.table, r, static_cast<double>(r + 1));
   for (std::size_t r = 0; r < rows.mollified.size(); ++r) {
-    rows.mollified.kappa[r] = 1000 + static_cast<double>(r);
+    set_kappa(rows.mollified, r, 1000 + static_cast<double>(r));
   }
   return rows;
 }
@@ -194,7 +205,7 @@ TEST(KappaMemory, KnownRowsKeepTheirFirstValueUntilCleared) {
   memory.store(rows.table, rows.mollified);
   memory.store({}, {});  // a state without contacts does not make it forget
   const std::vector<double> first = rows.table.kappa;
-  for (double& k : rows.table.kappa) k += 100;
+  for (std::size_t r = 0; r < first.size(); ++r) set_kappa(rows.table, r, first[r] + 100);
   memory.store(rows.table, rows.mollified);
   std::vector<int> missing, missing_mollified;
   memory.recall(rows.table, rows.mollified, missing, missing_mollified);
@@ -214,7 +225,7 @@ TEST(KappaMemory, AnEdgePairKeepsItsValueWhenItBecomesMollified) {
   ContactSystem contacts(scene, {});
   Rows plain = rows_at(contacts, scene.x0);
   ASSERT_EQ(plain.table.size(), 1U);
-  plain.table.kappa[0] = 42;
+  plain.table.parts[0] = {42, 0.02};
   KappaMemory memory;
   memory.store(plain.table, plain.mollified);
 
@@ -225,7 +236,7 @@ TEST(KappaMemory, AnEdgePairKeepsItsValueWhenItBecomesMollified) {
   ASSERT_EQ(parallel.mollified.size(), 1U);
   std::vector<int> missing, missing_mollified;
   memory.recall(parallel.table, parallel.mollified, missing, missing_mollified);
-  EXPECT_EQ(parallel.mollified.kappa[0], 42);
+  EXPECT_EQ(parallel.mollified.kappa[0], 42 + 0.02 / (parallel.mollified.d[0] * parallel.mollified.d[0]));
   EXPECT_TRUE(missing_mollified.empty());
 }
 

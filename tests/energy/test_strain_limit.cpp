@@ -182,15 +182,18 @@ TEST(StrainStiffness, MatchesHandComputedTerms) {
   const Vec3d mass(2, 3, 4);
   const double elastic = 2 + 2 + 4 - 1, inertia = 2 * 2 + 3 * 2 + 4 * 4;
   StrainStiffnessRule rule;
-  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.1, rule), elastic + 6 / 0.01, 1e-12);
+  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), elastic + 6 / 0.01, 1e-12);
   rule.mass_term = MassTerm::inertia;
   rule.dt = 0.1;
   rule.c = 0.25;
-  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.1, rule), elastic + inertia / 0.0025, 1e-10);
+  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), elastic + inertia / 0.0025, 1e-10);
+  rule.mass_term = MassTerm::scaled;  // at a quarter of the width
+  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), elastic + 16 * inertia / 0.0025,
+              1e-9);
   rule.mass_term = MassTerm::none;
-  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.1, rule), elastic, 1e-14);
+  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), elastic, 1e-14);
   rule.elastic_term = false;
-  EXPECT_EQ(strain_stiffness<double>(x, h, mass, 6, 0.1, rule), 0);
+  EXPECT_EQ(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), 0);
 }
 
 }  // namespace

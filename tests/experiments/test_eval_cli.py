@@ -16,6 +16,8 @@ QUERIES = [
     {"kind": "shape", "shape": "log", "d": 0.25, "d_hat": 1, "id": [1, "a"]},
     {"kind": "shape", "shape": "log", "d": 0, "d_hat": 1, "precision": "float"},
     {"kind": "rho", "shape": "cubic", "u": 0.5},
+    {"kind": "rho", "shape": "quadratic", "derivative": "included", "u": 0.5},
+    {"kind": "equilibrium", "shape": "cubic", "derivative": "included", "kappa": 10, "d_hat": 0.1, "load": 1000},
     {"kind": "equilibrium", "shape": "cubic", "kappa": 10, "d_hat": 0.1, "load": 1},
     {"kind": "equilibrium", "shape": "cubic", "kappa": 10, "d_hat": 0.1, "load": 1000},
     {"kind": "match", "rule": "equal_force", "shape": "log", "d_hat": 0.1, "load": 2},
@@ -26,6 +28,8 @@ QUERIES = [
     {"kind": "stiffness", "policy": "fixed", "kappa": 3},
     {"kind": "stiffness", "policy": "elasticity_inclusive", "mass_term": "inertia", "dt": 0.1, "c": 1, "elastic_term": False,
      "weights": [1], "normal": [0, 0, 1], "gap": 0.5, "masses": [3], "hessian": [[2, 0, 0], [0, 2, 0], [0, 0, 2]]},
+    {"kind": "stiffness", "policy": "elasticity_inclusive", "mass_term": "scaled", "dt": 0.1, "c": 1, "elastic_term": False,
+     "weights": [1], "normal": [0, 0, 1], "gap": 0.5, "d_hat": 1, "masses": [3]},
     {"kind": "strain_limit", "shape": "cubic", "sigma": [1.015, 1.0, 1.5], "onset": 0.01, "width": 0.01},
     {"kind": "strain_limit", "shape": "log", "F": [[1.5, 0], [0, 1], [0, 0]], "onset": 0.01, "width": 0.01},
     *({"kind": "energy", "model": model, "rest": SQUARE, "x": MOVED, "lame_mu": 3, "lame_lambda": 2}

@@ -55,6 +55,47 @@ TEST(EvalRho, ClosedForms) {
   refused({{"kind", "rho"}, {"shape", "log"}, {"u", 1}});
 }
 
+/// Claim N1: with its derivative included the published dynamic stiffness is above log's at every gap.
+TEST(EvalRho, OfAStiffnessWhoseDerivativeIsIncluded) {
+  for (double u : {0.01, 0.1, 0.376, 0.9}) {
+    const auto rho = [u](const char* shape, const char* derivative) {
+      return ask({{"kind", "rho"}, {"shape", shape}, {"derivative", derivative}, {"u", u}})["rho"];
+    };
+    expect_close(rho("cubic", "included"), 2 / (1 - u) + 2 / u);
+    expect_close(rho("quadratic", "included"), 1 / (1 - u) + 2 / u);
+    expect_close(rho("cubic", "dropped"), 2 / (1 - u));
+    EXPECT_GT(rho("cubic", "included").get<double>(), rho("log", "dropped").get<double>());
+  }
+  const json query = {{"kind", "rho"}, {"shape", "cubic"}, {"derivative", "included"}, {"u", 0.1}};
+  EXPECT_NEAR(ask(query)["rho"].get<double>(), 22.2, 0.05);
+  json refusable = query;
+  refusable["shape"] = "log";
+  EXPECT_NE(refused(refusable).find("quadratic, cubic"), std::string::npos);
+  refusable["shape"] = "cubic";
+  refusable["argument"] = "squared_gap";
+  EXPECT_NE(refused(refusable).find("/derivative"), std::string::npos);
+  refusable["derivative"] = "exact";
+  EXPECT_NE(refused(refusable).find("dropped"), std::string::npos);
+}
+
+/// kappa (d_hat/d)^2 2 (d_hat - d)^2/d_hat = f: (d_hat/d - 1)^2 = f/(2 kappa d_hat).
+TEST(EvalEquilibrium, OfAStiffnessWhoseDerivativeIsIncluded) {
+  const double kappa = 50, h = 0.02;
+  for (const double f : {1e-6, 0.3, 4.0, 300.0}) {
+    const json rest = ask({{"kind", "equilibrium"},
+                           {"shape", "cubic"},
+                           {"derivative", "included"},
+                           {"kappa", kappa},
+                           {"d_hat", h},
+                           {"load", f}});
+    const double u = 1 / (1 + std::sqrt(f / (2 * kappa * h)));
+    expect_close(rest["d"], u * h);
+    expect_close(rest["K"], f / h * (2 / (1 - u) + 2 / u), 1e-11);
+    EXPECT_TRUE(rest["capacity"].is_null());
+    EXPECT_FALSE(rest.contains("status"));
+  }
+}
+
 TEST(EvalEquilibrium, RestGapStiffnessAndCapacity) {
   const double kappa = 50, h = 0.02, f = 0.3;
   json query = {{"kind", "equilibrium"}, {"shape", "cubic"}, {"kappa", kappa}, {"d_hat", h}, {"load", f}};
@@ -167,6 +208,11 @@ TEST(EvalStiffness, PoliciesByHand) {
   expect_close(ask(query)["kappa"], (mass / (0.25 * 0.04) + elastic) / w_sq);
   query["elastic_term"] = false;
   expect_close(ask(query)["kappa"], mass / (0.25 * 0.04) / w_sq);
+  query["mass_term"] = "scaled";
+  EXPECT_NE(refused(query).find("/d_hat"), std::string::npos);
+  query["d_hat"] = 0.3;
+  expect_close(ask(query)["kappa"], 9 * mass / (0.25 * 0.04) / w_sq);
+  query["mass_term"] = "inertia";
 
   query["hessian"].erase(0);
   EXPECT_NE(refused(query).find("/hessian"), std::string::npos);

@@ -231,7 +231,8 @@ TEST_F(Scenes, GapsOfARunAreThoseOfConvergedStepEnds) {
 }
 
 TEST_F(Scenes, AreBitIdenticalForAnyNumberOfThreadsAndRerunFromTheirRecord) {
-  for (const char* formulation : {"log", "cubic_dynamic_lagged"}) {
+  for (const char* formulation :
+       {"log", "cubic_dynamic_lagged", "cubic_dynamic_consistent", "cubic_dynamic_consistent_scaled"}) {
     const std::string text =
         R"({"schema": "barrierbench.config/1", "scene": {"name": "drape", "layers": 2, "n": 8}, "time": {"steps": 8},
       "formulation": ")" +

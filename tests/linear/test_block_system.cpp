@@ -168,6 +168,39 @@ TEST_F(BlockSystemTest, SubmatrixIsThatOfTheDenseMatrix) {
   EXPECT_LT(unconnected, 20);
 }
 
+TEST_F(BlockSystemTest, ACopyOfTheElementBlocksOutlivesThePattern) {
+  const int n = 40;
+  BlockSystem s(n, std::vector<std::uint8_t>(3 * n, 0));
+  const Family elements = random_family(3, 60, n, 4), first_rows = random_family(4, 12, n, 9),
+               later_rows = random_family(4, 15, n, 10);
+  s.set_elements({elements.stencils()});
+  s.set_contacts({first_rows.stencils()});
+  s.clear();
+  s.add_elements(0, elements.hess);
+  BlockSystem::Values copy;
+  s.element_values(s.values(), copy);
+  EXPECT_LT(copy.size(), s.values().size());
+  Eigen::MatrixXd a = Eigen::MatrixXd::Zero(3 * n, 3 * n);
+  Positions g = Positions::Zero(3, n);
+  add_dense(elements, a, g);
+  ASSERT_TRUE(s.set_contacts({later_rows.stencils()}));
+  int nonzero = 0;
+  for (int k = 0; k + 4 <= n; ++k) {
+    const int v[] = {k + 3, k, k + 2, k + 1};
+    double out[144];
+    s.element_submatrix(copy, v, 4, out);
+    const Eigen::Map<const Eigen::Matrix<double, 12, 12>> m(out);
+    for (int i = 0; i < 4; ++i) {
+      for (int j = 0; j < 4; ++j) {
+        const Mat3d block = m.block<3, 3>(3 * i, 3 * j);
+        EXPECT_LT((block - a.block<3, 3>(3 * v[i], 3 * v[j])).norm(), 1e-13);
+        nonzero += i != j && !block.isZero(0);
+      }
+    }
+  }
+  EXPECT_GT(nonzero, 10);
+}
+
 TEST_F(BlockSystemTest, VertexThatOccursTwiceInAStencilIsSummed) {
   BlockSystem s(3, std::vector<std::uint8_t>(9, 0));
   Family f = random_family(3, 2, 3, 8);

@@ -38,13 +38,15 @@ ContactTable rows_of(const std::vector<PairId>& pairs) {
 
 struct Updated {
   std::vector<double> mass{0.3};
-  std::unique_ptr<StiffnessPolicy> policy = inertia_policy();
+  std::unique_ptr<StiffnessPolicy> policy;
   StiffnessUpdate update{*policy, mass};
   BlockSystem blocks{1, {0, 0, 0}};
   BlockSystem::Values elastic;
   MollifiedTable none;
 
-  Updated() { none.resize(0); }
+  explicit Updated(std::unique_ptr<StiffnessPolicy> given = inertia_policy()) : policy(std::move(given)) {
+    none.resize(0);
+  }
   double refresh(ContactTable& rows) { return update.refresh(rows, none, blocks, elastic); }
   void freeze(ContactTable& rows) { update.freeze(rows, none, blocks, elastic); }
 };
@@ -74,6 +76,64 @@ TEST(StiffnessUpdate, a_row_of_an_accepted_trial_is_compared_with_what_it_came_w
   u.update.set_time(2 * dt, 1);
   EXPECT_NEAR(u.refresh(accepted), 3, 1e-12);
   EXPECT_EQ(u.refresh(accepted), 0);  // an iterate that was kept has not changed
+}
+
+/// kappa = n^T H n + m/d^2 once a step.
+std::unique_ptr<StiffnessPolicy> step_policy(const char* derivative) {
+  StiffnessPolicyConfig config;
+  config.name = "elasticity_inclusive";
+  config.parameters.emplace("refresh", "per_step");
+  config.parameters.emplace("derivative", derivative);
+  return make_policy(config);
+}
+
+/// Rows of one free vertex of mass 0.3 kg.
+struct Folded : Updated {
+  explicit Folded(const char* derivative = "included") : Updated(step_policy(derivative)) {
+    blocks.set_elements({});
+    set_elastic(2);
+  }
+  void set_elastic(double diagonal) {
+    elastic.assign(9, 0.0);
+    elastic[0] = elastic[4] = elastic[8] = diagonal;
+  }
+  KappaParts met(PairId pair, double mass_of_vertex, double gap) {
+    mass[0] = mass_of_vertex;
+    ContactTable trial = rows_of({pair});
+    trial.d[0] = gap;
+    update.freeze(trial, none, blocks, elastic);
+    EXPECT_EQ(trial.kappa[0], trial.parts[0].at(gap));
+    return trial.parts[0];
+  }
+};
+
+TEST(StiffnessUpdate, a_potential_keeps_what_a_pair_was_first_met_with_also_in_a_rejected_trial) {
+  Folded u;
+  ContactTable state = rows_of({7});
+  u.update.refresh(state, u.none, u.blocks, u.elastic);
+  EXPECT_DOUBLE_EQ(state.parts[0].fixed, 2);
+  EXPECT_DOUBLE_EQ(state.parts[0].per_gap_sq, 0.3);
+  EXPECT_DOUBLE_EQ(state.kappa[0], 2 + 0.3 / (0.005 * 0.005));
+
+  EXPECT_DOUBLE_EQ(u.met(8, 0.5, 0.004).per_gap_sq, 0.5);  // no keep(): the trial was rejected
+  EXPECT_DOUBLE_EQ(u.met(8, 0.9, 0.002).per_gap_sq, 0.5);  // met again, elsewhere
+  EXPECT_DOUBLE_EQ(u.met(9, 0.9, 0.002).per_gap_sq, 0.9);
+  u.update.begin_step();
+  EXPECT_DOUBLE_EQ(u.met(8, 0.9, 0.002).per_gap_sq, 0.9);
+
+  Folded dropped("dropped");
+  EXPECT_DOUBLE_EQ(dropped.met(8, 0.5, 0.004).fixed, 2 + 0.5 / (0.01 * 0.01));  // at d_hat
+  EXPECT_DOUBLE_EQ(dropped.met(8, 0.9, 0.004).fixed, 2 + 0.9 / (0.01 * 0.01));
+}
+
+TEST(StiffnessUpdate, a_potential_reads_the_matrix_of_the_step_s_first_iterate) {
+  Folded u;
+  ContactTable state = rows_of({7});
+  u.update.refresh(state, u.none, u.blocks, u.elastic);
+  u.set_elastic(5);
+  EXPECT_DOUBLE_EQ(u.met(8, 0.3, 0.004).fixed, 2);
+  u.update.begin_step();
+  EXPECT_DOUBLE_EQ(u.met(8, 0.3, 0.004).fixed, 5);
 }
 
 }  // namespace
