@@ -58,8 +58,8 @@ class Pipeline {
   /// The value is the Euclidean norm of the gradient.
   Answer gradient_and_hessian() {
     evaluate();
-    contact_terms(rows_, x0_, HessianMode::projected_full, grad_[0], hess_[0]);
-    mollified_terms(mollified_, x0_, grad_[1], hess_[1]);
+    contact_terms(rows_, x0_, HessianMode::projected_full, Projection::psd, grad_[0], hess_[0]);
+    mollified_terms(mollified_, x0_, Projection::psd, grad_[1], hess_[1]);
     blocks_.set_contacts({{4, rows_.vertex}, {4, mollified_.free_vertex}});
     blocks_.clear();
     gradient_.setZero();
