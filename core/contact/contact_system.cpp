@@ -23,7 +23,8 @@ struct ContactSystem::Data {
         surface(s),
         obstacles(analytic_surfaces(s)),
         broad_phase(surface, obstacles, plan),
-        builder(scene, surface, obstacles, plan) {}
+        builder(scene, surface, obstacles, plan),
+        bound(surface, obstacles, {o.ccd_park, o.ccd_max_probes}) {}
 
   const Scene& scene;
   const ContactOptions options;
@@ -32,6 +33,7 @@ struct ContactSystem::Data {
   BroadPhase broad_phase;
   Candidates candidates;
   RowBuilder builder;
+  StepBoundFinder bound;
 };
 
 ContactSystem::ContactSystem(const Scene& scene, const ContactOptions& options, const ContactPlan& plan)
@@ -56,9 +58,7 @@ StepBound ContactSystem::step_bound(const Positions& x0, const Positions& x1) co
     stop.alpha = 0;
     return stop;
   }
-  const Data& data = *data_;
-  return find_step_bound(data.surface, data.obstacles, data.candidates, x0, x1,
-                         {data.options.ccd_park, data.options.ccd_max_probes});
+  return data_->bound.find(data_->candidates, x0, x1);
 }
 
 ContactSystem::Counts ContactSystem::candidate_counts() const {

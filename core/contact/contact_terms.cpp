@@ -33,74 +33,18 @@ void project_leading(int n_free, Projection projection, Hessian12& h) {
   }
 }
 
-/// Rows and columns of the free points of a [3 N x 3 N] matrix, added to the compact slots; `vertex` [4] are
-/// the compact ids, -1 padded, in stencil order.
-template <int N>
-void add_compact(const int* stencil, const int* vertex, const Mat<double, 3 * N, 3 * N>& full, double scale,
-                 Hessian12& out) {
+/// Rows and columns of the free points of `full` on the compact slots, the others 0; `vertex` [4] are the
+/// compact ids, -1 padded, in stencil order.
+Hessian12 compact(const int* stencil, const int* vertex, const Hessian12& full) {
   int local[4] = {-1, -1, -1, -1}, n = 0;
-  for (int k = 0; k < N; ++k) {
+  for (int k = 0; k < 4; ++k) {
     if (n < 4 && vertex[n] >= 0 && stencil[k] == vertex[n]) local[n++] = k;
   }
+  Hessian12 out = Hessian12::Zero();
   for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) {
-      out.block<3, 3>(3 * i, 3 * j) += scale * full.template block<3, 3>(3 * local[i], 3 * local[j]);
-    }
+    for (int i = 0; i < n; ++i) out.block<3, 3>(3 * i, 3 * j) = full.block<3, 3>(3 * local[i], 3 * local[j]);
   }
-}
-
-/// scale * grad^2 d of a row, added to the compact slots; the closest points are those that the row keeps.
-template <PairKind K>
-void add_distance_hessian(const ContactTable& rows, std::size_t r, const Positions& x, double scale,
-                          Region interior, Hessian12& out) {
-  constexpr int n = pair_points(K);
-  std::array<int, n> vertex;
-  Closest<double, n> closest;
-  for (int k = 0; k < n; ++k) {
-    vertex[static_cast<std::size_t>(k)] = rows.stencil[4 * r + static_cast<std::size_t>(k)];
-    closest.weights[k] = rows.stencil_weight[4 * r + static_cast<std::size_t>(k)];
-  }
-  closest.d = rows.d[r] + rows.offset[r];
-  closest.r = closest.d * Vec3d::Map(&rows.normal[3 * r]);
-  closest.region = interior;
-  const auto derivatives = distance_derivatives<double, n>(gather(x, vertex), closest);
-  add_compact<n>(&rows.stencil[4 * r], &rows.vertex[4 * r], derivatives.hessian, scale, out);
-}
-
-void add_curvature(const ContactTable& rows, std::size_t r, const Positions& x, double scale,
-                   Hessian12& out) {
-  switch (rows.kind[r]) {
-    case ContactKind::point_point:
-      return add_distance_hessian<PairKind::point_point>(rows, r, x, scale, Region::p_p, out);
-    case ContactKind::point_edge:
-      return add_distance_hessian<PairKind::point_edge>(rows, r, x, scale, Region::p_e, out);
-    case ContactKind::point_triangle:
-      return add_distance_hessian<PairKind::point_triangle>(rows, r, x, scale, Region::p_t, out);
-    case ContactKind::edge_edge:
-      return add_distance_hessian<PairKind::edge_edge>(rows, r, x, scale, Region::ea_eb, out);
-    case ContactKind::obstacle: {
-      const Vec3d n = Vec3d::Map(&rows.normal[3 * r]), flat = Vec3d::Map(&rows.flat[3 * r]);
-      out.topLeftCorner<3, 3>() +=
-          scale * rows.curvature[r] * (Mat3d::Identity() - n * n.transpose() - flat * flat.transpose());
-    }
-  }
-}
-
-void row_terms(const ContactTable& rows, std::size_t r, const Positions& x, HessianMode mode,
-               Projection projection, double* grad, double* hess) {
-  const double scale = rows.multiplicity[r] * rows.kappa[r];
-  Vec<double, 12> g = Vec<double, 12>::Zero();
-  const Vec3d n = Vec3d::Map(&rows.normal[3 * r]);
-  for (int k = 0; k < rows.n_free[r]; ++k) {
-    g.segment<3>(3 * k) = rows.weight[4 * r + static_cast<std::size_t>(k)] * n;
-  }
-  Vec<double, 12>::Map(grad) = (scale * rows.db[r]) * g;
-  Hessian12 h = (scale * rows.d2b[r]) * (g * g.transpose());
-  if (mode == HessianMode::projected_full && rows.db[r] != 0) {
-    add_curvature(rows, r, x, scale * rows.db[r], h);
-    project_leading(rows.n_free[r], projection, h);
-  }
-  store_lower_blocks(4, h, hess);
+  return out;
 }
 
 Mat<double, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const Positions& x) {
@@ -131,8 +75,7 @@ MollifiedDerivatives mollified_derivatives(const MollifiedTable& rows, std::size
 void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positions& x, Projection projection,
                          double* grad, double* hess) {
   const auto [g, full] = mollified_derivatives(rows, r, x);
-  Hessian12 h = Hessian12::Zero();
-  add_compact<4>(&rows.stencil[4 * r], &rows.free_vertex[4 * r], full, 1, h);
+  Hessian12 h = compact(&rows.stencil[4 * r], &rows.free_vertex[4 * r], full);
   project_leading(rows.n_free[r], projection, h);
 
   Vec<double, 12>::Map(grad).setZero();
@@ -145,15 +88,6 @@ void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positi
 }
 
 }  // namespace
-
-void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, Projection projection,
-                   std::vector<double>& grad, std::vector<double>& hess) {
-  grad.resize(12 * rows.size());
-  hess.resize(stored * rows.size());
-  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
-    row_terms(rows, r, x, mode, projection, &grad[12 * r], &hess[stored * r]);
-  });
-}
 
 void mollified_terms(const MollifiedTable& rows, const Positions& x, Projection projection,
                      std::vector<double>& grad, std::vector<double>& hess) {

@@ -1,68 +1,189 @@
 #include "core/contact/step_bound.hpp"
 
+#include <algorithm>
+
 #include "core/contact/chunks.hpp"
 #include "core/contact/contact_row.hpp"
-#include "core/contact/pair_motion.hpp"
+#include "core/contact/obstacle_motion.hpp"
+#include "core/contact/pair_lanes.hpp"
+#include "core/geometry/accd.hpp"
 
 namespace bb {
 namespace {
 
-/// The earlier bound limits; on a tie the first in the order of the candidates. Counters add up.
-void combine_bounds(StepBound& into, const StepBound& next) {
-  if (next.alpha < into.alpha) {
-    into.alpha = next.alpha;
-    into.kind = next.kind;
-    into.key = next.key;
-  }
-  into.queries += next.queries;
-  into.probes += next.probes;
-  into.capped += next.capped;
-  into.zero += next.zero;
-}
+/// Pairs are asked in the order of these intervals of their proven time, and not at all beyond the bound.
+constexpr float intervals[] = {-1, 0, 0x1p-12f, 0x1p-6f, 0x1p-3f, 1};
+/// Chunks of a batch: the first ones are short, since they know little; all are fixed, so that no counter
+/// depends on threads.
+constexpr std::size_t first_batch = 8, largest_batch = 1024;
+constexpr int obstacle_list = 4;
 
-/// What all pairs share.
-struct Query {
-  const Surface& surface;
-  const std::vector<AnalyticSurface<double>>& obstacles;
-  const Positions &x0, &x1;
-  const StopLevel& level;
-
-  template <PairKind K>
-  void bound_pair(IndexPair index, StepBound& out) const {
-    const ContactPair<K> pair = contact_pair<K>(surface, index);
-    const auto p0 = gather(x0, pair.vertex), p1 = gather(x1, pair.vertex);
-    const double park = level.park * pair.law.d_hat;
-    if (proven_apart<K>(p0, p1, pair.law.offset, park)) return;
-    const AccdResult<double> r = pair_toi<K>(p0, p1, pair.law.offset, park, level.max_probes);
-    const double toi = r.hit ? r.toi : 1;
-    combine_bounds(out, {toi, contact_kind<K>(), pair_key(pair.vertex), 1, r.probes, r.capped, toi == 0});
-  }
-
-  void bound_obstacle(IndexPair index, StepBound& out) const {
-    const std::size_t i = static_cast<std::size_t>(index.first);
-    const int v = surface.points.vertices[i][0];
-    const Side law = surface.points.side[i];
-    const double toi = obstacle_toi(obstacles[static_cast<std::size_t>(index.second)], x0.col(v), x1.col(v),
-                                    law.offset, level.park * law.d_hat);
-    combine_bounds(out, {toi, ContactKind::obstacle, obstacle_key(index.second, v), 0, 0, 0, toi == 0});
-  }
-};
+double largest_coordinate(const Positions& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0; }
 
 }  // namespace
 
-StepBound find_step_bound(const Surface& surface, const std::vector<AnalyticSurface<double>>& obstacles,
-                          const Candidates& candidates, const Positions& x0, const Positions& x1,
-                          const StopLevel& level) {
-  const Query query{surface, obstacles, x0, x1, level};
-  StepBound bound;
-  const auto reduce = [&](const StepBound& part) { combine_bounds(bound, part); };
-  for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
-    over_chunks<StepBound>(
-        pairs, [&](IndexPair pair, StepBound& out) { query.bound_pair<K>(pair, out); }, reduce);
+void StepBoundFinder::take(const Part& part) {
+  if (part.first.before(all_.first)) all_.first = part.first;
+  all_.queries += part.queries;
+  all_.probes += part.probes;
+  all_.capped += part.capped;
+  all_.zero += part.zero;
+}
+
+template <int N>
+void StepBoundFinder::fit(std::vector<MotionBox>& boxes, const Primitives<N>& primitives,
+                          const Motion& motion) const {
+  boxes.resize(primitives.size());
+  for_each_chunk(primitives.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      // two of these are the distance that ask_lanes needs
+      const Side side = primitives.side[i];
+      const double reach = side.offset + std::max(level_.park * side.d_hat, motion.floor);
+      boxes[i] = motion_box(primitives.vertices[i], reach, motion.x0, motion.x1);
+    }
   });
-  over_chunks<StepBound>(
-      candidates.obstacle, [&](IndexPair pair, StepBound& out) { query.bound_obstacle(pair, out); }, reduce);
-  return bound;
+}
+
+template <PairKind K>
+void StepBoundFinder::screen(const std::vector<IndexPair>& pairs) {
+  const std::vector<MotionBox>& first = K == PairKind::edge_edge ? edges_ : points_;
+  const std::vector<MotionBox>& second = K == PairKind::point_point      ? points_
+                                         : K == PairKind::point_triangle ? triangles_
+                                                                         : edges_;
+  std::vector<Entry>& entries = entries_[static_cast<int>(K)];
+  std::vector<std::uint32_t>& counts = n_entries_[static_cast<int>(K)];
+  if (entries.size() < pairs.size()) entries.resize(pairs.size());
+  counts.assign(n_chunks(pairs.size()), 0);
+  const float bound = float_above(all_.first.toi);
+  for_each_chunk(pairs.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    Entry* next = entries.data() + begin;
+    for (std::size_t i = begin; i < end; ++i) {
+      const float proven = proven_time(first[static_cast<std::size_t>(pairs[i].first)],
+                                       second[static_cast<std::size_t>(pairs[i].second)]);
+      *next = {static_cast<std::uint32_t>(i), proven};
+      next += proven > bound ? 0 : 1;  // hard to foretell: no branch
+    }
+    counts[chunk] = static_cast<std::uint32_t>(next - (entries.data() + begin));
+  });
+}
+
+template <PairKind K>
+void StepBoundFinder::ask_lanes(const std::vector<IndexPair>& pairs, const Motion& motion,
+                                const std::array<std::uint32_t, 4>& index, std::size_t n, Part& part) const {
+  std::array<ContactPair<K>, n_lanes> pair;
+  Lanes4 reach;
+  for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+    pair[lane] = contact_pair<K>(surface_, pairs[index[lane]]);
+    reach.v[lane] = pair[lane].law.offset + 2 * std::max(level_.park * pair[lane].law.d_hat, motion.floor);
+  }
+  const PairLanes<K> points = gather_lanes<K>(pair, motion.x0);
+  const Lanes4 proven =
+      proven_times<K>(points, gather_lanes<K>(pair, motion.x1) - points, reach, part.first.toi);
+  for (std::size_t lane = 0; lane < n; ++lane) {
+    if (proven[static_cast<int>(lane)] > part.first.toi) continue;
+    const auto p0 = gather(motion.x0, pair[lane].vertex), p1 = gather(motion.x1, pair[lane].vertex);
+    const double park = level_.park * pair[lane].law.d_hat;
+    const AccdResult<double> r =
+        accd<K, double>(p0, p1, pair[lane].law.offset, park, level_.max_probes, part.first.toi);
+    const FirstContact found{r.hit ? r.toi : 1, static_cast<int>(K), index[lane]};
+    if (found.before(part.first)) part.first = found;
+    ++part.queries;
+    part.probes += r.probes;
+    part.capped += r.capped;
+    part.zero += found.toi == 0;
+  }
+}
+
+template <PairKind K>
+void StepBoundFinder::ask_chunk(const std::vector<IndexPair>& pairs, const Motion& motion, float above,
+                                float up_to, std::size_t chunk, Part& part) const {
+  const Entry* const entries = entries_[static_cast<int>(K)].data() + chunk * chunk_size;
+  std::array<std::uint32_t, 4> index{};
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < n_entries_[static_cast<int>(K)][chunk]; ++k) {
+    const Entry entry = entries[k];
+    if (!(entry.proven > above) || entry.proven > up_to || entry.proven > part.first.toi) continue;
+    index[n++] = entry.index;
+    if (n < n_lanes) continue;
+    ask_lanes<K>(pairs, motion, index, n, part);
+    n = 0;
+  }
+  if (n == 0) return;
+  for (std::size_t lane = n; lane < n_lanes; ++lane) index[lane] = index[0];
+  ask_lanes<K>(pairs, motion, index, n, part);
+}
+
+template <PairKind K>
+void StepBoundFinder::ask_batches(const std::vector<IndexPair>& pairs, const Motion& motion, float above,
+                                  float up_to) {
+  std::size_t length = first_batch;
+  for (std::size_t begin = 0; begin < n_chunks(pairs.size()); begin += length) {
+    if (begin > 0) length = std::min(2 * length, largest_batch);
+    const std::size_t n = std::min(length, n_chunks(pairs.size()) - begin);
+    parts_.assign(n, Part{all_.first});
+    tbb::parallel_for(std::size_t{0}, n, [&](std::size_t k) {
+      ask_chunk<K>(pairs, motion, above, up_to, begin + k, parts_[k]);
+    });
+    for (const Part& part : parts_) take(part);
+  }
+}
+
+void StepBoundFinder::ask_obstacles(const std::vector<IndexPair>& pairs, const Motion& motion) {
+  parts_.assign(n_chunks(pairs.size()), Part{});
+  for_each_chunk(pairs.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    Part& part = parts_[chunk];
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::size_t point = static_cast<std::size_t>(pairs[i].first);
+      const int v = surface_.points.vertices[point][0];
+      const Side law = surface_.points.side[point];
+      const double toi = obstacle_toi(obstacles_[static_cast<std::size_t>(pairs[i].second)], motion.x0.col(v),
+                                      motion.x1.col(v), law.offset, level_.park * law.d_hat);
+      const FirstContact found{toi, obstacle_list, i};
+      if (found.before(part.first)) part.first = found;
+      part.zero += toi == 0;
+    }
+  });
+  for (const Part& part : parts_) take(part);
+}
+
+/// The bound with the name of the pair that limits.
+StepBound StepBoundFinder::result(const Candidates& candidates) const {
+  StepBound out;
+  out.queries = all_.queries;
+  out.probes = all_.probes;
+  out.capped = all_.capped;
+  out.zero = all_.zero;
+  out.alpha = all_.first.toi;
+  if (out.alpha == 1) return out;
+  int list = 0;
+  for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
+    if (list++ != all_.first.list) return;
+    out.kind = contact_kind<K>();
+    out.key = pair_key(contact_pair<K>(surface_, pairs[all_.first.index]).vertex);
+  });
+  if (all_.first.list == obstacle_list) {
+    const IndexPair pair = candidates.obstacle[all_.first.index];
+    out.key = obstacle_key(pair.second, surface_.points.vertices[static_cast<std::size_t>(pair.first)][0]);
+  }
+  return out;
+}
+
+StepBound StepBoundFinder::find(const Candidates& candidates, const Positions& x0, const Positions& x1) {
+  const double largest = std::max(largest_coordinate(x0), largest_coordinate(x1));
+  const Motion motion{x0, x1, 2 * ulp_floor(largest)};
+  all_ = {};
+  ask_obstacles(candidates.obstacle, motion);
+  if (!candidates.point_triangle.empty() || !candidates.point_edge.empty() || !candidates.point_point.empty())
+    fit(points_, surface_.points, motion);
+  if (!candidates.edge_edge.empty() || !candidates.point_edge.empty()) fit(edges_, surface_.edges, motion);
+  if (!candidates.point_triangle.empty()) fit(triangles_, surface_.triangles, motion);
+  for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) { screen<K>(pairs); });
+  for (std::size_t k = 0; k + 1 < std::size(intervals) && !(intervals[k] > all_.first.toi); ++k) {
+    for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
+      ask_batches<K>(pairs, motion, intervals[k], intervals[k + 1]);
+    });
+  }
+  return result(candidates);
 }
 
 }  // namespace bb

@@ -1,8 +1,13 @@
 // The largest step along a straight motion that is proven free of contact.
 #pragma once
 
+#include <array>
+#include <cstdint>
+#include <vector>
+
 #include "core/contact/candidates.hpp"
 #include "core/contact/contact_table.hpp"
+#include "core/contact/motion_box.hpp"
 
 namespace bb {
 
@@ -20,9 +25,73 @@ struct StopLevel {
   int max_probes;  // of one pair
 };
 
-/// Of all candidates; the earliest contact limits, on a tie the first in their order. Both motions finite.
-StepBound find_step_bound(const Surface& surface, const std::vector<AnalyticSurface<double>>& obstacles,
-                          const Candidates& candidates, const Positions& x0, const Positions& x1,
-                          const StopLevel& level);
+/// A contact that stops a motion: when, and its place in the order of the candidates.
+struct FirstContact {
+  double toi = 1;
+  int list = 0;  // the kinds of PairKind in their order, then obstacles
+  std::size_t index = 0;
+
+  /// The earlier one stops the motion; on a tie the first in the order of the candidates.
+  bool before(const FirstContact& other) const {
+    if (toi != other.toi) return toi < other.toi;
+    return toi < 1 && (list != other.list ? list < other.list : index < other.index);
+  }
+};
+
+/// Finds the bound of a motion. Only the smallest time counts, so few pairs are asked for theirs: boxes of
+/// motions (motion_box.hpp), then planes (pair_lanes.hpp), prove of most of them that they come later than the
+/// smallest time known. Pairs of which little is proven go first. Alpha and the pair that limits are those of
+/// asking every candidate, bit for bit, unless a query runs out of probes. Batches of pairs come in a fixed
+/// order and know the times of the batches before: counters too are the same for any number of threads. Keeps
+/// its buffers; not thread-safe, parallel inside.
+class StepBoundFinder {
+ public:
+  StepBoundFinder(const Surface& surface, const std::vector<AnalyticSurface<double>>& obstacles,
+                  const StopLevel& level)
+      : surface_(surface), obstacles_(obstacles), level_(level) {}
+
+  /// Of all candidates. Both ends of the motion finite.
+  StepBound find(const Candidates& candidates, const Positions& x0, const Positions& x1);
+
+ private:
+  /// A pair that boxes do not clear for the whole motion.
+  struct Entry {
+    std::uint32_t index;
+    float proven;  // time before which its boxes are apart
+  };
+  /// What a chunk of pairs found.
+  struct Part {
+    FirstContact first;
+    long long queries = 0, probes = 0, capped = 0, zero = 0;
+  };
+  struct Motion {
+    const Positions &x0, &x1;
+    double floor;  // least stop level, m: 32 ulps of the largest coordinate of all
+  };
+  template <int N>
+  void fit(std::vector<MotionBox>& boxes, const Primitives<N>& primitives, const Motion& motion) const;
+  template <PairKind K>
+  void screen(const std::vector<IndexPair>& pairs);
+  template <PairKind K>
+  void ask_batches(const std::vector<IndexPair>& pairs, const Motion& motion, float above, float up_to);
+  template <PairKind K>
+  void ask_chunk(const std::vector<IndexPair>& pairs, const Motion& motion, float above, float up_to,
+                 std::size_t chunk, Part& part) const;
+  template <PairKind K>
+  void ask_lanes(const std::vector<IndexPair>& pairs, const Motion& motion,
+                 const std::array<std::uint32_t, 4>& index, std::size_t n, Part& part) const;
+  void ask_obstacles(const std::vector<IndexPair>& pairs, const Motion& motion);
+  void take(const Part& part);
+  StepBound result(const Candidates& candidates) const;
+
+  const Surface& surface_;
+  const std::vector<AnalyticSurface<double>>& obstacles_;
+  const StopLevel level_;
+  std::vector<MotionBox> points_, edges_, triangles_;
+  std::vector<Entry> entries_[4];            // by kind: chunk k of the pairs has its own from k chunk_size on
+  std::vector<std::uint32_t> n_entries_[4];  // of each chunk
+  std::vector<Part> parts_;
+  Part all_;
+};
 
 }  // namespace bb

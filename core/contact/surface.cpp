@@ -45,10 +45,6 @@ void add_sides(std::vector<std::array<int, 2>>& edges, const std::vector<std::ar
 
 }  // namespace
 
-Side combine(const Side& a, const Side& b) {
-  return {a.d_hat + (b.d_hat - a.d_hat) / 2, a.offset + b.offset};
-}
-
 Surface::Surface(const Scene& scene)
     : vertex_free(static_cast<std::size_t>(scene.n_vertices()), 1),
       planar(scene.planar),

@@ -17,7 +17,9 @@ struct Side {
 };
 
 /// Gap law of a pair: mean activation distance and summed offset of its two sides, m.
-Side combine(const Side& a, const Side& b);
+inline Side combine(const Side& a, const Side& b) {
+  return {a.d_hat + (b.d_hat - a.d_hat) / 2, a.offset + b.offset};
+}
 
 /// Primitives of one kind with N vertices each.
 template <int N>

@@ -16,7 +16,7 @@ namespace bb {
 template <class T>
 struct AccdResult {
   T toi;                  // in [0, 1]; 1 without a hit
-  bool hit;               // false: all of [0, 1] is proven to stay above the stop level
+  bool hit;               // false: [0, toi] is proven to stay above the stop level, [0, 1] unless given up
   int probes;             // closest-point evaluations
   bool capped;            // stopped by max_probes: toi is the last proven time
   bool overlap_at_start;  // gap <= 0 at time 0; then toi = 0
@@ -135,6 +135,7 @@ BB_HD inline T proven_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3
 /// @param park    where an approaching pair is stopped, m; 0: the ulp floor alone
 /// @param max_probes  bound on the work of one query; reached only by pairs that slide just above the stop
 /// level
+/// @param enough  the pair is given up, without a hit, at the first proven time above it: toi is then that time
 /// @return toi > 0 unless the pair starts below the ulp floor; at toi the gap is at least the stop level
 /// Errors: none; a motion that is not finite (or whose squares are not) gives hit and toi 0.
 /// Host-device.   Cost: 1 to 5 probes are usual; no allocation.
@@ -142,7 +143,7 @@ BB_HD inline T proven_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3
 /// directional bound as in Ando's contact solver (2024, ppf-contact-solver).
 template <PairKind K, class T>
 BB_HD inline AccdResult<T> accd(const Mat<T, 3, pair_points(K)>& x0, const Mat<T, 3, pair_points(K)>& x1,
-                                T offset, T park, int max_probes = 4096) {
+                                T offset, T park, int max_probes = 4096, T enough = T(1)) {
   constexpr int N = pair_points(K);
   constexpr T eps = std::numeric_limits<T>::epsilon();
   const detail::CentredMotion<T, N> motion = detail::centre_motion<T, N>(x0, x1, offset);
@@ -174,6 +175,7 @@ BB_HD inline AccdResult<T> accd(const Mat<T, 3, pair_points(K)>& x0, const Mat<T
     const T next = t + advance;
     if (!(next > t)) return {t, true, probe, false, false};
     t = next;
+    if (t > enough) return {t, false, probe, false, false};
   }
   return {t, true, max_probes, true, false};
 }

@@ -1,10 +1,11 @@
 // Eigenvalues and eigenvectors of small symmetric matrices: cyclic Jacobi rotations up to 4 x 4, tridiagonal
-// QL beyond (up to about 12 x 12). Plain loops of bounded length, so that the device runs the same code; no
+// QL beyond (up to about 12 x 12) and for lanes. Plain loops of bounded length, so that the device runs the same code; no
 // library eigen-solver is called.
 #pragma once
 
 #include <cmath>
 #include <limits>
+#include <type_traits>
 
 #include "core/math/scale.hpp"
 #include "core/math/tridiagonal_eigen.hpp"
@@ -104,7 +105,7 @@ BB_HD inline void jacobi_eigen(Mat<T, N, N>& a, Mat<T, N, N>& vectors) {
 /// @param values  error a few eps of the largest |A_ij|; with N <= 4 of the value itself when A is well
 /// scaled
 /// @param vectors orthonormal columns (det +-1)
-/// Errors: none for finite A; a non-finite A gives non-finite values.   Host-device; lanes from N = 5 on.
+/// Errors: none for finite A; a non-finite A gives non-finite values.   Host-device; lanes too.
 /// Cost: O(N^3); no allocation.
 template <class T, int N>
 BB_HD inline void eigen_unsorted(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T, N, N>& vectors) {
@@ -114,7 +115,7 @@ BB_HD inline void eigen_unsorted(const Mat<T, N, N>& A, Vec<T, N>& values, Mat<T
   for (int j = 0; j < N; ++j) {
     for (int i = j; i < N; ++i) a(i, j) = a(j, i) = A(i, j) * half + A(j, i) * half;
   }
-  if constexpr (N <= 4) {
+  if constexpr (N <= 4 && std::is_floating_point_v<T>) {
     detail::jacobi_eigen<T, N>(a, vectors);
     values = a.diagonal();
   } else {

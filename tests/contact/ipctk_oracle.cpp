@@ -6,9 +6,9 @@
 #include <fstream>
 
 #include "barriers/shapes/registry.hpp"
-#include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/math/lower_blocks.hpp"
+#include "experiments/microbenchmarks/contact_problem.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
 namespace {
@@ -16,45 +16,8 @@ namespace {
 using namespace bb;
 
 template <class T>
-void read(std::ifstream& in, T* values, std::size_t n) {
-  in.read(reinterpret_cast<char*>(values), static_cast<std::streamsize>(n * sizeof(T)));
-}
-template <class T>
 void write(std::ofstream& out, const T* values, std::size_t n) {
   out.write(reinterpret_cast<const char*>(values), static_cast<std::streamsize>(n * sizeof(T)));
-}
-
-struct Problem {
-  Scene scene;
-  Positions x1;
-  ContactOptions options;
-};
-
-Problem read_problem(const char* path) {
-  std::ifstream in(path, std::ios::binary);
-  std::int32_t n_vertices = 0, n_triangles = 0, mollify = 0;
-  double d_hat = 0;
-  read(in, &n_vertices, 1);
-  read(in, &n_triangles, 1);
-  read(in, &mollify, 1);
-  read(in, &d_hat, 1);
-  Problem p;
-  Scene& s = p.scene;
-  s.rest.resize(3, n_vertices);
-  s.x0.resize(3, n_vertices);
-  p.x1.resize(3, n_vertices);
-  for (Positions* x : {&s.rest, &s.x0, &p.x1}) read(in, x->data(), static_cast<std::size_t>(x->size()));
-  s.surface_triangles.resize(static_cast<std::size_t>(n_triangles));
-  read(in, s.surface_triangles.data()->data(), 3 * s.surface_triangles.size());
-  if (!in) s.surface_triangles.clear();
-  for (int v = 0; v < n_vertices; ++v) {
-    s.surface_vertices.push_back(v);
-    s.body.push_back(v);  // every vertex a body of its own: the rest rule does not act
-    s.d_hat.push_back(d_hat);
-    s.offset.push_back(0);
-  }
-  p.options.mollifier = mollify ? Mollifier::ipc : Mollifier::none;
-  return p;
 }
 
 template <class Table>
@@ -90,8 +53,8 @@ void scatter(const std::vector<int>& vertex, const std::vector<double>& grad, co
 
 int main(int argc, char** argv) {
   if (argc != 3) return 2;
-  const Problem p = read_problem(argv[1]);
-  if (p.scene.surface_triangles.empty()) return 2;
+  const ContactProblem p = read_contact_problem(argv[1]);
+  if (!p.valid()) return 2;
   ContactSystem contacts(p.scene, p.options);
   contacts.update_candidates(p.scene.x0, p.x1);
   const StepBound bound = contacts.step_bound(p.scene.x0, p.x1);

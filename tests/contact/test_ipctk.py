@@ -13,6 +13,7 @@ import subprocess
 
 import numpy as np
 import pytest
+from analysis import toolkit_meshes
 
 ipctk = pytest.importorskip("ipctk", reason="the oracle ipctk is not installed")
 
@@ -28,33 +29,13 @@ pytestmark = [
 
 
 def read_ply(name):
-    """Vertices and triangles of a binary PLY with one scalar type for the coordinates."""
-    with open(DATA / "meshes" / f"{name}.ply", "rb") as file:
-        header = []
-        while not header or header[-1] != "end_header":
-            header.append(file.readline().decode().strip())
-        body = file.read()
-    order = ">" if any("big_endian" in line for line in header) else "<"
-    real = order + ("f8" if any("property double x" in line for line in header) else "f4")
-    count = [int(line.split()[2]) for line in header if line.startswith("element")]
-    n_bytes = 3 * count[0] * np.dtype(real).itemsize
-    vertices = np.frombuffer(body[:n_bytes], real).reshape(-1, 3).astype(float)
-    faces = np.frombuffer(body[n_bytes:], [("n", "u1"), ("v", order + "i4", 3)], count[1])
-    assert (faces["n"] == 3).all()
-    # Vertices of no triangle go: the toolkit would pair them with each other.
-    used, corners = np.unique(faces["v"], return_inverse=True)
-    return vertices[used], corners.reshape(-1, 3).astype(np.int32)
+    return toolkit_meshes.read_ply(DATA / "meshes" / f"{name}.ply")
 
 
 def probe(tmp_path, rest, x0, x1, faces, d_hat, mollify=True):
     """Runs contact_probe; what it found as a dictionary of arrays."""
     source, target = tmp_path / "in.bin", tmp_path / "out.bin"
-    with open(source, "wb") as file:
-        np.array([len(rest), len(faces), mollify], "<i4").tofile(file)
-        np.array([d_hat], "<f8").tofile(file)
-        for x in (rest, x0, x1):
-            np.ascontiguousarray(x, "<f8").tofile(file)
-        np.ascontiguousarray(faces, "<i4").tofile(file)
+    toolkit_meshes.write_problem(source, rest, x0, x1, faces, d_hat, mollify)
     answer = json.loads(subprocess.run([PROBE, source, target], check=True, capture_output=True).stdout)
     n, m = answer["rows"], answer["mollified"]
     with open(target, "rb") as file:

@@ -4,7 +4,7 @@
 #include <random>
 
 #include "core/contact/obstacle.hpp"
-#include "core/contact/pair_motion.hpp"
+#include "core/contact/obstacle_motion.hpp"
 
 namespace bb {
 namespace {
