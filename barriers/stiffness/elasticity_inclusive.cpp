@@ -1,6 +1,8 @@
 // Stiffness policy `elasticity_inclusive`: kappa of each contact from its masses and its elastic Hessian.
 #include "barriers/stiffness/elasticity_inclusive.hpp"
 
+#include <algorithm>
+
 #include "barriers/stiffness/registry.hpp"
 #include "core/math/error.hpp"
 
@@ -13,6 +15,7 @@ class ElasticityInclusive final : public StiffnessPolicy {
       : mass_term_(require_mass_term(text(config.parameters, "mass_term"))),
         elastic_term_(boolean(config.parameters, "elastic_term")),
         refresh_(require_refresh(text(config.parameters, "refresh"))),
+        gap_floor_(number(config.parameters, "gap_floor")),
         derivative_(require_derivative(text(config.parameters, "derivative"))),
         multiplier_(config.multiplier) {}
   std::string_view name() const override { return "elasticity_inclusive"; }
@@ -22,9 +25,10 @@ class ElasticityInclusive final : public StiffnessPolicy {
 
   void fill(const StiffnessBatch& rows, double* kappa) const override {
     for (std::size_t r = 0; r < rows.n; ++r) {
-      kappa[r] = multiplier_ * elasticity_inclusive_kappa(
-                                   rows.n_free[r], rows.weight + 4 * r, rows.normal + 3 * r, rows.d[r],
-                                   rows.d_hat[r], rows.mass + 4 * r, hessian(rows, r), 12, rule(rows));
+      kappa[r] = multiplier_ *
+                 elasticity_inclusive_kappa(rows.n_free[r], rows.weight + 4 * r, rows.normal + 3 * r,
+                                            std::max(rows.d[r], gap_floor_ * rows.d_hat[r]), rows.d_hat[r],
+                                            rows.mass + 4 * r, hessian(rows, r), 12, rule(rows));
     }
   }
 
@@ -48,6 +52,7 @@ class ElasticityInclusive final : public StiffnessPolicy {
   MassTerm mass_term_;
   bool elastic_term_;
   Refresh refresh_;
+  double gap_floor_;  // of d_hat
   KappaDerivative derivative_;
   double multiplier_;
 };
@@ -61,6 +66,7 @@ StiffnessPolicyEntry policy_elasticity_inclusive() {
        "M/d^2 times 1 m^2/s^2, M/(c h^2), M/(c h^2) (d_hat/d)^2, or 0"},
       {"elastic_term", flag(), true, "whether the elastic Hessian counts"},
       refresh_parameter(),
+      gap_floor_parameter(),
       derivative_parameter(),
   };
   entry.make = [](const StiffnessPolicyConfig& config) -> std::unique_ptr<StiffnessPolicy> {

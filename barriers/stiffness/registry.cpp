@@ -50,6 +50,11 @@ Parameter refresh_parameter() {
   return {"refresh", word({"per_iteration", "per_step"}), "per_iteration", "when kappa is computed anew"};
 }
 
+Parameter gap_floor_parameter() {
+  return {"gap_floor", number_in(0, 1, "d_hat"), 0.0,
+          "smallest gap at which kappa is asked, in units of d_hat, or of the width of a strain limit"};
+}
+
 Parameter derivative_parameter() {
   return {"derivative", word({"dropped", "included"}), "dropped",
           "kappa'(d) left out of the curvature, or the force derived from its potential"};
@@ -66,6 +71,10 @@ void check_derivative(const ParameterMap& parameters, const std::string& where) 
   if (require_refresh(refresh) != Refresh::per_step) {
     violations.push_back({where + "/refresh", fmt::format("\"{}\"", refresh),
                           "per_step, or derivative dropped: a potential is frozen for a step"});
+  }
+  if (number(parameters, "gap_floor") > 0) {
+    violations.push_back({where + "/gap_floor", fmt::format("{}", number(parameters, "gap_floor")),
+                          "0, or derivative dropped: a potential has no floor"});
   }
   if (!violations.empty()) throw ConfigError(violations);
 }

@@ -40,10 +40,14 @@ std::unique_ptr<StiffnessPolicy> make_policy(const StiffnessPolicyConfig& config
 /// When kappa is computed anew, for policies that can.
 Parameter refresh_parameter();
 
+/// The smallest gap at which kappa is asked, in units of the barrier's width: a pair that ended a step parked
+/// near contact would have m/d^2 of that gap in the next one.
+Parameter gap_floor_parameter();
+
 /// What becomes of kappa'(d), for policies whose kappa depends on the gap.
 Parameter derivative_parameter();
-/// derivative `included` goes with refresh per_step and a mass term that depends on the gap. Errors: ConfigError
-/// below `where`. parameters: with mass_term, refresh and derivative.
+/// derivative `included` goes with refresh per_step, a mass term that depends on the gap, and no gap_floor.
+/// Errors: ConfigError below `where`. parameters: with mass_term, refresh, gap_floor and derivative.
 void check_derivative(const ParameterMap& parameters, const std::string& where);
 
 std::string_view to_string(MassTerm mass_term);

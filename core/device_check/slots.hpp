@@ -29,7 +29,11 @@ struct Slots {
 
 }  // namespace bb::device_check
 
-/// Instantiates kernel<T>(const T*, T*) for both scalars.
+/// Instantiates kernel<T>(const T*, T*), for both scalars where BB_DEVICE_CHECK_FLOAT is defined.
+#ifdef BB_DEVICE_CHECK_FLOAT
 #define BB_DEVICE_CHECK(...)                                            \
   template __global__ void __VA_ARGS__<double>(const double*, double*); \
   template __global__ void __VA_ARGS__<float>(const float*, float*)
+#else
+#define BB_DEVICE_CHECK(...) template __global__ void __VA_ARGS__<double>(const double*, double*)
+#endif

@@ -77,7 +77,10 @@ void StrainLimitTerm::refresh_stiffness(const Positions& x, const TermContext& c
                            rule.rule(dt_, c_), parts_.data());
   if (folded_) return fold(rule.multiplier);
   batch_.measure(x);
-  for (std::size_t e = 0; e < batch_.size(); ++e) kappa_[e] = parts_[e].at(smaller_gap(e)) * rule.multiplier;
+  for (std::size_t e = 0; e < batch_.size(); ++e) {
+    const double gap = std::max(smaller_gap(e), rule.gap_floor * scene_.limit.width[e]);
+    kappa_[e] = parts_[e].at(gap) * rule.multiplier;
+  }
   kappa_change_ = first_iterate_ ? 0 : stiffness_change();
 }
 

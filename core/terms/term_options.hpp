@@ -21,6 +21,7 @@ struct LimitStiffness {
   bool elastic_term = true;              // elasticity_inclusive
   Refresh refresh = Refresh::per_iteration;
   KappaDerivative derivative = KappaDerivative::dropped;  // included: refreshed per step
+  double gap_floor = 0;   // of the width: the smallest y at which a kappa without potential is asked
   double multiplier = 1;  // the config's own factor times s of the matching rule
 
   /// What elasticity_inclusive asks of one element, in a step of length dt (s) and inertia weight c.

@@ -16,6 +16,7 @@ const Registry<LimitPolicyEntry>& limit_policies() {
          "m_e/y^2 times 1 m^2/s^2, M/(c h^2), or M/(c h^2) (width/y)^2"},
         {"elastic_term", flag(), true, "whether the elastic Hessian counts"},
         refresh_parameter(),
+        gap_floor_parameter(),
         derivative_parameter()},
        ""},
   });

@@ -49,6 +49,7 @@ LimitStiffness make_limit_policy(const PolicyConfig& policy, const Calibration& 
   out.mass_term = require_mass_term(text(policy.parameters, "mass_term"));
   out.elastic_term = boolean(policy.parameters, "elastic_term");
   out.refresh = require_refresh(text(policy.parameters, "refresh"));
+  out.gap_floor = number(policy.parameters, "gap_floor");
   out.derivative = require_derivative(text(policy.parameters, "derivative"));
   out.multiplier = policy.scale * calibration.limit_scale;
   return out;

@@ -120,7 +120,8 @@ double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std:
   replay.blocks().submatrix(replay.elastic(), vertices.data(), 3, block.data());
   const Mat<double, 9, 9> hessian = block.topLeftCorner<9, 9>();
   const StrainStiffnessRule rule = limit.rule(dt, c);
-  return strain_stiffness<double>(x, hessian, mass, scene.limit.mass[e], scene.limit.width[e], rule).at(y) /
+  return strain_stiffness<double>(x, hessian, mass, scene.limit.mass[e], scene.limit.width[e], rule)
+             .at(std::max(y, limit.gap_floor * scene.limit.width[e])) /
          area;
 }
 
