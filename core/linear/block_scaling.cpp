@@ -4,24 +4,14 @@
 #include <cmath>
 #include <limits>
 #include <numeric>
-#include <string>
 
+#include "core/linear/block_starts.hpp"
 #include "core/linear/parallel.hpp"
-#include "core/math/error.hpp"
 
 namespace bb {
 namespace {
 
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-void check_starts(const std::vector<int>& start, Eigen::Index n) {
-  bool good = !start.empty() && start.front() == 0 && start.back() == n;
-  for (std::size_t b = 0; good && b + 1 < start.size(); ++b) {
-    const int size = start[b + 1] - start[b];
-    good = size >= 1 && size <= 3;
-  }
-  if (!good) throw ConfigError("ReducedSystem block_start", "a list", "0 to n in steps of 1 to 3");
-}
 
 /// x <- f(L_b) x_b for every block.
 template <class F>
@@ -43,7 +33,7 @@ LinearStatus BlockScaling::setup(const ReducedSystem& system, Scaling scaling) {
   d_.clear();
   l_.clear();
   if (scaling == Scaling::block_jacobi) {
-    check_starts(system.block_start, n);
+    check_block_starts(system);
     start_ = system.block_start;
   } else {
     start_.resize(static_cast<std::size_t>(n) + 1);
@@ -55,7 +45,9 @@ LinearStatus BlockScaling::setup(const ReducedSystem& system, Scaling scaling) {
   for (std::size_t b = 0; b < d_.size(); ++b) {
     const LinearStatus status = factorize_block(b);
     if (status == LinearStatus::matrix_indefinite || status == LinearStatus::non_finite) return status;
-    if (status != LinearStatus::ok) worst = status;
+    if (status == LinearStatus::ok || worst != LinearStatus::ok) continue;
+    worst = status;
+    bad_dof_ = start_[b];
   }
   return worst;
 }

@@ -15,6 +15,8 @@ class BlockScaling {
   ///         preconditioner_indefinite (a block is singular within rounding) | non_finite
   /// Errors: ConfigError when block_start does not cut 0 .. n into blocks of 1 to 3.
   LinearStatus setup(const ReducedSystem& system, Scaling scaling);
+  /// After a failed setup: a degree of freedom of the first block that is to blame.
+  int bad_dof() const { return bad_dof_; }
   Scaling scaling() const { return scaling_; }
 
   void multiply_lower(VecXd& x) const;  // x <- L x
@@ -31,6 +33,7 @@ class BlockScaling {
   LinearStatus factorize_block(std::size_t block);
 
   Scaling scaling_ = Scaling::none;
+  int bad_dof_ = -1;
   std::vector<int> start_;    // [n_blocks + 1]
   std::vector<Mat3d> d_, l_;  // identity beyond the size of the block
 };

@@ -23,7 +23,8 @@ struct Stencils {
 /// What a linear solver and a condition estimator see: lower triangle, free degrees of freedom only.
 struct ReducedSystem {
   Eigen::SparseMatrix<double> lower;  // [n x n] column-major, lower triangle with diagonal
-  std::vector<int> block_start;  // [n_blocks + 1] degrees of freedom of one vertex are consecutive (1 to 3)
+  std::vector<int> block_start;   // [n_blocks + 1] degrees of freedom of one vertex are consecutive (1 to 3)
+  std::vector<int> block_vertex;  // [n_blocks] vertex of each, for messages; empty: the number of the block
   std::uint64_t pattern_id =
       0;  // a hash of the pattern of lower: changes exactly with it; 0 = unknown, never reused
 };

@@ -7,7 +7,7 @@
 
 namespace bb {
 
-/// CHOLMOD, supernodal, METIS ordering, one BLAS thread. Not copyable, one thread at a time.
+/// CHOLMOD, supernodal, nested dissection of the vertices by METIS, one BLAS thread. Not copyable, one thread at a time.
 class CholmodFactor {
  public:
   CholmodFactor();

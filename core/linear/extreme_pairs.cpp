@@ -60,6 +60,7 @@ class ScaledMatrix {
   /// Factorises sign * (A - sigma D).
   bool factorize_shifted(double sign, double sigma) {
     m_.shifted_system.lower = m_.system->lower;
+    m_.shifted_system.block_start = m_.system->block_start;
     m_.shifted_system.pattern_id = m_.system->pattern_id;
     s_.add_to(m_.shifted_system.lower, sign, -sign * sigma);
     ++counts_.factorizations;

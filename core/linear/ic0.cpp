@@ -2,35 +2,61 @@
 
 #include <cmath>
 
+#include "core/linear/block_starts.hpp"
+
 namespace bb {
 namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
 }  // namespace
 
-LinearStatus Ic0::setup(const ReducedSystem&, const SymmetricProduct& rows) {
-  n_ = rows.n();
-  start_.assign(1, 0);
-  column_.clear();
-  a_.clear();
-  for (int i = 0; i < n_; ++i) {
-    for (int k = rows.row_start()[at(i)]; k < rows.row_start()[at(i) + 1]; ++k) {
-      if (rows.column()[at(k)] > i) break;
-      column_.push_back(rows.column()[at(k)]);
-      a_.push_back(rows.value()[at(k)]);
-    }
-    const bool has_diagonal = static_cast<int>(column_.size()) > start_.back() && column_.back() == i;
-    if (!has_diagonal || !(a_.back() > 0)) return LinearStatus::matrix_indefinite;
-    start_.push_back(static_cast<int>(column_.size()));
-  }
-  l_.resize(a_.size());
-  work_.assign(at(n_), 0.0);
+LinearStatus Ic0::setup(const ReducedSystem& system, const SymmetricProduct&) {
+  if (!key_.same_as_last(system)) build_rows(system.lower);
+  const double* value = system.lower.valuePtr();
+  for (std::size_t k = 0; k < a_.size(); ++k) a_[k] = value[source_[k]];
   shifts_ = 0;
   shift_ = 0;
+  if (const LinearStatus status = check_diagonal(system); status != LinearStatus::ok) return status;
+  work_.assign(at(n_), 0.0);
   while (!factorize(shift_)) {
     if (++shifts_ > 8) return LinearStatus::preconditioner_indefinite;
     shift_ = shift_ > 0 ? 4 * shift_ : 1e-3;
   }
   return LinearStatus::ok;
+}
+
+// Columns in ascending order, so that rows are ascending too.
+void Ic0::build_rows(const Eigen::SparseMatrix<double>& lower) {
+  n_ = static_cast<int>(lower.rows());
+  const int *outer = lower.outerIndexPtr(), *inner = lower.innerIndexPtr();
+  const auto n_entries = static_cast<std::size_t>(lower.nonZeros());
+  start_.assign(at(n_) + 1, 0);
+  for (std::size_t k = 0; k < n_entries; ++k) ++start_[at(inner[k]) + 1];
+  for (int i = 0; i < n_; ++i) start_[at(i) + 1] += start_[at(i)];
+  cursor_.assign(start_.begin(), start_.end() - 1);
+  column_.resize(n_entries);
+  source_.resize(n_entries);
+  a_.resize(n_entries);
+  l_.resize(n_entries);
+  for (int j = 0; j < n_; ++j) {
+    for (int k = outer[j]; k < outer[j + 1]; ++k) {
+      const int slot = cursor_[at(inner[k])]++;
+      column_[at(slot)] = j;
+      source_[at(slot)] = k;
+    }
+  }
+}
+
+LinearStatus Ic0::check_diagonal(const ReducedSystem& system) {
+  detail_.clear();
+  for (int i = 0; i < n_; ++i) {
+    const int last = start_[at(i) + 1] - 1;
+    const double diagonal = last >= start_[at(i)] && column_[at(last)] == i ? a_[at(last)] : 0;
+    if (diagonal < 0) return LinearStatus::matrix_indefinite;
+    if (diagonal == 0 && detail_.empty()) {
+      detail_ = bad_diagonal_text(system, i) + "ic0 needs a positive diagonal";
+    }
+  }
+  return detail_.empty() ? LinearStatus::ok : LinearStatus::preconditioner_indefinite;
 }
 
 bool Ic0::factorize(double shift) {

@@ -26,7 +26,9 @@ std::string_view to_string(LinearStatus status);
 struct LinearReport {
   LinearStatus status = LinearStatus::ok;
   bool iterative = false;
+  std::string detail;              // what about the matrix made it fail, where that is known
   int iterations = 0;              // 0 for direct solvers
+  double tolerance = 0;            // on residual_true, as chosen for this solve; 0 for direct solvers
   double residual_true = 0;        // |b - A x| / |b|, 2-norm
   double residual_recurrence = 0;  // the same from the recurrence (iterative)
   double ritz_min = 0,
@@ -48,6 +50,8 @@ class LinearSolver {
  public:
   virtual ~LinearSolver() = default;
   virtual std::string_view name() const = 0;
+  /// A step begins: what earlier right-hand sides say of the tolerance no longer holds.
+  virtual void begin_step() {}
   /// x is resized to b. Analysis is reused while pattern_id stays. Never silently falls back
   /// to another method.
   virtual LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) = 0;

@@ -40,7 +40,9 @@ Reduction::Reduction(int n_vertices, const std::vector<std::uint8_t>& fixed) {
   dof_.back() = n_free();
   system_.block_start.push_back(0);
   for (int v = 0; v < n_vertices; ++v) {
-    if (n_free_of(v) > 0) system_.block_start.push_back(dof_[3 * at(v) + 3]);
+    if (n_free_of(v) == 0) continue;
+    system_.block_start.push_back(dof_[3 * at(v) + 3]);
+    system_.block_vertex.push_back(v);
   }
   system_.lower.resize(n_free(), n_free());
 }

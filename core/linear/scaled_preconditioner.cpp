@@ -1,5 +1,6 @@
 // The preconditioners that are a block diagonal: none, jacobi and block_jacobi.
 #include "core/linear/block_scaling.hpp"
+#include "core/linear/block_starts.hpp"
 #include "core/linear/preconditioner.hpp"
 
 namespace bb {
@@ -10,8 +11,14 @@ class Scaled final : public Preconditioner {
  public:
   explicit Scaled(Scaling scaling) : kind_(scaling) {}
   LinearStatus setup(const ReducedSystem& system, const SymmetricProduct&) override {
-    return scaling_.setup(system, kind_);
+    const LinearStatus status = scaling_.setup(system, kind_);
+    const bool singular = status == LinearStatus::preconditioner_indefinite;
+    detail_ = singular ? bad_diagonal_text(system, scaling_.bad_dof()) + std::string(to_string(kind_)) +
+                             " needs positive definite ones"
+                       : "";
+    return status;
   }
+  std::string detail() const override { return detail_; }
   void apply(const VecXd& r, VecXd& z) const override {
     z = r;
     scaling_.solve_lower(z);
@@ -21,6 +28,7 @@ class Scaled final : public Preconditioner {
  private:
   Scaling kind_;
   BlockScaling scaling_;
+  std::string detail_;
 };
 
 template <Scaling scaling>

@@ -3,96 +3,140 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/linear/block_starts.hpp"
 #include "core/linear/parallel.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {
 namespace {
 std::size_t at(int i) { return static_cast<std::size_t>(i); }
-constexpr int kGrain = 512;  // rows a task
+constexpr int kGrain = 256;  // block rows a task
+using Vec4d = Eigen::Matrix<double, 4, 1>;
+using Four = Eigen::Map<const Vec4d>;
 }  // namespace
 
 void SymmetricProduct::update(const ReducedSystem& system) {
-  if (!key_.same_as_last(system)) build_rows(system);
+  if (!key_.same_as_last(system)) {
+    try {
+      build_rows(system);
+    } catch (...) {
+      key_.forget();
+      throw;
+    }
+  }
   const double* value = system.lower.valuePtr();
-  parallel_items(static_cast<int>(value_.size()), 16384,
-                 [&](int k) { value_[at(k)] = value[source_[at(k)]]; });
+  parallel_items(static_cast<int>(system.lower.nonZeros()), 16384,
+                 [&](int k) { value_[slot_[2 * at(k)]] = value_[slot_[2 * at(k) + 1]] = value[k]; });
 }
 
 void SymmetricProduct::build_rows(const ReducedSystem& system) {
-  const auto& lower = system.lower;
-  if (lower.rows() != lower.cols() || !lower.isCompressed()) {
-    key_.forget();
+  if (system.lower.rows() != system.lower.cols() || !system.lower.isCompressed()) {
     throw ConfigError("ReducedSystem", "a matrix that is not square and compressed",
                       "lower triangle, compressed");
   }
-  n_ = static_cast<int>(lower.rows());
-  const int *outer = lower.outerIndexPtr(), *inner = lower.innerIndexPtr();
-  row_start_.assign(at(n_) + 1, 0);
-  for (int j = 0; j < n_; ++j) {
-    for (int k = outer[j]; k < outer[j + 1]; ++k) {
-      if (inner[k] < j) {
-        key_.forget();
-        throw ConfigError("ReducedSystem", "an entry above the diagonal", "lower triangle only");
-      }
-      ++row_start_[at(inner[k]) + 1];
-      if (inner[k] != j) ++row_start_[at(j) + 1];
+  lower_block_columns(system, lower_start_, lower_row_);
+  n_ = static_cast<int>(system.lower.rows());
+  start_ = system.block_start;
+  block_of_.resize(at(n_));
+  for (int b = 0; b < n_blocks(); ++b) {
+    for (int i = start_[at(b)]; i < start_[at(b) + 1]; ++i) block_of_[at(i)] = b;
+  }
+  row_start_.assign(at(n_blocks()) + 1, 0);
+  for (int c = 0; c < n_blocks(); ++c) {
+    for (int k = lower_start_[at(c)]; k < lower_start_[at(c) + 1]; ++k) {
+      ++row_start_[at(lower_row_[at(k)]) + 1];
+      if (lower_row_[at(k)] != c) ++row_start_[at(c) + 1];
     }
   }
-  for (int i = 0; i < n_; ++i) row_start_[at(i) + 1] += row_start_[at(i)];
-  const std::size_t n_entries = at(row_start_[at(n_)]);
-  column_.resize(n_entries);
-  source_.resize(n_entries);
-  value_.resize(n_entries);
+  for (int r = 0; r < n_blocks(); ++r) row_start_[at(r) + 1] += row_start_[at(r)];
+  column_.resize(at(row_start_.back()));
   cursor_.assign(row_start_.begin(), row_start_.end() - 1);
-  // Columns in ascending order: row i receives its entries left of the diagonal first, all ascending.
-  for (int j = 0; j < n_; ++j) {
-    for (int k = outer[j]; k < outer[j + 1]; ++k) {
-      const auto put = [&](int row, int col) {
-        const std::size_t slot = at(cursor_[at(row)]++);
-        column_[slot] = col;
-        source_[slot] = k;
-      };
-      put(inner[k], j);
-      if (inner[k] != j) put(j, inner[k]);
+  // Columns in ascending order: a row receives its blocks left of the diagonal first, all ascending.
+  for (int c = 0; c < n_blocks(); ++c) {
+    for (int k = lower_start_[at(c)]; k < lower_start_[at(c) + 1]; ++k) {
+      const int r = lower_row_[at(k)];
+      column_[at(cursor_[at(r)]++)] = c;
+      if (r != c) column_[at(cursor_[at(c)]++)] = r;
     }
   }
+  value_.assign(9 * column_.size() + 1, 0.0);
+  x_.assign(4 * at(n_blocks()), 0.0);
+  build_slots(system);
+}
+
+void SymmetricProduct::build_slots(const ReducedSystem& system) {
+  const int *outer = system.lower.outerIndexPtr(), *inner = system.lower.innerIndexPtr();
+  slot_.resize(2 * at(static_cast<int>(system.lower.nonZeros())));
+  parallel_items(n_, 512, [&](int j) {
+    const auto slot = [this](int i, int col) {
+      const int r = block_of_[at(i)], c = block_of_[at(col)];
+      const auto begin = column_.begin() + row_start_[at(r)], end = column_.begin() + row_start_[at(r) + 1];
+      const auto k = static_cast<std::uint32_t>(std::lower_bound(begin, end, c) - column_.begin());
+      return 9 * k + static_cast<std::uint32_t>(3 * (i - start_[at(r)]) + col - start_[at(c)]);
+    };
+    for (int k = outer[j]; k < outer[j + 1]; ++k) {
+      slot_[2 * at(k)] = slot(inner[k], j);
+      slot_[2 * at(k) + 1] = slot(j, inner[k]);
+    }
+  });
 }
 
 void SymmetricProduct::multiply(const VecXd& x, VecXd& y) const {
   y.resize(n_);
-  parallel_items(n_, kGrain, [&](int i) {
-    double sum = 0;
-    for (int k = row_start_[at(i)]; k < row_start_[at(i) + 1]; ++k) sum += value_[at(k)] * x[column_[at(k)]];
-    y[i] = sum;
+  parallel_items(n_blocks(), 4 * kGrain, [&](int b) {
+    for (int i = start_[at(b)]; i < start_[at(b) + 1]; ++i) x_[4 * at(b) + at(i - start_[at(b)])] = x[i];
+  });
+  parallel_items(n_blocks(), kGrain, [&](int r) {
+    Vec4d row0 = Vec4d::Zero(), row1 = row0, row2 = row0;  // the fourth sum is of no meaning
+    for (int k = row_start_[at(r)]; k < row_start_[at(r) + 1]; ++k) {
+      const Vec4d v = Four(x_.data() + 4 * at(column_[at(k)]));
+      const double* a = block(k);
+      row0 += Four(a).cwiseProduct(v);
+      row1 += Four(a + 3).cwiseProduct(v);
+      row2 += Four(a + 6).cwiseProduct(v);
+    }
+    const double sums[] = {row0[0] + row0[1] + row0[2], row1[0] + row1[1] + row1[2],
+                           row2[0] + row2[1] + row2[2]};
+    const int begin = start_[at(r)], size = start_[at(r) + 1] - begin;
+    for (int i = 0; i < size; ++i) y[begin + i] = sums[i];
   });
 }
 
-void SymmetricProduct::multiply_long(const VecXd& x, std::vector<long double>& y) const {
-  y.resize(at(n_));
-  parallel_items(n_, kGrain, [&](int i) {
-    long double sum = 0;
-    for (int k = row_start_[at(i)]; k < row_start_[at(i) + 1]; ++k) {
-      sum += static_cast<long double>(value_[at(k)]) * x[column_[at(k)]];
+// f(degree of freedom, degree of freedom, entry) for the entries of a block row.
+template <class F>
+void SymmetricProduct::for_row(int row, const F& f) const {
+  for (int k = row_start_[at(row)]; k < row_start_[at(row) + 1]; ++k) {
+    const int c = column_[at(k)];
+    for (int i = start_[at(row)]; i < start_[at(row) + 1]; ++i) {
+      for (int j = start_[at(c)]; j < start_[at(c) + 1]; ++j) {
+        f(i, j, block(k)[3 * (i - start_[at(row)]) + j - start_[at(c)]]);
+      }
     }
-    y[at(i)] = sum;
+  }
+}
+
+void SymmetricProduct::multiply_long(const VecXd& x, std::vector<long double>& y) const {
+  y.assign(at(n_), 0.0L);
+  parallel_items(n_blocks(), kGrain, [&](int r) {
+    for_row(r, [&](int i, int j, double a) { y[at(i)] += static_cast<long double>(a) * x[j]; });
   });
 }
 
 double SymmetricProduct::absolute_quadratic(const VecXd& p) const {
   double total = 0;
-  for (int i = 0; i < n_; ++i) {
-    double sum = 0;
-    for (int k = row_start_[at(i)]; k < row_start_[at(i) + 1]; ++k) {
-      sum += std::abs(value_[at(k)] * p[column_[at(k)]]);
-    }
-    total += sum * std::abs(p[i]);
+  for (int r = 0; r < n_blocks(); ++r) {
+    for_row(r, [&](int i, int j, double a) { total += std::abs(p[i] * a * p[j]); });
   }
   return total;
 }
 
 bool SymmetricProduct::all_finite() const {
   return std::all_of(value_.begin(), value_.end(), [](double v) { return std::isfinite(v); });
+}
+
+double SymmetricProduct::bytes() const {
+  const double blocks = static_cast<double>(column_.size());
+  return blocks * (9 * sizeof(double) + sizeof(int)) + 2.0 * n_ * sizeof(double);
 }
 
 }  // namespace bb

@@ -1,7 +1,10 @@
-// Products with the symmetric matrix whose lower triangle is given: both triangles as compressed rows, so
-// that rows are independent and the result does not depend on the number of threads.
+// Products with the symmetric matrix whose lower triangle is given: rows of 3 x 3 blocks, both triangles, one
+// index a block. Rows are independent, so the result does not depend on the number of threads. One triangle
+// alone would halve the bytes, but its second half is a scattered sum: on two threads it was 1.5 times slower,
+// on one no faster (bench_product.cpp).
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/linear/block_system.hpp"
@@ -12,7 +15,7 @@ namespace bb {
 class SymmetricProduct {
  public:
   /// Rows and map are kept while the pattern stays. Cost: O(nonzeros). Errors: ConfigError for a matrix that
-  /// is not square or has an entry above the diagonal.
+  /// is not square or has an entry above the diagonal, and for what check_block_starts refuses.
   void update(const ReducedSystem& system);
   int n() const { return n_; }
 
@@ -24,18 +27,29 @@ class SymmetricProduct {
   double absolute_quadratic(const VecXd& p) const;
   bool all_finite() const;
 
-  // Rows with ascending columns.
+  // Block rows with ascending columns. Blocks are stored by rows, 0 beyond the size of the vertex.
+  int n_blocks() const { return static_cast<int>(start_.size()) - 1; }
+  const std::vector<int>& start() const { return start_; }  // [n_blocks + 1] first degree of freedom
   const std::vector<int>& row_start() const { return row_start_; }
   const std::vector<int>& column() const { return column_; }
-  const std::vector<double>& value() const { return value_; }
+  const double* block(int k) const { return value_.data() + 9 * static_cast<std::size_t>(k); }
+  /// Bytes that a product has to read and write at least once.
+  double bytes() const;
 
  private:
   void build_rows(const ReducedSystem& system);
+  void build_slots(const ReducedSystem& system);
+  template <class F>
+  void for_row(int row, const F& f) const;
 
   int n_ = 0;
   PatternKey key_;
-  std::vector<int> row_start_, column_, source_, cursor_;
-  std::vector<double> value_;
+  std::vector<int> start_, row_start_, column_;
+  std::vector<std::uint32_t> slot_;  // [2 nonzeros] where an entry and its mirror image are in value_
+  std::vector<double> value_;        // [9 blocks + 1]: the last block is read four numbers at a time too
+  mutable std::vector<double> x_;    // [4 n_blocks] 0 beyond the size of the vertex
+  // scratch of build_rows
+  std::vector<int> block_of_, lower_start_, lower_row_, cursor_;
 };
 
 }  // namespace bb

@@ -13,7 +13,7 @@ void ErrorEstimate::reset(const Positions& x) {
   whole_ = false;
 }
 
-void ErrorEstimate::add(double dx) {
+void ErrorEstimate::add(double dx, double residual) {
   if (dx_.empty()) {
     contraction_ = Number::missing("first_iteration");
   } else if (!whole_ || dx_.back() == 0) {
@@ -21,7 +21,7 @@ void ErrorEstimate::add(double dx) {
     before_ = 0;
   } else {
     const double ratio = dx / dx_.back();
-    contraction_ = Number(std::max(ratio, before_ * before_));
+    contraction_ = Number(std::max({ratio, before_ * before_, residual}));
     before_ = ratio;
   }
   dx_.push_back(dx);

@@ -12,13 +12,14 @@ class ErrorEstimate {
  public:
   /// A step begins at x [3 x n], m.
   void reset(const Positions& x);
-  /// The direction of the next iteration, |dx|_inf in m.
-  void add(double dx);
+  /// The direction of the next iteration, |dx|_inf in m, solved for up to this part of the residual.
+  void add(double dx, double residual = 0);
   /// The part of that direction that was taken.
   void took(double alpha);
 
   /// q: |dx| over that of the iteration before, and at least the square of the q before it, so that one
-  /// lucky ratio does not hide linear convergence. Absent unless the whole direction before was taken.
+  /// lucky ratio does not hide linear convergence, and at least the part of the residual that an inexact solve
+  /// left, since the next direction has to make up for it. Absent unless the whole direction before was taken.
   Number contraction() const { return contraction_; }
   /// |dx| q/(1 - q), m: how far x + dx is from the solution if directions go on shrinking by q. An unknown q
   /// counts as 0.9; infinite from q = 1 on. A |dx| within rounding of the coordinates shrinks no more and counts

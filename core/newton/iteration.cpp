@@ -11,8 +11,10 @@ void fill_work(IterationReport& report) {
   const LinearReport& linear = report.solve.linear;
   report.linear_status = linear.status;
   report.residual_true = linear.residual_true;
-  report.residual_recurrence = report.ritz_min = report.ritz_max = Number::missing("direct_solver");
+  report.linear_tolerance = report.residual_recurrence = report.ritz_min = report.ritz_max =
+      Number::missing("direct_solver");
   if (linear.iterative) {
+    report.linear_tolerance = linear.tolerance;
     report.residual_recurrence = linear.residual_recurrence;
     const bool known = linear.ritz_max != 0;  // not where the solve ended before its first iteration
     report.ritz_min = known ? Number(linear.ritz_min) : Number::missing("not_measured");
@@ -51,7 +53,9 @@ bool within_rounding(const EnergyChange& change) {
 
 void fail_step(StepReport& step, StepStatus status, const IterationReport& report) {
   step.status = status;
-  if (status == StepStatus::linear_failed) step.detail = std::string(to_string(report.solve.linear.status));
+  if (status != StepStatus::linear_failed) return;
+  const LinearReport& linear = report.solve.linear;
+  step.detail = std::string(to_string(linear.status)) + (linear.detail.empty() ? "" : ": " + linear.detail);
 }
 
 IterationReport begin_iteration(NewtonSystem& system, int step, int iteration) {

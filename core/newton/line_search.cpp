@@ -75,7 +75,7 @@ class LineSearch final : public StepSolver {
  private:
   // Of x + dx, m.
   double estimate_error(IterationReport& report) {
-    error_.add(report.dx_inf_m);
+    error_.add(report.dx_inf_m, report.solve.linear.residual_true);
     report.contraction = error_.contraction();
     report.error_estimate_m = error_.error();
     return error_.error();

@@ -40,12 +40,18 @@ NewtonSystem::NewtonSystem(const Scene& scene, Method& method, const Plan& plan)
       terms_(make_terms(plan_, {scene, method, plan_.contacts, fixed_})),
       level_(choices_of(terms_, method)),
       blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed_)),
-      solver_(make_linear_solver(method.linear)) {
+      solver_(make_linear_solver(plan_.linear)) {
   set_fixed_families(method);
 }
 
+PlanOptions plan_options(const Method& method) {
+  PlanOptions options;
+  options.linear = method.linear;
+  return options;
+}
+
 NewtonSystem::NewtonSystem(const Scene& scene, Method& method)
-    : NewtonSystem(scene, method, make_plan(scene, method, {})) {}
+    : NewtonSystem(scene, method, make_plan(scene, method, plan_options(method))) {}
 
 // Families that come and go are numbered apart from those that stay.
 void NewtonSystem::set_fixed_families(const Method& method) {
@@ -73,6 +79,7 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   x_ = x_n;
   level_.reset();
   served_at_once_ = false;
+  solver_->begin_step();
   for (const auto& term : terms_) term->begin_step(frame_, clock_);
 }
 

@@ -21,6 +21,9 @@
 
 namespace bb {
 
+/// Of a method that is run without a config.
+PlanOptions plan_options(const Method& method);
+
 class NewtonSystem {
  public:
   /// scene and method must outlive the system. plan: of both; the terms are made from it.

@@ -35,7 +35,7 @@ class ChargedObserver final : public StepObserver {
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, Method& method, double dt, int n_steps)
-    : Simulation(scene, method, make_plan(scene, method, {}), dt, n_steps) {}
+    : Simulation(scene, method, make_plan(scene, method, plan_options(method)), dt, n_steps) {}
 
 Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, double dt, int n_steps)
     : scene_(scene),

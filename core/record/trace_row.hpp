@@ -121,6 +121,7 @@ struct TraceRow : WorkCounts {
   BB_FIELD(double, alpha_ccd, "bound of ACCD") = 1;
   BB_FIELD(double, alpha_strain, "bound of the strain limit") = 1;
   BB_FIELD(LinearStatus, linear_status, "of the linear solver") = LinearStatus::ok;
+  BB_FIELD(Number, linear_tolerance, "on residual_true, as the forcing chose it", "direct_solver");
   BB_FIELD(double, residual_true, "|b - A x| / |b|") = 0;
   BB_FIELD(Number, residual_recurrence, "the same from the recurrence", "direct_solver");
   BB_FIELD(Number, ritz_min, "smallest Ritz value of the preconditioned matrix", "direct_solver");

@@ -27,8 +27,11 @@ void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const 
 }
 
 void plan_passes(Plan& plan, const PlanOptions& options) {
+  plan.linear = options.linear;
+  plan.linear_solver = {true, plan.linear.name + ", as asked for"};
   plan.preconditioner =
-      plan_item(options.iterative_solver, "the linear solver is iterative", "the linear solver is direct");
+      plan_item(preconditioner_of(plan.linear) != "none",
+                preconditioner_of(plan.linear) + ", of the linear solver", "the linear solver has none");
   plan.conditioning = plan_item(options.diagnose, "passes.diagnose", "passes.diagnose is off");
   plan.audit = plan_item(options.audit, "passes.audit", "passes.audit is off");
   plan.trace =
@@ -60,6 +63,7 @@ std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
                          {"pins", &pins},
                          {"pin_lifting", &pin_lifting},
                          {"planar_lock", &planar_lock},
+                         {"linear_solver", &linear_solver},
                          {"preconditioner", &preconditioner},
                          {"conditioning", &conditioning},
                          {"audit", &audit},

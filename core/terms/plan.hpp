@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "core/linear/linear_solver.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/registry.hpp"
@@ -17,7 +18,7 @@ namespace bb {
 /// What the options outside the terms decide.
 struct PlanOptions {
   bool collision_free_steps = true;  // false for a step solver without a step bound
-  bool iterative_solver = false;     // linear solver is iterative
+  LinearOptions linear;              // the solver asked for; `auto` is decided here
   bool diagnose = false, audit = false, trace = false, frames = false, matrices = false;
 };
 
@@ -29,11 +30,13 @@ struct Plan {
   PlanItem pins;                // eliminated degrees of freedom
   PlanItem pin_lifting;         // prescribed motion on the right-hand side
   PlanItem planar_lock;         // third axis eliminated
+  PlanItem linear_solver;       // which, and why
   PlanItem preconditioner;      // iterative solver only
   PlanItem conditioning;        // condition numbers
   PlanItem audit;               // exact penetration checks
   PlanItem trace;               // one line a Newton iteration
   PlanItem frames, matrices;    // files beside the record
+  LinearOptions linear;         // what linear_solver says: never `auto`
 
   /// That of the term of this name. Requires a name of term_entries().
   const PlanItem& term(std::string_view name) const;

@@ -51,6 +51,7 @@ ConditionEstimate ritz_estimate(const ReducedSystem& system, Scaling scaling) {
   LinearOptions options;
   options.name = "pcg";
   options.parameters["preconditioner"] = std::string(to_string(scaling));
+  options.parameters["forcing"] = std::string("fixed");
   const LinearReport report = make_linear_solver(options)->solve(system, b, x);
   ConditionEstimate out = condition_from_ritz(report.ritz_min, report.ritz_max);
   if (report.status == LinearStatus::matrix_indefinite) {

@@ -69,7 +69,7 @@ void solve(benchmark::State& state, const std::string& name, const std::string& 
   const ReducedSystem& system = cloth.assemble(*s, cloth.contacts_a);
   LinearOptions options;
   options.name = name;
-  options.parameters = {{"preconditioner", preconditioner}, {"tol_rel", 1e-6}};
+  options.parameters = {{"preconditioner", preconditioner}, {"forcing", "fixed"}, {"tol_rel", 1e-6}};
   const auto solver = make_linear_solver(options);
   const VecXd b = VecXd::LinSpaced(system.lower.rows(), -1, 1);
   VecXd x;

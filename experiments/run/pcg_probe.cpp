@@ -7,7 +7,7 @@ namespace bb {
 PcgProbe::PcgProbe(std::uint64_t seed) : seed_(seed) {
   LinearOptions options;
   options.name = "pcg";
-  options.parameters = {{"preconditioner", "block_jacobi"}, {"tol_rel", 1e-6}};
+  options.parameters = {{"preconditioner", "block_jacobi"}, {"forcing", "fixed"}, {"tol_rel", 1e-6}};
   solver_ = make_linear_solver(options);
 }
 

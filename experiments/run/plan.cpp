@@ -25,8 +25,7 @@ Plan plan_of(const RunConfig& config, const Scene& scene) {
   PlanOptions options;
   options.collision_free_steps =
       step_solvers().require(config.step_solver.name, "/step_solver/name").bounds_steps;
-  options.iterative_solver =
-      linear_solvers().require(config.linear_solver.name, "/linear_solver/name").iterative;
+  options.linear = {config.linear_solver.name, config.linear_solver.parameters};
   options.diagnose = config.passes.diagnose;
   options.audit = config.passes.audit;
   options.trace = has_observed_run(config);

@@ -18,6 +18,7 @@ TEST(LinearSolver, EverySolverOfTheRegistryMeetsTheDenseSolution) {
   for (const LinearSolverEntry& entry : linear_solvers()) {
     LinearOptions options;
     options.name = entry.name;
+    options.parameters["forcing"] = std::string("fixed");
     options.parameters["tol_rel"] = 1e-12;
     const auto solver = make_linear_solver(options);
     VecXd x;
@@ -48,9 +49,11 @@ TEST(LinearSolver, UnknownNamesAreListedWithTheNearest) {
   LinearOptions options;
   options.name = "cholmid";
   EXPECT_EQ(message(options),
-            "/linear_solver/name: found \"cholmid\"; allowed: one of cholmod, pcg (did you mean cholmod?)");
+            "/linear_solver/name: found \"cholmid\"; allowed: one of cholmod, lagged_cholesky, pcg (did you "
+            "mean cholmod?)");
   options.name = "multigrid";
-  EXPECT_EQ(message(options), "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, pcg");
+  EXPECT_EQ(message(options),
+            "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, lagged_cholesky, pcg");
   options = {};
   options.name = "pcg";
   options.parameters["preconditioner"] = "block-jacobi";

@@ -15,7 +15,8 @@ namespace {
 std::unique_ptr<LinearSolver> pcg(const std::string& preconditioner, double tol, int cap = 10000) {
   LinearOptions options;
   options.name = "pcg";
-  options.parameters = {{"preconditioner", preconditioner}, {"tol_rel", tol}, {"max_iterations", cap}};
+  options.parameters = {
+      {"preconditioner", preconditioner}, {"forcing", "fixed"}, {"tol_rel", tol}, {"max_iterations", cap}};
   return make_linear_solver(options);
 }
 
@@ -37,6 +38,7 @@ TEST(Pcg, EveryPreconditionerMeetsTheDenseSolution) {
   }
   EXPECT_LT(iterations[3], iterations[0] / 2);  // ic0 against none
   EXPECT_LT(iterations[2], iterations[0]);      // block_jacobi against none
+  EXPECT_LT(iterations[4], iterations[2]);      // schwarz against block_jacobi
 }
 
 TEST(Pcg, ThreadsDoNotChangeABit) {
@@ -80,6 +82,28 @@ TEST(Pcg, SingularBlockIsThePreconditionersFault) {
   EXPECT_EQ(pcg("block_jacobi", 1e-10)->solve(from_dense(a), VecXd::Ones(6), x).status,
             LinearStatus::preconditioner_indefinite);
   EXPECT_EQ(pcg("none", 1e-10)->solve(from_dense(a), VecXd::Ones(6), x).status, LinearStatus::ok);
+}
+
+/// Without a diagonal block no preconditioner that needs it, and a message that says whose it is.
+TEST(Pcg, ZeroDiagonalBlockIsNamed) {
+  Eigen::MatrixXd a = Eigen::MatrixXd::Identity(9, 9);
+  a.block<3, 3>(3, 3).setZero();
+  int n = 0;
+  for (const std::string& name : preconditioners().names()) {
+    if (name == "none") continue;
+    ReducedSystem system = from_dense(a);
+    VecXd x;
+    LinearReport report = pcg(name, 1e-10)->solve(system, VecXd::Ones(9), x);
+    EXPECT_EQ(report.status, LinearStatus::preconditioner_indefinite) << name;
+    EXPECT_NE(report.detail.find("block row 1 is 0"), std::string::npos) << name << ": " << report.detail;
+    EXPECT_NE(report.detail.find(name + " needs"), std::string::npos) << name << ": " << report.detail;
+    system.block_vertex = {4, 17, 30};
+    report = pcg(name, 1e-10)->solve(system, VecXd::Ones(9), x);
+    EXPECT_NE(report.detail.find("vertex 17 is 0"), std::string::npos) << name << ": " << report.detail;
+    EXPECT_EQ(pcg(name, 1e-10)->solve(grid_system(3, 1), VecXd::Ones(27), x).detail, "");
+    ++n;
+  }
+  EXPECT_GE(n, 3);
 }
 
 TEST(Pcg, SemiDefiniteMatrixIsNotCalledIndefinite) {

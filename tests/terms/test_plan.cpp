@@ -30,13 +30,13 @@ Plan plan_of(const Scene& scene, const TermOptions& terms = {}, const PlanOption
   return make_plan(scene, terms, options);
 }
 
-/// What is needed beside inertia and weight, which every scene here has.
+/// What is needed beside inertia, weight and a linear solver, which every scene here has.
 std::set<std::string> needed(const Plan& plan) {
   std::set<std::string> names;
   for (const auto& [name, item] : plan.items()) {
     if (item->needed) names.emplace(name);
   }
-  for (const char* load : {"inertia", "external_force"}) {
+  for (const char* load : {"inertia", "external_force", "linear_solver"}) {
     EXPECT_EQ(names.erase(load), 1U) << load;
   }
   return names;
@@ -68,7 +68,7 @@ TEST(plan, follows_every_option) {
   TermOptions terms = term_options();
   terms.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
   PlanOptions options;
-  options.iterative_solver = true;
+  options.linear.name = "pcg";
   options.diagnose = options.audit = options.trace = options.frames = options.matrices = true;
 
   const Plan plan = plan_of(scene_of({body, box}), terms, options);
@@ -90,7 +90,7 @@ TEST(plan, gives_a_reason_for_every_item_and_lists_each_once) {
     EXPECT_TRUE(names.insert(name).second) << name;
     needed += item->needed;
   }
-  EXPECT_EQ(needed, 3U);  // inertia, weight, membrane
+  EXPECT_EQ(needed, 4U);  // inertia, weight, membrane, a linear solver
 }
 
 TEST(plan, skips_the_step_bound_of_a_solver_without_one) {

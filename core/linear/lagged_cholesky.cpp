@@ -1,0 +1,115 @@
+// Conjugate gradients preconditioned by the Cholesky factor of an earlier matrix of the same size: of another
+// pattern too, since contacts come and go one by one and a few iterations make up for each. The present matrix
+// is factorised when
+//   - there is no factor: the first solve, another size, or the last factorisation failed,
+//   - the earlier factor does not bring the residual down to the tolerance within max_pcg_iterations.
+// Negative curvature beyond rounding proves that the matrix is indefinite, and is reported as such at once; the
+// factor stays. A factorisation that fails is matrix_indefinite, as with cholmod.
+#include <chrono>
+#include <cmath>
+#include <string>
+
+#include "core/linear/cholmod_factor.hpp"
+#include "core/linear/conjugate_gradients.hpp"
+#include "core/linear/forcing.hpp"
+#include "core/math/error.hpp"
+
+namespace bb {
+namespace {
+
+using Clock = std::chrono::steady_clock;
+double seconds_since(Clock::time_point start) {
+  return std::chrono::duration<double>(Clock::now() - start).count();
+}
+
+/// M = L L^T of the matrix that setup() saw last.
+class Factor final : public Preconditioner {
+ public:
+  LinearStatus setup(const ReducedSystem& system, const SymmetricProduct&) override {
+    return factor_.factorize(system);
+  }
+  void apply(const VecXd& r, VecXd& z) const override { factor_.solve(r, z); }
+  const CholmodFactor& cholmod() const { return factor_; }
+
+ private:
+  mutable CholmodFactor factor_;  // a solve writes to its workspace
+};
+
+class LaggedCholesky final : public LinearSolver {
+ public:
+  explicit LaggedCholesky(const ParameterMap& parameters)
+      : forcing_(parameters), max_pcg_iterations_(integer(parameters, "max_pcg_iterations")) {}
+  std::string_view name() const override { return "lagged_cholesky"; }
+  void begin_step() override { forcing_.begin_step(); }
+
+  LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
+    if (b.size() != system.lower.rows()) {
+      throw ConfigError("right-hand side", std::to_string(b.size()) + " entries", "one a row of the matrix");
+    }
+    LinearReport report;
+    report.iterative = true;
+    x = VecXd::Zero(b.size());
+    const Clock::time_point start = Clock::now();
+    product_.update(system);
+    const double b_norm = cg_.norm(b);
+    if (!std::isfinite(b_norm) || !product_.all_finite()) {
+      report.status = LinearStatus::non_finite;
+      fail(x, report);
+    } else if (b_norm > 0) {
+      report.tolerance = forcing_.tolerance(b_norm);
+      const bool settled = n_ == b.size() && iterate(b, max_pcg_iterations_, x, report);
+      if (!settled && factorize(system, report)) iterate(b, fresh_iterations, x, report);
+      if (report.status != LinearStatus::ok) fail(x, report);
+    }
+    report.solve_s = seconds_since(start) - report.analyze_s - report.factor_s;
+    return report;
+  }
+
+ private:
+  static constexpr int fresh_iterations = 100;  // one or two do it; more where the matrix is near singular
+
+  // False when another factor may do better.
+  bool iterate(const VecXd& b, int max_iterations, VecXd& x, LinearReport& report) {
+    report.status =
+        cg_.solve(product_, factor_, b, report.tolerance, report.iterations + max_iterations, x, report);
+    return report.status == LinearStatus::ok || report.status == LinearStatus::matrix_indefinite;
+  }
+
+  bool factorize(const ReducedSystem& system, LinearReport& report) {
+    report.status = factor_.setup(system, product_);
+    report.factorized = report.status == LinearStatus::ok;
+    report.analyzed = factor_.cholmod().analyzed_last();
+    report.analyze_s = factor_.cholmod().analyze_s();
+    report.factor_s = factor_.cholmod().factor_s();
+    n_ = report.factorized ? system.lower.rows() : -1;
+    return report.factorized;
+  }
+
+  static void fail(VecXd& x, LinearReport& report) {
+    report.residual_true = report.residual_recurrence = 1;
+    x.setZero();
+  }
+
+  Forcing forcing_;
+  int max_pcg_iterations_;
+  Eigen::Index n_ = -1;  // size of the factor, -1 without one
+  Factor factor_;
+  SymmetricProduct product_;
+  ConjugateGradients cg_;
+};
+
+}  // namespace
+
+LinearSolverEntry linear_solver_lagged_cholesky() {
+  LinearSolverEntry entry;
+  entry.iterative = true;
+  entry.parameters = Forcing::parameters();
+  entry.parameters.push_back({"max_pcg_iterations", count(1, 1000000), 15,
+                              "iterations with an earlier factor before the present matrix is factorised"});
+  entry.make = [](const ParameterMap& complete) -> std::unique_ptr<LinearSolver> {
+    return std::make_unique<LaggedCholesky>(complete);
+  };
+  return entry;
+}
+
+}  // namespace bb
