@@ -170,6 +170,20 @@ TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
     EXPECT_EQ(kappa[r], 3 * one);
   }
 
+  // asked at the floor where the gap is below it
+  config.parameters["mass_term"] = "paper";
+  config.parameters["gap_floor"] = 0.5;
+  for (std::size_t r = 0; r < 4; ++r) d[r] = (r % 2 == 0 ? 1e-12 : 0.7) * d_hat[r];
+  make_policy(config)->fill(batch, kappa.data());
+  for (std::size_t r = 0; r < 4; ++r) {
+    Row row = rows[r];
+    row.d = (r % 2 == 0 ? 0.5 : 0.7) * d_hat[r];
+    EXPECT_EQ(kappa[r], 3 * row.kappa({MassTerm::paper, true, 0.01, 0.25}));
+    d[r] = rows[r].d;
+  }
+  config.parameters["mass_term"] = "inertia";
+  config.parameters["gap_floor"] = 0.0;
+
   config.parameters["elastic_term"] = false;
   const std::unique_ptr<StiffnessPolicy> massive = make_policy(config);
   EXPECT_FALSE(massive->needs_hessian());

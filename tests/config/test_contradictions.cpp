@@ -77,6 +77,10 @@ TEST(Contradictions, AStiffnessThatHasNoPotential) {
   often["formulation"]["stiffness_policy"] = {{"refresh", "per_iteration"}};
   expect_violation(often, policy + "/refresh", "\"per_iteration\"", "per_step, or derivative dropped");
 
+  json floor = config;
+  floor["formulation"]["stiffness_policy"] = {{"gap_floor", 0.1}};
+  expect_violation(floor, policy + "/gap_floor", "0.1", "0, or derivative dropped");
+
   const std::string limit = "/strain_limit/stiffness_policy";
   json two_stage = with(config, "/strain_limit", {{"shape", "two_stage"}, {"limit", 0.1}});
   expect_violation(two_stage, limit + "/derivative", "\"included\" with two_stage on gap", "cubic");
