@@ -50,9 +50,10 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
 /// The article's solver adds its own term to a matrix that has to be positive semi-definite.
 void check_hessians(const RunConfig& config, const Complain& complain) {
   if (config.step_solver.name != "article_literal") return;
-  for (const auto& [term, value] : config.hessian.parameters) {
-    if (to_text(value) == to_string(StepHessian::clamped)) continue;
-    complain("/hessian/" + term, '"' + to_text(value) + '"', "clamped: the step solver is article_literal");
+  for (const HessianChoice& choice : hessian_choices()) {
+    const std::string& value = text(config.hessian.parameters, choice.name);
+    if (value == to_string(StepHessian::clamped)) continue;
+    complain("/hessian/" + choice.name, '"' + value + '"', "clamped: the step solver is article_literal");
   }
 }
 

@@ -79,6 +79,7 @@ TEST(Contradictions, AStiffnessThatHasNoPotential) {
 
   json floor = config;
   floor["formulation"]["stiffness_policy"] = {{"gap_floor", 0.1}};
+  floor["strain_limit"] = {{"stiffness_policy", {{"gap_floor", 0}}}};
   expect_violation(floor, policy + "/gap_floor", "0.1", "0, or derivative dropped");
 
   const std::string limit = "/strain_limit/stiffness_policy";
@@ -145,6 +146,8 @@ TEST(Contradictions, DiagnosesWithoutTheirSource) {
   config["diagnose"] = {{"tier", 0}};
   expect_violation(config, "/diagnose/tier", "0", "pcg");
   config["linear_solver"] = {{"name", "pcg"}};
+  expect_violation(config, "/diagnose/tier", "0", "linear_solver.forcing fixed");
+  config["linear_solver"]["forcing"] = "fixed";
   EXPECT_EQ(parsed(config).diagnose.tier, 0);
   config["diagnose"]["scalings"] = {"none"};
   expect_violation(config, "/diagnose/tier", "0", "a preconditioner among diagnose.scalings");

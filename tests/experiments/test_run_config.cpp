@@ -107,8 +107,11 @@ TEST(RunConfig, factors_of_a_limit_multiply_what_it_is_given) {
 
   PolicyConfig dynamic;
   dynamic.name = "elasticity_inclusive";
-  dynamic.parameters = {
-      {"mass_term", "paper"}, {"elastic_term", true}, {"refresh", "per_step"}, {"derivative", "included"}};
+  dynamic.parameters = {{"mass_term", "paper"},
+                        {"elastic_term", true},
+                        {"refresh", "per_step"},
+                        {"gap_floor", 0.0},
+                        {"derivative", "included"}};
   dynamic.scale = 3;
   calibration.limit_scale = 7;
   EXPECT_EQ(make_limit_policy(dynamic, calibration).multiplier, 21);
