@@ -1,5 +1,7 @@
 #include "core/contact/contact_system.hpp"
 
+#include <algorithm>
+
 #include "core/contact/candidates.hpp"
 #include "core/contact/pair_name.hpp"
 #include "core/contact/row_builder.hpp"
@@ -32,6 +34,9 @@ struct ContactSystem::Data {
   const std::vector<AnalyticSurface<double>> obstacles;
   BroadPhase broad_phase;
   Candidates candidates;
+  Candidates near;       // pairs of the last rows
+  Positions stop;        // where they stop a motion
+  StepBound near_asked;  // its counters are part of those of the next bound
   RowBuilder builder;
   StepBoundFinder bound;
 };
@@ -45,7 +50,22 @@ ContactSystem::~ContactSystem() = default;
 bool ContactSystem::active() const { return data_->broad_phase.active(); }
 
 void ContactSystem::update_candidates(const Positions& x0, const Positions& x1) {
+  data_->near_asked = {};
   if (active()) data_->broad_phase.update(x0, x1, data_->candidates);
+}
+
+void ContactSystem::update_candidates_to_bound(const Positions& x0, const Positions& x1) {
+  if (!active()) return;
+  Data& data = *data_;
+  if (!(x0.allFinite() && x1.allFinite())) return update_candidates(x0, x1);
+  data.builder.near_pairs(data.near);
+  const StepBound near = data.bound.find(data.near, x0, x1);
+  // A query that ran out of probes may end where its pair is no candidate.
+  if (near.alpha == 1 || near.capped > 0) return update_candidates(x0, x1);
+  data.near_asked = near;
+  const double end = std::min(1.0, near.alpha * (1 + 1e-9));  // states there are rounded
+  data.stop = x0 + end * (x1 - x0);
+  data.broad_phase.update(x0, data.stop, data.candidates);
 }
 
 double ContactSystem::find_rows(const Positions& x, ContactTable& rows, MollifiedTable& mollified) const {
@@ -58,7 +78,10 @@ StepBound ContactSystem::step_bound(const Positions& x0, const Positions& x1) co
     stop.alpha = 0;
     return stop;
   }
-  return data_->bound.find(data_->candidates, x0, x1);
+  StepBound bound = data_->bound.find(data_->candidates, x0, x1);
+  bound.queries += data_->near_asked.queries;
+  bound.probes += data_->near_asked.probes;
+  return bound;
 }
 
 ContactSystem::Counts ContactSystem::candidate_counts() const {

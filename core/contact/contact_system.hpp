@@ -43,6 +43,11 @@ class ContactSystem {
   /// d_hat and offset. [3 x n] m. Both find_rows and step_bound use them until the next call.
   void update_candidates(const Positions& x0, const Positions& x1);
 
+  /// The same for states up to the step bound of the motion alone, which step_bound and find_rows need no more
+  /// than: pairs of the last rows are asked first, and boxes end where the earliest of them stops the motion.
+  /// Which candidates there are depends on those rows; alpha and rows do not. Motions finite.
+  void update_candidates_to_bound(const Positions& x0, const Positions& x1);
+
   /// Rows with d < d_hat_row at x, merged with multiplicity, sorted; kappa, b, db, d2b are left at 0.
   /// Requires x to be such a state of the last update_candidates. Returns the smallest gap over all
   /// rows (infinity without rows); a value <= 0 means that x is not feasible. x that is not finite: no

@@ -6,6 +6,7 @@
 #include <algorithm>
 
 #include "core/contact/chunks.hpp"
+#include "core/contact/pair_lanes.hpp"
 #include "core/geometry/edge_edge_mollifier.hpp"
 
 namespace bb {
@@ -18,6 +19,13 @@ PairId pair_id(int kind, IndexPair pair) {
 }
 constexpr int obstacle_kind = 4;  // after the four kinds of PairKind
 
+/// Two numbers of a key in one that compares as they do.
+std::uint64_t packed(int first, int second) {
+  constexpr std::uint32_t sign = 0x80000000u;
+  return static_cast<std::uint64_t>(static_cast<std::uint32_t>(first) ^ sign) << 32 |
+         (static_cast<std::uint32_t>(second) ^ sign);
+}
+
 }  // namespace
 
 bool RowBuilder::moves(const ContactRow& row) const {
@@ -28,10 +36,30 @@ bool RowBuilder::moves(const ContactRow& row) const {
 }
 
 template <PairKind K>
-void RowBuilder::add_pair(const Positions& x, IndexPair index, Part& part) const {
-  ContactPair<K> pair = contact_pair<K>(surface_, index);
+void RowBuilder::add_pairs(const Positions& x, const std::vector<IndexPair>& pairs, std::size_t begin,
+                           std::size_t end, Part& part) const {
+  for (; begin < end; begin += n_lanes) {
+    const std::size_t n = std::min(n_lanes, end - begin);
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+      const std::size_t soon = begin + lane + 2 * n_lanes, later = soon + 3 * n_lanes;
+      if (later < end) fetch_primitive<K>(surface_, pairs[later]);
+      if (soon < end) fetch_points<K>(surface_, pairs[soon], x);
+    }
+    const auto pair = four_pairs<K>(surface_, pairs, n, [&](std::size_t lane) { return begin + lane; });
+    Lanes4 reach;
+    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
+      reach.v[lane] = pair[lane].law.d_hat + pair[lane].law.offset;
+    }
+    const auto far = farther_than<K>(gather_lanes<K>(pair, x), reach);
+    for (std::size_t lane = 0; lane < n; ++lane) {
+      if (far.bits[lane] == 0) add_pair<K>(x, pairs[begin + lane], pair[lane], part);
+    }
+  }
+}
+
+template <PairKind K>
+void RowBuilder::add_pair(const Positions& x, IndexPair index, ContactPair<K> pair, Part& part) const {
   const auto points = gather(x, pair.vertex);
-  if (farther_than<K>(points, pair.law.d_hat + pair.law.offset)) return;
   const auto closest = closest_points<K, double>(points);
   if (closest.d - pair.law.offset >= pair.law.d_hat) return;
   pair.law.d_hat = row_d_hat<K>(scene_, pair);
@@ -88,10 +116,11 @@ double RowBuilder::build(const Positions& x, const Candidates& candidates, Conta
   if (!x.allFinite()) {  // boxes and comparisons mean nothing then
     rows.resize(0);
     mollified.resize(0);
+    n_parts_ = 0;
     return -std::numeric_limits<double>::infinity();
   }
   std::size_t n_parts = 0;
-  const auto in_parts = [&](const std::vector<IndexPair>& pairs, const auto& add) {
+  const auto in_parts = [&](const std::vector<IndexPair>& pairs, const auto& add_range) {
     const std::size_t n = n_chunks(pairs.size());
     if (parts_.size() < n_parts + n) parts_.resize(n_parts + n);
     for_each_chunk(pairs.size(), [&, base = n_parts](std::size_t k, std::size_t begin, std::size_t end) {
@@ -99,20 +128,42 @@ double RowBuilder::build(const Positions& x, const Candidates& candidates, Conta
       part.rows.clear();
       part.mollified.clear();
       part.min_gap = std::numeric_limits<double>::infinity();
-      for (std::size_t i = begin; i < end; ++i) add(pairs[i], part);
+      add_range(begin, end, part);
     });
     n_parts += n;
   };
   for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
-    in_parts(pairs, [&](IndexPair pair, Part& part) { add_pair<K>(x, pair, part); });
+    in_parts(pairs, [&](std::size_t begin, std::size_t end, Part& part) {
+      add_pairs<K>(x, pairs, begin, end, part);
+    });
   });
-  in_parts(candidates.obstacle, [&](IndexPair pair, Part& part) { add_obstacle(x, pair, part); });
+  in_parts(candidates.obstacle, [&](std::size_t begin, std::size_t end, Part& part) {
+    for (std::size_t i = begin; i < end; ++i) add_obstacle(x, candidates.obstacle[i], part);
+  });
 
+  n_parts_ = n_parts;
   merge(n_parts, rows);
   fill_mollified(n_parts, mollified);
   double min_gap = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < n_parts; ++k) min_gap = std::min(min_gap, parts_[k].min_gap);
   return min_gap;
+}
+
+void RowBuilder::near_pairs(Candidates& out) const {
+  std::vector<IndexPair>* const lists[] = {&out.point_point, &out.point_edge, &out.point_triangle,
+                                           &out.edge_edge};
+  for (auto* list : lists) list->clear();
+  out.obstacle.clear();
+  const auto add = [&](PairId id) {
+    const std::size_t kind = static_cast<std::size_t>(id >> 60);
+    constexpr PairId index = (PairId{1} << 30) - 1;
+    if (kind == obstacle_kind) return;
+    lists[kind]->push_back({static_cast<int>(id >> 30 & index), static_cast<int>(id & index)});
+  };
+  for (std::size_t k = 0; k < n_parts_; ++k) {
+    for (const ContactRow& row : parts_[k].rows) add(row.pair);
+    for (const MollifiedRow& row : parts_[k].mollified) add(row.row.pair);
+  }
 }
 
 int RowBuilder::compact_free(const ContactRow& row, int* vertex, double* weight) const {
@@ -127,26 +178,42 @@ int RowBuilder::compact_free(const ContactRow& row, int* vertex, double* weight)
   return n;
 }
 
-void RowBuilder::merge(std::size_t n_parts, ContactTable& rows) {
-  sorted_.clear();
+void RowBuilder::sort_rows(std::size_t n_parts) {
+  std::size_t n = 0;
+  for (std::size_t k = 0; k < n_parts; ++k) n += parts_[k].rows.size();
+  sorted_.resize(n);
+  n = 0;
   for (std::size_t k = 0; k < n_parts; ++k) {
-    for (const ContactRow& row : parts_[k].rows) sorted_.push_back(&row);
+    for (const ContactRow& row : parts_[k].rows) {
+      sorted_[n] = {packed(row.key[0], row.key[1]), packed(row.key[2], row.key[3]), n, &row};
+      ++n;
+    }
   }
-  // Stable, so that a merged row takes its numbers from its first pair, whatever the threads do.
-  std::stable_sort(sorted_.begin(), sorted_.end(),
-                   [](const ContactRow* a, const ContactRow* b) { return row_less(*a, *b); });
+  // By place at last, so that a merged row takes its numbers from its first pair, whatever the threads do.
+  tbb::parallel_sort(sorted_.begin(), sorted_.end(), [](const SortedRow& a, const SortedRow& b) {
+    if (a.high != b.high) return a.high < b.high;
+    if (a.low != b.low) return a.low < b.low;
+    if (row_less(*a.row, *b.row)) return true;
+    return a.place < b.place && !row_less(*b.row, *a.row);
+  });
+}
+
+void RowBuilder::merge(std::size_t n_parts, ContactTable& rows) {
+  sort_rows(n_parts);
   first_.clear();
   for (std::size_t i = 0; i < sorted_.size(); ++i) {
-    if (i == 0 || row_less(*sorted_[i - 1], *sorted_[i])) first_.push_back(i);
+    if (i == 0 || row_less(*sorted_[i - 1].row, *sorted_[i].row)) first_.push_back(i);
   }
   rows.resize(first_.size());
   rows.pair.resize(sorted_.size());
-  for (std::size_t i = 0; i < sorted_.size(); ++i) rows.pair[i] = sorted_[i]->pair;
   std::copy(first_.begin(), first_.end(), rows.pair_begin.begin());
   rows.pair_begin.back() = sorted_.size();
-  tbb::parallel_for(std::size_t{0}, first_.size(), [&](std::size_t r) {
-    const std::size_t end = r + 1 < first_.size() ? first_[r + 1] : sorted_.size();
-    fill(*sorted_[first_[r]], static_cast<double>(end - first_[r]), r, rows);
+  for_each_chunk(first_.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t r = begin; r < end; ++r) {
+      const std::size_t next = r + 1 < first_.size() ? first_[r + 1] : sorted_.size();
+      for (std::size_t i = first_[r]; i < next; ++i) rows.pair[i] = sorted_[i].row->pair;
+      fill(*sorted_[first_[r]].row, static_cast<double>(next - first_[r]), r, rows);
+    }
   });
 }
 

@@ -1,6 +1,7 @@
 // Narrow phase: all candidate pairs to the two tables, merged, sorted, independent of the number of threads.
 #pragma once
 
+#include <cstdint>
 #include <limits>
 #include <vector>
 
@@ -21,6 +22,9 @@ class RowBuilder {
   double build(const Positions& x, const Candidates& candidates, ContactTable& rows,
                MollifiedTable& mollified);
 
+  /// The candidates that had a row in the last build, sorted; no obstacles.
+  void near_pairs(Candidates& out) const;
+
  private:
   struct MollifiedRow {
     ContactRow row;  // all four vertices, weights of the clamped closest points
@@ -31,11 +35,22 @@ class RowBuilder {
     std::vector<MollifiedRow> mollified;
     double min_gap = std::numeric_limits<double>::infinity();
   };
+  /// A row in the order of the table: its key in two numbers, then row_less, then the place it was found in.
+  struct SortedRow {
+    std::uint64_t high, low;
+    std::size_t place;
+    const ContactRow* row;
+  };
+  /// The pairs [begin, end), four at a time: what a plane proves to be far is done with.
   template <PairKind K>
-  void add_pair(const Positions& x, IndexPair pair, Part& part) const;
+  void add_pairs(const Positions& x, const std::vector<IndexPair>& pairs, std::size_t begin, std::size_t end,
+                 Part& part) const;
+  template <PairKind K>
+  void add_pair(const Positions& x, IndexPair index, ContactPair<K> pair, Part& part) const;
   void add_obstacle(const Positions& x, IndexPair pair, Part& part) const;
   bool moves(const ContactRow& row) const;
   int compact_free(const ContactRow& row, int* vertex, double* weight) const;
+  void sort_rows(std::size_t n_parts);
   void merge(std::size_t n_parts, ContactTable& rows);
   void fill(const ContactRow& row, double multiplicity, std::size_t at, ContactTable& rows) const;
   void fill_mollified(std::size_t n_parts, MollifiedTable& out);
@@ -45,9 +60,10 @@ class RowBuilder {
   const std::vector<AnalyticSurface<double>>& obstacles_;
   const bool mollified_;
   std::vector<Part> parts_;
-  std::vector<const ContactRow*> sorted_;
+  std::vector<SortedRow> sorted_;
   std::vector<std::size_t> first_;  // start of each group of equal rows in sorted_
   std::vector<MollifiedRow> sorted_mollified_;
+  std::size_t n_parts_ = 0;  // used by the last build
 };
 
 }  // namespace bb

@@ -70,10 +70,9 @@ void StepBoundFinder::screen(const std::vector<IndexPair>& pairs) {
 template <PairKind K>
 void StepBoundFinder::ask_lanes(const std::vector<IndexPair>& pairs, const Motion& motion,
                                 const std::array<std::uint32_t, 4>& index, std::size_t n, Part& part) const {
-  std::array<ContactPair<K>, n_lanes> pair;
+  const auto pair = four_pairs<K>(surface_, pairs, n, [&](std::size_t lane) { return index[lane]; });
   Lanes4 reach;
   for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-    pair[lane] = contact_pair<K>(surface_, pairs[index[lane]]);
     reach.v[lane] = pair[lane].law.offset + 2 * std::max(level_.park * pair[lane].law.d_hat, motion.floor);
   }
   const PairLanes<K> points = gather_lanes<K>(pair, motion.x0);
@@ -108,9 +107,7 @@ void StepBoundFinder::ask_chunk(const std::vector<IndexPair>& pairs, const Motio
     ask_lanes<K>(pairs, motion, index, n, part);
     n = 0;
   }
-  if (n == 0) return;
-  for (std::size_t lane = n; lane < n_lanes; ++lane) index[lane] = index[0];
-  ask_lanes<K>(pairs, motion, index, n, part);
+  if (n > 0) ask_lanes<K>(pairs, motion, index, n, part);
 }
 
 template <PairKind K>

@@ -75,7 +75,7 @@ class AccumulatedToi final : public StepSolver {
     x_before_ = system.x();
     dx_ *= extension;
     x_trial_.noalias() = x_before_ + dx_;
-    system.prepare(x_trial_, dx_);
+    system.prepare(x_trial_, dx_, true);
     double alpha = system.bound(x_trial_, dx_, report);
     for (; alpha > 0; alpha = alpha < 1e-14 ? 0 : alpha / 2) {
       x_trial_.noalias() = x_before_ + (alpha / extension) * dx_;

@@ -92,7 +92,7 @@ class LineSearch final : public StepSolver {
   bool search(NewtonSystem& system, IterationReport& report, bool energy_test) {
     x_before_ = system.x();
     move(system, 1.0);
-    system.prepare(x_trial_, dx_);
+    system.prepare(x_trial_, dx_, true);
     bound_ = system.bound(x_trial_, dx_, report);
     // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
     double alpha = bound_;

@@ -95,8 +95,8 @@ void NewtonSystem::end_step() {
   for (const auto& term : terms_) term->end_step(clock_);
 }
 
-void NewtonSystem::prepare(const Positions& x1, const Positions& dx) {
-  for (const auto& term : terms_) term->prepare({x_, x1, dx}, clock_);
+void NewtonSystem::prepare(const Positions& x1, const Positions& dx, bool to_bound) {
+  for (const auto& term : terms_) term->prepare({x_, x1, dx, to_bound}, clock_);
 }
 
 double NewtonSystem::bound(const Positions& x1, const Positions& dx, IterationReport& report) {

@@ -53,8 +53,9 @@ class NewtonSystem {
   double exact_curvature(const Positions& dx);
 
   // --- the step along dx
-  /// Prepares bound() and trials on the way to x1 = x() + dx.
-  void prepare(const Positions& x1, const Positions& dx);
+  /// Prepares bound() and trials on the way to x1 = x() + dx; to_bound: bound() will be asked, and no trial
+  /// goes beyond it.
+  void prepare(const Positions& x1, const Positions& dx, bool to_bound = false);
   /// Largest feasible fraction of that way, the smallest that any term allows; each says its own
   /// in the report.
   double bound(const Positions& x1, const Positions& dx, IterationReport& report);

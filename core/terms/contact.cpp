@@ -103,7 +103,11 @@ void ContactTerm::add_given_motion(const Positions& x, const Positions& motion, 
 
 void ContactTerm::prepare(const Motion& motion, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::broad_phase);
-  contacts_.update_candidates(motion.x0, motion.x1);
+  if (motion.to_bound) {
+    contacts_.update_candidates_to_bound(motion.x0, motion.x1);
+  } else {
+    contacts_.update_candidates(motion.x0, motion.x1);
+  }
 }
 
 double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) {

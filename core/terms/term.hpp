@@ -39,6 +39,7 @@ struct TermContext {
 /// at prescribed vertices.
 struct Motion {
   const Positions &x0, &x1, &dx;
+  bool to_bound = false;  // no state beyond what bound() allows will be tried
 };
 
 /// Elements of one shape: who they touch, and what they are at the iterate.

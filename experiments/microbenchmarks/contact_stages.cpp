@@ -55,6 +55,12 @@ class Pipeline {
     const StepBound bound = contacts_.step_bound(x0_, x1_);
     return {static_cast<std::size_t>(bound.queries), bound.alpha};
   }
+  /// Both of the last two for a motion of which no more is needed than what its bound leaves; after rows().
+  Answer motion_to_bound() {
+    contacts_.update_candidates_to_bound(x0_, x1_);
+    const StepBound bound = contacts_.step_bound(x0_, x1_);
+    return {n_candidates(), bound.alpha};
+  }
   /// The value is the Euclidean norm of the gradient.
   Answer gradient_and_hessian() {
     evaluate();
@@ -109,6 +115,7 @@ const std::map<std::string, Stage> stages = {
     {"candidates_motion", &Pipeline::candidates_motion},
     {"rows", &Pipeline::rows},
     {"step_bound", &Pipeline::step_bound},
+    {"motion_to_bound", &Pipeline::motion_to_bound},
     {"gradient_and_hessian", &Pipeline::gradient_and_hessian},
     {"energies", &Pipeline::energies},
 };

@@ -2,6 +2,8 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include "core/contact/candidates.hpp"
+#include "core/contact/pair_geometry.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
 namespace bb::test {
@@ -262,6 +264,36 @@ TEST(Rows, DifferentActivationDistancesAreNotMerged) {
   }
   EXPECT_EQ(total, 6);
   EXPECT_GE(n, 2);
+}
+
+/// Every candidate pair whose closest points are nearer than d_hat is in one row, and no other.
+TEST(Rows, HoldEveryPairThatItsClosestPointsBringNear) {
+  Scene scene;
+  const auto [v1, t1] = soup(150, 0.2, 1);
+  const auto [v2, t2] = soup(150, 0.2, 2);
+  add_body(scene, "a", v1, t1, 0.05);
+  add_body(scene, "b", v2, t2, 0.03, false, 0.01);
+  for (int v = 0; v < scene.n_vertices(); ++v) scene.body[at(v)] = v;  // no rest rule
+  const Surface surface(scene);
+  BroadPhase broad_phase(surface, {}, plan_contact(scene));
+  Candidates candidates;
+  broad_phase.update(scene.x0, scene.x0, candidates);
+  std::size_t n_near = 0, n_far = 0;
+  double least = std::numeric_limits<double>::infinity();
+  for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
+    for (const IndexPair index : pairs) {
+      const ContactPair<K> pair = contact_pair<K>(surface, index);
+      const double gap = closest_points<K, double>(gather(scene.x0, pair.vertex)).d - pair.law.offset;
+      ++(gap < pair.law.d_hat ? n_near : n_far);
+      least = std::min(least, gap);
+    }
+  });
+  ContactSystem contacts(scene, {});
+  const Rows rows = rows_at(contacts, scene.x0);
+  EXPECT_EQ(rows.table.pair.size() + rows.mollified.size(), n_near);
+  EXPECT_EQ(rows.min_gap, least);
+  EXPECT_GT(n_near, 300U);
+  EXPECT_GT(n_far, 300U);
 }
 
 TEST(Rows, SortedAndTheSameForAnyNumberOfThreads) {

@@ -27,7 +27,7 @@ def run(stages, tmp_path, *more):
 def test_table_and_record_hold_every_stage(stages, tmp_path, capsys):
     assert run(stages, tmp_path, "--mesh", "sheets") == 0
     text = capsys.readouterr().out
-    assert len(re.findall(r"\| [0-9.]+x \|", text)) == len(compare_toolkit.STAGES) == 6
+    assert len(re.findall(r"\| [0-9.]+x \|", text)) == len(compare_toolkit.STAGES) == 7
     (path,) = tmp_path.glob("*.json")
     record = json.loads(path.read_text())
     table = {row["stage"]: row for row in record["table"]}
@@ -39,7 +39,7 @@ def test_table_and_record_hold_every_stage(stages, tmp_path, capsys):
             assert len(record["answers"][stage][side]) == record["rounds"] == 2
     assert table["rows"]["ours_items"] == table["rows"]["toolkit_items"] > 500
     assert table["energies"]["ours_value"] == pytest.approx(table["energies"]["toolkit_value"], rel=1e-12)
-    assert 0 < table["step_bound"]["ours_value"] < 1
+    assert 0 < table["step_bound"]["ours_value"] == table["motion_to_bound"]["ours_value"] < 1
 
 
 def test_without_the_data_folder_it_says_so_and_takes_sheets(stages, tmp_path, capsys, monkeypatch):
