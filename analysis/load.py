@@ -129,3 +129,9 @@ def condition_of(records: Records, run: str, scaling: str, stage: str = "full", 
     c = records.cond
     form = c["matrix"].fillna("clamped") if "matrix" in c else "clamped"
     return c[(c["run"] == run) & (c["scaling"] == scaling) & (c["stage"] == stage) & (form == matrix)].sort_values("n")
+
+
+def places_in_time(records: Records, run: str, estimates: pd.DataFrame) -> pd.Series:
+    """Step + iteration / (iterations of that step): nothing is cut off, and a stalled step squeezes no other one."""
+    length = records.trace[records.trace["run"] == run].groupby("step")["iteration"].max() + 1
+    return estimates["step"] + estimates["iteration"] / estimates["step"].map(length)

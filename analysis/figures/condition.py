@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from .. import style
-from ..load import LARGEST_COND, Records, condition_of
+from ..load import LARGEST_COND, Records, condition_of, places_in_time
 
 PANELS = (("cond", "condition number"), ("lambda_max", r"$\lambda_{\max}$"), ("lambda_min", r"$\lambda_{\min}$"))
 SCALINGS = (("none", "raw"), ("block_jacobi", "block-Jacobi-scaled"))
@@ -26,12 +26,6 @@ def _draw_bounds(axis, bounds: pd.DataFrame, row: pd.Series, field: str) -> None
     axis.plot(bounds["at"], bounds[field], linestyle="none", marker="2", markersize=4, color=color)
 
 
-def _places(records: Records, run: str, estimates: pd.DataFrame) -> pd.Series:
-    """Step + iteration / (iterations of that step): nothing is cut off, and a stalled step squeezes no other one."""
-    length = records.trace[records.trace["run"] == run].groupby("step")["iteration"].max() + 1
-    return estimates["step"] + estimates["iteration"] / estimates["step"].map(length)
-
-
 def figure(records: Records, group: str, out: Path) -> list[Path]:
     """One figure a group: columns raw and scaled, rows cond, lambda_max, lambda_min; x is the time step."""
     runs = style.runs_of(records.runs, group)
@@ -42,7 +36,7 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
             estimates = condition_of(records, row["run"], scaling).copy()
             if estimates.empty:
                 continue
-            estimates["at"] = _places(records, row["run"], estimates)
+            estimates["at"] = places_in_time(records, row["run"], estimates)
             numbers.append(estimates.assign(group=group, series=row["series"], outcome=row["outcome"]))
             estimates.loc[estimates["status"] == "singular", "cond"] = LARGEST_COND
             sure = estimates[estimates["status"] == "ok"]

@@ -5,11 +5,11 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from . import barrier_shapes, condition, gaps, iterations, kappa_cycle
+from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
 from ..load import RecordError, Records, load
 from ..table import as_text, summary_table
 
-MUST_END_OK = ("log", "cubic_dynamic_lagged")
+MUST_END_OK = ("log", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
 
 
 def broken_promises(records: Records) -> list[str]:
@@ -37,7 +37,7 @@ def make_all(runs: Path, out: Path) -> str:
 def make_all_of(records: Records, out: Path) -> str:
     """The same of records that are loaded."""
     paths = [path for group in sorted(records.runs["group"].unique())
-             for module in (condition, iterations, gaps, kappa_cycle) for path in module.figure(records, group, out)]
+             for module in (condition, matrix_forms, iterations, gaps, kappa_cycle) for path in module.figure(records, group, out)]
     paths += barrier_shapes.figure(out)
     table = summary_table(records)
     table.to_csv(out / "table.csv", index=False)

@@ -9,7 +9,7 @@ import pandas as pd
 import pytest
 
 from analysis import style
-from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle
+from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle, matrix_forms
 from analysis.load import load
 from analysis.table import as_text, summary_table
 from synthetic import write_cycle, write_run, write_set
@@ -281,3 +281,25 @@ def test_the_plain_run_of_a_formulation_keeps_its_look(tmp_path):
     runs = style.runs_of(load(tmp_path / "runs").runs, "strip").set_index("series")
     assert dict(runs["variant"]) == {"cubic": 0, "cubic slow": 1}
     assert style.look("cubic", 0) == style.LOOKS["cubic"] != style.look("cubic", 1)
+
+
+def test_clamped_and_solved_matrices_are_drawn_apart_and_never_mixed(tmp_path):
+    write_set(tmp_path / "runs")
+    trace = tmp_path / "runs" / "log" / "trace.jsonl"
+    lines = [json.loads(line) for line in trace.read_text().splitlines()]
+    for line in lines:
+        line["cond"] = [{**sample, "matrix": "clamped"} for sample in line["cond"]]
+        line["cond"] += [{**sample, "matrix": "solved", "cond": 7.0 * sample["cond"]} for sample in line["cond"]]
+    trace.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    records = load(tmp_path / "runs")
+
+    table = pd.read_csv(matrix_forms.figure(records, "strip", tmp_path)[2])
+    assert set(table["run"]) == {"log"} and len(table) == 2 * 11  # 6 iterations, 2 scalings; a bound is not drawn
+    clamped, solved = (table[table["matrix"] == form]["cond"].to_numpy() for form in ("clamped", "solved"))
+    np.testing.assert_allclose(solved, 7 * clamped)
+    plain = pd.read_csv(condition.figure(records, "strip", tmp_path)[2])
+    assert len(plain) == 4 * 6 * 2  # the other figures keep to the clamped ones
+
+
+def test_records_without_solved_matrices_have_no_such_figure(records, tmp_path):
+    assert matrix_forms.figure(records, "strip", tmp_path) == []
