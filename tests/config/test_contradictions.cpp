@@ -108,6 +108,8 @@ TEST(Contradictions, DiagnosesWithoutTheirSource) {
   config["diagnose"] = {{"tier", 0}};
   expect_violation(config, "/diagnose/tier", "0", "pcg");
   config["linear_solver"] = {{"name", "pcg"}};
+  expect_violation(config, "/diagnose/tier", "0", "linear_solver.forcing fixed");
+  config["linear_solver"]["forcing"] = "fixed";
   EXPECT_EQ(parsed(config).diagnose.tier, 0);
   config["diagnose"]["scalings"] = {"none"};
   expect_violation(config, "/diagnose/tier", "0", "a preconditioner among diagnose.scalings");

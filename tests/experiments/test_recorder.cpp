@@ -260,7 +260,7 @@ TEST(Recorder, an_estimate_without_a_value_is_counted_and_is_no_condition_number
   Method method = test::fixed_method("cubic", kappa);
   const RunConfig config =
       observed({"/passes/audit=false", "/passes/diagnose=true", "/diagnose/pcg=false", "/diagnose/tier=0",
-                R"(/linear_solver={"name": "pcg", "preconditioner": "block_jacobi"})"});
+                R"(/linear_solver={"name": "pcg", "preconditioner": "block_jacobi", "forcing": "fixed"})"});
   RunRecord record;
   Recorder recorder(config, scene, record, nullptr);
   Simulation simulation(scene, method, dt, 1);
