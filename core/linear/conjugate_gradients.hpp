@@ -2,6 +2,7 @@
 // own status; the true residual decides.
 #pragma once
 
+#include <cmath>
 #include <vector>
 
 #include "core/linear/linear_solver.hpp"

@@ -5,22 +5,17 @@
 //   - the earlier factor does not bring the residual down to the tolerance within max_pcg_iterations.
 // Negative curvature beyond rounding proves that the matrix is indefinite, and is reported as such at once; the
 // factor stays. A factorisation that fails is matrix_indefinite, as with cholmod.
-#include <chrono>
 #include <cmath>
 #include <string>
 
 #include "core/linear/cholmod_factor.hpp"
 #include "core/linear/conjugate_gradients.hpp"
 #include "core/linear/forcing.hpp"
+#include "core/linear/stopwatch.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 /// M = L L^T of the matrix that setup() saw last.
 class Factor final : public Preconditioner {
@@ -49,7 +44,7 @@ class LaggedCholesky final : public LinearSolver {
     LinearReport report;
     report.iterative = true;
     x = VecXd::Zero(b.size());
-    const Clock::time_point start = Clock::now();
+    const Stopwatch stopwatch;
     product_.update(system);
     const double b_norm = cg_.norm(b);
     if (!std::isfinite(b_norm) || !product_.all_finite()) {
@@ -61,7 +56,7 @@ class LaggedCholesky final : public LinearSolver {
       if (!settled && factorize(system, report)) iterate(b, fresh_iterations, x, report);
       if (report.status != LinearStatus::ok) fail(x, report);
     }
-    report.solve_s = seconds_since(start) - report.analyze_s - report.factor_s;
+    report.solve_s = stopwatch.seconds() - report.analyze_s - report.factor_s;
     return report;
   }
 

@@ -1,19 +1,14 @@
 // The iterative solver of the registry: conjugate gradients with a preconditioner by name.
-#include <chrono>
 #include <cmath>
 #include <string>
 
 #include "core/linear/conjugate_gradients.hpp"
 #include "core/linear/forcing.hpp"
+#include "core/linear/stopwatch.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {
 namespace {
-
-using Clock = std::chrono::steady_clock;
-double seconds_since(Clock::time_point start) {
-  return std::chrono::duration<double>(Clock::now() - start).count();
-}
 
 class Pcg final : public LinearSolver {
  public:
@@ -40,7 +35,7 @@ LinearReport Pcg::solve(const ReducedSystem& system, const VecXd& b, VecXd& x) {
   LinearReport report;
   report.iterative = true;
   x = VecXd::Zero(b.size());
-  const Clock::time_point start = Clock::now();
+  const Stopwatch stopwatch;
   product_.update(system);
   const double b_norm = cg_.norm(b);
   if (!std::isfinite(b_norm) || !product_.all_finite()) {
@@ -51,14 +46,14 @@ LinearReport Pcg::solve(const ReducedSystem& system, const VecXd& b, VecXd& x) {
     report.preconditioner_shifts = preconditioner_->shifts();
     report.preconditioner_shift = preconditioner_->shift();
   }
-  report.factor_s = seconds_since(start);
+  report.factor_s = stopwatch.seconds();
   if (b_norm == 0) return report;
   report.residual_true = report.residual_recurrence = 1;
   if (report.status != LinearStatus::ok) return report;
 
   report.tolerance = forcing_.tolerance(b_norm);
   report.status = cg_.solve(product_, *preconditioner_, b, report.tolerance, max_iterations_, x, report);
-  report.solve_s = seconds_since(start) - report.factor_s;
+  report.solve_s = stopwatch.seconds() - report.factor_s;
   return report;
 }
 

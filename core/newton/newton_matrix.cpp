@@ -104,11 +104,10 @@ void NewtonSystem::lift(const Positions& dx, Positions& rhs) {
 }
 
 SolveReport NewtonSystem::solve(const Positions& target, Positions& dx) {
-  const double residual = largest_force();
   SolveReport report;
   while (!direction(target, dx, report)) {
     if (level_.last() || report.linear.status == LinearStatus::non_finite) break;
-    level_.raise(residual);
+    level_.raise(largest_force());
     fill_matrix();
   }
   served_at_once_ = report.attempts == 1;

@@ -11,7 +11,7 @@ namespace bb {
 /// The attempts at one Newton system: the matrix is changed until it is positive definite and the direction
 /// descends.
 struct SolveReport {
-  LinearReport linear;  // of the last attempt; its counts and seconds are sums over all
+  LinearReport linear;  // of the last attempt; its iterations are sums over all
   int attempts = 0, factorizations = 0, analyses = 0;
   double t = 0;  // of the matrix that was solved, 0 exact to 1 clamped
   int fallbacks() const { return attempts - 1; }
