@@ -93,7 +93,17 @@ bool BlockSystem::set_contacts(std::vector<Stencils> families) {
   return true;
 }
 
-void BlockSystem::clear() { std::fill(data_->values.begin(), data_->values.end(), 0.0); }
+void BlockSystem::clear() {
+  Values& values = data_->values;
+  parallel_blocks(values.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    std::fill(values.data() + begin, values.data() + end, 0.0);
+  });
+}
+
+void BlockSystem::take_values(Values& out) {
+  out.resize(data_->values.size());
+  out.swap(data_->values);
+}
 
 void BlockSystem::add_diagonal(std::span<const double> per_vertex) {
   Data& d = *data_;

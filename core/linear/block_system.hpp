@@ -53,6 +53,9 @@ class BlockSystem {
                     std::span<const double> hess);  // [size * 9w(w + 1)/2] lower blocks
   void add_contacts(std::size_t family, std::span<const double> hess);
   const Values& values() const;
+  /// Hands the sum over without a copy: `out` gets the values, whose place takes the old content of `out` until
+  /// the next clear().
+  void take_values(Values& out);
 
   /// Gradient gathers: g [3 x n] += local gradients [size * 3w].
   void gather_elements(std::size_t family, std::span<const double> grad, Positions& g) const;

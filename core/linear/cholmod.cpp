@@ -22,6 +22,10 @@ class Cholmod final : public LinearSolver {
     report.status = factor_.factorize(system);
     report.analyzed = factor_.analyzed_last();
     report.factorized = report.status == LinearStatus::ok;
+    if (report.factorized) {
+      report.factor_nnz = factor_.factor_nonzeros();
+      report.factor_flop = factor_.factor_flops();
+    }
     report.analyze_s = factor_.analyze_s();
     report.factor_s = factor_.factor_s();
     report.residual_true = 1;  // of x = 0

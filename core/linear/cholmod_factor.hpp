@@ -19,14 +19,16 @@ class CholmodFactor {
   /// @return ok | matrix_indefinite (a pivot is not positive) | non_finite (an entry of A)
   /// Errors: std::bad_alloc, std::length_error when the factor exceeds CHOLMOD's 32-bit indices.
   LinearStatus factorize(const ReducedSystem& system);
+  /// Ordering and symbolic analysis alone, of the pattern of A. Errors: as factorize.
+  void analyze(const ReducedSystem& system);
   /// x = A^-1 b with the last factor, which must be ok. Allocates nothing after the first solve of a size.
   void solve(const VecXd& b, VecXd& x);
 
   bool analyzed_last() const { return analyzed_last_; }  // the last factorize had to analyse
   double analyze_s() const { return analyze_s_; }        // of the last factorize
   double factor_s() const { return factor_s_; }
-  double factor_nonzeros() const;  // nonzeros of L
-  double factor_flops() const;
+  double factor_nonzeros() const;  // of L, without the zeros of relaxed supernodes
+  double factor_flops() const;     // of a factorisation, the same way
 
  private:
   struct Cholmod;

@@ -73,6 +73,10 @@ class LaggedCholesky final : public LinearSolver {
   bool factorize(const ReducedSystem& system, LinearReport& report) {
     report.status = factor_.setup(system, product_);
     report.factorized = report.status == LinearStatus::ok;
+    if (report.factorized) {
+      report.factor_nnz = factor_.cholmod().factor_nonzeros();
+      report.factor_flop = factor_.cholmod().factor_flops();
+    }
     report.analyzed = factor_.cholmod().analyzed_last();
     report.analyze_s = factor_.cholmod().analyze_s();
     report.factor_s = factor_.cholmod().factor_s();

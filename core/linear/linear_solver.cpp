@@ -42,6 +42,12 @@ std::unique_ptr<LinearSolver> make_linear_solver(const LinearOptions& options) {
   return entry.make(complete);
 }
 
+std::vector<std::string> linear_solver_choices() {
+  std::vector<std::string> names = linear_solvers().names();
+  names.emplace_back(linear_solver_auto);
+  return names;
+}
+
 std::string preconditioner_of(const LinearOptions& options) {
   const LinearSolverEntry& entry = linear_solvers().require(options.name, "/linear_solver/name");
   if (!find_named(entry.parameters, "preconditioner")) return "none";

@@ -34,9 +34,10 @@ struct LinearReport {
   double ritz_min = 0,
          ritz_max = 0;  // of the preconditioned matrix, from the CG coefficients; 0 when not available
   bool analyzed = false, factorized = false;
-  int restarts = 0;                 // pcg: times the true residual replaced a drifted recurrence
-  int preconditioner_shifts = 0;    // ic0: factorisations of A + shift diag(A) after a breakdown
-  double preconditioner_shift = 0;  // ic0: the shift in use
+  int restarts = 0;                        // pcg: times the true residual replaced a drifted recurrence
+  int preconditioner_shifts = 0;           // ic0: factorisations of A + shift diag(A) after a breakdown
+  double preconditioner_shift = 0;         // ic0: the shift in use
+  double factor_nnz = 0, factor_flop = 0;  // of a Cholesky factor that was made for this solve, else 0
   double analyze_s = 0, factor_s = 0, solve_s = 0;
 };
 
@@ -68,6 +69,11 @@ struct LinearSolverEntry {
 };
 /// The registry, in its order.
 const Registry<LinearSolverEntry>& linear_solvers();
+
+/// In the place of a solver's name: a cost model chooses it (core/linear/cost_model.hpp).
+inline constexpr std::string_view linear_solver_auto = "auto";
+/// The names of the registry, and linear_solver_auto.
+std::vector<std::string> linear_solver_choices();
 
 /// The preconditioner of a solver that has one, "none" for the others.
 std::string preconditioner_of(const LinearOptions& options);

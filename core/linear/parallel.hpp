@@ -1,25 +1,14 @@
-// Deterministic loops of this room: independent items that write their own slots, and a dot product whose
-// order of additions does not depend on the number of threads.
+// Deterministic loops of this room: parallel_items, and a dot product whose order of additions does not depend
+// on the number of threads.
 #pragma once
-
-#include <tbb/blocked_range.h>
-#include <tbb/parallel_for.h>
 
 #include <algorithm>
 #include <vector>
 
+#include "core/math/parallel.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
-
-/// Calls f(i) for i in [0, n), in any order; grain items or fewer run as one task.
-template <class F>
-void parallel_items(int n, int grain, const F& f) {
-  tbb::parallel_for(tbb::blocked_range<int>(0, n, static_cast<std::size_t>(grain)),
-                    [&f](const tbb::blocked_range<int>& range) {
-                      for (int i = range.begin(); i != range.end(); ++i) f(i);
-                    });
-}
 
 /// Dot products with partial sums over chunks of fixed size, added in the order of the chunks.
 class ChunkedDot {

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/math/parallel.hpp"
+
 namespace bb {
 namespace {
 
@@ -13,28 +15,44 @@ class Sum {
     carry_ += std::abs(sum_) >= std::abs(part) ? (sum_ - next) + part : (part - next) + sum_;
     sum_ = next;
   }
+  void add(const Sum& block) {
+    add(block.sum_);
+    carry_ += block.carry_;
+  }
   double value() const { return sum_ + carry_; }
 
  private:
   double sum_ = 0, carry_ = 0;
 };
 
-/// Calls f(term, its part) for every part of every term in the order of the sums; n(i): how many parts
-/// term i has.
-template <class Count, class F>
-void for_each_part(const TermList& terms, const Count& n, const F& f) {
-  std::vector<std::size_t> on_vertices, others;
-  for (std::size_t i = 0; i < terms.size(); ++i) {
-    (terms[i].on_vertices() ? on_vertices : others).push_back(i);
-  }
-  const std::size_t n_vertices = on_vertices.empty() ? 0 : n(on_vertices[0]);
-  for (std::size_t v = 0; v < n_vertices; ++v) {
-    for (const std::size_t i : on_vertices) f(i, v);
-  }
-  for (const std::size_t i : others) {
-    for (std::size_t e = 0; e < n(i); ++e) f(i, e);
+/// Change and magnitude, or energies, of some parts.
+struct Sums {
+  Sum change;
+  double magnitude = 0;
+};
+
+/// add(k, sums) for k in [0, n): block by block, the blocks in order.
+template <class Add>
+void add_blocks(std::size_t n, const Add& add, Sums& total) {
+  std::vector<Sums> blocks(n_blocks(n));
+  parallel_blocks(n, [&](std::size_t b, std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) add(k, blocks[b]);
+  });
+  for (const Sums& block : blocks) {
+    total.change.add(block.change);
+    total.magnitude += block.magnitude;
   }
 }
+
+/// The terms on vertices, and the others.
+struct Order {
+  std::vector<std::size_t> on_vertices, others;
+  explicit Order(const TermList& terms) {
+    for (std::size_t i = 0; i < terms.size(); ++i) {
+      (terms[i].on_vertices() ? on_vertices : others).push_back(i);
+    }
+  }
+};
 
 }  // namespace
 
@@ -44,32 +62,41 @@ EnergyChange EnergySums::change(const TermList& terms, const Positions& x0, cons
     parts_[i].clear();
     terms[i].change(x0, x1, parts_[i]);
   }
-  Sum sum;
-  double magnitude = 0;
-  for_each_part(
-      terms, [&](std::size_t i) { return parts_[i].size(); },
-      [&](std::size_t i, std::size_t k) {
-        sum.add(parts_[i][k].change);
-        magnitude += parts_[i][k].magnitude;
-      });
-  return {sum.value(), magnitude};
+  const auto add = [this](std::size_t i, std::size_t k, Sums& sums) {
+    sums.change.add(parts_[i][k].change);
+    sums.magnitude += parts_[i][k].magnitude;
+  };
+  const Order order(terms);
+  Sums total;
+  const auto add_vertex = [&](std::size_t v, Sums& sums) {
+    for (const std::size_t i : order.on_vertices) add(i, v, sums);
+  };
+  if (!order.on_vertices.empty()) add_blocks(parts_[order.on_vertices[0]].size(), add_vertex, total);
+  for (const std::size_t i : order.others) {
+    add_blocks(
+        parts_[i].size(), [&](std::size_t k, Sums& sums) { add(i, k, sums); }, total);
+  }
+  return {total.change.value(), total.magnitude};
 }
 
 double total_energy(const TermList& terms) {
-  // of terms on vertices, which have one family, by element; of the others family by family
-  Sum sum;
   const auto energies = [&](std::size_t i) -> const std::vector<double>& {
     return terms[i].families()[0].local.energy;
   };
-  for_each_part(
-      terms, [&](std::size_t i) { return terms[i].on_vertices() ? energies(i).size() : 1; },
-      [&](std::size_t i, std::size_t k) {
-        if (terms[i].on_vertices()) return sum.add(energies(i)[k]);
-        for (const TermFamily& family : terms[i].families()) {
-          for (const double energy : family.local.energy) sum.add(energy);
-        }
-      });
-  return sum.value();
+  const Order order(terms);
+  Sums total;
+  const auto add_vertex = [&](std::size_t v, Sums& sums) {
+    for (const std::size_t i : order.on_vertices) sums.change.add(energies(i)[v]);
+  };
+  if (!order.on_vertices.empty()) add_blocks(energies(order.on_vertices[0]).size(), add_vertex, total);
+  for (const std::size_t i : order.others) {
+    for (const TermFamily& family : terms[i].families()) {
+      const std::vector<double>& energy = family.local.energy;
+      add_blocks(
+          energy.size(), [&](std::size_t k, Sums& sums) { sums.change.add(energy[k]); }, total);
+    }
+  }
+  return total.change.value();
 }
 
 }  // namespace bb

@@ -13,7 +13,8 @@ struct EnergyChange {
 };
 
 /// Parts of terms on vertices are summed vertex by vertex, then those of the others term by term, all in the
-/// order of the list: a sum does not depend on the number of threads. Keeps its buffers. Cost O(parts).
+/// order of the list and in blocks of fixed size, so that a sum does not depend on the number of threads. Keeps
+/// its buffers. Cost O(parts).
 class EnergySums {
  public:
   /// From the iterate x0 to the trial x1.

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/math/lower_blocks.hpp"
+#include "core/math/parallel.hpp"
 
 namespace bb {
 namespace {
@@ -15,7 +16,8 @@ constexpr double smallest_threshold = 1e-3;  // of the largest force; below it e
 void blend(const std::vector<double>& exact, const std::vector<double>& clamped, double t,
            std::vector<double>& out) {
   out.resize(exact.size());
-  for (std::size_t i = 0; i < exact.size(); ++i) out[i] = exact[i] + t * (clamped[i] - exact[i]);
+  parallel_items(exact.size(), 16 * block_items,
+                 [&](std::size_t i) { out[i] = exact[i] + t * (clamped[i] - exact[i]); });
 }
 
 /// Clamped elements where a vertex has a force of at least the threshold, exact ones elsewhere.
@@ -24,14 +26,14 @@ void choose(const TermFamily& family, std::span<const double> force, double thre
   const auto width = static_cast<std::size_t>(family.stencils.width);
   const std::size_t stride = n_lower_numbers(width);
   out.resize(family.local.hess.size());
-  for (std::size_t e = 0; e < family.stencils.size(); ++e) {
+  parallel_items(family.stencils.size(), block_items, [&](std::size_t e) {
     const auto vertices = family.stencils.vertices.subspan(width * e, width);
     const bool clamp = std::any_of(vertices.begin(), vertices.end(), [&](int vertex) {
       return vertex >= 0 && force[static_cast<std::size_t>(vertex)] >= threshold;
     });
     std::copy_n((clamp ? family.clamped.hess : family.local.hess).data() + stride * e, stride,
                 out.data() + stride * e);
-  }
+  });
 }
 
 }  // namespace

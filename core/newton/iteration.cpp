@@ -25,6 +25,8 @@ void fill_work(IterationReport& report) {
   report.linear_solves = report.solve.attempts;
   report.linear_iterations = linear.iterations;
   report.factorizations = report.solve.factorizations;
+  report.factor_flop = std::llround(report.solve.factor_flop);
+  report.factor_nnz = linear.factor_nnz > 0 ? Number(linear.factor_nnz) : Number::missing("no_factor");
   report.analyses = report.solve.analyses;
   report.ccd_queries = report.bound.queries;
   report.ccd_probes = report.bound.probes;

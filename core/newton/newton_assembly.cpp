@@ -15,7 +15,7 @@ void NewtonSystem::assemble() {
   }
   if (plan_.policy_submatrix.needed) {
     sum_clamped(TermGroup::elastic);  // a stiffness policy reads a positive semi-definite H
-    elastic_ = blocks_->values();
+    blocks_->take_values(elastic_);
   }
   for (Slot& slot : slots_) {
     if (slot.term->group() != TermGroup::elastic) linearise(slot);

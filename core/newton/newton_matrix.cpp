@@ -50,7 +50,7 @@ void NewtonSystem::fill_matrix() {
   });
   const ScopedPhase timer(clock_, Phase::assembly);
   if (shift_ > 0) blocks_->add_diagonal(std::vector<double>(scene_.mass.size(), shift_));
-  full_ = blocks_->values();
+  blocks_->take_values(full_);
 }
 
 // Of a vertex, over its free degrees of freedom.
@@ -66,6 +66,12 @@ double NewtonSystem::largest_force() {
     largest = std::max(largest, force_[v]);
   }
   return largest;
+}
+
+const ReducedSystem& NewtonSystem::fixed_pattern() {
+  blocks_->set_contacts({});
+  blocks_->clear();
+  return blocks_->reduce(blocks_->values());
 }
 
 const ReducedSystem& NewtonSystem::solved() { return blocks_->reduce(full_); }
@@ -144,6 +150,7 @@ void NewtonSystem::solve_reduced(SolveReport& report) {
   clock_.move(Phase::linear_solve, Phase::linear_factor, linear.factor_s);
   ++report.attempts;
   report.factorizations += linear.factorized ? 1 : 0;
+  report.factor_flop += linear.factor_flop;
   report.analyses += linear.analyzed ? 1 : 0;
   linear.iterations += report.linear.iterations;
   report.linear = linear;

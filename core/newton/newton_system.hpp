@@ -96,6 +96,8 @@ class NewtonSystem {
   const ReducedSystem& clamped(TermSet set = TermSet::all());
   /// The same with eliminated degrees of freedom.
   const BlockSystem::Values& clamped_values(TermSet set);
+  /// The matrix of the elements that every iterate has, all values 0; valid as the two above.
+  const ReducedSystem& fixed_pattern();
   /// Whether no element of the solved matrix was clamped that its choice begins with exact.
   bool solved_is_exact() const { return level_.exact(); }
   /// Whether the two are one: no term began with another Hessian, or the last attempt clamped all.

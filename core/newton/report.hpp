@@ -13,6 +13,7 @@ namespace bb {
 struct SolveReport {
   LinearReport linear;  // of the last attempt; its iterations are sums over all
   int attempts = 0, factorizations = 0, analyses = 0;
+  double factor_flop = 0;
   double t = 0;  // of the matrix that was solved, 0 exact to 1 clamped
   int fallbacks() const { return attempts - 1; }
 };

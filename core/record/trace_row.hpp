@@ -85,6 +85,8 @@ struct WorkCounts {
       "followed by one nearer to the clamped Hessian") = 0;
   BB_FIELD(long long, linear_iterations, "iterations of the linear solver; a direct one has none") = 0;
   BB_FIELD(long long, factorizations, "numeric factorisations, of a matrix or a preconditioner") = 0;
+  BB_FIELD(long long, factor_flop,
+           "operations of the Cholesky factorisations that succeeded, as CHOLMOD counts them") = 0;
   BB_FIELD(long long, analyses, "symbolic analyses") = 0;
   BB_FIELD(long long, line_search_trials, "states that a line search tried") = 0;
   BB_FIELD(long long, rounding_accepts, "steps taken because the change of E was below rounding") = 0;
@@ -132,6 +134,7 @@ struct TraceRow : WorkCounts {
            "iteration_cap");
   BB_FIELD(std::size_t, n_free, "degrees of freedom of the matrix") = 0;
   BB_FIELD(std::size_t, nnz, "entries of its lower triangle") = 0;
+  BB_FIELD(Number, factor_nnz, "entries of its Cholesky factor", "no_factor");
   BB_FIELD(ContactCounts, contacts, "of this iterate");
   BB_FIELD(Number, gap_min_iterates_m, "smallest gap of this iterate", "no_contacts");
   BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat of this iterate", "no_contacts");

@@ -2,6 +2,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/math/parallel.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
@@ -39,18 +40,20 @@ class ExternalForce final : public Term {
     fill_energies(x, families_[0].trial_energy);
   }
   void change(const Positions& x0, const Positions& x1, EnergyParts& out) const override {
-    for (Eigen::Index i = 0; i < x0.cols(); ++i) {
+    const std::size_t start = out.size();
+    out.resize(start + vertices_.size());
+    parallel_items(x0.cols(), block_items, [&](Eigen::Index i) {
       const Vec3d step = x1.col(i) - x0.col(i);
       const double work = force_.col(i).dot(step);
-      out.push_back({-work, std::abs(work)});
-    }
+      out[start + static_cast<std::size_t>(i)] = {-work, std::abs(work)};
+    });
   }
 
  private:
   void fill_energies(const Positions& x, std::vector<double>& energy) const {
-    for (Eigen::Index i = 0; i < x.cols(); ++i) {
+    parallel_items(x.cols(), block_items, [&](Eigen::Index i) {
       energy[static_cast<std::size_t>(i)] = -force_.col(i).dot(x.col(i) - x_n_.col(i));
-    }
+    });
   }
 
   const Scene& scene_;

@@ -1,6 +1,7 @@
 // Inertia: 1/(2 c h^2) |x - x_tilde|_M^2, one element a vertex.
 #include <numeric>
 
+#include "core/math/parallel.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
@@ -33,9 +34,8 @@ class Inertia final : public Term {
   void linearise(const Positions& x, const TermContext&) override {
     LocalTerms& local = families_[0].local;
     fill_energies(x, local.energy);
-    for (std::size_t i = 0; i < weight_.size(); ++i) {
-      Vec3d::Map(&local.grad[3 * i]) = weight_[i] * off_target(x, i);
-    }
+    parallel_items(weight_.size(), block_items,
+                   [&](std::size_t i) { Vec3d::Map(&local.grad[3 * i]) = weight_[i] * off_target(x, i); });
   }
   void evaluate(const Positions& x, const TermContext&) override {
     fill_energies(x, families_[0].trial_energy);
@@ -43,16 +43,16 @@ class Inertia final : public Term {
 
   // A square of differences, not a difference of squares.
   void change(const Positions& x0, const Positions& x1, EnergyParts& out) const override {
-    for (std::size_t i = 0; i < weight_.size(); ++i) {
-      if (weight_[i] == 0) {
-        out.push_back({0, 0});
-        continue;
-      }
+    const std::size_t start = out.size();
+    out.resize(start + weight_.size());
+    parallel_items(weight_.size(), block_items, [&](std::size_t i) {
+      out[start + i] = {0, 0};
+      if (weight_[i] == 0) return;
       const auto v = static_cast<Eigen::Index>(i);
       const Vec3d from = off_target(x0, i), to = off_target(x1, i), step = x1.col(v) - x0.col(v);
-      out.push_back({0.5 * weight_[i] * step.dot(from + to),
-                     0.5 * weight_[i] * (from.squaredNorm() + to.squaredNorm())});
-    }
+      out[start + i] = {0.5 * weight_[i] * step.dot(from + to),
+                        0.5 * weight_[i] * (from.squaredNorm() + to.squaredNorm())};
+    });
   }
 
  private:
@@ -61,9 +61,9 @@ class Inertia final : public Term {
     return x.col(v) - x_tilde_.col(v);
   }
   void fill_energies(const Positions& x, std::vector<double>& energy) const {
-    for (std::size_t i = 0; i < weight_.size(); ++i) {
+    parallel_items(weight_.size(), block_items, [&](std::size_t i) {
       energy[i] = weight_[i] == 0 ? 0 : 0.5 * weight_[i] * off_target(x, i).squaredNorm();
-    }
+    });
   }
 
   const std::vector<double>& mass_;  // [n] kg, 0 for prescribed vertices

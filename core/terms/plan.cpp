@@ -28,7 +28,7 @@ void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const 
 
 void plan_passes(Plan& plan, const PlanOptions& options) {
   plan.linear = options.linear;
-  plan.linear_solver = {true, plan.linear.name + ", as asked for"};
+  plan.linear_solver = {true, plan.linear.name + ", " + options.linear_reason};
   plan.preconditioner =
       plan_item(preconditioner_of(plan.linear) != "none",
                 preconditioner_of(plan.linear) + ", of the linear solver", "the linear solver has none");

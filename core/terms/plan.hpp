@@ -18,7 +18,8 @@ namespace bb {
 /// What the options outside the terms decide.
 struct PlanOptions {
   bool collision_free_steps = true;  // false for a step solver without a step bound
-  LinearOptions linear;              // the solver asked for; `auto` is decided here
+  LinearOptions linear;              // a registered solver
+  std::string linear_reason = "as asked for";
   bool diagnose = false, audit = false, trace = false, frames = false, matrices = false;
 };
 
@@ -36,7 +37,7 @@ struct Plan {
   PlanItem audit;               // exact penetration checks
   PlanItem trace;               // one line a Newton iteration
   PlanItem frames, matrices;    // files beside the record
-  LinearOptions linear;         // what linear_solver says: never `auto`
+  LinearOptions linear;         // what linear_solver says
 
   /// That of the term of this name. Requires a name of term_entries().
   const PlanItem& term(std::string_view name) const;

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/math/parallel.hpp"
 #include "core/terms/barrier_load.hpp"
 #include "core/terms/registry.hpp"
 #include "core/terms/stiffness_update.hpp"
@@ -66,12 +67,12 @@ void StrainLimitTerm::refresh_stiffness(const Positions& x, const TermContext& c
   }
   kappa_before_ = kappa_;
   hess_.resize(81 * batch_.size());
-  Mat<double, 12, 12> block;
-  for (std::size_t e = 0; rule.elastic_term && e < batch_.size(); ++e) {
+  parallel_items(rule.elastic_term ? batch_.size() : 0, 64, [&](std::size_t e) {
+    Mat<double, 12, 12> block;
     context.blocks.submatrix(context.elastic, &batch_.vertices()[3 * e], 3, block.data());
     Eigen::Map<Mat<double, 9, 9>> target(&hess_[81 * e]);
     target = block.topLeftCorner<9, 9>();
-  }
+  });
   parts_.resize(batch_.size());
   batch_.elastic_stiffness(x_n_, hess_.data(), scene_.mass.data(), scene_.limit.mass.data(),
                            rule.rule(dt_, c_), parts_.data());

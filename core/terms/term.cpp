@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "core/math/parallel.hpp"
+
 namespace bb {
 
 std::size_t Term::size() const {
@@ -16,14 +18,21 @@ std::size_t Term::size() const {
 void Term::change(const Positions&, const Positions&, EnergyParts& out) const {
   for (const TermFamily& family : families_) {
     const std::vector<double>&from = family.local.energy, &to = family.trial_energy;
+    const std::size_t start = out.size();
     if (fixed_stencils()) {
-      for (std::size_t e = 0; e < from.size(); ++e) {
-        out.push_back({to[e] - from[e], std::abs(from[e]) + std::abs(to[e])});
-      }
+      out.resize(start + from.size());
+      parallel_items(from.size(), block_items, [&](std::size_t e) {
+        out[start + e] = {to[e] - from[e], std::abs(from[e]) + std::abs(to[e])};
+      });
       continue;
     }
-    for (const double energy : from) out.push_back({-energy, std::abs(energy)});
-    for (const double energy : to) out.push_back({energy, std::abs(energy)});
+    out.resize(start + from.size() + to.size());
+    parallel_items(from.size(), block_items, [&](std::size_t e) {
+      out[start + e] = {-from[e], std::abs(from[e])};
+    });
+    parallel_items(to.size(), block_items, [&](std::size_t e) {
+      out[start + from.size() + e] = {to[e], std::abs(to[e])};
+    });
   }
 }
 

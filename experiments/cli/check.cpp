@@ -59,6 +59,7 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
 int check(const RunVerb& verb) {
   const RunConfig config = load_config(verb.config, verb.set);
   const Scene scene = build_scene(config);
+  plan_of(config, scene);  // for what it refuses
   if (const auto failure = start_failure(config, scene, &interrupted())) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }

@@ -13,6 +13,7 @@
 #include "core/parameters/registry.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
+#include "experiments/cli/memory.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/verbs.hpp"
@@ -125,6 +126,7 @@ bb::PluginFile bb::cli::load_plugin_file(const std::string& file) {
 
 int main(int argc, char** argv) {
   prepare_streams();
+  keep_freed_memory();
   CommonOptions common;
   common.argv.assign(argv, argv + argc);
   RunVerb run_verb, check_verb, explain_verb;

@@ -2,6 +2,7 @@
 
 #include "core/linear/linear_solver.hpp"
 #include "core/newton/step_solver.hpp"
+#include "experiments/run/linear_choice.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {
@@ -31,7 +32,13 @@ Plan plan_of(const RunConfig& config, const Scene& scene) {
   options.trace = has_observed_run(config);
   options.frames = config.output.frames_every > 0;
   options.matrices = config.output.matrices;
-  return make_plan(scene, uncalibrated(config), options);
+  Method method = uncalibrated(config);
+  if (config.linear_solver.name == linear_solver_auto) {
+    LinearChoice choice = choose_linear_solver(config, scene, method);
+    options.linear = std::move(choice.solver);
+    options.linear_reason = std::move(choice.reason);
+  }
+  return make_plan(scene, method, options);
 }
 
 }  // namespace bb

@@ -1,0 +1,136 @@
+"""The cost model that `linear_solver: auto` chooses by, fitted to the records of configs/sweeps/linear_fit.json.
+
+Seconds of a linear solve (analysis, factorisation, solution; failed attempts are solves of their own) are a sum of work terms of the
+matrix of the first iteration, each with a coefficient >= 0, by least squares of relative errors. The work terms are those of
+core/linear/cost_model.cpp. Every record has to be of one machine.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import os
+import re
+import sys
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from .load import RecordError, Records, load
+
+WORK_TERMS = ("solve", "entry", "entry_sqrt_unknown", "factor_entry", "factor_flop")
+TIMES = ["time_linear_analyze_s", "time_linear_factor_s", "time_linear_solve_s"]
+NEEDS = ("cholmod",)  # its records know the work of a factor
+
+
+def work_terms(unknowns: float, entries: float, factor_entries: float, factor_flop: float) -> np.ndarray:
+    """As bb::work_terms."""
+    return np.array([1.0, entries, entries * np.sqrt(unknowns), factor_entries, factor_flop])
+
+
+def non_negative_fit(terms: np.ndarray, seconds: np.ndarray) -> np.ndarray:
+    """The coefficients >= 0 with the least squares of relative errors: the best of all sets of terms that are positive by themselves.
+
+    terms: [measurements x terms]; seconds: [measurements], > 0.
+    """
+    rows, n = terms / seconds[:, None], terms.shape[1]
+    scale = np.abs(rows).max(axis=0)
+    best, least = np.zeros(n), np.inf
+    for size in range(1, min(n, len(seconds)) + 1):
+        for chosen in map(list, combinations(range(n), size)):
+            fitted = np.linalg.lstsq(rows[:, chosen] / scale[chosen], np.ones(len(seconds)), rcond=None)[0] / scale[chosen]
+            error = float(np.sum((rows[:, chosen] @ fitted - 1) ** 2))
+            if (fitted >= 0).all() and error < least * (1 - 1e-9):
+                best, least = np.zeros(n), error
+                best[chosen] = fitted
+    return best
+
+
+def measurements(records: Records) -> pd.DataFrame:
+    """One row a record: scene (label of its case), solver, preconditioner, seconds of a solve, work terms."""
+    runs = records.runs
+    first = records.trace[(records.trace["n"] == 0)].set_index("run")
+    scene = runs["series"].str.split(" ").str[0]  # the case of the first axis
+    rows = []
+    for label, group in runs.groupby(scene, sort=False):
+        direct = group[group["linear_solver"].isin(NEEDS)]
+        if direct.empty:
+            raise RecordError(f"{label}: no record of {NEEDS[0]}, whose factor says the work")
+        line = first.loc[direct.iloc[0]["run"]]
+        terms = work_terms(line["n_free"], line["nnz"], line["factor_nnz"], line["factor_flop"])
+        for _, run in group.iterrows():
+            seconds = float(run[TIMES].sum()) / run["linear_solves"]
+            if run["outcome"] != "ok" or not seconds > 0:
+                print(f"{label}, {run['series']}: {run['outcome']}, left out", file=sys.stderr)
+                continue
+            preconditioner = "" if run["preconditioner"] == "none" else run["preconditioner"]
+            rows.append({"scene": label, "solver": run["linear_solver"], "preconditioner": preconditioner, "seconds": seconds,
+                         **dict(zip(WORK_TERMS, terms))})
+    return pd.DataFrame(rows)
+
+
+def fit(table: pd.DataFrame) -> tuple[list[dict], pd.DataFrame]:
+    """The entries `costs` of a model, and the table with `expected` seconds."""
+    costs, parts = [], []
+    for (solver, preconditioner), rows in table.groupby(["solver", "preconditioner"], sort=False):
+        terms = rows[list(WORK_TERMS)].to_numpy(float)
+        each = non_negative_fit(terms, rows["seconds"].to_numpy(float))
+        cost = {"solver": solver} | ({"preconditioner": preconditioner} if preconditioner else {})
+        costs.append(cost | {"seconds_each": {name: float(f"{c:.4g}") for name, c in zip(WORK_TERMS, each)}})
+        parts.append(rows.assign(expected=terms @ each))
+    return costs, pd.concat(parts)
+
+
+def model(records: Records) -> tuple[dict, pd.DataFrame]:
+    """The file's content, and the table of the fit. Raises RecordError: several machines, no time pass, too few scenes."""
+    cpus = sorted(set(records.runs["machine_cpu_model"]))
+    if len(cpus) != 1:
+        raise RecordError(f"records of several machines: {', '.join(cpus)}; one is needed")
+    table = measurements(records)
+    if table.empty or table["scene"].nunique() < 3:
+        raise RecordError(f"{0 if table.empty else table['scene'].nunique()} scenes with times; at least 3 are needed")
+    costs, fitted = fit(table)
+    error = (fitted["expected"] / fitted["seconds"] - 1).abs()
+    return {
+        "schema": "barrierbench.linear_model/1",
+        "machine": {"cpu_model": cpus[0]},
+        "fitted": {"date": datetime.date.today().isoformat(), "records": len(fitted), "git_commit": records.runs["provenance_git_commit"].iloc[0],
+                   "scenes": sorted(set(table["scene"])), "relative_error_median": float(f"{error.median():.2g}"),
+                   "relative_error_max": float(f"{error.max():.2g}")},
+        "costs": costs,
+    }, fitted
+
+
+def print_table(table: pd.DataFrame) -> None:
+    names = table["solver"] + table["preconditioner"].map(lambda p: f" with {p}" if p else "")
+    shown = table.assign(name=names, text=[f"{s * 1e3:.4g} ({e * 1e3:.4g})" for s, e in zip(table["seconds"], table["expected"])])
+    print("ms of a linear solve, measured (expected by the model)")
+    print(shown.pivot(index="scene", columns="name", values="text").loc[list(dict.fromkeys(table["scene"]))].to_string())
+
+
+def main() -> int:
+    parser = argparse.ArgumentParser(prog="./bench fit-linear", description=__doc__)
+    parser.add_argument("records", type=Path, help="folder of the records")
+    parser.add_argument("--out", type=Path, required=True, help="folder of the models: the file is named after the processor")
+    asked = parser.parse_args()
+    try:
+        content, table = model(load(asked.records))
+    except RecordError as error:
+        print(error, file=sys.stderr)
+        return 2
+    print_table(table)
+    name = re.sub(r"[^a-z0-9]+", "_", content["machine"]["cpu_model"].lower()).strip("_")
+    path = asked.out / f"{name}.json"
+    asked.out.mkdir(parents=True, exist_ok=True)
+    part = path.with_suffix(".part")
+    part.write_text(json.dumps(content, indent=2) + "\n")
+    os.replace(part, path)
+    print(f"relative error: median {content['fitted']['relative_error_median']}, largest {content['fitted']['relative_error_max']}; {path}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
