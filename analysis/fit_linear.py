@@ -23,6 +23,7 @@ from .load import RecordError, Records, load
 
 WORK_TERMS = ("solve", "entry", "entry_sqrt_unknown", "factor_entry", "factor_flop")
 TIMES = ["time_linear_analyze_s", "time_linear_factor_s", "time_linear_solve_s"]
+TERMS_OF = {"cholmod": ("solve", "entry", "factor_entry", "factor_flop"), "pcg": ("solve", "entry", "entry_sqrt_unknown")}  # others: all
 NEEDS = ("cholmod",)  # its records know the work of a factor
 
 
@@ -77,7 +78,9 @@ def fit(table: pd.DataFrame) -> tuple[list[dict], pd.DataFrame]:
     costs, parts = [], []
     for (solver, preconditioner), rows in table.groupby(["solver", "preconditioner"], sort=False):
         terms = rows[list(WORK_TERMS)].to_numpy(float)
-        each = non_negative_fit(terms, rows["seconds"].to_numpy(float))
+        own = [name in TERMS_OF.get(solver, WORK_TERMS) for name in WORK_TERMS]  # what the solver does: others would not extrapolate
+        each = np.zeros(len(WORK_TERMS))
+        each[own] = non_negative_fit(terms[:, own], rows["seconds"].to_numpy(float))
         cost = {"solver": solver} | ({"preconditioner": preconditioner} if preconditioner else {})
         costs.append(cost | {"seconds_each": {name: float(f"{c:.4g}") for name, c in zip(WORK_TERMS, each)}})
         parts.append(rows.assign(expected=terms @ each))
