@@ -88,16 +88,19 @@ TEST(FarTest, NeverClaimsMoreThanTheDistance) {
       const Vec3d from = i % 2 == 0 ? middle : Vec3d(1e5 * middle);
       add_body(scene, "a", {from, Vec3d(from + size * middle)}, {}, 1);
       add_body(scene, "b", {Vec3d(from + shift), Vec3d(from + shift + size * shift)}, {}, 1);
+      const bool alone = i % 3 != 0;  // else a tiny part of a large scene, coarser than float resolves it
+      if (!alone) add_body(scene, "c", {Vec3d(from + 1e6 * (size + away) * point())}, {}, 1);
       scene.surface_edges = {{0, 1}, {2, 3}};
-      const double d = closest_points<PairKind::edge_edge, double>(scene.x0).d;
+      const double d = closest_points<PairKind::edge_edge, double>(scene.x0.leftCols<4>()).d;
       if (!(d > 0)) continue;
-      scene.d_hat.assign(4, share * d);
+      scene.d_hat.assign(scene.d_hat.size(), share * d);
       const Surface surface(scene);
       FarTest test(surface);
       test.set_state(scene.x0);
       const IndexPair pair{0, 1};
       const bool far = test.far<PairKind::edge_edge>(&pair, 1) != 0;
       if (share < 1) {
+        if (!alone) continue;
         ++asked;
         claimed += far ? 1 : 0;
       } else {
@@ -105,7 +108,7 @@ TEST(FarTest, NeverClaimsMoreThanTheDistance) {
       }
     }
   }
-  EXPECT_GT(asked, 2900);
+  EXPECT_GT(asked, 1900);
   EXPECT_GT(claimed, 0.8 * asked);
 }
 
