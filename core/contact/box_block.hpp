@@ -39,8 +39,10 @@ class BoxBlock {
   }
   /// The lanes whose box overlaps this one, as TreeBox::overlaps says.
   LaneSet overlaps(const AskingBox& box) const {
-    const auto axis = [&](int c) -> EightInts { return (lo_[c] <= box.hi[c]) & (box.lo[c] <= hi_[c]); };
-    return lanes_of(axis(0) & axis(1) & axis(2));
+    EightInts meet = (lo_[0] <= box.hi[0]) & (box.lo[0] <= hi_[0]);
+    meet &= (lo_[1] <= box.hi[1]) & (box.lo[1] <= hi_[1]);
+    meet &= (lo_[2] <= box.hi[2]) & (box.lo[2] <= hi_[2]);
+    return lanes_of(meet);
   }
   /// The box of all lanes that were set.
   TreeBox hull() const {

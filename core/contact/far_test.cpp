@@ -12,14 +12,14 @@ using Four = TreeBox::Four;
 
 /// Coordinates of eight points, one vector per axis.
 void transpose(const Four* const (&points)[FarTest::width], EightFloats (&axis)[3]) {
-  const auto join = [&](int k) {  // points k and k + 4
-    return __builtin_shufflevector(*points[k], *points[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
-  };
-  const EightFloats p0 = join(0), p1 = join(1), p2 = join(2), p3 = join(3);
-  const EightFloats xy01 = __builtin_shufflevector(p0, p1, 0, 8, 1, 9, 4, 12, 5, 13);
-  const EightFloats xy23 = __builtin_shufflevector(p2, p3, 0, 8, 1, 9, 4, 12, 5, 13);
-  const EightFloats z01 = __builtin_shufflevector(p0, p1, 2, 10, 3, 11, 6, 14, 7, 15);
-  const EightFloats z23 = __builtin_shufflevector(p2, p3, 2, 10, 3, 11, 6, 14, 7, 15);
+  EightFloats p[4];
+  for (int k = 0; k < 4; ++k) {
+    p[k] = __builtin_shufflevector(*points[k], *points[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  const EightFloats xy01 = __builtin_shufflevector(p[0], p[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const EightFloats xy23 = __builtin_shufflevector(p[2], p[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const EightFloats z01 = __builtin_shufflevector(p[0], p[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const EightFloats z23 = __builtin_shufflevector(p[2], p[3], 2, 10, 3, 11, 6, 14, 7, 15);
   axis[0] = __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13);
   axis[1] = __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
   axis[2] = __builtin_shufflevector(z01, z23, 0, 1, 8, 9, 4, 5, 12, 13);
