@@ -18,7 +18,12 @@ struct LogSquared {
   BB_HD static ShapeTerms<T> eval(T d, T d_hat) {
     if (d >= d_hat) return {T(0), T(0), T(0)};
     const NormalizedGap<T> gap(d, d_hat);
-    const T e = gap.e, l = gap.minus_log(), r = e / gap.u, el = e * l;
+    return terms(gap, d_hat, gap.minus_log());
+  }
+  /// The same below d_hat, l known.
+  template <class T>
+  BB_HD static ShapeTerms<T> terms(const NormalizedGap<T>& gap, T d_hat, T l) {
+    const T e = gap.e, r = e / gap.u, el = e * l;
     return {d_hat * d_hat * (el * el), -d_hat * (T(2) * el * (l + r)),
             T(2) * (l * l + T(4) * r * l + r * r * (T(1) + l))};
   }

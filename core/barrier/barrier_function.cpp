@@ -1,9 +1,12 @@
 // A shape on its argument: the implementation of core/barrier/shape.hpp, one code for float and double.
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
+#include <type_traits>
 
 #include "core/barrier/shape.hpp"
+#include "core/math/lanes.hpp"
 
 namespace bb {
 namespace {
@@ -33,6 +36,32 @@ void chain(bool infinite_at_zero, T d, T d_sq, T d_hat_sq, T& b, T& db, T& d2b) 
   d2b = (T(2) * db + T(4) * d_sq * d2b) / d_hat_sq;
   db = T(2) * d * db / d_hat_sq;
   b = b / d_hat_sq;
+}
+
+/// chain of m rows, four at a time in double: the same operations, and the same bits.
+template <class T>
+void chain_rows(bool infinite_at_zero, std::size_t m, const T* d, const T* d_sq, const T* d_hat_sq, T* b,
+                T* db, T* d2b) {
+  std::size_t begin = 0;
+  if constexpr (std::is_same_v<T, double>) {
+    using Real = Lanes<double, 4>;
+    const auto load = [&](const double* column) {
+      Real out;
+      std::memcpy(&out.v, column + begin, sizeof(out.v));
+      return out;
+    };
+    const auto store = [&](const Real& x, double* column) { std::memcpy(column + begin, &x.v, sizeof(x.v)); };
+    for (; begin + 4 <= m; begin += 4) {
+      const Real square = load(d_sq), width = load(d_hat_sq), slope = load(db);
+      if (any(square == Real(0))) break;
+      store((Real(2) * slope + Real(4) * square * load(d2b)) / width, d2b);
+      store(Real(2) * load(d) * slope / width, db);
+      store(load(b) / width, b);
+    }
+  }
+  for (std::size_t i = begin; i < m; ++i) {
+    chain(infinite_at_zero, d[i], d_sq[i], d_hat_sq[i], b[i], db[i], d2b[i]);
+  }
 }
 
 // The article's clamp hides penetration: its log has a constant force below 1e-10, its cubic no curvature.
@@ -70,10 +99,7 @@ void eval_batch(const BarrierFunction& fn, std::size_t n, const T* d, const T* d
       d_hat_sq[i] = d_hat[start + i] * d_hat[start + i];
     }
     call(fn.shape, m, d_sq, d_hat_sq, b + start, db + start, d2b + start);
-    for (std::size_t i = 0; i < m; ++i) {
-      const std::size_t k = start + i;
-      chain(fn.shape.infinite_at_zero, d[k], d_sq[i], d_hat_sq[i], b[k], db[k], d2b[k]);
-    }
+    chain_rows(fn.shape.infinite_at_zero, m, d + start, d_sq, d_hat_sq, b + start, db + start, d2b + start);
   }
 }
 

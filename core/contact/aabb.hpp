@@ -1,7 +1,6 @@
-// Axis-aligned boxes of primitives and of their motions, rounded outward.
+// Axis-aligned boxes of single primitives; those of the trees are in tree_box.hpp.
 #pragma once
 
-#include <cmath>
 #include <limits>
 
 #include "core/math/types.hpp"
@@ -16,29 +15,6 @@ struct Aabb {
   void add(const Vec3d& p) {
     lo = lo.cwiseMin(p);
     hi = hi.cwiseMax(p);
-  }
-  void add(const Aabb& b) {
-    lo = lo.cwiseMin(b.lo);
-    hi = hi.cwiseMax(b.hi);
-  }
-  /// Grows by `margin` on every side and by what rounding may have lost: points of a swept segment are
-  /// themselves rounded, as is the sum here; four units in the last place are more than both.
-  void inflate(double margin) {
-    constexpr double ulps = 4 * std::numeric_limits<double>::epsilon();
-    constexpr double least = std::numeric_limits<double>::min();  // where an ulp is no fraction of the number
-    for (int k = 0; k < 3; ++k) {
-      lo[k] -= margin + (ulps * (std::abs(lo[k]) + margin) + least);
-      hi[k] += margin + (ulps * (std::abs(hi[k]) + margin) + least);
-    }
-  }
-  bool overlaps(const Aabb& b) const {
-    return lo[0] <= b.hi[0] && b.lo[0] <= hi[0] && lo[1] <= b.hi[1] && b.lo[1] <= hi[1] && lo[2] <= b.hi[2] &&
-           b.lo[2] <= hi[2];
-  }
-  /// Half the surface area, m^2.
-  double half_area() const {
-    const Vec3d e = hi - lo;
-    return e[0] * e[1] + e[1] * e[2] + e[2] * e[0];
   }
 };
 

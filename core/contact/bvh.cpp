@@ -1,7 +1,6 @@
 #include "core/contact/bvh.hpp"
 
 #include <algorithm>
-#include <cassert>
 #include <cmath>
 #include <numeric>
 
@@ -23,27 +22,33 @@ std::size_t left_part(std::size_t n) {
 }
 
 /// Twice the centre; a box that has none counts as at the origin, for every number must have its place.
-Vec3d centre(const Aabb& box) {
-  Vec3d out = box.lo + box.hi;
-  for (int c = 0; c < 3; ++c) out[c] = std::isnan(out[c]) ? 0 : out[c];
+Vec3d centre(const TreeBox& box) {
+  Vec3d out;
+  for (int c = 0; c < 3; ++c) {
+    const double sum = static_cast<double>(box.lo[c]) + static_cast<double>(box.hi[c]);
+    out[c] = std::isnan(sum) ? 0 : sum;
+  }
   return out;
 }
 
-/// Those lanes of a node that are child `first` or a later one.
-LaneSet lanes_from(std::size_t first, std::size_t node) {
-  const std::size_t child = node * width;
-  return first > child ? ~LaneSet{0} << std::min<std::size_t>(first - child, width) : ~LaneSet{0};
+std::size_t at(int i) { return static_cast<std::size_t>(i); }
+
+/// Appends the children of a node that are in a set.
+void add_children(LaneList& list, int node, LaneSet lanes) {
+  constexpr EightInts child = {0, 1, 2, 3, 4, 5, 6, 7};
+  list.added(pack(child + static_cast<int>(width) * node, lanes, list.end(0)));
 }
 
 }  // namespace
 
-void Bvh::update(std::span<const Aabb> boxes, std::span<const std::uint8_t> free) {
+void Bvh::update(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free) {
   if (boxes.empty()) {
+    n_ = 0;
     order_.clear();
     levels_.clear();
     return;
   }
-  if (boxes.size() == order_.size()) {
+  if (boxes.size() == n_) {
     refit(boxes, free);
     if (!(looseness() > rebuild_growth * built_looseness_)) return;
   }
@@ -52,35 +57,40 @@ void Bvh::update(std::span<const Aabb> boxes, std::span<const std::uint8_t> free
   built_looseness_ = looseness();
 }
 
-void Bvh::build(std::span<const Aabb> boxes) {
-  std::vector<Vec3d> centres(boxes.size());
+void Bvh::build(std::span<const TreeBox> boxes) {
+  n_ = boxes.size();
+  std::vector<Vec3d> centres(n_);
   std::transform(boxes.begin(), boxes.end(), centres.begin(), centre);
-  order_.resize(boxes.size());
-  std::iota(order_.begin(), order_.end(), 0);
-  split(centres, 0, order_.size());
+  std::vector<int> places(n_);
+  std::iota(places.begin(), places.end(), 0);
+  split(centres, places);
+  order_.assign(n_nodes(n_), EightInts{});
+  for (std::size_t place = 0; place < n_; ++place) order_[place / width][place % width] = places[place];
   levels_.clear();
-  for (std::size_t n = boxes.size(); n > 1 || levels_.size() < 2;) {
+  for (std::size_t n = n_; n > 1 || levels_.size() < 2;) {
     n = n_nodes(n);
     levels_.push_back({std::vector<BoxBlock>(n), std::vector<LaneSet>(n)});
   }
   ++builds_;
 }
 
-void Bvh::split(std::span<const Vec3d> centres, std::size_t begin, std::size_t end) {
-  if (end - begin <= width) return;
-  Aabb extent;
-  for (std::size_t i = begin; i < end; ++i) extent.add(centres[static_cast<std::size_t>(order_[i])]);
+void Bvh::split(std::span<const Vec3d> centres, std::span<int> places) {
+  if (places.size() <= width) return;
+  Vec3d lo = centres[at(places[0])], hi = lo;
+  for (const int p : places) {
+    lo = lo.cwiseMin(centres[at(p)]);
+    hi = hi.cwiseMax(centres[at(p)]);
+  }
   int axis = 0;
-  (extent.hi - extent.lo).maxCoeff(&axis);
-  const std::size_t middle = begin + left_part(end - begin);
-  const auto at = [this](std::size_t place) { return order_.begin() + static_cast<std::ptrdiff_t>(place); };
-  std::nth_element(at(begin), at(middle), at(end), [&](int p, int q) {
-    const double a = centres[static_cast<std::size_t>(p)][axis];
-    const double b = centres[static_cast<std::size_t>(q)][axis];
-    return a < b || (a == b && p < q);
-  });
-  split(centres, begin, middle);
-  split(centres, middle, end);
+  (hi - lo).maxCoeff(&axis);
+  const std::size_t middle = left_part(places.size());
+  std::nth_element(places.begin(), places.begin() + static_cast<std::ptrdiff_t>(middle), places.end(),
+                   [&](int p, int q) {
+                     const double a = centres[at(p)][axis], b = centres[at(q)][axis];
+                     return a < b || (a == b && p < q);
+                   });
+  split(centres, places.first(middle));
+  split(centres, places.subspan(middle));
 }
 
 template <class BoxOf, class IsFree>
@@ -96,11 +106,10 @@ void Bvh::Level::fill(std::size_t n, const BoxOf& box_of, const IsFree& is_free)
   });
 }
 
-void Bvh::refit(std::span<const Aabb> boxes, std::span<const std::uint8_t> free) {
-  const auto at = [&](std::size_t place) { return static_cast<std::size_t>(order_[place]); };
+void Bvh::refit(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free) {
   levels_[0].fill(
-      order_.size(), [&](std::size_t place) { return boxes[at(place)]; },
-      [&](std::size_t place) { return free[at(place)] != 0; });
+      n_, [&](std::size_t place) { return boxes[at(primitive(place))]; },
+      [&](std::size_t place) { return free[at(primitive(place))] != 0; });
   for (std::size_t l = 1; l < levels_.size(); ++l) {
     const Level& below = levels_[l - 1];
     levels_[l].fill(
@@ -109,61 +118,94 @@ void Bvh::refit(std::span<const Aabb> boxes, std::span<const std::uint8_t> free)
   }
 }
 
-std::span<const PlacePair> Bvh::overlaps(const Bvh& asking, std::size_t begin, std::size_t end,
-                                         PairSearch& search) const {
-  assert(begin % width == 0 && (end % width == 0 || end == asking.size()));
-  if (levels_.empty()) return {};
-  const bool self = this == &asking;
-  // nodes of level 0 against the tree, down to its nodes of level 0
-  search.start(begin / width, n_nodes(end));
+void Bvh::find_nodes(const Bvh& asking, std::size_t node, TreeSearch& search) const {
+  search.nodes.clear();
+  for (LaneList& list : search.nodes_of) list.clear();
+  if (levels_.empty()) return;
+  const AskingBox box = asking.levels_[1].asking(node);
+  const bool is_free = asking.levels_[1].is_free(node);
+  *search.nodes.end(1) = 0;
+  search.nodes.added(1);
   for (std::size_t l = levels_.size() - 1; l > 0; --l) {
-    search.refine([&](PlacePair at) {
-      LaneSet lanes = levels_[l].overlaps(at.asked, asking.levels_[1], at.asking);
-      if (self) lanes &= lanes_from(std::size_t{width} * at.asking >> (3 * l), at.asked);
-      search.add(lanes, [=](std::uint32_t k) { return PlacePair{at.asking, width * at.asked + k}; });
-    });
+    search.next.clear();
+    for (const int at_node : search.nodes.all()) {
+      add_children(search.next, at_node, levels_[l].overlaps(at(at_node), box, is_free));
+    }
+    std::swap(search.nodes, search.next);
   }
-  // the places of those nodes one by one
-  search.refine([&](PlacePair at) {
-    const LaneSet lanes = asking.levels_[0].overlaps(at.asking, levels_[1], at.asked);
-    search.add(lanes, [=](std::uint32_t k) { return PlacePair{width * at.asking + k, at.asked}; });
-  });
-  // against the places of these
-  search.refine([&](PlacePair at) {
-    LaneSet lanes = levels_[0].overlaps(at.asked, asking.levels_[0], at.asking);
-    if (self) lanes &= lanes_from(std::size_t{at.asking} + 1, at.asked);
-    search.add(lanes, [=](std::uint32_t k) { return PlacePair{at.asking, width * at.asked + k}; });
-  });
-  return search.result();
+  int* end[width];
+  for (std::size_t k = 0; k < width; ++k) end[k] = search.nodes_of[k].end(search.nodes.size());
+  for (const int leaf : search.nodes.all()) {
+    const AskingBox leaf_box = levels_[1].asking(at(leaf));
+    const LaneSet lanes = asking.levels_[0].overlaps(node, leaf_box, levels_[1].is_free(at(leaf)));
+    for (std::size_t k = 0; k < width; ++k) {  // hard to foretell: no branch
+      *end[k] = leaf;
+      end[k] += lanes >> k & 1;
+    }
+  }
+  for (std::size_t k = 0; k < width; ++k) {
+    search.nodes_of[k].added(static_cast<std::size_t>(end[k] - search.nodes_of[k].end(0)));
+  }
+}
+
+std::size_t Bvh::find_primitives(const Bvh& asking, std::size_t node, std::size_t lane,
+                                 const TreeSearch& search, LaneList& found) const {
+  const std::span<const int> nodes = search.nodes_of[lane].all();
+  const AskingBox box = asking.levels_[0].boxes[node].asking(lane);
+  const bool is_free = (asking.levels_[0].free[node] >> lane & 1) != 0;
+  const EightInts above = (this == &asking ? asking.order_[node][lane] : -1) - EightInts{};
+  int* const begin = found.end(width * nodes.size());
+  int* end = begin;
+  for (const int leaf : nodes) {
+    const EightInts order = order_[at(leaf)];
+    const LaneSet lanes = levels_[0].overlaps(at(leaf), box, is_free) & lanes_of(order > above);
+    end += pack(order, lanes, end);
+  }
+  return static_cast<std::size_t>(end - begin);
 }
 
 double Bvh::looseness() const {
   double nodes = 0, primitives = 0;
-  std::size_t n = order_.size();
   for (std::size_t l = 0; l < levels_.size(); ++l) {
     double& sum = l == 0 ? primitives : nodes;
-    for (std::size_t child = 0; child < n; ++child) sum += levels_[l].box(child).half_area();
-    n = levels_[l].boxes.size();
+    for (const BoxBlock& block : levels_[l].boxes) sum += block.half_area();
   }
   return primitives > 0 ? nodes / primitives : 0;
 }
 
-void PairFinder::gather(std::size_t n_parts, std::size_t n, std::vector<IndexPair>& pairs) {
-  const auto for_each_pair = [&](const auto& f) {
-    for (std::size_t k = 0; k < n_parts; ++k) {
-      for (const IndexPair& pair : parts_[k].pairs) f(pair);
-    }
-  };
-  // By the first member: count, then every pair to its place; then each run by the second member.
-  end_.assign(n + 1, 0);
-  for_each_pair([&](IndexPair pair) { ++end_[static_cast<std::size_t>(pair.first) + 1]; });
-  std::partial_sum(end_.begin(), end_.end(), end_.begin());
-  pairs.resize(end_.back());
-  for_each_pair([&](IndexPair pair) { pairs[end_[static_cast<std::size_t>(pair.first)]++] = pair; });
-  for_each_chunk(n, [&](std::size_t, std::size_t begin, std::size_t end) {
-    const auto at = [&](std::size_t place) { return pairs.begin() + static_cast<std::ptrdiff_t>(place); };
-    for (std::size_t first = begin; first < end; ++first) {
-      std::sort(at(first == 0 ? 0 : end_[first - 1]), at(end_[first]));
+namespace {
+
+/// Writes the pairs of `first` in the order of their second members, which are all different. Every second
+/// counts those below it: for the lengths that occur faster than any sort that branches.
+void put_sorted(int first, std::span<const int> seconds, IndexPair* out) {
+  constexpr std::size_t countable = 512;
+  const std::size_t n = seconds.size();
+  if (n > countable) {
+    for (std::size_t i = 0; i < n; ++i) out[i] = {first, seconds[i]};
+    std::sort(out, out + n);
+    return;
+  }
+  for (std::size_t begin = 0; begin < n; begin += width) {
+    EightInts eight{}, rank{};
+    const std::size_t m = std::min<std::size_t>(width, n - begin);
+    for (std::size_t k = 0; k < m; ++k) eight[k] = seconds[begin + k];
+    for (const int other : seconds) rank -= other < eight;
+    for (std::size_t k = 0; k < m; ++k) out[rank[k]] = {first, eight[k]};
+  }
+}
+
+}  // namespace
+
+void PairFinder::gather(const Bvh& a, std::vector<IndexPair>& pairs) {
+  std::partial_sum(begin_.begin(), begin_.end(), begin_.begin());
+  pairs.resize(begin_.back());
+  for_each_chunk(a.size(), [&](std::size_t k, std::size_t begin, std::size_t end) {
+    std::span<const int> seconds = parts_[k].seconds.all();
+    for (std::size_t place = begin; place < end; ++place) {
+      const int first = a.primitive(place);
+      const std::size_t n = begin_[at(first) + 1] - begin_[at(first)];
+      put_sorted(first, seconds.first(n), pairs.data() + begin_[at(first)]);
+      seconds = seconds.subspan(n);
     }
   });
 }

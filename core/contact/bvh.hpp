@@ -2,11 +2,10 @@
 // rule; a tree asked with every box of another gives the overlapping pairs. Knows boxes and no physics.
 #pragma once
 
-#include <bit>
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "core/contact/box_block.hpp"
@@ -20,47 +19,28 @@ struct IndexPair {
   friend auto operator<=>(const IndexPair&, const IndexPair&) = default;
 };
 
-/// A place in the order of one tree and a place in that of another, or, on the way there, a node.
-struct PlacePair {
-  std::uint32_t asking, asked;
-};
-
-/// Buffers of a search: the pairs found so far, which every step of it replaces by what they lead to.
-class PairSearch {
+/// A list that only grows by whole vectors: as long as what was written to it, and some room beyond.
+class LaneList {
  public:
-  /// All of [begin, end) with 0.
-  void start(std::size_t begin, std::size_t end) {
-    n_found_ = end - begin;
-    if (found_.size() < n_found_) found_.resize(n_found_);
-    for (std::size_t i = begin; i < end; ++i) found_[i - begin] = {static_cast<std::uint32_t>(i), 0};
+  void clear() { n_ = 0; }
+  std::size_t size() const { return n_; }
+  std::span<const int> all() const { return {numbers_.data(), n_}; }
+  /// Where the next numbers go, with room for `room` and a vector; `added` tells how many there were.
+  int* end(std::size_t room) {
+    if (numbers_.size() < n_ + room + BoxBlock::width) numbers_.resize(2 * (n_ + room + BoxBlock::width));
+    return numbers_.data() + n_;
   }
-  /// Calls step(pair) for all pairs, which add()s their successors.
-  template <class Step>
-  void refine(const Step& step) {
-    n_next_ = 0;
-    for (std::size_t i = 0; i < n_found_; ++i) step(found_[i]);
-    found_.swap(next_);
-    n_found_ = n_next_;
-  }
-  /// Adds make(k) for every lane k. Which lanes are set is hard to foretell, so up to four take no branch.
-  template <class Make>
-  void add(LaneSet lanes, const Make& make) {
-    if (next_.size() < n_next_ + BoxBlock::width) next_.resize(2 * (n_next_ + BoxBlock::width));
-    const auto n = static_cast<std::size_t>(std::popcount(lanes));
-    PlacePair* const next = &next_[n_next_];
-    const auto put = [&](std::size_t i) {
-      next[i] = make(static_cast<std::uint32_t>(std::countr_zero(lanes)));
-      lanes &= lanes - 1;
-    };
-    for (std::size_t i = 0; i < 4; ++i) put(i);
-    for (std::size_t i = 4; i < n; ++i) put(i);
-    n_next_ += n;
-  }
-  std::span<const PlacePair> result() const { return {found_.data(), n_found_}; }
+  void added(std::size_t n) { n_ += n; }
 
  private:
-  std::vector<PlacePair> found_, next_;  // larger than what they hold
-  std::size_t n_found_ = 0, n_next_ = 0;
+  std::vector<int> numbers_;
+  std::size_t n_ = 0;
+};
+
+/// Buffers of a search with the eight primitives of a node.
+struct TreeSearch {
+  LaneList nodes, next;
+  std::array<LaneList, BoxBlock::width> nodes_of;  // those that each of the eight overlaps
 };
 
 /// Tree with eight children a node and no links: the primitives are put in an order by median splits along
@@ -71,19 +51,20 @@ class Bvh {
   /// Takes the boxes of all n primitives; `free` says which of them a solver can move. The first call, and a
   /// call with another n, builds: O(n log n). Later calls refit, O(n), and rebuild when the boxes of the
   /// nodes, relative to those of the primitives, have grown by more than a half since the last build.
-  void update(std::span<const Aabb> boxes, std::span<const std::uint8_t> free);
+  void update(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free);
 
-  std::size_t size() const { return order_.size(); }
+  std::size_t size() const { return n_; }
   /// The primitive at a place of the order.
-  int primitive(std::size_t place) const { return order_[place]; }
+  int primitive(std::size_t place) const { return order_[place / BoxBlock::width][place % BoxBlock::width]; }
   int builds() const { return builds_; }
 
-  /// All (place in `asking`, place in this tree) with overlapping boxes, of which at least one is free, for
-  /// the places [begin, end) of `asking`: begin a multiple of eight, end too unless it is asking.size(), for
-  /// whole nodes are asked. When that is this tree itself, only pairs of ascending places. The result lies
-  /// in the buffers.
-  std::span<const PlacePair> overlaps(const Bvh& asking, std::size_t begin, std::size_t end,
-                                      PairSearch& search) const;
+  /// Nodes of level 0 of this tree that overlap node `node` of level 0 of `asking`, and then each of its
+  /// primitives: search.nodes_of. One of any two with a free primitive.
+  void find_nodes(const Bvh& asking, std::size_t node, TreeSearch& search) const;
+  /// Appends to `found` the primitives of those nodes that overlap primitive `lane` of the node, one of the two
+  /// free; when `asking` is this tree itself, only those with a larger index. Returns how many.
+  std::size_t find_primitives(const Bvh& asking, std::size_t node, std::size_t lane, const TreeSearch& search,
+                              LaneList& found) const;
 
  private:
   struct Level {
@@ -92,20 +73,24 @@ class Bvh {
     /// Takes over n children.
     template <class BoxOf, class IsFree>
     void fill(std::size_t n, const BoxOf& box_of, const IsFree& is_free);
-    Aabb box(std::size_t child) const { return boxes[child / BoxBlock::width].get(child % BoxBlock::width); }
-    /// Children of a node that overlap a child of another level, one of the two with a free primitive.
-    LaneSet overlaps(std::size_t node, const Level& other, std::size_t child) const {
-      const std::size_t block = child / BoxBlock::width, lane = child % BoxBlock::width;
-      const LaneSet one_free = ((other.free[block] >> lane) & 1) != 0 ? ~LaneSet{0} : free[node];
-      return boxes[node].overlaps(other.boxes[block], lane) & one_free;
+    bool is_free(std::size_t child) const {
+      return (free[child / BoxBlock::width] >> child % BoxBlock::width & 1) != 0;
+    }
+    AskingBox asking(std::size_t child) const {
+      return boxes[child / BoxBlock::width].asking(child % BoxBlock::width);
+    }
+    /// Children of a node that overlap a box, one of the two with a free primitive.
+    LaneSet overlaps(std::size_t node, const AskingBox& box, bool box_is_free) const {
+      return boxes[node].overlaps(box) & (box_is_free ? ~LaneSet{0} : free[node]);
     }
   };
-  void build(std::span<const Aabb> boxes);
-  void split(std::span<const Vec3d> centres, std::size_t begin, std::size_t end);
-  void refit(std::span<const Aabb> boxes, std::span<const std::uint8_t> free);
+  void build(std::span<const TreeBox> boxes);
+  void split(std::span<const Vec3d> centres, std::span<int> places);
+  void refit(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free);
   double looseness() const;
 
-  std::vector<int> order_;
+  std::size_t n_ = 0;
+  std::vector<EightInts> order_;  // by node, 0 padded
   std::vector<Level> levels_;
   double built_looseness_ = 0;
   int builds_ = 0;
@@ -120,35 +105,40 @@ class PairFinder {
   template <class Keep>
   void find(const Bvh& a, const Bvh& b, const Keep& keep, std::vector<IndexPair>& pairs) {
     static_assert(chunk_size % BoxBlock::width == 0);
-    const bool self = &a == &b;
-    const std::size_t n_parts = n_chunks(a.size());
-    if (parts_.size() < n_parts) parts_.resize(n_parts);
+    if (parts_.size() < n_chunks(a.size())) parts_.resize(n_chunks(a.size()));
+    begin_.assign(a.size() + 1, 0);
     for_each_chunk(a.size(), [&](std::size_t k, std::size_t begin, std::size_t end) {
       Part& part = parts_[k];
-      const std::span<const PlacePair> found = b.overlaps(a, begin, end, part.search);
-      part.pairs.resize(found.size());
-      std::size_t n = 0;
-      for (const PlacePair place : found) {  // which pairs are kept is hard to foretell: no branch
-        IndexPair pair{a.primitive(place.asking), b.primitive(place.asked)};
-        if (self && pair.first > pair.second) std::swap(pair.first, pair.second);
-        part.pairs[n] = pair;
-        n += keep(pair) ? 1 : 0;
+      part.seconds.clear();
+      for (std::size_t place = begin; place < end; ++place) {
+        const std::size_t node = place / BoxBlock::width, lane = place % BoxBlock::width;
+        if (lane == 0) b.find_nodes(a, node, part.search);
+        const int first = a.primitive(place);
+        const std::size_t n = b.find_primitives(a, node, lane, part.search, part.seconds);
+        int* const seconds = part.seconds.end(0);
+        std::size_t n_kept = 0;
+        for (std::size_t i = 0; i < n; ++i) {  // which pairs are kept is hard to foretell: no branch
+          const int second = seconds[i];
+          seconds[n_kept] = second;
+          n_kept += keep(IndexPair{first, second}) ? 1 : 0;
+        }
+        part.seconds.added(n_kept);
+        begin_[static_cast<std::size_t>(first) + 1] = n_kept;
       }
-      part.pairs.resize(n);
     });
-    gather(n_parts, a.size(), pairs);
+    gather(a, pairs);
   }
 
  private:
-  /// All parts into `pairs`, sorted; n: the first members are below it.
-  void gather(std::size_t n_parts, std::size_t n, std::vector<IndexPair>& pairs);
+  /// All parts into `pairs`, sorted.
+  void gather(const Bvh& a, std::vector<IndexPair>& pairs);
 
   struct Part {
-    std::vector<IndexPair> pairs;
-    PairSearch search;
+    LaneList seconds;  // of the pairs of each place, in the order of the places
+    TreeSearch search;
   };
   std::vector<Part> parts_;
-  std::vector<std::size_t> end_;  // of the pairs with the same first member
+  std::vector<std::size_t> begin_;  // of the pairs with the same first member
 };
 
 }  // namespace bb

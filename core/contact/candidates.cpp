@@ -38,20 +38,40 @@ BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<doubl
   triangles_.needed = plan.point_triangle;
 }
 
+/// The origin of a frame is a point of the scene: floats are finest near it.
+BroadPhase::Frame BroadPhase::frame(const Positions& x0, const Positions& x1) {
+  if (surface_.points.size() == 0) return {Vec3d::Zero(), Vec3d::Zero()};
+  Vec3d origin = x0.col(surface_.points.vertices[0][0]);
+  if (!origin.allFinite()) origin.setZero();
+  if (x0.data() == x1.data()) return {origin, origin};
+  return {origin, origin + common_motion(surface_.points, x0, x1, moved_)};
+}
+
+void BroadPhase::fit_vertices(const Positions& x0, const Positions& x1, const Frame& frame) {
+  const std::size_t n = static_cast<std::size_t>(x0.cols());
+  vertices_.resize(n);
+  for_each_chunk(n, [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const int v = static_cast<int>(i);
+      TreeBox box;
+      box.add(Vec3d(x0.col(v) - frame.start));
+      if (x0.data() != x1.data()) box.add(Vec3d(x1.col(v) - frame.end));
+      vertices_[i] = box;
+    }
+  });
+}
+
 template <int N>
-void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
-                     const Vec3d& common) {
+void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Frame& frame) const {
   if (!tree.needed) return;
-  // inflate() knows the ulps of the box; x itself is larger by up to `common`, and rounded accordingly
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() * common.lpNorm<Eigen::Infinity>();
+  // a TreeBox knows the ulps of what it holds; x itself is larger by up to the frame, and rounded accordingly
+  const double rounding = 4 * std::numeric_limits<double>::epsilon() *
+                          (frame.start.lpNorm<Eigen::Infinity>() + frame.end.lpNorm<Eigen::Infinity>());
   tree.boxes.resize(primitives.size());
   for_each_chunk(primitives.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      Aabb box;
-      for (int v : primitives.vertices[i]) {
-        box.add(Vec3d(x0.col(v)));
-        box.add(Vec3d(x1.col(v) - common));
-      }
+      TreeBox box;
+      for (int v : primitives.vertices[i]) box.add(vertices_[static_cast<std::size_t>(v)]);
       box.inflate(primitives.side[i].d_hat / 2 + primitives.side[i].offset + rounding);
       tree.boxes[i] = box;
     }
@@ -61,12 +81,15 @@ void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Position
 
 void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& out) {
   const Surface& s = surface_;
-  // Which pairs come close depends on relative motion alone: what most points share, a fall say, would only
-  // make every box long.
-  const Vec3d common = plan_.broad_phase.needed ? common_motion(s.points, x0, x1, moved_) : Vec3d::Zero();
-  tbb::parallel_invoke(
-      [&] { fit(edges_, s.edges, x0, x1, common); }, [&] { fit(triangles_, s.triangles, x0, x1, common); },
-      [&] { fit(points_, s.points, x0, x1, common); }, [&] { update_obstacles(x0, x1, out.obstacle); });
+  if (plan_.broad_phase.needed) {
+    // Which pairs come close depends on relative motion alone: what most points share, a fall say, would only
+    // make every box long.
+    const Frame moving = frame(x0, x1);
+    fit_vertices(x0, x1, moving);
+    tbb::parallel_invoke([&] { fit(edges_, s.edges, moving); }, [&] { fit(triangles_, s.triangles, moving); },
+                         [&] { fit(points_, s.points, moving); });
+  }
+  update_obstacles(x0, x1, out.obstacle);
   const auto point = [&s](int i) { return s.points.vertices[static_cast<std::size_t>(i)][0]; };
   const auto edge = [&s](int i) { return s.edges.vertices[static_cast<std::size_t>(i)]; };
   const auto triangle = [&s](int i) { return s.triangles.vertices[static_cast<std::size_t>(i)]; };

@@ -31,18 +31,24 @@ class BroadPhase {
   struct Tree {
     bool needed = false;
     Bvh bvh;
-    std::vector<Aabb> boxes;
+    std::vector<TreeBox> boxes;
   };
+  /// What is subtracted from the positions at the start and at the end before boxes are made, m.
+  struct Frame {
+    Vec3d start, end;
+  };
+  Frame frame(const Positions& x0, const Positions& x1);
+  void fit_vertices(const Positions& x0, const Positions& x1, const Frame& frame);
   template <int N>
-  void fit(Tree& tree, const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
-           const Vec3d& common);
+  void fit(Tree& tree, const Primitives<N>& primitives, const Frame& frame) const;
   void update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out);
 
   const Surface& surface_;
   std::vector<AnalyticSurface<double>> obstacles_;
   Tree points_, edges_, triangles_;
   PairFinder finder_;
-  std::vector<double> moved_;  // buffer of update
+  std::vector<TreeBox> vertices_;  // of all vertices on the motion
+  std::vector<double> moved_;      // buffer of frame
   const ContactPlan plan_;
 };
 

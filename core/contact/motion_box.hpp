@@ -2,9 +2,9 @@
 // one cache line, from which a time is proven up to which two primitives cannot meet.
 #pragma once
 
-#include <cmath>
 #include <limits>
 
+#include "core/contact/float_rounding.hpp"
 #include "core/math/lanes.hpp"
 #include "core/math/types.hpp"
 
@@ -17,10 +17,6 @@ struct alignas(64) MotionBox {
   Four lo, hi;            // m
   Four slowest, fastest;  // m per unit of time, per axis
 };
-
-/// The largest float that is at most x and the smallest that is at least x, or a neighbour of those.
-inline float float_below(double x) { return static_cast<float>(x - (std::abs(x) * 0x1p-23 + 0x1p-140)); }
-inline float float_above(double x) { return -float_below(-x); }
 
 /// Box of the points that `corners` numbers, every one of them surrounded by `reach` (m).
 template <class Corners>

@@ -6,7 +6,6 @@
 #include <algorithm>
 
 #include "core/contact/chunks.hpp"
-#include "core/contact/pair_lanes.hpp"
 #include "core/geometry/edge_edge_mollifier.hpp"
 
 namespace bb {
@@ -38,21 +37,16 @@ bool RowBuilder::moves(const ContactRow& row) const {
 template <PairKind K>
 void RowBuilder::add_pairs(const Positions& x, const std::vector<IndexPair>& pairs, std::size_t begin,
                            std::size_t end, Part& part) const {
-  for (; begin < end; begin += n_lanes) {
-    const std::size_t n = std::min(n_lanes, end - begin);
-    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-      const std::size_t soon = begin + lane + 2 * n_lanes, later = soon + 3 * n_lanes;
-      if (later < end) fetch_primitive<K>(surface_, pairs[later]);
-      if (soon < end) fetch_points<K>(surface_, pairs[soon], x);
-    }
-    const auto pair = four_pairs<K>(surface_, pairs, n, [&](std::size_t lane) { return begin + lane; });
-    Lanes4 reach;
-    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-      reach.v[lane] = pair[lane].law.d_hat + pair[lane].law.offset;
-    }
-    const auto far = farther_than<K>(gather_lanes<K>(pair, x), reach);
+  constexpr std::size_t width = FarTest::width, ahead = 3 * width;
+  for (; begin < end; begin += width) {
+    const std::size_t n = std::min(width, end - begin);
+    for (std::size_t i = begin + ahead; i < std::min(begin + ahead + width, end); ++i)
+      far_.fetch<K>(pairs[i]);
+    const LaneSet far = far_.far<K>(&pairs[begin], n);
     for (std::size_t lane = 0; lane < n; ++lane) {
-      if (far.bits[lane] == 0) add_pair<K>(x, pairs[begin + lane], pair[lane], part);
+      if ((far >> lane & 1) != 0) continue;
+      const IndexPair index = pairs[begin + lane];
+      add_pair<K>(x, index, contact_pair<K>(surface_, index), part);
     }
   }
 }
@@ -119,6 +113,7 @@ double RowBuilder::build(const Positions& x, const Candidates& candidates, Conta
     n_parts_ = 0;
     return -std::numeric_limits<double>::infinity();
   }
+  far_.set_state(x);
   std::size_t n_parts = 0;
   const auto in_parts = [&](const std::vector<IndexPair>& pairs, const auto& add_range) {
     const std::size_t n = n_chunks(pairs.size());

@@ -8,6 +8,7 @@
 #include "core/contact/candidates.hpp"
 #include "core/contact/contact_row.hpp"
 #include "core/contact/contact_table.hpp"
+#include "core/contact/far_test.hpp"
 
 namespace bb {
 
@@ -16,7 +17,11 @@ class RowBuilder {
  public:
   RowBuilder(const Scene& scene, const Surface& surface,
              const std::vector<AnalyticSurface<double>>& obstacles, const ContactPlan& plan)
-      : scene_(scene), surface_(surface), obstacles_(obstacles), mollified_(plan.mollifier.needed) {}
+      : scene_(scene),
+        surface_(surface),
+        obstacles_(obstacles),
+        mollified_(plan.mollifier.needed),
+        far_(surface) {}
 
   /// See ContactSystem::find_rows.
   double build(const Positions& x, const Candidates& candidates, ContactTable& rows,
@@ -41,7 +46,7 @@ class RowBuilder {
     std::size_t place;
     const ContactRow* row;
   };
-  /// The pairs [begin, end), four at a time: what a plane proves to be far is done with.
+  /// The pairs [begin, end): what is proven to be far is done with.
   template <PairKind K>
   void add_pairs(const Positions& x, const std::vector<IndexPair>& pairs, std::size_t begin, std::size_t end,
                  Part& part) const;
@@ -59,6 +64,7 @@ class RowBuilder {
   const Surface& surface_;
   const std::vector<AnalyticSurface<double>>& obstacles_;
   const bool mollified_;
+  FarTest far_;
   std::vector<Part> parts_;
   std::vector<SortedRow> sorted_;
   std::vector<std::size_t> first_;  // start of each group of equal rows in sorted_

@@ -4,6 +4,9 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <cstring>
 
 #include "core/math/scale.hpp"
 #include "core/math/select.hpp"
@@ -69,9 +72,11 @@ Lanes<T, W> select(const LaneMask<T, W>& mask, const Lanes<T, W>& yes, const Lan
 }
 template <class T, int W>
 bool any(const LaneMask<T, W>& mask) {
-  bool out = false;
-  for (int lane = 0; lane < W; ++lane) out = out || mask.bits[lane] != 0;
-  return out;
+  constexpr std::size_t n = sizeof(mask.bits) / sizeof(std::uint64_t);
+  std::uint64_t words[n], out = 0;
+  std::memcpy(words, &mask.bits, sizeof(words));
+  for (std::size_t k = 0; k < n; ++k) out |= words[k];
+  return out != 0;
 }
 
 template <class T, int W>

@@ -14,7 +14,7 @@ namespace {
 struct Stack {
   Scene scene = cloth_stack(5, 48);
   Surface surface{scene};
-  std::vector<Aabb> boxes;  // of the edges, the most numerous primitives
+  std::vector<TreeBox> boxes;  // of the edges, the most numerous primitives
 
   Stack() {
     boxes.resize(surface.edges.size());

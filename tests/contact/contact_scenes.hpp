@@ -135,4 +135,13 @@ inline double barrier(ContactSystem& contacts, const Positions& x, double kappa,
   return sum;
 }
 
+/// A 4 x 4 grid of unit cells and a free vertex (25) at p.
+inline Scene point_over_grid(const Vec3d& p, double d_hat, bool given = false, double offset = 0) {
+  Scene scene;
+  const auto [vertices, triangles] = grid(4, 4, 1.0);
+  add_body(scene, "sheet", vertices, triangles, d_hat, given, offset);
+  add_body(scene, "point", {p}, {}, d_hat);
+  return scene;
+}
+
 }  // namespace bb::test

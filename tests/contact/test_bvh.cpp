@@ -4,17 +4,18 @@
 
 #include <random>
 
+#include "core/contact/aabb.hpp"
 #include "core/contact/bvh.hpp"
 
 namespace bb {
 namespace {
 
-std::vector<Aabb> random_boxes(int n, double size, unsigned seed) {
+std::vector<TreeBox> random_boxes(int n, double size, unsigned seed) {
   std::mt19937_64 rng(seed);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto point = [&] { return Vec3d(unit(rng), unit(rng), unit(rng)); };
-  std::vector<Aabb> boxes(static_cast<std::size_t>(n));
-  for (Aabb& b : boxes) {
+  std::vector<TreeBox> boxes(static_cast<std::size_t>(n));
+  for (TreeBox& b : boxes) {
     const Vec3d centre = point();
     b.add(Vec3d(centre + size * point()));
     b.add(Vec3d(centre + size * point()));
@@ -32,8 +33,8 @@ std::vector<std::uint8_t> random_flags(int n, unsigned seed) {
 
 bool keep(IndexPair p) { return (p.first + p.second) % 7 != 0; }
 
-std::vector<IndexPair> brute_force(const std::vector<Aabb>& a, const std::vector<std::uint8_t>& free_a,
-                                   const std::vector<Aabb>& b, const std::vector<std::uint8_t>& free_b,
+std::vector<IndexPair> brute_force(const std::vector<TreeBox>& a, const std::vector<std::uint8_t>& free_a,
+                                   const std::vector<TreeBox>& b, const std::vector<std::uint8_t>& free_b,
                                    bool self) {
   std::vector<IndexPair> pairs;
   for (std::size_t i = 0; i < a.size(); ++i) {
@@ -97,10 +98,12 @@ TEST(Bvh, RefitsAfterSmallMotionAndRebuildsAfterLarge) {
   std::mt19937_64 rng(7);
   std::uniform_real_distribution<double> unit(-1, 1);
   const auto move = [&](double size) {
-    for (Aabb& b : boxes) {
-      const Vec3d shift = size * Vec3d(unit(rng), unit(rng), unit(rng));
-      b.lo += shift;
-      b.hi += shift;
+    for (TreeBox& b : boxes) {
+      for (int c = 0; c < 3; ++c) {
+        const float shift = static_cast<float>(size * unit(rng));
+        b.lo[c] += shift;
+        b.hi[c] += shift;
+      }
     }
   };
   const auto check = [&] {
@@ -137,9 +140,8 @@ TEST(Bvh, ForgetsItsPrimitivesWhenThereAreNoneLeft) {
 
 TEST(BoxBlock, OverlapsWhatTheBoxesDoAndNothingInUnsetLanes) {
   const auto boxes = random_boxes(300, 1.0, 9);
-  Aabb everything;
-  everything.add(Vec3d::Constant(-std::numeric_limits<double>::infinity()));
-  everything.add(Vec3d::Constant(std::numeric_limits<double>::infinity()));
+  TreeBox everything;
+  std::swap(everything.lo, everything.hi);  // an empty box is inside out
   BoxBlock asking;
   asking.set(5, everything);
   int hits = 0;
@@ -148,30 +150,78 @@ TEST(BoxBlock, OverlapsWhatTheBoxesDoAndNothingInUnsetLanes) {
     for (std::size_t k = 0; k < 6; ++k) block.set(k, boxes[first + k]);
     asking.set(2, boxes[first + 6]);
     LaneSet expected = 0;
-    Aabb hull;
+    TreeBox hull;
+    double half_area = 0;
     for (std::size_t k = 0; k < 6; ++k) {
-      expected |= static_cast<LaneSet>(boxes[first + k].overlaps(boxes[first + 6])) << k;
-      hull.add(boxes[first + k]);
+      const TreeBox& box = boxes[first + k];
+      expected |= static_cast<LaneSet>(box.overlaps(boxes[first + 6])) << k;
+      hull.add(box);
+      const TreeBox::Four e = box.hi - box.lo;
+      half_area += static_cast<double>(e[0] * e[1] + e[1] * e[2] + e[2] * e[0]);
     }
-    EXPECT_EQ(block.overlaps(asking, 2), expected);
-    EXPECT_EQ(block.overlaps(asking, 5), 0x3fU);
-    EXPECT_EQ(block.hull().lo, hull.lo);
-    EXPECT_EQ(block.hull().hi, hull.hi);
+    EXPECT_EQ(block.overlaps(asking.asking(2)), expected);
+    EXPECT_EQ(block.overlaps(asking.asking(5)), 0x3fU);
+    const TreeBox found = block.hull();
+    for (int c = 0; c < 3; ++c) {
+      EXPECT_EQ(found.lo[c], hull.lo[c]);
+      EXPECT_EQ(found.hi[c], hull.hi[c]);
+    }
+    EXPECT_NEAR(block.half_area(), half_area, 1e-6 * half_area);
     hits += expected != 0 ? 1 : 0;
   }
   EXPECT_GT(hits, 10);
 }
 
-TEST(Aabb, InflationRoundsOutward) {
-  Aabb box;
-  box.add(Vec3d(0.1, -0.3, 1e6));
-  Aabb tight = box;
-  box.inflate(0);
-  for (int k = 0; k < 3; ++k) {
-    EXPECT_LT(box.lo[k], tight.lo[k]);
-    EXPECT_GT(box.hi[k], tight.hi[k]);
+TEST(LaneSet, PacksTheNumbersOfEverySet) {
+  const EightInts numbers = {10, -11, 12, 13, 14, 15, 16, 1 << 30};
+  for (LaneSet lanes = 0; lanes < 256; ++lanes) {
+    std::vector<int> expected;
+    EightInts comparison{};
+    for (int k = 0; k < 8; ++k) {
+      if ((lanes >> k & 1) == 0) continue;
+      expected.push_back(numbers[k]);
+      comparison[k] = -1;
+    }
+    EXPECT_EQ(lanes_of(comparison), lanes);
+    std::vector<int> found(8);
+    found.resize(pack(numbers, lanes, found.data()));
+    EXPECT_EQ(found, expected);
   }
-  EXPECT_EQ(box_distance(tight, box), 0);
+}
+
+/// A box holds every point and margin that it was made from, to the last bit, and little more.
+TEST(TreeBox, RoundsOutward) {
+  std::mt19937_64 rng(11);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  for (int i = 0; i < 20000; ++i) {
+    const double size = std::pow(10.0, 6 * unit(rng)), margin = std::pow(10.0, 8 * unit(rng) - 4);
+    const Vec3d p = size * Vec3d(unit(rng), unit(rng), i % 5 == 0 ? 0 : unit(rng));
+    TreeBox box;
+    box.add(p);
+    const TreeBox tight = box;
+    box.inflate(margin);
+    for (int c = 0; c < 3; ++c) {
+      ASSERT_LE(static_cast<double>(tight.lo[c]), p[c]);
+      ASSERT_GE(static_cast<double>(tight.hi[c]), p[c]);
+      using Exact = long double;
+      const Exact ulps = 8e-7L * (std::abs(static_cast<Exact>(p[c])) + margin) + 1e-36L;
+      ASSERT_LE(static_cast<Exact>(box.lo[c]), static_cast<Exact>(p[c]) - margin);
+      ASSERT_GE(static_cast<Exact>(box.hi[c]), static_cast<Exact>(p[c]) + margin);
+      ASSERT_GE(static_cast<Exact>(box.lo[c]), static_cast<Exact>(p[c]) - margin - ulps);
+      ASSERT_LE(static_cast<Exact>(box.hi[c]), static_cast<Exact>(p[c]) + margin + ulps);
+    }
+  }
+}
+
+/// What no float holds reaches to infinity on its side; two of them overlap, as far as anybody can tell.
+TEST(TreeBox, BeyondFloatIsStillABox) {
+  TreeBox far, farther, near;
+  far.add(Vec3d(1e300, 0, 0));
+  farther.add(Vec3d(1e301, 0, 0));
+  near.add(Vec3d(1e30, 0, 0));
+  for (TreeBox* box : {&far, &farther, &near}) box->inflate(0.1);
+  EXPECT_TRUE(far.overlaps(farther));
+  EXPECT_FALSE(far.overlaps(near));
 }
 
 TEST(Aabb, DistanceOfBoxesIsAcrossTheGapAlone) {

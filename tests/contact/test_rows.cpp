@@ -1,4 +1,4 @@
-// Rows of the contact table: regions, merging, continuity of B, given vertices, offsets.
+// Rows of the contact table: regions, given vertices, offsets, completeness; merging is in test_rows_merged.cpp.
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
@@ -111,102 +111,8 @@ TEST(Rows, EveryRegionOfTwoEdges) {
   }
 }
 
-/// A 4 x 4 grid of unit cells and a free vertex (25) at p.
-Scene point_over_grid(const Vec3d& p, bool given = false, double offset = 0) {
-  Scene scene;
-  const auto [vertices, triangles] = grid(4, 4, 1.0);
-  add_body(scene, "sheet", vertices, triangles, d_hat, given, offset);
-  add_body(scene, "point", {p}, {}, d_hat);
-  return scene;
-}
-
-TEST(Rows, PairsOfOneFeatureAreMergedWithTheirNumber) {
-  // above vertex 12 (2, 2): six triangles have it as their closest point
-  const Scene over_vertex = point_over_grid(Vec3d(2, 2, 0.05));
-  ContactSystem contacts(over_vertex, {});
-  const Rows at_vertex = rows_at(contacts, over_vertex.x0);
-  double multiplicity = 0;
-  for (double m : at_vertex.table.multiplicity) multiplicity += m;
-  EXPECT_EQ(multiplicity, 6);
-  const int pp = find_row(at_vertex.table, {-1, -1, 12, 25}, ContactKind::point_point);
-  ASSERT_GE(pp, 0);
-  EXPECT_EQ(at_vertex.table.multiplicity[at(pp)], 6);
-
-  // above the straight edge 11-12, nearer to one side: that triangle's interior, and the edge for the other
-  const Scene beside = point_over_grid(Vec3d(1.5, 2.001, 0.05));
-  ContactSystem contacts2(beside, {});
-  const Rows rows = rows_at(contacts2, beside.x0);
-  EXPECT_EQ(rows.table.size(), 2U);
-  const int pe = find_row(rows.table, {-1, 11, 12, 25}, ContactKind::point_edge);
-  ASSERT_GE(pe, 0);
-  EXPECT_EQ(rows.table.multiplicity[at(pe)], 1);
-}
-
-TEST(Rows, BarrierIsContinuousWhereTheClosestFeatureChanges) {
-  const Scene scene = point_over_grid(Vec3d::Zero());
-  ContactSystem contacts(scene, {});
-  // across a straight edge, a diagonal, over a vertex, past the border, and off a corner of the sheet
-  const Vec3d from[] = {
-      {1.5, 1.99, 0.05}, {1.48, 1.52, 0.05}, {1.99, 1.985, 0.05}, {1.3, 0.01, 0.05}, {0.01, 0.01, 0.05}};
-  const Vec3d to[] = {
-      {1.5, 2.01, 0.05}, {1.52, 1.48, 0.05}, {2.01, 2.015, 0.05}, {1.3, -0.01, 0.05}, {-0.01, -0.01, 0.05}};
-  int changes = 0;
-  for (std::size_t path = 0; path < 5; ++path) {
-    const auto state = [&](double t) {
-      Positions x = scene.rest;
-      x.col(25) = from[path] + t * (to[path] - from[path]);
-      return x;
-    };
-    // bisect for every place where the keys change, then compare B on both sides of it
-    const auto keys = [&](double t) { return rows_at(contacts, state(t)).table.key; };
-    double left = 0;
-    for (int k = 1; k <= 20; ++k) {
-      double lo = left, hi = k / 20.0;
-      left = hi;
-      if (keys(lo) == keys(hi)) continue;
-      const auto at_lo = keys(lo);
-      for (int b = 0; b < 60; ++b) {
-        const double middle = (lo + hi) / 2;
-        (keys(middle) == at_lo ? lo : hi) = middle;
-      }
-      const double below = barrier(contacts, state(lo), 1), above = barrier(contacts, state(hi), 1);
-      EXPECT_GT(below, 1e-4);
-      EXPECT_NEAR(above, below, 1e-12 * below);
-      ++changes;
-    }
-  }
-  EXPECT_GE(changes, 5);
-}
-
-TEST(Rows, EdgesCrossingAGridKeepBContinuous) {
-  Scene scene;
-  const auto [vertices, triangles] = grid(3, 3, 1.0);
-  add_body(scene, "sheet", vertices, triangles, d_hat);
-  const int blade =
-      add_body(scene, "blade", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 0, 1)}, {{0, 1, 2}}, d_hat);
-  ContactSystem contacts(scene, {Mollifier::none});
-  const auto state = [&](double t) {
-    Positions x = scene.rest;
-    x.col(blade) = Vec3d(0.7 + 0.6 * t, 1.2 + 0.3 * t, 0.05);
-    x.col(blade + 1) = Vec3d(1.6 + 0.6 * t, 1.5 + 0.3 * t, 0.07);
-    x.col(blade + 2) = Vec3d(1.0, 1.2, 1.0);
-    return x;
-  };
-  // B is Lipschitz with a constant that all forces bound: no jump between neighbouring samples
-  double largest_step = 0, last = barrier(contacts, state(0), 1);
-  const int n = 400;
-  for (int k = 1; k <= n; ++k) {
-    const double next = barrier(contacts, state(1.0 * k / n), 1);
-    EXPECT_GT(next, 1e-4);
-    largest_step = std::max(largest_step, std::abs(next - last));
-    last = next;
-  }
-  // up to about 20 pairs, each with |b'| <= 2 d_hat, moved by 0.7/n
-  EXPECT_LT(largest_step, 20 * 2 * d_hat * 0.7 / n);
-}
-
 TEST(Rows, GivenVerticesHaveNoColumns) {
-  const Scene scene = point_over_grid(Vec3d(1.7, 1.2, 0.05), true);
+  const Scene scene = point_over_grid(Vec3d(1.7, 1.2, 0.05), d_hat, true);
   ContactSystem contacts(scene, {});
   const Rows rows = rows_at(contacts, scene.x0);
   ASSERT_EQ(rows.table.size(), 1U);
@@ -217,7 +123,7 @@ TEST(Rows, GivenVerticesHaveNoColumns) {
   EXPECT_EQ(t.weight, (std::vector<double>{1, 0, 0, 0}));
   EXPECT_EQ(t.key[0], (ContactKey{6, 7, 12, 25}));  // the identity keeps them
 
-  const Scene moving = point_over_grid(Vec3d(1.7, 1.2, 0.05), false);
+  const Scene moving = point_over_grid(Vec3d(1.7, 1.2, 0.05), d_hat, false);
   ContactSystem contacts2(moving, {});
   const Rows both = rows_at(contacts2, moving.x0);
   ASSERT_EQ(both.table.size(), 1U);
@@ -246,24 +152,6 @@ TEST(Rows, OffsetsAddUpAndDistancesAreMeans) {
   EXPECT_NEAR(rows.table.offset[0], 0.03, 1e-16);
   EXPECT_NEAR(rows.table.d_hat[0], 0.05, 1e-16);
   EXPECT_NEAR(rows.table.d[0], 0.04, 1e-15);
-}
-
-TEST(Rows, DifferentActivationDistancesAreNotMerged) {
-  // six triangles share the closest vertex; their mean activation distances differ
-  Scene scene = point_over_grid(Vec3d(2, 2, 0.05));
-  scene.d_hat[12] = 0.2;
-  scene.d_hat[6] = 0.17;  // corner of two of the six triangles round vertex 12
-  ContactSystem contacts(scene, {});
-  const Rows rows = rows_at(contacts, scene.x0);
-  double total = 0;
-  int n = 0;
-  for (std::size_t r = 0; r < rows.table.size(); ++r) {
-    EXPECT_EQ(rows.table.key[r], (ContactKey{-1, -1, 12, 25}));
-    total += rows.table.multiplicity[r];
-    ++n;
-  }
-  EXPECT_EQ(total, 6);
-  EXPECT_GE(n, 2);
 }
 
 /// Every candidate pair whose closest points are nearer than d_hat is in one row, and no other.
@@ -339,21 +227,6 @@ TEST(Rows, ObstaclesActOnFreeVerticesWithASignedGap) {
   EXPECT_EQ(rows.min_gap, rows.table.d[1]);
   EXPECT_EQ(rows.table.normal[2], 1);
   EXPECT_EQ(rows.table.n_free[0], 1);
-}
-
-TEST(Rows, PlanarPointEdgeMergesAtACorner) {
-  Scene scene;
-  scene.planar = true;
-  scene.planar_pairs = PlanarPairs::point_edge;
-  add_body(scene, "corner", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)}, {}, d_hat);
-  scene.surface_edges = {{0, 1}, {0, 2}};
-  add_body(scene, "point", {Vec3d(-0.03, -0.04, 0)}, {}, d_hat);
-  ContactSystem contacts(scene, {});
-  const Rows rows = rows_at(contacts, scene.x0);
-  ASSERT_EQ(rows.table.size(), 1U);
-  EXPECT_EQ(rows.table.kind[0], ContactKind::point_point);
-  EXPECT_EQ(rows.table.multiplicity[0], 2);
-  EXPECT_NEAR(rows.table.d[0], 0.05, 1e-16);
 }
 
 }  // namespace

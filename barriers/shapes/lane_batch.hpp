@@ -1,0 +1,75 @@
+// The batch call of a shape that is made of a logarithm, four rows at a time. Not for plugins: it needs more of this
+// program than a shape does.
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <cstring>
+
+#include "barriers/shapes/normalized_gap.hpp"
+#include "core/math/lanes_log.hpp"
+
+namespace bb {
+
+/// A shape whose formula takes the logarithm as an argument, on numbers or on several side by side.
+template <class S>
+concept HasTerms = requires(const shapes::NormalizedGap<double>& gap) {
+  S::terms(gap, 1.0, 1.0);
+};
+
+namespace detail {
+
+/// Four numbers from `column` on, or m < 4 of them and the first again.
+inline Lanes<double, 4> load_four(const double* column, std::size_t m) {
+  double padded[4];
+  if (m < 4) {
+    for (std::size_t k = 0; k < 4; ++k) padded[k] = column[k < m ? k : 0];
+    column = padded;
+  }
+  Lanes<double, 4> out;
+  std::memcpy(&out.v, column, sizeof(out.v));
+  return out;
+}
+inline void store_four(const Lanes<double, 4>& x, std::size_t m, double* column) {
+  if (m == 4) {
+    std::memcpy(column, &x.v, sizeof(x.v));
+    return;
+  }
+  for (std::size_t k = 0; k < m; ++k) column[k] = x.v[k];
+}
+
+}  // namespace detail
+
+/// As shape_batch, to rounding. What a row gets depends on that row alone, not on those beside it.
+template <HasTerms S>
+void lane_batch(void*, std::size_t n, const double* d, const double* d_hat, double* b, double* db,
+                double* d2b) {
+  using Real = Lanes<double, 4>;
+  for (std::size_t begin = 0; begin < n; begin += 4) {
+    const std::size_t m = std::min<std::size_t>(4, n - begin);
+    const Real gaps = detail::load_four(d + begin, m), widths = detail::load_four(d_hat + begin, m);
+    const shapes::NormalizedGap<Real> gap(gaps, widths);
+    const ShapeTerms<Real> terms = S::terms(gap, widths, minus_log(gap.u, gap.e));
+    detail::store_four(terms.b, m, b + begin);
+    detail::store_four(terms.db, m, db + begin);
+    detail::store_four(terms.d2b, m, d2b + begin);
+    const Real::Mask ordinary = gap.u > Real(0x1p-1000) && gap.e > Real(0);
+    if (!any(!ordinary)) continue;
+    for (std::size_t k = 0; k < m; ++k) {  // contact, and rows that do not act
+      if (ordinary.bits[k] != 0) continue;
+      const std::size_t i = begin + k;
+      const ShapeTerms<double> one = S::eval(d[i], d_hat[i]);
+      b[i] = one.b;
+      db[i] = one.db;
+      d2b[i] = one.d2b;
+    }
+  }
+}
+
+/// Evaluates a built-in shape by lane_batch where it can.
+template <class S>
+void use_lanes(Shape& shape) {
+  if constexpr (HasTerms<S>) shape.batch_double = &lane_batch<S>;
+}
+
+}  // namespace bb

@@ -1,0 +1,94 @@
+#include "core/contact/far_test.hpp"
+
+#include <algorithm>
+
+#include "core/contact/chunks.hpp"
+#include "core/contact/float_rounding.hpp"
+
+namespace bb {
+namespace {
+
+using Four = TreeBox::Four;
+
+/// Coordinates of eight points, one vector per axis.
+void transpose(const Four* const (&points)[FarTest::width], EightFloats (&axis)[3]) {
+  EightFloats p[4];
+  for (int k = 0; k < 4; ++k) {
+    p[k] = __builtin_shufflevector(*points[k], *points[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+  }
+  const EightFloats xy01 = __builtin_shufflevector(p[0], p[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const EightFloats xy23 = __builtin_shufflevector(p[2], p[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const EightFloats z01 = __builtin_shufflevector(p[0], p[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const EightFloats z23 = __builtin_shufflevector(p[2], p[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  axis[0] = __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13);
+  axis[1] = __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
+  axis[2] = __builtin_shufflevector(z01, z23, 0, 1, 8, 9, 4, 5, 12, 13);
+}
+
+}  // namespace
+
+template <int N>
+std::vector<FarTest::Corners> FarTest::corners(const Primitives<N>& primitives) {
+  std::vector<Corners> out(primitives.size());
+  for (std::size_t i = 0; i < out.size(); ++i) {
+    std::copy(primitives.vertices[i].begin(), primitives.vertices[i].end(), out[i].vertex);
+    out[i].reach = float_above(primitives.side[i].d_hat / 2 + primitives.side[i].offset);
+  }
+  return out;
+}
+
+FarTest::FarTest(const Surface& surface)
+    : points_(corners(surface.points)),
+      edges_(corners(surface.edges)),
+      triangles_(corners(surface.triangles)) {}
+
+void FarTest::set_state(const Positions& x) {
+  x_.resize(static_cast<std::size_t>(x.cols()));
+  if (x_.empty()) return;
+  const Vec3d lo = x.rowwise().minCoeff(), hi = x.rowwise().maxCoeff();
+  const Vec3d middle = lo + (hi - lo) / 2;
+  const double largest = std::max(1e-30, (hi - middle).cwiseMax(middle - lo).maxCoeff()), unit = 1 / largest;
+  for_each_chunk(x_.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vec3d p = (x.col(static_cast<int>(i)) - middle) * unit;
+      x_[i] = Four{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), 0};
+    }
+  });
+  unit_ = float_above(unit);
+  // Two points, sqrt(3) times what the rounding to float moves a coordinate; in double, what the middle costs.
+  blur_ = float_above(4 * 0x1p-24 + 0x1p-48 * x.cwiseAbs().maxCoeff() * unit);
+}
+
+template <PairKind K>
+LaneSet FarTest::far(const IndexPair* pairs, std::size_t n) const {
+  constexpr int N = pair_points(K), split = pair_split(K);
+  const Four* corner[N][width];
+  EightFloats reach;
+  for (std::size_t lane = 0; lane < width; ++lane) {
+    const IndexPair pair = pairs[lane < n ? lane : 0];
+    const Corners& a = first<K>()[static_cast<std::size_t>(pair.first)];
+    const Corners& b = second<K>()[static_cast<std::size_t>(pair.second)];
+    for (int k = 0; k < N; ++k) {
+      corner[k][lane] = &x_[static_cast<std::size_t>(k < split ? a.vertex[k] : b.vertex[k - split])];
+    }
+    reach[lane] = a.reach + b.reach;
+  }
+  PairLanes<K, Lanes8> points;
+  EightFloats origin[3], point[3];
+  transpose(corner[0], origin);
+  for (int c = 0; c < 3; ++c) points.x[0][c] = EightFloats{};
+  for (int k = 1; k < N; ++k) {
+    transpose(corner[k], point);
+    for (int c = 0; c < 3; ++c) points.x[k][c] = point[c] - origin[c];
+  }
+  // the sum of two sides and its unit are rounded once each
+  const Lanes8 level = Lanes8(reach * (unit_ * (1 + 0x1p-20f)) + blur_);
+  return lanes_of(farther_than<K>(points, level).bits) & ((LaneSet{1} << n) - 1);
+}
+
+template LaneSet FarTest::far<PairKind::point_point>(const IndexPair*, std::size_t) const;
+template LaneSet FarTest::far<PairKind::point_edge>(const IndexPair*, std::size_t) const;
+template LaneSet FarTest::far<PairKind::point_triangle>(const IndexPair*, std::size_t) const;
+template LaneSet FarTest::far<PairKind::edge_edge>(const IndexPair*, std::size_t) const;
+
+}  // namespace bb

@@ -1,0 +1,55 @@
+// Which candidate pairs are certainly farther apart than their contact distance at a state: eight at a time, in
+// float. Most candidates are, and the closest points of a pair cost as much as this does for twenty.
+#pragma once
+
+#include <vector>
+
+#include "core/contact/lane_set.hpp"
+#include "core/contact/pair_lanes.hpp"
+#include "core/contact/tree_box.hpp"
+
+namespace bb {
+
+/// Not thread-safe while a state is set; any number of threads may ask.
+class FarTest {
+ public:
+  static constexpr std::size_t width = 8;
+
+  explicit FarTest(const Surface& surface);
+  /// [3 x n] m, finite.
+  void set_state(const Positions& x);
+  /// Those of n <= 8 pairs of kind K that are proven farther apart than the d_hat and offset of their two sides,
+  /// however their distance is rounded.
+  template <PairKind K>
+  LaneSet far(const IndexPair* pairs, std::size_t n) const;
+  /// Asks the memory for what far() will need of a pair: the second primitive of a candidate jumps about.
+  template <PairKind K>
+  void fetch(IndexPair pair) const {
+    __builtin_prefetch(&second<K>()[static_cast<std::size_t>(pair.second)]);
+  }
+
+ private:
+  using Four = TreeBox::Four;
+  /// The vertices of a primitive and its share of the contact distance, m.
+  struct alignas(16) Corners {
+    int vertex[3];
+    float reach;
+  };
+  template <int N>
+  static std::vector<Corners> corners(const Primitives<N>& primitives);
+  template <PairKind K>
+  const std::vector<Corners>& first() const {
+    return K == PairKind::edge_edge ? edges_ : points_;
+  }
+  template <PairKind K>
+  const std::vector<Corners>& second() const {
+    return K == PairKind::point_point ? points_ : K == PairKind::point_triangle ? triangles_ : edges_;
+  }
+
+  const std::vector<Corners> points_, edges_, triangles_;
+  std::vector<Four> x_;  // in units of the scene's size about its middle: no coordinate is above 1
+  float unit_ = 0;       // 1/m, rounded up
+  float blur_ = 0;       // how much nearer than two points of x_ those of the state can be, in those units
+};
+
+}  // namespace bb
