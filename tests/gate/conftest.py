@@ -31,7 +31,7 @@ for pointer, value in edit.items():
     place = record
     *sections, last = pointer.strip("/").split("/")
     for section in sections:
-        place = place[section]
+        place = place[section.replace("~1", "/")]
     place[last] = value
 (out / "run.json").write_text(json.dumps(record))
 """
@@ -68,3 +68,17 @@ def defective(program, monkeypatch, tmp_path):
 def answer(tmp_path):
     """What the last call of the gate wrote."""
     return lambda: json.loads((tmp_path / "gate" / "gate.json").read_text())
+
+
+@pytest.fixture(scope="session")
+def block(program, tmp_path_factory) -> Path:
+    """The folder of one honest run of the block, to be copied and edited."""
+    from analysis.gate import cases
+
+    out = tmp_path_factory.mktemp("gate") / "block"
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("BARRIERBENCH_PROGRAM", program)
+        case = next(case for case in cases.read_set("small") if case.name == "block-log")
+        run = cases.run_case(case, out)
+    assert run.record["status"]["outcome"] == "ok" and len(run.trace) > 50
+    return out
