@@ -6,8 +6,6 @@ from pathlib import Path
 
 import pytest
 
-sys.path.insert(0, str(Path(__file__).resolve().parent))
-
 # Runs the real program with settings that a defect of the code would amount to, then writes what was asked for into the record: to the gate it
 # is the same config, and only the numbers can give the defect away.
 STAND_IN = """#!{python}
