@@ -34,7 +34,8 @@ def of_one_config(case: str, runs: list[Run]) -> list[Finding]:
         threads = f"{first.threads} and {run.threads} threads"
         findings.append(_hash_finding(case, "state_hash", first, run, threads))
         ids = [r.section("ids").get("config_id", "") for r in (first, run)]
-        findings.append(Finding(case, "I", "config_id", "pass" if ids[0] and ids[0] == ids[1] else "FAIL", ids[1], ids[0], judged=2 if all(ids) else 0))
+        findings.append(Finding(case, "I", "config_id", "pass" if ids[0] and ids[0] == ids[1] else "FAIL", ids[1], ids[0],
+                                judged=2 if all(ids) else 0))
         other = {m.name: v for m, v in measure(run).items() if m.gate_class != "V"}
         unlike = sorted(name for name in numbers.keys() | other.keys() if numbers.get(name) != other.get(name))
         findings.append(Finding(case, "II", "numbers", "FAIL" if unlike or not numbers else "pass", len(unlike), 0, judged=len(numbers),

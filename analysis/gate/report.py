@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from collections import Counter
 from pathlib import Path
 
 from .finding import ALL_CLASSES, JUDGED, Finding, failures, judged
@@ -43,7 +44,8 @@ def closing(findings: list[Finding]) -> str:
     """One sentence: how much was judged, and how it came out."""
     count, red = judged(findings), len(failures(findings))
     classes = ", ".join(f"{count[c]} of class {c}" for c in ALL_CLASSES)
-    other = [f"{sum(f.verdict == v for f in findings)} {v}" for v in ("better", "xfail", "xpass", "not_judged") if any(f.verdict == v for f in findings)]
+    words = Counter(f.verdict for f in findings)
+    other = [f"{words[word]} {word}" for word in ("better", "xfail", "xpass", "not_judged") if words[word]]
     return f"{sum(count.values())} judged ({classes}){', ' + ', '.join(other) if other else ''}: " + (f"RED, {red} failed" if red else "green")
 
 

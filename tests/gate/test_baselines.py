@@ -91,6 +91,21 @@ def test_another_processor_still_passes(gate, folder, answer):
         assert gate("gate", "--case", "block-log", "--baselines", folder) == 1  # more than 3% on the machine of the baseline
 
 
+def test_the_bits_of_another_processor_still_pass(gate, answer, monkeypatch, tmp_path):
+    """Emulated: OpenBLAS with the kernel of another processor, so that factorisations round otherwise."""
+    hashes = []
+    for kernel in (None, "Prescott"):
+        if kernel:
+            monkeypatch.setenv("OPENBLAS_CORETYPE", kernel)
+        assert gate("gate", "--case", "strip-cubic") == 0
+        assert answer()["judged"]["III"] > 15 and answer()["judged"]["II"] == 2
+        record = json.loads((tmp_path / "gate/strip-cubic/threads-1/run.json").read_text())
+        hashes.append(record["summary"]["state_hash"])
+    if record["provenance"]["blas"]["kernel"] != "Prescott":
+        pytest.skip("this OpenBLAS has one kernel")
+    assert hashes[0] != hashes[1]
+
+
 def test_a_metric_that_vanished_is_red(gate, folder, answer):
     edit(folder, lambda b: b["metrics"].update({"log10_cond full/jacobi max": dict(b["metrics"]["log10_cond full/none max"])}))
     assert gate("gate", "--case", "block-log", "--baselines", folder) == 1

@@ -20,7 +20,8 @@ def test_the_rule():
     assert (e.value, e.lower, e.upper, e.n) == pytest.approx((110, 101 - 15, 119 + 15, 21))
 
 
-@pytest.mark.parametrize("metric, value, half", [(COND_METRIC, 5.0, 0.05), (ITERATIONS, 10.0, 2.0), (ITERATIONS, 100.0, 5.0), (GAP_METRIC, 0.3, 0.02)])
+@pytest.mark.parametrize("metric, value, half", [
+    (COND_METRIC, 5.0, 0.05), (ITERATIONS, 10.0, 2.0), (ITERATIONS, 100.0, 5.0), (GAP_METRIC, 0.3, 0.02)])
 def test_no_tighter_than_the_tolerance(metric, value, half):
     e = calibrate(metric, [value] * 21)
     assert (e.lower, e.upper) == pytest.approx((value - half, value + half)) and not e.sample
