@@ -1,0 +1,113 @@
+"""Baselines: results/baselines/CASE.json, written by `bench accept` alone."""
+
+from __future__ import annotations
+
+import json
+import math
+import os
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .envelope import Envelope
+from .metrics import LOWER_BETTER, TWO_SIDED, Metric, Tolerance
+
+NAME, MAJOR, VERSION = "barrierbench.baseline", "1", "1.0.0"
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "results" / "baselines"
+
+
+class BaselineError(ValueError):
+    """A file that is no baseline of this version, or not of what it is asked about."""
+
+
+@dataclass
+class Kept:
+    """What a baseline says about one metric."""
+
+    gate_class: str
+    unit: str
+    direction: str
+    envelope: Envelope
+    xfail: str = ""  # the issue that waits for it
+
+    def json(self) -> dict:
+        e = self.envelope
+        line = {"class": self.gate_class, "value": e.value, "lower": e.lower, "upper": e.upper, "unit": self.unit,
+                "direction": self.direction, "n": e.n}
+        return line | ({"sample": list(e.sample)} if e.sample else {}) | ({"xfail": self.xfail} if self.xfail else {})
+
+
+@dataclass
+class Baseline:
+    case: str
+    kind: str  # run or matrix
+    reason: str
+    calibrated_at: dict
+    metrics: dict[str, Kept]
+    config: dict = field(default_factory=dict)
+    scene: dict = field(default_factory=dict)
+    made_by: dict = field(default_factory=dict)
+
+    def json(self) -> dict:
+        return {"schema": {"name": NAME, "version": VERSION}, "case": self.case, "kind": self.kind, "reason": self.reason,
+                "calibrated_at": self.calibrated_at, "made_by": self.made_by, "scene": self.scene, "config": self.config,
+                "metrics": {name: kept.json() for name, kept in sorted(self.metrics.items())}}
+
+
+def keep(metric: Metric, envelope: Envelope) -> Kept:
+    return Kept(metric.gate_class, metric.unit, metric.direction, envelope)
+
+
+def metric_of(name: str, kept: Kept) -> Metric:
+    return Metric(name, kept.gate_class, kept.unit, kept.direction, Tolerance())
+
+
+def write(baseline: Baseline, path: Path) -> None:
+    path.parent.mkdir(parents=True, exist_ok=True)
+    part = path.with_name(f"{path.name}.tmp.{os.getpid()}")
+    part.write_text(json.dumps(baseline.json(), indent=1) + "\n")
+    part.replace(path)
+
+
+def _line(path: Path, name: str, line) -> Kept:
+    place = f"{path}: /metrics/{name}"
+    if not isinstance(line, dict):
+        raise BaselineError(f"{place}: no object")
+    for key in ("value", "lower", "upper"):
+        value = line.get(key)
+        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+            raise BaselineError(f"{place}/{key}: {value!r}; a finite number is needed")
+    if not line["lower"] <= line["value"] <= line["upper"]:
+        raise BaselineError(f"{place}: value {line['value']} outside its own envelope [{line['lower']}, {line['upper']}]")
+    if line.get("class") not in ("III", "IV", "V"):
+        raise BaselineError(f"{place}/class: {line.get('class')!r}; III, IV or V (classes I and II are exact and have no baseline)")
+    if line.get("direction") not in (TWO_SIDED, LOWER_BETTER):
+        raise BaselineError(f"{place}/direction: {line.get('direction')!r}; {TWO_SIDED} or {LOWER_BETTER}")
+    envelope = Envelope(line["value"], line["lower"], line["upper"], int(line.get("n", 1)), tuple(line.get("sample", ())))
+    return Kept(line["class"], line.get("unit", ""), line["direction"], envelope, line.get("xfail", ""))
+
+
+def read(path: str | Path, case: str | None = None, kind: str | None = None) -> Baseline:
+    """Raises BaselineError with file and place: not there, empty, another version, of another case or kind, a number that is none."""
+    path = Path(path)
+    if not path.is_file():
+        raise BaselineError(f"{path}: no such baseline; `bench calibrate` measures one and `bench accept --reason \"...\"` keeps it")
+    text = path.read_text(errors="replace")
+    if not text.strip():
+        raise BaselineError(f"{path}: empty")
+    try:
+        data = json.loads(text)
+    except ValueError as error:
+        raise BaselineError(f"{path}: not JSON: {error}") from None
+    schema = data.get("schema") if isinstance(data, dict) else None
+    if not isinstance(schema, dict) or schema.get("name") != NAME or str(schema.get("version", "")).split(".")[0] != MAJOR:
+        raise BaselineError(f"{path}: schema {schema}; this version reads {NAME} {MAJOR}.x.y")
+    for key, wanted in (("case", case), ("kind", kind)):
+        if wanted is not None and data.get(key) != wanted:
+            raise BaselineError(f"{path}: a baseline of {key} {data.get(key)!r}, asked about {wanted!r}")
+    metrics = data.get("metrics")
+    if not isinstance(metrics, dict) or not metrics:
+        raise BaselineError(f"{path}: /metrics is empty: it would judge nothing")
+    lines = {name: _line(path, name, line) for name, line in metrics.items()}
+    return Baseline(data.get("case", ""), data.get("kind", ""), data.get("reason", ""), data.get("calibrated_at") or {}, lines,
+                    data.get("config") or {}, data.get("scene") or {}, data.get("made_by") or {})

@@ -1,0 +1,101 @@
+"""Measures what `bench accept` may keep: each case of a set as it is, and 20 copies whose start is perturbed by 1e-12 of its size.
+
+Nothing of results/baselines/ is changed: the proposals stand in results/runs/calibration/ until `bench accept --reason "..."`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from ..load import RecordError
+from . import baseline, invariants
+from .baseline import Baseline, Kept, keep
+from .cases import ROOT, Case, GateError, jittered, read_set, run_case
+from .envelope import Envelope, calibrate
+from .finding import failures
+from .instructions import instructions_of
+from .metrics import Metric, measure
+from .records import Run
+
+OUT = ROOT / "results" / "runs" / "calibration"
+COPIES = 20
+
+
+def copies_of(case: Case, out: Path, n: int, size_m: float, first_seed: int = 1) -> Iterator[Run]:
+    """Perturbed copies, with 1 and 2 threads in turn."""
+    if not size_m > 0:
+        raise GateError(f"{case.name}: the scene has no size to perturb")
+    for k in range(n):
+        yield jittered(case, out / f"copy-{k:02d}", first_seed + k, size_m, 1 + k % 2)
+
+
+def envelopes(runs: list[Run]) -> dict[str, Kept]:
+    """Of every metric that all of them have. `value` of a cost is that of the first run, which has no perturbation."""
+    values: dict[Metric, list[float]] = {}
+    for run in runs:
+        for metric, value in measure(run).items():
+            values.setdefault(metric, []).append(value)
+    kept = {}
+    for metric, sample in values.items():
+        if metric.gate_class == "V" or len(sample) < len(runs):
+            continue
+        e = calibrate(metric, sample)
+        if metric.gate_class == "IV":
+            e = Envelope(sample[0], min(e.lower, sample[0]), max(e.upper, sample[0]), e.n)
+        kept[metric.name] = keep(metric, e)
+    return kept
+
+
+def propose(case_name: str, runs: list[Run], reason: str = "") -> Baseline:
+    """What a baseline of these runs would be. Raises GateError when one of them breaks an invariant: that is never accepted."""
+    red = [f for run in runs for f in failures(invariants.judge(f"{case_name}: {run.path}", run, foreign=True))]
+    if red:
+        raise GateError("\n".join(["a run that breaks an invariant (class I) makes no baseline:",
+                                   *(f"  {f.case}: {f.metric}: {f.note}" for f in red)]))
+    first, kept = runs[0], envelopes(runs)
+    if not kept:
+        raise GateError(f"{case_name}: no number that all {len(runs)} records have")
+    provenance, seeds = first.section("provenance"), runs[-1].section("config").get("seeds") or {}
+    at = {"commit": provenance.get("git_commit", ""), "dirty": provenance.get("git_dirty"), "runs": len(runs),
+          "jitter_m": seeds.get("jitter_m", 0), "date": datetime.date.today().isoformat()}
+    config = {key: value for key, value in first.section("config").items() if key not in ("threads", "seeds")}
+    from .configs import scene_size  # the sizes that say which scene it is
+    return Baseline(case_name, "run", reason, at, kept, config, scene_size(first), first.made_by)
+
+
+def calibrate_case(case: Case, out: Path, copies: int) -> Baseline:
+    first = run_case(case, out / "as-it-is", 1)
+    size_m = first.section("scene").get("extent_m") or 0.0
+    proposal = propose(case.name, [first, *copies_of(case, out, copies, size_m)])
+    if count := instructions_of(case):
+        proposal.metrics["instructions"] = count
+    return proposal
+
+
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="bench calibrate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--set", default="small", help="configs/gates/SET.json (default: small)")
+    parser.add_argument("--case", action="append", default=[], metavar="TEXT", help="only cases whose name contains it (repeatable)")
+    parser.add_argument("--copies", type=int, default=COPIES, help=f"perturbed copies (default: {COPIES})")
+    parser.add_argument("--out", type=Path, default=OUT, metavar="DIR", help="default: results/runs/calibration")
+    args = parser.parse_args(argv)
+    if args.copies < 1:
+        parser.error(f"--copies {args.copies}: at least 1")
+    try:
+        for case in read_set(args.set):
+            if args.case and not any(word in case.name for word in args.case):
+                continue
+            proposal = calibrate_case(case, args.out / case.name, args.copies)
+            path = args.out / f"{case.name}.json"
+            baseline.write(proposal, path)
+            chaotic = sorted(name for name, kept in proposal.metrics.items() if kept.envelope.sample)
+            print(f"{path}: {len(proposal.metrics)} metrics of {args.copies + 1} runs{'; chaotic: ' + ', '.join(chaotic) if chaotic else ''}")
+    except (GateError, RecordError) as error:
+        print(f"bench calibrate: {error}", file=sys.stderr)
+        return 2
+    print('bench calibrate: ./bench accept --reason "..." makes these the baselines', file=sys.stderr)
+    return 0

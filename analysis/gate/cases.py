@@ -1,0 +1,79 @@
+"""The cases of a gate: configs/gates/SET.json, and running one."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .records import Run, read_run
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "configs" / "gates"
+NAME = "barrierbench.gates/1"
+
+
+class GateError(ValueError):
+    """A set that cannot be read, or a program that cannot be run."""
+
+
+@dataclass(frozen=True)
+class Case:
+    name: str
+    config: Path
+    set: dict = field(default_factory=dict)  # JSON pointer -> value
+    instructions: bool = False  # small enough for callgrind
+
+
+def sets() -> list[str]:
+    return sorted(path.stem for path in FOLDER.glob("*.json"))
+
+
+def read_set(name: str) -> list[Case]:
+    """Every scene with every formulation. Raises GateError with file and place."""
+    path = FOLDER / f"{name}.json"
+    if not path.is_file():
+        raise GateError(f"set {name!r}: one of {', '.join(sets())} (configs/gates/)")
+    try:
+        data = json.loads(path.read_text())
+    except ValueError as error:
+        raise GateError(f"{path}: not JSON: {error}") from None
+    if data.get("schema") != NAME:
+        raise GateError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
+    cases = [Case(f"{scene['name']}-{formulation['name']}", (path.parent / scene["config"]).resolve(),
+                  {**data.get("set", {}), **scene.get("set", {}), **formulation.get("set", {})}, scene.get("instructions", False))
+             for scene in data.get("scenes", []) for formulation in data.get("formulations", [])]
+    if not cases:
+        raise GateError(f"{path}: no case: it needs scenes and formulations")
+    return cases
+
+
+def program() -> Path:
+    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
+    if not path.exists():
+        raise GateError(f"{path} is not built: ./bench build")
+    return path
+
+
+def command(case: Case, out: Path, threads: int, more: dict) -> list[str]:
+    settings = {**case.set, "/threads": threads, **more}
+    return [str(program()), "run", str(case.config), "--out", str(out),
+            *(word for pointer, value in settings.items() for word in ("--set", f"{pointer}={json.dumps(value)}"))]
+
+
+def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
+    """Runs it and reads its record. A failed run has a record too. Raises GateError when there is none."""
+    settings = {"/" + name.replace("__", "/"): value for name, value in more.items()}
+    # A record of an earlier call must not stand in for one that this program fails to write.
+    (out / "run.json").unlink(missing_ok=True)
+    done = subprocess.run(command(case, out, threads, settings), capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise GateError(f"{case.name}: the program ended with {done.returncode}: {done.stderr.strip() or done.stdout.strip()}")
+    return read_run(out, allow_not_finite=True)
+
+
+def jittered(case: Case, out: Path, seed: int, size_m: float, threads: int = 1) -> Run:
+    """A copy whose start coordinates are moved by up to 1e-12 times the size of the scene."""
+    return run_case(case, out, threads, seeds__main=seed, seeds__jitter_m=1e-12 * size_m)

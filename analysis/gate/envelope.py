@@ -1,0 +1,63 @@
+"""How far a number may move: envelopes from perturbed copies, and distributions for numbers that are chaotic."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import ks_2samp
+
+from .metrics import Metric
+
+CHAOTIC_SPREAD = 0.30  # largest - smallest of the copies over their median: beyond it a value says nothing
+ENOUGH_COPIES = 5  # for quantiles; fewer leave the tolerance of the metric alone
+KS_LEVEL = 1e-3
+
+
+@dataclass(frozen=True)
+class Envelope:
+    value: float  # median of the copies
+    lower: float
+    upper: float
+    n: int
+    sample: tuple[float, ...] = ()  # of a chaotic number, whose distribution is compared instead
+
+
+def is_chaotic(metric: Metric, values: np.ndarray) -> bool:
+    spread = float(values.max() - values.min())
+    if metric.unit == "log10":
+        return spread > np.log10(1 + CHAOTIC_SPREAD)
+    return spread > CHAOTIC_SPREAD * abs(float(np.median(values)))
+
+
+def calibrate(metric: Metric, values) -> Envelope:
+    """[q05 - 1.5 IQR, q95 + 1.5 IQR] of the copies, no tighter than the metric's tolerance round their median. The sample is kept
+    where it is chaotic. Requires at least one finite value."""
+    values = np.sort(np.asarray(values, dtype=float))
+    if len(values) == 0 or not np.isfinite(values).all():
+        raise ValueError(f"{metric.name}: needs finite values, has {values.tolist()}")
+    middle = float(np.median(values))
+    half = metric.tolerance.around(middle)
+    lower, upper = middle - half, middle + half
+    if len(values) < ENOUGH_COPIES:
+        return Envelope(middle, min(lower, float(values[0])), max(upper, float(values[-1])), len(values))
+    q05, q25, q75, q95 = np.quantile(values, [0.05, 0.25, 0.75, 0.95])
+    reach = 1.5 * (q75 - q25)
+    sample = tuple(values.tolist()) if is_chaotic(metric, values) else ()
+    return Envelope(middle, min(lower, float(q05 - reach)), max(upper, float(q95 + reach)), len(values), sample)
+
+
+def ks_p_value(old, new) -> float:
+    """Of the two-sample Kolmogorov-Smirnov test, exact for samples of this size."""
+    return float(ks_2samp(old, new, method="exact").pvalue)
+
+
+def holm(p_values: list[float], level: float = KS_LEVEL) -> list[bool]:
+    """Which of a family of tests are significant when all of them together may give one false alarm in 1/level."""
+    order = np.argsort(p_values)
+    significant = [False] * len(p_values)
+    for rank, k in enumerate(order):
+        if p_values[k] >= level / (len(p_values) - rank):
+            break
+        significant[k] = True
+    return significant

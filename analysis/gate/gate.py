@@ -1,0 +1,138 @@
+"""Runs a small set of cases, each with 1 and with 2 threads, and judges them: invariants (class I), equal bits (II), numbers inside the
+envelopes of results/baselines/ (III) and costs (IV). Times are in no gate.
+
+With --record or --matrix it judges what another program has written, against one baseline file. Exit codes: 0 green, 1 red, 2 nothing can be
+judged (no or bad baseline, unreadable file, no program).
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+import time
+from pathlib import Path
+
+from ..load import RecordError
+from . import baseline, configs, invariants, judge, matrices, report
+from .baseline import Baseline, BaselineError
+from .calibrate import copies_of
+from .cases import ROOT, Case, GateError, read_set, run_case
+from .determinism import of_one_config
+from .finding import Finding, failures, without_subject
+from .instructions import judge_instructions
+from .metrics import measure
+from .records import Run, read_run
+
+OUT = ROOT / "results" / "runs" / "gate"
+REPEAT_SEED = 1001  # of the copy that has to confirm a number outside its envelope; no copy of a calibration has it
+CHAOS_SEED, CHAOS_COPIES = 2001, 8
+
+
+def same_subject(kept: Baseline, run: Run, path: Path) -> None:
+    """Raises BaselineError when the baseline is of another scene or of other settings."""
+    if lines := configs.contradictions(kept.config, run.section("config")):
+        raise BaselineError("\n".join([f"{path}: a baseline of other settings than {run.path}:", *(f"  {line}" for line in lines)]))
+    size = configs.scene_size(run)
+    if unlike := [f"  {place}: {value!r} and {size.get(place)!r}" for place, value in sorted(kept.scene.items()) if value != size.get(place)]:
+        raise BaselineError("\n".join([f"{path}: a baseline of another scene than {run.path}:", *unlike]))
+
+
+def _confirmed(findings: list[Finding], case: Case, kept: Baseline, out: Path, size_m: float) -> list[Finding]:
+    """A number of class III outside its envelope is red when a copy with another seed is outside as well."""
+    outside = {f.metric for f in findings if f.gate_class == "III" and f.verdict == "FAIL"}
+    if not outside or not size_m > 0:
+        return findings
+    again = run_case(case, out, 1, seeds__main=REPEAT_SEED, seeds__jitter_m=1e-12 * size_m)
+    second = {f.metric: f for f in judge.numbers(case.name, kept.metrics, measure(again), False)}
+    for f in findings:
+        if f.metric in outside and f.gate_class == "III":
+            confirmed = second[f.metric].verdict == "FAIL"
+            f.verdict = "FAIL" if confirmed else "pass"
+            f.note += "; confirmed by a copy" if confirmed else "; a copy with another seed is inside"
+    return findings
+
+
+def judge_case(case: Case, kept: Baseline, path: Path, out: Path) -> tuple[list[Finding], list]:
+    """The lines of one case, and the samples of its chaotic metrics (judged with those of all cases)."""
+    runs = [run_case(case, out / case.name / f"threads-{threads}", threads) for threads in (1, 2)]
+    first = runs[0]
+    findings = [f for run in runs for f in invariants.judge(case.name if run is first else f"{case.name}, {run.threads} threads", run)]
+    findings += of_one_config(case.name, runs)
+    same_subject(kept, first, path)
+    same_kind = bool(kept.made_by) and kept.made_by == first.made_by
+    size_m = first.section("scene").get("extent_m") or 0.0
+    lines = judge.numbers(case.name, kept.metrics, measure(first), same_kind)
+    findings += _confirmed(lines, case, kept, out / case.name / "repeat", size_m)
+    samples = []
+    if chaotic := judge.chaotic(kept):
+        values = [measure(run) for run in copies_of(case, out / case.name / "copies", CHAOS_COPIES, size_m, CHAOS_SEED)]
+        samples = [(case.name, name, k, [v for numbers in values for m, v in numbers.items() if m.name == name]) for name, k in chaotic.items()]
+    return findings, samples
+
+
+def run_set(name: str, baselines: Path, out: Path, only: list[str]) -> list[Finding]:
+    """Raises GateError, BaselineError, RecordError. Every baseline is read before the first run."""
+    cases = [case for case in read_set(name) if not only or any(word in case.name for word in only)]
+    if not cases:
+        raise GateError(f"set {name}: no case whose name contains {' or '.join(only)}")
+    kept = {case.name: baseline.read(baselines / f"{case.name}.json", case.name, "run") for case in cases}
+    findings, samples = [], []
+    for case in cases:
+        start = time.monotonic()
+        lines, chaotic = judge_case(case, kept[case.name], baselines / f"{case.name}.json", out)
+        red = len(failures(lines))
+        print(f"gate: {case.name}: {f'{red} failed' if red else 'green'} ({time.monotonic() - start:.1f} s)", file=sys.stderr)
+        findings += lines
+        samples += chaotic
+    return findings + (judge.distributions(samples) if samples else [])
+
+
+def judge_record(record: Path, path: Path) -> list[Finding]:
+    """A record that is there, against one baseline."""
+    kept, run = baseline.read(path, kind="run"), read_run(record)
+    same_subject(kept, run, path)
+    case = kept.case or str(record)
+    dropped = [Finding(case, "I", "trace lines dropped", "report", run.torn, 0, judged=0, note="torn last line")] if run.torn else []
+    lines = [f for f in invariants.judge(case, run, foreign=True) if not (f.metric == "trace" and run.torn)]
+    return dropped + lines + judge.numbers(case, kept.metrics, measure(run), bool(kept.made_by) and kept.made_by == run.made_by)
+
+
+def arguments(argv: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="bench gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="examples: ./bench gate\n          ./bench gate --matrix dumps/*.mtx --baseline conditioning.json")
+    parser.add_argument("--set", default="small", help="configs/gates/SET.json (default: small)")
+    parser.add_argument("--case", action="append", default=[], metavar="TEXT", help="only cases whose name contains it (repeatable)")
+    parser.add_argument("--baselines", type=Path, default=baseline.FOLDER, metavar="DIR", help="default: results/baselines")
+    parser.add_argument("--record", type=Path, metavar="RUN.json", help="judge this record instead of running anything")
+    parser.add_argument("--matrix", type=Path, nargs="+", metavar="FILE.mtx", help="judge these Matrix Market files instead")
+    parser.add_argument("--baseline", type=Path, metavar="FILE.json", help="of --record and --matrix")
+    parser.add_argument("--out", type=Path, default=OUT, metavar="DIR", help="runs and gate.json (default: results/runs/gate)")
+    parser.add_argument("--instructions", action="store_true", help="count instructions with valgrind as well, where the baseline has them")
+    parser.add_argument("--verbose", action="store_true", help="lines that pass as well")
+    args = parser.parse_args(argv)
+    if bool(args.record or args.matrix) != bool(args.baseline) or (args.record and args.matrix):
+        parser.error("--record or --matrix goes with --baseline FILE.json")
+    return args
+
+
+def main(argv: list[str]) -> int:
+    args = arguments(argv)
+    try:
+        if args.record:
+            findings, required = judge_record(args.record, args.baseline), ("I", "III")
+        elif args.matrix:
+            findings, required = matrices.judge_matrices(args.matrix, args.baseline), ("I", "III")
+        else:
+            findings, required = run_set(args.set, args.baselines, args.out, args.case), ("I", "II", "III", "IV")
+            if args.instructions:
+                findings += judge_instructions(args.set, args.baselines, args.case)
+    except (RecordError, BaselineError, GateError, matrices.MatrixError) as error:
+        print(f"bench gate: {error}", file=sys.stderr)
+        return 2
+    findings += without_subject(findings, required)
+    lines = report.shown(findings, args.verbose)
+    if lines:
+        print(report.table(lines))
+    print(report.closing(findings))
+    report.write_json(args.out / "gate.json", "barrierbench.gate", findings, set=None if args.baseline else args.set)
+    return 1 if failures(findings) else 0

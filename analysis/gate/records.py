@@ -1,0 +1,115 @@
+"""Records for a gate: read strictly, since what a gate overlooks counts as well."""
+
+from __future__ import annotations
+
+import json
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from ..load import RecordError, read_record
+
+NOT_FINITE = ("nan", "infinite", "minus_infinite")  # the words of Number in core/record/number.hpp
+MAY_BE_INFINITE = ("error_estimate_m_status", "contraction_status")  # directions that do not shrink bound no error
+
+
+@dataclass
+class Run:
+    """A record with its trace. `torn` counts the lines of the trace that a crash cut off (0 or 1)."""
+
+    path: Path
+    record: dict
+    trace: list[dict] = field(default_factory=list)
+    torn: int = 0
+    has_trace: bool = False
+
+    def section(self, name: str) -> dict:
+        """A section of the record; empty where another program's record has none."""
+        value = self.record.get(name)
+        return value if isinstance(value, dict) else {}
+
+    @property
+    def threads(self) -> int | None:
+        return self.section("provenance").get("threads")
+
+    @property
+    def state_hash(self) -> str:
+        return self.section("summary").get("state_hash") or ""
+
+    @property
+    def made_by(self) -> dict:
+        """What decides the last bits of a run: two that agree in all of it must agree in every bit."""
+        provenance, machine = self.section("provenance"), self.section("machine")
+        return {"cpu_model": machine.get("cpu_model", ""), "compiler": provenance.get("compiler", ""),
+                "flags": provenance.get("flags", ""), "blas_kernel": (provenance.get("blas") or {}).get("kernel", ""),
+                "libraries": provenance.get("libraries", {})}
+
+    @property
+    def made_by_same_build(self) -> tuple:
+        return self.section("ids").get("build_id", ""), json.dumps(self.made_by, sort_keys=True)
+
+
+def leaves(value, place: str = "") -> Iterator[tuple[str, object]]:
+    """Every value below with its JSON pointer; an empty object or list is a value."""
+    if isinstance(value, (dict, list)) and value:
+        for key, below in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from leaves(below, f"{place}/{key}")
+    else:
+        yield place, value
+
+
+def not_finite(value) -> list[str]:
+    """Places of numbers that are none: written as NaN or Infinity, or absent with a `_status` that says so."""
+    return [f"{place}: {found}" for place, found in leaves(value)
+            if (isinstance(found, float) and not math.isfinite(found))
+            or (place.endswith("_status") and found in NOT_FINITE and not (found == "infinite" and place.endswith(MAY_BE_INFINITE)))]
+
+
+def _trace(path: Path) -> tuple[list[dict], int]:
+    """Lines of a trace, and how many were torn. Raises RecordError for a bad line before the last one."""
+    lines = path.read_text(errors="replace").splitlines()
+    rows = []
+    for number, line in enumerate(lines, 1):
+        try:
+            row = json.loads(line)
+        except json.JSONDecodeError:
+            row = None
+        if isinstance(row, dict):
+            rows.append(row)
+        elif number < len(lines):
+            raise RecordError(f"{path}:{number}: not a JSON object; only the last line of a trace may be torn")
+    return rows, len(lines) - len(rows)
+
+
+def read_run(path: str | Path, allow_not_finite: bool = False) -> Run:
+    """The record in a folder, or a run.json. Raises RecordError with file and place: none there, not JSON, another schema,
+    a number that is NaN or infinite (unless allowed: then the invariants say so)."""
+    path = Path(path)
+    path = path / "run.json" if path.is_dir() else path
+    if not path.is_file():
+        raise RecordError(f"{path}: no such record; give a run.json or the folder that holds it")
+    run = Run(path, read_record(path))
+    trace = path.parent / "trace.jsonl"
+    if trace.is_file():
+        run.has_trace = True
+        run.trace, run.torn = _trace(trace)
+    if not allow_not_finite:
+        for file, value in ((path, run.record), (trace, run.trace)):
+            if bad := not_finite(value):
+                more = f" (and {len(bad) - 1} more)" if len(bad) > 1 else ""
+                raise RecordError(f"{file}: {bad[0]}{more}; a record holds finite numbers, or null and the word that says why")
+    return run
+
+
+def find_runs(root: str | Path) -> dict[str, Path]:
+    """Every run.json below a folder by its place in it, or the one file. Raises RecordError when there is none."""
+    root = Path(root)
+    if not root.exists():
+        raise RecordError(f"{root}: no such file or folder")
+    if root.is_file():
+        return {"": root}
+    found = {str(path.parent.relative_to(root)): path for path in sorted(root.rglob("run.json"))}
+    if not found:
+        raise RecordError(f"{root}: no run.json below this folder")
+    return {"": found["."]} if list(found) == ["."] else found
