@@ -10,15 +10,11 @@
 namespace bb {
 namespace {
 
-/// The dense eigenvalue at the small end is right to some n eps |B| only. Inverse iteration round it gives a
-/// vector whose Rayleigh quotient in long double is right to the square of that.
-double polish(const Eigen::MatrixXd& b, double lambda, double lambda_max) {
-  const double offset = 64 * std::numeric_limits<double>::epsilon() * lambda_max;
-  const Eigen::PartialPivLU<Eigen::MatrixXd> factor(b - (lambda - offset) *
-                                                            Eigen::MatrixXd::Identity(b.rows(), b.cols()));
-  VecXd v = seeded_vector(b.rows(), 1);
-  for (int step = 0; step < 4; ++step) v = factor.solve(v).normalized().eval();
-  if (!v.allFinite()) return lambda;
+constexpr int kMaxPolish = 400;
+constexpr double kSettled = 1e-12;  // relative change of a Rayleigh quotient that ends the polishing
+
+/// v^T B v / v^T v in long double: right to the square of the error of v.
+double rayleigh(const Eigen::MatrixXd& b, const VecXd& v) {
   long double numerator = 0, denominator = 0;
   for (Eigen::Index j = 0; j < b.cols(); ++j) {
     long double product = 0;
@@ -27,6 +23,25 @@ double polish(const Eigen::MatrixXd& b, double lambda, double lambda_max) {
     denominator += static_cast<long double>(v[j]) * v[j];
   }
   return static_cast<double>(numerator / denominator);
+}
+
+/// The dense eigenvalue at the small end is right to some n eps |B| only. Inverse iteration from below it, until
+/// the Rayleigh quotient settles: the shift is far from eigenvalues that are as small as that error, so a few
+/// steps would leave a mixture of them.
+double polish(const Eigen::MatrixXd& b, double lambda, double lambda_max) {
+  const double offset = 64 * std::numeric_limits<double>::epsilon() * lambda_max;
+  const Eigen::PartialPivLU<Eigen::MatrixXd> factor(b - (lambda - offset) *
+                                                            Eigen::MatrixXd::Identity(b.rows(), b.cols()));
+  VecXd v = seeded_vector(b.rows(), 1);
+  double last = lambda, now = lambda;
+  for (int step = 0; step < kMaxPolish; ++step) {
+    v = factor.solve(v).normalized().eval();
+    if (!v.allFinite()) return lambda;
+    now = rayleigh(b, v);
+    if (step > 3 && std::abs(now - last) <= kSettled * std::abs(now)) break;
+    last = now;
+  }
+  return now;
 }
 
 }  // namespace

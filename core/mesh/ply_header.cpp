@@ -1,6 +1,6 @@
 #include "core/mesh/ply_header.hpp"
 
-#include "core/mesh/text_scanner.hpp"
+#include "core/input/text_scanner.hpp"
 
 namespace bb {
 namespace {

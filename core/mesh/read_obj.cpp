@@ -1,6 +1,6 @@
 // Wavefront OBJ: v, f (v, v/vt, v//vn, v/vt/vn; negative indices count back) and l. The rest is read past.
+#include "core/input/text_scanner.hpp"
 #include "core/mesh/raw_mesh.hpp"
-#include "core/mesh/text_scanner.hpp"
 
 namespace bb {
 namespace {

@@ -3,9 +3,9 @@
 #include <bit>
 #include <cstring>
 
+#include "core/input/text_scanner.hpp"
 #include "core/mesh/ply_header.hpp"
 #include "core/mesh/raw_mesh.hpp"
-#include "core/mesh/text_scanner.hpp"
 
 namespace bb {
 namespace {

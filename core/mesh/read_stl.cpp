@@ -4,8 +4,8 @@
 #include <cstring>
 #include <map>
 
+#include "core/input/text_scanner.hpp"
 #include "core/mesh/raw_mesh.hpp"
-#include "core/mesh/text_scanner.hpp"
 
 namespace bb {
 namespace {

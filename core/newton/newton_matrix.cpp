@@ -83,10 +83,19 @@ const BlockSystem::Values& NewtonSystem::clamped_values(TermSet set) {
 
 const ReducedSystem& NewtonSystem::clamped(TermSet set) { return blocks_->reduce(clamped_values(set)); }
 
-double NewtonSystem::exact_curvature(const Positions& dx) {
+const ReducedSystem& NewtonSystem::exact() {
+  sum_exact();
+  return blocks_->reduce(blocks_->values());
+}
+
+void NewtonSystem::sum_exact() {
   sum_matrices(TermSet::all(), [](const Slot&, const TermFamily& family) -> std::span<const double> {
     return family.local.hess;
   });
+}
+
+double NewtonSystem::exact_curvature(const Positions& dx) {
+  sum_exact();
   part_.setZero(3, dx.cols());
   blocks_->multiply_add(blocks_->values(), dx, part_);
   return part_.cwiseProduct(dx).sum();

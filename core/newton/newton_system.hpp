@@ -96,6 +96,11 @@ class NewtonSystem {
   const ReducedSystem& clamped(TermSet set = TermSet::all());
   /// The same with eliminated degrees of freedom.
   const BlockSystem::Values& clamped_values(TermSet set);
+  /// That of all terms with the Hessian that each begins with: the exact one where its choice has it. Valid
+  /// until the next call of any of these. Cost: an assembly.
+  const ReducedSystem& exact();
+  /// Right-hand side of the system that was solved last, with what prescribed motion adds.
+  const VecXd& rhs() const { return rhs_; }
   /// The matrix of the elements that every iterate has, all values 0; valid as the two above.
   const ReducedSystem& fixed_pattern();
   /// Whether no element of the solved matrix was clamped that its choice begins with exact.
@@ -128,6 +133,7 @@ class NewtonSystem {
   template <class HessianOf>
   void sum_matrices(TermSet set, const HessianOf& hessian_of);
   void sum_clamped(TermSet set);
+  void sum_exact();
   void fill_matrix();
   double largest_force();
   void lift(const Positions& dx, Positions& rhs);

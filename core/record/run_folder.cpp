@@ -16,7 +16,7 @@ using nlohmann::json;
 /// The names of frames and matrices, below the folder of a run.
 bool is_artifact_name(const std::string& relative) {
   static const std::regex name(
-      R"(frames/(scene\.json|start\.ply|step_\d{6,}\.ply)|matrices/step_\d{6,}_iteration_\d{3,}\.mtx)");
+      R"(frames/(scene\.json|start\.ply|step_\d{6,}\.ply)|matrices/step_\d{6,}_iteration_\d{3,}(_exact)?\.(mtx|json))");
   return std::regex_match(relative, name);
 }
 

@@ -73,6 +73,20 @@ void common_arguments(CLI::App& app, CommonOptions& common, std::vector<std::str
       ->check(CLI::IsMember({"haswell", "native"}));
 }
 
+CLI::App* add_matrix(CLI::App& app, MatrixVerb& verb) {
+  CLI::App* out = app.add_subcommand(
+      "matrix", "a stored system through every linear solver, preconditioner and condition estimator");
+  out->add_option("files", verb.files, "Matrix Market files, each with its side-car NAME.json or without")
+      ->required();
+  out->add_option("--json", verb.json, "file of everything that the tables show");
+  out->add_option("--tol", verb.tol_rel, "|b - A x| <= tol |b| of iterative solvers (default 1e-8)");
+  out->add_option("--max-iterations", verb.max_iterations, "their cap (default 10000)");
+  out->add_option("--dense-rows", verb.dense_rows,
+                  "up to so many rows (default 1500, at most 3000) all eigenvalues are computed too");
+  out->footer("example: ./bench matrix results/matrices/*.mtx --json replay.json");
+  return out;
+}
+
 /// The first word of the command line that is no option and no value of an option before the verb.
 std::string first_word(const std::vector<std::string>& argv) {
   for (std::size_t i = 1; i < argv.size(); ++i) {
@@ -132,6 +146,7 @@ int main(int argc, char** argv) {
   RunVerb run_verb, check_verb, explain_verb;
   SweepVerb sweep_verb;
   StepsVerb steps_verb;
+  MatrixVerb matrix_verb;
   std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
   std::string help_format = "config";
@@ -167,6 +182,7 @@ int main(int argc, char** argv) {
       ->allow_extra_args(false);
   steps_app->add_option("--out", steps_verb.out, "JSON file with every |dx|, for ./bench figures");
   steps_app->footer("example: ./bench steps configs/scenes/drape.json --at 11,21 --out steps.json");
+  CLI::App* matrix_app = add_matrix(app, matrix_verb);
   auto* check_app = app.add_subcommand("check", "parse a config, build its scene, look for intersections");
   config_arguments(check_app, check_verb);
   check_app->footer("example: ./bench check configs/scenes/drape.json");
@@ -220,6 +236,7 @@ int main(int argc, char** argv) {
     if (run_app->parsed()) return run(run_verb, common);
     if (sweep_app->parsed()) return sweep(sweep_verb, common);
     if (steps_app->parsed()) return steps(steps_verb, common);
+    if (matrix_app->parsed()) return matrix(matrix_verb, common);
     if (check_app->parsed()) return check(check_verb);
     if (explain_app->parsed()) return explain(explain_verb);
     if (list_app->parsed()) return list(list_what);

@@ -67,6 +67,17 @@ struct StepsVerb {
 /// Single steps of a run with every choice of Hessian: study_steps() as a table.
 int steps(const StepsVerb& verb, const CommonOptions& common);
 
+struct MatrixVerb {
+  std::vector<std::string> files;  // NAME.mtx, with NAME.json beside it or without
+  std::string json;                // file; empty: none
+  double tol_rel = 1e-8;           // of iterative solvers
+  int max_iterations = 10000;
+  int dense_rows = 1500;  // up to which all eigenvalues are computed
+};
+/// Stored systems through every linear solver, preconditioner and condition estimator. What fails there is a
+/// result. Errors: ConfigError as read_system.
+int matrix(const MatrixVerb& verb, const CommonOptions& common);
+
 /// Parses, builds the scene and looks for intersections; runs nothing.
 int check(const RunVerb& verb);
 /// What the run would do and what it would skip, and why; then every setting with its default filled in.

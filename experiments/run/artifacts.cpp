@@ -14,6 +14,7 @@
 #include "core/record/provenance.hpp"
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
+#include "experiments/matrix/matrix_market.hpp"
 
 namespace bb {
 
@@ -131,18 +132,14 @@ void ArtifactWriter::write_frame(const std::filesystem::path& relative, const Po
   write(relative, ply_bytes(mesh, of_vertices, of_triangles), "frame", "model/ply");
 }
 
-void ArtifactWriter::matrix(const ReducedSystem& system, int step, int iteration) {
-  const std::filesystem::path relative =
-      fmt::format("matrices/step_{:06}_iteration_{:03}.mtx", step, iteration);
-  const Eigen::SparseMatrix<double>& a = system.lower;
-  std::string text = fmt::format("%%MatrixMarket matrix coordinate real symmetric\n{} {} {}\n", a.rows(),
-                                 a.cols(), a.nonZeros());
-  for (Eigen::Index column = 0; column < a.outerSize(); ++column) {
-    for (Eigen::SparseMatrix<double>::InnerIterator it(a, column); it; ++it) {
-      fmt::format_to(std::back_inserter(text), "{} {} {:.17g}\n", it.row() + 1, it.col() + 1, it.value());
-    }
-  }
-  write(relative, text, "matrix", "text/x-matrix-market");
+void ArtifactWriter::matrix(const StoredSystem& stored) {
+  const SystemOrigin& origin = stored.origin;
+  const std::string name = fmt::format("step_{:06}_iteration_{:03}{}", origin.step, origin.iteration,
+                                       origin.form == "exact" ? "_exact" : "");
+  const std::string text = matrix_market_text(stored.system.lower);
+  write("matrices/" + name + ".mtx", text, "matrix", "text/x-matrix-market");
+  write("matrices/" + name + ".json", side_car_text(stored, name + ".mtx", text), "matrix_side_car",
+        "application/json");
 }
 
 void ArtifactWriter::finish() {

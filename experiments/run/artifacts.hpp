@@ -4,10 +4,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "core/linear/block_system.hpp"
 #include "core/record/run_record.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/contact.hpp"
+#include "experiments/matrix/system_file.hpp"
 
 namespace bb {
 
@@ -41,8 +41,9 @@ class ArtifactWriter {
   void start();
   /// frames/step_000010.ply: the end of step 10; the first step is 0.
   void frame(const Positions& x, int step, const ContactFields& fields);
-  /// matrices/step_000010_iteration_002.mtx: Matrix Market, symmetric, lower triangle, 17 digits.
-  void matrix(const ReducedSystem& system, int step, int iteration);
+  /// matrices/step_000010_iteration_002.mtx and .json, the side-car; "_exact" before the dot for the form of
+  /// that name.
+  void matrix(const StoredSystem& stored);
   const std::vector<Artifact>& written() const { return written_; }
   /// Gives every file its name. Errors: RecordError.
   void finish();

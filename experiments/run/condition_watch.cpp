@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "core/newton/newton_system.hpp"
+#include "experiments/run/matrix_dump.hpp"
 
 namespace bb {
 namespace {
@@ -74,9 +75,17 @@ void ConditionWatch::on_matrix(NewtonSystem& system, int step, int iteration) {
       }
     }
   }
-  if (artifacts_ && config_.output.matrices) artifacts_->matrix(system.solved(), step, iteration);
+  if (artifacts_ && config_.output.matrices) write_matrices(system, step, iteration);
   if (config_.diagnose.pcg) probed_ = probe_.iterations(system.solved());
   spent_s_ += now_s() - start;
+}
+
+void ConditionWatch::write_matrices(NewtonSystem& system, int step, int iteration) {
+  const auto write = [&](const ReducedSystem& matrix, const std::string& form) {
+    artifacts_->matrix(stored_system(system, matrix, form, config_, step, iteration, samples_));
+  };
+  write(system.solved(), std::string(to_string(form_)));
+  if (!system.solved_is_exact()) write(system.exact(), "exact");
 }
 
 void ConditionWatch::on_iteration(const LinearReport& linear, TraceRow& row) {

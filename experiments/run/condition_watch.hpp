@@ -27,6 +27,7 @@ class ConditionWatch {
 
  private:
   bool due(int iteration) const;
+  void write_matrices(NewtonSystem& system, int step, int iteration);
   void estimate(const ReducedSystem& matrix, MatrixForm form, MatrixStage stage);
 
   const RunConfig& config_;

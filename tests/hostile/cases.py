@@ -73,6 +73,7 @@ READERS = {
     "plugin": (("--plugin", "it", "list"), {}),
     "eval": (("eval", "it"), {}),
     "mesh": (("check", "a.json"), {"a.json": one_mesh("it")}),
+    "matrix": (("matrix", "it"), {}),
     "extends": (("check", "a.json"), {"a.json": {"schema": "barrierbench.config/1", "extends": "it"}}),
 }
 FILES = [Case(f"file-{reader}-{kind}", command, {**files, **({"it": content} if content else {})}, says=(says, "it"))
@@ -354,6 +355,21 @@ QUERIES = [
     query("id-of-30-digits", '{"id": %s, "kind": "rho", "shape": "cubic", "u": 0.5}\n' % ("9" * 30), '"id":' + "9" * 30, code=DONE),
 ]
 
+# --- matrices and their side-cars
+
+MTX = "%%MatrixMarket matrix coordinate real symmetric\n"
+MATRICES = [
+    *(Case(f"side-car-{kind}", ("matrix", "a.mtx"), {"a.mtx": MTX + "1 1 1\n1 1 1\n", "a.json": content}, says=("a.json", says))
+      for kind, (content, says) in NO_FILES.items() if content and kind != "loop"),
+    Case("side-car-dangling", ("matrix", "a.mtx"), {"a.mtx": MTX + "1 1 1\n1 1 1\n", "a.json": link_to("nowhere")}, says=("a.json", "No such file")),
+    Case("side-car-nested", ("matrix", "a.mtx"), {"a.mtx": MTX + "1 1 1\n1 1 1\n", "a.json": nested(DEEP)}, says=("a.json:1", "64 levels")),
+    Case("matrix-counts-of-2^62", ("matrix", "a.mtx"), {"a.mtx": MTX + f"{2**62} {2**62} {2**62}\n1 1 1\n"}, says=("a.mtx:2", "at most")),
+    Case("matrix-rows-of-2^40", ("matrix", "a.mtx"), {"a.mtx": MTX + f"{2**40} {2**40} 1\n1 1 1\n"}, says=("a.mtx:2", "rows")),
+    Case("matrix-count-beyond-integers", ("matrix", "a.mtx"), {"a.mtx": MTX + f"1 1 {HUGE}\n1 1 1\n"}, says=("a.mtx:2", "an integer")),
+    Case("matrix-zeros", ("matrix", "a.mtx"), {"a.mtx": sparse(1 << 20)}, says=("a.mtx:1",)),
+    Case("matrix-too-large", ("matrix", "a.mtx"), {"a.mtx": sparse((1 << 30) + 1)}, says=("a.mtx", "a Matrix Market file")),
+]
+
 # --- streams, limits and what lies in the output folder already
 
 def no_stderr() -> None:
@@ -381,4 +397,4 @@ OUTPUTS = [
          says=("64 levels",)),
 ]
 
-CASES = [*FILES, *JSON, *OVERRIDES, *SWEEPS, *MESHES, *SCENE_CASES, *PLUGINS, *QUERIES, *OUTPUTS]
+CASES = [*FILES, *JSON, *OVERRIDES, *SWEEPS, *MESHES, *SCENE_CASES, *PLUGINS, *QUERIES, *MATRICES, *OUTPUTS]

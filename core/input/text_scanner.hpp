@@ -1,5 +1,5 @@
 // Lines and words of a text file, with line numbers and numbers that say what is wrong with them.
-// Private to core/mesh.
+// Of meshes and matrices.
 #pragma once
 
 #include <fmt/format.h>

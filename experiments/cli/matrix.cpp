@@ -1,0 +1,48 @@
+// The verb matrix: stored systems through every solver and estimator, as tables on stdout and JSON in a file.
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/record/provenance.hpp"
+#include "core/record/writer.hpp"
+#include "experiments/cli/verbs.hpp"
+#include "experiments/matrix/replay_text.hpp"
+
+namespace bb::cli {
+namespace {
+
+/// Errors: ConfigError for an option outside its range.
+ReplayOptions options_of(const MatrixVerb& verb) {
+  if (!(verb.tol_rel > 0 && verb.tol_rel < 1))
+    throw ConfigError("--tol", fmt::format("{}", verb.tol_rel), "above 0 and below 1");
+  if (verb.max_iterations < 1)
+    throw ConfigError("--max-iterations", fmt::format("{}", verb.max_iterations), "1 or more");
+  if (verb.dense_rows < 0 || verb.dense_rows > 3000)
+    throw ConfigError("--dense-rows", fmt::format("{}", verb.dense_rows), "0 to 3000");
+  return {verb.tol_rel, verb.max_iterations, verb.dense_rows, 1};
+}
+
+}  // namespace
+
+int matrix(const MatrixVerb& verb, const CommonOptions& common) {
+  const ReplayOptions options = options_of(verb);
+  std::vector<StoredSystem> systems;  // all are read before the first is solved
+  for (const std::string& file : verb.files) systems.push_back(read_system(file));
+  nlohmann::ordered_json out = {{"schema", replay_schema},
+                                {"tol_rel", options.tol_rel},
+                                {"max_iterations", options.max_iterations},
+                                {"seed", options.seed}};
+  const Provenance provenance = collect_provenance(common.argv, 0);
+  out["git_commit"] = provenance.git_commit;
+  out["blas_kernel"] = provenance.blas.kernel;
+  out["matrices"] = nlohmann::ordered_json::array();
+  for (std::size_t i = 0; i < systems.size(); ++i) {
+    const Replay result = replay(systems[i], options);
+    fmt::print("{}{}", i > 0 ? "\n" : "", replay_table(verb.files[i], systems[i], result));
+    out["matrices"].push_back(replay_json(verb.files[i], systems[i], result));
+  }
+  if (!verb.json.empty()) write_atomically(verb.json, out.dump(1) + "\n");
+  return exit_ok;
+}
+
+}  // namespace bb::cli
