@@ -90,7 +90,7 @@ def test_a_run_with_auto_is_a_run_with_the_chosen_solver(program, records, tmp_p
         assert record["status"]["outcome"] == "ok", record["status"]
         solver = record["labels"]["linear_solver"]
         assert solver in ("cholmod", "pcg") and record["config"]["linear_solver"]["name"] == solver  # nothing is left to be decided
-        reason = next(item["reason"] for item in record["plan"] if item["name"] == "linear_solver")
+        reason = next(item["reason"] for item in record["plan"] if item["item"] == "linear_solver")
         assert reason.startswith(f"{solver}, by auto: ")
     again = bench(program, "run", tmp_path / "1/run.json", "--out", tmp_path / "again")  # no model is needed
     assert again.returncode == 0, again.stderr

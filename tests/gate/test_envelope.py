@@ -77,8 +77,11 @@ def test_a_cost_that_was_0_or_unknown_and_appears_is_red():
     kept = judge.around({factorizations: 0.0})
     assert [f.verdict for f in judge.numbers("a", kept, {factorizations: 0.0}, True)] == ["pass"]
     assert [f.verdict for f in judge.numbers("a", kept, {factorizations: 500.0}, True)] == ["FAIL"]
-    assert [f.verdict for f in judge.numbers("a", {}, {factorizations: 500.0}, True)] == ["FAIL"]
-    assert [f.verdict for f in judge.numbers("a", {}, {factorizations: 0.0}, True)] == ["not_judged"]
+    analyses = next(metric for metric, _ in metrics.SUMMARY if metric.name == "analyses")
+    other = {factorizations: 0.0, analyses: 7.0}
+    assert [f.verdict for f in judge.numbers("a", kept, other, True)] == ["pass", "FAIL"]
+    assert [f.verdict for f in judge.numbers("a", kept, other | {analyses: 0.0}, True)] == ["pass", "not_judged"]
+    assert [f.verdict for f in judge.numbers("a", {}, other, True)] == ["not_judged", "not_judged"]  # a baseline without class IV
 
 
 def test_an_audit_that_holds_no_count_is_red(tmp_path):
