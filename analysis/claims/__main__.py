@@ -1,5 +1,5 @@
 """Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every verdict from the records by the rule of
-its claim, and writes results/CLAIMS.md, results/claims.json (the numbers used) and docs/claims.png. With names of claims it runs the sweeps of these alone.
+its claim, and writes results/CLAIMS.md, results/claims.json (the numbers used), docs/claims.png and the table of the README. With names of claims it runs the sweeps of these alone.
 
 Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them; a bad entry; no program).
 """
@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import os
+import shutil
 import subprocess
 import sys
 import time
@@ -84,7 +85,11 @@ def write_all(table: Table, asker: Eval) -> None:
         table.answers = {text: table.answers[text] for text in asker.asked}
     write(table, FILE)
     (ROOT / "results" / "CLAIMS.md").write_text(report.markdown(answers, table))
-    figure.draw(answers, ROOT / "docs" / "claims")
+    for path in figure.draw(answers, RUNS / "figure" / "claims"):
+        if path.suffix in (".png", ".txt"):
+            shutil.copyfile(path, ROOT / "docs" / path.name)
+    readme = ROOT / "README.md"
+    readme.write_text(report.in_readme(readme.read_text(), answers))
 
 
 if __name__ == "__main__":

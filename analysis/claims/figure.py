@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import textwrap
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -9,28 +10,45 @@ import pandas as pd
 
 from .. import style
 from .judge import Answer
-from .verdict import HOLDS, NOT, ONLY_IF, OPEN
+from .report import interval
+from .verdict import HOLDS, NOT, ONLY_IF, OPEN, Judged
 
 COLORS = {HOLDS: "#009E73", ONLY_IF: "#E69F00", NOT: "#D55E00", OPEN: "#888888"}
-SHOWN = ("The main number of every claim that has one: a ratio (or what its line says), geometric mean and 95% interval over scenes, levels and jittered "
-         "starts; a proof (diamond) has the range of its numbers. Black ticks: the thresholds of the rule; the verdict is that of the whole claim, which may have "
-         "more parts (results/CLAIMS.md).")
+RANGE = (0.1, 100.0)  # what is beyond is an arrow at the edge
+SHOWN = ("The main number of every claim that has one, that of its first part: a ratio (or what its line says), geometric mean and 95% interval over scenes, levels "
+         "and jittered starts; a proof (diamond) has the range of its numbers. Black ticks: the thresholds of the rule; an arrow: beyond the axis. The colour is the "
+         "verdict of the whole claim, which may have more parts and other conditions (results/CLAIMS.md).")
+
+
+def _inside(x: float) -> float:
+    return min(max(x, RANGE[0]), RANGE[1])
+
+
+def _marker(j: Judged) -> str:
+    if j.value > RANGE[1]:
+        return ">"
+    return "<" if j.value < RANGE[0] else "D" if j.proof else "o"
+
+
+def _row(axis, k: int, a: Answer) -> dict:
+    j, color = a.main, COLORS[a.verdict.verdict]
+    axis.plot([_inside(j.lower), _inside(j.upper)], [k, k], color=color, linewidth=1.8, solid_capstyle="butt")
+    axis.plot([_inside(j.value)], [k], marker=_marker(j), color=color, linestyle="none", clip_on=False)
+    for bound in j.bounds:
+        if RANGE[0] <= bound <= RANGE[1]:
+            axis.plot([bound, bound], [k - 0.36, k + 0.36], color="black", linewidth=0.9)
+    axis.annotate(f"{interval(j)}, asked {j.threshold}", (1.03, k), xycoords=("axes fraction", "data"), va="center", fontsize=6)
+    return {"claim": a.claim.id, "verdict": a.verdict.verdict, "measures": j.measures, "value": j.value, "lower": j.lower, "upper": j.upper,
+            "threshold": j.threshold, "proof": j.proof}
 
 
 def draw(answers: list[Answer], stem: Path) -> list[Path]:
     shown = [a for a in answers if a.main is not None]
-    fig, axis = plt.subplots(figsize=(style.WIDE_IN, 0.6 + 0.24 * len(shown)), layout="constrained")
-    rows = []
-    for k, a in enumerate(shown):
-        j, color = a.main, COLORS[a.verdict.verdict]
-        axis.plot([j.lower, j.upper], [k, k], color=color, linewidth=1.6, solid_capstyle="butt")
-        axis.plot([j.value], [k], marker="D" if j.proof else "o", color=color, linestyle="none")
-        for bound in j.bounds:
-            axis.plot([bound, bound], [k - 0.32, k + 0.32], color="black", linewidth=0.8)
-        rows.append({"claim": a.claim.id, "verdict": a.verdict.verdict, "measures": j.measures, "value": j.value, "lower": j.lower, "upper": j.upper,
-                     "threshold": j.threshold, "proof": j.proof})
-    axis.set_xscale("symlog", linthresh=0.1) if any(j["lower"] <= 0 or min(a.main.bounds) < 0 for j, a in zip(rows, shown)) else axis.set_xscale("log")
-    axis.set_yticks(range(len(shown)), [f"{a.claim.id}  {_short(a.main.measures)}" for a in shown])
+    fig, axis = plt.subplots(figsize=(style.WIDE_IN, 0.6 + 0.26 * len(shown)), layout="constrained")
+    rows = [_row(axis, k, a) for k, a in enumerate(shown)]
+    axis.set_xscale("log")
+    axis.set_xlim(*RANGE)
+    axis.set_yticks(range(len(shown)), [f"{a.claim.id}  {_wrapped(a.main.says)}" for a in shown], fontsize=6)
     axis.set_ylim(len(shown) - 0.4, -0.6)
     axis.set_xlabel("number of the claim's first part")
     for verdict, color in COLORS.items():
@@ -40,5 +58,5 @@ def draw(answers: list[Answer], stem: Path) -> list[Path]:
     return style.save(fig, stem, pd.DataFrame(rows), SHOWN)
 
 
-def _short(text: str, length: int = 78) -> str:
-    return text if len(text) <= length else text[: length - 3] + "..."
+def _wrapped(text: str, width: int = 52) -> str:
+    return "\n".join(textwrap.wrap(text, width))

@@ -20,8 +20,8 @@ def _cond(matrix: str, which: str):
 
 
 def _climb_of_limit(record) -> float | None:
-    """Share of the strain limit in what limit and contact add to the largest log10 of the condition number; None below half a decade."""
-    full, limit, none = (_at(record, "summary", "cond", f"{stage}/none", "log10_cond", "max")
+    """Share of the strain limit in what limit and contact add to the 95th percentile of log10 cond; None below half a decade."""
+    full, limit, none = (_at(record, "summary", "cond", f"{stage}/none", "log10_cond", "p95")
                          for stage in ("full", "without_contact", "without_contact_and_limit"))
     if None in (full, limit, none) or full - none < 0.5:
         return None
@@ -60,6 +60,7 @@ def _summary(*place: str):
 # name -> (meaning, unit, depends on the machine, how it is read)
 METRICS = {
     "cond_max": ("largest condition number of the run's Newton matrices, raw", "1", False, _cond("full/none", "max")),
+    "cond_p95": ("95th percentile of the condition numbers of the run's Newton matrices, raw", "1", False, _cond("full/none", "p95")),
     "cond_median": ("median condition number, raw", "1", False, _cond("full/none", "median")),
     "cond_bj_max": ("largest condition number, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "max")),
     "cond_bj_median": ("median condition number, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "median")),

@@ -84,12 +84,11 @@ def _groups(cells: Cells, threshold: Threshold) -> tuple[list, list]:
 
 
 def _condition(groups: list[tuple[str, str]], what: str) -> str:
+    """Where it holds and where not; empty unless both are there and every group is decided: of many open groups some hold by chance."""
     by = {verdict: [name for name, v in groups if v == verdict] for verdict in (HOLDS, NOT, OPEN)}
-    if not by[HOLDS] or not (by[NOT] or by[OPEN]):
+    if not by[HOLDS] or not by[NOT] or by[OPEN]:
         return ""
-    text = f"{what} {', '.join(by[HOLDS])}"
-    text += f"; not {', '.join(by[NOT])}" if by[NOT] else ""
-    return text + (f"; open {', '.join(by[OPEN])}" if by[OPEN] else "")
+    return f"{what} {', '.join(by[HOLDS])}; not {', '.join(by[NOT])}"
 
 
 def judge_cells(cells: Cells, left_out: Counter, part: dict, log: bool, what: str) -> Judged:
@@ -111,16 +110,12 @@ def judge_cells(cells: Cells, left_out: Counter, part: dict, log: bool, what: st
         return undecided(f"indication: {len(judged)} scenes have {LEVELS} levels of {STARTS} starts that count, {SCENES} are needed ({counted})", **more)
     verdict = threshold.judge(lower, upper)
     scenes, levels = _groups(judged, threshold)
-    against = {HOLDS: NOT, NOT: HOLDS}.get(verdict)
-    if verdict == OPEN or any(v == against for _, v in scenes):
-        # The larger part of the interval is mixed: a condition is named only where some groups hold and others do not.
-        condition = next((text for groups, kind in ((levels, "level"), (scenes, "scene"))
-                          if any(v == NOT for _, v in groups) and (text := _condition(groups, kind))), "")
-        if condition:
-            return Judged(ONLY_IF, condition=condition, **more)
-        if verdict == OPEN:
-            return undecided("the interval includes the threshold", **more)
-    return Judged(verdict, **more)
+    contradicting = [name for name, v in scenes if v == {HOLDS: NOT, NOT: HOLDS}.get(verdict)]
+    if verdict != OPEN and not contradicting:
+        return Judged(verdict, **more)
+    if condition := _condition(levels, "level") or _condition(scenes, "scene"):
+        return Judged(ONLY_IF, condition=condition, **more)
+    return undecided(f"the mean says {verdict}, {', '.join(contradicting)} the opposite" if contradicting else "the interval includes the threshold", **more)
 
 
 def _scene(part: dict, place: tuple) -> bool:

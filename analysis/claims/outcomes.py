@@ -64,7 +64,7 @@ def outcomes(part: dict, runs: Runs) -> Judged:
         return undecided(f"indication: {scenes} scenes have {LEVELS} levels of {STARTS} starts, {SCENES} are needed", **more)
     wins = losses = 0
     if "over" in part:
-        other = _cells(runs, part["over"], part)
+        other = {place: starts for place, starts in _cells(runs, part["over"], part).items() if place not in hopeless}
         pairs = [(all(mine[place]), all(other[place])) for place in mine.keys() & other.keys()]
         wins, losses = sum(a and not b for a, b in pairs), sum(b and not a for a, b in pairs)
         more["counted"] += f"; {part['over']}: {sum(map(sum, other.values()))} of {sum(map(len, other.values()))}; scenes x levels that only one gets through: {wins} to {losses}"

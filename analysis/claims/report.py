@@ -8,13 +8,16 @@ from .entry import read_sweep
 from .judge import Answer
 from .metrics import METRICS
 from .table import Table
-from .verdict import NOT, ONLY_IF, OPEN, Judged
+from .verdict import ONLY_IF, OPEN, Judged
 
 WIDTH = 140
 
 
 def number(x: float | None) -> str:
-    return "-" if x is None else f"{x:.3g}"
+    """Three digits, and more where these would make it 1."""
+    if x is None:
+        return "-"
+    return f"{x:.6g}" if x != 1 and f"{x:.3g}" == "1" else f"{x:.3g}"
 
 
 def interval(j: Judged) -> str:
@@ -61,11 +64,11 @@ def _claim(a: Answer, table: Table) -> list[str]:
 
 
 def _sweeps(table: Table) -> list[str]:
-    lines = ["## Sweeps", "", "| sweep | runs | ok | comparable | seconds | date | machine | build | command |", "|---|---|---|---|---|---|---|---|---|"]
+    lines = ["## Sweeps", "", "| sweep | runs | unknowns | ok | comparable | seconds | date | machine | build | command |", "|---|---|---|---|---|---|---|---|---|---|"]
     for name, runs in sorted(table.sweeps.items()):
         sweep, about = read_sweep(name), runs.about
         ok, comparable = (sum(row[key] == word for row in runs.rows) for key, word in (("outcome", "ok"), ("comparability", "comparable")))
-        lines.append(f"| {name} | {len(runs.rows)} of {len(sweep.cases)} | {ok} | {comparable} | {about['seconds']:.0f} | {about['date']} | {about['machine']} "
+        lines.append(f"| {name} | {len(runs.rows)} of {len(sweep.cases)} | {about['unknowns']} | {ok} | {comparable} | {about['seconds']:.0f} | {about['date']} | {about['machine']} "
                      f"| {about['build'][:8]} | `{sweep.command}` |")
     total = sum(runs.about["seconds"] for runs in table.sweeps.values())
     return lines + ["", f"Seconds are those of the runs, diagnosis and audit included: {total:.0f} s of one core in all, on a machine that did other work as well.", ""]
@@ -88,6 +91,16 @@ def verdict_table(answers: list[Answer], short: bool = False) -> list[str]:
         verdict = a.verdict.verdict if short else sentence(a.verdict)
         lines.append(f"| {a.claim.id} | {a.claim.sentence} | {verdict} | {shown} |")
     return lines
+
+
+BEGIN, END = "<!-- claims: written by ./bench claims -->\n", "<!-- /claims -->"
+
+
+def in_readme(readme: str, answers: list[Answer]) -> str:
+    """The README with its table of verdicts made anew."""
+    before, _, rest = readme.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    return before + BEGIN + "\n".join(verdict_table(answers, short=True)) + "\n" + end + after if end else readme
 
 
 def markdown(answers: list[Answer], table: Table) -> str:

@@ -89,6 +89,8 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
                          ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),
                          ("build", {r["ids"]["build_id"][:ID_DIGITS] for r in records})):
         about[name] = ", ".join(sorted(values))
+    sizes = [r["scene"]["free_dofs"] for r in records]
+    about["unknowns"] = f"{min(sizes)} to {max(sizes)}" if sizes else ""
     return Runs(about, rows, len(sweep.cases))
 
 

@@ -37,6 +37,20 @@ def test_the_condition_is_found():
     assert (by_level.verdict, by_level.condition) == (ONLY_IF, "level 1, 2; not 4")
 
 
+def test_no_condition_while_a_scene_is_open():
+    of_x = {"a": (20.0, 20.0), "b": (10.0, 10.0), "c": (12.0, 19.0)}
+    judged = ratio(PART, runs(lambda s, lv, c, k: {"newton": of_x[s][k % 2] if c == "x" else 10.0}))
+    assert judged.verdict == OPEN and "includes the threshold" in judged.missing
+
+
+def test_a_scene_that_contradicts_the_mean():
+    of_x = {"a": (90.0, 90.0), "b": (90.0, 90.0), "c": (90.0, 90.0), "d": (14.0, 14.0), "e": (14.0, 16.0)}
+    judged = ratio(PART, runs(lambda s, lv, c, k: {"newton": of_x[s][k % 2] if c == "x" else 10.0}, scenes=("a", "b", "c", "d", "e")))
+    assert judged.verdict == OPEN and judged.missing in ("the mean says holds, d the opposite",), judged
+    del of_x["e"]
+    assert ratio(PART, runs(lambda s, lv, c, k: {"newton": of_x[s][k % 2] if c == "x" else 10.0}, scenes=tuple(of_x))).condition == "scene a, b, c; not d"
+
+
 @pytest.mark.parametrize("less", [{"scenes": SCENES[:2]}, {"levels": ("1", "2")}, {"seeds": (1, 2, 3, 4)}])
 def test_too_little_is_an_indication(less):
     judged = ratio(PART, runs(twice, **less))
