@@ -168,7 +168,7 @@ def _every(cells: Cells, left_out: Counter, part: dict) -> Judged:
     more = {"threshold": f"{threshold.text} in every run", "bounds": threshold.bounds, "counted": counted}
     if not values:
         return undecided("no run counts", **more)
-    more |= {"value": max(values, key=lambda x: x if part.get("below") is not None else -x), "lower": min(values), "upper": max(values)}
+    more |= {"value": max(values, key=lambda x: x if part.get("below") is not None else -x), "lower": min(values), "upper": max(values), "extremes": True}
     if threshold.judge(min(values) - 1e-300, max(values)) != HOLDS:
         return Judged(NOT, **more)
     if len(complete(cells)) < SCENES:

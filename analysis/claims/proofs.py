@@ -37,7 +37,7 @@ class Eval:
 
 
 def _range(values: list[float], **more) -> dict:
-    return {"value": min(values), "lower": min(values), "upper": max(values), "proof": True, **more}
+    return {"value": min(values), "lower": min(values), "upper": max(values), "extremes": True, "proof": True, **more}
 
 
 def rho_above(part: dict, asker: Eval) -> Judged:

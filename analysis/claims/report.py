@@ -23,7 +23,7 @@ def number(x: float | None) -> str:
 def interval(j: Judged) -> str:
     if j.value is None:
         return "-"
-    if j.proof:
+    if j.extremes:
         return number(j.value) if j.lower == j.upper else f"{number(j.lower)} to {number(j.upper)}"
     return f"{number(j.value)} [{number(j.lower)}, {number(j.upper)}]"
 

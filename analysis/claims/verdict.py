@@ -17,8 +17,9 @@ class Judged:
     condition: str = ""  # of ONLY_IF
     missing: str = ""  # of OPEN
     value: float | None = None
-    lower: float | None = None  # 95% interval; of a proof the smallest and largest number
+    lower: float | None = None  # 95% interval
     upper: float | None = None
+    extremes: bool = False  # the smallest and the largest number in the place of an interval
     threshold: str = ""
     bounds: tuple[float, ...] = ()  # thresholds as numbers, for the figure
     measures: str = ""
