@@ -59,11 +59,11 @@ def _summary(*place: str):
 
 # name -> (meaning, unit, depends on the machine, how it is read)
 METRICS = {
-    "cond_max": ("largest condition number of the run's Newton matrices, raw", "1", False, _cond("full/none", "max")),
-    "cond_p95": ("95th percentile of the condition numbers of the run's Newton matrices, raw", "1", False, _cond("full/none", "p95")),
-    "cond_median": ("median condition number, raw", "1", False, _cond("full/none", "median")),
-    "cond_bj_max": ("largest condition number, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "max")),
-    "cond_bj_median": ("median condition number, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "median")),
+    "cond_max": ("largest cond of a run, raw", "1", False, _cond("full/none", "max")),
+    "cond_p95": ("95th percentile of cond over a run, raw", "1", False, _cond("full/none", "p95")),
+    "cond_median": ("median cond, raw", "1", False, _cond("full/none", "median")),
+    "cond_bj_max": ("largest cond, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "max")),
+    "cond_bj_median": ("median cond, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "median")),
     "pcg_probe": ("median block-Jacobi PCG iterations to 1e-6", "1", False, _summary("probe_pcg", "median")),
     "pcg_solve": ("median PCG iterations of a solve", "1", False, _summary("linear_per_solve", "median")),
     "newton": ("Newton iterations", "1", False, _summary("newton_iterations")),

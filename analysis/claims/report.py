@@ -78,18 +78,22 @@ HEAD = """# Claims
 
 Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/design.md, Claims, has the
 rules. A number is a ratio of geometric means over scenes, levels (resolution, load, limit) and jittered starts with a 95% interval by bootstrap over all
-three, or what its line says. From a sentence to its runs: its sweep's command makes the records, `run_id` names them in results/claims.json and in
+three, or what its line says. cond is a condition number. From a sentence to its runs: its sweep's command makes the records, `run_id` names them in results/claims.json and in
 their run.json, and `./bench run RUN.json` repeats one.
 """
 
 
-def verdict_table(answers: list[Answer], short: bool = False) -> list[str]:
-    lines = ["| claim | sentence | verdict | main number |", "|---|---|---|---|"]
+def _short(a: Answer) -> str:
+    if a.verdict.verdict == OPEN and a.claim.waits_for:
+        return f"{OPEN}: waits for {a.claim.waits_for}"
+    return sentence(a.verdict)
+
+
+def verdict_table(answers: list[Answer]) -> list[str]:
+    lines = ["| claim | sentence | verdict | number of its first part |", "|---|---|---|---|"]
     for a in answers:
         j = a.main
-        shown = f"{j.measures}: {interval(j)}" if j else "-"
-        verdict = a.verdict.verdict if short else sentence(a.verdict)
-        lines.append(f"| {a.claim.id} | {a.claim.sentence} | {verdict} | {shown} |")
+        lines.append(f"| {a.claim.id} | {a.claim.sentence} | {_short(a)} | {f'{j.measures}: {interval(j)}' if j else '-'} |")
     return lines
 
 
@@ -100,11 +104,11 @@ def in_readme(readme: str, answers: list[Answer]) -> str:
     """The README with its table of verdicts made anew."""
     before, _, rest = readme.partition(BEGIN)
     _, end, after = rest.partition(END)
-    return before + BEGIN + "\n".join(verdict_table(answers, short=True)) + "\n" + end + after if end else readme
+    return before + BEGIN + "\n".join(verdict_table(answers)) + "\n" + end + after if end else readme
 
 
 def markdown(answers: list[Answer], table: Table) -> str:
-    lines = [HEAD, "![main number of every claim, with its interval and threshold](../docs/claims.png)", "", *verdict_table(answers, short=True), ""]
+    lines = [HEAD, "![main number of every claim, with its interval and threshold](../docs/claims.png)", "", *verdict_table(answers), ""]
     for a in answers:
         lines += _claim(a, table)
     lines += _sweeps(table)
