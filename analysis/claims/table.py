@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import hashlib
 import json
 from dataclasses import dataclass, field
+from datetime import datetime
 from pathlib import Path
 
 from ..load import RecordError, read_record
@@ -62,8 +64,6 @@ def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
 
 
 def _seconds(record: dict) -> float:
-    from datetime import datetime
-
     start, end = (datetime.fromisoformat(record["status"][key].replace("Z", "+00:00")) for key in ("started_utc", "ended_utc"))
     return (end - start).total_seconds()
 
@@ -83,7 +83,8 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
     rows.sort(key=lambda row: tuple(str(row[key]) for key in PLACE))
     if len({tuple(row[key] for key in PLACE) for row in rows}) != len(rows):
         raise ClaimError(f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again")
-    about = {"sha256": sweep.sha256, "seconds": round(sum(map(_seconds, records)), 1)}
+    file = folder / "sweep.json"  # the program's copy of the sweep file that made the records
+    about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "seconds": round(sum(map(_seconds, records)), 1)}
     for name, values in (("date", {r["status"]["started_utc"][:10] for r in records}),
                          ("machine", {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records}),
                          ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),

@@ -132,6 +132,9 @@ def test_records_become_rows(tmp_path):
     assert len(runs.rows) == 2 and not runs.complete and runs.about["seconds"] == 4.0 and runs.about["machine"].startswith("a cpu")
     ball, strip = runs.rows
     assert (strip["scene"], strip["level"], strip["case"], strip["seed"], strip["outcome"]) == ("strip", "1%", "log", 3, "ok")
+    assert runs.about["sha256"] == ""  # nothing says which sweep file made them
+    (tmp_path / "sweep.json").write_bytes((FOLDER / "sweeps" / "tight_limits.json").read_bytes())
+    assert collect(sweep, tmp_path, ["newton"]).about["sha256"] == sweep.sha256
     assert (strip["stretch_of_limit"], strip["cond_max"], strip["newton"]) == (pytest.approx(0.75), 1000.0, 6)
     assert ball["outcome"] == "not_valid"
     record(tmp_path, sweep, "tight_limits: strip 1% log main=3", "again")
