@@ -2,7 +2,8 @@
 
 Seconds of a linear solve (analysis, factorisation, solution; failed attempts are solves of their own) are a sum of work terms of the
 matrix of the first iteration, each with a coefficient >= 0, by least squares of relative errors. The work terms are those of
-core/linear/cost_model.cpp. Every record has to be of one machine.
+core/linear/cost_model.cpp. Every record has to be of one machine and one build. Times are those of the threads
+of the sweep: one.
 """
 
 from __future__ import annotations
@@ -92,6 +93,10 @@ def model(records: Records) -> tuple[dict, pd.DataFrame]:
     cpus = sorted(set(records.runs["machine_cpu_model"]))
     if len(cpus) != 1:
         raise RecordError(f"records of several machines: {', '.join(cpus)}; one is needed")
+    builds = sorted(set(records.runs["build_id"]))
+    if len(builds) != 1:
+        raise RecordError(f"records of {len(builds)} builds of the program; one is needed")
+    commit = records.runs["provenance_git_commit"].iloc[0] + (" with changes" if records.runs["provenance_git_dirty"].any() else "")
     table = measurements(records)
     if table.empty or table["scene"].nunique() < 3:
         raise RecordError(f"{0 if table.empty else table['scene'].nunique()} scenes with times; at least 3 are needed")
@@ -100,7 +105,7 @@ def model(records: Records) -> tuple[dict, pd.DataFrame]:
     return {
         "schema": "barrierbench.linear_model/1",
         "machine": {"cpu_model": cpus[0]},
-        "fitted": {"date": datetime.date.today().isoformat(), "records": len(fitted), "git_commit": records.runs["provenance_git_commit"].iloc[0],
+        "fitted": {"date": datetime.date.today().isoformat(), "records": len(fitted), "git_commit": commit,
                    "scenes": sorted(set(table["scene"])), "relative_error_median": float(f"{error.median():.2g}"),
                    "relative_error_max": float(f"{error.max():.2g}")},
         "costs": costs,

@@ -15,6 +15,7 @@ from ..load import RecordError
 from . import baseline, invariants
 from .baseline import Baseline, Kept, keep
 from .cases import ROOT, Case, GateError, jittered, read_set, run_case
+from .configs import scene_size
 from .envelope import Envelope, calibrate
 from .finding import failures
 from .instructions import instructions_of
@@ -63,7 +64,6 @@ def propose(case_name: str, runs: list[Run], reason: str = "") -> Baseline:
     at = {"commit": provenance.get("git_commit", ""), "dirty": provenance.get("git_dirty"), "runs": len(runs),
           "jitter_m": seeds.get("jitter_m", 0), "date": datetime.date.today().isoformat()}
     config = {key: value for key, value in first.section("config").items() if key not in ("threads", "seeds")}
-    from .configs import scene_size  # the sizes that say which scene it is
     return Baseline(case_name, "run", reason, at, kept, config, scene_size(first), first.made_by)
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from dataclasses import dataclass
 
 import jsonschema
@@ -40,8 +41,10 @@ def _audit(run: Run) -> Checked:
 def _audit_count(name: str):
     def check(run: Run) -> Checked:
         audit = run.section("audit")
-        return Checked(int(audit.get("judged") or 0), int(audit[name]) if name in audit else 1,
-                       "" if name in audit else f"audit/{name} is absent")
+        judged, found = audit.get("judged"), audit.get(name)
+        if not isinstance(found, int):  # absent, null, a word
+            return Checked(judged if isinstance(judged, int) else 0, 1, f"audit/{name} is {json.dumps(found)}, no count")
+        return Checked(judged if isinstance(judged, int) else 0, found)
     return check
 
 

@@ -49,6 +49,13 @@ def _together(case: str, ratios: list[float]) -> Finding:
                    judged=len(ratios), note=f"of {len(ratios)} costs")
 
 
+def _new(case: str, metric: Metric, value: float, costs_are_kept: bool) -> Finding:
+    """A number that the baseline does not have: red where it is a cost beside costs that it has."""
+    cost = costs_are_kept and metric.gate_class == "IV" and value > 0
+    return Finding(case, metric.gate_class, metric.name, "FAIL" if cost else "not_judged", value, unit=metric.unit, judged=int(cost),
+                   note="not in the baseline" + ("; a cost that is new" if cost else ""))
+
+
 def numbers(case: str, kept: dict[str, Kept], values: dict[Metric, float], same_build_kind: bool) -> list[Finding]:
     """A line for every metric of either side. Chaotic ones are left to distributions()."""
     findings, ratios, found = [], [], {metric.name: value for metric, value in values.items()}
@@ -69,9 +76,8 @@ def numbers(case: str, kept: dict[str, Kept], values: dict[Metric, float], same_
             findings.append(_numeric(case, name, k, value))
     if ratios and same_build_kind:
         findings.append(_together(case, ratios))
-    findings += [Finding(case, m.gate_class, m.name, "not_judged", value, unit=m.unit, judged=0, note="not in the baseline")
-                 for m, value in values.items() if m.name not in kept]
-    return findings
+    costs_are_kept = any(k.gate_class == "IV" and name not in NOT_OF_A_RECORD for name, k in kept.items())
+    return findings + [_new(case, metric, value, costs_are_kept) for metric, value in values.items() if metric.name not in kept]
 
 
 def distributions(samples: list[tuple[str, str, Kept, list[float]]]) -> list[Finding]:

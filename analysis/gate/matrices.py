@@ -70,7 +70,10 @@ def log10_cond(matrix: sparse.csc_matrix) -> float | None:
         values = np.linalg.eigvalsh(matrix.toarray())
         low, high = float(values[0]), float(values[-1])
     else:
-        factor = sparse_linalg.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        try:
+            factor = sparse_linalg.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+        except RuntimeError:  # exactly singular
+            return None
         if not (np.array_equal(factor.perm_r, factor.perm_c) and (factor.U.diagonal() > 0).all()):
             return None  # Sylvester: as many negative pivots as eigenvalues
         inverse = sparse_linalg.LinearOperator(matrix.shape, factor.solve)
@@ -80,6 +83,13 @@ def log10_cond(matrix: sparse.csc_matrix) -> float | None:
     if low <= 0 and -low > 1e-14 * high:
         return None
     return float(np.log10(min(LARGEST_COND, high / low))) if low > 0 else 14.0
+
+
+def _log10_cond_of(path: Path, matrix: sparse.csc_matrix) -> float | None:
+    try:
+        return log10_cond(matrix)
+    except sparse_linalg.ArpackNoConvergence:
+        raise MatrixError(f"{path}: the eigenvalues of {matrix.shape[0]} rows did not converge") from None
 
 
 def pcg_iterations(matrix: sparse.csc_matrix) -> int | None:
@@ -100,14 +110,14 @@ class Spectrum:
 
 def spectrum(path: Path, block: int = 3) -> Spectrum:
     matrix = read_matrix(path)
-    raw = log10_cond(matrix)
+    raw = _log10_cond_of(path, matrix)
     if raw is None:
         return Spectrum(path, matrix.shape[0], None, None, None)
     try:
         scaled = block_jacobi(matrix, block)
     except np.linalg.LinAlgError:
         return Spectrum(path, matrix.shape[0], raw, None, None)
-    return Spectrum(path, matrix.shape[0], raw, log10_cond(scaled), pcg_iterations(scaled))
+    return Spectrum(path, matrix.shape[0], raw, _log10_cond_of(path, scaled), pcg_iterations(scaled))
 
 
 def measure(spectra: list[Spectrum]) -> dict[Metric, float]:

@@ -81,14 +81,15 @@ def cond_metric(matrix: str, which: str) -> Metric:
 
 
 def measure(run: Run) -> dict[Metric, float]:
-    """Every number that the record has. Counts of 0 (nothing of the kind ran) and energies of rounding are left out:
-    they judge nothing."""
+    """Every number that the record has. Class III counts of 0 (nothing of the kind ran) and energies of rounding are left out: they
+    judge nothing. A cost of 0 stays: one that appears is a cost."""
     summary, steps = run.section("summary"), run.record.get("steps") or [{}]
     found = {metric: _at(summary, place) for metric, place in SUMMARY}
     found |= {metric: _at(steps[-1], place) for metric, place in LAST_STEP}
-    for matrix, conditioning in sorted((summary.get("cond") or {}).items()):
+    conditions = summary.get("cond")
+    for matrix, conditioning in sorted(conditions.items() if isinstance(conditions, dict) else []):
         for which in ("median", "max"):
             found[cond_metric(matrix, which)] = _at(conditioning, ("log10_cond", which))
     energies = [abs(value) for metric, value in found.items() if metric.unit == "J" and value is not None]
-    return {metric: value for metric, value in found.items() if value is not None and not (metric.unit == "1" and value == 0)
+    return {metric: value for metric, value in found.items() if value is not None and not (metric.gate_class == "III" and metric.unit == "1" and value == 0)
             and not (metric.unit == "J" and abs(value) <= ROUNDING * max(energies))}

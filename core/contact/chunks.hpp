@@ -2,23 +2,21 @@
 // number of threads.
 #pragma once
 
-#include <oneapi/tbb/parallel_for.h>
-
-#include <algorithm>
 #include <cstddef>
 #include <vector>
+
+#include "core/math/parallel.hpp"
 
 namespace bb {
 
 constexpr std::size_t chunk_size = 512;  // pairs; about 0.1 ms of work
 
-constexpr std::size_t n_chunks(std::size_t n) { return (n + chunk_size - 1) / chunk_size; }
+constexpr std::size_t n_chunks(std::size_t n) { return n_blocks(n, chunk_size); }
 
 /// Calls f(chunk, begin, end) for every chunk of [0, n), in parallel.
 template <class F>
 void for_each_chunk(std::size_t n, const F& f) {
-  tbb::parallel_for(std::size_t{0}, n_chunks(n),
-                    [&](std::size_t k) { f(k, k * chunk_size, std::min(n, (k + 1) * chunk_size)); });
+  parallel_blocks(n, f, chunk_size);
 }
 
 /// Runs add(item, result) over all items in chunks and reduce(result) over the chunks in order.

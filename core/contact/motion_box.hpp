@@ -48,7 +48,7 @@ inline float proven_time(const MotionBox& a, const MotionBox& b) {
   constexpr float inf = std::numeric_limits<float>::infinity();
   const auto until = [](const Four& gap, const Four& rate) -> Four {
     const Four met = gap / -rate, never = inf - Four{}, zero = {};
-    return gap > 0 ? (rate < 0 ? met : never) : zero;
+    return gap > 0 ? (rate < 0 ? met : rate >= 0 ? never : zero) : zero;  // a rate may be no number
   };
   const Four below = until(a.lo - b.hi, a.slowest - b.fastest);
   const Four above = until(b.lo - a.hi, b.slowest - a.fastest);

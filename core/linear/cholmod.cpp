@@ -3,7 +3,6 @@
 #include <string>
 
 #include "core/linear/cholmod_factor.hpp"
-#include "core/math/error.hpp"
 
 namespace bb {
 namespace {
@@ -12,12 +11,8 @@ class Cholmod final : public LinearSolver {
  public:
   std::string_view name() const override { return "cholmod"; }
 
-  LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
-    if (b.size() != system.lower.rows()) {
-      throw ConfigError("right-hand side", std::to_string(b.size()) + " entries", "one a row of the matrix");
-    }
+  LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
     LinearReport report;
-    x = VecXd::Zero(b.size());
     if (b.size() == 0) return report;
     report.status = factor_.factorize(system);
     report.analyzed = factor_.analyzed_last();

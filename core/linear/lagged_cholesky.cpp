@@ -12,7 +12,6 @@
 #include "core/linear/conjugate_gradients.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/linear/stopwatch.hpp"
-#include "core/math/error.hpp"
 
 namespace bb {
 namespace {
@@ -37,13 +36,9 @@ class LaggedCholesky final : public LinearSolver {
   std::string_view name() const override { return "lagged_cholesky"; }
   void begin_step() override { forcing_.begin_step(); }
 
-  LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
-    if (b.size() != system.lower.rows()) {
-      throw ConfigError("right-hand side", std::to_string(b.size()) + " entries", "one a row of the matrix");
-    }
+  LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
     LinearReport report;
     report.iterative = true;
-    x = VecXd::Zero(b.size());
     const Stopwatch stopwatch;
     product_.update(system);
     const double b_norm = cg_.norm(b);

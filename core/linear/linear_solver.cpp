@@ -25,6 +25,14 @@ std::string_view to_string(LinearStatus status) {
   return "";
 }
 
+LinearReport LinearSolver::solve(const ReducedSystem& system, const VecXd& b, VecXd& x) {
+  if (b.size() != system.lower.rows()) {
+    throw ConfigError("right-hand side", std::to_string(b.size()) + " entries", "one a row of the matrix");
+  }
+  x = VecXd::Zero(b.size());
+  return solve_checked(system, b, x);
+}
+
 const Registry<LinearSolverEntry>& linear_solvers() {
 #define ENTRY(name, doc) named(linear_solver_##name(), #name, doc),
   static const Registry<LinearSolverEntry> all({

@@ -55,7 +55,12 @@ class LinearSolver {
   virtual void begin_step() {}
   /// x is resized to b. Analysis is reused while pattern_id stays. Never silently falls back
   /// to another method.
-  virtual LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) = 0;
+  /// Errors: ConfigError when b has not one entry a row of the matrix.
+  LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x);
+
+ private:
+  /// x is 0, b fits.
+  virtual LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) = 0;
 };
 
 /// Errors: ConfigError for an unknown name and for what own_parameters refuses.

@@ -1,5 +1,4 @@
-// Deterministic loops of this room: parallel_items, and a dot product whose order of additions does not depend
-// on the number of threads.
+// A dot product whose order of additions does not depend on the number of threads.
 #pragma once
 
 #include <algorithm>

@@ -5,7 +5,6 @@
 #include "core/linear/conjugate_gradients.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/linear/stopwatch.hpp"
-#include "core/math/error.hpp"
 
 namespace bb {
 namespace {
@@ -18,7 +17,7 @@ class Pcg final : public LinearSolver {
         preconditioner_(make_preconditioner(text(parameters, "preconditioner"), parameters)) {}
   std::string_view name() const override { return "pcg"; }
   void begin_step() override { forcing_.begin_step(); }
-  LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x) override;
+  LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override;
 
  private:
   Forcing forcing_;
@@ -28,13 +27,9 @@ class Pcg final : public LinearSolver {
   ConjugateGradients cg_;
 };
 
-LinearReport Pcg::solve(const ReducedSystem& system, const VecXd& b, VecXd& x) {
-  if (b.size() != system.lower.rows()) {
-    throw ConfigError("right-hand side", std::to_string(b.size()) + " entries", "one a row of the matrix");
-  }
+LinearReport Pcg::solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) {
   LinearReport report;
   report.iterative = true;
-  x = VecXd::Zero(b.size());
   const Stopwatch stopwatch;
   product_.update(system);
   const double b_norm = cg_.norm(b);

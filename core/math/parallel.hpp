@@ -18,12 +18,14 @@ void parallel_items(Index n, std::size_t grain, const F& f) {
 
 /// Blocks of fixed size, for what has to be gathered in one order: f(block, begin, end).
 inline constexpr std::size_t block_items = 1024;
-constexpr std::size_t n_blocks(std::size_t n) { return (n + block_items - 1) / block_items; }
+constexpr std::size_t n_blocks(std::size_t n, std::size_t size = block_items) {
+  return (n + size - 1) / size;
+}
 template <class F>
-void parallel_blocks(std::size_t n, const F& f) {
-  parallel_items(n_blocks(n), 1, [&](std::size_t b) {
-    const std::size_t begin = b * block_items;
-    f(b, begin, begin + block_items < n ? begin + block_items : n);
+void parallel_blocks(std::size_t n, const F& f, std::size_t size = block_items) {
+  parallel_items(n_blocks(n, size), 1, [&](std::size_t b) {
+    const std::size_t begin = b * size;
+    f(b, begin, begin + size < n ? begin + size : n);
   });
 }
 

@@ -26,6 +26,7 @@ ConfigError unknown_name(std::string_view where, std::string_view found,
 template <class List>
 std::vector<std::string> names_of(const List& list) {
   std::vector<std::string> names;
+  names.reserve(list.size());
   for (const auto& entry : list) names.emplace_back(entry.name);
   return names;
 }

@@ -92,7 +92,11 @@ void ContactTerm::fill_local(const Positions& x, Projection projection) {
 
 void ContactTerm::clamp(const Positions& x) {
   LocalTerms &rows = families_[0].clamped, &mollified = families_[1].clamped;
-  contact_terms(state_.rows, x, options_.hessian_mode, Projection::psd, rows.grad, rows.hess);
+  if (options_.hessian_mode == HessianMode::gauss_newton) {
+    rows.hess = families_[0].local.hess;  // positive semi-definite as it is
+  } else {
+    contact_terms(state_.rows, x, options_.hessian_mode, Projection::psd, rows.grad, rows.hess);
+  }
   mollified_terms(state_.mollified, x, Projection::psd, mollified.grad, mollified.hess);
 }
 

@@ -62,7 +62,7 @@ def record(matrices, gaps, kappa):
     """The fields that a gate reads. Names and units: ./bench help record."""
     cond = np.log10([np.linalg.cond(matrix) for matrix in matrices])
     return {
-        "schema": {"name": "barrierbench.run", "version": "3.1.0"},
+        "schema": {"name": "barrierbench.run", "version": "3.2.0"},
         "status": {"outcome": "ok", "detail": ""},
         "labels": {"scene": "chain", "formulation": "log"},
         "config": {"masses": MASSES, "dt_s": DT, "steps": STEPS, "d_hat_m": D_HAT, "kappa_N_per_m": kappa},

@@ -9,6 +9,7 @@
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/runner.hpp"
 #include "experiments/run/start_check.hpp"
@@ -57,9 +58,8 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
 }  // namespace
 
 int check(const RunVerb& verb) {
-  const RunConfig config = load_config(verb.config, verb.set);
+  const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
-  plan_of(config, scene);  // for what it refuses
   if (const auto failure = start_failure(config, scene, &interrupted())) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
@@ -68,7 +68,7 @@ int check(const RunVerb& verb) {
 }
 
 int explain(const RunVerb& verb) {
-  const RunConfig config = load_config(verb.config, verb.set);
+  const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
   const Plan plan = plan_of(config, scene);
   fmt::print("{}\n  {} vertices ({} prescribed), {} membrane triangles, {} steps of {} s\n\n",

@@ -10,6 +10,7 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/linear_choice.hpp"
 
 namespace bb::cli {
 namespace {
@@ -89,8 +90,9 @@ int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& com
   }
   RunOptions options = run_options(common);
   load_plugins(stored, options.plugins);
-  const RunConfig config =
+  RunConfig config =
       parse_config(stored.record.config.text, stored.file.string() + " (config)", home.string(), verb.set);
+  decide_linear_solver(config);
   options.folder = verb.out.empty() ? fresh_folder(run_label(config)) : fs::path(verb.out);
   options.keep_inputs = verb.keep_inputs;
   options.note = stored.record.labels.note;

@@ -5,6 +5,7 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/linear_choice.hpp"
 
 namespace bb::cli {
 
@@ -29,7 +30,7 @@ RunRecord run_and_show(const RunConfig& config, RunOptions options, const Common
 
 int run(const RunVerb& verb, const CommonOptions& common) {
   if (const auto stored = read_stored_run(verb.config)) return rerun(*stored, verb, common);
-  const RunConfig config = load_config(verb.config, verb.set);
+  const RunConfig config = load_run(verb.config, verb.set);
   RunOptions options = run_options(common);
   options.folder = verb.out.empty() ? "results/runs/" + run_label(config) : verb.out;
   options.keep_inputs = verb.keep_inputs;

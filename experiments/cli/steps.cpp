@@ -5,6 +5,7 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/linear_choice.hpp"
 #include "experiments/run/step_study.hpp"
 
 namespace bb::cli {
@@ -17,7 +18,7 @@ std::string in_tolerances(const Number& error, double tolerance) {
 }  // namespace
 
 int steps(const StepsVerb& verb, const CommonOptions& common) {
-  const RunConfig config = load_config(verb.config, verb.set);
+  const RunConfig config = load_run(verb.config, verb.set);
   RunOptions options = run_options(common);
   const std::vector<StepTrial> trials = study_steps(config, verb.at, options);
   fmt::print("{:>5} {:<17} {:>10} {:>7} {:>7} {:>10} {:>10}  {}\n", "step", "hessian", "iterations", "solves",

@@ -11,6 +11,7 @@
 #include "core/parameters/check.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/linear_choice.hpp"
 
 namespace bb {
 namespace {
@@ -173,7 +174,7 @@ SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& ov
     check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
     one.set.insert(one.set.end(), overrides.begin(), overrides.end());
     try {
-      one.config = load_config(base.string(), one.set);
+      one.config = load_run(base.string(), one.set);
     } catch (const ConfigError& error) {
       for (Violation v : error.violations()) {
         v.where = path + " [" + one.label.substr(0, max_name_bytes) + "] " + v.where;

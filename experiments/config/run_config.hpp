@@ -70,6 +70,7 @@ struct SceneConfig {
 
 struct RunConfig {
   std::string source;  // file it came from, for messages; not part of config_id
+  std::string linear_solver_reason = "as asked for";  // or why auto chose it; no setting
   SceneConfig scene;
   FormulationConfig formulation;
   StrainLimitConfig strain_limit;

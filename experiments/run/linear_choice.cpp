@@ -13,6 +13,7 @@
 #include "core/parameters/check.hpp"
 #include "core/record/provenance.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/method.hpp"
 
 namespace bb {
 namespace {
@@ -126,21 +127,31 @@ LinearModel read_linear_model(const std::string& file) {
   return model;
 }
 
-LinearChoice choose_linear_solver(const RunConfig& config, const Scene& scene, Method& method) {
+void decide_linear_solver(RunConfig& config) {
+  if (config.linear_solver.name != linear_solver_auto) return;
   const LinearModel model = model_of_this_machine();
-  PlanOptions options;
-  options.linear = {};  // any solver will do: nothing is solved
-  NewtonSystem system(scene, method, make_plan(scene, method, options));
+  const Scene scene = build_scene(config);
+  Calibration any;  // stiffness does not change a pattern
+  any.kappa = any.k_s = 1;
+  Method method = make_method(config, any);
+  method.linear = {};  // any solver will do: nothing is solved
+  NewtonSystem system(scene, method);
   const LinearWork work = linear_work(system.fixed_pattern());
   const LinearCost& chosen = model.costs[cheapest(model.costs, work)];
-  LinearChoice choice{{chosen.solver, config.linear_solver.parameters}, {}};
-  if (!chosen.preconditioner.empty()) choice.solver.parameters["preconditioner"] = chosen.preconditioner;
-  choice.reason = fmt::format(
+  config.linear_solver.name = chosen.solver;
+  if (!chosen.preconditioner.empty())
+    config.linear_solver.parameters["preconditioner"] = chosen.preconditioner;
+  config.linear_solver_reason = fmt::format(
       "by auto: a solve is expected to take {} ({}); {:.0f} unknowns, {:.3g} entries, of a Cholesky "
       "factor {:.3g}, {:.3g} operations",
       cost_text(model.costs, work), fs::path(model.file).filename().string(), work.unknowns, work.entries,
       work.factor_entries, work.factor_flop);
-  return choice;
+}
+
+RunConfig load_run(const std::string& path, std::span<const std::string> overrides) {
+  RunConfig config = load_config(path, overrides);
+  decide_linear_solver(config);
+  return config;
 }
 
 }  // namespace bb

@@ -2,12 +2,11 @@
 // files of configs/linear_models, one a processor; ./bench fit-linear makes one.
 #pragma once
 
+#include <span>
 #include <string>
 #include <vector>
 
 #include "core/linear/cost_model.hpp"
-#include "core/newton/method.hpp"
-#include "core/scene/scene.hpp"
 #include "experiments/config/run_config.hpp"
 
 namespace bb {
@@ -21,14 +20,14 @@ struct LinearModel {
 /// no solver.
 LinearModel read_linear_model(const std::string& file);
 
-struct LinearChoice {
-  LinearOptions solver;
-  std::string reason;
-};
-/// By the model of this processor. The other settings of /linear_solver are the config's.
-/// @param method  of the config; its stiffness does not matter
-/// Errors: ConfigError at /linear_solver/name without a model of this processor; those of read_linear_model.
-/// Cost: an ordering and a symbolic analysis of the elements' matrix.
-LinearChoice choose_linear_solver(const RunConfig& config, const Scene& scene, Method& method);
+/// Replaces `auto` by what the model of this processor expects to be the fastest, with the reason in
+/// linear_solver_reason; the other settings of /linear_solver stay. So a record has the solver that ran, and repeats
+/// it anywhere. Any other solver stays as it is, at no cost.
+/// Errors: ConfigError at /linear_solver/name without a model of this processor; those of read_linear_model and
+/// build_scene. Cost: a scene, an ordering and a symbolic analysis of its elements' matrix.
+void decide_linear_solver(RunConfig& config);
+
+/// load_config with the linear solver decided.
+RunConfig load_run(const std::string& path, std::span<const std::string> overrides);
 
 }  // namespace bb

@@ -2,7 +2,6 @@
 
 #include "core/linear/linear_solver.hpp"
 #include "core/newton/step_solver.hpp"
-#include "experiments/run/linear_choice.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {
@@ -27,18 +26,13 @@ Plan plan_of(const RunConfig& config, const Scene& scene) {
   options.collision_free_steps =
       step_solvers().require(config.step_solver.name, "/step_solver/name").bounds_steps;
   options.linear = {config.linear_solver.name, config.linear_solver.parameters};
+  options.linear_reason = config.linear_solver_reason;
   options.diagnose = config.passes.diagnose;
   options.audit = config.passes.audit;
   options.trace = has_observed_run(config);
   options.frames = config.output.frames_every > 0;
   options.matrices = config.output.matrices;
-  Method method = uncalibrated(config);
-  if (config.linear_solver.name == linear_solver_auto) {
-    LinearChoice choice = choose_linear_solver(config, scene, method);
-    options.linear = std::move(choice.solver);
-    options.linear_reason = std::move(choice.reason);
-  }
-  return make_plan(scene, method, options);
+  return make_plan(scene, uncalibrated(config), options);
 }
 
 }  // namespace bb

@@ -10,7 +10,7 @@ namespace bb {
 /// leaves the trace; none of its times is reported as a time.
 bool has_observed_run(const RunConfig& config);
 
-/// With the linear solver decided. Errors: those of choose_linear_solver.
+/// Requires a decided linear solver (linear_choice.hpp).
 Plan plan_of(const RunConfig& config, const Scene& scene);
 
 }  // namespace bb

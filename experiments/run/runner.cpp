@@ -19,6 +19,7 @@
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/comparability.hpp"
 #include "experiments/run/input_files.hpp"
+#include "experiments/run/linear_choice.hpp"
 #include "experiments/run/outcome.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/recorder.hpp"
@@ -247,6 +248,7 @@ RunRecord identified(const RunConfig& config, const RunOptions& options) {
 
 RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   RunConfig config = asked;
+  decide_linear_solver(config);
   RunOptions options = given;
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(thread_count(config)));

@@ -112,6 +112,33 @@ TEST(FarTest, NeverClaimsMoreThanTheDistance) {
   EXPECT_GT(claimed, 0.8 * asked);
 }
 
+/// Edges so short that the squares of their common normal have no digits in float.
+TEST(FarTest, NeverClaimsMoreThanTheDistanceOfTinyEdges) {
+  int asked = 0;
+  for (const double edge : {1e-8, 1e-9, 1e-10, 3e-11, 1e-11, 5e-12, 1e-12, 1e-13}) {
+    for (const double turn : {0.0, 0.3, 1.1}) {
+      Scene scene;
+      const Vec3d half(0.531, 0, 0), along(0, edge * std::cos(turn), edge * std::sin(turn));
+      add_body(scene, "a", {half, Vec3d(half + along)}, {}, 1);
+      add_body(scene, "b", {Vec3d(-half), Vec3d(-half + Vec3d(0, 0, edge))}, {}, 1);
+      add_body(scene, "c", {Vec3d(1, 1, 1), Vec3d(-1, -1, -1)}, {}, 1);
+      scene.surface_edges = {{0, 1}, {2, 3}};
+      const double d = closest_points<PairKind::edge_edge, double>(scene.x0.leftCols<4>()).d;
+      for (const double share : {1.0, 1.003, 1.01, 1.03}) {
+        scene.d_hat.assign(scene.d_hat.size(), share * d);
+        const Surface surface(scene);
+        FarTest test(surface);
+        test.set_state(scene.x0);
+        const IndexPair pair{0, 1};
+        ++asked;
+        EXPECT_EQ(test.far<PairKind::edge_edge>(&pair, 1), 0U)
+            << edge << ", turned by " << turn << ", " << share;
+      }
+    }
+  }
+  EXPECT_EQ(asked, 96);
+}
+
 TEST(FarTest, ClaimsNothingOfPointsThatAreOne) {
   Scene scene;
   add_body(scene, "a", {Vec3d(1, 2, 3), Vec3d(1, 2, 3)}, {}, 0.1);

@@ -98,43 +98,6 @@ struct FourPairs {
 };
 
 template <PairKind K>
-void expect_four_as_one() {
-  Pairs pairs;
-  FourPairs<K> four;
-  int clear = 0, claimed = 0;
-  for (int i = 0; i < 5000; ++i) {
-    for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-      const auto x = pairs.next<K>();
-      four.set(lane, x, x);
-    }
-    for (const double share : {0.3, 0.7, 1 - 1e-9, 1.0, 1 + 1e-15}) {
-      Lanes4 reach;
-      for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-        reach.v[lane] = share * closest_points<K, double>(four.at0(lane)).d;
-      }
-      const auto far = farther_than<K>(gather_lanes<K>(four.pair, four.x0), reach);
-      for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-        const bool said = far.bits[lane] != 0;
-        if (share >= 1) {
-          EXPECT_FALSE(said) << i << " at " << share;
-        }
-        if (share != 0.3) continue;
-        ++clear;
-        claimed += said ? 1 : 0;
-      }
-    }
-  }
-  EXPECT_GT(claimed, 9 * clear / 10);
-}
-
-TEST(FartherThan, OfFourPairsNeverClaimsMoreThanTheDistanceAndSettlesClearPairs) {
-  expect_four_as_one<PairKind::point_point>();
-  expect_four_as_one<PairKind::point_edge>();
-  expect_four_as_one<PairKind::point_triangle>();
-  expect_four_as_one<PairKind::edge_edge>();
-}
-
-template <PairKind K>
 MotionBox box_of(const Mat<double, 3, pair_points(K)>& x0, const Mat<double, 3, pair_points(K)>& x1,
                  int begin, int end, double reach) {
   std::vector<int> corners;

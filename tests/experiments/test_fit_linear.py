@@ -76,6 +76,26 @@ def test_the_program_expects_the_seconds_of_the_fit_and_takes_the_cheapest(progr
         assert line.split()[1] == f"{min(expected, key=expected.get).split()[0]},"
 
 
+def test_a_run_with_auto_is_a_run_with_the_chosen_solver(program, records, tmp_path):
+    content, _ = fit_linear.model(records)
+    (tmp_path / "linear_models").mkdir()
+    (tmp_path / "formulations").symlink_to(ROOT / "configs/formulations")
+    (tmp_path / "linear_models/here.json").write_text(json.dumps(content))
+    small = ["--set", "/scene/n=6", "--set", "/scene/layers=1", "--set", "/time/steps=2", "--set", "/passes/diagnose=true"]
+    for number, rule in enumerate(("equal_force", "as_given")):  # with a pilot, and without
+        given = ["--set", f"/matching/rule={rule}", "--set", "/formulation=cubic_dynamic_consistent"]
+        done = bench(program, "run", ROOT / "configs/scenes/drape.json", *small, *given, "--set", "/linear_solver/name=auto", "--out", tmp_path / str(number), configs=tmp_path)
+        assert done.returncode == 0, done.stderr
+        record = json.loads((tmp_path / str(number) / "run.json").read_text())
+        assert record["status"]["outcome"] == "ok", record["status"]
+        solver = record["labels"]["linear_solver"]
+        assert solver in ("cholmod", "pcg") and record["config"]["linear_solver"]["name"] == solver  # nothing is left to be decided
+        reason = next(item["reason"] for item in record["plan"] if item["item"] == "linear_solver")
+        assert reason.startswith(f"{solver}, by auto: ")
+    again = bench(program, "run", tmp_path / "1/run.json", "--out", tmp_path / "again")  # no model is needed
+    assert again.returncode == 0, again.stderr
+
+
 def test_records_that_cannot_be_fitted_are_refused(records):
     few = records.runs["series"].str.startswith(("0", "1"))
     with pytest.raises(RecordError, match="2 scenes"):
@@ -83,6 +103,9 @@ def test_records_that_cannot_be_fitted_are_refused(records):
     other = records.runs.assign(machine_cpu_model=["a"] + ["b"] * (len(records.runs) - 1))
     with pytest.raises(RecordError, match="several machines: a, b"):
         fit_linear.model(type(records)(other, records.steps, records.trace, records.cond))
+    builds = records.runs.assign(build_id=["a"] + ["b"] * (len(records.runs) - 1))
+    with pytest.raises(RecordError, match="2 builds"):
+        fit_linear.model(type(records)(builds, records.steps, records.trace, records.cond))
     no_factor = records.runs["linear_solver"] != "cholmod"
     with pytest.raises(RecordError, match="no record of cholmod"):
         fit_linear.model(type(records)(records.runs[no_factor], records.steps, records.trace, records.cond))

@@ -63,7 +63,8 @@ class LinearChoiceTest : public testing::Test {
         std::to_string(n) + "}}";
     const std::vector<std::string> overrides = {"/linear_solver/name=auto",
                                                 "/linear_solver/max_iterations=77"};
-    const RunConfig config = parse_config(text, "test", ".", overrides);
+    RunConfig config = parse_config(text, "test", ".", overrides);
+    decide_linear_solver(config);
     return plan_of(config, build_scene(config));
   }
   /// The message of the model that is refused.

@@ -3,11 +3,12 @@
 import numpy as np
 import pytest
 
-from analysis.gate import judge
+from analysis.gate import invariants, judge, metrics
 from analysis.gate.baseline import Kept
 from analysis.gate.envelope import Envelope, calibrate, holm, ks_p_value
 from analysis.gate.finding import without_subject
 from analysis.gate.metrics import COND, GAP, LOWER_BETTER, NEWTON, PHYSICS, TWO_SIDED, Metric
+from analysis.gate.records import Run
 
 COND_METRIC = Metric("log10_cond full/none median", "III", "log10", TWO_SIDED, COND)
 ITERATIONS = Metric("newton_iterations", "III", "1", LOWER_BETTER, NEWTON)
@@ -69,3 +70,22 @@ def test_costs_are_judged_one_by_one_and_together():
 
 def test_judging_nothing_is_a_failure():
     assert [f.gate_class for f in without_subject([])] == ["I", "II", "III", "IV"]
+
+
+def test_a_cost_that_was_0_or_unknown_and_appears_is_red():
+    factorizations = next(metric for metric, _ in metrics.SUMMARY if metric.name == "factorizations")
+    kept = judge.around({factorizations: 0.0})
+    assert [f.verdict for f in judge.numbers("a", kept, {factorizations: 0.0}, True)] == ["pass"]
+    assert [f.verdict for f in judge.numbers("a", kept, {factorizations: 500.0}, True)] == ["FAIL"]
+    analyses = next(metric for metric, _ in metrics.SUMMARY if metric.name == "analyses")
+    other = {factorizations: 0.0, analyses: 7.0}
+    assert [f.verdict for f in judge.numbers("a", kept, other, True)] == ["pass", "FAIL"]
+    assert [f.verdict for f in judge.numbers("a", kept, other | {analyses: 0.0}, True)] == ["pass", "not_judged"]
+    assert [f.verdict for f in judge.numbers("a", {}, other, True)] == ["not_judged", "not_judged"]  # a baseline without class IV
+
+
+def test_an_audit_that_holds_no_count_is_red(tmp_path):
+    for found in ({"judged": 3, "crossings": None}, {"judged": 3, "crossings": "none"}, {"judged": 3}):
+        lines = invariants.judge("a", Run(tmp_path, {"audit": found}))
+        line = next(line for line in lines if line.metric == "crossings")
+        assert line.verdict == "FAIL" and "no count" in line.note

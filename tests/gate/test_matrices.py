@@ -39,6 +39,7 @@ def test_large_ones_agree_with_all_eigenvalues(monkeypatch):
     monkeypatch.setattr(matrices, "LARGEST_DENSE", 10)
     assert matrices.log10_cond(matrix) == pytest.approx(exact, abs=1e-3)
     assert matrices.log10_cond(sparse.csc_matrix(laplace(400) - 0.1 * np.eye(400))) is None
+    assert matrices.log10_cond(sparse.diags([0.0] + [1.0] * 399, format="csc")) is None  # exactly singular: no factor at all
 
 
 @pytest.mark.parametrize("text, said", [

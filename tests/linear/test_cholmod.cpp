@@ -1,5 +1,6 @@
 // The sparse Cholesky factor: reuse of the analysis, causes of failure, the BLAS behind it.
 #include <gtest/gtest.h>
+#include <tbb/global_control.h>
 
 #include <filesystem>
 
@@ -58,8 +59,9 @@ TEST(Cholmod, ReusesItsFactorBitForBit) {
   EXPECT_GT(factor.factor_flops(), 0);
 }
 
-/// CHOLMOD has OpenMP loops of its own, whose pool would spin beside our threads.
+/// CHOLMOD has OpenMP loops of its own, whose pool would spin beside our threads. Ours are those of TBB.
 TEST(Cholmod, StartsNoThread) {
+  const tbb::global_control one(tbb::global_control::max_allowed_parallelism, 1);
   const auto n_threads = [] {
     const std::filesystem::directory_iterator tasks("/proc/self/task");
     return std::distance(begin(tasks), end(tasks));

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "systems.hpp"
+#include "tests/linear/systems.hpp"
 
 namespace bb {
 namespace {

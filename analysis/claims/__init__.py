@@ -1,0 +1,1 @@
+"""Verdicts on the claims in claims/, computed from records."""

@@ -1,0 +1,96 @@
+"""Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every verdict from the records by the rule of
+its claim, and writes results/CLAIMS.md, results/claims.json (the numbers used), docs/claims.png and the table of the README. With names of claims it runs the sweeps of these alone.
+
+Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them; a bad entry; no program).
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+from ..load import RecordError
+from . import figure, report
+from .entry import ROOT, Claim, ClaimError, ids, read_claim, read_sweep
+from .judge import judge, missing
+from .proofs import Eval
+from .table import FILE, RUNS, Table, collect, read, used_metrics, write
+
+
+def program(needed: bool = True) -> str | None:
+    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
+    if path.exists():
+        return str(path)
+    if needed:
+        raise ClaimError(f"{path} is not built: ./bench build; --no-run judges the numbers that are kept")
+    return None
+
+
+def run_sweeps(claims: list[Claim], runs: Path) -> None:
+    for name in dict.fromkeys(name for claim in claims for name in claim.sweeps):
+        sweep, start = read_sweep(name), time.monotonic()
+        print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
+        done = subprocess.run([program(), "sweep", str(ROOT / sweep.file), "--out", str(runs / name)], stdout=subprocess.DEVNULL, check=False)
+        if done.returncode != 0:
+            raise ClaimError(f"{sweep.file}: the program ended with {done.returncode}")
+        print(f"claims: {name}: {time.monotonic() - start:.0f} s", file=sys.stderr)
+
+
+def gather(claims: list[Claim], runs: Path, kept: Table) -> Table:
+    """Records where a sweep has any, else the numbers that are kept. Metrics are those of all claims."""
+    everything = [read_claim(name) for name in ids()]
+    metrics, table = used_metrics(everything), Table(dict(kept.sweeps), dict(kept.answers))
+    for name in dict.fromkeys(name for claim in claims for name in claim.sweeps):
+        if any((runs / name).glob("*/run.json")):
+            table.sweeps[name] = collect(read_sweep(name), runs / name, metrics[name])
+    return table
+
+
+def arguments(argv: list[str]) -> argparse.Namespace:
+    parser = argparse.ArgumentParser(prog="bench claims", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="examples: ./bench claims\n          ./bench claims K3 H1\n          ./bench claims --no-run")
+    parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
+    parser.add_argument("--no-run", action="store_true", help="run nothing: judge the records that are there, or the numbers in results/claims.json")
+    parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the sweeps (default: results/runs/claims)")
+    return parser.parse_args(argv)
+
+
+def main(argv: list[str]) -> int:
+    args = arguments(argv)
+    try:
+        claims = [read_claim(name) for name in args.ids or ids()]
+        if not args.no_run:
+            run_sweeps(claims, args.runs)
+        table = gather(claims, args.runs, read(FILE))
+        if absent := [line for claim in claims for line in missing(claim, table)]:
+            raise ClaimError("\n".join(absent))
+        asker = Eval(program(not args.no_run), table.answers, fresh=not args.no_run)
+        print(report.text([judge(claim, table, asker) for claim in claims]))
+        write_all(table, asker)
+    except (ClaimError, RecordError) as error:
+        print(f"bench claims: {error}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def write_all(table: Table, asker: Eval) -> None:
+    """The table, the page and the figure, of all claims."""
+    answers = [judge(read_claim(name), table, asker) for name in ids()]
+    if not set(ids()) - {a.claim.id for a in answers if a.parts or a.claim.waits_for}:
+        table.answers = {text: table.answers[text] for text in asker.asked}
+    write(table, FILE)
+    (ROOT / "results" / "CLAIMS.md").write_text(report.markdown(answers, table))
+    for path in figure.draw(answers, RUNS / "figure" / "claims"):
+        if path.suffix in (".png", ".txt"):
+            shutil.copyfile(path, ROOT / "docs" / path.name)
+    readme = ROOT / "README.md"
+    readme.write_text(report.in_readme(readme.read_text(), answers))
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

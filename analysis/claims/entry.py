@@ -1,0 +1,124 @@
+"""Claims and their sweeps as data: claims/ID.json, claims/sweeps/NAME.json."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import re
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+FOLDER = ROOT / "claims"
+NAME = "barrierbench.claim/1"
+REQUIRED = ("id", "source", "sentence", "dimension", "guarantee")
+OPTIONAL = ("schema", "parts", "waits_for", "note", "rule_changes")
+
+
+class ClaimError(ValueError):
+    """A claim or sweep that cannot be judged: file, place and what is needed."""
+
+
+@dataclass(frozen=True)
+class Claim:
+    id: str
+    source: str
+    sentence: str
+    dimension: str
+    guarantee: str
+    parts: tuple[dict, ...] = ()  # rules with their parameters; all of them together are the claim, but those marked beside
+    waits_for: str = ""  # what has to be built before it can be decided
+    note: str = ""
+    rule_changes: tuple[str, ...] = ()  # of a rule after numbers were seen
+
+    @property
+    def sweeps(self) -> list[str]:
+        return list(dict.fromkeys(part["sweep"] for part in self.parts if "sweep" in part))
+
+    @property
+    def command(self) -> str:
+        return f"./bench claims {self.id}"
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """The cases of a sweep file: SCENE LEVEL, case, seed."""
+
+    name: str
+    sha256: str
+    cases: dict[str, tuple[str, str, str, int]] = field(hash=False, default_factory=dict)  # note of a record -> its place
+
+    @property
+    def file(self) -> str:
+        return f"claims/sweeps/{self.name}.json"
+
+    @property
+    def command(self) -> str:
+        return f"./bench sweep {self.file} --out results/runs/claims/{self.name}"
+
+
+def _read(path: Path) -> dict:
+    try:
+        data = json.loads(path.read_text())
+    except OSError as error:
+        raise ClaimError(f"{path}: {error.strerror}") from None
+    except ValueError as error:
+        raise ClaimError(f"{path}: not JSON: {error}") from None
+    if not isinstance(data, dict):
+        raise ClaimError(f"{path}: not an object")
+    return data
+
+
+def order(name: str) -> tuple:
+    """K before H before N, and 9 before 10."""
+    letter, number = re.match(r"([A-Z]+)(\d+)$", name).groups()
+    return "KHN".find(letter), int(number)
+
+
+def ids(folder: Path = FOLDER) -> list[str]:
+    return sorted((path.stem for path in folder.glob("*.json")), key=order)
+
+
+def read_claim(name: str, folder: Path = FOLDER) -> Claim:
+    path = folder / f"{name}.json"
+    if not path.is_file():
+        raise ClaimError(f"claim {name!r}: one of {', '.join(ids(folder))} (claims/)")
+    data = _read(path)
+    if data.get("schema") != NAME:
+        raise ClaimError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
+    if missing := [key for key in REQUIRED if not isinstance(data.get(key), str)]:
+        raise ClaimError(f"{path}: /{missing[0]}: a string is needed")
+    if unknown := [key for key in data if key not in (*REQUIRED, *OPTIONAL)]:
+        raise ClaimError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
+    if data["id"] != name:
+        raise ClaimError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
+    if not data.get("parts") and not data.get("waits_for"):
+        raise ClaimError(f"{path}: neither parts that decide it nor waits_for")
+    return Claim(**{key: data[key] for key in REQUIRED}, parts=tuple(data.get("parts", ())), waits_for=data.get("waits_for", ""),
+                 note=data.get("note", ""), rule_changes=tuple(data.get("rule_changes", ())))
+
+
+def _labels(axis: dict, path: Path) -> list[str]:
+    if "cases" in axis:
+        return [case["label"] for case in axis["cases"]]
+    if axis.get("pointer") != "/seeds/main":
+        raise ClaimError(f"{path}: an axis by pointer is /seeds/main; found {axis.get('pointer')!r}")
+    return [f"main={value}" for value in axis["values"]]
+
+
+@cache
+def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
+    """Three axes: cases labelled SCENE LEVEL, the cases that are compared, and values of /seeds/main."""
+    path = folder / "sweeps" / f"{name}.json"
+    data = _read(path)
+    if data.get("name") != name or len(data.get("axes", [])) != 3:
+        raise ClaimError(f"{path}: needs the name of the file and three axes: scenes with levels, cases, seeds")
+    cases = {}
+    for labels in itertools.product(*(_labels(axis, path) for axis in data["axes"])):
+        scene, _, level = labels[0].partition(" ")
+        if not level or not labels[2].startswith("main="):
+            raise ClaimError(f"{path}: {labels}: the axes are SCENE LEVEL, case, /seeds/main")
+        cases[f"{name}: {' '.join(labels)}"] = scene, level, labels[1], int(labels[2].removeprefix("main="))
+    return Sweep(name, hashlib.sha256(path.read_bytes()).hexdigest(), cases)

@@ -1,0 +1,79 @@
+"""Numbers of a record that rules may name. A number that the record does not have is None."""
+
+from __future__ import annotations
+
+import math
+
+
+def _at(record: dict, *place: str):
+    for name in place:
+        record = record.get(name) if isinstance(record, dict) else None
+    return record if isinstance(record, (int, float)) and not isinstance(record, bool) and math.isfinite(record) else None
+
+
+def _cond(matrix: str, which: str):
+    def read(record):
+        value = _at(record, "summary", "cond", matrix, "log10_cond", which)
+        return None if value is None else 10.0**value
+
+    return read
+
+
+def _climb_of_limit(record) -> float | None:
+    """Share of the strain limit in what limit and contact add to the 95th percentile of log10 cond; None below half a decade."""
+    full, limit, none = (_at(record, "summary", "cond", f"{stage}/none", "log10_cond", "p95")
+                         for stage in ("full", "without_contact", "without_contact_and_limit"))
+    if None in (full, limit, none) or full - none < 0.5:
+        return None
+    return (limit - none) / (full - none)
+
+
+def _stretch_of_limit(record) -> float | None:
+    stretch, limit = _at(record, "summary", "max_stretch"), record["config"].get("strain_limit") or {}
+    onset, width = limit.get("onset"), limit.get("width")
+    return None if None in (stretch, onset, width) else stretch / (onset + width)
+
+
+def _per_iteration(*place: str):
+    def read(record):
+        value, count = _at(record, *place), _at(record, "summary", "newton_iterations")
+        return value / count if value is not None and count else None
+
+    return read
+
+
+def _gap_end(record) -> float | None:
+    steps = record.get("steps") or [{}]
+    return _at(steps[-1], "gap_min_rel")
+
+
+def _unsettled(record) -> float:
+    """1 when the run ended because a stiffness did not settle."""
+    status = record["status"]
+    return float(status["outcome"] == "newton_stall" and "does not settle" in status.get("detail", ""))
+
+
+def _summary(*place: str):
+    return lambda record: _at(record, "summary", *place)
+
+
+# name -> (meaning, unit, depends on the machine, how it is read)
+METRICS = {
+    "cond_max": ("largest cond of a run, raw", "1", False, _cond("full/none", "max")),
+    "cond_p95": ("95th percentile of cond over a run, raw", "1", False, _cond("full/none", "p95")),
+    "cond_median": ("median cond, raw", "1", False, _cond("full/none", "median")),
+    "cond_bj_max": ("largest cond, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "max")),
+    "cond_bj_median": ("median cond, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "median")),
+    "pcg_probe": ("median block-Jacobi PCG iterations to 1e-6", "1", False, _summary("probe_pcg", "median")),
+    "pcg_solve": ("median PCG iterations of a solve", "1", False, _summary("linear_per_solve", "median")),
+    "newton": ("Newton iterations", "1", False, _summary("newton_iterations")),
+    "factorizations": ("factorisations", "1", False, _summary("factorizations")),
+    "seconds": ("seconds of the steps", "s", True, _summary("wall_s")),
+    "contact_seconds": ("seconds of contact terms an iteration", "s", True, _per_iteration("summary", "time", "contact_terms_s")),
+    "gap_min": ("smallest gap at a step end", "d_hat", False, _summary("gap_min_rel", "min")),
+    "gap_end": ("smallest gap at the end of the last step", "d_hat", False, _gap_end),
+    "stretch": ("largest stretch", "1", False, _summary("max_stretch")),
+    "stretch_of_limit": ("largest stretch at a step end over the limit", "1", False, _stretch_of_limit),
+    "climb_of_limit": ("share of the strain limit in the climb of log10 cond", "1", False, _climb_of_limit),
+    "unsettled": ("1 when a stiffness did not settle", "1", False, _unsettled),
+}

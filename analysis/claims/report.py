@@ -1,0 +1,125 @@
+"""Verdicts as text: results/CLAIMS.md, and the short table of the README."""
+
+from __future__ import annotations
+
+import textwrap
+
+from .entry import read_sweep
+from .judge import Answer
+from .metrics import METRICS
+from .table import Table
+from .verdict import ONLY_IF, OPEN, Judged
+
+WIDTH = 140
+
+
+def number(x: float | None) -> str:
+    """Three digits, and more where these would make it 1."""
+    if x is None:
+        return "-"
+    return f"{x:.6g}" if x != 1 and f"{x:.3g}" == "1" else f"{x:.3g}"
+
+
+def interval(j: Judged) -> str:
+    if j.value is None:
+        return "-"
+    if j.extremes:
+        return number(j.value) if j.lower == j.upper else f"{number(j.lower)} to {number(j.upper)}"
+    return f"{number(j.value)} [{number(j.lower)}, {number(j.upper)}]"
+
+
+def sentence(j: Judged) -> str:
+    """The verdict with its condition, or with what is missing."""
+    if j.verdict == ONLY_IF:
+        return f"{ONLY_IF}: {j.condition}"
+    return f"{OPEN}: {j.missing}" if j.verdict == OPEN and j.missing else j.verdict
+
+
+def _part(j: Judged) -> list[str]:
+    kind = "proof" if j.proof else f"`{j.sweep}`"
+    verdict = f"{sentence(j)}{' (beside, decides nothing)' if j.beside else ''}"
+    lines = [f"- {j.says}: **{verdict}**. {j.measures}{' (depends on the machine)' if j.machine else ''}: {interval(j)}, asked: {j.threshold or '-'}; {j.counted or '-'}; {kind}."]
+    if j.per_scene:
+        lines.append("  By scene: " + "; ".join(f"{name} {number(v)} [{number(lo)}, {number(hi)}] (n = {n})" for name, v, lo, hi, n in j.per_scene) + ".")
+    if j.runs:
+        lines.append(f"  First {'pair' if len(j.runs) == 2 else 'run'}: run_id {', '.join(j.runs)}.")
+    return lines
+
+
+def _claim(a: Answer, table: Table) -> list[str]:
+    claim = a.claim
+    lines = [f"## {claim.id}: {a.verdict.verdict}", "", claim.sentence, "",
+             f"Source: {claim.source}. Dimension: {claim.dimension}. Keeps the guarantee: {claim.guarantee}. Rerun: `{claim.command}`.", ""]
+    if a.verdict.verdict in (ONLY_IF, OPEN):
+        lines += [f"**{sentence(a.verdict)}.**", ""]
+    for j in a.parts:
+        lines += _part(j)
+    if a.parts:
+        lines.append("")
+    if claim.note:
+        lines += [claim.note, ""]
+    for change in claim.rule_changes:
+        lines += [f"Rule changed after numbers were seen: {change}", ""]
+    return lines
+
+
+def _sweeps(table: Table) -> list[str]:
+    lines = ["## Sweeps", "", "| sweep | runs | unknowns | ok | comparable | seconds | date | machine | build | command |", "|---|---|---|---|---|---|---|---|---|---|"]
+    for name, runs in sorted(table.sweeps.items()):
+        sweep, about = read_sweep(name), runs.about
+        ok, comparable = (sum(row[key] == word for row in runs.rows) for key, word in (("outcome", "ok"), ("comparability", "comparable")))
+        lines.append(f"| {name} | {len(runs.rows)} of {len(sweep.cases)} | {about['unknowns']} | {ok} | {comparable} | {about['seconds']:.0f} | {about['date']} | {about['machine']} "
+                     f"| {about['build'][:8]} | `{sweep.command}` |")
+    total = sum(runs.about["seconds"] for runs in table.sweeps.values())
+    return lines + ["", f"Seconds are those of the runs, diagnosis and audit included: {total:.0f} s of one core in all, on a machine that did other work as well.", ""]
+
+
+HEAD = """# Claims
+
+Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/design.md, Claims, has the
+rules. A number is a ratio of geometric means over scenes, levels (resolution, load, limit) and jittered starts with a 95% interval by bootstrap over all
+three, or what its line says. cond is a condition number. From a sentence to its runs: its sweep's command makes the records, `run_id` names them in results/claims.json and in
+their run.json, and `./bench run RUN.json` repeats one.
+"""
+
+
+def _short(a: Answer) -> str:
+    if a.verdict.verdict == OPEN and a.claim.waits_for:
+        return f"{OPEN}: waits for {a.claim.waits_for}"
+    return sentence(a.verdict)
+
+
+def verdict_table(answers: list[Answer]) -> list[str]:
+    lines = ["| claim | sentence | verdict | number of its first part |", "|---|---|---|---|"]
+    for a in answers:
+        j = a.main
+        lines.append(f"| {a.claim.id} | {a.claim.sentence} | {_short(a)} | {f'{j.measures}: {interval(j)}' if j else '-'} |")
+    return lines
+
+
+BEGIN, END = "<!-- claims: written by ./bench claims -->\n", "<!-- /claims -->"
+
+
+def in_readme(readme: str, answers: list[Answer]) -> str:
+    """The README with its table of verdicts made anew."""
+    before, _, rest = readme.partition(BEGIN)
+    _, end, after = rest.partition(END)
+    return before + BEGIN + "\n".join(verdict_table(answers)) + "\n" + end + after if end else readme
+
+
+def markdown(answers: list[Answer], table: Table) -> str:
+    lines = [HEAD, "![main number of every claim, with its interval and threshold](../docs/claims.png)", "", *verdict_table(answers), ""]
+    for a in answers:
+        lines += _claim(a, table)
+    lines += _sweeps(table)
+    lines += ["## Metrics", "", *(f"- `{name}`: {meaning}{' (depends on the machine)' if machine else ''}" for name, (meaning, _, machine, _) in METRICS.items())]
+    return "\n".join(lines) + "\n"
+
+
+def text(answers: list[Answer]) -> str:
+    """For a terminal."""
+    lines = []
+    for a in answers:
+        j = a.main
+        lines += textwrap.wrap(f"{a.claim.id:4} {sentence(a.verdict)}" + (f"  [{j.measures}: {interval(j)}]" if j else ""), WIDTH, subsequent_indent="     ")
+    return "\n".join(lines)

@@ -1,0 +1,118 @@
+"""What the verdicts are computed from: the numbers of all runs and the answers of `eval`, in results/claims.json."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+from dataclasses import dataclass, field
+from datetime import datetime
+from pathlib import Path
+
+from ..load import RecordError, read_record
+from .entry import ROOT, Claim, ClaimError, Sweep
+from .metrics import METRICS
+
+FILE = ROOT / "results" / "claims.json"
+RUNS = ROOT / "results" / "runs" / "claims"
+NAME = "barrierbench.claims/1"
+PLACE = ("scene", "level", "case", "seed")
+STATE = ("outcome", "comparability", "gap_rel", "run")  # run: the first 16 digits of run_id
+ID_DIGITS = 16
+
+
+@dataclass
+class Runs:
+    """The runs of a sweep as far as rules need them: place -> state and metrics."""
+
+    about: dict  # sha256 of the sweep file, date, machine, program, seconds
+    rows: list[dict]
+    expected: int
+
+    @property
+    def complete(self) -> bool:
+        return len(self.rows) == self.expected
+
+
+@dataclass
+class Table:
+    sweeps: dict[str, Runs] = field(default_factory=dict)
+    answers: dict[str, dict] = field(default_factory=dict)  # query of eval -> its answer
+
+
+def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
+    """Sweep -> metrics that some part reads."""
+    used: dict[str, set] = {}
+    for part in (part for claim in claims for part in claim.parts if "sweep" in part):
+        names = {part.get("metric"), part.get("bad"), (part.get("equal") or {}).get("metric")} - {None}
+        if unknown := names - set(METRICS):
+            raise ClaimError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
+        used.setdefault(part["sweep"], set()).update(names)
+    return {sweep: sorted(names) for sweep, names in used.items()}
+
+
+def _rounded(value):
+    return float(f"{value:.6g}") if isinstance(value, float) else value
+
+
+def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
+    comparability = record["comparability"]
+    row = dict(zip(PLACE, place))
+    row |= {"outcome": record["status"]["outcome"] if record["status"]["valid"] or record["status"]["outcome"] != "ok" else "not_valid",
+            "comparability": comparability["verdict"], "gap_rel": _rounded(comparability.get("gap_rel")),
+            "run": record["ids"]["run_id"][:ID_DIGITS]}
+    return row | {name: _rounded(METRICS[name][3](record)) for name in metrics}
+
+
+def _seconds(record: dict) -> float:
+    start, end = (datetime.fromisoformat(record["status"][key].replace("Z", "+00:00")) for key in ("started_utc", "ended_utc"))
+    return (end - start).total_seconds()
+
+
+def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
+    """The records of a sweep below its folder. Those of other cases than the sweep file has do not count."""
+    rows, records = [], []
+    for path in sorted(folder.glob("*/run.json")):
+        try:
+            record = read_record(path)
+        except RecordError:
+            continue  # counted as missing
+        place = sweep.cases.get(record["labels"].get("note", ""))
+        if place is not None:
+            records.append(record)
+            rows.append(_row(record, place, metrics))
+    rows.sort(key=lambda row: tuple(str(row[key]) for key in PLACE))
+    if len({tuple(row[key] for key in PLACE) for row in rows}) != len(rows):
+        raise ClaimError(f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again")
+    file = folder / "sweep.json"  # the program's copy of the sweep file that made the records
+    about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "seconds": round(sum(map(_seconds, records)), 1)}
+    for name, values in (("date", {r["status"]["started_utc"][:10] for r in records}),
+                         ("machine", {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records}),
+                         ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),
+                         ("build", {r["ids"]["build_id"][:ID_DIGITS] for r in records})):
+        about[name] = ", ".join(sorted(values))
+    sizes = [r["scene"]["free_dofs"] for r in records]
+    about["unknowns"] = f"{min(sizes)} to {max(sizes)}" if sizes else ""
+    return Runs(about, rows, len(sweep.cases))
+
+
+def write(table: Table, path: Path) -> None:
+    lines = ["{", f' "schema": "{NAME}",', ' "sweeps": {']
+    blocks = []
+    for name, runs in sorted(table.sweeps.items()):
+        columns = list(runs.rows[0]) if runs.rows else list(PLACE + STATE)
+        rows = ",\n   ".join(json.dumps([row[c] for c in columns], separators=(",", ":")) for row in runs.rows)
+        blocks.append(f'  "{name}": {{"about": {json.dumps(runs.about)}, "expected": {runs.expected},\n   "columns": {json.dumps(columns)}, "rows": [\n   {rows}]}}')
+    lines += [",\n".join(blocks), " },", ' "answers": {']
+    lines += [",\n".join(f"  {json.dumps(query)}: {json.dumps(answer)}" for query, answer in sorted(table.answers.items())), " }", "}"]
+    path.write_text("\n".join(lines) + "\n")
+
+
+def read(path: Path) -> Table:
+    """The kept table; empty when there is none."""
+    if not path.is_file():
+        return Table()
+    data = json.loads(path.read_text())
+    if data.get("schema") != NAME:
+        raise ClaimError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
+    sweeps = {name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"]) for name, s in data["sweeps"].items()}
+    return Table(sweeps, data["answers"])

@@ -1,0 +1,69 @@
+"""What a rule says, and what the parts of a claim say together."""
+
+from __future__ import annotations
+
+from dataclasses import asdict, dataclass, field
+
+HOLDS, ONLY_IF, NOT, OPEN = "holds", "holds only if", "does not hold", "not decided"
+SCENES, LEVELS, STARTS = 3, 3, 5  # what a verdict needs; a proof needs none of it
+
+
+@dataclass
+class Judged:
+    """The answer of one part."""
+
+    verdict: str
+    says: str = ""
+    condition: str = ""  # of ONLY_IF
+    missing: str = ""  # of OPEN
+    value: float | None = None
+    lower: float | None = None  # 95% interval
+    upper: float | None = None
+    extremes: bool = False  # the smallest and the largest number in the place of an interval
+    threshold: str = ""
+    bounds: tuple[float, ...] = ()  # thresholds as numbers, for the figure
+    measures: str = ""
+    counted: str = ""  # how much was judged, and what was left out and why
+    per_scene: list[tuple[str, float, float, float, int]] = field(default_factory=list)
+    runs: list[str] = field(default_factory=list)  # a pair to follow by hand
+    beside: bool = False
+    proof: bool = False
+    sweep: str = ""
+    machine: bool = False  # the number depends on it
+
+    def json(self) -> dict:
+        return asdict(self)
+
+
+def undecided(missing: str, **more) -> Judged:
+    return Judged(OPEN, missing=missing, **more)
+
+
+def _named(j: Judged) -> str:
+    text = j.says or j.measures
+    return f"{text} ({j.condition})" if j.verdict == ONLY_IF else text
+
+
+def together(parts: list[Judged], waits_for: str = "") -> Judged:
+    """All parts that are not beside have to hold. What the claim waits for leaves it open, whatever they say."""
+    deciding = [j for j in parts if not j.beside]
+    if waits_for or not deciding:
+        seen = "; ".join(f"{_named(j)}: {j.verdict}" for j in deciding)
+        return undecided(f"waits for {waits_for}" + (f". Measured so far: {seen}" if seen else ""))
+    verdicts = [j.verdict for j in deciding]
+    if all(v == HOLDS for v in verdicts):
+        return Judged(HOLDS)
+    if all(v == NOT for v in verdicts):
+        return Judged(NOT)
+    good = [j for j in deciding if j.verdict in (HOLDS, ONLY_IF)]
+    bad = [j for j in deciding if j.verdict == NOT]
+    still = [j for j in deciding if j.verdict == OPEN]
+    if still and not bad:
+        missing = "; ".join(f"{j.says}: {j.missing}" for j in still)
+        return undecided(missing + (f". Otherwise: {'; '.join(f'{_named(j)}: {j.verdict}' for j in good)}" if good else ""))
+    if not good:
+        return Judged(NOT)
+    condition = "; ".join(_named(j) for j in good)
+    if bad or still:
+        condition += ". Not: " + "; ".join([j.says for j in bad] + [f"{j.says} (not decided)" for j in still])
+    return Judged(ONLY_IF, condition=condition)

@@ -1,0 +1,71 @@
+// The product of PCG beside a plain read of as many bytes, on 1 and 2 threads: what of the memory's bandwidth it gets.
+#include <tbb/global_control.h>
+
+#include "core/linear/parallel.hpp"
+#include "core/linear/symmetric_product.hpp"
+#include "experiments/microbenchmarks/cloth_matrix.hpp"
+#include "experiments/microbenchmarks/microbenchmark.hpp"
+
+namespace bb::bench {
+namespace {
+
+/// Of a matrix of side x side vertices that is in no cache.
+void set_bytes(benchmark::State& state, double bytes) {
+  state.counters["bytes"] = bytes;
+  state.counters["bytes_per_s"] = benchmark::Counter(bytes, benchmark::Counter::kIsIterationInvariantRate);
+}
+
+tbb::global_control threads_of(const benchmark::State& state) {
+  return {tbb::global_control::max_allowed_parallelism, static_cast<std::size_t>(state.range(1))};
+}
+
+void product(benchmark::State& state) {
+  const Cloth cloth(static_cast<int>(state.range(0)));
+  const auto s = cloth.system();
+  s->set_contacts({cloth.contacts_a.stencils()});
+  SymmetricProduct a;
+  a.update(cloth.assemble(*s, cloth.contacts_a));
+  const tbb::global_control threads = threads_of(state);
+  const VecXd x = VecXd::LinSpaced(a.n(), -1, 1);
+  VecXd y;
+  for (auto _ : state) {
+    a.multiply(x, y);
+    benchmark::DoNotOptimize(y.data());
+  }
+  set_bytes(state, a.bytes());
+}
+
+/// Sums as many numbers as the matrix of that size has bytes.
+void read(benchmark::State& state) {
+  const Cloth cloth(static_cast<int>(state.range(0)));
+  const auto s = cloth.system();
+  s->set_contacts({cloth.contacts_a.stencils()});
+  SymmetricProduct a;
+  a.update(cloth.assemble(*s, cloth.contacts_a));
+  const tbb::global_control threads = threads_of(state);
+  const VecXd numbers = VecXd::Ones(static_cast<Eigen::Index>(a.bytes() / sizeof(double)));
+  const std::size_t n = static_cast<std::size_t>(numbers.size());
+  std::vector<double> sums(n_blocks(n));
+  for (auto _ : state) {
+    parallel_blocks(n, [&](std::size_t b, std::size_t begin, std::size_t end) {
+      sums[b] =
+          numbers.segment(static_cast<Eigen::Index>(begin), static_cast<Eigen::Index>(end - begin)).sum();
+    });
+    benchmark::DoNotOptimize(sums.data());
+  }
+  set_bytes(state, static_cast<double>(n * sizeof(double)));
+}
+
+}  // namespace
+
+void register_product() {
+  for (const auto& [name, run] :
+       {std::pair{"product/multiply", &product}, std::pair{"product/read", &read}}) {
+    add(name, run)
+        ->ArgNames({"side", "threads"})
+        ->ArgsProduct({{16, 107, 320}, {1, 2}})
+        ->Unit(benchmark::kMillisecond);
+  }
+}
+
+}  // namespace bb::bench

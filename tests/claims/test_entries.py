@@ -1,0 +1,147 @@
+"""claims/ as committed, the kept numbers, and what is said when something is missing."""
+
+import json
+from pathlib import Path
+
+import pytest
+from synthetic import write_run
+
+from analysis.claims import __main__ as verb
+from analysis.claims import report
+from analysis.claims.entry import FOLDER, ROOT, ClaimError, ids, read_claim, read_sweep
+from analysis.claims.judge import RULES, judge, missing
+from analysis.claims.metrics import METRICS
+from analysis.claims.proofs import PROOFS, Eval
+from analysis.claims.table import FILE, Table, collect, read, used_metrics, write
+
+WANTED = {*(f"K{k}" for k in range(1, 18)), *(f"H{k}" for k in range(1, 10)), "N1"}
+THRESHOLDS = {"above", "below", "within", "beyond"}
+KEYS = {"says", "rule", "proof", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", "every",
+        "left", "right", "u", "shape", "argument", "theta", "loads", "mass_term", "changes", *THRESHOLDS}
+
+
+def test_every_claim_is_there_and_refers_to_what_exists():
+    assert set(ids()) == WANTED
+    judged = 0
+    for claim in map(read_claim, ids()):
+        for part in claim.parts:
+            assert set(part) <= KEYS and ("proof" in part) != ("rule" in part), (claim.id, part)
+            judged += 1
+            if "proof" in part:
+                assert part["proof"] in PROOFS
+                continue
+            sweep = read_sweep(part["sweep"])
+            places = sweep.cases.values()
+            assert part["rule"] in RULES and {part[k] for k in ("case", "over") if k in part} <= {p[2] for p in places}, (claim.id, part)
+            assert set(part.get("scenes", [])) <= {p[0] for p in places}, (claim.id, part)
+            assert len({p[3] for p in places}) >= 5 and all(len({p[1] for p in places if p[0] == s}) >= 3 for s in {p[0] for p in places})
+            assert part.get("metric", "newton") in METRICS and part.get("bad", "newton") in METRICS
+            assert part["rule"] == "outcomes" or len(THRESHOLDS & set(part)) == 1
+    assert judged > 50
+    assert {path.stem for path in (FOLDER / "sweeps").glob("*.json")} == {s for claim in map(read_claim, ids()) for s in claim.sweeps}
+
+
+def test_the_program_takes_every_sweep(program):
+    import subprocess
+
+    for path in sorted((FOLDER / "sweeps").glob("*.json")):
+        done = subprocess.run([program, "sweep", str(path), "--dry-run"], capture_output=True, text=True, check=False)
+        assert done.returncode == 0, done.stderr
+        assert len(done.stdout.split("\n")) > len(read_sweep(path.stem).cases)
+
+
+def test_the_page_is_made_of_the_kept_numbers():
+    table = read(FILE)
+    asker = Eval(None, table.answers)
+    answers = [judge(read_claim(name), table, asker) for name in ids()]
+    assert (ROOT / "results" / "CLAIMS.md").read_text() == report.markdown(answers, table)
+    readme = (ROOT / "README.md").read_text()
+    assert report.in_readme(readme, answers) == readme and "| N1 |" in readme
+    assert not [line for a in answers for line in missing(a.claim, table)] and len(table.sweeps) >= 10
+
+
+def test_the_table_survives_writing(tmp_path):
+    table = read(FILE)
+    write(table, tmp_path / "claims.json")
+    assert (tmp_path / "claims.json").read_bytes() == FILE.read_bytes()
+    (tmp_path / "claims.json").write_text('{"schema": "other/1"}')
+    with pytest.raises(ClaimError, match="'barrierbench.claims/1' is needed"):
+        read(tmp_path / "claims.json")
+
+
+def test_missing_records_name_their_command(monkeypatch, tmp_path, capsys):
+    monkeypatch.setattr(verb, "FILE", tmp_path / "none.json")
+    assert verb.main(["K3", "--no-run", "--runs", str(tmp_path)]) == 2
+    said = capsys.readouterr().err
+    count = len(read_sweep("contact_shapes").cases)
+    assert f"K3: {count} of {count} records of contact_shapes are missing: ./bench sweep claims/sweeps/contact_shapes.json --out results/runs/claims/contact_shapes" in said
+    assert not (tmp_path / "none.json").exists()
+
+
+def test_runs_that_leave_no_record_name_the_command(monkeypatch, tmp_path, capsys):
+    """A program that ends well and writes nothing, and one that fails."""
+    monkeypatch.setattr(verb, "FILE", tmp_path / "none.json")
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", "/bin/true")
+    assert verb.main(["K3", "--runs", str(tmp_path)]) == 2 and "records of contact_shapes are missing: ./bench sweep" in capsys.readouterr().err
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", "/bin/false")
+    assert verb.main(["K3", "--runs", str(tmp_path)]) == 2 and "claims/sweeps/contact_shapes.json: the program ended with 1" in capsys.readouterr().err
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", str(tmp_path / "none"))
+    assert verb.main(["K3", "--runs", str(tmp_path)]) == 2 and "is not built: ./bench build" in capsys.readouterr().err
+
+
+def test_numbers_of_another_sweep_file_are_missing():
+    table = read(FILE)
+    table.sweeps["contact_shapes"].about["sha256"] = "0"
+    assert "are of another claims/sweeps/contact_shapes.json" in missing(read_claim("K3"), table)[0]
+
+
+@pytest.mark.parametrize("edit, said", [
+    ({"id": "K2"}, "/id: found 'K2'"), ({"sentence": 1}, "/sentence: a string is needed"), ({"parts": [], "waits_for": ""}, "neither parts"),
+    ({"schema": "x"}, "'barrierbench.claim/1' is needed"), ({"verdict": "holds"}, "/verdict: unknown")])
+def test_a_bad_claim(tmp_path, edit, said):
+    (tmp_path / "K1.json").write_text(json.dumps({**json.loads((FOLDER / "K1.json").read_text()), **edit}))
+    with pytest.raises(ClaimError, match=said):
+        read_claim("K1", tmp_path)
+
+
+def test_unknown_names(capsys):
+    assert verb.main(["K99", "--no-run"]) == 2 and "one of K1, K2" in capsys.readouterr().err
+    claim = read_claim("K3")
+    claim.parts[0]["metric"] = "speed"
+    with pytest.raises(ClaimError, match="'speed': one of cond_max"):
+        used_metrics([claim])
+
+
+def record(root: Path, sweep, note: str, folder: str, **status) -> None:
+    body = write_run(root, "log", 1.0, 0.1, note=note, folder=folder)
+    body["status"] |= {"ended_utc": "2024-01-31T12:00:02Z", **status}
+    body["config"] = {"strain_limit": {"onset": 0.01, "width": 0.01}}
+    body["ids"]["build_id"] = "b"
+    body["summary"] |= {"max_stretch": 0.015, "cond": {"full/none": {"log10_cond": {"max": 3.0}}}}
+    (root / folder / "run.json").write_text(json.dumps(body))
+
+
+def test_records_become_rows(tmp_path):
+    sweep = read_sweep("tight_limits")
+    record(tmp_path, sweep, "tight_limits: strip 1% log main=3", "one")
+    record(tmp_path, sweep, "tight_limits: ball 2% cubic main=1", "two", valid=False)
+    record(tmp_path, sweep, "tight_limits: a case of an older file", "three")
+    (tmp_path / "torn").mkdir()
+    (tmp_path / "torn" / "run.json").write_text('{"schema"')
+    runs = collect(sweep, tmp_path, ["stretch_of_limit", "cond_max", "newton"])
+    assert len(runs.rows) == 2 and not runs.complete and runs.about["seconds"] == 4.0 and runs.about["machine"].startswith("a cpu")
+    ball, strip = runs.rows
+    assert (strip["scene"], strip["level"], strip["case"], strip["seed"], strip["outcome"]) == ("strip", "1%", "log", 3, "ok")
+    assert runs.about["sha256"] == ""  # nothing says which sweep file made them
+    (tmp_path / "sweep.json").write_bytes((FOLDER / "sweeps" / "tight_limits.json").read_bytes())
+    assert collect(sweep, tmp_path, ["newton"]).about["sha256"] == sweep.sha256
+    assert (strip["stretch_of_limit"], strip["cond_max"], strip["newton"]) == (pytest.approx(0.75), 1000.0, 6)
+    assert ball["outcome"] == "not_valid"
+    record(tmp_path, sweep, "tight_limits: strip 1% log main=3", "again")
+    with pytest.raises(ClaimError, match="two records of one case"):
+        collect(sweep, tmp_path, ["newton"])
+
+
+def test_a_claim_without_records_is_not_decided():
+    answer = judge(read_claim("K3"), Table(), Eval(None))
+    assert answer.verdict.verdict == "not decided" and "./bench sweep claims/sweeps/contact_shapes.json" in answer.verdict.missing

@@ -1,0 +1,110 @@
+"""Rules on numbers, on runs whose verdict is known."""
+
+import pytest
+from made import SCENES, runs
+
+from analysis.claims.entry import ClaimError
+from analysis.claims.numbers import level, ratio, slope
+from analysis.claims.verdict import HOLDS, NOT, ONLY_IF, OPEN
+
+PART = {"says": "x takes more", "sweep": "s", "metric": "newton", "case": "x", "over": "y", "above": 1.5}
+
+
+def twice(scene, level, case, seed):
+    return {"newton": 20.0 + seed if case == "x" else 10.0 + 0.5 * seed}
+
+
+def test_a_ratio_holds_or_does_not():
+    holds = ratio(PART, runs(twice))
+    assert holds.verdict == HOLDS and holds.value == pytest.approx(2) and holds.lower <= 2 <= holds.upper
+    assert holds.counted.startswith("45 pairs count") and len(holds.runs) == 2
+    assert ratio({**PART, "above": 2.5}, runs(twice)).verdict == NOT
+    below = {key: value for key, value in PART.items() if key != "above"}
+    assert ratio({**below, "below": 2.5}, runs(twice)).verdict == HOLDS and ratio({**below, "below": 1.5}, runs(twice)).verdict == NOT
+    assert ratio({**below, "within": 2.5}, runs(twice)).verdict == HOLDS and ratio({**below, "within": 1.5}, runs(twice)).verdict == NOT
+    assert ratio({**below, "beyond": 1.5}, runs(twice)).verdict == HOLDS and ratio({**below, "beyond": 2.5}, runs(twice)).verdict == NOT
+
+
+def test_an_interval_round_the_threshold_decides_nothing():
+    judged = ratio(PART, runs(lambda s, lv, c, k: {"newton": (12.0 if k % 2 else 19.0) if c == "x" else 10.0}))
+    assert judged.verdict == OPEN and "includes the threshold" in judged.missing and judged.lower < 1.5 < judged.upper
+
+
+def test_the_condition_is_found():
+    by_scene = ratio(PART, runs(lambda s, lv, c, k: {"newton": (10.0 if s == "b" else 20.0) if c == "x" else 10.0}))
+    assert (by_scene.verdict, by_scene.condition) == (ONLY_IF, "scene a, c; not b")
+    by_level = ratio(PART, runs(lambda s, lv, c, k: {"newton": (10.0 if lv == "4" else 20.0) if c == "x" else 10.0}))
+    assert (by_level.verdict, by_level.condition) == (ONLY_IF, "level 1, 2; not 4")
+
+
+def test_no_condition_while_a_scene_is_open():
+    of_x = {"a": (20.0, 20.0), "b": (10.0, 10.0), "c": (12.0, 19.0)}
+    judged = ratio(PART, runs(lambda s, lv, c, k: {"newton": of_x[s][k % 2] if c == "x" else 10.0}))
+    assert judged.verdict == OPEN and "includes the threshold" in judged.missing
+
+
+def test_a_scene_that_contradicts_the_mean():
+    of_x = {"a": (90.0, 90.0), "b": (90.0, 90.0), "c": (90.0, 90.0), "d": (14.0, 14.0), "e": (14.0, 16.0)}
+    judged = ratio(PART, runs(lambda s, lv, c, k: {"newton": of_x[s][k % 2] if c == "x" else 10.0}, scenes=("a", "b", "c", "d", "e")))
+    assert judged.verdict == OPEN and judged.missing in ("the mean says holds, d the opposite",), judged
+    del of_x["e"]
+    assert ratio(PART, runs(lambda s, lv, c, k: {"newton": of_x[s][k % 2] if c == "x" else 10.0}, scenes=tuple(of_x))).condition == "scene a, b, c; not d"
+
+
+@pytest.mark.parametrize("less", [{"scenes": SCENES[:2]}, {"levels": ("1", "2")}, {"seeds": (1, 2, 3, 4)}])
+def test_too_little_is_an_indication(less):
+    judged = ratio(PART, runs(twice, **less))
+    assert judged.verdict == OPEN and judged.missing.startswith("indication") and judged.value == pytest.approx(2)
+
+
+def test_runs_that_are_not_comparable_do_not_count():
+    def one_scene_off(s, lv, c, k):
+        return {**twice(s, lv, c, k), "comparability": "not_comparable" if s == "c" and c == "y" else "comparable"}
+
+    judged = ratio(PART, runs(one_scene_off))
+    assert judged.verdict == OPEN and "15 not_comparable" in judged.missing
+    assert ratio({**PART, "counts": "valid"}, runs(one_scene_off)).verdict == HOLDS
+    # Neither is the reference of the other: their own gaps decide.
+    far = ratio(PART, runs(lambda s, lv, c, k: {**twice(s, lv, c, k), "gap_rel": 0.06 if c == "x" else 0.13}))
+    assert far.verdict == OPEN and "45 not_comparable" in far.missing
+
+
+def test_runs_that_failed_or_lack_the_number_do_not_count():
+    judged = ratio({**PART, "counts": "valid"}, runs(lambda s, lv, c, k: {**twice(s, lv, c, k), **({"outcome": "newton_stall"} if s == "a" else {}),
+                                                                      **({"newton": None} if s == "b" else {})}))
+    assert judged.verdict == OPEN and "15 newton_stall" in judged.missing and "15 no newton" in judged.missing
+
+
+def test_equal_numbers_are_asked_for():
+    made = runs(lambda s, lv, c, k: {**twice(s, lv, c, k), "stretch": 0.02 if c == "x" or s != "a" else 0.01})
+    judged = ratio({**PART, "equal": {"metric": "stretch", "factor": 1.1}}, made)
+    assert judged.verdict == OPEN and "15 stretch differs by more than 1.1" in judged.missing
+
+
+def test_a_level():
+    part = {"says": "", "sweep": "s", "metric": "climb_of_limit", "case": "x", "above": 0.5}
+    made = runs(lambda s, lv, c, k: {"climb_of_limit": 0.7 + 0.01 * k})
+    assert level(part, made).verdict == HOLDS and level({**part, "above": 0.9}, made).verdict == NOT
+
+
+def test_every_single_value():
+    part = {"says": "", "sweep": "s", "metric": "stretch_of_limit", "case": "x", "below": 1, "every": True}
+    made = runs(lambda s, lv, c, k: {"stretch_of_limit": 0.99})
+    assert level(part, made).verdict == HOLDS
+    made.rows[0]["stretch_of_limit"] = 1.01
+    assert level(part, made).verdict == NOT
+
+
+def test_a_slope():
+    part = {"says": "", "sweep": "s", "metric": "gap_end", "case": "x", "beyond": 0.05}
+    assert slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1 * float(lv) ** 0.5})).value == pytest.approx(0.5)
+    assert slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1 * float(lv) ** 0.5})).verdict == HOLDS
+    assert slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1})).verdict == NOT
+    assert slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1 * float(lv)}, scenes=("a", "b"))).missing.startswith("indication")
+
+
+def test_a_bad_entry_says_what_is_allowed():
+    with pytest.raises(ClaimError, match="no case 'z'; it has x, y"):
+        ratio({**PART, "over": "z"}, runs(twice))
+    with pytest.raises(ClaimError, match="one of above, below, within, beyond"):
+        ratio({**PART, "below": 2}, runs(twice))
