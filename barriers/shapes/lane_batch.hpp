@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <cstring>
 
 #include "barriers/shapes/normalized_gap.hpp"
 #include "core/math/lanes_log.hpp"
@@ -21,20 +20,13 @@ namespace detail {
 
 /// Four numbers from `column` on, or m < 4 of them and the first again.
 inline Lanes<double, 4> load_four(const double* column, std::size_t m) {
+  if (m == 4) return load_lanes<4>(column);
   double padded[4];
-  if (m < 4) {
-    for (std::size_t k = 0; k < 4; ++k) padded[k] = column[k < m ? k : 0];
-    column = padded;
-  }
-  Lanes<double, 4> out;
-  std::memcpy(&out.v, column, sizeof(out.v));
-  return out;
+  for (std::size_t k = 0; k < 4; ++k) padded[k] = column[k < m ? k : 0];
+  return load_lanes<4>(padded);
 }
 inline void store_four(const Lanes<double, 4>& x, std::size_t m, double* column) {
-  if (m == 4) {
-    std::memcpy(column, &x.v, sizeof(x.v));
-    return;
-  }
+  if (m == 4) return store_lanes(x, column);
   for (std::size_t k = 0; k < m; ++k) column[k] = x.v[k];
 }
 

@@ -1,7 +1,6 @@
 // A shape on its argument: the implementation of core/barrier/shape.hpp, one code for float and double.
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <type_traits>
 
@@ -45,12 +44,8 @@ void chain_rows(bool infinite_at_zero, std::size_t m, const T* d, const T* d_sq,
   std::size_t begin = 0;
   if constexpr (std::is_same_v<T, double>) {
     using Real = Lanes<double, 4>;
-    const auto load = [&](const double* column) {
-      Real out;
-      std::memcpy(&out.v, column + begin, sizeof(out.v));
-      return out;
-    };
-    const auto store = [&](const Real& x, double* column) { std::memcpy(column + begin, &x.v, sizeof(x.v)); };
+    const auto load = [&](const double* column) { return load_lanes<4>(column + begin); };
+    const auto store = [&](const Real& x, double* column) { store_lanes(x, column + begin); };
     for (; begin + 4 <= m; begin += 4) {
       const Real square = load(d_sq), width = load(d_hat_sq), slope = load(db);
       if (any(square == Real(0))) break;

@@ -101,7 +101,7 @@ struct CholmodFactor::Cholmod {
   }
 
   /// Where each value goes, found once a pattern: numbers in the place of values, permuted by CHOLMOD. It would
-  /// permute the values anew, twice, in every factorisation: a sixth of its time on cloth.
+  /// permute the values anew, twice, in every factorisation.
   void place(cholmod_sparse numbered) {
     std::vector<double> number(numbered.nzmax);
     std::iota(number.begin(), number.end(), 0.0);

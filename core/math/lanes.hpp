@@ -66,6 +66,18 @@ struct ScalarOf<Lanes<T, W>> {
   using type = T;
 };
 
+/// The W numbers from `column` on.
+template <int W, class T>
+Lanes<T, W> load_lanes(const T* column) {
+  Lanes<T, W> out;
+  std::memcpy(&out.v, column, sizeof(out.v));
+  return out;
+}
+template <class T, int W>
+void store_lanes(const Lanes<T, W>& x, T* column) {
+  std::memcpy(column, &x.v, sizeof(x.v));
+}
+
 template <class T, int W>
 Lanes<T, W> select(const LaneMask<T, W>& mask, const Lanes<T, W>& yes, const Lanes<T, W>& no) {
   return mask.bits ? yes.v : no.v;

@@ -101,7 +101,8 @@ class NewtonSystem {
   const ReducedSystem& exact();
   /// Right-hand side of the system that was solved last, with what prescribed motion adds.
   const VecXd& rhs() const { return rhs_; }
-  /// The matrix of the elements that every iterate has, all values 0; valid as the two above.
+  /// The matrix of the elements that every iterate has, all values 0; valid until the
+  /// next call of any of these.
   const ReducedSystem& fixed_pattern();
   /// Whether no element of the solved matrix was clamped that its choice begins with exact.
   bool solved_is_exact() const { return level_.exact(); }

@@ -4,8 +4,8 @@
 namespace bb::cli {
 
 /// Keeps freed memory in the process: every iteration asks for the same large buffers again (a factor and its
-/// analysis, contact rows), and pages that the kernel hands out anew cost a fault and a clearing each. 7 per
-/// cent of the time of a drape of 5 x 48^2. Does nothing with another C library than glibc.
+/// analysis, contact rows), and pages that the kernel hands out anew cost a fault and a clearing each. Does
+/// nothing with another C library than glibc.
 void keep_freed_memory();
 
 }  // namespace bb::cli

@@ -68,6 +68,11 @@ struct SceneConfig {
   std::vector<Obstacle> obstacles;
 };
 
+/// Its name, or that of its shape where it has none.
+inline const std::string& label_of(const FormulationConfig& formulation) {
+  return formulation.name.empty() ? formulation.shape : formulation.name;
+}
+
 struct RunConfig {
   std::string source;  // file it came from, for messages; not part of config_id
   std::string linear_solver_reason = "as asked for";  // or why auto chose it; no setting

@@ -9,7 +9,15 @@
 namespace bb::bench {
 namespace {
 
-/// Of a matrix of side x side vertices that is in no cache.
+SymmetricProduct product_of(int side) {
+  const Cloth cloth(side);
+  const auto s = cloth.system();
+  s->set_contacts({cloth.contacts_a.stencils()});
+  SymmetricProduct a;
+  a.update(cloth.assemble(*s, cloth.contacts_a));
+  return a;
+}
+
 void set_bytes(benchmark::State& state, double bytes) {
   state.counters["bytes"] = bytes;
   state.counters["bytes_per_s"] = benchmark::Counter(bytes, benchmark::Counter::kIsIterationInvariantRate);
@@ -20,11 +28,7 @@ tbb::global_control threads_of(const benchmark::State& state) {
 }
 
 void product(benchmark::State& state) {
-  const Cloth cloth(static_cast<int>(state.range(0)));
-  const auto s = cloth.system();
-  s->set_contacts({cloth.contacts_a.stencils()});
-  SymmetricProduct a;
-  a.update(cloth.assemble(*s, cloth.contacts_a));
+  const SymmetricProduct a = product_of(static_cast<int>(state.range(0)));
   const tbb::global_control threads = threads_of(state);
   const VecXd x = VecXd::LinSpaced(a.n(), -1, 1);
   VecXd y;
@@ -37,13 +41,9 @@ void product(benchmark::State& state) {
 
 /// Sums as many numbers as the matrix of that size has bytes.
 void read(benchmark::State& state) {
-  const Cloth cloth(static_cast<int>(state.range(0)));
-  const auto s = cloth.system();
-  s->set_contacts({cloth.contacts_a.stencils()});
-  SymmetricProduct a;
-  a.update(cloth.assemble(*s, cloth.contacts_a));
+  const double bytes = product_of(static_cast<int>(state.range(0))).bytes();
   const tbb::global_control threads = threads_of(state);
-  const VecXd numbers = VecXd::Ones(static_cast<Eigen::Index>(a.bytes() / sizeof(double)));
+  const VecXd numbers = VecXd::Ones(static_cast<Eigen::Index>(bytes / sizeof(double)));
   const std::size_t n = static_cast<std::size_t>(numbers.size());
   std::vector<double> sums(n_blocks(n));
   for (auto _ : state) {

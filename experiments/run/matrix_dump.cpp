@@ -52,9 +52,8 @@ StoredSystem stored_system(const NewtonSystem& system, const ReducedSystem& matr
   out.system = matrix;
   out.rhs = system.rhs();
   for (const int v : matrix.block_vertex) out.coordinates.push_back(system.x().col(v));
-  const FormulationConfig& formulation = config.formulation;
   out.origin = {config.scene.name,
-                formulation.name.empty() ? formulation.shape : formulation.name,
+                label_of(config.formulation),
                 config.integrator.name,
                 commit(),
                 config.time.dt,

@@ -76,17 +76,17 @@ PassResult run_pass(const RunConfig& config, const Scene& scene, const Calibrati
   return result;
 }
 
-void fill_labels(const RunConfig& config, const Plan& plan, const RunOptions& options, RunRecord& record) {
+void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& record) {
   Labels& labels = record.labels;
   labels.scene = config.scene.name;
-  labels.formulation = config.formulation.name.empty() ? config.formulation.shape : config.formulation.name;
+  labels.formulation = label_of(config.formulation);
   labels.shape = config.formulation.shape;
   labels.argument = std::string(to_string(config.formulation.argument));
   labels.stiffness_policy = config.formulation.stiffness_policy.name;
   labels.integrator = config.integrator.name;
   labels.step_solver = config.step_solver.name;
-  labels.linear_solver = plan.linear.name;
-  labels.preconditioner = preconditioner_of(plan.linear);
+  labels.linear_solver = config.linear_solver.name;
+  labels.preconditioner = preconditioner_of({config.linear_solver.name, config.linear_solver.parameters});
   labels.precision = config.precision;
   labels.d_hat_m = config.formulation.d_hat;
   labels.dt_s = config.time.dt;
@@ -196,10 +196,11 @@ void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, c
 
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
 // geometry or its pilot can show that.
-void simulate(const RunConfig& config, const Scene& scene, const Plan& plan, const RunOptions& options,
-              RunRecord& record, RunFiles& files) {
+void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, RunRecord& record,
+              RunFiles& files) {
   fill_scene(scene, record);
   record.matching.rule = to_string(config.matching.rule);
+  const Plan plan = plan_of(config, scene);
   fill_plan(config, plan, record);
   if (const auto failure = start_failure(config, scene, options.interrupted)) {
     record.status.outcome = failure->outcome;
@@ -224,9 +225,8 @@ int thread_count(const RunConfig& config) {
 }  // namespace
 
 std::string run_label(const RunConfig& config) {
-  const std::string formulation =
-      config.formulation.name.empty() ? config.formulation.shape : config.formulation.name;
-  return fmt::format("{}-{}-{}", config.scene.name, formulation, config_id(config).substr(0, 8));
+  return fmt::format("{}-{}-{}", config.scene.name, label_of(config.formulation),
+                     config_id(config).substr(0, 8));
 }
 
 RunRecord identified(const RunConfig& config, const RunOptions& options) {
@@ -255,7 +255,6 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   set_one_blas_thread();  // before the record says how many there are, and before anything computes
   // before anything is written: what config and files can tell is refused here
   const Scene scene = build_scene(config);
-  const Plan plan = plan_of(config, scene);
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);
   remove_unfinished(options.folder);
@@ -265,8 +264,8 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   record.status.started_utc = started_utc;
 
   RunFiles files;
-  simulate(config, scene, plan, options, record, files);
-  fill_labels(config, plan, options, record);
+  simulate(config, scene, options, record, files);
+  fill_labels(config, options, record);
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
