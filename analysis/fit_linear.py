@@ -11,7 +11,6 @@ from __future__ import annotations
 import argparse
 import datetime
 import json
-import os
 import re
 import sys
 from itertools import combinations
@@ -21,6 +20,7 @@ import numpy as np
 import pandas as pd
 
 from .load import RecordError, Records, load
+from .whole_file import write_whole
 
 WORK_TERMS = ("solve", "entry", "entry_sqrt_unknown", "factor_entry", "factor_flop")
 TIMES = ["time_linear_analyze_s", "time_linear_factor_s", "time_linear_solve_s"]
@@ -132,10 +132,7 @@ def main() -> int:
     print_table(table)
     name = re.sub(r"[^a-z0-9]+", "_", content["machine"]["cpu_model"].lower()).strip("_")
     path = asked.out / f"{name}.json"
-    asked.out.mkdir(parents=True, exist_ok=True)
-    part = path.with_suffix(".part")
-    part.write_text(json.dumps(content, indent=2) + "\n")
-    os.replace(part, path)
+    write_whole(path, json.dumps(content, indent=2) + "\n")
     print(f"relative error: median {content['fitted']['relative_error_median']}, largest {content['fitted']['relative_error_max']}; {path}")
     return 0
 

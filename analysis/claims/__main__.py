@@ -15,6 +15,7 @@ import time
 from pathlib import Path
 
 from ..load import RecordError
+from ..whole_file import write_whole
 from . import figure, report
 from .entry import ROOT, Claim, ClaimError, ids, read_claim, read_sweep
 from .judge import judge, missing
@@ -84,12 +85,12 @@ def write_all(table: Table, asker: Eval) -> None:
     if not set(ids()) - {a.claim.id for a in answers if a.parts or a.claim.waits_for}:
         table.answers = {text: table.answers[text] for text in asker.asked}
     write(table, FILE)
-    (ROOT / "results" / "CLAIMS.md").write_text(report.markdown(answers, table))
+    write_whole(ROOT / "results" / "CLAIMS.md", report.markdown(answers, table))
     for path in figure.draw(answers, RUNS / "figure" / "claims"):
         if path.suffix in (".png", ".txt"):
             shutil.copyfile(path, ROOT / "docs" / path.name)
     readme = ROOT / "README.md"
-    readme.write_text(report.in_readme(readme.read_text(), answers))
+    write_whole(readme, report.in_readme(readme.read_text(), answers))
 
 
 if __name__ == "__main__":

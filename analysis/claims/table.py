@@ -9,6 +9,7 @@ from datetime import datetime
 from pathlib import Path
 
 from ..load import RecordError, read_record
+from ..whole_file import write_whole
 from .entry import ROOT, Claim, ClaimError, Sweep
 from .metrics import METRICS
 
@@ -104,7 +105,7 @@ def write(table: Table, path: Path) -> None:
         blocks.append(f'  "{name}": {{"about": {json.dumps(runs.about)}, "expected": {runs.expected},\n   "columns": {json.dumps(columns)}, "rows": [\n   {rows}]}}')
     lines += [",\n".join(blocks), " },", ' "answers": {']
     lines += [",\n".join(f"  {json.dumps(query)}: {json.dumps(answer)}" for query, answer in sorted(table.answers.items())), " }", "}"]
-    path.write_text("\n".join(lines) + "\n")
+    write_whole(path, "\n".join(lines) + "\n")
 
 
 def read(path: Path) -> Table:

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import json
 import math
-import os
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..whole_file import write_whole
 from .envelope import Envelope
 from .metrics import LOWER_BETTER, TWO_SIDED, Metric, Tolerance
 
@@ -63,10 +63,7 @@ def metric_of(name: str, kept: Kept) -> Metric:
 
 
 def write(baseline: Baseline, path: Path) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
-    part = path.with_name(f"{path.name}.tmp.{os.getpid()}")
-    part.write_text(json.dumps(baseline.json(), indent=1) + "\n")
-    part.replace(path)
+    write_whole(path, json.dumps(baseline.json(), indent=1) + "\n")
 
 
 def _line(path: Path, name: str, line) -> Kept:

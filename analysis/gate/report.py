@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import json
-import os
 from collections import Counter
 from pathlib import Path
 
+from ..whole_file import write_whole
 from .finding import ALL_CLASSES, JUDGED, Finding, failures, judged
 
 HEADINGS = ("case", "class", "metric", "value", "was", "allowed", "verdict", "")
@@ -50,11 +50,8 @@ def closing(findings: list[Finding]) -> str:
 
 
 def write_json(path: Path, name: str, findings: list[Finding], **more) -> None:
-    path.parent.mkdir(parents=True, exist_ok=True)
     red = bool(failures(findings))
     body = {"schema": {"name": name, "version": "1.0.0"}, "green": not red, "judged": {c: judged(findings)[c] for c in ALL_CLASSES},
             "failed": len(failures(findings)), "lines": len(findings), "verdicts": list(JUDGED) + ["report", "not_judged"], **more,
             "findings": [f.json() for f in findings]}
-    part = path.with_name(f"{path.name}.tmp.{os.getpid()}")
-    part.write_text(json.dumps(body, indent=1) + "\n")
-    part.replace(path)
+    write_whole(path, json.dumps(body, indent=1) + "\n")

@@ -6,6 +6,7 @@ import pytest
 
 from analysis.figures import demo
 from analysis.load import RecordError, load
+from analysis.whole_file import write_whole
 from synthetic import write_set
 
 
@@ -54,3 +55,11 @@ def test_figures_end_well_beside_a_torn_record_and_not_without_any(tmp_path, cap
         other.write_text("{")
     assert demo.main([str(tmp_path / "runs"), str(tmp_path / "none")]) == 2
     assert str(path) in capsys.readouterr().err
+
+
+def test_a_file_that_cannot_be_written_whole_stays_what_it_was(tmp_path):
+    path = tmp_path / "folder" / "file.txt"
+    write_whole(path, "whole")
+    with pytest.raises(UnicodeEncodeError):
+        write_whole(path, "half \ud800")  # no UTF-8
+    assert path.read_text() == "whole" and [p.name for p in path.parent.iterdir()] == ["file.txt"]
