@@ -25,19 +25,19 @@ class AccumulatedToi final : public StepSolver {
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used, target_);
-    step.dt_used = 0;  // until a part of it is reached
+    step.dt_s = 0;  // until a part of it is reached
     double beta = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       const double advanced = iterate(system, step, task.step, iteration, observer);
       if (step.status != StepStatus::iteration_cap) return step;
       beta += std::max(0.0, 1.0 - beta) * advanced;
       if (beta >= target_toi_ && iteration + 1 >= min_newton_steps_) {
-        step.dt_used = beta * task.dt;
+        step.dt_s = beta * task.dt;
         reduce_error(system, step, task, used, iteration + 1, observer);
         return step;
       }
     }
-    step.dt_used = beta * task.dt;
+    step.dt_s = beta * task.dt;
     return step;
   }
 
@@ -90,10 +90,10 @@ class AccumulatedToi final : public StepSolver {
                     int iteration, StepObserver& observer) {
     {
       const ScopedPhase timer(system.clock(), Phase::prediction);
-      task.integrator->predict(*task.history, step.dt_used, used);
-      system.restart_step(used, step.dt_used);
+      task.integrator->predict(*task.history, step.dt_s, used);
+      system.restart_step(used, step.dt_s);
       target_ = system.x();
-      task.pose(step.dt_used, target_);
+      task.pose(step.dt_s, target_);
     }
     step.status = StepStatus::converged;
     iterate(system, step, task.step, iteration, observer);

@@ -44,7 +44,7 @@ StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& us
   task.pose(task.dt, target);
   StepReport step;
   step.step = task.step;
-  step.dt_used = task.dt;
+  step.dt_s = task.dt;
   step.status = StepStatus::iteration_cap;
   return step;
 }

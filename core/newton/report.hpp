@@ -27,7 +27,6 @@ struct IterationReport : IterateNumbers {
 /// `detail` names the pin, the pair, the linear status. `time` has every moment of Simulation::step; on_step
 /// sees what came before it.
 struct StepReport : StepNumbers {
-  double dt_used = 0;          // s; accumulated_toi may shorten the step
   bool still_falling = false;  // |dx| was, when the cap on iterations was reached
 };
 

@@ -73,7 +73,7 @@ StepReport Simulation::step(StepObserver& observer) {
   };
   StepReport report = solver_->advance(system_, task, prediction_, charged);
 
-  remember(system_.x(), report.dt_used);
+  remember(system_.x(), report.dt_s);
   report.t_s = time_;
   measure_end(system_, report);
   for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {

@@ -28,7 +28,7 @@ class StepSolver {
   virtual ~StepSolver() = default;
   virtual std::string_view name() const = 0;
   /// Leaves the reached state in system.x(), and in `used` the prediction that it belongs to. The
-  /// report's counters, status and dt_used are filled; the rest is the caller's.
+  /// report's counters, status and dt_s are filled; the rest is the caller's.
   virtual StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                              StepObserver& observer) = 0;
 };

@@ -20,16 +20,29 @@ enum class Outcome {
   newton_stall,          // a step ended at its iteration cap
   linear_failure,        // the linear solver broke down
   not_pd,                // the matrix was not positive definite
+  oom,                   // memory ran out; the steps before count
+  timeout,               // the time limit that was asked for was reached between two steps
   unproven,              // finished, but the audit could not certify every motion
   ok
 };
 template <>
-inline constexpr int n_words<Outcome> = 12;
+inline constexpr int n_words<Outcome> = 14;
 
 constexpr std::string_view to_string(Outcome outcome) {
-  constexpr std::array<std::string_view, n_words<Outcome>> words = {
-      "invalid_scene",  "initial_intersection", "penetration",    "nan",    "pin_infeasible", "ccd_cap",
-      "stall_overload", "newton_stall",         "linear_failure", "not_pd", "unproven",       "ok"};
+  constexpr std::array<std::string_view, n_words<Outcome>> words = {"invalid_scene",
+                                                                    "initial_intersection",
+                                                                    "penetration",
+                                                                    "nan",
+                                                                    "pin_infeasible",
+                                                                    "ccd_cap",
+                                                                    "stall_overload",
+                                                                    "newton_stall",
+                                                                    "linear_failure",
+                                                                    "not_pd",
+                                                                    "oom",
+                                                                    "timeout",
+                                                                    "unproven",
+                                                                    "ok"};
   return words[static_cast<std::size_t>(outcome)];
 }
 

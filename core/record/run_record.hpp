@@ -17,7 +17,7 @@ namespace bb {
 /// Of run.json and of the trace beside it. MODEL.REVISION.ADDITION: removed or changed meaning, widened,
 /// added. Readers refuse another first number.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.2.1";
+inline constexpr const char* run_schema_version = "3.3.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 using CountMap = std::map<std::string, int>;
@@ -57,6 +57,8 @@ struct Status {
   BB_FIELD(Outcome, outcome, "of several that hold, the first in the order of this list") = Outcome::ok;
   BB_FIELD(std::string, detail, "one sentence; empty when ok");
   BB_FIELD(bool, valid, "every check of `validity` passed") = false;
+  BB_FIELD(Number, resumed_from_step, "first step after the checkpoint that the run went on from",
+           "whole") = Number::missing("whole");
   BB_FIELD(std::string, started_utc, "ISO 8601");
   BB_FIELD(std::string, ended_utc, "ISO 8601");
   BB_RECORD_END;
@@ -186,6 +188,8 @@ struct Summary : WorkCounts {
   BB_RECORD(Summary, "the run in numbers");
   BB_FIELD(int, steps, "that were run") = 0;
   BB_FIELD(int, steps_capped, "that ended at their iteration cap") = 0;
+  BB_FIELD(int, retries, "attempts at steps that failed and were repeated with half their length") = 0;
+  BB_FIELD(Number, dt_min_s, "shortest step");
   BB_FIELD(long long, newton_iterations, "over all steps") = 0;
   BB_FIELD(Stats, newton_per_step, "Newton iterations of a step");
   BB_FIELD(Stats, linear_per_solve, "iterations of the linear solver");
@@ -193,6 +197,8 @@ struct Summary : WorkCounts {
   BB_FIELD(Stats, contacts, "rows at the end of a step");
   BB_FIELD(Stats, gap_min_rel, "smallest d / d_hat of each converged step end");
   BB_FIELD(Number, gap_min_m, "smallest gap over converged step ends");
+  BB_FIELD(Number, gap_min_ulps,
+           "smallest over converged step ends, in units of the last place of the largest coordinate");
   BB_FIELD(Number, gap_min_iterates_m, "smallest gap over all iterates");
   BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat over all iterates");
   BB_FIELD(CountMap, first_contact,
@@ -249,10 +255,20 @@ struct Check {
   BB_RECORD_END;
 };
 
+struct BuildValidity {
+  BB_RECORD(BuildValidity, "the validity block of the build (docs/design.md, Validity)");
+  BB_FIELD(bool, valid, "every check of the block passed; else the record has no times") = false;
+  BB_FIELD(int, checks, "that were made") = 0;
+  BB_FIELD(std::string, failed, "names of those that failed; empty: none");
+  BB_FIELD(std::string, report_sha256, "of the report; empty: the block was not computed", sha256_or_empty);
+  BB_RECORD_END;
+};
+
 struct Validity {
   BB_RECORD(Validity, "whether the run counts");
   BB_FIELD(bool, valid, "every check passed") = false;
   BB_FIELD(std::vector<Check>, checks, "one by one");
+  BB_FIELD(BuildValidity, build, "of the program that ran");
   BB_RECORD_END;
 };
 

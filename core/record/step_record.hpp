@@ -15,6 +15,8 @@ struct StepRecord : WorkCounts {
   BB_RECORD(StepRecord, "one time step");
   BB_FIELD(int, step, "from 0") = 0;
   BB_FIELD(double, t_s, "simulated time at its end") = 0;
+  BB_FIELD(double, dt_s, "length; of accumulated_toi, the part that was reached") = 0;
+  BB_FIELD(int, retries, "attempts before this one, from the same start with twice the length each") = 0;
   BB_FIELD(StepStatus, status, "how it ended") = StepStatus::converged;
   BB_FIELD(std::string, detail,
            "what held it: the pin, the pair, the linear status; empty when it converged");
@@ -22,6 +24,9 @@ struct StepRecord : WorkCounts {
   BB_FIELD(ContactCounts, contacts, "at its end");
   BB_FIELD(Number, gap_min_m, "smallest gap at its end", "no_contacts not_converged");
   BB_FIELD(Number, gap_min_rel, "smallest d / d_hat of that state", "no_contacts not_converged");
+  BB_FIELD(Number, gap_min_ulps,
+           "gap_min_m in units of the last place of the largest coordinate, in the run's precision",
+           "no_contacts not_converged");
   BB_FIELD(Number, gap_min_iterates_m, "smallest gap of its iterates and its end", "no_contacts");
   BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat of the same states", "no_contacts");
   BB_FIELD(double, alpha_ccd_min, "smallest bound of ACCD") = 1;

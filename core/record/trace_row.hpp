@@ -40,6 +40,35 @@ inline constexpr int n_words<MatrixForm> = 2;
 
 inline constexpr const char* no_eigenvalue = "lower_bound singular not_pd not_converged";
 
+/// Which end of a spectrum.
+enum class SpectrumSide { smallest, largest };
+constexpr std::string_view to_string(SpectrumSide side) {
+  return side == SpectrumSide::smallest ? "smallest" : "largest";
+}
+template <>
+inline constexpr int n_words<SpectrumSide> = 2;
+
+struct TermShare {
+  BB_RECORD(TermShare, "the part of an eigenvalue that one term of E makes");
+  BB_FIELD(std::string, term, "term of the registry");
+  BB_FIELD(double, share, "v^T H_term v / lambda, v the unit eigenvector; all shares add up to 1") = 0;
+  BB_RECORD_END;
+};
+
+struct SpectrumEnd {
+  BB_RECORD(SpectrumEnd, "where the eigenvector v of one end of the spectrum lives");
+  BB_FIELD(SpectrumSide, side, "which end") = SpectrumSide::smallest;
+  BB_FIELD(double, lambda, "v^T A v of the scaled matrix") = 0;
+  BB_FIELD(std::vector<TermShare>, terms, "all terms with elements, largest share first");
+  BB_FIELD(std::string, element, "the element with the largest v^T H_element v, by term and vertices");
+  BB_FIELD(double, element_share, "its part of lambda") = 0;
+  BB_FIELD(std::string, body, "the body with the largest part of |v|^2");
+  BB_FIELD(double, body_share, "that part") = 0;
+  BB_FIELD(int, vertex, "the vertex with the largest |v_i|") = 0;
+  BB_FIELD(double, vertices, "that v is spread over: 1/sum |v_i|^4, |v| = 1") = 0;
+  BB_RECORD_END;
+};
+
 struct ConditionSample {
   BB_RECORD(ConditionSample, "an estimate of a condition number");
   BB_FIELD(MatrixForm, matrix,
@@ -58,6 +87,7 @@ struct ConditionSample {
   BB_FIELD(int, products, "matrix products") = 0;
   BB_FIELD(int, factorizations, "beyond the first, which the scalings share") = 0;
   BB_FIELD(double, time_s, "what the estimate took") = 0;
+  BB_FIELD(std::vector<SpectrumEnd>, ends, "where both eigenvectors live; empty when not asked for");
   BB_RECORD_END;
 };
 

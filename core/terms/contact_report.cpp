@@ -1,5 +1,6 @@
 // What the contact term says of its rows: counts, gaps, kappa, loads.
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 #include "core/terms/barrier_load.hpp"
@@ -79,7 +80,7 @@ void ContactTerm::report(const Positions&, IterateNumbers& out, PhaseClock&) {
   out.contact_curvature_max_N_per_m = rows.curvature_max;
 }
 
-void ContactTerm::report_end(const Positions&, StepNumbers& out, PhaseClock&) {
+void ContactTerm::report_end(const Positions& x, StepNumbers& out, PhaseClock&) {
   out.contacts = count_contacts(state_);
   if (out.contacts.total() == 0) return;
   const RowNumbers rows = measure(state_);
@@ -87,6 +88,8 @@ void ContactTerm::report_end(const Positions&, StepNumbers& out, PhaseClock&) {
   out.contact_load_sum_N = rows.load_sum;
   out.gap_min_m = state_.gap_min;
   out.gap_min_rel = rows.gap_min_rel;
+  const double largest = x.cwiseAbs().maxCoeff();
+  out.gap_min_ulps = state_.gap_min / (std::nextafter(largest, 2 * largest) - largest);
 }
 
 // The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and

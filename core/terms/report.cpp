@@ -45,7 +45,7 @@ void IterateNumbers::forget_changes() {
 }
 
 StepNumbers::StepNumbers() {
-  gap_min_m = gap_min_rel = gap_min_iterates_m = gap_min_iterates_rel = kappa_min_N_per_m =
+  gap_min_m = gap_min_rel = gap_min_ulps = gap_min_iterates_m = gap_min_iterates_rel = kappa_min_N_per_m =
       kappa_max_N_per_m = contact_load_max_N = contact_load_sum_N = Number::missing("no_contacts");
   max_stretch = limit_load_max_N_per_m = Number::missing("no_limit");
 }
@@ -63,7 +63,7 @@ void StepNumbers::close() {
   keep_smaller(gap_min_iterates_m, gap_min_m);
   keep_smaller(gap_min_iterates_rel, gap_min_rel);
   const bool converged = status == StepStatus::converged;
-  if (!converged) gap_min_m = gap_min_rel = Number::missing("not_converged");
+  if (!converged) gap_min_m = gap_min_rel = gap_min_ulps = Number::missing("not_converged");
   contact_overload = limit_overload = Number::missing(converged ? "converged" : "not_measured");
 }
 

@@ -37,7 +37,8 @@ ConditionSample sample_of(MatrixForm matrix, MatrixStage stage, Scaling scaling,
     return std::isfinite(v) ? Number(v) : Number::missing(to_string(e.status).data());  // a literal
   };
   return {matrix,   stage,    scaling,    tier,     known(e.lambda_min), known(e.lambda_max), known(e.cond),
-          e.status, e.method, e.residual, e.solves, e.products,          e.factorizations,    e.seconds};
+          e.status, e.method, e.residual, e.solves, e.products,          e.factorizations,    e.seconds,
+          {}};
 }
 
 }  // namespace

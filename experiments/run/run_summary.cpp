@@ -14,6 +14,9 @@ void summarize_steps(RunRecord& record) {
     contacts.push_back(static_cast<double>(step.contacts.total()));
     if (step.gap_min_rel.finite()) gaps.push_back(step.gap_min_rel.value);
     keep_smaller(summary.gap_min_m, step.gap_min_m);
+    keep_smaller(summary.gap_min_ulps, step.gap_min_ulps);
+    keep_smaller(summary.dt_min_s, step.dt_s);
+    summary.retries += step.retries;
     keep_smaller(summary.gap_min_iterates_m, step.gap_min_iterates_m);
     keep_smaller(summary.gap_min_iterates_rel, step.gap_min_iterates_rel);
     keep_larger(summary.max_stretch, step.max_stretch);

@@ -57,7 +57,7 @@ TEST(AccumulatedToi, a_step_shortened_by_its_largest_motion_ends_where_its_own_t
   ASSERT_EQ(flight.report.status, StepStatus::converged);
   EXPECT_EQ(flight.report.newton_iterations, 2);
   EXPECT_NEAR(flight.watch.reports[0].alpha, 0.4, 1e-12);
-  EXPECT_NEAR(flight.report.dt_used, 0.4 * dt, 1e-12);
+  EXPECT_NEAR(flight.report.dt_s, 0.4 * dt, 1e-12);
   EXPECT_NEAR(flight.time, 0.4 * dt, 1e-12);
   EXPECT_NEAR(height - flight.z, fallen(0.4 * dt, speed), 1e-12);
   EXPECT_NEAR(-flight.v, speed + gravity * 0.4 * dt, 1e-9);
@@ -77,7 +77,7 @@ TEST(AccumulatedToi, parts_accumulate_as_shares_of_what_is_left) {
   }
   EXPECT_EQ(used, 3U);
   EXPECT_EQ(flight.report.newton_iterations, 4);  // and the pass that reduces the error
-  EXPECT_NEAR(flight.report.dt_used, beta * dt, 1e-15);
+  EXPECT_NEAR(flight.report.dt_s, beta * dt, 1e-15);
   EXPECT_NEAR(beta, 1, 1e-12);
   EXPECT_NEAR(height - flight.z, fallen(dt, speed), 1e-12);
 }
@@ -88,7 +88,7 @@ TEST(AccumulatedToi, makes_at_least_the_iterations_that_are_asked_for) {
     options.parameters["min_newton_steps"] = least;
     const Flight flight = fly(options, 1);
     EXPECT_EQ(flight.report.newton_iterations, least + 1);
-    EXPECT_NEAR(flight.report.dt_used, dt, 1e-15);
+    EXPECT_NEAR(flight.report.dt_s, dt, 1e-15);
   }
 }
 
@@ -99,7 +99,7 @@ TEST(AccumulatedToi, a_step_that_runs_out_of_iterations_keeps_the_time_it_reache
   const Flight flight = fly(options, speed_for(0.1));
   EXPECT_EQ(flight.report.status, StepStatus::iteration_cap);
   const double first = 0.1, second = 0.1 / 0.9;
-  EXPECT_NEAR(flight.report.dt_used, (first + (1 - first) * second) * dt, 1e-12);
+  EXPECT_NEAR(flight.report.dt_s, (first + (1 - first) * second) * dt, 1e-12);
 }
 
 /// A free step is Newton's, not `extension` times it; a bound one keeps that distance from the floor.

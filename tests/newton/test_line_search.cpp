@@ -275,7 +275,7 @@ TEST(LineSearch, accumulated_toi_reaches_the_same_state_without_contact) {
     const StepReport report = simulation.step(observer);
     EXPECT_EQ(report.status, StepStatus::converged);
     EXPECT_EQ(report.newton_iterations, 2);  // one free Newton step and the error-reduction pass
-    EXPECT_EQ(report.dt_used, 0.01);
+    EXPECT_EQ(report.dt_s, 0.01);
   }
   EXPECT_NEAR(simulation.history().x(2, 7) - scene.x0(2, 7), -9.81 * 1e-4 * 6, 1e-12);
 }
