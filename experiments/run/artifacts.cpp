@@ -155,6 +155,8 @@ void ArtifactWriter::write(const std::filesystem::path& relative, const std::str
   artifact.media_type = media_type;
   artifact.sha256 = sha256_hex(bytes);
   artifact.bytes = bytes.size();
+  // an attempt at a step that is repeated has left files of the same names
+  std::erase_if(written_, [&artifact](const Artifact& earlier) { return earlier.path == artifact.path; });
   written_.push_back(std::move(artifact));
 }
 

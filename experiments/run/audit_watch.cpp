@@ -13,6 +13,7 @@ AuditWatch::AuditWatch(const Scene& scene, double ccd_park, AuditRecord& record)
       audit_(mesh_),
       tolerance_(audit_tolerance(scene, ccd_park)) {
   judge(scene.x0, -1);
+  at_step_end_ = {audit_.ledger(), last_judged_};
 }
 
 void AuditWatch::judge(const Positions& x, int step) {
@@ -38,6 +39,12 @@ void AuditWatch::on_step(const Positions& x, StepRecord& step) {
   step.violations = record_.violations - before.violations;
   step.unproven = record_.unproven - before.unproven;
   step.inverted = record_.inverted - before.inverted;
+  at_step_end_ = {audit_.ledger(), last_judged_};
+}
+
+void AuditWatch::on_retry() {
+  audit_.restore(at_step_end_.ledger);
+  last_judged_ = at_step_end_.last_judged;
 }
 
 void AuditWatch::fill_record() {

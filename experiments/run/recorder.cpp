@@ -38,6 +38,11 @@ void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
   if (audit_) audit_->on_motion(x0, x1, step);
 }
 
+// The rows of the attempt stay in the trace, its motions are not those of the run.
+void Recorder::on_retry(int) {
+  if (audit_) audit_->on_retry();
+}
+
 void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
   const ContactState& contact = contact_state(system.terms());
   const int every = config_.output.frames_every;
