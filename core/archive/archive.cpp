@@ -26,7 +26,8 @@ std::size_t Archive::length(std::size_t n) {
 void Archive::section(std::string_view name) {
   std::string found(name);
   item(found);
-  if (found != name) throw std::logic_error("archive: '" + found + "' where '" + std::string(name) + "' is due");
+  if (found != name)
+    throw std::logic_error("archive: '" + found + "' where '" + std::string(name) + "' is due");
 }
 
 }  // namespace bb

@@ -15,7 +15,7 @@ namespace bb {
 struct History {
   int steps = 0;
   double dt_prev = 0;  // s, length of the step that ended at x; 0: as the next one
-  Positions x, v, a;  // [3 x n] m, m/s, m/s^2
+  Positions x, v, a;   // [3 x n] m, m/s, m/s^2
   Positions x_prev, v_prev;
 };
 

@@ -51,7 +51,8 @@ std::string vertex_text(const ReducedSystem& system, int dof) {
   const auto block =
       static_cast<std::size_t>(std::upper_bound(start.begin(), start.end(), dof) - start.begin()) - 1;
   const bool known = block < system.block_vertex.size();
-  return known ? "vertex " + std::to_string(system.block_vertex[block]) : "block row " + std::to_string(block);
+  return known ? "vertex " + std::to_string(system.block_vertex[block])
+               : "block row " + std::to_string(block);
 }
 
 std::string bad_diagonal_text(const ReducedSystem& system, int dof) {

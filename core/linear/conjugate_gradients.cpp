@@ -94,8 +94,8 @@ std::string describe(LinearStatus status, double tolerance, const LinearReport& 
   } else if (status == LinearStatus::preconditioner_indefinite) {
     std::snprintf(text, sizeof text, "r^T M^-1 r is not positive in iteration %d", report.iterations);
   } else if (status == LinearStatus::iteration_cap || status == LinearStatus::tolerance_below_rounding) {
-    std::snprintf(text, sizeof text, "residual %.3g after %d iterations, tolerance %.3g", report.residual_true,
-                  report.iterations, tolerance);
+    std::snprintf(text, sizeof text, "residual %.3g after %d iterations, tolerance %.3g",
+                  report.residual_true, report.iterations, tolerance);
   }
   return text;
 }

@@ -8,6 +8,8 @@
 
 namespace bb {
 
+class Archive;
+
 class AuditWatch {
  public:
   /// Judges the start. scene and record must outlive it.
@@ -18,6 +20,8 @@ class AuditWatch {
   void on_step(const Positions& x, StepRecord& step);
   /// Forgets the motions since the last step ended: they are no part of the run.
   void on_retry();
+  /// What the audit found so far, at the end of a step.
+  void keep(Archive& archive);
   const audit::AuditLedger& ledger() const { return audit_.ledger(); }
   /// What was found, as an outcome.
   Verdict verdict() const;

@@ -37,8 +37,8 @@ Verdict stalled(const StepReport& step) {
                         because(step))};
   }
   if (step.ccd_capped > 0 && step.status == StepStatus::step_collapse) {
-    return {Outcome::ccd_cap,
-            fmt::format("step {}: {} pairs reached the probe cap{}", step.step, step.ccd_capped, because(step))};
+    return {Outcome::ccd_cap, fmt::format("step {}: {} pairs reached the probe cap{}", step.step,
+                                          step.ccd_capped, because(step))};
   }
   return {Outcome::newton_stall, fmt::format("step {}: {} after {} iterations{}", step.step,
                                              to_string(step.status), step.newton_iterations, because(step))};

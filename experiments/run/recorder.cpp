@@ -2,6 +2,7 @@
 
 #include "core/newton/newton_system.hpp"
 #include "core/terms/contact.hpp"
+#include "experiments/run/keep_record.hpp"
 #include "experiments/run/run_summary.hpp"
 #include "experiments/run/step_energies.hpp"
 
@@ -62,6 +63,13 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
   }
   rows_.clear();
   trace_->end_step();
+}
+
+void Recorder::keep(Archive& archive) {
+  archive.section("recorder");
+  archive(record_.steps, record_.summary.first_contact, record_.audit, linear_, seen_, condition_,
+          first_contacts_);
+  if (audit_) archive(*audit_);
 }
 
 void Recorder::finish() {

@@ -35,6 +35,8 @@ class Recorder final : public StepObserver {
   void on_retry(int step) override;
   void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override;
 
+  /// What it has recorded so far, between two steps; its files are not in it.
+  void keep(Archive& archive);
   /// Fills the summary, once the run is over.
   void finish();
 
