@@ -10,9 +10,11 @@
 #include "experiments/run/validity.hpp"
 
 namespace bb {
-namespace {
 
-void keep(Archive& archive, Calibration& c) { archive(c.kappa, c.k_s, c.scale, c.limit_scale, c.limited); }
+// found by its argument, so outside of the namespace without a name
+static void keep(Archive& archive, Calibration& c) {
+  archive(c.kappa, c.k_s, c.scale, c.limit_scale, c.limited);
+}
 
 /// Times of the pass that was timed; a step that it did not reach has none.
 void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
@@ -34,6 +36,8 @@ void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
   summary.unaccounted_s = timed.wall_s - summary.time.total_s();
 }
 
+namespace {
+
 void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
   if (worse(outcome, verdict.outcome) == outcome && outcome != verdict.outcome) verdict = {outcome, detail};
 }
@@ -45,10 +49,10 @@ void fill_stiffness(const PassResult& pass, RunRecord& record) {
 }
 
 /// The two passes, and what a checkpoint between two of their steps has to hold.
-class Passes {
+class PassSequence {
  public:
-  Passes(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
-         const RunOptions& options, const Checkpoint& checkpoint, RunRecord& record, RunFiles& files)
+  PassSequence(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
+               const RunOptions& options, const Checkpoint& checkpoint, RunRecord& record, RunFiles& files)
       : config_(config),
         scene_(scene),
         plan_(plan),
@@ -180,7 +184,7 @@ std::optional<Resumed> read_resumed(const Checkpoint& checkpoint, const RunRecor
 void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
                 const RunOptions& options, const Checkpoint& checkpoint, Resumed* resumed, RunRecord& record,
                 RunFiles& files) {
-  Passes(config, scene, plan, calibration, options, checkpoint, record, files).run(resumed);
+  PassSequence(config, scene, plan, calibration, options, checkpoint, record, files).run(resumed);
 }
 
 }  // namespace bb

@@ -4,6 +4,7 @@
 #include <optional>
 
 #include "core/record/writer.hpp"
+#include "core/terms/plan.hpp"
 #include "experiments/run/artifacts.hpp"
 #include "experiments/run/checkpoint.hpp"
 #include "experiments/run/method.hpp"
