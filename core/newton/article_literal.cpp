@@ -28,7 +28,7 @@ class ArticleLiteral final : public StepSolver {
       const bool small = report.dx_inf_m / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, !small)) {
         finish_iteration(system, step, report, observer);
-        fail_step(step, *failed, report);
+        fail_step(system, dx_, step, *failed, report);
         return step;
       }
       const bool moved = backtrack(system, report);

@@ -16,7 +16,9 @@ StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& us
 /// Whether a change of E is noise: below 64 eps sum |terms|.
 bool within_rounding(const EnergyChange& change);
 /// Ends a step whose direction was of no use.
-void fail_step(StepReport& step, StepStatus status, const IterationReport& report);
+/// dx: the direction.
+void fail_step(const NewtonSystem& system, const Positions& dx, StepReport& step, StepStatus status,
+               const IterationReport& report);
 
 /// Begins a lap of the system's clock, assembles at system.x() and fills what is known before the solve.
 IterationReport begin_iteration(NewtonSystem& system, int step, int iteration);

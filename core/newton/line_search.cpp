@@ -43,7 +43,7 @@ class LineSearch final : public StepSolver {
       const bool small = estimate_error(report) < tolerance && at_pose && !at_saddle(system, dx_);
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
-        fail_step(step, *failed, report);
+        fail_step(system, dx_, step, *failed, report);
         return step;
       }
       const bool moved = search(system, report, at_pose);

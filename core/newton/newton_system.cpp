@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/archive/archive.hpp"
+
 namespace bb {
 
 namespace {
@@ -93,6 +95,18 @@ void NewtonSystem::restart_step(const Prediction& prediction, double dt) {
 
 void NewtonSystem::end_step() {
   for (const auto& term : terms_) term->end_step(clock_);
+}
+
+void NewtonSystem::keep(Archive& archive) {
+  for (const auto& term : terms_) {
+    archive.section(term->name());
+    term->keep(archive);
+  }
+}
+
+void NewtonSystem::drop_caches() {
+  solver_ = make_linear_solver(plan_.linear);
+  blocks_->set_contacts({});
 }
 
 void NewtonSystem::prepare(const Positions& x1, const Positions& dx, bool to_bound) {

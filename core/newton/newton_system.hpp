@@ -39,6 +39,10 @@ class NewtonSystem {
   /// The same step and iterate with another prediction and length (accumulated_toi).
   void restart_step(const Prediction& prediction, double dt);
   void end_step();
+  /// What the terms remember from step to step.
+  void keep(Archive& archive);
+  /// Makes the linear solver anew and forgets the pattern of the contacts: between steps.
+  void drop_caches();
 
   // --- an iterate
   /// Every term at x(), then gradient and matrix. Order of the sums: docs/design.md, Terms.
@@ -120,6 +124,9 @@ class NewtonSystem {
   void report(IterateNumbers& out) const;
   void report_end(StepNumbers& out) const;
   void report_overload(const Positions& dx, StepNumbers& out) const;
+  /// The first element of the iterate with an energy, force or Hessian that is not finite, or else the first
+  /// vertex with such a gradient or direction. dx: the Newton direction.
+  std::string describe_non_finite(const Positions& dx) const;
 
  private:
   /// Where the families of a term are in the block system, whose families are fixed or changing.

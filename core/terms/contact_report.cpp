@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/pair_name.hpp"
 #include "core/terms/barrier_load.hpp"
 #include "core/terms/contact.hpp"
 
@@ -115,7 +116,10 @@ void ContactTerm::report_overload(const Positions&, const Positions& others, con
     const double capacity = slope(rows.d_hat[r]);  // for kappa = 1
     const double load = push / weight_sq / (rows.multiplicity[r] * rows.kappa[r]);
     const double model = newton_force(barrier, rows.d[r], rows.d[r] + opening, rows.d_hat[r]);
-    largest = std::max({largest, load / capacity, model / capacity});
+    const double times = std::max(load, model) / capacity;
+    if (!(times > largest)) continue;
+    largest = times;
+    out.contact_overload_at = pair_name(scene_, rows.key[r], rows.kind[r]);
   }
   out.contact_overload = largest;
 }

@@ -20,6 +20,7 @@ StepSolverOptions step_solver_options(const RunConfig& config) {
   StepSolverOptions out;
   out.name = config.step_solver.name;
   out.max_iterations = config.step_solver.max_iterations;
+  out.retries = config.step_solver.retries;
   out.tol_velocity = config.step_solver.tol_velocity;
   out.parameters = config.step_solver.parameters;
   return out;

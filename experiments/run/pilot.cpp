@@ -52,6 +52,8 @@ RunConfig pilot_config(const RunConfig& config) {
   pilot.strain_limit.stiffness_policy = {};
   pilot.matching = {};
   pilot.step_solver.name = "line_search";
+  pilot.step_solver.retries = 0;      // its steps are all as long as those that read its loads
+  pilot.output.checkpoint_every = 0;  // it has no folder
   pilot.passes = {};
   return pilot;
 }
@@ -144,7 +146,7 @@ std::optional<double> policy_start(const RunConfig& config, const Scene& scene,
   Method method = make_method(unscaled, calibration);
   Simulation simulation(scene, method, config.time.dt, config.time.steps);
   StepObserver nobody;
-  for (int step = 0; step < config.time.steps; ++step) {
+  while (simulation.nominal_steps() < config.time.steps) {
     look_up(options);
     const StepReport report = simulation.step(nobody);
     show(config, options, report);
