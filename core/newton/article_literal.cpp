@@ -53,7 +53,7 @@ class ArticleLiteral final : public StepSolver {
       const auto change = system.try_state(x_trial_);
       if (!change) continue;
       const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
-      report.rounding_accepts = !decrease && within_rounding(*change);
+      report.rounding_accepts = !decrease && within_rounding(*change, system.precision());
       if (!decrease && !report.rounding_accepts) continue;
       report.alpha = alpha;
       report.energy_change_J = change->change;

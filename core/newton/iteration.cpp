@@ -50,8 +50,8 @@ StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& us
   return step;
 }
 
-bool within_rounding(const EnergyChange& change) {
-  return std::abs(change.change) <= 64 * std::numeric_limits<double>::epsilon() * change.magnitude;
+bool within_rounding(const EnergyChange& change, Precision precision) {
+  return std::abs(change.change) <= 64 * value_epsilon(precision) * change.magnitude;
 }
 
 void fail_step(const NewtonSystem& system, const Positions& dx, StepReport& step, StepStatus status,

@@ -11,6 +11,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "core/newton/error_estimate.hpp"
 #include "core/newton/iteration.hpp"
 #include "core/newton/step_solver.hpp"
@@ -33,8 +35,8 @@ class LineSearch final : public StepSolver {
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used, target_);
-    const double tolerance = options_.tol_velocity * task.dt;  // m
-    error_.reset(system.x());
+    error_.reset(system.x(), system.precision());
+    const double tolerance = std::max(options_.tol_velocity * task.dt, error_.smallest());  // m
     int collapsed = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);
@@ -102,7 +104,7 @@ class LineSearch final : public StepSolver {
       ++report.line_search_trials;
       if (const auto change = system.try_state(x_trial_)) {
         const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
-        report.rounding_accepts = energy_test && !decrease && within_rounding(*change);
+        report.rounding_accepts = energy_test && !decrease && within_rounding(*change, system.precision());
         if (decrease || !energy_test || report.rounding_accepts) {
           report.alpha = alpha;
           report.energy_change_J = change->change;

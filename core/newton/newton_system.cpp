@@ -38,6 +38,7 @@ std::vector<StepHessian> choices_of(const TermList& terms, const Method& method)
 NewtonSystem::NewtonSystem(const Scene& scene, Method& method, const Plan& plan)
     : scene_(scene),
       plan_(plan),
+      precision_(method.precision),
       fixed_(fixed_dofs(scene, plan_)),
       terms_(make_terms(plan_, {scene, method, plan_.contacts, fixed_})),
       level_(choices_of(terms_, method)),
@@ -128,6 +129,7 @@ double NewtonSystem::bound(const Positions& x1, const Positions& dx, IterationRe
 std::optional<EnergyChange> NewtonSystem::try_state(const Positions& x) {
   const ScopedPhase timer(clock_, Phase::line_search);
   trial_ = x;
+  round_state(precision_, trial_);
   if (!trial_.allFinite()) return std::nullopt;
   for (const auto& term : terms_) {
     if (!term->admits(trial_, clock_)) return std::nullopt;

@@ -67,7 +67,7 @@ class NewtonSystem {
   double bound(const Positions& x1, const Positions& dx, IterationReport& report);
   /// What held the last bound(); empty where nothing did.
   std::string describe_bound() const { return holder_ ? holder_->describe_bound() : std::string(); }
-  /// Evaluates E at x with what the terms keep for an iterate. Returns the change against x(); an infeasible
+  /// Evaluates E at x, rounded to the precision of the run, with what the terms keep for an iterate. Returns the change against x(); an infeasible
   /// x has none.
   std::optional<EnergyChange> try_state(const Positions& x);
   /// Makes the last tried state the iterate.
@@ -76,6 +76,7 @@ class NewtonSystem {
   // --- what observers and reports read
   const Scene& scene() const { return scene_; }
   const TermList& terms() const { return terms_; }
+  Precision precision() const { return precision_; }
   /// Charges what happens in this system and round it to phases; the calls below and above switch it.
   PhaseClock& clock() const { return clock_; }
   const Positions& x() const { return x_; }
@@ -159,6 +160,7 @@ class NewtonSystem {
 
   const Scene& scene_;
   const Plan plan_;
+  const Precision precision_;
   const std::vector<std::uint8_t> fixed_;
   TermList terms_;
   std::vector<Slot> slots_;                // one a term

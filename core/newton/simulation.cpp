@@ -51,6 +51,7 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       system_(scene, method, plan),
       solver_(make_step_solver(method.step_solver)) {
   history_.x = scene.x0;
+  round_state(method.precision, history_.x);
   history_.v = scene.v0;
   history_.a.setZero(3, scene.x0.cols());
   history_.x_prev = history_.x;
@@ -104,6 +105,7 @@ StepReport Simulation::attempt(StepObserver& observer) {
   task.integrator = method_.integrator.get();
   task.pose = [this](double dt, Positions& target) {
     for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, time_ + dt);
+    round_state(method_.precision, target);
   };
   return solver_->advance(system_, task, prediction_, observer);
 }

@@ -90,7 +90,11 @@ void ContactTerm::report_end(const Positions& x, StepNumbers& out, PhaseClock&) 
   out.gap_min_m = state_.gap_min;
   out.gap_min_rel = rows.gap_min_rel;
   const double largest = x.cwiseAbs().maxCoeff();
-  out.gap_min_ulps = state_.gap_min / (std::nextafter(largest, 2 * largest) - largest);
+  const double ulp = with_value_scalar(options_.precision, [&]<class T>() -> double {
+    const T at = static_cast<T>(largest);
+    return std::nextafter(at, 2 * at) - at;
+  });
+  out.gap_min_ulps = state_.gap_min / ulp;
 }
 
 // The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and

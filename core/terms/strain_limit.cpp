@@ -17,7 +17,8 @@ StrainLimitTerm::StrainLimitTerm(const Scene& scene, const TermOptions& options,
     : scene_(scene),
       options_(options),
       fixed_(fixed),
-      batch_(scene.limit.triangles, scene.rest, scene.limit.onset, scene.limit.width, scene.planar),
+      batch_(scene.limit.triangles, scene.rest, scene.limit.onset, scene.limit.width, scene.planar,
+             options.precision),
       kappa_(batch_.size()) {
   if (options.limit_stiffness.has_potential()) {
     folded_.emplace(Folded{FoldedBarrier(options.limit), std::vector<KappaParts>(2 * batch_.size())});

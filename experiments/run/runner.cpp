@@ -14,6 +14,7 @@
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
 #include "core/terms/plan.hpp"
+#include "experiments/config/enum_words.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/comparability.hpp"
@@ -37,7 +38,7 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.step_solver = config.step_solver.name;
   labels.linear_solver = config.linear_solver.name;
   labels.preconditioner = preconditioner_of({config.linear_solver.name, config.linear_solver.parameters});
-  labels.precision = config.precision;
+  labels.precision = word_of(config.precision);
   labels.d_hat_m = config.formulation.d_hat;
   labels.dt_s = config.time.dt;
   labels.note = options.note;
