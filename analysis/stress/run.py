@@ -73,7 +73,7 @@ def spec_of(test: Test, formulation: Formulation, case: Case) -> dict:
     """The sweep of this one case."""
     settings = {**formulation.set, **ALWAYS, **test.data.get("set", {}), **case.set, **formulation.by_case.get(case.label, {})}
     return {"schema": "barrierbench.sweep/1", "name": f"stress {test.id}", "base": str((test.path.parent / test.data["base"]).resolve()),
-            "axes": [{"cases": [{"label": f"{formulation.label} {case.label}", "set": settings}]}]}
+            "axes": [{"cases": [{"label": f"{formulation.label} {case.label}".replace("/", " per "), "set": settings}]}]}
 
 
 def _folder(text: str) -> str:
@@ -111,26 +111,34 @@ def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, lim
     place = folder / test.id / _folder(formulation.label) / _folder(case.label)
     spec = place / "spec.json"
     write_whole(spec, json.dumps(spec_of(test, formulation, case), indent=1) + "\n")
-    made = lambda: sorted((place / "runs").glob("*/run.json"), key=lambda path: path.stat().st_mtime)
     blank = lambda outcome, detail: Row(test.id, case.label, formulation.label, outcome, detail)
+    command = [str(program()), "sweep", str(spec), "--out", str(place / "runs"), "--progress", "none"]
     try:
-        done = subprocess.run([str(program()), "sweep", str(spec), "--out", str(place / "runs"), "--progress", "none"], capture_output=True, text=True,
-                              timeout=limit_s, check=False)
+        done = subprocess.run(command, capture_output=True, text=True, timeout=limit_s, check=False)
     except subprocess.TimeoutExpired:
         return blank("timeout", f"not over after {limit_s:.0f} s")
     if done.returncode == 2:
         return blank("refused", _told(done.stderr))
-    if done.returncode != 0 or not made():
+    if done.returncode != 0:
         return blank("crash", f"the program ended with {done.returncode}: {_told(done.stderr)}")
     try:
-        return row_of(read_record(made()[-1]), test.id, case.label, formulation.label)
+        return row_of(read_record(_record(command, place / "runs")), test.id, case.label, formulation.label)
     except RecordError as error:
         return blank("crash", str(error))
 
 
+def _record(command: list[str], folder: Path) -> Path:
+    """The record of this very config; those of earlier versions of the case may lie beside it."""
+    made = sorted(folder.glob("*/run.json"))
+    if len(made) == 1:
+        return made[0]
+    told = subprocess.run([*command, "--dry-run"], capture_output=True, text=True, check=False).stdout.strip()
+    return Path(told or folder) / "run.json"
+
+
 def _told(text: str) -> str:
     """What the program says, without the place of the generated sweep."""
-    lines = [re.sub(r"\S*spec\.json[^]]*\] ?", "", line).strip() for line in text.splitlines() if line.strip()]
+    lines = [re.sub(r"\S*spec\.json\S*( \[[^]]*\])? ?", "", line).strip() for line in text.splitlines() if line.strip()]
     return "; ".join(lines)[:400]
 
 

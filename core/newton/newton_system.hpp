@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -96,6 +98,11 @@ class NewtonSystem {
   const ReducedSystem& clamped(TermSet set = TermSet::all());
   /// The same with eliminated degrees of freedom.
   const BlockSystem::Values& clamped_values(TermSet set);
+  /// Calls visit for every family of the set's terms that has Hessians, with those that clamped(set) sums: lower blocks,
+  /// element by element. Cost: the clamped elements if no attempt needed them.
+  using VisitHessians =
+      std::function<void(const Term& term, std::size_t family, std::span<const double> hess)>;
+  void visit_clamped(TermSet set, const VisitHessians& visit);
   /// That of all terms with the Hessian that each begins with: the exact one where its choice has it. Valid
   /// until the next call of any of these. Cost: an assembly.
   const ReducedSystem& exact();
@@ -134,6 +141,8 @@ class NewtonSystem {
   template <class HessianOf>
   void sum_matrices(TermSet set, const HessianOf& hessian_of);
   void sum_clamped(TermSet set);
+  void clamp(TermSet set);
+  static std::span<const double> clamped_hessians(const Slot& slot, const TermFamily& family);
   void sum_exact();
   void fill_matrix();
   double largest_force();

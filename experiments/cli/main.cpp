@@ -87,6 +87,16 @@ CLI::App* add_matrix(CLI::App& app, MatrixVerb& verb) {
   return out;
 }
 
+CLI::App* add_validity(CLI::App& app, ValidityVerb& verb) {
+  CLI::App* out = app.add_subcommand(
+      "validity",
+      "checks of this build with known answers: solvers, estimators, derivatives, CCD, short runs");
+  out->add_flag("--json", verb.json, "the report as JSON");
+  out->footer(
+      "Made by the first run of a build and kept beside the program; a build that fails shows no times.");
+  return out;
+}
+
 /// The first word of the command line that is no option and no value of an option before the verb.
 std::string first_word(const std::vector<std::string>& argv) {
   for (std::size_t i = 1; i < argv.size(); ++i) {
@@ -147,6 +157,7 @@ int main(int argc, char** argv) {
   SweepVerb sweep_verb;
   StepsVerb steps_verb;
   MatrixVerb matrix_verb;
+  ValidityVerb validity_verb;
   std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
   std::string help_format = "config";
@@ -183,6 +194,7 @@ int main(int argc, char** argv) {
   steps_app->add_option("--out", steps_verb.out, "JSON file with every |dx|, for ./bench figures");
   steps_app->footer("example: ./bench steps configs/scenes/drape.json --at 11,21 --out steps.json");
   CLI::App* matrix_app = add_matrix(app, matrix_verb);
+  CLI::App* validity_app = add_validity(app, validity_verb);
   auto* check_app = app.add_subcommand("check", "parse a config, build its scene, look for intersections");
   config_arguments(check_app, check_verb);
   check_app->footer("example: ./bench check configs/scenes/drape.json");
@@ -237,6 +249,7 @@ int main(int argc, char** argv) {
     if (sweep_app->parsed()) return sweep(sweep_verb, common);
     if (steps_app->parsed()) return steps(steps_verb, common);
     if (matrix_app->parsed()) return matrix(matrix_verb, common);
+    if (validity_app->parsed()) return validity(validity_verb, common);
     if (check_app->parsed()) return check(check_verb);
     if (explain_app->parsed()) return explain(explain_verb);
     if (list_app->parsed()) return list(list_what);

@@ -14,6 +14,7 @@ RunOptions run_options(const CommonOptions& common) {
   options.argv = common.argv;
   options.plugins = common.loaded;
   options.interrupted = &interrupted();
+  options.build = build_validity(common);
   return options;
 }
 

@@ -78,6 +78,15 @@ struct MatrixVerb {
 /// result. Errors: ConfigError as read_system.
 int matrix(const MatrixVerb& verb, const CommonOptions& common);
 
+/// The validity block of this build: read, or computed and kept; what fails is said on stderr.
+BuildValidity build_validity(const CommonOptions& common);
+
+struct ValidityVerb {
+  bool json = false;  // the report itself
+};
+/// The checks of the block as a table; exit_no_match when one failed.
+int validity(const ValidityVerb& verb, const CommonOptions& common);
+
 /// Parses, builds the scene and looks for intersections; runs nothing.
 int check(const RunVerb& verb);
 /// What the run would do and what it would skip, and why; then every setting with its default filled in.

@@ -29,6 +29,7 @@ class ConditionWatch {
   bool due(int iteration) const;
   void write_matrices(NewtonSystem& system, int step, int iteration);
   void estimate(const ReducedSystem& matrix, MatrixForm form, MatrixStage stage);
+  void find_ends(NewtonSystem& system, TermSet set);
 
   const RunConfig& config_;
   ArtifactWriter* artifacts_;

@@ -121,25 +121,31 @@ void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record) {
     record.plan.push_back({std::string(name), item->needed, item->reason});
   }
   if (!config.passes.time) record.skipped.push_back({"time", "not_requested"});
+  if (config.passes.time && !record.validity.build.valid)
+    record.skipped.push_back({"time", "build_not_valid"});
   if (!plan.conditioning.needed) record.skipped.push_back({"cond", "not_requested"});
   if (!plan.audit.needed) record.skipped.push_back({"audit", "not_requested"});
   if (!plan.trace.needed) record.skipped.push_back({"trace", "not_requested"});
 }
 
-/// Times of the pass that was timed; a step that it did not reach has none.
+/// Times of the pass that was timed; a step that it did not reach has none. A build that is not valid shows none.
 void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
   Summary& summary = record.summary;
-  const Number absent = Number::missing(requested ? "not_reached" : "not_requested");
+  const bool shown = record.validity.build.valid;
+  const Number absent = Number::missing(!requested ? "not_requested"
+                                        : shown    ? "not_reached"
+                                                   : "build_not_valid");
   for (std::size_t i = 0; i < record.steps.size(); ++i) {
     StepRecord& step = record.steps[i];
     step.wall_s = step.unaccounted_s = absent;
-    if (i >= timed.steps.size()) continue;
+    if (!shown || i >= timed.steps.size()) continue;
     step.time = timed.steps[i].phases;
     step.wall_s = timed.steps[i].wall_s;
     step.unaccounted_s = timed.steps[i].wall_s - step.time.total_s();
   }
   summary.wall_s = summary.solve_s = summary.unaccounted_s = absent;
-  if (!requested) return;
+  if (!requested || !shown) return;
+  record.samples["wall_s"] = {timed.wall_s};
   for (const PassResult::StepTime& step : timed.steps) summary.time += step.phases;
   summary.wall_s = timed.wall_s;
   summary.solve_s = summary.time.solve_s();
@@ -164,8 +170,7 @@ void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, c
     Recorder observer(bare, scene, look ? timing : record, nullptr);
     timed = run_pass(bare, scene, calibration, plan, options, "time", observer);
     observer.finish();
-    record.samples["wall_s"] = {timed.wall_s};
-    times = observer.iteration_times();
+    if (options.build.valid) times = observer.iteration_times();
   }
   Verdict verdict = timed.verdict;
   std::optional<audit::AuditLedger> ledger;
@@ -262,6 +267,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   if (options.keep_inputs) copy_inputs(options.folder, config, options.plugins);
   RunRecord record = identified(config, options);
   record.status.started_utc = started_utc;
+  record.validity.build = options.build;
 
   RunFiles files;
   simulate(config, scene, options, record, files);

@@ -30,6 +30,7 @@ struct RunOptions {
   std::string note;               // how the row of a table differs
   std::string sweep_id;
   std::string rerun_of;                           // run_id of the record that is repeated
+  BuildValidity build;                            // of this program; not valid: no times are kept
   std::vector<PluginFile> plugins;                // loaded, `file` as a path that can be opened
   bool keep_inputs = false;                       // copy meshes and plugins to inputs/ and name the copies
   std::function<void(const Progress&)> progress;  // may be empty
