@@ -15,7 +15,7 @@ FOLDER = ROOT / "configs" / "stress"
 NAME = "barrierbench.stress/1"
 REQUIRED = ("schema", "id", "title", "varies", "measures", "expect")
 RUNS = ("base", "set", "axes", "formulations", "contacts", "full", "relations")  # of a test that runs scenes
-OPTIONAL = ("geometry", "quick", "changed", *RUNS)
+OPTIONAL = ("geometry", "quick", "changed", "defects", *RUNS)
 ONE = "-"  # the case of a test without axes
 
 # What a record cannot say of itself: ok but not valid; no record because the config was refused; the program died without a record.
@@ -86,6 +86,13 @@ class Test:
                 return Expected(tuple(entry["outcomes"]), entry["reason"])
         raise StressError(f"{self.path}: /expect: nothing is expected of {formulation} in case {case!r}")
 
+    def defect(self, formulation: str, case: str, outcome: str) -> str:
+        """What is known to be wrong with the program where this outcome is found in the place of the expected one; empty: nothing."""
+        for k, entry in enumerate(self.data.get("defects", [])):
+            if formulation in self.named(entry["formulations"], f"/defects/{k}/formulations") and _covers(entry, case) and outcome in entry["outcomes"]:
+                return entry["why"]
+        return ""
+
 
 def _covers(entry: dict, case: str) -> bool:
     return any(fnmatchcase(case, pattern) for pattern in entry.get("cases", ["*"]))
@@ -154,6 +161,10 @@ def _check_expect(test: Test) -> None:
             raise StressError(f"{place}/outcomes: {wrong[0]!r}; allowed: {', '.join((*OUTCOMES, NAMED))}")
         if idle := [p for p in entry.get("cases", []) if not any(fnmatchcase(case.label, p) for case in test.cases)]:
             raise StressError(f"{place}/cases: {idle[0]!r} is no case; cases: {', '.join(case.label for case in test.cases)}")
+    for key, needed in (("changed", {"what", "old", "new", "why"}), ("defects", {"formulations", "cases", "outcomes", "why"})):
+        for k, entry in enumerate(test.data.get(key, [])):
+            if set(entry) != needed or not all(entry.values()):
+                raise StressError(f"{test.path}: /{key}/{k}: {', '.join(sorted(needed))} are needed, and nothing else")
     for formulation in test.formulations:
         for case in test.cases:
             test.expected(formulation.label, case.label)

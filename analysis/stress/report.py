@@ -14,11 +14,9 @@ def _short(value, digits: int = 2) -> str:
 
 
 def _cell(rows: list[Row]) -> str:
-    """Outcomes with their numbers of cases; those that were not expected stand in bold."""
-    good = Counter(row.outcome for row in rows if row.as_expected or row.outcome == WAITS)
-    bad = Counter(row.outcome for row in rows if not row.as_expected and row.outcome != WAITS)
-    words = [f"{word}{f' {n}' if n > 1 else ''}" for word, n in good.items()] + [f"**{word}{f' {n}' if n > 1 else ''}**" for word, n in bad.items()]
-    return ", ".join(words) or "-"
+    """Outcomes with their numbers of cases; bold: not expected, italic: a known defect."""
+    marks = Counter((row.outcome, "" if row.as_expected or row.outcome == WAITS else "*" if row.defect else "**") for row in rows)
+    return ", ".join(f"{mark}{word}{f' {n}' if n > 1 else ''}{mark}" for (word, mark), n in sorted(marks.items(), key=lambda item: len(item[0][1]))) or "-"
 
 
 def _numbers(rows: list[Row]) -> str:
@@ -58,14 +56,16 @@ def markdown(results: dict[str, Result], tests: dict[str, Test], command: str = 
     seconds = sum(result.about.get("seconds", 0) for result in results.values())
     text = ["# Stress suite", "", f"Written by `{command}`. {', '.join(dates)}, {', '.join(machines)}, one thread; commit {', '.join(commits)}; {seconds / 60:.1f} minutes in all.", "",
             f"{sum(row.as_expected for row in judged)} of {len(judged)} runs ended as was expected before the first run, or as an expectation that was changed since and is listed below; "
+            f"{sum(bool(row.defect) for row in judged)} show a known defect; "
             f"{sum(relation.holds for relation in relations)} of {len(relations)} relations between runs hold; {sum(count.as_expected for count in counts)} of {len(counts)} counts of geometry "
             f"({sum(count.judged for count in counts)} subjects) are as expected; {len(rows) - len(judged)} runs wait for a setting.", "",
-            "What is not as expected stands in bold. `not_valid`: ended ok, and the audit or another check refuses it. `refused`: exit code 2, no record.", ""]
+            "What is not as expected stands in bold, known defects in italics. `not_valid`: ended ok, and the audit or another check refuses it. `refused`: exit code 2, no record.", ""]
     text += _outcomes(results, tests)
     text += _own_tables(results, tests)
     text += _relations(results)
     text += _geometry(results)
     text += _surprises(results)
+    text += _defects(results, tests)
     text += _changes(tests)
     text += ["## Left out", "", *(f"- {name}: {why}." for name, why in left_out().items()), ""]
     return "\n".join(text)
@@ -109,6 +109,15 @@ def _surprises(results) -> list[str]:
     return ["## Not as expected", "", *(_table(["test", "formulation", "case", "found", "expected", "what the record says"], lines) if lines else ["Nothing.", ""])]
 
 
+def _defects(results, tests) -> list[str]:
+    lines = []
+    for name in results:
+        for entry in tests[name].data.get("defects", []):
+            n = sum(row.defect == entry["why"] for row in results[name].rows)
+            lines.append([name, "; ".join(entry["cases"]), " or ".join(entry["outcomes"]), f"{n} runs" if n else "**no run shows it any more**", entry["why"]])
+    return ["## Known defects", "", *_table(["test", "cases", "found", "how often", "why"], lines)] if lines else []
+
+
 def _changes(tests) -> list[str]:
     lines = [[name, change["what"], change["old"], change["new"], change["why"]] for name, test in tests.items() for change in test.data.get("changed", [])]
     return ["## Changed expectations", "", "Every expectation was committed before the first run; these were changed after it.", "",
@@ -124,6 +133,8 @@ def text(results: dict[str, Result], tests: dict[str, Test]) -> str:
         what = f"{sum(row.as_expected for row in judged)}/{len(judged)} runs" if result.rows else f"{sum(c.as_expected for c in result.counts)}/{len(result.counts)} counts"
         if result.relations:
             what += f", {sum(r.holds for r in result.relations)}/{len(result.relations)} relations"
+        if known := sum(bool(row.defect) for row in judged):
+            what += f", {known} known defects"
         if len(judged) < len(result.rows):
             what += f", {len(result.rows) - len(judged)} wait"
         lines.append(f"{'as expected' if result.as_expected else 'UNEXPECTED ':<11}  {name}  {tests[name].data['title'][:70]:<70}  {what}  {result.about.get('seconds', 0):.0f} s")

@@ -12,7 +12,7 @@ from pathlib import Path
 
 from ..load import RecordError, read_record
 from ..whole_file import write_whole
-from .entry import ROOT, Case, Expected, Formulation, StressError, Test
+from .entry import ROOT, Case, Formulation, StressError, Test
 
 LIMIT_S = 60.0  # a test with one formulation, all cases together
 ALWAYS = {"/threads": 1, "/passes": {"time": True, "diagnose": False, "audit": True}}
@@ -44,6 +44,7 @@ class Row:
     expected: tuple = ()
     reason: str = ""
     as_expected: bool = False
+    defect: str = ""  # a known one of the program that explains it
 
 
 METRICS = ("newton", "linear", "contacts", "gap_min_rel", "gap_min_ulps", "gap_end_rel", "load_end_N", "max_stretch", "state_hash")
@@ -97,12 +98,15 @@ def row_of(record: dict, test: str, case: str, formulation: str) -> Row:
                max_stretch=_number(summary["max_stretch"]), state_hash=summary["state_hash"])
 
 
-def judge(row: Row, expected: Expected, contacts: bool) -> Row:
+def judge(row: Row, test: Test) -> Row:
     """Against what was expected; a contact test that met no contact judged nothing."""
+    expected = test.expected(row.formulation, row.case)
     row.expected, row.reason = expected.outcomes, expected.reason
     row.as_expected = expected.holds(row.outcome)
-    if row.as_expected and row.outcome == "ok" and contacts and not row.contacts:
+    if row.as_expected and row.outcome == "ok" and test.contacts and not row.contacts:
         row.as_expected, row.detail = False, "no contact was ever active: nothing was tested"
+    if not row.as_expected:
+        row.defect = test.defect(row.formulation, row.case, row.outcome)
     return row
 
 
@@ -139,7 +143,7 @@ def _record(command: list[str], folder: Path) -> Path:
 def _told(text: str) -> str:
     """What the program says, without the place of the generated sweep."""
     lines = [re.sub(r"\S*spec\.json\S*( \[[^]]*\])? ?", "", line).strip() for line in text.splitlines() if line.strip()]
-    return "; ".join(lines)[:400]
+    return "; ".join(lines).replace(f"{ROOT}/", "")[:400]
 
 
 def run_test(test: Test, folder: Path, schema: dict, formulations: list[str] | None = None, cases: list[str] | None = None, say=lambda text: None,
@@ -160,7 +164,7 @@ def run_test(test: Test, folder: Path, schema: dict, formulations: list[str] | N
                 continue
             row = run_case(test, formulation, case, folder, left) if left > 0 else Row(test.id, case.label, formulation.label, "timeout",
                                                                                       f"not begun: earlier cases took {limit_s:.0f} s")
-            rows.append(judge(row, test.expected(formulation.label, case.label), test.contacts))
-            if not rows[-1].as_expected:
+            rows.append(judge(row, test))
+            if not row.as_expected and not row.defect:
                 say(f"{test.id} {formulation.label}, {case.label}: {row.outcome}, expected {' or '.join(row.expected)}: {row.detail[:160]}")
     return rows

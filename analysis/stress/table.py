@@ -29,11 +29,11 @@ class Result:
 
     @property
     def unexpected(self) -> list[Row]:
-        return [row for row in self.rows if row.outcome != "waits" and not row.as_expected]
+        return [row for row in self.rows if row.outcome != "waits" and not row.as_expected and not row.defect]
 
     @property
     def as_expected(self) -> bool:
-        """Red when nothing was judged."""
+        """Red when nothing was judged. What a known defect explains is neither as expected nor red."""
         judged = [row for row in self.rows if row.outcome != "waits"]
         return (bool(judged) or any(c.judged for c in self.counts)) and not self.unexpected and all(c.as_expected for c in self.counts) and all(r.holds for r in self.relations)
 
