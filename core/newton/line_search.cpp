@@ -11,6 +11,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "core/newton/error_estimate.hpp"
@@ -35,8 +36,8 @@ class LineSearch final : public StepSolver {
   StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used, target_);
-    const double tolerance = options_.tol_velocity * task.dt;  // m
-    error_.reset(system.x());
+    error_.reset(system.x(), system.precision());
+    const double tolerance = std::max(options_.tol_velocity * task.dt, error_.smallest());  // m
     int collapsed = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);
@@ -45,7 +46,7 @@ class LineSearch final : public StepSolver {
       const bool small = estimate_error(report) < tolerance && at_pose && !at_saddle(system, dx_);
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
-        fail_step(step, *failed, report);
+        fail_step(system, dx_, step, *failed, report);
         return step;
       }
       const bool moved = search(system, report, at_pose);
@@ -115,7 +116,7 @@ class LineSearch final : public StepSolver {
       ++report.line_search_trials;
       if (const auto change = system.try_state(x_trial_)) {
         const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
-        report.rounding_accepts = energy_test && !decrease && within_rounding(*change);
+        report.rounding_accepts = energy_test && !decrease && within_rounding(*change, system.precision());
         if (decrease || !energy_test || report.rounding_accepts) {
           report.alpha = alpha;
           report.energy_change_J = change->change;

@@ -21,7 +21,8 @@ bool is_artifact_name(const std::string& relative) {
 }
 
 bool is_unfinished_name(const std::string& name) {
-  static const std::regex pattern(R"((run\.json|sweep\.json|probe)\.tmp\.\d+|trace\.jsonl\.part)");
+  static const std::regex pattern(
+      R"((run\.json|sweep\.json|probe|checkpoint\.bin)\.tmp\.\d+|trace\.jsonl\.part|checkpoint\.bin)");
   return std::regex_match(name, pattern);
 }
 

@@ -73,6 +73,16 @@ void common_arguments(CLI::App& app, CommonOptions& common, std::vector<std::str
       ->check(CLI::IsMember({"haswell", "native"}));
 }
 
+void limit_arguments(CLI::App* app, RunLimits& limits) {
+  app->add_flag(
+      "--resume", limits.resume,
+      "go on from the checkpoint of a run that was stopped (/output/checkpoint_every); without one, "
+      "from the start");
+  app->add_option("--time-limit", limits.time_limit_s,
+                  "seconds that one run may take: it ends between two steps with the outcome timeout")
+      ->check(CLI::PositiveNumber);
+}
+
 CLI::App* add_matrix(CLI::App& app, MatrixVerb& verb) {
   CLI::App* out = app.add_subcommand(
       "matrix", "a stored system through every linear solver, preconditioner and condition estimator");
@@ -172,6 +182,7 @@ int main(int argc, char** argv) {
   config_arguments(run_app, run_verb);
   run_app->add_option("--out", run_verb.out, "folder of run.json (default results/runs/<label>)");
   run_app->add_flag("--keep-inputs", run_verb.keep_inputs, "copy meshes and plugins beside the record");
+  limit_arguments(run_app, run_verb.limits);
   run_app->footer("example: ./bench run configs/scenes/drape2d.json --set /formulation=\"cubic\"");
   auto* sweep_app =
       app.add_subcommand("sweep", "a base config and axes: one record a run, finished ones skipped");
@@ -182,6 +193,7 @@ int main(int argc, char** argv) {
   sweep_app->add_flag("--keep-inputs", sweep_verb.keep_inputs, "copy meshes and plugins beside each record");
   sweep_app->add_flag("--dry-run", sweep_verb.dry_run, "print what would run");
   sweep_app->add_flag("--again", sweep_verb.again, "run finished ones too");
+  limit_arguments(sweep_app, sweep_verb.limits);
   sweep_app->footer(sweep_help);
   auto* steps_app = app.add_subcommand(
       "steps", "single steps of a run from one state, by every choice of Hessian: iterations and errors");

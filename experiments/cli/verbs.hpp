@@ -25,11 +25,18 @@ struct CommonOptions {
   std::string blas_kernel;           // haswell, native, or empty: see settle_blas_kernel
 };
 
+/// How long a run may take, and where it begins.
+struct RunLimits {
+  bool resume = false;      // go on from a checkpoint where there is one
+  double time_limit_s = 0;  // of every run; 0: none
+};
+
 struct RunVerb {
   std::string config;
   std::vector<std::string> set;  // "/pointer=value"
   std::string out;               // folder; empty: results/runs/<label>
   bool keep_inputs = false;      // copies of meshes and plugins beside the record
+  RunLimits limits;
 };
 /// A config, or a record: rerun().
 int run(const RunVerb& verb, const CommonOptions& common);
@@ -55,6 +62,7 @@ struct SweepVerb {
   bool dry_run = false;  // print the expanded list, run nothing
   bool again = false;    // run finished ids too
   bool keep_inputs = false;
+  RunLimits limits;
 };
 int sweep(const SweepVerb& verb, const CommonOptions& common);
 

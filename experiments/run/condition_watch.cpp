@@ -4,6 +4,7 @@
 #include <cmath>
 #include <optional>
 
+#include "core/archive/archive.hpp"
 #include "core/linear/end_vectors.hpp"
 #include "core/newton/newton_system.hpp"
 #include "experiments/run/matrix_dump.hpp"
@@ -115,6 +116,8 @@ void ConditionWatch::on_iteration(const LinearReport& linear, TraceRow& row) {
   row.cond = std::move(samples_);
   samples_.clear();
 }
+
+void ConditionWatch::keep(Archive& archive) { archive(cond_, probes_, spent_s_); }
 
 void ConditionWatch::fill(Summary& summary) const {
   summary.cond = cond_.summary();

@@ -24,6 +24,8 @@ class ConditionWatch {
   void on_iteration(const LinearReport& linear, TraceRow& row);
   /// `cond` and `probe_pcg` of the run so far.
   void fill(Summary& summary) const;
+  /// What was estimated so far, between two steps.
+  void keep(Archive& archive);
 
  private:
   bool due(int iteration) const;

@@ -35,6 +35,9 @@ struct RunOptions {
   bool keep_inputs = false;                       // copy meshes and plugins to inputs/ and name the copies
   std::function<void(const Progress&)> progress;  // may be empty
   const std::atomic<bool>* interrupted = nullptr;
+  bool resume = false;      // go on from the checkpoint in the folder; from the start when there is none
+  double time_limit_s = 0;  // of this process, looked at between two steps; 0: none
+  double deadline_s = 0;    // set by run_config: when that is over, as now_s() counts
 };
 
 /// Thrown when the run was interrupted: no run.json is written.
