@@ -120,7 +120,7 @@ class LineSearch final : public StepSolver {
         if (decrease || !energy_test || report.rounding_accepts) {
           report.alpha = alpha;
           report.energy_change_J = change->change;
-          noise_ = within_rounding(*change);
+          noise_ = within_rounding(*change, system.precision());
           system.accept();
           return true;
         }
