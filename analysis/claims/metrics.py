@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
+
+from ..figures.kappa_cycle import SETTLED, UNSETTLED_ITERATIONS
+from ..load import trace_lines
 
 
 def _at(record: dict, *place: str):
@@ -53,10 +57,31 @@ def _unsettled(record) -> float:
     return float(status["outcome"] == "newton_stall" and "does not settle" in status.get("detail", ""))
 
 
+def longest_run(changes: list[float]) -> int:
+    """Most iterations in a row in which a stiffness changed by more than what leaves Newton alone."""
+    longest = now = 0
+    for change in changes:
+        now = now + 1 if change > SETTLED else 0
+        longest = max(longest, now)
+    return longest
+
+
+def _kappa_cycles(record) -> float | None:
+    """Steps with a cycle, counted in the trace beside the record (FOLDER); None without a trace."""
+    path = Path(record.get(FOLDER, "")) / "trace.jsonl"
+    if FOLDER not in record or not path.is_file():
+        return None
+    steps: dict[int, list[float]] = {}
+    for line in trace_lines(path):
+        steps.setdefault(line["step"], []).append(line.get("kappa_change_rel") or 0.0)
+    return float(sum(longest_run(changes) >= UNSETTLED_ITERATIONS for changes in steps.values())) if steps else None
+
+
 def _summary(*place: str):
     return lambda record: _at(record, "summary", *place)
 
 
+FOLDER = "folder of the record"  # key that collect() adds, for numbers of the trace
 # name -> (meaning, unit, depends on the machine, how it is read)
 METRICS = {
     "cond_max": ("largest cond of a run, raw", "1", False, _cond("full/none", "max")),
@@ -80,5 +105,6 @@ METRICS = {
     "stretch": ("largest stretch", "1", False, _summary("max_stretch")),
     "stretch_of_limit": ("largest stretch at a step end over the limit", "1", False, _stretch_of_limit),
     "climb_of_limit": ("share of the strain limit in the climb of log10 cond", "1", False, _climb_of_limit),
+    "kappa_cycles": ("steps in which a contact's kappa changes by more than 1% in ten iterations in a row", "1", False, _kappa_cycles),
     "unsettled": ("1 when a stiffness did not settle", "1", False, _unsettled),
 }

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .entry import ClaimError
 from .estimate import sign_test, wilson
 from .numbers import by_place
 from .table import Runs
@@ -11,6 +12,8 @@ LEVEL = 0.05
 
 
 def _good(row: dict, bad: str | None) -> bool:
+    if bad is not None and row[bad] is None:
+        raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {bad}: its record lacks what that is counted in")
     return row["outcome"] == "ok" if bad is None else not row[bad]
 
 

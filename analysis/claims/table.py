@@ -11,7 +11,7 @@ from pathlib import Path
 from ..load import RecordError, read_record
 from ..whole_file import write_whole
 from .entry import ROOT, Claim, ClaimError, Sweep
-from .metrics import METRICS
+from .metrics import FOLDER, METRICS
 
 FILE = ROOT / "results" / "claims.json"
 RUNS = ROOT / "results" / "runs" / "claims"
@@ -48,6 +48,8 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
         if unknown := names - set(METRICS):
             raise ClaimError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
         used.setdefault(part["sweep"], set()).update(names)
+    for frontier in (claim.frontier for claim in claims if claim.frontier):
+        used.setdefault(frontier["sweep"], set()).add(frontier["cost"])
     return {sweep: sorted(names) for sweep, names in used.items()}
 
 
@@ -79,6 +81,7 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
             continue  # counted as missing
         place = sweep.cases.get(record["labels"].get("note", ""))
         if place is not None:
+            record[FOLDER] = str(path.parent)
             records.append(record)
             rows.append(_row(record, place, metrics))
     rows.sort(key=lambda row: tuple(str(row[key]) for key in PLACE))

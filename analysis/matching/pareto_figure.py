@@ -11,9 +11,9 @@ import pandas as pd
 from .. import style
 from .fronts import Runs
 
-PANELS = (("cond_p95", "cond, raw"), ("cond_bj_p95", "cond, block Jacobi"), ("cond_no_contact_p95", "cond without contact"),
-          ("cond_no_contact_no_limit_p95", "cond without contact and limit"), ("newton", "Newton iterations"), ("pcg_probe", "PCG iterations of the probe"),
-          ("seconds", "seconds"), ("scale", "stiffness / matched stiffness"))
+PANELS = (("cond_p95", "cond, raw"), ("cond_bj_p95", "cond, block Jacobi"), ("cond_no_contact_p95", "cond, no contact"),
+          ("cond_no_contact_no_limit_p95", "cond, no contact, no limit"), ("newton", "Newton iterations"), ("pcg_probe", "PCG iterations (probe)"),
+          ("seconds", "seconds"), ("scale", "stiffness / matched"))
 EDGE = 0.6  # times the smallest gap: where failed runs stand
 SHOWN = ("{scene}: what a run takes against the smallest gap at its step ends, in units of d_hat. Along a line the stiffness of one formulation grows over {decades:g} decades round the "
          "value that equal force gives it (last panel); thick: geometric means over {starts} jittered starts, thin: each start; lines are broken where a run failed. Compare at "
@@ -75,7 +75,7 @@ def draw(runs: Runs, scene: str, stem: Path) -> list[Path]:
     numbers = []
     for axis, (name, title) in zip(axes.flat, PANELS):
         numbers += _panel(axis, runs, scene, name, EDGE * min(gaps))
-        axis.set_title(title)
+        axis.set_title(title, fontsize=7)
     style.letter_panels(axes)
     for axis in axes[-1]:
         axis.set_xlabel(r"smallest gap / $\hat d$")

@@ -14,7 +14,8 @@ gives it ({rule}), from {starts} jittered starts. A path of runs is compared wit
 between neighbours in stiffness (logarithms of gap and number); nothing is interpolated across a run that failed, and nothing is compared
 at equal kappa. A gap is the {gap} over the step ends of a run, in units of d_hat. Cells: ratio to `{reference}` from the same start, geometric mean over
 starts [95% interval by bootstrap]; `(n/{starts})`: only n starts reach the gap with both; `-`: none does. Last column: mean over all gaps that both
-reach. Every failed run is listed, and has a hollow marker at the edge of the figure.
+reach. An interval knows the spread of the starts, not the error of the interpolation between stiffnesses: a ratio that swings from one gap to the
+next is a shape of the paths, to be read in the figure. Every failed run is listed, and has a hollow marker at the edge of the figure.
 """
 
 
