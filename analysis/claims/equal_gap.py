@@ -32,7 +32,7 @@ def paths(runs: Runs, name: str, sweep: str) -> dict[tuple, list[dict]]:
 
 def _points(rows: list[dict], metric: str) -> list[Point]:
     """Runs that ended ok. Comparability is not asked: the reference of a sweep has one gap, and here gaps are made equal."""
-    return [Point(r["scale"], r["gap_rel"] if r["outcome"] == "ok" else None, r.get(metric) if r["outcome"] == "ok" else None) for r in rows]
+    return [Point(r["scale"], r["gap_rel"], r.get(metric)) if r["outcome"] == "ok" else Point(r["scale"], None, None) for r in rows]
 
 
 def _why_not(mine: list[Point], other: list[Point]) -> str:

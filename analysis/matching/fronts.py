@@ -39,7 +39,7 @@ class Runs:
 
     def path(self, scene: str, formulation: str, seed: int, name: str) -> list[Point]:
         rows = [row for row in self.of(scene, formulation) if row["seed"] == seed]
-        return [Point(row["scale"], row["gap"] if row["outcome"] == "ok" else None, row[name] if row["outcome"] == "ok" else None) for row in rows]
+        return [Point(row["scale"], row["gap"], row[name]) if row["outcome"] == "ok" else Point(row["scale"], None, None) for row in rows]
 
     def seeds(self) -> list[int]:
         return sorted({row["seed"] for row in self.rows})
