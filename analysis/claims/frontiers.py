@@ -8,17 +8,19 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
 from .. import style
 from ..robustness import Frontier, Trial, expected_cost, frontier, profile, success
 from .entry import Claim, ClaimError
 from .metrics import METRICS
+from .outcomes import hopeless
 from .table import Runs, Table
 
 MIDDLE = "nominal"  # the level that all axes start from
 LOOKS = {"published": ("#D55E00", "D"), "per_iteration": ("#E69F00", "s"), "per_step": ("#CC79A7", "v"), "consistent": ("#332288", "*"),
          "fixed_cubic": ("#009E73", "^"), "fixed_log": ("#0072B2", "o")}
-SHOWN = ("Ways to a stiffness over the {n} problems of the sweep `{sweep}` (scenes x levels x starts), nothing retuned. (a) Data profile: share of the problems that were solved with at "
+SHOWN = ("Ways to a stiffness over {n} problems of the sweep `{sweep}` (scenes x levels x starts), nothing retuned; those that no case gets through are left out. (a) Data profile: share of the problems that were solved with at "
          "most so many {cost}; a run that failed is never solved. (b) Share of the runs of a level, over all scenes and starts, that got through: E, m, n, v are Young's modulus, "
          "mass, resolution and speed of impact times the number, beside the nominal level.")
 
@@ -46,10 +48,10 @@ def value_of(level: str, axis: str, middle: float) -> float | None:
 
 
 def trials(runs: Runs, case: str, cost: str, axis: str = "", middle: float = 0.0) -> list[Trial]:
-    """Runs of a case as trials; with an axis those of its levels alone."""
-    found = []
+    """Runs of a case as trials; with an axis those of its levels alone. Scenes x levels that no case gets through are left out."""
+    found, left_out = [], hopeless(runs)
     for row in runs.rows:
-        if row["case"] != case:
+        if row["case"] != case or (row["scene"], row["level"]) in left_out:
             continue
         value = value_of(row["level"], axis, middle) if axis else 0.0
         if value is not None:
@@ -65,6 +67,11 @@ def _reach(f: Frontier) -> str:
     return f"{']' if f.fails_below is not None else ''}{f.low:g} to {f.high:g}{'[' if f.fails_above is not None else ''}"
 
 
+def _left_out(runs: Runs) -> str:
+    names = sorted(" ".join(place) for place in hopeless(runs))
+    return f" Left out, since no case gets through: {', '.join(names)}." if names else ""
+
+
 def lines(claim: Claim, table: Table) -> list[str]:
     """The table for results/CLAIMS.md; nothing for a claim without a frontier or without its runs."""
     if not claim.frontier or claim.frontier["sweep"] not in table.sweeps:
@@ -72,7 +79,7 @@ def lines(claim: Claim, table: Table) -> list[str]:
     runs, cost, axes = table.sweeps[claim.frontier["sweep"]], claim.frontier["cost"], claim.frontier["axes"]
     found = [f"![data profile and shares of the policies](../docs/policies_{claim.id}.png)", "",
              f"Over `{claim.frontier['sweep']}`: share of runs that get through [95%, Wilson], {METRICS[cost][0]} of all runs over the number of successes (ert), and the frontier: the range of "
-             "each axis, from the nominal level outwards, in which every run of every scene and start gets through; a bracket that opens outwards means that the next tested value fails.", "",
+             "each axis, from the nominal level outwards, in which every run of every scene and start gets through; a bracket that opens outwards means that the next tested value fails." + _left_out(runs), "",
              f"| case | gets through | ert ({cost}) | " + " | ".join(f"frontier of {axis}" for axis in axes) + " |", "|" + "---|" * (len(axes) + 3)]
     for case in cases(runs):
         every = trials(runs, case, cost)
@@ -83,17 +90,19 @@ def lines(claim: Claim, table: Table) -> list[str]:
 
 
 def _profiles(axis, runs: Runs, cost: str) -> list[dict]:
-    numbers, largest = [], max(_cost(row, cost) for row in runs.rows)
-    for case in cases(runs):
+    spent = {case: trials(runs, case, cost) for case in cases(runs)}
+    costs = [t.cost for every in spent.values() for t in every if t.cost > 0]
+    left, right, numbers = 0.9 * min(costs), max(costs), []
+    for case, every in spent.items():
         color, marker = LOOKS.get(case, ("#444444", "x"))
-        steps = [(0.0, 0.0), *profile(trials(runs, case, cost))]
-        x, y = [b for b, _ in steps] + [largest], [s for _, s in steps] + [steps[-1][1]]
+        steps = profile(every)
+        x, y = [left, *(b for b, _ in steps), right], [0.0, *(s for _, s in steps), steps[-1][1] if steps else 0.0]
         axis.plot(x, y, drawstyle="steps-post", color=color, marker=marker, markevery=style.marks(len(x), 8), label=case)
-        numbers += [{"panel": "profile", "case": case, "budget": b, "share": s} for b, s in steps[1:]]
-    axis.set_xscale("symlog", linthresh=min(t.cost for c in cases(runs) for t in trials(runs, c, cost) if t.cost > 0))
-    axis.set_xlim(left=min(t.cost for c in cases(runs) for t in trials(runs, c, cost) if t.ok and t.cost > 0) * 0.9)
-    axis.set_ylim(0, 1.02)
-    axis.set(xlabel=f"budget of {cost}", ylabel="share of problems solved")
+        numbers += [{"panel": "profile", "case": case, "budget": b, "share": s} for b, s in steps]
+    axis.set(xscale="log", xlim=(left, 1.05 * right), ylim=(0, 1.02), xlabel=f"budget of {cost}", ylabel="share of problems solved")
+    axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.xaxis.set_major_formatter(ScalarFormatter())
+    axis.xaxis.set_minor_formatter(NullFormatter())
     return numbers
 
 
@@ -105,12 +114,14 @@ def _order(level: str, axes: dict) -> tuple:
 
 
 def _shares(axis, runs: Runs, axes: dict) -> list[dict]:
-    names = cases(runs)
+    names, left_out = cases(runs), hopeless(runs)
     levels = sorted({row["level"] for row in runs.rows}, key=lambda level: _order(level, axes))
     share, numbers = np.full((len(names), len(levels)), math.nan), []
     for i, case in enumerate(names):
         for j, level in enumerate(levels):
-            found = [row["outcome"] == "ok" for row in runs.rows if row["case"] == case and row["level"] == level]
+            found = [row["outcome"] == "ok" for row in runs.rows if row["case"] == case and row["level"] == level and (row["scene"], level) not in left_out]
+            if not found:
+                continue
             share[i, j] = sum(found) / len(found)
             axis.text(j, i, f"{sum(found)}" if all(found) else f"{sum(found)}/{len(found)}", ha="center", va="center", fontsize=5, color="white" if share[i, j] < 0.45 else "black")
             numbers.append({"panel": "share", "case": case, "budget": level, "share": share[i, j]})
@@ -127,5 +138,5 @@ def draw(claim: Claim, runs: Runs, stem: Path) -> list[Path]:
     style.letter_panels(axes)
     handles, labels = axes[0].get_legend_handles_labels()
     fig.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False)
-    problems = {(row["scene"], row["level"], row["seed"]) for row in runs.rows}
+    problems = {(row["scene"], row["level"], row["seed"]) for row in runs.rows if (row["scene"], row["level"]) not in hopeless(runs)}
     return style.save(fig, stem, pd.DataFrame(numbers), SHOWN.format(n=len(problems), sweep=claim.frontier["sweep"], cost=claim.frontier["cost"]))

@@ -11,7 +11,7 @@ import numpy as np
 from ..claims.estimate import interval
 from .formulations import REFERENCE
 from .front import Point, log_ratio, reached, segments, value_at
-from .runs import check_equal, metric
+from .runs import check_equal, check_varied, metric
 from .spec import Spec, label
 
 METRICS = ("cond_p95", "cond_bj_p95", "cond_no_contact_p95", "cond_no_contact_no_limit_p95", "newton", "pcg_probe", "factorizations", "seconds")
@@ -66,6 +66,7 @@ def gather(spec: Spec, notes: tuple[str, ...], records: dict[str, dict]) -> list
     for scene in spec.scenes:
         of_scene = len(spec.formulations) * len(spec.scales) * spec.starts
         check_equal({note: records[note] for note in notes[k:k + of_scene]})
+        check_varied(records[notes[k]], spec.vary, f"{spec.path}#/scenes/{scene}")
         for name in spec.formulations:
             for scale in spec.scales:
                 for seed in range(1, spec.starts + 1):

@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ..whole_file import write_whole
 from .formulations import REFERENCE, ROOT, VARY, MatchError, preset, settings
-from .runs import Sweep, check_equal, collect, read_object, run, sweep
+from .runs import Sweep, check_equal, check_varied, collect, read_object, run, sweep
 
 DEFAULT = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
 RULES = ("equal_force", "equal_curvature")
@@ -50,9 +50,10 @@ def _row(name: str, record: dict) -> dict:
             "newton_iterations": record["summary"]["newton_iterations"], "verdict": "comparable" if comparable else "not_comparable", "why": why}
 
 
-def judge(made: Sweep, records: dict[str, dict]) -> dict:
+def judge(made: Sweep, records: dict[str, dict], vary: str) -> dict:
     """The content of match.json. Errors: MatchError where the reference never is in contact, or records are not of one config."""
     check_equal(records)
+    check_varied(records[made.notes[0]], vary, "--vary limit")
     rows = [_row(note.partition(": ")[2], records[note]) for note in made.notes]
     reference = rows[0]
     if reference["outcome"] == "ok" and reference["gap_min_rel"] is None:
@@ -60,7 +61,7 @@ def judge(made: Sweep, records: dict[str, dict]) -> dict:
         raise MatchError(f"scene {scene!r}: no contact at the end of any step with {REFERENCE}: there is no gap to compare; a scene whose bodies "
                          "touch is needed (or more steps: --set /time/steps=N)")
     first = records[made.notes[0]]
-    return {"schema": SCHEMA, "scene": first["labels"]["scene"], "reference": REFERENCE, "rule": first["matching"]["rule"], "theta": first["matching"]["theta"],
+    return {"schema": SCHEMA, "scene": first["labels"]["scene"], "reference": REFERENCE, "vary": vary, "rule": first["matching"]["rule"], "theta": first["matching"]["theta"],
             "max_gap_ratio": first["comparability"]["max_ratio"], "formulations": rows}
 
 
@@ -114,7 +115,7 @@ def main(argv: list[str]) -> int:
         digest = hashlib.sha256("\n".join([made.text, *args.overrides]).encode()).hexdigest()[:8]
         out = args.out or ROOT / "results" / "runs" / "match" / f"{args.config.stem}-{digest}"
         run(made, out, args.overrides)
-        answer = judge(made, collect(made, out))
+        answer = judge(made, collect(made, out), args.vary)
         write_whole(out / "match.json", json.dumps(answer, indent=1) + "\n")
     except MatchError as error:
         print(f"bench match: {error}", file=sys.stderr)

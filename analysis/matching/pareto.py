@@ -12,9 +12,9 @@ import json
 import math
 import shutil
 import sys
-from datetime import datetime
 from pathlib import Path
 
+from ..claims.table import seconds_of_run
 from ..whole_file import write_whole
 from . import pareto_figure, pareto_report
 from .formulations import ROOT, MatchError
@@ -27,16 +27,11 @@ DEFAULT = ROOT / "configs" / "pareto" / "default.json"
 COLUMNS = (*PLACE, *STATE, *METRICS)
 
 
-def _seconds(record: dict) -> float:
-    start, end = (datetime.fromisoformat(record["status"][key].replace("Z", "+00:00")) for key in ("started_utc", "ended_utc"))
-    return (end - start).total_seconds()
-
-
 def _about(spec: Spec, command: str, records: list[dict]) -> dict:
     sizes = [r["scene"]["free_dofs"] for r in records]
     about = {"command": command, "spec_sha256": spec.sha256, "doc": spec.doc, "vary": spec.vary, "gap": {"min": "smallest", "median": "median of the smallest"}[spec.gap],
              "gaps": list(spec.gaps), "starts": spec.starts, "decades": round(math.log10(spec.scales[-1] / spec.scales[0]), 3),
-             "unknowns": f"{min(sizes)} to {max(sizes)}", "seconds": round(sum(map(_seconds, records)), 1)}
+             "unknowns": f"{min(sizes)} to {max(sizes)}", "seconds": round(sum(map(seconds_of_run, records)), 1)}
     for key, values in (("rule", {f"{r['matching']['rule']}, theta {r['matching']['theta']:g}" for r in records}),
                         ("date", {r["status"]["started_utc"][:10] for r in records}),
                         ("machine", {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records}),

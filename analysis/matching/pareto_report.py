@@ -56,7 +56,7 @@ def markdown(runs: Runs) -> str:
     scales = sorted({row["scale"] for row in runs.rows})
     lines = [HEAD.format(command=about["command"], decades=about["decades"], rule=about["rule"], starts=about["starts"], reference=REFERENCE, gap=about["gap"])]
     lines += [f"{about['doc']}. Varied: {about['vary']}. Stiffness: " + ", ".join(f"x{s:g}" for s in scales) + f". {len(runs.rows)} runs, {about['unknowns']} unknowns, "
-              f"{about['seconds']:.0f} s of one core in all, {about['date']}, {about['machine']}, build {about['build'][:8]}.", ""]
+              f"{about['seconds']:.0f} s of one core in all on a machine that did other work as well, {about['date']}, {about['machine']}, build {about['build'][:8]}.", ""]
     for scene in runs.scenes:
         lines += [f"## {scene}", "", f"![cost against reached gap](../docs/pareto_{scene}.png)", "", *_reached(runs, scene), "", _nobody(runs, scene), "",
                   *_ratios(runs, scene, about["gaps"]), ""]

@@ -118,6 +118,12 @@ def check_equal(records: dict[str, dict], apart: tuple[str, ...] = ()) -> None:
             raise MatchError(f"{notes[0]!r} and {note!r} are not runs of the same config: {unlike[0]}")
 
 
+def check_varied(record: dict, vary: str, place: str) -> None:
+    """Refuses to vary a strain limit that the run does not have: all formulations would be the same run."""
+    if vary == "limit" and record["matching"].get("limit_load_N_per_m") is None:
+        raise MatchError(f"{place}: no strain limit acts in scene {record['labels']['scene']!r}, so that nothing varies; contact or both, or a limit: /strain_limit/limit")
+
+
 def metric(record: dict, name: str) -> float | None:
     """A number of analysis/claims/metrics.py; None where the record has none."""
     if name not in METRICS:

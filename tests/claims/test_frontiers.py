@@ -36,9 +36,16 @@ def test_the_table():
 
 
 def test_not_even_the_middle():
-    all_fail = runs(lambda s, lv, c, k: {"outcome": "newton_stall", "factorizations": 3.0}, levels=LEVELS)
+    all_fail = runs(lambda s, lv, c, k: {"outcome": "newton_stall" if c == "y" else "ok", "factorizations": 3.0}, levels=LEVELS)
     line = frontiers.lines(CLAIM, Table({"policies": all_fail}))[-2]
     assert line.count("not even the middle") == 2 and "| 0 of 90 [0.000, 0.041] | - |" in line
+
+
+def test_what_nobody_gets_through_is_left_out():
+    hard = runs(lambda s, lv, c, k: some_fail(s, lv, c, k) | ({"outcome": "newton_stall"} if (s, lv) == ("a", "E100") else {}), levels=LEVELS)
+    lines = frontiers.lines(CLAIM, Table({"policies": hard}))
+    assert "no case gets through: a E100." in "".join(lines) and next(line for line in lines if line.startswith("| x |")).startswith("| x | 85 of 85 [")
+    assert "| 0.1 to 100 |" in next(line for line in lines if line.startswith("| x |"))
 
 
 def test_a_run_without_its_cost():

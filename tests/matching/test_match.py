@@ -59,6 +59,12 @@ def test_a_scene_without_contact(match, monkeypatch, tmp_path, capsys):
     assert not (tmp_path / "out" / "match.json").exists()
 
 
+def test_a_limit_that_is_not_there(match, monkeypatch, tmp_path, capsys):
+    install(tmp_path, monkeypatch, {}, {"log": {"/matching/limit_load_N_per_m": None}, "cubic": {"/matching/limit_load_N_per_m": None}})
+    assert match("--formulations", "cubic", "--vary", "limit") == 2
+    assert "no strain limit acts in scene 'drape2d', so that nothing varies" in capsys.readouterr().err
+
+
 def test_records_of_different_configs(match, monkeypatch, tmp_path, capsys):
     install(tmp_path, monkeypatch, {}, {"cubic": {"/config/time/dt_s": 0.02}})
     assert match("--formulations", "cubic") == 2
