@@ -127,7 +127,7 @@ def test_the_page_is_made_of_the_kept_numbers():
 
 def test_the_real_program(program, monkeypatch, tmp_path, capsys):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
-    path = spec_file(tmp_path, starts=1)
+    path = spec_file(tmp_path, starts=1, set={"/step_solver/max_iterations": 40, "/diagnose/stages": ["full"]})
     assert pareto.main([str(path), "--results", str(tmp_path / "r"), "--runs", str(tmp_path / "runs")]) == 0, capsys.readouterr()
     runs = pareto.from_json(tmp_path / "r" / "pareto.json")
     gaps = [row["gap"] for row in runs.of("block", "log")]
