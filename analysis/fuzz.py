@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import argparse
 import json
+import os
 import re
 import subprocess
 import sys
@@ -21,6 +22,8 @@ BUILD = ROOT / "build" / "fuzz"
 CRASHES = ROOT / "results" / "runs" / "fuzz"
 # Longest input: what a target's seeds need, and short enough that an execution stays below a millisecond.
 MAX_LEN = {"config": 4096, "record": 16384, "sweep": 2048, "trace": 8192}
+# Short stacks of allocations and a small quarantine: a third faster, and a report still names its place.
+SANITIZER = {"ASAN_OPTIONS": "malloc_context_size=3:quarantine_size_mb=8:detect_leaks=1"}
 LIMITS = ["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=1"]
 
 
@@ -65,7 +68,7 @@ def run_target(name: str, build: Path, crashes: Path, seconds: int | None, runs:
         words.append(f"-dict={dictionary}")
     start = time.monotonic()
     done = subprocess.run([*words, str(corpus), str(build / "seeds" / name)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False,
-                          cwd=kept)
+                          cwd=kept, env={**os.environ, **SANITIZER})
     took = time.monotonic() - start
     log = done.stderr.decode(errors="replace")
     found = [str(path) for path in sorted(kept.iterdir()) if path.name not in before]

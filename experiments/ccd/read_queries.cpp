@@ -18,6 +18,7 @@ namespace fs = std::filesystem;
 
 constexpr InputKind query_table{"a file of CCD queries (.csv)", std::uint64_t{256} << 20};
 constexpr std::size_t rows_a_query = 8, most_digits = 2000;
+constexpr double most_coordinate = 1e15;  // m, as of meshes; squares stay within float
 
 /// The fields of a row between commas.
 std::vector<std::string_view> fields_of(std::string_view line) {
@@ -38,12 +39,11 @@ mpz_class integer(const TextScanner& at, std::string_view word) {
   return mpz_class(std::string(word));
 }
 
-/// The nearest double, ties to even; mpq_class::get_d truncates.
+/// The nearest double, ties to even, of a value within most_coordinate; mpq_class::get_d truncates.
 double nearest(const mpq_class& value) {
   const double inward = value.get_d();
   if (mpq_class(inward) == value) return inward;
   const double outward = std::nextafter(inward, value > 0 ? HUGE_VAL : -HUGE_VAL);
-  if (!std::isfinite(outward)) return outward;
   const mpq_class below = abs(value - mpq_class(inward)), above = abs(mpq_class(outward) - value);
   if (below != above) return below < above ? inward : outward;
   int exponent = 0;
@@ -56,8 +56,10 @@ double coordinate(const TextScanner& at, std::string_view top, std::string_view 
   if (denominator == 0) at.fail("a denominator of 0", "another integer");
   mpq_class value(integer(at, top), denominator);
   value.canonicalize();
+  if (abs(value) > most_coordinate) {
+    at.fail("a coordinate that is too large", fmt::format("from -{0:g} to {0:g} m", most_coordinate));
+  }
   const double out = nearest(value);
-  if (!std::isfinite(out)) at.fail("a coordinate beyond double", "one within");
   query.rounded_double = query.rounded_double || mpq_class(out) != value;
   query.rounded_float =
       query.rounded_float || mpq_class(static_cast<double>(static_cast<float>(out))) != value;

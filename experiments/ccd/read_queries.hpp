@@ -12,7 +12,7 @@ namespace bb::ccd {
 /// rows: four vertices at t = 0, then at t = 1; a row has numerator and denominator of x, y and z, then the truth, 0 or
 /// 1, the same in all eight. Vertex-face: v f0 f1 f2; edge-edge: ea0 ea1 eb0 eb1. Coordinates are rounded to the
 /// nearest double.
-/// Errors: ConfigError at file:line for a row that is none of these or beyond double, at the folder when it is none or
+/// Errors: ConfigError at file:line for a row that is none of these or beyond 1e15 m, at the folder when it is none or
 /// has no query.
 QuerySet read_queries(const std::string& folder);
 

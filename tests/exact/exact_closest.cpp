@@ -193,7 +193,7 @@ ExactDistance exact_combination(const ExactPair& pair, const std::vector<double>
     const auto [integer, exponent] = integer_of(weights[i]);
     if (integer == 0) continue;
     const mpz_class w = integer << static_cast<mp_bitcnt_t>(exponent - least);
-    for (std::size_t k = 0; k < 3; ++k) sum[k] += w * pair.x[i][k];
+    for (std::size_t k = 0; k < 3; ++k) sum[k] += w * (pair.x[i][k] - pair.x[0][k]);
   }
   ExactDistance out;
   out.num = dot(sum, sum);

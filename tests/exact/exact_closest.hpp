@@ -35,7 +35,8 @@ ExactDistance exact_distance(const ExactPair& pair, unsigned within = ~0U);
 /// The points that a region names as a set of bits.
 unsigned region_points(Region region);
 
-/// |sum_i weights_i x_i|^2 without rounding.
+/// |sum_i weights_i (x_i - x_0)|^2 without rounding. Measured from x_0, since rounded weights of a primitive do not add up
+/// to 1 exactly, and far from the origin that would count for more than the weights themselves.
 ExactDistance exact_combination(const ExactPair& pair, const std::vector<double>& weights);
 
 /// (value - sqrt(num/den) 2^exponent)/unit, computed with 256 bits; a unit of 0 gives the difference itself.

@@ -137,7 +137,9 @@ const char* family_name(Family family) {
 
 Mat<double, 3, 4> hard_pair(Family family, PairKind kind, bool in_float, std::mt19937_64& random) {
   const Points x = Maker(kind, in_float, random).make(family);
-  return in_float ? Points(x.cast<float>().cast<double>()) : x;
+  const Mat<float, 3, 4> rounded =
+      x.cast<float>();  // in its own variable: Eigen drops a cast to float and back
+  return in_float ? Points(rounded.cast<double>()) : x;
 }
 
 }  // namespace bb::test

@@ -108,6 +108,15 @@ std::string small_library() {
   return bytes;
 }
 
+/// One point through a triangle.
+std::string ccd_queries() {
+  std::string out;
+  for (const char* height : {"1,2", "-1,4"}) {
+    out += "0,1,0,1," + std::string(height) + ",1\n0,1,0,1,0,1,1\n1,1,0,1,0,1,1\n0,1,1,3,0,1,1\n";
+  }
+  return out;
+}
+
 Texts eval_seeds() {
   Texts out;
   for (const char* line : eval_lines) out.emplace_back(line);
@@ -116,6 +125,7 @@ Texts eval_seeds() {
 
 const std::map<std::string, Texts (*)()>& makers() {
   static const std::map<std::string, Texts (*)()> all{
+      {"ccd_queries", [] { return Texts{ccd_queries()}; }},
       {"config", configs},
       {"sweep", [] { return files("configs/sweeps", ".json"); }},
       {"mesh_obj",
