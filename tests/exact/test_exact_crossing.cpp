@@ -90,7 +90,7 @@ long total_pairs() {
 TEST(ExactCrossing, SegmentAgainstTriangle) {
   std::mt19937_64 random(3);
   long seen[3] = {0, 0, 0}, judged = 0, wrong = 0;
-  for (long k = 0; k < total_pairs() / 2; ++k) {
+  for (long k = 0; k < total_pairs(); ++k) {
     const Points x = hard_case(static_cast<Family>(k % n_families), random);
     const Crossing found = audit::segment_triangle(x.col(0), x.col(1), x.col(2), x.col(3), x.col(4));
     const Crossing right = oracle(x);
