@@ -20,6 +20,7 @@ class Maker {
         break;
       case Family::needle:
         thin(x, power(-15, -1));
+        if (coin()) above_inside(x, power(-15, 0));
         break;
       case Family::no_area:
         thin(x, 0);
@@ -90,6 +91,7 @@ class Maker {
     const Vec3d u = x.col(1) - x.col(0), aside = uniform_points().col(0);
     x.col(2) = x.col(0) + uniform(-1, 1) * u + power(-6, 0) * aside;
     x.col(3) = x.col(2) + uniform(0.2, 1.5) * u + angle * Vec3d(uniform_points().col(0));
+    if (angle > 0 && coin()) above_inside(x, power(-15, -1));  // they cross, seen along their common normal
   }
 
   /// Apex at one of the corners; the point anywhere, often just above the plane.
