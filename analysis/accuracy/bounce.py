@@ -17,6 +17,8 @@ from scipy.optimize import brentq
 from .shapes import barrier
 
 TOLERANCE = 1e-11
+NODES, NODES_WEIGHTS = np.polynomial.legendre.leggauss(12)
+NODES, NODES_WEIGHTS = (NODES + 1) / 2, NODES_WEIGHTS / 2  # on [0, 1]
 
 
 @dataclass(frozen=True)
@@ -56,15 +58,19 @@ class BarrierBounce:
             raise ValueError(f"{self.shape}: {energy:g} J pass a barrier of {self._potential(low):g} J")
         return float(brentq(lambda g: self._potential(g) - energy, low, self.d_hat * (1 - 1e-15), xtol=1e-18, rtol=1e-15))
 
+    def _force(self, gap: float) -> float:
+        """N, outwards."""
+        return self.contacts * self.kappa * -barrier(self.shape, self.argument, gap, self.d_hat)[1] - self.mass * self.acceleration
+
     def _time_from_turn(self, s: float) -> float:
         """s: time between the smallest gap and g_min + s^2, within the barrier."""
         energy, low = 0.5 * self.mass * self.entry_speed**2, self.smallest_gap
-        # Above the turning point E - U is about s^2 times the force there; the limit at s = 0 avoids 0/0.
-        force = self.contacts * self.kappa * -barrier(self.shape, self.argument, low, self.d_hat)[1] - self.mass * self.acceleration
 
         def integrand(r: float) -> float:
-            ratio = (energy - self._potential(low + r * r)) / (r * r) if r > 1e-6 * self._depth else force
-            return 2 / np.sqrt(2 / self.mass * ratio)
+            way = r * r
+            # E - U is the work of the force from the turning point on; close to it the difference would cancel.
+            mean_force = NODES_WEIGHTS @ [self._force(low + way * x) for x in NODES] if way < 0.1 * low else (energy - self._potential(low + way)) / way
+            return 2 / np.sqrt(2 / self.mass * mean_force)
 
         return quad(integrand, 0.0, s, epsabs=0.0, epsrel=TOLERANCE, limit=200)[0]
 

@@ -34,6 +34,9 @@ class Reference:
 def measure(motion: Motion, reference: Reference) -> tuple[dict[str, float], dict[str, str]]:
     """Error -> value, and error -> why it does not apply. Errors: NotFinite."""
     found, skipped = {}, {}
+    if motion.times[-1] != motion.record["steps"][-1]["t_s"]:
+        raise NoReference(f"the last frame is of {motion.times[-1]:g} s and the run ends at {motion.record['steps'][-1]['t_s']:g} s; "
+                          "/output/frames_every has to divide /time/steps - 1")
     x = reference.positions(motion)
     known = np.isfinite(x).all(axis=(1, 2))
     if not known.any():

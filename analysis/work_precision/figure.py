@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from .. import style
-from .judge import COSTS, Point, band_of, formulations, front, points, profile
+from .judge import COSTS, band_of, formulations, front, points, profile
 
 ERRORS = {"e_traj": "largest distance of a vertex / scene", "e_com": "distance of centres of mass / scene", "e_gap": "|gap - closed form| / d_hat",
           "e_offset": "excess height at rest (m)", "e_momentum": "|change of momentum| / momentum", "e_energy": "|change of energy| / energy"}
@@ -18,7 +18,7 @@ SHOWN = ("{scene}, {error} against what it cost: {n} runs of every formulation a
          "that failed or are not valid, at what they had cost by then ({failed} of {runs} in panels a to c, {failed_pcg} of {runs} in d). Panels a to c: "
          "direct solver; d: conjugate gradients with block Jacobi, the same settings.")
 PROFILE = ("Share of the problems (scene, variation) that were solved with at most that work: the run counts and its error is at most the target of its scene ({targets}). "
-           "Failed runs are never solved. {n} problems a formulation; direct solver.")
+           "Failed runs are never solved. {n} problems a formulation; the direct solver, for products conjugate gradients with block Jacobi.")
 
 
 def _panel(axis, scene: dict, cost: str) -> list[dict]:
@@ -31,28 +31,28 @@ def _panel(axis, scene: dict, cost: str) -> list[dict]:
         axis.plot([p.cost for p in good], [p.error for p in good], linestyle="none", marker=look.marker, color=look.color, markersize=2.6, alpha=0.45, markeredgewidth=0)
         line = [(c, e) for c, e in front(all_points, name) if c > 0]
         if line:
-            axis.plot([c for c, _ in line], [e for _, e in line], color=look.color, linestyle=look.dash, marker=look.marker, markersize=4, drawstyle="steps-post", label=name)
+            axis.plot([c for c, _ in line], [e for _, e in line], color=look.color, linestyle=look.dash, marker=look.marker, markersize=4, label=name)
         else:
             axis.plot([], [], color=look.color, linestyle=look.dash, marker=look.marker, label=f"{name} (no run counts)")
         rows += [{"cost": cost, **p.__dict__} for p in mine]
     axis.set_xscale("log")
     axis.set_yscale("log")
-    _edge(axis, [p for p in all_points if p.error is None and p.cost > 0])
+    for p in all_points:
+        if p.error is None and p.cost > 0:
+            axis.plot([p.cost], [0.96], transform=axis.get_xaxis_transform(), marker="x", color=style.look(p.formulation).color, linestyle="none", markersize=5,
+                      markeredgewidth=1.2, gid=style.FAILURE)
     if band > 0:
-        low = axis.get_ylim()[0]
-        axis.set_ylim(min(low, band / 2))
-        axis.axhspan(axis.get_ylim()[0], band, color="#bbbbbb", alpha=0.5, linewidth=0, zorder=0, gid=style.REFERENCE)
+        axis.axhspan(band / 1e6, band, color="#bbbbbb", alpha=0.5, linewidth=0, zorder=0, gid=style.REFERENCE)
     axis.set_xlabel({"seconds": "seconds"}.get(cost, COSTS[cost][1]))
     return rows
 
 
-def _edge(axis, failed: list[Point]) -> None:
-    """Failed runs as crosses in a strip of their own above the errors."""
-    low, high = axis.get_ylim()
-    axis.set_ylim(low, high * (high / low) ** 0.1)
-    for p in failed:
-        axis.plot([p.cost], [0.965], transform=axis.get_xaxis_transform(), marker="x", color=style.look(p.formulation).color, linestyle="none", markersize=5,
-                  markeredgewidth=1.2, gid=style.FAILURE)
+def _limits(scene: dict) -> tuple[float, float]:
+    """Of the errors, with room above for the crosses of failed runs and below for the band."""
+    errors = [max(r["error"], band_of(scene, r), 1e-300) for r in scene["rows"] if r["error"] is not None] or [1.0]
+    low, high = min(errors), max(errors)
+    room = max(high / low, 10.0)
+    return (min(low, band_of(scene) or low) / room**0.1, high * room ** (0.2 if any(r["error"] is None for r in scene["rows"]) else 0.05))
 
 
 def draw(scene: dict, stem: Path) -> list[Path]:
@@ -61,8 +61,7 @@ def draw(scene: dict, stem: Path) -> list[Path]:
     rows = [row for axis, cost in zip(axes.flat, COSTS) for row in _panel(axis, scene, cost)]
     for axis in axes[:, 0]:
         axis.set_ylabel(ERRORS[scene["error"]])
-    top = max(axis.get_ylim()[1] for axis in axes.flat)
-    axes[0, 0].set_ylim(min(axis.get_ylim()[0] for axis in axes.flat), top)
+    axes[0, 0].set_ylim(*_limits(scene))
     style.letter_panels(axes)
     style.legend_below(fig, axes[0, 0])
     failed = {solver: sum(r["error"] is None for r in scene["rows"] if r["solver"] == solver) for solver in ("direct", "pcg")}
@@ -79,23 +78,27 @@ def machine(scene: dict) -> str:
 
 
 def draw_profile(scenes: list[dict], stem: Path) -> list[Path]:
-    """Data profiles over all scenes: one row a target level, Newton iterations and factorisations."""
+    """Data profiles over all scenes: one row a target level, one column a cost."""
     names = formulations(scenes[0])
     levels = range(max(len(scene["targets"]) for scene in scenes))
-    fig, axes = plt.subplots(len(levels), 2, figsize=(style.WIDE_IN, 0.8 + 1.8 * len(levels)), sharex="col", sharey=True, layout="constrained", squeeze=False)
+    shown = ("newton", "factorizations", "products")
+    fig, axes = plt.subplots(len(levels), len(shown), figsize=(style.WIDE_IN, 0.8 + 1.7 * len(levels)), sharex="col", sharey="row", layout="constrained", squeeze=False)
+    most = {cost: max((p.cost for scene in scenes for p in points(scene, cost)), default=1) for cost in shown}
     rows = []
     for level in levels:
-        for axis, cost in zip(axes[level], ("newton", "factorizations")):
+        for axis, cost in zip(axes[level], shown):
             for name in names:
                 costs, total = profile(scenes, cost, name, level)
-                look, share = style.look(name), np.arange(1, len(costs) + 1) / total
-                axis.plot(costs, share, color=look.color, linestyle=look.dash, drawstyle="steps-post", marker=look.marker, markevery=style.marks(len(costs), 6), label=name)
-                rows += [{"level": level, "cost": cost, "formulation": name, "budget": c, "share": s} for c, s in zip(costs, share)]
+                look, share = style.look(name), np.arange(len(costs) + 1) / total
+                # From the first solved problem on to the edge of the figure, so that a line which ends low is seen to stay there.
+                axis.plot([*costs, most[cost]], [*share[1:], share[-1]], color=look.color, linestyle=look.dash, drawstyle="steps-post", marker=look.marker,
+                          markevery=[len(costs)], label=name)
+                rows += [{"level": level, "cost": cost, "formulation": name, "budget": c, "share": s} for c, s in zip(costs, share[1:])]
             axis.set_xscale("log")
-            axis.set_ylim(0, 1)
-        axes[level, 0].set_ylabel(f"share solved,\ntarget {level + 1}")
-    for axis, text in zip(axes[-1], ("Newton iterations", "factorisations")):
-        axis.set_xlabel(f"budget: {text}")
+        axes[level, 0].set_ylabel(f"share solved, target {level + 1}")
+        axes[level, 0].set_ylim(0, None)
+    for axis, cost in zip(axes[-1], shown):
+        axis.set_xlabel(f"budget: {COSTS[cost][1]}")
     style.letter_panels(axes)
     style.legend_below(fig, axes[0, 0])
     targets = "; ".join(f"{scene['name']} {scene['error']} " + ", ".join(f"{t:g}" for t in scene["targets"]) for scene in scenes)

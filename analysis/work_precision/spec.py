@@ -72,8 +72,9 @@ class Scene:
         return round(self.duration_s / (self.anchor["dt_s"] * dt_factor))
 
     def _time(self, dt_factor: float) -> dict:
+        """One step more than the duration: frames are of the steps 0, n, 2 n and so on, and the last of them has to be the end of the run."""
         steps = self.steps(dt_factor)
-        return {"/time/dt_s": self.duration_s / steps, "/time/steps": steps, "/output/frames_every": steps // self.samples}
+        return {"/time/dt_s": self.duration_s / steps, "/time/steps": steps + 1, "/output/frames_every": steps // self.samples}
 
     def tolerance(self, relative: float, d_hat: float, dt: float) -> float:
         """m/s."""

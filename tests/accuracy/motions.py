@@ -15,7 +15,7 @@ G = 9.81
 SEGMENTS, LENGTH, STIFFNESS, DENSITY = 2, 0.5, 200.0, 0.5  # a chain of two springs, let go from the horizontal
 CHAIN_S = 0.2
 KAPPA, D_HAT, MASS, START = 400.0, 0.01, 0.3, 0.0075  # a triangle that swings on its barrier round its place of rest
-BARRIER_S = 0.1
+BARRIER_S = 0.05
 FIXED = {"passes": {"time": False, "diagnose": False, "audit": True}, "threads": 1}
 
 
@@ -30,12 +30,12 @@ def barrier_config() -> dict:
             "formulation": {"name": "log", "d_hat_m": D_HAT, "stiffness_policy": {"kappa_N_per_m": KAPPA}}}
 
 
-def run(program: str, config: dict, integrator: str, duration: float, steps: int, folder: Path, tolerance: float = 1e-8) -> Motion:
-    """The frames of every step."""
+def run(program: str, config: dict, integrator: str, duration: float, steps: int, folder: Path, tolerance: float = 1e-8, every: int = 1) -> Motion:
+    """Run and frames. The folder must not be there."""
     folder.mkdir(parents=True)
     file = folder / "config.json"
     file.write_text(json.dumps({**config, "integrator": {"name": integrator}, "time": {"dt_s": duration / steps, "steps": steps},
-                                "step_solver": {"tol_velocity_m_per_s": tolerance}, "output": {"frames_every": 1}}))
+                                "step_solver": {"tol_velocity_m_per_s": tolerance}, "output": {"frames_every": every}}))
     done = subprocess.run([program, "run", str(file), "--out", str(folder / "run"), "--progress", "none"], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     motion = read_motion(folder / "run")

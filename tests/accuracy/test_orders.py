@@ -8,7 +8,7 @@ import pytest
 from motions import BARRIER_S, CHAIN_S, D_HAT, G, MASS, START, barrier_config, barrier_exact, chain_config, chain_exact, run
 
 ORDERS = {"implicit_euler": 1.0, "bdf2": 2.0, "newmark": 2.0}
-SMALLEST = 1e-9  # m: rounding and the tolerance of Newton's method, 1e-8 m/s times the time step, stay below
+SMALLEST = 3e-10  # m: rounding and the tolerance of Newton's method, 1e-8 m/s times the time step, stay below
 
 def chain_error(motion) -> float:
     return float(np.linalg.norm(motion.x - chain_exact(motion.times), axis=-1).max())
@@ -20,7 +20,7 @@ def barrier_error(motion) -> float:
 
 
 PROBLEMS = {"chain": (chain_config, CHAIN_S, chain_error, (50, 100, 200, 400, 800)),
-            "barrier": (barrier_config, BARRIER_S, barrier_error, (200, 400, 800, 1600))}
+            "barrier": (barrier_config, BARRIER_S, barrier_error, (100, 200, 400, 800))}
 
 
 @pytest.mark.parametrize("problem", PROBLEMS)
@@ -57,7 +57,7 @@ def swing_energies(motion) -> np.ndarray:
 
 def test_energy_of_a_swing_on_the_barrier(program, tmp_path):
     """32 periods, 63 steps each: implicit Euler stills it, BDF2 takes a little in every period, Newmark keeps it within bounds that do not grow."""
-    swings = {name: swing_energies(run(program, barrier_config(), name, 1.0, 2000, tmp_path / name)) for name in ORDERS}
+    swings = {name: swing_energies(run(program, barrier_config(), name, 1.0, 2000, tmp_path / name, every=2000)) for name in ORDERS}
     assert all(len(swing) == 2000 for swing in swings.values())
     euler, bdf2, newmark = (swings[name] for name in ("implicit_euler", "bdf2", "newmark"))
     assert euler[-1] < 0.02 and np.diff(euler).max() < 0
