@@ -53,6 +53,11 @@ def _unsettled(record) -> float:
     return float(status["outcome"] == "newton_stall" and "does not settle" in status.get("detail", ""))
 
 
+def _stopped(record) -> float:
+    """1 when the run did not come to its end, or went through a surface."""
+    return float(record["status"]["outcome"] not in ("ok", "unproven"))
+
+
 def _summary(*place: str):
     return lambda record: _at(record, "summary", *place)
 
@@ -75,5 +80,6 @@ METRICS = {
     "stretch": ("largest stretch", "1", False, _summary("max_stretch")),
     "stretch_of_limit": ("largest stretch at a step end over the limit", "1", False, _stretch_of_limit),
     "climb_of_limit": ("share of the strain limit in the climb of log10 cond", "1", False, _climb_of_limit),
+    "stopped": ("1 when a step failed or a surface was crossed", "1", False, _stopped),
     "unsettled": ("1 when a stiffness did not settle", "1", False, _unsettled),
 }
