@@ -77,6 +77,11 @@ def _kappa_cycles(record) -> float | None:
     return float(sum(longest_run(changes) >= UNSETTLED_ITERATIONS for changes in steps.values())) if steps else None
 
 
+def _stopped(record) -> float:
+    """1 when the run did not come to its end, or went through a surface."""
+    return float(record["status"]["outcome"] not in ("ok", "unproven"))
+
+
 def _summary(*place: str):
     return lambda record: _at(record, "summary", *place)
 
@@ -106,5 +111,6 @@ METRICS = {
     "stretch_of_limit": ("largest stretch at a step end over the limit", "1", False, _stretch_of_limit),
     "climb_of_limit": ("share of the strain limit in the climb of log10 cond", "1", False, _climb_of_limit),
     "kappa_cycles": ("steps in which a contact's kappa changes by more than 1% in ten iterations in a row", "1", False, _kappa_cycles),
+    "stopped": ("1 when a step failed or a surface was crossed", "1", False, _stopped),
     "unsettled": ("1 when a stiffness did not settle", "1", False, _unsettled),
 }
