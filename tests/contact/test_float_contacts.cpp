@@ -26,9 +26,9 @@ ContactOptions options_in(Precision precision) {
 Scene float_soups(const Vec3d& where) {
   Scene scene;
   for (const unsigned seed : {1U, 2U}) {
-    auto [vertices, triangles] = soup(60, 0.2, seed);
+    auto [vertices, triangles] = soup(120, 0.2, seed);
     for (Vec3d& p : vertices) p += where;
-    add_body(scene, seed == 1 ? "a" : "b", vertices, triangles, 0.1);
+    add_body(scene, seed == 1 ? "a" : "b", vertices, triangles, 0.3);
   }
   for (const auto& t : scene.surface_triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -170,7 +170,7 @@ TEST(FloatContacts, the_step_bound_stops_at_the_ulps_of_the_coordinates_in_float
       EXPECT_LT(bound.alpha, 0.5);
       return 0.5 - bound.alpha;
     };
-    const double largest = far + 4;  // m, of a coordinate
+    const double largest = far + 2;  // m, of a coordinate of the pair
     EXPECT_GT(gap_at_bound(in_float), 15 * float_eps * largest);
     EXPECT_LT(gap_at_bound(in_float), 40 * float_eps * largest);
     EXPECT_LT(gap_at_bound(in_double), 1e-8);

@@ -7,7 +7,7 @@ import pytest
 from test_cli import BLOCK, ROOT, bench
 
 BALL = ROOT / "configs/scenes/sphere_on_sheet.json"
-SMALL_BALL = ["/scene/n=7", "/scene/sphere_level=1", "/time/steps=5"]
+SMALL_BALL = ["/scene/n=7", "/scene/sphere_level=1", "/time/steps=3"]
 
 
 def run(program: str, out: Path, config, *settings: str) -> dict:
