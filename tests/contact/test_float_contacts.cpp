@@ -111,6 +111,23 @@ TEST(FloatContacts, no_test_rejects_a_pair_that_is_near_in_float) {
   EXPECT_GT(lost_in_double, 300);  // so close to d_hat that double and float do not agree on which side
 }
 
+/// Far from the origin a state on a motion is rounded by more than the motion itself: candidates have to reach it.
+TEST(FloatContacts, candidates_reach_the_states_that_a_motion_is_rounded_to) {
+  const double ulp = 0x1p-13;  // m, of float at 1024
+  Scene scene = point_over_grid(Vec3d(1.3, 1.4, 8 * ulp), 7.1 * ulp);
+  scene.x0.row(2).array() += 1024;
+  Positions x1 = scene.x0;
+  x1(2, 25) -= 0.8 * ulp;
+  Positions state = scene.x0 + 0.7 * (x1 - scene.x0);
+  round_state(Precision::single, state);
+  ASSERT_EQ(state(2, 25), 1024 + 7 * ulp);  // nearer than any point of the motion
+  ContactSystem contacts(scene, options_in(Precision::single));
+  contacts.update_candidates(scene.x0, x1);
+  Rows rows;
+  EXPECT_EQ(contacts.find_rows(state, rows.table, rows.mollified), 7 * ulp);
+  EXPECT_EQ(rows.table.size(), 1U);
+}
+
 template <class Numbers>
 double difference(const Numbers& a, const Numbers& b) {
   double largest = 0, size = 0;
