@@ -190,7 +190,7 @@ TEST(Retries, halve_the_load_step_of_quasi_static) {
   const Scene scene = builder.finish();
   const auto run = [&scene](int cap, int retries, int n_steps, std::vector<StepReport>* steps) {
     Method method = with_policy("fixed", "cholmod", "quasi_static");
-    method.step_solver.tol_velocity = 1e-8;
+    method.step_solver.tol_velocity = 1e-5;
     method.step_solver.max_iterations = cap;
     method.step_solver.retries = retries;
     Simulation simulation(scene, method, dt, n_steps);
@@ -210,7 +210,7 @@ TEST(Retries, halve_the_load_step_of_quasi_static) {
   EXPECT_GT(parts.size(), 1U);
   ASSERT_EQ(parts.back().status, StepStatus::converged) << needed << " " << parts.back().detail;
   EXPECT_GT((straight - scene.x0).norm(), 1e-3);
-  EXPECT_LT((straight - halved).norm(), 1e-6);
+  EXPECT_LT((straight - halved).norm(), 1e-5);
 }
 
 TEST(Retries, bdf2_starts_anew_where_the_length_changes) {
