@@ -184,7 +184,7 @@ TEST(Retries, halve_the_load_step_of_quasi_static) {
   BodySpec spec = test::cloth_spec(4, 0, d_hat);
   spec.material.bending = 1e-2;
   PinSpec pin;
-  pin.indices = {0, 1, 2, 3};
+  pin.indices = {0, 1, 2, 3, 4, 5, 6, 7};  // two rows: a flap on a hinge would turn freely
   spec.pins = {pin};
   builder.add_body(spec);
   const Scene scene = builder.finish();
