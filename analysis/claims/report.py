@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
+from . import frontiers
 from .entry import read_sweep
 from .judge import Answer
 from .metrics import METRICS
@@ -56,6 +57,7 @@ def _claim(a: Answer, table: Table) -> list[str]:
         lines += _part(j)
     if a.parts:
         lines.append("")
+    lines += frontiers.lines(claim, table)
     if claim.note:
         lines += [claim.note, ""]
     for change in claim.rule_changes:

@@ -2,9 +2,9 @@
 
 import sys
 
-from . import accept, calibrate, compare, gate
+from . import accept, calibrate, compare, gate, trend
 
-VERBS = {"compare": compare.main, "gate": gate.main, "calibrate": calibrate.main, "accept": accept.main}
+VERBS = {"compare": compare.main, "gate": gate.main, "calibrate": calibrate.main, "accept": accept.main, "trend": trend.main}
 
 
 def main(argv: list[str]) -> int:

@@ -13,8 +13,9 @@ import time
 from pathlib import Path
 
 from ..load import RecordError
-from . import baseline, configs, invariants, judge, matrices, report
+from . import baseline, configs, invariants, judge, matrices, report, trend
 from .baseline import Baseline, BaselineError
+from .build_checks import judge_build
 from .calibrate import copies_of
 from .cases import ROOT, Case, GateError, read_set, run_case
 from .determinism import of_one_config
@@ -22,6 +23,7 @@ from .finding import Finding, failures, without_subject
 from .instructions import judge_instructions
 from .metrics import measure
 from .records import Run, read_run
+from .resume import judge_resume
 
 OUT = ROOT / "results" / "runs" / "gate"
 REPEAT_SEED = 1001  # of the copy that has to confirm a number outside its envelope; no copy of a calibration has it
@@ -58,6 +60,8 @@ def judge_case(case: Case, kept: Baseline, path: Path, out: Path) -> tuple[list[
     first = runs[0]
     findings = [f for run in runs for f in invariants.judge(case.name if run is first else f"{case.name}, {run.threads} threads", run)]
     findings += of_one_config(case.name, runs)
+    if case.resumed:
+        findings.append(judge_resume(case, out / case.name / "resumed", first))
     same_subject(kept, first, path)
     same_kind = bool(kept.made_by) and kept.made_by == first.made_by
     size_m = first.section("scene").get("extent_m") or 0.0
@@ -76,7 +80,7 @@ def run_set(name: str, baselines: Path, out: Path, only: list[str]) -> list[Find
     if not cases:
         raise GateError(f"set {name}: no case whose name contains {' or '.join(only)}")
     kept = {case.name: baseline.read(baselines / f"{case.name}.json", case.name, "run") for case in cases}
-    findings, samples = [], []
+    findings, samples = judge_build(), []
     for case in cases:
         start = time.monotonic()
         lines, chaotic = judge_case(case, kept[case.name], baselines / f"{case.name}.json", out)
@@ -97,6 +101,11 @@ def judge_record(record: Path, path: Path) -> list[Finding]:
     return dropped + lines + judge.numbers(case, kept.metrics, measure(run), bool(kept.made_by) and kept.made_by == run.made_by)
 
 
+def findings_case(findings: list[Finding]) -> str:
+    """A case that was run: its record says which commit the numbers are of."""
+    return next(f.case for f in findings if f.gate_class == "III")
+
+
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="bench gate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog="examples: ./bench gate\n          ./bench gate --matrix dumps/*.mtx --baseline conditioning.json")
@@ -108,6 +117,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--baseline", type=Path, metavar="FILE.json", help="of --record and --matrix")
     parser.add_argument("--out", type=Path, default=OUT, metavar="DIR", help="runs and gate.json (default: results/runs/gate)")
     parser.add_argument("--instructions", action="store_true", help="count instructions with valgrind as well, where the baseline has them")
+    parser.add_argument("--history", type=Path, metavar="FILE", help="append the numbers to this file, for ./bench trend")
     parser.add_argument("--verbose", action="store_true", help="lines that pass as well")
     args = parser.parse_args(argv)
     if bool(args.record or args.matrix) != bool(args.baseline) or (args.record and args.matrix):
@@ -134,5 +144,8 @@ def main(argv: list[str]) -> int:
     if lines:
         print(report.table(lines))
     print(report.closing(findings))
+    if args.history and not args.baseline:
+        made = read_run(args.out / findings_case(findings) / "threads-1", allow_not_finite=True)
+        trend.append(args.history, trend.line_of(findings, made.section("provenance").get("git_commit", ""), made.section("status").get("started_utc", "")))
     report.write_json(args.out / "gate.json", "barrierbench.gate", findings, set=None if args.baseline else args.set)
     return 1 if failures(findings) else 0

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "barriers/stiffness/registry.hpp"
+#include "core/archive/archive.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {
@@ -62,6 +63,8 @@ class IpcAdaptive final : public StiffnessPolicy {
     saturated_ = kappa_ >= max_;
     ++doublings_;
   }
+
+  void keep(Archive& archive) override { archive(start_, kappa_, max_, doublings_, saturated_); }
 
   State state() const override {
     return {multiplier_ * start_, multiplier_ * kappa_, doublings_, saturated_};

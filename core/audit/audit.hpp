@@ -31,6 +31,8 @@ class Audit {
   void set_obstacles(std::vector<AuditObstacle> obstacles);
 
   const AuditLedger& ledger() const { return ledger_; }
+  /// Goes on from an earlier ledger of an audit of the same mesh: what was judged since never happened.
+  void restore(const AuditLedger& earlier) { ledger_ = earlier; }
 
  private:
   AuditMesh mesh_;

@@ -98,10 +98,30 @@ void eval_batch(const BarrierFunction& fn, std::size_t n, const T* d, const T* d
   }
 }
 
+/// Columns of doubles in float.
+void eval_narrowed(const BarrierFunction& fn, std::size_t n, const double* d, const double* d_hat, double* b,
+                   double* db, double* d2b) {
+  constexpr std::size_t chunk = 128;
+  float in[2][chunk], out[3][chunk];
+  for (std::size_t start = 0; start < n; start += chunk) {
+    const std::size_t m = std::min(chunk, n - start);
+    for (std::size_t i = 0; i < m; ++i) {
+      in[0][i] = static_cast<float>(d[start + i]);
+      in[1][i] = static_cast<float>(d_hat[start + i]);
+    }
+    eval_batch(fn, m, in[0], in[1], out[0], out[1], out[2]);
+    for (std::size_t i = 0; i < m; ++i) {
+      b[start + i] = out[0][i];
+      db[start + i] = out[1][i];
+      d2b[start + i] = out[2][i];
+    }
+  }
+}
+
 template <class T>
 ShapeTerms<T> eval_one(const BarrierFunction& fn, T d, T d_hat) {
   ShapeTerms<T> terms;
-  eval_batch(fn, 1, &d, &d_hat, &terms.b, &terms.db, &terms.d2b);
+  fn.eval(1, &d, &d_hat, &terms.b, &terms.db, &terms.d2b);
   return terms;
 }
 
@@ -109,6 +129,7 @@ ShapeTerms<T> eval_one(const BarrierFunction& fn, T d, T d_hat) {
 
 void BarrierFunction::eval(std::size_t n, const double* d, const double* d_hat, double* b, double* db,
                            double* d2b) const {
+  if (in_float) return eval_narrowed(*this, n, d, d_hat, b, db, d2b);
   eval_batch(*this, n, d, d_hat, b, db, d2b);
 }
 void BarrierFunction::eval(std::size_t n, const float* d, const float* d_hat, float* b, float* db,

@@ -49,6 +49,9 @@ struct BarrierFunction {
   /// As the article's own code does (step solver article_literal, argument gap only): an unbounded shape is
   /// evaluated at max(d, 1e-10), a bounded one by its formula below contact too, its curvature 0 for d <= 0.
   bool literal = false;
+  /// Columns of doubles are narrowed to float, evaluated so, and widened again (docs/design.md, Precision). Requires
+  /// batch_float.
+  bool in_float = false;
 
   /// Terms of n rows. Cost O(n), allocates nothing. Errors: none, total for d > 0, d_hat > 0; literal:
   /// any finite d.

@@ -12,6 +12,8 @@
 
 namespace bb {
 
+class Archive;
+
 enum class Refresh { per_iteration, per_step };        // when kappa is computed anew
 enum class MassTerm { paper, inertia, scaled, none };  // docs/design.md, Stiffness policies
 /// What becomes of kappa'(d): left out of the curvature, kappa being a number, or included, the force kappa(d)
@@ -92,6 +94,8 @@ class StiffnessPolicy {
     bool saturated = false;
   };
   virtual State state() const { return {}; }
+  /// What it remembers from step to step (core/archive): a policy with memory lists it all.
+  virtual void keep(Archive&) {}
 };
 
 }  // namespace bb

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "core/contact/chunks.hpp"
+#include "core/contact/float_rounding.hpp"
 
 namespace bb {
 
@@ -31,8 +32,8 @@ Vec3d common_motion(const Primitives<1>& points, const Positions& x0, const Posi
 }  // namespace
 
 BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles,
-                       const ContactPlan& plan)
-    : surface_(surface), obstacles_(std::move(obstacles)), plan_(plan) {
+                       const ContactPlan& plan, Precision precision)
+    : surface_(surface), obstacles_(std::move(obstacles)), plan_(plan), precision_(precision) {
   points_.needed = plan.point_point || plan.point_edge || plan.point_triangle;
   edges_.needed = plan.point_edge || plan.edge_edge;
   triangles_.needed = plan.point_triangle;
@@ -62,11 +63,8 @@ void BroadPhase::fit_vertices(const Positions& x0, const Positions& x1, const Fr
 }
 
 template <int N>
-void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Frame& frame) const {
+void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, double rounding) const {
   if (!tree.needed) return;
-  // a TreeBox knows the ulps of what it holds; x itself is larger by up to the frame, and rounded accordingly
-  const double rounding = 4 * std::numeric_limits<double>::epsilon() *
-                          (frame.start.lpNorm<Eigen::Infinity>() + frame.end.lpNorm<Eigen::Infinity>());
   tree.boxes.resize(primitives.size());
   for_each_chunk(primitives.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -79,6 +77,12 @@ void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, const Frame& f
   tree.bvh.update(tree.boxes, primitives.free);
 }
 
+/// Of any distance on the motion, m; 0 in double, where nothing is asked of the states.
+double BroadPhase::state_rounding(const Positions& x0, const Positions& x1) const {
+  if (!values_in_float(precision_) || x0.size() == 0) return 0;
+  return distance_rounding(precision_, std::max(x0.cwiseAbs().maxCoeff(), x1.cwiseAbs().maxCoeff()));
+}
+
 void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& out) {
   const Surface& s = surface_;
   if (plan_.broad_phase.needed) {
@@ -86,8 +90,12 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
     // make every box long.
     const Frame moving = frame(x0, x1);
     fit_vertices(x0, x1, moving);
-    tbb::parallel_invoke([&] { fit(edges_, s.edges, moving); }, [&] { fit(triangles_, s.triangles, moving); },
-                         [&] { fit(points_, s.points, moving); });
+    // a TreeBox knows the ulps of what it holds; x itself is larger by up to the frame, and rounded accordingly
+    const double frames = moving.start.lpNorm<Eigen::Infinity>() + moving.end.lpNorm<Eigen::Infinity>();
+    const double rounding = 4 * std::numeric_limits<double>::epsilon() * frames + state_rounding(x0, x1) / 2;
+    tbb::parallel_invoke([&] { fit(edges_, s.edges, rounding); },
+                         [&] { fit(triangles_, s.triangles, rounding); },
+                         [&] { fit(points_, s.points, rounding); });
   }
   update_obstacles(x0, x1, out.obstacle);
   const auto point = [&s](int i) { return s.points.vertices[static_cast<std::size_t>(i)][0]; };
@@ -119,6 +127,7 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
 void BroadPhase::update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out) {
   out.clear();
   if (!plan_.obstacles.needed) return;
+  const double of_states = state_rounding(x0, x1);
   for (std::size_t i = 0; i < surface_.points.size(); ++i) {
     if (!surface_.points.free[i]) continue;
     const int v = surface_.points.vertices[i][0];
@@ -128,7 +137,11 @@ void BroadPhase::update_obstacles(const Positions& x0, const Positions& x1, std:
       // the gap falls by at most the way gone: a bound for any obstacle; 1e-12 covers rounding
       const double start = surface_gap<double>(obstacles_[o], p0).d;
       const double least = start - (p1 - p0).norm() - 1e-12 * (std::abs(start) + (p1 - p0).norm());
-      if (!(least > side.d_hat + side.offset)) out.push_back({static_cast<int>(i), static_cast<int>(o)});
+      const double rounding =
+          of_states +
+          distance_rounding(precision_, obstacles_[o].point.cwiseAbs().maxCoeff() + obstacles_[o].radius);
+      if (!(least > side.d_hat + side.offset + rounding))
+        out.push_back({static_cast<int>(i), static_cast<int>(o)});
     }
   }
 }

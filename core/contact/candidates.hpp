@@ -6,6 +6,7 @@
 #include "core/contact/bvh.hpp"
 #include "core/contact/obstacle.hpp"
 #include "core/contact/surface.hpp"
+#include "core/math/precision.hpp"
 #include "core/scene/contact_plan.hpp"
 
 namespace bb {
@@ -18,8 +19,9 @@ struct Candidates {
 /// Keeps one tree per kind of primitive that pairs of the plan need, and no other.
 class BroadPhase {
  public:
-  /// plan: of the scene of the surface.
-  BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles, const ContactPlan& plan);
+  /// plan: of the scene of the surface. precision: that in which distances are evaluated.
+  BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles, const ContactPlan& plan,
+             Precision precision = Precision::full);
 
   /// True when some pair or obstacle contact can exist at all.
   bool active() const { return plan_.any(); }
@@ -38,9 +40,10 @@ class BroadPhase {
     Vec3d start, end;
   };
   Frame frame(const Positions& x0, const Positions& x1);
+  double state_rounding(const Positions& x0, const Positions& x1) const;
   void fit_vertices(const Positions& x0, const Positions& x1, const Frame& frame);
   template <int N>
-  void fit(Tree& tree, const Primitives<N>& primitives, const Frame& frame) const;
+  void fit(Tree& tree, const Primitives<N>& primitives, double rounding) const;
   void update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out);
 
   const Surface& surface_;
@@ -50,6 +53,7 @@ class BroadPhase {
   std::vector<TreeBox> vertices_;  // of all vertices on the motion
   std::vector<double> moved_;      // buffer of frame
   const ContactPlan plan_;
+  const Precision precision_;
 };
 
 }  // namespace bb

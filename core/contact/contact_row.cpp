@@ -54,7 +54,8 @@ std::array<int, 4> feature_points(Region region) {
   return {0, 1, 2, 3};
 }
 
-ContactRow make_row(const int* vertex, const double* weights, const Vec3d& r, double distance, Region region,
+template <class T>
+ContactRow make_row(const int* vertex, const T* weights, const Vec<T, 3>& r, T distance, Region region,
                     const Side& law) {
   const std::array<int, 4> local = feature_points(region);
   ContactRow row;
@@ -63,7 +64,7 @@ ContactRow make_row(const int* vertex, const double* weights, const Vec3d& r, do
     row.stencil[k] = vertex[local[k]];
     row.weight[k] = weights[local[k]];
   }
-  double sign = row.weight[0] < 0 ? -1 : 1;  // a vertex of the second edge against the first edge
+  T sign = row.weight[0] < 0 ? T(-1) : T(1);  // a vertex of the second edge against the first edge
   if (n == 2 && row.stencil[0] > row.stencil[1]) {
     std::swap(row.stencil[0], row.stencil[1]);
     std::swap(row.weight[0], row.weight[1]);
@@ -79,11 +80,14 @@ ContactRow make_row(const int* vertex, const double* weights, const Vec3d& r, do
              : edges  ? ContactKind::edge_edge
                       : ContactKind::point_triangle;
   row.key = contact_key(row.stencil);
-  row.normal = distance > 0 ? Vec3d(r * (sign / distance)) : Vec3d(Vec3d::Zero());
-  row.d = distance - law.offset;
+  row.normal = distance > 0 ? Vec3d((r * (sign / distance)).template cast<double>()) : Vec3d(Vec3d::Zero());
+  row.d = distance - static_cast<T>(law.offset);
   row.d_hat = law.d_hat;
   row.offset = law.offset;
   return row;
 }
+
+template ContactRow make_row(const int*, const double*, const Vec<double, 3>&, double, Region, const Side&);
+template ContactRow make_row(const int*, const float*, const Vec<float, 3>&, float, Region, const Side&);
 
 }  // namespace bb

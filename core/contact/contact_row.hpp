@@ -51,8 +51,9 @@ ContactKey pair_key(const std::array<int, N>& vertex) {
 std::array<int, 4> feature_points(Region region);
 
 /// The row of a pair whose closest points are known: its feature in canonical order (the lower id first in a
-/// point-point row and within an edge).
-ContactRow make_row(const int* vertex, const double* weights, const Vec3d& r, double distance, Region region,
+/// point-point row and within an edge). T: float or double, in which d and the normal are computed.
+template <class T>
+ContactRow make_row(const int* vertex, const T* weights, const Vec<T, 3>& r, T distance, Region region,
                     const Side& law);
 
 /// Activation distance of a pair: d_hat, or two thirds of the gap at rest for a pair of one body that is

@@ -24,9 +24,9 @@ struct ContactSystem::Data {
         options(o),
         surface(s),
         obstacles(analytic_surfaces(s)),
-        broad_phase(surface, obstacles, plan),
-        builder(scene, surface, obstacles, plan),
-        bound(surface, obstacles, {o.ccd_park, o.ccd_max_probes}) {}
+        broad_phase(surface, obstacles, plan, o.precision),
+        builder(scene, surface, obstacles, plan, o.precision),
+        bound(surface, obstacles, {o.ccd_park, o.ccd_max_probes}, o.precision) {}
 
   const Scene& scene;
   const ContactOptions options;

@@ -8,6 +8,7 @@
 #include "core/contact/contact_table.hpp"
 #include "core/contact/overlap.hpp"
 #include "core/contact/step_bound.hpp"
+#include "core/math/precision.hpp"
 #include "core/scene/contact_plan.hpp"
 #include "core/scene/scene.hpp"
 
@@ -17,6 +18,7 @@ struct ContactOptions {
   Mollifier mollifier = Mollifier::ipc;
   double ccd_park = 1e-6;  // stop level in units of d_hat
   int ccd_max_probes = 4096;
+  Precision precision = Precision::full;  // scalar of rows and step bound
 };
 
 /// Owns the broad phase. All results are independent of the number of threads. The scene must outlive it. Not

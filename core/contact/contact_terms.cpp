@@ -13,88 +13,108 @@ namespace bb {
 
 namespace {
 
-using Hessian12 = Mat<double, 12, 12>;
+template <class T>
+using Hessian12 = Mat<T, 12, 12>;
 constexpr std::size_t stored = n_lower_numbers(4);  // a row
 
 /// Leading block of 3 n x 3 n projected, the rest is 0 and stays so.
-void project_leading(int n_free, Projection projection, Hessian12& h) {
+template <class T>
+void project_leading(int n_free, Projection projection, Hessian12<T>& h) {
   switch (n_free) {
     case 1:
-      h.topLeftCorner<3, 3>() = project<double, 3>(h.topLeftCorner<3, 3>(), projection);
+      h.template topLeftCorner<3, 3>() = project<T, 3>(h.template topLeftCorner<3, 3>(), projection);
       break;
     case 2:
-      h.topLeftCorner<6, 6>() = project<double, 6>(h.topLeftCorner<6, 6>(), projection);
+      h.template topLeftCorner<6, 6>() = project<T, 6>(h.template topLeftCorner<6, 6>(), projection);
       break;
     case 3:
-      h.topLeftCorner<9, 9>() = project<double, 9>(h.topLeftCorner<9, 9>(), projection);
+      h.template topLeftCorner<9, 9>() = project<T, 9>(h.template topLeftCorner<9, 9>(), projection);
       break;
     default:
-      h = project<double, 12>(h, projection);
+      h = project<T, 12>(h, projection);
   }
 }
 
 /// Rows and columns of the free points of `full` on the compact slots, the others 0; `vertex` [4] are the
 /// compact ids, -1 padded, in stencil order.
-Hessian12 compact(const int* stencil, const int* vertex, const Hessian12& full) {
+template <class T>
+Hessian12<T> compact(const int* stencil, const int* vertex, const Hessian12<T>& full) {
   int local[4] = {-1, -1, -1, -1}, n = 0;
   for (int k = 0; k < 4; ++k) {
     if (n < 4 && vertex[n] >= 0 && stencil[k] == vertex[n]) local[n++] = k;
   }
-  Hessian12 out = Hessian12::Zero();
+  Hessian12<T> out = Hessian12<T>::Zero();
   for (int j = 0; j < n; ++j) {
-    for (int i = 0; i < n; ++i) out.block<3, 3>(3 * i, 3 * j) = full.block<3, 3>(3 * local[i], 3 * local[j]);
+    for (int i = 0; i < n; ++i) {
+      out.template block<3, 3>(3 * i, 3 * j) = full.template block<3, 3>(3 * local[i], 3 * local[j]);
+    }
   }
   return out;
 }
 
-Mat<double, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const Positions& x) {
-  return gather(x, std::array{rows.stencil[4 * r], rows.stencil[4 * r + 1], rows.stencil[4 * r + 2],
-                              rows.stencil[4 * r + 3]});
+/// An entry of a column, in the scalar T.
+template <class T>
+T in(const std::vector<double>& column, std::size_t r) {
+  return static_cast<T>(column[r]);
 }
 
+template <class T>
+Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const Positions& x) {
+  return gather_in<T>(x, std::array{rows.stencil[4 * r], rows.stencil[4 * r + 1], rows.stencil[4 * r + 2],
+                                    rows.stencil[4 * r + 3]});
+}
+
+template <class T>
 struct MollifiedDerivatives {
-  Vec<double, 12> gradient;
-  Hessian12 hessian;
+  Vec<T, 12> gradient;
+  Hessian12<T> hessian;
 };
 
 /// Of m kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
-MollifiedDerivatives mollified_derivatives(const MollifiedTable& rows, std::size_t r, const Positions& x) {
-  const Mat<double, 3, 4> points = mollified_points(rows, r, x);
-  const auto e = edge_edge_mollifier<double>(points, rows.eps[r]);
-  const auto d = distance_derivatives<double, 4>(points, closest_edge_edge<double>(points));
-  const double scale = rows.multiplicity[r] * rows.kappa[r];
-  const double b = scale * rows.b[r], db = scale * rows.db[r], d2b = scale * rows.d2b[r];
-  const Vec<double, 12> g = b * e.gradient + (db * e.value) * d.gradient;
-  const Hessian12 cross = db * e.gradient * d.gradient.transpose();
-  const Hessian12 full = b * e.hessian + cross + cross.transpose() +
-                         (d2b * e.value) * (d.gradient * d.gradient.transpose()) + (db * e.value) * d.hessian;
+template <class T>
+MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r, const Positions& x) {
+  const Mat<T, 3, 4> points = mollified_points<T>(rows, r, x);
+  const auto e = edge_edge_mollifier<T>(points, in<T>(rows.eps, r));
+  const auto d = distance_derivatives<T, 4>(points, closest_edge_edge<T>(points));
+  const T scale = in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r);
+  const T b = scale * in<T>(rows.b, r), db = scale * in<T>(rows.db, r), d2b = scale * in<T>(rows.d2b, r);
+  const Vec<T, 12> g = b * e.gradient + (db * e.value) * d.gradient;
+  const Hessian12<T> cross = db * e.gradient * d.gradient.transpose();
+  const Hessian12<T> full = b * e.hessian + cross + cross.transpose() +
+                            (d2b * e.value) * (d.gradient * d.gradient.transpose()) +
+                            (db * e.value) * d.hessian;
   return {g, full};
 }
 
 /// grad and hess on the compact free slots.
+template <class T>
 void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positions& x, Projection projection,
-                         double* grad, double* hess) {
-  const auto [g, full] = mollified_derivatives(rows, r, x);
-  Hessian12 h = compact(&rows.stencil[4 * r], &rows.free_vertex[4 * r], full);
-  project_leading(rows.n_free[r], projection, h);
-
+                         PassParts parts, double* grad, double* hess) {
+  const auto [g, full] = mollified_derivatives<T>(rows, r, x);
+  if (parts.hessians) {
+    Hessian12<T> h = compact<T>(&rows.stencil[4 * r], &rows.free_vertex[4 * r], full);
+    project_leading<T>(rows.n_free[r], projection, h);
+    store_lower_blocks(4, h, hess, [](T entry) -> double { return entry; });
+  }
+  if (!parts.values) return;
   Vec<double, 12>::Map(grad).setZero();
   int slot = 0;
   for (int k = 0; k < 4; ++k) {
     if (rows.vertex[4 * r + static_cast<std::size_t>(k)] < 0) continue;
-    Vec3d::Map(grad + 3 * slot++) = g.segment<3>(3 * k);
+    Vec3d::Map(grad + 3 * slot++) = g.template segment<3>(3 * k).template cast<double>();
   }
-  store_lower_blocks(4, h, hess);
 }
 
 }  // namespace
 
 void mollified_terms(const MollifiedTable& rows, const Positions& x, Projection projection,
-                     std::vector<double>& grad, std::vector<double>& hess) {
+                     std::vector<double>& grad, std::vector<double>& hess, Precision precision) {
   grad.resize(12 * rows.size());
   hess.resize(stored * rows.size());
-  tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
-    mollified_row_terms(rows, r, x, projection, &grad[12 * r], &hess[stored * r]);
+  for_each_pass(precision, [&]<class T>(PassParts parts) {
+    tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
+      mollified_row_terms<T>(rows, r, x, projection, parts, &grad[12 * r], &hess[stored * r]);
+    });
   });
 }
 
@@ -122,7 +142,7 @@ void add_given_motion(const MollifiedTable& rows, const Positions& x, const Posi
       moved.segment<3>(3 * k) = motion.col(rows.stencil[4 * r + static_cast<std::size_t>(k)]);
     }
     if (moved.isZero(0)) continue;
-    const Vec<double, 12> change = mollified_derivatives(rows, r, x).hessian * moved;
+    const Vec<double, 12> change = mollified_derivatives<double>(rows, r, x).hessian * moved;
     for (int k = 0; k < 4; ++k) {
       const int vertex = rows.vertex[4 * r + static_cast<std::size_t>(k)];
       if (vertex >= 0) force.col(vertex) += change.segment<3>(3 * k);
@@ -130,17 +150,24 @@ void add_given_motion(const MollifiedTable& rows, const Positions& x, const Posi
   }
 }
 
-void contact_energies(const ContactTable& rows, std::vector<double>& energy) {
+void contact_energies(const ContactTable& rows, std::vector<double>& energy, Precision precision) {
   energy.resize(rows.size());
-  for (std::size_t r = 0; r < rows.size(); ++r) energy[r] = rows.multiplicity[r] * rows.kappa[r] * rows.b[r];
+  with_value_scalar(precision, [&]<class T>() {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      energy[r] = in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r) * in<T>(rows.b, r);
+    }
+  });
 }
 
-void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy) {
+void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy,
+                        Precision precision) {
   energy.resize(rows.size());
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    const double e = edge_edge_mollifier_value<double>(mollified_points(rows, r, x), rows.eps[r]);
-    energy[r] = rows.multiplicity[r] * rows.kappa[r] * e * rows.b[r];
-  }
+  with_value_scalar(precision, [&]<class T>() {
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      const T e = edge_edge_mollifier_value<T>(mollified_points<T>(rows, r, x), in<T>(rows.eps, r));
+      energy[r] = in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r) * e * in<T>(rows.b, r);
+    }
+  });
 }
 
 }  // namespace bb

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/contact/contact_table.hpp"
+#include "core/math/precision.hpp"
 #include "core/math/projection.hpp"
 
 namespace bb {
@@ -13,12 +14,14 @@ enum class HessianMode { gauss_newton, projected_full };
 /// Local gradients [12 n] and Hessians [90 n, lower blocks of 4 points] of the rows on the compact free
 /// slots (slots beyond n_free are 0), from kappa, b', b'' in the table: m kappa b' w_i n and m kappa b'' w_i
 /// w_j n n^T, plus m kappa b' grad^2 d in mode projected_full. The block of a row's free points is projected;
-/// without grad^2 d it is positive semi-definite as it is. x: [3 x n]. Resizes the outputs, no other
+/// without grad^2 d it is positive semi-definite as it is. x: [3 x n]. precision: the scalars of either. Resizes the outputs, no other
 /// allocation.
 void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, Projection projection,
-                   std::vector<double>& grad, std::vector<double>& hess);
+                   std::vector<double>& grad, std::vector<double>& hess,
+                   Precision precision = Precision::full);
 void mollified_terms(const MollifiedTable& rows, const Positions& x, Projection projection,
-                     std::vector<double>& grad, std::vector<double>& hess);
+                     std::vector<double>& grad, std::vector<double>& hess,
+                     Precision precision = Precision::full);
 /// Adds to the free columns of `force` [3 x n] (N) how the gradient of B at x changes, to first order, when
 /// its given vertices move by `motion` [3 x n] (m, 0 at free vertices): they have no block in the matrix.
 /// Rows of both tables count; a ContactTable's by m kappa b'' w_i w_j n n^T in either Hessian mode, a
@@ -27,7 +30,9 @@ void add_given_motion(const ContactTable& rows, const Positions& motion, Positio
 void add_given_motion(const MollifiedTable& rows, const Positions& x, const Positions& motion,
                       Positions& force);
 /// Energies m kappa b (and m kappa e b) of every row, J.
-void contact_energies(const ContactTable& rows, std::vector<double>& energy);
-void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy);
+void contact_energies(const ContactTable& rows, std::vector<double>& energy,
+                      Precision precision = Precision::full);
+void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy,
+                        Precision precision = Precision::full);
 
 }  // namespace bb

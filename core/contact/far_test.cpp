@@ -37,8 +37,9 @@ std::vector<FarTest::Corners> FarTest::corners(const Primitives<N>& primitives) 
   return out;
 }
 
-FarTest::FarTest(const Surface& surface)
-    : points_(corners(surface.points)),
+FarTest::FarTest(const Surface& surface, Precision precision)
+    : precision_(precision),
+      points_(corners(surface.points)),
       edges_(corners(surface.edges)),
       triangles_(corners(surface.triangles)) {}
 
@@ -56,7 +57,8 @@ void FarTest::set_state(const Positions& x) {
   });
   unit_ = float_above(unit);
   // Two points, sqrt(3) times what the rounding to float moves a coordinate; in double, what the middle costs.
-  blur_ = float_above(4 * 0x1p-24 + 0x1p-48 * x.cwiseAbs().maxCoeff() * unit);
+  const double outmost = x.cwiseAbs().maxCoeff();
+  blur_ = float_above(4 * 0x1p-24 + 0x1p-48 * outmost * unit + distance_rounding(precision_, outmost) * unit);
 }
 
 template <PairKind K>

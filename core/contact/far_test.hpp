@@ -7,6 +7,7 @@
 #include "core/contact/lane_set.hpp"
 #include "core/contact/pair_lanes.hpp"
 #include "core/contact/tree_box.hpp"
+#include "core/math/precision.hpp"
 
 namespace bb {
 
@@ -15,7 +16,8 @@ class FarTest {
  public:
   static constexpr std::size_t width = 8;
 
-  explicit FarTest(const Surface& surface);
+  /// precision: that in which distances are evaluated.
+  explicit FarTest(const Surface& surface, Precision precision = Precision::full);
   /// [3 x n] m, finite.
   void set_state(const Positions& x);
   /// Those of n <= 8 pairs of kind K that are proven farther apart than the d_hat and offset of their two sides,
@@ -46,6 +48,7 @@ class FarTest {
     return K == PairKind::point_point ? points_ : K == PairKind::point_triangle ? triangles_ : edges_;
   }
 
+  const Precision precision_;
   const std::vector<Corners> points_, edges_, triangles_;
   std::vector<Four> x_;  // in units of the scene's size about its middle: no coordinate is above 1
   float unit_ = 0;       // 1/m, rounded up

@@ -3,7 +3,16 @@
 
 #include <cmath>
 
+#include "core/math/precision.hpp"
+
 namespace bb {
+
+/// How far a distance that is evaluated in the precision's scalar can be from that of the points before they were
+/// rounded, m, for coordinates up to `largest`: two states rounded, differences, and the closest points of them, with
+/// room to spare. 0 in double, where whoever rejects a pair has room of its own.
+inline double distance_rounding(Precision precision, double largest) {
+  return values_in_float(precision) ? 64 * value_epsilon(precision) * largest : 0;
+}
 
 /// The largest float that is at most x and the smallest that is at least x, or a neighbour of those.
 inline float float_below(double x) { return static_cast<float>(x - (std::abs(x) * 0x1p-23 + 0x1p-140)); }

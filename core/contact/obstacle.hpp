@@ -24,6 +24,12 @@ AnalyticSurface<T> analytic_surface(const Obstacle& o) {
   return {o.kind, o.point.cast<T>(), o.axis.cast<T>(), static_cast<T>(o.radius), o.inside};
 }
 
+/// The same obstacle in the scalar T.
+template <class T>
+AnalyticSurface<T> surface_in(const AnalyticSurface<double>& s) {
+  return {s.kind, s.point.cast<T>(), s.axis.cast<T>(), static_cast<T>(s.radius), s.inside};
+}
+
 /// Gap of a point, positive on the allowed side, and its derivatives:
 ///   grad d = normal,   grad^2 d = curvature (I - n n^T - flat flat^T).
 template <class T>

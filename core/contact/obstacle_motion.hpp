@@ -3,24 +3,30 @@
 
 #include <algorithm>
 #include <limits>
+#include <type_traits>
 
 #include "core/contact/obstacle.hpp"
 
 namespace bb {
 
 /// Smallest stop level that means anything: 16 ulps of the largest coordinate, m (docs/design.md).
-inline double ulp_floor(double largest) { return 16 * std::numeric_limits<double>::epsilon() * largest; }
+template <class T>
+T ulp_floor(T largest) {
+  return 16 * std::numeric_limits<T>::epsilon() * largest;
+}
 
 /// Time in [0, 1] at which a vertex comes down to the stop level over an obstacle; stop levels as for ACCD.
-inline double obstacle_toi(const AnalyticSurface<double>& obstacle, const Vec3d& x0, const Vec3d& x1,
-                           double offset, double park) {
-  const double start = surface_gap<double>(obstacle, x0).d - offset;
-  const double largest = std::max({x0.cwiseAbs().maxCoeff(), x1.cwiseAbs().maxCoeff(),
-                                   obstacle.point.cwiseAbs().maxCoeff(), obstacle.radius, offset});
-  const double floor = ulp_floor(largest);
+template <class T>
+T obstacle_toi(const AnalyticSurface<T>& obstacle, const std::type_identity_t<Vec<T, 3>>& x0,
+               const std::type_identity_t<Vec<T, 3>>& x1, std::type_identity_t<T> offset,
+               std::type_identity_t<T> park) {
+  const T start = surface_gap<T>(obstacle, x0).d - offset;
+  const T largest = std::max({x0.cwiseAbs().maxCoeff(), x1.cwiseAbs().maxCoeff(),
+                              obstacle.point.cwiseAbs().maxCoeff(), obstacle.radius, offset});
+  const T floor = ulp_floor(largest);
   if (!(start > floor)) return 0;
-  const double stop = std::max(park, floor);
-  return first_time_at<double>(obstacle, x0, x1, offset + (start < 2 * stop ? start / 2 : stop));
+  const T stop = std::max(park, floor);
+  return first_time_at<T>(obstacle, x0, x1, offset + (start < 2 * stop ? start / 2 : stop));
 }
 
 }  // namespace bb

@@ -44,6 +44,12 @@ Mat<double, 3, static_cast<int>(N)> gather(const Positions& x, const std::array<
   return out;
 }
 
+/// The same in the scalar T.
+template <class T, std::size_t N>
+Mat<T, 3, static_cast<int>(N)> gather_in(const Positions& x, const std::array<int, N>& vertex) {
+  return gather(x, vertex).template cast<T>();
+}
+
 /// Distance between the boxes of the two primitives, each over all given sets of points: a cheap lower bound.
 template <PairKind K, class... Points>
 double pair_box_distance(const Points&... points) {

@@ -34,7 +34,7 @@ bool RowBuilder::moves(const ContactRow& row) const {
   return false;
 }
 
-template <PairKind K>
+template <PairKind K, class T>
 void RowBuilder::add_pairs(const Positions& x, const std::vector<IndexPair>& pairs, std::size_t begin,
                            std::size_t end, Part& part) const {
   constexpr std::size_t width = FarTest::width, ahead = 3 * width;
@@ -46,25 +46,26 @@ void RowBuilder::add_pairs(const Positions& x, const std::vector<IndexPair>& pai
     for (std::size_t lane = 0; lane < n; ++lane) {
       if ((far >> lane & 1) != 0) continue;
       const IndexPair index = pairs[begin + lane];
-      add_pair<K>(x, index, contact_pair<K>(surface_, index), part);
+      add_pair<K, T>(x, index, contact_pair<K>(surface_, index), part);
     }
   }
 }
 
-template <PairKind K>
+template <PairKind K, class T>
 void RowBuilder::add_pair(const Positions& x, IndexPair index, ContactPair<K> pair, Part& part) const {
-  const auto points = gather(x, pair.vertex);
-  const auto closest = closest_points<K, double>(points);
-  if (closest.d - pair.law.offset >= pair.law.d_hat) return;
+  const auto points = gather_in<T>(x, pair.vertex);
+  const auto closest = closest_points<K, T>(points);
+  const T gap = closest.d - static_cast<T>(pair.law.offset);
+  if (gap >= static_cast<T>(pair.law.d_hat)) return;
   pair.law.d_hat = row_d_hat<K>(scene_, pair);
-  if (closest.d - pair.law.offset >= pair.law.d_hat) return;
+  if (gap >= static_cast<T>(pair.law.d_hat)) return;
 
   if constexpr (K == PairKind::edge_edge) {
     if (mollified_) {
       const double eps = edge_edge_mollifier_threshold<double>(gather(scene_.rest, pair.vertex));
-      if (edge_edge_cross_squared<double>(points) < eps) {
-        MollifiedRow m{make_row(pair.vertex.data(), closest.weights.data(), closest.r, closest.d,
-                                Region::ea_eb, pair.law),
+      if (edge_edge_cross_squared<T>(points) < static_cast<T>(eps)) {
+        MollifiedRow m{make_row<T>(pair.vertex.data(), closest.weights.data(), closest.r, closest.d,
+                                   Region::ea_eb, pair.law),
                        eps};
         m.row.pair = pair_id(static_cast<int>(K), index);
         if (!moves(m.row)) return;
@@ -75,32 +76,34 @@ void RowBuilder::add_pair(const Positions& x, IndexPair index, ContactPair<K> pa
     }
   }
   ContactRow row =
-      make_row(pair.vertex.data(), closest.weights.data(), closest.r, closest.d, closest.region, pair.law);
+      make_row<T>(pair.vertex.data(), closest.weights.data(), closest.r, closest.d, closest.region, pair.law);
   row.pair = pair_id(static_cast<int>(K), index);
   if (!moves(row)) return;
   part.min_gap = std::min(part.min_gap, row.d);
   part.rows.push_back(row);
 }
 
+template <class T>
 void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) const {
   const std::size_t i = static_cast<std::size_t>(pair.first);
   const int v = surface_.points.vertices[i][0];
-  const AnalyticSurface<double>& obstacle = obstacles_[static_cast<std::size_t>(pair.second)];
-  const SurfaceGap<double> gap = surface_gap<double>(obstacle, x.col(v));
+  const auto obstacle = surface_in<T>(obstacles_[static_cast<std::size_t>(pair.second)]);
+  const SurfaceGap<T> gap = surface_gap<T>(obstacle, x.col(v).template cast<T>());
   const Side law = surface_.points.side[i];
-  if (gap.d - law.offset >= law.d_hat) return;
+  const T d = gap.d - static_cast<T>(law.offset);
+  if (d >= static_cast<T>(law.d_hat)) return;
   ContactRow row;
   row.kind = ContactKind::obstacle;
   row.pair = pair_id(obstacle_kind, pair);
   row.key = obstacle_key(pair.second, v);
   row.stencil[0] = v;
   row.weight[0] = 1;
-  row.normal = gap.normal;
-  row.d = gap.d - law.offset;
+  row.normal = gap.normal.template cast<double>();
+  row.d = d;
   row.d_hat = law.d_hat;
   row.offset = law.offset;
   row.curvature = gap.curvature;
-  row.flat = gap.flat;
+  row.flat = gap.flat.template cast<double>();
   part.min_gap = std::min(part.min_gap, row.d);
   part.rows.push_back(row);
 }
@@ -127,13 +130,15 @@ double RowBuilder::build(const Positions& x, const Candidates& candidates, Conta
     });
     n_parts += n;
   };
-  for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
-    in_parts(pairs, [&](std::size_t begin, std::size_t end, Part& part) {
-      add_pairs<K>(x, pairs, begin, end, part);
+  with_value_scalar(precision_, [&]<class T>() {
+    for_each_kind(candidates, [&]<PairKind K>(const std::vector<IndexPair>& pairs) {
+      in_parts(pairs, [&](std::size_t begin, std::size_t end, Part& part) {
+        add_pairs<K, T>(x, pairs, begin, end, part);
+      });
     });
-  });
-  in_parts(candidates.obstacle, [&](std::size_t begin, std::size_t end, Part& part) {
-    for (std::size_t i = begin; i < end; ++i) add_obstacle(x, candidates.obstacle[i], part);
+    in_parts(candidates.obstacle, [&](std::size_t begin, std::size_t end, Part& part) {
+      for (std::size_t i = begin; i < end; ++i) add_obstacle<T>(x, candidates.obstacle[i], part);
+    });
   });
 
   n_parts_ = n_parts;

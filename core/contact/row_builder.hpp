@@ -9,6 +9,7 @@
 #include "core/contact/contact_row.hpp"
 #include "core/contact/contact_table.hpp"
 #include "core/contact/far_test.hpp"
+#include "core/math/precision.hpp"
 
 namespace bb {
 
@@ -16,12 +17,14 @@ namespace bb {
 class RowBuilder {
  public:
   RowBuilder(const Scene& scene, const Surface& surface,
-             const std::vector<AnalyticSurface<double>>& obstacles, const ContactPlan& plan)
+             const std::vector<AnalyticSurface<double>>& obstacles, const ContactPlan& plan,
+             Precision precision)
       : scene_(scene),
         surface_(surface),
         obstacles_(obstacles),
         mollified_(plan.mollifier.needed),
-        far_(surface) {}
+        precision_(precision),
+        far_(surface, precision) {}
 
   /// See ContactSystem::find_rows.
   double build(const Positions& x, const Candidates& candidates, ContactTable& rows,
@@ -47,11 +50,12 @@ class RowBuilder {
     const ContactRow* row;
   };
   /// The pairs [begin, end): what is proven to be far is done with.
-  template <PairKind K>
+  template <PairKind K, class T>
   void add_pairs(const Positions& x, const std::vector<IndexPair>& pairs, std::size_t begin, std::size_t end,
                  Part& part) const;
-  template <PairKind K>
+  template <PairKind K, class T>
   void add_pair(const Positions& x, IndexPair index, ContactPair<K> pair, Part& part) const;
+  template <class T>
   void add_obstacle(const Positions& x, IndexPair pair, Part& part) const;
   bool moves(const ContactRow& row) const;
   int compact_free(const ContactRow& row, int* vertex, double* weight) const;
@@ -64,6 +68,7 @@ class RowBuilder {
   const Surface& surface_;
   const std::vector<AnalyticSurface<double>>& obstacles_;
   const bool mollified_;
+  const Precision precision_;
   FarTest far_;
   std::vector<Part> parts_;
   std::vector<SortedRow> sorted_;

@@ -20,20 +20,36 @@ constexpr int n_sliding(ContactKind kind) {
   return kind == ContactKind::point_triangle || kind == ContactKind::edge_edge ? 2 : 0;
 }
 
-double scale_of(const ContactTable& rows, std::size_t r) { return rows.multiplicity[r] * rows.kappa[r]; }
+/// An entry of a column, in the scalar T.
+template <class T>
+T in(const std::vector<double>& column, std::size_t r) {
+  return static_cast<T>(column[r]);
+}
 
-/// grad d on the compact slots, and the row's gradient.
-Vec<double, 12> row_gradient(const ContactTable& rows, std::size_t r, double* grad) {
-  Vec<double, 12> g = Vec<double, 12>::Zero();
+template <class T>
+T scale_of(const ContactTable& rows, std::size_t r) {
+  return in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r);
+}
+
+template <class T>
+Vec<T, 3> normal_of(const ContactTable& rows, std::size_t r) {
+  return Vec3d::Map(&rows.normal[3 * r]).cast<T>();
+}
+
+/// grad d on the compact slots.
+template <class T>
+Vec<T, 12> gap_gradient(const ContactTable& rows, std::size_t r) {
+  Vec<T, 12> g = Vec<T, 12>::Zero();
+  const Vec<T, 3> normal = normal_of<T>(rows, r);
   for (int k = 0; k < rows.n_free[r]; ++k) {
-    g.segment<3>(3 * k) = rows.weight[4 * r + static_cast<std::size_t>(k)] * Vec3d::Map(&rows.normal[3 * r]);
+    g.template segment<3>(3 * k) = in<T>(rows.weight, 4 * r + static_cast<std::size_t>(k)) * normal;
   }
-  Vec<double, 12>::Map(grad) = (scale_of(rows, r) * rows.db[r]) * g;
   return g;
 }
 
 /// stretch grad d grad d^T.
-void store_stretch(const Vec<double, 12>& grad_d, double stretch, double* hess) {
+template <class T>
+void store_stretch(const Vec<T, 12>& grad_d, T stretch, double* hess) {
   for (int b = 0; b < 4; ++b) {
     for (int a = b; a < 4; ++a) {
       for (int c = 0; c < 3; ++c) {
@@ -45,41 +61,43 @@ void store_stretch(const Vec<double, 12>& grad_d, double stretch, double* hess) 
 
 /// Rows whose closest points slide nowhere: grad^2 d = w w^T x curvature (I - n n^T - flat flat^T), and both
 /// of its parts are eigenspaces.
+template <class T>
 void store_fixed_points(const ContactTable& rows, std::size_t r, Projection projection, double* hess) {
   const bool obstacle = rows.kind[r] == ContactKind::obstacle;
-  const double scale = scale_of(rows, r);
-  const double curvature = obstacle ? rows.curvature[r] : 1 / (rows.d[r] + rows.offset[r]);
-  const Vec3d n = Vec3d::Map(&rows.normal[3 * r]);
-  Vec3d flat = Vec3d::Zero();
-  if (obstacle) flat = Vec3d::Map(&rows.flat[3 * r]);
-  const double along = project_eigenvalue(scale * rows.d2b[r], projection);
-  const double across = project_eigenvalue(scale * rows.db[r] * curvature, projection);
-  const Mat3d unit =
-      along * n * n.transpose() + across * (Mat3d::Identity() - n * n.transpose() - flat * flat.transpose());
+  const T scale = scale_of<T>(rows, r);
+  const T curvature = obstacle ? in<T>(rows.curvature, r) : 1 / (in<T>(rows.d, r) + in<T>(rows.offset, r));
+  const Vec<T, 3> n = normal_of<T>(rows, r);
+  Vec<T, 3> flat = Vec<T, 3>::Zero();
+  if (obstacle) flat = Vec3d::Map(&rows.flat[3 * r]).template cast<T>();
+  const T along = project_eigenvalue(scale * in<T>(rows.d2b, r), projection);
+  const T across = project_eigenvalue(scale * in<T>(rows.db, r) * curvature, projection);
+  const Mat<T, 3, 3> unit = along * n * n.transpose() +
+                            across * (Mat<T, 3, 3>::Identity() - n * n.transpose() - flat * flat.transpose());
   for (std::size_t j = 0; j < 4; ++j) {
     for (std::size_t i = j; i < 4; ++i, hess += 9) {
-      Mat3d::Map(hess) = (rows.weight[4 * r + i] * rows.weight[4 * r + j]) * unit;
+      const Mat<T, 3, 3> block = (in<T>(rows.weight, 4 * r + i) * in<T>(rows.weight, 4 * r + j)) * unit;
+      Mat3d::Map(hess) = block.template cast<double>();
     }
   }
 }
 
 /// The local frame of a row; the closest points are those that the row keeps.
-template <PairKind K>
-RowShape<double, n_sliding(contact_kind<K>())> row_shape(const ContactTable& rows, std::size_t r,
-                                                         const Positions& x, Region interior) {
+template <PairKind K, class T>
+RowShape<T, n_sliding(contact_kind<K>())> row_shape(const ContactTable& rows, std::size_t r,
+                                                    const Positions& x, Region interior) {
   constexpr int n = pair_points(K), F = n_sliding(contact_kind<K>());
   std::array<int, n> vertex;
-  Closest<double, n> closest;
+  Closest<T, n> closest;
   for (int k = 0; k < n; ++k) {
     vertex[static_cast<std::size_t>(k)] = rows.stencil[4 * r + static_cast<std::size_t>(k)];
-    closest.weights[k] = rows.stencil_weight[4 * r + static_cast<std::size_t>(k)];
+    closest.weights[k] = in<T>(rows.stencil_weight, 4 * r + static_cast<std::size_t>(k));
   }
-  closest.d = rows.d[r] + rows.offset[r];
-  closest.r = closest.d * Vec3d::Map(&rows.normal[3 * r]);
+  closest.d = in<T>(rows.d, r) + in<T>(rows.offset, r);
+  closest.r = closest.d * normal_of<T>(rows, r);
   closest.region = interior;
-  const auto frame = detail::region_frame<double, n>(gather(x, vertex), closest);
-  RowShape<double, F> out;
-  out.w = Vec<double, 4>::Map(&rows.weight[4 * r]);
+  const auto frame = detail::region_frame<T, n>(gather_in<T>(x, vertex), closest);
+  RowShape<T, F> out;
+  out.w = Vec<double, 4>::Map(&rows.weight[4 * r]).template cast<T>();
   out.n = frame.n;
   for (int l = 0; l < F; ++l) {
     out.q[l] = frame.q[l];
@@ -91,24 +109,27 @@ RowShape<double, n_sliding(contact_kind<K>())> row_shape(const ContactTable& row
     }
   }
   out.distance = closest.d;
-  out.stretch = scale_of(rows, r) * rows.d2b[r];
-  out.push = scale_of(rows, r) * rows.db[r];
+  out.stretch = scale_of<T>(rows, r) * in<T>(rows.d2b, r);
+  out.push = scale_of<T>(rows, r) * in<T>(rows.db, r);
   return out;
 }
 
-template <int F>
-RowShape<double, F> row_shape(const ContactTable& rows, std::size_t r, const Positions& x) {
+template <int F, class T>
+RowShape<T, F> row_shape(const ContactTable& rows, std::size_t r, const Positions& x) {
   if constexpr (F == 1) {
-    return row_shape<PairKind::point_edge>(rows, r, x, Region::p_e);
+    return row_shape<PairKind::point_edge, T>(rows, r, x, Region::p_e);
   } else if (rows.kind[r] == ContactKind::point_triangle) {
-    return row_shape<PairKind::point_triangle>(rows, r, x, Region::p_t);
+    return row_shape<PairKind::point_triangle, T>(rows, r, x, Region::p_t);
   } else {
-    return row_shape<PairKind::edge_edge>(rows, r, x, Region::ea_eb);
+    return row_shape<PairKind::edge_edge, T>(rows, r, x, Region::ea_eb);
   }
 }
 
-template <int F>
-void set_lane(RowShape<Lanes4, F>& lanes, std::size_t lane, const RowShape<double, F>& row) {
+template <class T>
+using FourOf = Lanes<T, static_cast<int>(n_lanes)>;
+
+template <int F, class T>
+void set_lane(RowShape<FourOf<T>, F>& lanes, std::size_t lane, const RowShape<T, F>& row) {
   const auto set = [lane](auto& to, const auto& from) {
     for (Eigen::Index k = 0; k < from.size(); ++k) to[k].v[lane] = from[k];
   };
@@ -125,17 +146,17 @@ void set_lane(RowShape<Lanes4, F>& lanes, std::size_t lane, const RowShape<doubl
 
 /// Rows of one number of sliding edges, four Hessians at a time; what is missing to four is made up by the
 /// first of them.
-template <int F>
+template <int F, class T>
 void store_sliding(const ContactTable& rows, const std::size_t* list, std::size_t n, const Positions& x,
                    Projection projection, double* hess) {
-  RowShape<Lanes4, F> shape;
-  Lanes4 blocks[stored];
+  RowShape<FourOf<T>, F> shape;
+  FourOf<T> blocks[stored];
   for (std::size_t begin = 0; begin < n; begin += n_lanes) {
     const std::size_t used = std::min(n_lanes, n - begin);
     for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-      set_lane<F>(shape, lane, row_shape<F>(rows, list[begin + (lane < used ? lane : 0)], x));
+      set_lane<F, T>(shape, lane, row_shape<F, T>(rows, list[begin + (lane < used ? lane : 0)], x));
     }
-    row_hessian<Lanes4, F>(shape, projection, blocks);
+    row_hessian<FourOf<T>, F>(shape, projection, blocks);
     for (std::size_t lane = 0; lane < used; ++lane) {
       double* const out = hess + stored * list[begin + lane];
       for (std::size_t k = 0; k < stored; ++k) out[k] = blocks[k].v[lane];
@@ -143,28 +164,42 @@ void store_sliding(const ContactTable& rows, const std::size_t* list, std::size_
   }
 }
 
+/// The rows [begin, end), at most a chunk of them.
+template <class T>
+void store_rows(const ContactTable& rows, std::size_t begin, std::size_t end, const Positions& x,
+                HessianMode mode, Projection projection, PassParts parts, double* grad, double* hess) {
+  std::array<std::size_t, chunk_size> sliding[2];
+  std::size_t n[2] = {0, 0};
+  for (std::size_t r = begin; r < end; ++r) {
+    const Vec<T, 12> grad_d = gap_gradient<T>(rows, r);
+    if (parts.values) {
+      const Vec<T, 12> g = (scale_of<T>(rows, r) * in<T>(rows.db, r)) * grad_d;
+      Vec<double, 12>::Map(grad + 12 * r) = g.template cast<double>();
+    }
+    if (!parts.hessians) continue;
+    const int edges = n_sliding(rows.kind[r]);
+    if (mode == HessianMode::gauss_newton || rows.db[r] == 0) {
+      store_stretch<T>(grad_d, scale_of<T>(rows, r) * in<T>(rows.d2b, r), hess + stored * r);
+    } else if (edges == 0) {
+      store_fixed_points<T>(rows, r, projection, hess + stored * r);
+    } else {
+      sliding[edges - 1][n[edges - 1]++] = r;
+    }
+  }
+  store_sliding<1, T>(rows, sliding[0].data(), n[0], x, projection, hess);
+  store_sliding<2, T>(rows, sliding[1].data(), n[1], x, projection, hess);
+}
+
 }  // namespace
 
 void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, Projection projection,
-                   std::vector<double>& grad, std::vector<double>& hess) {
+                   std::vector<double>& grad, std::vector<double>& hess, Precision precision) {
   grad.resize(12 * rows.size());
   hess.resize(stored * rows.size());
-  for_each_chunk(rows.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
-    std::array<std::size_t, chunk_size> sliding[2];
-    std::size_t n[2] = {0, 0};
-    for (std::size_t r = begin; r < end; ++r) {
-      const Vec<double, 12> grad_d = row_gradient(rows, r, &grad[12 * r]);
-      const int edges = n_sliding(rows.kind[r]);
-      if (mode == HessianMode::gauss_newton || rows.db[r] == 0) {
-        store_stretch(grad_d, scale_of(rows, r) * rows.d2b[r], &hess[stored * r]);
-      } else if (edges == 0) {
-        store_fixed_points(rows, r, projection, &hess[stored * r]);
-      } else {
-        sliding[edges - 1][n[edges - 1]++] = r;
-      }
-    }
-    store_sliding<1>(rows, sliding[0].data(), n[0], x, projection, hess.data());
-    store_sliding<2>(rows, sliding[1].data(), n[1], x, projection, hess.data());
+  for_each_pass(precision, [&]<class T>(PassParts parts) {
+    for_each_chunk(rows.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      store_rows<T>(rows, begin, end, x, mode, projection, parts, grad.data(), hess.data());
+    });
   });
 }
 

@@ -80,17 +80,24 @@ void StepBoundFinder::ask_lanes(const std::vector<IndexPair>& pairs, const Motio
       proven_times<K>(points, gather_lanes<K>(pair, motion.x1) - points, reach, part.first.toi);
   for (std::size_t lane = 0; lane < n; ++lane) {
     if (proven[static_cast<int>(lane)] > part.first.toi) continue;
-    const auto p0 = gather(motion.x0, pair[lane].vertex), p1 = gather(motion.x1, pair[lane].vertex);
-    const double park = level_.park * pair[lane].law.d_hat;
-    const AccdResult<double> r =
-        accd<K, double>(p0, p1, pair[lane].law.offset, park, level_.max_probes, part.first.toi);
-    const FirstContact found{r.hit ? r.toi : 1, static_cast<int>(K), index[lane]};
-    if (found.before(part.first)) part.first = found;
-    ++part.queries;
-    part.probes += r.probes;
-    part.capped += r.capped;
-    part.zero += found.toi == 0;
+    with_value_scalar(precision_, [&]<class T>() { ask<K, T>(pair[lane], index[lane], motion, part); });
   }
+}
+
+/// The pair's own time, in the scalar T.
+template <PairKind K, class T>
+void StepBoundFinder::ask(const ContactPair<K>& pair, std::uint32_t index, const Motion& motion,
+                          Part& part) const {
+  const T park = static_cast<T>(level_.park * pair.law.d_hat), enough = static_cast<T>(part.first.toi);
+  const AccdResult<T> r =
+      accd<K, T>(gather_in<T>(motion.x0, pair.vertex), gather_in<T>(motion.x1, pair.vertex),
+                 static_cast<T>(pair.law.offset), park, level_.max_probes, enough);
+  const FirstContact found{r.hit ? r.toi : 1, static_cast<int>(K), index};
+  if (found.before(part.first)) part.first = found;
+  ++part.queries;
+  part.probes += r.probes;
+  part.capped += r.capped;
+  part.zero += found.toi == 0;
 }
 
 template <PairKind K>
@@ -125,6 +132,7 @@ void StepBoundFinder::ask_batches(const std::vector<IndexPair>& pairs, const Mot
   }
 }
 
+template <class T>
 void StepBoundFinder::ask_obstacles(const std::vector<IndexPair>& pairs, const Motion& motion) {
   parts_.assign(n_chunks(pairs.size()), Part{});
   for_each_chunk(pairs.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
@@ -133,8 +141,10 @@ void StepBoundFinder::ask_obstacles(const std::vector<IndexPair>& pairs, const M
       const std::size_t point = static_cast<std::size_t>(pairs[i].first);
       const int v = surface_.points.vertices[point][0];
       const Side law = surface_.points.side[point];
-      const double toi = obstacle_toi(obstacles_[static_cast<std::size_t>(pairs[i].second)], motion.x0.col(v),
-                                      motion.x1.col(v), law.offset, level_.park * law.d_hat);
+      const auto obstacle = surface_in<T>(obstacles_[static_cast<std::size_t>(pairs[i].second)]);
+      const T toi =
+          obstacle_toi(obstacle, motion.x0.col(v).template cast<T>(), motion.x1.col(v).template cast<T>(),
+                       static_cast<T>(law.offset), static_cast<T>(level_.park * law.d_hat));
       const FirstContact found{toi, obstacle_list, i};
       if (found.before(part.first)) part.first = found;
       part.zero += toi == 0;
@@ -167,9 +177,12 @@ StepBound StepBoundFinder::result(const Candidates& candidates) const {
 
 StepBound StepBoundFinder::find(const Candidates& candidates, const Positions& x0, const Positions& x1) {
   const double largest = std::max(largest_coordinate(x0), largest_coordinate(x1));
-  const Motion motion{x0, x1, 2 * ulp_floor(largest)};
+  const double floor = 2 * with_value_scalar(precision_, [&]<class T>() -> double {
+                         return ulp_floor(static_cast<T>(largest));
+                       });
+  const Motion motion{x0, x1, floor};
   all_ = {};
-  ask_obstacles(candidates.obstacle, motion);
+  with_value_scalar(precision_, [&]<class T>() { ask_obstacles<T>(candidates.obstacle, motion); });
   if (!candidates.point_triangle.empty() || !candidates.point_edge.empty() || !candidates.point_point.empty())
     fit(points_, surface_.points, motion);
   if (!candidates.edge_edge.empty() || !candidates.point_edge.empty()) fit(edges_, surface_.edges, motion);

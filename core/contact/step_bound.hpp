@@ -8,6 +8,8 @@
 #include "core/contact/candidates.hpp"
 #include "core/contact/contact_table.hpp"
 #include "core/contact/motion_box.hpp"
+#include "core/contact/pair_geometry.hpp"
+#include "core/math/precision.hpp"
 
 namespace bb {
 
@@ -47,8 +49,8 @@ struct FirstContact {
 class StepBoundFinder {
  public:
   StepBoundFinder(const Surface& surface, const std::vector<AnalyticSurface<double>>& obstacles,
-                  const StopLevel& level)
-      : surface_(surface), obstacles_(obstacles), level_(level) {}
+                  const StopLevel& level, Precision precision = Precision::full)
+      : surface_(surface), obstacles_(obstacles), level_(level), precision_(precision) {}
 
   /// Of all candidates. Both ends of the motion finite.
   StepBound find(const Candidates& candidates, const Positions& x0, const Positions& x1);
@@ -66,7 +68,8 @@ class StepBoundFinder {
   };
   struct Motion {
     const Positions &x0, &x1;
-    double floor;  // least stop level, m: 32 ulps of the largest coordinate of all
+    double
+        floor;  // least stop level, m: 32 ulps of the largest coordinate of all, in the scalar of the queries
   };
   template <int N>
   void fit(std::vector<MotionBox>& boxes, const Primitives<N>& primitives, const Motion& motion) const;
@@ -80,6 +83,9 @@ class StepBoundFinder {
   template <PairKind K>
   void ask_lanes(const std::vector<IndexPair>& pairs, const Motion& motion,
                  const std::array<std::uint32_t, 4>& index, std::size_t n, Part& part) const;
+  template <PairKind K, class T>
+  void ask(const ContactPair<K>& pair, std::uint32_t index, const Motion& motion, Part& part) const;
+  template <class T>
   void ask_obstacles(const std::vector<IndexPair>& pairs, const Motion& motion);
   void take(const Part& part);
   StepBound result(const Candidates& candidates) const;
@@ -87,6 +93,7 @@ class StepBoundFinder {
   const Surface& surface_;
   const std::vector<AnalyticSurface<double>>& obstacles_;
   const StopLevel level_;
+  const Precision precision_;
   std::vector<MotionBox> points_, edges_, triangles_;
   std::vector<Entry> entries_[4];            // by kind: chunk k of the pairs has its own from k chunk_size on
   std::vector<std::uint32_t> n_entries_[4];  // of each chunk

@@ -14,6 +14,7 @@
 #include "core/energy/terms.hpp"
 #include "core/math/error.hpp"
 #include "core/math/lower_blocks.hpp"
+#include "core/math/precision.hpp"
 
 namespace bb {
 
@@ -26,20 +27,42 @@ void for_each_element(std::size_t n, const F& f) {
                     });
 }
 
-/// The W points of element e.
-template <int W>
+/// The W points of element e, in the scalar T.
+template <int W, class T = double>
 struct Points {
-  Vec3d x[W];
+  Vec<T, 3> x[W];
   Points(const Positions& all, std::span<const int> vertices, std::size_t e) {
-    for (std::size_t i = 0; i < W; ++i) x[i] = all.col(vertices[W * e + i]);
+    for (std::size_t i = 0; i < W; ++i) x[i] = all.col(vertices[W * e + i]).template cast<T>();
   }
 };
 
-template <int N>
-void store_terms(const ElementTerms<double, N>& terms, std::size_t e, LocalTerms& out) {
-  out.energy[e] = terms.energy;
-  std::copy_n(terms.grad.data(), N, out.grad.data() + N * e);
-  store_lower_blocks(N / 3, terms.hess, out.hess.data() + n_lower_numbers(N / 3) * e);
+template <class T, int N>
+void store_terms(const ElementTerms<T, N>& terms, std::size_t e, PassParts parts, LocalTerms& out) {
+  if (parts.values) {
+    out.energy[e] = terms.energy;
+    std::copy_n(terms.grad.data(), N, out.grad.data() + N * e);
+  }
+  if (parts.hessians) {
+    store_lower_blocks(N / 3, terms.hess, out.hess.data() + n_lower_numbers(N / 3) * e,
+                       [](T entry) -> double { return entry; });
+  }
+}
+
+/// terms.operator()<T>(e), the ElementTerms of element e in the scalar T, of n elements: each part in the scalar that
+/// the precision has for it.
+template <class Terms>
+void store_elements(std::size_t n, Precision precision, const Terms& terms, LocalTerms& out) {
+  for_each_pass(precision, [&]<class T>(PassParts parts) {
+    for_each_element(n, [&](std::size_t e) { store_terms(terms.template operator()<T>(e), e, parts, out); });
+  });
+}
+
+/// value.operator()<T>(e), J, of n elements.
+template <class Value>
+void store_energies(std::size_t n, Precision precision, const Value& value, double* energy) {
+  with_value_scalar(precision, [&]<class T>() {
+    for_each_element(n, [&](std::size_t e) { energy[e] = value.template operator()<T>(e); });
+  });
 }
 
 /// ConfigError unless a column has one entry an element and, where `positive`, no entry that is not > 0.

@@ -12,13 +12,14 @@ namespace {
 
 // The projection's chain of square roots and divisions bounds a hinge: four run side by side.
 constexpr std::size_t kLanes = 4;
-using Real = Lanes<double, kLanes>;
 
+template <class T>
 struct HingeGroup {
+  using Real = Lanes<T, kLanes>;
   Vec<Real, 3> x[4];
   Real stiffness, deviation;
 
-  void set(std::size_t lane, const Vec3d (&points)[4], double k, double turned) {
+  void set(std::size_t lane, const Vec<T, 3> (&points)[4], T k, T turned) {
     for (int i = 0; i < 4; ++i) {
       for (int c = 0; c < 3; ++c) x[i][c].v[lane] = points[i][c];
     }
@@ -27,44 +28,58 @@ struct HingeGroup {
   }
 };
 
-void store(const ElementTerms<Real, 12>& terms, std::size_t first, std::size_t n, LocalTerms& out) {
+template <class Real>
+void store(const ElementTerms<Real, 12>& terms, std::size_t first, std::size_t n, PassParts parts,
+           LocalTerms& out) {
   for (std::size_t lane = 0; lane < n; ++lane) {
     const std::size_t e = first + lane;
-    out.energy[e] = terms.energy.v[lane];
-    for (std::size_t k = 0; k < 12; ++k) out.grad[12 * e + k] = terms.grad.data()[k].v[lane];
+    if (parts.values) {
+      out.energy[e] = terms.energy.v[lane];
+      for (std::size_t k = 0; k < 12; ++k) out.grad[12 * e + k] = terms.grad.data()[k].v[lane];
+    }
+    if (!parts.hessians) continue;
     store_lower_blocks(4, terms.hess, &out.hess[n_lower_numbers(4) * e],
-                       [lane](const Real& entry) { return entry.v[lane]; });
+                       [lane](const Real& entry) -> double { return entry.v[lane]; });
   }
 }
 
 }  // namespace
 
 HingeBatch::HingeBatch(std::span<const std::array<int, 4>> hinges, std::vector<double> stiffness,
-                       std::vector<double> rest_angle)
-    : stiffness_(std::move(stiffness)), rest_angle_(std::move(rest_angle)) {
+                       std::vector<double> rest_angle, Precision precision)
+    : stiffness_(std::move(stiffness)), rest_angle_(std::move(rest_angle)), precision_(precision) {
   check_column("hinge/stiffness", hinges.size(), stiffness_, false);
   check_column("hinge/rest_angle", hinges.size(), rest_angle_, false);
   for (const auto& hinge : hinges) vertices_.insert(vertices_.end(), hinge.begin(), hinge.end());
 }
 
 void HingeBatch::values(const Positions& x, double* energy) const {
-  for_each_element(size(), [&](std::size_t e) {
-    const Points<4> p(x, vertices_, e);
-    energy[e] = hinge_value<double>(p.x, stiffness_[e], rest_angle_[e]);
-  });
+  const auto value = [&]<class T>(std::size_t e) {
+    const Points<4, T> p(x, vertices_, e);
+    return hinge_value<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_angle_[e]));
+  };
+  store_energies(size(), precision_, value, energy);
 }
 
 void HingeBatch::derivatives(const Positions& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
+  for_each_pass(precision_, [&]<class T>(PassParts parts) { fill<T>(x, projection, parts, out); });
+}
+
+template <class T>
+void HingeBatch::fill(const Positions& x, Projection projection, PassParts parts, LocalTerms& out) const {
+  using Real = typename HingeGroup<T>::Real;
   for_each_element((size() + kLanes - 1) / kLanes, [&](std::size_t g) {
     const std::size_t first = kLanes * g, n = std::min(kLanes, size() - first);
-    HingeGroup group;
+    HingeGroup<T> group;
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t e = first + std::min(lane, n - 1);  // lanes beyond the end repeat the last hinge
-      const Points<4> p(x, vertices_, e);
-      group.set(lane, p.x, stiffness_[e], hinge_deviation<double>(hinge_angle<double>(p.x), rest_angle_[e]));
+      const Points<4, T> p(x, vertices_, e);
+      const T rest = static_cast<T>(rest_angle_[e]);
+      group.set(lane, p.x, static_cast<T>(stiffness_[e]), hinge_deviation<T>(hinge_angle<T>(p.x), rest));
     }
-    store(hinge_terms_at<Real>(group.x, group.stiffness, group.deviation, projection), first, n, out);
+    store<Real>(hinge_terms_at<Real>(group.x, group.stiffness, group.deviation, projection), first, n, parts,
+                out);
   });
 }
 

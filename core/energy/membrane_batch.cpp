@@ -30,32 +30,38 @@ std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int,
 
 MembraneBatch::MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
                              const Positions& x_rest, std::vector<double> lame_mu,
-                             std::vector<double> lame_lambda, bool planar, std::span<const Vec3d> warp)
-    : model_(&membrane_models<double>().require(model, "membrane/model")),
+                             std::vector<double> lame_lambda, bool planar, std::span<const Vec3d> warp,
+                             Precision precision)
+    : models_(&membrane_models<double>().require(model, "membrane/model"),
+              &membrane_models<float>().require(model, "membrane/model")),
       planar_(planar),
       rests_(triangle_rests(triangles, x_rest, planar, warp)),
       lame_mu_(std::move(lame_mu)),
-      lame_lambda_(std::move(lame_lambda)) {
+      lame_lambda_(std::move(lame_lambda)),
+      precision_(precision) {
   check_column("membrane/lame_mu", triangles.size(), lame_mu_, false);
   check_column("membrane/lame_lambda", triangles.size(), lame_lambda_, false);
   for (const auto& triangle : triangles) vertices_.insert(vertices_.end(), triangle.begin(), triangle.end());
 }
 
 void MembraneBatch::values(const Positions& x, double* energy) const {
-  const auto value = planar_ ? model_->value_planar : model_->value;
-  for_each_element(size(), [&](std::size_t e) {
-    const Points<3> p(x, vertices_, e);
-    energy[e] = value(rests_[e], p.x, lame_mu_[e], lame_lambda_[e]);
-  });
+  const auto value = [&]<class T>(std::size_t e) {
+    const Points<3, T> p(x, vertices_, e);
+    const auto of_model = planar_ ? model<T>().value_planar : model<T>().value;
+    return of_model(rest_in<T>(rests_[e]), p.x, static_cast<T>(lame_mu_[e]), static_cast<T>(lame_lambda_[e]));
+  };
+  store_energies(size(), precision_, value, energy);
 }
 
 void MembraneBatch::derivatives(const Positions& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
-  const auto terms = planar_ ? model_->terms_planar : model_->terms;
-  for_each_element(size(), [&](std::size_t e) {
-    const Points<3> p(x, vertices_, e);
-    store_terms(terms(rests_[e], p.x, lame_mu_[e], lame_lambda_[e], projection), e, out);
-  });
+  const auto terms = [&]<class T>(std::size_t e) {
+    const Points<3, T> p(x, vertices_, e);
+    const auto of_model = planar_ ? model<T>().terms_planar : model<T>().terms;
+    return of_model(rest_in<T>(rests_[e]), p.x, static_cast<T>(lame_mu_[e]), static_cast<T>(lame_lambda_[e]),
+                    projection);
+  };
+  store_elements(size(), precision_, terms, out);
 }
 
 }  // namespace bb

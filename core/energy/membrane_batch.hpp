@@ -2,11 +2,19 @@
 #pragma once
 
 #include <array>
+#include <tuple>
 
 #include "core/energy/element_batch.hpp"
 #include "core/energy/membrane_model.hpp"
+#include "core/math/precision.hpp"
 
 namespace bb {
+
+/// Rest data in another scalar.
+template <class T>
+TriangleRest<T> rest_in(const TriangleRest<double>& rest) {
+  return {rest.dm_inv.template cast<T>(), static_cast<T>(rest.area)};
+}
 
 /// Rest data of triangles at x_rest [3 x n_vertices] (m). `warp`: [n] warp directions, or empty for each
 /// triangle's first edge. ConfigError when a triangle has no area (or the warp direction is normal to
@@ -19,11 +27,12 @@ class MembraneBatch final : public EnergyBatch {
  public:
   /// @param model   a name of registry.inc        @param planar  F is 2x2 in the x-y plane, z has no terms
   /// @param lame_mu, lame_lambda [n] N/m          @param warp    as in triangle_rests
+  /// @param precision  the scalars of values and derivatives
   /// ConfigError: unknown model, columns of another length, triangles without area.
   MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
                 const Positions& x_rest, std::vector<double> lame_mu, std::vector<double> lame_lambda,
-                bool planar = false, std::span<const Vec3d> warp = {});
-  std::string_view name() const override { return model_->name; }
+                bool planar = false, std::span<const Vec3d> warp = {}, Precision precision = Precision::full);
+  std::string_view name() const override { return model<double>().name; }
   int width() const override { return 3; }
   std::span<const int> vertices() const override { return vertices_; }
   std::span<const TriangleRest<double>> rests() const { return rests_; }
@@ -31,11 +40,17 @@ class MembraneBatch final : public EnergyBatch {
   void derivatives(const Positions& x, Projection projection, LocalTerms& out) const override;
 
  private:
-  const MembraneModel<double>* model_;
+  template <class T>
+  const MembraneModel<T>& model() const {
+    return *std::get<const MembraneModel<T>*>(models_);
+  }
+
+  std::tuple<const MembraneModel<double>*, const MembraneModel<float>*> models_;
   bool planar_;
   std::vector<int> vertices_;
   std::vector<TriangleRest<double>> rests_;
   std::vector<double> lame_mu_, lame_lambda_;
+  Precision precision_;
 };
 
 }  // namespace bb

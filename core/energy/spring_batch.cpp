@@ -7,8 +7,8 @@
 namespace bb {
 
 SpringBatch::SpringBatch(std::span<const std::array<int, 2>> edges, const Positions& x_rest,
-                         std::vector<double> stiffness)
-    : stiffness_(std::move(stiffness)) {
+                         std::vector<double> stiffness, Precision precision)
+    : stiffness_(std::move(stiffness)), precision_(precision) {
   check_column("spring/stiffness", edges.size(), stiffness_, false);
   for (const auto& [a, b] : edges) {
     vertices_.insert(vertices_.end(), {a, b});
@@ -17,18 +17,20 @@ SpringBatch::SpringBatch(std::span<const std::array<int, 2>> edges, const Positi
 }
 
 void SpringBatch::values(const Positions& x, double* energy) const {
-  for_each_element(size(), [&](std::size_t e) {
-    const Points<2> p(x, vertices_, e);
-    energy[e] = spring_value<double>(p.x, stiffness_[e], rest_length_[e]);
-  });
+  const auto value = [&]<class T>(std::size_t e) {
+    const Points<2, T> p(x, vertices_, e);
+    return spring_value<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_length_[e]));
+  };
+  store_energies(size(), precision_, value, energy);
 }
 
 void SpringBatch::derivatives(const Positions& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
-  for_each_element(size(), [&](std::size_t e) {
-    const Points<2> p(x, vertices_, e);
-    store_terms(spring_terms<double>(p.x, stiffness_[e], rest_length_[e], projection), e, out);
-  });
+  const auto terms = [&]<class T>(std::size_t e) {
+    const Points<2, T> p(x, vertices_, e);
+    return spring_terms<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_length_[e]), projection);
+  };
+  store_elements(size(), precision_, terms, out);
 }
 
 }  // namespace bb

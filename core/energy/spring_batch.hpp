@@ -4,6 +4,7 @@
 #include <array>
 
 #include "core/energy/element_batch.hpp"
+#include "core/math/precision.hpp"
 
 namespace bb {
 
@@ -12,7 +13,7 @@ class SpringBatch final : public EnergyBatch {
   /// @param stiffness [n] N/m; the rest lengths are those at x_rest (m). ConfigError: column
   /// of another length.
   SpringBatch(std::span<const std::array<int, 2>> edges, const Positions& x_rest,
-              std::vector<double> stiffness);
+              std::vector<double> stiffness, Precision precision = Precision::full);
   std::string_view name() const override { return "spring"; }
   int width() const override { return 2; }
   std::span<const int> vertices() const override { return vertices_; }
@@ -22,6 +23,7 @@ class SpringBatch final : public EnergyBatch {
  private:
   std::vector<int> vertices_;
   std::vector<double> stiffness_, rest_length_;
+  Precision precision_;
 };
 
 }  // namespace bb

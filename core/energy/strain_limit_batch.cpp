@@ -9,10 +9,25 @@
 #include "core/energy/membrane_batch.hpp"
 
 namespace bb {
+namespace {
+
+template <class T>
+StrainBand<T> band_in(const StrainBand<double>& band) {
+  return {static_cast<T>(band.onset), static_cast<T>(band.width)};
+}
+
+/// Two numbers from `column` on.
+template <class T>
+Vec<T, 2> two_in(const double* column) {
+  return {static_cast<T>(column[0]), static_cast<T>(column[1])};
+}
+
+}  // namespace
 
 StrainLimitBatch::StrainLimitBatch(std::span<const std::array<int, 3>> triangles, const Positions& x_rest,
-                                   std::vector<double> onset, std::vector<double> width, bool planar)
-    : planar_(planar), rests_(triangle_rests(triangles, x_rest, planar)) {
+                                   std::vector<double> onset, std::vector<double> width, bool planar,
+                                   Precision precision)
+    : planar_(planar), rests_(triangle_rests(triangles, x_rest, planar)), precision_(precision) {
   const std::size_t n = triangles.size();
   check_column("strain_limit/onset", n, onset, false);
   check_column("strain_limit/width", n, width, true);
@@ -29,14 +44,17 @@ void StrainLimitBatch::measure(const Positions& x) {
   if (x.cols() == measured_.cols() && x == measured_) return;
   measured_ = x;
   ++sweeps_;
-  for_each_element(size(), [&](std::size_t e) {
-    const Points<3> p(x, vertices_, e);
-    const Vec2d sigma = planar_ ? membrane_svd(deformation_gradient<2>(rests_[e], p.x)).sigma
-                                : membrane_svd(deformation_gradient<3>(rests_[e], p.x)).sigma;
-    for (int k = 0; k < 2; ++k) {
-      sigma_[2 * e + static_cast<std::size_t>(k)] = sigma[k];
-      gap_[2 * e + static_cast<std::size_t>(k)] = strain_gap(sigma[k], bands_[e]);
-    }
+  with_value_scalar(precision_, [&]<class T>() {
+    for_each_element(size(), [&](std::size_t e) {
+      const Points<3, T> p(x, vertices_, e);
+      const TriangleRest<T> rest = rest_in<T>(rests_[e]);
+      const Vec<T, 2> sigma = planar_ ? membrane_svd(deformation_gradient<2>(rest, p.x)).sigma
+                                      : membrane_svd(deformation_gradient<3>(rest, p.x)).sigma;
+      for (int k = 0; k < 2; ++k) {
+        sigma_[2 * e + static_cast<std::size_t>(k)] = sigma[k];
+        gap_[2 * e + static_cast<std::size_t>(k)] = strain_gap(sigma[k], band_in<T>(bands_[e]));
+      }
+    });
   });
 }
 
@@ -57,40 +75,51 @@ double StrainLimitBatch::min_gap() const {
 void StrainLimitBatch::fill_terms(const Positions& x, const double* kappa, Projection projection,
                                   LocalTerms& out) const {
   out.resize(size(), width());
-  for_each_element(size(), [&](std::size_t e) {
-    const Points<3> p(x, vertices_, e);
+  const auto terms = [&]<class T>(std::size_t e) {
+    const Points<3, T> p(x, vertices_, e);
     const std::size_t i = 2 * e;
-    const StrainShape<double> shape{{b_[i], b_[i + 1]}, {db_[i], db_[i + 1]}, {d2b_[i], d2b_[i + 1]}};
-    const auto terms = [&]<int R>() {
+    const StrainShape<T> shape{two_in<T>(&b_[i]), two_in<T>(&db_[i]), two_in<T>(&d2b_[i])};
+    const TriangleRest<T> rest = rest_in<T>(rests_[e]);
+    const auto in_dimension = [&]<int R>() {
       // an inactive element needs no SVD; its factors are not read
       const bool active = gap_[i] < width_[i];
-      const Svd<double, R, 2> svd = active ? membrane_svd(deformation_gradient<R>(rests_[e], p.x))
-                                           : Svd<double, R, 2>{{}, {sigma_[i], sigma_[i + 1]}, {}};
-      return strain_limit_terms<R, double>(rests_[e], svd, bands_[e], shape, kappa[e], projection);
+      const Svd<T, R, 2> svd = active ? membrane_svd(deformation_gradient<R>(rest, p.x))
+                                      : Svd<T, R, 2>{{}, two_in<T>(&sigma_[i]), {}};
+      return strain_limit_terms<R, T>(rest, svd, band_in<T>(bands_[e]), shape, static_cast<T>(kappa[e]),
+                                      projection);
     };
-    store_terms(planar_ ? terms.template operator()<2>() : terms.template operator()<3>(), e, out);
-  });
+    return planar_ ? in_dimension.template operator()<2>() : in_dimension.template operator()<3>();
+  };
+  store_elements(size(), precision_, terms, out);
 }
 
 double StrainLimitBatch::step_bound(const Positions& x, const Positions& dx, double alpha_max,
                                     double park) const {
-  const auto smallest = [&](double alpha) {
+  return with_value_scalar(precision_, [&]<class T>() -> double {
+    return step_bound_in<T>(x, dx, static_cast<T>(alpha_max), static_cast<T>(park));
+  });
+}
+
+template <class T>
+T StrainLimitBatch::step_bound_in(const Positions& x, const Positions& dx, T alpha_max, T park) const {
+  const auto smallest = [&](T alpha) {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, size(), 64), alpha,
-        [&](const tbb::blocked_range<std::size_t>& range, double bound) {
+        [&](const tbb::blocked_range<std::size_t>& range, T bound) {
           for (std::size_t e = range.begin(); e < range.end(); ++e) {
-            const Points<3> p(x, vertices_, e), step(dx, vertices_, e);
-            bound = std::min(bound,
-                             planar_ ? strain_step_bound<2>(rests_[e], p.x, step.x, bands_[e], alpha, park)
-                                     : strain_step_bound<3>(rests_[e], p.x, step.x, bands_[e], alpha, park));
+            const Points<3, T> p(x, vertices_, e), step(dx, vertices_, e);
+            const TriangleRest<T> rest = rest_in<T>(rests_[e]);
+            const StrainBand<T> band = band_in<T>(bands_[e]);
+            bound = std::min(bound, planar_ ? strain_step_bound<2>(rest, p.x, step.x, band, alpha, park)
+                                            : strain_step_bound<3>(rest, p.x, step.x, band, alpha, park));
           }
           return bound;
         },
-        [](double a, double b) { return std::min(a, b); });
+        [](T a, T b) { return std::min(a, b); });
   };
   // A second look: one element's bound may, by rounding alone, be beyond another's limit.
-  for (double alpha = alpha_max;;) {
-    const double bound = smallest(alpha);
+  for (T alpha = alpha_max;;) {
+    const T bound = smallest(alpha);
     if (bound == alpha || bound == 0) return bound;
     alpha = bound;
   }

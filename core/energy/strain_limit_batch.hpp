@@ -7,6 +7,7 @@
 #include "core/energy/element_batch.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/energy/strain_stiffness.hpp"
+#include "core/math/precision.hpp"
 
 namespace bb {
 
@@ -18,7 +19,8 @@ class StrainLimitBatch {
   /// @param onset, width [n] 1, width > 0. ConfigError: columns of another length or value,
   /// triangles without area.
   StrainLimitBatch(std::span<const std::array<int, 3>> triangles, const Positions& x_rest,
-                   std::vector<double> onset, std::vector<double> width, bool planar = false);
+                   std::vector<double> onset, std::vector<double> width, bool planar = false,
+                   Precision precision = Precision::full);
 
   std::string_view name() const { return "strain_limit"; }
   int width() const { return 3; }
@@ -69,6 +71,8 @@ class StrainLimitBatch {
                          KappaParts* kappa) const;
 
  private:
+  template <class T>
+  T step_bound_in(const Positions& x, const Positions& dx, T alpha_max, T park) const;
   template <class Barrier>
   void evaluate(Barrier& barrier) {
     if constexpr (requires { barrier.literal; }) {
@@ -94,6 +98,7 @@ class StrainLimitBatch {
   std::vector<int> vertices_;
   std::vector<TriangleRest<double>> rests_;
   std::vector<StrainBand<double>> bands_;
+  Precision precision_;
   std::vector<double> width_;         // [2n], both entries of an element equal
   std::vector<double> sigma_, gap_;   // [2n]
   std::vector<double> shape_gap_;     // [2n] gap_, or the width where the shape must not be asked

@@ -14,7 +14,8 @@ namespace bb {
 /// a is the acceleration at x (m/s^2), kept for integrators that say needs_acceleration.
 struct History {
   int steps = 0;
-  Positions x, v, a;  // [3 x n] m, m/s, m/s^2
+  double dt_prev = 0;  // s, length of the step that ended at x; 0: as the next one
+  Positions x, v, a;   // [3 x n] m, m/s, m/s^2
   Positions x_prev, v_prev;
 };
 

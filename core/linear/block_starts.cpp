@@ -46,15 +46,17 @@ void lower_block_columns(const ReducedSystem& system, std::vector<int>& start, s
   }
 }
 
-std::string bad_diagonal_text(const ReducedSystem& system, int dof) {
+std::string vertex_text(const ReducedSystem& system, int dof) {
   const auto& start = system.block_start;
   const auto block =
       static_cast<std::size_t>(std::upper_bound(start.begin(), start.end(), dof) - start.begin()) - 1;
   const bool known = block < system.block_vertex.size();
-  return "the diagonal block of " +
-         (known ? "vertex " + std::to_string(system.block_vertex[block])
-                : "block row " + std::to_string(block)) +
-         " is 0 or singular; ";
+  return known ? "vertex " + std::to_string(system.block_vertex[block])
+               : "block row " + std::to_string(block);
+}
+
+std::string bad_diagonal_text(const ReducedSystem& system, int dof) {
+  return "the diagonal block of " + vertex_text(system, dof) + " is 0 or singular; ";
 }
 
 }  // namespace bb

@@ -15,6 +15,8 @@ void check_block_starts(const ReducedSystem& system);
 /// Errors: ConfigError for an entry above the diagonal and for what check_block_starts refuses.
 void lower_block_columns(const ReducedSystem& system, std::vector<int>& start, std::vector<int>& row);
 
+/// "vertex 17", or "block row 17" where the system knows no vertices. dof: a degree of freedom of it.
+std::string vertex_text(const ReducedSystem& system, int dof);
 /// "the diagonal block of vertex 17 is 0 or singular; ", of a block row where the system knows no vertices.
 /// dof: a degree of freedom of it.
 std::string bad_diagonal_text(const ReducedSystem& system, int dof);

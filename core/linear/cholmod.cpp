@@ -2,6 +2,7 @@
 #include <chrono>
 #include <string>
 
+#include "core/linear/block_starts.hpp"
 #include "core/linear/cholmod_factor.hpp"
 
 namespace bb {
@@ -24,6 +25,9 @@ class Cholmod final : public LinearSolver {
     report.analyze_s = factor_.analyze_s();
     report.factor_s = factor_.factor_s();
     report.residual_true = 1;  // of x = 0
+    if (report.status == LinearStatus::matrix_indefinite) {
+      report.detail = "no positive pivot at " + vertex_text(system, factor_.failed_dof());
+    }
     if (report.status != LinearStatus::ok) return report;
     if (!b.allFinite()) {
       report.status = LinearStatus::non_finite;

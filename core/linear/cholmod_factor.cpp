@@ -185,6 +185,11 @@ void CholmodFactor::solve(const VecXd& b, VecXd& x) {
   x = Eigen::Map<const VecXd>(static_cast<const double*>(c.x->x), b.size());
 }
 
+int CholmodFactor::failed_dof() const {
+  const cholmod_factor& factor = *cholmod_->factor;
+  return static_cast<const int*>(factor.Perm)[std::min(factor.minor, factor.n - 1)];
+}
+
 double CholmodFactor::factor_nonzeros() const { return cholmod_->common.lnz; }
 double CholmodFactor::factor_flops() const { return cholmod_->common.fl; }
 

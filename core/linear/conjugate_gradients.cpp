@@ -1,6 +1,7 @@
 #include "core/linear/conjugate_gradients.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 #include "core/linear/cg_ritz.hpp"
@@ -83,6 +84,24 @@ LinearStatus ConjugateGradients::iterate(const VecXd& b, VecXd& x, double target
   }
 }
 
+namespace {
+
+// What a message needs beside the word of the status.
+std::string describe(LinearStatus status, double tolerance, const LinearReport& report) {
+  char text[120] = "";
+  if (status == LinearStatus::matrix_indefinite) {
+    std::snprintf(text, sizeof text, "p^T A p is negative in iteration %d", report.iterations);
+  } else if (status == LinearStatus::preconditioner_indefinite) {
+    std::snprintf(text, sizeof text, "r^T M^-1 r is not positive in iteration %d", report.iterations);
+  } else if (status == LinearStatus::iteration_cap || status == LinearStatus::tolerance_below_rounding) {
+    std::snprintf(text, sizeof text, "residual %.3g after %d iterations, tolerance %.3g",
+                  report.residual_true, report.iterations, tolerance);
+  }
+  return text;
+}
+
+}  // namespace
+
 LinearStatus ConjugateGradients::solve(const SymmetricProduct& a, const Preconditioner& preconditioner,
                                        const VecXd& b, double tolerance, int max_iterations, VecXd& x,
                                        LinearReport& report) {
@@ -95,6 +114,7 @@ LinearStatus ConjugateGradients::solve(const SymmetricProduct& a, const Precondi
   const LinearStatus status = iterate(b, x, tolerance * b_norm, report);
   report.residual_recurrence /= b_norm;
   report.residual_true /= b_norm;
+  report.detail = describe(status, tolerance, report);
   return status;
 }
 

@@ -48,7 +48,7 @@ class AccumulatedToi final : public StepSolver {
     IterationReport report = begin_iteration(system, step_index, iteration);
     find_direction(system, target_, dx_, report, observer);
     if (const auto failed = direction_failure(report, false)) {
-      fail_step(step, *failed, report);
+      fail_step(system, dx_, step, *failed, report);
       finish_iteration(system, step, report, observer);
       return 0;
     }

@@ -28,7 +28,7 @@ class ArticleLiteral final : public StepSolver {
       const bool small = report.dx_inf_m / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, !small)) {
         finish_iteration(system, step, report, observer);
-        fail_step(step, *failed, report);
+        fail_step(system, dx_, step, *failed, report);
         return step;
       }
       const bool moved = backtrack(system, report);
@@ -53,7 +53,7 @@ class ArticleLiteral final : public StepSolver {
       const auto change = system.try_state(x_trial_);
       if (!change) continue;
       const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
-      report.rounding_accepts = !decrease && within_rounding(*change);
+      report.rounding_accepts = !decrease && within_rounding(*change, system.precision());
       if (!decrease && !report.rounding_accepts) continue;
       report.alpha = alpha;
       report.energy_change_J = change->change;

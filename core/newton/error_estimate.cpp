@@ -5,9 +5,10 @@
 
 namespace bb {
 
-void ErrorEstimate::reset(const Positions& x) {
+void ErrorEstimate::reset(const Positions& x, Precision precision) {
   dx_.clear();
-  rounding_ = x.size() == 0 ? 0 : 8 * std::numeric_limits<double>::epsilon() * x.cwiseAbs().maxCoeff();
+  rounding_ = x.size() == 0 ? 0 : 8 * value_epsilon(precision) * x.cwiseAbs().maxCoeff();
+  smallest_ = values_in_float(precision) ? rounding_ : 0;
   contraction_ = Number::missing("first_iteration");
   before_ = 0;
   whole_ = false;

@@ -3,6 +3,7 @@
 
 #include <vector>
 
+#include "core/math/precision.hpp"
 #include "core/math/types.hpp"
 #include "core/record/number.hpp"
 
@@ -10,8 +11,10 @@ namespace bb {
 
 class ErrorEstimate {
  public:
-  /// A step begins at x [3 x n], m.
-  void reset(const Positions& x);
+  /// A step begins at x [3 x n], m, a state of that precision.
+  void reset(const Positions& x, Precision precision = Precision::full);
+  /// The smallest error that a step can be asked for, m: in float the rounding of the coordinates, 0 in double.
+  double smallest() const { return smallest_; }
   /// The direction of the next iteration, |dx|_inf in m, solved for up to this part of the residual.
   void add(double dx, double residual = 0);
   /// The part of that direction that was taken.
@@ -35,6 +38,7 @@ class ErrorEstimate {
   std::vector<double> dx_;
   Number contraction_;
   double rounding_ = 0;  // m, of the coordinates
+  double smallest_ = 0;  // m
   double before_ = 0;    // last known q
   bool whole_ = false;   // the direction before was taken whole
 };

@@ -1,6 +1,7 @@
 #include "core/newton/iteration.hpp"
 
 #include <cmath>
+#include <cstdio>
 #include <limits>
 
 namespace bb {
@@ -49,12 +50,19 @@ StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& us
   return step;
 }
 
-bool within_rounding(const EnergyChange& change) {
-  return std::abs(change.change) <= 64 * std::numeric_limits<double>::epsilon() * change.magnitude;
+bool within_rounding(const EnergyChange& change, Precision precision) {
+  return std::abs(change.change) <= 64 * value_epsilon(precision) * change.magnitude;
 }
 
-void fail_step(StepReport& step, StepStatus status, const IterationReport& report) {
+void fail_step(const NewtonSystem& system, const Positions& dx, StepReport& step, StepStatus status,
+               const IterationReport& report) {
   step.status = status;
+  if (status == StepStatus::non_finite) step.detail = system.describe_non_finite(dx);
+  if (status == StepStatus::not_descent) {
+    char text[80];
+    std::snprintf(text, sizeof text, "g . dx = %.3g J along the last direction", -2 * report.decrement_J);
+    step.detail = text;
+  }
   if (status != StepStatus::linear_failed) return;
   const LinearReport& linear = report.solve.linear;
   step.detail = std::string(to_string(linear.status)) + (linear.detail.empty() ? "" : ": " + linear.detail);
@@ -93,6 +101,7 @@ void find_direction(NewtonSystem& system, const Positions& target, Positions& dx
 }
 
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend) {
+  if (report.solve.linear.status == LinearStatus::non_finite) return StepStatus::non_finite;
   if (report.solve.linear.status != LinearStatus::ok) return StepStatus::linear_failed;
   if (!std::isfinite(report.dx_inf_m) || !std::isfinite(report.decrement_J)) return StepStatus::non_finite;
   if (must_descend && report.decrement_J <= 0) return StepStatus::not_descent;

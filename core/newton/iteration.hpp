@@ -13,10 +13,12 @@ namespace bb {
 /// Predicts, hands the step to the system and fills `target` with the end-of-step pose of every vertex. The
 /// report says iteration_cap until something better is known.
 StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& used, Positions& target);
-/// Whether a change of E is noise: below 64 eps sum |terms|.
-bool within_rounding(const EnergyChange& change);
+/// Whether a change of E is noise: below 64 eps sum |terms|, eps of the precision that energies have.
+bool within_rounding(const EnergyChange& change, Precision precision = Precision::full);
 /// Ends a step whose direction was of no use.
-void fail_step(StepReport& step, StepStatus status, const IterationReport& report);
+/// dx: the direction.
+void fail_step(const NewtonSystem& system, const Positions& dx, StepReport& step, StepStatus status,
+               const IterationReport& report);
 
 /// Begins a lap of the system's clock, assembles at system.x() and fills what is known before the solve.
 IterationReport begin_iteration(NewtonSystem& system, int step, int iteration);

@@ -19,6 +19,7 @@ struct StepSolverOptions {
   std::string name = "line_search";
   int max_iterations = 200;
   double tol_velocity = 0;  // m/s: stop at |dx|_inf / h below it
+  int retries = 0;          // times that a step is halved and tried again, 0 to 20
   ParameterMap parameters;  // of the step solver of that name; what is left out has its default
 };
 

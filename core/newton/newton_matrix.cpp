@@ -31,13 +31,32 @@ void NewtonSystem::sum_matrices(TermSet set, const HessianOf& hessian_of) {
   }
 }
 
-void NewtonSystem::sum_clamped(TermSet set) {
+void NewtonSystem::clamp(TermSet set) {
   for (Slot& slot : slots_) {
     if (set.has(slot.term->group())) clamp(slot);
   }
-  sum_matrices(set, [](const Slot& slot, const TermFamily& family) -> std::span<const double> {
-    return slot.hessian == StepHessian::clamped ? family.local.hess : family.clamped.hess;
-  });
+}
+
+// After clamp().
+std::span<const double> NewtonSystem::clamped_hessians(const Slot& slot, const TermFamily& family) {
+  return slot.hessian == StepHessian::clamped ? family.local.hess : family.clamped.hess;
+}
+
+void NewtonSystem::sum_clamped(TermSet set) {
+  clamp(set);
+  sum_matrices(set, clamped_hessians);
+}
+
+void NewtonSystem::visit_clamped(TermSet set, const VisitHessians& visit) {
+  clamp(set);
+  for (const Slot& slot : slots_) {
+    if (!set.has(slot.term->group())) continue;
+    const std::span<const TermFamily> families = slot.term->families();
+    for (std::size_t i = 0; i < families.size(); ++i) {
+      if (families[i].local.hess.empty()) continue;
+      visit(*slot.term, i, clamped_hessians(slot, families[i]));
+    }
+  }
 }
 
 // At the level of the next attempt.

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/archive/archive.hpp"
+
 namespace bb {
 
 namespace {
@@ -36,6 +38,7 @@ std::vector<StepHessian> choices_of(const TermList& terms, const Method& method)
 NewtonSystem::NewtonSystem(const Scene& scene, Method& method, const Plan& plan)
     : scene_(scene),
       plan_(plan),
+      precision_(method.precision),
       fixed_(fixed_dofs(scene, plan_)),
       terms_(make_terms(plan_, {scene, method, plan_.contacts, fixed_})),
       level_(choices_of(terms_, method)),
@@ -95,6 +98,18 @@ void NewtonSystem::end_step() {
   for (const auto& term : terms_) term->end_step(clock_);
 }
 
+void NewtonSystem::keep(Archive& archive) {
+  for (const auto& term : terms_) {
+    archive.section(term->name());
+    term->keep(archive);
+  }
+}
+
+void NewtonSystem::drop_caches() {
+  solver_ = make_linear_solver(plan_.linear);
+  blocks_->set_contacts({});
+}
+
 void NewtonSystem::prepare(const Positions& x1, const Positions& dx, bool to_bound) {
   for (const auto& term : terms_) term->prepare({x_, x1, dx, to_bound}, clock_);
 }
@@ -114,6 +129,7 @@ double NewtonSystem::bound(const Positions& x1, const Positions& dx, IterationRe
 std::optional<EnergyChange> NewtonSystem::try_state(const Positions& x) {
   const ScopedPhase timer(clock_, Phase::line_search);
   trial_ = x;
+  round_state(precision_, trial_);
   if (!trial_.allFinite()) return std::nullopt;
   for (const auto& term : terms_) {
     if (!term->admits(trial_, clock_)) return std::nullopt;

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -37,6 +39,10 @@ class NewtonSystem {
   /// The same step and iterate with another prediction and length (accumulated_toi).
   void restart_step(const Prediction& prediction, double dt);
   void end_step();
+  /// What the terms remember from step to step.
+  void keep(Archive& archive);
+  /// Makes the linear solver anew and forgets the pattern of the contacts: between steps.
+  void drop_caches();
 
   // --- an iterate
   /// Every term at x(), then gradient and matrix. Order of the sums: docs/design.md, Terms.
@@ -61,7 +67,7 @@ class NewtonSystem {
   double bound(const Positions& x1, const Positions& dx, IterationReport& report);
   /// What held the last bound(); empty where nothing did.
   std::string describe_bound() const { return holder_ ? holder_->describe_bound() : std::string(); }
-  /// Evaluates E at x with what the terms keep for an iterate. Returns the change against x(); an infeasible
+  /// Evaluates E at x, rounded to the precision of the run, with what the terms keep for an iterate. Returns the change against x(); an infeasible
   /// x has none.
   std::optional<EnergyChange> try_state(const Positions& x);
   /// Makes the last tried state the iterate.
@@ -70,6 +76,7 @@ class NewtonSystem {
   // --- what observers and reports read
   const Scene& scene() const { return scene_; }
   const TermList& terms() const { return terms_; }
+  Precision precision() const { return precision_; }
   /// Charges what happens in this system and round it to phases; the calls below and above switch it.
   PhaseClock& clock() const { return clock_; }
   const Positions& x() const { return x_; }
@@ -96,6 +103,11 @@ class NewtonSystem {
   const ReducedSystem& clamped(TermSet set = TermSet::all());
   /// The same with eliminated degrees of freedom.
   const BlockSystem::Values& clamped_values(TermSet set);
+  /// Calls visit for every family of the set's terms that has Hessians, with those that clamped(set) sums: lower blocks,
+  /// element by element. Cost: the clamped elements if no attempt needed them.
+  using VisitHessians =
+      std::function<void(const Term& term, std::size_t family, std::span<const double> hess)>;
+  void visit_clamped(TermSet set, const VisitHessians& visit);
   /// That of all terms with the Hessian that each begins with: the exact one where its choice has it. Valid
   /// until the next call of any of these. Cost: an assembly.
   const ReducedSystem& exact();
@@ -113,6 +125,9 @@ class NewtonSystem {
   void report(IterateNumbers& out) const;
   void report_end(StepNumbers& out) const;
   void report_overload(const Positions& dx, StepNumbers& out) const;
+  /// The first element of the iterate with an energy, force or Hessian that is not finite, or else the first
+  /// vertex with such a gradient or direction. dx: the Newton direction.
+  std::string describe_non_finite(const Positions& dx) const;
 
  private:
   /// Where the families of a term are in the block system, whose families are fixed or changing.
@@ -134,6 +149,8 @@ class NewtonSystem {
   template <class HessianOf>
   void sum_matrices(TermSet set, const HessianOf& hessian_of);
   void sum_clamped(TermSet set);
+  void clamp(TermSet set);
+  static std::span<const double> clamped_hessians(const Slot& slot, const TermFamily& family);
   void sum_exact();
   void fill_matrix();
   double largest_force();
@@ -143,6 +160,7 @@ class NewtonSystem {
 
   const Scene& scene_;
   const Plan plan_;
+  const Precision precision_;
   const std::vector<std::uint8_t> fixed_;
   TermList terms_;
   std::vector<Slot> slots_;                // one a term

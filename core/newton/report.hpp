@@ -28,6 +28,12 @@ struct IterationReport : IterateNumbers {
 /// sees what came before it.
 struct StepReport : StepNumbers {
   bool still_falling = false;  // |dx| was, when the cap on iterations was reached
+  /// Counts what an attempt before this one cost.
+  void add_attempt(const StepReport& failed) {
+    retries = failed.retries + 1;
+    newton_iterations += failed.newton_iterations;
+    *this += failed;
+  }
 };
 
 /// Observer; override what you need. Callbacks are charged to Phase::output.
@@ -40,6 +46,8 @@ class StepObserver {
   virtual void on_iteration(const IterationReport&) {}
   /// An accepted line search, as rounded.
   virtual void on_motion(const Positions& /*x0*/, const Positions& /*x1*/, int /*step*/) {}
+  /// The step failed and begins again from its start, shorter: what it was is no part of the run.
+  virtual void on_retry(int /*step*/) {}
   /// A finished step; `system` holds the contact table of its end state.
   virtual void on_step(NewtonSystem&, const StepReport&, const Positions& /*x*/) {}
 };

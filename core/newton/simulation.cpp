@@ -1,5 +1,6 @@
 #include "core/newton/simulation.hpp"
 
+#include "core/archive/archive.hpp"
 #include "core/newton/iteration.hpp"
 
 namespace bb {
@@ -22,6 +23,10 @@ class ChargedObserver final : public StepObserver {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_motion(x0, x1, step);
   }
+  void on_retry(int step) override {
+    const ScopedPhase timer(clock_, Phase::output);
+    observer_.on_retry(step);
+  }
   void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_step(system, report, x);
@@ -42,9 +47,11 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       method_(method),
       dt_(dt),
       n_steps_(n_steps),
+      parts_(method.step_solver.retries),
       system_(scene, method, plan),
       solver_(make_step_solver(method.step_solver)) {
   history_.x = scene.x0;
+  round_state(method.precision, history_.x);
   history_.v = scene.v0;
   history_.a.setZero(3, scene.x0.cols());
   history_.x_prev = history_.x;
@@ -53,25 +60,26 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
 
 void Simulation::resume(const History& history, int step, double time) {
   history_ = history;
-  step_ = step;
-  time_ = time;
+  step_ = nominal_ = step;
+  time_ = nominal_start_ = time;
 }
+
+void Simulation::keep(Archive& archive) {
+  archive.section("simulation");
+  archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,
+          history_.v_prev, time_, step_, nominal_, nominal_start_, parts_);
+  system_.keep(archive);
+  if (archive.reads()) drop_caches();
+}
+
+void Simulation::drop_caches() { system_.drop_caches(); }
 
 StepReport Simulation::step(StepObserver& observer) {
   PhaseClock& clock = system_.clock();
   clock.restart(Phase::step_control);
   ChargedObserver charged(observer, clock);
   if (step_ == 0 && method_.integrator->needs_acceleration()) start_acceleration();
-  StepTask task;
-  task.step = step_;
-  task.dt = dt_;
-  task.load_factor = method_.integrator->quasi_static() ? static_cast<double>(step_ + 1) / n_steps_ : 1.0;
-  task.history = &history_;
-  task.integrator = method_.integrator.get();
-  task.pose = [this](double dt, Positions& target) {
-    for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, time_ + dt);
-  };
-  StepReport report = solver_->advance(system_, task, prediction_, charged);
+  StepReport report = attempt_until_converged(charged);
 
   remember(system_.x(), report.dt_s);
   report.t_s = time_;
@@ -84,6 +92,40 @@ StepReport Simulation::step(StepObserver& observer) {
   charged.on_step(system_, report, history_.x);
   ++step_;
   report.time = clock.read();
+  return report;
+}
+
+// The next part of the nominal step, from the history. The load of quasi_static grows with the parts.
+StepReport Simulation::attempt(StepObserver& observer) {
+  StepTask task;
+  task.step = step_;
+  task.dt = parts_.length(dt_);
+  task.load_factor = method_.integrator->quasi_static() ? (nominal_ + parts_.end()) / n_steps_ : 1.0;
+  task.history = &history_;
+  task.integrator = method_.integrator.get();
+  task.pose = [this](double dt, Positions& target) {
+    for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, time_ + dt);
+    round_state(method_.precision, target);
+  };
+  return solver_->advance(system_, task, prediction_, observer);
+}
+
+// Every attempt begins as a run that goes on from an archive of the start would.
+StepReport Simulation::attempt_until_converged(StepObserver& observer) {
+  Archive start;
+  if (parts_.can_halve()) keep(start);
+  StepReport report = attempt(observer);
+  while (report.status != StepStatus::converged && parts_.can_halve()) {
+    const StepParts failed = parts_;
+    Archive again(start.bytes());
+    keep(again);
+    parts_ = failed;
+    parts_.halve();
+    observer.on_retry(step_);
+    StepReport shorter = attempt(observer);
+    shorter.add_attempt(report);
+    report = std::move(shorter);
+  }
   return report;
 }
 
@@ -110,11 +152,27 @@ void Simulation::remember(const Positions& x, double dt_used) {
     history_.v_prev.swap(history_.v);
     history_.v = v_next_;
     history_.a = a_next_;
+    history_.dt_prev = dt_used;
   }
   history_.x_prev.swap(history_.x);
   history_.x = x;
   ++history_.steps;
-  time_ += dt_used;
+  advance_time(dt_used);
+}
+
+// At the end of a nominal step the time is what it would be without its parts. accumulated_toi ends a step
+// where it got to, and the next nominal step begins there.
+void Simulation::advance_time(double dt_used) {
+  const bool reached = dt_used == parts_.length(dt_);
+  if (!reached) {
+    time_ += dt_used;
+  } else {
+    time_ = nominal_start_ + (parts_.ends_here() ? dt_ : parts_.end() * dt_);
+  }
+  parts_.next(reached);
+  if (!parts_.at_start()) return;
+  ++nominal_;
+  nominal_start_ = time_;
 }
 
 }  // namespace bb

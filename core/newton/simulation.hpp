@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/newton/newton_system.hpp"
+#include "core/newton/step_parts.hpp"
 #include "core/newton/step_solver.hpp"
 
 namespace bb {
@@ -20,22 +21,38 @@ class Simulation {
 
   /// Goes on from a state of another simulation of the same scene, in front of its step `step` at `time` s.
   void resume(const History& history, int step, double time);
-  /// Advances one time step. A status other than converged keeps the feasible state that was reached.
+  /// Advances one time step. One that fails is tried again from its start with half the length, as often as the
+  /// options of the step solver say; the rest of the nominal step is done in steps of that length by the next
+  /// calls (docs/design.md, Outcomes, retries, resume). A status other than converged, after the last attempt,
+  /// keeps the feasible state that was reached. Counters and times of the report are those of all attempts,
+  /// everything else is of the last one.
   StepReport step(StepObserver& observer);
+  /// All that the next step depends on, but for drop_caches(), which reading an archive does as well.
+  void keep(Archive& archive);
+  /// Forgets what is kept between steps to save work, such as an earlier factor. From then on the run is, bit for
+  /// bit, the one that goes on from an archive of this moment.
+  void drop_caches();
 
   const History& history() const { return history_; }
   const NewtonSystem& system() const { return system_; }
   NewtonSystem& system() { return system_; }
   double time() const { return time_; }
+  /// Nominal steps that are over.
+  int nominal_steps() const { return nominal_; }
 
  private:
   void start_acceleration();
+  StepReport attempt(StepObserver& observer);
+  StepReport attempt_until_converged(StepObserver& observer);
   void remember(const Positions& x, double dt_used);
+  void advance_time(double dt_used);
 
   const Scene& scene_;
   Method& method_;
   double dt_ = 0, time_ = 0;
-  int n_steps_ = 0, step_ = 0;
+  int n_steps_ = 0, step_ = 0, nominal_ = 0;  // step_: every part counts
+  double nominal_start_ = 0;                  // s
+  StepParts parts_;
   NewtonSystem system_;
   std::unique_ptr<StepSolver> solver_;
   History history_;

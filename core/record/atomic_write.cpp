@@ -156,9 +156,35 @@ TraceWriter::TraceWriter(const fs::path& folder) : path_(folder / "trace.jsonl")
   if (file_ == nullptr) fail("cannot open");
 }
 
+TraceWriter::TraceWriter(const fs::path& folder, std::uint64_t bytes)
+    : path_(folder / "trace.jsonl"), leave_(true) {
+  part_ = path_;
+  part_ += ".part";
+  std::error_code error;
+  const std::uint64_t size = fs::file_size(part_, error);
+  if (error || size < bytes) {
+    throw RecordError(part_.string() + ": shorter than the checkpoint beside it says, run without --resume",
+                      true);
+  }
+  fs::resize_file(part_, bytes, error);
+  if (error) fail_with(part_, "cannot cut", error.value());
+  file_ = std::fopen(part_.c_str(), "ae");
+  if (file_ == nullptr) fail("cannot open");
+}
+
+std::uint64_t TraceWriter::checkpoint() {
+  end_step();
+  if (::fsync(::fileno(file_)) != 0) fail("cannot write to the disk");
+  leave_ = true;
+  const long length = std::ftell(file_);
+  if (length < 0) fail("cannot tell the length");
+  return static_cast<std::uint64_t>(length);
+}
+
 TraceWriter::~TraceWriter() {
   if (file_ == nullptr) return;
   std::fclose(file_);
+  if (leave_) return;
   std::error_code ignored;
   fs::remove(part_, ignored);
 }

@@ -114,7 +114,7 @@ struct PlanLine {
 struct Skipped {
   BB_RECORD(Skipped, "a measure that the record lacks");
   BB_FIELD(std::string, metric, "time, cond, audit, trace");
-  BB_FIELD(std::string, reason, "why", "not_requested");
+  BB_FIELD(std::string, reason, "why", "not_requested build_not_valid");
   BB_RECORD_END;
 };
 
@@ -210,9 +210,9 @@ struct Summary : WorkCounts {
   BB_FIELD(CondMap, cond,
            "stage/scaling -> condition numbers of clamped matrices, solved/stage/scaling of those that were "
            "solved where they differ");
-  BB_FIELD(Number, wall_s, "of the steps of the pass `time`", "not_requested");
-  BB_FIELD(Number, solve_s, "sum of all phases but output", "not_requested");
-  BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases", "not_requested");
+  BB_FIELD(Number, wall_s, "of the steps of the pass `time`", "not_requested build_not_valid");
+  BB_FIELD(Number, solve_s, "sum of all phases but output", "not_requested build_not_valid");
+  BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases", "not_requested build_not_valid");
   BB_FIELD(PhaseTimes, time, "sums over the steps of the pass `time`; empty without it");
   BB_FIELD(std::uint64_t, peak_rss_bytes, "resident memory of the process") = 0;
   BB_FIELD(std::string, state_hash, "sha256 of the final positions, little-endian float64", sha256_or_empty);

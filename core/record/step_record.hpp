@@ -50,8 +50,10 @@ struct StepRecord : WorkCounts {
   BB_FIELD(long long, violations, "that the audit found in its motions and at obstacles") = 0;
   BB_FIELD(long long, unproven, "motions that the audit could not certify") = 0;
   BB_FIELD(long long, inverted, "planar elements, summed over its states") = 0;
-  BB_FIELD(Number, wall_s, "in the pass `time`, on a clock of its own", "not_reached not_requested");
-  BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases", "not_reached not_requested");
+  BB_FIELD(Number, wall_s, "in the pass `time`, on a clock of its own",
+           "not_reached not_requested build_not_valid");
+  BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases",
+           "not_reached not_requested build_not_valid");
   BB_FIELD(PhaseTimes, time, "of the pass `time`; empty without it");
   BB_RECORD_END;
 };

@@ -69,6 +69,9 @@ void check_writable(const std::filesystem::path& folder);
 class TraceWriter {
  public:
   explicit TraceWriter(const std::filesystem::path& folder);
+  /// Goes on behind the first `bytes` of trace.jsonl.part; what is behind them goes. Errors: RecordError, also
+  /// when the file is shorter than that.
+  TraceWriter(const std::filesystem::path& folder, std::uint64_t bytes);
   ~TraceWriter();
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;
@@ -79,11 +82,15 @@ class TraceWriter {
   void end_step();
   /// Replaces the earlier trace; nothing can be added after it. Errors: RecordError.
   void finish();
+  /// Length of what was written, which is on the disk then. From now on the file stays, also that of a run that
+  /// never finishes: a checkpoint names it. Errors: RecordError.
+  std::uint64_t checkpoint();
 
  private:
   void fail(const char* what) const;
   std::filesystem::path path_, part_;
   std::FILE* file_ = nullptr;
+  bool leave_ = false;
 };
 
 }  // namespace bb

@@ -7,12 +7,22 @@
 
 namespace bb {
 
+namespace {
+
+ContactOptions contact_options(const TermOptions& options) {
+  ContactOptions out = options.contact_options;
+  out.precision = options.precision;
+  return out;
+}
+
+}  // namespace
+
 ContactTerm::ContactTerm(const Scene& scene, TermOptions& options, const ContactPlan& plan,
                          const std::vector<std::uint8_t>& fixed)
     : scene_(scene),
       options_(options),
       fixed_(fixed),
-      contacts_(scene, options.contact_options, plan),
+      contacts_(scene, contact_options(options), plan),
       stiffness_(*options.stiffness, scene.mass) {
   families_.resize(2);
   if (options.stiffness->has_potential()) folded_.emplace(options.contact);
@@ -68,8 +78,8 @@ void ContactTerm::linearise(const Positions& x, const TermContext& context) {
     first_iterate_ = false;
   }
   fill_local(x, context.projection);
-  contact_energies(state_.rows, families_[0].local.energy);
-  mollified_energies(state_.mollified, x, families_[1].local.energy);
+  contact_energies(state_.rows, families_[0].local.energy, options_.precision);
+  mollified_energies(state_.mollified, x, families_[1].local.energy, options_.precision);
 }
 
 void ContactTerm::fill_shape(ContactState& state) {
@@ -86,8 +96,9 @@ void ContactTerm::fill_shape(ContactState& state) {
 void ContactTerm::fill_local(const Positions& x, Projection projection) {
   fill_shape(state_);
   LocalTerms &local = families_[0].local, &mollified = families_[1].local;
-  contact_terms(state_.rows, x, options_.hessian_mode, projection, local.grad, local.hess);
-  mollified_terms(state_.mollified, x, projection, mollified.grad, mollified.hess);
+  contact_terms(state_.rows, x, options_.hessian_mode, projection, local.grad, local.hess,
+                options_.precision);
+  mollified_terms(state_.mollified, x, projection, mollified.grad, mollified.hess, options_.precision);
 }
 
 void ContactTerm::clamp(const Positions& x) {
@@ -95,9 +106,10 @@ void ContactTerm::clamp(const Positions& x) {
   if (options_.hessian_mode == HessianMode::gauss_newton) {
     rows.hess = families_[0].local.hess;  // positive semi-definite as it is
   } else {
-    contact_terms(state_.rows, x, options_.hessian_mode, Projection::psd, rows.grad, rows.hess);
+    contact_terms(state_.rows, x, options_.hessian_mode, Projection::psd, rows.grad, rows.hess,
+                  options_.precision);
   }
-  mollified_terms(state_.mollified, x, Projection::psd, mollified.grad, mollified.hess);
+  mollified_terms(state_.mollified, x, Projection::psd, mollified.grad, mollified.hess, options_.precision);
 }
 
 void ContactTerm::add_given_motion(const Positions& x, const Positions& motion, Positions& force) const {
@@ -136,8 +148,8 @@ void ContactTerm::evaluate(const Positions& x, const TermContext& context) {
     stiffness_.freeze(trial_.rows, trial_.mollified, context.blocks, context.elastic);
   }
   fill_shape(trial_);
-  contact_energies(trial_.rows, families_[0].trial_energy);
-  mollified_energies(trial_.mollified, x, families_[1].trial_energy);
+  contact_energies(trial_.rows, families_[0].trial_energy, options_.precision);
+  mollified_energies(trial_.mollified, x, families_[1].trial_energy, options_.precision);
 }
 
 void ContactTerm::accept(PhaseClock& clock) {

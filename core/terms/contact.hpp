@@ -45,6 +45,7 @@ class ContactTerm final : public Term {
   void change_frame(const StepFrame& frame) override;
   /// Tells a policy that adapts which pairs had a row at two step ends in a row.
   void end_step(PhaseClock& clock) override;
+  void keep(Archive& archive) override;
   void linearise(const Positions& x, const TermContext& context) override;
   void clamp(const Positions& x) override;
   void add_given_motion(const Positions& x, const Positions& motion, Positions& force) const override;
@@ -86,6 +87,7 @@ class ContactTerm final : public Term {
   struct PairGap {
     PairId pair;
     double gap, park;  // m
+    void keep(Archive& archive);
   };
   std::vector<PairGap> gaps_, previous_gaps_;  // by pair
   std::vector<StiffnessPolicy::PairEnd> pair_ends_;

@@ -2,6 +2,7 @@
 // (docs/design.md, Stiffness policies).
 #include <algorithm>
 
+#include "core/archive/archive.hpp"
 #include "core/terms/contact.hpp"
 
 namespace bb {
@@ -68,6 +69,13 @@ void ContactTerm::end_step(PhaseClock& clock) {
   }
   stiffness_.policy().end_step(pair_ends_);
   previous_gaps_.swap(gaps_);
+}
+
+void ContactTerm::PairGap::keep(Archive& archive) { archive(pair, gap, park); }
+
+void ContactTerm::keep(Archive& archive) {
+  archive(policy_started_, previous_gaps_);
+  stiffness_.policy().keep(archive);
 }
 
 void ContactTerm::list_pair_gaps() {

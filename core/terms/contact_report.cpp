@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/contact/pair_name.hpp"
 #include "core/terms/barrier_load.hpp"
 #include "core/terms/contact.hpp"
 
@@ -89,7 +90,11 @@ void ContactTerm::report_end(const Positions& x, StepNumbers& out, PhaseClock&) 
   out.gap_min_m = state_.gap_min;
   out.gap_min_rel = rows.gap_min_rel;
   const double largest = x.cwiseAbs().maxCoeff();
-  out.gap_min_ulps = state_.gap_min / (std::nextafter(largest, 2 * largest) - largest);
+  const double ulp = with_value_scalar(options_.precision, [&]<class T>() -> double {
+    const T at = static_cast<T>(largest);
+    return std::nextafter(at, 2 * at) - at;
+  });
+  out.gap_min_ulps = state_.gap_min / ulp;
 }
 
 // The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and
@@ -115,7 +120,10 @@ void ContactTerm::report_overload(const Positions&, const Positions& others, con
     const double capacity = slope(rows.d_hat[r]);  // for kappa = 1
     const double load = push / weight_sq / (rows.multiplicity[r] * rows.kappa[r]);
     const double model = newton_force(barrier, rows.d[r], rows.d[r] + opening, rows.d_hat[r]);
-    largest = std::max({largest, load / capacity, model / capacity});
+    const double times = std::max(load, model) / capacity;
+    if (!(times > largest)) continue;
+    largest = times;
+    out.contact_overload_at = pair_name(scene_, rows.key[r], rows.kind[r]);
   }
   out.contact_overload = largest;
 }

@@ -15,7 +15,8 @@ PlanItem needs_hinges(const TermNeeds& needs) {
 void make_hinges(const TermInputs& inputs, TermList& terms) {
   const HingePart& part = inputs.scene.hinges;
   terms.add(std::make_unique<BatchTerm>(
-      "hinges", std::make_unique<HingeBatch>(part.hinges, part.stiffness, part.rest_angle)));
+      "hinges",
+      std::make_unique<HingeBatch>(part.hinges, part.stiffness, part.rest_angle, inputs.options.precision)));
 }
 
 }  // namespace bb

@@ -18,7 +18,8 @@ void make_membrane(const TermInputs& inputs, TermList& terms) {
     if (part.triangles.empty()) continue;
     terms.add(std::make_unique<BatchTerm>(
         "membrane", std::make_unique<MembraneBatch>(part.model, part.triangles, scene.rest, part.lame_mu,
-                                                    part.lame_lambda, scene.planar, part.warp)));
+                                                    part.lame_lambda, scene.planar, part.warp,
+                                                    inputs.options.precision)));
   }
 }
 

@@ -26,6 +26,17 @@ void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const 
   plan.planar_lock = plan_item(scene.planar, "the scene is planar", "the scene is not planar");
 }
 
+PlanItem plan_float(Precision precision) {
+  constexpr const char* stored =
+      "; stored and solved in double, so that times are no times of a float program";
+  const bool single = values_in_float(precision);
+  return plan_item(precision != Precision::full,
+                   (single ? "states, gaps, energies, gradients, Hessians, step bounds"
+                           : "Hessians of elements and contacts") +
+                       std::string(stored),
+                   "precision is double");
+}
+
 void plan_passes(Plan& plan, const PlanOptions& options) {
   plan.linear = options.linear;
   plan.linear_solver = {true, plan.linear.name + ", " + options.linear_reason};
@@ -63,6 +74,7 @@ std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
                          {"pins", &pins},
                          {"pin_lifting", &pin_lifting},
                          {"planar_lock", &planar_lock},
+                         {"float_arithmetic", &float_arithmetic},
                          {"linear_solver", &linear_solver},
                          {"preconditioner", &preconditioner},
                          {"conditioning", &conditioning},
@@ -80,6 +92,7 @@ Plan make_plan(const Scene& scene, const TermOptions& terms, const PlanOptions& 
     plan.terms.push_back(entry.needs({scene, terms, plan.contacts}));
   }
   plan_steps(plan, scene, terms, options);
+  plan.float_arithmetic = plan_float(terms.precision);
   plan_passes(plan, options);
   return plan;
 }

@@ -31,6 +31,7 @@ struct Plan {
   PlanItem pins;                // eliminated degrees of freedom
   PlanItem pin_lifting;         // prescribed motion on the right-hand side
   PlanItem planar_lock;         // third axis eliminated
+  PlanItem float_arithmetic;    // what is computed in float
   PlanItem linear_solver;       // which, and why
   PlanItem preconditioner;      // iterative solver only
   PlanItem conditioning;        // condition numbers

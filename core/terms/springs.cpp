@@ -15,7 +15,8 @@ PlanItem needs_springs(const TermNeeds& needs) {
 void make_springs(const TermInputs& inputs, TermList& terms) {
   const SpringPart& part = inputs.scene.springs;
   terms.add(std::make_unique<BatchTerm>(
-      "springs", std::make_unique<SpringBatch>(part.edges, inputs.scene.rest, part.stiffness)));
+      "springs", std::make_unique<SpringBatch>(part.edges, inputs.scene.rest, part.stiffness,
+                                               inputs.options.precision)));
 }
 
 }  // namespace bb

@@ -17,7 +17,8 @@ StrainLimitTerm::StrainLimitTerm(const Scene& scene, const TermOptions& options,
     : scene_(scene),
       options_(options),
       fixed_(fixed),
-      batch_(scene.limit.triangles, scene.rest, scene.limit.onset, scene.limit.width, scene.planar),
+      batch_(scene.limit.triangles, scene.rest, scene.limit.onset, scene.limit.width, scene.planar,
+             options.precision),
       kappa_(batch_.size()) {
   if (options.limit_stiffness.has_potential()) {
     folded_.emplace(Folded{FoldedBarrier(options.limit), std::vector<KappaParts>(2 * batch_.size())});
@@ -181,6 +182,14 @@ double StrainLimitTerm::times_larger(std::size_t e, const Positions& others) con
   return own > std::numeric_limits<double>::min() ? needed / own : 0;
 }
 
+std::string StrainLimitTerm::element_name(std::size_t e) const {
+  const int first = batch_.vertices()[3 * e];
+  const Body& body = scene_.bodies[static_cast<std::size_t>(scene_.body[static_cast<std::size_t>(first)])];
+  return fmt::format("triangle {}[{} {} {}]", body.name, first - body.first_vertex,
+                     batch_.vertices()[3 * e + 1] - body.first_vertex,
+                     batch_.vertices()[3 * e + 2] - body.first_vertex);
+}
+
 // The larger of two estimates: what everything but the limit puts on an element on its own, and the force at
 // which the Newton model would come to rest.
 void StrainLimitTerm::report_overload(const Positions& x, const Positions& others, const Positions& dx,
@@ -197,8 +206,11 @@ void StrainLimitTerm::report_overload(const Positions& x, const Positions& other
     if (!(gap < width)) continue;
     const double capacity = slope(width);
     const double share = -options_.limit.eval(gap, width).db / capacity;
-    largest = std::max({largest, share * times_larger(e, others),
-                        newton_force(options_.limit, gap, smaller_gap(e), width) / capacity});
+    const double times = std::max(share * times_larger(e, others),
+                                  newton_force(options_.limit, gap, smaller_gap(e), width) / capacity);
+    if (!(times > largest)) continue;
+    largest = times;
+    out.limit_overload_at = element_name(e);
   }
   batch_.measure(x);
   out.limit_overload = largest;

@@ -45,6 +45,7 @@ class StrainLimitTerm final : public Term {
   double smaller_gap(std::size_t e) const;
   double force(std::size_t e, double gap) const;
   double load_max() const;
+  std::string element_name(std::size_t e) const;
   double times_larger(std::size_t e, const Positions& others) const;
 
   const Scene& scene_;

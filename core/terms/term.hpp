@@ -18,6 +18,8 @@
 
 namespace bb {
 
+class Archive;
+
 /// One time step, the same for all terms.
 struct StepFrame {
   Positions x_n, x_tilde;  // [3 x n] m
@@ -88,6 +90,8 @@ class Term {
   virtual void change_frame(const StepFrame&) {}
   /// The step is over.
   virtual void end_step(PhaseClock&) {}
+  /// What it remembers from step to step (core/archive). A term that begin_step makes anew has nothing.
+  virtual void keep(Archive&) {}
 
   // --- an iterate
   /// Energies, gradients and Hessians of all families at the iterate x. Elastic terms come first and read of

@@ -9,6 +9,7 @@
 #include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/energy/strain_stiffness.hpp"
+#include "core/math/precision.hpp"
 
 namespace bb {
 
@@ -35,6 +36,7 @@ struct LimitStiffness {
 struct TermOptions {
   BarrierFunction contact;
   std::unique_ptr<StiffnessPolicy> stiffness;
+  Precision precision = Precision::full;  // of all terms; contact and limit have in_float set accordingly
   HessianMode hessian_mode = HessianMode::gauss_newton;
   ContactOptions contact_options;
   bool strain_limit = true;  // false: limits of the scene are left out

@@ -73,6 +73,16 @@ void common_arguments(CLI::App& app, CommonOptions& common, std::vector<std::str
       ->check(CLI::IsMember({"haswell", "native"}));
 }
 
+void limit_arguments(CLI::App* app, RunLimits& limits) {
+  app->add_flag(
+      "--resume", limits.resume,
+      "go on from the checkpoint of a run that was stopped (/output/checkpoint_every); without one, "
+      "from the start");
+  app->add_option("--time-limit", limits.time_limit_s,
+                  "seconds that one run may take: it ends between two steps with the outcome timeout")
+      ->check(CLI::PositiveNumber);
+}
+
 CLI::App* add_matrix(CLI::App& app, MatrixVerb& verb) {
   CLI::App* out = app.add_subcommand(
       "matrix", "a stored system through every linear solver, preconditioner and condition estimator");
@@ -84,6 +94,30 @@ CLI::App* add_matrix(CLI::App& app, MatrixVerb& verb) {
   out->add_option("--dense-rows", verb.dense_rows,
                   "up to so many rows (default 1500, at most 3000) all eigenvalues are computed too");
   out->footer("example: ./bench matrix results/matrices/*.mtx --json replay.json");
+  return out;
+}
+
+CLI::App* add_validity(CLI::App& app, ValidityVerb& verb) {
+  CLI::App* out = app.add_subcommand(
+      "validity",
+      "checks of this build with known answers: solvers, estimators, derivatives, CCD, short runs");
+  out->add_flag("--json", verb.json, "the report as JSON");
+  out->footer(
+      "Made by the first run of a build and kept beside the program; a build that fails shows no times.");
+  return out;
+}
+
+CLI::App* add_ccd(CLI::App& app, CcdVerb& verb) {
+  CLI::App* out = app.add_subcommand(
+      "ccd", "queries with a known truth to both continuous tests: false negatives, false positives, times");
+  out->add_option("folder", verb.folder,
+                  "SCENE/vertex-face/*.csv and SCENE/edge-edge/*.csv, rational coordinates");
+  out->add_option("--random", verb.random, "so many queries of each kind, their truth known by construction");
+  out->add_option("--head-on", verb.head_on,
+                  "so many sweeps of a point through a triangle for each gap and offset");
+  out->add_option("--seed", verb.seed, "of both (default 1)");
+  out->add_option("--json", verb.json, "file of everything that the table shows");
+  out->footer("example: ./bench ccd --random 10000 --seed 1");
   return out;
 }
 
@@ -147,6 +181,8 @@ int main(int argc, char** argv) {
   SweepVerb sweep_verb;
   StepsVerb steps_verb;
   MatrixVerb matrix_verb;
+  ValidityVerb validity_verb;
+  CcdVerb ccd_verb;
   std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
   std::string help_format = "config";
@@ -161,6 +197,7 @@ int main(int argc, char** argv) {
   config_arguments(run_app, run_verb);
   run_app->add_option("--out", run_verb.out, "folder of run.json (default results/runs/<label>)");
   run_app->add_flag("--keep-inputs", run_verb.keep_inputs, "copy meshes and plugins beside the record");
+  limit_arguments(run_app, run_verb.limits);
   run_app->footer("example: ./bench run configs/scenes/drape2d.json --set /formulation=\"cubic\"");
   auto* sweep_app =
       app.add_subcommand("sweep", "a base config and axes: one record a run, finished ones skipped");
@@ -171,6 +208,7 @@ int main(int argc, char** argv) {
   sweep_app->add_flag("--keep-inputs", sweep_verb.keep_inputs, "copy meshes and plugins beside each record");
   sweep_app->add_flag("--dry-run", sweep_verb.dry_run, "print what would run");
   sweep_app->add_flag("--again", sweep_verb.again, "run finished ones too");
+  limit_arguments(sweep_app, sweep_verb.limits);
   sweep_app->footer(sweep_help);
   auto* steps_app = app.add_subcommand(
       "steps", "single steps of a run from one state, by every choice of Hessian: iterations and errors");
@@ -183,6 +221,8 @@ int main(int argc, char** argv) {
   steps_app->add_option("--out", steps_verb.out, "JSON file with every |dx|, for ./bench figures");
   steps_app->footer("example: ./bench steps configs/scenes/drape.json --at 11,21 --out steps.json");
   CLI::App* matrix_app = add_matrix(app, matrix_verb);
+  CLI::App* validity_app = add_validity(app, validity_verb);
+  CLI::App* ccd_app = add_ccd(app, ccd_verb);
   auto* check_app = app.add_subcommand("check", "parse a config, build its scene, look for intersections");
   config_arguments(check_app, check_verb);
   check_app->footer("example: ./bench check configs/scenes/drape.json");
@@ -237,6 +277,8 @@ int main(int argc, char** argv) {
     if (sweep_app->parsed()) return sweep(sweep_verb, common);
     if (steps_app->parsed()) return steps(steps_verb, common);
     if (matrix_app->parsed()) return matrix(matrix_verb, common);
+    if (validity_app->parsed()) return validity(validity_verb, common);
+    if (ccd_app->parsed()) return ccd(ccd_verb);
     if (check_app->parsed()) return check(check_verb);
     if (explain_app->parsed()) return explain(explain_verb);
     if (list_app->parsed()) return list(list_what);

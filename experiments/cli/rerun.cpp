@@ -82,6 +82,9 @@ int compare(const StoredRun& stored, const RunRecord& record) {
 }  // namespace
 
 int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& common) {
+  if (verb.limits.resume) {
+    throw ConfigError("--resume", "a record, whose run is over", "the config of a run that was stopped");
+  }
   const fs::path home = home_of(stored);
   std::error_code none_there;
   if (!verb.out.empty() && fs::equivalent(verb.out, home, none_there)) {
@@ -95,6 +98,7 @@ int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& com
   decide_linear_solver(config);
   options.folder = verb.out.empty() ? fresh_folder(run_label(config)) : fs::path(verb.out);
   options.keep_inputs = verb.keep_inputs;
+  options.time_limit_s = verb.limits.time_limit_s;
   options.note = stored.record.labels.note;
   options.rerun_of = stored.record.ids.run_id;
   return compare(stored, run_and_show(config, options, common));

@@ -14,6 +14,7 @@ RunOptions run_options(const CommonOptions& common) {
   options.argv = common.argv;
   options.plugins = common.loaded;
   options.interrupted = &interrupted();
+  options.build = build_validity(common);
   return options;
 }
 
@@ -28,12 +29,34 @@ RunRecord run_and_show(const RunConfig& config, RunOptions options, const Common
   return record;
 }
 
+namespace {
+
+/// The folder holds the record of this very run, and no checkpoint of it.
+bool is_over(const RunConfig& config, const RunOptions& options) {
+  std::error_code unreachable;
+  if (std::filesystem::exists(options.folder / "checkpoint.bin", unreachable)) return false;
+  const auto stored = read_stored_run(options.folder / "run.json");
+  if (!stored) return false;
+  RunConfig chosen = config;
+  decide_linear_solver(chosen);
+  const RunRecord now = identified(chosen, options);
+  return stored->record.ids.run_id == now.ids.run_id && differences(stored->record, now).empty();
+}
+
+}  // namespace
+
 int run(const RunVerb& verb, const CommonOptions& common) {
   if (const auto stored = read_stored_run(verb.config)) return rerun(*stored, verb, common);
   const RunConfig config = load_run(verb.config, verb.set);
   RunOptions options = run_options(common);
   options.folder = verb.out.empty() ? "results/runs/" + run_label(config) : verb.out;
   options.keep_inputs = verb.keep_inputs;
+  options.resume = verb.limits.resume;
+  options.time_limit_s = verb.limits.time_limit_s;
+  if (options.resume && is_over(config, options)) {
+    fmt::print("already there\n{}\n", (options.folder / "run.json").string());
+    return exit_ok;
+  }
   run_and_show(config, options, common);
   return exit_ok;
 }

@@ -37,6 +37,8 @@ RunOptions case_options(const Sweep& sweep, const SweepCase& one) {
   options.note = sweep.spec.name + ": " + one.label;
   options.sweep_id = sweep.spec.name;
   options.keep_inputs = sweep.verb.keep_inputs;
+  options.resume = sweep.verb.limits.resume;
+  options.time_limit_s = sweep.verb.limits.time_limit_s;
   return options;
 }
 
@@ -139,8 +141,10 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
   try {
     violations = run_cases(sweep);
   } catch (const Interrupted&) {
-    throw Interrupted{fmt::format("{} of {} records kept in {}; the same command runs the rest", sweep.kept,
-                                  sweep.spec.cases.size(), sweep.out.string())};
+    throw Interrupted{
+        fmt::format("{} of {} records kept in {}; the same command runs the rest, with --resume "
+                    "from its checkpoint",
+                    sweep.kept, sweep.spec.cases.size(), sweep.out.string())};
   }
   compare_cases(sweep);
   if (!violations.empty()) throw ConfigError(violations);

@@ -2,6 +2,7 @@
 // the command line.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace bb::cli {
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_bad_input = 2;
 inline constexpr int exit_no_match =
-    3;  // a record did not repeat itself and nothing that it names explains it
+    3;  // a record did not repeat itself and nothing that it names explains it; a CCD answer was wrong
 inline constexpr int exit_internal = 70;
 inline constexpr int exit_try_again = 75;
 
@@ -25,11 +26,18 @@ struct CommonOptions {
   std::string blas_kernel;           // haswell, native, or empty: see settle_blas_kernel
 };
 
+/// How long a run may take, and where it begins.
+struct RunLimits {
+  bool resume = false;      // go on from a checkpoint where there is one
+  double time_limit_s = 0;  // of every run; 0: none
+};
+
 struct RunVerb {
   std::string config;
   std::vector<std::string> set;  // "/pointer=value"
   std::string out;               // folder; empty: results/runs/<label>
   bool keep_inputs = false;      // copies of meshes and plugins beside the record
+  RunLimits limits;
 };
 /// A config, or a record: rerun().
 int run(const RunVerb& verb, const CommonOptions& common);
@@ -55,6 +63,7 @@ struct SweepVerb {
   bool dry_run = false;  // print the expanded list, run nothing
   bool again = false;    // run finished ids too
   bool keep_inputs = false;
+  RunLimits limits;
 };
 int sweep(const SweepVerb& verb, const CommonOptions& common);
 
@@ -77,6 +86,26 @@ struct MatrixVerb {
 /// Stored systems through every linear solver, preconditioner and condition estimator. What fails there is a
 /// result. Errors: ConfigError as read_system.
 int matrix(const MatrixVerb& verb, const CommonOptions& common);
+
+/// The validity block of this build: read, or computed and kept; what fails is said on stderr.
+BuildValidity build_validity(const CommonOptions& common);
+
+struct ValidityVerb {
+  bool json = false;  // the report itself
+};
+/// The checks of the block as a table; exit_no_match when one failed.
+int validity(const ValidityVerb& verb, const CommonOptions& common);
+
+struct CcdVerb {
+  std::string folder;      // of query files; empty: none
+  int random = 0;          // queries of each kind by construction; 0: none
+  int head_on = 0;         // sweeps of each gap; 0: none
+  std::uint64_t seed = 1;  // of both
+  std::string json;        // file; empty: none
+};
+/// CCD queries with a known truth through ACCD and the audit. exit_no_match when a pair that meets was proven free, or
+/// an accepted state has crossed. Errors: ConfigError as read_queries, and unless one source is named.
+int ccd(const CcdVerb& verb);
 
 /// Parses, builds the scene and looks for intersections; runs nothing.
 int check(const RunVerb& verb);

@@ -63,6 +63,15 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
   return builder.finish();
 }
 
+/// Everything that has a place. The rest shape stays where it is: only lengths and angles of it are read, and they
+/// should not depend on where the scene is.
+void translate(const Vec3d& by, Scene& scene) {
+  if (by.isZero(0)) return;
+  scene.x0.colwise() += by;
+  for (Obstacle& obstacle : scene.obstacles) obstacle.point += by;
+  for (RigidMotion& motion : scene.motions) motion.center += by;
+}
+
 /// Uniform in [-1, 1) from the top 53 bits, the same on every platform.
 double unit_noise(std::mt19937_64& random) { return 2 * (static_cast<double>(random() >> 11) * 0x1p-53) - 1; }
 
@@ -107,8 +116,10 @@ Scene build_scene(const RunConfig& config) {
         procedural_scenes().require(config.scene.name, config.source + "#/scene/name");
     scene = source.build(config.scene.parameters, {config.formulation.d_hat, limit});
   }
+  translate(config.scene.translation, scene);
   jitter(config.seeds, scene);
   check_places(config, scene);
+  round_state(config.precision, scene.x0);
   return scene;
 }
 

@@ -30,6 +30,9 @@ inline EnumWords<HessianMode> words_of(HessianMode) {
 inline EnumWords<Scaling> words_of(Scaling) {
   return {{Scaling::none, "none"}, {Scaling::jacobi, "jacobi"}, {Scaling::block_jacobi, "block_jacobi"}};
 }
+inline EnumWords<Precision> words_of(Precision) {
+  return {{Precision::full, "double"}, {Precision::mixed, "mixed"}, {Precision::single, "float"}};
+}
 inline EnumWords<BodyKind> words_of(BodyKind) {
   return {{BodyKind::deformable, "deformable"}, {BodyKind::rigid, "rigid"}};
 }

@@ -126,15 +126,26 @@ void read_bodies(const json& object, const Reader& reader, SceneConfig& scene) {
   check_names(scene, reader);
 }
 
+void read_translation(const json& object, const Reader& reader, SceneConfig& scene) {
+  const auto given = object.find("translate_m");
+  if (given == object.end() || !given->is_array() || given->size() != 3)
+    return;  // complained of by the check
+  for (int k = 0; k < 3; ++k) scene.translation[k] = given->at(static_cast<std::size_t>(k)).get<double>();
+  if (scene.planar && scene.translation[2] != 0) {
+    reader.complain("/scene/translate_m", given->dump(), "a vector without z: the scene is planar");
+  }
+}
+
 }  // namespace
 
 const ProceduralScene* read_scene(const json& object, const Reader& reader, SceneConfig& scene) {
   const std::string name = object.value("name", object.contains("bodies") ? "bodies" : "");
   const ProceduralScene* found = procedural_scenes().find(name);
   if (name == "bodies") read_bodies(object, reader, scene);
+  if (found != nullptr) scene.planar = found->planar;
+  read_translation(object, reader, scene);
   if (found == nullptr) return nullptr;
   scene.name = name;
-  scene.planar = found->planar;
   scene.parameters = to_map(found->parameters, object);
   scene.gravity = gravity_of(*found, scene.parameters);
   return found;

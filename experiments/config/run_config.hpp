@@ -14,6 +14,7 @@
 #include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/linear/condition.hpp"
+#include "core/math/precision.hpp"
 #include "core/parameters/parameter.hpp"
 
 namespace bb {
@@ -63,6 +64,7 @@ struct SceneConfig {
   ParameterMap parameters;                      // registered scene: every declared parameter
   bool planar = false;                          // as the registered scene says, or as given with bodies
   Vec3d gravity = Vec3d(0, 0, -9.81);           // m/s^2; registered scene: from its parameter
+  Vec3d translation = Vec3d::Zero();            // m, of all that has a place, after the scene is made
   PlanarPairs pairs = PlanarPairs::point_edge;  // "bodies" only, like all that follows
   std::vector<BodyConfig> bodies;
   std::vector<Obstacle> obstacles;
@@ -86,7 +88,7 @@ struct RunConfig {
   StepSolverConfig step_solver;
   HessianConfig hessian;
   LinearSolverConfig linear_solver;
-  std::string precision = "double";
+  Precision precision = Precision::full;
   PassesConfig passes;
   DiagnoseConfig diagnose;
   SeedsConfig seeds;

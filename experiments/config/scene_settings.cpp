@@ -70,6 +70,12 @@ Parameter name_row() {
   return {"name", required(name_in(scene_names)), no_default, "A registered scene, or \"bodies\"."};
 }
 
+Parameter translation_row() {
+  return {"translate_m", any_vector("m"), no_default,
+          "Moves all start positions, obstacles and motions of the scene; the rest shape stays. Left out: "
+          "not at all."};
+}
+
 ParameterList scene_list(const json& scene) {
   const std::string name = scene.contains("name")
                                ? scene["name"].is_string() ? scene["name"].get<std::string>() : ""
@@ -78,9 +84,11 @@ ParameterList scene_list(const json& scene) {
   if (const ProceduralScene* found = procedural_scenes().find(name)) {
     ParameterList list{found->doc, {name_row()}, false, {}, ""};
     list.rows.insert(list.rows.end(), found->parameters.begin(), found->parameters.end());
+    list.rows.push_back(translation_row());
     return list;
   }
   ParameterList list = settings_of<SceneConfig>().rows();
+  list.rows.push_back(translation_row());
   list.rows.front() = name_row();
   list.rows.front().rule.required = name != "bodies" && scene.is_object();  // null: the schema of any scene
   list.open = name != "bodies";
@@ -125,7 +133,9 @@ Rule ruled_by(ParameterList (*list)(const json&)) {
 Rule scene_rule() { return ruled_by(scene_list); }
 Rule mesh_rule() { return ruled_by(mesh_list); }
 
-json scene_json(const SceneConfig& scene) {
+namespace {
+
+json untranslated_json(const SceneConfig& scene) {
   if (scene.name != "bodies") {
     json out = to_json(scene.parameters);
     out["name"] = scene.name;
@@ -139,6 +149,15 @@ json scene_json(const SceneConfig& scene) {
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     for (const std::string& key : keys_of_others(scene.obstacles[i].kind)) out["obstacles"][i].erase(key);
   }
+  return out;
+}
+
+}  // namespace
+
+json scene_json(const SceneConfig& scene) {
+  json out = untranslated_json(scene);
+  const Vec3d& by = scene.translation;
+  if (!by.isZero(0)) out["translate_m"] = {by[0], by[1], by[2]};
   return out;
 }
 

@@ -98,7 +98,13 @@ Settings<RunConfig> list_of() {
   out.nest("step_solver", settings_of<StepSolverConfig>(), &C::step_solver);
   out.nest("hessian", settings_of<HessianConfig>(), &C::hessian);
   out.nest("linear_solver", settings_of<LinearSolverConfig>(), &C::linear_solver);
-  out.add("precision", word({"double"}), "Scalar of the whole pipeline.", &C::precision);
+  out.add(
+      "precision", one_of<Precision>(),
+      "Arithmetic of the pipeline. mixed: Hessians of elements and contacts in float, all else in double. "
+      "float: states are rounded to float, gaps, energies, gradients, Hessians and step bounds computed in "
+      "it; "
+      "sums, solves and the audit stay double. The times of mixed and float are no times of such a program.",
+      &C::precision);
   out.nest("passes", settings_of<PassesConfig>(), &C::passes);
   out.nest("diagnose", settings_of<DiagnoseConfig>(), &C::diagnose);
   out.nest("seeds", settings_of<SeedsConfig>(), &C::seeds);

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/energy/triangle_membrane.hpp"
+#include "core/math/error.hpp"
 #include "core/math/svd.hpp"
 #include "core/mesh/topology.hpp"
 #include "core/mesh/write_mesh.hpp"
@@ -15,6 +16,7 @@
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/matrix/matrix_market.hpp"
+#include "experiments/run/keep_record.hpp"
 
 namespace bb {
 
@@ -106,7 +108,22 @@ ArtifactWriter::ArtifactWriter(std::filesystem::path folder, const Scene& scene)
   }
 }
 
-ArtifactWriter::~ArtifactWriter() { remove_unfinished_artifacts(folder_); }
+ArtifactWriter::~ArtifactWriter() {
+  if (!leave_) remove_unfinished_artifacts(folder_);
+}
+
+void ArtifactWriter::keep(Archive& archive) {
+  archive(written_);
+  if (!archive.reads()) return;
+  for (const Artifact& file : written_) {
+    const std::filesystem::path path = folder_ / part_of(file.path);
+    std::error_code absent;
+    const auto size = std::filesystem::file_size(path, absent);
+    if (!absent && size == file.bytes) continue;
+    throw ConfigError(path.string(), absent ? "not there" : fmt::format("{} bytes", size),
+                      fmt::format("{} bytes, as the checkpoint has it, or no --resume", file.bytes));
+  }
+}
 
 void ArtifactWriter::start() {
   write("frames/scene.json", scene_json(scene_), "frame_scene", "application/json");
@@ -155,6 +172,8 @@ void ArtifactWriter::write(const std::filesystem::path& relative, const std::str
   artifact.media_type = media_type;
   artifact.sha256 = sha256_hex(bytes);
   artifact.bytes = bytes.size();
+  // an attempt at a step that is repeated has left files of the same names
+  std::erase_if(written_, [&artifact](const Artifact& earlier) { return earlier.path == artifact.path; });
   written_.push_back(std::move(artifact));
 }
 

@@ -47,6 +47,11 @@ class ArtifactWriter {
   const std::vector<Artifact>& written() const { return written_; }
   /// Gives every file its name. Errors: RecordError.
   void finish();
+  /// The names of what was written so far. Reading asks that the files are there. Errors: ConfigError naming one
+  /// that is not, or has another size.
+  void keep(Archive& archive);
+  /// From now on the files stay, also those of a run that never finishes: a checkpoint names them.
+  void leave_unfinished() { leave_ = true; }
 
  private:
   void write_frame(const std::filesystem::path& relative, const Positions& x, const ContactFields* fields);
@@ -58,6 +63,7 @@ class ArtifactWriter {
   std::vector<std::array<int, 2>> rods_;  // edges of the surface that belong to no triangle
   std::vector<int> triangle_body_;
   std::vector<Artifact> written_;
+  bool leave_ = false;
 };
 
 }  // namespace bb

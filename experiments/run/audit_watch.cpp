@@ -1,10 +1,26 @@
 #include "experiments/run/audit_watch.hpp"
 
+#include "core/archive/archive.hpp"
 #include "core/record/phase_times.hpp"
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
 
 namespace bb {
+namespace audit {
+
+static void keep(Archive& archive, PairName& name) {
+  archive(name.kind, name.first, name.second, name.proven);
+}
+
+static void keep(Archive& archive, AuditLedger& ledger) {
+  archive(ledger.states, ledger.motions, ledger.state_pairs, ledger.motion_pairs, ledger.pair_queries,
+          ledger.obstacle_queries, ledger.crossings, ledger.touches, ledger.violations, ledger.unproven,
+          ledger.inverted, ledger.obstacle_violations, ledger.scene_faults, ledger.non_finite,
+          ledger.unjudged, ledger.self_test_passed, ledger.first_bad_step, ledger.first_fault_step,
+          ledger.first_bad, ledger.first_fault);
+}
+
+}  // namespace audit
 
 AuditWatch::AuditWatch(const Scene& scene, double ccd_park, AuditRecord& record)
     : scene_(scene),
@@ -13,6 +29,7 @@ AuditWatch::AuditWatch(const Scene& scene, double ccd_park, AuditRecord& record)
       audit_(mesh_),
       tolerance_(audit_tolerance(scene, ccd_park)) {
   judge(scene.x0, -1);
+  at_step_end_ = {audit_.ledger(), last_judged_};
 }
 
 void AuditWatch::judge(const Positions& x, int step) {
@@ -38,6 +55,21 @@ void AuditWatch::on_step(const Positions& x, StepRecord& step) {
   step.violations = record_.violations - before.violations;
   step.unproven = record_.unproven - before.unproven;
   step.inverted = record_.inverted - before.inverted;
+  at_step_end_ = {audit_.ledger(), last_judged_};
+}
+
+void AuditWatch::on_retry() {
+  audit_.restore(at_step_end_.ledger);
+  last_judged_ = at_step_end_.last_judged;
+}
+
+// The subjects are those of the scene.
+void AuditWatch::keep(Archive& archive) {
+  archive(at_step_end_.ledger, at_step_end_.last_judged);
+  if (!archive.reads()) return;
+  const audit::AuditSubjects subjects = audit_.ledger().subjects;
+  at_step_end_.ledger.subjects = subjects;
+  on_retry();
 }
 
 void AuditWatch::fill_record() {

@@ -8,6 +8,8 @@
 
 namespace bb {
 
+class Archive;
+
 class AuditWatch {
  public:
   /// Judges the start. scene and record must outlive it.
@@ -16,6 +18,10 @@ class AuditWatch {
   void on_motion(const Positions& x0, const Positions& x1, int step);
   /// Fills the counts of the step that ended at x.
   void on_step(const Positions& x, StepRecord& step);
+  /// Forgets the motions since the last step ended: they are no part of the run.
+  void on_retry();
+  /// What the audit found so far, at the end of a step.
+  void keep(Archive& archive);
   const audit::AuditLedger& ledger() const { return audit_.ledger(); }
   /// What was found, as an outcome.
   Verdict verdict() const;
@@ -30,6 +36,10 @@ class AuditWatch {
   audit::Audit audit_;
   double tolerance_ = 0;
   Positions last_judged_;  // where the next motion has to start
+  struct {
+    audit::AuditLedger ledger;
+    Positions last_judged;
+  } at_step_end_;
 };
 
 }  // namespace bb

@@ -2,6 +2,8 @@
 
 #include <cmath>
 
+#include "core/archive/archive.hpp"
+
 namespace bb {
 namespace {
 
@@ -22,6 +24,10 @@ void CondSummary::add(const ConditionSample& sample) {
   add_log10(samples.lambda_min, sample.lambda_min);
   add_log10(samples.lambda_max, sample.lambda_max);
 }
+
+void CondSummary::Samples::keep(Archive& archive) { archive(cond, lambda_min, lambda_max, statuses); }
+
+void CondSummary::keep(Archive& archive) { archive(samples_); }
 
 CondMap CondSummary::summary() const {
   CondMap out;

@@ -9,6 +9,8 @@
 
 namespace bb {
 
+class Archive;
+
 class CondSummary {
  public:
   /// A matrix that is singular or not positive definite has no finite condition number: it counts with the
@@ -16,11 +18,13 @@ class CondSummary {
   void add(const ConditionSample& sample);
   /// By "<stage>/<scaling>", with "solved/" before it for matrices that are not the clamped ones.
   CondMap summary() const;
+  void keep(Archive& archive);
 
  private:
   struct Samples {
     std::vector<double> cond, lambda_min, lambda_max;  // log10
     CountMap statuses;
+    void keep(Archive& archive);
   };
   std::map<std::string, Samples> samples_;
 };

@@ -4,8 +4,11 @@
 #include <cmath>
 #include <optional>
 
+#include "core/archive/archive.hpp"
+#include "core/linear/end_vectors.hpp"
 #include "core/newton/newton_system.hpp"
 #include "experiments/run/matrix_dump.hpp"
+#include "experiments/run/spectrum_ends.hpp"
 
 namespace bb {
 namespace {
@@ -59,6 +62,16 @@ void ConditionWatch::estimate(const ReducedSystem& matrix, MatrixForm form, Matr
   }
 }
 
+// Of the clamped samples that were taken last, one a scaling.
+void ConditionWatch::find_ends(NewtonSystem& system, TermSet set) {
+  const ReducedSystem& matrix = system.clamped(set);
+  const std::size_t first = samples_.size() - config_.diagnose.scalings.size();
+  for (std::size_t i = first; i < samples_.size(); ++i) {
+    const auto ends = end_vectors(matrix, samples_[i].scaling, config_.diagnose.seed);
+    if (ends) samples_[i].ends = describe_ends(system, set, *ends);
+  }
+}
+
 void ConditionWatch::on_matrix(NewtonSystem& system, int step, int iteration) {
   samples_.clear();
   probed_ = Number::missing("not_due");
@@ -70,7 +83,9 @@ void ConditionWatch::on_matrix(NewtonSystem& system, int step, int iteration) {
     for (const std::string& name : config_.diagnose.stages) {
       for (const Stage& stage : stages) {
         if (name != to_string(stage.name) || (stage.last && !system.active(*stage.last))) continue;
-        estimate(system.clamped(TermSet::all().without(stage.left_out)), MatrixForm::clamped, stage.name);
+        const TermSet set = TermSet::all().without(stage.left_out);
+        estimate(system.clamped(set), MatrixForm::clamped, stage.name);
+        if (config_.diagnose.ends) find_ends(system, set);
         if (stage.name != MatrixStage::full || system.solved_is_clamped()) continue;
         estimate(system.solved(), MatrixForm::solved, stage.name);
       }
@@ -101,6 +116,8 @@ void ConditionWatch::on_iteration(const LinearReport& linear, TraceRow& row) {
   row.cond = std::move(samples_);
   samples_.clear();
 }
+
+void ConditionWatch::keep(Archive& archive) { archive(cond_, probes_, spent_s_); }
 
 void ConditionWatch::fill(Summary& summary) const {
   summary.cond = cond_.summary();

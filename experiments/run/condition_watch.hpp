@@ -24,11 +24,14 @@ class ConditionWatch {
   void on_iteration(const LinearReport& linear, TraceRow& row);
   /// `cond` and `probe_pcg` of the run so far.
   void fill(Summary& summary) const;
+  /// What was estimated so far, between two steps.
+  void keep(Archive& archive);
 
  private:
   bool due(int iteration) const;
   void write_matrices(NewtonSystem& system, int step, int iteration);
   void estimate(const ReducedSystem& matrix, MatrixForm form, MatrixStage stage);
+  void find_ends(NewtonSystem& system, TermSet set);
 
   const RunConfig& config_;
   ArtifactWriter* artifacts_;

@@ -3,12 +3,16 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/archive/archive.hpp"
+
 namespace bb {
 
 const std::string& FirstContacts::name(int owner) const {
   const auto i = static_cast<std::size_t>(owner), n = scene_.bodies.size();
   return i < n ? scene_.bodies[i].name : scene_.obstacles[i - n].name;
 }
+
+void FirstContacts::keep(Archive& archive) { archive(touched_); }
 
 void FirstContacts::note(const ContactState& state, int step, CountMap& first) {
   const auto n_bodies = static_cast<int>(scene_.bodies.size());

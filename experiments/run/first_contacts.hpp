@@ -10,6 +10,8 @@
 
 namespace bb {
 
+class Archive;
+
 class FirstContacts {
  public:
   /// The scene must outlive it.
@@ -17,6 +19,8 @@ class FirstContacts {
   /// Enters `step` into `first` for every pair that has a row in `state` for the first time. Keys:
   /// "body|body" or "body|obstacle", the names sorted.
   void note(const ContactState& state, int step, CountMap& first);
+  /// Who has touched so far.
+  void keep(Archive& archive);
 
  private:
   const std::string& name(int owner) const;

@@ -20,6 +20,7 @@ StepSolverOptions step_solver_options(const RunConfig& config) {
   StepSolverOptions out;
   out.name = config.step_solver.name;
   out.max_iterations = config.step_solver.max_iterations;
+  out.retries = config.step_solver.retries;
   out.tol_velocity = config.step_solver.tol_velocity;
   out.parameters = config.step_solver.parameters;
   return out;
@@ -66,6 +67,8 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   }
   method.contact.literal = method.limit.literal =
       !step_solvers().require(config.step_solver.name, "/step_solver/name").bounds_steps;
+  method.precision = config.precision;
+  method.contact.in_float = method.limit.in_float = values_in_float(config.precision);
   method.hessian_mode = config.contact.hessian_mode;
   method.contact_options.mollifier = config.contact.mollifier;
   method.contact_options.ccd_park = config.contact.ccd_park;

@@ -7,7 +7,20 @@
 namespace bb {
 namespace {
 
-std::string because(const StepReport& step) { return step.detail.empty() ? "" : "; " + step.detail; }
+/// What is known beside the status, and how often the step was halved.
+std::string because(const StepReport& step) {
+  std::string text = step.detail.empty() ? "" : "; " + step.detail;
+  if (step.retries > 0) {
+    text += fmt::format("; after {} retries, the last with {:.3g} s", step.retries, step.dt_s);
+  }
+  return text;
+}
+
+/// Where the largest load over capacity is.
+std::string overloaded(const StepReport& step, bool contact) {
+  const std::string& at = contact ? step.contact_overload_at : step.limit_overload_at;
+  return (contact ? "at a contact" : "of the strain limit") + (at.empty() ? "" : " (" + at + ")");
+}
 
 double load_of(const Number& overload) { return overload.finite() ? overload.value : 0; }
 
@@ -20,12 +33,12 @@ Verdict stalled(const StepReport& step) {
   if (worst > 1 && !step.still_falling) {
     return {Outcome::stall_overload,
             fmt::format("step {}: load over capacity {:.3g} {}; {} after {} iterations{}", step.step, worst,
-                        contact >= limit ? "at a contact" : "of the strain limit", to_string(step.status),
-                        step.newton_iterations, because(step))};
+                        overloaded(step, contact >= limit), to_string(step.status), step.newton_iterations,
+                        because(step))};
   }
   if (step.ccd_capped > 0 && step.status == StepStatus::step_collapse) {
-    return {Outcome::ccd_cap,
-            fmt::format("step {}: {} pairs reached the probe cap", step.step, step.ccd_capped)};
+    return {Outcome::ccd_cap, fmt::format("step {}: {} pairs reached the probe cap{}", step.step,
+                                          step.ccd_capped, because(step))};
   }
   return {Outcome::newton_stall, fmt::format("step {}: {} after {} iterations{}", step.step,
                                              to_string(step.status), step.newton_iterations, because(step))};
@@ -43,13 +56,13 @@ Verdict judge_step(const StepReport& step) {
     case StepStatus::not_descent:
       return stalled(step);
     case StepStatus::pin_infeasible:
-      return {Outcome::pin_infeasible, step.detail};
+      return {Outcome::pin_infeasible, fmt::format("step {}: pin_infeasible{}", step.step, because(step))};
     case StepStatus::non_finite:
-      return {Outcome::nan, fmt::format("step {}: a non-finite direction", step.step)};
+      return {Outcome::nan, fmt::format("step {}: not finite{}", step.step, because(step))};
     case StepStatus::linear_failed:
-      return {step.detail == to_string(LinearStatus::matrix_indefinite) ? Outcome::not_pd
-                                                                        : Outcome::linear_failure,
-              fmt::format("step {}: {}", step.step, step.detail)};
+      return {step.detail.starts_with(to_string(LinearStatus::matrix_indefinite)) ? Outcome::not_pd
+                                                                                  : Outcome::linear_failure,
+              fmt::format("step {}: linear_failed{}", step.step, because(step))};
   }
   return {};
 }

@@ -2,6 +2,7 @@
 
 #include "core/newton/newton_system.hpp"
 #include "core/terms/contact.hpp"
+#include "experiments/run/keep_record.hpp"
 #include "experiments/run/run_summary.hpp"
 #include "experiments/run/step_energies.hpp"
 
@@ -38,6 +39,11 @@ void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
   if (audit_) audit_->on_motion(x0, x1, step);
 }
 
+// The rows of the attempt stay in the trace, its motions are not those of the run.
+void Recorder::on_retry(int) {
+  if (audit_) audit_->on_retry();
+}
+
 void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
   const ContactState& contact = contact_state(system.terms());
   const int every = config_.output.frames_every;
@@ -57,6 +63,13 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
   }
   rows_.clear();
   trace_->end_step();
+}
+
+void Recorder::keep(Archive& archive) {
+  archive.section("recorder");
+  archive(record_.steps, record_.summary.first_contact, record_.audit, linear_, seen_, condition_,
+          first_contacts_);
+  if (audit_) archive(*audit_);
 }
 
 void Recorder::finish() {

@@ -32,8 +32,11 @@ class Recorder final : public StepObserver {
   void on_matrix(NewtonSystem& system, int step, int iteration) override;
   void on_iteration(const IterationReport& report) override;
   void on_motion(const Positions& x0, const Positions& x1, int step) override;
+  void on_retry(int step) override;
   void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override;
 
+  /// What it has recorded so far, between two steps; its files are not in it.
+  void keep(Archive& archive);
   /// Fills the summary, once the run is over.
   void finish();
 

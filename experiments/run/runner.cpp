@@ -5,76 +5,27 @@
 #include <oneapi/tbb/info.h>
 
 #include <algorithm>
-#include <cmath>
+#include <new>
 
 #include "core/linear/blas_info.hpp"
 #include "core/math/error.hpp"
-#include "core/newton/simulation.hpp"
 #include "core/record/folder_lock.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
 #include "core/terms/plan.hpp"
+#include "experiments/config/enum_words.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/comparability.hpp"
 #include "experiments/run/input_files.hpp"
 #include "experiments/run/linear_choice.hpp"
-#include "experiments/run/outcome.hpp"
+#include "experiments/run/passes.hpp"
 #include "experiments/run/plan.hpp"
-#include "experiments/run/recorder.hpp"
 #include "experiments/run/start_check.hpp"
-#include "experiments/run/validity.hpp"
 
 namespace bb {
 namespace {
-
-/// One simulation from start to end, seen by one observer.
-struct PassResult {
-  Verdict verdict;
-  std::string state_hash;
-  struct StepTime {
-    double wall_s;  // on its own clock, round the whole step
-    PhaseTimes phases;
-  };
-  std::vector<StepTime> steps;
-  double wall_s = 0;  // of all steps
-  StiffnessPolicy::State stiffness;
-};
-
-PassResult run_pass(const RunConfig& config, const Scene& scene, const Calibration& calibration,
-                    const Plan& plan, const RunOptions& options, const char* pass, StepObserver& observer) {
-  Method method = make_method(config, calibration);
-  Simulation simulation(scene, method, plan, config.time.dt, config.time.steps);
-  PassResult result;
-  const double start = now_s();
-  const double t_end = config.time.dt * config.time.steps * (1 - 1e-9);
-  Progress progress;
-  progress.label = run_label(config);
-  progress.pass = pass;
-  progress.steps = config.time.steps;
-  while (simulation.time() < t_end) {
-    if (options.interrupted && options.interrupted->load()) throw Interrupted{};
-    const double step_start = now_s();
-    const StepReport step = simulation.step(observer);
-    result.steps.push_back({now_s() - step_start, step.time});
-    result.wall_s += result.steps.back().wall_s;
-    result.verdict = judge_step(step);
-    if (options.progress) {
-      progress.step = static_cast<int>(std::lround(step.t_s / config.time.dt));
-      progress.newton = step.newton_iterations;
-      progress.contacts = step.contacts.total();
-      progress.gap = step.gap_min_m;
-      progress.elapsed_s = now_s() - start;
-      progress.eta_s = progress.elapsed_s * std::max(0.0, t_end / simulation.time() - 1);
-      options.progress(progress);
-    }
-    if (result.verdict.outcome != Outcome::ok) break;
-  }
-  result.state_hash = state_hash(simulation.history().x);
-  result.stiffness = method.stiffness->state();
-  return result;
-}
 
 void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& record) {
   Labels& labels = record.labels;
@@ -87,7 +38,7 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.step_solver = config.step_solver.name;
   labels.linear_solver = config.linear_solver.name;
   labels.preconditioner = preconditioner_of({config.linear_solver.name, config.linear_solver.parameters});
-  labels.precision = config.precision;
+  labels.precision = word_of(config.precision);
   labels.d_hat_m = config.formulation.d_hat;
   labels.dt_s = config.time.dt;
   labels.note = options.note;
@@ -105,99 +56,22 @@ void fill_scene(const Scene& scene, RunRecord& record) {
   size.extent_m = (scene.x0.rowwise().maxCoeff() - scene.x0.rowwise().minCoeff()).maxCoeff();
 }
 
-/// Written beside the record; they get their names when the run is over.
-struct RunFiles {
-  std::optional<TraceWriter> trace;
-  std::optional<ArtifactWriter> artifacts;
-
-  void finish() {
-    if (trace) trace->finish();
-    if (artifacts) artifacts->finish();
-  }
-};
-
 void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record) {
   for (const auto& [name, item] : plan.items()) {
     record.plan.push_back({std::string(name), item->needed, item->reason});
   }
   if (!config.passes.time) record.skipped.push_back({"time", "not_requested"});
+  if (config.passes.time && !record.validity.build.valid)
+    record.skipped.push_back({"time", "build_not_valid"});
   if (!plan.conditioning.needed) record.skipped.push_back({"cond", "not_requested"});
   if (!plan.audit.needed) record.skipped.push_back({"audit", "not_requested"});
   if (!plan.trace.needed) record.skipped.push_back({"trace", "not_requested"});
 }
 
-/// Times of the pass that was timed; a step that it did not reach has none.
-void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
-  Summary& summary = record.summary;
-  const Number absent = Number::missing(requested ? "not_reached" : "not_requested");
-  for (std::size_t i = 0; i < record.steps.size(); ++i) {
-    StepRecord& step = record.steps[i];
-    step.wall_s = step.unaccounted_s = absent;
-    if (i >= timed.steps.size()) continue;
-    step.time = timed.steps[i].phases;
-    step.wall_s = timed.steps[i].wall_s;
-    step.unaccounted_s = timed.steps[i].wall_s - step.time.total_s();
-  }
-  summary.wall_s = summary.solve_s = summary.unaccounted_s = absent;
-  if (!requested) return;
-  for (const PassResult::StepTime& step : timed.steps) summary.time += step.phases;
-  summary.wall_s = timed.wall_s;
-  summary.solve_s = summary.time.solve_s();
-  summary.unaccounted_s = timed.wall_s - summary.time.total_s();
-}
-
-void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
-  if (worse(outcome, verdict.outcome) == outcome && outcome != verdict.outcome) verdict = {outcome, detail};
-}
-
-// The passes: `time` runs alone, `diagnose` and `audit` share a run, and none of their time is reported
-// as a time.
-void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
-                const RunOptions& options, RunRecord& record, RunFiles& files) {
-  PassResult timed, seen;
-  const bool look = has_observed_run(config);
-  RunRecord timing;               // the time pass keeps a record of its own: only its times and hash are used
-  std::vector<PhaseTimes> times;  // of the iterations
-  if (config.passes.time) {
-    RunConfig bare = config;
-    bare.passes = {true, false, false};
-    Recorder observer(bare, scene, look ? timing : record, nullptr);
-    timed = run_pass(bare, scene, calibration, plan, options, "time", observer);
-    observer.finish();
-    record.samples["wall_s"] = {timed.wall_s};
-    times = observer.iteration_times();
-  }
-  Verdict verdict = timed.verdict;
-  std::optional<audit::AuditLedger> ledger;
-  if (look) {
-    files.trace.emplace(options.folder);
-    files.artifacts.emplace(options.folder, scene);
-    Recorder observer(config, scene, record, &*files.trace, &*files.artifacts);
-    observer.report_times(times);
-    seen = run_pass(config, scene, calibration, plan, options, "diagnose", observer);
-    observer.finish();
-    record.artifacts = files.artifacts->written();
-    verdict = seen.verdict;
-    if (observer.ledger()) ledger = *observer.ledger();
-    const Verdict audited = observer.audit_verdict();
-    merge(verdict, audited.outcome, audited.detail);
-  }
-  const PassResult& main = look ? seen : timed;
-  record.status.outcome = verdict.outcome;
-  record.status.detail = verdict.detail;
-  fill_times(timed, config.passes.time, record);
-  record.summary.state_hash = main.state_hash;
-  if (main.stiffness.kappa > 0) {
-    record.summary.stiffness = {main.stiffness.kappa_start, main.stiffness.kappa, main.stiffness.doublings,
-                                main.stiffness.saturated};
-  }
-  fill_validity(scene, ledger ? &*ledger : nullptr, timed.state_hash, seen.state_hash, record);
-}
-
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
 // geometry or its pilot can show that.
-void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, RunRecord& record,
-              RunFiles& files) {
+void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options,
+              const Checkpoint& checkpoint, Resumed* resumed, RunRecord& record, RunFiles& files) {
   fill_scene(scene, record);
   record.matching.rule = to_string(config.matching.rule);
   const Plan plan = plan_of(config, scene);
@@ -208,14 +82,19 @@ void simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
     return;
   }
   Calibration calibration;
-  try {
-    calibration = calibrate(config, scene, options, record.matching);
-  } catch (const ConfigError& error) {  // of what only the scene or its pilot can tell: no first step
-    record.status.outcome = Outcome::invalid_scene;
-    record.status.detail = error.what();
-    return;
+  if (resumed) {
+    calibration = resumed->calibration;
+    record.matching = resumed->record.matching;
+  } else {
+    try {
+      calibration = calibrate(config, scene, options, record.matching);
+    } catch (const ConfigError& error) {  // of what only the scene or its pilot can tell: no first step
+      record.status.outcome = Outcome::invalid_scene;
+      record.status.detail = error.what();
+      return;
+    }
   }
-  run_passes(config, scene, plan, calibration, options, record, files);
+  run_passes(config, scene, plan, calibration, options, checkpoint, resumed, record, files);
 }
 
 int thread_count(const RunConfig& config) {
@@ -250,6 +129,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   RunConfig config = asked;
   decide_linear_solver(config);
   RunOptions options = given;
+  if (options.time_limit_s > 0) options.deadline_s = now_s() + options.time_limit_s;
   const oneapi::tbb::global_control limit(oneapi::tbb::global_control::max_allowed_parallelism,
                                           static_cast<std::size_t>(thread_count(config)));
   set_one_blas_thread();  // before the record says how many there are, and before anything computes
@@ -257,14 +137,29 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   const Scene scene = build_scene(config);
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);
-  remove_unfinished(options.folder);
-  check_writable(options.folder);
-  if (options.keep_inputs) copy_inputs(options.folder, config, options.plugins);
   RunRecord record = identified(config, options);
   record.status.started_utc = started_utc;
+  record.validity.build = options.build;
+  const Checkpoint checkpoint(options.folder, record.ids.build_id);
+  std::optional<Resumed> resumed;
+  if (options.resume) resumed = read_resumed(checkpoint, record);
+  if (resumed) record.status.started_utc = resumed->record.status.started_utc;
+  resumed ? remove_temporaries(options.folder) : remove_unfinished(options.folder);
+  check_writable(options.folder);
+  if (options.keep_inputs) copy_inputs(options.folder, config, options.plugins);
 
   RunFiles files;
-  simulate(config, scene, options, record, files);
+  try {
+    simulate(config, scene, options, checkpoint, resumed ? &*resumed : nullptr, record, files);
+  } catch (const std::bad_alloc&) {  // of a step: see Pass
+    record.status.outcome = Outcome::oom;
+    record.status.detail = "memory ran out before the first step";
+  } catch (const Interrupted& stopped) {
+    std::error_code unreachable;
+    if (!std::filesystem::exists(checkpoint.file(), unreachable)) throw;
+    throw Interrupted{
+        fmt::format("{} kept; the same command with --resume goes on from it", checkpoint.file().string())};
+  }
   fill_labels(config, options, record);
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
@@ -273,6 +168,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   remove_earlier_run(options.folder);
   files.finish();
   run_json.commit();
+  checkpoint.remove();
   return record;
 }
 

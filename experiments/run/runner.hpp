@@ -30,10 +30,14 @@ struct RunOptions {
   std::string note;               // how the row of a table differs
   std::string sweep_id;
   std::string rerun_of;                           // run_id of the record that is repeated
+  BuildValidity build;                            // of this program; not valid: no times are kept
   std::vector<PluginFile> plugins;                // loaded, `file` as a path that can be opened
   bool keep_inputs = false;                       // copy meshes and plugins to inputs/ and name the copies
   std::function<void(const Progress&)> progress;  // may be empty
   const std::atomic<bool>* interrupted = nullptr;
+  bool resume = false;      // go on from the checkpoint in the folder; from the start when there is none
+  double time_limit_s = 0;  // of this process, looked at between two steps; 0: none
+  double deadline_s = 0;    // set by run_config: when that is over, as now_s() counts
 };
 
 /// Thrown when the run was interrupted: no run.json is written.

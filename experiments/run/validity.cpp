@@ -37,6 +37,9 @@ void fill_validity(const Scene& scene, const audit::AuditLedger* ledger, const s
     const double stretch = record.summary.max_stretch.value;
     add_check(record, "strain_limit_kept", stretch, limit, stretch < limit);
   }
+  if (const BuildValidity& build = record.validity.build; build.checks > 0) {
+    add_check(record, "build_valid", build.valid ? 0.0 : 1.0, 0.0, build.valid);
+  }
   const bool ok = record.status.outcome == Outcome::ok;
   add_check(record, "outcome_ok", ok ? 0.0 : 1.0, 0.0, ok);
   record.validity.valid = std::all_of(record.validity.checks.begin(), record.validity.checks.end(),

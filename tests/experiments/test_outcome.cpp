@@ -57,11 +57,16 @@ TEST(JudgeStep, every_other_failure_has_its_own_word) {
   EXPECT_EQ(judge_step(ended(StepStatus::pin_infeasible)).outcome, Outcome::pin_infeasible);
   EXPECT_EQ(judge_step(ended(StepStatus::non_finite)).outcome, Outcome::nan);
   StepReport unsolved = ended(StepStatus::linear_failed);
-  unsolved.detail = std::string(to_string(LinearStatus::matrix_indefinite));
+  unsolved.detail =
+      std::string(to_string(LinearStatus::matrix_indefinite)) + ": no positive pivot at vertex 3";
   EXPECT_EQ(judge_step(unsolved).outcome, Outcome::not_pd);
   unsolved.detail = "max_iterations";
   EXPECT_EQ(judge_step(unsolved).outcome, Outcome::linear_failure);
-  EXPECT_EQ(judge_step(unsolved).detail, "step 7: max_iterations");
+  EXPECT_EQ(judge_step(unsolved).detail, "step 7: linear_failed; max_iterations");
+  unsolved.retries = 3;
+  unsolved.dt_s = 0.125;
+  EXPECT_EQ(judge_step(unsolved).detail,
+            "step 7: linear_failed; max_iterations; after 3 retries, the last with 0.125 s");
 }
 
 }  // namespace

@@ -13,6 +13,8 @@ import hashlib, json, subprocess, sys
 from pathlib import Path
 program, defects, edit = {program!r}, {defects!r}, {edit!r}
 arguments = sys.argv[1:]
+if "--out" not in arguments:  # validity
+    sys.exit(subprocess.run([program, *arguments]).returncode)
 out = Path(arguments[arguments.index("--out") + 1])
 honest = subprocess.run([program, *arguments], capture_output=True, text=True)
 if honest.returncode != 0:

@@ -82,6 +82,26 @@ TEST(LineSearch, free_fall_of_a_cloth_is_one_quadratic) {
   EXPECT_NEAR(fallen, -9.81 * 1e-4 * (1 + 2 + 3), 1e-12);
 }
 
+// Newton doubles a gap far below its equilibrium by directions as short as the gap: here far below the tolerance.
+TEST(LineSearch, a_short_direction_next_to_an_unbounded_barrier_is_no_end_of_a_step) {
+  const Scene scene = test::particle_over_plane(0.1, 1e-10, 1e-3);
+  for (const char* shape : {"log", "log_squared", "two_stage"}) {
+    const auto gap_at = [&](double tol_velocity) {
+      Method method = test::fixed_method(shape, 1000);
+      method.step_solver.tol_velocity = tol_velocity;
+      Simulation simulation(scene, method, 0.01, 1);
+      StepObserver observer;
+      const StepReport report = simulation.step(observer);
+      EXPECT_EQ(report.status, StepStatus::converged) << shape;
+      EXPECT_EQ(report.contacts.obstacle, 1) << shape;
+      return report.gap_min_m.value;
+    };
+    const double loose = 1e-6, strict = 1e-10;
+    EXPECT_GT(gap_at(loose), 1e-5) << shape;
+    EXPECT_NEAR(gap_at(loose), gap_at(strict), loose * 0.01) << shape;
+  }
+}
+
 TEST(LineSearch, an_unchanged_pattern_is_not_analysed_again) {
   SceneBuilder builder("falling cloth", false, Vec3d(0, 0, -9.81), "test");
   builder.add_body(test::cloth_spec(6, 10, 0.001));

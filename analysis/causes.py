@@ -1,0 +1,157 @@
+"""A condition number taken apart: python -m barrierbench_analysis.causes RUN, verb `bench causes`.
+
+Of the diagnosed Newton iteration with the largest condition number (or the one that is named): every stage and scaling side by side, what contact,
+strain limit and scaling make of it, and where the eigenvectors of both ends live: on which term, element, body and vertices.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import math
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+from .load import LARGEST_COND, RecordError, read_record
+from .text_table import aligned
+
+ROOT = Path(__file__).resolve().parents[1]
+STAGES = ["full", "without_contact", "without_contact_and_limit"]
+SCALINGS = ["none", "jacobi", "block_jacobi"]
+OPTIONS = ["/passes/diagnose=true", "/passes/time=false", "/diagnose/ends=true", f"/diagnose/stages={json.dumps(STAGES)}", f"/diagnose/scalings={json.dumps(SCALINGS)}"]
+WITHOUT = {"contact": ("full", "without_contact"), "strain limit": ("without_contact", "without_contact_and_limit")}
+
+
+class CausesError(ValueError):
+    """A run that cannot be taken apart, with what would make it possible."""
+
+
+def program() -> str:
+    return os.environ.get("BARRIERBENCH_PROGRAM", str(ROOT / "build/release/experiments/barrierbench"))
+
+
+def read_trace(folder: Path) -> list[dict]:
+    """The lines of a trace; a torn last one is left out and said. Raises CausesError."""
+    path = folder / "trace.jsonl"
+    if not path.exists():
+        raise CausesError(f"{path}: not there; allowed: a run with the pass diagnose, e.g. ./bench causes CONFIG.json")
+    rows, lines = [], path.read_text().splitlines()
+    for number, line in enumerate(lines, 1):
+        try:
+            rows.append(json.loads(line))
+        except json.JSONDecodeError:
+            if number != len(lines):
+                raise CausesError(f"{path}:{number}: not JSON") from None
+            print(f"{path}:{number}: torn last line left out", file=sys.stderr)
+    return rows
+
+
+def clamped(row: dict) -> dict[tuple[str, str], dict]:
+    """(stage, scaling) -> sample of the clamped matrix."""
+    return {(c["stage"], c["scaling"]): c for c in row["cond"] if c["matrix"] == "clamped"}
+
+
+def cond_of(sample: dict) -> float:
+    """LARGEST_COND where there is no number: singular or not positive definite."""
+    return LARGEST_COND if sample["cond"] is None else sample["cond"]
+
+
+def pick(rows: list[dict], scaling: str, at: tuple[int, int] | None) -> dict:
+    """The iteration `at` (step, iteration), or the one with the largest condition number of the full matrix under `scaling`."""
+    known = [row for row in rows if ("full", scaling) in clamped(row)]
+    if at is not None:
+        known = [row for row in known if (row["step"], row["iteration"]) == at]
+    if not known:
+        what = f"step {at[0]}, iteration {at[1]}" if at else "any iteration"
+        raise CausesError(f"no condition number of the full matrix, scaling {scaling}, at {what}; allowed: a run with --set /passes/diagnose=true")
+    return max(known, key=lambda row: cond_of(clamped(row)["full", scaling]))
+
+
+def ratios(samples: dict[tuple[str, str], dict]) -> list[tuple[str, float]]:
+    """By what a cause multiplies the condition number: contact and limit (a stage over the next, unscaled), scaling (over unscaled)."""
+    found = []
+    for cause, (with_it, without) in WITHOUT.items():
+        for scaling in SCALINGS:
+            if (with_it, scaling) in samples and (without, scaling) in samples:
+                found.append((f"{cause}, scaling {scaling}", cond_of(samples[with_it, scaling]) / cond_of(samples[without, scaling])))
+    for scaling in SCALINGS[1:]:
+        if ("full", scaling) in samples and ("full", "none") in samples:
+            found.append((f"scaling {scaling}, full matrix", cond_of(samples["full", scaling]) / cond_of(samples["full", "none"])))
+    return found
+
+
+def number(value: float | None) -> str:
+    return "-" if value is None else f"{value:.3g}"
+
+
+def end_lines(samples: dict[tuple[str, str], dict]) -> list[list[str]]:
+    rows = []
+    for (stage, scaling), sample in samples.items():
+        for end in sample.get("ends", []):
+            terms = ", ".join(f"{t['term']} {t['share']:.0%}" for t in end["terms"] if t["share"] >= 0.005)
+            rows.append([stage, scaling, end["side"], number(end["lambda"]), terms, f"{end['element']} ({end['element_share']:.0%})",
+                         f"{end['body']} ({end['body_share']:.0%})", f"{end['vertices']:.1f}"])
+    return rows
+
+
+def text(row: dict, count: int, scaling: str) -> str:
+    samples = clamped(row)
+    worst = samples["full", scaling]
+    lines = [f"step {row['step']}, iteration {row['iteration']} of {count} diagnosed: cond 10^{math.log10(cond_of(worst)):.2f} (scaling {scaling}, {worst['status']})", ""]
+    lines += aligned(["stage", "scaling", "cond", "lambda_min", "lambda_max", "status"],
+                     [[stage, name, number(s["cond"]), number(s["lambda_min"]), number(s["lambda_max"]), s["status"]] for (stage, name), s in samples.items()])
+    lines += ["", *aligned(["what is added", "multiplies cond by"], [[what, f"{factor:.3g}"] for what, factor in ratios(samples)])]
+    ends = end_lines(samples)
+    if ends:
+        lines += ["", *aligned(["stage", "scaling", "end", "lambda", "made by (share of lambda)", "largest element", "body (share of |v|^2)", "vertices"], ends)]
+    else:
+        lines += ["", "no eigenvectors: the run had no --set /diagnose/ends=true, or no Cholesky factor"]
+    return "\n".join(lines)
+
+
+def run_folder(given: Path, out: Path | None, settings: list[str]) -> Path:
+    """The folder of a record, or of the run that is made of a config with everything diagnosed."""
+    if given.is_dir():
+        return given
+    if given.name == "run.json":
+        return given.parent
+    folder = out or ROOT / "results/runs" / f"causes-{given.stem}"
+    words = [program(), "run", str(given), "--out", str(folder)]
+    for option in [*OPTIONS, *settings]:
+        words += ["--set", option]
+    code = subprocess.run(words, check=False, stdout=subprocess.DEVNULL).returncode
+    if code != 0:
+        raise CausesError(f"{given}: the run ended with exit code {code}")
+    return folder
+
+
+def main(words: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="bench causes", description=__doc__.split("\n\n", 1)[1], epilog="example: ./bench causes configs/scenes/drape2d.json --set /scene/variant=strip")
+    parser.add_argument("run", type=Path, help="folder of a record with a trace, its run.json, or a config, which is run with everything diagnosed")
+    parser.add_argument("--scaling", choices=SCALINGS, default="none", help="by which the worst iteration is picked (default none)")
+    parser.add_argument("--at", metavar="STEP,ITERATION", help="that iteration in place of the worst")
+    parser.add_argument("--set", action="append", default=[], help="of a config: /pointer=value")
+    parser.add_argument("--out", type=Path, help="folder of that run (default results/runs/causes-NAME)")
+    given = parser.parse_args(words)
+    try:
+        at = tuple(int(part) for part in given.at.split(",")) if given.at else None
+        if at is not None and len(at) != 2:
+            raise ValueError
+    except ValueError:
+        parser.error(f"--at {given.at}: allowed: STEP,ITERATION, both from 0")
+    try:
+        folder = run_folder(given.run, given.out, given.set)
+        record = read_record(folder / "run.json")
+        rows = [row for row in read_trace(folder) if row["cond"]]
+        row = pick(rows, given.scaling, at)
+    except (CausesError, RecordError) as error:
+        print(error, file=sys.stderr)
+        return 2
+    print(f"{record['labels']['scene']} {record['labels']['formulation']}: {text(row, len(rows), given.scaling)}")
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

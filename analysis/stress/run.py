@@ -1,0 +1,170 @@
+"""Running a case: a sweep of one case, so that the program itself knows a record that is already there. A hang, a crash, a refusal touch no other case."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import subprocess
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..load import RecordError, read_record
+from ..whole_file import write_whole
+from .entry import ROOT, Case, Formulation, StressError, Test
+
+LIMIT_S = 60.0  # a test with one formulation, all cases together
+ALWAYS = {"/threads": 1, "/passes": {"time": True, "diagnose": False, "audit": True}}
+WAITS = "waits"  # in place of an outcome: the program has no such setting yet
+
+
+@dataclass
+class Row:
+    """What is kept of a run. None where a run has no such number."""
+
+    test: str
+    case: str
+    formulation: str
+    outcome: str
+    detail: str
+    run: str = ""
+    valid: bool = False
+    seconds: float | None = None
+    newton: int | None = None
+    linear: float | None = None
+    contacts: int | None = None
+    gap_min_rel: float | None = None
+    gap_min_iterates_rel: float | None = None
+    gap_min_ulps: float | None = None
+    gap_end_rel: float | None = None
+    load_end_N: float | None = None
+    max_stretch: float | None = None
+    state_hash: str = ""
+    expected: tuple = ()
+    reason: str = ""
+    as_expected: bool = False
+    defect: str = ""  # a known one of the program that explains it
+
+
+METRICS = ("newton", "linear", "contacts", "gap_min_rel", "gap_min_ulps", "gap_end_rel", "load_end_N", "max_stretch", "state_hash")
+
+
+def program() -> Path:
+    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
+    if not path.exists():
+        raise StressError(f"{path} is not built: ./bench build")
+    return path
+
+
+def known(need: dict, schema: dict) -> bool:
+    """Whether the schema of configs allows the value at the pointer."""
+    node = schema
+    for key in need["pointer"].strip("/").split("/"):
+        if "$ref" in node:
+            node = schema["$defs"][node["$ref"].rsplit("/", 1)[1]]
+        node = node.get("properties", {}).get(key)
+        if node is None:
+            return False
+    allowed = node.get("enum") or ([node["const"]] if "const" in node else None)
+    return allowed is None or need["value"] in allowed
+
+
+def spec_of(test: Test, formulation: Formulation, case: Case) -> dict:
+    """The sweep of this one case."""
+    settings = {**formulation.set, **ALWAYS, **test.data.get("set", {}), **case.set, **formulation.by_case.get(case.label, {})}
+    return {"schema": "barrierbench.sweep/1", "name": f"stress {test.id}", "base": str((test.path.parent / test.data["base"]).resolve()),
+            "axes": [{"cases": [{"label": f"{formulation.label} {case.label}".replace("/", " per "), "set": settings}]}]}
+
+
+def _folder(text: str) -> str:
+    return re.sub(r"[^A-Za-z0-9_.=-]+", "_", text)
+
+
+def _number(value):
+    return value if isinstance(value, (int, float)) and not isinstance(value, bool) else None
+
+
+def row_of(record: dict, test: str, case: str, formulation: str) -> Row:
+    """The numbers of a record that the tables and relations read."""
+    status, summary, steps = record["status"], record["summary"], record["steps"]
+    outcome = "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
+    last = steps[-1] if steps else {}
+    return Row(test, case, formulation, outcome, status["detail"], record["ids"]["run_id"][:16], status["valid"],
+               seconds=_number(summary["wall_s"]), newton=summary["newton_iterations"], linear=_number(summary["linear_per_solve"]["sum"]),
+               contacts=int(_number(summary["contacts"]["max"]) or 0), gap_min_rel=_number(summary["gap_min_rel"]["min"]),
+               gap_min_iterates_rel=_number(summary["gap_min_iterates_rel"]), gap_min_ulps=_number(summary.get("gap_min_ulps")),
+               gap_end_rel=_number(last.get("gap_min_rel")), load_end_N=_number(last.get("contact_load_sum_N")),
+               max_stretch=_number(summary["max_stretch"]), state_hash=summary["state_hash"])
+
+
+def judge(row: Row, test: Test) -> Row:
+    """Against what was expected; a contact test that met no contact judged nothing."""
+    expected = test.expected(row.formulation, row.case)
+    row.expected, row.reason = expected.outcomes, expected.reason
+    row.as_expected = expected.holds(row.outcome)
+    if row.as_expected and row.outcome == "ok" and test.contacts and not row.contacts:
+        row.as_expected, row.detail = False, "no contact was ever active: nothing was tested"
+    if not row.as_expected:
+        row.defect = test.defect(row.formulation, row.case, row.outcome)
+    return row
+
+
+def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, limit_s: float) -> Row:
+    """One run, or its record if it is there. Raises StressError when the test itself is wrong."""
+    place = folder / test.id / _folder(formulation.label) / _folder(case.label)
+    spec = place / "spec.json"
+    write_whole(spec, json.dumps(spec_of(test, formulation, case), indent=1) + "\n")
+    blank = lambda outcome, detail: Row(test.id, case.label, formulation.label, outcome, detail)
+    command = [str(program()), "sweep", str(spec), "--out", str(place / "runs"), "--progress", "none"]
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, timeout=limit_s, check=False)
+    except subprocess.TimeoutExpired:
+        return blank("timeout", f"not over after {limit_s:.0f} s")
+    if done.returncode == 2:
+        return blank("refused", _told(done.stderr))
+    if done.returncode != 0:
+        return blank("crash", f"the program ended with {done.returncode}: {_told(done.stderr)}")
+    try:
+        return row_of(read_record(_record(command, place / "runs")), test.id, case.label, formulation.label)
+    except RecordError as error:
+        return blank("crash", str(error))
+
+
+def _record(command: list[str], folder: Path) -> Path:
+    """The record of this very config; those of earlier versions of the case may lie beside it."""
+    made = sorted(folder.glob("*/run.json"))
+    if len(made) == 1:
+        return made[0]
+    told = subprocess.run([*command, "--dry-run"], capture_output=True, text=True, check=False).stdout.strip()
+    return Path(told or folder) / "run.json"
+
+
+def _told(text: str) -> str:
+    """What the program says, without the place of the generated sweep."""
+    lines = [re.sub(r"\S*spec\.json\S*( \[[^]]*\])? ?", "", line).strip() for line in text.splitlines() if line.strip()]
+    return "; ".join(lines).replace(f"{ROOT}/", "")[:400]
+
+
+def run_test(test: Test, folder: Path, schema: dict, formulations: list[str] | None = None, cases: list[str] | None = None, say=lambda text: None,
+             limit_s: float = LIMIT_S) -> list[Row]:
+    """All formulations and cases. The time of a formulation is shared by its cases; those that are not reached are `timeout`."""
+    rows = []
+    for formulation in test.formulations:
+        if formulations is not None and formulation.label not in formulations:
+            continue
+        start = time.monotonic()
+        for case in test.cases:
+            if cases is not None and case.label not in cases:
+                continue
+            missing = [need for need in case.needs if not known(need, schema)]
+            left = limit_s - (time.monotonic() - start)
+            if missing:
+                rows.append(Row(test.id, case.label, formulation.label, WAITS, f"waits for {missing[0]['pointer']} = {missing[0]['value']}"))
+                continue
+            row = run_case(test, formulation, case, folder, left) if left > 0 else Row(test.id, case.label, formulation.label, "timeout",
+                                                                                      f"not begun: earlier cases took {limit_s:.0f} s")
+            rows.append(judge(row, test))
+            if not row.as_expected and not row.defect:
+                say(f"{test.id} {formulation.label}, {case.label}: {row.outcome}, expected {' or '.join(row.expected)}: {row.detail[:160]}")
+    return rows

@@ -1,0 +1,95 @@
+#include "experiments/run/pass.hpp"
+
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <cmath>
+#include <new>
+
+#include "core/record/provenance.hpp"
+#include "experiments/run/keep_record.hpp"
+
+namespace bb {
+
+void PassResult::StepTime::keep(Archive& archive) { archive(wall_s, phases); }
+
+void PassResult::keep(Archive& archive) {
+  archive(verdict.outcome, verdict.detail, whole, state_hash, steps, wall_s, stiffness.kappa_start,
+          stiffness.kappa, stiffness.doublings, stiffness.saturated);
+}
+
+Pass::Pass(const RunConfig& config, const Scene& scene, const Calibration& calibration, const Plan& plan,
+           const RunOptions& options, const char* name, Recorder& recorder)
+    : config_(config),
+      options_(options),
+      name_(name),
+      recorder_(recorder),
+      method_(make_method(config, calibration)),
+      simulation_(scene, method_, plan, config.time.dt, config.time.steps),
+      t_end_(config.time.dt * config.time.steps * (1 - 1e-9)) {}
+
+void Pass::keep(Archive& archive) {
+  archive.section("pass");
+  archive(result_, simulation_, recorder_);
+}
+
+PassResult Pass::run(const std::function<void()>& between) {
+  const int every = config_.output.checkpoint_every;
+  start_s_ = now_s();
+  t_begin_ = simulation_.time();
+  try {
+    while (result_.verdict.outcome == Outcome::ok && simulation_.time() < t_end_) {
+      look_up();
+      if (result_.verdict.outcome != Outcome::ok) break;
+      step();
+      const bool last = result_.verdict.outcome != Outcome::ok || !(simulation_.time() < t_end_);
+      if (every == 0 || last || result_.steps.size() % static_cast<std::size_t>(every) != 0) continue;
+      simulation_.drop_caches();
+      between();
+    }
+    result_.whole = result_.verdict.outcome != Outcome::timeout;
+  } catch (const std::bad_alloc&) {
+    result_.verdict = {Outcome::oom,
+                       fmt::format("pass {}, step {}: memory ran out", name_, result_.steps.size())};
+  }
+  result_.state_hash = state_hash(simulation_.history().x);
+  result_.stiffness = method_.stiffness->state();
+  return result_;
+}
+
+void Pass::look_up() {
+  if (options_.interrupted && options_.interrupted->load()) throw Interrupted{};
+  if (options_.deadline_s > 0 && now_s() >= options_.deadline_s) {
+    result_.verdict = {
+        Outcome::timeout,
+        fmt::format("pass {}: the time limit of {:g} s was reached before step {}, at {:.6g} of {:.6g} s",
+                    name_, options_.time_limit_s, result_.steps.size(), simulation_.time(),
+                    config_.time.dt * config_.time.steps)};
+  }
+}
+
+void Pass::step() {
+  const double start = now_s();
+  const StepReport step = simulation_.step(recorder_);
+  result_.steps.push_back({now_s() - start, step.time});
+  result_.wall_s += result_.steps.back().wall_s;
+  result_.verdict = judge_step(step);
+  if (options_.progress) show(step);
+}
+
+void Pass::show(const StepReport& step) const {
+  Progress progress;
+  progress.label = run_label(config_);
+  progress.pass = name_;
+  progress.steps = config_.time.steps;
+  progress.step = static_cast<int>(std::lround(step.t_s / config_.time.dt));
+  progress.newton = step.newton_iterations;
+  progress.contacts = step.contacts.total();
+  progress.gap = step.gap_min_m;
+  progress.elapsed_s = now_s() - start_s_;
+  const double t = simulation_.time();
+  progress.eta_s = progress.elapsed_s * std::max(0.0, (t_end_ - t) / (t - t_begin_));
+  options_.progress(progress);
+}
+
+}  // namespace bb

@@ -1,0 +1,63 @@
+// One pass of a run: a simulation from its start, or from where an archive leaves it, to its end, seen by a recorder.
+#pragma once
+
+#include <functional>
+#include <string>
+#include <vector>
+
+#include "core/newton/simulation.hpp"
+#include "experiments/run/method.hpp"
+#include "experiments/run/outcome.hpp"
+#include "experiments/run/recorder.hpp"
+#include "experiments/run/runner.hpp"
+
+namespace bb {
+
+struct PassResult {
+  Verdict verdict;
+  bool whole = false;      // it came to its end, good or bad; false: memory or time ran out before
+  std::string state_hash;  // of the state that was reached
+  struct StepTime {
+    double wall_s;  // on its own clock, round the whole step
+    PhaseTimes phases;
+    void keep(Archive& archive);
+  };
+  std::vector<StepTime> steps;
+  double wall_s = 0;  // of all steps
+  StiffnessPolicy::State stiffness;
+  void keep(Archive& archive);
+};
+
+class Pass {
+ public:
+  /// All arguments must outlive the pass. name: of its progress line.
+  Pass(const RunConfig& config, const Scene& scene, const Calibration& calibration, const Plan& plan,
+       const RunOptions& options, const char* name, Recorder& recorder);
+
+  /// Goes on to the end. between(): called after every config.output.checkpoint_every-th step but the last; what
+  /// is kept only to save work is forgotten then, so that a pass that goes on from an archive of that moment is the
+  /// same, bit for bit. A std::bad_alloc of a step is the outcome oom, options.time_limit the outcome timeout.
+  /// Errors: Interrupted.
+  PassResult run(const std::function<void()>& between);
+  /// All that the rest of the pass depends on, and what it has recorded so far.
+  void keep(Archive& archive);
+  /// Steps that are over.
+  std::size_t steps() const { return result_.steps.size(); }
+
+ private:
+  void step();
+  void show(const StepReport& step) const;
+  void look_up();
+
+  const RunConfig& config_;
+  const RunOptions& options_;
+  const char* name_;
+  Recorder& recorder_;
+  Method method_;
+  Simulation simulation_;
+  PassResult result_;
+  double t_end_ = 0, t_begin_ = 0;  // s, simulated: of the run, of what this process does
+  double start_s_ = 0;              // on the clock
+};
+
+}  // namespace bb

@@ -1,0 +1,193 @@
+#include "experiments/run/passes.hpp"
+
+#include <stdexcept>
+
+#include "core/math/error.hpp"
+#include "experiments/run/keep_record.hpp"
+#include "experiments/run/pass.hpp"
+#include "experiments/run/plan.hpp"
+#include "experiments/run/stored_run.hpp"
+#include "experiments/run/validity.hpp"
+
+namespace bb {
+
+// found by its argument, so outside of the namespace without a name
+static void keep(Archive& archive, Calibration& c) {
+  archive(c.kappa, c.k_s, c.scale, c.limit_scale, c.limited);
+}
+
+namespace {
+
+/// Times of the pass that was timed; a step that it did not reach has none. A build that is not valid shows none.
+void fill_times(const PassResult& timed, bool requested, RunRecord& record) {
+  Summary& summary = record.summary;
+  const bool shown = record.validity.build.valid;
+  const Number absent = Number::missing(!requested ? "not_requested"
+                                        : shown    ? "not_reached"
+                                                   : "build_not_valid");
+  for (std::size_t i = 0; i < record.steps.size(); ++i) {
+    StepRecord& step = record.steps[i];
+    step.wall_s = step.unaccounted_s = absent;
+    if (!shown || i >= timed.steps.size()) continue;
+    step.time = timed.steps[i].phases;
+    step.wall_s = timed.steps[i].wall_s;
+    step.unaccounted_s = timed.steps[i].wall_s - step.time.total_s();
+  }
+  summary.wall_s = summary.solve_s = summary.unaccounted_s = absent;
+  if (!requested || !shown) return;
+  record.samples["wall_s"] = {timed.wall_s};
+  for (const PassResult::StepTime& step : timed.steps) summary.time += step.phases;
+  summary.wall_s = timed.wall_s;
+  summary.solve_s = summary.time.solve_s();
+  summary.unaccounted_s = timed.wall_s - summary.time.total_s();
+}
+
+void merge(Verdict& verdict, Outcome outcome, const std::string& detail) {
+  if (worse(outcome, verdict.outcome) == outcome && outcome != verdict.outcome) verdict = {outcome, detail};
+}
+
+void fill_stiffness(const PassResult& pass, RunRecord& record) {
+  if (!(pass.stiffness.kappa > 0)) return;
+  record.summary.stiffness = {pass.stiffness.kappa_start, pass.stiffness.kappa, pass.stiffness.doublings,
+                              pass.stiffness.saturated};
+}
+
+/// The two passes, and what a checkpoint between two of their steps has to hold.
+class PassSequence {
+ public:
+  PassSequence(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
+               const RunOptions& options, const Checkpoint& checkpoint, RunRecord& record, RunFiles& files)
+      : config_(config),
+        scene_(scene),
+        plan_(plan),
+        calibration_(calibration),
+        options_(options),
+        checkpoint_(checkpoint),
+        begun_(record),
+        record_(record),
+        files_(files) {}
+
+  void run(Resumed* resumed) {
+    if (resumed) {
+      resumed->rest(in_second_, timed_, times_);
+      rest_ = &resumed->rest;
+    }
+    const bool look = has_observed_run(config_);
+    if (config_.passes.time && !in_second_) run_timed(look);
+    const bool cut = config_.passes.time && !timed_.whole;  // memory or time ran out: there is no second pass
+    in_second_ = look && !cut;
+    if (in_second_) run_observed();
+    finish(look && cut);
+  }
+
+ private:
+  void run_timed(bool look) {
+    RunConfig bare = config_;
+    bare.passes = {true, false, false};
+    RunRecord apart;  // only times and hash of the timed pass are used where another one follows
+    Recorder recorder(bare, scene_, look ? apart : record_, nullptr);
+    Pass pass(bare, scene_, calibration_, plan_, options_, "time", recorder);
+    go_on(pass);
+    timed_ = pass.run([&] { save(pass); });
+    recorder.finish();
+    if (options_.build.valid) times_ = recorder.iteration_times();
+    if (!look || timed_.whole) return;
+    record_.steps = std::move(apart.steps);  // of a run that was cut off they are all that there is
+    record_.summary = apart.summary;
+  }
+
+  void run_observed() {
+    std::uint64_t length = 0;
+    if (rest_) (*rest_)(length);
+    rest_ ? files_.trace.emplace(options_.folder, length) : files_.trace.emplace(options_.folder);
+    files_.artifacts.emplace(options_.folder, scene_);
+    Recorder recorder(config_, scene_, record_, &*files_.trace, &*files_.artifacts);
+    recorder.report_times(times_);
+    Pass pass(config_, scene_, calibration_, plan_, options_, "diagnose", recorder);
+    if (rest_) (*rest_)(*files_.artifacts);
+    go_on(pass);
+    seen_ = pass.run([&] { save(pass); });
+    recorder.finish();
+    record_.artifacts = files_.artifacts->written();
+    if (recorder.ledger()) ledger_ = *recorder.ledger();
+    audited_ = recorder.audit_verdict();
+  }
+
+  void go_on(Pass& pass) {
+    if (!rest_) return;
+    (*rest_)(pass);
+    if (!rest_->at_end()) throw std::logic_error("checkpoint: more than a run reads");
+    rest_ = nullptr;
+    record_.status.resumed_from_step = static_cast<double>(pass.steps());
+    if (files_.artifacts) files_.artifacts->leave_unfinished();
+  }
+
+  void save(Pass& pass) {
+    Archive archive;
+    Calibration calibration = calibration_;
+    archive(begun_, calibration, in_second_, timed_, times_);
+    if (in_second_) {
+      std::uint64_t length = files_.trace->checkpoint();
+      archive(length, *files_.artifacts);
+      files_.artifacts->leave_unfinished();
+    }
+    archive(pass);
+    checkpoint_.write(archive);
+  }
+
+  void finish(bool second_left_out) {
+    const PassResult& main = in_second_ ? seen_ : timed_;
+    Verdict verdict = main.verdict;
+    if (in_second_) merge(verdict, audited_.outcome, audited_.detail);
+    if (second_left_out) verdict.detail += "; the passes `diagnose` and `audit` were not run";
+    record_.status.outcome = verdict.outcome;
+    record_.status.detail = verdict.detail;
+    fill_times(timed_, config_.passes.time, record_);
+    record_.summary.state_hash = main.state_hash;
+    fill_stiffness(main, record_);
+    // a pass that was cut off ends in another state: that says nothing about the other one
+    const std::string seen_hash = in_second_ && seen_.whole ? seen_.state_hash : "";
+    fill_validity(scene_, ledger_ ? &*ledger_ : nullptr, timed_.state_hash, seen_hash, record_);
+  }
+
+  const RunConfig& config_;
+  const Scene& scene_;
+  const Plan& plan_;
+  const Calibration& calibration_;
+  const RunOptions& options_;
+  const Checkpoint& checkpoint_;
+  RunRecord begun_;
+  RunRecord& record_;
+  RunFiles& files_;
+  bool in_second_ = false;
+  PassResult timed_, seen_;
+  std::vector<PhaseTimes> times_;  // of the iterations of the first pass
+  std::optional<audit::AuditLedger> ledger_;
+  Verdict audited_;
+  Archive* rest_ = nullptr;  // what a checkpoint still holds
+};
+
+}  // namespace
+
+std::optional<Resumed> read_resumed(const Checkpoint& checkpoint, const RunRecord& now) {
+  std::optional<Archive> archive = checkpoint.read();
+  if (!archive) return std::nullopt;
+  Resumed out;
+  (*archive)(out.record, out.calibration);
+  out.rest = std::move(*archive);
+  const std::vector<Difference> others = differences(out.record, now);
+  if (others.empty() && out.record.ids.run_id == now.ids.run_id) return out;
+  std::string what;
+  for (const Difference& other : others) what += (what.empty() ? "" : "; ") + other.what;
+  throw ConfigError(checkpoint.file().string(),
+                    "a checkpoint of another run: " + (what.empty() ? "another run_id" : what),
+                    "one of this very run, or no --resume");
+}
+
+void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
+                const RunOptions& options, const Checkpoint& checkpoint, Resumed* resumed, RunRecord& record,
+                RunFiles& files) {
+  PassSequence(config, scene, plan, calibration, options, checkpoint, record, files).run(resumed);
+}
+
+}  // namespace bb

@@ -1,0 +1,112 @@
+#include "experiments/validity/stored_block.hpp"
+
+#include <nlohmann/json.hpp>
+
+#include "core/input/read_file.hpp"
+#include "core/record/provenance.hpp"
+#include "core/record/writer.hpp"
+
+namespace bb {
+namespace {
+
+using Json = nlohmann::ordered_json;
+constexpr const char* schema = "barrierbench.validity/1";
+
+Json check_json(const BlockCheck& check) {
+  Json j;
+  j["name"] = check.name;
+  j["meaning"] = check.meaning;
+  j["subjects"] = check.subjects;
+  j["value"] = check.value.finite() ? Json(check.value.value) : Json();
+  if (!check.value.finite()) j["value_status"] = check.value.status;
+  j["bound"] = check.bound;
+  j["pass"] = check.pass();
+  j["detail"] = check.detail;
+  return j;
+}
+
+/// The stored report, if it is one of this build.
+std::optional<BuildValidity> read_report(const std::filesystem::path& file, const BuildKey& build,
+                                         std::string& text) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(file, error)) return std::nullopt;
+  try {
+    text = read_input_file(file.string(), record_file);
+  } catch (const std::exception&) {
+    return std::nullopt;
+  }
+  const Json j = Json::parse(text, nullptr, false);
+  if (j.is_discarded() || !j.is_object() || j.value("schema", "") != schema) return std::nullopt;
+  if (j.value("build", "") != build.text || !j.contains("checks") || !j["checks"].is_array())
+    return std::nullopt;
+  BuildValidity out;
+  for (const Json& check : j["checks"]) {
+    ++out.checks;
+    if (check.value("pass", false)) continue;
+    out.failed += (out.failed.empty() ? "" : ", ") + check.value("name", "");
+  }
+  out.valid = out.checks > 0 && out.failed.empty();
+  out.report_sha256 = sha256_hex(text);
+  return out;
+}
+
+}  // namespace
+
+BuildKey this_build(const std::vector<PluginFile>& plugins) {
+  RunRecord record;
+  record.provenance = collect_provenance({}, 1);
+  record.machine = collect_machine();
+  record.provenance.plugins = plugins;
+  record.config.text = "{}";
+  fill_ids(record);  // with an empty config and one thread the run_id is that of build and machine
+  return {record.ids.run_id, sha256_hex(record.ids.run_id)};
+}
+
+std::string report_text(const BuildKey& build, const std::vector<BlockCheck>& checks) {
+  Json j;
+  j["schema"] = schema;
+  j["build"] = build.text;
+  j["git_commit"] = collect_provenance({}, 1).git_commit;
+  j["made_utc"] = utc_now();
+  j["checks"] = Json::array();
+  for (const BlockCheck& check : checks) j["checks"].push_back(check_json(check));
+  return j.dump(1) + "\n";
+}
+
+BuildValidity summary_of(const std::vector<BlockCheck>& checks, const std::string& report) {
+  BuildValidity out;
+  out.checks = static_cast<int>(checks.size());
+  for (const BlockCheck& check : checks) {
+    if (!check.pass()) out.failed += (out.failed.empty() ? "" : ", ") + check.name;
+  }
+  out.valid = !checks.empty() && out.failed.empty();
+  out.report_sha256 = sha256_hex(report);
+  return out;
+}
+
+StoredBlock block_of_this_build(const std::filesystem::path& folder, const std::vector<PluginFile>& plugins) {
+  const BuildKey build = this_build(plugins);
+  StoredBlock out;
+  out.file = folder / (build.sha256.substr(0, 16) + ".json");
+  if (const auto stored = read_report(out.file, build, out.report)) {
+    out.validity = *stored;
+    out.kept = true;
+    return out;
+  }
+  const std::vector<BlockCheck> checks = compute_block();
+  out.report = report_text(build, checks);
+  out.validity = summary_of(checks, out.report);
+  try {
+    write_atomically(out.file, out.report);
+    out.kept = true;
+  } catch (const RecordError&) {
+    out.kept = false;
+  }
+  return out;
+}
+
+std::filesystem::path validity_folder() {
+  return std::filesystem::read_symlink("/proc/self/exe").parent_path() / "validity";
+}
+
+}  // namespace bb

@@ -1,0 +1,123 @@
+// Element batches in float and mixed precision against those in double: one source, two scalars.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <memory>
+
+#include "core/energy/hinge_batch.hpp"
+#include "core/energy/membrane_batch.hpp"
+#include "core/energy/spring_batch.hpp"
+#include "core/energy/strain_limit_batch.hpp"
+#include "tests/energy/strip.hpp"
+
+namespace bb::test {
+namespace {
+
+double difference(const std::vector<double>& a, const std::vector<double>& b) {
+  double largest = 0, size = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    largest = std::max(largest, std::abs(a[i] - b[i]));
+    size = std::max(size, std::abs(b[i]));
+  }
+  return largest / size;
+}
+
+/// Of a column in float against the same in double: not equal, and apart by no more than its rounding.
+void expect_rounded(const std::vector<double>& in_float, const std::vector<double>& in_double) {
+  EXPECT_GT(difference(in_float, in_double), 0);
+  EXPECT_LT(difference(in_float, in_double), 1e-4);
+  for (const double number : in_float) EXPECT_EQ(static_cast<double>(static_cast<float>(number)), number);
+}
+
+/// make(precision): the same batch in each.
+template <class Make>
+void compare(const Make& make, const Positions& x) {
+  LocalTerms full, mixed, single;
+  const auto in_double = make(Precision::full), in_both = make(Precision::mixed),
+             in_float = make(Precision::single);
+  SCOPED_TRACE(in_double->name());
+  ASSERT_GT(in_double->size(), 30U);
+  in_double->derivatives(x, Projection::psd, full);
+  in_both->derivatives(x, Projection::psd, mixed);
+  in_float->derivatives(x, Projection::psd, single);
+  EXPECT_EQ(mixed.energy, full.energy);
+  EXPECT_EQ(mixed.grad, full.grad);
+  EXPECT_EQ(mixed.hess, single.hess);
+  expect_rounded(single.energy, full.energy);
+  expect_rounded(single.grad, full.grad);
+  expect_rounded(single.hess, full.hess);
+  std::vector<double> values(in_float->size());
+  in_float->values(x, values.data());
+  EXPECT_EQ(values, single.energy);
+  in_both->values(x, values.data());
+  EXPECT_EQ(values, full.energy);
+}
+
+TEST(FloatBatches, every_element_in_float_has_the_terms_of_double_to_the_rounding_of_float) {
+  const Strip strip(40);
+  const std::vector<double> ones(strip.triangles.size(), 1.0);
+  for (const auto& model : membrane_models<double>()) {
+    for (const bool planar : {false, true}) {
+      compare(
+          [&](Precision p) {
+            return std::make_unique<MembraneBatch>(model.name, strip.triangles, strip.rest, ones, ones,
+                                                   planar, std::span<const Vec3d>{}, p);
+          },
+          strip.deformed);
+    }
+  }
+  compare(
+      [&](Precision p) {
+        return std::make_unique<SpringBatch>(strip.edges, strip.rest,
+                                             std::vector<double>(strip.edges.size(), 2.0), p);
+      },
+      strip.deformed);
+  const std::vector<double> stiffness(strip.hinges.size(), 0.3), rest(strip.hinges.size(), 0.1);
+  compare([&](Precision p) { return std::make_unique<HingeBatch>(strip.hinges, stiffness, rest, p); },
+          strip.deformed);
+}
+
+/// (width - y)^2 of each singular value.
+struct Quadratic {
+  void eval(std::size_t n, const double* d, const double* d_hat, double* b, double* db, double* d2b) const {
+    for (std::size_t i = 0; i < n; ++i) {
+      const double y = std::max(0.0, d_hat[i] - d[i]);
+      b[i] = y * y;
+      db[i] = -2 * y;
+      d2b[i] = y > 0 ? 2 : 0;
+    }
+  }
+};
+
+TEST(FloatBatches, the_strain_limit_measures_and_bounds_in_float) {
+  const Strip strip(40);
+  const std::size_t n = strip.triangles.size();
+  const std::vector<double> onset(n, 0.0), width(n, 0.5), kappa(n, 2.0);
+  const auto make = [&](Precision p) {
+    return std::make_unique<StrainLimitBatch>(strip.triangles, strip.rest, onset, width, false, p);
+  };
+  const auto full = make(Precision::full), mixed = make(Precision::mixed), single = make(Precision::single);
+  LocalTerms of_full, of_mixed, of_single;
+  Quadratic barrier;
+  full->derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, of_full);
+  mixed->derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, of_mixed);
+  single->derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, of_single);
+  ASSERT_GT(full->n_active(), 10U);
+  EXPECT_EQ(of_mixed.grad, of_full.grad);
+  expect_rounded(of_single.grad, of_full.grad);
+  EXPECT_LT(difference(of_single.hess, of_full.hess), 1e-3);
+  EXPECT_LT(difference(of_mixed.hess, of_full.hess), 1e-3);
+  EXPECT_NE(of_mixed.hess, of_full.hess);
+
+  Positions stretch = strip.deformed;
+  stretch.row(2).setZero();
+  const double in_double = full->step_bound(strip.deformed, stretch),
+               in_float = single->step_bound(strip.deformed, stretch);
+  ASSERT_LT(in_double, 1);
+  EXPECT_NEAR(in_float, in_double, 1e-5);
+  EXPECT_EQ(static_cast<double>(static_cast<float>(in_float)), in_float);
+  EXPECT_NE(in_float, in_double);
+}
+
+}  // namespace
+}  // namespace bb::test

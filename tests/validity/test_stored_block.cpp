@@ -1,0 +1,83 @@
+// The report on disk: made once, read again, and never believed when it is another build's or damaged.
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <nlohmann/json.hpp>
+
+#include "core/record/provenance.hpp"
+#include "core/record/writer.hpp"
+#include "experiments/validity/stored_block.hpp"
+
+namespace bb {
+namespace {
+
+class StoredBlocks : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    folder_ = std::filesystem::temp_directory_path() /
+              (std::string("validity_") + ::testing::UnitTest::GetInstance()->current_test_info()->name());
+    std::filesystem::remove_all(folder_);
+  }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
+
+  std::filesystem::path folder_;
+};
+
+std::string text_of(const std::filesystem::path& file) {
+  std::ifstream in(file);
+  return {std::istreambuf_iterator<char>(in), {}};
+}
+
+TEST_F(StoredBlocks, the_second_time_the_report_is_read) {
+  const StoredBlock made = block_of_this_build(folder_, {});
+  EXPECT_TRUE(made.kept);
+  EXPECT_TRUE(made.validity.valid) << made.validity.failed;
+  EXPECT_EQ(made.validity.report_sha256, sha256_hex(text_of(made.file)));
+  nlohmann::json report = nlohmann::json::parse(text_of(made.file));
+  report["checks"][2]["pass"] = false;  // to see that it is read
+  write_atomically(made.file, report.dump(1));
+  const StoredBlock read = block_of_this_build(folder_, {});
+  EXPECT_FALSE(read.validity.valid);
+  EXPECT_EQ(read.validity.failed, report["checks"][2]["name"].get<std::string>());
+  EXPECT_EQ(read.validity.checks, made.validity.checks);
+}
+
+TEST_F(StoredBlocks, a_report_that_is_damaged_or_of_another_build_is_made_anew) {
+  const StoredBlock made = block_of_this_build(folder_, {});
+  nlohmann::json other = nlohmann::json::parse(made.report);
+  other["build"] = "another";
+  nlohmann::json empty = nlohmann::json::parse(made.report);
+  empty.erase("checks");
+  for (const std::string& text : {std::string(), made.report.substr(0, 200), other.dump(), empty.dump(), std::string("[]")}) {
+    write_atomically(made.file, text);
+    const StoredBlock again = block_of_this_build(folder_, {});
+    EXPECT_TRUE(again.validity.valid) << text.substr(0, 60);
+    EXPECT_EQ(again.validity.checks, made.validity.checks);
+    EXPECT_NE(text_of(made.file), text);
+  }
+}
+
+TEST_F(StoredBlocks, a_report_without_a_check_is_not_valid) {
+  const StoredBlock made = block_of_this_build(folder_, {});
+  nlohmann::json report = nlohmann::json::parse(made.report);
+  report["checks"] = nlohmann::json::array();
+  write_atomically(made.file, report.dump());
+  EXPECT_FALSE(block_of_this_build(folder_, {}).validity.valid);
+  EXPECT_FALSE(summary_of({}, "").valid);
+}
+
+TEST_F(StoredBlocks, where_nothing_can_be_written_the_block_is_computed_all_the_same) {
+  std::ofstream(folder_) << "a file in the place of the folder";
+  const StoredBlock block = block_of_this_build(folder_, {});
+  EXPECT_FALSE(block.kept);
+  EXPECT_TRUE(block.validity.valid);
+}
+
+TEST_F(StoredBlocks, a_plugin_has_a_report_of_its_own) {
+  PluginFile plugin;
+  plugin.sha256 = std::string(64, 'a');
+  EXPECT_NE(this_build({plugin}).sha256, this_build({}).sha256);
+}
+
+}  // namespace
+}  // namespace bb
