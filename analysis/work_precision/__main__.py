@@ -28,7 +28,8 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("spec", nargs="?", type=Path, default=DEFAULT, help="configs/work_precision/NAME.json (default: default.json)")
     parser.add_argument("--no-run", action="store_true", help="run nothing: make page and figures of the numbers in work_precision.json")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the sweeps (default: results/runs/work_precision)")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of table, page and figures (default: results/ and docs/ for default.json, else results/runs/work_precision/NAME)")
+    parser.add_argument("--out", type=Path, metavar="DIR",
+                        help="folder of table, page and figures (default: results/ and docs/ for default.json, else results/runs/work_precision/NAME)")
     return parser.parse_args(argv)
 
 

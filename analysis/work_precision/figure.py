@@ -102,4 +102,5 @@ def draw_profile(scenes: list[dict], stem: Path) -> list[Path]:
     style.letter_panels(axes)
     style.legend_below(fig, axes[0, 0])
     targets = "; ".join(f"{scene['name']} {scene['error']} " + ", ".join(f"{t:g}" for t in scene["targets"]) for scene in scenes)
-    return style.save(fig, stem, pd.DataFrame(rows, columns=["level", "cost", "formulation", "budget", "share"]), PROFILE.format(targets=targets, n=profile(scenes, "newton", names[0], 0)[1]))
+    table = pd.DataFrame(rows, columns=["level", "cost", "formulation", "budget", "share"])
+    return style.save(fig, stem, table, PROFILE.format(targets=targets, n=profile(scenes, "newton", names[0], 0)[1]))

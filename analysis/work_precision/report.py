@@ -37,7 +37,8 @@ def _standings(scene: dict) -> list[str]:
 
 def _targets(scene: dict) -> list[str]:
     targets, names = scene["targets"], formulations(scene)
-    lines = ["| formulation | " + " | ".join(f"{text}: error <= " + ", ".join(f"{t:g}" for t in targets) for _, text in COSTS.values()) + " |", "|" + "---|" * (1 + len(COSTS))]
+    heads = [f"{text}: error <= " + ", ".join(f"{t:g}" for t in targets) for _, text in COSTS.values()]
+    lines = ["| formulation | " + " | ".join(heads) + " |", "|" + "---|" * (1 + len(COSTS))]
     for name in names:
         cells = [", ".join(number(cost_to(points(scene, cost), name, t)) for t in targets) for cost in COSTS]
         lines.append(f"| {name} | " + " | ".join(cells) + " |")
@@ -56,8 +57,8 @@ def _failure(row: dict) -> str:
 
 def _scene(scene: dict) -> list[str]:
     anchor, band, about = scene["anchor"], band_of(scene), scene["about"]
-    lines = [f"## {scene['name']}", "", f"`{scene['base']}`, {scene['duration_s']:g} s, anchor: dt {anchor['dt_s']:g} s, d_hat {anchor['d_hat_m']:g} m, tolerance {anchor['tolerance']:g} "
-             f"of min(d_hat, fall of a step)/dt. Error: `{scene['error']}`, {MEANING[scene['error']]}. {about['runs']} runs, {about['seconds']:.0f} s in all "
+    lines = [f"## {scene['name']}", "", f"`{scene['base']}`, {scene['duration_s']:g} s and one step, anchor: dt {anchor['dt_s']:g} s, d_hat {anchor['d_hat_m']:g} m, "
+             f"tolerance {anchor['tolerance']:g} of min(d_hat, fall of a step)/dt. Error: `{scene['error']}`, {MEANING[scene['error']]}. {about['runs']} runs, {about['seconds']:.0f} s in all "
              f"(pilots and audit included), {about['unknowns']} unknowns, {about['machine']}, {about['date']}, build {about['build'][:8]}.", ""]
     lines += [f"- Reference, dt x{ref['dt_factor']:g}: {ref['name']}" + "".join(f"; {e} {number(b)}" for e, b in ref["band"].items()) + "." for ref in scene["references"]]
     lines += ["", f"![{scene['error']} against work](../docs/work_precision_{scene['name']}.png)", ""]

@@ -33,8 +33,18 @@ def sweep_name(spec: Spec, scene: Scene) -> str:
     return f"{spec.name}-{scene.name}"
 
 
+def _sweep(spec: Spec, scene: Scene, runs: Path, *words: str) -> str:
+    """Runs the sweep of a scene -> what the program answers. Errors: SpecError with what it says."""
+    folder = runs / sweep_name(spec, scene)
+    done = subprocess.run([program(), "sweep", str(runs / f"{folder.name}.sweep.json"), "--out", str(folder), "--progress", "none", *words], capture_output=True,
+                          text=True, check=False)
+    if done.returncode != 0:
+        raise SpecError(f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}: {done.stderr.strip()[-2000:]}")
+    return done.stdout
+
+
 def run_scene(spec: Spec, scene: Scene, runs: Path) -> None:
-    """The sweep of a scene. Errors: SpecError with what the program says."""
+    """The sweep file of a scene, and its runs."""
     folder = runs / sweep_name(spec, scene)
     file = runs / f"{folder.name}.sweep.json"
     cases = spec.cases(scene)
@@ -43,25 +53,22 @@ def run_scene(spec: Spec, scene: Scene, runs: Path) -> None:
     write_whole(file, json.dumps(sweep, indent=1) + "\n")
     start = time.monotonic()
     print(f"work-precision: {scene.name}: {len(cases)} runs", file=sys.stderr)
-    done = subprocess.run([program(), "sweep", str(file), "--out", str(folder), "--progress", "none"], capture_output=True, text=True, check=False)
-    if done.returncode != 0:
-        raise SpecError(f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}: {done.stderr.strip()[-2000:]}")
+    _sweep(spec, scene, runs)
     print(f"work-precision: {scene.name}: {time.monotonic() - start:.0f} s", file=sys.stderr)
 
 
 def _records(spec: Spec, scene: Scene, runs: Path) -> dict[str, Path]:
-    """Label of a case -> its folder. Records of other cases than the spec has do not count."""
+    """Label of a case -> its folder. Only folders that the sweep names now count: those of settings that the spec no longer has may lie beside them."""
     folder, found = runs / sweep_name(spec, scene), {}
     wanted = {f"{folder.name}: {case['label']}": case["label"] for case in spec.cases(scene)}
-    for path in sorted(folder.glob("*/run.json")):
+    for planned in _sweep(spec, scene, runs, "--dry-run").split("\n"):
+        path = Path(planned) / "run.json"
+        if not planned or not path.is_file():
+            continue
         try:
-            label = wanted.get(read_record(path)["labels"].get("note", ""))
-        except RecordError:
+            found[wanted[read_record(path)["labels"].get("note", "")]] = path.parent
+        except (RecordError, KeyError):
             continue  # counted as missing
-        if label in found:
-            raise SpecError(f"{folder}: two records of {label!r}; remove the folder and run the spec again")
-        if label:
-            found[label] = path.parent
     if missing := [label for label in wanted.values() if label not in found]:
         raise SpecError(f"{folder}: {len(missing)} of {len(wanted)} records missing, the first is {missing[0]!r}; ./bench work-precision {spec.file} makes them")
     return found

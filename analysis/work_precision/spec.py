@@ -85,13 +85,15 @@ class Scene:
         relative, dt, d_hat = (self.anchor[axis] * variation.of(axis) for axis in ANCHOR)
         return {"label": f"{formulation.label} {variation.label} {solver}",
                 "set": {**self.set, "/formulation": {"name": formulation.name, "d_hat_m": d_hat, "stiffness_policy": {"scale": variation.of("kappa")}},
-                        **formulation.set, **self._time(variation.of("dt_s")), "/step_solver/tol_velocity_m_per_s": self.tolerance(relative, d_hat, dt), **SOLVERS[solver]}}
+                        **formulation.set, **self._time(variation.of("dt_s")),
+                        "/step_solver/tol_velocity_m_per_s": self.tolerance(relative, d_hat, dt), **SOLVERS[solver]}}
 
     def reference_case(self, name: str, dt_factor: float) -> dict:
         """The same mesh and time step, a smaller d_hat and tolerance, the direct solver."""
+        relative, dt, d_hat = (self.anchor[axis] for axis in ANCHOR)
         return {"label": f"reference {name} dt_s x{dt_factor:g}",
-                "set": {**self.set, "/formulation": {"name": name, "d_hat_m": self.anchor["d_hat_m"] * REFERENCE_D_HAT}, **self._time(dt_factor),
-                        "/step_solver/tol_velocity_m_per_s": REFERENCE_TOLERANCE * self.tolerance(self.anchor["tolerance"], self.anchor["d_hat_m"], self.anchor["dt_s"] * dt_factor), **SOLVERS["direct"]}}
+                "set": {**self.set, "/formulation": {"name": name, "d_hat_m": d_hat * REFERENCE_D_HAT}, **self._time(dt_factor),
+                        "/step_solver/tol_velocity_m_per_s": REFERENCE_TOLERANCE * self.tolerance(relative, d_hat, dt * dt_factor), **SOLVERS["direct"]}}
 
     @property
     def dt_factors(self) -> list[float]:
