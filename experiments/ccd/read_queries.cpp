@@ -36,7 +36,7 @@ mpz_class integer(const TextScanner& at, std::string_view word) {
   const bool good = !digits.empty() && digits.size() <= most_digits &&
                     std::all_of(digits.begin(), digits.end(), [](char c) { return c >= '0' && c <= '9'; });
   if (!good) at.fail(fmt::format("\"{}\"", word.substr(0, 40)), "an integer in decimal digits");
-  return mpz_class(std::string(word));
+  return mpz_class(std::string(word), 10);  // by default a leading zero means octal
 }
 
 /// The nearest double, ties to even, of a value within most_coordinate; mpq_class::get_d truncates.

@@ -47,6 +47,13 @@ TEST(CcdFiles, RowsAreReadAndRoundingIsSeen) {
   EXPECT_TRUE(queries[0].rounded_float);
 }
 
+TEST(CcdFiles, ALeadingZeroIsDecimal) {
+  const auto queries = parse_queries(rows("010,02", "09,1", "0"), "a.csv");
+  ASSERT_EQ(queries.size(), 1U);
+  EXPECT_EQ(queries[0].x0(2, 0), 5);
+  EXPECT_EQ(queries[0].x1(2, 0), 9);
+}
+
 TEST(CcdFiles, FaultsAreNamedWithTheirLine) {
   EXPECT_NE(complaint(rows("1,0", "1,2", "1")).find("a.csv:1: found a denominator of 0"), std::string::npos);
   EXPECT_NE(complaint(rows("1,2", "x,2", "1")).find("a.csv:5: found \"x\""), std::string::npos);

@@ -87,7 +87,7 @@ void print_row(const char* pair, const char* precision, Family family, const Err
               largest(e.witness), largest(e.region), e.worst_ratio);
 }
 
-/// Ulps of the pair's size. The largest of 10^6 pairs in each precision are 2.7 and 2.2 (results/fuzz.md).
+/// Ulps of the pair's size. The largest of 10^6 pairs in each precision are 2.7 and 1.7 (results/fuzz.md).
 constexpr double most_d = 4, most_witness = 4;
 
 template <PairKind K, class T>
