@@ -9,11 +9,14 @@
 
 namespace bb {
 
-enum class HessianMode { gauss_newton, projected_full };
+/// What the Hessian of a row holds, and how it is projected: m kappa b'' n n^T alone; with grad^2 d, projected in the at
+/// most five directions in which it is not zero; the same matrix, projected by a numeric eigensolver on all 12 x 12 of it,
+/// as the IPC Toolkit does: what faster projections are measured against.
+enum class HessianMode { gauss_newton, projected_full, projected_numeric };
 
 /// Local gradients [12 n] and Hessians [90 n, lower blocks of 4 points] of the rows on the compact free
 /// slots (slots beyond n_free are 0), from kappa, b', b'' in the table: m kappa b' w_i n and m kappa b'' w_i
-/// w_j n n^T, plus m kappa b' grad^2 d in mode projected_full. The block of a row's free points is projected;
+/// w_j n n^T, plus m kappa b' grad^2 d in the other modes. The block of a row's free points is projected;
 /// without grad^2 d it is positive semi-definite as it is. x: [3 x n]. precision: the scalars of either. Resizes the outputs, no other
 /// allocation.
 void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, Projection projection,

@@ -25,7 +25,9 @@ inline EnumWords<Mollifier> words_of(Mollifier) {
   return {{Mollifier::ipc, "ipc"}, {Mollifier::none, "none"}};
 }
 inline EnumWords<HessianMode> words_of(HessianMode) {
-  return {{HessianMode::gauss_newton, "gauss_newton"}, {HessianMode::projected_full, "projected_full"}};
+  return {{HessianMode::gauss_newton, "gauss_newton"},
+          {HessianMode::projected_full, "projected_full"},
+          {HessianMode::projected_numeric, "projected_numeric"}};
 }
 inline EnumWords<Scaling> words_of(Scaling) {
   return {{Scaling::none, "none"}, {Scaling::jacobi, "jacobi"}, {Scaling::block_jacobi, "block_jacobi"}};

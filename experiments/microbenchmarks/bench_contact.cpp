@@ -131,6 +131,8 @@ void register_contact() {
       [](benchmark::State& state) { gradient_and_hessian(state, HessianMode::gauss_newton); });
   add("contact/gradient_and_hessian/projected_full",
       [](benchmark::State& state) { gradient_and_hessian(state, HessianMode::projected_full); });
+  add("contact/gradient_and_hessian/projected_numeric",
+      [](benchmark::State& state) { gradient_and_hessian(state, HessianMode::projected_numeric); });
   add("contact/mollified/value", mollified_value);
   add("contact/mollified/gradient_and_hessian", mollified_gradient_and_hessian);
   add("contact/assembly", assemble);

@@ -137,16 +137,16 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   const Scene scene = build_scene(config);
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);
-  RunRecord record = identified(config, options);
-  record.status.started_utc = started_utc;
-  record.validity.build = options.build;
-  const Checkpoint checkpoint(options.folder, record.ids.build_id);
+  const RunRecord asked_for = identified(config, options);  // inputs where they are now
+  const Checkpoint checkpoint(options.folder, asked_for.ids.build_id);
   std::optional<Resumed> resumed;
-  if (options.resume) resumed = read_resumed(checkpoint, record);
-  if (resumed) record.status.started_utc = resumed->record.status.started_utc;
+  if (options.resume) resumed = read_resumed(checkpoint, asked_for);
   resumed ? remove_temporaries(options.folder) : remove_unfinished(options.folder);
   check_writable(options.folder);
   if (options.keep_inputs) copy_inputs(options.folder, config, options.plugins);
+  RunRecord record = identified(config, options);
+  record.status.started_utc = resumed ? resumed->record.status.started_utc : started_utc;
+  record.validity.build = options.build;
 
   RunFiles files;
   try {

@@ -114,7 +114,7 @@ struct Counts {
   int indefinite = 0;
 };
 
-void expect_the_whole_matrix(Projection projection, Counts* counts) {
+void expect_the_whole_matrix(HessianMode mode, Projection projection, Counts* counts) {
   for (unsigned seed = 1; seed <= 4; ++seed) {
     const Scene scene = mixed_scene(seed);
     ContactSystem contacts(scene, {Mollifier::none});
@@ -122,7 +122,7 @@ void expect_the_whole_matrix(Projection projection, Counts* counts) {
     ContactTable& t = rows.table;
     evaluate(t, 3.5, TestShape::cubic);
     std::vector<double> grad, hess;
-    contact_terms(t, scene.x0, HessianMode::projected_full, projection, grad, hess);
+    contact_terms(t, scene.x0, mode, projection, grad, hess);
     for (std::size_t r = 0; r < t.size(); ++r) {
       if (t.d[r] <= 1e-6) continue;
       Long lowest = 0;
@@ -138,8 +138,10 @@ void expect_the_whole_matrix(Projection projection, Counts* counts) {
 
 TEST(RowHessian, IsTheWholeMatrixWithProjectedEigenvalues) {
   for (const Projection projection : {Projection::none, Projection::psd, Projection::absolute}) {
-    Counts counts;
-    expect_the_whole_matrix(projection, &counts);
+    Counts counts, numeric;
+    expect_the_whole_matrix(HessianMode::projected_full, projection, &counts);
+    expect_the_whole_matrix(HessianMode::projected_numeric, projection, &numeric);
+    EXPECT_EQ(numeric.rows, counts.rows);
     for (int n_free = 1; n_free <= 4; ++n_free) {
       const auto seen = [&](ContactKind kind) { return counts.rows[{kind, n_free}]; };
       EXPECT_GT(seen(ContactKind::point_triangle), 1) << n_free;
@@ -177,7 +179,7 @@ TEST(RowHessian, DependsOnNoOtherRowAndOnNoThread) {
   ContactSystem contacts(scene, {Mollifier::none});
   Rows rows = rows_at(contacts, scene.x0);
   evaluate(rows.table, 3.5, TestShape::cubic);
-  for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {
+  for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full, HessianMode::projected_numeric}) {
     std::vector<double> grad, hess, alone_grad, alone;
     contact_terms(rows.table, scene.x0, mode, Projection::psd, grad, hess);
     ASSERT_GT(rows.table.size(), 100U);
