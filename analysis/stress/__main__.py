@@ -53,7 +53,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
                                      epilog="examples: ./bench stress\n          ./bench stress S09 M10\n          ./bench stress --quick\n          ./bench stress S18 --full")
     parser.add_argument("ids", nargs="*", metavar="ID", help="configs/stress/ID.json (default: all)")
     parser.add_argument("--list", action="store_true", help="print the tests and run nothing")
-    parser.add_argument("--full", action="store_true", help="the sizes and seeds of `full`, 600 s a formulation; results go to the folder of the runs")
+    parser.add_argument("--full", action="store_true", help="the sizes and seeds of `full`, 600 s of processor time a formulation; results go to the folder of the runs")
     parser.add_argument("--quick", action="store_true", help=f"the cases marked quick with {', '.join(QUICK)}, under a minute; nothing is written")
     parser.add_argument("--no-run", action="store_true", help="run nothing: write results/STRESS.md from results/stress.json")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the records (default: results/runs/stress)")
