@@ -81,6 +81,15 @@ def main(argv: list[str]) -> int:
         return 2
 
 
+def write_all(results: dict[str, Result], runs: Path, full: bool) -> None:
+    """The table and the page, of all tests that there are results of."""
+    everything = {name: read_test(name, full=full) for name in ids()}
+    results = {name: result for name, result in results.items() if name in everything}
+    write(results, runs / "stress.json" if full else FILE)
+    page = runs / "STRESS.md" if full else ROOT / "results" / "STRESS.md"
+    write_whole(page, report.markdown(results, everything, "./bench stress --full" if full else "./bench stress"))
+
+
 def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
     """Runs, prints, writes."""
     runs = args.runs / "full" if args.full else args.runs
@@ -94,12 +103,11 @@ def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
         for name, test in tests.items():
             results[name] = run_one(test, runs, args.quick, 600.0 if args.full else 60.0)
             print(report.text(results, {name: test}), flush=True)
-    if not args.quick:
-        everything = {name: read_test(name, full=args.full) for name in ids()}
-        kept = {name: result for name, result in {**kept, **results}.items() if name in everything}
-        write(kept, runs / "stress.json" if args.full else FILE)
-        page = runs / "STRESS.md" if args.full else ROOT / "results" / "STRESS.md"
-        write_whole(page, report.markdown(kept, everything, "./bench stress --full" if args.full else "./bench stress"))
+            if not args.quick:
+                write_all({**kept, **results}, runs, args.full)  # an interrupt leaves what is over
+    if args.no_run:
+        print(report.text(results, tests))
+        write_all(kept, runs, args.full)
     return 0 if all(result.as_expected for result in results.values()) else 1
 
 
