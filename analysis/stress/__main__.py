@@ -18,7 +18,7 @@ from . import report
 from .entry import ROOT, StressError, Test, ids, read_test
 from .geometry import run_geometry
 from .relations import relations
-from .run import run_test
+from .run import config_schema, run_test
 from .table import FILE, Result, read, write
 
 RUNS = ROOT / "results" / "runs" / "stress"
@@ -32,9 +32,8 @@ def run_one(test: Test, runs: Path, quick: bool = False, limit_s: float = 60.0) 
     if "geometry" in test.data:
         result = Result(counts=run_geometry(test, quick))
     else:
-        schema = json.loads((ROOT / "configs" / "schema" / "config.schema.json").read_text())
         cases = test.data["quick"] if quick else None
-        rows = run_test(test, runs, schema, QUICK if quick else None, cases, say, limit_s)
+        rows = run_test(test, runs, config_schema(), QUICK if quick else None, cases, say, limit_s)
         result = Result(rows, relations=relations(test, rows, cases))
     result.about = {"date": datetime.now(timezone.utc).strftime("%Y-%m-%d"), "seconds": round(time.monotonic() - start, 1), **about(runs / test.id)}
     return result

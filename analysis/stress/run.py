@@ -58,6 +58,14 @@ def program() -> Path:
     return path
 
 
+def config_schema() -> dict:
+    """That of the program which will run, not of the tree."""
+    done = subprocess.run([str(program()), "help", "config", "--schema"], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise StressError(f"{program()} help config --schema: {done.stderr.strip()}")
+    return json.loads(done.stdout)
+
+
 def known(need: dict, schema: dict) -> bool:
     """Whether the schema of configs allows the value at the pointer."""
     node = schema
