@@ -53,8 +53,8 @@ def run_row(record: dict, run: str = "") -> dict:
     return row
 
 
-def _trace_lines(path: Path) -> list[dict]:
-    """A line torn by a crash can only be the last one: it is left out and said."""
+def trace_lines(path: Path) -> list[dict]:
+    """The rows of a trace; none without the file. A line torn by a crash can only be the last one: it is left out and said."""
     if not path.exists():
         return []
     lines = path.read_text().splitlines()
@@ -92,7 +92,7 @@ def load(root: str | Path) -> Records:
     for path in sorted(root.rglob("run.json")):
         try:
             record = read_record(path)
-            lines = _trace_lines(path.parent / "trace.jsonl")
+            lines = trace_lines(path.parent / "trace.jsonl")
         except RecordError as error:
             unreadable.append(str(error))
             continue

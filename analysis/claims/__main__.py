@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ..load import RecordError
 from ..whole_file import write_whole
-from . import figure, report
+from . import figure, frontiers, report
 from .entry import ROOT, Claim, ClaimError, ids, read_claim, read_sweep
 from .judge import judge, missing
 from .proofs import Eval
@@ -86,7 +86,10 @@ def write_all(table: Table, asker: Eval) -> None:
         table.answers = {text: table.answers[text] for text in asker.asked}
     write(table, FILE)
     write_whole(ROOT / "results" / "CLAIMS.md", report.markdown(answers, table))
-    for path in figure.draw(answers, RUNS / "figure" / "claims"):
+    drawn = figure.draw(answers, RUNS / "figure" / "claims")
+    for claim in (a.claim for a in answers if a.claim.frontier and a.claim.frontier["sweep"] in table.sweeps):
+        drawn += frontiers.draw(claim, table.sweeps[claim.frontier["sweep"]], RUNS / "figure" / f"policies_{claim.id}")
+    for path in drawn:
         if path.suffix in (".png", ".txt"):
             shutil.copyfile(path, ROOT / "docs" / path.name)
     readme = ROOT / "README.md"

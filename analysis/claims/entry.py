@@ -14,7 +14,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "claims"
 NAME = "barrierbench.claim/1"
 REQUIRED = ("id", "source", "sentence", "dimension", "guarantee")
-OPTIONAL = ("schema", "parts", "waits_for", "note", "rule_changes")
+OPTIONAL = ("schema", "parts", "waits_for", "note", "rule_changes", "frontier")
 
 
 class ClaimError(ValueError):
@@ -32,10 +32,11 @@ class Claim:
     waits_for: str = ""  # what has to be built before it can be decided
     note: str = ""
     rule_changes: tuple[str, ...] = ()  # of a rule after numbers were seen
+    frontier: dict = field(default_factory=dict, hash=False)  # sweep, cost and axes of the table and figure of who gets how far (frontiers.py)
 
     @property
     def sweeps(self) -> list[str]:
-        return list(dict.fromkeys(part["sweep"] for part in self.parts if "sweep" in part))
+        return list(dict.fromkeys([part["sweep"] for part in self.parts if "sweep" in part] + [self.frontier[k] for k in ("sweep",) if self.frontier]))
 
     @property
     def command(self) -> str:
@@ -94,10 +95,12 @@ def read_claim(name: str, folder: Path = FOLDER) -> Claim:
         raise ClaimError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
     if data["id"] != name:
         raise ClaimError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
+    if "frontier" in data and set(data["frontier"]) != {"sweep", "cost", "axes"}:
+        raise ClaimError(f"{path}: /frontier: sweep, cost and axes are needed; found {', '.join(data['frontier'])}")
     if not data.get("parts") and not data.get("waits_for"):
         raise ClaimError(f"{path}: neither parts that decide it nor waits_for")
     return Claim(**{key: data[key] for key in REQUIRED}, parts=tuple(data.get("parts", ())), waits_for=data.get("waits_for", ""),
-                 note=data.get("note", ""), rule_changes=tuple(data.get("rule_changes", ())))
+                 note=data.get("note", ""), rule_changes=tuple(data.get("rule_changes", ())), frontier=data.get("frontier", {}))
 
 
 def _labels(axis: dict, path: Path) -> list[str]:

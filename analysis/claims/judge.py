@@ -4,14 +4,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from . import numbers, outcomes
+from . import equal_gap, numbers, outcomes
 from .entry import Claim, ClaimError, read_sweep
 from .metrics import METRICS
 from .proofs import PROOFS, Eval
 from .table import Table
 from .verdict import Judged, together, undecided
 
-RULES = {"ratio": numbers.ratio, "level": numbers.level, "slope": numbers.slope, "outcomes": outcomes.outcomes}
+RULES = {"ratio": numbers.ratio, "level": numbers.level, "slope": numbers.slope, "outcomes": outcomes.outcomes,
+         "at_equal_gap": equal_gap.at_equal_gap}
 
 
 @dataclass

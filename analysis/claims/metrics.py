@@ -3,6 +3,10 @@
 from __future__ import annotations
 
 import math
+from pathlib import Path
+
+from ..figures.kappa_cycle import SETTLED, UNSETTLED_ITERATIONS
+from ..load import trace_lines
 
 
 def _at(record: dict, *place: str):
@@ -53,15 +57,45 @@ def _unsettled(record) -> float:
     return float(status["outcome"] == "newton_stall" and "does not settle" in status.get("detail", ""))
 
 
+def longest_run(changes: list[float]) -> int:
+    """Most iterations in a row in which a stiffness changed by more than what leaves Newton alone."""
+    longest = now = 0
+    for change in changes:
+        now = now + 1 if change > SETTLED else 0
+        longest = max(longest, now)
+    return longest
+
+
+def _kappa_cycles(record) -> float | None:
+    """Steps with a cycle, counted in the trace beside the record (FOLDER); None without a trace."""
+    path = Path(record.get(FOLDER, "")) / "trace.jsonl"
+    if FOLDER not in record or not path.is_file():
+        return None
+    steps: dict[int, list[float]] = {}
+    for line in trace_lines(path):
+        steps.setdefault(line["step"], []).append(line.get("kappa_change_rel") or 0.0)
+    return float(sum(longest_run(changes) >= UNSETTLED_ITERATIONS for changes in steps.values())) if steps else None
+
+
+def _stopped(record) -> float:
+    """1 when the run did not come to its end, or went through a surface."""
+    return float(record["status"]["outcome"] not in ("ok", "unproven"))
+
+
 def _summary(*place: str):
     return lambda record: _at(record, "summary", *place)
 
 
+FOLDER = "folder of the record"  # key that collect() adds, for numbers of the trace
 # name -> (meaning, unit, depends on the machine, how it is read)
 METRICS = {
     "cond_max": ("largest cond of a run, raw", "1", False, _cond("full/none", "max")),
     "cond_p95": ("95th percentile of cond over a run, raw", "1", False, _cond("full/none", "p95")),
     "cond_median": ("median cond, raw", "1", False, _cond("full/none", "median")),
+    "cond_bj_p95": ("95th percentile of cond over a run, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "p95")),
+    "cond_no_contact_p95": ("95th percentile of cond over a run, raw, without contact", "1", False, _cond("without_contact/none", "p95")),
+    "cond_no_contact_no_limit_p95": ("95th percentile of cond over a run, raw, without contact and limit", "1", False,
+                                     _cond("without_contact_and_limit/none", "p95")),
     "cond_bj_max": ("largest cond, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "max")),
     "cond_bj_median": ("median cond, block-Jacobi scaled", "1", False, _cond("full/block_jacobi", "median")),
     "pcg_probe": ("median block-Jacobi PCG iterations to 1e-6", "1", False, _summary("probe_pcg", "median")),
@@ -71,9 +105,12 @@ METRICS = {
     "seconds": ("seconds of the steps", "s", True, _summary("wall_s")),
     "contact_seconds": ("seconds of contact terms an iteration", "s", True, _per_iteration("summary", "time", "contact_terms_s")),
     "gap_min": ("smallest gap at a step end", "d_hat", False, _summary("gap_min_rel", "min")),
+    "gap_median": ("median over the steps of the smallest gap at a step end", "d_hat", False, _summary("gap_min_rel", "median")),
     "gap_end": ("smallest gap at the end of the last step", "d_hat", False, _gap_end),
     "stretch": ("largest stretch", "1", False, _summary("max_stretch")),
     "stretch_of_limit": ("largest stretch at a step end over the limit", "1", False, _stretch_of_limit),
     "climb_of_limit": ("share of the strain limit in the climb of log10 cond", "1", False, _climb_of_limit),
+    "kappa_cycles": ("steps in which a contact's kappa changes by more than 1% in ten iterations in a row", "1", False, _kappa_cycles),
+    "stopped": ("1 when a step failed or a surface was crossed", "1", False, _stopped),
     "unsettled": ("1 when a stiffness did not settle", "1", False, _unsettled),
 }

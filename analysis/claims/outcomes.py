@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .entry import ClaimError
 from .estimate import sign_test, wilson
 from .numbers import by_place
 from .table import Runs
@@ -11,6 +12,8 @@ LEVEL = 0.05
 
 
 def _good(row: dict, bad: str | None) -> bool:
+    if bad is not None and row[bad] is None:
+        raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {bad}: its record lacks what that is counted in")
     return row["outcome"] == "ok" if bad is None else not row[bad]
 
 
@@ -37,34 +40,34 @@ def _through(cells: dict) -> dict[str, bool]:
     return levels
 
 
-def _hopeless(runs: Runs, part: dict) -> set[tuple[str, str]]:
+def hopeless(runs: Runs, bad: str | None = None) -> set[tuple[str, str]]:
     """Scenes x levels where no run of any case gets through: they compare nothing."""
     good: dict[tuple[str, str], bool] = {}
     for row in runs.rows:
         place = row["scene"], row["level"]
-        good[place] = good.get(place, False) or _good(row, part.get("bad"))
+        good[place] = good.get(place, False) or _good(row, bad)
     return {place for place, any_good in good.items() if not any_good}
 
 
 def outcomes(part: dict, runs: Runs) -> Judged:
     """`case` gets through everything, or (needs: "more") through more than `over`: a sign test over scenes x levels, whose starts are
     no independent trials; without one that only one of the two gets through, it is no more than the other. bad: a metric that is 1 where a run failed in the way meant, in the place of any outcome but ok."""
-    hopeless = _hopeless(runs, part)
-    mine = {place: starts for place, starts in _cells(runs, part["case"], part).items() if place not in hopeless}
+    left_out = hopeless(runs, part.get("bad"))
+    mine = {place: starts for place, starts in _cells(runs, part["case"], part).items() if place not in left_out}
     if not mine:
         return undecided("no case of the sweep gets through anything")
     n, good = sum(map(len, mine.values())), sum(map(sum, mine.values()))
     lower, upper = wilson(good, n)
     more = {"value": good / n, "lower": lower, "upper": upper, "bounds": (1.0,), "threshold": "every run gets through",
             "measures": f"share of runs {'without ' + part['bad'] if 'bad' in part else 'that end ok'}: {part['case']}", "counted": f"{good} of {n} runs"}
-    if left := sorted(" ".join(place) for place in hopeless):
+    if left := sorted(" ".join(place) for place in left_out):
         more["counted"] += f" ({', '.join(left)} left out: no case gets through)"
     more["runs"] = [row["run"] for row in runs.rows if row["case"] == part["case"]][:1]
     if (scenes := _enough(mine)) < SCENES:
         return undecided(f"indication: {scenes} scenes have {LEVELS} levels of {STARTS} starts, {SCENES} are needed", **more)
     wins = losses = 0
     if "over" in part:
-        other = {place: starts for place, starts in _cells(runs, part["over"], part).items() if place not in hopeless}
+        other = {place: starts for place, starts in _cells(runs, part["over"], part).items() if place not in left_out}
         pairs = [(all(mine[place]), all(other[place])) for place in mine.keys() & other.keys()]
         wins, losses = sum(a and not b for a, b in pairs), sum(b and not a for a, b in pairs)
         more["counted"] += f"; {part['over']}: {sum(map(sum, other.values()))} of {sum(map(len, other.values()))}; scenes x levels that only one gets through: {wins} to {losses}"

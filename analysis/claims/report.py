@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
+from . import frontiers
 from .entry import read_sweep
 from .judge import Answer
 from .metrics import METRICS
@@ -56,6 +57,7 @@ def _claim(a: Answer, table: Table) -> list[str]:
         lines += _part(j)
     if a.parts:
         lines.append("")
+    lines += frontiers.lines(claim, table)
     if claim.note:
         lines += [claim.note, ""]
     for change in claim.rule_changes:
@@ -76,7 +78,7 @@ def _sweeps(table: Table) -> list[str]:
 
 HEAD = """# Claims
 
-Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/design.md, Claims, has the
+Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/laboratory.md, Claims, has the
 rules. A number is a ratio of geometric means over scenes, levels (resolution, load, limit) and jittered starts with a 95% interval by bootstrap over all
 three, or what its line says. cond is a condition number. From a sentence to its runs: its sweep's command makes the records, `run_id` names them in results/claims.json and in
 their run.json, and `./bench run RUN.json` repeats one.

@@ -11,7 +11,7 @@ from pathlib import Path
 from ..load import RecordError, read_record
 from ..whole_file import write_whole
 from .entry import ROOT, Claim, ClaimError, Sweep
-from .metrics import METRICS
+from .metrics import FOLDER, METRICS
 
 FILE = ROOT / "results" / "claims.json"
 RUNS = ROOT / "results" / "runs" / "claims"
@@ -48,6 +48,8 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
         if unknown := names - set(METRICS):
             raise ClaimError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
         used.setdefault(part["sweep"], set()).update(names)
+    for frontier in (claim.frontier for claim in claims if claim.frontier):
+        used.setdefault(frontier["sweep"], set()).add(frontier["cost"])
     return {sweep: sorted(names) for sweep, names in used.items()}
 
 
@@ -64,7 +66,8 @@ def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
     return row | {name: _rounded(METRICS[name][3](record)) for name in metrics}
 
 
-def _seconds(record: dict) -> float:
+def seconds_of_run(record: dict) -> float:
+    """From start to end of a run, all passes."""
     start, end = (datetime.fromisoformat(record["status"][key].replace("Z", "+00:00")) for key in ("started_utc", "ended_utc"))
     return (end - start).total_seconds()
 
@@ -79,13 +82,14 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
             continue  # counted as missing
         place = sweep.cases.get(record["labels"].get("note", ""))
         if place is not None:
+            record[FOLDER] = str(path.parent)
             records.append(record)
             rows.append(_row(record, place, metrics))
     rows.sort(key=lambda row: tuple(str(row[key]) for key in PLACE))
     if len({tuple(row[key] for key in PLACE) for row in rows}) != len(rows):
         raise ClaimError(f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again")
     file = folder / "sweep.json"  # the program's copy of the sweep file that made the records
-    about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "seconds": round(sum(map(_seconds, records)), 1)}
+    about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "seconds": round(sum(map(seconds_of_run, records)), 1)}
     for name, values in (("date", {r["status"]["started_utc"][:10] for r in records}),
                          ("machine", {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records}),
                          ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),

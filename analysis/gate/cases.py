@@ -25,6 +25,7 @@ class Case:
     config: Path
     set: dict = field(default_factory=dict)  # JSON pointer -> value
     instructions: bool = False  # small enough for callgrind
+    resumed: bool = False  # also killed after a checkpoint and resumed
 
 
 def sets() -> list[str]:
@@ -43,7 +44,7 @@ def read_set(name: str) -> list[Case]:
     if data.get("schema") != NAME:
         raise GateError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
     cases = [Case(f"{scene['name']}-{formulation['name']}", (path.parent / scene["config"]).resolve(),
-                  {**data.get("set", {}), **scene.get("set", {}), **formulation.get("set", {})}, scene.get("instructions", False))
+                  {**data.get("set", {}), **scene.get("set", {}), **formulation.get("set", {})}, scene.get("instructions", False), scene.get("resumed", False))
              for scene in data.get("scenes", []) for formulation in data.get("formulations", [])]
     if not cases:
         raise GateError(f"{path}: no case: it needs scenes and formulations")

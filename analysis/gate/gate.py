@@ -23,6 +23,7 @@ from .finding import Finding, failures, without_subject
 from .instructions import judge_instructions
 from .metrics import measure
 from .records import Run, read_run
+from .resume import judge_resume
 
 OUT = ROOT / "results" / "runs" / "gate"
 REPEAT_SEED = 1001  # of the copy that has to confirm a number outside its envelope; no copy of a calibration has it
@@ -59,6 +60,8 @@ def judge_case(case: Case, kept: Baseline, path: Path, out: Path) -> tuple[list[
     first = runs[0]
     findings = [f for run in runs for f in invariants.judge(case.name if run is first else f"{case.name}, {run.threads} threads", run)]
     findings += of_one_config(case.name, runs)
+    if case.resumed:
+        findings.append(judge_resume(case, out / case.name / "resumed", first))
     same_subject(kept, first, path)
     same_kind = bool(kept.made_by) and kept.made_by == first.made_by
     size_m = first.section("scene").get("extent_m") or 0.0

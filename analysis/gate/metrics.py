@@ -1,4 +1,4 @@
-"""What a gate measures in a record: one line a number, with its class (docs/design.md, Gates), unit, direction and tolerance."""
+"""What a gate measures in a record: one line a number, with its class (docs/laboratory.md, Gates), unit, direction and tolerance."""
 
 from __future__ import annotations
 

@@ -27,6 +27,7 @@ class MembraneBatch final : public EnergyBatch {
  public:
   /// @param model   a name of registry.inc        @param planar  F is 2x2 in the x-y plane, z has no terms
   /// @param lame_mu, lame_lambda [n] N/m          @param warp    as in triangle_rests
+  /// @param precision  the scalars of values and derivatives
   /// ConfigError: unknown model, columns of another length, triangles without area.
   MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
                 const Positions& x_rest, std::vector<double> lame_mu, std::vector<double> lame_lambda,

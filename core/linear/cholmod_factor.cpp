@@ -1,6 +1,7 @@
 #include "core/linear/cholmod_factor.hpp"
 
 #include <cholmod.h>
+#include <sys/mman.h>
 
 #include <algorithm>
 #include <chrono>
@@ -36,6 +37,19 @@ cholmod_sparse view(const ReducedSystem& system) {
   a.dtype = CHOLMOD_DOUBLE;
   a.sorted = a.packed = 1;
   return a;
+}
+
+/// OpenBLAS takes a buffer of 128 MiB when it is first used and waits for ever where it gets none: then memory has
+/// run out. Errors: std::bad_alloc. Cost: once a process.
+void require_blas_buffer() {
+  static const bool there = [] {
+    constexpr std::size_t bytes = std::size_t{160} << 20;
+    void* place = mmap(nullptr, bytes, PROT_NONE, MAP_PRIVATE | MAP_ANONYMOUS | MAP_NORESERVE, -1, 0);
+    if (place == MAP_FAILED) throw std::bad_alloc();
+    munmap(place, bytes);
+    return true;
+  }();
+  static_cast<void>(there);
 }
 
 }  // namespace
@@ -159,6 +173,7 @@ void CholmodFactor::analyze(const ReducedSystem& system) {
 LinearStatus CholmodFactor::factorize(const ReducedSystem& system) {
   Cholmod& c = *cholmod_;
   set_one_blas_thread();  // the OpenMP part holds for the calling thread only
+  require_blas_buffer();
   analyze(system);
   const double* value = system.lower.valuePtr();
   factor_s_ = 0;

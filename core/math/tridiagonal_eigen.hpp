@@ -24,7 +24,9 @@ struct Reflection {
     T below(0);
     for (int i = first + 1; i < N; ++i) below += a(i, column) * a(i, column);
     target = a(first, column);
-    const MaskOf<T> done = below == T(0);  // not for NaN, which has to come through
+    // Entries of a matrix of size 1 whose squares are no normal numbers are far below its rounding, and 2 over their
+    // sum may overflow. False for NaN, which has to come through.
+    const MaskOf<T> done = below < T(std::numeric_limits<typename ScalarOf<T>::type>::min());
     if (!any(!done)) return;
     const T length = sqrt(below + target * target);
     for (int i = first + 1; i < N; ++i) v[i] = a(i, column);

@@ -93,12 +93,13 @@ class LineSearch final : public StepSolver {
 
   // Whether E has changed along the step as its quadratic model says, or by noise. Where the rate of convergence
   // is not known a short direction says nothing without it: a gap far below its equilibrium under an unbounded
-  // barrier doubles with every iteration, by directions as short as the gap.
+  // barrier doubles with every iteration, by directions as short as the gap. A search that found no decrease at all has
+  // nothing to say of the model.
   bool as_modelled(const IterationReport& report) const {
     constexpr double tolerance = 0.25;
     const double modelled = -report.alpha * (2 - report.alpha) * report.decrement_J;
-    if (report.alpha == 0) return report.decrement_J == 0;
-    return noise_ || std::abs(report.energy_change_J - modelled) <= tolerance * std::abs(modelled);
+    return report.alpha == 0 || noise_ ||
+           std::abs(report.energy_change_J - modelled) <= tolerance * std::abs(modelled);
   }
 
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its

@@ -83,9 +83,13 @@ std::string ending_of(int status) {
 
 }  // namespace
 
-void check_library_file(const std::string& file) {
-  const std::string fault = elf_fault(read_input_file(file, plugin_file));
+void check_library_bytes(const std::string& bytes, const std::string& file) {
+  const std::string fault = elf_fault(bytes);
   if (!fault.empty()) throw ConfigError(file, fault, whole_library);
+}
+
+void check_library_file(const std::string& file) {
+  check_library_bytes(read_input_file(file, plugin_file), file);
 }
 
 void try_in_child(const std::string& file, const std::function<void()>& load) {

@@ -10,6 +10,9 @@ namespace bb {
 /// library, or one whose headers, segments or section table reach beyond its end (a file that was cut).
 void check_library_file(const std::string& file);
 
+/// The same of its bytes; `file` is used in messages. Errors: ConfigError at the file.
+void check_library_bytes(const std::string& bytes, const std::string& file);
+
 /// Runs `load` in a child process first, which has 10 s. What it throws is left to the caller's own call.
 /// Errors: ConfigError at the file when the child ends in any other way than at the end of `load`: by a
 /// signal, by exit(), or not at all.

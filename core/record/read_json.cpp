@@ -12,6 +12,7 @@
 
 #include "core/input/json.hpp"
 #include "core/input/names.hpp"
+#include "core/record/parse_record.hpp"
 #include "core/record/writer.hpp"
 
 namespace bb {
@@ -166,11 +167,9 @@ std::optional<Parts> parts_of(const Json& schema) {
 
 }  // namespace
 
-std::optional<RunRecord> read_run(const std::filesystem::path& file) {
-  const std::string source = file.string();
+std::optional<RunRecord> parse_run(const std::string& text, const std::string& source) {
   Json j;
   try {
-    const std::string text = read_input_file(source, record_file);
     static_cast<void>(
         parse_json(text, source, LargeIntegers::rounded));  // judged here, read in its order below
     j = Json::parse(text);
@@ -191,6 +190,23 @@ std::optional<RunRecord> read_run(const std::filesystem::path& file) {
   RunRecord record;
   get(place, j, record);
   return record;
+}
+
+TraceRow parse_trace_row(const std::string& text, const std::string& source) {
+  static_cast<void>(parse_json(text, source, LargeIntegers::rounded));
+  TraceRow row;
+  get(Place{source + "#", false}, Json::parse(text), row);
+  return row;
+}
+
+std::optional<RunRecord> read_run(const std::filesystem::path& file) {
+  std::string text;
+  try {
+    text = read_input_file(file.string(), record_file);
+  } catch (const ConfigError&) {
+    return {};
+  }
+  return parse_run(text, file.string());
 }
 
 }  // namespace bb

@@ -21,8 +21,12 @@ bool is_artifact_name(const std::string& relative) {
 }
 
 bool is_unfinished_name(const std::string& name) {
-  static const std::regex pattern(
-      R"((run\.json|sweep\.json|probe|checkpoint\.bin)\.tmp\.\d+|trace\.jsonl\.part|checkpoint\.bin)");
+  return name == "trace.jsonl.part" || name == "checkpoint.bin";
+}
+
+/// A file that was being written.
+bool is_temporary_name(const std::string& name) {
+  static const std::regex pattern(R"((run\.json|sweep\.json|probe|checkpoint\.bin)\.tmp\.\d+)");
   return std::regex_match(name, pattern);
 }
 
@@ -46,7 +50,18 @@ fs::path part_of(const fs::path& relative) {
   return out;
 }
 
+void remove_temporaries(const fs::path& folder) {
+  remove_files(folder, is_temporary_name);
+  for (const std::string kind : {"frames", "matrices"}) {
+    remove_files(folder / (kind + ".part"), [&kind](const std::string& name) {
+      const std::size_t end = name.find(".tmp.");
+      return end != std::string::npos && is_artifact_name(kind + "/" + name.substr(0, end));
+    });
+  }
+}
+
 void remove_unfinished(const fs::path& folder) {
+  remove_temporaries(folder);
   remove_files(folder, is_unfinished_name);
   remove_unfinished_artifacts(folder);
 }

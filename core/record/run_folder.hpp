@@ -8,6 +8,8 @@ namespace bb {
 /// Where a file of the folder lies until its run is over: the first folder of `relative` gets ".part".
 std::filesystem::path part_of(const std::filesystem::path& relative);
 
+/// Removes files that a process was writing when it was killed, NAME.tmp.PID. Requires that the folder is locked.
+void remove_temporaries(const std::filesystem::path& folder);
 /// Removes what a run that was killed left unfinished: *.tmp.PID of records, its checkpoint, trace.jsonl.part, and
 /// the frames and matrices in frames.part, matrices.part. Requires that the folder is locked (folder_lock.hpp).
 void remove_unfinished(const std::filesystem::path& folder);

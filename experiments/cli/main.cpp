@@ -107,6 +107,20 @@ CLI::App* add_validity(CLI::App& app, ValidityVerb& verb) {
   return out;
 }
 
+CLI::App* add_ccd(CLI::App& app, CcdVerb& verb) {
+  CLI::App* out = app.add_subcommand(
+      "ccd", "queries with a known truth to both continuous tests: false negatives, false positives, times");
+  out->add_option("folder", verb.folder,
+                  "SCENE/vertex-face/*.csv and SCENE/edge-edge/*.csv, rational coordinates");
+  out->add_option("--random", verb.random, "so many queries of each kind, their truth known by construction");
+  out->add_option("--head-on", verb.head_on,
+                  "so many sweeps of a point through a triangle for each gap and offset");
+  out->add_option("--seed", verb.seed, "of both (default 1)");
+  out->add_option("--json", verb.json, "file of everything that the table shows");
+  out->footer("example: ./bench ccd --random 10000 --seed 1");
+  return out;
+}
+
 /// The first word of the command line that is no option and no value of an option before the verb.
 std::string first_word(const std::vector<std::string>& argv) {
   for (std::size_t i = 1; i < argv.size(); ++i) {
@@ -168,6 +182,7 @@ int main(int argc, char** argv) {
   StepsVerb steps_verb;
   MatrixVerb matrix_verb;
   ValidityVerb validity_verb;
+  CcdVerb ccd_verb;
   std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
   std::string help_format = "config";
@@ -207,6 +222,7 @@ int main(int argc, char** argv) {
   steps_app->footer("example: ./bench steps configs/scenes/drape.json --at 11,21 --out steps.json");
   CLI::App* matrix_app = add_matrix(app, matrix_verb);
   CLI::App* validity_app = add_validity(app, validity_verb);
+  CLI::App* ccd_app = add_ccd(app, ccd_verb);
   auto* check_app = app.add_subcommand("check", "parse a config, build its scene, look for intersections");
   config_arguments(check_app, check_verb);
   check_app->footer("example: ./bench check configs/scenes/drape.json");
@@ -262,6 +278,7 @@ int main(int argc, char** argv) {
     if (steps_app->parsed()) return steps(steps_verb, common);
     if (matrix_app->parsed()) return matrix(matrix_verb, common);
     if (validity_app->parsed()) return validity(validity_verb, common);
+    if (ccd_app->parsed()) return ccd(ccd_verb);
     if (check_app->parsed()) return check(check_verb);
     if (explain_app->parsed()) return explain(explain_verb);
     if (list_app->parsed()) return list(list_what);

@@ -24,6 +24,7 @@ struct SweepCase {
 struct SweepSpec {
   std::string name;
   std::string text;  // as read, for sweep.json
+  std::string base;  // a config, relative to the file
   std::vector<SweepCase> cases;
 };
 

@@ -2,6 +2,7 @@
 // the command line.
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -13,7 +14,7 @@ namespace bb::cli {
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_bad_input = 2;
 inline constexpr int exit_no_match =
-    3;  // a record did not repeat itself and nothing that it names explains it
+    3;  // a record did not repeat itself and nothing that it names explains it; a CCD answer was wrong
 inline constexpr int exit_internal = 70;
 inline constexpr int exit_try_again = 75;
 
@@ -94,6 +95,17 @@ struct ValidityVerb {
 };
 /// The checks of the block as a table; exit_no_match when one failed.
 int validity(const ValidityVerb& verb, const CommonOptions& common);
+
+struct CcdVerb {
+  std::string folder;      // of query files; empty: none
+  int random = 0;          // queries of each kind by construction; 0: none
+  int head_on = 0;         // sweeps of each gap; 0: none
+  std::uint64_t seed = 1;  // of both
+  std::string json;        // file; empty: none
+};
+/// CCD queries with a known truth through ACCD and the audit. exit_no_match when a pair that meets was proven free, or
+/// an accepted state has crossed. Errors: ConfigError as read_queries, and unless one source is named.
+int ccd(const CcdVerb& verb);
 
 /// Parses, builds the scene and looks for intersections; runs nothing.
 int check(const RunVerb& verb);

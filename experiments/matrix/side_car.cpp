@@ -36,8 +36,8 @@ class Reader {
   Reader(const std::string& path, const std::string& sha256, StoredSystem& stored)
       : path_(path), sha256_(sha256), stored_(stored), n_(stored.system.lower.rows()) {}
 
-  void read() {
-    json_ = read_json_file(path_, side_car_file);
+  void read(const std::string& text) {
+    json_ = parse_json(text, path_);
     if (!json_.is_object()) throw ConfigError(path_, shown(json_), "an object");
     if (!json_.contains("schema") || json_["schema"] != side_car_schema) {
       throw ConfigError(path_ + "#/schema", json_.contains("schema") ? shown(json_["schema"]) : "nothing",
@@ -254,8 +254,13 @@ class Reader {
 
 }  // namespace
 
+void parse_side_car(const std::string& text, const std::string& path, const std::string& matrix_sha256,
+                    StoredSystem& stored) {
+  Reader(path, matrix_sha256, stored).read(text);
+}
+
 void read_side_car(const std::string& path, const std::string& matrix_sha256, StoredSystem& stored) {
-  Reader(path, matrix_sha256, stored).read();
+  parse_side_car(read_input_file(path, side_car_file), path, matrix_sha256, stored);
 }
 
 }  // namespace bb

@@ -12,4 +12,8 @@ namespace bb {
 /// Errors: ConfigError with all that is wrong at once.
 void read_side_car(const std::string& path, const std::string& matrix_sha256, StoredSystem& stored);
 
+/// The same from text; `path` is used in messages.
+void parse_side_car(const std::string& text, const std::string& path, const std::string& matrix_sha256,
+                    StoredSystem& stored);
+
 }  // namespace bb

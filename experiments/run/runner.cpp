@@ -144,7 +144,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   std::optional<Resumed> resumed;
   if (options.resume) resumed = read_resumed(checkpoint, record);
   if (resumed) record.status.started_utc = resumed->record.status.started_utc;
-  if (!resumed) remove_unfinished(options.folder);
+  resumed ? remove_temporaries(options.folder) : remove_unfinished(options.folder);
   check_writable(options.folder);
   if (options.keep_inputs) copy_inputs(options.folder, config, options.plugins);
 

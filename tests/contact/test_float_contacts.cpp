@@ -26,9 +26,9 @@ ContactOptions options_in(Precision precision) {
 Scene float_soups(const Vec3d& where) {
   Scene scene;
   for (const unsigned seed : {1U, 2U}) {
-    auto [vertices, triangles] = soup(60, 0.2, seed);
+    auto [vertices, triangles] = soup(120, 0.2, seed);
     for (Vec3d& p : vertices) p += where;
-    add_body(scene, seed == 1 ? "a" : "b", vertices, triangles, 0.1);
+    add_body(scene, seed == 1 ? "a" : "b", vertices, triangles, 0.3);
   }
   for (const auto& t : scene.surface_triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -111,6 +111,23 @@ TEST(FloatContacts, no_test_rejects_a_pair_that_is_near_in_float) {
   EXPECT_GT(lost_in_double, 300);  // so close to d_hat that double and float do not agree on which side
 }
 
+/// Far from the origin a state on a motion is rounded by more than the motion itself: candidates have to reach it.
+TEST(FloatContacts, candidates_reach_the_states_that_a_motion_is_rounded_to) {
+  const double ulp = 0x1p-13;  // m, of float at 1024
+  Scene scene = point_over_grid(Vec3d(1.3, 1.4, 8 * ulp), 7.1 * ulp);
+  scene.x0.row(2).array() += 1024;
+  Positions x1 = scene.x0;
+  x1(2, 25) -= 0.8 * ulp;
+  Positions state = scene.x0 + 0.7 * (x1 - scene.x0);
+  round_state(Precision::single, state);
+  ASSERT_EQ(state(2, 25), 1024 + 7 * ulp);  // nearer than any point of the motion
+  ContactSystem contacts(scene, options_in(Precision::single));
+  contacts.update_candidates(scene.x0, x1);
+  Rows rows;
+  EXPECT_EQ(contacts.find_rows(state, rows.table, rows.mollified), 7 * ulp);
+  EXPECT_EQ(rows.table.size(), 1U);
+}
+
 template <class Numbers>
 double difference(const Numbers& a, const Numbers& b) {
   double largest = 0, size = 0;
@@ -170,7 +187,7 @@ TEST(FloatContacts, the_step_bound_stops_at_the_ulps_of_the_coordinates_in_float
       EXPECT_LT(bound.alpha, 0.5);
       return 0.5 - bound.alpha;
     };
-    const double largest = far + 4;  // m, of a coordinate
+    const double largest = far + 2;  // m, of a coordinate of the pair
     EXPECT_GT(gap_at_bound(in_float), 15 * float_eps * largest);
     EXPECT_LT(gap_at_bound(in_float), 40 * float_eps * largest);
     EXPECT_LT(gap_at_bound(in_double), 1e-8);

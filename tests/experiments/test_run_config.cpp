@@ -21,6 +21,8 @@ constexpr const char* block = R"({"schema": "barrierbench.config/1", "scene": {"
 
 RunRecord run(const std::vector<std::string>& overrides) {
   RunOptions options;
+  options.build.valid = true;
+  options.build.checks = 1;
   options.folder =
       std::filesystem::temp_directory_path() / ("barrierbench_run_config_" + std::to_string(::getpid()));
   RunRecord record = run_config(parse_config(block, "test", ".", overrides), options);

@@ -106,6 +106,17 @@ TEST_P(ProjectPsd, MixedScales) {
 }
 
 /// A null vector that is split off changes nothing, wherever it points and however long it is.
+/// In float the squares of such entries are no normal numbers, or nothing at all.
+TEST(ProjectPsd, EntriesWithoutANormalSquareDoNoHarm) {
+  for (const float tiny : {1e-19F, 1e-20F, 3e-22F, 1e-23F, 1e-30F}) {
+    Mat<float, 9, 9> a = Mat<float, 9, 9>::Zero();
+    for (int k = 0; k < 9; ++k) a(k, k) = k % 2 == 0 ? 1.0F : -1.0F;
+    for (int k = 2; k < 9; ++k) a(k, 0) = a(0, k) = tiny;
+    const Mat<float, 9, 9> out = bb::project<float, 9>(a, Projection::psd);
+    for (int k = 0; k < 9; ++k) EXPECT_NEAR(out(k, k), k % 2 == 0 ? 1 : 0, 1e-6) << tiny;
+  }
+}
+
 TEST(ProjectPsdBeside, EqualsTheProjectionOfTheWholeMatrix) {
   std::mt19937 rng(17);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -104,7 +104,7 @@ TEST(Pins, the_motion_of_a_given_edge_is_lifted_through_a_mollified_row) {
   NewtonSystem system(scene, method);
   Prediction prediction;
   const Positions none = Positions::Zero(3, 4);
-  method.integrator->predict({0, scene.x0, scene.v0, none, scene.x0, scene.v0}, 0.01, prediction);
+  method.integrator->predict({0, 0, scene.x0, scene.v0, none, scene.x0, scene.v0}, 0.01, prediction);
   system.begin_step(scene.x0, prediction, 0.01, 1);
   system.assemble();
   ASSERT_EQ(test::reported(system).contacts.mollified, 1U);

@@ -1,0 +1,142 @@
+"""Who gets how far and at what cost, over the levels of a sweep that stretches several axes from one middle: table and figure of a claim."""
+
+from __future__ import annotations
+
+import math
+from pathlib import Path
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
+
+from .. import style
+from ..robustness import Frontier, Trial, expected_cost, frontier, profile, success
+from .entry import Claim, ClaimError
+from .metrics import METRICS
+from .outcomes import hopeless
+from .table import Runs, Table
+
+MIDDLE = "nominal"  # the level that all axes start from
+LOOKS = {"published": ("#D55E00", "D"), "per_iteration": ("#E69F00", "s"), "per_step": ("#CC79A7", "v"), "consistent": ("#332288", "*"),
+         "fixed_cubic": ("#009E73", "^"), "fixed_log": ("#0072B2", "o")}
+SHOWN = ("Ways to a stiffness over {n} problems of the sweep `{sweep}` (scenes x levels x starts), nothing retuned; those that no case gets through are left out. (a) Data profile: share of the problems that were solved with at "
+         "most so many {cost}; a run that failed is never solved. (b) Share of the runs of a level, over all scenes and starts, that got through: E, m, n, v are Young's modulus, "
+         "mass, resolution and speed of impact times the number, beside the nominal level.")
+
+
+def cases(runs: Runs) -> list[str]:
+    return list(dict.fromkeys(row["case"] for row in sorted(runs.rows, key=lambda r: list(LOOKS).index(r["case"]) if r["case"] in LOOKS else len(LOOKS))))
+
+
+def _cost(row: dict, name: str) -> float:
+    if row[name] is None:
+        raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {name}")
+    return float(row[name])
+
+
+def value_of(level: str, axis: str, middle: float) -> float | None:
+    """The number of a level on an axis: E10 is 10 on E, nominal the middle; None for a level of another axis."""
+    if level == MIDDLE:
+        return middle
+    if not level.startswith(axis):
+        return None
+    try:
+        return float(level.removeprefix(axis))
+    except ValueError:
+        return None
+
+
+def trials(runs: Runs, case: str, cost: str, axis: str = "", middle: float = 0.0) -> list[Trial]:
+    """Runs of a case as trials; with an axis those of its levels alone. Scenes x levels that no case gets through are left out."""
+    found, left_out = [], hopeless(runs)
+    for row in runs.rows:
+        if row["case"] != case or (row["scene"], row["level"]) in left_out:
+            continue
+        value = value_of(row["level"], axis, middle) if axis else 0.0
+        if value is not None:
+            problem = f"{row['scene']} {row['level']} {row['seed']}"
+            found.append(Trial(problem, value, row["outcome"] == "ok", _cost(row, cost)))
+    return found
+
+
+def _reach(f: Frontier) -> str:
+    """The range that all runs get through; a square bracket outwards where the next tested value fails."""
+    if f.low is None or f.high is None:
+        return "not even the middle"
+    return f"{']' if f.fails_below is not None else ''}{f.low:g} to {f.high:g}{'[' if f.fails_above is not None else ''}"
+
+
+def _left_out(runs: Runs) -> str:
+    names = sorted(" ".join(place) for place in hopeless(runs))
+    return f" Left out, since no case gets through: {', '.join(names)}." if names else ""
+
+
+def lines(claim: Claim, table: Table) -> list[str]:
+    """The table for results/CLAIMS.md; nothing for a claim without a frontier or without its runs."""
+    if not claim.frontier or claim.frontier["sweep"] not in table.sweeps:
+        return []
+    runs, cost, axes = table.sweeps[claim.frontier["sweep"]], claim.frontier["cost"], claim.frontier["axes"]
+    found = [f"![data profile and shares of the policies](../docs/policies_{claim.id}.png)", "",
+             f"Over `{claim.frontier['sweep']}`: share of runs that get through [95%, Wilson], {METRICS[cost][0]} of all runs over the number of successes (ert), and the frontier: the range of "
+             "each axis, from the nominal level outwards, in which every run of every scene and start gets through; a bracket that opens outwards means that the next tested value fails." + _left_out(runs), "",
+             f"| case | gets through | ert ({cost}) | " + " | ".join(f"frontier of {axis}" for axis in axes) + " |", "|" + "---|" * (len(axes) + 3)]
+    for case in cases(runs):
+        every = trials(runs, case, cost)
+        share, ert = success(every), expected_cost(every)
+        reaches = [_reach(frontier(trials(runs, case, cost, axis, middle), middle)) for axis, middle in axes.items()]
+        found.append(f"| {case} | {share.ok} of {share.n} [{share.low:.3f}, {share.high:.3f}] | {'-' if ert is None else f'{ert:.4g}'} | " + " | ".join(reaches) + " |")
+    return [*found, ""]
+
+
+def _profiles(axis, runs: Runs, cost: str) -> list[dict]:
+    spent = {case: trials(runs, case, cost) for case in cases(runs)}
+    costs = [t.cost for every in spent.values() for t in every if t.cost > 0]
+    left, right, numbers = 0.9 * min(costs), max(costs), []
+    for case, every in spent.items():
+        color, marker = LOOKS.get(case, ("#444444", "x"))
+        steps = profile(every)
+        x, y = [left, *(b for b, _ in steps), right], [0.0, *(s for _, s in steps), steps[-1][1] if steps else 0.0]
+        axis.plot(x, y, drawstyle="steps-post", color=color, marker=marker, markevery=style.marks(len(x), 8), label=case)
+        numbers += [{"panel": "profile", "case": case, "budget": b, "share": s} for b, s in steps]
+    axis.set(xscale="log", xlim=(left, 1.05 * right), ylim=(0, 1.02), xlabel=f"budget of {cost}", ylabel="share of problems solved")
+    axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
+    axis.xaxis.set_major_formatter(ScalarFormatter())
+    axis.xaxis.set_minor_formatter(NullFormatter())
+    return numbers
+
+
+def _order(level: str, axes: dict) -> tuple:
+    for k, (axis, middle) in enumerate(axes.items()):
+        if level != MIDDLE and (value := value_of(level, axis, middle)) is not None:
+            return (k + 1, value)
+    return (0, 0.0)
+
+
+def _shares(axis, runs: Runs, axes: dict) -> list[dict]:
+    names, left_out = cases(runs), hopeless(runs)
+    levels = sorted({row["level"] for row in runs.rows}, key=lambda level: _order(level, axes))
+    share, numbers = np.full((len(names), len(levels)), math.nan), []
+    for i, case in enumerate(names):
+        for j, level in enumerate(levels):
+            found = [row["outcome"] == "ok" for row in runs.rows if row["case"] == case and row["level"] == level and (row["scene"], level) not in left_out]
+            if not found:
+                continue
+            share[i, j] = sum(found) / len(found)
+            axis.text(j, i, f"{sum(found)}" if all(found) else f"{sum(found)}/{len(found)}", ha="center", va="center", fontsize=5, color="white" if share[i, j] < 0.45 else "black")
+            numbers.append({"panel": "share", "case": case, "budget": level, "share": share[i, j]})
+    axis.imshow(share, vmin=0, vmax=1, cmap="viridis", aspect="auto", alpha=0.85)
+    axis.set_xticks(range(len(levels)), levels, rotation=90)
+    axis.set_yticks(range(len(names)), names)
+    axis.grid(False)
+    return numbers
+
+
+def draw(claim: Claim, runs: Runs, stem: Path) -> list[Path]:
+    fig, axes = plt.subplots(1, 2, figsize=(style.WIDE_IN * 1.25, 2.9), layout="constrained", width_ratios=(1, 1.35))
+    numbers = _profiles(axes[0], runs, claim.frontier["cost"]) + _shares(axes[1], runs, claim.frontier["axes"])
+    style.letter_panels(axes)
+    handles, labels = axes[0].get_legend_handles_labels()
+    fig.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False)
+    problems = {(row["scene"], row["level"], row["seed"]) for row in runs.rows if (row["scene"], row["level"]) not in hopeless(runs)}
+    return style.save(fig, stem, pd.DataFrame(numbers), SHOWN.format(n=len(problems), sweep=claim.frontier["sweep"], cost=claim.frontier["cost"]))

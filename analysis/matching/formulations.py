@@ -1,0 +1,53 @@
+"""Presets of configs/formulations as settings of a run: which of contact and strain limit take a formulation, and which stay with the reference."""
+
+from __future__ import annotations
+
+import json
+from difflib import get_close_matches
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parents[2]
+PRESETS = ROOT / "configs" / "formulations"
+REFERENCE = "log"  # the pilot's formulation, whose run the others are compared with
+VARY = ("contact", "limit", "both")
+OF_LIMIT = ("mass_term", "elastic_term", "refresh", "gap_floor", "derivative")  # what the policy of a limit may take from that of contact
+
+
+class MatchError(ValueError):
+    """Bad input of `match` or `pareto`: file, place, what was found, what is allowed."""
+
+
+def known() -> list[str]:
+    return sorted(path.stem for path in PRESETS.glob("*.json"))
+
+
+def preset(name: str) -> dict:
+    """The section `formulation` of a preset. Errors: MatchError with the nearest name."""
+    if name not in known():
+        near = get_close_matches(name, known(), 1)
+        raise MatchError(f"formulation {name!r}: one of {', '.join(known())}" + (f"; did you mean {near[0]!r}?" if near else ""))
+    return json.loads((PRESETS / f"{name}.json").read_text())["formulation"]
+
+
+def _limit(formulation: dict) -> dict:
+    """Settings of a strain limit of this formulation. A policy that only contact can have becomes one fixed number, as in the program."""
+    policy = formulation["stiffness_policy"]
+    taken = {"name": "fixed"}
+    if policy["name"] == "elasticity_inclusive":
+        taken = {"name": policy["name"], **{key: policy[key] for key in OF_LIMIT if key in policy}}
+    return {"/strain_limit/shape": formulation["shape"], "/strain_limit/argument": formulation["argument"], "/strain_limit/stiffness_policy": taken}
+
+
+def settings(name: str, vary: str, d_hat_m: float | None = None, scale: float | None = None) -> dict:
+    """Overrides of a config: pointer -> value. vary: what takes the formulation; the other stays with the reference. scale: factor on the
+    matched stiffness of what is varied; None leaves it. d_hat_m: kept where the config gives one."""
+    chosen, reference = preset(name), preset(REFERENCE)
+    found = {"/formulation": REFERENCE if vary == "limit" else name}
+    if d_hat_m is not None:
+        found["/formulation/d_hat_m"] = d_hat_m
+    found |= _limit(reference if vary == "contact" else chosen)
+    if scale is not None and vary != "limit":
+        found["/formulation/stiffness_policy/scale"] = scale
+    if scale is not None and vary != "contact":
+        found["/strain_limit/stiffness_policy/scale"] = scale
+    return found

@@ -1,0 +1,131 @@
+"""Sweep files that are made here, the program that runs them, and their records, read strictly."""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from ..claims.metrics import METRICS
+from ..gate.configs import differences
+from ..load import RecordError, read_record
+from .formulations import ROOT, MatchError
+
+# What formulations may differ in; everything else of two configs has to be equal.
+OF_A_FORMULATION = ("/formulation/name", "/formulation/shape", "/formulation/argument", "/formulation/stiffness_policy/", "/strain_limit/shape",
+                    "/strain_limit/argument", "/strain_limit/stiffness_policy/", "/matching/")
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A sweep file: its text, and the labels of its cases in their order."""
+
+    name: str
+    text: str
+    notes: tuple[str, ...]  # labels.note of the records
+
+    @property
+    def digest(self) -> str:
+        return hashlib.sha256(self.text.encode()).hexdigest()
+
+
+def sweep(name: str, base: Path, common: dict, cases: list[dict], seeds: list[int] | None = None) -> Sweep:
+    """One axis of cases {label, set}, and one of seeds where they are given."""
+    axes: list[dict] = [{"cases": cases}]
+    notes = [f"{name}: {case['label']}" for case in cases]
+    if seeds:
+        axes.append({"pointer": "/seeds/main", "values": seeds})
+        notes = [f"{note} main={seed}" for note in notes for seed in seeds]
+    data = {"schema": "barrierbench.sweep/1", "name": name, "base": str(base.resolve()), "set": common, "axes": axes}
+    return Sweep(name, json.dumps(data, indent=1) + "\n", tuple(notes))
+
+
+def program() -> str:
+    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
+    if not path.exists():
+        raise MatchError(f"{path} is not built: ./bench build")
+    return str(path)
+
+
+def read_object(path: Path) -> dict:
+    """A JSON object from a file; MatchError says what it is instead."""
+    try:
+        data = json.loads(path.read_text())
+    except OSError as error:
+        raise MatchError(f"{path}: {error.strerror}") from None
+    except ValueError as error:
+        raise MatchError(f"{path}: not JSON: {error}") from None
+    if not isinstance(data, dict):
+        raise MatchError(f"{path}: not a JSON object")
+    return data
+
+
+def run(made: Sweep, out: Path, overrides: list[str] | None = None) -> None:
+    """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file. Errors: MatchError with the first line of what the
+    program said; input that it refuses leaves nothing."""
+    with tempfile.TemporaryDirectory() as scratch:
+        file = Path(scratch) / f"{made.name}.json"
+        file.write_text(made.text)
+        words = [program(), "sweep", str(file), "--out", str(out), "--progress", "none"]
+        for override in overrides or []:
+            words += ["--set", override]
+        done = subprocess.run(words, capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        first, *more = (done.stderr.strip() or done.stdout.strip()).splitlines() or ["it said nothing"]
+        first = first.removeprefix(f"{file} ")
+        raise MatchError(f"the program ended with {done.returncode}: {first}" + (f" (and {len(more)} more lines)" if more else ""))
+
+
+def _no_number(word: str):
+    raise ValueError(f"{word} where a number or null is needed")
+
+
+def read_strictly(path: Path) -> dict:
+    """A record. Errors: MatchError also for NaN and Infinity, which Python would take for numbers."""
+    try:
+        json.loads(path.read_text(), parse_constant=_no_number)
+        return read_record(path)
+    except (OSError, ValueError, RecordError) as error:  # ValueError: not JSON, a NaN
+        raise MatchError(f"{path}: {error}") from None
+
+
+def collect(made: Sweep, out: Path) -> dict[str, dict]:
+    """note -> record, of every case of the sweep. Errors: MatchError when one is missing or there twice."""
+    found: dict[str, dict] = {}
+    for path in sorted(out.glob("*/run.json")):
+        record = read_strictly(path)
+        note = record["labels"].get("note", "")
+        if note not in made.notes:
+            continue
+        if note in found:
+            raise MatchError(f"{path}: a second record of {note!r}: {out} holds runs with other settings; name another folder with --out")
+        found[note] = record
+    if missing := [note for note in made.notes if note not in found]:
+        raise MatchError(f"{out}: {len(missing)} of {len(made.notes)} records are missing, the first {missing[0]!r}")
+    return found
+
+
+def check_equal(records: dict[str, dict], apart: tuple[str, ...] = ()) -> None:
+    """Refuses records whose configs differ in more than a formulation and the settings in `apart`."""
+    notes = list(records)
+    for note in notes[1:]:
+        found = differences(records[notes[0]]["config"], records[note]["config"])
+        if unlike := [line for line in found if not line.startswith(OF_A_FORMULATION + apart)]:
+            raise MatchError(f"{notes[0]!r} and {note!r} are not runs of the same config: {unlike[0]}")
+
+
+def check_varied(record: dict, vary: str, place: str) -> None:
+    """Refuses to vary a strain limit that the run does not have: all formulations would be the same run."""
+    if vary == "limit" and record["matching"].get("limit_load_N_per_m") is None:
+        raise MatchError(f"{place}: no strain limit acts in scene {record['labels']['scene']!r}, so that nothing varies; contact or both, or a limit: /strain_limit/limit")
+
+
+def metric(record: dict, name: str) -> float | None:
+    """A number of analysis/claims/metrics.py; None where the record has none."""
+    if name not in METRICS:
+        raise MatchError(f"metric {name!r}: one of {', '.join(METRICS)}")
+    return METRICS[name][3](record)

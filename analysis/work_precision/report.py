@@ -1,0 +1,100 @@
+"""results/WORK_PRECISION.md: what each formulation reaches, what a target costs, and from where on a cheaper one dominates."""
+
+from __future__ import annotations
+
+import math
+
+from ..accuracy.errors import MEANING
+from .judge import COSTS, band_of, cost_to, formulations, points, profile, standing
+
+HEAD = """# Work and precision
+
+Made by `./bench work-precision` from results/work_precision.json; docs/laboratory.md, Accuracy, has the rules. Each scene has an anchor (time step, d_hat,
+tolerance) and varies one of these, or every kappa, at a time by a factor. A run counts when it ended ok and is valid; the others are named below
+their table and reach nothing. Errors below the uncertainty of the reference are not ranked: they count as that uncertainty. Costs are
+those of the cheapest run that reaches the error: seconds, Newton iterations and factorisations with the direct solver, products with conjugate gradients and block
+Jacobi. Seconds are those of small scenes on a machine that did other work as well: order of magnitude only.
+"""
+
+
+def number(x: float | None) -> str:
+    if x is None or not math.isfinite(x):
+        return "never"
+    return f"{x:.0f}" if x >= 100 else f"{x:.3g}"
+
+
+def _standings(scene: dict) -> list[str]:
+    names, band = formulations(scene), band_of(scene)
+    all_points = points(scene, "newton")
+    lines = ["| formulation | runs that count | useless below | Newton iterations there | cheapest down to | below that cheaper |", "|---|---|---|---|---|---|"]
+    for name in names:
+        s = standing(all_points, names, name)
+        smallest = number(s.smallest) + (" (band)" if band and s.smallest <= band else "")
+        own = number(s.cheapest_down_to) if math.isfinite(s.cheapest_down_to) else "nowhere"
+        lines.append(f"| {name} | {s.solved} of {s.runs} | {smallest} | {number(s.cost_there)} | {own} | {s.cheaper or '-'} |")
+    return lines
+
+
+def _targets(scene: dict) -> list[str]:
+    targets, names = scene["targets"], formulations(scene)
+    heads = [f"{text}: error <= " + ", ".join(f"{t:g}" for t in targets) for _, text in COSTS.values()]
+    lines = ["| formulation | " + " | ".join(heads) + " |", "|" + "---|" * (1 + len(COSTS))]
+    for name in names:
+        cells = [", ".join(number(cost_to(points(scene, cost), name, t)) for t in targets) for cost in COSTS]
+        lines.append(f"| {name} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def _failures(scene: dict) -> list[str]:
+    failed = [_failure(r) for r in scene["rows"] if r["error"] is None]
+    return [f"Failed or not valid, {len(failed)} of {len(scene['rows'])}: " + "; ".join(failed) + ".", ""] if failed else [f"All {len(scene['rows'])} runs count.", ""]
+
+
+def _failure(row: dict) -> str:
+    place = row["axis"] if row["axis"] == "anchor" else f"{row['axis']} x{row['factor']:g}"
+    return f"{row['formulation']} {place} ({row['solver']}) {row['outcome']}"
+
+
+def _scene(scene: dict) -> list[str]:
+    anchor, band, about = scene["anchor"], band_of(scene), scene["about"]
+    lines = [f"## {scene['name']}", "", f"`{scene['base']}`, {scene['duration_s']:g} s and one step, anchor: dt {anchor['dt_s']:g} s, d_hat {anchor['d_hat_m']:g} m, "
+             f"tolerance {anchor['tolerance']:g} of min(d_hat, fall of a step)/dt. Error: `{scene['error']}`, {MEANING[scene['error']]}. {about['runs']} runs, {about['seconds']:.0f} s in all "
+             f"(pilots and audit included), {about['unknowns']} unknowns, {about['machine']}, {about['date']}, build {about['build'][:8]}.", ""]
+    lines += [f"- Reference, dt x{ref['dt_factor']:g}: {ref['name']}" + "".join(f"; {e} {number(b)}" for e, b in ref["band"].items()) + "." for ref in scene["references"]]
+    lines += ["", f"![{scene['error']} against work](../docs/work_precision_{scene['name']}.png)", ""]
+    if band:
+        lines += [f"Uncertainty of the reference (band): {number(band)}.", ""]
+    return lines + _standings(scene) + [""] + _targets(scene) + [""] + _failures(scene)
+
+
+def _profiles(scenes: list[dict]) -> list[str]:
+    budgets = (50, 100, 200, 500, 1000)
+    lines = ["## Over all scenes", "", "![share of problems solved within a budget](../docs/work_precision_profile.png)", "",
+             "Problems (scene, variation) solved with at most so many factorisations, by target (first, second, third of each scene); failed runs never are.", "",
+             "| formulation | problems | " + " | ".join(f"{b} factorisations" for b in budgets) + " | any number |", "|---|---|" + "---|" * (len(budgets) + 1)]
+    levels = range(max(len(scene["targets"]) for scene in scenes))
+    for name in formulations(scenes[0]):
+        found = [profile(scenes, "factorizations", name, level) for level in levels]
+        cells = [", ".join(str(sum(c <= b for c in costs)) for costs, _ in found) for b in (*budgets, math.inf)]
+        lines.append(f"| {name} | {found[0][1]} | " + " | ".join(cells) + " |")
+    return lines
+
+
+def markdown(table: dict) -> str:
+    lines = [HEAD, table["doc"], ""]
+    for scene in table["scenes"]:
+        lines += _scene(scene)
+    return "\n".join(lines + _profiles(table["scenes"])) + "\n"
+
+
+def text(table: dict) -> str:
+    """For a terminal."""
+    lines = []
+    for scene in table["scenes"]:
+        names, all_points = formulations(scene), points(scene, "newton")
+        lines.append(f"{scene['name']}: {scene['error']}, {scene['references'][0]['name']}, band {number(band_of(scene)) if band_of(scene) else '0'}")
+        for name in names:
+            s = standing(all_points, names, name)
+            lines.append(f"  {name:32} {s.solved:3} of {s.runs:3} count, useless below {number(s.smallest):>9}, {number(s.cost_there):>6} Newton iterations there"
+                         + (f"; {s.cheaper} is cheaper" + (f" below {number(s.cheapest_down_to)}" if math.isfinite(s.cheapest_down_to) else "") if s.cheaper else ""))
+    return "\n".join(lines)

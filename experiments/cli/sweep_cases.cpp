@@ -1,0 +1,168 @@
+#include "experiments/cli/sweep_cases.hpp"
+
+#include <fmt/format.h>
+
+#include <nlohmann/json.hpp>
+
+#include "core/input/json.hpp"
+#include "core/input/names.hpp"
+#include "core/math/error.hpp"
+#include "core/parameters/check.hpp"
+#include "experiments/config/config_list.hpp"
+
+namespace bb {
+namespace {
+
+using nlohmann::json;
+
+/// The entries of an axis: its values or its cases.
+const json& entries(const json& axis) { return axis.contains("cases") ? axis["cases"] : axis["values"]; }
+
+/// Combinations of all axes, as a double: the product may be beyond any integer.
+double count_cases(const json& axes) {
+  double count = 1;
+  for (const json& axis : axes) count *= static_cast<double>(entries(axis).size());
+  return count;
+}
+
+/// Indices of the cases of an axis with "reference": true.
+std::vector<std::size_t> marked_cases(const json& axis) {
+  std::vector<std::size_t> out;
+  for (std::size_t k = 0; axis.contains("cases") && k < axis["cases"].size(); ++k) {
+    if (axis["cases"][k].value("reference", false)) out.push_back(k);
+  }
+  return out;
+}
+
+/// The case that differs from `index` in the axes with a mark only, where it is the marked one; the last axis
+/// runs fastest. Nothing without any mark.
+std::optional<std::size_t> marked_reference(const json& axes, std::size_t index) {
+  std::size_t out = 0, stride = 1;
+  bool any = false;
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    const json& axis = axes[a];
+    const std::size_t n = entries(axis).size();
+    const std::vector<std::size_t> marked = marked_cases(axis);
+    any = any || !marked.empty();
+    out += stride * (marked.empty() ? index % n : marked.front());
+    index /= n;
+    stride *= n;
+  }
+  return any ? std::optional(out) : std::nullopt;
+}
+
+/// Whether an axis changes what is compared (formulation, strain limit, matching), and not the problem that
+/// it is compared on. One entry that does is enough.
+bool changes_formulation(const json& axis) {
+  const auto compared = [](const std::string& pointer) {
+    for (const char* section : {"/formulation", "/strain_limit", "/matching"}) {
+      if (pointer == section || pointer.starts_with(std::string(section) + "/")) return true;
+    }
+    return false;
+  };
+  if (axis.contains("pointer")) return compared(axis["pointer"].get<std::string>());
+  for (const json& one : axis["cases"]) {
+    for (const auto& [pointer, value] : one["set"].items()) {
+      if (compared(pointer)) return true;
+    }
+  }
+  return false;
+}
+
+/// The number of the combination of all axes that change the problem; the last axis runs fastest.
+std::size_t group_of(const json& axes, std::size_t index) {
+  std::size_t out = 0, stride = 1;
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    const std::size_t n = entries(axes[a]).size();
+    if (!changes_formulation(axes[a])) {
+      out += stride * (index % n);
+      stride *= n;
+    }
+    index /= n;
+  }
+  return out;
+}
+
+/// Everything that the file alone can tell, counted before anything is expanded.
+void check_spec(json spec, const std::string& path) {
+  std::vector<Violation> violations;
+  Rule rule;
+  rule.kind = Kind::object;
+  rule.list = [](const json&) { return sweep_list(); };
+  check_value(spec, rule, path + "#", violations);
+  if (!violations.empty()) throw ConfigError(std::move(violations));
+  check_plain_name(path + "#/name", spec["name"].get<std::string>(), violations);
+  const json& axes = spec["axes"];
+  for (std::size_t i = 0; i < axes.size(); ++i) {
+    for (std::size_t k = 0; axes[i].contains("cases") && k < axes[i]["cases"].size(); ++k) {
+      check_plain_name(fmt::format("{}#/axes/{}/cases/{}/label", path, i, k),
+                       axes[i]["cases"][k]["label"].get<std::string>(), violations);
+    }
+    if (marked_cases(axes[i]).size() > 1) {
+      violations.push_back(
+          {fmt::format("{}#/axes/{}", path, i), "more than one reference", "one case with reference: true"});
+    }
+  }
+  if (const double n = count_cases(axes); n > static_cast<double>(max_sweep_cases)) {
+    violations.push_back({path + "#/axes", fmt::format("{} combinations", n),
+                          fmt::format("at most {} cases in one sweep", max_sweep_cases)});
+  }
+  if (!violations.empty()) throw ConfigError(std::move(violations));
+}
+
+void append_set(const json& set, std::vector<std::string>& overrides) {
+  for (const auto& [pointer, value] : set.items()) overrides.push_back(pointer + "=" + value.dump());
+}
+
+/// KEY=VALUE. What a folder name cannot hold (paths) is replaced.
+std::string value_label(const std::string& pointer, const json& value) {
+  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
+  for (char& c : text) {
+    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
+  }
+  for (std::size_t at; (at = text.find("..")) != std::string::npos;) text.replace(at, 2, "_");
+  return pointer.substr(pointer.rfind('/') + 1) + "=" + text;
+}
+
+// The cases so far, each extended by every entry of one axis.
+std::vector<SweepCase> extend(const std::vector<SweepCase>& cases, const json& axis) {
+  std::vector<SweepCase> out;
+  for (const SweepCase& base : cases) {
+    const auto add = [&](const std::string& label, const json& set) {
+      SweepCase next = base;
+      next.label += (next.label.empty() ? "" : " ") + label;
+      append_set(set, next.set);
+      out.push_back(std::move(next));
+    };
+    if (axis.contains("pointer")) {
+      const auto pointer = axis["pointer"].get<std::string>();
+      for (const json& value : axis["values"]) add(value_label(pointer, value), json{{pointer, value}});
+    } else {
+      for (const json& one : axis["cases"]) add(one["label"].get<std::string>(), one["set"]);
+    }
+  }
+  return out;
+}
+
+}  // namespace
+
+SweepSpec parse_sweep(const std::string& text, const std::string& path) {
+  SweepSpec out;
+  out.text = text;
+  const json spec = parse_json(text, path);
+  check_spec(spec, path);
+  out.name = spec["name"].get<std::string>();
+  out.base = spec["base"].get<std::string>();
+
+  SweepCase first;
+  if (spec.contains("set")) append_set(spec["set"], first.set);
+  out.cases = {first};
+  for (const json& axis : spec["axes"]) out.cases = extend(out.cases, axis);
+  for (std::size_t i = 0; i < out.cases.size(); ++i) {
+    out.cases[i].reference = marked_reference(spec["axes"], i);
+    out.cases[i].group = group_of(spec["axes"], i);
+  }
+  return out;
+}
+
+}  // namespace bb

@@ -1,0 +1,124 @@
+"""The verb `match`: verdicts and refusals on made-up records, and one run of the real program."""
+
+import json
+from pathlib import Path
+
+import pytest
+from made_records import install
+
+from analysis.matching.formulations import MatchError, settings
+from analysis.matching.match import main, make_sweep
+
+BLOCK = Path(__file__).resolve().parents[2] / "configs" / "scenes" / "resting_block_1d.json"
+
+
+@pytest.fixture
+def match(tmp_path):
+    """match(*arguments) -> exit code; records below tmp_path/out."""
+    return lambda *arguments: main([str(BLOCK), *arguments, "--out", str(tmp_path / "out")])
+
+
+def answer(tmp_path) -> dict:
+    return json.loads((tmp_path / "out" / "match.json").read_text())
+
+
+def test_all_comparable(match, monkeypatch, tmp_path, capsys):
+    install(tmp_path, monkeypatch, {"cubic": 0.15})
+    assert match("--formulations", "cubic", "quadratic") == 0
+    said, kept = capsys.readouterr().out, answer(tmp_path)
+    assert [row["formulation"] for row in kept["formulations"]] == ["log", "cubic", "quadratic"]
+    assert all(row["verdict"] == "comparable" for row in kept["formulations"]) and kept["max_gap_ratio"] == 2
+    assert "load of pilot: sheet[1] at the end of step 3" in said and "50 N/m" in said and "400 N/m" in said and "0.15 d_hat" in said
+
+
+@pytest.mark.parametrize("edit, why", [
+    ({}, "comparable"),
+    ({"/comparability/verdict": "not_comparable", "/comparability/reason": "smallest gap 0.3 d_hat, 3 times that of the reference"}, "3 times that of the reference"),
+    ({"/comparability/verdict": "not_valid", "/comparability/reason": "the run is not valid: outcome stall_overload", "/status/outcome": "stall_overload"}, "outcome stall_overload"),
+    ({"/comparability/verdict": "not_valid", "/comparability/reason": "the run is not valid: outcome penetration", "/status/outcome": "penetration"}, "outcome penetration"),
+    ({"/audit/judged": 0}, "audit judged nothing"), ({"/audit/enabled": False}, "audit judged nothing")])
+def test_one_that_is_not_comparable(match, monkeypatch, tmp_path, capsys, edit, why):
+    install(tmp_path, monkeypatch, {}, {"cubic": edit})
+    assert match("--formulations", "cubic") == (1 if edit else 0)
+    assert why in capsys.readouterr().out
+    assert answer(tmp_path)["formulations"][1]["verdict"] == ("not_comparable" if edit else "comparable")
+
+
+@pytest.mark.parametrize("arguments, said", [
+    (["--formulations", "cubci"], "formulation 'cubci': one of article_cubic, cubic"), (["--formulations", "cubci"], "did you mean 'cubic'?"),
+    (["--theta", "1"], "--theta: found 1; a number in (0, 1)")])
+def test_bad_arguments(match, tmp_path, capsys, arguments, said):
+    assert match(*arguments) == 2 and said in capsys.readouterr().err
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_scene_without_contact(match, monkeypatch, tmp_path, capsys):
+    install(tmp_path, monkeypatch, {"log": None, "cubic": None})
+    assert match("--formulations", "cubic") == 2
+    assert "scene 'drape2d': no contact at the end of any step with log" in capsys.readouterr().err
+    assert not (tmp_path / "out" / "match.json").exists()
+
+
+def test_a_limit_that_is_not_there(match, monkeypatch, tmp_path, capsys):
+    install(tmp_path, monkeypatch, {}, {"log": {"/matching/limit_load_N_per_m": None}, "cubic": {"/matching/limit_load_N_per_m": None}})
+    assert match("--formulations", "cubic", "--vary", "limit") == 2
+    assert "no strain limit acts in scene 'drape2d', so that nothing varies" in capsys.readouterr().err
+
+
+def test_records_of_different_configs(match, monkeypatch, tmp_path, capsys):
+    install(tmp_path, monkeypatch, {}, {"cubic": {"/config/time/dt_s": 0.02}})
+    assert match("--formulations", "cubic") == 2
+    assert "'match: log' and 'match: cubic' are not runs of the same config: /time/dt_s: 0.01 and 0.02" in capsys.readouterr().err
+
+
+def test_a_number_that_is_none(match, monkeypatch, tmp_path, capsys):
+    install(tmp_path, monkeypatch, {}, {"cubic": {"/comparability/gap_rel": float("nan")}})
+    assert match("--formulations", "cubic") == 2
+    assert "case2/run.json: NaN where a number or null is needed" in capsys.readouterr().err
+
+
+def test_a_folder_with_runs_of_other_settings(match, monkeypatch, tmp_path, capsys):
+    install(tmp_path, monkeypatch, {})
+    assert match("--formulations", "cubic") == 0
+    for k in (1, 2):
+        (tmp_path / "out" / f"case{k}").rename(tmp_path / "out" / f"older{k}")
+    assert match("--formulations", "quadratic", "cubic") == 2
+    assert "a second record of 'match: log'" in capsys.readouterr().err
+
+
+def test_what_is_varied():
+    both, contact, limit = (settings("cubic_dynamic_lagged", vary, scale=10.0) for vary in ("both", "contact", "limit"))
+    policy = {"name": "elasticity_inclusive", "mass_term": "paper", "elastic_term": True, "refresh": "per_step"}
+    assert both["/formulation"] == contact["/formulation"] == "cubic_dynamic_lagged" and limit["/formulation"] == "log"
+    assert both["/strain_limit/stiffness_policy"] == limit["/strain_limit/stiffness_policy"] == policy
+    assert (contact["/strain_limit/shape"], contact["/strain_limit/stiffness_policy"]) == ("log", {"name": "fixed"}) and limit["/strain_limit/shape"] == "cubic"
+    scaled = {vary: [key for key in found if key.endswith("/scale")] for vary, found in (("both", both), ("contact", contact), ("limit", limit))}
+    assert scaled == {"both": ["/formulation/stiffness_policy/scale", "/strain_limit/stiffness_policy/scale"], "contact": ["/formulation/stiffness_policy/scale"],
+                      "limit": ["/strain_limit/stiffness_policy/scale"]}
+    assert settings("ipc2020", "both")["/strain_limit/stiffness_policy"] == {"name": "fixed"}
+
+
+def test_the_sweep_that_is_made(tmp_path):
+    config = tmp_path / "a.json"
+    config.write_text('{"schema": "barrierbench.config/1", "formulation": {"name": "quadratic", "d_hat_m": 0.02}}')
+    data = json.loads(make_sweep(config, ["cubic", "log", "cubic"], "equal_curvature", 0.3, "both").text)
+    assert [case["label"] for case in data["axes"][0]["cases"]] == ["log", "cubic"] and data["axes"][0]["cases"][0]["reference"] is True
+    assert all(case["set"]["/formulation/d_hat_m"] == 0.02 for case in data["axes"][0]["cases"])
+    assert data["set"]["/matching/rule"] == "equal_curvature" and data["set"]["/matching/theta"] == 0.3 and data["set"]["/passes/audit"] is True
+    with pytest.raises(MatchError, match="none.json: No such file"):
+        make_sweep(tmp_path / "none.json", ["cubic"], "equal_force", 0.1, "both")
+    config.write_text("[1]")
+    with pytest.raises(MatchError, match="a.json: not a JSON object"):
+        make_sweep(config, ["cubic"], "equal_force", 0.1, "both")
+
+
+def test_the_real_program(match, program, monkeypatch, tmp_path, capsys):
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
+    few = ["--formulations", "cubic", "quadratic", "--set", "/time/steps=20"]
+    assert match(*few) == 1, capsys.readouterr()
+    rows = answer(tmp_path)["formulations"]
+    assert [row["verdict"] for row in rows] == ["comparable", "comparable", "not_comparable"], rows  # the quadratic's gap is four times the log's
+    assert all(0.05 < row["gap_min_rel"] < 1 and row["newton_iterations"] > 20 for row in rows)
+    assert rows[1]["matching"]["kappa_N_per_m"] > 5 * rows[0]["matching"]["kappa_N_per_m"] > 0  # equal force at 0.1 d_hat, not equal kappa
+    assert match(*few, "--set", "/scene/nn=3") == 2 and "found the unknown key" in capsys.readouterr().err
+    assert match(*few, "--theta", "0.9", "--set", "/time/steps=2") == 2  # another sweep in the same folder

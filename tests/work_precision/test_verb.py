@@ -1,0 +1,143 @@
+"""The verb as a user runs it, on a small spec; what it refuses; the page and the spec as committed."""
+
+import json
+from pathlib import Path
+
+import pytest
+
+from analysis.work_precision import __main__ as verb
+from analysis.work_precision import report
+from analysis.work_precision.spec import ROOT, SpecError, read_spec
+
+SCENE = {"name": "stack", "base": str(ROOT / "configs/scenes/stack.json"), "set": {"/matching/rule": "equal_force", "/matching/load_N": 10}, "duration_s": 2, "samples": 1,
+         "anchor": {"dt_s": 0.1, "d_hat_m": 0.004, "tolerance": 0.01}, "vary": {"d_hat_m": [0.25], "kappa": [0.001]}, "reference": {"closed_form": "rigid_stack"},
+         "error": "e_offset", "targets": [0.01, 0.001]}
+SPEC = {"schema": "barrierbench.work_precision/1", "name": "small", "formulations": ["log", {"name": "cubic", "label": "third"}], "scenes": [SCENE]}
+STRIP = {"name": "strip", "base": str(ROOT / "configs/scenes/strip_on_disk.json"), "duration_s": 0.1, "samples": 5, "anchor": {"dt_s": 0.01, "d_hat_m": 0.01, "tolerance": 0.01},
+         "vary": {"dt_s": [2]}, "reference": {"refined": ["log", "cubic"]}, "error": "e_traj", "targets": [0.01]}
+
+
+def write(folder: Path, spec: dict) -> Path:
+    folder.mkdir(parents=True, exist_ok=True)
+    file = folder / "spec.json"
+    file.write_text(json.dumps(spec))
+    return file
+
+
+@pytest.fixture
+def run(program, tmp_path, monkeypatch):
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
+    return lambda spec, *words: verb.main([str(write(tmp_path, spec)), "--runs", str(tmp_path / "runs"), "--out", str(tmp_path / "out"), *words])
+
+
+def test_a_small_spec_is_run_judged_and_kept(run, tmp_path, capsys):
+    assert run(SPEC) == 0
+    said = capsys.readouterr()
+    assert "stack: 12 runs" in said.err and "third" in said.out
+    table = json.loads((tmp_path / "out/work_precision.json").read_text())
+    rows = table["scenes"][0]["rows"]
+    assert len(rows) == 2 * 3 * 2 and {r["formulation"] for r in rows} == {"log", "third"}
+    thin = {(r["formulation"], r["solver"]): r for r in rows if r["axis"] == "d_hat_m"}
+    wide = {(r["formulation"], r["solver"]): r for r in rows if r["axis"] == "anchor"}
+    assert all(thin[k]["error"] < 0.5 * wide[k]["error"] and thin[k]["errors"]["e_gap"] < 1e-4 for k in thin)
+    assert all(r["products"] > 0 for r in rows if r["solver"] == "pcg") and all(r["products"] == 0 for r in rows if r["solver"] == "direct")
+    failed = [r for r in rows if r["axis"] == "kappa" and r["formulation"] == "third"]
+    assert len(failed) == 2 and all(r["outcome"] != "ok" and r["error"] is None for r in failed)
+    page = (tmp_path / "out/WORK_PRECISION.md").read_text()
+    assert "third kappa x0.001 (direct) stall_overload" in page and "closed form" in page
+    assert {p.name for p in (tmp_path / "out").glob("*.png")} == {"work_precision_stack.png", "work_precision_profile.png"}
+    records = sorted((tmp_path / "runs").rglob("run.json"))
+    assert len(records) == 12
+    assert run({**SPEC, "scenes": [{**SCENE, "anchor": {**SCENE["anchor"], "d_hat_m": 0.003}}]}) == 0  # records of another anchor lie beside them and do not count
+    assert len(list((tmp_path / "runs").rglob("run.json"))) == 24 and run(SPEC) == 0
+    before = [r.stat().st_mtime_ns for r in records]
+    assert run(SPEC) == 0 and [r.stat().st_mtime_ns for r in records] == before
+    assert run(SPEC, "--no-run") == 0 and (tmp_path / "out/WORK_PRECISION.md").read_text() == page
+
+
+def test_refined_references_have_a_band_for_every_time_step(run, tmp_path):
+    assert run({**SPEC, "formulations": ["log"], "scenes": [STRIP]}) == 0
+    scene = json.loads((tmp_path / "out/work_precision.json").read_text())["scenes"][0]
+    assert [ref["dt_factor"] for ref in scene["references"]] == [1, 2]
+    assert all(0 < ref["band"]["e_traj"] < 0.01 and "run_id" in ref["name"] for ref in scene["references"])
+    assert all(row["error"] is not None for row in scene["rows"]) and "Uncertainty of the reference" in (tmp_path / "out/WORK_PRECISION.md").read_text()
+
+
+def test_a_reference_that_fails_is_told(run, tmp_path, capsys):
+    """With a stiffness that carries nothing the cubic stalls: no reference."""
+    scene = {**STRIP, "set": {"/matching/rule": "equal_force", "/matching/load_N": 1e-6}, "vary": {}}
+    assert run({**SPEC, "formulations": ["log"], "scenes": [scene]}) == 2
+    said = capsys.readouterr().err
+    assert "reference run 'reference cubic dt_s x1' ended stall_overload" in said and "a reference has to be ok and valid" in said
+    assert not (tmp_path / "out/work_precision.json").exists()
+
+
+def test_missing_records_and_bad_numbers_are_told(run, tmp_path, capsys):
+    small = {**SPEC, "formulations": ["log"], "scenes": [{**SCENE, "vary": {}}]}
+    assert run(small) == 0
+    spec = read_spec(tmp_path / "spec.json")
+    frame = next((tmp_path / "runs").glob("small-stack/log_anchor_direct*/frames/step_000020.ply"))
+    good = frame.read_bytes()
+    frame.write_bytes(good.replace(good[good.index(b"end_header\n") + 11:][:8], b"\x00\x00\x00\x00\x00\x00\xf8\x7f", 1))
+    with pytest.raises(SpecError, match="log_anchor_direct.*e_traj is nan"):
+        verb.collect(spec, spec.scenes[0], tmp_path / "runs")
+    (frame.parents[1] / "run.json").unlink()
+    with pytest.raises(SpecError, match="1 of 2 records missing, the first is 'log anchor direct'"):
+        verb.collect(spec, spec.scenes[0], tmp_path / "runs")
+    capsys.readouterr()
+    assert verb.main([str(tmp_path / "spec.json"), "--no-run", "--out", str(tmp_path / "none")]) == 2
+    assert "./bench work-precision makes it" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("edit, said", [
+    ({"schema": "x"}, "/schema: found \"x\"; allowed: one of barrierbench.work_precision/1"),
+    ({"formulation": []}, "/formulation: found []; allowed: one of the keys schema"),
+    ({"formulations": []}, "/formulations: found []; allowed: an array that is not empty"),
+    ({"formulations": ["log", "log"]}, "/formulations: found [\"log\", \"log\"]; allowed: every name once"),
+    ({"scenes": [{**SCENE, "speed": 1}]}, "/scenes/0/speed: found 1; allowed: one of the keys name, base"),
+    ({"scenes": [{**SCENE, "base": "none.json"}]}, "/scenes/0/base: found \"none.json\"; allowed: a config"),
+    ({"scenes": [{k: v for k, v in SCENE.items() if k != "reference"}]}, "/scenes/0/reference: found null; allowed: this key is needed"),
+    ({"scenes": [{**SCENE, "reference": {}}]}, "/scenes/0/reference: found {}; allowed: either closed_form or refined"),
+    ({"scenes": [{**SCENE, "reference": {"closed_form": "truth"}}]}, "/scenes/0/reference/closed_form: found \"truth\"; allowed: one of rigid_bounce, rigid_stack"),
+    ({"scenes": [{**SCENE, "reference": {"refined": ["log"]}}]}, "/scenes/0/reference/refined: found [\"log\"]; allowed: two formulations"),
+    ({"scenes": [{**SCENE, "error": "e_work"}]}, "/scenes/0/error: found \"e_work\"; allowed: one of e_traj"),
+    ({"scenes": [{**SCENE, "vary": {"mass": [2]}}]}, "/scenes/0/vary/mass: found [2]; allowed: one of the keys tolerance"),
+    ({"scenes": [{**SCENE, "vary": {"kappa": [1]}}]}, "/scenes/0/vary/kappa: found [1.0]; allowed: factors of the anchor"),
+    ({"scenes": [{**SCENE, "vary": {"kappa": [-2]}}]}, "/scenes/0/vary/kappa/0: found -2; allowed: a number > 0"),
+    ({"scenes": [{**SCENE, "vary": {"dt_s": [3]}}]}, "/scenes/0/samples: found 1; allowed: an integer that divides"),
+    ({"scenes": [{**STRIP, "vary": {"d_hat_m": [0.1]}}]}, "/scenes/0/vary/d_hat_m: found 0.1; allowed: at least 0.125"),
+])
+def test_a_bad_spec_is_told_with_its_place(tmp_path, capsys, edit, said):
+    file = write(tmp_path, {**SPEC, **edit})
+    assert verb.main([str(file), "--runs", str(tmp_path / "runs"), "--out", str(tmp_path / "out")]) == 2
+    error = capsys.readouterr().err
+    assert f"{file}: {said}" in error, error
+    assert not (tmp_path / "runs").exists() and not (tmp_path / "out").exists()
+
+
+def test_files_that_are_none(tmp_path, capsys):
+    assert verb.main([str(tmp_path / "none.json")]) == 2 and "No such file" in capsys.readouterr().err
+    (tmp_path / "torn.json").write_text('{"schema"')
+    assert verb.main([str(tmp_path / "torn.json")]) == 2 and "not JSON" in capsys.readouterr().err
+
+
+def test_what_the_program_refuses_is_passed_on(run, capsys):
+    assert run({**SPEC, "formulations": ["logg"]}) == 2
+    assert "scene stack: the program ended with 2" in (said := capsys.readouterr().err) and "logg" in said
+
+
+def test_an_error_that_a_scene_does_not_have(run, capsys):
+    assert run({**SPEC, "formulations": ["log"], "scenes": [{**SCENE, "vary": {}, "error": "e_momentum"}]}) == 2
+    assert "e_momentum does not apply: something outside acts on the bodies" in capsys.readouterr().err
+
+
+def test_the_committed_spec_and_page():
+    spec = read_spec(verb.DEFAULT)
+    table = verb.read_table(ROOT / "results" / "work_precision.json")
+    assert [scene["name"] for scene in table["scenes"]] == [scene.name for scene in spec.scenes]
+    for scene, kept in zip(spec.scenes, table["scenes"]):
+        wanted = {(f.label, v.axis, v.factor, s) for f in spec.formulations for v in scene.variations for s in ("direct", "pcg")}
+        assert {(r["formulation"], r["axis"], r["factor"], r["solver"]) for r in kept["rows"]} == wanted and len(wanted) > 100
+        assert kept["targets"] == list(scene.targets) and (ROOT / "docs" / f"work_precision_{scene.name}.png").is_file()
+    assert (ROOT / "results" / "WORK_PRECISION.md").read_text() == report.markdown(table)
+    assert {"refined", "closed_form"} == {key for scene in spec.scenes for key in scene.reference}
