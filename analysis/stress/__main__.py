@@ -18,7 +18,7 @@ from . import report
 from .entry import ROOT, StressError, Test, ids, read_test
 from .geometry import run_geometry
 from .relations import relations
-from .run import run_test
+from .run import config_schema, run_test
 from .table import FILE, Result, read, write
 
 RUNS = ROOT / "results" / "runs" / "stress"
@@ -32,9 +32,8 @@ def run_one(test: Test, runs: Path, quick: bool = False, limit_s: float = 60.0) 
     if "geometry" in test.data:
         result = Result(counts=run_geometry(test, quick))
     else:
-        schema = json.loads((ROOT / "configs" / "schema" / "config.schema.json").read_text())
         cases = test.data["quick"] if quick else None
-        rows = run_test(test, runs, schema, QUICK if quick else None, cases, say, limit_s)
+        rows = run_test(test, runs, config_schema(), QUICK if quick else None, cases, say, limit_s)
         result = Result(rows, relations=relations(test, rows, cases))
     result.about = {"date": datetime.now(timezone.utc).strftime("%Y-%m-%d"), "seconds": round(time.monotonic() - start, 1), **about(runs / test.id)}
     return result
@@ -53,7 +52,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
                                      epilog="examples: ./bench stress\n          ./bench stress S09 M10\n          ./bench stress --quick\n          ./bench stress S18 --full")
     parser.add_argument("ids", nargs="*", metavar="ID", help="configs/stress/ID.json (default: all)")
     parser.add_argument("--list", action="store_true", help="print the tests and run nothing")
-    parser.add_argument("--full", action="store_true", help="the sizes and seeds of `full`, 600 s a formulation; results go to the folder of the runs")
+    parser.add_argument("--full", action="store_true", help="the sizes and seeds of `full`, 600 s of processor time a formulation; results go to the folder of the runs")
     parser.add_argument("--quick", action="store_true", help=f"the cases marked quick with {', '.join(QUICK)}, under a minute; nothing is written")
     parser.add_argument("--no-run", action="store_true", help="run nothing: write results/STRESS.md from results/stress.json")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the records (default: results/runs/stress)")
@@ -81,6 +80,15 @@ def main(argv: list[str]) -> int:
         return 2
 
 
+def write_all(results: dict[str, Result], runs: Path, full: bool) -> None:
+    """The table and the page, of all tests that there are results of."""
+    everything = {name: read_test(name, full=full) for name in ids()}
+    results = {name: result for name, result in results.items() if name in everything}
+    write(results, runs / "stress.json" if full else FILE)
+    page = runs / "STRESS.md" if full else ROOT / "results" / "STRESS.md"
+    write_whole(page, report.markdown(results, everything, "./bench stress --full" if full else "./bench stress"))
+
+
 def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
     """Runs, prints, writes."""
     runs = args.runs / "full" if args.full else args.runs
@@ -94,12 +102,11 @@ def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
         for name, test in tests.items():
             results[name] = run_one(test, runs, args.quick, 600.0 if args.full else 60.0)
             print(report.text(results, {name: test}), flush=True)
-    if not args.quick:
-        everything = {name: read_test(name, full=args.full) for name in ids()}
-        kept = {name: result for name, result in {**kept, **results}.items() if name in everything}
-        write(kept, runs / "stress.json" if args.full else FILE)
-        page = runs / "STRESS.md" if args.full else ROOT / "results" / "STRESS.md"
-        write_whole(page, report.markdown(kept, everything, "./bench stress --full" if args.full else "./bench stress"))
+            if not args.quick:
+                write_all({**kept, **results}, runs, args.full)  # an interrupt leaves what is over
+    if args.no_run:
+        print(report.text(results, tests))
+        write_all(kept, runs, args.full)
     return 0 if all(result.as_expected for result in results.values()) else 1
 
 
