@@ -179,7 +179,8 @@ TEST(RowHessian, DependsOnNoOtherRowAndOnNoThread) {
   ContactSystem contacts(scene, {Mollifier::none});
   Rows rows = rows_at(contacts, scene.x0);
   evaluate(rows.table, 3.5, TestShape::cubic);
-  for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full, HessianMode::projected_numeric}) {
+  for (const HessianMode mode :
+       {HessianMode::gauss_newton, HessianMode::projected_full, HessianMode::projected_numeric}) {
     std::vector<double> grad, hess, alone_grad, alone;
     contact_terms(rows.table, scene.x0, mode, Projection::psd, grad, hess);
     ASSERT_GT(rows.table.size(), 100U);
