@@ -20,7 +20,7 @@ from .table import Runs, Table
 MIDDLE = "nominal"  # the level that all axes start from
 LOOKS = {"published": ("#D55E00", "D"), "per_iteration": ("#E69F00", "s"), "per_step": ("#CC79A7", "v"), "consistent": ("#332288", "*"),
          "fixed_cubic": ("#009E73", "^"), "fixed_log": ("#0072B2", "o")}
-SHOWN = ("Ways to a stiffness over {n} problems of the sweep `{sweep}` (scenes x levels x starts), nothing retuned; those that no case gets through are left out. (a) Data profile: share of the problems that were solved with at "
+SHOWN = ("Ways to a stiffness over {n} problems of the sweep `{sweep}` (scenes x levels x starts), nothing retuned{left_out}. (a) Data profile: share of the problems that were solved with at "
          "most so many {cost}; a run that failed is never solved. (b) Share of the runs of a level, over all scenes and starts, that got through: E, m, n, v are Young's modulus, "
          "mass, resolution and speed of impact times the number, beside the nominal level.")
 
@@ -47,17 +47,20 @@ def value_of(level: str, axis: str, middle: float) -> float | None:
         return None
 
 
-def trials(runs: Runs, case: str, cost: str, axis: str = "", middle: float = 0.0) -> list[Trial]:
-    """Runs of a case as trials; with an axis those of its levels alone. Scenes x levels that no case gets through are left out."""
-    found, left_out = [], hopeless(runs)
-    for row in runs.rows:
-        if row["case"] != case or (row["scene"], row["level"]) in left_out:
-            continue
-        value = value_of(row["level"], axis, middle) if axis else 0.0
-        if value is not None:
-            problem = f"{row['scene']} {row['level']} {row['seed']}"
-            found.append(Trial(problem, value, row["outcome"] == "ok", _cost(row, cost)))
-    return found
+def _trial(row: dict, value: float, cost: float) -> Trial:
+    return Trial(f"{row['scene']} {row['level']} {row['seed']}", value, row["outcome"] == "ok", cost)
+
+
+def trials(runs: Runs, case: str, cost: str) -> list[Trial]:
+    """Runs of a case for shares, costs and profiles: scenes x levels that no case gets through are left out."""
+    left_out = hopeless(runs)
+    return [_trial(row, 0.0, _cost(row, cost)) for row in runs.rows if row["case"] == case and (row["scene"], row["level"]) not in left_out]
+
+
+def along(runs: Runs, case: str, axis: str, middle: float) -> list[Trial]:
+    """All runs of a case at the levels of an axis, for its frontier: what nobody gets through bounds it as well. No cost is asked."""
+    values = [(row, value_of(row["level"], axis, middle)) for row in runs.rows if row["case"] == case]
+    return [_trial(row, value, 0.0) for row, value in values if value is not None]
 
 
 def _reach(f: Frontier) -> str:
@@ -68,8 +71,13 @@ def _reach(f: Frontier) -> str:
 
 
 def _left_out(runs: Runs) -> str:
-    names = sorted(" ".join(place) for place in hopeless(runs))
-    return f" Left out, since no case gets through: {', '.join(names)}." if names else ""
+    """How many places are left out, and which; empty when none is."""
+    places = hopeless(runs)
+    if not places:
+        return ""
+    n = sum(row["case"] == runs.rows[0]["case"] and (row["scene"], row["level"]) in places for row in runs.rows)
+    every = len({(row["scene"], row["level"]) for row in runs.rows})
+    return f"{len(places)} of {every} scenes x levels ({n} runs of each case) are left out, since no case gets through: {', '.join(sorted(' '.join(p) for p in places))}"
 
 
 def lines(claim: Claim, table: Table) -> list[str]:
@@ -77,14 +85,16 @@ def lines(claim: Claim, table: Table) -> list[str]:
     if not claim.frontier or claim.frontier["sweep"] not in table.sweeps:
         return []
     runs, cost, axes = table.sweeps[claim.frontier["sweep"]], claim.frontier["cost"], claim.frontier["axes"]
+    left_out = _left_out(runs)
     found = [f"![data profile and shares of the policies](../docs/policies_{claim.id}.png)", "",
              f"Over `{claim.frontier['sweep']}`: share of runs that get through [95%, Wilson], {METRICS[cost][0]} of all runs over the number of successes (ert), and the frontier: the range of "
-             "each axis, from the nominal level outwards, in which every run of every scene and start gets through; a bracket that opens outwards means that the next tested value fails." + _left_out(runs), "",
+             "each axis, from the nominal level outwards, in which every run of every scene and start gets through; a bracket that opens outwards means that the next tested value fails."
+             + (f" The frontier counts every run. From share and ert {left_out}." if left_out else ""), "",
              f"| case | gets through | ert ({cost}) | " + " | ".join(f"frontier of {axis}" for axis in axes) + " |", "|" + "---|" * (len(axes) + 3)]
     for case in cases(runs):
         every = trials(runs, case, cost)
         share, ert = success(every), expected_cost(every)
-        reaches = [_reach(frontier(trials(runs, case, cost, axis, middle), middle)) for axis, middle in axes.items()]
+        reaches = [_reach(frontier(along(runs, case, axis, middle), middle)) for axis, middle in axes.items()]
         found.append(f"| {case} | {share.ok} of {share.n} [{share.low:.3f}, {share.high:.3f}] | {'-' if ert is None else f'{ert:.4g}'} | " + " | ".join(reaches) + " |")
     return [*found, ""]
 
@@ -139,4 +149,4 @@ def draw(claim: Claim, runs: Runs, stem: Path) -> list[Path]:
     handles, labels = axes[0].get_legend_handles_labels()
     fig.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False)
     problems = {(row["scene"], row["level"], row["seed"]) for row in runs.rows if (row["scene"], row["level"]) not in hopeless(runs)}
-    return style.save(fig, stem, pd.DataFrame(numbers), SHOWN.format(n=len(problems), sweep=claim.frontier["sweep"], cost=claim.frontier["cost"]))
+    return style.save(fig, stem, pd.DataFrame(numbers), SHOWN.format(n=len(problems), left_out=f"; {left_out}" if (left_out := _left_out(runs)) else "", sweep=claim.frontier["sweep"], cost=claim.frontier["cost"]))

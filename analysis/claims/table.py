@@ -116,8 +116,15 @@ def read(path: Path) -> Table:
     """The kept table; empty when there is none."""
     if not path.is_file():
         return Table()
-    data = json.loads(path.read_text())
-    if data.get("schema") != NAME:
-        raise ClaimError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
-    sweeps = {name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"]) for name, s in data["sweeps"].items()}
-    return Table(sweeps, data["answers"])
+    again = "remove it, then ./bench claims"
+    try:
+        data = json.loads(path.read_text())
+        schema = data.get("schema") if isinstance(data, dict) else None
+        if schema != NAME:
+            raise ClaimError(f"{path}: schema {schema!r}; {NAME!r} is needed; {again}")
+        sweeps = {name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"]) for name, s in data["sweeps"].items()}
+        return Table(sweeps, data["answers"])
+    except ClaimError:
+        raise
+    except (KeyError, TypeError, AttributeError, ValueError) as error:  # ValueError: not JSON
+        raise ClaimError(f"{path}: not a whole table ({type(error).__name__}: {error}); {again}") from None

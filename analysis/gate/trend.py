@@ -59,8 +59,8 @@ def pieces(values: list[float]) -> list[tuple[int, int]]:
 
 
 def last_step(values: list[float]) -> tuple[int, float, float] | None:
-    """Index of the first value after the last step, medians before and after; None without a step above the threshold. Metrics in log10
-    (`unit` of their lines) are compared as they are: 5 % of cond is 0.02, which is noise; a step there counts from 0.05 on."""
+    """Index of the first value after the last step, medians before and after; None without a step above the threshold. Metrics in log10 are
+    compared in log10, as the gate keeps them: of a condition number of 1e4 a step is a factor of 1.6."""
     if len(values) < FEWEST or not all(math.isfinite(v) for v in values):
         return None
     found = pieces(values)

@@ -77,7 +77,8 @@ def shared(a: list[Point], b: list[Point]) -> np.ndarray:
 
 
 def log_ratio(a: list[Point], b: list[Point]) -> float | None:
-    """Mean over the shared gaps of log(value of a / value of b); None without enough shared gaps, or where failed runs leave no pass."""
-    pairs = [(value_at(a, gap), value_at(b, gap)) for gap in shared(a, b)]
-    logs = [math.log(x / y) for x, y in pairs if x is not None and y is not None]
-    return float(np.mean(logs)) if logs else None
+    """Mean over the shared gaps of log(value of a / value of b); None unless the gaps at which both have a value, which failed runs may
+    leave holes in, span a factor LEAST_OVERLAP."""
+    found = [(gap, value_at(a, gap), value_at(b, gap)) for gap in shared(a, b)]
+    both = [(gap, math.log(x / y)) for gap, x, y in found if x is not None and y is not None]
+    return float(np.mean([ratio for _, ratio in both])) if both and both[-1][0] >= LEAST_OVERLAP * both[0][0] else None

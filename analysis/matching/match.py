@@ -16,7 +16,7 @@ from pathlib import Path
 
 from ..whole_file import write_whole
 from .formulations import REFERENCE, ROOT, VARY, MatchError, preset, settings
-from .runs import Sweep, check_equal, check_varied, collect, read_object, run, sweep
+from .runs import Sweep, check_equal, check_varied, collect, inputs_sha256, read_object, run, sweep
 
 DEFAULT = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
 RULES = ("equal_force", "equal_curvature")
@@ -30,6 +30,8 @@ def make_sweep(config: Path, formulations: list[str], rule: str, theta: float, v
     chosen = base.get("formulation")
     d_hat = chosen.get("d_hat_m") if isinstance(chosen, dict) else None
     names = list(dict.fromkeys([REFERENCE, *formulations]))
+    if names == [REFERENCE]:
+        raise MatchError(f"--formulations: found {REFERENCE} alone; a formulation to compare with it is needed")
     for name in names:
         preset(name)
     cases = [{"label": name, "set": settings(name, vary, d_hat)} | ({"reference": True} if name == REFERENCE else {}) for name in names]
@@ -112,7 +114,7 @@ def main(argv: list[str]) -> int:
         if not 0 < args.theta < 1:
             raise MatchError(f"--theta: found {args.theta:g}; a number in (0, 1) is needed")
         made = make_sweep(args.config, args.formulations, args.rule, args.theta, args.vary)
-        digest = hashlib.sha256("\n".join([made.text, *args.overrides]).encode()).hexdigest()[:8]
+        digest = hashlib.sha256("\n".join([made.text, inputs_sha256(made, args.overrides), *args.overrides]).encode()).hexdigest()[:8]
         out = args.out or ROOT / "results" / "runs" / "match" / f"{args.config.stem}-{digest}"
         run(made, out, args.overrides)
         answer = judge(made, collect(made, out), args.vary)

@@ -8,6 +8,7 @@ Exit codes: 0 written, 2 bad input, or a record is missing.
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
 import math
 import shutil
@@ -19,7 +20,7 @@ from ..whole_file import write_whole
 from . import pareto_figure, pareto_report
 from .formulations import ROOT, MatchError
 from .fronts import METRICS, PLACE, STATE, Runs, gather
-from .runs import collect, read_object, run
+from .runs import collect, inputs_sha256, read_object, run
 from .spec import Spec, make_sweep, read_spec
 
 SCHEMA = "barrierbench.pareto_result/1"
@@ -29,7 +30,7 @@ COLUMNS = (*PLACE, *STATE, *METRICS)
 
 def _about(spec: Spec, command: str, records: list[dict]) -> dict:
     sizes = [r["scene"]["free_dofs"] for r in records]
-    about = {"command": command, "spec_sha256": spec.sha256, "doc": spec.doc, "vary": spec.vary, "gap": {"min": "smallest", "median": "median of the smallest"}[spec.gap],
+    about = {"command": command, "spec_sha256": spec.sha256, "inputs_sha256": inputs_sha256(make_sweep(spec)), "doc": spec.doc, "vary": spec.vary, "gap": {"min": "smallest", "median": "median of the smallest"}[spec.gap],
              "gaps": list(spec.gaps), "starts": spec.starts, "decades": round(math.log10(spec.scales[-1] / spec.scales[0]), 3),
              "unknowns": f"{min(sizes)} to {max(sizes)}", "seconds": round(sum(map(seconds_of_run, records)), 1)}
     for key, values in (("rule", {f"{r['matching']['rule']}, theta {r['matching']['theta']:g}" for r in records}),
@@ -89,12 +90,16 @@ def main(argv: list[str]) -> int:
     results = args.results or ROOT / "results"
     try:
         spec = read_spec(args.spec)
-        folder = args.runs or ROOT / "results" / "runs" / "pareto" / f"{spec.name}-{spec.sha256[:8]}"
+        inputs = inputs_sha256(make_sweep(spec))
+        digest = hashlib.sha256(f"{spec.sha256} {inputs}".encode()).hexdigest()
+        folder = args.runs or ROOT / "results" / "runs" / "pareto" / f"{spec.name}-{digest[:8]}"
         kept = results / "pareto.json"
         if args.no_run and not any(folder.glob("*/run.json")) and kept.is_file():
             runs = from_json(kept)
-            if runs.about["spec_sha256"] != spec.sha256:
-                raise MatchError(f"{kept}: its numbers are of another {args.spec}: ./bench pareto {args.spec}")
+            if runs.about["spec_sha256"] != spec.sha256 or runs.about.get("inputs_sha256", inputs) != inputs:
+                raise MatchError(f"{kept}: its numbers are of another {args.spec}, base config, mesh or preset: ./bench pareto {args.spec}")
+            if "inputs_sha256" not in runs.about:
+                print(f"bench pareto: {kept} does not say of which base config and presets its numbers are", file=sys.stderr)
         else:
             command = "./bench pareto" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")
             runs = make(spec, command, folder, not args.no_run)

@@ -7,13 +7,15 @@ import json
 import os
 import subprocess
 import tempfile
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
 from ..claims.metrics import METRICS
 from ..gate.configs import differences
 from ..load import RecordError, read_record
-from .formulations import ROOT, MatchError
+from . import formulations
+from .formulations import ROOT, MatchError, known
 
 # What formulations may differ in; everything else of two configs has to be equal.
 OF_A_FORMULATION = ("/formulation/name", "/formulation/shape", "/formulation/argument", "/formulation/stiffness_policy/", "/strain_limit/shape",
@@ -42,6 +44,31 @@ def sweep(name: str, base: Path, common: dict, cases: list[dict], seeds: list[in
         notes = [f"{note} main={seed}" for note in notes for seed in seeds]
     data = {"schema": "barrierbench.sweep/1", "name": name, "base": str(base.resolve()), "set": common, "axes": axes}
     return Sweep(name, json.dumps(data, indent=1) + "\n", tuple(notes))
+
+
+def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
+    """Contents of the files that settings name: configs under configs, meshes, presets. name: the last key of the way to the node."""
+    if isinstance(node, dict):
+        for key in sorted(node):
+            yield from _inputs(node[key], folder, key.rpartition("/")[2])
+    elif isinstance(node, list):
+        for one in node:
+            yield from _inputs(one, folder, name)
+    elif name == "formulation" and node in known():
+        yield (formulations.PRESETS / f"{node}.json").read_bytes()
+    elif name in ("base", "file") and isinstance(node, str) and (folder / node).is_file():
+        yield (folder / node).read_bytes()
+        if name == "base":
+            yield from _inputs(read_object(folder / node), (folder / node).parent)
+
+
+def inputs_sha256(made: Sweep, overrides: list[str] | None = None) -> str:
+    """Of the contents, not the places, of all files that the runs of a sweep are made from. A base that is missing adds nothing: the program refuses it."""
+    data = json.loads(made.text)
+    found = hashlib.sha256()
+    for part in _inputs([data, dict(text.partition("=")[::2] for text in overrides or [])], Path(data["base"]).parent):
+        found.update(hashlib.sha256(part).digest())
+    return found.hexdigest()
 
 
 def program() -> str:

@@ -73,6 +73,16 @@ def _formulations(data: dict, path: Path) -> tuple[str, ...]:
     return tuple(names)
 
 
+def _overrides(found, place: str) -> dict:
+    """Settings that are not the sweep's own; d_hat is the scene's."""
+    if not isinstance(found, dict):
+        raise MatchError(f'{place}: found {found!r}; overrides, {{"/POINTER": value}}, are needed')
+    for pointer in found:
+        if pointer.startswith(("/matching", "/passes", "/seeds", "/formulation")) and pointer != "/formulation/d_hat_m":
+            raise MatchError(f"{place}: found {pointer!r}; the sweep sets formulation, matching, passes and seeds itself; of these only /formulation/d_hat_m is allowed")
+    return found
+
+
 def _scenes(data: dict, path: Path) -> dict[str, dict]:
     scenes = data["scenes"]
     good = isinstance(scenes, list) and scenes and all(
@@ -80,9 +90,7 @@ def _scenes(data: dict, path: Path) -> dict[str, dict]:
     if not good or len({s["label"] for s in scenes}) != len(scenes):
         raise MatchError(f"{path}#/scenes: a list of {{\"label\": one word, each once, \"set\": overrides}} is needed")
     for s in scenes:
-        for pointer in s["set"]:
-            if pointer.startswith(("/matching", "/seeds")) or (pointer.startswith("/formulation") and pointer != "/formulation/d_hat_m"):
-                raise MatchError(f"{path}#/scenes/{s['label']}: found {pointer!r}; the sweep sets formulation, matching and seeds itself")
+        _overrides(s["set"], f"{path}#/scenes/{s['label']}/set")
     return {s["label"]: s["set"] for s in scenes}
 
 
@@ -99,13 +107,17 @@ def read_spec(path: Path) -> Spec:
     for key, words in (("vary", VARY), ("gap", tuple(GAPS))):
         if data[key] not in words:
             raise MatchError(f"{path}#/{key}: found {data[key]!r}; one of {', '.join(words)} is needed")
-    if not isinstance(data["starts"], int) or not 1 <= data["starts"] <= 100:
+    if not isinstance(data["doc"], str):
+        raise MatchError(f"{path}#/doc: found {data['doc']!r}; text is needed")
+    if not isinstance(data["base"], str) or not (path.parent / data["base"]).is_file():
+        raise MatchError(f"{path}#/base: found {data['base']!r}; the path of a config is needed, relative to this file")
+    if isinstance(data["starts"], bool) or not isinstance(data["starts"], int) or not 1 <= data["starts"] <= 100:
         raise MatchError(f"{path}#/starts: found {data['starts']!r}; a whole number from 1 to 100 is needed")
     if not isinstance(data["name"], str) or not data["name"].isidentifier():
         raise MatchError(f"{path}#/name: found {data['name']!r}; one word is needed")
     jitter = _numbers({"jitter_m": [data["jitter_m"]]}, "jitter_m", "a length >= 0", lambda x: x >= 0, path)[0]
     return Spec(path, hashlib.sha256(path.read_bytes()).hexdigest(), data["name"], data["doc"], path.parent / data["base"], _formulations(data, path), data["vary"],
-                _scales(data, path), data["starts"], jitter, data["gap"], _numbers(data, "gaps", "a number in (0, 1)", lambda x: 0 < x < 1, path), data["set"],
+                _scales(data, path), data["starts"], jitter, data["gap"], _numbers(data, "gaps", "a number in (0, 1)", lambda x: 0 < x < 1, path), _overrides(data["set"], f"{path}#/set"),
                 _scenes(data, path))
 
 

@@ -52,7 +52,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
                                      epilog="examples: ./bench stress\n          ./bench stress S09 M10\n          ./bench stress --quick\n          ./bench stress S18 --full")
     parser.add_argument("ids", nargs="*", metavar="ID", help="configs/stress/ID.json (default: all)")
     parser.add_argument("--list", action="store_true", help="print the tests and run nothing")
-    parser.add_argument("--full", action="store_true", help="the sizes and seeds of `full`, 600 s of processor time a formulation; results go to the folder of the runs")
+    parser.add_argument("--full", action="store_true", help="the sizes and seeds of `full`, 600 s of processor time a run; results go to the folder of the runs")
     parser.add_argument("--quick", action="store_true", help=f"the cases marked quick with {', '.join(QUICK)}, under a minute; nothing is written")
     parser.add_argument("--no-run", action="store_true", help="run nothing: write results/STRESS.md from results/stress.json")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the records (default: results/runs/stress)")
@@ -92,10 +92,11 @@ def write_all(results: dict[str, Result], runs: Path, full: bool) -> None:
 def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
     """Runs, prints, writes."""
     runs = args.runs / "full" if args.full else args.runs
-    kept = {} if args.quick else read(runs / "stress.json" if args.full else FILE)
+    file = runs / "stress.json" if args.full else FILE
+    kept = {} if args.quick else read(file)
     if args.no_run:
         if missing := [name for name in tests if name not in kept]:
-            raise StressError(f"{FILE}: nothing kept of {missing[0]}: ./bench stress {missing[0]}")
+            raise StressError(f"{file}: nothing kept of {missing[0]}: ./bench stress {missing[0]}{' --full' if args.full else ''}")
         results = {name: kept[name] for name in tests}
     else:
         results = {}

@@ -21,7 +21,7 @@ ONE = "-"  # the case of a test without axes
 # What a record cannot say of itself: ok but not valid; no record because the config was refused; the program died without a record.
 BESIDE = ("not_valid", "refused", "crash")
 OUTCOMES = tuple(fields.schema("run")["$defs"]["Status"]["properties"]["outcome"]["enum"]) + BESIDE
-NEVER_NAMED = ("penetration", "unproven", "oom", "timeout", "crash", "not_valid", "ok")
+NEVER_NAMED = ("penetration", "unproven", "oom", "timeout", "crash", "not_valid", "refused", "ok")
 NAMED = "named"  # in an expectation: any failure but these
 
 

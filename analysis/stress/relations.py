@@ -19,7 +19,7 @@ class Relation:
     says: str
     reason: str
     judged: int = 0  # groups of runs
-    not_judged: int = 0  # groups where a run has no such number
+    not_judged: int = 0  # groups where a run has no such number, or one is zero where quotients are asked
     worst: str = ""  # the number nearest to, or farthest beyond, what is allowed, and whose
     broken: list[str] = field(default_factory=list)
 
@@ -73,7 +73,7 @@ def _verdict(entry: dict, values: list) -> tuple[bool, float]:
         return min(steps) > 1, min(steps)
     if kind == "ratio":
         return entry["above"] <= values[0] / values[1] <= entry["below"], values[0] / values[1]
-    spread = max(values) / min(values) - 1 if min(values) > 0 else float("inf")
+    spread = 0.0 if min(values) == max(values) else max(values) / min(values) - 1 if min(values) > 0 else float("inf")
     return (spread <= entry["within"], spread) if kind == "equal" else (spread > entry["beyond"], spread)
 
 
@@ -82,8 +82,8 @@ def relations(test: Test, rows: list[Row], only: list[str] | None = None) -> lis
     out = []
     for k, entry in enumerate(test.data.get("relations", [])):
         check(test, entry, k)
-        ran = {row.case for row in rows}
-        groups = entry.get("groups") or [[case.label] for case in test.cases if case.label in ran and not case.needs]
+        ran = {row.case for row in rows if row.outcome != WAITS}
+        groups = entry.get("groups") or [[case.label] for case in test.cases if case.label in ran]
         if only is not None:
             groups = [group for group in groups if set(group) <= set(only)]
         if not groups:
@@ -105,6 +105,9 @@ def _judge(found: Relation, entry: dict, groups: list, rows: dict[str, Row], lab
         values = [getattr(rows[case], entry["metric"]) if case in rows and rows[case].outcome not in (WAITS, "timeout", "crash") else None for case in group]
         # An end that did not converge is no state to compare.
         if any(value in (None, "") for value in values) or (entry["kind"] != "bound" and any(rows[case].outcome != "ok" for case in group)):
+            found.not_judged += 1
+            continue
+        if entry["kind"] in ("ratio", "rises") and 0 in values:  # what is over zero says nothing
             found.not_judged += 1
             continue
         good, number = _verdict(entry, values)

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..whole_file import write_whole
-from .entry import ROOT, StressError, order
+from .entry import ROOT, StressError, order, read_json
 from .geometry import Count
 from .relations import Relation
 from .run import Row
@@ -65,9 +65,17 @@ def read(path: Path) -> dict[str, Result]:
     """The kept results; empty when there are none."""
     if not path.is_file():
         return {}
-    data = json.loads(path.read_text())
-    if data.get("schema") != NAME:
-        raise StressError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
+    try:
+        data = read_json(path, NAME)
+    except StressError as error:
+        raise StressError(f"{error}; remove it, then ./bench stress") from None
+    try:
+        return _results(data)
+    except (KeyError, TypeError, AttributeError, ValueError) as error:
+        raise StressError(f"{path}: not a whole table ({type(error).__name__}: {error}); remove it, then ./bench stress") from None
+
+
+def _results(data: dict) -> dict[str, Result]:
     out = {}
     for name, t in data["tests"].items():
         rows = [Row(test=name, **{**values, "expected": tuple(values["expected"])}) for values in (dict(zip(data["columns"], row)) for row in t["rows"])]

@@ -1,7 +1,7 @@
 """Runs what is missing of a work-precision spec, measures every run against its reference, and writes results/work_precision.json,
 results/WORK_PRECISION.md and docs/work_precision_*.png: error against seconds, Newton iterations, factorisations and products.
 
-Exit codes: 0 written, 2 it cannot be judged (a bad spec, records missing, a reference run that failed, an error that is no number; no program).
+Exit codes: 0 written, 2 it cannot be judged (a bad spec, records missing, --no-run with numbers of another spec, a reference run that failed, an error that is no number; no program).
 """
 
 from __future__ import annotations
@@ -37,7 +37,7 @@ def made(spec: Spec, runs: Path) -> dict:
     """The table of all scenes."""
     for scene in spec.scenes:
         run_scene(spec, scene, runs)
-    return {"schema": TABLE, "name": spec.name, "doc": spec.doc, "scenes": [collect(spec, scene, runs) for scene in spec.scenes]}
+    return {"schema": TABLE, "name": spec.name, "doc": spec.doc, "spec_sha256": spec.sha256, "scenes": [collect(spec, scene, runs) for scene in spec.scenes]}
 
 
 def _rounded(value):
@@ -96,6 +96,9 @@ def main(argv: list[str]) -> int:
         if not args.no_run:
             write_whole(file, table_text(_rounded(made(spec, args.runs))))
         table = read_table(file)
+        if table.get("spec_sha256") != spec.sha256:
+            raise SpecError(f"{file}: /spec_sha256: found {table.get('spec_sha256')!r}; allowed: {spec.sha256!r}, of {args.spec}: its numbers are of another spec; "
+                            f"./bench work-precision {args.spec} makes them")
         print(report.text(table))
         write_all(table, results, docs, args.runs / "figure")
     except (SpecError, RecordError) as error:

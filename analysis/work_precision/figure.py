@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -9,36 +10,40 @@ import numpy as np
 import pandas as pd
 
 from .. import style
-from .judge import COSTS, band_of, formulations, front, points, profile
+from .judge import COSTS, aside, band_of, formulations, front, points, profile
 
 ERRORS = {"e_traj": "largest distance of a vertex / scene", "e_com": "distance of centres of mass / scene", "e_gap": "|gap - closed form| / d_hat",
           "e_offset": "excess height at rest (m)", "e_momentum": "|change of momentum| / momentum", "e_energy": "|change of energy| / energy"}
 SHOWN = ("{scene}, {error} against what it cost: {n} runs of every formulation and solver (tolerance, time step, d_hat and stiffness each varied round one anchor). "
-         "Small marks: runs; lines: the runs of a formulation that none of its cheaper ones equals. Reference: {reference}.{band} Crosses at the upper edge: runs "
+         "Small marks: runs; lines: the runs of a formulation that none of its cheaper ones equals. Reference: {reference}.{band}{aside} Crosses at the upper edge: runs "
          "that failed or are not valid, at what they had cost by then ({failed} of {runs} in panels a to c, {failed_pcg} of {runs} in d). Panels a to c: "
          "direct solver; d: conjugate gradients with block Jacobi, the same settings.")
+ASIDE = " Faint marks: other time steps, which are not ranked, since the reference has the time step of the run and sees no error in time."
 PROFILE = ("Share of the problems (scene, variation) that were solved with at most that work: the run counts and its error is at most the target of its scene ({targets}). "
-           "Failed runs are never solved. {n} problems a formulation; the direct solver, for products conjugate gradients with block Jacobi.")
+           "Failed runs are never solved. Other time steps are no problems in scenes with refined references, which see no error in time. {n} problems a formulation; the direct solver, for products conjugate gradients with block Jacobi.")
 
 
 def _panel(axis, scene: dict, cost: str) -> list[dict]:
     all_points, band = points(scene, cost), band_of(scene)
+    drawn = [(p, True) for p in all_points] + [(p, False) for p in aside(scene, cost)]
+    drawn = [(p, ranked) for p, ranked in drawn if 0 < p.cost < math.inf]
     rows: list[dict] = []
     for name in formulations(scene):
         look = style.look(name)
-        mine = [p for p in all_points if p.formulation == name and p.cost > 0]
-        good = [p for p in mine if p.error is not None]
-        axis.plot([p.cost for p in good], [p.error for p in good], linestyle="none", marker=look.marker, color=look.color, markersize=2.6, alpha=0.45, markeredgewidth=0)
+        mine = [(p, ranked) for p, ranked in drawn if p.formulation == name]
+        for opacity, which in ((0.45, True), (0.15, False)):
+            good = [p for p, ranked in mine if p.error is not None and ranked == which]
+            axis.plot([p.cost for p in good], [p.error for p in good], linestyle="none", marker=look.marker, color=look.color, markersize=2.6, alpha=opacity, markeredgewidth=0)
         line = [(c, e) for c, e in front(all_points, name) if c > 0]
         if line:
             axis.plot([c for c, _ in line], [e for _, e in line], color=look.color, linestyle=look.dash, marker=look.marker, markersize=4, label=name)
         else:
             axis.plot([], [], color=look.color, linestyle=look.dash, marker=look.marker, label=f"{name} (no run counts)")
-        rows += [{"cost": cost, **p.__dict__} for p in mine]
+        rows += [{"against": cost, **p.__dict__, "ranked": ranked} for p, ranked in mine]
     axis.set_xscale("log")
     axis.set_yscale("log")
-    for p in all_points:
-        if p.error is None and p.cost > 0:
+    for p, _ in drawn:
+        if p.error is None:
             axis.plot([p.cost], [0.96], transform=axis.get_xaxis_transform(), marker="x", color=style.look(p.formulation).color, linestyle="none", markersize=5,
                       markeredgewidth=1.2, gid=style.FAILURE)
     if band > 0:
@@ -67,7 +72,8 @@ def draw(scene: dict, stem: Path) -> list[Path]:
     failed = {solver: sum(r["error"] is None for r in scene["rows"] if r["solver"] == solver) for solver in ("direct", "pcg")}
     runs, band = sum(r["solver"] == "direct" for r in scene["rows"]), band_of(scene)
     shown = SHOWN.format(scene=scene["name"], error=scene["error"], n=runs // len(formulations(scene)), reference=scene["references"][0]["name"],
-                         band=f" Grey: its own uncertainty, {band:.2g}; what lies in it is not ranked and is drawn at its edge." if band else "", failed=failed["direct"],
+                         band=f" Grey: its own uncertainty, {band:.2g}; what lies in it is not ranked and is drawn at its edge." if band else "",
+                         aside=ASIDE if aside(scene, "newton") else "", failed=failed["direct"],
                          failed_pcg=failed["pcg"], runs=runs)
     return style.save(fig, stem, pd.DataFrame(rows), f"{shown} {machine(scene)}")
 
@@ -83,7 +89,7 @@ def draw_profile(scenes: list[dict], stem: Path) -> list[Path]:
     levels = range(max(len(scene["targets"]) for scene in scenes))
     shown = ("newton", "factorizations", "products")
     fig, axes = plt.subplots(len(levels), len(shown), figsize=(style.WIDE_IN, 0.8 + 1.7 * len(levels)), sharex="col", sharey="row", layout="constrained", squeeze=False)
-    most = {cost: max((p.cost for scene in scenes for p in points(scene, cost)), default=1) for cost in shown}
+    most = {cost: max((p.cost for scene in scenes for p in points(scene, cost) if p.cost < math.inf), default=1) for cost in shown}
     rows = []
     for level in levels:
         for axis, cost in zip(axes[level], shown):

@@ -27,11 +27,27 @@ def band_of(scene: dict, row: dict | None = None) -> float:
     return bands.get(factor, bands[1.0])
 
 
+def shares_time_step(scene: dict) -> bool:
+    """Whether every run is compared with a refined reference of its own time step, which sees no error in time; only those references have a band."""
+    return any(ref["band"] for ref in scene["references"])
+
+
+def _points(scene: dict, cost: str, ranked: bool) -> list[Point]:
+    solver, shared = COSTS[cost][0], shares_time_step(scene)
+    return [Point(r["formulation"], (r["axis"], r["factor"]), math.inf if r[cost] is None else r[cost],
+                  None if r["error"] is None else max(r["error"], band_of(scene, r)), r["outcome"], r["run"])
+            for r in scene["rows"] if r["solver"] == solver and ranked != (shared and r["axis"] == "dt_s")]
+
+
 def points(scene: dict, cost: str) -> list[Point]:
-    """Of one cost. An error below its band counts as the band: below it nothing is known."""
-    solver = COSTS[cost][0]
-    return [Point(r["formulation"], (r["axis"], r["factor"]), r[cost] or 0, None if r["error"] is None else max(r["error"], band_of(scene, r)), r["outcome"], r["run"])
-            for r in scene["rows"] if r["solver"] == solver]
+    """What is ranked by one cost. An error below its band counts as the band: below it nothing is known. A cost that was not measured is infinite. Other
+    time steps are left out where no error in time is seen: a large step would be cheap and cost no precision."""
+    return _points(scene, cost, True)
+
+
+def aside(scene: dict, cost: str) -> list[Point]:
+    """What is not ranked: the runs of other time steps in a scene whose references share the time step of the runs."""
+    return _points(scene, cost, False)
 
 
 def formulations(scene: dict) -> list[str]:
@@ -51,17 +67,20 @@ def cost_to(all_points: list[Point], formulation: str, error: float) -> float:
 def front(all_points: list[Point], formulation: str) -> list[tuple[float, float]]:
     """(cost, error) of the runs that no cheaper run of the same formulation equals or betters, by growing cost."""
     out: list[tuple[float, float]] = []
-    for p in sorted((p for p in all_points if p.formulation == formulation and p.error is not None), key=lambda p: (p.cost, p.error)):
+    for p in sorted((p for p in all_points if p.formulation == formulation and p.error is not None and p.cost < math.inf), key=lambda p: (p.cost, p.error)):
         if not out or p.error < out[-1][1]:
             out.append((p.cost, p.error))
     return out
 
 
-def cheapest(all_points: list[Point], names: list[str]) -> list[tuple[float, str]]:
-    """(error, formulation): who reaches each error that occurs at the least cost, from the largest error to the smallest. A tie counts for none before
-    the first of `names`."""
-    levels = sorted({p.error for p in all_points if p.error is not None}, reverse=True)
-    return [(x, min(names, key=lambda name: cost_to(all_points, name, x))) for x in levels]
+def cheapest(all_points: list[Point], names: list[str]) -> list[tuple[float, tuple[str, ...]]]:
+    """(error, formulations): who reaches each error that occurs at the least cost, all that cost the same, from the largest error to the smallest."""
+    out = []
+    for error in sorted({p.error for p in all_points if p.error is not None}, reverse=True):
+        costs = {name: cost_to(all_points, name, error) for name in names}
+        least = min(costs.values())
+        out.append((error, tuple(name for name in names if costs[name] == least < math.inf)))
+    return out
 
 
 @dataclass(frozen=True)
@@ -71,38 +90,31 @@ class Standing:
     runs: int
     smallest: float
     cost_there: float
-    cheapest_down_to: float  # smallest error at which nobody is cheaper; inf: somebody is everywhere
-    cheaper: str  # who is cheaper just below that, or at its smallest error where it never is the cheapest; empty: nobody
+    cheapest_in: tuple[tuple[float, float], ...]  # [from, to) of an error that is asked for, the largest first; inf: no upper end
 
 
 def standing(all_points: list[Point], names: list[str], formulation: str) -> Standing:
     mine = [p for p in all_points if p.formulation == formulation]
     smallest = smallest_error(all_points, formulation)
-    levels = sorted({p.error for p in all_points if p.error is not None})
-
-    def least(x: float) -> float:
-        return min(cost_to(all_points, name, x) for name in names)
-
-    own = [x for x in levels if cost_to(all_points, formulation, x) == least(x) < math.inf]
-    down_to = min(own, default=math.inf)
-    below = [x for x in levels if x < down_to]
-    cheaper = ""
-    if below or not own:
-        x = max(below) if own else (smallest if smallest < math.inf else max(levels, default=math.inf))
-        cheaper = min(names, key=lambda name: cost_to(all_points, name, x)) if levels else ""
-    return Standing(formulation, sum(p.error is not None for p in mine), len(mine), smallest, cost_to(all_points, formulation, smallest) if mine else math.inf,
-                    down_to, cheaper)
+    intervals: list[tuple[float, float]] = []
+    above = math.inf  # costs change at the errors that occur and nowhere in between
+    for error, leaders in cheapest(all_points, names):
+        if formulation in leaders:
+            joined = intervals and intervals[-1][0] == above
+            intervals[-1:] = [(error, intervals[-1][1])] if joined else [*intervals[-1:], (error, above)]
+        above = error
+    return Standing(formulation, sum(p.error is not None for p in mine), len(mine), smallest, cost_to(all_points, formulation, smallest), tuple(intervals))
 
 
 def profile(scenes: list[dict], cost: str, formulation: str, level: int) -> tuple[list[float], int]:
     """Data profile: the costs at which problems (scene, variation) were solved, sorted, and the number of all problems. A problem is solved when its
-    run counts and its error is at most target number `level` of its scene (the last one where it has fewer)."""
+    run counts, has this cost, and its error is at most target number `level` of its scene (the last one where it has fewer)."""
     costs, total = [], 0
     for scene in scenes:
         target = scene["targets"][min(level, len(scene["targets"]) - 1)]
         for p in points(scene, cost):
             if p.formulation == formulation:
                 total += 1
-                if p.error is not None and p.error <= target:
+                if p.error is not None and p.error <= target and p.cost < math.inf:
                     costs.append(p.cost)
     return sorted(costs), total

@@ -1,11 +1,11 @@
-"""results/WORK_PRECISION.md: what each formulation reaches, what a target costs, and from where on a cheaper one dominates."""
+"""results/WORK_PRECISION.md: what each formulation reaches, what a target costs, and within which errors it is the cheapest."""
 
 from __future__ import annotations
 
 import math
 
 from ..accuracy.errors import MEANING
-from .judge import COSTS, band_of, cost_to, formulations, points, profile, standing
+from .judge import COSTS, Standing, band_of, cost_to, formulations, points, profile, shares_time_step, standing
 
 HEAD = """# Work and precision
 
@@ -13,7 +13,13 @@ Made by `./bench work-precision` from results/work_precision.json; docs/laborato
 tolerance) and varies one of these, or every kappa, at a time by a factor. A run counts when it ended ok and is valid; the others are named below
 their table and reach nothing. Errors below the uncertainty of the reference are not ranked: they count as that uncertainty. Costs are
 those of the cheapest run that reaches the error: seconds, Newton iterations and factorisations with the direct solver, products with conjugate gradients and block
-Jacobi. Seconds are those of small scenes on a machine that did other work as well: order of magnitude only.
+Jacobi. "Cheapest within" has the intervals of an error that is asked for in which no formulation needs fewer Newton iterations; equals share them, and below the
+smallest error of all nobody reaches anything. Seconds are those of small scenes on a machine that did other work as well: order of magnitude only. Every
+formulation has one start a scene, so that nothing here says how much another start would change.
+
+A refined reference has the time step of the run, so that it sees no error in time and a large step would look free. In the scenes that have such references the
+runs of other time steps are kept in work_precision.json and drawn as faint marks, but are not ranked: not in the tables, the lines of the figures, or the profile.
+A closed form has no time step, and there all runs are ranked.
 """
 
 
@@ -23,15 +29,24 @@ def number(x: float | None) -> str:
     return f"{x:.0f}" if x >= 100 else f"{x:.3g}"
 
 
+def intervals(s: Standing) -> str:
+    """Errors that are asked for in which it is the cheapest, as words."""
+    return "; ".join(f"from {number(low)} up" if math.isinf(high) else " to ".join(_apart(low, high)) for low, high in s.cheapest_in) or "nowhere"
+
+
+def _apart(low: float, high: float) -> tuple[str, str]:
+    """With as many digits as tell them apart."""
+    return next(pair for pair in ((f"{low:.{digits}g}", f"{high:.{digits}g}") for digits in range(3, 18)) if pair[0] != pair[1])
+
+
 def _standings(scene: dict) -> list[str]:
     names, band = formulations(scene), band_of(scene)
     all_points = points(scene, "newton")
-    lines = ["| formulation | runs that count | useless below | Newton iterations there | cheapest down to | below that cheaper |", "|---|---|---|---|---|---|"]
+    lines = ["| formulation | runs that count | useless below | Newton iterations there | cheapest within |", "|---|---|---|---|---|"]
     for name in names:
         s = standing(all_points, names, name)
         smallest = number(s.smallest) + (" (band)" if band and s.smallest <= band else "")
-        own = number(s.cheapest_down_to) if math.isfinite(s.cheapest_down_to) else "nowhere"
-        lines.append(f"| {name} | {s.solved} of {s.runs} | {smallest} | {number(s.cost_there)} | {own} | {s.cheaper or '-'} |")
+        lines.append(f"| {name} | {s.solved} of {s.runs} | {smallest} | {number(s.cost_there)} | {intervals(s)} |")
     return lines
 
 
@@ -64,6 +79,8 @@ def _scene(scene: dict) -> list[str]:
     lines += ["", f"![{scene['error']} against work](../docs/work_precision_{scene['name']}.png)", ""]
     if band:
         lines += [f"Uncertainty of the reference (band): {number(band)}.", ""]
+    if shares_time_step(scene) and (unranked := sum(r["axis"] == "dt_s" for r in scene["rows"])):
+        lines += [f"{unranked} runs of other time steps (dt_s) are not ranked: the references do not see their error in time.", ""]
     return lines + _standings(scene) + [""] + _targets(scene) + [""] + _failures(scene)
 
 
@@ -96,5 +113,5 @@ def text(table: dict) -> str:
         for name in names:
             s = standing(all_points, names, name)
             lines.append(f"  {name:32} {s.solved:3} of {s.runs:3} count, useless below {number(s.smallest):>9}, {number(s.cost_there):>6} Newton iterations there"
-                         + (f"; {s.cheaper} is cheaper" + (f" below {number(s.cheapest_down_to)}" if math.isfinite(s.cheapest_down_to) else "") if s.cheaper else ""))
+                         + f"; cheapest {intervals(s)}")
     return "\n".join(lines)

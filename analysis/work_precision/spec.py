@@ -6,6 +6,7 @@ tolerance of Newton's method is given in units of min(d_hat, |g| dt^2/2)/dt, sin
 
 from __future__ import annotations
 
+import hashlib
 import json
 import math
 from dataclasses import dataclass, field
@@ -19,6 +20,7 @@ ROOT = Path(__file__).resolve().parents[2]
 NAME = "barrierbench.work_precision/1"
 AXES = ("tolerance", "dt_s", "d_hat_m", "kappa")
 ANCHOR = AXES[:3]
+GRAVITY, STANDARD_GRAVITY = "gravity_m_per_s2", 9.81  # key of a scene, and m/s^2 without it
 REFERENCE_D_HAT, REFERENCE_TOLERANCE = 1 / 16, 1e-3  # of a refined reference, in units of the anchor
 # A direct solver has factorisations and no products; the same run by conjugate gradients has products.
 SOLVERS = {"direct": {"/linear_solver/name": "cholmod"}, "pcg": {"/linear_solver/name": "pcg", "/linear_solver/preconditioner": "block_jacobi"}}
@@ -54,7 +56,7 @@ class Variation:
 class Scene:
     name: str
     base: Path
-    gravity: float  # m/s^2, of the base; 0: none
+    gravity: float  # m/s^2, of the base with `set` over it; 0: none
     set: dict = field(hash=False)
     duration_s: float
     samples: int
@@ -106,6 +108,7 @@ class Spec:
     name: str
     doc: str
     file: Path
+    sha256: str  # of the file
     formulations: tuple[Formulation, ...]
     scenes: tuple[Scene, ...]
 
@@ -174,13 +177,39 @@ def _reference(reader: _Reader, data, pointer: str) -> dict:
     return data
 
 
-def _gravity(file: Path) -> float:
-    """Of a config; 9.81 where it does not say."""
+def _gravity(base: Path, settings: dict, reader: _Reader, pointer: str) -> float:
+    """Of a config with the settings of a scene placed in it, in the order and by the rules of the program; 9.81 where neither says."""
+    own = _Reader(base)
     try:
-        given = json.loads(file.read_text())["scene"].get("gravity_m_per_s2", 9.81)
-    except (ValueError, KeyError, AttributeError):
-        raise SpecError(f"{file}: not a config with a scene") from None
-    return math.hypot(*given) if isinstance(given, list) else float(given)
+        config = json.loads(base.read_bytes())
+    except OSError as error:
+        raise SpecError(f"{base}: {error.strerror}") from None
+    except ValueError as error:
+        raise SpecError(f"{base}: not JSON: {error}") from None
+    if not isinstance(config, dict):
+        own.fail("/", config, "an object: a config with a scene")
+    if not isinstance(scene := config.get("scene"), dict):
+        own.fail("/scene", scene, "an object")
+    name, given, fail, place = scene.get("name"), scene.get(GRAVITY, STANDARD_GRAVITY), own.fail, f"/scene/{GRAVITY}"
+    for key in sorted(settings):
+        value = settings[key]
+        if key == "/scene":
+            if not isinstance(value, dict):
+                reader.fail(pointer + key, value, "an object")
+            name, given, fail, place = value.get("name"), value.get(GRAVITY, STANDARD_GRAVITY), reader.fail, f"{pointer}{key}/{GRAVITY}"
+        elif key == "/scene/name" and value != name:
+            name, given = value, STANDARD_GRAVITY  # a scene named anew starts anew
+        elif key == f"/scene/{GRAVITY}":
+            given, fail, place = value, reader.fail, pointer + key
+        elif key.startswith(f"/scene/{GRAVITY}/"):
+            index = key.rpartition("/")[2]
+            if not isinstance(given, list) or index not in map(str, range(len(given))):
+                reader.fail(pointer + key, value, f"a place in {json.dumps(given)}")
+            given, fail, place = [value if str(k) == index else old for k, old in enumerate(given)], reader.fail, pointer + key
+    parts = given if isinstance(given, list) else [given]
+    if not all(isinstance(g, (int, float)) and not isinstance(g, bool) and math.isfinite(g) for g in parts) or (len(parts) != 3 if isinstance(given, list) else given < 0):
+        fail(place, given, "a number >= 0 or an array of three numbers")
+    return math.hypot(*parts)
 
 
 def _scene(reader: _Reader, data, pointer: str) -> Scene:
@@ -196,7 +225,8 @@ def _scene(reader: _Reader, data, pointer: str) -> Scene:
     if "refined" in _reference(reader, data["reference"], f"{pointer}/reference") and min(vary.get("d_hat_m", (1.0,))) < 2 * REFERENCE_D_HAT:
         reader.fail(f"{pointer}/vary/d_hat_m", min(vary["d_hat_m"]), f"at least {2 * REFERENCE_D_HAT:g}: the reference has d_hat x{REFERENCE_D_HAT:g}")
     samples = reader.number(data["samples"], f"{pointer}/samples")
-    scene = Scene(reader.text(data["name"], f"{pointer}/name"), base, _gravity(base), reader.settings(data.get("set", {}), f"{pointer}/set"),
+    settings = reader.settings(data.get("set", {}), f"{pointer}/set")
+    scene = Scene(reader.text(data["name"], f"{pointer}/name"), base, _gravity(base, settings, reader, f"{pointer}/set"), settings,
                   reader.number(data["duration_s"], f"{pointer}/duration_s"), int(samples), anchor, vary, data["reference"],
                   reader.text(data["error"], f"{pointer}/error", NAMES), tuple(sorted(reader.numbers(data["targets"], f"{pointer}/targets"), reverse=True)))
     for factor in scene.dt_factors:
@@ -209,7 +239,8 @@ def _scene(reader: _Reader, data, pointer: str) -> Scene:
 def read_spec(file: Path) -> Spec:
     """Errors: SpecError, which names the first fault."""
     try:
-        data = json.loads(file.read_text())
+        text = file.read_bytes()
+        data = json.loads(text)
     except OSError as error:
         raise SpecError(f"{file}: {error.strerror}") from None
     except ValueError as error:
@@ -220,7 +251,7 @@ def read_spec(file: Path) -> Spec:
     for key in ("formulations", "scenes"):
         if not isinstance(data[key], list) or not data[key]:
             reader.fail(f"/{key}", data[key], "an array that is not empty")
-    spec = Spec(reader.text(data["name"], "/name"), data.get("doc", ""), file,
+    spec = Spec(reader.text(data["name"], "/name"), data.get("doc", ""), file, hashlib.sha256(text).hexdigest(),
                 tuple(_formulation(reader, f, f"/formulations/{k}") for k, f in enumerate(data["formulations"])),
                 tuple(_scene(reader, s, f"/scenes/{k}") for k, s in enumerate(data["scenes"])))
     for key, names in (("formulations", [f.label for f in spec.formulations]), ("scenes", [s.name for s in spec.scenes])):

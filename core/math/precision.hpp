@@ -22,7 +22,8 @@ constexpr double value_epsilon(Precision precision) {
                                     : std::numeric_limits<double>::epsilon();
 }
 
-/// f.operator()<T>() with the scalar T of states, gaps, energies and gradients. To be called round a loop, not in it.
+/// f.operator()<T>() with the scalar T of states, gaps, energies and gradients. To be called round a loop, not in it,
+/// unless an entry of the loop costs far more than the choice.
 template <class F>
 decltype(auto) with_value_scalar(Precision precision, const F& f) {
   return values_in_float(precision) ? f.template operator()<float>() : f.template operator()<double>();

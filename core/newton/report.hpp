@@ -27,10 +27,14 @@ struct IterationReport : IterateNumbers {
 /// `detail` names the pin, the pair, the linear status. `time` has every moment of Simulation::step; on_step
 /// sees what came before it.
 struct StepReport : StepNumbers {
-  bool still_falling = false;  // |dx| was, when the cap on iterations was reached
+  bool still_falling = false;       // |dx| was, when the cap on iterations was reached
+  long long ccd_capped_before = 0;  // of ccd_capped, those of attempts before the last
+  int iterations_before = 0;        // of newton_iterations
   /// Counts what an attempt before this one cost.
   void add_attempt(const StepReport& failed) {
     retries = failed.retries + 1;
+    ccd_capped_before = failed.ccd_capped;
+    iterations_before = failed.newton_iterations;
     newton_iterations += failed.newton_iterations;
     *this += failed;
   }

@@ -110,7 +110,7 @@ StepReport Simulation::attempt(StepObserver& observer) {
   return solver_->advance(system_, task, prediction_, observer);
 }
 
-// Every attempt begins as a run that goes on from an archive of the start would.
+// Every attempt but the first begins as a run that goes on from an archive of the start would.
 StepReport Simulation::attempt_until_converged(StepObserver& observer) {
   Archive start;
   if (parts_.can_halve()) keep(start);

@@ -72,10 +72,14 @@ bool truth(const TextScanner& at, std::string_view word) {
 }
 
 /// Entries of a folder by name; none when it is no folder.
+/// None where there is no such folder. Errors: ConfigError for one that cannot be read.
 std::vector<fs::path> sorted_entries(const fs::path& folder) {
   std::vector<fs::path> out;
   std::error_code error;
+  if (!fs::exists(folder, error)) return out;
   for (const auto& entry : fs::directory_iterator(folder, error)) out.push_back(entry.path());
+  if (error && fs::is_directory(folder))
+    throw ConfigError(folder.string(), error.message(), "a folder that can be read");
   std::sort(out.begin(), out.end());
   return out;
 }

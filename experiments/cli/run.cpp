@@ -39,8 +39,7 @@ bool is_over(const RunConfig& config, const RunOptions& options) {
   if (!stored) return false;
   RunConfig chosen = config;
   decide_linear_solver(chosen);
-  const RunRecord now = identified(chosen, options);
-  return stored->record.ids.run_id == now.ids.run_id && differences(stored->record, now).empty();
+  return why_run_again(stored->record, identified(chosen, options)).empty();
 }
 
 }  // namespace

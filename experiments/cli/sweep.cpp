@@ -42,15 +42,6 @@ RunOptions case_options(const Sweep& sweep, const SweepCase& one) {
   return options;
 }
 
-/// Why an earlier record in the folder of a case does not stand for this run.
-std::string why_again(const RunRecord& stored, const RunRecord& now) {
-  std::string out;
-  for (const Difference& difference : differences(stored, now)) {
-    out += (out.empty() ? "" : "; ") + difference.what;
-  }
-  return out.empty() ? "another run_id" : out;
-}
-
 /// True when the record of this very run is there: run_id, config, program, plugins, libraries, machine. A
 /// record of another run, or one that cannot be read, is named and gives way.
 bool already_there(const Sweep& sweep, const SweepCase& one, const RunOptions& options) {
@@ -61,9 +52,8 @@ bool already_there(const Sweep& sweep, const SweepCase& one, const RunOptions& o
   std::string why = "its run.json cannot be read";
   try {
     const auto stored = read_stored_run(file);
-    if (stored && stored->record.ids.run_id == now.ids.run_id && differences(stored->record, now).empty())
-      return true;
-    if (stored) why = why_again(stored->record, now);
+    if (stored) why = why_run_again(stored->record, now);
+    if (why.empty()) return true;
   } catch (const ConfigError& error) {
     why = error.what();
   }

@@ -214,6 +214,8 @@ void check_tolerance(const RunConfig& config, const Complain& complain) {
 /// Tier 0 reads what PCG saw: the spectrum of the full matrix scaled by its preconditioner, and nothing else.
 void check_ritz(const RunConfig& config, const Complain& complain) {
   if (!config.passes.diagnose || config.diagnose.tier != 0) return;
+  if (config.diagnose.ends)
+    complain("/diagnose/ends", "true with tier 0", "tier 1, 2 or 3: tier 0 factorises nothing");
   const std::string& preconditioner = text(config.linear_solver.parameters, "preconditioner");
   const auto& stages = config.diagnose.stages;
   const auto& scalings = config.diagnose.scalings;

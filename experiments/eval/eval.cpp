@@ -4,6 +4,7 @@
 #include <istream>
 #include <nlohmann/json.hpp>
 #include <ostream>
+#include <regex>
 #include <set>
 #include <string>
 
@@ -53,14 +54,20 @@ struct Line {
   std::string error;   // empty: answered
 };
 
+/// JSON, numbers beyond the range of a double included.
+bool is_value(std::string_view text) {
+  static const std::regex number(R"(-?(0|[1-9][0-9]*)(\.[0-9]+)?([eE][+-]?[0-9]+)?)");
+  return json::accept(text) || std::regex_match(text.begin(), text.end(), number);
+}
+
 /// Id and repeated names come from the text itself: the parser rounds long numbers and knows no names of its
-/// own. Requires JSON whose strings are sound.
+/// own. Requires JSON whose strings are sound; an id that is no JSON, after an earlier fault, is none.
 void scan(std::string_view text, Line& line) {
   std::set<std::string> seen;
   std::string twice;
   for (const auto& [written, value] : top_level_members(text)) {
     const std::string name = json::parse("\"" + std::string(written) + "\"").get<std::string>();
-    if (name == "id") line.id = value;
+    if (name == "id" && is_value(value)) line.id = value;
     if (!seen.insert(name).second) twice = name;
   }
   if (!twice.empty()) throw ConfigError("/" + twice, "the same field twice", "each field once");

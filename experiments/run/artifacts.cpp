@@ -115,13 +115,13 @@ ArtifactWriter::~ArtifactWriter() {
 void ArtifactWriter::keep(Archive& archive) {
   archive(written_);
   if (!archive.reads()) return;
+  leave_ = true;  // what is refused here is not lost
   for (const Artifact& file : written_) {
     const std::filesystem::path path = folder_ / part_of(file.path);
-    std::error_code absent;
-    const auto size = std::filesystem::file_size(path, absent);
-    if (!absent && size == file.bytes) continue;
-    throw ConfigError(path.string(), absent ? "not there" : fmt::format("{} bytes", size),
-                      fmt::format("{} bytes, as the checkpoint has it, or no --resume", file.bytes));
+    const std::string found = sha256_file(path.string());
+    if (found == file.sha256) continue;
+    throw ConfigError(path.string(), found.empty() ? "not there" : "sha256 " + found.substr(0, 16),
+                      "sha256 " + file.sha256.substr(0, 16) + ", as the checkpoint has it, or no --resume");
   }
 }
 
@@ -159,8 +159,19 @@ void ArtifactWriter::matrix(const StoredSystem& stored) {
         "application/json");
 }
 
+void ArtifactWriter::drop_matrices(int step) {
+  const std::string begin = fmt::format("matrices/step_{:06}_", step);
+  std::erase_if(written_, [&](const Artifact& file) {
+    if (!file.path.starts_with(begin)) return false;
+    std::error_code error;
+    std::filesystem::remove(folder_ / part_of(file.path), error);
+    return true;
+  });
+}
+
 void ArtifactWriter::finish() {
   for (const Artifact& file : written_) move_into_place(folder_ / part_of(file.path), folder_ / file.path);
+  leave_ = false;
 }
 
 void ArtifactWriter::write(const std::filesystem::path& relative, const std::string& bytes, const char* kind,

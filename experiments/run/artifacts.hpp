@@ -52,6 +52,8 @@ class ArtifactWriter {
   void keep(Archive& archive);
   /// From now on the files stay, also those of a run that never finishes: a checkpoint names them.
   void leave_unfinished() { leave_ = true; }
+  /// The step begins again: the matrices of its attempt are no part of the run.
+  void drop_matrices(int step);
 
  private:
   void write_frame(const std::filesystem::path& relative, const Positions& x, const ContactFields* fields);

@@ -25,6 +25,19 @@ void CondSummary::add(const ConditionSample& sample) {
   add_log10(samples.lambda_max, sample.lambda_max);
 }
 
+void CondSummary::append(const CondSummary& other) {
+  const auto join = [](std::vector<double>& to, const std::vector<double>& from) {
+    to.insert(to.end(), from.begin(), from.end());
+  };
+  for (const auto& [key, from] : other.samples_) {
+    Samples& to = samples_[key];
+    join(to.cond, from.cond);
+    join(to.lambda_min, from.lambda_min);
+    join(to.lambda_max, from.lambda_max);
+    for (const auto& [status, count] : from.statuses) to.statuses[status] += count;
+  }
+}
+
 void CondSummary::Samples::keep(Archive& archive) { archive(cond, lambda_min, lambda_max, statuses); }
 
 void CondSummary::keep(Archive& archive) { archive(samples_); }

@@ -16,6 +16,8 @@ class CondSummary {
   /// A matrix that is singular or not positive definite has no finite condition number: it counts with the
   /// largest that is claimed, 1e14. An estimate that did not converge has no number and is only counted.
   void add(const ConditionSample& sample);
+  /// Adds all samples of `other`, after those that are here.
+  void append(const CondSummary& other);
   /// By "<stage>/<scaling>", with "solved/" before it for matrices that are not the clamped ones.
   CondMap summary() const;
   void keep(Archive& archive);

@@ -110,14 +110,25 @@ void ConditionWatch::on_iteration(const LinearReport& linear, TraceRow& row) {
     samples_.push_back(sample_of(form_, MatrixStage::full, *scaling, 0,
                                  condition_from_ritz(linear.ritz_min, linear.ritz_max)));
   }
-  for (const ConditionSample& sample : samples_) cond_.add(sample);
-  if (probed_.finite()) probes_.push_back(probed_.value);
+  for (const ConditionSample& sample : samples_) step_cond_.add(sample);
+  if (probed_.finite()) step_probes_.push_back(probed_.value);
   row.probe_pcg_iterations = probed_;
   row.cond = std::move(samples_);
   samples_.clear();
 }
 
 void ConditionWatch::keep(Archive& archive) { archive(cond_, probes_, spent_s_); }
+
+void ConditionWatch::end_step() {
+  cond_.append(step_cond_);
+  probes_.insert(probes_.end(), step_probes_.begin(), step_probes_.end());
+  forget_step();
+}
+
+void ConditionWatch::forget_step() {
+  step_cond_ = {};
+  step_probes_.clear();
+}
 
 void ConditionWatch::fill(Summary& summary) const {
   summary.cond = cond_.summary();

@@ -22,7 +22,10 @@ class ConditionWatch {
   void on_matrix(NewtonSystem& system, int step, int iteration);
   /// At the end of the iteration: fills `cond` and `probe_pcg_iterations` of its row.
   void on_iteration(const LinearReport& linear, TraceRow& row);
-  /// `cond` and `probe_pcg` of the run so far.
+  /// The step is over: what was estimated in it is of the run; or it begins again, and that is forgotten.
+  void end_step();
+  void forget_step();
+  /// `cond` and `probe_pcg` of the steps that are over.
   void fill(Summary& summary) const;
   /// What was estimated so far, between two steps.
   void keep(Archive& archive);
@@ -41,8 +44,8 @@ class ConditionWatch {
   MatrixForm form_ = MatrixForm::clamped;  // of the matrix that was solved
   std::vector<ConditionSample> samples_;
   Number probed_;
-  CondSummary cond_;
-  std::vector<double> probes_;
+  CondSummary cond_, step_cond_;  // of the steps that are over; of the one in progress
+  std::vector<double> probes_, step_probes_;
   double spent_s_ = 0;
 };
 

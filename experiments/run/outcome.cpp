@@ -33,15 +33,16 @@ Verdict stalled(const StepReport& step) {
   if (worst > 1 && !step.still_falling) {
     return {Outcome::stall_overload,
             fmt::format("step {}: load over capacity {:.3g} {}; {} after {} iterations{}", step.step, worst,
-                        overloaded(step, contact >= limit), to_string(step.status), step.newton_iterations,
-                        because(step))};
+                        overloaded(step, contact >= limit), to_string(step.status),
+                        step.newton_iterations - step.iterations_before, because(step))};
   }
-  if (step.ccd_capped > 0 && step.status == StepStatus::step_collapse) {
+  if (step.ccd_capped > step.ccd_capped_before && step.status == StepStatus::step_collapse) {
     return {Outcome::ccd_cap, fmt::format("step {}: {} pairs reached the probe cap{}", step.step,
-                                          step.ccd_capped, because(step))};
+                                          step.ccd_capped - step.ccd_capped_before, because(step))};
   }
-  return {Outcome::newton_stall, fmt::format("step {}: {} after {} iterations{}", step.step,
-                                             to_string(step.status), step.newton_iterations, because(step))};
+  return {Outcome::newton_stall,
+          fmt::format("step {}: {} after {} iterations{}", step.step, to_string(step.status),
+                      step.newton_iterations - step.iterations_before, because(step))};
 }
 
 }  // namespace

@@ -40,8 +40,10 @@ void Recorder::on_motion(const Positions& x0, const Positions& x1, int step) {
 }
 
 // The rows of the attempt stay in the trace, its motions are not those of the run.
-void Recorder::on_retry(int) {
+void Recorder::on_retry(int step) {
   if (audit_) audit_->on_retry();
+  if (artifacts_) artifacts_->drop_matrices(step);
+  condition_.forget_step();
 }
 
 void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
@@ -50,6 +52,7 @@ void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Pos
   if (artifacts_ && every > 0 && report.step % every == 0) {
     artifacts_->frame(x, report.step, contact_fields(contact, system.scene().n_vertices()));
   }
+  condition_.end_step();
   StepRecord step = report;
   step.time = {};  // that of the timed run is filled in when the runs are over
   fill_energies(system, step);

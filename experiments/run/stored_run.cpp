@@ -65,4 +65,17 @@ std::vector<Difference> differences(const RunRecord& then, const RunRecord& now)
   return out;
 }
 
+std::string why_run_again(const RunRecord& then, const RunRecord& now) {
+  std::string out;
+  for (const Difference& difference : differences(then, now)) {
+    out += (out.empty() ? "" : "; ") + difference.what;
+  }
+  if (out.empty() && then.ids.run_id != now.ids.run_id) return "another run_id";
+  const Outcome outcome = then.status.outcome;
+  if (out.empty() && (outcome == Outcome::oom || outcome == Outcome::timeout)) {
+    return "it ended as " + std::string(to_string(outcome));
+  }
+  return out;
+}
+
 }  // namespace bb

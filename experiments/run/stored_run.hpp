@@ -28,4 +28,8 @@ struct Difference {
 /// when the ids agree.
 std::vector<Difference> differences(const RunRecord& then, const RunRecord& now);
 
+/// Why the record `then` does not stand for the run `now`: what differs, or that memory or time ended it, which another call
+/// may have more of. Empty: it does.
+std::string why_run_again(const RunRecord& then, const RunRecord& now);
+
 }  // namespace bb

@@ -45,6 +45,12 @@ void BlockCheck::judge(double found, const std::string& subject) {
   value = found;
 }
 
+std::vector<std::string> block_names() {
+  std::vector<std::string> names;
+  for (const Entry& entry : entries) names.push_back(entry.name);
+  return names;
+}
+
 std::vector<BlockCheck> compute_block() {
   std::vector<BlockCheck> checks;
   for (const Entry& entry : entries) {

@@ -146,3 +146,13 @@ def test_records_become_rows(tmp_path):
 def test_a_claim_without_records_is_not_decided():
     answer = judge(read_claim("K3"), Table(), Eval(None))
     assert answer.verdict.verdict == "not decided" and "./bench sweep claims/sweeps/contact_shapes.json" in answer.verdict.missing
+
+
+@pytest.mark.parametrize("kept", ['{"schema": "barrierbench.cl', '{"schema": "barrierbench.claims/1"}', "[]", '{"schema": "barrierbench.claims/1", "sweeps": {"x": 3}, "answers": {}}'])
+def test_a_torn_table_is_refused(tmp_path, monkeypatch, capsys, kept):
+    file = tmp_path / "claims.json"
+    file.write_text(kept)
+    with pytest.raises(ClaimError, match="claims.json: .*remove it, then ./bench claims"):
+        read(file)
+    monkeypatch.setattr(verb, "FILE", file)
+    assert verb.main(["--no-run"]) == 2 and "claims.json" in capsys.readouterr().err

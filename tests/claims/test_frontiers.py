@@ -41,11 +41,26 @@ def test_not_even_the_middle():
     assert line.count("not even the middle") == 2 and "| 0 of 90 [0.000, 0.041] | - |" in line
 
 
-def test_what_nobody_gets_through_is_left_out():
-    hard = runs(lambda s, lv, c, k: some_fail(s, lv, c, k) | ({"outcome": "newton_stall"} if (s, lv) == ("a", "E100") else {}), levels=LEVELS)
+def too_hard(scene, level, case, seed):
+    """Nobody gets through a E100, whose runs have no cost either."""
+    return some_fail(scene, level, case, seed) | ({"outcome": "newton_stall", "factorizations": None} if (scene, level) == ("a", "E100") else {})
+
+
+def test_what_nobody_gets_through_is_left_out_of_shares_and_bounds_the_frontier(tmp_path):
+    hard = runs(too_hard, levels=LEVELS)
     lines = frontiers.lines(CLAIM, Table({"policies": hard}))
-    assert "no case gets through: a E100." in "".join(lines) and next(line for line in lines if line.startswith("| x |")).startswith("| x | 85 of 85 [")
-    assert "| 0.1 to 100 |" in next(line for line in lines if line.startswith("| x |"))
+    x = next(line for line in lines if line.startswith("| x |"))
+    assert x == "| x | 85 of 85 [0.957, 1.000] | 10 | 0.1 to 10[ | 1 to 8 |"
+    assert "1 of 18 scenes x levels (5 runs of each case) are left out, since no case gets through: a E100." in "".join(lines)
+    assert "left out" not in "".join(frontiers.lines(CLAIM, Table({"policies": made()})))
+    frontiers.draw(CLAIM, hard, tmp_path / "policies")
+    assert "1 of 18 scenes x levels" in (tmp_path / "policies.txt").read_text()
+
+
+def test_where_nobody_gets_through_the_middle_there_is_no_frontier():
+    hard = runs(lambda s, lv, c, k: {"outcome": "newton_stall" if (s, lv) == ("a", "nominal") else "ok", "factorizations": 3.0}, levels=LEVELS)
+    line = next(line for line in frontiers.lines(CLAIM, Table({"policies": hard})) if line.startswith("| x |"))
+    assert "| x | 85 of 85 [" in line and line.count("not even the middle") == 2
 
 
 def test_a_run_without_its_cost():

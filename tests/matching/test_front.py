@@ -65,6 +65,15 @@ def test_paths_that_share_too_little_are_not_compared():
     assert reached([Point(1, 0.1, 1.0)]) is None and value_at([], 0.1) is None
 
 
+def test_paths_share_what_both_cover_and_not_what_lies_between_their_ends():
+    """Both reach from 0.01 to 1, yet a failed run leaves b two short ends, of which a covers one."""
+    a = [Point(1, 0.01, 1.0), Point(2, 0.0125, 1.0), Point(3, None, None), Point(4, 0.9, 1.0), Point(5, 1.0, 1.0)]
+    b = [Point(1, 0.01, 2.0), Point(2, 0.012, 2.0), Point(3, None, None), Point(4, 0.1, 2.0), Point(5, 0.8, 2.0), Point(6, None, None), Point(7, 2.0, 2.0), Point(8, 3.0, 2.0)]
+    assert len(shared(a, b)) == 9 and log_ratio(a, b) is None and log_ratio(b, a) is None
+    wider = [Point(1, 0.01, 1.0), Point(2, 0.1, 1.0), *a[2:]]
+    assert log_ratio(wider, [Point(1, 0.01, 2.0), Point(2, 1.0, 2.0)]) == pytest.approx(math.log(0.5))
+
+
 def test_numbers_that_are_none():
     with pytest.raises(ValueError, match="two runs with scale 1"):
         segments([Point(1, 0.1, 1.0), Point(1, 0.2, 1.0)])

@@ -1,6 +1,7 @@
 """The verb `match`: verdicts and refusals on made-up records, and one run of the real program."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -46,7 +47,8 @@ def test_one_that_is_not_comparable(match, monkeypatch, tmp_path, capsys, edit, 
 
 @pytest.mark.parametrize("arguments, said", [
     (["--formulations", "cubci"], "formulation 'cubci': one of article_cubic, cubic"), (["--formulations", "cubci"], "did you mean 'cubic'?"),
-    (["--theta", "1"], "--theta: found 1; a number in (0, 1)")])
+    (["--theta", "1"], "--theta: found 1; a number in (0, 1)"),
+    (["--formulations", "log"], "--formulations: found log alone; a formulation to compare with it is needed"), (["--formulations", "log", "log"], "found log alone")])
 def test_bad_arguments(match, tmp_path, capsys, arguments, said):
     assert match(*arguments) == 2 and said in capsys.readouterr().err
     assert not (tmp_path / "out").exists()
@@ -84,6 +86,35 @@ def test_a_folder_with_runs_of_other_settings(match, monkeypatch, tmp_path, caps
         (tmp_path / "out" / f"case{k}").rename(tmp_path / "out" / f"older{k}")
     assert match("--formulations", "quadratic", "cubic") == 2
     assert "a second record of 'match: log'" in capsys.readouterr().err
+
+
+def test_a_changed_base_has_a_folder_of_its_own(monkeypatch, tmp_path, capsys):
+    """What the sweep is made of: the base config, a mesh it names, a preset."""
+    from analysis.matching import formulations, match
+    install(tmp_path, monkeypatch, {})
+    presets = tmp_path / "presets"
+    shutil.copytree(formulations.PRESETS, presets)
+    monkeypatch.setattr(formulations, "PRESETS", presets)
+    monkeypatch.setattr(match, "ROOT", tmp_path)
+    config, under, mesh = tmp_path / "a.json", tmp_path / "under.json", tmp_path / "m.obj"
+    mesh.write_text("v 0 0 0")
+    under.write_text('{"schema": "barrierbench.config/1"}')
+
+    def folders(steps):
+        config.write_text(json.dumps({"schema": "barrierbench.config/1", "base": "under.json", "scene": {"name": "x", "bodies": [{"mesh": {"file": "m.obj"}}]}, "time": {"steps": steps}}))
+        for old in tmp_path.glob("results/runs/match/*/case*"):
+            shutil.rmtree(old)  # the stand-in makes every record anew
+        assert main([str(config), "--formulations", "cubic"]) == 0, capsys.readouterr()
+        return len(list((tmp_path / "results" / "runs" / "match").iterdir()))
+
+    assert [folders(3), folders(3), folders(4), folders(3)] == [1, 1, 2, 2]
+    mesh.write_text("v 1 0 0")
+    assert folders(3) == 3
+    cubic = presets / "cubic.json"
+    cubic.write_text(cubic.read_text().replace("{", "{\n", 1) + " ")
+    assert folders(3) == 4
+    under.write_text('{"schema": "barrierbench.config/1", "threads": 1}')
+    assert folders(3) == 5
 
 
 def test_what_is_varied():

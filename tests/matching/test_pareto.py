@@ -1,6 +1,7 @@
 """The verb `pareto`: specs, fronts of made-up records, the page, and one sweep of the real program."""
 
 import json
+import shutil
 from pathlib import Path
 
 import pytest
@@ -10,6 +11,7 @@ from analysis.matching import pareto
 from analysis.matching.formulations import MatchError
 from analysis.matching.fronts import Runs, at_gap, failures, over_shared, unreached
 from analysis.matching.pareto_report import markdown
+from analysis.matching.runs import inputs_sha256
 from analysis.matching.spec import make_sweep, read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -30,8 +32,13 @@ def spec_file(tmp_path, **edit) -> Path:
     ({"gaps": [0.1, 1.0]}, "#/gaps/1: found 1.0; a number in (0, 1)"), ({"starts": 0}, "#/starts: found 0; a whole number from 1 to 100"),
     ({"formulations": ["cubic", "quadratic"]}, "'log' among them"), ({"formulations": ["log", "cubci"]}, "#/formulations/1: formulation 'cubci'"),
     ({"formulations": ["log", "log"]}, "at least two names, each once"), ({"scenes": []}, "#/scenes: a list"), ({"scenes": [{"label": "a b", "set": {}}]}, "one word, each once"),
-    ({"scenes": [{"label": "a", "set": {"/formulation": "log"}}]}, "the sweep sets formulation, matching and seeds itself"), ({"jitter_m": -1}, "a length >= 0"),
-    ({"gap": "max"}, "#/gap: found 'max'; one of min, median")])
+    ({"scenes": [{"label": "a", "set": {"/formulation": "log"}}]}, "#/scenes/a/set: found '/formulation'; the sweep sets formulation, matching, passes and seeds itself"), ({"jitter_m": -1}, "a length >= 0"),
+    ({"gap": "max"}, "#/gap: found 'max'; one of min, median"), ({"set": []}, "#/set: found []; overrides, {\"/POINTER\": value}, are needed"),
+    ({"base": 3}, "#/base: found 3; the path of a config is needed"), ({"base": "none.json"}, "#/base: found 'none.json'; the path of a config is needed"),
+    ({"starts": True}, "#/starts: found True; a whole number from 1 to 100"), ({"doc": 3}, "#/doc: found 3; text is needed"),
+    *(({"set": {pointer: 1}}, f"#/set: found '{pointer}'; the sweep sets formulation, matching, passes and seeds itself")
+      for pointer in ("/matching/rule", "/matching", "/passes", "/passes/audit", "/formulation", "/formulation/shape", "/seeds/main")),
+    ({"scenes": [{"label": "a", "set": {"/passes/audit": False}}]}, "#/scenes/a/set: found '/passes/audit'; the sweep sets")])
 def test_a_bad_spec(tmp_path, edit, said):
     with pytest.raises(MatchError) as error:
         read_spec(spec_file(tmp_path, **edit))
@@ -103,6 +110,24 @@ def test_records_become_the_page(monkeypatch, tmp_path, capsys):
     assert pareto.main([*words, "--no-run"]) == 2 and "its numbers are of another" in capsys.readouterr().err
 
 
+def test_numbers_of_another_base_are_not_taken(monkeypatch, tmp_path, capsys):
+    """Neither from records nor from the kept table; a table that does not say of which base it is is taken with a warning."""
+    install(tmp_path, monkeypatch, {f"block {f} x{s}": g for f in ("log", "cubic") for s, g in (("0.01", 0.03), ("0.1", 0.06), ("1", 0.1), ("10", 0.2), ("100", 0.4))})
+    monkeypatch.setattr(pareto, "ROOT", tmp_path)
+    base, kept = tmp_path / "base.json", tmp_path / "r" / "pareto.json"
+    base.write_text('{"schema": "barrierbench.config/1"}')
+    words = [str(spec_file(tmp_path, base="base.json")), "--results", str(tmp_path / "r")]
+    assert pareto.main(words) == 0 and pareto.main([*words, "--no-run"]) == 0, capsys.readouterr()
+    base.write_text('{"schema": "barrierbench.config/1", "time": {"steps": 3}}')
+    assert pareto.main([*words, "--no-run"]) == 2 and "its numbers are of another" in capsys.readouterr().err
+    assert pareto.main(words) == 0 and len(list((tmp_path / "results" / "runs" / "pareto").iterdir())) == 2
+    shutil.rmtree(tmp_path / "results")
+    data = json.loads(kept.read_text())
+    del data["about"]["inputs_sha256"]
+    kept.write_text(json.dumps(data))
+    assert pareto.main([*words, "--no-run"]) == 0 and "does not say of which base config" in capsys.readouterr().err
+
+
 @pytest.mark.parametrize("edit, said", [
     ({"block cubic x10": {"/config/time/dt_s": 0.02}}, "are not runs of the same config: /time/dt_s: 0.01 and 0.02"),
     ({"block cubic x10": {"/summary/wall_s": float("inf")}}, "Infinity where a number or null is needed")])
@@ -121,6 +146,7 @@ def test_nothing_ever_touches(monkeypatch, tmp_path, capsys):
 def test_the_page_is_made_of_the_kept_numbers():
     runs = pareto.from_json(ROOT / "results" / "pareto.json")
     assert (ROOT / "results" / "PARETO.md").read_text() == markdown(runs) and pareto.to_json(runs) == (ROOT / "results" / "pareto.json").read_text()
+    assert runs.about.get("inputs_sha256", inputs := inputs_sha256(make_sweep(read_spec(pareto.DEFAULT)))) == inputs
     assert runs.about["spec_sha256"] == read_spec(pareto.DEFAULT).sha256 and len(runs.rows) == len(make_sweep(read_spec(pareto.DEFAULT)).notes)
     assert all((ROOT / "docs" / f"pareto_{scene}.png").is_file() for scene in runs.scenes)
 

@@ -6,7 +6,7 @@ import pytest
 
 from analysis.stress.__main__ import main
 from analysis.stress.entry import read_test
-from analysis.stress.run import run_case
+from analysis.stress.run import run_case, run_test
 
 
 @pytest.fixture
@@ -55,6 +55,18 @@ def test_a_hang_and_a_crash_are_told(tmp_path, monkeypatch):
         fake.write_text(f"#!/bin/sh\n{body}\n")
         fake.chmod(0o755)
         assert one("M09", tmp_path, 0.5).outcome == outcome
+
+
+def test_a_run_has_its_own_time_whatever_the_others_took(tmp_path, monkeypatch):
+    """The first two burn their time; a third is refused at once, as it is when the first two are not run at all."""
+    fake, test = tmp_path / "fake", read_test("M09")
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", str(fake))
+    fake.write_text('#!/bin/sh\ncase "$2" in *ulp_more*) exit 2;; esac\nwhile :; do :; done\n')
+    fake.chmod(0o755)
+    all_of_them = run_test(test, tmp_path, {}, ["log"], limit_s=1.0)
+    assert [row.outcome for row in all_of_them] == ["timeout", "timeout", "refused"], all_of_them
+    assert "1 s of processor time" in all_of_them[0].detail
+    assert run_test(test, tmp_path, {}, ["log"], ["one ulp more"], limit_s=1.0) == all_of_them[2:]
 
 
 def test_a_record_of_another_config_does_not_stand_in(built, tmp_path):

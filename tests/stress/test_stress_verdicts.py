@@ -6,6 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
+from analysis.stress import __main__ as verb
 from analysis.stress import exact
 from analysis.stress.entry import ROOT, StressError, ids, read_test
 from analysis.stress.geometry import Count, _judge_ccd
@@ -39,6 +40,36 @@ def test_relations(entry, good, bad):
     assert not found.holds and found.broken[0].startswith("log")
 
 
+def test_zeros_that_are_equal_differ_by_nothing():
+    none = rows((0.0, 0.0, 0.0))
+    assert related({"kind": "equal", "within": 0}, none).holds
+    differs = related({"kind": "differs", "beyond": 0.1}, none)
+    assert differs.judged == 2 and differs.broken[0] == "log, d_hat | one ulp less | one ulp more: 0"
+    some = rows((0.0, 0.0, 0.5))
+    assert related({"kind": "differs", "beyond": 0.1}, some).holds and not related({"kind": "equal", "within": 10}, some).holds
+
+
+@pytest.mark.parametrize("gaps", [(0.0, 0.1, 0.2), (0.1, 0.0, 0.2), (0.1, 0.2, 0.0), (0.0, 0.0, 0.0)])
+@pytest.mark.parametrize("entry", [{"kind": "rises"}, {"kind": "ratio", "above": 0, "below": 2}])
+def test_what_is_over_zero_is_not_judged(entry, gaps):
+    found = related(entry, rows(gaps))
+    if entry["kind"] == "rises" or 0 in gaps[:2]:
+        assert (found.judged, found.not_judged, found.holds) == (0, 2, False)
+    mixed = related(entry, rows(gaps, ("log",)) + rows((0.1, 0.2, 0.3), ("cubic",)))
+    assert mixed.holds and mixed.judged >= 1
+
+
+def test_a_bound_on_every_run_takes_all_that_ran():
+    test = read_test("M09")
+    test.data["relations"] = [{"metric": "gap_end_rel", "kind": "bound", "below": 0.5, "reason": "r"}]
+    needy = replace(test, cases=tuple(replace(case, needs=({"pointer": "/precision", "value": "float"},)) if case.label == CASES[2] else case for case in test.cases))
+    found = relations(needy, rows((0.1, 0.2, 0.9)))[0]
+    assert found.judged == 6 and not found.holds and found.broken[0].startswith("log, one ulp more")
+    waiting = [replace(row, outcome="waits", gap_end_rel=None) if row.case == CASES[2] else row for row in rows()]
+    found = relations(needy, waiting)[0]
+    assert (found.judged, found.not_judged, found.holds) == (4, 0, True)
+
+
 def test_a_relation_that_judged_nothing_does_not_hold():
     found = related({"kind": "equal", "within": 1}, [replace(row, gap_end_rel=None) for row in rows()])
     assert (found.judged, found.not_judged, found.holds) == (0, 2, False)
@@ -55,6 +86,12 @@ def test_outcomes_against_expectations():
     assert judge(replace(row), test).as_expected and not judge(replace(row, outcome="newton_stall"), test).as_expected
     idle = judge(replace(row, contacts=0), test)
     assert not idle.as_expected and "no contact" in idle.detail
+    test.data["expect"][0]["outcomes"] = ["not_valid", "unproven", "newton_stall"]
+    for outcome in ("not_valid", "unproven"):  # these came to the end as well
+        idle = judge(replace(row, outcome=outcome, contacts=0), test)
+        assert not idle.as_expected and "no contact" in idle.detail and judge(replace(row, outcome=outcome), test).as_expected
+    assert judge(replace(row, outcome="newton_stall", contacts=0), test).as_expected  # contacts are counted at step ends, and it has none
+    test.data["expect"][0]["outcomes"] = ["ok"]
     test.data["contacts"] = False
     assert judge(replace(row, contacts=0), test).as_expected
 
@@ -126,6 +163,21 @@ def test_the_table_is_read_as_it_was_written(tmp_path):
     result = Result(rows(newton=7), [Count("S02", "c", "float", 4, {"early": 1}, 2, "r", {"early": 2}, True)], [related({"kind": "rises"}, rows((1.0, 2.0, 3.0)))], {"date": "2024-01-31", "seconds": 1.5})
     write({"M09": result}, tmp_path / "t.json")
     assert read(tmp_path / "t.json") == {"M09": result} and read(tmp_path / "none.json") == {}
+
+
+@pytest.mark.parametrize("kept", ['{"schema": "barrierbench.stress_res', '{"schema": "barrierbench.stress_results/1"}', "[]", '{"schema": "barrierbench.stress_results/1", "columns": [], "tests": {"M09": 3}}'])
+def test_a_torn_table_is_refused(tmp_path, monkeypatch, capsys, kept):
+    file = tmp_path / "stress.json"
+    file.write_text(kept)
+    with pytest.raises(StressError, match="stress.json: .*remove it, then ./bench stress"):
+        read(file)
+    monkeypatch.setattr(verb, "FILE", file)
+    assert verb.main(["M09", "--no-run"]) == 2 and "stress.json" in capsys.readouterr().err
+
+
+def test_what_is_missing_is_named_with_its_file(tmp_path, capsys):
+    assert verb.main(["M09", "--no-run", "--full", "--runs", str(tmp_path)]) == 2
+    assert f"{tmp_path / 'full' / 'stress.json'}: nothing kept of M09: ./bench stress M09 --full" in capsys.readouterr().err
 
 
 def test_what_was_not_expected_stands_in_the_page_and_on_the_terminal():

@@ -1,5 +1,6 @@
 """The verb as a user runs it, on a small spec; what it refuses; the page and the spec as committed."""
 
+import hashlib
 import json
 from pathlib import Path
 
@@ -35,6 +36,7 @@ def test_a_small_spec_is_run_judged_and_kept(run, tmp_path, capsys):
     said = capsys.readouterr()
     assert "stack: 12 runs" in said.err and "third" in said.out
     table = json.loads((tmp_path / "out/work_precision.json").read_text())
+    assert table["spec_sha256"] == hashlib.sha256((tmp_path / "spec.json").read_bytes()).hexdigest()
     rows = table["scenes"][0]["rows"]
     assert len(rows) == 2 * 3 * 2 and {r["formulation"] for r in rows} == {"log", "third"}
     thin = {(r["formulation"], r["solver"]): r for r in rows if r["axis"] == "d_hat_m"}
@@ -121,6 +123,66 @@ def test_files_that_are_none(tmp_path, capsys):
     assert verb.main([str(tmp_path / "torn.json")]) == 2 and "not JSON" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("base, said", [
+    ([], "/: found []; allowed: an object: a config with a scene"),
+    ("torn", "not JSON"),
+    ({"formulation": "log"}, "/scene: found null; allowed: an object"),
+    ({"scene": {"gravity_m_per_s2": "x"}}, '/scene/gravity_m_per_s2: found "x"; allowed: a number >= 0 or an array of three numbers'),
+    ({"scene": {"gravity_m_per_s2": None}}, "/scene/gravity_m_per_s2: found null; allowed: a number >= 0"),
+    ({"scene": {"gravity_m_per_s2": True}}, "/scene/gravity_m_per_s2: found true; allowed: a number >= 0"),
+    ({"scene": {"gravity_m_per_s2": [0, "x", 0]}}, '/scene/gravity_m_per_s2: found [0, "x", 0]; allowed: a number >= 0'),
+    ({"scene": {"gravity_m_per_s2": [9.81]}}, "/scene/gravity_m_per_s2: found [9.81]; allowed: a number >= 0"),
+    ({"scene": {"gravity_m_per_s2": -1}}, "/scene/gravity_m_per_s2: found -1; allowed: a number >= 0"),
+])
+def test_a_base_whose_gravity_cannot_be_read_is_told_with_its_place(tmp_path, base, said):
+    (tmp_path / "base.json").write_text(base if base == "torn" else json.dumps(base))
+    with pytest.raises(SpecError) as told:
+        read_spec(write(tmp_path, {**SPEC, "scenes": [{**SCENE, "base": "base.json"}]}))
+    assert f"{tmp_path / 'base.json'}: {said}" in str(told.value)
+
+
+@pytest.mark.parametrize("given, gravity", [
+    ({"/scene/gravity_m_per_s2": [0, 3, -4]}, 5), ({"/scene/gravity_m_per_s2": 0}, 0), ({"/scene/gravity_m_per_s2/2": -2}, 2), ({"/scene": {"name": "hang"}}, 9.81),
+    ({"/scene": {"name": "bodies", "gravity_m_per_s2": [0, 0, -1]}}, 1), ({"/scene/name": "hang"}, 9.81), ({"/scene/name": "bodies"}, 9.8), ({"/scene/planar": False}, 9.8)])
+def test_the_gravity_that_a_scene_sets_counts(tmp_path, given, gravity):
+    """Tolerances are in units of the fall of a step: of the gravity that the run has."""
+    (tmp_path / "base.json").write_text(json.dumps({"scene": {"name": "bodies", "gravity_m_per_s2": [0, 0, -9.8]}}))
+    scene, = read_spec(write(tmp_path, {**SPEC, "scenes": [{**SCENE, "base": "base.json", "set": given}]})).scenes
+    assert scene.gravity == pytest.approx(gravity)
+    assert scene.tolerance(0.01, 10.0, 0.1) == pytest.approx(0.01 * (0.05 * gravity if gravity else 100))
+
+
+@pytest.mark.parametrize("given, said", [
+    ({"/scene/gravity_m_per_s2": "x"}, '/scenes/0/set/scene/gravity_m_per_s2: found "x"; allowed: a number >= 0 or an array of three numbers'),
+    ({"/scene/gravity_m_per_s2/3": 1}, "/scenes/0/set/scene/gravity_m_per_s2/3: found 1; allowed: a place in [0, 0, -9.81]"),
+    ({"/scene/gravity_m_per_s2/1": "x"}, '/scenes/0/set/scene/gravity_m_per_s2/1: found [0, "x", -9.81]; allowed: a number >= 0'),
+    ({"/scene": 7}, "/scenes/0/set/scene: found 7; allowed: an object"),
+])
+def test_a_gravity_that_a_scene_cannot_set_is_told_with_its_place(tmp_path, given, said):
+    file = write(tmp_path, {**SPEC, "scenes": [{**SCENE, "set": given}]})
+    with pytest.raises(SpecError) as told:
+        read_spec(file)
+    assert f"{file}: {said}" in str(told.value)
+
+
+def test_numbers_of_another_spec_are_refused(tmp_path, capsys):
+    """A page of numbers that the spec no longer asks for would say what was never run."""
+    file = write(tmp_path, SPEC)
+    out = tmp_path / "out"
+    out.mkdir()
+    kept = json.loads((ROOT / "results/work_precision.json").read_text())
+    kept["scenes"] = kept["scenes"][:1]
+    words = [str(file), "--no-run", "--runs", str(tmp_path / "runs"), "--out", str(out)]
+    for sha in ({}, {"spec_sha256": "0" * 64}, {"spec_sha256": None}):
+        (out / "work_precision.json").write_text(json.dumps({**{k: v for k, v in kept.items() if k != "spec_sha256"}, **sha}))
+        assert verb.main(words) == 2
+        said = capsys.readouterr().err
+        assert "/spec_sha256: found" in said and f"its numbers are of another spec; ./bench work-precision {file}" in said and read_spec(file).sha256 in said
+        assert not (out / "WORK_PRECISION.md").exists() and not list(out.glob("*.png"))
+    (out / "work_precision.json").write_text(json.dumps({**kept, "spec_sha256": read_spec(file).sha256}))
+    assert verb.main(words) == 0 and (out / "WORK_PRECISION.md").is_file()
+
+
 def test_what_the_program_refuses_is_passed_on(run, capsys):
     assert run({**SPEC, "formulations": ["logg"]}) == 2
     assert "scene stack: the program ended with 2" in (said := capsys.readouterr().err) and "logg" in said
@@ -134,6 +196,7 @@ def test_an_error_that_a_scene_does_not_have(run, capsys):
 def test_the_committed_spec_and_page():
     spec = read_spec(verb.DEFAULT)
     table = verb.read_table(ROOT / "results" / "work_precision.json")
+    assert table["spec_sha256"] == spec.sha256
     assert [scene["name"] for scene in table["scenes"]] == [scene.name for scene in spec.scenes]
     for scene, kept in zip(spec.scenes, table["scenes"]):
         wanted = {(f.label, v.axis, v.factor, s) for f in spec.formulations for v in scene.variations for s in ("direct", "pcg")}
