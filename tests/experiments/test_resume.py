@@ -219,3 +219,54 @@ def test_a_time_limit_is_an_outcome(program, config, tmp_path):
     assert record["summary"]["wall_s"] > 0 and not (tmp_path / "run/checkpoint.bin").exists()
     refused(bench(program, "run", config, "--time-limit", "0"), "--time-limit", code=2)
 
+
+
+def test_a_record_that_time_ended_gives_way(program, config, tmp_path):
+    out = tmp_path / "out"
+    assert bench(program, "run", config, "--out", out, "--time-limit", "1e-6").returncode == 0
+    assert json.loads((out / "run.json").read_text())["status"]["outcome"] == "timeout"
+    again = bench(program, "run", config, "--out", out, "--resume")
+    assert again.returncode == 0 and "already there" not in again.stdout
+    assert json.loads((out / "run.json").read_text())["status"]["outcome"] == "ok"
+    assert "already there" in bench(program, "run", config, "--out", out, "--resume").stdout
+
+
+@pytest.mark.parametrize("spoil", ["gone", "another byte"])
+def test_a_frame_that_is_not_as_it_was_is_refused_and_the_others_stay(program, config, tmp_path, spoil):
+    out, more = tmp_path / "out", settings({"/output/frames_every": 1, "/passes/time": False})
+    process = start(program, config, out, *more)
+    assert run_to_checkpoint(process, out, 2)
+    process.kill()
+    process.communicate()
+    frames = sorted((out / "frames.part").iterdir())
+    assert len(frames) >= 3
+    victim, kept = out / "frames.part/step_000000.ply", tmp_path / "kept.ply"
+    kept.write_bytes(victim.read_bytes())
+    if spoil == "gone":
+        victim.unlink()
+    else:
+        victim.write_bytes(kept.read_bytes()[:-1] + bytes([kept.read_bytes()[-1] ^ 1]))
+    told = bench(program, "run", config, "--out", out, *more, "--resume")
+    assert told.returncode == 2 and "step_000000.ply" in told.stderr
+    victim.write_bytes(kept.read_bytes())
+    assert sorted((out / "frames.part").iterdir()) == frames
+    assert bench(program, "run", config, "--out", out, *more, "--resume").returncode == 0
+    assert not (out / "frames.part").exists()
+
+
+def test_an_attempt_that_failed_leaves_neither_matrices_nor_samples(program, config, tmp_path):
+    more = settings({**CASES["bdf2 with retries"], "/passes/diagnose": True, "/output/matrices": True, "/passes/time": False})
+    assert bench(program, "run", config, "--out", tmp_path / "out", *more).returncode == 0
+    record = json.loads((tmp_path / "out/run.json").read_text())
+    rows = [json.loads(line) for line in (tmp_path / "out/trace.jsonl").read_text().splitlines()]
+    last = {}  # step -> iterations of its last attempt
+    for row in rows:
+        last[row["step"]] = row["iteration"] + 1
+    assert record["summary"]["retries"] > 0 and len(rows) > sum(last.values())
+    names = [a["path"] for a in record["artifacts"] if a["kind"] == "matrix"]
+    assert names
+    for name in names:
+        step, iteration = (int(part) for part in Path(name).stem.removesuffix("_exact").removeprefix("step_").split("_iteration_"))
+        assert iteration < last[step], name
+    assert sorted(str(p.relative_to(tmp_path / "out")) for p in (tmp_path / "out/matrices").glob("*.mtx")) == sorted(names)
+    assert record["summary"]["cond"]["full/none"]["log10_cond"]["n"] == sum(last.values())
