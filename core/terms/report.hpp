@@ -24,7 +24,8 @@ struct StepNumbers : StepRecord {
   double kappa_change = 0, limit_kappa_change = 0;  // of the last iteration, max/min - 1
   /// Last iterations in a row in which a contact's kappa, a limited element's, changed by more than 1 %.
   int kappa_unsettled = 0, limit_kappa_unsettled = 0;
-  std::string contact_overload_at, limit_overload_at;  // the pair, the element, with the largest; may be empty
+  std::string contact_overload_at,
+      limit_overload_at;  // the pair, the element, with the largest; may be empty
 
   StepNumbers();
   /// Loads are measured from here on: 0 where no term says more.
