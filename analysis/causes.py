@@ -9,12 +9,12 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import os
 import subprocess
 import sys
 from pathlib import Path
 
-from .load import LARGEST_COND, RecordError, read_record
+from .load import LARGEST_COND, RecordError, read_record, trace_lines
+from .program import built_program
 from .text_table import aligned
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -29,23 +29,15 @@ class CausesError(ValueError):
 
 
 def program() -> str:
-    return os.environ.get("BARRIERBENCH_PROGRAM", str(ROOT / "build/release/experiments/barrierbench"))
+    return str(built_program(CausesError))
 
 
 def read_trace(folder: Path) -> list[dict]:
-    """The lines of a trace; a torn last one is left out and said. Raises CausesError."""
+    """The lines of a trace; a torn last one is left out and said. Raises CausesError, RecordError."""
     path = folder / "trace.jsonl"
     if not path.exists():
         raise CausesError(f"{path}: not there; allowed: a run with the pass diagnose, e.g. ./bench causes CONFIG.json")
-    rows, lines = [], path.read_text().splitlines()
-    for number, line in enumerate(lines, 1):
-        try:
-            rows.append(json.loads(line))
-        except json.JSONDecodeError:
-            if number != len(lines):
-                raise CausesError(f"{path}:{number}: not JSON") from None
-            print(f"{path}:{number}: torn last line left out", file=sys.stderr)
-    return rows
+    return trace_lines(path)
 
 
 def clamped(row: dict) -> dict[tuple[str, str], dict]:

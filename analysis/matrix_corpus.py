@@ -9,12 +9,13 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import os
 import shutil
 import subprocess
 import sys
 import tempfile
 from pathlib import Path
+
+from .program import built_program
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = "barrierbench.matrix_corpus/1"
@@ -43,7 +44,7 @@ class CorpusError(ValueError):
 
 
 def program() -> str:
-    return os.environ.get("BARRIERBENCH_PROGRAM", str(ROOT / "build/release/experiments/barrierbench"))
+    return str(built_program(CorpusError))
 
 
 def read_spec(path: Path) -> dict:

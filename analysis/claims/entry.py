@@ -10,6 +10,8 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
+from ..program import read_object
+
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "claims"
 NAME = "barrierbench.claim/1"
@@ -61,15 +63,7 @@ class Sweep:
 
 
 def _read(path: Path) -> dict:
-    try:
-        data = json.loads(path.read_text())
-    except OSError as error:
-        raise ClaimError(f"{path}: {error.strerror}") from None
-    except ValueError as error:
-        raise ClaimError(f"{path}: not JSON: {error}") from None
-    if not isinstance(data, dict):
-        raise ClaimError(f"{path}: not an object")
-    return data
+    return read_object(path, ClaimError)
 
 
 def order(name: str) -> tuple:

@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import json
-import os
 import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..program import built_program
 from .records import Run, read_run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -52,10 +52,7 @@ def read_set(name: str) -> list[Case]:
 
 
 def program() -> Path:
-    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
-    if not path.exists():
-        raise GateError(f"{path} is not built: ./bench build")
-    return path
+    return built_program(GateError)
 
 
 def command(case: Case, out: Path, threads: int, more: dict) -> list[str]:

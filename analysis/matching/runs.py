@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import os
 import subprocess
 import tempfile
 from collections.abc import Iterator
@@ -14,8 +13,10 @@ from pathlib import Path
 from ..claims.metrics import METRICS
 from ..gate.configs import differences
 from ..load import RecordError, read_record
+from ..program import built_program
+from ..program import read_object as read_json_object
 from . import formulations
-from .formulations import ROOT, MatchError, known
+from .formulations import MatchError, known
 
 # What formulations may differ in; everything else of two configs has to be equal.
 OF_A_FORMULATION = ("/formulation/name", "/formulation/shape", "/formulation/argument", "/formulation/stiffness_policy/", "/strain_limit/shape",
@@ -72,23 +73,12 @@ def inputs_sha256(made: Sweep, overrides: list[str] | None = None) -> str:
 
 
 def program() -> str:
-    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
-    if not path.exists():
-        raise MatchError(f"{path} is not built: ./bench build")
-    return str(path)
+    return str(built_program(MatchError))
 
 
 def read_object(path: Path) -> dict:
     """A JSON object from a file; MatchError says what it is instead."""
-    try:
-        data = json.loads(path.read_text())
-    except OSError as error:
-        raise MatchError(f"{path}: {error.strerror}") from None
-    except ValueError as error:
-        raise MatchError(f"{path}: not JSON: {error}") from None
-    if not isinstance(data, dict):
-        raise MatchError(f"{path}: not a JSON object")
-    return data
+    return read_json_object(path, MatchError)
 
 
 def run(made: Sweep, out: Path, overrides: list[str] | None = None) -> None:
@@ -136,12 +126,12 @@ def collect(made: Sweep, out: Path) -> dict[str, dict]:
     return found
 
 
-def check_equal(records: dict[str, dict], apart: tuple[str, ...] = ()) -> None:
-    """Refuses records whose configs differ in more than a formulation and the settings in `apart`."""
+def check_equal(records: dict[str, dict]) -> None:
+    """Refuses records whose configs differ in more than a formulation."""
     notes = list(records)
     for note in notes[1:]:
         found = differences(records[notes[0]]["config"], records[note]["config"])
-        if unlike := [line for line in found if not line.startswith(OF_A_FORMULATION + apart)]:
+        if unlike := [line for line in found if not line.startswith(OF_A_FORMULATION)]:
             raise MatchError(f"{notes[0]!r} and {note!r} are not runs of the same config: {unlike[0]}")
 
 

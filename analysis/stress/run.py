@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import json
 import math
-import os
 import re
 import resource
 import signal
@@ -13,6 +12,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..load import RecordError, read_record
+from ..program import built_program
 from ..whole_file import write_whole
 from .entry import ROOT, Case, Formulation, StressError, Test
 
@@ -55,10 +55,7 @@ METRICS = ("newton", "linear", "contacts", "gap_min_rel", "gap_min_ulps", "gap_e
 
 
 def program() -> Path:
-    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
-    if not path.exists():
-        raise StressError(f"{path} is not built: ./bench build")
-    return path
+    return built_program(StressError)
 
 
 def config_schema() -> dict:

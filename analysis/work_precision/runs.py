@@ -15,6 +15,7 @@ from ..accuracy.reference import CLOSED_FORMS, NoReference, Reference, measure, 
 from ..accuracy.state import Motion, read_motion
 from ..frames import FrameError
 from ..load import RecordError, read_record
+from ..program import built_program
 from ..whole_file import write_whole
 from .spec import REFERENCE_D_HAT, ROOT, SOLVERS, Scene, Spec, SpecError
 
@@ -23,10 +24,7 @@ ID_DIGITS = 16
 
 
 def program() -> str:
-    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
-    if not path.exists():
-        raise SpecError(f"{path} is not built: ./bench build; --no-run makes the page of the numbers that are kept")
-    return str(path)
+    return str(built_program(SpecError, "; --no-run makes the page of the numbers that are kept"))
 
 
 def sweep_name(spec: Spec, scene: Scene) -> str:

@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 
 from analysis import causes
+from analysis.program import RELEASE
 from synthetic import write_run
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -65,7 +66,7 @@ def test_a_torn_last_line_is_left_out(tmp_path, capsys):
 
 
 def test_a_stiff_contact_of_a_run_is_named(tmp_path, capsys):
-    if not Path(causes.program()).exists():
+    if not RELEASE.exists():
         pytest.skip("the program is not built")
     words = ["--set", "/time/steps=20", "--set", "/formulation=cubic", "--set", "/formulation/stiffness_policy={\"name\": \"fixed\", \"kappa_N_per_m\": 1e6}", "--out", str(tmp_path / "run")]
     assert causes.main([str(ROOT / "configs/scenes/resting_block_1d.json"), *words]) == 0
