@@ -1,0 +1,121 @@
+// What a kernel is written in. A kernel is a named struct of numbers and raw pointers, trivially copyable, with
+//   each:    BB_HD void operator()(Index i) const                                          one item
+//   blocks:  template <class Block> BB_HD void operator()(Block&, Shared&, Index b) const  256 threads, one block;
+//            Shared is a member type: what the threads of a block share
+// The same struct runs on host threads, in any order of items, blocks and threads, and on the device (executor.hpp).
+// So that the order never changes a bit: an item writes its own slots; floating-point sums are trees that the kernel
+// spells out (fold, Tile::sum) and a function of the sizes alone; atomics are on integers.
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "core/math/types.hpp"
+
+namespace bb::exec {
+
+using Index = std::int64_t;
+using Key = std::uint64_t;
+constexpr int block_threads = 256;
+
+/// One value a lane, on the host.
+template <class T, int W>
+struct LaneValues {
+  T of[W];
+};
+
+/// W neighbouring threads of a warp, W a power of two up to 32. The device's is in device_block.cuh.
+template <int W>
+struct HostTile {
+  /// f(lane) of every lane.
+  template <class F>
+  auto lanes(const F& f) const {
+    LaneValues<decltype(f(0)), W> out;
+    for (int lane = 0; lane < W; ++lane) out.of[lane] = f(lane);
+    return out;
+  }
+  /// The sum over the lanes, in every lane: a butterfly, halves first.
+  template <class T>
+  T sum(LaneValues<T, W> values) const {
+    for (int distance = W / 2; distance > 0; distance /= 2) {
+      const LaneValues<T, W> before = values;
+      for (int lane = 0; lane < W; ++lane) values.of[lane] = before.of[lane] + before.of[lane ^ distance];
+    }
+    return values.of[0];
+  }
+  /// f() in one lane.
+  template <class F>
+  void once(const F& f) const {
+    f();
+  }
+};
+
+/// The threads of a block. Between two calls lies a barrier: what a call wrote to Shared, the next one reads.
+struct HostBlock {
+  const int* order;  // [256] in which threads run
+  /// f(thread) of all threads.
+  template <class F>
+  void threads(const F& f) const {
+    for (int i = 0; i < block_threads; ++i) f(order[i]);
+  }
+  /// f(tile, number of the tile) of all 256/W tiles.
+  template <int W, class F>
+  void tiles(const F& f) const {
+    const HostTile<W> tile;
+    for (int i = 0; i < block_threads; ++i) {
+      if (order[i] < block_threads / W) f(tile, order[i]);
+    }
+  }
+};
+
+/// a[0] = sum of a[0, n), n a power of two up to 256, a in shared memory: a tree, halves first.
+template <class Block, class T>
+BB_HD void fold(Block& block, T* a, int n) {
+  for (int half = n / 2; half > 0; half /= 2) {
+    block.threads([=](int t) {
+      if (t < half) a[t] = a[t] + a[t + half];
+    });
+  }
+}
+
+/// The bits of x >= 0, which compare as x does.
+BB_HD inline Key ordered_bits(double x) {
+  Key bits;
+  memcpy(&bits, &x, sizeof bits);
+  return bits;
+}
+BB_HD inline double from_ordered_bits(Key bits) {
+  double x;
+  memcpy(&x, &bits, sizeof x);
+  return x;
+}
+
+// In global memory; relaxed. The result of many is the same in any order.
+BB_HD inline void atomic_min(Key* at, Key value) {
+#ifdef __CUDA_ARCH__
+  atomicMin(reinterpret_cast<unsigned long long*>(at), static_cast<unsigned long long>(value));
+#else
+  Key old = __atomic_load_n(at, __ATOMIC_RELAXED);
+  while (value < old &&
+         !__atomic_compare_exchange_n(at, &old, value, true, __ATOMIC_RELAXED, __ATOMIC_RELAXED)) {
+  }
+#endif
+}
+BB_HD inline void atomic_or(std::uint32_t* at, std::uint32_t bits) {
+#ifdef __CUDA_ARCH__
+  atomicOr(at, bits);
+#else
+  __atomic_fetch_or(at, bits, __ATOMIC_RELAXED);
+#endif
+}
+/// @return what was there before: for "the second one to arrive".
+BB_HD inline std::uint32_t atomic_add(std::uint32_t* at, std::uint32_t value) {
+#ifdef __CUDA_ARCH__
+  __threadfence();
+  return atomicAdd(at, value);
+#else
+  return __atomic_fetch_add(at, value, __ATOMIC_ACQ_REL);
+#endif
+}
+
+}  // namespace bb::exec

@@ -1,0 +1,55 @@
+// What an executor knows of a kernel type: its name, its size, and how host threads run a range of it.
+#pragma once
+
+#include <string>
+#include <type_traits>
+#include <typeinfo>
+
+#include "core/exec/kernel.hpp"
+
+namespace bb::exec {
+
+/// The items or blocks order[begin] to order[end - 1] (order null: begin to end - 1) of the kernel at f, on the calling
+/// thread; threads [256]: the order of threads within a block.
+using RunRange = void (*)(const void* f, const Index* order, Index begin, Index end, const int* threads);
+
+struct KernelInfo {
+  const std::type_info& type;
+  std::size_t bytes;  // of the struct
+  bool blocks;        // else each
+  RunRange run;
+  /// As C++ writes it: "bb::resident::SpmvDot".
+  std::string name() const;
+};
+
+namespace detail {
+template <class F>
+void run_each(const void* f, const Index* order, Index begin, Index end, const int*) {
+  const F& kernel = *static_cast<const F*>(f);
+  for (Index i = begin; i < end; ++i) kernel(order ? order[i] : i);
+}
+template <class F>
+void run_blocks(const void* f, const Index* order, Index begin, Index end, const int* threads) {
+  const F& kernel = *static_cast<const F*>(f);
+  for (Index i = begin; i < end; ++i) {
+    typename F::Shared shared;
+    const HostBlock block{threads};
+    kernel(block, shared, order ? order[i] : i);
+  }
+}
+}  // namespace detail
+
+template <class F>
+const KernelInfo& each_info() {
+  static_assert(std::is_trivially_copyable_v<F> && sizeof(F) <= 4000, "a kernel travels as its bytes");
+  static const KernelInfo info{typeid(F), sizeof(F), false, &detail::run_each<F>};
+  return info;
+}
+template <class F>
+const KernelInfo& blocks_info() {
+  static_assert(std::is_trivially_copyable_v<F> && sizeof(F) <= 4000, "a kernel travels as its bytes");
+  static const KernelInfo info{typeid(F), sizeof(F), true, &detail::run_blocks<F>};
+  return info;
+}
+
+}  // namespace bb::exec
