@@ -1,0 +1,62 @@
+#include "core/resident/contact/resident_surface.hpp"
+
+#include <string>
+
+namespace bb::resident {
+
+template <int N>
+ResidentPrimitives<N>::ResidentPrimitives(exec::Executor& executor, const char* name,
+                                          const Primitives<N>& from)
+    : vertex(executor, std::string(name) + " vertices"),
+      d_hat(executor, std::string(name) + " d_hat"),
+      offset(executor, std::string(name) + " offset"),
+      free(executor, std::string(name) + " free") {
+  std::vector<double> column(from.size());
+  vertex.upload({from.vertices.empty() ? nullptr : from.vertices[0].data(), N * from.size()});
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = from.side[i].d_hat;
+  d_hat.upload(column);
+  for (std::size_t i = 0; i < column.size(); ++i) column[i] = from.side[i].offset;
+  offset.upload(column);
+  free.upload(from.free);
+}
+
+namespace {
+
+std::vector<PlainObstacle> plain(const std::vector<Obstacle>& obstacles) {
+  std::vector<PlainObstacle> out;
+  for (const Obstacle& o : obstacles) {
+    out.push_back({{o.point[0], o.point[1], o.point[2]},
+                   {o.axis[0], o.axis[1], o.axis[2]},
+                   o.radius,
+                   o.kind,
+                   o.inside});
+  }
+  return out;
+}
+
+}  // namespace
+
+ResidentSurface::ResidentSurface(exec::Executor& executor, const Scene& scene, const Surface& surface)
+    : points_(executor, "surface points", surface.points),
+      edges_(executor, "surface edges", surface.edges),
+      triangles_(executor, "surface triangles", surface.triangles),
+      vertex_free_(executor, "surface vertex free"),
+      body_(executor, "surface body"),
+      rest_(executor, "surface rest positions"),
+      obstacles_(executor, "obstacles") {
+  vertex_free_.upload(surface.vertex_free);
+  body_.upload(scene.body);
+  rest_.upload({scene.rest.data(), static_cast<std::size_t>(scene.rest.size())});
+  obstacles_.upload(plain(scene.obstacles));
+}
+
+SurfaceView ResidentSurface::view() const {
+  return {points_.view(), edges_.view(), triangles_.view(), vertex_free_.data(),
+          body_.data(),   rest_.data(),  obstacles_.data(), static_cast<int>(obstacles_.size())};
+}
+
+template struct ResidentPrimitives<1>;
+template struct ResidentPrimitives<2>;
+template struct ResidentPrimitives<3>;
+
+}  // namespace bb::resident

@@ -1,0 +1,87 @@
+// The collision primitives of a scene in an executor's memory: core/contact/surface.hpp as columns. Constant over a run.
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "core/contact/obstacle.hpp"
+#include "core/contact/surface.hpp"
+#include "core/exec/buffer.hpp"
+
+namespace bb::resident {
+
+using exec::Index;
+using exec::Key;
+
+/// What a kernel reads of primitives with N vertices each.
+template <int N>
+struct PrimitiveView {
+  const int* vertex;             // [N n] global ids; edges ascending
+  const double *d_hat, *offset;  // [n] m
+  const std::uint8_t* free;      // [n] 1 when at least one vertex is free
+  Index n;
+};
+
+template <int N>
+struct ResidentPrimitives {
+  ResidentPrimitives(exec::Executor& executor, const char* name, const Primitives<N>& from);
+  PrimitiveView<N> view() const {
+    return {vertex.data(), d_hat.data(), offset.data(), free.data(), free.size()};
+  }
+
+  exec::Buffer<int> vertex;
+  exec::Buffer<double> d_hat, offset;
+  exec::Buffer<std::uint8_t> free;
+};
+
+/// An obstacle as plain numbers.
+struct PlainObstacle {
+  double point[3], axis[3], radius;
+  ObstacleKind kind;
+  bool inside;
+  BB_HD AnalyticSurface<double> surface() const {
+    return {kind, Vec3d(point[0], point[1], point[2]), Vec3d(axis[0], axis[1], axis[2]), radius, inside};
+  }
+};
+
+/// Everything that finding and evaluating pairs reads of the surface, by value in kernels.
+struct SurfaceView {
+  PrimitiveView<1> points;
+  PrimitiveView<2> edges;
+  PrimitiveView<3> triangles;
+  const std::uint8_t* vertex_free;  // [n_vertices]
+  const int* body;                  // [n_vertices]
+  const double* rest;               // [3 n_vertices] m
+  const PlainObstacle* obstacles;
+  int n_obstacles;
+};
+
+/// The scene and the surface are read in the constructor only. Errors: OutOfMemory.
+class ResidentSurface {
+ public:
+  ResidentSurface(exec::Executor& executor, const Scene& scene, const Surface& surface);
+  SurfaceView view() const;
+
+ private:
+  ResidentPrimitives<1> points_;
+  ResidentPrimitives<2> edges_;
+  ResidentPrimitives<3> triangles_;
+  exec::Buffer<std::uint8_t> vertex_free_;
+  exec::Buffer<int> body_;
+  exec::Buffer<double> rest_;
+  exec::Buffer<PlainObstacle> obstacles_;
+};
+
+/// Candidate pairs: first << 32 | second, indices into the primitives of the surface, each list ascending; obstacle:
+/// (point, obstacle). The lists are those of BroadPhase::update, or hold them.
+struct ResidentCandidates {
+  explicit ResidentCandidates(exec::Executor& executor)
+      : point_point(executor, "candidates point-point"),
+        point_edge(executor, "candidates point-edge"),
+        point_triangle(executor, "candidates point-triangle"),
+        edge_edge(executor, "candidates edge-edge"),
+        obstacle(executor, "candidates obstacle") {}
+  exec::Buffer<Key> point_point, point_edge, point_triangle, edge_edge, obstacle;
+};
+
+}  // namespace bb::resident
