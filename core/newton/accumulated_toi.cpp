@@ -22,9 +22,9 @@ class AccumulatedToi final : public StepSolver {
         min_newton_steps_(integer(options.parameters, "min_newton_steps")) {}
   std::string_view name() const override { return "accumulated_toi"; }
 
-  StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
+  StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
-    StepReport step = start_step(system, task, used, target_);
+    StepReport step = start_step(system, task, used);
     step.dt_s = 0;  // until a part of it is reached
     double beta = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
@@ -43,27 +43,27 @@ class AccumulatedToi final : public StepSolver {
 
  private:
   // One assemble, solve, bound, move. Returns the fraction of the Newton direction that was taken.
-  double iterate(NewtonSystem& system, StepReport& step, int step_index, int iteration,
+  double iterate(StepSystem& system, StepReport& step, int step_index, int iteration,
                  StepObserver& observer) {
     IterationReport report = begin_iteration(system, step_index, iteration);
-    find_direction(system, target_, dx_, report, observer);
+    find_direction(system, report, observer);
     if (const auto failed = direction_failure(report, false)) {
-      fail_step(system, dx_, step, *failed, report);
+      fail_step(system, step, *failed, report);
       finish_iteration(system, step, report, observer);
       return 0;
     }
-    const double largest = dx_.colwise().norm().maxCoeff();
+    const double largest = system.direction_size().vertex_m;
     const double scale = largest > max_dx ? max_dx / largest : 1.0;
-    dx_ *= scale;
+    system.scale_direction(scale);
     const double alpha = feasible_step(system, report);
     report.alpha = scale * alpha;
     const bool moved = alpha > 0;
     if (moved) system.accept();
     finish_iteration(system, step, report, observer);
     if (moved) {
-      observer.on_motion(x_before_, system.x(), step_index);
+      show_motion(system, step_index, observer);
     } else {
-      step.status = poses_reached(system, target_) ? StepStatus::step_collapse : StepStatus::pin_infeasible;
+      step.status = system.at_target() ? StepStatus::step_collapse : StepStatus::pin_infeasible;
       step.detail = describe_bound(system);
     }
     return report.alpha;
@@ -71,29 +71,25 @@ class AccumulatedToi final : public StepSolver {
 
   // Bounds `extension` times the motion and takes that fraction of the motion itself, which backs
   // off from contact.
-  double feasible_step(NewtonSystem& system, IterationReport& report) {
-    x_before_ = system.x();
-    dx_ *= extension;
-    x_trial_.noalias() = x_before_ + dx_;
-    system.prepare(x_trial_, dx_, true);
-    double alpha = system.bound(x_trial_, dx_, report);
+  double feasible_step(StepSystem& system, IterationReport& report) {
+    system.scale_direction(extension);
+    system.prepare_motion(MotionEnd::free, true);
+    double alpha = system.bound_motion(report);
     for (; alpha > 0; alpha = alpha < 1e-14 ? 0 : alpha / 2) {
-      x_trial_.noalias() = x_before_ + (alpha / extension) * dx_;
       ++report.line_search_trials;
-      if (system.try_state(x_trial_)) break;
+      if (system.try_motion(alpha / extension)) break;
     }
     return alpha;
   }
 
   // The last pass: the prediction belongs to the time that was reached.
-  void reduce_error(NewtonSystem& system, StepReport& step, const StepTask& task, Prediction& used,
+  void reduce_error(StepSystem& system, StepReport& step, const StepTask& task, Prediction& used,
                     int iteration, StepObserver& observer) {
     {
       const ScopedPhase timer(system.clock(), Phase::prediction);
       task.integrator->predict(*task.history, step.dt_s, used);
       system.restart_step(used, step.dt_s);
-      target_ = system.x();
-      task.pose(step.dt_s, target_);
+      aim_at_poses(system, task, step.dt_s);
     }
     step.status = StepStatus::converged;
     iterate(system, step, task.step, iteration, observer);
@@ -102,7 +98,6 @@ class AccumulatedToi final : public StepSolver {
   StepSolverOptions options_;
   double target_toi_;
   int min_newton_steps_;
-  Positions target_, dx_, x_before_, x_trial_;
 };
 
 }  // namespace

@@ -18,22 +18,22 @@ class ArticleLiteral final : public StepSolver {
       : options_(options), armijo_(number(options.parameters, "armijo")) {}
   std::string_view name() const override { return "article_literal"; }
 
-  StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
+  StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
-    StepReport step = start_step(system, task, used, target_);
+    StepReport step = start_step(system, task, used);
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);
       system.add_tikhonov(tikhonov_relative, tikhonov_absolute);
-      find_direction(system, target_, dx_, report, observer);
+      find_direction(system, report, observer);
       const bool small = report.dx_inf_m / task.dt < options_.tol_velocity;
       if (const auto failed = direction_failure(report, !small)) {
         finish_iteration(system, step, report, observer);
-        fail_step(system, dx_, step, *failed, report);
+        fail_step(system, step, *failed, report);
         return step;
       }
       const bool moved = backtrack(system, report);
       finish_iteration(system, step, report, observer);
-      if (moved) observer.on_motion(x_before_, system.x(), task.step);
+      if (moved) show_motion(system, task.step, observer);
       if (small || !moved) {
         step.status = small ? StepStatus::converged : StepStatus::line_search_failed;
         return step;
@@ -43,14 +43,11 @@ class ArticleLiteral final : public StepSolver {
   }
 
  private:
-  bool backtrack(NewtonSystem& system, IterationReport& report) {
-    x_before_ = system.x();
-    x_trial_.noalias() = x_before_ + dx_;
-    system.prepare(x_trial_, dx_);
+  bool backtrack(StepSystem& system, IterationReport& report) {
+    system.prepare_motion(MotionEnd::free, false);
     for (double alpha = 1; alpha > smallest_alpha; alpha /= 2) {
-      x_trial_.noalias() = x_before_ + alpha * dx_;
       ++report.line_search_trials;
-      const auto change = system.try_state(x_trial_);
+      const auto change = system.try_motion(alpha);
       if (!change) continue;
       const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
       report.rounding_accepts = !decrease && within_rounding(*change, system.precision());
@@ -65,7 +62,6 @@ class ArticleLiteral final : public StepSolver {
 
   StepSolverOptions options_;
   double armijo_;
-  Positions target_, dx_, x_before_, x_trial_;
 };
 
 }  // namespace

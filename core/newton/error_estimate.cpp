@@ -5,9 +5,9 @@
 
 namespace bb {
 
-void ErrorEstimate::reset(const Positions& x, Precision precision) {
+void ErrorEstimate::reset(double largest, Precision precision) {
   dx_.clear();
-  rounding_ = x.size() == 0 ? 0 : 8 * value_epsilon(precision) * x.cwiseAbs().maxCoeff();
+  rounding_ = 8 * value_epsilon(precision) * largest;
   smallest_ = values_in_float(precision) ? rounding_ : 0;
   contraction_ = Number::missing("first_iteration");
   before_ = 0;

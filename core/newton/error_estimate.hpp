@@ -4,15 +4,14 @@
 #include <vector>
 
 #include "core/math/precision.hpp"
-#include "core/math/types.hpp"
 #include "core/record/number.hpp"
 
 namespace bb {
 
 class ErrorEstimate {
  public:
-  /// A step begins at x [3 x n], m, a state of that precision.
-  void reset(const Positions& x, Precision precision = Precision::full);
+  /// A step begins at a state of that precision whose largest |coordinate| is `largest`, m.
+  void reset(double largest, Precision precision = Precision::full);
   /// The smallest error that a step can be asked for, m: in float the rounding of the coordinates, 0 in double.
   double smallest() const { return smallest_; }
   /// The direction of the next iteration, |dx|_inf in m, solved for up to this part of the residual.

@@ -37,12 +37,17 @@ void fill_work(IterationReport& report) {
 
 }  // namespace
 
-StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& used, Positions& target) {
+void aim_at_poses(StepSystem& system, const StepTask& task, double dt) {
+  Positions target = task.history->x;
+  task.pose(dt, target);
+  system.set_target(target);
+}
+
+StepReport start_step(StepSystem& system, const StepTask& task, Prediction& used) {
   const ScopedPhase timer(system.clock(), Phase::prediction);
   task.integrator->predict(*task.history, task.dt, used);
   system.begin_step(task.history->x, used, task.dt, task.load_factor);
-  target = task.history->x;
-  task.pose(task.dt, target);
+  aim_at_poses(system, task, task.dt);
   StepReport step;
   step.step = task.step;
   step.dt_s = task.dt;
@@ -54,10 +59,9 @@ bool within_rounding(const EnergyChange& change, Precision precision) {
   return std::abs(change.change) <= 64 * value_epsilon(precision) * change.magnitude;
 }
 
-void fail_step(const NewtonSystem& system, const Positions& dx, StepReport& step, StepStatus status,
-               const IterationReport& report) {
+void fail_step(const StepSystem& system, StepReport& step, StepStatus status, const IterationReport& report) {
   step.status = status;
-  if (status == StepStatus::non_finite) step.detail = system.describe_non_finite(dx);
+  if (status == StepStatus::non_finite) step.detail = system.describe_non_finite();
   if (status == StepStatus::not_descent) {
     char text[80];
     std::snprintf(text, sizeof text, "g . dx = %.3g J along the last direction", -2 * report.decrement_J);
@@ -68,7 +72,7 @@ void fail_step(const NewtonSystem& system, const Positions& dx, StepReport& step
   step.detail = std::string(to_string(linear.status)) + (linear.detail.empty() ? "" : ": " + linear.detail);
 }
 
-IterationReport begin_iteration(NewtonSystem& system, int step, int iteration) {
+IterationReport begin_iteration(StepSystem& system, int step, int iteration) {
   IterationReport report;
   report.step = step;
   report.iteration = iteration;
@@ -82,19 +86,11 @@ IterationReport begin_iteration(NewtonSystem& system, int step, int iteration) {
   return report;
 }
 
-void find_direction(NewtonSystem& system, const Positions& target, Positions& dx, IterationReport& report,
-                    StepObserver& observer) {
-  report.solve = system.solve(target, dx);
-  const Positions& gradient = system.gradient();
-  double slope = 0;
-  report.dx_inf_m = 0;
-  for (Eigen::Index i = 0; i < dx.size(); ++i) {
-    if (system.fixed()[static_cast<std::size_t>(i)]) continue;
-    slope += gradient.data()[i] * dx.data()[i];
-    const double size = std::abs(dx.data()[i]);
-    report.dx_inf_m = size > report.dx_inf_m || std::isnan(size) ? size : report.dx_inf_m;
-  }
-  report.decrement_J = -slope / 2;
+void find_direction(StepSystem& system, IterationReport& report, StepObserver& observer) {
+  report.solve = system.find_direction();
+  const DirectionSize size = system.direction_size();
+  report.dx_inf_m = size.inf_m;
+  report.decrement_J = -size.slope_J / 2;
   report.n_free = static_cast<std::size_t>(system.n_free());
   report.nnz = system.nnz();
   observer.on_matrix(system, report.step, report.iteration);
@@ -108,8 +104,7 @@ std::optional<StepStatus> direction_failure(const IterationReport& report, bool 
   return std::nullopt;
 }
 
-void finish_iteration(NewtonSystem& system, StepReport& step, IterationReport& report,
-                      StepObserver& observer) {
+void finish_iteration(StepSystem& system, StepReport& step, IterationReport& report, StepObserver& observer) {
   report.time = system.clock().lap();
   fill_work(report);
   ++step.newton_iterations;
@@ -117,20 +112,19 @@ void finish_iteration(NewtonSystem& system, StepReport& step, IterationReport& r
   observer.on_iteration(report);
 }
 
-bool poses_reached(const NewtonSystem& system, const Positions& target) {
-  for (const Pin& pin : system.scene().pins) {
-    if (system.x().col(pin.vertex) != target.col(pin.vertex)) return false;
-  }
-  return true;
+void show_motion(const StepSystem& system, int step, StepObserver& observer) {
+  if (observer.watches_motions()) observer.on_motion(system.x_before(), system.x(), step);
 }
 
-std::string describe_bound(const NewtonSystem& system) {
+std::string describe_bound(const StepSystem& system) {
   const std::string holder = system.describe_bound();
   return holder.empty() ? "no bound held it" : "held by " + holder;
 }
 
-std::string describe_short_pin(const NewtonSystem& system, const Positions& target) {
+std::string describe_short_pin(const StepSystem& system, const StepTask& task) {
   const Scene& scene = system.scene();
+  Positions target = task.history->x;
+  task.pose(task.dt, target);
   for (const Pin& pin : scene.pins) {
     if (system.x().col(pin.vertex) == target.col(pin.vertex)) continue;
     const int body = scene.body[static_cast<std::size_t>(pin.vertex)];
@@ -140,7 +134,7 @@ std::string describe_short_pin(const NewtonSystem& system, const Positions& targ
   return {};
 }
 
-void measure_end(NewtonSystem& system, StepReport& step) {
+void measure_end(StepSystem& system, StepReport& step) {
   system.report_end(step);
   step.close();
   const bool stalled = step.status == StepStatus::iteration_cap || step.status == StepStatus::step_collapse ||
@@ -153,11 +147,10 @@ void measure_end(NewtonSystem& system, StepReport& step) {
     return;  // what a kappa that moves can carry is no number
   }
   system.assemble();  // the rows that were accepted last and their gradients, of one state
-  Positions dx;       // prescribed vertices stay where they are
-  const bool solved = system.solve(system.x(), dx).linear.status == LinearStatus::ok;
-  if (!solved) dx.setZero();
+  system.hold();
+  const bool solved = system.find_direction().linear.status == LinearStatus::ok;
   step.begin_overload();
-  system.report_overload(dx, step);
+  system.report_overload(solved, step);
 }
 
 }  // namespace bb

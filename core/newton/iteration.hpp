@@ -4,40 +4,39 @@
 #include <optional>
 #include <string>
 
-#include "core/newton/newton_system.hpp"
 #include "core/newton/report.hpp"
 #include "core/newton/step_solver.hpp"
+#include "core/newton/step_system.hpp"
 
 namespace bb {
 
-/// Predicts, hands the step to the system and fills `target` with the end-of-step pose of every vertex. The
-/// report says iteration_cap until something better is known.
-StepReport start_step(NewtonSystem& system, const StepTask& task, Prediction& used, Positions& target);
+/// Predicts and hands the step to the system, with the poses at its end as the target. The report says iteration_cap
+/// until something better is known.
+StepReport start_step(StepSystem& system, const StepTask& task, Prediction& used);
+/// The end-of-step poses of a step of length dt become the target of the system.
+void aim_at_poses(StepSystem& system, const StepTask& task, double dt);
 /// Whether a change of E is noise: below 64 eps sum |terms|, eps of the precision that energies have.
 bool within_rounding(const EnergyChange& change, Precision precision = Precision::full);
 /// Ends a step whose direction was of no use.
-/// dx: the direction.
-void fail_step(const NewtonSystem& system, const Positions& dx, StepReport& step, StepStatus status,
-               const IterationReport& report);
+void fail_step(const StepSystem& system, StepReport& step, StepStatus status, const IterationReport& report);
 
 /// Begins a lap of the system's clock, assembles at system.x() and fills what is known before the solve.
-IterationReport begin_iteration(NewtonSystem& system, int step, int iteration);
-/// Solves for dx, fills |dx|_inf and the decrement -g . dx / 2 over free degrees of freedom, and lets the
+IterationReport begin_iteration(StepSystem& system, int step, int iteration);
+/// Solves for the direction, fills |dx|_inf and the decrement -g . dx / 2 over free degrees of freedom, and lets the
 /// observer look at the matrices.
-void find_direction(NewtonSystem& system, const Positions& target, Positions& dx, IterationReport& report,
-                    StepObserver& observer);
+void find_direction(StepSystem& system, IterationReport& report, StepObserver& observer);
 /// The status that ends the step when the direction is of no use. must_descend: E has to decrease along it.
 std::optional<StepStatus> direction_failure(const IterationReport& report, bool must_descend);
 /// Ends the lap of the clock, adds an iteration to its step and tells the observer.
-void finish_iteration(NewtonSystem& system, StepReport& step, IterationReport& report,
-                      StepObserver& observer);
+void finish_iteration(StepSystem& system, StepReport& step, IterationReport& report, StepObserver& observer);
 
-bool poses_reached(const NewtonSystem& system, const Positions& target);
+/// Tells the observer of the motion that was accepted.
+void show_motion(const StepSystem& system, int step, StepObserver& observer);
 /// What held the bound of the step taken last.
-std::string describe_bound(const NewtonSystem& system);
-std::string describe_short_pin(const NewtonSystem& system, const Positions& target);
+std::string describe_bound(const StepSystem& system);
+std::string describe_short_pin(const StepSystem& system, const StepTask& task);
 
 /// Fills what a step report says of its end state.
-void measure_end(NewtonSystem& system, StepReport& step);
+void measure_end(StepSystem& system, StepReport& step);
 
 }  // namespace bb

@@ -33,26 +33,26 @@ class LineSearch final : public StepSolver {
         cap_fraction_(number(options.parameters, "cap_fraction")) {}
   std::string_view name() const override { return "line_search"; }
 
-  StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
+  StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
-    StepReport step = start_step(system, task, used, target_);
-    error_.reset(system.x(), system.precision());
+    StepReport step = start_step(system, task, used);
+    error_.reset(system.largest_coordinate(), system.precision());
     const double tolerance = std::max(options_.tol_velocity * task.dt, error_.smallest());  // m
     int collapsed = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);
-      find_direction(system, target_, dx_, report, observer);
-      const bool at_pose = poses_reached(system, target_);
-      const bool small = estimate_error(report) < tolerance && at_pose && !at_saddle(system, dx_);
+      find_direction(system, report, observer);
+      const bool at_pose = system.at_target();
+      const bool small = estimate_error(report) < tolerance && at_pose && !at_saddle(system);
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
-        fail_step(system, dx_, step, *failed, report);
+        fail_step(system, step, *failed, report);
         return step;
       }
       const bool moved = search(system, report, at_pose);
       error_.took(report.alpha);
       finish_iteration(system, step, report, observer);
-      if (moved) observer.on_motion(x_before_, system.x(), task.step);
+      if (moved) show_motion(system, task.step, observer);
       // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
       const bool enough = report.alpha == 1 || report.dx_inf_m < tolerance;
       if (small && enough && (report.contraction.finite() || as_modelled(report))) {
@@ -66,7 +66,7 @@ class LineSearch final : public StepSolver {
       collapsed = in_a_row(collapsed, report.alpha < collapsed_step);
       if (collapsed == collapse_iterations) {
         step.status = at_pose ? StepStatus::step_collapse : StepStatus::pin_infeasible;
-        step.detail = at_pose ? describe_bound(system) : describe_short_pin(system, target_);
+        step.detail = at_pose ? describe_bound(system) : describe_short_pin(system, task);
         return step;
       }
     }
@@ -87,8 +87,8 @@ class LineSearch final : public StepSolver {
 
   // The matrix that was solved is positive definite; where it is not the exact one, E may still curve
   // downwards along dx, and x + dx is no minimum.
-  static bool at_saddle(NewtonSystem& system, const Positions& dx) {
-    return !system.solved_is_exact() && system.exact_curvature(dx) < 0;
+  static bool at_saddle(StepSystem& system) {
+    return !system.solved_is_exact() && system.direction_curvature() < 0;
   }
 
   // Whether E has changed along the step as its quadratic model says, or by noise. Where the rate of convergence
@@ -103,18 +103,15 @@ class LineSearch final : public StepSolver {
 
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its
   // motion does work.
-  bool search(NewtonSystem& system, IterationReport& report, bool energy_test) {
-    x_before_ = system.x();
-    move(system, 1.0);
-    system.prepare(x_trial_, dx_, true);
-    bound_ = system.bound(x_trial_, dx_, report);
+  bool search(StepSystem& system, IterationReport& report, bool energy_test) {
+    system.prepare_motion(MotionEnd::on_target, true);
+    bound_ = system.bound_motion(report);
     // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
     double alpha = bound_;
     if (alpha < 1) alpha *= cap_fraction_;
     while (alpha > smallest_alpha) {
-      move(system, alpha);
       ++report.line_search_trials;
-      if (const auto change = system.try_state(x_trial_)) {
+      if (const auto change = system.try_motion(alpha)) {
         const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
         report.rounding_accepts = energy_test && !decrease && within_rounding(*change, system.precision());
         if (decrease || !energy_test || report.rounding_accepts) {
@@ -130,19 +127,11 @@ class LineSearch final : public StepSolver {
     return false;
   }
 
-  // A full step puts every prescribed vertex exactly on its pose.
-  void move(const NewtonSystem& system, double alpha) {
-    x_trial_.noalias() = x_before_ + alpha * dx_;
-    if (alpha != 1.0) return;
-    for (const Pin& pin : system.scene().pins) x_trial_.col(pin.vertex) = target_.col(pin.vertex);
-  }
-
   StepSolverOptions options_;
   double armijo_, cap_fraction_;
   double bound_ = 1;    // of the step taken last
   bool noise_ = false;  // its change of E is
   ErrorEstimate error_;
-  Positions target_, dx_, x_before_, x_trial_;
 };
 
 }  // namespace

@@ -15,6 +15,10 @@
 
 namespace bb {
 
+class StepSystem;
+struct Plan;
+struct Scene;
+
 struct StepSolverOptions {
   std::string name = "line_search";
   int max_iterations = 200;
@@ -28,6 +32,8 @@ struct Method : TermOptions {
   std::unique_ptr<Integrator> integrator;
   StepSolverOptions step_solver;
   LinearOptions linear;
+  /// Who assembles and solves; empty: NewtonSystem, on the CPU.
+  std::function<std::unique_ptr<StepSystem>(const Scene&, Method&, const Plan&)> make_system;
 };
 
 }  // namespace bb

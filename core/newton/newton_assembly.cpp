@@ -9,7 +9,7 @@ void NewtonSystem::assemble() {
     if (slot.term->group() == TermGroup::elastic) linearise(slot);
   }
   {
-    const ScopedPhase timer(clock_, Phase::assembly);
+    const ScopedPhase timer(clock(), Phase::assembly);
     pattern_changed_ = set_changing_families();
     gradient_.setZero(3, x_.cols());
   }
@@ -29,7 +29,7 @@ void NewtonSystem::assemble() {
 }
 
 void NewtonSystem::linearise(Slot& slot) {
-  const ScopedPhase timer(clock_, slot.term->phase());
+  const ScopedPhase timer(clock(), slot.term->phase());
   slot.term->linearise(x_, context(slot.hessian));
   slot.clamped = false;
 }
@@ -56,7 +56,7 @@ void NewtonSystem::add_families(const Slot& slot, Positions& gradient) const {
 
 // Elements that come and go are summed by themselves first.
 void NewtonSystem::add_gradient(const Slot& slot) {
-  const ScopedPhase timer(clock_, Phase::assembly);
+  const ScopedPhase timer(clock(), Phase::assembly);
   if (slot.term->fixed_stencils()) return add_families(slot, gradient_);
   part_.setZero(3, x_.cols());
   add_families(slot, part_);

@@ -8,7 +8,7 @@ namespace bb {
 
 void NewtonSystem::clamp(Slot& slot) {
   if (slot.clamped || slot.hessian == StepHessian::clamped) return;
-  const ScopedPhase timer(clock_, slot.term->phase());
+  const ScopedPhase timer(clock(), slot.term->phase());
   slot.term->clamp(x_);
   slot.clamped = true;
 }
@@ -16,7 +16,7 @@ void NewtonSystem::clamp(Slot& slot) {
 // The sum of hessian_of(slot, family), lower blocks [elements], over the terms of a set. Left in blocks_.
 template <class HessianOf>
 void NewtonSystem::sum_matrices(TermSet set, const HessianOf& hessian_of) {
-  const ScopedPhase timer(clock_, Phase::assembly);
+  const ScopedPhase timer(clock(), Phase::assembly);
   blocks_->clear();
   for (const std::size_t i : matrix_order_) {
     const Slot& slot = slots_[i];
@@ -67,7 +67,7 @@ void NewtonSystem::fill_matrix() {
   sum_matrices(TermSet::all(), [this](const Slot& slot, const TermFamily& family) {
     return hessian_at(family, slot.hessian, level_, force_, hess_buffer_);
   });
-  const ScopedPhase timer(clock_, Phase::assembly);
+  const ScopedPhase timer(clock(), Phase::assembly);
   if (shift_ > 0) blocks_->add_diagonal(std::vector<double>(scene_.mass.size(), shift_));
   blocks_->take_values(full_);
 }
@@ -151,7 +151,7 @@ SolveReport NewtonSystem::solve(const Positions& target, Positions& dx) {
 // One attempt. False when the matrix is not positive definite, or dx does not descend: that is asked for only
 // where no prescribed motion does work.
 bool NewtonSystem::direction(const Positions& target, Positions& dx, SolveReport& report) {
-  const ScopedPhase timer(clock_, Phase::assembly);
+  const ScopedPhase timer(clock(), Phase::assembly);
   dx.setZero(3, x_.cols());
   work_ = -gradient_;
   bool moving = false;
@@ -172,10 +172,10 @@ bool NewtonSystem::direction(const Positions& target, Positions& dx, SolveReport
 void NewtonSystem::solve_reduced(SolveReport& report) {
   const ReducedSystem& reduced = blocks_->reduce(full_);
   nnz_ = static_cast<std::size_t>(reduced.lower.nonZeros());
-  const ScopedPhase timer(clock_, Phase::linear_solve);
+  const ScopedPhase timer(clock(), Phase::linear_solve);
   LinearReport linear = solver_->solve(reduced, rhs_, solution_);
-  clock_.move(Phase::linear_solve, Phase::linear_analyze, linear.analyze_s);
-  clock_.move(Phase::linear_solve, Phase::linear_factor, linear.factor_s);
+  clock().move(Phase::linear_solve, Phase::linear_analyze, linear.analyze_s);
+  clock().move(Phase::linear_solve, Phase::linear_factor, linear.factor_s);
   ++report.attempts;
   report.factorizations += linear.factorized ? 1 : 0;
   report.factor_flop += linear.factor_flop;

@@ -77,17 +77,17 @@ void NewtonSystem::set_fixed_families(const Method& method) {
 
 void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt,
                               double load_factor) {
-  const ScopedPhase timer(clock_, Phase::prediction);
+  const ScopedPhase timer(clock(), Phase::prediction);
   frame_ = {x_n, prediction.x_tilde, dt, prediction.c, load_factor};
   x_ = x_n;
   level_.reset();
   served_at_once_ = false;
   solver_->begin_step();
-  for (const auto& term : terms_) term->begin_step(frame_, clock_);
+  for (const auto& term : terms_) term->begin_step(frame_, clock());
 }
 
 void NewtonSystem::restart_step(const Prediction& prediction, double dt) {
-  const ScopedPhase timer(clock_, Phase::prediction);
+  const ScopedPhase timer(clock(), Phase::prediction);
   frame_.x_tilde = prediction.x_tilde;
   frame_.dt = dt;
   frame_.c = prediction.c;
@@ -95,7 +95,7 @@ void NewtonSystem::restart_step(const Prediction& prediction, double dt) {
 }
 
 void NewtonSystem::end_step() {
-  for (const auto& term : terms_) term->end_step(clock_);
+  for (const auto& term : terms_) term->end_step(clock());
 }
 
 void NewtonSystem::keep(Archive& archive) {
@@ -111,14 +111,14 @@ void NewtonSystem::drop_caches() {
 }
 
 void NewtonSystem::prepare(const Positions& x1, const Positions& dx, bool to_bound) {
-  for (const auto& term : terms_) term->prepare({x_, x1, dx, to_bound}, clock_);
+  for (const auto& term : terms_) term->prepare({x_, x1, dx, to_bound}, clock());
 }
 
 double NewtonSystem::bound(const Positions& x1, const Positions& dx, IterationReport& report) {
   double smallest = 1;
   holder_ = nullptr;
   for (const auto& term : terms_) {
-    const double alpha = term->bound({x_, x1, dx}, report, clock_);
+    const double alpha = term->bound({x_, x1, dx}, report, clock());
     if (!(alpha < 1) || alpha > smallest) continue;
     smallest = alpha;
     holder_ = term.get();
@@ -127,20 +127,54 @@ double NewtonSystem::bound(const Positions& x1, const Positions& dx, IterationRe
 }
 
 std::optional<EnergyChange> NewtonSystem::try_state(const Positions& x) {
-  const ScopedPhase timer(clock_, Phase::line_search);
+  const ScopedPhase timer(clock(), Phase::line_search);
   trial_ = x;
   round_state(precision_, trial_);
   if (!trial_.allFinite()) return std::nullopt;
   for (const auto& term : terms_) {
-    if (!term->admits(trial_, clock_)) return std::nullopt;
+    if (!term->admits(trial_, clock())) return std::nullopt;
   }
   for (const auto& term : terms_) term->evaluate(trial_, context());
   return sums_.change(terms_, x_, trial_);
 }
 
+bool NewtonSystem::at_target() const {
+  for (const Pin& pin : scene_.pins) {
+    if (x_.col(pin.vertex) != target_.col(pin.vertex)) return false;
+  }
+  return true;
+}
+
+DirectionSize NewtonSystem::direction_size() {
+  DirectionSize size;
+  for (Eigen::Index i = 0; i < dx_.size(); ++i) {
+    if (fixed_[static_cast<std::size_t>(i)]) continue;
+    size.slope_J += gradient_.data()[i] * dx_.data()[i];
+    const double part = std::abs(dx_.data()[i]);
+    size.inf_m = part > size.inf_m || std::isnan(part) ? part : size.inf_m;
+  }
+  size.vertex_m = dx_.size() == 0 ? 0 : dx_.colwise().norm().maxCoeff();
+  return size;
+}
+
+void NewtonSystem::prepare_motion(MotionEnd end, bool to_bound) {
+  end_ = end;
+  motion_end_.noalias() = x_ + dx_;
+  if (end == MotionEnd::on_target) {
+    for (const Pin& pin : scene_.pins) motion_end_.col(pin.vertex) = target_.col(pin.vertex);
+  }
+  prepare(motion_end_, dx_, to_bound);
+}
+
+std::optional<EnergyChange> NewtonSystem::try_motion(double alpha) {
+  if (alpha == 1 && end_ == MotionEnd::on_target) return try_state(motion_end_);
+  moved_.noalias() = x_ + alpha * dx_;
+  return try_state(moved_);
+}
+
 void NewtonSystem::accept() {
   x_.swap(trial_);
-  for (const auto& term : terms_) term->accept(clock_);
+  for (const auto& term : terms_) term->accept(clock());
 }
 
 double NewtonSystem::grad_inf() const {
@@ -168,11 +202,16 @@ bool NewtonSystem::active(TermGroup group) const {
 }
 
 void NewtonSystem::report(IterateNumbers& out) const {
-  for (const auto& term : terms_) term->report(x_, out, clock_);
+  for (const auto& term : terms_) term->report(x_, out, clock());
 }
 
 void NewtonSystem::report_end(StepNumbers& out) const {
-  for (const auto& term : terms_) term->report_end(x_, out, clock_);
+  for (const auto& term : terms_) term->report_end(x_, out, clock());
+}
+
+void NewtonSystem::report_overload(bool with_direction, StepNumbers& out) {
+  if (!with_direction) dx_.setZero(3, x_.cols());
+  report_overload(dx_, out);
 }
 
 void NewtonSystem::report_overload(const Positions& dx, StepNumbers& out) const {

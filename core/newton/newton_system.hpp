@@ -1,6 +1,5 @@
-// E as a sum of terms at one iterate and one trial state: what a step solver calls, and what is read of
-// it. It knows no term by name; the step solvers (line_search.cpp, accumulated_toi.cpp) hold the order
-// of the calls.
+// E as a sum of terms at one iterate and one trial state, on the CPU. It knows no term by name; the step solvers
+// (line_search.cpp, accumulated_toi.cpp) hold the order of the calls.
 #pragma once
 
 #include <cstdint>
@@ -17,6 +16,7 @@
 #include "core/newton/hessian_level.hpp"
 #include "core/newton/method.hpp"
 #include "core/newton/report.hpp"
+#include "core/newton/step_system.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/plan.hpp"
 #include "core/terms/term.hpp"
@@ -26,7 +26,7 @@ namespace bb {
 /// Of a method that is run without a config.
 PlanOptions plan_options(const Method& method);
 
-class NewtonSystem {
+class NewtonSystem final : public StepSystem {
  public:
   /// scene and method must outlive the system. plan: of both; the terms are made from it.
   NewtonSystem(const Scene& scene, Method& method, const Plan& plan);
@@ -35,21 +35,21 @@ class NewtonSystem {
 
   // --- a step
   /// Starts a step at x_n. load_factor scales the external force (1, or the load step of quasi_static).
-  void begin_step(const Positions& x_n, const Prediction& prediction, double dt, double load_factor);
+  void begin_step(const Positions& x_n, const Prediction& prediction, double dt, double load_factor) override;
   /// The same step and iterate with another prediction and length (accumulated_toi).
-  void restart_step(const Prediction& prediction, double dt);
-  void end_step();
+  void restart_step(const Prediction& prediction, double dt) override;
+  void end_step() override;
   /// What the terms remember from step to step.
-  void keep(Archive& archive);
+  void keep(Archive& archive) override;
   /// Makes the linear solver anew and forgets the pattern of the contacts: between steps.
-  void drop_caches();
+  void drop_caches() override;
 
   // --- an iterate
   /// Every term at x(), then gradient and matrix. Order of the sums: docs/design.md, Terms.
-  void assemble();
+  void assemble() override;
   /// Adds eps I to the assembled matrix, eps = max(relative trace / n, absolute); returns eps. It stays until
   /// the next assemble(), in the matrix that is solved only.
-  double add_tikhonov(double relative, double absolute);
+  double add_tikhonov(double relative, double absolute) override;
   /// Newton direction: A dx = -(g + lifted prescribed motion). target: [3 x n], read at prescribed vertices
   /// only. While the matrix is not positive definite, or dx does not descend, the Hessian is brought nearer to
   /// the clamped one as its terms' choices allow (StepHessian). Cost: an assembly and a solve an attempt.
@@ -66,32 +66,47 @@ class NewtonSystem {
   /// in the report.
   double bound(const Positions& x1, const Positions& dx, IterationReport& report);
   /// What held the last bound(); empty where nothing did.
-  std::string describe_bound() const { return holder_ ? holder_->describe_bound() : std::string(); }
+  std::string describe_bound() const override { return holder_ ? holder_->describe_bound() : std::string(); }
   /// Evaluates E at x, rounded to the precision of the run, with what the terms keep for an iterate. Returns the change against x(); an infeasible
   /// x has none.
   std::optional<EnergyChange> try_state(const Positions& x);
   /// Makes the last tried state the iterate.
-  void accept();
+  void accept() override;
+
+  // --- the same with the vectors that belong to the system (step_system.hpp)
+  void set_target(const Positions& target) override { target_ = target; }
+  void hold() override { target_ = x_; }
+  bool at_target() const override;
+  SolveReport find_direction() override { return solve(target_, dx_); }
+  DirectionSize direction_size() override;
+  void scale_direction(double factor) override { dx_ *= factor; }
+  double direction_curvature() override { return exact_curvature(dx_); }
+  void prepare_motion(MotionEnd end, bool to_bound) override;
+  double bound_motion(IterationReport& report) override { return bound(motion_end_, dx_, report); }
+  std::optional<EnergyChange> try_motion(double alpha) override;
+  const Positions& x_before() const override { return trial_; }
+  double largest_coordinate() const override { return x_.size() == 0 ? 0 : x_.cwiseAbs().maxCoeff(); }
+  const Positions& target() const { return target_; }
+  const Positions& direction() const { return dx_; }
+  NewtonSystem& on_cpu() override { return *this; }
 
   // --- what observers and reports read
-  const Scene& scene() const { return scene_; }
+  const Scene& scene() const override { return scene_; }
   const TermList& terms() const { return terms_; }
-  Precision precision() const { return precision_; }
-  /// Charges what happens in this system and round it to phases; the calls below and above switch it.
-  PhaseClock& clock() const { return clock_; }
-  const Positions& x() const { return x_; }
-  const Positions& gradient() const { return gradient_; }
-  double grad_inf() const;
+  Precision precision() const override { return precision_; }
+  const Positions& x() const override { return x_; }
+  const Positions& gradient() const override { return gradient_; }
+  double grad_inf() const override;
   /// E at the iterate, J; for the record only.
-  double energy() const { return total_energy(terms_); }
+  double energy() const override { return total_energy(terms_); }
   /// The parts of E that a group has, J, each family summed for itself.
   double energy(TermGroup group) const;
-  bool pattern_changed() const { return pattern_changed_; }
-  int n_free() const { return blocks_->n_free(); }
+  bool pattern_changed() const override { return pattern_changed_; }
+  int n_free() const override { return blocks_->n_free(); }
   /// Entries of the lower triangle that was solved last.
-  std::size_t nnz() const { return nnz_; }
+  std::size_t nnz() const override { return nnz_; }
   /// [3 n] prescribed or locked degrees of freedom.
-  const std::vector<std::uint8_t>& fixed() const { return fixed_; }
+  const std::vector<std::uint8_t>& fixed() const override { return fixed_; }
   const BlockSystem& blocks() const { return *blocks_; }
   /// Whether a group has elements at the iterate.
   bool active(TermGroup group) const;
@@ -117,17 +132,19 @@ class NewtonSystem {
   /// next call of any of these.
   const ReducedSystem& fixed_pattern();
   /// Whether no element of the solved matrix was clamped that its choice begins with exact.
-  bool solved_is_exact() const { return level_.exact(); }
+  bool solved_is_exact() const override { return level_.exact(); }
   /// Whether the two are one: no term began with another Hessian, or the last attempt clamped all.
   bool solved_is_clamped() const { return level_.all_clamped() && shift_ == 0; }
   /// What the terms say of the iterate, of the end of a step, of a step without progress (dx: the Newton
   /// direction, or 0).
-  void report(IterateNumbers& out) const;
-  void report_end(StepNumbers& out) const;
+  void report(IterateNumbers& out) const override;
+  void report_end(StepNumbers& out) const override;
   void report_overload(const Positions& dx, StepNumbers& out) const;
+  void report_overload(bool with_direction, StepNumbers& out) override;
   /// The first element of the iterate with an energy, force or Hessian that is not finite, or else the first
   /// vertex with such a gradient or direction. dx: the Newton direction.
   std::string describe_non_finite(const Positions& dx) const;
+  std::string describe_non_finite() const override { return describe_non_finite(dx_); }
 
  private:
   /// Where the families of a term are in the block system, whose families are fixed or changing.
@@ -138,7 +155,7 @@ class NewtonSystem {
     bool clamped;  // the term's clamped Hessians are those of this iterate
   };
   TermContext context(StepHessian hessian = StepHessian::clamped) const {
-    return {*blocks_, elastic_, gradient_, first_projection(hessian), clock_};
+    return {*blocks_, elastic_, gradient_, first_projection(hessian), clock()};
   }
   void set_fixed_families(const Method& method);
   bool set_changing_families();
@@ -172,7 +189,9 @@ class NewtonSystem {
 
   StepFrame frame_;
   Positions x_, trial_;
-  Positions gradient_;  // of E; while it is summed, of the terms so far
+  Positions target_, dx_, motion_end_, moved_;
+  MotionEnd end_ = MotionEnd::free;  // of the motion in progress
+  Positions gradient_;               // of E; while it is summed, of the terms so far
   Positions part_, work_;
   BlockSystem::Values elastic_, full_;  // H where the plan needs it; all terms
   EnergySums sums_;
@@ -183,7 +202,6 @@ class NewtonSystem {
   std::vector<double> hess_buffer_;
   bool pattern_changed_ = false;
   VecXd rhs_, solution_;
-  mutable PhaseClock clock_;
 };
 
 }  // namespace bb

@@ -40,20 +40,23 @@ struct StepReport : StepNumbers {
   }
 };
 
+class StepSystem;
+
 /// Observer; override what you need. Callbacks are charged to Phase::output.
-class NewtonSystem;
 class StepObserver {
  public:
   virtual ~StepObserver() = default;
   /// After the solve, before the step: the matrices of this iteration are in `system`.
-  virtual void on_matrix(NewtonSystem&, int /*step*/, int /*iteration*/) {}
+  virtual void on_matrix(StepSystem&, int /*step*/, int /*iteration*/) {}
   virtual void on_iteration(const IterationReport&) {}
+  /// Whether on_motion has to be called: elsewhere than on the CPU it costs two copies of the state.
+  virtual bool watches_motions() const { return true; }
   /// An accepted line search, as rounded.
   virtual void on_motion(const Positions& /*x0*/, const Positions& /*x1*/, int /*step*/) {}
   /// The step failed and begins again from its start, shorter: what it was is no part of the run.
   virtual void on_retry(int /*step*/) {}
   /// A finished step; `system` holds the contact table of its end state.
-  virtual void on_step(NewtonSystem&, const StepReport&, const Positions& /*x*/) {}
+  virtual void on_step(StepSystem&, const StepReport&, const Positions& /*x*/) {}
 };
 
 }  // namespace bb

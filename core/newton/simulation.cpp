@@ -11,7 +11,7 @@ namespace {
 class ChargedObserver final : public StepObserver {
  public:
   ChargedObserver(StepObserver& observer, PhaseClock& clock) : observer_(observer), clock_(clock) {}
-  void on_matrix(NewtonSystem& system, int step, int iteration) override {
+  void on_matrix(StepSystem& system, int step, int iteration) override {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_matrix(system, step, iteration);
   }
@@ -19,6 +19,7 @@ class ChargedObserver final : public StepObserver {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_iteration(report);
   }
+  bool watches_motions() const override { return observer_.watches_motions(); }
   void on_motion(const Positions& x0, const Positions& x1, int step) override {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_motion(x0, x1, step);
@@ -27,7 +28,7 @@ class ChargedObserver final : public StepObserver {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_retry(step);
   }
-  void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override {
+  void on_step(StepSystem& system, const StepReport& report, const Positions& x) override {
     const ScopedPhase timer(clock_, Phase::output);
     observer_.on_step(system, report, x);
   }
@@ -48,7 +49,8 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       dt_(dt),
       n_steps_(n_steps),
       parts_(method.step_solver.retries),
-      system_(scene, method, plan),
+      system_(method.make_system ? method.make_system(scene, method, plan)
+                                 : std::make_unique<NewtonSystem>(scene, method, plan)),
       solver_(make_step_solver(method.step_solver)) {
   history_.x = scene.x0;
   round_state(method.precision, history_.x);
@@ -68,28 +70,28 @@ void Simulation::keep(Archive& archive) {
   archive.section("simulation");
   archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,
           history_.v_prev, time_, step_, nominal_, nominal_start_, parts_);
-  system_.keep(archive);
+  system_->keep(archive);
   if (archive.reads()) drop_caches();
 }
 
-void Simulation::drop_caches() { system_.drop_caches(); }
+void Simulation::drop_caches() { system_->drop_caches(); }
 
 StepReport Simulation::step(StepObserver& observer) {
-  PhaseClock& clock = system_.clock();
+  PhaseClock& clock = system_->clock();
   clock.restart(Phase::step_control);
   ChargedObserver charged(observer, clock);
   if (step_ == 0 && method_.integrator->needs_acceleration()) start_acceleration();
   StepReport report = attempt_until_converged(charged);
 
-  remember(system_.x(), report.dt_s);
+  remember(system_->x(), report.dt_s);
   report.t_s = time_;
-  measure_end(system_, report);
+  measure_end(*system_, report);
   for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {
     report.kinetic_J += 0.5 * scene_.mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
   }
-  system_.end_step();
+  system_->end_step();
   report.time = clock.read();
-  charged.on_step(system_, report, history_.x);
+  charged.on_step(*system_, report, history_.x);
   ++step_;
   report.time = clock.read();
   return report;
@@ -107,7 +109,7 @@ StepReport Simulation::attempt(StepObserver& observer) {
     for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, time_ + dt);
     round_state(method_.precision, target);
   };
-  return solver_->advance(system_, task, prediction_, observer);
+  return solver_->advance(*system_, task, prediction_, observer);
 }
 
 // Every attempt but the first begins as a run that goes on from an archive of the start would.
@@ -134,19 +136,19 @@ void Simulation::start_acceleration() {
   Prediction at_rest;
   method_.integrator->predict(history_, dt_, at_rest);  // for its c
   at_rest.x_tilde = history_.x;
-  system_.begin_step(history_.x, at_rest, dt_, 1.0);
-  system_.assemble();
+  system_->begin_step(history_.x, at_rest, dt_, 1.0);
+  system_->assemble();
   for (Eigen::Index i = 0; i < history_.a.cols(); ++i) {
     const double mass = scene_.mass[static_cast<std::size_t>(i)];
     for (Eigen::Index k = 0; k < 3; ++k) {
-      const bool fixed = system_.fixed()[static_cast<std::size_t>(3 * i + k)] != 0;
-      history_.a(k, i) = fixed ? 0 : -system_.gradient()(k, i) / mass;
+      const bool fixed = system_->fixed()[static_cast<std::size_t>(3 * i + k)] != 0;
+      history_.a(k, i) = fixed ? 0 : -system_->gradient()(k, i) / mass;
     }
   }
 }
 
 void Simulation::remember(const Positions& x, double dt_used) {
-  const ScopedPhase timer(system_.clock(), Phase::prediction);
+  const ScopedPhase timer(system_->clock(), Phase::prediction);
   if (dt_used > 0) {
     method_.integrator->finish(history_, dt_used, prediction_, x, v_next_, a_next_);
     history_.v_prev.swap(history_.v);

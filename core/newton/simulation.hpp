@@ -34,8 +34,9 @@ class Simulation {
   void drop_caches();
 
   const History& history() const { return history_; }
-  const NewtonSystem& system() const { return system_; }
-  NewtonSystem& system() { return system_; }
+  StepSystem& step_system() { return *system_; }
+  /// The state as the CPU sees it.
+  NewtonSystem& system() { return system_->on_cpu(); }
   double time() const { return time_; }
   /// Nominal steps that are over.
   int nominal_steps() const { return nominal_; }
@@ -53,7 +54,7 @@ class Simulation {
   int n_steps_ = 0, step_ = 0, nominal_ = 0;  // step_: every part counts
   double nominal_start_ = 0;                  // s
   StepParts parts_;
-  NewtonSystem system_;
+  std::unique_ptr<StepSystem> system_;
   std::unique_ptr<StepSolver> solver_;
   History history_;
   Prediction prediction_;

@@ -6,8 +6,9 @@
 #include <string>
 #include <vector>
 
-#include "core/newton/newton_system.hpp"
+#include "core/newton/method.hpp"
 #include "core/newton/report.hpp"
+#include "core/newton/step_system.hpp"
 #include "core/parameters/registry.hpp"
 
 namespace bb {
@@ -29,7 +30,7 @@ class StepSolver {
   virtual std::string_view name() const = 0;
   /// Leaves the reached state in system.x(), and in `used` the prediction that it belongs to. The
   /// report's counters, status and dt_s are filled; the rest is the caller's.
-  virtual StepReport advance(NewtonSystem& system, const StepTask& task, Prediction& used,
+  virtual StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                              StepObserver& observer) = 0;
 };
 

@@ -72,11 +72,12 @@ void ConditionWatch::find_ends(NewtonSystem& system, TermSet set) {
   }
 }
 
-void ConditionWatch::on_matrix(NewtonSystem& system, int step, int iteration) {
+void ConditionWatch::on_matrix(StepSystem& step_system, int step, int iteration) {
   samples_.clear();
   probed_ = Number::missing("not_due");
   due_ = due(iteration);
   if (!due_) return;
+  NewtonSystem& system = step_system.on_cpu();
   form_ = system.solved_is_clamped() ? MatrixForm::clamped : MatrixForm::solved;
   const double start = now_s();
   if (config_.diagnose.tier > 0) {  // tier 0 reads what the solve leaves

@@ -13,13 +13,15 @@
 
 namespace bb {
 
+class NewtonSystem;
+
 class ConditionWatch {
  public:
   /// `artifacts` gets matrices where the config has them; may be null.
   ConditionWatch(const RunConfig& config, ArtifactWriter* artifacts);
 
   /// After the solve: estimates of the stages and scalings of the config, none when the iteration is not due.
-  void on_matrix(NewtonSystem& system, int step, int iteration);
+  void on_matrix(StepSystem& system, int step, int iteration);
   /// At the end of the iteration: fills `cond` and `probe_pcg_iterations` of its row.
   void on_iteration(const LinearReport& linear, TraceRow& row);
   /// The step is over: what was estimated in it is of the run; or it begins again, and that is forgotten.

@@ -21,7 +21,7 @@ Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& recor
   if (config.passes.audit) audit_.emplace(scene, config.contact.ccd_park, record_.audit);
 }
 
-void Recorder::on_matrix(NewtonSystem& system, int step, int iteration) {
+void Recorder::on_matrix(StepSystem& system, int step, int iteration) {
   condition_.on_matrix(system, step, iteration);
 }
 
@@ -46,7 +46,8 @@ void Recorder::on_retry(int step) {
   condition_.forget_step();
 }
 
-void Recorder::on_step(NewtonSystem& system, const StepReport& report, const Positions& x) {
+void Recorder::on_step(StepSystem& step_system, const StepReport& report, const Positions& x) {
+  NewtonSystem& system = step_system.on_cpu();
   const ContactState& contact = contact_state(system.terms());
   const int every = config_.output.frames_every;
   if (artifacts_ && every > 0 && report.step % every == 0) {

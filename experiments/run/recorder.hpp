@@ -29,11 +29,12 @@ class Recorder final : public StepObserver {
   /// Of every iteration that this recorder saw.
   const std::vector<PhaseTimes>& iteration_times() const { return seen_; }
 
-  void on_matrix(NewtonSystem& system, int step, int iteration) override;
+  void on_matrix(StepSystem& system, int step, int iteration) override;
   void on_iteration(const IterationReport& report) override;
+  bool watches_motions() const override { return audit_.has_value(); }
   void on_motion(const Positions& x0, const Positions& x1, int step) override;
   void on_retry(int step) override;
-  void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override;
+  void on_step(StepSystem& system, const StepReport& report, const Positions& x) override;
 
   /// What it has recorded so far, between two steps; its files are not in it.
   void keep(Archive& archive);

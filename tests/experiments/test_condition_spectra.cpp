@@ -86,8 +86,9 @@ Ends ends_by_spectra(const ReducedSystem& system, Scaling scaling) {
 /// Compares both on the matrix of every second iteration.
 class Comparison final : public StepObserver {
  public:
-  void on_matrix(NewtonSystem& system, int step, int iteration) override {
+  void on_matrix(StepSystem& step_system, int step, int iteration) override {
     if (iteration % 2 != 0) return;
+    NewtonSystem& system = step_system.on_cpu();
     with_contact += system.active(TermGroup::contact);
     const ReducedSystem& matrix = system.solved();
     for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {

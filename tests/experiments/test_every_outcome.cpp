@@ -117,7 +117,7 @@ class Deaf final : public StepObserver {
  public:
   explicit Deaf(Recorder& recorder) : recorder_(recorder) {}
   void on_iteration(const IterationReport& report) override { recorder_.on_iteration(report); }
-  void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override {
+  void on_step(StepSystem& system, const StepReport& report, const Positions& x) override {
     recorder_.on_step(system, report, x);
   }
 

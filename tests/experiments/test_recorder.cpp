@@ -203,14 +203,14 @@ TEST(Recorder, a_load_sum_counts_every_pair_of_a_merged_row) {
 /// Hands everything on and keeps the iterations.
 struct Both final : StepObserver {
   Both(Recorder& to, std::vector<IterationReport>& kept) : recorder(to), reports(kept) {}
-  void on_matrix(NewtonSystem& system, int step, int iteration) override {
+  void on_matrix(StepSystem& system, int step, int iteration) override {
     recorder.on_matrix(system, step, iteration);
   }
   void on_iteration(const IterationReport& report) override {
     reports.push_back(report);
     recorder.on_iteration(report);
   }
-  void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override {
+  void on_step(StepSystem& system, const StepReport& report, const Positions& x) override {
     recorder.on_step(system, report, x);
   }
   Recorder& recorder;

@@ -17,7 +17,7 @@ constexpr const char* falling_block = R"({"schema": "barrierbench.config/1",
 class Deaf final : public StepObserver {
  public:
   Deaf(Recorder& recorder, int deaf_step) : recorder_(recorder), deaf_step_(deaf_step) {}
-  void on_matrix(NewtonSystem& system, int step, int iteration) override {
+  void on_matrix(StepSystem& system, int step, int iteration) override {
     recorder_.on_matrix(system, step, iteration);
   }
   void on_iteration(const IterationReport& report) override { recorder_.on_iteration(report); }
@@ -25,7 +25,7 @@ class Deaf final : public StepObserver {
     ++motions;
     if (step != deaf_step_) recorder_.on_motion(x0, x1, step);
   }
-  void on_step(NewtonSystem& system, const StepReport& report, const Positions& x) override {
+  void on_step(StepSystem& system, const StepReport& report, const Positions& x) override {
     recorder_.on_step(system, report, x);
   }
   int motions = 0;

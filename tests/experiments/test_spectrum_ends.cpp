@@ -25,8 +25,9 @@ struct EndsOf final : StepObserver {
   Scaling scaling = Scaling::none;
   std::vector<SpectrumEnd> ends;
   Eigen::VectorXd dense;
-  void on_matrix(NewtonSystem& system, int, int iteration) override {
+  void on_matrix(StepSystem& step_system, int, int iteration) override {
     if (iteration > 0) return;
+    NewtonSystem& system = step_system.on_cpu();
     const ReducedSystem& matrix = system.clamped(set);
     dense = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(bb::dense(matrix)).eigenvalues();
     const auto vectors = end_vectors(matrix, scaling, 5);

@@ -9,7 +9,7 @@
 namespace bb {
 namespace {
 
-const Positions unit = Positions::Ones(3, 1);
+constexpr double unit = 1;  // m, largest coordinate
 
 ErrorEstimate after(const std::vector<double>& dx, double alpha = 1) {
   ErrorEstimate out;

@@ -49,7 +49,7 @@ class Watch final : public StepObserver {
     motions.resize(at_step_end);
     ++retries;
   }
-  void on_step(NewtonSystem&, const StepReport& report, const Positions&) override {
+  void on_step(StepSystem&, const StepReport& report, const Positions&) override {
     at_step_end = motions.size();
     reports.push_back(report);
   }

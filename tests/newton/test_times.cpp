@@ -45,7 +45,7 @@ struct Watch final : StepObserver {
     iterations += report.time;
     trials += report.line_search_trials;
   }
-  void on_step(NewtonSystem&, const StepReport&, const Positions&) override {
+  void on_step(StepSystem&, const StepReport&, const Positions&) override {
     const double start = now_s();
     std::this_thread::sleep_for(std::chrono::milliseconds(3));
     on_step_s += now_s() - start;
