@@ -7,6 +7,7 @@
 #include "barriers/shapes/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
 #include "core/terms/step_hessian.hpp"
+#include "experiments/config/enum_words.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/config/reader.hpp"
 
@@ -245,6 +246,29 @@ void check_protocol(const RunConfig& config, const Complain& complain) {
                : "another step solver: article_literal needs scene drape2d with protocol article_literal");
 }
 
+/// What the resident pipeline does not have.
+void check_device(const RunConfig& config, const Complain& complain) {
+  if (config.device == Device::cpu) return;
+  const std::string on = fmt::format("with device {}", word_of(config.device));
+  if (config.precision != Precision::full) {
+    complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);
+  }
+  if (config.contact.hessian_mode == HessianMode::projected_numeric) {
+    complain("/contact/hessian_mode", "\"projected_numeric\"", "gauss_newton or projected_full " + on);
+  }
+  if (config.step_solver.name == "article_literal") {
+    complain("/step_solver/name", "\"article_literal\"", "another step solver " + on);
+  }
+  if (config.linear_solver.name != resident_solver) {
+    complain("/linear_solver/name", '"' + config.linear_solver.name + '"',
+             fmt::format("{} {}: the matrix stays where it is assembled", resident_solver, on));
+  }
+  for (const auto& [term, choice] : config.hessian.parameters) {
+    if (choice != ParameterValue(std::string("progressive"))) continue;
+    complain("/hessian/" + term, "\"progressive\"", "another choice " + on);
+  }
+}
+
 }  // namespace
 
 bool follows_article(const SceneConfig& scene) {
@@ -265,6 +289,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   check_tolerance(config, complain);
   check_protocol(config, complain);
   check_ritz(config, complain);
+  check_device(config, complain);
   if (config.output.matrices && !config.passes.diagnose) {
     complain("/output/matrices", "true",
              "false, or passes.diagnose true: matrices are those of diagnosed iterations");

@@ -32,6 +32,9 @@ inline EnumWords<HessianMode> words_of(HessianMode) {
 inline EnumWords<Scaling> words_of(Scaling) {
   return {{Scaling::none, "none"}, {Scaling::jacobi, "jacobi"}, {Scaling::block_jacobi, "block_jacobi"}};
 }
+inline EnumWords<Device> words_of(Device) {
+  return {{Device::cpu, "cpu"}, {Device::host, "host"}, {Device::cuda, "cuda"}};
+}
 inline EnumWords<Precision> words_of(Precision) {
   return {{Precision::full, "double"}, {Precision::mixed, "mixed"}, {Precision::single, "float"}};
 }

@@ -7,6 +7,7 @@
 #include "core/record/provenance.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/document.hpp"
+#include "experiments/config/enum_words.hpp"
 #include "experiments/config/presets.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/config/sections.hpp"
@@ -66,6 +67,9 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   config.time = {defaults.dt, defaults.steps};
   config.formulation.d_hat = defaults.d_hat;
   if (literal) config.step_solver.name = "article_literal";
+  if (document.value("device", word_of(Device::cpu)) != word_of(Device::cpu)) {
+    config.linear_solver.name = resident_solver;
+  }
 
   settings_of<RunConfig>().read(document, config);
   settle_formulation(child(document, "formulation"), reader, config.formulation);

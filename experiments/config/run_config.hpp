@@ -27,6 +27,12 @@ struct PolicyConfig {
       parameters;  // of the policy of that name; its stiffness is left out where matching supplies it
 };
 
+/// Where a run computes. cpu: the pipeline of core/newton. host: the resident pipeline (core/resident) on threads of this
+/// machine, the same kernels as on a device. cuda: on a device.
+enum class Device { cpu, host, cuda };
+/// The linear solver of the resident pipeline, and the default there.
+inline constexpr const char* resident_solver = "pcg_resident";
+
 enum class MatchingRule { as_given, equal_force, equal_curvature };
 inline const char* to_string(MatchingRule rule) {
   constexpr const char* names[] = {"as_given", "equal_force", "equal_curvature"};
@@ -89,6 +95,7 @@ struct RunConfig {
   HessianConfig hessian;
   LinearSolverConfig linear_solver;
   Precision precision = Precision::full;
+  Device device = Device::cpu;
   PassesConfig passes;
   DiagnoseConfig diagnose;
   SeedsConfig seeds;

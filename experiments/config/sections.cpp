@@ -105,6 +105,11 @@ Settings<RunConfig> list_of() {
       "it; "
       "sums, solves and the audit stay double. The times of mixed and float are no times of such a program.",
       &C::precision);
+  out.add("device", one_of<Device>(),
+          "Where it computes. cpu: the CPU pipeline. host: the resident pipeline on threads, the same "
+          "kernels as on a "
+          "device. cuda: on a CUDA device (./bench device says whether there is one).",
+          &C::device);
   out.nest("passes", settings_of<PassesConfig>(), &C::passes);
   out.nest("diagnose", settings_of<DiagnoseConfig>(), &C::diagnose);
   out.nest("seeds", settings_of<SeedsConfig>(), &C::seeds);
