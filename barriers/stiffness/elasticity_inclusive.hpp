@@ -26,13 +26,21 @@ struct ElasticityInclusiveSums {
   }
 };
 
+/// A matrix in memory, column-major with a leading dimension, as a function of row and column.
+template <class T>
+struct ColumnMajor {
+  const T* values;
+  int ld;
+  BB_HD T operator()(int row, int column) const { return values[column * ld + row]; }
+};
+
 /// @param n_free   N, 1..4            @param weight  [N] w_i, not all 0
 /// @param normal   [3] not 0          @param mass    [N] kg; read unless MassTerm::none
-/// @param hessian  column-major, leading dimension ld >= 3N, N/m; read when elastic_term
+/// @param hessian  hessian(row, column) with both below 3N, N/m; read when elastic_term
 /// Errors: none. Host-device. Cost: O(N^2), allocates nothing.
-template <class T>
+template <class T, class Hessian>
 BB_HD ElasticityInclusiveSums<T> elasticity_inclusive_sums(int n_free, const T* weight, const T* normal,
-                                                           const T* mass, const T* hessian, int ld,
+                                                           const T* mass, const Hessian& hessian,
                                                            const ElasticityInclusiveRule& rule) {
   ElasticityInclusiveSums<T> sums;
   const T n_sq = normal[0] * normal[0] + normal[1] * normal[1] + normal[2] * normal[2];
@@ -45,7 +53,7 @@ BB_HD ElasticityInclusiveSums<T> elasticity_inclusive_sums(int n_free, const T* 
   for (int j = 0; j < 3 * n_free; ++j) {
     const T wj = weight[j / 3] * normal[j % 3];
     T column = T(0);
-    for (int i = 0; i < 3 * n_free; ++i) column += weight[i / 3] * normal[i % 3] * hessian[j * ld + i];
+    for (int i = 0; i < 3 * n_free; ++i) column += weight[i / 3] * normal[i % 3] * hessian(i, j);
     sums.elastic += column * wj;
   }
   return sums;
@@ -59,10 +67,10 @@ BB_HD ElasticityInclusiveSums<T> elasticity_inclusive_sums(int n_free, const T* 
 /// Errors: none. Host-device.
 /// Source: Ando 2024, section on elasticity-inclusive stiffness; differs by: off-diagonal blocks of H kept as
 /// in the published code, w over free vertices only, the mass terms inertia and scaled.
-template <class T>
+template <class T, class Hessian>
 BB_HD T elasticity_inclusive_kappa(int n_free, const T* weight, const T* normal, T d, T d_hat, const T* mass,
-                                   const T* hessian, int ld, const ElasticityInclusiveRule& rule) {
-  const auto sums = elasticity_inclusive_sums(n_free, weight, normal, mass, hessian, ld, rule);
+                                   const Hessian& hessian, const ElasticityInclusiveRule& rule) {
+  const auto sums = elasticity_inclusive_sums(n_free, weight, normal, mass, hessian, rule);
   T mass_part = T(0);
   if (rule.mass_term == MassTerm::paper) mass_part = sums.mass / (d * d);
   if (rule.mass_term == MassTerm::inertia) mass_part = sums.inertia(rule);
@@ -71,16 +79,30 @@ BB_HD T elasticity_inclusive_kappa(int n_free, const T* weight, const T* normal,
 }
 
 /// The same as a function of the gap: at(d) is that kappa up to rounding.
-template <class T>
+template <class T, class Hessian>
 BB_HD KappaPartsOf<T> elasticity_inclusive_parts(int n_free, const T* weight, const T* normal, T d_hat,
-                                                 const T* mass, const T* hessian, int ld,
+                                                 const T* mass, const Hessian& hessian,
                                                  const ElasticityInclusiveRule& rule) {
-  const auto sums = elasticity_inclusive_sums(n_free, weight, normal, mass, hessian, ld, rule);
+  const auto sums = elasticity_inclusive_sums(n_free, weight, normal, mass, hessian, rule);
   KappaPartsOf<T> parts{sums.elastic / sums.w_sq, T(0)};
   if (rule.mass_term == MassTerm::paper) parts.per_gap_sq = sums.mass / sums.w_sq;
   if (rule.mass_term == MassTerm::inertia) parts.fixed += sums.inertia(rule) / sums.w_sq;
   if (rule.mass_term == MassTerm::scaled) parts.per_gap_sq = sums.inertia(rule) * d_hat * d_hat / sums.w_sq;
   return parts;
+}
+
+// The same with the sub-matrix in memory: column-major, leading dimension ld >= 3N.
+template <class T>
+BB_HD T elasticity_inclusive_kappa(int n_free, const T* weight, const T* normal, T d, T d_hat, const T* mass,
+                                   const T* hessian, int ld, const ElasticityInclusiveRule& rule) {
+  return elasticity_inclusive_kappa(n_free, weight, normal, d, d_hat, mass, ColumnMajor<T>{hessian, ld},
+                                    rule);
+}
+template <class T>
+BB_HD KappaPartsOf<T> elasticity_inclusive_parts(int n_free, const T* weight, const T* normal, T d_hat,
+                                                 const T* mass, const T* hessian, int ld,
+                                                 const ElasticityInclusiveRule& rule) {
+  return elasticity_inclusive_parts(n_free, weight, normal, d_hat, mass, ColumnMajor<T>{hessian, ld}, rule);
 }
 
 }  // namespace bb

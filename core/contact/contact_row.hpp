@@ -8,7 +8,7 @@
 
 #include "core/contact/contact_table.hpp"
 #include "core/contact/pair_geometry.hpp"
-#include "core/geometry/region.hpp"
+#include "core/contact/pair_row.hpp"
 #include "core/scene/scene.hpp"
 
 namespace bb {
@@ -47,11 +47,7 @@ ContactKey pair_key(const std::array<int, N>& vertex) {
   return contact_key(padded);
 }
 
-/// Local points of the feature that realises a region, role order (point before edge), -1 padded.
-std::array<int, 4> feature_points(Region region);
-
-/// The row of a pair whose closest points are known: its feature in canonical order (the lower id first in a
-/// point-point row and within an edge). T: float or double, in which d and the normal are computed.
+/// pair_row() with the law of the pair.
 template <class T>
 ContactRow make_row(const int* vertex, const T* weights, const Vec<T, 3>& r, T distance, Region region,
                     const Side& law);
@@ -63,11 +59,7 @@ template <PairKind K>
 double row_d_hat(const Scene& scene, const ContactPair<K>& pair) {
   const auto body = [&](std::size_t k) { return scene.body[static_cast<std::size_t>(pair.vertex[k])]; };
   if (body(0) != body(static_cast<std::size_t>(pair_split(K)))) return pair.law.d_hat;
-  const auto rest = gather(scene.rest, pair.vertex);
-  const double reach = 1.5 * pair.law.d_hat;
-  if (pair_box_distance<K>(rest) - pair.law.offset >= reach) return pair.law.d_hat;
-  const double gap = closest_points<K, double>(rest).d - pair.law.offset;
-  return gap > 0 && gap < reach ? gap / 1.5 : pair.law.d_hat;
+  return d_hat_at_rest<K>(pair.law, gather(scene.rest, pair.vertex));
 }
 
 }  // namespace bb

@@ -3,11 +3,9 @@
 #include <algorithm>
 
 #include "core/contact/contact_terms.hpp"
+#include "core/contact/mollified_terms.hpp"
 #include "core/contact/pair_geometry.hpp"
-#include "core/geometry/distance_derivatives.hpp"
-#include "core/geometry/edge_edge_mollifier.hpp"
 #include "core/math/lower_blocks.hpp"
-#include "core/math/psd.hpp"
 
 namespace bb {
 
@@ -16,24 +14,6 @@ namespace {
 template <class T>
 using Hessian12 = Mat<T, 12, 12>;
 constexpr std::size_t stored = n_lower_numbers(4);  // a row
-
-/// Leading block of 3 n x 3 n projected, the rest is 0 and stays so.
-template <class T>
-void project_leading(int n_free, Projection projection, Hessian12<T>& h) {
-  switch (n_free) {
-    case 1:
-      h.template topLeftCorner<3, 3>() = project<T, 3>(h.template topLeftCorner<3, 3>(), projection);
-      break;
-    case 2:
-      h.template topLeftCorner<6, 6>() = project<T, 6>(h.template topLeftCorner<6, 6>(), projection);
-      break;
-    case 3:
-      h.template topLeftCorner<9, 9>() = project<T, 9>(h.template topLeftCorner<9, 9>(), projection);
-      break;
-    default:
-      h = project<T, 12>(h, projection);
-  }
-}
 
 /// Rows and columns of the free points of `full` on the compact slots, the others 0; `vertex` [4] are the
 /// compact ids, -1 padded, in stencil order.
@@ -64,26 +44,13 @@ Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const P
                                     rows.stencil[4 * r + 3]});
 }
 
-template <class T>
-struct MollifiedDerivatives {
-  Vec<T, 12> gradient;
-  Hessian12<T> hessian;
-};
-
 /// Of m kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
 template <class T>
 MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r, const Positions& x) {
-  const Mat<T, 3, 4> points = mollified_points<T>(rows, r, x);
-  const auto e = edge_edge_mollifier<T>(points, in<T>(rows.eps, r));
-  const auto d = distance_derivatives<T, 4>(points, closest_edge_edge<T>(points));
   const T scale = in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r);
-  const T b = scale * in<T>(rows.b, r), db = scale * in<T>(rows.db, r), d2b = scale * in<T>(rows.d2b, r);
-  const Vec<T, 12> g = b * e.gradient + (db * e.value) * d.gradient;
-  const Hessian12<T> cross = db * e.gradient * d.gradient.transpose();
-  const Hessian12<T> full = b * e.hessian + cross + cross.transpose() +
-                            (d2b * e.value) * (d.gradient * d.gradient.transpose()) +
-                            (db * e.value) * d.hessian;
-  return {g, full};
+  return mollified_derivatives<T>(mollified_points<T>(rows, r, x), in<T>(rows.eps, r),
+                                  scale * in<T>(rows.b, r), scale * in<T>(rows.db, r),
+                                  scale * in<T>(rows.d2b, r));
 }
 
 /// grad and hess on the compact free slots.

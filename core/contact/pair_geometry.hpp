@@ -52,7 +52,7 @@ Mat<T, 3, static_cast<int>(N)> gather_in(const Positions& x, const std::array<in
 
 /// Distance between the boxes of the two primitives, each over all given sets of points: a cheap lower bound.
 template <PairKind K, class... Points>
-double pair_box_distance(const Points&... points) {
+BB_HD double pair_box_distance(const Points&... points) {
   Aabb a, b;
   const auto add = [&](const auto& x) {
     for (int k = 0; k < pair_points(K); ++k) (k < pair_split(K) ? a : b).add(Vec3d(x.col(k)));
@@ -65,7 +65,7 @@ double pair_box_distance(const Points&... points) {
 /// than `reach`; false proves nothing. A few steps of Gilbert's method on the differences of their points,
 /// which settle nearly every pair that is not close: a tenth of the cost of the closest points.
 template <PairKind K>
-bool farther_than(const Mat<double, 3, pair_points(K)>& points, double reach) {
+BB_HD bool farther_than(const Mat<double, 3, pair_points(K)>& points, double reach) {
   constexpr int N = pair_points(K), split = pair_split(K), steps = 4;
   const Mat<double, 3, N> x = points.colwise() - points.col(0);
   // closest points, and what follows here, are right to a few eps of the pair's size

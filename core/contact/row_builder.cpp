@@ -11,12 +11,9 @@
 namespace bb {
 namespace {
 
-// Primitives keep their index for a run, and there are fewer than 2^30 of each.
 PairId pair_id(int kind, IndexPair pair) {
-  return (static_cast<PairId>(kind) << 60) | (static_cast<PairId>(pair.first) << 30) |
-         static_cast<PairId>(pair.second);
+  return bb::pair_id(kind, static_cast<PairId>(pair.first), static_cast<PairId>(pair.second));
 }
-constexpr int obstacle_kind = 4;  // after the four kinds of PairKind
 
 /// Two numbers of a key in one that compares as they do.
 std::uint64_t packed(int first, int second) {
@@ -94,7 +91,7 @@ void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) co
   if (d >= static_cast<T>(law.d_hat)) return;
   ContactRow row;
   row.kind = ContactKind::obstacle;
-  row.pair = pair_id(obstacle_kind, pair);
+  row.pair = pair_id(obstacle_pairs, pair);
   row.key = obstacle_key(pair.second, v);
   row.stencil[0] = v;
   row.weight[0] = 1;
@@ -157,7 +154,7 @@ void RowBuilder::near_pairs(Candidates& out) const {
   const auto add = [&](PairId id) {
     const std::size_t kind = static_cast<std::size_t>(id >> 60);
     constexpr PairId index = (PairId{1} << 30) - 1;
-    if (kind == obstacle_kind) return;
+    if (kind == obstacle_pairs) return;
     lists[kind]->push_back({static_cast<int>(id >> 30 & index), static_cast<int>(id & index)});
   };
   for (std::size_t k = 0; k < n_parts_; ++k) {

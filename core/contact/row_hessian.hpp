@@ -52,6 +52,19 @@ struct WeightBasis {
 
 }  // namespace detail
 
+/// The block that every pair of points of a row shares whose closest points slide nowhere, apart from w_i w_j:
+///   stretch n n^T + push curvature (I - n n^T - flat flat^T),
+/// both eigenspaces projected. stretch = m kappa b'', push = m kappa b', curvature 1/d or the obstacle's (1/m), flat the
+/// axis of a cylinder or 0.   Host-device.
+template <class T>
+BB_HD inline Mat<T, 3, 3> fixed_points_block(const Vec<T, 3>& n, const Vec<T, 3>& flat, T stretch,
+                                             T push_curvature, Projection projection) {
+  const T along = project_eigenvalue(stretch, projection);
+  const T across = project_eigenvalue(push_curvature, projection);
+  return along * n * n.transpose() +
+         across * (Mat<T, 3, 3>::Identity() - n * n.transpose() - flat * flat.transpose());
+}
+
 /// Lower blocks (lower_blocks.hpp) of stretch grad d grad d^T + push grad^2 d with projected eigenvalues.
 ///   grad d = w x n, and with c = push the second term is in the basis of docs/design.md, Contact rows:
 ///   -c (g_l x n)(w x q_l)^T - c (w x q_l)(g_l x n)^T - c d (g_l x n)(g_l x n)^T + c/d (w x t)(w x t)^T,

@@ -71,10 +71,8 @@ void store_fixed_points(const ContactTable& rows, std::size_t r, Projection proj
   const Vec<T, 3> n = normal_of<T>(rows, r);
   Vec<T, 3> flat = Vec<T, 3>::Zero();
   if (obstacle) flat = Vec3d::Map(&rows.flat[3 * r]).template cast<T>();
-  const T along = project_eigenvalue(scale * in<T>(rows.d2b, r), projection);
-  const T across = project_eigenvalue(scale * in<T>(rows.db, r) * curvature, projection);
-  const Mat<T, 3, 3> unit = along * n * n.transpose() +
-                            across * (Mat<T, 3, 3>::Identity() - n * n.transpose() - flat * flat.transpose());
+  const Mat<T, 3, 3> unit = fixed_points_block<T>(n, flat, scale * in<T>(rows.d2b, r),
+                                                  scale * in<T>(rows.db, r) * curvature, projection);
   for (std::size_t j = 0; j < 4; ++j) {
     for (std::size_t i = j; i < 4; ++i, hess += 9) {
       const Mat<T, 3, 3> block = (in<T>(rows.weight, 4 * r + i) * in<T>(rows.weight, 4 * r + j)) * unit;

@@ -17,7 +17,7 @@ struct Side {
 };
 
 /// Gap law of a pair: mean activation distance and summed offset of its two sides, m.
-inline Side combine(const Side& a, const Side& b) {
+BB_HD inline Side combine(const Side& a, const Side& b) {
   return {a.d_hat + (b.d_hat - a.d_hat) / 2, a.offset + b.offset};
 }
 

@@ -1,0 +1,51 @@
+// From counts of items to their places in a column without holes: count, then fill.
+#pragma once
+
+#include <string>
+
+#include "core/exec/buffer.hpp"
+#include "core/resident/contact/compaction_kernels.hpp"
+
+namespace bb::resident {
+
+/// 3 B an item; keeps its buffers.
+class Compaction {
+ public:
+  Compaction(exec::Executor& executor, const std::string& name)
+      : executor_(&executor), count_(executor, name + " counts"), rank_(executor, name + " ranks"),
+        block_(executor, name + " places") {}
+  /// Room for the counts of n items; a kernel fills them, at most 255 each.
+  std::uint8_t* counts(Index n) {
+    count_.resize(n);
+    return count_.data();
+  }
+  /// Ranks the items. @return the sum of the counts; waits for it.
+  Index rank() {
+    const Index n = count_.size(), n_blocks = (n + exec::block_threads - 1) / exec::block_threads;
+    if (n == 0) return 0;
+    rank_.resize(n);
+    block_.resize(n_blocks + 1);
+    executor_->blocks(n_blocks, RankItems{count_.data(), rank_.data(), block_.data(), n, n_blocks});
+    executor_->exclusive_scan(block_.data(), n_blocks + 1);
+    return block_.get(n_blocks);
+  }
+  Places places() const { return {rank_.data(), block_.data()}; }
+  /// The marked items, ascending, where counts are 0 or 1; n as rank() returned it.
+  void list(Index n, exec::Buffer<std::uint32_t>& out) {
+    out.resize(n);
+    executor_->each(count_.size(), ListMarked{count_.data(), places(), out.data()});
+  }
+  void free() {
+    count_.free();
+    rank_.free();
+    block_.free();
+  }
+
+ private:
+  exec::Executor* executor_;
+  exec::Buffer<std::uint8_t> count_;
+  exec::Buffer<std::uint16_t> rank_;
+  exec::Buffer<Index> block_;
+};
+
+}  // namespace bb::resident

@@ -1,0 +1,96 @@
+#include "core/resident/contact/contact_assembly.hpp"
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/resident/contact/gather_kernels.hpp"
+
+namespace bb::resident {
+
+ContactAssembly::ContactAssembly(exec::Executor& executor, const ResidentSurface& surface, int n_vertices,
+                                 const AssemblyOptions& options)
+    : executor_(executor),
+      surface_(surface),
+      options_(options),
+      pattern_(executor, n_vertices, options.pairs_a_chunk),
+      mollified_(executor, "mollified gradients"),
+      mollifier_(executor, "mollifiers"),
+      dense_(executor, "row Hessians"),
+      dense_rows_(executor, "rows with a Hessian"),
+      row_hessians_(executor, "row Hessians"),
+      value_(executor, "contact matrix values") {}
+
+void ContactAssembly::set_pattern(ResidentRows& rows, bool blocks) {
+  if (blocks) {
+    pattern_.build(rows);
+  } else {
+    pattern_.build_slots(rows);
+  }
+}
+
+const exec::Buffer<double>& ContactAssembly::mollifiers(ResidentRows& rows, const exec::Buffer<double>& x) {
+  const Index n = rows.list.size();
+  mollified_.resize(12 * n);
+  mollifier_.resize(n);
+  executor_.each(n, MollifiedGradients{rows.view(), rows.list.data(), n, x.data(), surface_.view().rest,
+                                       mollified_.data(), mollifier_.data()});
+  return mollifier_;
+}
+
+void ContactAssembly::add_gradient(ResidentRows& rows, const exec::Buffer<double>& x,
+                                   exec::Buffer<double>& gradient) {
+  mollifiers(rows, x);
+  executor_.each(pattern_.n_vertices(),
+                 GatherGradient{rows.view(), pattern_.slots(),
+                                {rows.list.data(), rows.list.size(), mollified_.data()}, gradient.data()});
+}
+
+void ContactAssembly::add_given_motion(ResidentRows& rows, const exec::Buffer<double>& x,
+                                       const exec::Buffer<double>& motion, exec::Buffer<double>& force) {
+  const Index n = rows.list.size();
+  mollified_.resize(12 * n);
+  executor_.each(n, MollifiedChanges{rows.view(), rows.list.data(), n, x.data(), surface_.view().rest, motion.data(),
+                                     mollified_.data()});
+  executor_.each(pattern_.n_vertices(),
+                 GatherGivenMotion{rows.view(), pattern_.slots(), {rows.list.data(), n, mollified_.data()},
+                                   motion.data(), force.data()});
+}
+
+MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice) {
+  if (choice.mode == HessianMode::projected_numeric) {
+    throw std::invalid_argument("Hessian mode projected_numeric has no kernel; gauss_newton and projected_full have");
+  }
+  const Index n = pattern_.n_blocks();
+  value_.resize(9 * ((n + 7) / 8) * 8);
+  const BlockSources blocks = pattern_.blocks();
+  if (rows.size() > 0) {
+    std::uint8_t* const dense = dense_.counts(rows.size());
+    executor_.each(rows.size(), MarkDense{rows.view(), choice.mode, dense});
+    dense_.list(dense_.rank(), dense_rows_);
+    value_.fill_zero();  // the last plane may be longer than the blocks are
+    executor_.each(n, GatherStreamed{rows.view(), blocks, dense, x.data(), surface_.view(), choice, value_.data()});
+    add_dense(rows, x, choice);
+    executor_.each(n, MirrorBlocks{blocks, pattern_.n_vertices(), value_.data()});
+  }
+  return {blocks.row_begin, blocks.column, value_.data()};
+}
+
+void ContactAssembly::add_dense(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice) {
+  const Index n = dense_rows_.size(), stride = std::min(options_.hessians_a_chunk, n);
+  row_hessians_.resize(row_numbers * stride);
+  for (Index first = 0; first < n; first += stride) {
+    const Index size = std::min(stride, n - first);
+    const std::uint32_t* const list = dense_rows_.data() + first;
+    const RowHessians to{rows.view(), list, stride, row_hessians_.data(), x.data(), surface_.view(), choice};
+    if (rows.list.size() > 0) executor_.each(size, MollifiedHessians{to});
+    if (choice.mode == HessianMode::projected_full) {
+      executor_.each(size, SlidingHessians<PairKind::point_edge>{to});
+      executor_.each(size, SlidingHessians<PairKind::point_triangle>{to});
+      executor_.each(size, SlidingHessians<PairKind::edge_edge>{to});
+    }
+    executor_.each(pattern_.n_blocks(),
+                   GatherDense{pattern_.blocks(), list, size, stride, row_hessians_.data(), value_.data()});
+  }
+}
+
+}  // namespace bb::resident

@@ -1,0 +1,54 @@
+// From rows to gradient, matrix and the force of a given motion.
+#pragma once
+
+#include "core/resident/contact/contact_pattern.hpp"
+#include "core/resident/contact/resident_surface.hpp"
+#include "core/resident/contact/term_kernels.hpp"
+#include "core/resident/linear/resident_matrix.hpp"
+
+namespace bb::resident {
+
+struct AssemblyOptions {
+  Index pairs_a_chunk = Index{1} << 28;  // of the pattern's sorts
+  Index hessians_a_chunk = 1 << 20;      // rows whose Hessians are kept at a time, 720 B each
+};
+
+/// Sums over rows whose energy, push and stretch are set. Results do not depend on the chunks.
+class ContactAssembly {
+ public:
+  /// surface must outlive it.
+  ContactAssembly(exec::Executor& executor, const ResidentSurface& surface, int n_vertices,
+                  const AssemblyOptions& options = {});
+
+  /// For the rows of an iterate: slots and, with blocks, the pattern of the matrix. Skip it while the stencils are the
+  /// same (same_stencils()). Errors: as ContactPattern::build.
+  void set_pattern(ResidentRows& rows, bool blocks = true);
+
+  /// gradient [3 n_vertices] (N) += that of B at x.
+  void add_gradient(ResidentRows& rows, const exec::Buffer<double>& x, exec::Buffer<double>& gradient);
+  /// The Hessian of B at x, both triangles; valid until the next call. Errors: std::invalid_argument for
+  /// HessianMode::projected_numeric, which has no kernel.
+  MatrixPart matrix(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice);
+  Index n_blocks() const { return pattern_.n_blocks(); }
+  /// force [3 n_vertices] (N) += how the gradient changes along motion [3 n_vertices] (m, 0 at free vertices).
+  void add_given_motion(ResidentRows& rows, const exec::Buffer<double>& x, const exec::Buffer<double>& motion,
+                        exec::Buffer<double>& force);
+  /// The mollifiers [mollified rows] that rows.energy lacks, of the last add_gradient() or of rows at x.
+  const exec::Buffer<double>& mollifiers(ResidentRows& rows, const exec::Buffer<double>& x);
+
+  const ContactPattern& pattern() const { return pattern_; }
+
+ private:
+  void add_dense(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice);
+
+  exec::Executor& executor_;
+  const ResidentSurface& surface_;
+  AssemblyOptions options_;
+  ContactPattern pattern_;
+  exec::Buffer<double> mollified_, mollifier_;  // [12][mollified], [mollified]
+  Compaction dense_;
+  exec::Buffer<std::uint32_t> dense_rows_;
+  exec::Buffer<double> row_hessians_, value_;
+};
+
+}  // namespace bb::resident

@@ -1,0 +1,60 @@
+// Where contact rows go: the rows of every vertex, the blocks of the matrix, and what adds up to each of them.
+#pragma once
+
+#include "core/resident/contact/compaction.hpp"
+#include "core/resident/contact/resident_rows.hpp"
+
+namespace bb::resident {
+
+/// What a gather reads.
+struct VertexSlots {
+  const Index* begin;         // [n_vertices + 1]
+  const std::uint32_t* slot;  // 4 row + point, ascending for every vertex
+};
+struct BlockSources {
+  const Index* row_begin;  // [n_vertices + 1]
+  const int* column;       // ascending for every row; both triangles, the diagonal of every vertex with a row
+  const Index* begin;      // [blocks + 1]
+  const std::uint32_t* code;  // 16 row + 4 a + b, ascending; none below the diagonal
+};
+
+/// Rebuilt when the stencils of the rows change. Sorted in chunks of vertices, so that scratch memory is 24 B times the
+/// contributions of a chunk, and 3 B a row; results do not depend on the chunks.
+class ContactPattern {
+ public:
+  /// chunk: pairs of points that are sorted at a time; a vertex with more is a chunk of its own.
+  ContactPattern(exec::Executor& executor, int n_vertices, Index chunk = Index{1} << 28);
+
+  /// The slots alone: all that gradients need. Errors: std::length_error for 2^28 rows or more; OutOfMemory.
+  void build_slots(ResidentRows& rows);
+  /// Slots and blocks. Errors: as above.
+  void build(ResidentRows& rows);
+
+  int n_vertices() const { return n_vertices_; }
+  Index n_blocks() const { return column_.size(); }
+  VertexSlots slots() const { return {slot_begin_.data(), slot_.data()}; }
+  BlockSources blocks() const { return {row_begin_.data(), column_.data(), begin_.data(), code_.data()}; }
+
+ private:
+  struct Piece;
+  int end_of_chunk(int first, Index most) const;
+  void starts(const exec::Buffer<std::uint32_t>& counts, exec::Buffer<Index>& begin);
+  void fill_slots(const RowView& rows, int first, int last);
+  Piece fill_blocks(const RowView& rows, int first, int last, Index n_before);
+  void join(std::vector<Piece>& pieces, Index n_contributions);
+
+  exec::Executor& executor_;
+  int n_vertices_;
+  Index chunk_;
+  exec::Buffer<std::uint32_t> touched_;  // [n_vertices] counts
+  exec::Buffer<Index> slot_begin_, row_begin_;
+  exec::Buffer<std::uint32_t> slot_;
+  exec::Buffer<int> column_;
+  exec::Buffer<Index> begin_;
+  exec::Buffer<std::uint32_t> code_;
+  Compaction places_, upper_;
+  exec::Buffer<Key> key_;
+  exec::Buffer<std::uint32_t> value_;
+};
+
+}  // namespace bb::resident

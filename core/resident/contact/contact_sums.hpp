@@ -1,0 +1,29 @@
+// The few numbers that leave the rows: energies, and what the policy ipc_adaptive starts from.
+#pragma once
+
+#include "core/resident/contact/contact_assembly.hpp"
+#include "core/resident/contact/sum_kernels.hpp"
+
+namespace bb::resident {
+
+class ContactSums {
+ public:
+  explicit ContactSums(exec::Executor& executor);
+
+  /// Energy of all rows at x, J. Sums of two tables are compared as sums: rows come and go.
+  CompensatedSum energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly);
+  /// a . b over free degrees of freedom; both [3 n_vertices], fixed: 3 bits a vertex.
+  double product(const exec::Buffer<double>& a, const exec::Buffer<double>& b,
+                 const exec::Buffer<std::uint8_t>& fixed);
+  /// Mean mass of the free vertices of the rows, counted once a row, kg. Requires rows.
+  double mean_mass(ResidentRows& rows, const exec::Buffer<double>& mass);
+
+ private:
+  template <class Item>
+  CompensatedSum sum(Index n, const Item& item);
+
+  exec::Executor& executor_;
+  exec::Buffer<CompensatedSum> part_, folded_;
+};
+
+}  // namespace bb::resident

@@ -1,0 +1,204 @@
+// Sums of row terms onto vertices and blocks: every vertex and every block adds up its own contributions, in their
+// order.
+#pragma once
+
+#include "core/resident/contact/contact_pattern.hpp"
+#include "core/resident/contact/slot_kernels.hpp"
+#include "core/resident/contact/term_kernels.hpp"
+
+namespace bb::resident {
+
+/// Numbers of mollified rows by row.
+struct MollifiedColumn {
+  const std::uint32_t* list;  // ascending rows
+  Index n;
+  const double* number;  // [12][n]
+  BB_HD Index of(Index row) const { return first_not_below(list, Index{0}, n, static_cast<std::uint32_t>(row)); }
+};
+
+/// Adds the gradient of B to gradient [3 n_vertices], N.
+struct GatherGradient {
+  RowView rows;
+  VertexSlots slots;
+  MollifiedColumn mollified;
+  double* gradient;
+  BB_HD void operator()(Index v) const {
+    double sum[3] = {0, 0, 0};
+    for (Index s = slots.begin[v]; s < slots.begin[v + 1]; ++s) {
+      const Index r = slot_row(slots.slot[s]);
+      const int k = slot_point(slots.slot[s]);
+      if (rows.mollified(r)) {
+        const Index i = mollified.of(r);
+        for (int c = 0; c < 3; ++c) sum[c] += mollified.number[(3 * k + c) * mollified.n + i];
+        continue;
+      }
+      const double push = rows.push[r], w = rows.weight[k * rows.n + r];
+      for (int c = 0; c < 3; ++c) sum[c] += push * (w * rows.normal[c * rows.n + r]);
+    }
+    for (int c = 0; c < 3; ++c) gradient[3 * v + c] += sum[c];
+  }
+};
+
+/// Adds to force how the gradient changes along a motion of given vertices: add_given_motion() of
+/// core/contact/contact_terms.hpp. mollified: their changes.
+struct GatherGivenMotion {
+  RowView rows;
+  VertexSlots slots;
+  MollifiedColumn mollified;
+  const double* motion;
+  double* force;
+  BB_HD void operator()(Index v) const {
+    double sum[3] = {0, 0, 0};
+    for (Index s = slots.begin[v]; s < slots.begin[v + 1]; ++s) {
+      const Index r = slot_row(slots.slot[s]);
+      const int k = slot_point(slots.slot[s]);
+      if (rows.mollified(r)) {
+        const Index i = mollified.of(r);
+        for (int c = 0; c < 3; ++c) sum[c] += mollified.number[(3 * k + c) * mollified.n + i];
+        continue;
+      }
+      const double closing = closing_motion(r);
+      if (closing == 0) continue;
+      const double size = rows.stretch[r] * closing * rows.weight[k * rows.n + r];
+      for (int c = 0; c < 3; ++c) sum[c] += size * rows.normal[c * rows.n + r];
+    }
+    for (int c = 0; c < 3; ++c) force[3 * v + c] += sum[c];
+  }
+
+ private:
+  BB_HD double closing_motion(Index r) const {
+    double closing = 0;
+    for (int k = 0; k < 4; ++k) {
+      const Index vertex = rows.vertex[k * rows.n + r];
+      if (vertex < 0) continue;
+      const Vec3d moved(motion[3 * vertex], motion[3 * vertex + 1], motion[3 * vertex + 2]);
+      closing += rows.weight[k * rows.n + r] * rows.normal_of(r).dot(moved);
+    }
+    return closing;
+  }
+};
+
+/// Marks the rows whose Hessian is computed before it is gathered.
+struct MarkDense {
+  RowView rows;
+  HessianMode mode;
+  std::uint8_t* mark;
+  BB_HD void operator()(Index r) const {
+    const int kind = rows.kind[r];
+    const bool slides = kind == static_cast<int>(ContactKind::point_edge) ||
+                        kind == static_cast<int>(ContactKind::point_triangle) ||
+                        kind == static_cast<int>(ContactKind::edge_edge);
+    const bool full = mode != HessianMode::gauss_newton && slides && rows.push[r] != 0;
+    mark[r] = rows.mollified(r) || full ? 1 : 0;
+  }
+};
+
+/// Values of the upper blocks, from the rows that need no Hessian of their own.
+struct GatherStreamed {
+  RowView rows;
+  BlockSources blocks;
+  const std::uint8_t* dense;
+  const double* x;
+  SurfaceView surface;
+  HessianChoice choice;
+  double* value;
+
+  BB_HD void operator()(Index j) const {
+    double sum[9] = {0, 0, 0, 0, 0, 0, 0, 0, 0};
+    for (Index i = blocks.begin[j]; i < blocks.begin[j + 1]; ++i) {
+      const std::uint32_t code = blocks.code[i];
+      const Index r = pair_row_of(code);
+      if (dense[r] != 0) continue;
+      const double wa = rows.weight[pair_a(code) * rows.n + r], wb = rows.weight[pair_b(code) * rows.n + r];
+      if (choice.mode == HessianMode::gauss_newton || rows.push[r] == 0) {
+        add_stretch(r, wa, wb, sum);
+      } else {
+        add_fixed_points(r, wa * wb, sum);
+      }
+    }
+    for (int c = 0; c < 9; ++c) value[block_number(j, c)] = sum[c];
+  }
+
+ private:
+  BB_HD void add_stretch(Index r, double wa, double wb, double* sum) const {
+    const Vec3d n = rows.normal_of(r), ga = wa * n, gb = wb * n;
+    for (int c = 0; c < 9; ++c) sum[c] += rows.stretch[r] * (ga[c / 3] * gb[c % 3]);
+  }
+  /// Rows whose closest points slide nowhere, grad^2 d included.
+  BB_HD void add_fixed_points(Index r, double ww, double* sum) const {
+    Vec3d flat = Vec3d::Zero();
+    double curvature = 0;
+    if (rows.kind[r] == static_cast<std::uint8_t>(ContactKind::obstacle)) {
+      const Index v = rows.vertex[r];
+      const SurfaceGap<double> gap = surface_gap<double>(
+          surface.obstacles[rows.pair[r] & ((Key{1} << 30) - 1)].surface(), Vec3d(x[3 * v], x[3 * v + 1], x[3 * v + 2]));
+      flat = gap.flat;
+      curvature = gap.curvature;
+    } else {
+      curvature = 1 / (rows.d[r] + pair_offset(surface, rows.pair[r]));
+    }
+    const double stretch = rows.stretch[r], push = rows.push[r] * curvature;
+    const Vec3d n = rows.normal_of(r);
+    const Mat3d one =
+        fixed_points_block<double>(n, flat, stretch, push, choice.blended ? Projection::psd : choice.projection);
+    if (!choice.blended) {
+      for (int c = 0; c < 9; ++c) sum[c] += ww * one(c / 3, c % 3);
+      return;
+    }
+    const Mat3d exact = fixed_points_block<double>(n, flat, stretch, push, Projection::none);
+    for (int c = 0; c < 9; ++c) sum[c] += ww * blend(exact(c / 3, c % 3), one(c / 3, c % 3), choice.t);
+  }
+};
+
+/// Adds the Hessians of a chunk of rows to the upper blocks.
+struct GatherDense {
+  BlockSources blocks;
+  const std::uint32_t* list;  // [n] ascending rows of the chunk
+  Index n, stride;
+  const double* number;  // [row_numbers][stride]
+  double* value;
+
+  BB_HD void operator()(Index j) const {
+    const Index end = blocks.begin[j + 1];
+    Index i = first_not_below(blocks.code, blocks.begin[j], end, list[0] << 4);
+    const Index last = list[n - 1];
+    if (i >= end || pair_row_of(blocks.code[i]) > last) return;
+    double sum[9];
+    for (int c = 0; c < 9; ++c) sum[c] = value[block_number(j, c)];
+    for (; i < end && pair_row_of(blocks.code[i]) <= last; ++i) {
+      const std::uint32_t code = blocks.code[i], row = code >> 4;
+      const Index at = first_not_below(list, Index{0}, n, row);
+      if (list[at] == row) add(at, pair_a(code), pair_b(code), sum);
+    }
+    for (int c = 0; c < 9; ++c) value[block_number(j, c)] = sum[c];
+  }
+
+ private:
+  /// Block (a, b) of a row is stored, column-major, when a >= b; else its transpose is.
+  BB_HD void add(Index at, int a, int b, double* sum) const {
+    const bool stored = a >= b;
+    const int high = stored ? a : b, low = stored ? b : a;
+    const int first = 9 * (low * (9 - low) / 2 + (high - low));
+    for (int c = 0; c < 9; ++c) {
+      const int row = c / 3, column = c % 3;
+      sum[c] += number[(first + (stored ? 3 * column + row : 3 * row + column)) * stride + at];
+    }
+  }
+};
+
+/// Blocks below the diagonal are those above it, transposed.
+struct MirrorBlocks {
+  BlockSources blocks;
+  int n_vertices;
+  double* value;
+  BB_HD void operator()(Index j) const {
+    const int column = blocks.column[j];
+    // the last row that begins at or before j
+    const int row = static_cast<int>(first_not_below(blocks.row_begin, Index{0}, static_cast<Index>(n_vertices) + 1, j + 1) - 1);
+    if (column >= row) return;
+    const Index from = first_not_below(blocks.column, blocks.row_begin[column], blocks.row_begin[column + 1], row);
+    for (int c = 0; c < 9; ++c) value[block_number(j, c)] = value[block_number(from, 3 * (c % 3) + c / 3)];
+  }
+};
+
+}  // namespace bb::resident

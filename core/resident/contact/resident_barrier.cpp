@@ -1,0 +1,64 @@
+#include "core/resident/contact/resident_barrier.hpp"
+
+#include "core/math/error.hpp"
+#include "core/resident/contact/shape_kernels.hpp"
+#include "core/resident/contact/shape_list.hpp"
+
+namespace bb::resident {
+namespace {
+
+template <class S>
+void launch_shape(exec::Executor& executor, const RowView& rows, Argument argument) {
+  executor.each(rows.n, EvaluateShape<S>{rows, argument});
+}
+template <class S>
+void launch_folded(exec::Executor& executor, const RowView& rows, Argument) {
+  executor.each(rows.n, EvaluateFoldedShape<S>{rows});
+}
+
+using Launch = void (*)(exec::Executor&, const RowView&, Argument);
+struct Entry {
+  std::string_view name;
+  Launch launch;
+};
+#define BB_ENTRY(name, S) {#name, &launch_shape<shapes::S>},
+constexpr Entry plain[] = {BB_FOR_EACH_RESIDENT_SHAPE(BB_ENTRY)};
+#undef BB_ENTRY
+#define BB_ENTRY(name, S) {#name, &launch_folded<shapes::S>},
+constexpr Entry folded[] = {BB_FOR_EACH_FOLDED_SHAPE(BB_ENTRY)};
+#undef BB_ENTRY
+
+// In case a shape and its list disagree.
+#define BB_ENTRY(name, S) static_assert(shapes::HasPotential<shapes::S>);
+BB_FOR_EACH_FOLDED_SHAPE(BB_ENTRY)
+#undef BB_ENTRY
+
+template <std::size_t n>
+Launch find(const Entry (&entries)[n], const std::string& name, const char* what) {
+  std::string names;
+  for (const Entry& entry : entries) {
+    if (entry.name == name) return entry.launch;
+    names += (names.empty() ? "" : ", ") + std::string(entry.name);
+  }
+  throw ConfigError("shape", "\"" + name + "\", which has no kernel " + what,
+                    "one of " + names + " where the pipeline is resident; shapes of plugins run on the CPU path");
+}
+
+}  // namespace
+
+ResidentBarrier::ResidentBarrier(const BarrierFunction& barrier, bool potential) : argument_(barrier.argument) {
+  if (barrier.literal) {
+    throw ConfigError("shape", "the article's literal evaluation", "the CPU path");
+  }
+  if (barrier.in_float) throw ConfigError("precision", "float", "double where the pipeline is resident");
+  if (potential && argument_ != Argument::gap) {
+    throw ConfigError("argument", "squared_gap with a potential", "gap");
+  }
+  launch_ = potential ? find(folded, barrier.shape.name, "of a potential") : find(plain, barrier.shape.name, "of its own");
+}
+
+void ResidentBarrier::evaluate(exec::Executor& executor, ResidentRows& rows) const {
+  launch_(executor, rows.view(), argument_);
+}
+
+}  // namespace bb::resident

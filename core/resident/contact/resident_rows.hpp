@@ -1,0 +1,119 @@
+// Contact rows in an executor's memory, one a pair: columns, at most 140 B a row.
+#pragma once
+
+#include "core/barrier/stiffness_policy.hpp"
+#include "core/contact/contact_table.hpp"
+#include "core/exec/buffer.hpp"
+#include "core/math/types.hpp"
+
+namespace bb::resident {
+
+using exec::Index;
+using exec::Key;
+
+/// Kind of a row whose edges are close to parallel, after those of ContactKind: barrier times mollifier.
+constexpr std::uint8_t mollified_kind = 5;
+
+/// What kappa is made of, which says what columns a policy needs.
+enum class KappaColumns {
+  uniform,    // one number for all rows: none
+  kept,       // one number a row
+  compared,   // and what it was before
+  potential,  // two numbers a row: fixed + per_gap_sq/d^2
+};
+
+/// What kernels read and write of rows; number k of a row is column[k * n + row].
+struct RowView {
+  Index n;
+  int* vertex;             // [4][n] in role order (p t0 t1 t2, ea0 ea1 eb0 eb1), -1 padded
+  double* weight;          // [4][n] w_i, 0 padded
+  double* normal;          // [3][n] unit, grad_i d = w_i n
+  double *d, *d_hat;       // [n] m
+  Key* pair;               // [n] PairId, ascending
+  std::uint8_t* kind;      // [n] ContactKind or mollified_kind
+  std::uint8_t* free;      // [n] bit k: vertex k is free
+  double* kappa;           // [n] N/m, of a potential its fixed part; null: uniform_kappa
+  double* kappa_before;    // [n] N/m, 0: the pair was not there; or null
+  double* per_gap_sq;      // [n] N m; or null
+  double uniform_kappa;    // N/m
+  double *energy, *push, *stretch;  // [n] kappa b (J, before any mollifier), kappa b' (N), kappa b'' (N/m)
+
+  BB_HD bool is_free(Index r, int k) const { return (free[r] >> k & 1) != 0; }
+  BB_HD int n_free(Index r) const {
+    const int f = free[r];
+    return (f & 1) + (f >> 1 & 1) + (f >> 2 & 1) + (f >> 3 & 1);
+  }
+  BB_HD Vec3d normal_of(Index r) const { return Vec3d(normal[r], normal[n + r], normal[2 * n + r]); }
+  BB_HD KappaParts parts(Index r) const {
+    return {kappa ? kappa[r] : uniform_kappa, per_gap_sq ? per_gap_sq[r] : 0.0};
+  }
+  BB_HD double kappa_of(Index r) const { return parts(r).at(d[r]); }
+  BB_HD bool mollified(Index r) const { return kind[r] == mollified_kind; }
+};
+
+class ResidentRows {
+ public:
+  ResidentRows(exec::Executor& executor, KappaColumns columns)
+      : list(executor, "mollified rows"),
+        columns_(columns),
+        vertex_(executor, "contact vertices"),
+        weight_(executor, "contact weights"),
+        normal_(executor, "contact normals"),
+        d_(executor, "contact gaps"),
+        d_hat_(executor, "contact d_hat"),
+        pair_(executor, "contact pairs"),
+        kind_(executor, "contact kinds"),
+        free_(executor, "contact free vertices"),
+        kappa_(executor, "contact kappa"),
+        kappa_before_(executor, "contact kappa before"),
+        per_gap_sq_(executor, "contact kappa per gap"),
+        energy_(executor, "contact energies"),
+        push_(executor, "contact b'"),
+        stretch_(executor, "contact b''") {}
+
+  /// Values are lost. Errors: OutOfMemory.
+  void resize(Index n) {
+    vertex_.resize(4 * n), weight_.resize(4 * n), normal_.resize(3 * n);
+    for (auto* column : {&d_, &d_hat_, &energy_, &push_, &stretch_}) column->resize(n);
+    pair_.resize(n), kind_.resize(n), free_.resize(n);
+    if (columns_ != KappaColumns::uniform) kappa_.resize(n);
+    if (columns_ == KappaColumns::compared) kappa_before_.resize(n);
+    if (columns_ == KappaColumns::potential) per_gap_sq_.resize(n);
+  }
+  void swap(ResidentRows& other) noexcept {
+    for (auto column : {&ResidentRows::weight_, &ResidentRows::normal_, &ResidentRows::d_, &ResidentRows::d_hat_,
+                        &ResidentRows::kappa_, &ResidentRows::kappa_before_, &ResidentRows::per_gap_sq_,
+                        &ResidentRows::energy_, &ResidentRows::push_, &ResidentRows::stretch_}) {
+      (this->*column).swap(other.*column);
+    }
+    vertex_.swap(other.vertex_), pair_.swap(other.pair_), kind_.swap(other.kind_), free_.swap(other.free_);
+    list.swap(other.list);
+    std::swap(uniform_kappa, other.uniform_kappa), std::swap(min_gap, other.min_gap);
+  }
+  Index size() const { return d_.size(); }
+  KappaColumns columns() const { return columns_; }
+  RowView view() {
+    const auto used = [this](exec::Buffer<double>& column) { return column.size() == size() ? column.data() : nullptr; };
+    return {size(), vertex_.data(), weight_.data(), normal_.data(), d_.data(), d_hat_.data(), pair_.data(),
+            kind_.data(), free_.data(),
+            columns_ == KappaColumns::uniform ? nullptr : used(kappa_),
+            columns_ == KappaColumns::compared ? used(kappa_before_) : nullptr,
+            columns_ == KappaColumns::potential ? used(per_gap_sq_) : nullptr,
+            uniform_kappa, energy_.data(), push_.data(), stretch_.data()};
+  }
+  bool feasible() const { return min_gap > 0; }
+
+  exec::Buffer<std::uint32_t> list;  // numbers of the mollified rows, ascending
+  double uniform_kappa = 0;          // N/m
+  double min_gap = 0;                // m; infinity without rows
+
+ private:
+  KappaColumns columns_;
+  exec::Buffer<int> vertex_;
+  exec::Buffer<double> weight_, normal_, d_, d_hat_;
+  exec::Buffer<Key> pair_;
+  exec::Buffer<std::uint8_t> kind_, free_;
+  exec::Buffer<double> kappa_, kappa_before_, per_gap_sq_, energy_, push_, stretch_;
+};
+
+}  // namespace bb::resident

@@ -1,0 +1,37 @@
+// Narrow phase on an executor: candidate pairs to contact rows.
+#pragma once
+
+#include "core/resident/contact/compaction.hpp"
+#include "core/resident/contact/resident_rows.hpp"
+#include "core/resident/contact/resident_surface.hpp"
+#include "core/resident/contact/row_kernels.hpp"
+
+namespace bb::resident {
+
+/// Keeps its buffers: 3 B a candidate.
+class RowFinder {
+ public:
+  /// surface must outlive the finder. mollifier: whether edge-edge rows close to parallel are mollified.
+  RowFinder(exec::Executor& executor, const ResidentSurface& surface, bool mollifier);
+
+  /// One row a candidate pair with d < d_hat at x [3n] m, sorted by PairId; kappa and the barrier are not set,
+  /// kappa_before is 0. Sets min_gap: the smallest gap, infinity without rows; x that is not finite: no rows and
+  /// -infinity. Errors: OutOfMemory.
+  void find(const exec::Buffer<double>& x, const ResidentCandidates& candidates, ResidentRows& rows);
+
+ private:
+  bool finite(const exec::Buffer<double>& x);
+  void list_mollified(ResidentRows& rows);
+
+  exec::Executor& executor_;
+  const ResidentSurface& surface_;
+  bool mollifier_;
+  Compaction places_;
+  exec::Buffer<GapBits> gap_;
+  exec::Buffer<std::uint32_t> found_;
+};
+
+/// Whether two tables have the same stencils and free vertices, so that one pattern serves both.
+bool same_stencils(exec::Executor& executor, ResidentRows& a, ResidentRows& b);
+
+}  // namespace bb::resident

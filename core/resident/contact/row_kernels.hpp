@@ -1,0 +1,199 @@
+// Narrow phase: which candidate pairs have a contact row, and the rows. The rules of core/contact/row_builder.hpp.
+#pragma once
+
+#include "core/contact/obstacle.hpp"
+#include "core/geometry/edge_edge_mollifier.hpp"
+#include "core/resident/contact/compaction_kernels.hpp"
+#include "core/resident/contact/resident_pair.hpp"
+#include "core/resident/contact/resident_rows.hpp"
+
+namespace bb::resident {
+
+/// A row before it has a place.
+struct FoundRow {
+  int vertex[4];
+  double weight[4];
+  Vec3d normal;
+  double d, d_hat;
+  std::uint8_t kind, free;
+};
+
+struct NarrowPhase {
+  SurfaceView surface;
+  const double* x;  // [3 n_vertices] m
+  bool mollifier;
+
+  /// False when the pair has no row: far, resting as near as that, or none of its vertices moves.
+  template <PairKind K>
+  BB_HD bool find(Key candidate, FoundRow& out) const {
+    constexpr int n = pair_points(K);
+    PairVertices<K> pair = pair_vertices<K>(surface, static_cast<Index>(candidate >> 32),
+                                            static_cast<Index>(candidate & 0xffffffffu));
+    const Mat<double, 3, n> points = points_of<n>(x, pair.vertex);
+    if (farther_than<K>(points, pair.law.d_hat + pair.law.offset)) return false;
+    const Closest<double, n> closest = closest_points<K, double>(points);
+    const double gap = closest.d - pair.law.offset;
+    if (gap >= pair.law.d_hat) return false;
+    pair.law.d_hat = activation_distance<K>(surface, pair);
+    if (gap >= pair.law.d_hat) return false;
+    Region region = closest.region;
+    bool parallel = false;
+    if constexpr (K == PairKind::edge_edge) {
+      if (mollifier) {
+        const double eps =
+            edge_edge_mollifier_threshold<double>(points_of<4>(surface.rest, pair.vertex));
+        parallel = edge_edge_cross_squared<double>(points) < eps;
+        if (parallel) region = Region::ea_eb;
+      }
+    }
+    const PairRow row = pair_row<double>(pair.vertex, closest.weights.data(), closest.r, closest.d, region,
+                                         pair.law.offset);
+    bool moves = false;
+    out.free = 0;
+    for (int k = 0; k < 4; ++k) {
+      out.vertex[k] = row.stencil[k];
+      out.weight[k] = row.weight[k];
+      if (row.stencil[k] < 0 || surface.vertex_free[row.stencil[k]] == 0) continue;
+      out.free = static_cast<std::uint8_t>(out.free | 1 << k);
+      moves = moves || row.weight[k] != 0;
+    }
+    out.normal = row.normal;
+    out.d = row.d;
+    out.d_hat = pair.law.d_hat;
+    out.kind = parallel ? mollified_kind : static_cast<std::uint8_t>(row.kind);
+    return moves;
+  }
+
+  BB_HD bool find_obstacle(Key candidate, FoundRow& out) const {
+    const Index i = static_cast<Index>(candidate >> 32);
+    const int v = surface.points.vertex[i];
+    const AnalyticSurface<double> obstacle = surface.obstacles[candidate & 0xffffffffu].surface();
+    const Vec3d p(x[3 * static_cast<Index>(v)], x[3 * static_cast<Index>(v) + 1],
+                  x[3 * static_cast<Index>(v) + 2]);
+    const SurfaceGap<double> gap = surface_gap<double>(obstacle, p);
+    out.d = gap.d - surface.points.offset[i];
+    out.d_hat = surface.points.d_hat[i];
+    if (out.d >= out.d_hat) return false;
+    for (int k = 0; k < 4; ++k) {
+      out.vertex[k] = k == 0 ? v : -1;
+      out.weight[k] = k == 0 ? 1 : 0;
+    }
+    out.normal = gap.normal;
+    out.kind = static_cast<std::uint8_t>(ContactKind::obstacle);
+    out.free = surface.vertex_free[v] != 0 ? 1 : 0;
+    return true;
+  }
+};
+
+/// The smallest gap as two integers, each the least over the rows: bits of the gaps >= 0; for those below 0, the
+/// complement of the bits of -d.
+struct GapBits {
+  Key least_positive, most_negative;
+};
+
+BB_HD inline void note_gap(GapBits* bits, double d) {
+  if (d >= 0) exec::atomic_min(&bits->least_positive, exec::ordered_bits(d + 0.0));
+  if (d < 0) exec::atomic_min(&bits->most_negative, ~exec::ordered_bits(-d));
+}
+
+BB_HD inline void put_row(const RowView& rows, Index at, const FoundRow& row, Key pair) {
+  for (int k = 0; k < 4; ++k) {
+    rows.vertex[k * rows.n + at] = row.vertex[k];
+    rows.weight[k * rows.n + at] = row.weight[k];
+  }
+  for (int c = 0; c < 3; ++c) rows.normal[c * rows.n + at] = row.normal[c];
+  rows.d[at] = row.d;
+  rows.d_hat[at] = row.d_hat;
+  rows.pair[at] = pair;
+  rows.kind[at] = row.kind;
+  rows.free[at] = row.free;
+  if (rows.kappa_before) rows.kappa_before[at] = 0;
+}
+
+BB_HD inline Key pair_of(int kind, Key candidate) {
+  return pair_id(kind, candidate >> 32, candidate & 0xffffffffu);
+}
+
+/// mark[i] = 1 where candidate i has a row.
+template <PairKind K>
+struct MarkPairs {
+  NarrowPhase phase;
+  const Key* candidate;
+  std::uint8_t* mark;
+  BB_HD void operator()(Index i) const {
+    FoundRow row;
+    mark[i] = phase.find<K>(candidate[i], row) ? 1 : 0;
+  }
+};
+
+/// The rows of marked candidates at their places; first: what items come before those of this list.
+template <PairKind K>
+struct FillPairs {
+  NarrowPhase phase;
+  const Key* candidate;
+  const std::uint8_t* mark;
+  Index first;
+  Places places;
+  RowView rows;
+  GapBits* gap;
+  BB_HD void operator()(Index i) const {
+    FoundRow row;
+    if (mark[i] == 0 || !phase.find<K>(candidate[i], row)) return;
+    put_row(rows, places.of(first + i), row, pair_of(static_cast<int>(K), candidate[i]));
+    note_gap(gap, row.d);
+  }
+};
+
+struct MarkObstacles {
+  NarrowPhase phase;
+  const Key* candidate;
+  std::uint8_t* mark;
+  BB_HD void operator()(Index i) const {
+    FoundRow row;
+    mark[i] = phase.find_obstacle(candidate[i], row) ? 1 : 0;
+  }
+};
+
+struct FillObstacles {
+  NarrowPhase phase;
+  const Key* candidate;
+  const std::uint8_t* mark;
+  Index first;
+  Places places;
+  RowView rows;
+  GapBits* gap;
+  BB_HD void operator()(Index i) const {
+    FoundRow row;
+    if (mark[i] == 0 || !phase.find_obstacle(candidate[i], row)) return;
+    put_row(rows, places.of(first + i), row, pair_of(obstacle_pairs, candidate[i]));
+    note_gap(gap, row.d);
+  }
+};
+
+struct MarkMollified {
+  const std::uint8_t* kind;
+  std::uint8_t* mark;
+  BB_HD void operator()(Index r) const { mark[r] = kind[r] == mollified_kind ? 1 : 0; }
+};
+
+/// Sets *found when a number is not finite.
+struct FindNonFinite {
+  const double* x;
+  std::uint32_t* found;
+  BB_HD void operator()(Index i) const {
+    if (!(x[i] - x[i] == 0)) exec::atomic_or(found, 1);
+  }
+};
+
+/// Sets *found where the vertices of a row, or which of them are free, are not those of the other table.
+struct CompareStencils {
+  RowView a, b;  // of one length
+  std::uint32_t* found;
+  BB_HD void operator()(Index r) const {
+    bool same = a.free[r] == b.free[r];
+    for (int k = 0; k < 4; ++k) same = same && a.vertex[k * a.n + r] == b.vertex[k * a.n + r];
+    if (!same) exec::atomic_or(found, 1);
+  }
+};
+
+}  // namespace bb::resident

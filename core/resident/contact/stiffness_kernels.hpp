@@ -1,0 +1,203 @@
+// Stiffness of rows: the elasticity-inclusive rule with w^T H w streamed from the blocks of the matrix, and the pairs
+// that have a kappa already.
+#pragma once
+
+#include "barriers/stiffness/elasticity_inclusive.hpp"
+#include "core/resident/contact/compaction_kernels.hpp"
+#include "core/resident/contact/resident_rows.hpp"
+#include "core/resident/linear/resident_matrix.hpp"
+
+namespace bb::resident {
+
+/// First number of [begin, end) for which column[number] >= value; columns ascending.
+template <class T>
+BB_HD inline Index first_not_below(const T* column, Index begin, Index end, T value) {
+  while (begin < end) {
+    const Index middle = begin + (end - begin) / 2;
+    if (column[middle] < value) {
+      begin = middle + 1;
+    } else {
+      end = middle;
+    }
+  }
+  return begin;
+}
+
+/// Number of the block (row, column), -1 when the pattern has none.
+BB_HD inline Index find_block(const MatrixPart& m, int row, int column) {
+  const Index end = m.row_begin[row + 1], at = first_not_below(m.column, m.row_begin[row], end, column);
+  return at < end && m.column[at] == column ? at : -1;
+}
+
+/// Place of number c = 3 row + column of block j among the values.
+BB_HD inline Index block_number(Index j, int c) { return ((j / 8) * 9 + c) * 8 + j % 8; }
+
+/// The sub-matrix of at most four vertices, entry by entry.
+struct SubMatrix {
+  MatrixPart matrix;
+  Index block[4][4];
+  BB_HD double operator()(int row, int column) const {
+    const Index j = block[row / 3][column / 3];
+    return j < 0 ? 0.0 : matrix.value[block_number(j, 3 * (row % 3) + column % 3)];
+  }
+};
+
+/// kappa of rows as the policy elasticity_inclusive has it.
+struct InclusiveKappa {
+  RowView rows;
+  const std::uint8_t* missing;  // only rows marked here; null: all
+  ElasticityInclusiveRule rule;
+  double gap_floor, multiplier;
+  bool at_d_hat;       // the gap is d_hat
+  const double* mass;  // [n_vertices] kg
+  MatrixPart elastic;
+
+  BB_HD void operator()(Index r) const {
+    if (missing && missing[r] == 0) return;
+    double weight[4], masses[4], normal[3];
+    int vertex[4], n = 0;
+    for (int k = 0; k < 4; ++k) {
+      if (!rows.is_free(r, k)) continue;
+      vertex[n] = rows.vertex[k * rows.n + r];
+      weight[n] = rows.weight[k * rows.n + r];
+      masses[n] = mass[vertex[n]];
+      ++n;
+    }
+    for (int c = 0; c < 3; ++c) normal[c] = rows.normal[c * rows.n + r];
+    SubMatrix h{elastic, {}};
+    if (rule.elastic_term) {
+      for (int i = 0; i < n; ++i) {
+        for (int j = 0; j < n; ++j) h.block[i][j] = find_block(elastic, vertex[i], vertex[j]);
+      }
+    }
+    const double d_hat = rows.d_hat[r];
+    if (rows.per_gap_sq) {
+      const KappaParts one = elasticity_inclusive_parts(n, weight, normal, d_hat, masses, h, rule);
+      rows.kappa[r] = multiplier * one.fixed;
+      rows.per_gap_sq[r] = multiplier * one.per_gap_sq;
+      return;
+    }
+    const double d = at_d_hat ? d_hat : rows.d[r], floor = gap_floor * d_hat;
+    rows.kappa[r] =
+        multiplier * elasticity_inclusive_kappa(n, weight, normal, d < floor ? floor : d, d_hat, masses, h, rule);
+  }
+};
+
+/// Pairs that have a kappa, ascending.
+struct KnownPairs {
+  Index n;
+  const Key* pair;
+  const double *kappa, *per_gap_sq;  // per_gap_sq null where kappa is one number
+};
+
+/// Rows of known pairs get their kappa; the others are marked.
+struct RecallKappa {
+  RowView rows;
+  KnownPairs known;
+  std::uint8_t* missing;
+  BB_HD void operator()(Index r) const {
+    const Index at = first_not_below(known.pair, Index{0}, known.n, rows.pair[r]);
+    const bool found = at < known.n && known.pair[at] == rows.pair[r];
+    missing[r] = found ? 0 : 1;
+    if (!found) return;
+    rows.kappa[r] = known.kappa[at];
+    if (rows.per_gap_sq) rows.per_gap_sq[r] = known.per_gap_sq[at];
+  }
+};
+
+/// Where new pairs are compared with nothing: kappa_before of trial rows.
+struct NoteKappaBefore {
+  RowView rows;
+  const std::uint8_t* missing;
+  BB_HD void operator()(Index r) const { rows.kappa_before[r] = missing[r] != 0 ? 0.0 : rows.kappa[r]; }
+};
+
+/// Largest change max(a, b)/min(a, b) - 1 of a row's kappa, as the complement of its bits; then kappa is what the
+/// next change is against.
+struct SettleKappa {
+  RowView rows;
+  Key* largest;
+  BB_HD void operator()(Index r) const {
+    const double a = rows.kappa_before[r], b = rows.kappa[r];
+    rows.kappa_before[r] = b;
+    if (!(a > 0 && b > 0)) return;
+    const double change = (a > b ? a : b) / (a > b ? b : a) - 1;
+    exec::atomic_min(largest, ~exec::ordered_bits(change));
+  }
+};
+
+/// Marks rows whose pair is not known.
+struct MarkUnknown {
+  RowView rows;
+  KnownPairs known;
+  std::uint8_t* mark;
+  BB_HD void operator()(Index r) const {
+    const Index at = first_not_below(known.pair, Index{0}, known.n, rows.pair[r]);
+    mark[r] = at < known.n && known.pair[at] == rows.pair[r] ? 0 : 1;
+  }
+};
+
+/// Known pairs move up by the new ones before them.
+struct MergeKnown {
+  KnownPairs known;
+  RowView rows;
+  Places fresh;  // of rows that are not known
+  Index n_fresh;
+  Key* pair;
+  double *kappa, *per_gap_sq;
+  BB_HD void operator()(Index i) const {
+    const Index row = first_not_below(rows.pair, Index{0}, rows.n, known.pair[i]);
+    const Index at = i + (row < rows.n ? fresh.of(row) : n_fresh);
+    pair[at] = known.pair[i];
+    kappa[at] = known.kappa[i];
+    if (per_gap_sq) per_gap_sq[at] = known.per_gap_sq[i];
+  }
+};
+
+/// New pairs go behind the known ones before them.
+struct MergeFresh {
+  KnownPairs known;
+  RowView rows;
+  const std::uint8_t* mark;
+  Places fresh;
+  Key* pair;
+  double *kappa, *per_gap_sq;
+  BB_HD void operator()(Index r) const {
+    if (mark[r] == 0) return;
+    const Index at = fresh.of(r) + first_not_below(known.pair, Index{0}, known.n, rows.pair[r]);
+    pair[at] = rows.pair[r];
+    kappa[at] = rows.kappa[r];
+    if (per_gap_sq) per_gap_sq[at] = rows.per_gap_sq[r];
+  }
+};
+
+/// Pairs with a row at the end of two steps whose gap shrank: what ipc_adaptive asks before it doubles kappa.
+struct MarkShrinking {
+  RowView rows;
+  const Key* pair_before;
+  const double* gap_before;
+  Index n_before;
+  std::uint8_t* mark;
+  BB_HD void operator()(Index r) const {
+    const Index at = first_not_below(pair_before, Index{0}, n_before, rows.pair[r]);
+    mark[r] = at < n_before && pair_before[at] == rows.pair[r] && rows.d[r] < gap_before[at] ? 1 : 0;
+  }
+};
+struct ListShrinking {
+  RowView rows;
+  const Key* pair_before;
+  const double* gap_before;
+  Index n_before;
+  const std::uint8_t* mark;
+  Places places;
+  double* out;  // [3 marked] gap, gap before, d_hat
+  BB_HD void operator()(Index r) const {
+    if (mark[r] == 0) return;
+    const Index to = 3 * places.of(r);
+    out[to] = rows.d[r];
+    out[to + 1] = gap_before[first_not_below(pair_before, Index{0}, n_before, rows.pair[r])];
+    out[to + 2] = rows.d_hat[r];
+  }
+};
+
+}  // namespace bb::resident

@@ -1,0 +1,204 @@
+// Hessians of rows that are made of more than one normal: mollified rows, and in mode projected_full those whose
+// closest points slide along edges.
+#pragma once
+
+#include "core/contact/contact_terms.hpp"
+#include "core/contact/mollified_terms.hpp"
+#include "core/contact/row_hessian.hpp"
+#include "core/resident/contact/resident_pair.hpp"
+#include "core/resident/contact/resident_rows.hpp"
+
+namespace bb::resident {
+
+/// Which Hessian goes into the matrix: exact + t (clamped - exact), or the projection of one kind.
+struct HessianChoice {
+  HessianMode mode = HessianMode::gauss_newton;
+  Projection projection = Projection::psd;
+  bool blended = false;  // then projection is not read
+  double t = 1;
+};
+
+/// Numbers of a row's lower blocks, lower_block(4, a, b), at number[c * stride + row].
+constexpr int row_numbers = static_cast<int>(n_lower_numbers(4));
+
+BB_HD inline double blend(double exact, double clamped, double t) { return exact + t * (clamped - exact); }
+
+BB_HD inline Vec<double, 4> weights_of(const RowView& rows, Index r) {
+  return Vec<double, 4>(rows.weight[r], rows.weight[rows.n + r], rows.weight[2 * rows.n + r],
+                        rows.weight[3 * rows.n + r]);
+}
+
+BB_HD inline Mat<double, 3, 4> row_points(const RowView& rows, Index r, const double* x) {
+  const int vertex[4] = {rows.vertex[r], rows.vertex[rows.n + r], rows.vertex[2 * rows.n + r],
+                         rows.vertex[3 * rows.n + r]};
+  return points_of<4>(x, vertex);
+}
+
+/// Offset of a pair that is not one with an obstacle, m.
+BB_HD inline double pair_offset(const SurfaceView& s, Key pair) {
+  constexpr Key mask = (Key{1} << 30) - 1;
+  const Index i = static_cast<Index>(pair >> 30 & mask), j = static_cast<Index>(pair & mask);
+  switch (static_cast<PairKind>(pair >> 60)) {
+    case PairKind::point_point:
+      return s.points.offset[i] + s.points.offset[j];
+    case PairKind::point_edge:
+      return s.points.offset[i] + s.edges.offset[j];
+    case PairKind::point_triangle:
+      return s.points.offset[i] + s.triangles.offset[j];
+    case PairKind::edge_edge:
+      break;
+  }
+  return s.edges.offset[i] + s.edges.offset[j];
+}
+
+BB_HD inline double mollifier_threshold(const RowView& rows, Index r, const double* rest) {
+  return edge_edge_mollifier_threshold<double>(row_points(rows, r, rest));
+}
+
+BB_HD inline MollifiedDerivatives<double> row_derivatives(const RowView& rows, Index r, const double* x,
+                                                          const double* rest) {
+  return mollified_derivatives<double>(row_points(rows, r, x), mollifier_threshold(rows, r, rest), rows.energy[r],
+                                       rows.push[r], rows.stretch[r]);
+}
+
+/// Gradients of the mollified rows in their four points, 0 at given ones, and their mollifiers.
+struct MollifiedGradients {
+  RowView rows;
+  const std::uint32_t* list;
+  Index n;
+  const double *x, *rest;
+  double *gradient, *mollifier;  // [12][n], [n]
+  BB_HD void operator()(Index i) const {
+    const Index r = list[i];
+    const Vec<double, 12> g = row_derivatives(rows, r, x, rest).gradient;
+    for (int c = 0; c < 12; ++c) gradient[c * n + i] = rows.is_free(r, c / 3) ? g[c] : 0.0;
+    mollifier[i] = edge_edge_mollifier_value<double>(row_points(rows, r, x), mollifier_threshold(rows, r, rest));
+  }
+};
+
+/// How those gradients change, to first order, along a motion of given vertices.
+struct MollifiedChanges {
+  RowView rows;
+  const std::uint32_t* list;
+  Index n;
+  const double *x, *rest, *motion;
+  double* change;  // [12][n]
+  BB_HD void operator()(Index i) const {
+    const Index r = list[i];
+    const Mat<double, 3, 4> moved = row_points(rows, r, motion);
+    const Vec<double, 12> stacked = Vec<double, 12>::Map(moved.data());
+    Vec<double, 12> out = Vec<double, 12>::Zero();
+    if (!stacked.isZero(0)) out = row_derivatives(rows, r, x, rest).hessian * stacked;
+    for (int c = 0; c < 12; ++c) change[c * n + i] = rows.is_free(r, c / 3) ? out[c] : 0.0;
+  }
+};
+
+/// Where a kernel puts the Hessian of a row of the list.
+struct RowHessians {
+  RowView rows;
+  const std::uint32_t* list;  // of the chunk
+  Index stride;
+  double* number;  // [row_numbers][stride]
+  const double* x;
+  SurfaceView surface;
+  HessianChoice choice;
+};
+
+/// The free points of a 12 x 12 matrix moved to its front, in order; the rest 0.
+BB_HD inline Mat<double, 12, 12> to_front(const Mat<double, 12, 12>& full, const int* local, int n) {
+  Mat<double, 12, 12> out = Mat<double, 12, 12>::Zero();
+  for (int j = 0; j < n; ++j) {
+    for (int i = 0; i < n; ++i) {
+      out.block<3, 3>(3 * i, 3 * j) = full.block<3, 3>(3 * local[i], 3 * local[j]);
+    }
+  }
+  return out;
+}
+
+struct MollifiedHessians {
+  RowHessians to;
+  BB_HD void operator()(Index i) const {
+    const Index r = to.list[i];
+    if (!to.rows.mollified(r)) return;
+    int local[4], n = 0, front[4] = {-1, -1, -1, -1};
+    for (int k = 0; k < 4; ++k) {
+      if (!to.rows.is_free(r, k)) continue;
+      front[k] = n;
+      local[n++] = k;
+    }
+    const Mat<double, 12, 12> exact = to_front(row_derivatives(to.rows, r, to.x, to.surface.rest).hessian, local, n);
+    Mat<double, 12, 12> h = exact;
+    project_leading<double>(n, to.choice.blended ? Projection::psd : to.choice.projection, h);
+    int at = 0;
+    for (int b = 0; b < 4; ++b) {
+      for (int a = b; a < 4; ++a) {
+        for (int c = 0; c < 9; ++c, ++at) {
+          double value = 0;
+          if (front[a] >= 0 && front[b] >= 0) {
+            const int row = 3 * front[a] + c % 3, column = 3 * front[b] + c / 3;
+            value = h(row, column);
+            if (to.choice.blended) value = blend(exact(row, column), value, to.choice.t);
+          }
+          to.number[at * to.stride + i] = value;
+        }
+      }
+    }
+  }
+};
+
+/// Rows of K points whose closest points slide along F edges.
+template <PairKind K>
+struct SlidingHessians {
+  RowHessians to;
+  static constexpr int F = K == PairKind::point_edge ? 1 : 2;
+
+  BB_HD void operator()(Index i) const {
+    constexpr int n = pair_points(K);
+    const RowView& rows = to.rows;
+    const Index r = to.list[i];
+    if (rows.kind[r] != static_cast<std::uint8_t>(K)) return;
+    int vertex[n];
+    Closest<double, n> closest;
+    RowShape<double, F> shape;
+    shape.w.setZero();
+    for (int k = 0; k < n; ++k) {
+      vertex[k] = rows.vertex[k * rows.n + r];
+      closest.weights[k] = rows.weight[k * rows.n + r];
+      if (rows.is_free(r, k)) shape.w[k] = closest.weights[k];
+    }
+    const Mat<double, 3, n> points = points_of<n>(to.x, vertex);
+    closest.d = rows.d[r] + pair_offset(to.surface, rows.pair[r]);
+    closest.r = closest.d * rows.normal_of(r);
+    closest.region = K == PairKind::point_edge       ? Region::p_e
+                     : K == PairKind::point_triangle ? Region::p_t
+                                                     : Region::ea_eb;
+    const auto frame = bb::detail::region_frame<double, n>(points, closest);
+    shape.n = frame.n;
+    for (int l = 0; l < F; ++l) {
+      shape.q[l] = frame.q[l];
+      shape.g[l].setZero();
+      for (int k = 0; k < n; ++k) {
+        if (rows.is_free(r, k)) shape.g[l][k] = frame.g[l][k];
+      }
+    }
+    shape.distance = closest.d;
+    shape.stretch = rows.stretch[r];
+    shape.push = rows.push[r];
+    store(i, shape);
+  }
+
+ private:
+  BB_HD void store(Index i, const RowShape<double, F>& shape) const {
+    double blocks[row_numbers];
+    row_hessian<double, F>(shape, to.choice.blended ? Projection::psd : to.choice.projection, blocks);
+    if (!to.choice.blended) {
+      for (int c = 0; c < row_numbers; ++c) to.number[c * to.stride + i] = blocks[c];
+      return;
+    }
+    double exact[row_numbers];
+    row_hessian<double, F>(shape, Projection::none, exact);
+    for (int c = 0; c < row_numbers; ++c) to.number[c * to.stride + i] = blend(exact[c], blocks[c], to.choice.t);
+  }
+};
+
+}  // namespace bb::resident
