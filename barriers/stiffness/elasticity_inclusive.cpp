@@ -21,6 +21,9 @@ class ElasticityInclusive final : public StiffnessPolicy {
   std::string_view name() const override { return "elasticity_inclusive"; }
   Refresh refresh() const override { return refresh_; }
   bool needs_hessian() const override { return elastic_term_; }
+  std::optional<StiffnessRule> rule() const override {
+    return StiffnessRule{false, mass_term_, elastic_term_, refresh_, gap_floor_, derivative_, multiplier_};
+  }
   bool has_potential() const override { return derivative_ == KappaDerivative::included; }
 
   void fill(const StiffnessBatch& rows, double* kappa) const override {

@@ -12,6 +12,7 @@ class Fixed final : public StiffnessPolicy {
  public:
   explicit Fixed(double kappa) : kappa_(kappa) {}
   std::string_view name() const override { return "fixed"; }
+  std::optional<StiffnessRule> rule() const override { return StiffnessRule{}; }
   Refresh refresh() const override { return Refresh::per_iteration; }
   void fill(const StiffnessBatch& rows, double* kappa) const override {
     std::fill(kappa, kappa + rows.n, kappa_);

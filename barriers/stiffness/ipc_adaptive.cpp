@@ -28,6 +28,7 @@ class IpcAdaptive final : public StiffnessPolicy {
         doubling_gap_(optional_number(config.parameters, "doubling_gap_m")),
         multiplier_(config.multiplier) {}
   std::string_view name() const override { return "ipc_adaptive"; }
+  std::optional<StiffnessRule> rule() const override { return StiffnessRule{}; }
   Refresh refresh() const override { return Refresh::per_iteration; }
   bool needs_globals() const override { return true; }
 

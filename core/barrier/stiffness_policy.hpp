@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -33,6 +34,21 @@ struct KappaPartsOf {
   BB_HD T at(T d) const { return per_gap_sq == T(0) ? fixed : fixed + per_gap_sq / (d * d); }
 };
 using KappaParts = KappaPartsOf<double>;
+
+/// A policy as plain numbers: what pipelines without virtual calls evaluate.
+struct StiffnessRule {
+  /// One kappa for all rows, that of StiffnessPolicy::state(); nothing of what follows is read then.
+  bool uniform = true;
+  MassTerm mass_term = MassTerm::paper;
+  bool elastic_term = true;  // whether the elastic Hessian counts
+  Refresh refresh = Refresh::per_iteration;
+  double gap_floor = 0;  // of d_hat
+  KappaDerivative derivative = KappaDerivative::dropped;
+  double multiplier = 1;
+
+  bool potential() const { return !uniform && derivative == KappaDerivative::included; }
+  bool needs_hessian() const { return !uniform && elastic_term; }
+};
 
 /// Columns of n contact rows, free vertices only; row r owns slots 4 r .. 4 r + n_free[r].
 struct StiffnessBatch {
@@ -77,6 +93,8 @@ class StiffnessPolicy {
   virtual bool has_potential() const { return false; }
   /// kappa of every row as a function of its gap; d is not read. Called when has_potential().
   virtual void fill_parts(const StiffnessBatch&, KappaParts*) const {}
+  /// Nothing: the policy is no rule of these numbers, and runs on the CPU only.
+  virtual std::optional<StiffnessRule> rule() const { return std::nullopt; }
   /// A pair that has a row at the end of this step and of the one before.
   struct PairEnd {
     double gap = 0, gap_before = 0;  // m

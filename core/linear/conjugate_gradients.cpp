@@ -1,10 +1,10 @@
 #include "core/linear/conjugate_gradients.hpp"
 
 #include <cmath>
-#include <cstdio>
 #include <limits>
 
 #include "core/linear/cg_ritz.hpp"
+#include "core/linear/solve_detail.hpp"
 
 namespace bb {
 
@@ -84,24 +84,6 @@ LinearStatus ConjugateGradients::iterate(const VecXd& b, VecXd& x, double target
   }
 }
 
-namespace {
-
-// What a message needs beside the word of the status.
-std::string describe(LinearStatus status, double tolerance, const LinearReport& report) {
-  char text[120] = "";
-  if (status == LinearStatus::matrix_indefinite) {
-    std::snprintf(text, sizeof text, "p^T A p is negative in iteration %d", report.iterations);
-  } else if (status == LinearStatus::preconditioner_indefinite) {
-    std::snprintf(text, sizeof text, "r^T M^-1 r is not positive in iteration %d", report.iterations);
-  } else if (status == LinearStatus::iteration_cap || status == LinearStatus::tolerance_below_rounding) {
-    std::snprintf(text, sizeof text, "residual %.3g after %d iterations, tolerance %.3g",
-                  report.residual_true, report.iterations, tolerance);
-  }
-  return text;
-}
-
-}  // namespace
-
 LinearStatus ConjugateGradients::solve(const SymmetricProduct& a, const Preconditioner& preconditioner,
                                        const VecXd& b, double tolerance, int max_iterations, VecXd& x,
                                        LinearReport& report) {
@@ -111,11 +93,12 @@ LinearStatus ConjugateGradients::solve(const SymmetricProduct& a, const Precondi
   x = VecXd::Zero(b.size());
   const double b_norm = norm(b);
   report.residual_recurrence = b_norm;
-  const LinearStatus status = iterate(b, x, tolerance * b_norm, report);
+  report.tolerance = tolerance;
+  report.status = iterate(b, x, tolerance * b_norm, report);
   report.residual_recurrence /= b_norm;
   report.residual_true /= b_norm;
-  report.detail = describe(status, tolerance, report);
-  return status;
+  report.detail = solve_detail(report);
+  return report.status;
 }
 
 }  // namespace bb

@@ -1,0 +1,26 @@
+// Sums over blocks of threads.
+#pragma once
+
+#include "core/resident/linear/resident_matrix.hpp"
+
+namespace bb::resident {
+
+/// The sum of partial [n]: every thread adds each 256th, then a tree. The same in all blocks that compute it.
+/// scratch: [256] in shared memory, free afterwards.
+template <class Block>
+BB_HD double fold_partials(Block& block, double* scratch, const double* partial, Index n) {
+  int width = exec::block_threads;
+  while (width / 2 >= n && width > 1) width /= 2;
+  block.threads([=](int t) {
+    if (t >= width) return;
+    double sum = 0;
+    for (Index i = t; i < n; i += width) sum += partial[i];
+    scratch[t] = sum;
+  });
+  fold(block, scratch, width);
+  const double total = scratch[0];
+  block.threads([](int) {});  // all have read it
+  return total;
+}
+
+}  // namespace bb::resident

@@ -1,0 +1,93 @@
+// The linear solver pcg_resident: the solver of the resident pipeline on a matrix of the host, which goes up for every
+// solve. It is there to be compared with pcg.
+#include <cmath>
+
+#include "core/exec/host_executor.hpp"
+#include "core/linear/block_starts.hpp"
+#include "core/linear/forcing.hpp"
+#include "core/linear/parallel.hpp"
+#include "core/resident/linear/block_jacobi.hpp"
+#include "core/resident/linear/reduced_upload.hpp"
+#include "core/resident/linear/resident_pcg.hpp"
+
+namespace bb {
+namespace {
+
+class PcgResident final : public LinearSolver {
+ public:
+  explicit PcgResident(const ParameterMap& parameters)
+      : forcing_(parameters),
+        max_iterations_(integer(parameters, "max_iterations")),
+        preconditioner_(text(parameters, "resident_preconditioner")),
+        system_(executor_),
+        b_(executor_, "right-hand side"),
+        x_(executor_, "solution") {}
+  std::string_view name() const override { return "pcg_resident"; }
+  void begin_step() override { forcing_.begin_step(); }
+  LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override;
+
+ private:
+  void prepare(const ReducedSystem& system, const VecXd& b);
+  std::unique_ptr<resident::ResidentPreconditioner> make();
+
+  Forcing forcing_;
+  int max_iterations_;
+  std::string preconditioner_;
+  exec::HostExecutor executor_;  // first: what follows lives in its memory
+  resident::UploadedSystem system_;
+  exec::Buffer<double> b_, x_;
+  std::unique_ptr<resident::ResidentPcg> pcg_;
+  ChunkedDot dot_;
+};
+
+std::unique_ptr<resident::ResidentPreconditioner> PcgResident::make() {
+  return std::make_unique<resident::BlockJacobi>(executor_);
+}
+
+void PcgResident::prepare(const ReducedSystem& system, const VecXd& b) {
+  const exec::Index before = x_.size();
+  system_.update(system);
+  system_.upload(b, b_);
+  x_.resize(3 * system_.n_vertices());
+  if (!pcg_ || x_.size() != before) {
+    pcg_ = std::make_unique<resident::ResidentPcg>(executor_, system_.n_vertices(), make());
+  }
+}
+
+LinearReport PcgResident::solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) {
+  LinearReport report;
+  report.iterative = true;
+  prepare(system, b);
+  const double b_norm = std::sqrt(dot_(b, b));
+  if (!std::isfinite(b_norm) || !system_.all_finite()) {
+    report.status = LinearStatus::non_finite;
+    report.residual_true = report.residual_recurrence = 1;
+    return report;
+  }
+  if (b_norm == 0) return report;
+  report = pcg_->solve(system_.matrix(), system_.fixed(), b_.data(), x_.data(), forcing_.tolerance(b_norm),
+                       max_iterations_);
+  system_.download(x_, x);
+  if (pcg_->fault() >= 0 && report.status == LinearStatus::preconditioner_indefinite) {
+    const int dof = system.block_start[static_cast<std::size_t>(pcg_->fault())];
+    report.detail = bad_diagonal_text(system, dof) + preconditioner_ + " needs positive definite ones";
+  }
+  return report;
+}
+
+}  // namespace
+
+LinearSolverEntry linear_solver_pcg_resident() {
+  LinearSolverEntry entry;
+  entry.iterative = true;
+  entry.parameters = Forcing::parameters();
+  entry.parameters.push_back({"resident_preconditioner", word({"block_jacobi"}), "block_jacobi",
+                              "the 3 x 3 blocks of the diagonal"});
+  entry.parameters.push_back({"max_iterations", count(1, 1000000000), 10000, "cap on iterations of a solve"});
+  entry.make = [](const ParameterMap& complete) -> std::unique_ptr<LinearSolver> {
+    return std::make_unique<PcgResident>(complete);
+  };
+  return entry;
+}
+
+}  // namespace bb

@@ -1,0 +1,208 @@
+#include "core/resident/linear/resident_pcg.hpp"
+
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "core/linear/cg_ritz.hpp"
+#include "core/linear/solve_detail.hpp"
+#include "core/linear/stopwatch.hpp"
+#include "core/resident/linear/pcg_kernels.hpp"
+
+namespace bb::resident {
+
+ResidentPcg::ResidentPcg(exec::Executor& executor, Index n_vertices,
+                         std::unique_ptr<ResidentPreconditioner> preconditioner)
+    : executor_(executor),
+      preconditioner_(std::move(preconditioner)),
+      r_(executor, "pcg residual", 3 * n_vertices),
+      z_(executor, "pcg preconditioned residual", 3 * n_vertices),
+      p_(executor, "pcg direction", 3 * n_vertices),
+      q_(executor, "pcg product", 3 * n_vertices),
+      partial_(executor, "pcg partial sums"),
+      scalars_(executor, "pcg scalars", 1),
+      faults_(executor, "pcg factor faults", 1) {
+  v_.partition = Partition::of(n_vertices);
+  const Index n_blocks = v_.partition.n_blocks();
+  partial_.resize(3 * n_blocks);
+  v_.r = r_.data(), v_.z = z_.data(), v_.p = p_.data(), v_.q = q_.data();
+  v_.partial_pq = partial_.data();
+  v_.partial_rz = partial_.data() + n_blocks, v_.partial_rr = partial_.data() + 2 * n_blocks;
+  v_.scalars = scalars_.data();
+}
+
+void ResidentPcg::set_residual(const double* from, const double* minus, double* r) {
+  executor_.blocks(v_.partition.n_blocks(),
+                   SetResidual{v_.partition, v_.fixed, from, minus, r, v_.partial_rr});
+}
+
+double ResidentPcg::sum_of(const double* partial) {
+  executor_.blocks(1, FinishSum{partial, v_.partition.n_blocks(), v_.scalars});
+  return scalars_.get(0).sum;
+}
+
+double ResidentPcg::norm(const FixedMask* fixed, const double* v) {
+  v_.fixed = fixed;
+  set_residual(v, nullptr, v_.q);
+  return std::sqrt(sum_of(v_.partial_rr));
+}
+
+double ResidentPcg::true_residual(const double* b) {
+  executor_.blocks(v_.partition.n_blocks(),
+                   MultiplyDot{v_.partition, matrix_, v_.fixed, v_.x, v_.q, v_.partial_pq, nullptr});
+  set_residual(b, v_.q, v_.q);
+  return std::sqrt(sum_of(v_.partial_rr));
+}
+
+// r is set.
+void ResidentPcg::begin_run(bool first) {
+  preconditioner_->apply(v_);
+  executor_.copy(v_.p, v_.z, static_cast<std::size_t>(p_.size()) * sizeof(double));
+  executor_.blocks(1, BeginRun{v_.partial_rz, v_.partial_rr, v_.partition.n_blocks(), faults_.data(),
+                               v_.scalars, first});
+}
+
+void ResidentPcg::launch_iterations() {
+  const Index n_blocks = v_.partition.n_blocks();
+  for (int k = 0; k < graph_iterations; ++k) {
+    executor_.blocks(n_blocks, MultiplyDot{v_.partition, matrix_, v_.fixed, v_.p, v_.q, v_.partial_pq,
+                                           v_.scalars->state + k % 2});
+    preconditioner_->update(v_, k);
+    executor_.blocks(n_blocks,
+                     StepDirection{v_.partition, v_.partial_rz, v_.partial_rr, v_.z, v_.p, v_.scalars, k});
+  }
+}
+
+void ResidentPcg::prepare_graph() {
+  GraphKey key;
+  std::memset(static_cast<void*>(&key), 0, sizeof key);
+  key.matrix = matrix_, key.vectors = v_, key.version = preconditioner_->version();
+  if (graph_ && std::memcmp(&key, &key_, sizeof key) == 0) return;
+  std::memcpy(static_cast<void*>(&key_), &key, sizeof key);
+  executor_.begin_capture();
+  launch_iterations();
+  graph_ = executor_.end_capture();
+}
+
+// Until the recurrence ends. False where it had nothing to begin with: no factor, no finite or no right-hand side.
+bool ResidentPcg::run() {
+  alpha_.clear(), beta_.clear();
+  for (int before = host_.state[0].iteration;; before = host_.state[0].iteration) {
+    if (plain_) {
+      launch_iterations();
+    } else {
+      executor_.replay(*graph_);
+    }
+    host_ = scalars_.get(0);
+    const int done = host_.state[0].iteration - before;
+    alpha_.insert(alpha_.end(), host_.alpha, host_.alpha + done);
+    beta_.insert(beta_.end(), host_.beta, host_.beta + done);
+    if (host_.state[0].running()) continue;
+    const auto end = static_cast<PcgEnd>(host_.state[0].end);
+    return end != PcgEnd::zero && end != PcgEnd::bad_factor && std::isfinite(host_.b_norm);
+  }
+}
+
+ResidentPcg::End ResidentPcg::judge_curvature() {
+  const double curvature = host_.curvature;
+  if (!std::isfinite(curvature)) return End::non_finite;
+  executor_.blocks(v_.partition.n_blocks(), MagnitudeDot{v_.partition, matrix_, v_.p, v_.partial_pq});
+  const double scale = sum_of(v_.partial_pq);
+  const double rounding = 256 * std::numeric_limits<double>::epsilon() * scale;
+  return curvature < -rounding || scale == 0 ? End::matrix_indefinite : End::truncated;
+}
+
+ResidentPcg::End ResidentPcg::judge_end() {
+  switch (static_cast<PcgEnd>(host_.state[0].end)) {
+    case PcgEnd::converged:
+    case PcgEnd::zero:  // of a restart
+      return End::converged;
+    case PcgEnd::cap:
+      return End::cap;
+    case PcgEnd::curvature:
+      return judge_curvature();
+    case PcgEnd::preconditioner_indefinite:
+      return End::preconditioner_indefinite;
+    default:
+      return End::non_finite;
+  }
+}
+
+void ResidentPcg::add_ritz(LinearReport& report) const {
+  const RitzExtremes run = cg_ritz_extremes(alpha_, beta_);
+  if (run.max == 0) return;
+  report.ritz_min = report.ritz_max == 0 ? run.min : std::min(report.ritz_min, run.min);
+  report.ritz_max = std::max(report.ritz_max, run.max);
+}
+
+// What of the preconditioner has no factor.
+LinearStatus ResidentPcg::judge_fault(LinearReport& report) {
+  const FactorFaults faults = faults_.get(0);
+  const Key worst = std::min({faults.non_finite, faults.indefinite});
+  fault_ = static_cast<Index>(worst != no_fault ? worst : faults.singular);
+  report.detail = "the diagonal block of " + preconditioner_->fault_text(fault_);
+  if (worst == no_fault) {
+    report.detail += " is 0 or singular";
+    return LinearStatus::preconditioner_indefinite;
+  }
+  report.detail += worst == faults.non_finite ? " is not finite" : " is not positive definite";
+  return worst == faults.non_finite ? LinearStatus::non_finite : LinearStatus::matrix_indefinite;
+}
+
+LinearStatus ResidentPcg::iterate(const double* b, LinearReport& report) {
+  double last_true = std::numeric_limits<double>::infinity();
+  for (;; ++report.restarts) {
+    const bool ran = run();
+    const auto reached = static_cast<PcgEnd>(host_.state[0].end);
+    if (!ran && report.restarts == 0) {
+      if (reached == PcgEnd::zero) return LinearStatus::ok;
+      report.residual_true = report.residual_recurrence = 1;
+      return reached == PcgEnd::bad_factor ? judge_fault(report) : LinearStatus::non_finite;
+    }
+    const End end = judge_end();
+    add_ritz(report);
+    const double residual = true_residual(b);
+    report.iterations = host_.state[0].iteration;
+    report.residual_recurrence = std::sqrt(host_.state[0].rr) / host_.b_norm;
+    report.residual_true = residual / host_.b_norm;
+    if (end == End::matrix_indefinite) return LinearStatus::matrix_indefinite;
+    if (end == End::preconditioner_indefinite) return LinearStatus::preconditioner_indefinite;
+    if (end == End::non_finite || !std::isfinite(residual)) return LinearStatus::non_finite;
+    if (residual <= host_.target) return LinearStatus::ok;
+    if (end == End::cap) return LinearStatus::iteration_cap;
+    // The recurrence claims more than the solution holds. Start again from the true residual while that helps.
+    if (end == End::truncated || residual > 0.5 * last_true) return LinearStatus::tolerance_below_rounding;
+    last_true = residual;
+    set_residual(v_.q, nullptr, v_.r);
+    begin_run(false);
+  }
+}
+
+LinearReport ResidentPcg::solve(const ResidentMatrix& matrix, const FixedMask* fixed, const double* b,
+                                double* x, double tolerance, int max_iterations) {
+  LinearReport report;
+  report.iterative = true;
+  report.tolerance = tolerance;
+  const Stopwatch stopwatch;
+  matrix_ = matrix;
+  v_.fixed = fixed, v_.x = x;
+  fault_ = -1;
+  host_ = {};
+  host_.tolerance = tolerance, host_.max_iterations = max_iterations;
+  scalars_.set(0, host_);
+  faults_.set(0, {no_fault, no_fault, no_fault});
+  preconditioner_->setup(matrix_, v_, faults_.data());
+  executor_.synchronize();
+  report.factor_s = stopwatch.seconds();
+
+  executor_.fill_bytes(x, 0, static_cast<std::size_t>(3 * v_.partition.n_rows) * sizeof(double));
+  set_residual(b, nullptr, v_.r);
+  begin_run(true);
+  if (!plain_) prepare_graph();
+  report.status = iterate(b, report);
+  if (report.detail.empty()) report.detail = solve_detail(report);
+  report.solve_s = stopwatch.seconds() - report.factor_s;
+  return report;
+}
+
+}  // namespace bb::resident

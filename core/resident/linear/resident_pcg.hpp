@@ -1,0 +1,69 @@
+// Preconditioned conjugate gradients on an executor: matrix and vectors are there, the host reads one small struct for
+// every 16 iterations.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "core/linear/linear_solver.hpp"
+#include "core/resident/linear/resident_preconditioner.hpp"
+
+namespace bb::resident {
+
+class ResidentPcg {
+ public:
+  /// Errors: OutOfMemory.
+  ResidentPcg(exec::Executor& executor, Index n_vertices,
+              std::unique_ptr<ResidentPreconditioner> preconditioner);
+
+  /// Solves A x = b up to |b - A x| <= tolerance |b| from x = 0, over the free degrees of freedom. fixed [n], b and
+  /// x [3 n] are the executor's; x is 0 where degrees of freedom are fixed, b is not read there. All launches of an
+  /// iteration are one graph, kept while pointers stay; the pattern may change in place.
+  /// Every way to fail has its status; the true residual decides (core/linear/conjugate_gradients.hpp).
+  LinearReport solve(const ResidentMatrix& matrix, const FixedMask* fixed, const double* b, double* x,
+                     double tolerance, int max_iterations);
+  /// |v| over the free degrees of freedom.
+  double norm(const FixedMask* fixed, const double* v);
+  /// After a solve whose preconditioner had no factor: what of it, ResidentPreconditioner::fault_text; else -1.
+  Index fault() const { return fault_; }
+  /// Launches one after another instead of graphs: for tests.
+  void launch_plainly(bool plainly) { plain_ = plainly; }
+
+ private:
+  /// As in ConjugateGradients.
+  enum class End { converged, cap, truncated, matrix_indefinite, preconditioner_indefinite, non_finite };
+  struct GraphKey {
+    ResidentMatrix matrix;
+    PcgVectors vectors;
+    int version;
+  };
+
+  void set_residual(const double* from, const double* minus, double* r);
+  void begin_run(bool first);
+  void launch_iterations();
+  void prepare_graph();
+  bool run();
+  End judge_end();
+  End judge_curvature();
+  double sum_of(const double* partial);
+  double true_residual(const double* b);
+  void add_ritz(LinearReport& report) const;
+  LinearStatus iterate(const double* b, LinearReport& report);
+  LinearStatus judge_fault(LinearReport& report);
+
+  exec::Executor& executor_;
+  std::unique_ptr<ResidentPreconditioner> preconditioner_;
+  exec::Buffer<double> r_, z_, p_, q_, partial_;
+  exec::Buffer<PcgScalars> scalars_;
+  exec::Buffer<FactorFaults> faults_;
+  PcgVectors v_{};
+  ResidentMatrix matrix_{};
+  std::unique_ptr<exec::LaunchGraph> graph_;
+  GraphKey key_{};
+  bool plain_ = false;
+  Index fault_ = -1;
+  PcgScalars host_{};  // as they were last read
+  std::vector<double> alpha_, beta_;
+};
+
+}  // namespace bb::resident

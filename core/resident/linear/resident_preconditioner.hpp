@@ -1,0 +1,35 @@
+// A preconditioner whose data and kernels are the executor's: z = M^-1 r, M symmetric positive definite or refused.
+#pragma once
+
+#include <string>
+
+#include "core/exec/buffer.hpp"
+#include "core/resident/linear/pcg_scalars.hpp"
+
+namespace bb::resident {
+
+/// The vectors and sums of an iteration that a preconditioner reads and writes.
+struct PcgVectors {
+  Partition partition;
+  const FixedMask* fixed;
+  double *x, *r, *z, *p, *q;                      // [3 n]
+  double *partial_pq, *partial_rz, *partial_rr;  // [n_blocks]
+  PcgScalars* scalars;
+};
+
+class ResidentPreconditioner {
+ public:
+  virtual ~ResidentPreconditioner() = default;
+  /// Launches what makes M; what has no factor is written to faults.
+  virtual void setup(const ResidentMatrix& matrix, const PcgVectors& v, FactorFaults* faults) = 0;
+  /// z = M^-1 r and the partial sums of r^T z and r^T r.
+  virtual void apply(const PcgVectors& v) = 0;
+  /// x += alpha p, r -= alpha q, then as apply(); nothing where the run is over. k: number in the graph.
+  virtual void update(const PcgVectors& v, int k) = 0;
+  /// Changes when arguments of launches do: a graph of them is void then.
+  virtual int version() const = 0;
+  /// "vertex", or what else FactorFaults counts.
+  virtual std::string fault_text(Index number) const = 0;
+};
+
+}  // namespace bb::resident

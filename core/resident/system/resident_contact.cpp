@@ -1,0 +1,133 @@
+#include "core/resident/system/resident_contact.hpp"
+
+#include <algorithm>
+
+#include "core/contact/pair_name.hpp"
+#include "core/math/error.hpp"
+
+namespace bb::resident {
+namespace {
+
+StiffnessRule rule_of(const StiffnessPolicy& policy) {
+  const std::optional<StiffnessRule> rule = policy.rule();
+  if (!rule) {
+    throw ConfigError("/formulation/stiffness_policy/name", std::string(policy.name()),
+                      "a policy with a device form; this one runs with device cpu only");
+  }
+  return *rule;
+}
+
+}  // namespace
+
+ResidentContact::ResidentContact(exec::Executor& executor, const Scene& scene, TermOptions& options,
+                                 const ContactPlan& plan, const exec::Buffer<std::uint8_t>& fixed)
+    : executor_(executor),
+      scene_(scene),
+      options_(options),
+      fixed_(fixed),
+      surface_(scene),
+      resident_surface_(executor, scene, surface_),
+      candidates_(executor),
+      broad_phase_(executor, resident_surface_, surface_, plan),
+      step_bound_(executor, resident_surface_, surface_,
+                  {options.contact_options.ccd_park, options.contact_options.ccd_max_probes}),
+      finder_(executor, resident_surface_, plan.mollifier.needed),
+      stiffness_(executor, rule_of(*options.stiffness), scene.mass),
+      barrier_(options.contact, rule_of(*options.stiffness).potential()),
+      assembly_(executor, resident_surface_, scene.n_vertices()),
+      sums_(executor),
+      gaps_(executor),
+      rows_(executor, columns_of(stiffness_.rule())),
+      trial_(executor, columns_of(stiffness_.rule())),
+      part_(executor, "contact gradient"),
+      mass_(executor, "contact masses") {
+  mass_.upload(scene.mass);
+}
+
+void ResidentContact::begin_step(const Column& x_n, double dt, double c) {
+  stiffness_.begin_step();
+  change_time(dt, c);
+  first_iterate_ = true;
+  broad_phase_.update(x_n, x_n, candidates_);
+  finder_.find(x_n, candidates_, trial_);
+  has_pattern_ = has_pattern_ && same_stencils(executor_, rows_, trial_);
+  rows_.swap(trial_);
+}
+
+void ResidentContact::change_time(double dt, double c) {
+  dt_ = dt;
+  c_ = c;
+  stiffness_.set_time(dt, c);
+}
+
+void ResidentContact::use_policy_kappa() {
+  if (stiffness_.rule().uniform) stiffness_.set_uniform(options_.stiffness->state().kappa);
+}
+
+void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Column& g) {
+  pattern_changed_ = !has_pattern_;
+  if (!has_pattern_) assembly_.set_pattern(rows_);
+  has_pattern_ = true;
+  start_policy(x, g);
+  use_policy_kappa();
+  const double change = stiffness_.refresh(rows_, elastic);
+  kappa_change_ = first_iterate_ ? 0 : change;
+  first_iterate_ = false;
+  barrier_.evaluate(executor_, rows_);
+  assembly_.add_gradient(rows_, x, g);
+}
+
+// A policy with memory starts at the first iterate that has contacts, from B with kappa = 1 and the gradient of
+// everything else.
+void ResidentContact::start_policy(const Column& x, const Column& others) {
+  StiffnessPolicy& policy = *options_.stiffness;
+  if (policy_started_ || !policy.needs_globals() || rows_.size() == 0) return;
+  stiffness_.set_uniform(1);
+  stiffness_.refresh(rows_, {});
+  barrier_.evaluate(executor_, rows_);
+  part_.resize(others.size());
+  part_.fill_zero();
+  assembly_.add_gradient(rows_, x, part_);
+  StiffnessGlobals globals;
+  globals.grad_b_dot_grad_e = sums_.product(part_, others, fixed_);
+  globals.grad_b_sq = sums_.product(part_, part_, fixed_);
+  globals.mean_contact_mass = sums_.mean_mass(rows_, mass_);
+  globals.d_hat = *std::min_element(scene_.d_hat.begin(), scene_.d_hat.end());
+  globals.d2b_half = options_.contact.eval(globals.d_hat / 2, globals.d_hat).d2b;
+  globals.dt = dt_;
+  globals.c = c_;
+  policy.start(globals);
+  policy_started_ = true;
+}
+
+const StepBound& ResidentContact::bound(const Column& x0, const Column& x1) {
+  bound_ = step_bound_.find(candidates_, x0, x1);
+  return bound_;
+}
+
+std::string ResidentContact::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
+
+bool ResidentContact::admits(const Column& trial) {
+  finder_.find(trial, candidates_, trial_);
+  return trial_.feasible();
+}
+
+void ResidentContact::evaluate(const Column&, const MatrixPart& elastic) {
+  use_policy_kappa();
+  stiffness_.freeze(trial_, rows_, elastic);
+  barrier_.evaluate(executor_, trial_);
+}
+
+void ResidentContact::accept() {
+  has_pattern_ = has_pattern_ && same_stencils(executor_, rows_, trial_);
+  rows_.swap(trial_);
+  stiffness_.keep(rows_);
+}
+
+void ResidentContact::end_step() {
+  StiffnessPolicy& policy = *options_.stiffness;
+  if (!policy.adapts()) return;
+  policy.end_step(gaps_.end_step(rows_, options_.contact_options.ccd_park));
+}
+
+}  // namespace bb::resident

@@ -1,0 +1,96 @@
+// The contact term in an executor's memory: what ContactTerm does on the CPU, row by row and pair by pair.
+#pragma once
+
+#include <memory>
+
+#include "core/contact/step_bound.hpp"
+#include "core/record/phase_times.hpp"
+#include "core/resident/contact/contact_assembly.hpp"
+#include "core/resident/contact/contact_sums.hpp"
+#include "core/resident/contact/resident_barrier.hpp"
+#include "core/resident/contact/resident_broad_phase.hpp"
+#include "core/resident/contact/resident_step_bound.hpp"
+#include "core/resident/contact/resident_stiffness.hpp"
+#include "core/resident/contact/row_finder.hpp"
+#include "core/terms/report.hpp"
+#include "core/terms/term_options.hpp"
+
+namespace bb::resident {
+
+class ResidentContact {
+ public:
+  using Column = exec::Buffer<double>;
+
+  /// scene and options must outlive it. fixed: three bits a vertex. Errors: ConfigError for a shape or a policy without
+  /// a device form; OutOfMemory.
+  ResidentContact(exec::Executor& executor, const Scene& scene, TermOptions& options, const ContactPlan& plan,
+                  const exec::Buffer<std::uint8_t>& fixed);
+
+  // --- a step
+  void begin_step(const Column& x_n, double dt, double c);
+  void change_time(double dt, double c);
+  /// Tells a policy that adapts which pairs had a row at two step ends in a row.
+  void end_step();
+
+  // --- an iterate. elastic: the clamped elastic matrix, read where needs_hessian()
+  bool needs_hessian() const { return stiffness_.rule().needs_hessian(); }
+  /// kappa and barrier of the rows at x; g (N) is the gradient of all other terms and gets that of B.
+  void linearise(const Column& x, const MatrixPart& elastic, Column& g);
+  /// Valid until the next call.
+  MatrixPart matrix(const Column& x, const HessianChoice& choice) { return assembly_.matrix(rows_, x, choice); }
+  Index n_blocks() const { return assembly_.n_blocks(); }
+  /// Whether the last linearise() built another pattern.
+  bool pattern_changed() const { return pattern_changed_; }
+  /// force (N) += how the gradient changes along motion of given vertices.
+  void add_given_motion(const Column& x, const Column& motion, Column& force) {
+    assembly_.add_given_motion(rows_, x, motion, force);
+  }
+  CompensatedSum energy(const Column& x) { return sums_.energy(rows_, x, assembly_); }
+
+  // --- a motion, and states on it
+  void prepare(const Column& x0, const Column& x1) { broad_phase_.update(x0, x1, candidates_); }
+  const StepBound& bound(const Column& x0, const Column& x1);
+  std::string describe_bound() const;
+  bool admits(const Column& trial);
+  void evaluate(const Column& trial, const MatrixPart& elastic);
+  CompensatedSum trial_energy(const Column& trial) { return sums_.energy(trial_, trial, assembly_); }
+  /// The trial becomes the iterate.
+  void accept();
+
+  ResidentRows& rows() { return rows_; }
+  const ResidentStiffness& stiffness() const { return stiffness_; }
+  /// Of the last linearise(): largest relative change of a row's kappa.
+  double kappa_change() const { return kappa_change_; }
+  bool policy_started() const { return policy_started_; }
+  void set_policy_started(bool started) { policy_started_ = started; }
+  StepEndGaps& step_end_gaps() { return gaps_; }
+
+ private:
+  void start_policy(const Column& x, const Column& others);
+  void use_policy_kappa();
+
+  exec::Executor& executor_;
+  const Scene& scene_;
+  TermOptions& options_;
+  const exec::Buffer<std::uint8_t>& fixed_;
+  Surface surface_;
+  ResidentSurface resident_surface_;
+  ResidentCandidates candidates_;
+  ResidentBroadPhase broad_phase_;
+  ResidentStepBound step_bound_;
+  RowFinder finder_;
+  ResidentStiffness stiffness_;
+  ResidentBarrier barrier_;
+  ContactAssembly assembly_;
+  ContactSums sums_;
+  StepEndGaps gaps_;
+  ResidentRows rows_, trial_;
+  Column part_;  // [3 n] gradient of B with kappa = 1
+  exec::Buffer<double> mass_;
+  StepBound bound_;
+  double dt_ = 0, c_ = 1, kappa_change_ = 0;
+  bool first_iterate_ = true, policy_started_ = false, pattern_changed_ = false;
+  bool has_pattern_ = false;  // that of the rows
+};
+
+}  // namespace bb::resident
