@@ -8,25 +8,12 @@
 
 namespace bb::resident {
 
-/// A policy as numbers. uniform: one kappa for all rows (fixed, ipc_adaptive), which the caller keeps in
-/// ResidentStiffness::set_uniform; the rest is read otherwise.
-struct StiffnessRule {
-  bool uniform = true;
-  MassTerm mass_term = MassTerm::paper;
-  bool elastic_term = true;
-  Refresh refresh = Refresh::per_iteration;
-  double gap_floor = 0;  // of d_hat
-  KappaDerivative derivative = KappaDerivative::dropped;
-  double multiplier = 1;
-
-  bool potential() const { return !uniform && derivative == KappaDerivative::included; }
-  bool needs_hessian() const { return !uniform && elastic_term; }
-  KappaColumns columns() const {
-    if (uniform) return KappaColumns::uniform;
-    if (potential()) return KappaColumns::potential;
-    return refresh == Refresh::per_iteration ? KappaColumns::compared : KappaColumns::kept;
-  }
-};
+/// The columns that rows need for a policy. Where the rule is uniform, its one kappa is in ResidentStiffness::set_uniform.
+inline KappaColumns columns_of(const StiffnessRule& rule) {
+  if (rule.uniform) return KappaColumns::uniform;
+  if (rule.potential()) return KappaColumns::potential;
+  return rule.refresh == Refresh::per_iteration ? KappaColumns::compared : KappaColumns::kept;
+}
 
 class ResidentStiffness {
  public:

@@ -1,0 +1,180 @@
+// Gradient and matrix of the iterate, and the Newton direction: core/newton/newton_matrix.cpp on an executor.
+#include <stdexcept>
+
+#include "core/resident/linear/pcg_kernels.hpp"
+#include "core/resident/system/resident_system.hpp"
+#include "core/resident/system/system_kernels.hpp"
+
+namespace bb::resident {
+
+void ResidentSystem::assemble() {
+  if (plan_.policy_submatrix.needed) {
+    const ScopedPhase timer(clock(), Phase::elastic);
+    fill_elastic();
+  }
+  {
+    const ScopedPhase timer(clock(), Phase::strain_limit);
+    limit_kappa_change_ = elements_.refresh_limit(x_.data());
+  }
+  {
+    const ScopedPhase timer(clock(), Phase::elastic);
+    elements_.linearise(x_.data(), g_.data());
+  }
+  if (contact_) {
+    const ScopedPhase timer(clock(), Phase::contact_terms);
+    contact_->linearise(x_, elements_.matrix(), g_);
+  }
+  host_g_.valid = false;
+  keep_elastic();
+  const double residual = largest_force();
+  if (served_at_once_) level_.lower(residual);
+  served_at_once_ = false;
+  fill_matrix(false);
+}
+
+// H, which stiffness policies read: every elastic element clamped.
+void ResidentSystem::fill_elastic() {
+  elements_.clear_matrix();
+  elements_.add_matrix(TermGroup::elastic, x_.data(), clamped_hessian);
+}
+
+// Trial states ask for the kappa of new pairs with the H of their iterate, when the matrix holds all terms again.
+void ResidentSystem::keep_elastic() {
+  if (!contact_ || !contact_->needs_hessian()) return;
+  const MatrixPart matrix = elements_.matrix();
+  elastic_value_.resize(value_count(elements_.n_blocks()));
+  executor_->copy(elastic_value_.data(), matrix.value,
+                  static_cast<std::size_t>(elastic_value_.size()) * sizeof(double));
+}
+
+MatrixPart ResidentSystem::elastic_of_iterate() const {
+  MatrixPart part = elements_.matrix();
+  if (elastic_value_.size() > 0) part.value = elastic_value_.data();
+  return part;
+}
+
+StepHessian ResidentSystem::choice_of(std::string_view term) const {
+  const auto found = method_.step_hessian.find(term);
+  return found == method_.step_hessian.end() ? StepHessian::clamped : found->second;
+}
+
+HessianRequest ResidentSystem::request_of(StepHessian choice, bool exact) const {
+  return hessian_request(choice, exact ? 0 : level_.t(), exact ? infinity : level_.threshold(), force_.data());
+}
+
+HessianChoice ResidentSystem::contact_choice(bool exact) const {
+  const StepHessian choice = choice_of("contact");
+  const double t = exact ? 0 : level_.t();
+  HessianChoice out{method_.hessian_mode, first_projection(choice), false, 1};
+  const bool begins_exact = choice == StepHessian::blend || choice == StepHessian::exact_or_clamped;
+  if (!begins_exact || t == 0) return out;
+  out.projection = Projection::psd;
+  out.blended = choice == StepHessian::blend && t < 1;
+  out.t = t;
+  return out;
+}
+
+// At the level of the next attempt, or the Hessian that every term begins with.
+void ResidentSystem::fill_matrix(bool exact) {
+  const ScopedPhase timer(clock(), Phase::assembly);
+  elements_.clear_matrix();
+  elements_.add_matrix(TermSet::all(), x_.data(),
+                       [&](std::string_view term) { return request_of(choice_of(term), exact); });
+  if (contact_) contact_matrix_ = contact_->matrix(x_, contact_choice(exact));
+}
+
+ResidentMatrix ResidentSystem::matrix() const { return {{elements_.matrix(), contact_matrix_}}; }
+
+std::size_t ResidentSystem::nnz() const {
+  return 9 * static_cast<std::size_t>(elements_.n_blocks() + (contact_ ? contact_->n_blocks() : 0)) / 2;
+}
+
+double ResidentSystem::largest_force() {
+  vectors_.force_norms(g_, force_);
+  return vectors_.max(force_);
+}
+
+double ResidentSystem::add_tikhonov(double, double) {
+  throw std::logic_error("the resident system has no Tikhonov term: only article_literal asks for one");
+}
+
+// out = A v over free rows; returns v . out.
+double ResidentSystem::multiply(const Column& v, Column& out) {
+  const Partition partition = Partition::of(v.size() / 3);
+  executor_->blocks(partition.n_blocks(), MultiplyDot{partition, matrix(), fixed_bits_.data(), v.data(), out.data(),
+                                                      product_partial_.data(), nullptr});
+  sum_.clear();
+  sum_.add(partition.n_blocks(), ColumnSum{product_partial_.data()});
+  return sum_.get().value();
+}
+
+SolveReport ResidentSystem::find_direction() {
+  SolveReport report;
+  while (!direction(report)) {
+    if (level_.last() || report.linear.status == LinearStatus::non_finite) break;
+    level_.raise(largest_force());
+    fill_matrix(false);
+  }
+  served_at_once_ = report.attempts == 1;
+  return report;
+}
+
+// One attempt. False when the matrix is not positive definite, or dx does not descend: that is asked for only where no
+// prescribed motion does work.
+bool ResidentSystem::direction(SolveReport& report) {
+  const ScopedPhase timer(clock(), Phase::assembly);
+  const bool moving = vectors_.first_short_pin(x_) >= 0;
+  dx_.fill_zero();
+  vectors_.set_pin_motion(x_, dx_);
+  if (moving) {
+    multiply(dx_, work_);
+    if (contact_) contact_->add_given_motion(x_, dx_, work_);
+  }
+  executor_->each(b_.size(), RightHandSide{g_.data(), moving ? work_.data() : nullptr, b_.data()});
+  report.t = level_.t();
+  LinearReport linear = solve_linear();
+  ++report.attempts;
+  ++report.factorizations;
+  linear.iterations += report.linear.iterations;
+  report.linear = linear;
+  if (report.linear.status != LinearStatus::ok) return false;
+  executor_->each(dx_.size(), AddColumn{step_.data(), dx_.data()});
+  return moving || vectors_.free_dot(b_, step_).value() > 0 || vectors_.free_max(b_) == 0;
+}
+
+LinearReport ResidentSystem::solve_linear() {
+  const ScopedPhase timer(clock(), Phase::linear_solve);
+  const double b_norm = pcg_->norm(fixed_bits_.data(), b_.data());
+  LinearReport report;
+  report.iterative = true;
+  if (!std::isfinite(b_norm)) {
+    report.status = LinearStatus::non_finite;
+    report.residual_true = report.residual_recurrence = 1;
+    return report;
+  }
+  step_.fill_zero();
+  if (b_norm == 0) return report;
+  return pcg_->solve(matrix(), fixed_bits_.data(), b_.data(), step_.data(), forcing_.tolerance(b_norm),
+                     max_pcg_iterations_);
+}
+
+DirectionSize ResidentSystem::direction_size() {
+  DirectionSize size;
+  size.inf_m = vectors_.free_max(dx_);
+  size.slope_J = vectors_.free_dot(g_, dx_).value();
+  least_.clear();
+  least_.add(dx_.size() / 3, ColumnNorms{dx_.data()});
+  size.vertex_m = least_.largest();
+  return size;
+}
+
+void ResidentSystem::scale_direction(double factor) {
+  executor_->each(dx_.size(), ScaleColumn{factor, dx_.data()});
+}
+
+double ResidentSystem::direction_curvature() {
+  fill_matrix(true);
+  return multiply(dx_, work_);
+}
+
+}  // namespace bb::resident
