@@ -61,7 +61,7 @@ MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double
     throw std::invalid_argument("Hessian mode projected_numeric has no kernel; gauss_newton and projected_full have");
   }
   const Index n = pattern_.n_blocks();
-  value_.resize(9 * ((n + 7) / 8) * 8);
+  value_.resize(value_count(n));
   const BlockSources blocks = pattern_.blocks();
   if (rows.size() > 0) {
     std::uint8_t* const dense = dense_.counts(rows.size());

@@ -111,7 +111,7 @@ ContactPattern::Piece ContactPattern::fill_blocks(const RowView& rows, int first
   const Index from = slot_begin_.get(first), n_slots = slot_begin_.get(last) - from;
   if (n_slots == 0) return piece;
   const std::uint32_t* const slot = slot_.data() + from;
-  executor_.each(n_slots, CountPairs{rows, slot, places_.counts(n_slots)});
+  executor_.each(n_slots, CountBlockPairs{rows, slot, places_.counts(n_slots)});
   const Index n = places_.rank();
   key_.resize(n), value_.resize(n);
   const int bits = bits_below(n_vertices_);

@@ -116,13 +116,13 @@ struct GatherStreamed {
         add_fixed_points(r, wa * wb, sum);
       }
     }
-    for (int c = 0; c < 9; ++c) value[block_number(j, c)] = sum[c];
+    for (int c = 0; c < 9; ++c) value[value_index(j, c)] = sum[c];
   }
 
  private:
   BB_HD void add_stretch(Index r, double wa, double wb, double* sum) const {
     const Vec3d n = rows.normal_of(r), ga = wa * n, gb = wb * n;
-    for (int c = 0; c < 9; ++c) sum[c] += rows.stretch[r] * (ga[c / 3] * gb[c % 3]);
+    for (int c = 0; c < 9; ++c) sum[c] += rows.stretch[r] * (ga[c % 3] * gb[c / 3]);
   }
   /// Rows whose closest points slide nowhere, grad^2 d included.
   BB_HD void add_fixed_points(Index r, double ww, double* sum) const {
@@ -142,11 +142,11 @@ struct GatherStreamed {
     const Mat3d one =
         fixed_points_block<double>(n, flat, stretch, push, choice.blended ? Projection::psd : choice.projection);
     if (!choice.blended) {
-      for (int c = 0; c < 9; ++c) sum[c] += ww * one(c / 3, c % 3);
+      for (int c = 0; c < 9; ++c) sum[c] += ww * one(c % 3, c / 3);
       return;
     }
     const Mat3d exact = fixed_points_block<double>(n, flat, stretch, push, Projection::none);
-    for (int c = 0; c < 9; ++c) sum[c] += ww * blend(exact(c / 3, c % 3), one(c / 3, c % 3), choice.t);
+    for (int c = 0; c < 9; ++c) sum[c] += ww * blend(exact(c % 3, c / 3), one(c % 3, c / 3), choice.t);
   }
 };
 
@@ -164,13 +164,13 @@ struct GatherDense {
     const Index last = list[n - 1];
     if (i >= end || pair_row_of(blocks.code[i]) > last) return;
     double sum[9];
-    for (int c = 0; c < 9; ++c) sum[c] = value[block_number(j, c)];
+    for (int c = 0; c < 9; ++c) sum[c] = value[value_index(j, c)];
     for (; i < end && pair_row_of(blocks.code[i]) <= last; ++i) {
       const std::uint32_t code = blocks.code[i], row = code >> 4;
       const Index at = first_not_below(list, Index{0}, n, row);
       if (list[at] == row) add(at, pair_a(code), pair_b(code), sum);
     }
-    for (int c = 0; c < 9; ++c) value[block_number(j, c)] = sum[c];
+    for (int c = 0; c < 9; ++c) value[value_index(j, c)] = sum[c];
   }
 
  private:
@@ -180,8 +180,7 @@ struct GatherDense {
     const int high = stored ? a : b, low = stored ? b : a;
     const int first = 9 * (low * (9 - low) / 2 + (high - low));
     for (int c = 0; c < 9; ++c) {
-      const int row = c / 3, column = c % 3;
-      sum[c] += number[(first + (stored ? 3 * column + row : 3 * row + column)) * stride + at];
+      sum[c] += number[(first + (stored ? c : 3 * (c % 3) + c / 3)) * stride + at];
     }
   }
 };
@@ -197,7 +196,7 @@ struct MirrorBlocks {
     const int row = static_cast<int>(first_not_below(blocks.row_begin, Index{0}, static_cast<Index>(n_vertices) + 1, j + 1) - 1);
     if (column >= row) return;
     const Index from = first_not_below(blocks.column, blocks.row_begin[column], blocks.row_begin[column + 1], row);
-    for (int c = 0; c < 9; ++c) value[block_number(j, c)] = value[block_number(from, 3 * (c % 3) + c / 3)];
+    for (int c = 0; c < 9; ++c) value[value_index(j, c)] = value[value_index(from, 3 * (c % 3) + c / 3)];
   }
 };
 

@@ -1,8 +1,6 @@
 // Candidate pairs and positions as kernels read them.
 #pragma once
 
-#include "core/contact/pair_geometry.hpp"
-#include "core/contact/pair_row.hpp"
 #include "core/resident/contact/resident_surface.hpp"
 
 namespace bb::resident {
@@ -42,13 +40,6 @@ BB_HD Mat<double, 3, N> points_of(const double* x, const int* vertex) {
     for (int c = 0; c < 3; ++c) out(c, k) = x[3 * static_cast<Index>(vertex[k]) + c];
   }
   return out;
-}
-
-/// row_d_hat() of core/contact/contact_row.hpp.
-template <PairKind K>
-BB_HD double activation_distance(const SurfaceView& s, const PairVertices<K>& pair) {
-  if (s.body[pair.vertex[0]] != s.body[pair.vertex[pair_split(K)]]) return pair.law.d_hat;
-  return d_hat_at_rest<K>(pair.law, points_of<pair_points(K)>(s.rest, pair.vertex));
 }
 
 }  // namespace bb::resident

@@ -53,21 +53,21 @@ void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& ca
   std::uint8_t* const mark = places_.counts(n_candidates(candidates));
   Index first = 0;
   for_each_list(candidates, [&]<PairKind K>(const exec::Buffer<Key>& list) {
-    executor_.each(list.size(), MarkPairs<K>{phase, list.data(), mark + first});
+    executor_.each(list.size(), MarkPairRows<K>{phase, list.data(), mark + first});
     first += list.size();
   });
-  executor_.each(candidates.obstacle.size(), MarkObstacles{phase, candidates.obstacle.data(), mark + first});
+  executor_.each(candidates.obstacle.size(), MarkObstacleRows{phase, candidates.obstacle.data(), mark + first});
 
   rows.resize(places_.rank());
   gap_.set(0, {~Key{0}, ~Key{0}});
   const RowView view = rows.view();
   first = 0;
   for_each_list(candidates, [&]<PairKind K>(const exec::Buffer<Key>& list) {
-    executor_.each(list.size(), FillPairs<K>{phase, list.data(), mark + first, first, places_.places(), view,
+    executor_.each(list.size(), FillPairRows<K>{phase, list.data(), mark + first, first, places_.places(), view,
                                              gap_.data()});
     first += list.size();
   });
-  executor_.each(candidates.obstacle.size(), FillObstacles{phase, candidates.obstacle.data(), mark + first, first,
+  executor_.each(candidates.obstacle.size(), FillObstacleRows{phase, candidates.obstacle.data(), mark + first, first,
                                                            places_.places(), view, gap_.data()});
   rows.min_gap = smallest_gap(gap_.get(0));
   list_mollified(rows);

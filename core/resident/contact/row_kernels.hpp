@@ -2,12 +2,20 @@
 #pragma once
 
 #include "core/contact/obstacle.hpp"
+#include "core/contact/pair_row.hpp"
 #include "core/geometry/edge_edge_mollifier.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 
 namespace bb::resident {
+
+/// row_d_hat() of core/contact/contact_row.hpp.
+template <PairKind K>
+BB_HD double activation_distance(const SurfaceView& s, const PairVertices<K>& pair) {
+  if (s.body[pair.vertex[0]] != s.body[pair.vertex[pair_split(K)]]) return pair.law.d_hat;
+  return d_hat_at_rest<K>(pair.law, points_of<pair_points(K)>(s.rest, pair.vertex));
+}
 
 /// A row before it has a place.
 struct FoundRow {
@@ -116,7 +124,7 @@ BB_HD inline Key pair_of(int kind, Key candidate) {
 
 /// mark[i] = 1 where candidate i has a row.
 template <PairKind K>
-struct MarkPairs {
+struct MarkPairRows {
   NarrowPhase phase;
   const Key* candidate;
   std::uint8_t* mark;
@@ -128,7 +136,7 @@ struct MarkPairs {
 
 /// The rows of marked candidates at their places; first: what items come before those of this list.
 template <PairKind K>
-struct FillPairs {
+struct FillPairRows {
   NarrowPhase phase;
   const Key* candidate;
   const std::uint8_t* mark;
@@ -144,7 +152,7 @@ struct FillPairs {
   }
 };
 
-struct MarkObstacles {
+struct MarkObstacleRows {
   NarrowPhase phase;
   const Key* candidate;
   std::uint8_t* mark;
@@ -154,7 +162,7 @@ struct MarkObstacles {
   }
 };
 
-struct FillObstacles {
+struct FillObstacleRows {
   NarrowPhase phase;
   const Key* candidate;
   const std::uint8_t* mark;

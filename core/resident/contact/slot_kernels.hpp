@@ -69,7 +69,7 @@ struct FillSlots {
 };
 
 /// Pairs of points that the slots make with the free points of their rows.
-struct CountPairs {
+struct CountBlockPairs {
   RowView rows;
   const std::uint32_t* slot;
   std::uint8_t* count;

@@ -23,14 +23,11 @@ BB_HD inline Index first_not_below(const T* column, Index begin, Index end, T va
   return begin;
 }
 
-/// Number of the block (row, column), -1 when the pattern has none.
+/// Number of the block (row, column), -1 when the pattern has none. Columns of a row ascending.
 BB_HD inline Index find_block(const MatrixPart& m, int row, int column) {
   const Index end = m.row_begin[row + 1], at = first_not_below(m.column, m.row_begin[row], end, column);
   return at < end && m.column[at] == column ? at : -1;
 }
-
-/// Place of number c = 3 row + column of block j among the values.
-BB_HD inline Index block_number(Index j, int c) { return ((j / 8) * 9 + c) * 8 + j % 8; }
 
 /// The sub-matrix of at most four vertices, entry by entry.
 struct SubMatrix {
@@ -38,7 +35,7 @@ struct SubMatrix {
   Index block[4][4];
   BB_HD double operator()(int row, int column) const {
     const Index j = block[row / 3][column / 3];
-    return j < 0 ? 0.0 : matrix.value[block_number(j, 3 * (row % 3) + column % 3)];
+    return j < 0 ? 0.0 : matrix.value[value_index(j, 3 * (column % 3) + row % 3)];
   }
 };
 
