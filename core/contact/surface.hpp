@@ -17,7 +17,7 @@ struct Side {
 };
 
 /// Gap law of a pair: mean activation distance and summed offset of its two sides, m.
-inline Side combine(const Side& a, const Side& b) {
+BB_HD inline Side combine(const Side& a, const Side& b) {
   return {a.d_hat + (b.d_hat - a.d_hat) / 2, a.offset + b.offset};
 }
 
@@ -51,6 +51,11 @@ struct Surface {
   static bool disjoint(const std::array<int, 2>& a, const std::array<int, 2>& b) {
     return (a[0] != b[0]) & (a[0] != b[1]) & (a[1] != b[0]) & (a[1] != b[1]);
   }
+
+  /// What connected and adjacent look up, each sorted: mesh edges (vertex_vertex) and (e0, e1, third vertex)
+  /// (point_edge).
+  const std::vector<std::array<int, 2>>& connected_pairs() const { return connected_; }
+  const std::vector<std::array<int, 3>>& opposite_corners() const { return opposite_; }
 
  private:
   void connect(const Scene& scene);

@@ -1,0 +1,45 @@
+// Candidate pairs and positions as kernels read them.
+#pragma once
+
+#include "core/resident/contact/resident_surface.hpp"
+
+namespace bb::resident {
+
+/// Vertices of a pair in the order of pair.hpp, and the gap law of its two sides.
+template <PairKind K>
+struct PairVertices {
+  int vertex[pair_points(K)];
+  Side law;
+};
+
+namespace detail {
+template <PairKind K, int A, int B>
+BB_HD PairVertices<K> join(const PrimitiveView<A>& a, Index i, const PrimitiveView<B>& b, Index j) {
+  PairVertices<K> out;
+  for (int k = 0; k < A; ++k) out.vertex[k] = a.vertex[A * i + k];
+  for (int k = 0; k < B; ++k) out.vertex[A + k] = b.vertex[B * j + k];
+  out.law = combine(Side{a.d_hat[i], a.offset[i]}, Side{b.d_hat[j], b.offset[j]});
+  return out;
+}
+}  // namespace detail
+
+/// The pair of primitives i and j of the surface.
+template <PairKind K>
+BB_HD PairVertices<K> pair_vertices(const SurfaceView& s, Index i, Index j) {
+  if constexpr (K == PairKind::point_point) return detail::join<K>(s.points, i, s.points, j);
+  if constexpr (K == PairKind::point_edge) return detail::join<K>(s.points, i, s.edges, j);
+  if constexpr (K == PairKind::point_triangle) return detail::join<K>(s.points, i, s.triangles, j);
+  if constexpr (K == PairKind::edge_edge) return detail::join<K>(s.edges, i, s.edges, j);
+}
+
+/// Columns `vertex` of x [3n].
+template <int N>
+BB_HD Mat<double, 3, N> points_of(const double* x, const int* vertex) {
+  Mat<double, 3, N> out;
+  for (int k = 0; k < N; ++k) {
+    for (int c = 0; c < 3; ++c) out(c, k) = x[3 * static_cast<Index>(vertex[k]) + c];
+  }
+  return out;
+}
+
+}  // namespace bb::resident
