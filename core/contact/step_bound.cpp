@@ -75,9 +75,9 @@ void StepBoundFinder::ask_lanes(const std::vector<IndexPair>& pairs, const Motio
   for (std::size_t lane = 0; lane < n_lanes; ++lane) {
     reach.v[lane] = pair[lane].law.offset + 2 * std::max(level_.park * pair[lane].law.d_hat, motion.floor);
   }
-  const PairLanes<K> points = gather_lanes<K>(pair, motion.x0);
+  const PairLanes<K, Lanes4> points = gather_lanes<K>(pair, motion.x0);
   const Lanes4 proven =
-      proven_times<K>(points, gather_lanes<K>(pair, motion.x1) - points, reach, part.first.toi);
+      proven_times<K, Lanes4>(points, gather_lanes<K>(pair, motion.x1) - points, reach, part.first.toi);
   for (std::size_t lane = 0; lane < n; ++lane) {
     if (proven[static_cast<int>(lane)] > part.first.toi) continue;
     with_value_scalar(precision_, [&]<class T>() { ask<K, T>(pair[lane], index[lane], motion, part); });

@@ -52,6 +52,11 @@ struct Surface {
     return (a[0] != b[0]) & (a[0] != b[1]) & (a[1] != b[0]) & (a[1] != b[1]);
   }
 
+  /// What connected and adjacent look up, each sorted: mesh edges (vertex_vertex) and (e0, e1, third vertex)
+  /// (point_edge).
+  const std::vector<std::array<int, 2>>& connected_pairs() const { return connected_; }
+  const std::vector<std::array<int, 3>>& opposite_corners() const { return opposite_; }
+
  private:
   void connect(const Scene& scene);
 

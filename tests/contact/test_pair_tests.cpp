@@ -122,7 +122,7 @@ void expect_no_time_later_than_accd() {
       const double largest = std::max(x0.cwiseAbs().maxCoeff(), four.at1(lane).cwiseAbs().maxCoeff());
       reach.v[lane] = offset + 2 * std::max(park, 2 * ulp_floor(largest));
     }
-    const PairLanes<K> points = gather_lanes<K>(four.pair, four.x0);
+    const PairLanes<K, Lanes4> points = gather_lanes<K>(four.pair, four.x0);
     const Lanes4 proven = proven_times<K>(points, gather_lanes<K>(four.pair, four.x1) - points, reach, 1);
     for (std::size_t lane = 0; lane < n_lanes; ++lane) {
       const auto x0 = four.at0(lane), x1 = four.at1(lane);

@@ -1,0 +1,93 @@
+// All candidate pairs of one primitive of a tree: the one place that says which pairs there are.
+#pragma once
+
+#include "core/contact/obstacle.hpp"
+#include "core/resident/contact/resident_pair.hpp"
+#include "core/resident/contact/tree_view.hpp"
+
+namespace bb::resident {
+
+/// Rows of N sorted numbers, in lexicographic order.
+template <int N>
+struct SortedRows {
+  const int* row;
+  Index n;
+  BB_HD bool holds(const int (&wanted)[N]) const {
+    Index begin = 0, end = n;
+    while (begin < end) {
+      const Index middle = begin + (end - begin) / 2;
+      int order = 0;
+      for (int k = 0; k < N && order == 0; ++k) {
+        const int there = row[N * middle + k];
+        order = there < wanted[k] ? -1 : there > wanted[k] ? 1 : 0;
+      }
+      if (order == 0) return true;
+      (order < 0 ? begin : end) = order < 0 ? middle + 1 : middle;
+    }
+    return false;
+  }
+};
+
+/// Trees of the first and the second primitives of a kind of pair, and what never pairs.
+struct PairSearch {
+  TreeView first, second;
+  SurfaceView surface;
+  SortedRows<2> connected;  // planar, of two vertices: mesh edges
+  SortedRows<3> opposite;   // planar, of a vertex and an edge: edge and third corner of a triangle
+};
+
+template <PairKind K>
+constexpr bool one_tree = K == PairKind::point_point || K == PairKind::edge_edge;
+
+/// Whether there may be a pair of primitives i and j, as Surface says.
+template <PairKind K>
+BB_HD bool may_pair(const PairSearch& s, Index i, Index j) {
+  if constexpr (K == PairKind::point_point) {
+    const int a = s.surface.points.vertex[i], b = s.surface.points.vertex[j];
+    const int edge[2] = {a < b ? a : b, a < b ? b : a};
+    return !s.connected.holds(edge);
+  } else if constexpr (K == PairKind::point_edge) {
+    const int v = s.surface.points.vertex[i];
+    const int corner[3] = {s.surface.edges.vertex[2 * j], s.surface.edges.vertex[2 * j + 1], v};
+    return v != corner[0] && v != corner[1] && !s.opposite.holds(corner);
+  } else if constexpr (K == PairKind::point_triangle) {
+    const int v = s.surface.points.vertex[i];
+    const int* const t = s.surface.triangles.vertex + 3 * j;
+    return v != t[0] && v != t[1] && v != t[2];
+  } else {
+    const int *const a = s.surface.edges.vertex + 2 * i, *const b = s.surface.edges.vertex + 2 * j;
+    return a[0] != b[0] && a[0] != b[1] && a[1] != b[0] && a[1] != b[1];
+  }
+}
+
+/// Calls f(first, second) for the candidates of kind K that the leaf at a place of the first tree has: within one tree
+/// those with the leaves behind it, first < second, so that each pair comes once.
+template <PairKind K, class F>
+BB_HD void for_each_pair(const PairSearch& s, Index place, const F& f) {
+  const TreeNode asking = s.first.node[place];
+  const Index own = asking.primitive;
+  for_each_overlap(s.second, asking, one_tree<K> ? place + 1 : 0, [&](const TreeNode& leaf) {
+    const Index other = leaf.primitive;
+    const bool swapped = one_tree<K> && other < own;
+    const Index i = swapped ? other : own, j = swapped ? own : other;
+    if (may_pair<K>(s, i, j)) f(i, j);
+  });
+}
+
+BB_HD inline Key pair_of(Index first, Index second) {
+  return static_cast<Key>(first) << 32 | static_cast<Key>(second);
+}
+BB_HD inline Index first_of(Key pair) { return static_cast<Index>(pair >> 32); }
+BB_HD inline Index second_of(Key pair) { return static_cast<Index>(pair & 0xffffffff); }
+
+/// Whether surface point i may come within its contact distance of obstacle o on x0 -> x1. The gap falls by at most
+/// the way gone: a bound for any obstacle; 1e-12 covers rounding.
+BB_HD inline bool may_reach(const SurfaceView& s, Index i, int o, const double* x0, const double* x1) {
+  if (s.points.free[i] == 0) return false;
+  const Vec3d p0 = points_of<1>(x0, s.points.vertex + i), p1 = points_of<1>(x1, s.points.vertex + i);
+  const double start = surface_gap<double>(s.obstacles[o].surface(), p0).d, way = (p1 - p0).norm();
+  const double least = start - way - 1e-12 * ((start < 0 ? -start : start) + way);
+  return !(least > s.points.d_hat[i] + s.points.offset[i]);
+}
+
+}  // namespace bb::resident

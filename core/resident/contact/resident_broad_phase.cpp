@@ -1,0 +1,146 @@
+#include "core/resident/contact/resident_broad_phase.hpp"
+
+#include <bit>
+
+#include "core/resident/contact/candidate_kernels.hpp"
+
+namespace bb::resident {
+
+namespace {
+
+template <std::size_t N>
+void upload_rows(exec::Buffer<int>& to, const std::vector<std::array<int, N>>& rows) {
+  to.upload({rows.empty() ? nullptr : rows[0].data(), N * rows.size()});
+}
+
+}  // namespace
+
+ResidentBroadPhase::ResidentBroadPhase(exec::Executor& executor, const ResidentSurface& resident,
+                                       const Surface& surface, const ContactPlan& plan)
+    : executor_(executor),
+      surface_(resident),
+      plan_(plan),
+      connected_(executor, "connected vertices"),
+      opposite_(executor, "corners opposite to edges"),
+      frame_(executor, "frame of motion", 1),
+      scratch_(executor),
+      points_(executor, "tree of points"),
+      edges_(executor, "tree of edges"),
+      triangles_(executor, "tree of triangles"),
+      point_points_(executor, "places of point-point candidates"),
+      point_edges_(executor, "places of point-edge candidates"),
+      point_triangles_(executor, "places of point-triangle candidates"),
+      edge_edges_(executor, "places of edge-edge candidates"),
+      of_obstacles_(executor, "places of obstacle candidates") {
+  upload_rows(connected_, surface.connected_pairs());
+  upload_rows(opposite_, surface.opposite_corners());
+}
+
+/// The frame in which the boxes are shortest: what most points share of the motion is taken off. As BroadPhase does.
+void ResidentBroadPhase::find_frame(const Column& x0, const Column& x1) {
+  const PrimitiveView<1> points = surface_.view().points;
+  if (points.n == 0) return frame_.fill_zero();
+  executor_.each(1, StartFrame{points.vertex, x0.data(), frame_.data()});
+  if (x0.data() != x1.data()) {
+    scratch_.key.resize(points.n);
+    for (int c = 0; c < 3; ++c) {
+      Key* const key = scratch_.key.data();
+      executor_.each(points.n, DisplacementKeys{points.vertex, x0.data(), x1.data(), c, key});
+      executor_.sort(key, nullptr, points.n, 64);
+      executor_.each(1, MoveFrame{key, points.n, c, frame_.data()});
+    }
+  }
+  executor_.each(1, RoundFrame{frame_.data()});
+}
+
+void ResidentBroadPhase::fit(const Column& x0, const Column& x1) {
+  if (!plan_.broad_phase.needed) return;
+  find_frame(x0, x1);
+  const SurfaceView s = surface_.view();
+  const MotionView motion{x0.data(), x1.data(), frame_.data()};
+  if (plan_.point_point || plan_.point_edge || plan_.point_triangle) points_.fit(s.points, motion, scratch_);
+  if (plan_.point_edge || plan_.edge_edge) edges_.fit(s.edges, motion, scratch_);
+  if (plan_.point_triangle) triangles_.fit(s.triangles, motion, scratch_);
+}
+
+template <PairKind K>
+PairSearch ResidentBroadPhase::search() const {
+  const TreeView points = points_.view(), edges = edges_.view(), triangles = triangles_.view();
+  return {K == PairKind::edge_edge ? edges : points,
+          K == PairKind::point_point      ? points
+          : K == PairKind::point_triangle ? triangles
+                                          : edges,
+          surface_.view(),
+          {connected_.data(), connected_.size() / 2},
+          {opposite_.data(), opposite_.size() / 3}};
+}
+
+CandidateSource ResidentBroadPhase::source() const {
+  return {search<PairKind::point_point>(), search<PairKind::point_edge>(), search<PairKind::point_triangle>(),
+          search<PairKind::edge_edge>(), plan_.obstacles.needed};
+}
+
+/// From counts [n] to places [n + 1]; the last is their number.
+void ResidentBroadPhase::sum_up(exec::Buffer<Index>& begin, Index& total) {
+  const Index n = begin.size() - 1;
+  executor_.fill_bytes(begin.data() + n, 0, sizeof(Index));
+  executor_.exclusive_scan(begin.data(), n + 1);
+  if (!executor_.counts_only()) total = begin.get(n);
+}
+
+template <PairKind K>
+void ResidentBroadPhase::count_kind(bool needed, exec::Buffer<Index>& begin, Index& total) {
+  if (!needed) return;
+  const PairSearch s = search<K>();
+  const Index n = s.first.top < 0 ? 0 : s.first.size(0);
+  begin.resize(n + 1);
+  executor_.each(n, CountPairs<K>{s, begin.data()});
+  sum_up(begin, total);
+}
+
+CandidateCounts ResidentBroadPhase::count(const Column& x0, const Column& x1) {
+  x0_ = x0.data();
+  x1_ = x1.data();
+  fit(x0, x1);
+  count_kind<PairKind::point_point>(plan_.point_point, point_points_, counts_.point_point);
+  count_kind<PairKind::point_edge>(plan_.point_edge, point_edges_, counts_.point_edge);
+  count_kind<PairKind::point_triangle>(plan_.point_triangle, point_triangles_, counts_.point_triangle);
+  count_kind<PairKind::edge_edge>(plan_.edge_edge, edge_edges_, counts_.edge_edge);
+  if (plan_.obstacles.needed) {
+    const SurfaceView s = surface_.view();
+    of_obstacles_.resize(s.points.n + 1);
+    executor_.each(s.points.n, CountObstacles{s, x0_, x1_, of_obstacles_.data()});
+    sum_up(of_obstacles_, counts_.obstacle);
+  }
+  return counts_;
+}
+
+template <PairKind K>
+void ResidentBroadPhase::fill_kind(bool needed, const exec::Buffer<Index>& begin, Index total,
+                                   exec::Buffer<Key>& out) {
+  out.grow(needed ? total : 0);
+  if (!needed || total == 0) return;
+  const PairSearch s = search<K>();
+  executor_.each(s.first.size(0), FillPairs<K>{s, begin.data(), out.data()});
+  const int bits = 32 + std::bit_width(static_cast<std::uint64_t>(s.first.size(0) - 1));
+  executor_.sort(out.data(), nullptr, total, bits);
+}
+
+void ResidentBroadPhase::fill(ResidentCandidates& out) {
+  fill_kind<PairKind::point_point>(plan_.point_point, point_points_, counts_.point_point, out.point_point);
+  fill_kind<PairKind::point_edge>(plan_.point_edge, point_edges_, counts_.point_edge, out.point_edge);
+  fill_kind<PairKind::point_triangle>(plan_.point_triangle, point_triangles_, counts_.point_triangle,
+                                      out.point_triangle);
+  fill_kind<PairKind::edge_edge>(plan_.edge_edge, edge_edges_, counts_.edge_edge, out.edge_edge);
+  out.obstacle.grow(plan_.obstacles.needed ? counts_.obstacle : 0);
+  if (!plan_.obstacles.needed) return;
+  const SurfaceView s = surface_.view();
+  executor_.each(s.points.n, FillObstacles{s, x0_, x1_, of_obstacles_.data(), out.obstacle.data()});
+}
+
+void ResidentBroadPhase::update(const Column& x0, const Column& x1, ResidentCandidates& out) {
+  count(x0, x1);
+  fill(out);
+}
+
+}  // namespace bb::resident

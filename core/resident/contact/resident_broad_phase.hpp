@@ -1,0 +1,70 @@
+// Broad phase on an executor: the candidate pairs of a motion, those of BroadPhase (core/contact/candidates.hpp).
+#pragma once
+
+#include "core/resident/contact/box_tree.hpp"
+#include "core/resident/contact/pair_search.hpp"
+#include "core/scene/contact_plan.hpp"
+
+namespace bb::resident {
+
+/// Candidate pairs by kind.
+struct CandidateCounts {
+  Index point_point = 0, point_edge = 0, point_triangle = 0, edge_edge = 0, obstacle = 0;
+  Index total() const { return point_point + point_edge + point_triangle + edge_edge + obstacle; }
+  /// Of their lists.
+  std::size_t bytes() const { return static_cast<std::size_t>(total()) * sizeof(Key); }
+};
+
+/// Where the candidates of a motion come from without a list of them.
+struct CandidateSource {
+  PairSearch point_point, point_edge, point_triangle, edge_edge;
+  bool obstacles;
+};
+
+class ResidentBroadPhase {
+ public:
+  using Column = exec::Buffer<double>;
+
+  /// resident: of the surface; must outlive this. surface: read here only. plan: of the same scene.
+  ResidentBroadPhase(exec::Executor& executor, const ResidentSurface& resident, const Surface& surface,
+                     const ContactPlan& plan);
+
+  /// Fits the trees to x0 -> x1 ([3 n_vertices] m; the same buffer: a state) and counts the candidates: how long
+  /// their lists would be is known before there is one. Errors: OutOfMemory.
+  CandidateCounts count(const Column& x0, const Column& x1);
+  /// Writes the candidates of the last count; positions unchanged since. Errors: OutOfMemory.
+  void fill(ResidentCandidates& out);
+  /// Both. The lists are those of BroadPhase::update in double, entry by entry.
+  void update(const Column& x0, const Column& x1, ResidentCandidates& out);
+
+  /// Of the last count; for ResidentStepBound::find_without_list.
+  CandidateSource source() const;
+  /// What an executor that only counts buffers is to take the candidates for.
+  void expect(const CandidateCounts& counts) { counts_ = counts; }
+
+ private:
+  void find_frame(const Column& x0, const Column& x1);
+  void fit(const Column& x0, const Column& x1);
+  template <PairKind K>
+  void count_kind(bool needed, exec::Buffer<Index>& begin, Index& total);
+  template <PairKind K>
+  void fill_kind(bool needed, const exec::Buffer<Index>& begin, Index total, exec::Buffer<Key>& out);
+  template <PairKind K>
+  PairSearch search() const;
+  void sum_up(exec::Buffer<Index>& begin, Index& total);
+
+  exec::Executor& executor_;
+  const ResidentSurface& surface_;
+  const ContactPlan plan_;
+  exec::Buffer<int> connected_, opposite_;
+  exec::Buffer<MotionFrame> frame_;
+  TreeScratch scratch_;
+  BoxTree<1> points_;
+  BoxTree<2> edges_;
+  BoxTree<3> triangles_;
+  exec::Buffer<Index> point_points_, point_edges_, point_triangles_, edge_edges_, of_obstacles_;  // [n + 1] where those of each begin
+  CandidateCounts counts_;
+  const double *x0_ = nullptr, *x1_ = nullptr;
+};
+
+}  // namespace bb::resident
