@@ -17,6 +17,11 @@ KappaParts combined(double a, const KappaParts& x, double b, const KappaParts& y
 
 }  // namespace
 
+void KappaMemory::adopt(const KnownStiffness& known) {
+  known_.clear();
+  for (std::size_t i = 0; i < known.pair.size(); ++i) known_.push_back({known.pair[i], known.parts[i]});
+}
+
 const KappaMemory::Known* KappaMemory::find(PairId pair) const {
   const auto at = std::lower_bound(known_.begin(), known_.end(), pair,
                                    [](const Known& entry, PairId id) { return entry.pair < id; });

@@ -7,6 +7,12 @@
 
 namespace bb {
 
+/// The stiffness of some pairs, ascending by pair.
+struct KnownStiffness {
+  std::vector<PairId> pair;
+  std::vector<KappaParts> parts;
+};
+
 /// kappa of the pairs behind earlier rows. A row has the mean of its pairs, so m kappa is their sum: when the
 /// closest point of a pair crosses to a neighbouring feature, and its share moves from one row to another, B
 /// does not jump, as it would if kappa belonged to the row. An edge-edge pair keeps its kappa when it becomes
@@ -14,6 +20,8 @@ namespace bb {
 class KappaMemory {
  public:
   void clear() { known_.clear(); }
+  /// What another memory knows, in the place of what this one knew.
+  void adopt(const KnownStiffness& known);
   /// Adds the pairs that are not known yet; what is known stays. Requires recall() of the same tables before,
   /// and parts of the rows that it reported missing set (see complete()).
   void store(const ContactTable& rows, const MollifiedTable& mollified);

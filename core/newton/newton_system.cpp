@@ -4,12 +4,11 @@
 #include <algorithm>
 #include <cmath>
 #include <numeric>
+#include <stdexcept>
 
 #include "core/archive/archive.hpp"
 
 namespace bb {
-
-namespace {
 
 std::vector<std::uint8_t> fixed_dofs(const Scene& scene, const Plan& plan) {
   std::vector<std::uint8_t> fixed(3 * static_cast<std::size_t>(scene.n_vertices()), 0);
@@ -21,6 +20,8 @@ std::vector<std::uint8_t> fixed_dofs(const Scene& scene, const Plan& plan) {
   }
   return fixed;
 }
+
+namespace {
 
 StepHessian choice_of(const Term& term, const Method& method) {
   const auto found = method.step_hessian.find(term.name());
@@ -103,6 +104,19 @@ void NewtonSystem::keep(Archive& archive) {
     archive.section(term->name());
     term->keep(archive);
   }
+}
+
+void NewtonSystem::adopt(const StepFrame& frame, const Positions& x, const HessianLevel& level,
+                         const KnownStiffness& known) {
+  begin_step(frame.x_n, {frame.c, frame.x_tilde}, frame.dt, frame.load_factor);
+  for (const auto& term : terms_) term->adopt(known);
+  if (x != x_) {
+    prepare(x, x - x_);
+    if (!try_state(x)) throw std::logic_error("the state of another system is not feasible here");
+    accept();
+  }
+  level_ = level;
+  assemble();
 }
 
 void NewtonSystem::drop_caches() {

@@ -23,6 +23,8 @@
 
 namespace bb {
 
+/// [3 n] 1 where a degree of freedom is prescribed or, in a planar scene, locked.
+std::vector<std::uint8_t> fixed_dofs(const Scene& scene, const Plan& plan);
 /// Of a method that is run without a config.
 PlanOptions plan_options(const Method& method);
 
@@ -41,6 +43,10 @@ class NewtonSystem final : public StepSystem {
   void end_step() override;
   /// What the terms remember from step to step.
   void keep(Archive& archive) override;
+  /// The iterate x of another system in a step that began as `frame` says, assembled: what is read of it here is what
+  /// that system has. known: stiffness of pairs that are frozen for the step. Errors: std::logic_error for an x that is
+  /// not feasible.
+  void adopt(const StepFrame& frame, const Positions& x, const HessianLevel& level, const KnownStiffness& known);
   /// Makes the linear solver anew and forgets the pattern of the contacts: between steps.
   void drop_caches() override;
 
@@ -100,7 +106,7 @@ class NewtonSystem final : public StepSystem {
   /// E at the iterate, J; for the record only.
   double energy() const override { return total_energy(terms_); }
   /// The parts of E that a group has, J, each family summed for itself.
-  double energy(TermGroup group) const;
+  double energy(TermGroup group) const override;
   bool pattern_changed() const override { return pattern_changed_; }
   int n_free() const override { return blocks_->n_free(); }
   /// Entries of the lower triangle that was solved last.

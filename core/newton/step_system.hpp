@@ -14,6 +14,7 @@
 #include "core/newton/report.hpp"
 #include "core/record/phase_times.hpp"
 #include "core/scene/scene.hpp"
+#include "core/terms/term_set.hpp"
 
 namespace bb {
 
@@ -95,6 +96,8 @@ class StepSystem {
   virtual double grad_inf() const = 0;
   /// E at the iterate, J; for the record only.
   virtual double energy() const = 0;
+  /// The parts of E that a group has, J.
+  virtual double energy(TermGroup group) const = 0;
   virtual bool pattern_changed() const = 0;
   virtual int n_free() const = 0;
   /// Entries of the lower triangle that was solved last.

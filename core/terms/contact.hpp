@@ -31,6 +31,13 @@ struct ContactState {
   }
 };
 
+/// Of a pair in a row at a step end, for policies that adapt between steps.
+struct PairGap {
+  PairId pair;
+  double gap, park;  // m
+  void keep(Archive& archive);
+};
+
 class ContactTerm final : public Term {
  public:
   /// All arguments must outlive the term. fixed: [3 n] prescribed or locked degrees of freedom.
@@ -45,6 +52,7 @@ class ContactTerm final : public Term {
   void change_frame(const StepFrame& frame) override;
   /// Tells a policy that adapts which pairs had a row at two step ends in a row.
   void end_step(PhaseClock& clock) override;
+  void adopt(const KnownStiffness& known) override { stiffness_.adopt(known); }
   void keep(Archive& archive) override;
   void linearise(const Positions& x, const TermContext& context) override;
   void clamp(const Positions& x) override;
@@ -83,12 +91,6 @@ class ContactTerm final : public Term {
   double kappa_change_ = 0;
   bool first_iterate_ = true, policy_started_ = false;
   StepBound bound_;
-  /// Of a pair in a row at a step end, for policies that adapt between steps.
-  struct PairGap {
-    PairId pair;
-    double gap, park;  // m
-    void keep(Archive& archive);
-  };
   std::vector<PairGap> gaps_, previous_gaps_;  // by pair
   std::vector<StiffnessPolicy::PairEnd> pair_ends_;
 };

@@ -71,7 +71,7 @@ void ContactTerm::end_step(PhaseClock& clock) {
   previous_gaps_.swap(gaps_);
 }
 
-void ContactTerm::PairGap::keep(Archive& archive) { archive(pair, gap, park); }
+void PairGap::keep(Archive& archive) { archive(pair, gap, park); }
 
 void ContactTerm::keep(Archive& archive) {
   archive(policy_started_, previous_gaps_);

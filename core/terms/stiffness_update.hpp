@@ -52,6 +52,9 @@ class StiffnessUpdate {
   /// The pairs of an accepted trial keep their kappa for the rest of the step.
   void keep(const ContactTable& rows, const MollifiedTable& mollified);
 
+  /// The kappa that pairs have in the step that another system is in. After begin_step().
+  void adopt(const KnownStiffness& known) { memory_.adopt(known); }
+
   StiffnessPolicy& policy() { return policy_; }
 
   /// Columns of one row as the policy sees it (for matching at the contact that carried the load).

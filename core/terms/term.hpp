@@ -19,6 +19,7 @@
 namespace bb {
 
 class Archive;
+struct KnownStiffness;
 
 /// One time step, the same for all terms.
 struct StepFrame {
@@ -88,6 +89,8 @@ class Term {
   virtual void begin_step(const StepFrame& frame, PhaseClock&) { change_frame(frame); }
   /// The same step and iterate with another prediction and length.
   virtual void change_frame(const StepFrame&) {}
+  /// The stiffness that pairs of contact have in this step in another system, whose state is looked at.
+  virtual void adopt(const KnownStiffness&) {}
   /// The step is over.
   virtual void end_step(PhaseClock&) {}
   /// What it remembers from step to step (core/archive). A term that begin_step makes anew has nothing.

@@ -2,7 +2,7 @@
 
 namespace bb {
 
-void fill_energies(const NewtonSystem& system, StepRecord& step) {
+void fill_energies(const StepSystem& system, StepRecord& step) {
   const Scene& scene = system.scene();
   step.gravity_J = 0;
   for (std::size_t i = 0; i < scene.mass.size(); ++i) {

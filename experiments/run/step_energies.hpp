@@ -8,6 +8,6 @@ namespace bb {
 
 /// elastic_J, limit_J, contact_J and gravity_J of the state that `system` holds. Cost: one pass over
 /// rows and elements.
-void fill_energies(const NewtonSystem& system, StepRecord& step);
+void fill_energies(const StepSystem& system, StepRecord& step);
 
 }  // namespace bb
