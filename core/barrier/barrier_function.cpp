@@ -5,6 +5,7 @@
 #include <type_traits>
 
 #include "core/barrier/shape.hpp"
+#include "core/barrier/squared_gap.hpp"
 #include "core/math/lanes.hpp"
 
 namespace bb {
@@ -19,25 +20,7 @@ void call(const Shape& shape, std::size_t n, const float* d, const float* d_hat,
   shape.batch_float(shape.self, n, d, d_hat, b, db, d2b);
 }
 
-/// Chain rule from f(D; D_hat), D = d^2, to b(d) = f(d^2; d_hat^2)/d_hat^2; d2f is f''.
-///   b' = 2 d f'/d_hat^2,   b'' = (2 f' + 4 d^2 f'')/d_hat^2
-/// Where d^2 is 0 the limit of a shape that is infinite there is (inf, -inf, inf), else the f'' term is 0.
-template <class T>
-void chain(bool infinite_at_zero, T d, T d_sq, T d_hat_sq, T& b, T& db, T& d2b) {
-  if (d_sq == T(0)) {
-    const T inf = std::numeric_limits<T>::infinity();
-    const T slope = db;
-    b = infinite_at_zero ? inf : b / d_hat_sq;
-    db = infinite_at_zero ? -inf : T(0);
-    d2b = infinite_at_zero ? inf : T(2) * slope / d_hat_sq;
-    return;
-  }
-  d2b = (T(2) * db + T(4) * d_sq * d2b) / d_hat_sq;
-  db = T(2) * d * db / d_hat_sq;
-  b = b / d_hat_sq;
-}
-
-/// chain of m rows, four at a time in double: the same operations, and the same bits.
+/// chain_squared_gap of m rows, four at a time in double: the same operations, and the same bits.
 template <class T>
 void chain_rows(bool infinite_at_zero, std::size_t m, const T* d, const T* d_sq, const T* d_hat_sq, T* b,
                 T* db, T* d2b) {
@@ -55,7 +38,7 @@ void chain_rows(bool infinite_at_zero, std::size_t m, const T* d, const T* d_sq,
     }
   }
   for (std::size_t i = begin; i < m; ++i) {
-    chain(infinite_at_zero, d[i], d_sq[i], d_hat_sq[i], b[i], db[i], d2b[i]);
+    chain_squared_gap(infinite_at_zero, d[i], d_sq[i], d_hat_sq[i], b[i], db[i], d2b[i]);
   }
 }
 

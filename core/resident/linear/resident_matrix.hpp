@@ -1,0 +1,52 @@
+// The symmetric Newton matrix in an executor's memory: rows of 3x3 blocks, both triangles, so that a row needs no other.
+#pragma once
+
+#include <cstdint>
+
+#include "core/exec/kernel.hpp"
+
+namespace bb::resident {
+
+using exec::Index;
+using exec::Key;
+
+/// Where number c of block j is: planes of eight blocks, so that eight lanes that read eight blocks read whole lines.
+/// c = 3 column + row.
+BB_HD inline Index value_index(Index j, int c) { return ((j / 8) * 9 + c) * 8 + j % 8; }
+/// Numbers to allocate for n blocks.
+BB_HD inline Index value_count(Index n_blocks) { return (n_blocks + 7) / 8 * 72; }
+
+/// Block rows of all vertices; columns need no order within a row.
+struct MatrixPart {
+  const Index* row_begin;  // [n_vertices + 1] number of the first block of a row; null: no such part
+  const int* column;       // [n_blocks]
+  const double* value;     // [value_count(n_blocks)]
+};
+
+/// The sum of two parts: elements, whose pattern stays, and contacts, whose pattern changes.
+struct ResidentMatrix {
+  MatrixPart part[2];
+};
+
+/// Degrees of freedom of a vertex that are prescribed or locked: bit c for coordinate c. Rows and columns of such
+/// degrees of freedom count as those of the identity, and vectors are 0 there.
+using FixedMask = std::uint8_t;
+BB_HD inline bool is_fixed(FixedMask mask, int coordinate) { return (mask >> coordinate & 1) != 0; }
+
+/// Which rows a block of threads takes: a function of their number alone, so that sums are the same everywhere.
+struct Partition {
+  Index n_rows, rows_a_block;
+  static constexpr Index most_blocks = 1024;
+  static Partition of(Index n_rows) {
+    const Index each = (n_rows + most_blocks - 1) / most_blocks;
+    return {n_rows, each < 32 ? 32 : (each + 31) / 32 * 32};
+  }
+  BB_HD Index n_blocks() const { return (n_rows + rows_a_block - 1) / rows_a_block; }
+  BB_HD Index first(Index b) const { return b * rows_a_block; }
+  BB_HD Index last(Index b) const {
+    const Index end = (b + 1) * rows_a_block;
+    return end < n_rows ? end : n_rows;
+  }
+};
+
+}  // namespace bb::resident
