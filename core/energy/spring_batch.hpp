@@ -17,6 +17,7 @@ class SpringBatch final : public EnergyBatch {
   std::string_view name() const override { return "spring"; }
   int width() const override { return 2; }
   std::span<const int> vertices() const override { return vertices_; }
+  std::span<const double> rest_lengths() const { return rest_length_; }  // [n] m
   void values(const Positions& x, double* energy) const override;
   void derivatives(const Positions& x, Projection projection, LocalTerms& out) const override;
 

@@ -25,6 +25,14 @@ class GatherMap {
   std::span<const int> column_start() const { return column_start_; }
   std::span<const int> rows() const { return row_; }
 
+  /// [targets + 1] where the contributions of a target begin in sources(). Targets: as rows().
+  std::span<const std::size_t> source_start() const { return source_start_; }
+  /// 2 * offset of a 3x3 block in the local Hessians (lower blocks, element by element), + 1 where it is transposed.
+  std::span<const std::size_t> sources() const { return source_; }
+  /// [n_vertices + 1] where the contributions to a vertex begin in gradient_sources(): offsets in the local gradients.
+  std::span<const std::size_t> gradient_start() const { return vertex_start_; }
+  std::span<const std::size_t> gradient_sources() const { return vertex_source_; }
+
   std::size_t n_elements() const {
     return width_ == 0 ? 0 : vertices_.size() / static_cast<std::size_t>(width_);
   }

@@ -1,7 +1,7 @@
 // Work of the weight: -f . (x - x_n), one element a vertex. No Hessian.
-#include <cmath>
 #include <numeric>
 
+#include "core/energy/vertex_loads.hpp"
 #include "core/math/parallel.hpp"
 #include "core/terms/registry.hpp"
 
@@ -28,7 +28,7 @@ class ExternalForce final : public Term {
     x_n_ = frame.x_n;
     force_.resize(3, x_n_.cols());
     for (Eigen::Index i = 0; i < x_n_.cols(); ++i) {
-      force_.col(i) = (frame.load_factor * scene_.mass[static_cast<std::size_t>(i)]) * scene_.gravity;
+      force_.col(i) = weight_force(frame.load_factor, scene_.mass[static_cast<std::size_t>(i)], scene_.gravity);
     }
     Positions::Map(families_[0].local.grad.data(), 3, x_n_.cols()) = -force_;
   }
@@ -43,9 +43,9 @@ class ExternalForce final : public Term {
     const std::size_t start = out.size();
     out.resize(start + vertices_.size());
     parallel_items(x0.cols(), block_items, [&](Eigen::Index i) {
-      const Vec3d step = x1.col(i) - x0.col(i);
-      const double work = force_.col(i).dot(step);
-      out[start + static_cast<std::size_t>(i)] = {-work, std::abs(work)};
+      const Vec3d force = force_.col(i), step = x1.col(i) - x0.col(i);
+      const auto part = work_change(force, step);
+      out[start + static_cast<std::size_t>(i)] = {part.change, part.magnitude};
     });
   }
 

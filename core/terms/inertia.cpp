@@ -1,6 +1,7 @@
 // Inertia: 1/(2 c h^2) |x - x_tilde|_M^2, one element a vertex.
 #include <numeric>
 
+#include "core/energy/vertex_loads.hpp"
 #include "core/math/parallel.hpp"
 #include "core/terms/registry.hpp"
 
@@ -26,7 +27,7 @@ class Inertia final : public Term {
     x_tilde_ = frame.x_tilde;
     std::vector<double>& hess = families_[0].local.hess;
     for (std::size_t i = 0; i < weight_.size(); ++i) {
-      weight_[i] = frame.c == 0 ? 0 : mass_[i] / (frame.c * frame.dt * frame.dt);
+      weight_[i] = inertia_weight(mass_[i], frame.c, frame.dt);
       for (std::size_t k = 0; k < 3; ++k) hess[9 * i + 4 * k] = weight_[i];
     }
   }
@@ -41,17 +42,14 @@ class Inertia final : public Term {
     fill_energies(x, families_[0].trial_energy);
   }
 
-  // A square of differences, not a difference of squares.
   void change(const Positions& x0, const Positions& x1, EnergyParts& out) const override {
     const std::size_t start = out.size();
     out.resize(start + weight_.size());
     parallel_items(weight_.size(), block_items, [&](std::size_t i) {
-      out[start + i] = {0, 0};
-      if (weight_[i] == 0) return;
       const auto v = static_cast<Eigen::Index>(i);
-      const Vec3d from = off_target(x0, i), to = off_target(x1, i), step = x1.col(v) - x0.col(v);
-      out[start + i] = {0.5 * weight_[i] * step.dot(from + to),
-                        0.5 * weight_[i] * (from.squaredNorm() + to.squaredNorm())};
+      const Vec3d step = x1.col(v) - x0.col(v);
+      const auto part = inertia_change(weight_[i], off_target(x0, i), off_target(x1, i), step);
+      out[start + i] = {part.change, part.magnitude};
     });
   }
 
@@ -61,9 +59,8 @@ class Inertia final : public Term {
     return x.col(v) - x_tilde_.col(v);
   }
   void fill_energies(const Positions& x, std::vector<double>& energy) const {
-    parallel_items(weight_.size(), block_items, [&](std::size_t i) {
-      energy[i] = weight_[i] == 0 ? 0 : 0.5 * weight_[i] * off_target(x, i).squaredNorm();
-    });
+    parallel_items(weight_.size(), block_items,
+                   [&](std::size_t i) { energy[i] = inertia_value(weight_[i], off_target(x, i)); });
   }
 
   const std::vector<double>& mass_;  // [n] kg, 0 for prescribed vertices

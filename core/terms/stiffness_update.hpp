@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "core/barrier/relative_change.hpp"
 #include "core/barrier/stiffness_policy.hpp"
 #include "core/contact/kappa_memory.hpp"
 #include "core/linear/block_system.hpp"
@@ -18,11 +19,6 @@ struct PolicyColumns {
   std::vector<double> weight, normal, d, d_hat, mass, hessian;
   StiffnessBatch batch(double dt, double c, bool with_hessian) const;
 };
-
-/// max(a, b) / min(a, b) - 1 of two positive numbers; 0 when one is not.
-inline double relative_change(double a, double b) {
-  return a > 0 && b > 0 ? std::max(a, b) / std::min(a, b) - 1 : 0;
-}
 
 class StiffnessUpdate {
  public:

@@ -1,0 +1,75 @@
+// The families of elastic elements as kernels read them: constants as columns, the physics of core/energy.
+#pragma once
+
+#include "core/energy/hinge.hpp"
+#include "core/energy/membrane_list.hpp"
+#include "core/energy/spring.hpp"
+#include "core/energy/triangle_membrane.hpp"
+#include "core/resident/elements/element_kernels.hpp"
+
+namespace bb::resident {
+
+/// Rest shapes of n triangles.
+struct RestColumns {
+  const double* dm_inv;  // [4, n] 1/m, column-major entries
+  const double* area;    // [n] m^2
+  BB_HD TriangleRest<double> at(Index e, Index n) const {
+    TriangleRest<double> rest;
+    for (int k = 0; k < 4; ++k) rest.dm_inv.data()[k] = dm_inv[k * n + e];
+    rest.area = area[e];
+    return rest;
+  }
+};
+
+/// R: 3 in space, 2 in the x-y plane.
+template <class Model, int R>
+struct Membrane : ElementVertices<3> {
+  RestColumns rest;
+  const double *lame_mu, *lame_lambda;  // [n] N/m
+  BB_HD double value(const double* x, Index e) const {
+    Vec3d p[3];
+    points(x, e, p);
+    return membrane_value<Model, R, double>(rest.at(e, n), p, lame_mu[e], lame_lambda[e]);
+  }
+  BB_HD ElementTerms<double, 9> terms(const double* x, Index e, Projection projection) const {
+    Vec3d p[3];
+    points(x, e, p);
+    return membrane_terms<Model, R, double>(rest.at(e, n), p, lame_mu[e], lame_lambda[e], projection);
+  }
+};
+template <class Model>
+struct SpaceMembrane : Membrane<Model, 3> {};
+template <class Model>
+struct PlanarMembrane : Membrane<Model, 2> {};
+
+struct Springs : ElementVertices<2> {
+  const double* stiffness;    // [n] N/m
+  const double* rest_length;  // [n] m
+  BB_HD double value(const double* x, Index e) const {
+    Vec3d p[2];
+    points(x, e, p);
+    return spring_value<double>(p, stiffness[e], rest_length[e]);
+  }
+  BB_HD ElementTerms<double, 6> terms(const double* x, Index e, Projection projection) const {
+    Vec3d p[2];
+    points(x, e, p);
+    return spring_terms<double>(p, stiffness[e], rest_length[e], projection);
+  }
+};
+
+struct Hinges : ElementVertices<4> {
+  const double* stiffness;   // [n] J
+  const double* rest_angle;  // [n] rad
+  BB_HD double value(const double* x, Index e) const {
+    Vec3d p[4];
+    points(x, e, p);
+    return hinge_value<double>(p, stiffness[e], rest_angle[e]);
+  }
+  BB_HD ElementTerms<double, 12> terms(const double* x, Index e, Projection projection) const {
+    Vec3d p[4];
+    points(x, e, p);
+    return hinge_terms<double>(p, stiffness[e], rest_angle[e], projection);
+  }
+};
+
+}  // namespace bb::resident

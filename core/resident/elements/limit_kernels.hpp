@@ -1,0 +1,194 @@
+// The strain limit: pseudo-gaps, barrier terms, stiffness, energies and step bound of limited triangles.
+#pragma once
+
+#include "barriers/shapes/gap_potential.hpp"
+#include "core/barrier/barrier_row.hpp"
+#include "core/barrier/relative_change.hpp"
+#include "core/energy/strain_limit.hpp"
+#include "core/energy/strain_stiffness.hpp"
+#include "core/resident/elements/family_kernels.hpp"
+#include "core/resident/elements/gather_kernels.hpp"
+#include "core/resident/elements/sum_kernels.hpp"
+
+namespace bb::resident {
+
+/// Columns of n limited triangles; those of two numbers an element are [2, n].
+struct LimitColumns : ElementVertices<3> {
+  RestColumns rest;
+  const double *onset, *band_width;  // [n] 1
+  double *sigma, *gap;          // [2, n] singular values, descending, and pseudo-gaps, at the measured state
+  double *b, *db, *d2b;         // [2, n] barrier terms there, for kappa = 1; with kappa where it has a potential
+  double* kappa;                // [n] J; 1 where it has a potential
+
+  BB_HD StrainBand<double> band(Index e) const { return {onset[e], band_width[e]}; }
+  BB_HD StrainShape<double> shape(Index e) const {
+    return {Vec2d(b[e], b[n + e]), Vec2d(db[e], db[n + e]), Vec2d(d2b[e], d2b[n + e])};
+  }
+  BB_HD double smaller_gap(Index e) const { return gap[n + e] < gap[e] ? gap[n + e] : gap[e]; }
+};
+
+/// As a family of elements. x is the measured state. R: 3 in space, 2 in the x-y plane.
+template <int R>
+struct Limit : LimitColumns {
+  BB_HD double value(const double*, Index e) const { return kappa[e] * (b[e] + b[n + e]); }
+  BB_HD ElementTerms<double, 9> terms(const double* x, Index e, Projection projection) const {
+    Vec3d p[3];
+    points(x, e, p);
+    const TriangleRest<double> at_rest = rest.at(e, n);
+    Svd<double, R, 2> svd{{}, Vec2d(sigma[e], sigma[n + e]), {}};  // an inactive element needs no factors
+    if (gap[e] < band_width[e]) svd = membrane_svd(deformation_gradient<R>(at_rest, p));
+    return strain_limit_terms<R, double>(at_rest, svd, band(e), shape(e), kappa[e], projection);
+  }
+};
+using SpaceLimit = Limit<3>;
+using PlanarLimit = Limit<2>;
+
+/// Singular values and pseudo-gaps at x.
+template <int R>
+struct MeasureStretch {
+  LimitColumns limit;
+  const double* x;
+  BB_HD void operator()(Index e) const {
+    Vec3d p[3];
+    limit.points(x, e, p);
+    const Vec2d sigma = membrane_svd(deformation_gradient<R>(limit.rest.at(e, limit.n), p)).sigma;
+    for (int k = 0; k < 2; ++k) {
+      limit.sigma[k * limit.n + e] = sigma[k];
+      limit.gap[k * limit.n + e] = strain_gap(sigma[k], limit.band(e));
+    }
+  }
+};
+
+/// Barrier terms at the measured pseudo-gaps, one an item of [2, n]; infinite at or beyond the limit.
+template <class S>
+struct LimitShape {
+  LimitColumns limit;
+  Argument argument;
+  bool literal;
+  const KappaParts* parts;  // [n] J, where kappa has a potential; else null
+  BB_HD void operator()(Index i) const {
+    const Index e = i < limit.n ? i : i - limit.n;
+    const double gap = limit.gap[i], width = limit.band_width[e];
+    const bool inside = literal || gap > 0;
+    ShapeTerms<double> terms = barrier_row<S, double>(argument, literal, inside ? gap : width, width);
+    if constexpr (shapes::HasPotential<S>) {
+      if (parts) {
+        const auto psi = shapes::potential_terms<S>(inside ? gap : width, width);
+        terms = folded_row<double>(terms, psi, parts[e], width);
+      }
+    }
+    constexpr double infinity = std::numeric_limits<double>::infinity();
+    limit.b[i] = inside ? terms.b : infinity;
+    limit.db[i] = inside ? terms.db : -infinity;
+    limit.d2b[i] = inside ? terms.d2b : infinity;
+  }
+};
+
+/// kappa_e = k_s x rest area.
+struct FixedLimitStiffness {
+  LimitColumns limit;
+  double k_s;  // N/m
+  BB_HD void operator()(Index e) const { limit.kappa[e] = k_s * limit.rest.area[e]; }
+};
+
+/// kappa_e of the elasticity-inclusive rule at the measured pseudo-gaps.
+struct ElasticLimitStiffness {
+  LimitColumns limit;
+  StrainStiffnessRule rule;
+  double gap_floor, multiplier;
+  const double* x_n;           // [3 n_vertices] m, start of the step
+  const double* vertex_mass;   // [n_vertices] kg
+  const double* element_mass;  // [n] kg
+  const Index* row_begin;      // the elastic matrix, read where the rule has an elastic term
+  const int* column;
+  const double* value;
+  KappaParts* parts;  // [n] J, written where kappa has a potential; else null
+  double* before;     // [n] J, kappa before this refresh
+  BB_HD void operator()(Index e) const {
+    Vec3d p[3], mass;
+    limit.points(x_n, e, p);
+    for (int k = 0; k < 3; ++k) mass[k] = vertex_mass[limit.vertex(k, e)];
+    const KappaParts kappa =
+        strain_stiffness<double>(p, elastic_block(e), mass, element_mass[e], limit.band_width[e], rule);
+    before[e] = limit.kappa[e];
+    if (parts) {
+      parts[e].fixed = multiplier * kappa.fixed;
+      parts[e].per_gap_sq = multiplier * kappa.per_gap_sq;
+      limit.kappa[e] = 1;
+      return;
+    }
+    const double least = gap_floor * limit.band_width[e], gap = limit.smaller_gap(e);
+    limit.kappa[e] = kappa.at(gap < least ? least : gap) * multiplier;
+  }
+
+ private:
+  BB_HD Mat<double, 9, 9> elastic_block(Index e) const {
+    Mat<double, 9, 9> out = Mat<double, 9, 9>::Zero();
+    if (!rule.elastic_term) return out;
+    for (int a = 0; a < 3; ++a) {
+      for (int b = 0; b < 3; ++b) {
+        const Index block = find_block(row_begin, column, limit.vertex(a, e), limit.vertex(b, e));
+        for (int c = 0; c < 9; ++c) out(3 * a + c % 3, 3 * b + c / 3) = value[value_index(block, c)];
+      }
+    }
+    return out;
+  }
+};
+
+/// Least of the elements' step bounds, as ordered bits. R as in Limit.
+template <int R>
+struct StretchBound {
+  LimitColumns limit;
+  const double *x, *dx;
+  double alpha, park;
+  Key* smallest;
+  BB_HD void operator()(Index e) const {
+    Vec3d p[3], step[3];
+    limit.points(x, e, p);
+    limit.points(dx, e, step);
+    const double bound =
+        strain_step_bound<R, double>(limit.rest.at(e, limit.n), p, step, limit.band(e), alpha, park);
+    if (bound < alpha) exec::atomic_min(smallest, exec::ordered_bits(bound));
+  }
+};
+
+// --- keys (sum_kernels.hpp)
+/// Largest change of the kappa of active elements.
+struct LimitKappaChange {
+  LimitColumns limit;
+  const double* before;
+  BB_HD Key operator()(Index e) const {
+    const bool active = limit.smaller_gap(e) < limit.band_width[e];
+    return largest_key(active ? relative_change(before[e], limit.kappa[e]) : 0.0);
+  }
+};
+/// Largest force of an active element over its rest area, N/m; item of [2, n].
+struct LimitLoad {
+  LimitColumns limit;
+  BB_HD Key operator()(Index i) const {
+    using std::abs;
+    const Index e = i < limit.n ? i : i - limit.n;
+    const bool active = limit.gap[i] < limit.band_width[e];
+    return largest_key(active ? abs(limit.kappa[e] * limit.db[i]) / limit.rest.area[e] : 0.0);
+  }
+};
+/// Largest singular value.
+struct LimitStretch {
+  LimitColumns limit;
+  BB_HD Key operator()(Index e) const { return largest_key(limit.sigma[e]); }
+};
+/// Smallest pseudo-gap in units of the width.
+struct LimitRelativeGap {
+  LimitColumns limit;
+  BB_HD Key operator()(Index e) const { return smallest_key(limit.smaller_gap(e) / limit.band_width[e]); }
+};
+/// First element at or beyond its limit, or without a number.
+struct FirstBeyondLimit {
+  LimitColumns limit;
+  Key* first;
+  BB_HD void operator()(Index e) const {
+    if (!(limit.smaller_gap(e) > 0)) exec::atomic_min(first, static_cast<Key>(e));
+  }
+};
+
+}  // namespace bb::resident

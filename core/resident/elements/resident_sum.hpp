@@ -1,0 +1,78 @@
+// Sums, maxima and first items over columns of an executor. The order of the additions depends on the numbers of items
+// alone.
+#pragma once
+
+#include "core/exec/buffer.hpp"
+#include "core/resident/elements/sum_kernels.hpp"
+
+namespace bb::resident {
+
+/// Compensated sum of what several calls of add bring. Reusable; cost of a call: one pass, nothing is copied.
+class ResidentSum {
+ public:
+  explicit ResidentSum(exec::Executor& executor)
+      : executor_(executor), partial_(executor, "partial sums", most_partials), total_(executor, "sum", 1) {
+    clear();
+  }
+  void clear() { total_.fill_zero(); }
+  /// Parts: sum_kernels.hpp, SumParts.
+  template <class Parts>
+  void add(Index n, const Parts& parts) {
+    if (n == 0) return;
+    const Index n_blocks = (n + items_a_block(n) - 1) / items_a_block(n);
+    executor_.blocks(n_blocks, SumParts<Parts>{parts, n, partial_.data()});
+    executor_.blocks(1, FoldPartials{partial_.data(), n_blocks, total_.data()});
+  }
+  /// Waits. value(): the sum; magnitude: the sum of |parts|, of which rounding noise is some multiple of eps.
+  Compensated get() const { return total_.get(0); }
+
+ private:
+  exec::Executor& executor_;
+  exec::Buffer<Compensated> partial_, total_;
+};
+
+/// The least of keys that several calls bring: largest and smallest numbers, first items.
+class ResidentLeast {
+ public:
+  explicit ResidentLeast(exec::Executor& executor)
+      : executor_(executor), least_(executor, "least key", 1) {
+    clear();
+  }
+  void clear() { clear(none); }
+  /// Starts from a key.
+  void clear(Key key) { least_.set(0, key); }
+  /// Keys: sum_kernels.hpp, LeastKey.
+  template <class Keys>
+  void add(Index n, const Keys& keys) {
+    const Index items = items_a_block(n);
+    executor_.blocks((n + items - 1) / items, LeastKey<Keys>{keys, n, least_.data()});
+  }
+  /// For kernels that bring keys of their own (atomic_min).
+  Key* data() { return least_.data(); }
+
+  // --- what there is; all wait
+  Key get() const { return least_.get(0); }
+  /// Of keys made by largest_key; 0 where nothing came.
+  double largest() const {
+    const Key key = get();
+    return key == none ? 0 : from_largest_key(key);
+  }
+  /// Of keys made by smallest_key; infinity where nothing came.
+  double smallest() const {
+    const Key key = get();
+    return key == none ? std::numeric_limits<double>::infinity() : from_smallest_key(key);
+  }
+  /// Of keys that are items; -1 where none came.
+  Index first() const {
+    const Key key = get();
+    return key == none ? -1 : static_cast<Index>(key);
+  }
+
+  static constexpr Key none = ~Key{0};
+
+ private:
+  exec::Executor& executor_;
+  exec::Buffer<Key> least_;
+};
+
+}  // namespace bb::resident

@@ -1,0 +1,82 @@
+// What a Newton iteration does with columns of three numbers a vertex. fixed: [n] three bits a vertex, set where the
+// degree of freedom is prescribed or locked.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "core/resident/linear/resident_matrix.hpp"
+#include "core/math/types.hpp"
+
+namespace bb::resident {
+
+/// out = x + alpha dx.
+struct MoveAlong {
+  const double *x, *dx;
+  double alpha;
+  double* out;
+  BB_HD void operator()(Index i) const { out[i] = x[i] + alpha * dx[i]; }
+};
+
+/// Prescribed vertices to where they have to be.
+struct PlacePins {
+  const int* vertex;     // [pins]
+  const double* target;  // [3 pins] m
+  double* x;
+  BB_HD void operator()(Index i) const {
+    for (int k = 0; k < 3; ++k) x[3 * static_cast<Index>(vertex[i]) + k] = target[3 * i + k];
+  }
+};
+
+/// dx of prescribed vertices: all the way to where they have to be.
+struct PinMotion {
+  const int* vertex;
+  const double *target, *x;
+  double* dx;
+  BB_HD void operator()(Index i) const {
+    for (int k = 0; k < 3; ++k) {
+      const Index at = 3 * static_cast<Index>(vertex[i]) + k;
+      dx[at] = target[3 * i + k] - x[at];
+    }
+  }
+};
+
+/// First pin that is not where it has to be.
+struct FirstShortPin {
+  const int* vertex;
+  const double *target, *x;
+  Key* first;
+  BB_HD void operator()(Index i) const {
+    bool apart = false;
+    for (int k = 0; k < 3; ++k) {
+      apart = apart || x[3 * static_cast<Index>(vertex[i]) + k] != target[3 * i + k];
+    }
+    if (apart) exec::atomic_min(first, static_cast<Key>(i));
+  }
+};
+
+/// Force of every vertex over its free degrees of freedom, N.
+struct ForceNorm {
+  const double* g;  // [3 n] N
+  const FixedMask* fixed;
+  double* force;
+  BB_HD void operator()(Index v) const {
+    Vec3d out(g[3 * v], g[3 * v + 1], g[3 * v + 2]);
+    for (int k = 0; k < 3; ++k) {
+      if (is_fixed(fixed[v], k)) out[k] = 0;
+    }
+    force[v] = out.norm();
+  }
+};
+
+/// First number of a column that is not finite.
+struct FirstNotFinite {
+  const double* values;
+  Key* first;
+  BB_HD void operator()(Index i) const {
+    using std::abs;
+    if (!(abs(values[i]) <= std::numeric_limits<double>::max())) exec::atomic_min(first, static_cast<Key>(i));
+  }
+};
+
+}  // namespace bb::resident

@@ -1,0 +1,57 @@
+// Operations of a Newton iteration on columns [3 n] that live in an executor.
+#pragma once
+
+#include <span>
+#include <vector>
+
+#include "core/resident/elements/resident_sum.hpp"
+#include "core/resident/elements/vector_kernels.hpp"
+#include "core/scene/scene.hpp"
+
+namespace bb::resident {
+
+using exec::Buffer;
+
+/// Three bits a vertex, set where the degree of freedom is prescribed or locked. fixed: [3 n] flags.
+std::vector<FixedMask> fixed_bits(std::span<const std::uint8_t> fixed);
+
+class VectorTools {
+ public:
+  /// fixed: [3 n] flags. pins: vertices that are prescribed.
+  VectorTools(exec::Executor& executor, std::span<const std::uint8_t> fixed, std::span<const Pin> pins);
+
+  /// Where prescribed vertices have to be at the end of the step; target: [3 x n], read at pins only.
+  void set_targets(const Positions& target);
+  /// trial = x + alpha dx; at alpha = 1 prescribed vertices are exactly on target.
+  void move(const Buffer<double>& x, const Buffer<double>& dx, double alpha, Buffer<double>& trial);
+  /// dx of prescribed vertices = target - x.
+  void set_pin_motion(const Buffer<double>& x, Buffer<double>& dx);
+  /// The first pin (its number) that is not at its target, -1 without one.
+  Index first_short_pin(const Buffer<double>& x);
+
+  /// Largest |value| over free degrees of freedom; NaN where one is no number.
+  double free_max(const Buffer<double>& column);
+  /// Largest |value| over all.
+  double max(const Buffer<double>& column);
+  /// Over free degrees of freedom: value() is a . b.
+  Compensated free_dot(const Buffer<double>& a, const Buffer<double>& b);
+  /// First number of a column that is not finite, -1 without one.
+  Index first_not_finite(const Buffer<double>& column);
+  /// |g| of every vertex over its free degrees of freedom; g [3 n], force [n], N.
+  void force_norms(const Buffer<double>& g, Buffer<double>& force);
+
+  /// [n] as fixed_bits.
+  const FixedMask* fixed() const { return fixed_.data(); }
+  Index n_vertices() const { return fixed_.size(); }
+
+ private:
+  exec::Executor& executor_;
+  Buffer<FixedMask> fixed_;
+  std::vector<int> pins_;
+  Buffer<int> pin_vertex_;
+  Buffer<double> pin_target_;
+  ResidentSum sum_;
+  ResidentLeast least_;
+};
+
+}  // namespace bb::resident

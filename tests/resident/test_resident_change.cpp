@@ -1,0 +1,108 @@
+// Differences of energies between two states of an executor, against those of the CPU path.
+#include <cmath>
+
+#include "tests/resident/on_executor.hpp"
+
+namespace bb {
+namespace {
+
+using namespace bb::test;
+constexpr double eps = std::numeric_limits<double>::epsilon();
+
+struct Pair {
+  Scene scene;
+  TermOptions options = element_options();
+  StepFrame frame;
+  Positions x;
+  CpuElements cpu;
+  exec::HostExecutor executor;
+  OnExecutor resident;
+
+  explicit Pair(bool planar)
+      : scene(cloth_scene("stable_neo_hookean", planar)),
+        frame(step_frame(scene)),
+        x(strained(scene)),
+        cpu(scene, options, frame),
+        resident(executor, scene, options, frame) {
+    cpu.linearise(x, StepHessian::clamped);
+    resident.linearise(x);
+  }
+  /// The parts of all terms.
+  EnergyParts parts(const Positions& to) {
+    EnergyParts out;
+    for (const auto& term : cpu.terms) {
+      EXPECT_TRUE(term->admits(to, cpu.clock));
+      term->evaluate(to, cpu.context(Projection::psd));
+    }
+    for (const auto& term : cpu.terms) term->change(x, to, out);
+    return out;
+  }
+};
+
+TEST(ResidentChange, IsThatOfTheTermsForMotionsOfAnySize) {
+  double worst = 0;
+  for (const bool planar : {false, true}) {
+    for (const double size : {1e-2, 1e-4, 1e-6, 1e-8, 1e-10, 1e-12}) {
+      Pair pair(planar);
+      const Positions to = pair.x + wave(pair.scene, size);
+      ASSERT_TRUE(pair.resident.evaluate(to));
+      const resident::Compensated found = pair.resident.change();
+      long double change = 0, magnitude = 0;
+      for (const EnergyPart& part : pair.parts(to)) change += part.change, magnitude += part.magnitude;
+      const EnergyChange cpu = pair.cpu.sums.change(pair.cpu.terms, pair.x, to);
+      const auto scale = static_cast<double>(magnitude);
+      ASSERT_GT(scale, 0.1);
+      EXPECT_NE(found.value(), 0);
+      const double off = std::abs(found.value() - static_cast<double>(change)) / (eps * scale);
+      EXPECT_LE(off, planar ? 1e-3 : 2) << size;  // without hinges the parts are the same numbers
+      EXPECT_LE(std::abs(found.value() - cpu.change), 2 * eps * scale);
+      EXPECT_NEAR(found.magnitude, cpu.magnitude, 1e-13 * scale);
+      worst = std::max(worst, off);
+    }
+  }
+  std::printf("largest difference of changes: %.2g eps of the magnitude\n", worst);
+}
+
+// Free fall of vertices far from their prediction: the change of their loads is known in closed form.
+TEST(ResidentChange, KeepsTheDigitsOfTheLoads) {
+  Scene scene = cloth_scene("arap", false, 4);
+  scene.membranes.clear();
+  scene.springs = {};
+  scene.hinges = {};
+  scene.limit = {};
+  const TermOptions options = element_options();
+  StepFrame frame = step_frame(scene);
+  frame.x_tilde.array() += 1e6;
+  exec::HostExecutor executor;
+  OnExecutor resident(executor, scene, options, frame);
+  resident.linearise(scene.x0);
+  Positions to = scene.x0;
+  to.row(2).array() += 0x1p-30;
+  ASSERT_TRUE(resident.evaluate(to));
+  long double expected = 0;
+  for (int v = 0; v < scene.n_vertices(); ++v) {
+    const long double mass = scene.mass[static_cast<std::size_t>(v)];
+    const long double weight = mass / (static_cast<long double>(frame.c) * frame.dt * frame.dt);
+    const long double from = static_cast<long double>(scene.x0(2, v)) - frame.x_tilde(2, v);
+    const long double step = static_cast<long double>(to(2, v)) - scene.x0(2, v);
+    expected += weight * step * (from + step / 2) + mass * frame.load_factor * 10 * step;
+  }
+  ASSERT_LT(expected, -1e-5L);
+  EXPECT_NEAR(resident.change().value(), static_cast<double>(expected), 1e-14 * std::abs(static_cast<double>(expected)));
+}
+
+TEST(ResidentChange, BelongsToTheIterateThatWasAccepted) {
+  Pair pair(false);
+  const Positions to = pair.x + wave(pair.scene, 1e-3);
+  ASSERT_TRUE(pair.resident.evaluate(to));
+  const double there = pair.resident.change().value();
+  pair.resident.elements.accept();
+  pair.resident.x.swap(pair.resident.trial);
+  ASSERT_TRUE(pair.resident.evaluate(pair.x));
+  const resident::Compensated back = pair.resident.change();
+  EXPECT_NE(there, 0);
+  EXPECT_NEAR(back.value(), -there, 4 * eps * back.magnitude);
+}
+
+}  // namespace
+}  // namespace bb

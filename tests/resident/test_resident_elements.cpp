@@ -1,0 +1,232 @@
+// Elements, loads and matrix of an executor against the terms of the CPU path.
+#include <cmath>
+
+#include "core/energy/membrane_model.hpp"
+#include "core/exec/counting_executor.hpp"
+#include "tests/resident/on_executor.hpp"
+
+namespace bb {
+namespace {
+
+using namespace bb::test;
+constexpr double infinity = std::numeric_limits<double>::infinity();
+// Hinges of the CPU path are computed four at a time, which rounds otherwise; all else is the same arithmetic.
+constexpr double hinge_rounding = 1e-13;
+
+double largest(const Positions& a) { return a.cwiseAbs().maxCoeff(); }
+
+/// Largest difference between the blocks, over the largest number; counts what was compared.
+struct Difference {
+  double relative = 0;
+  int n_nonzero = 0;
+};
+Difference compare(const OnExecutor& resident, const CpuElements& cpu) {
+  const resident::MatrixPart part = resident.elements.matrix();
+  double difference = 0, size = 0;
+  int n_nonzero = 0;
+  for (int r = 0; r < cpu.scene.n_vertices(); ++r) {
+    for (exec::Index j = part.row_begin[r]; j < part.row_begin[r + 1]; ++j) {
+      if (j > part.row_begin[r]) EXPECT_LT(part.column[j - 1], part.column[j]);
+      const Mat3d expected = cpu.block(r, part.column[j]);
+      for (int c = 0; c < 9; ++c) {
+        const double number = part.value[resident::value_index(j, c)];
+        difference = std::max(difference, std::abs(number - expected.data()[c]));
+        size = std::max(size, std::abs(expected.data()[c]));
+        n_nonzero += number != 0;
+      }
+    }
+  }
+  return {difference / size, n_nonzero};
+}
+
+struct Case {
+  const char* model;
+  bool planar;
+};
+std::vector<Case> all_cases() {
+  std::vector<Case> out;
+  for (const MembraneModel<double>& model : membrane_models<double>()) {
+    out.push_back({model.name.data(), false});
+    out.push_back({model.name.data(), true});
+  }
+  return out;
+}
+
+TEST(ResidentElements, HaveTheGradientAndEnergiesOfTheTerms) {
+  double worst = 0;
+  for (const Case& one : all_cases()) {
+    const Scene scene = cloth_scene(one.model, one.planar);
+    TermOptions options = element_options();
+    const StepFrame frame = step_frame(scene);
+    const Positions x = strained(scene);
+    CpuElements cpu(scene, options, frame);
+    cpu.linearise(x, StepHessian::clamped);
+    exec::HostExecutor executor;
+    OnExecutor resident(executor, scene, options, frame);
+    resident.linearise(x);
+    ASSERT_GT(largest(cpu.gradient), 1);
+    const double difference = largest(resident.gradient() - cpu.gradient) / largest(cpu.gradient);
+    EXPECT_LE(difference, one.planar ? 0 : hinge_rounding) << one.model;
+    worst = std::max(worst, difference);
+    for (const TermGroup group : {TermGroup::load, TermGroup::elastic, TermGroup::limit}) {
+      long double expected = 0, magnitude = 0;
+      for (const auto& term : cpu.terms) {
+        if (term->group() != group) continue;
+        for (const double e : term->families()[0].local.energy) expected += e, magnitude += std::abs(e);
+      }
+      const resident::Compensated sum = resident.energy(group);
+      EXPECT_GT(std::abs(sum.value()), 1e-9) << one.model << static_cast<int>(group);
+      EXPECT_NEAR(sum.value(), static_cast<double>(expected), 1e-14 * static_cast<double>(magnitude));
+      EXPECT_NEAR(sum.magnitude, static_cast<double>(magnitude), 1e-13 * static_cast<double>(magnitude));
+    }
+    EXPECT_EQ(resident.elements.first_not_finite().element, -1);
+  }
+  std::printf("largest relative difference of gradients: %.2g\n", worst);
+}
+
+// All choices of a step's Hessian at all their levels.
+TEST(ResidentElements, HaveTheMatrixOfTheTerms) {
+  double worst = 0;
+  int n_matrices = 0;
+  for (const Case& one : all_cases()) {
+    const Scene scene = cloth_scene(one.model, one.planar, 4);
+    TermOptions options = element_options();
+    const StepFrame frame = step_frame(scene);
+    const Positions x = strained(scene);
+    exec::HostExecutor executor;
+    OnExecutor resident(executor, scene, options, frame);
+    resident.linearise(x);
+    std::vector<double> force;
+    for (int v = 0; v < scene.n_vertices(); ++v) force.push_back(1 + std::sin(5.0 * v));
+    exec::Buffer<double> force_there(executor, "force");
+    force_there.upload(force);
+    for (const StepHessian choice : all_step_hessians) {
+      CpuElements cpu(scene, options, frame);
+      cpu.linearise(x, choice);
+      HessianLevel level({choice});
+      for (;;) {
+        cpu.sum(TermSet::all(), choice, level, force);
+        resident.fill(TermSet::all(), resident::hessian_request(choice, level.t(), level.threshold(),
+                                                                force_there.data()));
+        const Difference found = compare(resident, cpu);
+        EXPECT_GT(found.n_nonzero, 100);
+        EXPECT_LE(found.relative, one.planar ? 0 : hinge_rounding)
+            << one.model << " " << to_string(choice) << " " << level.t();
+        worst = std::max(worst, found.relative);
+        ++n_matrices;
+        if (level.last() || choice == StepHessian::clamped || choice == StepHessian::absolute) break;
+        level.raise(2);
+      }
+    }
+  }
+  EXPECT_GT(n_matrices, 100);
+  std::printf("%d matrices, largest relative difference: %.2g\n", n_matrices, worst);
+}
+
+TEST(ResidentElements, SumTheGroupsThatAreAskedFor) {
+  const Scene scene = cloth_scene("stvk", false, 4);
+  TermOptions options = element_options();
+  const StepFrame frame = step_frame(scene);
+  CpuElements cpu(scene, options, frame);
+  cpu.linearise(strained(scene), StepHessian::clamped);
+  exec::HostExecutor executor;
+  OnExecutor resident(executor, scene, options, frame);
+  resident.linearise(strained(scene));
+  std::vector<std::vector<double>> seen;
+  for (const TermSet set : {TermSet(TermGroup::load), TermSet(TermGroup::elastic), TermSet(TermGroup::limit),
+                            TermGroup::elastic | TermSet(TermGroup::load)}) {
+    cpu.sum(set, StepHessian::clamped, HessianLevel({StepHessian::clamped}), {});
+    resident.fill(set, {});
+    const Difference found = compare(resident, cpu);
+    EXPECT_GT(found.n_nonzero, 10);
+    EXPECT_LE(found.relative, hinge_rounding);
+    for (const auto& other : seen) EXPECT_NE(resident.matrix(), other);
+    seen.push_back(resident.matrix());
+  }
+  // what was elastic stays while the rest is added
+  resident.fill(TermGroup::elastic, {});
+  resident.elements.add_matrix(TermGroup::load, resident.x.data(), resident::clamped_hessian);
+  EXPECT_EQ(resident.matrix(), seen.back());
+}
+
+TEST(ResidentElements, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
+  const Scene scene = cloth_scene("baraff_witkin", false);
+  TermOptions options = element_options("log");
+  options.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+  const StepFrame frame = step_frame(scene);
+  const Positions x = strained(scene), dx = wave(scene, 0.3);
+  struct Found {
+    std::vector<double> matrix;
+    Positions gradient;
+    double change = 0, carry = 0, bound = 0;
+    bool operator==(const Found&) const = default;
+  };
+  const auto find = [&](exec::Executor& executor, exec::Index piece) {
+    OnExecutor resident(executor, scene, options, frame, piece);
+    resident.linearise(x);
+    Found out;
+    out.gradient = resident.gradient();
+    resident.fill(TermSet::all(), {Projection::none, 0.25, -1, nullptr});
+    out.matrix = resident.matrix();
+    EXPECT_TRUE(resident.evaluate(x + 1e-3 * dx));
+    const resident::Compensated change = resident.change();
+    out.change = change.sum, out.carry = change.carry;
+    out.bound = resident.bound(dx, 1e-3);
+    return out;
+  };
+  exec::HostExecutor first;
+  const Found expected = find(first, resident::ResidentElements::default_piece);
+  EXPECT_NE(expected.change, 0);
+  EXPECT_GT(expected.bound, 0);
+  EXPECT_LT(expected.bound, 1);
+  for (const auto& executor : all_orders()) EXPECT_TRUE(find(*executor, 1000) == expected);
+  for (const exec::Index piece : {1, 3, 32}) EXPECT_TRUE(find(first, piece) == expected) << piece;
+}
+
+TEST(ResidentElements, RefuseWhatHasNoKernel) {
+  const Scene scene = cloth_scene("arap", false, 3);
+  exec::HostExecutor executor;
+  TermOptions options = element_options();
+  options.precision = Precision::mixed;
+  EXPECT_THROW(resident::ResidentElements(executor, scene, options), ConfigError);
+  options.precision = Precision::full;
+  options.limit.shape.name = "mine";
+  try {
+    resident::ResidentElements elements(executor, scene, options);
+    FAIL();
+  } catch (const ConfigError& error) {
+    EXPECT_NE(std::string(error.what()).find("mine"), std::string::npos);
+  }
+  EXPECT_EQ(executor.memory().bytes(), 0u);
+}
+
+TEST(ResidentElements, AreCountedWithoutMemory) {
+  const Scene scene = cloth_scene("arap", false, 8);
+  const TermOptions options = element_options();
+  exec::HostExecutor host;
+  exec::CountingExecutor counting;
+  const resident::ResidentElements there(host, scene, options), counted(counting, scene, options);
+  EXPECT_GT(host.memory().bytes(), 10000u);
+  EXPECT_EQ(host.memory().by_name(), counting.memory().by_name());
+  for (const char* name : {"element matrix values", "limit stiffness", "hinge vertices"}) {
+    EXPECT_EQ(host.memory().by_name().count(name), 1u) << name;
+  }
+}
+
+TEST(ResidentElements, NameTheFirstElementThatIsNoNumber) {
+  const Scene scene = cloth_scene("arap", true, 4);
+  const TermOptions options = element_options();
+  const StepFrame frame = step_frame(scene);
+  exec::HostExecutor executor;
+  OnExecutor resident(executor, scene, options, frame);
+  Positions x = strained(scene);
+  x(0, 5) = std::nan("");
+  resident.linearise(x);
+  const auto bad = resident.elements.first_not_finite();
+  EXPECT_EQ(bad.term, "membrane");
+  const auto& triangle = scene.membranes[0].triangles[static_cast<std::size_t>(bad.element)];
+  EXPECT_TRUE(triangle[0] == 5 || triangle[1] == 5 || triangle[2] == 5);
+}
+
+}  // namespace
+}  // namespace bb

@@ -1,0 +1,174 @@
+// The strain limit of an executor against the term of the CPU path: stiffness, feasibility, bound, reports.
+#include <cmath>
+
+#include "tests/resident/on_executor.hpp"
+
+namespace bb {
+namespace {
+
+using namespace bb::test;
+
+struct Rule {
+  const char* shape;
+  LimitStiffness stiffness;
+  double tolerance;  // relative: 0 where the arithmetic is the same
+};
+
+LimitStiffness elastic(MassTerm mass, bool with_h, Refresh refresh, KappaDerivative derivative) {
+  LimitStiffness out;
+  out.kind = LimitStiffness::Kind::elasticity_inclusive;
+  out.mass_term = mass;
+  out.elastic_term = with_h;
+  out.refresh = refresh;
+  out.derivative = derivative;
+  out.gap_floor = 0.01;
+  out.multiplier = 1.7;
+  return out;
+}
+
+std::vector<Rule> all_rules() {
+  std::vector<Rule> out;
+  LimitStiffness fixed;
+  fixed.k_s = 30;
+  out.push_back({"quadratic", fixed, 0});
+  out.push_back({"log", fixed, 1e-13});
+  out.push_back({"log_squared", fixed, 1e-12});
+  out.push_back({"two_stage", fixed, 1e-13});
+  constexpr auto dropped = KappaDerivative::dropped;
+  for (const MassTerm mass : {MassTerm::paper, MassTerm::inertia, MassTerm::scaled, MassTerm::none}) {
+    out.push_back({"cubic", elastic(mass, true, Refresh::per_iteration, dropped), 0});
+  }
+  out.push_back({"cubic", elastic(MassTerm::paper, false, Refresh::per_step, dropped), 0});
+  out.push_back({"cubic", elastic(MassTerm::paper, true, Refresh::per_step, KappaDerivative::included), 1e-13});
+  return out;
+}
+
+// Two iterates of one step, so that kappa is refreshed or kept.
+TEST(ResidentLimit, HasTheTermsOfTheCpuForEveryRule) {
+  for (const bool planar : {false, true}) {
+    const Scene scene = cloth_scene("corotational", planar);
+    const StepFrame frame = step_frame(scene);
+    for (const Rule& rule : all_rules()) {
+      TermOptions options = element_options(rule.shape);
+      options.limit_stiffness = rule.stiffness;
+      CpuElements cpu(scene, options, frame);
+      exec::HostExecutor executor;
+      OnExecutor resident(executor, scene, options, frame);
+      const double tolerance = planar ? rule.tolerance : std::max(rule.tolerance, 1e-12);
+      for (const double size : {0.006, 0.009}) {
+        const Positions x = strained(scene, size);
+        cpu.linearise(x, StepHessian::clamped);
+        const double moved = resident.linearise(x);
+        IterateNumbers report;
+        const Term& term = cpu.terms[cpu.terms.size() - 1];
+        ASSERT_EQ(term.name(), "strain_limit");
+        const_cast<Term&>(term).report(x, report, cpu.clock);
+        const resident::LimitNumbers numbers = resident.elements.limit_numbers(resident.x.data());
+        ASSERT_GT(numbers.load_max, 0);
+        ASSERT_GT(numbers.gap_min_rel, 0);
+        EXPECT_EQ(numbers.max_stretch, report.max_stretch.value);
+        EXPECT_EQ(numbers.gap_min_rel, report.limit_gap_min_rel.value);
+        EXPECT_NEAR(numbers.load_max, report.limit_load_max_N_per_m.value,
+                    std::max(tolerance, 1e-14) * numbers.load_max);
+        EXPECT_NEAR(moved, report.limit_kappa_change_rel.value, tolerance * (1 + moved));
+        const bool moves = rule.stiffness.kind != LimitStiffness::Kind::fixed &&
+                           rule.stiffness.refresh == Refresh::per_iteration && size > 0.007 &&
+                           depends_on_gap(rule.stiffness.mass_term);
+        EXPECT_EQ(moved > 1e-6, moves || (size > 0.007 && moved > 1e-6)) << rule.shape;
+        double energy = 0;
+        for (const double e : term.families()[0].local.energy) energy += e;
+        ASSERT_GT(energy, 0);
+        EXPECT_NEAR(resident.energy(TermGroup::limit).value(), energy, std::max(tolerance, 1e-14) * energy);
+        const double difference =
+            (resident.gradient() - cpu.gradient).cwiseAbs().maxCoeff() / cpu.gradient.cwiseAbs().maxCoeff();
+        EXPECT_LE(difference, tolerance) << rule.shape << " planar " << planar;
+      }
+    }
+  }
+}
+
+TEST(ResidentLimit, BoundsAStepAsTheCpuDoes) {
+  int n_below = 0;
+  for (const bool planar : {false, true}) {
+    const Scene scene = cloth_scene("corotational", planar);
+    TermOptions options = element_options();
+    const StepFrame frame = step_frame(scene);
+    CpuElements cpu(scene, options, frame);
+    exec::HostExecutor executor;
+    OnExecutor resident(executor, scene, options, frame);
+    const Positions x = strained(scene);
+    cpu.linearise(x, StepHessian::clamped);
+    resident.linearise(x);
+    Term& term = const_cast<Term&>(cpu.terms[cpu.terms.size() - 1]);
+    for (const double park : {0.0, 1e-4, 0.3}) {
+      options.contact_options.ccd_park = park;
+      for (const double size : {1e-4, 0.03, 0.1, 0.7, 20.0}) {
+        const Positions dx = wave(scene, size), x1 = x + dx;
+        IterateNumbers report;
+        const double expected = term.bound({x, x1, dx}, report, cpu.clock);
+        const double found = resident.bound(dx, park);
+        EXPECT_EQ(found, expected) << size << " " << park;
+        n_below += found > 0 && found < 1;
+        EXPECT_TRUE(resident.evaluate(x + found * dx));
+        EXPECT_EQ(resident.evaluate(x + 1.01 * found * dx) || found == 1 || park > 0, found == 1 || park > 0);
+      }
+    }
+  }
+  EXPECT_GT(n_below, 10);
+}
+
+TEST(ResidentLimit, RefusesStatesBeyondIt) {
+  const Scene scene = cloth_scene("arap", true, 4);
+  TermOptions options = element_options();
+  exec::HostExecutor executor;
+  OnExecutor resident(executor, scene, options, step_frame(scene));
+  resident.linearise(strained(scene));
+  Positions beyond = scene.x0;
+  beyond.row(0) *= 1.3;
+  EXPECT_FALSE(resident.evaluate(beyond));
+  Positions nowhere = scene.x0;
+  nowhere(1, 7) = std::nan("");
+  EXPECT_FALSE(resident.evaluate(nowhere));
+  EXPECT_TRUE(resident.evaluate(strained(scene)));
+  options.limit.literal = true;  // is read at every call
+  EXPECT_TRUE(resident.evaluate(beyond));
+}
+
+TEST(ResidentLimit, LiteralAndSquaredGapAreThoseOfTheCpu) {
+  const Scene scene = cloth_scene("arap", true, 4);
+  const StepFrame frame = step_frame(scene);
+  int n_beyond = 0;
+  for (const char* shape : {"log", "cubic"}) {
+    for (const bool literal : {false, true}) {
+      TermOptions options = element_options(shape);
+      options.limit.literal = literal;
+      if (!literal) options.limit.argument = Argument::squared_gap;
+      Positions x = strained(scene);
+      if (literal) x.row(0) *= 1.3, ++n_beyond;
+      CpuElements cpu(scene, options, frame);
+      exec::HostExecutor executor;
+      OnExecutor resident(executor, scene, options, frame);
+      cpu.linearise(x, StepHessian::clamped);
+      resident.linearise(x);
+      const double scale = cpu.gradient.cwiseAbs().maxCoeff();
+      ASSERT_TRUE(std::isfinite(scale));
+      EXPECT_LE((resident.gradient() - cpu.gradient).cwiseAbs().maxCoeff(), 1e-12 * scale) << shape << literal;
+    }
+  }
+  EXPECT_EQ(n_beyond, 2);
+}
+
+TEST(ResidentLimit, IsLeftOutWhereNothingIsLimited) {
+  const Scene scene = cloth_scene("arap", true, 4);
+  TermOptions options = element_options();
+  options.strain_limit = false;
+  exec::HostExecutor executor;
+  OnExecutor resident(executor, scene, options, step_frame(scene));
+  EXPECT_EQ(resident.linearise(scene.x0), 0);
+  EXPECT_EQ(resident.bound(wave(scene, 10), 0), 1);
+  EXPECT_FALSE(resident.elements.limit_reads_matrix());
+  EXPECT_EQ(resident.elements.limit_numbers(resident.x.data()).max_stretch, 0);
+}
+
+}  // namespace
+}  // namespace bb

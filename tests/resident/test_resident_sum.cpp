@@ -1,0 +1,128 @@
+// Sums, maxima and first items over columns of an executor.
+#include "core/resident/elements/resident_sum.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <random>
+
+#include "tests/resident/on_executor.hpp"
+
+namespace bb::resident {
+namespace {
+
+using test::all_orders;
+
+/// n numbers over forty powers of ten, each with its negative nearby, so that little is left of their sum.
+std::vector<double> cancelling(std::size_t n) {
+  std::mt19937_64 random(n);
+  std::uniform_real_distribution<double> u(-1, 1);
+  std::vector<double> out;
+  while (out.size() + 1 < n) {
+    const double large = u(random) * std::pow(10.0, 10 * u(random));
+    out.push_back(large);
+    out.push_back(-large + u(random) * 1e-6);
+  }
+  while (out.size() < n) out.push_back(u(random));
+  std::shuffle(out.begin(), out.end(), random);
+  return out;
+}
+
+TEST(ResidentSum, LosesNothingOfACancellingSum) {
+  for (const std::size_t n : {1u, 2u, 255u, 257u, 5000u, 262144u, 262145u, 700000u}) {
+    const std::vector<double> values = cancelling(n);
+    long double exact = 0, carry = 0, magnitude = 0;  // twice the digits again
+    double plain = 0;
+    for (const double v : values) {
+      const long double next = exact + v, back = next - exact;
+      carry += (exact - (next - back)) + (v - back);
+      exact = next;
+      magnitude += std::abs(v);
+      plain += v;
+    }
+    exact += carry;
+    exec::HostExecutor executor;
+    exec::Buffer<double> column(executor, "column");
+    column.upload(values);
+    ResidentSum sum(executor);
+    sum.add(column.size(), ColumnSum{column.data()});
+    const Compensated found = sum.get();
+    const double expected = static_cast<double>(exact);
+    ASSERT_NE(expected, 0);
+    const double eps = std::numeric_limits<double>::epsilon();
+    EXPECT_NEAR(found.value(), expected, eps * std::abs(expected) + 1e-25 * static_cast<double>(magnitude)) << n;
+    EXPECT_NEAR(found.magnitude, static_cast<double>(magnitude), 1e-13 * static_cast<double>(magnitude));
+    if (n > 1000) EXPECT_GT(std::abs(plain - expected), 1e3 * eps * std::abs(expected));
+  }
+}
+
+TEST(ResidentSum, AddsWhatComesAndTakesWhatGoes) {
+  exec::HostExecutor executor;
+  exec::Buffer<double> from(executor, "from"), to(executor, "to");
+  from.upload(std::vector<double>{1e16, 3, 5});
+  to.upload(std::vector<double>{1e16, 2, 7, 0.5});
+  ResidentSum sum(executor);
+  EXPECT_EQ(sum.get().value(), 0);
+  sum.add(3, NegativeColumnSum{from.data()});
+  sum.add(4, ColumnSum{to.data()});
+  EXPECT_EQ(sum.get().value(), 1.5);
+  EXPECT_EQ(sum.get().magnitude, 2e16 + 17.5);
+  sum.clear();
+  sum.add(3, ColumnChange{from.data(), to.data()});
+  EXPECT_EQ(sum.get().value(), 1);
+  sum.add(0, ColumnSum{nullptr});
+  EXPECT_EQ(sum.get().value(), 1);
+}
+
+TEST(ResidentSum, HasTheSameBitsInEveryOrder) {
+  const std::vector<double> values = cancelling(300000);
+  std::vector<double> seen;
+  for (const auto& executor : all_orders()) {
+    exec::Buffer<double> column(*executor, "column");
+    column.upload(values);
+    ResidentSum sum(*executor);
+    sum.add(column.size(), ColumnSum{column.data()});
+    const Compensated found = sum.get();
+    for (const double number : {found.sum, found.carry, found.magnitude}) seen.push_back(number);
+  }
+  ASSERT_EQ(seen.size(), 15u);
+  for (std::size_t i = 3; i < seen.size(); ++i) EXPECT_EQ(seen[i], seen[i - 3]);
+  EXPECT_NE(seen[1], 0);  // something was carried
+}
+
+TEST(ResidentLeast, FindsTheLargestAndTheSmallest) {
+  for (const std::size_t n : {1u, 300u, 300000u}) {
+    std::vector<double> values = cancelling(n);
+    exec::HostExecutor executor(exec::Order::shuffled);
+    exec::Buffer<double> column(executor, "column");
+    column.upload(values);
+    ResidentLeast least(executor);
+    EXPECT_EQ(least.largest(), 0);
+    EXPECT_EQ(least.first(), -1);
+    EXPECT_EQ(least.smallest(), std::numeric_limits<double>::infinity());
+    least.add(column.size(), ColumnSize{column.data()});
+    double expected = 0;
+    for (const double v : values) expected = std::max(expected, std::abs(v));
+    EXPECT_EQ(least.largest(), expected);
+    values[n / 2] = std::nan("");
+    column.upload(values);
+    least.clear();
+    least.add(column.size(), ColumnSize{column.data()});
+    EXPECT_TRUE(std::isnan(least.largest()));
+  }
+}
+
+TEST(Keys, CompareAsTheNumbersDo) {
+  const double ascending[] = {-1e300, -1, -5e-324, 0, 5e-324, 0.1, 1, 1e300, INFINITY};
+  for (std::size_t i = 0; i < std::size(ascending); ++i) {
+    EXPECT_EQ(from_smallest_key(smallest_key(ascending[i])), ascending[i]);
+    if (ascending[i] >= 0) EXPECT_EQ(from_largest_key(largest_key(ascending[i])), ascending[i]);
+    if (i == 0) continue;
+    EXPECT_LT(smallest_key(ascending[i - 1]), smallest_key(ascending[i]));
+    if (ascending[i - 1] >= 0) EXPECT_GT(largest_key(ascending[i - 1]), largest_key(ascending[i]));
+  }
+}
+
+}  // namespace
+}  // namespace bb::resident

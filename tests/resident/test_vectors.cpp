@@ -1,0 +1,105 @@
+// Vector operations of a Newton iteration on an executor, against loops.
+#include "core/resident/elements/vectors.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/resident/on_executor.hpp"
+
+namespace bb::resident {
+namespace {
+
+using namespace bb::test;
+
+struct Vectors {
+  Scene scene = cloth_scene("arap", false, 6);
+  std::vector<std::uint8_t> fixed = std::vector<std::uint8_t>(3 * scene.mass.size(), 0);
+  exec::HostExecutor executor{exec::Order::shuffled};
+  exec::Buffer<double> x{executor, "x"}, dx{executor, "dx"}, out{executor, "out"};
+  Positions x_host = strained(scene), dx_host = wave(scene, 0.2), target = scene.x0;
+
+  Vectors() {
+    for (const Pin& pin : scene.pins) {
+      for (std::size_t k = 0; k < 3; ++k) fixed[3 * static_cast<std::size_t>(pin.vertex) + k] = 1;
+      dx_host(0, pin.vertex) = 100;  // must not be seen
+    }
+    for (std::size_t i = 2; i < fixed.size(); i += 6) fixed[i] = 1;  // locked in one direction
+    for (const Pin& pin : scene.pins) target.col(pin.vertex) += Vec3d(0.1, 0.2, 0.3);
+    x.upload(numbers_of(x_host));
+    dx.upload(numbers_of(dx_host));
+  }
+  Positions down(const exec::Buffer<double>& column) const {
+    Positions host(3, column.size() / 3);
+    column.download({host.data(), static_cast<std::size_t>(host.size())});
+    return host;
+  }
+};
+
+TEST(Vectors, MovePutsPinsOnTargetAtTheEndOfAStepOnly) {
+  Vectors v;
+  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  tools.set_targets(v.target);
+  ASSERT_EQ(v.scene.pins.size(), 3u);
+  tools.move(v.x, v.dx, 0.3, v.out);
+  EXPECT_EQ(v.down(v.out), Positions(v.x_host + 0.3 * v.dx_host));
+  EXPECT_EQ(tools.first_short_pin(v.out), 0);
+  tools.move(v.x, v.dx, 1, v.out);
+  Positions expected = v.x_host + v.dx_host;
+  for (const Pin& pin : v.scene.pins) expected.col(pin.vertex) = v.target.col(pin.vertex);
+  EXPECT_EQ(v.down(v.out), expected);
+  EXPECT_EQ(tools.first_short_pin(v.out), -1);
+  v.out.set(3 * v.scene.pins[1].vertex + 2, 0.0);
+  EXPECT_EQ(tools.first_short_pin(v.out), 1);
+  tools.set_pin_motion(v.x, v.dx);
+  for (const Pin& pin : v.scene.pins) {
+    EXPECT_EQ(v.down(v.dx).col(pin.vertex), Vec3d(v.target.col(pin.vertex) - v.x_host.col(pin.vertex)));
+  }
+  EXPECT_EQ(v.down(v.dx).col(7), v.dx_host.col(7));
+}
+
+TEST(Vectors, NormsAndProductsLeaveFixedDegreesOfFreedomOut) {
+  Vectors v;
+  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  double largest = 0, largest_free = 0;
+  long double dot = 0, magnitude = 0;
+  for (std::size_t i = 0; i < v.fixed.size(); ++i) {
+    const double a = v.dx_host.data()[i], b = v.x_host.data()[i];
+    largest = std::max(largest, std::abs(a));
+    if (v.fixed[i]) continue;
+    largest_free = std::max(largest_free, std::abs(a));
+    dot += a * b, magnitude += std::abs(a * b);
+  }
+  EXPECT_EQ(largest, 100);
+  EXPECT_EQ(tools.max(v.dx), largest);
+  EXPECT_EQ(tools.free_max(v.dx), largest_free);
+  EXPECT_GT(largest_free, 0.1);
+  const Compensated found = tools.free_dot(v.dx, v.x);
+  EXPECT_NEAR(found.value(), static_cast<double>(dot), 1e-15 * static_cast<double>(magnitude));
+  EXPECT_NE(found.value(), 0);
+  tools.force_norms(v.dx, v.out);
+  ASSERT_EQ(v.out.size(), v.scene.n_vertices());
+  for (Index i = 0; i < v.out.size(); ++i) {
+    Vec3d g = v.dx_host.col(i);
+    for (Index k = 0; k < 3; ++k) {
+      if (v.fixed[static_cast<std::size_t>(3 * i + k)]) g[k] = 0;
+    }
+    EXPECT_EQ(v.out.get(i), g.norm());
+  }
+}
+
+TEST(Vectors, FindWhatIsNoNumber) {
+  Vectors v;
+  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  EXPECT_EQ(tools.first_not_finite(v.x), -1);
+  v.x.set(40, INFINITY);
+  v.x.set(17, std::nan(""));
+  EXPECT_EQ(tools.first_not_finite(v.x), 17);
+}
+
+TEST(Vectors, FixedBitsAreThreeAVertex) {
+  EXPECT_EQ(fixed_bits(std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 7, 0}), (std::vector<FixedMask>{5, 0, 2}));
+}
+
+}  // namespace
+}  // namespace bb::resident
