@@ -14,8 +14,4 @@ std::unique_ptr<exec::Executor> make_device_executor() {
   throw ConfigError("/device", "\"cuda\"", "no card here: " + probe_device().why);
 }
 
-std::string version_text(int version) {
-  return std::to_string(version / 1000) + "." + std::to_string(version % 1000 / 10);
-}
-
 }  // namespace bb::cuda

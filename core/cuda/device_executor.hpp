@@ -18,7 +18,7 @@ struct KernelTime {
 
 /// Errors of every call: ExecutionError, with the kernels that were launched since the last synchronisation, for a card
 /// reports what a kernel did wrong later. Not for two threads at a time.
-class DeviceExecutor final : public exec::Executor {
+class DeviceExecutor : public exec::Executor {
  public:
   /// On the current device. scan_part: the longest scan in one call of the library.
   explicit DeviceExecutor(exec::Index scan_part = exec::Index{1} << 30);
