@@ -7,9 +7,10 @@ set -euo pipefail
 
 usage() {
   cat <<'EOF'
-usage: experiments/gpu_evidence.sh [--out FOLDER]
+usage: experiments/gpu_evidence.sh [--out FOLDER] [--records FOLDER]
 
-  --out FOLDER   where the raw files go (default: results/runs/gpu_evidence/<UTC time>)
+  --out FOLDER       where the raw files go (default: results/runs/gpu_evidence/<UTC time>)
+  --records FOLDER   where the record goes (default: results/gpu)
 
 The record is kept as results/gpu/<card>-<day>.json; commit it, and ./bench gpu-report makes results/GPU.md of all of them.
 Found by themselves and left out with a word where they are not: compute-sanitizer, ncu (Nsight Compute), nvidia-smi.
@@ -18,11 +19,17 @@ EOF
 
 root="$(cd "$(dirname "$(readlink -f "${BASH_SOURCE[0]}")")/.." && pwd)"
 out="$root/results/runs/gpu_evidence/$(date -u +%Y-%m-%dT%H%M%SZ)"
+records="$root/results/gpu"
 while [ "$#" -gt 0 ]; do
   case "$1" in
     --out)
       [ "$#" -ge 2 ] || { usage >&2; exit 2; }
       out="$2"
+      shift 2
+      ;;
+    --records)
+      [ "$#" -ge 2 ] || { usage >&2; exit 2; }
+      records="$2"
       shift 2
       ;;
     -h | --help) usage && exit 0 ;;
@@ -104,4 +111,4 @@ else
 fi
 
 "$root/.venv/bin/python" -m barrierbench_analysis.gpu_evidence "$out" --commit "$(git -C "$root" rev-parse HEAD 2>/dev/null || true)" \
-  --seconds "$SECONDS"
+  --seconds "$SECONDS" --records "$records"
