@@ -77,6 +77,8 @@ TEST_F(Standin, ProbeSaysWhyThereIsNoCard) {
     EXPECT_TRUE(probe.built);
     EXPECT_FALSE(probe.usable);
     expect_parts(probe.why, c.says);
+    standin::reset();
+    c.set(standin::settings());
     expect_parts(message<ConfigError>([] { cuda::make_device_executor(); }), {"/device", probe.why});
   }
 }
