@@ -1,17 +1,40 @@
-# CUDA as an optional language: BB_CUDA AUTO compiles the device check where nvcc is found, ON demands it, OFF never
-# looks. Nothing else in the tree may ask for the language.
+# CUDA as an optional language: BB_CUDA AUTO compiles device code where nvcc is found, ON demands it, OFF never looks.
+# CUDA 12 and 13. Nothing else in the tree may ask for the language.
 set(BB_CUDA_FOUND OFF)
 if(NOT BB_CUDA MATCHES "^(AUTO|ON|OFF)$")
   message(FATAL_ERROR "BB_CUDA is '${BB_CUDA}'; allowed: AUTO, ON, OFF")
 endif()
+
+# bb_default_architectures(OUT): code for every card from A100 to B200 that this nvcc knows, and PTX of the newest for
+# cards that come later.
+function(bb_default_architectures out)
+  execute_process(COMMAND "${CMAKE_CUDA_COMPILER}" --list-gpu-arch OUTPUT_VARIABLE known ERROR_QUIET)
+  set(chosen "")
+  foreach(architecture 80 90 100)
+    if(known MATCHES "compute_${architecture}[^0-9]")
+      list(APPEND chosen "${architecture}-real")
+    endif()
+  endforeach()
+  if(chosen STREQUAL "")
+    message(FATAL_ERROR "${CMAKE_CUDA_COMPILER} --list-gpu-arch names none of compute_80, compute_90, compute_100: CUDA 12 or newer is needed, or set CMAKE_CUDA_ARCHITECTURES")
+  endif()
+  list(POP_BACK chosen newest)
+  string(REPLACE "-real" "" newest "${newest}")
+  list(APPEND chosen "${newest}")
+  set(${out} "${chosen}" PARENT_SCOPE)
+endfunction()
+
 if(NOT BB_CUDA STREQUAL "OFF")
   include(CheckLanguage)
   check_language(CUDA)
   if(CMAKE_CUDA_COMPILER)
     if(NOT DEFINED CMAKE_CUDA_ARCHITECTURES)
-      set(CMAKE_CUDA_ARCHITECTURES 90)
+      bb_default_architectures(CMAKE_CUDA_ARCHITECTURES)
     endif()
     enable_language(CUDA)
+    if(CMAKE_CUDA_COMPILER_VERSION VERSION_LESS 12.0)
+      message(FATAL_ERROR "CUDA ${CMAKE_CUDA_COMPILER_VERSION} is too old, 12.0 is the oldest: install a newer one or set BB_CUDA to OFF")
+    endif()
     # CMake 3.25 does not know nvcc's flag for C++20 and would fall back to nvcc's own default.
     if(NOT CMAKE_CUDA20_STANDARD_COMPILE_OPTION)
       set(CMAKE_CUDA20_STANDARD_COMPILE_OPTION "-std=c++20")
@@ -19,12 +42,18 @@ if(NOT BB_CUDA STREQUAL "OFF")
     endif()
     set(CMAKE_CUDA_STANDARD 20)
     set(CMAKE_CUDA_STANDARD_REQUIRED ON)
+    set(CMAKE_CUDA_RUNTIME_LIBRARY Static)
+    # No contraction on either side: host and device give the same bits. Eigen's defaulted members raise 20012, which is
+    # harmless; a host function called on the device is an error.
+    set(BB_DEVICE_FLAGS $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --diag-suppress=20012 --fmad=false
+      -Werror=cross-execution-space-call -Xcompiler=-ffp-contract=off -Xcompiler=-fPIC>)
     set(BB_CUDA_FOUND ON)
   elseif(BB_CUDA STREQUAL "ON")
     message(FATAL_ERROR "BB_CUDA is ON and no CUDA compiler was found: set CUDACXX to nvcc, or BB_CUDA to AUTO or OFF")
   endif()
 endif()
-message(STATUS "CUDA device check: ${BB_CUDA_FOUND} (BB_CUDA=${BB_CUDA})")
 if(BB_CUDA_FOUND)
-  add_subdirectory("${PROJECT_SOURCE_DIR}/core/device_check")
+  message(STATUS "CUDA: ${CMAKE_CUDA_COMPILER_VERSION} for ${CMAKE_CUDA_ARCHITECTURES} (BB_CUDA=${BB_CUDA})")
+else()
+  message(STATUS "CUDA: none (BB_CUDA=${BB_CUDA})")
 endif()

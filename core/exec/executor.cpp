@@ -19,7 +19,8 @@ void* Executor::allocate(const std::string& name, std::size_t bytes) {
   void* memory = allocate_bytes(bytes);
   if (memory || bytes == 0 || counts_only()) return memory;
   ledger_.remove(name, bytes);
-  throw OutOfMemory(ledger_.refusal(name, bytes));
+  const std::string state = memory_state();
+  throw OutOfMemory(ledger_.refusal(name, bytes) + (state.empty() ? "" : "; " + state));
 }
 
 void Executor::release(const std::string& name, void* memory, std::size_t bytes) {

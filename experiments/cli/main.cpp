@@ -107,6 +107,14 @@ CLI::App* add_validity(CLI::App& app, ValidityVerb& verb) {
   return out;
 }
 
+CLI::App* add_device(CLI::App& app, DeviceVerb& verb) {
+  CLI::App* out = app.add_subcommand("device", "the card that this build can use, or why there is none (exit 3)");
+  out->add_flag("--json", verb.json, "as JSON");
+  out->add_flag("--measure", verb.measure, "how fast copies are");
+  out->footer("example: ./bench device --measure");
+  return out;
+}
+
 CLI::App* add_ccd(CLI::App& app, CcdVerb& verb) {
   CLI::App* out = app.add_subcommand(
       "ccd", "queries with a known truth to both continuous tests: false negatives, false positives, times");
@@ -183,6 +191,7 @@ int main(int argc, char** argv) {
   MatrixVerb matrix_verb;
   ValidityVerb validity_verb;
   CcdVerb ccd_verb;
+  DeviceVerb device_verb;
   std::vector<std::string> plugins_before, plugins_after;  // the verb
   std::string list_what = "all", eval_file = "-", demo_out = "results/runs/demo";
   std::string help_format = "config";
@@ -223,6 +232,7 @@ int main(int argc, char** argv) {
   CLI::App* matrix_app = add_matrix(app, matrix_verb);
   CLI::App* validity_app = add_validity(app, validity_verb);
   CLI::App* ccd_app = add_ccd(app, ccd_verb);
+  CLI::App* device_app = add_device(app, device_verb);
   auto* check_app = app.add_subcommand("check", "parse a config, build its scene, look for intersections");
   config_arguments(check_app, check_verb);
   check_app->footer("example: ./bench check configs/scenes/drape.json");
@@ -279,6 +289,7 @@ int main(int argc, char** argv) {
     if (matrix_app->parsed()) return matrix(matrix_verb, common);
     if (validity_app->parsed()) return validity(validity_verb, common);
     if (ccd_app->parsed()) return ccd(ccd_verb);
+    if (device_app->parsed()) return device(device_verb);
     if (check_app->parsed()) return check(check_verb);
     if (explain_app->parsed()) return explain(explain_verb);
     if (list_app->parsed()) return list(list_what);

@@ -14,7 +14,7 @@ namespace bb::cli {
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_bad_input = 2;
 inline constexpr int exit_no_match =
-    3;  // a record did not repeat itself and nothing that it names explains it; a CCD answer was wrong
+    3;  // a record did not repeat itself and nothing that it names explains it; a CCD answer was wrong; no usable card
 inline constexpr int exit_internal = 70;
 inline constexpr int exit_try_again = 75;
 
@@ -106,6 +106,13 @@ struct CcdVerb {
 /// CCD queries with a known truth through ACCD and the audit. exit_no_match when a pair that meets was proven free, or
 /// an accepted state has crossed. Errors: ConfigError as read_queries, and unless one source is named.
 int ccd(const CcdVerb& verb);
+
+struct DeviceVerb {
+  bool json = false;
+  bool measure = false;  // rates of copies too
+};
+/// The card that this build can use. exit_no_match without one. Errors: as measure_copies.
+int device(const DeviceVerb& verb);
 
 /// Parses, builds the scene and looks for intersections; runs nothing.
 int check(const RunVerb& verb);

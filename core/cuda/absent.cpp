@@ -1,0 +1,17 @@
+// device.hpp of a build without CUDA.
+#include "core/cuda/device.hpp"
+#include "core/math/error.hpp"
+
+namespace bb::cuda {
+
+DeviceProbe probe_device() {
+  DeviceProbe probe;
+  probe.why = "this program was built without CUDA (nvcc was not found, or BB_CUDA is OFF)";
+  return probe;
+}
+
+std::unique_ptr<exec::Executor> make_device_executor() {
+  throw ConfigError("/device", "\"cuda\"", "no card here: " + probe_device().why);
+}
+
+}  // namespace bb::cuda

@@ -1,0 +1,33 @@
+// Is there a card that this build can use, and the executor on it. No CUDA header; without a CUDA compiler absent.cpp
+// answers.
+#pragma once
+
+#include <memory>
+#include <string>
+
+#include "core/exec/executor.hpp"
+
+namespace bb::cuda {
+
+struct DeviceProbe {
+  bool built = false;    // this program has device code
+  bool usable = false;   // and a card ran it and gave the right answer
+  std::string why;       // not usable: the reason in words; else empty
+  std::string card;      // its name; empty where none was asked
+  int capability = 0;    // 90: compute capability 9.0
+  int driver = 0;        // CUDA version of the driver, 13000: 13.0; 0: none
+  int runtime = 0;       // CUDA version of the run time that this program is linked with
+  std::size_t memory = 0, free = 0;  // bytes of the card
+};
+
+/// Looks for the first card and runs one kernel on it. Errors: none; what fails is in `why`.
+DeviceProbe probe_device();
+
+/// With BARRIERBENCH_KERNEL_TIMES=FILE in the environment every launch is waited for and timed, and the sums by kernel
+/// are written to that file in the end. Errors: ConfigError with the reason of the probe where no card is usable.
+std::unique_ptr<exec::Executor> make_device_executor();
+
+/// "13.0" of 13000.
+std::string version_text(int version);
+
+}  // namespace bb::cuda

@@ -1,0 +1,41 @@
+// Which kernels have a device version: by the type of the functor, filled from the kernel lists of the resident rooms.
+// No CUDA header, so that C++ files can read it.
+#pragma once
+
+#include <typeindex>
+#include <unordered_map>
+
+#include "core/exec/kernel.hpp"
+
+struct CUstream_st;  // what a cudaStream_t points at
+
+namespace bb::cuda {
+
+/// Puts n items, or n blocks, of the kernel at f on a stream. @return a cudaError_t; 0 is success
+using LaunchKernel = int (*)(const void* f, exec::Index n, CUstream_st* stream);
+
+struct DeviceKernel {
+  LaunchKernel launch;
+  std::size_t bytes;  // of the functor as the device compiler lays it out
+};
+
+class KernelTable {
+ public:
+  void add(const std::type_info& type, DeviceKernel kernel) { kernels_.insert_or_assign(type, kernel); }
+  /// Null for a kernel without a device version.
+  const DeviceKernel* find(const std::type_info& type) const {
+    const auto found = kernels_.find(type);
+    return found == kernels_.end() ? nullptr : &found->second;
+  }
+  std::size_t size() const { return kernels_.size(); }
+
+ private:
+  std::unordered_map<std::type_index, DeviceKernel> kernels_;
+};
+
+/// The kernels that every DeviceExecutor of the process finds: those of the resident rooms from the start.
+KernelTable& kernel_table();
+/// Adds the kernels of every resident room (generated).
+void add_resident_kernels(KernelTable& table);
+
+}  // namespace bb::cuda

@@ -1,0 +1,158 @@
+"""Records of cards from raw files as the script leaves them, and the page of them."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from analysis import gpu_evidence, gpu_report
+
+ROOT = Path(__file__).resolve().parents[2]
+PRICES = {"currency": "USD", "cards": [
+    {"name": "X100 80 GB", "match": ["X100"], "price_per_hour": 3.0, "as_of": "2026-01-02", "source": "a list"},
+    {"name": "Y200", "match": ["Y200"], "price_per_hour": None, "as_of": None, "source": None}]}
+NCU = '''==PROF== Connected to process 1
+"ID","Process ID","Kernel Name","Metric Name","Metric Unit","Metric Value"
+"0","1","void bb::exec::run_blocks<bb::resident::SpmvDot>(T1)","dram__bytes.sum","byte","3,000,000"
+"0","1","void bb::exec::run_blocks<bb::resident::SpmvDot>(T1)","gpu__time_duration.sum","ns","2,000"
+"1","1","void bb::exec::run_blocks<bb::resident::SpmvDot>(T1)","dram__bytes.sum","byte","3,000,000"
+"1","1","void bb::exec::run_blocks<bb::resident::SpmvDot>(T1)","gpu__time_duration.sum","ns","2,000"
+"2","1","void bb::exec::run_each<bb::resident::UpdateP>(long, T1)","dram__bytes.sum","byte","1000"
+"2","1","void bb::exec::run_each<bb::resident::UpdateP>(long, T1)","gpu__time_duration.sum","ns","9000"
+'''
+
+
+def run_json(outcome="ok"):
+    return {"status": {"outcome": outcome}, "scene": {"vertices": 1048576}, "ids": {"run_id": "1"}, "labels": {"dt_s": 0.01, "linear_solver": "pcg"},
+            "summary": {"steps": 2, "newton_iterations": 10, "linear_iterations": 500, "wall_s": 4.0, "time": {"linear_solve_s": 2.5}, "contacts": {"max": 7e6}}}
+
+
+@pytest.fixture
+def raw(tmp_path):
+    folder = tmp_path / "raw"
+    (folder / "logs").mkdir(parents=True)
+    (folder / "device.json").write_text(json.dumps({"usable": True, "card": "NVIDIA X100 80GB", "driver": "13.0",
+                                                    "copy": {"on_the_card_Bps": 3e12, "to_the_card_Bps": 5e10, "from_the_card_Bps": 5e10}}))
+    (folder / "card.csv").write_text("name, driver_version, clocks.max.sm [MHz]\nNVIDIA X100 80GB, 580.1, 1980\n")
+    (folder / "parts.tsv").write_text("device_tests\tpassed\t0\t3\nmemcheck\tfailed\t9\t20\nracecheck\tleft_out\tcompute-sanitizer was not found\t0\ndense_184m\tfailed\t2\t1\n")
+    (folder / "logs/memcheck.err").write_text("a line\n========= ERROR SUMMARY: 3 errors\n")
+    (folder / "logs/dense_184m.err").write_text("no memory for matrix values: 9 GiB\n")
+    (folder / "logs/kernels.out").write_text(NCU)
+    for scene, outcome in (("drape_82k", "ok"), ("drape_1m", "ok")):
+        (folder / scene).mkdir()
+        (folder / scene / "run.json").write_text(json.dumps(run_json(outcome)))
+    return folder
+
+
+def test_a_record_has_what_the_script_saw(raw):
+    record = gpu_evidence.collect(raw, "abc", 500)
+    assert record["parts"]["memcheck"] == {"status": "failed", "seconds": 20, "why": "========= ERROR SUMMARY: 3 errors"}
+    assert record["parts"]["racecheck"]["why"] == "compute-sanitizer was not found"
+    assert record["card"]["driver_version"] == "580.1" and record["card"]["clocks.max.sm"] == "1980"
+    scene = record["scenes"]["drape_1m"]
+    assert (scene["newton_ms"], scene["pcg_ms"], scene["step_s"]) == (400.0, 5.0, 2.0)
+    assert record["scenes"]["dense_184m"] is None
+    assert [k["name"] for k in record["kernels"]] == ["bb::resident::UpdateP", "bb::resident::SpmvDot"]
+    assert record["kernels"][1] == {"name": "bb::resident::SpmvDot", "launches": 2, "seconds": pytest.approx(4e-6), "bytes": 6e6, "Bps": pytest.approx(1.5e12)}
+
+
+def test_without_counters_kernels_have_times_and_no_rates(raw):
+    (raw / "logs/kernels.out").write_text("==ERROR== ERR_NVGPUCTRPERM - The user does not have permission\n")
+    (raw / "kernel_times.json").write_text('{"schema": "barrierbench.kernel_times/1", "kernels": {"bb::A": {"launches": 4, "seconds": 0.5}}}')
+    assert gpu_evidence.collect(raw, "", 1)["kernels"] == [{"name": "bb::A", "launches": 4, "seconds": 0.5, "bytes": None, "Bps": None}]
+
+
+def test_a_device_without_a_card_is_no_record(raw, capsys):
+    (raw / "device.json").write_text('{"usable": false}')
+    assert gpu_evidence.main([str(raw)]) == 2
+    assert "no usable card" in capsys.readouterr().err
+
+
+def test_raw_files_of_another_form_are_named(raw):
+    (raw / "parts.tsv").write_text("device_tests passed\n")
+    with pytest.raises(gpu_evidence.EvidenceError, match="not a part: 'device_tests passed'"):
+        gpu_evidence.collect(raw, "", 1)
+
+
+def page(raw, tmp_path, capsys):
+    records = tmp_path / "records"
+    assert gpu_evidence.main([str(raw), "--records", str(records), "--commit", "abcdef0123456"]) == 0
+    (records / "prices.json").write_text(json.dumps(PRICES))
+    assert gpu_report.main(["--records", str(records), "--results", str(tmp_path)]) == 0
+    capsys.readouterr()
+    return (tmp_path / "GPU.md").read_text()
+
+
+def test_the_page_has_a_row_a_card(raw, tmp_path, capsys):
+    text = page(raw, tmp_path, capsys)
+    row = next(line for line in text.splitlines() if line.startswith("| NVIDIA X100"))
+    for part in ("580.1", "3,000", "memcheck **failed**", "racecheck not run", "abcdef0123", "| 5 | 400 | 5 | 400 |", "no memory for matrix values"):
+        assert part in row
+    assert "| `bb::resident::SpmvDot` | 2 | 2 | 1,500 | 50 % |" in text
+    assert gpu_report.NEVER not in text
+    # 2 s a step of 0.01 s: 200 s for a second of the scene, at 3 USD an hour.
+    assert "| X100 80 GB | 3 USD (2026-01-02, a list) | 1,800 | 0.167 USD |" in text
+    assert "| Y200 | enter yours, with date and source, in results/gpu/prices.json | not measured | not measured |" in text
+    assert (tmp_path / "gpu_kernels.png").stat().st_size > 1000
+
+
+def test_a_run_that_failed_has_no_times(raw, tmp_path, capsys):
+    (raw / "drape_1m/run.json").write_text(json.dumps(run_json("timeout")))
+    text = page(raw, tmp_path, capsys)
+    assert "| 5 | 400 | not measured | not measured |" in text
+    assert "1,800" not in text
+
+
+def test_without_a_record_nothing_was_timed(tmp_path, capsys):
+    (tmp_path / "prices.json").write_text(json.dumps(PRICES))
+    assert gpu_report.main(["--records", str(tmp_path), "--results", str(tmp_path / "out")]) == 0
+    text = (tmp_path / "out/GPU.md").read_text()
+    assert gpu_report.NEVER in text and "| X100 80 GB | 3 USD (2026-01-02, a list) | not measured | not measured |" in text
+    assert not (tmp_path / "out/gpu_kernels.png").exists()
+
+
+def test_a_file_of_another_schema_is_refused(tmp_path, capsys):
+    (tmp_path / "x.json").write_text('{"schema": "other/1"}')
+    (tmp_path / "prices.json").write_text(json.dumps(PRICES))
+    assert gpu_report.main(["--records", str(tmp_path), "--results", str(tmp_path)]) == 2
+    assert "x.json" in capsys.readouterr().err
+
+
+def test_prices_that_are_committed_are_whole_or_empty():
+    cards = json.loads((ROOT / "results/gpu/prices.json").read_text())["cards"]
+    assert len(cards) >= 3
+    for card in cards:
+        assert len({card[key] is None for key in ("price_per_hour", "as_of", "source")}) == 1
+
+
+FAKE_BENCH = '''#!/bin/sh
+case "$1" in
+  device) cat "$RAW/device.json"; exit ${DEVICE_CODE:-0} ;;
+  run) while [ "$1" != --out ]; do shift; done; mkdir -p "$2"; cp "$RAW/drape_1m/run.json" "$2" ;;
+esac
+'''
+
+
+def script(raw, tmp_path, **more):
+    bench, tests = tmp_path / "bench", tmp_path / "test_device"
+    bench.write_text(FAKE_BENCH)
+    tests.write_text("#!/bin/sh\necho no such kernel >&2\nexit 1\n")
+    bench.chmod(0o755), tests.chmod(0o755)
+    environment = {**os.environ, "BARRIERBENCH_BENCH": str(bench), "BARRIERBENCH_DEVICE_TESTS": str(tests), "RAW": str(raw), **more}
+    return subprocess.run([ROOT / "experiments/gpu_evidence.sh", "--out", tmp_path / "out", "--records", tmp_path / "kept"], capture_output=True, text=True, check=False, env=environment)
+
+
+def test_the_script_makes_a_record_of_what_passed_and_what_failed(raw, tmp_path):
+    done = script(raw, tmp_path)
+    assert done.returncode == 0, done.stderr
+    record = json.loads(Path(done.stdout.strip()).read_text())
+    assert record["parts"]["device_tests"] == {"status": "failed", "seconds": record["parts"]["device_tests"]["seconds"], "why": "no such kernel"}
+    assert record["parts"]["drape_82k"]["status"] == "passed" and record["scenes"]["dense_184m"]["vertices"] == 1048576
+
+
+def test_the_script_says_why_there_is_no_card(raw, tmp_path):
+    done = script(raw, tmp_path, DEVICE_CODE="3")
+    assert done.returncode == 3 and done.stdout == ""
+    assert not (tmp_path / "kept").exists()
