@@ -1,9 +1,12 @@
 #include "experiments/run/method.hpp"
 
 #include "barriers/shapes/registry.hpp"
+#include "core/cuda/device.hpp"
+#include "core/exec/host_executor.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
+#include "core/resident/system/resident_system.hpp"
 #include "experiments/config/policy_request.hpp"
 
 namespace bb {
@@ -24,6 +27,11 @@ StepSolverOptions step_solver_options(const RunConfig& config) {
   out.tol_velocity = config.step_solver.tol_velocity;
   out.parameters = config.step_solver.parameters;
   return out;
+}
+
+std::unique_ptr<exec::Executor> make_executor(Device device) {
+  if (device == Device::cuda) return cuda::make_device_executor();
+  return std::make_unique<exec::HostExecutor>();
 }
 
 }  // namespace
@@ -78,6 +86,11 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
     method.step_hessian[choice.name] = step_hessian_of(text(config.hessian.parameters, choice.name));
   }
   method.linear = {config.linear_solver.name, config.linear_solver.parameters};
+  if (config.device != Device::cpu) {
+    method.make_system = [device = config.device](const Scene& scene, Method& of, const Plan& plan) {
+      return std::make_unique<resident::ResidentSystem>(make_executor(device), scene, of, plan);
+    };
+  }
   return method;
 }
 

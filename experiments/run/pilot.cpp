@@ -56,6 +56,10 @@ RunConfig pilot_config(const RunConfig& config) {
   pilot.output.checkpoint_every = 0;  // it has no folder
   pilot.passes = {};
   pilot.precision = Precision::full;  // what is compared between precisions has one stiffness
+  if (pilot.device != Device::cpu) {  // and between devices
+    pilot.device = Device::cpu;
+    pilot.linear_solver = {};
+  }
   return pilot;
 }
 

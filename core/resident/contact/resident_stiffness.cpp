@@ -107,4 +107,26 @@ std::vector<StiffnessPolicy::PairEnd> StepEndGaps::end_step(ResidentRows& rows, 
   return out;
 }
 
+KnownStiffness ResidentStiffness::known() const {
+  KnownStiffness out;
+  if (n_known_ == 0 || rows_are_memory()) return out;
+  const auto n = static_cast<std::size_t>(n_known_);
+  out.pair = known_pair_.download();
+  out.pair.resize(n);
+  const std::vector<double> fixed = known_kappa_.download();
+  const std::vector<double> per_gap_sq = rule_.potential() ? known_per_gap_.download() : std::vector<double>(n, 0.0);
+  for (std::size_t i = 0; i < n; ++i) out.parts.push_back({fixed[i], per_gap_sq[i]});
+  return out;
+}
+
+void StepEndGaps::download(std::vector<Key>& pair, std::vector<double>& gap) const {
+  pair = pair_.download();
+  gap = gap_.download();
+}
+
+void StepEndGaps::upload(const std::vector<Key>& pair, const std::vector<double>& gap) {
+  pair_.upload(pair);
+  gap_.upload(gap);
+}
+
 }  // namespace bb::resident

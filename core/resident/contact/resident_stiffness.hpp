@@ -3,6 +3,7 @@
 
 #include <span>
 
+#include "core/contact/kappa_memory.hpp"
 #include "core/resident/contact/compaction.hpp"
 #include "core/resident/contact/stiffness_kernels.hpp"
 
@@ -39,6 +40,8 @@ class ResidentStiffness {
 
   const StiffnessRule& rule() const { return rule_; }
   Index n_known() const { return n_known_; }
+  /// The pairs whose kappa is frozen for the step, copied to the host.
+  KnownStiffness known() const;
 
  private:
   /// One kappa a pair and iterate: the rows of the iterate are the memory.
@@ -64,6 +67,9 @@ class StepEndGaps {
   explicit StepEndGaps(exec::Executor& executor);
   /// Pairs that have a row now and had one at the end before, and whose gap shrank: no others count. park: ccd_park.
   std::vector<StiffnessPolicy::PairEnd> end_step(ResidentRows& rows, double park);
+  /// The pairs of the last end and their gaps (m), ascending by pair: out, and back.
+  void download(std::vector<Key>& pair, std::vector<double>& gap) const;
+  void upload(const std::vector<Key>& pair, const std::vector<double>& gap);
 
  private:
   exec::Executor& executor_;

@@ -29,7 +29,7 @@ ResidentContact::ResidentContact(exec::Executor& executor, const Scene& scene, T
       resident_surface_(executor, scene, surface_),
       candidates_(executor),
       broad_phase_(executor, resident_surface_, surface_, plan),
-      step_bound_(executor, resident_surface_, surface_,
+      step_bound_(executor, resident_surface_,
                   {options.contact_options.ccd_park, options.contact_options.ccd_max_probes}),
       finder_(executor, resident_surface_, plan.mollifier.needed),
       stiffness_(executor, rule_of(*options.stiffness), scene.mass),

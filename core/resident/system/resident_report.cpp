@@ -2,7 +2,9 @@
 #include <cmath>
 #include <limits>
 
+#include "core/archive/archive.hpp"
 #include "core/resident/system/resident_system.hpp"
+#include "core/terms/contact.hpp"
 #include "core/resident/system/system_kernels.hpp"
 
 namespace bb::resident {
@@ -134,12 +136,18 @@ void ResidentSystem::keep(Archive& archive) {
 
 void ResidentSystem::keep_contact(Archive& archive) {
   bool started = contact_->policy_started();
-  std::vector<PairGap> gaps = contact_->step_end_gaps();
+  std::vector<Key> pair;
+  std::vector<double> gap;
+  contact_->step_end_gaps().download(pair, gap);
+  std::vector<PairGap> gaps;
+  for (std::size_t i = 0; i < pair.size(); ++i) gaps.push_back({pair[i], gap[i], 0});  // park is read of the later end
   archive(started, gaps);
   method_.stiffness->keep(archive);
   if (!archive.reads()) return;
   contact_->set_policy_started(started);
-  contact_->set_step_end_gaps(gaps);
+  pair.clear(), gap.clear();
+  for (const PairGap& each : gaps) pair.push_back(each.pair), gap.push_back(each.gap);
+  contact_->step_end_gaps().upload(pair, gap);
 }
 
 void ResidentSystem::drop_caches() { contact_matrix_ = {}; }

@@ -21,6 +21,16 @@ std::vector<StepHessian> choices_of(const Plan& plan, const Method& method) {
   return out;
 }
 
+/// Of the resident solver, complete. Errors: ConfigError for another one.
+ParameterMap linear_parameters(const Method& method) {
+  if (method.linear.name != "pcg_resident") {
+    throw ConfigError("/linear_solver/name", method.linear.name,
+                      "pcg_resident: the matrix stays where it is assembled");
+  }
+  const LinearSolverEntry& entry = linear_solvers().require(method.linear.name, "/linear_solver/name");
+  return own_parameters(entry.parameters, method.linear.parameters, "/linear_solver");
+}
+
 std::span<const double> numbers_of(const Positions& x) {
   return {x.data(), static_cast<std::size_t>(x.size())};
 }
@@ -52,6 +62,7 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
       step_(*executor_, "solution"),
       work_(*executor_, "work column"),
       force_(*executor_, "force norms"),
+      elastic_value_(*executor_, "elastic matrix of the iterate"),
       product_partial_(*executor_, "partial products", Partition::most_blocks),
       sum_(*executor_),
       least_(*executor_) {
@@ -152,7 +163,7 @@ std::optional<EnergyChange> ResidentSystem::try_motion(double alpha) {
   contact_->evaluate(trial_, elastic_of_iterate());
   // rows come and go: their energies are compared as sums
   const auto before = contact_->energy(x_), after = contact_->trial_energy(trial_);
-  const double change = (fixed.sum + (after.sum - before.sum)) + (fixed.carry + (after.carry - before.carry));
+  const double change = (fixed.sum + (after.sum - before.sum)) + (fixed.carry + (after.lost - before.lost));
   return EnergyChange{change, fixed.magnitude + before.magnitude + after.magnitude};
 }
 

@@ -44,7 +44,7 @@ class ResidentSystem final : public StepSystem {
 
   void prepare_motion(MotionEnd end, bool to_bound) override;
   double bound_motion(IterationReport& report) override;
-  std::string describe_bound() const override;
+  std::string describe_bound() const override { return holder_; }
   std::optional<EnergyChange> try_motion(double alpha) override;
   void accept() override;
 
@@ -56,6 +56,7 @@ class ResidentSystem final : public StepSystem {
   double largest_coordinate() const override { return vectors_.max(x_); }
   double grad_inf() const override { return vectors_.free_max(g_); }
   double energy() const override;
+  double energy(TermGroup group) const override;
   bool pattern_changed() const override { return contact_ && contact_->pattern_changed(); }
   int n_free() const override { return n_free_; }
   std::size_t nnz() const override;
@@ -70,6 +71,7 @@ class ResidentSystem final : public StepSystem {
   const exec::MemoryLedger& memory() const { return executor_->memory(); }
 
  private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
   /// A column on the host, copied when it is asked for.
   struct HostCopy {
     Positions values;
@@ -78,16 +80,20 @@ class ResidentSystem final : public StepSystem {
   const Positions& copy(const Column& column, HostCopy& to) const;
   void forget_copies();
   ResidentMatrix matrix() const;
-  MatrixPart elastic_matrix();
-  HessianRequest request_of(StepHessian choice) const;
+  void move(double alpha, Column& to);
+  void fill_elastic();
+  void keep_elastic();
+  MatrixPart elastic_of_iterate() const;
+  HessianRequest request_of(StepHessian choice, bool exact) const;
   HessianChoice contact_choice(bool exact) const;
   StepHessian choice_of(std::string_view term) const;
-  void fill_matrix(bool exact = false);
+  void fill_matrix(bool exact);
   double largest_force();
   bool direction(SolveReport& report);
-  void set_right_hand_side(bool moving);
   LinearReport solve_linear();
-  void multiply(const Column& v, Column& out);
+  double multiply(const Column& v, Column& out);
+  void keep_contact(Archive& archive);
+  NewtonSystem& cpu();
 
   std::unique_ptr<exec::Executor> executor_;
   const Scene& scene_;
@@ -106,7 +112,8 @@ class ResidentSystem final : public StepSystem {
   bool served_at_once_ = false;
 
   Column x_, trial_, end_, dx_, g_, x_n_, x_tilde_, b_, step_, work_;  // [3 n]
-  Column force_;                                                       // [n] N
+  Column force_;          // [n] N
+  Column elastic_value_;  // H of the iterate, where a policy reads it in trial states
   exec::Buffer<double> product_partial_;
   mutable ResidentSum sum_;
   mutable ResidentLeast least_;
@@ -115,7 +122,7 @@ class ResidentSystem final : public StepSystem {
   Prediction prediction_;  // as it came, for the CPU's view
   Positions x_start_;
   MotionEnd motion_ = MotionEnd::free;
-  const char* holder_ = nullptr;  // of the last bound
+  std::string holder_;  // of the last bound
   double limit_kappa_change_ = 0;
   mutable HostCopy host_x_, host_before_, host_g_;
   std::unique_ptr<NewtonSystem> cpu_;
