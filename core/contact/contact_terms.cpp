@@ -48,7 +48,7 @@ Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const P
 template <class T>
 MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r, const Positions& x) {
   const T scale = in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r);
-  return mollified_derivatives<T>(mollified_points<T>(rows, r, x), in<T>(rows.eps, r),
+  return bb::mollified_derivatives<T>(mollified_points<T>(rows, r, x), in<T>(rows.eps, r),
                                   scale * in<T>(rows.b, r), scale * in<T>(rows.db, r),
                                   scale * in<T>(rows.d2b, r));
 }

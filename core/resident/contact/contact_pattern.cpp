@@ -8,7 +8,9 @@
 namespace bb::resident {
 namespace {
 
-int bits_below(Index n) { return std::bit_width(static_cast<std::uint64_t>(n > 1 ? n - 1 : 1)); }
+int bits_below(Index n) {
+  return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(n > 1 ? n - 1 : 1)));
+}
 
 }  // namespace
 
