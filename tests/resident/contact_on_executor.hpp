@@ -74,7 +74,8 @@ inline Positions shaken(const Scene& scene) { return random_motion(scene.x0, 0.0
 
 inline std::vector<Key> keys(const std::vector<IndexPair>& pairs) {
   std::vector<Key> out;
-  for (const IndexPair& p : pairs) out.push_back(static_cast<Key>(p.first) << 32 | static_cast<Key>(p.second));
+  for (const IndexPair& p : pairs)
+    out.push_back(static_cast<Key>(p.first) << 32 | static_cast<Key>(p.second));
   return out;
 }
 

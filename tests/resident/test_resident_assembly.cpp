@@ -131,7 +131,8 @@ Assembled assemble(exec::Executor& executor, const Scene& scene, const Positions
   ContactAssembly assembly(executor, on.resident, n, options);
   assembly.set_pattern(on.rows);
   Assembled out;
-  exec::Buffer<double> gradient(executor, "gradient", 3 * n), force(executor, "force", 3 * n), moved(executor, "motion");
+  exec::Buffer<double> gradient(executor, "gradient", 3 * n), force(executor, "force", 3 * n),
+      moved(executor, "motion");
   gradient.fill_zero(), force.fill_zero();
   upload(moved, motion);
   assembly.add_gradient(on.rows, on.x, gradient);
@@ -144,9 +145,12 @@ Assembled assemble(exec::Executor& executor, const Scene& scene, const Positions
   ContactSums sums(executor);
   out.energy = sums.energy(on.rows, on.x, assembly).value();
 
-  const auto add = [&out](const void* data, std::size_t bytes) { out.bytes.append(static_cast<const char*>(data), bytes); };
+  const auto add = [&out](const void* data, std::size_t bytes) {
+    out.bytes.append(static_cast<const char*>(data), bytes);
+  };
   out.bytes = terms_of(on.rows);
-  add(part.row_begin, sizeof(Index) * at(n + 1)), add(part.column, sizeof(int) * static_cast<std::size_t>(out.n_blocks));
+  add(part.row_begin, sizeof(Index) * at(n + 1)),
+      add(part.column, sizeof(int) * static_cast<std::size_t>(out.n_blocks));
   add(part.value, sizeof(double) * static_cast<std::size_t>(resident::value_count(out.n_blocks)));
   add(gradient.data(), sizeof(double) * at(3 * n)), add(force.data(), sizeof(double) * at(3 * n));
   add(&out.energy, sizeof out.energy);
@@ -211,7 +215,8 @@ TEST(ResidentAssembly, DoesNotDependOnTheOrderOfItems) {
     unsigned seed = 1;
     for (const exec::Order order : all_orders) {
       HostExecutor executor(order, seed++);
-      const Assembled got = assemble(executor, s.scene, s.x, motion_of_given(s.scene), {mode, Projection::psd});
+      const Assembled got =
+          assemble(executor, s.scene, s.x, motion_of_given(s.scene), {mode, Projection::psd});
       EXPECT_GT(got.matrix.norm(), 0);
       if (reference.empty()) reference = got.bytes;
       EXPECT_TRUE(got.bytes == reference);
@@ -259,7 +264,8 @@ TEST(ResidentAssembly, HoldsTheDiagonalOfEveryTouchedVertexAndBothTriangles) {
       got.emplace(i, blocks.column[j]);
       const Index sources = blocks.begin[j + 1] - blocks.begin[j];
       EXPECT_EQ(sources > 0, blocks.column[j] >= i);
-      for (Index k = blocks.begin[j] + 1; k < blocks.begin[j + 1]; ++k) EXPECT_LT(blocks.code[k - 1], blocks.code[k]);
+      for (Index k = blocks.begin[j] + 1; k < blocks.begin[j + 1]; ++k)
+        EXPECT_LT(blocks.code[k - 1], blocks.code[k]);
     }
   }
   EXPECT_GT(got.size(), 500U);

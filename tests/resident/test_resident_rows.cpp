@@ -140,7 +140,8 @@ TEST(ResidentRowFinder, NamesGapsBelowZeroAndStatesThatAreNotFinite) {
   EXPECT_EQ(on.rows.size(), 0);
   EXPECT_EQ(on.rows.min_gap, std::numeric_limits<double>::infinity());
 
-  for (const double bad : {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
+  for (const double bad :
+       {std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()}) {
     Positions x = scene.x0;
     x(1, 1) = bad;
     upload(on.x, x);
@@ -167,7 +168,8 @@ TEST(ResidentRowFinder, TellsStencilsApart) {
 
 TEST(ResidentRows, TakeAtMost140BytesEach) {
   constexpr Index n = 100000;
-  for (const KappaColumns columns : {KappaColumns::uniform, KappaColumns::kept, KappaColumns::compared, KappaColumns::potential}) {
+  for (const KappaColumns columns :
+       {KappaColumns::uniform, KappaColumns::kept, KappaColumns::compared, KappaColumns::potential}) {
     exec::CountingExecutor executor;
     ResidentRows rows(executor, columns);
     rows.resize(n);

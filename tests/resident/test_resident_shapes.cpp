@@ -45,7 +45,8 @@ TEST(ResidentBarrier, EvaluatesEveryShapeOfTheRegistry) {
       int n_active = 0;
       for (Index r = 0; r < n_gaps; ++r) {
         const ShapeTerms<double> one = barrier.eval(v.d[r], v.d_hat[r]);
-        worst = std::max({worst, relative(v.energy[r], v.kappa[r] * one.b), relative(v.push[r], v.kappa[r] * one.db),
+        worst = std::max({worst, relative(v.energy[r], v.kappa[r] * one.b),
+                          relative(v.push[r], v.kappa[r] * one.db),
                           relative(v.stretch[r], v.kappa[r] * one.d2b)});
         n_active += one.db < 0;
       }
@@ -79,7 +80,8 @@ TEST(ResidentBarrier, FoldsTheStiffnessIntoShapesWithAPotential) {
     FoldedBarrier(barrier).eval(n_gaps, v.d, v.d_hat, parts.data(), e.data(), de.data(), d2e.data());
     double worst = 0;
     for (std::size_t r = 0; r < e.size(); ++r) {
-      worst = std::max({worst, relative(v.energy[r], e[r]), relative(v.push[r], de[r]), relative(v.stretch[r], d2e[r])});
+      worst = std::max(
+          {worst, relative(v.energy[r], e[r]), relative(v.push[r], de[r]), relative(v.stretch[r], d2e[r])});
     }
     EXPECT_LE(worst, 1e-13);
     EXPECT_GT(e[0], 0);
@@ -104,7 +106,8 @@ TEST(ResidentBarrier, RefusesWhatHasNoKernelByName) {
   BarrierFunction single{require_shape("log")};
   single.in_float = true;
   EXPECT_THROW(ResidentBarrier(single, false), ConfigError);
-  EXPECT_THROW(ResidentBarrier(BarrierFunction{require_shape("cubic"), Argument::squared_gap}, true), ConfigError);
+  EXPECT_THROW(ResidentBarrier(BarrierFunction{require_shape("cubic"), Argument::squared_gap}, true),
+               ConfigError);
 }
 
 }  // namespace

@@ -21,7 +21,8 @@ using resident::StiffnessRule;
 
 /// A positive definite elastic matrix on random quadruples of vertices, as the CPU path and as kernels read it.
 struct Elastic {
-  explicit Elastic(const Scene& scene) : blocks(scene.n_vertices(), std::vector<std::uint8_t>(at(3 * scene.n_vertices()))) {
+  explicit Elastic(const Scene& scene)
+      : blocks(scene.n_vertices(), std::vector<std::uint8_t>(at(3 * scene.n_vertices()))) {
     const int n = scene.n_vertices();
     std::mt19937_64 rng(5);
     std::uniform_real_distribution<double> unit(-1, 1);
@@ -84,7 +85,8 @@ KappaSums sums_of(const Rows& rows) {
     const int* s = &t.stencil[4 * r];
     out[{kind, s[0], s[1], s[2], s[3]}] += t.multiplicity[r] * t.kappa[r];
   };
-  for (std::size_t r = 0; r < rows.table.size(); ++r) add(rows.table, r, static_cast<int>(rows.table.kind[r]));
+  for (std::size_t r = 0; r < rows.table.size(); ++r)
+    add(rows.table, r, static_cast<int>(rows.table.kind[r]));
   for (std::size_t r = 0; r < rows.mollified.size(); ++r) add(rows.mollified, r, resident::mollified_kind);
   return out;
 }
@@ -93,7 +95,8 @@ KappaSums sums_of(ResidentRows& rows) {
   KappaSums out;
   const RowView v = rows.view();
   for (Index r = 0; r < v.n; ++r) {
-    out[{v.kind[r], v.vertex[r], v.vertex[v.n + r], v.vertex[2 * v.n + r], v.vertex[3 * v.n + r]}] += v.kappa_of(r);
+    out[{v.kind[r], v.vertex[r], v.vertex[v.n + r], v.vertex[2 * v.n + r], v.vertex[3 * v.n + r]}] +=
+        v.kappa_of(r);
   }
   return out;
 }
@@ -119,9 +122,9 @@ struct Policy {
   const char* derivative;
 };
 constexpr Policy policies[] = {
-    {"paper", true, "per_iteration", 0, "dropped"},     {"paper", false, "per_iteration", 0.2, "dropped"},
-    {"inertia", true, "per_iteration", 0, "dropped"},   {"scaled", true, "per_step", 0.1, "dropped"},
-    {"none", true, "per_step", 0, "dropped"},           {"paper", true, "per_step", 0, "included"},
+    {"paper", true, "per_iteration", 0, "dropped"},   {"paper", false, "per_iteration", 0.2, "dropped"},
+    {"inertia", true, "per_iteration", 0, "dropped"}, {"scaled", true, "per_step", 0.1, "dropped"},
+    {"none", true, "per_step", 0, "dropped"},         {"paper", true, "per_step", 0, "included"},
     {"scaled", false, "per_step", 0, "included"},
 };
 
@@ -141,8 +144,9 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
   StiffnessUpdate update(*policy, scene.mass);
   update.set_time(0.01, 1);
 
-  const StiffnessRule rule{false,      require_mass_term(p.mass_term),          p.elastic, require_refresh(p.refresh),
-                           p.gap_floor, require_derivative(p.derivative), 1.7};
+  const StiffnessRule rule{
+      false,       require_mass_term(p.mass_term),   p.elastic, require_refresh(p.refresh),
+      p.gap_floor, require_derivative(p.derivative), 1.7};
   HostExecutor executor(order);
   ResidentStiffness stiffness(executor, rule, scene.mass);
   stiffness.set_time(0.01, 1);
@@ -231,7 +235,8 @@ TEST(ResidentStiffness, ReadsTheMatrixBlockByBlock) {
         for (Index k = elastic.row_begin[at(a)]; k < elastic.row_begin[at(a) + 1]; ++k) {
           if (elastic.column[static_cast<std::size_t>(k)] != b) continue;
           const Mat3d& h = elastic.full[static_cast<std::size_t>(k)];
-          sum += static_cast<long double>(wi) * v.weight[j * v.n + r] * v.normal_of(r).dot(h * v.normal_of(r));
+          sum +=
+              static_cast<long double>(wi) * v.weight[j * v.n + r] * v.normal_of(r).dot(h * v.normal_of(r));
           n_coupled += a != b;
         }
       }
@@ -256,7 +261,8 @@ TEST(StepEndGaps, ListsPairsOfTwoStepEndsWhoseGapShrank) {
   std::vector<StiffnessPolicy::PairEnd> expected;
   for (Index r = 0; r < v.n; ++r) {
     const auto found = before.find(v.pair[r]);
-    if (found != before.end() && v.d[r] < found->second) expected.push_back({v.d[r], found->second, 1e-6 * v.d_hat[r]});
+    if (found != before.end() && v.d[r] < found->second)
+      expected.push_back({v.d[r], found->second, 1e-6 * v.d_hat[r]});
   }
   const auto listed = gaps.end_step(on.rows, 1e-6);
   ASSERT_GT(expected.size(), 50U);
