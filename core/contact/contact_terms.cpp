@@ -49,8 +49,8 @@ template <class T>
 MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r, const Positions& x) {
   const T scale = in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r);
   return bb::mollified_derivatives<T>(mollified_points<T>(rows, r, x), in<T>(rows.eps, r),
-                                  scale * in<T>(rows.b, r), scale * in<T>(rows.db, r),
-                                  scale * in<T>(rows.d2b, r));
+                                      scale * in<T>(rows.b, r), scale * in<T>(rows.db, r),
+                                      scale * in<T>(rows.d2b, r));
 }
 
 /// grad and hess on the compact free slots.

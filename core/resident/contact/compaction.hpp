@@ -12,7 +12,9 @@ namespace bb::resident {
 class Compaction {
  public:
   Compaction(exec::Executor& executor, const std::string& name)
-      : executor_(&executor), count_(executor, name + " counts"), rank_(executor, name + " ranks"),
+      : executor_(&executor),
+        count_(executor, name + " counts"),
+        rank_(executor, name + " ranks"),
         block_(executor, name + " places") {}
   /// Room for the counts of n items; a kernel fills them, at most 255 each.
   std::uint8_t* counts(Index n) {

@@ -41,24 +41,30 @@ void ContactAssembly::add_gradient(ResidentRows& rows, const exec::Buffer<double
                                    exec::Buffer<double>& gradient) {
   mollifiers(rows, x);
   executor_.each(pattern_.n_vertices(),
-                 GatherGradient{rows.view(), pattern_.slots(),
-                                {rows.list.data(), rows.list.size(), mollified_.data()}, gradient.data()});
+                 GatherGradient{rows.view(),
+                                pattern_.slots(),
+                                {rows.list.data(), rows.list.size(), mollified_.data()},
+                                gradient.data()});
 }
 
 void ContactAssembly::add_given_motion(ResidentRows& rows, const exec::Buffer<double>& x,
                                        const exec::Buffer<double>& motion, exec::Buffer<double>& force) {
   const Index n = rows.list.size();
   mollified_.resize(12 * n);
-  executor_.each(n, MollifiedChanges{rows.view(), rows.list.data(), n, x.data(), surface_.view().rest, motion.data(),
-                                     mollified_.data()});
-  executor_.each(pattern_.n_vertices(),
-                 GatherGivenMotion{rows.view(), pattern_.slots(), {rows.list.data(), n, mollified_.data()},
-                                   motion.data(), force.data()});
+  executor_.each(n, MollifiedChanges{rows.view(), rows.list.data(), n, x.data(), surface_.view().rest,
+                                     motion.data(), mollified_.data()});
+  executor_.each(pattern_.n_vertices(), GatherGivenMotion{rows.view(),
+                                                          pattern_.slots(),
+                                                          {rows.list.data(), n, mollified_.data()},
+                                                          motion.data(),
+                                                          force.data()});
 }
 
-MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice) {
+MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double>& x,
+                                   const HessianChoice& choice) {
   if (choice.mode == HessianMode::projected_numeric) {
-    throw std::invalid_argument("Hessian mode projected_numeric has no kernel; gauss_newton and projected_full have");
+    throw std::invalid_argument(
+        "Hessian mode projected_numeric has no kernel; gauss_newton and projected_full have");
   }
   const Index n = pattern_.n_blocks();
   value_.resize(value_count(n));
@@ -68,14 +74,16 @@ MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double
     executor_.each(rows.size(), MarkDense{rows.view(), choice.mode, dense});
     dense_.list(dense_.rank(), dense_rows_);
     value_.fill_zero();  // the last plane may be longer than the blocks are
-    executor_.each(n, GatherStreamed{rows.view(), blocks, dense, x.data(), surface_.view(), choice, value_.data()});
+    executor_.each(
+        n, GatherStreamed{rows.view(), blocks, dense, x.data(), surface_.view(), choice, value_.data()});
     add_dense(rows, x, choice);
     executor_.each(n, MirrorBlocks{blocks, pattern_.n_vertices(), value_.data()});
   }
   return {blocks.row_begin, blocks.column, value_.data()};
 }
 
-void ContactAssembly::add_dense(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice) {
+void ContactAssembly::add_dense(ResidentRows& rows, const exec::Buffer<double>& x,
+                                const HessianChoice& choice) {
   const Index n = dense_rows_.size(), stride = std::min(options_.hessians_a_chunk, n);
   row_hessians_.resize(row_numbers * stride);
   for (Index first = 0; first < n; first += stride) {

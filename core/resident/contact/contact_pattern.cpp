@@ -8,7 +8,9 @@
 namespace bb::resident {
 namespace {
 
-int bits_below(Index n) { return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(n > 1 ? n - 1 : 1))); }
+int bits_below(Index n) {
+  return static_cast<int>(std::bit_width(static_cast<std::uint64_t>(n > 1 ? n - 1 : 1)));
+}
 
 }  // namespace
 
@@ -124,9 +126,9 @@ ContactPattern::Piece ContactPattern::fill_blocks(const RowView& rows, int first
   const Index n_blocks = places_.rank();
   piece.n_contributions = upper_.rank();
   piece.column.resize(n_blocks), piece.begin.resize(n_blocks);
-  executor_.each(n, FillBlocks{key_.data(), value_.data(), first, bits, head, upper, places_.places(),
-                               upper_.places(), n_before, piece.column.data(), piece.begin.data(), code_.data(),
-                               touched_.data()});
+  executor_.each(
+      n, FillBlocks{key_.data(), value_.data(), first, bits, head, upper, places_.places(), upper_.places(),
+                    n_before, piece.column.data(), piece.begin.data(), code_.data(), touched_.data()});
   return piece;
 }
 

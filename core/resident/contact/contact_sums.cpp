@@ -21,7 +21,8 @@ CompensatedSum ContactSums::sum(Index n, const Item& item) {
   return part_.get(0);
 }
 
-CompensatedSum ContactSums::energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly) {
+CompensatedSum ContactSums::energy(ResidentRows& rows, const exec::Buffer<double>& x,
+                                   ContactAssembly& assembly) {
   const exec::Buffer<double>& mollifiers = assembly.mollifiers(rows, x);
   return sum(rows.size(), RowEnergy{rows.view(), {rows.list.data(), rows.list.size(), mollifiers.data()}});
 }

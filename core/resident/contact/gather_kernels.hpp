@@ -13,7 +13,9 @@ struct MollifiedColumn {
   const std::uint32_t* list;  // ascending rows
   Index n;
   const double* number;  // [12][n]
-  BB_HD Index of(Index row) const { return first_not_below(list, Index{0}, n, static_cast<std::uint32_t>(row)); }
+  BB_HD Index of(Index row) const {
+    return first_not_below(list, Index{0}, n, static_cast<std::uint32_t>(row));
+  }
 };
 
 /// Adds the gradient of B to gradient [3 n_vertices], N.
@@ -130,8 +132,9 @@ struct GatherStreamed {
     double curvature = 0;
     if (rows.kind[r] == static_cast<std::uint8_t>(ContactKind::obstacle)) {
       const Index v = rows.vertex[r];
-      const SurfaceGap<double> gap = surface_gap<double>(
-          surface.obstacles[rows.pair[r] & ((Key{1} << 30) - 1)].surface(), Vec3d(x[3 * v], x[3 * v + 1], x[3 * v + 2]));
+      const SurfaceGap<double> gap =
+          surface_gap<double>(surface.obstacles[rows.pair[r] & ((Key{1} << 30) - 1)].surface(),
+                              Vec3d(x[3 * v], x[3 * v + 1], x[3 * v + 2]));
       flat = gap.flat;
       curvature = gap.curvature;
     } else {
@@ -139,8 +142,8 @@ struct GatherStreamed {
     }
     const double stretch = rows.stretch[r], push = rows.push[r] * curvature;
     const Vec3d n = rows.normal_of(r);
-    const Mat3d one =
-        fixed_points_block<double>(n, flat, stretch, push, choice.blended ? Projection::psd : choice.projection);
+    const Mat3d one = fixed_points_block<double>(n, flat, stretch, push,
+                                                 choice.blended ? Projection::psd : choice.projection);
     if (!choice.blended) {
       for (int c = 0; c < 9; ++c) sum[c] += ww * one(c % 3, c / 3);
       return;
@@ -193,9 +196,11 @@ struct MirrorBlocks {
   BB_HD void operator()(Index j) const {
     const int column = blocks.column[j];
     // the last row that begins at or before j
-    const int row = static_cast<int>(first_not_below(blocks.row_begin, Index{0}, static_cast<Index>(n_vertices) + 1, j + 1) - 1);
+    const int row = static_cast<int>(
+        first_not_below(blocks.row_begin, Index{0}, static_cast<Index>(n_vertices) + 1, j + 1) - 1);
     if (column >= row) return;
-    const Index from = first_not_below(blocks.column, blocks.row_begin[column], blocks.row_begin[column + 1], row);
+    const Index from =
+        first_not_below(blocks.column, blocks.row_begin[column], blocks.row_begin[column + 1], row);
     for (int c = 0; c < 9; ++c) value[value_index(j, c)] = value[value_index(from, 3 * (c % 3) + c / 3)];
   }
 };

@@ -40,13 +40,15 @@ Launch find(const Entry (&entries)[n], const std::string& name, const char* what
     if (entry.name == name) return entry.launch;
     names += (names.empty() ? "" : ", ") + std::string(entry.name);
   }
-  throw ConfigError("shape", "\"" + name + "\", which has no kernel " + what,
-                    "one of " + names + " where the pipeline is resident; shapes of plugins run on the CPU path");
+  throw ConfigError(
+      "shape", "\"" + name + "\", which has no kernel " + what,
+      "one of " + names + " where the pipeline is resident; shapes of plugins run on the CPU path");
 }
 
 }  // namespace
 
-ResidentBarrier::ResidentBarrier(const BarrierFunction& barrier, bool potential) : argument_(barrier.argument) {
+ResidentBarrier::ResidentBarrier(const BarrierFunction& barrier, bool potential)
+    : argument_(barrier.argument) {
   if (barrier.literal) {
     throw ConfigError("shape", "the article's literal evaluation", "the CPU path");
   }
@@ -54,7 +56,8 @@ ResidentBarrier::ResidentBarrier(const BarrierFunction& barrier, bool potential)
   if (potential && argument_ != Argument::gap) {
     throw ConfigError("argument", "squared_gap with a potential", "gap");
   }
-  launch_ = potential ? find(folded, barrier.shape.name, "of a potential") : find(plain, barrier.shape.name, "of its own");
+  launch_ = potential ? find(folded, barrier.shape.name, "of a potential")
+                      : find(plain, barrier.shape.name, "of its own");
 }
 
 void ResidentBarrier::evaluate(exec::Executor& executor, ResidentRows& rows) const {

@@ -25,17 +25,17 @@ enum class KappaColumns {
 /// What kernels read and write of rows; number k of a row is column[k * n + row].
 struct RowView {
   Index n;
-  int* vertex;             // [4][n] in role order (p t0 t1 t2, ea0 ea1 eb0 eb1), -1 padded
-  double* weight;          // [4][n] w_i, 0 padded
-  double* normal;          // [3][n] unit, grad_i d = w_i n
-  double *d, *d_hat;       // [n] m
-  Key* pair;               // [n] PairId, ascending
-  std::uint8_t* kind;      // [n] ContactKind or mollified_kind
-  std::uint8_t* free;      // [n] bit k: vertex k is free
-  double* kappa;           // [n] N/m, of a potential its fixed part; null: uniform_kappa
-  double* kappa_before;    // [n] N/m, 0: the pair was not there; or null
-  double* per_gap_sq;      // [n] N m; or null
-  double uniform_kappa;    // N/m
+  int* vertex;                      // [4][n] in role order (p t0 t1 t2, ea0 ea1 eb0 eb1), -1 padded
+  double* weight;                   // [4][n] w_i, 0 padded
+  double* normal;                   // [3][n] unit, grad_i d = w_i n
+  double *d, *d_hat;                // [n] m
+  Key* pair;                        // [n] PairId, ascending
+  std::uint8_t* kind;               // [n] ContactKind or mollified_kind
+  std::uint8_t* free;               // [n] bit k: vertex k is free
+  double* kappa;                    // [n] N/m, of a potential its fixed part; null: uniform_kappa
+  double* kappa_before;             // [n] N/m, 0: the pair was not there; or null
+  double* per_gap_sq;               // [n] N m; or null
+  double uniform_kappa;             // N/m
   double *energy, *push, *stretch;  // [n] kappa b (J, before any mollifier), kappa b' (N), kappa b'' (N/m)
 
   BB_HD bool is_free(Index r, int k) const { return (free[r] >> k & 1) != 0; }
@@ -81,9 +81,10 @@ class ResidentRows {
     if (columns_ == KappaColumns::potential) per_gap_sq_.resize(n);
   }
   void swap(ResidentRows& other) noexcept {
-    for (auto column : {&ResidentRows::weight_, &ResidentRows::normal_, &ResidentRows::d_, &ResidentRows::d_hat_,
-                        &ResidentRows::kappa_, &ResidentRows::kappa_before_, &ResidentRows::per_gap_sq_,
-                        &ResidentRows::energy_, &ResidentRows::push_, &ResidentRows::stretch_}) {
+    for (auto column :
+         {&ResidentRows::weight_, &ResidentRows::normal_, &ResidentRows::d_, &ResidentRows::d_hat_,
+          &ResidentRows::kappa_, &ResidentRows::kappa_before_, &ResidentRows::per_gap_sq_,
+          &ResidentRows::energy_, &ResidentRows::push_, &ResidentRows::stretch_}) {
       (this->*column).swap(other.*column);
     }
     vertex_.swap(other.vertex_), pair_.swap(other.pair_), kind_.swap(other.kind_), free_.swap(other.free_);
@@ -93,13 +94,25 @@ class ResidentRows {
   Index size() const { return d_.size(); }
   KappaColumns columns() const { return columns_; }
   RowView view() {
-    const auto used = [this](exec::Buffer<double>& column) { return column.size() == size() ? column.data() : nullptr; };
-    return {size(), vertex_.data(), weight_.data(), normal_.data(), d_.data(), d_hat_.data(), pair_.data(),
-            kind_.data(), free_.data(),
+    const auto used = [this](exec::Buffer<double>& column) {
+      return column.size() == size() ? column.data() : nullptr;
+    };
+    return {size(),
+            vertex_.data(),
+            weight_.data(),
+            normal_.data(),
+            d_.data(),
+            d_hat_.data(),
+            pair_.data(),
+            kind_.data(),
+            free_.data(),
             columns_ == KappaColumns::uniform ? nullptr : used(kappa_),
             columns_ == KappaColumns::compared ? used(kappa_before_) : nullptr,
             columns_ == KappaColumns::potential ? used(per_gap_sq_) : nullptr,
-            uniform_kappa, energy_.data(), push_.data(), stretch_.data()};
+            uniform_kappa,
+            energy_.data(),
+            push_.data(),
+            stretch_.data()};
   }
   bool feasible() const { return min_gap > 0; }
 

@@ -16,14 +16,15 @@ ResidentStiffness::ResidentStiffness(exec::Executor& executor, const StiffnessRu
 }
 
 KnownPairs ResidentStiffness::memory() const {
-  return {n_known_, known_pair_.data(), known_kappa_.data(), rule_.potential() ? known_per_gap_.data() : nullptr};
+  return {n_known_, known_pair_.data(), known_kappa_.data(),
+          rule_.potential() ? known_per_gap_.data() : nullptr};
 }
 
 void ResidentStiffness::compute(ResidentRows& rows, const std::uint8_t* missing, bool at_d_hat,
                                 const MatrixPart& elastic) {
   const ElasticityInclusiveRule rule{rule_.mass_term, rule_.elastic_term, dt_, c_};
-  executor_.each(rows.size(), InclusiveKappa{rows.view(), missing, rule, rule_.gap_floor, rule_.multiplier, at_d_hat,
-                                             mass_.data(), elastic});
+  executor_.each(rows.size(), InclusiveKappa{rows.view(), missing, rule, rule_.gap_floor, rule_.multiplier,
+                                             at_d_hat, mass_.data(), elastic});
 }
 
 void ResidentStiffness::recall_and_compute(ResidentRows& rows, const KnownPairs& known, bool at_d_hat,
@@ -51,8 +52,8 @@ void ResidentStiffness::freeze(ResidentRows& trial, ResidentRows& iterate, const
   trial.uniform_kappa = uniform_kappa_;
   if (rule_.uniform || trial.size() == 0) return;
   const RowView from = iterate.view();
-  recall_and_compute(trial, rows_are_memory() ? KnownPairs{from.n, from.pair, from.kappa, nullptr} : memory(), true,
-                     elastic);
+  recall_and_compute(trial, rows_are_memory() ? KnownPairs{from.n, from.pair, from.kappa, nullptr} : memory(),
+                     true, elastic);
   if (rows_are_memory()) {
     executor_.each(trial.size(), NoteKappaBefore{trial.view(), missing_.counts(trial.size())});
   }
@@ -72,7 +73,8 @@ void ResidentStiffness::keep(ResidentRows& rows) {
   exec::Buffer<double> kappa(executor_, "known kappa", n), per_gap(executor_, "known kappa per gap");
   if (rule_.potential()) per_gap.resize(n);
   double* const per_gap_sq = rule_.potential() ? per_gap.data() : nullptr;
-  executor_.each(n_known_, MergeKnown{known, view, missing_.places(), n_fresh, pair.data(), kappa.data(), per_gap_sq});
+  executor_.each(n_known_,
+                 MergeKnown{known, view, missing_.places(), n_fresh, pair.data(), kappa.data(), per_gap_sq});
   executor_.each(rows.size(),
                  MergeFresh{known, view, mark, missing_.places(), pair.data(), kappa.data(), per_gap_sq});
   executor_.synchronize();
@@ -94,8 +96,8 @@ std::vector<StiffnessPolicy::PairEnd> StepEndGaps::end_step(ResidentRows& rows, 
     executor_.each(view.n, MarkShrinking{view, pair_.data(), gap_.data(), pair_.size(), mark});
     const Index n = shrinking_.rank();
     exec::Buffer<double> list(executor_, "shrinking gaps", 3 * n);
-    executor_.each(view.n, ListShrinking{view, pair_.data(), gap_.data(), pair_.size(), mark, shrinking_.places(),
-                                         list.data()});
+    executor_.each(view.n, ListShrinking{view, pair_.data(), gap_.data(), pair_.size(), mark,
+                                         shrinking_.places(), list.data()});
     const std::vector<double> numbers = list.download();
     for (std::size_t i = 0; i < numbers.size(); i += 3) {
       out.push_back({numbers[i], numbers[i + 1], park * numbers[i + 2]});

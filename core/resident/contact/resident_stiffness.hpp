@@ -48,7 +48,8 @@ class ResidentStiffness {
   bool rows_are_memory() const { return rule_.refresh == Refresh::per_iteration; }
   KnownPairs memory() const;
   void compute(ResidentRows& rows, const std::uint8_t* missing, bool at_d_hat, const MatrixPart& elastic);
-  void recall_and_compute(ResidentRows& rows, const KnownPairs& known, bool at_d_hat, const MatrixPart& elastic);
+  void recall_and_compute(ResidentRows& rows, const KnownPairs& known, bool at_d_hat,
+                          const MatrixPart& elastic);
 
   exec::Executor& executor_;
   StiffnessRule rule_;

@@ -42,7 +42,8 @@ bool RowFinder::finite(const exec::Buffer<double>& x) {
   return found_.get(0) == 0;
 }
 
-void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& candidates, ResidentRows& rows) {
+void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& candidates,
+                     ResidentRows& rows) {
   rows.list.resize(0);
   if (!finite(x)) {  // comparisons mean nothing then
     rows.resize(0);
@@ -56,19 +57,20 @@ void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& ca
     executor_.each(list.size(), MarkPairRows<K>{phase, list.data(), mark + first});
     first += list.size();
   });
-  executor_.each(candidates.obstacle.size(), MarkObstacleRows{phase, candidates.obstacle.data(), mark + first});
+  executor_.each(candidates.obstacle.size(),
+                 MarkObstacleRows{phase, candidates.obstacle.data(), mark + first});
 
   rows.resize(places_.rank());
   gap_.set(0, {~Key{0}, ~Key{0}});
   const RowView view = rows.view();
   first = 0;
   for_each_list(candidates, [&]<PairKind K>(const exec::Buffer<Key>& list) {
-    executor_.each(list.size(), FillPairRows<K>{phase, list.data(), mark + first, first, places_.places(), view,
-                                             gap_.data()});
+    executor_.each(list.size(), FillPairRows<K>{phase, list.data(), mark + first, first, places_.places(),
+                                                view, gap_.data()});
     first += list.size();
   });
-  executor_.each(candidates.obstacle.size(), FillObstacleRows{phase, candidates.obstacle.data(), mark + first, first,
-                                                           places_.places(), view, gap_.data()});
+  executor_.each(candidates.obstacle.size(), FillObstacleRows{phase, candidates.obstacle.data(), mark + first,
+                                                              first, places_.places(), view, gap_.data()});
   rows.min_gap = smallest_gap(gap_.get(0));
   list_mollified(rows);
 }

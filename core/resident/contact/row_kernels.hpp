@@ -48,14 +48,13 @@ struct NarrowPhase {
     bool parallel = false;
     if constexpr (K == PairKind::edge_edge) {
       if (mollifier) {
-        const double eps =
-            edge_edge_mollifier_threshold<double>(points_of<4>(surface.rest, pair.vertex));
+        const double eps = edge_edge_mollifier_threshold<double>(points_of<4>(surface.rest, pair.vertex));
         parallel = edge_edge_cross_squared<double>(points) < eps;
         if (parallel) region = Region::ea_eb;
       }
     }
-    const PairRow row = pair_row<double>(pair.vertex, closest.weights.data(), closest.r, closest.d, region,
-                                         pair.law.offset);
+    const PairRow row =
+        pair_row<double>(pair.vertex, closest.weights.data(), closest.r, closest.d, region, pair.law.offset);
     bool moves = false;
     out.free = 0;
     for (int k = 0; k < 4; ++k) {

@@ -73,7 +73,9 @@ struct CountBlockPairs {
   RowView rows;
   const std::uint32_t* slot;
   std::uint8_t* count;
-  BB_HD void operator()(Index i) const { count[i] = static_cast<std::uint8_t>(rows.n_free(slot_row(slot[i]))); }
+  BB_HD void operator()(Index i) const {
+    count[i] = static_cast<std::uint8_t>(rows.n_free(slot_row(slot[i])));
+  }
 };
 
 struct FillPairKeys {

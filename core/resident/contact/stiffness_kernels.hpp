@@ -75,8 +75,8 @@ struct InclusiveKappa {
       return;
     }
     const double d = at_d_hat ? d_hat : rows.d[r], floor = gap_floor * d_hat;
-    rows.kappa[r] =
-        multiplier * elasticity_inclusive_kappa(n, weight, normal, d < floor ? floor : d, d_hat, masses, h, rule);
+    rows.kappa[r] = multiplier * elasticity_inclusive_kappa(n, weight, normal, d < floor ? floor : d, d_hat,
+                                                            masses, h, rule);
   }
 };
 

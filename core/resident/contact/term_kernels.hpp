@@ -57,8 +57,8 @@ BB_HD inline double mollifier_threshold(const RowView& rows, Index r, const doub
 
 BB_HD inline MollifiedDerivatives<double> row_derivatives(const RowView& rows, Index r, const double* x,
                                                           const double* rest) {
-  return mollified_derivatives<double>(row_points(rows, r, x), mollifier_threshold(rows, r, rest), rows.energy[r],
-                                       rows.push[r], rows.stretch[r]);
+  return mollified_derivatives<double>(row_points(rows, r, x), mollifier_threshold(rows, r, rest),
+                                       rows.energy[r], rows.push[r], rows.stretch[r]);
 }
 
 /// Gradients of the mollified rows in their four points, 0 at given ones, and their mollifiers.
@@ -72,7 +72,8 @@ struct MollifiedGradients {
     const Index r = list[i];
     const Vec<double, 12> g = row_derivatives(rows, r, x, rest).gradient;
     for (int c = 0; c < 12; ++c) gradient[c * n + i] = rows.is_free(r, c / 3) ? g[c] : 0.0;
-    mollifier[i] = edge_edge_mollifier_value<double>(row_points(rows, r, x), mollifier_threshold(rows, r, rest));
+    mollifier[i] =
+        edge_edge_mollifier_value<double>(row_points(rows, r, x), mollifier_threshold(rows, r, rest));
   }
 };
 
@@ -126,7 +127,8 @@ struct MollifiedHessians {
       front[k] = n;
       local[n++] = k;
     }
-    const Mat<double, 12, 12> exact = to_front(row_derivatives(to.rows, r, to.x, to.surface.rest).hessian, local, n);
+    const Mat<double, 12, 12> exact =
+        to_front(row_derivatives(to.rows, r, to.x, to.surface.rest).hessian, local, n);
     Mat<double, 12, 12> h = exact;
     project_leading<double>(n, to.choice.blended ? Projection::psd : to.choice.projection, h);
     int at = 0;
@@ -197,7 +199,8 @@ struct SlidingHessians {
     }
     double exact[row_numbers];
     row_hessian<double, F>(shape, Projection::none, exact);
-    for (int c = 0; c < row_numbers; ++c) to.number[c * to.stride + i] = blend(exact[c], blocks[c], to.choice.t);
+    for (int c = 0; c < row_numbers; ++c)
+      to.number[c * to.stride + i] = blend(exact[c], blocks[c], to.choice.t);
   }
 };
 

@@ -1,0 +1,343 @@
+// Gradient, matrix, energy and given motion of rows on an executor against the terms of the CPU path.
+#include <gtest/gtest.h>
+
+#include <set>
+
+#include "barriers/shapes/registry.hpp"
+#include "core/resident/contact/contact_sums.hpp"
+#include "core/resident/contact/resident_barrier.hpp"
+#include "tests/oracle/lower_blocks.hpp"
+#include "tests/resident/contact_on_executor.hpp"
+
+namespace bb::test {
+namespace {
+
+using resident::AssemblyOptions;
+using resident::ContactAssembly;
+using resident::ContactSums;
+using resident::HessianChoice;
+using resident::MatrixPart;
+using resident::ResidentBarrier;
+using Matrix = Eigen::MatrixXd;
+
+constexpr double kappa = 350;
+
+BarrierFunction cubic() { return {require_shape("cubic"), Argument::gap}; }
+
+/// What the CPU path adds up.
+struct Reference {
+  VecXd gradient;
+  Matrix exact, projected;
+  double energy = 0;
+  Positions force;
+  std::size_t n_mollified = 0, n_curved = 0;
+};
+
+void scatter(const std::vector<int>& vertex, const std::vector<double>& grad, const std::vector<double>& hess,
+             VecXd* gradient, Matrix& matrix) {
+  for (std::size_t r = 0; r < grad.size() / 12; ++r) {
+    const Matrix h = from_lower_blocks(&hess[n_lower_numbers(4) * r], 4);
+    for (int i = 0; i < 4; ++i) {
+      const int vi = vertex[4 * r + at(i)];
+      if (vi < 0) continue;
+      if (gradient) gradient->segment<3>(3 * vi) += Vec3d::Map(&grad[12 * r + 3 * at(i)]);
+      for (int j = 0; j < 4; ++j) {
+        const int vj = vertex[4 * r + at(j)];
+        if (vj >= 0) matrix.block<3, 3>(3 * vi, 3 * vj) += h.block<3, 3>(3 * i, 3 * j);
+      }
+    }
+  }
+}
+
+template <class Table>
+void evaluate_cubic(Table& t) {
+  const BarrierFunction barrier = cubic();
+  std::fill(t.kappa.begin(), t.kappa.end(), kappa);
+  barrier.eval(t.size(), t.d.data(), t.d_hat.data(), t.b.data(), t.db.data(), t.d2b.data());
+}
+
+Reference reference_of(const Scene& scene, const Positions& x, const Positions& motion, HessianMode mode,
+                       Projection projection) {
+  ContactSystem contacts(scene, {});
+  Rows rows = rows_at(contacts, x);
+  evaluate_cubic(rows.table);
+  evaluate_cubic(rows.mollified);
+  Reference out{VecXd::Zero(x.size()), Matrix::Zero(x.size(), x.size()), Matrix::Zero(x.size(), x.size()), 0,
+                Positions::Zero(3, x.cols())};
+  std::vector<double> grad, hess;
+  for (const Projection p : {Projection::none, projection}) {
+    Matrix& to = p == projection ? out.projected : out.exact;
+    VecXd* const gradient = &to == &out.projected ? &out.gradient : nullptr;
+    to.setZero();
+    out.gradient.setZero();
+    contact_terms(rows.table, x, mode, p, grad, hess);
+    scatter(rows.table.vertex, grad, hess, gradient, to);
+    mollified_terms(rows.mollified, x, p, grad, hess);
+    scatter(rows.mollified.free_vertex, grad, hess, gradient, to);
+    if (projection == Projection::none) out.exact = out.projected;
+  }
+  std::vector<double> energy;
+  contact_energies(rows.table, energy);
+  for (const double e : energy) out.energy += e;
+  mollified_energies(rows.mollified, x, energy);
+  for (const double e : energy) out.energy += e;
+  add_given_motion(rows.table, motion, out.force);
+  add_given_motion(rows.mollified, x, motion, out.force);
+  out.n_mollified = rows.mollified.size();
+  for (std::size_t r = 0; r < rows.table.size(); ++r) {
+    const ContactKind k = rows.table.kind[r];
+    out.n_curved += rows.table.db[r] != 0 && k != ContactKind::point_point && k != ContactKind::obstacle;
+  }
+  return out;
+}
+
+Positions motion_of_given(const Scene& scene) {
+  Positions motion = Positions::Zero(3, scene.n_vertices());
+  for (const Pin& pin : scene.pins) motion.col(pin.vertex) = 1e-3 * Vec3d(1, -2, 0.5 * pin.vertex);
+  return motion;
+}
+
+/// All that is assembled at x.
+struct Assembled {
+  VecXd gradient;
+  Matrix matrix;
+  Positions force;
+  double energy = 0;
+  std::string bytes;
+  Index n_blocks = 0, n_rows = 0;
+};
+
+Matrix dense(const MatrixPart& part, int n) {
+  Matrix out = Matrix::Zero(3 * n, 3 * n);
+  for (int i = 0; i < n; ++i) {
+    for (Index j = part.row_begin[i]; j < part.row_begin[i + 1]; ++j) {
+      if (j > part.row_begin[i]) {
+        EXPECT_LT(part.column[j - 1], part.column[j]);
+      }
+      for (int c = 0; c < 9; ++c) {
+        out(3 * i + c % 3, 3 * part.column[j] + c / 3) = part.value[resident::value_index(j, c)];
+      }
+    }
+  }
+  return out;
+}
+
+Assembled assemble(exec::Executor& executor, const Scene& scene, const Positions& x, const Positions& motion,
+                   const HessianChoice& choice, const AssemblyOptions& options = {}) {
+  const int n = scene.n_vertices();
+  OnExecutor on(executor, scene, x);
+  on.rows.uniform_kappa = kappa;
+  ResidentBarrier(cubic(), false).evaluate(executor, on.rows);
+  ContactAssembly assembly(executor, on.resident, n, options);
+  assembly.set_pattern(on.rows);
+  Assembled out;
+  exec::Buffer<double> gradient(executor, "gradient", 3 * n), force(executor, "force", 3 * n),
+      moved(executor, "motion");
+  gradient.fill_zero(), force.fill_zero();
+  upload(moved, motion);
+  assembly.add_gradient(on.rows, on.x, gradient);
+  out.gradient = VecXd::Map(gradient.data(), 3 * n);
+  const MatrixPart part = assembly.matrix(on.rows, on.x, choice);
+  out.matrix = dense(part, n);
+  out.n_blocks = assembly.n_blocks(), out.n_rows = on.rows.size();
+  assembly.add_given_motion(on.rows, on.x, moved, force);
+  out.force = Positions::Map(force.data(), 3, n);
+  ContactSums sums(executor);
+  out.energy = sums.energy(on.rows, on.x, assembly).value();
+
+  const auto add = [&out](const void* data, std::size_t bytes) {
+    out.bytes.append(static_cast<const char*>(data), bytes);
+  };
+  out.bytes = terms_of(on.rows);
+  add(part.row_begin, sizeof(Index) * at(n + 1)),
+      add(part.column, sizeof(int) * static_cast<std::size_t>(out.n_blocks));
+  add(part.value, sizeof(double) * static_cast<std::size_t>(resident::value_count(out.n_blocks)));
+  add(gradient.data(), sizeof(double) * at(3 * n)), add(force.data(), sizeof(double) * at(3 * n));
+  add(&out.energy, sizeof out.energy);
+  return out;
+}
+
+struct Subject {
+  Scene scene;
+  Positions x;
+};
+std::vector<Subject> subjects() {
+  std::vector<Subject> out;
+  for (unsigned seed = 1; seed <= 2; ++seed) {
+    const Scene scene = full_scene(seed);
+    out.push_back({scene, shaken(scene)});
+  }
+  for (const PlanarPairs pairs : {PlanarPairs::vertex_vertex, PlanarPairs::point_edge}) {
+    const Scene scene = planar_scene(pairs, 4);
+    out.push_back({scene, scene.x0});
+  }
+  return out;
+}
+
+double relative(const Matrix& a, const Matrix& b) { return (a - b).norm() / b.norm(); }
+
+TEST(ResidentAssembly, AddsUpWhatTheCpuPathDoes) {
+  std::size_t n_mollified = 0, n_curved = 0;
+  int n_forces = 0;
+  for (const Subject& s : subjects()) {
+    const Positions motion = motion_of_given(s.scene);
+    for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {
+      for (const Projection projection : {Projection::none, Projection::psd, Projection::absolute}) {
+        const Reference expected = reference_of(s.scene, s.x, motion, mode, projection);
+        n_mollified += expected.n_mollified, n_curved += expected.n_curved;
+        HostExecutor executor;
+        const Assembled got = assemble(executor, s.scene, s.x, motion, {mode, projection});
+        ASSERT_GT(got.n_rows, 50);
+        EXPECT_GT(expected.energy, 0);
+        EXPECT_NEAR(got.energy, expected.energy, 1e-12 * expected.energy);
+        EXPECT_LT(relative(got.gradient, expected.gradient), 1e-12);
+        EXPECT_LT(relative(got.matrix, expected.projected), 1e-11);
+        EXPECT_EQ((got.matrix - got.matrix.transpose()).norm() > 1e-12 * got.matrix.norm(), false);
+        EXPECT_LT(relative(got.force, expected.force), 1e-11);
+        n_forces += expected.force.norm() > 0;
+
+        const HessianChoice blended{mode, Projection::none, true, 0.3};
+        const Reference psd = reference_of(s.scene, s.x, motion, mode, Projection::psd);
+        const Matrix between = psd.exact + 0.3 * (psd.projected - psd.exact);
+        EXPECT_LT(relative(assemble(executor, s.scene, s.x, motion, blended).matrix, between), 1e-11);
+      }
+    }
+  }
+  EXPECT_GT(n_mollified, 100U);
+  EXPECT_GT(n_curved, 500U);
+  EXPECT_GE(n_forces, 24);
+}
+
+TEST(ResidentAssembly, DoesNotDependOnTheOrderOfItems) {
+  const Subject s = subjects().front();
+  for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {
+    std::string reference;
+    unsigned seed = 1;
+    for (const exec::Order order : all_orders) {
+      HostExecutor executor(order, seed++);
+      const Assembled got =
+          assemble(executor, s.scene, s.x, motion_of_given(s.scene), {mode, Projection::psd});
+      EXPECT_GT(got.matrix.norm(), 0);
+      if (reference.empty()) reference = got.bytes;
+      EXPECT_TRUE(got.bytes == reference);
+    }
+  }
+}
+
+TEST(ResidentAssembly, DoesNotDependOnItsChunks) {
+  const Subject s = subjects().front();
+  for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {
+    std::string reference;
+    for (const AssemblyOptions& options :
+         {AssemblyOptions{}, AssemblyOptions{1, 1}, AssemblyOptions{64, 7}, AssemblyOptions{1000, 100}}) {
+      HostExecutor executor;
+      const Assembled got =
+          assemble(executor, s.scene, s.x, motion_of_given(s.scene), {mode, Projection::psd}, options);
+      ASSERT_GT(got.n_blocks, 300);
+      if (reference.empty()) reference = got.bytes;
+      EXPECT_TRUE(got.bytes == reference) << options.pairs_a_chunk;
+    }
+  }
+}
+
+TEST(ResidentAssembly, HoldsTheDiagonalOfEveryTouchedVertexAndBothTriangles) {
+  const Subject s = subjects().front();
+  HostExecutor executor(exec::Order::shuffled);
+  OnExecutor on(executor, s.scene, s.x);
+  ContactAssembly assembly(executor, on.resident, s.scene.n_vertices());
+  assembly.set_pattern(on.rows);
+  const resident::BlockSources blocks = assembly.pattern().blocks();
+  std::set<std::pair<int, int>> expected, got;
+  const resident::RowView v = on.rows.view();
+  Index n_upper = 0;
+  for (Index r = 0; r < v.n; ++r) {
+    for (int a = 0; a < 4; ++a) {
+      for (int b = 0; b < 4; ++b) {
+        if (!v.is_free(r, a) || !v.is_free(r, b)) continue;
+        expected.emplace(v.vertex[a * v.n + r], v.vertex[b * v.n + r]);
+        n_upper += v.vertex[a * v.n + r] <= v.vertex[b * v.n + r];
+      }
+    }
+  }
+  for (int i = 0; i < s.scene.n_vertices(); ++i) {
+    for (Index j = blocks.row_begin[i]; j < blocks.row_begin[i + 1]; ++j) {
+      got.emplace(i, blocks.column[j]);
+      const Index sources = blocks.begin[j + 1] - blocks.begin[j];
+      EXPECT_EQ(sources > 0, blocks.column[j] >= i);
+      for (Index k = blocks.begin[j] + 1; k < blocks.begin[j + 1]; ++k)
+        EXPECT_LT(blocks.code[k - 1], blocks.code[k]);
+    }
+  }
+  EXPECT_GT(got.size(), 500U);
+  EXPECT_EQ(got, expected);
+  EXPECT_EQ(static_cast<std::size_t>(assembly.n_blocks()), expected.size());
+  EXPECT_EQ(blocks.begin[assembly.n_blocks()], n_upper);
+}
+
+TEST(ResidentAssembly, OfNoRowsIsNothing) {
+  Scene scene = full_scene(1);
+  Positions far = scene.x0;
+  for (int v = 0; v < scene.n_vertices(); ++v) far.col(v) += 100.0 * v * Vec3d(1, 1, 1);
+  scene.obstacles.clear();
+  HostExecutor executor;
+  const Assembled got = assemble(executor, scene, far, motion_of_given(scene), {});
+  EXPECT_EQ(got.n_rows, 0);
+  EXPECT_EQ(got.n_blocks, 0);
+  EXPECT_EQ(got.gradient.norm() + got.matrix.norm() + got.energy, 0);
+}
+
+TEST(ResidentAssembly, RefusesAProjectionWithoutAKernel) {
+  const Subject s = subjects().front();
+  HostExecutor executor;
+  EXPECT_THROW(assemble(executor, s.scene, s.x, motion_of_given(s.scene), {HessianMode::projected_numeric}),
+               std::invalid_argument);
+}
+
+TEST(ContactSums, AreExactToRoundingAndTheSameInAnyOrder) {
+  constexpr Index n = 3 * 70001;
+  std::vector<double> a(n), b(n);
+  std::vector<std::uint8_t> fixed(n / 3);
+  std::mt19937_64 rng(2);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  long double expected = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    if (i % 3 == 0) fixed[i / 3] = static_cast<std::uint8_t>(rng() % 8);
+    a[i] = unit(rng) * (i % 2 == 0 ? 1e8 : 1);
+    b[i] = unit(rng);
+    if ((fixed[i / 3] >> i % 3 & 1) == 0) expected += static_cast<long double>(a[i] * b[i]);
+  }
+  double first = 0;
+  for (const exec::Order order : all_orders) {
+    HostExecutor executor(order);
+    exec::Buffer<double> x(executor, "a"), y(executor, "b");
+    exec::Buffer<std::uint8_t> mask(executor, "fixed");
+    x.upload(a), y.upload(b), mask.upload(fixed);
+    const double got = ContactSums(executor).product(x, y, mask);
+    EXPECT_NEAR(got, static_cast<double>(expected), 1e-15 * std::abs(static_cast<double>(expected)) + 1e-9);
+    if (first == 0) first = got;
+    EXPECT_EQ(got, first);
+  }
+}
+
+TEST(ContactSums, GiveTheMeanMassOfTheRows) {
+  const Scene scene = full_scene(2);
+  HostExecutor executor;
+  OnExecutor on(executor, scene, scene.x0);
+  double mass = 0;
+  int count = 0;
+  const resident::RowView v = on.rows.view();
+  for (Index r = 0; r < v.n; ++r) {
+    for (int k = 0; k < 4; ++k) {
+      if (!v.is_free(r, k)) continue;
+      mass += scene.mass[at(v.vertex[k * v.n + r])];
+      ++count;
+    }
+  }
+  ASSERT_GT(count, 500);
+  exec::Buffer<double> masses(executor, "masses");
+  masses.upload(scene.mass);
+  EXPECT_NEAR(ContactSums(executor).mean_mass(on.rows, masses), mass / count, 1e-14);
+}
+
+}  // namespace
+}  // namespace bb::test

@@ -1,0 +1,279 @@
+// kappa of rows on an executor against StiffnessUpdate, over iterates, trials and steps.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "barriers/stiffness/registry.hpp"
+#include "core/barrier/folded_barrier.hpp"
+#include "core/resident/contact/contact_sums.hpp"
+#include "core/resident/contact/resident_stiffness.hpp"
+#include "core/terms/stiffness_update.hpp"
+#include "tests/resident/contact_on_executor.hpp"
+
+namespace bb::test {
+namespace {
+
+using resident::MatrixPart;
+using resident::ResidentRows;
+using resident::ResidentStiffness;
+using resident::RowView;
+using resident::StiffnessRule;
+
+/// A positive definite elastic matrix on random quadruples of vertices, as the CPU path and as kernels read it.
+struct Elastic {
+  explicit Elastic(const Scene& scene)
+      : blocks(scene.n_vertices(), std::vector<std::uint8_t>(at(3 * scene.n_vertices()))) {
+    const int n = scene.n_vertices();
+    std::mt19937_64 rng(5);
+    std::uniform_real_distribution<double> unit(-1, 1);
+    const int n_elements = 3 * n;
+    for (int e = 0; e < n_elements; ++e) {
+      const int first = static_cast<int>(rng() % static_cast<unsigned>(n));
+      for (int k = 0; k < 4; ++k) vertices.push_back((first + k * (1 + e % 3)) % n);
+    }
+    blocks.set_elements({Stencils{4, vertices}});
+    blocks.set_contacts({});
+    std::vector<double> hess;
+    for (int e = 0; e < n_elements; ++e) {
+      Mat<double, 12, 12> a = Mat<double, 12, 12>::NullaryExpr([&] { return 30 * unit(rng); });
+      a = (a * a.transpose()).eval();
+      double lower[n_lower_numbers(4)];
+      store_lower_blocks(4, a, lower);
+      hess.insert(hess.end(), std::begin(lower), std::end(lower));
+    }
+    blocks.clear();
+    blocks.add_elements(0, hess);
+    values = blocks.values();
+    row_begin.push_back(0);
+    for (int i = 0; i < n; ++i) {
+      for (int j = 0; j < n; ++j) add_block(i, j);
+      row_begin.push_back(static_cast<Index>(column.size()));
+    }
+    value.resize(static_cast<std::size_t>(resident::value_count(static_cast<Index>(column.size()))));
+    for (std::size_t b = 0; b < full.size(); ++b) {
+      for (int c = 0; c < 9; ++c) {
+        value[static_cast<std::size_t>(resident::value_index(static_cast<Index>(b), c))] = full[b].data()[c];
+      }
+    }
+  }
+  void add_block(int i, int j) {
+    const int pair[2] = {i, j};
+    double sub[144];
+    blocks.submatrix(values, pair, i == j ? 1 : 2, sub);
+    const Mat3d block = Eigen::Map<const Mat<double, 12, 12>>(sub).block<3, 3>(0, i == j ? 0 : 3);
+    if (block.isZero(0)) return;
+    column.push_back(j);
+    full.push_back(block);
+  }
+  MatrixPart part() const { return {row_begin.data(), column.data(), value.data()}; }
+
+  std::vector<int> vertices;
+  BlockSystem blocks;
+  BlockSystem::Values values;
+  std::vector<Index> row_begin;
+  std::vector<int> column;
+  std::vector<Mat3d> full;
+  std::vector<double> value;
+};
+
+/// m kappa of every stencil, which both paths must share: pairs of a stencil add up.
+using KappaSums = std::map<std::array<int, 5>, double>;
+
+KappaSums sums_of(const Rows& rows) {
+  KappaSums out;
+  const auto add = [&](const auto& t, std::size_t r, int kind) {
+    const int* s = &t.stencil[4 * r];
+    out[{kind, s[0], s[1], s[2], s[3]}] += t.multiplicity[r] * t.kappa[r];
+  };
+  for (std::size_t r = 0; r < rows.table.size(); ++r)
+    add(rows.table, r, static_cast<int>(rows.table.kind[r]));
+  for (std::size_t r = 0; r < rows.mollified.size(); ++r) add(rows.mollified, r, resident::mollified_kind);
+  return out;
+}
+
+KappaSums sums_of(ResidentRows& rows) {
+  KappaSums out;
+  const RowView v = rows.view();
+  for (Index r = 0; r < v.n; ++r) {
+    out[{v.kind[r], v.vertex[r], v.vertex[v.n + r], v.vertex[2 * v.n + r], v.vertex[3 * v.n + r]}] +=
+        v.kappa_of(r);
+  }
+  return out;
+}
+
+double difference(const KappaSums& a, const KappaSums& b) {
+  EXPECT_EQ(a.size(), b.size());
+  EXPECT_GT(a.size(), 150U);
+  double worst = 0;
+  for (const auto& [key, kappa] : a) {
+    const auto found = b.find(key);
+    if (found == b.end()) return 1e300;
+    EXPECT_GT(kappa, 0);
+    worst = std::max(worst, std::abs(found->second - kappa) / kappa);
+  }
+  return worst;
+}
+
+struct Policy {
+  const char* mass_term;
+  bool elastic;
+  const char* refresh;
+  double gap_floor;
+  const char* derivative;
+};
+constexpr Policy policies[] = {
+    {"paper", true, "per_iteration", 0, "dropped"},   {"paper", false, "per_iteration", 0.2, "dropped"},
+    {"inertia", true, "per_iteration", 0, "dropped"}, {"scaled", true, "per_step", 0.1, "dropped"},
+    {"none", true, "per_step", 0, "dropped"},         {"paper", true, "per_step", 0, "included"},
+    {"scaled", false, "per_step", 0, "included"},
+};
+
+/// begin step, iterate, rejected trial, accepted trial, iterate, next step: the same on both paths.
+void follow(const Policy& p, exec::Order order, double& worst, std::string& bytes, Index& n_new) {
+  const Scene scene = full_scene(3);
+  const Elastic elastic(scene);
+  StiffnessPolicyConfig config;
+  config.name = "elasticity_inclusive";
+  config.multiplier = 1.7;
+  config.parameters.emplace("mass_term", p.mass_term);
+  config.parameters["elastic_term"] = p.elastic;
+  config.parameters["refresh"] = p.refresh;
+  config.parameters["gap_floor"] = p.gap_floor;
+  config.parameters["derivative"] = p.derivative;
+  const auto policy = make_policy(config);
+  StiffnessUpdate update(*policy, scene.mass);
+  update.set_time(0.01, 1);
+
+  const StiffnessRule rule{
+      false,       require_mass_term(p.mass_term),   p.elastic, require_refresh(p.refresh),
+      p.gap_floor, require_derivative(p.derivative), 1.7};
+  HostExecutor executor(order);
+  ResidentStiffness stiffness(executor, rule, scene.mass);
+  stiffness.set_time(0.01, 1);
+
+  ContactSystem contacts(scene, {});
+  const Positions x[] = {shaken(scene), random_motion(scene.x0, 0.02, 7), random_motion(scene.x0, 0.012, 8)};
+  Rows state = rows_at(contacts, x[0]);
+  OnExecutor on(executor, scene, x[0], rule.columns());
+  ResidentRows trial(executor, rule.columns());
+  const auto refresh = [&] {
+    const double change = update.refresh(state.table, state.mollified, elastic.blocks, elastic.values);
+    const double resident_change = stiffness.refresh(on.rows, elastic.part());
+    EXPECT_NEAR(resident_change, change, 1e-10 * (1 + change));
+    worst = std::max(worst, difference(sums_of(state), sums_of(on.rows)));
+    bytes += bytes_of(on.rows);
+  };
+  const auto try_at = [&](const Positions& y) {
+    Rows rows = rows_at(contacts, y);
+    update.freeze(rows.table, rows.mollified, elastic.blocks, elastic.values);
+    on.find(scene, y, trial);
+    stiffness.freeze(trial, on.rows, elastic.part());
+    worst = std::max(worst, difference(sums_of(rows), sums_of(trial)));
+    bytes += bytes_of(trial);
+    return rows;
+  };
+  for (int step = 0; step < 2; ++step) {
+    update.begin_step();
+    stiffness.begin_step();
+    refresh();
+    const Index before = on.rows.size();
+    try_at(x[1]);
+    state = try_at(x[2]);
+    on.rows.swap(trial);
+    update.keep(state.table, state.mollified);
+    stiffness.keep(on.rows);
+    n_new += std::abs(on.rows.size() - before);
+    refresh();
+  }
+}
+
+TEST(ResidentStiffness, FollowsTheStiffnessOfTheCpuPathThroughTwoSteps) {
+  for (const Policy& p : policies) {
+    double worst = 0;
+    std::string bytes;
+    Index n_new = 0;
+    follow(p, exec::Order::threads, worst, bytes, n_new);
+    EXPECT_LT(worst, 1e-10) << p.mass_term << ' ' << p.refresh << ' ' << p.derivative;
+    EXPECT_GT(n_new, 5);
+  }
+}
+
+TEST(ResidentStiffness, GivesTheSameBitsInAnyOrder) {
+  for (const Policy& p : {policies[0], policies[3], policies[5]}) {
+    std::string reference;
+    for (const exec::Order order : {exec::Order::threads, exec::Order::reverse, exec::Order::shuffled}) {
+      double worst = 0;
+      std::string bytes;
+      Index n_new = 0;
+      follow(p, order, worst, bytes, n_new);
+      if (reference.empty()) reference = bytes;
+      EXPECT_TRUE(bytes == reference) << p.refresh;
+    }
+  }
+}
+
+TEST(ResidentStiffness, ReadsTheMatrixBlockByBlock) {
+  const Scene scene = full_scene(1);
+  const Elastic elastic(scene);
+  HostExecutor executor;
+  StiffnessRule rule;
+  rule.uniform = false, rule.mass_term = MassTerm::none;
+  OnExecutor on(executor, scene, shaken(scene), rule.columns());
+  ResidentStiffness stiffness(executor, rule, scene.mass);
+  stiffness.refresh(on.rows, elastic.part());
+  const RowView v = on.rows.view();
+  int n_coupled = 0;
+  for (Index r = 0; r < v.n; ++r) {
+    long double sum = 0, w_sq = 0;
+    for (int i = 0; i < 4; ++i) {
+      if (!v.is_free(r, i)) continue;
+      const double wi = v.weight[i * v.n + r];
+      w_sq += static_cast<long double>(wi) * wi;
+      for (int j = 0; j < 4; ++j) {
+        if (!v.is_free(r, j)) continue;
+        const int a = v.vertex[i * v.n + r], b = v.vertex[j * v.n + r];
+        for (Index k = elastic.row_begin[at(a)]; k < elastic.row_begin[at(a) + 1]; ++k) {
+          if (elastic.column[static_cast<std::size_t>(k)] != b) continue;
+          const Mat3d& h = elastic.full[static_cast<std::size_t>(k)];
+          sum +=
+              static_cast<long double>(wi) * v.weight[j * v.n + r] * v.normal_of(r).dot(h * v.normal_of(r));
+          n_coupled += a != b;
+        }
+      }
+    }
+    const double expected = static_cast<double>(sum / w_sq);
+    EXPECT_NEAR(v.kappa[r], expected, 1e-11 * expected);
+  }
+  EXPECT_GT(n_coupled, 100);
+}
+
+TEST(StepEndGaps, ListsPairsOfTwoStepEndsWhoseGapShrank) {
+  const Scene scene = full_scene(5);
+  HostExecutor executor(exec::Order::shuffled);
+  OnExecutor on(executor, scene, scene.x0);
+  resident::StepEndGaps gaps(executor);
+  EXPECT_TRUE(gaps.end_step(on.rows, 1e-6).empty());
+  std::map<Key, double> before;
+  RowView v = on.rows.view();
+  for (Index r = 0; r < v.n; ++r) before[v.pair[r]] = v.d[r];
+  on.find(scene, random_motion(scene.x0, 0.02, 3), on.rows);
+  v = on.rows.view();
+  std::vector<StiffnessPolicy::PairEnd> expected;
+  for (Index r = 0; r < v.n; ++r) {
+    const auto found = before.find(v.pair[r]);
+    if (found != before.end() && v.d[r] < found->second)
+      expected.push_back({v.d[r], found->second, 1e-6 * v.d_hat[r]});
+  }
+  const auto listed = gaps.end_step(on.rows, 1e-6);
+  ASSERT_GT(expected.size(), 50U);
+  ASSERT_LT(expected.size(), static_cast<std::size_t>(v.n) - 20);
+  ASSERT_EQ(listed.size(), expected.size());
+  for (std::size_t i = 0; i < listed.size(); ++i) {
+    EXPECT_EQ(listed[i].gap, expected[i].gap);
+    EXPECT_EQ(listed[i].gap_before, expected[i].gap_before);
+    EXPECT_EQ(listed[i].park, expected[i].park);
+  }
+}
+
+}  // namespace
+}  // namespace bb::test
