@@ -8,38 +8,38 @@
 namespace bb {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-
-double norm(const double* block) { return Eigen::Map<const Eigen::Matrix<double, 9, 1>>(block).norm(); }
+std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Couplings by block rows, 0 for the diagonal.
-std::vector<double> couplings(const SymmetricProduct& rows) {
-  std::vector<double> scale(at(rows.n_blocks()), 0.0), out(rows.column().size());
-  const auto for_blocks = [&rows](const auto& f) {
-    for (int r = 0; r < rows.n_blocks(); ++r) {
-      for (int k = rows.row_start()[at(r)]; k < rows.row_start()[at(r) + 1]; ++k)
-        f(r, rows.column()[at(k)], k);
+std::vector<double> couplings(const BlockGraph& graph) {
+  std::vector<double> scale(at(graph.n()), 0.0), out(graph.column.size());
+  const auto for_blocks = [&graph](const auto& f) {
+    for (int r = 0; r < graph.n(); ++r) {
+      for (std::int64_t k = graph.row_start[at(r)]; k < graph.row_start[at(r) + 1]; ++k) {
+        f(r, graph.column[at(k)], at(k));
+      }
     }
   };
-  for_blocks([&](int r, int c, int k) {
-    if (r == c) scale[at(r)] = std::sqrt(norm(rows.block(k)));
+  for_blocks([&](int r, int c, std::size_t k) {
+    if (r == c) scale[at(r)] += graph.norm[k];
   });
-  for_blocks([&](int r, int c, int k) {
+  for (double& s : scale) s = std::sqrt(s);
+  for_blocks([&](int r, int c, std::size_t k) {
     const double both = scale[at(r)] * scale[at(c)];
-    out[at(k)] = r == c || both == 0 ? 0 : norm(rows.block(k)) / both;
+    out[k] = r == c || both == 0 ? 0 : graph.norm[k] / both;
   });
   return out;
 }
 
 class Greedy {
  public:
-  Greedy(const SymmetricProduct& rows, int vertices)
-      : rows_(rows), coupling_(couplings(rows)), vertices_(vertices), score_(at(rows.n_blocks()), 0.0) {
-    clusters_.of.assign(at(rows.n_blocks()), -1);
+  Greedy(const BlockGraph& graph, int vertices)
+      : graph_(graph), coupling_(couplings(graph)), vertices_(vertices), score_(at(graph.n()), 0.0) {
+    clusters_.of.assign(at(graph.n()), -1);
   }
 
   VertexClusters run() {
-    for (int v = 0; v < rows_.n_blocks(); ++v) {
+    for (int v = 0; v < graph_.n(); ++v) {
       if (clusters_.of[at(v)] < 0) grow(v);
     }
     number();
@@ -51,8 +51,8 @@ class Greedy {
 
   template <class F>
   void for_neighbours(int v, const F& f) const {
-    for (int k = rows_.row_start()[at(v)]; k < rows_.row_start()[at(v) + 1]; ++k) {
-      if (rows_.column()[at(k)] != v) f(rows_.column()[at(k)], coupling_[at(k)]);
+    for (std::int64_t k = graph_.row_start[at(v)]; k < graph_.row_start[at(v) + 1]; ++k) {
+      if (graph_.column[at(k)] != v) f(graph_.column[at(k)], coupling_[at(k)]);
     }
   }
 
@@ -114,10 +114,10 @@ class Greedy {
     for (int k = 0; k < n_clusters_; ++k) clusters_.start[at(k) + 1] += clusters_.start[at(k)];
     clusters_.member.resize(clusters_.of.size());
     std::vector<int> cursor(clusters_.start.begin(), clusters_.start.end() - 1);
-    for (int v = 0; v < rows_.n_blocks(); ++v) clusters_.member[at(cursor[at(clusters_.of[at(v)])]++)] = v;
+    for (int v = 0; v < graph_.n(); ++v) clusters_.member[at(cursor[at(clusters_.of[at(v)])]++)] = v;
   }
 
-  const SymmetricProduct& rows_;
+  const BlockGraph& graph_;
   const std::vector<double> coupling_;
   int vertices_, n_clusters_ = 0;
   std::vector<double> score_;  // of vertices without a cluster: coupling to the one that grows
@@ -127,8 +127,17 @@ class Greedy {
 
 }  // namespace
 
+VertexClusters cluster_vertices(const BlockGraph& graph, int vertices) { return Greedy(graph, vertices).run(); }
+
 VertexClusters cluster_vertices(const SymmetricProduct& rows, int vertices) {
-  return Greedy(rows, vertices).run();
+  BlockGraph graph;
+  graph.row_start.assign(rows.row_start().begin(), rows.row_start().end());
+  graph.column = rows.column();
+  graph.norm.resize(graph.column.size());
+  for (std::size_t k = 0; k < graph.norm.size(); ++k) {
+    graph.norm[k] = Eigen::Map<const Eigen::Matrix<double, 9, 1>>(rows.block(static_cast<int>(k))).norm();
+  }
+  return cluster_vertices(graph, vertices);
 }
 
 }  // namespace bb

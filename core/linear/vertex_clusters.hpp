@@ -2,11 +2,20 @@
 // stiff contact draws both its sides into one cluster.
 #pragma once
 
+#include <cstdint>
 #include <vector>
 
 #include "core/linear/symmetric_product.hpp"
 
 namespace bb {
+
+/// The blocks of a matrix by rows. A column may stand several times in a row: its blocks add up.
+struct BlockGraph {
+  std::vector<std::int64_t> row_start;  // [n + 1]
+  std::vector<int> column;              // [blocks]
+  std::vector<double> norm;             // [blocks] Frobenius
+  int n() const { return static_cast<int>(row_start.size()) - 1; }
+};
 
 struct VertexClusters {
   std::vector<int> of;      // [n_blocks] cluster of a vertex
@@ -20,5 +29,6 @@ struct VertexClusters {
 /// below half of that joins the one it is most strongly coupled to, so up to 3/2 of `vertices` are in one.
 /// Serial. Cost: O(blocks log blocks).
 VertexClusters cluster_vertices(const SymmetricProduct& rows, int vertices);
+VertexClusters cluster_vertices(const BlockGraph& graph, int vertices);
 
 }  // namespace bb

@@ -4,7 +4,8 @@
 
 namespace bb::resident {
 
-void BlockJacobi::setup(const ResidentMatrix& matrix, const PcgVectors& v, FactorFaults* faults) {
+void BlockJacobi::setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t,
+                        FactorFaults* faults) {
   const Index n = v.partition.n_rows;
   if (inverse_.size() != 6 * n) {
     inverse_.resize(6 * n);

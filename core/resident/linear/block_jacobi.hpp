@@ -8,7 +8,8 @@ namespace bb::resident {
 class BlockJacobi final : public ResidentPreconditioner {
  public:
   explicit BlockJacobi(exec::Executor& executor) : executor_(executor), inverse_(executor, "diagonal factors") {}
-  void setup(const ResidentMatrix& matrix, const PcgVectors& v, FactorFaults* faults) override;
+  void setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
+             FactorFaults* faults) override;
   void apply(const PcgVectors& v) override;
   void update(const PcgVectors& v, int k) override;
   int version() const override { return version_; }

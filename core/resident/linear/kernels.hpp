@@ -3,3 +3,4 @@
 
 #include "core/resident/linear/block_jacobi_kernels.hpp"
 #include "core/resident/linear/pcg_kernels.hpp"
+#include "core/resident/linear/schwarz_kernels.hpp"

@@ -9,6 +9,7 @@
 #include "core/resident/linear/block_jacobi.hpp"
 #include "core/resident/linear/reduced_upload.hpp"
 #include "core/resident/linear/resident_pcg.hpp"
+#include "core/resident/linear/schwarz.hpp"
 
 namespace bb {
 namespace {
@@ -19,6 +20,7 @@ class PcgResident final : public LinearSolver {
       : forcing_(parameters),
         max_iterations_(integer(parameters, "max_iterations")),
         preconditioner_(text(parameters, "resident_preconditioner")),
+        cluster_vertices_(integer(parameters, "resident_cluster_vertices")),
         system_(executor_),
         b_(executor_, "right-hand side"),
         x_(executor_, "solution") {}
@@ -33,6 +35,7 @@ class PcgResident final : public LinearSolver {
   Forcing forcing_;
   int max_iterations_;
   std::string preconditioner_;
+  int cluster_vertices_;
   exec::HostExecutor executor_;  // first: what follows lives in its memory
   resident::UploadedSystem system_;
   exec::Buffer<double> b_, x_;
@@ -41,6 +44,7 @@ class PcgResident final : public LinearSolver {
 };
 
 std::unique_ptr<resident::ResidentPreconditioner> PcgResident::make() {
+  if (preconditioner_ == "schwarz") return std::make_unique<resident::Schwarz>(executor_, cluster_vertices_);
   return std::make_unique<resident::BlockJacobi>(executor_);
 }
 
@@ -66,9 +70,10 @@ LinearReport PcgResident::solve_checked(const ReducedSystem& system, const VecXd
   }
   if (b_norm == 0) return report;
   report = pcg_->solve(system_.matrix(), system_.fixed(), b_.data(), x_.data(), forcing_.tolerance(b_norm),
-                       max_iterations_);
+                       max_iterations_, system.pattern_id);
   system_.download(x_, x);
-  if (pcg_->fault() >= 0 && report.status == LinearStatus::preconditioner_indefinite) {
+  const bool vertex = pcg_->fault() >= 0 && pcg_->fault() < system_.n_vertices();
+  if (vertex && report.status == LinearStatus::preconditioner_indefinite) {
     const int dof = system.block_start[static_cast<std::size_t>(pcg_->fault())];
     report.detail = bad_diagonal_text(system, dof) + preconditioner_ + " needs positive definite ones";
   }
@@ -81,8 +86,10 @@ LinearSolverEntry linear_solver_pcg_resident() {
   LinearSolverEntry entry;
   entry.iterative = true;
   entry.parameters = Forcing::parameters();
-  entry.parameters.push_back({"resident_preconditioner", word({"block_jacobi"}), "block_jacobi",
-                              "the 3 x 3 blocks of the diagonal"});
+  entry.parameters.push_back({"resident_preconditioner", word({"block_jacobi", "schwarz"}), "block_jacobi",
+                              "the 3 x 3 blocks of the diagonal, or clusters of vertices on several levels"});
+  entry.parameters.push_back({"resident_cluster_vertices", count(1, resident::Schwarz::most_cluster_vertices),
+                              8, "vertices of a cluster of schwarz, and clusters of one on the level above"});
   entry.parameters.push_back({"max_iterations", count(1, 1000000000), 10000, "cap on iterations of a solve"});
   entry.make = [](const ParameterMap& complete) -> std::unique_ptr<LinearSolver> {
     return std::make_unique<PcgResident>(complete);

@@ -179,7 +179,8 @@ LinearStatus ResidentPcg::iterate(const double* b, LinearReport& report) {
 }
 
 LinearReport ResidentPcg::solve(const ResidentMatrix& matrix, const FixedMask* fixed, const double* b,
-                                double* x, double tolerance, int max_iterations) {
+                                double* x, double tolerance, int max_iterations,
+                                std::uint64_t pattern_id) {
   LinearReport report;
   report.iterative = true;
   report.tolerance = tolerance;
@@ -191,7 +192,7 @@ LinearReport ResidentPcg::solve(const ResidentMatrix& matrix, const FixedMask* f
   host_.tolerance = tolerance, host_.max_iterations = max_iterations;
   scalars_.set(0, host_);
   faults_.set(0, {no_fault, no_fault, no_fault});
-  preconditioner_->setup(matrix_, v_, faults_.data());
+  preconditioner_->setup(matrix_, v_, pattern_id, faults_.data());
   executor_.synchronize();
   report.factor_s = stopwatch.seconds();
 

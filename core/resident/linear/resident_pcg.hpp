@@ -18,10 +18,11 @@ class ResidentPcg {
 
   /// Solves A x = b up to |b - A x| <= tolerance |b| from x = 0, over the free degrees of freedom. fixed [n], b and
   /// x [3 n] are the executor's; x is 0 where degrees of freedom are fixed, b is not read there. All launches of an
-  /// iteration are one graph, kept while pointers stay; the pattern may change in place.
+  /// iteration are one graph, kept while pointers stay; the pattern may change in place. pattern_id: as in
+  /// ResidentPreconditioner::setup.
   /// Every way to fail has its status; the true residual decides (core/linear/conjugate_gradients.hpp).
   LinearReport solve(const ResidentMatrix& matrix, const FixedMask* fixed, const double* b, double* x,
-                     double tolerance, int max_iterations);
+                     double tolerance, int max_iterations, std::uint64_t pattern_id = 0);
   /// |v| over the free degrees of freedom.
   double norm(const FixedMask* fixed, const double* v);
   /// After a solve whose preconditioner had no factor: what of it, ResidentPreconditioner::fault_text; else -1.

@@ -20,15 +20,17 @@ struct PcgVectors {
 class ResidentPreconditioner {
  public:
   virtual ~ResidentPreconditioner() = default;
-  /// Launches what makes M; what has no factor is written to faults.
-  virtual void setup(const ResidentMatrix& matrix, const PcgVectors& v, FactorFaults* faults) = 0;
-  /// z = M^-1 r and the partial sums of r^T z and r^T r.
+  /// Makes M; what has no factor is written to faults. pattern_id changes when the pattern of the matrix or what is fixed
+  /// does; 0: unknown.
+  virtual void setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
+                     FactorFaults* faults) = 0;
+  /// z = M^-1 r and the partial sums of r^T z; those of r^T r are there.
   virtual void apply(const PcgVectors& v) = 0;
   /// x += alpha p, r -= alpha q, then as apply(); nothing where the run is over. k: number in the graph.
   virtual void update(const PcgVectors& v, int k) = 0;
   /// Changes when arguments of launches do: a graph of them is void then.
   virtual int version() const = 0;
-  /// "vertex", or what else FactorFaults counts.
+  /// "vertex 17", or what else FactorFaults counts.
   virtual std::string fault_text(Index number) const = 0;
 };
 
