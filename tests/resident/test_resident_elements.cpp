@@ -9,9 +9,8 @@ namespace bb {
 namespace {
 
 using namespace bb::test;
-constexpr double infinity = std::numeric_limits<double>::infinity();
 // Hinges of the CPU path are computed four at a time, which rounds otherwise; all else is the same arithmetic.
-constexpr double hinge_rounding = 1e-13;
+constexpr double hinge_rounding = 1e-14;
 
 double largest(const Positions& a) { return a.cwiseAbs().maxCoeff(); }
 
@@ -26,7 +25,7 @@ Difference compare(const OnExecutor& resident, const CpuElements& cpu) {
   int n_nonzero = 0;
   for (int r = 0; r < cpu.scene.n_vertices(); ++r) {
     for (exec::Index j = part.row_begin[r]; j < part.row_begin[r + 1]; ++j) {
-      if (j > part.row_begin[r]) EXPECT_LT(part.column[j - 1], part.column[j]);
+      EXPECT_TRUE(j == part.row_begin[r] || part.column[j - 1] < part.column[j]);
       const Mat3d expected = cpu.block(r, part.column[j]);
       for (int c = 0; c < 9; ++c) {
         const double number = part.value[resident::value_index(j, c)];
@@ -64,7 +63,7 @@ TEST(ResidentElements, HaveTheGradientAndEnergiesOfTheTerms) {
     exec::HostExecutor executor;
     OnExecutor resident(executor, scene, options, frame);
     resident.linearise(x);
-    ASSERT_GT(largest(cpu.gradient), 1);
+    ASSERT_GT(largest(cpu.gradient), 0.1);
     const double difference = largest(resident.gradient() - cpu.gradient) / largest(cpu.gradient);
     EXPECT_LE(difference, one.planar ? 0 : hinge_rounding) << one.model;
     worst = std::max(worst, difference);
@@ -134,7 +133,7 @@ TEST(ResidentElements, SumTheGroupsThatAreAskedFor) {
   resident.linearise(strained(scene));
   std::vector<std::vector<double>> seen;
   for (const TermSet set : {TermSet(TermGroup::load), TermSet(TermGroup::elastic), TermSet(TermGroup::limit),
-                            TermGroup::elastic | TermSet(TermGroup::load)}) {
+                            TermSet(TermGroup::elastic) | TermGroup::load}) {
     cpu.sum(set, StepHessian::clamped, HessianLevel({StepHessian::clamped}), {});
     resident.fill(set, {});
     const Difference found = compare(resident, cpu);

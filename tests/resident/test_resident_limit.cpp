@@ -72,9 +72,8 @@ TEST(ResidentLimit, HasTheTermsOfTheCpuForEveryRule) {
                     std::max(tolerance, 1e-14) * numbers.load_max);
         EXPECT_NEAR(moved, report.limit_kappa_change_rel.value, tolerance * (1 + moved));
         const bool moves = rule.stiffness.kind != LimitStiffness::Kind::fixed &&
-                           rule.stiffness.refresh == Refresh::per_iteration && size > 0.007 &&
-                           depends_on_gap(rule.stiffness.mass_term);
-        EXPECT_EQ(moved > 1e-6, moves || (size > 0.007 && moved > 1e-6)) << rule.shape;
+                           rule.stiffness.refresh == Refresh::per_iteration && size > 0.007;
+        EXPECT_EQ(moved > 1e-6, moves) << rule.shape;
         double energy = 0;
         for (const double e : term.families()[0].local.energy) energy += e;
         ASSERT_GT(energy, 0);
