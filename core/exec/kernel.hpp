@@ -117,5 +117,12 @@ BB_HD inline std::uint32_t atomic_add(std::uint32_t* at, std::uint32_t value) {
   return __atomic_fetch_add(at, value, __ATOMIC_ACQ_REL);
 #endif
 }
+BB_HD inline void atomic_add(Key* at, Key value) {
+#ifdef __CUDA_ARCH__
+  atomicAdd(reinterpret_cast<unsigned long long*>(at), static_cast<unsigned long long>(value));
+#else
+  __atomic_fetch_add(at, value, __ATOMIC_RELAXED);
+#endif
+}
 
 }  // namespace bb::exec

@@ -122,8 +122,8 @@ void ResidentBroadPhase::fill_kind(bool needed, const exec::Buffer<Index>& begin
   if (!needed || total == 0) return;
   const PairSearch s = search<K>();
   executor_.each(s.first.size(0), FillPairs<K>{s, begin.data(), out.data()});
-  const int bits = 32 + std::bit_width(static_cast<std::uint64_t>(s.first.size(0) - 1));
-  executor_.sort(out.data(), nullptr, total, bits);
+  const auto bits = std::bit_width(static_cast<Key>(s.first.size(0) - 1));
+  executor_.sort(out.data(), nullptr, total, 32 + static_cast<int>(bits));
 }
 
 void ResidentBroadPhase::fill(ResidentCandidates& out) {

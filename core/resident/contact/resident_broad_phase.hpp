@@ -11,8 +11,8 @@ namespace bb::resident {
 struct CandidateCounts {
   Index point_point = 0, point_edge = 0, point_triangle = 0, edge_edge = 0, obstacle = 0;
   Index total() const { return point_point + point_edge + point_triangle + edge_edge + obstacle; }
-  /// Of their lists.
-  std::size_t bytes() const { return static_cast<std::size_t>(total()) * sizeof(Key); }
+  /// Of their lists, with the room to grow that they are given.
+  std::size_t bytes() const { return static_cast<std::size_t>(total() + total() / 4) * sizeof(Key); }
 };
 
 /// Where the candidates of a motion come from without a list of them.

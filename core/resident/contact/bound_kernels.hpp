@@ -1,0 +1,273 @@
+// Kernels of the step bound: which pairs are proven to come later than the smallest time known, and the times of the
+// others. A launch reads what was known before it and changes nothing of that, so that no counter depends on an order.
+#pragma once
+
+#include "core/contact/obstacle_motion.hpp"
+#include "core/contact/pair_planes.hpp"
+#include "core/geometry/accd.hpp"
+#include "core/resident/contact/pair_search.hpp"
+
+namespace bb::resident {
+
+constexpr int n_bound_lists = 5;  // the kinds of PairKind in their order, then obstacles
+constexpr Key no_pair = ~Key{0};
+
+/// What is known of the bound of a motion.
+struct BoundRecord {
+  Key known, next;          // bits of the smallest time: before a batch, and with it
+  Key pair[n_bound_lists];  // the first of each list that stops the motion at `known`; no_pair
+  Key queries, probes, capped, zero;
+};
+
+/// What every query of a motion reads.
+struct BoundQuery {
+  SurfaceView surface;
+  const double *x0, *x1;
+  double park;  // in units of d_hat
+  int max_probes;
+  const Key* largest;  // complemented bits of the largest |coordinate|
+  BoundRecord* record;
+
+  BB_HD double known() const { return exec::from_ordered_bits(record->known); }
+  BB_HD double floor() const { return 2 * ulp_floor(exec::from_ordered_bits(~*largest)); }
+};
+
+/// largest: the least complemented bits of |x[i]|; no numbers are above infinity.
+struct LargestCoordinate {
+  static constexpr Index a_thread = 8;
+  static constexpr Index a_block = a_thread * exec::block_threads;
+  const double* x;
+  Index n;
+  Key* largest;  // all ones before
+
+  struct Shared {
+    Key most[exec::block_threads];
+  };
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
+    const LargestCoordinate k = *this;
+    Key* const most = shared.most;
+    block.threads([=](int t) {
+      most[t] = 0;
+      for (Index m = 0; m < a_thread; ++m) {
+        const Index i = b * a_block + m * exec::block_threads + t;
+        if (i >= k.n) break;
+        const Key bits = exec::ordered_bits(k.x[i]) << 1 >> 1;
+        most[t] = bits > most[t] ? bits : most[t];
+      }
+    });
+    for (int half = exec::block_threads / 2; half > 0; half /= 2) {
+      block.threads([=](int t) {
+        if (t < half) most[t] = most[t + half] > most[t] ? most[t + half] : most[t];
+      });
+    }
+    block.threads([=](int t) {
+      if (t == 0) exec::atomic_min(k.largest, ~most[0]);
+    });
+  }
+};
+
+/// Points of a pair relative to its first one.
+template <PairKind K>
+BB_HD PairLanes<K, double> relative_points(const double* x, const int* vertex) {
+  PairLanes<K, double> out;
+  for (int k = 0; k < pair_points(K); ++k) {
+    for (int c = 0; c < 3; ++c) {
+      out.x[k][c] = x[3 * static_cast<Index>(vertex[k]) + c] - x[3 * static_cast<Index>(vertex[0]) + c];
+    }
+  }
+  return out;
+}
+
+/// A time before which the pair stays above its stop level, by axes and planes; no better than needed to be above
+/// `enough`. 0: nothing is proven.
+template <PairKind K>
+BB_HD double proven_time(const BoundQuery& q, const PairVertices<K>& pair, double enough) {
+  const double park = q.park * pair.law.d_hat, floor = q.floor();
+  const double reach = pair.law.offset + 2 * (park > floor ? park : floor);
+  const PairLanes<K, double> points = relative_points<K>(q.x0, pair.vertex);
+  const PairLanes<K, double> motion = relative_points<K>(q.x1, pair.vertex) - points;
+  const double by_axes = proven_times_by_axes<K, double>(points, motion, reach);
+  if (by_axes > enough) return by_axes;
+  const double by_planes = proven_times<K, double>(points, motion, reach, enough);
+  return by_planes > by_axes ? by_planes : by_axes;
+}
+
+/// What the queries of one item counted.
+struct QueryCounts {
+  Key queries = 0, probes = 0, capped = 0, zero = 0;
+  BB_HD void add_to(BoundRecord& record) const {
+    if (queries > 0) exec::atomic_add(&record.queries, queries);
+    if (probes > 0) exec::atomic_add(&record.probes, probes);
+    if (capped > 0) exec::atomic_add(&record.capped, capped);
+    if (zero > 0) exec::atomic_add(&record.zero, zero);
+  }
+};
+
+/// The pair's own time, 1 when it is proven to be above `enough`.
+template <PairKind K>
+BB_HD double time_of(const BoundQuery& q, const PairVertices<K>& pair, double enough, QueryCounts& counts) {
+  constexpr int N = pair_points(K);
+  const AccdResult<double> r =
+      accd<K, double>(points_of<N>(q.x0, pair.vertex), points_of<N>(q.x1, pair.vertex), pair.law.offset,
+                      q.park * pair.law.d_hat, q.max_probes, enough);
+  const double toi = r.hit ? r.toi : 1;
+  counts.queries += 1;
+  counts.probes += static_cast<Key>(r.probes);
+  counts.capped += r.capped ? 1 : 0;
+  counts.zero += toi == 0 ? 1 : 0;
+  return toi;
+}
+
+BB_HD inline double obstacle_time(const BoundQuery& q, Index point, Index o) {
+  const int* const v = q.surface.points.vertex + point;
+  return obstacle_toi<double>(q.surface.obstacles[o].surface(), points_of<1>(q.x0, v), points_of<1>(q.x1, v),
+                              q.surface.points.offset[point], q.park * q.surface.points.d_hat[point]);
+}
+
+/// The earliest time of each item of a batch, and its pair.
+struct BatchTimes {
+  Key *time, *pair;
+  BB_HD void put(const BoundQuery& q, Index i, double toi, Key which) const {
+    const Key bits = exec::ordered_bits(toi);
+    time[i] = bits;
+    pair[i] = which;
+    if (toi < 1) exec::atomic_min(&q.record->next, bits);
+  }
+};
+
+/// Pair i of a chunk: until when it is proven apart, rounded down, and whether it has to be asked.
+template <PairKind K>
+struct ScreenPairs {
+  BoundQuery query;
+  const Key* candidate;
+  float* proven;
+  Index* keep;  // [n + 1]
+  BB_HD void operator()(Index i) const {
+    const double known = query.known();
+    const auto pair = pair_vertices<K>(query.surface, first_of(candidate[i]), second_of(candidate[i]));
+    const double until = proven_time<K>(query, pair, known);
+    keep[i] = until > known ? 0 : 1;
+    const float below = until > 0 ? float_below(until) : 0;
+    proven[i] = below > 0 ? below : 0;
+  }
+};
+
+/// asked[place of i]: the time that pair i is proven, then i, so that sorting its bits puts early ones first.
+struct KeepPairs {
+  const float* proven;
+  const Index* place;  // [n + 1]
+  Key* asked;
+  BB_HD void operator()(Index i) const {
+    if (place[i + 1] == place[i]) return;
+    std::uint32_t bits;
+    memcpy(&bits, proven + i, sizeof bits);
+    asked[place[i]] = static_cast<Key>(i) << 32 | bits;
+  }
+};
+
+/// Asks the pairs of a batch that are not proven to be later than what is known.
+template <PairKind K>
+struct AskPairs {
+  BoundQuery query;
+  const Key *candidate, *asked;
+  BatchTimes out;
+  BB_HD void operator()(Index i) const {
+    const std::uint32_t bits = static_cast<std::uint32_t>(asked[i]);
+    float proven;
+    memcpy(&proven, &bits, sizeof proven);
+    const Key which = candidate[asked[i] >> 32];
+    const double known = query.known();
+    QueryCounts counts;
+    double toi = 1;
+    if (!(static_cast<double>(proven) > known)) {
+      const auto pair = pair_vertices<K>(query.surface, first_of(which), second_of(which));
+      toi = time_of<K>(query, pair, known, counts);
+    }
+    out.put(query, i, toi, which);
+    counts.add_to(*query.record);
+  }
+};
+
+/// Asks all pairs of the leaves from `place` on without a list of them.
+template <PairKind K>
+struct AskInTree {
+  BoundQuery query;
+  PairSearch search;
+  Index place;
+  BatchTimes out;
+  BB_HD void operator()(Index i) const {
+    QueryCounts counts;
+    double first = 1;
+    Key which = no_pair;
+    const double known = query.known();
+    for_each_pair<K>(search, place + i, [&](Index a, Index b) {
+      const double enough = first < known ? first : known;
+      const auto pair = pair_vertices<K>(query.surface, a, b);
+      if (proven_time<K>(query, pair, enough) > enough) return;
+      const double toi = time_of<K>(query, pair, enough, counts);
+      const Key key = pair_of(a, b);
+      if (toi < first || (toi == first && key < which)) first = toi, which = key;
+    });
+    out.put(query, i, first, which);
+    counts.add_to(*query.record);
+  }
+};
+
+/// Times of obstacle candidates; these are not counted as queries.
+struct AskObstacles {
+  BoundQuery query;
+  const Key* candidate;
+  BatchTimes out;
+  BB_HD void operator()(Index i) const {
+    QueryCounts counts;
+    const double toi = obstacle_time(query, first_of(candidate[i]), second_of(candidate[i]));
+    counts.zero = toi == 0 ? 1 : 0;
+    out.put(query, i, toi, candidate[i]);
+    counts.add_to(*query.record);
+  }
+};
+
+/// The same for all obstacles of surface points, without a list.
+struct AskObstaclesOfPoints {
+  BoundQuery query;
+  Index point;
+  BatchTimes out;
+  BB_HD void operator()(Index i) const {
+    QueryCounts counts;
+    double first = 1;
+    Key which = no_pair;
+    for (int o = 0; o < query.surface.n_obstacles; ++o) {
+      if (!may_reach(query.surface, point + i, o, query.x0, query.x1)) continue;
+      const double toi = obstacle_time(query, point + i, o);
+      counts.zero += toi == 0 ? 1 : 0;
+      if (toi < first) first = toi, which = pair_of(point + i, o);
+    }
+    out.put(query, i, first, which);
+    counts.add_to(*query.record);
+  }
+};
+
+/// What the batch found is known from here on; earlier pairs of a later time are not the first any more.
+struct SettleBatch {
+  BoundRecord* record;
+  BB_HD void operator()(Index) const {
+    if (!(record->next < record->known)) return;
+    record->known = record->next;
+    for (Key& pair : record->pair) pair = no_pair;
+  }
+};
+
+/// The first pair of a list, in its order, among those of the batch that stop the motion when it stops.
+struct NamePairs {
+  BatchTimes times;
+  int list;
+  BoundRecord* record;
+  BB_HD void operator()(Index i) const {
+    if (times.time[i] == record->known && times.pair[i] != no_pair && record->known < exec::ordered_bits(1.0)) {
+      exec::atomic_min(&record->pair[list], times.pair[i]);
+    }
+  }
+};
+
+}  // namespace bb::resident

@@ -1,0 +1,168 @@
+#include "core/resident/contact/resident_step_bound.hpp"
+
+#include <algorithm>
+#include <limits>
+
+#include "core/contact/contact_row.hpp"
+
+namespace bb::resident {
+
+namespace {
+constexpr int obstacle_list = n_bound_lists - 1;
+}
+
+ResidentStepBound::ResidentStepBound(exec::Executor& executor, const ResidentSurface& surface,
+                                     const StopLevel& level, const BoundBatches& batches)
+    : executor_(executor),
+      surface_(surface),
+      level_(level),
+      batches_(batches),
+      record_(executor, "step bound", 1),
+      largest_(executor, "largest coordinate", 1),
+      proven_(executor, "proven times"),
+      place_(executor, "places of asked pairs"),
+      asked_(executor, "asked pairs"),
+      time_(executor, "times of asked pairs"),
+      pair_(executor, "pairs of those times") {}
+
+bool ResidentStepBound::start(const Column& x0, const Column& x1) {
+  executor_.fill_bytes(largest_.data(), 0xff, sizeof(Key));
+  for (const Column* x : {&x0, &x1}) {
+    const Index n_blocks = (x->size() + LargestCoordinate::a_block - 1) / LargestCoordinate::a_block;
+    executor_.blocks(n_blocks, LargestCoordinate{x->data(), x->size(), largest_.data()});
+  }
+  BoundRecord record{};
+  record.known = record.next = exec::ordered_bits(1.0);
+  std::fill(std::begin(record.pair), std::end(record.pair), no_pair);
+  record_.set(0, record);
+  query_ = {surface_.view(),   x0.data(),       x1.data(),      level_.park,
+            level_.max_probes, largest_.data(), record_.data()};
+  if (executor_.counts_only() || x0.size() == 0) return true;
+  return ~largest_.get(0) < exec::ordered_bits(std::numeric_limits<double>::infinity());
+}
+
+/// ask(begin, n, times) for batches of [0, n), one after another.
+template <class Ask>
+void ResidentStepBound::in_batches(Index n, int list, const Ask& ask) {
+  const Index most = std::min(n, batches_.most_asked);
+  if (time_.size() < most) time_.resize(most), pair_.resize(most);
+  const BatchTimes times{time_.data(), pair_.data()};
+  Index length = batches_.first_asked;
+  for (Index begin = 0; begin < n; begin += length) {
+    if (begin > 0) length = std::min(2 * length, batches_.most_asked);
+    const Index m = std::min(length, n - begin);
+    ask(begin, m, times);
+    executor_.each(1, SettleBatch{record_.data()});
+    executor_.each(m, NamePairs{times, list, record_.data()});
+  }
+}
+
+/// Those of n pairs that have to be asked, early ones first, into asked_. Returns how many.
+template <PairKind K>
+Index ResidentStepBound::screen(const Key* candidates, Index n) {
+  if (proven_.size() < n) proven_.resize(n), place_.resize(n + 1);
+  executor_.each(n, ScreenPairs<K>{query_, candidates, proven_.data(), place_.data()});
+  executor_.fill_bytes(place_.data() + n, 0, sizeof(Index));
+  executor_.exclusive_scan(place_.data(), n + 1);
+  const Index m = executor_.counts_only() ? n : place_.get(n);
+  if (asked_.size() < m) asked_.grow(m);
+  executor_.each(n, KeepPairs{proven_.data(), place_.data(), asked_.data()});
+  executor_.sort(asked_.data(), nullptr, m, 32);
+  return m;
+}
+
+template <PairKind K>
+void ResidentStepBound::ask_list(const exec::Buffer<Key>& candidates) {
+  for (Index begin = 0; begin < candidates.size(); begin += batches_.chunk) {
+    const Key* const chunk = candidates.data() + begin;
+    const Index m = screen<K>(chunk, std::min(batches_.chunk, candidates.size() - begin));
+    in_batches(m, static_cast<int>(K), [&](Index at, Index n, const BatchTimes& times) {
+      executor_.each(n, AskPairs<K>{query_, chunk, asked_.data() + at, times});
+    });
+  }
+}
+
+template <PairKind K>
+void ResidentStepBound::ask_tree(const PairSearch& search) {
+  const Index n = search.first.top < 0 || search.second.top < 0 ? 0 : search.first.size(0);
+  in_batches(n, static_cast<int>(K), [&](Index at, Index m, const BatchTimes& times) {
+    executor_.each(m, AskInTree<K>{query_, search, at, times});
+  });
+}
+
+/// Vertices of a pair, as StepBoundFinder names it.
+ContactKey ResidentStepBound::key_of(int list, Key pair) const {
+  const SurfaceView s = surface_.view();
+  const auto vertices = [&]<int N>(const PrimitiveView<N>& of, Index i) {
+    std::array<int, N> out;
+    executor_.download(out.data(), of.vertex + N * i, sizeof out);
+    return out;
+  };
+  const Index i = first_of(pair), j = second_of(pair);
+  const int point = list == static_cast<int>(PairKind::edge_edge) ? -1 : vertices(s.points, i)[0];
+  if (list == obstacle_list) return obstacle_key(static_cast<int>(j), point);
+  if (list == static_cast<int>(PairKind::point_point)) return pair_key(std::array{point, vertices(s.points, j)[0]});
+  if (list == static_cast<int>(PairKind::point_triangle)) {
+    const auto t = vertices(s.triangles, j);
+    return pair_key(std::array{point, t[0], t[1], t[2]});
+  }
+  const auto b = vertices(s.edges, j);
+  if (point >= 0) return pair_key(std::array{point, b[0], b[1]});
+  const auto a = vertices(s.edges, i);
+  return pair_key(std::array{a[0], a[1], b[0], b[1]});
+}
+
+StepBound ResidentStepBound::result() const {
+  StepBound out;
+  if (executor_.counts_only()) return out;
+  const BoundRecord record = record_.get(0);
+  out.alpha = exec::from_ordered_bits(record.known);
+  out.queries = static_cast<long long>(record.queries);
+  out.probes = static_cast<long long>(record.probes);
+  out.capped = static_cast<long long>(record.capped);
+  out.zero = static_cast<long long>(record.zero);
+  for (int list = 0; list < n_bound_lists; ++list) {
+    if (record.pair[list] == no_pair) continue;
+    out.kind = static_cast<ContactKind>(list);
+    out.key = key_of(list, record.pair[list]);
+    break;
+  }
+  return out;
+}
+
+namespace {
+StepBound of_no_motion() {
+  StepBound out;
+  out.alpha = 0;
+  return out;
+}
+}  // namespace
+
+StepBound ResidentStepBound::find(const ResidentCandidates& candidates, const Column& x0, const Column& x1) {
+  if (!start(x0, x1)) return of_no_motion();
+  const Key* const obstacles = candidates.obstacle.data();
+  in_batches(candidates.obstacle.size(), obstacle_list, [&](Index at, Index n, const BatchTimes& times) {
+    executor_.each(n, AskObstacles{query_, obstacles + at, times});
+  });
+  ask_list<PairKind::point_point>(candidates.point_point);
+  ask_list<PairKind::point_edge>(candidates.point_edge);
+  ask_list<PairKind::point_triangle>(candidates.point_triangle);
+  ask_list<PairKind::edge_edge>(candidates.edge_edge);
+  return result();
+}
+
+StepBound ResidentStepBound::find_without_list(const CandidateSource& source, const Column& x0,
+                                               const Column& x1) {
+  if (!start(x0, x1)) return of_no_motion();
+  const Index n_points = source.obstacles ? surface_.view().points.n : 0;
+  in_batches(n_points, obstacle_list, [&](Index at, Index n, const BatchTimes& times) {
+    executor_.each(n, AskObstaclesOfPoints{query_, at, times});
+  });
+  ask_tree<PairKind::point_point>(source.point_point);
+  ask_tree<PairKind::point_edge>(source.point_edge);
+  ask_tree<PairKind::point_triangle>(source.point_triangle);
+  ask_tree<PairKind::edge_edge>(source.edge_edge);
+  return result();
+}
+
+}  // namespace bb::resident

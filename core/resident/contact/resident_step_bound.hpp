@@ -1,0 +1,62 @@
+// The step bound on an executor: that of StepBoundFinder (core/contact/step_bound.hpp), alpha and the pair that limits
+// bit for bit.
+#pragma once
+
+#include "core/contact/step_bound.hpp"
+#include "core/resident/contact/bound_kernels.hpp"
+#include "core/resident/contact/resident_broad_phase.hpp"
+
+namespace bb::resident {
+
+/// How many pairs are looked at before what they found is used for the next ones. They change counters and memory,
+/// never alpha or the pair.
+struct BoundBatches {
+  Index chunk = 1 << 20;                              // pairs that are screened at a time
+  Index first_asked = 1 << 12, most_asked = 1 << 18;  // pairs that are asked at a time, doubling from the first
+};
+
+/// Pairs are screened in chunks of their lists: axes and planes prove of most that they come later than the smallest
+/// time known. The rest is asked in batches, in the order of what is proven of it. Counters are the same in any order
+/// of a launch; they differ from the CPU path's, whose batches are others. Keeps its buffers: 12 B a pair of a
+/// chunk, 8 B a pair that has to be asked, 16 B a pair of a batch.
+class ResidentStepBound {
+ public:
+  using Column = exec::Buffer<double>;
+
+  /// surface must outlive this.
+  ResidentStepBound(exec::Executor& executor, const ResidentSurface& surface, const StopLevel& level,
+                    const BoundBatches& batches = {});
+
+  /// Of all candidates of x0 -> x1 ([3 n_vertices] m). A motion that is not finite: alpha 0, without a pair.
+  StepBound find(const ResidentCandidates& candidates, const Column& x0, const Column& x1);
+  /// The same without lists, for when they would need too much memory: pairs are asked where the search of the trees
+  /// finds them. source: of a count of the same motion.
+  StepBound find_without_list(const CandidateSource& source, const Column& x0, const Column& x1);
+
+ private:
+  /// False when the motion is not finite.
+  bool start(const Column& x0, const Column& x1);
+  template <PairKind K>
+  void ask_list(const exec::Buffer<Key>& candidates);
+  template <PairKind K>
+  Index screen(const Key* candidates, Index n);
+  template <PairKind K>
+  void ask_tree(const PairSearch& search);
+  template <class Ask>
+  void in_batches(Index n, int list, const Ask& ask);
+  StepBound result() const;
+  ContactKey key_of(int list, Key pair) const;
+
+  exec::Executor& executor_;
+  const ResidentSurface& surface_;
+  const StopLevel level_;
+  const BoundBatches batches_;
+  BoundQuery query_{};
+  exec::Buffer<BoundRecord> record_;
+  exec::Buffer<Key> largest_;
+  exec::Buffer<float> proven_;
+  exec::Buffer<Index> place_;
+  exec::Buffer<Key> asked_, time_, pair_;
+};
+
+}  // namespace bb::resident
