@@ -1,6 +1,8 @@
 // Every kernel of the room, for what instantiates them; their names are in kernels.inc.
 #pragma once
 
+#include "core/resident/contact/bound_kernels.hpp"
+#include "core/resident/contact/candidate_kernels.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/gather_kernels.hpp"
 #include "core/resident/contact/row_kernels.hpp"
@@ -10,3 +12,4 @@
 #include "core/resident/contact/stiffness_kernels.hpp"
 #include "core/resident/contact/sum_kernels.hpp"
 #include "core/resident/contact/term_kernels.hpp"
+#include "core/resident/contact/tree_kernels.hpp"

@@ -1,0 +1,280 @@
+// Candidates found on an executor: those of the CPU path, of all pairs of boxes, and in any order the same.
+#include <gtest/gtest.h>
+
+#include "core/contact/pair_geometry.hpp"
+#include "core/exec/counting_executor.hpp"
+#include "tests/resident/contact_motion.hpp"
+
+namespace bb::test {
+namespace {
+
+using exec::Index;
+
+std::size_t expect_same(const Candidates& found, const Candidates& expected) {
+  EXPECT_EQ(found.point_point, expected.point_point);
+  EXPECT_EQ(found.point_edge, expected.point_edge);
+  EXPECT_EQ(found.point_triangle, expected.point_triangle);
+  EXPECT_EQ(found.edge_edge, expected.edge_edge);
+  EXPECT_EQ(found.obstacle, expected.obstacle);
+  return expected.point_point.size() + expected.point_edge.size() + expected.point_triangle.size() +
+         expected.edge_edge.size() + expected.obstacle.size();
+}
+
+Candidates found(const Scene& scene, const Positions& x0, const Positions& x1) {
+  exec::HostExecutor executor;
+  ResidentMotion motion(executor, scene, x0, x1);
+  motion.update();
+  return lists_of(motion.candidates);
+}
+
+TEST(ResidentBroadPhase, FindsWhatTheCpuPathFindsInSoups) {
+  std::size_t n_pairs[3] = {};
+  for (unsigned seed = 1; seed <= 60; ++seed) {
+    const Scene scene = soup_scene(seed, 8 + static_cast<int>(seed));
+    for (const double size : {0.5, 1e-2, 1e-5}) {
+      const Positions x1 = moved(scene, size, seed + 7);
+      const Candidates expected = cpu_candidates(scene, scene.x0, x1);
+      expect_same(found(scene, scene.x0, x1), expected);
+      n_pairs[0] += expected.point_triangle.size();
+      n_pairs[1] += expected.edge_edge.size();
+      n_pairs[2] += expected.obstacle.size();
+    }
+  }
+  for (const std::size_t n : n_pairs) EXPECT_GT(n, 5000U);
+}
+
+TEST(ResidentBroadPhase, FindsThePlanarPairsOfTheCpuPath) {
+  for (const PlanarPairs pairs : {PlanarPairs::vertex_vertex, PlanarPairs::point_edge}) {
+    std::size_t n_pairs = 0, n_adjacent = 0;
+    for (unsigned seed = 1; seed <= 20; ++seed) {
+      const Scene scene = planar_scene(pairs, seed);
+      for (const double size : {0.3, 1e-3}) {
+        const Positions x1 = moved(scene, size, seed);
+        const Candidates expected = cpu_candidates(scene, scene.x0, x1);
+        n_pairs += expect_same(found(scene, scene.x0, x1), expected);
+        const Surface s(scene);
+        n_adjacent += s.connected_pairs().size() + s.opposite_corners().size();
+      }
+    }
+    EXPECT_GT(n_pairs, 5000U);
+    EXPECT_GT(n_adjacent, 1000U);
+  }
+}
+
+/// All pairs of boxes, with a frame of the test's own.
+template <PairKind K, int A, int B>
+std::vector<IndexPair> brute_force(const resident::PairSearch& s, const resident::PrimitiveView<A>& a,
+                                   const resident::PrimitiveView<B>& b, const resident::MotionView& motion) {
+  std::vector<IndexPair> out;
+  for (Index i = 0; i < a.n; ++i) {
+    const auto p = primitive_box(a, i, motion);
+    for (Index j = resident::one_tree<K> ? i + 1 : 0; j < b.n; ++j) {
+      const auto q = primitive_box(b, j, motion);
+      bool meet = a.free[i] != 0 || b.free[j] != 0;
+      for (int c = 0; c < 3; ++c) meet = meet && p.lo[c] <= q.hi[c] && q.lo[c] <= p.hi[c];
+      if (meet && resident::may_pair<K>(s, i, j)) out.push_back({static_cast<int>(i), static_cast<int>(j)});
+    }
+  }
+  return out;
+}
+
+resident::MotionFrame frame_of(const Surface& s, const Positions& x0, const Positions& x1) {
+  resident::MotionFrame out{};
+  double start = 0, end = 0;
+  for (int c = 0; c < 3; ++c) {
+    std::vector<double> way;
+    for (const auto& v : s.points.vertices) way.push_back(x1(c, v[0]) - x0(c, v[0]));
+    std::sort(way.begin(), way.end());
+    out.start[c] = x0(c, s.points.vertices[0][0]);
+    out.end[c] = out.start[c] + way[way.size() / 2];
+    start = std::max(start, std::abs(out.start[c]));
+    end = std::max(end, std::abs(out.end[c]));
+  }
+  out.rounding = 0x1p-50 * (start + end);
+  return out;
+}
+
+TEST(ResidentBroadPhase, FindsAllPairsOfBoxes) {
+  std::size_t n_pairs = 0;
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const Scene scene = soup_scene(seed, 40);
+    const Positions x1 = moved(scene, 0.1, seed);
+    exec::HostExecutor executor;
+    ResidentMotion motion(executor, scene, scene.x0, x1);
+    motion.update();
+    const auto frame = frame_of(motion.surface, scene.x0, x1);
+    const resident::MotionView view{motion.x0.data(), motion.x1.data(), &frame};
+    const auto surface = motion.resident.view();
+    const auto source = motion.broad_phase.source();
+    const auto pt = brute_force<PairKind::point_triangle>(source.point_triangle, surface.points, surface.triangles, view);
+    const auto ee = brute_force<PairKind::edge_edge>(source.edge_edge, surface.edges, surface.edges, view);
+    EXPECT_EQ(pairs_of(motion.candidates.point_triangle), pt);
+    EXPECT_EQ(pairs_of(motion.candidates.edge_edge), ee);
+    n_pairs += pt.size() + ee.size();
+  }
+  EXPECT_GT(n_pairs, 5000U);
+}
+
+TEST(ResidentBroadPhase, HoldsEveryClosePair) {
+  struct Pointwise : Surface {
+    using Surface::Surface;
+    using Surface::disjoint;
+    static bool disjoint(const std::array<int, 1>& p, const std::array<int, 3>& t) { return disjoint(p[0], t); }
+  };
+  std::size_t n_pt = 0, n_ee = 0;
+  for (unsigned seed = 1; seed <= 4; ++seed) {
+    const Scene scene = soup_scene(seed, 16);
+    const Positions x1 = moved(scene, 0.2, seed);
+    const Candidates c = found(scene, scene.x0, x1);
+    const Pointwise s(scene);
+    const auto held = [&]<PairKind K>(const auto& all, const auto& a, const auto& b) {
+      std::size_t n = 0;
+      for (std::size_t i = 0; i < a.size(); ++i) {
+        for (std::size_t j = K == PairKind::edge_edge ? i + 1 : 0; j < b.size(); ++j) {
+          const IndexPair index{static_cast<int>(i), static_cast<int>(j)};
+          if ((!a.free[i] && !b.free[j]) || !Pointwise::disjoint(a.vertices[i], b.vertices[j])) continue;
+          const ContactPair<K> pair = contact_pair<K>(s, index);
+          bool close = false;
+          for (const double t : {0.0, 0.35, 1.0}) {
+            const Positions x = scene.x0 + t * (x1 - scene.x0);
+            close = close ||
+                    closest_points<K, double>(gather(x, pair.vertex)).d <= pair.law.offset + pair.law.d_hat;
+          }
+          if (!close) continue;
+          EXPECT_TRUE(std::binary_search(all.begin(), all.end(), index));
+          ++n;
+        }
+      }
+      return n;
+    };
+    n_pt += held.template operator()<PairKind::point_triangle>(c.point_triangle, s.points, s.triangles);
+    n_ee += held.template operator()<PairKind::edge_edge>(c.edge_edge, s.edges, s.edges);
+  }
+  EXPECT_GT(n_pt, 20U);
+  EXPECT_GT(n_ee, 20U);
+}
+
+/// n free points in a row or all at one place, and a triangle among them.
+Scene points_scene(int n, bool coincident) {
+  Scene scene;
+  std::vector<Vec3d> points;
+  for (int i = 0; i < n; ++i) points.emplace_back(coincident ? 0.3 : 0.01 * i, 0.2, 0.005);
+  add_body(scene, "points", points, {}, 0.02);
+  add_body(scene, "triangle", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)}, {{0, 1, 2}}, 0.02, true);
+  return scene;
+}
+
+TEST(ResidentBroadPhase, WorksForEveryNumberOfPrimitivesAndForEqualCodes) {
+  for (int n = 1; n <= 70; ++n) {
+    for (const bool coincident : {false, true}) {
+      const Scene scene = points_scene(n, coincident);
+      const Candidates c = found(scene, scene.x0, scene.x0);
+      EXPECT_EQ(expect_same(c, cpu_candidates(scene, scene.x0, scene.x0)), c.point_triangle.size());
+      EXPECT_EQ(static_cast<int>(c.point_triangle.size()), n);
+    }
+  }
+  Scene stack;  // all boxes equal: every edge meets every other one that it shares no vertex with
+  for (int k = 0; k < 30; ++k) {
+    add_body(stack, "t", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(0, 1, 0)}, {{0, 1, 2}}, 0.01);
+  }
+  const Candidates c = found(stack, stack.x0, stack.x0);
+  expect_same(c, cpu_candidates(stack, stack.x0, stack.x0));
+  EXPECT_EQ(c.point_triangle.size(), 30U * 29U * 3U);
+  EXPECT_EQ(c.edge_edge.size(), 30U * 29U / 2U * 9U);
+}
+
+TEST(ResidentBroadPhase, TakesOffTheMotionThatAllShare) {
+  Scene scene = soup_scene(1, 60);
+  scene.obstacles.clear();
+  Positions x1 = scene.x0;
+  x1.colwise() += Vec3d(50, -70, 20);
+  const Candidates still = found(scene, scene.x0, scene.x0), falling = found(scene, scene.x0, x1);
+  EXPECT_GT(expect_same(falling, cpu_candidates(scene, scene.x0, x1)), 100U);
+  EXPECT_LT(falling.edge_edge.size(), 2 * still.edge_edge.size());
+}
+
+TEST(ResidentBroadPhase, AgreesWhereNumbersAreNone) {
+  const double inf = std::numeric_limits<double>::infinity(), none = std::numeric_limits<double>::quiet_NaN();
+  for (const double bad : {inf, -inf, none, 1e39, -1e300}) {
+    const Scene scene = soup_scene(5, 20);
+    for (const int v : {0, 7, 60}) {
+      for (const bool at_start : {false, true}) {
+        Positions x0 = scene.x0, x1 = moved(scene, 0.1, 3);
+        (at_start ? x0 : x1)(v % 3, v) = bad;
+        EXPECT_GT(expect_same(found(scene, x0, x1), cpu_candidates(scene, x0, x1)), 100U);
+      }
+    }
+  }
+}
+
+TEST(ResidentBroadPhase, IsTheSameInAnyOrder) {
+  const Scene scene = soup_scene(3, 150);
+  const Positions x1 = moved(scene, 0.1, 5);
+  const Candidates expected = cpu_candidates(scene, scene.x0, x1);
+  for (const auto order : {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
+    for (unsigned seed = 1; seed <= (order == exec::Order::shuffled ? 2 : 1); ++seed) {
+      exec::HostExecutor executor(order, seed);
+      ResidentMotion motion(executor, scene, scene.x0, x1);
+      motion.update();
+      EXPECT_GT(expect_same(lists_of(motion.candidates), expected), 1000U);
+    }
+  }
+}
+
+TEST(ResidentBroadPhase, FollowsTheSceneFromMotionToMotion) {
+  const Scene scene = soup_scene(4, 50);
+  exec::HostExecutor executor;
+  ResidentMotion motion(executor, scene, scene.x0, scene.x0);
+  std::size_t most = 0, least = 1000000;
+  for (const double size : {0.01, 1.0, 0.0, 0.2, 1e-6}) {
+    const Positions x1 = moved(scene, size, 9);
+    motion.move(scene.x0, x1);
+    motion.update();
+    const std::size_t n = expect_same(lists_of(motion.candidates), cpu_candidates(scene, scene.x0, x1));
+    most = std::max(most, n);
+    least = std::min(least, n);
+  }
+  EXPECT_GT(most, 3 * least);
+  motion.broad_phase.update(motion.x0, motion.x0, motion.candidates);
+  expect_same(lists_of(motion.candidates), cpu_candidates(scene, scene.x0, scene.x0));
+}
+
+TEST(ResidentBroadPhase, CountsBeforeAnyListIsThere) {
+  const Scene scene = soup_scene(2, 100);
+  exec::HostExecutor executor;
+  ResidentMotion motion(executor, scene, scene.x0, moved(scene, 0.3, 1));
+  const auto counts = motion.broad_phase.count(motion.x0, motion.x1);
+  EXPECT_EQ(motion.candidates.edge_edge.size(), 0);
+  EXPECT_GT(counts.edge_edge, 1000);
+  executor.limit_memory(executor.memory().bytes() + counts.bytes() / 2);
+  try {
+    motion.broad_phase.fill(motion.candidates);
+    FAIL() << "there was no room";
+  } catch (const exec::OutOfMemory& error) {
+    EXPECT_NE(std::string(error.what()).find("candidates "), std::string::npos) << error.what();
+  }
+  executor.limit_memory(0);
+  motion.broad_phase.fill(motion.candidates);
+  EXPECT_EQ(motion.candidates.edge_edge.size(), counts.edge_edge);
+  EXPECT_EQ(motion.candidates.point_triangle.size(), counts.point_triangle);
+  EXPECT_EQ(motion.candidates.obstacle.size(), counts.obstacle);
+}
+
+TEST(ResidentBroadPhase, NeedsTheMemoryThatACountForetells) {
+  const Scene scene = soup_scene(1, 80);
+  const Positions x1 = moved(scene, 0.1, 2);
+  exec::HostExecutor executor;
+  ResidentMotion motion(executor, scene, scene.x0, x1);
+  motion.update();
+  const Candidates lists = lists_of(motion.candidates);
+  const auto length = [](const auto& list) { return static_cast<Index>(list.size()); };
+  exec::CountingExecutor counting;
+  ResidentMotion counted(counting, scene, scene.x0, x1);
+  counted.broad_phase.expect({0, 0, length(lists.point_triangle), length(lists.edge_edge), length(lists.obstacle)});
+  counted.update();
+  EXPECT_EQ(counting.memory().by_name(), executor.memory().by_name());
+  EXPECT_GT(counting.memory().by_name().at("tree of edges"), 43U * motion.surface.edges.size());
+}
+
+}  // namespace
+}  // namespace bb::test
