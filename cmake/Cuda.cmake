@@ -1,4 +1,4 @@
-# CUDA as an optional language: BB_CUDA AUTO compiles the device check where nvcc is found, ON demands it, OFF never
+# CUDA as an optional language: BB_CUDA AUTO compiles device code where nvcc is found, ON demands it, OFF never
 # looks. Nothing else in the tree may ask for the language.
 set(BB_CUDA_FOUND OFF)
 if(NOT BB_CUDA MATCHES "^(AUTO|ON|OFF)$")
@@ -24,7 +24,4 @@ if(NOT BB_CUDA STREQUAL "OFF")
     message(FATAL_ERROR "BB_CUDA is ON and no CUDA compiler was found: set CUDACXX to nvcc, or BB_CUDA to AUTO or OFF")
   endif()
 endif()
-message(STATUS "CUDA device check: ${BB_CUDA_FOUND} (BB_CUDA=${BB_CUDA})")
-if(BB_CUDA_FOUND)
-  add_subdirectory("${PROJECT_SOURCE_DIR}/core/device_check")
-endif()
+message(STATUS "CUDA: ${BB_CUDA_FOUND} (BB_CUDA=${BB_CUDA})")
