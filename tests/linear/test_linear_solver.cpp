@@ -53,7 +53,8 @@ TEST(LinearSolver, UnknownNamesAreListedWithTheNearest) {
             "pcg_resident (did you mean cholmod?)");
   options.name = "multigrid";
   EXPECT_EQ(message(options),
-            "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, lagged_cholesky, pcg, pcg_resident");
+            "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, lagged_cholesky, pcg, "
+            "pcg_resident");
   options = {};
   options.name = "pcg";
   options.parameters["preconditioner"] = "block-jacobi";

@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/exec/counting_executor.hpp"
 #include "core/resident/linear/block_jacobi.hpp"
 #include "core/resident/linear/pcg_kernels.hpp"
 #include "tests/oracle/dense.hpp"
@@ -37,8 +38,7 @@ Solved solve(const ReducedSystem& system, const VecXd& b, const std::vector<Fixe
   ResidentPcg pcg(executor, owned.n(), std::make_unique<BlockJacobi>(executor));
   pcg.launch_plainly(how.plainly);
   Solved out;
-  out.report =
-      pcg.solve(owned.matrix(), owned.fixed.data(), rhs.data(), x.data(), how.tolerance, how.cap);
+  out.report = pcg.solve(owned.matrix(), owned.fixed.data(), rhs.data(), x.data(), how.tolerance, how.cap);
   out.fault = pcg.fault();
   const std::vector<double> numbers = x.download();
   out.x = Eigen::Map<const VecXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
@@ -156,15 +156,15 @@ TEST(MultiplyDot, MeetsTheDenseProduct) {
     HostExecutor executor(Order::shuffled);
     const OwnedSystem owned(executor, system, fixed, split);
     const Partition partition = Partition::of(owned.n());
-    Buffer<double> in(executor, "p"), q(executor, "q", p.size()), partial(executor, "s", partition.n_blocks());
+    Buffer<double> in(executor, "p"), q(executor, "q", p.size()),
+        partial(executor, "s", partition.n_blocks());
     in.upload(plain(p));
-    executor.blocks(partition.n_blocks(), MultiplyDot{partition, owned.matrix(), owned.fixed.data(), in.data(),
-                                                      q.data(), partial.data(), nullptr});
+    executor.blocks(partition.n_blocks(), MultiplyDot{partition, owned.matrix(), owned.fixed.data(),
+                                                      in.data(), q.data(), partial.data(), nullptr});
     const std::vector<double> got = q.download();
     double dot = 0, magnitude = 0;
     for (const double s : partial.download()) dot += s;
-    executor.blocks(partition.n_blocks(),
-                    MagnitudeDot{partition, owned.matrix(), in.data(), partial.data()});
+    executor.blocks(partition.n_blocks(), MagnitudeDot{partition, owned.matrix(), in.data(), partial.data()});
     for (const double s : partial.download()) magnitude += s;
     for (Eigen::Index i = 0; i < p.size(); ++i) {
       EXPECT_NEAR(got[static_cast<std::size_t>(i)], truth[i], 1e-14 * truth.cwiseAbs().maxCoeff());
@@ -221,9 +221,9 @@ TEST(ResidentPcg, TellsRoundingFromIndefiniteMatrices) {
   EXPECT_GT(got.report.restarts, 0);
   VecXd s = spectrum("geometric", 60, 1e2);
   s.head(3).setZero();
-  const LinearReport semi =
-      solve(from_dense(with_spectrum(s, 3)), random_vector(60, 1), no_fixed(20), {.tolerance = 1e-14, .cap = 500})
-          .report;
+  const LinearReport semi = solve(from_dense(with_spectrum(s, 3)), random_vector(60, 1), no_fixed(20),
+                                  {.tolerance = 1e-14, .cap = 500})
+                                .report;
   EXPECT_TRUE(semi.status == LinearStatus::tolerance_below_rounding ||
               semi.status == LinearStatus::iteration_cap)
       << to_string(semi.status);
@@ -297,6 +297,18 @@ TEST(ResidentPcg, KeepsItsGraph) {
     }
   }
   EXPECT_EQ(n, 4);
+}
+
+/// What a scene needs is known before it runs.
+TEST(ResidentPcg, CountsItsMemory) {
+  exec::CountingExecutor counting;
+  const Index n = 8200000;
+  ResidentPcg pcg(counting, n, std::make_unique<BlockJacobi>(counting));
+  pcg.solve(ResidentMatrix{}, nullptr, nullptr, nullptr, 1e-3, 10);
+  const auto& bytes = counting.memory().by_name();
+  EXPECT_EQ(bytes.at("pcg residual"), 24u * static_cast<std::size_t>(n));
+  EXPECT_EQ(bytes.at("diagonal factors"), 48u * static_cast<std::size_t>(n));
+  EXPECT_LT(counting.memory().bytes(), 144u * static_cast<std::size_t>(n) + 100000);
 }
 
 /// Two degrees of freedom a vertex, by the registry.

@@ -57,9 +57,17 @@ Eigen::MatrixXd inverse(exec::Executor& executor, Schwarz& schwarz, const OwnedS
   Buffer<FactorFaults> faults(executor, "faults", 1);
   faults.set(0, {no_fault, no_fault, no_fault});
   double *at = vectors.data(), *sums = partial.data();
-  const PcgVectors v{Partition::of(owned.n()), owned.fixed.data(), at, at + n, at + 2 * n, at + 3 * n,
-                     at + 4 * n,               sums,               sums + 1024,
-                     sums + 2048,              scalars.data()};
+  const PcgVectors v{Partition::of(owned.n()),
+                     owned.fixed.data(),
+                     at,
+                     at + n,
+                     at + 2 * n,
+                     at + 3 * n,
+                     at + 4 * n,
+                     sums,
+                     sums + 1024,
+                     sums + 2048,
+                     scalars.data()};
   schwarz.setup(owned.matrix(), v, 0, faults.data());
   EXPECT_EQ(faults.get(0).indefinite, no_fault);
   EXPECT_EQ(faults.get(0).singular, no_fault);
@@ -130,8 +138,8 @@ TEST(ResidentSchwarz, NeedsFewerIterationsThanBlockJacobiHoweverStiffContactsAre
       const Solved got = solve(system, no_fixed(m * m), Order::threads, false);
       ASSERT_EQ(got.report.status, LinearStatus::ok) << got.report.detail;
       std::cout << "grid " << m << ", stiffness " << stiffness << ": block_jacobi " << block_jacobi
-                << ", schwarz " << schwarz << ", resident " << got.report.iterations << " on "
-                << got.n_levels << " levels\n";
+                << ", schwarz " << schwarz << ", resident " << got.report.iterations << " on " << got.n_levels
+                << " levels\n";
       EXPECT_GT(block_jacobi, 100);
       EXPECT_LT(3 * got.report.iterations, 2 * block_jacobi);
     }
@@ -156,8 +164,9 @@ TEST(ResidentSchwarz, NamesTheVertexWithoutAFactor) {
 TEST(PcgResident, KeepsLevelsWhileThePatternStays) {
   LinearOptions options;
   options.name = "pcg_resident";
-  options.parameters = {
-      {"forcing", std::string("fixed")}, {"tol_rel", 1e-9}, {"resident_preconditioner", std::string("schwarz")}};
+  options.parameters = {{"forcing", std::string("fixed")},
+                        {"tol_rel", 1e-9},
+                        {"resident_preconditioner", std::string("schwarz")}};
   const auto solver = make_linear_solver(options);
   int n = 0;
   for (const double stiffness : {1.0, 50.0, 0.0}) {

@@ -91,7 +91,7 @@ struct AddLevels {
   const double* r;
   double *z, *partial_rz;
   int n_above;
-  const int* of[most_levels];        // the node above, from each level
+  const int* of[most_levels];  // the node above, from each level
   const double* z_above[most_levels];
   const PcgState* state;
 
