@@ -212,6 +212,56 @@ TEST(ResidentPcg, NamesASingularBlock) {
   EXPECT_EQ(solve(from_dense(a), VecXd::Ones(9), {0, 7, 7}, {}).report.status, LinearStatus::ok);
 }
 
+struct Negate {
+  double* x;
+  BB_HD void operator()(Index i) const { x[i] = -x[i]; }
+};
+
+/// Block Jacobi with the wrong sign, from the start or from the first iteration on.
+class Negative final : public ResidentPreconditioner {
+ public:
+  Negative(exec::Executor& executor, bool at_once)
+      : executor_(executor), inner_(executor), at_once_(at_once) {}
+  void setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t id, FactorFaults* f) override {
+    inner_.setup(matrix, v, id, f);
+  }
+  void apply(const PcgVectors& v) override {
+    inner_.apply(v);
+    if (at_once_) negate(v);
+  }
+  void update(const PcgVectors& v, int k) override {
+    inner_.update(v, k);
+    negate(v);
+  }
+  int version() const override { return inner_.version(); }
+  std::string fault_text(Index number) const override { return inner_.fault_text(number); }
+
+ private:
+  void negate(const PcgVectors& v) {
+    executor_.each(3 * v.partition.n_rows, Negate{v.z});
+    executor_.each(v.partition.n_blocks(), Negate{v.partial_rz});
+  }
+  exec::Executor& executor_;
+  BlockJacobi inner_;
+  bool at_once_;
+};
+
+TEST(ResidentPcg, NamesAnIndefinitePreconditioner) {
+  const ReducedSystem system = grid_system(6, 0.1, 1);
+  for (const bool at_once : {false, true}) {
+    HostExecutor executor;
+    const OwnedSystem owned(executor, system, no_fixed(36), false);
+    Buffer<double> b(executor, "b"), x(executor, "x", 108);
+    b.upload(plain(random_vector(108, 2)));
+    ResidentPcg pcg(executor, 36, std::make_unique<Negative>(executor, at_once));
+    const LinearReport report =
+        pcg.solve(owned.matrix(), owned.fixed.data(), b.data(), x.data(), 1e-10, 1000);
+    EXPECT_EQ(report.status, LinearStatus::preconditioner_indefinite);
+    EXPECT_EQ(report.iterations, at_once ? 0 : 1);
+    EXPECT_NE(report.detail.find("r^T M^-1 r is not positive"), std::string::npos) << report.detail;
+  }
+}
+
 TEST(ResidentPcg, TellsRoundingFromIndefiniteMatrices) {
   const ReducedSystem system = from_dense(with_spectrum(spectrum("geometric", 81, 1e8), 3));
   const Solved got = solve(system, random_vector(81, 1), no_fixed(27), {.tolerance = 1e-17});

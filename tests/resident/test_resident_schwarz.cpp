@@ -50,7 +50,8 @@ int host_iterations(const ReducedSystem& system, const std::string& precondition
 }
 
 /// M^-1 column by column.
-Eigen::MatrixXd inverse(exec::Executor& executor, Schwarz& schwarz, const OwnedSystem& owned) {
+Eigen::MatrixXd inverse(exec::Executor& executor, Schwarz& schwarz, const OwnedSystem& owned,
+                        std::uint64_t pattern_id = 0) {
   const Index n = 3 * owned.n();
   Buffer<double> vectors(executor, "vectors", 5 * n), partial(executor, "sums", 3 * 1024);
   Buffer<PcgScalars> scalars(executor, "scalars", 1);
@@ -68,7 +69,7 @@ Eigen::MatrixXd inverse(exec::Executor& executor, Schwarz& schwarz, const OwnedS
                      sums + 1024,
                      sums + 2048,
                      scalars.data()};
-  schwarz.setup(owned.matrix(), v, 0, faults.data());
+  schwarz.setup(owned.matrix(), v, pattern_id, faults.data());
   EXPECT_EQ(faults.get(0).indefinite, no_fault);
   EXPECT_EQ(faults.get(0).singular, no_fault);
   Eigen::MatrixXd out(n, n);
@@ -109,6 +110,74 @@ TEST(ResidentSchwarz, IsExactWhereOneClusterHoldsAll) {
     EXPECT_EQ(schwarz.n_levels(), 1);
     EXPECT_LT((m * a - Eigen::MatrixXd::Identity(27, 27)).cwiseAbs().maxCoeff(), 1e-11);
     EXPECT_LE(solve(system, fixed, Order::threads, true, 11).report.iterations, 2);
+  }
+}
+
+/// The sum over levels, dense. a: 0 in rows and columns that are fixed.
+Eigen::MatrixXd dense_schwarz(const Eigen::MatrixXd& a, const VecXd& fixed, int vertices) {
+  const Eigen::Index n = a.rows() / 3;
+  BlockGraph graph;
+  graph.row_start.push_back(0);
+  bool coupled = false;
+  for (int r = 0; r < n; ++r) {
+    for (int c = 0; c < n; ++c) {
+      const double norm = a.block<3, 3>(3 * r, 3 * c).norm();
+      if (norm == 0 && r != c) continue;
+      coupled = coupled || r != c;
+      graph.column.push_back(c), graph.norm.push_back(norm);
+    }
+    graph.row_start.push_back(static_cast<std::int64_t>(graph.column.size()));
+  }
+  if (!coupled) return Eigen::MatrixXd::Zero(a.rows(), a.rows());
+  const VertexClusters clusters = cluster_vertices(graph, vertices);
+  const Eigen::MatrixXd whole = a + Eigen::MatrixXd(fixed.asDiagonal());
+  Eigen::MatrixXd out = Eigen::MatrixXd::Zero(a.rows(), a.rows()),
+                  p = Eigen::MatrixXd::Zero(a.rows(), 3 * clusters.size());
+  for (int k = 0; k < clusters.size(); ++k) {
+    std::vector<Eigen::Index> rows;
+    for (int m = clusters.start[static_cast<std::size_t>(k)];
+         m < clusters.start[static_cast<std::size_t>(k) + 1]; ++m) {
+      for (int c = 0; c < 3; ++c) {
+        rows.push_back(3 * clusters.member[static_cast<std::size_t>(m)] + c);
+        p(rows.back(), 3 * k + c) = 1 - fixed[rows.back()];
+      }
+    }
+    out(rows, rows) = Eigen::MatrixXd(whole(rows, rows)).inverse();
+  }
+  if (clusters.size() == n) return out;
+  VecXd coarse_fixed(p.cols());
+  for (Eigen::Index j = 0; j < p.cols(); ++j) coarse_fixed[j] = p.col(j).isZero() ? 1 : 0;
+  const Eigen::MatrixXd coarse = p.transpose() * a * p;
+  return out + p * dense_schwarz(coarse, coarse_fixed, vertices) * p.transpose();
+}
+
+/// Also when values change and the pattern stays: twice the matrix has half the inverse.
+TEST(ResidentSchwarz, IsTheSumOverItsLevels) {
+  for (const auto& mask : {no_fixed(49), some_fixed(49)}) {
+    ReducedSystem system = grid_system(7, 0.3, 1);
+    HostExecutor executor;
+    const OwnedSystem owned(executor, system, mask, false);
+    Schwarz schwarz(executor, 4);
+    const Eigen::MatrixXd m = inverse(executor, schwarz, owned, 1);
+    EXPECT_GE(schwarz.n_levels(), 2);
+    Eigen::MatrixXd a = restricted(system, mask);
+    VecXd fixed(a.rows());
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      fixed[i] = is_fixed(mask[static_cast<std::size_t>(i / 3)], static_cast<int>(i % 3)) ? 1 : 0;
+      if (fixed[i] != 0) a(i, i) = 0;
+    }
+    const Eigen::MatrixXd truth = dense_schwarz(a, fixed, 4);
+    EXPECT_GT(truth.cwiseAbs().maxCoeff(), 0.1);
+    EXPECT_LT((m - truth).cwiseAbs().maxCoeff(), 1e-11 * truth.cwiseAbs().maxCoeff());
+    system.lower *= 2;
+    const OwnedSystem twice(executor, system, mask, false);
+    const Eigen::MatrixXd half = inverse(executor, schwarz, twice, 1);
+    for (Eigen::Index i = 0; i < a.rows(); ++i) {
+      if (fixed[i] != 0) continue;
+      for (Eigen::Index j = 0; j < a.rows(); ++j) {
+        if (fixed[j] == 0) EXPECT_NEAR(half(i, j), 0.5 * m(i, j), 1e-14 * truth.cwiseAbs().maxCoeff());
+      }
+    }
   }
 }
 
@@ -158,6 +227,11 @@ TEST(ResidentSchwarz, NamesTheVertexWithoutAFactor) {
   a(3, 3) = std::nan("");
   EXPECT_EQ(solve(from_dense(a), no_fixed(4), Order::threads, false).report.status, LinearStatus::non_finite);
   EXPECT_EQ(solve(from_dense(a), {0, 7, 7, 0}, Order::threads, false).report.status, LinearStatus::ok);
+  a = dense(grid_system(3, 0.1, 1));
+  a.block<3, 3>(12, 12) = -Mat3d::Identity();  // in the middle of the one cluster
+  got = solve(from_dense(a), no_fixed(9), Order::threads, false, 11);
+  EXPECT_EQ(got.report.status, LinearStatus::matrix_indefinite);
+  EXPECT_NE(got.fault.find("vertex 4 is not positive definite"), std::string::npos) << got.fault;
 }
 
 /// By the registry: patterns that change and stay, planar vertices.
