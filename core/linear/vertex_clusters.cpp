@@ -127,7 +127,9 @@ class Greedy {
 
 }  // namespace
 
-VertexClusters cluster_vertices(const BlockGraph& graph, int vertices) { return Greedy(graph, vertices).run(); }
+VertexClusters cluster_vertices(const BlockGraph& graph, int vertices) {
+  return Greedy(graph, vertices).run();
+}
 
 VertexClusters cluster_vertices(const SymmetricProduct& rows, int vertices) {
   BlockGraph graph;

@@ -38,15 +38,13 @@ double eigenvalue(int k, double shift) {
 std::vector<LinearOptions> all_solvers() {
   std::vector<LinearOptions> out;
   for (const std::string& name : linear_solvers().names()) {
-    LinearOptions options{name, {}};
+    LinearOptions options{name, {{"forcing", std::string("fixed")}, {"tol_rel", 1e-12}}};
     if (preconditioner_of(options) == "none" && name != "pcg") {
       out.push_back(options);
       continue;
     }
     for (const std::string& preconditioner : preconditioners().names()) {
       options.parameters["preconditioner"] = preconditioner;
-      options.parameters["forcing"] = std::string("fixed");
-      options.parameters["tol_rel"] = 1e-12;
       out.push_back(options);
     }
   }

@@ -137,6 +137,26 @@ ReducedSystem grid_system(int m, double diagonal, std::uint64_t id) {
   return from_sparse(a, id);
 }
 
+ReducedSystem folded_grid(int m, double stiffness) {
+  const ReducedSystem grid = grid_system(m, 1e-3, 1);
+  std::vector<Eigen::Triplet<double>> entries;
+  const int n = m * m;
+  for (int v = 0; v < n / 2; ++v) {
+    for (int k = 0; k < 3; ++k) {
+      const int a = 3 * v + k, b = 3 * (n - 1 - v) + k;
+      entries.emplace_back(a, a, stiffness);
+      entries.emplace_back(b, b, stiffness);
+      entries.emplace_back(b, a, -stiffness);
+    }
+  }
+  Eigen::SparseMatrix<double> springs(3 * n, 3 * n);
+  springs.setFromTriplets(entries.begin(), entries.end());
+  ReducedSystem out = grid;
+  out.lower += springs;
+  out.lower.makeCompressed();
+  return out;
+}
+
 VecXd random_vector(Eigen::Index n, unsigned seed) {
   std::mt19937_64 random(seed);
   std::uniform_real_distribution<double> uniform(-1, 1);

@@ -27,6 +27,9 @@ const std::vector<std::string>& spectrum_kinds();
 /// 3 unknowns each.
 ReducedSystem grid_system(int m, double diagonal, std::uint64_t id = 0);
 
+/// Such a grid whose second half is tied to the first by springs between opposite vertices.
+ReducedSystem folded_grid(int m, double stiffness);
+
 VecXd random_vector(Eigen::Index n, unsigned seed);
 
 }  // namespace bb

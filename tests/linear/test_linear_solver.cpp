@@ -49,11 +49,12 @@ TEST(LinearSolver, UnknownNamesAreListedWithTheNearest) {
   LinearOptions options;
   options.name = "cholmid";
   EXPECT_EQ(message(options),
-            "/linear_solver/name: found \"cholmid\"; allowed: one of cholmod, lagged_cholesky, pcg (did you "
-            "mean cholmod?)");
+            "/linear_solver/name: found \"cholmid\"; allowed: one of cholmod, lagged_cholesky, pcg, "
+            "pcg_resident (did you mean cholmod?)");
   options.name = "multigrid";
   EXPECT_EQ(message(options),
-            "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, lagged_cholesky, pcg");
+            "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, lagged_cholesky, pcg, "
+            "pcg_resident");
   options = {};
   options.name = "pcg";
   options.parameters["preconditioner"] = "block-jacobi";

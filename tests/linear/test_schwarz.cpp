@@ -11,27 +11,6 @@
 namespace bb {
 namespace {
 
-/// A grid of m x m vertices whose second half is tied to the first by springs between opposite vertices.
-ReducedSystem folded_grid(int m, double stiffness) {
-  const ReducedSystem grid = grid_system(m, 1e-3, 1);
-  std::vector<Eigen::Triplet<double>> entries;
-  const int n = m * m;
-  for (int v = 0; v < n / 2; ++v) {
-    for (int k = 0; k < 3; ++k) {
-      const int a = 3 * v + k, b = 3 * (n - 1 - v) + k;
-      entries.emplace_back(a, a, stiffness);
-      entries.emplace_back(b, b, stiffness);
-      entries.emplace_back(b, a, -stiffness);
-    }
-  }
-  Eigen::SparseMatrix<double> springs(3 * n, 3 * n);
-  springs.setFromTriplets(entries.begin(), entries.end());
-  ReducedSystem out = grid;
-  out.lower += springs;
-  out.lower.makeCompressed();
-  return out;
-}
-
 int iterations(const ReducedSystem& system, const std::string& preconditioner) {
   LinearOptions options;
   options.name = "pcg";

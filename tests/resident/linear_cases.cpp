@@ -75,7 +75,10 @@ VecXd restricted(const VecXd& b, const std::vector<FixedMask>& fixed) {
 std::vector<FixedMask> some_fixed(int n_vertices) {
   std::vector<FixedMask> out = no_fixed(n_vertices);
   for (std::size_t v = 0; v < out.size(); ++v) {
-    out[v] = v % 7 == 3 ? FixedMask{7} : v % 11 == 5 ? FixedMask{4} : v % 13 == 1 ? FixedMask{3} : FixedMask{0};
+    out[v] = v % 7 == 3    ? FixedMask{7}
+             : v % 11 == 5 ? FixedMask{4}
+             : v % 13 == 1 ? FixedMask{3}
+                           : FixedMask{0};
   }
   return out;
 }

@@ -25,7 +25,8 @@ struct OwnedPart {
 class OwnedSystem {
  public:
   /// split: a random part of every block, and all of some, in the second part.
-  OwnedSystem(exec::Executor& executor, const ReducedSystem& system, std::vector<FixedMask> fixed, bool split);
+  OwnedSystem(exec::Executor& executor, const ReducedSystem& system, std::vector<FixedMask> fixed,
+              bool split);
   ResidentMatrix matrix() const;
   Index n() const { return fixed.size(); }
 

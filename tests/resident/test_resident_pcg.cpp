@@ -4,6 +4,7 @@
 
 #include <cmath>
 
+#include "core/exec/counting_executor.hpp"
 #include "core/resident/linear/block_jacobi.hpp"
 #include "core/resident/linear/pcg_kernels.hpp"
 #include "tests/oracle/dense.hpp"
@@ -37,8 +38,7 @@ Solved solve(const ReducedSystem& system, const VecXd& b, const std::vector<Fixe
   ResidentPcg pcg(executor, owned.n(), std::make_unique<BlockJacobi>(executor));
   pcg.launch_plainly(how.plainly);
   Solved out;
-  out.report =
-      pcg.solve(owned.matrix(), owned.fixed.data(), rhs.data(), x.data(), how.tolerance, how.cap);
+  out.report = pcg.solve(owned.matrix(), owned.fixed.data(), rhs.data(), x.data(), how.tolerance, how.cap);
   out.fault = pcg.fault();
   const std::vector<double> numbers = x.download();
   out.x = Eigen::Map<const VecXd>(numbers.data(), static_cast<Eigen::Index>(numbers.size()));
@@ -156,15 +156,15 @@ TEST(MultiplyDot, MeetsTheDenseProduct) {
     HostExecutor executor(Order::shuffled);
     const OwnedSystem owned(executor, system, fixed, split);
     const Partition partition = Partition::of(owned.n());
-    Buffer<double> in(executor, "p"), q(executor, "q", p.size()), partial(executor, "s", partition.n_blocks());
+    Buffer<double> in(executor, "p"), q(executor, "q", p.size()),
+        partial(executor, "s", partition.n_blocks());
     in.upload(plain(p));
-    executor.blocks(partition.n_blocks(), MultiplyDot{partition, owned.matrix(), owned.fixed.data(), in.data(),
-                                                      q.data(), partial.data(), nullptr});
+    executor.blocks(partition.n_blocks(), MultiplyDot{partition, owned.matrix(), owned.fixed.data(),
+                                                      in.data(), q.data(), partial.data(), nullptr});
     const std::vector<double> got = q.download();
     double dot = 0, magnitude = 0;
     for (const double s : partial.download()) dot += s;
-    executor.blocks(partition.n_blocks(),
-                    MagnitudeDot{partition, owned.matrix(), in.data(), partial.data()});
+    executor.blocks(partition.n_blocks(), MagnitudeDot{partition, owned.matrix(), in.data(), partial.data()});
     for (const double s : partial.download()) magnitude += s;
     for (Eigen::Index i = 0; i < p.size(); ++i) {
       EXPECT_NEAR(got[static_cast<std::size_t>(i)], truth[i], 1e-14 * truth.cwiseAbs().maxCoeff());
@@ -212,6 +212,56 @@ TEST(ResidentPcg, NamesASingularBlock) {
   EXPECT_EQ(solve(from_dense(a), VecXd::Ones(9), {0, 7, 7}, {}).report.status, LinearStatus::ok);
 }
 
+struct Negate {
+  double* x;
+  BB_HD void operator()(Index i) const { x[i] = -x[i]; }
+};
+
+/// Block Jacobi with the wrong sign, from the start or from the first iteration on.
+class Negative final : public ResidentPreconditioner {
+ public:
+  Negative(exec::Executor& executor, bool at_once)
+      : executor_(executor), inner_(executor), at_once_(at_once) {}
+  void setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t id, FactorFaults* f) override {
+    inner_.setup(matrix, v, id, f);
+  }
+  void apply(const PcgVectors& v) override {
+    inner_.apply(v);
+    if (at_once_) negate(v);
+  }
+  void update(const PcgVectors& v, int k) override {
+    inner_.update(v, k);
+    negate(v);
+  }
+  int version() const override { return inner_.version(); }
+  std::string fault_text(Index number) const override { return inner_.fault_text(number); }
+
+ private:
+  void negate(const PcgVectors& v) {
+    executor_.each(3 * v.partition.n_rows, Negate{v.z});
+    executor_.each(v.partition.n_blocks(), Negate{v.partial_rz});
+  }
+  exec::Executor& executor_;
+  BlockJacobi inner_;
+  bool at_once_;
+};
+
+TEST(ResidentPcg, NamesAnIndefinitePreconditioner) {
+  const ReducedSystem system = grid_system(6, 0.1, 1);
+  for (const bool at_once : {false, true}) {
+    HostExecutor executor;
+    const OwnedSystem owned(executor, system, no_fixed(36), false);
+    Buffer<double> b(executor, "b"), x(executor, "x", 108);
+    b.upload(plain(random_vector(108, 2)));
+    ResidentPcg pcg(executor, 36, std::make_unique<Negative>(executor, at_once));
+    const LinearReport report =
+        pcg.solve(owned.matrix(), owned.fixed.data(), b.data(), x.data(), 1e-10, 1000);
+    EXPECT_EQ(report.status, LinearStatus::preconditioner_indefinite);
+    EXPECT_EQ(report.iterations, at_once ? 0 : 1);
+    EXPECT_NE(report.detail.find("r^T M^-1 r is not positive"), std::string::npos) << report.detail;
+  }
+}
+
 TEST(ResidentPcg, TellsRoundingFromIndefiniteMatrices) {
   const ReducedSystem system = from_dense(with_spectrum(spectrum("geometric", 81, 1e8), 3));
   const Solved got = solve(system, random_vector(81, 1), no_fixed(27), {.tolerance = 1e-17});
@@ -221,9 +271,9 @@ TEST(ResidentPcg, TellsRoundingFromIndefiniteMatrices) {
   EXPECT_GT(got.report.restarts, 0);
   VecXd s = spectrum("geometric", 60, 1e2);
   s.head(3).setZero();
-  const LinearReport semi =
-      solve(from_dense(with_spectrum(s, 3)), random_vector(60, 1), no_fixed(20), {.tolerance = 1e-14, .cap = 500})
-          .report;
+  const LinearReport semi = solve(from_dense(with_spectrum(s, 3)), random_vector(60, 1), no_fixed(20),
+                                  {.tolerance = 1e-14, .cap = 500})
+                                .report;
   EXPECT_TRUE(semi.status == LinearStatus::tolerance_below_rounding ||
               semi.status == LinearStatus::iteration_cap)
       << to_string(semi.status);
@@ -297,6 +347,18 @@ TEST(ResidentPcg, KeepsItsGraph) {
     }
   }
   EXPECT_EQ(n, 4);
+}
+
+/// What a scene needs is known before it runs.
+TEST(ResidentPcg, CountsItsMemory) {
+  exec::CountingExecutor counting;
+  const Index n = 8200000;
+  ResidentPcg pcg(counting, n, std::make_unique<BlockJacobi>(counting));
+  pcg.solve(ResidentMatrix{}, nullptr, nullptr, nullptr, 1e-3, 10);
+  const auto& bytes = counting.memory().by_name();
+  EXPECT_EQ(bytes.at("pcg residual"), 24u * static_cast<std::size_t>(n));
+  EXPECT_EQ(bytes.at("diagonal factors"), 48u * static_cast<std::size_t>(n));
+  EXPECT_LT(counting.memory().bytes(), 144u * static_cast<std::size_t>(n) + 100000);
 }
 
 /// Two degrees of freedom a vertex, by the registry.

@@ -15,8 +15,8 @@ void BlockJacobi::setup(const ResidentMatrix& matrix, const PcgVectors& v, std::
 }
 
 void BlockJacobi::apply(const PcgVectors& v) {
-  executor_.blocks(v.partition.n_blocks(), ApplyBlockJacobi{v.partition, inverse_.data(), v.r, v.z,
-                                                            v.partial_rz, v.partial_rr});
+  executor_.blocks(v.partition.n_blocks(),
+                   ApplyBlockJacobi{v.partition, inverse_.data(), v.r, v.z, v.partial_rz, v.partial_rr});
 }
 
 void BlockJacobi::update(const PcgVectors& v, int k) {

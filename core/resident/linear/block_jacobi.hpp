@@ -7,7 +7,8 @@ namespace bb::resident {
 
 class BlockJacobi final : public ResidentPreconditioner {
  public:
-  explicit BlockJacobi(exec::Executor& executor) : executor_(executor), inverse_(executor, "diagonal factors") {}
+  explicit BlockJacobi(exec::Executor& executor)
+      : executor_(executor), inverse_(executor, "diagonal factors") {}
   void setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
              FactorFaults* faults) override;
   void apply(const PcgVectors& v) override;

@@ -74,7 +74,8 @@ struct FactorizeClusters {
         const int rest = m - k - 1;
         for (int e = t; e < rest * rest; e += exec::block_threads) {
           const int i = k + 1 + e % rest, j = k + 1 + e / rest;
-          if (i >= j) s.a[j * stride + i] = fma(-s.a[k * stride + i], s.a[k * stride + j], s.a[j * stride + i]);
+          if (i >= j)
+            s.a[j * stride + i] = fma(-s.a[k * stride + i], s.a[k * stride + j], s.a[j * stride + i]);
         }
       });
     }

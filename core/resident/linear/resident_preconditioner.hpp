@@ -12,7 +12,7 @@ namespace bb::resident {
 struct PcgVectors {
   Partition partition;
   const FixedMask* fixed;
-  double *x, *r, *z, *p, *q;                      // [3 n]
+  double *x, *r, *z, *p, *q;                     // [3 n]
   double *partial_pq, *partial_rz, *partial_rr;  // [n_blocks]
   PcgScalars* scalars;
 };

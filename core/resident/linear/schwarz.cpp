@@ -122,8 +122,8 @@ void Schwarz::launch(const PcgVectors& v, const PcgState* state) {
 }
 
 void Schwarz::update(const PcgVectors& v, int k) {
-  executor_.blocks(v.partition.n_blocks(), UpdateResidual{v.partition, v.p, v.q, v.partial_pq, v.x, v.r,
-                                                          v.partial_rr, v.scalars, k});
+  executor_.blocks(v.partition.n_blocks(),
+                   UpdateResidual{v.partition, v.p, v.q, v.partial_pq, v.x, v.r, v.partial_rr, v.scalars, k});
   launch(v, v.scalars->state + k % 2);
 }
 

@@ -36,10 +36,12 @@ struct CoarseValues {
     const int c = static_cast<int>(i % 9);
     double sum = 0;
     for (Index k = begin[block]; k < begin[block + 1]; ++k) {
-      const MatrixPart& part = matrix.part[source[k] % 2];
+      const bool second = source[k] % 2 != 0;
+      const int* column = second ? matrix.part[1].column : matrix.part[0].column;
+      const double* from = second ? matrix.part[1].value : matrix.part[0].value;
       const Index j = source[k] / 2;
-      if (is_fixed(fixed[row[k]], c % 3) || is_fixed(fixed[part.column[j]], c / 3)) continue;
-      sum += part.value[value_index(j, c)];
+      if (is_fixed(fixed[row[k]], c % 3) || is_fixed(fixed[column[j]], c / 3)) continue;
+      sum += from[value_index(j, c)];
     }
     value[value_index(block, c)] = sum;
   }
@@ -89,7 +91,7 @@ struct AddLevels {
   const double* r;
   double *z, *partial_rz;
   int n_above;
-  const int* of[most_levels];        // the node above, from each level
+  const int* of[most_levels];  // the node above, from each level
   const double* z_above[most_levels];
   const PcgState* state;
 

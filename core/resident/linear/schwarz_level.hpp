@@ -24,7 +24,8 @@ class SchwarzLevel {
   HostPattern set_coarse(const HostPattern& below, const VertexClusters& clusters,
                          const std::vector<FixedMask>& fixed_below, std::vector<FixedMask>& fixed);
   void launch_values(const ResidentMatrix& below, const FixedMask* fixed_below);
-  void launch_factors(const ResidentMatrix& matrix, const FixedMask* fixed, Index number, FactorFaults* faults);
+  void launch_factors(const ResidentMatrix& matrix, const FixedMask* fixed, Index number,
+                      FactorFaults* faults);
   /// z = the solves of all clusters; coarse_r may be null.
   void launch_solves(const FixedMask* fixed, const double* r, double* z, double* coarse_r,
                      const PcgState* state);
