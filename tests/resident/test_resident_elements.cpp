@@ -105,8 +105,8 @@ TEST(ResidentElements, HaveTheMatrixOfTheTerms) {
       HessianLevel level({choice});
       for (;;) {
         cpu.sum(TermSet::all(), choice, level, force);
-        resident.fill(TermSet::all(), resident::hessian_request(choice, level.t(), level.threshold(),
-                                                                force_there.data()));
+        resident.fill(TermSet::all(),
+                      resident::hessian_request(choice, level.t(), level.threshold(), force_there.data()));
         const Difference found = compare(resident, cpu);
         EXPECT_GT(found.n_nonzero, 100);
         EXPECT_LE(found.relative, one.planar ? 0 : hinge_rounding)

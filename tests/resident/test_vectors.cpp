@@ -98,7 +98,8 @@ TEST(Vectors, FindWhatIsNoNumber) {
 }
 
 TEST(Vectors, FixedBitsAreThreeAVertex) {
-  EXPECT_EQ(fixed_bits(std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 7, 0}), (std::vector<FixedMask>{5, 0, 2}));
+  EXPECT_EQ(fixed_bits(std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 7, 0}),
+            (std::vector<FixedMask>{5, 0, 2}));
 }
 
 }  // namespace
