@@ -28,7 +28,8 @@ class ExternalForce final : public Term {
     x_n_ = frame.x_n;
     force_.resize(3, x_n_.cols());
     for (Eigen::Index i = 0; i < x_n_.cols(); ++i) {
-      force_.col(i) = weight_force(frame.load_factor, scene_.mass[static_cast<std::size_t>(i)], scene_.gravity);
+      force_.col(i) =
+          weight_force(frame.load_factor, scene_.mass[static_cast<std::size_t>(i)], scene_.gravity);
     }
     Positions::Map(families_[0].local.grad.data(), 3, x_n_.cols()) = -force_;
   }

@@ -55,7 +55,8 @@ inline Scene cloth_scene(const char* model, bool planar, int n = 5) {
 /// limit acts; in the plane where the scene is.
 inline Positions strained(const Scene& scene, double size = 0.006) {
   Positions x = scene.x0;
-  for (Eigen::Index i = 0; i < x.size(); ++i) x.data()[i] += size * std::sin(1.7 * static_cast<double>(i) + 0.4);
+  for (Eigen::Index i = 0; i < x.size(); ++i)
+    x.data()[i] += size * std::sin(1.7 * static_cast<double>(i) + 0.4);
   x.row(0) *= 0.97;
   x.row(1) *= 1.05;
   if (scene.planar) x.row(2) = scene.x0.row(2);
@@ -64,7 +65,8 @@ inline Positions strained(const Scene& scene, double size = 0.006) {
 
 inline Positions wave(const Scene& scene, double size) {
   Positions dx(3, scene.n_vertices());
-  for (Eigen::Index i = 0; i < dx.size(); ++i) dx.data()[i] = size * std::cos(2.9 * static_cast<double>(i) + 1);
+  for (Eigen::Index i = 0; i < dx.size(); ++i)
+    dx.data()[i] = size * std::cos(2.9 * static_cast<double>(i) + 1);
   if (scene.planar) dx.row(2).setZero();
   return dx;
 }

@@ -88,7 +88,8 @@ TEST(ResidentChange, KeepsTheDigitsOfTheLoads) {
     expected += weight * step * (from + step / 2) + mass * frame.load_factor * 10 * step;
   }
   ASSERT_LT(expected, -1e-5L);
-  EXPECT_NEAR(resident.change().value(), static_cast<double>(expected), 1e-14 * std::abs(static_cast<double>(expected)));
+  EXPECT_NEAR(resident.change().value(), static_cast<double>(expected),
+              1e-14 * std::abs(static_cast<double>(expected)));
 }
 
 TEST(ResidentChange, BelongsToTheIterateThatWasAccepted) {

@@ -105,8 +105,8 @@ TEST(ResidentElements, HaveTheMatrixOfTheTerms) {
       HessianLevel level({choice});
       for (;;) {
         cpu.sum(TermSet::all(), choice, level, force);
-        resident.fill(TermSet::all(), resident::hessian_request(choice, level.t(), level.threshold(),
-                                                                force_there.data()));
+        resident.fill(TermSet::all(),
+                      resident::hessian_request(choice, level.t(), level.threshold(), force_there.data()));
         const Difference found = compare(resident, cpu);
         EXPECT_GT(found.n_nonzero, 100);
         EXPECT_LE(found.relative, one.planar ? 0 : hinge_rounding)
@@ -120,6 +120,34 @@ TEST(ResidentElements, HaveTheMatrixOfTheTerms) {
   }
   EXPECT_GT(n_matrices, 100);
   std::printf("%d matrices, largest relative difference: %.2g\n", n_matrices, worst);
+}
+
+// By themselves, so that no stiffer element hides their rounding.
+TEST(ResidentElements, HingesAgreeToRounding) {
+  Scene scene = cloth_scene("arap", false, 6);
+  scene.membranes.clear();
+  scene.springs = {};
+  scene.limit = {};
+  scene.gravity.setZero();
+  TermOptions options = element_options();
+  StepFrame frame = step_frame(scene);
+  frame.c = 0;
+  exec::HostExecutor executor;
+  OnExecutor resident(executor, scene, options, frame);
+  resident.linearise(strained(scene));
+  for (const StepHessian choice : {StepHessian::clamped, StepHessian::absolute, StepHessian::blend}) {
+    CpuElements cpu(scene, options, frame);
+    cpu.linearise(strained(scene), choice);
+    ASSERT_GT(largest(cpu.gradient), 1e-4);
+    EXPECT_LE(largest(resident.gradient() - cpu.gradient), hinge_rounding * largest(cpu.gradient));
+    const HessianLevel level({choice});
+    cpu.sum(TermSet::all(), choice, level, {});
+    resident.fill(TermSet::all(), resident::hessian_request(choice, level.t(), level.threshold(), nullptr));
+    const Difference found = compare(resident, cpu);
+    EXPECT_GT(found.n_nonzero, 1000);
+    EXPECT_LE(found.relative, hinge_rounding) << to_string(choice);
+    std::printf("%s: %.2g\n", std::string(to_string(choice)).c_str(), found.relative);
+  }
 }
 
 TEST(ResidentElements, SumTheGroupsThatAreAskedFor) {

@@ -39,7 +39,8 @@ std::vector<Rule> all_rules() {
     out.push_back({"cubic", elastic(mass, true, Refresh::per_iteration, dropped), 0});
   }
   out.push_back({"cubic", elastic(MassTerm::paper, false, Refresh::per_step, dropped), 0});
-  out.push_back({"cubic", elastic(MassTerm::paper, true, Refresh::per_step, KappaDerivative::included), 1e-13});
+  out.push_back(
+      {"cubic", elastic(MassTerm::paper, true, Refresh::per_step, KappaDerivative::included), 1e-13});
   return out;
 }
 
@@ -151,7 +152,8 @@ TEST(ResidentLimit, LiteralAndSquaredGapAreThoseOfTheCpu) {
       resident.linearise(x);
       const double scale = cpu.gradient.cwiseAbs().maxCoeff();
       ASSERT_TRUE(std::isfinite(scale));
-      EXPECT_LE((resident.gradient() - cpu.gradient).cwiseAbs().maxCoeff(), 1e-12 * scale) << shape << literal;
+      EXPECT_LE((resident.gradient() - cpu.gradient).cwiseAbs().maxCoeff(), 1e-12 * scale)
+          << shape << literal;
     }
   }
   EXPECT_EQ(n_beyond, 2);

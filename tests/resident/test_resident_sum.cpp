@@ -51,7 +51,8 @@ TEST(ResidentSum, LosesNothingOfACancellingSum) {
     const double expected = static_cast<double>(exact);
     ASSERT_NE(expected, 0);
     const double eps = std::numeric_limits<double>::epsilon();
-    EXPECT_NEAR(found.value(), expected, eps * std::abs(expected) + 1e-25 * static_cast<double>(magnitude)) << n;
+    EXPECT_NEAR(found.value(), expected, eps * std::abs(expected) + 1e-25 * static_cast<double>(magnitude))
+        << n;
     EXPECT_NEAR(found.magnitude, static_cast<double>(magnitude), 1e-13 * static_cast<double>(magnitude));
     EXPECT_TRUE(n < 1000 || std::abs(plain - expected) > 1e3 * eps * std::abs(expected));
   }

@@ -49,7 +49,7 @@ TEST(Vectors, MovePutsPinsOnTargetAtTheEndOfAStepOnly) {
   for (const Pin& pin : v.scene.pins) expected.col(pin.vertex) = v.target.col(pin.vertex);
   EXPECT_EQ(v.down(v.out), expected);
   EXPECT_EQ(tools.first_short_pin(v.out), -1);
-  v.out.set(3 * v.scene.pins[1].vertex + 2, 0.0);
+  v.out.set(3 * v.scene.pins[1].vertex, 0.0);
   EXPECT_EQ(tools.first_short_pin(v.out), 1);
   tools.set_pin_motion(v.x, v.dx);
   for (const Pin& pin : v.scene.pins) {
@@ -98,7 +98,8 @@ TEST(Vectors, FindWhatIsNoNumber) {
 }
 
 TEST(Vectors, FixedBitsAreThreeAVertex) {
-  EXPECT_EQ(fixed_bits(std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 7, 0}), (std::vector<FixedMask>{5, 0, 2}));
+  EXPECT_EQ(fixed_bits(std::vector<std::uint8_t>{1, 0, 1, 0, 0, 0, 0, 7, 0}),
+            (std::vector<FixedMask>{5, 0, 2}));
 }
 
 }  // namespace

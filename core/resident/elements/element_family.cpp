@@ -92,17 +92,17 @@ std::vector<MadeFamily> make_elastic_families(exec::Executor& executor, const Sc
   }
   if (!scene.springs.edges.empty()) {
     const SpringBatch batch(scene.springs.edges, scene.rest, scene.springs.stiffness);
-    out.push_back({std::make_unique<PairFamily<Springs>>(executor, "spring", batch.vertices(),
-                                                         scene.springs.stiffness, batch.rest_lengths(),
-                                                         &Springs::rest_length),
-                   copy_of(batch.vertices())});
+    out.push_back(
+        {std::make_unique<PairFamily<Springs>>(executor, "spring", batch.vertices(), scene.springs.stiffness,
+                                               batch.rest_lengths(), &Springs::rest_length),
+         copy_of(batch.vertices())});
   }
   if (!scene.hinges.hinges.empty()) {
     const HingeBatch batch(scene.hinges.hinges, scene.hinges.stiffness, scene.hinges.rest_angle);
-    out.push_back({std::make_unique<PairFamily<Hinges>>(executor, "hinge", batch.vertices(),
-                                                        scene.hinges.stiffness, scene.hinges.rest_angle,
-                                                        &Hinges::rest_angle),
-                   copy_of(batch.vertices())});
+    out.push_back(
+        {std::make_unique<PairFamily<Hinges>>(executor, "hinge", batch.vertices(), scene.hinges.stiffness,
+                                              scene.hinges.rest_angle, &Hinges::rest_angle),
+         copy_of(batch.vertices())});
   }
   return out;
 }

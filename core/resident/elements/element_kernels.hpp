@@ -40,8 +40,8 @@ struct Piece {
 struct HessianRequest {
   Projection first = Projection::psd;
   double t = 0;
-  double threshold = -1;            // N; below 0: no vertex is asked
-  const double* force = nullptr;    // [n_vertices] N, read where there is a threshold
+  double threshold = -1;          // N; below 0: no vertex is asked
+  const double* force = nullptr;  // [n_vertices] N, read where there is a threshold
 };
 
 template <class Elements>

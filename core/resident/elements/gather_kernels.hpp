@@ -11,8 +11,9 @@ namespace bb::resident {
 struct GatherView {
   const std::uint32_t* target;  // [targets] vertex, or block
   const std::uint32_t* start;   // [targets + 1] into source
-  const std::uint32_t* source;  // vertices: element << 2 | local vertex. blocks: element << 5 | lower block << 1 |
-                                // 1 where it is transposed. element: within the piece
+  const std::uint32_t*
+      source;  // vertices: element << 2 | local vertex. blocks: element << 5 | lower block << 1 |
+               // 1 where it is transposed. element: within the piece
 };
 
 /// g [3 n_vertices] += local gradients.

@@ -16,9 +16,9 @@ namespace bb::resident {
 struct LimitColumns : ElementVertices<3> {
   RestColumns rest;
   const double *onset, *band_width;  // [n] 1
-  double *sigma, *gap;          // [2, n] singular values, descending, and pseudo-gaps, at the measured state
-  double *b, *db, *d2b;         // [2, n] barrier terms there, for kappa = 1; with kappa where it has a potential
-  double* kappa;                // [n] J; 1 where it has a potential
+  double *sigma, *gap;   // [2, n] singular values, descending, and pseudo-gaps, at the measured state
+  double *b, *db, *d2b;  // [2, n] barrier terms there, for kappa = 1; with kappa where it has a potential
+  double* kappa;         // [n] J; 1 where it has a potential
 
   BB_HD StrainBand<double> band(Index e) const { return {onset[e], band_width[e]}; }
   BB_HD StrainShape<double> shape(Index e) const {

@@ -54,8 +54,10 @@ void ResidentElements::add_slot(std::unique_ptr<ElementFamily> family) {
   const Index n = family->size();
   const auto numbers = static_cast<Index>(n_lower_numbers(static_cast<std::size_t>(family->width())));
   local_.resize(std::max(local_.size(), numbers * std::min(piece_, n)));
-  slots_.push_back({std::move(family), Buffer<double>(executor_, "element energies", n),
-                    Buffer<double>(executor_, "element energies of the trial", n), {}});
+  slots_.push_back({std::move(family),
+                    Buffer<double>(executor_, "element energies", n),
+                    Buffer<double>(executor_, "element energies of the trial", n),
+                    {}});
 }
 
 template <class F>
@@ -68,7 +70,7 @@ void ResidentElements::for_each_piece(const Slot& slot, const F& f) const {
 
 Loads ResidentElements::loads() const {
   const Vec3d& g = scene_.gravity;
-  return {mass_.data(), frame_.x_n, frame_.x_tilde,     frame_.dt,
+  return {mass_.data(), frame_.x_n,         frame_.x_tilde,     frame_.dt,
           frame_.c,     frame_.load_factor, {g[0], g[1], g[2]}, !g.isZero(0)};
 }
 
@@ -89,13 +91,13 @@ void ResidentElements::add_hessians(const Slot& slot, const double* x, const Hes
 void ResidentElements::add_matrix(TermSet set, const double* x, const HessianOf& hessian) {
   const auto add_group = [&](TermGroup group) {
     for (const Slot& slot : slots_) {
-      if (set.has(group) && slot.family->group() == group) add_hessians(slot, x, hessian(slot.family->name()));
+      if (set.has(group) && slot.family->group() == group)
+        add_hessians(slot, x, hessian(slot.family->name()));
     }
   };
   add_group(TermGroup::elastic);
   if (set.has(TermGroup::load)) {
-    executor_.each(n_vertices_,
-                   InertiaDiagonal{loads(), row_begin_.data(), column_.data(), value_.data()});
+    executor_.each(n_vertices_, InertiaDiagonal{loads(), row_begin_.data(), column_.data(), value_.data()});
   }
   if (limit_ && set.has(TermGroup::limit)) limit_->measure(x);
   add_group(TermGroup::limit);
@@ -109,8 +111,8 @@ double ResidentElements::refresh_limit(const double* x) {
 void ResidentElements::linearise(const double* x, double* g) {
   executor_.each(n_vertices_, LoadGradient{loads(), x, g});
   if (limit_) limit_->measure(x);
-  for (const Slot& slot : slots_) {
-    double* energy = const_cast<Buffer<double>&>(slot.energy).data();
+  for (Slot& slot : slots_) {
+    double* energy = slot.energy.data();
     for_each_piece(slot, [&](const Piece& piece, const GatherLists& gathers) {
       slot.family->gradients(piece, x, energy, local_.data());
       gathers.add_gradients(executor_, piece.n, local_.data(), g);

@@ -79,7 +79,7 @@ class ResidentElements {
  private:
   struct Slot {
     std::unique_ptr<ElementFamily> family;
-    Buffer<double> energy, trial;  // [n] J
+    Buffer<double> energy, trial;      // [n] J
     std::vector<GatherLists> gathers;  // one a piece
   };
   void add_slot(std::unique_ptr<ElementFamily> family);

@@ -59,8 +59,8 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
   }
 
   void measure(const double* x) override {
-    executor_.each(size(), MeasureStretch<R>{elements_, x});
-    launch_shape_(executor_, elements_, options_.limit, rule().has_potential() ? parts_.data() : nullptr);
+    measure_stretch(x);
+    fill_barrier();
   }
   void begin_step() override { fresh_ = false, first_ = true; }
   bool reads_elastic() const override { return rule().needs_hessian() && !keeps(); }
@@ -81,6 +81,11 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
   /// Whether kappa stays at the next refresh.
   bool keeps() const {
     return fresh_ && (rule().kind == LimitStiffness::Kind::fixed || rule().refresh == Refresh::per_step);
+  }
+  void measure_stretch(const double* x) { executor_.each(size(), MeasureStretch<R>{elements_, x}); }
+  /// Barrier terms at the measured pseudo-gaps.
+  void fill_barrier() {
+    launch_shape_(executor_, elements_, options_.limit, rule().has_potential() ? parts_.data() : nullptr);
   }
   void set_columns(Index n) {
     elements_.of = triangles_.vertex.data();
@@ -107,25 +112,19 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
 template <int R>
 double LimitFamily<R>::refresh(const double* x, const ResidentFrame& frame, const double* mass,
                                const MatrixPart& elastic) {
-  const bool first = first_;
-  first_ = false;
-  if (keeps()) {
-    measure(x);
-    return 0;
-  }
-  fresh_ = true;
-  if (rule().kind == LimitStiffness::Kind::fixed) {
+  const bool first = first_, keep = keeps(), potential = rule().has_potential();
+  first_ = false, fresh_ = true;
+  measure_stretch(x);
+  if (!keep && rule().kind == LimitStiffness::Kind::fixed) {
     executor_.each(size(), FixedLimitStiffness{elements_, rule().k_s});
-    measure(x);
-    return 0;
+  } else if (!keep) {
+    executor_.each(size(), ElasticLimitStiffness{elements_, rule().rule(frame.dt, frame.c), rule().gap_floor,
+                                                 rule().multiplier, frame.x_n, mass, mass_.data(),
+                                                 elastic.row_begin, elastic.column, elastic.value,
+                                                 potential ? parts_.data() : nullptr, before_.data()});
   }
-  executor_.each(size(), MeasureStretch<R>{elements_, x});
-  const bool potential = rule().has_potential();
-  executor_.each(size(), ElasticLimitStiffness{
-                             elements_, rule().rule(frame.dt, frame.c), rule().gap_floor, rule().multiplier,
-                             frame.x_n, mass, mass_.data(), elastic.row_begin, elastic.column,
-                             elastic.value, potential ? parts_.data() : nullptr, before_.data()});
-  measure(x);
+  fill_barrier();
+  if (keep || rule().kind == LimitStiffness::Kind::fixed) return 0;
   if (first || potential) return 0;
   least_.clear();
   least_.add(size(), LimitKappaChange{elements_, before_.data()});

@@ -25,8 +25,8 @@ struct LimitNumbers {
 
 class ResidentLimit : public ElementFamily {
  public:
-  /// Singular values, pseudo-gaps and barrier terms at x, with the kappa of the last refresh. Everything that ElementFamily offers is of the state
-  /// measured last.
+  /// Singular values, pseudo-gaps and barrier terms at x, with the kappa of the last refresh. Everything that
+  /// ElementFamily offers is of the state measured last.
   virtual void measure(const double* x) = 0;
   /// A step begins: the next refresh is its first.
   virtual void begin_step() = 0;

@@ -34,8 +34,7 @@ class ResidentSum {
 /// The least of keys that several calls bring: largest and smallest numbers, first items.
 class ResidentLeast {
  public:
-  explicit ResidentLeast(exec::Executor& executor)
-      : executor_(executor), least_(executor, "least key", 1) {
+  explicit ResidentLeast(exec::Executor& executor) : executor_(executor), least_(executor, "least key", 1) {
     clear();
   }
   void clear() { clear(none); }

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "core/resident/linear/resident_matrix.hpp"
 #include "core/math/types.hpp"
+#include "core/resident/linear/resident_matrix.hpp"
 
 namespace bb::resident {
 
