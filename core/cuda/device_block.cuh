@@ -13,8 +13,8 @@ struct DeviceTile {
 
   /// The lanes of this tile in the warp: tiles of one warp may diverge.
   __device__ static unsigned mask() {
-    if constexpr (W == 32) return 0xffffffffu;
-    return ((1u << W) - 1) << (threadIdx.x & 31u & ~(W - 1u));
+    constexpr unsigned ones = 0xffffffffu >> (32 - W);
+    return ones << (threadIdx.x & 31u & ~(W - 1u));
   }
   template <class F>
   __device__ auto lanes(const F& f) const {

@@ -9,39 +9,14 @@
 #include <numeric>
 
 #include "core/exec/buffer.hpp"
+#include "tests/exec/sample_kernels.hpp"
 
 namespace {
 
 using namespace bb::exec;
+using bb::sample::BlockSums, bb::sample::Square;
 
 constexpr Order all_orders[] = {Order::threads, Order::forward, Order::reverse, Order::shuffled};
-
-struct Square {
-  const double* in;
-  double* out;
-  BB_HD void operator()(Index i) const { out[i] = in[i] * in[i]; }
-};
-
-/// Sums of 256 numbers each, by tiles and a fold.
-struct BlockSums {
-  struct Shared {
-    double tile[32], total[1];
-  };
-  const double* in;
-  double* out;
-  template <class Block>
-  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
-    block.template tiles<8>([&](auto& tile, int k) {
-      const auto mine = tile.lanes([&](int lane) { return in[256 * b + 8 * k + lane]; });
-      const double sum = tile.sum(mine);
-      tile.once([&] { shared.tile[k] = sum; });
-    });
-    fold(block, shared.tile, 32);
-    block.threads([&](int t) {
-      if (t == 0) out[b] = shared.tile[0];
-    });
-  }
-};
 
 /// Breaks the rules: a sum in the order of the items.
 struct RunningSum {

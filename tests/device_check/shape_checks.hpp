@@ -1,14 +1,17 @@
-// Every barrier shape of the registry as device code.
+// Every barrier shape of the registry.
+#pragma once
+
 #include "barriers/shapes/gap_potential.hpp"
-#include "core/device_check/shape_list.hpp"
-#include "core/device_check/slots.hpp"
+#include "tests/device_check/shape_list.hpp"
+#include "tests/device_check/slots.hpp"
 
 namespace bb::device_check {
 
 template <class T>
-__global__ void every_shape(const T* in, T* out) {
-  Slots<T> slots{in, out};
-  const T d = slots.scalar(), d_hat = slots.scalar();
+struct EveryShape : Columns<T> {
+  BB_HD void operator()(exec::Index i) const {
+    Slots<T> slots = this->slots(i);
+    const T d_hat = slots.positive() + T(1e-3), d = T(1.25) * d_hat * slots.positive();
 #define BB_CHECK_SHAPE(S)                                                \
   {                                                                      \
     const ShapeTerms<T> terms = shapes::S::eval(d, d_hat);               \
@@ -18,9 +21,9 @@ __global__ void every_shape(const T* in, T* out) {
       slots.write(psi.b), slots.write(psi.db), slots.write(psi.d2b);     \
     }                                                                    \
   }
-  BB_FOR_EACH_SHAPE(BB_CHECK_SHAPE)
+    BB_FOR_EACH_SHAPE(BB_CHECK_SHAPE)
 #undef BB_CHECK_SHAPE
-}
-BB_DEVICE_CHECK(every_shape);
+  }
+};
 
 }  // namespace bb::device_check

@@ -1,0 +1,87 @@
+# Tests that run nvcc's PTX on the CPU (tests/ptx). Everything in such an executable is compiled without Eigen's
+# vectors, whose sums have an order of their own; that changes Eigen's alignment too, so that none of the bb_ libraries
+# may be linked: bb_plain_rooms compiles their sources again.
+find_package(Python3 REQUIRED COMPONENTS Interpreter)
+set(BB_PLAIN_OPTIONS -DEIGEN_DONT_VECTORIZE)
+
+# bb_plain_rooms(NAME rooms...): object library NAME of the sources of these rooms and of all that they name.
+function(bb_plain_rooms name)
+  set(open ${ARGN})
+  set(rooms "")
+  set(libraries "")
+  while(open)
+    list(POP_FRONT open room)
+    if(NOT room MATCHES "^bb_" OR NOT TARGET ${room})
+      list(APPEND libraries ${room})
+      continue()
+    endif()
+    if(room IN_LIST rooms OR room STREQUAL "bb_pch" OR room STREQUAL "bb_settings")
+      continue()
+    endif()
+    list(APPEND rooms ${room})
+    get_target_property(links ${room} INTERFACE_LINK_LIBRARIES)
+    if(links)
+      list(APPEND open ${links})
+    endif()
+  endwhile()
+  set(sources "")
+  foreach(room IN LISTS rooms)
+    get_target_property(type ${room} TYPE)
+    if(type STREQUAL "INTERFACE_LIBRARY")
+      continue()
+    endif()
+    get_target_property(folder ${room} SOURCE_DIR)
+    get_target_property(files ${room} SOURCES)
+    foreach(file IN LISTS files)
+      if(file MATCHES "\\.cpp$" AND NOT file MATCHES "cmake_pch")
+        cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${folder}")
+        list(APPEND sources "${file}")
+      endif()
+    endforeach()
+  endforeach()
+  list(REMOVE_DUPLICATES sources)
+  list(REMOVE_DUPLICATES libraries)
+  list(FILTER libraries EXCLUDE REGEX "LINK_ONLY")
+  add_library(${name} OBJECT ${sources})
+  target_link_libraries(${name} PUBLIC bb_settings Eigen3::Eigen ${libraries})
+  target_compile_options(${name} PUBLIC ${BB_PLAIN_OPTIONS})
+  target_include_directories(${name} PUBLIC "${PROJECT_BINARY_DIR}/generated")
+  foreach(room IN LISTS rooms)  # headers that a room generates
+    add_dependencies(${name} ${room})
+  endforeach()
+endfunction()
+
+# bb_ptx_module(NAME SOURCE file.cu): object library NAME, the PTX of the file as C++.
+function(bb_ptx_module name)
+  cmake_parse_arguments(ARG "" "SOURCE" "" ${ARGN})
+  cmake_path(ABSOLUTE_PATH ARG_SOURCE)
+  set(ptx "${CMAKE_CURRENT_BINARY_DIR}/${name}.ptx")
+  set(cpp "${CMAKE_CURRENT_BINARY_DIR}/${name}_ptx.cpp")
+  set(eigen "$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>")
+  add_custom_command(OUTPUT "${ptx}"
+    COMMAND "${CMAKE_CUDA_COMPILER}" -ptx -arch=sm_90 -std=c++20 -O3 -DNDEBUG --fmad=false -Xcompiler=-ffp-contract=off
+      --expt-relaxed-constexpr --diag-suppress=20012 -Werror=cross-execution-space-call "-I${PROJECT_SOURCE_DIR}"
+      "-I${PROJECT_BINARY_DIR}/generated" "-I$<JOIN:${eigen},;-I>" -MD -MF "${ptx}.d" -MT "${ptx}" -o "${ptx}"
+      "${ARG_SOURCE}"
+    DEPENDS "${ARG_SOURCE}" DEPFILE "${ptx}.d" COMMAND_EXPAND_LISTS VERBATIM COMMENT "PTX of ${name}")
+  add_custom_command(OUTPUT "${cpp}"
+    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/tests/ptx/translate.py" "${ptx}" "${cpp}" --module "${name}"
+    DEPENDS "${ptx}" "${PROJECT_SOURCE_DIR}/tests/ptx/translate.py" VERBATIM COMMENT "Translating the PTX of ${name}")
+  add_library(${name} OBJECT "${cpp}")
+  # A function may have ten thousand lines: the optimiser's first level, and none of its passes that grow faster.
+  target_compile_options(${name} PRIVATE -w -O1 ${BB_CODE_FLAGS})
+  target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
+endfunction()
+
+# bb_ptx_test(NAME LEAST n MODULES ... SOURCES ... [ROOMS library of bb_plain_rooms] ): test_NAME, one test of ctest,
+# which also fails when less than LEAST per cent of the instructions of its modules ran.
+function(bb_ptx_test name)
+  cmake_parse_arguments(ARG "" "LEAST;ROOMS" "MODULES;SOURCES" ${ARGN})
+  add_executable(test_${name} ${ARG_SOURCES} "${PROJECT_SOURCE_DIR}/tests/ptx/main.cpp")
+  target_link_libraries(test_${name} PRIVATE ${ARG_MODULES} bb_ptx_machine ${ARG_ROOMS} GTest::gtest)
+  target_compile_options(test_${name} PRIVATE ${BB_PLAIN_OPTIONS})
+  target_compile_definitions(test_${name} PRIVATE BB_PTX_LEAST=${ARG_LEAST})
+  target_include_directories(test_${name} PRIVATE "${PROJECT_BINARY_DIR}/generated")
+  add_test(NAME ptx.${name} COMMAND test_${name})
+  set_tests_properties(ptx.${name} PROPERTIES TIMEOUT 600)
+endfunction()

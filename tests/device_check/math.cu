@@ -1,0 +1,8 @@
+// PTX of the checks in math_checks.hpp.
+#include "core/cuda/device_block.cuh"
+#include "tests/device_check/math_checks.hpp"
+#include "tests/ptx/instantiate.cuh"
+
+EACH(bb::device_check::Svds<double>)
+EACH(bb::device_check::Svds<float>)
+EACH(bb::device_check::SymmetricEigen<double>)

@@ -1,0 +1,7 @@
+// PTX of the checks in shape_checks.hpp.
+#include "core/cuda/device_block.cuh"
+#include "tests/device_check/shape_checks.hpp"
+#include "tests/ptx/instantiate.cuh"
+
+EACH(bb::device_check::EveryShape<double>)
+EACH(bb::device_check::EveryShape<float>)

@@ -1,0 +1,88 @@
+// Kernels that break a rule of core/exec/kernel.hpp: the checked run time has to say so.
+#pragma once
+
+#include "core/exec/kernel.hpp"
+
+namespace bb::faulty {
+
+using exec::Index;
+
+struct OneTooFar {
+  double* out;
+  BB_HD void operator()(Index i) const { out[i + 1] = 1; }
+};
+struct ReadsBefore {
+  const double* in;
+  double* out;
+  BB_HD void operator()(Index i) const { out[i] = in[i - 1]; }
+};
+struct Misaligned {
+  unsigned char* out;
+  BB_HD void operator()(Index i) const { *reinterpret_cast<double*>(out + 8 * i + 4) = 1; }
+};
+struct Endless {
+  const double* in;
+  double* out;
+  BB_HD void operator()(Index i) const {
+    double x = 0;
+    while (x < in[0]) x = x * in[1];
+    out[i] = x;
+  }
+};
+/// Reads what another thread wrote without a barrier.
+struct MissingBarrier {
+  struct Shared {
+    double a[256];
+  };
+  double* out;
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
+    block.threads([&](int t) {
+      shared.a[t] = t;
+      out[256 * b + t] = shared.a[(t + 1) % 256];
+    });
+  }
+};
+struct WritesTogether {
+  struct Shared {
+    double a[2];
+  };
+  double* out;
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
+    block.threads([&](int t) { shared.a[t & 1] = t; });
+    block.threads([&](int t) { out[256 * b + t] = shared.a[0]; });
+  }
+};
+struct BarrierOfSome {
+  struct Shared {
+    int unused;
+  };
+  double* out;
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared&, Index b) const {
+#ifdef __CUDA_ARCH__
+    if (threadIdx.x < 100) __syncthreads();
+#endif
+    block.threads([&](int t) { out[256 * b + t] = t; });
+  }
+};
+struct ShuffleOfSome {
+  struct Shared {
+    int unused;
+  };
+  double* out;
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared&, Index b) const {
+    block.template tiles<8>([&](auto& tile, int k) {
+      const auto mine = tile.lanes([&](int lane) { return static_cast<double>(lane); });
+#ifdef __CUDA_ARCH__
+      if ((threadIdx.x & 7) == 3) return;
+#endif
+      const double sum = tile.sum(mine);
+      tile.once([&] { out[32 * b + k] = sum; });
+    });
+  }
+};
+
+}  // namespace bb::faulty

@@ -1,0 +1,15 @@
+// Runs the cases of a PTX test. A run of all of them also has to execute BB_PTX_LEAST per cent of the instructions.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+
+#include "tests/ptx/report.hpp"
+
+int main(int argc, char** argv) {
+  testing::InitGoogleTest(&argc, argv);
+  const int failed = RUN_ALL_TESTS();
+  if (testing::GTEST_FLAG(list_tests) || testing::GTEST_FLAG(filter) != "*" || failed) return failed;
+  if (ptx::report(BB_PTX_LEAST / 100.0)) return 0;
+  std::printf("less than %d %% of the instructions ran\n", BB_PTX_LEAST);
+  return 1;
+}

@@ -1,0 +1,75 @@
+#include "tests/ptx/report.hpp"
+
+#include <cstdio>
+#include <cstdlib>
+#include <fstream>
+
+namespace ptx {
+
+namespace {
+std::map<std::string, Traffic>& all_traffic() {
+  static std::map<std::string, Traffic> all;
+  return all;
+}
+
+double share(const Coverage& c) {
+  return c.all == 0 ? 1 : static_cast<double>(c.executed) / static_cast<double>(c.all);
+}
+
+void print_kernel(const Module& module, const Kernel& kernel) {
+  const Coverage c = coverage(module, kernel);
+  std::printf("  %5.1f %% of %zu: %s\n        not run: lines", 100 * share(c), c.all,
+              demangled(kernel.name).c_str());
+  int shown = 0;
+  for (std::size_t b = kernel.first_block; b < kernel.first_block + kernel.n_blocks && shown < 12; ++b) {
+    if (module.executed[b]) continue;
+    std::printf(" %d", module.blocks[b].line), ++shown;
+  }
+  std::printf("%s\n", shown == 12 ? " ..." : "");
+}
+
+void write(const char* path) {
+  std::ofstream out(path);
+  out << "{\n  \"kernels\": [";
+  const char* separator = "\n";
+  for (const Module& module : modules()) {
+    for (const Kernel& kernel : module.kernels) {
+      const Coverage c = coverage(module, kernel);
+      const Traffic t = all_traffic()[kernel.name];
+      out << separator << "    {\"module\": \"" << module.name << "\", \"name\": \"" << kernel.name
+          << "\", \"instructions\": " << c.all << ", \"executed\": " << c.executed
+          << ", \"requests\": " << t.requests << ", \"lines\": " << t.lines << ", \"sectors\": " << t.sectors
+          << ", \"bytes\": " << t.bytes << "}";
+      separator = ",\n";
+    }
+  }
+  out << "\n  ]\n}\n";
+}
+}  // namespace
+
+bool profile_wanted() { return std::getenv("BB_PTX_PROFILE") != nullptr; }
+
+void note_traffic(Machine& machine) {
+  for (const auto& [name, t] : machine.traffic) {
+    Traffic& sum = all_traffic()[name];
+    sum.requests += t.requests, sum.lines += t.lines, sum.sectors += t.sectors, sum.bytes += t.bytes;
+  }
+  machine.traffic.clear();
+}
+
+bool report(double least) {
+  bool good = true;
+  for (const Module& module : modules()) {
+    const Coverage c = coverage(module);
+    std::printf("PTX of %s: %zu of %zu instructions ran, %.1f %%\n", module.name, c.executed, c.all,
+                100 * share(c));
+    for (const Kernel& kernel : module.kernels) {
+      if (share(coverage(module, kernel)) < least) print_kernel(module, kernel);
+    }
+    good = good && c.all > 0 && share(c) >= least;
+  }
+  if (const char* path = std::getenv("BB_PTX_PROFILE")) write(path);
+  return good;
+}
+
+}  // namespace ptx

@@ -1,0 +1,17 @@
+// What a test executable ran: instructions of the PTX that were executed, and traffic of the kernels.
+#pragma once
+
+#include "tests/ptx/machine.hpp"
+
+namespace ptx {
+
+/// Environment: BB_PTX_PROFILE names a file; traffic is counted and written there.
+bool profile_wanted();
+/// Adds the traffic of a machine to the report and forgets it there.
+void note_traffic(Machine& machine);
+
+/// Prints executed and all instructions by module, kernels below `least` with their first lines that did not run.
+/// Writes them, with the traffic, to BB_PTX_PROFILE where it is set. @return whether every module has `least`.
+bool report(double least);
+
+}  // namespace ptx

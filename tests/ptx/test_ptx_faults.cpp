@@ -1,0 +1,101 @@
+// The checked run time refuses kernels that break a rule, with the kernel's name and the line of its PTX.
+#include <gtest/gtest.h>
+
+#include "core/exec/buffer.hpp"
+#include "tests/ptx/faulty_kernels.hpp"
+#include "tests/ptx/ptx_executor.hpp"
+
+namespace {
+
+using namespace bb::exec;
+using namespace bb::faulty;
+
+template <class Launch>
+void expect_error(const Launch& launch, const std::vector<std::string>& parts) {
+  for (const Order order : {Order::forward, Order::reverse, Order::shuffled}) {
+    ptx::PtxExecutor device(order, 3);
+    try {
+      launch(device);
+      ADD_FAILURE() << "no error of " << parts[0];
+    } catch (const ExecutionError& error) {
+      for (const std::string& part : parts)
+        EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
+    }
+  }
+}
+
+TEST(PtxFaults, BoundsAndAlignment) {
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> out(e, "out", 10), beside(e, "beside", 10);
+        e.each(10, OneTooFar{out.data()});
+      },
+      {"OneTooFar", "a store outside all allocations", "PTX line", "thread 9"});
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> in(e, "in", 10), out(e, "out", 10);
+        e.each(10, ReadsBefore{in.data(), out.data()});
+      },
+      {"ReadsBefore", "a load outside all allocations", "thread 0"});
+  expect_error(
+      [](Executor& e) {
+        Buffer<unsigned char> out(e, "out", 100);
+        e.each(10, Misaligned{out.data()});
+      },
+      {"Misaligned", "misaligned access to global memory"});
+}
+
+TEST(PtxFaults, MemoryThatWasReleased) {
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> in(e, "in", 10), out(e, "out", 10);
+        const double* dead = in.data();
+        in.free();
+        e.each(9, ReadsBefore{dead + 1, out.data()});
+      },
+      {"ReadsBefore", "a load outside"});
+}
+
+TEST(PtxFaults, Races) {
+  Index blocks = 2;
+  for (auto launch : {+[](Executor&e, Buffer<double>&out) { e.blocks(2, MissingBarrier{out.data()}); },
+                      +[](Executor&e, Buffer<double>&out) { e.blocks(2, WritesTogether{out.data()}); }}) {
+    expect_error(
+        [&](Executor& e) {
+          Buffer<double> out(e, "out", 256 * blocks);
+          launch(e, out);
+        },
+        {"race", "since the last barrier"});
+  }
+}
+
+TEST(PtxFaults, DeadlocksAndEndlessLoops) {
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> out(e, "out", 256);
+        e.blocks(1, BarrierOfSome{out.data()});
+      },
+      {"BarrierOfSome", "deadlock", "at the barrier of PTX line"});
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> out(e, "out", 32);
+        e.blocks(1, ShuffleOfSome{out.data()});
+      },
+      {"ShuffleOfSome", "deadlock", "at the shuffle of PTX line"});
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> in(e, "in"), out(e, "out", 1);
+        in.upload(std::vector<double>{1, 0.5});
+        e.each(1, Endless{in.data(), out.data()});
+      },
+      {"Endless", "runs without end"});
+}
+
+struct NotInTheList {
+  BB_HD void operator()(Index) const {}
+};
+TEST(PtxFaults, KernelsWithoutPtx) {
+  expect_error([](Executor& e) { e.each(1, NotInTheList{}); }, {"NotInTheList", "no PTX"});
+}
+
+}  // namespace
