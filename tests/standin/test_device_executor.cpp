@@ -174,7 +174,8 @@ TEST_F(OnDevice, RefusesAKernelWithoutADeviceVersion) {
     device->each(1, Unlisted{x.data()});
     FAIL();
   } catch (const ExecutionError& error) {
-    EXPECT_NE(std::string(error.what()).find("bb::device_kernels::Unlisted: no device version"), std::string::npos);
+    EXPECT_NE(std::string(error.what()).find("bb::device_kernels::Unlisted: no device version"),
+              std::string::npos);
   }
 }
 

@@ -29,7 +29,8 @@ class Standin : public testing::Test {
 };
 
 void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+  for (const std::string& part : parts)
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
 }
 
 template <class Error>
@@ -60,7 +61,8 @@ TEST_F(Standin, ProbeSaysWhyThereIsNoCard) {
   };
   const Case cases[] = {
       {[](auto& s) { s.count_code = cudaErrorInsufficientDriver, s.driver = 0; }, {"no NVIDIA driver"}},
-      {[](auto& s) { s.count_code = cudaErrorInsufficientDriver, s.driver = 11040; }, {"too old", "11.4", "13.0"}},
+      {[](auto& s) { s.count_code = cudaErrorInsufficientDriver, s.driver = 11040; },
+       {"too old", "11.4", "13.0"}},
       {[](auto& s) { s.count_code = cudaErrorNoDevice; }, {"no NVIDIA card"}},
       {[](auto& s) { s.count = 0; }, {"no NVIDIA card"}},
       {[](auto& s) { s.count_code = cudaErrorSystemNotReady; }, {"cudaGetDeviceCount", "802"}},
