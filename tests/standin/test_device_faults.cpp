@@ -1,6 +1,9 @@
 // What the stand-in lets go wrong: no card, no memory, kernels that fail. Every message names what failed.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <fstream>
+
 #include "core/cuda/copy_rates.hpp"
 #include "core/cuda/device.hpp"
 #include "core/cuda/device_executor.hpp"
@@ -93,6 +96,7 @@ TEST_F(Standin, OutOfMemoryNamesTheBufferAndTheCard) {
       message<OutOfMemory>([&] { Buffer<double>(executor, "matrix values", Index{1} << 20); });
   expect_parts(text, {"matrix values", "8.00 MiB", "7.81 KiB", "1016.19 KiB of 1.00 MiB free on the card"});
   rows.fill_zero();  // the executor is as good as before
+  executor.each(1000, Square{rows.data()});
   EXPECT_EQ(rows.get(999), 0);
 }
 
@@ -179,6 +183,22 @@ TEST_F(Standin, AGraphIsInstantiatedOnceAndMemoryIsGivenBack) {
     EXPECT_EQ(standin::counts().replays, 5);
   }
   EXPECT_EQ(standin::counts().in_use, 0u);
+}
+
+TEST_F(Standin, TimesOfKernelsAreWrittenWhereTheEnvironmentSays) {
+  const std::string file = testing::TempDir() + "kernel_times.json";
+  setenv("BARRIERBENCH_KERNEL_TIMES", file.c_str(), 1);
+  {
+    const auto executor = cuda::make_device_executor();
+    Buffer<double> x(*executor, "x", 4);
+    x.fill_zero();
+    for (int i = 0; i < 3; ++i) executor->each(4, Square{x.data()});
+  }
+  unsetenv("BARRIERBENCH_KERNEL_TIMES");
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  expect_parts(text, {"barrierbench.kernel_times/1",
+                      R"("bb::device_kernels::Square": {"launches": 3, "seconds": 0.003)"});
 }
 
 TEST_F(Standin, CopiesAreMeasured) {
