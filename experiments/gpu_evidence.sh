@@ -79,10 +79,10 @@ fi
 
 # ---------------------------------------------------------------- correctness
 
-part device_tests 60 "$tests"
+part device_tests 30 "$tests"
 if sanitizer="$(tool compute-sanitizer)"; then
   for check in memcheck racecheck initcheck; do
-    part "$check" 60 "$sanitizer" --tool "$check" --error-exitcode 9 "$tests"
+    part "$check" 40 "$sanitizer" --tool "$check" --error-exitcode 9 "$tests"
   done
 else
   for check in memcheck racecheck initcheck; do without "$check" "compute-sanitizer was not found"; done
@@ -94,17 +94,17 @@ fi
 run_scene() {
   local name="$1" limit="$2"
   shift 2
-  part "$name" "$((limit + 30))" "$bench" run "$root/configs/gpu/${name%%.*}.json" --set '/device="cuda"' --out "$out/$name" \
+  part "$name" "$((limit + 10))" "$bench" run "$root/configs/gpu/${name%%.*}.json" --set '/device="cuda"' --out "$out/$name" \
     --time-limit "$limit" --progress none "$@"
 }
-run_scene drape_82k 60
-run_scene drape_1m 90
+run_scene drape_82k 40
+run_scene drape_1m 60
 run_scene dense_184m 120
 export BARRIERBENCH_KERNEL_TIMES="$out/kernel_times.json"
-run_scene drape_82k.timed 60 --set /time/steps=1
+run_scene drape_82k.timed 40 --set /time/steps=1
 unset BARRIERBENCH_KERNEL_TIMES
 if ncu="$(tool ncu)"; then
-  part kernels 90 "$ncu" --csv --print-units base --metrics gpu__time_duration.sum,dram__bytes.sum --launch-count 500 \
+  part kernels 60 "$ncu" --csv --print-units base --metrics gpu__time_duration.sum,dram__bytes.sum --launch-count 500 \
     "$bench" run "$root/configs/gpu/drape_82k.json" --set '/device="cuda"' --set /time/steps=1 --out "$out/drape_82k.ncu" --progress none
 else
   without kernels "ncu was not found"

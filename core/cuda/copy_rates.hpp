@@ -6,8 +6,9 @@
 namespace bb::cuda {
 
 struct CopyRates {
-  std::size_t bytes = 0;                         // of one copy
-  double copy = 0, upload = 0, download = 0;     // B/s; a copy within the memory reads and writes: both are counted
+  std::size_t bytes = 0;  // of one copy
+  double copy = 0, upload = 0,
+         download = 0;  // B/s; a copy within the memory reads and writes: both are counted
 };
 
 /// Several copies of so many bytes each. Errors: OutOfMemory, ExecutionError.

@@ -18,7 +18,8 @@ int launch_each(const void* f, exec::Index n, CUstream_st* stream) {
 template <class F>
 int launch_blocks(const void* f, exec::Index n, CUstream_st* stream) {
   if (n > exec::most_blocks) return cudaErrorInvalidConfiguration;
-  exec::run_blocks<F><<<static_cast<unsigned>(n), exec::block_threads, 0, stream>>>(*static_cast<const F*>(f));
+  exec::run_blocks<F>
+      <<<static_cast<unsigned>(n), exec::block_threads, 0, stream>>>(*static_cast<const F*>(f));
   return cudaGetLastError();
 }
 

@@ -15,9 +15,8 @@ int sort_by_key(void* scratch, std::size_t& scratch_bytes, TwoArrays<exec::Key>&
   cub::DoubleBuffer<exec::Key> k(keys.array[0], keys.array[1]);
   cub::DoubleBuffer<std::uint32_t> v(values.array[0], values.array[1]);
   const cudaError_t code =
-      values.array[0]
-          ? cub::DeviceRadixSort::SortPairs(scratch, scratch_bytes, k, v, n, 0, bits, stream)
-          : cub::DeviceRadixSort::SortKeys(scratch, scratch_bytes, k, n, 0, bits, stream);
+      values.array[0] ? cub::DeviceRadixSort::SortPairs(scratch, scratch_bytes, k, v, n, 0, bits, stream)
+                      : cub::DeviceRadixSort::SortKeys(scratch, scratch_bytes, k, n, 0, bits, stream);
   keys.current = k.selector;
   values.current = v.selector;
   return code;

@@ -2,21 +2,12 @@
 
 #include "core/cuda/device.hpp"
 #include "core/cuda/launch.cuh"
+#include "core/cuda/self_test.hpp"
 
 namespace bb::cuda {
 namespace {
 
 constexpr int least_capability = 80;
-
-/// An addition, a division and a square root in double precision, and an atomic: what every kernel needs.
-struct SelfTest {
-  double* out;
-  exec::Key* least;
-  BB_HD void operator()(exec::Index i) const {
-    out[i] = sqrt(2.0 + static_cast<double>(i)) / 3.0;
-    exec::atomic_min(least, exec::ordered_bits(out[i]));
-  }
-};
 
 std::string words(const char* call, cudaError_t code) {
   return std::string(call) + ": " + cudaGetErrorString(code) + " (CUDA error " + std::to_string(code) + ")";

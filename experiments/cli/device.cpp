@@ -48,8 +48,9 @@ void print(const DeviceProbe& probe, const std::optional<cuda::CopyRates>& rates
   }
   fmt::print("usable            {}\n", probe.usable ? std::string("yes") : "no: " + probe.why);
   if (!rates) return;
-  fmt::print("copies of {}: {:.0f} GB/s on the card (read and written), {:.1f} GB/s to it, {:.1f} GB/s from it\n",
-             exec::bytes_text(rates->bytes), 1e-9 * rates->copy, 1e-9 * rates->upload, 1e-9 * rates->download);
+  fmt::print(
+      "copies of {}: {:.0f} GB/s on the card (read and written), {:.1f} GB/s to it, {:.1f} GB/s from it\n",
+      exec::bytes_text(rates->bytes), 1e-9 * rates->copy, 1e-9 * rates->upload, 1e-9 * rates->download);
 }
 
 }  // namespace
@@ -58,7 +59,8 @@ int device(const DeviceVerb& verb) {
   const DeviceProbe probe = cuda::probe_device();
   std::optional<cuda::CopyRates> rates;
   if (probe.usable && verb.measure) {
-    rates = cuda::measure_copies(*cuda::make_device_executor(), std::min(std::size_t{1} << 30, probe.free / 4));
+    rates =
+        cuda::measure_copies(*cuda::make_device_executor(), std::min(std::size_t{1} << 30, probe.free / 4));
   }
   if (verb.json) {
     fmt::print("{}\n", as_json(probe, rates).dump(2));

@@ -108,7 +108,8 @@ CLI::App* add_validity(CLI::App& app, ValidityVerb& verb) {
 }
 
 CLI::App* add_device(CLI::App& app, DeviceVerb& verb) {
-  CLI::App* out = app.add_subcommand("device", "the card that this build can use, or why there is none (exit 3)");
+  CLI::App* out =
+      app.add_subcommand("device", "the card that this build can use, or why there is none (exit 3)");
   out->add_flag("--json", verb.json, "as JSON");
   out->add_flag("--measure", verb.measure, "how fast copies are");
   out->footer("example: ./bench device --measure");

@@ -17,20 +17,20 @@ struct Settings {
   int count = 1, driver = 13000, runtime = 13000;
   int major = 9, minor = 0;
   std::size_t memory = std::size_t{1} << 32;  // bytes of the card
-  int refuse_launch = -1;        // the launch of this number fails at once, for want of registers
-  int break_launch = -1;         // this one runs into an illegal address
-  bool wrong_numbers = false;    // every kernel writes nothing
-  bool forget_a_node = false;    // graphs have a node less than was captured
+  int refuse_launch = -1;      // the launch of this number fails at once, for want of registers
+  int break_launch = -1;       // this one runs into an illegal address
+  bool wrong_numbers = false;  // every kernel writes nothing
+  bool forget_a_node = false;  // graphs have a node less than was captured
 };
 
 /// What happened since reset().
 struct Counts {
-  int launches = 0;      // asked for, those of graphs once for each replay
-  int graphs = 0;        // instantiated
+  int launches = 0;  // asked for, those of graphs once for each replay
+  int graphs = 0;    // instantiated
   int replays = 0;
   int waits = 0;
-  std::size_t in_use = 0;     // device memory
-  std::string fault;          // what a kernel did wrong, in the words of the PTX machine
+  std::size_t in_use = 0;  // device memory
+  std::string fault;       // what a kernel did wrong, in the words of the PTX machine
 };
 
 Settings& settings();

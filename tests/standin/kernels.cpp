@@ -65,10 +65,12 @@ cudaError_t launch(const void* stub, dim3 grid, dim3 block, void** arguments, st
     return standin::result(cudaErrorNoKernelImageForDevice);
   }
   const bool one_dimension = grid.y == 1 && grid.z == 1 && block.y == 1 && block.z == 1;
-  if (!one_dimension || grid.x == 0 || grid.x > 0x7fffffffu || block.x == 0 || block.x > 1024 || shared != 0) {
+  if (!one_dimension || grid.x == 0 || grid.x > 0x7fffffffu || block.x == 0 || block.x > 1024 ||
+      shared != 0) {
     return standin::result(cudaErrorInvalidConfiguration);
   }
-  Launch out{kernel, grid.x, block.x, std::vector<unsigned char>(kernel->param_bytes), standin::counts().launches++};
+  Launch out{kernel, grid.x, block.x, std::vector<unsigned char>(kernel->param_bytes),
+             standin::counts().launches++};
   if (out.number == standin::settings().refuse_launch) return standin::result(cudaErrorLaunchOutOfResources);
   for (std::size_t i = 0; i < kernel->params.size(); ++i) {
     memcpy(out.parameters.data() + kernel->params[i].offset, arguments[i], kernel->params[i].bytes);
@@ -93,8 +95,8 @@ void** __cudaRegisterFatBinary(void*) {
 void __cudaRegisterFatBinaryEnd(void**) {}
 void __cudaUnregisterFatBinary(void**) {}
 char __cudaInitModule(void**) { return 1; }
-void __cudaRegisterFunction(void**, const char* stub, char*, const char* name, int, uint3*, uint3*, dim3*, dim3*,
-                            int*) {
+void __cudaRegisterFunction(void**, const char* stub, char*, const char* name, int, uint3*, uint3*, dim3*,
+                            dim3*, int*) {
   names()[stub] = name;
 }
 void __cudaRegisterVar(void**, char*, char*, const char*, int, size_t, int, int) {}

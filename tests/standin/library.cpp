@@ -20,8 +20,8 @@ bool use_scratch(void* scratch, std::size_t bytes) {
 }
 
 // CUB goes from one array to the other once for each 8 bits.
-int sort_by_key(void* scratch, std::size_t& scratch_bytes, TwoArrays<Key>& keys, TwoArrays<std::uint32_t>& values,
-                Index n, int bits, CUstream_st* stream) {
+int sort_by_key(void* scratch, std::size_t& scratch_bytes, TwoArrays<Key>& keys,
+                TwoArrays<std::uint32_t>& values, Index n, int bits, CUstream_st* stream) {
   if (!scratch) {
     scratch_bytes = scratch_needed;
     return cudaSuccess;
@@ -61,7 +61,8 @@ int scan_exclusive(void* scratch, std::size_t& scratch_bytes, Index* values, int
   const std::size_t bytes = scratch_bytes;
   return standin::enqueue(stream, [=] {
     if (!use_scratch(scratch, bytes)) return cudaErrorIllegalAddress;
-    if (!standin::on_device(values, static_cast<std::size_t>(n) * sizeof(Index))) return cudaErrorIllegalAddress;
+    if (!standin::on_device(values, static_cast<std::size_t>(n) * sizeof(Index)))
+      return cudaErrorIllegalAddress;
     std::exclusive_scan(values, values + n, values, first);
     return cudaSuccess;
   });

@@ -68,7 +68,8 @@ cudaError_t cudaMemGetInfo(size_t* free, size_t* total) {
   *free = settings().memory - counts().in_use;
   return result(cudaSuccess);
 }
-cudaError_t cudaMemcpyAsync(void* to, const void* from, size_t bytes, cudaMemcpyKind kind, cudaStream_t stream) {
+cudaError_t cudaMemcpyAsync(void* to, const void* from, size_t bytes, cudaMemcpyKind kind,
+                            cudaStream_t stream) {
   if (const cudaError_t code = checked_copy(to, from, bytes, kind); code != cudaSuccess) return result(code);
   return enqueue(stream, [=] {
     memmove(to, from, bytes);

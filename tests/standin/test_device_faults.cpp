@@ -1,6 +1,9 @@
 // What the stand-in lets go wrong: no card, no memory, kernels that fail. Every message names what failed.
 #include <gtest/gtest.h>
 
+#include <cstdlib>
+#include <fstream>
+
 #include "core/cuda/copy_rates.hpp"
 #include "core/cuda/device.hpp"
 #include "core/cuda/device_executor.hpp"
@@ -29,7 +32,8 @@ class Standin : public testing::Test {
 };
 
 void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
+  for (const std::string& part : parts)
+    EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
 }
 
 template <class Error>
@@ -60,7 +64,8 @@ TEST_F(Standin, ProbeSaysWhyThereIsNoCard) {
   };
   const Case cases[] = {
       {[](auto& s) { s.count_code = cudaErrorInsufficientDriver, s.driver = 0; }, {"no NVIDIA driver"}},
-      {[](auto& s) { s.count_code = cudaErrorInsufficientDriver, s.driver = 11040; }, {"too old", "11.4", "13.0"}},
+      {[](auto& s) { s.count_code = cudaErrorInsufficientDriver, s.driver = 11040; },
+       {"too old", "11.4", "13.0"}},
       {[](auto& s) { s.count_code = cudaErrorNoDevice; }, {"no NVIDIA card"}},
       {[](auto& s) { s.count = 0; }, {"no NVIDIA card"}},
       {[](auto& s) { s.count_code = cudaErrorSystemNotReady; }, {"cudaGetDeviceCount", "802"}},
@@ -77,6 +82,7 @@ TEST_F(Standin, ProbeSaysWhyThereIsNoCard) {
     EXPECT_TRUE(probe.built);
     EXPECT_FALSE(probe.usable);
     expect_parts(probe.why, c.says);
+    EXPECT_EQ(cudaGetLastError(), standin::broken());  // what was told is not the error of a later launch
     standin::reset();
     c.set(standin::settings());
     expect_parts(message<ConfigError>([] { cuda::make_device_executor(); }), {"/device", probe.why});
@@ -91,6 +97,7 @@ TEST_F(Standin, OutOfMemoryNamesTheBufferAndTheCard) {
       message<OutOfMemory>([&] { Buffer<double>(executor, "matrix values", Index{1} << 20); });
   expect_parts(text, {"matrix values", "8.00 MiB", "7.81 KiB", "1016.19 KiB of 1.00 MiB free on the card"});
   rows.fill_zero();  // the executor is as good as before
+  executor.each(1000, Square{rows.data()});
   EXPECT_EQ(rows.get(999), 0);
 }
 
@@ -177,6 +184,22 @@ TEST_F(Standin, AGraphIsInstantiatedOnceAndMemoryIsGivenBack) {
     EXPECT_EQ(standin::counts().replays, 5);
   }
   EXPECT_EQ(standin::counts().in_use, 0u);
+}
+
+TEST_F(Standin, TimesOfKernelsAreWrittenWhereTheEnvironmentSays) {
+  const std::string file = testing::TempDir() + "kernel_times.json";
+  setenv("BARRIERBENCH_KERNEL_TIMES", file.c_str(), 1);
+  {
+    const auto executor = cuda::make_device_executor();
+    Buffer<double> x(*executor, "x", 4);
+    x.fill_zero();
+    for (int i = 0; i < 3; ++i) executor->each(4, Square{x.data()});
+  }
+  unsetenv("BARRIERBENCH_KERNEL_TIMES");
+  std::ifstream in(file);
+  const std::string text{std::istreambuf_iterator<char>(in), {}};
+  expect_parts(text, {"barrierbench.kernel_times/1",
+                      R"("bb::device_kernels::Square": {"launches": 3, "seconds": 0.003)"});
 }
 
 TEST_F(Standin, CopiesAreMeasured) {

@@ -2,7 +2,6 @@
 
 #include <cuda_runtime_api.h>
 
-
 #include "core/cuda/kernel_table.hpp"
 
 namespace bb::cuda {
@@ -82,7 +81,8 @@ void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void*
                          std::to_string(found->bytes) + " on the device");
   }
   const auto call = [&] {
-    check(found->launch(f, n, stream_), kernel.name() + " (" + std::to_string(n) + (kernel.blocks ? " blocks)" : ")"));
+    check(found->launch(f, n, stream_),
+          kernel.name() + " (" + std::to_string(n) + (kernel.blocks ? " blocks)" : ")"));
   };
   if (recording_) return recording_->add(kernel, n, f);
   if (capturing_) {
