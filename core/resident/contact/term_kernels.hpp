@@ -87,9 +87,13 @@ struct MollifiedChanges {
   BB_HD void operator()(Index i) const {
     const Index r = list[i];
     const Mat<double, 3, 4> moved = row_points(rows, r, motion);
-    const Vec<double, 12> stacked = Vec<double, 12>::Map(moved.data());
-    Vec<double, 12> out = Vec<double, 12>::Zero();
-    if (!stacked.isZero(0)) out = row_derivatives(rows, r, x, rest).hessian * stacked;
+    Vec<double, 12> stacked, out = Vec<double, 12>::Zero();
+    bool moves = false;
+    for (int c = 0; c < 12; ++c) {
+      stacked[c] = moved(c % 3, c / 3);
+      moves = moves || stacked[c] != 0;
+    }
+    if (moves) out = row_derivatives(rows, r, x, rest).hessian * stacked;
     for (int c = 0; c < 12; ++c) change[c * n + i] = rows.is_free(r, c / 3) ? out[c] : 0.0;
   }
 };
