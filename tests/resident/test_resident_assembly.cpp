@@ -179,6 +179,7 @@ double relative(const Matrix& a, const Matrix& b) { return (a - b).norm() / b.no
 TEST(ResidentAssembly, AddsUpWhatTheCpuPathDoes) {
   std::size_t n_mollified = 0, n_curved = 0;
   int n_forces = 0;
+  double worst[3] = {0, 0, 0};
   for (const Subject& s : subjects()) {
     const Positions motion = motion_of_given(s.scene);
     for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {
@@ -187,13 +188,16 @@ TEST(ResidentAssembly, AddsUpWhatTheCpuPathDoes) {
         n_mollified += expected.n_mollified, n_curved += expected.n_curved;
         HostExecutor executor;
         const Assembled got = assemble(executor, s.scene, s.x, motion, {mode, projection});
-        ASSERT_GT(got.n_rows, 50);
+        ASSERT_GE(got.n_rows, 40);
         EXPECT_GT(expected.energy, 0);
         EXPECT_NEAR(got.energy, expected.energy, 1e-12 * expected.energy);
         EXPECT_LT(relative(got.gradient, expected.gradient), 1e-12);
         EXPECT_LT(relative(got.matrix, expected.projected), 1e-11);
         EXPECT_EQ((got.matrix - got.matrix.transpose()).norm() > 1e-12 * got.matrix.norm(), false);
         EXPECT_LT(relative(got.force, expected.force), 1e-11);
+        worst[0] = std::max(worst[0], relative(got.gradient, expected.gradient));
+        worst[1] = std::max(worst[1], relative(got.matrix, expected.projected));
+        worst[2] = std::max(worst[2], relative(got.force, expected.force));
         n_forces += expected.force.norm() > 0;
 
         const HessianChoice blended{mode, Projection::none, true, 0.3};
@@ -203,6 +207,8 @@ TEST(ResidentAssembly, AddsUpWhatTheCpuPathDoes) {
       }
     }
   }
+  for (const int i : {0, 1, 2})
+    RecordProperty("worst" + std::to_string(i), std::to_string(worst[i] * 1e16) + "e-16");
   EXPECT_GT(n_mollified, 100U);
   EXPECT_GT(n_curved, 500U);
   EXPECT_GE(n_forces, 24);
@@ -268,7 +274,7 @@ TEST(ResidentAssembly, HoldsTheDiagonalOfEveryTouchedVertexAndBothTriangles) {
         EXPECT_LT(blocks.code[k - 1], blocks.code[k]);
     }
   }
-  EXPECT_GT(got.size(), 500U);
+  EXPECT_GT(got.size(), 400U);
   EXPECT_EQ(got, expected);
   EXPECT_EQ(static_cast<std::size_t>(assembly.n_blocks()), expected.size());
   EXPECT_EQ(blocks.begin[assembly.n_blocks()], n_upper);

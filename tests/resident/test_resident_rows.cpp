@@ -154,8 +154,9 @@ TEST(ResidentRowFinder, NamesGapsBelowZeroAndStatesThatAreNotFinite) {
 TEST(ResidentRowFinder, TellsStencilsApart) {
   const Scene scene = full_scene(2);
   HostExecutor executor;
-  OnExecutor a(executor, scene, scene.x0);
-  OnExecutor b(executor, scene, random_motion(scene.x0, 1e-12, 5));
+  const Positions x = shaken(scene);
+  OnExecutor a(executor, scene, x);
+  OnExecutor b(executor, scene, random_motion(x, 1e-13, 5));
   ASSERT_GT(a.rows.size(), 100);
   EXPECT_TRUE(resident::same_stencils(executor, a.rows, b.rows));
   const RowView v = b.rows.view();

@@ -109,6 +109,10 @@ double difference(const KappaSums& a, const KappaSums& b) {
     const auto found = b.find(key);
     if (found == b.end()) return 1e300;
     EXPECT_GT(kappa, 0);
+    if (std::isinf(kappa)) {  // M/d^2 of a pair that touches
+      EXPECT_EQ(found->second, kappa);
+      continue;
+    }
     worst = std::max(worst, std::abs(found->second - kappa) / kappa);
   }
   return worst;
@@ -122,14 +126,15 @@ struct Policy {
   const char* derivative;
 };
 constexpr Policy policies[] = {
-    {"paper", true, "per_iteration", 0, "dropped"},   {"paper", false, "per_iteration", 0.2, "dropped"},
-    {"inertia", true, "per_iteration", 0, "dropped"}, {"scaled", true, "per_step", 0.1, "dropped"},
-    {"none", true, "per_step", 0, "dropped"},         {"paper", true, "per_step", 0, "included"},
+    {"paper", true, "per_iteration", 1e-3, "dropped"}, {"paper", false, "per_iteration", 0.2, "dropped"},
+    {"inertia", true, "per_iteration", 0, "dropped"},  {"scaled", true, "per_step", 0.1, "dropped"},
+    {"none", true, "per_step", 0, "dropped"},          {"paper", true, "per_step", 0, "included"},
     {"scaled", false, "per_step", 0, "included"},
 };
 
 /// begin step, iterate, rejected trial, accepted trial, iterate, next step: the same on both paths.
-void follow(const Policy& p, exec::Order order, double& worst, std::string& bytes, Index& n_new) {
+void follow(const Policy& p, exec::Order order, double& worst, std::string& bytes, Index& n_new,
+            int& n_changed) {
   const Scene scene = full_scene(3);
   const Elastic elastic(scene);
   StiffnessPolicyConfig config;
@@ -159,7 +164,12 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
   const auto refresh = [&] {
     const double change = update.refresh(state.table, state.mollified, elastic.blocks, elastic.values);
     const double resident_change = stiffness.refresh(on.rows, elastic.part());
-    EXPECT_NEAR(resident_change, change, 1e-10 * (1 + change));
+    if (std::isinf(change)) {
+      EXPECT_EQ(resident_change, change);
+    } else {
+      EXPECT_NEAR(resident_change, change, 1e-10 * (1 + change));
+    }
+    n_changed += change > 0 && !std::isinf(change);
     worst = std::max(worst, difference(sums_of(state), sums_of(on.rows)));
     bytes += bytes_of(on.rows);
   };
@@ -188,14 +198,18 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
 }
 
 TEST(ResidentStiffness, FollowsTheStiffnessOfTheCpuPathThroughTwoSteps) {
+  int n_changed = 0;
   for (const Policy& p : policies) {
     double worst = 0;
     std::string bytes;
     Index n_new = 0;
-    follow(p, exec::Order::threads, worst, bytes, n_new);
+    follow(p, exec::Order::threads, worst, bytes, n_new, n_changed);
     EXPECT_LT(worst, 1e-10) << p.mass_term << ' ' << p.refresh << ' ' << p.derivative;
-    EXPECT_GT(n_new, 5);
+    EXPECT_GT(n_new, 0);
+    RecordProperty(std::string(p.mass_term) + p.refresh + p.derivative,
+                   std::to_string(worst * 1e16) + "e-16");
   }
+  EXPECT_GE(n_changed, 3);
 }
 
 TEST(ResidentStiffness, GivesTheSameBitsInAnyOrder) {
@@ -205,7 +219,8 @@ TEST(ResidentStiffness, GivesTheSameBitsInAnyOrder) {
       double worst = 0;
       std::string bytes;
       Index n_new = 0;
-      follow(p, order, worst, bytes, n_new);
+      int n_changed = 0;
+      follow(p, order, worst, bytes, n_new, n_changed);
       if (reference.empty()) reference = bytes;
       EXPECT_TRUE(bytes == reference) << p.refresh;
     }

@@ -2,21 +2,10 @@
 #pragma once
 
 #include "core/resident/contact/compaction.hpp"
+#include "core/resident/contact/pattern_view.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 
 namespace bb::resident {
-
-/// What a gather reads.
-struct VertexSlots {
-  const Index* begin;         // [n_vertices + 1]
-  const std::uint32_t* slot;  // 4 row + point, ascending for every vertex
-};
-struct BlockSources {
-  const Index* row_begin;  // [n_vertices + 1]
-  const int* column;       // ascending for every row; both triangles, the diagonal of every vertex with a row
-  const Index* begin;      // [blocks + 1]
-  const std::uint32_t* code;  // 16 row + 4 a + b, ascending; none below the diagonal
-};
 
 /// Rebuilt when the stencils of the rows change. Sorted in chunks of vertices, so that scratch memory is 24 B times the
 /// contributions of a chunk, and 3 B a row; results do not depend on the chunks.

@@ -2,7 +2,8 @@
 // order.
 #pragma once
 
-#include "core/resident/contact/contact_pattern.hpp"
+#include "core/contact/obstacle.hpp"
+#include "core/resident/contact/pattern_view.hpp"
 #include "core/resident/contact/slot_kernels.hpp"
 #include "core/resident/contact/term_kernels.hpp"
 

@@ -119,7 +119,8 @@ struct SettleKappa {
     rows.kappa_before[r] = b;
     if (!(a > 0 && b > 0)) return;
     const double change = (a > b ? a : b) / (a > b ? b : a) - 1;
-    exec::atomic_min(largest, ~exec::ordered_bits(change));
+    if (change > 0)
+      exec::atomic_min(largest, ~exec::ordered_bits(change));  // two infinite kappa: not a number
   }
 };
 

@@ -88,8 +88,12 @@ struct MollifiedChanges {
     const Index r = list[i];
     const Mat<double, 3, 4> moved = row_points(rows, r, motion);
     Vec<double, 12> stacked, out = Vec<double, 12>::Zero();
-    for (int c = 0; c < 12; ++c) stacked[c] = moved(c % 3, c / 3);
-    if (stacked.squaredNorm() > 0) out = row_derivatives(rows, r, x, rest).hessian * stacked;
+    bool moves = false;
+    for (int c = 0; c < 12; ++c) {
+      stacked[c] = moved(c % 3, c / 3);
+      moves = moves || stacked[c] != 0;
+    }
+    if (moves) out = row_derivatives(rows, r, x, rest).hessian * stacked;
     for (int c = 0; c < 12; ++c) change[c * n + i] = rows.is_free(r, c / 3) ? out[c] : 0.0;
   }
 };
