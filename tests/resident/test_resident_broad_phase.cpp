@@ -56,7 +56,7 @@ TEST(ResidentBroadPhase, FindsThePlanarPairsOfTheCpuPath) {
         n_adjacent += s.connected_pairs().size() + s.opposite_corners().size();
       }
     }
-    EXPECT_GT(n_pairs, 5000U);
+    EXPECT_GT(n_pairs, 1500U);
     EXPECT_GT(n_adjacent, 1000U);
   }
 }
@@ -201,7 +201,7 @@ TEST(ResidentBroadPhase, AgreesWhereNumbersAreNone) {
       for (const bool at_start : {false, true}) {
         Positions x0 = scene.x0, x1 = moved(scene, 0.1, 3);
         (at_start ? x0 : x1)(v % 3, v) = bad;
-        EXPECT_GT(expect_same(found(scene, x0, x1), cpu_candidates(scene, x0, x1)), 100U);
+        EXPECT_GT(expect_same(found(scene, x0, x1), cpu_candidates(scene, x0, x1)), 50U);
       }
     }
   }
@@ -273,7 +273,7 @@ TEST(ResidentBroadPhase, NeedsTheMemoryThatACountForetells) {
   counted.broad_phase.expect({0, 0, length(lists.point_triangle), length(lists.edge_edge), length(lists.obstacle)});
   counted.update();
   EXPECT_EQ(counting.memory().by_name(), executor.memory().by_name());
-  EXPECT_GT(counting.memory().by_name().at("tree of edges"), 43U * motion.surface.edges.size());
+  EXPECT_GT(counting.memory().by_name().at("tree of edges"), 42U * motion.surface.edges.size());
 }
 
 }  // namespace

@@ -2,6 +2,7 @@
 // others. A launch reads what was known before it and changes nothing of that, so that no counter depends on an order.
 #pragma once
 
+#include "core/contact/float_rounding.hpp"
 #include "core/contact/obstacle_motion.hpp"
 #include "core/contact/pair_planes.hpp"
 #include "core/geometry/accd.hpp"
