@@ -77,7 +77,8 @@ PairSearch ResidentBroadPhase::search() const {
 
 CandidateSource ResidentBroadPhase::source() const {
   CandidateSource out{search<PairKind::point_point>(), search<PairKind::point_edge>(),
-                      search<PairKind::point_triangle>(), search<PairKind::edge_edge>(), plan_.obstacles.needed};
+                      search<PairKind::point_triangle>(), search<PairKind::edge_edge>(),
+                      plan_.obstacles.needed};
   const auto only = [](bool needed, PairSearch& s) {
     if (!needed) s.first.top = s.second.top = -1;
   };
