@@ -15,7 +15,9 @@ inline double distance_rounding(Precision precision, double largest) {
 }
 
 /// The largest float that is at most x and the smallest that is at least x, or a neighbour of those.
-BB_HD inline float float_below(double x) { return static_cast<float>(x - (std::abs(x) * 0x1p-23 + 0x1p-140)); }
+BB_HD inline float float_below(double x) {
+  return static_cast<float>(x - (std::abs(x) * 0x1p-23 + 0x1p-140));
+}
 BB_HD inline float float_above(double x) { return -float_below(-x); }
 
 }  // namespace bb

@@ -17,8 +17,8 @@ BB_HD T ulp_floor(T largest) {
 /// Time in [0, 1] at which a vertex comes down to the stop level over an obstacle; stop levels as for ACCD.
 template <class T>
 BB_HD T obstacle_toi(const AnalyticSurface<T>& obstacle, const std::type_identity_t<Vec<T, 3>>& x0,
-               const std::type_identity_t<Vec<T, 3>>& x1, std::type_identity_t<T> offset,
-               std::type_identity_t<T> park) {
+                     const std::type_identity_t<Vec<T, 3>>& x1, std::type_identity_t<T> offset,
+                     std::type_identity_t<T> park) {
   const T start = surface_gap<T>(obstacle, x0).d - offset;
   const T sizes[] = {x1.cwiseAbs().maxCoeff(), obstacle.point.cwiseAbs().maxCoeff(), obstacle.radius, offset};
   T largest = x0.cwiseAbs().maxCoeff();

@@ -136,8 +136,8 @@ constexpr int gilbert_steps = 4;
 /// Until when a plane with normal r keeps the pairs farther apart than `level` (m): every two points of the
 /// primitives close at a constant speed, known to `slack` (m per unit of time). 0 when it does not now.
 template <PairKind K, class L>
-BB_HD L plane_holds(const Heights<K, L>& height, const Heights<K, L>& speed, const L& length,
-                   const L& level, const L& slack) {
+BB_HD L plane_holds(const Heights<K, L>& height, const Heights<K, L>& speed, const L& length, const L& level,
+                    const L& slack) {
   constexpr int split = pair_split(K), N = pair_points(K);
   const L zero(0), never(std::numeric_limits<scalar<L>>::infinity());
   const L least_room = level * length, least_closing = slack * length;
@@ -159,7 +159,7 @@ BB_HD L plane_holds(const Heights<K, L>& height, const Heights<K, L>& speed, con
 /// by a few planes; 0 when nothing is proven. No more planes are tried once all are above `enough`.
 template <PairKind K, class L>
 BB_HD L proven_times(const PairLanes<K, L>& points, const PairLanes<K, L>& motion, const L& reach,
-                    detail::scalar<L> enough) {
+                     detail::scalar<L> enough) {
   using std::sqrt;
   const L rounding(detail::pair_rounding<L>), size = largest_coordinate(points);
   const L slack = rounding * (size + largest_coordinate(motion));

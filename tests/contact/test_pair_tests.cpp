@@ -112,7 +112,7 @@ void expect_no_time_later_than_accd() {
   constexpr int n = pair_points(K), split = pair_split(K);
   Pairs pairs;
   FourPairs<K> four;
-  int hits = 0, late = 0, free = 0, settled = 0, boxed = 0;
+  int hits = 0, late = 0, free = 0, settled = 0, boxed = 0, cleared = 0;
   for (int i = 0; i < 8000; ++i) {
     const double offset = i % 3 == 0 ? 1e-3 : 0, park = i % 2 == 0 ? 1e-8 : 0;
     Lanes4 reach;
@@ -123,11 +123,14 @@ void expect_no_time_later_than_accd() {
       reach.v[lane] = offset + 2 * std::max(park, 2 * ulp_floor(largest));
     }
     const PairLanes<K, Lanes4> points = gather_lanes<K>(four.pair, four.x0);
-    const Lanes4 proven = proven_times<K>(points, gather_lanes<K>(four.pair, four.x1) - points, reach, 1);
+    const PairLanes<K, Lanes4> motion = gather_lanes<K>(four.pair, four.x1) - points;
+    const Lanes4 proven = proven_times<K>(points, motion, reach, 1);
+    const Lanes4 axes = proven_times_by_axes<K>(points, motion, reach);
     for (std::size_t lane = 0; lane < n_lanes; ++lane) {
       const auto x0 = four.at0(lane), x1 = four.at1(lane);
       const auto r = accd<K, double>(x0, x1, offset, park);
       const double by_planes = proven[static_cast<int>(lane)], half = reach.v[lane] / 2;
+      const double by_axes = axes[static_cast<int>(lane)];
       const double by_boxes =
           proven_time(box_of<K>(x0, x1, 0, split, half), box_of<K>(x0, x1, split, n, half));
       if (r.hit && !r.capped) {
@@ -136,6 +139,9 @@ void expect_no_time_later_than_accd() {
         boxed += by_boxes > 0 ? 1 : 0;
         EXPECT_LE(by_planes, r.toi) << i;
         EXPECT_LE(by_boxes, r.toi) << i;
+        EXPECT_LE(by_axes, r.toi) << i;
+        EXPECT_GE(by_axes, 0.999 * by_boxes - 1e-5) << i;  // the boxes of motions, in double
+        cleared += by_axes > 0 ? 1 : 0;
       } else if (!r.hit) {
         ++free;
         settled += by_planes > 1 ? 1 : 0;
@@ -145,6 +151,7 @@ void expect_no_time_later_than_accd() {
   EXPECT_GT(hits, 200);
   EXPECT_GT(late, hits / 15);
   EXPECT_GT(boxed, hits / 20);
+  EXPECT_GT(cleared, hits / 20);
   EXPECT_GT(settled, 2 * free / 3);
 }
 

@@ -65,7 +65,8 @@ inline Candidates cpu_candidates(const Scene& scene, const Positions& x0, const 
   broad_phase.update(x0, x1, out);
   return out;
 }
-inline StepBound cpu_bound(const Scene& scene, const Candidates& candidates, const Positions& x0, const Positions& x1) {
+inline StepBound cpu_bound(const Scene& scene, const Candidates& candidates, const Positions& x0,
+                           const Positions& x1) {
   const Surface surface(scene);
   const auto obstacles = obstacles_of(scene);
   return StepBoundFinder(surface, obstacles, stop_level).find(candidates, x0, x1);

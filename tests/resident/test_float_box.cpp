@@ -14,15 +14,18 @@ using namespace resident;
 
 std::vector<double> awkward_numbers() {
   constexpr double inf = std::numeric_limits<double>::infinity();
-  std::vector<double> out{0.0, -0.0, 1, -1, 1e-300, -1e-300, 5e-324, 1e38, -1e38, 1e39, -1e39, 1e300, inf, -inf,
-                          std::numeric_limits<double>::quiet_NaN()};
+  std::vector<double> out{0.0,     -0.0,   1,    -1,    1e-300,
+                          -1e-300, 5e-324, 1e38, -1e38, 1e39,
+                          -1e39,   1e300,  inf,  -inf,  std::numeric_limits<double>::quiet_NaN()};
   std::mt19937_64 random(7);
   std::uniform_real_distribution<double> unit(-1, 1);
   for (int i = 0; i < 400; ++i) out.push_back(unit(random) * std::pow(10, 12 * unit(random)));
   return out;
 }
 
-bool same(float a, float b) { return (std::isnan(a) && std::isnan(b)) || (a == b && std::signbit(a) == std::signbit(b)); }
+bool same(float a, float b) {
+  return (std::isnan(a) && std::isnan(b)) || (a == b && std::signbit(a) == std::signbit(b));
+}
 
 TEST(FloatBox, IsTheTreeBoxOfTheCpuPath) {
   const std::vector<double> numbers = awkward_numbers();

@@ -146,7 +146,8 @@ TEST(ResidentStepBound, AlphaAndPairDoNotDependOnBatches) {
     const Positions x1 = moved(scene, 0.1, seed);
     const StepBound expected = cpu_bound(scene, cpu_candidates(scene, scene.x0, x1), scene.x0, x1);
     bounded += expected.alpha < 1;
-    for (const BoundBatches batches : {BoundBatches{1, 1, 1}, BoundBatches{50, 3, 9}, BoundBatches{1000, 1000, 1000}}) {
+    for (const BoundBatches batches :
+         {BoundBatches{1, 1, 1}, BoundBatches{50, 3, 9}, BoundBatches{1000, 1000, 1000}}) {
       const BothBounds found = bounds(scene, x1, batches);
       expect_same(found.listed, expected);
       expect_same(found.unlisted, expected);
@@ -162,7 +163,8 @@ TEST(ResidentStepBound, IsTheSameInAnyOrderWithItsCounters) {
   const Scene scene = soup_scene(3, 120);
   const Positions x1 = moved(scene, 0.03, 5);
   std::vector<BothBounds> found;
-  for (const auto order : {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
+  for (const auto order :
+       {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
     for (unsigned seed = 1; seed <= (order == exec::Order::shuffled ? 2 : 1); ++seed) {
       exec::HostExecutor executor(order, seed);
       ResidentMotion motion(executor, scene, scene.x0, x1);
@@ -216,8 +218,10 @@ TEST(ResidentStepBound, IsThatOfTheCpuPathBetweenTwoFramesOfACloth) {
   const char* named = std::getenv("BARRIERBENCH_DATA");
   const std::filesystem::path meshes =
       std::filesystem::path(named ? named : BB_SOURCE_DIR "/../shared/data") / "meshes";
-  if (!std::filesystem::exists(meshes / "cloth_ball92.ply")) GTEST_SKIP() << "no cloth_ball92.ply in " << meshes;
-  const TriangleMesh before = read_mesh(meshes / "cloth_ball92.ply"), after = read_mesh(meshes / "cloth_ball93.ply");
+  if (!std::filesystem::exists(meshes / "cloth_ball92.ply"))
+    GTEST_SKIP() << "no cloth_ball92.ply in " << meshes;
+  const TriangleMesh before = read_mesh(meshes / "cloth_ball92.ply"),
+                     after = read_mesh(meshes / "cloth_ball93.ply");
   Scene scene;
   std::vector<Vec3d> vertices;
   for (Eigen::Index i = 0; i < before.vertices.cols(); ++i) vertices.push_back(before.vertices.col(i));

@@ -265,7 +265,8 @@ struct NamePairs {
   int list;
   BoundRecord* record;
   BB_HD void operator()(Index i) const {
-    if (times.time[i] == record->known && times.pair[i] != no_pair && record->known < exec::ordered_bits(1.0)) {
+    if (times.time[i] == record->known && times.pair[i] != no_pair &&
+        record->known < exec::ordered_bits(1.0)) {
       exec::atomic_min(&record->pair[list], times.pair[i]);
     }
   }

@@ -76,8 +76,17 @@ PairSearch ResidentBroadPhase::search() const {
 }
 
 CandidateSource ResidentBroadPhase::source() const {
-  return {search<PairKind::point_point>(), search<PairKind::point_edge>(), search<PairKind::point_triangle>(),
-          search<PairKind::edge_edge>(), plan_.obstacles.needed};
+  CandidateSource out{search<PairKind::point_point>(), search<PairKind::point_edge>(),
+                      search<PairKind::point_triangle>(), search<PairKind::edge_edge>(),
+                      plan_.obstacles.needed};
+  const auto only = [](bool needed, PairSearch& s) {
+    if (!needed) s.first.top = s.second.top = -1;
+  };
+  only(plan_.point_point, out.point_point);
+  only(plan_.point_edge, out.point_edge);
+  only(plan_.point_triangle, out.point_triangle);
+  only(plan_.edge_edge, out.edge_edge);
+  return out;
 }
 
 /// From counts [n] to places [n + 1]; the last is their number.

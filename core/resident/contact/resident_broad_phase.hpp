@@ -62,7 +62,8 @@ class ResidentBroadPhase {
   BoxTree<1> points_;
   BoxTree<2> edges_;
   BoxTree<3> triangles_;
-  exec::Buffer<Index> point_points_, point_edges_, point_triangles_, edge_edges_, of_obstacles_;  // [n + 1] where those of each begin
+  exec::Buffer<Index> point_points_, point_edges_, point_triangles_, edge_edges_,
+      of_obstacles_;  // [n + 1] where those of each begin
   CandidateCounts counts_;
   const double *x0_ = nullptr, *x1_ = nullptr;
 };

@@ -35,7 +35,7 @@ bool ResidentStepBound::start(const Column& x0, const Column& x1) {
   record.known = record.next = exec::ordered_bits(1.0);
   std::fill(std::begin(record.pair), std::end(record.pair), no_pair);
   record_.set(0, record);
-  query_ = {surface_.view(),   x0.data(),       x1.data(),      level_.park,
+  query_ = {surface_.view(),   x0.data(),       x1.data(),     level_.park,
             level_.max_probes, largest_.data(), record_.data()};
   if (executor_.counts_only() || x0.size() == 0) return true;
   return ~largest_.get(0) < exec::ordered_bits(std::numeric_limits<double>::infinity());
@@ -101,7 +101,8 @@ ContactKey ResidentStepBound::key_of(int list, Key pair) const {
   const Index i = first_of(pair), j = second_of(pair);
   const int point = list == static_cast<int>(PairKind::edge_edge) ? -1 : vertices(s.points, i)[0];
   if (list == obstacle_list) return obstacle_key(static_cast<int>(j), point);
-  if (list == static_cast<int>(PairKind::point_point)) return pair_key(std::array{point, vertices(s.points, j)[0]});
+  if (list == static_cast<int>(PairKind::point_point))
+    return pair_key(std::array{point, vertices(s.points, j)[0]});
   if (list == static_cast<int>(PairKind::point_triangle)) {
     const auto t = vertices(s.triangles, j);
     return pair_key(std::array{point, t[0], t[1], t[2]});

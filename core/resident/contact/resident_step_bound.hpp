@@ -11,8 +11,9 @@ namespace bb::resident {
 /// How many pairs are looked at before what they found is used for the next ones. They change counters and memory,
 /// never alpha or the pair.
 struct BoundBatches {
-  Index chunk = 1 << 20;                              // pairs that are screened at a time
-  Index first_asked = 1 << 12, most_asked = 1 << 18;  // pairs that are asked at a time, doubling from the first
+  Index chunk = 1 << 20;  // pairs that are screened at a time
+  Index first_asked = 1 << 12,
+        most_asked = 1 << 18;  // pairs that are asked at a time, doubling from the first
 };
 
 /// Pairs are screened in chunks of their lists: axes and planes prove of most that they come later than the smallest

@@ -45,9 +45,7 @@ BB_HD void for_each_overlap(const TreeView& tree, const TreeNode& asking, Index 
   Index at = from;
   // what comes next is as high in the tree as it can be: a node that begins where the last one ended
   const auto climb = [&] {
-    for (; level < tree.top && (at % tree_width == 0 || at >= tree.size(level)); ++level) {
-      at = (at + tree_width - 1) / tree_width;
-    }
+    for (; level < tree.top && at % tree_width == 0; ++level) at /= tree_width;
   };
   climb();
   while (at < tree.size(level)) {
