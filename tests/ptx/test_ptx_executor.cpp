@@ -6,7 +6,7 @@
 
 #include "core/exec/buffer.hpp"
 #include "tests/exec/sample_kernels.hpp"
-#include "tests/ptx/ptx_executor.hpp"
+#include "tests/ptx/lockstep_executor.hpp"
 
 namespace {
 
@@ -130,6 +130,21 @@ TEST(PtxExecutor, RunsTheLibraryOfTheDevice) {
   }
   EXPECT_GT(worst, 0);  // they are two libraries
   RecordProperty("worst relative difference", std::to_string(worst));
+}
+
+TEST(LockstepExecutor, ComparesHostAndDevice) {
+  ptx::LockstepExecutor both;
+  Buffer<double> in(both, "in"), out(both, "out", 256);
+  in.upload(numbers(32 * 64));
+  both.each(64, Square{in.data(), out.data()});
+  both.blocks(8, BlockSums{in.data(), out.data()});
+  EXPECT_EQ(both.launches(), 2u);
+  EXPECT_NE(out.get(0), 0);
+  Buffer<double> library(both, "library", 8 * 64);
+  EXPECT_THROW(both.each(64, Library{in.data(), library.data()}), ExecutionError);
+  ptx::LockstepExecutor::library_kernels() = {"Library"};
+  both.each(64, Library{in.data(), library.data()});
+  ptx::LockstepExecutor::library_kernels().clear();
 }
 
 TEST(PtxExecutor, ReplaysGraphs) {
