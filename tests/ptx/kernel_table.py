@@ -82,7 +82,7 @@ def compile_room(ptxas: str, ptx: Path) -> dict[str, dict]:
 def profiles(build: Path) -> dict[str, list[int]]:
     """Mangled name -> requests, lines, sectors, over all PTX tests that were built."""
     out: dict[str, list[int]] = {}
-    for program in sorted(build.glob("tests/resident/ptx/test_*")):
+    for program in sorted(build.glob("tests/ptx/test_ptx_*")):
         if program.name.endswith("_faults") or not os.access(program, os.X_OK) or program.is_dir():
             continue
         with tempfile.NamedTemporaryFile(suffix=".json") as file:
