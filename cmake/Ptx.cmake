@@ -46,6 +46,8 @@ function(bb_plain_rooms name)
   target_link_libraries(${name} PUBLIC bb_settings Eigen3::Eigen ${libraries})
   target_compile_options(${name} PUBLIC ${BB_PLAIN_OPTIONS})
   target_include_directories(${name} PUBLIC "${PROJECT_BINARY_DIR}/generated")
+  target_precompile_headers(${name} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> <algorithm> <array> <functional>
+    <memory> <optional> <span> <string> <vector>)
   foreach(room IN LISTS rooms)  # headers that a room generates
     add_dependencies(${name} ${room})
   endforeach()
@@ -56,7 +58,6 @@ function(bb_ptx_module name)
   cmake_parse_arguments(ARG "" "SOURCE" "" ${ARGN})
   cmake_path(ABSOLUTE_PATH ARG_SOURCE)
   set(ptx "${CMAKE_CURRENT_BINARY_DIR}/${name}.ptx")
-  set(cpp "${CMAKE_CURRENT_BINARY_DIR}/${name}_ptx.cpp")
   set(eigen "$<TARGET_PROPERTY:Eigen3::Eigen,INTERFACE_INCLUDE_DIRECTORIES>")
   add_custom_command(OUTPUT "${ptx}"
     COMMAND "${CMAKE_CUDA_COMPILER}" -ptx -arch=sm_90 -std=c++20 -O3 -DNDEBUG --fmad=false -Xcompiler=-ffp-contract=off
@@ -64,8 +65,17 @@ function(bb_ptx_module name)
       "-I${PROJECT_BINARY_DIR}/generated" "-I$<JOIN:${eigen},;-I>" -MD -MF "${ptx}.d" -MT "${ptx}" -o "${ptx}"
       "${ARG_SOURCE}"
     DEPENDS "${ARG_SOURCE}" DEPFILE "${ptx}.d" COMMAND_EXPAND_LISTS VERBATIM COMMENT "PTX of ${name}")
+  bb_ptx_translation(${name} "${ptx}" "")
+  bb_ptx_translation(${name}_faults "${ptx}" --faults)
+  set_target_properties(${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
+endfunction()
+
+# bb_ptx_translation(NAME PTX OPTION): object library NAME; messages know it by the name of the PTX.
+function(bb_ptx_translation name ptx option)
+  set(cpp "${CMAKE_CURRENT_BINARY_DIR}/${name}_ptx.cpp")
+  cmake_path(GET ptx STEM module)
   add_custom_command(OUTPUT "${cpp}"
-    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/tests/ptx/translate.py" "${ptx}" "${cpp}" --module "${name}"
+    COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/tests/ptx/translate.py" "${ptx}" "${cpp}" --module "${module}" ${option}
     DEPENDS "${ptx}" "${PROJECT_SOURCE_DIR}/tests/ptx/translate.py" VERBATIM COMMENT "Translating the PTX of ${name}")
   add_library(${name} OBJECT "${cpp}")
   # A function may have ten thousand lines: the optimiser's first level, and none of its passes that grow faster.
@@ -73,15 +83,24 @@ function(bb_ptx_module name)
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
 endfunction()
 
-# bb_ptx_test(NAME LEAST n MODULES ... SOURCES ... [ROOMS library of bb_plain_rooms] ): test_NAME, one test of ctest,
-# which also fails when less than LEAST per cent of the instructions of its modules ran.
+# bb_ptx_test(NAME LEAST n MODULES ... SOURCES ... [ROOMS library of bb_plain_rooms]): test_NAME, one test of ctest,
+# which also fails when less than LEAST per cent of the instructions of its modules ran. test_NAME_faults, built on
+# demand: the same with switches for inject_faults.py.
 function(bb_ptx_test name)
   cmake_parse_arguments(ARG "" "LEAST;ROOMS" "MODULES;SOURCES" ${ARGN})
-  add_executable(test_${name} ${ARG_SOURCES} "${PROJECT_SOURCE_DIR}/tests/ptx/main.cpp")
-  target_link_libraries(test_${name} PRIVATE ${ARG_MODULES} bb_ptx_machine ${ARG_ROOMS} GTest::gtest)
-  target_compile_options(test_${name} PRIVATE ${BB_PLAIN_OPTIONS})
-  target_compile_definitions(test_${name} PRIVATE BB_PTX_LEAST=${ARG_LEAST})
-  target_include_directories(test_${name} PRIVATE "${PROJECT_BINARY_DIR}/generated")
+  add_library(${name}_cases OBJECT ${ARG_SOURCES} "${PROJECT_SOURCE_DIR}/tests/ptx/main.cpp")
+  target_link_libraries(${name}_cases PUBLIC bb_settings Eigen3::Eigen GTest::gtest TBB::tbb nlohmann_json::nlohmann_json fmt::fmt)
+  target_compile_options(${name}_cases PRIVATE ${BB_PLAIN_OPTIONS})
+  target_compile_definitions(${name}_cases PRIVATE BB_PTX_LEAST=${ARG_LEAST})
+  target_include_directories(${name}_cases PRIVATE "${PROJECT_BINARY_DIR}/generated")
+  foreach(kind "" _faults)
+    set(modules ${ARG_MODULES})
+    list(TRANSFORM modules APPEND "${kind}")
+    add_executable(test_${name}${kind} $<TARGET_OBJECTS:${name}_cases>)
+    set_target_properties(test_${name}${kind} PROPERTIES LINKER_LANGUAGE CXX)
+    target_link_libraries(test_${name}${kind} PRIVATE ${modules} bb_ptx_machine ${ARG_ROOMS} GTest::gtest TBB::tbb fmt::fmt)
+  endforeach()
+  set_target_properties(test_${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
   add_test(NAME ptx.${name} COMMAND test_${name})
   set_tests_properties(ptx.${name} PROPERTIES TIMEOUT 600)
 endfunction()

@@ -21,6 +21,12 @@ std::vector<Module>& registered() {
 Registration::Registration(const Module& module) { registered().push_back(module); }
 const std::vector<Module>& modules() { return registered(); }
 
+int chosen_fault(const char* module) {
+  const char* text = std::getenv("BB_PTX_FAULT");
+  const std::string name = std::string(module) + ":";
+  return text && std::string_view(text).starts_with(name) ? std::atoi(text + name.size()) : -1;
+}
+
 std::string demangled(const char* name) {
   int status = 0;
   char* text = abi::__cxa_demangle(name, nullptr, nullptr, &status);

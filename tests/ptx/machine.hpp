@@ -43,6 +43,14 @@ struct Constant {
   std::size_t bytes;
 };
 
+/// An instruction that can be broken (translate.py --faults).
+struct Fault {
+  const char* kind;
+  int line;
+  std::size_t block;  // where it is
+  const char* function;
+};
+
 /// What was translated from one file.
 struct Module {
   const char* name;
@@ -50,6 +58,7 @@ struct Module {
   std::span<const CodeBlock> blocks;
   unsigned char* executed;  // one a block, 1 when it ran
   std::span<const Constant> constants;
+  std::span<const Fault> faults;
 };
 
 /// Modules register themselves before main.
@@ -57,6 +66,8 @@ struct Registration {
   explicit Registration(const Module& module);
 };
 const std::vector<Module>& modules();
+/// The number in the environment's BB_PTX_FAULT=MODULE:NUMBER, -1 where it names another module or is not set.
+int chosen_fault(const char* module);
 
 /// By mangled name; null when there is none.
 const Kernel* find_kernel(std::string_view mangled);

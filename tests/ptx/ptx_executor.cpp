@@ -47,11 +47,13 @@ void* PtxExecutor::allocate_bytes(std::size_t bytes) {
   unsigned char* memory = all + gap - reinterpret_cast<std::uintptr_t>(all) % gap;
   memcpy(memory - sizeof all, &all, sizeof all);
   machine_.add_memory(memory, bytes);
+  allocations_[memory] = bytes;
   return memory;
 }
 void PtxExecutor::release_bytes(void* memory) {
   if (!memory) return;
   machine_.remove_memory(memory);
+  allocations_.erase(static_cast<unsigned char*>(memory));
   void* all;
   memcpy(&all, static_cast<unsigned char*>(memory) - sizeof all, sizeof all);
   HostExecutor::release_bytes(all);

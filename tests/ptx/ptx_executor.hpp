@@ -21,9 +21,12 @@ class PtxExecutor : public bb::exec::HostExecutor {
   void run(const bb::exec::KernelInfo& kernel, bb::exec::Index n, const void* f) override;
   void* allocate_bytes(std::size_t bytes) override;
   void release_bytes(void* memory) override;
+  /// Begin and bytes of all that is allocated.
+  const std::map<unsigned char*, std::size_t>& allocations() const { return allocations_; }
 
  private:
   Machine machine_;
+  std::map<unsigned char*, std::size_t> allocations_;
   std::size_t launches_ = 0;
 };
 

@@ -72,4 +72,14 @@ bool report(double least) {
   return good;
 }
 
+void list_faults() {
+  for (const Module& module : modules()) {
+    for (std::size_t i = 0; i < module.faults.size(); ++i) {
+      const Fault& f = module.faults[i];
+      std::printf("fault %s %zu %d %d %s; %s\n", module.name, i, int{module.executed[f.block]}, f.line,
+                  f.kind, demangled(f.function).c_str());
+    }
+  }
+}
+
 }  // namespace ptx

@@ -14,4 +14,7 @@ void note_traffic(Machine& machine);
 /// Writes them, with the traffic, to BB_PTX_PROFILE where it is set. @return whether every module has `least`.
 bool report(double least);
 
+/// Prints a line `fault MODULE NUMBER RAN LINE KIND; FUNCTION` for each instruction that can be broken.
+void list_faults();
+
 }  // namespace ptx

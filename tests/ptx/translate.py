@@ -1,12 +1,15 @@
 #!/usr/bin/env python3
 """Translates the PTX that nvcc emits into C++ that runs on the CPU (runtime.hpp, machine.hpp).
 
-    translate.py KERNELS.ptx KERNELS.cpp [--module NAME]
+    translate.py KERNELS.ptx KERNELS.cpp [--module NAME] [--faults]
 
 One C++ function a kernel or device function, one variable a register, one goto a branch. Loads, stores, barriers and
 shuffles are calls into the checked run time and carry their line of the PTX. Each straight-line piece of code leaves a
 mark when it runs, so that what was executed can be counted. An instruction that is not known is an error that names
-its line and text (exit code 2), never a guess."""
+its line and text (exit code 2), never a guess.
+
+With --faults every barrier, store, atomic, conditional jump ahead and shuffle can be broken, one at a time, by the
+environment variable BB_PTX_FAULT=MODULE:NUMBER (inject_faults.py)."""
 
 from __future__ import annotations
 
@@ -169,8 +172,9 @@ def statements(body: str, line: int):
 
 
 class Module:
-    def __init__(self, text: str, name: str):
+    def __init__(self, text: str, name: str, with_faults: bool = False):
         self.name = name
+        self.faults: list[tuple[str, int, int, str]] | None = [] if with_faults else None  # kind, line, block, function
         self.functions: dict[str, Function] = {}
         self.n_functions = 0
         self.constants: dict[str, tuple[int, str, list[str], int]] = {}  # name -> align, C type, values, count
@@ -244,6 +248,8 @@ class Module:
     def cpp(self) -> str:
         out = [f"// Translated from the PTX of {self.name}.", "#include <cfenv>", '#include "tests/ptx/machine.hpp"', "namespace ptx {", "namespace {"]
         out.append(f"unsigned char hit[{max(1, len(self.blocks))}];")
+        if self.faults is not None:
+            out.append(f'const int fault = chosen_fault("{self.name}");')
         for name, (align, type_name, values, count) in self.constants.items():
             out.append(f"alignas({align}) constexpr {type_name} {symbol(name)}[{count}] = {{{', '.join(values)}}};")
         for f in self.functions.values():
@@ -266,7 +272,11 @@ class Module:
         if self.constants:
             constants = "constants"
             out.append("const Constant constants[] = {" + ", ".join(f"{{{symbol(c)}, sizeof {symbol(c)}}}" for c in self.constants) + "};")
-        out += [f'const Registration registration(Module{{"{self.name}", kernels, blocks, hit, {constants}}});', "}", "}", ""]
+        faults = "{}"
+        if self.faults:
+            faults = "faults"
+            out.append("const Fault faults[] = {" + ", ".join(f'{{"{kind}", {line}, {block}, "{name}"}}' for kind, line, block, name in self.faults) + "};")
+        out += [f'const Registration registration(Module{{"{self.name}", kernels, blocks, hit, {constants}, {faults}}});', "}", "}", ""]
         return "\n".join(out)
 
 
@@ -373,6 +383,7 @@ class Body:
         self.function.first_block = len(self.module.blocks)
         every = list(statements(f.body, f.line))
         self.positions = {text: i for i, (kind, text, _) in enumerate(every) if kind == "label"}
+        self.every = every
         for self.index, (kind, text, self.line) in enumerate(every):
             try:
                 self.one(kind, text)
@@ -464,9 +475,31 @@ class Body:
             self.module.blocks.append([self.line, 1])
             code = f"hit[{len(self.module.blocks) - 1}] = 1; {code}"
             self.block_open = False
+        guard, code = self.with_fault(words, guard, code, args)
         self.code.append(f"{guard}{{ {code} }}" if guard else code)
         if jump:
             self.block_open = False
+
+    def with_fault(self, words: list[str], guard: str, code: str, args: list[str]) -> tuple[str, str]:
+        """What a fault can switch off."""
+        if self.module.faults is None:
+            return guard, code
+        name = words[0]
+        if name in ("bar", "barrier"):
+            ahead = next((text for kind, text, _ in self.every[self.index + 1 :] if kind == "statement"), "")
+            return guard, f"if (fault != {self.fault('last barrier' if ahead == 'ret' else 'barrier')}) {{ {code} }}"
+        if name in ("atom", "red"):
+            return guard, f"if (fault != {self.fault('atomic')}) {{ {code} }}"
+        if name == "st" and not {"local", "param"} & set(words):
+            return guard, f"if (fault != {self.fault('store')}) {{ {code} }}"
+        if name == "bra" and guard and self.positions.get(args[0], 0) > self.index:
+            return f"{guard[:-2]} && fault != {self.fault('guard')}) ", code
+        return guard, code
+
+    def fault(self, kind: str) -> int:
+        """The number of a new fault of the statement."""
+        self.module.faults.append((kind, self.line, len(self.module.blocks) - 1, self.function.name))
+        return len(self.module.faults) - 1
 
     def jump(self, words: list[str], args: list[str]) -> str:
         if words[0] in ("ret", "exit"):
@@ -899,6 +932,8 @@ class Body:
         self.function.synchronizes = True
         names = [x.strip() for x in args[0].split("|")]
         value, b, c, members = (self.value(x, "uint32_t") for x in args[1:5])
+        if self.module.faults is not None:
+            b = f"({b} ^ (fault == {self.fault('shuffle')} ? 3u : 0u))"
         call = f"t.shuffle(Thread::{rest[1]}, {value}, {b}, {c}, {members}, &inside, {self.line})"
         predicate = " " + self.set(names[1], "inside", "bool") if len(names) > 1 else ""
         return f"{{ bool inside = false; {self.set(names[0], call, 'uint32_t')}{predicate} }}"
@@ -959,9 +994,9 @@ class Body:
         return "{ " + " ".join(out) + " }"
 
 
-def translate(text: str, name: str) -> str:
+def translate(text: str, name: str, with_faults: bool = False) -> str:
     """C++ of the PTX; name: what messages call it. Errors: Unknown."""
-    module = Module(text, name)
+    module = Module(text, name, with_faults)
     module.translate()
     return module.cpp()
 
@@ -971,9 +1006,10 @@ def main() -> int:
     parser.add_argument("ptx", type=Path)
     parser.add_argument("cpp", type=Path)
     parser.add_argument("--module", help="its name in messages (the file's by default)")
+    parser.add_argument("--faults", action="store_true", help="with switches that break one instruction at a time")
     args = parser.parse_args()
     try:
-        args.cpp.write_text(translate(args.ptx.read_text(), args.module or args.ptx.stem))
+        args.cpp.write_text(translate(args.ptx.read_text(), args.module or args.ptx.stem, args.faults))
     except Unknown as error:
         print(f"{args.ptx}: {error}", file=sys.stderr)
         return 2
