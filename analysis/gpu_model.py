@@ -71,7 +71,8 @@ def newton_seconds(size: Size, rate: float, preconditioner: str) -> tuple[float,
 
 
 def seconds_text(seconds: float) -> str:
-    return f"{seconds:.2g} s" if seconds >= 1 else f"{1e3 * seconds:.2g} ms"
+    value, unit = (seconds, "s") if seconds >= 1 else (1e3 * seconds, "ms")
+    return f"{value:.0f} {unit}" if value >= 100 else f"{value:.2g} {unit}"
 
 
 def table() -> str:
