@@ -8,6 +8,12 @@
 
 namespace bb::resident {
 
+/// From counts [n] to places [n + 1], whose last is the sum. For counts of any size; 8 B an item.
+inline void scan_counts(exec::Executor& executor, Index* count, Index n) {
+  executor.fill_bytes(count + n, 0, sizeof(Index));
+  executor.exclusive_scan(count, n + 1);
+}
+
 /// 3 B an item; keeps its buffers.
 class Compaction {
  public:

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "core/resident/contact/candidate_kernels.hpp"
+#include "core/resident/contact/compaction.hpp"
 
 namespace bb::resident {
 
@@ -92,8 +93,7 @@ CandidateSource ResidentBroadPhase::source() const {
 /// From counts [n] to places [n + 1]; the last is their number.
 void ResidentBroadPhase::sum_up(exec::Buffer<Index>& begin, Index& total) {
   const Index n = begin.size() - 1;
-  executor_.fill_bytes(begin.data() + n, 0, sizeof(Index));
-  executor_.exclusive_scan(begin.data(), n + 1);
+  scan_counts(executor_, begin.data(), n);
   if (!executor_.counts_only()) total = begin.get(n);
 }
 

@@ -37,7 +37,9 @@ class ResidentContact {
   /// kappa and barrier of the rows at x; g (N) is the gradient of all other terms and gets that of B.
   void linearise(const Column& x, const MatrixPart& elastic, Column& g);
   /// Valid until the next call.
-  MatrixPart matrix(const Column& x, const HessianChoice& choice) { return assembly_.matrix(rows_, x, choice); }
+  MatrixPart matrix(const Column& x, const HessianChoice& choice) {
+    return assembly_.matrix(rows_, x, choice);
+  }
   Index n_blocks() const { return assembly_.n_blocks(); }
   /// Whether the last linearise() built another pattern.
   bool pattern_changed() const { return pattern_changed_; }
@@ -45,7 +47,7 @@ class ResidentContact {
   void add_given_motion(const Column& x, const Column& motion, Column& force) {
     assembly_.add_given_motion(rows_, x, motion, force);
   }
-  CompensatedSum energy(const Column& x) { return sums_.energy(rows_, x, assembly_); }
+  Compensated energy(const Column& x) { return sums_.energy(rows_, x, assembly_); }
 
   // --- a motion, and states on it
   void prepare(const Column& x0, const Column& x1) { broad_phase_.update(x0, x1, candidates_); }
@@ -53,7 +55,7 @@ class ResidentContact {
   std::string describe_bound() const;
   bool admits(const Column& trial);
   void evaluate(const Column& trial, const MatrixPart& elastic);
-  CompensatedSum trial_energy(const Column& trial) { return sums_.energy(trial_, trial, assembly_); }
+  Compensated trial_energy(const Column& trial) { return sums_.energy(trial_, trial, assembly_); }
   /// The trial becomes the iterate.
   void accept();
 

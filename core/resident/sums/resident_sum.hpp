@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/exec/buffer.hpp"
-#include "core/resident/elements/sum_kernels.hpp"
+#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 
