@@ -70,6 +70,19 @@ function(bb_ptx_module name)
   set_target_properties(${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
 endfunction()
 
+# bb_ptx_of_device_code(NAME ROOM): the same of the kernels of a resident room: the PTX in the object file that the
+# program is linked from, which all its machine code is made of.
+function(bb_ptx_of_device_code name room)
+  set(ptx "${CMAKE_CURRENT_BINARY_DIR}/${name}.ptx")
+  set(script "${PROJECT_SOURCE_DIR}/tests/ptx/embedded_ptx.py")
+  add_custom_command(OUTPUT "${ptx}"
+    COMMAND "${Python3_EXECUTABLE}" "${script}" "$<TARGET_OBJECTS:bb_device_${room}>" "${ptx}"
+    DEPENDS "$<TARGET_OBJECTS:bb_device_${room}>" "${script}" VERBATIM COMMENT "PTX of the program's ${room} kernels")
+  bb_ptx_translation(${name} "${ptx}" "")
+  bb_ptx_translation(${name}_faults "${ptx}" --faults)
+  set_target_properties(${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
+endfunction()
+
 # bb_ptx_translation(NAME PTX OPTION): object library NAME; messages know it by the name of the PTX.
 function(bb_ptx_translation name ptx option)
   set(cpp "${CMAKE_CURRENT_BINARY_DIR}/${name}_ptx.cpp")
