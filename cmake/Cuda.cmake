@@ -5,23 +5,48 @@ if(NOT BB_CUDA MATCHES "^(AUTO|ON|OFF)$")
   message(FATAL_ERROR "BB_CUDA is '${BB_CUDA}'; allowed: AUTO, ON, OFF")
 endif()
 
-# bb_default_architectures(OUT): code for every card from A100 to B200 that this nvcc knows, and PTX of the newest for
-# cards that come later.
+# bb_default_architectures(OUT): ON: every card from A100 to B200 that this nvcc knows. AUTO: H100, as the least that shows
+# that everything compiles; other cards compile the PTX beside it when the program is first started.
 function(bb_default_architectures out)
   execute_process(COMMAND "${CMAKE_CUDA_COMPILER}" --list-gpu-arch OUTPUT_VARIABLE known ERROR_QUIET)
+  set(wanted 90)
+  if(BB_CUDA STREQUAL "ON")
+    set(wanted 80 90 100)
+  endif()
   set(chosen "")
-  foreach(architecture 80 90 100)
+  foreach(architecture IN LISTS wanted)
     if(known MATCHES "compute_${architecture}[^0-9]")
-      list(APPEND chosen "${architecture}-real")
+      list(APPEND chosen "${architecture}")
     endif()
   endforeach()
   if(chosen STREQUAL "")
     message(FATAL_ERROR "${CMAKE_CUDA_COMPILER} --list-gpu-arch names none of compute_80, compute_90, compute_100: CUDA 12 or newer is needed, or set CMAKE_CUDA_ARCHITECTURES")
   endif()
-  list(POP_BACK chosen newest)
-  string(REPLACE "-real" "" newest "${newest}")
-  list(APPEND chosen "${newest}")
   set(${out} "${chosen}" PARENT_SCOPE)
+endfunction()
+
+# bb_device_code(OUT): options that make machine code of every architecture of CMAKE_CUDA_ARCHITECTURES from one PTX, that
+# of compute_80 where none is older. The PTX goes along as plain text: cards without code of their own compile it, and
+# tests/ptx runs it.
+function(bb_device_code out)
+  set(ptx 80)
+  set(options "")
+  foreach(architecture IN LISTS CMAKE_CUDA_ARCHITECTURES)
+    if(NOT architecture MATCHES "^([0-9]+)[a-z]?(-real|-virtual)?$")
+      message(FATAL_ERROR "CMAKE_CUDA_ARCHITECTURES is '${CMAKE_CUDA_ARCHITECTURES}'; wanted numbers such as 80;90;100")
+    endif()
+    if(CMAKE_MATCH_1 LESS ptx)
+      set(ptx "${CMAKE_MATCH_1}")
+    endif()
+  endforeach()
+  foreach(architecture IN LISTS CMAKE_CUDA_ARCHITECTURES)
+    string(REGEX REPLACE "[^0-9].*" "" number "${architecture}")
+    if(NOT architecture MATCHES "virtual")
+      list(APPEND options "-gencode=arch=compute_${ptx},code=sm_${number}")
+    endif()
+  endforeach()
+  list(APPEND options "-gencode=arch=compute_${ptx},code=compute_${ptx}" "-Xfatbin=-compress=false")
+  set(${out} "${options}" PARENT_SCOPE)
 endfunction()
 
 if(NOT BB_CUDA STREQUAL "OFF")
@@ -47,6 +72,7 @@ if(NOT BB_CUDA STREQUAL "OFF")
     # harmless; a host function called on the device is an error.
     set(BB_DEVICE_FLAGS $<$<COMPILE_LANGUAGE:CUDA>:--expt-relaxed-constexpr --diag-suppress=20012 --fmad=false
       -Werror=cross-execution-space-call -Xcompiler=-ffp-contract=off -Xcompiler=-fPIC>)
+    bb_device_code(BB_DEVICE_CODE)
     set(BB_CUDA_FOUND ON)
   elseif(BB_CUDA STREQUAL "ON")
     message(FATAL_ERROR "BB_CUDA is ON and no CUDA compiler was found: set CUDACXX to nvcc, or BB_CUDA to AUTO or OFF")

@@ -4,9 +4,15 @@
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(BB_PLAIN_OPTIONS -DEIGEN_DONT_VECTORIZE)
 
-# bb_plain_rooms(NAME rooms...): object library NAME of the sources of these rooms and of all that they name.
+# bb_plain_rooms(NAME rooms... [WITHOUT other]): object library NAME of the sources of these rooms and of all that they
+# name, but for the rooms of another such library.
 function(bb_plain_rooms name)
-  set(open ${ARGN})
+  cmake_parse_arguments(ARG "" "WITHOUT" "" ${ARGN})
+  set(open ${ARG_UNPARSED_ARGUMENTS})
+  set(others "")
+  if(ARG_WITHOUT)
+    get_target_property(others ${ARG_WITHOUT} BB_PLAIN_ROOMS)
+  endif()
   set(rooms "")
   set(libraries "")
   while(open)
@@ -26,6 +32,9 @@ function(bb_plain_rooms name)
   endwhile()
   set(sources "")
   foreach(room IN LISTS rooms)
+    if(room IN_LIST others)
+      continue()
+    endif()
     get_target_property(type ${room} TYPE)
     if(type STREQUAL "INTERFACE_LIBRARY")
       continue()
@@ -43,8 +52,10 @@ function(bb_plain_rooms name)
   list(REMOVE_DUPLICATES libraries)
   list(FILTER libraries EXCLUDE REGEX "LINK_ONLY")
   add_library(${name} OBJECT ${sources})
+  set_target_properties(${name} PROPERTIES BB_PLAIN_ROOMS "${rooms}")
   target_link_libraries(${name} PUBLIC bb_settings Eigen3::Eigen ${libraries})
-  target_compile_options(${name} PUBLIC ${BB_PLAIN_OPTIONS})
+  # The optimiser's first level: no bit depends on it, and it takes less time to compile.
+  target_compile_options(${name} PUBLIC ${BB_PLAIN_OPTIONS} PRIVATE -O1)
   target_include_directories(${name} PUBLIC "${PROJECT_BINARY_DIR}/generated")
   target_precompile_headers(${name} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> <algorithm> <array> <functional>
     <memory> <optional> <span> <string> <vector>)
@@ -65,6 +76,19 @@ function(bb_ptx_module name)
       "-I${PROJECT_BINARY_DIR}/generated" "-I$<JOIN:${eigen},;-I>" -MD -MF "${ptx}.d" -MT "${ptx}" -o "${ptx}"
       "${ARG_SOURCE}"
     DEPENDS "${ARG_SOURCE}" DEPFILE "${ptx}.d" COMMAND_EXPAND_LISTS VERBATIM COMMENT "PTX of ${name}")
+  bb_ptx_translation(${name} "${ptx}" "")
+  bb_ptx_translation(${name}_faults "${ptx}" --faults)
+  set_target_properties(${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
+endfunction()
+
+# bb_ptx_of_device_code(NAME ROOM): the same of the kernels of a resident room: the PTX in the object file that the
+# program is linked from, which all its machine code is made of.
+function(bb_ptx_of_device_code name room)
+  set(ptx "${CMAKE_CURRENT_BINARY_DIR}/${name}.ptx")
+  set(script "${PROJECT_SOURCE_DIR}/tests/ptx/embedded_ptx.py")
+  add_custom_command(OUTPUT "${ptx}"
+    COMMAND "${Python3_EXECUTABLE}" "${script}" "$<TARGET_OBJECTS:bb_device_${room}>" "${ptx}"
+    DEPENDS "$<TARGET_OBJECTS:bb_device_${room}>" "${script}" VERBATIM COMMENT "PTX of the program's ${room} kernels")
   bb_ptx_translation(${name} "${ptx}" "")
   bb_ptx_translation(${name}_faults "${ptx}" --faults)
   set_target_properties(${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
