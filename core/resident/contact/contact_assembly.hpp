@@ -36,6 +36,9 @@ class ContactAssembly {
   /// The mollifiers [mollified rows] that rows.energy lacks, of the last add_gradient() or of rows at x.
   const exec::Buffer<double>& mollifiers(ResidentRows& rows, const exec::Buffer<double>& x);
 
+  /// What an executor that only counts buffers is to take the rows for.
+  void expect(const ExpectedContacts& expected) { pattern_.expect(expected); }
+
   const ContactPattern& pattern() const { return pattern_; }
 
  private:

@@ -18,7 +18,7 @@ CompensatedSum ContactSums::sum(Index n, const Item& item) {
     left = n_blocks(left);
     part_.swap(folded_);
   }
-  return part_.get(0);
+  return executor_.counts_only() ? CompensatedSum{0, 0, 0} : part_.get(0);
 }
 
 CompensatedSum ContactSums::energy(ResidentRows& rows, const exec::Buffer<double>& x,

@@ -44,6 +44,12 @@ ResidentContact::ResidentContact(exec::Executor& executor, const Scene& scene, T
   mass_.upload(scene.mass);
 }
 
+void ResidentContact::expect(const ExpectedContacts& expected) {
+  broad_phase_.expect(expected.candidates);
+  finder_.expect(expected);
+  assembly_.expect(expected);
+}
+
 void ResidentContact::begin_step(const Column& x_n, double dt, double c) {
   stiffness_.begin_step();
   change_time(dt, c);
@@ -96,8 +102,8 @@ void ResidentContact::start_policy(const Column& x, const Column& others) {
   globals.d2b_half = options_.contact.eval(globals.d_hat / 2, globals.d_hat).d2b;
   globals.dt = dt_;
   globals.c = c_;
-  policy.start(globals);
   policy_started_ = true;
+  if (!executor_.counts_only()) policy.start(globals);
 }
 
 const StepBound& ResidentContact::bound(const Column& x0, const Column& x1) {

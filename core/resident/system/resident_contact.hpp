@@ -26,6 +26,9 @@ class ResidentContact {
   ResidentContact(exec::Executor& executor, const Scene& scene, TermOptions& options, const ContactPlan& plan,
                   const exec::Buffer<std::uint8_t>& fixed);
 
+  /// What an executor that only counts buffers is to take the contacts for.
+  void expect(const ExpectedContacts& expected);
+
   // --- a step
   void begin_step(const Column& x_n, double dt, double c);
   void change_time(double dt, double c);
