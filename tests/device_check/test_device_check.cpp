@@ -82,6 +82,10 @@ Agreement compare(const std::vector<T>& a, const std::vector<T>& b) {
       const bool same = memcmp(&a[k], &b[k], sizeof(T)) == 0 || (std::isnan(a[k]) && std::isnan(b[k]));
       out.same += same;
       if (same) continue;
+      if (out.numbers - out.same <= 3) {
+        std::printf("    item %td, number %zu: %.17g on the host, %.17g on the device\n", i, k - begin,
+                    double{a[k]}, double{b[k]});
+      }
       const double difference = std::abs(double{a[k]} - double{b[k]}) / std::max(largest, 1e-300);
       out.worst = std::isfinite(difference) ? std::max(out.worst, difference) : INFINITY;
     }
@@ -107,9 +111,9 @@ void expect_same_bits(std::size_t numbers_of_an_item) {
   EXPECT_EQ(a.same, a.numbers) << a.worst;
 }
 
-TEST(DeviceCheck, Svds) { expect_same_bits<Svds>(64); }
-TEST(DeviceCheck, SvdsInFloat) { expect_same_bits<Svds, float>(64); }
-TEST(DeviceCheck, EigenvaluesAndProjection) { expect_same_bits<SymmetricEigen>(500); }
+TEST(DeviceCheck, Svds) { expect_same_bits<Svds>(43); }
+TEST(DeviceCheck, SvdsInFloat) { expect_same_bits<Svds, float>(43); }
+TEST(DeviceCheck, EigenvaluesAndProjection) { expect_same_bits<SymmetricEigen>(506); }
 TEST(DeviceCheck, Distances) { expect_same_bits<Distances>(921); }
 TEST(DeviceCheck, Mollifier) { expect_same_bits<Mollifier>(158); }
 TEST(DeviceCheck, Accd) { expect_same_bits<Sweeps>(12); }
@@ -118,7 +122,7 @@ TEST(DeviceCheck, SpringInFloat) { expect_same_bits<Spring, float>(43); }
 TEST(DeviceCheck, Hinge) { EXPECT_LE(agreement<Hinge>(157).worst, 1e-13); }
 TEST(DeviceCheck, Membranes) { expect_same_bits<Membranes>(915); }
 TEST(DeviceCheck, StrainLimit) { expect_same_bits<StrainLimit>(92); }
-TEST(DeviceCheck, Shapes) { EXPECT_LE(agreement<EveryShape>(15).worst, 1e-13); }
-TEST(DeviceCheck, ShapesInFloat) { EXPECT_LE((agreement<EveryShape, float>(15).worst), 1e-5); }
+TEST(DeviceCheck, Shapes) { EXPECT_LE(agreement<EveryShape>(21).worst, 1e-13); }
+TEST(DeviceCheck, ShapesInFloat) { EXPECT_LE((agreement<EveryShape, float>(21).worst), 1e-5); }
 
 }  // namespace

@@ -111,30 +111,39 @@ void Machine::launch(const Kernel& kernel, const void* params, std::size_t bytes
 
 // --- other directions of rounding: behind a call that the compiler does not look into
 namespace {
-template <class F>
-[[gnu::noinline]] double directed(int direction, const F& f) {
+template <class T, class F>
+[[gnu::noinline]] T directed(int direction, const F& f) {
   const int before = std::fegetround();
   std::fesetround(direction);
-  const volatile double result = f();
+  const volatile T result = f();
   std::fesetround(before);
   return result;
 }
 }  // namespace
-double add_directed(double a, double b, int direction) {
-  const volatile double x = a, y = b;
-  return directed(direction, [&] { return x + y; });
+template <class T>
+T add_directed(T a, T b, int direction) {
+  const volatile T x = a, y = b;
+  return directed<T>(direction, [&] { return x + y; });
 }
-double mul_directed(double a, double b, int direction) {
-  const volatile double x = a, y = b;
-  return directed(direction, [&] { return x * y; });
+template <class T>
+T mul_directed(T a, T b, int direction) {
+  const volatile T x = a, y = b;
+  return directed<T>(direction, [&] { return x * y; });
 }
-double fma_directed(double a, double b, double c, int direction) {
-  const volatile double x = a, y = b, z = c;
-  return directed(direction, [&] { return std::fma(x, y, z); });
+template <class T>
+T fma_directed(T a, T b, T c, int direction) {
+  const volatile T x = a, y = b, z = c;
+  return directed<T>(direction, [&] { return std::fma(x, y, z); });
 }
+template double add_directed(double, double, int);
+template float add_directed(float, float, int);
+template double mul_directed(double, double, int);
+template float mul_directed(float, float, int);
+template double fma_directed(double, double, double, int);
+template float fma_directed(float, float, float, int);
 double to_double_directed(std::int64_t a, int direction) {
   const volatile std::int64_t x = a;
-  return directed(direction, [&] { return static_cast<double>(x); });
+  return directed<double>(direction, [&] { return static_cast<double>(x); });
 }
 
 }  // namespace ptx

@@ -186,10 +186,13 @@ inline double upper(double x) { return f64(bits(x) & ~std::uint64_t{0xffffffff})
 inline double rcp_approx(double x) { return upper(1 / upper(x)); }
 inline double rsqrt_approx(double x) { return upper(1 / std::sqrt(upper(x))); }
 
-/// a + b, a * b and fma with another direction of rounding (FE_TOWARDZERO, ...).
-double add_directed(double a, double b, int direction);
-double mul_directed(double a, double b, int direction);
-double fma_directed(double a, double b, double c, int direction);
+/// a + b, a * b and fma with another direction of rounding (FE_TOWARDZERO, ...); T is float or double.
+template <class T>
+T add_directed(T a, T b, int direction);
+template <class T>
+T mul_directed(T a, T b, int direction);
+template <class T>
+T fma_directed(T a, T b, T c, int direction);
 double to_double_directed(std::int64_t a, int direction);
 
 }  // namespace ptx

@@ -625,7 +625,7 @@ class Body:
         type_name = c_type(suffix)
         a, b = self.value(args[1], type_name), self.value(args[2], type_name)
         if is_float(type_name):
-            if rest[0] in ROUNDING and suffix == "f64":
+            if rest[0] in ROUNDING:
                 minus = "-" if sign == "-" else ""
                 return self.set(args[0], f"add_directed({a}, {minus}({b}), {ROUNDING[rest[0]]})", type_name)
             self.only(rest[:-1], "rn")
@@ -671,7 +671,7 @@ class Body:
         type_name = c_type(suffix)
         if is_float(type_name):
             a, b = self.value(args[1], type_name), self.value(args[2], type_name)
-            if rest[0] in ROUNDING and suffix == "f64":
+            if rest[0] in ROUNDING:
                 return self.set(args[0], f"mul_directed({a}, {b}, {ROUNDING[rest[0]]})", type_name)
             self.only(rest[:-1], "rn")
             return self.set(args[0], f"{a} * {b}", type_name)
@@ -700,7 +700,7 @@ class Body:
     def op_fma(self, rest, args):
         type_name = c_type(rest[-1])
         a, b, c = (self.value(x, type_name) for x in args[1:4])
-        if rest[0] in ROUNDING and rest[-1] == "f64":
+        if rest[0] in ROUNDING:
             return self.set(args[0], f"fma_directed({a}, {b}, {c}, {ROUNDING[rest[0]]})", type_name)
         self.only(rest[:-1], "rn")
         return self.set(args[0], f"std::fma({a}, {b}, {c})", type_name)

@@ -11,6 +11,7 @@ void ResidentSystem::assemble() {
   if (plan_.policy_submatrix.needed) {
     const ScopedPhase timer(clock(), Phase::elastic);
     fill_elastic();
+    keep_elastic();
   }
   {
     const ScopedPhase timer(clock(), Phase::strain_limit);
@@ -22,10 +23,9 @@ void ResidentSystem::assemble() {
   }
   if (contact_) {
     const ScopedPhase timer(clock(), Phase::contact_terms);
-    contact_->linearise(x_, elements_.matrix(), g_);
+    contact_->linearise(x_, kept_elastic(), g_);
   }
   host_g_.valid = false;
-  keep_elastic();
   const double residual = largest_force();
   if (served_at_once_) level_.lower(residual);
   served_at_once_ = false;
@@ -38,16 +38,19 @@ void ResidentSystem::fill_elastic() {
   elements_.add_matrix(TermGroup::elastic, x_.data(), clamped_hessian);
 }
 
-// Trial states ask for the kappa of new pairs with the H of their iterate, when the matrix holds all terms again.
+// What kappa of contacts is made of: the H of the iterate, which trial states ask for when the matrix holds all terms
+// again; of a policy with a potential that of the step's first iterate, all through it.
 void ResidentSystem::keep_elastic() {
   if (!contact_ || !contact_->needs_hessian()) return;
+  if (contact_->stiffness().rule().potential() && has_step_elastic_) return;
+  has_step_elastic_ = true;
   const MatrixPart matrix = elements_.matrix();
   elastic_value_.resize(value_count(elements_.n_blocks()));
   executor_->copy(elastic_value_.data(), matrix.value,
                   static_cast<std::size_t>(elastic_value_.size()) * sizeof(double));
 }
 
-MatrixPart ResidentSystem::elastic_of_iterate() const {
+MatrixPart ResidentSystem::kept_elastic() const {
   MatrixPart part = elements_.matrix();
   if (elastic_value_.size() > 0) part.value = elastic_value_.data();
   return part;

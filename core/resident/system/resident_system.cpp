@@ -84,7 +84,7 @@ void ResidentSystem::begin_step(const Positions& x_n, const Prediction& predicti
   x_.upload(numbers_of(x_n));
   forget_copies();
   level_.reset();
-  served_at_once_ = false;
+  served_at_once_ = has_step_elastic_ = false;
   forcing_.begin_step();
   frame_ = {x_n_.data(), x_tilde_.data(), dt, prediction.c, load_factor};
   prediction_ = prediction;
@@ -175,7 +175,7 @@ std::optional<EnergyChange> ResidentSystem::try_motion(double alpha) {
   const Compensated fixed = sum_.get();
   EnergyChange out{fixed.value(), fixed.magnitude};
   if (!contact_) return out;
-  contact_->evaluate(trial_, elastic_of_iterate());
+  contact_->evaluate(trial_, kept_elastic());
   // rows come and go: their energies are compared as sums
   const auto before = contact_->energy(x_), after = contact_->trial_energy(trial_);
   const double change = (fixed.sum + (after.sum - before.sum)) + (fixed.carry + (after.lost - before.lost));

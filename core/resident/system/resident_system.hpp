@@ -86,7 +86,7 @@ class ResidentSystem final : public StepSystem {
   void move(double alpha, Column& to);
   void fill_elastic();
   void keep_elastic();
-  MatrixPart elastic_of_iterate() const;
+  MatrixPart kept_elastic() const;
   HessianRequest request_of(StepHessian choice, bool exact) const;
   HessianChoice contact_choice(bool exact) const;
   StepHessian choice_of(std::string_view term) const;
@@ -116,7 +116,8 @@ class ResidentSystem final : public StepSystem {
 
   Column x_, trial_, end_, dx_, g_, x_n_, x_tilde_, b_, step_, work_;  // [3 n]
   Column force_;          // [n] N
-  Column elastic_value_;  // H of the iterate, where a policy reads it in trial states
+  Column elastic_value_;  // H that stiffness policies read
+  bool has_step_elastic_ = false;
   exec::Buffer<double> product_partial_;
   mutable ResidentSum sum_;
   mutable ResidentLeast least_;

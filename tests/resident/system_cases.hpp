@@ -1,0 +1,108 @@
+// Small scenes and methods that the resident pipeline and the CPU path both run.
+#pragma once
+
+#include "core/exec/host_executor.hpp"
+#include "core/resident/system/resident_system.hpp"
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb::test {
+
+/// A method of the resident pipeline: conjugate gradients, tight by default.
+inline void use_resident_solver(Method& method, double tolerance = 1e-11) {
+  method.linear.name = "pcg_resident";
+  method.linear.parameters["forcing"] = std::string("fixed");
+  method.linear.parameters["tol_rel"] = tolerance;
+}
+
+/// Makes the method run on a host executor in that order.
+inline void run_resident(Method& method, exec::Order order = exec::Order::threads) {
+  use_resident_solver(method);
+  method.make_system = [order](const Scene& scene, Method& of, const Plan& plan) {
+    return std::make_unique<resident::ResidentSystem>(std::make_unique<exec::HostExecutor>(order, 7u), scene, of, plan);
+  };
+}
+
+/// A cloth of 5 x 5 vertices with bending and a strain limit, tilted, that falls on a smaller rigid plate and on the
+/// floor beside it; two of its corners are pulled.
+inline Scene cloth_on_plate() {
+  SceneBuilder builder("cloth on plate", false, Vec3d(0, 0, -10), "test");
+  BodySpec cloth = cloth_spec(5, 0.035, 0.02);
+  for (int i = 0; i < cloth.mesh.vertices.cols(); ++i) {
+    cloth.mesh.vertices(2, i) += 0.004 * cloth.mesh.vertices(0, i) + 0.002 * cloth.mesh.vertices(1, i);
+  }
+  cloth.material.youngs = 300;
+  cloth.material.bending = 1e-3;
+  cloth.material.springs = 5;
+  cloth.material.limit = StrainLimitSpec::from_limit(0.1);
+  PinSpec corners;
+  corners.indices = {0, 4};
+  corners.motion.velocity = Vec3d(0.05, 0, 0);
+  cloth.pins = {corners};
+  builder.add_body(cloth);
+  BodySpec plate = cloth_spec(3, 0.012, 0.02);
+  plate.name = "plate";
+  plate.kind = BodyKind::rigid;
+  plate.mesh.vertices.row(0) *= 0.4;
+  plate.mesh.vertices.row(1) *= 0.4;
+  builder.add_body(plate);
+  Obstacle floor;
+  floor.name = "floor";
+  floor.point = Vec3d(0, 0, 0.004);
+  builder.add_obstacle(floor);
+  return builder.finish();
+}
+
+/// Two small sheets, one above the other, crossed by an angle: pairs of all kinds of 3D, some of edges close to parallel.
+inline Scene two_sheets() {
+  SceneBuilder builder("two sheets", false, Vec3d(0, 0, -10), "test");
+  BodySpec lower = cloth_spec(4, 0.0, 0.03);
+  lower.name = "lower";
+  PinSpec rim;
+  rim.indices = {0, 3, 12, 15};
+  lower.pins = {rim};
+  lower.material.youngs = 500;
+  builder.add_body(lower);
+  BodySpec upper = cloth_spec(3, 0.036, 0.03);
+  upper.name = "upper";
+  const double c = std::cos(0.3), s = std::sin(0.3);
+  for (int i = 0; i < upper.mesh.vertices.cols(); ++i) {
+    const Vec3d x = upper.mesh.vertices.col(i);
+    upper.mesh.vertices.col(i) = Vec3d(0.6 * (c * x[0] - s * x[1]), 0.6 * (s * x[0] + c * x[1]), x[2] + 0.003 * x[0]);
+  }
+  builder.add_body(upper);
+  return builder.finish();
+}
+
+inline Method method_with_policy(const std::string& shape, const std::string& policy, const ParameterMap& parameters) {
+  Method method = fixed_method(shape, 20);
+  StiffnessPolicyConfig config;
+  config.name = policy;
+  config.parameters = parameters;
+  method.stiffness = make_policy(config);
+  return method;
+}
+
+struct RunEnd {
+  Positions x;
+  std::vector<StepStatus> status;
+  std::vector<int> iterations;
+  std::size_t contacts = 0;
+  double kappa_max = 0;
+};
+
+inline RunEnd run_steps(const Scene& scene, Method method, int steps, double dt = 0.01) {
+  Simulation simulation(scene, method, dt, steps);
+  StepObserver observer;
+  RunEnd end;
+  for (int i = 0; i < steps; ++i) {
+    const StepReport report = simulation.step(observer);
+    end.status.push_back(report.status);
+    end.iterations.push_back(report.newton_iterations);
+    end.contacts += report.contacts.total();
+    if (report.kappa_max_N_per_m.finite()) end.kappa_max = report.kappa_max_N_per_m.value;
+  }
+  end.x = simulation.history().x;
+  return end;
+}
+
+}  // namespace bb::test

@@ -1,0 +1,257 @@
+// The whole step of the resident pipeline against NewtonSystem: numbers of one iterate, states of whole runs.
+#include <gtest/gtest.h>
+
+#include <functional>
+
+#include "core/archive/archive.hpp"
+#include "tests/resident/system_cases.hpp"
+
+namespace bb {
+namespace {
+
+using test::run_resident;
+using test::run_steps;
+using test::RunEnd;
+
+constexpr double dt = 0.01;
+
+/// Both systems at the start of a step of a scene that is in contact.
+struct Both {
+  Scene scene;
+  Method of_cpu, of_resident;
+  Plan plan;
+  NewtonSystem cpu;
+  resident::ResidentSystem resident;
+
+  Both(Scene in, const std::function<Method()>& method)
+      : scene(std::move(in)),
+        of_cpu(method()),
+        of_resident(method()),
+        plan(solved(of_cpu, of_resident)),
+        cpu(scene, of_cpu, plan),
+        resident(std::make_unique<exec::HostExecutor>(), scene, of_resident, plan) {
+    Prediction falling;
+    falling.x_tilde = scene.x0;
+    falling.x_tilde.row(2).array() -= 2e-3;
+    Positions target = scene.x0;
+    target.row(0).array() += 5e-4;
+    for (StepSystem* system : systems()) {
+      system->begin_step(scene.x0, falling, dt, 1);
+      system->set_target(target);
+      system->assemble();
+    }
+  }
+  std::array<StepSystem*, 2> systems() { return {&cpu, &resident}; }
+
+ private:
+  Plan solved(Method& a, Method& b) {
+    test::use_resident_solver(a, 1e-13);
+    test::use_resident_solver(b, 1e-13);
+    return make_plan(scene, a, plan_options(a));
+  }
+};
+
+Method touching_method() {
+  Method method = test::fixed_method("cubic", 40);
+  method.hessian_mode = HessianMode::projected_full;
+  return method;
+}
+
+/// What is higher than 2 cm lowered, so that it touches at the start.
+Scene touching(Scene scene, double by) {
+  for (int v = 0; v < scene.n_vertices(); ++v) {
+    if (scene.x0(2, v) > 0.02) scene.x0(2, v) -= by;
+  }
+  return scene;
+}
+
+double relative(const Positions& a, const Positions& b) {
+  return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
+}
+
+void expect_same_iterate(Both& both) {
+  ASSERT_GT(contact_state(both.cpu.terms()).size(), 0u);
+  ASSERT_GT(both.cpu.energy(TermGroup::contact), 0);
+  EXPECT_NEAR(both.resident.energy(), both.cpu.energy(), 1e-13 * std::abs(both.cpu.energy()));
+  for (const TermGroup group : {TermGroup::load, TermGroup::elastic, TermGroup::limit, TermGroup::contact}) {
+    EXPECT_NEAR(both.resident.energy(group), both.cpu.energy(group), 1e-13 * (1 + std::abs(both.cpu.energy(group))));
+  }
+  EXPECT_LT(relative(both.resident.gradient(), both.cpu.gradient()), 1e-13);
+  ASSERT_EQ(both.cpu.find_direction().linear.status, LinearStatus::ok);
+  ASSERT_EQ(both.resident.find_direction().linear.status, LinearStatus::ok);
+  const DirectionSize cpu = both.cpu.direction_size(), resident = both.resident.direction_size();
+  ASSERT_GT(cpu.inf_m, 1e-6);
+  EXPECT_NEAR(resident.inf_m, cpu.inf_m, 1e-9 * cpu.inf_m);
+  EXPECT_NEAR(resident.slope_J, cpu.slope_J, 1e-9 * std::abs(cpu.slope_J));
+  EXPECT_NEAR(resident.vertex_m, cpu.vertex_m, 1e-9 * cpu.vertex_m);
+  for (StepSystem* system : both.systems()) {  // along a direction of free vertices
+    system->hold();
+    ASSERT_EQ(system->find_direction().linear.status, LinearStatus::ok);
+  }
+  EXPECT_NEAR(both.resident.direction_curvature(), both.cpu.direction_curvature(),
+              1e-9 * std::abs(both.cpu.direction_curvature()));
+}
+
+TEST(ResidentSystem, HasTheNumbersOfTheIterate) {
+  Both plate(touching(test::cloth_on_plate(), 0.012), touching_method);
+  expect_same_iterate(plate);
+  EXPECT_FALSE(plate.cpu.at_target());
+  EXPECT_FALSE(plate.resident.at_target());
+  Both sheets(touching(test::two_sheets(), 0.01), touching_method);
+  expect_same_iterate(sheets);
+}
+
+TEST(ResidentSystem, BoundsAndTriesTheSameMotions) {
+  Both both(touching(test::cloth_on_plate(), 0.012), touching_method);
+  for (StepSystem* system : both.systems()) ASSERT_EQ(system->find_direction().linear.status, LinearStatus::ok);
+  for (StepSystem* system : both.systems()) {
+    system->scale_direction(30);  // far beyond contact
+    system->prepare_motion(MotionEnd::free, true);
+  }
+  IterationReport a, b;
+  const double bound = both.cpu.bound_motion(a);
+  ASSERT_LT(bound, 1);
+  ASSERT_GT(bound, 0);
+  EXPECT_NEAR(both.resident.bound_motion(b), bound, 1e-9 * bound);
+  EXPECT_EQ(both.resident.describe_bound(), both.cpu.describe_bound());
+  EXPECT_GT(b.bound.queries, 0);
+  for (const double part : {0.5, 0.9}) {
+    const auto from = both.cpu.try_motion(part * bound), to = both.resident.try_motion(part * bound);
+    ASSERT_TRUE(from && to);
+    ASSERT_NE(from->change, 0);
+    EXPECT_NEAR(to->change, from->change, 1e-9 * from->magnitude);
+    EXPECT_NEAR(to->magnitude, from->magnitude, 1e-9 * from->magnitude);
+  }
+  EXPECT_FALSE(both.resident.try_motion(1e200).has_value());
+  ASSERT_TRUE(both.resident.try_motion(0.5 * bound).has_value());
+  const Positions before = both.resident.x();
+  both.resident.accept();
+  EXPECT_EQ(both.resident.x_before(), before);
+  EXPECT_NE(both.resident.x(), before);
+}
+
+TEST(ResidentSystem, ShowsItsStateToTheCpu) {
+  Both both(touching(test::cloth_on_plate(), 0.012), touching_method);
+  ASSERT_EQ(both.resident.find_direction().linear.status, LinearStatus::ok);
+  both.resident.prepare_motion(MotionEnd::on_target, true);
+  IterationReport report;
+  ASSERT_TRUE(both.resident.try_motion(0.5 * both.resident.bound_motion(report)).has_value());
+  both.resident.accept();
+  both.resident.assemble();
+  NewtonSystem& seen = both.resident.on_cpu();
+  EXPECT_EQ(seen.x(), both.resident.x());
+  EXPECT_GT(contact_state(seen.terms()).size(), 0u);
+  EXPECT_LT(relative(both.resident.gradient(), seen.gradient()), 1e-13);
+  EXPECT_NEAR(both.resident.energy(), seen.energy(), 1e-13 * std::abs(seen.energy()));
+}
+
+// --- whole runs
+
+/// Both end within the tolerance of a step, with the same statuses, and were in contact.
+void expect_same_run(const Scene& scene, const std::function<Method()>& method, int steps, double tolerance) {
+  Method on_cpu = method(), resident = method();
+  test::use_resident_solver(on_cpu);
+  run_resident(resident);
+  const RunEnd cpu = run_steps(scene, std::move(on_cpu), steps), ours = run_steps(scene, std::move(resident), steps);
+  EXPECT_EQ(ours.status, cpu.status);
+  EXPECT_GT(cpu.contacts, 0u);
+  EXPECT_GE(ours.contacts, cpu.contacts);  // one a pair, which the CPU merges
+  EXPECT_GT((cpu.x - scene.x0).cwiseAbs().maxCoeff(), 1e-3);
+  EXPECT_LT((ours.x - cpu.x).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_NEAR(ours.kappa_max, cpu.kappa_max, 1e-6 * cpu.kappa_max);
+}
+
+TEST(ResidentRun, EndsWhereTheCpuEndsForEveryShape) {
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage"}) {
+    SCOPED_TRACE(shape);
+    expect_same_run(test::cloth_on_plate(), [&] { return test::fixed_method(shape, 20); }, 12, 1e-6);
+  }
+}
+
+TEST(ResidentRun, EndsWhereTheCpuEndsForEveryPolicy) {
+  using Parameters = ParameterMap;
+  const std::pair<const char*, Parameters> policies[] = {
+      {"ipc_adaptive", {}},
+      {"elasticity_inclusive", {{"mass_term", std::string("inertia")}}},
+      {"elasticity_inclusive", {{"mass_term", std::string("inertia")}, {"refresh", std::string("per_step")}}},
+      {"elasticity_inclusive",
+       {{"mass_term", std::string("scaled")}, {"refresh", std::string("per_step")}, {"derivative", std::string("included")}}}};
+  for (const auto& [name, parameters] : policies) {
+    SCOPED_TRACE(std::string(name) + " " + std::to_string(parameters.size()));
+    expect_same_run(test::two_sheets(), [&] { return test::method_with_policy("cubic", name, parameters); }, 10, 1e-6);
+  }
+}
+
+TEST(ResidentRun, EndsWhereTheCpuEndsForEveryHessian) {
+  for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {
+    for (const StepHessian choice : {StepHessian::clamped, StepHessian::absolute, StepHessian::exact_or_clamped,
+                                     StepHessian::blend}) {
+      SCOPED_TRACE(std::string(to_string(choice)) + " " + std::to_string(static_cast<int>(mode)));
+      const auto method = [&] {
+        Method out = test::fixed_method("log", 20);
+        out.hessian_mode = mode;
+        for (const HessianChoice& term : hessian_choices()) out.step_hessian[term.name] = choice;
+        return out;
+      };
+      expect_same_run(test::cloth_on_plate(), method, 8, 1e-6);
+    }
+  }
+}
+
+TEST(ResidentRun, IsTheSameInEveryOrder) {
+  const auto end = [](exec::Order order) {
+    Method method = test::fixed_method("cubic", 20);
+    run_resident(method, order);
+    return run_steps(test::cloth_on_plate(), std::move(method), 8);
+  };
+  const RunEnd first = end(exec::Order::threads);
+  ASSERT_GT(first.contacts, 0u);
+  for (const exec::Order order : {exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
+    const RunEnd other = end(order);
+    EXPECT_EQ(other.x, first.x);
+    EXPECT_EQ(other.iterations, first.iterations);
+  }
+}
+
+TEST(ResidentRun, GoesOnFromAnArchiveOfEitherSystem) {
+  const Scene scene = test::two_sheets();
+  const auto method = [] { return test::method_with_policy("cubic", "ipc_adaptive", {}); };
+  Method whole = method();
+  run_resident(whole);
+  Simulation simulation(scene, whole, dt, 8);
+  StepObserver observer;
+  for (int i = 0; i < 4; ++i) simulation.step(observer);
+  Archive archive;
+  simulation.keep(archive);
+  Method again = method();
+  run_resident(again);
+  Simulation resumed(scene, again, dt, 8);
+  Archive read(archive.bytes());
+  resumed.keep(read);
+  ASSERT_TRUE(read.at_end());
+  simulation.drop_caches();
+  for (int i = 0; i < 4; ++i) simulation.step(observer), resumed.step(observer);
+  EXPECT_EQ(resumed.history().x, simulation.history().x);
+  EXPECT_NE(resumed.history().x, scene.x0);
+}
+
+TEST(ResidentSystem, RefusesWhatHasNoDeviceForm) {
+  const Scene scene = test::two_sheets();
+  const auto message = [&](const std::function<void(Method&)>& change) {
+    Method method = test::fixed_method("cubic", 20);
+    run_resident(method);
+    change(method);
+    try {
+      Simulation simulation(scene, method, dt, 1);
+    } catch (const ConfigError& error) {
+      return std::string(error.what());
+    }
+    return std::string("nothing");
+  };
+  EXPECT_EQ(message([](Method&) {}), "nothing");
+  EXPECT_NE(message([](Method& m) { m.linear = {}; }).find("pcg_resident"), std::string::npos);
+  EXPECT_NE(message([](Method& m) { m.contact.shape.name = "of a plugin"; }).find("of a plugin"), std::string::npos);
+}
+
+}  // namespace
+}  // namespace bb
