@@ -12,6 +12,7 @@
 #include "experiments/config/document.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/device_memory.hpp"
+#include "experiments/run/device_run.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/runner.hpp"
@@ -94,6 +95,7 @@ void print_memory(const DeviceMemory& memory) {
 int check(const RunVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
+  check_device_forms(config, scene);
   if (const auto failure = start_failure(config, scene, &interrupted())) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }

@@ -17,6 +17,7 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/verbs.hpp"
+#include "experiments/run/device_run.hpp"
 
 namespace {
 
@@ -40,6 +41,12 @@ int guarded(const std::function<int()>& verb) {
   } catch (const bb::Interrupted& stopped) {
     const std::string nothing = "no record was written; the same command runs it again";
     say(fmt::format("interrupted: {}\n", stopped.kept.empty() ? nothing : stopped.kept));
+    return exit_try_again;
+  } catch (const bb::DeviceStopped& stopped) {
+    say(fmt::format("{}\n", stopped.what()));
+    return stopped.outcome == bb::Outcome::oom ? exit_try_again : exit_internal;
+  } catch (const bb::exec::OutOfMemory& error) {
+    say(fmt::format("{}\n", error.what()));
     return exit_try_again;
   } catch (const std::bad_alloc&) {
     say("out of memory\n");
