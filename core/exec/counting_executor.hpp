@@ -13,10 +13,10 @@ class CountingExecutor final : public Executor {
   explicit CountingExecutor(bool sorts_apart = false)
       : sorts_apart_(sorts_apart), other_keys_(*this, "sort scratch"), other_values_(*this, "sort scratch") {}
   std::string_view name() const override { return "counting"; }
-  void sort(Key*, std::uint32_t*, Index n, int) override {
+  void sort(Key*, std::uint32_t* values, Index n, int) override {
     if (!sorts_apart_) return;
     other_keys_.grow(n);
-    other_values_.grow(n);  // whether there are values cannot be told: no buffer has an address
+    if (values) other_values_.grow(n);
   }
   void exclusive_scan(Index*, Index) override {}
   void begin_capture() override {}
@@ -34,11 +34,17 @@ class CountingExecutor final : public Executor {
 
  protected:
   void launch(const KernelInfo&, Index, const void*) override {}
-  void* allocate_bytes(std::size_t) override { return nullptr; }
+  /// Addresses that differ; nothing is there.
+  void* allocate_bytes(std::size_t bytes) override {
+    if (bytes == 0) return nullptr;
+    next_ += 256;
+    return reinterpret_cast<void*>(next_);  // NOLINT(performance-no-int-to-ptr)
+  }
   void release_bytes(void*) override {}
 
  private:
   bool sorts_apart_;
+  std::uintptr_t next_ = 0;
   Buffer<Key> other_keys_;
   Buffer<std::uint32_t> other_values_;
 };

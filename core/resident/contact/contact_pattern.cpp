@@ -110,6 +110,8 @@ void ContactPattern::build(ResidentRows& rows) {
   }
   key_.free();
   value_.free();
+  places_.free();
+  upper_.free();
   starts(touched_, row_begin_);
   join(pieces, n_contributions);
 }

@@ -19,6 +19,8 @@ class RowFinder {
   /// kappa_before is 0. Sets min_gap: the smallest gap, infinity without rows; x that is not finite: no rows and
   /// -infinity. Errors: OutOfMemory.
   void find(const exec::Buffer<double>& x, const ResidentCandidates& candidates, ResidentRows& rows);
+  /// Gives back what it keeps between two calls.
+  void free() { places_.free(); }
   /// What an executor that only counts buffers is to take the rows for.
   void expect(const ExpectedContacts& expected) { expected_ = expected; }
 

@@ -167,7 +167,7 @@ std::optional<EnergyChange> ResidentSystem::try_motion(double alpha) {
   if (!elements_.admits(trial_.data())) return std::nullopt;
   if (contact_) {
     const ScopedPhase rows(clock(), Phase::contact_rows);
-    if (!contact_->admits(trial_)) return std::nullopt;
+    if (!contact_->admits(x_, trial_)) return std::nullopt;
   }
   elements_.evaluate(trial_.data());
   sum_.clear();
