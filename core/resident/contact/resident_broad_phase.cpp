@@ -127,7 +127,7 @@ CandidateCounts ResidentBroadPhase::count(const Column& x0, const Column& x1) {
 template <PairKind K>
 void ResidentBroadPhase::fill_kind(bool needed, const exec::Buffer<Index>& begin, Index total,
                                    exec::Buffer<Key>& out) {
-  out.grow(needed ? total : 0);
+  room_ ? out.grow(needed ? total : 0) : out.resize(needed ? total : 0);
   if (!needed || total == 0) return;
   const PairSearch s = search<K>();
   executor_.each(s.first.size(0), FillPairs<K>{s, begin.data(), out.data()});

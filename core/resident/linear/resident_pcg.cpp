@@ -38,7 +38,7 @@ void ResidentPcg::set_residual(const double* from, const double* minus, double* 
 
 double ResidentPcg::sum_of(const double* partial) {
   executor_.blocks(1, FinishSum{partial, v_.partition.n_blocks(), v_.scalars});
-  return scalars_.get(0).sum;
+  return executor_.counts_only() ? 1 : scalars_.get(0).sum;
 }
 
 double ResidentPcg::norm(const FixedMask* fixed, const double* v) {

@@ -82,11 +82,11 @@ void ResidentSystem::report(IterateNumbers& out) const {
   }
   if (!contact_) return;
   out.kappa_change_rel = contact_->kappa_change();
-  if (contact_->rows().size() == 0) return;
-  const RowReport rows(contact_->rows(), sum_, least_);
+  if (contact_->rows(x_).size() == 0) return;
+  const RowReport rows(contact_->rows(x_), sum_, least_);
   out.contacts = rows.counts();
   fill(rows, out);
-  out.gap_min_iterates_m = contact_->rows().min_gap;
+  out.gap_min_iterates_m = contact_->rows(x_).min_gap;
   out.gap_min_iterates_rel = rows.smallest(RowNumber::gap_rel);
   out.contact_curvature_max_N_per_m = rows.largest(RowNumber::curvature);
 }
@@ -97,15 +97,15 @@ void ResidentSystem::report_end(StepNumbers& out) const {
     out.max_stretch = limit.max_stretch;
     out.limit_load_max_N_per_m = limit.load_max;
   }
-  if (!contact_ || contact_->rows().size() == 0) return;
-  const RowReport rows(contact_->rows(), sum_, least_);
+  if (!contact_ || contact_->rows(x_).size() == 0) return;
+  const RowReport rows(contact_->rows(x_), sum_, least_);
   out.contacts = rows.counts();
   fill(rows, out);
   out.contact_load_sum_N = rows.load_sum();
-  out.gap_min_m = contact_->rows().min_gap;
+  out.gap_min_m = contact_->rows(x_).min_gap;
   out.gap_min_rel = rows.smallest(RowNumber::gap_rel);
   const double largest = largest_coordinate();
-  out.gap_min_ulps = contact_->rows().min_gap / (std::nextafter(largest, 2 * largest) - largest);
+  out.gap_min_ulps = contact_->rows(x_).min_gap / (std::nextafter(largest, 2 * largest) - largest);
 }
 
 void ResidentSystem::report_overload(bool with_direction, StepNumbers& out) {

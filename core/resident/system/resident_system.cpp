@@ -95,6 +95,21 @@ void ResidentSystem::begin_step(const Positions& x_n, const Prediction& predicti
   if (contact_) contact_->begin_step(x_, dt, prediction.c);
 }
 
+void ResidentSystem::count_memory(const ExpectedContacts& expected) {
+  if (contact_) contact_->expect(expected);
+  begin_step(scene_.x0, {1, scene_.x0}, 1, 1);
+  for (int iterate = 0; iterate < 2; ++iterate) {  // the second finds the columns of the first in place
+    assemble();
+    find_direction();
+    prepare_motion(MotionEnd::free, false);
+    IterationReport unread;
+    bound_motion(unread);
+    try_motion(1);
+    accept();
+  }
+  end_step();
+}
+
 void ResidentSystem::restart_step(const Prediction& prediction, double dt) {
   const ScopedPhase timer(clock(), Phase::prediction);
   prediction_ = prediction;
@@ -154,7 +169,7 @@ std::optional<EnergyChange> ResidentSystem::try_motion(double alpha) {
   if (!elements_.admits(trial_.data())) return std::nullopt;
   if (contact_) {
     const ScopedPhase rows(clock(), Phase::contact_rows);
-    if (!contact_->admits(trial_)) return std::nullopt;
+    if (!contact_->admits(x_, trial_)) return std::nullopt;
   }
   elements_.evaluate(trial_.data());
   sum_.clear();

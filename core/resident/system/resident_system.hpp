@@ -67,6 +67,9 @@ class ResidentSystem final : public StepSystem {
   std::string describe_non_finite() const override;
   NewtonSystem& on_cpu() override;
 
+  /// On an executor that only counts buffers: every stage of a step with so many contacts, so that memory().peak() is
+  /// what a step needs.
+  void count_memory(const ExpectedContacts& expected);
   /// Who holds how much memory.
   const exec::MemoryLedger& memory() const { return executor_->memory(); }
 
