@@ -81,8 +81,9 @@ void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void*
                          std::to_string(found->bytes) + " on the device");
   }
   const auto call = [&] {
-    check(found->launch(f, n, stream_),
-          kernel.name() + " (" + std::to_string(n) + (kernel.blocks ? " blocks)" : ")"));
+    const auto code = found->launch(f, n, stream_);
+    if (code == cudaSuccess) return;
+    check(code, kernel.name() + " (" + std::to_string(n) + (kernel.blocks ? " blocks)" : ")"));
   };
   if (recording_) return recording_->add(kernel, n, f);
   if (capturing_) {

@@ -122,7 +122,8 @@ std::string ResidentSystem::describe_non_finite() const {
   return "a sum over all vertices";
 }
 
-// Memory of the terms from step to step, in the order and the bytes of NewtonSystem::keep.
+// Memory of the terms from step to step, in the order of NewtonSystem::keep, which reads it; park, which is read of the
+// later of two step ends only, is 0.
 void ResidentSystem::keep(Archive& archive) {
   for (const auto& term : cpu().terms()) {
     archive.section(term->name());
@@ -164,7 +165,7 @@ NewtonSystem& ResidentSystem::on_cpu() {
   cpu().keep(again);
   KnownStiffness known;
   if (contact_) known = contact_->stiffness().known();
-  cpu().adopt({x_start_, prediction_.x_tilde, frame_.dt, prediction_.c, frame_.load_factor}, x(), level_, known);
+  cpu().adopt({x_start_, prediction_.x_tilde, frame_.dt, prediction_.c, frame_.load_factor}, x(), target_, level_, known);
   return cpu();
 }
 

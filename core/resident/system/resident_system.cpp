@@ -6,6 +6,7 @@
 
 #include "core/math/error.hpp"
 #include "core/resident/linear/block_jacobi.hpp"
+#include "core/resident/linear/schwarz.hpp"
 #include "core/resident/system/system_kernels.hpp"
 
 namespace bb::resident {
@@ -29,6 +30,15 @@ ParameterMap linear_parameters(const Method& method) {
   }
   const LinearSolverEntry& entry = linear_solvers().require(method.linear.name, "/linear_solver/name");
   return own_parameters(entry.parameters, method.linear.parameters, "/linear_solver");
+}
+
+// The clusters of Schwarz are made from the matrix, which an executor that only counts does not have.
+std::unique_ptr<ResidentPreconditioner> make_preconditioner(exec::Executor& executor, const Method& method) {
+  const ParameterMap parameters = linear_parameters(method);
+  if (text(parameters, "resident_preconditioner") == "schwarz" && !executor.counts_only()) {
+    return std::make_unique<Schwarz>(executor, integer(parameters, "resident_cluster_vertices"));
+  }
+  return std::make_unique<BlockJacobi>(executor);
 }
 
 std::span<const double> numbers_of(const Positions& x) {
@@ -73,7 +83,7 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
   if (plan.term("contact").needed) {
     contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, fixed_bits_);
   }
-  pcg_ = std::make_unique<ResidentPcg>(*executor_, n, std::make_unique<BlockJacobi>(*executor_));
+  pcg_ = std::make_unique<ResidentPcg>(*executor_, n, make_preconditioner(*executor_, method));
 }
 
 ResidentSystem::~ResidentSystem() = default;
@@ -125,7 +135,10 @@ void ResidentSystem::end_step() {
   if (contact_) contact_->end_step();
 }
 
-void ResidentSystem::set_target(const Positions& target) { vectors_.set_targets(target); }
+void ResidentSystem::set_target(const Positions& target) {
+  target_ = target;
+  vectors_.set_targets(target);
+}
 bool ResidentSystem::at_target() const { return vectors_.first_short_pin(x_) < 0; }
 
 void ResidentSystem::prepare_motion(MotionEnd end, bool) {

@@ -124,7 +124,8 @@ class ResidentSystem final : public StepSystem {
   MatrixPart contact_matrix_{};
   ResidentFrame frame_;
   Prediction prediction_;  // as it came, for the CPU's view
-  Positions x_start_;
+  Positions x_start_, target_;
+  std::uint64_t pattern_id_ = 1;  // of the matrix
   MotionEnd motion_ = MotionEnd::free;
   std::string holder_;  // of the last bound
   double limit_kappa_change_ = 0;
