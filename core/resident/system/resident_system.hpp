@@ -70,6 +70,10 @@ class ResidentSystem final : public StepSystem {
   /// On an executor that only counts buffers: every stage of a step with so many contacts, so that memory().peak() is
   /// what a step needs.
   void count_memory(const ExpectedContacts& expected);
+  /// As ResidentContact::set_frugal_from.
+  void set_frugal_from(Index rows) {
+    if (contact_) contact_->set_frugal_from(rows);
+  }
   /// Who holds how much memory.
   const exec::MemoryLedger& memory() const { return executor_->memory(); }
 
