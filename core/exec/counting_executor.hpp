@@ -2,6 +2,8 @@
 // would allocate it.
 #pragma once
 
+#include <cstdint>
+
 #include "core/exec/buffer.hpp"
 
 namespace bb::exec {

@@ -28,6 +28,23 @@ double bytes_a_row(const Method& method) {
   return static_cast<double>(executor.memory().bytes()) / n;
 }
 
+resident::ExpectedContacts expected_contacts(const ContactDemand& demand, double contacts,
+                                             const ContactPlan& plan) {
+  resident::ExpectedContacts out;
+  out.rows = std::llround(contacts);
+  if (plan.mollifier.needed) out.mollified = out.rows / 100;
+  out.upper_blocks_a_row = demand.upper_blocks_a_contact;
+  const exec::Index n = std::llround(contacts * demand.candidates_a_contact);
+  resident::CandidateCounts& of = out.candidates;
+  if (plan.edge_edge && plan.point_triangle) {
+    of.point_triangle = n / 3;
+    of.edge_edge = n - n / 3;
+  } else {
+    (plan.point_edge ? of.point_edge : plan.point_point ? of.point_point : of.obstacle) = n;
+  }
+  return out;
+}
+
 }  // namespace
 
 double estimated_contacts(const Scene& scene) {
@@ -42,22 +59,6 @@ double estimated_contacts(const Scene& scene) {
   const double triangles = 2 / area * (area / 2 + 3 * h * reach + disc);
   const double edges = 3 * 3 / area * (2 / std::numbers::pi * h * h + 4 * h * reach + disc);
   return points * (2 * triangles + edges);
-}
-
-resident::ExpectedContacts expected_contacts(const ContactDemand& demand, double contacts,
-                                             const ContactPlan& plan) {
-  resident::ExpectedContacts out;
-  out.rows = std::llround(contacts);
-  out.upper_blocks_a_row = demand.upper_blocks_a_contact;
-  const exec::Index n = std::llround(contacts * demand.candidates_a_contact);
-  resident::CandidateCounts& of = out.candidates;
-  if (plan.edge_edge && plan.point_triangle) {
-    of.point_triangle = n / 3;
-    of.edge_edge = n - n / 3;
-  } else {
-    (plan.point_edge ? of.point_edge : plan.point_point ? of.point_point : of.obstacle) = n;
-  }
-  return out;
 }
 
 DeviceMemory count_device_memory(const RunConfig& config, const Scene& scene, const Plan& plan,

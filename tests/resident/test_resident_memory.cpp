@@ -2,6 +2,9 @@
 // changes a number.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <string>
+
 #include "core/exec/counting_executor.hpp"
 #include "tests/resident/system_cases.hpp"
 
@@ -27,6 +30,7 @@ Scene cloth(int n) {
 resident::ExpectedContacts rows_of(double contacts) {
   resident::ExpectedContacts out;
   out.rows = static_cast<Index>(contacts);
+  out.mollified = out.rows / 100;
   out.candidates.point_triangle = out.rows * 2 / 3;
   out.candidates.edge_edge = out.rows * 4 / 3;
   return out;
