@@ -16,7 +16,8 @@ namespace {
 
 double mean_edge(const Surface& surface, const Scene& scene) {
   double sum = 0;
-  for (const auto& edge : surface.edges.vertices) sum += (scene.x0.col(edge[0]) - scene.x0.col(edge[1])).norm();
+  for (const auto& edge : surface.edges.vertices)
+    sum += (scene.x0.col(edge[0]) - scene.x0.col(edge[1])).norm();
   return sum / static_cast<double>(surface.edges.size());
 }
 

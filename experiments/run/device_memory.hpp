@@ -20,7 +20,7 @@ struct ContactDemand {
 
 struct DeviceMemory {
   double contacts = 0;
-  std::string source;  // where their number is from
+  std::string source;                                        // where their number is from
   std::vector<std::pair<std::string, std::size_t>> buffers;  // at the peak, largest first
   std::size_t total = 0;
   double bytes_a_row = 0;  // of one table of contact rows

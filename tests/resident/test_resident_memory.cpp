@@ -58,7 +58,8 @@ TEST(ResidentMemory, OfTheDensestSceneIsWithinItsBudget) {
   constexpr double contacts = 184.1e6, vertices = 8.2e6, bytes_a_piece = 8 * 90.0 * (1 << 18);
   const Scene small = cloth(30), large = cloth(60);
   Peak few = counted(small, {}), many = counted(large, {});
-  for (Peak* peak : {&few, &many}) peak->total -= static_cast<double>(peak->by_name["local terms of elements"]);
+  for (Peak* peak : {&few, &many})
+    peak->total -= static_cast<double>(peak->by_name["local terms of elements"]);
   const double a_vertex = (many.total - few.total) / (large.n_vertices() - small.n_vertices());
   EXPECT_GT(a_vertex, 1000);
   EXPECT_GT(many.by_name.at("limit bands"), 16u * 2 * 59 * 59);
@@ -66,8 +67,10 @@ TEST(ResidentMemory, OfTheDensestSceneIsWithinItsBudget) {
   EXPECT_GT(of_contacts.by_name.at("contact vertices"), static_cast<std::size_t>(16 * contacts) - 1);
   const double total = of_contacts.total + a_vertex * vertices + bytes_a_piece;
   RecordProperty("bytes_a_contact", std::to_string(total / contacts));
-  EXPECT_LE(total, 70 * 1073741824.0) << of_contacts.total / contacts << " B a contact, " << a_vertex << " B a vertex";
-  EXPECT_LE(total / contacts, 380) << of_contacts.total / contacts << " B a contact, " << a_vertex << " B a vertex";
+  EXPECT_LE(total, 70 * 1073741824.0)
+      << of_contacts.total / contacts << " B a contact, " << a_vertex << " B a vertex";
+  EXPECT_LE(total / contacts, 380) << of_contacts.total / contacts << " B a contact, " << a_vertex
+                                   << " B a vertex";
 }
 
 TEST(ResidentMemory, IsCountedAsTheHostAllocatesIt) {
@@ -82,8 +85,9 @@ TEST(ResidentMemory, IsCountedAsTheHostAllocatesIt) {
   resident::ExpectedContacts expected;
   expected.rows = static_cast<Index>(on_host.memory().by_name().at("contact gaps") / sizeof(double));
   const Peak counts = counted(scene, expected);
-  for (const char* name : {"positions", "element matrix values", "pcg direction", "surface edges vertices", "tree of edges",
-                           "contact normals", "contact weights", "contact b'", "rows of vertices, starts"}) {
+  for (const char* name :
+       {"positions", "element matrix values", "pcg direction", "surface edges vertices", "tree of edges",
+        "contact normals", "contact weights", "contact b'", "rows of vertices, starts"}) {
     EXPECT_EQ(counts.by_name.at(name), on_host.memory().by_name().at(name)) << name;
   }
 }

@@ -150,7 +150,8 @@ void ResidentBroadPhase::fill(ResidentCandidates& out) {
 void ResidentBroadPhase::free() {
   points_.free(), edges_.free(), triangles_.free();
   scratch_.key.free(), scratch_.order.free();
-  for (auto* begin : {&point_points_, &point_edges_, &point_triangles_, &edge_edges_, &of_obstacles_}) begin->free();
+  for (auto* begin : {&point_points_, &point_edges_, &point_triangles_, &edge_edges_, &of_obstacles_})
+    begin->free();
 }
 
 void ResidentBroadPhase::update(const Column& x0, const Column& x1, ResidentCandidates& out) {

@@ -68,7 +68,8 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
       least_(*executor_) {
   const Index n = scene.n_vertices();
   fixed_bits_.upload(bb::resident::fixed_bits(fixed_));
-  for (Column* column : {&x_, &trial_, &end_, &dx_, &g_, &x_n_, &x_tilde_, &b_, &step_, &work_}) column->resize(3 * n);
+  for (Column* column : {&x_, &trial_, &end_, &dx_, &g_, &x_n_, &x_tilde_, &b_, &step_, &work_})
+    column->resize(3 * n);
   if (plan.term("contact").needed) {
     contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, fixed_bits_);
   }
@@ -77,7 +78,8 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
 
 ResidentSystem::~ResidentSystem() = default;
 
-void ResidentSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt, double load_factor) {
+void ResidentSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt,
+                                double load_factor) {
   const ScopedPhase timer(clock(), Phase::prediction);
   x_start_ = x_n;
   x_n_.upload(numbers_of(x_n));
