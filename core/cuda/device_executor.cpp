@@ -159,6 +159,11 @@ void DeviceExecutor::synchronize() { wait("waiting for the card"); }
 
 // --- memory
 
+void DeviceExecutor::trim() {
+  wait("waiting for the card");
+  other_keys_.free(), other_values_.free(), scratch_.free();
+}
+
 void DeviceExecutor::upload(void* to, const void* from, std::size_t bytes) {
   if (bytes == 0) return;
   check(cudaMemcpyAsync(to, from, bytes, cudaMemcpyHostToDevice, stream_), "a copy to the card");

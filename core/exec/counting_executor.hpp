@@ -2,6 +2,8 @@
 // would allocate it.
 #pragma once
 
+#include <cstdint>
+
 #include "core/exec/buffer.hpp"
 
 namespace bb::exec {
@@ -30,6 +32,7 @@ class CountingExecutor final : public Executor {
   }
   void copy(void*, const void*, std::size_t) override {}
   void fill_bytes(void*, unsigned char, std::size_t) override {}
+  void trim() override { other_keys_.free(), other_values_.free(); }
   bool counts_only() const override { return true; }
 
  protected:

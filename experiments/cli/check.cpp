@@ -66,9 +66,14 @@ void print_card(std::size_t total) {
     fmt::print("  no card to ask: {}\n", probe.why);
     return;
   }
-  fmt::print("  {}: {} free of {}: {}\n", probe.card, exec::bytes_text(probe.free), exec::bytes_text(probe.memory),
-             total <= probe.free ? "it fits"
-                                 : "it does not fit, " + exec::bytes_text(total - probe.free) + " are missing");
+  fmt::print(
+      "  {}: {} free of {}: {}\n", probe.card, exec::bytes_text(probe.free), exec::bytes_text(probe.memory),
+      total <= probe.free ? "it fits"
+                          : "it does not fit, " + exec::bytes_text(total - probe.free) + " are missing");
+}
+
+void print_a_contact(const DeviceMemory& memory, double bytes) {
+  if (memory.contacts > 0) fmt::print(" {:>8.2f} B a contact", bytes / memory.contacts);
 }
 
 void print_memory(const DeviceMemory& memory) {
@@ -81,12 +86,14 @@ void print_memory(const DeviceMemory& memory) {
       continue;
     }
     fmt::print("  {:<40} {:>12}", name, exec::bytes_text(bytes));
-    fmt::print(memory.contacts > 0 ? " {:>8.2f} B a contact\n" : "\n", static_cast<double>(bytes) / memory.contacts);
+    print_a_contact(memory, static_cast<double>(bytes));
+    fmt::print("\n");
   }
   fmt::print("  {:<40} {:>12}\n", "all others, below 0.5 % each", exec::bytes_text(rest));
   fmt::print("  {:<40} {:>12}", "total", exec::bytes_text(memory.total));
-  fmt::print(memory.contacts > 0 ? " {:>8.2f} B a contact, {:g} B a contact row\n" : "\n", memory.bytes_a_contact(),
-             memory.bytes_a_row);
+  print_a_contact(memory, static_cast<double>(memory.total));
+  fmt::print("\n");
+  if (memory.contacts > 0) fmt::print("  {:g} B a contact row\n", memory.bytes_a_row);
   print_card(memory.total);
 }
 

@@ -16,7 +16,8 @@ namespace {
 
 double mean_edge(const Surface& surface, const Scene& scene) {
   double sum = 0;
-  for (const auto& edge : surface.edges.vertices) sum += (scene.x0.col(edge[0]) - scene.x0.col(edge[1])).norm();
+  for (const auto& edge : surface.edges.vertices)
+    sum += (scene.x0.col(edge[0]) - scene.x0.col(edge[1])).norm();
   return sum / static_cast<double>(surface.edges.size());
 }
 
@@ -26,6 +27,23 @@ double bytes_a_row(const Method& method) {
   resident::ResidentRows rows(executor, resident::columns_of(*method.stiffness->rule()));
   rows.resize(n);
   return static_cast<double>(executor.memory().bytes()) / n;
+}
+
+resident::ExpectedContacts expected_contacts(const ContactDemand& demand, double contacts,
+                                             const ContactPlan& plan) {
+  resident::ExpectedContacts out;
+  out.rows = std::llround(contacts);
+  if (plan.mollifier.needed) out.mollified = out.rows / 100;
+  out.upper_blocks_a_row = demand.upper_blocks_a_contact;
+  const exec::Index n = std::llround(contacts * demand.candidates_a_contact);
+  resident::CandidateCounts& of = out.candidates;
+  if (plan.edge_edge && plan.point_triangle) {
+    of.point_triangle = n / 3;
+    of.edge_edge = n - n / 3;
+  } else {
+    (plan.point_edge ? of.point_edge : plan.point_point ? of.point_point : of.obstacle) = n;
+  }
+  return out;
 }
 
 }  // namespace
@@ -42,22 +60,6 @@ double estimated_contacts(const Scene& scene) {
   const double triangles = 2 / area * (area / 2 + 3 * h * reach + disc);
   const double edges = 3 * 3 / area * (2 / std::numbers::pi * h * h + 4 * h * reach + disc);
   return points * (2 * triangles + edges);
-}
-
-resident::ExpectedContacts expected_contacts(const ContactDemand& demand, double contacts,
-                                             const ContactPlan& plan) {
-  resident::ExpectedContacts out;
-  out.rows = std::llround(contacts);
-  out.upper_blocks_a_row = demand.upper_blocks_a_contact;
-  const exec::Index n = std::llround(contacts * demand.candidates_a_contact);
-  resident::CandidateCounts& of = out.candidates;
-  if (plan.edge_edge && plan.point_triangle) {
-    of.point_triangle = n / 3;
-    of.edge_edge = n - n / 3;
-  } else {
-    (plan.point_edge ? of.point_edge : plan.point_point ? of.point_point : of.obstacle) = n;
-  }
-  return out;
 }
 
 DeviceMemory count_device_memory(const RunConfig& config, const Scene& scene, const Plan& plan,

@@ -5,7 +5,7 @@
 #include <utility>
 #include <vector>
 
-#include "core/resident/contact/expected_contacts.hpp"
+#include "core/scene/scene.hpp"
 #include "core/terms/plan.hpp"
 #include "experiments/config/run_config.hpp"
 
@@ -20,7 +20,7 @@ struct ContactDemand {
 
 struct DeviceMemory {
   double contacts = 0;
-  std::string source;  // where their number is from
+  std::string source;                                        // where their number is from
   std::vector<std::pair<std::string, std::size_t>> buffers;  // at the peak, largest first
   std::size_t total = 0;
   double bytes_a_row = 0;  // of one table of contact rows
@@ -30,8 +30,6 @@ struct DeviceMemory {
 /// Rows of every surface vertex when each sheet lies on one other at half its activation distance: triangles in
 /// reach of the vertices of both, and edges in reach of the edges.
 double estimated_contacts(const Scene& scene);
-
-resident::ExpectedContacts expected_contacts(const ContactDemand& demand, double contacts, const ContactPlan& plan);
 
 /// Runs the stages of a step on an executor that counts buffers. Errors: ConfigError for what has no device form.
 /// Cost: what a run does before its first step.

@@ -175,8 +175,8 @@ class PassSequence {
   std::vector<PhaseTimes> times_;  // of the iterations of the first pass
   std::optional<audit::AuditLedger> ledger_;
   Verdict audited_;
-  std::optional<Archive> held_;    // the end of the last step, of a run on a device
-  Archive* rest_ = nullptr;  // what a checkpoint still holds
+  std::optional<Archive> held_;  // the end of the last step, of a run on a device
+  Archive* rest_ = nullptr;      // what a checkpoint still holds
 };
 
 }  // namespace

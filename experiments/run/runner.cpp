@@ -108,7 +108,8 @@ std::string stopped_text(const RunRecord& record, const RunOptions& options, con
   std::string out = fmt::format("{}: {}\n{} has the steps before", to_string(record.status.outcome),
                                 record.status.detail, (options.folder / "run.json").string());
   if (checkpoint) {
-    out += fmt::format("; {} kept: the same command with --resume goes on from it", checkpoint->file().string());
+    out +=
+        fmt::format("; {} kept: the same command with --resume goes on from it", checkpoint->file().string());
   }
   return out;
 }
@@ -197,7 +198,9 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   if (!goes_on) files.finish();
   run_json.commit();
   if (!stopped) checkpoint.remove();
-  if (stopped) throw DeviceStopped(record.status.outcome, stopped_text(record, options, goes_on ? &checkpoint : nullptr));
+  if (stopped)
+    throw DeviceStopped(record.status.outcome,
+                        stopped_text(record, options, goes_on ? &checkpoint : nullptr));
   return record;
 }
 

@@ -10,7 +10,7 @@ namespace bb::resident {
 
 struct AssemblyOptions {
   Index pairs_a_chunk = Index{1} << 26;  // of the pattern's sorts
-  Index hessians_a_chunk = 1 << 20;      // rows whose Hessians are kept at a time, 720 B each
+  Index hessians_a_chunk = 1 << 18;      // rows whose Hessians are kept at a time, 720 B each
 };
 
 /// Sums over rows whose energy, push and stretch are set. Results do not depend on the chunks.

@@ -17,7 +17,7 @@ int bits_below(Index n) {
 /// Blocks of one chunk.
 struct ContactPattern::Piece {
   exec::Buffer<int> column;
-  exec::Buffer<Index> begin;
+  exec::Buffer<std::uint32_t> begin;
   Index n_contributions;
 };
 
@@ -150,12 +150,12 @@ void ContactPattern::join(std::vector<Piece>& pieces, Index n_contributions) {
   for (Piece& piece : pieces) {
     const auto size = static_cast<std::size_t>(piece.column.size());
     executor_.copy(column_.data() + at, piece.column.data(), size * sizeof(int));
-    executor_.copy(begin_.data() + at, piece.begin.data(), size * sizeof(Index));
+    executor_.copy(begin_.data() + at, piece.begin.data(), size * sizeof(std::uint32_t));
     executor_.synchronize();
     at += piece.column.size();
     piece.column.free(), piece.begin.free();
   }
-  begin_.set(n, n_contributions);
+  begin_.set(n, static_cast<std::uint32_t>(n_contributions));
 }
 
 }  // namespace bb::resident

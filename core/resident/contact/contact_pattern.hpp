@@ -46,7 +46,7 @@ class ContactPattern {
   exec::Buffer<Index> slot_begin_, row_begin_;
   exec::Buffer<std::uint32_t> slot_;
   exec::Buffer<int> column_;
-  exec::Buffer<Index> begin_;
+  exec::Buffer<std::uint32_t> begin_;
   exec::Buffer<std::uint32_t> code_;
   Compaction places_, upper_;
   exec::Buffer<Key> key_;

@@ -33,8 +33,8 @@ ResidentBroadPhase::ResidentBroadPhase(exec::Executor& executor, const ResidentS
       point_triangles_(executor, "places of point-triangle candidates"),
       edge_edges_(executor, "places of edge-edge candidates"),
       of_obstacles_(executor, "places of obstacle candidates") {
-  upload_rows(connected_, surface.connected_pairs());
-  upload_rows(opposite_, surface.opposite_corners());
+  if (plan.point_point) upload_rows(connected_, surface.connected_pairs());
+  if (plan.point_edge) upload_rows(opposite_, surface.opposite_corners());
 }
 
 /// The frame in which the boxes are shortest: what most points share of the motion is taken off. As BroadPhase does.
@@ -145,6 +145,13 @@ void ResidentBroadPhase::fill(ResidentCandidates& out) {
   if (!plan_.obstacles.needed) return;
   const SurfaceView s = surface_.view();
   executor_.each(s.points.n, FillObstacles{s, x0_, x1_, of_obstacles_.data(), out.obstacle.data()});
+}
+
+void ResidentBroadPhase::free() {
+  points_.free(), edges_.free(), triangles_.free();
+  scratch_.key.free(), scratch_.order.free();
+  for (auto* begin : {&point_points_, &point_edges_, &point_triangles_, &edge_edges_, &of_obstacles_})
+    begin->free();
 }
 
 void ResidentBroadPhase::update(const Column& x0, const Column& x1, ResidentCandidates& out) {

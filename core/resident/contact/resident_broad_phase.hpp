@@ -39,6 +39,8 @@ class ResidentBroadPhase {
 
   /// Of the last count; for ResidentStepBound::find_without_list.
   CandidateSource source() const;
+  /// Gives the trees back; source() needs another count then.
+  void free();
   /// Whether lists get room to grow; not where they are given back after every motion.
   void keep_room(bool keep) { room_ = keep; }
   /// What an executor that only counts buffers is to take the candidates for.

@@ -100,8 +100,8 @@ class ResidentRows {
   }
   /// Gives all memory back.
   void free() {
-    for (auto* column : {&weight_, &normal_, &d_, &d_hat_, &kappa_, &kappa_before_, &per_gap_sq_, &energy_, &push_,
-                         &stretch_}) {
+    for (auto* column : {&weight_, &normal_, &d_, &d_hat_, &kappa_, &kappa_before_, &per_gap_sq_, &energy_,
+                         &push_, &stretch_}) {
       column->free();
     }
     vertex_.free(), pair_.free(), kind_.free(), free_.free(), list.free();

@@ -116,7 +116,8 @@ KnownStiffness ResidentStiffness::known() const {
   out.pair = known_pair_.download();
   out.pair.resize(n);
   const std::vector<double> fixed = known_kappa_.download();
-  const std::vector<double> per_gap_sq = rule_.potential() ? known_per_gap_.download() : std::vector<double>(n, 0.0);
+  const std::vector<double> per_gap_sq =
+      rule_.potential() ? known_per_gap_.download() : std::vector<double>(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) out.parts.push_back({fixed[i], per_gap_sq[i]});
   return out;
 }

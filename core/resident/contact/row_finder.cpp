@@ -71,7 +71,8 @@ void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& ca
   });
   executor_.each(candidates.obstacle.size(), FillObstacleRows{phase, candidates.obstacle.data(), mark + first,
                                                               first, places_.places(), view, gap_.data()});
-  rows.min_gap = executor_.counts_only() ? std::numeric_limits<double>::infinity() : smallest_gap(gap_.get(0));
+  rows.min_gap =
+      executor_.counts_only() ? std::numeric_limits<double>::infinity() : smallest_gap(gap_.get(0));
   list_mollified(rows);
 }
 

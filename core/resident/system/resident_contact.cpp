@@ -71,6 +71,9 @@ void ResidentContact::prepare(const Column& x0, const Column& x1) {
   if (frugal()) assembly_.free_matrix();
   broad_phase_.keep_room(!frugal());
   broad_phase_.update(x0, x1, candidates_);
+  if (!frugal()) return;
+  broad_phase_.free();
+  executor_.trim();
 }
 
 void ResidentContact::lend_columns() {
@@ -105,9 +108,13 @@ void ResidentContact::use_policy_kappa() {
 void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Column& g) {
   settle(x);
   energy_.reset();
-  if (frugal()) candidates_.free(), trial_.free(), finder_.free();
+  if (frugal()) {
+    candidates_.free(), trial_.free(), finder_.free(), broad_phase_.free();
+    executor_.trim();
+  }
   pattern_changed_ = !has_pattern_;
   if (!has_pattern_) assembly_.set_pattern(rows_);
+  if (frugal()) executor_.trim();
   has_pattern_ = true;
   start_policy(x, g);
   use_policy_kappa();

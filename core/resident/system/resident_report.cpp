@@ -4,8 +4,8 @@
 
 #include "core/archive/archive.hpp"
 #include "core/resident/system/resident_system.hpp"
-#include "core/terms/contact.hpp"
 #include "core/resident/system/system_kernels.hpp"
+#include "core/terms/contact.hpp"
 
 namespace bb::resident {
 namespace {
@@ -117,8 +117,10 @@ void ResidentSystem::report_overload(bool with_direction, StepNumbers& out) {
 std::string ResidentSystem::describe_non_finite() const {
   const ResidentElements::BadElement bad = elements_.first_not_finite();
   if (bad.element >= 0) return "element " + std::to_string(bad.element) + " of term " + std::string(bad.term);
-  if (const Index i = vectors_.first_not_finite(g_); i >= 0) return "gradient at vertex " + std::to_string(i / 3);
-  if (const Index i = vectors_.first_not_finite(dx_); i >= 0) return "direction at vertex " + std::to_string(i / 3);
+  if (const Index i = vectors_.first_not_finite(g_); i >= 0)
+    return "gradient at vertex " + std::to_string(i / 3);
+  if (const Index i = vectors_.first_not_finite(dx_); i >= 0)
+    return "direction at vertex " + std::to_string(i / 3);
   return "a sum over all vertices";
 }
 
@@ -141,7 +143,8 @@ void ResidentSystem::keep_contact(Archive& archive) {
   std::vector<double> gap;
   contact_->step_end_gaps().download(pair, gap);
   std::vector<PairGap> gaps;
-  for (std::size_t i = 0; i < pair.size(); ++i) gaps.push_back({pair[i], gap[i], 0});  // park is read of the later end
+  for (std::size_t i = 0; i < pair.size(); ++i)
+    gaps.push_back({pair[i], gap[i], 0});  // park is read of the later end
   archive(started, gaps);
   method_.stiffness->keep(archive);
   if (!archive.reads()) return;

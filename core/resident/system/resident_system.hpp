@@ -22,7 +22,8 @@ class ResidentSystem final : public StepSystem {
   using Column = exec::Buffer<double>;
 
   /// scene and method must outlive the system. Errors: ConfigError for what has no device form; OutOfMemory.
-  ResidentSystem(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method, const Plan& plan);
+  ResidentSystem(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method,
+                 const Plan& plan);
   ~ResidentSystem() override;
 
   void begin_step(const Positions& x_n, const Prediction& prediction, double dt, double load_factor) override;
@@ -70,6 +71,10 @@ class ResidentSystem final : public StepSystem {
   /// On an executor that only counts buffers: every stage of a step with so many contacts, so that memory().peak() is
   /// what a step needs.
   void count_memory(const ExpectedContacts& expected);
+  /// As ResidentContact::set_frugal_from.
+  void set_frugal_from(Index rows) {
+    if (contact_) contact_->set_frugal_from(rows);
+  }
   /// Who holds how much memory.
   const exec::MemoryLedger& memory() const { return executor_->memory(); }
 
@@ -115,8 +120,8 @@ class ResidentSystem final : public StepSystem {
   bool served_at_once_ = false;
 
   Column x_, trial_, end_, dx_, g_, x_n_, x_tilde_, b_, step_, work_;  // [3 n]
-  Column force_;          // [n] N
-  Column elastic_value_;  // H that stiffness policies read
+  Column force_;                                                       // [n] N
+  Column elastic_value_;                                               // H that stiffness policies read
   bool has_step_elastic_ = false;
   exec::Buffer<double> product_partial_;
   mutable ResidentSum sum_;
