@@ -42,14 +42,15 @@ BB_HD inline MaskOf<T> has_positive_pivots(const Mat<T, N, N>& A) {
 template <class T, int N>
 BB_HD inline Mat<T, N, N> project(const Mat<T, N, N>& A, Projection projection, int* n_negative = nullptr) {
   if (n_negative != nullptr) *n_negative = 0;
-  if (projection == Projection::none) return A;
+  Mat<T, N, N> out = A;  // returned by name: nvcc 13.0 leaves entries of a returned parameter unset at N = 9
+  if (projection == Projection::none) return out;
   const MaskOf<T> positive = has_positive_pivots<T, N>(A);
-  if (!any(!positive)) return A;
+  if (!any(!positive)) return out;
   Vec<T, N> values;
   Mat<T, N, N> vectors;
   eigen_unsorted<T, N>(A, values, vectors);
   MaskOf<T> keep = true;
-  Mat<T, N, N> out = Mat<T, N, N>::Zero();
+  out = Mat<T, N, N>::Zero();
   for (int k = 0; k < N; ++k) {
     const MaskOf<T> negative = values[k] < T(0) && !positive;
     if (any(negative) && n_negative != nullptr) ++*n_negative;
