@@ -81,8 +81,9 @@ void DeviceExecutor::launch(const exec::KernelInfo& kernel, Index n, const void*
                          std::to_string(found->bytes) + " on the device");
   }
   const auto call = [&] {
-    check(found->launch(f, n, stream_),
-          kernel.name() + " (" + std::to_string(n) + (kernel.blocks ? " blocks)" : ")"));
+    const auto code = found->launch(f, n, stream_);
+    if (code == cudaSuccess) return;
+    check(code, kernel.name() + " (" + std::to_string(n) + (kernel.blocks ? " blocks)" : ")"));
   };
   if (recording_) return recording_->add(kernel, n, f);
   if (capturing_) {
@@ -157,6 +158,11 @@ void DeviceExecutor::replay(const exec::LaunchGraph& graph) {
 void DeviceExecutor::synchronize() { wait("waiting for the card"); }
 
 // --- memory
+
+void DeviceExecutor::trim() {
+  wait("waiting for the card");
+  other_keys_.free(), other_values_.free(), scratch_.free();
+}
 
 void DeviceExecutor::upload(void* to, const void* from, std::size_t bytes) {
   if (bytes == 0) return;

@@ -33,6 +33,7 @@ class DeviceExecutor : public exec::Executor {
   std::unique_ptr<exec::LaunchGraph> end_capture() override;
   void replay(const exec::LaunchGraph& graph) override;
   void synchronize() override;
+  void trim() override;
   void upload(void* to, const void* from, std::size_t bytes) override;
   void download(void* to, const void* from, std::size_t bytes) override;
   void copy(void* to, const void* from, std::size_t bytes) override;

@@ -67,6 +67,8 @@ class Executor {
   virtual void copy(void* to, const void* from, std::size_t bytes) = 0;
   /// Every byte of a region.
   virtual void fill_bytes(void* to, unsigned char byte, std::size_t bytes) = 0;
+  /// Gives back what sorts and scans keep for the next one.
+  virtual void trim() {}
   /// What is free of the memory that the executor works in, in words; empty where it is not asked.
   virtual std::string memory_state() const { return ""; }
   /// True when nothing is computed and nothing may be read: buffers are counted only.

@@ -22,7 +22,7 @@ std::string MemoryLedger::refusal(const std::string& name, std::size_t bytes) co
 }
 
 void MemoryLedger::add(const std::string& name, std::size_t bytes) {
-  if (limit_ > 0 && bytes > limit_ - bytes_) throw OutOfMemory(refusal(name, bytes));
+  if (limit_ > 0 && (bytes_ > limit_ || bytes > limit_ - bytes_)) throw OutOfMemory(refusal(name, bytes));
   by_name_[name] += bytes;
   bytes_ += bytes;
   if (bytes_ <= peak_) return;

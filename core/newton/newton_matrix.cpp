@@ -148,10 +148,8 @@ SolveReport NewtonSystem::solve(const Positions& target, Positions& dx) {
   return report;
 }
 
-// One attempt. False when the matrix is not positive definite, or dx does not descend: that is asked for only
-// where no prescribed motion does work.
-bool NewtonSystem::direction(const Positions& target, Positions& dx, SolveReport& report) {
-  const ScopedPhase timer(clock(), Phase::assembly);
+// dx: the motion of prescribed vertices. Whether there is one.
+bool NewtonSystem::set_right_hand_side(const Positions& target, Positions& dx) {
   dx.setZero(3, x_.cols());
   work_ = -gradient_;
   bool moving = false;
@@ -161,6 +159,14 @@ bool NewtonSystem::direction(const Positions& target, Positions& dx, SolveReport
   }
   if (moving) lift(dx, work_);
   blocks_->restrict_vector(work_, rhs_);
+  return moving;
+}
+
+// One attempt. False when the matrix is not positive definite, or dx does not descend: that is asked for only
+// where no prescribed motion does work.
+bool NewtonSystem::direction(const Positions& target, Positions& dx, SolveReport& report) {
+  const ScopedPhase timer(clock(), Phase::assembly);
+  const bool moving = set_right_hand_side(target, dx);
   report.t = level_.t();
   solve_reduced(report);
   if (report.linear.status != LinearStatus::ok) return false;

@@ -106,17 +106,22 @@ void NewtonSystem::keep(Archive& archive) {
   }
 }
 
-void NewtonSystem::adopt(const StepFrame& frame, const Positions& x, const HessianLevel& level,
+// What is frozen for a step is frozen at its start: that state is assembled first.
+void NewtonSystem::adopt(const StepFrame& frame, const Positions& x, const Positions& target, const HessianLevel& level,
                          const KnownStiffness& known) {
   begin_step(frame.x_n, {frame.c, frame.x_tilde}, frame.dt, frame.load_factor);
   for (const auto& term : terms_) term->adopt(known);
   if (x != x_) {
+    assemble();
     prepare(x, x - x_);
     if (!try_state(x)) throw std::logic_error("the state of another system is not feasible here");
     accept();
   }
   level_ = level;
   assemble();
+  set_target(target);
+  set_right_hand_side(target_, dx_);
+  nnz_ = static_cast<std::size_t>(solved().lower.nonZeros());
 }
 
 void NewtonSystem::drop_caches() {

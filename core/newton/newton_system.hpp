@@ -44,9 +44,11 @@ class NewtonSystem final : public StepSystem {
   /// What the terms remember from step to step.
   void keep(Archive& archive) override;
   /// The iterate x of another system in a step that began as `frame` says, assembled: what is read of it here is what
-  /// that system has. known: stiffness of pairs that are frozen for the step. Errors: std::logic_error for an x that is
-  /// not feasible.
-  void adopt(const StepFrame& frame, const Positions& x, const HessianLevel& level, const KnownStiffness& known);
+  /// that system has, its right-hand side included. target: [3 x n], read at prescribed vertices. known: stiffness of
+  /// pairs that is frozen for the step. Policies are asked and not told: none starts here. Cost: two assemblies. Errors:
+  /// std::logic_error for an x that is not feasible.
+  void adopt(const StepFrame& frame, const Positions& x, const Positions& target, const HessianLevel& level,
+             const KnownStiffness& known);
   /// Makes the linear solver anew and forgets the pattern of the contacts: between steps.
   void drop_caches() override;
 
@@ -95,6 +97,7 @@ class NewtonSystem final : public StepSystem {
   const Positions& target() const { return target_; }
   const Positions& direction() const { return dx_; }
   NewtonSystem& on_cpu() override { return *this; }
+  bool is_on_cpu() const override { return true; }
 
   // --- what observers and reports read
   const Scene& scene() const override { return scene_; }
@@ -178,6 +181,7 @@ class NewtonSystem final : public StepSystem {
   void fill_matrix();
   double largest_force();
   void lift(const Positions& dx, Positions& rhs);
+  bool set_right_hand_side(const Positions& target, Positions& dx);
   bool direction(const Positions& target, Positions& dx, SolveReport& report);
   void solve_reduced(SolveReport& report);
 

@@ -111,9 +111,11 @@ class StepSystem {
   virtual void report_overload(bool with_direction, StepNumbers& out) = 0;
   /// Where numbers that are no numbers began.
   virtual std::string describe_non_finite() const = 0;
-  /// The state as the CPU sees it, assembled: for observers that read terms and matrices. Costs an assembly where
+  /// The state as the CPU sees it, assembled: for observers that read terms and matrices. Costs two assemblies where
   /// it is another system. Valid until the next call of this one.
   virtual NewtonSystem& on_cpu() = 0;
+  /// Whether that is this system.
+  virtual bool is_on_cpu() const { return false; }
 
   /// Charges what happens in this system and round it to phases.
   PhaseClock& clock() const { return clock_; }

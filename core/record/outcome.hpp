@@ -21,12 +21,13 @@ enum class Outcome {
   linear_failure,        // the linear solver broke down
   not_pd,                // the matrix was not positive definite
   oom,                   // memory ran out; the steps before count
+  kernel_failed,         // a kernel of the device failed; the steps before count
   timeout,               // the time limit that was asked for was reached between two steps
   unproven,              // finished, but the audit could not certify every motion
   ok
 };
 template <>
-inline constexpr int n_words<Outcome> = 14;
+inline constexpr int n_words<Outcome> = 15;
 
 constexpr std::string_view to_string(Outcome outcome) {
   constexpr std::array<std::string_view, n_words<Outcome>> words = {"invalid_scene",
@@ -40,6 +41,7 @@ constexpr std::string_view to_string(Outcome outcome) {
                                                                     "linear_failure",
                                                                     "not_pd",
                                                                     "oom",
+                                                                    "kernel_failed",
                                                                     "timeout",
                                                                     "unproven",
                                                                     "ok"};

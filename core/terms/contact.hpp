@@ -52,7 +52,10 @@ class ContactTerm final : public Term {
   void change_frame(const StepFrame& frame) override;
   /// Tells a policy that adapts which pairs had a row at two step ends in a row.
   void end_step(PhaseClock& clock) override;
-  void adopt(const KnownStiffness& known) override { stiffness_.adopt(known); }
+  void adopt(const KnownStiffness& known) override {
+    stiffness_.adopt(known);
+    policy_started_ = true;  // or not yet: that is for the other system to do
+  }
   void keep(Archive& archive) override;
   void linearise(const Positions& x, const TermContext& context) override;
   void clamp(const Positions& x) override;

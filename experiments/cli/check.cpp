@@ -3,12 +3,16 @@
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
+#include "core/cuda/device.hpp"
+#include "core/exec/memory_ledger.hpp"
 #include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/device_memory.hpp"
+#include "experiments/run/device_run.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/runner.hpp"
@@ -55,11 +59,50 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
   }
 }
 
+/// Whether the card of this machine has room, or that there is none to ask.
+void print_card(std::size_t total) {
+  const cuda::DeviceProbe probe = cuda::probe_device();
+  if (!probe.usable) {
+    fmt::print("  no card to ask: {}\n", probe.why);
+    return;
+  }
+  fmt::print(
+      "  {}: {} free of {}: {}\n", probe.card, exec::bytes_text(probe.free), exec::bytes_text(probe.memory),
+      total <= probe.free ? "it fits"
+                          : "it does not fit, " + exec::bytes_text(total - probe.free) + " are missing");
+}
+
+void print_a_contact(const DeviceMemory& memory, double bytes) {
+  if (memory.contacts > 0) fmt::print(" {:>8.2f} B a contact", bytes / memory.contacts);
+}
+
+void print_memory(const DeviceMemory& memory) {
+  fmt::print("\nmemory of the device at the peak of a step, buffer by buffer\n");
+  fmt::print("  {:.6g} contacts ({})\n", memory.contacts, memory.source);
+  std::size_t rest = 0;
+  for (const auto& [name, bytes] : memory.buffers) {
+    if (200 * bytes < memory.total) {
+      rest += bytes;
+      continue;
+    }
+    fmt::print("  {:<40} {:>12}", name, exec::bytes_text(bytes));
+    print_a_contact(memory, static_cast<double>(bytes));
+    fmt::print("\n");
+  }
+  fmt::print("  {:<40} {:>12}\n", "all others, below 0.5 % each", exec::bytes_text(rest));
+  fmt::print("  {:<40} {:>12}", "total", exec::bytes_text(memory.total));
+  print_a_contact(memory, static_cast<double>(memory.total));
+  fmt::print("\n");
+  if (memory.contacts > 0) fmt::print("  {:g} B a contact row\n", memory.bytes_a_row);
+  print_card(memory.total);
+}
+
 }  // namespace
 
 int check(const RunVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
+  check_device_forms(config, scene);
   if (const auto failure = start_failure(config, scene, &interrupted())) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
@@ -67,7 +110,7 @@ int check(const RunVerb& verb) {
   return exit_ok;
 }
 
-int explain(const RunVerb& verb) {
+int explain(const RunVerb& verb, const ContactDemand& demand) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
   const Plan plan = plan_of(config, scene);
@@ -81,6 +124,7 @@ int explain(const RunVerb& verb) {
       if (item->needed == needed) fmt::print("  {:<18} {}\n", name, item->reason);
     }
   }
+  if (config.device != Device::cpu) print_memory(count_device_memory(config, scene, plan, demand));
   print_settings(verb, config);
   return exit_ok;
 }

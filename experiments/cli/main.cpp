@@ -17,6 +17,7 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/verbs.hpp"
+#include "experiments/run/device_run.hpp"
 
 namespace {
 
@@ -40,6 +41,12 @@ int guarded(const std::function<int()>& verb) {
   } catch (const bb::Interrupted& stopped) {
     const std::string nothing = "no record was written; the same command runs it again";
     say(fmt::format("interrupted: {}\n", stopped.kept.empty() ? nothing : stopped.kept));
+    return exit_try_again;
+  } catch (const bb::DeviceStopped& stopped) {
+    say(fmt::format("{}\n", stopped.what()));
+    return stopped.outcome == bb::Outcome::oom ? exit_try_again : exit_internal;
+  } catch (const bb::exec::OutOfMemory& error) {
+    say(fmt::format("{}\n", error.what()));
     return exit_try_again;
   } catch (const std::bad_alloc&) {
     say("out of memory\n");
@@ -81,6 +88,18 @@ void limit_arguments(CLI::App* app, RunLimits& limits) {
   app->add_option("--time-limit", limits.time_limit_s,
                   "seconds that one run may take: it ends between two steps with the outcome timeout")
       ->check(CLI::PositiveNumber);
+}
+
+void demand_arguments(CLI::App* app, bb::ContactDemand& demand) {
+  app->add_option("--contacts", demand.contacts,
+                  "with a device: so many contacts are expected (default: estimated from the scene)")
+      ->check(CLI::Range(0.0, 1e12));
+  app->add_option("--blocks-per-contact", demand.upper_blocks_a_contact,
+                  "stored 3x3 blocks on and above the diagonal that a contact has (default 0.49)")
+      ->check(CLI::Range(0.0, 10.0));
+  app->add_option("--candidates-per-contact", demand.candidates_a_contact,
+                  "pairs of the broad phase that a contact has (default 2)")
+      ->check(CLI::Range(0.0, 1e3));
 }
 
 CLI::App* add_matrix(CLI::App& app, MatrixVerb& verb) {
@@ -187,6 +206,7 @@ int main(int argc, char** argv) {
   CommonOptions common;
   common.argv.assign(argv, argv + argc);
   RunVerb run_verb, check_verb, explain_verb;
+  bb::ContactDemand demand;
   SweepVerb sweep_verb;
   StepsVerb steps_verb;
   MatrixVerb matrix_verb;
@@ -239,6 +259,7 @@ int main(int argc, char** argv) {
   check_app->footer("example: ./bench check configs/scenes/drape.json");
   auto* explain_app = app.add_subcommand("explain", "what a run would do, what it would skip, and why");
   config_arguments(explain_app, explain_verb);
+  demand_arguments(explain_app, demand);
   explain_app->footer("example: ./bench explain configs/scenes/drape2d.json --set /time/dt_s=0.005");
   auto* list_app = app.add_subcommand("list", "what can be named in a config");
   list_app->add_option("what", list_what, fmt::format("which section: {}", fmt::join(list_sections(), ", ")));
@@ -292,7 +313,7 @@ int main(int argc, char** argv) {
     if (ccd_app->parsed()) return ccd(ccd_verb);
     if (device_app->parsed()) return device(device_verb);
     if (check_app->parsed()) return check(check_verb);
-    if (explain_app->parsed()) return explain(explain_verb);
+    if (explain_app->parsed()) return explain(explain_verb, demand);
     if (list_app->parsed()) return list(list_what);
     if (eval_app->parsed()) return eval(eval_file, eval_schema);
     if (help_app->parsed()) return help(help_format, help_schema);

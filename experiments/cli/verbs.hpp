@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "experiments/run/device_memory.hpp"
 #include "experiments/run/runner.hpp"
 #include "experiments/run/stored_run.hpp"
 
@@ -116,8 +117,9 @@ int device(const DeviceVerb& verb);
 
 /// Parses, builds the scene and looks for intersections; runs nothing.
 int check(const RunVerb& verb);
-/// What the run would do and what it would skip, and why; then every setting with its default filled in.
-int explain(const RunVerb& verb);
+/// What the run would do and what it would skip, and why; of a run on a device its memory; then every setting with its
+/// default filled in.
+int explain(const RunVerb& verb, const ContactDemand& demand);
 /// Everything that can be named in a config, one section or "all"; scenes and mesh generators with their
 /// parameters. Errors: ConfigError for a section that is not in list_sections().
 std::vector<std::string> list_sections();

@@ -1,13 +1,12 @@
 #include "experiments/run/method.hpp"
 
 #include "barriers/shapes/registry.hpp"
-#include "core/cuda/device.hpp"
-#include "core/exec/host_executor.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
 #include "core/resident/system/resident_system.hpp"
 #include "experiments/config/policy_request.hpp"
+#include "experiments/run/device_run.hpp"
 
 namespace bb {
 namespace {
@@ -27,11 +26,6 @@ StepSolverOptions step_solver_options(const RunConfig& config) {
   out.tol_velocity = config.step_solver.tol_velocity;
   out.parameters = config.step_solver.parameters;
   return out;
-}
-
-std::unique_ptr<exec::Executor> make_executor(Device device) {
-  if (device == Device::cuda) return cuda::make_device_executor();
-  return std::make_unique<exec::HostExecutor>();
 }
 
 }  // namespace

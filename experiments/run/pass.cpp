@@ -6,6 +6,7 @@
 #include <cmath>
 #include <new>
 
+#include "core/exec/executor.hpp"
 #include "core/record/provenance.hpp"
 #include "experiments/run/keep_record.hpp"
 
@@ -33,7 +34,7 @@ void Pass::keep(Archive& archive) {
   archive(result_, simulation_, recorder_);
 }
 
-PassResult Pass::run(const std::function<void()>& between) {
+PassResult Pass::run(const std::function<void()>& between, const std::function<void()>& before) {
   const int every = config_.output.checkpoint_every;
   start_s_ = now_s();
   t_begin_ = simulation_.time();
@@ -41,6 +42,10 @@ PassResult Pass::run(const std::function<void()>& between) {
     while (result_.verdict.outcome == Outcome::ok && simulation_.time() < t_end_) {
       look_up();
       if (result_.verdict.outcome != Outcome::ok) break;
+      if (config_.device != Device::cpu) {
+        simulation_.drop_caches();
+        before();
+      }
       step();
       const bool last = result_.verdict.outcome != Outcome::ok || !(simulation_.time() < t_end_);
       if (every == 0 || last || result_.steps.size() % static_cast<std::size_t>(every) != 0) continue;
@@ -49,12 +54,19 @@ PassResult Pass::run(const std::function<void()>& between) {
     }
     result_.whole = result_.verdict.outcome != Outcome::timeout;
   } catch (const std::bad_alloc&) {
-    result_.verdict = {Outcome::oom,
-                       fmt::format("pass {}, step {}: memory ran out", name_, result_.steps.size())};
+    cut(Outcome::oom, "memory ran out");
+  } catch (const exec::OutOfMemory& error) {
+    cut(Outcome::oom, error.what());
+  } catch (const exec::ExecutionError& error) {
+    cut(Outcome::kernel_failed, error.what());
   }
   result_.state_hash = state_hash(simulation_.history().x);
   result_.stiffness = method_.stiffness->state();
   return result_;
+}
+
+void Pass::cut(Outcome outcome, const char* what) {
+  result_.verdict = {outcome, fmt::format("pass {}, step {}: {}", name_, result_.steps.size(), what)};
 }
 
 void Pass::look_up() {

@@ -36,9 +36,11 @@ class Pass {
 
   /// Goes on to the end. between(): called after every config.output.checkpoint_every-th step but the last; what
   /// is kept only to save work is forgotten then, so that a pass that goes on from an archive of that moment is the
-  /// same, bit for bit. A std::bad_alloc of a step is the outcome oom, options.time_limit the outcome timeout.
+  /// same, bit for bit. before(): called before every step of a run on a device, where a step may end in an error from
+  /// which nothing can be read any more. std::bad_alloc and exec::OutOfMemory of a step are the outcome oom,
+  /// exec::ExecutionError is kernel_failed, options.time_limit the outcome timeout.
   /// Errors: Interrupted.
-  PassResult run(const std::function<void()>& between);
+  PassResult run(const std::function<void()>& between, const std::function<void()>& before);
   /// All that the rest of the pass depends on, and what it has recorded so far.
   void keep(Archive& archive);
   /// Steps that are over.
@@ -48,6 +50,7 @@ class Pass {
   void step();
   void show(const StepReport& step) const;
   void look_up();
+  void cut(Outcome outcome, const char* what);
 
   const RunConfig& config_;
   const RunOptions& options_;

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "core/math/error.hpp"
+#include "experiments/run/device_run.hpp"
 #include "experiments/run/keep_record.hpp"
 #include "experiments/run/pass.hpp"
 #include "experiments/run/plan.hpp"
@@ -88,7 +89,8 @@ class PassSequence {
     Recorder recorder(bare, scene_, look ? apart : record_, nullptr);
     Pass pass(bare, scene_, calibration_, plan_, options_, "time", recorder);
     go_on(pass);
-    timed_ = pass.run([&] { save(pass); });
+    timed_ = pass.run([&] { save(pass); }, [&] { held_ = archive_of(pass); });
+    keep_held(timed_);
     recorder.finish();
     if (options_.build.valid) times_ = recorder.iteration_times();
     if (!look || timed_.whole) return;
@@ -106,7 +108,8 @@ class PassSequence {
     Pass pass(config_, scene_, calibration_, plan_, options_, "diagnose", recorder);
     if (rest_) (*rest_)(*files_.artifacts);
     go_on(pass);
-    seen_ = pass.run([&] { save(pass); });
+    seen_ = pass.run([&] { save(pass); }, [&] { held_ = archive_of(pass); });
+    keep_held(seen_);
     recorder.finish();
     record_.artifacts = files_.artifacts->written();
     if (recorder.ledger()) ledger_ = *recorder.ledger();
@@ -122,7 +125,15 @@ class PassSequence {
     if (files_.artifacts) files_.artifacts->leave_unfinished();
   }
 
-  void save(Pass& pass) {
+  void save(Pass& pass) { checkpoint_.write(archive_of(pass)); }
+
+  /// A device failed: the run can go on from the end of the last step.
+  void keep_held(const PassResult& result) {
+    if (held_ && stops_device(result.verdict.outcome)) checkpoint_.write(*held_);
+    held_.reset();
+  }
+
+  Archive archive_of(Pass& pass) {
     Archive archive;
     Calibration calibration = calibration_;
     archive(begun_, calibration, in_second_, timed_, times_);
@@ -132,7 +143,7 @@ class PassSequence {
       files_.artifacts->leave_unfinished();
     }
     archive(pass);
-    checkpoint_.write(archive);
+    return archive;
   }
 
   void finish(bool second_left_out) {
@@ -164,7 +175,8 @@ class PassSequence {
   std::vector<PhaseTimes> times_;  // of the iterations of the first pass
   std::optional<audit::AuditLedger> ledger_;
   Verdict audited_;
-  Archive* rest_ = nullptr;  // what a checkpoint still holds
+  std::optional<Archive> held_;  // the end of the last step, of a run on a device
+  Archive* rest_ = nullptr;      // what a checkpoint still holds
 };
 
 }  // namespace

@@ -46,19 +46,25 @@ void Recorder::on_retry(int step) {
   condition_.forget_step();
 }
 
-void Recorder::on_step(StepSystem& step_system, const StepReport& report, const Positions& x) {
-  NewtonSystem& system = step_system.on_cpu();
-  const ContactState& contact = contact_state(system.terms());
+// Frames and first contacts. A run on a device that is only timed has neither: rows would have to be found again on
+// the CPU.
+void Recorder::look_at_rows(StepSystem& system, const StepReport& report, const Positions& x) {
+  if (!system.is_on_cpu() && !trace_ && !audit_ && !artifacts_) return;
+  const ContactState& contact = contact_state(system.on_cpu().terms());
   const int every = config_.output.frames_every;
   if (artifacts_ && every > 0 && report.step % every == 0) {
     artifacts_->frame(x, report.step, contact_fields(contact, system.scene().n_vertices()));
   }
+  first_contacts_.note(contact, report.step, record_.summary.first_contact);
+}
+
+void Recorder::on_step(StepSystem& system, const StepReport& report, const Positions& x) {
+  look_at_rows(system, report, x);
   condition_.end_step();
   StepRecord step = report;
   step.time = {};  // that of the timed run is filled in when the runs are over
   fill_energies(system, step);
   if (audit_) audit_->on_step(x, step);
-  first_contacts_.note(contact, report.step, record_.summary.first_contact);
   record_.steps.push_back(std::move(step));
   if (!trace_) return;
   for (TraceRow& row : rows_) {

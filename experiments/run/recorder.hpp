@@ -47,6 +47,8 @@ class Recorder final : public StepObserver {
   const audit::AuditLedger* ledger() const { return audit_ ? &audit_->ledger() : nullptr; }
 
  private:
+  void look_at_rows(StepSystem& system, const StepReport& report, const Positions& x);
+
   const RunConfig& config_;
   RunRecord& record_;
   TraceWriter* trace_;

@@ -18,6 +18,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/comparability.hpp"
+#include "experiments/run/device_run.hpp"
 #include "experiments/run/input_files.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/passes.hpp"
@@ -97,6 +98,22 @@ void simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
   run_passes(config, scene, plan, calibration, options, checkpoint, resumed, record, files);
 }
 
+bool kept(const Checkpoint& checkpoint) {
+  std::error_code unreachable;
+  return std::filesystem::exists(checkpoint.file(), unreachable);
+}
+
+/// What a run that its device stopped says. checkpoint: of the last step that was finished, or null.
+std::string stopped_text(const RunRecord& record, const RunOptions& options, const Checkpoint* checkpoint) {
+  std::string out = fmt::format("{}: {}\n{} has the steps before", to_string(record.status.outcome),
+                                record.status.detail, (options.folder / "run.json").string());
+  if (checkpoint) {
+    out +=
+        fmt::format("; {} kept: the same command with --resume goes on from it", checkpoint->file().string());
+  }
+  return out;
+}
+
 int thread_count(const RunConfig& config) {
   return config.threads > 0 ? config.threads : oneapi::tbb::info::default_concurrency();
 }
@@ -135,6 +152,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   set_one_blas_thread();  // before the record says how many there are, and before anything computes
   // before anything is written: what config and files can tell is refused here
   const Scene scene = build_scene(config);
+  require_device(config, scene);
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);
   const RunRecord asked_for = identified(config, options);  // inputs where they are now
@@ -154,9 +172,17 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   } catch (const std::bad_alloc&) {  // of a step: see Pass
     record.status.outcome = Outcome::oom;
     record.status.detail = "memory ran out before the first step";
+  } catch (const exec::OutOfMemory& error) {
+    record.status.outcome = Outcome::oom;
+    record.status.detail = fmt::format("before the first step of a pass: {}", error.what());
+  } catch (const exec::ExecutionError& error) {
+    record.status.outcome = Outcome::kernel_failed;
+    record.status.detail = fmt::format("before the first step of a pass: {}", error.what());
   } catch (const Interrupted& stopped) {
-    std::error_code unreachable;
-    if (!std::filesystem::exists(checkpoint.file(), unreachable)) throw;
+    if (!kept(checkpoint)) {
+      remove_unfinished(options.folder);
+      throw;
+    }
     throw Interrupted{
         fmt::format("{} kept; the same command with --resume goes on from it", checkpoint.file().string())};
   }
@@ -164,11 +190,17 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
+  const bool stopped = config.device != Device::cpu && stops_device(record.status.outcome);
+  const bool goes_on = stopped && kept(checkpoint);
+  if (goes_on) record.artifacts.clear();  // trace and files stay unfinished, for the run that goes on
   StagedFile run_json(options.folder / "run.json", to_json(record));
   remove_earlier_run(options.folder);
-  files.finish();
+  if (!goes_on) files.finish();
   run_json.commit();
-  checkpoint.remove();
+  if (!stopped) checkpoint.remove();
+  if (stopped)
+    throw DeviceStopped(record.status.outcome,
+                        stopped_text(record, options, goes_on ? &checkpoint : nullptr));
   return record;
 }
 

@@ -5,4 +5,7 @@
 
 EACH(bb::device_check::Svds<double>)
 EACH(bb::device_check::Svds<float>)
-EACH(bb::device_check::SymmetricEigen<double>)
+EACH(bb::device_check::SymmetricEigen<double, 2>)
+EACH(bb::device_check::SymmetricEigen<double, 3>)
+EACH(bb::device_check::SymmetricEigen<double, 9>)
+EACH(bb::device_check::SymmetricEigen<double, 12>)

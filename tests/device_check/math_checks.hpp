@@ -21,27 +21,22 @@ struct Svds : Columns<T> {
 };
 
 template <class T, int N>
-BB_HD void eigen_and_projection(Slots<T>& slots) {
-  const Mat<T, N, N> b = slots.template read<Mat<T, N, N>>();
-  Mat<T, N, N> a;
-  for (int i = 0; i < N; ++i) {
-    for (int j = 0; j < N; ++j) a(i, j) = i < j ? b(i, j) : b(j, i);
-  }
-  Vec<T, N> values;
-  Mat<T, N, N> vectors;
-  sym_eigen<T, N>(a, values, vectors);
-  int n_clamped = 0;
-  slots.write(project<T, N>(a, Projection::psd, &n_clamped));
-  slots.write(values), slots.write(vectors), slots.write(T(n_clamped));
-}
-template <class T>
 struct SymmetricEigen : Columns<T> {
   BB_HD void operator()(exec::Index i) const {
     Slots<T> slots = this->slots(i);
-    eigen_and_projection<T, 2>(slots);
-    eigen_and_projection<T, 3>(slots);
-    eigen_and_projection<T, 9>(slots);
-    eigen_and_projection<T, 12>(slots);
+    const Mat<T, N, N> b = slots.template read<Mat<T, N, N>>();
+    Mat<T, N, N> a;
+    for (int r = 0; r < N; ++r) {
+      for (int c = 0; c < N; ++c) a(r, c) = r < c ? b(r, c) : b(c, r);
+    }
+    const T shift = T(N) * slots.scalar();  // some are positive definite
+    for (int r = 0; r < N; ++r) a(r, r) += shift;
+    Vec<T, N> values;
+    Mat<T, N, N> vectors;
+    sym_eigen<T, N>(a, values, vectors);
+    int n_clamped = 0;
+    slots.write(project<T, N>(a, Projection::psd, &n_clamped));
+    slots.write(values), slots.write(vectors), slots.write(T(n_clamped));
   }
 };
 

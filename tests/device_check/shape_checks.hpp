@@ -2,7 +2,7 @@
 #pragma once
 
 #include "barriers/shapes/gap_potential.hpp"
-#include "tests/device_check/shape_list.hpp"
+#include "barriers/shapes/shape_list.hpp"
 #include "tests/device_check/slots.hpp"
 
 namespace bb::device_check {
@@ -12,7 +12,7 @@ struct EveryShape : Columns<T> {
   BB_HD void operator()(exec::Index i) const {
     Slots<T> slots = this->slots(i);
     const T d_hat = slots.positive() + T(1e-3), d = T(1.25) * d_hat * slots.positive();
-#define BB_CHECK_SHAPE(S)                                                \
+#define BB_CHECK_SHAPE(name, S)                                          \
   {                                                                      \
     const ShapeTerms<T> terms = shapes::S::eval(d, d_hat);               \
     slots.write(terms.b), slots.write(terms.db), slots.write(terms.d2b); \

@@ -13,6 +13,7 @@
 #include "core/integrators/registry.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/audit_verdict.hpp"
+#include "experiments/run/device_run.hpp"
 #include "experiments/run/outcome.hpp"
 #include "experiments/run/recorder.hpp"
 #include "experiments/run/runner.hpp"
@@ -203,6 +204,23 @@ Ending greedy() {
   return run(block, {R"(/integrator={"name": "greedy"})"});
 }
 
+/// The record of a run whose device fails; its checkpoint is there too.
+Ending failing() {
+  ::setenv("BARRIERBENCH_FAIL_KERNEL", "MultiplyDot:1", 1);
+  RunOptions options;
+  options.folder =
+      std::filesystem::temp_directory_path() / ("barrierbench_failing_" + std::to_string(::getpid()));
+  const RunConfig config = parse_config(block, "test", ".", Overrides{"/device=host"});
+  EXPECT_THROW(run_config(config, options), DeviceStopped);
+  ::unsetenv("BARRIERBENCH_FAIL_KERNEL");
+  EXPECT_TRUE(std::filesystem::exists(options.folder / "checkpoint.bin"));
+  std::ifstream file(options.folder / "run.json");
+  const auto status = nlohmann::json::parse(file)["status"];
+  std::filesystem::remove_all(options.folder);
+  EXPECT_EQ(status["outcome"], "kernel_failed");
+  return {Outcome::kernel_failed, status["detail"].get<std::string>(), {}, {}, 0};
+}
+
 std::string grids(const std::string& more) {
   return R"({"schema": "barrierbench.config/1", "formulation": {"name": "log", "d_hat_m": 0.01},
     "passes": {"time": false, "audit": true}, "time": {"dt_s": 0.01, "steps": 2}, "scene": {"bodies": [
@@ -327,6 +345,7 @@ const std::vector<Case>& cases() {
        {"matrix_indefinite", "vertex 0"},
        [] { return floating_particle({}); }},
       {"memory that runs out", Outcome::oom, "converged", "ok", {"step 2", "memory"}, greedy},
+      {"a kernel that fails", Outcome::kernel_failed, nullptr, nullptr, {"step 0", "MultiplyDot"}, failing},
       {"no time",
        Outcome::timeout,
        nullptr,

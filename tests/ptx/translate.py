@@ -397,7 +397,8 @@ class Body:
             by_type.setdefault(type_name, []).append(cpp)
         for type_name, names in by_type.items():
             for i in range(0, len(names), 12):
-                out.append(f"  {type_name} " + ", ".join(n + "{}" for n in names[i : i + 12]) + ";")
+                start = "{NAN}" if is_float(type_name) else "{}"  # what is read before it is set shows
+                out.append(f"  {type_name} " + ", ".join(n + start for n in names[i : i + 12]) + ";")
         if self.uses_carry:
             out.append("  uint32_t carry = 0;")
         out += self.buffer_lines

@@ -51,7 +51,7 @@ inline Scene full_scene(unsigned seed) {
 }
 
 /// Loose vertices and edges in a plane.
-inline Scene planar_scene(PlanarPairs pairs, unsigned seed) {
+inline Scene planar_layers(PlanarPairs pairs, unsigned seed) {
   Scene scene;
   std::mt19937_64 rng(seed);
   std::uniform_real_distribution<double> unit(-1, 1);

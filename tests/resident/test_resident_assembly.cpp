@@ -168,7 +168,7 @@ std::vector<Subject> subjects() {
     out.push_back({scene, shaken(scene)});
   }
   for (const PlanarPairs pairs : {PlanarPairs::vertex_vertex, PlanarPairs::point_edge}) {
-    const Scene scene = planar_scene(pairs, 4);
+    const Scene scene = planar_layers(pairs, 4);
     out.push_back({scene, scene.x0});
   }
   return out;

@@ -98,7 +98,7 @@ TEST(ResidentRowFinder, HasTheRowsOfTheContactSystemPairByPair) {
 TEST(ResidentRowFinder, HasThoseOfPlanarScenes) {
   std::array<int, 6> n_kinds{};
   for (const PlanarPairs pairs : {PlanarPairs::vertex_vertex, PlanarPairs::point_edge}) {
-    const Scene scene = planar_scene(pairs, 3);
+    const Scene scene = planar_layers(pairs, 3);
     ContactSystem contacts(scene, {});
     HostExecutor executor;
     OnExecutor on(executor, scene, scene.x0);

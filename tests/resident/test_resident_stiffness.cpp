@@ -17,7 +17,6 @@ using resident::MatrixPart;
 using resident::ResidentRows;
 using resident::ResidentStiffness;
 using resident::RowView;
-using resident::StiffnessRule;
 
 /// A positive definite elastic matrix on random quadruples of vertices, as the CPU path and as kernels read it.
 struct Elastic {
@@ -159,8 +158,8 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
   ContactSystem contacts(scene, {});
   const Positions x[] = {shaken(scene), random_motion(scene.x0, 0.02, 7), random_motion(scene.x0, 0.012, 8)};
   Rows state = rows_at(contacts, x[0]);
-  OnExecutor on(executor, scene, x[0], rule.columns());
-  ResidentRows trial(executor, rule.columns());
+  OnExecutor on(executor, scene, x[0], resident::columns_of(rule));
+  ResidentRows trial(executor, resident::columns_of(rule));
   const auto refresh = [&] {
     const double change = update.refresh(state.table, state.mollified, elastic.blocks, elastic.values);
     const double resident_change = stiffness.refresh(on.rows, elastic.part());
@@ -233,7 +232,7 @@ TEST(ResidentStiffness, ReadsTheMatrixBlockByBlock) {
   HostExecutor executor;
   StiffnessRule rule;
   rule.uniform = false, rule.mass_term = MassTerm::none;
-  OnExecutor on(executor, scene, shaken(scene), rule.columns());
+  OnExecutor on(executor, scene, shaken(scene), resident::columns_of(rule));
   ResidentStiffness stiffness(executor, rule, scene.mass);
   stiffness.refresh(on.rows, elastic.part());
   const RowView v = on.rows.view();

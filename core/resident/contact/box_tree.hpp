@@ -21,6 +21,7 @@ class BoxTree {
  public:
   BoxTree(exec::Executor& executor, const std::string& name) : executor_(&executor), node_(executor, name) {}
   void fit(const PrimitiveView<N>& of, const MotionView& motion, TreeScratch& scratch);
+  void free() { node_.free(); }
   /// Of the last fit.
   TreeView view() const {
     TreeView out = view_;

@@ -8,6 +8,12 @@
 
 namespace bb::resident {
 
+/// From counts [n] to places [n + 1], whose last is the sum. For counts of any size; 8 B an item.
+inline void scan_counts(exec::Executor& executor, Index* count, Index n) {
+  executor.fill_bytes(count + n, 0, sizeof(Index));
+  executor.exclusive_scan(count, n + 1);
+}
+
 /// 3 B an item; keeps its buffers.
 class Compaction {
  public:
@@ -21,15 +27,16 @@ class Compaction {
     count_.resize(n);
     return count_.data();
   }
-  /// Ranks the items. @return the sum of the counts; waits for it.
-  Index rank() {
+  /// Ranks the items. @return the sum of the counts; waits for it. expected: what an executor that only counts buffers
+  /// is to take for it.
+  Index rank(Index expected = 0) {
     const Index n = count_.size(), n_blocks = (n + exec::block_threads - 1) / exec::block_threads;
     if (n == 0) return 0;
     rank_.resize(n);
     block_.resize(n_blocks + 1);
     executor_->blocks(n_blocks, RankItems{count_.data(), rank_.data(), block_.data(), n, n_blocks});
     executor_->exclusive_scan(block_.data(), n_blocks + 1);
-    return block_.get(n_blocks);
+    return executor_->counts_only() ? expected : block_.get(n_blocks);
   }
   Places places() const { return {rank_.data(), block_.data()}; }
   /// The marked items, ascending, where counts are 0 or 1; n as rank() returned it.

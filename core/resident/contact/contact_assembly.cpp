@@ -72,7 +72,9 @@ MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double
   if (rows.size() > 0) {
     std::uint8_t* const dense = dense_.counts(rows.size());
     executor_.each(rows.size(), MarkDense{rows.view(), choice.mode, dense});
-    dense_.list(dense_.rank(), dense_rows_);
+    // expected: all mollified rows, or all
+    dense_.list(dense_.rank(choice.mode == HessianMode::gauss_newton ? rows.list.size() : rows.size()),
+                dense_rows_);
     value_.fill_zero();  // the last plane may be longer than the blocks are
     executor_.each(
         n, GatherStreamed{rows.view(), blocks, dense, x.data(), surface_.view(), choice, value_.data()});

@@ -9,8 +9,8 @@
 namespace bb::resident {
 
 struct AssemblyOptions {
-  Index pairs_a_chunk = Index{1} << 28;  // of the pattern's sorts
-  Index hessians_a_chunk = 1 << 20;      // rows whose Hessians are kept at a time, 720 B each
+  Index pairs_a_chunk = Index{1} << 26;  // of the pattern's sorts
+  Index hessians_a_chunk = 1 << 18;      // rows whose Hessians are kept at a time, 720 B each
 };
 
 /// Sums over rows whose energy, push and stretch are set. Results do not depend on the chunks.
@@ -35,6 +35,11 @@ class ContactAssembly {
                         exec::Buffer<double>& force);
   /// The mollifiers [mollified rows] that rows.energy lacks, of the last add_gradient() or of rows at x.
   const exec::Buffer<double>& mollifiers(ResidentRows& rows, const exec::Buffer<double>& x);
+
+  /// Gives back values and scratch memory of matrix().
+  void free_matrix() { dense_.free(), dense_rows_.free(), row_hessians_.free(), value_.free(); }
+  /// What an executor that only counts buffers is to take the rows for.
+  void expect(const ExpectedContacts& expected) { pattern_.expect(expected); }
 
   const ContactPattern& pattern() const { return pattern_; }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/resident/contact/compaction.hpp"
+#include "core/resident/contact/expected_contacts.hpp"
 #include "core/resident/contact/pattern_view.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 
@@ -19,6 +20,9 @@ class ContactPattern {
   /// Slots and blocks. Errors: as above.
   void build(ResidentRows& rows);
 
+  /// What an executor that only counts buffers is to take the rows for.
+  void expect(const ExpectedContacts& expected) { expected_ = expected; }
+
   int n_vertices() const { return n_vertices_; }
   Index n_blocks() const { return column_.size(); }
   VertexSlots slots() const { return {slot_begin_.data(), slot_.data()}; }
@@ -26,6 +30,8 @@ class ContactPattern {
 
  private:
   struct Piece;
+  /// The first slot of a vertex, read.
+  Index slot_begin(int vertex) const;
   int end_of_chunk(int first, Index most) const;
   void starts(const exec::Buffer<std::uint32_t>& counts, exec::Buffer<Index>& begin);
   void fill_slots(const RowView& rows, int first, int last);
@@ -35,11 +41,12 @@ class ContactPattern {
   exec::Executor& executor_;
   int n_vertices_;
   Index chunk_;
+  ExpectedContacts expected_;
   exec::Buffer<std::uint32_t> touched_;  // [n_vertices] counts
   exec::Buffer<Index> slot_begin_, row_begin_;
   exec::Buffer<std::uint32_t> slot_;
   exec::Buffer<int> column_;
-  exec::Buffer<Index> begin_;
+  exec::Buffer<std::uint32_t> begin_;
   exec::Buffer<std::uint32_t> code_;
   Compaction places_, upper_;
   exec::Buffer<Key> key_;

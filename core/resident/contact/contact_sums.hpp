@@ -3,15 +3,16 @@
 
 #include "core/resident/contact/contact_assembly.hpp"
 #include "core/resident/contact/sum_kernels.hpp"
+#include "core/resident/sums/resident_sum.hpp"
 
 namespace bb::resident {
 
 class ContactSums {
  public:
-  explicit ContactSums(exec::Executor& executor);
+  explicit ContactSums(exec::Executor& executor) : sum_(executor) {}
 
   /// Energy of all rows at x, J. Sums of two tables are compared as sums: rows come and go.
-  CompensatedSum energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly);
+  Compensated energy(ResidentRows& rows, const exec::Buffer<double>& x, ContactAssembly& assembly);
   /// a . b over free degrees of freedom; both [3 n_vertices], fixed: 3 bits a vertex.
   double product(const exec::Buffer<double>& a, const exec::Buffer<double>& b,
                  const exec::Buffer<std::uint8_t>& fixed);
@@ -19,11 +20,10 @@ class ContactSums {
   double mean_mass(ResidentRows& rows, const exec::Buffer<double>& mass);
 
  private:
-  template <class Item>
-  CompensatedSum sum(Index n, const Item& item);
+  template <class Parts>
+  Compensated sum(Index n, const Parts& parts);
 
-  exec::Executor& executor_;
-  exec::Buffer<CompensatedSum> part_, folded_;
+  ResidentSum sum_;
 };
 
 }  // namespace bb::resident

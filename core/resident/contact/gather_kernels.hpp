@@ -164,7 +164,7 @@ struct GatherDense {
 
   BB_HD void operator()(Index j) const {
     const Index end = blocks.begin[j + 1];
-    Index i = first_not_below(blocks.code, blocks.begin[j], end, list[0] << 4);
+    Index i = first_not_below(blocks.code, Index{blocks.begin[j]}, end, list[0] << 4);
     const Index last = list[n - 1];
     if (i >= end || pair_row_of(blocks.code[i]) > last) return;
     double sum[9];

@@ -1,13 +1,13 @@
 // Every kernel of the room, for what instantiates them; their names are in kernels.inc.
 #pragma once
 
+#include "barriers/shapes/shape_list.hpp"
 #include "core/resident/contact/bound_kernels.hpp"
 #include "core/resident/contact/candidate_kernels.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/gather_kernels.hpp"
 #include "core/resident/contact/row_kernels.hpp"
 #include "core/resident/contact/shape_kernels.hpp"
-#include "core/resident/contact/shape_list.hpp"
 #include "core/resident/contact/slot_kernels.hpp"
 #include "core/resident/contact/stiffness_kernels.hpp"
 #include "core/resident/contact/sum_kernels.hpp"

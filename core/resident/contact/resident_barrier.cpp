@@ -1,8 +1,8 @@
 #include "core/resident/contact/resident_barrier.hpp"
 
+#include "barriers/shapes/shape_list.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/contact/shape_kernels.hpp"
-#include "core/resident/contact/shape_list.hpp"
 
 namespace bb::resident {
 namespace {
@@ -22,7 +22,7 @@ struct Entry {
   Launch launch;
 };
 #define BB_ENTRY(name, S) {#name, &launch_shape<shapes::S>},
-constexpr Entry plain[] = {BB_FOR_EACH_RESIDENT_SHAPE(BB_ENTRY)};
+constexpr Entry plain[] = {BB_FOR_EACH_SHAPE(BB_ENTRY)};
 #undef BB_ENTRY
 #define BB_ENTRY(name, S) {#name, &launch_folded<shapes::S>},
 constexpr Entry folded[] = {BB_FOR_EACH_FOLDED_SHAPE(BB_ENTRY)};

@@ -3,6 +3,7 @@
 #include <bit>
 
 #include "core/resident/contact/candidate_kernels.hpp"
+#include "core/resident/contact/compaction.hpp"
 
 namespace bb::resident {
 
@@ -32,8 +33,8 @@ ResidentBroadPhase::ResidentBroadPhase(exec::Executor& executor, const ResidentS
       point_triangles_(executor, "places of point-triangle candidates"),
       edge_edges_(executor, "places of edge-edge candidates"),
       of_obstacles_(executor, "places of obstacle candidates") {
-  upload_rows(connected_, surface.connected_pairs());
-  upload_rows(opposite_, surface.opposite_corners());
+  if (plan.point_point) upload_rows(connected_, surface.connected_pairs());
+  if (plan.point_edge) upload_rows(opposite_, surface.opposite_corners());
 }
 
 /// The frame in which the boxes are shortest: what most points share of the motion is taken off. As BroadPhase does.
@@ -92,8 +93,7 @@ CandidateSource ResidentBroadPhase::source() const {
 /// From counts [n] to places [n + 1]; the last is their number.
 void ResidentBroadPhase::sum_up(exec::Buffer<Index>& begin, Index& total) {
   const Index n = begin.size() - 1;
-  executor_.fill_bytes(begin.data() + n, 0, sizeof(Index));
-  executor_.exclusive_scan(begin.data(), n + 1);
+  scan_counts(executor_, begin.data(), n);
   if (!executor_.counts_only()) total = begin.get(n);
 }
 
@@ -127,7 +127,7 @@ CandidateCounts ResidentBroadPhase::count(const Column& x0, const Column& x1) {
 template <PairKind K>
 void ResidentBroadPhase::fill_kind(bool needed, const exec::Buffer<Index>& begin, Index total,
                                    exec::Buffer<Key>& out) {
-  out.grow(needed ? total : 0);
+  room_ ? out.grow(needed ? total : 0) : out.resize(needed ? total : 0);
   if (!needed || total == 0) return;
   const PairSearch s = search<K>();
   executor_.each(s.first.size(0), FillPairs<K>{s, begin.data(), out.data()});
@@ -145,6 +145,13 @@ void ResidentBroadPhase::fill(ResidentCandidates& out) {
   if (!plan_.obstacles.needed) return;
   const SurfaceView s = surface_.view();
   executor_.each(s.points.n, FillObstacles{s, x0_, x1_, of_obstacles_.data(), out.obstacle.data()});
+}
+
+void ResidentBroadPhase::free() {
+  points_.free(), edges_.free(), triangles_.free();
+  scratch_.key.free(), scratch_.order.free();
+  for (auto* begin : {&point_points_, &point_edges_, &point_triangles_, &edge_edges_, &of_obstacles_})
+    begin->free();
 }
 
 void ResidentBroadPhase::update(const Column& x0, const Column& x1, ResidentCandidates& out) {

@@ -39,6 +39,10 @@ class ResidentBroadPhase {
 
   /// Of the last count; for ResidentStepBound::find_without_list.
   CandidateSource source() const;
+  /// Gives the trees back; source() needs another count then.
+  void free();
+  /// Whether lists get room to grow; not where they are given back after every motion.
+  void keep_room(bool keep) { room_ = keep; }
   /// What an executor that only counts buffers is to take the candidates for.
   void expect(const CandidateCounts& counts) { counts_ = counts; }
 
@@ -65,6 +69,7 @@ class ResidentBroadPhase {
   exec::Buffer<Index> point_points_, point_edges_, point_triangles_, edge_edges_,
       of_obstacles_;  // [n + 1] where those of each begin
   CandidateCounts counts_;
+  bool room_ = true;
   const double *x0_ = nullptr, *x1_ = nullptr;
 };
 

@@ -91,6 +91,21 @@ class ResidentRows {
     list.swap(other.list);
     std::swap(uniform_kappa, other.uniform_kappa), std::swap(min_gap, other.min_gap);
   }
+  /// Hands over the columns that only one of two tables needs at a time: those that gradients and matrix read.
+  void lend(ResidentRows& other) noexcept {
+    for (auto column :
+         {&ResidentRows::weight_, &ResidentRows::normal_, &ResidentRows::push_, &ResidentRows::stretch_}) {
+      (this->*column).swap(other.*column);
+    }
+  }
+  /// Gives all memory back.
+  void free() {
+    for (auto* column : {&weight_, &normal_, &d_, &d_hat_, &kappa_, &kappa_before_, &per_gap_sq_, &energy_,
+                         &push_, &stretch_}) {
+      column->free();
+    }
+    vertex_.free(), pair_.free(), kind_.free(), free_.free(), list.free();
+  }
   Index size() const { return d_.size(); }
   KappaColumns columns() const { return columns_; }
   RowView view() {

@@ -4,6 +4,7 @@
 #include <limits>
 
 #include "core/contact/contact_row.hpp"
+#include "core/resident/contact/compaction.hpp"
 
 namespace bb::resident {
 
@@ -62,8 +63,7 @@ template <PairKind K>
 Index ResidentStepBound::screen(const Key* candidates, Index n) {
   if (proven_.size() < n) proven_.resize(n), place_.resize(n + 1);
   executor_.each(n, ScreenPairs<K>{query_, candidates, proven_.data(), place_.data()});
-  executor_.fill_bytes(place_.data() + n, 0, sizeof(Index));
-  executor_.exclusive_scan(place_.data(), n + 1);
+  scan_counts(executor_, place_.data(), n);
   const Index m = executor_.counts_only() ? n : place_.get(n);
   if (asked_.size() < m) asked_.grow(m);
   executor_.each(n, KeepPairs{proven_.data(), place_.data(), asked_.data()});

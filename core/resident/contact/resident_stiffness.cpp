@@ -45,7 +45,7 @@ double ResidentStiffness::refresh(ResidentRows& rows, const MatrixPart& elastic)
   compute(rows, nullptr, false, elastic);
   change_.set(0, ~exec::ordered_bits(0.0));
   executor_.each(rows.size(), SettleKappa{rows.view(), change_.data()});
-  return exec::from_ordered_bits(~change_.get(0));
+  return executor_.counts_only() ? 0 : exec::from_ordered_bits(~change_.get(0));
 }
 
 void ResidentStiffness::freeze(ResidentRows& trial, ResidentRows& iterate, const MatrixPart& elastic) {
@@ -66,7 +66,7 @@ void ResidentStiffness::keep(ResidentRows& rows) {
   const KnownPairs known = memory();
   std::uint8_t* const mark = missing_.counts(rows.size());
   executor_.each(rows.size(), MarkUnknown{view, known, mark});
-  const Index n_fresh = missing_.rank();
+  const Index n_fresh = missing_.rank(n_known_ == 0 ? rows.size() : 0);
   if (n_fresh == 0) return;
   const Index n = n_known_ + n_fresh;
   exec::Buffer<Key> pair(executor_, "known pairs", n);
@@ -94,11 +94,11 @@ std::vector<StiffnessPolicy::PairEnd> StepEndGaps::end_step(ResidentRows& rows, 
   if (view.n > 0 && pair_.size() > 0) {
     std::uint8_t* const mark = shrinking_.counts(view.n);
     executor_.each(view.n, MarkShrinking{view, pair_.data(), gap_.data(), pair_.size(), mark});
-    const Index n = shrinking_.rank();
+    const Index n = shrinking_.rank(view.n);
     exec::Buffer<double> list(executor_, "shrinking gaps", 3 * n);
     executor_.each(view.n, ListShrinking{view, pair_.data(), gap_.data(), pair_.size(), mark,
                                          shrinking_.places(), list.data()});
-    const std::vector<double> numbers = list.download();
+    const std::vector<double> numbers = executor_.counts_only() ? std::vector<double>{} : list.download();
     for (std::size_t i = 0; i < numbers.size(); i += 3) {
       out.push_back({numbers[i], numbers[i + 1], park * numbers[i + 2]});
     }
@@ -116,7 +116,8 @@ KnownStiffness ResidentStiffness::known() const {
   out.pair = known_pair_.download();
   out.pair.resize(n);
   const std::vector<double> fixed = known_kappa_.download();
-  const std::vector<double> per_gap_sq = rule_.potential() ? known_per_gap_.download() : std::vector<double>(n, 0.0);
+  const std::vector<double> per_gap_sq =
+      rule_.potential() ? known_per_gap_.download() : std::vector<double>(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) out.parts.push_back({fixed[i], per_gap_sq[i]});
   return out;
 }

@@ -39,7 +39,7 @@ RowFinder::RowFinder(exec::Executor& executor, const ResidentSurface& surface, b
 bool RowFinder::finite(const exec::Buffer<double>& x) {
   found_.fill_zero();
   executor_.each(x.size(), FindNonFinite{x.data(), found_.data()});
-  return found_.get(0) == 0;
+  return executor_.counts_only() || found_.get(0) == 0;
 }
 
 void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& candidates,
@@ -60,7 +60,7 @@ void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& ca
   executor_.each(candidates.obstacle.size(),
                  MarkObstacleRows{phase, candidates.obstacle.data(), mark + first});
 
-  rows.resize(places_.rank());
+  rows.resize(places_.rank(expected_.rows));
   gap_.set(0, {~Key{0}, ~Key{0}});
   const RowView view = rows.view();
   first = 0;
@@ -71,18 +71,19 @@ void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& ca
   });
   executor_.each(candidates.obstacle.size(), FillObstacleRows{phase, candidates.obstacle.data(), mark + first,
                                                               first, places_.places(), view, gap_.data()});
-  rows.min_gap = smallest_gap(gap_.get(0));
+  rows.min_gap =
+      executor_.counts_only() ? std::numeric_limits<double>::infinity() : smallest_gap(gap_.get(0));
   list_mollified(rows);
 }
 
 void RowFinder::list_mollified(ResidentRows& rows) {
   if (!mollifier_ || rows.size() == 0) return;
   executor_.each(rows.size(), MarkMollified{rows.view().kind, places_.counts(rows.size())});
-  places_.list(places_.rank(), rows.list);
+  places_.list(places_.rank(expected_.mollified), rows.list);
 }
 
 bool same_stencils(exec::Executor& executor, ResidentRows& a, ResidentRows& b) {
-  if (a.size() != b.size()) return false;
+  if (a.size() != b.size() || executor.counts_only()) return false;
   exec::Buffer<std::uint32_t> found(executor, "stencil flag", 1);
   found.fill_zero();
   executor.each(a.size(), CompareStencils{a.view(), b.view(), found.data()});

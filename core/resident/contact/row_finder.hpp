@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/resident/contact/compaction.hpp"
+#include "core/resident/contact/expected_contacts.hpp"
 #include "core/resident/contact/resident_rows.hpp"
 #include "core/resident/contact/resident_surface.hpp"
 #include "core/resident/contact/row_kernels.hpp"
@@ -18,6 +19,10 @@ class RowFinder {
   /// kappa_before is 0. Sets min_gap: the smallest gap, infinity without rows; x that is not finite: no rows and
   /// -infinity. Errors: OutOfMemory.
   void find(const exec::Buffer<double>& x, const ResidentCandidates& candidates, ResidentRows& rows);
+  /// Gives back what it keeps between two calls.
+  void free() { places_.free(); }
+  /// What an executor that only counts buffers is to take the rows for.
+  void expect(const ExpectedContacts& expected) { expected_ = expected; }
 
  private:
   bool finite(const exec::Buffer<double>& x);
@@ -26,6 +31,7 @@ class RowFinder {
   exec::Executor& executor_;
   const ResidentSurface& surface_;
   bool mollifier_;
+  ExpectedContacts expected_;
   Compaction places_;
   exec::Buffer<GapBits> gap_;
   exec::Buffer<std::uint32_t> found_;

@@ -130,7 +130,7 @@ struct FillBlocks {
   Places blocks, contributions;
   Index n_before;  // contributions of the chunks before
   int* column;
-  Index* begin;
+  std::uint32_t* begin;
   std::uint32_t *contribution, *blocks_of_row;
   BB_HD void operator()(Index i) const {
     const Index to = n_before + contributions.of(i);
@@ -138,7 +138,7 @@ struct FillBlocks {
     if (head[i] == 0) return;
     const Index j = blocks.of(i);
     column[j] = static_cast<int>(key[i] & ((Key{1} << bits) - 1));
-    begin[j] = to;
+    begin[j] = static_cast<std::uint32_t>(to);
     exec::atomic_add(&blocks_of_row[(key[i] >> bits) + static_cast<Key>(first)], 1);
   }
 };

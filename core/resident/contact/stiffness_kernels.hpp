@@ -5,29 +5,10 @@
 #include "barriers/stiffness/elasticity_inclusive.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_rows.hpp"
+#include "core/resident/linear/find_block.hpp"
 #include "core/resident/linear/resident_matrix.hpp"
 
 namespace bb::resident {
-
-/// First number of [begin, end) for which column[number] >= value; columns ascending.
-template <class T>
-BB_HD inline Index first_not_below(const T* column, Index begin, Index end, T value) {
-  while (begin < end) {
-    const Index middle = begin + (end - begin) / 2;
-    if (column[middle] < value) {
-      begin = middle + 1;
-    } else {
-      end = middle;
-    }
-  }
-  return begin;
-}
-
-/// Number of the block (row, column), -1 when the pattern has none. Columns of a row ascending.
-BB_HD inline Index find_block(const MatrixPart& m, int row, int column) {
-  const Index end = m.row_begin[row + 1], at = first_not_below(m.column, m.row_begin[row], end, column);
-  return at < end && m.column[at] == column ? at : -1;
-}
 
 /// The sub-matrix of at most four vertices, entry by entry.
 struct SubMatrix {
@@ -64,7 +45,9 @@ struct InclusiveKappa {
     SubMatrix h{elastic, {}};
     if (rule.elastic_term) {
       for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) h.block[i][j] = find_block(elastic, vertex[i], vertex[j]);
+        for (int j = 0; j < n; ++j) {
+          h.block[i][j] = find_block(elastic.row_begin, elastic.column, vertex[i], vertex[j]);
+        }
       }
     }
     const double d_hat = rows.d_hat[r];

@@ -3,6 +3,7 @@
 // pieces. Values of blocks: core/resident/linear/resident_matrix.hpp.
 #pragma once
 
+#include "core/resident/linear/find_block.hpp"
 #include "core/resident/linear/resident_matrix.hpp"
 
 namespace bb::resident {
@@ -55,20 +56,6 @@ struct GatherBlocks {
     for (int c = 0; c < 9; ++c) value[value_index(block, c)] = sum[c];
   }
 };
-
-/// Index of block (row, column) in a pattern with ascending columns, -1 where there is none.
-BB_HD inline Index find_block(const Index* row_begin, const int* column, int row, int wanted) {
-  Index low = row_begin[row], high = row_begin[row + 1];
-  while (low < high) {
-    const Index middle = low + (high - low) / 2;
-    if (column[middle] < wanted) {
-      low = middle + 1;
-    } else {
-      high = middle;
-    }
-  }
-  return low < row_begin[row + 1] && column[low] == wanted ? low : -1;
-}
 
 /// The upper triangle from the lower one; item: a block row.
 struct MirrorRow {

@@ -8,7 +8,7 @@
 #include "core/energy/strain_stiffness.hpp"
 #include "core/resident/elements/family_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
-#include "core/resident/elements/sum_kernels.hpp"
+#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

@@ -3,7 +3,7 @@
 
 #include "core/energy/vertex_loads.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
-#include "core/resident/elements/sum_kernels.hpp"
+#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

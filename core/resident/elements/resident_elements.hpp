@@ -11,8 +11,8 @@
 #include "core/resident/elements/gather_lists.hpp"
 #include "core/resident/elements/load_kernels.hpp"
 #include "core/resident/elements/resident_limit.hpp"
-#include "core/resident/elements/resident_sum.hpp"
 #include "core/resident/linear/resident_matrix.hpp"
+#include "core/resident/sums/resident_sum.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb::resident {

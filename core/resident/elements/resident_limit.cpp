@@ -1,9 +1,9 @@
 #include "core/resident/elements/resident_limit.hpp"
 
+#include "barriers/shapes/shape_list.hpp"
 #include "core/energy/strain_limit_batch.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/elements/limit_kernels.hpp"
-#include "core/resident/elements/limit_shapes.hpp"
 #include "core/resident/elements/triangle_columns.hpp"
 
 namespace bb::resident {
@@ -20,7 +20,7 @@ void launch_shape(exec::Executor& executor, const LimitColumns& limit, const Bar
 LaunchShape shape_kernel(const BarrierFunction& barrier) {
 #define SHAPE(id, Struct) \
   if (barrier.shape.name == #id && !barrier.shape.self) return &launch_shape<shapes::Struct>;
-  BB_FOR_EACH_LIMIT_SHAPE(SHAPE)
+  BB_FOR_EACH_SHAPE(SHAPE)
 #undef SHAPE
   throw ConfigError("strain_limit/shape", barrier.shape.name,
                     "a shape of barriers/shapes: a plugin's has no kernel");
@@ -133,6 +133,7 @@ double LimitFamily<R>::refresh(const double* x, const ResidentFrame& frame, cons
 
 template <int R>
 double LimitFamily<R>::bound(const double* x, const double* dx, double park) {
+  if (executor_.counts_only()) return 1;
   // A second look: one element's bound may, by rounding alone, be beyond another's limit.
   for (double alpha = 1;;) {
     least_.clear(exec::ordered_bits(alpha));

@@ -5,8 +5,8 @@
 #include <vector>
 
 #include "core/resident/elements/element_family.hpp"
-#include "core/resident/elements/resident_sum.hpp"
 #include "core/resident/linear/resident_matrix.hpp"
+#include "core/resident/sums/resident_sum.hpp"
 #include "core/terms/term_options.hpp"
 
 namespace bb::resident {

@@ -1,6 +1,8 @@
 // The inverse of a Cholesky factor of a 3x3 block, and what to call a block that has none.
 #pragma once
 
+#include <cmath>
+
 #include <cfloat>
 
 #include "core/resident/linear/pcg_scalars.hpp"
@@ -18,7 +20,7 @@ BB_HD inline bool factorize_block(const Mat3d& d, double rounding, double* l) {
       for (int k = 0; k < c; ++k) sum -= l[r * (r + 1) / 2 + k] * l[c * (c + 1) / 2 + k];
       if (r == c) {
         if (!(sum > rounding * d(c, c) && sum > 0)) return false;
-        l[c * (c + 1) / 2 + c] = sqrt(sum);
+        l[c * (c + 1) / 2 + c] = std::sqrt(sum);
       } else {
         l[r * (r + 1) / 2 + c] = sum / l[c * (c + 1) / 2 + c];
       }
@@ -36,7 +38,7 @@ BB_HD inline FactorStatus inverse_factor(const Mat3d& d, double* w) {
       norm += d(r, c) * d(r, c);
     }
   }
-  norm = sqrt(norm);
+  norm = std::sqrt(norm);
   double l[6];
   // A pivot below the rounding of its own subtraction says nothing.
   if (!factorize_block(d, 4 * DBL_EPSILON, l)) {

@@ -1,6 +1,8 @@
 // One level of additive Schwarz: dense factors of the clusters of a level, and their application.
 #pragma once
 
+#include <cmath>
+
 #include "core/resident/linear/block_factor.hpp"
 
 namespace bb::resident {
@@ -65,7 +67,7 @@ struct FactorizeClusters {
       const FactorStatus status = judge(pivot, largest);
       if (status != FactorStatus::ok) return status;
       block.threads([](int) {});  // all have read the pivot
-      const double root = sqrt(pivot);
+      const double root = std::sqrt(pivot);
       block.threads([&](int t) {
         if (t == k) s.a[k * stride + k] = root;
         if (t > k && t < m) s.a[k * stride + t] /= root;

@@ -184,7 +184,7 @@ struct BeginRun {
       } else if (iteration >= scalars->max_iterations) {
         end = PcgEnd::cap;
       }
-      if (first) scalars->b_norm = sqrt(rr), scalars->target = scalars->tolerance * sqrt(rr);
+      if (first) scalars->b_norm = std::sqrt(rr), scalars->target = scalars->tolerance * std::sqrt(rr);
       scalars->state[0] = {rz, rr, iteration, static_cast<int>(end)};
     });
   }
@@ -207,7 +207,7 @@ struct StepDirection {
     PcgEnd end = PcgEnd::running;
     if (!is_finite(rr)) {
       end = PcgEnd::non_finite;
-    } else if (++out.iteration; sqrt(rr) <= scalars->target) {
+    } else if (++out.iteration; std::sqrt(rr) <= scalars->target) {
       end = PcgEnd::converged;
     } else if (!is_finite(rz)) {
       end = PcgEnd::non_finite;

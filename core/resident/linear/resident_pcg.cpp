@@ -38,7 +38,7 @@ void ResidentPcg::set_residual(const double* from, const double* minus, double* 
 
 double ResidentPcg::sum_of(const double* partial) {
   executor_.blocks(1, FinishSum{partial, v_.partition.n_blocks(), v_.scalars});
-  return scalars_.get(0).sum;
+  return executor_.counts_only() ? 1 : scalars_.get(0).sum;
 }
 
 double ResidentPcg::norm(const FixedMask* fixed, const double* v) {
@@ -79,8 +79,17 @@ void ResidentPcg::prepare_graph() {
   key.matrix = matrix_, key.vectors = v_, key.version = preconditioner_->version();
   if (graph_ && std::memcmp(&key, &key_, sizeof key) == 0) return;
   std::memcpy(static_cast<void*>(&key_), &key, sizeof key);
+  graph_.reset();
   executor_.begin_capture();
-  launch_iterations();
+  try {
+    launch_iterations();
+  } catch (...) {
+    try {
+      executor_.end_capture();
+    } catch (const exec::ExecutionError&) {  // the first error says more
+    }
+    throw;
+  }
   graph_ = executor_.end_capture();
 }
 

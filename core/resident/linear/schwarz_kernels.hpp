@@ -2,6 +2,8 @@
 // solves of clusters in an iteration.
 #pragma once
 
+#include <cmath>
+
 #include "core/resident/linear/block_jacobi_kernels.hpp"
 #include "core/resident/linear/cluster_kernels.hpp"
 
@@ -19,7 +21,7 @@ struct BlockNorms {
         const double a = part.value[value_index(j, c)];
         if (!is_fixed(fixed[row], c % 3) && !is_fixed(fixed[part.column[j]], c / 3)) sum = fma(a, a, sum);
       }
-      norm[j] = sqrt(sum);
+      norm[j] = std::sqrt(sum);
     }
   }
 };

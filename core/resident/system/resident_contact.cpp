@@ -44,14 +44,55 @@ ResidentContact::ResidentContact(exec::Executor& executor, const Scene& scene, T
   mass_.upload(scene.mass);
 }
 
+void ResidentContact::expect(const ExpectedContacts& expected) {
+  broad_phase_.expect(expected.candidates);
+  finder_.expect(expected);
+  assembly_.expect(expected);
+}
+
 void ResidentContact::begin_step(const Column& x_n, double dt, double c) {
   stiffness_.begin_step();
   change_time(dt, c);
   first_iterate_ = true;
-  broad_phase_.update(x_n, x_n, candidates_);
+  prepare(x_n, x_n);
+  lend_columns();
   finder_.find(x_n, candidates_, trial_);
+  take_trial();
+}
+
+void ResidentContact::take_trial() {
   has_pattern_ = has_pattern_ && same_stencils(executor_, rows_, trial_);
   rows_.swap(trial_);
+  lent_ = false;
+  energy_.reset();
+}
+
+void ResidentContact::prepare(const Column& x0, const Column& x1) {
+  if (frugal()) assembly_.free_matrix();
+  broad_phase_.keep_room(!frugal());
+  broad_phase_.update(x0, x1, candidates_);
+  if (!frugal()) return;
+  broad_phase_.free();
+  executor_.trim();
+}
+
+void ResidentContact::lend_columns() {
+  if (!lent_) rows_.lend(trial_);
+  lent_ = true;
+}
+
+// No trial was accepted: the shared columns are those of another state. The candidates are those of a motion from x.
+void ResidentContact::settle(const Column& x) {
+  if (!lent_) return;
+  finder_.find(x, candidates_, trial_);
+  trial_.lend(rows_);
+  lent_ = false;
+  barrier_.evaluate(executor_, rows_);
+}
+
+Compensated ResidentContact::energy(const Column& x) {
+  if (!energy_) energy_ = sums_.energy(rows_, x, assembly_);
+  return *energy_;
 }
 
 void ResidentContact::change_time(double dt, double c) {
@@ -65,8 +106,15 @@ void ResidentContact::use_policy_kappa() {
 }
 
 void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Column& g) {
+  settle(x);
+  energy_.reset();
+  if (frugal()) {
+    candidates_.free(), trial_.free(), finder_.free(), broad_phase_.free();
+    executor_.trim();
+  }
   pattern_changed_ = !has_pattern_;
   if (!has_pattern_) assembly_.set_pattern(rows_);
+  if (frugal()) executor_.trim();
   has_pattern_ = true;
   start_policy(x, g);
   use_policy_kappa();
@@ -96,8 +144,8 @@ void ResidentContact::start_policy(const Column& x, const Column& others) {
   globals.d2b_half = options_.contact.eval(globals.d_hat / 2, globals.d_hat).d2b;
   globals.dt = dt_;
   globals.c = c_;
-  policy.start(globals);
   policy_started_ = true;
+  if (!executor_.counts_only()) policy.start(globals);
 }
 
 const StepBound& ResidentContact::bound(const Column& x0, const Column& x1) {
@@ -107,7 +155,9 @@ const StepBound& ResidentContact::bound(const Column& x0, const Column& x1) {
 
 std::string ResidentContact::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
 
-bool ResidentContact::admits(const Column& trial) {
+bool ResidentContact::admits(const Column& x, const Column& trial) {
+  energy(x);  // while its rows have all columns
+  lend_columns();
   finder_.find(trial, candidates_, trial_);
   return trial_.feasible();
 }
@@ -119,8 +169,7 @@ void ResidentContact::evaluate(const Column&, const MatrixPart& elastic) {
 }
 
 void ResidentContact::accept() {
-  has_pattern_ = has_pattern_ && same_stencils(executor_, rows_, trial_);
-  rows_.swap(trial_);
+  take_trial();
   stiffness_.keep(rows_);
 }
 

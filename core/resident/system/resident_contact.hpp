@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <optional>
 
 #include "core/contact/step_bound.hpp"
 #include "core/record/phase_times.hpp"
@@ -26,6 +27,9 @@ class ResidentContact {
   ResidentContact(exec::Executor& executor, const Scene& scene, TermOptions& options, const ContactPlan& plan,
                   const exec::Buffer<std::uint8_t>& fixed);
 
+  /// What an executor that only counts buffers is to take the contacts for.
+  void expect(const ExpectedContacts& expected);
+
   // --- a step
   void begin_step(const Column& x_n, double dt, double c);
   void change_time(double dt, double c);
@@ -36,28 +40,42 @@ class ResidentContact {
   bool needs_hessian() const { return stiffness_.rule().needs_hessian(); }
   /// kappa and barrier of the rows at x; g (N) is the gradient of all other terms and gets that of B.
   void linearise(const Column& x, const MatrixPart& elastic, Column& g);
-  /// Valid until the next call.
-  MatrixPart matrix(const Column& x, const HessianChoice& choice) { return assembly_.matrix(rows_, x, choice); }
+  /// Valid until the next call, or the next prepare().
+  MatrixPart matrix(const Column& x, const HessianChoice& choice) {
+    settle(x);
+    return assembly_.matrix(rows_, x, choice);
+  }
   Index n_blocks() const { return assembly_.n_blocks(); }
   /// Whether the last linearise() built another pattern.
   bool pattern_changed() const { return pattern_changed_; }
   /// force (N) += how the gradient changes along motion of given vertices.
   void add_given_motion(const Column& x, const Column& motion, Column& force) {
+    settle(x);
     assembly_.add_given_motion(rows_, x, motion, force);
   }
-  CompensatedSum energy(const Column& x) { return sums_.energy(rows_, x, assembly_); }
+  /// Of the rows of the iterate, as linearise() or accept() left them.
+  Compensated energy(const Column& x);
 
   // --- a motion, and states on it
-  void prepare(const Column& x0, const Column& x1) { broad_phase_.update(x0, x1, candidates_); }
+  void prepare(const Column& x0, const Column& x1);
   const StepBound& bound(const Column& x0, const Column& x1);
   std::string describe_bound() const;
-  bool admits(const Column& trial);
+  /// x: the iterate.
+  bool admits(const Column& x, const Column& trial);
   void evaluate(const Column& trial, const MatrixPart& elastic);
-  CompensatedSum trial_energy(const Column& trial) { return sums_.energy(trial_, trial, assembly_); }
+  Compensated trial_energy(const Column& trial) { return sums_.energy(trial_, trial, assembly_); }
   /// The trial becomes the iterate.
   void accept();
 
-  ResidentRows& rows() { return rows_; }
+  /// Of the iterate x.
+  ResidentRows& rows(const Column& x) {
+    settle(x);
+    return rows_;
+  }
+  /// From so many rows on, what a stage does not read is given back before it: candidates and trial rows before a
+  /// solve, matrix values before a motion. Results do not depend on it.
+  void set_frugal_from(Index rows) { frugal_from_ = rows; }
+  bool frugal() const { return rows_.size() >= frugal_from_; }
   const ResidentStiffness& stiffness() const { return stiffness_; }
   /// Of the last linearise(): largest relative change of a row's kappa.
   double kappa_change() const { return kappa_change_; }
@@ -66,6 +84,10 @@ class ResidentContact {
   StepEndGaps& step_end_gaps() { return gaps_; }
 
  private:
+  static constexpr Index default_frugal_from = Index{1} << 24;
+  void lend_columns();
+  void settle(const Column& x);
+  void take_trial();
   void start_policy(const Column& x, const Column& others);
   void use_policy_kappa();
 
@@ -85,6 +107,9 @@ class ResidentContact {
   ContactSums sums_;
   StepEndGaps gaps_;
   ResidentRows rows_, trial_;
+  bool lent_ = false;  // the trial has the columns that the two share
+  std::optional<Compensated> energy_;
+  Index frugal_from_ = default_frugal_from;
   Column part_;  // [3 n] gradient of B with kappa = 1
   exec::Buffer<double> mass_;
   StepBound bound_;

@@ -25,6 +25,7 @@ void ResidentSystem::assemble() {
     const ScopedPhase timer(clock(), Phase::contact_terms);
     contact_->linearise(x_, kept_elastic(), g_);
   }
+  if (pattern_changed()) ++pattern_id_;
   host_g_.valid = false;
   const double residual = largest_force();
   if (served_at_once_) level_.lower(residual);
@@ -137,7 +138,6 @@ bool ResidentSystem::direction(SolveReport& report) {
   report.t = level_.t();
   LinearReport linear = solve_linear();
   ++report.attempts;
-  ++report.factorizations;
   linear.iterations += report.linear.iterations;
   report.linear = linear;
   if (report.linear.status != LinearStatus::ok) return false;
@@ -158,7 +158,7 @@ LinearReport ResidentSystem::solve_linear() {
   step_.fill_zero();
   if (b_norm == 0) return report;
   return pcg_->solve(matrix(), fixed_bits_.data(), b_.data(), step_.data(), forcing_.tolerance(b_norm),
-                     max_pcg_iterations_);
+                     max_pcg_iterations_, pattern_id_);
 }
 
 DirectionSize ResidentSystem::direction_size() {

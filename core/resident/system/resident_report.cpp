@@ -4,8 +4,8 @@
 
 #include "core/archive/archive.hpp"
 #include "core/resident/system/resident_system.hpp"
-#include "core/terms/contact.hpp"
 #include "core/resident/system/system_kernels.hpp"
+#include "core/terms/contact.hpp"
 
 namespace bb::resident {
 namespace {
@@ -82,11 +82,11 @@ void ResidentSystem::report(IterateNumbers& out) const {
   }
   if (!contact_) return;
   out.kappa_change_rel = contact_->kappa_change();
-  if (contact_->rows().size() == 0) return;
-  const RowReport rows(contact_->rows(), sum_, least_);
+  if (contact_->rows(x_).size() == 0) return;
+  const RowReport rows(contact_->rows(x_), sum_, least_);
   out.contacts = rows.counts();
   fill(rows, out);
-  out.gap_min_iterates_m = contact_->rows().min_gap;
+  out.gap_min_iterates_m = contact_->rows(x_).min_gap;
   out.gap_min_iterates_rel = rows.smallest(RowNumber::gap_rel);
   out.contact_curvature_max_N_per_m = rows.largest(RowNumber::curvature);
 }
@@ -97,15 +97,15 @@ void ResidentSystem::report_end(StepNumbers& out) const {
     out.max_stretch = limit.max_stretch;
     out.limit_load_max_N_per_m = limit.load_max;
   }
-  if (!contact_ || contact_->rows().size() == 0) return;
-  const RowReport rows(contact_->rows(), sum_, least_);
+  if (!contact_ || contact_->rows(x_).size() == 0) return;
+  const RowReport rows(contact_->rows(x_), sum_, least_);
   out.contacts = rows.counts();
   fill(rows, out);
   out.contact_load_sum_N = rows.load_sum();
-  out.gap_min_m = contact_->rows().min_gap;
+  out.gap_min_m = contact_->rows(x_).min_gap;
   out.gap_min_rel = rows.smallest(RowNumber::gap_rel);
   const double largest = largest_coordinate();
-  out.gap_min_ulps = contact_->rows().min_gap / (std::nextafter(largest, 2 * largest) - largest);
+  out.gap_min_ulps = contact_->rows(x_).min_gap / (std::nextafter(largest, 2 * largest) - largest);
 }
 
 void ResidentSystem::report_overload(bool with_direction, StepNumbers& out) {
@@ -117,12 +117,15 @@ void ResidentSystem::report_overload(bool with_direction, StepNumbers& out) {
 std::string ResidentSystem::describe_non_finite() const {
   const ResidentElements::BadElement bad = elements_.first_not_finite();
   if (bad.element >= 0) return "element " + std::to_string(bad.element) + " of term " + std::string(bad.term);
-  if (const Index i = vectors_.first_not_finite(g_); i >= 0) return "gradient at vertex " + std::to_string(i / 3);
-  if (const Index i = vectors_.first_not_finite(dx_); i >= 0) return "direction at vertex " + std::to_string(i / 3);
+  if (const Index i = vectors_.first_not_finite(g_); i >= 0)
+    return "gradient at vertex " + std::to_string(i / 3);
+  if (const Index i = vectors_.first_not_finite(dx_); i >= 0)
+    return "direction at vertex " + std::to_string(i / 3);
   return "a sum over all vertices";
 }
 
-// Memory of the terms from step to step, in the order and the bytes of NewtonSystem::keep.
+// Memory of the terms from step to step, in the order of NewtonSystem::keep, which reads it; park, which is read of the
+// later of two step ends only, is 0.
 void ResidentSystem::keep(Archive& archive) {
   for (const auto& term : cpu().terms()) {
     archive.section(term->name());
@@ -140,7 +143,8 @@ void ResidentSystem::keep_contact(Archive& archive) {
   std::vector<double> gap;
   contact_->step_end_gaps().download(pair, gap);
   std::vector<PairGap> gaps;
-  for (std::size_t i = 0; i < pair.size(); ++i) gaps.push_back({pair[i], gap[i], 0});  // park is read of the later end
+  for (std::size_t i = 0; i < pair.size(); ++i)
+    gaps.push_back({pair[i], gap[i], 0});  // park is read of the later end
   archive(started, gaps);
   method_.stiffness->keep(archive);
   if (!archive.reads()) return;
@@ -164,7 +168,7 @@ NewtonSystem& ResidentSystem::on_cpu() {
   cpu().keep(again);
   KnownStiffness known;
   if (contact_) known = contact_->stiffness().known();
-  cpu().adopt({x_start_, prediction_.x_tilde, frame_.dt, prediction_.c, frame_.load_factor}, x(), level_, known);
+  cpu().adopt({x_start_, prediction_.x_tilde, frame_.dt, prediction_.c, frame_.load_factor}, x(), target_, level_, known);
   return cpu();
 }
 

@@ -6,6 +6,7 @@
 
 #include "core/math/error.hpp"
 #include "core/resident/linear/block_jacobi.hpp"
+#include "core/resident/linear/schwarz.hpp"
 #include "core/resident/system/system_kernels.hpp"
 
 namespace bb::resident {
@@ -29,6 +30,15 @@ ParameterMap linear_parameters(const Method& method) {
   }
   const LinearSolverEntry& entry = linear_solvers().require(method.linear.name, "/linear_solver/name");
   return own_parameters(entry.parameters, method.linear.parameters, "/linear_solver");
+}
+
+// The clusters of Schwarz are made from the matrix, which an executor that only counts does not have.
+std::unique_ptr<ResidentPreconditioner> make_preconditioner(exec::Executor& executor, const Method& method) {
+  const ParameterMap parameters = linear_parameters(method);
+  if (text(parameters, "resident_preconditioner") == "schwarz" && !executor.counts_only()) {
+    return std::make_unique<Schwarz>(executor, integer(parameters, "resident_cluster_vertices"));
+  }
+  return std::make_unique<BlockJacobi>(executor);
 }
 
 std::span<const double> numbers_of(const Positions& x) {
@@ -68,16 +78,18 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
       least_(*executor_) {
   const Index n = scene.n_vertices();
   fixed_bits_.upload(bb::resident::fixed_bits(fixed_));
-  for (Column* column : {&x_, &trial_, &end_, &dx_, &g_, &x_n_, &x_tilde_, &b_, &step_, &work_}) column->resize(3 * n);
+  for (Column* column : {&x_, &trial_, &end_, &dx_, &g_, &x_n_, &x_tilde_, &b_, &step_, &work_})
+    column->resize(3 * n);
   if (plan.term("contact").needed) {
     contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, fixed_bits_);
   }
-  pcg_ = std::make_unique<ResidentPcg>(*executor_, n, std::make_unique<BlockJacobi>(*executor_));
+  pcg_ = std::make_unique<ResidentPcg>(*executor_, n, make_preconditioner(*executor_, method));
 }
 
 ResidentSystem::~ResidentSystem() = default;
 
-void ResidentSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt, double load_factor) {
+void ResidentSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt,
+                                double load_factor) {
   const ScopedPhase timer(clock(), Phase::prediction);
   x_start_ = x_n;
   x_n_.upload(numbers_of(x_n));
@@ -91,6 +103,21 @@ void ResidentSystem::begin_step(const Positions& x_n, const Prediction& predicti
   x_tilde_.upload(numbers_of(prediction.x_tilde));
   elements_.begin_step(frame_);
   if (contact_) contact_->begin_step(x_, dt, prediction.c);
+}
+
+void ResidentSystem::count_memory(const ExpectedContacts& expected) {
+  if (contact_) contact_->expect(expected);
+  begin_step(scene_.x0, {1, scene_.x0}, 1, 1);
+  for (int iterate = 0; iterate < 2; ++iterate) {  // the second finds the columns of the first in place
+    assemble();
+    find_direction();
+    prepare_motion(MotionEnd::free, false);
+    IterationReport unread;
+    bound_motion(unread);
+    try_motion(1);
+    accept();
+  }
+  end_step();
 }
 
 void ResidentSystem::restart_step(const Prediction& prediction, double dt) {
@@ -108,7 +135,10 @@ void ResidentSystem::end_step() {
   if (contact_) contact_->end_step();
 }
 
-void ResidentSystem::set_target(const Positions& target) { vectors_.set_targets(target); }
+void ResidentSystem::set_target(const Positions& target) {
+  target_ = target;
+  vectors_.set_targets(target);
+}
 bool ResidentSystem::at_target() const { return vectors_.first_short_pin(x_) < 0; }
 
 void ResidentSystem::prepare_motion(MotionEnd end, bool) {
@@ -152,7 +182,7 @@ std::optional<EnergyChange> ResidentSystem::try_motion(double alpha) {
   if (!elements_.admits(trial_.data())) return std::nullopt;
   if (contact_) {
     const ScopedPhase rows(clock(), Phase::contact_rows);
-    if (!contact_->admits(trial_)) return std::nullopt;
+    if (!contact_->admits(x_, trial_)) return std::nullopt;
   }
   elements_.evaluate(trial_.data());
   sum_.clear();
@@ -163,7 +193,7 @@ std::optional<EnergyChange> ResidentSystem::try_motion(double alpha) {
   contact_->evaluate(trial_, kept_elastic());
   // rows come and go: their energies are compared as sums
   const auto before = contact_->energy(x_), after = contact_->trial_energy(trial_);
-  const double change = (fixed.sum + (after.sum - before.sum)) + (fixed.carry + (after.lost - before.lost));
+  const double change = (fixed.sum + (after.sum - before.sum)) + (fixed.carry + (after.carry - before.carry));
   return EnergyChange{change, fixed.magnitude + before.magnitude + after.magnitude};
 }
 

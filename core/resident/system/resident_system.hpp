@@ -22,7 +22,8 @@ class ResidentSystem final : public StepSystem {
   using Column = exec::Buffer<double>;
 
   /// scene and method must outlive the system. Errors: ConfigError for what has no device form; OutOfMemory.
-  ResidentSystem(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method, const Plan& plan);
+  ResidentSystem(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method,
+                 const Plan& plan);
   ~ResidentSystem() override;
 
   void begin_step(const Positions& x_n, const Prediction& prediction, double dt, double load_factor) override;
@@ -67,6 +68,13 @@ class ResidentSystem final : public StepSystem {
   std::string describe_non_finite() const override;
   NewtonSystem& on_cpu() override;
 
+  /// On an executor that only counts buffers: every stage of a step with so many contacts, so that memory().peak() is
+  /// what a step needs.
+  void count_memory(const ExpectedContacts& expected);
+  /// As ResidentContact::set_frugal_from.
+  void set_frugal_from(Index rows) {
+    if (contact_) contact_->set_frugal_from(rows);
+  }
   /// Who holds how much memory.
   const exec::MemoryLedger& memory() const { return executor_->memory(); }
 
@@ -112,8 +120,8 @@ class ResidentSystem final : public StepSystem {
   bool served_at_once_ = false;
 
   Column x_, trial_, end_, dx_, g_, x_n_, x_tilde_, b_, step_, work_;  // [3 n]
-  Column force_;          // [n] N
-  Column elastic_value_;  // H that stiffness policies read
+  Column force_;                                                       // [n] N
+  Column elastic_value_;                                               // H that stiffness policies read
   bool has_step_elastic_ = false;
   exec::Buffer<double> product_partial_;
   mutable ResidentSum sum_;
@@ -121,7 +129,8 @@ class ResidentSystem final : public StepSystem {
   MatrixPart contact_matrix_{};
   ResidentFrame frame_;
   Prediction prediction_;  // as it came, for the CPU's view
-  Positions x_start_;
+  Positions x_start_, target_;
+  std::uint64_t pattern_id_ = 1;  // of the matrix
   MotionEnd motion_ = MotionEnd::free;
   std::string holder_;  // of the last bound
   double limit_kappa_change_ = 0;

@@ -2,7 +2,7 @@
 #pragma once
 
 #include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/elements/sum_kernels.hpp"
+#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 

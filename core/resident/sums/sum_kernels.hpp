@@ -87,9 +87,14 @@ struct FoldPartials {
   }
 };
 
-/// Keys whose least is the largest of some numbers x >= 0 (a NaN is larger than all), or the smallest of any numbers.
-BB_HD inline Key largest_key(double x) { return ~exec::ordered_bits(x); }
+/// Keys whose least is the largest of some numbers, 0 at least, or the smallest of any numbers. A NaN, of whatever bits,
+/// wins both.
+BB_HD inline Key largest_key(double x) {
+  if (x != x) return 0;
+  return ~exec::ordered_bits(x > 0 ? x : 0.0);
+}
 BB_HD inline Key smallest_key(double x) {
+  if (x != x) return 0;
   const Key bits = exec::ordered_bits(x), sign = Key{1} << 63;
   return (bits & sign) != 0 ? ~bits : bits | sign;
 }

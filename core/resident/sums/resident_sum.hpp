@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/exec/buffer.hpp"
-#include "core/resident/elements/sum_kernels.hpp"
+#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 
@@ -24,7 +24,7 @@ class ResidentSum {
     executor_.blocks(1, FoldPartials{partial_.data(), n_blocks, total_.data()});
   }
   /// Waits. value(): the sum; magnitude: the sum of |parts|, of which rounding noise is some multiple of eps.
-  Compensated get() const { return total_.get(0); }
+  Compensated get() const { return executor_.counts_only() ? Compensated{} : total_.get(0); }
 
  private:
   exec::Executor& executor_;
@@ -50,7 +50,7 @@ class ResidentLeast {
   Key* data() { return least_.data(); }
 
   // --- what there is; all wait
-  Key get() const { return least_.get(0); }
+  Key get() const { return executor_.counts_only() ? none : least_.get(0); }
   /// Of keys made by largest_key; 0 where nothing came.
   double largest() const {
     const Key key = get();

@@ -1,0 +1,91 @@
+#include "experiments/run/device_run.hpp"
+
+#include <charconv>
+#include <cstdlib>
+
+#include "core/cuda/device.hpp"
+#include "core/exec/counting_executor.hpp"
+#include "core/exec/host_executor.hpp"
+#include "core/math/error.hpp"
+#include "core/resident/contact/resident_barrier.hpp"
+#include "core/resident/elements/resident_limit.hpp"
+#include "experiments/run/method.hpp"
+
+namespace bb {
+namespace {
+
+constexpr const char* memory_variable = "BARRIERBENCH_DEVICE_MEMORY";
+constexpr const char* failure_variable = "BARRIERBENCH_FAIL_KERNEL";
+
+std::size_t positive(const char* variable, const std::string& text) {
+  std::size_t out = 0;
+  const char* const end = text.data() + text.size();
+  const auto [stop, error] = std::from_chars(text.data(), end, out);
+  if (error != std::errc() || stop != end || out == 0) throw ConfigError(variable, text, "an integer > 0");
+  return out;
+}
+
+/// Bytes; 0 without a limit.
+std::size_t memory_limit() {
+  const char* const text = std::getenv(memory_variable);
+  return text ? positive(memory_variable, text) : 0;
+}
+
+/// One launch of one kernel fails.
+class FailingExecutor final : public exec::HostExecutor {
+ public:
+  FailingExecutor(std::string kernel, std::size_t launch) : kernel_(std::move(kernel)), left_(launch) {}
+
+ private:
+  void run(const exec::KernelInfo& kernel, exec::Index n, const void* f) override {
+    if (kernel.name().find(kernel_) != std::string::npos && --left_ == 0) {
+      throw exec::ExecutionError(kernel.name() + ": " + failure_variable + " asked for this failure");
+    }
+    HostExecutor::run(kernel, n, f);
+  }
+  std::string kernel_;
+  std::size_t left_;
+};
+
+std::unique_ptr<exec::Executor> make_host_executor() {
+  const char* const text = std::getenv(failure_variable);
+  if (!text) return std::make_unique<exec::HostExecutor>();
+  const std::string asked = text;
+  const std::size_t colon = asked.rfind(':');
+  if (colon == std::string::npos || colon == 0) throw ConfigError(failure_variable, asked, "KERNEL:NUMBER");
+  return std::make_unique<FailingExecutor>(asked.substr(0, colon),
+                                           positive(failure_variable, asked.substr(colon + 1)));
+}
+
+}  // namespace
+
+std::unique_ptr<exec::Executor> make_executor(Device device) {
+  std::unique_ptr<exec::Executor> out =
+      device == Device::cuda ? cuda::make_device_executor() : make_host_executor();
+  out->limit_memory(memory_limit());
+  return out;
+}
+
+void check_device_forms(const RunConfig& config, const Scene& scene) {
+  if (config.device == Device::cpu) return;
+  Calibration any;  // numbers of the stiffness do not matter
+  any.kappa = any.k_s = 1;
+  Method method = make_method(config, any);
+  const std::optional<StiffnessRule> rule = method.stiffness->rule();
+  if (!rule) {
+    throw ConfigError("/formulation/stiffness_policy/name", std::string(method.stiffness->name()),
+                      "a policy with a device form; this one runs with device cpu only");
+  }
+  resident::ResidentBarrier(method.contact, rule->potential());
+  exec::CountingExecutor executor;
+  std::vector<int> unread;
+  resident::make_limit(executor, scene, method, unread);
+}
+
+void require_device(const RunConfig& config, const Scene& scene) {
+  if (config.device == Device::cpu) return;
+  check_device_forms(config, scene);
+  make_executor(config.device);
+}
+
+}  // namespace bb

@@ -1,0 +1,34 @@
+// What is asked of a device before a run, and how it ends one.
+#pragma once
+
+#include <stdexcept>
+
+#include "core/exec/executor.hpp"
+#include "core/record/outcome.hpp"
+#include "core/scene/scene.hpp"
+#include "experiments/config/run_config.hpp"
+
+namespace bb {
+
+/// The executor of `/device`. Environment: BARRIERBENCH_DEVICE_MEMORY, bytes that buffers may take; and with device
+/// host, for tests, BARRIERBENCH_FAIL_KERNEL=NAME:N, the launch of a kernel with NAME in its name that fails, from 1.
+/// Errors: ConfigError for a malformed variable, and without a usable card.
+std::unique_ptr<exec::Executor> make_executor(Device device);
+
+/// Whether everything that the config asks for has a device form. Errors: ConfigError naming what has none.
+void check_device_forms(const RunConfig& config, const Scene& scene);
+/// The same, and whether the device is there. Errors: ConfigError with the reason.
+void require_device(const RunConfig& config, const Scene& scene);
+
+/// Outcomes after which a run on a device can only go on in another process.
+constexpr bool stops_device(Outcome outcome) {
+  return outcome == Outcome::oom || outcome == Outcome::kernel_failed;
+}
+
+/// A run on a device ended with such an outcome; its record is written.
+struct DeviceStopped : std::runtime_error {
+  DeviceStopped(Outcome why, const std::string& what) : std::runtime_error(what), outcome(why) {}
+  Outcome outcome;
+};
+
+}  // namespace bb

@@ -1,0 +1,164 @@
+// Memory of the whole resident pipeline: what is counted before a run, what large scenes give back, and that neither
+// changes a number.
+#include <gtest/gtest.h>
+
+#include <map>
+#include <string>
+
+#include "core/exec/counting_executor.hpp"
+#include "tests/resident/system_cases.hpp"
+
+namespace bb {
+namespace {
+
+using exec::Index;
+using Ledger = std::map<std::string, std::size_t>;
+
+/// A cloth of n x n vertices with everything that the densest scene has.
+Scene cloth(int n) {
+  SceneBuilder builder("cloth", false, Vec3d(0, 0, -10), "test");
+  BodySpec spec = test::cloth_spec(n, 0.035, 0.02);
+  spec.material.bending = 1e-3;
+  spec.material.limit = StrainLimitSpec::from_limit(0.1);
+  builder.add_body(spec);
+  BodySpec other = test::cloth_spec(3, 0.1, 0.02);
+  other.name = "other";
+  builder.add_body(other);
+  return builder.finish();
+}
+
+resident::ExpectedContacts rows_of(double contacts) {
+  resident::ExpectedContacts out;
+  out.rows = static_cast<Index>(contacts);
+  out.mollified = out.rows / 100;
+  out.candidates.point_triangle = out.rows * 2 / 3;
+  out.candidates.edge_edge = out.rows * 4 / 3;
+  return out;
+}
+
+struct Peak {
+  Ledger by_name;
+  double total;
+};
+
+Peak counted(const Scene& scene, const resident::ExpectedContacts& contacts) {
+  Method method = test::fixed_method("log", 40);
+  test::use_resident_solver(method);
+  const Plan plan = make_plan(scene, method, plan_options(method));
+  EXPECT_TRUE(plan.term("contact").needed);
+  resident::ResidentSystem system(std::make_unique<exec::CountingExecutor>(true), scene, method, plan);
+  system.count_memory(contacts);
+  return {system.memory().at_peak(), static_cast<double>(system.memory().peak())};
+}
+
+// 184.1 million contacts, 8.2 million vertices, 16.4 million triangles, 0.49 stored upper blocks a contact. Contacts are
+// counted as they are on a small cloth; what a vertex needs is the difference of two cloths. The peaks of both are added,
+// though they need not be at one time.
+TEST(ResidentMemory, OfTheDensestSceneIsWithinItsBudget) {
+  constexpr double contacts = 184.1e6, vertices = 8.2e6, bytes_a_piece = 8 * 90.0 * (1 << 18);
+  const Scene small = cloth(30), large = cloth(60);
+  Peak few = counted(small, {}), many = counted(large, {});
+  for (Peak* peak : {&few, &many})
+    peak->total -= static_cast<double>(peak->by_name["local terms of elements"]);
+  const double a_vertex = (many.total - few.total) / (large.n_vertices() - small.n_vertices());
+  EXPECT_GT(a_vertex, 1000);
+  EXPECT_GT(many.by_name.at("limit bands"), 16u * 2 * 59 * 59);
+  const Peak of_contacts = counted(small, rows_of(contacts));
+  EXPECT_GT(of_contacts.by_name.at("contact vertices"), static_cast<std::size_t>(16 * contacts) - 1);
+  const double total = of_contacts.total + a_vertex * vertices + bytes_a_piece;
+  RecordProperty("bytes_a_contact", std::to_string(total / contacts));
+  EXPECT_LE(total, 70 * 1073741824.0)
+      << of_contacts.total / contacts << " B a contact, " << a_vertex << " B a vertex";
+  EXPECT_LE(total / contacts, 380) << of_contacts.total / contacts << " B a contact, " << a_vertex
+                                   << " B a vertex";
+}
+
+TEST(ResidentMemory, IsCountedAsTheHostAllocatesIt) {
+  const Scene scene = test::two_sheets();
+  Method method = test::fixed_method("log", 40);
+  test::use_resident_solver(method);
+  const Plan plan = make_plan(scene, method, plan_options(method));
+  resident::ResidentSystem on_host(std::make_unique<exec::HostExecutor>(), scene, method, plan);
+  on_host.begin_step(scene.x0, {1, scene.x0}, 0.01, 1);
+  on_host.assemble();
+  ASSERT_GT(on_host.memory().by_name().at("contact gaps"), 0u);
+  resident::ExpectedContacts expected;
+  expected.rows = static_cast<Index>(on_host.memory().by_name().at("contact gaps") / sizeof(double));
+  const Peak counts = counted(scene, expected);
+  for (const char* name :
+       {"positions", "element matrix values", "pcg direction", "surface edges vertices", "tree of edges",
+        "contact normals", "contact weights", "contact b'", "rows of vertices, starts"}) {
+    EXPECT_EQ(counts.by_name.at(name), on_host.memory().by_name().at(name)) << name;
+  }
+}
+
+Method resident_method(Index frugal_from) {
+  Method method = test::fixed_method("cubic", 40);
+  method.hessian_mode = HessianMode::projected_full;
+  test::use_resident_solver(method);
+  method.make_system = [frugal_from](const Scene& scene, Method& of, const Plan& plan) {
+    auto system =
+        std::make_unique<resident::ResidentSystem>(std::make_unique<exec::HostExecutor>(), scene, of, plan);
+    system->set_frugal_from(frugal_from);
+    return system;
+  };
+  return method;
+}
+
+TEST(ResidentMemory, GivenBackBetweenStagesChangesNoBit) {
+  const test::RunEnd kept = test::run_steps(test::two_sheets(), resident_method(Index{1} << 40), 8),
+                     frugal = test::run_steps(test::two_sheets(), resident_method(1), 8);
+  ASSERT_GT(kept.contacts, 20u);
+  EXPECT_EQ(kept.iterations, frugal.iterations);
+  EXPECT_TRUE(kept.x == frugal.x);
+}
+
+// The two tables share columns: a trial that was not accepted must not be seen.
+TEST(ResidentMemory, ARefusedTrialLeavesTheIterate) {
+  Scene scene = test::two_sheets();
+  Method method = resident_method(1);
+  const Plan plan = make_plan(scene, method, plan_options(method));
+  resident::ResidentSystem system(std::make_unique<exec::HostExecutor>(), scene, method, plan);
+  Prediction falling{1, scene.x0};
+  falling.x_tilde.row(2).array() -= 2e-3;
+  system.begin_step(scene.x0, falling, 0.01, 1);
+  system.hold();
+  system.assemble();
+  ASSERT_EQ(system.find_direction().linear.status, LinearStatus::ok);
+  StepNumbers before, after;
+  system.report_end(before);
+  ASSERT_GT(before.contacts.total(), 0u);
+  const double curvature = system.direction_curvature(), energy = system.energy();
+  system.prepare_motion(MotionEnd::free, false);
+  IterationReport unread;
+  const double alpha = system.bound_motion(unread);
+  ASSERT_TRUE(system.try_motion(0.5 * alpha));
+  EXPECT_EQ(system.energy(), energy);
+  system.report_end(after);
+  EXPECT_EQ(after.contact_load_max_N.value, before.contact_load_max_N.value);
+  EXPECT_EQ(after.contacts.total(), before.contacts.total());
+  ASSERT_TRUE(system.try_motion(0.25 * alpha));
+  EXPECT_EQ(system.direction_curvature(), curvature);
+}
+
+TEST(ResidentMemory, ThatIsMissingIsNamed) {
+  const Scene scene = test::two_sheets();
+  Method method = resident_method(1);
+  const Plan plan = make_plan(scene, method, plan_options(method));
+  auto executor = std::make_unique<exec::HostExecutor>();
+  executor->limit_memory(100000);
+  try {
+    resident::ResidentSystem system(std::move(executor), scene, method, plan);
+    system.begin_step(scene.x0, {1, scene.x0}, 0.01, 1);
+    system.assemble();
+    FAIL();
+  } catch (const exec::OutOfMemory& error) {
+    const std::string text = error.what();
+    for (const char* part : {"no memory for ", "asked for", "97.66 KiB"}) {
+      EXPECT_NE(text.find(part), std::string::npos) << text;
+    }
+  }
+}
+
+}  // namespace
+}  // namespace bb
