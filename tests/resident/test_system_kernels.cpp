@@ -8,7 +8,7 @@
 #include <random>
 
 #include "core/exec/host_executor.hpp"
-#include "core/resident/elements/resident_sum.hpp"
+#include "core/resident/sums/resident_sum.hpp"
 
 namespace bb::resident {
 namespace {
