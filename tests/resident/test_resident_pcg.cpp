@@ -212,12 +212,7 @@ TEST(ResidentPcg, NamesASingularBlock) {
   EXPECT_EQ(solve(from_dense(a), VecXd::Ones(9), {0, 7, 7}, {}).report.status, LinearStatus::ok);
 }
 
-struct Negate {
-  double* x;
-  BB_HD void operator()(Index i) const { x[i] = -x[i]; }
-};
-
-/// Block Jacobi with the wrong sign, from the start or from the first iteration on.
+/// Block Jacobi with the wrong sign, from the start or from the first iteration on. On the host: not within a graph.
 class Negative final : public ResidentPreconditioner {
  public:
   Negative(exec::Executor& executor, bool at_once)
@@ -238,8 +233,14 @@ class Negative final : public ResidentPreconditioner {
 
  private:
   void negate(const PcgVectors& v) {
-    executor_.each(3 * v.partition.n_rows, Negate{v.z});
-    executor_.each(v.partition.n_blocks(), Negate{v.partial_rz});
+    negate(v.z, 3 * v.partition.n_rows);
+    negate(v.partial_rz, v.partition.n_blocks());
+  }
+  void negate(double* column, Index n) {
+    std::vector<double> values(static_cast<std::size_t>(n));
+    executor_.download(values.data(), column, values.size() * sizeof(double));
+    for (double& x : values) x = -x;
+    executor_.upload(column, values.data(), values.size() * sizeof(double));
   }
   exec::Executor& executor_;
   BlockJacobi inner_;
@@ -254,6 +255,7 @@ TEST(ResidentPcg, NamesAnIndefinitePreconditioner) {
     Buffer<double> b(executor, "b"), x(executor, "x", 108);
     b.upload(plain(random_vector(108, 2)));
     ResidentPcg pcg(executor, 36, std::make_unique<Negative>(executor, at_once));
+    pcg.launch_plainly(true);
     const LinearReport report =
         pcg.solve(owned.matrix(), owned.fixed.data(), b.data(), x.data(), 1e-10, 1000);
     EXPECT_EQ(report.status, LinearStatus::preconditioner_indefinite);

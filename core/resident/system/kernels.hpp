@@ -1,5 +1,5 @@
 // All kernels of this room.
 #pragma once
 
-#include "core/resident/elements/sum_kernels.hpp"
+#include "core/resident/sums/sum_kernels.hpp"
 #include "core/resident/system/system_kernels.hpp"
