@@ -107,8 +107,8 @@ void NewtonSystem::keep(Archive& archive) {
 }
 
 // What is frozen for a step is frozen at its start: that state is assembled first.
-void NewtonSystem::adopt(const StepFrame& frame, const Positions& x, const Positions& target, const HessianLevel& level,
-                         const KnownStiffness& known) {
+void NewtonSystem::adopt(const StepFrame& frame, const Positions& x, const Positions& target,
+                         const HessianLevel& level, const KnownStiffness& known) {
   begin_step(frame.x_n, {frame.c, frame.x_tilde}, frame.dt, frame.load_factor);
   for (const auto& term : terms_) term->adopt(known);
   if (x != x_) {

@@ -18,7 +18,8 @@ inline void use_resident_solver(Method& method, double tolerance = 1e-11) {
 inline void run_resident(Method& method, exec::Order order = exec::Order::threads) {
   use_resident_solver(method);
   method.make_system = [order](const Scene& scene, Method& of, const Plan& plan) {
-    return std::make_unique<resident::ResidentSystem>(std::make_unique<exec::HostExecutor>(order, 7u), scene, of, plan);
+    return std::make_unique<resident::ResidentSystem>(std::make_unique<exec::HostExecutor>(order, 7u), scene,
+                                                      of, plan);
   };
 }
 
@@ -67,13 +68,15 @@ inline Scene two_sheets() {
   const double c = std::cos(0.3), s = std::sin(0.3);
   for (int i = 0; i < upper.mesh.vertices.cols(); ++i) {
     const Vec3d x = upper.mesh.vertices.col(i);
-    upper.mesh.vertices.col(i) = Vec3d(0.6 * (c * x[0] - s * x[1]), 0.6 * (s * x[0] + c * x[1]), x[2] + 0.003 * x[0]);
+    upper.mesh.vertices.col(i) =
+        Vec3d(0.6 * (c * x[0] - s * x[1]), 0.6 * (s * x[0] + c * x[1]), x[2] + 0.003 * x[0]);
   }
   builder.add_body(upper);
   return builder.finish();
 }
 
-inline Method method_with_policy(const std::string& shape, const std::string& policy, const ParameterMap& parameters) {
+inline Method method_with_policy(const std::string& shape, const std::string& policy,
+                                 const ParameterMap& parameters) {
   Method method = fixed_method(shape, 20);
   StiffnessPolicyConfig config;
   config.name = policy;

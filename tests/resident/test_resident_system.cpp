@@ -74,7 +74,8 @@ void expect_same_iterate(Both& both) {
   ASSERT_GT(both.cpu.energy(TermGroup::contact), 0);
   EXPECT_NEAR(both.resident.energy(), both.cpu.energy(), 1e-13 * std::abs(both.cpu.energy()));
   for (const TermGroup group : {TermGroup::load, TermGroup::elastic, TermGroup::limit, TermGroup::contact}) {
-    EXPECT_NEAR(both.resident.energy(group), both.cpu.energy(group), 1e-13 * (1 + std::abs(both.cpu.energy(group))));
+    EXPECT_NEAR(both.resident.energy(group), both.cpu.energy(group),
+                1e-13 * (1 + std::abs(both.cpu.energy(group))));
   }
   EXPECT_LT(relative(both.resident.gradient(), both.cpu.gradient()), 1e-13);
   ASSERT_EQ(both.cpu.find_direction().linear.status, LinearStatus::ok);
@@ -104,7 +105,8 @@ TEST(ResidentSystem, HasTheNumbersOfTheIterate) {
 
 TEST(ResidentSystem, BoundsAndTriesTheSameMotions) {
   Both both(touching(test::cloth_on_plate(), 0.012), touching_method);
-  for (StepSystem* system : both.systems()) ASSERT_EQ(system->find_direction().linear.status, LinearStatus::ok);
+  for (StepSystem* system : both.systems())
+    ASSERT_EQ(system->find_direction().linear.status, LinearStatus::ok);
   for (StepSystem* system : both.systems()) {
     system->scale_direction(30);  // far beyond contact
     system->prepare_motion(MotionEnd::free, true);
@@ -153,7 +155,8 @@ void expect_same_run(const Scene& scene, const std::function<Method()>& method, 
   Method on_cpu = method(), resident = method();
   test::use_resident_solver(on_cpu);
   run_resident(resident);
-  const RunEnd cpu = run_steps(scene, std::move(on_cpu), steps), ours = run_steps(scene, std::move(resident), steps);
+  const RunEnd cpu = run_steps(scene, std::move(on_cpu), steps),
+               ours = run_steps(scene, std::move(resident), steps);
   EXPECT_EQ(ours.status, cpu.status);
   EXPECT_GT(cpu.contacts, 0u);
   EXPECT_GE(ours.contacts, cpu.contacts);  // one a pair, which the CPU merges
@@ -165,7 +168,8 @@ void expect_same_run(const Scene& scene, const std::function<Method()>& method, 
 TEST(ResidentRun, EndsWhereTheCpuEndsForEveryShape) {
   for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage"}) {
     SCOPED_TRACE(shape);
-    expect_same_run(test::cloth_on_plate(), [&] { return test::fixed_method(shape, 20); }, 12, 1e-6);
+    expect_same_run(
+        test::cloth_on_plate(), [&] { return test::fixed_method(shape, 20); }, 12, 1e-6);
   }
 }
 
@@ -176,17 +180,20 @@ TEST(ResidentRun, EndsWhereTheCpuEndsForEveryPolicy) {
       {"elasticity_inclusive", {{"mass_term", std::string("inertia")}}},
       {"elasticity_inclusive", {{"mass_term", std::string("inertia")}, {"refresh", std::string("per_step")}}},
       {"elasticity_inclusive",
-       {{"mass_term", std::string("scaled")}, {"refresh", std::string("per_step")}, {"derivative", std::string("included")}}}};
+       {{"mass_term", std::string("scaled")},
+        {"refresh", std::string("per_step")},
+        {"derivative", std::string("included")}}}};
   for (const auto& [name, parameters] : policies) {
     SCOPED_TRACE(std::string(name) + " " + std::to_string(parameters.size()));
-    expect_same_run(test::two_sheets(), [&] { return test::method_with_policy("cubic", name, parameters); }, 10, 1e-6);
+    expect_same_run(
+        test::two_sheets(), [&] { return test::method_with_policy("cubic", name, parameters); }, 10, 1e-6);
   }
 }
 
 TEST(ResidentRun, EndsWhereTheCpuEndsForEveryHessian) {
   for (const HessianMode mode : {HessianMode::gauss_newton, HessianMode::projected_full}) {
-    for (const StepHessian choice : {StepHessian::clamped, StepHessian::absolute, StepHessian::exact_or_clamped,
-                                     StepHessian::blend}) {
+    for (const StepHessian choice :
+         {StepHessian::clamped, StepHessian::absolute, StepHessian::exact_or_clamped, StepHessian::blend}) {
       SCOPED_TRACE(std::string(to_string(choice)) + " " + std::to_string(static_cast<int>(mode)));
       const auto method = [&] {
         Method out = test::fixed_method("log", 20);
@@ -251,7 +258,8 @@ TEST(ResidentSystem, RefusesWhatHasNoDeviceForm) {
   };
   EXPECT_EQ(message([](Method&) {}), "nothing");
   EXPECT_NE(message([](Method& m) { m.linear = {}; }).find("pcg_resident"), std::string::npos);
-  EXPECT_NE(message([](Method& m) { m.contact.shape.name = "of a plugin"; }).find("of a plugin"), std::string::npos);
+  EXPECT_NE(message([](Method& m) { m.contact.shape.name = "of a plugin"; }).find("of a plugin"),
+            std::string::npos);
 }
 
 }  // namespace

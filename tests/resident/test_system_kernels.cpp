@@ -47,7 +47,8 @@ TEST(SystemKernels, Columns) {
   least.add(b.size() / 3, ColumnNorms{g.data()});
   double longest = 0;
   for (std::size_t v = 0; v < n / 3; ++v) {
-    longest = std::max(longest, std::sqrt(a[3 * v] * a[3 * v] + a[3 * v + 1] * a[3 * v + 1] + a[3 * v + 2] * a[3 * v + 2]));
+    longest = std::max(
+        longest, std::sqrt(a[3 * v] * a[3 * v] + a[3 * v + 1] * a[3 * v + 1] + a[3 * v + 2] * a[3 * v + 2]));
   }
   ASSERT_GT(longest, 1);
   EXPECT_EQ(least.largest(), longest);
@@ -56,7 +57,8 @@ TEST(SystemKernels, Columns) {
 /// Rows of five kinds, some of them mollified, with a stiffness of their own or one for all.
 struct SomeRows {
   static constexpr std::size_t n = 1000;
-  std::vector<double> d = positive(3), d_hat = positive(4), kappa = positive(5), push = positive(6), stretch = positive(7);
+  std::vector<double> d = positive(3), d_hat = positive(4), kappa = positive(5), push = positive(6),
+                      stretch = positive(7);
   std::vector<std::uint8_t> kind;
   exec::Buffer<double> d_on, d_hat_on, kappa_on, push_on, stretch_on;
   exec::Buffer<std::uint8_t> kind_on;
@@ -108,7 +110,8 @@ TEST(SystemKernels, NumbersOfRows) {
   SomeRows rows(executor);
   ResidentLeast least(executor);
   ResidentSum sum(executor);
-  for (const RowNumber which : {RowNumber::gap_rel, RowNumber::kappa, RowNumber::load, RowNumber::curvature}) {
+  for (const RowNumber which :
+       {RowNumber::gap_rel, RowNumber::kappa, RowNumber::load, RowNumber::curvature}) {
     for (const bool uniform : {false, true}) {
       double largest = 0, smallest = 1e300, total = 0;
       for (std::size_t r = 0; r < rows.n; ++r) {

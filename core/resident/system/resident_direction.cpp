@@ -63,7 +63,8 @@ StepHessian ResidentSystem::choice_of(std::string_view term) const {
 }
 
 HessianRequest ResidentSystem::request_of(StepHessian choice, bool exact) const {
-  return hessian_request(choice, exact ? 0 : level_.t(), exact ? infinity : level_.threshold(), force_.data());
+  return hessian_request(choice, exact ? 0 : level_.t(), exact ? infinity : level_.threshold(),
+                         force_.data());
 }
 
 HessianChoice ResidentSystem::contact_choice(bool exact) const {
@@ -105,8 +106,8 @@ double ResidentSystem::add_tikhonov(double, double) {
 // out = A v over free rows; returns v . out.
 double ResidentSystem::multiply(const Column& v, Column& out) {
   const Partition partition = Partition::of(v.size() / 3);
-  executor_->blocks(partition.n_blocks(), MultiplyDot{partition, matrix(), fixed_bits_.data(), v.data(), out.data(),
-                                                      product_partial_.data(), nullptr});
+  executor_->blocks(partition.n_blocks(), MultiplyDot{partition, matrix(), fixed_bits_.data(), v.data(),
+                                                      out.data(), product_partial_.data(), nullptr});
   sum_.clear();
   sum_.add(partition.n_blocks(), ColumnSum{product_partial_.data()});
   return sum_.get().value();

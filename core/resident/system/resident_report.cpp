@@ -168,7 +168,8 @@ NewtonSystem& ResidentSystem::on_cpu() {
   cpu().keep(again);
   KnownStiffness known;
   if (contact_) known = contact_->stiffness().known();
-  cpu().adopt({x_start_, prediction_.x_tilde, frame_.dt, prediction_.c, frame_.load_factor}, x(), target_, level_, known);
+  cpu().adopt({x_start_, prediction_.x_tilde, frame_.dt, prediction_.c, frame_.load_factor}, x(), target_,
+              level_, known);
   return cpu();
 }
 
