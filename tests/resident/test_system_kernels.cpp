@@ -47,7 +47,8 @@ TEST(SystemKernels, Columns) {
   least.add(b.size() / 3, ColumnNorms{g.data()});
   double longest = 0;
   for (std::size_t v = 0; v < n / 3; ++v) {
-    longest = std::max(longest, std::sqrt(a[3 * v] * a[3 * v] + a[3 * v + 1] * a[3 * v + 1] + a[3 * v + 2] * a[3 * v + 2]));
+    longest = std::max(
+        longest, std::sqrt(a[3 * v] * a[3 * v] + a[3 * v + 1] * a[3 * v + 1] + a[3 * v + 2] * a[3 * v + 2]));
   }
   ASSERT_GT(longest, 1);
   EXPECT_EQ(least.largest(), longest);
@@ -56,7 +57,8 @@ TEST(SystemKernels, Columns) {
 /// Rows of five kinds, some of them mollified, with a stiffness of their own or one for all.
 struct SomeRows {
   static constexpr std::size_t n = 1000;
-  std::vector<double> d = positive(3), d_hat = positive(4), kappa = positive(5), push = positive(6), stretch = positive(7);
+  std::vector<double> d = positive(3), d_hat = positive(4), kappa = positive(5), push = positive(6),
+                      stretch = positive(7);
   std::vector<std::uint8_t> kind;
   exec::Buffer<double> d_on, d_hat_on, kappa_on, push_on, stretch_on;
   exec::Buffer<std::uint8_t> kind_on;
@@ -108,7 +110,8 @@ TEST(SystemKernels, NumbersOfRows) {
   SomeRows rows(executor);
   ResidentLeast least(executor);
   ResidentSum sum(executor);
-  for (const RowNumber which : {RowNumber::gap_rel, RowNumber::kappa, RowNumber::load, RowNumber::curvature}) {
+  for (const RowNumber which :
+       {RowNumber::gap_rel, RowNumber::kappa, RowNumber::load, RowNumber::curvature}) {
     for (const bool uniform : {false, true}) {
       double largest = 0, smallest = 1e300, total = 0;
       for (std::size_t r = 0; r < rows.n; ++r) {
@@ -127,6 +130,25 @@ TEST(SystemKernels, NumbersOfRows) {
       ASSERT_GT(largest, 1);
     }
   }
+}
+
+TEST(SystemKernels, ProductOverFreeNumbers) {
+  exec::HostExecutor executor;
+  const std::size_t n = 101;
+  const std::vector<double> a = random_numbers(3 * n, 8), b = random_numbers(3 * n, 9);
+  std::vector<FixedMask> fixed(n);
+  double expected = 0;
+  for (std::size_t v = 0; v < n; ++v) {
+    fixed[v] = static_cast<FixedMask>(v % 8);
+    for (std::size_t k = 0; k < 3; ++k) expected += (v % 8 >> k & 1) != 0 ? 0 : a[3 * v + k] * b[3 * v + k];
+  }
+  const auto a_on = on(executor, a), b_on = on(executor, b);
+  exec::Buffer<FixedMask> fixed_on(executor, "fixed");
+  fixed_on.upload(fixed);
+  ResidentSum sum(executor);
+  sum.add(3 * n, FreeDot{a_on.data(), b_on.data(), fixed_on.data()});
+  ASSERT_NE(expected, 0);
+  EXPECT_NEAR(sum.get().value(), expected, 1e-13);
 }
 
 TEST(SystemKernels, RowsOfAKind) {
