@@ -132,6 +132,25 @@ TEST(SystemKernels, NumbersOfRows) {
   }
 }
 
+TEST(SystemKernels, ProductOverFreeNumbers) {
+  exec::HostExecutor executor;
+  const std::size_t n = 101;
+  const std::vector<double> a = random_numbers(3 * n, 8), b = random_numbers(3 * n, 9);
+  std::vector<FixedMask> fixed(n);
+  double expected = 0;
+  for (std::size_t v = 0; v < n; ++v) {
+    fixed[v] = static_cast<FixedMask>(v % 8);
+    for (std::size_t k = 0; k < 3; ++k) expected += (v % 8 >> k & 1) != 0 ? 0 : a[3 * v + k] * b[3 * v + k];
+  }
+  const auto a_on = on(executor, a), b_on = on(executor, b);
+  exec::Buffer<FixedMask> fixed_on(executor, "fixed");
+  fixed_on.upload(fixed);
+  ResidentSum sum(executor);
+  sum.add(3 * n, FreeDot{a_on.data(), b_on.data(), fixed_on.data()});
+  ASSERT_NE(expected, 0);
+  EXPECT_NEAR(sum.get().value(), expected, 1e-13);
+}
+
 TEST(SystemKernels, RowsOfAKind) {
   exec::HostExecutor executor;
   SomeRows rows(executor);
