@@ -82,13 +82,15 @@ void print_memory(const DeviceMemory& memory) {
       continue;
     }
     fmt::print("  {:<40} {:>12}", name, exec::bytes_text(bytes));
-    fmt::print(memory.contacts > 0 ? " {:>8.2f} B a contact\n" : "\n",
-               static_cast<double>(bytes) / memory.contacts);
+    fmt::print("{}\n", memory.contacts > 0 ? fmt::format(" {:>8.2f} B a contact",
+                                                         static_cast<double>(bytes) / memory.contacts)
+                                           : "");
   }
   fmt::print("  {:<40} {:>12}\n", "all others, below 0.5 % each", exec::bytes_text(rest));
   fmt::print("  {:<40} {:>12}", "total", exec::bytes_text(memory.total));
-  fmt::print(memory.contacts > 0 ? " {:>8.2f} B a contact, {:g} B a contact row\n" : "\n",
-             memory.bytes_a_contact(), memory.bytes_a_row);
+  fmt::print("{}\n", memory.contacts > 0 ? fmt::format(" {:>8.2f} B a contact, {:g} B a contact row",
+                                                       memory.bytes_a_contact(), memory.bytes_a_row)
+                                         : "");
   print_card(memory.total);
 }
 
