@@ -72,10 +72,6 @@ void print_card(std::size_t total) {
                           : "it does not fit, " + exec::bytes_text(total - probe.free) + " are missing");
 }
 
-void print_a_contact(const DeviceMemory& memory, double bytes) {
-  if (memory.contacts > 0) fmt::print(" {:>8.2f} B a contact", bytes / memory.contacts);
-}
-
 void print_memory(const DeviceMemory& memory) {
   fmt::print("\nmemory of the device at the peak of a step, buffer by buffer\n");
   fmt::print("  {:.6g} contacts ({})\n", memory.contacts, memory.source);
@@ -86,14 +82,15 @@ void print_memory(const DeviceMemory& memory) {
       continue;
     }
     fmt::print("  {:<40} {:>12}", name, exec::bytes_text(bytes));
-    print_a_contact(memory, static_cast<double>(bytes));
-    fmt::print("\n");
+    fmt::print("{}\n", memory.contacts > 0 ? fmt::format(" {:>8.2f} B a contact",
+                                                         static_cast<double>(bytes) / memory.contacts)
+                                           : "");
   }
   fmt::print("  {:<40} {:>12}\n", "all others, below 0.5 % each", exec::bytes_text(rest));
   fmt::print("  {:<40} {:>12}", "total", exec::bytes_text(memory.total));
-  print_a_contact(memory, static_cast<double>(memory.total));
-  fmt::print("\n");
-  if (memory.contacts > 0) fmt::print("  {:g} B a contact row\n", memory.bytes_a_row);
+  fmt::print("{}\n", memory.contacts > 0 ? fmt::format(" {:>8.2f} B a contact, {:g} B a contact row",
+                                                       memory.bytes_a_contact(), memory.bytes_a_row)
+                                         : "");
   print_card(memory.total);
 }
 
