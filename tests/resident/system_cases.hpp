@@ -75,6 +75,14 @@ inline Scene two_sheets() {
   return builder.finish();
 }
 
+/// What is higher than 2 cm lowered, so that it touches at the start.
+inline Scene touching(Scene scene, double by) {
+  for (int v = 0; v < scene.n_vertices(); ++v) {
+    if (scene.x0(2, v) > 0.02) scene.x0(2, v) -= by;
+  }
+  return scene;
+}
+
 inline Method method_with_policy(const std::string& shape, const std::string& policy,
                                  const ParameterMap& parameters) {
   Method method = fixed_method(shape, 20);

@@ -62,19 +62,19 @@ TEST(ResidentMemory, OfTheDensestSceneIsWithinItsBudget) {
     peak->total -= static_cast<double>(peak->by_name["local terms of elements"]);
   const double a_vertex = (many.total - few.total) / (large.n_vertices() - small.n_vertices());
   EXPECT_GT(a_vertex, 1000);
-  EXPECT_GT(many.by_name.at("limit bands"), 16u * 2 * 59 * 59);
+  EXPECT_GE(many.by_name.at("limit bands"), 16u * 2 * 59 * 59);
   const Peak of_contacts = counted(small, rows_of(contacts));
   EXPECT_GT(of_contacts.by_name.at("contact vertices"), static_cast<std::size_t>(16 * contacts) - 1);
   const double total = of_contacts.total + a_vertex * vertices + bytes_a_piece;
   RecordProperty("bytes_a_contact", std::to_string(total / contacts));
   EXPECT_LE(total, 70 * 1073741824.0)
       << of_contacts.total / contacts << " B a contact, " << a_vertex << " B a vertex";
-  EXPECT_LE(total / contacts, 380) << of_contacts.total / contacts << " B a contact, " << a_vertex
+  EXPECT_LE(total / contacts, 400) << of_contacts.total / contacts << " B a contact, " << a_vertex
                                    << " B a vertex";
 }
 
 TEST(ResidentMemory, IsCountedAsTheHostAllocatesIt) {
-  const Scene scene = test::two_sheets();
+  const Scene scene = test::touching(test::two_sheets(), 0.01);
   Method method = test::fixed_method("log", 40);
   test::use_resident_solver(method);
   const Plan plan = make_plan(scene, method, plan_options(method));
@@ -106,8 +106,8 @@ Method resident_method(Index frugal_from) {
 }
 
 TEST(ResidentMemory, GivenBackBetweenStagesChangesNoBit) {
-  const test::RunEnd kept = test::run_steps(test::two_sheets(), resident_method(Index{1} << 40), 8),
-                     frugal = test::run_steps(test::two_sheets(), resident_method(1), 8);
+  const test::RunEnd kept = test::run_steps(test::cloth_on_plate(), resident_method(Index{1} << 40), 10),
+                     frugal = test::run_steps(test::cloth_on_plate(), resident_method(1), 10);
   ASSERT_GT(kept.contacts, 20u);
   EXPECT_EQ(kept.iterations, frugal.iterations);
   EXPECT_TRUE(kept.x == frugal.x);
@@ -115,7 +115,7 @@ TEST(ResidentMemory, GivenBackBetweenStagesChangesNoBit) {
 
 // The two tables share columns: a trial that was not accepted must not be seen.
 TEST(ResidentMemory, ARefusedTrialLeavesTheIterate) {
-  Scene scene = test::two_sheets();
+  const Scene scene = test::touching(test::two_sheets(), 0.01);
   Method method = resident_method(1);
   const Plan plan = make_plan(scene, method, plan_options(method));
   resident::ResidentSystem system(std::make_unique<exec::HostExecutor>(), scene, method, plan);

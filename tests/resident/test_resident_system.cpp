@@ -57,14 +57,6 @@ Method touching_method() {
   return method;
 }
 
-/// What is higher than 2 cm lowered, so that it touches at the start.
-Scene touching(Scene scene, double by) {
-  for (int v = 0; v < scene.n_vertices(); ++v) {
-    if (scene.x0(2, v) > 0.02) scene.x0(2, v) -= by;
-  }
-  return scene;
-}
-
 double relative(const Positions& a, const Positions& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
 }
@@ -94,17 +86,17 @@ void expect_same_iterate(Both& both) {
 }
 
 TEST(ResidentSystem, HasTheNumbersOfTheIterate) {
-  Both plate(touching(test::cloth_on_plate(), 0.012), touching_method);
+  Both plate(test::touching(test::cloth_on_plate(), 0.012), touching_method);
   EXPECT_FALSE(plate.cpu.at_target());
   EXPECT_FALSE(plate.resident.at_target());
   expect_same_iterate(plate);
   EXPECT_TRUE(plate.resident.at_target());  // held
-  Both sheets(touching(test::two_sheets(), 0.01), touching_method);
+  Both sheets(test::touching(test::two_sheets(), 0.01), touching_method);
   expect_same_iterate(sheets);
 }
 
 TEST(ResidentSystem, BoundsAndTriesTheSameMotions) {
-  Both both(touching(test::cloth_on_plate(), 0.012), touching_method);
+  Both both(test::touching(test::cloth_on_plate(), 0.012), touching_method);
   for (StepSystem* system : both.systems())
     ASSERT_EQ(system->find_direction().linear.status, LinearStatus::ok);
   for (StepSystem* system : both.systems()) {
@@ -134,7 +126,7 @@ TEST(ResidentSystem, BoundsAndTriesTheSameMotions) {
 }
 
 TEST(ResidentSystem, ShowsItsStateToTheCpu) {
-  Both both(touching(test::cloth_on_plate(), 0.012), touching_method);
+  Both both(test::touching(test::cloth_on_plate(), 0.012), touching_method);
   ASSERT_EQ(both.resident.find_direction().linear.status, LinearStatus::ok);
   both.resident.prepare_motion(MotionEnd::on_target, true);
   IterationReport report;
