@@ -88,6 +88,7 @@ TEST(ResidentMemory, IsCountedAsTheHostAllocatesIt) {
   for (const char* name :
        {"positions", "element matrix values", "pcg direction", "surface edges vertices", "tree of edges",
         "contact normals", "contact weights", "contact b'", "rows of vertices, starts"}) {
+    ASSERT_TRUE(counts.by_name.count(name) && on_host.memory().by_name().count(name)) << name;
     EXPECT_EQ(counts.by_name.at(name), on_host.memory().by_name().at(name)) << name;
   }
 }

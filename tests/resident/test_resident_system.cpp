@@ -221,8 +221,9 @@ TEST(ResidentRun, IsShownToTheCpuWithItsStiffness) {
                      potential = {{"mass_term", std::string("scaled")},
                                   {"refresh", std::string("per_step")},
                                   {"derivative", std::string("included")}};
-  const std::pair<const char*, ParameterMap> policies[] = {
-      {"fixed", {{"kappa_N_per_m", 20.0}}}, {"elasticity_inclusive", frozen}, {"elasticity_inclusive", potential}};
+  const std::pair<const char*, ParameterMap> policies[] = {{"fixed", {{"kappa_N_per_m", 20.0}}},
+                                                           {"elasticity_inclusive", frozen},
+                                                           {"elasticity_inclusive", potential}};
   for (const auto& [name, parameters] : policies) {
     SCOPED_TRACE(std::string(name) + " " + std::to_string(parameters.size()));
     Method method = test::method_with_policy("cubic", name, parameters);
