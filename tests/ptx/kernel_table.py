@@ -132,7 +132,7 @@ def markdown(rows: dict[str, dict]) -> str:
         "# Kernels on the device",
         "",
         "Registers, stack and spills in bytes: ptxas for sm_90. FP64: instructions in the PTX. Lines (128 B) and sectors",
-        "(32 B) a request of a warp, in the tests. Written by tests/ptx/kernel_table.py; CI fails when a number grows.",
+        "(32 B) a request of a warp, in the tests. Written by tests/ptx/kernel_table.py; `--check` fails when a number grows.",
         "",
         "| kernel | room | registers | stack | spills | FP64 | lines | sectors |",
         "|---|---|---|---|---|---|---|---|",
