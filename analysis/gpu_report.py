@@ -105,8 +105,9 @@ def markdown(records: list[dict], prices: dict) -> str:
             text += [f"## Kernels on {record['device']['card']}, {record['date_utc'][:10]}", ""]
             text += _table(["kernel", "launches", "us a launch", "GB/s", "of the copy"], kernel_rows(record)) if record["kernels"] else ["Not measured.", ""]
     else:
-        text += [f"**{NEVER}** No record of a card is there. What was proven without one: the kernels give the same bits on host threads in any order, as nvcc's PTX on the CPU, "
-                 "and through the compiled executor on a stand-in for the CUDA run time. Not proven: ptxas's machine code, CUB, graphs and the driver on a device, memory order "
+        text += [f"**{NEVER}** No record of a card is there. What was proven without one: the kernels give the same bits on host threads in any order; nvcc's PTX of every element "
+                 "function and of the linear solver gives them on the CPU; the compiled executor gives them on a stand-in for the CUDA run time. Not proven: the PTX of the "
+                 "kernels of contact and elements (docs/device.md), ptxas's machine code, CUB, graphs and the driver on a device, memory order "
                  "between blocks, and every time and rate.", ""]
     text += ["## What an hour costs", "", f"The large scene is `configs/gpu/{LARGE}.json`. Prices are inputs (`results/gpu/prices.json`), steps are measured.", ""]
     text += _table(["card", "price of an hour", "steps in an hour", "a second of the scene"], cost_rows(records, prices))
