@@ -3,6 +3,7 @@
 # may be linked: bb_plain_rooms compiles their sources again.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(BB_PLAIN_OPTIONS -DEIGEN_DONT_VECTORIZE)
+file(GLOB BB_PTX_TRANSLATOR CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/ptx/translator/*.py")
 
 # bb_plain_rooms(NAME rooms... [WITHOUT other]): object library NAME of the sources of these rooms and of all that they
 # name, but for the rooms of another such library.
@@ -100,7 +101,7 @@ function(bb_ptx_translation name ptx option)
   cmake_path(GET ptx STEM module)
   add_custom_command(OUTPUT "${cpp}"
     COMMAND "${Python3_EXECUTABLE}" "${PROJECT_SOURCE_DIR}/tests/ptx/translate.py" "${ptx}" "${cpp}" --module "${module}" ${option}
-    DEPENDS "${ptx}" "${PROJECT_SOURCE_DIR}/tests/ptx/translate.py" VERBATIM COMMENT "Translating the PTX of ${name}")
+    DEPENDS "${ptx}" "${PROJECT_SOURCE_DIR}/tests/ptx/translate.py" ${BB_PTX_TRANSLATOR} VERBATIM COMMENT "Translating the PTX of ${name}")
   add_library(${name} OBJECT "${cpp}")
   # A function may have ten thousand lines: the optimiser's first level, and none of its passes that grow faster.
   target_compile_options(${name} PRIVATE -w -O1 ${BB_CODE_FLAGS})

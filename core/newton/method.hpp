@@ -6,6 +6,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <string_view>
 
 #include "core/integrators/integrator.hpp"
 #include "core/linear/linear_solver.hpp"
@@ -29,6 +30,11 @@ struct StepSolverOptions {
 
 struct Method : TermOptions {
   std::map<std::string, StepHessian, std::less<>> step_hessian;  // by term; what is left out is clamped
+  /// That of a term.
+  StepHessian hessian_of(std::string_view term) const {
+    const auto found = step_hessian.find(term);
+    return found == step_hessian.end() ? StepHessian::clamped : found->second;
+  }
   std::unique_ptr<Integrator> integrator;
   StepSolverOptions step_solver;
   LinearOptions linear;

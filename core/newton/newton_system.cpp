@@ -23,14 +23,9 @@ std::vector<std::uint8_t> fixed_dofs(const Scene& scene, const Plan& plan) {
 
 namespace {
 
-StepHessian choice_of(const Term& term, const Method& method) {
-  const auto found = method.step_hessian.find(term.name());
-  return found == method.step_hessian.end() ? StepHessian::clamped : found->second;
-}
-
 std::vector<StepHessian> choices_of(const TermList& terms, const Method& method) {
   std::vector<StepHessian> out;
-  for (const auto& term : terms) out.push_back(choice_of(*term, method));
+  for (const auto& term : terms) out.push_back(method.hessian_of(term->name()));
   return out;
 }
 
@@ -63,7 +58,8 @@ void NewtonSystem::set_fixed_families(const Method& method) {
   std::size_t n_changing = 0;
   for (const auto& term : terms_) {
     const bool fixed = term->fixed_stencils();
-    slots_.push_back({term.get(), fixed ? families.size() : n_changing, choice_of(*term, method), false});
+    slots_.push_back(
+        {term.get(), fixed ? families.size() : n_changing, method.hessian_of(term->name()), false});
     matrix_order_.push_back(matrix_order_.size());
     if (!fixed) {
       n_changing += term->families().size();

@@ -19,7 +19,10 @@ def module(name: str):
     return loaded
 
 
-translate, faults, table = module("translate"), module("inject_faults"), module("kernel_table")
+sys.path.insert(0, str(FOLDER))
+import translator  # noqa: E402
+
+faults, table, assigned = module("inject_faults"), module("kernel_table"), module("assigned")
 
 
 def kernel(body: str) -> str:
@@ -45,7 +48,7 @@ def kernel(body: str) -> str:
 
 
 def test_parameters_and_shared_memory_are_laid_out():
-    text = translate.translate(kernel("ld.param.u32 %r1, [k_param_1+16];\nmov.u32 %r2, b;\nst.shared.u32 [%r2+4], %r1;"), "m")
+    text = translator.translate(kernel("ld.param.u32 %r1, [k_param_1+16];\nmov.u32 %r2, b;\nst.shared.u32 [%r2+4], %r1;"), "m")
     assert "get<uint32_t>(t.params + 24)" in text
     assert "16u" in text  # b lies behind a
     assert '{"k", entry_1, 28, 40, false, params_1' in text
@@ -66,28 +69,28 @@ def test_parameters_and_shared_memory_are_laid_out():
     ],
 )
 def test_what_is_not_known_is_refused_with_line_and_text(line, message):
-    with pytest.raises(translate.Unknown) as error:
-        translate.translate(kernel(f"mov.u32 %r1, 1;\n{line}"), "m")
+    with pytest.raises(translator.Unknown) as error:
+        translator.translate(kernel(f"mov.u32 %r1, 1;\n{line}"), "m")
     assert message in str(error.value) and line.rstrip(";") in str(error.value) and "line 17" in str(error.value)
 
 
 def test_a_barrier_makes_the_kernel_and_its_callers_wait():
     called = kernel("{\n.param .b64 p;\nst.param.b64 [p+0], %rd1;\ncall.uni f, (p);\n}") + ".func f(.param .b64 f_0)\n{\n bar.sync 0;\n ret;\n}\n"
-    assert "true, params_1" in translate.translate(called, "m")
-    assert "false, params_1" in translate.translate(kernel("mov.u32 %r1, 1;"), "m")
+    assert "true, params_1" in translator.translate(called, "m")
+    assert "false, params_1" in translator.translate(kernel("mov.u32 %r1, 1;"), "m")
 
 
 def test_instructions_are_counted_by_straight_pieces_of_code():
-    text = translate.translate(kernel("setp.eq.s32 %p1, %r1, 0;\n@%p1 bra $L1;\nmov.u32 %r1, 1;\n$L1:\nmov.u32 %r2, 1;"), "m")
+    text = translator.translate(kernel("setp.eq.s32 %p1, %r1, 0;\n@%p1 bra $L1;\nmov.u32 %r1, 1;\n$L1:\nmov.u32 %r2, 1;"), "m")
     assert "blocks[] = {{16, 2}, {18, 1}, {20, 2}}" in text
 
 
 def test_faults_have_switches():
     body = "bar.sync 0;\nsetp.eq.s32 %p1, %r1, 0;\n@%p1 bra $L1;\nst.global.u32 [%rd1], %r1;\n$L1:\nbar.sync 0;"
-    text = translate.translate(kernel(body), "m", with_faults=True)
+    text = translator.translate(kernel(body), "m", with_faults=True)
     for kind in ("barrier", "guard", "store", "last barrier"):
         assert f'"{kind}", ' in text
-    assert "fault" not in translate.translate(kernel(body), "m")
+    assert "fault" not in translator.translate(kernel(body), "m")
 
 
 def test_the_list_of_faults_is_read():
@@ -115,3 +118,16 @@ def test_growth_names_kernel_and_number():
     assert table.grown(before, {"a": {"registers": 40, "lines": 2.0}}) == []
     assert table.grown(before, {"a": {"registers": 41}}) == ["a: registers 40 -> 41"]
     assert len(table.grown(before, {"b": {"registers": 1}})) == 1
+
+
+def test_a_register_that_some_path_does_not_set_is_named():
+    def read_unset(body: str) -> list[tuple[int, str]]:
+        (function,) = translator.Module(kernel(body), "m").functions.values()
+        return [(line, name) for line, name in assigned.unassigned(function) if not name.startswith("%p")]
+
+    assert read_unset("mov.u32 %r1, 1;\nadd.u32 %r2, %r1, %r1;") == []
+    ((_, name),) = read_unset("setp.eq.s32 %p1, 0, 0;\n@%p1 bra $L1;\nmov.u32 %r1, 1;\n$L1:\nadd.u32 %r2, %r1, 1;")
+    assert name == "%r1"
+    ((_, name),) = read_unset("mov.u32 %r2, %r1;\nadd.u32 %r3, %r2, 1;")  # a copy of nothing
+    assert name == "%r2"
+    assert read_unset("@%p1 mov.u32 %r1, 1;\nadd.u32 %r2, %r1, 1;") != []

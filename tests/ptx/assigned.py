@@ -8,11 +8,11 @@ from __future__ import annotations
 
 import re
 import sys
+from dataclasses import dataclass, field
 from pathlib import Path
 
-FOLDER = Path(__file__).resolve().parent
-sys.path.insert(0, str(FOLDER))
-import translate  # noqa: E402
+sys.path.insert(0, str(Path(__file__).resolve().parent))
+import translator  # noqa: E402
 
 REGISTER = re.compile(r"%[a-zA-Z_]+\d+\b")
 STORES = {"st", "red", "bra", "brx", "bar", "barrier", "ret", "exit", "call", "membar", "fence", "trap"}
@@ -21,7 +21,7 @@ STORES = {"st", "red", "bra", "brx", "bar", "barrier", "ret", "exit", "call", "m
 def reads_and_writes(text: str) -> tuple[set[str], set[str], bool, bool]:
     """Registers of a statement, whether it may be skipped, whether it is a plain copy."""
     m = re.fullmatch(r"(?:@!?(%\w+)\s+)?([a-z][\w.:]*)\s*(.*)", text)
-    args = translate.split_arguments(m[3])
+    args = translator.split_arguments(m[3])
     writes: set[str] = set()
     if m[2].split(".")[0] not in STORES and args:
         writes = set(REGISTER.findall(args.pop(0)))
@@ -31,74 +31,101 @@ def reads_and_writes(text: str) -> tuple[set[str], set[str], bool, bool]:
     return reads, writes, bool(m[1]), m[2].startswith("mov.") and len(reads) == 1 and len(writes) == 1
 
 
-def unassigned(function: translate.Function) -> list[tuple[int, str]]:
-    """(line, register), the first such read of each register."""
-    blocks: list[list[tuple[int, int, int, bool, bool]]] = [[]]
-    labels: dict[str, int] = {}
-    successors: list[list] = [[]]
-    tables: dict[str, list[str]] = {}
+@dataclass
+class Instruction:
+    """Sets of registers are numbers, a bit a register."""
 
-    numbers: dict[str, int] = {}
+    line: int
+    reads: int
+    writes: int
+    guarded: bool
+    copies: bool
 
-    def bits_of(names: set[str]) -> int:
-        return sum(1 << numbers.setdefault(name, len(numbers)) for name in names)
 
-    def fresh(falls: bool) -> None:
-        if falls:
-            successors[-1].append(len(blocks))
-        blocks.append([]), successors.append([])
+@dataclass
+class Block:
+    """Straight-line code and where it may go on: the number of a block or a label."""
 
-    for kind, text, line in translate.statements(function.body, function.line):
-        if kind == "label":
-            fresh(True)
-            labels[text] = len(blocks) - 1
-        elif kind == "statement" and ".branchtargets" in text:
-            name, targets = text.split(":", 1)
-            tables[name.strip()] = [t.strip() for t in targets.replace(".branchtargets", "").split(",")]
-        elif kind == "statement" and text and not text.startswith("."):
-            reads, writes, guarded, copies = reads_and_writes(text)
-            blocks[-1].append((line, bits_of(reads), bits_of(writes), guarded, copies))
-            word = re.sub(r"^@!?%\w+\s+", "", text)
-            if word.startswith(("bra", "ret", "exit", "trap", "brx")):
-                last = word.split()[-1] if " " in word else ""
-                if word.startswith("bra"):
-                    successors[-1].append(last)
-                elif word.startswith("brx"):
-                    successors[-1] += tables[last]
-                fresh(guarded)
+    code: list[Instruction] = field(default_factory=list)
+    after: list[int | str] = field(default_factory=list)
 
-    def passed(have: int, block: int, used: list[tuple[int, int]] | None = None) -> int:
-        """What is set behind a block that is entered with `have`."""
-        for line, reads, writes, guarded, copies in blocks[block]:
-            if copies and not guarded:
-                have = have | writes if reads & have else have & ~writes
+    def passed(self, have: int, used: list[tuple[int, int]] | None = None) -> int:
+        """What is set behind it when `have` is set before; used gets (line, registers) of what is read unset."""
+        for i in self.code:
+            if i.copies and not i.guarded:
+                have = have | i.writes if i.reads & have else have & ~i.writes
                 continue
-            if used is not None and reads & ~have:
-                used.append((line, reads & ~have))
-            if not guarded:
-                have |= writes
+            if used is not None and i.reads & ~have:
+                used.append((i.line, i.reads & ~have))
+            if not i.guarded:
+                have |= i.writes
         return have
 
-    everything = (1 << len(numbers)) - 1
-    into = [everything] * len(blocks)
-    into[0] = 0
-    seen, open_blocks = {0}, [0]
-    while open_blocks:
-        b = open_blocks.pop()
-        out = passed(into[b], b)
-        for target in successors[b]:
-            t = labels[target] if isinstance(target, str) else target
-            known = into[t] & out
-            if known != into[t] or t not in seen:
-                into[t] = known
-                seen.add(t)
-                if t not in open_blocks:
-                    open_blocks.append(t)
+
+class Flow:
+    """The blocks of a function, its labels and registers."""
+
+    def __init__(self, function: translator.Function):
+        self.blocks = [Block()]
+        self.labels: dict[str, int] = {}
+        self.tables: dict[str, list[str]] = {}
+        self.numbers: dict[str, int] = {}
+        for kind, text, line in translator.statements(function.body, function.line):
+            if kind == "label":
+                self.begin_block(True)
+                self.labels[text] = len(self.blocks) - 1
+            elif kind == "statement" and ".branchtargets" in text:
+                name, targets = text.split(":", 1)
+                self.tables[name.strip()] = [t.strip() for t in targets.replace(".branchtargets", "").split(",")]
+            elif kind == "statement" and text and not text.startswith("."):
+                self.add(text, line)
+
+    def bits_of(self, names: set[str]) -> int:
+        return sum(1 << self.numbers.setdefault(name, len(self.numbers)) for name in names)
+
+    def begin_block(self, falls: bool) -> None:
+        if falls:
+            self.blocks[-1].after.append(len(self.blocks))
+        self.blocks.append(Block())
+
+    def add(self, text: str, line: int) -> None:
+        reads, writes, guarded, copies = reads_and_writes(text)
+        self.blocks[-1].code.append(Instruction(line, self.bits_of(reads), self.bits_of(writes), guarded, copies))
+        word = re.sub(r"^@!?%\w+\s+", "", text)
+        last = word.split()[-1]
+        if word.startswith("bra"):
+            self.blocks[-1].after.append(last)
+        elif word.startswith("brx"):
+            self.blocks[-1].after += self.tables[last]
+        if word.startswith(("bra", "ret", "exit", "trap", "brx")):
+            self.begin_block(guarded)
+
+    def target(self, where: int | str) -> int:
+        return self.labels[where] if isinstance(where, str) else where
+
+    def set_before(self) -> dict[int, int]:
+        """Block -> registers that are set on every path to it; blocks that are never reached are left out."""
+        into, open_blocks = {0: 0}, [0]
+        while open_blocks:
+            b = open_blocks.pop()
+            out = self.blocks[b].passed(into[b])
+            for t in map(self.target, self.blocks[b].after):
+                known = out & into.get(t, out)
+                if into.get(t) != known:
+                    into[t] = known
+                    if t not in open_blocks:
+                        open_blocks.append(t)
+        return into
+
+
+def unassigned(function: translator.Function) -> list[tuple[int, str]]:
+    """(line, register), the first such read of each register."""
+    flow = Flow(function)
     found: dict[str, int] = {}
-    names = list(numbers)
-    for b in sorted(seen):
+    names = list(flow.numbers)
+    for b, have in sorted(flow.set_before().items()):
         used: list[tuple[int, int]] = []
-        passed(into[b], b, used)
+        flow.blocks[b].passed(have, used)
         for line, bits in used:
             for i in range(bits.bit_length()):
                 if bits >> i & 1:
@@ -109,7 +136,7 @@ def unassigned(function: translate.Function) -> list[tuple[int, str]]:
 def main() -> int:
     bad = 0
     for path in sys.argv[1:]:
-        module = translate.Module(Path(path).read_text(), path)
+        module = translator.Module(Path(path).read_text(), path)
         for function in module.functions.values():
             for line, name in unassigned(function):
                 print(f"{path}:{line}: {name} may be read before it is set, in {function.name}")

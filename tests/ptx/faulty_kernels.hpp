@@ -54,6 +54,40 @@ struct WritesTogether {
     block.threads([&](int t) { out[256 * b + t] = shared.a[0]; });
   }
 };
+/// In place: the neighbour may have been there before.
+struct ReadsNeighbour {
+  double* x;
+  Index n;
+  BB_HD void operator()(Index i) const { x[i] = x[(i + 1) % n] + 1; }
+};
+struct AllWriteOne {
+  double* out;
+  BB_HD void operator()(Index i) const { out[0] = static_cast<double>(i); }
+};
+/// The last block reads what all wrote. Whether it sees it is a matter of the fence.
+struct LastBlockReads {
+  struct Shared {
+    bool last;
+  };
+  double* part;
+  std::uint32_t* ended;
+  Index n;
+  bool with_fence;
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
+    block.threads([&](int t) {
+      if (t == 0) part[b] = static_cast<double>(b);
+#ifdef __CUDA_ARCH__
+      if (t == 0 && with_fence) __threadfence();
+      if (t == 0) shared.last = atomicAdd(ended, 1u) + 1 == static_cast<std::uint32_t>(n);
+#endif
+    });
+    block.threads([&](int t) {
+      if (!shared.last || t > 0) return;
+      for (Index i = 1; i < n; ++i) part[0] += part[i];
+    });
+  }
+};
 struct BarrierOfSome {
   struct Shared {
     int unused;

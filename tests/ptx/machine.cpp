@@ -79,14 +79,17 @@ Coverage coverage(const Module& module, const Kernel& kernel) {
 
 Machine::Machine() : all(std::make_unique<Implementation>()) {
   for (const Module& module : modules()) {
-    for (const Constant& table : module.constants) add_memory(table.begin, table.bytes);
+    for (const Constant& table : module.constants) {
+      const auto begin = reinterpret_cast<std::uint64_t>(table.begin);
+      all->memory.add(begin, begin + table.bytes, false);
+    }
   }
 }
 Machine::~Machine() = default;
 
 void Machine::add_memory(const void* p, std::size_t bytes) {
   const auto begin = reinterpret_cast<std::uint64_t>(p);
-  if (bytes > 0) all->memory.add({begin, begin + bytes});
+  if (bytes > 0) all->memory.add(begin, begin + bytes, true);
 }
 void Machine::remove_memory(const void* p) { all->memory.remove(reinterpret_cast<std::uint64_t>(p)); }
 

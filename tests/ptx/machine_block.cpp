@@ -16,6 +16,7 @@ void Machine::Implementation::begin(Machine& of, const Kernel& k, const unsigned
   machine = &of, kernel = &k;
   threads.resize(n_threads), states.resize(n_threads), wait_lines.resize(n_threads);
   accesses.resize(n_threads);
+  races.begin_launch(blocks, n_threads);
   for (std::uint32_t t = 0; t < n_threads; ++t) {
     threads[t] = {t, 0, n_threads, blocks, params, k.param_bytes, &of, nullptr, 0};
   }

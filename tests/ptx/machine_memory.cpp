@@ -3,20 +3,22 @@
 
 namespace ptx {
 
-void MemoryMap::add(Range range) { ranges_[range.begin] = range.end; }
+void MemoryMap::add(std::uint64_t begin, std::uint64_t end, bool may_be_written) {
+  allocations_[begin] = {end, std::vector<Touch>(may_be_written ? (end - begin + 3) / 4 : 0)};
+}
 void MemoryMap::remove(std::uint64_t begin) {
-  ranges_.erase(begin);
+  allocations_.erase(begin);
   for (Range& range : last_) {
     if (range.begin == begin) range = {};
   }
 }
-bool MemoryMap::search(std::uint64_t a, std::uint32_t bytes, int site) {
-  auto it = ranges_.upper_bound(a);
-  if (it == ranges_.begin()) return false;
+const Range* MemoryMap::search(std::uint64_t a, std::uint32_t bytes, int site) {
+  auto it = allocations_.upper_bound(a);
+  if (it == allocations_.begin()) return nullptr;
   --it;
-  if (a + bytes > it->second) return false;
-  last_[static_cast<std::size_t>(site) % last_.size()] = {it->first, it->second};
-  return true;
+  if (a + bytes > it->second.end) return nullptr;
+  Touch* touches = it->second.touches.empty() ? nullptr : it->second.touches.data();
+  return &(last_[static_cast<std::size_t>(site) % last_.size()] = {it->first, it->second.end, touches});
 }
 
 void Thread::fail(const char* what, int line) const {
@@ -25,10 +27,14 @@ void Thread::fail(const char* what, int line) const {
 }
 
 namespace {
-unsigned char* global(Thread& t, std::uint64_t a, std::uint32_t bytes, int line, const char* outside) {
+unsigned char* global(Thread& t, std::uint64_t a, std::uint32_t bytes, Use use, int line) {
   if (a % bytes != 0) t.fail("misaligned access to global memory", line);
   Machine::Implementation& all = *t.machine->all;
-  if (!all.memory.holds(a, bytes, line)) t.fail(outside, line);
+  const Range* range = all.memory.find(a, bytes, line);
+  if (!range)
+    t.fail(use == Use::load ? "a load outside all allocations" : "a store outside all allocations", line);
+  if (use != Use::load && !range->touches) t.fail("a store to a table of constants", line);
+  all.races.check(*range, t, a, bytes, use, all.epoch, line);
   if (t.machine->profile) all.accesses[t.tid].push_back({line, bytes, a});
   return reinterpret_cast<unsigned char*>(a);
 }
@@ -53,11 +59,17 @@ unsigned char* local(const Thread& t, std::uint64_t a, std::uint32_t bytes, int 
 }  // namespace
 
 const unsigned char* Thread::load_global(std::uint64_t a, std::uint32_t bytes, int line) {
-  return global(*this, a, bytes, line, "a load outside all allocations");
+  return global(*this, a, bytes, Use::load, line);
 }
 unsigned char* Thread::store_global(std::uint64_t a, std::uint32_t bytes, int line) {
-  return global(*this, a, bytes, line, "a store outside all allocations");
+  return global(*this, a, bytes, Use::store, line);
 }
+unsigned char* Thread::atomic_global(std::uint64_t a, std::uint32_t bytes, int line) {
+  unsigned char* place = global(*this, a, bytes, Use::atomic, line);
+  machine->all->races.note_atomic(*this, machine->all->epoch);
+  return place;
+}
+void Thread::fence() { machine->all->races.fence(*this, machine->all->epoch); }
 
 Shadow& Machine::Implementation::shadow_of(std::uint64_t byte) {
   Shadow& s = shadow[byte];
@@ -107,6 +119,10 @@ const unsigned char* Thread::load_generic(std::uint64_t a, std::uint32_t bytes, 
   const auto begin = reinterpret_cast<std::uint64_t>(params);
   if (a >= begin && a + bytes <= begin + param_bytes) return reinterpret_cast<const unsigned char*>(a);
   return is_local(*this, a, bytes) ? load_local(a, bytes, line) : load_global(a, bytes, line);
+}
+unsigned char* Thread::atomic_generic(std::uint64_t a, std::uint32_t bytes, int line) {
+  if (a >= shared_window || is_local(*this, a, bytes)) fail("an atomic outside of global memory", line);
+  return atomic_global(a, bytes, line);
 }
 unsigned char* Thread::store_generic(std::uint64_t a, std::uint32_t bytes, int line) {
   if (a >= shared_window) return store_shared(a - shared_window, bytes, line);

@@ -1,6 +1,6 @@
 // What translated PTX (translate.py) is written against: the memory that a thread of a kernel sees, barriers and
-// shuffles. Everything is checked: bounds, alignment, races on shared memory, members of a shuffle, deadlocks. An error
-// names the kernel and the line of the PTX.
+// shuffles. Everything is checked: bounds, alignment, races, members of a shuffle, deadlocks. An error names
+// the kernel and the line of the PTX.
 #pragma once
 
 #include <bit>
@@ -32,6 +32,7 @@ struct Thread {
   // Checked addresses of `bytes` bytes, which is also the alignment. Errors: Error (machine.hpp), all of them.
   const unsigned char* load_global(std::uint64_t a, std::uint32_t bytes, int line);
   unsigned char* store_global(std::uint64_t a, std::uint32_t bytes, int line);
+  unsigned char* atomic_global(std::uint64_t a, std::uint32_t bytes, int line);
   /// Address in the shared memory of the block, from 0.
   const unsigned char* load_shared(std::uint64_t a, std::uint32_t bytes, int line);
   unsigned char* store_shared(std::uint64_t a, std::uint32_t bytes, int line);
@@ -42,7 +43,9 @@ struct Thread {
   /// An address of any space.
   const unsigned char* load_generic(std::uint64_t a, std::uint32_t bytes, int line);
   unsigned char* store_generic(std::uint64_t a, std::uint32_t bytes, int line);
+  unsigned char* atomic_generic(std::uint64_t a, std::uint32_t bytes, int line);
 
+  void fence();
   void barrier(int line);
   enum Mode { up, down, bfly, idx };
   /// *in_range: the predicate of shfl.

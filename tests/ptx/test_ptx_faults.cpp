@@ -69,6 +69,40 @@ TEST(PtxFaults, Races) {
   }
 }
 
+TEST(PtxFaults, RacesOnGlobalMemory) {
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> x(e, "x");
+        x.upload(std::vector<double>(300, 1.0));
+        e.each(300, ReadsNeighbour{x.data(), 300});
+      },
+      {"ReadsNeighbour", "race", "in this launch"});
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> out(e, "out", 1);
+        e.each(300, AllWriteOne{out.data()});
+      },
+      {"AllWriteOne", "race: writes global memory that another thread wrote"});
+}
+
+void run_last_block(Executor& e, bool with_fence, std::vector<double>* sums = nullptr) {
+  Buffer<double> part(e, "part", 3);
+  Buffer<std::uint32_t> ended(e, "ended");
+  ended.upload(std::vector<std::uint32_t>{0});
+  e.blocks(3, LastBlockReads{part.data(), ended.data(), 3, with_fence});
+  if (sums) *sums = part.download();
+}
+TEST(PtxFaults, TheLastBlockNeedsTheFenceOfTheOthers) {
+  expect_error([](Executor& e) { run_last_block(e, false); },
+               {"LastBlockReads", "race: reads global memory that another thread wrote in this launch"});
+  for (const Order order : {Order::forward, Order::reverse, Order::shuffled}) {
+    ptx::PtxExecutor device(order, 3);
+    std::vector<double> sums;
+    run_last_block(device, true, &sums);
+    EXPECT_EQ(sums.at(0), 3);
+  }
+}
+
 TEST(PtxFaults, DeadlocksAndEndlessLoops) {
   expect_error(
       [](Executor& e) {

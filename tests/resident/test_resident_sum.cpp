@@ -65,7 +65,9 @@ TEST(ResidentSum, AddsWhatComesAndTakesWhatGoes) {
   to.upload(std::vector<double>{1e16, 2, 7, 0.5});
   ResidentSum sum(executor);
   EXPECT_EQ(sum.get().value(), 0);
-  sum.add(3, NegativeColumnSum{from.data()});
+  exec::Buffer<double> gone(executor, "gone");
+  gone.upload(std::vector<double>{-1e16, -3, -5});
+  sum.add(3, ColumnSum{gone.data()});
   sum.add(4, ColumnSum{to.data()});
   EXPECT_EQ(sum.get().value(), 1.5);
   EXPECT_EQ(sum.get().magnitude, 2e16 + 17.5);

@@ -41,7 +41,7 @@ class VectorTools {
   void force_norms(const Buffer<double>& g, Buffer<double>& force);
 
   /// [n] as fixed_bits.
-  const FixedMask* fixed() const { return fixed_.data(); }
+  const Buffer<FixedMask>& fixed() const { return fixed_; }
   Index n_vertices() const { return fixed_.size(); }
 
  private:

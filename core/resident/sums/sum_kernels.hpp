@@ -140,11 +140,6 @@ struct ColumnSum {
   const double* values;
   BB_HD void operator()(Index i, Compensated& sum) const { sum.add(values[i]); }
 };
-/// What disappears.
-struct NegativeColumnSum {
-  const double* values;
-  BB_HD void operator()(Index i, Compensated& sum) const { sum.add(-values[i]); }
-};
 /// Energies of elements that stay: compared one by one.
 struct ColumnChange {
   const double *from, *to;

@@ -57,18 +57,13 @@ MatrixPart ResidentSystem::kept_elastic() const {
   return part;
 }
 
-StepHessian ResidentSystem::choice_of(std::string_view term) const {
-  const auto found = method_.step_hessian.find(term);
-  return found == method_.step_hessian.end() ? StepHessian::clamped : found->second;
-}
-
 HessianRequest ResidentSystem::request_of(StepHessian choice, bool exact) const {
   return hessian_request(choice, exact ? 0 : level_.t(), exact ? infinity : level_.threshold(),
                          force_.data());
 }
 
 HessianChoice ResidentSystem::contact_choice(bool exact) const {
-  const StepHessian choice = choice_of("contact");
+  const StepHessian choice = method_.hessian_of("contact");
   const double t = exact ? 0 : level_.t();
   HessianChoice out{method_.hessian_mode, first_projection(choice), false, 1};
   const bool begins_exact = choice == StepHessian::blend || choice == StepHessian::exact_or_clamped;
@@ -84,7 +79,7 @@ void ResidentSystem::fill_matrix(bool exact) {
   const ScopedPhase timer(clock(), Phase::assembly);
   elements_.clear_matrix();
   elements_.add_matrix(TermSet::all(), x_.data(),
-                       [&](std::string_view term) { return request_of(choice_of(term), exact); });
+                       [&](std::string_view term) { return request_of(method_.hessian_of(term), exact); });
   if (contact_) contact_matrix_ = contact_->matrix(x_, contact_choice(exact));
 }
 
@@ -106,7 +101,7 @@ double ResidentSystem::add_tikhonov(double, double) {
 // out = A v over free rows; returns v . out.
 double ResidentSystem::multiply(const Column& v, Column& out) {
   const Partition partition = Partition::of(v.size() / 3);
-  executor_->blocks(partition.n_blocks(), MultiplyDot{partition, matrix(), fixed_bits_.data(), v.data(),
+  executor_->blocks(partition.n_blocks(), MultiplyDot{partition, matrix(), vectors_.fixed().data(), v.data(),
                                                       out.data(), product_partial_.data(), nullptr});
   sum_.clear();
   sum_.add(partition.n_blocks(), ColumnSum{product_partial_.data()});
@@ -148,7 +143,7 @@ bool ResidentSystem::direction(SolveReport& report) {
 
 LinearReport ResidentSystem::solve_linear() {
   const ScopedPhase timer(clock(), Phase::linear_solve);
-  const double b_norm = pcg_->norm(fixed_bits_.data(), b_.data());
+  const double b_norm = pcg_->norm(vectors_.fixed().data(), b_.data());
   LinearReport report;
   report.iterative = true;
   if (!std::isfinite(b_norm)) {
@@ -158,7 +153,7 @@ LinearReport ResidentSystem::solve_linear() {
   }
   step_.fill_zero();
   if (b_norm == 0) return report;
-  return pcg_->solve(matrix(), fixed_bits_.data(), b_.data(), step_.data(), forcing_.tolerance(b_norm),
+  return pcg_->solve(matrix(), vectors_.fixed().data(), b_.data(), step_.data(), forcing_.tolerance(b_norm),
                      max_pcg_iterations_, pattern_id_);
 }
 

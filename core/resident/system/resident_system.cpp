@@ -16,8 +16,7 @@ std::vector<StepHessian> choices_of(const Plan& plan, const Method& method) {
   std::vector<StepHessian> out;
   for (std::size_t i = 0; i < plan.terms.size(); ++i) {
     if (!plan.terms[i].needed) continue;
-    const auto found = method.step_hessian.find(term_entries()[i].name);
-    out.push_back(found == method.step_hessian.end() ? StepHessian::clamped : found->second);
+    out.push_back(method.hessian_of(term_entries()[i].name));
   }
   return out;
 }
@@ -56,7 +55,6 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
       fixed_(fixed_dofs(scene, plan)),
       n_free_(static_cast<int>(std::count(fixed_.begin(), fixed_.end(), 0))),
       vectors_(*executor_, fixed_, scene.pins),
-      fixed_bits_(*executor_, "fixed degrees of freedom"),
       elements_(*executor_, scene, method),
       forcing_(linear_parameters(method)),
       max_pcg_iterations_(integer(linear_parameters(method), "max_iterations")),
@@ -77,11 +75,10 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
       sum_(*executor_),
       least_(*executor_) {
   const Index n = scene.n_vertices();
-  fixed_bits_.upload(bb::resident::fixed_bits(fixed_));
   for (Column* column : {&x_, &trial_, &end_, &dx_, &g_, &x_n_, &x_tilde_, &b_, &step_, &work_})
     column->resize(3 * n);
   if (plan.term("contact").needed) {
-    contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, fixed_bits_);
+    contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, vectors_.fixed());
   }
   pcg_ = std::make_unique<ResidentPcg>(*executor_, n, make_preconditioner(*executor_, method));
 }

@@ -94,7 +94,6 @@ class ResidentSystem final : public StepSystem {
   MatrixPart kept_elastic() const;
   HessianRequest request_of(StepHessian choice, bool exact) const;
   HessianChoice contact_choice(bool exact) const;
-  StepHessian choice_of(std::string_view term) const;
   void fill_matrix(bool exact);
   double largest_force();
   bool direction(SolveReport& report);
@@ -110,7 +109,6 @@ class ResidentSystem final : public StepSystem {
   const std::vector<std::uint8_t> fixed_;
   int n_free_;
   mutable VectorTools vectors_;
-  exec::Buffer<std::uint8_t> fixed_bits_;
   mutable ResidentElements elements_;
   mutable std::unique_ptr<ResidentContact> contact_;  // where something can touch
   std::unique_ptr<ResidentPcg> pcg_;
