@@ -55,8 +55,23 @@ void RaceWatch::add(Touch::Side& side, const Thread& t, std::uint32_t epoch) con
   side = {one_before ? me : several, t.ctaid, epoch, fences_[me], side.loose || loose};
 }
 
+// What most accesses are: the first of a launch, or one more load of what nobody writes.
+bool RaceWatch::is_plain(Touch& touch, const Thread& t, Use use, std::uint32_t epoch) const {
+  const std::uint32_t me = number(t);
+  if (touch.launch != launch_) {
+    touch = {launch_, use == Use::atomic, {}, {}};
+    (use == Use::load ? touch.read : touch.write) = {me, t.ctaid, epoch, fences_[me], false};
+    return true;
+  }
+  Touch::Side& read = touch.read;
+  if (use != Use::load || touch.write.thread != Touch::nobody || read.block != t.ctaid || read.epoch != epoch)
+    return false;
+  read.thread = read.thread == me ? me : several;
+  read.fences = fences_[me];
+  return true;
+}
+
 const char* RaceWatch::race(Touch& touch, const Thread& t, Use use, std::uint32_t epoch) const {
-  if (touch.launch != launch_) touch = {launch_, false, {}, {}};
   const bool writes = use != Use::load, both_atomic = use == Use::atomic && touch.atomic;
   if (!both_atomic && !is_before(touch.write, t, epoch)) {
     return writes ? "race: writes global memory that another thread wrote in this launch"
@@ -73,7 +88,9 @@ void RaceWatch::check(const Range& range, const Thread& t, std::uint64_t a, std:
                       std::uint32_t epoch, int line) const {
   if (bytes < 4 || !range.touches) return;
   for (std::uint64_t word = (a - range.begin) / 4; word < (a + bytes - range.begin) / 4; ++word) {
-    if (const char* what = race(range.touches[word], t, use, epoch)) t.fail(what, line);
+    Touch& touch = range.touches[word];
+    if (is_plain(touch, t, use, epoch)) continue;
+    if (const char* what = race(touch, t, use, epoch)) t.fail(what, line);
   }
 }
 
