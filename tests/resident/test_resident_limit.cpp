@@ -138,7 +138,7 @@ TEST(ResidentLimit, LiteralAndSquaredGapAreThoseOfTheCpu) {
   const Scene scene = cloth_scene("arap", true, 4);
   const StepFrame frame = step_frame(scene);
   int n_beyond = 0;
-  for (const char* shape : {"log", "cubic"}) {
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage"}) {
     for (const bool literal : {false, true}) {
       TermOptions options = element_options(shape);
       options.limit.literal = literal;
@@ -156,7 +156,7 @@ TEST(ResidentLimit, LiteralAndSquaredGapAreThoseOfTheCpu) {
           << shape << literal;
     }
   }
-  EXPECT_EQ(n_beyond, 2);
+  EXPECT_EQ(n_beyond, 5);
 }
 
 TEST(ResidentLimit, IsLeftOutWhereNothingIsLimited) {

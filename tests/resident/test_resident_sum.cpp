@@ -30,7 +30,7 @@ std::vector<double> cancelling(std::size_t n) {
 }
 
 TEST(ResidentSum, LosesNothingOfACancellingSum) {
-  for (const std::size_t n : {1u, 2u, 255u, 257u, 5000u, 262144u, 262145u, 700000u}) {
+  for (const std::size_t n : {1u, 2u, 255u, 257u, 5000u, 262144u, 262145u, 1310721u}) {
     const std::vector<double> values = cancelling(n);
     long double exact = 0, carry = 0, magnitude = 0;  // twice the digits again
     double plain = 0;
@@ -76,6 +76,39 @@ TEST(ResidentSum, AddsWhatComesAndTakesWhatGoes) {
   EXPECT_EQ(sum.get().value(), 1);
   sum.add(0, ColumnSum{nullptr});
   EXPECT_EQ(sum.get().value(), 1);
+}
+
+// Several items a thread, in every kernel over columns.
+TEST(ResidentSum, TakesMoreItemsThanThreads) {
+  constexpr std::size_t n = 1'310'721;
+  ASSERT_GT(items_a_block(n), 5 * exec::block_threads);
+  std::vector<double> values(n), others(n);
+  long double change = 0;
+  double largest = 0, largest_free = 0;
+  for (std::size_t i = 0; i < n; ++i) {
+    values[i] = std::sin(0.7 * static_cast<double>(i));
+    others[i] = std::cos(1.3 * static_cast<double>(i)) + 1e-3;
+    const bool is_free = i / 3 % 2 == 0;
+    change += static_cast<long double>(others[i]) - values[i];
+    largest = std::max(largest, std::abs(values[i]));
+    if (is_free) largest_free = std::max(largest_free, std::abs(values[i]));
+  }
+  std::vector<FixedMask> fixed(n / 3 + 1);
+  for (std::size_t v = 0; v < fixed.size(); ++v) fixed[v] = v % 2 == 0 ? 0 : 7;
+  exec::HostExecutor executor;
+  exec::Buffer<double> a(executor, "a"), b(executor, "b");
+  exec::Buffer<FixedMask> mask(executor, "mask");
+  a.upload(values), b.upload(others), mask.upload(fixed);
+  ResidentSum sum(executor);
+  sum.add(a.size(), ColumnChange{a.data(), b.data()});
+  ASSERT_GT(change, 1000);
+  EXPECT_NEAR(sum.get().value(), static_cast<double>(change), 1e-12 * static_cast<double>(change));
+  ResidentLeast least(executor);
+  least.add(a.size(), ColumnSize{a.data()});
+  EXPECT_EQ(least.largest(), largest);
+  least.clear();
+  least.add(a.size(), FreeSize{a.data(), mask.data()});
+  EXPECT_EQ(least.largest(), largest_free);
 }
 
 TEST(ResidentSum, HasTheSameBitsInEveryOrder) {
