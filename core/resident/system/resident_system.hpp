@@ -76,6 +76,10 @@ class ResidentSystem final : public StepSystem {
   void set_frugal_from(Index rows) {
     if (contact_) contact_->set_frugal_from(rows);
   }
+  /// As ResidentContact::set_list_budget.
+  void set_list_budget(std::size_t bytes) {
+    if (contact_) contact_->set_list_budget(bytes);
+  }
   /// Who holds how much memory.
   const exec::MemoryLedger& memory() const { return executor_->memory(); }
 
