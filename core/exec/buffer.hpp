@@ -46,7 +46,7 @@ class Buffer {
   /// Gives the memory back.
   void free() {
     if (room_ == 0) return;
-    executor_->release(name_, data_, static_cast<std::size_t>(room_) * sizeof(T));
+    executor_->release(name_, data_, bytes());
     data_ = nullptr;
     size_ = room_ = 0;
   }
@@ -56,6 +56,8 @@ class Buffer {
   T* data() { return data_; }
   const T* data() const { return data_; }
   Index size() const { return size_; }
+  /// In use, room that is kept included.
+  std::size_t bytes() const { return static_cast<std::size_t>(room_) * sizeof(T); }
 
   /// Resizes to the values.
   void upload(std::span<const T> values) {

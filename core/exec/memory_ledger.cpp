@@ -1,6 +1,7 @@
 #include "core/exec/memory_ledger.hpp"
 
 #include <cstdio>
+#include <limits>
 
 namespace bb::exec {
 
@@ -21,8 +22,13 @@ std::string MemoryLedger::refusal(const std::string& name, std::size_t bytes) co
   return text;
 }
 
+std::size_t MemoryLedger::left() const {
+  if (limit_ == 0) return std::numeric_limits<std::size_t>::max();
+  return bytes_ < limit_ ? limit_ - bytes_ : 0;
+}
+
 void MemoryLedger::add(const std::string& name, std::size_t bytes) {
-  if (limit_ > 0 && (bytes_ > limit_ || bytes > limit_ - bytes_)) throw OutOfMemory(refusal(name, bytes));
+  if (bytes > left()) throw OutOfMemory(refusal(name, bytes));
   by_name_[name] += bytes;
   bytes_ += bytes;
   if (bytes_ <= peak_) return;

@@ -22,6 +22,8 @@ class MemoryLedger {
   void remove(const std::string& name, std::size_t bytes);
 
   std::size_t bytes() const { return bytes_; }
+  /// What the limit leaves; without one the largest number.
+  std::size_t left() const;
   std::size_t peak() const { return peak_; }
   /// name -> bytes in use; names without bytes are not there.
   const std::map<std::string, std::size_t>& by_name() const { return by_name_; }

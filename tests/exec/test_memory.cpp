@@ -20,6 +20,7 @@ TEST(Buffer, IsCountedUnderItsName) {
     EXPECT_EQ(executor.memory().by_name().at("a"), 80u);
     a.resize(4);  // room stays
     EXPECT_EQ(executor.memory().by_name().at("a"), 80u);
+    EXPECT_EQ(a.bytes(), 80u);
     a.grow(20);
     EXPECT_EQ(executor.memory().by_name().at("a"), 200u);
     EXPECT_EQ(a.size(), 20);
@@ -61,6 +62,11 @@ TEST(Buffer, RefusesWhatDoesNotFit) {
     }
   }
   EXPECT_EQ(executor.memory().bytes(), 80u);
+  EXPECT_EQ(executor.memory().left(), 20u);
+  executor.limit_memory(50);
+  EXPECT_EQ(executor.memory().left(), 0u);
+  executor.limit_memory(0);
+  EXPECT_GT(executor.memory().left(), std::size_t{1} << 60);
   EXPECT_EQ(a.size(), 10);
 }
 

@@ -22,6 +22,8 @@ CASES = {
     "pcg": {"/linear_solver/name": "pcg"},
     "ipc_adaptive": {"/formulation": "ipc2020"},
     "elasticity_inclusive": {"/formulation": "cubic_dynamic_lagged"},
+    "device host": {"/device": "host"},
+    "device host, ipc_adaptive": {"/device": "host", "/formulation": "ipc2020"},
     "bdf2": {"/integrator/name": "bdf2"},
     "newmark": {"/integrator/name": "newmark"},
     "bdf2 with retries": {"/integrator/name": "bdf2", "/step_solver/retries": 8, "/step_solver/max_iterations": 5},

@@ -1,6 +1,10 @@
 // Small scenes and methods that the resident pipeline and the CPU path both run.
 #pragma once
 
+#include <gtest/gtest.h>
+
+#include <functional>
+
 #include "core/exec/host_executor.hpp"
 #include "core/resident/system/resident_system.hpp"
 #include "tests/newton/small_scenes.hpp"
@@ -96,24 +100,60 @@ inline Method method_with_policy(const std::string& shape, const std::string& po
 struct RunEnd {
   Positions x;
   std::vector<StepStatus> status;
-  std::vector<int> iterations;
+  std::vector<int> iterations, retries;
+  std::vector<double> dt_s;
   std::size_t contacts = 0;
-  double kappa_max = 0;
+  double kappa_max = 0, limit_load_max = 0;  // N/m, of the last step that has one; of all steps
 };
 
-inline RunEnd run_steps(const Scene& scene, Method method, int steps, double dt = 0.01) {
-  Simulation simulation(scene, method, dt, steps);
+/// Goes on for so many steps, parts of steps counted.
+inline RunEnd run_steps(Simulation& simulation, int steps) {
   StepObserver observer;
   RunEnd end;
   for (int i = 0; i < steps; ++i) {
     const StepReport report = simulation.step(observer);
     end.status.push_back(report.status);
     end.iterations.push_back(report.newton_iterations);
+    end.retries.push_back(report.retries);
+    end.dt_s.push_back(report.dt_s);
     end.contacts += report.contacts.total();
     if (report.kappa_max_N_per_m.finite()) end.kappa_max = report.kappa_max_N_per_m.value;
+    if (report.limit_load_max_N_per_m.finite())
+      end.limit_load_max = std::max(end.limit_load_max, report.limit_load_max_N_per_m.value);
   }
   end.x = simulation.history().x;
   return end;
+}
+
+inline RunEnd run_steps(const Scene& scene, Method method, int steps, double dt = 0.01) {
+  Simulation simulation(scene, method, dt, steps);
+  return run_steps(simulation, steps);
+}
+
+/// Both runs end within a tolerance (m), step by step with one status and length, and were in contact.
+inline void expect_same_end(const RunEnd& resident, const RunEnd& cpu, double tolerance) {
+  EXPECT_EQ(resident.status, cpu.status);
+  EXPECT_EQ(resident.retries, cpu.retries);
+  ASSERT_EQ(resident.dt_s.size(), cpu.dt_s.size());
+  for (std::size_t i = 0; i < cpu.dt_s.size(); ++i) {
+    EXPECT_NEAR(resident.dt_s[i], cpu.dt_s[i], 1e-6 * cpu.dt_s[i]) << "step " << i;
+  }
+  EXPECT_GT(cpu.contacts, 0u);
+  EXPECT_GE(resident.contacts, cpu.contacts);  // one a pair, which the CPU merges
+  EXPECT_LT((resident.x - cpu.x).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_NEAR(resident.kappa_max, cpu.kappa_max, 1e-6 * cpu.kappa_max);
+}
+
+/// The run on the CPU path, after comparing it with that of the resident pipeline.
+inline RunEnd expect_same_run(const Scene& scene, const std::function<Method()>& method, int steps,
+                              double tolerance) {
+  Method on_cpu = method(), resident = method();
+  use_resident_solver(on_cpu);
+  run_resident(resident);
+  RunEnd cpu = run_steps(scene, std::move(on_cpu), steps);
+  expect_same_end(run_steps(scene, std::move(resident), steps), cpu, tolerance);
+  EXPECT_GT((cpu.x - scene.x0).cwiseAbs().maxCoeff(), 1e-3);
+  return cpu;
 }
 
 }  // namespace bb::test

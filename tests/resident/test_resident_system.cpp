@@ -3,12 +3,12 @@
 
 #include <functional>
 
-#include "core/archive/archive.hpp"
 #include "tests/resident/system_cases.hpp"
 
 namespace bb {
 namespace {
 
+using test::expect_same_run;
 using test::run_resident;
 using test::run_steps;
 using test::RunEnd;
@@ -142,21 +142,6 @@ TEST(ResidentSystem, ShowsItsStateToTheCpu) {
 
 // --- whole runs
 
-/// Both end within the tolerance of a step, with the same statuses, and were in contact.
-void expect_same_run(const Scene& scene, const std::function<Method()>& method, int steps, double tolerance) {
-  Method on_cpu = method(), resident = method();
-  test::use_resident_solver(on_cpu);
-  run_resident(resident);
-  const RunEnd cpu = run_steps(scene, std::move(on_cpu), steps),
-               ours = run_steps(scene, std::move(resident), steps);
-  EXPECT_EQ(ours.status, cpu.status);
-  EXPECT_GT(cpu.contacts, 0u);
-  EXPECT_GE(ours.contacts, cpu.contacts);  // one a pair, which the CPU merges
-  EXPECT_GT((cpu.x - scene.x0).cwiseAbs().maxCoeff(), 1e-3);
-  EXPECT_LT((ours.x - cpu.x).cwiseAbs().maxCoeff(), tolerance);
-  EXPECT_NEAR(ours.kappa_max, cpu.kappa_max, 1e-6 * cpu.kappa_max);
-}
-
 TEST(ResidentRun, EndsWhereTheCpuEndsForEveryShape) {
   for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage"}) {
     SCOPED_TRACE(shape);
@@ -250,28 +235,6 @@ TEST(ResidentRun, IsTheSameInEveryOrder) {
     EXPECT_EQ(other.x, first.x);
     EXPECT_EQ(other.iterations, first.iterations);
   }
-}
-
-TEST(ResidentRun, GoesOnFromAnArchive) {
-  const Scene scene = test::two_sheets();
-  const auto method = [] { return test::method_with_policy("cubic", "ipc_adaptive", {}); };
-  Method whole = method();
-  run_resident(whole);
-  Simulation simulation(scene, whole, dt, 8);
-  StepObserver observer;
-  for (int i = 0; i < 4; ++i) simulation.step(observer);
-  Archive archive;
-  simulation.keep(archive);
-  Method again = method();
-  run_resident(again);
-  Simulation resumed(scene, again, dt, 8);
-  Archive read(archive.bytes());
-  resumed.keep(read);
-  ASSERT_TRUE(read.at_end());
-  simulation.drop_caches();
-  for (int i = 0; i < 4; ++i) simulation.step(observer), resumed.step(observer);
-  EXPECT_EQ(resumed.history().x, simulation.history().x);
-  EXPECT_NE(resumed.history().x, scene.x0);
 }
 
 TEST(ResidentSystem, RefusesWhatHasNoDeviceForm) {

@@ -5,10 +5,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 #include <random>
 
 #include "core/exec/host_executor.hpp"
 #include "core/resident/sums/resident_sum.hpp"
+#include "core/resident/system/row_totals.hpp"
 
 namespace bb::resident {
 namespace {
@@ -89,47 +92,89 @@ struct SomeRows {
     out.uniform_kappa = 7;
     return out;
   }
-  double number(RowNumber which, bool uniform, std::size_t r) const {
-    const bool mollified = kind[r] == mollified_kind;
-    switch (which) {
-      case RowNumber::gap_rel:
-        return d[r] / d_hat[r];
-      case RowNumber::kappa:
-        return uniform ? 7 : kappa[r];
-      case RowNumber::load:
-        return mollified ? 0 : -push[r];
-      case RowNumber::curvature:
-        break;
-    }
-    return mollified ? 0 : stretch[r];
+  bool mollified(std::size_t r) const { return kind[r] == mollified_kind; }
+  /// Loads of all rows, N; 0 where they are mollified.
+  std::vector<double> loads() const {
+    std::vector<double> out;
+    for (std::size_t r = 0; r < n; ++r) out.push_back(mollified(r) ? 0 : -push[r]);
+    return out;
   }
 };
 
-TEST(SystemKernels, NumbersOfRows) {
+RowTotals totals(exec::Executor& executor, const RowView& rows) {
+  ResidentSums<RowTotals> sums(executor);
+  sums.add(rows.n, TotalsOfRows{rows});
+  return sums.get();
+}
+
+/// a . b of all numbers, with the additions in the order of every sum over columns.
+Compensated product(exec::Executor& executor, const std::vector<double>& a, const std::vector<double>& b) {
+  const auto a_on = on(executor, a), b_on = on(executor, b);
+  exec::Buffer<FixedMask> fixed(executor, "fixed", a_on.size() / 3 + 1);
+  fixed.fill_zero();
+  ResidentSum sum(executor);
+  sum.add(a_on.size(), FreeDot{a_on.data(), b_on.data(), fixed.data()});
+  return sum.get();
+}
+
+TEST(SystemKernels, TotalsOfRowsAreThoseOfALoop) {
   exec::HostExecutor executor;
   SomeRows rows(executor);
-  ResidentLeast least(executor);
-  ResidentSum sum(executor);
-  for (const RowNumber which :
-       {RowNumber::gap_rel, RowNumber::kappa, RowNumber::load, RowNumber::curvature}) {
-    for (const bool uniform : {false, true}) {
-      double largest = 0, smallest = 1e300, total = 0;
-      for (std::size_t r = 0; r < rows.n; ++r) {
-        const double number = rows.number(which, uniform, r);
-        largest = std::max(largest, number), smallest = std::min(smallest, number), total += number;
-      }
-      least.clear();
-      least.add(rows.n, SmallestRow{{rows.view(uniform), which}});
-      EXPECT_EQ(least.smallest(), smallest);
-      least.clear();
-      least.add(rows.n, LargestRow{{rows.view(uniform), which}});
-      EXPECT_EQ(least.largest(), largest);
-      sum.clear();
-      sum.add(rows.n, SumOfLoads{{rows.view(uniform), which}});
-      EXPECT_NEAR(sum.get().value(), total, 1e-12 * total);
-      ASSERT_GT(largest, 1);
+  for (const bool uniform : {false, true}) {
+    const RowTotals found = totals(executor, rows.view(uniform));
+    double gap_rel = 1e300, kappa_min = 1e300, kappa_max = 0, curvature = 0;
+    for (std::size_t r = 0; r < rows.n; ++r) {
+      const double kappa = uniform ? 7 : rows.kappa[r];
+      gap_rel = std::min(gap_rel, rows.d[r] / rows.d_hat[r]);
+      kappa_min = std::min(kappa_min, kappa), kappa_max = std::max(kappa_max, kappa);
+      if (!rows.mollified(r)) curvature = std::max(curvature, rows.stretch[r]);
+    }
+    const std::vector<double> loads = rows.loads();
+    EXPECT_EQ(smallest_of(found.gap_rel_min), gap_rel);
+    EXPECT_EQ(smallest_of(found.kappa_min), kappa_min);
+    EXPECT_EQ(largest_of(found.kappa_max), kappa_max);
+    EXPECT_EQ(largest_of(found.load_max), *std::max_element(loads.begin(), loads.end()));
+    EXPECT_EQ(largest_of(found.curvature_max), curvature);
+    ASSERT_GT(curvature, 1);
+    const Compensated load = product(executor, loads, std::vector<double>(rows.n, 1));
+    ASSERT_GT(load.value(), 100);
+    EXPECT_EQ(found.load.sum, load.sum);
+    EXPECT_EQ(found.load.carry, load.carry);
+    EXPECT_EQ(found.load.magnitude, load.magnitude);
+    for (std::uint8_t kind = 0; kind <= mollified_kind; ++kind) {
+      const auto expected = std::count(rows.kind.begin(), rows.kind.end(), kind);
+      EXPECT_GT(expected, 0);
+      EXPECT_EQ(found.of_kind[kind], static_cast<Key>(expected));
     }
   }
+}
+
+TEST(SystemKernels, TotalsOfRowsAreTheSameInEveryOrder) {
+  std::vector<RowTotals> found;
+  for (const exec::Order order :
+       {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
+    exec::HostExecutor executor(order, 5);
+    SomeRows rows(executor);
+    found.push_back(totals(executor, rows.view(false)));
+    EXPECT_EQ(std::memcmp(&found.back(), &found.front(), sizeof(RowTotals)), 0);
+  }
+  ASSERT_NE(found.front().load.carry, 0);
+}
+
+TEST(SystemKernels, TotalsOfNoRowsAndOfNoNumbers) {
+  exec::HostExecutor executor;
+  RowView none{};
+  const RowTotals empty = totals(executor, none);
+  EXPECT_EQ(smallest_of(empty.kappa_min), std::numeric_limits<double>::infinity());
+  EXPECT_EQ(largest_of(empty.kappa_max), 0);
+  EXPECT_EQ(empty.load.value(), 0);
+  SomeRows rows(executor);
+  rows.d_on.set(17, std::numeric_limits<double>::quiet_NaN());
+  rows.stretch_on.set(18, -std::numeric_limits<double>::quiet_NaN());
+  const RowTotals bad = totals(executor, rows.view(false));
+  EXPECT_TRUE(std::isnan(smallest_of(bad.gap_rel_min)));
+  EXPECT_TRUE(std::isnan(largest_of(bad.curvature_max)));
+  EXPECT_FALSE(std::isnan(largest_of(bad.load_max)));
 }
 
 TEST(SystemKernels, ProductOverFreeNumbers) {
@@ -149,18 +194,6 @@ TEST(SystemKernels, ProductOverFreeNumbers) {
   sum.add(3 * n, FreeDot{a_on.data(), b_on.data(), fixed_on.data()});
   ASSERT_NE(expected, 0);
   EXPECT_NEAR(sum.get().value(), expected, 1e-13);
-}
-
-TEST(SystemKernels, RowsOfAKind) {
-  exec::HostExecutor executor;
-  SomeRows rows(executor);
-  for (std::uint8_t kind = 0; kind <= mollified_kind; ++kind) {
-    ResidentSum sum(executor);
-    sum.add(rows.n, CountOfKind{rows.view(true), kind});
-    const auto expected = std::count(rows.kind.begin(), rows.kind.end(), kind);
-    EXPECT_EQ(sum.get().value(), static_cast<double>(expected));
-    EXPECT_GT(expected, 0);
-  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "core/contact/obstacle_motion.hpp"
 #include "core/contact/pair_planes.hpp"
 #include "core/geometry/accd.hpp"
+#include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/pair_search.hpp"
 
 namespace bb::resident {
@@ -143,7 +144,7 @@ struct ScreenPairs {
   BoundQuery query;
   const Key* candidate;
   float* proven;
-  Index* keep;  // [n + 1]
+  std::uint8_t* keep;
   BB_HD void operator()(Index i) const {
     const double known = query.known();
     const auto pair = pair_vertices<K>(query.surface, first_of(candidate[i]), second_of(candidate[i]));
@@ -157,13 +158,14 @@ struct ScreenPairs {
 /// asked[place of i]: the time that pair i is proven, then i, so that sorting its bits puts early ones first.
 struct KeepPairs {
   const float* proven;
-  const Index* place;  // [n + 1]
+  const std::uint8_t* keep;
+  Places places;
   Key* asked;
   BB_HD void operator()(Index i) const {
-    if (place[i + 1] == place[i]) return;
+    if (keep[i] == 0) return;
     std::uint32_t bits;
     memcpy(&bits, proven + i, sizeof bits);
-    asked[place[i]] = static_cast<Key>(i) << 32 | bits;
+    asked[places.of(i)] = static_cast<Key>(i) << 32 | bits;
   }
 };
 

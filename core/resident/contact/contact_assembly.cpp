@@ -40,11 +40,15 @@ const exec::Buffer<double>& ContactAssembly::mollifiers(ResidentRows& rows, cons
 void ContactAssembly::add_gradient(ResidentRows& rows, const exec::Buffer<double>& x,
                                    exec::Buffer<double>& gradient) {
   mollifiers(rows, x);
+  gather(rows, RowPush{}, gradient);
+}
+
+/// Requires the numbers of the mollified rows.
+template <class Term>
+void ContactAssembly::gather(ResidentRows& rows, const Term& term, exec::Buffer<double>& out) {
+  const MollifiedColumn mollified{rows.list.data(), rows.list.size(), mollified_.data()};
   executor_.each(pattern_.n_vertices(),
-                 GatherGradient{rows.view(),
-                                pattern_.slots(),
-                                {rows.list.data(), rows.list.size(), mollified_.data()},
-                                gradient.data()});
+                 GatherRows<Term>{rows.view(), pattern_.slots(), mollified, term, out.data()});
 }
 
 void ContactAssembly::add_given_motion(ResidentRows& rows, const exec::Buffer<double>& x,
@@ -53,11 +57,7 @@ void ContactAssembly::add_given_motion(ResidentRows& rows, const exec::Buffer<do
   mollified_.resize(12 * n);
   executor_.each(n, MollifiedChanges{rows.view(), rows.list.data(), n, x.data(), surface_.view().rest,
                                      motion.data(), mollified_.data()});
-  executor_.each(pattern_.n_vertices(), GatherGivenMotion{rows.view(),
-                                                          pattern_.slots(),
-                                                          {rows.list.data(), n, mollified_.data()},
-                                                          motion.data(),
-                                                          force.data()});
+  gather(rows, RowGivenMotion{motion.data()}, force);
 }
 
 MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double>& x,

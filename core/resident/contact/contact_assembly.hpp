@@ -44,6 +44,8 @@ class ContactAssembly {
   const ContactPattern& pattern() const { return pattern_; }
 
  private:
+  template <class Term>
+  void gather(ResidentRows& rows, const Term& term, exec::Buffer<double>& out);
   void add_dense(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice);
 
   exec::Executor& executor_;

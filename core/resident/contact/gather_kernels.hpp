@@ -19,12 +19,15 @@ struct MollifiedColumn {
   }
 };
 
-/// Adds the gradient of B to gradient [3 n_vertices], N.
-struct GatherGradient {
+/// Adds to out [3 n_vertices] what the rows of each vertex have for it: of mollified rows their numbers, of the others
+/// term.add(rows, row, weight of the vertex, sum).
+template <class Term>
+struct GatherRows {
   RowView rows;
   VertexSlots slots;
   MollifiedColumn mollified;
-  double* gradient;
+  Term term;
+  double* out;
   BB_HD void operator()(Index v) const {
     double sum[3] = {0, 0, 0};
     for (Index s = slots.begin[v]; s < slots.begin[v + 1]; ++s) {
@@ -33,43 +36,34 @@ struct GatherGradient {
       if (rows.mollified(r)) {
         const Index i = mollified.of(r);
         for (int c = 0; c < 3; ++c) sum[c] += mollified.number[(3 * k + c) * mollified.n + i];
-        continue;
+      } else {
+        term.add(rows, r, rows.weight[k * rows.n + r], sum);
       }
-      const double push = rows.push[r], w = rows.weight[k * rows.n + r];
-      for (int c = 0; c < 3; ++c) sum[c] += push * (w * rows.normal[c * rows.n + r]);
     }
-    for (int c = 0; c < 3; ++c) gradient[3 * v + c] += sum[c];
+    for (int c = 0; c < 3; ++c) out[3 * v + c] += sum[c];
   }
 };
 
-/// Adds to force how the gradient changes along a motion of given vertices: add_given_motion() of
-/// core/contact/contact_terms.hpp. mollified: their changes.
-struct GatherGivenMotion {
-  RowView rows;
-  VertexSlots slots;
-  MollifiedColumn mollified;
+/// The gradient of B, N.
+struct RowPush {
+  BB_HD void add(const RowView& rows, Index r, double weight, double* sum) const {
+    for (int c = 0; c < 3; ++c) sum[c] += rows.push[r] * (weight * rows.normal[c * rows.n + r]);
+  }
+};
+
+/// How the gradient changes along a motion of given vertices [3 n_vertices]: add_given_motion() of
+/// core/contact/contact_terms.hpp.
+struct RowGivenMotion {
   const double* motion;
-  double* force;
-  BB_HD void operator()(Index v) const {
-    double sum[3] = {0, 0, 0};
-    for (Index s = slots.begin[v]; s < slots.begin[v + 1]; ++s) {
-      const Index r = slot_row(slots.slot[s]);
-      const int k = slot_point(slots.slot[s]);
-      if (rows.mollified(r)) {
-        const Index i = mollified.of(r);
-        for (int c = 0; c < 3; ++c) sum[c] += mollified.number[(3 * k + c) * mollified.n + i];
-        continue;
-      }
-      const double closing = closing_motion(r);
-      if (closing == 0) continue;
-      const double size = rows.stretch[r] * closing * rows.weight[k * rows.n + r];
-      for (int c = 0; c < 3; ++c) sum[c] += size * rows.normal[c * rows.n + r];
-    }
-    for (int c = 0; c < 3; ++c) force[3 * v + c] += sum[c];
+  BB_HD void add(const RowView& rows, Index r, double weight, double* sum) const {
+    const double closing = closing_motion(rows, r);
+    if (closing == 0) return;
+    const double size = rows.stretch[r] * closing * weight;
+    for (int c = 0; c < 3; ++c) sum[c] += size * rows.normal[c * rows.n + r];
   }
 
  private:
-  BB_HD double closing_motion(Index r) const {
+  BB_HD double closing_motion(const RowView& rows, Index r) const {
     double closing = 0;
     for (int k = 0; k < 4; ++k) {
       const Index vertex = rows.vertex[k * rows.n + r];

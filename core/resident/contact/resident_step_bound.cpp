@@ -4,7 +4,6 @@
 #include <limits>
 
 #include "core/contact/contact_row.hpp"
-#include "core/resident/contact/compaction.hpp"
 
 namespace bb::resident {
 
@@ -21,7 +20,7 @@ ResidentStepBound::ResidentStepBound(exec::Executor& executor, const ResidentSur
       record_(executor, "step bound", 1),
       largest_(executor, "largest coordinate", 1),
       proven_(executor, "proven times"),
-      place_(executor, "places of asked pairs"),
+      places_(executor, "asked pairs"),
       asked_(executor, "asked pairs"),
       time_(executor, "times of asked pairs"),
       pair_(executor, "pairs of those times") {}
@@ -61,12 +60,12 @@ void ResidentStepBound::in_batches(Index n, int list, const Ask& ask) {
 /// Those of n pairs that have to be asked, early ones first, into asked_. Returns how many.
 template <PairKind K>
 Index ResidentStepBound::screen(const Key* candidates, Index n) {
-  if (proven_.size() < n) proven_.resize(n), place_.resize(n + 1);
-  executor_.each(n, ScreenPairs<K>{query_, candidates, proven_.data(), place_.data()});
-  scan_counts(executor_, place_.data(), n);
-  const Index m = executor_.counts_only() ? n : place_.get(n);
+  if (proven_.size() < n) proven_.resize(n);
+  std::uint8_t* const keep = places_.counts(n);
+  executor_.each(n, ScreenPairs<K>{query_, candidates, proven_.data(), keep});
+  const Index m = places_.rank(n);
   if (asked_.size() < m) asked_.grow(m);
-  executor_.each(n, KeepPairs{proven_.data(), place_.data(), asked_.data()});
+  executor_.each(n, KeepPairs{proven_.data(), keep, places_.places(), asked_.data()});
   executor_.sort(asked_.data(), nullptr, m, 32);
   return m;
 }

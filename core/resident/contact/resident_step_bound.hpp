@@ -4,6 +4,7 @@
 
 #include "core/contact/step_bound.hpp"
 #include "core/resident/contact/bound_kernels.hpp"
+#include "core/resident/contact/compaction.hpp"
 #include "core/resident/contact/resident_broad_phase.hpp"
 
 namespace bb::resident {
@@ -18,7 +19,7 @@ struct BoundBatches {
 
 /// Pairs are screened in chunks of their lists: axes and planes prove of most that they come later than the smallest
 /// time known. The rest is asked in batches, in the order of what is proven of it. Counters are the same in any order
-/// of a launch; they differ from the CPU path's, whose batches are others. Keeps its buffers: 12 B a pair of a
+/// of a launch; they differ from the CPU path's, whose batches are others. Keeps its buffers: 7 B a pair of a
 /// chunk, 8 B a pair that has to be asked, 16 B a pair of a batch.
 class ResidentStepBound {
  public:
@@ -56,7 +57,7 @@ class ResidentStepBound {
   exec::Buffer<BoundRecord> record_;
   exec::Buffer<Key> largest_;
   exec::Buffer<float> proven_;
-  exec::Buffer<Index> place_;
+  Compaction places_;
   exec::Buffer<Key> asked_, time_, pair_;
 };
 

@@ -85,6 +85,10 @@ struct ResidentCandidates {
   void free() {
     for (auto* list : {&point_point, &point_edge, &point_triangle, &edge_edge, &obstacle}) list->free();
   }
+  std::size_t bytes() const {
+    return point_point.bytes() + point_edge.bytes() + point_triangle.bytes() + edge_edge.bytes() +
+           obstacle.bytes();
+  }
   exec::Buffer<Key> point_point, point_edge, point_triangle, edge_edge, obstacle;
 };
 

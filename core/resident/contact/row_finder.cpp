@@ -5,13 +5,14 @@
 namespace bb::resident {
 namespace {
 
-/// f.template operator()<K>(list) for the four kinds of pairs, in the order of PairKind.
+/// f(rows, list) of every list of candidates; rows: what its kernels ask.
 template <class F>
-void for_each_list(const ResidentCandidates& c, const F& f) {
-  f.template operator()<PairKind::point_point>(c.point_point);
-  f.template operator()<PairKind::point_edge>(c.point_edge);
-  f.template operator()<PairKind::point_triangle>(c.point_triangle);
-  f.template operator()<PairKind::edge_edge>(c.edge_edge);
+void for_each_list(const NarrowPhase& phase, const ResidentCandidates& c, const F& f) {
+  f(SurfaceRows<PairKind::point_point>{phase}, c.point_point);
+  f(SurfaceRows<PairKind::point_edge>{phase}, c.point_edge);
+  f(SurfaceRows<PairKind::point_triangle>{phase}, c.point_triangle);
+  f(SurfaceRows<PairKind::edge_edge>{phase}, c.edge_edge);
+  f(ObstacleRows{phase}, c.obstacle);
 }
 
 Index n_candidates(const ResidentCandidates& c) {
@@ -53,24 +54,20 @@ void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& ca
   const NarrowPhase phase{surface_.view(), x.data(), mollifier_};
   std::uint8_t* const mark = places_.counts(n_candidates(candidates));
   Index first = 0;
-  for_each_list(candidates, [&]<PairKind K>(const exec::Buffer<Key>& list) {
-    executor_.each(list.size(), MarkPairRows<K>{phase, list.data(), mark + first});
+  for_each_list(phase, candidates, [&]<class Rows>(const Rows& of, const exec::Buffer<Key>& list) {
+    executor_.each(list.size(), MarkRows<Rows>{of, list.data(), mark + first});
     first += list.size();
   });
-  executor_.each(candidates.obstacle.size(),
-                 MarkObstacleRows{phase, candidates.obstacle.data(), mark + first});
 
   rows.resize(places_.rank(expected_.rows));
   gap_.set(0, {~Key{0}, ~Key{0}});
   const RowView view = rows.view();
   first = 0;
-  for_each_list(candidates, [&]<PairKind K>(const exec::Buffer<Key>& list) {
-    executor_.each(list.size(), FillPairRows<K>{phase, list.data(), mark + first, first, places_.places(),
-                                                view, gap_.data()});
+  for_each_list(phase, candidates, [&]<class Rows>(const Rows& of, const exec::Buffer<Key>& list) {
+    executor_.each(list.size(),
+                   FillRows<Rows>{of, list.data(), mark + first, first, places_.places(), view, gap_.data()});
     first += list.size();
   });
-  executor_.each(candidates.obstacle.size(), FillObstacleRows{phase, candidates.obstacle.data(), mark + first,
-                                                              first, places_.places(), view, gap_.data()});
   rows.min_gap =
       executor_.counts_only() ? std::numeric_limits<double>::infinity() : smallest_gap(gap_.get(0));
   list_mollified(rows);

@@ -121,22 +121,35 @@ BB_HD inline Key pair_of(int kind, Key candidate) {
   return pair_id(kind, candidate >> 32, candidate & 0xffffffffu);
 }
 
-/// mark[i] = 1 where candidate i has a row.
+/// The rows of a list of pairs of surface primitives, and of points and obstacles: what the two kernels below ask.
 template <PairKind K>
-struct MarkPairRows {
+struct SurfaceRows {
+  static constexpr int kind = static_cast<int>(K);
   NarrowPhase phase;
+  BB_HD bool find(Key candidate, FoundRow& out) const { return phase.find<K>(candidate, out); }
+};
+struct ObstacleRows {
+  static constexpr int kind = obstacle_pairs;
+  NarrowPhase phase;
+  BB_HD bool find(Key candidate, FoundRow& out) const { return phase.find_obstacle(candidate, out); }
+};
+
+/// mark[i] = 1 where candidate i has a row.
+template <class Rows>
+struct MarkRows {
+  Rows of;
   const Key* candidate;
   std::uint8_t* mark;
   BB_HD void operator()(Index i) const {
     FoundRow row;
-    mark[i] = phase.find<K>(candidate[i], row) ? 1 : 0;
+    mark[i] = of.find(candidate[i], row) ? 1 : 0;
   }
 };
 
 /// The rows of marked candidates at their places; first: what items come before those of this list.
-template <PairKind K>
-struct FillPairRows {
-  NarrowPhase phase;
+template <class Rows>
+struct FillRows {
+  Rows of;
   const Key* candidate;
   const std::uint8_t* mark;
   Index first;
@@ -145,34 +158,8 @@ struct FillPairRows {
   GapBits* gap;
   BB_HD void operator()(Index i) const {
     FoundRow row;
-    if (mark[i] == 0 || !phase.find<K>(candidate[i], row)) return;
-    put_row(rows, places.of(first + i), row, pair_of(static_cast<int>(K), candidate[i]));
-    note_gap(gap, row.d);
-  }
-};
-
-struct MarkObstacleRows {
-  NarrowPhase phase;
-  const Key* candidate;
-  std::uint8_t* mark;
-  BB_HD void operator()(Index i) const {
-    FoundRow row;
-    mark[i] = phase.find_obstacle(candidate[i], row) ? 1 : 0;
-  }
-};
-
-struct FillObstacleRows {
-  NarrowPhase phase;
-  const Key* candidate;
-  const std::uint8_t* mark;
-  Index first;
-  Places places;
-  RowView rows;
-  GapBits* gap;
-  BB_HD void operator()(Index i) const {
-    FoundRow row;
-    if (mark[i] == 0 || !phase.find_obstacle(candidate[i], row)) return;
-    put_row(rows, places.of(first + i), row, pair_of(obstacle_pairs, candidate[i]));
+    if (mark[i] == 0 || !of.find(candidate[i], row)) return;
+    put_row(rows, places.of(first + i), row, pair_of(Rows::kind, candidate[i]));
     note_gap(gap, row.d);
   }
 };

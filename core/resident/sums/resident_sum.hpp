@@ -7,29 +7,32 @@
 
 namespace bb::resident {
 
-/// Compensated sum of what several calls of add bring. Reusable; cost of a call: one pass, nothing is copied.
-class ResidentSum {
+/// Sum of what several calls of add bring. Reusable; cost of a call: one pass, nothing is copied.
+template <class Sum>
+class ResidentSums {
  public:
-  explicit ResidentSum(exec::Executor& executor)
+  explicit ResidentSums(exec::Executor& executor)
       : executor_(executor), partial_(executor, "partial sums", most_partials), total_(executor, "sum", 1) {
     clear();
   }
   void clear() { total_.fill_zero(); }
-  /// Parts: sum_kernels.hpp, SumParts.
+  /// Parts: sum_kernels.hpp, SumParts; their sum is a Sum.
   template <class Parts>
   void add(Index n, const Parts& parts) {
     if (n == 0) return;
     const Index n_blocks = (n + items_a_block(n) - 1) / items_a_block(n);
     executor_.blocks(n_blocks, SumParts<Parts>{parts, n, partial_.data()});
-    executor_.blocks(1, FoldPartials{partial_.data(), n_blocks, total_.data()});
+    executor_.blocks(1, FoldPartials<Sum>{partial_.data(), n_blocks, total_.data()});
   }
-  /// Waits. value(): the sum; magnitude: the sum of |parts|, of which rounding noise is some multiple of eps.
-  Compensated get() const { return executor_.counts_only() ? Compensated{} : total_.get(0); }
+  /// Waits.
+  Sum get() const { return executor_.counts_only() ? Sum::zero() : total_.get(0); }
 
  private:
   exec::Executor& executor_;
-  exec::Buffer<Compensated> partial_, total_;
+  exec::Buffer<Sum> partial_, total_;
 };
+/// value(): the sum; magnitude: the sum of |parts|, of which rounding noise is some multiple of eps.
+using ResidentSum = ResidentSums<Compensated>;
 
 /// The least of keys that several calls bring: largest and smallest numbers, first items.
 class ResidentLeast {

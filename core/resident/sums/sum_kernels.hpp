@@ -41,20 +41,33 @@ BB_HD inline Index items_a_block(Index n) {
   return threads * (n <= most ? 1 : (n + most - 1) / most);
 }
 
-/// One partial sum a block. Parts: a struct whose call (Index i, Compensated& sum) adds what item i has.
+/// What Parts add up: their member type Sum, or one number. A sum is plain numbers with zero(), whose bytes are all 0,
+/// and +.
+template <class Parts>
+struct SumOf {
+  using type = Compensated;
+};
+template <class Parts>
+requires requires { typename Parts::Sum; }
+struct SumOf<Parts> {
+  using type = typename Parts::Sum;
+};
+
+/// One partial sum a block. Parts: a struct whose call (Index i, Sum& sum) adds what item i has.
 template <class Parts>
 struct SumParts {
+  using Sum = typename SumOf<Parts>::type;
   struct Shared {
-    Compensated at[exec::block_threads];
+    Sum at[exec::block_threads];
   };
   Parts parts;
   Index n;
-  Compensated* partial;
+  Sum* partial;
   template <class Block>
   BB_HD void operator()(Block& block, Shared& shared, Index b) const {
     const Index items = items_a_block(n), end = (b + 1) * items < n ? (b + 1) * items : n;
     block.threads([&](int t) {
-      Compensated sum = Compensated::zero();
+      Sum sum = Sum::zero();
       for (Index i = b * items + t; i < end; i += exec::block_threads) parts(i, sum);
       shared.at[t] = sum;
     });
@@ -66,17 +79,18 @@ struct SumParts {
 };
 
 /// *total += the partial sums; one block.
+template <class Sum>
 struct FoldPartials {
   struct Shared {
-    Compensated at[exec::block_threads];
+    Sum at[exec::block_threads];
   };
-  const Compensated* partial;
+  const Sum* partial;
   Index n;
-  Compensated* total;
+  Sum* total;
   template <class Block>
   BB_HD void operator()(Block& block, Shared& shared, Index) const {
     block.threads([&](int t) {
-      Compensated sum = Compensated::zero();
+      Sum sum = Sum::zero();
       for (Index i = t; i < n; i += exec::block_threads) sum = sum + partial[i];
       shared.at[t] = sum;
     });

@@ -54,9 +54,9 @@ void ResidentContact::begin_step(const Column& x_n, double dt, double c) {
   stiffness_.begin_step();
   change_time(dt, c);
   first_iterate_ = true;
-  prepare(x_n, x_n);
-  lend_columns();
-  finder_.find(x_n, candidates_, trial_);
+  if (frugal()) assembly_.free_matrix();
+  listed_ = false;
+  find_rows(x_n);
   take_trial();
 }
 
@@ -69,11 +69,38 @@ void ResidentContact::take_trial() {
 
 void ResidentContact::prepare(const Column& x0, const Column& x1) {
   if (frugal()) assembly_.free_matrix();
+  listed_ = broad_phase_.count(x0, x1).bytes() <= list_budget();
+  in_trees_ = !listed_;
+  if (listed_) {
+    fill_lists();
+  } else {
+    candidates_.free();
+  }
+}
+
+// Of a memory that is limited the lists may have half of what there is: sorting them takes as much again.
+std::size_t ResidentContact::list_budget() const {
+  return std::min(list_budget_, executor_.memory().left() / 2 + candidates_.bytes() / 2);
+}
+
+// Of what was counted last.
+void ResidentContact::fill_lists() {
   broad_phase_.keep_room(!frugal());
-  broad_phase_.update(x0, x1, candidates_);
+  broad_phase_.fill(candidates_);
   if (!frugal()) return;
   broad_phase_.free();
   executor_.trim();
+}
+
+// Rows of a state of the motion, in the trial's table.
+void ResidentContact::find_rows(const Column& x) {
+  lend_columns();
+  if (!listed_) {
+    in_trees_ = false;
+    broad_phase_.count(x, x);
+    fill_lists();
+  }
+  finder_.find(x, candidates_, trial_);
 }
 
 void ResidentContact::lend_columns() {
@@ -81,10 +108,10 @@ void ResidentContact::lend_columns() {
   lent_ = true;
 }
 
-// No trial was accepted: the shared columns are those of another state. The candidates are those of a motion from x.
+// No trial was accepted: the shared columns are those of another state.
 void ResidentContact::settle(const Column& x) {
   if (!lent_) return;
-  finder_.find(x, candidates_, trial_);
+  find_rows(x);
   trial_.lend(rows_);
   lent_ = false;
   barrier_.evaluate(executor_, rows_);
@@ -149,7 +176,13 @@ void ResidentContact::start_policy(const Column& x, const Column& others) {
 }
 
 const StepBound& ResidentContact::bound(const Column& x0, const Column& x1) {
-  bound_ = step_bound_.find(candidates_, x0, x1);
+  if (listed_) {
+    bound_ = step_bound_.find(candidates_, x0, x1);
+    return bound_;
+  }
+  if (!in_trees_) broad_phase_.count(x0, x1);  // a state was looked at since
+  in_trees_ = true;
+  bound_ = step_bound_.find_without_list(broad_phase_.source(), x0, x1);
   return bound_;
 }
 
@@ -157,8 +190,7 @@ std::string ResidentContact::describe_bound() const { return pair_name(scene_, b
 
 bool ResidentContact::admits(const Column& x, const Column& trial) {
   energy(x);  // while its rows have all columns
-  lend_columns();
-  finder_.find(trial, candidates_, trial_);
+  find_rows(trial);
   return trial_.feasible();
 }
 

@@ -76,6 +76,9 @@ class ResidentContact {
   /// solve, matrix values before a motion. Results do not depend on it.
   void set_frugal_from(Index rows) { frugal_from_ = rows; }
   bool frugal() const { return rows_.size() >= frugal_from_; }
+  /// Bytes that the candidate lists of a motion may take. A motion that needs more has none: its bound is found in the
+  /// trees, and every state on it gets its own lists. Results do not depend on it; counters of the bound do.
+  void set_list_budget(std::size_t bytes) { list_budget_ = bytes; }
   const ResidentStiffness& stiffness() const { return stiffness_; }
   /// Of the last linearise(): largest relative change of a row's kappa.
   double kappa_change() const { return kappa_change_; }
@@ -85,6 +88,12 @@ class ResidentContact {
 
  private:
   static constexpr Index default_frugal_from = Index{1} << 24;
+  /// Twice the lists of 184 million contacts with two candidates each: more come of a motion that sweeps far, not of
+  /// contacts.
+  static constexpr std::size_t default_list_budget = std::size_t{8} << 30;
+  std::size_t list_budget() const;
+  void fill_lists();
+  void find_rows(const Column& x);
   void lend_columns();
   void settle(const Column& x);
   void take_trial();
@@ -110,7 +119,10 @@ class ResidentContact {
   bool lent_ = false;  // the trial has the columns that the two share
   std::optional<Compensated> energy_;
   Index frugal_from_ = default_frugal_from;
-  Column part_;  // [3 n] gradient of B with kappa = 1
+  std::size_t list_budget_ = default_list_budget;
+  bool listed_ = false;    // the candidate lists are those of the motion
+  bool in_trees_ = false;  // the trees are those of the motion, which has no lists
+  Column part_;            // [3 n] gradient of B with kappa = 1
   exec::Buffer<double> mass_;
   StepBound bound_;
   double dt_ = 0, c_ = 1, kappa_change_ = 0;

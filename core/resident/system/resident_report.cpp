@@ -1,58 +1,31 @@
-// What is said of a state: numbers of the reports by reductions, everything else through the CPU's view of it.
+// What is said of a state: numbers of rows in one pass, everything else through the CPU's view of it.
 #include <cmath>
-#include <limits>
 
 #include "core/archive/archive.hpp"
 #include "core/resident/system/resident_system.hpp"
-#include "core/resident/system/system_kernels.hpp"
 #include "core/terms/contact.hpp"
 
 namespace bb::resident {
 namespace {
 
-class RowReport {
- public:
-  RowReport(ResidentRows& rows, ResidentSum& sum, ResidentLeast& least)
-      : view_(rows.view()), sum_(sum), least_(least) {}
-
-  double largest(RowNumber which) const {
-    least_.clear();
-    least_.add(view_.n, LargestRow{{view_, which}});
-    return least_.largest();
-  }
-  double smallest(RowNumber which) const {
-    least_.clear();
-    least_.add(view_.n, SmallestRow{{view_, which}});
-    return least_.smallest();
-  }
-  double load_sum() const {
-    sum_.clear();
-    sum_.add(view_.n, SumOfLoads{{view_, RowNumber::load}});
-    return sum_.get().value();
-  }
-  ContactCounts counts() const {
-    ContactCounts out;
-    std::size_t* const of_kind[] = {&out.point_point, &out.point_edge, &out.point_triangle,
-                                    &out.edge_edge,   &out.obstacle,   &out.mollified};
-    for (std::uint8_t kind = 0; kind <= mollified_kind; ++kind) {
-      sum_.clear();
-      sum_.add(view_.n, CountOfKind{view_, kind});
-      *of_kind[kind] = static_cast<std::size_t>(sum_.get().value());
-    }
-    return out;
-  }
-
- private:
-  RowView view_;
-  ResidentSum& sum_;
-  ResidentLeast& least_;
-};
+ContactCounts counts_of(const RowTotals& rows) {
+  const auto of_kind = [&rows](std::size_t kind) { return static_cast<std::size_t>(rows.of_kind[kind]); };
+  ContactCounts out;
+  out.point_point = of_kind(0);
+  out.point_edge = of_kind(1);
+  out.point_triangle = of_kind(2);
+  out.edge_edge = of_kind(3);
+  out.obstacle = of_kind(4);
+  out.mollified = of_kind(mollified_kind);
+  return out;
+}
 
 template <class Numbers>
-void fill(const RowReport& rows, Numbers& out) {
-  out.kappa_min_N_per_m = rows.smallest(RowNumber::kappa);
-  out.kappa_max_N_per_m = rows.largest(RowNumber::kappa);
-  out.contact_load_max_N = rows.largest(RowNumber::load);
+void fill(const RowTotals& rows, Numbers& out) {
+  out.contacts = counts_of(rows);
+  out.kappa_min_N_per_m = smallest_of(rows.kappa_min);
+  out.kappa_max_N_per_m = largest_of(rows.kappa_max);
+  out.contact_load_max_N = largest_of(rows.load_max);
 }
 
 }  // namespace
@@ -71,6 +44,13 @@ double ResidentSystem::energy(TermGroup group) const {
   return sum_.get().value();
 }
 
+RowTotals ResidentSystem::row_totals() const {
+  const RowView rows = contact_->rows(x_).view();
+  row_totals_.clear();
+  row_totals_.add(rows.n, TotalsOfRows{rows});
+  return row_totals_.get();
+}
+
 void ResidentSystem::report(IterateNumbers& out) const {
   if (plan_.term("strain_limit").needed) {
     const ScopedPhase timer(clock(), Phase::strain_limit);
@@ -83,12 +63,11 @@ void ResidentSystem::report(IterateNumbers& out) const {
   if (!contact_) return;
   out.kappa_change_rel = contact_->kappa_change();
   if (contact_->rows(x_).size() == 0) return;
-  const RowReport rows(contact_->rows(x_), sum_, least_);
-  out.contacts = rows.counts();
+  const RowTotals rows = row_totals();
   fill(rows, out);
   out.gap_min_iterates_m = contact_->rows(x_).min_gap;
-  out.gap_min_iterates_rel = rows.smallest(RowNumber::gap_rel);
-  out.contact_curvature_max_N_per_m = rows.largest(RowNumber::curvature);
+  out.gap_min_iterates_rel = smallest_of(rows.gap_rel_min);
+  out.contact_curvature_max_N_per_m = largest_of(rows.curvature_max);
 }
 
 void ResidentSystem::report_end(StepNumbers& out) const {
@@ -98,12 +77,11 @@ void ResidentSystem::report_end(StepNumbers& out) const {
     out.limit_load_max_N_per_m = limit.load_max;
   }
   if (!contact_ || contact_->rows(x_).size() == 0) return;
-  const RowReport rows(contact_->rows(x_), sum_, least_);
-  out.contacts = rows.counts();
+  const RowTotals rows = row_totals();
   fill(rows, out);
-  out.contact_load_sum_N = rows.load_sum();
+  out.contact_load_sum_N = rows.load.value();
   out.gap_min_m = contact_->rows(x_).min_gap;
-  out.gap_min_rel = rows.smallest(RowNumber::gap_rel);
+  out.gap_min_rel = smallest_of(rows.gap_rel_min);
   const double largest = largest_coordinate();
   out.gap_min_ulps = contact_->rows(x_).min_gap / (std::nextafter(largest, 2 * largest) - largest);
 }

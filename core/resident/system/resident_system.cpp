@@ -73,7 +73,8 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
       elastic_value_(*executor_, "elastic matrix of the iterate"),
       product_partial_(*executor_, "partial products", Partition::most_blocks),
       sum_(*executor_),
-      least_(*executor_) {
+      least_(*executor_),
+      row_totals_(*executor_) {
   const Index n = scene.n_vertices();
   for (Column* column : {&x_, &trial_, &end_, &dx_, &g_, &x_n_, &x_tilde_, &b_, &step_, &work_})
     column->resize(3 * n);

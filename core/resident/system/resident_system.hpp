@@ -14,6 +14,7 @@
 #include "core/resident/elements/vectors.hpp"
 #include "core/resident/linear/resident_pcg.hpp"
 #include "core/resident/system/resident_contact.hpp"
+#include "core/resident/system/row_totals.hpp"
 
 namespace bb::resident {
 
@@ -75,6 +76,10 @@ class ResidentSystem final : public StepSystem {
   void set_frugal_from(Index rows) {
     if (contact_) contact_->set_frugal_from(rows);
   }
+  /// As ResidentContact::set_list_budget.
+  void set_list_budget(std::size_t bytes) {
+    if (contact_) contact_->set_list_budget(bytes);
+  }
   /// Who holds how much memory.
   const exec::MemoryLedger& memory() const { return executor_->memory(); }
 
@@ -99,6 +104,8 @@ class ResidentSystem final : public StepSystem {
   bool direction(SolveReport& report);
   LinearReport solve_linear();
   double multiply(const Column& v, Column& out);
+  /// Requires contact_.
+  RowTotals row_totals() const;
   void keep_contact(Archive& archive);
   NewtonSystem& cpu();
 
@@ -124,6 +131,7 @@ class ResidentSystem final : public StepSystem {
   exec::Buffer<double> product_partial_;
   mutable ResidentSum sum_;
   mutable ResidentLeast least_;
+  mutable ResidentSums<RowTotals> row_totals_;
   MatrixPart contact_matrix_{};
   ResidentFrame frame_;
   Prediction prediction_;  // as it came, for the CPU's view
