@@ -1,17 +1,11 @@
 // The linear solver cudss through the compiled device executor and a stand-in for the library: solutions, how often the
 // pattern is analysed, what fails and what is said then.
-#include <gtest/gtest.h>
-
-#include <cstdlib>
-
 #include "core/cudss/library.hpp"
-#include "core/cudss/provide.hpp"
 #include "core/exec/executor.hpp"
 #include "core/linear/cudss.hpp"
 #include "core/math/error.hpp"
 #include "tests/linear/systems.hpp"
-#include "tests/standin/cudart.hpp"
-#include "tests/standin/cudss/state.hpp"
+#include "tests/standin/cudss/fixture.hpp"
 
 namespace standin {
 CudssState& cudss() {
@@ -22,22 +16,6 @@ CudssState& cudss() {
 
 namespace bb {
 namespace {
-
-class Cudss : public testing::Test {
- protected:
-  void SetUp() override {
-    standin::reset();
-    standin::cudss() = {};
-    setenv("BARRIERBENCH_CUDSS", BB_STANDIN_CUDSS, 1);
-    cudss::provide();
-  }
-  void TearDown() override {
-    EXPECT_EQ(standin::cudss().fault, "");
-    EXPECT_EQ(standin::cudss().objects, 0);
-    EXPECT_EQ(standin::counts().in_use, 0u);
-    EXPECT_EQ(standin::counts().fault, "");
-  }
-};
 
 std::unique_ptr<LinearSolver> solver(const char* name = "cudss") {
   LinearOptions options;
@@ -69,7 +47,7 @@ std::string message(const std::function<void()>& call) {
   return "";
 }
 
-TEST_F(Cudss, SolvesAsCholmod) {
+TEST_F(CudssStandin, SolvesAsCholmod) {
   ASSERT_EQ(missing_for("cudss"), "");
   for (const int side : {2, 8, 20}) {
     const ReducedSystem system = grid_system(side, 0.1, 1);
@@ -87,7 +65,7 @@ TEST_F(Cudss, SolvesAsCholmod) {
   EXPECT_EQ(standin::cudss().solves, 3);
 }
 
-TEST_F(Cudss, AnalysesOnceAPattern) {
+TEST_F(CudssStandin, AnalysesOnceAPattern) {
   const auto cudss = solver();
   ReducedSystem first = grid_system(8, 0.1, 1), second = grid_system(8, 0.4, 1);
   ReducedSystem folded = folded_grid(8, 3), nameless = grid_system(8, 0.1, 0);
@@ -114,7 +92,7 @@ TEST_F(Cudss, AnalysesOnceAPattern) {
   }
 }
 
-TEST_F(Cudss, AMatrixThatIsNotPositiveDefiniteIsAStatus) {
+TEST_F(CudssStandin, AMatrixThatIsNotPositiveDefiniteIsAStatus) {
   const auto cudss = solver();
   const ReducedSystem good = grid_system(8, 0.1, 1);
   ReducedSystem bad = good;
@@ -135,7 +113,7 @@ TEST_F(Cudss, AMatrixThatIsNotPositiveDefiniteIsAStatus) {
   EXPECT_EQ(standin::cudss().analyses, 1);
 }
 
-TEST_F(Cudss, WhatIsNotFiniteGoesNowhere) {
+TEST_F(CudssStandin, WhatIsNotFiniteGoesNowhere) {
   const auto cudss = solver();
   const ReducedSystem good = grid_system(4, 0.1, 1);
   ReducedSystem bad = good;
@@ -151,7 +129,7 @@ TEST_F(Cudss, WhatIsNotFiniteGoesNowhere) {
 }
 
 // Of every call in turn: the name and the status are told, and the next solve begins anew.
-TEST_F(Cudss, AnErrorNamesTheCallAndItsStatus) {
+TEST_F(CudssStandin, AnErrorNamesTheCallAndItsStatus) {
   const ReducedSystem system = grid_system(4, 0.1, 1);
   const VecXd b = random_vector(system.lower.rows(), 2);
   VecXd x;
@@ -180,14 +158,14 @@ TEST_F(Cudss, AnErrorNamesTheCallAndItsStatus) {
   }
 }
 
-TEST_F(Cudss, EveryStatusHasItsName) {
+TEST_F(CudssStandin, EveryStatusHasItsName) {
   EXPECT_EQ(cudss::status_text(CUDSS_STATUS_SUCCESS), "CUDSS_STATUS_SUCCESS (0)");
   EXPECT_EQ(cudss::status_text(CUDSS_STATUS_ALLOC_FAILED), "CUDSS_STATUS_ALLOC_FAILED (2)");
   EXPECT_EQ(cudss::status_text(CUDSS_STATUS_NOT_SUPPORTED), "CUDSS_STATUS_NOT_SUPPORTED (4)");
 }
 
 // Its own memory is the executor's: named where it does not fit.
-TEST_F(Cudss, MemoryThatRunsOutIsNamed) {
+TEST_F(CudssStandin, MemoryThatRunsOutIsNamed) {
   const ReducedSystem system = grid_system(4, 0.1, 1);
   const VecXd b = random_vector(system.lower.rows(), 2);
   VecXd x;
@@ -209,7 +187,7 @@ TEST_F(Cudss, MemoryThatRunsOutIsNamed) {
   EXPECT_LT(distance(system, b, x), 1e-12);
 }
 
-TEST_F(Cudss, WhatIsMissingIsSaid) {
+TEST_F(CudssStandin, WhatIsMissingIsSaid) {
   struct Case {
     std::function<void()> set;
     std::vector<std::string> says;
