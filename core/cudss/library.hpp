@@ -9,7 +9,7 @@ namespace bb::cudss {
 
 struct Library {
   std::string why;  // it cannot be used: the reason, and what to do; else empty
-#define FUNCTION(name) decltype (&::name)(name) = nullptr;
+#define FUNCTION(name) decltype(&::name) name = nullptr;  // NOLINT(bugprone-macro-parentheses): a declaration
 #include "core/cudss/functions.inc"
 #undef FUNCTION
 };
