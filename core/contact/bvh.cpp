@@ -4,6 +4,8 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/math/at.hpp"
+
 namespace bb {
 
 namespace {
@@ -30,8 +32,6 @@ Vec3d centre(const TreeBox& box) {
   }
   return out;
 }
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Appends the children of a node that are in a set.
 void add_children(LaneList& list, int node, LaneSet lanes) {

@@ -5,6 +5,7 @@
 #include "core/contact/contact_terms.hpp"
 #include "core/contact/mollified_terms.hpp"
 #include "core/contact/pair_geometry.hpp"
+#include "core/contact/row_columns.hpp"
 #include "core/math/lower_blocks.hpp"
 
 namespace bb {
@@ -13,8 +14,6 @@ namespace {
 
 template <class T>
 using Hessian12 = Mat<T, 12, 12>;
-constexpr std::size_t stored = n_lower_numbers(4);  // a row
-
 /// Rows and columns of the free points of `full` on the compact slots, the others 0; `vertex` [4] are the
 /// compact ids, -1 padded, in stencil order.
 template <class T>
@@ -32,12 +31,6 @@ Hessian12<T> compact(const int* stencil, const int* vertex, const Hessian12<T>& 
   return out;
 }
 
-/// An entry of a column, in the scalar T.
-template <class T>
-T in(const std::vector<double>& column, std::size_t r) {
-  return static_cast<T>(column[r]);
-}
-
 template <class T>
 Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const Positions& x) {
   return gather_in<T>(x, std::array{rows.stencil[4 * r], rows.stencil[4 * r + 1], rows.stencil[4 * r + 2],
@@ -47,10 +40,10 @@ Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const P
 /// Of m kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
 template <class T>
 MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r, const Positions& x) {
-  const T scale = in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r);
-  return bb::mollified_derivatives<T>(mollified_points<T>(rows, r, x), in<T>(rows.eps, r),
-                                      scale * in<T>(rows.b, r), scale * in<T>(rows.db, r),
-                                      scale * in<T>(rows.d2b, r));
+  const T scale = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r);
+  return bb::mollified_derivatives<T>(mollified_points<T>(rows, r, x), entry<T>(rows.eps, r),
+                                      scale * entry<T>(rows.b, r), scale * entry<T>(rows.db, r),
+                                      scale * entry<T>(rows.d2b, r));
 }
 
 /// grad and hess on the compact free slots.
@@ -77,10 +70,10 @@ void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positi
 void mollified_terms(const MollifiedTable& rows, const Positions& x, Projection projection,
                      std::vector<double>& grad, std::vector<double>& hess, Precision precision) {
   grad.resize(12 * rows.size());
-  hess.resize(stored * rows.size());
+  hess.resize(row_hessian_numbers * rows.size());
   for_each_pass(precision, [&]<class T>(PassParts parts) {
     tbb::parallel_for(std::size_t{0}, rows.size(), [&](std::size_t r) {
-      mollified_row_terms<T>(rows, r, x, projection, parts, &grad[12 * r], &hess[stored * r]);
+      mollified_row_terms<T>(rows, r, x, projection, parts, &grad[12 * r], &hess[row_hessian_numbers * r]);
     });
   });
 }
@@ -121,7 +114,7 @@ void contact_energies(const ContactTable& rows, std::vector<double>& energy, Pre
   energy.resize(rows.size());
   with_value_scalar(precision, [&]<class T>() {
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      energy[r] = in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r) * in<T>(rows.b, r);
+      energy[r] = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r) * entry<T>(rows.b, r);
     }
   });
 }
@@ -131,8 +124,8 @@ void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vec
   energy.resize(rows.size());
   with_value_scalar(precision, [&]<class T>() {
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const T e = edge_edge_mollifier_value<T>(mollified_points<T>(rows, r, x), in<T>(rows.eps, r));
-      energy[r] = in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r) * e * in<T>(rows.b, r);
+      const T e = edge_edge_mollifier_value<T>(mollified_points<T>(rows, r, x), entry<T>(rows.eps, r));
+      energy[r] = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r) * e * entry<T>(rows.b, r);
     }
   });
 }

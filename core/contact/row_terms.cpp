@@ -7,6 +7,7 @@
 #include "core/contact/contact_row.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/contact/pair_lanes.hpp"
+#include "core/contact/row_columns.hpp"
 #include "core/contact/row_hessian.hpp"
 #include "core/geometry/distance_derivatives.hpp"
 #include "core/math/lower_blocks.hpp"
@@ -14,23 +15,15 @@
 namespace bb {
 namespace {
 
-constexpr std::size_t stored = n_lower_numbers(4);  // a row
-
 /// Edges along which the closest points of a row slide.
 constexpr int n_sliding(ContactKind kind) {
   if (kind == ContactKind::point_edge) return 1;
   return kind == ContactKind::point_triangle || kind == ContactKind::edge_edge ? 2 : 0;
 }
 
-/// An entry of a column, in the scalar T.
-template <class T>
-T in(const std::vector<double>& column, std::size_t r) {
-  return static_cast<T>(column[r]);
-}
-
 template <class T>
 T scale_of(const ContactTable& rows, std::size_t r) {
-  return in<T>(rows.multiplicity, r) * in<T>(rows.kappa, r);
+  return entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r);
 }
 
 template <class T>
@@ -44,7 +37,7 @@ Vec<T, 12> gap_gradient(const ContactTable& rows, std::size_t r) {
   Vec<T, 12> g = Vec<T, 12>::Zero();
   const Vec<T, 3> normal = normal_of<T>(rows, r);
   for (int k = 0; k < rows.n_free[r]; ++k) {
-    g.template segment<3>(3 * k) = in<T>(rows.weight, 4 * r + static_cast<std::size_t>(k)) * normal;
+    g.template segment<3>(3 * k) = entry<T>(rows.weight, 4 * r + static_cast<std::size_t>(k)) * normal;
   }
   return g;
 }
@@ -67,15 +60,16 @@ template <class T>
 void store_fixed_points(const ContactTable& rows, std::size_t r, Projection projection, double* hess) {
   const bool obstacle = rows.kind[r] == ContactKind::obstacle;
   const T scale = scale_of<T>(rows, r);
-  const T curvature = obstacle ? in<T>(rows.curvature, r) : 1 / (in<T>(rows.d, r) + in<T>(rows.offset, r));
+  const T curvature =
+      obstacle ? entry<T>(rows.curvature, r) : 1 / (entry<T>(rows.d, r) + entry<T>(rows.offset, r));
   const Vec<T, 3> n = normal_of<T>(rows, r);
   Vec<T, 3> flat = Vec<T, 3>::Zero();
   if (obstacle) flat = Vec3d::Map(&rows.flat[3 * r]).template cast<T>();
-  const Mat<T, 3, 3> unit = fixed_points_block<T>(n, flat, scale * in<T>(rows.d2b, r),
-                                                  scale * in<T>(rows.db, r) * curvature, projection);
+  const Mat<T, 3, 3> unit = fixed_points_block<T>(n, flat, scale * entry<T>(rows.d2b, r),
+                                                  scale * entry<T>(rows.db, r) * curvature, projection);
   for (std::size_t j = 0; j < 4; ++j) {
     for (std::size_t i = j; i < 4; ++i, hess += 9) {
-      const Mat<T, 3, 3> block = (in<T>(rows.weight, 4 * r + i) * in<T>(rows.weight, 4 * r + j)) * unit;
+      const Mat<T, 3, 3> block = (entry<T>(rows.weight, 4 * r + i) * entry<T>(rows.weight, 4 * r + j)) * unit;
       Mat3d::Map(hess) = block.template cast<double>();
     }
   }
@@ -90,9 +84,9 @@ RowShape<T, n_sliding(contact_kind<K>())> row_shape(const ContactTable& rows, st
   Closest<T, n> closest;
   for (int k = 0; k < n; ++k) {
     vertex[static_cast<std::size_t>(k)] = rows.stencil[4 * r + static_cast<std::size_t>(k)];
-    closest.weights[k] = in<T>(rows.stencil_weight, 4 * r + static_cast<std::size_t>(k));
+    closest.weights[k] = entry<T>(rows.stencil_weight, 4 * r + static_cast<std::size_t>(k));
   }
-  closest.d = in<T>(rows.d, r) + in<T>(rows.offset, r);
+  closest.d = entry<T>(rows.d, r) + entry<T>(rows.offset, r);
   closest.r = closest.d * normal_of<T>(rows, r);
   closest.region = interior;
   const auto frame = detail::region_frame<T, n>(gather_in<T>(x, vertex), closest);
@@ -109,8 +103,8 @@ RowShape<T, n_sliding(contact_kind<K>())> row_shape(const ContactTable& rows, st
     }
   }
   out.distance = closest.d;
-  out.stretch = scale_of<T>(rows, r) * in<T>(rows.d2b, r);
-  out.push = scale_of<T>(rows, r) * in<T>(rows.db, r);
+  out.stretch = scale_of<T>(rows, r) * entry<T>(rows.d2b, r);
+  out.push = scale_of<T>(rows, r) * entry<T>(rows.db, r);
   return out;
 }
 
@@ -150,7 +144,7 @@ template <int F, class T>
 void store_sliding(const ContactTable& rows, const std::size_t* list, std::size_t n, const Positions& x,
                    Projection projection, double* hess) {
   RowShape<FourOf<T>, F> shape;
-  FourOf<T> blocks[stored];
+  FourOf<T> blocks[row_hessian_numbers];
   for (std::size_t begin = 0; begin < n; begin += n_lanes) {
     const std::size_t used = std::min(n_lanes, n - begin);
     for (std::size_t lane = 0; lane < n_lanes; ++lane) {
@@ -158,8 +152,8 @@ void store_sliding(const ContactTable& rows, const std::size_t* list, std::size_
     }
     row_hessian<FourOf<T>, F>(shape, projection, blocks);
     for (std::size_t lane = 0; lane < used; ++lane) {
-      double* const out = hess + stored * list[begin + lane];
-      for (std::size_t k = 0; k < stored; ++k) out[k] = blocks[k].v[lane];
+      double* const out = hess + row_hessian_numbers * list[begin + lane];
+      for (std::size_t k = 0; k < row_hessian_numbers; ++k) out[k] = blocks[k].v[lane];
     }
   }
 }
@@ -188,15 +182,15 @@ void store_rows(const ContactTable& rows, std::size_t begin, std::size_t end, co
   for (std::size_t r = begin; r < end; ++r) {
     const Vec<T, 12> grad_d = gap_gradient<T>(rows, r);
     if (parts.values) {
-      const Vec<T, 12> g = (scale_of<T>(rows, r) * in<T>(rows.db, r)) * grad_d;
+      const Vec<T, 12> g = (scale_of<T>(rows, r) * entry<T>(rows.db, r)) * grad_d;
       Vec<double, 12>::Map(grad + 12 * r) = g.template cast<double>();
     }
     if (!parts.hessians) continue;
     const int edges = n_sliding(rows.kind[r]);
     if (mode == HessianMode::gauss_newton || rows.db[r] == 0) {
-      store_stretch<T>(grad_d, scale_of<T>(rows, r) * in<T>(rows.d2b, r), hess + stored * r);
+      store_stretch<T>(grad_d, scale_of<T>(rows, r) * entry<T>(rows.d2b, r), hess + row_hessian_numbers * r);
     } else if (edges == 0) {
-      store_fixed_points<T>(rows, r, projection, hess + stored * r);
+      store_fixed_points<T>(rows, r, projection, hess + row_hessian_numbers * r);
     } else {
       sliding[edges - 1][n[edges - 1]++] = r;
     }
@@ -210,14 +204,15 @@ void store_rows(const ContactTable& rows, std::size_t begin, std::size_t end, co
 void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, Projection projection,
                    std::vector<double>& grad, std::vector<double>& hess, Precision precision) {
   grad.resize(12 * rows.size());
-  hess.resize(stored * rows.size());
+  hess.resize(row_hessian_numbers * rows.size());
   const bool numeric = mode == HessianMode::projected_numeric && projection != Projection::none;
   const Projection analytic = numeric ? Projection::none : projection;
   for_each_pass(precision, [&]<class T>(PassParts parts) {
     for_each_chunk(rows.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       store_rows<T>(rows, begin, end, x, mode, analytic, parts, grad.data(), hess.data());
       if (!numeric || !parts.hessians) return;
-      for (std::size_t r = begin; r < end; ++r) project_numerically(projection, hess.data() + stored * r);
+      for (std::size_t r = begin; r < end; ++r)
+        project_numerically(projection, hess.data() + row_hessian_numbers * r);
     });
   });
 }

@@ -23,8 +23,8 @@ struct DeviceProbe {
 /// Looks for the first card and runs one kernel on it. Errors: none; what fails is in `why`.
 DeviceProbe probe_device();
 
-/// With BARRIERBENCH_KERNEL_TIMES=FILE in the environment every launch is waited for and timed, and the sums by kernel
-/// are written to that file in the end. Errors: ConfigError with the reason of the probe where no card is usable.
+/// With BARRIERBENCH_KERNEL_TIMES=FILE in the environment every launch is waited for and timed, and when an executor ends
+/// the sums by kernel of all executors of the process so far are written to that file. Errors: ConfigError with the reason of the probe where no card is usable.
 std::unique_ptr<exec::Executor> make_device_executor();
 
 /// "13.0" of 13000.

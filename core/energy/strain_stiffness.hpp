@@ -38,7 +38,7 @@ BB_HD KappaPartsOf<T> strain_stiffness(const Vec<T, 3> (&x)[3], const Mat<T, 9, 
     inertia += vertex_mass[i] * (x[i] - centroid).squaredNorm();
   }
   KappaPartsOf<T> kappa;
-  if (rule.elastic_term) kappa.fixed = w.dot(hess * w);
+  if (rule.elastic_term) kappa.fixed = w.dot(hess.lazyProduct(w));  // in the order of a device
   if (rule.mass_term == MassTerm::paper) kappa.per_gap_sq = element_mass;
   if (!(rule.c > 0)) return kappa;
   inertia /= T(rule.c * rule.dt * rule.dt);

@@ -6,11 +6,10 @@
 #include <numeric>
 
 #include "core/linear/parallel.hpp"
+#include "core/math/at.hpp"
 
 namespace bb {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// Rows present in both of two ascending ranges.
 int count_common(const int* a, const int* a_end, const int* b, const int* b_end) {

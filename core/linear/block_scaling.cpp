@@ -7,11 +7,10 @@
 
 #include "core/linear/block_starts.hpp"
 #include "core/linear/parallel.hpp"
+#include "core/math/at.hpp"
 
 namespace bb {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// x <- f(L_b) x_b for every block.
 template <class F>

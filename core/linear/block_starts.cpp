@@ -2,13 +2,10 @@
 
 #include <algorithm>
 
+#include "core/math/at.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {
-namespace {
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-}  // namespace
-
 void check_block_starts(const ReducedSystem& system) {
   const std::vector<int>& start = system.block_start;
   bool good = !start.empty() && start.front() == 0 && start.back() == system.lower.rows();

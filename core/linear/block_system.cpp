@@ -9,12 +9,11 @@
 #include "core/linear/gather_map.hpp"
 #include "core/linear/parallel.hpp"
 #include "core/linear/reduction.hpp"
+#include "core/math/at.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 using ConstBlock = Eigen::Map<const Mat3d>;
 

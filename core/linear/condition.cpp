@@ -14,11 +14,11 @@ namespace bb {
 namespace {
 
 using Clock = std::chrono::steady_clock;
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double undefined = std::numeric_limits<double>::quiet_NaN();
 
 ConditionEstimate unknown(ConditionStatus status, std::string method) {
   ConditionEstimate e;
-  e.lambda_min = e.lambda_max = e.cond = e.residual = kNan;
+  e.lambda_min = e.lambda_max = e.cond = e.residual = undefined;
   e.status = status;
   e.method = std::move(method);
   return e;

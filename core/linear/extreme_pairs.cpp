@@ -9,7 +9,7 @@
 namespace bb {
 namespace {
 
-constexpr double kNan = std::numeric_limits<double>::quiet_NaN();
+constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
 constexpr double kTol = 2e-4;        // of an eigenvalue, relative; half of the 1e-3 promised is left to spare
 constexpr double kProof = 8e-4;      // of an eigenvalue, relative: distance of a shift that certifies it
 constexpr double kProvable = 1e-13;  // of lambda_max: a shift below it is decided by rounding
@@ -80,12 +80,12 @@ class ScaledMatrix {
 
 /// One end of the spectrum on its way.
 struct End {
-  double lambda = kNan;
+  double lambda = not_known;
   VecXd vector;
   bool resolved = false;
-  bool shifted = false;         // found round a factorisation of its own
-  double uncertainty = 0;       // residual relative to the eigenvalue of the operator in use
-  double proven_inside = kNan;  // the end is known to lie beyond this; NaN when nothing is proven
+  bool shifted = false;              // found round a factorisation of its own
+  double uncertainty = 0;            // residual relative to the eigenvalue of the operator in use
+  double proven_inside = not_known;  // the end is known to lie beyond this; NaN when nothing is proven
 };
 
 void take(const LanczosEnd& ritz, End& end) {
@@ -172,8 +172,8 @@ void estimate_without_factor(ScaledMatrix& b, const End& top, double smallest_ri
                              ConditionEstimate& e) {
   e.method = "shift_invert, sigma = -1e-8 lambda_max";
   e.status = ConditionStatus::not_pd;
-  e.lambda_min = smallest_ritz < 0 ? smallest_ritz : kNan;  // a negative Ritz value proves the point
-  e.cond = kNan;
+  e.lambda_min = smallest_ritz < 0 ? smallest_ritz : not_known;  // a negative Ritz value proves the point
+  e.cond = not_known;
   const double sigma = -kRetryShift * top.lambda;
   if (!(top.lambda > 0) || !b.factorize_shifted(1, sigma)) {
     if (top.lambda == 0 && smallest_ritz == 0) e.status = ConditionStatus::singular;
@@ -191,7 +191,7 @@ void estimate_without_factor(ScaledMatrix& b, const End& top, double smallest_ri
 ConditionEstimate start_estimate(const char* method) {
   ConditionEstimate e;
   e.method = method;
-  e.lambda_min = e.lambda_max = e.cond = kNan;
+  e.lambda_min = e.lambda_max = e.cond = not_known;
   return e;
 }
 
@@ -199,7 +199,7 @@ ConditionEstimate start_estimate(const char* method) {
 
 void classify(ConditionEstimate& e, bool resolved) {
   constexpr double kEps = std::numeric_limits<double>::epsilon();
-  e.cond = kNan;
+  e.cond = not_known;
   if (!std::isfinite(e.lambda_min) || !std::isfinite(e.lambda_max)) {
     e.status = ConditionStatus::not_converged;
   } else if (e.lambda_min <= kEps * e.lambda_max) {

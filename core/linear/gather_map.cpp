@@ -7,13 +7,13 @@
 #include <string>
 
 #include "core/linear/parallel.hpp"
+#include "core/math/at.hpp"
 #include "core/math/error.hpp"
 #include "core/math/lower_blocks.hpp"
 
 namespace bb {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 int row_of(std::uint64_t key) { return static_cast<int>(key >> 32); }
 constexpr int kGrain = 256;  // columns a task: some thousand contributions
 

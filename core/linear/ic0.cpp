@@ -3,12 +3,9 @@
 #include <cmath>
 
 #include "core/linear/block_starts.hpp"
+#include "core/math/at.hpp"
 
 namespace bb {
-namespace {
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
-}  // namespace
-
 LinearStatus Ic0::setup(const ReducedSystem& system, const SymmetricProduct&) {
   if (!key_.same_as_last(system)) build_rows(system.lower);
   const double* value = system.lower.valuePtr();

@@ -4,12 +4,11 @@
 #include <string>
 
 #include "core/linear/parallel.hpp"
+#include "core/math/at.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {
 namespace {
-
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 
 /// One round of a 64-bit multiply-and-shift mixer (constants of SplitMix64, Steele et al. 2014).
 std::uint64_t mix(std::uint64_t hash, std::uint64_t value) {

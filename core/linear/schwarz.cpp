@@ -11,11 +11,11 @@
 #include "core/linear/pattern_key.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "core/linear/vertex_clusters.hpp"
+#include "core/math/at.hpp"
 
 namespace bb {
 namespace {
 
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 using Dense = Eigen::Map<Eigen::MatrixXd>;
 using ConstDense = Eigen::Map<const Eigen::MatrixXd>;
 

@@ -5,11 +5,11 @@
 
 #include "core/linear/block_starts.hpp"
 #include "core/linear/parallel.hpp"
+#include "core/math/at.hpp"
 #include "core/math/error.hpp"
 
 namespace bb {
 namespace {
-std::size_t at(int i) { return static_cast<std::size_t>(i); }
 constexpr int kGrain = 256;  // block rows a task
 using Vec4d = Eigen::Matrix<double, 4, 1>;
 using Four = Eigen::Map<const Vec4d>;

@@ -5,10 +5,10 @@
 #include <queue>
 #include <utility>
 
+#include "core/math/at.hpp"
+
 namespace bb {
 namespace {
-
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 
 /// Couplings by block rows, 0 for the diagonal.
 std::vector<double> couplings(const BlockGraph& graph) {

@@ -7,18 +7,18 @@ namespace bb {
 namespace {
 
 /// One side of a triangle: the edge it runs through and the corner opposite.
-struct Side {
+struct TriangleSide {
   int low, high;
   int triangle;
   int from, to, opposite;
-  bool operator<(const Side& other) const {
+  bool operator<(const TriangleSide& other) const {
     return std::tie(low, high, triangle) < std::tie(other.low, other.high, other.triangle);
   }
-  bool same_edge(const Side& other) const { return low == other.low && high == other.high; }
+  bool same_edge(const TriangleSide& other) const { return low == other.low && high == other.high; }
 };
 
-std::vector<Side> sorted_sides(std::span<const std::array<int, 3>> triangles) {
-  std::vector<Side> sides;
+std::vector<TriangleSide> sorted_sides(std::span<const std::array<int, 3>> triangles) {
+  std::vector<TriangleSide> sides;
   sides.reserve(3 * triangles.size());
   for (std::size_t t = 0; t < triangles.size(); ++t) {
     for (std::size_t k = 0; k < 3; ++k) {
@@ -58,7 +58,7 @@ std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh) {
 }
 
 std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3>> triangles) {
-  const std::vector<Side> sides = sorted_sides(triangles);
+  const std::vector<TriangleSide> sides = sorted_sides(triangles);
   std::vector<std::array<int, 2>> edges;
   for (std::size_t i = 0; i < sides.size();) {
     std::size_t end = i + 1;
@@ -70,10 +70,10 @@ std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3
 }
 
 std::vector<std::array<int, 4>> edge_hinges(std::span<const std::array<int, 3>> triangles) {
-  const std::vector<Side> sides = sorted_sides(triangles);
+  const std::vector<TriangleSide> sides = sorted_sides(triangles);
   std::vector<std::array<int, 4>> hinges;
   for (std::size_t i = 1; i < sides.size(); ++i) {
-    const Side& a = sides[i - 1];
+    const TriangleSide& a = sides[i - 1];
     if (sides[i].same_edge(a)) hinges.push_back({a.from, a.to, a.opposite, sides[i].opposite});
   }
   return hinges;

@@ -10,7 +10,7 @@ namespace bb {
 namespace {
 
 constexpr double tikhonov_relative = 1e-6, tikhonov_absolute = 1e-8;
-constexpr double smallest_alpha = 1e-8;
+constexpr double smallest_trial = 1e-8;
 
 class ArticleLiteral final : public StepSolver {
  public:
@@ -45,7 +45,7 @@ class ArticleLiteral final : public StepSolver {
  private:
   bool backtrack(StepSystem& system, IterationReport& report) {
     system.prepare_motion(MotionEnd::free, false);
-    for (double alpha = 1; alpha > smallest_alpha; alpha /= 2) {
+    for (double alpha = 1; alpha > smallest_trial; alpha /= 2) {
       ++report.line_search_trials;
       const auto change = system.try_motion(alpha);
       if (!change) continue;

@@ -6,38 +6,38 @@
 namespace bb {
 namespace {
 
-using json = nlohmann::ordered_json;
+using Json = nlohmann::ordered_json;
 
 /// Whole numbers without ".0".
-json bound(double value) {
+Json bound(double value) {
   if (value == std::floor(value) && std::abs(value) < 1e16) return static_cast<std::int64_t>(value);
   return value;
 }
 
-void put_range(const Rule& rule, json& out) {
+void put_range(const Rule& rule, Json& out) {
   if (std::isfinite(rule.low)) out[rule.low_open ? "exclusiveMinimum" : "minimum"] = bound(rule.low);
   if (std::isfinite(rule.high)) out[rule.high_open ? "exclusiveMaximum" : "maximum"] = bound(rule.high);
 }
 
-void put_size(const Rule& rule, const char* low, const char* high, json& out) {
+void put_size(const Rule& rule, const char* low, const char* high, Json& out) {
   if (rule.min_size > 0) out[low] = rule.min_size;
   if (rule.max_size > 0) out[high] = rule.max_size;
 }
 
-json rule_schema(const Rule& rule);
+Json rule_schema(const Rule& rule);
 
-json array_of(Kind element, const Rule& rule, std::size_t exact) {
+Json array_of(Kind element, const Rule& rule, std::size_t exact) {
   Rule one = rule;
   one.kind = element;
-  json out = {{"type", "array"}};
+  Json out = {{"type", "array"}};
   if (exact > 0) out["minItems"] = out["maxItems"] = exact;
   if (exact == 0) put_size(rule, "minItems", "maxItems", out);
   out["items"] = rule_schema(one);
   return out;
 }
 
-json rule_schema(const Rule& rule) {
-  json out;
+Json rule_schema(const Rule& rule) {
+  Json out;
   switch (rule.kind) {
     case Kind::boolean:
       return {{"type", "boolean"}};
@@ -51,7 +51,7 @@ json rule_schema(const Rule& rule) {
       put_size(rule, "minLength", "maxLength", out);
       return out;
     case Kind::word:
-      return rule.names ? json{{"type", "string"}} : json{{"enum", rule.words()}};
+      return rule.names ? Json{{"type", "string"}} : Json{{"enum", rule.words()}};
     case Kind::words:
       out = array_of(Kind::word, rule, 0);
       out["uniqueItems"] = true;
@@ -78,8 +78,8 @@ json rule_schema(const Rule& rule) {
 }
 
 /// "x is there and nothing of the other forms."
-json form_schema(const std::vector<std::vector<std::string>>& forms, std::size_t i) {
-  json others = json::array();
+Json form_schema(const std::vector<std::vector<std::string>>& forms, std::size_t i) {
+  Json others = Json::array();
   for (std::size_t k = 0; k < forms.size(); ++k) {
     if (k == i) continue;
     for (const std::string& key : forms[k]) others.push_back({{"required", {key}}});
@@ -95,20 +95,20 @@ std::string description(const Parameter& row) {
 }  // namespace
 
 nlohmann::ordered_json schema_of(const ParameterList& list) {
-  json out;
+  Json out;
   if (!list.doc.empty()) out["description"] = list.doc;
   out["type"] = "object";
-  json required = json::array(), properties = json::object();
+  Json required = Json::array(), properties = Json::object();
   for (const Parameter& row : list.rows) {
     if (row.rule.required) required.push_back(row.name);
-    json one;
+    Json one;
     if (const std::string doc = description(row); !doc.empty()) one["description"] = doc;
-    const json keywords = rule_schema(row.rule);
+    const Json keywords = rule_schema(row.rule);
     for (const auto& [key, value] : keywords.items()) {
       if (!one.contains(key)) one[key] = value;
     }
     const nlohmann::json fallback = to_json(row.fallback);
-    if (row.rule.computed.empty() && !fallback.is_null()) one["default"] = json(fallback);
+    if (row.rule.computed.empty() && !fallback.is_null()) one["default"] = Json(fallback);
     if (!row.rule.unit.empty()) one["unit"] = row.rule.unit;
     properties[row.name] = std::move(one);
   }

@@ -13,14 +13,14 @@ using Flags = std::vector<char>;
 bool is_set(const Flags& flags, int vertex) { return flags[static_cast<std::size_t>(vertex)] != 0; }
 
 /// How many primitives of one kind there are, on how many vertices, and whether one of them can move.
-struct Primitives {
+struct PrimitiveCount {
   std::size_t n = 0, n_vertices = 0;
   bool free = false;
 };
 
 template <std::size_t N>
 void add(const std::vector<std::array<int, N>>& list, const Flags& is_free, std::set<int>& vertices,
-         Primitives& out) {
+         PrimitiveCount& out) {
   out.n += list.size();
   for (const auto& primitive : list) {
     for (const int vertex : primitive) {
@@ -31,8 +31,8 @@ void add(const std::vector<std::array<int, N>>& list, const Flags& is_free, std:
   out.n_vertices = vertices.size();
 }
 
-Primitives count_points(const Scene& scene, const Flags& is_free) {
-  Primitives out;
+PrimitiveCount count_points(const Scene& scene, const Flags& is_free) {
+  PrimitiveCount out;
   std::set<int> vertices(scene.surface_vertices.begin(), scene.surface_vertices.end());
   out.n = out.n_vertices = vertices.size();
   out.free = std::any_of(vertices.begin(), vertices.end(), [&](int v) { return is_set(is_free, v); });
@@ -40,8 +40,8 @@ Primitives count_points(const Scene& scene, const Flags& is_free) {
 }
 
 // Sides of triangles count in space, where they are in pairs of edges.
-Primitives count_edges(const Scene& scene, const Flags& is_free) {
-  Primitives out;
+PrimitiveCount count_edges(const Scene& scene, const Flags& is_free) {
+  PrimitiveCount out;
   std::set<int> vertices;
   add(scene.surface_edges, is_free, vertices, out);
   if (!scene.planar) {
@@ -51,8 +51,8 @@ Primitives count_edges(const Scene& scene, const Flags& is_free) {
   return out;
 }
 
-Primitives count_triangles(const Scene& scene, const Flags& is_free) {
-  Primitives out;
+PrimitiveCount count_triangles(const Scene& scene, const Flags& is_free) {
+  PrimitiveCount out;
   std::set<int> vertices;
   add(scene.surface_triangles, is_free, vertices, out);
   return out;
@@ -77,17 +77,17 @@ Bodies count_bodies(const Scene& scene, const Flags& is_free) {
   return out;
 }
 
-void plan_pairs(const Scene& scene, const Primitives& points, const Flags& is_free, ContactPlan& plan) {
+void plan_pairs(const Scene& scene, const PrimitiveCount& points, const Flags& is_free, ContactPlan& plan) {
   if (scene.planar && scene.planar_pairs == PlanarPairs::vertex_vertex) {
     plan.point_point = points.n > 1 && points.free;
     return;
   }
-  const Primitives edges = count_edges(scene, is_free);
+  const PrimitiveCount edges = count_edges(scene, is_free);
   if (scene.planar) {
     plan.point_edge = edges.n > 0 && points.n > 2 && (points.free || edges.free);
     return;
   }
-  const Primitives triangles = count_triangles(scene, is_free);
+  const PrimitiveCount triangles = count_triangles(scene, is_free);
   plan.point_triangle = triangles.n > 0 && points.n > 3 && (points.free || triangles.free);
   plan.edge_edge = edges.n > 1 && edges.n_vertices > 3 && edges.free;
 }
@@ -101,7 +101,7 @@ PlanItem plan_item(bool needed, std::string yes, std::string no) {
 ContactPlan plan_contact(const Scene& scene, Mollifier mollifier) {
   Flags is_free(static_cast<std::size_t>(scene.n_vertices()), 1);
   for (const Pin& pin : scene.pins) is_free[static_cast<std::size_t>(pin.vertex)] = 0;
-  const Primitives points = count_points(scene, is_free);
+  const PrimitiveCount points = count_points(scene, is_free);
   const Bodies bodies = count_bodies(scene, is_free);
   ContactPlan plan;
   plan_pairs(scene, points, is_free, plan);

@@ -44,13 +44,24 @@ const Kernel* find_kernel(std::string_view mangled) {
   return nullptr;
 }
 
+namespace {
+/// "void f<(E)2>" of "void f<(E)2>(long)".
+std::string without_parameters(const std::string& name) {
+  int depth = 0;
+  for (std::size_t i = 0; i < name.size(); ++i) {
+    depth += (name[i] == '<') - (name[i] == '>');
+    if (name[i] == '(' && depth == 0) return name.substr(0, i);
+  }
+  return name;
+}
+}  // namespace
+
 const Kernel* find_instance(std::string_view wrapper, std::string_view type) {
   static const std::map<std::string, const Kernel*> by_name = [] {
     std::map<std::string, const Kernel*> out;
     for (const Module& module : modules()) {
       for (const Kernel& kernel : module.kernels) {
-        const std::string name = demangled(kernel.name);
-        if (kernel.run) out.emplace(name.substr(0, name.find('(')), &kernel);
+        if (kernel.run) out.emplace(without_parameters(demangled(kernel.name)), &kernel);
       }
     }
     return out;

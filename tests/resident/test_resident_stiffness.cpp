@@ -64,7 +64,6 @@ struct Elastic {
     column.push_back(j);
     full.push_back(block);
   }
-  MatrixPart part() const { return {row_begin.data(), column.data(), value.data()}; }
 
   std::vector<int> vertices;
   BlockSystem blocks;
@@ -73,6 +72,18 @@ struct Elastic {
   std::vector<int> column;
   std::vector<Mat3d> full;
   std::vector<double> value;
+};
+
+/// That matrix in the memory of an executor.
+struct ElasticOnExecutor {
+  ElasticOnExecutor(exec::Executor& executor, const Elastic& of)
+      : row_begin(executor, "row begin"), column(executor, "column"), value(executor, "value") {
+    row_begin.upload(of.row_begin), column.upload(of.column), value.upload(of.value);
+  }
+  MatrixPart part() const { return {row_begin.data(), column.data(), value.data()}; }
+  exec::Buffer<Index> row_begin;
+  exec::Buffer<int> column;
+  exec::Buffer<double> value;
 };
 
 /// m kappa of every stencil, which both paths must share: pairs of a stencil add up.
@@ -152,6 +163,7 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
       false,       require_mass_term(p.mass_term),   p.elastic, require_refresh(p.refresh),
       p.gap_floor, require_derivative(p.derivative), 1.7};
   HostExecutor executor(order);
+  const ElasticOnExecutor there(executor, elastic);
   ResidentStiffness stiffness(executor, rule, scene.mass);
   stiffness.set_time(0.01, 1);
 
@@ -162,7 +174,7 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
   ResidentRows trial(executor, resident::columns_of(rule));
   const auto refresh = [&] {
     const double change = update.refresh(state.table, state.mollified, elastic.blocks, elastic.values);
-    const double resident_change = stiffness.refresh(on.rows, elastic.part());
+    const double resident_change = stiffness.refresh(on.rows, there.part());
     if (std::isinf(change)) {
       EXPECT_EQ(resident_change, change);
     } else {
@@ -176,7 +188,7 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
     Rows rows = rows_at(contacts, y);
     update.freeze(rows.table, rows.mollified, elastic.blocks, elastic.values);
     on.find(scene, y, trial);
-    stiffness.freeze(trial, on.rows, elastic.part());
+    stiffness.freeze(trial, on.rows, there.part());
     worst = std::max(worst, difference(sums_of(rows), sums_of(trial)));
     bytes += bytes_of(trial);
     return rows;
@@ -233,8 +245,9 @@ TEST(ResidentStiffness, ReadsTheMatrixBlockByBlock) {
   StiffnessRule rule;
   rule.uniform = false, rule.mass_term = MassTerm::none;
   OnExecutor on(executor, scene, shaken(scene), resident::columns_of(rule));
+  const ElasticOnExecutor there(executor, elastic);
   ResidentStiffness stiffness(executor, rule, scene.mass);
-  stiffness.refresh(on.rows, elastic.part());
+  stiffness.refresh(on.rows, there.part());
   const RowView v = on.rows.view();
   int n_coupled = 0;
   for (Index r = 0; r < v.n; ++r) {

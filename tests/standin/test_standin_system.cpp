@@ -10,10 +10,10 @@
 namespace bb {
 namespace {
 
-/// A cloth of 4 x 4 vertices with bending and a strain limit, tilted, that falls on a floor; one corner is pulled.
+/// A cloth of 4 x 4 vertices with bending and a strain limit, tilted, that settles on a floor; one corner is pulled.
 Scene cloth_on_floor() {
   SceneBuilder builder("cloth on floor", false, Vec3d(0, 0, -10), "test");
-  BodySpec cloth = test::cloth_spec(4, 0.02, 0.02);
+  BodySpec cloth = test::cloth_spec(4, 0.012, 0.02);
   cloth.mesh.vertices.row(2) += 0.01 * cloth.mesh.vertices.row(0);
   cloth.material.bending = 1e-3;
   cloth.material.limit = StrainLimitSpec::from_limit(0.1);
@@ -62,7 +62,7 @@ class StandinSystem : public testing::TestWithParam<const char*> {};
 TEST_P(StandinSystem, StepsWithTheBitsOfTheHost) {
   standin::reset();
   expect_same_on_all(cloth_on_floor(), GetParam(), 4);
-  expect_same_on_all(test::two_sheets(), GetParam(), 3);
+  expect_same_on_all(test::touching(test::two_sheets(), 0.01), GetParam(), 2);
   EXPECT_GT(standin::counts().launches, 1000);
   EXPECT_GT(standin::counts().replays, 1);
   EXPECT_EQ(standin::counts().in_use, 0u);

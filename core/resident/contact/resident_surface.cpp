@@ -22,7 +22,7 @@ ResidentPrimitives<N>::ResidentPrimitives(exec::Executor& executor, const char* 
 
 namespace {
 
-std::vector<PlainObstacle> plain(const std::vector<Obstacle>& obstacles) {
+std::vector<PlainObstacle> plain_obstacles(const std::vector<Obstacle>& obstacles) {
   std::vector<PlainObstacle> out;
   for (const Obstacle& o : obstacles) {
     out.push_back({{o.point[0], o.point[1], o.point[2]},
@@ -47,7 +47,7 @@ ResidentSurface::ResidentSurface(exec::Executor& executor, const Scene& scene, c
   vertex_free_.upload(surface.vertex_free);
   body_.upload(scene.body);
   rest_.upload({scene.rest.data(), static_cast<std::size_t>(scene.rest.size())});
-  obstacles_.upload(plain(scene.obstacles));
+  obstacles_.upload(plain_obstacles(scene.obstacles));
 }
 
 SurfaceView ResidentSurface::view() const {

@@ -93,7 +93,8 @@ struct MollifiedChanges {
       stacked[c] = moved(c % 3, c / 3);
       moves = moves || stacked[c] != 0;
     }
-    if (moves) out = row_derivatives(rows, r, x, rest).hessian * stacked;
+    // On the host Eigen adds up other products of this size in another order than on a device.
+    if (moves) out = row_derivatives(rows, r, x, rest).hessian.lazyProduct(stacked);
     for (int c = 0; c < 12; ++c) change[c * n + i] = rows.is_free(r, c / 3) ? out[c] : 0.0;
   }
 };

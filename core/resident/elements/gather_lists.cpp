@@ -5,13 +5,13 @@
 #include <string>
 
 #include "core/linear/gather_map.hpp"
+#include "core/math/at.hpp"
 #include "core/math/error.hpp"
 #include "core/math/lower_blocks.hpp"
 
 namespace bb::resident {
 namespace {
 
-std::size_t at(std::int64_t i) { return static_cast<std::size_t>(i); }
 std::uint32_t narrow(std::size_t i) { return static_cast<std::uint32_t>(i); }
 
 /// Both triangles of a pattern of lower columns, as rows.

@@ -1,12 +1,9 @@
 #include "core/resident/linear/reduced_upload.hpp"
 
+#include "core/math/at.hpp"
 #include "core/math/parallel.hpp"
 
 namespace bb::resident {
-namespace {
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}  // namespace
-
 UploadedSystem::UploadedSystem(exec::Executor& executor)
     : row_begin_(executor, "matrix rows"),
       column_(executor, "matrix columns"),

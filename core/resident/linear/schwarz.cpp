@@ -2,10 +2,10 @@
 
 #include <algorithm>
 
+#include "core/math/at.hpp"
+
 namespace bb::resident {
 namespace {
-
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
 
 template <class T>
 std::vector<T> download_numbers(exec::Executor& executor, const T* from, Index n) {

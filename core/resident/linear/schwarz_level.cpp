@@ -2,11 +2,9 @@
 
 #include <algorithm>
 
-namespace bb::resident {
-namespace {
-std::size_t at(Index i) { return static_cast<std::size_t>(i); }
-}  // namespace
+#include "core/math/at.hpp"
 
+namespace bb::resident {
 SchwarzLevel::SchwarzLevel(exec::Executor& executor)
     : executor_(executor),
       start_(executor, "clusters"),
