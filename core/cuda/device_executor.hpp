@@ -42,6 +42,8 @@ class DeviceExecutor : public exec::Executor {
 
   /// From now on every launch is waited for and timed, those of graphs that are captured later too: slow.
   void time_kernels() { timed_ = true; }
+  /// For libraries, whose work goes between the launches.
+  CUstream_st* stream() const { return stream_; }
   /// By the name of the kernel.
   const std::map<std::string, KernelTime>& profile() const { return times_; }
 

@@ -200,9 +200,10 @@ void CholmodFactor::solve(const VecXd& b, VecXd& x) {
   x = Eigen::Map<const VecXd>(static_cast<const double*>(c.x->x), b.size());
 }
 
-int CholmodFactor::failed_dof() const {
+std::string CholmodFactor::failure(const ReducedSystem& system) const {
   const cholmod_factor& factor = *cholmod_->factor;
-  return static_cast<const int*>(factor.Perm)[std::min(factor.minor, factor.n - 1)];
+  const int dof = static_cast<const int*>(factor.Perm)[std::min(factor.minor, factor.n - 1)];
+  return "no positive pivot at " + vertex_text(system, dof);
 }
 
 double CholmodFactor::factor_nonzeros() const { return cholmod_->common.lnz; }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "core/linear/linear_solver.hpp"
 
@@ -24,8 +25,8 @@ class CholmodFactor {
   /// x = A^-1 b with the last factor, which must be ok. Allocates nothing after the first solve of a size.
   void solve(const VecXd& b, VecXd& x);
 
-  /// The degree of freedom whose pivot was not positive in the last factorize, which is matrix_indefinite.
-  int failed_dof() const;
+  /// Where the pivot was not positive in the last factorize, which is matrix_indefinite.
+  std::string failure(const ReducedSystem& system) const;
   bool analyzed_last() const { return analyzed_last_; }  // the last factorize had to analyse
   double analyze_s() const { return analyze_s_; }        // of the last factorize
   double factor_s() const { return factor_s_; }

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <string>
 
-#include "core/linear/block_starts.hpp"
 #include "core/linear/cholmod_factor.hpp"
 #include "core/linear/conjugate_gradients.hpp"
 #include "core/linear/forcing.hpp"
@@ -69,9 +68,7 @@ class LaggedCholesky final : public LinearSolver {
   bool factorize(const ReducedSystem& system, LinearReport& report) {
     report.status = factor_.setup(system, product_);
     report.factorized = report.status == LinearStatus::ok;
-    report.detail = report.status == LinearStatus::matrix_indefinite
-                        ? "no positive pivot at " + vertex_text(system, factor_.cholmod().failed_dof())
-                        : "";
+    report.detail = report.status == LinearStatus::matrix_indefinite ? factor_.cholmod().failure(system) : "";
     if (report.factorized) {
       report.factor_nnz = factor_.cholmod().factor_nonzeros();
       report.factor_flop = factor_.cholmod().factor_flops();

@@ -9,6 +9,7 @@
 #include <sstream>
 
 #include "barriers/plugins.hpp"
+#include "core/cudss/provide.hpp"
 #include "core/math/error.hpp"
 #include "core/parameters/registry.hpp"
 #include "core/record/provenance.hpp"
@@ -203,6 +204,7 @@ bb::PluginFile bb::cli::load_plugin_file(const std::string& file) {
 int main(int argc, char** argv) {
   prepare_streams();
   keep_freed_memory();
+  bb::cudss::provide();
   CommonOptions common;
   common.argv.assign(argv, argv + argc);
   RunVerb run_verb, check_verb, explain_verb;

@@ -3,6 +3,7 @@
 #include <cmath>
 #include <limits>
 
+#include "core/linear/cudss.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "core/parameters/parameter.hpp"
 
@@ -116,6 +117,7 @@ Agreement compare(const ConditionEstimate& estimate, const ConditionEstimate& de
 Replay replay(const StoredSystem& stored, const ReplayOptions& options) {
   Replay out;
   for (const LinearSolverEntry& entry : linear_solvers()) {
+    if (!missing_for(entry.name).empty()) continue;
     if (!has(entry.parameters, "preconditioner")) {
       out.solves.push_back(solve(entry, "none", stored, options));
       continue;

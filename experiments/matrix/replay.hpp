@@ -44,7 +44,7 @@ struct ReplayedEstimate {
 };
 
 struct Replay {
-  std::vector<ReplayedSolve> solves;        // in the order of the registries
+  std::vector<ReplayedSolve> solves;  // of the solvers that can run here, in the order of the registries
   std::vector<ReplayedEstimate> estimates;  // by tier, then by scaling
 };
 

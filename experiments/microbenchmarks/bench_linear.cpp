@@ -5,6 +5,7 @@
 
 #include "core/linear/block_system.hpp"
 #include "core/linear/cholmod_factor.hpp"
+#include "core/linear/cudss.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "experiments/microbenchmarks/cloth_matrix.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
@@ -98,6 +99,7 @@ void register_linear() {
   register_sizes("linear/cholmod_analyze_and_factorize", cholmod_analyze_and_factorize);
   register_sizes("linear/cholmod_refactorize", cholmod_refactorize);
   for (const LinearSolverEntry& solver : linear_solvers()) {
+    if (!missing_for(solver.name).empty()) continue;
     const bool iterative = solver.name == "pcg";
     for (const std::string& label : preconditioners().names()) {
       const std::string& name = solver.name;

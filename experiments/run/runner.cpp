@@ -8,6 +8,7 @@
 #include <new>
 
 #include "core/linear/blas_info.hpp"
+#include "core/linear/cudss.hpp"
 #include "core/math/error.hpp"
 #include "core/record/folder_lock.hpp"
 #include "core/record/provenance.hpp"
@@ -153,6 +154,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   // before anything is written: what config and files can tell is refused here
   const Scene scene = build_scene(config);
   require_device(config, scene);
+  require_usable(config.linear_solver.name);
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);
   const RunRecord asked_for = identified(config, options);  // inputs where they are now

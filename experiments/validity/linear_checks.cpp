@@ -3,6 +3,7 @@
 #include <numbers>
 
 #include "core/linear/condition.hpp"
+#include "core/linear/cudss.hpp"
 #include "core/linear/linear_solver.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "experiments/validity/block.hpp"
@@ -38,6 +39,7 @@ double eigenvalue(int k, double shift) {
 std::vector<LinearOptions> all_solvers() {
   std::vector<LinearOptions> out;
   for (const std::string& name : linear_solvers().names()) {
+    if (!missing_for(name).empty()) continue;
     LinearOptions options{name, {{"forcing", std::string("fixed")}, {"tol_rel", 1e-12}}};
     if (preconditioner_of(options) == "none" && name != "pcg") {
       out.push_back(options);

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "core/linear/cudss.hpp"
 #include "core/math/error.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
@@ -16,6 +17,7 @@ TEST(LinearSolver, EverySolverOfTheRegistryMeetsTheDenseSolution) {
   const VecXd truth = test::solve(dense(system), b);
   ASSERT_GE(linear_solvers().size(), 2u);
   for (const LinearSolverEntry& entry : linear_solvers()) {
+    if (!missing_for(entry.name).empty()) continue;  // tests/standin/cudss
     LinearOptions options;
     options.name = entry.name;
     options.parameters["forcing"] = std::string("fixed");
@@ -49,16 +51,32 @@ TEST(LinearSolver, UnknownNamesAreListedWithTheNearest) {
   LinearOptions options;
   options.name = "cholmid";
   EXPECT_EQ(message(options),
-            "/linear_solver/name: found \"cholmid\"; allowed: one of cholmod, lagged_cholesky, pcg, "
+            "/linear_solver/name: found \"cholmid\"; allowed: one of cholmod, cudss, lagged_cholesky, pcg, "
             "pcg_resident (did you mean cholmod?)");
   options.name = "multigrid";
   EXPECT_EQ(message(options),
-            "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, lagged_cholesky, pcg, "
+            "/linear_solver/name: found \"multigrid\"; allowed: one of cholmod, cudss, lagged_cholesky, pcg, "
             "pcg_resident");
   options = {};
   options.name = "pcg";
   options.parameters["preconditioner"] = "block-jacobi";
   EXPECT_NE(message(options).find("(did you mean block_jacobi?)"), std::string::npos);
+}
+
+TEST(LinearSolver, CudssIsRefusedUntilAProgramGivesIt) {
+  LinearOptions options;
+  options.name = "cudss";
+  EXPECT_EQ(message(options),
+            "/linear_solver/name: found \"cudss\"; allowed: another solver: this program is linked without "
+            "core/cudss");
+  set_cudss({[] { return std::string("no card here"); }, nullptr});
+  EXPECT_EQ(missing_for("cudss"), "no card here");
+  EXPECT_NE(message(options).find("another solver: no card here"), std::string::npos);
+  set_cudss({[] { return std::string(); }, [] { return make_linear_solver({}); }});
+  EXPECT_EQ(missing_for("cudss"), "");
+  EXPECT_EQ(make_linear_solver(options)->name(), "cholmod");
+  set_cudss({});
+  EXPECT_EQ(missing_for("cholmod"), "");
 }
 
 TEST(LinearSolver, EveryStatusHasItsWord) {

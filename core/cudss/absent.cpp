@@ -1,0 +1,21 @@
+// provide.hpp of a build without CUDA or without cudss.h.
+#include "core/cuda/device.hpp"
+#include "core/cudss/provide.hpp"
+#include "core/linear/cudss.hpp"
+
+namespace bb::cudss {
+namespace {
+
+std::string missing() {
+  const cuda::DeviceProbe probe = cuda::probe_device();
+  if (!probe.built) return probe.why;
+  return "this program was built without cuDSS (cudss.h was not found): get the package nvidia-cudss-cu13, "
+         "or "
+         "-cu12, and configure with -DBB_CUDSS_ROOT=FOLDER, where FOLDER/include/cudss.h is";
+}
+
+}  // namespace
+
+void provide() { set_cudss({&missing, nullptr}); }
+
+}  // namespace bb::cudss

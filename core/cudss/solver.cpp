@@ -1,0 +1,37 @@
+// The linear solver cudss: a cuDSS factor with its report.
+#include "core/cuda/device.hpp"
+#include "core/cudss/factor.hpp"
+#include "core/cudss/provide.hpp"
+#include "core/linear/cudss.hpp"
+#include "core/linear/direct_solve.hpp"
+
+namespace bb::cudss {
+namespace {
+
+class Cudss final : public LinearSolver {
+ public:
+  std::string_view name() const override { return "cudss"; }
+
+  LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
+    return solve_directly(factor_, system, b, x, residual_);
+  }
+
+ private:
+  Factor factor_{open_library()};
+  VecXd residual_;
+};
+
+std::string missing() {
+  const std::string why = open_library().why;
+  if (!why.empty()) return why;
+  const cuda::DeviceProbe probe = cuda::probe_device();
+  return probe.usable ? "" : "no card here: " + probe.why;
+}
+
+std::unique_ptr<LinearSolver> make() { return std::make_unique<Cudss>(); }
+
+}  // namespace
+
+void provide() { set_cudss({&missing, &make}); }
+
+}  // namespace bb::cudss
