@@ -74,6 +74,22 @@ struct Atomics {
   }
 };
 
+/// The item that arrives last adds up what all wrote: their stores come before their arrivals.
+struct LastArrival {
+  const double* in;
+  double* square;
+  std::uint32_t* arrivals;
+  double* total;
+  Index n;
+  BB_HD void operator()(Index i) const {
+    square[i] = in[i] * in[i];
+    if (static_cast<Index>(exec::atomic_add(arrivals, 1u)) + 1 < n) return;
+    double sum = 0;
+    for (Index k = 0; k < n; ++k) sum += square[k];
+    *total = sum;
+  }
+};
+
 /// A walk over a heap-ordered tree with a stack of its own.
 struct Walk {
   const double* in;

@@ -10,6 +10,7 @@
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
   const int failed = RUN_ALL_TESTS();
+  ptx::write_profile();
   if (testing::GTEST_FLAG(list_tests) || testing::GTEST_FLAG(filter) != "*" || failed) return failed;
   if (const char* fault = std::getenv("BB_PTX_FAULT")) {  // coverage is no judge of a broken instruction
     if (fault == std::string_view("list")) ptx::list_faults();

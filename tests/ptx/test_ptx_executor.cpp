@@ -82,6 +82,18 @@ TEST(PtxExecutor, RunsAtomics) {
   });
 }
 
+TEST(PtxExecutor, LetsTheLastArrivalReadWhatAllWrote) {
+  for (const Index n : {1, 255, 700}) {
+    expect_same_bits([=](Executor& executor) {
+      Buffer<double> in(executor, "in"), square(executor, "square", n), total(executor, "total", 1);
+      Buffer<std::uint32_t> arrivals(executor, "arrivals");
+      in.upload(numbers(static_cast<std::size_t>(n))), arrivals.upload(std::vector<std::uint32_t>{0});
+      executor.each(n, LastArrival{in.data(), square.data(), arrivals.data(), total.data(), n});
+      return total.download();
+    });
+  }
+}
+
 TEST(PtxExecutor, RunsStacksInLocalMemory) {
   expect_same_bits([](Executor& executor) {
     Buffer<double> in(executor, "in"), out(executor, "out", 300);
@@ -172,11 +184,15 @@ TEST(PtxExecutor, CountsTrafficOfAWarp) {
   const void* params[] = {reinterpret_cast<void*>(std::uintptr_t{256}), in.data(), out.data()};
   std::mt19937_64 random;
   device.machine().launch(*kernel, params, sizeof params, 1, 256, ptx::Order::forward, random);
-  const ptx::Traffic& t = device.machine().traffic.at(kernel->name);
-  EXPECT_EQ(t.requests, 16u);  // 8 warps load and store
-  EXPECT_EQ(t.lines, 32u);     // 32 numbers of 8 bytes: 2 lines
-  EXPECT_EQ(t.sectors, 128u);
-  EXPECT_EQ(t.bytes, 4096u);
+  const ptx::TrafficOfBuffers& traffic = device.machine().traffic.at(kernel->name);
+  ASSERT_EQ(traffic.size(), 2u);
+  for (const char* buffer : {"in", "out"}) {
+    const ptx::Traffic& t = traffic.at(buffer);
+    EXPECT_EQ(t.requests, 8u);  // one a warp
+    EXPECT_EQ(t.lines, 16u);    // 32 numbers of 8 bytes: 2 lines
+    EXPECT_EQ(t.sectors, 64u);
+    EXPECT_EQ(t.least, 64u);
+  }
 }
 
 }  // namespace
