@@ -3,6 +3,7 @@
 
     inject_faults.py ptx_samples                    tests by the name that bb_ptx_test gave them (test_NAME_faults is built)
     inject_faults.py ptx_samples ptx_linear:20      of ptx_linear at most so many of each kind and module, by a fixed seed
+    inject_faults.py ptx_linear --cases='-*Long*'   without some cases: what those alone would notice survives
     inject_faults.py ptx_samples --out results/PTX_FAULTS
 
 Kinds: barrier (left out), shuffle (another lane), guard (a conditional jump ahead is not taken), store and atomic (left
@@ -54,11 +55,12 @@ def executable(build: Path, test: str) -> Path:
     return found[0]
 
 
-def run(program: Path, fault: str, timeout: float) -> tuple[int | None, str]:
+def run(program: Path, fault: str, timeout: float, cases: str) -> tuple[int | None, str]:
     """Exit code, None when it did not end, and output."""
     environment = {**os.environ, "BB_PTX_FAULT": fault}
+    words = [str(program), "--gtest_brief=1", f"--gtest_filter={cases}", *([] if fault == "list" else ["--gtest_fail_fast"])]
     try:
-        done = subprocess.run([str(program), "--gtest_brief=1", *([] if fault == "list" else ["--gtest_fail_fast"])], env=environment, capture_output=True, text=True, errors="replace", timeout=timeout)
+        done = subprocess.run(words, env=environment, capture_output=True, text=True, errors="replace", timeout=timeout)
     except subprocess.TimeoutExpired:
         return None, ""
     return done.returncode, done.stdout + done.stderr
@@ -110,9 +112,9 @@ def reason(fault: Fault, survivors: list[dict]) -> str:
     return ""
 
 
-def judge(fault: Fault, programs: dict[str, Path], survivors: list[dict], timeout: float) -> None:
+def judge(fault: Fault, programs: dict[str, Path], survivors: list[dict], timeout: float, cases: str) -> None:
     for test in fault.tests:
-        code, output = run(programs[test], f"{fault.module}:{fault.number}", timeout)
+        code, output = run(programs[test], f"{fault.module}:{fault.number}", timeout, cases)
         if code != 0:
             red = next((line for line in output.splitlines() if "FAILED  ]" in line or "what():" in line), "")
             fault.verdict, fault.why = "caught", "does not end" if code is None else red.strip()[:100] or f"exit code {code}"
@@ -121,12 +123,12 @@ def judge(fault: Fault, programs: dict[str, Path], survivors: list[dict], timeou
     fault.verdict = "equivalent" if fault.why else "survived"
 
 
-def report(faults: list[Fault], seconds: float, tests: list[str]) -> tuple[str, float]:
+def report(faults: list[Fault], seconds: float, arguments: str) -> tuple[str, float]:
     """Markdown, and the share of those not equivalent that were caught."""
     counts = defaultdict(Counter)
     for fault in faults:
         counts[fault.kind][fault.verdict] += 1
-    lines = ["# Faults injected into the PTX", "", f"Written on {date.today()} by `tests/ptx/inject_faults.py {' '.join(tests)}`.", "", "| kind | caught | survived | equivalent |", "|---|---|---|---|"]
+    lines = ["# Faults injected into the PTX", "", f"Written on {date.today()} by `tests/ptx/inject_faults.py {arguments}`.", "", "| kind | caught | survived | equivalent |", "|---|---|---|---|"]
     for kind in sorted(counts):
         c = counts[kind]
         lines.append(f"| {kind} | {c['caught']} | {c['survived']} | {c['equivalent']} |")
@@ -150,6 +152,7 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--timeout", type=float, default=120, help="s, of one run of one test")
+    parser.add_argument("--cases", default="*", help="filter of GoogleTest: which cases have to notice")
     parser.add_argument("--kernel", default="*", help="pattern of the names of kernels")
     parser.add_argument("--out", type=Path, help="OUT.md and OUT.json")
     args = parser.parse_args()
@@ -161,7 +164,7 @@ def main() -> int:
         programs = {test: executable(args.build, test) for test in samples}
         found: dict[tuple[str, int], Fault] = {}
         for test, program in programs.items():
-            code, output = run(program, "list", 20 * args.timeout)
+            code, output = run(program, "list", 20 * args.timeout, args.cases)
             if code != 0:
                 raise FaultError(f"test_{test}_faults is not green: exit code {code}\n{output[-2000:]}")
             for fault in parse_list(output, test):
@@ -172,12 +175,12 @@ def main() -> int:
     faults = choose([f for f in found.values() if fnmatch.fnmatch(f.kernel, args.kernel)], samples, args.seed)
     print(f"{len(faults)} of {len(found)} instructions are broken, one at a time", flush=True)
     with ThreadPoolExecutor(args.jobs) as pool:
-        list(pool.map(lambda f: judge(f, programs, survivors, args.timeout), faults))
-    text, share = report(faults, time.time() - start, args.tests)
+        list(pool.map(lambda f: judge(f, programs, survivors, args.timeout, args.cases), faults))
+    text, share = report(faults, time.time() - start, " ".join(sys.argv[1:]))
     print(text)
     if args.out:
         args.out.with_suffix(".md").write_text(text)
-        args.out.with_suffix(".json").write_text(json.dumps({"date": str(date.today()), "tests": args.tests, "seed": args.seed, "faults": [asdict(f) for f in faults]}, indent=1) + "\n")
+        args.out.with_suffix(".json").write_text(json.dumps({"date": str(date.today()), "arguments": sys.argv[1:], "faults": [asdict(f) for f in faults]}, indent=1) + "\n")
     return 0 if share >= LEAST else 1
 
 

@@ -18,7 +18,8 @@ const Range* MemoryMap::search(std::uint64_t a, std::uint32_t bytes, int site) {
   --it;
   if (a + bytes > it->second.end) return nullptr;
   Touch* touches = it->second.touches.empty() ? nullptr : it->second.touches.data();
-  return &(last_[static_cast<std::size_t>(site) % last_.size()] = {it->first, it->second.end, touches, &it->second.name});
+  return &(last_[static_cast<std::size_t>(site) % last_.size()] = {it->first, it->second.end, touches,
+                                                                   &it->second.name});
 }
 
 void Thread::fail(const char* what, int line) const {

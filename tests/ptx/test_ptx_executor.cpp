@@ -118,13 +118,19 @@ TEST(PtxExecutor, RunsIntegers) {
   }
 }
 
-// Different libraries: sin and the like are right to a unit or two in the last place on both sides.
+// Different libraries: sin and the like are right to a unit or two in the last place on both sides. Numbers of every size,
+// and those around which results overflow or lose digits: exp from 709.8 and to -745, x^1.5 from 1e205 and to 1e-216.
 TEST(PtxExecutor, RunsTheLibraryOfTheDevice) {
   std::vector<double> values = numbers(3000, 10);
   for (std::size_t i = 0; i < 300; ++i) values[i] *= 1e6, values[300 + i] *= 1e-9, values[600 + i] *= 1e100;
   values[0] = 0, values[1] = 1e-320, values[2] = -0.0, values[3] = 1e-310;
   values[4] = INFINITY, values[5] = -INFINITY, values[6] = NAN, values[7] = 1e308, values[8] = -1e308,
   values[9] = 1;
+  for (std::size_t i = 900; i < 1200; ++i)
+    values[i] = std::ldexp(values[i], static_cast<int>(7 * i % 2040) - 1030);
+  for (std::size_t i = 1200; i < 1300; ++i)
+    values[i] = (i % 2 == 0 ? 708 : -746) + 0.02 * static_cast<double>(i - 1200);
+  for (std::size_t i = 1300; i < 1400; ++i) values[i] *= i % 2 == 0 ? 2e204 : 1e-212;
   std::vector<std::vector<double>> results;
   HostExecutor host(Order::forward);
   ptx::PtxExecutor device;
