@@ -18,6 +18,7 @@ import fnmatch
 import json
 import os
 import random
+import signal
 import subprocess
 import sys
 import time
@@ -56,14 +57,14 @@ def executable(build: Path, test: str) -> Path:
 
 
 def run(program: Path, fault: str, timeout: float, cases: str) -> tuple[int | None, str]:
-    """Exit code, None when it did not end, and output."""
+    """Exit code, None when it did not end within `timeout` s of the processor's time, and output."""
     environment = {**os.environ, "BB_PTX_FAULT": fault}
-    words = [str(program), "--gtest_brief=1", f"--gtest_filter={cases}", *([] if fault == "list" else ["--gtest_fail_fast"])]
+    words = ["prlimit", f"--cpu={timeout:.0f}:{timeout + 5:.0f}", str(program), "--gtest_brief=1", f"--gtest_filter={cases}", *([] if fault == "list" else ["--gtest_fail_fast"])]
     try:
-        done = subprocess.run(words, env=environment, capture_output=True, text=True, errors="replace", timeout=timeout)
-    except subprocess.TimeoutExpired:
+        done = subprocess.run(words, env=environment, capture_output=True, text=True, errors="replace", timeout=20 * timeout)
+    except subprocess.TimeoutExpired:  # it waits
         return None, ""
-    return done.returncode, done.stdout + done.stderr
+    return None if done.returncode == -signal.SIGXCPU else done.returncode, done.stdout + done.stderr
 
 
 def parse_list(output: str, test: str) -> list[Fault]:
@@ -151,7 +152,7 @@ def main() -> int:
     parser.add_argument("--build", type=Path, default=ROOT / "build/release")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--timeout", type=float, default=120, help="s, of one run of one test")
+    parser.add_argument("--timeout", type=float, default=120, help="s of the processor's time, of one run of one test")
     parser.add_argument("--cases", default="*", help="filter of GoogleTest: which cases have to notice")
     parser.add_argument("--kernel", default="*", help="pattern of the names of kernels")
     parser.add_argument("--out", type=Path, help="OUT.md and OUT.json")

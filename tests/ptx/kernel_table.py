@@ -168,7 +168,7 @@ def differences(before: dict, now: dict) -> list[str]:
 
 def reason(name: str, buffer: str, gathers: list[dict]) -> str:
     """Why a buffer is not read in order; empty when that is not known."""
-    return next((g["reason"] for g in gathers if g["kernel"] == name.removeprefix("bb::resident::") and buffer in g["buffers"]), "")
+    return next((g["reason"] for g in gathers if g["kernel"] == name.removeprefix("bb::resident::") and {buffer, "*"} & set(g["buffers"])), "")
 
 
 def unexplained(table: dict, gathers: list[dict]) -> list[str]:
