@@ -82,7 +82,7 @@ BB_HD inline Vec<T, 3> turn_of_normal(const Mat<T, 3, N>& x, const Mat<T, 3, N>&
   if (edges.count == 0) return Vec<T, 3>::Zero();
   const Vec<T, 3> e = x.col(edges.to[0]) - x.col(edges.from[0]);
   const T tilt_e = n.dot(dx.col(edges.to[0]) - dx.col(edges.from[0]));
-  if (edges.count == 1) return e * (-tilt_e / e.squaredNorm());
+  if (N < 4 || edges.count == 1) return e * (-tilt_e / e.squaredNorm());
   const Vec<T, 3> f = x.col(edges.to[1]) - x.col(edges.from[1]);
   const T tilt_f = n.dot(dx.col(edges.to[1]) - dx.col(edges.from[1]));
   const Vec<T, 3> normal = accurate_cross(e, f);

@@ -48,7 +48,7 @@ BB_HD inline RegionFrame<T, N> region_frame(const Mat<T, 3, N>& x, const Closest
   frame.g[0].setZero();
   frame.g[0][edges.to[0]] = 1 / e_length;
   frame.g[0][edges.from[0]] = -1 / e_length;
-  if (edges.count == 1) {
+  if (N < 4 || edges.count == 1) {  // an edge and a point have no more
     if (closest.d > 0) {
       const Vec<T, 3> t = accurate_cross(frame.n, frame.q[0]);
       frame.rest = t * t.transpose();
@@ -85,7 +85,7 @@ BB_HD inline Mat<T, 3 * N, 3 * N> scaled_distance_hessian(const RegionFrame<T, N
   for (int i = 0; i < N; ++i) {
     for (int j = 0; j < N; ++j) {
       Mat<T, 3, 3> block = w[i] * w[j] * frame.rest;
-      for (int l = 0; l < frame.n_free; ++l) {
+      for (int l = 0; l < (N < 4 ? 1 : 2) && l < frame.n_free; ++l) {
         const Vec<T, N>& g = frame.g[l];
         const Mat<T, 3, 3> nq = frame.n * frame.q[l].transpose();
         block -= d * (g[i] * w[j] * nq + w[i] * g[j] * nq.transpose());

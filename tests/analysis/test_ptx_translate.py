@@ -22,7 +22,7 @@ def module(name: str):
 sys.path.insert(0, str(FOLDER))
 import translator  # noqa: E402
 
-faults, table, assigned = module("inject_faults"), module("kernel_table"), module("assigned")
+faults, assigned = module("inject_faults"), module("assigned")
 
 
 def kernel(body: str) -> str:
@@ -98,26 +98,6 @@ def test_the_list_of_faults_is_read():
     assert [(f.module, f.number, f.line, f.kind, f.kernel) for f in listed] == [("m", 3, 40, "last barrier", "void k(int, int)")]
     assert faults.reason(listed[0], [{"kind": "last barrier", "kernel": "*", "reason": "end"}]) == "end"
     assert faults.reason(listed[0], [{"kind": "last barrier", "kernel": "*", "line": 9, "reason": "end"}]) == ""
-
-
-LOG = """ptxas info    : Compiling entry function 'k' for 'sm_90'
-ptxas info    : Function properties for k
-    112 bytes stack frame, 8 bytes spill stores, 4 bytes spill loads
-ptxas info    : Used 42 registers, used 1 barriers, 112 bytes cumulative stack size
-"""
-
-
-def test_the_numbers_of_ptxas_are_read():
-    assert table.ptxas_numbers(LOG) == {"k": {"registers": 42, "stack": 112, "spills": 12}}
-    assert table.fp64_counts(kernel("add.rn.f64 %fd1, %fd2, %fd3;\nmov.f64 %fd2, %fd1;\nsetp.lt.f64 %p1, %fd1, %fd2;")) == {"k": 2}
-    assert table.kernel_name("void bb::exec::run_each<bb::resident::A<3> >(long, x)") == "bb::resident::A<3>"
-
-
-def test_growth_names_kernel_and_number():
-    before = {"a": {"registers": 40, "lines": 2.0}}
-    assert table.grown(before, {"a": {"registers": 40, "lines": 2.0}}) == []
-    assert table.grown(before, {"a": {"registers": 41}}) == ["a: registers 40 -> 41"]
-    assert len(table.grown(before, {"b": {"registers": 1}})) == 1
 
 
 def test_a_register_that_some_path_does_not_set_is_named():

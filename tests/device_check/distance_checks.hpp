@@ -7,11 +7,22 @@
 
 namespace bb::device_check {
 
+/// Whether a region is one of this kind of pair.
+template <PairKind K>
+BB_HD bool is_region_of(Region region) {
+  if constexpr (K == PairKind::point_point) return region == Region::p_p;
+  if constexpr (K == PairKind::point_edge) return region >= Region::p_e0 && region <= Region::p_e;
+  if constexpr (K == PairKind::point_triangle) return region >= Region::p_t0 && region <= Region::p_t;
+  if constexpr (K == PairKind::edge_edge) return region >= Region::ea0_eb0;
+}
+
+/// Nothing is written where the region is that of another kind; the compiler knows it behind.
 template <PairKind K, class T>
 BB_HD void distance_of_pair(Slots<T>& slots) {
   constexpr int N = pair_points(K);
   const Mat<T, 3, N> x = slots.template read<Mat<T, 3, N>>();
   const Closest<T, N> closest = closest_points<K, T>(x);
+  if (!is_region_of<K>(closest.region)) return;
   slots.write(closest.weights), slots.write(closest.r), slots.write(closest.d);
   slots.write(T(static_cast<int>(closest.region)));
   const DistanceDerivatives<T, N> d = distance_derivatives<T, N>(x, closest);

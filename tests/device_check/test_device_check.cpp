@@ -26,7 +26,8 @@ using bb::exec::Index;
 constexpr Index n_items = 2000;
 
 /// Of eight items: four random, three on a coarse grid (coincident points, parallel edges, repeated eigenvalues), one
-/// of these moved by a little; whole runs of one size between 1e-6 and 1e3, some items zero or constant.
+/// of these moved by a little; whole runs of one size between 1e-6 and 1e3, some items zero or constant, some with
+/// numbers so small that they have fewer digits (of double or of float) among the others.
 template <class T>
 std::vector<T> inputs() {
   std::mt19937_64 random(17);
@@ -42,6 +43,7 @@ std::vector<T> inputs() {
       if (i % 200 == 5) x = constant;
       if (i % 200 == 6) x = 0;
       if (i % 200 == 13) x = k % 4 == 0 ? constant : 0;  // multiples of the identity, among others
+      if (i % 100 == 17 && random() % 2 == 0) x *= i % 200 == 17 ? 1e-310 : 1e-40;
       out[static_cast<std::size_t>(i * Columns<T>::n_in + k)] = static_cast<T>(size * x);
     }
   }

@@ -74,6 +74,22 @@ struct Atomics {
   }
 };
 
+/// The item that arrives last adds up what all wrote: their stores come before their arrivals.
+struct LastArrival {
+  const double* in;
+  double* square;
+  std::uint32_t* arrivals;
+  double* total;
+  Index n;
+  BB_HD void operator()(Index i) const {
+    square[i] = in[i] * in[i];
+    if (static_cast<Index>(exec::atomic_add(arrivals, 1u)) + 1 < n) return;
+    double sum = 0;
+    for (Index k = 0; k < n; ++k) sum += square[k];
+    *total = sum;
+  }
+};
+
 /// A walk over a heap-ordered tree with a stack of its own.
 struct Walk {
   const double* in;
@@ -98,11 +114,12 @@ struct Library {
   const double* in;
   double* out;  // [8 x n]
   BB_HD void operator()(Index i) const {
-    const double x = in[i], positive = std::fabs(x) + 1e-3;
-    out[8 * i] = std::sin(x), out[8 * i + 1] = std::cos(x), out[8 * i + 2] = std::atan2(x, positive);
-    out[8 * i + 3] = std::log(positive), out[8 * i + 4] = std::exp(x / (1 + positive));
-    out[8 * i + 5] = std::acos(x / (std::fabs(x) + 1)), out[8 * i + 6] = std::cbrt(x);
-    out[8 * i + 7] = std::pow(positive, 1.5);
+    const double x = in[i], size = std::fabs(x), positive = size + 1e-3;
+    out[8 * i] = std::sin(x), out[8 * i + 1] = std::cos(x);
+    out[8 * i + 2] = std::atan2(x, positive - 1e-3);  // the size up to rounding, 0 of 0
+    out[8 * i + 3] = std::log(size), out[8 * i + 4] = std::exp(x);
+    out[8 * i + 5] = std::acos(x / (size + 1)), out[8 * i + 6] = std::cbrt(x);
+    out[8 * i + 7] = std::pow(size, 1.5);
   }
 };
 

@@ -2,7 +2,8 @@
 """Breaks one instruction of nvcc's PTX at a time and counts how many breaks the tests that run it notice.
 
     inject_faults.py ptx_samples                    tests by the name that bb_ptx_test gave them (test_NAME_faults is built)
-    inject_faults.py ptx_samples --sample 20        at most so many of each kind and module, by a fixed seed
+    inject_faults.py ptx_samples ptx_linear:20      of ptx_linear at most so many of each kind and module, by a fixed seed
+    inject_faults.py ptx_linear --cases='-*Long*'   without some cases: what those alone would notice survives
     inject_faults.py ptx_samples --out results/PTX_FAULTS
 
 Kinds: barrier (left out), shuffle (another lane), guard (a conditional jump ahead is not taken), store and atomic (left
@@ -17,6 +18,7 @@ import fnmatch
 import json
 import os
 import random
+import signal
 import subprocess
 import sys
 import time
@@ -24,6 +26,7 @@ import tomllib
 from collections import Counter, defaultdict
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import asdict, dataclass
+from datetime import date
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -53,14 +56,15 @@ def executable(build: Path, test: str) -> Path:
     return found[0]
 
 
-def run(program: Path, fault: str, timeout: float) -> tuple[int | None, str]:
-    """Exit code, None when it did not end, and output."""
+def run(program: Path, fault: str, timeout: float, cases: str) -> tuple[int | None, str]:
+    """Exit code, None when it did not end within `timeout` s of the processor's time, and output."""
     environment = {**os.environ, "BB_PTX_FAULT": fault}
+    words = ["prlimit", f"--cpu={timeout:.0f}:{timeout + 5:.0f}", str(program), "--gtest_brief=1", f"--gtest_filter={cases}", *([] if fault == "list" else ["--gtest_fail_fast"])]
     try:
-        done = subprocess.run([str(program), "--gtest_brief=1", *([] if fault == "list" else ["--gtest_fail_fast"])], env=environment, capture_output=True, text=True, errors="replace", timeout=timeout)
-    except subprocess.TimeoutExpired:
+        done = subprocess.run(words, env=environment, capture_output=True, text=True, errors="replace", timeout=20 * timeout)
+    except subprocess.TimeoutExpired:  # it waits
         return None, ""
-    return done.returncode, done.stdout + done.stderr
+    return None if done.returncode == -signal.SIGXCPU else done.returncode, done.stdout + done.stderr
 
 
 def parse_list(output: str, test: str) -> list[Fault]:
@@ -75,14 +79,26 @@ def parse_list(output: str, test: str) -> list[Fault]:
     return out
 
 
-def choose(faults: list[Fault], sample: int, seed: int) -> list[Fault]:
-    """At most `sample` of each module and kind; 0: all."""
+def parse_tests(words: list[str]) -> dict[str, int]:
+    """NAME or NAME:SAMPLE; 0: all."""
+    out = {}
+    for word in words:
+        name, _, sample = word.partition(":")
+        if sample and (not sample.isdecimal() or int(sample) == 0):
+            raise FaultError(f"'{word}': the sample is '{sample}'; allowed: a number from 1 on")
+        out[name] = int(sample or 0)
+    return out
+
+
+def choose(faults: list[Fault], samples: dict[str, int], seed: int) -> list[Fault]:
+    """Of each module and kind as many as the least sample of its tests."""
     groups = defaultdict(list)
     for fault in faults:
         groups[fault.module, fault.kind].append(fault)
     chosen = []
     for key in sorted(groups):
         group = groups[key]
+        sample = min((samples[t] for f in group for t in f.tests if samples[t]), default=0)
         if sample and len(group) > sample:
             group = random.Random(f"{seed} {key}").sample(group, sample)
         chosen += sorted(group, key=lambda f: f.number)
@@ -97,9 +113,9 @@ def reason(fault: Fault, survivors: list[dict]) -> str:
     return ""
 
 
-def judge(fault: Fault, programs: dict[str, Path], survivors: list[dict], timeout: float) -> None:
+def judge(fault: Fault, programs: dict[str, Path], survivors: list[dict], timeout: float, cases: str) -> None:
     for test in fault.tests:
-        code, output = run(programs[test], f"{fault.module}:{fault.number}", timeout)
+        code, output = run(programs[test], f"{fault.module}:{fault.number}", timeout, cases)
         if code != 0:
             red = next((line for line in output.splitlines() if "FAILED  ]" in line or "what():" in line), "")
             fault.verdict, fault.why = "caught", "does not end" if code is None else red.strip()[:100] or f"exit code {code}"
@@ -108,12 +124,12 @@ def judge(fault: Fault, programs: dict[str, Path], survivors: list[dict], timeou
     fault.verdict = "equivalent" if fault.why else "survived"
 
 
-def report(faults: list[Fault], seconds: float) -> tuple[str, float]:
+def report(faults: list[Fault], seconds: float, arguments: str) -> tuple[str, float]:
     """Markdown, and the share of those not equivalent that were caught."""
     counts = defaultdict(Counter)
     for fault in faults:
         counts[fault.kind][fault.verdict] += 1
-    lines = ["# Faults injected into the PTX", "", "Written by tests/ptx/inject_faults.py.", "", "| kind | caught | survived | equivalent |", "|---|---|---|---|"]
+    lines = ["# Faults injected into the PTX", "", f"Written on {date.today()} by `tests/ptx/inject_faults.py {arguments}`.", "", "| kind | caught | survived | equivalent |", "|---|---|---|---|"]
     for kind in sorted(counts):
         c = counts[kind]
         lines.append(f"| {kind} | {c['caught']} | {c['survived']} | {c['equivalent']} |")
@@ -132,23 +148,24 @@ def report(faults: list[Fault], seconds: float) -> tuple[str, float]:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("tests", nargs="+")
+    parser.add_argument("tests", nargs="+", help="NAME, or NAME:SAMPLE of each module and kind")
     parser.add_argument("--build", type=Path, default=ROOT / "build/release")
-    parser.add_argument("--sample", type=int, default=0, help="of each module and kind; 0: all")
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--jobs", type=int, default=2)
-    parser.add_argument("--timeout", type=float, default=120, help="s, of one run of one test")
+    parser.add_argument("--timeout", type=float, default=120, help="s of the processor's time, of one run of one test")
+    parser.add_argument("--cases", default="*", help="filter of GoogleTest: which cases have to notice")
     parser.add_argument("--kernel", default="*", help="pattern of the names of kernels")
     parser.add_argument("--out", type=Path, help="OUT.md and OUT.json")
     args = parser.parse_args()
     start = time.time()
     survivors = tomllib.loads((Path(__file__).parent / "survivors.toml").read_text())["survivor"]
     try:
-        subprocess.run(["ninja", "-j", str(args.jobs), "-C", str(args.build), *[f"test_{t}_faults" for t in args.tests]], check=True, stdout=sys.stderr)
-        programs = {test: executable(args.build, test) for test in args.tests}
+        samples = parse_tests(args.tests)
+        subprocess.run(["ninja", "-j", str(args.jobs), "-C", str(args.build), *[f"test_{t}_faults" for t in samples]], check=True, stdout=sys.stderr)
+        programs = {test: executable(args.build, test) for test in samples}
         found: dict[tuple[str, int], Fault] = {}
         for test, program in programs.items():
-            code, output = run(program, "list", 20 * args.timeout)
+            code, output = run(program, "list", 20 * args.timeout, args.cases)
             if code != 0:
                 raise FaultError(f"test_{test}_faults is not green: exit code {code}\n{output[-2000:]}")
             for fault in parse_list(output, test):
@@ -156,15 +173,15 @@ def main() -> int:
     except (FaultError, subprocess.CalledProcessError) as error:
         print(error, file=sys.stderr)
         return 2
-    faults = choose([f for f in found.values() if fnmatch.fnmatch(f.kernel, args.kernel)], args.sample, args.seed)
+    faults = choose([f for f in found.values() if fnmatch.fnmatch(f.kernel, args.kernel)], samples, args.seed)
     print(f"{len(faults)} of {len(found)} instructions are broken, one at a time", flush=True)
     with ThreadPoolExecutor(args.jobs) as pool:
-        list(pool.map(lambda f: judge(f, programs, survivors, args.timeout), faults))
-    text, share = report(faults, time.time() - start)
+        list(pool.map(lambda f: judge(f, programs, survivors, args.timeout, args.cases), faults))
+    text, share = report(faults, time.time() - start, " ".join(sys.argv[1:]))
     print(text)
     if args.out:
         args.out.with_suffix(".md").write_text(text)
-        args.out.with_suffix(".json").write_text(json.dumps([asdict(f) for f in faults], indent=1) + "\n")
+        args.out.with_suffix(".json").write_text(json.dumps({"date": str(date.today()), "arguments": sys.argv[1:], "faults": [asdict(f) for f in faults]}, indent=1) + "\n")
     return 0 if share >= LEAST else 1
 
 

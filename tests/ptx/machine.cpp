@@ -92,15 +92,15 @@ Machine::Machine() : all(std::make_unique<Implementation>()) {
   for (const Module& module : modules()) {
     for (const Constant& table : module.constants) {
       const auto begin = reinterpret_cast<std::uint64_t>(table.begin);
-      all->memory.add(begin, begin + table.bytes, false);
+      all->memory.add(begin, begin + table.bytes, "constants", false);
     }
   }
 }
 Machine::~Machine() = default;
 
-void Machine::add_memory(const void* p, std::size_t bytes) {
+void Machine::add_memory(const void* p, std::size_t bytes, const std::string& name) {
   const auto begin = reinterpret_cast<std::uint64_t>(p);
-  if (bytes > 0) all->memory.add(begin, begin + bytes, true);
+  if (bytes > 0) all->memory.add(begin, begin + bytes, name, true);
 }
 void Machine::remove_memory(const void* p) { all->memory.remove(reinterpret_cast<std::uint64_t>(p)); }
 

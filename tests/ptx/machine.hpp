@@ -76,10 +76,15 @@ const Kernel* find_instance(std::string_view wrapper, std::string_view type);
 
 enum class Order { forward, reverse, shuffled };
 
-/// What the warps of a kernel ask of memory: requests, 128 B lines and 32 B sectors that they touch, bytes asked for.
+/// What the warps of a kernel ask of memory: requests, 128 B lines and 32 B sectors that they touch, and how many sectors
+/// the bytes of each request would fill if they lay side by side.
 struct Traffic {
-  std::uint64_t requests = 0, lines = 0, sectors = 0, bytes = 0;
+  std::uint64_t requests = 0, lines = 0, sectors = 0, least = 0;
+  void add(const Traffic& more) {
+    requests += more.requests, lines += more.lines, sectors += more.sectors, least += more.least;
+  }
 };
+using TrafficOfBuffers = std::map<std::string, Traffic>;
 
 /// Runs blocks one after another, the threads of a block as fibers. One launch at a time.
 struct Machine {
@@ -87,8 +92,8 @@ struct Machine {
   ~Machine();
   Machine(const Machine&) = delete;
 
-  /// What kernels may touch.
-  void add_memory(const void* p, std::size_t bytes);
+  /// What kernels may touch; name: of the buffer, in `traffic`.
+  void add_memory(const void* p, std::size_t bytes, const std::string& name = "");
   void remove_memory(const void* p);
 
   /// params: as the parameters lie in `kernel.params`. Errors: Error.
@@ -96,7 +101,7 @@ struct Machine {
               std::uint32_t threads, Order order, std::mt19937_64& random);
 
   bool profile = false;
-  std::map<std::string, Traffic> traffic;  // by mangled name
+  std::map<std::string, TrafficOfBuffers> traffic;  // by mangled name
 
   struct Implementation;
   std::unique_ptr<Implementation> all;

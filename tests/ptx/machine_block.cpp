@@ -131,27 +131,32 @@ std::uint32_t Thread::shuffle(Mode mode, std::uint32_t value, std::uint32_t b, s
   return result;
 }
 
+namespace {
+// Of one request: addresses and bytes of its lanes.
+Traffic traffic_of(std::vector<std::pair<std::uint64_t, std::uint32_t>>& lanes) {
+  std::sort(lanes.begin(), lanes.end());
+  std::set<std::uint64_t> lines, sectors;
+  std::uint64_t bytes = 0, end = 0;
+  for (const auto& [address, size] : lanes) {
+    lines.insert(address / 128), sectors.insert(address / 32);
+    if (address + size > end) bytes += address + size - std::max(address, end), end = address + size;
+  }
+  return {1, lines.size(), sectors.size(), (bytes + 31) / 32};
+}
+}  // namespace
+
 // The k-th time that the lanes of a warp come to a line is one request.
-void Machine::Implementation::count_traffic(Traffic& traffic) {
+void Machine::Implementation::count_traffic(TrafficOfBuffers& traffic) {
+  using Site = std::tuple<const std::string*, int, int>;
   for (std::size_t warp = 0; 32 * warp < threads.size(); ++warp) {
-    struct Request {
-      std::set<std::uint64_t> lines, sectors;
-      std::uint64_t bytes = 0;
-    };
-    std::map<std::pair<int, int>, Request> requests;
+    std::map<Site, std::vector<std::pair<std::uint64_t, std::uint32_t>>> requests;
     for (std::size_t t = 32 * warp; t < std::min(threads.size(), 32 * warp + 32); ++t) {
       std::map<int, int> visits;
       for (const Access& a : accesses[t]) {
-        Request& request = requests[{a.line, visits[a.line]++}];
-        request.bytes += a.bytes;
-        request.lines.insert(a.address / 128), request.sectors.insert(a.address / 32);
+        requests[{a.buffer, a.line, visits[a.line]++}].emplace_back(a.address, a.bytes);
       }
     }
-    for (const auto& [where, request] : requests) {
-      ++traffic.requests;
-      traffic.lines += request.lines.size(), traffic.sectors += request.sectors.size();
-      traffic.bytes += request.bytes;
-    }
+    for (auto& [site, lanes] : requests) traffic[*std::get<0>(site)].add(traffic_of(lanes));
   }
 }
 

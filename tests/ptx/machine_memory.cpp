@@ -3,8 +3,8 @@
 
 namespace ptx {
 
-void MemoryMap::add(std::uint64_t begin, std::uint64_t end, bool may_be_written) {
-  allocations_[begin] = {end, std::vector<Touch>(may_be_written ? (end - begin + 3) / 4 : 0)};
+void MemoryMap::add(std::uint64_t begin, std::uint64_t end, const std::string& name, bool may_be_written) {
+  allocations_[begin] = {end, name, std::vector<Touch>(may_be_written ? (end - begin + 3) / 4 : 0)};
 }
 void MemoryMap::remove(std::uint64_t begin) {
   allocations_.erase(begin);
@@ -18,7 +18,8 @@ const Range* MemoryMap::search(std::uint64_t a, std::uint32_t bytes, int site) {
   --it;
   if (a + bytes > it->second.end) return nullptr;
   Touch* touches = it->second.touches.empty() ? nullptr : it->second.touches.data();
-  return &(last_[static_cast<std::size_t>(site) % last_.size()] = {it->first, it->second.end, touches});
+  return &(last_[static_cast<std::size_t>(site) % last_.size()] = {it->first, it->second.end, touches,
+                                                                   &it->second.name});
 }
 
 void Thread::fail(const char* what, int line) const {
@@ -35,7 +36,7 @@ unsigned char* global(Thread& t, std::uint64_t a, std::uint32_t bytes, Use use, 
     t.fail(use == Use::load ? "a load outside all allocations" : "a store outside all allocations", line);
   if (use != Use::load && !range->touches) t.fail("a store to a table of constants", line);
   all.races.check(*range, t, a, bytes, use, all.epoch, line);
-  if (t.machine->profile) all.accesses[t.tid].push_back({line, bytes, a});
+  if (t.machine->profile) all.accesses[t.tid].push_back({line, bytes, a, range->name});
   return reinterpret_cast<unsigned char*>(a);
 }
 void check_shared(const Thread& t, std::uint64_t a, std::uint32_t bytes, int line) {

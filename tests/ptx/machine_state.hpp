@@ -26,12 +26,13 @@ struct Touch {
 struct Range {
   std::uint64_t begin = 0, end = 0;
   Touch* touches = nullptr;  // one for every four bytes; null of what is only read
+  const std::string* name = nullptr;
 };
 
 /// Allocations by address. A site of the code tends to find what it found before.
 class MemoryMap {
  public:
-  void add(std::uint64_t begin, std::uint64_t end, bool may_be_written);
+  void add(std::uint64_t begin, std::uint64_t end, const std::string& name, bool may_be_written);
   void remove(std::uint64_t begin);
   /// The allocation; null when it is none.
   const Range* find(std::uint64_t a, std::uint32_t bytes, int site) {
@@ -43,6 +44,7 @@ class MemoryMap {
   const Range* search(std::uint64_t a, std::uint32_t bytes, int site);
   struct Allocation {
     std::uint64_t end;
+    std::string name;
     std::vector<Touch> touches;
   };
   std::map<std::uint64_t, Allocation> allocations_;
@@ -97,6 +99,7 @@ struct Access {
   int line;
   std::uint32_t bytes;
   std::uint64_t address;
+  const std::string* buffer;
 };
 
 struct Machine::Implementation {
@@ -127,7 +130,7 @@ struct Machine::Implementation {
   /// From a thread: until somebody makes it ready.
   void wait(std::uint32_t tid, State state, int line);
   Shadow& shadow_of(std::uint64_t byte);
-  void count_traffic(Traffic& traffic);
+  void count_traffic(TrafficOfBuffers& traffic);
 };
 
 }  // namespace ptx

@@ -40,20 +40,30 @@ void PtxExecutor::run(const bb::exec::KernelInfo& info, Index n, const void* f) 
 namespace {
 constexpr std::size_t gap = 256;  // as cudaMalloc aligns
 }
+// The ledger has the buffer already, the executor does not.
+std::string PtxExecutor::new_name() const {
+  std::map<std::string, std::size_t> held;
+  for (const auto& [begin, name] : names_) held[name] += allocations_.at(begin);
+  for (const auto& [name, bytes] : memory().by_name()) {
+    if (bytes > held[name]) return name;
+  }
+  return "";
+}
 void* PtxExecutor::allocate_bytes(std::size_t bytes) {
   if (bytes == 0) return nullptr;
   auto* all = static_cast<unsigned char*>(HostExecutor::allocate_bytes(bytes + 2 * gap));
   if (!all) return nullptr;
   unsigned char* memory = all + gap - reinterpret_cast<std::uintptr_t>(all) % gap;
   memcpy(memory - sizeof all, &all, sizeof all);
-  machine_.add_memory(memory, bytes);
-  allocations_[memory] = bytes;
+  const std::string name = new_name();
+  machine_.add_memory(memory, bytes, name);
+  allocations_[memory] = bytes, names_[memory] = name;
   return memory;
 }
 void PtxExecutor::release_bytes(void* memory) {
   if (!memory) return;
   machine_.remove_memory(memory);
-  allocations_.erase(static_cast<unsigned char*>(memory));
+  allocations_.erase(static_cast<unsigned char*>(memory)), names_.erase(static_cast<unsigned char*>(memory));
   void* all;
   memcpy(&all, static_cast<unsigned char*>(memory) - sizeof all, sizeof all);
   HostExecutor::release_bytes(all);

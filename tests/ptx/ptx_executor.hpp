@@ -25,8 +25,11 @@ class PtxExecutor : public bb::exec::HostExecutor {
   const std::map<unsigned char*, std::size_t>& allocations() const { return allocations_; }
 
  private:
+  std::string new_name() const;
+
   Machine machine_;
   std::map<unsigned char*, std::size_t> allocations_;
+  std::map<unsigned char*, std::string> names_;
   std::size_t launches_ = 0;
 };
 

@@ -7,8 +7,8 @@
 namespace ptx {
 
 namespace {
-std::map<std::string, Traffic>& all_traffic() {
-  static std::map<std::string, Traffic> all;
+std::map<std::string, TrafficOfBuffers>& all_traffic() {
+  static std::map<std::string, TrafficOfBuffers> all;
   return all;
 }
 
@@ -27,32 +27,37 @@ void print_kernel(const Module& module, const Kernel& kernel) {
   }
   std::printf("%s\n", shown == 12 ? " ..." : "");
 }
+}  // namespace
 
-void write(const char* path) {
+void write_profile() {
+  const char* path = std::getenv("BB_PTX_PROFILE");
+  if (!path) return;
   std::ofstream out(path);
   out << "{\n  \"kernels\": [";
   const char* separator = "\n";
   for (const Module& module : modules()) {
     for (const Kernel& kernel : module.kernels) {
       const Coverage c = coverage(module, kernel);
-      const Traffic t = all_traffic()[kernel.name];
       out << separator << "    {\"module\": \"" << module.name << "\", \"name\": \"" << kernel.name
-          << "\", \"instructions\": " << c.all << ", \"executed\": " << c.executed
-          << ", \"requests\": " << t.requests << ", \"lines\": " << t.lines << ", \"sectors\": " << t.sectors
-          << ", \"bytes\": " << t.bytes << "}";
+          << "\", \"instructions\": " << c.all << ", \"executed\": " << c.executed << ", \"buffers\": {";
+      const char* between = "";
+      for (const auto& [buffer, t] : all_traffic()[kernel.name]) {
+        out << between << "\"" << buffer << "\": {\"requests\": " << t.requests << ", \"lines\": " << t.lines
+            << ", \"sectors\": " << t.sectors << ", \"least\": " << t.least << "}";
+        between = ", ";
+      }
+      out << "}}";
       separator = ",\n";
     }
   }
   out << "\n  ]\n}\n";
 }
-}  // namespace
 
 bool profile_wanted() { return std::getenv("BB_PTX_PROFILE") != nullptr; }
 
 void note_traffic(Machine& machine) {
-  for (const auto& [name, t] : machine.traffic) {
-    Traffic& sum = all_traffic()[name];
-    sum.requests += t.requests, sum.lines += t.lines, sum.sectors += t.sectors, sum.bytes += t.bytes;
+  for (const auto& [name, buffers] : machine.traffic) {
+    for (const auto& [buffer, t] : buffers) all_traffic()[name][buffer].add(t);
   }
   machine.traffic.clear();
 }
@@ -68,7 +73,6 @@ bool report(double least) {
     }
     good = good && c.all > 0 && share(c) >= least;
   }
-  if (const char* path = std::getenv("BB_PTX_PROFILE")) write(path);
   return good;
 }
 

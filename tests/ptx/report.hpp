@@ -11,8 +11,10 @@ bool profile_wanted();
 void note_traffic(Machine& machine);
 
 /// Prints executed and all instructions by module, kernels below `least` with their first lines that did not run.
-/// Writes them, with the traffic, to BB_PTX_PROFILE where it is set. @return whether every module has `least`.
+/// @return whether every module has `least`.
 bool report(double least);
+/// Writes instructions and traffic by kernel to BB_PTX_PROFILE where it is set.
+void write_profile();
 
 /// Prints a line `fault MODULE NUMBER RAN LINE KIND; FUNCTION` for each instruction that can be broken.
 void list_faults();

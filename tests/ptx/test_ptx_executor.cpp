@@ -82,6 +82,18 @@ TEST(PtxExecutor, RunsAtomics) {
   });
 }
 
+TEST(PtxExecutor, LetsTheLastArrivalReadWhatAllWrote) {
+  for (const Index n : {1, 255, 700}) {
+    expect_same_bits([=](Executor& executor) {
+      Buffer<double> in(executor, "in"), square(executor, "square", n), total(executor, "total", 1);
+      Buffer<std::uint32_t> arrivals(executor, "arrivals");
+      in.upload(numbers(static_cast<std::size_t>(n))), arrivals.upload(std::vector<std::uint32_t>{0});
+      executor.each(n, LastArrival{in.data(), square.data(), arrivals.data(), total.data(), n});
+      return total.download();
+    });
+  }
+}
+
 TEST(PtxExecutor, RunsStacksInLocalMemory) {
   expect_same_bits([](Executor& executor) {
     Buffer<double> in(executor, "in"), out(executor, "out", 300);
@@ -106,13 +118,19 @@ TEST(PtxExecutor, RunsIntegers) {
   }
 }
 
-// Different libraries: sin and the like are right to a unit or two in the last place on both sides.
+// Different libraries: sin and the like are right to a unit or two in the last place on both sides. Numbers of every size,
+// and those around which results overflow or lose digits: exp from 709.8 and to -745, x^1.5 from 1e205 and to 1e-216.
 TEST(PtxExecutor, RunsTheLibraryOfTheDevice) {
   std::vector<double> values = numbers(3000, 10);
   for (std::size_t i = 0; i < 300; ++i) values[i] *= 1e6, values[300 + i] *= 1e-9, values[600 + i] *= 1e100;
   values[0] = 0, values[1] = 1e-320, values[2] = -0.0, values[3] = 1e-310;
   values[4] = INFINITY, values[5] = -INFINITY, values[6] = NAN, values[7] = 1e308, values[8] = -1e308,
   values[9] = 1;
+  for (std::size_t i = 900; i < 1200; ++i)
+    values[i] = std::ldexp(values[i], static_cast<int>(7 * i % 2040) - 1030);
+  for (std::size_t i = 1200; i < 1300; ++i)
+    values[i] = (i % 2 == 0 ? 708 : -746) + 0.02 * static_cast<double>(i - 1200);
+  for (std::size_t i = 1300; i < 1400; ++i) values[i] *= i % 2 == 0 ? 2e204 : 1e-212;
   std::vector<std::vector<double>> results;
   HostExecutor host(Order::forward);
   ptx::PtxExecutor device;
@@ -172,11 +190,15 @@ TEST(PtxExecutor, CountsTrafficOfAWarp) {
   const void* params[] = {reinterpret_cast<void*>(std::uintptr_t{256}), in.data(), out.data()};
   std::mt19937_64 random;
   device.machine().launch(*kernel, params, sizeof params, 1, 256, ptx::Order::forward, random);
-  const ptx::Traffic& t = device.machine().traffic.at(kernel->name);
-  EXPECT_EQ(t.requests, 16u);  // 8 warps load and store
-  EXPECT_EQ(t.lines, 32u);     // 32 numbers of 8 bytes: 2 lines
-  EXPECT_EQ(t.sectors, 128u);
-  EXPECT_EQ(t.bytes, 4096u);
+  const ptx::TrafficOfBuffers& traffic = device.machine().traffic.at(kernel->name);
+  ASSERT_EQ(traffic.size(), 2u);
+  for (const char* buffer : {"in", "out"}) {
+    const ptx::Traffic& t = traffic.at(buffer);
+    EXPECT_EQ(t.requests, 8u);  // one a warp
+    EXPECT_EQ(t.lines, 16u);    // 32 numbers of 8 bytes: 2 lines
+    EXPECT_EQ(t.sectors, 64u);
+    EXPECT_EQ(t.least, 64u);
+  }
 }
 
 }  // namespace
