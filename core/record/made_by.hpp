@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -61,6 +62,7 @@ struct Machine {
   BB_FIELD(std::string, os, "of /etc/os-release");
   BB_FIELD(std::string, kernel, "of the system");
   BB_FIELD(bool, virtualised, "whether a hypervisor is below") = false;
+  BB_FIELD(std::optional<std::string>, card, "graphics card that took part, its driver; absent: none did");
   BB_RECORD_END;
 };
 

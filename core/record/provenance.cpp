@@ -105,8 +105,9 @@ void fill_ids(RunRecord& record) {
   Ids& ids = record.ids;
   ids.config_id = config_id(record.config.text);
   ids.build_id = this_program;
+  const std::string card = record.machine.card ? "\n" + *record.machine.card : "";
   ids.machine_id = sha256_hex(record.machine.cpu_model + "\n" + std::to_string(record.machine.cores) + "\n" +
-                              record.machine.kernel);
+                              record.machine.kernel + card);
   std::string parts = ids.config_id + "\n" + ids.build_id + "\n" + ids.machine_id + "\n" +
                       std::to_string(record.provenance.threads) + "\n";
   for (const auto& [name, version] : record.provenance.libraries) parts += name + " " + version + "\n";

@@ -1,5 +1,7 @@
 #include "experiments/run/device_run.hpp"
 
+#include <fmt/format.h>
+
 #include <charconv>
 #include <cstdlib>
 
@@ -64,6 +66,14 @@ std::unique_ptr<exec::Executor> make_executor(Device device) {
       device == Device::cuda ? cuda::make_device_executor() : make_host_executor();
   out->limit_memory(memory_limit());
   return out;
+}
+
+std::optional<std::string> card_of(const RunConfig& config) {
+  if (config.device != Device::cuda && config.linear_solver.name != "cudss") return std::nullopt;
+  const cuda::DeviceProbe probe = cuda::probe_device();
+  if (!probe.usable) return std::nullopt;
+  return fmt::format("{}, compute capability {}.{}, driver of CUDA {}", probe.card, probe.capability / 10,
+                     probe.capability % 10, cuda::version_text(probe.driver));
 }
 
 void check_device_forms(const RunConfig& config, const Scene& scene) {

@@ -1,7 +1,9 @@
 // What is asked of a device before a run, and how it ends one.
 #pragma once
 
+#include <optional>
 #include <stdexcept>
+#include <string>
 
 #include "core/exec/executor.hpp"
 #include "core/record/outcome.hpp"
@@ -14,6 +16,9 @@ namespace bb {
 /// host, for tests, BARRIERBENCH_FAIL_KERNEL=NAME:N, the launch of a kernel with NAME in its name that fails, from 1.
 /// Errors: ConfigError for a malformed variable, and without a usable card.
 std::unique_ptr<exec::Executor> make_executor(Device device);
+
+/// "NVIDIA H100, compute capability 9.0, driver of CUDA 13.0" where a card takes part in the run; none elsewhere.
+std::optional<std::string> card_of(const RunConfig& config);
 
 /// Whether everything that the config asks for has a device form. Errors: ConfigError naming what has none.
 void check_device_forms(const RunConfig& config, const Scene& scene);

@@ -137,6 +137,7 @@ RunRecord identified(const RunConfig& config, const RunOptions& options) {
   record.provenance = collect_provenance(options.argv, thread_count(config));
   record.provenance.plugins = name_from(options.folder, options.plugins);
   record.machine = collect_machine();
+  record.machine.card = card_of(config);
   if (!options.sweep_id.empty()) record.ids.sweep_id = options.sweep_id;
   if (!options.rerun_of.empty()) record.ids.rerun_of = options.rerun_of;
   fill_ids(record);

@@ -58,7 +58,9 @@ std::vector<Difference> differences(const RunRecord& then, const RunRecord& now)
             found == made.libraries.end() ? "unknown" : found->second, version, true);
   }
   compare("processor", then.machine.cpu_model, now.machine.cpu_model, true);
-  if (then.machine.cpu_model == now.machine.cpu_model && then.ids.machine_id != now.ids.machine_id) {
+  compare("graphics card", then.machine.card.value_or("none"), now.machine.card.value_or("none"), true);
+  if (then.machine.cpu_model == now.machine.cpu_model && then.machine.card == now.machine.card &&
+      then.ids.machine_id != now.ids.machine_id) {
     out.push_back({"another machine (number of cores or kernel of the system)", false});
   }
   compare("number of threads", std::to_string(made.threads), std::to_string(makes.threads), false);

@@ -83,6 +83,7 @@ TEST(Ids, TheRunIdCoversAllThatMadeTheRecord) {
   EXPECT_NE(id_of([](RunRecord& r) { r.provenance.libraries["blas"] = "OpenBLAS SkylakeX"; }), id);
   EXPECT_NE(id_of([](RunRecord& r) { r.provenance.threads = 5; }), id);
   EXPECT_NE(id_of([](RunRecord& r) { r.machine.cpu_model = "another"; }), id);
+  EXPECT_NE(id_of([](RunRecord& r) { r.machine.card = "a card"; }), id);
   EXPECT_EQ(id_of([](RunRecord& r) { r.provenance.plugins[0].file = "elsewhere.so"; }), id);
   EXPECT_EQ(id_of([](RunRecord& r) { r.provenance.argv = {"other"}; }), id);
 }
