@@ -152,6 +152,18 @@ TEST_P(PcgKernels, StepDirection) {
   EXPECT_TRUE(after.state[1].running());
 }
 
+TEST_P(PcgKernels, StepDirectionEndsAtACurvatureThatIsNone) {
+  rz.upload(Numbers{0.5, 0.25, 0.5}), rr.upload(Numbers{4, 2, 1});
+  for (const double curvature : {0.0, -1.0, double{INFINITY}, std::nan("")}) {
+    PcgScalars before = running_state();
+    before.curvature = curvature;
+    scalars.set(0, before);
+    executor.blocks(3, StepDirection{partition, rz.data(), rr.data(), z.data(), p.data(), scalars.data(), 0});
+    EXPECT_EQ(scalars.get(0).state[1].end, static_cast<int>(PcgEnd::curvature)) << curvature;
+    EXPECT_EQ(p.download(), random_numbers(1)) << curvature;
+  }
+}
+
 INSTANTIATE_TEST_SUITE_P(Orders, PcgKernels,
                          testing::Values(Order::forward, Order::reverse, Order::shuffled));
 
