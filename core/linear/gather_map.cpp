@@ -15,7 +15,7 @@ namespace bb {
 namespace {
 
 int row_of(std::uint64_t key) { return static_cast<int>(key >> 32); }
-constexpr int kGrain = 256;  // columns a task: some thousand contributions
+constexpr int columns_a_task = 256;  // columns a task: some thousand contributions
 
 // Where the entries of a block and of its transpose lie: no branch, the orientation is not predictable.
 constexpr std::uint8_t entry_order[2][9] = {{0, 1, 2, 3, 4, 5, 6, 7, 8}, {0, 3, 6, 1, 4, 7, 2, 5, 8}};
@@ -80,7 +80,7 @@ void GatherMap::sort_contributions(int n_vertices) {
   for_each_pair([this](int row, int column, std::size_t number) {
     key_[cursor_[at(column)]++] = static_cast<std::uint64_t>(row) << 32 | number;
   });
-  parallel_items(n_vertices, kGrain, [this](int c) {
+  parallel_items(n_vertices, columns_a_task, [this](int c) {
     std::sort(key_.data() + key_start_[at(c)], key_.data() + key_start_[at(c) + 1]);
   });
 }
@@ -91,7 +91,7 @@ void GatherMap::write_targets(int n_vertices) {
   };
   column_start_.resize(at(n_vertices) + 1);
   column_start_[0] = 0;
-  parallel_items(n_vertices, kGrain, [&](int c) {
+  parallel_items(n_vertices, columns_a_task, [&](int c) {
     const std::size_t begin = key_start_[at(c)], end = key_start_[at(c) + 1];
     int n = 0;
     for (std::size_t k = begin; k < end; ++k) n += first_of_row(begin, k);
@@ -105,7 +105,7 @@ void GatherMap::write_targets(int n_vertices) {
   source_start_[n_targets] = key_.size();
   source_.resize(key_.size());
   const std::size_t w = at(width_);
-  parallel_items(n_vertices, kGrain, [&](int c) {
+  parallel_items(n_vertices, columns_a_task, [&](int c) {
     const std::size_t begin = key_start_[at(c)], end = key_start_[at(c) + 1];
     std::size_t target = at(column_start_[at(c)]);
     for (std::size_t k = begin; k < end; ++k) {
@@ -135,7 +135,7 @@ void GatherMap::build_gradient_map(int n_vertices) {
 }
 
 void GatherMap::place(const BlockPattern& pattern) {
-  parallel_items(pattern.n_vertices(), kGrain, [&](int c) {
+  parallel_items(pattern.n_vertices(), columns_a_task, [&](int c) {
     int block = pattern.column_start[at(c)];
     for (int t = column_start_[at(c)]; t < column_start_[at(c) + 1]; ++t) {
       while (pattern.row[at(block)] < row_[at(t)]) ++block;

@@ -10,7 +10,7 @@
 
 namespace bb {
 namespace {
-constexpr int kGrain = 256;  // block rows a task
+constexpr int rows_a_task = 256;  // block rows a task
 using Vec4d = Eigen::Matrix<double, 4, 1>;
 using Four = Eigen::Map<const Vec4d>;
 }  // namespace
@@ -83,10 +83,10 @@ void SymmetricProduct::build_slots(const ReducedSystem& system) {
 
 void SymmetricProduct::multiply(const VecXd& x, VecXd& y) const {
   y.resize(n_);
-  parallel_items(n_blocks(), 4 * kGrain, [&](int b) {
+  parallel_items(n_blocks(), 4 * rows_a_task, [&](int b) {
     for (int i = start_[at(b)]; i < start_[at(b) + 1]; ++i) x_[4 * at(b) + at(i - start_[at(b)])] = x[i];
   });
-  parallel_items(n_blocks(), kGrain, [&](int r) {
+  parallel_items(n_blocks(), rows_a_task, [&](int r) {
     Vec4d row0 = Vec4d::Zero(), row1 = row0, row2 = row0;  // the fourth sum is of no meaning
     for (int k = row_start_[at(r)]; k < row_start_[at(r) + 1]; ++k) {
       const Vec4d v = Four(x_.data() + 4 * at(column_[at(k)]));
@@ -117,7 +117,7 @@ void SymmetricProduct::for_row(int row, const F& f) const {
 
 void SymmetricProduct::multiply_long(const VecXd& x, std::vector<long double>& y) const {
   y.assign(at(n_), 0.0L);
-  parallel_items(n_blocks(), kGrain, [&](int r) {
+  parallel_items(n_blocks(), rows_a_task, [&](int r) {
     for_row(r, [&](int i, int j, double a) { y[at(i)] += static_cast<long double>(a) * x[j]; });
   });
 }
