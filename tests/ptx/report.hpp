@@ -11,8 +11,8 @@ bool profile_wanted();
 void note_traffic(Machine& machine);
 
 /// Prints executed and all instructions by module, kernels below `least` with their first lines that did not run.
-/// @return whether every module has `least`.
-bool report(double least);
+/// judged: names of modules, a blank between. @return whether there are such, and each has `least`.
+bool report(double least, std::string_view judged);
 /// Writes instructions and traffic by kernel to BB_PTX_PROFILE where it is set.
 void write_profile();
 

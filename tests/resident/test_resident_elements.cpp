@@ -134,6 +134,16 @@ TEST(ResidentElements, HingesAgreeToRounding) {
   frame.c = 0;
   exec::HostExecutor executor;
   OnExecutor resident(executor, scene, options, frame);
+  for (const double folds : {0.3, 1.0}) {  // m, some triangles turn over
+    const Positions x = strained(scene, folds);
+    CpuElements cpu(scene, options, frame);
+    cpu.linearise(x, StepHessian::clamped);
+    resident.linearise(x);
+    EXPECT_GT(largest(cpu.gradient), 1e-2);
+    EXPECT_LE(largest(resident.gradient() - cpu.gradient), hinge_rounding * largest(cpu.gradient));
+    ASSERT_TRUE(resident.evaluate(strained(scene, 0.9 * folds)));
+    EXPECT_NE(resident.change().value(), 0);
+  }
   resident.linearise(strained(scene));
   for (const StepHessian choice : {StepHessian::clamped, StepHessian::absolute, StepHessian::blend}) {
     CpuElements cpu(scene, options, frame);

@@ -39,8 +39,10 @@ std::vector<Rule> all_rules() {
     out.push_back({"cubic", elastic(mass, true, Refresh::per_iteration, dropped), 0});
   }
   out.push_back({"cubic", elastic(MassTerm::paper, false, Refresh::per_step, dropped), 0});
-  out.push_back(
-      {"cubic", elastic(MassTerm::paper, true, Refresh::per_step, KappaDerivative::included), 1e-13});
+  for (const char* shape : {"quadratic", "cubic"}) {
+    out.push_back(
+        {shape, elastic(MassTerm::paper, true, Refresh::per_step, KappaDerivative::included), 1e-12});
+  }
   return out;
 }
 

@@ -57,6 +57,28 @@ TEST(SystemKernels, Columns) {
   EXPECT_EQ(least.largest(), longest);
 }
 
+// Several items a thread.
+TEST(SystemKernels, LongestOfManyVectors) {
+  constexpr std::size_t n = 1'310'721;
+  exec::HostExecutor executor;
+  std::vector<double> values = random_numbers(3 * n, 8);
+  values[3 * (n - 2)] = 3, values[3 * (n - 2) + 1] = 4, values[3 * (n - 2) + 2] = 0;
+  const auto g = on(executor, values);
+  ResidentLeast least(executor);
+  least.add(static_cast<Index>(n), ColumnNorms{g.data()});
+  EXPECT_EQ(least.largest(), 5);
+}
+
+TEST(SystemKernels, TotalsOfManyBlocks) {
+  exec::HostExecutor executor;
+  std::vector<RowTotals> parts(most_partials, RowTotals::zero());
+  for (std::size_t b = 0; b < parts.size(); ++b) parts[b].load.add(static_cast<double>(b) + 0.5);
+  exec::Buffer<RowTotals> partial(executor, "parts"), total(executor, "total");
+  partial.upload(parts), total.upload(std::vector<RowTotals>{RowTotals::zero()});
+  executor.blocks(1, FoldPartials<RowTotals>{partial.data(), most_partials, total.data()});
+  EXPECT_EQ(total.get(0).load.value(), 1024 * 1023 / 2 + 512);
+}
+
 /// Rows of five kinds, some of them mollified, with a stiffness of their own or one for all.
 struct SomeRows {
   static constexpr std::size_t n = 1000;
