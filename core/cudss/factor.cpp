@@ -24,8 +24,9 @@ Factor::Factor(const Library& library)
 
 void Factor::make_handle() {
   cudssHandle_t handle = nullptr;
-  check(library_.cudssCreate(&handle), "cudssCreate");
-  handle_ = {handle, library_.cudssDestroy};
+  const cudssStatus_t made = library_.cudssCreate(&handle);
+  handle_ = {handle, library_.cudssDestroy};  // also where it failed half-way
+  check(made, "cudssCreate");
   const cudssDeviceMemHandler_t memory = memory_.handler();
   check(library_.cudssSetDeviceMemHandler(handle, &memory), "cudssSetDeviceMemHandler");
   check(library_.cudssSetStream(handle, dynamic_cast<cuda::DeviceExecutor&>(*executor_).stream()),
@@ -35,8 +36,9 @@ void Factor::make_handle() {
 /// The same bits in every run; no permutation for the sake of the diagonal, which is positive.
 void Factor::configure() {
   cudssConfig_t config = nullptr;
-  check(library_.cudssConfigCreate(&config), "cudssConfigCreate");
+  const cudssStatus_t made = library_.cudssConfigCreate(&config);
   config_ = {config, library_.cudssConfigDestroy};
+  check(made, "cudssConfigCreate");
   const int deterministic = 1;
   check(
       library_.cudssConfigSet(config, CUDSS_CONFIG_DETERMINISTIC_MODE, &deterministic, sizeof deterministic),

@@ -1,4 +1,4 @@
-// The memory that cuDSS takes for its factor, as memory of the executor: named, counted and limited like a buffer.
+// The memory that cuDSS takes for its factor, as memory of the executor: named and counted like a buffer.
 #pragma once
 
 #include <cudss.h>

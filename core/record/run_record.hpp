@@ -44,7 +44,7 @@ struct Ids {
   BB_FIELD(std::string, run_id, "of all: config, executable, libraries, plugins, machine, threads",
            sha256_or_empty);
   BB_FIELD(std::string, build_id, "of the executable", sha256_or_empty);
-  BB_FIELD(std::string, machine_id, "of processor model, core count and kernel of the system",
+  BB_FIELD(std::string, machine_id, "of processor model, core count, kernel of the system and card",
            sha256_or_empty);
   BB_FIELD(std::optional<std::string>, sweep_id, "of the sweep that the run is a case of");
   BB_FIELD(std::optional<std::string>, rerun_of, "run_id of the record that this run repeats",

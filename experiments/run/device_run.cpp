@@ -68,6 +68,10 @@ std::unique_ptr<exec::Executor> make_executor(Device device) {
   return out;
 }
 
+bool can_lose_device(const RunConfig& config) {
+  return config.device != Device::cpu || config.linear_solver.name == "cudss";
+}
+
 std::optional<std::string> card_of(const RunConfig& config) {
   if (config.device != Device::cuda && config.linear_solver.name != "cudss") return std::nullopt;
   const cuda::DeviceProbe probe = cuda::probe_device();

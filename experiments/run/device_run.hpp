@@ -17,6 +17,9 @@ namespace bb {
 /// Errors: ConfigError for a malformed variable, and without a usable card.
 std::unique_ptr<exec::Executor> make_executor(Device device);
 
+/// Whether a kernel or a card can fail in it: a device, or a solver on a card.
+bool can_lose_device(const RunConfig& config);
+
 /// "NVIDIA H100, compute capability 9.0, driver of CUDA 13.0" where a card takes part in the run; none elsewhere.
 std::optional<std::string> card_of(const RunConfig& config);
 

@@ -8,6 +8,7 @@
 
 #include "core/exec/executor.hpp"
 #include "core/record/provenance.hpp"
+#include "experiments/run/device_run.hpp"
 #include "experiments/run/keep_record.hpp"
 
 namespace bb {
@@ -42,7 +43,7 @@ PassResult Pass::run(const std::function<void()>& between, const std::function<v
     while (result_.verdict.outcome == Outcome::ok && simulation_.time() < t_end_) {
       look_up();
       if (result_.verdict.outcome != Outcome::ok) break;
-      if (config_.device != Device::cpu) {
+      if (can_lose_device(config_)) {
         simulation_.drop_caches();
         before();
       }

@@ -193,7 +193,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
-  const bool stopped = config.device != Device::cpu && stops_device(record.status.outcome);
+  const bool stopped = can_lose_device(config) && stops_device(record.status.outcome);
   const bool goes_on = stopped && kept(checkpoint);
   if (goes_on) record.artifacts.clear();  // trace and files stay unfinished, for the run that goes on
   StagedFile run_json(options.folder / "run.json", to_json(record));

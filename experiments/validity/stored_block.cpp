@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/input/read_file.hpp"
+#include "core/linear/cudss.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 
@@ -67,7 +68,8 @@ BuildKey this_build(const std::vector<PluginFile>& plugins) {
   record.provenance.plugins = plugins;
   record.config.text = "{}";
   fill_ids(record);  // with an empty config and one thread the run_id is that of build and machine
-  return {record.ids.run_id, sha256_hex(record.ids.run_id)};
+  const std::string text = record.ids.run_id + (missing_for("cudss").empty() ? " with cudss" : "");
+  return {text, sha256_hex(text)};
 }
 
 std::string report_text(const BuildKey& build, const std::vector<BlockCheck>& checks) {

@@ -81,7 +81,7 @@ def test_the_check_names_kernel_and_number():
     assert table.differences(before, one(lines=2.0)) == []
     assert table.differences(before, one(registers=39)) == []
     assert table.differences(before, one(registers=41)) == ["a: registers 40 -> 41"]
-    assert table.differences(before, one(lines=2.2)) == ["a: lines 2.0 -> 2.2"]
+    assert table.differences(before, one(fp64=8)) == ["a: fp64 7 -> 8"]
     assert table.differences(one(local=2), one(local=2)) == ["a: 2 accesses to local memory; a kernel of linear has none"]
     assert table.differences(one(room="contact", local=2), one(room="contact", local=2)) == []
 

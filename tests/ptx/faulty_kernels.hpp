@@ -64,6 +64,55 @@ struct AllWriteOne {
   double* out;
   BB_HD void operator()(Index i) const { out[0] = static_cast<double>(i); }
 };
+/// As ReadsNeighbour, one thread a block.
+struct ReadsNextBlock {
+  struct Shared {
+    int unused;
+  };
+  double* x;
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared&, Index b) const {
+    block.threads([&](int t) {
+      if (t == 0) x[b] = x[b] + x[b + 1];
+    });
+  }
+};
+/// What it reads depends on how many came before.
+struct ReadsACounter {
+  struct Shared {
+    int unused;
+  };
+  std::uint32_t *counter, *out;
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared&, Index b) const {
+    block.threads([&](int t) {
+      if (t > 0) return;
+#ifdef __CUDA_ARCH__
+      atomicAdd(counter, 1u);
+#endif
+      out[b] = *counter;
+    });
+  }
+};
+/// Two blocks read a word, the second one writes it behind a barrier of its own.
+struct WritesWhatAnotherBlockRead {
+  struct Shared {
+    double sum;
+  };
+  double *x, *out;
+  template <class Block>
+  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
+    block.threads([&](int t) {
+      if (t == 0) shared.sum = x[0];
+    });
+    block.threads([&](int t) {
+      if (t == 0) out[b] = shared.sum + x[0];
+    });
+    block.threads([&](int t) {
+      if (t == 1 && b == 1) x[0] = 2;
+    });
+  }
+};
 /// The last block reads what all wrote. Whether it sees it is a matter of the fence.
 struct LastBlockReads {
   struct Shared {

@@ -37,20 +37,21 @@ void RaceWatch::note_atomic(const Thread& t, std::uint32_t epoch) {
 }
 
 bool RaceWatch::is_before(const Touch::Side& side, const Thread& t, std::uint32_t epoch) const {
-  if (side.thread == Touch::nobody || side.thread == number(t)) return true;
+  if (side.thread == Touch::nobody || (side.thread == number(t) && !side.loose)) return true;
   if (side.block == t.ctaid && !side.loose && side.epoch < epoch) return true;
   const BlockOrder& mine = blocks_[t.ctaid];
   const bool acquired = atomics_[number(t)] != 0 || (mine.first_atomic != 0 && mine.first_atomic < epoch);
   return acquired && is_released(side, blocks_, fences_);
 }
 
-void RaceWatch::add(Touch::Side& side, const Thread& t, std::uint32_t epoch) const {
+// Atomics order each other: those before are not lost sight of.
+void RaceWatch::add(Touch::Side& side, const Thread& t, std::uint32_t epoch, bool both_atomic) const {
   const std::uint32_t me = number(t);
   if (side.thread == Touch::nobody || side.thread == me) {
-    side = {me, t.ctaid, epoch, fences_[me], false};
+    side = {me, t.ctaid, epoch, fences_[me], side.loose};
     return;
   }
-  const bool loose = side.block != t.ctaid && !is_released(side, blocks_, fences_);
+  const bool loose = !both_atomic && side.block != t.ctaid && !is_released(side, blocks_, fences_);
   const bool one_before = side.block != t.ctaid || side.epoch < epoch;
   side = {one_before ? me : several, t.ctaid, epoch, fences_[me], side.loose || loose};
 }
@@ -77,10 +78,10 @@ const char* RaceWatch::race(Touch& touch, const Thread& t, Use use, std::uint32_
     return writes ? "race: writes global memory that another thread wrote in this launch"
                   : "race: reads global memory that another thread wrote in this launch";
   }
-  if (writes && !both_atomic && !is_before(touch.read, t, epoch))
+  if (writes && !is_before(touch.read, t, epoch))
     return "race: writes global memory that another thread read in this launch";
-  if (use != Use::load) touch.atomic = use == Use::atomic;
-  add(writes ? touch.write : touch.read, t, epoch);
+  if (writes) touch.atomic = use == Use::atomic && (both_atomic || touch.write.thread == Touch::nobody);
+  add(writes ? touch.write : touch.read, t, epoch, both_atomic);
   return nullptr;
 }
 

@@ -71,7 +71,7 @@ class RaceWatch {
  private:
   std::uint32_t number(const Thread& t) const { return t.ctaid * threads_ + t.tid; }
   bool is_before(const Touch::Side& side, const Thread& t, std::uint32_t epoch) const;
-  void add(Touch::Side& side, const Thread& t, std::uint32_t epoch) const;
+  void add(Touch::Side& side, const Thread& t, std::uint32_t epoch, bool both_atomic) const;
   bool is_plain(Touch& touch, const Thread& t, Use use, std::uint32_t epoch) const;
   const char* race(Touch& touch, const Thread& t, Use use, std::uint32_t epoch) const;
 

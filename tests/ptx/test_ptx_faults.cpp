@@ -83,6 +83,27 @@ TEST(PtxFaults, RacesOnGlobalMemory) {
         e.each(300, AllWriteOne{out.data()});
       },
       {"AllWriteOne", "race: writes global memory that another thread wrote"});
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> x(e, "x");
+        x.upload(std::vector<double>(4, 1.0));
+        e.blocks(3, ReadsNextBlock{x.data()});
+      },
+      {"ReadsNextBlock", "race", "in this launch"});
+  expect_error(
+      [](Executor& e) {
+        Buffer<std::uint32_t> counter(e, "counter"), out(e, "out", 3);
+        counter.upload(std::vector<std::uint32_t>{0});
+        e.blocks(3, ReadsACounter{counter.data(), out.data()});
+      },
+      {"ReadsACounter", "race", "in this launch"});
+  expect_error(
+      [](Executor& e) {
+        Buffer<double> x(e, "x"), out(e, "out", 2);
+        x.upload(std::vector<double>{1});
+        e.blocks(2, WritesWhatAnotherBlockRead{x.data(), out.data()});
+      },
+      {"WritesWhatAnotherBlockRead", "race", "in this launch"});
 }
 
 void run_last_block(Executor& e, bool with_fence, std::vector<double>* sums = nullptr) {

@@ -69,7 +69,9 @@ void ResidentContact::take_trial() {
 
 void ResidentContact::prepare(const Column& x0, const Column& x1) {
   if (frugal()) assembly_.free_matrix();
-  listed_ = broad_phase_.count(x0, x1).bytes() <= list_budget();
+  const std::size_t lists =
+      broad_phase_.count(x0, x1).bytes();  // takes memory, so before what is left is asked
+  listed_ = lists <= list_budget();
   in_trees_ = !listed_;
   if (listed_) {
     fill_lists();
