@@ -11,6 +11,7 @@
 #include "core/math/error.hpp"
 #include "tests/standin/cudart.hpp"
 #include "tests/standin/device_kernels.hpp"
+#include "tests/standin/messages.hpp"
 
 namespace bb::device_kernels {
 void add_to(cuda::KernelTable& table);
@@ -31,21 +32,8 @@ class Standin : public testing::Test {
   void TearDown() override { standin::reset(); }
 };
 
-void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts)
-    EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
-}
-
-template <class Error>
-std::string message(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no error";
-  return "";
-}
+using test::expect_parts;
+using test::message;
 
 TEST_F(Standin, ProbeFindsTheCard) {
   const cuda::DeviceProbe probe = cuda::probe_device();

@@ -9,14 +9,18 @@ from .words import MEMORY_WORDS, SPACES, Unknown, c_type, is_float, size_of
 
 
 class Memory(Operands):
-    def op_ld(self, rest, args):
+    def transfer(self, rest, use, where, what):
+        """(C++ pointer, C++ type, its bytes, operands) of a load or store of one number or of a vector."""
         space, vector, suffix = self.memory_words(rest)
-        type_name, n = c_type(suffix), size_of(suffix)
-        where = self.place(args[1], space, "load", n * vector)
-        names = [x.strip() for x in args[0].strip("{} ").split(",")]
+        names = [x.strip() for x in what.strip("{} ").split(",")]
         if len(names) != vector:
             raise Unknown("vector")
-        if vector == 1:
+        n = size_of(suffix)
+        return self.place(where, space, use, n * vector), c_type(suffix), n, names
+
+    def op_ld(self, rest, args):
+        where, type_name, n, names = self.transfer(rest, "load", args[1], args[0])
+        if len(names) == 1:
             return self.set(names[0], f"get<{type_name}>({where})", type_name)
         reads = " ".join(self.set(x, f"get<{type_name}>(p + {i * n})", type_name) for i, x in enumerate(names))
         return f"{{ const unsigned char* p = {where}; {reads} }}"
@@ -25,12 +29,7 @@ class Memory(Operands):
         return self.op_ld(rest, args)
 
     def op_st(self, rest, args):
-        space, vector, suffix = self.memory_words(rest)
-        type_name, n = c_type(suffix), size_of(suffix)
-        where = self.place(args[0], space, "store", n * vector)
-        names = [x.strip() for x in args[1].strip("{} ").split(",")]
-        if len(names) != vector:
-            raise Unknown("vector")
+        where, type_name, n, names = self.transfer(rest, "store", args[0], args[1])
         writes = " ".join(f"put<{type_name}>(p + {i * n}, {self.value(x, type_name)});" for i, x in enumerate(names))
         return f"{{ unsigned char* p = {where}; {writes} }}"
 

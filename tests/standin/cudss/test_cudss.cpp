@@ -6,6 +6,7 @@
 #include "core/math/error.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/standin/cudss/fixture.hpp"
+#include "tests/standin/messages.hpp"
 
 namespace standin {
 CudssState& cudss() {
@@ -31,21 +32,8 @@ double distance(const ReducedSystem& system, const VecXd& b, const VecXd& x) {
   return (x - expected).norm() / expected.norm();
 }
 
-void expect_parts(const std::string& text, const std::vector<std::string>& parts) {
-  for (const std::string& part : parts)
-    EXPECT_NE(text.find(part), std::string::npos) << part << " in: " << text;
-}
-
-template <class Error>
-std::string message(const std::function<void()>& call) {
-  try {
-    call();
-  } catch (const Error& error) {
-    return error.what();
-  }
-  ADD_FAILURE() << "no error";
-  return "";
-}
+using test::expect_parts;
+using test::message;
 
 TEST_F(CudssStandin, SolvesAsCholmod) {
   ASSERT_EQ(missing_for("cudss"), "");
