@@ -3,12 +3,14 @@
 #include "core/linear/gather_map.hpp"
 
 #include <algorithm>
+#include <cstring>
 #include <limits>
 #include <string>
 
 #include "core/linear/parallel.hpp"
 #include "core/math/at.hpp"
 #include "core/math/error.hpp"
+#include "core/math/lanes.hpp"
 #include "core/math/lower_blocks.hpp"
 
 namespace bb {
@@ -17,8 +19,50 @@ namespace {
 int row_of(std::uint64_t key) { return static_cast<int>(key >> 32); }
 constexpr int columns_a_task = 256;  // columns a task: some thousand contributions
 
-// Where the entries of a block and of its transpose lie: no branch, the orientation is not predictable.
-constexpr std::uint8_t entry_order[2][9] = {{0, 1, 2, 3, 4, 5, 6, 7, 8}, {0, 3, 6, 1, 4, 7, 2, 5, 8}};
+using Four = VectorOf<double, 4>::type;
+using FourBits = LaneMask<double, 4>::Bits;
+
+/// Contributions between a prefetch and its use: what a line from memory takes to come.
+constexpr std::size_t prefetch_distance = 48;
+/// Local Hessians from this size on are prefetched: smaller ones are still in a cache, where it costs more than it saves.
+constexpr std::size_t prefetched_bytes = std::size_t{8} << 20;
+
+constexpr FourBits transposed_lanes[2] = {{0, 0, 0, 0}, {-1, -1, -1, -1}};
+
+Four load_four(const double* from) {
+  Four out;
+  std::memcpy(&out, from, sizeof(out));
+  return out;
+}
+
+/// The sum of a target, column-major: entries 0 to 3, 4 to 7, and 8.
+struct BlockSum {
+  Four low, high;
+  double last;
+
+  explicit BlockSum(const double* block)
+      : low(load_four(block)), high(load_four(block + 4)), last(block[8]) {}
+  void add(const double* block) {
+    low += load_four(block);
+    high += load_four(block + 4);
+    last += block[8];
+  }
+  /// The block or its transpose, without a branch: the orientation is not predictable.
+  void add(const double* block, bool transposed) {
+    const Four a = load_four(block), b = load_four(block + 4);
+    const Four transposed_low = __builtin_shufflevector(a, b, 0, 3, 6, 1);
+    const Four transposed_high = __builtin_shufflevector(a, b, 4, 7, 2, 5);
+    const FourBits lanes = transposed_lanes[transposed ? 1 : 0];
+    low += lanes ? transposed_low : a;
+    high += lanes ? transposed_high : b;
+    last += block[8];
+  }
+  void store(double* block) const {
+    std::memcpy(block, &low, sizeof(low));
+    std::memcpy(block + 4, &high, sizeof(high));
+    block[8] = last;
+  }
+};
 
 /// Turns counts shifted by one, [n + 1], into starts.
 void prefix_sum(std::vector<std::size_t>& start) {
@@ -43,8 +87,9 @@ void GatherMap::check(const Stencils& stencils, int n_vertices) const {
       throw ConfigError("Stencils", "vertex " + std::to_string(v), "-1 to n_vertices - 1");
     }
   }
-  if (stencils.size() * w * w > std::numeric_limits<std::uint32_t>::max()) {
-    throw ConfigError("Stencils", std::to_string(stencils.size()) + " elements", "2^32 blocks in a family");
+  if (stencils.size() * w * (w + 1) > std::numeric_limits<std::uint32_t>::max()) {
+    throw ConfigError("Stencils", std::to_string(stencils.size()) + " elements",
+                      "2^31 lower blocks in a family");
   }
 }
 
@@ -101,8 +146,9 @@ void GatherMap::write_targets(int n_vertices) {
   const std::size_t n_targets = at(column_start_.back());
   row_.resize(n_targets);
   block_.resize(n_targets);
+  mixed_.assign(n_targets, 0);
   source_start_.resize(n_targets + 1);
-  source_start_[n_targets] = key_.size();
+  source_start_[n_targets] = static_cast<std::uint32_t>(key_.size());
   source_.resize(key_.size());
   const std::size_t w = at(width_);
   parallel_items(n_vertices, columns_a_task, [&](int c) {
@@ -111,12 +157,13 @@ void GatherMap::write_targets(int n_vertices) {
     for (std::size_t k = begin; k < end; ++k) {
       if (first_of_row(begin, k)) {
         row_[target] = row_of(key_[k]);
-        source_start_[target++] = k;
+        source_start_[target++] = static_cast<std::uint32_t>(k);
       }
       const std::size_t number = key_[k] & 0xffffffffu, e = number / (w * w), ab = number % (w * w);
       const std::size_t a = ab % w, b = ab / w;
       const std::size_t block = n_lower_blocks(w) * e + lower_block(w, std::max(a, b), std::min(a, b));
-      source_[k] = 2 * (9 * block) + (a < b ? 1 : 0);
+      source_[k] = static_cast<std::uint32_t>(2 * block + (a < b ? 1 : 0));
+      if (a < b) mixed_[target - 1] = 1;
     }
   });
 }
@@ -149,16 +196,40 @@ void GatherMap::add_hessians(std::span<const double> hess, std::vector<double>& 
     throw ConfigError("local Hessians", std::to_string(hess.size()) + " numbers",
                       "size * 9 width (width + 1)/2");
   }
-  parallel_items(static_cast<int>(row_.size()), 1024, [&](int t) {
-    double* out = values.data() + 9 * at(block_[at(t)]);
-    double sum[9];
-    std::copy(out, out + 9, sum);
-    for (std::size_t k = source_start_[at(t)]; k < source_start_[at(t) + 1]; ++k) {
-      const double* local = hess.data() + source_[k] / 2;
-      const std::uint8_t(&entry)[9] = entry_order[source_[k] % 2];
-      for (std::size_t i = 0; i < 9; ++i) sum[i] += local[entry[i]];
+  if (hess.size_bytes() < prefetched_bytes) {
+    add_targets<false>(hess.data(), values.data());
+  } else {
+    add_targets<true>(hess.data(), values.data());
+  }
+}
+
+template <bool Ahead>
+void GatherMap::add_targets(const double* hess, double* values) const {
+  // Copies: behind a reference every store to `values` might change them.
+  const std::uint32_t *const sources = source_.data(), *const starts = source_start_.data();
+  const std::size_t last = source_.size() - 1;
+  const std::uint8_t* const mixed = mixed_.data();
+  const int* const blocks = block_.data();
+  parallel_blocks(row_.size(), [=](std::size_t, std::size_t first, std::size_t beyond) {
+    const auto source = [=](std::size_t k) {
+      if constexpr (Ahead) {
+        const double* later = hess + 9 * std::size_t{sources[std::min(k + prefetch_distance, last)] / 2};
+        __builtin_prefetch(later);
+        __builtin_prefetch(later + 8);
+      }
+      return hess + 9 * std::size_t{sources[k] / 2};
+    };
+    for (std::size_t t = first; t < beyond; ++t) {
+      double* const out = values + 9 * at(blocks[t]);
+      const std::size_t begin = starts[t], end = starts[t + 1];
+      BlockSum sum(out);
+      if (mixed[t]) {
+        for (std::size_t k = begin; k < end; ++k) sum.add(source(k), sources[k] % 2 != 0);
+      } else {
+        for (std::size_t k = begin; k < end; ++k) sum.add(source(k));
+      }
+      sum.store(out);
     }
-    std::copy(sum, sum + 9, out);
   });
 }
 

@@ -26,9 +26,9 @@ class GatherMap {
   std::span<const int> rows() const { return row_; }
 
   /// [targets + 1] where the contributions of a target begin in sources(). Targets: as rows().
-  std::span<const std::size_t> source_start() const { return source_start_; }
-  /// 2 * offset of a 3x3 block in the local Hessians (lower blocks, element by element), + 1 where it is transposed.
-  std::span<const std::size_t> sources() const { return source_; }
+  std::span<const std::uint32_t> source_start() const { return source_start_; }
+  /// 2 * number of a 3x3 block in the local Hessians (lower blocks, element by element), + 1 where it is transposed.
+  std::span<const std::uint32_t> sources() const { return source_; }
   /// [n_vertices + 1] where the contributions to a vertex begin in gradient_sources(): offsets in the local gradients.
   std::span<const std::size_t> gradient_start() const { return vertex_start_; }
   std::span<const std::size_t> gradient_sources() const { return vertex_source_; }
@@ -37,7 +37,9 @@ class GatherMap {
     return width_ == 0 ? 0 : vertices_.size() / static_cast<std::size_t>(width_);
   }
   int width() const { return width_; }
-  /// values [9 x blocks] += local Hessians, their lower blocks [size * 9 width (width + 1)/2].
+  /// values [9 x blocks] += local Hessians, their lower blocks [size * 9 width (width + 1)/2]. A target adds its
+  /// contributions to what it has in the order of the elements: kernels add in the same order, to the same bits.
+  /// Cost: one read of `hess`, one read and write of the targets, 4 bytes of index a contribution.
   void add_hessians(std::span<const double> hess, std::vector<double>& values) const;
   /// g [3 x n] += local gradients [size * 3 width].
   void add_gradients(std::span<const double> grad, Positions& g) const;
@@ -47,14 +49,18 @@ class GatherMap {
   void sort_contributions(int n_vertices);
   void write_targets(int n_vertices);
   void build_gradient_map(int n_vertices);
+  template <bool Ahead>
+  void add_targets(const double* hess, double* values) const;
 
   int width_ = 0;
-  std::vector<int> vertices_;              // copy of the stencils
-  std::vector<int> column_start_;          // [n + 1] targets of a column
-  std::vector<int> row_;                   // [n_targets] ascending within a column
-  std::vector<int> block_;                 // [n_targets] index in the pattern
-  std::vector<std::size_t> source_start_;  // [n_targets + 1]
-  std::vector<std::size_t> source_;  // [n_contributions] 2 * offset of the 3x3 block in hess, + 1: transposed
+  std::vector<int> vertices_;                // copy of the stencils
+  std::vector<int> column_start_;            // [n + 1] targets of a column
+  std::vector<int> row_;                     // [n_targets] ascending within a column
+  std::vector<int> block_;                   // [n_targets] index in the pattern
+  std::vector<std::uint8_t> mixed_;          // [n_targets] 1 where a contribution is transposed
+  std::vector<std::uint32_t> source_start_;  // [n_targets + 1]
+  std::vector<std::uint32_t>
+      source_;  // [n_contributions] 2 * number of the 3x3 block in hess, + 1: transposed
   std::vector<std::size_t> vertex_start_;   // [n + 1]
   std::vector<std::size_t> vertex_source_;  // offset in grad
   // scratch of build

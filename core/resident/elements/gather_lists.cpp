@@ -94,11 +94,11 @@ GatherLists::GatherLists(exec::Executor& executor, const Stencils& stencils, con
     for (int t = map.column_start()[at(c)]; t < map.column_start()[at(c) + 1]; ++t) {
       const int r = map.rows()[at(t)];
       target.push_back(narrow(at(find_block(rows.row_begin.data(), rows.column.data(), r, c))));
-      start.push_back(narrow(map.source_start()[at(t)]));
+      start.push_back(map.source_start()[at(t)]);
     }
   }
-  for (const std::size_t from : map.sources()) {
-    const std::size_t block = from / 18;
+  for (const std::uint32_t from : map.sources()) {
+    const std::size_t block = from / 2;
     source.push_back(narrow(block / size << 5 | block % size << 1 | from % 2));
   }
   start.push_back(narrow(source.size()));
