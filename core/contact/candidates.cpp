@@ -8,6 +8,7 @@
 
 #include "core/contact/chunks.hpp"
 #include "core/contact/float_rounding.hpp"
+#include "core/contact/obstacle_pair.hpp"
 
 namespace bb {
 
@@ -97,7 +98,9 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
                          [&] { fit(triangles_, s.triangles, rounding); },
                          [&] { fit(points_, s.points, rounding); });
   }
-  update_obstacles(x0, x1, out.obstacle);
+  for_each_obstacle_list(s, out, [&]<int N>(const Primitives<N>& of, std::vector<IndexPair>& pairs) {
+    update_obstacles<N>(of, x0, x1, pairs);
+  });
   const auto point = [&s](int i) { return s.points.vertices[static_cast<std::size_t>(i)][0]; };
   const auto edge = [&s](int i) { return s.edges.vertices[static_cast<std::size_t>(i)]; };
   const auto triangle = [&s](int i) { return s.triangles.vertices[static_cast<std::size_t>(i)]; };
@@ -124,26 +127,34 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
   }
 }
 
-void BroadPhase::update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out) {
+/// Every primitive is asked about every obstacle that it makes pairs with.
+template <int N>
+void BroadPhase::update_obstacles(const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
+                                  std::vector<IndexPair>& out) {
   out.clear();
   if (!plan_.obstacles.needed) return;
   const double of_states = state_rounding(x0, x1);
-  for (std::size_t i = 0; i < surface_.points.size(); ++i) {
-    if (!surface_.points.free[i]) continue;
-    const int v = surface_.points.vertices[i][0];
-    const Side side = surface_.points.side[i];
-    const Vec3d p0 = x0.col(v), p1 = x1.col(v);
-    for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-      // the gap falls by at most the way gone: a bound for any obstacle; 1e-12 covers rounding
-      const double start = surface_gap<double>(obstacles_[o], p0).d;
-      const double least = start - (p1 - p0).norm() - 1e-12 * (std::abs(start) + (p1 - p0).norm());
-      const double rounding =
-          of_states +
-          distance_rounding(precision_, obstacles_[o].point.cwiseAbs().maxCoeff() + obstacles_[o].radius);
-      if (!(least > side.d_hat + side.offset + rounding))
-        out.push_back({static_cast<int>(i), static_cast<int>(o)});
+  if (near_obstacles_.size() < n_chunks(primitives.size()))
+    near_obstacles_.resize(n_chunks(primitives.size()));
+  for_each_chunk(primitives.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
+    std::vector<IndexPair>& near = near_obstacles_[chunk];
+    near.clear();
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!primitives.free[i]) continue;
+      for (std::size_t o = 0; o < obstacles_.size(); ++o) {
+        const AnalyticSurface<double>& obstacle = obstacles_[o];
+        if (!pairs_with<N>(obstacle, surface_.planar, primitives.lone[i] != 0)) continue;
+        const double reach =
+            primitives.side[i].d_hat + primitives.side[i].offset + of_states +
+            distance_rounding(precision_, obstacle.point.cwiseAbs().maxCoeff() + obstacle.radius);
+        const auto& vertex = primitives.vertices[i];
+        if (may_reach<N>(obstacle, gather(x0, vertex), gather(x1, vertex), reach))
+          near.push_back({static_cast<int>(i), static_cast<int>(o)});
+      }
     }
-  }
+  });
+  for (std::size_t chunk = 0; chunk < n_chunks(primitives.size()); ++chunk)
+    out.insert(out.end(), near_obstacles_[chunk].begin(), near_obstacles_[chunk].end());
 }
 
 }  // namespace bb

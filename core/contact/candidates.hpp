@@ -11,10 +11,20 @@
 
 namespace bb {
 
-/// Pairs by index into the primitive lists of Surface, each list sorted; obstacle: (point, obstacle).
+/// Pairs by index into the primitive lists of Surface, each list sorted; obstacle: (point, obstacle), obstacle_edge and
+/// obstacle_triangle likewise.
 struct Candidates {
-  std::vector<IndexPair> point_point, point_edge, point_triangle, edge_edge, obstacle;
+  std::vector<IndexPair> point_point, point_edge, point_triangle, edge_edge, obstacle, obstacle_edge,
+      obstacle_triangle;
 };
+
+/// Calls f.template operator()<N>(primitives with N vertices, their pairs with obstacles), in a fixed order.
+template <class CandidateLists, class F>
+void for_each_obstacle_list(const Surface& surface, CandidateLists& c, const F& f) {
+  f.template operator()<1>(surface.points, c.obstacle);
+  f.template operator()<2>(surface.edges, c.obstacle_edge);
+  f.template operator()<3>(surface.triangles, c.obstacle_triangle);
+}
 
 /// Keeps one tree per kind of primitive that pairs of the plan need, and no other.
 class BroadPhase {
@@ -44,14 +54,17 @@ class BroadPhase {
   void fit_vertices(const Positions& x0, const Positions& x1, const Frame& frame);
   template <int N>
   void fit(Tree& tree, const Primitives<N>& primitives, double rounding) const;
-  void update_obstacles(const Positions& x0, const Positions& x1, std::vector<IndexPair>& out);
+  template <int N>
+  void update_obstacles(const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
+                        std::vector<IndexPair>& out);
 
   const Surface& surface_;
   std::vector<AnalyticSurface<double>> obstacles_;
   Tree points_, edges_, triangles_;
   PairFinder finder_;
-  std::vector<TreeBox> vertices_;  // of all vertices on the motion
-  std::vector<double> moved_;      // buffer of frame
+  std::vector<TreeBox> vertices_;                       // of all vertices on the motion
+  std::vector<double> moved_;                           // buffer of frame
+  std::vector<std::vector<IndexPair>> near_obstacles_;  // of each chunk
   const ContactPlan plan_;
   const Precision precision_;
 };

@@ -47,6 +47,21 @@ ContactKey pair_key(const std::array<int, N>& vertex) {
   return contact_key(padded);
 }
 
+/// Of an obstacle and vertices (one to three).
+template <std::size_t N>
+ContactKey obstacle_key(int obstacle, const std::array<int, N>& vertex) {
+  std::array<int, 3> ids{-1, -1, -1};
+  std::copy(vertex.begin(), vertex.end(), ids.begin());
+  std::sort(ids.begin(), ids.end());
+  ContactKey key{-1, ids[0], ids[1], ids[2]};
+  for (std::size_t k = 4; k-- > 0;) {
+    if (key[k] != -1) continue;
+    key[k] = -2 - obstacle;
+    break;
+  }
+  return key;
+}
+
 /// pair_row() with the law of the pair.
 template <class T>
 ContactRow make_row(const int* vertex, const T* weights, const Vec<T, 3>& r, T distance, Region region,

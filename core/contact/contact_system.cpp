@@ -87,7 +87,7 @@ StepBound ContactSystem::step_bound(const Positions& x0, const Positions& x1) co
 ContactSystem::Counts ContactSystem::candidate_counts() const {
   const Candidates& c = data_->candidates;
   return {c.point_triangle.size(), c.edge_edge.size(), c.point_point.size(), c.point_edge.size(),
-          c.obstacle.size()};
+          c.obstacle.size() + c.obstacle_edge.size() + c.obstacle_triangle.size()};
 }
 
 std::optional<Overlap> ContactSystem::check_initial(const Positions& x) {

@@ -32,6 +32,11 @@ struct ContactOptions {
 /// edge): that row is kept, because without it B would jump when the closest point crosses the edge, and the
 /// step bound, which keeps every pair, would act where no force does. The rest rule keeps it off until
 /// the triangle has lost a third of its height.
+///
+/// Obstacles: every free vertex and a half-space or the inside of a sphere or cylinder, which are convex: what corners
+/// keep to, all of a triangle keeps to. The outside of a sphere: every triangle, edges without a triangle, vertices
+/// without either. The outside of a cylinder: every edge and vertex, edges nearly parallel to the axis mollified.
+/// Planar: every boundary edge and the disk; with vertex pairs alone every vertex.
 class ContactSystem {
  public:
   /// plan: of the same scene; only what it has is built.
@@ -60,7 +65,7 @@ class ContactSystem {
   /// finite: alpha 0.
   StepBound step_bound(const Positions& x0, const Positions& x1) const;
 
-  struct Counts {
+  struct Counts {  // obstacle: with points, edges and triangles
     std::size_t point_triangle = 0, edge_edge = 0, point_point = 0, point_edge = 0, obstacle = 0;
   };
   Counts candidate_counts() const;

@@ -25,7 +25,7 @@ void MollifiedTable::resize(std::size_t n) {
   n_free.resize(n);
   pair.resize(n);
   parts.resize(n);
-  normal.resize(3 * n);
+  for (auto* column : {&normal, &axis, &axis_point}) column->resize(3 * n);
   for (auto* column : {&eps, &d, &d_hat, &offset, &multiplicity, &kappa, &kappa_before, &b, &db, &d2b})
     column->resize(n);
 }

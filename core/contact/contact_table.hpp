@@ -12,13 +12,21 @@
 
 namespace bb {
 
-enum class ContactKind : std::uint8_t { point_point, point_edge, point_triangle, edge_edge, obstacle };
+/// The last three: an analytic obstacle against a vertex, the inside of an edge, the inside of a triangle.
+enum class ContactKind : std::uint8_t {
+  point_point,
+  point_edge,
+  point_triangle,
+  edge_edge,
+  obstacle,
+  obstacle_edge,
+  obstacle_triangle
+};
+constexpr bool is_obstacle(ContactKind kind) { return kind >= ContactKind::obstacle; }
 
 /// Identity of a contact across iterations: sorted ids of all its vertices, given ones included, -1 padded in
 /// front; an obstacle o appears as -2 - o.
 using ContactKey = std::array<int, 4>;
-
-inline ContactKey obstacle_key(int obstacle, int vertex) { return {-1, -1, -2 - obstacle, vertex}; }
 
 /// Identity of one candidate pair over a whole run, whatever features realise it; compare only.
 using PairId = std::uint64_t;
@@ -27,14 +35,17 @@ using PairId = std::uint64_t;
 struct ContactTable {
   std::vector<ContactKind> kind;
   std::vector<ContactKey> key;
-  std::vector<int> stencil;  // [4 n] all vertices in role order (p t0 t1 t2, ea0 ea1 eb0 eb1), -1 padded
-  std::vector<double> stencil_weight;    // [4 n] w_i in the same order
-  std::vector<int> vertex;               // [4 n] free vertices only, compact, -1 padded
-  std::vector<double> weight;            // [4 n] their w_i, 0 padded
-  std::vector<int> n_free;               // [n] 1..4
-  std::vector<double> normal;            // [3 n] unit, grad_i d = w_i n
-  std::vector<double> d, d_hat, offset;  // [n] m; d = |r| - offset
-  std::vector<double> multiplicity;      // [n] number of pairs that realise the row
+  /// [4 n] all vertices in role order (p t0 t1 t2, ea0 ea1 eb0 eb1; of an obstacle's row its one to three), -1 padded
+  std::vector<int> stencil;
+  std::vector<double> stencil_weight;  // [4 n] w_i in the same order
+  std::vector<int> vertex;             // [4 n] free vertices only, compact, -1 padded
+  std::vector<double> weight;          // [4 n] their w_i, 0 padded
+  std::vector<int> n_free;             // [n] 1..4
+  std::vector<double> normal;          // [3 n] unit, grad_i d = w_i n
+  /// [n] m; d = |r| - offset. Rows of an obstacle with an edge or a triangle: r from its centre or axis, its radius in
+  /// the offset.
+  std::vector<double> d, d_hat, offset;
+  std::vector<double> multiplicity;  // [n] number of pairs that realise the row
   std::vector<std::size_t>
       pair_begin;  // [n + 1] those pairs are pair[pair_begin[r]] to pair[pair_begin[r + 1] - 1]
   std::vector<PairId> pair;
@@ -46,7 +57,7 @@ struct ContactTable {
   /// [n] m^2, m, 1. kappa times these are energy, force and curvature, kappa'(d) included where the policy has a
   /// potential.
   std::vector<double> b, db, d2b;
-  // obstacle rows only, else 0: grad^2 d = curvature (I - n n^T - flat flat^T)
+  // obstacle rows only, else 0; of vertices grad^2 d = curvature (I - n n^T - flat flat^T)
   std::vector<double> curvature;  // [n] 1/m
   std::vector<double> flat;       // [3 n] axis of a cylinder, else 0
 
@@ -54,14 +65,15 @@ struct ContactTable {
   void resize(std::size_t n);
 };
 
-/// Edge-edge rows close to parallel: B gains the mollifier e(x); e b(d), full
-/// gradient, PSD-projected Hessian.
+/// Edge-edge rows close to parallel, and those of an edge and a cylinder's axis: B gains the mollifier e(x); e b(d),
+/// full gradient, PSD-projected Hessian.
 struct MollifiedTable {
   std::vector<ContactKey> key;
-  std::vector<int> stencil;  // [4 n] ea0 ea1 eb0 eb1
-  std::vector<int> vertex;   // [4 n] = stencil, -1 where the vertex is given
-  std::vector<double> eps;   // [n] threshold on |ea x eb|^2, m^4
-  std::vector<PairId> pair;  // [n]
+  std::vector<int> stencil;              // [4 n] ea0 ea1 eb0 eb1; e0 e1 -1 -1 of an edge and an axis
+  std::vector<int> vertex;               // [4 n] = stencil, -1 where the vertex is given
+  std::vector<double> eps;               // [n] threshold on |ea x eb|^2, m^4; on |e x axis|^2, m^2
+  std::vector<double> axis, axis_point;  // [3 n] unit, and a point of it, m; 0 in rows of two edges
+  std::vector<PairId> pair;              // [n]
   std::vector<KappaParts> parts;
   std::vector<double> d, d_hat, offset, multiplicity, kappa, kappa_before, b, db, d2b;  // as above
   // what a policy reads of a row: compact free columns, as in ContactTable
@@ -70,6 +82,7 @@ struct MollifiedTable {
   std::vector<int> n_free;       // [n]
   std::vector<double> normal;    // [3 n]
 
+  bool of_axis(std::size_t r) const { return stencil[4 * r + 2] < 0; }
   std::size_t size() const { return d.size(); }
   void resize(std::size_t n);
 };

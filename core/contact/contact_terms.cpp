@@ -4,6 +4,7 @@
 
 #include "core/contact/contact_terms.hpp"
 #include "core/contact/mollified_terms.hpp"
+#include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_geometry.hpp"
 #include "core/contact/row_columns.hpp"
 #include "core/math/lower_blocks.hpp"
@@ -32,6 +33,19 @@ Hessian12<T> compact(const int* stencil, const int* vertex, const Hessian12<T>& 
 }
 
 template <class T>
+Vec<T, 3> axis_of(const MollifiedTable& rows, std::size_t r) {
+  return Vec3d::Map(&rows.axis[3 * r]).cast<T>();
+}
+
+/// Points across the axis of a row of an edge and an axis.
+template <class T>
+Mat<T, 3, 3> points_across_axis(const MollifiedTable& rows, std::size_t r, const Positions& x) {
+  const AnalyticSurface<T> line{ObstacleKind::cylinder, Vec3d::Map(&rows.axis_point[3 * r]).cast<T>(),
+                                axis_of<T>(rows, r), T(0), false};
+  return about_centre<2, T>(line, gather_in<T>(x, std::array{rows.stencil[4 * r], rows.stencil[4 * r + 1]}));
+}
+
+template <class T>
 Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const Positions& x) {
   return gather_in<T>(x, std::array{rows.stencil[4 * r], rows.stencil[4 * r + 1], rows.stencil[4 * r + 2],
                                     rows.stencil[4 * r + 3]});
@@ -40,10 +54,14 @@ Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const P
 /// Of m kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
 template <class T>
 MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r, const Positions& x) {
-  const T scale = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r);
-  return bb::mollified_derivatives<T>(mollified_points<T>(rows, r, x), entry<T>(rows.eps, r),
-                                      scale * entry<T>(rows.b, r), scale * entry<T>(rows.db, r),
-                                      scale * entry<T>(rows.d2b, r));
+  const T scale = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r), eps = entry<T>(rows.eps, r);
+  const T b = scale * entry<T>(rows.b, r), db = scale * entry<T>(rows.db, r),
+          d2b = scale * entry<T>(rows.d2b, r);
+  if (rows.of_axis(r)) {
+    return bb::mollified_derivatives<T>(points_across_axis<T>(rows, r, x), axis_of<T>(rows, r), eps, b, db,
+                                        d2b);
+  }
+  return bb::mollified_derivatives<T>(mollified_points<T>(rows, r, x), eps, b, db, d2b);
 }
 
 /// grad and hess on the compact free slots.
@@ -97,8 +115,8 @@ void add_given_motion(const ContactTable& rows, const Positions& motion, Positio
 void add_given_motion(const MollifiedTable& rows, const Positions& x, const Positions& motion,
                       Positions& force) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    Vec<double, 12> moved;
-    for (int k = 0; k < 4; ++k) {
+    Vec<double, 12> moved = Vec<double, 12>::Zero();
+    for (int k = 0; k < (rows.of_axis(r) ? 2 : 4); ++k) {
       moved.segment<3>(3 * k) = motion.col(rows.stencil[4 * r + static_cast<std::size_t>(k)]);
     }
     if (moved.isZero(0)) continue;
@@ -124,7 +142,9 @@ void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vec
   energy.resize(rows.size());
   with_value_scalar(precision, [&]<class T>() {
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const T e = edge_edge_mollifier_value<T>(mollified_points<T>(rows, r, x), entry<T>(rows.eps, r));
+      const T eps = entry<T>(rows.eps, r);
+      const T e = rows.of_axis(r) ? edge_axis_mollifier_value<T>(points_across_axis<T>(rows, r, x), eps)
+                                  : edge_edge_mollifier_value<T>(mollified_points<T>(rows, r, x), eps);
       energy[r] = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r) * e * entry<T>(rows.b, r);
     }
   });

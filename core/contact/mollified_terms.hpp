@@ -1,8 +1,8 @@
-// Gradient and Hessian of one mollified edge-edge row. Host-device, no allocation.
+// Gradient and Hessian of one mollified row. Host-device, no allocation.
 #pragma once
 
 #include "core/geometry/distance_derivatives.hpp"
-#include "core/geometry/edge_edge_mollifier.hpp"
+#include "core/geometry/edge_axis_mollifier.hpp"
 #include "core/math/psd.hpp"
 
 namespace bb {
@@ -26,6 +26,35 @@ BB_HD inline MollifiedDerivatives<T> mollified_derivatives(const Mat<T, 3, 4>& p
                               (d2b * e.value) * (d.gradient * d.gradient.transpose()) +
                               (db * e.value) * d.hessian;
   return {g, full};
+}
+
+/// The same of an edge and an axis, in e0 e1; what belongs to the other two points is 0. points: as those of
+/// edge_axis_mollifier.hpp; axis: unit. Everything but the axis is across it, and so are all derivatives.
+template <class T>
+BB_HD inline MollifiedDerivatives<T> mollified_derivatives(const Mat<T, 3, 3>& points, const Vec<T, 3>& axis,
+                                                           T eps, T b, T db, T d2b) {
+  const Vec<T, 3> edge = points.col(2) - points.col(1);
+  const detail::MollifierTerms<T> terms(edge.squaredNorm(), eps);
+  const auto d = distance_derivatives<T, 3>(points, closest_point_edge<T>(points));
+  const Mat<T, 3, 3> across = Mat<T, 3, 3>::Identity() - axis * axis.transpose();
+  MollifiedDerivatives<T> out{Vec<T, 12>::Zero(), Mat<T, 12, 12>::Zero()};
+  const T sign[2] = {T(-1), T(1)};
+  Vec<T, 3> ge[2], gd[2];
+  for (int i = 0; i < 2; ++i) {
+    ge[i] = (2 * sign[i] * terms.de) * edge;
+    gd[i] = d.gradient.template segment<3>(3 * i + 3);
+    out.gradient.template segment<3>(3 * i) = b * ge[i] + (db * terms.e) * gd[i];
+  }
+  for (int j = 0; j < 2; ++j) {
+    for (int i = 0; i < 2; ++i) {
+      const Mat<T, 3, 3> of_e = (4 * terms.d2e) * (edge * edge.transpose()) + (2 * terms.de) * across;
+      const Mat<T, 3, 3> of_d = across * d.hessian.template block<3, 3>(3 * i + 3, 3 * j + 3) * across;
+      out.hessian.template block<3, 3>(3 * i, 3 * j) =
+          (b * sign[i] * sign[j]) * of_e + db * (ge[i] * gd[j].transpose() + gd[i] * ge[j].transpose()) +
+          (d2b * terms.e) * (gd[i] * gd[j].transpose()) + (db * terms.e) * of_d;
+    }
+  }
+  return out;
 }
 
 /// Leading block of 3 n_free x 3 n_free projected, the rest is 0 and stays so.

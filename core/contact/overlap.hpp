@@ -17,7 +17,8 @@ struct Overlap {
   std::string text;
 };
 
-/// The first of the candidates with a gap <= 0 at x, without text. Distances only: a triangle that an edge
+/// The first of the candidates with a gap <= 0 at x, without text; then a triangle that the axis of a cylinder, or in the
+/// plane the centre of a disk, passes through far from its sides. Of meshes distances only: a triangle that an edge
 /// pierces without touching is the audit's to find.
 std::optional<Overlap> first_overlap(const Surface& surface,
                                      const std::vector<AnalyticSurface<double>>& obstacles,

@@ -3,7 +3,8 @@
 namespace bb {
 
 std::string pair_name(const Scene& scene, const ContactKey& key, ContactKind kind) {
-  constexpr const char* names[] = {"point_point", "point_edge", "point_triangle", "edge_edge", "obstacle"};
+  constexpr const char* names[] = {"point_point", "point_edge",    "point_triangle",   "edge_edge",
+                                   "obstacle",    "obstacle_edge", "obstacle_triangle"};
   std::string out = names[static_cast<int>(kind)];
   const char* separator = ": ";
   for (int id : key) {

@@ -114,6 +114,7 @@ BB_HD inline double d_hat_at_rest(const Side& law, const Mat<double, 3, pair_poi
 BB_HD constexpr PairId pair_id(int kind, PairId first, PairId second) {
   return (static_cast<PairId>(kind) << 60) | (first << 30) | second;
 }
-constexpr int obstacle_pairs = 4;  // kind of a point and an obstacle, after the four of PairKind
+/// Kind of a point and an obstacle, after the four of PairKind; then of an edge, of a triangle and an obstacle.
+constexpr int obstacle_pairs = 4;
 
 }  // namespace bb

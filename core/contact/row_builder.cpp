@@ -6,7 +6,9 @@
 #include <algorithm>
 
 #include "core/contact/chunks.hpp"
-#include "core/geometry/edge_edge_mollifier.hpp"
+#include "core/contact/float_rounding.hpp"
+#include "core/contact/obstacle_pair.hpp"
+#include "core/geometry/edge_axis_mollifier.hpp"
 
 namespace bb {
 namespace {
@@ -92,7 +94,7 @@ void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) co
   ContactRow row;
   row.kind = ContactKind::obstacle;
   row.pair = pair_id(obstacle_pairs, pair);
-  row.key = obstacle_key(pair.second, v);
+  row.key = obstacle_key(pair.second, std::array{v});
   row.stencil[0] = v;
   row.weight[0] = 1;
   row.normal = gap.normal.template cast<double>();
@@ -103,6 +105,57 @@ void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) co
   row.flat = gap.flat.template cast<double>();
   part.min_gap = std::min(part.min_gap, row.d);
   part.rows.push_back(row);
+}
+
+template <int N, class T>
+void RowBuilder::add_obstacle_pair(const Positions& x, const Primitives<N>& primitives, IndexPair pair,
+                                   Part& part) const {
+  const std::size_t i = static_cast<std::size_t>(pair.first);
+  const auto& vertex = primitives.vertices[i];
+  const Side law = primitives.side[i];
+  const AnalyticSurface<double>& exact = obstacles_[static_cast<std::size_t>(pair.second)];
+  const Mat<double, 3, N> at = gather(x, vertex);
+  const double largest = std::max(at.cwiseAbs().maxCoeff(), exact.point.cwiseAbs().maxCoeff());
+  const double reach = law.d_hat + law.offset + distance_rounding(precision_, largest + exact.radius);
+  if (far_from_centre<N>(exact, about_centre<N, double>(exact, at), reach)) return;
+
+  const auto obstacle = surface_in<T>(exact);
+  const Mat<T, 3, N + 1> points = about_centre<N, T>(obstacle, at.template cast<T>());
+  auto closest = closest_points<centre_pair<N>, T>(points);
+  const T gap = closest.d - obstacle.radius - static_cast<T>(law.offset);
+  if (gap >= static_cast<T>(law.d_hat)) return;
+  double eps = 0;
+  if constexpr (N == 2) {
+    if (mollified_ && is_line(exact, surface_.planar)) {
+      eps = edge_axis_mollifier_threshold<double>(gather(scene_.rest, vertex));
+      if (edge_axis_cross_squared<T>(points) < static_cast<T>(eps)) {
+        closest = on_whole_edge(closest);
+      } else {
+        eps = 0;
+      }
+    }
+  }
+  const PairRow found =
+      obstacle_row<N, T>(vertex.data(), closest, obstacle.radius, static_cast<T>(law.offset));
+  ContactRow row;
+  row.kind = found.kind;
+  row.pair = pair_id(obstacle_pairs_of<N>, pair);
+  std::copy_n(found.stencil, 4, row.stencil.begin());
+  std::copy_n(found.weight, 4, row.weight.begin());
+  row.key = obstacle_key(pair.second, std::array{row.stencil[0], row.stencil[1], row.stencil[2]});
+  row.normal = found.normal;
+  row.d = found.d;
+  row.d_hat = law.d_hat;
+  row.offset = found.kind == ContactKind::obstacle ? law.offset : law.offset + exact.radius;
+  row.curvature = 1 / closest.d;
+  if (exact.kind == ObstacleKind::cylinder) row.flat = obstacle.axis.template cast<double>();
+  if (!moves(row)) return;
+  part.min_gap = std::min(part.min_gap, row.d);
+  if (eps > 0) {
+    part.mollified.push_back({row, eps, pair.second});
+  } else {
+    part.rows.push_back(row);
+  }
 }
 
 double RowBuilder::build(const Positions& x, const Candidates& candidates, ContactTable& rows,
@@ -133,9 +186,18 @@ double RowBuilder::build(const Positions& x, const Candidates& candidates, Conta
         add_pairs<K, T>(x, pairs, begin, end, part);
       });
     });
-    in_parts(candidates.obstacle, [&](std::size_t begin, std::size_t end, Part& part) {
-      for (std::size_t i = begin; i < end; ++i) add_obstacle<T>(x, candidates.obstacle[i], part);
-    });
+    for_each_obstacle_list(surface_, candidates,
+                           [&]<int N>(const Primitives<N>& primitives, const std::vector<IndexPair>& pairs) {
+                             in_parts(pairs, [&](std::size_t begin, std::size_t end, Part& part) {
+                               for (std::size_t i = begin; i < end; ++i) {
+                                 if constexpr (N == 1) {
+                                   add_obstacle<T>(x, pairs[i], part);
+                                 } else {
+                                   add_obstacle_pair<N, T>(x, primitives, pairs[i], part);
+                                 }
+                               }
+                             });
+                           });
   });
 
   n_parts_ = n_parts;
@@ -150,11 +212,11 @@ void RowBuilder::near_pairs(Candidates& out) const {
   std::vector<IndexPair>* const lists[] = {&out.point_point, &out.point_edge, &out.point_triangle,
                                            &out.edge_edge};
   for (auto* list : lists) list->clear();
-  out.obstacle.clear();
+  for (auto* list : {&out.obstacle, &out.obstacle_edge, &out.obstacle_triangle}) list->clear();
   const auto add = [&](PairId id) {
     const std::size_t kind = static_cast<std::size_t>(id >> 60);
     constexpr PairId index = (PairId{1} << 30) - 1;
-    if (kind == obstacle_pairs) return;
+    if (kind >= obstacle_pairs) return;
     lists[kind]->push_back({static_cast<int>(id >> 30 & index), static_cast<int>(id & index)});
   };
   for (std::size_t k = 0; k < n_parts_; ++k) {
@@ -247,7 +309,13 @@ void RowBuilder::fill_mollified(std::size_t n_parts, MollifiedTable& out) {
     for (std::size_t k = 0; k < 4; ++k) {
       const int v = row.stencil[k];
       out.stencil[4 * at + k] = v;
-      out.vertex[4 * at + k] = surface_.vertex_free[static_cast<std::size_t>(v)] ? v : -1;
+      out.vertex[4 * at + k] = v >= 0 && surface_.vertex_free[static_cast<std::size_t>(v)] ? v : -1;
+    }
+    const int o = sorted_mollified_[at].obstacle;
+    for (std::size_t k = 0; k < 3; ++k) {
+      out.axis[3 * at + k] = row.flat[static_cast<int>(k)];
+      out.axis_point[3 * at + k] =
+          o < 0 ? 0 : obstacles_[static_cast<std::size_t>(o)].point[static_cast<int>(k)];
     }
     out.n_free[at] = compact_free(row, &out.free_vertex[4 * at], &out.weight[4 * at]);
     for (std::size_t k = 0; k < 3; ++k) out.normal[3 * at + k] = row.normal[static_cast<int>(k)];

@@ -35,8 +35,9 @@ class RowBuilder {
 
  private:
   struct MollifiedRow {
-    ContactRow row;  // all four vertices, weights of the clamped closest points
+    ContactRow row;  // all four vertices, weights of the clamped closest points; of an edge and an axis two
     double eps;
+    int obstacle = -1;
   };
   struct Part {
     std::vector<ContactRow> rows;
@@ -57,6 +58,10 @@ class RowBuilder {
   void add_pair(const Positions& x, IndexPair index, ContactPair<K> pair, Part& part) const;
   template <class T>
   void add_obstacle(const Positions& x, IndexPair pair, Part& part) const;
+  /// Of an edge (N = 2) or a triangle outside a sphere or cylinder.
+  template <int N, class T>
+  void add_obstacle_pair(const Positions& x, const Primitives<N>& primitives, IndexPair pair,
+                         Part& part) const;
   bool moves(const ContactRow& row) const;
   int compact_free(const ContactRow& row, int* vertex, double* weight) const;
   void sort_rows(std::size_t n_parts);

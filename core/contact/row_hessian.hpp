@@ -20,6 +20,7 @@ struct RowShape {
   T distance;      // of the closest points, m
   T stretch;       // m kappa b'', N/m
   T push;          // m kappa b', N
+  T bend = T(1);   // F = 1: 0 where moving across n and q_0 turns no normal, as along the axis of a cylinder
 };
 
 namespace detail {
@@ -105,7 +106,7 @@ BB_HD inline void row_hessian(const RowShape<T, F>& row, Projection projection,
   }
   if constexpr (F == 1) {
     const Vec<T, 3> t = row.n.cross(row.q[0]);
-    const T value = project_eigenvalue(row.push / row.distance * w_length * w_length, projection);
+    const T value = project_eigenvalue(row.bend * row.push / row.distance * w_length * w_length, projection);
     across += value * (t * t.transpose());
   }
   T* next = blocks;

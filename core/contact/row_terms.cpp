@@ -6,6 +6,7 @@
 #include "core/contact/chunks.hpp"
 #include "core/contact/contact_row.hpp"
 #include "core/contact/contact_terms.hpp"
+#include "core/contact/obstacle_shape.hpp"
 #include "core/contact/pair_lanes.hpp"
 #include "core/contact/row_columns.hpp"
 #include "core/contact/row_hessian.hpp"
@@ -17,8 +18,10 @@ namespace {
 
 /// Edges along which the closest points of a row slide.
 constexpr int n_sliding(ContactKind kind) {
-  if (kind == ContactKind::point_edge) return 1;
-  return kind == ContactKind::point_triangle || kind == ContactKind::edge_edge ? 2 : 0;
+  if (kind == ContactKind::point_edge || kind == ContactKind::obstacle_edge) return 1;
+  const bool two = kind == ContactKind::point_triangle || kind == ContactKind::edge_edge ||
+                   kind == ContactKind::obstacle_triangle;
+  return two ? 2 : 0;
 }
 
 template <class T>
@@ -58,7 +61,7 @@ void store_stretch(const Vec<T, 12>& grad_d, T stretch, double* hess) {
 /// of its parts are eigenspaces.
 template <class T>
 void store_fixed_points(const ContactTable& rows, std::size_t r, Projection projection, double* hess) {
-  const bool obstacle = rows.kind[r] == ContactKind::obstacle;
+  const bool obstacle = is_obstacle(rows.kind[r]);
   const T scale = scale_of<T>(rows, r);
   const T curvature =
       obstacle ? entry<T>(rows.curvature, r) : 1 / (entry<T>(rows.d, r) + entry<T>(rows.offset, r));
@@ -73,6 +76,31 @@ void store_fixed_points(const ContactTable& rows, std::size_t r, Projection proj
       Mat3d::Map(hess) = block.template cast<double>();
     }
   }
+}
+
+/// The local frame of an obstacle and an edge (N = 2) or a triangle: that of a point with it, across a cylinder's axis.
+template <int N, class T>
+RowShape<T, N - 1> obstacle_shape(const ContactTable& rows, std::size_t r, const Positions& x) {
+  const Vec<T, 3> axis = Vec3d::Map(&rows.flat[3 * r]).template cast<T>();
+  std::array<int, N> vertex;
+  std::copy_n(&rows.stencil[4 * r], N, vertex.begin());
+  const T distance = entry<T>(rows.d, r) + entry<T>(rows.offset, r);
+  RowShape<T, N - 1> out =
+      bb::obstacle_shape<N, T>(gather_in<T>(x, vertex), axis, normal_of<T>(rows, r), distance);
+  Vec<T, 4> g[N - 1];
+  for (int l = 0; l < N - 1; ++l) {
+    g[l] = out.g[l];
+    out.g[l].setZero();
+  }
+  for (int k = 0, slot = 0; k < N && slot < rows.n_free[r]; ++k) {
+    if (vertex[static_cast<std::size_t>(k)] != rows.vertex[4 * r + static_cast<std::size_t>(slot)]) continue;
+    for (int l = 0; l < N - 1; ++l) out.g[l][slot] = g[l][k];
+    ++slot;
+  }
+  out.w = Vec<double, 4>::Map(&rows.weight[4 * r]).template cast<T>();
+  out.stretch = scale_of<T>(rows, r) * entry<T>(rows.d2b, r);
+  out.push = scale_of<T>(rows, r) * entry<T>(rows.db, r);
+  return out;
 }
 
 /// The local frame of a row; the closest points are those that the row keeps.
@@ -110,6 +138,7 @@ RowShape<T, n_sliding(contact_kind<K>())> row_shape(const ContactTable& rows, st
 
 template <int F, class T>
 RowShape<T, F> row_shape(const ContactTable& rows, std::size_t r, const Positions& x) {
+  if (is_obstacle(rows.kind[r])) return obstacle_shape<F + 1, T>(rows, r, x);
   if constexpr (F == 1) {
     return row_shape<PairKind::point_edge, T>(rows, r, x, Region::p_e);
   } else if (rows.kind[r] == ContactKind::point_triangle) {
@@ -136,6 +165,7 @@ void set_lane(RowShape<FourOf<T>, F>& lanes, std::size_t lane, const RowShape<T,
   lanes.distance.v[lane] = row.distance;
   lanes.stretch.v[lane] = row.stretch;
   lanes.push.v[lane] = row.push;
+  lanes.bend.v[lane] = row.bend;
 }
 
 /// Rows of one number of sliding edges, four Hessians at a time; what is missing to four is made up by the

@@ -4,7 +4,7 @@
 
 #include "core/contact/chunks.hpp"
 #include "core/contact/contact_row.hpp"
-#include "core/contact/obstacle_motion.hpp"
+#include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_lanes.hpp"
 #include "core/geometry/accd.hpp"
 
@@ -16,7 +16,6 @@ constexpr float intervals[] = {-1, 0, 0x1p-12f, 0x1p-6f, 0x1p-3f, 1};
 /// Chunks of a batch: the first ones are short, since they know little; all are fixed, so that no counter
 /// depends on threads.
 constexpr std::size_t first_batch = 8, largest_batch = 1024;
-constexpr int obstacle_list = 4;
 
 double largest_coordinate(const Positions& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0; }
 
@@ -132,22 +131,46 @@ void StepBoundFinder::ask_batches(const std::vector<IndexPair>& pairs, const Mot
   }
 }
 
-template <class T>
-void StepBoundFinder::ask_obstacles(const std::vector<IndexPair>& pairs, const Motion& motion) {
-  parts_.assign(n_chunks(pairs.size()), Part{});
+/// The time of a pair of an obstacle; vertices have a formula, and are not counted as queries.
+template <int N, class T>
+FirstContact StepBoundFinder::ask_obstacle(const Primitives<N>& primitives, IndexPair pair, std::size_t index,
+                                           const Motion& motion, Part& part) const {
+  const std::size_t i = static_cast<std::size_t>(pair.first);
+  const auto& vertex = primitives.vertices[i];
+  const Side law = primitives.side[i];
+  const AnalyticSurface<double>& exact = obstacles_[static_cast<std::size_t>(pair.second)];
+  const auto obstacle = surface_in<T>(exact);
+  const T offset = static_cast<T>(law.offset), park = static_cast<T>(level_.park * law.d_hat);
+  FirstContact found{1, obstacle_pairs_of<N>, index};
+  if constexpr (N == 1) {
+    found.toi = obstacle_toi(obstacle, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
+                             offset, park);
+  } else {
+    const double reach = law.offset + 2 * std::max(level_.park * law.d_hat, motion.floor);
+    const double proven = obstacle_proven_time<N>(exact, gather(motion.x0, vertex), gather(motion.x1, vertex),
+                                                  reach, part.first.toi);
+    if (proven > part.first.toi) return found;
+    const AccdResult<T> r =
+        obstacle_accd<N, T>(obstacle, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
+                            offset, park, level_.max_probes, static_cast<T>(part.first.toi));
+    if (r.hit) found.toi = r.toi;
+    ++part.queries;
+    part.probes += r.probes;
+    part.capped += r.capped;
+  }
+  part.zero += found.toi == 0;
+  return found;
+}
+
+template <int N, class T>
+void StepBoundFinder::ask_obstacles(const Primitives<N>& primitives, const std::vector<IndexPair>& pairs,
+                                    const Motion& motion) {
+  parts_.assign(n_chunks(pairs.size()), Part{all_.first});
   for_each_chunk(pairs.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
     Part& part = parts_[chunk];
     for (std::size_t i = begin; i < end; ++i) {
-      const std::size_t point = static_cast<std::size_t>(pairs[i].first);
-      const int v = surface_.points.vertices[point][0];
-      const Side law = surface_.points.side[point];
-      const auto obstacle = surface_in<T>(obstacles_[static_cast<std::size_t>(pairs[i].second)]);
-      const T toi =
-          obstacle_toi(obstacle, motion.x0.col(v).template cast<T>(), motion.x1.col(v).template cast<T>(),
-                       static_cast<T>(law.offset), static_cast<T>(level_.park * law.d_hat));
-      const FirstContact found{toi, obstacle_list, i};
+      const FirstContact found = ask_obstacle<N, T>(primitives, pairs[i], i, motion, part);
       if (found.before(part.first)) part.first = found;
-      part.zero += toi == 0;
     }
   });
   for (const Part& part : parts_) take(part);
@@ -168,10 +191,13 @@ StepBound StepBoundFinder::result(const Candidates& candidates) const {
     out.kind = contact_kind<K>();
     out.key = pair_key(contact_pair<K>(surface_, pairs[all_.first.index]).vertex);
   });
-  if (all_.first.list == obstacle_list) {
-    const IndexPair pair = candidates.obstacle[all_.first.index];
-    out.key = obstacle_key(pair.second, surface_.points.vertices[static_cast<std::size_t>(pair.first)][0]);
-  }
+  for_each_obstacle_list(
+      surface_, candidates, [&]<int N>(const Primitives<N>& primitives, const std::vector<IndexPair>& pairs) {
+        if (obstacle_pairs_of<N> != all_.first.list) return;
+        const IndexPair pair = pairs[all_.first.index];
+        out.kind = static_cast<ContactKind>(obstacle_pairs_of<N>);
+        out.key = obstacle_key(pair.second, primitives.vertices[static_cast<std::size_t>(pair.first)]);
+      });
   return out;
 }
 
@@ -182,7 +208,12 @@ StepBound StepBoundFinder::find(const Candidates& candidates, const Positions& x
                        });
   const Motion motion{x0, x1, floor};
   all_ = {};
-  with_value_scalar(precision_, [&]<class T>() { ask_obstacles<T>(candidates.obstacle, motion); });
+  with_value_scalar(precision_, [&]<class T>() {
+    for_each_obstacle_list(surface_, candidates,
+                           [&]<int N>(const Primitives<N>& primitives, const std::vector<IndexPair>& pairs) {
+                             ask_obstacles<N, T>(primitives, pairs, motion);
+                           });
+  });
   if (!candidates.point_triangle.empty() || !candidates.point_edge.empty() || !candidates.point_point.empty())
     fit(points_, surface_.points, motion);
   if (!candidates.edge_edge.empty() || !candidates.point_edge.empty()) fit(edges_, surface_.edges, motion);

@@ -30,7 +30,7 @@ struct StopLevel {
 /// A contact that stops a motion: when, and its place in the order of the candidates.
 struct FirstContact {
   double toi = 1;
-  int list = 0;  // the kinds of PairKind in their order, then obstacles
+  int list = 0;  // the kinds of PairKind in their order, then obstacles with points, edges, triangles
   std::size_t index = 0;
 
   /// The earlier one stops the motion; on a tie the first in the order of the candidates.
@@ -85,8 +85,12 @@ class StepBoundFinder {
                  const std::array<std::uint32_t, 4>& index, std::size_t n, Part& part) const;
   template <PairKind K, class T>
   void ask(const ContactPair<K>& pair, std::uint32_t index, const Motion& motion, Part& part) const;
-  template <class T>
-  void ask_obstacles(const std::vector<IndexPair>& pairs, const Motion& motion);
+  template <int N, class T>
+  void ask_obstacles(const Primitives<N>& primitives, const std::vector<IndexPair>& pairs,
+                     const Motion& motion);
+  template <int N, class T>
+  FirstContact ask_obstacle(const Primitives<N>& primitives, IndexPair pair, std::size_t index,
+                            const Motion& motion, Part& part) const;
   void take(const Part& part);
   StepBound result(const Candidates& candidates) const;
 

@@ -65,7 +65,38 @@ Surface::Surface(const Scene& scene)
   }
   sort_unique(all_edges);
   for (const auto& e : all_edges) add<2>(edges, scene, vertex_free, e);
+  find_filled(scene);
+  find_lone();
   if (planar) connect(scene);
+}
+
+void Surface::find_filled(const Scene& scene) {
+  std::vector<std::array<int, 3>> all = scene.surface_triangles;
+  if (planar) {
+    const auto elastic = scene.membrane_triangles();
+    all.insert(all.end(), elastic.begin(), elastic.end());
+    sort_unique(all);
+  }
+  for (const auto& t : all) {
+    const bool any_free = std::any_of(
+        t.begin(), t.end(), [this](int v) { return vertex_free[static_cast<std::size_t>(v)] != 0; });
+    if (any_free) filled.push_back(t);
+  }
+}
+
+void Surface::find_lone() {
+  std::vector<std::uint8_t> in_edge(vertex_free.size(), 0);
+  std::vector<std::array<int, 2>> sides;
+  add_sides(sides, triangles.vertices);
+  sort_unique(sides);
+  for (const auto& e : edges.vertices) {
+    for (const int v : e) in_edge[static_cast<std::size_t>(v)] = 1;
+    edges.lone.push_back(std::binary_search(sides.begin(), sides.end(), e) ? 0 : 1);
+  }
+  for (const auto& p : points.vertices) {
+    points.lone.push_back(in_edge[static_cast<std::size_t>(p[0])] != 0 ? 0 : 1);
+  }
+  triangles.lone.assign(triangles.size(), 1);
 }
 
 void Surface::connect(const Scene& scene) {

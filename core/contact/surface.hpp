@@ -27,6 +27,7 @@ struct Primitives {
   std::vector<std::array<int, N>> vertices;  // global ids; edges ascending
   std::vector<Side> side;
   std::vector<std::uint8_t> free;  // 1 when at least one vertex is free
+  std::vector<std::uint8_t> lone;  // 1 when it is no vertex or side of a larger primitive of the surface
   std::size_t size() const { return vertices.size(); }
 };
 
@@ -37,6 +38,8 @@ struct Surface {
   Primitives<1> points;
   Primitives<2> edges;
   Primitives<3> triangles;
+  std::vector<std::array<int, 3>>
+      filled;  // triangles with a free vertex, planar scenes' too: what nothing may pierce
   bool planar;
   PlanarPairs planar_pairs;
 
@@ -59,6 +62,8 @@ struct Surface {
 
  private:
   void connect(const Scene& scene);
+  void find_filled(const Scene& scene);
+  void find_lone();
 
   std::vector<std::array<int, 2>> connected_;  // sorted mesh edges (vertex_vertex)
   std::vector<std::array<int, 3>> opposite_;   // sorted (e0, e1, third vertex) (point_edge)

@@ -33,7 +33,8 @@ struct CentredMotion {
 };
 
 template <class T, int N>
-BB_HD inline CentredMotion<T, N> centre_motion(const Mat<T, 3, N>& x0, const Mat<T, 3, N>& x1, T offset) {
+BB_HD inline CentredMotion<T, N> centre_motion(const Mat<T, 3, N>& x0, const Mat<T, 3, N>& x1, T offset,
+                                               T computed_from) {
   CentredMotion<T, N> m;
   m.x = x0.colwise() - Vec<T, 3>(x0.rowwise().mean());
   m.dx = x1 - x0;
@@ -42,9 +43,11 @@ BB_HD inline CentredMotion<T, N> centre_motion(const Mat<T, 3, N>& x0, const Mat
   const T at0 = x0.cwiseAbs().maxCoeff(), at1 = x1.cwiseAbs().maxCoeff();
   m.largest = at0 > at1 ? at0 : at1;
   m.largest = m.largest > offset ? m.largest : offset;
+  m.largest = m.largest > computed_from ? m.largest : computed_from;
   const T local0 = m.x.cwiseAbs().maxCoeff(), local1 = (m.x + m.dx).cwiseAbs().maxCoeff();
   m.local = local0 > local1 ? local0 : local1;
   m.local = m.local > offset ? m.local : offset;
+  m.local = m.local > computed_from ? m.local : computed_from;
   return m;
 }
 
@@ -136,6 +139,8 @@ BB_HD inline T proven_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3
 /// @param max_probes  bound on the work of one query; reached only by pairs that slide just above the stop
 /// level
 /// @param enough  the pair is given up, without a hit, at the first proven time above it: toi is then that time
+/// @param computed_from  largest |coordinate| of what x0 and x1 were computed from with a few roundings, m; 0: they are
+/// given
 /// @return toi > 0 unless the pair starts below the ulp floor; at toi the gap is at least the stop level
 /// Errors: none; a motion that is not finite (or whose squares are not) gives hit and toi 0.
 /// Host-device.   Cost: 1 to 5 probes are usual; no allocation.
@@ -143,10 +148,11 @@ BB_HD inline T proven_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3
 /// directional bound as in Ando's contact solver (2024, ppf-contact-solver).
 template <PairKind K, class T>
 BB_HD inline AccdResult<T> accd(const Mat<T, 3, pair_points(K)>& x0, const Mat<T, 3, pair_points(K)>& x1,
-                                T offset, T park, int max_probes = 4096, T enough = T(1)) {
+                                T offset, T park, int max_probes = 4096, T enough = T(1),
+                                T computed_from = T(0)) {
   constexpr int N = pair_points(K);
   constexpr T eps = std::numeric_limits<T>::epsilon();
-  const detail::CentredMotion<T, N> motion = detail::centre_motion<T, N>(x0, x1, offset);
+  const detail::CentredMotion<T, N> motion = detail::centre_motion<T, N>(x0, x1, offset, computed_from);
   // Centring, the motion and the distance each round by about an ulp of the local size in every coordinate.
   const T rounding = 4 * eps * motion.local;
   const T ulp_floor = 16 * eps * motion.largest;

@@ -92,6 +92,14 @@ void plan_pairs(const Scene& scene, const PrimitiveCount& points, const Flags& i
   plan.edge_edge = edges.n > 1 && edges.n_vertices > 3 && edges.free;
 }
 
+// In a planar scene a cylinder that stands on the plane is a disk.
+bool has_axis_outside(const Scene& scene) {
+  return std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [&](const Obstacle& o) {
+    const bool disk = scene.planar && o.axis[2] * o.axis[2] > 0.25;
+    return o.kind == ObstacleKind::cylinder && !o.inside && !disk;
+  });
+}
+
 }  // namespace
 
 PlanItem plan_item(bool needed, std::string yes, std::string no) {
@@ -108,8 +116,11 @@ ContactPlan plan_contact(const Scene& scene, Mollifier mollifier) {
   const bool pairs = plan.point_point || plan.point_edge || plan.point_triangle || plan.edge_edge;
   plan.broad_phase = plan_item(pairs, "pairs of surfaces", "no pair of surfaces");
   const bool mollify = mollifier != Mollifier::none;
-  plan.mollifier = plan_item(plan.edge_edge && mollify, "edge pairs may be parallel",
-                             mollify ? "no edge-edge pairs" : "contact.mollifier is none");
+  const bool axes = has_axis_outside(scene) && count_edges(scene, is_free).free;
+  plan.mollifier =
+      plan_item((plan.edge_edge || axes) && mollify,
+                plan.edge_edge ? "edge pairs may be parallel" : "edges may be parallel to a cylinder",
+                mollify ? "no edge-edge pairs" : "contact.mollifier is none");
   plan.self_contact = plan_item(pairs && (bodies.pairs_in_one || bodies.deformable > 1),
                                 fmt::format("{} deformable bodies", bodies.deformable),
                                 "one deformable body without two elements that share no vertex");

@@ -15,7 +15,7 @@ struct PlanItem {
 /// needed with `yes`, or not with `no`.
 PlanItem plan_item(bool needed, std::string yes, std::string no);
 
-/// What keeps the energy of nearly parallel edge-edge pairs smooth: the mollifier of Li et al. 2020 (IPC), or
+/// What keeps the energy of nearly parallel edges, and of edges along a cylinder, smooth: the mollifier of Li et al. 2020 (IPC), or
 /// nothing.
 enum class Mollifier { ipc, none };
 
@@ -27,7 +27,7 @@ struct ContactPlan {
   bool point_point = false, point_edge = false, point_triangle = false, edge_edge = false;
 
   PlanItem broad_phase;  // some kind of pair
-  PlanItem mollifier;    // of edge-edge pairs
+  PlanItem mollifier;    // of pairs of two edges, and of an edge and a cylinder
 
   bool any() const { return broad_phase.needed || obstacles.needed; }
 };

@@ -27,6 +27,8 @@ ContactCounts count_contacts(const ContactState& state) {
         ++counts.edge_edge;
         break;
       case ContactKind::obstacle:
+      case ContactKind::obstacle_edge:
+      case ContactKind::obstacle_triangle:
         ++counts.obstacle;
         break;
     }

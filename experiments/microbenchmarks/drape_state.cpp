@@ -39,7 +39,7 @@ bool all_touch(const Scene& scene, const ContactTable& rows) {
   std::set<int> lower;  // the lower layer of each touching pair, -1 for the sphere
   const auto body = [&](int vertex) { return scene.body[static_cast<std::size_t>(vertex)]; };
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    if (rows.kind[r] == ContactKind::obstacle) {
+    if (is_obstacle(rows.kind[r])) {
       lower.insert(-1);
       continue;
     }

@@ -76,6 +76,31 @@ inline std::pair<std::vector<Vec3d>, Triangles> soup(int n_triangles, double siz
   return {vertices, triangles};
 }
 
+/// Appends 12 loose triangles that nearly touch the ball (axis 0) or the bar round an axis at random places, 0.25 to 0.9
+/// d_hat away: with a corner, a side or the middle; on a bar every third with a side along the axis.
+inline void add_tangent_triangles(Scene& scene, const std::string& name, const Vec3d& centre, double radius,
+                                  const Vec3d& axis, double d_hat, unsigned seed, double offset = 0) {
+  std::mt19937_64 rng(seed);
+  std::uniform_real_distribution<double> unit(-1, 1);
+  std::vector<Vec3d> vertices;
+  Triangles triangles;
+  for (int t = 0; t < 12; ++t) {
+    Vec3d n(unit(rng), unit(rng), unit(rng));
+    n = (n - axis.dot(n) * axis).normalized();
+    const Vec3d u = (axis.isZero() ? n.unitOrthogonal() : axis), v = n.cross(u);
+    const Vec3d foot = centre + n * (radius + offset + d_hat * (0.575 + 0.325 * unit(rng)));
+    const double turn = t % 3 == 0 ? 0.02 * unit(rng) : 3 * unit(rng), c = std::cos(turn), s = std::sin(turn);
+    const double shift = t % 2 == 0 ? 0 : 0.3 * unit(rng);
+    for (const Eigen::Vector2d& p :
+         {Eigen::Vector2d(-0.2, -0.1), Eigen::Vector2d(0.2, -0.1), Eigen::Vector2d(0, 0.2)}) {
+      const double a = c * p[0] - s * p[1] + shift, b = s * p[0] + c * p[1];
+      vertices.push_back(foot + a * u + b * v + 0.01 * (1 + unit(rng)) * n);
+    }
+    triangles.push_back({3 * t, 3 * t + 1, 3 * t + 2});
+  }
+  add_body(scene, name, vertices, triangles, d_hat, false, offset);
+}
+
 inline Positions random_motion(const Positions& x, double size, unsigned seed) {
   std::mt19937_64 rng(seed);
   std::uniform_real_distribution<double> unit(-size, size);

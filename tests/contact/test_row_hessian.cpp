@@ -50,6 +50,43 @@ LongMatrix whole_hessian(const ContactTable& t, std::size_t r, const Positions& 
   return out;
 }
 
+/// That of a row of an obstacle and N vertices: the pair of a point, the foot less d n, with the vertices across the axis;
+/// what the derivatives have along the axis is cut off.
+template <int N>
+LongMatrix obstacle_hessian(const ContactTable& t, std::size_t r, const Positions& x) {
+  const Vec3d axis = Vec3d::Map(&t.flat[3 * r]), n = Vec3d::Map(&t.normal[3 * r]);
+  const Mat3d across = Mat3d::Identity() - axis * axis.transpose();
+  Mat<double, 3, N + 1> points;
+  Closest<double, N + 1> closest;
+  closest.weights[0] = 1;
+  closest.d = t.d[r] + t.offset[r];
+  closest.r = -closest.d * n;
+  closest.region = N == 2 ? Region::p_e : Region::p_t;
+  points.col(0) = closest.r;
+  for (int k = 0; k < N; ++k) {
+    points.col(k + 1) = across * x.col(t.stencil[4 * r + at(k)]);
+    closest.weights[k + 1] = -t.stencil_weight[4 * r + at(k)];
+    points.col(0) -= closest.weights[k + 1] * points.col(k + 1);
+  }
+  const auto d = distance_derivatives<double, N + 1>(points, closest);
+  const Long scale = Long(t.multiplicity[r]) * t.kappa[r];
+  LongMatrix out = LongMatrix::Zero(12, 12);
+  for (int j = 0, sj = 0; j < N; ++j) {
+    if (sj == t.n_free[r] || t.stencil[4 * r + at(j)] != t.vertex[4 * r + at(sj)]) continue;
+    for (int i = 0, si = 0; i < N; ++i) {
+      if (si == t.n_free[r] || t.stencil[4 * r + at(i)] != t.vertex[4 * r + at(si)]) continue;
+      const Vec3d gi = d.gradient.template segment<3>(3 * i + 3),
+                  gj = d.gradient.template segment<3>(3 * j + 3);
+      const Mat3d curved = across * d.hessian.template block<3, 3>(3 * i + 3, 3 * j + 3) * across;
+      const Mat3d block = t.d2b[r] * gi * gj.transpose() + t.db[r] * curved;
+      out.block(3 * si, 3 * sj, 3, 3) = scale * block.cast<Long>();
+      ++si;
+    }
+    ++sj;
+  }
+  return out;
+}
+
 LongMatrix whole_hessian(const ContactTable& t, std::size_t r, const Positions& x) {
   switch (t.kind[r]) {
     case ContactKind::point_point:
@@ -60,6 +97,10 @@ LongMatrix whole_hessian(const ContactTable& t, std::size_t r, const Positions& 
       return whole_hessian<PairKind::point_triangle>(t, r, x, Region::p_t);
     case ContactKind::edge_edge:
       return whole_hessian<PairKind::edge_edge>(t, r, x, Region::ea_eb);
+    case ContactKind::obstacle_edge:
+      return obstacle_hessian<2>(t, r, x);
+    case ContactKind::obstacle_triangle:
+      return obstacle_hessian<3>(t, r, x);
     case ContactKind::obstacle:
       break;
   }

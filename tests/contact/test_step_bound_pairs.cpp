@@ -3,7 +3,7 @@
 
 #include "core/contact/candidates.hpp"
 #include "core/contact/contact_row.hpp"
-#include "core/contact/obstacle_motion.hpp"
+#include "core/contact/obstacle_pair.hpp"
 #include "core/geometry/accd.hpp"
 #include "tests/contact/bound_of.hpp"
 
@@ -36,13 +36,25 @@ StepBound every_candidate(const Scene& scene, const Positions& x1) {
       take(r.hit ? r.toi : 1, contact_kind<K>(), pair_key(pair.vertex));
     }
   });
-  for (const IndexPair index : candidates.obstacle) {
-    const int v = surface.points.vertices[at(index.first)][0];
-    const Side law = surface.points.side[at(index.first)];
-    take(obstacle_toi(obstacles[at(index.second)], scene.x0.col(v), x1.col(v), law.offset,
-                      options.ccd_park * law.d_hat),
-         ContactKind::obstacle, obstacle_key(index.second, v));
-  }
+  for_each_obstacle_list(
+      surface, candidates, [&]<int N>(const Primitives<N>& primitives, const std::vector<IndexPair>& pairs) {
+        for (const IndexPair index : pairs) {
+          const auto& vertex = primitives.vertices[at(index.first)];
+          const Side law = primitives.side[at(index.first)];
+          const AnalyticSurface<double>& obstacle = obstacles[at(index.second)];
+          const Mat<double, 3, N> from = gather(scene.x0, vertex), to = gather(x1, vertex);
+          const double park = options.ccd_park * law.d_hat;
+          const auto kind = static_cast<ContactKind>(static_cast<int>(ContactKind::obstacle) + N - 1);
+          if constexpr (N == 1) {
+            take(obstacle_toi(obstacle, from, to, law.offset, park), kind,
+                 obstacle_key(index.second, vertex));
+          } else {
+            const auto r = obstacle_accd<N, double>(obstacle, from, to, law.offset, park, 4096, 1);
+            ++out.queries;
+            take(r.hit ? r.toi : 1, kind, obstacle_key(index.second, vertex));
+          }
+        }
+      });
   return out;
 }
 
@@ -66,8 +78,14 @@ TEST(StepBound, IsThatOfEveryCandidateOnRandomMotions) {
     const auto [v2, t2] = soup(60, 0.2, seed + 100);
     add_body(scene, "a", v1, t1, 0.01, false, seed % 2 ? 0.001 : 0);
     add_body(scene, "b", v2, t2, 0.03, seed % 3 == 0);
-    scene.obstacles.push_back({});
+    scene.obstacles.resize(3);
     scene.obstacles[0].point = Vec3d(0, 0, -1.3);
+    scene.obstacles[1].kind = ObstacleKind::sphere;
+    scene.obstacles[1].point = Vec3d(0, 0, 2.02);
+    scene.obstacles[1].radius = 0.9;
+    scene.obstacles[2].kind = ObstacleKind::cylinder;
+    scene.obstacles[2].point = Vec3d(2.02, 0, 0);
+    scene.obstacles[2].radius = 0.9;
     for (const double size : {0.3, 1e-2, 1e-4}) {
       expect_that_of_every_candidate(scene, random_motion(scene.x0, size, seed), &bounded);
     }

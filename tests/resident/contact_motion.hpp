@@ -47,8 +47,9 @@ inline std::vector<IndexPair> pairs_of(const exec::Buffer<exec::Key>& keys) {
 }
 
 inline Candidates lists_of(const resident::ResidentCandidates& c) {
-  return {pairs_of(c.point_point), pairs_of(c.point_edge), pairs_of(c.point_triangle), pairs_of(c.edge_edge),
-          pairs_of(c.obstacle)};
+  return {pairs_of(c.point_point),      pairs_of(c.point_edge), pairs_of(c.point_triangle),
+          pairs_of(c.edge_edge),        pairs_of(c.obstacle),   pairs_of(c.obstacle_edge),
+          pairs_of(c.obstacle_triangle)};
 }
 
 inline std::vector<AnalyticSurface<double>> obstacles_of(const Scene& scene) {
@@ -95,7 +96,8 @@ inline Scene soup_scene(unsigned seed, int n_triangles) {
   add_body(scene, "b", v2, t2, 0.03, seed % 3 == 0);
   scene.obstacles = {obstacle(ObstacleKind::plane, Vec3d(0, 0, -1.2), 0),
                      obstacle(ObstacleKind::sphere, Vec3d(2, 0, 0), 0.8),
-                     obstacle(ObstacleKind::cylinder, Vec3d(0, 0, 0), 2.5, true)};
+                     obstacle(ObstacleKind::cylinder, Vec3d(0, 0, 0), 2.5, true),
+                     obstacle(ObstacleKind::cylinder, Vec3d(0, -2.1, 0), 0.8)};
   return scene;
 }
 

@@ -21,7 +21,7 @@ constexpr exec::Order all_orders[] = {exec::Order::threads, exec::Order::forward
                                       exec::Order::shuffled, exec::Order::shuffled};
 
 /// Two triangle soups, one of them offset, and two sheets that lie over one another: edges close to parallel. Some
-/// vertices are given; obstacles of all kinds pass through.
+/// vertices are given; obstacles of all kinds pass through, and loose triangles lie on a ball and on a bar.
 inline Scene full_scene(unsigned seed) {
   Scene scene;
   const auto [v1, t1] = soup(40, 0.25, seed);
@@ -32,6 +32,10 @@ inline Scene full_scene(unsigned seed) {
     const auto [vertices, triangles] = grid(3, 3, 0.3, Vec3d(0.01 * z, 0, z));
     add_body(scene, "sheet", vertices, triangles, 0.08);
   }
+  const Vec3d axis = Vec3d(1, 2, 2) / 3.0, ball = 6 * axis, bar = 12 * axis;
+  const Vec3d along = Vec3d(2, 1, -2) / 3.0;
+  add_tangent_triangles(scene, "on ball", ball, 0.5, Vec3d::Zero(), 0.08, seed);
+  add_tangent_triangles(scene, "on bar", bar, 0.4, along, 0.08, seed);
   std::mt19937_64 rng(seed);
   for (int v = 0; v < scene.n_vertices(); ++v) {
     scene.mass[at(v)] = 0.5 + 0.1 * static_cast<double>(rng() % 10);
@@ -42,11 +46,14 @@ inline Scene full_scene(unsigned seed) {
     scene.obstacles.emplace_back();
     Obstacle& o = scene.obstacles.back();
     o.kind = kind, o.point = point, o.radius = radius, o.inside = inside;
-    o.axis = Vec3d(1, 2, 2) / 3.0;
+    o.axis = axis;
   };
   obstacle(ObstacleKind::plane, Vec3d(-1, -1, -1) * 0.8, 0, false);
   obstacle(ObstacleKind::sphere, Vec3d(0.4, 0.3, 2.4), 0.34, false);
   obstacle(ObstacleKind::cylinder, Vec3d(0, 0, 0), 2.6, true);
+  obstacle(ObstacleKind::sphere, ball, 0.5, false);
+  obstacle(ObstacleKind::cylinder, bar, 0.4, false);
+  scene.obstacles.back().axis = along;
   return scene;
 }
 
@@ -106,6 +113,8 @@ struct OnExecutor {
     candidates.point_triangle.upload(keys(c.point_triangle));
     candidates.edge_edge.upload(keys(c.edge_edge));
     candidates.obstacle.upload(keys(c.obstacle));
+    candidates.obstacle_edge.upload(keys(c.obstacle_edge));
+    candidates.obstacle_triangle.upload(keys(c.obstacle_triangle));
     upload(x, state);
     finder.find(x, candidates, out);
   }

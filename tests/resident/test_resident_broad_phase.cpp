@@ -16,8 +16,11 @@ std::size_t expect_same(const Candidates& found, const Candidates& expected) {
   EXPECT_EQ(found.point_triangle, expected.point_triangle);
   EXPECT_EQ(found.edge_edge, expected.edge_edge);
   EXPECT_EQ(found.obstacle, expected.obstacle);
+  EXPECT_EQ(found.obstacle_edge, expected.obstacle_edge);
+  EXPECT_EQ(found.obstacle_triangle, expected.obstacle_triangle);
   return expected.point_point.size() + expected.point_edge.size() + expected.point_triangle.size() +
-         expected.edge_edge.size() + expected.obstacle.size();
+         expected.edge_edge.size() + expected.obstacle.size() + expected.obstacle_edge.size() +
+         expected.obstacle_triangle.size();
 }
 
 Candidates found(const Scene& scene, const Positions& x0, const Positions& x1) {
@@ -28,7 +31,7 @@ Candidates found(const Scene& scene, const Positions& x0, const Positions& x1) {
 }
 
 TEST(ResidentBroadPhase, FindsWhatTheCpuPathFindsInSoups) {
-  std::size_t n_pairs[3] = {};
+  std::size_t n_pairs[5] = {};
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const Scene scene = soup_scene(seed, 8 + static_cast<int>(seed));
     for (const double size : {0.5, 1e-2, 1e-5}) {
@@ -38,6 +41,8 @@ TEST(ResidentBroadPhase, FindsWhatTheCpuPathFindsInSoups) {
       n_pairs[0] += expected.point_triangle.size();
       n_pairs[1] += expected.edge_edge.size();
       n_pairs[2] += expected.obstacle.size();
+      n_pairs[3] += expected.obstacle_edge.size();
+      n_pairs[4] += expected.obstacle_triangle.size();
     }
   }
   for (const std::size_t n : n_pairs) EXPECT_GT(n, 5000U);
@@ -274,8 +279,9 @@ TEST(ResidentBroadPhase, NeedsTheMemoryThatACountForetells) {
   const auto length = [](const auto& list) { return static_cast<Index>(list.size()); };
   exec::CountingExecutor counting;
   ResidentMotion counted(counting, scene, scene.x0, x1);
-  counted.broad_phase.expect(
-      {0, 0, length(lists.point_triangle), length(lists.edge_edge), length(lists.obstacle)});
+  counted.broad_phase.expect({0, 0, length(lists.point_triangle), length(lists.edge_edge),
+                              length(lists.obstacle), length(lists.obstacle_edge),
+                              length(lists.obstacle_triangle)});
   counted.update();
   EXPECT_EQ(counting.memory().by_name(), executor.memory().by_name());
   EXPECT_GT(counting.memory().by_name().at("tree of edges"), 42U * motion.surface.edges.size());

@@ -50,7 +50,7 @@ std::map<PairId, Expected> by_pair(const Rows& rows) {
   return out;
 }
 
-void compare(const Scene& scene, ResidentRows& rows, const Rows& reference, std::array<int, 6>& n_kinds) {
+void compare(const Scene& scene, ResidentRows& rows, const Rows& reference, std::array<int, 8>& n_kinds) {
   const std::map<PairId, Expected> pairs = by_pair(reference);
   const RowView v = rows.view();
   ASSERT_EQ(static_cast<std::size_t>(v.n), pairs.size());
@@ -79,7 +79,7 @@ void compare(const Scene& scene, ResidentRows& rows, const Rows& reference, std:
 }
 
 TEST(ResidentRowFinder, HasTheRowsOfTheContactSystemPairByPair) {
-  std::array<int, 6> n_kinds{};
+  std::array<int, 8> n_kinds{};
   std::size_t n_merged = 0;
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const Scene scene = full_scene(seed);
@@ -96,7 +96,7 @@ TEST(ResidentRowFinder, HasTheRowsOfTheContactSystemPairByPair) {
 }
 
 TEST(ResidentRowFinder, HasThoseOfPlanarScenes) {
-  std::array<int, 6> n_kinds{};
+  std::array<int, 8> n_kinds{};
   for (const PlanarPairs pairs : {PlanarPairs::vertex_vertex, PlanarPairs::point_edge}) {
     const Scene scene = planar_layers(pairs, 3);
     ContactSystem contacts(scene, {});

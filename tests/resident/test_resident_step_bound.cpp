@@ -37,36 +37,38 @@ void expect_same(const StepBound& found, const StepBound& expected) {
   EXPECT_EQ(found.capped, 0);
 }
 
-/// Counts into n_of_kind what limits; 5: nothing does.
-void expect_that_of_the_cpu_path(const Scene& scene, const Positions& x1, std::array<int, 6>& n_of_kind) {
+/// Counts into n_of_kind what limits; 7: nothing does.
+void expect_that_of_the_cpu_path(const Scene& scene, const Positions& x1, std::array<int, 8>& n_of_kind) {
   const Candidates candidates = cpu_candidates(scene, scene.x0, x1);
   const StepBound expected = cpu_bound(scene, candidates, scene.x0, x1);
   const BothBounds found = bounds(scene, x1);
   expect_same(found.listed, expected);
   expect_same(found.unlisted, expected);
   const std::size_t n = candidates.point_point.size() + candidates.point_edge.size() +
-                        candidates.point_triangle.size() + candidates.edge_edge.size();
+                        candidates.point_triangle.size() + candidates.edge_edge.size() +
+                        candidates.obstacle_edge.size() + candidates.obstacle_triangle.size();
   EXPECT_LE(static_cast<std::size_t>(found.listed.queries), n);
   EXPECT_GE(found.listed.probes, found.listed.queries);
-  ++n_of_kind[expected.alpha < 1 ? static_cast<std::size_t>(expected.kind) : 5];
+  ++n_of_kind[expected.alpha < 1 ? static_cast<std::size_t>(expected.kind) : 7];
 }
 
 TEST(ResidentStepBound, IsThatOfTheCpuPathInSoups) {
-  std::array<int, 6> n_of_kind{};
+  std::array<int, 8> n_of_kind{};
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const Scene scene = soup_scene(seed, 5 + static_cast<int>(seed) / 2);
     for (const double size : {1.0, 0.1, 1e-2, 1e-4}) {
       expect_that_of_the_cpu_path(scene, moved(scene, size, seed), n_of_kind);
     }
   }
-  for (const auto kind : {ContactKind::point_triangle, ContactKind::edge_edge, ContactKind::obstacle}) {
+  for (const auto kind : {ContactKind::point_triangle, ContactKind::edge_edge, ContactKind::obstacle,
+                          ContactKind::obstacle_edge, ContactKind::obstacle_triangle}) {
     EXPECT_GT(n_of_kind[static_cast<std::size_t>(kind)], 5);
   }
-  EXPECT_GT(n_of_kind[5], 20);
+  EXPECT_GT(n_of_kind[7], 20);
 }
 
 TEST(ResidentStepBound, IsThatOfTheCpuPathInThePlane) {
-  std::array<int, 6> n_of_kind{};
+  std::array<int, 8> n_of_kind{};
   for (unsigned seed = 1; seed <= 20; ++seed) {
     for (const PlanarPairs pairs : {PlanarPairs::vertex_vertex, PlanarPairs::point_edge}) {
       Scene scene = planar_scene(pairs, seed);

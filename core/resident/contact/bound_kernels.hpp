@@ -3,7 +3,7 @@
 #pragma once
 
 #include "core/contact/float_rounding.hpp"
-#include "core/contact/obstacle_motion.hpp"
+#include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_planes.hpp"
 #include "core/geometry/accd.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
@@ -11,7 +11,8 @@
 
 namespace bb::resident {
 
-constexpr int n_bound_lists = 5;  // the kinds of PairKind in their order, then obstacles
+constexpr int n_bound_lists =
+    7;  // the kinds of PairKind in their order, then obstacles with points, edges, triangles
 constexpr Key no_pair = ~Key{0};
 
 /// What is known of the bound of a motion.
@@ -121,10 +122,30 @@ BB_HD double time_of(const BoundQuery& q, const PairVertices<K>& pair, double en
   return toi;
 }
 
-BB_HD inline double obstacle_time(const BoundQuery& q, Index point, Index o) {
-  const int* const v = q.surface.points.vertex + point;
-  return obstacle_toi<double>(q.surface.obstacles[o].surface(), points_of<1>(q.x0, v), points_of<1>(q.x1, v),
-                              q.surface.points.offset[point], q.park * q.surface.points.d_hat[point]);
+/// The time of primitive i with N vertices and obstacle o; points have a formula, and are not counted as queries. 1 when
+/// it is proven to be above `enough`.
+template <int N>
+BB_HD double obstacle_time(const BoundQuery& q, Index i, Index o, double enough, QueryCounts& counts) {
+  const PrimitiveView<N>& of = q.surface.primitives<N>();
+  const int* const vertex = of.vertex + N * i;
+  const AnalyticSurface<double> obstacle = q.surface.obstacles[o].surface();
+  const Mat<double, 3, N> from = points_of<N>(q.x0, vertex), to = points_of<N>(q.x1, vertex);
+  const double offset = of.offset[i], park = q.park * of.d_hat[i];
+  double toi = 1;
+  if constexpr (N == 1) {
+    toi = obstacle_toi<double>(obstacle, from, to, offset, park);
+  } else {
+    const double floor = q.floor(), reach = offset + 2 * (park > floor ? park : floor);
+    if (obstacle_proven_time<N>(obstacle, from, to, reach, enough) > enough) return 1;
+    const AccdResult<double> r =
+        obstacle_accd<N, double>(obstacle, from, to, offset, park, q.max_probes, enough);
+    if (r.hit) toi = r.toi;
+    counts.queries += 1;
+    counts.probes += static_cast<Key>(r.probes);
+    counts.capped += r.capped ? 1 : 0;
+  }
+  counts.zero += toi == 0 ? 1 : 0;
+  return toi;
 }
 
 /// The earliest time of each item of a batch, and its pair.
@@ -217,34 +238,37 @@ struct AskInTree {
   }
 };
 
-/// Times of obstacle candidates; these are not counted as queries.
+/// Times of the candidates of primitives with N vertices and obstacles.
+template <int N>
 struct AskObstacles {
   BoundQuery query;
   const Key* candidate;
   BatchTimes out;
   BB_HD void operator()(Index i) const {
     QueryCounts counts;
-    const double toi = obstacle_time(query, first_of(candidate[i]), second_of(candidate[i]));
-    counts.zero = toi == 0 ? 1 : 0;
+    const double toi =
+        obstacle_time<N>(query, first_of(candidate[i]), second_of(candidate[i]), query.known(), counts);
     out.put(query, i, toi, candidate[i]);
     counts.add_to(*query.record);
   }
 };
 
-/// The same for all obstacles of surface points, without a list.
-struct AskObstaclesOfPoints {
+/// The same for all obstacles of surface primitives, without a list.
+template <int N>
+struct AskObstaclesOf {
   BoundQuery query;
-  Index point;
+  Index first_primitive;
   BatchTimes out;
   BB_HD void operator()(Index i) const {
     QueryCounts counts;
     double first = 1;
     Key which = no_pair;
+    const double known = query.known();
     for (int o = 0; o < query.surface.n_obstacles; ++o) {
-      if (!may_reach(query.surface, point + i, o, query.x0, query.x1)) continue;
-      const double toi = obstacle_time(query, point + i, o);
-      counts.zero += toi == 0 ? 1 : 0;
-      if (toi < first) first = toi, which = pair_of(point + i, o);
+      if (!may_reach<N>(query.surface, first_primitive + i, o, query.x0, query.x1)) continue;
+      const double enough = first < known ? first : known;
+      const double toi = obstacle_time<N>(query, first_primitive + i, o, enough, counts);
+      if (toi < first) first = toi, which = pair_of(first_primitive + i, o);
     }
     out.put(query, i, first, which);
     counts.add_to(*query.record);

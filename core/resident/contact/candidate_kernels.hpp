@@ -29,17 +29,20 @@ struct FillPairs {
   }
 };
 
+/// count[i], pair[begin[i], ...): candidates of primitive i with N vertices and the obstacles.
+template <int N>
 struct CountObstacles {
   SurfaceView surface;
   const double *x0, *x1;
   Index* count;
   BB_HD void operator()(Index i) const {
     Index n = 0;
-    for (int o = 0; o < surface.n_obstacles; ++o) n += may_reach(surface, i, o, x0, x1) ? 1 : 0;
+    for (int o = 0; o < surface.n_obstacles; ++o) n += may_reach<N>(surface, i, o, x0, x1) ? 1 : 0;
     count[i] = n;
   }
 };
 
+template <int N>
 struct FillObstacles {
   SurfaceView surface;
   const double *x0, *x1;
@@ -48,7 +51,7 @@ struct FillObstacles {
   BB_HD void operator()(Index i) const {
     Key* next = pair + begin[i];
     for (int o = 0; o < surface.n_obstacles; ++o) {
-      if (may_reach(surface, i, o, x0, x1)) *next++ = pair_of(i, o);
+      if (may_reach<N>(surface, i, o, x0, x1)) *next++ = pair_of(i, o);
     }
   }
 };

@@ -32,8 +32,11 @@ const exec::Buffer<double>& ContactAssembly::mollifiers(ResidentRows& rows, cons
   const Index n = rows.list.size();
   mollified_.resize(12 * n);
   mollifier_.resize(n);
-  executor_.each(n, MollifiedGradients{rows.view(), rows.list.data(), n, x.data(), surface_.view().rest,
-                                       mollified_.data(), mollifier_.data()});
+  executor_.each(n, MollifiedGradients{{rows.view(), surface_.view(), x.data()},
+                                       rows.list.data(),
+                                       n,
+                                       mollified_.data(),
+                                       mollifier_.data()});
   return mollifier_;
 }
 
@@ -55,8 +58,10 @@ void ContactAssembly::add_given_motion(ResidentRows& rows, const exec::Buffer<do
                                        const exec::Buffer<double>& motion, exec::Buffer<double>& force) {
   const Index n = rows.list.size();
   mollified_.resize(12 * n);
-  executor_.each(n, MollifiedChanges{rows.view(), rows.list.data(), n, x.data(), surface_.view().rest,
-                                     motion.data(), mollified_.data()});
+  executor_.each(
+      n,
+      MollifiedChanges{
+          {rows.view(), surface_.view(), x.data()}, rows.list.data(), n, motion.data(), mollified_.data()});
   gather(rows, RowGivenMotion{motion.data()}, force);
 }
 
@@ -97,6 +102,8 @@ void ContactAssembly::add_dense(ResidentRows& rows, const exec::Buffer<double>& 
       executor_.each(size, SlidingHessians<PairKind::point_edge>{to});
       executor_.each(size, SlidingHessians<PairKind::point_triangle>{to});
       executor_.each(size, SlidingHessians<PairKind::edge_edge>{to});
+      executor_.each(size, ObstacleHessians<2>{to});
+      executor_.each(size, ObstacleHessians<3>{to});
     }
     executor_.each(pattern_.n_blocks(),
                    GatherDense{pattern_.blocks(), list, size, stride, row_hessians_.data(), value_.data()});

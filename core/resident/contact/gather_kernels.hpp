@@ -82,9 +82,8 @@ struct MarkDense {
   std::uint8_t* mark;
   BB_HD void operator()(Index r) const {
     const int kind = rows.kind[r];
-    const bool slides = kind == static_cast<int>(ContactKind::point_edge) ||
-                        kind == static_cast<int>(ContactKind::point_triangle) ||
-                        kind == static_cast<int>(ContactKind::edge_edge);
+    const bool slides =
+        kind != static_cast<int>(ContactKind::point_point) && kind != static_cast<int>(ContactKind::obstacle);
     const bool full = mode != HessianMode::gauss_newton && slides && rows.push[r] != 0;
     mark[r] = rows.mollified(r) || full ? 1 : 0;
   }

@@ -1,7 +1,7 @@
 // All candidate pairs of one primitive of a tree: the one place that says which pairs there are.
 #pragma once
 
-#include "core/contact/obstacle.hpp"
+#include "core/contact/obstacle_pair.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/tree_view.hpp"
 
@@ -80,14 +80,15 @@ BB_HD inline Key pair_of(Index first, Index second) {
 BB_HD inline Index first_of(Key pair) { return static_cast<Index>(pair >> 32); }
 BB_HD inline Index second_of(Key pair) { return static_cast<Index>(pair & 0xffffffff); }
 
-/// Whether surface point i may come within its contact distance of obstacle o on x0 -> x1. The gap falls by at most
-/// the way gone: a bound for any obstacle; 1e-12 covers rounding.
-BB_HD inline bool may_reach(const SurfaceView& s, Index i, int o, const double* x0, const double* x1) {
-  if (s.points.free[i] == 0) return false;
-  const Vec3d p0 = points_of<1>(x0, s.points.vertex + i), p1 = points_of<1>(x1, s.points.vertex + i);
-  const double start = surface_gap<double>(s.obstacles[o].surface(), p0).d, way = (p1 - p0).norm();
-  const double least = start - way - 1e-12 * ((start < 0 ? -start : start) + way);
-  return !(least > s.points.d_hat[i] + s.points.offset[i]);
+/// Whether primitive i with N vertices may come within its contact distance of obstacle o on x0 -> x1.
+template <int N>
+BB_HD bool may_reach(const SurfaceView& s, Index i, int o, const double* x0, const double* x1) {
+  const PrimitiveView<N>& of = s.primitives<N>();
+  const AnalyticSurface<double> obstacle = s.obstacles[o].surface();
+  if (of.free[i] == 0 || !pairs_with<N>(obstacle, s.planar, of.lone[i] != 0)) return false;
+  const int* const vertex = of.vertex + N * i;
+  return bb::may_reach<N>(obstacle, points_of<N>(x0, vertex), points_of<N>(x1, vertex),
+                          of.d_hat[i] + of.offset[i]);
 }
 
 }  // namespace bb::resident

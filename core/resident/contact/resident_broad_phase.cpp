@@ -32,7 +32,9 @@ ResidentBroadPhase::ResidentBroadPhase(exec::Executor& executor, const ResidentS
       point_edges_(executor, "places of point-edge candidates"),
       point_triangles_(executor, "places of point-triangle candidates"),
       edge_edges_(executor, "places of edge-edge candidates"),
-      of_obstacles_(executor, "places of obstacle candidates") {
+      obstacle_points_(executor, "places of obstacle candidates"),
+      obstacle_edges_(executor, "places of obstacle-edge candidates"),
+      obstacle_triangles_(executor, "places of obstacle-triangle candidates") {
   if (plan.point_point) upload_rows(connected_, surface.connected_pairs());
   if (plan.point_edge) upload_rows(opposite_, surface.opposite_corners());
 }
@@ -107,6 +109,25 @@ void ResidentBroadPhase::count_kind(bool needed, exec::Buffer<Index>& begin, Ind
   sum_up(begin, total);
 }
 
+template <int N>
+void ResidentBroadPhase::count_obstacles(exec::Buffer<Index>& begin, Index& total) {
+  if (!plan_.obstacles.needed) return;
+  const SurfaceView s = surface_.view();
+  const Index n = s.primitives<N>().n;
+  begin.resize(n + 1);
+  executor_.each(n, CountObstacles<N>{s, x0_, x1_, begin.data()});
+  sum_up(begin, total);
+}
+
+template <int N>
+void ResidentBroadPhase::fill_obstacles(const exec::Buffer<Index>& begin, Index total,
+                                        exec::Buffer<Key>& out) {
+  out.grow(plan_.obstacles.needed ? total : 0);
+  if (!plan_.obstacles.needed || total == 0) return;
+  const SurfaceView s = surface_.view();
+  executor_.each(s.primitives<N>().n, FillObstacles<N>{s, x0_, x1_, begin.data(), out.data()});
+}
+
 CandidateCounts ResidentBroadPhase::count(const Column& x0, const Column& x1) {
   x0_ = x0.data();
   x1_ = x1.data();
@@ -115,12 +136,9 @@ CandidateCounts ResidentBroadPhase::count(const Column& x0, const Column& x1) {
   count_kind<PairKind::point_edge>(plan_.point_edge, point_edges_, counts_.point_edge);
   count_kind<PairKind::point_triangle>(plan_.point_triangle, point_triangles_, counts_.point_triangle);
   count_kind<PairKind::edge_edge>(plan_.edge_edge, edge_edges_, counts_.edge_edge);
-  if (plan_.obstacles.needed) {
-    const SurfaceView s = surface_.view();
-    of_obstacles_.resize(s.points.n + 1);
-    executor_.each(s.points.n, CountObstacles{s, x0_, x1_, of_obstacles_.data()});
-    sum_up(of_obstacles_, counts_.obstacle);
-  }
+  count_obstacles<1>(obstacle_points_, counts_.obstacle);
+  count_obstacles<2>(obstacle_edges_, counts_.obstacle_edge);
+  count_obstacles<3>(obstacle_triangles_, counts_.obstacle_triangle);
   return counts_;
 }
 
@@ -141,17 +159,18 @@ void ResidentBroadPhase::fill(ResidentCandidates& out) {
   fill_kind<PairKind::point_triangle>(plan_.point_triangle, point_triangles_, counts_.point_triangle,
                                       out.point_triangle);
   fill_kind<PairKind::edge_edge>(plan_.edge_edge, edge_edges_, counts_.edge_edge, out.edge_edge);
-  out.obstacle.grow(plan_.obstacles.needed ? counts_.obstacle : 0);
-  if (!plan_.obstacles.needed) return;
-  const SurfaceView s = surface_.view();
-  executor_.each(s.points.n, FillObstacles{s, x0_, x1_, of_obstacles_.data(), out.obstacle.data()});
+  fill_obstacles<1>(obstacle_points_, counts_.obstacle, out.obstacle);
+  fill_obstacles<2>(obstacle_edges_, counts_.obstacle_edge, out.obstacle_edge);
+  fill_obstacles<3>(obstacle_triangles_, counts_.obstacle_triangle, out.obstacle_triangle);
 }
 
 void ResidentBroadPhase::free() {
   points_.free(), edges_.free(), triangles_.free();
   scratch_.key.free(), scratch_.order.free();
-  for (auto* begin : {&point_points_, &point_edges_, &point_triangles_, &edge_edges_, &of_obstacles_})
+  for (auto* begin : {&point_points_, &point_edges_, &point_triangles_, &edge_edges_, &obstacle_points_,
+                      &obstacle_edges_, &obstacle_triangles_}) {
     begin->free();
+  }
 }
 
 void ResidentBroadPhase::update(const Column& x0, const Column& x1, ResidentCandidates& out) {

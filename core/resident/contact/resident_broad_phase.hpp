@@ -9,8 +9,12 @@ namespace bb::resident {
 
 /// Candidate pairs by kind.
 struct CandidateCounts {
-  Index point_point = 0, point_edge = 0, point_triangle = 0, edge_edge = 0, obstacle = 0;
-  Index total() const { return point_point + point_edge + point_triangle + edge_edge + obstacle; }
+  Index point_point = 0, point_edge = 0, point_triangle = 0, edge_edge = 0, obstacle = 0, obstacle_edge = 0,
+        obstacle_triangle = 0;
+  Index total() const {
+    return point_point + point_edge + point_triangle + edge_edge + obstacle + obstacle_edge +
+           obstacle_triangle;
+  }
   /// Of their lists, with the room to grow that they are given.
   std::size_t bytes() const { return static_cast<std::size_t>(total() + total() / 4) * sizeof(Key); }
 };
@@ -53,6 +57,10 @@ class ResidentBroadPhase {
   void count_kind(bool needed, exec::Buffer<Index>& begin, Index& total);
   template <PairKind K>
   void fill_kind(bool needed, const exec::Buffer<Index>& begin, Index total, exec::Buffer<Key>& out);
+  template <int N>
+  void count_obstacles(exec::Buffer<Index>& begin, Index& total);
+  template <int N>
+  void fill_obstacles(const exec::Buffer<Index>& begin, Index total, exec::Buffer<Key>& out);
   template <PairKind K>
   PairSearch search() const;
   void sum_up(exec::Buffer<Index>& begin, Index& total);
@@ -66,8 +74,8 @@ class ResidentBroadPhase {
   BoxTree<1> points_;
   BoxTree<2> edges_;
   BoxTree<3> triangles_;
-  exec::Buffer<Index> point_points_, point_edges_, point_triangles_, edge_edges_,
-      of_obstacles_;  // [n + 1] where those of each begin
+  exec::Buffer<Index> point_points_, point_edges_, point_triangles_, edge_edges_, obstacle_points_,
+      obstacle_edges_, obstacle_triangles_;  // [n + 1] where those of each begin
   CandidateCounts counts_;
   bool room_ = true;
   const double *x0_ = nullptr, *x1_ = nullptr;

@@ -11,8 +11,9 @@ namespace bb::resident {
 using exec::Index;
 using exec::Key;
 
-/// Kind of a row whose edges are close to parallel, after those of ContactKind: barrier times mollifier.
-constexpr std::uint8_t mollified_kind = 5;
+/// Kind of a row whose edges are close to parallel, or whose edge is to the axis of a cylinder, after those of
+/// ContactKind: barrier times mollifier.
+constexpr std::uint8_t mollified_kind = 7;
 
 /// What kappa is made of, which says what columns a policy needs.
 enum class KappaColumns {

@@ -7,10 +7,6 @@
 
 namespace bb::resident {
 
-namespace {
-constexpr int obstacle_list = n_bound_lists - 1;
-}
-
 ResidentStepBound::ResidentStepBound(exec::Executor& executor, const ResidentSurface& surface,
                                      const StopLevel& level, const BoundBatches& batches)
     : executor_(executor),
@@ -89,6 +85,22 @@ void ResidentStepBound::ask_tree(const PairSearch& search) {
   });
 }
 
+template <int N>
+void ResidentStepBound::ask_obstacle_list(const exec::Buffer<Key>& candidates) {
+  const Key* const list = candidates.data();
+  in_batches(candidates.size(), obstacle_pairs_of<N>, [&](Index at, Index n, const BatchTimes& times) {
+    executor_.each(n, AskObstacles<N>{query_, list + at, times});
+  });
+}
+
+template <int N>
+void ResidentStepBound::ask_all_obstacles() {
+  const Index n_primitives = surface_.view().primitives<N>().n;
+  in_batches(n_primitives, obstacle_pairs_of<N>, [&](Index at, Index n, const BatchTimes& times) {
+    executor_.each(n, AskObstaclesOf<N>{query_, at, times});
+  });
+}
+
 /// Vertices of a pair, as StepBoundFinder names it.
 ContactKey ResidentStepBound::key_of(int list, Key pair) const {
   const SurfaceView s = surface_.view();
@@ -98,8 +110,11 @@ ContactKey ResidentStepBound::key_of(int list, Key pair) const {
     return out;
   };
   const Index i = first_of(pair), j = second_of(pair);
+  const int o = static_cast<int>(j);
+  if (list == obstacle_pairs_of<1>) return obstacle_key(o, vertices(s.points, i));
+  if (list == obstacle_pairs_of<2>) return obstacle_key(o, vertices(s.edges, i));
+  if (list == obstacle_pairs_of<3>) return obstacle_key(o, vertices(s.triangles, i));
   const int point = list == static_cast<int>(PairKind::edge_edge) ? -1 : vertices(s.points, i)[0];
-  if (list == obstacle_list) return obstacle_key(static_cast<int>(j), point);
   if (list == static_cast<int>(PairKind::point_point))
     return pair_key(std::array{point, vertices(s.points, j)[0]});
   if (list == static_cast<int>(PairKind::point_triangle)) {
@@ -140,10 +155,9 @@ StepBound of_no_motion() {
 
 StepBound ResidentStepBound::find(const ResidentCandidates& candidates, const Column& x0, const Column& x1) {
   if (!start(x0, x1)) return of_no_motion();
-  const Key* const obstacles = candidates.obstacle.data();
-  in_batches(candidates.obstacle.size(), obstacle_list, [&](Index at, Index n, const BatchTimes& times) {
-    executor_.each(n, AskObstacles{query_, obstacles + at, times});
-  });
+  ask_obstacle_list<1>(candidates.obstacle);
+  ask_obstacle_list<2>(candidates.obstacle_edge);
+  ask_obstacle_list<3>(candidates.obstacle_triangle);
   ask_list<PairKind::point_point>(candidates.point_point);
   ask_list<PairKind::point_edge>(candidates.point_edge);
   ask_list<PairKind::point_triangle>(candidates.point_triangle);
@@ -154,10 +168,11 @@ StepBound ResidentStepBound::find(const ResidentCandidates& candidates, const Co
 StepBound ResidentStepBound::find_without_list(const CandidateSource& source, const Column& x0,
                                                const Column& x1) {
   if (!start(x0, x1)) return of_no_motion();
-  const Index n_points = source.obstacles ? surface_.view().points.n : 0;
-  in_batches(n_points, obstacle_list, [&](Index at, Index n, const BatchTimes& times) {
-    executor_.each(n, AskObstaclesOfPoints{query_, at, times});
-  });
+  if (source.obstacles) {
+    ask_all_obstacles<1>();
+    ask_all_obstacles<2>();
+    ask_all_obstacles<3>();
+  }
   ask_tree<PairKind::point_point>(source.point_point);
   ask_tree<PairKind::point_edge>(source.point_edge);
   ask_tree<PairKind::point_triangle>(source.point_triangle);

@@ -44,6 +44,10 @@ class ResidentStepBound {
   Index screen(const Key* candidates, Index n);
   template <PairKind K>
   void ask_tree(const PairSearch& search);
+  template <int N>
+  void ask_obstacle_list(const exec::Buffer<Key>& candidates);
+  template <int N>
+  void ask_all_obstacles();
   template <class Ask>
   void in_batches(Index n, int list, const Ask& ask);
   StepBound result() const;

@@ -10,7 +10,8 @@ ResidentPrimitives<N>::ResidentPrimitives(exec::Executor& executor, const char* 
     : vertex(executor, std::string(name) + " vertices"),
       d_hat(executor, std::string(name) + " d_hat"),
       offset(executor, std::string(name) + " offset"),
-      free(executor, std::string(name) + " free") {
+      free(executor, std::string(name) + " free"),
+      lone(executor, std::string(name) + " lone") {
   std::vector<double> column(from.size());
   vertex.upload({from.vertices.empty() ? nullptr : from.vertices[0].data(), N * from.size()});
   for (std::size_t i = 0; i < column.size(); ++i) column[i] = from.side[i].d_hat;
@@ -18,6 +19,7 @@ ResidentPrimitives<N>::ResidentPrimitives(exec::Executor& executor, const char* 
   for (std::size_t i = 0; i < column.size(); ++i) column[i] = from.side[i].offset;
   offset.upload(column);
   free.upload(from.free);
+  lone.upload(from.lone);
 }
 
 namespace {
@@ -43,7 +45,8 @@ ResidentSurface::ResidentSurface(exec::Executor& executor, const Scene& scene, c
       vertex_free_(executor, "surface vertex free"),
       body_(executor, "surface body"),
       rest_(executor, "surface rest positions"),
-      obstacles_(executor, "obstacles") {
+      obstacles_(executor, "obstacles"),
+      planar_(surface.planar) {
   vertex_free_.upload(surface.vertex_free);
   body_.upload(scene.body);
   rest_.upload({scene.rest.data(), static_cast<std::size_t>(scene.rest.size())});
@@ -52,7 +55,8 @@ ResidentSurface::ResidentSurface(exec::Executor& executor, const Scene& scene, c
 
 SurfaceView ResidentSurface::view() const {
   return {points_.view(), edges_.view(), triangles_.view(), vertex_free_.data(),
-          body_.data(),   rest_.data(),  obstacles_.data(), static_cast<int>(obstacles_.size())};
+          body_.data(),   rest_.data(),  obstacles_.data(), static_cast<int>(obstacles_.size()),
+          planar_};
 }
 
 template struct ResidentPrimitives<1>;

@@ -16,9 +16,9 @@ using exec::Key;
 /// What a kernel reads of primitives with N vertices each.
 template <int N>
 struct PrimitiveView {
-  const int* vertex;             // [N n] global ids; edges ascending
-  const double *d_hat, *offset;  // [n] m
-  const std::uint8_t* free;      // [n] 1 when at least one vertex is free
+  const int* vertex;                // [N n] global ids; edges ascending
+  const double *d_hat, *offset;     // [n] m
+  const std::uint8_t *free, *lone;  // [n] 1 when at least one vertex is free; no part of a larger primitive
   Index n;
 };
 
@@ -26,12 +26,12 @@ template <int N>
 struct ResidentPrimitives {
   ResidentPrimitives(exec::Executor& executor, const char* name, const Primitives<N>& from);
   PrimitiveView<N> view() const {
-    return {vertex.data(), d_hat.data(), offset.data(), free.data(), free.size()};
+    return {vertex.data(), d_hat.data(), offset.data(), free.data(), lone.data(), free.size()};
   }
 
   exec::Buffer<int> vertex;
   exec::Buffer<double> d_hat, offset;
-  exec::Buffer<std::uint8_t> free;
+  exec::Buffer<std::uint8_t> free, lone;
 };
 
 /// An obstacle as plain numbers.
@@ -54,6 +54,14 @@ struct SurfaceView {
   const double* rest;               // [3 n_vertices] m
   const PlainObstacle* obstacles;
   int n_obstacles;
+  bool planar;
+
+  template <int N>
+  BB_HD const PrimitiveView<N>& primitives() const {
+    if constexpr (N == 1) return points;
+    if constexpr (N == 2) return edges;
+    if constexpr (N == 3) return triangles;
+  }
 };
 
 /// The scene and the surface are read in the constructor only. Errors: OutOfMemory.
@@ -70,26 +78,42 @@ class ResidentSurface {
   exec::Buffer<int> body_;
   exec::Buffer<double> rest_;
   exec::Buffer<PlainObstacle> obstacles_;
+  const bool planar_;
 };
 
 /// Candidate pairs: first << 32 | second, indices into the primitives of the surface, each list ascending; obstacle:
-/// (point, obstacle). The lists are those of BroadPhase::update, or hold them.
+/// (point, obstacle), obstacle_edge and obstacle_triangle likewise. The lists are those of BroadPhase::update, or hold them.
 struct ResidentCandidates {
   explicit ResidentCandidates(exec::Executor& executor)
       : point_point(executor, "candidates point-point"),
         point_edge(executor, "candidates point-edge"),
         point_triangle(executor, "candidates point-triangle"),
         edge_edge(executor, "candidates edge-edge"),
-        obstacle(executor, "candidates obstacle") {}
+        obstacle(executor, "candidates obstacle"),
+        obstacle_edge(executor, "candidates obstacle-edge"),
+        obstacle_triangle(executor, "candidates obstacle-triangle") {}
   /// Gives all memory back.
   void free() {
-    for (auto* list : {&point_point, &point_edge, &point_triangle, &edge_edge, &obstacle}) list->free();
+    for (auto* list : {&point_point, &point_edge, &point_triangle, &edge_edge, &obstacle, &obstacle_edge,
+                       &obstacle_triangle}) {
+      list->free();
+    }
   }
   std::size_t bytes() const {
     return point_point.bytes() + point_edge.bytes() + point_triangle.bytes() + edge_edge.bytes() +
-           obstacle.bytes();
+           obstacle.bytes() + obstacle_edge.bytes() + obstacle_triangle.bytes();
   }
-  exec::Buffer<Key> point_point, point_edge, point_triangle, edge_edge, obstacle;
+  /// Of primitives with N vertices and obstacles.
+  template <int N>
+  exec::Buffer<Key>& of_obstacles() {
+    return N == 1 ? obstacle : N == 2 ? obstacle_edge : obstacle_triangle;
+  }
+  template <int N>
+  const exec::Buffer<Key>& of_obstacles() const {
+    return N == 1 ? obstacle : N == 2 ? obstacle_edge : obstacle_triangle;
+  }
+  exec::Buffer<Key> point_point, point_edge, point_triangle, edge_edge, obstacle, obstacle_edge,
+      obstacle_triangle;
 };
 
 }  // namespace bb::resident

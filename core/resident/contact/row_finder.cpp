@@ -12,12 +12,14 @@ void for_each_list(const NarrowPhase& phase, const ResidentCandidates& c, const 
   f(SurfaceRows<PairKind::point_edge>{phase}, c.point_edge);
   f(SurfaceRows<PairKind::point_triangle>{phase}, c.point_triangle);
   f(SurfaceRows<PairKind::edge_edge>{phase}, c.edge_edge);
-  f(ObstacleRows{phase}, c.obstacle);
+  f(ObstacleRows<1>{phase}, c.obstacle);
+  f(ObstacleRows<2>{phase}, c.obstacle_edge);
+  f(ObstacleRows<3>{phase}, c.obstacle_triangle);
 }
 
 Index n_candidates(const ResidentCandidates& c) {
   return c.point_point.size() + c.point_edge.size() + c.point_triangle.size() + c.edge_edge.size() +
-         c.obstacle.size();
+         c.obstacle.size() + c.obstacle_edge.size() + c.obstacle_triangle.size();
 }
 
 double smallest_gap(const GapBits& bits) {

@@ -1,9 +1,9 @@
 // Narrow phase: which candidate pairs have a contact row, and the rows. The rules of core/contact/row_builder.hpp.
 #pragma once
 
-#include "core/contact/obstacle.hpp"
+#include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_row.hpp"
-#include "core/geometry/edge_edge_mollifier.hpp"
+#include "core/geometry/edge_axis_mollifier.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
@@ -55,20 +55,35 @@ struct NarrowPhase {
     }
     const PairRow row =
         pair_row<double>(pair.vertex, closest.weights.data(), closest.r, closest.d, region, pair.law.offset);
-    bool moves = false;
-    out.free = 0;
-    for (int k = 0; k < 4; ++k) {
-      out.vertex[k] = row.stencil[k];
-      out.weight[k] = row.weight[k];
-      if (row.stencil[k] < 0 || surface.vertex_free[row.stencil[k]] == 0) continue;
-      out.free = static_cast<std::uint8_t>(out.free | 1 << k);
-      moves = moves || row.weight[k] != 0;
-    }
-    out.normal = row.normal;
-    out.d = row.d;
     out.d_hat = pair.law.d_hat;
     out.kind = parallel ? mollified_kind : static_cast<std::uint8_t>(row.kind);
-    return moves;
+    return take(row, out);
+  }
+
+  /// Of an edge (N = 2) or a triangle outside a sphere or cylinder.
+  template <int N>
+  BB_HD bool find_obstacle_pair(Key candidate, FoundRow& out) const {
+    const Index i = static_cast<Index>(candidate >> 32);
+    const PrimitiveView<N>& of = surface.primitives<N>();
+    const int* const vertex = of.vertex + N * i;
+    const AnalyticSurface<double> obstacle = surface.obstacles[candidate & 0xffffffffu].surface();
+    const double d_hat = of.d_hat[i], offset = of.offset[i];
+    const Mat<double, 3, N + 1> points = about_centre<N, double>(obstacle, points_of<N>(x, vertex));
+    if (far_from_centre<N>(obstacle, points, d_hat + offset)) return false;
+    Closest<double, N + 1> closest = closest_points<centre_pair<N>, double>(points);
+    if (closest.d - obstacle.radius - offset >= d_hat) return false;
+    bool parallel = false;
+    if constexpr (N == 2) {
+      if (mollifier && is_line(obstacle, surface.planar)) {
+        const double eps = edge_axis_mollifier_threshold<double>(points_of<2>(surface.rest, vertex));
+        parallel = edge_axis_cross_squared<double>(points) < eps;
+        if (parallel) closest = on_whole_edge(closest);
+      }
+    }
+    const PairRow row = obstacle_row<N, double>(vertex, closest, obstacle.radius, offset);
+    out.d_hat = d_hat;
+    out.kind = parallel ? mollified_kind : static_cast<std::uint8_t>(row.kind);
+    return take(row, out);
   }
 
   BB_HD bool find_obstacle(Key candidate, FoundRow& out) const {
@@ -89,6 +104,23 @@ struct NarrowPhase {
     out.kind = static_cast<std::uint8_t>(ContactKind::obstacle);
     out.free = surface.vertex_free[v] != 0 ? 1 : 0;
     return true;
+  }
+
+ private:
+  /// What a pair says of its row; false when none of its vertices moves.
+  BB_HD bool take(const PairRow& row, FoundRow& out) const {
+    bool moves = false;
+    out.free = 0;
+    for (int k = 0; k < 4; ++k) {
+      out.vertex[k] = row.stencil[k];
+      out.weight[k] = row.weight[k];
+      if (row.stencil[k] < 0 || surface.vertex_free[row.stencil[k]] == 0) continue;
+      out.free = static_cast<std::uint8_t>(out.free | 1 << k);
+      moves = moves || row.weight[k] != 0;
+    }
+    out.normal = row.normal;
+    out.d = row.d;
+    return moves;
   }
 };
 
@@ -121,17 +153,24 @@ BB_HD inline Key pair_of(int kind, Key candidate) {
   return pair_id(kind, candidate >> 32, candidate & 0xffffffffu);
 }
 
-/// The rows of a list of pairs of surface primitives, and of points and obstacles: what the two kernels below ask.
+/// The rows of a list of pairs of surface primitives, and of primitives with N vertices and obstacles: what the two kernels below ask.
 template <PairKind K>
 struct SurfaceRows {
   static constexpr int kind = static_cast<int>(K);
   NarrowPhase phase;
   BB_HD bool find(Key candidate, FoundRow& out) const { return phase.find<K>(candidate, out); }
 };
+template <int N>
 struct ObstacleRows {
-  static constexpr int kind = obstacle_pairs;
+  static constexpr int kind = obstacle_pairs_of<N>;
   NarrowPhase phase;
-  BB_HD bool find(Key candidate, FoundRow& out) const { return phase.find_obstacle(candidate, out); }
+  BB_HD bool find(Key candidate, FoundRow& out) const {
+    if constexpr (N == 1) {
+      return phase.find_obstacle(candidate, out);
+    } else {
+      return phase.find_obstacle_pair<N>(candidate, out);
+    }
+  }
 };
 
 /// mark[i] = 1 where candidate i has a row.

@@ -4,6 +4,8 @@
 
 #include "core/contact/contact_terms.hpp"
 #include "core/contact/mollified_terms.hpp"
+#include "core/contact/obstacle_pair.hpp"
+#include "core/contact/obstacle_shape.hpp"
 #include "core/contact/row_hessian.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
@@ -51,51 +53,87 @@ BB_HD inline double pair_offset(const SurfaceView& s, Key pair) {
   return s.edges.offset[i] + s.edges.offset[j];
 }
 
-BB_HD inline double mollifier_threshold(const RowView& rows, Index r, const double* rest) {
-  return edge_edge_mollifier_threshold<double>(row_points(rows, r, rest));
+/// The obstacle of a row that has one.
+BB_HD inline AnalyticSurface<double> obstacle_of(const SurfaceView& s, Key pair) {
+  return s.obstacles[pair & ((Key{1} << 30) - 1)].surface();
 }
 
-BB_HD inline MollifiedDerivatives<double> row_derivatives(const RowView& rows, Index r, const double* x,
-                                                          const double* rest) {
-  return mollified_derivatives<double>(row_points(rows, r, x), mollifier_threshold(rows, r, rest),
-                                       rows.energy[r], rows.push[r], rows.stretch[r]);
+/// Whether a mollified row is one of an edge and the axis of a cylinder.
+BB_HD inline bool of_axis(const RowView& rows, Index r) {
+  return static_cast<int>(rows.pair[r] >> 60) == obstacle_pairs_of<2>;
 }
 
-/// Gradients of the mollified rows in their four points, 0 at given ones, and their mollifiers.
-struct MollifiedGradients {
+template <int N>
+BB_HD Mat<double, 3, N> leading_points(const RowView& rows, Index r, const double* x) {
+  int vertex[N];
+  for (int k = 0; k < N; ++k) vertex[k] = rows.vertex[k * rows.n + r];
+  return points_of<N>(x, vertex);
+}
+
+/// Value and derivatives of a mollified row at a state.
+struct MollifiedRowAt {
   RowView rows;
+  SurfaceView surface;
+  const double* x;
+
+  BB_HD MollifiedDerivatives<double> derivatives(Index r) const {
+    const double b = rows.energy[r], db = rows.push[r], d2b = rows.stretch[r];
+    if (!of_axis(rows, r)) {
+      return mollified_derivatives<double>(row_points(rows, r, x), threshold(r), b, db, d2b);
+    }
+    return mollified_derivatives<double>(across_axis(r), obstacle_of(surface, rows.pair[r]).axis,
+                                         threshold_of_axis(r), b, db, d2b);
+  }
+  BB_HD double mollifier(Index r) const {
+    if (!of_axis(rows, r)) return edge_edge_mollifier_value<double>(row_points(rows, r, x), threshold(r));
+    return edge_axis_mollifier_value<double>(across_axis(r), threshold_of_axis(r));
+  }
+
+ private:
+  BB_HD double threshold(Index r) const {
+    return edge_edge_mollifier_threshold<double>(row_points(rows, r, surface.rest));
+  }
+  BB_HD double threshold_of_axis(Index r) const {
+    return edge_axis_mollifier_threshold<double>(leading_points<2>(rows, r, surface.rest));
+  }
+  BB_HD Mat<double, 3, 3> across_axis(Index r) const {
+    return about_centre<2, double>(obstacle_of(surface, rows.pair[r]), leading_points<2>(rows, r, x));
+  }
+};
+
+/// Gradients of the mollified rows in their points, 0 at given and missing ones, and their mollifiers.
+struct MollifiedGradients {
+  MollifiedRowAt at;
   const std::uint32_t* list;
   Index n;
-  const double *x, *rest;
   double *gradient, *mollifier;  // [12][n], [n]
   BB_HD void operator()(Index i) const {
     const Index r = list[i];
-    const Vec<double, 12> g = row_derivatives(rows, r, x, rest).gradient;
-    for (int c = 0; c < 12; ++c) gradient[c * n + i] = rows.is_free(r, c / 3) ? g[c] : 0.0;
-    mollifier[i] =
-        edge_edge_mollifier_value<double>(row_points(rows, r, x), mollifier_threshold(rows, r, rest));
+    const Vec<double, 12> g = at.derivatives(r).gradient;
+    for (int c = 0; c < 12; ++c) gradient[c * n + i] = at.rows.is_free(r, c / 3) ? g[c] : 0.0;
+    mollifier[i] = at.mollifier(r);
   }
 };
 
 /// How those gradients change, to first order, along a motion of given vertices.
 struct MollifiedChanges {
-  RowView rows;
+  MollifiedRowAt at;
   const std::uint32_t* list;
   Index n;
-  const double *x, *rest, *motion;
+  const double* motion;
   double* change;  // [12][n]
   BB_HD void operator()(Index i) const {
     const Index r = list[i];
-    const Mat<double, 3, 4> moved = row_points(rows, r, motion);
     Vec<double, 12> stacked, out = Vec<double, 12>::Zero();
     bool moves = false;
     for (int c = 0; c < 12; ++c) {
-      stacked[c] = moved(c % 3, c / 3);
+      const Index vertex = at.rows.vertex[c / 3 * at.rows.n + r];
+      stacked[c] = vertex < 0 ? 0.0 : motion[3 * vertex + c % 3];
       moves = moves || stacked[c] != 0;
     }
     // On the host Eigen adds up other products of this size in another order than on a device.
-    if (moves) out = row_derivatives(rows, r, x, rest).hessian.lazyProduct(stacked);
-    for (int c = 0; c < 12; ++c) change[c * n + i] = rows.is_free(r, c / 3) ? out[c] : 0.0;
+    if (moves) out = at.derivatives(r).hessian.lazyProduct(stacked);
+    for (int c = 0; c < 12; ++c) change[c * n + i] = at.rows.is_free(r, c / 3) ? out[c] : 0.0;
   }
 };
 
@@ -133,7 +171,7 @@ struct MollifiedHessians {
       local[n++] = k;
     }
     const Mat<double, 12, 12> exact =
-        to_front(row_derivatives(to.rows, r, to.x, to.surface.rest).hessian, local, n);
+        to_front(MollifiedRowAt{to.rows, to.surface, to.x}.derivatives(r).hessian, local, n);
     Mat<double, 12, 12> h = exact;
     project_leading<double>(n, to.choice.blended ? Projection::psd : to.choice.projection, h);
     int at = 0;
@@ -152,6 +190,21 @@ struct MollifiedHessians {
     }
   }
 };
+
+/// Puts the Hessian of a row whose closest points slide along F edges.
+template <int F>
+BB_HD void store_sliding(const RowHessians& to, Index i, const RowShape<double, F>& shape) {
+  double blocks[row_numbers];
+  row_hessian<double, F>(shape, to.choice.blended ? Projection::psd : to.choice.projection, blocks);
+  if (!to.choice.blended) {
+    for (int c = 0; c < row_numbers; ++c) to.number[c * to.stride + i] = blocks[c];
+    return;
+  }
+  double exact[row_numbers];
+  row_hessian<double, F>(shape, Projection::none, exact);
+  for (int c = 0; c < row_numbers; ++c)
+    to.number[c * to.stride + i] = blend(exact[c], blocks[c], to.choice.t);
+}
 
 /// Rows of K points whose closest points slide along F edges.
 template <PairKind K>
@@ -191,21 +244,44 @@ struct SlidingHessians {
     shape.distance = closest.d;
     shape.stretch = rows.stretch[r];
     shape.push = rows.push[r];
-    store(i, shape);
+    store_sliding(to, i, shape);
+  }
+};
+
+/// Rows of an obstacle and the inside of an edge (N = 2) or a triangle.
+template <int N>
+struct ObstacleHessians {
+  RowHessians to;
+
+  BB_HD void operator()(Index i) const {
+    constexpr ContactKind kind = N == 2 ? ContactKind::obstacle_edge : ContactKind::obstacle_triangle;
+    const RowView& rows = to.rows;
+    const Index r = to.list[i];
+    if (rows.kind[r] != static_cast<std::uint8_t>(kind)) return;
+    const AnalyticSurface<double> obstacle = obstacle_of(to.surface, rows.pair[r]);
+    Vec3d axis = Vec3d::Zero();
+    if (obstacle.kind == ObstacleKind::cylinder) axis = obstacle.axis;
+    const double distance = rows.d[r] + (obstacle_offset(rows.pair[r]) + obstacle.radius);
+    RowShape<double, N - 1> shape =
+        obstacle_shape<N, double>(leading_points<N>(rows, r, to.x), axis, rows.normal_of(r), distance);
+    for (int k = 0; k < N; ++k) {
+      if (rows.is_free(r, k)) {
+        shape.w[k] = rows.weight[k * rows.n + r];
+        continue;
+      }
+      for (int l = 0; l < N - 1; ++l) shape.g[l][k] = 0;
+    }
+    shape.stretch = rows.stretch[r];
+    shape.push = rows.push[r];
+    store_sliding(to, i, shape);
   }
 
  private:
-  BB_HD void store(Index i, const RowShape<double, F>& shape) const {
-    double blocks[row_numbers];
-    row_hessian<double, F>(shape, to.choice.blended ? Projection::psd : to.choice.projection, blocks);
-    if (!to.choice.blended) {
-      for (int c = 0; c < row_numbers; ++c) to.number[c * to.stride + i] = blocks[c];
-      return;
-    }
-    double exact[row_numbers];
-    row_hessian<double, F>(shape, Projection::none, exact);
-    for (int c = 0; c < row_numbers; ++c)
-      to.number[c * to.stride + i] = blend(exact[c], blocks[c], to.choice.t);
+  /// Thickness of the primitive: an edge row may come from a triangle, m.
+  BB_HD double obstacle_offset(Key pair) const {
+    const Index primitive = static_cast<Index>(pair >> 30 & ((Key{1} << 30) - 1));
+    const bool edge = static_cast<int>(pair >> 60) == obstacle_pairs_of<2>;
+    return edge ? to.surface.edges.offset[primitive] : to.surface.triangles.offset[primitive];
   }
 };
 

@@ -15,7 +15,7 @@ ContactCounts counts_of(const RowTotals& rows) {
   out.point_edge = of_kind(1);
   out.point_triangle = of_kind(2);
   out.edge_edge = of_kind(3);
-  out.obstacle = of_kind(4);
+  out.obstacle = of_kind(4) + of_kind(5) + of_kind(6);
   out.mollified = of_kind(mollified_kind);
   return out;
 }

@@ -14,7 +14,7 @@ struct RowTotals {
   Key of_kind[mollified_kind + 1];  // rows
   Compensated load;                 // N
 
-  BB_HD static RowTotals zero() { return {0, 0, 0, 0, 0, {0, 0, 0, 0, 0, 0}, Compensated::zero()}; }
+  BB_HD static RowTotals zero() { return {0, 0, 0, 0, 0, {0, 0, 0, 0, 0, 0, 0, 0}, Compensated::zero()}; }
   BB_HD static void raise(Key& most, Key key) { most = key > most ? key : most; }
   friend BB_HD RowTotals operator+(const RowTotals& a, const RowTotals& b) {
     RowTotals out = a;
