@@ -120,10 +120,19 @@ def verdict_word(row: pd.Series) -> str:
     return row["comparability_verdict"] if row["comparability_verdict"] in ("not_valid", "not_comparable") else ""
 
 
+def end_word(row: pd.Series) -> str:
+    """Which residual the steps of a run end with that its step solver does not ask to converge; else empty."""
+    if row.get("convergence") != "not_asked":
+        return ""
+    median = row["end_error_tolerances_median"]
+    size = "not measured" if pd.isna(median) else f"{median:.2g} tolerances"
+    return f"not asked to converge, residual {size}"
+
+
 def name_of(row: pd.Series) -> str:
-    """The legend's text: the series, and the word of a run whose marker is hollow."""
-    word = verdict_word(row)
-    return f"{row['series']} ({word})" if word else row["series"]
+    """The legend's text: the series, the word of a run whose marker is hollow, and of one that does not converge."""
+    words = [word for word in (verdict_word(row), end_word(row)) if word]
+    return f"{row['series']} ({'; '.join(words)})" if words else row["series"]
 
 
 def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "default") -> None:

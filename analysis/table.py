@@ -40,6 +40,8 @@ def summary_table(records: Records) -> pd.DataFrame:
         raw, scaled = _cond(records, run["run"], "none"), _cond(records, run["run"], "block_jacobi")
         word = style.verdict_word(run)
         verdict = run["outcome"] if word in ("", run["outcome"]) else f"{run['outcome']}, {word}"
+        if end := style.end_word(run):
+            verdict += f", {end}"
         rows.append(
             {
                 "group": run["group"],

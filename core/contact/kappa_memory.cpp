@@ -22,6 +22,14 @@ void KappaMemory::adopt(const KnownStiffness& known) {
   for (std::size_t i = 0; i < known.pair.size(); ++i) known_.push_back({known.pair[i], known.parts[i]});
 }
 
+void KappaMemory::known(KnownStiffness& out) const {
+  out = {};
+  for (const Known& entry : known_) {
+    out.pair.push_back(entry.pair);
+    out.parts.push_back(entry.parts);
+  }
+}
+
 const KappaMemory::Known* KappaMemory::find(PairId pair) const {
   const auto at = std::lower_bound(known_.begin(), known_.end(), pair,
                                    [](const Known& entry, PairId id) { return entry.pair < id; });

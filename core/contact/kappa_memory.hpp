@@ -22,6 +22,8 @@ class KappaMemory {
   void clear() { known_.clear(); }
   /// What another memory knows, in the place of what this one knew.
   void adopt(const KnownStiffness& known);
+  /// What this one knows.
+  void known(KnownStiffness& out) const;
   /// Adds the pairs that are not known yet; what is known stays. Requires recall() of the same tables before,
   /// and parts of the rows that it reported missing set (see complete()).
   void store(const ContactTable& rows, const MollifiedTable& mollified);

@@ -15,6 +15,9 @@ class Cudss final : public LinearSolver {
   LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
     return solve_directly(factor_, system, b, x, residual_);
   }
+  Definiteness examine(const ReducedSystem& a, const NearMatrix& near) override {
+    return examine_directly(factor_, a, near);
+  }
 
  private:
   Factor factor_{open_library()};

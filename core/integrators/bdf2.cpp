@@ -23,14 +23,12 @@ class Bdf2 final : public Integrator {
     out.x_tilde = (4 * history.x - history.x_prev) / 3 + (dt / 9) * (8 * history.v - 2 * history.v_prev);
   }
   void finish(const History& history, double dt, const Prediction&, const Positions& x, Positions& v,
-              Positions& a) const override {
+              Positions&) const override {
     if (starts(history, dt)) {
       v = (x - history.x) / dt;
-      a = (v - history.v) / dt;
       return;
     }
     v = (3 * x - 4 * history.x + history.x_prev) / (2 * dt);
-    a = (3 * v - 4 * history.v + history.v_prev) / (2 * dt);
   }
 };
 }  // namespace

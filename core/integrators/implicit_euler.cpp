@@ -12,9 +12,8 @@ class ImplicitEuler final : public Integrator {
     out.x_tilde = history.x + dt * history.v;
   }
   void finish(const History& history, double dt, const Prediction&, const Positions& x, Positions& v,
-              Positions& a) const override {
+              Positions&) const override {
     v = (x - history.x) / dt;
-    a = (v - history.v) / dt;
   }
 };
 }  // namespace

@@ -11,7 +11,7 @@
 namespace bb {
 
 /// States at the ends of the last two steps. `steps` counts accepted steps; x_prev, v_prev need steps >= 1.
-/// a is the acceleration at x (m/s^2), kept for integrators that say needs_acceleration.
+/// a is the acceleration at x (m/s^2) of integrators that say needs_acceleration, 0 for the others.
 struct History {
   int steps = 0;
   double dt_prev = 0;  // s, length of the step that ended at x; 0: as the next one
@@ -34,7 +34,8 @@ class Integrator {
   virtual bool needs_acceleration() const { return false; }
   /// Fills `out` without allocating after the first call. dt in s.
   virtual void predict(const History& history, double dt, Prediction& out) const = 0;
-  /// Velocity and acceleration at the end of the step that reached x. v, a: [3 x n].
+  /// Velocity at the end of the step that reached x, and acceleration where needs_acceleration: others leave a as it
+  /// is. v, a: [3 x n].
   virtual void finish(const History& history, double dt, const Prediction& used, const Positions& x,
                       Positions& v, Positions& a) const = 0;
 };

@@ -12,9 +12,8 @@ class QuasiStatic final : public Integrator {
     out.x_tilde = history.x;
   }
   void finish(const History&, double, const Prediction&, const Positions& x, Positions& v,
-              Positions& a) const override {
+              Positions&) const override {
     v.setZero(3, x.cols());
-    a.setZero(3, x.cols());
   }
 };
 }  // namespace

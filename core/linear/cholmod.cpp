@@ -12,6 +12,9 @@ class Cholmod final : public LinearSolver {
   LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
     return solve_directly(factor_, system, b, x, residual_);
   }
+  Definiteness examine(const ReducedSystem& a, const NearMatrix& near) override {
+    return examine_directly(factor_, a, near);
+  }
 
  private:
   CholmodFactor factor_;

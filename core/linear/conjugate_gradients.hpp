@@ -18,6 +18,8 @@ class ConjugateGradients {
   /// residuals and Ritz values of the report.
   LinearStatus solve(const SymmetricProduct& a, const Preconditioner& preconditioner, const VecXd& b,
                      double tolerance, int max_iterations, VecXd& x, LinearReport& report);
+  /// The last direction p; after matrix_indefinite p^T A p is negative.
+  const VecXd& direction() const { return p_; }
   /// Deterministic for any number of threads.
   double norm(const VecXd& v) { return std::sqrt(dot_(v, v)); }
 

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "core/linear/linear_solver.hpp"
+#include "core/linear/preconditioner.hpp"
 #include "core/linear/stopwatch.hpp"
 
 namespace bb {
@@ -40,6 +41,36 @@ LinearReport solve_directly(Factor& factor, const ReducedSystem& system, const V
   const double b_norm = b.norm();
   report.residual_true = b_norm > 0 ? residual.norm() / b_norm : 0;
   return report;
+}
+
+/// As LinearSolver::examine, with a factor of A; where there is none, conjugate gradients with one of `near` find a
+/// direction of negative curvature, or that only rounding was in the way.
+template <class Factor>
+Definiteness examine_directly(Factor& factor, const ReducedSystem& a, const NearMatrix& near) {
+  class Applied final : public Preconditioner {
+   public:
+    explicit Applied(Factor& of) : of_(of) {}
+    LinearStatus setup(const ReducedSystem& system, const SymmetricProduct&) override {
+      return of_.factorize(system);
+    }
+    void apply(const VecXd& r, VecXd& z) const override { of_.solve(r, z); }
+
+   private:
+    Factor& of_;
+  };
+  constexpr int most_iterations = 300;
+  Definiteness out;
+  const LinearStatus status = factor.factorize(a);
+  if (status == LinearStatus::matrix_indefinite) {
+    Applied applied(factor);
+    out = examine_preconditioned(a, near, applied, most_iterations);
+    ++out.factorizations;
+  } else if (status == LinearStatus::ok) {
+    out.verdict = Definiteness::Verdict::positive;
+    out.by_factor = true;
+  }
+  ++out.factorizations;
+  return out;
 }
 
 }  // namespace bb

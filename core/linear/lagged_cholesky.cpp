@@ -10,6 +10,7 @@
 
 #include "core/linear/cholmod_factor.hpp"
 #include "core/linear/conjugate_gradients.hpp"
+#include "core/linear/direct_solve.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/linear/stopwatch.hpp"
 
@@ -24,6 +25,7 @@ class Factor final : public Preconditioner {
   }
   void apply(const VecXd& r, VecXd& z) const override { factor_.solve(r, z); }
   const CholmodFactor& cholmod() const { return factor_; }
+  CholmodFactor& cholmod() { return factor_; }
 
  private:
   mutable CholmodFactor factor_;  // a solve writes to its workspace
@@ -35,6 +37,13 @@ class LaggedCholesky final : public LinearSolver {
       : forcing_(parameters), max_pcg_iterations_(integer(parameters, "max_pcg_iterations")) {}
   std::string_view name() const override { return "lagged_cholesky"; }
   void begin_step() override { forcing_.begin_step(); }
+
+  // The factor that is left, of A or of the near matrix, serves the solves to come.
+  Definiteness examine(const ReducedSystem& a, const NearMatrix& near) override {
+    Definiteness out = examine_directly(factor_.cholmod(), a, near);
+    n_ = out.verdict == Definiteness::Verdict::unknown ? -1 : a.lower.rows();
+    return out;
+  }
 
   LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
     LinearReport report;

@@ -1,6 +1,8 @@
 // The registry of linear solvers and the words of their statuses.
 #include "core/linear/linear_solver.hpp"
 
+#include "core/linear/preconditioner.hpp"
+
 namespace bb {
 
 #define ENTRY(name, doc) LinearSolverEntry linear_solver_##name();
@@ -31,6 +33,11 @@ LinearReport LinearSolver::solve(const ReducedSystem& system, const VecXd& b, Ve
   }
   x = VecXd::Zero(b.size());
   return solve_checked(system, b, x);
+}
+
+Definiteness LinearSolver::examine(const ReducedSystem& a, const NearMatrix& near) {
+  constexpr int most_iterations = 10000;
+  return examine_preconditioned(a, near, *make_preconditioner("block_jacobi"), most_iterations);
 }
 
 const Registry<LinearSolverEntry>& linear_solvers() {

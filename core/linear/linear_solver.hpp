@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "core/linear/block_system.hpp"
+#include "core/linear/definiteness.hpp"
 #include "core/parameters/parameter.hpp"
 #include "core/parameters/registry.hpp"
 
@@ -57,6 +58,10 @@ class LinearSolver {
   /// to another method.
   /// Errors: ConfigError when b has not one entry a row of the matrix.
   LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x);
+  /// Whether A is positive definite: a direct solver by its factor, an iterative one by its own iterations. near: for
+  /// the preconditioner. What solve() keeps from earlier matrices may change. Cost: a factorisation, two more and
+  /// some solves where there is none; or a solve to 1e-6.
+  virtual Definiteness examine(const ReducedSystem& a, const NearMatrix& near);
 
  private:
   /// x is 0, b fits.

@@ -18,6 +18,9 @@ class Pcg final : public LinearSolver {
   std::string_view name() const override { return "pcg"; }
   void begin_step() override { forcing_.begin_step(); }
   LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override;
+  Definiteness examine(const ReducedSystem& a, const NearMatrix& near) override {
+    return examine_preconditioned(a, near, *preconditioner_, max_iterations_);
+  }
 
  private:
   Forcing forcing_;

@@ -28,7 +28,7 @@ class AccumulatedToi final : public StepSolver {
     step.dt_s = 0;  // until a part of it is reached
     double beta = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
-      const double advanced = iterate(system, step, task.step, iteration, observer);
+      const double advanced = iterate(system, step, task.step, iteration, SaddleRule::ignore, observer);
       if (step.status != StepStatus::iteration_cap) return step;
       beta += std::max(0.0, 1.0 - beta) * advanced;
       if (beta >= target_toi_ && iteration + 1 >= min_newton_steps_) {
@@ -42,8 +42,9 @@ class AccumulatedToi final : public StepSolver {
   }
 
  private:
-  // One assemble, solve, bound, move. Returns the fraction of the Newton direction that was taken.
-  double iterate(StepSystem& system, StepReport& step, int step_index, int iteration,
+  // One assemble, solve, bound, move. Returns the fraction of the Newton direction that was taken. rule: whether the
+  // matrix of the iterate is looked at.
+  double iterate(StepSystem& system, StepReport& step, int step_index, int iteration, SaddleRule rule,
                  StepObserver& observer) {
     IterationReport report = begin_iteration(system, step_index, iteration);
     find_direction(system, report, observer);
@@ -52,6 +53,7 @@ class AccumulatedToi final : public StepSolver {
       finish_iteration(system, step, report, observer);
       return 0;
     }
+    step.end_proof = check_end(system, rule, step, report).proof;
     const double largest = system.direction_size().vertex_m;
     const double scale = largest > max_dx ? max_dx / largest : 1.0;
     system.scale_direction(scale);
@@ -92,7 +94,7 @@ class AccumulatedToi final : public StepSolver {
       aim_at_poses(system, task, step.dt_s);
     }
     step.status = StepStatus::converged;
-    iterate(system, step, task.step, iteration, observer);
+    iterate(system, step, task.step, iteration, options_.saddle, observer);
   }
 
   StepSolverOptions options_;
@@ -108,6 +110,7 @@ StepSolverEntry step_solver_accumulated_toi() {
       {"target_toi", open_low(number_in(0, 1, "1")), 0.25, "accumulated time of impact that ends the step"},
       {"min_newton_steps", count(1, 1000000), 1, "smallest number of iterations"},
   };
+  entry.asked_to_converge = false;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AccumulatedToi>(options);
   };

@@ -31,13 +31,13 @@ class ArticleLiteral final : public StepSolver {
         fail_step(system, step, *failed, report);
         return step;
       }
+      const EndCheck end = small ? check_end(system, options_.saddle, step, report) : EndCheck();
       const bool moved = backtrack(system, report);
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
-      if (small || !moved) {
-        step.status = small ? StepStatus::converged : StepStatus::line_search_failed;
-        return step;
-      }
+      if (small) end_converged(step, end, Number::missing("not_estimated"), 0);
+      if (!small && !moved) step.status = StepStatus::line_search_failed;
+      if (small || !moved) return step;
     }
     return step;
   }

@@ -1,41 +1,33 @@
 #include "core/newton/error_estimate.hpp"
 
-#include <algorithm>
 #include <limits>
 
 namespace bb {
 
-void ErrorEstimate::reset(double largest, Precision precision) {
-  dx_.clear();
-  rounding_ = 8 * value_epsilon(precision) * largest;
-  smallest_ = values_in_float(precision) ? rounding_ : 0;
-  contraction_ = Number::missing("first_iteration");
-  before_ = 0;
-  whole_ = false;
-}
+void ErrorEstimate::reset() { *this = {}; }
 
-void ErrorEstimate::add(double dx, double residual) {
+void ErrorEstimate::add(double dx, double residual, double rounding) {
   if (dx_.empty()) {
     contraction_ = Number::missing("first_iteration");
   } else if (!whole_ || dx_.back() == 0) {
     contraction_ = Number::missing("shortened_step");
-    before_ = 0;
+    before_ = unknown;
   } else {
     const double ratio = dx / dx_.back();
     contraction_ = Number(std::max({ratio, before_ * before_, residual}));
     before_ = ratio;
   }
   dx_.push_back(dx);
+  rounding_ = rounding;
 }
 
 void ErrorEstimate::took(double alpha) { whole_ = alpha == 1; }
 
 double ErrorEstimate::error() const {
-  constexpr double unknown = 0.9;
-  if (dx_.back() <= rounding_) return dx_.back();
+  if (dx_.back() == 0) return rounding_;
   const double q = contraction_.finite() ? contraction_.value : unknown;
   if (!(q < 1)) return std::numeric_limits<double>::infinity();
-  return dx_.back() * q / (1 - q);
+  return std::max(rounding_, dx_.back() * q / (1 - q));
 }
 
 bool ErrorEstimate::still_falling() const {

@@ -90,6 +90,8 @@ void find_direction(StepSystem& system, IterationReport& report, StepObserver& o
   report.solve = system.find_direction();
   const DirectionSize size = system.direction_size();
   report.dx_inf_m = size.inf_m;
+  report.dx_beyond_m = size.beyond_m;
+  report.dx_rounding_m = size.rounding_m;
   report.decrement_J = -size.slope_J / 2;
   report.n_free = static_cast<std::size_t>(system.n_free());
   report.nnz = system.nnz();
@@ -102,6 +104,23 @@ std::optional<StepStatus> direction_failure(const IterationReport& report, bool 
   if (!std::isfinite(report.dx_inf_m) || !std::isfinite(report.decrement_J)) return StepStatus::non_finite;
   if (must_descend && report.decrement_J <= 0) return StepStatus::not_descent;
   return std::nullopt;
+}
+
+EndCheck check_end(StepSystem& system, SaddleRule rule, StepReport& step, IterationReport& report) {
+  if (rule == SaddleRule::ignore) return {};
+  const EndCheck end = system.check_end();
+  ++report.end_checks;
+  report.end_check_factorizations += end.factorizations;
+  report.end_check_iterations += end.iterations;
+  if (end.proof == EndProof::saddle) keep_smaller(step.saddle_curvature_N_per_m, end.curvature_N_per_m);
+  return end;
+}
+
+void end_converged(StepReport& step, const EndCheck& end, const Number& error, double asked) {
+  step.status = StepStatus::converged;
+  step.end_proof = end.proof;
+  step.end_error_m = error;
+  if (error.finite()) step.end_error_tolerances = error.value / asked;
 }
 
 void finish_iteration(StepSystem& system, StepReport& step, IterationReport& report, StepObserver& observer) {

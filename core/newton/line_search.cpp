@@ -4,7 +4,7 @@
 //   2 solve A dx = -g, prescribed motion lifted to the right-hand side; A is the Hessian, as near to the exact
 //     one as positive definiteness allows
 //   3 stop when the estimated error of x + dx is below h tol_velocity, every prescribed vertex is at its pose
-//     and E curves upwards along dx
+//     and the exact Hessian is positive definite; from a saddle go on along negative curvature
 //   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded
 //   6 accept
@@ -24,6 +24,7 @@ namespace {
 constexpr double collapsed_step = 1e-8;   // a step below it counts as no progress
 constexpr int collapse_iterations = 10;   // that many in a row end the step
 constexpr double smallest_alpha = 1e-14;  // below it x does not move any more
+constexpr int most_escapes = 10;          // in a step; a saddle after that many is said to be one
 
 class LineSearch final : public StepSolver {
  public:
@@ -36,18 +37,27 @@ class LineSearch final : public StepSolver {
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
-    error_.reset(system.largest_coordinate(), system.precision());
-    const double tolerance = std::max(options_.tol_velocity * task.dt, error_.smallest());  // m
-    int collapsed = 0;
+    error_.reset();
+    const double tolerance = tolerance_of(system, task.dt);
+    int collapsed = 0, escapes = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);
       find_direction(system, report, observer);
       const bool at_pose = system.at_target();
-      const bool small = estimate_error(report) < tolerance && at_pose && !at_saddle(system);
+      const bool small = estimate_error(report) < tolerance && at_pose;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
         fail_step(system, step, *failed, report);
         return step;
+      }
+      const EndCheck end = small ? check_end(system, options_.saddle, step, report) : EndCheck();
+      if (end.proof == EndProof::saddle && options_.saddle == SaddleRule::escape && escapes < most_escapes &&
+          escape(system, report, tolerance)) {
+        ++escapes;
+        error_.took(0);
+        finish_iteration(system, step, report, observer);
+        show_motion(system, task.step, observer);
+        continue;
       }
       const bool moved = search(system, report, at_pose);
       error_.took(report.alpha);
@@ -56,7 +66,7 @@ class LineSearch final : public StepSolver {
       // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
       const bool enough = report.alpha == 1 || report.dx_inf_m < tolerance;
       if (small && enough && (report.contraction.finite() || as_modelled(report))) {
-        step.status = StepStatus::converged;
+        end_converged(step, end, report.error_estimate_m, options_.tol_velocity * task.dt);
         return step;
       }
       if (!moved && bound_ >= collapsed_step) {
@@ -79,16 +89,51 @@ class LineSearch final : public StepSolver {
  private:
   // Of x + dx, m.
   double estimate_error(IterationReport& report) {
-    error_.add(report.dx_inf_m, report.solve.linear.residual_true);
+    error_.add(report.dx_beyond_m, report.solve.linear.residual_true, report.dx_rounding_m);
     report.contraction = error_.contraction();
     report.error_estimate_m = error_.error();
     return error_.error();
   }
 
-  // The matrix that was solved is positive definite; where it is not the exact one, E may still curve
-  // downwards along dx, and x + dx is no minimum.
-  static bool at_saddle(StepSystem& system) {
-    return !system.solved_is_exact() && system.direction_curvature() < 0;
+  // m. In float no step is asked for less than the rounding of the coordinates that are free to move.
+  double tolerance_of(const StepSystem& system, double dt) const {
+    const double asked = options_.tol_velocity * dt;
+    if (!values_in_float(system.precision())) return asked;
+    double largest = 0;
+    for (Eigen::Index i = 0; i < system.x().size(); ++i) {
+      if (system.fixed()[static_cast<std::size_t>(i)] == 0)
+        largest = std::max(largest, std::abs(system.x().data()[i]));
+    }
+    return std::max(asked, 8 * value_epsilon(system.precision()) * largest);
+  }
+
+  // A step along negative curvature, from d_hat down to the tolerance, as far as the bound allows: E has to fall by a
+  // part of what slope and curvature promise, and by more than rounding. False where no length does: within rounding
+  // E is level there.
+  bool escape(StepSystem& system, IterationReport& report, double tolerance) {
+    const std::vector<double>& d_hat = system.scene().d_hat;
+    const double widest = d_hat.empty() ? 0 : *std::max_element(d_hat.begin(), d_hat.end());
+    const double length = std::max(widest, 2 * tolerance);
+    const WholePhase timer(system.clock(), Phase::end_check);
+    system.aim_at_escape(length);
+    const double slope = std::min(0.0, system.direction_size().slope_J),
+                 curvature = system.direction_curvature();
+    if (!(curvature < 0)) return false;
+    system.prepare_motion(MotionEnd::on_target, true);
+    bound_ = system.bound_motion(report);
+    for (double alpha = bound_ < 1 ? cap_fraction_ * bound_ : 1; alpha * length > tolerance; alpha /= 2) {
+      ++report.line_search_trials;
+      const auto change = system.try_motion(alpha);
+      const double modelled = alpha * slope + alpha * alpha * curvature / 2;
+      if (!change || change->change > armijo_ * modelled || within_rounding(*change, system.precision()))
+        continue;
+      report.alpha = alpha;
+      report.energy_change_J = change->change;
+      report.escapes = 1;
+      system.accept();
+      return true;
+    }
+    return false;
   }
 
   // Whether E has changed along the step as its quadratic model says, or by noise. Where the rate of convergence

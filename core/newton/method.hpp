@@ -10,6 +10,7 @@
 
 #include "core/integrators/integrator.hpp"
 #include "core/linear/linear_solver.hpp"
+#include "core/newton/saddle_rule.hpp"
 #include "core/parameters/parameter.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "core/terms/term_options.hpp"
@@ -24,6 +25,7 @@ struct StepSolverOptions {
   std::string name = "line_search";
   int max_iterations = 200;
   double tol_velocity = 0;  // m/s: stop at |dx|_inf / h below it
+  SaddleRule saddle = SaddleRule::escape;
   int retries = 0;          // times that a step is halved and tried again, 0 to 20
   ParameterMap parameters;  // of the step solver of that name; what is left out has its default
 };

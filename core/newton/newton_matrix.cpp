@@ -120,6 +120,41 @@ double NewtonSystem::exact_curvature(const Positions& dx) {
   return part_.cwiseProduct(dx).sum();
 }
 
+// Where the exact matrix is the one that was factorised, that is the proof. Rows that are clamped add to it: where it is
+// not positive definite then, the exact one is not either.
+EndCheck NewtonSystem::check_end() {
+  const WholePhase timer(clock(), Phase::end_check);
+  EndCheck out;
+  const bool known = exact_hessians_ == ExactHessians::all;
+  out.proof = EndProof::clamped;
+  if (exact_hessians_ == ExactHessians::none) return out;
+  if (factored_ && level_.exact() && shift_ == 0) {
+    if (known) out.proof = EndProof::factor;
+    return out;
+  }
+  examined_ = exact();
+  const Definiteness found = solver_->examine(
+      examined_, [this]() -> const ReducedSystem& { return level_.exact() ? clamped() : solved(); });
+  factored_ = false;
+  out.factorizations = found.factorizations;
+  out.iterations = found.iterations;
+  if (found.verdict == Definiteness::Verdict::unknown) out.proof = EndProof::unproven;
+  if (found.verdict == Definiteness::Verdict::positive && known) {
+    out.proof = found.by_factor ? EndProof::factor : EndProof::lanczos;
+  }
+  if (found.verdict != Definiteness::Verdict::negative) return out;
+  out.proof = EndProof::saddle;
+  out.curvature_N_per_m = found.curvature;
+  escape_.setZero(3, x_.cols());
+  blocks_->expand_vector(found.direction, escape_);
+  return out;
+}
+
+void NewtonSystem::aim_at_escape(double length) {
+  const double slope = gradient_.cwiseProduct(escape_).sum(), largest = escape_.cwiseAbs().maxCoeff();
+  dx_ = escape_ * ((slope > 0 ? -length : length) / largest);
+}
+
 double NewtonSystem::add_tikhonov(double relative, double absolute) {
   const ReducedSystem& reduced = blocks_->reduce(full_);
   const double mean = reduced.lower.diagonal().sum() / static_cast<double>(reduced.lower.rows());
@@ -184,6 +219,7 @@ void NewtonSystem::solve_reduced(SolveReport& report) {
   clock().move(Phase::linear_solve, Phase::linear_factor, linear.factor_s);
   ++report.attempts;
   report.factorizations += linear.factorized ? 1 : 0;
+  factored_ = linear.factorized;
   report.factor_flop += linear.factor_flop;
   report.analyses += linear.analyzed ? 1 : 0;
   linear.iterations += report.linear.iterations;

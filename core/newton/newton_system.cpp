@@ -7,6 +7,7 @@
 #include <stdexcept>
 
 #include "core/archive/archive.hpp"
+#include "core/math/rounding_room.hpp"
 
 namespace bb {
 
@@ -19,6 +20,30 @@ std::vector<std::uint8_t> fixed_dofs(const Scene& scene, const Plan& plan) {
     for (std::size_t i = 2; i < fixed.size(); i += 3) fixed[i] = 1;
   }
   return fixed;
+}
+
+std::vector<double> body_sizes(const Scene& scene) {
+  std::vector<double> out(static_cast<std::size_t>(scene.n_vertices()), 0);
+  for (const Body& body : scene.bodies) {
+    if (body.n_vertices == 0) continue;
+    const auto rest = scene.rest.middleCols(body.first_vertex, body.n_vertices);
+    const double side = (rest.rowwise().maxCoeff() - rest.rowwise().minCoeff()).maxCoeff();
+    std::fill_n(out.begin() + body.first_vertex, body.n_vertices, side);
+  }
+  return out;
+}
+
+ExactHessians exact_hessians(const Plan& plan, const Method& method) {
+  bool some = false, all = true;
+  for (std::size_t i = 0; i < plan.terms.size(); ++i) {
+    const TermEntry& entry = term_entries()[i];
+    if (!plan.terms[i].needed || entry.convex) continue;
+    const bool exact = first_projection(method.hessian_of(entry.name)) == Projection::none;
+    some = some || exact;
+    all = all && exact && knows_exact_hessian(entry.name, method);
+  }
+  if (all) return ExactHessians::all;
+  return some ? ExactHessians::some : ExactHessians::none;
 }
 
 namespace {
@@ -38,6 +63,8 @@ NewtonSystem::NewtonSystem(const Scene& scene, Method& method, const Plan& plan)
       fixed_(fixed_dofs(scene, plan_)),
       terms_(make_terms(plan_, {scene, method, plan_.contacts, fixed_})),
       level_(choices_of(terms_, method)),
+      exact_hessians_(exact_hessians(plan_, method)),
+      body_size_(body_sizes(scene)),
       blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed_)),
       solver_(make_linear_solver(plan_.linear)) {
   set_fixed_families(method);
@@ -107,6 +134,16 @@ void NewtonSystem::adopt(const StepFrame& frame, const Positions& x, const Posit
                          const HessianLevel& level, const KnownStiffness& known) {
   begin_step(frame.x_n, {frame.c, frame.x_tilde}, frame.dt, frame.load_factor);
   for (const auto& term : terms_) term->adopt(known);
+  go_to(x, target, level);
+}
+
+void NewtonSystem::adopt(const StepFrame& frame, const NewtonSystem& other) {
+  begin_step(frame.x_n, {frame.c, frame.x_tilde}, frame.dt, frame.load_factor);
+  for (std::size_t i = 0; i < slots_.size(); ++i) slots_[i].term->adopt_from(*other.slots_[i].term);
+  go_to(other.x(), other.x(), other.level());
+}
+
+void NewtonSystem::go_to(const Positions& x, const Positions& target, const HessianLevel& level) {
   if (x != x_) {
     assemble();
     prepare(x, x - x_);
@@ -167,6 +204,11 @@ DirectionSize NewtonSystem::direction_size() {
     size.slope_J += gradient_.data()[i] * dx_.data()[i];
     const double part = std::abs(dx_.data()[i]);
     size.inf_m = part > size.inf_m || std::isnan(part) ? part : size.inf_m;
+    const Eigen::Index v = i / 3;
+    const bool rounding = within_coordinate_rounding(
+        part, x_.col(v).data(), body_size_[static_cast<std::size_t>(v)], value_epsilon(precision_));
+    double& of = rounding ? size.rounding_m : size.beyond_m;
+    of = part > of || std::isnan(part) ? part : of;
   }
   size.vertex_m = dx_.size() == 0 ? 0 : dx_.colwise().norm().maxCoeff();
   return size;

@@ -25,6 +25,10 @@ namespace bb {
 
 /// [3 n] 1 where a degree of freedom is prescribed or, in a planar scene, locked.
 std::vector<std::uint8_t> fixed_dofs(const Scene& scene, const Plan& plan);
+/// [n] m, size of the body of each vertex at rest: the largest side of its box.
+std::vector<double> body_sizes(const Scene& scene);
+/// Of the terms of the plan.
+ExactHessians exact_hessians(const Plan& plan, const Method& method);
 /// Of a method that is run without a config.
 PlanOptions plan_options(const Method& method);
 
@@ -49,6 +53,8 @@ class NewtonSystem final : public StepSystem {
   /// std::logic_error for an x that is not feasible.
   void adopt(const StepFrame& frame, const Positions& x, const Positions& target, const HessianLevel& level,
              const KnownStiffness& known);
+  /// The same of another system on the CPU, made from the same scene and method; prescribed vertices stay.
+  void adopt(const StepFrame& frame, const NewtonSystem& other);
   /// Makes the linear solver anew and forgets the pattern of the contacts: between steps.
   void drop_caches() override;
 
@@ -89,11 +95,12 @@ class NewtonSystem final : public StepSystem {
   DirectionSize direction_size() override;
   void scale_direction(double factor) override { dx_ *= factor; }
   double direction_curvature() override { return exact_curvature(dx_); }
+  EndCheck check_end() override;
+  void aim_at_escape(double length) override;
   void prepare_motion(MotionEnd end, bool to_bound) override;
   double bound_motion(IterationReport& report) override { return bound(motion_end_, dx_, report); }
   std::optional<EnergyChange> try_motion(double alpha) override;
   const Positions& x_before() const override { return trial_; }
-  double largest_coordinate() const override { return x_.size() == 0 ? 0 : x_.cwiseAbs().maxCoeff(); }
   const Positions& target() const { return target_; }
   const Positions& direction() const { return dx_; }
   NewtonSystem& on_cpu() override { return *this; }
@@ -102,6 +109,7 @@ class NewtonSystem final : public StepSystem {
   // --- what observers and reports read
   const Scene& scene() const override { return scene_; }
   const TermList& terms() const { return terms_; }
+  const HessianLevel& level() const { return level_; }
   Precision precision() const override { return precision_; }
   const Positions& x() const override { return x_; }
   const Positions& gradient() const override { return gradient_; }
@@ -167,6 +175,7 @@ class NewtonSystem final : public StepSystem {
     return {*blocks_, elastic_, gradient_, first_projection(hessian), clock()};
   }
   void set_fixed_families(const Method& method);
+  void go_to(const Positions& x, const Positions& target, const HessianLevel& level);
   bool set_changing_families();
   void linearise(Slot& slot);
   void add_families(const Slot& slot, Positions& gradient) const;
@@ -193,6 +202,9 @@ class NewtonSystem final : public StepSystem {
   std::vector<Slot> slots_;                // one a term
   std::vector<std::size_t> matrix_order_;  // of the slots: H first, since its snapshot is taken there
   HessianLevel level_;
+  const ExactHessians exact_hessians_;
+  const std::vector<double> body_size_;  // [n] m
+  bool factored_ = false;                // the last solve made a factor of the matrix that it solved
   bool served_at_once_ = false;  // the first matrix of the last solve did: the next may be nearer to exact
   std::unique_ptr<BlockSystem> blocks_;
   std::unique_ptr<LinearSolver> solver_;
@@ -200,6 +212,8 @@ class NewtonSystem final : public StepSystem {
   StepFrame frame_;
   Positions x_, trial_;
   Positions target_, dx_, motion_end_, moved_;
+  Positions escape_;                 // a direction of negative curvature at the iterate
+  ReducedSystem examined_;           // the matrix that check_end() asks about
   MotionEnd end_ = MotionEnd::free;  // of the motion in progress
   Positions gradient_;               // of E; while it is summed, of the terms so far
   Positions part_, work_;

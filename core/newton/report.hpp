@@ -22,6 +22,7 @@ struct SolveReport {
 struct IterationReport : IterateNumbers {
   SolveReport solve;
   bool pattern_changed = false;
+  double dx_beyond_m = 0, dx_rounding_m = 0;  // parts of dx_inf_m (DirectionSize)
 };
 
 /// `detail` names the pin, the pair, the linear status. `time` has every moment of Simulation::step; on_step

@@ -46,12 +46,16 @@ Simulation::Simulation(const Scene& scene, Method& method, double dt, int n_step
 Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, double dt, int n_steps)
     : scene_(scene),
       method_(method),
+      plan_(plan),
       dt_(dt),
       n_steps_(n_steps),
       parts_(method.step_solver.retries),
       system_(method.make_system ? method.make_system(scene, method, plan)
                                  : std::make_unique<NewtonSystem>(scene, method, plan)),
       solver_(make_step_solver(method.step_solver)) {
+  if (!step_solvers().require(method.step_solver.name, "/step_solver/name").asked_to_converge) {
+    end_residual_ = std::make_unique<EndResidual>(scene_, method_, plan_);
+  }
   history_.x = scene.x0;
   round_state(method.precision, history_.x);
   history_.v = scene.v0;
@@ -86,6 +90,7 @@ StepReport Simulation::step(StepObserver& observer) {
   remember(system_->x(), report.dt_s);
   report.t_s = time_;
   measure_end(*system_, report);
+  if (end_residual_ && report.status == StepStatus::converged) measure_residual(report);
   for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {
     report.kinetic_J += 0.5 * scene_.mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
   }
@@ -103,6 +108,7 @@ StepReport Simulation::attempt(StepObserver& observer) {
   task.step = step_;
   task.dt = parts_.length(dt_);
   task.load_factor = method_.integrator->quasi_static() ? (nominal_ + parts_.end()) / n_steps_ : 1.0;
+  load_factor_ = task.load_factor;
   task.history = &history_;
   task.integrator = method_.integrator.get();
   task.pose = [this](double dt, Positions& target) {
@@ -147,13 +153,22 @@ void Simulation::start_acceleration() {
   }
 }
 
+// The last prediction is the one that the end belongs to.
+void Simulation::measure_residual(StepReport& report) {
+  const StepFrame frame{history_.x_prev, prediction_.x_tilde, report.dt_s, prediction_.c, load_factor_};
+  report.end_error_m = end_residual_->measure(*system_, frame);
+  if (report.end_error_m.finite()) {
+    report.end_error_tolerances = report.end_error_m.value / (report.dt_s * method_.step_solver.tol_velocity);
+  }
+}
+
 void Simulation::remember(const Positions& x, double dt_used) {
   const ScopedPhase timer(system_->clock(), Phase::prediction);
   if (dt_used > 0) {
     method_.integrator->finish(history_, dt_used, prediction_, x, v_next_, a_next_);
     history_.v_prev.swap(history_.v);
     history_.v = v_next_;
-    history_.a = a_next_;
+    if (method_.integrator->needs_acceleration()) history_.a = a_next_;
     history_.dt_prev = dt_used;
   }
   history_.x_prev.swap(history_.x);

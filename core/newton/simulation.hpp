@@ -5,6 +5,7 @@
 #include <memory>
 #include <vector>
 
+#include "core/newton/end_residual.hpp"
 #include "core/newton/newton_system.hpp"
 #include "core/newton/step_parts.hpp"
 #include "core/newton/step_solver.hpp"
@@ -45,17 +46,21 @@ class Simulation {
   void start_acceleration();
   StepReport attempt(StepObserver& observer);
   StepReport attempt_until_converged(StepObserver& observer);
+  void measure_residual(StepReport& report);
   void remember(const Positions& x, double dt_used);
   void advance_time(double dt_used);
 
   const Scene& scene_;
   Method& method_;
+  const Plan plan_;
   double dt_ = 0, time_ = 0;
   int n_steps_ = 0, step_ = 0, nominal_ = 0;  // step_: every part counts
   double nominal_start_ = 0;                  // s
+  double load_factor_ = 1;                    // of the last attempt
   StepParts parts_;
   std::unique_ptr<StepSystem> system_;
   std::unique_ptr<StepSolver> solver_;
+  std::unique_ptr<EndResidual> end_residual_;  // of a step solver that is not asked to converge
   History history_;
   Prediction prediction_;
   Positions v_next_, a_next_;

@@ -38,6 +38,7 @@ struct StepSolverEntry {
   std::string name, doc;
   std::vector<Parameter> parameters;  // its own, with defaults
   bool bounds_steps = true;  // false: steps may pass through surfaces, barriers are read beyond their end
+  bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
   std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
 };
 const Registry<StepSolverEntry>& step_solvers();

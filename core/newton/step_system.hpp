@@ -23,9 +23,18 @@ class NewtonSystem;
 
 /// Sizes of a Newton direction over free degrees of freedom; NaN where an entry is no number.
 struct DirectionSize {
-  double inf_m = 0;     // largest |dx_i|
-  double slope_J = 0;   // g . dx
-  double vertex_m = 0;  // largest |dx| of a vertex, prescribed ones included
+  double inf_m = 0;       // largest |dx_i|
+  double beyond_m = 0;    // of those that stand out of the rounding of their vertex (rounding_room.hpp)
+  double rounding_m = 0;  // of the others
+  double slope_J = 0;     // g . dx
+  double vertex_m = 0;    // largest |dx| of a vertex, prescribed ones included
+};
+
+/// Whether the exact matrix of an iterate is positive definite.
+struct EndCheck {
+  EndProof proof = EndProof::not_checked;
+  double curvature_N_per_m = 0;  // saddle: v^T H v / v^T v of the direction v that was found
+  int factorizations = 0, iterations = 0;
 };
 
 /// Where prescribed vertices are at the whole of a motion: at x + dx, or exactly at their target.
@@ -68,6 +77,12 @@ class StepSystem {
   virtual void scale_direction(double factor) = 0;
   /// dx^T H dx, J, of the exact Hessian where a term began with it, of its own choice elsewhere.
   virtual double direction_curvature() = 0;
+  /// Whether that Hessian is positive definite at the iterate, after find_direction(); the direction stays. A
+  /// factor of the very matrix that was solved shows it for free.
+  virtual EndCheck check_end() = 0;
+  /// After a check that found a saddle: dx becomes the direction of negative curvature with |dx|_inf = length (m), so
+  /// that E does not grow along it to first order.
+  virtual void aim_at_escape(double length) = 0;
   /// Whether no element of the solved matrix was clamped that its choice begins with exact.
   virtual bool solved_is_exact() const = 0;
 
@@ -91,8 +106,6 @@ class StepSystem {
   virtual const Positions& x_before() const = 0;
   /// Of E at the iterate, N.
   virtual const Positions& gradient() const = 0;
-  /// max |x_i|, m.
-  virtual double largest_coordinate() const = 0;
   virtual double grad_inf() const = 0;
   /// E at the iterate, J; for the record only.
   virtual double energy() const = 0;

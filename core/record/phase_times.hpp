@@ -26,6 +26,7 @@ namespace bb {
   PHASE(step_bound, "ACCD")                                                                                \
   PHASE(strain_bound, "bisection of the strain limit")                                                     \
   PHASE(line_search, "energies of trial states")                                                           \
+  PHASE(end_check, "whether the end of a step is a minimum, and the way out of a saddle")                  \
   PHASE(step_control, "the step solver itself: measures of iterate, direction and end, decisions, copies") \
   PHASE(output, "observers: record, trace, frames; of an observed run condition estimates and audit too")
 
@@ -116,6 +117,24 @@ class PhaseClock {
   PhaseTimes times_, lap_start_;
   Phase phase_ = Phase::step_control;
   double since_ = now_s();
+};
+
+/// Charges everything until the end of the scope to one phase, whatever scopes inside it say.
+class WholePhase {
+ public:
+  WholePhase(PhaseClock& clock, Phase phase) : clock_(clock), phase_(phase), before_(clock.read()) {}
+  ~WholePhase() {
+    PhaseTimes spent = clock_.read();
+    spent -= before_;
+    for (std::size_t i = 0; i < kPhases; ++i) clock_.move(static_cast<Phase>(i), phase_, spent.s[i]);
+  }
+  WholePhase(const WholePhase&) = delete;
+  WholePhase& operator=(const WholePhase&) = delete;
+
+ private:
+  PhaseClock& clock_;
+  Phase phase_;
+  PhaseTimes before_;
 };
 
 /// Charges a phase until the end of the scope, then again the one that was charged before. Scopes may nest:

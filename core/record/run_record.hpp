@@ -17,7 +17,7 @@ namespace bb {
 /// Of run.json and of the trace beside it. MODEL.REVISION.ADDITION: removed or changed meaning, widened,
 /// added. Readers refuse another first number.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.3.0";
+inline constexpr const char* run_schema_version = "3.4.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 using CountMap = std::map<std::string, int>;
@@ -192,6 +192,13 @@ struct Summary : WorkCounts {
   BB_FIELD(Number, dt_min_s, "shortest step");
   BB_FIELD(long long, newton_iterations, "over all steps") = 0;
   BB_FIELD(Stats, newton_per_step, "Newton iterations of a step");
+  BB_FIELD(std::string, convergence,
+           "not_asked: the step solver stops by another rule, so that a step that is over need not be near a "
+           "solution",
+           "asked not_asked") = "asked";
+  BB_FIELD(Stats, end_error_tolerances, "end_error_tolerances of the steps that ended as they should");
+  BB_FIELD(CountMap, end_proofs, "end_proof -> steps that ended as they should");
+  BB_FIELD(Number, saddle_curvature_N_per_m, "smallest of the steps", "none_found");
   BB_FIELD(Stats, linear_per_solve, "iterations of the linear solver");
   BB_FIELD(Stats, probe_pcg, "probe_pcg_iterations of the trace");
   BB_FIELD(Stats, contacts, "rows at the end of a step");

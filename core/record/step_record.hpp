@@ -20,6 +20,22 @@ struct StepRecord : WorkCounts {
   BB_FIELD(StepStatus, status, "how it ended") = StepStatus::converged;
   BB_FIELD(std::string, detail,
            "what held it: the pin, the pair, the linear status; empty when it converged");
+  BB_FIELD(EndProof, end_proof,
+           "what shows that it ended in a minimum of E: a property of the exact matrix at the last iterate") =
+      EndProof::not_checked;
+  BB_FIELD(Number, saddle_curvature_N_per_m,
+           "smallest v^T H v / v^T v that was found, at its end or at a saddle that it left; the smallest "
+           "eigenvalue of "
+           "the exact matrix is not larger",
+           "none_found");
+  BB_FIELD(Number, end_error_m,
+           "how far its end is from the solution: error_estimate_m of the last iteration; of a step that is "
+           "not asked to "
+           "converge, |dx|_inf of one more Newton direction with its own matrix, which is less than the "
+           "error where "
+           "that matrix is clamped",
+           "not_converged not_estimated");
+  BB_FIELD(Number, end_error_tolerances, "end_error_m over dt_s tol_velocity", "not_converged not_estimated");
   BB_FIELD(int, newton_iterations, "Newton iterations") = 0;
   BB_FIELD(ContactCounts, contacts, "at its end");
   BB_FIELD(Number, gap_min_m, "smallest gap at its end", "no_contacts not_converged");

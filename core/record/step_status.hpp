@@ -21,6 +21,24 @@ enum class StepStatus {
 template <>
 inline constexpr int n_words<StepStatus> = 8;
 
+/// What is known of the second derivatives of E where a step ended.
+enum class EndProof {
+  not_checked,  // the step did not converge, or /step_solver/saddle is ignore
+  factor,       // positive definite: a Cholesky factor of the exact matrix exists
+  lanczos,   // positive definite: conjugate gradients on a seeded right-hand side met no negative curvature
+  clamped,   // some term's exact Hessian is not known; what is known curves upwards
+  unproven,  // neither was shown
+  saddle     // not positive definite: a direction of negative curvature is known
+};
+template <>
+inline constexpr int n_words<EndProof> = 6;
+
+constexpr std::string_view to_string(EndProof proof) {
+  constexpr std::array<std::string_view, n_words<EndProof>> words = {"not_checked", "factor",   "lanczos",
+                                                                     "clamped",     "unproven", "saddle"};
+  return words[static_cast<std::size_t>(proof)];
+}
+
 constexpr std::string_view to_string(StepStatus status) {
   constexpr std::array<std::string_view, n_words<StepStatus>> words = {
       "converged",   "iteration_cap", "step_collapse",  "line_search_failed",

@@ -124,6 +124,11 @@ struct WorkCounts {
   BB_FIELD(long long, ccd_probes, "distances that ACCD computed") = 0;
   BB_FIELD(long long, ccd_capped, "pairs that reached the probe cap") = 0;
   BB_FIELD(long long, ccd_zero, "pairs that allowed no motion") = 0;
+  BB_FIELD(long long, end_checks,
+           "states that were asked whether they are minima of E, factors at hand included") = 0;
+  BB_FIELD(long long, end_check_factorizations, "factorisations that only these checks needed") = 0;
+  BB_FIELD(long long, end_check_iterations, "iterations of conjugate gradients of these checks") = 0;
+  BB_FIELD(long long, escapes, "moves along a direction of negative curvature, out of a saddle") = 0;
   BB_RECORD_END;
 
   WorkCounts& operator+=(const WorkCounts& other) {
@@ -144,9 +149,11 @@ struct TraceRow : WorkCounts {
   BB_FIELD(double, dx_inf_m, "largest entry of the full Newton direction, before alpha") = 0;
   BB_FIELD(double, decrement_J, "-g . dx / 2") = 0;
   BB_FIELD(double, hessian_t, "of the matrix that was solved: 0 exact, 1 clamped, where a term blends") = 0;
-  BB_FIELD(Number, contraction,
-           "|dx| over that of the iteration before, at least the square of the ratio before",
-           "first_iteration shortened_step not_estimated");
+  BB_FIELD(
+      Number, contraction,
+      "|dx| over that of the iteration before, at least the square of the ratio before (0.9 where that is "
+      "not known)",
+      "first_iteration shortened_step not_estimated");
   BB_FIELD(Number, error_estimate_m,
            "|dx| q/(1 - q), q the contraction: of the state after the full direction", "not_estimated");
   BB_FIELD(double, alpha, "accepted fraction of the direction") = 0;

@@ -56,6 +56,11 @@ class ContactTerm final : public Term {
     stiffness_.adopt(known);
     policy_started_ = true;  // or not yet: that is for the other system to do
   }
+  void adopt_from(const Term& other) override {
+    KnownStiffness known;
+    static_cast<const ContactTerm&>(other).stiffness_.known(known);
+    adopt(known);
+  }
   void keep(Archive& archive) override;
   void linearise(const Positions& x, const TermContext& context) override;
   void clamp(const Positions& x) override;

@@ -48,6 +48,8 @@ StepNumbers::StepNumbers() {
   gap_min_m = gap_min_rel = gap_min_ulps = gap_min_iterates_m = gap_min_iterates_rel = kappa_min_N_per_m =
       kappa_max_N_per_m = contact_load_max_N = contact_load_sum_N = Number::missing("no_contacts");
   max_stretch = limit_load_max_N_per_m = Number::missing("no_limit");
+  saddle_curvature_N_per_m = Number::missing("none_found");
+  end_error_m = end_error_tolerances = Number::missing("not_estimated");
 }
 
 void StepNumbers::add(const IterateNumbers& iterate) {
@@ -63,6 +65,10 @@ void StepNumbers::close() {
   keep_smaller(gap_min_iterates_m, gap_min_m);
   keep_smaller(gap_min_iterates_rel, gap_min_rel);
   const bool converged = status == StepStatus::converged;
+  if (!converged) {
+    end_proof = EndProof::not_checked;
+    end_error_m = end_error_tolerances = Number::missing("not_converged");
+  }
   if (!converged) gap_min_m = gap_min_rel = gap_min_ulps = Number::missing("not_converged");
   contact_overload = limit_overload = Number::missing(converged ? "converged" : "not_measured");
 }

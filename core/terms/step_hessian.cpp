@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "core/terms/registry.hpp"
+#include "core/terms/term_options.hpp"
 
 namespace bb {
 namespace {
@@ -33,6 +34,10 @@ StepHessian step_hessian_of(std::string_view word) {
     if (word == to_string(each)) return each;
   }
   throw std::logic_error("no Hessian of a step is called " + std::string(word));
+}
+
+bool knows_exact_hessian(std::string_view term, const TermOptions& options) {
+  return term != "contact" || options.hessian_mode != HessianMode::gauss_newton;
 }
 
 const std::vector<HessianChoice>& hessian_choices() {

@@ -30,6 +30,14 @@ constexpr Projection first_projection(StepHessian hessian) {
   return hessian == StepHessian::absolute ? Projection::absolute : Projection::none;
 }
 
+/// Of how many of the terms in use that are not convex a sum of Hessians of the first level has the exact one.
+enum class ExactHessians { none, some, all };
+
+struct TermOptions;
+/// Whether a term of that name has an exact Hessian when it is asked for one: rows of contact leave the Hessian of the
+/// gap out as gauss_newton.
+bool knows_exact_hessian(std::string_view term, const TermOptions& options);
+
 /// The choice that a term offers, as an entry of a registry: one parameter with the term's name.
 struct HessianChoice {
   std::string name;

@@ -91,6 +91,8 @@ class Term {
   virtual void change_frame(const StepFrame&) {}
   /// The stiffness that pairs of contact have in this step in another system, whose state is looked at.
   virtual void adopt(const KnownStiffness&) {}
+  /// The same of that system's own term, which is of the same class.
+  virtual void adopt_from(const Term&) {}
   /// The step is over.
   virtual void end_step(PhaseClock&) {}
   /// What it remembers from step to step (core/archive). A term that begin_step makes anew has nothing.

@@ -41,6 +41,10 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
   if (literal && config.strain_limit.argument != Argument::gap) {
     complain("/strain_limit/argument", "\"squared_gap\"", "gap: the step solver is article_literal");
   }
+  if (solver.saddle == SaddleRule::escape && solver.name != "line_search") {
+    complain("/step_solver/saddle", "\"escape\"",
+             "report or ignore: only line_search, which tests energies, can leave a saddle");
+  }
   const int min_newton_steps = integer(solver.parameters, "min_newton_steps");
   if (solver.name == "accumulated_toi" && min_newton_steps > solver.max_iterations) {
     complain("/step_solver/min_newton_steps", fmt::format("{}", min_newton_steps),

@@ -16,6 +16,9 @@ using EnumWords = std::vector<std::pair<E, std::string>>;
 inline EnumWords<Argument> words_of(Argument) {
   return {{Argument::gap, "gap"}, {Argument::squared_gap, "squared_gap"}};
 }
+inline EnumWords<SaddleRule> words_of(SaddleRule) {
+  return {{SaddleRule::escape, "escape"}, {SaddleRule::report, "report"}, {SaddleRule::ignore, "ignore"}};
+}
 inline EnumWords<MatchingRule> words_of(MatchingRule) {
   return {{MatchingRule::as_given, "as_given"},
           {MatchingRule::equal_force, "equal_force"},

@@ -79,6 +79,9 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   if (!child(document, "step_solver").contains("tol_velocity_m_per_s")) {
     config.step_solver.tol_velocity = default_tolerance(config);
   }
+  if (!child(document, "step_solver").contains("saddle") && config.step_solver.name != "line_search") {
+    config.step_solver.saddle = SaddleRule::ignore;  // they are not asked for a minimum
+  }
   fill_hessians(document, config);
   check_contradictions(config, source, violations);
   return config;

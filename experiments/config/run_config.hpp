@@ -15,6 +15,7 @@
 #include "core/contact/contact_terms.hpp"
 #include "core/linear/condition.hpp"
 #include "core/math/precision.hpp"
+#include "core/newton/saddle_rule.hpp"
 #include "core/parameters/parameter.hpp"
 
 namespace bb {

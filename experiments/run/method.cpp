@@ -23,6 +23,7 @@ StepSolverOptions step_solver_options(const RunConfig& config) {
   out.name = config.step_solver.name;
   out.max_iterations = config.step_solver.max_iterations;
   out.retries = config.step_solver.retries;
+  out.saddle = config.step_solver.saddle;
   out.tol_velocity = config.step_solver.tol_velocity;
   out.parameters = config.step_solver.parameters;
   return out;

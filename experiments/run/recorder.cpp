@@ -1,6 +1,7 @@
 #include "experiments/run/recorder.hpp"
 
 #include "core/newton/newton_system.hpp"
+#include "core/newton/step_solver.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/run/keep_record.hpp"
 #include "experiments/run/run_summary.hpp"
@@ -84,6 +85,8 @@ void Recorder::keep(Archive& archive) {
 
 void Recorder::finish() {
   summarize_steps(record_);
+  const bool asked = step_solvers().require(config_.step_solver.name, "/step_solver/name").asked_to_converge;
+  record_.summary.convergence = asked ? "asked" : "not_asked";
   record_.summary.linear_per_solve = summarize(linear_);
   condition_.fill(record_.summary);
 }

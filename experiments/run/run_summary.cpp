@@ -4,7 +4,8 @@ namespace bb {
 
 void summarize_steps(RunRecord& record) {
   Summary& summary = record.summary;
-  std::vector<double> newton, contacts, gaps;
+  summary.saddle_curvature_N_per_m = Number::missing("none_found");
+  std::vector<double> newton, contacts, gaps, errors;
   for (const StepRecord& step : record.steps) {
     ++summary.steps;
     summary.steps_capped += step.status == StepStatus::iteration_cap;
@@ -17,6 +18,9 @@ void summarize_steps(RunRecord& record) {
     keep_smaller(summary.gap_min_ulps, step.gap_min_ulps);
     keep_smaller(summary.dt_min_s, step.dt_s);
     summary.retries += step.retries;
+    if (step.status == StepStatus::converged) ++summary.end_proofs[std::string(to_string(step.end_proof))];
+    if (step.end_error_tolerances.finite()) errors.push_back(step.end_error_tolerances.value);
+    keep_smaller(summary.saddle_curvature_N_per_m, step.saddle_curvature_N_per_m);
     keep_smaller(summary.gap_min_iterates_m, step.gap_min_iterates_m);
     keep_smaller(summary.gap_min_iterates_rel, step.gap_min_iterates_rel);
     keep_larger(summary.max_stretch, step.max_stretch);
@@ -26,6 +30,7 @@ void summarize_steps(RunRecord& record) {
   summary.newton_per_step = summarize(newton);
   summary.contacts = summarize(contacts);
   summary.gap_min_rel = summarize(gaps);
+  summary.end_error_tolerances = summarize(errors);
 }
 
 }  // namespace bb

@@ -1,6 +1,8 @@
 #include "experiments/run/validity.hpp"
 
 #include <algorithm>
+#include <optional>
+#include <string>
 
 namespace bb {
 namespace {
@@ -16,6 +18,17 @@ double hard_limit(const Scene& scene) {
     largest = std::max(largest, scene.limit.onset[e] + scene.limit.width[e]);
   }
   return largest;
+}
+
+// Steps that ended in a saddle; nothing where no end of a step was looked at.
+std::optional<int> saddle_ends(const CountMap& proofs) {
+  const auto count = [&proofs](EndProof proof) {
+    const auto found = proofs.find(std::string(to_string(proof)));
+    return found == proofs.end() ? 0 : found->second;
+  };
+  const int saddles = count(EndProof::saddle);
+  if (saddles + count(EndProof::factor) + count(EndProof::lanczos) == 0) return std::nullopt;
+  return saddles;
 }
 
 }  // namespace
@@ -36,6 +49,9 @@ void fill_validity(const Scene& scene, const audit::AuditLedger* ledger, const s
   if (const double limit = hard_limit(scene); limit > 0 && record.summary.max_stretch.finite()) {
     const double stretch = record.summary.max_stretch.value;
     add_check(record, "strain_limit_kept", stretch, limit, stretch < limit);
+  }
+  if (const std::optional<int> saddles = saddle_ends(record.summary.end_proofs)) {
+    add_check(record, "no_saddle", *saddles, 0.0, *saddles == 0);
   }
   if (const BuildValidity& build = record.validity.build; build.checks > 0) {
     add_check(record, "build_valid", build.valid ? 0.0 : 1.0, 0.0, build.valid);

@@ -13,6 +13,17 @@ TEST(Contradictions, StepSolverAndIntegrator) {
                    "\"article_literal\"", "protocol article_literal");
 }
 
+TEST(Contradictions, OnlyASolverThatTestsEnergiesLeavesASaddle) {
+  json config = hang_config();
+  EXPECT_EQ(parsed(config).step_solver.saddle, SaddleRule::escape);
+  EXPECT_EQ(parsed(with(config, "/step_solver/saddle", "ignore")).step_solver.saddle, SaddleRule::ignore);
+  config["step_solver"]["name"] = "accumulated_toi";
+  EXPECT_EQ(parsed(config).step_solver.saddle, SaddleRule::ignore);
+  EXPECT_EQ(parsed(with(config, "/step_solver/saddle", "report")).step_solver.saddle, SaddleRule::report);
+  expect_violation(with(config, "/step_solver/saddle", "escape"), "/step_solver/saddle", "\"escape\"",
+                   "report or ignore");
+}
+
 TEST(Contradictions, AToleranceAtWhichNothingFalls) {
   expect_violation(with(hang_config(), "/step_solver/tol_velocity_m_per_s", 1),
                    "/step_solver/tol_velocity_m_per_s", "1", "0.1 min(d_hat, |g| dt^2/2)/dt");

@@ -97,5 +97,26 @@ TEST(Validity, WhatWasNotDoneIsNotChecked) {
   EXPECT_TRUE(run.record.validity.valid);
 }
 
+TEST(Validity, AStepThatEndsInASaddleFailsAndWhatWasNotLookedAtIsNoProof) {
+  Finished run;
+  run.record.summary.end_proofs = {{"factor", 7}, {"saddle", 2}};
+  const Check& check = run.failed("no_saddle");
+  EXPECT_EQ(check.value.value, 2);
+  EXPECT_EQ(check.bound.value, 0);
+  for (const CountMap& proofs : {CountMap{{"factor", 9}}, CountMap{{"lanczos", 1}, {"unproven", 3}}}) {
+    Finished good;
+    good.record.summary.end_proofs = proofs;
+    fill_validity(good.scene, &good.ledger, good.hash_time, good.hash_seen, good.record);
+    EXPECT_EQ(good.record.validity.checks.size(), 6U);
+    EXPECT_TRUE(good.record.validity.valid);
+  }
+  for (const CountMap& proofs : {CountMap{}, CountMap{{"not_checked", 9}}, CountMap{{"clamped", 9}}}) {
+    Finished silent;
+    silent.record.summary.end_proofs = proofs;
+    fill_validity(silent.scene, &silent.ledger, silent.hash_time, silent.hash_seen, silent.record);
+    for (const Check& each : silent.record.validity.checks) EXPECT_NE(each.name, "no_saddle");
+  }
+}
+
 }  // namespace
 }  // namespace bb

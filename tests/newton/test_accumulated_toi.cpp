@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "tests/newton/small_scenes.hpp"
+#include "tests/newton/saddle_scenes.hpp"
 
 namespace bb {
 namespace {
@@ -121,6 +121,61 @@ TEST(AccumulatedToi, the_extension_is_room_that_is_kept_and_not_way_that_is_gone
   const double way = 0.02 / (0.1 + gravity * dt * dt) / 1.25;  // to the floor, of 1.25 times
   EXPECT_NEAR(watch.reports[0].alpha, way, 1e-3 * way);
   EXPECT_NEAR(scene.x0(2, 0) - simulation.history().x(2, 0), 0.02 / 1.25, 1e-4);
+}
+
+/// Where a sheet that buckles over two planes got to: how far that is from a solution is measured from there, and to
+/// measure changes nothing.
+TEST(AccumulatedToi, says_how_far_its_end_is_from_the_solution) {
+  const Scene scene = test::driven_sheet({.jitter = 1e-4});
+  Method method = test::saddle_method(SaddleRule::ignore);
+  method.step_solver.name = "accumulated_toi";
+  Simulation simulation(scene, method, test::sheet_dt, 2);
+  Watch watch;
+  const StepReport report = simulation.step(watch);
+  ASSERT_EQ(report.status, StepStatus::converged);
+  ASSERT_GT(report.contacts.total(), 0U);
+  EXPECT_EQ(report.end_proof, EndProof::not_checked);
+  ASSERT_TRUE(report.end_error_m.finite());
+  EXPECT_GT(report.end_error_m.value, 1e-6);
+  EXPECT_NEAR(report.end_error_tolerances.value,
+              report.end_error_m.value / (report.dt_s * method.step_solver.tol_velocity), 1e-9);
+  // the same direction from the same state, by hand
+  NewtonSystem system(scene, method);
+  Prediction prediction;
+  History start;
+  start.x = scene.x0, start.v = scene.v0;
+  method.integrator->predict(start, report.dt_s, prediction);
+  system.begin_step(scene.x0, prediction, report.dt_s, 1);
+  system.assemble();
+  const Positions& x = simulation.history().x;
+  system.prepare(x, x - scene.x0);
+  ASSERT_TRUE(system.try_state(x));
+  system.accept();
+  system.assemble();
+  system.hold();
+  ASSERT_EQ(system.find_direction().linear.status, LinearStatus::ok);
+  EXPECT_NEAR(system.direction_size().inf_m, report.end_error_m.value, 1e-6 * report.end_error_m.value);
+}
+
+TEST(AccumulatedToi, a_free_fall_ends_at_its_solution) {
+  StepSolverOptions options;
+  options.parameters["target_toi"] = 0.25;
+  const Flight flight = fly(options, 1);
+  EXPECT_LT(flight.report.end_error_tolerances.value, 1e-3);
+}
+
+/// report: the last matrix of a step that is not asked to converge is looked at all the same.
+TEST(AccumulatedToi, can_be_asked_whether_it_ends_in_a_saddle) {
+  for (const double speed : {0.2, -0.2}) {
+    const Scene scene = test::driven_sheet({.speed = speed});
+    Method method = test::saddle_method(SaddleRule::report);
+    method.step_solver.name = "accumulated_toi";
+    Simulation simulation(scene, method, test::sheet_dt, 1);
+    Watch watch;
+    const StepReport report = simulation.step(watch);
+    ASSERT_EQ(report.status, StepStatus::converged);
+    EXPECT_EQ(report.end_proof, speed > 0 ? EndProof::saddle : EndProof::factor);
+  }
 }
 
 }  // namespace

@@ -6,14 +6,14 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/rounding_room.hpp"
+
 namespace bb {
 namespace {
 
-constexpr double unit = 1;  // m, largest coordinate
-
 ErrorEstimate after(const std::vector<double>& dx, double alpha = 1) {
   ErrorEstimate out;
-  out.reset(unit);
+  out.reset();
   for (std::size_t i = 0; i < dx.size(); ++i) {
     if (i > 0) out.took(alpha);
     out.add(dx[i]);
@@ -54,10 +54,72 @@ TEST(ErrorEstimate, an_unknown_contraction_is_slow) {
   EXPECT_EQ(after({1e-5, 1e-5}).error(), std::numeric_limits<double>::infinity());
 }
 
-TEST(ErrorEstimate, at_rounding_of_the_coordinates_the_direction_itself_counts) {
-  const double rounding = 4 * std::numeric_limits<double>::epsilon();
-  EXPECT_EQ(after({rounding, rounding}).error(), rounding);
+TEST(ErrorEstimate, one_ratio_alone_promises_no_quadratic_convergence) {
+  const ErrorEstimate one = after({1e-3, 1e-6}), two = after({1e-2, 1e-3, 1e-6});
+  EXPECT_NEAR(one.contraction().value, 0.81, 1e-12);
+  EXPECT_NEAR(two.contraction().value, 0.01, 1e-12);
+  EXPECT_NEAR(after({1, 1e-2, 1e-3, 1e-6}, 0.5).error(), 9e-6,
+              1e-12);  // nothing is known after part of a step
+  ErrorEstimate again = after({1, 1e-1});
+  again.took(0.5);
+  again.add(1e-2);
+  again.took(1);
+  again.add(1e-5);
+  EXPECT_NEAR(again.contraction().value, 0.81, 1e-12);  // the ratios before the part do not count
+}
+
+TEST(ErrorEstimate, the_residual_that_a_solve_left_bounds_the_contraction) {
+  ErrorEstimate estimate = after({1e-2, 1e-4});
+  estimate.took(1);
+  estimate.add(1e-8, 0.05);
+  EXPECT_NEAR(estimate.contraction().value, 0.05, 1e-12);
+  EXPECT_NEAR(estimate.error(), 1e-8 * 0.05 / 0.95, 1e-20);
+  EXPECT_LT(after({1e-2, 1e-4, 1e-8}).error(), estimate.error());
+}
+
+/// Directions of a sequence of errors that shrinks by q and by a square at once: e' = q e + c e^2.
+TEST(ErrorEstimate, is_never_below_a_third_of_the_truth) {
+  for (const double q : {0.0, 1e-3, 0.05, 0.3, 0.7, 0.95}) {
+    for (const double c : {0.0, 0.5, 5.0}) {
+      for (const double start : {1e-4, 1e-2, 0.05}) {
+        std::vector<double> dx;
+        double error = start;
+        for (int k = 0; k < 12 && error > 1e-15; ++k) {
+          const double next = q * error + c * error * error;
+          dx.push_back(error - next);
+          error = next;
+          if (dx.back() <= 0) break;
+          EXPECT_GE(3 * after(dx).error(), error) << q << " " << c << " " << start << " " << k;
+        }
+        EXPECT_GT(dx.size(), 0U);
+      }
+    }
+  }
+}
+
+TEST(ErrorEstimate, within_rounding_a_direction_counts_as_it_is) {
+  ErrorEstimate estimate = after({1e-5, 9e-6, 8e-6});
+  estimate.took(1);
+  estimate.add(0, 0, 3e-16);  // nothing stands out of rounding
+  EXPECT_EQ(estimate.error(), 3e-16);
+  ErrorEstimate mixed = after({1e-5, 1e-7});
+  mixed.took(1);
+  mixed.add(1e-9, 0, 1e-6);  // a far body whose coordinates know no better
+  EXPECT_EQ(mixed.error(), 1e-6);
+  EXPECT_NEAR(mixed.contraction().value, 1e-2, 1e-12);
   EXPECT_EQ(after({1e-5, 0}).error(), 0);
+}
+
+TEST(RoundingRoom, is_that_of_the_vertex_and_of_its_body) {
+  const double eps = std::numeric_limits<double>::epsilon();
+  const double near[] = {0.25, -0.5, 0}, far[] = {1e10, 0, 0}, origin[] = {0, 0, 0};
+  EXPECT_TRUE(within_coordinate_rounding(-3.9 * eps, near, 0, eps));
+  EXPECT_FALSE(within_coordinate_rounding(4.1 * eps, near, 0, eps));
+  EXPECT_TRUE(within_coordinate_rounding(4.1 * eps, near, 1, eps));  // its neighbours are 1 m away
+  EXPECT_TRUE(within_coordinate_rounding(1e-6, far, 1, eps));
+  EXPECT_FALSE(within_coordinate_rounding(1e-300, origin, 0, eps));
+  EXPECT_TRUE(within_coordinate_rounding(0, origin, 0, eps));
+  EXPECT_FALSE(within_coordinate_rounding(std::nan(""), far, 1, eps));
 }
 
 TEST(ErrorEstimate, says_whether_directions_still_fall) {

@@ -3,6 +3,7 @@
 
 #include <functional>
 
+#include "tests/newton/saddle_scenes.hpp"
 #include "tests/resident/system_cases.hpp"
 
 namespace bb {
@@ -254,6 +255,56 @@ TEST(ResidentSystem, RefusesWhatHasNoDeviceForm) {
   EXPECT_NE(message([](Method& m) { m.linear = {}; }).find("pcg_resident"), std::string::npos);
   EXPECT_NE(message([](Method& m) { m.contact.shape.name = "of a plugin"; }).find("of a plugin"),
             std::string::npos);
+}
+
+/// Steps of sheets between two planes, on the CPU and resident: the same word for the end, from both sides of it.
+TEST(ResidentSystem, SaysTheSameOfSaddles) {
+  for (const double speed : {0.2, -0.2}) {
+    for (const SaddleRule rule : {SaddleRule::report, SaddleRule::escape}) {
+      test::SheetCase sheet;
+      sheet.speed = speed;
+      std::array<StepReport, 2> ends;
+      std::array<double, 2> height{};
+      for (const std::size_t resident : {0, 1}) {
+        Scene scene = test::driven_sheet(sheet);
+        Method method = test::saddle_method(rule);
+        if (resident == 1) test::run_resident(method);
+        Simulation simulation(scene, method, test::sheet_dt, 1);
+        StepObserver nobody;
+        ends[resident] = simulation.step(nobody);
+        height[resident] = simulation.history().x.row(2).cwiseAbs().maxCoeff();
+        ASSERT_EQ(ends[resident].status, StepStatus::converged) << ends[resident].detail;
+        ASSERT_GT(ends[resident].contacts.total(), 0U);
+        for (const Pin& pin : scene.pins) {  // an escape moves no prescribed vertex
+          EXPECT_EQ(simulation.history().x.col(pin.vertex), Vec3d(pin_pose(scene, pin, test::sheet_dt)));
+        }
+      }
+      const bool saddle = speed > 0 && rule == SaddleRule::report;
+      EXPECT_EQ(ends[0].end_proof, saddle ? EndProof::saddle : EndProof::factor);
+      EXPECT_EQ(ends[1].end_proof, saddle ? EndProof::saddle : EndProof::lanczos);
+      EXPECT_EQ(ends[0].escapes > 0, ends[1].escapes > 0);
+      EXPECT_EQ(height[0] > 1e-3, height[1] > 1e-3);
+      EXPECT_GT(ends[1].end_check_iterations, 0);
+      EXPECT_EQ(ends[0].saddle_curvature_N_per_m.finite(), ends[1].saddle_curvature_N_per_m.finite());
+    }
+  }
+}
+
+/// Which part of a direction is rounding: the same on the CPU and resident, with coordinates of all sizes.
+TEST(ResidentSystem, SplitsDirectionsAtTheSameRounding) {
+  Both both(test::touching(test::cloth_on_plate(), 0.012), touching_method);
+  for (StepSystem* system : both.systems()) {
+    system->hold();
+    ASSERT_EQ(system->find_direction().linear.status, LinearStatus::ok);
+  }
+  for (const double scale : {1.0, 1e-12, 1e-14, 1e-16}) {
+    for (StepSystem* system : both.systems()) system->scale_direction(scale);
+    const DirectionSize cpu = both.cpu.direction_size(), resident = both.resident.direction_size();
+    EXPECT_EQ(std::max(cpu.beyond_m, cpu.rounding_m), cpu.inf_m);
+    EXPECT_NEAR(resident.beyond_m, cpu.beyond_m, 1e-8 * cpu.inf_m);
+    EXPECT_NEAR(resident.rounding_m, cpu.rounding_m, 1e-8 * cpu.inf_m);
+    for (StepSystem* system : both.systems()) system->scale_direction(1 / scale);
+  }
 }
 
 }  // namespace

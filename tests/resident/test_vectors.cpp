@@ -102,5 +102,30 @@ TEST(Vectors, FixedBitsAreThreeAVertex) {
             (std::vector<FixedMask>{5, 0, 2}));
 }
 
+TEST(Vectors, DirectionsAreSplitAtTheRoundingOfTheirVertex) {
+  Vectors v;
+  VectorTools tools(v.executor, v.fixed, v.scene.pins);
+  std::vector<double> sizes(v.scene.mass.size());
+  for (std::size_t i = 0; i < sizes.size(); ++i) sizes[i] = 1e-3 * static_cast<double>(i % 5);
+  exec::Buffer<double> body_size{v.executor, "sizes"};
+  body_size.upload(sizes);
+  int split = 0;
+  for (const double scale : {1.0, 1e-13, 1e-14, 1e-15, 1e-17}) {
+    const Positions dx = scale * v.dx_host;
+    v.dx.upload(numbers_of(dx));
+    double largest[2] = {0, 0};
+    for (std::size_t i = 0; i < v.fixed.size(); ++i) {
+      if (v.fixed[i]) continue;
+      const double* x = v.x_host.data() + 3 * (i / 3);
+      const bool within = within_coordinate_rounding(dx.data()[i], x, sizes[i / 3], 0x1p-52);
+      largest[within] = std::max(largest[within], std::abs(dx.data()[i]));
+    }
+    EXPECT_EQ(tools.rounding_max(v.dx, v.x, body_size, true), largest[1]) << scale;
+    EXPECT_EQ(tools.rounding_max(v.dx, v.x, body_size, false), largest[0]) << scale;
+    split += largest[0] > 0 && largest[1] > 0 ? 1 : 0;
+  }
+  EXPECT_GT(split, 0);
+}
+
 }  // namespace
 }  // namespace bb::resident

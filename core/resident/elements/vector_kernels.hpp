@@ -5,8 +5,10 @@
 #include <cmath>
 #include <limits>
 
+#include "core/math/rounding_room.hpp"
 #include "core/math/types.hpp"
 #include "core/resident/linear/resident_matrix.hpp"
+#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 
@@ -66,6 +68,22 @@ struct ForceNorm {
       if (is_fixed(fixed[v], k)) out[k] = 0;
     }
     force[v] = out.norm();
+  }
+};
+
+/// Size of one part of the free entries of dx: those within the rounding of their vertex, or the others.
+struct RoundingSize {
+  const double *dx, *x;     // [3 n] m
+  const double* body_size;  // [n] m
+  const FixedMask* fixed;
+  bool within;
+  BB_HD Key operator()(Index i) const {
+    const Index v = i / 3;
+    if (is_fixed(fixed[v], static_cast<int>(i % 3))) return largest_key(0);
+    const double epsilon = std::numeric_limits<double>::epsilon();
+    const bool rounding = within_coordinate_rounding(dx[i], x + 3 * v, body_size[v], epsilon);
+    using std::abs;
+    return largest_key(rounding == within ? abs(dx[i]) : 0);
   }
 };
 

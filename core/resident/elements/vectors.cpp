@@ -54,6 +54,13 @@ double VectorTools::free_max(const Buffer<double>& column) {
   return least_.largest();
 }
 
+double VectorTools::rounding_max(const Buffer<double>& dx, const Buffer<double>& x,
+                                 const Buffer<double>& body_size, bool within) {
+  least_.clear();
+  least_.add(dx.size(), RoundingSize{dx.data(), x.data(), body_size.data(), fixed_.data(), within});
+  return least_.largest();
+}
+
 double VectorTools::max(const Buffer<double>& column) {
   least_.clear();
   least_.add(column.size(), ColumnSize{column.data()});

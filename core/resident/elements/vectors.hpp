@@ -31,6 +31,10 @@ class VectorTools {
 
   /// Largest |value| over free degrees of freedom; NaN where one is no number.
   double free_max(const Buffer<double>& column);
+  /// Largest |dx| over the free degrees of freedom that are within the rounding of their vertex at x, or over the
+  /// others (core/math/rounding_room.hpp). body_size: [n] m.
+  double rounding_max(const Buffer<double>& dx, const Buffer<double>& x, const Buffer<double>& body_size,
+                      bool within);
   /// Largest |value| over all.
   double max(const Buffer<double>& column);
   /// Over free degrees of freedom: value() is a . b.

@@ -23,6 +23,11 @@ class ResidentPcg {
   /// Every way to fail has its status; the true residual decides (core/linear/conjugate_gradients.hpp).
   LinearReport solve(const ResidentMatrix& matrix, const FixedMask* fixed, const double* b, double* x,
                      double tolerance, int max_iterations, std::uint64_t pattern_id = 0);
+  /// The same with the preconditioner of the last solve, whose matrix was positive definite.
+  LinearReport solve_with_last(const ResidentMatrix& matrix, const FixedMask* fixed, const double* b,
+                               double* x, double tolerance, int max_iterations);
+  /// The last direction of the iterations, [3 n]: after matrix_indefinite its curvature is negative.
+  const exec::Buffer<double>& direction() const { return p_; }
   /// |v| over the free degrees of freedom.
   double norm(const FixedMask* fixed, const double* v);
   /// After a solve whose preconditioner had no factor: what of it, ResidentPreconditioner::fault_text; else -1.
@@ -39,6 +44,8 @@ class ResidentPcg {
     int version;
   };
 
+  LinearReport solve_prepared(const double* b, double tolerance, int max_iterations, double setup_s);
+  void place(const ResidentMatrix& matrix, const FixedMask* fixed, double* x);
   void set_residual(const double* from, const double* minus, double* r);
   void begin_run(bool first);
   void launch_iterations();

@@ -1,6 +1,7 @@
 // Gradient and matrix of the iterate, and the Newton direction: core/newton/newton_matrix.cpp on an executor.
 #include <stdexcept>
 
+#include "core/linear/definiteness.hpp"
 #include "core/resident/linear/pcg_kernels.hpp"
 #include "core/resident/system/resident_system.hpp"
 #include "core/resident/system/system_kernels.hpp"
@@ -160,6 +161,8 @@ LinearReport ResidentSystem::solve_linear() {
 DirectionSize ResidentSystem::direction_size() {
   DirectionSize size;
   size.inf_m = vectors_.free_max(dx_);
+  size.rounding_m = vectors_.rounding_max(dx_, x_, body_size_, true);
+  size.beyond_m = vectors_.rounding_max(dx_, x_, body_size_, false);
   size.slope_J = vectors_.free_dot(g_, dx_).value();
   least_.clear();
   least_.add(dx_.size() / 3, ColumnNorms{dx_.data()});
@@ -174,6 +177,40 @@ void ResidentSystem::scale_direction(double factor) {
 double ResidentSystem::direction_curvature() {
   fill_matrix(true);
   return multiply(dx_, work_);
+}
+
+// Conjugate gradients on a seeded right-hand side (core/linear/definiteness.hpp), preconditioned by what served the
+// matrix that was solved.
+EndCheck ResidentSystem::check_end() {
+  const WholePhase timer(clock(), Phase::end_check);
+  EndCheck out;
+  out.proof = EndProof::clamped;
+  if (exact_hessians_ == ExactHessians::none) return out;
+  fill_matrix(true);
+  const VecXd seeded = definiteness_right_hand_side(b_.size());
+  b_.upload({seeded.data(), static_cast<std::size_t>(seeded.size())});
+  const LinearReport report =
+      pcg_->solve_with_last(matrix(), vectors_.fixed().data(), b_.data(), step_.data(),
+                            definiteness_tolerance, max_pcg_iterations_);
+  out.iterations = report.iterations;
+  if (report.status == LinearStatus::ok) {
+    if (exact_hessians_ == ExactHessians::all) out.proof = EndProof::lanczos;
+    return out;
+  }
+  out.proof = EndProof::unproven;
+  if (report.status != LinearStatus::matrix_indefinite) return out;
+  executor_->copy(escape_.data(), pcg_->direction().data(),
+                  static_cast<std::size_t>(escape_.size()) * sizeof(double));
+  const double curvature = multiply(escape_, work_), squared = vectors_.free_dot(escape_, escape_).value();
+  out.proof = EndProof::saddle;
+  out.curvature_N_per_m = curvature / squared;
+  return out;
+}
+
+void ResidentSystem::aim_at_escape(double length) {
+  const double slope = vectors_.free_dot(g_, escape_).value(), largest = vectors_.free_max(escape_);
+  executor_->copy(dx_.data(), escape_.data(), static_cast<std::size_t>(dx_.size()) * sizeof(double));
+  scale_direction((slope > 0 ? -length : length) / largest);
 }
 
 }  // namespace bb::resident

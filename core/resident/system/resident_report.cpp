@@ -82,7 +82,7 @@ void ResidentSystem::report_end(StepNumbers& out) const {
   out.contact_load_sum_N = rows.load.value();
   out.gap_min_m = contact_->rows(x_).min_gap;
   out.gap_min_rel = smallest_of(rows.gap_rel_min);
-  const double largest = largest_coordinate();
+  const double largest = vectors_.max(x_);
   out.gap_min_ulps = contact_->rows(x_).min_gap / (std::nextafter(largest, 2 * largest) - largest);
 }
 

@@ -69,6 +69,9 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
       b_(*executor_, "right-hand side"),
       step_(*executor_, "solution"),
       work_(*executor_, "work column"),
+      escape_(*executor_, "direction of negative curvature"),
+      body_size_(*executor_, "sizes of bodies"),
+      exact_hessians_(exact_hessians(plan, method)),
       force_(*executor_, "force norms"),
       elastic_value_(*executor_, "elastic matrix of the iterate"),
       product_partial_(*executor_, "partial products", Partition::most_blocks),
@@ -76,8 +79,9 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
       least_(*executor_),
       row_totals_(*executor_) {
   const Index n = scene.n_vertices();
-  for (Column* column : {&x_, &trial_, &end_, &dx_, &g_, &x_n_, &x_tilde_, &b_, &step_, &work_})
+  for (Column* column : {&x_, &trial_, &end_, &dx_, &g_, &x_n_, &x_tilde_, &b_, &step_, &work_, &escape_})
     column->resize(3 * n);
+  body_size_.upload(body_sizes(scene));
   if (plan.term("contact").needed) {
     contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, vectors_.fixed());
   }
@@ -109,6 +113,7 @@ void ResidentSystem::count_memory(const ExpectedContacts& expected) {
   for (int iterate = 0; iterate < 2; ++iterate) {  // the second finds the columns of the first in place
     assemble();
     find_direction();
+    check_end();
     prepare_motion(MotionEnd::free, false);
     IterationReport unread;
     bound_motion(unread);

@@ -42,6 +42,8 @@ class ResidentSystem final : public StepSystem {
   DirectionSize direction_size() override;
   void scale_direction(double factor) override;
   double direction_curvature() override;
+  EndCheck check_end() override;
+  void aim_at_escape(double length) override;
   bool solved_is_exact() const override { return level_.exact(); }
 
   void prepare_motion(MotionEnd end, bool to_bound) override;
@@ -55,7 +57,6 @@ class ResidentSystem final : public StepSystem {
   const Positions& x() const override;
   const Positions& x_before() const override;
   const Positions& gradient() const override;
-  double largest_coordinate() const override { return vectors_.max(x_); }
   double grad_inf() const override { return vectors_.free_max(g_); }
   double energy() const override;
   double energy(TermGroup group) const override;
@@ -125,8 +126,10 @@ class ResidentSystem final : public StepSystem {
   bool served_at_once_ = false;
 
   Column x_, trial_, end_, dx_, g_, x_n_, x_tilde_, b_, step_, work_;  // [3 n]
-  Column force_;                                                       // [n] N
-  Column elastic_value_;                                               // H that stiffness policies read
+  Column escape_, body_size_;                                          // [3 n] a direction; [n] m
+  ExactHessians exact_hessians_;
+  Column force_;          // [n] N
+  Column elastic_value_;  // H that stiffness policies read
   bool has_step_elastic_ = false;
   exec::Buffer<double> product_partial_;
   mutable ResidentSum sum_;

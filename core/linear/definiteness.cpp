@@ -1,0 +1,65 @@
+#include "core/linear/definiteness.hpp"
+
+#include "core/linear/conjugate_gradients.hpp"
+#include "core/linear/lanczos.hpp"
+#include "core/linear/preconditioner.hpp"
+
+namespace bb {
+namespace {
+
+constexpr std::uint64_t seed = 20;    // of the right-hand side
+constexpr int lanczos_products = 40;  // that improve a direction
+constexpr double lanczos_tol = 1e-2;  // of its curvature
+
+// The lowest Ritz vector of A in the Krylov space of the direction, which is part of that space itself.
+void improve(const SymmetricProduct& product, Definiteness& out) {
+  const auto negated = [&product](const VecXd& x, VecXd& y) {
+    product.multiply(x, y);
+    y = -y;
+  };
+  const LanczosEnd end = lanczos_largest(negated, out.direction, lanczos_products, lanczos_tol);
+  VecXd image;
+  product.multiply(end.vector, image);
+  const double lowest = end.vector.dot(image) / end.vector.squaredNorm();
+  if (!(lowest < out.curvature)) return;
+  out.curvature = lowest;
+  out.direction = end.vector;
+}
+
+}  // namespace
+
+VecXd definiteness_right_hand_side(Eigen::Index n) { return seeded_vector(n, seed); }
+
+Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& preconditioner,
+                                  int max_iterations) {
+  Definiteness out;
+  SymmetricProduct product;
+  product.update(a);
+  ConjugateGradients gradients;
+  LinearReport report;
+  VecXd x;
+  const VecXd b = definiteness_right_hand_side(a.lower.rows());
+  const LinearStatus status =
+      gradients.solve(product, preconditioner, b, definiteness_tolerance, max_iterations, x, report);
+  out.iterations = report.iterations;
+  if (status == LinearStatus::ok) out.verdict = Definiteness::Verdict::positive;
+  if (status != LinearStatus::matrix_indefinite) return out;
+  out.verdict = Definiteness::Verdict::negative;
+  out.direction = gradients.direction();
+  VecXd image;
+  product.multiply(out.direction, image);
+  out.curvature = out.direction.dot(image) / out.direction.squaredNorm();
+  improve(product, out);
+  return out;
+}
+
+Definiteness examine_preconditioned(const ReducedSystem& a, const NearMatrix& near,
+                                    Preconditioner& preconditioner, int max_iterations) {
+  const ReducedSystem& other = near();
+  SymmetricProduct rows;
+  rows.update(other);
+  if (preconditioner.setup(other, rows) != LinearStatus::ok) return {};
+  return examine_by_gradients(a, preconditioner, max_iterations);
+}
+
+}  // namespace bb
