@@ -21,7 +21,7 @@ from .runs import Sweep, check_equal, check_varied, collect, inputs_sha256, read
 DEFAULT = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
 RULES = ("equal_force", "equal_curvature")
 SCHEMA = "barrierbench.match/1"
-COLUMNS = ("formulation", "contact", "load (N)", "limit", "smallest gap", "of log's", "outcome", "verdict")
+COLUMNS = ("formulation", "contact", "load (N)", "limit", "smallest gap", "farthest from log", "outcome", "verdict")
 
 
 def make_sweep(config: Path, formulations: list[str], rule: str, theta: float, vary: str) -> Sweep:
@@ -42,13 +42,13 @@ def make_sweep(config: Path, formulations: list[str], rule: str, theta: float, v
 def _row(name: str, record: dict) -> dict:
     """What match.json says of a formulation; numbers as the record has them."""
     matching, judged = record["matching"], record["comparability"]
-    keep = ("rule", "theta", "load_source", "load_N", "contact", "contact_step", "kappa_N_per_m", "scale", "capacity_N", "limit_load_source",
+    keep = ("rule", "theta", "load_source", "load_N", "contact", "contact_step", "contact_answer", "contacts_left_out", "left_out_contact", "left_out_N", "kappa_N_per_m", "scale", "capacity_N", "limit_load_source",
             "limit_load_N_per_m", "limit_stiffness_N_per_m", "limit_scale", "pilot_note")
     comparable, why = judged["verdict"] == "comparable", judged["reason"]
     if not record["audit"]["enabled"] or record["audit"]["judged"] == 0:
         comparable, why = False, "the audit judged nothing, so that a crossing would not be seen"
     return {"formulation": name, "run_id": record["ids"]["run_id"], "matching": {key: matching.get(key) for key in keep}, "gap_min_rel": judged.get("gap_rel"),
-            "gap_ratio": judged.get("ratio"), "outcome": record["status"]["outcome"], "crossings": record["audit"]["crossings"],
+            "gap_ratio": judged.get("ratio"), **{key: judged.get(key) for key in ("pair", "pair_quantile", "pair_ratio")}, "outcome": record["status"]["outcome"], "crossings": record["audit"]["crossings"],
             "newton_iterations": record["summary"]["newton_iterations"], "verdict": "comparable" if comparable else "not_comparable", "why": why}
 
 
@@ -77,6 +77,11 @@ def _stiffness(kappa: float | None, scale: float | None) -> str:
     return "as given" if scale is None else f"own x {scale:.4g}"
 
 
+def _farthest(row: dict) -> str:
+    """The pair of bodies whose gaps differ most from the log's, and how many times."""
+    return "-" if row["pair_ratio"] is None else f"x {row['pair_ratio']:.3g}, {row['pair']}"
+
+
 def text(answer: dict) -> str:
     """The table, and a line for each that is not comparable."""
     lines = [COLUMNS]
@@ -86,7 +91,7 @@ def text(answer: dict) -> str:
     for row in answer["formulations"]:
         m = row["matching"]
         lines.append((row["formulation"], _stiffness(m["kappa_N_per_m"], m["scale"]), _number(m["load_N"]), _stiffness(m["limit_stiffness_N_per_m"], m["limit_scale"])
-                      if m["limit_load_N_per_m"] is not None else "-", _number(row["gap_min_rel"], " d_hat"), _number(row["gap_ratio"]), row["outcome"], row["verdict"]))
+                      if m["limit_load_N_per_m"] is not None else "-", _number(row["gap_min_rel"], " d_hat"), _farthest(row), row["outcome"], row["verdict"]))
     widths = [max(len(line[k]) for line in lines) for k in range(len(COLUMNS))]
     shown = [head + (f" ({pilot['pilot_note']})" if pilot["pilot_note"] else "")]
     shown += ["  ".join(word.ljust(width) for word, width in zip(line, widths)).rstrip() for line in lines]

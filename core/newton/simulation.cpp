@@ -64,12 +64,6 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
   history_.v_prev = history_.v;
 }
 
-void Simulation::resume(const History& history, int step, double time) {
-  history_ = history;
-  step_ = nominal_ = step;
-  time_ = nominal_start_ = time;
-}
-
 void Simulation::keep(Archive& archive) {
   archive.section("simulation");
   archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,

@@ -20,8 +20,6 @@ class Simulation {
   /// With the plan of scene and method alone.
   Simulation(const Scene& scene, Method& method, double dt, int n_steps);
 
-  /// Goes on from a state of another simulation of the same scene, in front of its step `step` at `time` s.
-  void resume(const History& history, int step, double time);
   /// Advances one time step. One that fails is tried again from its start with half the length, as often as the
   /// options of the step solver say; the rest of the nominal step is done in steps of that length by the next
   /// calls (docs/design.md, Outcomes, retries, resume). A status other than converged, after the last attempt,

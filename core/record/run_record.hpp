@@ -132,9 +132,19 @@ struct MatchingRecord {
   BB_FIELD(Number, contact_step, "step of the pilot, from 0, at whose end it did");
   BB_FIELD(long long, contacts_considered,
            "contacts with a load, over all converged step ends of the pilot") = 0;
+  BB_FIELD(Number, contact_answer,
+           "d log force/d log stiffness of `contact`: 0 where the world makes the force, 1 where kappa does");
+  BB_FIELD(long long, contacts_left_out,
+           "contacts whose force follows kappa, so that it is no load, over the same step ends") = 0;
+  BB_FIELD(std::string, left_out_contact, "that with the largest force of them; empty: none");
+  BB_FIELD(Number, left_out_N, "its force, per unit multiplicity");
   BB_FIELD(std::string, limit_element, "the pilot's limited element that asked for the most; empty: none");
   BB_FIELD(Number, limit_step, "step of the pilot at whose end it did");
   BB_FIELD(long long, elements_considered, "limited elements with a load, over the same step ends") = 0;
+  BB_FIELD(Number, limit_answer, "as contact_answer, of `limit_element`");
+  BB_FIELD(long long, elements_left_out, "limited elements whose force follows their stiffness") = 0;
+  BB_FIELD(std::string, left_out_element, "that with the largest force of them; empty: none");
+  BB_FIELD(Number, left_out_N_per_m, "its force over its width");
   BB_FIELD(Number, theta, "fraction of d_hat at which equal_force matches");
   BB_FIELD(Number, load_N, "per unit multiplicity; of a pilot, the load of `contact`");
   BB_FIELD(Number, d_hat_m, "at which the load was matched: of `contact`, else the formulation's");
@@ -183,6 +193,20 @@ struct Conditioning {
 };
 using CondMap = std::map<std::string, Conditioning>;
 
+struct PairGaps {
+  BB_RECORD(PairGaps,
+            "d / d_hat of the contacts between two bodies at converged step ends, each with the weight m kappa "
+            "|b'| times the length of its step");
+  BB_FIELD(double, load_N, "sum of m kappa |b'|, mean over the time of all converged steps") = 0;
+  BB_FIELD(double, load_share, "of the load of all pairs") = 0;
+  BB_FIELD(double, time_share, "of the time of converged steps, those at whose end there was load") = 0;
+  BB_FIELD(double, gap_rel_p05, "5 % of the load is carried at smaller gaps; right to 1.1 %") = 0;
+  BB_FIELD(double, gap_rel_median, "half of it is") = 0;
+  BB_FIELD(double, gap_rel_p95, "95 % of it is") = 0;
+  BB_RECORD_END;
+};
+using GapMap = std::map<std::string, PairGaps>;
+
 struct Summary : WorkCounts {
   using BaseRecord = WorkCounts;
   BB_RECORD(Summary, "the run in numbers");
@@ -208,6 +232,9 @@ struct Summary : WorkCounts {
            "smallest over converged step ends, in units of the last place of the largest coordinate");
   BB_FIELD(Number, gap_min_iterates_m, "smallest gap over all iterates");
   BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat over all iterates");
+  BB_FIELD(GapMap, contact_gaps,
+           "body|body or body|obstacle -> at what gaps their load was carried; pairs with load alone, rows "
+           "without mollifier");
   BB_FIELD(CountMap, first_contact,
            "body|body or body|obstacle -> step at whose end they first had an active contact row");
   BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element over step ends");
@@ -290,7 +317,14 @@ struct Comparability {
   BB_FIELD(Number, gap_rel, "smallest d / d_hat over converged step ends", "no_contacts");
   BB_FIELD(Number, reference_gap_rel, "the same of the reference", "no_contacts no_reference");
   BB_FIELD(Number, ratio, "gap_rel / reference_gap_rel", "no_reference");
-  BB_FIELD(double, max_ratio, "comparable: ratio within [1/max_ratio, max_ratio]") = 2;
+  BB_FIELD(std::string, pair, "pair of summary.contact_gaps that disagrees most; empty: nothing was compared");
+  BB_FIELD(std::string, pair_quantile, "of its gaps, the one that disagrees most; empty: none",
+           "^(gap_rel_(p05|median|p95))?$");
+  BB_FIELD(Number, pair_gap_rel, "this quantile; 1 where the pair has no load", "no_contacts no_reference");
+  BB_FIELD(Number, pair_reference_gap_rel, "the same of the reference", "no_contacts no_reference");
+  BB_FIELD(Number, pair_ratio, "pair_gap_rel / pair_reference_gap_rel", "no_contacts no_reference");
+  BB_FIELD(double, max_ratio,
+           "comparable: pair_ratio within [1/max_ratio, max_ratio], so that of every pair with load is") = 2;
   BB_RECORD_END;
 };
 

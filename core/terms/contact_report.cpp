@@ -62,6 +62,14 @@ RowNumbers measure(const ContactState& state) {
   return out;
 }
 
+void list_loads(const ContactTable& rows, std::vector<ContactLoad>& out) {
+  out.clear();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    const double load = -rows.multiplicity[r] * rows.kappa[r] * rows.db[r];
+    if (load > 0) out.push_back({rows.key[r], rows.d[r] / rows.d_hat[r], load});
+  }
+}
+
 // What an iterate and the end of a step both say, where there are rows.
 template <class Numbers>
 void fill(const RowNumbers& rows, Numbers& out) {
@@ -89,6 +97,7 @@ void ContactTerm::report_end(const Positions& x, StepNumbers& out, PhaseClock&) 
   const RowNumbers rows = measure(state_);
   fill(rows, out);
   out.contact_load_sum_N = rows.load_sum;
+  list_loads(state_.rows, out.contact_loads);
   out.gap_min_m = state_.gap_min;
   out.gap_min_rel = rows.gap_min_rel;
   const double largest = x.cwiseAbs().maxCoeff();

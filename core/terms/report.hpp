@@ -3,6 +3,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "core/contact/contact_system.hpp"
 #include "core/record/step_record.hpp"
@@ -20,12 +21,20 @@ struct IterateNumbers : TraceRow {
   void forget_changes();
 };
 
+/// A contact without mollifier that carries a load.
+struct ContactLoad {
+  ContactKey key;
+  double gap_rel = 0;  // d/d_hat
+  double load_N = 0;   // m kappa |b'| > 0
+};
+
 struct StepNumbers : StepRecord {
   double kappa_change = 0, limit_kappa_change = 0;  // of the last iteration, max/min - 1
   /// Last iterations in a row in which a contact's kappa, a limited element's, changed by more than 1 %.
   int kappa_unsettled = 0, limit_kappa_unsettled = 0;
   std::string contact_overload_at,
       limit_overload_at;  // the pair, the element, with the largest; may be empty
+  std::vector<ContactLoad> contact_loads;  // at its end
 
   StepNumbers();
   /// Loads are measured from here on: 0 where no term says more.

@@ -57,8 +57,23 @@ bool has_one_kappa(const PolicyConfig& policy) {
 }
 
 /// Adds why a policy stays as given.
-void note(MatchingRecord& record, const char* why) {
-  record.pilot_note += (record.pilot_note.empty() ? "" : "; ") + std::string(why);
+void note(MatchingRecord& record, const std::string& why) {
+  record.pilot_note += (record.pilot_note.empty() ? "" : "; ") + why;
+}
+
+/// Adds what was left out of the loads.
+void note_left_out(MatchingRecord& record, const Demand& demand, const char* what, const char* unit) {
+  if (demand.left_out == 0) return;
+  note(record, fmt::format("{} {} forces are no loads, since they follow the stiffness of their barrier: the "
+                           "largest is {:.3g} {} at {}, step {}",
+                           demand.left_out, what, demand.left_out_load, unit, demand.left_out_where,
+                           demand.left_out_step));
+}
+
+/// Why a policy that makes its own stiffness was not scaled: nobody could be asked.
+std::string why_as_given(const char* policy, const Demand& demand, const char* never) {
+  return fmt::format("{} policy stays as given: {}", policy,
+                     demand.left_out > 0 ? "no force of the pilot is a load" : never);
 }
 
 /// The stiffness of the rule for a load and a width; a given load goes with a given width.
@@ -86,9 +101,16 @@ Demand ask_contacts(const Matching& m, const Match& match, const BarrierFunction
       contact_demand(*m.pilot, m.scene, matched_stiffness(match, barrier, m.config.formulation.d_hat),
                      policy.get(), match.at());
   m.record.contacts_considered = demand.considered;
+  m.record.contacts_left_out = demand.left_out;
+  note_left_out(m.record, demand, "contact", "N");
+  if (demand.left_out > 0) {
+    m.record.left_out_contact = demand.left_out_where;
+    m.record.left_out_N = demand.left_out_load;
+  }
   if (demand.considered == 0) return demand;
   m.record.contact = demand.where;
   m.record.contact_step = demand.step;
+  m.record.contact_answer = demand.answer;
   return demand;
 }
 
@@ -119,7 +141,7 @@ void match_contact(const Matching& m, Calibration& out) {
     return;
   }
   if (!measured) {
-    return note(m.record, "the contact policy stays as given: the pilot met no contact");
+    return note(m.record, why_as_given("the contact", demand, "the pilot met no contact"));
   }
   if (has_one_kappa(policy)) {
     const std::optional<double> start = policy_start(m.config, m.scene, out, m.options);
@@ -141,9 +163,16 @@ Demand ask_elements(const Matching& m, const Match& match, const BarrierFunction
   const MatchedStiffness matched = matched_stiffness(match, barrier, m.scene.limit.width.front());
   const Demand demand = limit_demand(*m.pilot, m.scene, matched, needs_k_s(policy) ? nullptr : &own);
   m.record.elements_considered = demand.considered;
+  m.record.elements_left_out = demand.left_out;
+  note_left_out(m.record, demand, "limit", "N/m");
+  if (demand.left_out > 0) {
+    m.record.left_out_element = demand.left_out_where;
+    m.record.left_out_N_per_m = demand.left_out_load;
+  }
   if (demand.considered == 0) return demand;
   m.record.limit_element = demand.where;
   m.record.limit_step = demand.step;
+  m.record.limit_answer = demand.answer;
   return demand;
 }
 
@@ -168,7 +197,7 @@ void match_limit(const Matching& m, Calibration& out) {
     out.k_s = match.stiffness(barrier, width);
     m.record.limit_stiffness_N_per_m = *out.k_s;
   } else if (!measured) {
-    note(m.record, "the limit's policy stays as given: the limit was never active in the pilot");
+    note(m.record, why_as_given("the limit's", demand, "the limit was never active in the pilot"));
   } else {
     out.limit_scale = demand.largest;
     m.record.limit_scale = out.limit_scale;

@@ -9,7 +9,7 @@ namespace bb {
 
 /// The calibration of this config by its matching rule; the pilot runs when the rule needs what the config
 /// does not give. `record` gets every number that went into it. Where the pilot met no contact (or no active
-/// limit) the static weight stands in for a fixed stiffness, and a policy that makes its own stays as given;
+/// limit) with a load the static weight stands in for a fixed stiffness, and a policy that makes its own stays as given;
 /// the record says so. Errors: ConfigError when the scene has no weight, or a policy gives a contact (an
 /// element) that carried a load no stiffness; Interrupted.
 Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOptions& options,

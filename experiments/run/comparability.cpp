@@ -2,6 +2,10 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+#include <cmath>
+#include <iterator>
+#include <set>
 #include <vector>
 
 #include "core/math/error.hpp"
@@ -11,7 +15,59 @@
 namespace bb {
 namespace {
 
-bool in_contact(const ComparedRun& run) { return run.gap_rel.finite(); }
+bool has_load(const ComparedRun& run) { return !run.gaps.empty(); }
+
+constexpr double least_load_share = 0.01, least_time_share = 0.1;
+
+bool counts(const GapMap& gaps, const std::string& pair) {
+  const auto found = gaps.find(pair);
+  if (found == gaps.end()) return false;
+  return found->second.load_share >= least_load_share || found->second.time_share >= least_time_share;
+}
+
+struct Quantile {
+  const char *field, *words;
+  double PairGaps::*value;
+};
+constexpr Quantile quantiles[] = {{"gap_rel_p05", "5 % quantile", &PairGaps::gap_rel_p05},
+                                  {"gap_rel_median", "median", &PairGaps::gap_rel_median},
+                                  {"gap_rel_p95", "95 % quantile", &PairGaps::gap_rel_p95}};
+
+/// 1 without load: from there on the barrier carries nothing.
+double quantile_of(const GapMap& gaps, const std::string& pair, const Quantile& quantile) {
+  const auto found = gaps.find(pair);
+  return found == gaps.end() ? 1 : found->second.*quantile.value;
+}
+
+/// The pair and the quantile that disagree most; among equals the first.
+void compare_pairs(const GapMap& run, const GapMap& reference, Comparability& out) {
+  std::set<std::string> pairs;
+  for (const GapMap* gaps : {&reference, &run}) {
+    for (const auto& [pair, of] : *gaps) {
+      if (counts(*gaps, pair)) pairs.insert(pair);
+    }
+  }
+  double most = -1;
+  for (const std::string& pair : pairs) {
+    for (const Quantile& quantile : quantiles) {
+      const double mine = quantile_of(run, pair, quantile), other = quantile_of(reference, pair, quantile);
+      const double apart = std::abs(std::log(mine / other));
+      if (!(apart > most)) continue;
+      most = apart;
+      out.pair = pair;
+      out.pair_quantile = quantile.field;
+      out.pair_gap_rel = mine;
+      out.pair_reference_gap_rel = other;
+      out.pair_ratio = mine / other;
+    }
+  }
+}
+
+std::string words_of(const std::string& field) {
+  const auto* found =
+      std::find_if(std::begin(quantiles), std::end(quantiles), [&](const Quantile& q) { return field == q.field; });
+  return found->words;
+}
 
 void append(std::string& list, const std::string& name) { list += (list.empty() ? "" : ", ") + name; }
 
@@ -27,9 +83,10 @@ std::string fault_of(const ComparedRun& run) {
   return "outcome " + run.outcome + (run.failed.empty() ? "" : ", failed checks: " + run.failed);
 }
 
-std::string reason_of(const Comparability& c) {
-  return fmt::format("smallest gap {:.3g} d_hat, {:.3g} times that of the reference: {}within a factor {:g}",
-                     c.gap_rel.value, c.ratio.value, c.verdict == "comparable" ? "" : "not ", c.max_ratio);
+std::string reason_of(const Comparability& c, bool comparable) {
+  return fmt::format("{} of the gap, {}: {:.3g} d_hat where the reference has {:.3g}, {} a factor {:g}",
+                     words_of(c.pair_quantile), c.pair, c.pair_gap_rel.value, c.pair_reference_gap_rel.value,
+                     comparable ? "the most, within" : "beyond", c.max_ratio);
 }
 
 /// Nothing where no record of this very version can be read: what is written again would lose what this
@@ -59,6 +116,7 @@ ComparedRun compared_run(const RunRecord& record, const std::filesystem::path& f
   }
   out.gap_rel = record.summary.gap_min_rel.min;
   if (!out.gap_rel.finite()) out.gap_rel = Number::missing("no_contacts");
+  out.gaps = record.summary.contact_gaps;
   return out;
 }
 
@@ -71,8 +129,9 @@ Comparability judge_comparability(const ComparedRun& run, const std::optional<Co
     out.reference_run_id = reference->run_id;
     out.reference_gap_rel = reference->gap_rel;
   }
-  const bool usable = reference && reference->valid && in_contact(*reference);
-  if (usable && in_contact(run)) out.ratio = run.gap_rel.value / reference->gap_rel.value;
+  out.pair_gap_rel = out.pair_reference_gap_rel = out.pair_ratio = Number::missing("no_reference");
+  const bool usable = reference && reference->valid && has_load(*reference);
+  if (usable && run.gap_rel.finite()) out.ratio = run.gap_rel.value / reference->gap_rel.value;
   if (!run.valid) {
     out.verdict = "not_valid";
     out.reason = "the run is not valid: " + fault_of(run);
@@ -81,15 +140,18 @@ Comparability judge_comparability(const ComparedRun& run, const std::optional<Co
     out.reason = "no valid run of a finished sweep to compare with";
   } else if (!usable) {
     out.verdict = "no_reference";
-    out.reason = reference->valid ? "the reference has no contact at the end of a converged step"
+    out.reason = reference->valid ? "no contact of the reference carries load at the end of a converged step"
                                   : "the reference is not valid: " + fault_of(*reference);
-  } else if (!in_contact(run)) {
+  } else if (!has_load(run)) {
     out.verdict = "not_comparable";
-    out.reason = "no contact at the end of a converged step, where the reference has some";
+    out.reason = "no contact with load at the end of a converged step, where the reference has some";
+    out.pair_gap_rel = out.pair_reference_gap_rel = out.pair_ratio = Number::missing("no_contacts");
   } else {
-    const double ratio = out.ratio.value;
-    out.verdict = ratio >= 1 / out.max_ratio && ratio <= out.max_ratio ? "comparable" : "not_comparable";
-    out.reason = run.folder == reference->folder ? "the reference itself" : reason_of(out);
+    compare_pairs(run.gaps, reference->gaps, out);
+    const double ratio = out.pair_ratio.value;
+    const bool comparable = ratio >= 1 / out.max_ratio && ratio <= out.max_ratio;
+    out.verdict = comparable ? "comparable" : "not_comparable";
+    out.reason = run.folder == reference->folder ? "the reference itself" : reason_of(out, comparable);
   }
   return out;
 }
@@ -100,7 +162,7 @@ std::optional<std::size_t> default_reference(std::span<const SweepMember> member
   std::optional<std::size_t> first;
   for (std::size_t i = 0; i < runs.size(); ++i) {
     if (members[i].group != members[index].group) continue;
-    if (!runs[i] || !runs[i]->valid || !in_contact(*runs[i])) continue;
+    if (!runs[i] || !runs[i]->valid || !has_load(*runs[i])) continue;
     const bool log = runs[i]->shape == "log" && runs[i]->argument == "gap";
     if (log && runs[index] && runs[i]->matching_rule == runs[index]->matching_rule) return i;
     if (!first) first = i;

@@ -18,14 +18,16 @@ struct ComparedRun {
   std::string run_id, outcome, shape, argument, matching_rule;
   bool valid = false;
   Number gap_rel;      // smallest d/d_hat over converged step ends; missing without contact
+  GapMap gaps;         // of every pair of bodies with load at converged step ends
   std::string failed;  // names of the validity checks that failed, joined by ", "
 };
 ComparedRun compared_run(const RunRecord& record, const std::filesystem::path& folder);
 
-/// The rule. not_valid: the run is not valid, so that nothing of it is compared. no_reference: there is none,
-/// or it is not valid, or never in contact at a converged step end. Otherwise comparable exactly if the
-/// smallest gap (d/d_hat, over converged step ends) is within a factor 2 of the reference's: barriers that
-/// keep their contacts at other distances do different work.
+/// The rule. not_valid: the run is not valid, so that nothing of it is compared. no_reference: there is none, or it is not
+/// valid, or no contact of it carries load at a converged step end. Otherwise comparable exactly if every load-weighted
+/// quantile of the gap (d/d_hat; 5 %, 50 %, 95 %) of every pair of bodies is within a factor 2 of the reference's:
+/// barriers that keep their contacts at other distances do different work. A pair counts that has, in one of the two runs,
+/// at least 1 % of the load or load in 10 % of the time; where it has none its gaps are at least d_hat and count as 1.
 /// @param reference the run itself may be its own reference; without a run_id it is one that left no record
 Comparability judge_comparability(const ComparedRun& run, const std::optional<ComparedRun>& reference);
 

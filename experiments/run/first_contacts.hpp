@@ -2,11 +2,10 @@
 #pragma once
 
 #include <set>
-#include <utility>
 
 #include "core/record/run_record.hpp"
-#include "core/scene/scene.hpp"
 #include "core/terms/contact.hpp"
+#include "experiments/run/body_pair.hpp"
 
 namespace bb {
 
@@ -23,10 +22,8 @@ class FirstContacts {
   void keep(Archive& archive);
 
  private:
-  const std::string& name(int owner) const;
-
   const Scene& scene_;
-  std::set<std::pair<int, int>> touched_;  // bodies, then obstacles
+  std::set<BodyPair> touched_;
 };
 
 }  // namespace bb

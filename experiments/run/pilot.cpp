@@ -10,6 +10,7 @@
 #include "core/math/error.hpp"
 #include "core/newton/simulation.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/pilot_replay.hpp"
 
 namespace bb {
 namespace {
@@ -91,7 +92,29 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
   options.progress(progress);
 }
 
+// How the forces at the end of every step answer to stiffness.
+std::vector<StiffnessAnswers> answers_of(const Pilot& pilot, const Scene& scene, const RunOptions& options) {
+  const StrainLimitPart& part = scene.limit;
+  std::optional<StrainLimitBatch> limit;
+  if (!part.triangles.empty())
+    limit.emplace(part.triangles, scene.rest, part.onset, part.width, scene.planar);
+  PilotReplay replay(pilot, scene);
+  std::vector<StiffnessAnswers> out;
+  for (int step = 0; step < pilot.steps(); ++step) {
+    look_up(options);
+    out.push_back(answers_to_stiffness(replay.assembled(step), limit ? &*limit : nullptr, log_barrier(),
+                                       pilot.config.time.dt));
+  }
+  return out;
+}
+
 }  // namespace
+
+std::size_t Pilot::bytes() const {
+  std::size_t out = x.empty() ? 0 : x.size() * sizeof(double) * static_cast<std::size_t>(x[0].size());
+  for (const StiffnessAnswers& each : answers) out += each.bytes();
+  return out;
+}
 
 BarrierFunction log_barrier() { return {require_shape("log"), Argument::gap}; }
 
@@ -145,6 +168,7 @@ std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& giv
     pilot.x.push_back(simulation.history().x);
     pilot.c.push_back(prediction.c);
   }
+  pilot.answers = answers_of(pilot, scene, options);
   return cache.keep(std::move(pilot));
 }
 

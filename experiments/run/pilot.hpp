@@ -9,6 +9,7 @@
 
 #include "experiments/run/method.hpp"
 #include "experiments/run/runner.hpp"
+#include "experiments/run/stiffness_answer.hpp"
 
 namespace bb {
 
@@ -18,20 +19,20 @@ struct StaticLoads {
   double limit = 0;    // N/m, weight over the side of a square of the limited area; 0 without a limit
 };
 
-/// What the pilot leaves. Memory: 24 bytes a vertex and step.
+/// What the pilot leaves. Memory: 24 bytes a vertex and step, 32 a contact and 8 a
+/// limited element at each step end.
 struct Pilot {
   RunConfig config;       // its own
   Calibration stiffness;  // kappa and k_s of its log barriers
   StaticLoads rest;
   std::vector<double> c;     // inertia weight of the integrator in each converged step
   std::vector<Positions> x;  // m, at the start, then at the end of each converged step
+  std::vector<StiffnessAnswers> answers;  // at the end of each converged step
   std::string config_id;
   std::string stopped;  // why it ended early; empty when it did not
 
   int steps() const { return static_cast<int>(x.size()) - 1; }
-  std::size_t bytes() const {
-    return x.empty() ? 0 : x.size() * sizeof(double) * static_cast<std::size_t>(x[0].size());
-  }
+  std::size_t bytes() const;
 };
 
 /// The barrier of the pilot, to which the rules compare others.

@@ -8,68 +8,37 @@
 #include "core/contact/pair_name.hpp"
 #include "core/energy/strain_limit_batch.hpp"
 #include "core/math/error.hpp"
-#include "core/newton/newton_system.hpp"
-#include "core/terms/contact.hpp"
+#include "experiments/run/pilot_replay.hpp"
 
 namespace bb {
 namespace {
-
-/// The states of a pilot once more, in a system that is never solved.
-class Replay {
- public:
-  Replay(const Pilot& pilot, const Scene& scene)
-      : pilot_(pilot), method_(make_method(pilot.config, pilot.stiffness)), system_(scene, method_) {}
-
-  /// The rows of the end of this step.
-  void find_rows(int step) { begin(end(step), step); }
-  /// The same, with the H that a policy of this refresh reads while the step's end is reached.
-  void find_rows(int step, Refresh refresh) {
-    begin(refresh == Refresh::per_step ? start(step) : end(step), step);
-    system_.assemble();
-    elastic_ = system_.clamped_values(TermGroup::elastic);
-    if (refresh != Refresh::per_step) return;
-    system_.prepare(end(step), end(step) - start(step));
-    if (!system_.try_state(end(step))) throw std::logic_error("a state of the pilot is infeasible");
-    system_.accept();
-  }
-
-  const Positions& start(int step) const { return pilot_.x[static_cast<std::size_t>(step)]; }
-  const Positions& end(int step) const { return pilot_.x[static_cast<std::size_t>(step) + 1]; }
-  double c(int step) const { return pilot_.c[static_cast<std::size_t>(step)]; }
-  const ContactTable& rows() const { return contact_state(system_.terms()).rows; }
-  /// Requires rows.
-  ContactTerm& contact() const { return *system_.terms().find<ContactTerm>(); }
-  /// H of the last find_rows with a refresh, and the system whose pattern it has.
-  const BlockSystem::Values& elastic() const { return elastic_; }
-  const BlockSystem& blocks() const { return system_.blocks(); }
-
- private:
-  void begin(const Positions& x, int step) {
-    prediction_.c = c(step);
-    prediction_.x_tilde = x;
-    system_.begin_step(x, prediction_, pilot_.config.time.dt, 1.0);
-  }
-
-  const Pilot& pilot_;
-  Method method_;
-  NewtonSystem system_;
-  Prediction prediction_;
-  BlockSystem::Values elastic_;
-};
 
 /// Beyond this ratio a policy gives a contact no stiffness of its own: rounding has made its number.
 constexpr double largest_demand = 1e9;
 
 bool too_soft(double own, double matched) { return !(own > 0) || !(matched / own <= largest_demand); }
 
+/// The answer of one force of a step; what was left out is counted.
+bool is_load(double answer, double load, int step, const std::function<std::string()>& where, Demand& out) {
+  if (answer <= largest_load_answer) return true;
+  ++out.left_out;
+  if (load > out.left_out_load) {
+    out.left_out_load = load;
+    out.left_out_step = step;
+    out.left_out_where = where();
+  }
+  return false;
+}
+
 /// own = 1 without a policy. Returns whether this is the largest demand so far; among equals the larger load.
-bool compare(double matched, double own, double load, double width, int step, Demand& out) {
+bool compare(double matched, double own, double load, double width, double answer, int step, Demand& out) {
   ++out.considered;
   const double demand = matched / own;
   if (demand < out.largest || (demand == out.largest && load <= out.load)) return false;
   out.largest = demand;
   out.load = load;
   out.width = width;
+  out.answer = answer;
   out.step = step;
   return true;
 }
@@ -82,7 +51,7 @@ bool compare(double matched, double own, double load, double width, int step, De
 }
 
 /// kappa of this row by the policy, the smaller of its values at d_hat and at u d_hat.
-double own_kappa(const StiffnessPolicy& policy, int row, double u, double dt, double c, Replay& replay) {
+double own_kappa(const StiffnessPolicy& policy, int row, double u, double dt, double c, PilotReplay& replay) {
   static const BlockSystem::Values no_hessian;
   const bool with_hessian = policy.needs_hessian();
   PolicyColumns columns = replay.contact().stiffness().columns(replay.rows(), row, replay.blocks(),
@@ -108,7 +77,7 @@ std::string name_element(const Scene& scene, std::size_t e) {
 
 /// kappa_e/area (N/m) by the policy of the limit, with w from the start of the step, at the gap y.
 double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std::size_t e, double area,
-                           double y, double dt, double c, const Positions& x_start, const Replay& replay) {
+                           double y, double dt, double c, const Positions& x_start, const PilotReplay& replay) {
   const std::array<int, 3>& vertices = scene.limit.triangles[e];
   Vec3d x[3], mass;
   for (int k = 0; k < 3; ++k) {
@@ -131,7 +100,7 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
                       const StiffnessPolicy* own, double u) {
   const BarrierFunction log = log_barrier();
   const double dt = pilot.config.time.dt;
-  Replay replay(pilot, scene);
+  PilotReplay replay(pilot, scene);
   Demand out;
   for (int step = 0; step < pilot.steps(); ++step) {
     if (own) {
@@ -140,14 +109,17 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
       replay.find_rows(step);
     }
     const ContactTable& rows = replay.rows();
+    const StiffnessAnswers& answers = pilot.answers[static_cast<std::size_t>(step)];
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const double load = -*pilot.stiffness.kappa * log.eval(rows.d[r], rows.d_hat[r]).db;
       if (!(load > 0)) continue;
       const auto where = [&] { return pair_name(scene, rows.key[r], rows.kind[r]); };
+      const double answer = answers.of(rows.key[r], rows.kind[r]);
+      if (!is_load(answer, load, step, where, out)) continue;
       const double kappa = own ? own_kappa(*own, static_cast<int>(r), u, dt, replay.c(step), replay) : 1;
       const double wanted = matched(load, rows.d_hat[r]);
       if (own && too_soft(kappa, wanted)) refuse(kappa, "kappa", step, where());
-      if (compare(wanted, kappa, load, rows.d_hat[r], step, out)) out.where = where();
+      if (compare(wanted, kappa, load, rows.d_hat[r], answer, step, out)) out.where = where();
     }
   }
   return out;
@@ -159,7 +131,7 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
   const StrainLimitPart& part = scene.limit;
   StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width, scene.planar);
   const double dt = pilot.config.time.dt;
-  Replay replay(pilot, scene);
+  PilotReplay replay(pilot, scene);
   Demand out;
   std::vector<double> y_start(part.width.size());
   for (int step = 0; step < pilot.steps(); ++step) {
@@ -168,21 +140,24 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
     for (std::size_t e = 0; e < limit.size(); ++e)
       y_start[e] = std::min(limit.gaps()[2 * e], limit.gaps()[2 * e + 1]);
     limit.measure(replay.end(step));
+    const std::vector<double>& answers = pilot.answers[static_cast<std::size_t>(step)].limit;
     for (std::size_t e = 0; e < limit.size(); ++e) {
       const double y = std::min(limit.gaps()[2 * e], limit.gaps()[2 * e + 1]), width = part.width[e];
       if (!(y < width)) continue;
       const double area = limit.rests()[e].area;
       const double load = -(*pilot.stiffness.k_s * area) * log.eval(y, width).db / area;
       if (!(load > 0)) continue;
+      const auto where = [&] { return name_element(scene, e); };
+      if (!is_load(answers[e], load, step, where, out)) continue;
       double k_s = 1;
       if (own) {
         const bool frozen = own->refresh == Refresh::per_step && !own->has_potential();
         const double softest = frozen ? std::max(width, y_start[e]) : width;
         k_s = own_limit_stiffness(*own, scene, e, area, softest, dt, replay.c(step), replay.start(step),
                                   replay);
-        if (too_soft(k_s, matched(load, width))) refuse(k_s * area, "kappa_e", step, name_element(scene, e));
+        if (too_soft(k_s, matched(load, width))) refuse(k_s * area, "kappa_e", step, where());
       }
-      if (compare(matched(load, width), k_s, load, width, step, out)) out.where = name_element(scene, e);
+      if (compare(matched(load, width), k_s, load, width, answers[e], step, out)) out.where = where();
     }
   }
   return out;

@@ -17,12 +17,18 @@ struct Demand {
   double largest = 0;        // N/m, the matched stiffness; 1 with a policy: that over the policy's own
   double load = 0;           // N per unit multiplicity, or N/m
   double width = 0;          // its d_hat (m), or the width of its limit (1)
+  double answer = 0;         // d log force/d log stiffness (stiffness_answer.hpp)
   int step = -1;             // of the pilot, at whose end it carried the load
   std::string where;         // names it
-  long long considered = 0;  // loads that were compared, over all steps; 0: the rest is void
+  long long considered = 0;  // loads that were compared, over all steps; 0: all of the above is void
+  // forces that follow their stiffness, as between given bodies at a fixed distance, are no loads
+  long long left_out = 0;    // over all steps; 0: the rest is void
+  double left_out_load = 0;  // the largest of them, N per unit multiplicity, or N/m
+  int left_out_step = -1;
+  std::string left_out_where;
 };
 
-/// The largest demand over the contacts. `own`: the policy that is to be scaled, or null. It is asked for the
+/// The largest demand over the contacts that carry a load; those whose force answers to kappa are left out. `own`: the policy that is to be scaled, or null. It is asked for the
 /// contact with the H that it reads: of the step's end when it is refreshed in every iteration, else of the
 /// step's start; and at d_hat, where a new pair gets its kappa, or at u d_hat if that gives less. Rows with a
 /// mollifier are left out: their load is e(x) times that of a row.

@@ -16,7 +16,8 @@ Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& recor
       trace_(trace),
       artifacts_(artifacts),
       condition_(config, artifacts),
-      first_contacts_(scene) {
+      first_contacts_(scene),
+      gaps_(scene) {
   if (artifacts_ && config.output.frames_every > 0) artifacts_->start();
   record_.audit.enabled = config.passes.audit;
   if (config.passes.audit) audit_.emplace(scene, config.contact.ccd_park, record_.audit);
@@ -61,6 +62,7 @@ void Recorder::look_at_rows(StepSystem& system, const StepReport& report, const 
 
 void Recorder::on_step(StepSystem& system, const StepReport& report, const Positions& x) {
   look_at_rows(system, report, x);
+  if (report.status == StepStatus::converged) gaps_.add(report.contact_loads, report.dt_s);
   condition_.end_step();
   StepRecord step = report;
   step.time = {};  // that of the timed run is filled in when the runs are over
@@ -79,7 +81,7 @@ void Recorder::on_step(StepSystem& system, const StepReport& report, const Posit
 void Recorder::keep(Archive& archive) {
   archive.section("recorder");
   archive(record_.steps, record_.summary.first_contact, record_.audit, linear_, seen_, condition_,
-          first_contacts_);
+          first_contacts_, gaps_);
   if (audit_) archive(*audit_);
 }
 
@@ -89,6 +91,7 @@ void Recorder::finish() {
   record_.summary.convergence = asked ? "asked" : "not_asked";
   record_.summary.linear_per_solve = summarize(linear_);
   condition_.fill(record_.summary);
+  record_.summary.contact_gaps = gaps_.summary();
 }
 
 Verdict Recorder::audit_verdict() const { return audit_ ? audit_->verdict() : Verdict(); }

@@ -12,6 +12,7 @@
 #include "experiments/run/artifacts.hpp"
 #include "experiments/run/audit_watch.hpp"
 #include "experiments/run/condition_watch.hpp"
+#include "experiments/run/contact_gaps.hpp"
 #include "experiments/run/first_contacts.hpp"
 #include "experiments/run/outcome.hpp"
 
@@ -56,6 +57,7 @@ class Recorder final : public StepObserver {
   ConditionWatch condition_;
   std::optional<AuditWatch> audit_;
   FirstContacts first_contacts_;
+  ContactGaps gaps_;
   std::vector<TraceRow> rows_;  // of the step in progress
   std::vector<double> linear_;  // iterations of every solve
   std::vector<PhaseTimes> seen_;

@@ -5,8 +5,10 @@
 
 #include <nlohmann/json.hpp>
 
+#include "core/archive/archive.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/simulation.hpp"
+#include "core/record/provenance.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
@@ -16,10 +18,10 @@
 namespace bb {
 namespace {
 
+/// The run in front of a step: an archive of its simulation, with the memory of its policies.
 struct Start {
   int step;
-  double time;  // s
-  History history;
+  std::string bytes;
 };
 
 /// What all trials share.
@@ -46,8 +48,12 @@ std::vector<Start> starts(const Study& study, const std::vector<int>& steps, con
   StepObserver nobody;
   std::vector<Start> out;
   for (int step = 0; out.size() < steps.size(); ++step) {
-    if (step == steps[out.size()]) out.push_back({step, simulation.time(), simulation.history()});
-    if (out.size() == steps.size()) break;
+    if (step == steps[out.size()]) {
+      Archive archive;
+      simulation.keep(archive);
+      out.push_back({step, archive.bytes()});
+      if (out.size() == steps.size()) break;
+    }
     if (options.interrupted && options.interrupted->load()) throw Interrupted{};
     const StepReport report = simulation.step(nobody);
     if (report.status != StepStatus::converged) {
@@ -66,7 +72,8 @@ StepTrial run_step(const Study& study, const Start& start, StepHessian hessian, 
   for (auto& [term, choice] : method.step_hessian) choice = hessian;
   method.step_solver.tol_velocity /= finer;
   Simulation simulation(study.scene, method, study.plan, study.config.time.dt, study.config.time.steps);
-  simulation.resume(start.history, start.step, start.time);
+  Archive archive(start.bytes);
+  simulation.keep(archive);
   Watch watch;
   const StepReport report = simulation.step(watch);
   x = simulation.history().x;
@@ -81,6 +88,7 @@ StepTrial run_step(const Study& study, const Start& start, StepHessian hessian, 
   out.error_estimate_m = watch.estimate_;
   out.dx_inf_m = watch.dx_;
   out.contacts = contact_state(simulation.system().terms()).size();
+  out.state_hash = state_hash(x);
   return out;
 }
 
@@ -139,6 +147,7 @@ std::string to_json(const RunConfig& config, const std::vector<StepTrial>& trial
                    {"error_estimate_m", json_of(t.error_estimate_m)},
                    {"error_true_m", json_of(t.error_true_m)},
                    {"contacts", t.contacts},
+                   {"state_hash", t.state_hash},
                    {"dx_inf_m", t.dx_inf_m}});
   }
   const json out = {{"schema", "barrierbench.steps/1"},

@@ -24,10 +24,12 @@ struct StepTrial {
                                  // absent where that did not converge
   std::vector<double> dx_inf_m;  // one an iteration
   std::size_t contacts = 0;      // rows at the end
+  std::string state_hash;        // sha256 of the end positions
 };
 
 /// Runs the config to the start of each of `steps` (ascending, from 0), then each step with each choice from
-/// that state. The states are the config's own; policies with memory begin anew in each trial.
+/// that state. The states are the config's own, and so is what policies remember: with the choice of the run itself a
+/// trial is the run's step, bit for bit.
 /// Errors: as run_config; ConfigError when a step is beyond the run, or the run does not get there.
 std::vector<StepTrial> study_steps(const RunConfig& config, const std::vector<int>& steps,
                                    const RunOptions& options);

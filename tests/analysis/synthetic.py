@@ -30,7 +30,8 @@ def _step(step: int, gap: float | None) -> dict:
 
 def _comparability(gap: float, verdict: str) -> dict:
     return {"verdict": verdict, "reason": "", "reference_run": "log", "reference_run_id": "id_log", "gap_rel": gap,
-            "reference_gap_rel": 0.1, "ratio": gap / 0.1, "max_ratio": 2.0}
+            "reference_gap_rel": 0.1, "ratio": gap / 0.1, "pair": "cloth|floor", "pair_quantile": "gap_rel_p05", "pair_gap_rel": gap,
+            "pair_reference_gap_rel": 0.1, "pair_ratio": gap / 0.1, "max_ratio": 2.0}
 
 
 def write_run(root: Path, formulation: str, scale: float, gap: float, outcome: str = "ok", note: str = "", verdict: str = "comparable", folder: str = "") -> dict:

@@ -17,14 +17,27 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
+PairGaps gaps(double all, double load_share = 1, double time_share = 1) {
+  return {1, load_share, time_share, all, all, all};
+}
 ComparedRun run(const char* folder, double gap, bool valid = true, const char* shape = "log",
                 const char* rule = "equal_force") {
-  return {folder, std::string("id_") + folder, valid ? "ok" : "penetration", shape, "gap", rule, valid,
-          gap,    valid ? "" : "audit_clean"};
+  return {folder, std::string("id_") + folder,
+          valid ? "ok" : "penetration",
+          shape,  "gap",
+          rule,   valid,
+          gap,    {{"cloth|floor", gaps(gap)}},
+          valid ? "" : "audit_clean"};
 }
 ComparedRun untouched(const char* folder) {
   ComparedRun out = run(folder, 0);
   out.gap_rel = Number::missing("no_contacts");
+  out.gaps.clear();
+  return out;
+}
+ComparedRun with(const GapMap& gaps) {
+  ComparedRun out = run("other", 0.1);
+  out.gaps = gaps;
   return out;
 }
 
@@ -40,7 +53,80 @@ TEST(Comparability, IsAFactorTwoOfTheReferenceEitherWay) {
   EXPECT_EQ(found.reference_run_id, "id_log");
   EXPECT_DOUBLE_EQ(found.ratio.value, 1.5);
   EXPECT_EQ(found.reference_gap_rel.value, 0.1);
+  EXPECT_DOUBLE_EQ(found.pair_ratio.value, 1.5);
   EXPECT_EQ(judge_comparability(log, log).verdict, "comparable");
+}
+
+/// Each quantile of each pair has a veto, and the record names the one that is farthest off.
+TEST(Comparability, EveryQuantileOfEveryPairIsHeldToTheFactor) {
+  const GapMap reference = {{"a|b", gaps(0.3)}, {"cloth|floor", {1, 0.02, 1, 0.1, 0.4, 0.5}}};
+  const std::pair<const char*, double PairGaps::*> fields[] = {{"gap_rel_p05", &PairGaps::gap_rel_p05},
+                                                               {"gap_rel_median", &PairGaps::gap_rel_median},
+                                                               {"gap_rel_p95", &PairGaps::gap_rel_p95}};
+  for (const char* pair : {"a|b", "cloth|floor"}) {
+    for (const auto& [name, field] : fields) {
+      for (const double factor : {1.99, 2.01, 1 / 1.99, 1 / 2.01}) {
+        GapMap mine = reference;
+        mine.at(pair).*field *= factor;
+        const Comparability found = judge_comparability(with(mine), with(reference));
+        const bool within = factor < 2 && factor > 0.5;
+        EXPECT_EQ(found.verdict, within ? "comparable" : "not_comparable") << pair << name << factor;
+        EXPECT_EQ(found.pair, pair);
+        EXPECT_EQ(found.pair_quantile, name);
+        EXPECT_DOUBLE_EQ(found.pair_ratio.value, factor);
+        EXPECT_DOUBLE_EQ(found.pair_reference_gap_rel.value, reference.at(pair).*field);
+        EXPECT_DOUBLE_EQ(found.pair_gap_rel.value, mine.at(pair).*field);
+      }
+    }
+  }
+  GapMap mine = reference;
+  mine.at("a|b").gap_rel_p05 = 0.9;
+  const Comparability found = judge_comparability(with(mine), with(reference));
+  EXPECT_NE(found.reason.find("5 % quantile of the gap, a|b: 0.9 d_hat where the reference has 0.3"),
+            std::string::npos)
+      << found.reason;
+}
+
+TEST(Comparability, TheSmallestGapOfARunDecidesNothing) {
+  ComparedRun deep = run("deep", 0.1);
+  deep.gap_rel = 0.001;
+  const Comparability found = judge_comparability(deep, run("log", 0.1));
+  EXPECT_EQ(found.verdict, "comparable");
+  EXPECT_DOUBLE_EQ(found.ratio.value, 0.01);
+}
+
+/// A pair counts from 1 % of the load or 10 % of the time on, in either of the two runs.
+TEST(Comparability, APairCountsByItsShareOfLoadOrTime) {
+  const auto verdict = [](double load, double time, bool in_reference) {
+    const GapMap alone = {{"cloth|floor", gaps(0.3)}};
+    GapMap one = alone, other = alone;
+    one["a|b"] = gaps(0.2, load, time);
+    other["a|b"] = gaps(0.6, 0, 0);
+    return judge_comparability(with(in_reference ? other : one), with(in_reference ? one : other)).verdict;
+  };
+  for (const bool in_reference : {false, true}) {
+    EXPECT_EQ(verdict(0.0099, 0.099, in_reference), "comparable");
+    EXPECT_EQ(verdict(0.01, 0, in_reference), "not_comparable");
+    EXPECT_EQ(verdict(0, 0.1, in_reference), "not_comparable");
+  }
+}
+
+/// A pair that one of the two runs keeps apart is at d_hat there, or farther.
+TEST(Comparability, APairWithLoadInOneRunOnlyCountsAsAtDHatInTheOther) {
+  const GapMap alone = {{"cloth|floor", gaps(0.3)}};
+  for (const double gap : {0.51, 0.49}) {
+    GapMap both = alone;
+    both["a|b"] = gaps(gap);
+    const char* expected = gap > 0.5 ? "comparable" : "not_comparable";
+    const Comparability lost = judge_comparability(with(alone), with(both));
+    EXPECT_EQ(lost.verdict, expected);
+    EXPECT_EQ(lost.pair, "a|b");
+    EXPECT_EQ(lost.pair_gap_rel.value, 1);
+    EXPECT_EQ(lost.pair_reference_gap_rel.value, gap);
+    const Comparability won = judge_comparability(with(both), with(alone));
+    EXPECT_EQ(won.verdict, expected);
+    EXPECT_EQ(won.pair_reference_gap_rel.value, 1);
+  }
 }
 
 TEST(Comparability, AnInvalidRunIsNeitherComparedNorAReference) {
@@ -89,6 +175,20 @@ TEST(Comparability, DefaultReferenceIsOfTheSameGroup) {
   EXPECT_EQ(default_reference(members, runs, 4), 4U);
 }
 
+/// Which member a run is held against decides: here each other choice gives another verdict.
+TEST(Comparability, DefaultReferenceIsTheFirstThatFitsAndNotTheLast) {
+  const std::vector<std::optional<ComparedRun>> runs = {
+      run("cubic first", 0.7, true, "cubic"), run("log", 0.1), run("log later", 0.5), run("quadratic", 0.15, true, "quadratic"),
+      run("cubic last", 0.6, true, "cubic")};
+  const std::vector<SweepMember> members(runs.size());
+  const char* expected[] = {"not_comparable", "comparable", "not_comparable", "comparable", "not_comparable"};
+  for (std::size_t i = 0; i < runs.size(); ++i) {
+    const auto chosen = default_reference(members, runs, i);
+    ASSERT_EQ(chosen, 1U) << i;
+    EXPECT_EQ(judge_comparability(*runs[i], runs[*chosen]).verdict, expected[i]) << i;
+  }
+}
+
 class ComparabilityFiles : public ::testing::Test {
  protected:
   void SetUp() override {
@@ -104,6 +204,7 @@ class ComparabilityFiles : public ::testing::Test {
     r.labels.argument = "gap";
     r.status.valid = r.validity.valid = true;
     r.summary.gap_min_rel = summarize({gap, 0.9});
+    r.summary.contact_gaps["cloth|floor"] = gaps(gap);
     write_run(root_ / name, r);
   }
   json read(const char* name) const { return json::parse(std::ifstream(root_ / name / "run.json")); }
@@ -136,6 +237,24 @@ TEST_F(ComparabilityFiles, EveryRecordOfASweepGetsItAndOneThatSaysSoIsLeftAlone)
   const auto written = fs::last_write_time(root_ / "near" / "run.json");
   write_comparability(members);
   EXPECT_EQ(fs::last_write_time(root_ / "near" / "run.json"), written);
+}
+
+/// Every record of a sweep without a mark is held against the one run that the rule picks, whatever stands between.
+TEST_F(ComparabilityFiles, AllRecordsAreHeldAgainstOneReference) {
+  const std::pair<const char*, double> runs[] = {{"one", 0.1}, {"two", 0.19}, {"three", 0.37}, {"four", 0.06}};
+  std::vector<SweepMember> members;
+  for (const auto& [name, gap] : runs) {
+    write(name, gap);
+    members.push_back({root_ / name, {}});
+  }
+  write_comparability(members);
+  const char* expected[] = {"comparable", "comparable", "not_comparable", "comparable"};
+  for (std::size_t i = 0; i < 4; ++i) {
+    const json found = read(runs[i].first)["comparability"];
+    EXPECT_EQ(found["reference_run"], "one");
+    EXPECT_EQ(found["verdict"], expected[i]) << i;
+    EXPECT_DOUBLE_EQ(found["pair_ratio"], runs[i].second / 0.1);
+  }
 }
 
 TEST_F(ComparabilityFiles, AMarkedReferenceThatLeftNoRecordIsNamed) {

@@ -91,6 +91,35 @@ TEST(Calibration, ALimitThatWasNeverActiveStaysAsGiven) {
       << c.record.pilot_note;
 }
 
+/// A cloth that hangs from one side carries its weight. One between two sides that are driven apart has the strain that
+/// it is given: its force is its stiffness times a fixed b'.
+TEST(Calibration, AStretchThatIsGivenIsNoLoadOfTheLimit) {
+  const std::string hanging_cloth = R"({"name": "hanging", "transform": {"translate_m": [0, 0, 5]},
+      "mesh": {"generator": "grid", "n_x": 3, "n_y": 3}, "pins": [{"box_m": [[-1, -1, -1], [-0.49, 1, 9]]}]})";
+  const std::string stretched = R"({"name": "stretched", "transform": {"translate_m": [9, 0, 5]},
+      "mesh": {"generator": "grid", "n_x": 2, "n_y": 2},
+      "pins": [{"box_m": [[8, -1, -1], [8.51, 1, 9]]},
+               {"box_m": [[9.49, -1, -1], [10, 1, 9]], "motion": {"velocity_m_per_s": [0.2, 0, 0], "start_s": 0, "end_s": 0.2}}]})";
+  const auto config = [](const std::string& bodies) {
+    return R"({"schema": "barrierbench.config/1", "scene": {"bodies": [)" + bodies +
+           R"(]}, "formulation": "cubic", "strain_limit": {"limit": 0.05, "shape": "cubic"},
+    "matching": {"rule": "equal_force", "load_N": 1}, "time": {"dt_s": 0.01, "steps": 100}})";
+  };
+  const Calibrated alone = calibrated(config(hanging_cloth).c_str());
+  const Calibrated both = calibrated(config(hanging_cloth + "," + stretched).c_str());
+  EXPECT_EQ(alone.record.elements_left_out, 0) << alone.record.left_out_element;
+  EXPECT_GT(alone.record.elements_considered, 10);
+  EXPECT_NEAR(*both.calibration.k_s / *alone.calibration.k_s, 1, 0.05);
+  EXPECT_NE(both.record.limit_element.find("hanging["), std::string::npos) << both.record.limit_element;
+  EXPECT_NE(both.record.left_out_element.find("stretched["), std::string::npos) << both.record.left_out_element;
+  EXPECT_GT(both.record.elements_left_out, 10);
+  EXPECT_GT(both.record.left_out_N_per_m.value, 1.2 * both.record.limit_load_N_per_m.value);
+  EXPECT_LT(std::abs(both.record.limit_answer.value), 0.5);
+  const Calibrated only = calibrated(config(stretched).c_str());
+  EXPECT_EQ(only.record.limit_load_source, "static_weight");
+  EXPECT_GT(only.record.elements_left_out, 10);
+}
+
 TEST(Calibration, TheRecordSaysWhereTheLimitsLoadComesFrom) {
   EXPECT_EQ(calibrated(block).record.limit_load_source, "none");
   EXPECT_EQ(calibrated(hanging).record.limit_load_source, "pilot");

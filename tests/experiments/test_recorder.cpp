@@ -92,6 +92,27 @@ TEST(Recorder, the_load_and_the_energies_of_a_step_are_those_of_its_end) {
   }
 }
 
+TEST(Recorder, the_gaps_of_a_pair_are_weighted_by_its_loads) {
+  const RecordedFall run(3);
+  double sum = 0, least = 1, most = 0, time = 0;
+  for (const StepRecord& step : run.record.steps) {
+    ASSERT_EQ(step.status, StepStatus::converged);
+    time += step.dt_s;
+    sum += step.contact_load_sum_N.value * step.dt_s;
+    least = std::min(least, step.gap_min_rel.value), most = std::max(most, step.gap_min_rel.value);
+  }
+  ASSERT_EQ(run.record.summary.contact_gaps.size(), 1U);
+  const PairGaps& pair = run.record.summary.contact_gaps.begin()->second;
+  EXPECT_GT(pair.load_N, 0);
+  EXPECT_NEAR(pair.load_N, sum / time, 1e-12 * pair.load_N);
+  EXPECT_EQ(pair.load_share, 1);
+  EXPECT_EQ(pair.time_share, 1);
+  EXPECT_GT(pair.gap_rel_p05, least * 0.989);
+  EXPECT_LT(pair.gap_rel_p95, most * 1.011);
+  EXPECT_LE(pair.gap_rel_p05, pair.gap_rel_median);
+  EXPECT_LE(pair.gap_rel_median, pair.gap_rel_p95);
+}
+
 TEST(Recorder, a_step_that_did_not_converge_has_no_gap_of_its_own) {
   const RecordedFall run(1, 1);
   const StepRecord& step = run.record.steps.at(0);
@@ -101,6 +122,8 @@ TEST(Recorder, a_step_that_did_not_converge_has_no_gap_of_its_own) {
   EXPECT_TRUE(step.gap_min_iterates_m.finite());
   EXPECT_FALSE(run.record.summary.gap_min_m.finite());
   EXPECT_EQ(run.record.summary.gap_min_rel.n, 0U);
+  EXPECT_TRUE(run.record.summary.contact_gaps.empty());
+  EXPECT_GT(step.contact_load_max_N.value, 0);  // else the line above shows nothing
   EXPECT_EQ(run.record.summary.steps_capped, 1);
 }
 

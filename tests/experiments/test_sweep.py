@@ -44,7 +44,8 @@ def test_a_sweep_compares_every_run_with_its_reference(program, tmp_path, kappa,
     second = found["second"]
     assert second["verdict"] == verdict and second["reference_run"].startswith("log-")
     assert second["ratio"] == pytest.approx(second["gap_rel"] / second["reference_gap_rel"])
-    assert (0.5 <= second["ratio"] <= 2) == (verdict == "comparable") and second["max_ratio"] == 2
+    assert (0.5 <= second["pair_ratio"] <= 2) == (verdict == "comparable") and second["max_ratio"] == 2
+    assert second["pair"] == "block|plane" and second["pair_ratio"] == pytest.approx(second["pair_gap_rel"] / second["pair_reference_gap_rel"])
     reference = json.loads((out / second["reference_run"] / "run.json").read_text())
     assert second["reference_run_id"] == reference["ids"]["run_id"]
     assert second["reference_gap_rel"] == reference["summary"]["gap_min_rel"]["min"]
@@ -54,6 +55,32 @@ def test_a_sweep_compares_every_run_with_its_reference(program, tmp_path, kappa,
     before = [r.read_bytes() for r in sorted(out.glob("*/run.json"))]
     assert bench(program, "sweep", spec, "--out", out).returncode == 0
     assert [r.read_bytes() for r in sorted(out.glob("*/run.json"))] == before
+
+
+def box(name: str, z: float) -> dict:
+    return {"name": name, "kind": "rigid", "transform": {"translate_m": [3, 0, z]},
+            "mesh": {"generator": "box", "n": 1, "size_x_m": 0.5, "size_y_m": 0.5, "size_z_m": 0.1}}
+
+
+def cloth(name: str, place: list, n: int, size: float) -> dict:
+    return {"name": name, "transform": {"translate_m": place}, "mesh": {"generator": "grid", "n_x": n, "n_y": n, "size_x_m": size, "size_y_m": size}}
+
+
+def test_a_pair_that_never_moves_does_not_hide_one_that_rests_elsewhere(program, tmp_path):
+    """A piece between given bodies has the smallest gap whatever the stiffness: the sheet on the floor decides."""
+    config = write(tmp_path / "pinch.json", {
+        "schema": "barrierbench.config/1", "formulation": {"name": "log", "d_hat_m": 0.005}, "matching": {"rule": "equal_force"}, "time": {"dt_s": 0.01, "steps": 20},
+        "scene": {"bodies": [box("lower", 0.9494), box("upper", 1.0506), cloth("piece", [3, 0, 1], 2, 0.2), cloth("resting", [0, 0, 0.004], 4, 1)],
+                  "obstacles": [{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}]}})
+    spec, out = write(tmp_path / "pinch_sweep.json", {"schema": "barrierbench.sweep/1", "name": "pinch", "base": str(config), "axes": [{"cases": [
+        {"label": "log", "set": {}, "reference": True}, {"label": "stiff", "set": {"/formulation/stiffness_policy/scale": 1000}}]}]}), tmp_path / "out"
+    assert bench(program, "sweep", spec, "--out", out).returncode == 0
+    found = comparabilities(out)
+    assert found["log"]["verdict"] == "comparable"
+    stiff = found["stiff"]
+    assert 0.9 < stiff["ratio"] < 1.1  # the smallest gaps alone would call them comparable
+    assert stiff["verdict"] == "not_comparable" and stiff["pair"] == "floor|resting" and stiff["pair_ratio"] > 2
+    assert "floor|resting" in stiff["reason"]
 
 
 def test_an_invalid_run_is_no_reference(program, tmp_path):

@@ -48,7 +48,7 @@ def write_sweep(file: str, out: str, gaps: dict, edits: dict) -> None:
             verdict = "comparable" if gap and 0.05 <= gap <= 0.2 else "not_comparable"
             record = write_run(Path(out), name, 1.0, gap or 0.1, note=f"{sweep['name']}: {label}", verdict=verdict, folder=f"case{k}")
             if gap is None:
-                record["comparability"] |= {"gap_rel": None, "ratio": None}
+                record["comparability"] |= {"gap_rel": None, "ratio": None, "pair": "", "pair_quantile": "", "pair_gap_rel": None, "pair_ratio": None}
                 record["summary"]["gap_min_rel"]["min"] = None
             record["config"] = {"scene": {"n": 4}, "formulation": {"name": name, "d_hat_m": 0.01}, "time": {"dt_s": 0.01}}
             record["ids"]["build_id"] = "b"

@@ -30,6 +30,8 @@ def test_all_comparable(match, monkeypatch, tmp_path, capsys):
     assert [row["formulation"] for row in kept["formulations"]] == ["log", "cubic", "quadratic"]
     assert all(row["verdict"] == "comparable" for row in kept["formulations"]) and kept["max_gap_ratio"] == 2
     assert "load of pilot: sheet[1] at the end of step 3" in said and "50 N/m" in said and "400 N/m" in said and "0.15 d_hat" in said
+    assert "farthest from log" in said and "x 1.5, cloth|floor" in said
+    assert (kept["formulations"][1]["pair"], kept["formulations"][1]["pair_quantile"]) == ("cloth|floor", "gap_rel_p05")
 
 
 @pytest.mark.parametrize("edit, why", [

@@ -1,6 +1,9 @@
 // The whole step of the resident pipeline against NewtonSystem: numbers of one iterate, states of whole runs.
 #include <gtest/gtest.h>
 
+#include <map>
+#include <set>
+
 #include <functional>
 
 #include "tests/newton/saddle_scenes.hpp"
@@ -184,6 +187,22 @@ TEST(ResidentRun, EndsWhereTheCpuEndsForEveryHessian) {
   }
 }
 
+/// Sums over the loads of every two owners, bodies as they are and obstacles as -2 - o: load, load times gap.
+std::map<std::set<int>, std::pair<double, double>> sums_of(const Scene& scene,
+                                                           const std::vector<ContactLoad>& loads) {
+  std::map<std::set<int>, std::pair<double, double>> out;
+  for (const ContactLoad& each : loads) {
+    std::set<int> owners;
+    for (const int id : each.key) {
+      if (id != -1) owners.insert(id < 0 ? id : scene.body[static_cast<std::size_t>(id)]);
+    }
+    auto& [load, moment] = out[owners];
+    load += each.load_N;
+    moment += each.load_N * each.gap_rel;
+  }
+  return out;
+}
+
 /// Compares what the CPU is shown at every step's end with what the system has.
 class CompareWithCpu final : public StepObserver {
  public:
@@ -197,7 +216,19 @@ class CompareWithCpu final : public StepObserver {
     }
     EXPECT_EQ(seen.rhs().size(), seen.n_free());
     n_rows += contact_state(seen.terms()).size();
+    StepNumbers numbers;
+    seen.report_end(numbers);
+    const auto expected = sums_of(system.scene(), numbers.contact_loads),
+               found = sums_of(system.scene(), report.contact_loads);
+    ASSERT_EQ(found.size(), expected.size()) << "step " << report.step;
+    for (const auto& [owners, sums] : expected) {
+      ASSERT_TRUE(found.contains(owners));
+      EXPECT_NEAR(found.at(owners).first, sums.first, 1e-9 * sums.first) << "step " << report.step;
+      EXPECT_NEAR(found.at(owners).second, sums.second, 1e-9 * sums.second) << "step " << report.step;
+      pairs.insert(owners);
+    }
   }
+  std::set<std::set<int>> pairs;  // with load
   int n_energies = 0;
   std::size_t n_rows = 0;
 };
@@ -220,6 +251,8 @@ TEST(ResidentRun, IsShownToTheCpuWithItsStiffness) {
     for (int i = 0; i < 10; ++i) simulation.step(observer);
     EXPECT_GT(observer.n_energies, 10);
     EXPECT_GT(observer.n_rows, 0u);
+    const std::set<std::set<int>> both = {{0, 1}, {-2, 0}};  // the plate, the floor
+    EXPECT_EQ(observer.pairs, both);
   }
 }
 

@@ -1,6 +1,8 @@
 // Contact rows in an executor's memory, one a pair: columns, at most 140 B a row.
 #pragma once
 
+#include <vector>
+
 #include "core/barrier/stiffness_policy.hpp"
 #include "core/contact/contact_table.hpp"
 #include "core/exec/buffer.hpp"
@@ -50,6 +52,15 @@ struct RowView {
   }
   BB_HD double kappa_of(Index r) const { return parts(r).at(d[r]); }
   BB_HD bool mollified(Index r) const { return kind[r] == mollified_kind; }
+};
+
+/// What is read of rows on the host: identity, gap and force.
+struct HostRows {
+  std::vector<int> vertex;  // [4][n]
+  std::vector<Key> pair;
+  std::vector<std::uint8_t> kind;
+  std::vector<double> d, d_hat, push;
+  std::size_t size() const { return d.size(); }
 };
 
 class ResidentRows {
@@ -131,6 +142,11 @@ class ResidentRows {
             stretch_.data()};
   }
   bool feasible() const { return min_gap > 0; }
+  /// Cost: a copy of 49 bytes a row.
+  HostRows on_host() const {
+    return {vertex_.download(), pair_.download(),  kind_.download(),
+            d_.download(),      d_hat_.download(), push_.download()};
+  }
 
   exec::Buffer<std::uint32_t> list;  // numbers of the mollified rows, ascending
   double uniform_kappa = 0;          // N/m

@@ -20,6 +20,23 @@ ContactCounts counts_of(const RowTotals& rows) {
   return out;
 }
 
+ContactKey key_of(const HostRows& rows, std::size_t r) {
+  constexpr Key index = (Key{1} << 30) - 1;
+  const std::size_t n = rows.size();
+  ContactKey key = {rows.vertex[r], rows.vertex[n + r], rows.vertex[2 * n + r], rows.vertex[3 * n + r]};
+  if (rows.kind[r] == static_cast<std::uint8_t>(ContactKind::obstacle))
+    key[3] = obstacle_key(static_cast<int>(rows.pair[r] & index), 0)[2];
+  return key;
+}
+
+void list_loads(const HostRows& rows, std::vector<ContactLoad>& out) {
+  out.clear();
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (rows.kind[r] == mollified_kind || !(rows.push[r] < 0)) continue;
+    out.push_back({key_of(rows, r), rows.d[r] / rows.d_hat[r], -rows.push[r]});
+  }
+}
+
 template <class Numbers>
 void fill(const RowTotals& rows, Numbers& out) {
   out.contacts = counts_of(rows);
@@ -80,6 +97,7 @@ void ResidentSystem::report_end(StepNumbers& out) const {
   const RowTotals rows = row_totals();
   fill(rows, out);
   out.contact_load_sum_N = rows.load.value();
+  list_loads(contact_->rows(x_).on_host(), out.contact_loads);
   out.gap_min_m = contact_->rows(x_).min_gap;
   out.gap_min_rel = smallest_of(rows.gap_rel_min);
   const double largest = vectors_.max(x_);

@@ -1,0 +1,29 @@
+#include "experiments/run/pilot_replay.hpp"
+
+#include <stdexcept>
+
+namespace bb {
+
+void PilotReplay::begin(const Positions& x, int step) {
+  prediction_.c = c(step);
+  prediction_.x_tilde = x;
+  system_.begin_step(x, prediction_, pilot_.config.time.dt, 1.0);
+}
+
+void PilotReplay::find_rows(int step, Refresh refresh) {
+  begin(refresh == Refresh::per_step ? start(step) : end(step), step);
+  system_.assemble();
+  elastic_ = system_.clamped_values(TermGroup::elastic);
+  if (refresh != Refresh::per_step) return;
+  system_.prepare(end(step), end(step) - start(step));
+  if (!system_.try_state(end(step))) throw std::logic_error("a state of the pilot is infeasible");
+  system_.accept();
+}
+
+NewtonSystem& PilotReplay::assembled(int step) {
+  begin(end(step), step);
+  system_.assemble();
+  return system_;
+}
+
+}  // namespace bb

@@ -1,0 +1,148 @@
+// Which forces of a pilot are loads: those that stay when barriers get stiffer. Forces of pieces between given bodies do
+// not, and a match leaves them out.
+#include "experiments/run/stiffness_answer.hpp"
+
+#include <cmath>
+
+#include "core/newton/simulation.hpp"
+#include "tests/experiments/calibrated.hpp"
+
+namespace bb {
+namespace {
+
+using namespace test;
+
+/// A piece of cloth between two given boxes, 0.6 mm from each where d_hat is 5 mm.
+const std::string piece = R"(
+  {"name": "lower", "kind": "rigid", "transform": {"translate_m": [3, 0, 0.9494]},
+   "mesh": {"generator": "box", "n": 1, "size_x_m": 0.5, "size_y_m": 0.5, "size_z_m": 0.1}},
+  {"name": "upper", "kind": "rigid", "transform": {"translate_m": [3, 0, 1.0506]},
+   "mesh": {"generator": "box", "n": 1, "size_x_m": 0.5, "size_y_m": 0.5, "size_z_m": 0.1}},
+  {"name": "piece", "limited": false, "transform": {"translate_m": [3, 0, 1]},
+   "mesh": {"generator": "grid", "n_x": 2, "n_y": 2, "size_x_m": 0.2, "size_y_m": 0.2}})";
+
+/// A sheet of n x n squares that falls 1 mm into the support of the floor's barrier, and comes to rest.
+std::string sheet(int n) {
+  return R"({"name": "resting", "limited": false, "transform": {"translate_m": [0, 0, 0.006]},
+    "mesh": {"generator": "grid", "n_x": )" +
+         std::to_string(n) + R"(, "n_y": )" + std::to_string(n) + "}}";
+}
+
+std::string scene_of(const std::string& bodies) {
+  return R"({"schema": "barrierbench.config/1", "scene": {"bodies": [)" + bodies +
+         R"(], "obstacles": [{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}]},
+    "formulation": {"name": "cubic", "d_hat_m": 0.005}, "matching": {"rule": "equal_force"},
+    "time": {"dt_s": 0.01, "steps": 20}})";
+}
+
+TEST(StiffnessAnswer, AMatchTakesTheLoadOfTheSheetAndNotTheForceOfThePinch) {
+  for (const int n : {3, 8}) {
+    const Calibrated both = calibrated(scene_of(piece + "," + sheet(n)).c_str());
+    const Calibrated alone = calibrated(scene_of(sheet(n)).c_str());
+    EXPECT_NE(both.record.contact.find("resting["), std::string::npos) << both.record.contact;
+    EXPECT_LT(std::abs(both.record.contact_answer.value), 0.05);
+    EXPECT_NEAR(*both.calibration.kappa / *alone.calibration.kappa, 1, 0.05) << n;
+    EXPECT_NEAR(both.record.load_N.value / alone.record.load_N.value, 1, 0.05) << n;
+    EXPECT_GT(both.record.contacts_left_out, 100);
+    EXPECT_GT(both.record.left_out_N.value, 1.5 * both.record.load_N.value);  // else it would decide nothing
+    EXPECT_NE(both.record.left_out_contact.find("piece["), std::string::npos) << both.record.left_out_contact;
+    EXPECT_NE(both.record.pilot_note.find("no loads"), std::string::npos) << both.record.pilot_note;
+    EXPECT_EQ(alone.record.contacts_left_out, 0);
+    EXPECT_EQ(alone.record.left_out_contact, "");
+    EXPECT_FALSE(alone.record.left_out_N.finite());
+    EXPECT_EQ(alone.record.pilot_note, "");
+  }
+}
+
+TEST(StiffnessAnswer, WhereNoForceIsALoadTheStaticWeightStandsIn) {
+  const Calibrated fixed = calibrated(scene_of(piece).c_str());
+  EXPECT_EQ(fixed.record.load_source, "static_weight");
+  EXPECT_EQ(fixed.record.contacts_considered, 0);
+  EXPECT_GT(fixed.record.contacts_left_out, 100);
+  EXPECT_EQ(fixed.record.contact, "");
+  EXPECT_NEAR(*fixed.calibration.kappa * slope("cubic", 0.0005, 0.005) / fixed.record.load_N.value, 1, 1e-12);
+  const Calibrated own = calibrated(
+      scene_of(piece).c_str(),
+      {R"(/formulation/stiffness_policy={"name": "elasticity_inclusive", "mass_term": "inertia"})"});
+  EXPECT_EQ(own.calibration.scale, 1);
+  EXPECT_FALSE(own.record.scale.finite());
+  EXPECT_NE(own.record.pilot_note.find("the contact policy stays as given: no force of the pilot is a load"),
+            std::string::npos)
+      << own.record.pilot_note;
+}
+
+/// What the world makes is left alone: weight, impact, a bounce.
+TEST(StiffnessAnswer, NothingIsLeftOutWhereBodiesFallAndRest) {
+  for (const char* text : {block, falling, two_masses}) {
+    const Calibrated c = calibrated(text);
+    EXPECT_GT(c.record.contacts_considered, 10);
+    EXPECT_EQ(c.record.contacts_left_out, 0) << c.record.left_out_contact;
+    EXPECT_LT(std::abs(c.record.contact_answer.value), 0.1);
+  }
+}
+
+/// A cloth, two sides of which are held at 0.6 d_hat over a floor: its middle is pushed up until tension, bending and weight hold
+/// it, so that its forces answer to kappa by more or less of kappa.
+std::string held(double kappa) {
+  return R"({"schema": "barrierbench.config/1", "scene": {"bodies": [
+      {"name": "cloth", "limited": false, "transform": {"translate_m": [0, 0, 0.006]},
+       "mesh": {"generator": "grid", "n_x": 6, "n_y": 6},
+       "pins": [{"box_m": [[-1, -1, -1], [-0.49, 1, 1]]}, {"box_m": [[0.49, -1, -1], [1, 1, 1]]}]}],
+      "obstacles": [{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}]},
+    "formulation": {"name": "log", "d_hat_m": 0.01, "stiffness_policy": {"name": "fixed", "kappa_N_per_m": )" +
+         std::to_string(kappa) + R"(}}, "integrator": {"name": "quasi_static"}, "matching": {"rule": "as_given"},
+    "time": {"dt_s": 0.01, "steps": 1}, "step_solver": {"tol_velocity_m_per_s": 1e-12}})";
+}
+
+struct AtRest {
+  std::vector<double> force, answer;  // N, 1: of every contact
+  std::vector<ContactKey> key;
+};
+
+AtRest at_rest(double kappa) {
+  const RunConfig config = parsed(held(kappa).c_str(), {});
+  const Scene scene = build_scene(config);
+  Method method = make_method(config, {});
+  Simulation simulation(scene, method, config.time.dt, 1);
+  StepObserver nobody;
+  const StepReport report = simulation.step(nobody);
+  EXPECT_EQ(report.status, StepStatus::converged) << report.detail;
+  NewtonSystem system(scene, method);
+  Prediction prediction;
+  prediction.x_tilde = simulation.history().x;
+  system.begin_step(simulation.history().x, prediction, config.time.dt, 1.0);
+  system.assemble();
+  const StiffnessAnswers answers = answers_to_stiffness(system, nullptr, log_barrier(), config.time.dt);
+  EXPECT_TRUE(answers.known);
+  AtRest out;
+  const ContactTable& rows = contact_state(system.terms()).rows;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    out.force.push_back(-rows.kappa[r] * rows.db[r]);
+    out.answer.push_back(answers.of(rows.key[r], rows.kind[r]));
+    out.key.push_back(rows.key[r]);
+  }
+  return out;
+}
+
+/// The answers against what they stand for: the same state at rest with 1 % more and less stiffness.
+TEST(StiffnessAnswer, IsTheDerivativeOfTheForceAtRest) {
+  double smallest = 1, largest = 0;
+  std::size_t compared = 0;
+  for (const double kappa : {0.01, 0.3, 10.0, 300.0}) {
+    const AtRest here = at_rest(kappa), less = at_rest(0.99 * kappa), more = at_rest(1.01 * kappa);
+    ASSERT_EQ(less.key, here.key);
+    ASSERT_EQ(more.key, here.key);
+    for (std::size_t r = 0; r < here.key.size(); ++r) {
+      const double slope = std::log(more.force[r] / less.force[r]) / std::log(1.01 / 0.99);
+      EXPECT_NEAR(here.answer[r], slope, 0.01) << kappa << " " << r;
+      smallest = std::min(smallest, here.answer[r]), largest = std::max(largest, here.answer[r]);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 40U);
+  EXPECT_LT(smallest, 0.2);  // both sides of the decision
+  EXPECT_GT(largest, 0.8);
+}
+
+}  // namespace
+}  // namespace bb
