@@ -43,7 +43,8 @@ ResidentSurface::ResidentSurface(exec::Executor& executor, const Scene& scene, c
       vertex_free_(executor, "surface vertex free"),
       body_(executor, "surface body"),
       rest_(executor, "surface rest positions"),
-      obstacles_(executor, "obstacles") {
+      obstacles_(executor, "obstacles"),
+      element_size_(surface.element_size) {
   vertex_free_.upload(surface.vertex_free);
   body_.upload(scene.body);
   rest_.upload({scene.rest.data(), static_cast<std::size_t>(scene.rest.size())});

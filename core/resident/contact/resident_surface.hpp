@@ -61,6 +61,8 @@ class ResidentSurface {
  public:
   ResidentSurface(exec::Executor& executor, const Scene& scene, const Surface& surface);
   SurfaceView view() const;
+  /// See Surface.
+  double element_size() const { return element_size_; }
 
  private:
   ResidentPrimitives<1> points_;
@@ -70,6 +72,7 @@ class ResidentSurface {
   exec::Buffer<int> body_;
   exec::Buffer<double> rest_;
   exec::Buffer<PlainObstacle> obstacles_;
+  double element_size_;  // m
 };
 
 /// Candidate pairs: first << 32 | second, indices into the primitives of the surface, each list ascending; obstacle:
