@@ -38,44 +38,83 @@ BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<doubl
   points_.needed = plan.point_point || plan.point_edge || plan.point_triangle;
   edges_.needed = plan.point_edge || plan.edge_edge;
   triangles_.needed = plan.point_triangle;
+  lone_edges_.needed = plan.point_edge && !surface.planar;
+  for (const int e : surface.lone_edges)
+    lone_free_.push_back(surface.edges.free[static_cast<std::size_t>(e)]);
 }
 
-/// The origin of a frame is a point of the scene: floats are finest near it.
+/// Sampled coordinates at the start, sorted; those that are no numbers are left out.
+FoldedFrame BroadPhase::folded(const Positions& x0) {
+  const auto n = static_cast<long long>(surface_.points.size());
+  for (int c = 0; c < 3; ++c) {
+    std::vector<double>& sample = sample_[c];
+    sample.clear();
+    for (int k = 0; k < n_sampled(n); ++k) {
+      const double x = x0(c, surface_.points.vertices[static_cast<std::size_t>(sampled(k, n))][0]);
+      if (std::isfinite(x)) sample.push_back(x);
+    }
+    std::sort(sample.begin(), sample.end());
+  }
+  // a float state far away is rounded by more than what is left of the empty stretch before it
+  constexpr double never = std::numeric_limits<double>::infinity();
+  return folded_frame([this](int c, int i) { return sample_[c][static_cast<std::size_t>(i)]; },
+                      [this](int c) { return static_cast<int>(sample_[c].size()); },
+                      values_in_float(precision_) ? never : surface_.element_size);
+}
+
 BroadPhase::Frame BroadPhase::frame(const Positions& x0, const Positions& x1) {
-  if (surface_.points.size() == 0) return {Vec3d::Zero(), Vec3d::Zero()};
-  Vec3d origin = x0.col(surface_.points.vertices[0][0]);
-  if (!origin.allFinite()) origin.setZero();
-  if (x0.data() == x1.data()) return {origin, origin};
-  return {origin, origin + common_motion(surface_.points, x0, x1, moved_)};
+  Frame out{folded(x0), Vec3d::Zero()};
+  if (x0.data() != x1.data()) out.moved = common_motion(surface_.points, x0, x1, moved_);
+  return out;
 }
 
 void BroadPhase::fit_vertices(const Positions& x0, const Positions& x1, const Frame& frame) {
   const std::size_t n = static_cast<std::size_t>(x0.cols());
   vertices_.resize(n);
+  const auto place = [&](const Vec3d& x) {
+    return Vec3d(frame.folded.axis[0](x[0]), frame.folded.axis[1](x[1]), frame.folded.axis[2](x[2]));
+  };
   for_each_chunk(n, [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const int v = static_cast<int>(i);
+      const Vec3d p0 = x0.col(v), p1 = x1.col(v);
+      // a TreeBox knows the ulps of what it holds; x itself is larger by what is taken off, and rounded accordingly
+      Vec3d margin;
+      for (int c = 0; c < 3; ++c) margin[c] = place_rounding(p0[c], p1[c], frame.moved[c]);
+      if (values_in_float(precision_)) {
+        const double largest = std::max(p0.lpNorm<Eigen::Infinity>(), p1.lpNorm<Eigen::Infinity>());
+        margin.array() += distance_rounding(precision_, largest);
+      }
       TreeBox box;
-      box.add(Vec3d(x0.col(v) - frame.start));
-      if (x0.data() != x1.data()) box.add(Vec3d(x1.col(v) - frame.end));
+      box.add(place(p0), margin);
+      if (x0.data() != x1.data()) box.add(place(Vec3d(p1 - frame.moved)), margin);
       vertices_[i] = box;
     }
   });
 }
 
 template <int N>
-void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives, double rounding) const {
+void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives) const {
   if (!tree.needed) return;
   tree.boxes.resize(primitives.size());
   for_each_chunk(primitives.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       TreeBox box;
       for (int v : primitives.vertices[i]) box.add(vertices_[static_cast<std::size_t>(v)]);
-      box.inflate(primitives.side[i].d_hat / 2 + primitives.side[i].offset + rounding);
+      box.inflate(primitives.side[i].d_hat / 2 + primitives.side[i].offset);
       tree.boxes[i] = box;
     }
   });
   tree.bvh.update(tree.boxes, primitives.free);
+}
+
+void BroadPhase::fit_edges() {
+  fit(edges_, surface_.edges);
+  if (!lone_edges_.needed) return;
+  lone_edges_.boxes.clear();
+  for (const int e : surface_.lone_edges)
+    lone_edges_.boxes.push_back(edges_.boxes[static_cast<std::size_t>(e)]);
+  lone_edges_.bvh.update(lone_edges_.boxes, lone_free_);
 }
 
 /// Of any distance on the motion, m; 0 in double, where nothing is asked of the states.
@@ -91,12 +130,8 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
     // make every box long.
     const Frame moving = frame(x0, x1);
     fit_vertices(x0, x1, moving);
-    // a TreeBox knows the ulps of what it holds; x itself is larger by up to the frame, and rounded accordingly
-    const double frames = moving.start.lpNorm<Eigen::Infinity>() + moving.end.lpNorm<Eigen::Infinity>();
-    const double rounding = 4 * std::numeric_limits<double>::epsilon() * frames + state_rounding(x0, x1) / 2;
-    tbb::parallel_invoke([&] { fit(edges_, s.edges, rounding); },
-                         [&] { fit(triangles_, s.triangles, rounding); },
-                         [&] { fit(points_, s.points, rounding); });
+    tbb::parallel_invoke([&] { fit_edges(); }, [&] { fit(triangles_, s.triangles); },
+                         [&] { fit(points_, s.points); });
   }
   for_each_obstacle_list(s, out, [&]<int N>(const Primitives<N>& of, std::vector<IndexPair>& pairs) {
     update_obstacles<N>(of, x0, x1, pairs);
@@ -110,7 +145,14 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
         points_.bvh, points_.bvh, [&](IndexPair p) { return !s.connected(point(p.first), point(p.second)); },
         out.point_point);
   }
-  if (plan_.point_edge) {
+  if (lone_edges_.needed) {
+    const auto lone = [&s](int i) { return s.lone_edges[static_cast<std::size_t>(i)]; };
+    finder_.find(
+        points_.bvh, lone_edges_.bvh,
+        [&](IndexPair p) { return Surface::disjoint(point(p.first), edge(lone(p.second))); }, out.point_edge);
+    for (IndexPair& p : out.point_edge)
+      p.second = lone(p.second);  // ascending, so that the list stays sorted
+  } else if (plan_.point_edge) {
     finder_.find(
         points_.bvh, edges_.bvh, [&](IndexPair p) { return !s.adjacent(point(p.first), edge(p.second)); },
         out.point_edge);

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/contact/bvh.hpp"
+#include "core/contact/folded_axis.hpp"
 #include "core/contact/obstacle.hpp"
 #include "core/contact/surface.hpp"
 #include "core/math/precision.hpp"
@@ -26,7 +27,8 @@ void for_each_obstacle_list(const Surface& surface, CandidateLists& c, const F& 
   f.template operator()<3>(surface.triangles, c.obstacle_triangle);
 }
 
-/// Keeps one tree per kind of primitive that pairs of the plan need, and no other.
+/// Keeps one tree per kind of primitive that pairs of the plan need, one of the edges without triangles where there are
+/// any, and no other.
 class BroadPhase {
  public:
   /// plan: of the scene of the surface. precision: that in which distances are evaluated.
@@ -45,25 +47,29 @@ class BroadPhase {
     Bvh bvh;
     std::vector<TreeBox> boxes;
   };
-  /// What is subtracted from the positions at the start and at the end before boxes are made, m.
+  /// Where positions are put before boxes are made, and what is subtracted at the end of the motion before that, m.
   struct Frame {
-    Vec3d start, end;
+    FoldedFrame folded;
+    Vec3d moved;
   };
   Frame frame(const Positions& x0, const Positions& x1);
+  FoldedFrame folded(const Positions& x0);
   double state_rounding(const Positions& x0, const Positions& x1) const;
   void fit_vertices(const Positions& x0, const Positions& x1, const Frame& frame);
   template <int N>
-  void fit(Tree& tree, const Primitives<N>& primitives, double rounding) const;
+  void fit(Tree& tree, const Primitives<N>& primitives) const;
+  void fit_edges();
   template <int N>
   void update_obstacles(const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
                         std::vector<IndexPair>& out);
 
   const Surface& surface_;
   std::vector<AnalyticSurface<double>> obstacles_;
-  Tree points_, edges_, triangles_;
+  Tree points_, edges_, triangles_, lone_edges_;
+  std::vector<std::uint8_t> lone_free_;
   PairFinder finder_;
   std::vector<TreeBox> vertices_;                       // of all vertices on the motion
-  std::vector<double> moved_;                           // buffer of frame
+  std::vector<double> moved_, sample_[3];               // buffers of frame
   std::vector<std::vector<IndexPair>> near_obstacles_;  // of each chunk
   const ContactPlan plan_;
   const Precision precision_;

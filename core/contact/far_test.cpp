@@ -1,6 +1,7 @@
 #include "core/contact/far_test.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "core/contact/chunks.hpp"
 #include "core/contact/float_rounding.hpp"
@@ -11,10 +12,10 @@ namespace {
 using Four = TreeBox::Four;
 
 /// Coordinates of eight points, one vector per axis.
-void transpose(const Four* const (&points)[FarTest::width], EightFloats (&axis)[3]) {
+void transpose(const Four (&points)[FarTest::width], EightFloats (&axis)[3]) {
   EightFloats p[4];
   for (int k = 0; k < 4; ++k) {
-    p[k] = __builtin_shufflevector(*points[k], *points[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
+    p[k] = __builtin_shufflevector(points[k], points[k + 4], 0, 1, 2, 3, 4, 5, 6, 7);
   }
   const EightFloats xy01 = __builtin_shufflevector(p[0], p[1], 0, 8, 1, 9, 4, 12, 5, 13);
   const EightFloats xy23 = __builtin_shufflevector(p[2], p[3], 0, 8, 1, 9, 4, 12, 5, 13);
@@ -23,6 +24,13 @@ void transpose(const Four* const (&points)[FarTest::width], EightFloats (&axis)[
   axis[0] = __builtin_shufflevector(xy01, xy23, 0, 1, 8, 9, 4, 5, 12, 13);
   axis[1] = __builtin_shufflevector(xy01, xy23, 2, 3, 10, 11, 6, 7, 14, 15);
   axis[2] = __builtin_shufflevector(z01, z23, 0, 1, 8, 9, 4, 5, 12, 13);
+}
+
+/// 1 over the power of two that is nearest below each number, which must be positive and normal: factors that round
+/// nothing.
+EightFloats inverse_powers_of_two(const EightFloats& of) {
+  constexpr std::int32_t exponent = 0x7f800000, twice_bias = 254 << 23;
+  return std::bit_cast<EightFloats>(twice_bias - (std::bit_cast<EightInts>(of) & exponent));
 }
 
 }  // namespace
@@ -45,26 +53,20 @@ FarTest::FarTest(const Surface& surface, Precision precision)
 
 void FarTest::set_state(const Positions& x) {
   x_.resize(static_cast<std::size_t>(x.cols()));
-  if (x_.empty()) return;
-  const Vec3d lo = x.rowwise().minCoeff(), hi = x.rowwise().maxCoeff();
-  const Vec3d middle = lo + (hi - lo) / 2;
-  const double largest = std::max(1e-30, (hi - middle).cwiseMax(middle - lo).maxCoeff()), unit = 1 / largest;
   for_each_chunk(x_.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const Vec3d p = (x.col(static_cast<int>(i)) - middle) * unit;
-      x_[i] = Four{static_cast<float>(p[0]), static_cast<float>(p[1]), static_cast<float>(p[2]), 0};
+      const auto p = x.col(static_cast<int>(i));
+      const double blur =
+          values_in_float(precision_) ? distance_rounding(precision_, p.lpNorm<Eigen::Infinity>()) : 0;
+      x_[i] = Point{p[0], p[1], p[2], blur};
     }
   });
-  unit_ = float_above(unit);
-  // Two points, sqrt(3) times what the rounding to float moves a coordinate; in double, what the middle costs.
-  const double outmost = x.cwiseAbs().maxCoeff();
-  blur_ = float_above(4 * 0x1p-24 + 0x1p-48 * outmost * unit + distance_rounding(precision_, outmost) * unit);
 }
 
 template <PairKind K>
 LaneSet FarTest::far(const IndexPair* pairs, std::size_t n) const {
   constexpr int N = pair_points(K), split = pair_split(K);
-  const Four* corner[N][width];
+  const Point* corner[N][width];
   EightFloats reach;
   for (std::size_t lane = 0; lane < width; ++lane) {
     const IndexPair pair = pairs[lane < n ? lane : 0];
@@ -75,16 +77,27 @@ LaneSet FarTest::far(const IndexPair* pairs, std::size_t n) const {
     }
     reach[lane] = a.reach + b.reach;
   }
+  if (values_in_float(precision_)) {  // the distance is rounded by as much as its largest coordinate asks for
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      double blur = 0;
+      for (int k = 0; k < N; ++k) blur = std::max(blur, (*corner[k][lane])[3]);
+      reach[lane] += float_above(blur);
+    }
+  }
+  const EightFloats unit = inverse_powers_of_two(reach);
   PairLanes<K, Lanes8> points;
-  EightFloats origin[3], point[3];
-  transpose(corner[0], origin);
+  Four from_first[width];
+  EightFloats point[3];
   for (int c = 0; c < 3; ++c) points.x[0][c] = EightFloats{};
   for (int k = 1; k < N; ++k) {
-    transpose(corner[k], point);
-    for (int c = 0; c < 3; ++c) points.x[k][c] = point[c] - origin[c];
+    for (std::size_t lane = 0; lane < width; ++lane) {
+      from_first[lane] = __builtin_convertvector(*corner[k][lane] - *corner[0][lane], Four);
+    }
+    transpose(from_first, point);
+    for (int c = 0; c < 3; ++c) points.x[k][c] = point[c] * unit;
   }
-  // the sum of two sides and its unit are rounded once each
-  const Lanes8 level = Lanes8(reach * (unit_ * (1 + 0x1p-20f)) + blur_);
+  // the sum of two sides is rounded once or twice
+  const Lanes8 level = Lanes8(reach * unit * (1 + 0x1p-20f));
   return lanes_of(farther_than<K>(points, level).bits) & ((LaneSet{1} << n) - 1);
 }
 

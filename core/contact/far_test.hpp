@@ -1,5 +1,7 @@
 // Which candidate pairs are certainly farther apart than their contact distance at a state: eight at a time, in
-// float. Most candidates are, and the closest points of a pair cost as much as this does for twenty.
+// float. Most candidates are, and the closest points of a pair cost as much as this does for twenty. Floats are
+// differences of the points of one pair in units of its own contact distance: what else is in the scene, and where,
+// does not matter.
 #pragma once
 
 #include <vector>
@@ -31,7 +33,7 @@ class FarTest {
   }
 
  private:
-  using Four = TreeBox::Four;
+  using Point = VectorOf<double, 4>::type;
   /// The vertices of a primitive and its share of the contact distance, m.
   struct alignas(16) Corners {
     int vertex[3];
@@ -50,9 +52,7 @@ class FarTest {
 
   const Precision precision_;
   const std::vector<Corners> points_, edges_, triangles_;
-  std::vector<Four> x_;  // in units of the scene's size about its middle: no coordinate is above 1
-  float unit_ = 0;       // 1/m, rounded up
-  float blur_ = 0;       // how much nearer than two points of x_ those of the state can be, in those units
+  std::vector<Point> x_;  // m, and how much nearer than to this point the distance of a pair can be, m
 };
 
 }  // namespace bb

@@ -17,8 +17,6 @@ constexpr float intervals[] = {-1, 0, 0x1p-12f, 0x1p-6f, 0x1p-3f, 1};
 /// depends on threads.
 constexpr std::size_t first_batch = 8, largest_batch = 1024;
 
-double largest_coordinate(const Positions& x) { return x.size() > 0 ? x.cwiseAbs().maxCoeff() : 0; }
-
 }  // namespace
 
 void StepBoundFinder::take(const Part& part) {
@@ -29,15 +27,40 @@ void StepBoundFinder::take(const Part& part) {
   all_.zero += part.zero;
 }
 
+/// Twice the least stop level that each vertex asks of its pairs, by its own coordinates, in the scalar of the queries.
+void StepBoundFinder::find_floors(const Motion& motion) {
+  floors_.resize(static_cast<std::size_t>(motion.x0.cols()));
+  with_value_scalar(precision_, [&]<class T>() {
+    for_each_chunk(floors_.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const int v = static_cast<int>(i);
+        const double largest =
+            std::max(motion.x0.col(v).lpNorm<Eigen::Infinity>(), motion.x1.col(v).lpNorm<Eigen::Infinity>());
+        floors_[i] = 2 * static_cast<double>(ulp_floor(static_cast<T>(largest)));
+      }
+    });
+  });
+}
+
+/// No less than the least stop level of a pair of these vertices, m, with room for its rounding.
+template <std::size_t N>
+double StepBoundFinder::floor(const std::array<int, N>& vertices, double offset) const {
+  double out = with_value_scalar(precision_,
+                                 [&]<class T>() -> double { return 2 * ulp_floor(static_cast<T>(offset)); });
+  for (const int v : vertices) out = std::max(out, floors_[static_cast<std::size_t>(v)]);
+  return out;
+}
+
 template <int N>
 void StepBoundFinder::fit(std::vector<MotionBox>& boxes, const Primitives<N>& primitives,
                           const Motion& motion) const {
   boxes.resize(primitives.size());
   for_each_chunk(primitives.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      // two of these are the distance that ask_lanes needs
+      // two of these are no less than the distance that ask_lanes needs, whichever side has the larger floor
       const Side side = primitives.side[i];
-      const double reach = side.offset + std::max(level_.park * side.d_hat, motion.floor);
+      const double least = 2 * floor(primitives.vertices[i], side.offset);
+      const double reach = side.offset + std::max(level_.park * side.d_hat, least);
       boxes[i] = motion_box(primitives.vertices[i], reach, motion.x0, motion.x1);
     }
   });
@@ -59,7 +82,7 @@ void StepBoundFinder::screen(const std::vector<IndexPair>& pairs) {
     for (std::size_t i = begin; i < end; ++i) {
       const float proven = proven_time(first[static_cast<std::size_t>(pairs[i].first)],
                                        second[static_cast<std::size_t>(pairs[i].second)]);
-      *next = {static_cast<std::uint32_t>(i), proven};
+      *next = {static_cast<std::uint32_t>(i - begin), proven};
       next += proven > bound ? 0 : 1;  // hard to foretell: no branch
     }
     counts[chunk] = static_cast<std::uint32_t>(next - (entries.data() + begin));
@@ -68,11 +91,12 @@ void StepBoundFinder::screen(const std::vector<IndexPair>& pairs) {
 
 template <PairKind K>
 void StepBoundFinder::ask_lanes(const std::vector<IndexPair>& pairs, const Motion& motion,
-                                const std::array<std::uint32_t, 4>& index, std::size_t n, Part& part) const {
+                                const std::array<std::size_t, 4>& index, std::size_t n, Part& part) const {
   const auto pair = four_pairs<K>(surface_, pairs, n, [&](std::size_t lane) { return index[lane]; });
   Lanes4 reach;
   for (std::size_t lane = 0; lane < n_lanes; ++lane) {
-    reach.v[lane] = pair[lane].law.offset + 2 * std::max(level_.park * pair[lane].law.d_hat, motion.floor);
+    const Side law = pair[lane].law;
+    reach.v[lane] = law.offset + 2 * std::max(level_.park * law.d_hat, floor(pair[lane].vertex, law.offset));
   }
   const PairLanes<K, Lanes4> points = gather_lanes<K>(pair, motion.x0);
   const Lanes4 proven =
@@ -85,7 +109,7 @@ void StepBoundFinder::ask_lanes(const std::vector<IndexPair>& pairs, const Motio
 
 /// The pair's own time, in the scalar T.
 template <PairKind K, class T>
-void StepBoundFinder::ask(const ContactPair<K>& pair, std::uint32_t index, const Motion& motion,
+void StepBoundFinder::ask(const ContactPair<K>& pair, std::size_t index, const Motion& motion,
                           Part& part) const {
   const T park = static_cast<T>(level_.park * pair.law.d_hat), enough = static_cast<T>(part.first.toi);
   const AccdResult<T> r =
@@ -103,12 +127,12 @@ template <PairKind K>
 void StepBoundFinder::ask_chunk(const std::vector<IndexPair>& pairs, const Motion& motion, float above,
                                 float up_to, std::size_t chunk, Part& part) const {
   const Entry* const entries = entries_[static_cast<int>(K)].data() + chunk * chunk_size;
-  std::array<std::uint32_t, 4> index{};
+  std::array<std::size_t, 4> index{};
   std::size_t n = 0;
   for (std::size_t k = 0; k < n_entries_[static_cast<int>(K)][chunk]; ++k) {
     const Entry entry = entries[k];
     if (!(entry.proven > above) || entry.proven > up_to || entry.proven > part.first.toi) continue;
-    index[n++] = entry.index;
+    index[n++] = chunk * chunk_size + entry.place;
     if (n < n_lanes) continue;
     ask_lanes<K>(pairs, motion, index, n, part);
     n = 0;
@@ -202,11 +226,8 @@ StepBound StepBoundFinder::result(const Candidates& candidates) const {
 }
 
 StepBound StepBoundFinder::find(const Candidates& candidates, const Positions& x0, const Positions& x1) {
-  const double largest = std::max(largest_coordinate(x0), largest_coordinate(x1));
-  const double floor = 2 * with_value_scalar(precision_, [&]<class T>() -> double {
-                         return ulp_floor(static_cast<T>(largest));
-                       });
-  const Motion motion{x0, x1, floor};
+  const Motion motion{x0, x1};
+  find_floors(motion);
   all_ = {};
   with_value_scalar(precision_, [&]<class T>() {
     for_each_obstacle_list(surface_, candidates,

@@ -58,8 +58,8 @@ class StepBoundFinder {
  private:
   /// A pair that boxes do not clear for the whole motion.
   struct Entry {
-    std::uint32_t index;
-    float proven;  // time before which its boxes are apart
+    std::uint32_t place;  // in its chunk: lists may be of any length
+    float proven;         // time before which its boxes are apart
   };
   /// What a chunk of pairs found.
   struct Part {
@@ -68,9 +68,10 @@ class StepBoundFinder {
   };
   struct Motion {
     const Positions &x0, &x1;
-    double
-        floor;  // least stop level, m: 32 ulps of the largest coordinate of all, in the scalar of the queries
   };
+  template <std::size_t N>
+  double floor(const std::array<int, N>& vertices, double offset) const;
+  void find_floors(const Motion& motion);
   template <int N>
   void fit(std::vector<MotionBox>& boxes, const Primitives<N>& primitives, const Motion& motion) const;
   template <PairKind K>
@@ -82,9 +83,9 @@ class StepBoundFinder {
                  std::size_t chunk, Part& part) const;
   template <PairKind K>
   void ask_lanes(const std::vector<IndexPair>& pairs, const Motion& motion,
-                 const std::array<std::uint32_t, 4>& index, std::size_t n, Part& part) const;
+                 const std::array<std::size_t, 4>& index, std::size_t n, Part& part) const;
   template <PairKind K, class T>
-  void ask(const ContactPair<K>& pair, std::uint32_t index, const Motion& motion, Part& part) const;
+  void ask(const ContactPair<K>& pair, std::size_t index, const Motion& motion, Part& part) const;
   template <int N, class T>
   void ask_obstacles(const Primitives<N>& primitives, const std::vector<IndexPair>& pairs,
                      const Motion& motion);
@@ -98,6 +99,7 @@ class StepBoundFinder {
   const std::vector<AnalyticSurface<double>>& obstacles_;
   const StopLevel level_;
   const Precision precision_;
+  std::vector<double> floors_;  // m, of each vertex on the motion
   std::vector<MotionBox> points_, edges_, triangles_;
   std::vector<Entry> entries_[4];            // by kind: chunk k of the pairs has its own from k chunk_size on
   std::vector<std::uint32_t> n_entries_[4];  // of each chunk

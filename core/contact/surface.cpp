@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/scene/contact_plan.hpp"
+
 namespace bb {
 
 namespace {
@@ -43,6 +45,23 @@ void add_sides(std::vector<std::array<int, 2>>& edges, const std::vector<std::ar
   }
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0;
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// See Surface::element_size.
+double element_size(const Scene& scene, const Surface& surface) {
+  std::vector<double> lengths, reaches;
+  for (const auto& e : surface.edges.vertices) {
+    lengths.push_back((scene.rest.col(e[1]) - scene.rest.col(e[0])).norm());
+  }
+  for (const Side& side : surface.points.side) reaches.push_back(side.d_hat + 2 * side.offset);
+  return 16 * (median(std::move(lengths)) + median(std::move(reaches)));
+}
+
 }  // namespace
 
 Surface::Surface(const Scene& scene)
@@ -68,6 +87,13 @@ Surface::Surface(const Scene& scene)
   find_filled(scene);
   find_lone();
   if (planar) connect(scene);
+  if (!planar) {
+    for (const auto& e : bb::lone_edges(scene)) {
+      const auto place = std::lower_bound(all_edges.begin(), all_edges.end(), e);
+      lone_edges.push_back(static_cast<int>(place - all_edges.begin()));
+    }
+  }
+  element_size = bb::element_size(scene, *this);
 }
 
 void Surface::find_filled(const Scene& scene) {

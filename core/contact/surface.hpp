@@ -40,14 +40,19 @@ struct Surface {
   Primitives<3> triangles;
   std::vector<std::array<int, 3>>
       filled;  // triangles with a free vertex, planar scenes' too: what nothing may pierce
+  std::vector<int> lone_edges;  // of `edges`, in space: those that are no side of a triangle, ascending
   bool planar;
   PlanarPairs planar_pairs;
+  double element_size = 0;  // m: 16 median edges at rest and contact reaches
 
   /// Planar: true when no pair of these may exist. Two vertices: one mesh edge joins them. A vertex (second
   /// argument list) and an edge: the edge's own, or the third vertex of a triangle that has the edge.
   bool connected(int vertex, int other) const;
   bool adjacent(int vertex, const std::array<int, 2>& edge) const;
   /// No common vertex; all that 3D pairs ask for.
+  static bool disjoint(int vertex, const std::array<int, 2>& edge) {
+    return (vertex != edge[0]) & (vertex != edge[1]);
+  }
   static bool disjoint(int vertex, const std::array<int, 3>& triangle) {
     return (vertex != triangle[0]) & (vertex != triangle[1]) & (vertex != triangle[2]);
   }

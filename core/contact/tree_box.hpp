@@ -16,13 +16,13 @@ struct TreeBox {
   Four lo = std::numeric_limits<float>::infinity() - Four{};
   Four hi = -std::numeric_limits<float>::infinity() - Four{};
 
-  /// Adds the point, rounded outward.
-  void add(const Vec3d& p) {
+  /// Adds the point and all that is within `margin` (m, >= 0, an axis each) of it, rounded outward.
+  void add(const Vec3d& p, const Vec3d& margin = Vec3d::Zero()) {
     constexpr float largest = std::numeric_limits<float>::max();  // beyond it, only one side is infinite
     TreeBox point;
     for (int c = 0; c < 3; ++c) {
-      point.lo[c] = std::min(float_below(p[c]), largest);
-      point.hi[c] = std::max(float_above(p[c]), -largest);
+      point.lo[c] = std::min(float_below(p[c] - margin[c]), largest);
+      point.hi[c] = std::max(float_above(p[c] + margin[c]), -largest);
     }
     add(point);
   }

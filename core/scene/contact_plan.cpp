@@ -58,6 +58,15 @@ PrimitiveCount count_triangles(const Scene& scene, const Flags& is_free) {
   return out;
 }
 
+/// Edges that are no side of a triangle, each once.
+PrimitiveCount count_lone_edges(const Scene& scene, const Flags& is_free) {
+  const std::vector<std::array<int, 2>> lone = lone_edges(scene);
+  PrimitiveCount out;
+  std::set<int> vertices;
+  add(lone, is_free, vertices, out);
+  return out;
+}
+
 /// Counts of bodies by what they can touch.
 struct Bodies {
   int deformable = 0;         // bodies with at least one free vertex
@@ -66,7 +75,8 @@ struct Bodies {
 };
 
 Bodies count_bodies(const Scene& scene, const Flags& is_free) {
-  const int few = scene.planar ? 1 : 3;  // so many vertices of one body never make a pair
+  // so many vertices of one body never make a pair
+  const int few = scene.planar ? 1 : lone_edges(scene).empty() ? 3 : 2;
   Bodies out;
   for (const Body& body : scene.bodies) {
     const auto begin = is_free.begin() + body.first_vertex;
@@ -90,6 +100,8 @@ void plan_pairs(const Scene& scene, const PrimitiveCount& points, const Flags& i
   const PrimitiveCount triangles = count_triangles(scene, is_free);
   plan.point_triangle = triangles.n > 0 && points.n > 3 && (points.free || triangles.free);
   plan.edge_edge = edges.n > 1 && edges.n_vertices > 3 && edges.free;
+  const PrimitiveCount lone = count_lone_edges(scene, is_free);
+  plan.point_edge = lone.n > 0 && points.n > 2 && (points.free || lone.free);
 }
 
 // In a planar scene a cylinder that stands on the plane is a disk.
@@ -101,6 +113,17 @@ bool has_axis_outside(const Scene& scene) {
 }
 
 }  // namespace
+
+std::vector<std::array<int, 2>> lone_edges(const Scene& scene) {
+  const auto ascending = [](int a, int b) { return a < b ? std::array{a, b} : std::array{b, a}; };
+  std::set<std::array<int, 2>> lone;
+  for (const auto& e : scene.surface_edges) lone.insert(ascending(e[0], e[1]));
+  if (lone.empty()) return {};
+  for (const auto& t : scene.surface_triangles) {
+    for (std::size_t k = 0; k < 3; ++k) lone.erase(ascending(t[k], t[(k + 1) % 3]));
+  }
+  return {lone.begin(), lone.end()};
+}
 
 PlanItem plan_item(bool needed, std::string yes, std::string no) {
   return {needed, std::move(needed ? yes : no)};

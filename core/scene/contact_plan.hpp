@@ -15,6 +15,9 @@ struct PlanItem {
 /// needed with `yes`, or not with `no`.
 PlanItem plan_item(bool needed, std::string yes, std::string no);
 
+/// Edges of the surface that are no side of one of its triangles (rods), each once with the lower vertex first, sorted.
+std::vector<std::array<int, 2>> lone_edges(const Scene& scene);
+
 /// What keeps the energy of nearly parallel edges, and of edges along a cylinder, smooth: the mollifier of Li et al. 2020 (IPC), or
 /// nothing.
 enum class Mollifier { ipc, none };

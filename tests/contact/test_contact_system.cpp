@@ -53,6 +53,7 @@ TEST(SmallestGap, IsThatOfTheClosestRowOfEitherTable) {
     add_body(scene, "other", {Vec3d(-0.5, -0.01, 5.05), Vec3d(0.5, 0.01, 5.05)}, {}, 0.1);
     scene.surface_edges = {{0, 1}, {2, 3}};
     add_body(scene, "particle", {Vec3d(0, 0, height)}, {}, 0.1);
+    scene.surface_vertices = {4};  // the ends of the rods do not pair
     Obstacle plane;
     plane.name = "floor";
     scene.obstacles = {plane};

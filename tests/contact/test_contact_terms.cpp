@@ -217,6 +217,7 @@ Scene nearly_parallel(bool given) {
   add_body(scene, "a", {Vec3d(0, 0, 0), Vec3d(1, 0, 0)}, {}, 0.2, given);
   add_body(scene, "b", {Vec3d(0.1, -0.01, 0.1), Vec3d(1.1, 0.009, 0.11)}, {}, 0.2);
   scene.surface_edges = {{0, 1}, {2, 3}};
+  scene.surface_vertices.clear();  // the pair of edges alone
   return scene;
 }
 

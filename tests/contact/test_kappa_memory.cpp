@@ -222,6 +222,7 @@ TEST(KappaMemory, AnEdgePairKeepsItsValueWhenItBecomesMollified) {
   add_body(scene, "a", {Vec3d(0, 0, 0), Vec3d(1, 0, 0)}, {}, 0.2);
   add_body(scene, "b", {Vec3d(0.1, -0.1, 0.1), Vec3d(1.1, 0.09, 0.11)}, {}, 0.2);
   scene.surface_edges = {{0, 1}, {2, 3}};
+  scene.surface_vertices.clear();  // the pair of edges alone
   ContactSystem contacts(scene, {});
   Rows plain = rows_at(contacts, scene.x0);
   ASSERT_EQ(plain.table.size(), 1U);

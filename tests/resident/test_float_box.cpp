@@ -37,8 +37,9 @@ TEST(FloatBox, IsTheTreeBoxOfTheCpuPath) {
     FloatBox box = empty_box();
     for (int k = 0; k < 2; ++k) {
       const Vec3d p(pick(), pick(), pick());
-      tree.add(p);
-      for (int c = 0; c < 3; ++c) add_coordinate(box, c, p[c]);
+      const Vec3d around(std::abs(pick()), k * 0x1p-50, 0);
+      tree.add(p, around);
+      for (int c = 0; c < 3; ++c) add_coordinate(box, c, p[c], around[c]);
     }
     const double margin = std::abs(pick());
     tree.inflate(margin);

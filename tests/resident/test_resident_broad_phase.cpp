@@ -3,6 +3,8 @@
 
 #include "core/contact/pair_geometry.hpp"
 #include "core/exec/counting_executor.hpp"
+#include "tests/contact/far_bodies.hpp"
+#include "tests/contact/rods.hpp"
 #include "tests/resident/contact_motion.hpp"
 
 namespace bb::test {
@@ -48,6 +50,60 @@ TEST(ResidentBroadPhase, FindsWhatTheCpuPathFindsInSoups) {
   for (const std::size_t n : n_pairs) EXPECT_GT(n, 5000U);
 }
 
+/// Boxes of the parents of leaves: how long their diagonals are, sorted.
+std::vector<double> parents_of(const resident::TreeView& tree) {
+  std::vector<double> out;
+  for (Index i = 0; i < tree.size(1); ++i) {
+    const resident::TreeNode& node = tree.node[tree.begin[1] + i];
+    double sq = 0;
+    for (int c = 0; c < 3; ++c) sq += std::pow(static_cast<double>(node.hi[c] - node.lo[c]), 2);
+    out.push_back(std::sqrt(sq));
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// The vertices of all bodies in a random order, so that only the curve puts neighbours together.
+FarScene shuffled_sheets(const FarBodies& far) {
+  FarScene scene = sheets_and_far(24, 1e-3, far);
+  std::mt19937_64 rng(1);
+  std::shuffle(scene.scene.surface_triangles.begin(), scene.scene.surface_triangles.end(), rng);
+  return scene;
+}
+
+TEST(ResidentBroadPhase, FindsWhatTheCpuPathFindsBesideFarBodies) {
+  double alone = 0;
+  std::vector<FarBodies> cases = far_cases();
+  cases.insert(cases.begin(), FarBodies{});
+  for (const FarBodies& bodies : cases) {
+    const FarScene far = shuffled_sheets(bodies);
+    exec::HostExecutor executor;
+    ResidentMotion motion(executor, far.scene, far.scene.x0, far.x1);
+    motion.update();
+    const Candidates expected = cpu_candidates(far.scene, far.scene.x0, far.x1);
+    EXPECT_GT(expect_same(lists_of(motion.candidates), expected), 5000U);
+    const std::vector<double> parents = parents_of(motion.broad_phase.source().point_triangle.second);
+    const double most = parents[parents.size() * 8 / 10];
+    if (bodies.n == 1 && alone == 0) alone = most;
+    EXPECT_LE(most, 1.2 * alone) << bodies.n << " bodies " << bodies.distance << " m away";
+  }
+  EXPECT_LT(alone, 0.3);
+}
+
+TEST(ResidentBroadPhase, FindsThePairsOfLoneEdgesOfTheCpuPath) {
+  std::size_t n_pairs = 0;
+  for (unsigned seed = 1; seed <= 10; ++seed) {
+    const Scene scene = rods_and_sheet(seed, 0.04);
+    for (const double size : {0.3, 1e-3}) {
+      const Positions x1 = moved(scene, size, seed);
+      const Candidates expected = cpu_candidates(scene, scene.x0, x1);
+      expect_same(found(scene, scene.x0, x1), expected);
+      n_pairs += expected.point_edge.size();
+    }
+  }
+  EXPECT_GT(n_pairs, 1000U);
+}
+
 TEST(ResidentBroadPhase, FindsThePlanarPairsOfTheCpuPath) {
   for (const PlanarPairs pairs : {PlanarPairs::vertex_vertex, PlanarPairs::point_edge}) {
     std::size_t n_pairs = 0, n_adjacent = 0;
@@ -85,17 +141,20 @@ std::vector<IndexPair> brute_force(const resident::PairSearch& s, const resident
 
 resident::MotionFrame frame_of(const Surface& s, const Positions& x0, const Positions& x1) {
   resident::MotionFrame out{};
-  double start = 0, end = 0;
+  std::vector<double> at_start[3];
   for (int c = 0; c < 3; ++c) {
     std::vector<double> way;
-    for (const auto& v : s.points.vertices) way.push_back(x1(c, v[0]) - x0(c, v[0]));
+    for (const auto& v : s.points.vertices) {
+      at_start[c].push_back(x0(c, v[0]));
+      way.push_back(x1(c, v[0]) - x0(c, v[0]));
+    }
+    std::sort(at_start[c].begin(), at_start[c].end());
     std::sort(way.begin(), way.end());
-    out.start[c] = x0(c, s.points.vertices[0][0]);
-    out.end[c] = out.start[c] + way[way.size() / 2];
-    start = std::max(start, std::abs(out.start[c]));
-    end = std::max(end, std::abs(out.end[c]));
+    out.moved[c] = way[way.size() / 2];
   }
-  out.rounding = 0x1p-50 * (start + end);
+  EXPECT_LE(s.points.size(), std::size_t{most_sampled});
+  out.folded = folded_frame([&](int c, int i) { return at_start[c][at(i)]; },
+                            [&](int) { return static_cast<int>(s.points.size()); }, s.element_size);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <map>
 
 #include "core/exec/counting_executor.hpp"
+#include "tests/contact/rods.hpp"
 #include "tests/resident/contact_on_executor.hpp"
 
 namespace bb::test {
@@ -93,6 +94,20 @@ TEST(ResidentRowFinder, HasTheRowsOfTheContactSystemPairByPair) {
   }
   for (const int n : n_kinds) EXPECT_GE(n, 20);  // of every kind, mollified ones included
   EXPECT_GT(n_merged, 20U);
+}
+
+TEST(ResidentRowFinder, HasThoseOfRods) {
+  std::array<int, 6> n_kinds{};
+  for (unsigned seed = 1; seed <= 6; ++seed) {
+    const Scene scene = rods_and_sheet(seed, 0.04);
+    ContactSystem contacts(scene, {});
+    HostExecutor executor;
+    OnExecutor on(executor, scene, scene.x0);
+    const Rows reference = rows_at(contacts, scene.x0);
+    compare(scene, on.rows, reference, n_kinds);
+  }
+  EXPECT_GT(n_kinds[static_cast<int>(ContactKind::point_edge)], 50);
+  EXPECT_GT(n_kinds[resident::mollified_kind], 5);
 }
 
 TEST(ResidentRowFinder, HasThoseOfPlanarScenes) {

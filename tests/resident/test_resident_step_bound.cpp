@@ -5,6 +5,8 @@
 #include <filesystem>
 
 #include "core/mesh/read_mesh.hpp"
+#include "tests/contact/far_bodies.hpp"
+#include "tests/contact/rods.hpp"
 #include "tests/folders.hpp"
 #include "tests/resident/contact_motion.hpp"
 
@@ -50,6 +52,34 @@ void expect_that_of_the_cpu_path(const Scene& scene, const Positions& x1, std::a
   EXPECT_LE(static_cast<std::size_t>(found.listed.queries), n);
   EXPECT_GE(found.listed.probes, found.listed.queries);
   ++n_of_kind[expected.alpha < 1 ? static_cast<std::size_t>(expected.kind) : 7];
+}
+
+TEST(ResidentStepBound, IsThatOfTheCpuPathOfRodsAndBesideFarBodies) {
+  std::array<int, 6> n_of_kind{};
+  for (unsigned seed = 1; seed <= 12; ++seed) {
+    const Scene scene = rods_and_sheet(seed, 0.02);
+    for (const double size : {0.1, 1e-2}) {
+      expect_that_of_the_cpu_path(scene, moved(scene, size, seed), n_of_kind);
+    }
+  }
+  EXPECT_GT(n_of_kind[static_cast<std::size_t>(ContactKind::point_edge)], 0);
+  for (const double sink : {1e-3, 0.02}) {
+    exec::HostExecutor executor;
+    const FarScene near = sheets_and_far(12, sink, {});
+    ResidentMotion alone(executor, near.scene, near.scene.x0, near.x1);
+    const BothBounds expected = bounds(executor, alone);
+    for (const FarBodies& bodies : far_cases()) {
+      const FarScene far = sheets_and_far(12, sink, bodies);
+      expect_that_of_the_cpu_path(far.scene, far.x1, n_of_kind);
+      ResidentMotion motion(executor, far.scene, far.scene.x0, far.x1);
+      const BothBounds found = bounds(executor, motion);
+      EXPECT_EQ(found.listed.alpha, expected.listed.alpha);
+      EXPECT_LE(found.listed.queries, expected.listed.queries * 11 / 10 + 20);
+    }
+  }
+  EXPECT_GT(n_of_kind[static_cast<std::size_t>(ContactKind::edge_edge)] +
+                n_of_kind[static_cast<std::size_t>(ContactKind::point_triangle)],
+            5);
 }
 
 TEST(ResidentStepBound, IsThatOfTheCpuPathInSoups) {

@@ -42,8 +42,16 @@ TEST(ContactPlan, of_cloth_over_a_box_has_pairs_in_space_of_both_kinds) {
 
 TEST(ContactPlan, of_elements_that_all_share_a_vertex_is_empty) {
   EXPECT_FALSE(plan_contact(scene_of({triangle()})).any());
-  EXPECT_FALSE(plan_contact(scene_of({rod(3)})).any());  // two edges with one end in common
-  EXPECT_TRUE(plan_contact(scene_of({rod(4)})).edge_edge);
+  EXPECT_FALSE(plan_contact(scene_of({rod(2)})).any());
+}
+
+TEST(ContactPlan, of_a_rod_has_its_vertices_and_edges) {
+  const ContactPlan three =
+      plan_contact(scene_of({rod(3)}));  // two edges with one end in common, and the other ends
+  EXPECT_TRUE(three.point_edge && three.self_contact.needed);
+  EXPECT_FALSE(three.edge_edge || three.point_triangle || three.point_point);
+  const ContactPlan four = plan_contact(scene_of({rod(4)}));
+  EXPECT_TRUE(four.edge_edge && four.point_edge);
 }
 
 TEST(ContactPlan, of_a_chain_in_the_plane_has_its_ends) {

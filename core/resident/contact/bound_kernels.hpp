@@ -28,11 +28,9 @@ struct BoundQuery {
   const double *x0, *x1;
   double park;  // in units of d_hat
   int max_probes;
-  const Key* largest;  // complemented bits of the largest |coordinate|
   BoundRecord* record;
 
   BB_HD double known() const { return exec::from_ordered_bits(record->known); }
-  BB_HD double floor() const { return 2 * ulp_floor(exec::from_ordered_bits(~*largest)); }
 };
 
 /// largest: the least complemented bits of |x[i]|; no numbers are above infinity.
@@ -82,11 +80,26 @@ BB_HD PairLanes<K, double> relative_points(const double* x, const int* vertex) {
   return out;
 }
 
+/// No less than the least stop level of a pair, m, with room for its rounding: by its own coordinates.
+template <PairKind K>
+BB_HD double stop_floor(const BoundQuery& q, const PairVertices<K>& pair) {
+  double largest = pair.law.offset;
+  for (const int v : pair.vertex) {
+    for (int c = 0; c < 3; ++c) {
+      const double a = std::abs(q.x0[3 * static_cast<Index>(v) + c]);
+      const double b = std::abs(q.x1[3 * static_cast<Index>(v) + c]);
+      largest = a > largest ? a : largest;
+      largest = b > largest ? b : largest;
+    }
+  }
+  return 2 * ulp_floor(largest);
+}
+
 /// A time before which the pair stays above its stop level, by axes and planes; no better than needed to be above
 /// `enough`. 0: nothing is proven.
 template <PairKind K>
 BB_HD double proven_time(const BoundQuery& q, const PairVertices<K>& pair, double enough) {
-  const double park = q.park * pair.law.d_hat, floor = q.floor();
+  const double park = q.park * pair.law.d_hat, floor = stop_floor<K>(q, pair);
   const double reach = pair.law.offset + 2 * (park > floor ? park : floor);
   const PairLanes<K, double> points = relative_points<K>(q.x0, pair.vertex);
   const PairLanes<K, double> motion = relative_points<K>(q.x1, pair.vertex) - points;

@@ -21,12 +21,7 @@ template <int N>
 void BoxTree<N>::sort_codes(const PrimitiveView<N>& of, const MotionView& motion, TreeScratch& scratch) {
   scratch.key.resize(of.n);
   scratch.order.resize(of.n);
-  scratch.bounds.resize(6);
-  executor_->fill_bytes(scratch.bounds.data(), 0xff, 6 * sizeof(Key));
-  Key *const least = scratch.bounds.data(), *const most = least + 3;
-  const Index n_blocks = (of.n + exec::block_threads - 1) / exec::block_threads;
-  executor_->blocks(n_blocks, CentreBounds<N>{of, motion, least, most});
-  executor_->each(of.n, MortonKeys<N>{of, motion, least, most, scratch.key.data(), scratch.order.data()});
+  executor_->each(of.n, MortonKeys<N>{of, motion, scratch.key.data(), scratch.order.data()});
   executor_->sort(scratch.key.data(), scratch.order.data(), of.n, morton_bits);
 }
 

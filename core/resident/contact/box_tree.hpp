@@ -8,10 +8,9 @@ namespace bb::resident {
 /// What building needs beside the trees; shared by all of them.
 struct TreeScratch {
   explicit TreeScratch(exec::Executor& executor)
-      : key(executor, "tree Morton codes"), order(executor, "tree order"), bounds(executor, "tree bounds") {}
+      : key(executor, "tree Morton codes"), order(executor, "tree order") {}
   exec::Buffer<Key> key;
   exec::Buffer<std::uint32_t> order;
-  exec::Buffer<Key> bounds;
 };
 
 /// Built by a sort at every fit: that is 12 B a primitive read and written a few times, less than a search reads, and

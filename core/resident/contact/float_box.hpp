@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/contact/float_rounding.hpp"
+#include "core/contact/folded_axis.hpp"
 #include "core/resident/contact/resident_surface.hpp"
 
 namespace bb::resident {
@@ -25,10 +26,10 @@ BB_HD inline void widen(FloatBox& box, int c, float lo, float hi) {
   box.hi[c] = box.hi[c] > hi ? box.hi[c] : hi;
 }
 
-/// Adds the coordinate of a point, rounded outward.
-BB_HD inline void add_coordinate(FloatBox& box, int c, double x) {
+/// Adds the coordinate of a point and all that is within `margin` (m, >= 0) of it, rounded outward.
+BB_HD inline void add_coordinate(FloatBox& box, int c, double x, double margin) {
   constexpr float largest = std::numeric_limits<float>::max();  // beyond it, only one side is infinite
-  const float lo = float_below(x), hi = float_above(x);
+  const float lo = float_below(x - margin), hi = float_above(x + margin);
   widen(box, c, largest < lo ? largest : lo, hi < -largest ? -largest : hi);
 }
 
@@ -42,9 +43,10 @@ BB_HD inline void inflate(FloatBox& box, double margin) {
   }
 }
 
-/// What is subtracted from the positions at the start and at the end before boxes are made, and how much it can round.
+/// Where positions are put before boxes are made, and what is subtracted at the end of the motion before that.
 struct MotionFrame {
-  double start[3], end[3], rounding;  // m
+  FoldedFrame folded;
+  double moved[3];  // m
 };
 
 /// A motion as kernels read it. Every state on it is (1 - t) x0 + t x1.
@@ -56,18 +58,21 @@ struct MotionView {
 /// The box of primitive i with its share of the contact distance.
 template <int N>
 BB_HD FloatBox primitive_box(const PrimitiveView<N>& of, Index i, const MotionView& motion) {
-  const MotionFrame frame = *motion.frame;
+  const MotionFrame& frame = *motion.frame;
   FloatBox box = empty_box();
   for (int k = 0; k < N; ++k) {
     const Index v = of.vertex[N * i + k];
     FloatBox vertex = empty_box();
     for (int c = 0; c < 3; ++c) {
-      add_coordinate(vertex, c, motion.x0[3 * v + c] - frame.start[c]);
-      if (motion.x0 != motion.x1) add_coordinate(vertex, c, motion.x1[3 * v + c] - frame.end[c]);
+      const FoldedAxis& place = frame.folded.axis[c];
+      const double x0 = motion.x0[3 * v + c], x1 = motion.x1[3 * v + c], moved = frame.moved[c];
+      const double margin = place_rounding(x0, x1, moved);
+      add_coordinate(vertex, c, place(x0), margin);
+      if (motion.x0 != motion.x1) add_coordinate(vertex, c, place(x1 - moved), margin);
       widen(box, c, vertex.lo[c], vertex.hi[c]);
     }
   }
-  inflate(box, of.d_hat[i] / 2 + of.offset[i] + frame.rounding);
+  inflate(box, of.d_hat[i] / 2 + of.offset[i]);
   return box;
 }
 

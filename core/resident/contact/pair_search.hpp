@@ -34,6 +34,8 @@ struct PairSearch {
   SurfaceView surface;
   SortedRows<2> connected;  // planar, of two vertices: mesh edges
   SortedRows<3> opposite;   // planar, of a vertex and an edge: edge and third corner of a triangle
+  const int*
+      edge_of;  // in space, of a vertex and an edge: of the leaves of `second` in the edges of the surface; or null
 };
 
 template <PairKind K>
@@ -67,7 +69,8 @@ BB_HD void for_each_pair(const PairSearch& s, Index place, const F& f) {
   const TreeNode asking = s.first.node[place];
   const Index own = asking.primitive;
   for_each_overlap(s.second, asking, one_tree<K> ? place + 1 : 0, [&](const TreeNode& leaf) {
-    const Index other = leaf.primitive;
+    const Index other =
+        K == PairKind::point_edge && s.edge_of != nullptr ? s.edge_of[leaf.primitive] : leaf.primitive;
     const bool swapped = one_tree<K> && other < own;
     const Index i = swapped ? other : own, j = swapped ? own : other;
     if (may_pair<K>(s, i, j)) f(i, j);

@@ -14,6 +14,19 @@ void upload_rows(exec::Buffer<int>& to, const std::vector<std::array<int, N>>& r
   to.upload({rows.empty() ? nullptr : rows[0].data(), N * rows.size()});
 }
 
+/// The edges that pair with vertices in space.
+Primitives<2> lone_primitives(const Surface& surface, const ContactPlan& plan) {
+  Primitives<2> out;
+  if (!plan.point_edge) return out;
+  for (const int e : surface.lone_edges) {
+    const auto i = static_cast<std::size_t>(e);
+    out.vertices.push_back(surface.edges.vertices[i]);
+    out.side.push_back(surface.edges.side[i]);
+    out.free.push_back(surface.edges.free[i]);
+  }
+  return out;
+}
+
 }  // namespace
 
 ResidentBroadPhase::ResidentBroadPhase(exec::Executor& executor, const ResidentSurface& resident,
@@ -24,10 +37,14 @@ ResidentBroadPhase::ResidentBroadPhase(exec::Executor& executor, const ResidentS
       connected_(executor, "connected vertices"),
       opposite_(executor, "corners opposite to edges"),
       frame_(executor, "frame of motion", 1),
+      sample_(executor, "sampled coordinates"),
       scratch_(executor),
       points_(executor, "tree of points"),
       edges_(executor, "tree of edges"),
       triangles_(executor, "tree of triangles"),
+      lone_(executor, "lone edges", lone_primitives(surface, plan)),
+      edge_of_(executor, "numbers of lone edges"),
+      lone_edges_(executor, "tree of lone edges"),
       point_points_(executor, "places of point-point candidates"),
       point_edges_(executor, "places of point-edge candidates"),
       point_triangles_(executor, "places of point-triangle candidates"),
@@ -37,13 +54,21 @@ ResidentBroadPhase::ResidentBroadPhase(exec::Executor& executor, const ResidentS
       obstacle_triangles_(executor, "places of obstacle-triangle candidates") {
   if (plan.point_point) upload_rows(connected_, surface.connected_pairs());
   if (plan.point_edge) upload_rows(opposite_, surface.opposite_corners());
+  if (lone_.free.size() > 0) edge_of_.upload(surface.lone_edges);
 }
 
 /// The frame in which the boxes are shortest: what most points share of the motion is taken off. As BroadPhase does.
 void ResidentBroadPhase::find_frame(const Column& x0, const Column& x1) {
   const PrimitiveView<1> points = surface_.view().points;
   if (points.n == 0) return frame_.fill_zero();
-  executor_.each(1, StartFrame{points.vertex, x0.data(), frame_.data()});
+  const int n = n_sampled(points.n);
+  sample_.resize(3 * most_sampled);
+  for (int c = 0; c < 3; ++c) {
+    Key* const key = sample_.data() + most_sampled * c;
+    executor_.each(n, SampleKeys{points.vertex, points.n, x0.data(), c, key});
+    executor_.sort(key, nullptr, n, 64);
+  }
+  executor_.each(1, FoldFrame{sample_.data(), n, surface_.element_size(), frame_.data()});
   if (x0.data() != x1.data()) {
     scratch_.key.resize(points.n);
     for (int c = 0; c < 3; ++c) {
@@ -53,7 +78,6 @@ void ResidentBroadPhase::find_frame(const Column& x0, const Column& x1) {
       executor_.each(1, MoveFrame{key, points.n, c, frame_.data()});
     }
   }
-  executor_.each(1, RoundFrame{frame_.data()});
 }
 
 void ResidentBroadPhase::fit(const Column& x0, const Column& x1) {
@@ -62,20 +86,25 @@ void ResidentBroadPhase::fit(const Column& x0, const Column& x1) {
   const SurfaceView s = surface_.view();
   const MotionView motion{x0.data(), x1.data(), frame_.data()};
   if (plan_.point_point || plan_.point_edge || plan_.point_triangle) points_.fit(s.points, motion, scratch_);
-  if (plan_.point_edge || plan_.edge_edge) edges_.fit(s.edges, motion, scratch_);
+  const bool lone = lone_.free.size() > 0;
+  if ((plan_.point_edge && !lone) || plan_.edge_edge) edges_.fit(s.edges, motion, scratch_);
+  if (lone) lone_edges_.fit(lone_.view(), motion, scratch_);
   if (plan_.point_triangle) triangles_.fit(s.triangles, motion, scratch_);
 }
 
 template <PairKind K>
 PairSearch ResidentBroadPhase::search() const {
   const TreeView points = points_.view(), edges = edges_.view(), triangles = triangles_.view();
+  const bool lone = K == PairKind::point_edge && lone_.free.size() > 0;
   return {K == PairKind::edge_edge ? edges : points,
           K == PairKind::point_point      ? points
           : K == PairKind::point_triangle ? triangles
+          : lone                          ? lone_edges_.view()
                                           : edges,
           surface_.view(),
           {connected_.data(), connected_.size() / 2},
-          {opposite_.data(), opposite_.size() / 3}};
+          {opposite_.data(), opposite_.size() / 3},
+          lone ? edge_of_.data() : nullptr};
 }
 
 CandidateSource ResidentBroadPhase::source() const {
@@ -165,7 +194,7 @@ void ResidentBroadPhase::fill(ResidentCandidates& out) {
 }
 
 void ResidentBroadPhase::free() {
-  points_.free(), edges_.free(), triangles_.free();
+  points_.free(), edges_.free(), triangles_.free(), lone_edges_.free();
   scratch_.key.free(), scratch_.order.free();
   for (auto* begin : {&point_points_, &point_edges_, &point_triangles_, &edge_edges_, &obstacle_points_,
                       &obstacle_edges_, &obstacle_triangles_}) {

@@ -70,10 +70,15 @@ class ResidentBroadPhase {
   const ContactPlan plan_;
   exec::Buffer<int> connected_, opposite_;
   exec::Buffer<MotionFrame> frame_;
+  exec::Buffer<Key> sample_;
   TreeScratch scratch_;
   BoxTree<1> points_;
   BoxTree<2> edges_;
   BoxTree<3> triangles_;
+  ResidentPrimitives<2>
+      lone_;  // edges without triangles in space, what they are in the surface, and their tree
+  exec::Buffer<int> edge_of_;
+  BoxTree<2> lone_edges_;
   exec::Buffer<Index> point_points_, point_edges_, point_triangles_, edge_edges_, obstacle_points_,
       obstacle_edges_, obstacle_triangles_;  // [n + 1] where those of each begin
   CandidateCounts counts_;

@@ -31,8 +31,7 @@ bool ResidentStepBound::start(const Column& x0, const Column& x1) {
   record.known = record.next = exec::ordered_bits(1.0);
   std::fill(std::begin(record.pair), std::end(record.pair), no_pair);
   record_.set(0, record);
-  query_ = {surface_.view(),   x0.data(),       x1.data(),     level_.park,
-            level_.max_probes, largest_.data(), record_.data()};
+  query_ = {surface_.view(), x0.data(), x1.data(), level_.park, level_.max_probes, record_.data()};
   if (executor_.counts_only() || x0.size() == 0) return true;
   return ~largest_.get(0) < exec::ordered_bits(std::numeric_limits<double>::infinity());
 }

@@ -46,7 +46,8 @@ ResidentSurface::ResidentSurface(exec::Executor& executor, const Scene& scene, c
       body_(executor, "surface body"),
       rest_(executor, "surface rest positions"),
       obstacles_(executor, "obstacles"),
-      planar_(surface.planar) {
+      planar_(surface.planar),
+      element_size_(surface.element_size) {
   vertex_free_.upload(surface.vertex_free);
   body_.upload(scene.body);
   rest_.upload({scene.rest.data(), static_cast<std::size_t>(scene.rest.size())});

@@ -69,6 +69,8 @@ class ResidentSurface {
  public:
   ResidentSurface(exec::Executor& executor, const Scene& scene, const Surface& surface);
   SurfaceView view() const;
+  /// See Surface.
+  double element_size() const { return element_size_; }
 
  private:
   ResidentPrimitives<1> points_;
@@ -79,6 +81,7 @@ class ResidentSurface {
   exec::Buffer<double> rest_;
   exec::Buffer<PlainObstacle> obstacles_;
   const bool planar_;
+  double element_size_;  // m
 };
 
 /// Candidate pairs: first << 32 | second, indices into the primitives of the surface, each list ascending; obstacle:

@@ -30,20 +30,40 @@ struct DisplacementKeys {
   }
 };
 
-/// The frame at the first point: x0 there, at both ends.
-struct StartFrame {
+/// key[k]: coordinate c of sampled point k at the start; those that are no numbers come last.
+struct SampleKeys {
   const int* vertex;
+  Index n;
   const double* x0;
-  MotionFrame* frame;
-  BB_HD void operator()(Index) const {
-    const double* const origin = x0 + 3 * static_cast<Index>(vertex[0]);
-    bool finite = true;
-    for (int c = 0; c < 3; ++c) finite = finite && origin[c] - origin[c] == 0;
-    for (int c = 0; c < 3; ++c) frame->start[c] = frame->end[c] = finite ? origin[c] : 0;
+  int c;
+  Key* key;
+  BB_HD void operator()(Index k) const {
+    const double x = x0[3 * static_cast<Index>(vertex[sampled(static_cast<int>(k), n)]) + c];
+    key[k] = x - x == 0 ? sortable_bits(x) : ~Key{0};
   }
 };
 
-/// Moves the end of the frame along axis c by the median of n sorted displacements; not at all where one is no number.
+/// The frame of n sorted coordinates an axis, most_sampled apart, without any motion.
+struct FoldFrame {
+  const Key* sorted;
+  int n;
+  double size;  // Surface::element_size
+  MotionFrame* frame;
+  BB_HD void operator()(Index) const {
+    const Key* const all = sorted;
+    const int n_all = n;
+    const auto coordinate = [all](int c, int i) { return from_sortable_bits(all[most_sampled * c + i]); };
+    const auto count = [all, n_all](int c) {
+      int n_finite = n_all;
+      while (n_finite > 0 && all[most_sampled * c + n_finite - 1] == ~Key{0}) --n_finite;
+      return n_finite;
+    };
+    frame->folded = folded_frame(coordinate, count, size);
+    for (int c = 0; c < 3; ++c) frame->moved[c] = 0;
+  }
+};
+
+/// What is shared of the motion along axis c: the median of n sorted displacements; nothing where one is no number.
 struct MoveFrame {
   const Key* sorted;
   Index n;
@@ -51,21 +71,7 @@ struct MoveFrame {
   MotionFrame* frame;
   BB_HD void operator()(Index) const {
     const double first = from_sortable_bits(sorted[0]), last = from_sortable_bits(sorted[n - 1]);
-    if (first - first == 0 && last - last == 0) frame->end[c] += from_sortable_bits(sorted[n / 2]);
-  }
-};
-
-/// What a box that knows the ulps of what it holds still lacks: positions are larger by the frame.
-struct RoundFrame {
-  MotionFrame* frame;
-  BB_HD void operator()(Index) const {
-    double start = 0, end = 0;
-    for (int c = 0; c < 3; ++c) {
-      const double s = std::abs(frame->start[c]), e = std::abs(frame->end[c]);
-      start = s > start ? s : start;
-      end = e > end ? e : end;
-    }
-    frame->rounding = 4 * std::numeric_limits<double>::epsilon() * (start + end);
+    if (first - first == 0 && last - last == 0) frame->moved[c] = from_sortable_bits(sorted[n / 2]);
   }
 };
 
@@ -73,51 +79,6 @@ struct RoundFrame {
 BB_HD inline double twice_centre(const FloatBox& box, int c) {
   return static_cast<double>(box.lo[c]) + static_cast<double>(box.hi[c]);
 }
-
-/// least[c] and most[c] (complemented), as sortable bits: of twice the centres of all boxes that
-/// have finite ones.
-template <int N>
-struct CentreBounds {
-  PrimitiveView<N> of;
-  MotionView motion;
-  Key *least, *most;  // [3] all ones before
-
-  struct Shared {
-    Key least[3][exec::block_threads], most[3][exec::block_threads];
-  };
-  template <class Block>
-  BB_HD void operator()(Block& block, Shared& shared, Index b) const {
-    const CentreBounds k = *this;
-    Shared* const s = &shared;
-    block.threads([=](int t) {
-      for (int c = 0; c < 3; ++c) s->least[c][t] = s->most[c][t] = ~Key{0};
-      const Index i = b * exec::block_threads + t;
-      if (i >= k.of.n) return;
-      const FloatBox box = primitive_box(k.of, i, k.motion);
-      for (int c = 0; c < 3; ++c) {
-        const double x = twice_centre(box, c);
-        if (!(x - x == 0)) continue;
-        s->least[c][t] = sortable_bits(x);
-        s->most[c][t] = ~sortable_bits(x);
-      }
-    });
-    for (int half = exec::block_threads / 2; half > 0; half /= 2) {
-      block.threads([=](int t) {
-        if (t >= half) return;
-        for (int c = 0; c < 3; ++c) {
-          Key &low = s->least[c][t], &high = s->most[c][t];
-          low = s->least[c][t + half] < low ? s->least[c][t + half] : low;
-          high = s->most[c][t + half] < high ? s->most[c][t + half] : high;
-        }
-      });
-    }
-    block.threads([=](int t) {
-      if (t >= 3) return;
-      exec::atomic_min(&k.least[t], s->least[t][0]);
-      exec::atomic_min(&k.most[t], s->most[t][0]);
-    });
-  }
-};
 
 /// The lowest 21 bits of x, two zeros between each two.
 BB_HD inline Key spread(Key x) {
@@ -131,27 +92,21 @@ BB_HD inline Key spread(Key x) {
 
 constexpr int morton_bits = 63;
 
-/// key[i]: Morton code of the centre of box i in cubic cells; value[i] = i. Which order equal codes come in is the
-/// index's, for the sort is stable.
+/// key[i]: Morton code of the centre of box i in the cubic cells of the frame's grid, those outside in its outmost ones;
+/// value[i] = i. Which order equal codes come in is the index's, for the sort is stable.
 template <int N>
 struct MortonKeys {
   PrimitiveView<N> of;
   MotionView motion;
-  const Key *least, *most;
   Key* key;
   std::uint32_t* value;
   BB_HD void operator()(Index i) const {
     constexpr double cells = 0x1p21;
-    double lo[3], width = 0;
-    for (int c = 0; c < 3; ++c) {
-      lo[c] = from_sortable_bits(least[c]);
-      const double w = from_sortable_bits(~most[c]) - lo[c];
-      width = w > width ? w : width;
-    }
+    const FoldedFrame& frame = motion.frame->folded;
     const FloatBox box = primitive_box(of, i, motion);
     Key code = 0;
     for (int c = 0; c < 3; ++c) {
-      const double place = (twice_centre(box, c) - lo[c]) * (cells / width);
+      const double place = (twice_centre(box, c) / 2 - frame.grid_lo[c]) * (cells / frame.grid_width);
       const Key cell = place > 0 ? (place < cells ? static_cast<Key>(place) : Key{0x1fffff}) : Key{0};
       code |= spread(cell) << c;
     }

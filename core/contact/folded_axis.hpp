@@ -1,0 +1,141 @@
+// Where coordinates are put along one axis before they become floats: near 0, and without the empty stretches between
+// groups of bodies that are very far from each other. A float is fine near 0 alone, so that one body far away must
+// not decide how finely all others are seen. Shared with kernels.
+#pragma once
+
+#include <cmath>
+
+#include "core/math/host_device.hpp"
+
+namespace bb {
+
+/// Groups of bodies that one axis tells apart.
+constexpr int most_stretches = 8;
+/// Points whose sorted coordinates say where a scene is; all of a smaller scene.
+constexpr int most_sampled = 256;
+
+/// By how much the places of a coordinate that moves from x0 to x1, of which `moved` is shared by all, can be off by
+/// rounding, with room to spare, m; 0 where a number is none, and its box holds none either.
+BB_HD inline double place_rounding(double x0, double x1, double moved) {
+  const double room = 4 * 0x1p-52 * (std::abs(x0) + std::abs(x1) + std::abs(moved));
+  return room - room == 0 ? room : 0;
+}
+
+/// A map x -> place, m, that never falls and never makes two places farther apart than what they come from, each to
+/// rounding by an ulp of x: boxes that meet along the axis still do. Stretch k is moved by taken[k]; what lies in the
+/// empty part behind it is put there too, no farther than where stretch k + 1 begins.
+struct FoldedAxis {
+  double begin[most_stretches] = {};  // where stretch k >= 1 begins, m
+  double taken[most_stretches] = {};  // m
+  int n = 1;
+
+  BB_HD double operator()(double x) const {
+    int k = 0;
+    while (k + 1 < n && x >= begin[k + 1]) ++k;
+    const double place = x - taken[k];
+    if (k + 1 >= n) return place;
+    const double next = begin[k + 1] - taken[k + 1];
+    return place > next ? next : place;
+  }
+};
+
+/// The frame in which floats are made: axes, and a grid of cubes that holds most of the scene's points.
+struct FoldedFrame {
+  FoldedAxis axis[3];
+  double grid_lo[3] = {}, grid_width = 0;  // m, places
+};
+
+/// Number of sampled points of n, and the index of sample k: all, or some of all over the list.
+constexpr int n_sampled(long long n) { return n < most_sampled ? static_cast<int>(n) : most_sampled; }
+BB_HD constexpr long long sampled(int k, long long n) {
+  if (n <= most_sampled) return k;
+  const unsigned step = static_cast<unsigned>(k + 1) * 2654435769u;  // the golden ratio: evenly spread
+  return static_cast<long long>(
+      (static_cast<unsigned long long>(step) * static_cast<unsigned long long>(n)) >> 32);
+}
+
+namespace detail {
+
+/// The largest gaps of n sorted coordinates, largest first, the earlier of two equal ones first.
+struct LargestGaps {
+  double size[most_stretches - 1];  // m
+  int after[most_stretches - 1];    // the coordinate before the gap
+  int n = 0;
+  double rest = 0;  // all other gaps together, m
+
+  template <class Sorted>
+  BB_HD LargestGaps(const Sorted& x, int n_coordinates) {
+    const int most = n_coordinates / 16 < most_stretches - 1 ? n_coordinates / 16 : most_stretches - 1;
+    for (int i = 0; i + 1 < n_coordinates; ++i) {
+      double gap = x(i + 1) - x(i);
+      int behind = i;
+      for (int k = 0; k < n; ++k) {
+        if (!(gap > size[k])) continue;
+        const double smaller = size[k];
+        const int its = after[k];
+        size[k] = gap, after[k] = behind;
+        gap = smaller, behind = its;
+      }
+      if (n < most) {
+        size[n] = gap, after[n++] = behind;
+      } else {
+        rest += gap;
+      }
+    }
+  }
+};
+
+/// Gaps that are more than 1000 `widths` become one.
+template <class Sorted>
+BB_HD FoldedAxis fold(const Sorted& x, int n, const LargestGaps& gaps, double width) {
+  FoldedAxis out;
+  if (n == 0) return out;
+  int cut[most_stretches - 1], n_cuts = 0;
+  for (int k = 0; k < gaps.n; ++k) {
+    if (!(width > 0) || !(gaps.size[k] > 1000 * width)) continue;
+    int place = n_cuts++;
+    for (; place > 0 && cut[place - 1] > gaps.after[k]; --place) cut[place] = cut[place - 1];
+    cut[place] = gaps.after[k];
+  }
+  int of_median = 0;
+  for (int k = 0; k < n_cuts; ++k) {
+    out.begin[k + 1] = x(cut[k] + 1);
+    out.taken[k + 1] = out.taken[k] + (out.begin[k + 1] - x(cut[k]) - width);
+    if (cut[k] < n / 2) of_median = k + 1;
+  }
+  out.n = n_cuts + 1;
+  const double origin = x(n / 2) - out.taken[of_median];
+  for (int k = 0; k < out.n; ++k) out.taken[k] += origin;
+  return out;
+}
+
+}  // namespace detail
+
+/// The frame of a scene. x(c, i): coordinate i of n_of(c) finite ones along axis c, sorted, m. size: what no gap that is
+/// taken for empty may be small against, m; bodies that are folded together stay farther apart than that.
+/// The median is put near 0.   Errors: none.   Cost: O(n).
+template <class Coordinate, class Count>
+BB_HD FoldedFrame folded_frame(const Coordinate& x, const Count& n_of, double size) {
+  FoldedFrame out;
+  double width = size;
+  const auto sorted = [&](int c) { return [&x, c](int i) { return x(c, i); }; };
+  for (int c = 0; c < 3; ++c) {
+    const detail::LargestGaps gaps(sorted(c), n_of(c));
+    width = gaps.rest > width ? gaps.rest : width;
+  }
+  double middle[3] = {0, 0, 0}, spread = 0;
+  for (int c = 0; c < 3; ++c) {
+    const int n = n_of(c);
+    const detail::LargestGaps gaps(sorted(c), n);
+    out.axis[c] = detail::fold(sorted(c), n, gaps, width);
+    if (n == 0) continue;
+    const double lo = out.axis[c](x(c, n / 8)), hi = out.axis[c](x(c, n - 1 - n / 8));
+    middle[c] = lo + (hi - lo) / 2;
+    spread = hi - lo > spread ? hi - lo : spread;
+  }
+  out.grid_width = 3 * spread;
+  for (int c = 0; c < 3; ++c) out.grid_lo[c] = middle[c] - out.grid_width / 2;
+  return out;
+}
+
+}  // namespace bb
