@@ -176,6 +176,11 @@ StepBound StepBoundFinder::result(const Candidates& candidates) const {
 }
 
 StepBound StepBoundFinder::find(const Candidates& candidates, const Positions& x0, const Positions& x1) {
+  if (!x0.allFinite() || !x1.allFinite()) {  // boxes and planes below would lose what is no number
+    StepBound none;
+    none.alpha = 0;
+    return none;
+  }
   const double largest = std::max(largest_coordinate(x0), largest_coordinate(x1));
   const double floor = 2 * with_value_scalar(precision_, [&]<class T>() -> double {
                          return ulp_floor(static_cast<T>(largest));

@@ -37,6 +37,7 @@ class GatherMap {
     return width_ == 0 ? 0 : vertices_.size() / static_cast<std::size_t>(width_);
   }
   int width() const { return width_; }
+  Stencils stencils() const { return {width_, vertices_}; }
   /// values [9 x blocks] += local Hessians, their lower blocks [size * 9 width (width + 1)/2].
   void add_hessians(std::span<const double> hess, std::vector<double>& values) const;
   /// g [3 x n] += local gradients [size * 3 width].
