@@ -5,6 +5,17 @@
 
 namespace bb {
 
+void GrownLists::add(std::string text) {
+  Archive entries(std::move(text));
+  while (!entries.at_end()) {
+    std::string name, items;
+    std::uint64_t n = 0;
+    entries(name, n, items);
+    count[name] = n;
+    bytes[name] += items;
+  }
+}
+
 void Archive::raw(void* data, std::size_t bytes) {
   if (bytes == 0) return;
   if (!reads_) {

@@ -9,6 +9,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <type_traits>
@@ -19,12 +20,25 @@
 
 namespace bb {
 
+/// Lists that only grow from archive to archive, apart from the archives: what is appended is written once.
+struct GrownLists {
+  std::map<std::string, std::uint64_t> count;  // items of each list so far
+  std::string added;                           // appended since this was emptied, for add()
+  std::map<std::string, std::string> bytes;    // all items of each list that was read
+
+  /// Takes up what earlier `added` hold, one after the other. Errors: std::logic_error.
+  void add(std::string text);
+};
+
 class Archive {
  public:
   /// One that is written.
   Archive() = default;
   /// One that is read.
   explicit Archive(std::string bytes) : bytes_(std::move(bytes)), reads_(true) {}
+  /// The same with grown() lists in `lists`, which has to outlive it.
+  explicit Archive(GrownLists& lists) : lists_(&lists) {}
+  Archive(std::string bytes, GrownLists& lists) : bytes_(std::move(bytes)), reads_(true), lists_(&lists) {}
 
   /// Whether values are taken from the archive; else they are appended to it.
   bool reads() const { return reads_; }
@@ -40,6 +54,35 @@ class Archive {
   void operator()(T&... values) {
     (item(values), ...);
   }
+  /// A list of which no item changes once it was written, and none goes: with GrownLists only new items are written, and
+  /// the archive itself holds their number. name: of the list, alone in its scope. Errors: std::logic_error for a list
+  /// that became shorter; empty is one that is not there.
+  template <class T>
+  void grown(const std::string& name, std::vector<T>& list) {
+    if (!lists_) return item(list);
+    const std::string key = scope_ + "/" + name;
+    std::uint64_t n = list.size();
+    raw(&n, sizeof n);
+    if (reads_) {
+      Archive part(n > 0 ? lists_->bytes[key] : std::string());
+      if (n > part.bytes_.size()) throw std::logic_error("archive: the list '" + key + "' is cut off");
+      list.clear();
+      list.resize(static_cast<std::size_t>(n));
+      for (T& value : list) part.item(value);
+      return;
+    }
+    std::uint64_t& known = lists_->count[key];
+    if (n > 0 && n < known) throw std::logic_error("archive: the list '" + key + "' became shorter");
+    if (n <= known) return;
+    Archive part, entry;
+    for (std::size_t i = static_cast<std::size_t>(known); i < list.size(); ++i) part.item(list[i]);
+    known = n;
+    std::string name_of = key;
+    entry(name_of, n, part.bytes_);
+    lists_->added += entry.bytes_;
+  }
+  /// Where the names of the lists that follow belong.
+  void scope(std::string name) { scope_ = std::move(name); }
   /// A word between two parts. Errors: std::logic_error when another one is read.
   void section(std::string_view name);
 
@@ -109,6 +152,8 @@ class Archive {
   std::string bytes_;
   std::size_t at_ = 0;  // of what was read
   bool reads_ = false;
+  GrownLists* lists_ = nullptr;
+  std::string scope_;
 };
 
 }  // namespace bb

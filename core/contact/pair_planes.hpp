@@ -134,7 +134,8 @@ BB_HD void common_normal(const PairLanes<K, L>& p, L (&r)[3]) {
 constexpr int gilbert_steps = 4;
 
 /// Until when a plane with normal r keeps the pairs farther apart than `level` (m): every two points of the
-/// primitives close at a constant speed, known to `slack` (m per unit of time). 0 when it does not now.
+/// primitives close at a constant speed, known to `slack` (m per unit of time). 0 when it does not now, or where a
+/// height or a speed is no number.
 template <PairKind K, class L>
 BB_HD L plane_holds(const Heights<K, L>& height, const Heights<K, L>& speed, const L& length, const L& level,
                     const L& slack) {
@@ -146,7 +147,7 @@ BB_HD L plane_holds(const Heights<K, L>& height, const Heights<K, L>& speed, con
     for (int j = split; j < N; ++j) {
       const L room = height.of[i] - height.of[j] - least_room;
       const L closing = speed.of[j] - speed.of[i] + least_closing;
-      const L met = select(closing > zero, room / closing, never);
+      const L met = select(closing > zero, room / closing, select(closing <= zero, never, zero));
       until = least(until, select(room > zero, met, zero));
     }
   }
@@ -198,7 +199,7 @@ BB_HD L proven_times_by_axes(const PairLanes<K, L>& points, const PairLanes<K, L
   L best(0);
   // of each primitive along an axis: from `lo` to `hi`, and how fast its ends move at least and at most
   const auto until = [&](const L& room, const L& closing) {
-    const L met = select(closing > zero, room / closing, never);
+    const L met = select(closing > zero, room / closing, select(closing <= zero, never, zero));
     return select(room > zero, met, zero);
   };
   for (int c = 0; c < 3; ++c) {

@@ -226,6 +226,11 @@ StepBound StepBoundFinder::result(const Candidates& candidates) const {
 }
 
 StepBound StepBoundFinder::find(const Candidates& candidates, const Positions& x0, const Positions& x1) {
+  if (!x0.allFinite() || !x1.allFinite()) {  // boxes and planes below would lose what is no number
+    StepBound none;
+    none.alpha = 0;
+    return none;
+  }
   const Motion motion{x0, x1};
   find_floors(motion);
   all_ = {};

@@ -52,7 +52,7 @@ class StepBoundFinder {
                   const StopLevel& level, Precision precision = Precision::full)
       : surface_(surface), obstacles_(obstacles), level_(level), precision_(precision) {}
 
-  /// Of all candidates. Both ends of the motion finite.
+  /// Of all candidates. A motion with an end that is not finite has the bound 0.
   StepBound find(const Candidates& candidates, const Positions& x0, const Positions& x1);
 
  private:

@@ -52,7 +52,7 @@ BB_HD inline CentredMotion<T, N> centre_motion(const Mat<T, 3, N>& x0, const Mat
 }
 
 /// Largest relative displacement of a vertex of one primitive against a vertex of the other: the gap of two
-/// points of the primitives cannot change faster.
+/// points of the primitives cannot change faster. Infinite where a square is no finite number.
 template <PairKind K, class T>
 BB_HD inline T relative_speed(const Mat<T, 3, pair_points(K)>& dx) {
   using std::sqrt;
@@ -60,18 +60,21 @@ BB_HD inline T relative_speed(const Mat<T, 3, pair_points(K)>& dx) {
   for (int i = 0; i < pair_split(K); ++i) {
     for (int j = pair_split(K); j < pair_points(K); ++j) {
       const T s = (dx.col(i) - dx.col(j)).squaredNorm();
+      if (!(s < std::numeric_limits<T>::infinity())) return std::numeric_limits<T>::infinity();
       speed_sq = speed_sq > s ? speed_sq : s;
     }
   }
   return sqrt(speed_sq);
 }
 
-/// First t > 0 with a + b t + c t^2 = 0, for a > 0; infinite when there is none.
+/// First t > 0 with a + b t + c t^2 = 0, for a > 0; infinite when there is none, and 0 where the numbers do not tell:
+/// one of them is no number, or their squares are beyond the largest.
 template <class T>
 BB_HD inline T first_root(T a, T b, T c) {
   using std::sqrt;
   const T discriminant = b * b - 4 * a * c;
-  if (!(c < 0) && (!(b < 0) || discriminant < 0)) return std::numeric_limits<T>::infinity();
+  if (c >= 0 && (b >= 0 || discriminant < 0)) return std::numeric_limits<T>::infinity();
+  if (!(discriminant < std::numeric_limits<T>::infinity())) return T(0);
   const T root = sqrt(discriminant);
   return b > 0 ? (b + root) / (-2 * c) : 2 * a / (root - b);
 }
@@ -93,7 +96,7 @@ BB_HD inline Vec<T, 3> turn_of_normal(const Mat<T, 3, N>& x, const Mat<T, 3, N>&
 }
 
 /// Time from now until the gap along the direction m(s) = n + s turn may fall below `level`; 0 when it proves
-/// nothing. The distance is at least the least m . (x_i - x_j)/|m| over the vertices of the two primitives;
+/// nothing, as with numbers that are not finite. The distance is at least the least m . (x_i - x_j)/|m| over the vertices of the two primitives;
 /// with |m| <= 1 + s^2 |turn|^2/2 that is one quadratic in time for each pair of vertices, affine for turn =
 /// 0. True for any turn; limited to about one radian, where rounding is no larger than without.
 template <PairKind K, class T>
@@ -101,6 +104,7 @@ BB_HD inline T directional_advance(const Mat<T, 3, pair_points(K)>& x, const Mat
                                    const Vec<T, 3>& n, const Vec<T, 3>& turn, T level) {
   using std::sqrt;
   const T turn_sq = turn.squaredNorm();
+  if (!(turn_sq < std::numeric_limits<T>::infinity())) return T(0);
   T advance = turn_sq > 0 ? 1 / sqrt(turn_sq) : std::numeric_limits<T>::infinity();
   for (int i = 0; i < pair_split(K); ++i) {
     for (int j = pair_split(K); j < pair_points(K); ++j) {
@@ -108,6 +112,7 @@ BB_HD inline T directional_advance(const Mat<T, 3, pair_points(K)>& x, const Mat
       const T room = n.dot(r) - level;
       if (!(room > 0)) return T(0);
       const T until = first_root<T>(room, n.dot(v) + turn.dot(r), turn.dot(v) - level * turn_sq / 2);
+      if (!(until > 0)) return T(0);
       advance = until < advance ? until : advance;
     }
   }
@@ -142,7 +147,8 @@ BB_HD inline T proven_advance(const Mat<T, 3, pair_points(K)>& x, const Mat<T, 3
 /// @param computed_from  largest |coordinate| of what x0 and x1 were computed from with a few roundings, m; 0: they are
 /// given
 /// @return toi > 0 unless the pair starts below the ulp floor; at toi the gap is at least the stop level
-/// Errors: none; a motion that is not finite (or whose squares are not) gives hit and toi 0.
+/// Errors: none; a motion that is not finite (or whose squares are not), an offset or a park that is no number, give hit
+/// and toi 0: only what is proven is free.
 /// Host-device.   Cost: 1 to 5 probes are usual; no allocation.
 /// Source: Li, Kaufman, Jiang 2021 (codimensional IPC), section 4 for the speed bound over all of a pair; the
 /// directional bound as in Ando's contact solver (2024, ppf-contact-solver).
@@ -157,7 +163,7 @@ BB_HD inline AccdResult<T> accd(const Mat<T, 3, pair_points(K)>& x0, const Mat<T
   const T rounding = 4 * eps * motion.local;
   const T ulp_floor = 16 * eps * motion.largest;
   const T extent = motion.x.squaredNorm() + motion.dx.squaredNorm();
-  if (!(extent < std::numeric_limits<T>::infinity())) return {T(0), true, 0, false, false};
+  if (!(extent < std::numeric_limits<T>::infinity()) || park != park) return {T(0), true, 0, false, false};
   const T speed = detail::relative_speed<K, T>(motion.dx) * (1 + 4 * eps);
 
   T t = 0, level = 0;
@@ -170,7 +176,7 @@ BB_HD inline AccdResult<T> accd(const Mat<T, 3, pair_points(K)>& x0, const Mat<T
       if (!(gap > ulp_floor)) return {T(0), true, probe, false, false};
       const T stop = park > ulp_floor ? park : ulp_floor;
       level = (gap < 2 * stop ? gap / 2 : stop) + rounding;
-      if (!(speed > 0)) return {T(1), false, probe, false, false};
+      if (speed == 0) return {T(1), false, probe, false, false};
     }
     const T room = gap - level;
     // Below rounding of the level there is nothing left to prove: t is where the pair stops.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "core/archive/archive.hpp"
 #include "core/linear/block_pattern.hpp"
 #include "core/linear/gather_map.hpp"
 #include "core/linear/parallel.hpp"
@@ -90,6 +91,21 @@ bool BlockSystem::set_contacts(std::vector<Stencils> families) {
   std::swap(d.pattern, *merged);
   d.pattern_changed();
   return true;
+}
+
+void BlockSystem::keep(Archive& archive) {
+  std::vector<int> widths;
+  std::vector<std::vector<int>> vertices;
+  for (std::size_t f = 0; f < data_->n_contact_families; ++f) {
+    const Stencils stencils = data_->contacts[f].stencils();
+    widths.push_back(stencils.width);
+    vertices.emplace_back(stencils.vertices.begin(), stencils.vertices.end());
+  }
+  archive(widths, vertices);
+  if (!archive.reads()) return;
+  std::vector<Stencils> families;
+  for (std::size_t f = 0; f < widths.size(); ++f) families.push_back({widths[f], vertices[f]});
+  set_contacts(families);
 }
 
 void BlockSystem::clear() {

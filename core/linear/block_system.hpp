@@ -12,6 +12,8 @@
 
 namespace bb {
 
+class Archive;
+
 /// Which vertices the elements of one family touch: element e owns vertices[width e .. width e + width),
 /// -1 = none.
 struct Stencils {
@@ -43,6 +45,9 @@ class BlockSystem {
   /// any more leave it. Cost: linear in stencils and blocks; no allocation unless something
   /// outgrows its buffer.
   bool set_contacts(std::vector<Stencils> families);
+
+  /// The stencils of the contacts, and so the pattern: what decides whether the next ones change it. Values are not kept.
+  void keep(Archive& archive);
 
   /// Values: one 9-vector a lower block. Stages add up in the order of the calls; fixed order,
   /// any thread count.

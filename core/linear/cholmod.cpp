@@ -8,6 +8,7 @@ namespace {
 class Cholmod final : public LinearSolver {
  public:
   std::string_view name() const override { return "cholmod"; }
+  void keep(Archive& archive) override { factor_.keep(archive); }
 
   LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override {
     return solve_directly(factor_, system, b, x, residual_);

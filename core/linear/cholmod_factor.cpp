@@ -147,7 +147,9 @@ struct CholmodFactor::Cholmod {
     if (success && common.status >= CHOLMOD_OK) return;
     key.forget();
     if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-    if (common.status == CHOLMOD_TOO_LARGE) throw std::length_error("CHOLMOD: factor exceeds 32-bit indices");
+    if (common.status == CHOLMOD_TOO_LARGE) {
+      throw FactorTooLarge("the factor has more entries than CHOLMOD's 32-bit indices can number");
+    }
     throw std::runtime_error("CHOLMOD status " + std::to_string(common.status));
   }
 };
@@ -158,16 +160,21 @@ CholmodFactor::~CholmodFactor() = default;
 void CholmodFactor::analyze(const ReducedSystem& system) {
   Cholmod& c = *cholmod_;
   analyze_s_ = 0;
-  analyzed_last_ = !c.key.same_as_last(system) || c.factor == nullptr;
-  if (!analyzed_last_) return;
+  analyzed_last_ = !c.key.same_as_last(system);
+  if (!analyzed_last_ && c.factor != nullptr) return;
   const auto start = std::chrono::steady_clock::now();
   cholmod_sparse a = view(system);
   cholmod_free_factor(&c.factor, &c.common);
-  c.order(system);
+  if (analyzed_last_) c.order(system);  // else the ordering was read, and the pattern is its own
   c.factor = cholmod_analyze_p(&a, c.permutation.data(), nullptr, 0, &c.common);
   c.require(c.factor != nullptr);
   c.place(a);
   analyze_s_ = seconds_since(start);
+}
+
+void CholmodFactor::keep(Archive& archive) {
+  archive(cholmod_->key, cholmod_->permutation);
+  if (archive.reads()) cholmod_free_factor(&cholmod_->factor, &cholmod_->common);
 }
 
 LinearStatus CholmodFactor::factorize(const ReducedSystem& system) {

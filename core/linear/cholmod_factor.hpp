@@ -18,12 +18,16 @@ class CholmodFactor {
 
   /// Factorises A; the analysis is kept while pattern_id stays.
   /// @return ok | matrix_indefinite (a pivot is not positive) | non_finite (an entry of A)
-  /// Errors: std::bad_alloc, std::length_error when the factor exceeds CHOLMOD's 32-bit indices.
+  /// Errors: std::bad_alloc; FactorTooLarge when the factor exceeds CHOLMOD's 32-bit indices.
   LinearStatus factorize(const ReducedSystem& system);
   /// Ordering and symbolic analysis alone, of the pattern of A. Errors: as factorize.
   void analyze(const ReducedSystem& system);
   /// x = A^-1 b with the last factor, which must be ok. Allocates nothing after the first solve of a size.
   void solve(const VecXd& b, VecXd& x);
+
+  /// The pattern that was analysed and its ordering: one that read them analyses that pattern in the same order, and does
+  /// not say that it did.
+  void keep(Archive& archive);
 
   /// Where the pivot was not positive in the last factorize, which is matrix_indefinite.
   std::string failure(const ReducedSystem& system) const;

@@ -114,7 +114,11 @@ ConditionEstimator::~ConditionEstimator() = default;
 ConditionEstimate ConditionEstimator::estimate(const ReducedSystem& system, const ConditionOptions& options) {
   const Clock::time_point start = Clock::now();
   ConditionEstimate e = unknown(ConditionStatus::not_converged, "entries that are not finite");
-  if (data_->prepare(system, options.tier)) e = data_->run(options.tier, options.scaling, options.seed);
+  try {
+    if (data_->prepare(system, options.tier)) e = data_->run(options.tier, options.scaling, options.seed);
+  } catch (const FactorTooLarge&) {
+    e = unknown(ConditionStatus::not_converged, "a factor that is too large");
+  }
   e.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return e;
 }

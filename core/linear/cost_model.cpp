@@ -28,9 +28,13 @@ LinearWork linear_work(const ReducedSystem& pattern) {
   work.entries = static_cast<double>(pattern.lower.nonZeros());
   if (pattern.lower.rows() == 0) return work;
   CholmodFactor factor;
-  factor.analyze(pattern);
-  work.factor_entries = factor.factor_nonzeros();
-  work.factor_flop = factor.factor_flops();
+  try {
+    factor.analyze(pattern);
+    work.factor_entries = factor.factor_nonzeros();
+    work.factor_flop = factor.factor_flops();
+  } catch (const FactorTooLarge&) {  // no solver that factorises is a choice
+    work.factor_entries = work.factor_flop = 1e30;
+  }
   return work;
 }
 

@@ -22,7 +22,7 @@ std::optional<EndVector> unscale(const LanczosEnd& end, double lambda, const Blo
 
 }  // namespace
 
-std::optional<EndVectors> end_vectors(const ReducedSystem& system, Scaling kind, std::uint64_t seed) {
+std::optional<EndVectors> end_vectors(const ReducedSystem& system, Scaling kind, std::uint64_t seed) try {
   BlockScaling scaling;
   CholmodFactor factor;
   const Eigen::Index n = system.lower.rows();
@@ -51,6 +51,8 @@ std::optional<EndVectors> end_vectors(const ReducedSystem& system, Scaling kind,
   auto largest = unscale(high, high.value, scaling);
   if (!smallest || !largest) return std::nullopt;
   return EndVectors{std::move(*smallest), std::move(*largest)};
+} catch (const FactorTooLarge&) {
+  return std::nullopt;
 }
 
 }  // namespace bb

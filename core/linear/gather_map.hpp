@@ -37,6 +37,7 @@ class GatherMap {
     return width_ == 0 ? 0 : vertices_.size() / static_cast<std::size_t>(width_);
   }
   int width() const { return width_; }
+  Stencils stencils() const { return {width_, vertices_}; }
   /// values [9 x blocks] += local Hessians, their lower blocks [size * 9 width (width + 1)/2]. A target adds its
   /// contributions to what it has in the order of the elements: kernels add in the same order, to the same bits.
   /// Cost: one read of `hess`, one read and write of the targets, 4 bytes of index a contribution.

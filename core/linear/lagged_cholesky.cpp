@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "core/archive/archive.hpp"
 #include "core/linear/cholmod_factor.hpp"
 #include "core/linear/conjugate_gradients.hpp"
 #include "core/linear/direct_solve.hpp"
@@ -17,18 +18,39 @@
 namespace bb {
 namespace {
 
-/// M = L L^T of the matrix that setup() saw last.
+void keep_matrix(Archive& archive, ReducedSystem& system) {
+  auto& lower = system.lower;
+  std::vector<int> start(lower.outerIndexPtr(), lower.outerIndexPtr() + lower.outerSize() + 1);
+  std::vector<int> row(lower.innerIndexPtr(), lower.innerIndexPtr() + lower.nonZeros());
+  std::vector<double> value(lower.valuePtr(), lower.valuePtr() + lower.nonZeros());
+  archive(system.block_start, system.block_vertex, system.pattern_id, start, row, value);
+  if (!archive.reads()) return;
+  const auto n = static_cast<Eigen::Index>(start.size()) - 1;
+  lower = Eigen::Map<const Eigen::SparseMatrix<double>>(n, n, static_cast<Eigen::Index>(value.size()), start.data(),
+                                                        row.data(), value.data());
+}
+
+/// M = L L^T of the matrix that setup() saw last, of which it has a copy.
 class Factor final : public Preconditioner {
  public:
   LinearStatus setup(const ReducedSystem& system, const SymmetricProduct&) override {
-    return factor_.factorize(system);
+    const LinearStatus status = factor_.factorize(system);
+    if (status == LinearStatus::ok) of_ = system;
+    return status;
   }
+  /// The matrix; one that read it has to make the factor.
+  void keep(Archive& archive) override {
+    factor_.keep(archive);
+    keep_matrix(archive, of_);
+  }
+  LinearStatus make() { return factor_.factorize(of_); }
   void apply(const VecXd& r, VecXd& z) const override { factor_.solve(r, z); }
   const CholmodFactor& cholmod() const { return factor_; }
   CholmodFactor& cholmod() { return factor_; }
 
  private:
   mutable CholmodFactor factor_;  // a solve writes to its workspace
+  ReducedSystem of_;
 };
 
 class LaggedCholesky final : public LinearSolver {
@@ -37,6 +59,13 @@ class LaggedCholesky final : public LinearSolver {
       : forcing_(parameters), max_pcg_iterations_(integer(parameters, "max_pcg_iterations")) {}
   std::string_view name() const override { return "lagged_cholesky"; }
   void begin_step() override { forcing_.begin_step(); }
+  void keep(Archive& archive) override {
+    archive(n_);
+    bool there = n_ >= 0;
+    archive(there);
+    if (there) factor_.keep(archive);
+    if (archive.reads()) to_make_ = there;
+  }
 
   // The factor that is left, of A or of the near matrix, serves the solves to come.
   Definiteness examine(const ReducedSystem& a, const NearMatrix& near) override {
@@ -56,6 +85,8 @@ class LaggedCholesky final : public LinearSolver {
       fail(x, report);
     } else if (b_norm > 0) {
       report.tolerance = forcing_.tolerance(b_norm);
+      if (to_make_ && factor_.make() != LinearStatus::ok) n_ = -1;
+      to_make_ = false;
       const bool settled = n_ == b.size() && iterate(b, max_pcg_iterations_, x, report);
       if (!settled && factorize(system, report)) iterate(b, fresh_iterations, x, report);
       if (report.status != LinearStatus::ok) fail(x, report);
@@ -96,7 +127,8 @@ class LaggedCholesky final : public LinearSolver {
 
   Forcing forcing_;
   int max_pcg_iterations_;
-  Eigen::Index n_ = -1;  // size of the factor, -1 without one
+  Eigen::Index n_ = -1;   // size of the factor, -1 without one
+  bool to_make_ = false;  // its matrix was read
   Factor factor_;
   SymmetricProduct product_;
   ConjugateGradients cg_;

@@ -23,6 +23,8 @@ std::string_view to_string(LinearStatus status) {
       return "non_finite";
     case LinearStatus::iteration_cap:
       return "iteration_cap";
+    case LinearStatus::factor_too_large:
+      return "factor_too_large";
   }
   return "";
 }
@@ -32,7 +34,16 @@ LinearReport LinearSolver::solve(const ReducedSystem& system, const VecXd& b, Ve
     throw ConfigError("right-hand side", std::to_string(b.size()) + " entries", "one a row of the matrix");
   }
   x = VecXd::Zero(b.size());
-  return solve_checked(system, b, x);
+  try {
+    return solve_checked(system, b, x);
+  } catch (const FactorTooLarge& error) {
+    x.setZero();
+    LinearReport report;
+    report.status = LinearStatus::factor_too_large;
+    report.detail = error.what();
+    report.residual_true = report.residual_recurrence = 1;
+    return report;
+  }
 }
 
 Definiteness LinearSolver::examine(const ReducedSystem& a, const NearMatrix& near) {

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -14,13 +15,21 @@
 
 namespace bb {
 
+class Archive;
+
+/// A Cholesky factor has more entries than the indices of its library hold. what() says how large the matrix is.
+struct FactorTooLarge : std::length_error {
+  using std::length_error::length_error;
+};
+
 enum class LinearStatus {
   ok,
   matrix_indefinite,          // not positive definite: failed pivot, or p^T A p < 0 beyond rounding
   preconditioner_indefinite,  // r^T M^-1 r <= 0
   tolerance_below_rounding,   // stagnated at the attainable accuracy, above the tolerance
   non_finite,
-  iteration_cap
+  iteration_cap,
+  factor_too_large  // more entries than the library of the factor can number
 };
 std::string_view to_string(LinearStatus status);
 
@@ -54,9 +63,12 @@ class LinearSolver {
   virtual std::string_view name() const = 0;
   /// A step begins: what earlier right-hand sides say of the tolerance no longer holds.
   virtual void begin_step() {}
+  /// What earlier solves decide of later ones: clusters, the matrix that an earlier factor is of, the pattern that was
+  /// analysed. A solver that read it goes on as the one that wrote it, bit for bit. Cost: at most a copy of a matrix.
+  virtual void keep(Archive&) {}
   /// x is resized to b. Analysis is reused while pattern_id stays. Never silently falls back
-  /// to another method.
-  /// Errors: ConfigError when b has not one entry a row of the matrix.
+  /// to another method. A factor that is too large is the status factor_too_large.
+  /// Errors: ConfigError when b has not one entry a row of the matrix; std::bad_alloc.
   LinearReport solve(const ReducedSystem& system, const VecXd& b, VecXd& x);
   /// Whether A is positive definite: a direct solver by its factor, an iterative one by its own iterations. near: for
   /// the preconditioner. What solve() keeps from earlier matrices may change. Cost: a factorisation, two more and

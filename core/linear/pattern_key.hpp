@@ -1,6 +1,7 @@
 // Recognises an unchanged pattern, so that symbolic work can be kept.
 #pragma once
 
+#include "core/archive/archive.hpp"
 #include "core/linear/block_system.hpp"
 
 namespace bb {
@@ -18,6 +19,7 @@ class PatternKey {
     return same;
   }
   void forget() { id_ = 0; }
+  void keep(Archive& archive) { archive(id_, n_, n_nonzeros_); }
 
  private:
   std::uint64_t id_ = 0;

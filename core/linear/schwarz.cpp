@@ -24,6 +24,7 @@ class Schwarz final : public Preconditioner {
   explicit Schwarz(int cluster_vertices) : cluster_vertices_(cluster_vertices) {}
   LinearStatus setup(const ReducedSystem& system, const SymmetricProduct& rows) override;
   void apply(const VecXd& r, VecXd& z) const override;
+  void keep(Archive& archive) override;
   std::string detail() const override { return detail_; }
 
  private:
@@ -38,6 +39,7 @@ class Schwarz final : public Preconditioner {
   std::string detail_;
   PatternKey key_;
   VertexClusters clusters_;
+  bool built_ = false;               // what follows is of these clusters
   std::vector<int> first_;           // [n_clusters + 1] degrees of freedom before a cluster
   std::vector<int> dof_;             // [n] degree of freedom of the matrix, by cluster
   std::vector<int> place_;           // [n_blocks] of a vertex in the local matrix of its cluster
@@ -51,9 +53,15 @@ class Schwarz final : public Preconditioner {
   mutable VecXd work_, coarse_r_, coarse_z_;
 };
 
+void Schwarz::keep(Archive& archive) {
+  archive(key_, clusters_.of, clusters_.start, clusters_.member);
+  coarse_factor_.keep(archive);
+  if (archive.reads()) built_ = false;
+}
+
 // Clusters stay while the pattern stays: couplings of the matrix that came first with it decide.
 void Schwarz::build(const ReducedSystem& system, const SymmetricProduct& rows) {
-  clusters_ = cluster_vertices(rows, cluster_vertices_);
+  built_ = true;
   first_.assign(1, 0);
   dof_.clear();
   place_.resize(at(rows.n_blocks()));
@@ -158,7 +166,9 @@ void Schwarz::fill_coarse(const SymmetricProduct& rows) {
 
 LinearStatus Schwarz::setup(const ReducedSystem& system, const SymmetricProduct& rows) {
   if (zero_diagonal(system)) return LinearStatus::preconditioner_indefinite;
-  if (!key_.same_as_last(system)) build(system, rows);
+  const bool known = key_.same_as_last(system);
+  if (!known) clusters_ = cluster_vertices(rows, cluster_vertices_);
+  if (!known || !built_) build(system, rows);
   parallel_items(clusters_.size(), 1, [&](int k) { failed_[at(k)] = factorize_cluster(rows, k) ? 0 : 1; });
   // R_k A R_k^T and P^T A P are positive definite where A is
   if (std::count(failed_.begin(), failed_.end(), 1) > 0) return LinearStatus::matrix_indefinite;

@@ -175,7 +175,8 @@ void NewtonSystem::lift(const Positions& dx, Positions& rhs) {
 SolveReport NewtonSystem::solve(const Positions& target, Positions& dx) {
   SolveReport report;
   while (!direction(target, dx, report)) {
-    if (level_.last() || report.linear.status == LinearStatus::non_finite) break;
+    const LinearStatus status = report.linear.status;  // another Hessian mends neither of these
+    if (level_.last() || status == LinearStatus::non_finite || status == LinearStatus::factor_too_large) break;
     level_.raise(largest_force());
     fill_matrix();
   }

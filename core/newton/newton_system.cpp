@@ -162,6 +162,12 @@ void NewtonSystem::drop_caches() {
   blocks_->set_contacts({});
 }
 
+void NewtonSystem::keep_solver(Archive& archive) {
+  archive.section("linear solver");
+  blocks_->keep(archive);
+  solver_->keep(archive);
+}
+
 void NewtonSystem::prepare(const Positions& x1, const Positions& dx, bool to_bound) {
   for (const auto& term : terms_) term->prepare({x_, x1, dx, to_bound}, clock());
 }
@@ -170,7 +176,8 @@ double NewtonSystem::bound(const Positions& x1, const Positions& dx, IterationRe
   double smallest = 1;
   holder_ = nullptr;
   for (const auto& term : terms_) {
-    const double alpha = term->bound({x_, x1, dx}, report, clock());
+    const double said = term->bound({x_, x1, dx}, report, clock());
+    const double alpha = said >= 0 ? said : 0;  // what is no number proves nothing
     if (!(alpha < 1) || alpha > smallest) continue;
     smallest = alpha;
     holder_ = term.get();

@@ -57,6 +57,7 @@ class NewtonSystem final : public StepSystem {
   void adopt(const StepFrame& frame, const NewtonSystem& other);
   /// Makes the linear solver anew and forgets the pattern of the contacts: between steps.
   void drop_caches() override;
+  void keep_solver(Archive& archive) override;
 
   // --- an iterate
   /// Every term at x(), then gradient and matrix. Order of the sums: docs/design.md, Terms.

@@ -70,6 +70,13 @@ void Simulation::keep(Archive& archive) {
           history_.v_prev, time_, step_, nominal_, nominal_start_, parts_);
   system_->keep(archive);
   if (archive.reads()) drop_caches();
+  Archive solver;  // apart, since a system on a device has none
+  if (!archive.reads()) system_->keep_solver(solver);
+  std::string bytes = solver.bytes();
+  archive(bytes);
+  if (!archive.reads() || bytes.empty()) return;
+  Archive read(std::move(bytes));
+  system_->keep_solver(read);
 }
 
 void Simulation::drop_caches() { system_->drop_caches(); }

@@ -26,10 +26,9 @@ class Simulation {
   /// keeps the feasible state that was reached. Counters and times of the report are those of all attempts,
   /// everything else is of the last one.
   StepReport step(StepObserver& observer);
-  /// All that the next step depends on, but for drop_caches(), which reading an archive does as well.
+  /// All that the next step depends on: a simulation that read it goes on, bit for bit, as the one that wrote it.
   void keep(Archive& archive);
-  /// Forgets what is kept between steps to save work, such as an earlier factor. From then on the run is, bit for
-  /// bit, the one that goes on from an archive of this moment.
+  /// Forgets what earlier steps left on a device, so that the next step is that of a run that goes on elsewhere.
   void drop_caches();
 
   const History& history() const { return history_; }

@@ -61,8 +61,10 @@ class StepSystem {
   virtual bool at_target() const = 0;
   /// What is remembered from step to step.
   virtual void keep(Archive& archive) = 0;
-  /// Forgets what is kept between steps to save work.
+  /// Forgets what earlier steps left to the next, but for what keep() has.
   virtual void drop_caches() = 0;
+  /// What earlier solves decide of later ones (LinearSolver::keep), where drop_caches() is not called between steps.
+  virtual void keep_solver(Archive&) {}
 
   // --- an iterate
   /// Every term at the iterate, then gradient and matrix.

@@ -156,29 +156,36 @@ TraceWriter::TraceWriter(const fs::path& folder) : path_(folder / "trace.jsonl")
   if (file_ == nullptr) fail("cannot open");
 }
 
-TraceWriter::TraceWriter(const fs::path& folder, std::uint64_t bytes)
+std::optional<fs::path> find_trace(const fs::path& folder, const FilePrefix& prefix) {
+  for (const char* name : {"trace.jsonl.part", "trace.jsonl"}) {
+    if (hash_of_prefix((folder / name).string(), prefix)) return folder / name;
+  }
+  return std::nullopt;
+}
+
+TraceWriter::TraceWriter(const fs::path& folder, const FilePrefix& prefix)
     : path_(folder / "trace.jsonl"), leave_(true) {
   part_ = path_;
   part_ += ".part";
+  const std::optional<fs::path> found = find_trace(folder, prefix);
+  if (!found) throw RecordError(part_.string() + ": not as the checkpoint beside it has it, run without --resume", true);
   std::error_code error;
-  const std::uint64_t size = fs::file_size(part_, error);
-  if (error || size < bytes) {
-    throw RecordError(part_.string() + ": shorter than the checkpoint beside it says, run without --resume",
-                      true);
-  }
-  fs::resize_file(part_, bytes, error);
+  if (*found != part_) fs::copy_file(*found, part_, fs::copy_options::overwrite_existing, error);
+  if (error) fail_with(part_, "cannot copy", error.value());
+  auto hash = hash_of_prefix(part_.string(), prefix);
+  if (!hash) throw RecordError(part_.string() + ": changed while it was read", false);
+  hash_ = std::move(*hash);
+  fs::resize_file(part_, prefix.bytes, error);
   if (error) fail_with(part_, "cannot cut", error.value());
   file_ = std::fopen(part_.c_str(), "ae");
   if (file_ == nullptr) fail("cannot open");
 }
 
-std::uint64_t TraceWriter::checkpoint() {
+FilePrefix TraceWriter::checkpoint(bool sync) {
   end_step();
-  if (::fsync(::fileno(file_)) != 0) fail("cannot write to the disk");
+  if (sync && ::fsync(::fileno(file_)) != 0) fail("cannot write to the disk");
   leave_ = true;
-  const long length = std::ftell(file_);
-  if (length < 0) fail("cannot tell the length");
-  return static_cast<std::uint64_t>(length);
+  return hash_.so_far();
 }
 
 TraceWriter::~TraceWriter() {
@@ -194,16 +201,21 @@ void TraceWriter::fail(const char* what) const { fail_with(path_, what, errno); 
 void TraceWriter::add(const TraceRow& row) {
   const std::string line = to_json(row) + "\n";
   if (std::fwrite(line.data(), 1, line.size(), file_) != line.size()) fail("cannot write");
+  hash_.add(line);
 }
 
 void TraceWriter::end_step() {
   if (std::fflush(file_) != 0) fail("cannot write");
 }
 
-void TraceWriter::finish() {
+void TraceWriter::close() {
   end_step();
   if (::fsync(::fileno(file_)) != 0) fail("cannot write to the disk");
   if (std::fclose(std::exchange(file_, nullptr)) != 0) fail("cannot close");
+}
+
+void TraceWriter::finish() {
+  close();
   if (std::rename(part_.c_str(), path_.c_str()) != 0) fail("cannot rename to");
 }
 

@@ -33,6 +33,8 @@ std::string holder(const fs::path& path) {
 }  // namespace
 
 FolderLock::FolderLock(const fs::path& folder) : folder_(folder), path_(folder / "bench.lock") {
+  std::error_code unreachable;
+  made_ = !fs::exists(folder, unreachable);
   make_folder(folder);
   while (!try_once()) {
   }
@@ -46,12 +48,17 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(folder), path_(folder /
 
 FolderLock::~FolderLock() {
   ::unlink(path_.c_str());
+  if (made_) ::rmdir(folder_.c_str());  // only when it is empty
   ::close(fd_);
 }
 
 /// False when the holder before removed the file between our open and our lock: it no longer locks anybody.
 bool FolderLock::try_once() {
   fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  if (fd_ < 0 && errno == ENOENT) {  // the holder before removed the folder
+    make_folder(folder_);
+    fd_ = ::open(path_.c_str(), O_RDWR | O_CREAT | O_CLOEXEC, 0644);
+  }
   if (fd_ < 0) fail_with(path_, "cannot open", errno);
   if (::flock(fd_, LOCK_EX | LOCK_NB) != 0) {
     const int error = errno;

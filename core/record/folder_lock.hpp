@@ -6,7 +6,7 @@
 namespace bb {
 
 /// Holds `folder` (made when missing) until destroyed, by flock on `bench.lock` in it; the file says which
-/// process on which host, and goes with the lock. The system frees the lock of a process that was killed.
+/// process on which host, and goes with the lock. A folder that was made and is still empty goes too. The system frees the lock of a process that was killed.
 /// Errors: RecordError; one that does not last, naming the holder, when another process has the folder.
 class FolderLock {
  public:
@@ -20,6 +20,7 @@ class FolderLock {
 
   std::filesystem::path folder_, path_;
   int fd_ = -1;
+  bool made_ = false;  // the folder was not there
 };
 
 }  // namespace bb

@@ -1,6 +1,7 @@
 // SHA-256 of bytes, files, states and configs.
 #include <openssl/evp.h>
 
+#include <algorithm>
 #include <array>
 #include <bit>
 #include <cstdio>
@@ -22,6 +23,12 @@ class Sha256 {
     if (context_ == nullptr || EVP_DigestInit_ex(context_.get(), EVP_sha256(), nullptr) != 1) {
       throw std::runtime_error("sha256: OpenSSL refused to start");
     }
+  }
+  /// Of what was added so far; both go on by themselves.
+  Sha256 copy() const {
+    Sha256 out;
+    if (EVP_MD_CTX_copy_ex(out.context_.get(), context_.get()) != 1) throw std::runtime_error("sha256: OpenSSL failed");
+    return out;
   }
   void add(const void* data, std::size_t n) {
     if (EVP_DigestUpdate(context_.get(), data, n) != 1) throw std::runtime_error("sha256: OpenSSL failed");
@@ -53,6 +60,40 @@ void drop_places(nlohmann::json& j) {
 }
 
 }  // namespace
+
+struct RunningHash::Context {
+  Sha256 hash;
+};
+
+RunningHash::RunningHash() : context_(std::make_unique<Context>()) {}
+RunningHash::~RunningHash() = default;
+RunningHash::RunningHash(RunningHash&&) noexcept = default;
+RunningHash& RunningHash::operator=(RunningHash&&) noexcept = default;
+
+void RunningHash::add(std::string_view bytes) {
+  context_->hash.add(bytes.data(), bytes.size());
+  size_ += bytes.size();
+}
+
+FilePrefix RunningHash::so_far() const { return {size_, context_->hash.copy().hex()}; }
+
+std::optional<RunningHash> hash_of_prefix(const std::string& path, const FilePrefix& prefix) {
+  std::error_code error;
+  if (!std::filesystem::is_regular_file(path, error)) return std::nullopt;
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> file(std::fopen(path.c_str(), "re"), std::fclose);
+  if (file == nullptr) return std::nullopt;
+  RunningHash hash;
+  std::vector<char> buffer(1 << 16);
+  for (std::uint64_t left = prefix.bytes; left > 0;) {
+    const std::size_t wanted = std::min<std::uint64_t>(left, buffer.size());
+    const std::size_t n = std::fread(buffer.data(), 1, wanted, file.get());
+    if (n == 0) return std::nullopt;
+    hash.add({buffer.data(), n});
+    left -= n;
+  }
+  if (hash.so_far().sha256 != prefix.sha256) return std::nullopt;
+  return hash;
+}
 
 std::string sha256_hex(std::string_view bytes) {
   Sha256 hash;

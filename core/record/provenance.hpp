@@ -3,6 +3,8 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
@@ -22,6 +24,31 @@ Machine collect_machine();
 /// (meshes by content), executable, libraries with the BLAS kernel that runs, plugins by content, machine,
 /// and number of threads (which changes times, no result).
 void fill_ids(RunRecord& record);
+
+/// The first bytes of a file that only grows.
+struct FilePrefix {
+  std::uint64_t bytes = 0;
+  std::string sha256;
+};
+
+/// SHA-256 of bytes that come one after the other.
+class RunningHash {
+ public:
+  RunningHash();
+  ~RunningHash();
+  RunningHash(RunningHash&&) noexcept;
+  RunningHash& operator=(RunningHash&&) noexcept;
+  void add(std::string_view bytes);
+  /// Number and hash of all bytes so far. Cost: that of 64 bytes.
+  FilePrefix so_far() const;
+
+ private:
+  struct Context;
+  std::unique_ptr<Context> context_;
+  std::uint64_t size_ = 0;
+};
+/// The hash of the first bytes of a file, to go on with; nothing when the file does not begin with that prefix.
+std::optional<RunningHash> hash_of_prefix(const std::string& path, const FilePrefix& prefix);
 
 /// SHA-256 as 64 lower-case hex digits.
 std::string sha256_hex(std::string_view bytes);

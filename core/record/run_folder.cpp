@@ -6,6 +6,7 @@
 
 #include "core/input/json.hpp"
 #include "core/record/provenance.hpp"
+#include "core/record/writer.hpp"
 
 namespace bb {
 namespace {
@@ -21,12 +22,13 @@ bool is_artifact_name(const std::string& relative) {
 }
 
 bool is_unfinished_name(const std::string& name) {
-  return name == "trace.jsonl.part" || name == "checkpoint.bin";
+  return name == "trace.jsonl.part" || name == "checkpoint.bin" || name == "checkpoint.next.bin" ||
+         name == "checkpoint.log";
 }
 
 /// A file that was being written.
 bool is_temporary_name(const std::string& name) {
-  static const std::regex pattern(R"((run\.json|sweep\.json|probe|checkpoint\.bin)\.tmp\.\d+)");
+  static const std::regex pattern(R"((run\.json|run\.json\.part|sweep\.json|probe|checkpoint\.bin)\.tmp\.\d+)");
   return std::regex_match(name, pattern);
 }
 
@@ -77,26 +79,58 @@ void remove_unfinished_artifacts(const fs::path& folder) {
   }
 }
 
-void remove_earlier_run(const fs::path& folder) {
-  std::error_code error;
+namespace {
+
+/// The artifacts that the record in `file` names: relative path, SHA-256. None when it cannot be read, or is torn.
+std::vector<std::pair<std::string, std::string>> artifacts_of(const fs::path& file) {
+  std::vector<std::pair<std::string, std::string>> out;
   json record;
   try {
-    const std::string file = (folder / "run.json").string();
-    record = parse_json(read_input_file(file, record_file), file, LargeIntegers::rounded);
-  } catch (const ConfigError&) {  // none, or a torn one
+    record = parse_json(read_input_file(file.string(), record_file), file.string(), LargeIntegers::rounded);
+  } catch (const ConfigError&) {
+    return out;
   }
-  const json none = json::array();
-  const json& artifacts = record.is_object() && record.contains("artifacts") ? record["artifacts"] : none;
-  for (const json& artifact : artifacts) {
+  if (!record.is_object() || !record.contains("artifacts")) return out;
+  for (const json& artifact : record["artifacts"]) {
     if (!artifact.is_object() || !artifact.contains("path") || !artifact["path"].is_string()) continue;
+    if (!artifact.contains("sha256") || !artifact["sha256"].is_string()) continue;
     const auto relative = artifact["path"].get<std::string>();
+    if (is_artifact_name(relative)) out.emplace_back(relative, artifact["sha256"].get<std::string>());
+  }
+  return out;
+}
+
+}  // namespace
+
+// The record goes last: while it is there, what has the names of its files is of the earlier run.
+void remove_earlier_run(const fs::path& folder) {
+  std::error_code error;
+  for (const auto& [relative, sha256] : artifacts_of(folder / "run.json")) {
     const fs::path file = folder / relative;
-    if (!is_artifact_name(relative) || !artifact.contains("sha256")) continue;
-    if (artifact["sha256"] != sha256_file(file.string())) continue;
+    if (sha256 != sha256_file(file.string())) continue;
     fs::remove(file, error);
     fs::remove(file.parent_path(), error);  // once it is empty
   }
-  for (const char* name : {"run.json", "trace.jsonl"}) fs::remove(folder / name, error);
+  for (const char* name : {"trace.jsonl", "run.json"}) fs::remove(folder / name, error);
+}
+
+fs::path pending_record(const fs::path& folder) { return folder / "run.json.part"; }
+
+bool put_in_place(const fs::path& folder) {
+  const fs::path pending = pending_record(folder), record = folder / "run.json";
+  std::error_code error;
+  if (!fs::exists(pending, error)) return false;
+  if (fs::exists(record, error)) remove_earlier_run(folder);  // else some files are in their places already
+  const auto move_if_there = [&](const fs::path& from, const fs::path& to) {
+    if (fs::exists(from, error)) move_into_place(from, to);
+  };
+  move_if_there(folder / "trace.jsonl.part", folder / "trace.jsonl");
+  for (const auto& [relative, sha256] : artifacts_of(pending)) {
+    move_if_there(folder / part_of(relative), folder / relative);
+  }
+  remove_unfinished_artifacts(folder);
+  move_into_place(pending, record);
+  return true;
 }
 
 }  // namespace bb

@@ -7,6 +7,7 @@
 #include <stdexcept>
 #include <string>
 
+#include "core/record/provenance.hpp"
 #include "core/record/run_record.hpp"
 
 namespace bb {
@@ -64,14 +65,17 @@ void write_run(const std::filesystem::path& folder, const RunRecord& record);
 /// a folder (frames, matrices). Errors: RecordError.
 void check_writable(const std::filesystem::path& folder);
 
+/// Where the trace of a folder is that begins with `prefix`: trace.jsonl.part, or trace.jsonl once its run was recorded.
+std::optional<std::filesystem::path> find_trace(const std::filesystem::path& folder, const FilePrefix& prefix);
+
 /// folder/trace.jsonl. Written as trace.jsonl.part, so that an earlier trace stays with its run.json until
 /// the new run is over; a run that never finishes leaves neither.
 class TraceWriter {
  public:
   explicit TraceWriter(const std::filesystem::path& folder);
-  /// Goes on behind the first `bytes` of trace.jsonl.part; what is behind them goes. Errors: RecordError, also
-  /// when the file is shorter than that.
-  TraceWriter(const std::filesystem::path& folder, std::uint64_t bytes);
+  /// Goes on behind `prefix` of the trace that find_trace finds; what is behind it goes, from trace.jsonl.part alone.
+  /// Errors: RecordError, also when there is none.
+  TraceWriter(const std::filesystem::path& folder, const FilePrefix& prefix);
   ~TraceWriter();
   TraceWriter(const TraceWriter&) = delete;
   TraceWriter& operator=(const TraceWriter&) = delete;
@@ -80,16 +84,19 @@ class TraceWriter {
   void add(const TraceRow& row);
   /// Hands the lines of the step to the system. Errors: RecordError.
   void end_step();
-  /// Replaces the earlier trace; nothing can be added after it. Errors: RecordError.
+  /// The file is whole on the disk, under the name it has; nothing can be added after it. Errors: RecordError.
+  void close();
+  /// The same, and it replaces the earlier trace. Errors: RecordError.
   void finish();
-  /// Length of what was written, which is on the disk then. From now on the file stays, also that of a run that
-  /// never finishes: a checkpoint names it. Errors: RecordError.
-  std::uint64_t checkpoint();
+  /// What was written so far, handed to the system, with `sync` to the disk. From now on the file stays, also that of a
+  /// run that never finishes: a checkpoint names it. Errors: RecordError.
+  FilePrefix checkpoint(bool sync);
 
  private:
   void fail(const char* what) const;
   std::filesystem::path path_, part_;
   std::FILE* file_ = nullptr;
+  RunningHash hash_;
   bool leave_ = false;
 };
 

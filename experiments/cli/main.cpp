@@ -84,10 +84,10 @@ void common_arguments(CLI::App& app, CommonOptions& common, std::vector<std::str
 void limit_arguments(CLI::App* app, RunLimits& limits) {
   app->add_flag(
       "--resume", limits.resume,
-      "go on from the checkpoint of a run that was stopped (/output/checkpoint_every); without one, "
-      "from the start");
+      "go on from the checkpoint of a run that was stopped by a signal, its time limit or a lack of memory, "
+      "or killed (/output/checkpoint_every); without one, from the start");
   app->add_option("--time-limit", limits.time_limit_s,
-                  "seconds that one run may take: it ends between two steps with the outcome timeout")
+                  "seconds that one run may take: it ends between two steps with the outcome timeout, and --resume goes on")
       ->check(CLI::PositiveNumber);
 }
 

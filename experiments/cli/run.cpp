@@ -2,7 +2,9 @@
 
 #include <filesystem>
 
+#include "core/record/run_folder.hpp"
 #include "experiments/cli/progress.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/linear_choice.hpp"
@@ -21,6 +23,7 @@ RunOptions run_options(const CommonOptions& common) {
 RunRecord run_and_show(const RunConfig& config, RunOptions options, const CommonOptions& common) {
   ProgressLine line(common.progress);
   options.progress = [&line](const Progress& progress) { line.show(progress); };
+  options.tell = [&line](const std::string& text) { line.clear(), say(text + "\n"); };
   RunRecord record = run_config(config, options);
   line.clear();
   fmt::print("{}\n{}\n", summary_header(), summary_row(record));
@@ -31,10 +34,10 @@ RunRecord run_and_show(const RunConfig& config, RunOptions options, const Common
 
 namespace {
 
-/// The folder holds the record of this very run, and no checkpoint of it.
+/// The folder holds the record of this very run, which no time limit and no lack of memory ended.
 bool is_over(const RunConfig& config, const RunOptions& options) {
   std::error_code unreachable;
-  if (std::filesystem::exists(options.folder / "checkpoint.bin", unreachable)) return false;
+  if (std::filesystem::exists(pending_record(options.folder), unreachable)) return false;  // run_config ends it
   const auto stored = read_stored_run(options.folder / "run.json");
   if (!stored) return false;
   RunConfig chosen = config;
@@ -50,9 +53,9 @@ int run(const RunVerb& verb, const CommonOptions& common) {
   RunOptions options = run_options(common);
   options.folder = verb.out.empty() ? "results/runs/" + run_label(config) : verb.out;
   options.keep_inputs = verb.keep_inputs;
-  options.resume = verb.limits.resume;
+  options.resume = verb.limits.resume ? Resume::yes : Resume::no;
   options.time_limit_s = verb.limits.time_limit_s;
-  if (options.resume && is_over(config, options)) {
+  if (verb.limits.resume && is_over(config, options)) {
     fmt::print("already there\n{}\n", (options.folder / "run.json").string());
     return exit_ok;
   }

@@ -7,6 +7,7 @@
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/cli/progress.hpp"
+#include "experiments/cli/say.hpp"
 #include "experiments/cli/sweep_spec.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
@@ -37,7 +38,7 @@ RunOptions case_options(const Sweep& sweep, const SweepCase& one) {
   options.note = sweep.spec.name + ": " + one.label;
   options.sweep_id = sweep.spec.name;
   options.keep_inputs = sweep.verb.keep_inputs;
-  options.resume = sweep.verb.limits.resume;
+  options.resume = sweep.verb.limits.resume ? Resume::yes : sweep.verb.again ? Resume::no : Resume::if_this_run;
   options.time_limit_s = sweep.verb.limits.time_limit_s;
   return options;
 }
@@ -48,6 +49,7 @@ bool already_there(const Sweep& sweep, const SweepCase& one, const RunOptions& o
   const std::filesystem::path file = options.folder / "run.json";
   std::error_code unreachable;
   if (sweep.verb.again || !std::filesystem::exists(file, unreachable)) return false;
+  if (std::filesystem::exists(pending_record(options.folder), unreachable)) return false;  // run_config ends it
   const RunRecord now = identified(one.config, options);
   std::string why = "its run.json cannot be read";
   try {
@@ -63,6 +65,7 @@ bool already_there(const Sweep& sweep, const SweepCase& one, const RunOptions& o
 
 void run_case(const SweepCase& one, RunOptions options, ProgressLine& line) {
   options.progress = [&line](const Progress& progress) { line.show(progress); };
+  options.tell = [&line](const std::string& text) { line.clear(), say(text + "\n"); };
   const RunRecord record = run_config(one.config, options);
   line.clear();
   fmt::print("{}\n", summary_row(record));
@@ -83,6 +86,10 @@ std::vector<Violation> run_cases(Sweep& sweep) {
       } else {
         run_case(one, options, line);
       }
+      ++sweep.kept;
+    } catch (const EarlierStays& stays) {
+      line.clear();
+      fmt::print("{:<44} {}\n", options.note, stays.kept);
       ++sweep.kept;
     } catch (const ConfigError& error) {
       line.clear();
@@ -132,8 +139,8 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
     violations = run_cases(sweep);
   } catch (const Interrupted&) {
     throw Interrupted{
-        fmt::format("{} of {} records kept in {}; the same command runs the rest, with --resume "
-                    "from its checkpoint",
+        fmt::format("{} of {} records kept in {}; the same command runs the rest, and goes on from the checkpoint of "
+                    "the one that was stopped",
                     sweep.kept, sweep.spec.cases.size(), sweep.out.string())};
   }
   compare_cases(sweep);

@@ -74,6 +74,14 @@ std::vector<double> stretches(const Scene& scene, const Positions& x) {
 
 }  // namespace
 
+// The file of the record stays as it is whatever becomes of the copy. Errors: RecordError.
+static void write_copy(const std::filesystem::path& from, const std::filesystem::path& to) {
+  std::error_code error;
+  make_folder(to.parent_path());
+  std::filesystem::copy_file(from, to, std::filesystem::copy_options::overwrite_existing, error);
+  if (error) fail_with(to, "cannot copy", error.value());
+}
+
 ContactFields contact_fields(const ContactState& state, int n_vertices) {
   const auto n = static_cast<std::size_t>(n_vertices);
   ContactFields fields{std::vector<double>(n, 1.0), std::vector<double>(n, 0.0)};
@@ -113,13 +121,17 @@ ArtifactWriter::~ArtifactWriter() {
 }
 
 void ArtifactWriter::keep(Archive& archive) {
-  archive(written_);
+  archive.grown("artifacts", written_);
   if (!archive.reads()) return;
   leave_ = true;  // what is refused here is not lost
   for (const Artifact& file : written_) {
-    const std::filesystem::path path = folder_ / part_of(file.path);
+    const std::filesystem::path path = folder_ / part_of(file.path), recorded = folder_ / file.path;
     const std::string found = sha256_file(path.string());
     if (found == file.sha256) continue;
+    if (sha256_file(recorded.string()) == file.sha256) {  // of a run that was recorded when it was cut off
+      write_copy(recorded, path);
+      continue;
+    }
     throw ConfigError(path.string(), found.empty() ? "not there" : "sha256 " + found.substr(0, 16),
                       "sha256 " + file.sha256.substr(0, 16) + ", as the checkpoint has it, or no --resume");
   }
@@ -167,11 +179,6 @@ void ArtifactWriter::drop_matrices(int step) {
     std::filesystem::remove(folder_ / part_of(file.path), error);
     return true;
   });
-}
-
-void ArtifactWriter::finish() {
-  for (const Artifact& file : written_) move_into_place(folder_ / part_of(file.path), folder_ / file.path);
-  leave_ = false;
 }
 
 void ArtifactWriter::write(const std::filesystem::path& relative, const std::string& bytes, const char* kind,

@@ -28,8 +28,8 @@ ContactFields contact_fields(const ContactState& state, int n_vertices);
 /// deformation gradient, minus 1). At the end of a step vertices also have `gap_rel` and `load_N`, as in
 /// ContactFields. Errors of every function: RecordError when a file cannot be written whole.
 ///
-/// Files lie in frames.part and matrices.part until finish(), so that those of an earlier run stay with its
-/// run.json until the new run is over; a run that never finishes leaves neither.
+/// Files lie in frames.part and matrices.part until put_in_place() (core/record/run_folder.hpp), so that those of an
+/// earlier run stay with its run.json until the new run is over; a run that never finishes leaves neither.
 class ArtifactWriter {
  public:
   ArtifactWriter(std::filesystem::path folder, const Scene& scene);
@@ -45,12 +45,10 @@ class ArtifactWriter {
   /// that name.
   void matrix(const StoredSystem& stored);
   const std::vector<Artifact>& written() const { return written_; }
-  /// Gives every file its name. Errors: RecordError.
-  void finish();
   /// The names of what was written so far. Reading asks that the files are there. Errors: ConfigError naming one
   /// that is not, or has another size.
   void keep(Archive& archive);
-  /// From now on the files stay, also those of a run that never finishes: a checkpoint names them.
+  /// From now on the files stay, also those of a run that never finishes: a checkpoint or a record names them.
   void leave_unfinished() { leave_ = true; }
   /// The step begins again: the matrices of its attempt are no part of the run.
   void drop_matrices(int step);

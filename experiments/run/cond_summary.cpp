@@ -38,9 +38,18 @@ void CondSummary::append(const CondSummary& other) {
   }
 }
 
-void CondSummary::Samples::keep(Archive& archive) { archive(cond, lambda_min, lambda_max, statuses); }
-
-void CondSummary::keep(Archive& archive) { archive(samples_); }
+void CondSummary::keep(Archive& archive) {
+  std::vector<std::string> keys;
+  for (const auto& [key, samples] : samples_) keys.push_back(key);
+  archive(keys);
+  for (const std::string& key : keys) {
+    Samples& samples = samples_[key];
+    archive.grown("cond " + key, samples.cond);
+    archive.grown("lambda_min " + key, samples.lambda_min);
+    archive.grown("lambda_max " + key, samples.lambda_max);
+    archive(samples.statuses);
+  }
+}
 
 CondMap CondSummary::summary() const {
   CondMap out;

@@ -26,7 +26,6 @@ class CondSummary {
   struct Samples {
     std::vector<double> cond, lambda_min, lambda_max;  // log10
     CountMap statuses;
-    void keep(Archive& archive);
   };
   std::map<std::string, Samples> samples_;
 };

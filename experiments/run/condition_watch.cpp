@@ -118,7 +118,10 @@ void ConditionWatch::on_iteration(const LinearReport& linear, TraceRow& row) {
   samples_.clear();
 }
 
-void ConditionWatch::keep(Archive& archive) { archive(cond_, probes_, spent_s_); }
+void ConditionWatch::keep(Archive& archive) {
+  archive(cond_, spent_s_);
+  archive.grown("probes", probes_);
+}
 
 void ConditionWatch::end_step() {
   cond_.append(step_cond_);

@@ -16,8 +16,9 @@ namespace bb {
 void PassResult::StepTime::keep(Archive& archive) { archive(wall_s, phases); }
 
 void PassResult::keep(Archive& archive) {
-  archive(verdict.outcome, verdict.detail, whole, state_hash, steps, wall_s, stiffness.kappa_start,
-          stiffness.kappa, stiffness.doublings, stiffness.saturated);
+  archive.grown("steps", steps);
+  archive(verdict.outcome, verdict.detail, whole, state_hash, wall_s, stiffness.kappa_start, stiffness.kappa,
+          stiffness.doublings, stiffness.saturated);
 }
 
 Pass::Pass(const RunConfig& config, const Scene& scene, const Calibration& calibration, const Plan& plan,
@@ -35,23 +36,25 @@ void Pass::keep(Archive& archive) {
   archive(result_, simulation_, recorder_);
 }
 
-PassResult Pass::run(const std::function<void()>& between, const std::function<void()>& before) {
+PassResult Pass::run(const std::function<void(Moment)>& save) {
   const int every = config_.output.checkpoint_every;
   start_s_ = now_s();
   t_begin_ = simulation_.time();
   try {
     while (result_.verdict.outcome == Outcome::ok && simulation_.time() < t_end_) {
-      look_up();
-      if (result_.verdict.outcome != Outcome::ok) break;
+      if (should_stop()) {
+        save(Moment::stop);
+        stop();
+        break;
+      }
       if (can_lose_device(config_)) {
         simulation_.drop_caches();
-        before();
+        save(Moment::before_device);
       }
       step();
       const bool last = result_.verdict.outcome != Outcome::ok || !(simulation_.time() < t_end_);
       if (every == 0 || last || result_.steps.size() % static_cast<std::size_t>(every) != 0) continue;
-      simulation_.drop_caches();
-      between();
+      save(Moment::between);
     }
     result_.whole = result_.verdict.outcome != Outcome::timeout;
   } catch (const std::bad_alloc&) {
@@ -70,15 +73,18 @@ void Pass::cut(Outcome outcome, const char* what) {
   result_.verdict = {outcome, fmt::format("pass {}, step {}: {}", name_, result_.steps.size(), what)};
 }
 
-void Pass::look_up() {
+bool Pass::should_stop() const {
+  return (options_.interrupted && options_.interrupted->load()) ||
+         (options_.deadline_s > 0 && now_s() >= options_.deadline_s);
+}
+
+void Pass::stop() {
   if (options_.interrupted && options_.interrupted->load()) throw Interrupted{};
-  if (options_.deadline_s > 0 && now_s() >= options_.deadline_s) {
-    result_.verdict = {
-        Outcome::timeout,
-        fmt::format("pass {}: the time limit of {:g} s was reached before step {}, at {:.6g} of {:.6g} s",
-                    name_, options_.time_limit_s, result_.steps.size(), simulation_.time(),
-                    config_.time.dt * config_.time.steps)};
-  }
+  result_.verdict = {
+      Outcome::timeout,
+      fmt::format("pass {}: the time limit of {:g} s was reached before step {}, at {:.6g} of {:.6g} s", name_,
+                  options_.time_limit_s, result_.steps.size(), simulation_.time(),
+                  config_.time.dt * config_.time.steps)};
 }
 
 void Pass::step() {

@@ -30,17 +30,22 @@ struct PassResult {
 
 class Pass {
  public:
+  enum class Moment {
+    between,        // after every config.output.checkpoint_every-th step but the last
+    stop,           // a signal or the time limit ends the pass here
+    before_device,  // before every step of a run on a device, where a step may end in an error from which nothing can
+                    // be read any more
+  };
+
   /// All arguments must outlive the pass. name: of its progress line.
   Pass(const RunConfig& config, const Scene& scene, const Calibration& calibration, const Plan& plan,
        const RunOptions& options, const char* name, Recorder& recorder);
 
-  /// Goes on to the end. between(): called after every config.output.checkpoint_every-th step but the last; what
-  /// is kept only to save work is forgotten then, so that a pass that goes on from an archive of that moment is the
-  /// same, bit for bit. before(): called before every step of a run on a device, where a step may end in an error from
-  /// which nothing can be read any more. std::bad_alloc and exec::OutOfMemory of a step are the outcome oom,
+  /// Goes on to the end. save() is called between two steps, at the moments below: a pass that goes on from an archive
+  /// of such a moment is the same, bit for bit. std::bad_alloc and exec::OutOfMemory of a step are the outcome oom,
   /// exec::ExecutionError is kernel_failed, options.time_limit the outcome timeout.
   /// Errors: Interrupted.
-  PassResult run(const std::function<void()>& between, const std::function<void()>& before);
+  PassResult run(const std::function<void(Moment)>& save);
   /// All that the rest of the pass depends on, and what it has recorded so far.
   void keep(Archive& archive);
   /// Steps that are over.
@@ -49,7 +54,8 @@ class Pass {
  private:
   void step();
   void show(const StepReport& step) const;
-  void look_up();
+  bool should_stop() const;
+  void stop();
   void cut(Outcome outcome, const char* what);
 
   const RunConfig& config_;

@@ -57,7 +57,7 @@ void fill_stiffness(const PassResult& pass, RunRecord& record) {
 class PassSequence {
  public:
   PassSequence(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
-               const RunOptions& options, const Checkpoint& checkpoint, RunRecord& record, RunFiles& files)
+               const RunOptions& options, Checkpoint& checkpoint, RunRecord& record, RunFiles& files)
       : config_(config),
         scene_(scene),
         plan_(plan),
@@ -70,8 +70,8 @@ class PassSequence {
 
   void run(Resumed* resumed) {
     if (resumed) {
-      resumed->rest(in_second_, timed_, times_);
       rest_ = &resumed->rest;
+      keep_timed(*rest_);
     }
     const bool look = has_observed_run(config_);
     if (config_.passes.time && !in_second_) run_timed(look);
@@ -89,7 +89,7 @@ class PassSequence {
     Recorder recorder(bare, scene_, look ? apart : record_, nullptr);
     Pass pass(bare, scene_, calibration_, plan_, options_, "time", recorder);
     go_on(pass);
-    timed_ = pass.run([&] { save(pass); }, [&] { held_ = archive_of(pass); });
+    timed_ = pass.run([&](Pass::Moment moment) { save(pass, moment); });
     keep_held(timed_);
     recorder.finish();
     if (options_.build.valid) times_ = recorder.iteration_times();
@@ -99,16 +99,17 @@ class PassSequence {
   }
 
   void run_observed() {
-    std::uint64_t length = 0;
-    if (rest_) (*rest_)(length);
-    rest_ ? files_.trace.emplace(options_.folder, length) : files_.trace.emplace(options_.folder);
+    rest_ ? files_.trace.emplace(options_.folder, checkpoint_.trace()) : files_.trace.emplace(options_.folder);
     files_.artifacts.emplace(options_.folder, scene_);
     Recorder recorder(config_, scene_, record_, &*files_.trace, &*files_.artifacts);
     recorder.report_times(times_);
     Pass pass(config_, scene_, calibration_, plan_, options_, "diagnose", recorder);
-    if (rest_) (*rest_)(*files_.artifacts);
+    if (rest_) {
+      rest_->scope(scope());
+      (*rest_)(*files_.artifacts);
+    }
     go_on(pass);
-    seen_ = pass.run([&] { save(pass); }, [&] { held_ = archive_of(pass); });
+    seen_ = pass.run([&](Pass::Moment moment) { save(pass, moment); });
     keep_held(seen_);
     recorder.finish();
     record_.artifacts = files_.artifacts->written();
@@ -118,6 +119,7 @@ class PassSequence {
 
   void go_on(Pass& pass) {
     if (!rest_) return;
+    rest_->scope(scope());
     (*rest_)(pass);
     if (!rest_->at_end()) throw std::logic_error("checkpoint: more than a run reads");
     rest_ = nullptr;
@@ -125,25 +127,49 @@ class PassSequence {
     if (files_.artifacts) files_.artifacts->leave_unfinished();
   }
 
-  void save(Pass& pass) { checkpoint_.write(archive_of(pass)); }
+  /// The lists of the first pass have their names in the checkpoint's log while it runs and after it.
+  const char* scope() const { return in_second_ ? "second" : "first"; }
+
+  void keep_timed(Archive& archive) {
+    archive.scope("first");
+    archive(in_second_, timed_);
+    archive.grown("iterations", times_);
+  }
+
+  void save(Pass& pass, Pass::Moment moment) {
+    if (moment == Pass::Moment::before_device) {
+      held_.emplace(archive_of(pass, false));
+      return;
+    }
+    const bool sync = moment == Pass::Moment::stop || checkpoint_.should_sync();
+    const Held now = archive_of(pass, sync);
+    checkpoint_.write(now.archive, now.trace, sync);
+  }
 
   /// A device failed: the run can go on from the end of the last step.
   void keep_held(const PassResult& result) {
-    if (held_ && stops_device(result.verdict.outcome)) checkpoint_.write(*held_);
+    if (held_ && stops_device(result.verdict.outcome)) checkpoint_.write(held_->archive, held_->trace, true);
     held_.reset();
   }
 
-  Archive archive_of(Pass& pass) {
+  struct Held {
     Archive archive;
+    FilePrefix trace;
+  };
+
+  Held archive_of(Pass& pass, bool sync) {
+    Held out{checkpoint_.begin(), {}};
     Calibration calibration = calibration_;
-    archive(begun_, calibration, in_second_, timed_, times_);
+    out.archive(begun_, calibration);
+    keep_timed(out.archive);
+    out.archive.scope(scope());
     if (in_second_) {
-      std::uint64_t length = files_.trace->checkpoint();
-      archive(length, *files_.artifacts);
+      out.trace = files_.trace->checkpoint(sync);
+      out.archive(*files_.artifacts);
       files_.artifacts->leave_unfinished();
     }
-    archive(pass);
-    return archive;
+    out.archive(pass);
+    return out;
   }
 
   void finish(bool second_left_out) {
@@ -166,7 +192,7 @@ class PassSequence {
   const Plan& plan_;
   const Calibration& calibration_;
   const RunOptions& options_;
-  const Checkpoint& checkpoint_;
+  Checkpoint& checkpoint_;
   RunRecord begun_;
   RunRecord& record_;
   RunFiles& files_;
@@ -175,13 +201,13 @@ class PassSequence {
   std::vector<PhaseTimes> times_;  // of the iterations of the first pass
   std::optional<audit::AuditLedger> ledger_;
   Verdict audited_;
-  std::optional<Archive> held_;  // the end of the last step, of a run on a device
+  std::optional<Held> held_;  // the end of the last step, of a run on a device
   Archive* rest_ = nullptr;      // what a checkpoint still holds
 };
 
 }  // namespace
 
-std::optional<Resumed> read_resumed(const Checkpoint& checkpoint, const RunRecord& now) {
+std::optional<Resumed> read_resumed(Checkpoint& checkpoint, const RunRecord& now) {
   std::optional<Archive> archive = checkpoint.read();
   if (!archive) return std::nullopt;
   Resumed out;
@@ -197,7 +223,7 @@ std::optional<Resumed> read_resumed(const Checkpoint& checkpoint, const RunRecor
 }
 
 void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
-                const RunOptions& options, const Checkpoint& checkpoint, Resumed* resumed, RunRecord& record,
+                const RunOptions& options, Checkpoint& checkpoint, Resumed* resumed, RunRecord& record,
                 RunFiles& files) {
   PassSequence(config, scene, plan, calibration, options, checkpoint, record, files).run(resumed);
 }

@@ -12,14 +12,20 @@
 
 namespace bb {
 
-/// Written beside the record; they get their names when the run is over.
+/// Written beside the record; they get their names when the run is over (put_in_place).
 struct RunFiles {
   std::optional<TraceWriter> trace;
   std::optional<ArtifactWriter> artifacts;
 
-  void finish() {
-    if (trace) trace->finish();
-    if (artifacts) artifacts->finish();
+  /// Everything is on the disk, and stays.
+  void close() {
+    if (trace) trace->close();
+    if (artifacts) artifacts->leave_unfinished();
+  }
+  /// They go, for a run that leaves neither record nor checkpoint.
+  void leave_nothing() {
+    trace.reset();
+    artifacts.reset();
   }
 };
 
@@ -32,13 +38,13 @@ struct Resumed {
 
 /// The head of a checkpoint's archive. Errors: ConfigError when it is of another config, machine, plugin ...
 /// than `now`, the record of the run that is asked for, naming what differs.
-std::optional<Resumed> read_resumed(const Checkpoint& checkpoint, const RunRecord& now);
+std::optional<Resumed> read_resumed(Checkpoint& checkpoint, const RunRecord& now);
 
 /// Runs all passes, or what a checkpoint leaves of them, and fills the record. No time of the second pass is
 /// reported as a time. The checkpoint is written while they run; removing it is the caller's.
 /// Errors: Interrupted, RecordError; ConfigError when files that the checkpoint names are not there.
 void run_passes(const RunConfig& config, const Scene& scene, const Plan& plan, const Calibration& calibration,
-                const RunOptions& options, const Checkpoint& checkpoint, Resumed* resumed, RunRecord& record,
+                const RunOptions& options, Checkpoint& checkpoint, Resumed* resumed, RunRecord& record,
                 RunFiles& files);
 
 }  // namespace bb

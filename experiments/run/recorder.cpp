@@ -53,11 +53,16 @@ void Recorder::on_retry(int step) {
 void Recorder::look_at_rows(StepSystem& system, const StepReport& report, const Positions& x) {
   if (!system.is_on_cpu() && !trace_ && !audit_ && !artifacts_) return;
   const ContactState& contact = contact_state(system.on_cpu().terms());
-  const int every = config_.output.frames_every;
-  if (artifacts_ && every > 0 && report.step % every == 0) {
-    artifacts_->frame(x, report.step, contact_fields(contact, system.scene().n_vertices()));
+  if (artifacts_ && config_.output.frames_every > 0) {
+    last_.emplace(LastState{report.step, x, contact_fields(contact, system.scene().n_vertices())});
+    if (report.step % config_.output.frames_every == 0) write_last();
   }
   first_contacts_.note(contact, report.step, record_.summary.first_contact);
+}
+
+void Recorder::write_last() {
+  if (last_) artifacts_->frame(last_->x, last_->step, last_->fields);
+  last_.reset();
 }
 
 void Recorder::on_step(StepSystem& system, const StepReport& report, const Positions& x) {
@@ -80,12 +85,17 @@ void Recorder::on_step(StepSystem& system, const StepReport& report, const Posit
 
 void Recorder::keep(Archive& archive) {
   archive.section("recorder");
-  archive(record_.steps, record_.summary.first_contact, record_.audit, linear_, seen_, condition_,
-          first_contacts_, gaps_);
+  archive.grown("records", record_.steps);
+  archive.grown("linear", linear_);
+  archive.grown("iterations", seen_);
+  archive(record_.summary.first_contact, record_.audit, condition_, first_contacts_, gaps_, last_);
   if (audit_) archive(*audit_);
 }
 
+void Recorder::LastState::keep(Archive& archive) { archive(step, x, fields.gap_rel, fields.load); }
+
 void Recorder::finish() {
+  write_last();
   summarize_steps(record_);
   const bool asked = step_solvers().require(config_.step_solver.name, "/step_solver/name").asked_to_converge;
   record_.summary.convergence = asked ? "asked" : "not_asked";

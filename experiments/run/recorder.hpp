@@ -39,7 +39,7 @@ class Recorder final : public StepObserver {
 
   /// What it has recorded so far, between two steps; its files are not in it.
   void keep(Archive& archive);
-  /// Fills the summary, once the run is over.
+  /// Fills the summary and writes the frame of the last state, once the run is over.
   void finish();
 
   /// What the audit found, as an outcome; ok without the pass `audit`.
@@ -48,7 +48,15 @@ class Recorder final : public StepObserver {
   const audit::AuditLedger* ledger() const { return audit_ ? &audit_->ledger() : nullptr; }
 
  private:
+  /// The end of a step without a frame of its own: the run may end there.
+  struct LastState {
+    int step = 0;
+    Positions x;  // m
+    ContactFields fields;
+    void keep(Archive& archive);
+  };
   void look_at_rows(StepSystem& system, const StepReport& report, const Positions& x);
+  void write_last();
 
   const RunConfig& config_;
   RunRecord& record_;
@@ -58,6 +66,7 @@ class Recorder final : public StepObserver {
   std::optional<AuditWatch> audit_;
   FirstContacts first_contacts_;
   ContactGaps gaps_;
+  std::optional<LastState> last_;
   std::vector<TraceRow> rows_;  // of the step in progress
   std::vector<double> linear_;  // iterations of every solve
   std::vector<PhaseTimes> seen_;

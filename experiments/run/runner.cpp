@@ -25,6 +25,7 @@
 #include "experiments/run/passes.hpp"
 #include "experiments/run/plan.hpp"
 #include "experiments/run/start_check.hpp"
+#include "experiments/run/stored_run.hpp"
 
 namespace bb {
 namespace {
@@ -73,7 +74,7 @@ void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record) {
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
 // geometry or its pilot can show that.
 void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options,
-              const Checkpoint& checkpoint, Resumed* resumed, RunRecord& record, RunFiles& files) {
+              Checkpoint& checkpoint, Resumed* resumed, RunRecord& record, RunFiles& files) {
   fill_scene(scene, record);
   record.matching.rule = to_string(config.matching.rule);
   const Plan plan = plan_of(config, scene);
@@ -99,20 +100,53 @@ void simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
   run_passes(config, scene, plan, calibration, options, checkpoint, resumed, record, files);
 }
 
-bool kept(const Checkpoint& checkpoint) {
-  std::error_code unreachable;
-  return std::filesystem::exists(checkpoint.file(), unreachable);
+std::string goes_on_text(const Checkpoint& checkpoint) {
+  return fmt::format("{} kept: the same command with --resume goes on from it", checkpoint.file().string());
 }
 
-/// What a run that its device stopped says. checkpoint: of the last step that was finished, or null.
-std::string stopped_text(const RunRecord& record, const RunOptions& options, const Checkpoint* checkpoint) {
-  std::string out = fmt::format("{}: {}\n{} has the steps before", to_string(record.status.outcome),
-                                record.status.detail, (options.folder / "run.json").string());
-  if (checkpoint) {
-    out +=
-        fmt::format("; {} kept: the same command with --resume goes on from it", checkpoint->file().string());
+/// What a run that its device stopped says.
+std::string stopped_text(const RunRecord& record, const RunOptions& options, const Checkpoint& checkpoint) {
+  return fmt::format("{}: {}\n{} has the steps before{}", to_string(record.status.outcome), record.status.detail,
+                     (options.folder / "run.json").string(),
+                     checkpoint.exists() ? "; " + goes_on_text(checkpoint) : "");
+}
+
+/// Why the record of a run that was cut off does not replace the one in the folder; empty: it does.
+std::string why_earlier_stays(const RunRecord& record, const RunOptions& options) {
+  if (!was_cut(record.status.outcome)) return "";
+  const std::filesystem::path file = options.folder / "run.json";
+  std::optional<RunRecord> earlier;
+  try {
+    earlier = read_run(file);
+  } catch (const ConfigError&) {  // of another version
   }
-  return out;
+  if (!earlier || earlier->ids.run_id != record.ids.run_id || earlier->steps.size() <= record.steps.size()) return "";
+  return fmt::format("{} stays: it has {} steps of this run, and this one ended as {} after {}", file.string(),
+                     earlier->steps.size(), to_string(record.status.outcome), record.steps.size());
+}
+
+/// The checkpoint that the run goes on from.
+std::optional<Resumed> resumed_from(Checkpoint& checkpoint, const RunRecord& asked_for, const RunOptions& options) {
+  if (options.resume == Resume::yes) return read_resumed(checkpoint, asked_for);
+  if (!checkpoint.exists()) return std::nullopt;
+  std::string why = "this run begins anew without --resume";
+  if (options.resume == Resume::if_this_run) {
+    try {
+      return read_resumed(checkpoint, asked_for);
+    } catch (const ConfigError& error) {
+      why = error.what();
+    }
+  }
+  if (options.tell) options.tell(fmt::format("{} goes: {}", checkpoint.file().string(), why));
+  return std::nullopt;
+}
+
+/// The record of this very run, where the folder has it and it is asked for.
+std::optional<RunRecord> recorded(const RunRecord& asked_for, const RunOptions& options) {
+  if (options.resume == Resume::no) return std::nullopt;
+  auto stored = read_stored_run(options.folder / "run.json");
+  if (!stored || !why_run_again(stored->record, asked_for).empty()) return std::nullopt;
+  return std::move(stored->record);
 }
 
 int thread_count(const RunConfig& config) {
@@ -158,10 +192,11 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   require_usable(config.linear_solver.name);
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);
+  const bool completed = put_in_place(options.folder);  // what a process that was killed had finished
   const RunRecord asked_for = identified(config, options);  // inputs where they are now
-  const Checkpoint checkpoint(options.folder, asked_for.ids.build_id);
-  std::optional<Resumed> resumed;
-  if (options.resume) resumed = read_resumed(checkpoint, asked_for);
+  Checkpoint checkpoint(options.folder, asked_for.ids.build_id);
+  if (auto record = completed ? recorded(asked_for, options) : std::nullopt) return *record;
+  std::optional<Resumed> resumed = resumed_from(checkpoint, asked_for, options);
   resumed ? remove_temporaries(options.folder) : remove_unfinished(options.folder);
   check_writable(options.folder);
   if (options.keep_inputs) copy_inputs(options.folder, config, options.plugins);
@@ -181,29 +216,26 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   } catch (const exec::ExecutionError& error) {
     record.status.outcome = Outcome::kernel_failed;
     record.status.detail = fmt::format("before the first step of a pass: {}", error.what());
-  } catch (const Interrupted& stopped) {
-    if (!kept(checkpoint)) {
-      remove_unfinished(options.folder);
-      throw;
-    }
-    throw Interrupted{
-        fmt::format("{} kept; the same command with --resume goes on from it", checkpoint.file().string())};
+  } catch (const Interrupted&) {
+    if (checkpoint.exists()) throw Interrupted{goes_on_text(checkpoint)};
+    files.leave_nothing();
+    remove_unfinished(options.folder);
+    throw;
   }
   fill_labels(config, options, record);
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
-  const bool stopped = can_lose_device(config) && stops_device(record.status.outcome);
-  const bool goes_on = stopped && kept(checkpoint);
-  if (goes_on) record.artifacts.clear();  // trace and files stay unfinished, for the run that goes on
-  StagedFile run_json(options.folder / "run.json", to_json(record));
-  remove_earlier_run(options.folder);
-  if (!goes_on) files.finish();
-  run_json.commit();
-  if (!stopped) checkpoint.remove();
-  if (stopped)
-    throw DeviceStopped(record.status.outcome,
-                        stopped_text(record, options, goes_on ? &checkpoint : nullptr));
+  if (const std::string why = resumed ? "" : why_earlier_stays(record, options); !why.empty()) {
+    throw EarlierStays(checkpoint.exists() ? why + "; " + goes_on_text(checkpoint) : why);
+  }
+  files.close();
+  write_atomically(pending_record(options.folder), to_json(record));
+  if (!was_cut(record.status.outcome)) checkpoint.remove();
+  put_in_place(options.folder);
+  if (can_lose_device(config) && stops_device(record.status.outcome)) {
+    throw DeviceStopped(record.status.outcome, stopped_text(record, options, checkpoint));
+  }
   return record;
 }
 

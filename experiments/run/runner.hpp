@@ -24,6 +24,13 @@ struct Progress {
   double elapsed_s = 0, eta_s = 0;
 };
 
+/// What becomes of a checkpoint in the folder.
+enum class Resume {
+  no,           // it goes
+  if_this_run,  // the run goes on from it where it is one of this very run; else it goes
+  yes           // the run goes on from it, and is refused where it is one of another run; from the start without one
+};
+
 struct RunOptions {
   std::filesystem::path folder;   // run.json, trace.jsonl; must not exist or is overwritten
   std::vector<std::string> argv;  // for the record
@@ -34,22 +41,30 @@ struct RunOptions {
   std::vector<PluginFile> plugins;                // loaded, `file` as a path that can be opened
   bool keep_inputs = false;                       // copy meshes and plugins to inputs/ and name the copies
   std::function<void(const Progress&)> progress;  // may be empty
+  std::function<void(const std::string&)> tell;   // what the user should know beside the record; may be empty
   const std::atomic<bool>* interrupted = nullptr;
-  bool resume = false;      // go on from the checkpoint in the folder; from the start when there is none
+  Resume resume = Resume::no;
   double time_limit_s = 0;  // of this process, looked at between two steps; 0: none
   double deadline_s = 0;    // set by run_config: when that is over, as now_s() counts
 };
 
-/// Thrown when the run was interrupted: no run.json is written.
+/// Thrown when the run was stopped: no run.json is written, an earlier one stays.
 struct Interrupted {
   std::string kept;  // what a sweep says of the records that it has; empty: nothing was kept
+};
+
+/// The run was cut off before it had as many steps as the record of the same run that is in the folder.
+struct EarlierStays : Interrupted {
+  explicit EarlierStays(std::string why) : Interrupted{std::move(why)} {}
 };
 
 /// What is known before the run: config with its files named from options.folder, provenance, machine, ids.
 RunRecord identified(const RunConfig& config, const RunOptions& options);
 
 /// Runs and writes. The outcome is in the record, whatever it is. The folder is locked meanwhile; an earlier
-/// run in it stays as it is until this one is over, and then goes with its trace, frames and matrices.
+/// run in it stays as it is until this one is over, and then goes with its trace, frames and matrices. A run that time or
+/// memory ends leaves its record and its checkpoint; the record of more steps of the same run stays in its place.
+/// With options.resume a run whose record is in the folder already is not run: the record is returned.
 /// Errors: ConfigError for what config and files can tell, as build_scene (nothing is written); RecordError
 ///   (output, or another process has the folder); Interrupted.
 RunRecord run_config(const RunConfig& config, const RunOptions& options);

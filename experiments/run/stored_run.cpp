@@ -67,6 +67,10 @@ std::vector<Difference> differences(const RunRecord& then, const RunRecord& now)
   return out;
 }
 
+bool was_cut(Outcome outcome) {
+  return outcome == Outcome::timeout || outcome == Outcome::oom || outcome == Outcome::kernel_failed;
+}
+
 std::string why_run_again(const RunRecord& then, const RunRecord& now) {
   std::string out;
   for (const Difference& difference : differences(then, now)) {
@@ -74,9 +78,7 @@ std::string why_run_again(const RunRecord& then, const RunRecord& now) {
   }
   if (out.empty() && then.ids.run_id != now.ids.run_id) return "another run_id";
   const Outcome outcome = then.status.outcome;
-  if (out.empty() && (outcome == Outcome::oom || outcome == Outcome::timeout)) {
-    return "it ended as " + std::string(to_string(outcome));
-  }
+  if (out.empty() && was_cut(outcome)) return "it ended as " + std::string(to_string(outcome));
   return out;
 }
 

@@ -28,6 +28,10 @@ struct Difference {
 /// when the ids agree.
 std::vector<Difference> differences(const RunRecord& then, const RunRecord& now);
 
+/// Whether time or memory, of the process or of its device, ended the run before its last step: another call may have
+/// more of it.
+bool was_cut(Outcome outcome);
+
 /// Why the record `then` does not stand for the run `now`: what differs, or that memory or time ended it, which another call
 /// may have more of. Empty: it does.
 std::string why_run_again(const RunRecord& then, const RunRecord& now);

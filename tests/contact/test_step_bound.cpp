@@ -2,7 +2,10 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
+#include <limits>
+
 #include "core/contact/pair_name.hpp"
+#include "core/contact/pair_planes.hpp"
 #include "tests/contact/bound_of.hpp"
 
 namespace bb::test {
@@ -30,6 +33,39 @@ TEST(StepBound, FallingPointStopsAtTheExactTime) {
   EXPECT_LE(b.probes, 4 * b.queries);
   EXPECT_EQ(b.zero, 0);
   EXPECT_EQ(b.capped, 0);
+}
+
+TEST(StepBound, AMotionThatIsNotFiniteIsNotTakenAtAll) {
+  const Scene scene = point_above_floor(1);
+  Positions x1 = scene.x0;
+  x1(2, 9) = 0.5;
+  ASSERT_EQ(bound(scene, x1).alpha, 1);
+  ContactSystem contacts(scene, {});
+  contacts.update_candidates(scene.x0, x1);  // as for a motion that becomes no number behind it
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  for (const double bad : {nan, inf, -inf}) {
+    for (Eigen::Index i = 0; i < x1.size(); ++i) {
+      Positions start = scene.x0, end = x1;
+      start.data()[i] = end.data()[i] = bad;
+      EXPECT_EQ(contacts.step_bound(scene.x0, end).alpha, 0) << i;
+      EXPECT_EQ(contacts.step_bound(start, x1).alpha, 0) << i;
+    }
+  }
+}
+
+/// Planes and axes of a pair, with each number of its motion in turn no number.
+TEST(StepBound, WhatIsNoNumberIsProvenByNoPlane) {
+  constexpr PairKind K = PairKind::edge_edge;
+  const PairLanes<K, double> points{{{0, 0, 0}, {1, 0, 0}, {0.5, -0.5, 1}, {0.5, 0.5, 1}}};
+  PairLanes<K, double> motion{{{0, 0, 0}, {0, 0, 0.1}, {0, 0, 0}, {0, 0, 0}}};
+  ASSERT_GT((proven_times<K, double>(points, motion, 0.1, 1.0)), 1);
+  ASSERT_GT((proven_times_by_axes<K, double>(points, motion, 0.1)), 1);
+  for (auto& vertex : motion.x) {
+    const double kept = vertex[2];
+    vertex[2] = std::numeric_limits<double>::quiet_NaN();
+    EXPECT_EQ((proven_times<K, double>(points, motion, 0.1, 1.0)), 0);
+    vertex[2] = kept;
+  }
 }
 
 TEST(StepBound, CrossingEdgesStopAtTheExactTime) {

@@ -1,5 +1,6 @@
 // Every word that a run, a step or a linear solve may end with, reached by a run or by a small simulation, with what
 // its message has to name. A word without a case makes the last test red.
+#include <cholmod.h>
 #include <gtest/gtest.h>
 #include <unistd.h>
 
@@ -80,6 +81,15 @@ Ending simulate(const Scene& scene, Method& method, int steps = 1) {
     out.outcome = verdict.outcome;
     out.detail = verdict.detail;
   }
+  return out;
+}
+
+bool factors_are_too_large = false;
+
+Ending factor_too_large() {
+  factors_are_too_large = true;
+  const Ending out = run(block);
+  factors_are_too_large = false;
   return out;
 }
 
@@ -346,6 +356,12 @@ const std::vector<Case>& cases() {
        [] { return floating_particle({}); }},
       {"memory that runs out", Outcome::oom, "converged", "ok", {"step 2", "memory"}, greedy},
       {"a kernel that fails", Outcome::kernel_failed, nullptr, nullptr, {"step 0", "MultiplyDot"}, failing},
+      {"a factor that is too large",
+       Outcome::linear_failure,
+       "linear_failed",
+       "factor_too_large",
+       {"step 0", "factor_too_large", "32-bit"},
+       factor_too_large},
       {"no time",
        Outcome::timeout,
        nullptr,
@@ -404,3 +420,13 @@ TEST(EveryOutcome, contacts_are_there_where_they_decide) {
 
 }  // namespace
 }  // namespace bb
+
+// The linker puts these in the places of the call and of what it would have called.
+extern "C" {
+int __real_cholmod_factorize(cholmod_sparse* a, cholmod_factor* factor, cholmod_common* common);
+int __wrap_cholmod_factorize(cholmod_sparse* a, cholmod_factor* factor, cholmod_common* common) {
+  if (!bb::factors_are_too_large) return __real_cholmod_factorize(a, factor, common);
+  common->status = CHOLMOD_TOO_LARGE;
+  return 0;
+}
+}

@@ -144,8 +144,8 @@ def test_a_hang_up_ends_a_run_as_a_termination_does(program, tmp_path):
         time.sleep(0.2)
         run.send_signal(signal.SIGHUP)
         _, err = run.communicate(timeout=30)
-    assert run.returncode == 75 and "interrupted" in err
-    assert names(tmp_path / "out") == []
+    assert run.returncode == 75 and "interrupted" in err and "--resume" in err
+    assert names(tmp_path / "out") == ["checkpoint.bin", "checkpoint.log"]
 
 
 def test_under_nohup_a_hang_up_is_ignored(program, tmp_path):
@@ -194,8 +194,9 @@ def test_an_earlier_run_stays_whole_until_the_next_is_over(program, tmp_path):
         run.terminate()
         run.communicate(timeout=30)
     assert run.returncode == 75
-    assert {p: p.read_bytes() for p in out.rglob("*") if p.is_file()} == before
-    assert not (out / "frames.part").exists()
+    kept = ("checkpoint.bin", "checkpoint.log", "checkpoint.next.bin", "trace.jsonl.part")
+    assert {p: p.read_bytes() for p in out.rglob("*") if p.is_file() and p.name not in kept and p.parent.name != "frames.part"} == before
+    assert (out / "checkpoint.bin").exists() and (out / "frames.part").exists()  # the new run can go on
 
 
 def test_what_a_killed_run_left_goes_with_the_next(program, tmp_path):

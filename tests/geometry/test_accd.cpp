@@ -51,6 +51,70 @@ Long exact_gap(const Points<T, pair_points(K)>& x0, const Points<T, pair_points(
   return oracle_closest<K>(Points<Long, pair_points(K)>(a + t * (b - a))).d;
 }
 
+/// What is no number, or has no square, is proven of nothing: every input in turn.
+TYPED_TEST(Accd, WhatIsNotFiniteIsNeverFree) {
+  constexpr PairKind K = TypeParam::kind;
+  using T = typename TypeParam::Scalar;
+  const auto x0 = stacked<K, T>(T(0.5)), x1 = first_moved<K, T>(x0, Vec<T, 3>(3, 0, 0));
+  ASSERT_FALSE((accd<K, T>(x0, x1, T(0.125), T(1e-3)).hit));  // free as it stands
+  constexpr T nan = std::numeric_limits<T>::quiet_NaN(), inf = std::numeric_limits<T>::infinity();
+  const T huge = std::sqrt(std::numeric_limits<T>::max()) * 2;
+  int asked = 0;
+  const auto stops = [&asked](const AccdResult<T>& r) {
+    EXPECT_TRUE(r.hit);
+    EXPECT_EQ(r.toi, 0);
+    ++asked;
+  };
+  for (const T bad : {nan, -nan, inf, -inf, huge}) {
+    for (int i = 0; i < 3 * pair_points(K); ++i) {
+      auto start = x0, end = x1;
+      start.data()[i] = end.data()[i] = bad;
+      SCOPED_TRACE(testing::Message() << i << " is " << bad);
+      stops(accd<K, T>(start, x1, T(0.125), T(1e-3)));
+      stops(accd<K, T>(x0, end, T(0.125), T(1e-3)));
+    }
+    if (bad != -inf && bad != huge) stops(accd<K, T>(x0, x1, bad, T(1e-3)));
+    if (bad != bad) stops(accd<K, T>(x0, x1, T(0.125), bad));
+  }
+  EXPECT_GT(asked, 30);
+}
+
+/// A direction that is no number, as that of two parallel edges with rounding to zero, proves nothing.
+TYPED_TEST(Accd, ATurnOrADirectionThatIsNotFiniteProvesNothing) {
+  constexpr PairKind K = TypeParam::kind;
+  using T = typename TypeParam::Scalar;
+  const auto x = stacked<K, T>(T(0.5));
+  Points<T, pair_points(K)> dx = first_moved<K, T>(x, Vec<T, 3>(3, 0, 0)) - x;
+  const Vec<T, 3> n(0, 0, 1), still = Vec<T, 3>::Zero();
+  ASSERT_GT((detail::directional_advance<K, T>(x, dx, n, still, T(0.1))), 1);
+  constexpr T inf = std::numeric_limits<T>::infinity();
+  for (const T bad : {std::numeric_limits<T>::quiet_NaN(), inf, -inf}) {
+    for (int i = 0; i < 3; ++i) {
+      Vec<T, 3> turn = still, direction = n;
+      turn[i] = direction[i] = bad;
+      EXPECT_EQ((detail::directional_advance<K, T>(x, dx, n, turn, T(0.1))), 0);
+      EXPECT_EQ((detail::directional_advance<K, T>(x, dx, direction, still, T(0.1))), 0);
+    }
+  }
+}
+
+/// The first root against a scan, and what is no number or has no square in each place.
+TEST(FirstRoot, IsNeverLaterThanTheRoot) {
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  EXPECT_EQ(detail::first_root(1.0, 0.0, 0.0), inf);
+  EXPECT_EQ(detail::first_root(1.0, -1.0, 1.0), inf);
+  EXPECT_NEAR(detail::first_root(1.0, -2.0, 0.75), 2.0 / 3, 1e-14);
+  EXPECT_NEAR(detail::first_root(1.0, 1.0, -2.0), 1, 1e-14);
+  for (const double bad : {nan, -inf}) {
+    EXPECT_EQ(detail::first_root(1.0, bad, 0.0), 0);
+    EXPECT_EQ(detail::first_root(1.0, -1.0, bad), 0);
+    EXPECT_EQ(detail::first_root(1.0, 1.0, bad), 0);
+  }
+  EXPECT_EQ(detail::first_root(nan, -1.0, 0.0), 0);
+  EXPECT_EQ(detail::first_root(1.0, 1e200, -1e200), 0);  // the root is 1, its squares are beyond every number
+  EXPECT_LE(detail::first_root(1.0, -1e200, 1.0), 1e-200);
+}
+
 TYPED_TEST(Accd, HeadOnStopsAtThePark) {
   constexpr PairKind K = TypeParam::kind;
   using T = typename TypeParam::Scalar;

@@ -26,6 +26,7 @@ class PcgResident final : public LinearSolver {
         x_(executor_, "solution") {}
   std::string_view name() const override { return "pcg_resident"; }
   void begin_step() override { forcing_.begin_step(); }
+  void keep(Archive& archive) override;
   LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) override;
 
  private:
@@ -40,6 +41,7 @@ class PcgResident final : public LinearSolver {
   resident::UploadedSystem system_;
   exec::Buffer<double> b_, x_;
   std::unique_ptr<resident::ResidentPcg> pcg_;
+  std::string kept_;  // of a preconditioner that is not made yet
   ChunkedDot dot_;
 };
 
@@ -48,13 +50,29 @@ std::unique_ptr<resident::ResidentPreconditioner> PcgResident::make() {
   return std::make_unique<resident::BlockJacobi>(executor_);
 }
 
+void PcgResident::keep(Archive& archive) {
+  Archive apart;
+  if (!archive.reads() && pcg_) pcg_->preconditioner().keep(apart);
+  std::string bytes = !archive.reads() && pcg_ ? apart.bytes() : kept_;
+  archive(bytes);
+  if (!archive.reads()) return;
+  kept_ = std::move(bytes);
+  pcg_.reset();
+}
+
 void PcgResident::prepare(const ReducedSystem& system, const VecXd& b) {
   const exec::Index before = x_.size();
   system_.update(system);
   system_.upload(b, b_);
   x_.resize(3 * system_.n_vertices());
   if (!pcg_ || x_.size() != before) {
-    pcg_ = std::make_unique<resident::ResidentPcg>(executor_, system_.n_vertices(), make());
+    auto preconditioner = make();
+    if (!kept_.empty()) {
+      Archive kept(std::move(kept_));
+      preconditioner->keep(kept);
+      kept_.clear();
+    }
+    pcg_ = std::make_unique<resident::ResidentPcg>(executor_, system_.n_vertices(), std::move(preconditioner));
   }
 }
 

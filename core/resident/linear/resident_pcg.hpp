@@ -30,6 +30,7 @@ class ResidentPcg {
   const exec::Buffer<double>& direction() const { return p_; }
   /// |v| over the free degrees of freedom.
   double norm(const FixedMask* fixed, const double* v);
+  ResidentPreconditioner& preconditioner() { return *preconditioner_; }
   /// After a solve whose preconditioner had no factor: what of it, ResidentPreconditioner::fault_text; else -1.
   Index fault() const { return fault_; }
   /// Launches one after another instead of graphs: for tests.

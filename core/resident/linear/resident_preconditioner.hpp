@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "core/archive/archive.hpp"
 #include "core/exec/buffer.hpp"
 #include "core/resident/linear/pcg_scalars.hpp"
 
@@ -30,6 +31,8 @@ class ResidentPreconditioner {
   virtual void update(const PcgVectors& v, int k) = 0;
   /// Changes when arguments of launches do: a graph of them is void then.
   virtual int version() const = 0;
+  /// What earlier matrices decide of M for later ones.
+  virtual void keep(Archive&) {}
   /// "vertex 17", or what else FactorFaults counts.
   virtual std::string fault_text(Index number) const = 0;
 };

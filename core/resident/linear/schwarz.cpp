@@ -66,8 +66,18 @@ void Schwarz::download_norms(const ResidentMatrix& matrix, const FixedMask* fixe
   }
 }
 
+void Schwarz::keep(Archive& archive) {
+  std::uint64_t n = clusters_.size();
+  archive(pattern_id_, n);
+  clusters_.resize(n);
+  for (VertexClusters& level : clusters_) archive(level.of, level.start, level.member);
+  if (archive.reads()) levels_.clear();
+}
+
+// Levels of clusters that are known, or else new ones.
 void Schwarz::build(const ResidentMatrix& matrix, const PcgVectors& v) {
   levels_.clear();
+  const std::size_t n_known = clusters_.size();
   ++version_;
   HostPattern pattern = download(matrix, v.partition.n_rows);
   download_norms(matrix, v.fixed, pattern);
@@ -76,7 +86,8 @@ void Schwarz::build(const ResidentMatrix& matrix, const PcgVectors& v) {
   const FixedMask* fixed_here = v.fixed;
   levels_.push_back(std::make_unique<SchwarzLevel>(executor_));
   for (;;) {
-    const VertexClusters clusters = cluster_vertices(pattern.graph, cluster_vertices_);
+    if (n_known == 0) clusters_.push_back(cluster_vertices(pattern.graph, cluster_vertices_));
+    const VertexClusters& clusters = clusters_[levels_.size() - 1];
     levels_.back()->set_clusters(clusters, pattern.graph.n());
     // A level of clusters without couplings has been solved exactly.
     if (clusters.size() == pattern.graph.n() || n_levels() > AddLevels::most_levels) return;
@@ -85,7 +96,7 @@ void Schwarz::build(const ResidentMatrix& matrix, const PcgVectors& v) {
     above->launch_values(here, fixed_here);
     here = above->matrix(), fixed_here = above->fixed();
     download_norms(here, fixed_here, coarse);
-    if (!has_couplings(coarse.graph)) return;
+    if (n_known == 0 ? !has_couplings(coarse.graph) : levels_.size() == n_known) return;
     levels_.push_back(std::move(above));
     pattern = std::move(coarse);
     fixed = coarse_fixed;
@@ -94,7 +105,8 @@ void Schwarz::build(const ResidentMatrix& matrix, const PcgVectors& v) {
 
 void Schwarz::setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint64_t pattern_id,
                     FactorFaults* faults) {
-  if (pattern_id == 0 || pattern_id != pattern_id_) build(matrix, v);
+  if (pattern_id == 0 || pattern_id != pattern_id_) clusters_.clear();
+  if (clusters_.empty() || levels_.empty()) build(matrix, v);
   pattern_id_ = pattern_id;
   ResidentMatrix here = matrix;
   const FixedMask* fixed = v.fixed;

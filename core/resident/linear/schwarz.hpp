@@ -23,6 +23,7 @@ class Schwarz final : public ResidentPreconditioner {
              FactorFaults* faults) override;
   void apply(const PcgVectors& v) override { launch(v, nullptr); }
   void update(const PcgVectors& v, int k) override;
+  void keep(Archive& archive) override;
   int version() const override { return version_; }
   std::string fault_text(Index number) const override;
   int n_levels() const { return static_cast<int>(levels_.size()); }
@@ -36,6 +37,7 @@ class Schwarz final : public ResidentPreconditioner {
   exec::Executor& executor_;
   int cluster_vertices_, version_ = 0;
   std::uint64_t pattern_id_ = 0;
+  std::vector<VertexClusters> clusters_;  // of every level
   std::vector<std::unique_ptr<SchwarzLevel>> levels_;
 };
 

@@ -150,7 +150,11 @@ void ResidentSystem::keep_contact(Archive& archive) {
   contact_->step_end_gaps().upload(pair, gap);
 }
 
-void ResidentSystem::drop_caches() { contact_matrix_ = {}; }
+// The clusters of a preconditioner go with the pattern that they were made for.
+void ResidentSystem::drop_caches() {
+  contact_matrix_ = {};
+  ++pattern_id_;
+}
 
 NewtonSystem& ResidentSystem::cpu() {
   if (!cpu_) cpu_ = std::make_unique<NewtonSystem>(scene_, method_, plan_);

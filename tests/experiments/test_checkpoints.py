@@ -1,0 +1,181 @@
+"""Checkpoints: results do not depend on them, they do not grow with the steps, and a run that time ends keeps one."""
+
+import json
+import signal
+import subprocess
+import time
+from pathlib import Path
+
+import pytest
+from test_cli import BLOCK, bench, refused, write
+from test_resume import DRAPE, result, settings
+
+SOLVERS = {
+    "cholmod": {"/linear_solver/name": "cholmod"},
+    "lagged_cholesky": {"/linear_solver/name": "lagged_cholesky"},
+    **{f"pcg {name}": {"/linear_solver/name": "pcg", "/linear_solver/preconditioner": name}
+       for name in ("none", "jacobi", "block_jacobi", "ic0", "schwarz")},
+    **{f"pcg_resident {name}": {"/linear_solver/name": "pcg_resident", "/linear_solver/resident_preconditioner": name}
+       for name in ("block_jacobi", "schwarz")},
+    **{f"device host {name}": {"/device": "host", "/linear_solver/resident_preconditioner": name}
+       for name in ("block_jacobi", "schwarz")},
+    "retries": {"/linear_solver/name": "lagged_cholesky", "/step_solver/retries": 8, "/step_solver/max_iterations": 5},
+}
+
+
+@pytest.fixture
+def config(tmp_path) -> Path:
+    return write(tmp_path / "drape.json", DRAPE)
+
+
+def record_of(folder: Path) -> dict:
+    return json.loads((folder / "run.json").read_text())
+
+
+def left(folder: Path) -> list[str]:
+    return sorted(p.name for p in folder.iterdir())
+
+
+def test_every_solver_and_preconditioner_of_the_registry_is_a_case(program):
+    names = [name for kind in ("linear_solvers", "preconditioners") for name in bench(program, "list", kind).stdout.split("\n")
+             if name.startswith("  ") or name[:1].isalpha()]
+    listed = {line.split()[0] for line in names if line.strip()} - {"linear_solvers", "preconditioners", "cudss", "linear_solvers:", "preconditioners:"}
+    cases = " ".join(SOLVERS).split()
+    assert {"cholmod", "pcg", "schwarz", "ic0"} <= listed
+    assert not [name for name in listed if name.rstrip(":") not in cases]
+
+
+@pytest.mark.parametrize("name", SOLVERS)
+def test_a_checkpoint_changes_no_number(program, config, tmp_path, name):
+    found = {}
+    for every in (0, 1, 3):
+        more = settings({**SOLVERS[name], "/output/checkpoint_every": every})
+        done = bench(program, "run", config, "--out", tmp_path / str(every), *more)
+        assert done.returncode == 0, done.stderr
+        found[every] = {part: value for part, value in result(tmp_path / str(every)).items() if part not in ("ids", "config")}
+    assert found[0]["outcome"] == "ok" and sum(step["contacts"]["total"] for step in found[0]["steps"]) > 0
+    if name == "retries":
+        assert found[0]["summary"]["retries"] > 0
+    for every in (1, 3):
+        assert found[every]["summary"]["state_hash"] == found[0]["summary"]["state_hash"]
+        for part, value in found[0].items():
+            assert found[every][part] == value, (every, part)
+
+
+def stop_again_and_again(program: str, config: Path, folder: Path, more: list[str]) -> int:
+    """Stops a run by its time limit until it is over; returns how often."""
+    limit, steps = 0.15, -1
+    for stops in range(200):
+        done = bench(program, "run", config, "--out", folder, *more, "--time-limit", limit, *(["--resume"] if stops else []))
+        assert done.returncode == 0, done.stderr
+        record = record_of(folder)
+        if record["status"]["outcome"] != "timeout":
+            return stops
+        assert (folder / "checkpoint.bin").exists() and "run.json.part" not in left(folder)
+        assert (folder / "trace.jsonl").exists() == ("pass diagnose" in record["status"]["detail"])
+        reached = ("pass diagnose" in record["status"]["detail"], len(record["steps"]))
+        limit *= 1.5 if reached == steps else 1  # where the start alone takes that long
+        assert steps == -1 or reached >= steps
+        steps = reached
+    raise AssertionError("it is never over")
+
+
+@pytest.mark.parametrize("name", ["cholmod", "lagged_cholesky", "pcg schwarz", "pcg_resident schwarz", "device host schwarz"])
+def test_a_run_that_time_stops_goes_on_where_it_was(program, config, tmp_path, name):
+    """Without any checkpoint but those that the time limit itself leaves."""
+    more = settings({**SOLVERS[name], "/output/checkpoint_every": 0, "/output/frames_every": 5, "/time/steps": 30})
+    assert bench(program, "run", config, "--out", tmp_path / "whole", *more).returncode == 0
+    assert stop_again_and_again(program, config, tmp_path / "stopped", more) >= 2
+    expected, found = result(tmp_path / "whole"), result(tmp_path / "stopped")
+    assert expected["outcome"] == "ok" and len(expected["artifacts"]) == 2 + 6 + 1
+    for part, value in expected.items():
+        assert found[part] == value, part
+    assert record_of(tmp_path / "stopped")["status"]["resumed_from_step"] > 0
+
+
+def test_a_longer_record_of_the_same_run_stays(program, config, tmp_path):
+    folder, more = tmp_path / "run", settings({"/time/steps": 400, "/passes/time": True})
+    for limit in (1, 2, 4, 8):
+        assert bench(program, "run", config, "--out", folder, *more, "--time-limit", limit).returncode == 0
+        if len(record_of(folder)["steps"]) > 3:
+            break
+    earlier = (folder / "run.json").read_bytes()
+    assert json.loads(earlier)["status"]["outcome"] == "timeout"
+    for file in folder.glob("checkpoint*"):
+        file.unlink()
+    told = bench(program, "run", config, "--out", folder, *more, "--resume", "--time-limit", "0.001")
+    refused(told, "run.json stays", "steps of this run", "--resume goes on", code=75)
+    assert (folder / "run.json").read_bytes() == earlier
+    assert (folder / "checkpoint.bin").exists()
+    again = bench(program, "run", config, "--out", folder, *settings({"/time/steps": 400}), "--time-limit", "0.001")
+    assert again.returncode == 75 and "checkpoint.bin goes" in again.stderr and "without --resume" in again.stderr
+    assert (folder / "run.json").read_bytes() == earlier
+
+
+def test_a_sweep_goes_on_from_what_time_stopped(program, config, tmp_path):
+    spec = write(tmp_path / "sweep.json", {"schema": "barrierbench.sweep/1", "name": "formulations", "base": str(config),
+                                           "set": {"/time/steps": 60}, "axes": [{"pointer": "/formulation", "values": ["log", "cubic"]}]})
+    out = tmp_path / "out"
+    assert bench(program, "sweep", spec, "--out", out, "--time-limit", "0.5").returncode == 0
+    stopped = [json.loads(p.read_text())["status"]["outcome"] for p in sorted(out.glob("*/run.json"))]
+    assert stopped == ["timeout", "timeout"] and len(list(out.glob("*/checkpoint.bin"))) == 2
+    done = bench(program, "sweep", spec, "--out", out)
+    assert done.returncode == 0 and "it ended as timeout" in done.stdout, done.stderr
+    for record in (json.loads(p.read_text()) for p in out.glob("*/run.json")):
+        assert record["status"]["outcome"] == "ok" and record["status"]["resumed_from_step_status"] != "whole"
+    assert not list(out.glob("*/checkpoint*"))
+    assert bench(program, "sweep", spec, "--out", out).stdout.count("already there") == 2
+
+
+def test_a_run_that_is_stopped_before_its_first_step_leaves_no_folder(program, tmp_path):
+    pierced = {"schema": "barrierbench.config/1", "scene": {"name": "drape", "n": 40}, "formulation": "log",
+               "matching": {"rule": "equal_force"}, "time": {"steps": 5}}
+    config, out = write(tmp_path / "config.json", pierced), tmp_path / "out"
+    with subprocess.Popen([program, "run", config, "--out", out], stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        while not (out / "bench.lock").exists() and process.poll() is None:
+            time.sleep(0.001)
+        time.sleep(0.05)
+        process.send_signal(signal.SIGTERM)
+        _, err = process.communicate(timeout=120)
+    assert process.returncode == 75, err
+    assert not out.exists()
+
+
+@pytest.mark.parametrize("ends", ["whole", "stalls", "time"])
+def test_the_last_state_of_a_run_has_a_frame(program, tmp_path, ends):
+    more = {"/time/steps": 1000000 if ends == "time" else 6, "/output/frames_every": 4, "/passes/time": False}
+    if ends == "stalls":
+        more |= {"/time/steps": 100, "/matching": {"rule": "as_given"},
+                 "/formulation/stiffness_policy": {"name": "fixed", "kappa_N_per_m": 1}}
+    limit = ["--time-limit", "0.5"] if ends == "time" else []
+    assert bench(program, "run", BLOCK, "--out", tmp_path / "out", *settings(more), *limit).returncode == 0
+    record = record_of(tmp_path / "out")
+    assert (record["status"]["outcome"] == "ok") == (ends == "whole")
+    last = record["steps"][-1]["step"]
+    frames = [a["path"] for a in record["artifacts"] if a["kind"] == "frame"]
+    assert last > 0 and frames[-1] == f"frames/step_{last:06}.ply"
+    assert frames == sorted(set(frames)) == sorted(f"frames/{p.name}" for p in (tmp_path / "out/frames").glob("st*.ply"))
+    assert len(frames) == 2 + last // 4 + (last % 4 != 0)
+
+
+def test_a_checkpoint_does_not_grow_with_the_steps(program, tmp_path):
+    """The log grows by what a step adds; the checkpoints beside it stay as long as they were."""
+    sizes = {}
+    for steps in (40, 400):
+        folder = tmp_path / str(steps)
+        more = settings({"/time/steps": 1000000, "/output/checkpoint_every": 1, "/passes/time": True})
+        with subprocess.Popen([program, "run", BLOCK, "--out", folder, *more], stdout=subprocess.PIPE, stderr=subprocess.PIPE) as process:
+            log = folder / "checkpoint.log"
+            end = time.monotonic() + 100
+            first = None
+            while time.monotonic() < end and process.poll() is None:
+                if log.exists() and (folder / "checkpoint.next.bin").exists():
+                    first = first or log.stat().st_size
+                    if log.stat().st_size > steps * 300:
+                        break
+                time.sleep(0.002)
+            process.kill()
+            process.communicate()
+        sizes[steps] = (log.stat().st_size, (folder / "checkpoint.next.bin").stat().st_size)
+    assert sizes[400][0] > 5 * sizes[40][0]
+    assert abs(sizes[400][1] - sizes[40][1]) < 200, sizes
