@@ -1,8 +1,7 @@
-"""Records below a folder as tidy tables. Unknown fields are ignored, the schema's major version is checked."""
+"""Records below a folder as tidy tables. record_file.py judges every file first; unknown fields are ignored."""
 
 from __future__ import annotations
 
-import json
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -10,14 +9,9 @@ from pathlib import Path
 import pandas as pd
 
 from . import fields
+from .record_file import RecordError, read_record, read_trace
 
-VERSION = fields.schema("run")["$defs"]["SchemaId"]["properties"]
-SCHEMA_NAME, SCHEMA_MAJOR = VERSION["name"]["enum"][0], VERSION["version"]["pattern"].strip("^").split("\\.")[0]
 LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
-
-
-class RecordError(ValueError):
-    """A file that is not a record this version can read."""
 
 
 @dataclass
@@ -29,13 +23,6 @@ class Records:
     trace: pd.DataFrame  # one row a Newton iteration, `n` counts them over the run
     cond: pd.DataFrame  # one row a condition estimate
     unreadable: list[str] = field(default_factory=list)  # records left out: "path: reason"
-
-
-def _check_schema(record: dict, path: Path) -> None:
-    schema = record.get("schema", {})
-    major = str(schema.get("version", "")).split(".")[0]
-    if schema.get("name") != SCHEMA_NAME or major != SCHEMA_MAJOR:
-        raise RecordError(f"{path}: schema {schema}; this version reads {SCHEMA_NAME} {SCHEMA_MAJOR}.x.y")
 
 
 def _series(labels: dict) -> str:
@@ -53,38 +40,10 @@ def run_row(record: dict, run: str = "") -> dict:
     return row
 
 
-def trace_lines(path: Path) -> list[dict]:
-    """The rows of a trace; none without the file. A line torn by a crash can only be the last one: it is left out and said."""
-    if not path.exists():
-        return []
-    lines = path.read_text().splitlines()
-    rows = []
-    for number, line in enumerate(lines, 1):
-        try:
-            rows.append(json.loads(line))
-        except json.JSONDecodeError:
-            if number != len(lines):
-                raise RecordError(f"{path}:{number}: not JSON") from None
-            print(f"{path}:{number}: torn last line left out", file=sys.stderr)
-    return rows
-
-
-def read_record(path: Path) -> dict:
-    """One run.json. Raises RecordError: torn or otherwise not JSON, no record, a version this one does not read."""
-    try:
-        record = json.loads(path.read_text())
-    except (OSError, ValueError) as error:  # ValueError: not JSON, not UTF-8
-        raise RecordError(f"{path}: not JSON: {error}") from None
-    if not isinstance(record, dict):
-        raise RecordError(f"{path}: not JSON of a record")
-    _check_schema(record, path)
-    return record
-
-
 def load(root: str | Path) -> Records:
     """Every record below `root`, in the order of their paths.
 
-    A run.json that cannot be read, torn by a crash or of another version, is left out: `unreadable` and a line on stderr name it.
+    A record that record_file.py refuses, or whose trace is not the one that it names, is left out: `unreadable` and a line on stderr say why.
     Raises RecordError when no record can be read.
     """
     root = Path(root)
@@ -92,7 +51,7 @@ def load(root: str | Path) -> Records:
     for path in sorted(root.rglob("run.json")):
         try:
             record = read_record(path)
-            lines = trace_lines(path.parent / "trace.jsonl")
+            lines = read_trace(record, path.parent)
         except RecordError as error:
             unreadable.append(str(error))
             continue

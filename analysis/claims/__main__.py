@@ -14,7 +14,7 @@ import sys
 import time
 from pathlib import Path
 
-from ..load import RecordError
+from ..record_file import RecordError
 from ..whole_file import write_whole
 from . import figure, frontiers, report
 from .entry import ROOT, Claim, ClaimError, ids, read_claim, read_sweep

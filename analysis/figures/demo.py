@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
-from ..load import RecordError, Records, load
+from ..load import Records, load
+from ..record_file import RecordError
 from ..table import as_text, summary_table
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged", "cubic_dynamic_consistent")

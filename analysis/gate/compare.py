@@ -10,7 +10,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..load import RecordError
+from ..record_file import RecordError
 from . import configs, invariants, judge, report
 from .determinism import same_state
 from .finding import Finding, failures, without_subject

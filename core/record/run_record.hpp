@@ -17,7 +17,7 @@ namespace bb {
 /// Of run.json and of the trace beside it. MODEL.REVISION.ADDITION: removed or changed meaning, widened,
 /// added. Readers refuse another first number.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.3.0";
+inline constexpr const char* run_schema_version = "3.4.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 using CountMap = std::map<std::string, int>;
@@ -290,7 +290,7 @@ struct Comparability {
 struct Artifact {
   BB_RECORD(Artifact, "a file of the run beside run.json");
   BB_FIELD(std::string, path, "relative to the folder of this record");
-  BB_FIELD(std::string, kind, "what it is", "frame frame_scene matrix matrix_side_car");
+  BB_FIELD(std::string, kind, "what it is", "frame frame_scene matrix matrix_side_car trace");
   BB_FIELD(std::string, media_type, "of its format");
   BB_FIELD(std::string, sha256, "of its bytes", sha256_or_empty);
   BB_FIELD(std::uint64_t, bytes, "its size") = 0;

@@ -80,6 +80,9 @@ class TraceWriter {
   void add(const TraceRow& row);
   /// Hands the lines of the step to the system. Errors: RecordError.
   void end_step();
+  /// What the record says of the trace as it is now: name, size, sha256. Nothing may be added after it. Errors:
+  /// RecordError.   Cost: reads the file.
+  Artifact artifact();
   /// Replaces the earlier trace; nothing can be added after it. Errors: RecordError.
   void finish();
   /// Length of what was written, which is on the disk then. From now on the file stays, also that of a run that

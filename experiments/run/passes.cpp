@@ -112,6 +112,7 @@ class PassSequence {
     keep_held(seen_);
     recorder.finish();
     record_.artifacts = files_.artifacts->written();
+    record_.artifacts.push_back(files_.trace->artifact());
     if (recorder.ledger()) ledger_ = *recorder.ledger();
     audited_ = recorder.audit_verdict();
   }
