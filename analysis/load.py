@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import sys
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -32,12 +33,28 @@ def _series(labels: dict) -> str:
     return case or labels["formulation"]
 
 
+def _swept(text: str):
+    """The value of a swept pointer, which the record keeps as JSON text; what is no number or word stays text."""
+    try:
+        value = json.loads(text)
+    except ValueError:
+        return text
+    return text if isinstance(value, (dict, list)) else value
+
+
 def run_row(record: dict, run: str = "") -> dict:
-    """A row of `runs`: the fields of the record, and where it belongs."""
+    """A row of `runs`: the fields of the record, a column for every pointer that its sweep varies (`/time/dt_s`), and where it belongs."""
     row = fields.row("runs", record)
     row |= {"run": run, "folder": Path(run).name, "series": _series(record["labels"])}
+    row |= {pointer: _swept(text) for pointer, text in (row.get("swept") or {}).items()}
     row["group"] = row["sweep_id"] or row["scene"]
     return row
+
+
+def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
+    """File and sha256 of every plugin of the run."""
+    plugins = record.get("provenance", {}).get("plugins") or []
+    return tuple((str((folder / plugin["file"]).resolve()), plugin["sha256"]) for plugin in plugins)
 
 
 def load(root: str | Path) -> Records:
@@ -56,7 +73,7 @@ def load(root: str | Path) -> Records:
             unreadable.append(str(error))
             continue
         run = str(path.parent.relative_to(root))
-        runs.append(run_row(record, run))
+        runs.append(run_row(record, run) | {"plugin_files": _plugins(record, path.parent)})
         for step in record["steps"]:
             steps.append({"run": run, **fields.row("steps", step)})
         for n, line in enumerate(lines):

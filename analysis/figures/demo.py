@@ -39,7 +39,7 @@ def make_all_of(records: Records, out: Path) -> str:
     """The same of records that are loaded."""
     paths = [path for group in sorted(records.runs["group"].unique())
              for module in (condition, matrix_forms, iterations, gaps, kappa_cycle) for path in module.figure(records, group, out)]
-    paths += barrier_shapes.figure(out)
+    paths += barrier_shapes.figure(out, records.runs)
     table = summary_table(records)
     table.to_csv(out / "table.csv", index=False)
     failed = records.runs[records.runs["outcome"] != "ok"]

@@ -79,6 +79,7 @@ struct Labels {
   BB_FIELD(double, d_hat_m, "width of the contact barrier") = 0;
   BB_FIELD(double, dt_s, "time step") = 0;
   BB_FIELD(std::string, note, "how a row of a table differs; empty: nothing");
+  BB_FIELD(TextMap, swept, "of a case of a sweep: pointer -> value as JSON text, of its axes");
   BB_RECORD_END;
 };
 

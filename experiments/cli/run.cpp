@@ -19,7 +19,7 @@ RunOptions run_options(const CommonOptions& common) {
 }
 
 RunRecord run_and_show(const RunConfig& config, RunOptions options, const CommonOptions& common) {
-  ProgressLine line(common.progress);
+  ProgressLine line(common);
   options.progress = [&line](const Progress& progress) { line.show(progress); };
   RunRecord record = run_config(config, options);
   line.clear();

@@ -30,9 +30,9 @@ struct PassResult {
 
 class Pass {
  public:
-  /// All arguments must outlive the pass. name: of its progress line.
+  /// All arguments must outlive the pass. name: of its progress line; passes_after: that follow it.
   Pass(const RunConfig& config, const Scene& scene, const Calibration& calibration, const Plan& plan,
-       const RunOptions& options, const char* name, Recorder& recorder);
+       const RunOptions& options, const char* name, Recorder& recorder, int passes_after = 0);
 
   /// Goes on to the end. between(): called after every config.output.checkpoint_every-th step but the last; what
   /// is kept only to save work is forgotten then, so that a pass that goes on from an archive of that moment is the
@@ -56,6 +56,7 @@ class Pass {
   const RunOptions& options_;
   const char* name_;
   Recorder& recorder_;
+  int passes_after_;
   Method method_;
   Simulation simulation_;
   PassResult result_;

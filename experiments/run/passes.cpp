@@ -87,7 +87,7 @@ class PassSequence {
     bare.passes = {true, false, false};
     RunRecord apart;  // only times and hash of the timed pass are used where another one follows
     Recorder recorder(bare, scene_, look ? apart : record_, nullptr);
-    Pass pass(bare, scene_, calibration_, plan_, options_, "time", recorder);
+    Pass pass(bare, scene_, calibration_, plan_, options_, "time", recorder, look ? 1 : 0);
     go_on(pass);
     timed_ = pass.run([&] { save(pass); }, [&] { held_ = archive_of(pass); });
     keep_held(timed_);
