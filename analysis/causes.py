@@ -13,8 +13,9 @@ import subprocess
 import sys
 from pathlib import Path
 
-from .load import LARGEST_COND, RecordError, read_record, trace_lines
-from .program import built_program
+from .load import LARGEST_COND
+from .program import built_program, plugin_argument, plugin_words
+from .record_file import RecordError, read_record, read_trace
 from .text_table import aligned
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -32,12 +33,13 @@ def program() -> str:
     return str(built_program(CausesError))
 
 
-def read_trace(folder: Path) -> list[dict]:
-    """The lines of a trace; a torn last one is left out and said. Raises CausesError, RecordError."""
-    path = folder / "trace.jsonl"
-    if not path.exists():
-        raise CausesError(f"{path}: not there; allowed: a run with the pass diagnose, e.g. ./bench causes CONFIG.json")
-    return trace_lines(path)
+def diagnosed(folder: Path) -> tuple[dict, list[dict]]:
+    """The record in a folder, and the lines of its trace that have condition numbers. Raises CausesError, RecordError."""
+    record = read_record(folder / "run.json")
+    rows = read_trace(record, folder)
+    if not rows:
+        raise CausesError(f"{folder / 'trace.jsonl'}: not there; allowed: a run with the pass diagnose, e.g. ./bench causes CONFIG.json")
+    return record, [row for row in rows if row["cond"]]
 
 
 def clamped(row: dict) -> dict[tuple[str, str], dict]:
@@ -103,14 +105,16 @@ def text(row: dict, count: int, scaling: str) -> str:
     return "\n".join(lines)
 
 
-def run_folder(given: Path, out: Path | None, settings: list[str]) -> Path:
-    """The folder of a record, or of the run that is made of a config with everything diagnosed."""
-    if given.is_dir():
-        return given
-    if given.name == "run.json":
-        return given.parent
+def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list[str]) -> Path:
+    """The folder of a record, or of the run that is made of a config with everything diagnosed. Raises CausesError for what a record, whose run
+    is over, cannot take: settings, plugins, another folder."""
+    if given.is_dir() or given.name == "run.json":
+        asked = [f"--set {text}" for text in settings] + [f"--plugin {file}" for file in plugins] + ([f"--out {out}"] if out else [])
+        if asked:
+            raise CausesError(f"{asked[0]}: given with a record, whose run is over: {given}; allowed: with a config, which is run, e.g. ./bench causes CONFIG.json {asked[0]}")
+        return given if given.is_dir() else given.parent
     folder = out or ROOT / "results/runs" / f"causes-{given.stem}"
-    words = [program(), "run", str(given), "--out", str(folder)]
+    words = [program(), *plugin_words(plugins), "run", str(given), "--out", str(folder)]
     for option in [*OPTIONS, *settings]:
         words += ["--set", option]
     code = subprocess.run(words, check=False, stdout=subprocess.DEVNULL).returncode
@@ -126,6 +130,7 @@ def main(words: list[str] | None = None) -> int:
     parser.add_argument("--at", metavar="STEP,ITERATION", help="that iteration in place of the worst")
     parser.add_argument("--set", action="append", default=[], help="of a config: /pointer=value")
     parser.add_argument("--out", type=Path, help="folder of that run (default results/runs/causes-NAME)")
+    plugin_argument(parser)
     given = parser.parse_args(words)
     try:
         at = tuple(int(part) for part in given.at.split(",")) if given.at else None
@@ -134,9 +139,8 @@ def main(words: list[str] | None = None) -> int:
     except ValueError:
         parser.error(f"--at {given.at}: allowed: STEP,ITERATION, both from 0")
     try:
-        folder = run_folder(given.run, given.out, given.set)
-        record = read_record(folder / "run.json")
-        rows = [row for row in read_trace(folder) if row["cond"]]
+        folder = run_folder(given.run, given.out, given.set, given.plugin)
+        record, rows = diagnosed(folder)
         row = pick(rows, given.scaling, at)
     except (CausesError, RecordError) as error:
         print(error, file=sys.stderr)

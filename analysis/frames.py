@@ -12,6 +12,8 @@ from pathlib import Path
 
 import numpy as np
 
+from .record_file import bound_file, named_files
+
 TYPES = {"double": "<f8", "float": "<f4", "int": "<i4", "uchar": "u1"}
 
 
@@ -71,22 +73,27 @@ def read_frame(path: str | Path) -> Frame:
     )
 
 
-def frame_paths(run: str | Path) -> dict[int, Path]:
-    """Step -> file, in order; -1 is the start, 0 the end of the first step. Raises FrameError without any."""
-    folder = Path(run) / "frames"
-    found = {-1: folder / "start.ply"} if (folder / "start.ply").exists() else {}
-    for path in sorted(folder.glob("step_*.ply")):
-        if match := re.fullmatch(r"step_(\d+)", path.stem):
-            found[int(match[1])] = path
+def frame_paths(record: dict, run: str | Path) -> dict[int, Path]:
+    """Step -> file of the frames that the record in the folder `run` names, in order; -1 is the start, 0 the end of the first step. What else
+    lies in frames/ is of no run that is known. Raises FrameError without any."""
+    found = {}
+    for name in named_files(record, "frame"):
+        if match := re.fullmatch(r"frames/(start|step_(\d+))\.ply", name):
+            found[-1 if match[1] == "start" else int(match[2])] = Path(run) / name
     if not found:
-        raise FrameError(f"{run}: no frames; run the config with --set /output/frames_every=1")
-    return found
+        raise FrameError(f"{run}: the record names no frames; run the config with --set /output/frames_every=1")
+    return dict(sorted(found.items()))
 
 
-def read_scene(run: str | Path) -> dict:
-    """frames/scene.json: `bodies` (names), `obstacles` (kind, point_m, axis, radius_m, inside), `planar`."""
-    path = Path(run) / "frames" / "scene.json"
+def frame_of(record: dict, run: str | Path, step: int) -> Frame:
+    """One of frame_paths(). Raises FrameError, RecordError: the file is not the one that the record names."""
+    return read_frame(bound_file(record, Path(run), frame_paths(record, run)[step].relative_to(run).as_posix()))
+
+
+def read_scene(record: dict, run: str | Path) -> dict:
+    """frames/scene.json: `bodies` (names), `obstacles` (kind, point_m, axis, radius_m, inside), `planar`. Raises FrameError, RecordError."""
+    path = bound_file(record, Path(run), "frames/scene.json")
     try:
         return json.loads(path.read_text())
-    except (OSError, json.JSONDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise FrameError(f"{path}: {error}") from None

@@ -11,6 +11,7 @@ import sys
 from pathlib import Path
 
 from .program import read_object
+from .record_file import RecordError, read_record
 from .whole_file import write_whole
 
 SCHEMA = "barrierbench.gpu_evidence/1"
@@ -50,7 +51,10 @@ def scene_numbers(folder: Path) -> dict | None:
     path = folder / "run.json"
     if not path.exists():
         return None
-    run = read_object(path, EvidenceError)
+    try:
+        run = read_record(path)
+    except RecordError as error:
+        raise EvidenceError(str(error)) from None
     summary, steps = run["summary"], max(run["summary"]["steps"], 1)
     newton, pcg = summary["newton_iterations"], summary["linear_iterations"]
     wall, solve = summary["wall_s"], summary["time"]["linear_solve_s"] if summary["wall_s"] is not None else None

@@ -1,4 +1,4 @@
-"""Records below a folder as tidy tables. Unknown fields are ignored, the schema's major version is checked."""
+"""Records below a folder as tidy tables. record_file.py judges every file first; unknown fields are ignored."""
 
 from __future__ import annotations
 
@@ -10,14 +10,9 @@ from pathlib import Path
 import pandas as pd
 
 from . import fields
+from .record_file import RecordError, read_record, read_trace
 
-VERSION = fields.schema("run")["$defs"]["SchemaId"]["properties"]
-SCHEMA_NAME, SCHEMA_MAJOR = VERSION["name"]["enum"][0], VERSION["version"]["pattern"].strip("^").split("\\.")[0]
 LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
-
-
-class RecordError(ValueError):
-    """A file that is not a record this version can read."""
 
 
 @dataclass
@@ -31,13 +26,6 @@ class Records:
     unreadable: list[str] = field(default_factory=list)  # records left out: "path: reason"
 
 
-def _check_schema(record: dict, path: Path) -> None:
-    schema = record.get("schema", {})
-    major = str(schema.get("version", "")).split(".")[0]
-    if schema.get("name") != SCHEMA_NAME or major != SCHEMA_MAJOR:
-        raise RecordError(f"{path}: schema {schema}; this version reads {SCHEMA_NAME} {SCHEMA_MAJOR}.x.y")
-
-
 def _series(labels: dict) -> str:
     """What a line of a figure is called: the case of its sweep, or the formulation."""
     note = labels.get("note") or ""
@@ -45,46 +33,34 @@ def _series(labels: dict) -> str:
     return case or labels["formulation"]
 
 
+def _swept(text: str):
+    """The value of a swept pointer, which the record keeps as JSON text; what is no number or word stays text."""
+    try:
+        value = json.loads(text)
+    except ValueError:
+        return text
+    return text if isinstance(value, (dict, list)) else value
+
+
 def run_row(record: dict, run: str = "") -> dict:
-    """A row of `runs`: the fields of the record, and where it belongs."""
+    """A row of `runs`: the fields of the record, a column for every pointer that its sweep varies (`/time/dt_s`), and where it belongs."""
     row = fields.row("runs", record)
     row |= {"run": run, "folder": Path(run).name, "series": _series(record["labels"])}
+    row |= {pointer: _swept(text) for pointer, text in (row.get("swept") or {}).items()}
     row["group"] = row["sweep_id"] or row["scene"]
     return row
 
 
-def trace_lines(path: Path) -> list[dict]:
-    """The rows of a trace; none without the file. A line torn by a crash can only be the last one: it is left out and said."""
-    if not path.exists():
-        return []
-    lines = path.read_text().splitlines()
-    rows = []
-    for number, line in enumerate(lines, 1):
-        try:
-            rows.append(json.loads(line))
-        except json.JSONDecodeError:
-            if number != len(lines):
-                raise RecordError(f"{path}:{number}: not JSON") from None
-            print(f"{path}:{number}: torn last line left out", file=sys.stderr)
-    return rows
-
-
-def read_record(path: Path) -> dict:
-    """One run.json. Raises RecordError: torn or otherwise not JSON, no record, a version this one does not read."""
-    try:
-        record = json.loads(path.read_text())
-    except (OSError, ValueError) as error:  # ValueError: not JSON, not UTF-8
-        raise RecordError(f"{path}: not JSON: {error}") from None
-    if not isinstance(record, dict):
-        raise RecordError(f"{path}: not JSON of a record")
-    _check_schema(record, path)
-    return record
+def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
+    """File and sha256 of every plugin of the run."""
+    plugins = record.get("provenance", {}).get("plugins") or []
+    return tuple((str((folder / plugin["file"]).resolve()), plugin["sha256"]) for plugin in plugins)
 
 
 def load(root: str | Path) -> Records:
     """Every record below `root`, in the order of their paths.
 
-    A run.json that cannot be read, torn by a crash or of another version, is left out: `unreadable` and a line on stderr name it.
+    A record that record_file.py refuses, or whose trace is not the one that it names, is left out: `unreadable` and a line on stderr say why.
     Raises RecordError when no record can be read.
     """
     root = Path(root)
@@ -92,12 +68,12 @@ def load(root: str | Path) -> Records:
     for path in sorted(root.rglob("run.json")):
         try:
             record = read_record(path)
-            lines = trace_lines(path.parent / "trace.jsonl")
+            lines = read_trace(record, path.parent)
         except RecordError as error:
             unreadable.append(str(error))
             continue
         run = str(path.parent.relative_to(root))
-        runs.append(run_row(record, run))
+        runs.append(run_row(record, run) | {"plugin_files": _plugins(record, path.parent)})
         for step in record["steps"]:
             steps.append({"run": run, **fields.row("steps", step)})
         for n, line in enumerate(lines):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 import os
 from pathlib import Path
@@ -15,6 +16,17 @@ def built_program(error: type[Exception], more: str = "") -> Path:
     if not path.exists():
         raise error(f"{path} is not built: ./bench build{more}")
     return path
+
+
+def plugin_argument(parser: argparse.ArgumentParser) -> None:
+    """--plugin, as the program takes it; may be repeated."""
+    parser.add_argument("--plugin", action="append", default=[], metavar="FILE.so",
+                        help="a shared library with shapes, stiffness policies or integrators, loaded by every run; may be repeated (examples/plugins/README.md)")
+
+
+def plugin_words(plugins: list[str]) -> list[str]:
+    """The arguments of the program, before its verb, that load these plugins."""
+    return [word for file in plugins for word in ("--plugin", str(Path(file).resolve()))]
 
 
 def read_object(path: Path, error: type[Exception]) -> dict:

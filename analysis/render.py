@@ -15,10 +15,11 @@ from matplotlib.patches import Patch
 
 from . import style
 from .captions import caption
-from .frames import Frame, FrameError, frame_paths, read_frame, read_scene
-from .load import RecordError, read_record, run_row
+from .frames import Frame, FrameError, frame_of, frame_paths, read_scene
+from .load import run_row
 from .obstacle_mesh import obstacle_mesh
 from .rasterizer import Camera, DepthBuffer, corner_normals
+from .record_file import RecordError, read_record
 
 BODY_COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")  # Okabe-Ito
 OBSTACLE_COLOR = "#C9C9C9"
@@ -221,13 +222,6 @@ def _annotate(fig, scene: dict, frame: Frame, color: str, scale: Normalize | Non
     axis.legend(handles=shown, loc="upper left", frameon=False, fontsize=7)
 
 
-def _record(run: Path) -> dict:
-    try:
-        return read_record(run / "run.json")
-    except RecordError as error:
-        raise FrameError(str(error)) from None
-
-
 def _when(record: dict, step: int) -> str:
     if step < 0:
         return "start"
@@ -239,14 +233,15 @@ def render(run: str | Path, step: int | None = None, color: str = "body", out: s
     """Writes a PNG of one frame and its caption; returns the PNG.
 
     run: folder of run.json. step: a step with a frame, -1 for the start; None: the last one. view: azimuth and
-    elevation of the camera, degrees. size: pixels of the picture without legend. Raises FrameError.
+    elevation of the camera, degrees. size: pixels of the picture without legend. Raises FrameError, RecordError.
     """
     run = Path(run).parent if Path(run).name == "run.json" else Path(run)
-    record, paths, scene = _record(run), frame_paths(run), read_scene(run)
+    record = read_record(run / "run.json")
+    paths, scene = frame_paths(record, run), read_scene(record, run)
     step = max(paths) if step is None else step
     if step not in paths:
         raise FrameError(f"{run}: no frame of step {step}; there are {', '.join(map(str, paths))} (-1: the start)")
-    frame = read_frame(paths[step])
+    frame = frame_of(record, run, step)
     focus = np.concatenate([frame.vertices, _round_obstacles(scene)])
     camera = _camera(focus, scene["planar"], view, size)
     reach = float(np.linalg.norm(focus - camera.target, axis=1).max())
@@ -281,7 +276,7 @@ def main(arguments: list[str]) -> int:
         parser.error("--size: from 16 to 8000 pixels")
     try:
         print(render(given.run, given.step, given.color, given.out, tuple(given.view), tuple(given.size)))
-    except (FrameError, OSError) as error:
+    except (FrameError, RecordError, OSError) as error:
         print(f"render: {error}", file=sys.stderr)
         return 2
     return 0

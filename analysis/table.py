@@ -56,8 +56,14 @@ def summary_table(records: Records) -> pd.DataFrame:
                 "gap_min_rel": run["gap_min_rel_min"],
                 "crossings": run["audit_crossings"] if run["audit_enabled"] else None,
             }
+            | {pointer: run[pointer] for pointer in swept(records)}
         )
     return pd.DataFrame(rows)
+
+
+def swept(records: Records) -> list[str]:
+    """Columns of pointers that the sweeps of these runs vary, such as /time/dt_s."""
+    return [name for name in records.runs.columns if name.startswith("/")]
 
 
 def _cell(name: str, value) -> str:
@@ -70,9 +76,11 @@ def _cell(name: str, value) -> str:
 
 def as_text(table: pd.DataFrame) -> str:
     """Aligned columns for a terminal; a blank line between groups."""
-    cells = [[_cell(name, row[name]) for name in HEADINGS] for _, row in table.iterrows()]
-    rows = [list(HEADINGS.values()), *cells]
-    width = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS))]
+    pointers = [name for name in table.columns if name.startswith("/") and table[name].map(str).nunique() > 1]  # one value tells no run from another
+    names = [*HEADINGS, *pointers]
+    cells = [[_cell(name, row[name]) for name in names] for _, row in table.iterrows()]
+    rows = [[*HEADINGS.values(), *pointers], *cells]
+    width = [max(len(row[i]) for row in rows) for i in range(len(names))]
     lines, last = [], None
     for k, row in enumerate(rows):
         if k > 1 and row[0] != last:

@@ -8,8 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..frames import Frame, FrameError, frame_paths, read_frame, read_scene
-from ..load import read_record
+from ..frames import Frame, FrameError, frame_of, frame_paths, read_scene
+from ..record_file import read_record
 
 
 @dataclass(frozen=True)
@@ -95,6 +95,7 @@ def _lengths(x: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 def read_motion(folder: Path) -> Motion:
     """The run in a folder with run.json and frames/. Errors: RecordError, FrameError (no frames: /output/frames_every)."""
-    record, paths = read_record(folder / "run.json"), frame_paths(folder)
+    record = read_record(folder / "run.json")
+    paths = frame_paths(record, folder)
     times = [0.0 if step < 0 else record["steps"][step]["t_s"] for step in paths]
-    return Motion(record, tuple(read_frame(path) for path in paths.values()), np.array(times), tuple(read_scene(folder)["bodies"]))
+    return Motion(record, tuple(frame_of(record, folder, step) for step in paths), np.array(times), tuple(read_scene(record, folder)["bodies"]))

@@ -14,7 +14,8 @@ import sys
 import time
 from pathlib import Path
 
-from ..load import RecordError
+from ..program import plugin_argument, plugin_words
+from ..record_file import RecordError
 from ..whole_file import write_whole
 from . import figure, frontiers, report
 from .entry import ROOT, Claim, ClaimError, ids, read_claim, read_sweep
@@ -32,11 +33,11 @@ def program(needed: bool = True) -> str | None:
     return None
 
 
-def run_sweeps(claims: list[Claim], runs: Path) -> None:
+def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
     for name in dict.fromkeys(name for claim in claims for name in claim.sweeps):
         sweep, start = read_sweep(name), time.monotonic()
         print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
-        done = subprocess.run([program(), "sweep", str(ROOT / sweep.file), "--out", str(runs / name)], stdout=subprocess.DEVNULL, check=False)
+        done = subprocess.run([program(), *plugin_words(plugins), "sweep", str(ROOT / sweep.file), "--out", str(runs / name)], stdout=subprocess.DEVNULL, check=False)
         if done.returncode != 0:
             raise ClaimError(f"{sweep.file}: the program ended with {done.returncode}")
         print(f"claims: {name}: {time.monotonic() - start:.0f} s", file=sys.stderr)
@@ -58,6 +59,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
     parser.add_argument("--no-run", action="store_true", help="run nothing: judge the records that are there, or the numbers in results/claims.json")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the sweeps (default: results/runs/claims)")
+    plugin_argument(parser)
     return parser.parse_args(argv)
 
 
@@ -66,11 +68,11 @@ def main(argv: list[str]) -> int:
     try:
         claims = [read_claim(name) for name in args.ids or ids()]
         if not args.no_run:
-            run_sweeps(claims, args.runs)
+            run_sweeps(claims, args.runs, args.plugin)
         table = gather(claims, args.runs, read(FILE))
         if absent := [line for claim in claims for line in missing(claim, table)]:
             raise ClaimError("\n".join(absent))
-        asker = Eval(program(not args.no_run), table.answers, fresh=not args.no_run)
+        asker = Eval(program(not args.no_run), table.answers, fresh=not args.no_run, plugins=tuple(args.plugin))
         print(report.text([judge(claim, table, asker) for claim in claims]))
         write_all(table, asker)
     except (ClaimError, RecordError) as error:

@@ -6,7 +6,7 @@ import math
 from pathlib import Path
 
 from ..figures.kappa_cycle import SETTLED, UNSETTLED_ITERATIONS
-from ..load import trace_lines
+from ..record_file import read_trace
 
 
 def _at(record: dict, *place: str):
@@ -68,11 +68,10 @@ def longest_run(changes: list[float]) -> int:
 
 def _kappa_cycles(record) -> float | None:
     """Steps with a cycle, counted in the trace beside the record (FOLDER); None without a trace."""
-    path = Path(record.get(FOLDER, "")) / "trace.jsonl"
-    if FOLDER not in record or not path.is_file():
+    if FOLDER not in record:
         return None
     steps: dict[int, list[float]] = {}
-    for line in trace_lines(path):
+    for line in read_trace(record, Path(record[FOLDER])):
         steps.setdefault(line["step"], []).append(line.get("kappa_change_rel") or 0.0)
     return float(sum(longest_run(changes) >= UNSETTLED_ITERATIONS for changes in steps.values())) if steps else None
 

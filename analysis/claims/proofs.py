@@ -8,6 +8,7 @@ import json
 import subprocess
 from dataclasses import dataclass, field
 
+from ..program import plugin_words
 from .entry import ClaimError
 from .verdict import HOLDS, NOT, ONLY_IF, Judged
 
@@ -20,6 +21,7 @@ class Eval:
     answers: dict[str, dict] = field(default_factory=dict)
     fresh: bool = False
     asked: set[str] = field(default_factory=set)
+    plugins: tuple[str, ...] = ()  # that the program loads
 
     def ask(self, **query) -> dict:
         text = json.dumps(query, sort_keys=True)
@@ -29,7 +31,7 @@ class Eval:
         self.asked.add(text)
         if self.program is None:
             raise ClaimError(f"no kept answer of eval to {text}: ./bench claims asks it")
-        done = subprocess.run([self.program, "eval"], input=text + "\n", capture_output=True, text=True, check=False)
+        done = subprocess.run([self.program, *plugin_words(list(self.plugins)), "eval"], input=text + "\n", capture_output=True, text=True, check=False)
         if done.returncode != 0:
             raise ClaimError(f"eval {text}: {done.stderr.strip() or done.stdout.strip()}")
         self.answers[text] = json.loads(done.stdout)

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 import hashlib
 import json
+import sys
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
-from ..load import RecordError, read_record
+from ..record_file import RecordError, read_record
 from ..whole_file import write_whole
 from .entry import ROOT, Claim, ClaimError, Sweep
 from .metrics import FOLDER, METRICS
@@ -78,13 +79,16 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
     for path in sorted(folder.glob("*/run.json")):
         try:
             record = read_record(path)
-        except RecordError:
-            continue  # counted as missing
-        place = sweep.cases.get(record["labels"].get("note", ""))
-        if place is not None:
+            place = sweep.cases.get(record["labels"].get("note", ""))
+            if place is None:
+                continue
             record[FOLDER] = str(path.parent)
-            records.append(record)
-            rows.append(_row(record, place, metrics))
+            row = _row(record, place, metrics)
+        except RecordError as error:
+            print(f"{error}; counted as missing", file=sys.stderr)
+            continue
+        records.append(record)
+        rows.append(row)
     rows.sort(key=lambda row: tuple(str(row[key]) for key in PLACE))
     if len({tuple(row[key] for key in PLACE) for row in rows}) != len(rows):
         raise ClaimError(f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again")

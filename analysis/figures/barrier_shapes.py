@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import os
 import subprocess
+import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -12,20 +13,14 @@ import numpy as np
 import pandas as pd
 
 from .. import style
+from ..program import plugin_words
+from ..record_file import sha256_of
 
-# Formulation whose look it takes -> shape, argument.
-SHAPES = {
-    "log": ("log", "gap"),
-    "quadratic": ("quadratic", "gap"),
-    "cubic": ("cubic", "gap"),
-    "two_stage": ("two_stage", "gap"),
-    "log_squared": ("log_squared", "gap"),
-    "ipc2020": ("log", "squared_gap"),
-}
+OF_NO_RUN = {"log": ("log", "gap"), "quadratic": ("quadratic", "gap"), "cubic": ("cubic", "gap")}  # drawn where there are no runs
 PANELS = (("b", r"$b/\hat d^2$"), ("minus_db", r"$-b'/\hat d$"), ("d2b", r"$b''$"), ("rho", r"$\rho=\hat d\,b''/|b'|$"))
 SHOWN = (
     "The barrier shapes over the gap d in units of d_hat, the gap at which contact begins, for stiffness 1: (a) the energy b, (b) the force -b', (c) the "
-    "curvature b'', (d) rho = d_hat b''/|b'|, curvature for the same force. ipc2020 is the log shape applied to the squared gap. "
+    "curvature b'', (d) rho = d_hat b''/|b'|, curvature for the same force. Drawn are the shapes of the runs, each on the argument that they apply it to. "
     "The numbers are the program's own (bench eval)."
 )
 
@@ -35,10 +30,30 @@ def program() -> str:
     return os.environ.get("BARRIERBENCH_PROGRAM", "build/release/experiments/barrierbench")
 
 
-def ask(queries: list[dict]) -> list[dict]:
+def shapes_of(runs: pd.DataFrame | None) -> dict[str, tuple[str, str]]:
+    """Name -> shape, argument, of all runs of contact and limit, in the order of the runs. A shape on the gap is called by itself."""
+    if runs is None or runs.empty:
+        return OF_NO_RUN
+    pairs = zip(runs["shape"], runs["argument"])
+    return {shape if argument == "gap" else f"{shape} on {argument}": (shape, argument) for shape, argument in pairs if isinstance(shape, str)}
+
+
+def plugins_of(runs: pd.DataFrame | None) -> list[str]:
+    """Plugin files of the runs that are there still with the content that the records name; others are said and left out."""
+    found: dict[str, str] = {}
+    for plugins in runs["plugin_files"] if runs is not None and "plugin_files" in runs else []:
+        for file, sha256 in plugins:
+            if not Path(file).is_file() or sha256_of(Path(file)) != sha256:
+                print(f"figures: {file}: the plugin of a run is not there with the content that its record names; its shapes are not drawn", file=sys.stderr)
+            elif sha256 not in found:
+                found[sha256] = file
+    return list(found.values())
+
+
+def ask(queries: list[dict], plugins: list[str]) -> list[dict]:
     """Answers of `eval`, in order. Raises RuntimeError with the first error."""
     lines = "".join(json.dumps(q) + "\n" for q in queries)
-    done = subprocess.run([program(), "eval", "-"], input=lines, capture_output=True, text=True, check=False)
+    done = subprocess.run([program(), *plugin_words(plugins), "eval", "-"], input=lines, capture_output=True, text=True, check=False)
     answers = [json.loads(line) for line in done.stdout.splitlines()]
     errors = [a["error"] for a in answers if "error" in a]
     if errors or len(answers) != len(queries):
@@ -46,34 +61,35 @@ def ask(queries: list[dict]) -> list[dict]:
     return answers
 
 
-def values(u: np.ndarray) -> pd.DataFrame:
+def known_shapes(plugins: list[str]) -> set[str]:
+    """Shapes that the program has with these plugins."""
+    done = subprocess.run([program(), *plugin_words(plugins), "list", "shapes"], capture_output=True, text=True, check=False)
+    return {line.split()[0] for line in done.stdout.splitlines() if line.startswith("  ") and line.strip()}
+
+
+def values(u: np.ndarray, shapes: dict[str, tuple[str, str]], plugins: list[str]) -> pd.DataFrame:
     """b, -b', b'' and rho at d = u, d_hat = 1, kappa = 1: one row a shape and u."""
     tables = []
-    for name, (shape, argument) in SHAPES.items():
+    for name, (shape, argument) in shapes.items():
         base = {"shape": shape, "argument": argument}
-        terms = ask([{"kind": "shape", **base, "d": float(v), "d_hat": 1.0} for v in u])
-        rho = ask([{"kind": "rho", **base, "u": float(v)} for v in u])
-        tables.append(
-            pd.DataFrame(
-                {
-                    "formulation": name,
-                    **base,
-                    "u": u,
-                    "b": [t["b"] for t in terms],
-                    "minus_db": [-t["db"] for t in terms],
-                    "d2b": [t["d2b"] for t in terms],
-                    "rho": [r["rho"] for r in rho],
-                }
-            )
-        )
+        terms = ask([{"kind": "shape", **base, "d": float(v), "d_hat": 1.0} for v in u], plugins)
+        rho = ask([{"kind": "rho", **base, "u": float(v)} for v in u], plugins)
+        columns = {"b": [t["b"] for t in terms], "minus_db": [-t["db"] for t in terms], "d2b": [t["d2b"] for t in terms], "rho": [r["rho"] for r in rho]}
+        tables.append(pd.DataFrame({"name": name, **base, "u": u, **columns}))
     return pd.concat(tables, ignore_index=True)
 
 
-def figure(out: Path) -> list[Path]:
+def figure(out: Path, runs: pd.DataFrame | None = None) -> list[Path]:
+    """runs: Records.runs, whose shapes are drawn. A shape of a plugin that is gone is left out and said."""
+    plugins = plugins_of(runs)
+    known, asked = known_shapes(plugins), shapes_of(runs)
+    shapes = {name: pair for name, pair in asked.items() if pair[0] in known}
+    for name in asked.keys() - shapes.keys():
+        print(f"figures: the shape {name} of a run is not known to {program()} with its plugins; it is not drawn", file=sys.stderr)
     u = np.concatenate([np.geomspace(1e-3, 0.05, 25, endpoint=False), np.linspace(0.05, 0.99, 60)])
-    table = values(u)
+    table = values(u, shapes, plugins)
     fig, axes = plt.subplots(1, 4, figsize=(style.WIDE_IN, 2.3), layout="constrained")
-    for name, rows in table.groupby("formulation", sort=False):
+    for name, rows in table.groupby("name", sort=False):
         look = style.look(str(name))
         for axis, (field, _) in zip(axes, PANELS):
             axis.plot(

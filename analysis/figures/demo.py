@@ -6,7 +6,8 @@ import sys
 from pathlib import Path
 
 from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
-from ..load import RecordError, Records, load
+from ..load import Records, load
+from ..record_file import RecordError
 from ..table import as_text, summary_table
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
@@ -38,7 +39,7 @@ def make_all_of(records: Records, out: Path) -> str:
     """The same of records that are loaded."""
     paths = [path for group in sorted(records.runs["group"].unique())
              for module in (condition, matrix_forms, iterations, gaps, kappa_cycle) for path in module.figure(records, group, out)]
-    paths += barrier_shapes.figure(out)
+    paths += barrier_shapes.figure(out, records.runs)
     table = summary_table(records)
     table.to_csv(out / "table.csv", index=False)
     failed = records.runs[records.runs["outcome"] != "ok"]

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import argparse
 import json
+import math
+import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -27,16 +29,38 @@ SHOWN = (
 )
 
 
+def _is_number(value) -> bool:
+    return isinstance(value, (int, float)) and not isinstance(value, bool) and math.isfinite(value)
+
+
+# what a figure needs of a trial: is it so, and what is allowed
+TRIAL = {
+    "step": (lambda value: isinstance(value, int) and value >= 0, "an integer of 0 or more"),
+    "hessian": (lambda value: value in LOOKS, f"one of {', '.join(LOOKS)}"),
+    "status": (lambda value: isinstance(value, str), "a word"),
+    "tolerance_m": (_is_number, "a finite number"),
+    "dx_inf_m": (lambda value: isinstance(value, list) and all(_is_number(dx) for dx in value), "a list of finite numbers"),
+}
+
+
 def read_steps(path: Path) -> dict:
-    """The file as it is. Raises ValueError with the place when it is none of `./bench steps --out`."""
+    """The file as it is. Raises ValueError with place, value and what is allowed when it is none of `./bench steps --out`."""
     try:
         data = json.loads(path.read_text())
-    except json.JSONDecodeError as error:
+    except ValueError as error:  # not JSON, not UTF-8
         raise ValueError(f"{path}: not JSON ({error}); a file of ./bench steps --out is needed") from error
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
         raise ValueError(f"{path}: schema is {data.get('schema') if isinstance(data, dict) else None!r}; allowed: {SCHEMA!r}")
-    if not data.get("trials"):
-        raise ValueError(f"{path}: no trials")
+    trials, config = data.get("trials"), data.get("config")
+    if not isinstance(trials, list) or not trials:
+        raise ValueError(f"{path}#/trials: no trials; allowed: a list of at least one")
+    if not isinstance(config, dict) or not all(isinstance(config.get(name), dict) for name in ("scene", "formulation")):
+        raise ValueError(f"{path}#/config: found {json.dumps(config)[:60]}; allowed: the resolved config of the run")
+    for k, trial in enumerate(trials):
+        for name, (is_right, allowed) in TRIAL.items():
+            found = trial.get(name) if isinstance(trial, dict) else None
+            if not is_right(found):
+                raise ValueError(f"{path}#/trials/{k}/{name}: found {json.dumps(found)[:60]}; allowed: {allowed}")
     return data
 
 
@@ -68,22 +92,24 @@ def figure(data: dict, stem: Path) -> list[Path]:
     style.letter_panels(axes)
     style.legend_below(fig, axes[0, 0])
     config = data["config"]
-    formulation = config["formulation"].get("name") or config["formulation"]["shape"]
+    formulation = config["formulation"].get("name") or config["formulation"].get("shape", "unknown")
     return style.save(fig, stem, table, SHOWN.format(scene=config["scene"].get("name", "bodies"), formulation=formulation))
 
 
-def main() -> None:
-    parser = argparse.ArgumentParser(description=__doc__)
+def main(words: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="bench figures", description=__doc__)
     parser.add_argument("file", type=Path)
     parser.add_argument("out", type=Path, nargs="?", help="folder of the figure; default: that of the file")
-    given = parser.parse_args()
+    given = parser.parse_args(words)
     try:
-        data = read_steps(given.file)
+        paths = figure(read_steps(given.file), (given.out or given.file.parent) / given.file.stem)
     except (OSError, ValueError) as error:
-        raise SystemExit(f"figures: {error}") from error
-    for path in figure(data, (given.out or given.file.parent) / given.file.stem):
+        print(f"bench figures: {error}", file=sys.stderr)
+        return 2
+    for path in paths:
         print(path)
+    return 0
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

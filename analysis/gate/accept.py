@@ -10,7 +10,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from ..load import RecordError
+from ..record_file import RecordError
 from . import baseline, calibrate, matrices
 from .baseline import Baseline, BaselineError
 from .cases import GateError

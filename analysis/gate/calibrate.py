@@ -11,7 +11,7 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from ..load import RecordError
+from ..record_file import RecordError
 from . import baseline, invariants
 from .baseline import Baseline, Kept, keep
 from .cases import ROOT, Case, GateError, jittered, read_set, run_case

@@ -12,7 +12,7 @@ import sys
 import time
 from pathlib import Path
 
-from ..load import RecordError
+from ..record_file import RecordError
 from . import baseline, configs, invariants, judge, matrices, report, trend
 from .baseline import Baseline, BaselineError
 from .build_checks import judge_build

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..load import RecordError, read_record
+from ..record_file import TRACE, RecordError, is_hashed, leaves, read_record, read_trace, trace_lines
 
 NOT_FINITE = ("nan", "infinite", "minus_infinite")  # the words of Number in core/record/number.hpp
 MAY_BE_INFINITE = ("error_estimate_m_status", "contraction_status")  # directions that do not shrink bound no error
@@ -50,36 +49,11 @@ class Run:
         return self.section("ids").get("build_id", ""), json.dumps(self.made_by, sort_keys=True)
 
 
-def leaves(value, place: str = "") -> Iterator[tuple[str, object]]:
-    """Every value below with its JSON pointer; an empty object or list is a value."""
-    if isinstance(value, (dict, list)) and value:
-        for key, below in value.items() if isinstance(value, dict) else enumerate(value):
-            yield from leaves(below, f"{place}/{key}")
-    else:
-        yield place, value
-
-
 def not_finite(value) -> list[str]:
     """Places of numbers that are none: written as NaN or Infinity, or absent with a `_status` that says so."""
     return [f"{place}: {found}" for place, found in leaves(value)
             if (isinstance(found, float) and not math.isfinite(found))
             or (place.endswith("_status") and found in NOT_FINITE and not (found == "infinite" and place.endswith(MAY_BE_INFINITE)))]
-
-
-def _trace(path: Path) -> tuple[list[dict], int]:
-    """Lines of a trace, and how many were torn. Raises RecordError for a bad line before the last one."""
-    lines = path.read_text(errors="replace").splitlines()
-    rows = []
-    for number, line in enumerate(lines, 1):
-        try:
-            row = json.loads(line)
-        except json.JSONDecodeError:
-            row = None
-        if isinstance(row, dict):
-            rows.append(row)
-        elif number < len(lines):
-            raise RecordError(f"{path}:{number}: not a JSON object; only the last line of a trace may be torn")
-    return rows, len(lines) - len(rows)
 
 
 def read_run(path: str | Path, allow_not_finite: bool = False) -> Run:
@@ -89,11 +63,13 @@ def read_run(path: str | Path, allow_not_finite: bool = False) -> Run:
     path = path / "run.json" if path.is_dir() else path
     if not path.is_file():
         raise RecordError(f"{path}: no such record; give a run.json or the folder that holds it")
-    run = Run(path, read_record(path))
-    trace = path.parent / "trace.jsonl"
-    if trace.is_file():
-        run.has_trace = True
-        run.trace, run.torn = _trace(trace)
+    run = Run(path, read_record(path, foreign=True, allow_not_finite=allow_not_finite))
+    trace = path.parent / TRACE
+    if is_hashed(run.record):
+        run.trace = read_trace(run.record, path.parent)
+    elif trace.is_file():  # of another program, or of an earlier version: the invariants count its lines
+        run.trace, run.torn = trace_lines(trace)
+    run.has_trace = bool(run.trace) or trace.is_file()
     if not allow_not_finite:
         for file, value in ((path, run.record), (trace, run.trace)):
             if bad := not_finite(value):

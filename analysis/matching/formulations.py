@@ -6,6 +6,8 @@ import json
 from difflib import get_close_matches
 from pathlib import Path
 
+from ..program import read_object
+
 ROOT = Path(__file__).resolve().parents[2]
 PRESETS = ROOT / "configs" / "formulations"
 REFERENCE = "log"  # the pilot's formulation, whose run the others are compared with
@@ -22,11 +24,22 @@ def known() -> list[str]:
 
 
 def preset(name: str) -> dict:
-    """The section `formulation` of a preset. Errors: MatchError with the nearest name."""
+    """The section `formulation` of a preset, or of a file like those of configs/formulations, NAME.json: of a shape or policy of a plugin, say.
+    Errors: MatchError with the nearest name."""
+    if name.endswith(".json"):
+        formulation = read_object(Path(name), MatchError).get("formulation")
+        if not isinstance(formulation, dict) or not {"shape", "argument", "stiffness_policy"} <= formulation.keys():
+            raise MatchError(f"{name}#/formulation: found {json.dumps(formulation)[:60]}; allowed: a formulation with shape, argument and stiffness_policy")
+        return formulation
     if name not in known():
         near = get_close_matches(name, known(), 1)
         raise MatchError(f"formulation {name!r}: one of {', '.join(known())}" + (f"; did you mean {near[0]!r}?" if near else ""))
     return json.loads((PRESETS / f"{name}.json").read_text())["formulation"]
+
+
+def label(name: str) -> str:
+    """What a formulation is called in tables: the preset, or the file without its folder and suffix."""
+    return Path(name).stem if name.endswith(".json") else name
 
 
 def _limit(formulation: dict) -> dict:
@@ -42,7 +55,8 @@ def settings(name: str, vary: str, d_hat_m: float | None = None, scale: float | 
     """Overrides of a config: pointer -> value. vary: what takes the formulation; the other stays with the reference. scale: factor on the
     matched stiffness of what is varied; None leaves it. d_hat_m: kept where the config gives one."""
     chosen, reference = preset(name), preset(REFERENCE)
-    found = {"/formulation": REFERENCE if vary == "limit" else name}
+    from_file = {**chosen, "name": label(name)} if name.endswith(".json") else name
+    found = {"/formulation": REFERENCE if vary == "limit" else from_file}
     if d_hat_m is not None:
         found["/formulation/d_hat_m"] = d_hat_m
     found |= _limit(reference if vary == "contact" else chosen)

@@ -14,8 +14,9 @@ import json
 import sys
 from pathlib import Path
 
+from ..program import plugin_argument
 from ..whole_file import write_whole
-from .formulations import REFERENCE, ROOT, VARY, MatchError, preset, settings
+from .formulations import REFERENCE, ROOT, VARY, MatchError, label, preset, settings
 from .runs import Sweep, check_equal, check_varied, collect, inputs_sha256, read_object, run, sweep
 
 DEFAULT = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
@@ -34,7 +35,7 @@ def make_sweep(config: Path, formulations: list[str], rule: str, theta: float, v
         raise MatchError(f"--formulations: found {REFERENCE} alone; a formulation to compare with it is needed")
     for name in names:
         preset(name)
-    cases = [{"label": name, "set": settings(name, vary, d_hat)} | ({"reference": True} if name == REFERENCE else {}) for name in names]
+    cases = [{"label": label(name), "set": settings(name, vary, d_hat)} | ({"reference": True} if name == REFERENCE else {}) for name in names]
     common = {"/matching/rule": rule, "/matching/theta": theta, "/passes/time": True, "/passes/audit": True}
     return sweep("match", config, common, cases)
 
@@ -104,12 +105,13 @@ def arguments(argv: list[str]) -> argparse.Namespace:
                                      epilog="examples: ./bench match configs/scenes/drape2d.json\n"
                                             "          ./bench match configs/scenes/drape.json --formulations cubic quadratic --vary limit --set /scene/n=8")
     parser.add_argument("config", type=Path, help="a config, e.g. configs/scenes/drape2d.json; its formulation and matching are replaced")
-    parser.add_argument("--formulations", nargs="+", default=list(DEFAULT), metavar="NAME", help="presets of configs/formulations (default: %(default)s); log always runs")
+    parser.add_argument("--formulations", nargs="+", default=list(DEFAULT), metavar="NAME", help="presets of configs/formulations, or files like them, NAME.json (default: %(default)s); log always runs")
     parser.add_argument("--rule", choices=RULES, default="equal_force", help="matching rule (default: %(default)s)")
     parser.add_argument("--theta", type=float, default=0.1, metavar="T", help="gap/d_hat at which forces are equal, in (0, 1) (default: %(default)s)")
     parser.add_argument("--vary", choices=VARY, default="both", help="what takes the formulation; the other keeps the log (default: %(default)s)")
     parser.add_argument("--set", action="append", default=[], metavar="/POINTER=VALUE", dest="overrides", help="override in every run, e.g. /scene/n=8")
     parser.add_argument("--out", type=Path, metavar="DIR", help="folder of the records (default: results/runs/match/CONFIG-HASH)")
+    plugin_argument(parser)
     return parser.parse_args(argv)
 
 
@@ -119,9 +121,9 @@ def main(argv: list[str]) -> int:
         if not 0 < args.theta < 1:
             raise MatchError(f"--theta: found {args.theta:g}; a number in (0, 1) is needed")
         made = make_sweep(args.config, args.formulations, args.rule, args.theta, args.vary)
-        digest = hashlib.sha256("\n".join([made.text, inputs_sha256(made, args.overrides), *args.overrides]).encode()).hexdigest()[:8]
+        digest = hashlib.sha256("\n".join([made.text, inputs_sha256(made, args.overrides, args.plugin), *args.overrides]).encode()).hexdigest()[:8]
         out = args.out or ROOT / "results" / "runs" / "match" / f"{args.config.stem}-{digest}"
-        run(made, out, args.overrides)
+        run(made, out, args.overrides, args.plugin)
         answer = judge(made, collect(made, out), args.vary)
         write_whole(out / "match.json", json.dumps(answer, indent=1) + "\n")
     except MatchError as error:

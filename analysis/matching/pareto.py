@@ -16,6 +16,7 @@ import sys
 from pathlib import Path
 
 from ..claims.table import seconds_of_run
+from ..program import plugin_argument
 from ..whole_file import write_whole
 from . import pareto_figure, pareto_report
 from .formulations import ROOT, MatchError
@@ -28,9 +29,9 @@ DEFAULT = ROOT / "configs" / "pareto" / "default.json"
 COLUMNS = (*PLACE, *STATE, *METRICS)
 
 
-def _about(spec: Spec, command: str, records: list[dict]) -> dict:
+def _about(spec: Spec, command: str, records: list[dict], plugins: list[str]) -> dict:
     sizes = [r["scene"]["free_dofs"] for r in records]
-    about = {"command": command, "spec_sha256": spec.sha256, "inputs_sha256": inputs_sha256(make_sweep(spec)), "doc": spec.doc, "vary": spec.vary, "gap": {"min": "smallest", "median": "median of the smallest"}[spec.gap],
+    about = {"command": command, "spec_sha256": spec.sha256, "inputs_sha256": inputs_sha256(make_sweep(spec), plugins=plugins), "doc": spec.doc, "vary": spec.vary, "gap": {"min": "smallest", "median": "median of the smallest"}[spec.gap],
              "gaps": list(spec.gaps), "starts": spec.starts, "decades": round(math.log10(spec.scales[-1] / spec.scales[0]), 3),
              "unknowns": f"{min(sizes)} to {max(sizes)}", "seconds": round(sum(map(seconds_of_run, records)), 1)}
     for key, values in (("rule", {f"{r['matching']['rule']}, theta {r['matching']['theta']:g}" for r in records}),
@@ -53,13 +54,13 @@ def from_json(path: Path) -> Runs:
     return Runs(data["about"], [dict(zip(COLUMNS, row)) for row in data["rows"]])
 
 
-def make(spec: Spec, command: str, folder: Path, run_missing: bool) -> Runs:
+def make(spec: Spec, command: str, folder: Path, run_missing: bool, plugins: list[str]) -> Runs:
     made = make_sweep(spec)
     if run_missing:
         print(f"pareto: {len(made.notes)} cases in {folder}", file=sys.stderr)
-        run(made, folder)
+        run(made, folder, plugins=plugins)
     records = collect(made, folder)
-    runs = Runs(_about(spec, command, list(records.values())), gather(spec, made.notes, records))
+    runs = Runs(_about(spec, command, list(records.values()), plugins), gather(spec, made.notes, records))
     for scene in runs.scenes:
         if not any(row["gap"] for row in runs.rows if row["scene"] == scene):
             raise MatchError(f"{spec.path}#/scenes/{scene}: no run is in contact at the end of any step: there is no gap to compare at")
@@ -82,6 +83,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--no-run", action="store_true", help="run nothing: judge the records that are there, or the numbers in pareto.json")
     parser.add_argument("--runs", type=Path, metavar="DIR", help="folder of the records (default: results/runs/pareto/NAME-HASH)")
     parser.add_argument("--results", type=Path, metavar="DIR", help="folder of PARETO.md, pareto.json and figures (default: results/ and docs/)")
+    plugin_argument(parser)
     return parser.parse_args(argv)
 
 
@@ -90,7 +92,7 @@ def main(argv: list[str]) -> int:
     results = args.results or ROOT / "results"
     try:
         spec = read_spec(args.spec)
-        inputs = inputs_sha256(make_sweep(spec))
+        inputs = inputs_sha256(make_sweep(spec), plugins=args.plugin)
         digest = hashlib.sha256(f"{spec.sha256} {inputs}".encode()).hexdigest()
         folder = args.runs or ROOT / "results" / "runs" / "pareto" / f"{spec.name}-{digest[:8]}"
         kept = results / "pareto.json"
@@ -101,8 +103,8 @@ def main(argv: list[str]) -> int:
             if "inputs_sha256" not in runs.about:
                 print(f"bench pareto: {kept} does not say of which base config and presets its numbers are", file=sys.stderr)
         else:
-            command = "./bench pareto" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")
-            runs = make(spec, command, folder, not args.no_run)
+            command = "./bench pareto" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}") + "".join(f" --plugin {file}" for file in args.plugin)
+            runs = make(spec, command, folder, not args.no_run, args.plugin)
         write_whole(kept, to_json(runs))
         write_page(runs, results, ROOT / "docs" if args.results is None else results, folder / "figures")
     except MatchError as error:

@@ -12,8 +12,8 @@ from pathlib import Path
 
 from ..claims.metrics import METRICS
 from ..gate.configs import differences
-from ..load import RecordError, read_record
-from ..program import built_program
+from ..record_file import RecordError, read_record
+from ..program import built_program, plugin_words
 from ..program import read_object as read_json_object
 from . import formulations
 from .formulations import MatchError, known
@@ -63,12 +63,15 @@ def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
             yield from _inputs(read_object(folder / node), (folder / node).parent)
 
 
-def inputs_sha256(made: Sweep, overrides: list[str] | None = None) -> str:
-    """Of the contents, not the places, of all files that the runs of a sweep are made from. A base that is missing adds nothing: the program refuses it."""
+def inputs_sha256(made: Sweep, overrides: list[str] | None = None, plugins: list[str] | None = None) -> str:
+    """Of the contents, not the places, of all files that the runs of a sweep are made from. A base or a plugin that is missing adds nothing: the program
+    refuses it."""
     data = json.loads(made.text)
     found = hashlib.sha256()
     for part in _inputs([data, dict(text.partition("=")[::2] for text in overrides or [])], Path(data["base"]).parent):
         found.update(hashlib.sha256(part).digest())
+    for plugin in plugins or []:
+        found.update(hashlib.sha256(Path(plugin).read_bytes() if Path(plugin).is_file() else b"").digest())
     return found.hexdigest()
 
 
@@ -81,13 +84,13 @@ def read_object(path: Path) -> dict:
     return read_json_object(path, MatchError)
 
 
-def run(made: Sweep, out: Path, overrides: list[str] | None = None) -> None:
+def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: list[str] | None = None) -> None:
     """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file. Errors: MatchError with the first line of what the
     program said; input that it refuses leaves nothing."""
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / f"{made.name}.json"
         file.write_text(made.text)
-        words = [program(), "sweep", str(file), "--out", str(out), "--progress", "none"]
+        words = [program(), *plugin_words(plugins or []), "sweep", str(file), "--out", str(out), "--progress", "none"]
         for override in overrides or []:
             words += ["--set", override]
         done = subprocess.run(words, capture_output=True, text=True, check=False)
@@ -97,17 +100,12 @@ def run(made: Sweep, out: Path, overrides: list[str] | None = None) -> None:
         raise MatchError(f"the program ended with {done.returncode}: {first}" + (f" (and {len(more)} more lines)" if more else ""))
 
 
-def _no_number(word: str):
-    raise ValueError(f"{word} where a number or null is needed")
-
-
 def read_strictly(path: Path) -> dict:
-    """A record. Errors: MatchError also for NaN and Infinity, which Python would take for numbers."""
+    """A record. Errors: MatchError."""
     try:
-        json.loads(path.read_text(), parse_constant=_no_number)
         return read_record(path)
-    except (OSError, ValueError, RecordError) as error:  # ValueError: not JSON, a NaN
-        raise MatchError(f"{path}: {error}") from None
+    except RecordError as error:
+        raise MatchError(str(error)) from None
 
 
 def collect(made: Sweep, out: Path) -> dict[str, dict]:

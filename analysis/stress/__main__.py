@@ -7,12 +7,12 @@ Exit codes: 0 everything as expected, 1 something is not, or was not judged, 2 a
 from __future__ import annotations
 
 import argparse
-import json
 import sys
 import time
 from datetime import datetime, timezone
 from pathlib import Path
 
+from ..record_file import RecordError, read_record
 from ..whole_file import write_whole
 from . import report
 from .entry import ROOT, StressError, Test, ids, read_test
@@ -42,7 +42,7 @@ def run_one(test: Test, runs: Path, quick: bool = False, limit_s: float = 60.0) 
 def about(folder: Path) -> dict:
     """Machine and commit of one of the records below."""
     for path in sorted(folder.glob("*/*/runs/*/run.json")):
-        record = json.loads(path.read_text())
+        record = read_record(path)
         return {"machine": f"{record['machine']['cpu_model']}, {record['machine']['cores']} cores", "commit": record["provenance"]["git_commit"][:10]}
     return {}
 
@@ -75,7 +75,7 @@ def main(argv: list[str]) -> int:
             print("\n".join(f"{name}  {test.data['title']}; varied: {test.data['varies']}" for name, test in tests.items()))
             return 0
         return judge_all(tests, args)
-    except StressError as error:
+    except (StressError, RecordError) as error:
         print(f"bench stress: {error}", file=sys.stderr)
         return 2
 

@@ -11,7 +11,7 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..load import RecordError, read_record
+from ..record_file import RecordError, read_record
 from ..program import built_program
 from ..whole_file import write_whole
 from .entry import ROOT, Case, Formulation, StressError, Test

@@ -12,7 +12,7 @@ import shutil
 import sys
 from pathlib import Path
 
-from ..load import RecordError
+from ..record_file import RecordError
 from ..whole_file import write_whole
 from . import figure, report
 from .runs import RUNS, collect, run_scene

@@ -14,7 +14,7 @@ from ..accuracy.errors import NotFinite
 from ..accuracy.reference import CLOSED_FORMS, NoReference, Reference, measure, refined
 from ..accuracy.state import Motion, read_motion
 from ..frames import FrameError
-from ..load import RecordError, read_record
+from ..record_file import RecordError, read_record
 from ..program import built_program
 from ..whole_file import write_whole
 from .spec import REFERENCE_D_HAT, ROOT, SOLVERS, Scene, Spec, SpecError

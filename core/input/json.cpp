@@ -65,6 +65,7 @@ class Watch {
  private:
   void on_event(int depth, json::parse_event_t event, const json& value) {
     using Event = json::parse_event_t;
+    step_to(event, value);
     if ((event == Event::object_start || event == Event::array_start) && depth >= max_json_depth) {
       fail(JsonFault::too_deep, fmt::format("more than {} levels of arrays and objects", max_json_depth),
            fmt::format("at most {}", max_json_depth));
@@ -77,8 +78,27 @@ class Watch {
     }
     if (event == Event::value && refuse_large_ && is_large(value)) {
       fail(JsonFault::large_integer, value.dump(),
-           fmt::format("integers from -{0} to {0} (2^53)", max_json_integer));
+           fmt::format("integers from -{0} to {0} (2^53)", max_json_integer), pointer());
     }
+  }
+
+  /// Keeps `open_`, the way to the value that is read now.
+  void step_to(json::parse_event_t event, const json& value) {
+    using Event = json::parse_event_t;
+    const bool begins = event == Event::object_start || event == Event::array_start;
+    if ((begins || event == Event::value) && !open_.empty() && open_.back().is_array) ++open_.back().index;
+    if (event == Event::key) open_.back().key = value.get<std::string>();
+    if (begins) open_.push_back({event == Event::array_start, -1, ""});
+    if (event == Event::object_end || event == Event::array_end) open_.pop_back();
+  }
+
+  /// JSON pointer of the value that was read last; empty for the whole text.
+  std::string pointer() const {
+    json::json_pointer out;
+    for (const Level& level : open_) {
+      out /= level.is_array ? std::to_string(level.index) : level.key;
+    }
+    return out.to_string();
   }
 
   static bool is_large(const json& value) {
@@ -93,17 +113,27 @@ class Watch {
     return bracket == std::string::npos ? what : what.substr(bracket + 2);
   }
 
-  [[noreturn]] void fail(JsonFault fault, std::string found, std::string allowed) const {
+  [[noreturn]] void fail(JsonFault fault, std::string found, std::string allowed,
+                         const std::string& pointer = "") const {
     // the character that was taken last is the one that told
     const auto last = static_cast<std::ptrdiff_t>(std::min(taken_ > 0 ? taken_ - 1 : 0, text_.size()));
     const auto line = 1 + std::count(text_.begin(), text_.begin() + last, '\n');
-    throw JsonError(fault, fmt::format("{}:{}", source_, line), std::move(found), std::move(allowed));
+    const std::string place = pointer.empty() ? "" : "#" + pointer;
+    throw JsonError(fault, fmt::format("{}:{}{}", source_, line, place), std::move(found), std::move(allowed));
   }
+
+  /// An array or object that is open.
+  struct Level {
+    bool is_array;
+    long index;  // of the element that is read
+    std::string key;
+  };
 
   const std::string& text_;
   const std::string& source_;
   bool refuse_large_;
   std::size_t taken_ = 0;
+  std::vector<Level> open_;
   std::vector<std::set<std::string>> keys_;  // of the objects that are open
 };
 

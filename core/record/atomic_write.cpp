@@ -6,6 +6,7 @@
 #include <cstring>
 #include <utility>
 
+#include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 
 namespace bb {
@@ -206,6 +207,19 @@ void TraceWriter::add(const TraceRow& row) {
 
 void TraceWriter::end_step() {
   if (std::fflush(file_) != 0) fail("cannot write");
+}
+
+Artifact TraceWriter::artifact() {
+  end_step();
+  std::error_code error;
+  Artifact out;
+  out.path = path_.filename().string();
+  out.kind = "trace";
+  out.media_type = "application/jsonl";
+  out.sha256 = sha256_file(part_.string());
+  out.bytes = fs::file_size(part_, error);
+  if (error || out.sha256.empty()) fail_with(part_, "cannot read", error ? error.value() : EIO);
+  return out;
 }
 
 void TraceWriter::close() {

@@ -79,6 +79,7 @@ struct Labels {
   BB_FIELD(double, d_hat_m, "width of the contact barrier") = 0;
   BB_FIELD(double, dt_s, "time step") = 0;
   BB_FIELD(std::string, note, "how a row of a table differs; empty: nothing");
+  BB_FIELD(TextMap, swept, "of a case of a sweep: pointer -> value as JSON text, of its axes");
   BB_RECORD_END;
 };
 
@@ -331,7 +332,7 @@ struct Comparability {
 struct Artifact {
   BB_RECORD(Artifact, "a file of the run beside run.json");
   BB_FIELD(std::string, path, "relative to the folder of this record");
-  BB_FIELD(std::string, kind, "what it is", "frame frame_scene matrix matrix_side_car");
+  BB_FIELD(std::string, kind, "what it is", "frame frame_scene matrix matrix_side_car trace");
   BB_FIELD(std::string, media_type, "of its format");
   BB_FIELD(std::string, sha256, "of its bytes", sha256_or_empty);
   BB_FIELD(std::uint64_t, bytes, "its size") = 0;

@@ -120,7 +120,9 @@ std::string lines(const Json& j, std::string indent) {
 template <class T>
 Json document(const char* title) {
   Json defs = Json::object();
-  Json out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"}, {"title", title}};
+  Json out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
+              {"$comment", std::string("version ") + run_schema_version},
+              {"title", title}};
   out.update(record_schema<T>(defs));
   out["$defs"] = defs;
   return out;

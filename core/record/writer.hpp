@@ -84,6 +84,9 @@ class TraceWriter {
   void add(const TraceRow& row);
   /// Hands the lines of the step to the system. Errors: RecordError.
   void end_step();
+  /// What the record says of the trace as it is now: name, size, sha256. Nothing may be added after it. Errors:
+  /// RecordError.   Cost: reads the file.
+  Artifact artifact();
   /// The file is whole on the disk, under the name it has; nothing can be added after it. Errors: RecordError.
   void close();
   /// The same, and it replaces the earlier trace. Errors: RecordError.

@@ -87,7 +87,7 @@ int ccd(const CcdVerb& verb) {
     sound = !ccd::any_false_negative(scores);
   }
   if (!verb.json.empty()) write_atomically(verb.json, out.dump(1) + "\n");
-  return sound ? exit_ok : exit_no_match;
+  return sound ? exit_ok : exit_wrong_answer;
 }
 
 }  // namespace bb::cli

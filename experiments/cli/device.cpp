@@ -67,7 +67,7 @@ int device(const DeviceVerb& verb) {
   } else {
     print(probe, rates);
   }
-  return probe.usable ? exit_ok : exit_no_match;
+  return probe.usable ? exit_ok : exit_no_card;
 }
 
 }  // namespace bb::cli

@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <cstdlib>
 #include <sstream>
@@ -59,6 +60,18 @@ int guarded(const std::function<int()>& verb) {
   }
 }
 
+/// A finite number from low (or above it) to high; CLI::Range lets NaN through.
+CLI::Validator finite_number(double low, double high, bool above_low = false) {
+  const std::string allowed = fmt::format("a number {} {:g}, at most {:g}", above_low ? "above" : "from", low, high);
+  return {[=](const std::string& text) -> std::string {
+            double value = 0;
+            const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
+            if (is_number && value <= high && (above_low ? value > low : value >= low)) return {};
+            return fmt::format("found {}; allowed: {}", text, allowed);
+          },
+          allowed};
+}
+
 void config_arguments(CLI::App* app, RunVerb& verb) {
   app->add_option("config", verb.config, "a config file, e.g. configs/scenes/drape2d.json")->required();
   app->add_option("--set", verb.set, "override: /pointer=value, e.g. /time/dt_s=0.005")
@@ -72,8 +85,12 @@ void common_arguments(CLI::App& app, CommonOptions& common, std::vector<std::str
          "a shared library (.so) with shapes, stiffness policies or integrators, loaded before anything "
          "is read; may be repeated (examples/plugins/README.md)")
       ->allow_extra_args(false);
-  app.add_option("--progress", common.progress, "auto (on a terminal), plain (a line every 10 s) or none")
+  app.add_option("--progress", common.progress,
+                 "auto (one line that is rewritten on a terminal, else a line every 30 s), plain (a line every 10 s) "
+                 "or none")
       ->check(CLI::IsMember({"auto", "plain", "none"}));
+  app.add_option("--progress-every", common.progress_every_s, "seconds between two such lines")
+      ->check(finite_number(0, 1e6, true));
   app.add_option("--blas-kernel", common.blas_kernel,
                  "haswell: the same factors on every x86-64-v3 machine (default, unless OPENBLAS_CORETYPE is "
                  "set); native: what OPENBLAS_CORETYPE names, else what OpenBLAS picks by the "
@@ -88,19 +105,19 @@ void limit_arguments(CLI::App* app, RunLimits& limits) {
       "or killed (/output/checkpoint_every); without one, from the start");
   app->add_option("--time-limit", limits.time_limit_s,
                   "seconds that one run may take: it ends between two steps with the outcome timeout, and --resume goes on")
-      ->check(CLI::PositiveNumber);
+      ->check(finite_number(0, 1e9, true));
 }
 
 void demand_arguments(CLI::App* app, bb::ContactDemand& demand) {
   app->add_option("--contacts", demand.contacts,
                   "with a device: so many contacts are expected (default: estimated from the scene)")
-      ->check(CLI::Range(0.0, 1e12));
+      ->check(finite_number(0, 1e12));
   app->add_option("--blocks-per-contact", demand.upper_blocks_a_contact,
                   "stored 3x3 blocks on and above the diagonal that a contact has (default 0.49)")
-      ->check(CLI::Range(0.0, 10.0));
+      ->check(finite_number(0, 10));
   app->add_option("--candidates-per-contact", demand.candidates_a_contact,
                   "pairs of the broad phase that a contact has (default 2)")
-      ->check(CLI::Range(0.0, 1e3));
+      ->check(finite_number(0, 1e3));
 }
 
 CLI::App* add_matrix(CLI::App& app, MatrixVerb& verb) {
@@ -109,10 +126,13 @@ CLI::App* add_matrix(CLI::App& app, MatrixVerb& verb) {
   out->add_option("files", verb.files, "Matrix Market files, each with its side-car NAME.json or without")
       ->required();
   out->add_option("--json", verb.json, "file of everything that the tables show");
-  out->add_option("--tol", verb.tol_rel, "|b - A x| <= tol |b| of iterative solvers (default 1e-8)");
-  out->add_option("--max-iterations", verb.max_iterations, "their cap (default 10000)");
+  out->add_option("--tol", verb.tol_rel, "|b - A x| <= tol |b| of iterative solvers (default 1e-8)")
+      ->check(finite_number(0, 1, true));
+  out->add_option("--max-iterations", verb.max_iterations, "their cap (default 10000)")
+      ->check(CLI::Range(1, 1000000000));
   out->add_option("--dense-rows", verb.dense_rows,
-                  "up to so many rows (default 1500, at most 3000) all eigenvalues are computed too");
+                  "up to so many rows (default 1500, at most 3000) all eigenvalues are computed too")
+      ->check(CLI::Range(0, 3000));
   out->footer("example: ./bench matrix results/matrices/*.mtx --json replay.json");
   return out;
 }
@@ -129,7 +149,7 @@ CLI::App* add_validity(CLI::App& app, ValidityVerb& verb) {
 
 CLI::App* add_device(CLI::App& app, DeviceVerb& verb) {
   CLI::App* out =
-      app.add_subcommand("device", "the card that this build can use, or why there is none (exit 3)");
+      app.add_subcommand("device", "the card that this build can use, or why there is none (exit 5)");
   out->add_flag("--json", verb.json, "as JSON");
   out->add_flag("--measure", verb.measure, "how fast copies are");
   out->footer("example: ./bench device --measure");
@@ -153,7 +173,8 @@ CLI::App* add_ccd(CLI::App& app, CcdVerb& verb) {
 /// The first word of the command line that is no option and no value of an option before the verb.
 std::string first_word(const std::vector<std::string>& argv) {
   for (std::size_t i = 1; i < argv.size(); ++i) {
-    if (argv[i] == "--plugin" || argv[i] == "--progress" || argv[i] == "--blas-kernel") {
+    if (argv[i] == "--plugin" || argv[i] == "--progress" || argv[i] == "--progress-every" ||
+        argv[i] == "--blas-kernel") {
       ++i;
     } else if (!argv[i].starts_with("-")) {
       return argv[i];

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 #include <unistd.h>
 
+#include <chrono>
 #include <csignal>
 
 #include "experiments/cli/say.hpp"
@@ -31,29 +32,53 @@ std::string cond_text(const RunRecord& record, const std::string& key) {
 
 }  // namespace
 
-ProgressLine::ProgressLine(const std::string& mode) {
-  if (mode == "plain") mode_ = Mode::plain;
-  if (mode == "auto" && isatty(STDERR_FILENO)) mode_ = Mode::rewrite;
+ProgressLine::ProgressLine(const CommonOptions& common) : begin_s_(now_s()) {
+  if (common.progress == "plain") every_s_ = 10;
+  if (common.progress_every_s > 0) every_s_ = common.progress_every_s;
+  if (common.progress == "none") return;
+  mode_ = common.progress == "auto" && isatty(STDERR_FILENO) ? Mode::rewrite : Mode::plain;
+  if (mode_ == Mode::plain) teller_ = std::thread([this] { tell_from_time_to_time(); });
 }
 
-ProgressLine::~ProgressLine() { clear(); }
+ProgressLine::~ProgressLine() {
+  clear();
+  if (!teller_.joinable()) return;
+  {
+    const std::lock_guard lock(mutex_);
+    over_ = true;
+  }
+  wake_.notify_one();
+  teller_.join();
+}
+
+void ProgressLine::tell_from_time_to_time() {
+  std::unique_lock lock(mutex_);
+  const std::chrono::duration<double> period(every_s_);
+  while (!wake_.wait_for(lock, period, [this] { return over_; })) {
+    const std::string where = latest_.empty() ? prefix_ + "before the end of the first step" : latest_;
+    say(fmt::format("{}  after {:.0f} s\n", where, now_s() - begin_s_));
+  }
+}
+
+void ProgressLine::begin(const std::string& prefix) {
+  const std::lock_guard lock(mutex_);
+  prefix_ = prefix;
+  latest_.clear();
+}
 
 void ProgressLine::show(const Progress& progress) {
   if (mode_ == Mode::none) return;
   const double now = now_s();
-  const double period = mode_ == Mode::rewrite ? 0.2 : 10.0;
-  if (now - last_s_ < period && progress.step < progress.steps) return;
+  if (mode_ == Mode::rewrite && now - last_s_ < 0.2 && progress.step < progress.steps) return;
   last_s_ = now;
-  const std::string line =
-      fmt::format("{} [{}] step {}/{}  newton {}  contacts {}  gap {}  eta {:.0f} s", progress.label,
-                  progress.pass, progress.step, progress.steps, progress.newton, progress.contacts,
-                  number_text(progress.gap, "{:.2e} m"), progress.eta_s);
-  if (mode_ == Mode::rewrite) {
-    say("\r\033[K" + line);
-    dirty_ = true;
-  } else {
-    say(line + "\n");
-  }
+  const std::lock_guard lock(mutex_);
+  latest_ = fmt::format("{}{} [{}] step {}/{}  t {:.4g} of {:.4g} s  newton {}  contacts {}  gap {}  eta {:.0f} s", prefix_,
+                        progress.label, progress.pass, progress.step, progress.steps, progress.t_s,
+                        progress.t_end_s, progress.newton, progress.contacts,
+                        number_text(progress.gap, "{:.2e} m"), progress.eta_s);
+  if (mode_ != Mode::rewrite) return;
+  say("\r\033[K" + latest_);
+  dirty_ = true;
 }
 
 void ProgressLine::clear() {

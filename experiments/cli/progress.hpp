@@ -1,28 +1,43 @@
-// One line on stderr while a run goes on: rewritten on a terminal, silent elsewhere unless asked for.
+// Where a run is, on stderr: one line that is rewritten on a terminal, elsewhere a line from time to time.
 #pragma once
 
 #include <atomic>
+#include <condition_variable>
 #include <functional>
+#include <mutex>
 #include <string>
+#include <thread>
 
+#include "experiments/cli/verbs.hpp"
 #include "experiments/run/runner.hpp"
 
 namespace bb::cli {
 
-/// mode: auto (a terminal only), plain (one line every 10 s), none.
+/// mode: auto (a terminal: rewritten; else a line every 30 s), plain (a line every 10 s), none.
 class ProgressLine {
  public:
-  explicit ProgressLine(const std::string& mode);
+  explicit ProgressLine(const CommonOptions& common);
   ~ProgressLine();
+  ProgressLine(const ProgressLine&) = delete;
+  ProgressLine& operator=(const ProgressLine&) = delete;
+  /// In front of every line from now on: which case of a sweep it is.
+  void begin(const std::string& prefix);
   void show(const Progress& progress);
   /// Takes the line away, so that other output starts on a clean one.
   void clear();
 
  private:
   enum class Mode { none, rewrite, plain };
+  void tell_from_time_to_time();
+
   Mode mode_ = Mode::none;
-  double last_s_ = -1e300;
+  double every_s_ = 30, last_s_ = -1e300, begin_s_ = 0;
   bool dirty_ = false;
+  std::string prefix_, latest_;  // below: of the two threads
+  bool over_ = false;
+  std::mutex mutex_;
+  std::condition_variable wake_;
+  std::thread teller_;  // a step may take longer than the time between two lines
 };
 
 /// Set by SIGINT, SIGTERM and SIGHUP once install_interrupt() was called.

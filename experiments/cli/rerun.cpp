@@ -56,7 +56,7 @@ fs::path fresh_folder(const std::string& label) {
   return folder;
 }
 
-/// Prints the verdict; exit_no_match when nothing explains that the two differ.
+/// Prints the verdict; exit_no_repeat when nothing explains that the two differ.
 int compare(const StoredRun& stored, const RunRecord& record) {
   const Outcome outcome = record.status.outcome, then = stored.record.status.outcome;
   const std::string& hash = stored.record.summary.state_hash;
@@ -76,7 +76,7 @@ int compare(const StoredRun& stored, const RunRecord& record) {
   if (!same && !reasons.empty()) verdict += ", as it may: " + reasons;
   if (same && !reasons.empty()) verdict += ", although it need not be: " + reasons;
   fmt::print("rerun of {}: {}\n", stored.file.string(), verdict);
-  return same || !reasons.empty() ? exit_ok : exit_no_match;
+  return same || !reasons.empty() ? exit_ok : exit_no_repeat;
 }
 
 }  // namespace

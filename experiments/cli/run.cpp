@@ -21,7 +21,7 @@ RunOptions run_options(const CommonOptions& common) {
 }
 
 RunRecord run_and_show(const RunConfig& config, RunOptions options, const CommonOptions& common) {
-  ProgressLine line(common.progress);
+  ProgressLine line(common);
   options.progress = [&line](const Progress& progress) { line.show(progress); };
   options.tell = [&line](const std::string& text) { line.clear(), say(text + "\n"); };
   RunRecord record = run_config(config, options);

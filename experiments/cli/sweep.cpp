@@ -37,6 +37,7 @@ RunOptions case_options(const Sweep& sweep, const SweepCase& one) {
   options.folder = sweep.out / folder_name(one);
   options.note = sweep.spec.name + ": " + one.label;
   options.sweep_id = sweep.spec.name;
+  options.swept = one.swept;
   options.keep_inputs = sweep.verb.keep_inputs;
   options.resume = sweep.verb.limits.resume ? Resume::yes : sweep.verb.again ? Resume::no : Resume::if_this_run;
   options.time_limit_s = sweep.verb.limits.time_limit_s;
@@ -75,11 +76,12 @@ void run_case(const SweepCase& one, RunOptions options, ProgressLine& line) {
 
 /// Runs every case that can be run; returns what is wrong with the others.
 std::vector<Violation> run_cases(Sweep& sweep) {
-  ProgressLine line(sweep.common.progress);
+  ProgressLine line(sweep.common);
   std::vector<Violation> violations;  // a case that cannot be run stops no other
   for (std::size_t i = 0; i < sweep.spec.cases.size(); ++i) {
     const SweepCase& one = sweep.spec.cases[i];
     const RunOptions options = case_options(sweep, one);
+    line.begin(fmt::format("[{}/{}] ", i + 1, sweep.spec.cases.size()));
     try {
       if (already_there(sweep, one, options)) {
         fmt::print("{:<44} already there\n", options.note);
@@ -116,6 +118,21 @@ void compare_cases(const Sweep& sweep) {
   write_comparability(members);
 }
 
+/// A line for every case that is in: its outcome, and whether its numbers may be compared with the others.
+void print_comparability(const Sweep& sweep) {
+  fmt::print("\n{:<44} {:<18} {:<15} {}\n", "run", "outcome", "comparability", "why");
+  for (std::size_t i = 0; i < sweep.spec.cases.size(); ++i) {
+    const SweepCase& one = sweep.spec.cases[i];
+    if (sweep.refused[i]) continue;
+    const auto record = read_run(sweep.out / folder_name(one) / "run.json");
+    if (!record) continue;
+    fmt::print("{:<44} {:<18} {:<15} {}\n", sweep.spec.name + ": " + one.label,
+               to_string(record->status.outcome), record->comparability.verdict,
+               record->comparability.verdict == "comparable" ? "" : record->comparability.reason);
+  }
+  std::fflush(stdout);
+}
+
 }  // namespace
 
 int sweep(const SweepVerb& verb, const CommonOptions& common) {
@@ -144,6 +161,7 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
                     sweep.kept, sweep.spec.cases.size(), sweep.out.string())};
   }
   compare_cases(sweep);
+  print_comparability(sweep);
   if (!violations.empty()) throw ConfigError(violations);
   return exit_ok;
 }

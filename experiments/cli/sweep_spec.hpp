@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstddef>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,6 +17,7 @@ inline constexpr std::size_t max_sweep_cases = 10000;
 struct SweepCase {
   std::string label;             // "log dt=0.01"
   std::vector<std::string> set;  // overrides "/pointer=value"
+  std::map<std::string, std::string> swept;  // pointer -> JSON text, of the axes
   RunConfig config;
   std::optional<std::size_t> reference;  // the case it is compared with, where the file marks one
   std::size_t group = 0;  // the same for cases that differ in formulation, strain limit and matching only
@@ -32,7 +34,7 @@ struct SweepSpec {
 /// last one is found before the first one runs. A case of an axis with "reference": true (one an axis at
 /// most) is what the others of that axis are compared with, at equal values of the other axes. Errors:
 /// ConfigError with the violations: of the file, of its size (max_sweep_cases, counted before anything is
-/// expanded), else of its cases.
+/// expanded), else of its cases, also of two cases that are the same run, and of an override that undoes an axis.
 SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& overrides);
 
 }  // namespace bb

@@ -43,7 +43,7 @@ int validity(const ValidityVerb& verb, const CommonOptions& common) {
                block.validity.valid ? "all passed" : "not valid",
                block.kept ? block.file.string() : "not kept: the folder of the program cannot be written");
   }
-  return block.validity.valid ? exit_ok : exit_no_match;
+  return block.validity.valid ? exit_ok : exit_wrong_answer;
 }
 
 }  // namespace bb::cli

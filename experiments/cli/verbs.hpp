@@ -14,8 +14,9 @@ namespace bb::cli {
 
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_bad_input = 2;
-inline constexpr int exit_no_match =
-    3;  // a record did not repeat itself and nothing that it names explains it; a CCD answer was wrong; no usable card
+inline constexpr int exit_no_repeat = 3;     // a record did not repeat itself, and nothing that it names explains it
+inline constexpr int exit_wrong_answer = 4;  // a check with a known answer failed: ccd, validity
+inline constexpr int exit_no_card = 5;       // no card that this build can use: device
 inline constexpr int exit_internal = 70;
 inline constexpr int exit_try_again = 75;
 
@@ -24,6 +25,7 @@ struct CommonOptions {
   std::vector<PluginFile> loaded;    // what they turned out to be
   std::vector<std::string> argv;     // for the record
   std::string progress = "auto";     // auto, plain, none
+  double progress_every_s = 0;       // between two lines off a terminal; 0: as the mode has it
   std::string blas_kernel;           // haswell, native, or empty: see settle_blas_kernel
 };
 
@@ -45,7 +47,7 @@ int run(const RunVerb& verb, const CommonOptions& common);
 
 /// Runs the config inside a record in a folder of its own (empty `out`: results/runs/<label>-rerun, numbered
 /// when that is taken) and says whether the final state is the same, or what may have changed it. Meshes and
-/// plugins are those that the record names, unless verb.set or --plugin name others. exit_no_match when the
+/// plugins are those that the record names, unless verb.set or --plugin name others. exit_no_repeat when the
 /// state or the outcome differs and nothing explains it. Errors: ConfigError also when `out` is the folder of
 /// the record, and for meshes and plugins that are not there or have another content.
 int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& common);
@@ -94,7 +96,7 @@ BuildValidity build_validity(const CommonOptions& common);
 struct ValidityVerb {
   bool json = false;  // the report itself
 };
-/// The checks of the block as a table; exit_no_match when one failed.
+/// The checks of the block as a table; exit_wrong_answer when one failed.
 int validity(const ValidityVerb& verb, const CommonOptions& common);
 
 struct CcdVerb {
@@ -104,7 +106,7 @@ struct CcdVerb {
   std::uint64_t seed = 1;  // of both
   std::string json;        // file; empty: none
 };
-/// CCD queries with a known truth through ACCD and the audit. exit_no_match when a pair that meets was proven free, or
+/// CCD queries with a known truth through ACCD and the audit. exit_wrong_answer when a pair that meets was proven free, or
 /// an accepted state has crossed. Errors: ConfigError as read_queries, and unless one source is named.
 int ccd(const CcdVerb& verb);
 
@@ -112,7 +114,7 @@ struct DeviceVerb {
   bool json = false;
   bool measure = false;  // rates of copies too
 };
-/// The card that this build can use. exit_no_match without one. Errors: as measure_copies.
+/// The card that this build can use. exit_no_card without one. Errors: as measure_copies.
 int device(const DeviceVerb& verb);
 
 /// Parses, builds the scene and looks for intersections; runs nothing.

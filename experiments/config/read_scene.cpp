@@ -68,6 +68,16 @@ void check_kind(const json& object, const std::vector<std::string>& of_others, c
   }
 }
 
+/// A box whose corners are the wrong way round holds nothing.
+void check_box(const PinSpec& pin, const std::string& pointer, const Reader& reader) {
+  for (int k = 0; pin.box && k < 3; ++k) {
+    const double low = (*pin.box)[0][k], high = (*pin.box)[1][k];
+    if (low <= high) continue;
+    reader.complain(pointer, fmt::format("an inverted box: along {} its min {} is above its max {}", "xyz"[k], low, high),
+                    "[[min], [max]] with min <= max along every axis");
+  }
+}
+
 void settle_body(const json& object, const std::string& pointer, const Reader& reader, BodyConfig& body) {
   BodySpec& spec = body.spec;
   check_kind(object, keys_of_others(spec.kind), word_of(spec.kind) + " body", pointer,
@@ -81,6 +91,7 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
     const PinSpec& pin = spec.pins[p];
     const std::string where = fmt::format("{}/pins/{}", pointer, p);
     check_motion(pin.motion, where + "/motion", reader);
+    check_box(pin, where + "/box_m", reader);
     if (pin.indices.empty() && !pin.box && !pin.top_row && !pin.all) {
       reader.missing(where, "at least one of indices, box_m, top_row, all");
     }

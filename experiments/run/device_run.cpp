@@ -4,6 +4,7 @@
 
 #include <charconv>
 #include <cstdlib>
+#include <functional>
 
 #include "core/cuda/device.hpp"
 #include "core/exec/counting_executor.hpp"
@@ -59,6 +60,21 @@ std::unique_ptr<exec::Executor> make_host_executor() {
                                            positive(failure_variable, asked.substr(colon + 1)));
 }
 
+/// Calls `check`, whose refusals know the setting and not the config that has it; section: a JSON pointer.
+void at_config(const RunConfig& config, const std::string& section, const std::function<void()>& check) {
+  try {
+    check();
+  } catch (const ConfigError& error) {
+    std::vector<Violation> violations = error.violations();
+    for (Violation& v : violations) {
+      const std::string place = v.where.starts_with('/') ? v.where : section + "/" + v.where;
+      v.where = config.source + "#" + place;
+      v.allowed += "; or /device cpu";
+    }
+    throw ConfigError(std::move(violations));
+  }
+}
+
 }  // namespace
 
 std::unique_ptr<exec::Executor> make_executor(Device device) {
@@ -87,13 +103,13 @@ void check_device_forms(const RunConfig& config, const Scene& scene) {
   Method method = make_method(config, any);
   const std::optional<StiffnessRule> rule = method.stiffness->rule();
   if (!rule) {
-    throw ConfigError("/formulation/stiffness_policy/name", std::string(method.stiffness->name()),
+    throw ConfigError(config.source + "#/formulation/stiffness_policy/name", std::string(method.stiffness->name()),
                       "a policy with a device form; this one runs with device cpu only");
   }
-  resident::ResidentBarrier(method.contact, rule->potential());
+  at_config(config, "/formulation", [&] { resident::ResidentBarrier(method.contact, rule->potential()); });
   exec::CountingExecutor executor;
   std::vector<int> unread;
-  resident::make_limit(executor, scene, method, unread);
+  at_config(config, "/strain_limit", [&] { resident::make_limit(executor, scene, method, unread); });
 }
 
 void require_device(const RunConfig& config, const Scene& scene) {

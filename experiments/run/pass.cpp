@@ -22,11 +22,12 @@ void PassResult::keep(Archive& archive) {
 }
 
 Pass::Pass(const RunConfig& config, const Scene& scene, const Calibration& calibration, const Plan& plan,
-           const RunOptions& options, const char* name, Recorder& recorder)
+           const RunOptions& options, const char* name, Recorder& recorder, int passes_after)
     : config_(config),
       options_(options),
       name_(name),
       recorder_(recorder),
+      passes_after_(passes_after),
       method_(make_method(config, calibration)),
       simulation_(scene, method_, plan, config.time.dt, config.time.steps),
       t_end_(config.time.dt * config.time.steps * (1 - 1e-9)) {}
@@ -106,8 +107,11 @@ void Pass::show(const StepReport& step) const {
   progress.contacts = step.contacts.total();
   progress.gap = step.gap_min_m;
   progress.elapsed_s = now_s() - start_s_;
-  const double t = simulation_.time();
-  progress.eta_s = progress.elapsed_s * std::max(0.0, (t_end_ - t) / (t - t_begin_));
+  progress.t_s = simulation_.time();
+  progress.t_end_s = config_.time.dt * config_.time.steps;
+  // accumulated_toi may have gone nowhere yet
+  const double rate = progress.elapsed_s / std::max(progress.t_s - t_begin_, 1e-9 * progress.t_end_s);
+  progress.eta_s = rate * (std::max(0.0, t_end_ - progress.t_s) + passes_after_ * progress.t_end_s);
   options_.progress(progress);
 }
 

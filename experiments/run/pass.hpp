@@ -37,9 +37,9 @@ class Pass {
                     // be read any more
   };
 
-  /// All arguments must outlive the pass. name: of its progress line.
+  /// All arguments must outlive the pass. name: of its progress line; passes_after: that follow it.
   Pass(const RunConfig& config, const Scene& scene, const Calibration& calibration, const Plan& plan,
-       const RunOptions& options, const char* name, Recorder& recorder);
+       const RunOptions& options, const char* name, Recorder& recorder, int passes_after = 0);
 
   /// Goes on to the end. save() is called between two steps, at the moments below: a pass that goes on from an archive
   /// of such a moment is the same, bit for bit. std::bad_alloc and exec::OutOfMemory of a step are the outcome oom,
@@ -62,6 +62,7 @@ class Pass {
   const RunOptions& options_;
   const char* name_;
   Recorder& recorder_;
+  int passes_after_;
   Method method_;
   Simulation simulation_;
   PassResult result_;

@@ -87,7 +87,7 @@ class PassSequence {
     bare.passes = {true, false, false};
     RunRecord apart;  // only times and hash of the timed pass are used where another one follows
     Recorder recorder(bare, scene_, look ? apart : record_, nullptr);
-    Pass pass(bare, scene_, calibration_, plan_, options_, "time", recorder);
+    Pass pass(bare, scene_, calibration_, plan_, options_, "time", recorder, look ? 1 : 0);
     go_on(pass);
     timed_ = pass.run([&](Pass::Moment moment) { save(pass, moment); });
     keep_held(timed_);
@@ -113,6 +113,7 @@ class PassSequence {
     keep_held(seen_);
     recorder.finish();
     record_.artifacts = files_.artifacts->written();
+    record_.artifacts.push_back(files_.trace->artifact());
     if (recorder.ledger()) ledger_ = *recorder.ledger();
     audited_ = recorder.audit_verdict();
   }

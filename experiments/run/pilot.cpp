@@ -9,8 +9,10 @@
 #include "barriers/shapes/registry.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/simulation.hpp"
+#include "core/record/phase_times.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/pilot_replay.hpp"
+#include "experiments/run/plan.hpp"
 
 namespace bb {
 namespace {
@@ -79,7 +81,8 @@ void look_up(const RunOptions& options) {
   if (options.interrupted && options.interrupted->load()) throw Interrupted{};
 }
 
-void show(const RunConfig& config, const RunOptions& options, const StepReport& step) {
+/// The run has to do its passes after the steps that are shown here.
+void show(const RunConfig& config, const RunOptions& options, const StepReport& step, double start_s) {
   if (!options.progress) return;
   Progress progress;
   progress.label = run_label(config);
@@ -89,6 +92,12 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
   progress.newton = step.newton_iterations;
   progress.contacts = step.contacts.total();
   progress.gap = step.gap_min_m;
+  progress.t_s = step.t_s;
+  progress.t_end_s = config.time.dt * config.time.steps;
+  progress.elapsed_s = now_s() - start_s;
+  const int passes = int(config.passes.time) + int(has_observed_run(config));
+  progress.eta_s =
+      progress.elapsed_s / progress.step * std::max(0, (1 + passes) * progress.steps - progress.step);
   options.progress(progress);
 }
 
@@ -154,12 +163,13 @@ std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& giv
   Simulation simulation(scene, method, dt, pilot.config.time.steps);
   pilot.x.push_back(scene.x0);
   StepObserver nobody;
+  const double start_s = now_s();
   for (int step = 0; step < pilot.config.time.steps; ++step) {
     look_up(options);
     Prediction prediction;
     method.integrator->predict(simulation.history(), dt, prediction);
     const StepReport report = simulation.step(nobody);
-    show(config, options, report);
+    show(config, options, report, start_s);
     if (report.status != StepStatus::converged) {  // its state is in no balance: no load can be read from it
       pilot.stopped = fmt::format("the pilot stopped at step {} with {}", step, to_string(report.status));
       if (!report.detail.empty()) pilot.stopped += ": " + report.detail;
@@ -179,10 +189,11 @@ std::optional<double> policy_start(const RunConfig& config, const Scene& scene,
   Method method = make_method(unscaled, calibration);
   Simulation simulation(scene, method, config.time.dt, config.time.steps);
   StepObserver nobody;
+  const double start_s = now_s();
   while (simulation.nominal_steps() < config.time.steps) {
     look_up(options);
     const StepReport report = simulation.step(nobody);
-    show(config, options, report);
+    show(config, options, report, start_s);
     if (const double kappa = method.stiffness->state().kappa_start; kappa > 0) return kappa;
     if (report.status != StepStatus::converged) break;
   }

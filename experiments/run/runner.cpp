@@ -45,6 +45,7 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.d_hat_m = config.formulation.d_hat;
   labels.dt_s = config.time.dt;
   labels.note = options.note;
+  labels.swept = options.swept;
 }
 
 void fill_scene(const Scene& scene, RunRecord& record) {

@@ -55,14 +55,19 @@ def test_the_text_names_term_element_and_body_and_leaves_out_small_terms():
 def test_a_record_without_a_trace_says_what_to_do(tmp_path, capsys):
     write_run(tmp_path, "log", 1.0, 0.1)
     (tmp_path / "log/trace.jsonl").unlink()
+    record = json.loads((tmp_path / "log/run.json").read_text())
+    (tmp_path / "log/run.json").write_text(json.dumps(record | {"artifacts": []}))
     assert causes.main([str(tmp_path / "log")]) == 2
     assert "trace.jsonl: not there" in capsys.readouterr().err
 
 
-def test_a_torn_last_line_is_left_out(tmp_path, capsys):
-    (tmp_path / "trace.jsonl").write_text(json.dumps(ROWS[0]) + "\n{\"step\"")
-    assert len(causes.read_trace(tmp_path)) == 1
-    assert "torn" in capsys.readouterr().err
+@pytest.mark.parametrize("words", [("--set", "/time/steps=3"), ("--plugin", "a.so"), ("--out", "there")])
+@pytest.mark.parametrize("given", ["log", "log/run.json"])
+def test_a_record_takes_nothing_that_only_a_run_can(tmp_path, capsys, given, words):
+    write_run(tmp_path, "log", 1.0, 0.1)
+    assert causes.main([str(tmp_path / given), *words]) == 2
+    said = capsys.readouterr().err
+    assert " ".join(words) in said and "whose run is over" in said and "CONFIG.json" in said
 
 
 def test_a_stiff_contact_of_a_run_is_named(tmp_path, capsys):

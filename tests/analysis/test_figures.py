@@ -12,7 +12,7 @@ from analysis import style
 from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle, matrix_forms
 from analysis.load import load
 from analysis.table import as_text, summary_table
-from synthetic import write_cycle, write_run, write_set
+from synthetic import bind, write_cycle, write_run, write_set
 
 
 @pytest.fixture
@@ -226,6 +226,7 @@ def test_no_line_of_the_condition_figure_is_cut(tmp_path, monkeypatch):
     lines = [json.loads(line) for line in (tmp_path / "runs/quadratic/trace.jsonl").read_text().splitlines()]
     more = [lines[-2] | {"step": 3, "iteration": k} for k in range(200)]
     (tmp_path / "runs/quadratic/trace.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines + more))
+    bind(tmp_path / "runs/quadratic")
     figures = []
     monkeypatch.setattr(style, "save", lambda fig, *_: figures.append(fig))
     condition.figure(load(tmp_path / "runs"), "strip", tmp_path)
@@ -291,6 +292,7 @@ def test_clamped_and_solved_matrices_are_drawn_apart_and_never_mixed(tmp_path):
         line["cond"] = [{**sample, "matrix": "clamped"} for sample in line["cond"]]
         line["cond"] += [{**sample, "matrix": "solved", "cond": 7.0 * sample["cond"]} for sample in line["cond"]]
     trace.write_text("".join(json.dumps(line) + "\n" for line in lines))
+    bind(trace.parent)
     records = load(tmp_path / "runs")
 
     table = pd.read_csv(matrix_forms.figure(records, "strip", tmp_path)[2])

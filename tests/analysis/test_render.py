@@ -1,6 +1,7 @@
 """Frames read back as they were written, and stills whose pixels are what lies in front."""
 
 import json
+import shutil
 import subprocess
 import sys
 
@@ -12,6 +13,7 @@ from analysis import render
 from analysis.frames import FrameError, frame_paths, read_frame, read_scene
 from analysis.obstacle_mesh import obstacle_mesh
 from analysis.rasterizer import Camera, DepthBuffer
+from analysis.record_file import read_record
 
 SMALL = (120, 90)
 CLOTH_ON_SPHERE = {
@@ -44,11 +46,17 @@ def run(program, tmp_path_factory):
     return folder / "out"
 
 
+def opened(run):
+    """Record, scene and places of the frames."""
+    record = read_record(run / "run.json")
+    return record, read_scene(record, run), frame_paths(record, run)
+
+
 # --- what the program leaves
 
 
 def test_frames_carry_bodies_rods_obstacles_and_the_start(run):
-    record, scene, paths = json.loads((run / "run.json").read_text()), read_scene(run), frame_paths(run)
+    record, scene, paths = opened(run)
     assert record["status"]["outcome"] == "ok"
     assert list(paths) == [-1, 0, 2, 4]
     assert scene["bodies"] == ["cloth", "rod"] and scene["planar"] is False
@@ -64,7 +72,7 @@ def test_frames_carry_bodies_rods_obstacles_and_the_start(run):
 
 
 def test_fields_of_the_last_frame_are_those_of_its_step(run):
-    record, frame = json.loads((run / "run.json").read_text()), read_frame(frame_paths(run)[4])
+    record, frame = opened(run)[0], read_frame(opened(run)[2][4])
     step = record["steps"][4]
     gap, load, stretch = frame.of_vertices["gap_rel"], frame.of_vertices["load_N"], frame.of_triangles["stretch"]
     assert step["contacts"]["obstacle"] > 0
@@ -130,7 +138,8 @@ def test_a_still_is_written_with_its_caption_and_is_the_same_twice(run, tmp_path
 
 
 def test_colours_follow_the_field(run):
-    frame, scene = read_frame(frame_paths(run)[4]), read_scene(run)
+    record, scene, paths = opened(run)
+    frame = read_frame(paths[4])
     surfaces, scale = render._assemble(frame, scene, "gap", np.zeros(3), 0.3)
     touched = (frame.of_vertices["gap_rel"] < 1)[frame.triangles]
     colors = surfaces.corner_colors[:50]
@@ -147,9 +156,35 @@ def test_what_cannot_be_drawn_is_said(run, tmp_path, capsys):
     assert "there are -1, 0, 2, 4" in capsys.readouterr().err
     assert render.main([str(run), "--step", "-1", "--color", "gap"]) == 2
     assert "no gap_rel" in capsys.readouterr().err
-    (tmp_path / "run.json").write_text('{"schema": {"name": "barrierbench.run", "version": "3.0.0"}}')
+    record = json.loads((run / "run.json").read_text())
+    (tmp_path / "run.json").write_text(json.dumps(record | {"artifacts": []}))
     with pytest.raises(FrameError, match="frames_every=1"):
         render.render(tmp_path)
+
+
+@pytest.mark.parametrize("damage", ["another frame", "cut", "gone", "another scene", "not named"])
+def test_frames_that_are_not_those_of_the_record_are_not_drawn(run, tmp_path, capsys, damage):
+    copy = tmp_path / "run"
+    shutil.copytree(run, copy)
+    assert render.main([str(copy), "--size", "60", "40"]) == 0
+    last, scene = copy / "frames/step_000004.ply", copy / "frames/scene.json"
+    if damage == "another frame":
+        shutil.copyfile(copy / "frames/step_000002.ply", last)  # a whole frame of the same bodies
+    if damage == "cut":
+        last.write_bytes(last.read_bytes()[:-8])
+    if damage == "gone":
+        last.unlink()
+    if damage == "another scene":
+        scene.write_text(scene.read_text().replace("ball", "bowl"))
+    if damage == "not named":
+        record = json.loads((copy / "run.json").read_text())
+        record["artifacts"] = [a for a in record["artifacts"] if a["kind"] == "trace"]
+        (copy / "run.json").write_text(json.dumps(record))
+    capsys.readouterr()
+    assert render.main([str(copy)]) == 2
+    said = capsys.readouterr().err
+    assert ("scene.json" if damage == "another scene" else str(copy)) in said
+    assert ("names no frames" if damage == "not named" else "allowed: ") in said
 
 
 @pytest.mark.parametrize("content", [b"", b"ply\nend_header\n", b"not a mesh", b"ply\nformat ascii 1.0\nend_header\n"])

@@ -98,14 +98,17 @@ def test_cycles_are_ten_changes_in_a_row(tmp_path):
     assert longest_run([0.5] * 4 + [0.005] + [0.5] * 7 + [0.01]) == 7 and longest_run([]) == 0
     read = METRICS["kappa_cycles"][3]
 
+    def record(folder, n_lines):
+        return {PLACE: str(folder), "schema": {"version": "3.3.0"}, "summary": {"newton_iterations": n_lines}}
+
     def count(*steps):
         lines = [{"step": k, "kappa_change_rel": change} for k, changes in enumerate(steps) for change in changes]
         (tmp_path / "trace.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines))
-        return read({PLACE: str(tmp_path)})
+        return read(record(tmp_path, len(lines)))
 
     assert count([0.5] * 10, [0.5] * 9, [None] + [0.02] * 30) == 2
     assert count([0.5] * 5, [0.5] * 5) == 0  # a new step begins anew
-    assert read({}) is None and read({PLACE: str(tmp_path / "none")}) is None
+    assert read({}) is None and read(record(tmp_path / "none", 0)) is None
 
 
 def test_without_a_trace_no_cycle_is_no_proof():

@@ -78,7 +78,7 @@ def test_records_of_different_configs(match, monkeypatch, tmp_path, capsys):
 def test_a_number_that_is_none(match, monkeypatch, tmp_path, capsys):
     install(tmp_path, monkeypatch, {}, {"cubic": {"/comparability/gap_rel": float("nan")}})
     assert match("--formulations", "cubic") == 2
-    assert "case2/run.json: NaN where a number or null is needed" in capsys.readouterr().err
+    assert "case2/run.json#/comparability/gap_rel: found nan; allowed: a finite number" in capsys.readouterr().err
 
 
 def test_a_folder_with_runs_of_other_settings(match, monkeypatch, tmp_path, capsys):

@@ -130,7 +130,7 @@ def test_numbers_of_another_base_are_not_taken(monkeypatch, tmp_path, capsys):
 
 @pytest.mark.parametrize("edit, said", [
     ({"block cubic x10": {"/config/time/dt_s": 0.02}}, "are not runs of the same config: /time/dt_s: 0.01 and 0.02"),
-    ({"block cubic x10": {"/summary/wall_s": float("inf")}}, "Infinity where a number or null is needed")])
+    ({"block cubic x10": {"/summary/wall_s": float("inf")}}, "#/summary/wall_s: found inf; allowed: a finite number")])
 def test_bad_records(monkeypatch, tmp_path, capsys, edit, said):
     install(tmp_path, monkeypatch, {}, edit)
     assert pareto.main([str(spec_file(tmp_path)), "--results", str(tmp_path / "r"), "--runs", str(tmp_path / "runs")]) == 2

@@ -52,7 +52,7 @@ ResidentBarrier::ResidentBarrier(const BarrierFunction& barrier, bool potential)
   if (barrier.literal) {
     throw ConfigError("shape", "the article's literal evaluation", "the CPU path");
   }
-  if (barrier.in_float) throw ConfigError("precision", "float", "double where the pipeline is resident");
+  if (barrier.in_float) throw ConfigError("/precision", "float", "double where the pipeline is resident");
   if (potential && argument_ != Argument::gap) {
     throw ConfigError("argument", "squared_gap with a potential", "gap");
   }

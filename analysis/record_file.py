@@ -1,0 +1,194 @@
+"""The one reader of what a run leaves: run.json, the trace and the frames beside it. Every verb in Python reads records through it.
+
+A record is read when it is JSON of this schema, holds finite numbers, and its fields have the types that the schema says. The files beside it
+are read when they are those that the record names, byte for byte: `artifacts` has the sha256 of each. Whatever else is refused with file,
+place, value and what is allowed.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import math
+import re
+from collections.abc import Iterator
+from pathlib import Path
+
+from . import fields
+
+VERSION = fields.schema("run")["$defs"]["SchemaId"]["properties"]
+SCHEMA_NAME, SCHEMA_MAJOR = VERSION["name"]["enum"][0], VERSION["version"]["pattern"].strip("^").split("\\.")[0]
+OURS = tuple(int(part) for part in fields.schema("run")["$comment"].removeprefix("version ").split("."))
+TRACE = "trace.jsonl"
+HASHED_TRACES = (3, 4)  # the first version whose records name their trace in `artifacts`
+NEEDED = {"ids": ("run_id",), "status": ("outcome", "valid"), "labels": ("scene", "formulation"), "summary": (), "steps": ()}
+TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
+
+
+class RecordError(ValueError):
+    """A file that is not a record this version can read, or that does not belong to its record."""
+
+
+def leaves(value, place: str = "") -> Iterator[tuple[str, object]]:
+    """Every value below with its JSON pointer; an empty object or list is a value."""
+    if isinstance(value, (dict, list)) and value:
+        for key, below in value.items() if isinstance(value, dict) else enumerate(value):
+            yield from leaves(below, f"{place}/{key}")
+    else:
+        yield place, value
+
+
+def _version(record: dict) -> tuple[int, ...]:
+    return tuple(int(part) for part in record["schema"]["version"].split("."))
+
+
+def _check_schema(record: dict, path: Path) -> None:
+    schema = record.get("schema")
+    schema = schema if isinstance(schema, dict) else {}
+    version = str(schema.get("version", ""))
+    if schema.get("name") != SCHEMA_NAME or not re.fullmatch(rf"{SCHEMA_MAJOR}\.[0-9]+\.[0-9]+", version):
+        raise RecordError(f"{path}#/schema: found {json.dumps(record.get('schema'))[:100]}; allowed: {SCHEMA_NAME} {SCHEMA_MAJOR}.x.y")
+
+
+def _shown(value) -> str:
+    return json.dumps(value)[:60]
+
+
+def _fault(value, rule: dict, place: str, complete: bool, words: bool) -> str:
+    """What is wrong with the first value that is not as the schema says; empty when all is well. complete: every field has to be there.
+    words: only the words of the schema are allowed; a later version may have more. Unknown fields are passed over."""
+    while "$ref" in rule:
+        rule = fields.schema("run")["$defs"][rule["$ref"].rsplit("/", 1)[1]]
+    if "enum" in rule:
+        return "" if value in rule["enum"] or not words and isinstance(value, str) else f"{place}: found {_shown(value)}; allowed: {', '.join(map(str, rule['enum']))}"
+    kinds = rule.get("type", ())
+    kinds = [kinds] if isinstance(kinds, str) else kinds
+    is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
+    right = any(isinstance(value, TYPES[k]) if k in TYPES else is_number and (k == "number" or value == int(value)) for k in kinds)
+    if kinds and not right:
+        return f"{place}: found {_shown(value)}; allowed: {' or '.join(kinds)}"
+    if is_number and "minimum" in rule and value < rule["minimum"]:
+        return f"{place}: found {value}; allowed: {rule['minimum']} or more"
+    if isinstance(value, dict):
+        return _object_fault(value, rule, place, complete, words)
+    items = rule.get("items") if isinstance(value, list) else None
+    return next((fault for k, below in enumerate(value if items else ()) if (fault := _fault(below, items, f"{place}/{k}", complete, words))), "")
+
+
+def _object_fault(value: dict, rule: dict, place: str, complete: bool, words: bool) -> str:
+    known, other = rule.get("properties", {}), rule.get("additionalProperties")
+    for name in rule.get("required", ()) if complete else ():
+        if name not in value:
+            return f"{place}: no field {name}; allowed: a record as it was written"
+    for name, below in value.items():
+        inner = known.get(name, other if isinstance(other, dict) else None)
+        if inner is not None and (fault := _fault(below, inner, f"{place}/{name}", complete, words)):
+            return fault
+    return ""
+
+
+def _needed_fault(record: dict) -> str:
+    for section, names in NEEDED.items():
+        for place in (section, *(f"{section}/{name}" for name in names)):
+            value = record
+            for name in place.split("/"):
+                value = value.get(name) if isinstance(value, dict) else None
+            if value is None:
+                return f"/{place}: not there; allowed: a record as it was written"
+    return ""
+
+
+def read_record(path: Path, foreign: bool = False, allow_not_finite: bool = False) -> dict:
+    """One run.json. foreign: a record that another program may have written, whose sections may be missing. allow_not_finite: the caller
+    judges numbers that are none. Raises RecordError with file and place: torn or otherwise not JSON, no record, a version this one does not
+    read, a number that is not finite, a field of another type or with an unknown word, a field that is missing.   Cost: of the size."""
+    path = Path(path)
+    try:
+        record = json.loads(path.read_text())
+    except (OSError, ValueError, RecursionError) as error:  # ValueError: not JSON, not UTF-8
+        raise RecordError(f"{path}: not JSON: {error}") from None
+    if not isinstance(record, dict):
+        raise RecordError(f"{path}: not JSON of a record: found {_shown(record)}; allowed: an object")
+    _check_schema(record, path)
+    bad = None if allow_not_finite else next((f"{place}: found {value}" for place, value in leaves(record) if isinstance(value, float) and not math.isfinite(value)), None)
+    if bad:
+        raise RecordError(f"{path}#{bad}; allowed: a finite number, or null with the word that says why")
+    if not foreign:
+        version = _version(record)
+        fault = _needed_fault(record) or _fault(record, fields.schema("run"), "", version == OURS, version <= OURS)
+        if fault:
+            raise RecordError(f"{path}#{fault}")
+    return record
+
+
+def sha256_of(path: Path) -> str:
+    """Of the bytes of a file, in hexadecimal digits. Raises RecordError where it cannot be read."""
+    try:
+        with path.open("rb") as file:
+            digest = hashlib.sha256()
+            while block := file.read(1 << 20):
+                digest.update(block)
+            return digest.hexdigest()
+    except OSError as error:
+        raise RecordError(f"{path}: {error.strerror}; allowed: the file that its record names") from None
+
+
+def named_files(record: dict, kind: str) -> list[str]:
+    """Paths of the files of a kind (frame, frame_scene, matrix, matrix_side_car, trace) that the record names, relative to its folder."""
+    return [file["path"] for file in record.get("artifacts") or [] if file["kind"] == kind]
+
+
+def bound_file(record: dict, folder: Path, relative: str) -> Path:
+    """The file beside the record, if it is the very one that the record names. Raises RecordError: not named, not there, another content."""
+    path = Path(folder) / relative
+    known = next((file for file in record.get("artifacts") or [] if file["path"] == relative), None)
+    if known is None:
+        raise RecordError(f"{path}: the record beside it names no such file; allowed: one of its `artifacts`")
+    if (found := sha256_of(path)) != known["sha256"]:
+        raise RecordError(f"{path}: found sha256 {found[:16]}, {path.stat().st_size} bytes; allowed: sha256 {known['sha256'][:16]}, {known['bytes']} bytes, as the record beside it says")
+    return path
+
+
+def trace_lines(path: Path) -> tuple[list[dict], int]:
+    """The rows of a trace, whoever wrote it, and how many of its lines were torn by a crash: 0 or 1, since only the last one can be.
+    Raises RecordError: a line before the last one that is no JSON object, a number that is none."""
+    lines = path.read_text(errors="replace").splitlines()
+    rows = []
+    for number, line in enumerate(lines, 1):
+        try:
+            row = json.loads(line)
+        except ValueError:
+            row = None
+        if isinstance(row, dict):
+            rows.append(row)
+        elif number < len(lines):
+            raise RecordError(f"{path}:{number}: not a JSON object; only the last line of a trace may be torn")
+    return rows, len(lines) - len(rows)
+
+
+def is_hashed(record: dict) -> bool:
+    """Whether a record of this version says which trace is its own."""
+    return _version(record)[:2] >= HASHED_TRACES
+
+
+def read_trace(record: dict, folder: Path) -> list[dict]:
+    """The rows of the trace beside the record, one a Newton iteration; none where the run wrote none. Raises RecordError when the file is not
+    the one that the record names; of a record before version 3.4, which names none, when it has not one line an iteration."""
+    path = Path(folder) / TRACE
+    if is_hashed(record):
+        if TRACE not in named_files(record, "trace"):
+            if path.exists():
+                raise RecordError(f"{path}: the record beside it names no trace; allowed: none, since its run wrote none")
+            return []
+        return trace_lines(bound_file(record, folder, TRACE))[0]
+    if not path.exists():
+        return []
+    rows, torn = trace_lines(path)
+    expected = record["summary"].get("newton_iterations")
+    if torn or len(rows) != expected:
+        raise RecordError(f"{path}: found {len(rows)} whole lines{' and a torn one' if torn else ''}; allowed: {expected}, one for each Newton iteration of the record beside it")
+    for number, row in enumerate(rows, 1):
+        bad = next((place for place, value in leaves(row) if isinstance(value, float) and not math.isfinite(value)), None)
+        if bad:
+            raise RecordError(f"{path}:{number}: {bad} is not finite; allowed: a finite number, or null with the word that says why")
+    return rows
