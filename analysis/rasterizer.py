@@ -42,6 +42,22 @@ class Camera:
         return np.stack([self.center[0] + self.scale * local[:, 0], self.center[1] + self.scale * local[:, 1], -z], axis=1)
 
 
+    def rays(self, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
+        """Of the middles of all pixels: origins [3] or [height, width, 3] and ways [height, width, 3] (m), such that origin
+        + z way is z metres in front of the camera."""
+        x = (np.arange(width) + 0.5 - self.center[0]) / self.scale
+        y = (np.arange(height) + 0.5 - self.center[1]) / self.scale
+        right, down, forward = self.axes()
+        side = x[None, :, None] * right + y[:, None, None] * down
+        if self.perspective:
+            return self.eye, side + forward
+        return self.eye + side, np.broadcast_to(forward, side.shape)
+
+    def depth(self, z: np.ndarray) -> np.ndarray:
+        """project()'s depth of points z metres in front of the camera."""
+        return 1 / np.maximum(z, 1e-9) if self.perspective else -z
+
+
 class DepthBuffer:
     """The nearest triangle of every pixel."""
 

@@ -17,7 +17,7 @@ from . import style
 from .captions import caption
 from .frames import Frame, FrameError, frame_of, frame_paths, read_scene
 from .load import run_row
-from .obstacle_mesh import obstacle_mesh
+from .obstacle_rays import Hits, hits, primitive_gaps, signed_gap
 from .rasterizer import Camera, DepthBuffer, corner_normals
 from .record_file import RecordError, read_record
 
@@ -50,13 +50,13 @@ COLORINGS = {
 
 @dataclass
 class Surfaces:
-    """All that is drawn, bodies first: points (m), triangles, and the colour of every corner of a triangle."""
+    """All that is drawn: points (m), triangles, the colour of every corner of a triangle, and the obstacles."""
 
     points: np.ndarray  # [n, 3]
     triangles: np.ndarray  # [m, 3]
     corner_colors: np.ndarray  # [m, 3, 3] r g b in 0..1
     n_body_triangles: int
-    behind: np.ndarray  # [n] m, by which a point is moved away from the camera when depths are compared
+    obstacles: list[dict]  # of scene.json
 
 
 def _values(frame: Frame, coloring: Coloring) -> np.ndarray:
@@ -100,45 +100,28 @@ def _rod_tubes(frame: Frame, radius: float) -> tuple[np.ndarray, np.ndarray]:
     return np.array(points).reshape(-1, 3), np.array(triangles, int).reshape(-1, 3)
 
 
-def _cut_depth(frame: Frame, obstacle: dict) -> float:
-    """How deep a flat triangle with its vertices on a round obstacle can cut into it, m.
-
-    Analytic obstacles act on vertices only, so the flat triangles between them do cut in; drawn as it is, the
-    obstacle would show through the cloth that lies on it.
-    """
-    if obstacle["kind"] == "plane" or not len(frame.triangles):
-        return 0.0
-    corners = frame.vertices[frame.triangles]
-    longest = np.linalg.norm(corners - np.roll(corners, 1, axis=1), axis=-1).max()
-    return float(min(longest**2 / (4 * obstacle["radius_m"]), obstacle["radius_m"]))
-
-
-def _assemble(frame: Frame, scene: dict, color: str, center: np.ndarray, reach: float) -> tuple[Surfaces, Normalize | None]:
+def _assemble(frame: Frame, scene: dict, color: str, reach: float) -> tuple[Surfaces, Normalize | None]:
     colors, scale = _body_colors(frame, color)
     points, triangles, corners = [frame.vertices], [frame.triangles], [colors]
-    behind, n_body = [np.zeros(len(frame.vertices))], len(frame.triangles)
-
-    def add(x: np.ndarray, t: np.ndarray, rgb: np.ndarray, depth: float = 0.0) -> None:
-        behind.append(np.full(len(x), depth))
-        triangles.append(t + sum(len(p) for p in points))
-        points.append(x)
-        corners.append(np.broadcast_to(rgb, (len(t), 3, 3)))
-
     if len(frame.edges):
         tube, sides = _rod_tubes(frame, 0.006 * reach)
         body = frame.of_vertices["body"][frame.edges[:, 0]].repeat(6)
         palette = np.array([to_rgb(c) for c in BODY_COLORS])
-        add(tube, sides, palette[body % len(palette)][:, None, :] if color == "body" else np.zeros(3))
-    for obstacle in scene["obstacles"]:
-        add(*obstacle_mesh(obstacle, center, 1.6 * reach), np.array(to_rgb(OBSTACLE_COLOR)), _cut_depth(frame, obstacle))
-    return Surfaces(np.concatenate(points), np.concatenate(triangles), np.concatenate(corners), n_body, np.concatenate(behind)), scale
+        rgb = palette[body % len(palette)][:, None, :] if color == "body" else np.zeros(3)
+        triangles.append(sides + len(frame.vertices))
+        points.append(tube)
+        corners.append(np.broadcast_to(rgb, (len(sides), 3, 3)))
+    return Surfaces(np.concatenate(points), np.concatenate(triangles), np.concatenate(corners), len(frame.triangles), scene["obstacles"]), scale
 
 
 def _shadow(surfaces: Surfaces, at: np.ndarray, center: np.ndarray, reach: float, pixels: int = 900) -> np.ndarray:
-    """True for the points `at` that another triangle hides from the light."""
+    """True for the points `at` that a triangle or an obstacle hides from the light."""
     camera = Camera(center + 10 * reach * LIGHT, center, np.array([0.0, 1.0, 0.0]), pixels / (5 * reach), (pixels / 2, pixels / 2), False)
     buffer = DepthBuffer(pixels, pixels)
     buffer.draw(camera.project(surfaces.points), surfaces.triangles)
+    for obstacle in surfaces.obstacles:
+        if not obstacle.get("inside"):
+            buffer.depth = np.maximum(buffer.depth, hits(obstacle, camera, pixels, pixels, center, 1.6 * reach).depth)
     seen = camera.project(at)
     column, row = np.floor(seen[:, 0]).astype(int), np.floor(seen[:, 1]).astype(int)
     inside = (column >= 0) & (column < pixels) & (row >= 0) & (row < pixels)
@@ -158,28 +141,71 @@ def _lines(buffer: DepthBuffer, projected: np.ndarray, surfaces: Surfaces, pixel
     return LINE_ALPHA * near * (owner < surfaces.n_body_triangles)
 
 
+def _shade(color: np.ndarray, x: np.ndarray, normal: np.ndarray, camera: Camera, shadow: np.ndarray) -> np.ndarray:
+    """[n, 3] colours under the light."""
+    normal = normal * np.sign(np.einsum("nc,nc->n", normal, camera.eye - x))[:, None]  # towards the camera
+    light = np.clip(normal @ LIGHT, 0, None) * np.where(shadow, SHADOWED, 1)
+    return color * (AMBIENT + (1 - AMBIENT) * light)[:, None]
+
+
+def _draw_obstacles(image: np.ndarray, buffer: DepthBuffer, surfaces: Surfaces, camera: Camera, center: np.ndarray, reach: float) -> None:
+    """Where an obstacle is nearer than all that was drawn before; those pixels of the buffer become the obstacle's."""
+    height, width = buffer.owner.shape
+    for obstacle in surfaces.obstacles:
+        hit: Hits = hits(obstacle, camera, width, height, center, 1.6 * reach)
+        front = hit.depth > buffer.depth
+        x = hit.points[front]
+        grey = np.broadcast_to(np.array(to_rgb(OBSTACLE_COLOR)), x.shape)
+        image[front] = _shade(grey, x, hit.normals[front], camera, _shadow(surfaces, x, center, reach))
+        buffer.depth[front], buffer.owner[front] = hit.depth[front], -1
+
+
+def _fill_obstacles(image: np.ndarray, surfaces: Surfaces, camera: Camera) -> None:
+    """Planar scenes: what the obstacles forbid, under the bodies, so that what enters them is seen."""
+    height, width = image.shape[:2]
+    x = camera.rays(width, height)[0].copy()
+    x[..., 2] = 0
+    for obstacle in surfaces.obstacles:
+        image[signed_gap(obstacle, x) < 0] = to_rgb(OBSTACLE_COLOR)
+
+
 def _picture(surfaces: Surfaces, camera: Camera, size: tuple[int, int], planar: bool, center: np.ndarray, reach: float) -> np.ndarray:
     """[height, width, 3] in 0..1: shaded by one light, with shadows; planar scenes flat."""
     buffer = DepthBuffer(size[0] * OVERSAMPLING, size[1] * OVERSAMPLING)
     projected = camera.project(surfaces.points)
-    away = surfaces.points - camera.eye
-    away *= (surfaces.behind / np.linalg.norm(away, axis=1))[:, None]
-    projected[:, 2] = camera.project(surfaces.points + away)[:, 2]
     buffer.draw(projected, surfaces.triangles)
     image = np.ones((*buffer.owner.shape, 3))
+    if planar:
+        _fill_obstacles(image, surfaces, camera)
+    else:
+        _draw_obstacles(image, buffer, surfaces, camera, center, reach)
     pixel = np.nonzero(buffer.owner >= 0)
     owner, weights = buffer.owner[pixel], buffer.weights[pixel]
     color = np.einsum("nk,nkc->nc", weights, surfaces.corner_colors[owner])
     if not planar:
-        corners = surfaces.triangles[owner]
-        x = np.einsum("nk,nkc->nc", weights, surfaces.points[corners])
+        x = np.einsum("nk,nkc->nc", weights, surfaces.points[surfaces.triangles[owner]])
         normal = np.einsum("nk,nkc->nc", weights, corner_normals(surfaces.points, surfaces.triangles)[owner])
-        normal *= np.sign(np.einsum("nc,nc->n", normal, camera.eye - x))[:, None]  # towards the camera
-        light = np.clip(normal @ LIGHT, 0, None) * np.where(_shadow(surfaces, x, center, reach), SHADOWED, 1)
-        color = color * (AMBIENT + (1 - AMBIENT) * light)[:, None]
+        color = _shade(color, x, normal, camera, _shadow(surfaces, x, center, reach))
     image[pixel] = color * (1 - _lines(buffer, projected, surfaces, pixel))[:, None]
     height, width = size[1], size[0]
     return image.reshape(height, OVERSAMPLING, width, OVERSAMPLING, 3).mean(axis=(1, 3)).clip(0, 1)
+
+
+def _at_obstacles(frame: Frame, scene: dict) -> str:
+    """A sentence for the caption: how far the drawn surface enters obstacles, or how far it stays outside."""
+    found = []  # gap, body, obstacle
+    bodies = np.asarray(frame.of_vertices.get("body", np.zeros(len(frame.vertices), int)))
+    for primitives in (frame.triangles, frame.edges):
+        for obstacle in scene["obstacles"] if len(primitives) else []:
+            gaps, body = primitive_gaps(obstacle, frame.vertices[primitives]), bodies[primitives[:, 0]]
+            found += [(float(gaps[body == b].min()), scene["bodies"][b], obstacle["name"]) for b in np.unique(body)]
+    if not found:
+        return ""
+    entered = sorted(f for f in found if f[0] < 0)
+    if entered:
+        return "Inside an obstacle: " + "; ".join(f"{body} in {name} by {-1e3 * gap:.3g} mm" for gap, body, name in entered) + " (flat triangles without their thickness)."
+    gap, body, name = min(found)
+    return f"No triangle is inside an obstacle: the closest is {1e3 * gap:.3g} mm away ({body} from {name}, without thickness)."
 
 
 def _round_obstacles(scene: dict) -> np.ndarray:
@@ -245,7 +271,7 @@ def render(run: str | Path, step: int | None = None, color: str = "body", out: s
     focus = np.concatenate([frame.vertices, _round_obstacles(scene)])
     camera = _camera(focus, scene["planar"], view, size)
     reach = float(np.linalg.norm(focus - camera.target, axis=1).max())
-    surfaces, scale = _assemble(frame, scene, color, camera.target, reach)
+    surfaces, scale = _assemble(frame, scene, color, reach)
     picture = _picture(surfaces, camera, size, scene["planar"], camera.target, reach)
     fig, axis = plt.subplots(figsize=(style.WIDE_IN, style.WIDE_IN * size[1] / size[0] + 0.2), layout="constrained")
     axis.imshow(picture, interpolation="antialiased")
@@ -259,7 +285,7 @@ def render(run: str | Path, step: int | None = None, color: str = "body", out: s
     fig.savefig(path, metadata={"Software": None})
     plt.close(fig)
     colored = "bodies in one colour each" if color == "body" else f"colour: {COLORINGS[color].label}"
-    path.with_suffix(".txt").write_text(caption(f"{what}. Shown: {colored}; analytic obstacles grey, behind the triangles that rest on them (they act on vertices only); sides of triangles as thin lines.", [run_row(record)]))
+    path.with_suffix(".txt").write_text(caption(f"{what}. Shown: {colored}; analytic obstacles grey, at their true size; sides of triangles as thin lines. {_at_obstacles(frame, scene)}".rstrip(), [run_row(record)]))
     return path
 
 

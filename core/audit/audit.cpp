@@ -32,8 +32,9 @@ void require_indices(const AuditMesh& mesh, const std::vector<int>& vertices) {
     throw ConfigError("audit mesh", "a negative vertex index", "indices >= 0");
   }
   const int top = vertices.empty() ? highest : std::max(highest, vertices.back());
-  for (const auto* flags : {&mesh.fixed, &mesh.prescribed}) {
-    if (!flags->empty() && static_cast<std::size_t>(top) >= flags->size()) {
+  for (const std::size_t n :
+       {mesh.fixed.size(), mesh.prescribed.size(), mesh.motion.size(), mesh.thickness.size()}) {
+    if (n > 0 && static_cast<std::size_t>(top) >= n) {
       throw ConfigError("audit mesh", "vertex " + std::to_string(top), "below the number of flags");
     }
   }
@@ -47,24 +48,25 @@ void require_indices(const AuditMesh& mesh, const std::vector<int>& vertices) {
 
 Audit::Audit(AuditMesh mesh) : mesh_(std::move(mesh)), vertices_(colliding_vertices(mesh_)) {
   require_indices(mesh_, vertices_);
-  require_obstacles(mesh_.obstacles);
   ledger_.self_test_passed = predicates_self_test();
-  ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()),
-                      static_cast<long>(mesh_.obstacles.size())};
+  ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()), 0, {}};
+  set_obstacles(mesh_.obstacles);
 }
 
 void Audit::check_state(const Positions& x, int step) {
-  ledger_.add(audit_state(mesh_, vertices_, x, ledger_.states == 0), step);
+  ledger_.add(audit_state(mesh_, primitives_, x, ledger_.states == 0), step);
 }
 
 void Audit::check_motion(const Positions& x0, const Positions& x1, int step, double tolerance) {
-  ledger_.add(audit_motion(mesh_, vertices_, x0, x1, tolerance), step);
+  ledger_.add(audit_motion(mesh_, vertices_, primitives_, x0, x1, tolerance), step);
 }
 
 void Audit::set_obstacles(std::vector<AuditObstacle> obstacles) {
   require_obstacles(obstacles);
   mesh_.obstacles = std::move(obstacles);
+  primitives_ = obstacle_primitives(mesh_);
   ledger_.subjects.obstacles = static_cast<long>(mesh_.obstacles.size());
+  ledger_.subjects.at_obstacles = primitives_.needed(mesh_.obstacles);
 }
 
 }  // namespace bb::audit

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/audit/audit_ledger.hpp"
+#include "core/audit/surface_gap.hpp"
 
 namespace bb::audit {
 
@@ -15,8 +16,7 @@ class Audit {
   /// or the flags and opposite vertices do not fit the mesh.
   explicit Audit(AuditMesh mesh);
 
-  /// Judges x [3 n_vertices], m. The first call includes pairs of wholly fixed primitives, later
-  /// calls skip them.
+  /// Judges x [3 n_vertices], m. The first call includes pairs within one rigid body, later calls skip them.
   void check_state(const Positions& x, int step);
 
   /// Judges the linear motion x0 -> x1, m, both ends as committed. @param tolerance m, a tenth of
@@ -26,6 +26,11 @@ class Audit {
   /// Tells of a state that the run reached and that is not the end of the last judged motion: an audit with
   /// such a hole is never ok.
   void note_unjudged(int step) { ledger_.add_unjudged(step); }
+
+  /// Smallest gaps of the whole surface in the state x, m; see surface_gap.hpp. No verdict depends on them.
+  SurfaceGap gap_of(const Positions& x, double reach) const {
+    return surface_gap(mesh_, vertices_, primitives_, x, reach);
+  }
 
   /// For obstacles that move between motions: the pose in which the next checks judge.
   void set_obstacles(std::vector<AuditObstacle> obstacles);
@@ -37,6 +42,7 @@ class Audit {
  private:
   AuditMesh mesh_;
   std::vector<int> vertices_;
+  ObstaclePrimitives primitives_;
   AuditLedger ledger_;
 };
 

@@ -9,9 +9,10 @@
 
 namespace bb::audit {
 
-/// What there is to judge: sizes of the surface.
+/// What there is to judge: sizes of the surface, and what has to be asked at the obstacles.
 struct AuditSubjects {
   long edges = 0, triangles = 0, vertices = 0, obstacles = 0;
+  ObstacleCounts at_obstacles;  // that one state asks, over all obstacles
 };
 
 struct AuditLedger {
@@ -19,9 +20,9 @@ struct AuditLedger {
   long states = 0, motions = 0;
   long state_pairs = 0, motion_pairs = 0;  // that met in the broad phase
   long pair_queries = 0;                   // primitives compared with all that they may meet
-  long obstacle_queries = 0;               // vertices and their paths compared with an obstacle
+  ObstacleCounts obstacle_judged;          // primitives compared with an obstacle, at rest and in motion
   long crossings = 0, touches = 0;         // of states
-  long violations = 0, unproven = 0;       // of motions
+  long violations = 0, unproven = 0;       // of motions; unproven ones at obstacles too
   long inverted = 0;                       // planar elements, summed over states; not a penetration
   long obstacle_violations = 0;            // of states and motions
   long scene_faults = 0;         // prescribed primitives that cross or cannot be certified; in no other count
@@ -34,14 +35,17 @@ struct AuditLedger {
   std::optional<PairName> first_fault;  // the first fault of the scene
 
   /// Number of primitives that were compared with all that they may meet, over all states and motions; boxes
-  /// decide most of them. 0 when no pair of the surface was, or obstacles are there and no vertex was judged
-  /// against one: every scene has a surface, so that such a run was not audited.
+  /// decide most of them. 0 when no pair of the surface was, or when a kind of primitive that the obstacles ask
+  /// for was never asked: every scene has a surface, so that such a run was not audited.
   long judged() const {
-    const bool all_kinds = pair_queries > 0 && (subjects.obstacles == 0 || obstacle_queries > 0);
-    return all_kinds ? pair_queries + obstacle_queries : 0;
+    const ObstacleCounts &need = subjects.at_obstacles, &done = obstacle_judged;
+    const bool kinds = (need.vertices == 0 || done.vertices > 0) && (need.edges == 0 || done.edges > 0) &&
+                       (need.triangles == 0 || done.triangles > 0);
+    const bool all = pair_queries > 0 && kinds && (subjects.obstacles == 0 || done.total() > 0);
+    return all ? pair_queries + done.total() : 0;
   }
 
-  /// Free vertices penetrated something.
+  /// What the solver moves penetrated something.
   bool penetrated() const { return crossings + violations + obstacle_violations > 0; }
 
   /// Nothing bad was found. Says nothing of how much was judged.
@@ -56,7 +60,8 @@ struct AuditLedger {
 
   void add(const StateAudit& s, int step) {
     ++states;
-    state_pairs += s.pairs, pair_queries += s.queries, obstacle_queries += s.obstacle_queries;
+    state_pairs += s.pairs, pair_queries += s.queries;
+    obstacle_judged.add(s.obstacle_judged);
     crossings += s.crossings, touches += s.touches, inverted += s.inverted;
     obstacle_violations += s.obstacle_violations, scene_faults += s.scene_faults;
     non_finite += s.finite ? 0 : 1;
@@ -64,8 +69,9 @@ struct AuditLedger {
   }
   void add(const MotionAudit& m, int step) {
     ++motions;
-    motion_pairs += m.pairs, pair_queries += m.queries, obstacle_queries += m.obstacle_queries;
-    violations += m.violations, unproven += m.unproven;
+    motion_pairs += m.pairs, pair_queries += m.queries;
+    obstacle_judged.add(m.obstacle_judged);
+    violations += m.violations, unproven += m.unproven + m.obstacle_unproven;
     obstacle_violations += m.obstacle_violations, scene_faults += m.scene_faults;
     non_finite += m.finite ? 0 : 1;
     note(step, m.first_bad, m.first_fault);

@@ -4,8 +4,9 @@
 #include <algorithm>
 
 #include "core/audit/box_tree.hpp"
-#include "core/audit/obstacle_sign.hpp"
 #include "core/audit/pair_verdict.hpp"
+#include "core/audit/rigid_reach.hpp"
+#include "core/audit/state_audit.hpp"
 #include "core/audit/tally.hpp"
 
 namespace bb::audit {
@@ -15,7 +16,7 @@ class MotionJudge {
  public:
   MotionJudge(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x0,
               const Positions& x1, double tolerance)
-      : mesh_(mesh), vertices_(vertices), x0_(x0), x1_(x1), tolerance_(tolerance) {}
+      : mesh_(mesh), vertices_(vertices), x0_(x0), x1_(x1), tolerance_(tolerance), reach_(mesh, x0, x1) {}
 
   MotionAudit vertex_triangle() const {
     return against_vertices<VertexTriangle>(mesh_.triangles, PairKind::vertex_triangle);
@@ -25,46 +26,37 @@ class MotionJudge {
   }
 
   MotionAudit edge_edge() const {
-    const BoxTree tree(boxes(mesh_.edges));
-    return tally_over<MotionAudit>(
-        static_cast<std::size_t>(mesh_.edges.cols()), [&](std::size_t i, MotionAudit& sum) {
-          const int e = static_cast<int>(i);
-          const auto a = mesh_.edges.col(e);
-          ++sum.queries;
-          tree.query(box(a), [&](int f) {
-            if (f <= e) return;
-            const auto b = mesh_.edges.col(f);
-            if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return;
-            pair<EdgeEdge>({a[0], a[1], b[0], b[1]}, {PairKind::edge_edge, e, f}, sum);
-          });
-        });
-  }
-
-  MotionAudit obstacles() const {
-    return tally_over<MotionAudit>(vertices_.size(), [&](std::size_t i, MotionAudit& sum) {
-      const int v = vertices_[i];
-      if (!moves(v)) return;
-      const bool given = mesh_.is_prescribed(v);
-      for (std::size_t o = 0; o < mesh_.obstacles.size(); ++o) {
-        ++sum.obstacle_queries;
-        if (!obstacle_hit(mesh_.obstacles[o], x0_.col(v), x1_.col(v))) continue;
-        ++(given ? sum.scene_faults : sum.obstacle_violations);
-        keep_first(given ? sum.first_fault : sum.first_bad,
-                   PairName{PairKind::vertex_obstacle, v, static_cast<int>(o)});
-      }
+    const std::vector<int> edges = reach_.active(mesh_.edges);
+    const BoxTree tree(boxes(mesh_.edges, edges));
+    MotionAudit out = tally_over<MotionAudit>(edges.size(), [&](std::size_t i, MotionAudit& sum) {
+      const int e = edges[i];
+      const auto a = mesh_.edges.col(e);
+      tree.query(box(a), [&](int found) {
+        const int f = edges[static_cast<std::size_t>(found)];
+        if (f <= e) return;
+        const auto b = mesh_.edges.col(f);
+        if (a[0] == b[0] || a[0] == b[1] || a[1] == b[0] || a[1] == b[1]) return;
+        pair<EdgeEdge>({a[0], a[1], b[0], b[1]}, {PairKind::edge_edge, e, f}, sum);
+      });
     });
+    out.queries += mesh_.edges.cols();
+    return out;
   }
 
  private:
   template <class Pair, class Ids>
-  MotionAudit against_vertices(const Ids& primitives, PairKind kind) const {
-    const BoxTree tree(boxes(primitives));
-    const long against = primitives.cols() > 0;
+  MotionAudit against_vertices(const Ids& all, PairKind kind) const {
+    const std::vector<int> primitives = reach_.active(all);
+    const BoxTree tree(boxes(all, primitives));
+    const long against = all.cols() > 0;
     return tally_over<MotionAudit>(vertices_.size(), [&](std::size_t i, MotionAudit& sum) {
       const int v = vertices_[i];
       sum.queries += against;
-      tree.query(box(Eigen::Matrix<int, 1, 1>(v)), [&](int f) {
-        const auto ids = primitives.col(f);
+      const Eigen::Matrix<int, 1, 1> alone(v);
+      if (!reach_.may_meet_others(alone)) return;
+      tree.query(box(alone), [&](int found) {
+        const int f = primitives[static_cast<std::size_t>(found)];
+        const auto ids = all.col(f);
         if (std::find(ids.begin(), ids.end(), v) != ids.end()) return;
         if (mesh_.planar && !mesh_.opposite.empty() && mesh_.opposite[static_cast<std::size_t>(f)] == v)
           return;
@@ -78,6 +70,7 @@ class MotionJudge {
   template <class Pair>
   void pair(const std::array<int, Pair::n_points>& ids, const PairName& name, MotionAudit& sum) const {
     if (std::none_of(ids.begin(), ids.end(), [this](int v) { return moves(v); })) return;
+    if (mesh_.common_rigid_body(ids) >= 0) return;
     PairMotion<Pair> motion;
     for (std::size_t k = 0; k < ids.size(); ++k) {
       motion.x0[k] = x0_.col(ids[k]).template head<Pair::dim>();
@@ -114,9 +107,9 @@ class MotionJudge {
     return b;
   }
   template <class Ids>
-  std::vector<Box> boxes(const Ids& primitives) const {
-    std::vector<Box> out(static_cast<std::size_t>(primitives.cols()));
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = box(primitives.col(static_cast<Eigen::Index>(i)));
+  std::vector<Box> boxes(const Ids& primitives, const std::vector<int>& of) const {
+    std::vector<Box> out(of.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = box(primitives.col(of[i]));
     return out;
   }
 
@@ -124,6 +117,7 @@ class MotionJudge {
   const std::vector<int>& vertices_;
   const Positions &x0_, &x1_;
   double tolerance_;
+  RigidReach reach_;
 };
 
 }  // namespace
@@ -131,15 +125,18 @@ class MotionJudge {
 void MotionAudit::merge(const MotionAudit& other) {
   pairs += other.pairs, certified += other.certified, violations += other.violations,
       unproven += other.unproven;
-  queries += other.queries, obstacle_queries += other.obstacle_queries;
+  queries += other.queries;
+  obstacle_judged.add(other.obstacle_judged);
+  obstacle_unproven += other.obstacle_unproven;
   obstacle_violations += other.obstacle_violations, scene_faults += other.scene_faults;
   finite = finite && other.finite;
   keep_first(first_bad, other.first_bad);
   keep_first(first_fault, other.first_fault);
 }
 
-MotionAudit audit_motion(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x0,
-                         const Positions& x1, double tolerance) {
+MotionAudit audit_motion(const AuditMesh& mesh, const std::vector<int>& vertices,
+                         const ObstaclePrimitives& primitives, const Positions& x0, const Positions& x1,
+                         double tolerance) {
   MotionAudit out;
   out.finite = x0.allFinite() && x1.allFinite();
   if (!out.finite) return out;
@@ -150,8 +147,19 @@ MotionAudit audit_motion(const AuditMesh& mesh, const std::vector<int>& vertices
     out.merge(judge.vertex_triangle());
     out.merge(judge.edge_edge());
   }
-  if (!mesh.obstacles.empty()) out.merge(judge.obstacles());
+  if (mesh.obstacles.empty()) return out;
+  const ObstacleAudit found = audit_obstacles(mesh, primitives, x0, x1);
+  out.obstacle_judged = found.judged;
+  out.obstacle_violations = found.violations;
+  out.obstacle_unproven = found.unproven;
+  out.scene_faults += found.scene_faults;
+  keep_first(out.first_bad, found.first_bad);
+  keep_first(out.first_fault, found.first_fault);
   return out;
+}
+
+MotionAudit audit_motion(const AuditMesh& mesh, const Positions& x0, const Positions& x1, double tolerance) {
+  return audit_motion(mesh, colliding_vertices(mesh), obstacle_primitives(mesh), x0, x1, tolerance);
 }
 
 }  // namespace bb::audit

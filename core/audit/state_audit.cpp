@@ -4,40 +4,42 @@
 #include <algorithm>
 
 #include "core/audit/box_tree.hpp"
-#include "core/audit/obstacle_sign.hpp"
 #include "core/audit/predicates.hpp"
+#include "core/audit/rigid_reach.hpp"
 #include "core/audit/segment_triangle.hpp"
 #include "core/audit/tally.hpp"
+#include "core/audit/touch.hpp"
 
 namespace bb::audit {
 namespace {
 
 class StateJudge {
  public:
-  StateJudge(const AuditMesh& mesh, const Positions& x, bool include_fixed)
-      : mesh_(mesh), x_(x), include_fixed_(include_fixed) {}
+  StateJudge(const AuditMesh& mesh, const Positions& x, bool include_rigid)
+      : mesh_(mesh), x_(x), reach_(include_rigid ? RigidReach() : RigidReach(mesh, x, x)) {}
 
   StateAudit edges_and_triangles() const {
-    const BoxTree tree(boxes(mesh_.triangles));
-    const long against = mesh_.triangles.cols() > 0;
-    return tally_over<StateAudit>(static_cast<std::size_t>(mesh_.edges.cols()),
-                                  [&](std::size_t i, StateAudit& sum) {
-                                    const int e = static_cast<int>(i);
-                                    sum.queries += against;
-                                    tree.query(box(mesh_.edges, e), [&](int t) { edge_triangle(e, t, sum); });
-                                  });
+    const std::vector<int> edges = reach_.active(mesh_.edges), triangles = reach_.active(mesh_.triangles);
+    const BoxTree tree(boxes(mesh_.triangles, triangles));
+    StateAudit out = tally_over<StateAudit>(edges.size(), [&](std::size_t i, StateAudit& sum) {
+      tree.query(box(mesh_.edges, edges[i]),
+                 [&](int t) { edge_triangle(edges[i], triangles[static_cast<std::size_t>(t)], sum); });
+    });
+    if (mesh_.triangles.cols() > 0) out.queries += mesh_.edges.cols();
+    return out;
   }
 
   StateAudit boundary_edges() const {
-    const BoxTree tree(boxes(mesh_.edges));
-    return tally_over<StateAudit>(static_cast<std::size_t>(mesh_.edges.cols()),
-                                  [&](std::size_t i, StateAudit& sum) {
-                                    const int e = static_cast<int>(i);
-                                    ++sum.queries;
-                                    tree.query(box(mesh_.edges, e), [&](int f) {
-                                      if (f > e) edge_edge_2d(e, f, sum);
-                                    });
-                                  });
+    const std::vector<int> edges = reach_.active(mesh_.edges);
+    const BoxTree tree(boxes(mesh_.edges, edges));
+    StateAudit out = tally_over<StateAudit>(edges.size(), [&](std::size_t i, StateAudit& sum) {
+      tree.query(box(mesh_.edges, edges[i]), [&](int f) {
+        const int other = edges[static_cast<std::size_t>(f)];
+        if (other > edges[i]) edge_edge_2d(edges[i], other, sum);
+      });
+    });
+    out.queries += mesh_.edges.cols();
+    return out;
   }
 
   StateAudit inversions() const {
@@ -51,32 +53,26 @@ class StateJudge {
                                   });
   }
 
-  StateAudit obstacles(const std::vector<int>& vertices) const {
-    return tally_over<StateAudit>(vertices.size(), [&](std::size_t i, StateAudit& sum) {
-      const int v = vertices[i];
-      if (mesh_.is_fixed(v)) return;
-      const bool given = mesh_.is_prescribed(v);
-      for (std::size_t o = 0; o < mesh_.obstacles.size(); ++o) {
-        ++sum.obstacle_queries;
-        if (obstacle_side(mesh_.obstacles[o], x_.col(v)) >= 0) continue;
-        ++(given ? sum.scene_faults : sum.obstacle_violations);
-        keep_first(given ? sum.first_fault : sum.first_bad,
-                   PairName{PairKind::vertex_obstacle, v, static_cast<int>(o)});
-      }
-    });
+  /// Touching pairs that no displacement takes apart are crossings.
+  void decide_touches(StateAudit& out) const {
+    const std::vector<PairName> crossing = inseparable(mesh_, x_, out.touching);
+    out.touches = static_cast<long>(out.touching.size() - crossing.size());
+    out.touching.clear();
+    for (const PairName& name : crossing) {
+      const auto p = mesh_.edges.col(name.first);
+      const bool given = mesh_.planar ? mesh_.all_prescribed(mesh_.edges.col(name.second))
+                                      : mesh_.all_prescribed(mesh_.triangles.col(name.second));
+      out.add_crossing(name, given && mesh_.all_prescribed(p));
+    }
   }
 
  private:
-  template <class Column>
-  bool wholly_fixed(const Column& ids) const {
-    return std::all_of(ids.begin(), ids.end(), [this](int v) { return mesh_.is_fixed(v); });
-  }
   template <class A, class B>
   bool exempt(const A& a, const B& b) const {
     for (int v : a) {
       if (std::find(b.begin(), b.end(), v) != b.end()) return true;
     }
-    return !include_fixed_ && wholly_fixed(a) && wholly_fixed(b);
+    return reach_.rigid_together(a, b);
   }
   Vec2d flat(int v) const { return x_.col(v).head<2>(); }
 
@@ -87,23 +83,16 @@ class StateJudge {
     return b;
   }
   template <class Ids>
-  std::vector<Box> boxes(const Ids& primitives) const {
-    std::vector<Box> out(static_cast<std::size_t>(primitives.cols()));
-    for (std::size_t i = 0; i < out.size(); ++i) out[i] = box(primitives, static_cast<int>(i));
+  std::vector<Box> boxes(const Ids& primitives, const std::vector<int>& of) const {
+    std::vector<Box> out(of.size());
+    for (std::size_t i = 0; i < out.size(); ++i) out[i] = box(primitives, of[i]);
     return out;
   }
 
   static void count(Crossing found, const PairName& name, bool prescribed, StateAudit& sum) {
     ++sum.pairs;
-    if (found == Crossing::none) return;
-    const bool crosses = found == Crossing::crossing;
-    if (crosses && prescribed) {
-      ++sum.scene_faults;
-      keep_first(sum.first_fault, name);
-      return;
-    }
-    ++(crosses ? sum.crossings : sum.touches);
-    keep_first(crosses ? sum.first_bad : sum.first_touch, name);
+    if (found == Crossing::touch) sum.touching.push_back(name);
+    if (found == Crossing::crossing) sum.add_crossing(name, prescribed);
   }
   void edge_triangle(int e, int t, StateAudit& sum) const {
     const auto p = mesh_.edges.col(e);
@@ -121,32 +110,49 @@ class StateJudge {
 
   const AuditMesh& mesh_;
   const Positions& x_;
-  bool include_fixed_;
+  RigidReach reach_;
 };
 
 }  // namespace
 
+void StateAudit::add_crossing(const PairName& name, bool prescribed) {
+  ++(prescribed ? scene_faults : crossings);
+  keep_first(prescribed ? first_fault : first_bad, name);
+}
+
 void StateAudit::merge(const StateAudit& other) {
-  pairs += other.pairs, queries += other.queries, obstacle_queries += other.obstacle_queries;
+  pairs += other.pairs, queries += other.queries;
   crossings += other.crossings, touches += other.touches;
   inverted += other.inverted, obstacle_violations += other.obstacle_violations;
   scene_faults += other.scene_faults;
+  obstacle_judged.add(other.obstacle_judged);
   finite = finite && other.finite;
+  touching.insert(touching.end(), other.touching.begin(), other.touching.end());
   keep_first(first_bad, other.first_bad);
-  keep_first(first_touch, other.first_touch);
   keep_first(first_fault, other.first_fault);
 }
 
-StateAudit audit_state(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x,
-                       bool include_fixed) {
+StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x,
+                       bool include_rigid) {
   StateAudit out;
   out.finite = x.allFinite();
   if (!out.finite) return out;
-  const StateJudge judge(mesh, x, include_fixed);
+  const StateJudge judge(mesh, x, include_rigid);
   out.merge(mesh.planar ? judge.boundary_edges() : judge.edges_and_triangles());
+  judge.decide_touches(out);
   if (mesh.planar) out.merge(judge.inversions());
-  if (!mesh.obstacles.empty()) out.merge(judge.obstacles(vertices));
+  if (mesh.obstacles.empty()) return out;
+  const ObstacleAudit found = audit_obstacles(mesh, primitives, x);
+  out.obstacle_judged = found.judged;
+  out.obstacle_violations = found.violations;
+  out.scene_faults += found.scene_faults;
+  keep_first(out.first_bad, found.first_bad);
+  keep_first(out.first_fault, found.first_fault);
   return out;
+}
+
+StateAudit audit_state(const AuditMesh& mesh, const Positions& x, bool include_rigid) {
+  return audit_state(mesh, obstacle_primitives(mesh), x, include_rigid);
 }
 
 std::vector<int> colliding_vertices(const AuditMesh& mesh) {

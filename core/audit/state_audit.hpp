@@ -1,33 +1,38 @@
-// One accepted state: exact signs of every non-adjacent edge-triangle pair (planar: boundary edges),
-// orientation of planar elements, and the side of every vertex to every obstacle.
+// One accepted state: exact signs of every non-adjacent edge-triangle pair (planar: boundary edges), orientation of
+// planar elements, and the whole surface against every obstacle.
 #pragma once
 
 #include <optional>
+#include <vector>
 
+#include "core/audit/obstacle_audit.hpp"
 #include "core/audit/surface.hpp"
 
 namespace bb::audit {
 
 struct StateAudit {
-  long pairs = 0;             // that met in the broad phase
-  long queries = 0;           // primitives compared with all that they may meet, by boxes at least
-  long obstacle_queries = 0;  // signs of a vertex to an obstacle
-  long crossings = 0, touches = 0;
-  long inverted = 0;             // planar elements with area <= 0
-  long obstacle_violations = 0;  // free vertices strictly beyond an obstacle
-  long scene_faults = 0;         // crossings of prescribed primitives, driven vertices beyond an obstacle
-  bool finite = true;            // false: nothing was judged
+  long pairs = 0;                  // that met in the broad phase
+  long queries = 0;                // primitives compared with all that they may meet, by boxes at least
+  ObstacleCounts obstacle_judged;  // primitives compared with an obstacle
+  long crossings = 0;  // edges through triangles, touches that no displacement takes apart among them
+  long touches = 0;    // pairs at distance 0 that an infinitely small displacement takes apart
+  long inverted = 0;   // planar elements with area <= 0
+  long obstacle_violations = 0;         // primitives with a point strictly beyond an obstacle
+  long scene_faults = 0;                // of prescribed primitives: crossings, and what is beyond an obstacle
+  bool finite = true;                   // false: nothing was judged
+  std::vector<PairName> touching;       // while pairs are collected; then decided, and empty
   std::optional<PairName> first_bad;    // the lowest in PairName's order, touches aside
-  std::optional<PairName> first_touch;  // the same of the touches
   std::optional<PairName> first_fault;  // the same of the scene's faults, which are in no other count
+  void add_crossing(const PairName& name, bool prescribed);
   void merge(const StateAudit& other);
 };
 
-/// Judges the state x [3 n_vertices], m. Pairs of wholly fixed primitives only if `include_fixed`; fixed
-/// vertices are not judged against obstacles. Deterministic. Cost: O(n log n + pairs).
-/// @param vertices the colliding vertices, as from colliding_vertices(mesh)
-StateAudit audit_state(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x,
-                       bool include_fixed);
+/// Judges the state x [3 n_vertices], m. Pairs within one rigid body only if `include_rigid`. Deterministic.
+/// Cost: O(n log n + pairs).
+/// @param primitives as from obstacle_primitives(mesh)
+StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x,
+                       bool include_rigid);
+StateAudit audit_state(const AuditMesh& mesh, const Positions& x, bool include_rigid);
 
 /// All vertices of edges and (in 3D) triangles and the listed points, ascending.
 std::vector<int> colliding_vertices(const AuditMesh& mesh);

@@ -17,7 +17,10 @@ struct AuditObstacle {
   Vec3d point = Vec3d::Zero();  // on the plane; centre; on the cylinder's axis (m)
   Vec3d axis = Vec3d::UnitZ();  // plane: normal towards the allowed side; cylinder: direction; sphere: unused
   double radius = 0.0;          // m; plane: unused
-  bool inside = false;          // sphere, cylinder: vertices must stay inside instead of outside
+  bool inside = false;          // sphere, cylinder: the surface must stay inside instead of outside
+
+  /// The allowed set is convex: a surface is in it when its vertices are.
+  bool allows_a_convex_set() const { return kind == ObstacleKind::plane || inside; }
 };
 
 /// The whole surface of the bodies, whatever pairs a contact model makes of it. Pairs that share a vertex are
@@ -31,9 +34,25 @@ struct AuditMesh {
   std::vector<std::uint8_t>
       fixed;  // [n_vertices] or empty: given and never moving. Driven vertices are not fixed
   std::vector<std::uint8_t> prescribed;  // [n_vertices] or empty: given, still or driven
+  std::vector<int> motion;  // [n_vertices] or empty: given vertices with one number >= 0 move as one rigid
+                            // body, -1: any other. Empty: fixed vertices are such a body
+  std::vector<double> thickness;  // [n_vertices] or empty: half thickness, m; only surface_gap reads it
   std::vector<AuditObstacle> obstacles;
   bool planar = false;  // the scene lives in x and y; z is ignored
 
+  /// The rigid body that a vertex moves with, -1: none.
+  int rigid_body(int v) const {
+    if (!motion.empty()) return motion[static_cast<std::size_t>(v)];
+    return is_fixed(v) ? 0 : -1;
+  }
+  /// The rigid body that all vertices of a primitive move with, -1: none.
+  template <class Ids>
+  int common_rigid_body(const Ids& ids) const {
+    const int first = rigid_body(*ids.begin());
+    const bool all =
+        std::all_of(ids.begin(), ids.end(), [this, first](int v) { return rigid_body(v) == first; });
+    return all ? first : -1;
+  }
   bool is_fixed(int v) const { return !fixed.empty() && fixed[static_cast<std::size_t>(v)] != 0; }
   bool is_prescribed(int v) const {
     return !prescribed.empty() && prescribed[static_cast<std::size_t>(v)] != 0;
@@ -53,11 +72,13 @@ enum class PairKind {
   edge_edge,
   vertex_edge_2d,
   vertex_obstacle,
+  edge_obstacle,
+  triangle_obstacle,
   inverted
 };
 
-/// An offender by its indices: edge, triangle and obstacle numbers, vertex ids; `inverted`: the triangle
-/// twice. Not proven: the pair could not be certified free, and no passage was shown either.
+/// An offender by its indices: edge, triangle and obstacle numbers, vertex ids; obstacles come second;
+/// `inverted`: the triangle twice. Not proven: the pair could not be certified free, and no passage was shown either.
 struct PairName {
   PairKind kind = PairKind::edge_triangle;
   int first = -1, second = -1;

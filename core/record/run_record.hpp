@@ -245,6 +245,10 @@ struct Summary : WorkCounts {
   BB_FIELD(CondMap, cond,
            "stage/scaling -> condition numbers of clamped matrices, solved/stage/scaling of those that were "
            "solved where they differ");
+  BB_FIELD(
+      double, start_check_s,
+      "what looking for crossings at the start and along the given motions took, before the pilot and the "
+      "first step; in no phase") = 0;
   BB_FIELD(Number, wall_s, "of the steps of the pass `time`", "not_requested build_not_valid");
   BB_FIELD(Number, solve_s, "sum of all phases but output", "not_requested build_not_valid");
   BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases", "not_requested build_not_valid");
@@ -265,19 +269,32 @@ struct AuditRecord {
   BB_FIELD(long long, motions, "that were checked") = 0;
   BB_FIELD(long long, state_pairs, "met in the broad phase of states, judged one by one") = 0;
   BB_FIELD(long long, motion_pairs, "met in the broad phase of motions, judged one by one") = 0;
-  BB_FIELD(long long, obstacle_queries, "of vertices in states and of their paths in motions") = 0;
+  BB_FIELD(long long, obstacle_queries, "primitives compared with an obstacle, in states and in motions") = 0;
+  BB_FIELD(long long, obstacle_vertices,
+           "those of obstacle_queries that are vertices: at planes and inside, or alone") = 0;
+  BB_FIELD(long long, obstacle_edges, "those that are edges: of rods, outside of spheres and cylinders") = 0;
+  BB_FIELD(long long, obstacle_triangles, "those that are triangles, outside of spheres and cylinders") = 0;
   BB_FIELD(long long, judged,
            "primitives compared with all that they may meet, boxes included; 0: never ok") = 0;
-  BB_FIELD(long long, crossings, "edges through triangles, in states") = 0;
-  BB_FIELD(long long, touches, "pairs at distance 0, in states") = 0;
-  BB_FIELD(long long, violations, "motions through each other, and vertices in or through obstacles") = 0;
-  BB_FIELD(long long, unproven, "motions that could not be certified") = 0;
+  BB_FIELD(long long, crossings,
+           "edges through triangles, in states; touches that no small displacement takes apart among them") =
+      0;
+  BB_FIELD(long long, touches, "other pairs at distance 0, in states") = 0;
+  BB_FIELD(long long, violations, "motions through each other, and primitives in or through obstacles") = 0;
+  BB_FIELD(long long, unproven, "motions past each other and past obstacles that could not be certified") = 0;
   BB_FIELD(long long, inverted, "planar elements, summed over states") = 0;
   BB_FIELD(long long, obstacle_violations, "those of violations that an obstacle is part of") = 0;
   BB_FIELD(long long, scene_faults,
            "prescribed primitives that cross or cannot be certified; in no other count") = 0;
   BB_FIELD(int, first_bad_step, "-1: none", "-1") = -1;
   BB_FIELD(double, time_s, "what the checks took") = 0;
+  BB_FIELD(long long, surface_gaps, "converged step ends at which surface gaps were measured") = 0;
+  BB_FIELD(Number, surface_gap_obstacles_m,
+           "smallest of the steps' surface_gap_obstacles_m; below 0: thick surfaces are in an obstacle",
+           no_surface_gap) = Number::missing("not_requested");
+  BB_FIELD(Number, surface_gap_between_m, "smallest of the steps' surface_gap_between_m",
+           no_surface_gap) = Number::missing("not_requested");
+  BB_FIELD(double, surface_gap_time_s, "what measuring them took; not in time_s") = 0;
   BB_RECORD_END;
 };
 

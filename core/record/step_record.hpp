@@ -9,6 +9,7 @@
 namespace bb {
 
 inline constexpr const char* no_load_measured = "converged kappa_unsettled";
+inline constexpr const char* no_surface_gap = "not_requested not_converged no_obstacles none_within_d_hat";
 
 struct StepRecord : WorkCounts {
   using BaseRecord = WorkCounts;
@@ -66,6 +67,12 @@ struct StepRecord : WorkCounts {
   BB_FIELD(long long, violations, "that the audit found in its motions and at obstacles") = 0;
   BB_FIELD(long long, unproven, "motions that the audit could not certify") = 0;
   BB_FIELD(long long, inverted, "planar elements, summed over its states") = 0;
+  BB_FIELD(Number, surface_gap_obstacles_m,
+           "smallest gap of the whole surface to the obstacles at its end, thickness taken off, by the audit",
+           no_surface_gap) = Number::missing("not_requested");
+  BB_FIELD(Number, surface_gap_between_m,
+           "smallest gap between surfaces that is below d_hat at its end, thickness taken off, by the audit",
+           no_surface_gap) = Number::missing("not_requested");
   BB_FIELD(Number, wall_s, "in the pass `time`, on a clock of its own",
            "not_reached not_requested build_not_valid");
   BB_FIELD(Number, unaccounted_s, "wall_s minus the sum of all phases",

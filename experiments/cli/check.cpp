@@ -100,7 +100,7 @@ int check(const RunVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
   check_device_forms(config, scene);
-  if (const auto failure = start_failure(config, scene, &interrupted())) {
+  if (const auto failure = start_failure(config, scene, {&interrupted()})) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }
   fmt::print("{}: ok, {} vertices, config_id {}\n", verb.config, scene.n_vertices(), config_id(config));

@@ -1,6 +1,7 @@
 #include "experiments/run/audit_mesh.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 
 #include "core/mesh/topology.hpp"
@@ -72,9 +73,28 @@ std::vector<int> points_of(const Scene& scene, const std::vector<Edge>& edges) {
   return out;
 }
 
+bool same_motion(const RigidMotion& a, const RigidMotion& b) {
+  if (a.is_static() && b.is_static()) return true;
+  return a.velocity == b.velocity && a.center == b.center && a.axis == b.axis &&
+         a.angular_velocity == b.angular_velocity && a.start == b.start && a.end == b.end;
+}
+
+// Of each motion: the first that is the same, or -1 where a step turns it too far.
+std::vector<int> rigid_bodies(const std::vector<RigidMotion>& motions, double dt) {
+  constexpr double quarter_turn = 1.5707963267948966;
+  std::vector<int> out;
+  for (const RigidMotion& motion : motions) {
+    const auto same = std::find_if(motions.begin(), motions.end(),
+                                   [&motion](const RigidMotion& m) { return same_motion(m, motion); });
+    const bool keeps_shape = std::abs(motion.angular_velocity) * dt <= quarter_turn;
+    out.push_back(keeps_shape || motion.is_static() ? static_cast<int>(same - motions.begin()) : -1);
+  }
+  return out;
+}
+
 }  // namespace
 
-audit::AuditMesh make_audit_mesh(const Scene& scene) {
+audit::AuditMesh make_audit_mesh(const Scene& scene, double dt) {
   audit::AuditMesh mesh;
   mesh.planar = scene.planar;
   const std::vector<Edge> edges = edges_of(scene);
@@ -89,9 +109,13 @@ audit::AuditMesh make_audit_mesh(const Scene& scene) {
   }
   mesh.fixed.assign(static_cast<std::size_t>(scene.n_vertices()), 0);
   mesh.prescribed = mesh.fixed;
+  mesh.motion.assign(mesh.fixed.size(), -1);
+  mesh.thickness = scene.offset;
+  const std::vector<int> bodies = rigid_bodies(scene.motions, dt);
   for (const Pin& pin : scene.pins) {
     const auto v = static_cast<std::size_t>(pin.vertex);
     mesh.prescribed[v] = 1;
+    mesh.motion[v] = bodies[static_cast<std::size_t>(pin.motion)];
     mesh.fixed[v] = scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
   }
   auto triangles = scene.surface_triangles;

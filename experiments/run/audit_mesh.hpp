@@ -9,7 +9,9 @@ namespace bb {
 /// The whole surface of all bodies, computed from their triangles and rods: never from the pairs that a
 /// contact model makes of it, so that the audit judges what the model leaves out. Planar: boundary edges and
 /// every vertex. Cost O(n log n).
-audit::AuditMesh make_audit_mesh(const Scene& scene);
+/// @param dt longest time step, s: given vertices with one motion, and all that stand still, are rigid bodies to the
+/// audit where they turn by at most a quarter of a turn a step; the straight paths of a step keep such a body's shape.
+audit::AuditMesh make_audit_mesh(const Scene& scene, double dt);
 
 /// A tenth of the smallest distance (m) at which the solver's step bound stops; see Audit::check_motion.
 double audit_tolerance(const Scene& scene, double ccd_park);

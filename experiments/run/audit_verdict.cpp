@@ -23,17 +23,18 @@ std::string when(int step) { return step < 0 ? "at the start" : fmt::format("in 
 
 std::string penetration(const Scene& scene, const audit::AuditMesh& mesh, const audit::AuditLedger& ledger) {
   std::string text =
-      fmt::format("audit: {} crossings in states, {} passages in motions, {} beyond an obstacle",
+      fmt::format("audit: {} crossings in states, {} passages in motions, {} primitives in an obstacle",
                   ledger.crossings, ledger.violations, ledger.obstacle_violations);
   if (ledger.first_bad) {
     text += fmt::format("; the first {}: {}", when(ledger.first_bad_step),
                         describe(scene, mesh, *ledger.first_bad));
   }
   const bool no_edge_pairs = scene.planar && scene.planar_pairs == PlanarPairs::vertex_vertex;
-  if (no_edge_pairs && ledger.crossings + ledger.violations > 0) {
+  if (no_edge_pairs && ledger.penetrated()) {
     text +=
-        "; the contact model vertex_vertex has no edge pairs: it allows edges to cross, which is no failure "
-        "of the solver";
+        "; the contact model vertex_vertex has no edge pairs: it allows edges to cross each other and to "
+        "enter "
+        "obstacles, which is no failure of the solver";
   }
   return text;
 }
@@ -42,17 +43,24 @@ std::string unproven(const audit::AuditLedger& ledger) {
   if (!ledger.self_test_passed) return "audit: the exact predicates failed their test on this machine";
   if (ledger.non_finite > 0) return fmt::format("audit: {} states or motions not finite", ledger.non_finite);
   if (ledger.unproven > 0) {
-    return fmt::format("audit: {} of {} pairs in motion could not be certified", ledger.unproven,
-                       ledger.motion_pairs);
+    return fmt::format(
+        "audit: {} motions could not be certified, of {} pairs and {} primitives at obstacles that were "
+        "judged",
+        ledger.unproven, ledger.motion_pairs, ledger.obstacle_judged.total());
   }
   if (ledger.unjudged > 0) {
     return fmt::format("audit: {} states were reached by no judged motion, the first {}", ledger.unjudged,
                        when(ledger.first_bad_step));
   }
   const audit::AuditSubjects& s = ledger.subjects;
+  const audit::ObstacleCounts &need = s.at_obstacles, &done = ledger.obstacle_judged;
   return fmt::format(
-      "audit: nothing was judged of a surface of {} edges, {} triangles, {} vertices and {} obstacles",
-      s.edges, s.triangles, s.vertices, s.obstacles);
+      "audit: nothing was judged, or a kind of primitive was left out, of a surface of {} edges, {} "
+      "triangles, {} "
+      "vertices and {} obstacles; at the obstacles {} of {} vertices, {} of {} edges and {} of {} triangles "
+      "a state",
+      s.edges, s.triangles, s.vertices, s.obstacles, done.vertices, need.vertices, done.edges, need.edges,
+      done.triangles, need.triangles);
 }
 
 }  // namespace
@@ -66,6 +74,9 @@ std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const aud
            name_of(scene, std::array{mesh.triangles(0, i), mesh.triangles(1, i), mesh.triangles(2, i)});
   };
   const auto vertex = [&](int v) { return "vertex " + name_of(scene, std::array{v}); };
+  const auto obstacle = [&](int i) { return scene.obstacles[static_cast<std::size_t>(i)].name; };
+  const std::string enters =
+      pair.proven ? " enters obstacle " : " cannot be certified not to enter obstacle ";
   const std::string passes = pair.proven ? " passes through " : " cannot be certified not to pass through ";
   switch (pair.kind) {
     case audit::PairKind::edge_triangle:
@@ -79,8 +90,11 @@ std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const aud
     case audit::PairKind::vertex_edge_2d:
       return vertex(pair.first) + passes + edge(pair.second);
     case audit::PairKind::vertex_obstacle:
-      return vertex(pair.first) + " is on the wrong side of obstacle " +
-             scene.obstacles[static_cast<std::size_t>(pair.second)].name;
+      return vertex(pair.first) + " is on the wrong side of obstacle " + obstacle(pair.second);
+    case audit::PairKind::edge_obstacle:
+      return edge(pair.first) + enters + obstacle(pair.second);
+    case audit::PairKind::triangle_obstacle:
+      return triangle(pair.first) + enters + obstacle(pair.second);
     case audit::PairKind::inverted:
       return triangle(pair.first) + " is inverted";
   }

@@ -1,5 +1,8 @@
 #include "experiments/run/audit_watch.hpp"
 
+#include <algorithm>
+#include <cmath>
+
 #include "core/archive/archive.hpp"
 #include "core/record/phase_times.hpp"
 #include "experiments/run/audit_mesh.hpp"
@@ -14,20 +17,22 @@ static void keep(Archive& archive, PairName& name) {
 
 static void keep(Archive& archive, AuditLedger& ledger) {
   archive(ledger.states, ledger.motions, ledger.state_pairs, ledger.motion_pairs, ledger.pair_queries,
-          ledger.obstacle_queries, ledger.crossings, ledger.touches, ledger.violations, ledger.unproven,
-          ledger.inverted, ledger.obstacle_violations, ledger.scene_faults, ledger.non_finite,
-          ledger.unjudged, ledger.self_test_passed, ledger.first_bad_step, ledger.first_fault_step,
-          ledger.first_bad, ledger.first_fault);
+          ledger.obstacle_judged.vertices, ledger.obstacle_judged.edges, ledger.obstacle_judged.triangles,
+          ledger.crossings, ledger.touches, ledger.violations, ledger.unproven, ledger.inverted,
+          ledger.obstacle_violations, ledger.scene_faults, ledger.non_finite, ledger.unjudged,
+          ledger.self_test_passed, ledger.first_bad_step, ledger.first_fault_step, ledger.first_bad,
+          ledger.first_fault);
 }
 
 }  // namespace audit
 
-AuditWatch::AuditWatch(const Scene& scene, double ccd_park, AuditRecord& record)
+AuditWatch::AuditWatch(const Scene& scene, double dt, double ccd_park, AuditRecord& record)
     : scene_(scene),
       record_(record),
-      mesh_(make_audit_mesh(scene)),
+      mesh_(make_audit_mesh(scene, dt)),
       audit_(mesh_),
-      tolerance_(audit_tolerance(scene, ccd_park)) {
+      tolerance_(audit_tolerance(scene, ccd_park)),
+      reach_(*std::max_element(scene.d_hat.begin(), scene.d_hat.end())) {
   judge(scene.x0, -1);
   at_step_end_ = {audit_.ledger(), last_judged_};
 }
@@ -55,7 +60,26 @@ void AuditWatch::on_step(const Positions& x, StepRecord& step) {
   step.violations = record_.violations - before.violations;
   step.unproven = record_.unproven - before.unproven;
   step.inverted = record_.inverted - before.inverted;
+  measure_gaps(x, step);
   at_step_end_ = {audit_.ledger(), last_judged_};
+}
+
+void AuditWatch::measure_gaps(const Positions& x, StepRecord& step) {
+  if (step.status != StepStatus::converged) {
+    step.surface_gap_obstacles_m = step.surface_gap_between_m = Number::missing("not_converged");
+    return;
+  }
+  const double start = now_s();
+  const audit::SurfaceGap gap = audit_.gap_of(x, reach_);
+  const auto number = [](double m, const char* absent) {
+    return std::isfinite(m) ? Number(m) : Number::missing(absent);
+  };
+  step.surface_gap_obstacles_m = number(gap.to_obstacles, "no_obstacles");
+  step.surface_gap_between_m = number(gap.between, "none_within_d_hat");
+  keep_smaller(record_.surface_gap_obstacles_m, step.surface_gap_obstacles_m);
+  keep_smaller(record_.surface_gap_between_m, step.surface_gap_between_m);
+  ++record_.surface_gaps;
+  record_.surface_gap_time_s += now_s() - start;
 }
 
 void AuditWatch::on_retry() {
@@ -82,7 +106,10 @@ void AuditWatch::fill_record() {
   record_.motions = ledger.motions;
   record_.state_pairs = ledger.state_pairs;
   record_.motion_pairs = ledger.motion_pairs;
-  record_.obstacle_queries = ledger.obstacle_queries;
+  record_.obstacle_queries = ledger.obstacle_judged.total();
+  record_.obstacle_vertices = ledger.obstacle_judged.vertices;
+  record_.obstacle_edges = ledger.obstacle_judged.edges;
+  record_.obstacle_triangles = ledger.obstacle_judged.triangles;
   record_.judged = ledger.judged();
   record_.crossings = ledger.crossings;
   record_.touches = ledger.touches;

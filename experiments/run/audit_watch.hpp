@@ -12,8 +12,8 @@ class Archive;
 
 class AuditWatch {
  public:
-  /// Judges the start. scene and record must outlive it.
-  AuditWatch(const Scene& scene, double ccd_park, AuditRecord& record);
+  /// Judges the start. scene and record must outlive it. dt: of a whole step, s.
+  AuditWatch(const Scene& scene, double dt, double ccd_park, AuditRecord& record);
 
   void on_motion(const Positions& x0, const Positions& x1, int step);
   /// Fills the counts of the step that ended at x.
@@ -28,6 +28,7 @@ class AuditWatch {
 
  private:
   void judge(const Positions& x, int step);
+  void measure_gaps(const Positions& x, StepRecord& step);
   void fill_record();
 
   const Scene& scene_;
@@ -35,6 +36,7 @@ class AuditWatch {
   audit::AuditMesh mesh_;  // for names
   audit::Audit audit_;
   double tolerance_ = 0;
+  double reach_ = 0;       // m, within which gaps between surfaces are measured: the largest d_hat
   Positions last_judged_;  // where the next motion has to start
   struct {
     audit::AuditLedger ledger;

@@ -20,7 +20,7 @@ Recorder::Recorder(const RunConfig& config, const Scene& scene, RunRecord& recor
       gaps_(scene) {
   if (artifacts_ && config.output.frames_every > 0) artifacts_->start();
   record_.audit.enabled = config.passes.audit;
-  if (config.passes.audit) audit_.emplace(scene, config.contact.ccd_park, record_.audit);
+  if (config.passes.audit) audit_.emplace(scene, config.time.dt, config.contact.ccd_park, record_.audit);
 }
 
 void Recorder::on_matrix(StepSystem& system, int step, int iteration) {

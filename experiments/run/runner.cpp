@@ -80,7 +80,12 @@ void simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
   record.matching.rule = to_string(config.matching.rule);
   const Plan plan = plan_of(config, scene);
   fill_plan(config, plan, record);
-  if (const auto failure = start_failure(config, scene, options.interrupted)) {
+  const double before_check = now_s();
+  const auto failure =
+      start_failure(config, scene, {options.interrupted, options.deadline_s, options.time_limit_s});
+  const double start_check_s = now_s() - before_check;
+  record.summary.start_check_s = start_check_s;
+  if (failure) {
     record.status.outcome = failure->outcome;
     record.status.detail = failure->detail;
     return;
@@ -99,6 +104,7 @@ void simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
     }
   }
   run_passes(config, scene, plan, calibration, options, checkpoint, resumed, record, files);
+  record.summary.start_check_s = start_check_s;  // of this process
 }
 
 std::string goes_on_text(const Checkpoint& checkpoint) {

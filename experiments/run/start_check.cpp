@@ -4,8 +4,10 @@
 
 #include <algorithm>
 #include <set>
+#include <string>
 
 #include "core/audit/audit.hpp"
+#include "core/record/phase_times.hpp"
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
 #include "experiments/run/runner.hpp"
@@ -46,11 +48,29 @@ bool prescribed_may_cross(const Scene& scene) {
   return driven && (motions.size() > 1 || !scene.obstacles.empty());
 }
 
+/// Looked at between two parts of the check.
+class Limit {
+ public:
+  explicit Limit(const StartLimits& limits) : limits_(limits) {}
+
+  /// A verdict when time is over; `where` says what the check was doing. Errors: Interrupted.
+  std::optional<Verdict> over(const std::string& where) const {
+    if (limits_.interrupted && limits_.interrupted->load()) throw Interrupted{};
+    if (!(limits_.deadline_s > 0) || now_s() < limits_.deadline_s) return std::nullopt;
+    return Verdict{Outcome::timeout,
+                   fmt::format("start check: the time limit of {:g} s was reached {}; there was no "
+                               "first step",
+                               limits_.time_limit_s, where)};
+  }
+
+ private:
+  const StartLimits& limits_;
+};
+
 // The given motions, step by step, as a run would follow them: straight from pose to pose.
-std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene& scene,
-                                           const std::atomic<bool>* interrupted) {
+std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene& scene, const Limit& limit) {
   if (!prescribed_may_cross(scene)) return std::nullopt;
-  const audit::AuditMesh mesh = prescribed_part(make_audit_mesh(scene));
+  const audit::AuditMesh mesh = prescribed_part(make_audit_mesh(scene, config.time.dt));
   audit::Audit judge(mesh);
   const double tolerance = audit_tolerance(scene, config.contact.ccd_park);
   double last_end = 0;  // from then on every motion has ended
@@ -59,7 +79,9 @@ std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene&
   }
   Positions x0 = scene.x0, x1 = x0;
   for (int step = 0; step < config.time.steps && step * config.time.dt < last_end; ++step) {
-    if (interrupted && interrupted->load()) throw Interrupted{};
+    if (auto late =
+            limit.over(fmt::format("in the given motions, at step {} of {}", step, config.time.steps)))
+      return late;
     for (const Pin& pin : scene.pins) x1.col(pin.vertex) = pin_pose(scene, pin, (step + 1) * config.time.dt);
     judge.check_motion(x0, x1, step, tolerance);
     judge.check_state(x1, step);
@@ -71,9 +93,10 @@ std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene&
 
 }  // namespace
 
-std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene,
-                                     const std::atomic<bool>* interrupted) {
-  const audit::AuditMesh mesh = make_audit_mesh(scene);
+std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene, const StartLimits& limits) {
+  const Limit limit(limits);
+  if (auto late = limit.over("before the start was looked at")) return late;
+  const audit::AuditMesh mesh = make_audit_mesh(scene, config.time.dt);
   audit::Audit judge(mesh);
   judge.check_state(scene.x0, -1);
   const audit::AuditLedger& ledger = judge.ledger();
@@ -88,7 +111,7 @@ std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene
                                                       ? describe(scene, mesh, *ledger.first_bad)
                                                       : std::string("a state that cannot be judged")};
   }
-  return prescribed_crossing(config, scene, interrupted);
+  return prescribed_crossing(config, scene, limit);
 }
 
 }  // namespace bb

@@ -1,5 +1,5 @@
-// Whether a scene starts free of intersections: every gap positive, no edge through a triangle, no vertex on
-// the wrong side of an obstacle. The last two are judged exactly, by the audit.
+// Whether a scene starts free of intersections: every gap positive, no edge through a triangle, no point of
+// the surface on the wrong side of an obstacle. The last two are judged exactly, by the audit.
 #pragma once
 
 #include <atomic>
@@ -10,12 +10,20 @@
 
 namespace bb {
 
+/// What may end the check early.
+struct StartLimits {
+  const std::atomic<bool>* interrupted = nullptr;  // may be null
+  double deadline_s = 0;                           // as now_s() counts; 0: none
+  double time_limit_s = 0;                         // what was asked for, for the message
+};
+
 /// Why there is no first step; nothing when the start is valid. invalid_scene: two prescribed primitives
 /// cross, at the start or where their given motions take them at the end of a step. initial_intersection: the
-/// first other pair that touches or crosses at the start.
+/// first other pair that touches or crosses at the start. timeout: the deadline came first.
 /// Cost: one audit of the surface, and one of the prescribed surface per step when prescribed bodies move
-/// relative to each other. Errors: Interrupted when `interrupted` (may be null) becomes true.
+/// relative to each other or to an obstacle; of rigid bodies only what comes near another is looked at.
+/// Errors: Interrupted when limits.interrupted becomes true.
 std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene,
-                                     const std::atomic<bool>* interrupted = nullptr);
+                                     const StartLimits& limits = {});
 
 }  // namespace bb

@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 
 from analysis import render
-from analysis.frames import FrameError, frame_paths, read_frame, read_scene
-from analysis.obstacle_mesh import obstacle_mesh
+from analysis.frames import Frame, FrameError, frame_paths, read_frame, read_scene
+from analysis.obstacle_rays import hits, primitive_gaps, signed_gap
 from analysis.rasterizer import Camera, DepthBuffer
 from analysis.record_file import read_record
 
@@ -116,14 +116,79 @@ def test_the_nearer_triangle_owns_the_pixel():
     {"kind": "cylinder", "point_m": [1, 2, 3], "axis": [0, 0.6, 0.8], "radius_m": 0.5},
     {"kind": "plane", "point_m": [1, 2, 3], "axis": [0, 0.6, 0.8]},
 ])
-def test_points_of_an_obstacle_lie_on_it(obstacle):
-    x, triangles = obstacle_mesh(obstacle, np.array([1.0, 2, 3.2]), 2.0)
-    q, axis = x - np.array(obstacle["point_m"]), np.array(obstacle.get("axis", [0, 0, 0]), float)
-    if obstacle["kind"] == "plane":
-        np.testing.assert_allclose(q @ axis, 0, atol=1e-12)
-    else:
-        np.testing.assert_allclose(np.linalg.norm(q - np.outer(q @ axis, axis), axis=1), 0.5, rtol=1e-12)
-    assert len(triangles) > 100 and triangles.max() == len(x) - 1
+@pytest.mark.parametrize("perspective", [True, False])
+def test_rays_meet_an_obstacle_on_its_surface_and_as_deep_as_its_points_are(obstacle, perspective):
+    center = np.array([1.0, 2, 3.2])
+    camera = Camera(center + np.array([3.0, -4, 2]), center, np.array([0.0, 0, 1]), 60.0, (50.0, 40.0), perspective)
+    seen = hits(obstacle, camera, 100, 80, center, 2.0)
+    hit = np.isfinite(seen.depth)
+    assert 60 < hit.sum() < 8000
+    x = seen.points[hit]
+    np.testing.assert_allclose(signed_gap(obstacle, x), 0, atol=1e-12)
+    pixel = camera.project(x)
+    row, column = np.nonzero(hit)
+    np.testing.assert_allclose(pixel[:, :2], np.stack([column + 0.5, row + 0.5], 1), atol=1e-6)
+    np.testing.assert_allclose(pixel[:, 2], seen.depth[hit], rtol=1e-9)
+    np.testing.assert_allclose(np.linalg.norm(seen.normals[hit], axis=1), 1)
+    behind = x - 1e-3 * (x - camera.eye) if perspective else x - 1e-3 * (center - camera.eye)  # nothing in front of it
+    if obstacle["kind"] != "plane":
+        assert (signed_gap(obstacle, behind) > 0).all()
+
+
+def test_gaps_of_triangles_and_edges_agree_with_samples():
+    random = np.random.default_rng(3)
+    share = np.array([(i / 30, j / 30) for i in range(31) for j in range(31 - i)])
+    hidden = 0
+    for obstacle in [{"kind": "sphere", "point_m": [0, 0, 0], "radius_m": 0.3},
+                     {"kind": "cylinder", "point_m": [0, 0, 0], "axis": [0, 0.6, 0.8], "radius_m": 0.2},
+                     {"kind": "sphere", "point_m": [0, 0, 0], "radius_m": 0.9, "inside": True},
+                     {"kind": "plane", "point_m": [0, 0, 0], "axis": [0, 0, 1]}]:
+        corners = random.uniform(-1, 1, (200, 3, 3))
+        sampled = signed_gap(obstacle, corners[:, None, 0] + share[:, :1] * (corners[:, None, 1] - corners[:, None, 0])
+                             + share[:, 1:] * (corners[:, None, 2] - corners[:, None, 0])).min(axis=1)
+        gaps = primitive_gaps(obstacle, corners)
+        assert (gaps <= sampled + 1e-12).all() and (gaps > sampled - 0.06).all()
+        hidden += ((gaps < 0) & (signed_gap(obstacle, corners).min(axis=1) > 0.05)).sum()
+        edges = primitive_gaps(obstacle, corners[:, :2])
+        assert (edges >= gaps - 1e-12).all() and (edges <= signed_gap(obstacle, corners[:, :2]).min(axis=1) + 1e-12).all()
+    assert hidden > 20  # vertices outside, the triangle inside
+
+
+def _triangle_over_a_ball(z):
+    vertices = np.array([[-4.0, -4, z], [4, -4, z], [0, 6, z]])
+    frame = Frame(vertices, np.array([[0, 1, 2]]), np.zeros((0, 2), int), {"body": np.zeros(3, int)}, {"body": np.zeros(1, int)})
+    return frame, {"bodies": ["sheet"], "planar": False, "obstacles": [{"name": "ball", "kind": "sphere", "point_m": [0, 0, 0], "radius_m": 1.0, "inside": False}]}
+
+
+@pytest.mark.parametrize("z, shows", [(0.999, True), (1.001, False)])
+def test_an_obstacle_that_a_triangle_cuts_shows_through_it_and_no_other(z, shows):
+    """Seen from above, a millimetre decides: the obstacle is neither shrunk nor moved nor made of facets."""
+    frame, scene = _triangle_over_a_ball(z)
+    camera = Camera(np.array([0.0, 0, 9]), np.zeros(3), np.array([0.0, 1, 0]), 3000.0, (60.0, 60.0))
+    surfaces, _ = render._assemble(frame, scene, "body", 4.0)
+    surfaces.corner_colors[:] = (0, 0, 1)
+    image = render._picture(surfaces, camera, (60, 60), False, np.zeros(3), 4.0)
+    grey = np.ptp(image, axis=-1) < 0.05
+    assert grey[30, 30] == shows and not grey[2, 2]
+
+
+def test_a_caption_says_how_far_a_surface_enters_an_obstacle():
+    assert "sheet in ball by 1 mm" in render._at_obstacles(*_triangle_over_a_ball(0.999))
+    assert "closest is 1 mm away (sheet from ball" in render._at_obstacles(*_triangle_over_a_ball(1.001))
+    frame, scene = _triangle_over_a_ball(1.5)
+    assert render._at_obstacles(frame, scene | {"obstacles": []}) == ""
+
+
+def test_planar_stills_show_bodies_over_what_obstacles_forbid():
+    frame, scene = _triangle_over_a_ball(0.0)
+    scene["planar"] = True
+    camera = Camera(np.array([0.0, 0, 9]), np.zeros(3), np.array([0.0, 1, 0]), 10.0, (60.0, 60.0), False)
+    surfaces, _ = render._assemble(frame, scene, "body", 4.0)
+    surfaces.triangles = surfaces.triangles[:0]
+    image = render._picture(surfaces, camera, (60, 60), True, np.zeros(3), 4.0)
+    assert image[30, 30].max() < 0.9 and image[2, 2].min() == 1  # the disk
+    full = render._picture(render._assemble(frame, scene, "body", 4.0)[0], camera, (60, 60), True, np.zeros(3), 4.0)
+    assert np.ptp(full[30, 30]) > 0.2  # the sheet is drawn over it
 
 
 @pytest.mark.parametrize("color", ["body", "gap", "load", "stretch"])
@@ -132,7 +197,7 @@ def test_a_still_is_written_with_its_caption_and_is_the_same_twice(run, tmp_path
     two = render.render(run / "run.json", step=4, color=color, out=tmp_path / "two.png", size=SMALL)
     assert one.read_bytes() == two.read_bytes()
     caption = one.with_suffix(".txt").read_text()
-    assert "end of step 4, t = 0.05 s" in caption and "d_hat_m 0.005" in caption and "Machine:" in caption
+    assert "inside an obstacle" in " ".join(caption.split()).lower() and "end of step 4, t = 0.05 s" in caption and "d_hat_m 0.005" in caption and "Machine:" in caption
     image = plt.imread(one)[..., :3]
     assert image.std() > 0.05  # not one colour
 
@@ -140,7 +205,7 @@ def test_a_still_is_written_with_its_caption_and_is_the_same_twice(run, tmp_path
 def test_colours_follow_the_field(run):
     record, scene, paths = opened(run)
     frame = read_frame(paths[4])
-    surfaces, scale = render._assemble(frame, scene, "gap", np.zeros(3), 0.3)
+    surfaces, scale = render._assemble(frame, scene, "gap", 0.3)
     touched = (frame.of_vertices["gap_rel"] < 1)[frame.triangles]
     colors = surfaces.corner_colors[:50]
     assert scale.vmax == 1 and touched.any() and not touched.all()

@@ -17,8 +17,8 @@ Scene drape2d(const std::string& pairs) {
 }
 
 TEST(AuditMesh, PlanarSurfaceIsTheSameForEveryContactModel) {
-  const audit::AuditMesh edges = make_audit_mesh(drape2d("point_edge"));
-  const audit::AuditMesh vertices = make_audit_mesh(drape2d("vertex_vertex"));
+  const audit::AuditMesh edges = make_audit_mesh(drape2d("point_edge"), 0.01);
+  const audit::AuditMesh vertices = make_audit_mesh(drape2d("vertex_vertex"), 0.01);
   EXPECT_EQ(edges.edges.cols(), 3 * 2 * 20);  // of each of three sheets of 20 x 2 vertices: 40
   EXPECT_EQ(edges.edges, vertices.edges);
   EXPECT_EQ(edges.opposite, vertices.opposite);
@@ -27,9 +27,11 @@ TEST(AuditMesh, PlanarSurfaceIsTheSameForEveryContactModel) {
 }
 
 TEST(AuditMesh, PlanarInteriorVerticesAreJudgedToo) {
-  const audit::AuditMesh mesh = make_audit_mesh(build_scene(parse_config(
-      R"({"schema": "barrierbench.config/1", "formulation": "log", "scene": {"name": "drape2d", "variant": "pinned", "n": 10}})",
-      "test")));
+  const audit::AuditMesh mesh = make_audit_mesh(
+      build_scene(parse_config(
+          R"({"schema": "barrierbench.config/1", "formulation": "log", "scene": {"name": "drape2d", "variant": "pinned", "n": 10}})",
+          "test")),
+      0.01);
   EXPECT_EQ(mesh.edges.cols(), 36);
   EXPECT_EQ(mesh.points.size(), 64U);
   EXPECT_EQ(std::count(mesh.prescribed.begin(), mesh.prescribed.end(), 1), 10);
@@ -38,15 +40,59 @@ TEST(AuditMesh, PlanarInteriorVerticesAreJudgedToo) {
 
 TEST(AuditMesh, EdgesAreComputedFromTheTriangles) {
   Scene scene = drape2d("vertex_vertex");
-  const audit::AuditMesh whole = make_audit_mesh(scene);
+  const audit::AuditMesh whole = make_audit_mesh(scene, 0.01);
   scene.surface_edges.clear();
-  EXPECT_EQ(make_audit_mesh(scene).edges, whole.edges);
+  EXPECT_EQ(make_audit_mesh(scene, 0.01).edges, whole.edges);
   EXPECT_GT(whole.edges.cols(), 0);
+}
+
+TEST(AuditMesh, GivenVerticesOfOneMotionAreOneRigidBody) {
+  Scene scene = drape2d("point_edge");
+  scene.pins = {{0, 0}, {1, 1}, {2, 2}, {3, 3}, {4, 4}};
+  scene.motions.assign(5, RigidMotion{});
+  scene.motions[1].velocity = scene.motions[2].velocity = Vec3d(1, 0, 0);
+  scene.motions[3].angular_velocity = 1;
+  const audit::AuditMesh mesh = make_audit_mesh(scene, 0.01);
+  EXPECT_EQ(mesh.motion[0], mesh.motion[4]) << "both stand still";
+  EXPECT_EQ(mesh.motion[1], mesh.motion[2]);
+  EXPECT_GE(mesh.motion[3], 0);
+  EXPECT_EQ(mesh.motion[5], -1) << "free";
+  EXPECT_NE(mesh.motion[0], mesh.motion[1]);
+  EXPECT_NE(mesh.motion[1], mesh.motion[3]);
+  EXPECT_EQ(make_audit_mesh(scene, 1.5).motion[3], mesh.motion[3]);
+  EXPECT_EQ(make_audit_mesh(scene, 1.6).motion[3], -1)
+      << "straight paths of more than a quarter turn squeeze it";
+  EXPECT_EQ(mesh.thickness, scene.offset);
+}
+
+TEST(AuditVerdict, NamesWhatEntersAnObstacle) {
+  const Scene scene = drape2d("point_edge");
+  const audit::AuditMesh mesh = make_audit_mesh(scene, 0.01);
+  using audit::PairKind;
+  EXPECT_EQ(describe(scene, mesh, {PairKind::edge_obstacle, 0, 0}),
+            "edge sheet0[0 1] enters obstacle " + scene.obstacles[0].name);
+  const std::string near = describe(scene, mesh, {PairKind::triangle_obstacle, 0, 0, false});
+  EXPECT_NE(near.find("triangle sheet0["), std::string::npos) << near;
+  EXPECT_NE(near.find("cannot be certified not to enter obstacle"), std::string::npos) << near;
+}
+
+TEST(AuditVerdict, AKindOfPrimitiveThatWasNeverAskedIsNotOk) {
+  const Scene scene = drape2d("point_edge");
+  const audit::AuditMesh mesh = make_audit_mesh(scene, 0.01);
+  audit::AuditLedger ledger;
+  ledger.pair_queries = 3, ledger.subjects.obstacles = 1;
+  ledger.subjects.at_obstacles = {0, 0, 38};
+  ledger.obstacle_judged.vertices = 60;  // as an audit of vertices alone would count
+  const Verdict verdict = judge_audit(scene, mesh, ledger);
+  EXPECT_EQ(verdict.outcome, Outcome::unproven);
+  EXPECT_NE(verdict.detail.find("0 of 38 triangles"), std::string::npos) << verdict.detail;
+  ledger.obstacle_judged.triangles = 38;
+  EXPECT_EQ(judge_audit(scene, mesh, ledger).outcome, Outcome::ok);
 }
 
 TEST(AuditVerdict, SaysWhatTheContactModelAllows) {
   Scene scene = drape2d("vertex_vertex");
-  const audit::AuditMesh mesh = make_audit_mesh(scene);
+  const audit::AuditMesh mesh = make_audit_mesh(scene, 0.01);
   audit::AuditLedger ledger;
   EXPECT_EQ(judge_audit(scene, mesh, ledger).outcome, Outcome::unproven);  // nothing judged
   EXPECT_NE(judge_audit(scene, mesh, ledger).detail.find("nothing was judged"), std::string::npos);

@@ -1,0 +1,183 @@
+#include "core/audit/obstacle_audit.hpp"
+
+#include <algorithm>
+#include <array>
+
+#include "core/audit/obstacle_motion.hpp"
+#include "core/audit/obstacle_sign.hpp"
+#include "core/audit/state_audit.hpp"
+#include "core/audit/tally.hpp"
+
+namespace bb::audit {
+namespace {
+
+using Edge = std::array<int, 2>;
+
+Edge ascending(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
+
+template <class Column>
+bool wholly_fixed(const AuditMesh& mesh, const Column& ids) {
+  return std::all_of(ids.begin(), ids.end(), [&mesh](int v) { return mesh.is_fixed(v); });
+}
+
+std::vector<Edge> sides(const Eigen::Matrix3Xi& triangles) {
+  std::vector<Edge> out;
+  out.reserve(static_cast<std::size_t>(triangles.size()));
+  for (const auto& t : triangles.colwise()) {
+    for (int k = 0; k < 3; ++k) out.push_back(ascending(t[k], t[(k + 1) % 3]));
+  }
+  std::sort(out.begin(), out.end());
+  return out;
+}
+
+/// One question a primitive and obstacle: a state is a motion that stands still.
+class ObstacleJudge {
+ public:
+  ObstacleJudge(const AuditMesh& mesh, const Positions& x0, const Positions& x1, bool moving)
+      : mesh_(mesh), x0_(x0), x1_(x1), moving_(moving) {}
+
+  ObstacleAudit all(const ObstaclePrimitives& p) const {
+    ObstacleAudit out;
+    for (int o = 0; o < static_cast<int>(mesh_.obstacles.size()); ++o) {
+      const auto vertex = [](int v) { return std::array{v}; };
+      if (mesh_.obstacles[static_cast<std::size_t>(o)].allows_a_convex_set()) {
+        out.merge(over<1>(p.vertices, PairKind::vertex_obstacle, o, &ObstacleCounts::vertices, vertex));
+        continue;
+      }
+      out.merge(over<1>(p.lone_vertices, PairKind::vertex_obstacle, o, &ObstacleCounts::vertices, vertex));
+      out.merge(over<2>(p.lone_edges, PairKind::edge_obstacle, o, &ObstacleCounts::edges, [this](int e) {
+        return Edge{mesh_.edges(0, e), mesh_.edges(1, e)};
+      }));
+      out.merge(
+          over<3>(p.triangles, PairKind::triangle_obstacle, o, &ObstacleCounts::triangles, [this](int t) {
+            return std::array{mesh_.triangles(0, t), mesh_.triangles(1, t), mesh_.triangles(2, t)};
+          }));
+    }
+    return out;
+  }
+
+ private:
+  template <std::size_t N, class Ids>
+  ObstacleAudit over(const std::vector<int>& list, PairKind kind, int o, long ObstacleCounts::*count,
+                     Ids&& ids_of) const {
+    return tally_over<ObstacleAudit>(list.size(), [&](std::size_t i, ObstacleAudit& sum) {
+      const std::array<int, N> ids = ids_of(list[i]);
+      if (moving_ && std::none_of(ids.begin(), ids.end(), [this](int v) { return moves(v); })) return;
+      ++(sum.judged.*count);
+      const AuditObstacle& obstacle = mesh_.obstacles[static_cast<std::size_t>(o)];
+      const Verdict verdict = judge_one(obstacle, ids);
+      if (verdict != Verdict::certified) note(verdict, ids, {kind, list[i], o}, obstacle, sum);
+    });
+  }
+
+  template <std::size_t N>
+  Verdict judge_one(const AuditObstacle& o, const std::array<int, N>& ids) const {
+    std::array<Vec3d, N> a, b;
+    for (std::size_t k = 0; k < N; ++k) a[k] = at(x0_, ids[k]), b[k] = at(x1_, ids[k]);
+    bool beyond = false;
+    if constexpr (N == 1) {
+      beyond = moving_ ? obstacle_hit(o, a[0], b[0]) : obstacle_side(o, a[0]) < 0;
+    } else {
+      if (moving_) return judge_past_obstacle<N>(o, a, b);
+      if constexpr (N == 2) beyond = obstacle_hit(o, a[0], a[1]);
+      if constexpr (N == 3) beyond = obstacle_cuts(o, a[0], a[1], a[2]);
+    }
+    return beyond ? Verdict::violation : Verdict::certified;
+  }
+
+  /// A prescribed vertex that is beyond the obstacle itself is named in the place of its primitive.
+  template <std::size_t N>
+  void note(Verdict verdict, const std::array<int, N>& ids, PairName name, const AuditObstacle& o,
+            ObstacleAudit& sum) const {
+    bool given = mesh_.all_prescribed(ids);
+    for (const int v : ids) {
+      if (given || !mesh_.is_prescribed(v) || !obstacle_hit(o, at(x0_, v), at(x1_, v))) continue;
+      given = true;
+      name.kind = PairKind::vertex_obstacle, name.first = v;
+    }
+    if (given) {
+      name.proven = verdict == Verdict::violation;
+      ++sum.scene_faults;
+      keep_first(sum.first_fault, name);
+    } else if (verdict == Verdict::unproven) {
+      ++sum.unproven;
+    } else {
+      ++sum.violations;
+      keep_first(sum.first_bad, name);
+    }
+  }
+
+  bool moves(int v) const { return x0_.col(v) != x1_.col(v); }
+  Vec3d at(const Positions& x, int v) const { return {x(0, v), x(1, v), mesh_.planar ? 0.0 : x(2, v)}; }
+
+  const AuditMesh& mesh_;
+  const Positions &x0_, &x1_;
+  bool moving_;
+};
+
+}  // namespace
+
+ObstacleCounts ObstaclePrimitives::needed(const std::vector<AuditObstacle>& obstacles) const {
+  ObstacleCounts out;
+  for (const AuditObstacle& o : obstacles) {
+    if (o.allows_a_convex_set()) {
+      out.vertices += static_cast<long>(vertices.size());
+    } else {
+      out.add({static_cast<long>(lone_vertices.size()), static_cast<long>(lone_edges.size()),
+               static_cast<long>(triangles.size())});
+    }
+  }
+  return out;
+}
+
+ObstaclePrimitives obstacle_primitives(const AuditMesh& mesh) {
+  ObstaclePrimitives out;
+  if (mesh.obstacles.empty()) return out;
+  const std::vector<Edge> of_triangles = sides(mesh.triangles);
+  const std::vector<int> colliding = colliding_vertices(mesh);
+  const auto n = static_cast<std::size_t>(colliding.empty() ? 0 : colliding.back() + 1);
+  const auto n_all = std::max<std::size_t>(
+      n, mesh.triangles.size() > 0 ? static_cast<std::size_t>(mesh.triangles.maxCoeff()) + 1 : 0);
+  std::vector<char> covered(n_all, 0), beside_free(n_all, 0);
+  const auto cover = [&](const auto& ids) {
+    const bool judged = !wholly_fixed(mesh, ids);
+    for (const int v : ids) {
+      covered[static_cast<std::size_t>(v)] = 1;
+      if (judged) beside_free[static_cast<std::size_t>(v)] = 1;
+    }
+    return judged;
+  };
+  for (int t = 0; t < static_cast<int>(mesh.triangles.cols()); ++t) {
+    if (cover(mesh.triangles.col(t))) out.triangles.push_back(t);
+  }
+  for (int e = 0; e < static_cast<int>(mesh.edges.cols()); ++e) {
+    const auto ids = mesh.edges.col(e);
+    if (std::binary_search(of_triangles.begin(), of_triangles.end(), ascending(ids[0], ids[1]))) continue;
+    if (cover(ids)) out.lone_edges.push_back(e);
+  }
+  for (const int v : colliding) {
+    const auto i = static_cast<std::size_t>(v);
+    if (!mesh.is_fixed(v) || beside_free[i]) out.vertices.push_back(v);
+    if (!mesh.is_fixed(v) && !covered[i]) out.lone_vertices.push_back(v);
+  }
+  return out;
+}
+
+void ObstacleAudit::merge(const ObstacleAudit& other) {
+  judged.add(other.judged);
+  violations += other.violations, unproven += other.unproven, scene_faults += other.scene_faults;
+  keep_first(first_bad, other.first_bad);
+  keep_first(first_fault, other.first_fault);
+}
+
+ObstacleAudit audit_obstacles(const AuditMesh& mesh, const ObstaclePrimitives& primitives,
+                              const Positions& x) {
+  return ObstacleJudge(mesh, x, x, false).all(primitives);
+}
+
+ObstacleAudit audit_obstacles(const AuditMesh& mesh, const ObstaclePrimitives& primitives,
+                              const Positions& x0, const Positions& x1) {
+  return ObstacleJudge(mesh, x0, x1, true).all(primitives);
+}
+
+}  // namespace bb::audit

@@ -1,0 +1,77 @@
+// What the pass `audit` writes of obstacles: a triangle over a ball with its vertices outside is a penetration, gaps are
+// those of the whole surface, and every kind of primitive is counted.
+#include "experiments/run/audit_watch.hpp"
+
+#include <gtest/gtest.h>
+
+#include "experiments/config/parse.hpp"
+
+namespace bb {
+namespace {
+
+/// A sheet of two triangles, 1 m wide, above a ball of radius 0.1 m whose top is at z = 0 and off the diagonal.
+Scene sheet_over_ball(const std::string& thickness = "0") {
+  return build_scene(
+      parse_config(R"({"schema": "barrierbench.config/1", "formulation": {"name": "log", "d_hat_m": 0.005},
+    "scene": {"name": "bodies",
+      "bodies": [{"name": "sheet", "mesh": {"generator": "grid", "n_x": 2, "n_y": 2, "size_x_m": 1, "size_y_m": 1},
+                  "transform": {"translate_m": [0, 0, 0.011]}, "limited": false, "offset_m": )" +
+                       thickness + R"(,
+                  "material": {"model": "corotational", "youngs_N_per_m": 250, "poisson": 0.24, "density_kg_per_m2": 0.15}}],
+      "obstacles": [{"name": "ball", "kind": "sphere", "point_m": [0.2, -0.2, -0.1], "radius_m": 0.1}]}})",
+                   "test"));
+}
+
+StepRecord converged() {
+  StepRecord step;
+  step.status = StepStatus::converged;
+  return step;
+}
+
+TEST(AuditWatch, ASheetThroughABallBetweenItsVerticesIsAPenetration) {
+  const Scene scene = sheet_over_ball();
+  AuditRecord record;
+  AuditWatch watch(scene, 0.01, 0.1, record);
+  Positions x = scene.x0;
+  x.row(2).array() -= 0.005;
+  watch.on_motion(scene.x0, x, 0);
+  StepRecord step = converged();
+  watch.on_step(x, step);
+  EXPECT_EQ(watch.verdict().outcome, Outcome::ok) << watch.verdict().detail;
+  EXPECT_NEAR(step.surface_gap_obstacles_m.value, 0.006, 1e-12);
+  EXPECT_EQ(record.obstacle_triangles, 2 * 2 + 2);  // two states and a motion
+  EXPECT_EQ(record.obstacle_vertices, 0);
+  EXPECT_EQ(record.obstacle_edges, 0);
+  EXPECT_EQ(record.obstacle_queries, record.obstacle_triangles);
+
+  Positions through = x;
+  through.row(2).array() -= 0.05;  // all four vertices pass beside the ball
+  watch.on_motion(x, through, 1);
+  step = converged();
+  watch.on_step(through, step);
+  EXPECT_EQ(watch.verdict().outcome, Outcome::penetration);
+  EXPECT_NE(watch.verdict().detail.find("triangle sheet["), std::string::npos) << watch.verdict().detail;
+  EXPECT_NE(watch.verdict().detail.find("enters obstacle ball"), std::string::npos) << watch.verdict().detail;
+  EXPECT_EQ(step.violations, 2);  // the triangle on the way, and where it came to
+  EXPECT_NEAR(step.surface_gap_obstacles_m.value, -0.044, 1e-12);
+  EXPECT_NEAR(record.surface_gap_obstacles_m.value, -0.044, 1e-12);
+  EXPECT_EQ(record.surface_gaps, 2);
+}
+
+TEST(AuditWatch, GapsHaveTheirThicknessTakenOffAndOnlyConvergedEndsCount) {
+  const Scene scene = sheet_over_ball("0.002");
+  AuditRecord record;
+  AuditWatch watch(scene, 0.01, 0.1, record);
+  StepRecord step = converged();
+  step.status = StepStatus::iteration_cap;
+  watch.on_step(scene.x0, step);
+  EXPECT_STREQ(step.surface_gap_obstacles_m.status, "not_converged");
+  EXPECT_EQ(record.surface_gaps, 0);
+  step = converged();
+  watch.on_step(scene.x0, step);
+  EXPECT_NEAR(step.surface_gap_obstacles_m.value, 0.011 - 0.002, 1e-12);
+  EXPECT_STREQ(step.surface_gap_between_m.status, "none_within_d_hat");
+}
+
+}  // namespace
+}  // namespace bb
