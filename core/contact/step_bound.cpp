@@ -170,7 +170,9 @@ FirstContact StepBoundFinder::ask_obstacle(const Primitives<N>& primitives, Inde
     found.toi = obstacle_toi(obstacle, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
                              offset, park);
   } else {
-    const double reach = law.offset + 2 * std::max(level_.park * law.d_hat, motion.floor);
+    // of the coordinates of the obstacle too, whose point and radius ACCD computes with
+    const double least = floor(vertex, law.offset + exact.radius + exact.point.cwiseAbs().maxCoeff());
+    const double reach = law.offset + 2 * std::max(level_.park * law.d_hat, least);
     const double proven = obstacle_proven_time<N>(exact, gather(motion.x0, vertex), gather(motion.x1, vertex),
                                                   reach, part.first.toi);
     if (proven > part.first.toi) return found;

@@ -80,14 +80,14 @@ BB_HD PairLanes<K, double> relative_points(const double* x, const int* vertex) {
   return out;
 }
 
-/// No less than the least stop level of a pair, m, with room for its rounding: by its own coordinates.
-template <PairKind K>
-BB_HD double stop_floor(const BoundQuery& q, const PairVertices<K>& pair) {
-  double largest = pair.law.offset;
-  for (const int v : pair.vertex) {
+/// No less than the least stop level of a pair of these n vertices, m, with room for its rounding: by their own
+/// coordinates, and by `size`, the largest of its other lengths.
+BB_HD inline double stop_floor(const BoundQuery& q, const int* vertex, int n, double size) {
+  double largest = size;
+  for (int k = 0; k < n; ++k) {
     for (int c = 0; c < 3; ++c) {
-      const double a = std::abs(q.x0[3 * static_cast<Index>(v) + c]);
-      const double b = std::abs(q.x1[3 * static_cast<Index>(v) + c]);
+      const double a = std::abs(q.x0[3 * static_cast<Index>(vertex[k]) + c]);
+      const double b = std::abs(q.x1[3 * static_cast<Index>(vertex[k]) + c]);
       largest = a > largest ? a : largest;
       largest = b > largest ? b : largest;
     }
@@ -99,7 +99,7 @@ BB_HD double stop_floor(const BoundQuery& q, const PairVertices<K>& pair) {
 /// `enough`. 0: nothing is proven.
 template <PairKind K>
 BB_HD double proven_time(const BoundQuery& q, const PairVertices<K>& pair, double enough) {
-  const double park = q.park * pair.law.d_hat, floor = stop_floor<K>(q, pair);
+  const double park = q.park * pair.law.d_hat, floor = stop_floor(q, pair.vertex, pair_points(K), pair.law.offset);
   const double reach = pair.law.offset + 2 * (park > floor ? park : floor);
   const PairLanes<K, double> points = relative_points<K>(q.x0, pair.vertex);
   const PairLanes<K, double> motion = relative_points<K>(q.x1, pair.vertex) - points;
@@ -148,7 +148,8 @@ BB_HD double obstacle_time(const BoundQuery& q, Index i, Index o, double enough,
   if constexpr (N == 1) {
     toi = obstacle_toi<double>(obstacle, from, to, offset, park);
   } else {
-    const double floor = q.floor(), reach = offset + 2 * (park > floor ? park : floor);
+    const double size = offset + obstacle.radius + obstacle.point.cwiseAbs().maxCoeff();
+    const double floor = stop_floor(q, vertex, N, size), reach = offset + 2 * (park > floor ? park : floor);
     if (obstacle_proven_time<N>(obstacle, from, to, reach, enough) > enough) return 1;
     const AccdResult<double> r =
         obstacle_accd<N, double>(obstacle, from, to, offset, park, q.max_probes, enough);

@@ -1,7 +1,9 @@
 // What is said of a state: numbers of rows in one pass, everything else through the CPU's view of it.
+#include <array>
 #include <cmath>
 
 #include "core/archive/archive.hpp"
+#include "core/contact/contact_row.hpp"
 #include "core/resident/system/resident_system.hpp"
 #include "core/terms/contact.hpp"
 
@@ -24,9 +26,8 @@ ContactKey key_of(const HostRows& rows, std::size_t r) {
   constexpr Key index = (Key{1} << 30) - 1;
   const std::size_t n = rows.size();
   ContactKey key = {rows.vertex[r], rows.vertex[n + r], rows.vertex[2 * n + r], rows.vertex[3 * n + r]};
-  if (rows.kind[r] == static_cast<std::uint8_t>(ContactKind::obstacle))
-    key[3] = obstacle_key(static_cast<int>(rows.pair[r] & index), 0)[2];
-  return key;
+  if (rows.kind[r] == mollified_kind || !is_obstacle(static_cast<ContactKind>(rows.kind[r]))) return key;
+  return obstacle_key(static_cast<int>(rows.pair[r] & index), std::array{key[0], key[1], key[2]});
 }
 
 void list_loads(const HostRows& rows, std::vector<ContactLoad>& out) {
