@@ -8,7 +8,7 @@
 
 namespace bb {
 
-/// CHOLMOD, supernodal, nested dissection of the vertices by METIS, one BLAS thread. Not copyable, one thread at a time.
+/// CHOLMOD, supernodal, ordered and analysed by vertices (block_analysis.hpp), one BLAS thread. Not copyable, one thread at a time.
 class CholmodFactor {
  public:
   CholmodFactor();
