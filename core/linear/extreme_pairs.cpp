@@ -33,7 +33,8 @@ SymmetricOperator products_with(ScaledMatrix& b) {
   return [&b](const VecXd& x, VecXd& y) { b.multiply(x, y); };
 }
 
-SpectrumEndPair largest_by_lanczos(ScaledMatrix& b, std::uint64_t seed, int n_products, double& smallest_ritz) {
+SpectrumEndPair largest_by_lanczos(ScaledMatrix& b, std::uint64_t seed, int n_products,
+                                   double& smallest_ritz) {
   const LanczosEnd ritz =
       lanczos_largest(products_with(b), seeded_vector(b.n(), seed), n_products, end_tolerance);
   smallest_ritz = ritz.smallest;
@@ -44,8 +45,8 @@ SpectrumEndPair largest_by_lanczos(ScaledMatrix& b, std::uint64_t seed, int n_pr
 }
 
 /// B + kRetryShift lambda_max is factorised in place of B; lambda_min may then be of either sign.
-void estimate_without_factor(ScaledMatrix& b, const SpectrumEndPair& top, double smallest_ritz, std::uint64_t seed,
-                             ConditionEstimate& e) {
+void estimate_without_factor(ScaledMatrix& b, const SpectrumEndPair& top, double smallest_ritz,
+                             std::uint64_t seed, ConditionEstimate& e) {
   e.method = "lanczos, sigma = -1e-8 lambda_max";
   e.status = ConditionStatus::not_pd;
   e.lambda_min = smallest_ritz < 0 ? smallest_ritz : not_known;  // a negative Ritz value proves the point
@@ -56,7 +57,8 @@ void estimate_without_factor(ScaledMatrix& b, const SpectrumEndPair& top, double
     return;
   }
   const auto op = [&b](const VecXd& x, VecXd& y) { b.solve(b.matrix().shifted, x, y); };
-  const LanczosEnd ritz = lanczos_largest(op, seeded_vector(b.n(), seed), most_lanczos_solves - 1, end_tolerance);
+  const LanczosEnd ritz =
+      lanczos_largest(op, seeded_vector(b.n(), seed), most_lanczos_solves - 1, end_tolerance);
   VecXd v;
   b.solve(b.matrix().shifted, ritz.vector, v);
   v.normalize();
@@ -68,8 +70,8 @@ void estimate_without_factor(ScaledMatrix& b, const SpectrumEndPair& top, double
 SpectrumEndPair largest_end(ScaledMatrix& b, const ConditionOptions& options) {
   SpectrumEndPair end;
   if (options.tier == 2) {
-    SpectraEnd found = spectra_largest(products_with(b), seeded_vector(b.n(), options.seed), options.max_products,
-                                       end_tolerance);
+    SpectraEnd found = spectra_largest(products_with(b), seeded_vector(b.n(), options.seed),
+                                       options.max_products, end_tolerance);
     if (found.converged) {
       end.lambda = found.value;
       take(std::move(found), end);
@@ -108,7 +110,7 @@ SpectrumEndPair smallest_end(ScaledMatrix& b, const ConditionOptions& options, i
 void settle(ScaledMatrix& b, double sign, double largest, SpectrumEndPair& end) {
   if (end.resolved) {
     prove_end(b, sign, largest, end);
-  } else if (end.lambda > 0) {
+  } else if (end.lambda > 0 && std::isfinite(end.lambda)) {
     resolve_by_shift(b, sign, largest, end);
   }
 }
@@ -175,8 +177,8 @@ ConditionEstimate estimate_tier1(FactoredMatrix& matrix, const BlockScaling& sca
   return e;
 }
 
-ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& scaling,
-                                 const ConditionOptions& options) {
+ConditionEstimate estimate_ends(FactoredMatrix& matrix, const BlockScaling& scaling,
+                                const ConditionOptions& options) {
   ConditionEstimate e = start_estimate("lanczos");
   ScaledMatrix b(matrix, scaling, e);
   if (!matrix.positive) {  // nothing to shift and invert
