@@ -154,7 +154,7 @@ TEST(BlockAnalysis, NestedDissectionIsTakenWhereItSavesMoreThanItTakes) {
     c.nmethods = 1;
     c.method[0].ordering = CHOLMOD_AMD;
     by_degree = cholmod_analyze(&a, &c);
-    EXPECT_GT(c.fl / a.nrow, 2e4);
+    EXPECT_GT(c.fl / static_cast<double>(a.nrow), 2e4);
     EXPECT_LT(thick.flops, c.fl);
     cholmod_free_factor(&by_degree, &c);
   }
