@@ -132,7 +132,7 @@ BlockAnalyzer::BlockAnalyzer() {
 
 BlockAnalyzer::~BlockAnalyzer() { cholmod_finish(&common_); }
 
-cholmod_factor* BlockAnalyzer::best_ordering(bool& nested_dissection) {
+cholmod_factor* BlockAnalyzer::best_ordering(BlockAnalysis& out) {
   cholmod_sparse graph{};
   graph.nrow = graph.ncol = start_.size() - 1;
   graph.nzmax = row_.size();
@@ -144,12 +144,14 @@ cholmod_factor* BlockAnalyzer::best_ordering(bool& nested_dissection) {
   graph.sorted = graph.packed = 1;
   common_.method[0].ordering = CHOLMOD_AMD;
   cholmod_factor* best = cholmod_analyze(&graph, &common_);
+  out.orderings = 1;
   const double flops = common_.fl;
   if (best == nullptr || !(flops > asks_nested_dissection * static_cast<double>(graph.nrow))) return best;
   common_.method[0].ordering = CHOLMOD_NESDIS;
   cholmod_factor* other = cholmod_analyze(&graph, &common_);
-  nested_dissection = other != nullptr && common_.fl < flops;
-  if (nested_dissection) std::swap(best, other);
+  out.orderings = 2;
+  out.nested_dissection = other != nullptr && common_.fl < flops;
+  if (out.nested_dissection) std::swap(best, other);
   cholmod_free_factor(&other, &common_);
   return best;
 }
@@ -157,7 +159,7 @@ cholmod_factor* BlockAnalyzer::best_ordering(bool& nested_dissection) {
 BlockAnalysis BlockAnalyzer::analyze(const ReducedSystem& system, cholmod_common& owner) {
   lower_block_columns(system, start_, row_);
   BlockAnalysis out;
-  cholmod_factor* blocks = best_ordering(out.nested_dissection);
+  cholmod_factor* blocks = best_ordering(out);
   if (blocks == nullptr) return out;
   out.factor = expanded(*blocks, system.block_start, owner);
   if (out.factor != nullptr) count(*blocks, system.block_start, out);

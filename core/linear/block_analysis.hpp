@@ -13,6 +13,7 @@ namespace bb {
 /// A supernodal symbolic factor, and what a numeric factorisation with it takes.
 struct BlockAnalysis {
   cholmod_factor* factor = nullptr;  // owned by the caller; null when CHOLMOD failed, and its status says why
+  int orderings = 0;                 // that were tried: 1, or 2 where METIS was asked
   bool nested_dissection = false;    // the ordering is that of METIS
   // Without the zeros of relaxed supernodes. Where vertices differ in size, every block but the diagonal one counts
   // with their mean size.
@@ -35,7 +36,7 @@ class BlockAnalyzer {
   const cholmod_common& common() const { return common_; }
 
  private:
-  cholmod_factor* best_ordering(bool& nested_dissection);
+  cholmod_factor* best_ordering(BlockAnalysis& out);
 
   cholmod_common common_{};
   std::vector<int> start_, row_;  // the graph: lower block columns

@@ -135,6 +135,8 @@ TEST(BlockAnalysis, NestedDissectionIsTakenWhereItSavesMoreThanItTakes) {
     return analysis;
   };
   const BlockAnalysis flat = analyze(grid_system(60, 0.1)), thick = analyze(cube(22));
+  EXPECT_EQ(flat.orderings, 1);
+  EXPECT_EQ(thick.orderings, 2);
   EXPECT_FALSE(flat.nested_dissection);
   EXPECT_LT(flat.flops / 27 / (60 * 60), 2e4);
   EXPECT_TRUE(thick.nested_dissection);
