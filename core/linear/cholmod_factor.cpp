@@ -7,36 +7,20 @@
 #include <chrono>
 #include <cmath>
 #include <new>
-#include <numeric>
 #include <stdexcept>
 
 #include "core/linear/blas_info.hpp"
+#include "core/linear/block_analysis.hpp"
 #include "core/linear/block_starts.hpp"
 #include "core/linear/parallel.hpp"
 #include "core/linear/pattern_key.hpp"
+#include "core/math/at.hpp"
 
 namespace bb {
 namespace {
 
 double seconds_since(std::chrono::steady_clock::time_point start) {
   return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
-}
-
-/// A CHOLMOD header over Eigen's arrays: no copy.
-cholmod_sparse view(const ReducedSystem& system) {
-  const auto& lower = system.lower;
-  cholmod_sparse a{};
-  a.nrow = a.ncol = static_cast<std::size_t>(lower.rows());
-  a.nzmax = static_cast<std::size_t>(lower.nonZeros());
-  a.p = const_cast<int*>(lower.outerIndexPtr());
-  a.i = const_cast<int*>(lower.innerIndexPtr());
-  a.x = const_cast<double*>(lower.valuePtr());
-  a.stype = -1;  // lower triangle of a symmetric matrix
-  a.itype = CHOLMOD_INT;
-  a.xtype = CHOLMOD_REAL;
-  a.dtype = CHOLMOD_DOUBLE;
-  a.sorted = a.packed = 1;
-  return a;
 }
 
 /// OpenBLAS takes a buffer of 128 MiB when it is first used and waits for ever where it gets none: then memory has
@@ -60,22 +44,15 @@ struct CholmodFactor::Cholmod {
   cholmod_dense *x = nullptr, *y = nullptr, *e = nullptr;  // workspaces of solve
   cholmod_sparse* permuted = nullptr;                      // P A P^T, lower, as the factorisation reads it
   PatternKey key;
-  std::vector<int> start, row, permutation;
-  std::vector<int> source;  // of each value of `permuted` in A
+  BlockAnalyzer analyzer;
+  double nonzeros = 0, flops = 0;   // of the factor
+  std::vector<int> source;          // of each value of `permuted` in A
+  std::vector<int> position, next;  // scratch of place
 
   Cholmod() {
     set_one_blas_thread();
     cholmod_start(&common);
     common.supernodal = CHOLMOD_SUPERNODAL;
-    common.nmethods = 1;
-    common.method[0].ordering = CHOLMOD_GIVEN;
-    common.postorder = 1;
-    // Wider supernodes than CHOLMOD's 4, 16, 48 with 0.8, 0.1, 0.05: small BLAS calls are what holds it back
-    // on cloth. Wider still costs more in the solves than it gains (drape matrices 5 x 24^2 and 1 x 48^2).
-    const std::size_t columns[] = {24, 48, 96};
-    const double zeros[] = {0.5, 0.1, 0.05};
-    std::copy_n(columns, 3, common.nrelax);
-    std::copy_n(zeros, 3, common.zrelax);
     common.print = 0;
     common.quick_return_if_not_posdef = 1;
   }
@@ -90,46 +67,36 @@ struct CholmodFactor::Cholmod {
   Cholmod(const Cholmod&) = delete;
   Cholmod& operator=(const Cholmod&) = delete;
 
-  /// Nested dissection by METIS of the graph of the vertices, whose degrees of freedom stay together: the same
-  /// fill as from the graph of degrees of freedom, in two thirds of the time.
-  void order(const ReducedSystem& system) {
-    const std::vector<int>& first = system.block_start;
-    lower_block_columns(system, start, row);
-    cholmod_sparse graph{};
-    graph.nrow = graph.ncol = first.size() - 1;
-    graph.nzmax = row.size();
-    graph.p = start.data();
-    graph.i = row.data();
-    graph.stype = -1;
-    graph.itype = CHOLMOD_INT;
-    graph.xtype = CHOLMOD_PATTERN;
-    graph.sorted = graph.packed = 1;
-    std::vector<int> vertex(graph.nrow), parent(graph.nrow), member(graph.nrow);
-    require(cholmod_nested_dissection(&graph, nullptr, 0, vertex.data(), parent.data(), member.data(),
-                                      &common) >= 0);
-    permutation.clear();
-    for (const int v : vertex) {
-      const auto b = static_cast<std::size_t>(v);
-      for (int i = first[b]; i < first[b + 1]; ++i) permutation.push_back(i);
-    }
-  }
-
-  /// Where each value goes, found once a pattern: numbers in the place of values, permuted by CHOLMOD. It would
-  /// permute the values anew, twice, in every factorisation.
-  void place(cholmod_sparse numbered) {
-    std::vector<double> number(numbered.nzmax);
-    std::iota(number.begin(), number.end(), 0.0);
-    numbered.x = number.data();
+  /// Where each value goes, found once a pattern: CHOLMOD would permute the values anew, twice, in every
+  /// factorisation. Rows of a column stay unsorted: they are only scattered into the factor.
+  void place(const ReducedSystem& system) {
+    const int *outer = system.lower.outerIndexPtr(), *inner = system.lower.innerIndexPtr();
+    const std::size_t n = factor->n, n_nonzeros = static_cast<std::size_t>(system.lower.nonZeros());
     cholmod_free_sparse(&permuted, &common);
-    cholmod_sparse* upper =
-        cholmod_ptranspose(&numbered, 2, static_cast<int*>(factor->Perm), nullptr, 0, &common);
-    if (upper != nullptr) permuted = cholmod_ptranspose(upper, 2, nullptr, nullptr, 0, &common);
-    cholmod_free_sparse(&upper, &common);
+    permuted = cholmod_allocate_sparse(n, n, n_nonzeros, 0, 1, -1, CHOLMOD_REAL, &common);
     require(permuted != nullptr);
-    const auto* place = static_cast<const double*>(permuted->x);
-    source.resize(numbered.nzmax);
-    std::transform(place, place + source.size(), source.begin(),
-                   [](double i) { return static_cast<int>(i); });
+    const auto* permutation = static_cast<const int*>(factor->Perm);
+    position.resize(n);
+    for (std::size_t k = 0; k < n; ++k) position[at(permutation[k])] = static_cast<int>(k);
+    auto *start = static_cast<int*>(permuted->p), *row = static_cast<int*>(permuted->i);
+    std::fill_n(start, n + 1, 0);
+    const auto for_each_entry = [&](const auto& f) {
+      for (std::size_t j = 0; j < n; ++j) {
+        for (int k = outer[j]; k < outer[j + 1]; ++k) {
+          const int a = position[j], b = position[at(inner[k])];
+          f(std::max(a, b), at(std::min(a, b)), k);
+        }
+      }
+    };
+    for_each_entry([&](int, std::size_t column, int) { ++start[column + 1]; });
+    for (std::size_t j = 0; j < n; ++j) start[j + 1] += start[j];
+    next.assign(start, start + n);
+    source.resize(n_nonzeros);
+    for_each_entry([&](int r, std::size_t column, int k) {
+      const std::size_t to = at(next[column]++);
+      row[to] = r;
+      source[to] = k;
+    });
   }
 
   bool factorize(const double* value) {
@@ -143,14 +110,16 @@ struct CholmodFactor::Cholmod {
   }
 
   /// Resource failures are exceptions; the numerical warnings are not seen here.
-  void require(bool success) {
-    if (success && common.status >= CHOLMOD_OK) return;
+  /// other: the status of another workspace that took part.
+  void require(bool success, int other = CHOLMOD_OK) {
+    const int status = std::min(common.status, other);
+    if (success && status >= CHOLMOD_OK) return;
     key.forget();
-    if (common.status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
-    if (common.status == CHOLMOD_TOO_LARGE) {
+    if (status == CHOLMOD_OUT_OF_MEMORY) throw std::bad_alloc();
+    if (status == CHOLMOD_TOO_LARGE) {
       throw FactorTooLarge("the factor has more entries than CHOLMOD's 32-bit indices can number");
     }
-    throw std::runtime_error("CHOLMOD status " + std::to_string(common.status));
+    throw std::runtime_error("CHOLMOD status " + std::to_string(status));
   }
 };
 
@@ -163,17 +132,18 @@ void CholmodFactor::analyze(const ReducedSystem& system) {
   analyzed_last_ = !c.key.same_as_last(system);
   if (!analyzed_last_ && c.factor != nullptr) return;
   const auto start = std::chrono::steady_clock::now();
-  cholmod_sparse a = view(system);
   cholmod_free_factor(&c.factor, &c.common);
-  if (analyzed_last_) c.order(system);  // else the ordering was read, and the pattern is its own
-  c.factor = cholmod_analyze_p(&a, c.permutation.data(), nullptr, 0, &c.common);
-  c.require(c.factor != nullptr);
-  c.place(a);
+  const BlockAnalysis analysis = c.analyzer.analyze(system, c.common);
+  c.factor = analysis.factor;
+  c.nonzeros = analysis.nonzeros;
+  c.flops = analysis.flops;
+  c.require(c.factor != nullptr, c.analyzer.common().status);
+  c.place(system);
   analyze_s_ = seconds_since(start);
 }
 
 void CholmodFactor::keep(Archive& archive) {
-  archive(cholmod_->key, cholmod_->permutation);
+  archive(cholmod_->key);
   if (archive.reads()) cholmod_free_factor(&cholmod_->factor, &cholmod_->common);
 }
 
@@ -213,7 +183,7 @@ std::string CholmodFactor::failure(const ReducedSystem& system) const {
   return "no positive pivot at " + vertex_text(system, dof);
 }
 
-double CholmodFactor::factor_nonzeros() const { return cholmod_->common.lnz; }
-double CholmodFactor::factor_flops() const { return cholmod_->common.fl; }
+double CholmodFactor::factor_nonzeros() const { return cholmod_->nonzeros; }
+double CholmodFactor::factor_flops() const { return cholmod_->flops; }
 
 }  // namespace bb

@@ -8,7 +8,7 @@
 
 namespace bb {
 
-/// CHOLMOD, supernodal, nested dissection of the vertices by METIS, one BLAS thread. Not copyable, one thread at a time.
+/// CHOLMOD, supernodal, ordered and analysed by vertices (block_analysis.hpp), one BLAS thread. Not copyable, one thread at a time.
 class CholmodFactor {
  public:
   CholmodFactor();
@@ -25,8 +25,8 @@ class CholmodFactor {
   /// x = A^-1 b with the last factor, which must be ok. Allocates nothing after the first solve of a size.
   void solve(const VecXd& b, VecXd& x);
 
-  /// The pattern that was analysed and its ordering: one that read them analyses that pattern in the same order, and does
-  /// not say that it did.
+  /// The pattern that was analysed: one that read it analyses that pattern again, to the same ordering, and does not say
+  /// that it did.
   void keep(Archive& archive);
 
   /// Where the pivot was not positive in the last factorize, which is matrix_indefinite.

@@ -50,6 +50,11 @@ std::string_view to_string(ConditionStatus status) {
   return "";
 }
 
+std::string_view to_string(EndProof proof) {
+  constexpr std::string_view words[] = {"none", "smallest", "largest", "both"};
+  return words[static_cast<std::size_t>(proof)];
+}
+
 std::string_view to_string(Scaling scaling) {
   switch (scaling) {
     case Scaling::none:
@@ -77,9 +82,9 @@ struct ConditionEstimator::Data {
   ReducedSystem completed;  // a copy with explicit zeros, when a diagonal entry is not stored
   BlockScaling scaling;
 
-  /// Checks, completes and, for tiers 1 and 2, factorises. Returns false for entries that are not finite.
+  /// Checks, completes and, for all tiers but 3, factorises. Returns false for entries that are not finite.
   bool prepare(const ReducedSystem& system, int tier) {
-    if (tier < 1 || tier > 3) throw ConfigError("condition tier", std::to_string(tier), "1, 2 or 3");
+    if (tier < 1 || tier > 4) throw ConfigError("condition tier", std::to_string(tier), "1, 2, 3 or 4");
     matrix.system = &system;
     if (!has_full_diagonal(system.lower)) {
       completed = system;
@@ -90,21 +95,23 @@ struct ConditionEstimator::Data {
     }
     matrix.product.update(*matrix.system);
     if (!matrix.product.all_finite()) return false;
-    if (tier < 3 && matrix.product.n() > 0) {
+    if (tier != 3 && matrix.product.n() > 0) {
       matrix.positive = matrix.factor.factorize(*matrix.system) == LinearStatus::ok;
     }
     return true;
   }
 
-  ConditionEstimate run(int tier, Scaling kind, std::uint64_t seed) {
-    const char* method = tier == 1 ? "inverse_power+lanczos" : tier == 2 ? "shift_invert" : "dense";
+  ConditionEstimate run(const ConditionOptions& options) {
+    constexpr const char* methods[] = {"", "inverse_power+lanczos", "spectra", "dense", "lanczos"};
+    const int tier = options.tier;
+    const char* method = methods[tier];
     if (matrix.product.n() == 0) return unknown(ConditionStatus::not_converged, method);
-    const LinearStatus status = scaling.setup(*matrix.system, kind);
+    const LinearStatus status = scaling.setup(*matrix.system, options.scaling);
     if (status == LinearStatus::matrix_indefinite) return unknown(ConditionStatus::not_pd, method);
     if (status != LinearStatus::ok) return unknown(ConditionStatus::singular, method);
-    if (tier == 1) return estimate_tier1(matrix, scaling, seed);
-    if (tier == 2) return estimate_tier2(matrix, scaling, seed);
-    return estimate_dense(*matrix.system, scaling);
+    if (tier == 1) return estimate_tier1(matrix, scaling, options.seed);
+    if (tier == 3) return estimate_dense(*matrix.system, scaling);
+    return estimate_ends(matrix, scaling, options);
   }
 };
 
@@ -115,7 +122,7 @@ ConditionEstimate ConditionEstimator::estimate(const ReducedSystem& system, cons
   const Clock::time_point start = Clock::now();
   ConditionEstimate e = unknown(ConditionStatus::not_converged, "entries that are not finite");
   try {
-    if (data_->prepare(system, options.tier)) e = data_->run(options.tier, options.scaling, options.seed);
+    if (data_->prepare(system, options.tier)) e = data_->run(options);
   } catch (const FactorTooLarge&) {
     e = unknown(ConditionStatus::not_converged, "a factor that is too large");
   }
@@ -130,7 +137,7 @@ std::array<ConditionEstimate, 3> ConditionEstimator::estimate_all(const ReducedS
   const bool finite = data_->prepare(system, tier);
   for (std::size_t k = 0; k < all.size(); ++k) {
     constexpr Scaling kScalings[] = {Scaling::none, Scaling::jacobi, Scaling::block_jacobi};
-    all[k] = finite ? data_->run(tier, kScalings[k], seed)
+    all[k] = finite ? data_->run({.tier = tier, .scaling = kScalings[k], .seed = seed})
                     : unknown(ConditionStatus::not_converged, "entries that are not finite");
     all[k].seconds = std::chrono::duration<double>(Clock::now() - start).count();
     start = Clock::now();  // the first scaling pays for the factorisation

@@ -23,9 +23,12 @@ struct FactoredMatrix {
 /// lambda_min by a Rayleigh quotient in long double, lambda_max a Ritz value lowered by its rounding.
 ConditionEstimate estimate_tier1(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed);
 
-/// Tier 2: Lanczos with full reorthogonalisation on B and on B^-1. A factorisation shifted just beyond each
-/// end proves that nothing lies there; an end that stays unresolved or is disproven is shifted to.
-ConditionEstimate estimate_tier2(FactoredMatrix& matrix, const BlockScaling& scaling, std::uint64_t seed);
+/// Tiers 2 and 4: Spectra's solvers, or Lanczos with full reorthogonalisation of our own, on B and on B^-1. Ours takes
+/// over for an end that Spectra leaves unresolved within its budget, and for a matrix without a factor. A factorisation
+/// shifted just beyond each end proves that nothing lies there; an end that stays unresolved or is disproven is
+/// shifted to.
+ConditionEstimate estimate_ends(FactoredMatrix& matrix, const BlockScaling& scaling,
+                                const ConditionOptions& options);
 
 /// cond and status from both ends; `resolved` is false where an end is only a bound.
 /// Above 1e14 cond is 1e14 and the status lower_bound; below the rounding of the entries of A it is singular.

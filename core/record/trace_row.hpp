@@ -26,6 +26,8 @@ inline constexpr int n_words<MatrixStage> = 3;
 template <>
 inline constexpr int n_words<Scaling> = 3;
 template <>
+inline constexpr int n_words<EndProof> = 4;
+template <>
 inline constexpr int n_words<ConditionStatus> = 5;
 template <>
 inline constexpr int n_words<LinearStatus> = 6;
@@ -76,12 +78,21 @@ struct ConditionSample {
            "factorised, where it is another") = MatrixForm::clamped;
   BB_FIELD(MatrixStage, stage, "the terms that the matrix holds") = MatrixStage::full;
   BB_FIELD(Scaling, scaling, "of the matrix, before the estimate") = Scaling::none;
-  BB_FIELD(int, tier, "0 Ritz values, 1 inverse power and Lanczos, 2 Lanczos round the factor, 3 dense") = 2;
+  BB_FIELD(int, tier,
+           "0 Ritz values, 1 inverse power and Lanczos, 2 Spectra round the factor, 3 dense, 4 our Lanczos "
+           "round the factor") = 2;
   BB_FIELD(Number, lambda_min, "smallest eigenvalue", no_eigenvalue);
   BB_FIELD(Number, lambda_max, "largest eigenvalue", no_eigenvalue);
   BB_FIELD(Number, cond, "lambda_max / lambda_min, at most 1e14", no_eigenvalue);
   BB_FIELD(ConditionStatus, status, "lower_bound: cond is at least that") = ConditionStatus::ok;
-  BB_FIELD(std::string, method, "ritz, inverse_power+lanczos, shift_invert, dense");
+  BB_FIELD(std::string, method,
+           "ritz, inverse_power+lanczos, spectra, lanczos, dense, and what an end took beside it: by "
+           "lanczos, where Spectra "
+           "did not converge in its budget; shifted to, round a factor of its own");
+  BB_FIELD(
+      EndProof, proof,
+      "which eigenvalues a factor of the shifted matrix proves to be the last, to 8e-4 of them; not asked "
+      "where rounding would decide") = EndProof::none;
   BB_FIELD(double, residual, "largest |A v - lambda v| / |A| of both pairs") = 0;
   BB_FIELD(int, solves, "triangular solves") = 0;
   BB_FIELD(int, products, "matrix products") = 0;

@@ -226,7 +226,7 @@ void check_ritz(const RunConfig& config, const Complain& complain) {
   const auto& scalings = config.diagnose.scalings;
   const auto is_scaling = [&](Scaling s) { return to_string(s) == preconditioner; };
   if (config.linear_solver.name != "pcg") {
-    complain("/diagnose/tier", "0", "1 or 2, or linear_solver pcg: tier 0 reads the Ritz values of PCG");
+    complain("/diagnose/tier", "0", "1, 2 or 4, or linear_solver pcg: tier 0 reads the Ritz values of PCG");
   } else if (text(config.linear_solver.parameters, "forcing") != "fixed") {
     complain("/diagnose/tier", "0",
              "1 or 2, or linear_solver.forcing fixed: loose solves know no ends of a spectrum");

@@ -75,10 +75,10 @@ template <class T>
 Answer answer::condition(Query& q) {
   const ReducedSystem system = system_field(q);
   const std::string scaling = q.choice("scaling", {"none", "jacobi", "block_jacobi"});
-  const int tier = q.integer("tier", 0, 3);
+  const int tier = q.integer("tier", 0, 4);
   if (tier == 3 && system.lower.rows() > kLargestDense) {
     q.complain("tier", "3 on " + std::to_string(system.lower.rows()) + " rows",
-               "0 to 2, or at most " + std::to_string(kLargestDense) + " rows");
+               "another tier, or at most " + std::to_string(kLargestDense) + " rows");
   }
   q.finish();
   const ConditionEstimate e = estimate(system,

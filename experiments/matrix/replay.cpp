@@ -128,13 +128,14 @@ Replay replay(const StoredSystem& stored, const ReplayOptions& options) {
   }
   add_tier0(out);
   ConditionEstimator estimator;
-  for (const int tier : {1, 2, 3}) {
+  for (const int tier : {1, 2, 4, 3}) {
     if (tier == 3 && stored.system.lower.rows() > options.dense_rows) continue;
     for (const Scaling scaling : scalings) {
       ReplayedEstimate row;
       row.tier = tier;
       row.scaling = scaling;
-      row.estimate = estimator.estimate(stored.system, {tier, scaling, options.seed});
+      row.estimate =
+          estimator.estimate(stored.system, {.tier = tier, .scaling = scaling, .seed = options.seed});
       out.estimates.push_back(std::move(row));
     }
   }

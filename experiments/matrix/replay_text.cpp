@@ -66,6 +66,10 @@ ordered_json to_json(const ReplayedEstimate& row) {
           {"dense", to_string(row.agreement)},
           {"cond_change_rel", number(row.cond_change_rel)},
           {"residual", number(e.residual)},
+          {"proof", to_string(e.proof)},
+          {"solves", e.solves},
+          {"products", e.products},
+          {"factorizations", e.factorizations},
           {"time_s", e.seconds}};
 }
 

@@ -164,7 +164,7 @@ class Reader {
       out.status = word(one.value("status", json()), pointer + "/status",
                         {ConditionStatus::ok, ConditionStatus::lower_bound, ConditionStatus::singular,
                          ConditionStatus::not_pd, ConditionStatus::not_converged});
-      out.tier = integer(one.value("tier", json()), pointer + "/tier", 0, 3).value_or(0);
+      out.tier = integer(one.value("tier", json()), pointer + "/tier", 0, 4).value_or(0);
       out.cond = known(one, "cond", pointer);
       out.lambda_min = known(one, "lambda_min", pointer);
       out.lambda_max = known(one, "lambda_max", pointer);

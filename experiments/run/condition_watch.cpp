@@ -39,8 +39,21 @@ ConditionSample sample_of(MatrixForm matrix, MatrixStage stage, Scaling scaling,
   const auto known = [&e](double v) {
     return std::isfinite(v) ? Number(v) : Number::missing(to_string(e.status).data());  // a literal
   };
-  return {matrix,   stage,    scaling,    tier,     known(e.lambda_min), known(e.lambda_max), known(e.cond),
-          e.status, e.method, e.residual, e.solves, e.products,          e.factorizations,    e.seconds,
+  return {matrix,
+          stage,
+          scaling,
+          tier,
+          known(e.lambda_min),
+          known(e.lambda_max),
+          known(e.cond),
+          e.status,
+          e.method,
+          e.proof,
+          e.residual,
+          e.solves,
+          e.products,
+          e.factorizations,
+          e.seconds,
           {}};
 }
 
@@ -57,8 +70,10 @@ bool ConditionWatch::due(int iteration) const {
 void ConditionWatch::estimate(const ReducedSystem& matrix, MatrixForm form, MatrixStage stage) {
   const int tier = config_.diagnose.tier;
   for (const Scaling scaling : config_.diagnose.scalings) {
-    samples_.push_back(sample_of(form, stage, scaling, tier,
-                                 estimator_.estimate(matrix, {tier, scaling, config_.diagnose.seed})));
+    samples_.push_back(
+        sample_of(form, stage, scaling, tier,
+                  estimator_.estimate(matrix, {tier, scaling, config_.diagnose.seed,
+                                               config_.diagnose.max_solves, config_.diagnose.max_products})));
   }
 }
 

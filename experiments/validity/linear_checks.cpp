@@ -71,8 +71,8 @@ void check_solvers(BlockCheck& check) {
 void check_estimators(BlockCheck& check) {
   for (const double shift : {0.0, 0.01}) {
     const double cond = eigenvalue(n_vertices, shift) / eigenvalue(1, shift);
-    for (int tier = 1; tier <= 3; ++tier) {
-      const ConditionEstimate e = ConditionEstimator().estimate(chain(shift), {tier, Scaling::none, 1});
+    for (int tier = 1; tier <= 4; ++tier) {
+      const ConditionEstimate e = ConditionEstimator().estimate(chain(shift), {.tier = tier});
       // tier 1 bounds cond from below, and this spectrum is dense at its upper end
       const double error = tier == 1 ? std::max(0.0, e.cond / cond - 1) : std::abs(e.cond / cond - 1);
       check.judge(error, "tier " + std::to_string(tier));
@@ -83,8 +83,8 @@ void check_estimators(BlockCheck& check) {
 
 void check_singular(BlockCheck& check) {
   for (const double shift : {-eigenvalue(1, 0), -0.5}) {  // one eigenvalue 0, in rounding; many below 0
-    for (int tier = 1; tier <= 3; ++tier) {
-      const ConditionEstimate e = ConditionEstimator().estimate(chain(shift), {tier, Scaling::none, 1});
+    for (int tier = 1; tier <= 4; ++tier) {
+      const ConditionEstimate e = ConditionEstimator().estimate(chain(shift), {.tier = tier});
       check.judge(e.status == ConditionStatus::ok ? 1 : 0, "tier " + std::to_string(tier));
     }
   }

@@ -17,7 +17,7 @@ def digest(text: str) -> str:
 def _trace_line(step: int, iteration: int, scale: float) -> dict:
     def estimate(scaling: str, cond: float, status: str = "ok") -> dict:
         return {"stage": "full", "scaling": scaling, "tier": 2, "lambda_min": 2.0, "lambda_max": 2.0 * cond,
-                "cond": cond, "status": status, "method": "shift_invert"}
+                "cond": cond, "status": status, "method": "spectra"}
 
     last = iteration == 1
     return {

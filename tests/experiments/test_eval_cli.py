@@ -38,7 +38,7 @@ QUERIES = [
     {"kind": "energy", "model": "hinge", "x": [[0, 0, 0], [1, 0, 0], [0, 1, 0.2], [0, -1, 0]], "k": 2, "rest_angle": 0.1},
     {"kind": "svd", "F": [[3, 0], [0, -2]]},
     *({"kind": "condition", "rows": [0, 1, 1], "cols": [0, 0, 1], "values": [2, 1, 2], "scaling": scaling, "tier": tier}
-      for scaling in ("none", "jacobi", "block_jacobi") for tier in range(4)),
+      for scaling in ("none", "jacobi", "block_jacobi") for tier in range(5)),
 ]
 
 

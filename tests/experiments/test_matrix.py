@@ -74,7 +74,7 @@ def test_every_status_of_the_corpus(replayed, name):
             assert status in (allowed if isinstance(allowed, list) else [allowed]), (part, which)
 
 
-LOOSE = {("indefinite_clamped", "none")}  # eigenvalues lie dense at its large end: tier 2 stops at what it promises, 1e-3; measured 1.4e-5
+LOOSE = {("indefinite_clamped", "none")}  # eigenvalues lie dense at its large end: tiers 2 and 4 stop at what they promise, 1e-3; measured 1.4e-5
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -87,7 +87,7 @@ def test_condition_numbers_agree_with_dense_eigenvalues_of_numpy(replayed, name)
         values = np.linalg.eigvalsh(dense) if dense is not None else np.array([-1.0, 1.0])
         low, high = float(values[0]), float(values[-1])
         noise = len(matrix) * np.finfo(float).eps * high  # what eigvalsh knows of the small end
-        for tier in (0, 1, 2, 3):
+        for tier in (0, 1, 2, 3, 4):
             mine = estimate(replayed[name], tier, scaling)
             assert mine["dense"] != "differs", (scaling, mine)
             if low < -noise:
@@ -95,17 +95,17 @@ def test_condition_numbers_agree_with_dense_eigenvalues_of_numpy(replayed, name)
             elif low <= noise:
                 assert mine["status"] != "ok" or mine["cond"] >= high / (2 * noise), (scaling, tier)
             elif mine["status"] == "ok":
-                tolerance = 1e-3 if (name, scaling) in LOOSE and tier == 2 else 1e-6
+                tolerance = 1e-3 if (name, scaling) in LOOSE and tier in (2, 4) else 1e-6
                 assert mine["cond"] == pytest.approx(high / low, rel=tolerance + noise / low), (scaling, tier)
             else:
                 assert mine["status"] == "lower_bound" and mine["cond"] <= high / low * (1 + 1e-6 + noise / low), (scaling, tier)
             judged += 1
-    assert judged == 12
+    assert judged == 15
 
 
 def test_the_dense_estimate_sees_the_end_of_a_spectrum_that_spans_14_decades(replayed):
     """lambda_min by Cholesky and inverse iteration in 80-bit numbers: 694.4452050468949. Four steps of polishing said 917.8, and a cond of 9.7e13."""
-    for tier in (2, 3):
+    for tier in (2, 3, 4):
         mine = estimate(replayed["strain_limit_end"], tier, "none")
         assert mine["lambda_min"] == pytest.approx(694.4452050468949, rel=1e-6), tier
         assert mine["status"] == "lower_bound" and mine["cond"] == 1e14

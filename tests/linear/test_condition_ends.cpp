@@ -1,4 +1,4 @@
-// The ends of the spectrum that tier 2 calls ok: never a neighbour of the end, whatever the start vector.
+// The ends of the spectrum that tiers 2 and 4 call ok: never a neighbour of the end, whatever the start vector.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -26,17 +26,20 @@ TEST(ConditionEnds, ANeighbourIsNeverReportedAsOk) {
   for (const double gap : {1.2e-3, 2.5e-3, 4e-3}) {
     const ReducedSystem system = with_close_neighbours(90, gap);
     ConditionEstimator estimator;
-    int n_ok = 0;
-    for (std::uint64_t seed = 1; seed <= 60; ++seed) {
-      const ConditionEstimate e = estimator.estimate(system, {2, Scaling::none, seed});
-      EXPECT_LE(e.solves, 25) << seed;
-      EXPECT_LE(e.products, 40) << seed;
-      if (e.status != ConditionStatus::ok) continue;
-      ++n_ok;
-      EXPECT_NEAR(e.lambda_max, 1, 1e-3) << "gap " << gap << " seed " << seed;
-      EXPECT_NEAR(e.lambda_min / 0.01, 1, 1e-3) << "gap " << gap << " seed " << seed;
+    for (const int tier : {2, 4}) {
+      int n_ok = 0;
+      for (std::uint64_t seed = 1; seed <= 60; ++seed) {
+        const ConditionEstimate e = estimator.estimate(system, {.tier = tier, .seed = seed});
+        EXPECT_LE(e.solves, 25 + (tier == 2 ? default_max_solves : 0)) << seed;
+        EXPECT_LE(e.products, 40 + (tier == 2 ? default_max_products : 0)) << seed;
+        if (e.status != ConditionStatus::ok) continue;
+        ++n_ok;
+        EXPECT_EQ(e.proof, EndProof::both) << e.method;
+        EXPECT_NEAR(e.lambda_max, 1, 1e-3) << "gap " << gap << " seed " << seed << " tier " << tier;
+        EXPECT_NEAR(e.lambda_min / 0.01, 1, 1e-3) << "gap " << gap << " seed " << seed << " tier " << tier;
+      }
+      EXPECT_GE(n_ok, 58) << gap << " tier " << tier;
     }
-    EXPECT_GE(n_ok, 58) << gap;
   }
 }
 

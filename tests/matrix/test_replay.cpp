@@ -33,7 +33,7 @@ TEST(Replay, EverySolverPreconditionerAndEstimatorHasALine) {
   EXPECT_GE(usable, 4U);
   EXPECT_EQ(solvers.size(), usable);
   EXPECT_EQ(conditioners.size(), preconditioners().names().size());
-  ASSERT_EQ(r.estimates.size(), 12u);  // tiers 0 to 3, three scalings
+  ASSERT_EQ(r.estimates.size(), 15u);  // tiers 0 to 4, three scalings
   const double pi = std::acos(-1.0), exact = (2.1 + 2 * std::cos(pi / 31)) / (2.1 - 2 * std::cos(pi / 31));
   for (const ReplayedEstimate& row : r.estimates) {
     const bool lower_bound = row.tier < 2;
@@ -49,7 +49,7 @@ TEST(Replay, EverySolverPreconditionerAndEstimatorHasALine) {
 
 TEST(Replay, RowsBeyondTheDenseLimitHaveNoDenseEstimate) {
   const Replay r = replay(chain(30, 2.1), {1e-8, 10000, 29, 1});
-  EXPECT_EQ(r.estimates.size(), 9u);
+  EXPECT_EQ(r.estimates.size(), 12u);
   for (const ReplayedEstimate& row : r.estimates) EXPECT_EQ(row.agreement, Agreement::no_dense);
 }
 

@@ -1,0 +1,162 @@
+"""Who finds the condition numbers, and at what price: python -m barrierbench_analysis.condition_table writes results/CONDITION.md.
+
+Tier 2 (Spectra) and tier 4 (our Lanczos) estimate the same matrices: those of every diagnosed iteration of the demo's sweeps, run once with each
+tier, and those of results/matrices. A run goes through the same states whatever is estimated, so that its samples pair up one by one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import datetime
+import json
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from .program import built_program
+
+ROOT = Path(__file__).resolve().parents[1]
+SWEEPS = ("demo_strip", "demo_pinned", "demo_article", "demo_drape")
+TIERS = (2, 4)
+
+
+class TableError(ValueError):
+    """Runs or replays whose estimates do not pair up."""
+
+
+@dataclass
+class Pair:
+    """One matrix and scaling: its sample by Spectra and that by our Lanczos."""
+
+    where: str
+    spectra: dict
+    lanczos: dict
+
+
+def run(words: list[str]) -> None:
+    done = subprocess.run([str(built_program(TableError)), *words], capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise TableError(f"{' '.join(words)}: {done.stderr.strip()}")
+
+
+def samples(folder: Path) -> dict[tuple, dict]:
+    """The samples of all traces under a folder, by case, step, iteration, matrix, stage and scaling."""
+    found = {}
+    for trace in sorted(folder.rglob("trace.jsonl")):
+        for line in trace.read_text().splitlines():
+            row = json.loads(line)
+            for one in row.get("cond", []):
+                found[(trace.parent.name, row["step"], row["iteration"], one["matrix"], one["stage"], one["scaling"])] = one
+    return found
+
+
+def pair_up(name: str, by_tier: dict[int, dict[tuple, dict]]) -> list[Pair]:
+    first, second = (by_tier[tier] for tier in TIERS)
+    if first.keys() != second.keys() or not first:
+        raise TableError(f"{name}: {len(first)} estimates of tier 2, {len(second)} of tier 4, not of the same matrices")
+    return [Pair(name, first[key], second[key]) for key in sorted(first, key=str)]
+
+
+def of_sweep(name: str, cases: list[str], work: Path) -> list[Pair]:
+    spec = json.loads((ROOT / f"configs/sweeps/{name}.json").read_text())
+    spec["base"] = str((ROOT / "configs/sweeps" / spec["base"]).resolve())
+    if cases:
+        for axis in spec["axes"]:
+            if any("label" in case for case in axis.get("cases", [])):
+                axis["cases"] = [case for case in axis["cases"] if case["label"] in cases] or axis["cases"][:1]
+    file = work / f"{name}.json"
+    file.write_text(json.dumps(spec))
+    by_tier = {}
+    for tier in TIERS:
+        out = work / f"{name}_{tier}"
+        run(["sweep", str(file), "--out", str(out), "--progress", "none", "--set", f"/diagnose/tier={tier}", "--set", "/passes/time=false",
+             "--set", "/passes/audit=false", "--set", "/passes/diagnose=true", "--set", "/diagnose/pcg=false"])
+        by_tier[tier] = samples(out)
+    return pair_up(name, by_tier)
+
+
+def of_corpus(work: Path) -> list[Pair]:
+    out = work / "replay.json"
+    run(["matrix", *map(str, sorted((ROOT / "results/matrices").glob("*.mtx"))), "--json", str(out)])
+    by_tier: dict[int, dict[tuple, dict]] = {tier: {} for tier in TIERS}
+    for one in json.loads(out.read_text())["matrices"]:
+        for estimate in one["estimates"]:
+            if estimate["tier"] in TIERS:
+                by_tier[estimate["tier"]][(one["file"], estimate["scaling"])] = estimate
+    return pair_up("corpus", by_tier)
+
+
+def difference(pair: Pair) -> float | None:
+    """Of cond, relative; None where one of the two does not know it, or only a bound."""
+    if pair.spectra["status"] != "ok" or pair.lanczos["status"] != "ok":
+        return None
+    return abs(pair.spectra["cond"] / pair.lanczos["cond"] - 1)
+
+
+def row(name: str, pairs: list[Pair]) -> list[str]:
+    def spread(side: str, field: str) -> str:
+        values = [getattr(pair, side)[field] for pair in pairs]
+        return f"{sum(values) / len(values):.1f} / {max(values)}"
+
+    def seconds(side: str) -> str:
+        return f"{1e3 * sum(getattr(pair, side)['time_s'] for pair in pairs) / len(pairs):.2f}"
+
+    known = [d for d in map(difference, pairs) if d is not None]
+    other = sum(pair.spectra["status"] != pair.lanczos["status"] for pair in pairs)
+    with_factor = [pair for pair in pairs if pair.spectra["method"].startswith("spectra")]
+    took_over = sum(" by lanczos" in pair.spectra["method"] for pair in with_factor)
+    shifted = sum(" shifted to" in pair.spectra["method"] for pair in with_factor)
+    both = sum(pair.spectra["proof"] == "both" for pair in pairs)
+    return [name, str(len(pairs)), str(len(with_factor)), str(took_over), str(shifted), str(both), spread("spectra", "solves"),
+            spread("lanczos", "solves"), spread("spectra", "products"), spread("lanczos", "products"), seconds("spectra"), seconds("lanczos"),
+            f"{max(known):.1e}" if known else "-", str(other)]
+
+
+COLUMNS = ["matrices", "estimates", "by Spectra", "an end by Lanczos", "an end shifted to", "both ends proven", "solves: Spectra", "Lanczos",
+           "products: Spectra", "Lanczos", "ms: Spectra", "Lanczos", "largest difference of cond", "other status"]
+
+
+def page(groups: dict[str, list[Pair]], note: str) -> str:
+    lines = ["# Condition numbers by Spectra and by Lanczos", "",
+             f"{datetime.date.today()}, {processor()}. Made by `./bench condition-table`{note}.", "",
+             "Every line compares tier 2 with tier 4 on the same matrices, in every scaling that their run asks for. *By Spectra*: tier 2 had a factor to",
+             "invert round, so that Spectra's solvers ran; without one the matrix is not positive definite. *An end by Lanczos*: Spectra was not done in its",
+             "budget. *An end shifted to*: a factor disproved what was found, or it stayed open, and our Lanczos looked round a factor of its own. Solves and",
+             "products: mean / largest. Times are those of one estimate with its proofs, the first of a matrix with its factorisation; they are no times of",
+             "the method. *Largest difference*: relative, over the pairs that both call ok.", "",
+             "| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
+    lines += ["| " + " | ".join(row(name, pairs)) + " |" for name, pairs in groups.items()]
+    every = [pair for pairs in groups.values() for pair in pairs]
+    lines += ["| " + " | ".join(row("all", every)) + " |", ""]
+    return "\n".join(lines)
+
+
+def processor() -> str:
+    for line in Path("/proc/cpuinfo").read_text().splitlines():
+        if line.startswith("model name"):
+            return line.partition(":")[2].strip()
+    return "unknown processor"
+
+
+def main(words: list[str] | None = None) -> int:
+    parser = argparse.ArgumentParser(prog="bench condition-table", description=__doc__)
+    parser.add_argument("--out", type=Path, default=ROOT / "results/CONDITION.md")
+    parser.add_argument("--sweeps", nargs="*", default=list(SWEEPS), help="of configs/sweeps; none: the corpus alone")
+    parser.add_argument("--cases", nargs="*", default=[], help="labels of their formulations (default: all)")
+    arguments = parser.parse_args(words)
+    try:
+        with tempfile.TemporaryDirectory() as folder:
+            groups = {name: of_sweep(name, arguments.cases, Path(folder)) for name in arguments.sweeps}
+            groups["corpus"] = of_corpus(Path(folder))
+    except TableError as error:
+        print(error, file=sys.stderr)
+        return 2
+    arguments.out.write_text(page(groups, f" for the cases {', '.join(arguments.cases)}" if arguments.cases else ""))
+    print(arguments.out)
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
