@@ -146,9 +146,9 @@ FirstContact StepBoundFinder::ask_obstacle(const Primitives<N>& primitives, Inde
     found.toi = obstacle_toi(obstacle, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
                              offset, park);
   } else {
-    const double reach = law.offset + 2 * std::max(level_.park * law.d_hat, motion.floor);
-    const double proven = obstacle_proven_time<N>(exact, gather(motion.x0, vertex), gather(motion.x1, vertex),
-                                                  reach, part.first.toi);
+    const double stop = std::max(level_.park * law.d_hat, motion.floor);
+    const double proven = obstacle_proven_time<N, T>(
+        exact, gather(motion.x0, vertex), gather(motion.x1, vertex), law.offset, stop, part.first.toi);
     if (proven > part.first.toi) return found;
     const AccdResult<T> r =
         obstacle_accd<N, T>(obstacle, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
@@ -158,7 +158,7 @@ FirstContact StepBoundFinder::ask_obstacle(const Primitives<N>& primitives, Inde
     part.probes += r.probes;
     part.capped += r.capped;
   }
-  part.zero += found.toi == 0;
+  part.zero += found.toi == 0 ? 1 : 0;
   return found;
 }
 
