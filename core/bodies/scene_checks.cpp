@@ -101,6 +101,47 @@ void check_motion(const Report& report, const std::string& what, const RigidMoti
   if (std::abs(motion.axis.norm() - 1) > 1e-9) report(what, "an axis of another length", "a unit axis");
 }
 
+/// How far apart two free vertices of a body are, across the axis of a cylinder, at least, m: the farthest from the first,
+/// and the farthest from that.
+double least_width(const Scene& scene, const Body& body, const std::vector<int>& pin_of, const Obstacle& o) {
+  const auto apart = [&](int a, int b) {
+    const Vec3d r = scene.x0.col(a) - scene.x0.col(b);
+    return o.kind == ObstacleKind::sphere ? r.norm() : r.cross(o.axis).norm();
+  };
+  int first = -1;
+  double width = 0;
+  for (int sweep = 0; sweep < 2; ++sweep) {
+    int farthest = first;
+    for (int v = body.first_vertex; v < body.first_vertex + body.n_vertices; ++v) {
+      if (pin_of[static_cast<std::size_t>(v)] >= 0) continue;
+      if (farthest < 0) first = farthest = v;
+      if (apart(v, first) <= width) continue;
+      width = apart(v, first);
+      farthest = v;
+    }
+    first = farthest;
+  }
+  return width;
+}
+
+/// What is inside a sphere or a cylinder has to fit in, wherever it starts.
+void check_room(const Scene& scene, const std::vector<int>& pin_of, const Report& report) {
+  for (const Obstacle& o : scene.obstacles) {
+    if (!o.inside || o.kind == ObstacleKind::plane) continue;
+    for (const Body& body : scene.bodies) {
+      const double offset = scene.offset[static_cast<std::size_t>(body.first_vertex)];
+      const bool any_free =
+          std::any_of(pin_of.begin() + body.first_vertex,
+                      pin_of.begin() + body.first_vertex + body.n_vertices, [](int pin) { return pin < 0; });
+      const double width = least_width(scene, body, pin_of, o), room = 2 * (o.radius - offset);
+      if (!any_free || width < room) continue;
+      report(fmt::format("body \"{}\" inside obstacle \"{}\"", body.name, o.name),
+             fmt::format("{:.6g} m across", width),
+             fmt::format("less than {:.6g} m: twice the radius less the body's offset", room));
+    }
+  }
+}
+
 }  // namespace
 
 bool within_bounds(const Positions& x) { return (x.array().abs() <= max_coordinate).all(); }
@@ -162,6 +203,7 @@ void check_scene(const Scene& scene, const std::vector<int>& pin_of, const std::
              "positive mass: density > 0 and every free vertex in an element");
     }
   }
+  check_room(scene, pin_of, report);
 }
 
 }  // namespace bb

@@ -113,12 +113,23 @@ BB_HD Closest<T, 3> on_whole_edge(Closest<T, 3> closest) {
   return closest;
 }
 
+/// What the obstacle itself adds to the least stop level of queries in the scalar T: twice 16 ulps of its size, m.
+template <class T>
+BB_HD double stop_floor(const AnalyticSurface<double>& s) {
+  const double at = s.point.cwiseAbs().maxCoeff();
+  return 32 * static_cast<double>(std::numeric_limits<T>::epsilon()) * (at > s.radius ? at : s.radius);
+}
+
 /// A time before which the pair is proven to stay above its stop level; no better than needed to be above `enough`.
-/// reach: thickness and twice the stop level, m. In double, whatever the scalar of the query.
-template <int N>
+/// T: the scalar of the query; what is proven is in double. stop: stop level as far as it is that of the motion, m.
+template <int N, class T>
 BB_HD double obstacle_proven_time(const AnalyticSurface<double>& s, const Mat<double, 3, N>& x0,
-                                  const Mat<double, 3, N>& x1, double reach, double enough) {
+                                  const Mat<double, 3, N>& x1, double offset, double stop, double enough) {
   constexpr PairKind K = centre_pair<N>;
+  const double own = stop_floor<T>(s);
+  double reach = offset + 2 * (stop > own ? stop : own);
+  // across an axis is a difference of lengths that may be larger than what is left
+  for (int k = 0; k < N; ++k) reach += 1e-12 * ((x0.col(k) - s.point).norm() + (x1.col(k) - s.point).norm());
   const Mat<double, 3, N + 1> from = about_centre<N, double>(s, x0), to = about_centre<N, double>(s, x1);
   PairLanes<K, double> points, motion;
   for (int k = 0; k <= N; ++k) {

@@ -172,9 +172,9 @@ FirstContact StepBoundFinder::ask_obstacle(const Primitives<N>& primitives, Inde
   } else {
     // of the coordinates of the obstacle too, whose point and radius ACCD computes with
     const double least = floor(vertex, law.offset + exact.radius + exact.point.cwiseAbs().maxCoeff());
-    const double reach = law.offset + 2 * std::max(level_.park * law.d_hat, least);
-    const double proven = obstacle_proven_time<N>(exact, gather(motion.x0, vertex), gather(motion.x1, vertex),
-                                                  reach, part.first.toi);
+    const double stop = std::max(level_.park * law.d_hat, least);
+    const double proven = obstacle_proven_time<N, T>(
+        exact, gather(motion.x0, vertex), gather(motion.x1, vertex), law.offset, stop, part.first.toi);
     if (proven > part.first.toi) return found;
     const AccdResult<T> r =
         obstacle_accd<N, T>(obstacle, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
@@ -184,7 +184,7 @@ FirstContact StepBoundFinder::ask_obstacle(const Primitives<N>& primitives, Inde
     part.probes += r.probes;
     part.capped += r.capped;
   }
-  part.zero += found.toi == 0;
+  part.zero += found.toi == 0 ? 1 : 0;
   return found;
 }
 

@@ -108,8 +108,8 @@ struct ContactCounts {
   BB_FIELD(std::size_t, point_edge, "vertex and edge") = 0;
   BB_FIELD(std::size_t, point_triangle, "vertex and triangle") = 0;
   BB_FIELD(std::size_t, edge_edge, "two edges") = 0;
-  BB_FIELD(std::size_t, obstacle, "vertex and analytic obstacle") = 0;
-  BB_FIELD(std::size_t, mollified, "two nearly parallel edges") = 0;
+  BB_FIELD(std::size_t, obstacle, "analytic obstacle and a vertex, an edge or a triangle") = 0;
+  BB_FIELD(std::size_t, mollified, "two nearly parallel edges, or an edge nearly parallel to a cylinder") = 0;
   BB_DERIVED(std::size_t, total, "all of them") {
     return point_point + point_edge + point_triangle + edge_edge + obstacle + mollified;
   }

@@ -62,7 +62,7 @@ struct StrainLimitPart {
 };
 
 enum class ObstacleKind { plane, sphere, cylinder };
-/// Analytic obstacle; acts on free vertices. Signed distance positive on the allowed side.
+/// Analytic obstacle; acts on primitives with a free vertex. Signed distance positive on the allowed side.
 struct Obstacle {
   std::string name;
   ObstacleKind kind = ObstacleKind::plane;

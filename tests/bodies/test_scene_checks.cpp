@@ -46,6 +46,51 @@ TEST(scene_checks, refuse_a_name_used_twice) {
   expect_complaint(complaint({cloth("cloth")}, {plane}), "a name used twice");
 }
 
+TEST(scene_checks, refuse_a_ball_or_a_bar_without_a_radius) {
+  for (const ObstacleKind kind : {ObstacleKind::sphere, ObstacleKind::cylinder}) {
+    for (const double radius : {0.0, -0.1, std::nan("")}) {
+      Obstacle o;
+      o.name = "post";
+      o.kind = kind;
+      o.point = Vec3d(0, 0, -30);
+      o.radius = radius;
+      expect_complaint(complaint({cloth("cloth")}, {o}), "obstacle \"post\"/radius");
+    }
+  }
+}
+
+TEST(scene_checks, refuse_an_inside_that_is_too_small_for_a_body) {
+  BodySpec body = cloth("cloth");  // in the x-y plane
+  double width = 0, across = 0;
+  for (Eigen::Index a = 0; a < body.mesh.vertices.cols(); ++a) {
+    for (Eigen::Index b = 0; b < a; ++b) {
+      const Vec3d r = body.mesh.vertices.col(a) - body.mesh.vertices.col(b);
+      width = std::max(width, r.norm());
+      across = std::max(across, std::abs(r[1]));
+    }
+  }
+  ASSERT_GT(width, across);
+  body.offset = 0.1;
+  Obstacle shell;
+  shell.name = "shell";
+  shell.kind = ObstacleKind::sphere;
+  shell.inside = true;
+  shell.radius = width / 2 + 0.11;
+  EXPECT_EQ(complaint({body}, {shell}), "");
+  shell.radius = width / 2 + 0.09;
+  expect_complaint(complaint({body}, {shell}), "body \"cloth\" inside obstacle \"shell\"");
+  shell.inside = false;
+  EXPECT_EQ(complaint({body}, {shell}), "");
+  Obstacle pipe = shell;
+  pipe.kind = ObstacleKind::cylinder;
+  pipe.axis = Vec3d::UnitX();  // the cloth may be long along it
+  pipe.inside = true;
+  pipe.radius = across / 2 + 0.11;
+  EXPECT_EQ(complaint({body}, {pipe}), "");
+  pipe.radius = across / 2 + 0.09;
+  expect_complaint(complaint({body}, {pipe}), "inside obstacle \"shell\"");
+}
+
 TEST(scene_checks, refuse_bad_meshes) {
   BodySpec body = cloth("cloth");
   body.mesh.vertices(1, 2) = std::nan("");

@@ -88,7 +88,8 @@ TEST(ObstacleBound, StaysOnTheSafeSideInFloat) {
       in_float.precision = Precision::single;
       ContactSystem contacts(scene, in_float);
       const double least = least_gap(scene, x0);
-      if (least < 0.079) EXPECT_NEAR(rows_at(contacts, x0).min_gap, least, 1e-5);
+      if (!(least < 0.079)) continue;
+      EXPECT_NEAR(rows_at(contacts, x0).min_gap, least, 1e-5);
     }
   }
   EXPECT_GT(n_bounded, 5);

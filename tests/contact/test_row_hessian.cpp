@@ -147,6 +147,18 @@ Scene mixed_scene(unsigned seed) {
     obstacle.inside = kind == ObstacleKind::cylinder;
     scene.obstacles.push_back(obstacle);
   }
+  for (const ObstacleKind kind : {ObstacleKind::sphere, ObstacleKind::cylinder}) {
+    Obstacle obstacle;
+    obstacle.kind = kind;
+    obstacle.point = Vec3d(0, 0, kind == ObstacleKind::sphere ? 5 : 8);
+    obstacle.axis = Vec3d(2, 1, 2) / 3.0;
+    obstacle.radius = 0.3;
+    const Vec3d axis = kind == ObstacleKind::sphere ? Vec3d(Vec3d::Zero()) : obstacle.axis;
+    const int first = scene.n_vertices();
+    add_tangent_triangles(scene, "tangent", obstacle.point, obstacle.radius, axis, d_hat, seed);
+    for (int v = first; v < scene.n_vertices(); v += 4) scene.pins.push_back({v, 0});
+    scene.obstacles.push_back(obstacle);
+  }
   return scene;
 }
 
@@ -191,6 +203,8 @@ TEST(RowHessian, IsTheWholeMatrixWithProjectedEigenvalues) {
       EXPECT_EQ(seen(ContactKind::point_point) > 0, n_free < 3) << n_free;
     }
     EXPECT_GT((counts.rows[{ContactKind::obstacle, 1}]), 20);
+    for (const int n_free : {1, 2}) EXPECT_GT((counts.rows[{ContactKind::obstacle_edge, n_free}]), 5);
+    for (const int n_free : {2, 3}) EXPECT_GT((counts.rows[{ContactKind::obstacle_triangle, n_free}]), 2);
     EXPECT_GT(counts.indefinite, 200);
   }
 }

@@ -79,6 +79,29 @@ inline Scene two_sheets() {
   return builder.finish();
 }
 
+/// A coarse cloth over two balls and a bar between its vertices, some of its edges along the bar.
+inline Scene cloth_on_balls_and_bar() {
+  SceneBuilder builder("balls and bar", false, Vec3d(0, 0, -10), "test");
+  BodySpec cloth = cloth_spec(4, 0.128, 0.03);
+  cloth.material.bending = 1e-3;
+  cloth.offset = 0.002;
+  builder.add_body(cloth);
+  const Vec3d middle = cloth.mesh.vertices.rowwise().mean();
+  const auto add = [&](const char* name, ObstacleKind kind, double x, double y) {
+    Obstacle o;
+    o.name = name;
+    o.kind = kind;
+    o.point = middle + Vec3d(x, y, -0.128);
+    o.axis = Vec3d::UnitY();
+    o.radius = 0.1;
+    builder.add_obstacle(o);
+  };
+  add("left", ObstacleKind::sphere, -0.35, 0.02);
+  add("near", ObstacleKind::sphere, 0.02, -0.3);
+  add("bar", ObstacleKind::cylinder, 0.4, 0);
+  return builder.finish();
+}
+
 /// What is higher than 2 cm lowered, so that it touches at the start.
 inline Scene touching(Scene scene, double by) {
   for (int v = 0; v < scene.n_vertices(); ++v) {

@@ -183,6 +183,7 @@ TEST(ResidentRun, EndsWhereTheCpuEndsForEveryHessian) {
         return out;
       };
       expect_same_run(test::cloth_on_plate(), method, 8, 1e-6);
+      expect_same_run(test::cloth_on_balls_and_bar(), method, 4, 1e-6);
     }
   }
 }

@@ -64,6 +64,24 @@ TEST(ContactPlan, of_a_chain_in_the_plane_has_its_ends) {
   EXPECT_FALSE(plan_contact(scene).point_point);
 }
 
+TEST(ContactPlan, mollifies_edges_that_may_be_parallel_to_a_bar) {
+  Scene scene = scene_of({rod(2)});
+  scene.obstacles.emplace_back();
+  scene.obstacles[0].kind = ObstacleKind::sphere;
+  scene.obstacles[0].radius = 1;
+  EXPECT_FALSE(plan_contact(scene).mollifier.needed);
+  scene.obstacles[0].kind = ObstacleKind::cylinder;
+  EXPECT_TRUE(plan_contact(scene).mollifier.needed);
+  EXPECT_FALSE(plan_contact(scene, Mollifier::none).mollifier.needed);
+  scene.obstacles[0].inside = true;
+  EXPECT_FALSE(plan_contact(scene).mollifier.needed);
+  scene.obstacles[0].inside = false;
+  scene.planar = true;  // across the plane it is a disk
+  EXPECT_FALSE(plan_contact(scene).mollifier.needed);
+  scene.obstacles[0].axis = Vec3d::UnitX();
+  EXPECT_TRUE(plan_contact(scene).mollifier.needed);
+}
+
 TEST(ContactPlan, of_a_scene_without_free_surface_is_empty) {
   Scene scene = scene_of({cloth("cloth")});
   scene.obstacles.emplace_back();

@@ -149,8 +149,8 @@ BB_HD double obstacle_time(const BoundQuery& q, Index i, Index o, double enough,
     toi = obstacle_toi<double>(obstacle, from, to, offset, park);
   } else {
     const double size = offset + obstacle.radius + obstacle.point.cwiseAbs().maxCoeff();
-    const double floor = stop_floor(q, vertex, N, size), reach = offset + 2 * (park > floor ? park : floor);
-    if (obstacle_proven_time<N>(obstacle, from, to, reach, enough) > enough) return 1;
+    const double floor = stop_floor(q, vertex, N, size), stop = park > floor ? park : floor;
+    if (obstacle_proven_time<N, double>(obstacle, from, to, offset, stop, enough) > enough) return 1;
     const AccdResult<double> r =
         obstacle_accd<N, double>(obstacle, from, to, offset, park, q.max_probes, enough);
     if (r.hit) toi = r.toi;
