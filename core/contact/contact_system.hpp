@@ -25,7 +25,8 @@ struct ContactOptions {
 /// thread-safe, const members included: they share buffers; parallel inside.
 ///
 /// Which pairs exist: every point-triangle and edge-edge pair without a common vertex, at least one vertex
-/// free; planar: every pair of vertices that no mesh edge joins, or every vertex and boundary edge of which
+/// free, and so every vertex and edge that is no side of a triangle: the edge-edge rows of parallel rods vanish
+/// with their mollifier; planar: every pair of vertices that no mesh edge joins, or every vertex and boundary edge of which
 /// the vertex is neither an end nor the third corner of a triangle with that edge. B is the sum over these
 /// pairs; where the closest feature of several is the same, they are one row with a multiplicity. In 3D the
 /// closest feature of a pair can be a vertex and an edge of its own triangle (two triangles that share the

@@ -110,7 +110,7 @@ BB_HD inline double d_hat_at_rest(const Side& law, const Mat<double, 3, pair_poi
   return gap > 0 && gap < reach ? gap / 1.5 : law.d_hat;
 }
 
-// Primitives keep their index for a run, and there are fewer than 2^30 of each.
+// Primitives keep their index for a run, and there are at most most_primitives of each.
 BB_HD constexpr PairId pair_id(int kind, PairId first, PairId second) {
   return (static_cast<PairId>(kind) << 60) | (first << 30) | second;
 }

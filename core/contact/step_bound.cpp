@@ -16,6 +16,7 @@ constexpr float intervals[] = {-1, 0, 0x1p-12f, 0x1p-6f, 0x1p-3f, 1};
 /// Chunks of a batch: the first ones are short, since they know little; all are fixed, so that no counter
 /// depends on threads.
 constexpr std::size_t first_batch = 8, largest_batch = 1024;
+static_assert(chunk_size <= std::size_t{1} << 16, "places in a chunk are 16 bits");
 
 }  // namespace
 
@@ -82,7 +83,7 @@ void StepBoundFinder::screen(const std::vector<IndexPair>& pairs) {
     for (std::size_t i = begin; i < end; ++i) {
       const float proven = proven_time(first[static_cast<std::size_t>(pairs[i].first)],
                                        second[static_cast<std::size_t>(pairs[i].second)]);
-      *next = {static_cast<std::uint32_t>(i - begin), proven};
+      *next = {static_cast<std::uint16_t>(i - begin), proven};
       next += proven > bound ? 0 : 1;  // hard to foretell: no branch
     }
     counts[chunk] = static_cast<std::uint32_t>(next - (entries.data() + begin));

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/contact/candidates.hpp"
+#include "core/contact/chunks.hpp"
 #include "core/contact/contact_table.hpp"
 #include "core/contact/motion_box.hpp"
 #include "core/contact/pair_geometry.hpp"
@@ -58,7 +59,7 @@ class StepBoundFinder {
  private:
   /// A pair that boxes do not clear for the whole motion.
   struct Entry {
-    std::uint32_t place;  // in its chunk: lists may be of any length
+    std::uint16_t place;  // in its chunk: lists may be of any length
     float proven;         // time before which its boxes are apart
   };
   /// What a chunk of pairs found.

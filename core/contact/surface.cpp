@@ -1,6 +1,8 @@
 #include "core/contact/surface.hpp"
 
 #include <algorithm>
+#include <stdexcept>
+#include <string>
 
 #include "core/scene/contact_plan.hpp"
 
@@ -64,6 +66,12 @@ double element_size(const Scene& scene, const Surface& surface) {
 
 }  // namespace
 
+void check_primitive_count(const char* kind, std::size_t n, std::size_t most) {
+  if (n <= most) return;
+  throw std::length_error("contact: " + std::to_string(n) + " " + kind + " in the surface; at most " +
+                          std::to_string(most));
+}
+
 Surface::Surface(const Scene& scene)
     : vertex_free(static_cast<std::size_t>(scene.n_vertices()), 1),
       planar(scene.planar),
@@ -83,6 +91,9 @@ Surface::Surface(const Scene& scene)
     for (const auto& t : scene.surface_triangles) add<3>(triangles, scene, vertex_free, t);
   }
   sort_unique(all_edges);
+  check_primitive_count("vertices", vertices.size());
+  check_primitive_count("edges", all_edges.size());
+  check_primitive_count("triangles", scene.surface_triangles.size());
   for (const auto& e : all_edges) add<2>(edges, scene, vertex_free, e);
   find_filled(scene);
   find_lone();

@@ -31,6 +31,13 @@ struct Primitives {
   std::size_t size() const { return vertices.size(); }
 };
 
+/// A pair is named by the indices of its two primitives in 30 bits each (PairId).
+constexpr std::size_t most_primitives = (std::size_t{1} << 30) - 1;
+
+/// Errors: std::length_error, which names the kind, where a surface has more of a kind than pairs can name.
+void check_primitive_count(const char* kind, std::size_t n, std::size_t most = most_primitives);
+
+/// Errors: std::length_error as above.
 struct Surface {
   explicit Surface(const Scene& scene);
 
@@ -49,7 +56,7 @@ struct Surface {
   /// argument list) and an edge: the edge's own, or the third vertex of a triangle that has the edge.
   bool connected(int vertex, int other) const;
   bool adjacent(int vertex, const std::array<int, 2>& edge) const;
-  /// No common vertex; all that 3D pairs ask for.
+  /// No common vertex; all that pairs in space ask for.
   static bool disjoint(int vertex, const std::array<int, 2>& edge) {
     return (vertex != edge[0]) & (vertex != edge[1]);
   }

@@ -4,6 +4,7 @@
 
 #include "core/contact/candidates.hpp"
 #include "core/contact/pair_geometry.hpp"
+#include "core/contact/pair_row.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
 namespace bb::test {
@@ -121,6 +122,21 @@ TEST(Candidates, NeverHoldAdjacentOrWhollyGivenPairs) {
     EXPECT_TRUE(a[0] < first || b[0] < first);
     EXPECT_LT(p.first, p.second);
   }
+}
+
+TEST(Surface, HasNoMorePrimitivesThanPairsCanName) {
+  check_primitive_count("edges", 7, 7);
+  try {
+    check_primitive_count("edges", 8, 7);
+    FAIL() << "there is no room for 8";
+  } catch (const std::length_error& error) {
+    EXPECT_STREQ(error.what(), "contact: 8 edges in the surface; at most 7");
+  }
+  EXPECT_THROW(check_primitive_count("points", std::size_t{1} << 30), std::length_error);
+  const PairId last = pair_id(3, most_primitives, most_primitives);  // in three fields without a bit in common
+  EXPECT_EQ(last >> 60, 3U);
+  EXPECT_EQ(last >> 30 & most_primitives, most_primitives);
+  EXPECT_EQ(last & most_primitives, most_primitives);
 }
 
 TEST(Candidates, SameForAnyNumberOfThreads) {
