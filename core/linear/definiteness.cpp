@@ -44,6 +44,7 @@ Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& 
   out.iterations = report.iterations;
   if (status == LinearStatus::ok) out.verdict = Definiteness::Verdict::positive;
   if (status != LinearStatus::matrix_indefinite) return out;
+  ++out.iterations;  // the one that met it
   out.verdict = Definiteness::Verdict::negative;
   out.direction = gradients.direction();
   VecXd image;

@@ -6,6 +6,7 @@ import pytest
 
 from analysis.figures import kappa_cycle
 from analysis.load import condition_of, load
+from analysis.style import name_of
 from analysis.table import as_text, summary_table
 from synthetic import bind, digest, write_cycle, write_run, write_set
 
@@ -119,6 +120,20 @@ def test_hollow_runs_are_named_by_the_programs_own_verdict(tmp_path):
     table = summary_table(load(tmp_path)).set_index("series")
 
     assert dict(table["verdict"]) == {"log": "ok", "cubic": "ok, not_valid", "cubic_dynamic": "ok, not_comparable", "quadratic": "newton_stall"}
+
+
+def test_a_run_that_was_not_asked_to_converge_says_which_residual_it_has(tmp_path):
+    write_set(tmp_path)
+    edit(tmp_path / "cubic", lambda record: record["summary"].update(convergence="not_asked", end_error_tolerances={"median": 42.0}))
+    edit(tmp_path / "log", lambda record: record["summary"].update(convergence="asked", end_error_tolerances={"median": 0.5}))
+    records = load(tmp_path)
+    table = summary_table(records).set_index("series")
+
+    assert table.loc["cubic", "verdict"] == "ok, not asked to converge, residual 42 tolerances"
+    assert table.loc["log", "verdict"] == "ok"
+    names = {row["series"]: name_of(row) for _, row in records.runs.iterrows()}
+    assert names["cubic"] == "cubic (not asked to converge, residual 42 tolerances)"
+    assert names["log"] == "log"
 
 
 def test_the_median_condition_is_that_of_the_logarithms_for_each_scaling(tmp_path):

