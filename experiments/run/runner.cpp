@@ -229,14 +229,17 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
+  const bool device_stopped = can_lose_device(config) && stops_device(record.status.outcome);
   if (const std::string why = resumed ? "" : why_earlier_stays(record, options); !why.empty()) {
-    throw EarlierStays(checkpoint.exists() ? why + "; " + goes_on_text(checkpoint) : why);
+    const std::string told = checkpoint.exists() ? why + "; " + goes_on_text(checkpoint) : why;
+    if (device_stopped) throw DeviceStopped(record.status.outcome, record.status.detail + "\n" + told);
+    throw EarlierStays(told);
   }
   files.close();
   write_atomically(pending_record(options.folder), to_json(record));
   if (!was_cut(record.status.outcome)) checkpoint.remove();
   put_in_place(options.folder);
-  if (can_lose_device(config) && stops_device(record.status.outcome)) {
+  if (device_stopped) {
     throw DeviceStopped(record.status.outcome, stopped_text(record, options, checkpoint));
   }
   return record;

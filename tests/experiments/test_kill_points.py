@@ -38,13 +38,13 @@ def is_whole(folder: Path) -> bool:
     return files and len(record["artifacts"]) > 3 and (folder / "trace.jsonl").exists()
 
 
-def kill_everywhere(program: str, shim: Path, config: Path, tmp_path: Path, every: int, earlier: bool):
+def kill_everywhere(program: str, shim: Path, config: Path, tmp_path: Path, every: int, earlier: bool, stride: int):
     """Yields the folder of every run that was killed, n the number of the call, and the bytes of the earlier record."""
     words = [config, "--set", f"/output/checkpoint_every={every}"]
     assert run(program, shim, *words, "--out", tmp_path / "whole", count=tmp_path / "count").returncode == 0
     calls = int((tmp_path / "count").read_text())
     assert calls > 30
-    for n in range(1, calls + 20):
+    for n in range(1, calls + 20, stride):
         folder = tmp_path / f"killed-{n}"
         before = b""
         if earlier:
@@ -62,7 +62,8 @@ def kill_everywhere(program: str, shim: Path, config: Path, tmp_path: Path, ever
 @pytest.mark.parametrize("every", [0, 1, 2])
 def test_a_run_that_is_killed_anywhere_goes_on_or_is_over(program, shim, tmp_path, every):
     config, resumed, over = write(tmp_path / "block.json", CONFIG), 0, 0
-    for words, folder, n, _ in kill_everywhere(program, shim, config, tmp_path, every, False):
+    stride = 1 if every == 1 else 3
+    for words, folder, n, _ in kill_everywhere(program, shim, config, tmp_path, every, False, stride):
         again = run(program, shim, *words, "--out", folder, "--resume")
         assert again.returncode == 0, (n, again.stderr)
         assert is_whole(folder), n
@@ -73,13 +74,14 @@ def test_a_run_that_is_killed_anywhere_goes_on_or_is_over(program, shim, tmp_pat
         status = json.loads((folder / "run.json").read_text())["status"]
         resumed += status["resumed_from_step"] is not None and status["resumed_from_step"] > 0
         over += "already there" in again.stdout or not again.stderr and status["resumed_from_step"] is None
-        assert "already there" in run(program, shim, *words, "--out", folder, "--resume").stdout
+        if n % 10 == 0:
+            assert "already there" in run(program, shim, *words, "--out", folder, "--resume").stdout
     assert over > 0 and (resumed > 10 if every else resumed == 0)
 
 
 def test_an_earlier_record_is_whole_until_the_new_run_is_over(program, shim, tmp_path):
     config, stayed, replaced = write(tmp_path / "block.json", CONFIG), 0, 0
-    for words, folder, n, before in kill_everywhere(program, shim, config, tmp_path, 1, True):
+    for words, folder, n, before in kill_everywhere(program, shim, config, tmp_path, 1, True, 2):
         pending = (folder / "run.json.part").exists()
         if not pending and (folder / "run.json").exists():
             assert is_whole(folder), n
@@ -91,7 +93,7 @@ def test_an_earlier_record_is_whole_until_the_new_run_is_over(program, shim, tmp
         assert is_whole(folder) and (folder / "run.json").read_bytes() != before, n
         names = [p.name for p in folder.rglob("*")]
         assert not [name for name in names if ".part" in name or ".tmp" in name or "checkpoint" in name], (n, names)
-    assert stayed > 20
+    assert stayed > 20 and replaced > 0
 
 
 def test_a_factor_that_is_too_large_is_an_outcome_with_a_record(program, shim, tmp_path):
