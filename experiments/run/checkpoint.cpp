@@ -144,6 +144,13 @@ std::optional<Archive> Checkpoint::read() {
   return Archive(std::move(found->archive), lists_);
 }
 
+void Checkpoint::forget() {
+  lists_ = {};
+  log_hash_ = {};
+  trace_ = {};
+  number_ = 0;
+}
+
 bool Checkpoint::should_sync() const { return synced_s_ < 0 || now_s() - synced_s_ >= sync_every_s; }
 
 bool Checkpoint::exists() const {

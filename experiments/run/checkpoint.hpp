@@ -30,6 +30,8 @@ class Checkpoint {
   /// Errors: ConfigError naming the file when checkpoint.bin, the log or the trace is not what was written, is cut off or
   ///   damaged, or was written by another program.
   std::optional<Archive> read();
+  /// What was read is of no use: the next one is the first of a run.
+  void forget();
   /// Of the checkpoint that was read: the trace that belongs to it.
   const FilePrefix& trace() const { return trace_; }
 

@@ -138,6 +138,7 @@ std::optional<Resumed> resumed_from(Checkpoint& checkpoint, const RunRecord& ask
       return read_resumed(checkpoint, asked_for);
     } catch (const ConfigError& error) {
       why = error.what();
+      checkpoint.forget();
     }
   }
   if (options.tell) options.tell(fmt::format("{} goes: {}", checkpoint.file().string(), why));
@@ -225,6 +226,8 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
     remove_unfinished(options.folder);
     throw;
   }
+  if (files.artifacts)
+    record.artifacts = files.artifacts->written();  // also where memory ran out beside a step
   fill_labels(config, options, record);
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();

@@ -166,6 +166,22 @@ TEST_F(CheckpointFiles, DamageIsRefusedAndNamed) {
   EXPECT_THROW(other.read(), ConfigError);
 }
 
+TEST_F(CheckpointFiles, WhatIsForgottenIsInNoLaterOne) {
+  State earlier, state;
+  {
+    Checkpoint writer(folder_, "program");
+    earlier.step(), earlier.step();
+    save(writer, earlier, true);
+  }
+  Checkpoint another(folder_, "program");
+  EXPECT_EQ(read(another), earlier);
+  another.forget();
+  state.step();
+  save(another, state, true);
+  Checkpoint reader(folder_, "program");
+  EXPECT_EQ(read(reader), state);
+}
+
 TEST_F(CheckpointFiles, AListThatBecameShorterIsAnError) {
   State state;
   Checkpoint writer(folder_, "program");

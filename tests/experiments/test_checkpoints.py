@@ -125,6 +125,24 @@ def test_a_sweep_goes_on_from_what_time_stopped(program, config, tmp_path):
     assert bench(program, "sweep", spec, "--out", out).stdout.count("already there") == 2
 
 
+def test_a_sweep_begins_anew_where_the_checkpoint_is_of_another_run(program, config, tmp_path):
+    """And what it then writes is no mixture of both."""
+    spec = write(tmp_path / "sweep.json", {"schema": "barrierbench.sweep/1", "name": "one", "base": str(config),
+                                           "set": {"/time/steps": 60}, "axes": [{"pointer": "/formulation", "values": ["log"]}]})
+    out = tmp_path / "out"
+    stopped = ["sweep", spec, "--out", out, "--time-limit"]
+    assert bench(program, *stopped, "0.5").returncode == 0
+    (folder,) = (p.parent for p in out.glob("*/checkpoint.bin"))
+    begun = bench(program, *stopped, "0.8", "--set", "/threads=2")
+    assert begun.returncode == 0 and "checkpoint.bin goes" in begun.stderr and "threads" in begun.stderr
+    assert record_of(folder)["status"]["outcome"] == "timeout" and len(record_of(folder)["steps"]) > 0
+    assert bench(program, "sweep", spec, "--out", out, "--set", "/threads=2").returncode == 0
+    assert bench(program, "run", config, "--out", tmp_path / "whole", *settings({"/time/steps": 60, "/threads": 2})).returncode == 0
+    whole, found = record_of(tmp_path / "whole"), record_of(folder)
+    assert found["status"]["resumed_from_step"] > 0 and found["summary"]["state_hash"] == whole["summary"]["state_hash"]
+    assert [s["t_s"] for s in found["steps"]] == [s["t_s"] for s in whole["steps"]]
+
+
 def test_a_run_that_is_stopped_before_its_first_step_leaves_no_folder(program, tmp_path):
     pierced = {"schema": "barrierbench.config/1", "scene": {"name": "drape", "n": 40}, "formulation": "log",
                "matching": {"rule": "equal_force"}, "time": {"steps": 5}}
