@@ -35,7 +35,7 @@ def kill_after_checkpoint(words: list[str], out: Path) -> bool:
 
 def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
     """whole: the record of the same case with one thread and without checkpoints, which has to end in the same state. Every other number is compared with a
-    run that writes the same checkpoints and is left alone, since a checkpoint drops what is kept only to save work, such as a symbolic analysis.
+    run that writes the same checkpoints and is left alone.
     Raises GateError when the program cannot resume."""
     alone = run_case(case, out.with_name(out.name + "-not-killed"), 1, output__checkpoint_every=1)
     for name in ("run.json", "checkpoint.bin"):

@@ -26,8 +26,8 @@ void keep_matrix(Archive& archive, ReducedSystem& system) {
   archive(system.block_start, system.block_vertex, system.pattern_id, start, row, value);
   if (!archive.reads()) return;
   const auto n = static_cast<Eigen::Index>(start.size()) - 1;
-  lower = Eigen::Map<const Eigen::SparseMatrix<double>>(n, n, static_cast<Eigen::Index>(value.size()), start.data(),
-                                                        row.data(), value.data());
+  lower = Eigen::Map<const Eigen::SparseMatrix<double>>(n, n, static_cast<Eigen::Index>(value.size()),
+                                                        start.data(), row.data(), value.data());
 }
 
 /// M = L L^T of the matrix that setup() saw last, of which it has a copy.

@@ -176,7 +176,8 @@ SolveReport NewtonSystem::solve(const Positions& target, Positions& dx) {
   SolveReport report;
   while (!direction(target, dx, report)) {
     const LinearStatus status = report.linear.status;  // another Hessian mends neither of these
-    if (level_.last() || status == LinearStatus::non_finite || status == LinearStatus::factor_too_large) break;
+    if (level_.last() || status == LinearStatus::non_finite || status == LinearStatus::factor_too_large)
+      break;
     level_.raise(largest_force());
     fill_matrix();
   }

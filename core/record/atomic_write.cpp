@@ -169,7 +169,9 @@ TraceWriter::TraceWriter(const fs::path& folder, const FilePrefix& prefix)
   part_ = path_;
   part_ += ".part";
   const std::optional<fs::path> found = find_trace(folder, prefix);
-  if (!found) throw RecordError(part_.string() + ": not as the checkpoint beside it has it, run without --resume", true);
+  if (!found)
+    throw RecordError(part_.string() + ": not as the checkpoint beside it has it, run without --resume",
+                      true);
   std::error_code error;
   if (*found != part_) fs::copy_file(*found, part_, fs::copy_options::overwrite_existing, error);
   if (error) fail_with(part_, "cannot copy", error.value());

@@ -27,7 +27,8 @@ class Sha256 {
   /// Of what was added so far; both go on by themselves.
   Sha256 copy() const {
     Sha256 out;
-    if (EVP_MD_CTX_copy_ex(out.context_.get(), context_.get()) != 1) throw std::runtime_error("sha256: OpenSSL failed");
+    if (EVP_MD_CTX_copy_ex(out.context_.get(), context_.get()) != 1)
+      throw std::runtime_error("sha256: OpenSSL failed");
     return out;
   }
   void add(const void* data, std::size_t n) {

@@ -28,7 +28,8 @@ bool is_unfinished_name(const std::string& name) {
 
 /// A file that was being written.
 bool is_temporary_name(const std::string& name) {
-  static const std::regex pattern(R"((run\.json|run\.json\.part|sweep\.json|probe|checkpoint\.bin)\.tmp\.\d+)");
+  static const std::regex pattern(
+      R"((run\.json|run\.json\.part|sweep\.json|probe|checkpoint\.bin)\.tmp\.\d+)");
   return std::regex_match(name, pattern);
 }
 

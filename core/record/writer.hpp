@@ -66,7 +66,8 @@ void write_run(const std::filesystem::path& folder, const RunRecord& record);
 void check_writable(const std::filesystem::path& folder);
 
 /// Where the trace of a folder is that begins with `prefix`: trace.jsonl.part, or trace.jsonl once its run was recorded.
-std::optional<std::filesystem::path> find_trace(const std::filesystem::path& folder, const FilePrefix& prefix);
+std::optional<std::filesystem::path> find_trace(const std::filesystem::path& folder,
+                                                const FilePrefix& prefix);
 
 /// folder/trace.jsonl. Written as trace.jsonl.part, so that an earlier trace stays with its run.json until
 /// the new run is over; a run that never finishes leaves neither.

@@ -104,7 +104,8 @@ void limit_arguments(CLI::App* app, RunLimits& limits) {
       "go on from the checkpoint of a run that was stopped by a signal, its time limit or a lack of memory, "
       "or killed (/output/checkpoint_every); without one, from the start");
   app->add_option("--time-limit", limits.time_limit_s,
-                  "seconds that one run may take: it ends between two steps with the outcome timeout, and --resume goes on")
+                  "seconds that one run may take: it ends between two steps with the outcome timeout, and "
+                  "--resume goes on")
       ->check(finite_number(0, 1e9, true));
 }
 

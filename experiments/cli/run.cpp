@@ -37,7 +37,8 @@ namespace {
 /// The folder holds the record of this very run, which no time limit and no lack of memory ended.
 bool is_over(const RunConfig& config, const RunOptions& options) {
   std::error_code unreachable;
-  if (std::filesystem::exists(pending_record(options.folder), unreachable)) return false;  // run_config ends it
+  if (std::filesystem::exists(pending_record(options.folder), unreachable))
+    return false;  // run_config ends it
   const auto stored = read_stored_run(options.folder / "run.json");
   if (!stored) return false;
   RunConfig chosen = config;

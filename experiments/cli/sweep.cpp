@@ -39,7 +39,9 @@ RunOptions case_options(const Sweep& sweep, const SweepCase& one) {
   options.sweep_id = sweep.spec.name;
   options.swept = one.swept;
   options.keep_inputs = sweep.verb.keep_inputs;
-  options.resume = sweep.verb.limits.resume ? Resume::yes : sweep.verb.again ? Resume::no : Resume::if_this_run;
+  options.resume = sweep.verb.limits.resume ? Resume::yes
+                   : sweep.verb.again       ? Resume::no
+                                            : Resume::if_this_run;
   options.time_limit_s = sweep.verb.limits.time_limit_s;
   return options;
 }
@@ -50,7 +52,8 @@ bool already_there(const Sweep& sweep, const SweepCase& one, const RunOptions& o
   const std::filesystem::path file = options.folder / "run.json";
   std::error_code unreachable;
   if (sweep.verb.again || !std::filesystem::exists(file, unreachable)) return false;
-  if (std::filesystem::exists(pending_record(options.folder), unreachable)) return false;  // run_config ends it
+  if (std::filesystem::exists(pending_record(options.folder), unreachable))
+    return false;  // run_config ends it
   const RunRecord now = identified(one.config, options);
   std::string why = "its run.json cannot be read";
   try {
@@ -155,10 +158,10 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
   try {
     violations = run_cases(sweep);
   } catch (const Interrupted&) {
-    throw Interrupted{
-        fmt::format("{} of {} records kept in {}; the same command runs the rest, and goes on from the checkpoint of "
-                    "the one that was stopped",
-                    sweep.kept, sweep.spec.cases.size(), sweep.out.string())};
+    throw Interrupted{fmt::format(
+        "{} of {} records kept in {}; the same command runs the rest, and goes on from the checkpoint of "
+        "the one that was stopped",
+        sweep.kept, sweep.spec.cases.size(), sweep.out.string())};
   }
   compare_cases(sweep);
   print_comparability(sweep);

@@ -22,23 +22,13 @@ constexpr std::string_view format_line = "barrierbench.checkpoint/2";
 constexpr InputKind checkpoint_file{"a checkpoint", std::uint64_t{64} << 30};
 constexpr double sync_every_s = 1;
 
-/// The lines before the archive, in their order.
-struct Head {
-  std::string_view format, program, number, contents, log, trace;
-};
-
-/// The first lines, up to the empty one, which is taken off `text` with them; nothing when they are not there.
-std::optional<Head> take_head(std::string_view& text) {
-  Head head;
-  for (std::string_view* line : {&head.format, &head.program, &head.number, &head.contents, &head.log, &head.trace}) {
-    const std::size_t end = text.find('\n');
-    if (end == std::string_view::npos || end > 200) return std::nullopt;
-    *line = text.substr(0, end);
-    text.remove_prefix(end + 1);
-  }
-  if (text.empty() || text.front() != '\n') return std::nullopt;
-  text.remove_prefix(1);
-  return head;
+/// Takes a line off `text`; empty without one.
+std::string_view take_line(std::string_view& text) {
+  const std::size_t end = text.find('\n');
+  if (end == std::string_view::npos || end > 200) return {};
+  const std::string_view line = text.substr(0, end);
+  text.remove_prefix(end + 1);
+  return line;
 }
 
 std::string prefix_line(const char* of, const FilePrefix& prefix) {
@@ -100,30 +90,32 @@ std::optional<Checkpoint::Read> Checkpoint::read_one(const fs::path& file, bool 
   if (!fs::exists(file, unreachable)) return std::nullopt;
   const std::string name = file.string(), text = read_input_file(name, checkpoint_file);
   std::string_view rest = text;
-  const auto head = take_head(rest);
-  if (may_be_torn && (!head || head->contents != prefix_line("contents", prefix_of_bytes(rest)))) return std::nullopt;
-  if (!head || head->format != format_line) {
+  const std::string_view format = take_line(rest), program = take_line(rest), contents = take_line(rest);
+  const bool whole = contents == prefix_line("contents", prefix_of_bytes(rest));
+  if (may_be_torn && !whole) return std::nullopt;
+  if (format != format_line) {
     throw ConfigError(name, "no checkpoint, or one of another version",
                       fmt::format("a file that begins with '{}'", format_line));
   }
-  if (head->program != "program " + program_) {
-    throw ConfigError(name, fmt::format("a checkpoint of another build ({})", head->program.substr(0, 24)),
+  if (program != "program " + program_) {
+    throw ConfigError(name, fmt::format("a checkpoint of another build ({})", program.substr(0, 24)),
                       fmt::format("one of this program ({}), or no --resume", program_.substr(0, 16)));
   }
-  if (head->contents != prefix_line("contents", prefix_of_bytes(rest))) {
+  if (!whole) {
     throw ConfigError(name, fmt::format("a checkpoint that is cut off or damaged ({} bytes)", rest.size()),
-                      fmt::format("{}, or no --resume", head->contents));
+                      fmt::format("{}, or no --resume", contents));
   }
   Read out;
-  const std::string_view digits = head->number.substr(head->number.find(' ') + 1);
+  const std::string_view number = take_line(rest), log = take_line(rest), trace = take_line(rest);
+  const std::string_view digits = number.substr(number.find(' ') + 1);
   std::from_chars(digits.data(), digits.data() + digits.size(), out.number);
-  const FilePrefix logged = prefix_of(head->log);
+  const FilePrefix logged = prefix_of(log);
   auto hash = hash_of_prefix(log_.string(), logged);
   if (!hash) {
     throw ConfigError(log_.string(), "a log that is cut off or damaged, or not there",
-                      fmt::format("{}, as {} has it, or no --resume", head->log, file.filename().string()));
+                      fmt::format("{}, as {} has it, or no --resume", log, file.filename().string()));
   }
-  out.trace = prefix_of(head->trace);
+  out.trace = prefix_of(trace);
   const fs::path part = folder_ / "trace.jsonl.part";
   if (out.trace.bytes > 0 && !find_trace(folder_, out.trace)) {
     const auto size = fs::file_size(part, unreachable);
@@ -131,7 +123,7 @@ std::optional<Checkpoint::Read> Checkpoint::read_one(const fs::path& file, bool 
                       unreachable              ? "not there"
                       : size < out.trace.bytes ? "shorter than the checkpoint beside it says"
                                                : "not as the checkpoint beside it has it",
-                      fmt::format("{}, or no --resume", head->trace));
+                      fmt::format("{}, or no --resume", trace));
   }
   out.log_hash = std::move(*hash);
   out.log = read_input_file(log_.string(), checkpoint_file).substr(0, logged.bytes);
@@ -152,6 +144,13 @@ std::optional<Archive> Checkpoint::read() {
   return Archive(std::move(found->archive), lists_);
 }
 
+void Checkpoint::forget() {
+  lists_ = {};
+  log_hash_ = {};
+  trace_ = {};
+  number_ = 0;
+}
+
 bool Checkpoint::should_sync() const { return synced_s_ < 0 || now_s() - synced_s_ >= sync_every_s; }
 
 bool Checkpoint::exists() const {
@@ -163,7 +162,8 @@ bool Checkpoint::exists() const {
 void Checkpoint::append_to_log(bool sync) {
   if (log_fd_ < 0) {
     log_fd_ = open_to_write(log_);
-    if (::ftruncate(log_fd_, static_cast<::off_t>(log_hash_.so_far().bytes)) != 0) fail_with(log_, "cannot cut", errno);
+    if (::ftruncate(log_fd_, static_cast<::off_t>(log_hash_.so_far().bytes)) != 0)
+      fail_with(log_, "cannot cut", errno);
   }
   write_all(log_fd_, log_, lists_.added, log_hash_.so_far().bytes);
   log_hash_.add(lists_.added);
@@ -179,11 +179,12 @@ void Checkpoint::write_in_place(const std::string& text) {
 
 void Checkpoint::write(const Archive& archive, const FilePrefix& trace, bool sync) {
   append_to_log(sync);
-  const std::string text =
-      fmt::format("{}\nprogram {}\nnumber {}\n{}\n{}\n{}\n\n", format_line, program_, ++number_,
-                  prefix_line("contents", prefix_of_bytes(archive.bytes())), prefix_line("log", log_hash_.so_far()),
-                  prefix_line("trace", trace)) +
-      archive.bytes();
+  const std::string rest = fmt::format("number {}\n{}\n{}\n", ++number_,
+                                       prefix_line("log", log_hash_.so_far()), prefix_line("trace", trace)) +
+                           archive.bytes();
+  const std::string text = fmt::format("{}\nprogram {}\n{}\n", format_line, program_,
+                                       prefix_line("contents", prefix_of_bytes(rest))) +
+                           rest;
   if (!sync) return write_in_place(text);
   write_atomically(file_, text);
   synced_s_ = now_s();
@@ -191,7 +192,8 @@ void Checkpoint::write(const Archive& archive, const FilePrefix& trace, bool syn
 
 void Checkpoint::remove() {
   std::error_code absent;
-  for (const fs::path& file : {file_, next_, log_}) fs::remove(file, absent);  // without the first there is none
+  for (const fs::path& file : {file_, next_, log_})
+    fs::remove(file, absent);  // without the first there is none
 }
 
 }  // namespace bb

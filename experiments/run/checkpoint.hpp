@@ -15,9 +15,9 @@ namespace bb {
 ///   checkpoint.bin       a checkpoint that is whole on the disk, replaced at most once a second;
 ///   checkpoint.next.bin  the latest one, written over in place: one that was cut off is not read;
 ///   checkpoint.log       lists that grow with the steps (GrownLists), each item once.
-/// The first two begin with lines of text: the format, the program that wrote it, its number, length and SHA-256 of
-/// what it holds, of the log and of the trace that belong to it; then an empty line and an archive, which only that
-/// program can read. A log or trace that is longer is cut. So a process that is killed loses nothing, and a power
+/// The first two begin with lines of text: the format, the program that wrote it, length and SHA-256 of all that follows:
+/// its number, length and SHA-256 of the log and of the trace that belong to it, and an archive, which only that program
+/// can read. A log or trace that is longer is cut. So a process that is killed loses nothing, and a power
 /// failure what came after the last whole second.
 class Checkpoint {
  public:
@@ -30,6 +30,8 @@ class Checkpoint {
   /// Errors: ConfigError naming the file when checkpoint.bin, the log or the trace is not what was written, is cut off or
   ///   damaged, or was written by another program.
   std::optional<Archive> read();
+  /// What was read is of no use: the next one is the first of a run.
+  void forget();
   /// Of the checkpoint that was read: the trace that belongs to it.
   const FilePrefix& trace() const { return trace_; }
 

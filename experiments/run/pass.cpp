@@ -83,8 +83,8 @@ void Pass::stop() {
   if (options_.interrupted && options_.interrupted->load()) throw Interrupted{};
   result_.verdict = {
       Outcome::timeout,
-      fmt::format("pass {}: the time limit of {:g} s was reached before step {}, at {:.6g} of {:.6g} s", name_,
-                  options_.time_limit_s, result_.steps.size(), simulation_.time(),
+      fmt::format("pass {}: the time limit of {:g} s was reached before step {}, at {:.6g} of {:.6g} s",
+                  name_, options_.time_limit_s, result_.steps.size(), simulation_.time(),
                   config_.time.dt * config_.time.steps)};
 }
 

@@ -31,8 +31,8 @@ struct PassResult {
 class Pass {
  public:
   enum class Moment {
-    between,        // after every config.output.checkpoint_every-th step but the last
-    stop,           // a signal or the time limit ends the pass here
+    between,  // after every config.output.checkpoint_every-th step but the last
+    stop,     // a signal or the time limit ends the pass here
     before_device,  // before every step of a run on a device, where a step may end in an error from which nothing can
                     // be read any more
   };

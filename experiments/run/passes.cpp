@@ -99,7 +99,8 @@ class PassSequence {
   }
 
   void run_observed() {
-    rest_ ? files_.trace.emplace(options_.folder, checkpoint_.trace()) : files_.trace.emplace(options_.folder);
+    rest_ ? files_.trace.emplace(options_.folder, checkpoint_.trace())
+          : files_.trace.emplace(options_.folder);
     files_.artifacts.emplace(options_.folder, scene_);
     Recorder recorder(config_, scene_, record_, &*files_.trace, &*files_.artifacts);
     recorder.report_times(times_);
@@ -203,7 +204,7 @@ class PassSequence {
   std::optional<audit::AuditLedger> ledger_;
   Verdict audited_;
   std::optional<Held> held_;  // the end of the last step, of a run on a device
-  Archive* rest_ = nullptr;      // what a checkpoint still holds
+  Archive* rest_ = nullptr;   // what a checkpoint still holds
 };
 
 }  // namespace

@@ -74,8 +74,8 @@ void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record) {
 
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
 // geometry or its pilot can show that.
-void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options,
-              Checkpoint& checkpoint, Resumed* resumed, RunRecord& record, RunFiles& files) {
+void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, Checkpoint& checkpoint,
+              Resumed* resumed, RunRecord& record, RunFiles& files) {
   fill_scene(scene, record);
   record.matching.rule = to_string(config.matching.rule);
   const Plan plan = plan_of(config, scene);
@@ -113,8 +113,8 @@ std::string goes_on_text(const Checkpoint& checkpoint) {
 
 /// What a run that its device stopped says.
 std::string stopped_text(const RunRecord& record, const RunOptions& options, const Checkpoint& checkpoint) {
-  return fmt::format("{}: {}\n{} has the steps before{}", to_string(record.status.outcome), record.status.detail,
-                     (options.folder / "run.json").string(),
+  return fmt::format("{}: {}\n{} has the steps before{}", to_string(record.status.outcome),
+                     record.status.detail, (options.folder / "run.json").string(),
                      checkpoint.exists() ? "; " + goes_on_text(checkpoint) : "");
 }
 
@@ -127,13 +127,16 @@ std::string why_earlier_stays(const RunRecord& record, const RunOptions& options
     earlier = read_run(file);
   } catch (const ConfigError&) {  // of another version
   }
-  if (!earlier || earlier->ids.run_id != record.ids.run_id || earlier->steps.size() <= record.steps.size()) return "";
-  return fmt::format("{} stays: it has {} steps of this run, and this one ended as {} after {}", file.string(),
-                     earlier->steps.size(), to_string(record.status.outcome), record.steps.size());
+  if (!earlier || earlier->ids.run_id != record.ids.run_id || earlier->steps.size() <= record.steps.size())
+    return "";
+  return fmt::format("{} stays: it has {} steps of this run, and this one ended as {} after {}",
+                     file.string(), earlier->steps.size(), to_string(record.status.outcome),
+                     record.steps.size());
 }
 
 /// The checkpoint that the run goes on from.
-std::optional<Resumed> resumed_from(Checkpoint& checkpoint, const RunRecord& asked_for, const RunOptions& options) {
+std::optional<Resumed> resumed_from(Checkpoint& checkpoint, const RunRecord& asked_for,
+                                    const RunOptions& options) {
   if (options.resume == Resume::yes) return read_resumed(checkpoint, asked_for);
   if (!checkpoint.exists()) return std::nullopt;
   std::string why = "this run begins anew without --resume";
@@ -142,6 +145,7 @@ std::optional<Resumed> resumed_from(Checkpoint& checkpoint, const RunRecord& ask
       return read_resumed(checkpoint, asked_for);
     } catch (const ConfigError& error) {
       why = error.what();
+      checkpoint.forget();
     }
   }
   if (options.tell) options.tell(fmt::format("{} goes: {}", checkpoint.file().string(), why));
@@ -199,7 +203,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   require_usable(config.linear_solver.name);
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);
-  const bool completed = put_in_place(options.folder);  // what a process that was killed had finished
+  const bool completed = put_in_place(options.folder);      // what a process that was killed had finished
   const RunRecord asked_for = identified(config, options);  // inputs where they are now
   Checkpoint checkpoint(options.folder, asked_for.ids.build_id);
   if (auto record = completed ? recorded(asked_for, options) : std::nullopt) return *record;
@@ -229,18 +233,23 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
     remove_unfinished(options.folder);
     throw;
   }
+  if (files.artifacts)
+    record.artifacts = files.artifacts->written();  // also where memory ran out beside a step
   fill_labels(config, options, record);
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
+  const bool device_stopped = can_lose_device(config) && stops_device(record.status.outcome);
   if (const std::string why = resumed ? "" : why_earlier_stays(record, options); !why.empty()) {
-    throw EarlierStays(checkpoint.exists() ? why + "; " + goes_on_text(checkpoint) : why);
+    const std::string told = checkpoint.exists() ? why + "; " + goes_on_text(checkpoint) : why;
+    if (device_stopped) throw DeviceStopped(record.status.outcome, record.status.detail + "\n" + told);
+    throw EarlierStays(told);
   }
   files.close();
   write_atomically(pending_record(options.folder), to_json(record));
   if (!was_cut(record.status.outcome)) checkpoint.remove();
   put_in_place(options.folder);
-  if (can_lose_device(config) && stops_device(record.status.outcome)) {
+  if (device_stopped) {
     throw DeviceStopped(record.status.outcome, stopped_text(record, options, checkpoint));
   }
   return record;

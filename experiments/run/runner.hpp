@@ -31,7 +31,7 @@ struct Progress {
 enum class Resume {
   no,           // it goes
   if_this_run,  // the run goes on from it where it is one of this very run; else it goes
-  yes           // the run goes on from it, and is refused where it is one of another run; from the start without one
+  yes  // the run goes on from it, and is refused where it is one of another run; from the start without one
 };
 
 struct RunOptions {

@@ -42,7 +42,8 @@ TEST(StepBound, AMotionThatIsNotFiniteIsNotTakenAtAll) {
   ASSERT_EQ(bound(scene, x1).alpha, 1);
   ContactSystem contacts(scene, {});
   contacts.update_candidates(scene.x0, x1);  // as for a motion that becomes no number behind it
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                   inf = std::numeric_limits<double>::infinity();
   for (const double bad : {nan, inf, -inf}) {
     for (Eigen::Index i = 0; i < x1.size(); ++i) {
       Positions start = scene.x0, end = x1;

@@ -56,11 +56,11 @@ __attribute__((destructor)) void say_count() {
 
 extern "C" {
 
-#define BB_COUNTED(type, name, parameters, arguments)        \
-  type name parameters noexcept {                            \
+#define BB_COUNTED(type, name, parameters, arguments)                               \
+  type name parameters noexcept {                                                   \
     static const auto real = next(static_cast<type(*) parameters>(nullptr), #name); \
-    if (count()) die();                                      \
-    return real arguments;                                   \
+    if (count()) die();                                                             \
+    return real arguments;                                                          \
   }
 BB_COUNTED(int, rename, (const char* from, const char* to), (from, to))
 BB_COUNTED(int, remove, (const char* path), (path))
@@ -96,8 +96,8 @@ ssize_t pwrite(int fd, const void* data, size_t size, off_t at) {
 }
 
 int cholmod_factorize(cholmod_sparse* a, cholmod_factor* factor, cholmod_common* common) {
-  static const auto real =
-      next(static_cast<int (*)(cholmod_sparse*, cholmod_factor*, cholmod_common*)>(nullptr), "cholmod_factorize");
+  static const auto real = next(
+      static_cast<int (*)(cholmod_sparse*, cholmod_factor*, cholmod_common*)>(nullptr), "cholmod_factorize");
   if (std::getenv("FAULT_CHOLMOD") == nullptr) return real(a, factor, common);
   common->status = CHOLMOD_TOO_LARGE;
   return 0;

@@ -100,7 +100,8 @@ TYPED_TEST(Accd, ATurnOrADirectionThatIsNotFiniteProvesNothing) {
 
 /// The first root against a scan, and what is no number or has no square in each place.
 TEST(FirstRoot, IsNeverLaterThanTheRoot) {
-  constexpr double nan = std::numeric_limits<double>::quiet_NaN(), inf = std::numeric_limits<double>::infinity();
+  constexpr double nan = std::numeric_limits<double>::quiet_NaN(),
+                   inf = std::numeric_limits<double>::infinity();
   EXPECT_EQ(detail::first_root(1.0, 0.0, 0.0), inf);
   EXPECT_EQ(detail::first_root(1.0, -1.0, 1.0), inf);
   EXPECT_NEAR(detail::first_root(1.0, -2.0, 0.75), 2.0 / 3, 1e-14);

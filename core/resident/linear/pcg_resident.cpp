@@ -72,7 +72,8 @@ void PcgResident::prepare(const ReducedSystem& system, const VecXd& b) {
       preconditioner->keep(kept);
       kept_.clear();
     }
-    pcg_ = std::make_unique<resident::ResidentPcg>(executor_, system_.n_vertices(), std::move(preconditioner));
+    pcg_ =
+        std::make_unique<resident::ResidentPcg>(executor_, system_.n_vertices(), std::move(preconditioner));
   }
 }
 
