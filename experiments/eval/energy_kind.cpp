@@ -32,7 +32,8 @@ template <class T>
 Vec<T, 3> warp_of(Query& q, const MembraneModel<T>& model, const Vec<T, 3>& first_edge) {
   if (!model.anisotropic) {
     if (q.has("warp_axis")) {
-      q.complain("warp_axis", "an axis", "nothing: the model " + std::string(model.name) + " has no direction");
+      q.complain("warp_axis", "an axis",
+                 "nothing: the model " + std::string(model.name) + " has no direction");
     }
     return first_edge;
   }
@@ -40,7 +41,8 @@ Vec<T, 3> warp_of(Query& q, const MembraneModel<T>& model, const Vec<T, 3>& firs
   if (!q.has("warp_axis")) return axis;
   const std::vector<double> given = q.list("warp_axis", 3, kFinite);
   for (int k = 0; k < 3; ++k) axis[k] = static_cast<T>(given[static_cast<std::size_t>(k)]);
-  if (!q.wrong() && std::abs(axis.norm() - 1) > T(1e-6)) q.complain("warp_axis", "no unit vector", "a unit vector");
+  if (!q.wrong() && std::abs(axis.norm() - 1) > T(1e-6))
+    q.complain("warp_axis", "no unit vector", "a unit vector");
   return axis;
 }
 
@@ -54,8 +56,10 @@ Answer membrane(Query& q, const MembraneModel<T>& model) {
   const Vec<T, 3> normal = (rest.x[1] - rest.x[0]).cross(rest.x[2] - rest.x[0]);
   if (!q.wrong() && !(triangle.area > T(0) && normal.allFinite())) {
     q.complain("rest", "a triangle without area", "three points that are not on one line");
-  } else if (!q.wrong() && (!triangle.dm_inv.allFinite() || warp.cross(normal).norm() < T(1e-6) * warp.norm() * normal.norm())) {
-    q.complain("warp_axis", "the normal of the triangle at rest", "an axis with a part in its plane (default: x)");
+  } else if (!q.wrong() && (!triangle.dm_inv.allFinite() ||
+                            warp.cross(normal).norm() < T(1e-6) * warp.norm() * normal.norm())) {
+    q.complain("warp_axis", "the normal of the triangle at rest",
+               "an axis with a part in its plane (default: x)");
   }
   q.finish();
   return element_answer<T, 9>(model.terms(triangle, x.x, mu, lambda, Projection::none),
