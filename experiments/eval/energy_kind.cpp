@@ -54,10 +54,13 @@ Answer membrane(Query& q, const MembraneModel<T>& model) {
   const Vec<T, 3> warp = warp_of<T>(q, model, rest.x[1] - rest.x[0]);
   const TriangleRest<T> triangle = triangle_rest<T>(rest.x, warp);
   const Vec<T, 3> normal = (rest.x[1] - rest.x[0]).cross(rest.x[2] - rest.x[0]);
-  if (!q.wrong() && !(triangle.area > T(0) && normal.allFinite())) {
+  const T size = normal.norm(), cosine = size > T(0) ? warp.dot(normal) / (warp.norm() * size) : T(1);
+  const bool usable = triangle.area > T(0) && triangle.dm_inv.allFinite();
+  if (q.wrong()) {
+    // complained of
+  } else if (!(size > T(0)) || !normal.allFinite() || (!model.anisotropic && !usable)) {
     q.complain("rest", "a triangle without area", "three points that are not on one line");
-  } else if (!q.wrong() && (!triangle.dm_inv.allFinite() ||
-                            warp.cross(normal).norm() < T(1e-6) * warp.norm() * normal.norm())) {
+  } else if (!usable || std::abs(cosine) > T(1) - T(1e-6)) {
     q.complain("warp_axis", "the normal of the triangle at rest",
                "an axis with a part in its plane (default: x)");
   }

@@ -131,6 +131,10 @@ def test_analytic_laws(program):
 BARAFF = {"kind": "energy", "model": "baraff_witkin", "rest": [[0.1, 0, 0], [1, 0.7, 0], [0.2, 1.1, 0.3]], "x": [[0, 0, 0], [1.3, 0.8, 0.1], [0.1, 1.5, 0.2]], "lame_mu": 3, "lame_lambda": 2}
 
 
+def answers(program: str, queries: list) -> list:
+    return [json.loads(line) for line in ask(program, "".join(json.dumps(q) + "\n" for q in queries)).stdout.splitlines()]
+
+
 def test_warp_is_x_as_of_a_body_and_not_the_order_of_the_corners(program):
     """In the plane of the triangle at rest: whichever corner comes first, the energy is that of the same warp."""
     turned = [{**BARAFF, "rest": BARAFF["rest"][k:] + BARAFF["rest"][:k], "x": BARAFF["x"][k:] + BARAFF["x"][:k]} for k in range(3)]
