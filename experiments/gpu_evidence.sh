@@ -70,7 +70,7 @@ verdict=0
 "$bench" device --json --measure >"$out/device.json" 2>"$out/logs/device.err" || verdict="$?"
 if [ "$verdict" -ne 0 ]; then
   say "$("$bench" device 2>&1 | tail -n 1)"
-  exit 3
+  exit 5
 fi
 if smi="$(tool nvidia-smi)"; then
   "$smi" --format=csv,nounits --query-gpu=name,driver_version,clocks.sm,clocks.max.sm,clocks.mem,clocks.max.mem,power.limit,ecc.mode.current,temperature.gpu \

@@ -1,5 +1,5 @@
 """Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every verdict from the records by the rule of
-its claim, and writes results/CLAIMS.md, results/claims.json (the numbers used), docs/claims.png and the table of the README. With names of claims it runs the sweeps of these alone.
+its claim, and writes results/CLAIMS.md, results/claims.json (the numbers used), docs/claims.png and the table of docs/results.md. With names of claims it runs the sweeps of these alone.
 
 Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them; a bad entry; no program).
 """
@@ -94,8 +94,8 @@ def write_all(table: Table, asker: Eval) -> None:
     for path in drawn:
         if path.suffix in (".png", ".txt"):
             shutil.copyfile(path, ROOT / "docs" / path.name)
-    readme = ROOT / "README.md"
-    write_whole(readme, report.in_readme(readme.read_text(), answers))
+    page = ROOT / "docs" / "results.md"
+    write_whole(page, report.in_page(page.read_text(), answers))
 
 
 if __name__ == "__main__":

@@ -1,4 +1,4 @@
-"""Verdicts as text: results/CLAIMS.md, and the short table of the README."""
+"""Verdicts as text: results/CLAIMS.md, and the short table of docs/results.md."""
 
 from __future__ import annotations
 
@@ -102,11 +102,11 @@ def verdict_table(answers: list[Answer]) -> list[str]:
 BEGIN, END = "<!-- claims: written by ./bench claims -->\n", "<!-- /claims -->"
 
 
-def in_readme(readme: str, answers: list[Answer]) -> str:
-    """The README with its table of verdicts made anew."""
-    before, _, rest = readme.partition(BEGIN)
+def in_page(page: str, answers: list[Answer]) -> str:
+    """docs/results.md with its table of verdicts made anew."""
+    before, _, rest = page.partition(BEGIN)
     _, end, after = rest.partition(END)
-    return before + BEGIN + "\n".join(verdict_table(answers)) + "\n" + end + after if end else readme
+    return before + BEGIN + "\n".join(verdict_table(answers)) + "\n" + end + after if end else page
 
 
 def markdown(answers: list[Answer], table: Table) -> str:

@@ -119,7 +119,8 @@ class Watch {
     const auto last = static_cast<std::ptrdiff_t>(std::min(taken_ > 0 ? taken_ - 1 : 0, text_.size()));
     const auto line = 1 + std::count(text_.begin(), text_.begin() + last, '\n');
     const std::string place = pointer.empty() ? "" : "#" + pointer;
-    throw JsonError(fault, fmt::format("{}:{}{}", source_, line, place), std::move(found), std::move(allowed));
+    throw JsonError(fault, fmt::format("{}:{}{}", source_, line, place), std::move(found),
+                    std::move(allowed));
   }
 
   /// An array or object that is open.

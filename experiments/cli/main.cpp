@@ -62,7 +62,8 @@ int guarded(const std::function<int()>& verb) {
 
 /// A finite number from low (or above it) to high; CLI::Range lets NaN through.
 CLI::Validator finite_number(double low, double high, bool above_low = false) {
-  const std::string allowed = fmt::format("a number {} {:g}, at most {:g}", above_low ? "above" : "from", low, high);
+  const std::string allowed =
+      fmt::format("a number {} {:g}, at most {:g}", above_low ? "above" : "from", low, high);
   return {[=](const std::string& text) -> std::string {
             double value = 0;
             const bool is_number = CLI::detail::lexical_cast(text, value) && std::isfinite(value);
@@ -85,9 +86,10 @@ void common_arguments(CLI::App& app, CommonOptions& common, std::vector<std::str
          "a shared library (.so) with shapes, stiffness policies or integrators, loaded before anything "
          "is read; may be repeated (examples/plugins/README.md)")
       ->allow_extra_args(false);
-  app.add_option("--progress", common.progress,
-                 "auto (one line that is rewritten on a terminal, else a line every 30 s), plain (a line every 10 s) "
-                 "or none")
+  app.add_option(
+         "--progress", common.progress,
+         "auto (one line that is rewritten on a terminal, else a line every 30 s), plain (a line every 10 s) "
+         "or none")
       ->check(CLI::IsMember({"auto", "plain", "none"}));
   app.add_option("--progress-every", common.progress_every_s, "seconds between two such lines")
       ->check(finite_number(0, 1e6, true));

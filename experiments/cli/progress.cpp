@@ -72,10 +72,10 @@ void ProgressLine::show(const Progress& progress) {
   if (mode_ == Mode::rewrite && now - last_s_ < 0.2 && progress.step < progress.steps) return;
   last_s_ = now;
   const std::lock_guard lock(mutex_);
-  latest_ = fmt::format("{}{} [{}] step {}/{}  t {:.4g} of {:.4g} s  newton {}  contacts {}  gap {}  eta {:.0f} s", prefix_,
-                        progress.label, progress.pass, progress.step, progress.steps, progress.t_s,
-                        progress.t_end_s, progress.newton, progress.contacts,
-                        number_text(progress.gap, "{:.2e} m"), progress.eta_s);
+  latest_ = fmt::format(
+      "{}{} [{}] step {}/{}  t {:.4g} of {:.4g} s  newton {}  contacts {}  gap {}  eta {:.0f} s", prefix_,
+      progress.label, progress.pass, progress.step, progress.steps, progress.t_s, progress.t_end_s,
+      progress.newton, progress.contacts, number_text(progress.gap, "{:.2e} m"), progress.eta_s);
   if (mode_ != Mode::rewrite) return;
   say("\r\033[K" + latest_);
   dirty_ = true;

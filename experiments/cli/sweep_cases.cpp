@@ -166,8 +166,9 @@ void check_spec(json spec, const std::string& path) {
     check_axis(where, axes[i], violations);
     for (const std::string& pointer : pointers_of(axes[i])) {
       if (const auto [earlier, is_new] = axis_of.emplace(pointer, i); !is_new) {
-        violations.push_back({where, fmt::format("\"{}\", which axis {} sets too", shortened(pointer), earlier->second),
-                              "pointers that no other axis sets: the later one would undo the earlier one"});
+        violations.push_back(
+            {where, fmt::format("\"{}\", which axis {} sets too", shortened(pointer), earlier->second),
+             "pointers that no other axis sets: the later one would undo the earlier one"});
       }
     }
   }

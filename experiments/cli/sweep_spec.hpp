@@ -15,8 +15,8 @@ namespace bb {
 inline constexpr std::size_t max_sweep_cases = 10000;
 
 struct SweepCase {
-  std::string label;             // "log dt=0.01"
-  std::vector<std::string> set;  // overrides "/pointer=value"
+  std::string label;                         // "log dt=0.01"
+  std::vector<std::string> set;              // overrides "/pointer=value"
   std::map<std::string, std::string> swept;  // pointer -> JSON text, of the axes
   RunConfig config;
   std::optional<std::size_t> reference;  // the case it is compared with, where the file marks one

@@ -14,7 +14,8 @@ namespace bb::cli {
 
 inline constexpr int exit_ok = 0;
 inline constexpr int exit_bad_input = 2;
-inline constexpr int exit_no_repeat = 3;     // a record did not repeat itself, and nothing that it names explains it
+inline constexpr int exit_no_repeat =
+    3;  // a record did not repeat itself, and nothing that it names explains it
 inline constexpr int exit_wrong_answer = 4;  // a check with a known answer failed: ccd, validity
 inline constexpr int exit_no_card = 5;       // no card that this build can use: device
 inline constexpr int exit_internal = 70;

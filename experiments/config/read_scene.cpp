@@ -73,8 +73,9 @@ void check_box(const PinSpec& pin, const std::string& pointer, const Reader& rea
   for (int k = 0; pin.box && k < 3; ++k) {
     const double low = (*pin.box)[0][k], high = (*pin.box)[1][k];
     if (low <= high) continue;
-    reader.complain(pointer, fmt::format("an inverted box: along {} its min {} is above its max {}", "xyz"[k], low, high),
-                    "[[min], [max]] with min <= max along every axis");
+    reader.complain(
+        pointer, fmt::format("an inverted box: along {} its min {} is above its max {}", "xyz"[k], low, high),
+        "[[min], [max]] with min <= max along every axis");
   }
 }
 

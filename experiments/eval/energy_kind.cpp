@@ -26,15 +26,43 @@ Answer element_answer(const ElementTerms<T, N>& exact, const ElementTerms<T, N>&
   return a;
 }
 
-/// The rest triangle's first edge is the warp direction; only baraff_witkin depends on it.
+/// The warp direction of a model that depends on one: `warp_axis`, x by default, as of a body of a scene. Others take the first edge
+/// of the rest triangle as their frame, and no warp_axis.
+template <class T>
+Vec<T, 3> warp_of(Query& q, const MembraneModel<T>& model, const Vec<T, 3>& first_edge) {
+  if (!model.anisotropic) {
+    if (q.has("warp_axis")) {
+      q.complain("warp_axis", "an axis",
+                 "nothing: the model " + std::string(model.name) + " has no direction");
+    }
+    return first_edge;
+  }
+  Vec<T, 3> axis = Vec<T, 3>::UnitX();
+  if (!q.has("warp_axis")) return axis;
+  const std::vector<double> given = q.list("warp_axis", 3, kFinite);
+  for (int k = 0; k < 3; ++k) axis[k] = static_cast<T>(given[static_cast<std::size_t>(k)]);
+  if (!q.wrong() && std::abs(axis.norm() - 1) > T(1e-6))
+    q.complain("warp_axis", "no unit vector", "a unit vector");
+  return axis;
+}
+
 template <class T>
 Answer membrane(Query& q, const MembraneModel<T>& model) {
   const Points<T, 3> rest(q, "rest"), x(q, "x");
   const T mu = static_cast<T>(q.number("lame_mu", kNonNegative));
   const T lambda = static_cast<T>(q.number("lame_lambda", kFinite));
-  const TriangleRest<T> triangle = triangle_rest<T>(rest.x, rest.x[1] - rest.x[0]);
-  if (!q.wrong() && !(triangle.area > T(0) && triangle.dm_inv.allFinite())) {
+  const Vec<T, 3> warp = warp_of<T>(q, model, rest.x[1] - rest.x[0]);
+  const TriangleRest<T> triangle = triangle_rest<T>(rest.x, warp);
+  const Vec<T, 3> normal = (rest.x[1] - rest.x[0]).cross(rest.x[2] - rest.x[0]);
+  const T size = normal.norm(), cosine = size > T(0) ? warp.dot(normal) / (warp.norm() * size) : T(1);
+  const bool usable = triangle.area > T(0) && triangle.dm_inv.allFinite();
+  if (q.wrong()) {
+    // complained of
+  } else if (!(size > T(0)) || !normal.allFinite() || (!model.anisotropic && !usable)) {
     q.complain("rest", "a triangle without area", "three points that are not on one line");
+  } else if (!usable || std::abs(cosine) > T(1) - T(1e-6)) {
+    q.complain("warp_axis", "the normal of the triangle at rest",
+               "an axis with a part in its plane (default: x)");
   }
   q.finish();
   return element_answer<T, 9>(model.terms(triangle, x.x, mu, lambda, Projection::none),

@@ -103,7 +103,8 @@ void check_device_forms(const RunConfig& config, const Scene& scene) {
   Method method = make_method(config, any);
   const std::optional<StiffnessRule> rule = method.stiffness->rule();
   if (!rule) {
-    throw ConfigError(config.source + "#/formulation/stiffness_policy/name", std::string(method.stiffness->name()),
+    throw ConfigError(config.source + "#/formulation/stiffness_policy/name",
+                      std::string(method.stiffness->name()),
                       "a policy with a device form; this one runs with device cpu only");
   }
   at_config(config, "/formulation", [&] { resident::ResidentBarrier(method.contact, rule->potential()); });

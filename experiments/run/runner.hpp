@@ -20,9 +20,9 @@ struct Progress {
   const char* pass = "";  // "pilot", "time" or "diagnose"
   int step = 0, steps = 0;
   double t_s = 0, t_end_s = 0;  // simulated
-  int newton = 0;  // iterations of the step
+  int newton = 0;               // iterations of the step
   std::size_t contacts = 0;
-  Number gap;  // m, at the end of the step
+  Number gap;            // m, at the end of the step
   double elapsed_s = 0;  // of the pass
   double eta_s = 0;      // to the end of the run: the passes that follow are taken to be as long as this one
 };
@@ -39,7 +39,7 @@ struct RunOptions {
   std::vector<std::string> argv;  // for the record
   std::string note;               // how the row of a table differs
   std::string sweep_id;
-  std::map<std::string, std::string> swept;  // of a case of a sweep: pointer -> JSON text, of its axes
+  std::map<std::string, std::string> swept;       // of a case of a sweep: pointer -> JSON text, of its axes
   std::string rerun_of;                           // run_id of the record that is repeated
   BuildValidity build;                            // of this program; not valid: no times are kept
   std::vector<PluginFile> plugins;                // loaded, `file` as a path that can be opened

@@ -2,6 +2,8 @@
 
 import hashlib
 import json
+import subprocess
+from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
@@ -11,8 +13,11 @@ import pytest
 from analysis import style
 from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle, matrix_forms
 from analysis.load import load
+from analysis.record_file import sha256_of
 from analysis.table import as_text, summary_table
 from synthetic import bind, write_cycle, write_run, write_set
+
+ROOT = Path(__file__).resolve().parents[2]
 
 
 @pytest.fixture
@@ -148,11 +153,31 @@ def test_barrier_shapes_come_from_the_program(program, tmp_path, monkeypatch):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
     table = pd.read_csv(barrier_shapes.figure(tmp_path)[2])
 
-    cubic = table[table["formulation"] == "cubic"]
+    cubic = table[table["name"] == "cubic"]
     np.testing.assert_allclose(cubic["minus_db"], 2 * (1 - cubic["u"]) ** 2, rtol=1e-12)
     np.testing.assert_allclose(cubic["rho"], 2 / (1 - cubic["u"]), rtol=1e-12)
-    squared = table[table["formulation"] == "ipc2020"]
+    runs = pd.DataFrame({"shape": ["two_stage", "log", "two_stage"], "argument": ["gap", "squared_gap", "gap"]})
+    table = pd.read_csv(barrier_shapes.figure(tmp_path / "of_runs", runs)[2])
+    assert list(dict.fromkeys(table["name"])) == ["two_stage", "log on squared_gap"]
+    squared = table[table["name"] == "log on squared_gap"]
     np.testing.assert_allclose(squared["b"], -((squared["u"] ** 2 - 1) ** 2) * np.log(squared["u"] ** 2), rtol=1e-12)
+
+
+def test_a_shape_of_a_plugin_is_drawn_while_its_file_is_there(program, tmp_path, capsys, monkeypatch):
+    monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
+    library = tmp_path / "inverse.so"
+    command = ["g++", "-shared", "-fPIC", "-O1", "-std=c++20", f"-I{ROOT}", "-o", library, ROOT / "examples/plugins/inverse_shape.cpp"]
+    subprocess.run(command, check=True)
+    runs = pd.DataFrame({"shape": ["log", "inverse"], "argument": ["gap", "gap"], "plugin_files": [(), ((str(library), sha256_of(library)),)]})
+
+    table = pd.read_csv(barrier_shapes.figure(tmp_path / "with", runs)[2])
+    assert set(table["name"]) == {"log", "inverse"} and np.isfinite(table["b"]).all() and (table[table["name"] == "inverse"]["minus_db"] > 0).all()
+    assert capsys.readouterr().err == ""
+
+    library.write_bytes(b"another")
+    table = pd.read_csv(barrier_shapes.figure(tmp_path / "without", runs)[2])
+    said = capsys.readouterr().err
+    assert set(table["name"]) == {"log"} and str(library) in said and "inverse" in said
 
 
 def test_demo_makes_everything_and_names_failures(program, tmp_path, monkeypatch):
@@ -182,7 +207,7 @@ def test_a_caption_stands_beside_every_figure(records, program, tmp_path, monkey
     paths = module.figure(tmp_path) if module is barrier_shapes else module.figure(records, "strip", tmp_path)
     text = paths[3].read_text()
     if module is barrier_shapes:
-        assert "d_hat" in text and "ipc2020" in text
+        assert "d_hat" in text and "shapes of the runs" in text.replace("\n", " ")
     else:
         for part in ("strip", "hollow markers", "matching_rule equal_force", "Machine: a cpu, 2 cores", "BLAS: Haswell", "2024-01-31 (UTC), 4 runs"):
             assert part in text.replace("\n", " "), part

@@ -43,7 +43,7 @@ def test_a_false_truth_is_a_false_negative(program, tmp_path):
     rows = [row.format(0, 5), row.format(0, 0), row.format(1, 0), "0,1,1,1,0,1,1\n"]
     (folder / "a.csv").write_text("".join(rows * 2))
     done = ccd(program, str(tmp_path))
-    assert done.returncode == 3, done.stderr
+    assert done.returncode == 4, done.stderr
     assert "point_triangle" in done.stdout
 
 

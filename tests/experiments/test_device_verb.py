@@ -1,4 +1,4 @@
-"""The verb device answers on any machine: exit 0 with a card, 3 with the reason where there is none."""
+"""The verb device answers on any machine: exit 0 with a card, 5 with the reason where there is none."""
 
 import json
 import subprocess
@@ -18,7 +18,7 @@ def device(*arguments):
 def test_json_and_words_say_the_same():
     asked, said = device("--json", "--measure"), device()
     found = json.loads(asked.stdout)
-    assert asked.returncode == said.returncode == (0 if found["usable"] else 3)
+    assert asked.returncode == said.returncode == (0 if found["usable"] else 5)
     assert found["schema"] == "barrierbench.device/1" and asked.stderr == said.stderr == ""
     if found["usable"]:
         assert found["card"] in said.stdout and found["copy"]["on_the_card_Bps"] > 1e9

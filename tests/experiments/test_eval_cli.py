@@ -126,3 +126,29 @@ def test_analytic_laws(program):
             assert kappa * d_hat * e * (e / u - 2 * math.log(u)) == pytest.approx(f, rel=1e-9)
             assert answer["K"] == pytest.approx(kappa * (-2 * math.log(u) + 4 * e / u + e * e / (u * u)), rel=1e-9)
             assert answer["capacity"] is None
+
+
+BARAFF = {"kind": "energy", "model": "baraff_witkin", "rest": [[0.1, 0, 0], [1, 0.7, 0], [0.2, 1.1, 0.3]], "x": [[0, 0, 0], [1.3, 0.8, 0.1], [0.1, 1.5, 0.2]], "lame_mu": 3, "lame_lambda": 2}
+
+
+def answers(program: str, queries: list) -> list:
+    return [json.loads(line) for line in ask(program, "".join(json.dumps(q) + "\n" for q in queries)).stdout.splitlines()]
+
+
+def test_warp_is_x_as_of_a_body_and_not_the_order_of_the_corners(program):
+    """In the plane of the triangle at rest: whichever corner comes first, the energy is that of the same warp."""
+    turned = [{**BARAFF, "rest": BARAFF["rest"][k:] + BARAFF["rest"][:k], "x": BARAFF["x"][k:] + BARAFF["x"][:k]} for k in range(3)]
+    others = [{**BARAFF, "warp_axis": axis} for axis in ([1, 0, 0], [-1, 0, 0], [0, 1, 0], [0.6, 0.8, 0])]
+    e = [answer["energy"] for answer in answers(program, turned + others)]
+    assert e[0] > 0
+    assert e[1] == pytest.approx(e[0], rel=1e-12) and e[2] == pytest.approx(e[0], rel=1e-12)
+    assert e[3] == e[0] and e[4] == pytest.approx(e[0], rel=1e-12)
+    assert min(abs(e[5] / e[0] - 1), abs(e[6] / e[0] - 1)) > 1e-3  # it does depend on the direction
+
+
+@pytest.mark.parametrize("change, said", [
+    ({"model": "arap", "warp_axis": [1, 0, 0]}, "no direction"), ({"warp_axis": [2, 0, 0]}, "a unit vector"), ({"warp_axis": [1, 0]}, "/warp_axis"),
+    ({"warp_axis": "x"}, "/warp_axis"), ({"rest": [[0, 0, 0], [0, 1, 0], [0, 0, 1]]}, "/warp_axis")])
+def test_a_warp_that_cannot_be_is_refused(program, change, said):
+    done = subprocess.run([program, "eval"], input=json.dumps(BARAFF | change) + "\n", capture_output=True, text=True, check=False)
+    assert done.returncode == 2 and said in done.stdout, done.stdout

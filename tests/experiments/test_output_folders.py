@@ -176,7 +176,7 @@ def test_frames_and_matrices_of_an_earlier_run_go_and_nothing_else(program, tmp_
     stranger = write(out / "matrices/step_000099_iteration_000.mtx", "of no run")
     assert bench(program, "run", HANG, "--out", out, "--set", "/time/steps=1", *FRAMES).returncode == 0
     record = json.loads((out / "run.json").read_text())
-    assert [a["path"] for a in record["artifacts"]] == ["frames/scene.json", "frames/start.ply", "frames/step_000000.ply"]
+    assert [a["path"] for a in record["artifacts"]] == ["frames/scene.json", "frames/start.ply", "frames/step_000000.ply", "trace.jsonl"]
     assert names(out / "frames") == ["notes.txt", "scene.json", "start.ply", "step_000000.ply", "step_000002.ply"]
     assert names(out / "matrices") == [stranger.name]
     assert mine.read_text() == "mine" and changed.read_text() == "edited by hand"

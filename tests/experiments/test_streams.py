@@ -39,7 +39,7 @@ def test_errors_that_nobody_can_read_keep_their_exit_code(program, arguments):
 @pytest.mark.parametrize("descriptors", [(2,), (0, 2), (0, 1, 2)])
 def test_no_file_of_a_run_gets_the_words_for_a_closed_stream(program, tmp_path, descriptors):
     out = tmp_path / "out"
-    arguments = ["--progress", "plain", "run", BLOCK, "--out", out, "--set", "/time/steps=20"]
+    arguments = ["--progress", "plain", "--progress-every", "0.01", "run", BLOCK, "--out", out, "--set", "/time/steps=20"]
     done = ended(program, arguments, stdout=subprocess.DEVNULL, preexec_fn=close(*descriptors))
     assert done.returncode == (75 if 1 in descriptors else 0)
     assert json.loads((out / "run.json").read_text())["summary"]["steps"] == 20
@@ -49,7 +49,7 @@ def test_no_file_of_a_run_gets_the_words_for_a_closed_stream(program, tmp_path, 
 
 @pytest.mark.parametrize("progress", ["plain", "none"])
 def test_a_full_stderr_does_not_end_a_run(program, tmp_path, progress):
-    arguments = ["--progress", progress, "run", BLOCK, "--out", tmp_path / "out", "--set", "/time/steps=3"]
+    arguments = ["--progress", progress, "--progress-every", "0.01", "run", BLOCK, "--out", tmp_path / "out", "--set", "/time/steps=3"]
     with open("/dev/full", "w") as full:
         assert ended(program, arguments, stdout=subprocess.DEVNULL, stderr=full).returncode == 0
     assert (tmp_path / "out/run.json").exists()

@@ -67,4 +67,4 @@ def test_the_verb_prints_every_check_and_its_exit_code_is_the_verdict(program, t
     document["checks"][-1]["pass"] = False
     report.write_text(json.dumps(document))
     bad = subprocess.run([program, "validity"], capture_output=True, text=True, check=False)
-    assert bad.returncode == 3 and "FAILED" in bad.stdout and "not valid" in bad.stdout
+    assert bad.returncode == 4 and "FAILED" in bad.stdout and "not valid" in bad.stdout

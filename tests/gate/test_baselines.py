@@ -163,5 +163,6 @@ def test_class_I_is_never_accepted(gate, block, folder, tmp_path, capsys):
     record = json.loads((block / "run.json").read_text())
     record["audit"]["crossings"] = 1
     (tmp_path / "run.json").write_text(json.dumps(record))
+    shutil.copyfile(block / "trace.jsonl", tmp_path / "trace.jsonl")
     assert gate("accept", "--record", tmp_path / "run.json", "--baseline", tmp_path / "b.json", "--reason", "why not") == 2
     assert "makes no baseline" in capsys.readouterr().err and not (tmp_path / "b.json").exists()

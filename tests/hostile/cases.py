@@ -130,6 +130,9 @@ JSON = [
     query("number-overflow", '{"id": 3, "kind": "rho", "shape": "cubic", "u": 1e999}\n', "out of range", '"id":3'),
     override("seed-beyond-2-53", f"/seeds/main={2**53 + 1}", "9007199254740993", "2^53"),
     override("seed-beyond-2-64", f"/seeds/main={2**64}", "/seeds/main"),
+    check("seed-beyond-2-53-has-its-pointer", {**config({"name": "hang"}), "seeds": {"main": 2**53 + 1}}, "a.json:1#/seeds/main: found 9007199254740993", "2^53"),
+    check("count-beyond-2-53-has-its-pointer", bodies(body(grid()), body(grid(n_x=HUGE), name="b")), "a.json:1#/scene/bodies/1/mesh/n_x: found 18446744073709551615"),
+    check("integer-beyond-2-53-in-an-array", bodies(body(grid(), pins=[{"indices": [0, 1, 2**60]}])), "a.json:1#/scene/bodies/0/pins/0/indices/2"),
     override("diagnose-seed-beyond-2-53", f"/diagnose/seed={2**53 + 1}", "2^53"),
     check("count-2-64-1", bodies(body(grid(n_x=HUGE))), "18446744073709551615", "2^53"),
     check("count-2-63", bodies(body(grid(n_x=2**63))), "9223372036854775808"),
@@ -177,6 +180,13 @@ OVERRIDES = [
     override("long-value", "/formulation/name=" + "x" * 100_000, "/formulation/name"),
 ]
 
+NUMBERS = [
+    Case(f"option-{verb[0]}-{option.strip('-')}-{text}", (*verb, option, text), says=(option, text))
+    for verb, option in ((("explain", BLOCK), "--contacts"), (("explain", BLOCK), "--blocks-per-contact"), (("explain", BLOCK), "--candidates-per-contact"),
+                         (("run", BLOCK, "--out", "out"), "--time-limit"), (("run", BLOCK, "--out", "out"), "--progress-every"), (("matrix", "a.mtx"), "--tol"))
+    for text in ("nan", "inf", "-inf", "1e400", "-1")
+]
+
 # --- sweeps
 
 STEPS = {"pointer": "/time/steps", "values": [1]}
@@ -199,8 +209,15 @@ SWEEPS = [
     dry("an-axis-a-number", sweep([3]), "#/axes/0"),
     dry("values-a-number", sweep([{"pointer": "/time/steps", "values": 3}]), "#/axes/0/values"),
     dry("set-an-array", sweep([STEPS], set=[1]), "#/set"),
-    dry("set-without-a-slash", sweep([STEPS], set={"time/dt_s": 1}), "/pointer=value"),
-    dry("pointer-without-a-slash", sweep([{"pointer": "time", "values": [1]}]), "/pointer=value"),
+    dry("set-without-a-slash", sweep([STEPS], set={"time/dt_s": 1}), "#/set", "a JSON pointer"),
+    dry("pointer-without-a-slash", sweep([{"pointer": "time", "values": [1]}]), "#/axes/0/pointer", "a JSON pointer"),
+    dry("pointer-with-an-equals-sign", sweep([{"pointer": "/name=x", "values": [1, 2]}]), "#/axes/0/pointer", "without \"=\""),
+    dry("set-with-an-equals-sign", sweep([STEPS], set={"/time/dt_s=1": 1}), "#/set", "/time/dt_s=1"),
+    dry("pointer-with-a-bad-escape", sweep([{"pointer": "/time/~2", "values": [1]}]), "#/axes/0/pointer"),
+    dry("one-pointer-on-two-axes", sweep([STEPS, {"pointer": "/time/steps", "values": [2]}]), "#/axes/1", "axis 0 sets too"),
+    dry("one-label-twice", sweep([{"cases": [case("a"), case("a")]}]), "#/axes/0/cases/1/label", "again"),
+    dry("one-value-twice", sweep([{"pointer": "/time/steps", "values": [1, 1]}]), "#/axes/0/values/1"),
+    dry("one-run-twice", sweep([{"cases": [case("a"), case("b")]}]), "[b]", "the same run as [a]"),
     dry("label-a-number", sweep([{"cases": [{"label": 3, "set": {}}]}]), "#/axes/0/cases/0/label"),
     dry("label-missing", sweep([{"cases": [{"set": {}}]}]), "#/axes/0/cases/0/label"),
     dry("label-empty", sweep([{"cases": [case("")]}]), "#/axes/0/cases/0/label"),
@@ -284,11 +301,22 @@ MESHES = [
 # --- scenes that config and files show to be wrong: `run` and `check` alike
 
 RIGID_FAR = body(grid(), name="plate", kind="rigid", transform={"translate_m": [0, 0, -1]})
+
+
+def with_obstacle(kind: str, **more) -> dict:
+    """A cloth at z = 0 and one obstacle."""
+    return config({"bodies": [body(grid())], "obstacles": [{"name": "thing", "kind": kind, "point_m": [0, 0, -1], **more}]})
+
+
 WRONG_SCENES = {
     "model": (bodies(body(grid(), material={"model": "corotationl"})), "corotationl"),
     "mesh": ({**one_mesh("m.obj")}, "m.obj:4"),
     "pin": (bodies(body(grid(), pins=[{"indices": [9]}])), "vertex 9"),
     "empty-pin": (bodies(body(grid(), pins=[{"box_m": [[5, 5, 5], [6, 6, 6]]}])), "no vertex selected"),
+    "pin-box-inverted": (bodies(body(grid(), pins=[{"box_m": [[-5, 5, -5], [5, -5, 5]]}])), "/scene/bodies/0/pins/0/box_m: found an inverted box: along y its min 5 is above its max -5"),
+    "sphere-of-radius-0": (with_obstacle("sphere", radius_m=0), "/scene/obstacles/0/radius_m: found 0"),
+    "sphere-of-radius-minus-1": (with_obstacle("sphere", radius_m=-1), "/scene/obstacles/0/radius_m: found -1"),
+    "cylinder-without-radius": (with_obstacle("cylinder", axis=[0, 0, 1]), "/scene/obstacles/0/radius_m"),
     "density": (bodies(body(grid(), material={"density_kg_per_m2": 0})), "without mass"),
     "all-pinned": (bodies(body(grid(), pins=[{"all": True}])), "no free vertex"),
     "no-body": (bodies(), "at least one body"),
@@ -310,6 +338,10 @@ SCENE_CASES = [
     for name, (content, says) in WRONG_SCENES.items() for make in (check, refused_run)
 ]
 SCENE_CASES += [
+    check("bowl-smaller-than-what-is-in-it", with_obstacle("sphere", radius_m=0.2, inside=True), "obstacle: thing", "gap -"),
+    check("obstacle-that-touches-at-the-start", with_obstacle("sphere", radius_m=1.0), "obstacle: thing", "gap 0 m"),
+    check("plane-that-touches-at-the-start", config({"bodies": [body(grid())], "obstacles": [{"name": "floor", "kind": "plane", "point_m": [0, 0, 0]}]}),
+          "obstacle: floor", "gap 0 m"),
     check("ten-thousand-and-one-bodies", bodies(*[body(grid(), name=f"b{i}") for i in range(10_001)]), "at most 10000"),
     check("formulation-upwards", {**bodies(body(grid())), "formulation": {
         "name": "../../up", "shape": "log", "argument": "gap", "stiffness_policy": {"name": "fixed"}, "d_hat_m": 0.01}}, "/formulation/name"),
@@ -397,4 +429,4 @@ OUTPUTS = [
          says=("64 levels",)),
 ]
 
-CASES = [*FILES, *JSON, *OVERRIDES, *SWEEPS, *MESHES, *SCENE_CASES, *PLUGINS, *QUERIES, *MATRICES, *OUTPUTS]
+CASES = [*FILES, *JSON, *OVERRIDES, *NUMBERS, *SWEEPS, *MESHES, *SCENE_CASES, *PLUGINS, *QUERIES, *MATRICES, *OUTPUTS]

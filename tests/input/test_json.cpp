@@ -60,6 +60,10 @@ TEST(Json, NumbersThatWouldNotBeReadBackAreRefused) {
     EXPECT_EQ(refusal(text).found, text);
     EXPECT_TRUE(parse_json(text, "a.json", LargeIntegers::rounded).is_number());
   }
+  EXPECT_EQ(refusal("{\"a\": [1, {\"b\": [2, 3]}, {\"c/d\": 0,\n \"e\": [[], {}, 9007199254740993]}]}").where,
+            "a.json:2#/a/2/e/2");
+  EXPECT_EQ(refusal("[[1, 2], -9007199254740993]").where, "a.json:1#/1");
+  EXPECT_EQ(refusal("{\"c/d\": 9007199254740993}").where, "a.json:1#/c~1d");
   const Refusal overflow = refusal("{\"a\":\n1e999\n}");
   EXPECT_EQ(overflow.fault, JsonFault::number_range);
   EXPECT_EQ(overflow.where, "a.json:2");

@@ -10,6 +10,7 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
+#include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 #include "tests/folders.hpp"
 #include "tests/record/sample_record.hpp"
@@ -169,6 +170,20 @@ TEST_F(Writer, TraceIsOnDiskAfterEachStep) {
   std::string line;
   ASSERT_TRUE(std::getline(in, line));
   EXPECT_EQ(json::parse(line)["step"], 3);
+}
+
+TEST_F(Writer, TheRecordCanNameTheTraceAsItWillBe) {
+  TraceWriter trace(folder_);
+  trace.add(test::sample_trace_row());
+  trace.end_step();
+  trace.add(test::sample_trace_row());  // not handed on yet
+  const Artifact named = trace.artifact();
+  trace.finish();
+  EXPECT_EQ(named.path, "trace.jsonl");
+  EXPECT_EQ(named.kind, "trace");
+  EXPECT_EQ(named.bytes, fs::file_size(folder_ / "trace.jsonl"));
+  EXPECT_EQ(named.sha256, sha256_file((folder_ / "trace.jsonl").string()));
+  EXPECT_EQ(named.sha256.size(), 64U);
 }
 
 TEST_F(Writer, ATraceThatIsNotFinishedLeavesTheEarlierOne) {

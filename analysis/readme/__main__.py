@@ -1,0 +1,61 @@
+"""Makes the numbers of README.md and docs/results.md from the records of ./bench demo, and checks them and every snippet.
+
+Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 there is nothing to make it from.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from ..program import built_program
+from ..record_file import RecordError
+from ..whole_file import write_whole
+from .numbers import FILE, ROOT, RUNS, ReadmeError, gather, read, write
+from .snippets import faults
+from .templates import filled
+
+PAGES = ("README.md", "docs/results.md")
+
+
+def stale(root: Path, numbers: dict) -> list[str]:
+    """Pages whose generated parts are not what the templates make of the kept numbers."""
+    texts = {page: (root / page).read_text() for page in PAGES}
+    return [f"{page}: its numbers are not those of results/demo.json; ./bench readme --write makes them" for page, text in texts.items() if filled(text, numbers, page) != text]
+
+
+def write_pages(root: Path, numbers: dict) -> list[str]:
+    changed = []
+    for page in PAGES:
+        text = (root / page).read_text()
+        if (made := filled(text, numbers, page)) != text:
+            write_whole(root / page, made)
+            changed.append(page)
+    return changed
+
+
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="bench readme", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
+                                     epilog="examples: ./bench demo && ./bench readme --write\n          ./bench readme --check")
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument("--write", action="store_true", help="keep the numbers of the records in results/demo.json and fill the pages with them")
+    what.add_argument("--check", action="store_true", help="run or parse every snippet, and compare the pages with the kept numbers")
+    parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the demo's records (default: results/runs/demo)")
+    args = parser.parse_args(argv)
+    try:
+        if args.write:
+            write(gather(args.runs))
+            print(f"{FILE}; changed: {', '.join(write_pages(ROOT, read())) or 'no page'}")
+            return 0
+        program = str(built_program(ReadmeError))
+        found = [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)] + stale(ROOT, read())
+    except (ReadmeError, RecordError) as error:
+        print(f"bench readme: {error}", file=sys.stderr)
+        return 2
+    print("\n".join(found) or "every snippet works, and the numbers are those of results/demo.json")
+    return 1 if found else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,149 @@
+"""Every snippet of a page is run, or parsed by the program that it is for: what a reader copies works."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+import shlex
+import subprocess
+import sys
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from .numbers import ROOT
+
+FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+CHECKED_CONFIG = ("run", "steps", "explain", "check", "causes", "match")  # verbs whose first file is a config
+SAFE = ("list", "help", "eval", "device")  # answer at once
+MADE = ("results/runs", "results/matrices")  # what commands leave; `*` in a name: of a run of the reader's own
+LONG_VERBS = ("setup", "build", "demo", "test", "format", "tidy", "rooms")
+SECONDS = 120
+
+
+@dataclass(frozen=True)
+class Snippet:
+    page: str
+    line: int  # of its first line
+    language: str
+    text: str
+
+    @property
+    def place(self) -> str:
+        return f"{self.page}:{self.line}"
+
+
+def snippets(text: str, page: str) -> list[Snippet]:
+    return [Snippet(page, text.count("\n", 0, match.start(2)) + 1, match[1], match[2]) for match in FENCE.finditer(text)]
+
+
+def _ran(words: list[str], **more) -> subprocess.CompletedProcess:
+    return subprocess.run(words, capture_output=True, text=True, check=False, timeout=SECONDS, **more)
+
+
+def _told(done: subprocess.CompletedProcess) -> str:
+    return (done.stderr.strip() or done.stdout.strip()).splitlines()[-1] if (done.stderr or done.stdout).strip() else "it said nothing"
+
+
+def script_verbs() -> set[str]:
+    """Verbs that the script ./bench handles itself, as it tells the program."""
+    found = re.search(r'BENCH_VERBS="([^"]+)"', (ROOT / "bench").read_text())
+    return set(found[1].split()) if found else set()
+
+
+def _settings(words: list[str]) -> list[str]:
+    return [word for k, value in enumerate(words[:-1]) if value == "--set" for word in ("--set", words[k + 1])]
+
+
+def _missing_files(words: list[str]) -> list[str]:
+    named = [word for word in words if re.match(r"(configs|examples|tests|core|experiments|claims|docs)/", word) and "=" not in word]
+    return [word for word in named if not any(ROOT.glob(word))]
+
+
+def _command_fault(words: list[str], program: str) -> str:
+    """Of `./bench VERB ...`; empty when it is well."""
+    verb, rest = words[1], words[2:]
+    if missing := _missing_files(rest):
+        return f"{missing[0]}: not there"
+    if verb in LONG_VERBS or verb == "mutate":
+        return ""
+    own = verb in script_verbs()
+    if own:
+        usage = _ran([str(ROOT / "bench")]).stdout
+        return "" if re.search(rf"^  (?:\w+, )*{verb}\b", usage, re.MULTILINE) else f"{verb} is not in the usage of ./bench"
+    helped = _ran([program, verb, "--help"])
+    if helped.returncode != 0:
+        return _told(helped)
+    flags = [word.split("=")[0] for word in rest if word.startswith("--")]
+    if unknown := [flag for flag in flags if not re.search(rf"{flag}\b", helped.stdout)]:
+        return f"{verb} has no {unknown[0]}"
+    if verb in SAFE:
+        done = _ran([program, verb, *rest])
+        return "" if done.returncode in (0, 5) else _told(done)
+    return ""
+
+
+def _config_fault(words: list[str], program: str) -> str:
+    verb, files = words[1], [word for word in words[2:] if word.startswith("configs/")]
+    if verb in CHECKED_CONFIG and files:
+        verify = [program, "explain" if any("/device" in word for word in words) else "check", str(ROOT / files[0]), *_settings(words)]
+        if any("cudss" in word or '"cuda"' in word or "dense_184m" in word for word in words):
+            return ""  # needs a card, or minutes
+        done = _ran(verify)
+        return "" if done.returncode == 0 else _told(done)
+    if verb == "sweep" and files:
+        done = _ran([program, "sweep", str(ROOT / files[0]), "--dry-run", *_settings(words)])
+        return "" if done.returncode == 0 else _told(done)
+    return ""
+
+
+def _shell_faults(snippet: Snippet, program: str) -> list[str]:
+    faults = []
+    for k, line in enumerate(snippet.text.splitlines()):
+        for command in re.split(r"&&", line):
+            words = shlex.split(command, comments=True)
+            if not words:
+                continue
+            if "|" in words and "./bench" in words:
+                done = _ran(["bash", "-c", command.replace("./bench", shlex.quote(program))], cwd=ROOT)
+                fault = "" if done.returncode == 0 else _told(done)
+            elif words[0].endswith("bench") and len(words) > 1:
+                fault = _command_fault(words, program) or _config_fault(words, program)
+            else:
+                fault = "" if (ROOT / words[0]).exists() or words[0] in ("echo", "python3", "cp", "cd", "git", "pip") else f"{words[0]}: not there"
+            if fault:
+                faults.append(f"{snippet.page}:{snippet.line + k}: {command.strip()}: {fault}")
+    return faults
+
+
+def _json_faults(snippet: Snippet, program: str) -> list[str]:
+    try:
+        data = json.loads(snippet.text)
+    except ValueError as error:
+        return [f"{snippet.place}: not JSON: {error}"]
+    with tempfile.TemporaryDirectory() as folder:
+        (Path(folder) / "scenes").symlink_to(ROOT / "configs/scenes")
+        file = Path(folder) / "sweeps" / "snippet.json"
+        file.parent.mkdir()
+        file.write_text(snippet.text)
+        words = ["sweep", str(file), "--dry-run"] if str(data.get("schema", "")).startswith("barrierbench.sweep") else ["check", str(file)]
+        done = _ran([program, *words])
+    return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
+
+
+def _python_faults(snippet: Snippet, program: str) -> list[str]:
+    """In a folder with one small record where the page has its demo."""
+    with tempfile.TemporaryDirectory() as folder:
+        made = _ran([program, "run", str(ROOT / "configs/scenes/resting_block_1d.json"), "--set", "/time/steps=2", "--set", "/passes/diagnose=true", "--out", "results/runs/demo/one"], cwd=folder)
+        if made.returncode != 0:
+            return [f"{snippet.place}: {_told(made)}"]
+        prelude = "import sys, types\nimport analysis\nsys.modules['barrierbench_analysis'] = analysis\n"
+        done = _ran([sys.executable, "-c", prelude + snippet.text], cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)})
+    return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
+
+
+def faults(text: str, page: str, program: str) -> list[str]:
+    """What does not work, with page and line."""
+    judges = {"sh": _shell_faults, "json": _json_faults, "python": _python_faults}
+    return [fault for snippet in snippets(text, page) if snippet.language in judges for fault in judges[snippet.language](snippet, program)]

@@ -1,0 +1,146 @@
+"""README.md and docs/results.md: every snippet works, and generated numbers are those of the kept records."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+
+from analysis.readme import __main__ as readme
+from analysis.readme import numbers, snippets, templates
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+def row(group, series, **more):
+    return {"group": group, "series": series, "outcome": "ok", "verdict": "comparable", "step_solver": "line_search", "crossings": 0, "violations": 0, "unproven": 0, "judged": 9,
+            "steps": 12, "scale": None, "valid": True, "cond_raw_median": 5000.0, "cond_raw_max": 44000.0, "cond_bj_median": 351.0, "cond_bj_max": 698.0, "newton_iterations": 83,
+            "probe_pcg": 142.0, "gap_min_rel": 0.1024, "cond_steps": {0: 10.0, 1: 400.0}, "touching_steps": [1], "run": "0" * 64} | more
+
+
+def kept(**changed):
+    runs = [row("demo_drape", "log"), row("demo_drape", "cubic", cond_raw_max=11000.0, probe_pcg=157.0, cond_steps={0: 20.0, 1: 100.0}),
+            row("demo_drape", "cubic_dynamic", outcome="newton_stall", steps=10, gap_min_rel=None, **changed),
+            row("demo_drape", "cubic_dynamic x s", scale=2.41, verdict="not_comparable"), row("demo_article", "log", step_solver="article_literal", crossings=7)]
+    about = {"processor": "Some CPU", "cores": "2", "blas_kernel": "Haswell", "compiler": "g++ 12", "flags": "-O2", "commit": "0123456789abcdef", "days": "2026-01-02", "runs": 5}
+    return {"schema": numbers.NAME, "about": about, "runs": runs}
+
+
+def test_the_table_has_every_run_and_names_its_processors():
+    lines = templates.demo_table(kept())
+    text = " ".join(lines)
+    assert "Some CPU" in text and "class of processors" in text and "0123456789" in text and "2026-01-02" in text
+    assert "| log | ok | 5e+03, 4.4e4 | 351, 698 | 83 | 142 | 0.102 |" in lines
+    assert any(line.startswith("| cubic_dynamic (per iteration) | newton_stall in step 9 |") and line.endswith("| - |") for line in lines)
+    assert any(line.startswith("| cubic_dynamic x s (s = 2.4) | ok, not comparable |") for line in lines)
+    assert len([line for line in lines if line.startswith("| ")]) == 1 + 4
+
+
+def said(numbers_):
+    return " ".join(" ".join(templates.result_sentences(numbers_)).split())
+
+
+def test_the_sentences_say_what_the_numbers_say():
+    text = said(kept())
+    assert "In all 4 runs" in text and "4 times that of the cubic" in text and "0.5 times before they touch" in text and "142 against 157" in text
+    assert "stops in time step 9 (`newton_stall`)" in text and "of the 1 variants" in text
+    text = said(kept(crossings=1))
+    assert "In 1 of 4 runs" in text and "cubic_dynamic of demo_drape" in text
+    nothing_judged = kept()
+    nothing_judged["runs"][0]["judged"] = 0
+    assert "In 1 of 4 runs" in said(nothing_judged)
+
+
+def test_only_generated_parts_change_and_an_unknown_one_is_refused(tmp_path):
+    page = "before\n<!-- numbers: result -->\nold\n<!-- /numbers -->\nafter <!-- numbers -->\n"
+    made = templates.filled(page, kept(), "a.md")
+    assert made.startswith("before\n<!-- numbers: result -->\n1. In all") and made.endswith("<!-- /numbers -->\nafter <!-- numbers -->\n") and "old" not in made
+    assert templates.filled(made, kept(), "a.md") == made
+    with pytest.raises(numbers.ReadmeError, match="a.md: .*other.*allowed: demo, result"):
+        templates.filled(page.replace("result", "other"), kept(), "a.md")
+
+
+def test_kept_numbers_come_back_as_they_were(tmp_path):
+    path = tmp_path / "demo.json"
+    numbers.write(kept(), path)
+    assert numbers.read(path) == kept()
+    for text in ("", "{", "[]", '{"schema": "x"}'):
+        path.write_text(text)
+        with pytest.raises(numbers.ReadmeError, match="demo.json"):
+            numbers.read(path)
+    with pytest.raises(numbers.ReadmeError, match="./bench demo"):
+        numbers.read(tmp_path / "none.json")
+
+
+def test_pages_whose_numbers_are_others_are_named(tmp_path):
+    (tmp_path / "docs").mkdir()
+    for page in readme.PAGES:
+        (tmp_path / page).write_text("<!-- numbers: result -->\nold\n<!-- /numbers -->\n")
+    assert len(readme.stale(tmp_path, kept())) == 2
+    assert readme.write_pages(tmp_path, kept()) == list(readme.PAGES)
+    assert readme.stale(tmp_path, kept()) == [] and readme.write_pages(tmp_path, kept()) == []
+
+
+def test_numbers_are_gathered_from_records_of_the_program(program, tmp_path):
+    from analysis.load import load
+    from small_sweep import sweep_of
+
+    records = load(sweep_of(program, tmp_path))
+    rows = numbers._rows(records, numbers.summary_table(records))
+    assert len(rows) == 2 and {row["series"] for row in rows} == {"log", "cubic"}
+    for found in rows:
+        assert found["outcome"] == "ok" and found["steps"] == 30 and found["judged"] > 0 and found["touching_steps"]
+        assert set(found["cond_steps"]) == set(range(30)) and all(math.isfinite(value) and value >= 1 for value in found["cond_steps"].values())
+    assert json.loads(json.dumps(rows)) and numbers._about(records.runs)["runs"] == 2
+    with pytest.raises(numbers.ReadmeError, match="no records of demo_drape"):
+        numbers.gather(tmp_path / "out")
+
+
+# --- snippets
+
+GOOD = """```sh
+./bench list shapes                    # answers
+echo '{"kind": "rho", "shape": "cubic", "u": 0.5}' | ./bench eval
+./bench check configs/scenes/resting_block_1d.json --set /time/steps=3 && ./bench help record
+./bench figures results/runs/demo
+```
+```python
+from barrierbench_analysis import load
+records = load("results/runs/demo")
+print(records.runs[["outcome", "gap_min_rel_min"]])
+```
+"""
+
+
+@pytest.mark.parametrize("wrong, place, said", [
+    ("", "", ""),
+    ("```sh\n\n./bench lst shapes\n```\n", "a.md:14", "lst"),
+    ("```sh\n./bench run configs/scenes/none.json\n```\n", "a.md:13", "configs/scenes/none.json: not there"),
+    ("```sh\n./bench run configs/scenes/drape.json --set /time/stps=3\n```\n", "a.md:13", "/time/stps"),
+    ("```sh\n./bench run configs/scenes/drape.json --st /time/steps=3\n```\n", "a.md:13", "--st"),
+    ("```sh\necho '{\"kind\": \"none\"}' | ./bench eval\n```\n", "a.md:13", "kind"),
+    ("```json\n{\"schema\": \"barrierbench.sweep/1\", \"name\": \"a\", \"base\": \"../scenes/drape.json\", \"axes\": [{\"pointer\": \"/time/x\", \"values\": [1]}]}\n```\n", "a.md:13", "/time/x"),
+    ("```json\n{\"schema\":\n```\n", "a.md:13", "not JSON"),
+    ("```python\nfrom barrierbench_analysis import load\nload('results/runs/demo').runs['gap_min_rel']\n```\n", "a.md:13", "KeyError"),
+])
+def test_a_snippet_that_does_not_work_is_named_with_its_line(program, wrong, place, said):
+    found = snippets.faults(GOOD + wrong, "a.md", program)
+    if not wrong:
+        assert found == []
+    else:
+        assert len(found) == 1 and found[0].startswith(place) and said in found[0], found
+
+
+@pytest.mark.parametrize("page", readme.PAGES)
+def test_every_snippet_of_the_pages_works(program, page):
+    text = (ROOT / page).read_text()
+    assert snippets.snippets(text, page) or page != "README.md"
+    assert snippets.faults(text, page, program) == []
+
+
+def test_the_pages_have_the_numbers_that_are_kept():
+    parts = {name for page in readme.PAGES for name in templates.blocks((ROOT / page).read_text())}
+    assert parts == set(templates.TEMPLATES)
+    if not numbers.FILE.is_file():
+        pytest.skip("results/demo.json is not kept yet: ./bench demo, then ./bench readme --write")
+    assert readme.stale(ROOT, numbers.read()) == []
