@@ -25,6 +25,7 @@ struct AuditLedger {
   long violations = 0, unproven = 0;       // of motions; unproven ones at obstacles too
   long inverted = 0;                       // planar elements, summed over states; not a penetration
   long obstacle_violations = 0;            // of states and motions
+  long obstacle_by_vertex = 0;             // those in which a vertex is beyond, not only what lies between
   long scene_faults = 0;         // prescribed primitives that cross or cannot be certified; in no other count
   long non_finite = 0;           // states and motions that could not be judged
   long unjudged = 0;             // states of the run that no judged motion led to
@@ -63,6 +64,7 @@ struct AuditLedger {
     state_pairs += s.pairs, pair_queries += s.queries;
     obstacle_judged.add(s.obstacle_judged);
     crossings += s.crossings, touches += s.touches, inverted += s.inverted;
+    obstacle_by_vertex += s.obstacle_by_vertex;
     obstacle_violations += s.obstacle_violations, scene_faults += s.scene_faults;
     non_finite += s.finite ? 0 : 1;
     note(step, s.first_bad, s.first_fault);
@@ -72,6 +74,7 @@ struct AuditLedger {
     motion_pairs += m.pairs, pair_queries += m.queries;
     obstacle_judged.add(m.obstacle_judged);
     violations += m.violations, unproven += m.unproven + m.obstacle_unproven;
+    obstacle_by_vertex += m.obstacle_by_vertex;
     obstacle_violations += m.obstacle_violations, scene_faults += m.scene_faults;
     non_finite += m.finite ? 0 : 1;
     note(step, m.first_bad, m.first_fault);

@@ -127,6 +127,7 @@ void MotionAudit::merge(const MotionAudit& other) {
       unproven += other.unproven;
   queries += other.queries;
   obstacle_judged.add(other.obstacle_judged);
+  obstacle_by_vertex += other.obstacle_by_vertex;
   obstacle_unproven += other.obstacle_unproven;
   obstacle_violations += other.obstacle_violations, scene_faults += other.scene_faults;
   finite = finite && other.finite;
@@ -151,6 +152,7 @@ MotionAudit audit_motion(const AuditMesh& mesh, const std::vector<int>& vertices
   const ObstacleAudit found = audit_obstacles(mesh, primitives, x0, x1);
   out.obstacle_judged = found.judged;
   out.obstacle_violations = found.violations;
+  out.obstacle_by_vertex = found.by_vertex;
   out.obstacle_unproven = found.unproven;
   out.scene_faults += found.scene_faults;
   keep_first(out.first_bad, found.first_bad);

@@ -18,6 +18,7 @@ struct MotionAudit {
   long certified = 0, violations = 0, unproven = 0;
   ObstacleCounts obstacle_judged;  // primitives in motion compared with an obstacle
   long obstacle_violations = 0;    // of which a point is strictly beyond an obstacle somewhere on the way
+  long obstacle_by_vertex = 0;     // those in which a vertex is beyond it
   long obstacle_unproven = 0;      // edges and triangles that could not be certified free of an obstacle
   long scene_faults =
       0;               // the same where prescribed vertices alone decide: violations, unproven, paths beyond

@@ -85,24 +85,29 @@ class ObstacleJudge {
     return beyond ? Verdict::violation : Verdict::certified;
   }
 
-  /// A prescribed vertex that is beyond the obstacle itself is named in the place of its primitive.
+  /// A vertex that is beyond the obstacle itself is named in the place of its primitive, a prescribed one first: it
+  /// is the scene's.
   template <std::size_t N>
   void note(Verdict verdict, const std::array<int, N>& ids, PairName name, const AuditObstacle& o,
             ObstacleAudit& sum) const {
-    bool given = mesh_.all_prescribed(ids);
+    int free_vertex = -1, given_vertex = -1;
     for (const int v : ids) {
-      if (given || !mesh_.is_prescribed(v) || !obstacle_hit(o, at(x0_, v), at(x1_, v))) continue;
-      given = true;
-      name.kind = PairKind::vertex_obstacle, name.first = v;
+      if (!obstacle_hit(o, at(x0_, v), at(x1_, v))) continue;
+      int& lowest = mesh_.is_prescribed(v) ? given_vertex : free_vertex;
+      lowest = lowest < 0 ? v : std::min(lowest, v);
     }
-    if (given) {
-      name.proven = verdict == Verdict::violation;
+    name.proven = verdict == Verdict::violation;
+    if (const int named = given_vertex >= 0 ? given_vertex : free_vertex; named >= 0) {
+      name.kind = PairKind::vertex_obstacle, name.first = named;
+    }
+    if (given_vertex >= 0 || mesh_.all_prescribed(ids)) {
       ++sum.scene_faults;
       keep_first(sum.first_fault, name);
     } else if (verdict == Verdict::unproven) {
       ++sum.unproven;
     } else {
       ++sum.violations;
+      sum.by_vertex += free_vertex >= 0;
       keep_first(sum.first_bad, name);
     }
   }
@@ -165,7 +170,8 @@ ObstaclePrimitives obstacle_primitives(const AuditMesh& mesh) {
 
 void ObstacleAudit::merge(const ObstacleAudit& other) {
   judged.add(other.judged);
-  violations += other.violations, unproven += other.unproven, scene_faults += other.scene_faults;
+  violations += other.violations, by_vertex += other.by_vertex;
+  unproven += other.unproven, scene_faults += other.scene_faults;
   keep_first(first_bad, other.first_bad);
   keep_first(first_fault, other.first_fault);
 }

@@ -33,6 +33,7 @@ ObstaclePrimitives obstacle_primitives(const AuditMesh& mesh);
 struct ObstacleAudit {
   ObstacleCounts judged;
   long violations = 0;    // primitives with a point strictly beyond an obstacle, at rest or on the way
+  long by_vertex = 0;     // those of violations in which a vertex is beyond it, not only what lies between
   long unproven = 0;      // motions of edges and triangles that could not be certified
   long scene_faults = 0;  // either, where only prescribed vertices decide; in no other count
   std::optional<PairName> first_bad, first_fault;

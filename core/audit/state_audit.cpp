@@ -126,6 +126,7 @@ void StateAudit::merge(const StateAudit& other) {
   inverted += other.inverted, obstacle_violations += other.obstacle_violations;
   scene_faults += other.scene_faults;
   obstacle_judged.add(other.obstacle_judged);
+  obstacle_by_vertex += other.obstacle_by_vertex;
   finite = finite && other.finite;
   touching.insert(touching.end(), other.touching.begin(), other.touching.end());
   keep_first(first_bad, other.first_bad);
@@ -145,6 +146,7 @@ StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitiv
   const ObstacleAudit found = audit_obstacles(mesh, primitives, x);
   out.obstacle_judged = found.judged;
   out.obstacle_violations = found.violations;
+  out.obstacle_by_vertex = found.by_vertex;
   out.scene_faults += found.scene_faults;
   keep_first(out.first_bad, found.first_bad);
   keep_first(out.first_fault, found.first_fault);

@@ -18,6 +18,7 @@ struct StateAudit {
   long touches = 0;    // pairs at distance 0 that an infinitely small displacement takes apart
   long inverted = 0;   // planar elements with area <= 0
   long obstacle_violations = 0;         // primitives with a point strictly beyond an obstacle
+  long obstacle_by_vertex = 0;          // those in which a vertex is beyond it
   long scene_faults = 0;                // of prescribed primitives: crossings, and what is beyond an obstacle
   bool finite = true;                   // false: nothing was judged
   std::vector<PairName> touching;       // while pairs are collected; then decided, and empty

@@ -22,15 +22,18 @@ std::string name_of(const Scene& scene, std::span<const int> vertices) {
 std::string when(int step) { return step < 0 ? "at the start" : fmt::format("in step {}", step); }
 
 std::string penetration(const Scene& scene, const audit::AuditMesh& mesh, const audit::AuditLedger& ledger) {
-  std::string text =
-      fmt::format("audit: {} crossings in states, {} passages in motions, {} primitives in an obstacle",
-                  ledger.crossings, ledger.violations, ledger.obstacle_violations);
+  const long between = ledger.obstacle_violations - ledger.obstacle_by_vertex;
+  std::string text = fmt::format(
+      "audit: {} crossings in states, {} passages in motions, {} primitives in an obstacle, {} of them only "
+      "between "
+      "their vertices",
+      ledger.crossings, ledger.violations, ledger.obstacle_violations, between);
   if (ledger.first_bad) {
     text += fmt::format("; the first {}: {}", when(ledger.first_bad_step),
                         describe(scene, mesh, *ledger.first_bad));
   }
   const bool no_edge_pairs = scene.planar && scene.planar_pairs == PlanarPairs::vertex_vertex;
-  if (no_edge_pairs && ledger.penetrated()) {
+  if (no_edge_pairs && ledger.crossings + ledger.violations + between > 0) {
     text +=
         "; the contact model vertex_vertex has no edge pairs: it allows edges to cross each other and to "
         "enter "

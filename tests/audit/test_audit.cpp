@@ -1,5 +1,4 @@
-// The audit as Newton uses it, on scenes of a few triangles: states, motions, planar
-// scenes, obstacles, ledger.
+// The audit as Newton uses it, on scenes of a few triangles: states, motions, planar scenes, ledger.
 #include "core/audit/audit.hpp"
 
 #include <gtest/gtest.h>
@@ -10,39 +9,10 @@
 #include <random>
 
 #include "core/math/error.hpp"
+#include "tests/audit/small_scenes.hpp"
 
 namespace bb::audit {
 namespace {
-
-constexpr double tolerance = 1e-9;
-
-AuditMesh surface(const Eigen::Matrix3Xi& triangles) {
-  AuditMesh mesh;
-  mesh.triangles = triangles;
-  mesh.edges.resize(2, 3 * triangles.cols());  // shared edges twice: harmless
-  for (Eigen::Index t = 0; t < triangles.cols(); ++t) {
-    for (int k = 0; k < 3; ++k) mesh.edges.col(3 * t + k) << triangles(k, t), triangles((k + 1) % 3, t);
-  }
-  return mesh;
-}
-
-/// Vertices 0..3: a square sheet of two triangles, the first at z = 0, the second rising to 0.2; 4..6: a
-/// small triangle above the first.
-AuditMesh sheet_and_triangle() {
-  Eigen::Matrix3Xi t(3, 3);
-  t << 0, 0, 4,  //
-      1, 2, 5,   //
-      2, 3, 6;
-  return surface(t);
-}
-
-Positions sheet_and_triangle_at(double z) {
-  Positions x(3, 7);
-  x << -1, 1, 1, -1, 0.3, 0.5, 0.4,     //
-      -1, -1, 1, 1, -0.5, -0.45, -0.2,  //
-      0, 0, 0, 0.2, z, z + 0.01, z - 0.01;
-  return x;
-}
 
 TEST(Audit, clean_scene_is_ok_and_was_judged) {
   Audit audit(sheet_and_triangle());
@@ -279,51 +249,6 @@ TEST(Audit, inverted_elements_are_counted_apart) {
   x.col(5) = x.col(3);  // without area
   audit.check_state(x, 1);
   EXPECT_EQ(audit.ledger().inverted, 2);
-}
-
-TEST(Audit, obstacles_judge_triangles_outside_and_vertices_inside) {
-  AuditMesh mesh = sheet_and_triangle();
-  AuditObstacle ball{ObstacleKind::sphere, Vec3d(0, 0, -1.25), Vec3d::UnitZ(), 1.0, false};
-  mesh.obstacles = {ball};
-  Audit outside(mesh);
-  outside.check_state(sheet_and_triangle_at(0.5), 0);
-  EXPECT_TRUE(outside.ledger().ok());
-  outside.check_state(sheet_and_triangle_at(-0.6), 1);
-  EXPECT_EQ(outside.ledger().obstacle_violations, 1);
-  EXPECT_EQ(outside.ledger().first_bad, (PairName{PairKind::triangle_obstacle, 2, 0}));
-  EXPECT_EQ(outside.ledger().obstacle_judged.triangles, 2 * 3);
-  EXPECT_EQ(outside.ledger().obstacle_judged.vertices, 0);
-
-  ball.point.setZero(), ball.radius = 1.5, ball.inside = true;
-  mesh.obstacles = {ball};
-  Audit inside(mesh);
-  inside.check_state(sheet_and_triangle_at(0.5), 0);
-  EXPECT_TRUE(inside.ledger().ok());
-  inside.check_state(sheet_and_triangle_at(2.0), 1);
-  EXPECT_EQ(inside.ledger().obstacle_violations, 3);
-  EXPECT_EQ(inside.ledger().first_bad, (PairName{PairKind::vertex_obstacle, 4, 0}));
-  EXPECT_EQ(inside.ledger().obstacle_judged.vertices, 2 * 7);
-  EXPECT_EQ(inside.ledger().obstacle_judged.triangles, 0);
-}
-
-TEST(Audit, obstacle_is_judged_along_the_motion) {
-  AuditMesh mesh = sheet_and_triangle();
-  mesh.obstacles = {{ObstacleKind::sphere, Vec3d(0.4, -0.4, 3.0), Vec3d::UnitZ(), 0.5, false}};
-  const MotionAudit found =
-      audit_motion(mesh, sheet_and_triangle_at(0.5), sheet_and_triangle_at(6.0), tolerance);
-  EXPECT_EQ(found.obstacle_violations, 1);
-  EXPECT_EQ(found.violations, 0);
-}
-
-TEST(Audit, moved_obstacle_is_judged_in_its_new_pose) {
-  AuditMesh mesh = sheet_and_triangle();
-  mesh.obstacles = {{ObstacleKind::plane, Vec3d(0, 0, -1), Vec3d::UnitZ(), 0.0, false}};
-  Audit audit(mesh);
-  audit.check_state(sheet_and_triangle_at(0.5), 0);
-  EXPECT_TRUE(audit.ledger().ok());
-  audit.set_obstacles({{ObstacleKind::plane, Vec3d(0, 0, 0.25), Vec3d::UnitZ(), 0.0, false}});
-  audit.check_state(sheet_and_triangle_at(0.5), 1);
-  EXPECT_EQ(audit.ledger().obstacle_violations, 4);
 }
 
 TEST(Audit, states_that_are_not_finite_are_not_ok) {

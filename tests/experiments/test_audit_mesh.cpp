@@ -102,6 +102,12 @@ TEST(AuditVerdict, SaysWhatTheContactModelAllows) {
   const Verdict allowed = judge_audit(scene, mesh, ledger);
   EXPECT_EQ(allowed.outcome, Outcome::penetration);
   EXPECT_NE(allowed.detail.find("vertex_vertex has no edge pairs"), std::string::npos);
+  ledger.crossings = 0, ledger.obstacle_violations = 1, ledger.obstacle_by_vertex = 1;
+  EXPECT_EQ(judge_audit(scene, mesh, ledger).detail.find("vertex_vertex"), std::string::npos)
+      << "a vertex in an obstacle is no matter of edges";
+  ledger.obstacle_by_vertex = 0;
+  EXPECT_NE(judge_audit(scene, mesh, ledger).detail.find("vertex_vertex has no edge pairs"),
+            std::string::npos);
   scene.planar_pairs = PlanarPairs::point_edge;
   EXPECT_EQ(judge_audit(scene, mesh, ledger).detail.find("vertex_vertex"), std::string::npos);
   ledger.scene_faults = 1;

@@ -1,0 +1,44 @@
+"""The table of surface gaps: what is counted, and that a run that is called ok with a surface in an obstacle is told."""
+
+import json
+
+import pytest
+
+from analysis import surface_gaps
+
+
+def _record(outcome, obstacles=None, between=None, enabled=True):
+    audit = {"enabled": enabled, "surface_gaps": 3, "obstacle_triangles": 6, "obstacle_edges": 0, "obstacle_vertices": 0}
+    for name, value in (("surface_gap_obstacles_m", obstacles), ("surface_gap_between_m", between)):
+        audit |= {name: value} if value is not None else {name: None, f"{name}_status": "none_within_d_hat"}
+    return {"schema": {"name": "barrierbench.run", "version": "3.4.0"}, "status": {"outcome": outcome}, "audit": audit}
+
+
+def _write(folder, **records):
+    for name, record in records.items():
+        (folder / name).mkdir()
+        (folder / name / "run.json").write_text(json.dumps(record))
+
+
+def test_every_run_has_a_row_and_the_smallest_gap_is_that_of_the_ok_ones(tmp_path, capsys):
+    _write(tmp_path, a=_record("ok", 0.004, 0.001), b=_record("penetration", -0.02), c=_record("ok", enabled=False))
+    assert surface_gaps.main([str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert len(out.splitlines()) == 5
+    assert "-20" in out and "not_audited" in out and "none_within_d_hat" in out
+    assert "3 runs, 2 ok; 1 of the ok ones with a gap, 1 without" in out and "smallest is 1 mm; 0 below 0" in out
+
+
+@pytest.mark.parametrize("gaps", [(-1e-6, None), (0.1, -1e-6)])
+def test_an_ok_run_in_an_obstacle_or_another_surface_is_told(tmp_path, capsys, gaps):
+    _write(tmp_path, a=_record("ok", *gaps), b=_record("ok", 0.0, 0.0))
+    assert surface_gaps.main([str(tmp_path)]) == 1
+    told = capsys.readouterr()
+    assert "1 below 0" in told.out and str(tmp_path / "a") in told.err and str(tmp_path / "b") not in told.err
+
+
+def test_without_a_record_there_is_nothing_to_say(tmp_path, capsys):
+    assert surface_gaps.main([str(tmp_path)]) == 2
+    (tmp_path / "run.json").write_text("{")
+    assert surface_gaps.main([str(tmp_path)]) == 2
+    assert "not JSON" in capsys.readouterr().err
