@@ -232,6 +232,8 @@ Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOpti
     matching.pilot = run_pilot(config, scene, options);
     record.pilot_config_id = matching.pilot->config_id;
     record.pilot_note = matching.pilot->stopped;
+    if (const int steps = matching.pilot->unanswered; steps > 0)
+      note(record, fmt::format("of {} steps it is not known which forces are loads: all count", steps));
   }
   if (out.limited) match_limit(matching, out);  // first: the contact's policy may have to be followed
   match_contact(matching, out);

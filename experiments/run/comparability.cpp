@@ -64,8 +64,8 @@ void compare_pairs(const GapMap& run, const GapMap& reference, Comparability& ou
 }
 
 std::string words_of(const std::string& field) {
-  const auto* found =
-      std::find_if(std::begin(quantiles), std::end(quantiles), [&](const Quantile& q) { return field == q.field; });
+  const auto* found = std::find_if(std::begin(quantiles), std::end(quantiles),
+                                   [&](const Quantile& q) { return field == q.field; });
   return found->words;
 }
 

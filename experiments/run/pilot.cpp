@@ -91,28 +91,43 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
   options.progress(progress);
 }
 
-// How the forces at the end of every step answer to stiffness.
-std::vector<StiffnessAnswers> answers_of(const Pilot& pilot, const Scene& scene, const RunOptions& options) {
+// The answers of one step's end, each with its force.
+void add_answers(const Pilot& pilot, const StiffnessAnswers& answers, const ContactTable& rows,
+                 StrainLimitBatch* limit, const Scene& scene, const Positions& x, AnswerSums& out) {
+  for (std::size_t r = 0; r < rows.size(); ++r)
+    out.add_contact(rows, r, -rows.multiplicity[r] * rows.kappa[r] * rows.db[r], answers.contact[r]);
+  if (!limit) return;
+  limit->measure(x);
+  for (std::size_t e = 0; e < limit->size(); ++e) {
+    const double y = smaller_gap(*limit, e), width = scene.limit.width[e];
+    if (y < width)
+      out.add_limit(e, -*pilot.stiffness.k_s * log_barrier().eval(y, width).db, answers.limit[e]);
+  }
+}
+
+// How the forces at the ends of all steps answer to stiffness.
+void answer(Pilot& pilot, const Scene& scene, const RunOptions& options) {
   const StrainLimitPart& part = scene.limit;
   std::optional<StrainLimitBatch> limit;
   if (!part.triangles.empty())
     limit.emplace(part.triangles, scene.rest, part.onset, part.width, scene.planar);
+  StrainLimitBatch* const limited = limit ? &*limit : nullptr;
   PilotReplay replay(pilot, scene);
-  std::vector<StiffnessAnswers> out;
+  pilot.answers = AnswerSums(scene.n_vertices(), part.triangles.size());
   for (int step = 0; step < pilot.steps(); ++step) {
     look_up(options);
-    out.push_back(answers_to_stiffness(replay.assembled(step), limit ? &*limit : nullptr, log_barrier(),
-                                       pilot.config.time.dt));
+    const StiffnessAnswers answers =
+        answers_to_stiffness(replay.assembled(step), limited, log_barrier(), pilot.config.time.dt);
+    pilot.unanswered += answers.known ? 0 : 1;
+    add_answers(pilot, answers, replay.rows(), limited, scene, replay.end(step), pilot.answers);
   }
-  return out;
 }
 
 }  // namespace
 
 std::size_t Pilot::bytes() const {
-  std::size_t out = x.empty() ? 0 : x.size() * sizeof(double) * static_cast<std::size_t>(x[0].size());
-  for (const StiffnessAnswers& each : answers) out += each.bytes();
-  return out;
+  const std::size_t states = x.empty() ? 0 : x.size() * static_cast<std::size_t>(x[0].size());
+  return states * sizeof(double) + answers.bytes();
 }
 
 BarrierFunction log_barrier() { return {require_shape("log"), Argument::gap}; }
@@ -167,7 +182,7 @@ std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& giv
     pilot.x.push_back(simulation.history().x);
     pilot.c.push_back(prediction.c);
   }
-  pilot.answers = answers_of(pilot, scene, options);
+  answer(pilot, scene, options);
   return cache.keep(std::move(pilot));
 }
 

@@ -77,7 +77,8 @@ std::string name_element(const Scene& scene, std::size_t e) {
 
 /// kappa_e/area (N/m) by the policy of the limit, with w from the start of the step, at the gap y.
 double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std::size_t e, double area,
-                           double y, double dt, double c, const Positions& x_start, const PilotReplay& replay) {
+                           double y, double dt, double c, const Positions& x_start,
+                           const PilotReplay& replay) {
   const std::array<int, 3>& vertices = scene.limit.triangles[e];
   Vec3d x[3], mass;
   for (int k = 0; k < 3; ++k) {
@@ -109,12 +110,11 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
       replay.find_rows(step);
     }
     const ContactTable& rows = replay.rows();
-    const StiffnessAnswers& answers = pilot.answers[static_cast<std::size_t>(step)];
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const double load = -*pilot.stiffness.kappa * log.eval(rows.d[r], rows.d_hat[r]).db;
       if (!(load > 0)) continue;
       const auto where = [&] { return pair_name(scene, rows.key[r], rows.kind[r]); };
-      const double answer = answers.of(rows.key[r], rows.kind[r]);
+      const double answer = pilot.answers.of_contact(rows, r);
       if (!is_load(answer, load, step, where, out)) continue;
       const double kappa = own ? own_kappa(*own, static_cast<int>(r), u, dt, replay.c(step), replay) : 1;
       const double wanted = matched(load, rows.d_hat[r]);
@@ -137,18 +137,17 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
   for (int step = 0; step < pilot.steps(); ++step) {
     if (own) replay.find_rows(step, own->refresh);
     limit.measure(replay.start(step));
-    for (std::size_t e = 0; e < limit.size(); ++e)
-      y_start[e] = std::min(limit.gaps()[2 * e], limit.gaps()[2 * e + 1]);
+    for (std::size_t e = 0; e < limit.size(); ++e) y_start[e] = smaller_gap(limit, e);
     limit.measure(replay.end(step));
-    const std::vector<double>& answers = pilot.answers[static_cast<std::size_t>(step)].limit;
     for (std::size_t e = 0; e < limit.size(); ++e) {
-      const double y = std::min(limit.gaps()[2 * e], limit.gaps()[2 * e + 1]), width = part.width[e];
+      const double y = smaller_gap(limit, e), width = part.width[e];
       if (!(y < width)) continue;
       const double area = limit.rests()[e].area;
       const double load = -(*pilot.stiffness.k_s * area) * log.eval(y, width).db / area;
       if (!(load > 0)) continue;
       const auto where = [&] { return name_element(scene, e); };
-      if (!is_load(answers[e], load, step, where, out)) continue;
+      const double answer = pilot.answers.of_limit(e);
+      if (!is_load(answer, load, step, where, out)) continue;
       double k_s = 1;
       if (own) {
         const bool frozen = own->refresh == Refresh::per_step && !own->has_potential();
@@ -157,7 +156,7 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
                                   replay);
         if (too_soft(k_s, matched(load, width))) refuse(k_s * area, "kappa_e", step, where());
       }
-      if (compare(matched(load, width), k_s, load, width, answers[e], step, out)) out.where = where();
+      if (compare(matched(load, width), k_s, load, width, answer, step, out)) out.where = where();
     }
   }
   return out;

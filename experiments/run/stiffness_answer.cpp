@@ -66,8 +66,7 @@ void fill_contacts(const ContactTable& rows, const Positions& dx, std::vector<do
 std::vector<double> smaller_gaps(StrainLimitBatch& limit, const Positions& x) {
   limit.measure(x);
   std::vector<double> out(limit.size());
-  for (std::size_t e = 0; e < limit.size(); ++e)
-    out[e] = std::min(limit.gaps()[2 * e], limit.gaps()[2 * e + 1]);
+  for (std::size_t e = 0; e < limit.size(); ++e) out[e] = smaller_gap(limit, e);
   return out;
 }
 
@@ -89,10 +88,24 @@ void fill_elements(StrainLimitBatch& limit, const BarrierFunction& barrier, cons
 
 }  // namespace
 
-double StiffnessAnswers::of(const ContactKey& key, ContactKind kind) const {
-  const std::pair wanted(key, kind);
-  const auto found = std::lower_bound(row.begin(), row.end(), wanted);
-  return found == row.end() || *found != wanted ? 0 : contact[static_cast<std::size_t>(found - row.begin())];
+double smaller_gap(const StrainLimitBatch& limit, std::size_t element) {
+  return std::min(limit.gaps()[2 * element], limit.gaps()[2 * element + 1]);
+}
+
+void AnswerSums::add_contact(const ContactTable& rows, std::size_t row, double force, double answer) {
+  for (std::size_t k = 4 * row; k < 4 * row + 4 && rows.vertex[k] >= 0; ++k) {
+    const double share = std::abs(rows.weight[k]) * force;
+    if (share > 0) contact_[static_cast<std::size_t>(rows.vertex[k])].add(share, answer);
+  }
+}
+
+double AnswerSums::of_contact(const ContactTable& rows, std::size_t row) const {
+  double sum = 0, weights = 0;
+  for (std::size_t k = 4 * row; k < 4 * row + 4 && rows.vertex[k] >= 0; ++k) {
+    sum += std::abs(rows.weight[k]) * contact_[static_cast<std::size_t>(rows.vertex[k])].mean();
+    weights += std::abs(rows.weight[k]);
+  }
+  return weights > 0 ? sum / weights : 0;
 }
 
 StiffnessAnswers answers_to_stiffness(NewtonSystem& system, StrainLimitBatch* limit,
@@ -100,7 +113,6 @@ StiffnessAnswers answers_to_stiffness(NewtonSystem& system, StrainLimitBatch* li
   StiffnessAnswers out;
   const ContactTable& rows = contact_state(system.terms()).rows;
   out.contact.assign(rows.size(), 0.0);
-  for (std::size_t r = 0; r < rows.size(); ++r) out.row.emplace_back(rows.key[r], rows.kind[r]);
   if (limit) out.limit.assign(limit->size(), 0.0);
   const Positions push = -gradient_of(system, TermSet(TermGroup::limit) | TermGroup::contact);
   if (push.isZero(0)) return out;

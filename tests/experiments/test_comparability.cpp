@@ -22,12 +22,8 @@ PairGaps gaps(double all, double load_share = 1, double time_share = 1) {
 }
 ComparedRun run(const char* folder, double gap, bool valid = true, const char* shape = "log",
                 const char* rule = "equal_force") {
-  return {folder, std::string("id_") + folder,
-          valid ? "ok" : "penetration",
-          shape,  "gap",
-          rule,   valid,
-          gap,    {{"cloth|floor", gaps(gap)}},
-          valid ? "" : "audit_clean"};
+  return {folder, std::string("id_") + folder,  valid ? "ok" : "penetration", shape, "gap", rule, valid,
+          gap,    {{"cloth|floor", gaps(gap)}}, valid ? "" : "audit_clean"};
 }
 ComparedRun untouched(const char* folder) {
   ComparedRun out = run(folder, 0);
@@ -178,8 +174,8 @@ TEST(Comparability, DefaultReferenceIsOfTheSameGroup) {
 /// Which member a run is held against decides: here each other choice gives another verdict.
 TEST(Comparability, DefaultReferenceIsTheFirstThatFitsAndNotTheLast) {
   const std::vector<std::optional<ComparedRun>> runs = {
-      run("cubic first", 0.7, true, "cubic"), run("log", 0.1), run("log later", 0.5), run("quadratic", 0.15, true, "quadratic"),
-      run("cubic last", 0.6, true, "cubic")};
+      run("cubic first", 0.7, true, "cubic"), run("log", 0.1), run("log later", 0.5),
+      run("quadratic", 0.15, true, "quadratic"), run("cubic last", 0.6, true, "cubic")};
   const std::vector<SweepMember> members(runs.size());
   const char* expected[] = {"not_comparable", "comparable", "not_comparable", "comparable", "not_comparable"};
   for (std::size_t i = 0; i < runs.size(); ++i) {
@@ -241,7 +237,8 @@ TEST_F(ComparabilityFiles, EveryRecordOfASweepGetsItAndOneThatSaysSoIsLeftAlone)
 
 /// Every record of a sweep without a mark is held against the one run that the rule picks, whatever stands between.
 TEST_F(ComparabilityFiles, AllRecordsAreHeldAgainstOneReference) {
-  const std::pair<const char*, double> runs[] = {{"one", 0.1}, {"two", 0.19}, {"three", 0.37}, {"four", 0.06}};
+  const std::pair<const char*, double> runs[] = {
+      {"one", 0.1}, {"two", 0.19}, {"three", 0.37}, {"four", 0.06}};
   std::vector<SweepMember> members;
   for (const auto& [name, gap] : runs) {
     write(name, gap);

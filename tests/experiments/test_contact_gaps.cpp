@@ -69,7 +69,8 @@ const ContactKey between = {-1, -1, 0, 1}, itself = {-1, -1, 1, 1};
 TEST(ContactGaps, EveryPairOfBodiesHasItsOwn) {
   const Scene scene = two_and_two();
   ContactGaps gaps(scene);
-  gaps.add({{between, 0.2, 3}, {obstacle_key(0, 0), 0.4, 1}, {obstacle_key(1, 1), 0.6, 2}, {itself, 0.8, 4}}, 0.1);
+  gaps.add({{between, 0.2, 3}, {obstacle_key(0, 0), 0.4, 1}, {obstacle_key(1, 1), 0.6, 2}, {itself, 0.8, 4}},
+           0.1);
   const GapMap found = gaps.summary();
   ASSERT_EQ(found.size(), 4U);
   const std::pair<const char*, std::pair<double, double>> expected[] = {

@@ -111,7 +111,8 @@ TEST(Calibration, AStretchThatIsGivenIsNoLoadOfTheLimit) {
   EXPECT_GT(alone.record.elements_considered, 10);
   EXPECT_NEAR(*both.calibration.k_s / *alone.calibration.k_s, 1, 0.05);
   EXPECT_NE(both.record.limit_element.find("hanging["), std::string::npos) << both.record.limit_element;
-  EXPECT_NE(both.record.left_out_element.find("stretched["), std::string::npos) << both.record.left_out_element;
+  EXPECT_NE(both.record.left_out_element.find("stretched["), std::string::npos)
+      << both.record.left_out_element;
   EXPECT_GT(both.record.elements_left_out, 10);
   EXPECT_GT(both.record.left_out_N_per_m.value, 1.2 * both.record.limit_load_N_per_m.value);
   EXPECT_LT(std::abs(both.record.limit_answer.value), 0.5);

@@ -37,13 +37,16 @@ struct Written {
       for (int v = 0; v < 9; ++v) x(2, v) = heights.at(static_cast<std::size_t>(v)) * d_hat;
       pilot.x.push_back(x);
       pilot.c.push_back(1);
-      pilot.answers.emplace_back();
     }
+    pilot.answers = AnswerSums(9, 0);
   }
-  void answer(std::size_t step, int vertex, double value) {
-    StiffnessAnswers& answers = pilot.answers.at(step);
-    answers.row.emplace_back(obstacle_key(0, vertex), ContactKind::obstacle);
-    answers.contact.push_back(value);
+  /// A force of the vertex that answers so.
+  void answer(int vertex, double value, double force = 1) {
+    ContactTable row;
+    row.resize(1);
+    row.vertex = {vertex, -1, -1, -1};
+    row.weight = {1, 0, 0, 0};
+    pilot.answers.add_contact(row, 0, force, value);
   }
   Demand ask(const MatchedStiffness& matched, const StiffnessPolicy* own = nullptr) const {
     return contact_demand(pilot, scene, matched, own, 0.1);
@@ -95,9 +98,9 @@ TEST(PilotDemand, AContactAtDHatHasNoLoadAndOneJustBelowItHas) {
 TEST(PilotDemand, AForceIsALoadUpToAnAnswerOfOneHalf) {
   for (const double answer : {0.5, 0.501}) {
     Written written({only({{1, 0.2}, {2, 0.3}, {3, 0.9}}), only({{7, 0.25}, {3, 0.9}})});
-    written.answer(0, 1, answer);
-    written.answer(0, 2, -3);  // what falls with kappa is a load that others take over
-    written.answer(1, 7, answer);
+    written.answer(1, answer);
+    written.answer(2, -3);  // what falls with kappa is a load that others take over
+    written.answer(7, answer);
     const Demand demand = written.ask(of_load);
     const bool load = answer == 0.5;
     EXPECT_EQ(demand.where, load ? "obstacle: floor, cloth[1]" : "obstacle: floor, cloth[2]");
@@ -112,6 +115,24 @@ TEST(PilotDemand, AForceIsALoadUpToAnAnswerOfOneHalf) {
   }
 }
 
+/// The answers of a vertex count with its forces: many small ones that swing do not hide a large one, nor make one.
+TEST(PilotDemand, TheAnswerOfAVertexIsThatOfTheSumOfItsForces) {
+  for (const double force : {0.5, 1.01}) {
+    Written written({only({{1, 0.2}})});
+    written.answer(1, 1, force);
+    written.answer(1, -1, 0.5);
+    written.answer(1, 0.5, 0.5);
+    written.answer(1, 0.25, 1 - 0.5);
+    written.answer(1, 0.5, 1);
+    const double sum = force + 0.5 + 0.5 + 0.5 + 1;
+    const Demand demand = written.ask(of_load);
+    EXPECT_EQ(demand.left_out, 0);
+    EXPECT_NEAR(demand.answer, (force - 0.5 + 0.25 + 0.125 + 0.5) / sum, 1e-12);
+    written.answer(1, 1, 10);
+    EXPECT_EQ(written.ask(of_load).left_out, 1);
+  }
+}
+
 /// Another number for each row by its gap, so that it is seen where it is asked.
 class Soft final : public StiffnessPolicy {
  public:
@@ -119,7 +140,8 @@ class Soft final : public StiffnessPolicy {
   std::string_view name() const override { return "soft"; }
   Refresh refresh() const override { return Refresh::per_iteration; }
   void fill(const StiffnessBatch& rows, double* kappa) const override {
-    for (std::size_t r = 0; r < rows.n; ++r) kappa[r] = rows.d[r] < 0.999 * rows.d_hat[r] ? below_ : at_d_hat_;
+    for (std::size_t r = 0; r < rows.n; ++r)
+      kappa[r] = rows.d[r] < 0.999 * rows.d_hat[r] ? below_ : at_d_hat_;
   }
 
  private:
@@ -142,14 +164,15 @@ TEST(PilotDemand, APolicyThatIsSofterThanABillionthGivesNoStiffness) {
   try {
     written.ask(constant, &none);
   } catch (const ConfigError& error) {
-    EXPECT_NE(std::string(error.what()).find("cloth[1], which carries a load in step 0"), std::string::npos) << error.what();
+    EXPECT_NE(std::string(error.what()).find("cloth[1], which carries a load in step 0"), std::string::npos)
+        << error.what();
   }
 }
 
 /// A contact that is left out is not asked for a stiffness of its own either.
 TEST(PilotDemand, APolicyIsNotAskedForAForceThatIsNoLoad) {
   Written written({only({{1, 0.5}})});
-  written.answer(0, 1, 0.9);
+  written.answer(1, 0.9);
   const Soft none(0, 0);
   EXPECT_EQ(written.ask(constant, &none).considered, 0);
   EXPECT_EQ(written.ask(constant, &none).left_out, 1);
@@ -158,7 +181,8 @@ TEST(PilotDemand, APolicyIsNotAskedForAForceThatIsNoLoad) {
 /// A config with retries is matched by the pilot without: it ends where a step fails.
 TEST(Pilot, DoesNotRetryAStepThatFails) {
   const std::string cubic = R"(/formulation={"name": "cubic", "d_hat_m": 0.01})";
-  const std::string later = "/scene/bodies/1/transform/translate_m=[3, 0, 0.08]", capped = "/step_solver/max_iterations=4";
+  const std::string later = "/scene/bodies/1/transform/translate_m=[3, 0, 0.08]",
+                    capped = "/step_solver/max_iterations=4";
   const Calibrated once = calibrated(two_masses, {cubic, later, capped});
   const Calibrated retried = calibrated(two_masses, {cubic, later, capped, "/step_solver/retries=4"});
   EXPECT_NE(once.record.pilot_note.find("iteration_cap"), std::string::npos) << once.record.pilot_note;
@@ -169,10 +193,11 @@ TEST(Pilot, DoesNotRetryAStepThatFails) {
 }
 
 TEST(Pilot, WhoseFirstStepFailsLeavesTheStaticWeight) {
-  const Calibrated c = calibrated(two_masses, {R"(/formulation={"name": "cubic", "d_hat_m": 0.01})",
-                                               "/scene/bodies/0/transform/translate_m=[0, 0, 0.009]",
-                                               "/step_solver/max_iterations=1"});
-  EXPECT_NE(c.record.pilot_note.find("the pilot stopped at step 0"), std::string::npos) << c.record.pilot_note;
+  const Calibrated c = calibrated(
+      two_masses, {R"(/formulation={"name": "cubic", "d_hat_m": 0.01})",
+                   "/scene/bodies/0/transform/translate_m=[0, 0, 0.009]", "/step_solver/max_iterations=1"});
+  EXPECT_NE(c.record.pilot_note.find("the pilot stopped at step 0"), std::string::npos)
+      << c.record.pilot_note;
   EXPECT_EQ(c.record.contacts_considered, 0);
   EXPECT_EQ(c.record.load_source, "static_weight");
   EXPECT_GT(c.record.load_N.value, 0);

@@ -14,7 +14,7 @@ namespace {
 using namespace test;
 
 struct RunSteps {
-  std::vector<std::string> hash;   // of the end of each step
+  std::vector<std::string> hash;     // of the end of each step
   std::vector<int> doublings = {0};  // before each step, and at the end
   std::vector<std::size_t> contacts;
 };

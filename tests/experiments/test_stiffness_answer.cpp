@@ -90,7 +90,8 @@ std::string held(double kappa) {
        "pins": [{"box_m": [[-1, -1, -1], [-0.49, 1, 1]]}, {"box_m": [[0.49, -1, -1], [1, 1, 1]]}]}],
       "obstacles": [{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}]},
     "formulation": {"name": "log", "d_hat_m": 0.01, "stiffness_policy": {"name": "fixed", "kappa_N_per_m": )" +
-         std::to_string(kappa) + R"(}}, "integrator": {"name": "quasi_static"}, "matching": {"rule": "as_given"},
+         std::to_string(kappa) +
+         R"(}}, "integrator": {"name": "quasi_static"}, "matching": {"rule": "as_given"},
     "time": {"dt_s": 0.01, "steps": 1}, "step_solver": {"tol_velocity_m_per_s": 1e-12}})";
 }
 
@@ -118,7 +119,7 @@ AtRest at_rest(double kappa) {
   const ContactTable& rows = contact_state(system.terms()).rows;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     out.force.push_back(-rows.kappa[r] * rows.db[r]);
-    out.answer.push_back(answers.of(rows.key[r], rows.kind[r]));
+    out.answer.push_back(answers.contact[r]);
     out.key.push_back(rows.key[r]);
   }
   return out;
