@@ -195,9 +195,10 @@ struct Conditioning {
 using CondMap = std::map<std::string, Conditioning>;
 
 struct PairGaps {
-  BB_RECORD(PairGaps,
-            "d / d_hat of the contacts between two bodies at converged step ends, each with the weight m kappa "
-            "|b'| times the length of its step");
+  BB_RECORD(
+      PairGaps,
+      "d / d_hat of the contacts between two bodies at converged step ends, each with the weight m kappa "
+      "|b'| times the length of its step");
   BB_FIELD(double, load_N, "sum of m kappa |b'|, mean over the time of all converged steps") = 0;
   BB_FIELD(double, load_share, "of the load of all pairs") = 0;
   BB_FIELD(double, time_share, "of the time of converged steps, those at whose end there was load") = 0;
@@ -335,7 +336,8 @@ struct Comparability {
   BB_FIELD(Number, gap_rel, "smallest d / d_hat over converged step ends", "no_contacts");
   BB_FIELD(Number, reference_gap_rel, "the same of the reference", "no_contacts no_reference");
   BB_FIELD(Number, ratio, "gap_rel / reference_gap_rel", "no_reference");
-  BB_FIELD(std::string, pair, "pair of summary.contact_gaps that disagrees most; empty: nothing was compared");
+  BB_FIELD(std::string, pair,
+           "pair of summary.contact_gaps that disagrees most; empty: nothing was compared");
   BB_FIELD(std::string, pair_quantile, "of its gaps, the one that disagrees most; empty: none",
            "^(gap_rel_(p05|median|p95))?$");
   BB_FIELD(Number, pair_gap_rel, "this quantile; 1 where the pair has no load", "no_contacts no_reference");

@@ -33,7 +33,7 @@ struct StepNumbers : StepRecord {
   /// Last iterations in a row in which a contact's kappa, a limited element's, changed by more than 1 %.
   int kappa_unsettled = 0, limit_kappa_unsettled = 0;
   std::string contact_overload_at,
-      limit_overload_at;  // the pair, the element, with the largest; may be empty
+      limit_overload_at;                   // the pair, the element, with the largest; may be empty
   std::vector<ContactLoad> contact_loads;  // at its end
 
   StepNumbers();

@@ -78,7 +78,7 @@ def test_a_pair_that_never_moves_does_not_hide_one_that_rests_elsewhere(program,
     found = comparabilities(out)
     assert found["log"]["verdict"] == "comparable"
     stiff = found["stiff"]
-    assert 0.9 < stiff["ratio"] < 1.1  # the smallest gaps alone would call them comparable
+    assert 0.5 <= stiff["ratio"] <= 2  # the smallest gaps alone would call them comparable
     assert stiff["verdict"] == "not_comparable" and stiff["pair"] == "floor|resting" and stiff["pair_ratio"] > 2
     assert "floor|resting" in stiff["reason"]
 
