@@ -179,7 +179,7 @@ struct TraceRow : WorkCounts {
   BB_FIELD(Number, probe_pcg_iterations,
            "of PCG with block Jacobi on this matrix and a fixed right-hand side",
            "not_due matrix_indefinite preconditioner_indefinite tolerance_below_rounding non_finite "
-           "iteration_cap");
+           "iteration_cap factor_too_large");
   BB_FIELD(std::size_t, n_free, "degrees of freedom of the matrix") = 0;
   BB_FIELD(std::size_t, nnz, "entries of its lower triangle") = 0;
   BB_FIELD(Number, factor_nnz, "entries of its Cholesky factor", "no_factor");
