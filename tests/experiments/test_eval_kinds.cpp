@@ -329,7 +329,7 @@ json small_matrix(const char* scaling, int tier) {
 }
 
 TEST(EvalCondition, TiersScalingsAndErrors) {
-  for (int tier : {1, 2, 3}) {
+  for (int tier : {1, 2, 3, 4}) {
     const json raw = ask(small_matrix("none", tier));
     expect_close(raw["lambda_min"], 1, tier == 1 ? 0.1 : 1e-3);
     expect_close(raw["lambda_max"], 8, tier == 1 ? 0.1 : 1e-3);
@@ -364,7 +364,7 @@ TEST(EvalCondition, TiersScalingsAndErrors) {
                  {"scaling", "none"},
                  {"tier", 2}})["status"],
             "not_pd");
-  for (const int tier : {0, 1, 2, 3}) {  // eigenvalues 3 and -1; the Ritz value of tier 0 is positive
+  for (const int tier : {0, 1, 2, 3, 4}) {  // eigenvalues 3 and -1; the Ritz value of tier 0 is positive
     const json answer = ask({{"kind", "condition"},
                              {"rows", {0, 1, 1}},
                              {"cols", {0, 0, 1}},

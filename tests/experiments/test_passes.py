@@ -142,3 +142,24 @@ def test_tier_0_reads_the_ritz_values_of_every_solve(program, tmp_path):
         estimate, = row["cond"]
         assert estimate["tier"] == 0 and estimate["method"] == "ritz"
         assert estimate["cond"] == pytest.approx(row["ritz_max"] / row["ritz_min"])
+
+
+def test_every_estimate_says_who_found_it_and_what_is_proven(program, tmp_path):
+    found = {}
+    for name, more in (("spectra", []), ("cut", ["/diagnose/max_solves=3", "/diagnose/max_products=3"]), ("lanczos", ["/diagnose/tier=4"])):
+        settings = ["/passes/diagnose=true", "/passes/time=false", "/passes/audit=false", "/diagnose/pcg=false", "/time/steps=3", "/scene/n=6",
+                    "/scene/layers=1", *more]
+        done = bench(program, "run", DRAPE, "--out", tmp_path / name, *(word for setting in settings for word in ("--set", setting)))
+        assert done.returncode == 0, done.stderr
+        record = json.loads((tmp_path / name / "run.json").read_text())
+        assert record["summary"]["wall_s"] is None, "what estimates take is no time of the method"
+        found[name] = [one for row in trace(tmp_path / name) for one in row["cond"] if one["status"] == "ok"]
+    assert len(found["spectra"]) == len(found["cut"]) == len(found["lanczos"]) > 5
+    for by_spectra, cut, lanczos in zip(found["spectra"], found["cut"], found["lanczos"]):
+        assert by_spectra["method"] == "spectra" and by_spectra["tier"] == 2
+        assert "smallest by lanczos" in cut["method"] and "largest by lanczos" in cut["method"]
+        assert lanczos["method"].startswith("lanczos") and lanczos["tier"] == 4
+        assert {one["proof"] for one in (by_spectra, cut, lanczos)} == {"both"}
+        assert 4 <= by_spectra["solves"] <= 61 and 4 <= by_spectra["products"] <= 202 and by_spectra["time_s"] > 0
+        assert cut["cond"] == pytest.approx(by_spectra["cond"], rel=1e-3)
+        assert lanczos["cond"] == pytest.approx(by_spectra["cond"], rel=1e-3)
