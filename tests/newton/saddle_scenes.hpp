@@ -15,6 +15,8 @@ struct SheetCase {
   double thickness = 0.002;  // m, offset of the sheet
   double gap = 0.004;        // m between its surface and either plane; d_hat is 0.01 m
   bool only_floor = false;
+  bool plates = false;    // thin rigid sheets in the place of the planes
+  bool far_body = false;  // a rigid body 1e10 m away
   unsigned seed = 1;
 };
 
@@ -27,6 +29,15 @@ inline void add_plane(SceneBuilder& builder, const char* name, double z, double 
   plane.point = Vec3d(0, 0, z);
   plane.axis = Vec3d(0, 0, up);
   builder.add_obstacle(plane);
+}
+
+inline BodySpec rigid_sheet(const char* name, const Vec3d& place) {
+  BodySpec out = cloth_spec(3, 0, 0.01);
+  out.name = name;
+  out.kind = BodyKind::rigid;
+  out.mesh.vertices *= 1.2;
+  out.mesh.vertices.colwise() += place;
+  return out;
 }
 
 inline Scene driven_sheet(const SheetCase& given) {
@@ -47,11 +58,18 @@ inline Scene driven_sheet(const SheetCase& given) {
   }
   builder.add_body(sheet);
   const double away = given.gap + given.thickness;
-  add_plane(builder, "floor", -away, 1);
-  if (!given.only_floor) add_plane(builder, "ceiling", away, -1);
+  if (given.plates) {
+    for (const double z : {-away, away})
+      builder.add_body(rigid_sheet(z < 0 ? "below" : "above", Vec3d(0, 0, z)));
+  } else {
+    add_plane(builder, "floor", -away, 1);
+    if (!given.only_floor) add_plane(builder, "ceiling", away, -1);
+  }
+  if (given.far_body) builder.add_body(rigid_sheet("far", Vec3d(1e10, 0, 5)));
   Scene scene = builder.finish();
   std::mt19937 random(given.seed);
   for (Eigen::Index v = 0; v < scene.x0.cols(); ++v) {
+    if (scene.body[static_cast<std::size_t>(v)] != 0) continue;
     const bool driven = std::abs(std::abs(scene.x0(0, v)) - 0.5) < 1e-6;
     const double part = std::uniform_real_distribution<double>(-1, 1)(random);
     if (!driven) scene.x0(2, v) += given.jitter * part;

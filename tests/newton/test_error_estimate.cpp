@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "core/math/rounding_room.hpp"
-
 namespace bb {
 namespace {
 
@@ -109,18 +107,6 @@ TEST(ErrorEstimate, within_rounding_a_direction_counts_as_it_is) {
   EXPECT_EQ(mixed.error(), 1e-6);
   EXPECT_NEAR(mixed.contraction().value, 1e-2, 1e-12);
   EXPECT_EQ(after({1e-5, 0}).error(), 0);
-}
-
-TEST(RoundingRoom, is_that_of_the_vertex_and_of_its_body) {
-  const double eps = std::numeric_limits<double>::epsilon();
-  const double near[] = {0.25, -0.5, 0}, far[] = {1e10, 0, 0}, origin[] = {0, 0, 0};
-  EXPECT_TRUE(within_coordinate_rounding(-3.9 * eps, near, 0, eps));
-  EXPECT_FALSE(within_coordinate_rounding(4.1 * eps, near, 0, eps));
-  EXPECT_TRUE(within_coordinate_rounding(4.1 * eps, near, 1, eps));  // its neighbours are 1 m away
-  EXPECT_TRUE(within_coordinate_rounding(1e-6, far, 1, eps));
-  EXPECT_FALSE(within_coordinate_rounding(1e-300, origin, 0, eps));
-  EXPECT_TRUE(within_coordinate_rounding(0, origin, 0, eps));
-  EXPECT_FALSE(within_coordinate_rounding(std::nan(""), far, 1, eps));
 }
 
 TEST(ErrorEstimate, says_whether_directions_still_fall) {

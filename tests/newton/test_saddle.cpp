@@ -178,6 +178,79 @@ TEST(Saddle, is_left_without_touching) {
   EXPECT_GT(driven.report.gap_min_iterates_m.value, 0);
 }
 
+/// Thin sheets so close that a move of d_hat would come out behind them, where E is lower.
+TEST(Saddle, is_left_without_passing_through) {
+  SheetCase close;
+  close.gap = 2e-4;
+  close.thickness = 0;
+  close.plates = true;
+  const Driven driven(close, saddle_method(SaddleRule::escape, StepHessian::blend, 1e-4));
+  ASSERT_EQ(driven.report.status, StepStatus::converged) << driven.report.detail;
+  ASSERT_GT(driven.seen.contacts, 0U);
+  EXPECT_GE(driven.report.escapes, 1);
+  const auto sheet = driven.simulation.history().x.leftCols(driven.scene.bodies[0].n_vertices);
+  EXPECT_GT(sheet.row(2).cwiseAbs().maxCoeff(), 1e-6);
+  EXPECT_LT(sheet.row(2).cwiseAbs().maxCoeff(), close.gap);
+}
+
+/// Barriers of all strengths about the one at which the flat sheet becomes a minimum: every escape goes down.
+TEST(Saddle, every_escape_lowers_the_energy) {
+  int escapes = 0;
+  for (const double kappa : {1e-3, 1e-2, 0.03, 0.1, 0.3, 1.0}) {
+    for (const double gap : {3e-4, 0.002, 0.006}) {
+      SheetCase sheet;
+      sheet.gap = gap;
+      const Driven driven(sheet, saddle_method(SaddleRule::escape, StepHessian::blend, kappa));
+      ASSERT_EQ(driven.report.status, StepStatus::converged) << kappa << " " << gap;
+      EXPECT_EQ(driven.report.end_proof, EndProof::factor) << kappa << " " << gap;
+      for (const IterationReport& iteration : driven.seen.iterations) {
+        if (iteration.escapes == 0) continue;
+        ++escapes;
+        EXPECT_LT(iteration.energy_change_J, 0) << kappa << " " << gap;
+        EXPECT_GT(iteration.alpha, 0);
+      }
+    }
+  }
+  EXPECT_GE(escapes, 5);
+}
+
+/// Where the gradient has a part along it, the direction goes down, is as long as it was asked to be and moves no
+/// prescribed vertex.
+TEST(Saddle, the_way_out_does_not_climb) {
+  int steep = 0;
+  for (unsigned seed = 1; seed <= 8; ++seed) {
+    const Scene scene = driven_sheet({.jitter = 1e-3, .seed = seed});
+    Method method = saddle_method(SaddleRule::report);
+    NewtonSystem system(scene, method);
+    Prediction prediction;
+    prediction.x_tilde = scene.x0;
+    system.begin_step(scene.x0, prediction, sheet_dt, 1);
+    Positions pressed = scene.x0;
+    pressed.row(0) *= 0.97;
+    const Positions motion = pressed - scene.x0;
+    system.assemble();
+    system.prepare(pressed, motion);
+    ASSERT_TRUE(system.try_state(pressed).has_value());
+    system.accept();
+    system.assemble();
+    system.hold();
+    ASSERT_EQ(system.find_direction().linear.status, LinearStatus::ok);
+    const Positions newton = system.direction();
+    const EndCheck end = system.check_end();
+    ASSERT_EQ(end.proof, EndProof::saddle);
+    EXPECT_EQ(system.direction(), newton);  // to look moves nothing
+    system.aim_at_escape(1e-3);
+    const DirectionSize size = system.direction_size();
+    EXPECT_NEAR(size.inf_m, 1e-3, 1e-12);
+    EXPECT_LE(size.slope_J, 0) << seed;
+    EXPECT_LT(system.direction_curvature(), 0);
+    EXPECT_NEAR(system.direction_curvature(), end.curvature_N_per_m * system.direction().squaredNorm(), 1e-9);
+    for (const Pin& pin : scene.pins) EXPECT_TRUE(system.direction().col(pin.vertex).isZero(0));
+    steep += size.slope_J < -1e-9 ? 1 : 0;
+  }
+  EXPECT_GE(steep, 4);
+}
+
 TEST(Saddle, has_the_same_bits_in_every_run) {
   const Driven one({}, saddle_method(SaddleRule::escape)), two({}, saddle_method(SaddleRule::escape));
   EXPECT_EQ(one.simulation.history().x, two.simulation.history().x);
