@@ -11,15 +11,15 @@ namespace {
 
 /// A sheet of two triangles, 1 m wide, above a ball of radius 0.1 m whose top is at z = 0 and off the diagonal.
 Scene sheet_over_ball(const std::string& thickness = "0") {
-  return build_scene(
-      parse_config(R"({"schema": "barrierbench.config/1", "formulation": {"name": "log", "d_hat_m": 0.005},
+  return build_scene(parse_config(
+      R"({"schema": "barrierbench.config/1", "formulation": {"name": "log", "d_hat_m": 0.005}, "time": {"dt_s": 0.01, "steps": 2},
     "scene": {"name": "bodies",
       "bodies": [{"name": "sheet", "mesh": {"generator": "grid", "n_x": 2, "n_y": 2, "size_x_m": 1, "size_y_m": 1},
                   "transform": {"translate_m": [0, 0, 0.011]}, "limited": false, "offset_m": )" +
-                       thickness + R"(,
+          thickness + R"(,
                   "material": {"model": "corotational", "youngs_N_per_m": 250, "poisson": 0.24, "density_kg_per_m2": 0.15}}],
       "obstacles": [{"name": "ball", "kind": "sphere", "point_m": [0.2, -0.2, -0.1], "radius_m": 0.1}]}})",
-                   "test"));
+      "test"));
 }
 
 StepRecord converged() {

@@ -30,7 +30,7 @@ RunConfig config_of(const std::string& bodies, int steps) {
       "test");
 }
 
-/// A given sheet of 4 x 4 squares in the plane z = 0.5, and one of 2 x 2 that stands upright, `up` m higher than half way
+/// A given sheet of 2 x 2 squares in the plane z = 0.5, and one of 2 x 2 that stands upright, `up` m higher than half way
 /// through the first.
 RunConfig given_sheets(double up) {
   return config_of(
