@@ -160,6 +160,10 @@ void check_spec(json spec, const std::string& path) {
   check_plain_name(path + "#/name", spec["name"].get<std::string>(), violations);
   if (spec.contains("set")) check_pointers(path + "#/set", spec["set"], violations);
   const json& axes = spec["axes"];
+  if (const double n = count_cases(axes); n > static_cast<double>(max_sweep_cases)) {
+    throw ConfigError(path + "#/axes", fmt::format("{} combinations", n),
+                      fmt::format("at most {} cases in one sweep", max_sweep_cases));
+  }
   std::map<std::string, std::size_t> axis_of;  // pointer -> the first axis that sets it
   for (std::size_t i = 0; i < axes.size(); ++i) {
     const std::string where = fmt::format("{}#/axes/{}", path, i);
@@ -171,10 +175,6 @@ void check_spec(json spec, const std::string& path) {
              "pointers that no other axis sets: the later one would undo the earlier one"});
       }
     }
-  }
-  if (const double n = count_cases(axes); n > static_cast<double>(max_sweep_cases)) {
-    violations.push_back({path + "#/axes", fmt::format("{} combinations", n),
-                          fmt::format("at most {} cases in one sweep", max_sweep_cases)});
   }
   if (!violations.empty()) throw ConfigError(std::move(violations));
 }
