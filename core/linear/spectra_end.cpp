@@ -34,7 +34,8 @@ class CountedOperator {
     op_(in_, out_);
     if (scale_ == 0) {
       scale_ = out_.norm() / in_.norm();
-      if (!(scale_ > 0) || !std::isfinite(scale_)) throw std::runtime_error("an operator that is 0 or not finite");
+      if (!(scale_ > 0) || !std::isfinite(scale_))
+        throw std::runtime_error("an operator that is 0 or not finite");
     }
     VecXd::Map(y, n_) = out_ / scale_;
   }
@@ -50,8 +51,8 @@ class CountedOperator {
 
 /// value(eigenvalue as Spectra gives it, scale): that of C.
 template <class Solver, class Value>
-SpectraEnd find(Solver& solver, const CountedOperator& op, const VecXd& start, Spectra::SortRule rule, double tol,
-                const Value& value) {
+SpectraEnd find(Solver& solver, const CountedOperator& op, const VecXd& start, Spectra::SortRule rule,
+                double tol, const Value& value) {
   SpectraEnd end;
   try {
     solver.init(start.data());
@@ -79,11 +80,13 @@ SpectraEnd spectra_largest(const SymmetricOperator& op, const VecXd& start, int 
               [](double nu, double scale) { return nu * scale; });
 }
 
-SpectraEnd spectra_smallest_inverted(const SymmetricOperator& solve, const VecXd& start, int most, double tol) {
+SpectraEnd spectra_smallest_inverted(const SymmetricOperator& solve, const VecXd& start, int most,
+                                     double tol) {
   const Eigen::Index n = start.size();
   if (n < 2) return {};
   CountedOperator counted(solve, n, most);
-  Spectra::SymEigsShiftSolver<CountedOperator> solver(counted, 1, std::min<Eigen::Index>(n, solve_basis), 0.0);
+  Spectra::SymEigsShiftSolver<CountedOperator> solver(counted, 1, std::min<Eigen::Index>(n, solve_basis),
+                                                      0.0);
   return find(solver, counted, start, Spectra::SortRule::LargestMagn, tol,
               [](double lambda, double scale) { return scale / lambda; });
 }

@@ -7,9 +7,10 @@
 namespace bb {
 
 struct SpectraEnd {
-  bool converged = false;  // residual at most tol times |value|, by Spectra's own estimate; else nothing below is known
-  double value = 0;        // of the operator C
-  VecXd vector;            // |vector| = 1
+  bool converged =
+      false;  // residual at most tol times |value|, by Spectra's own estimate; else nothing below is known
+  double value = 0;  // of the operator C
+  VecXd vector;      // |vector| = 1
 };
 
 /// The largest eigenvalue of C (SymEigsSolver).
@@ -21,6 +22,7 @@ SpectraEnd spectra_largest(const SymmetricOperator& op, const VecXd& start, int 
 
 /// The same for C = B^-1, given by solves with the factor of B, in the shift-invert mode at shift 0 (SymEigsShiftSolver):
 /// value is the largest eigenvalue of B^-1, one over the smallest of B. Cost: as above with a basis of 10 vectors.
-SpectraEnd spectra_smallest_inverted(const SymmetricOperator& solve, const VecXd& start, int most, double tol);
+SpectraEnd spectra_smallest_inverted(const SymmetricOperator& solve, const VecXd& start, int most,
+                                     double tol);
 
 }  // namespace bb

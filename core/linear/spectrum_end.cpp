@@ -9,7 +9,7 @@ namespace {
 constexpr double kProof = 8e-4;      // of an eigenvalue, relative: distance of a shift that certifies it
 constexpr double kProvable = 1e-13;  // of lambda_max: a shift below it is decided by rounding
 constexpr int kMaxShifts = 6;        // from the narrowest interval to the widest in steps of six
-constexpr int kMaxProofs = 12;       // factorisations that certify one end: from the widest interval to kProof
+constexpr int kMaxProofs = 12;  // factorisations that certify one end: from the widest interval to kProof
 
 /// Where a factor proves the end of the spectrum to lie: between `outside` (the factor exists) and `inside`.
 /// Halved until it is kProof wide, first tried right beyond `inside`, where a Ritz value usually sits.
@@ -30,7 +30,9 @@ void certify(ScaledMatrix& b, double sign, double outside, SpectrumEndPair& end)
 }
 
 /// Whether the shift that proves an end is above the rounding of its factorisation.
-bool provable(const SpectrumEndPair& end, double largest) { return kProof * std::abs(end.lambda) > kProvable * largest; }
+bool provable(const SpectrumEndPair& end, double largest) {
+  return kProof * std::abs(end.lambda) > kProvable * largest;
+}
 
 }  // namespace
 

@@ -9,7 +9,8 @@
 namespace bb {
 
 inline constexpr double not_known = std::numeric_limits<double>::quiet_NaN();
-inline constexpr double end_tolerance = 2e-4;  // of an eigenvalue, relative; half of the 1e-3 promised is left to spare
+inline constexpr double end_tolerance =
+    2e-4;  // of an eigenvalue, relative; half of the 1e-3 promised is left to spare
 inline constexpr int most_shifted_solves = 6;  // round a shifted factor, one of which polishes the vector
 
 struct SpectrumEndPair {
