@@ -50,7 +50,7 @@ std::string_view to_string(ConditionStatus status) {
   return "";
 }
 
-std::string_view to_string(EndProof proof) {
+std::string_view to_string(ProvenEnds proof) {
   constexpr std::string_view words[] = {"none", "smallest", "largest", "both"};
   return words[static_cast<std::size_t>(proof)];
 }

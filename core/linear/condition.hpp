@@ -15,9 +15,9 @@ namespace bb {
 enum class Scaling { none, jacobi, block_jacobi };
 enum class ConditionStatus { ok, lower_bound, singular, not_pd, not_converged };
 /// Which ends of the spectrum a factor of the shifted matrix has proven to be the last, to 8e-4 of them.
-enum class EndProof { none, smallest, largest, both };
+enum class ProvenEnds { none, smallest, largest, both };
 std::string_view to_string(ConditionStatus status);
-std::string_view to_string(EndProof proof);
+std::string_view to_string(ProvenEnds proof);
 std::string_view to_string(Scaling scaling);
 
 /// Beyond it rounding decides lambda_min: such a matrix has this cond, as a lower bound.
@@ -26,7 +26,7 @@ inline constexpr double largest_known_cond = 1e14;
 struct ConditionEstimate {
   double lambda_min = 0, lambda_max = 0, cond = 0;  // NaN where unknown
   ConditionStatus status = ConditionStatus::ok;
-  EndProof proof = EndProof::none;  // tiers 2 and 4
+  ProvenEnds proof = ProvenEnds::none;  // tiers 2 and 4
   // "ritz", "inverse_power+lanczos", "dense"; "spectra" or "lanczos", followed by what an end took beside it:
   // ", smallest by lanczos" where Spectra did not converge, ", largest shifted to" where a factor of its own was needed;
   // "lanczos, sigma = -1e-8 lambda_max" where the matrix itself has no factor.

@@ -124,8 +124,8 @@ void name_method(const SpectrumEndPair& bottom, const SpectrumEndPair& top, int 
   };
   add(bottom, "smallest");
   add(top, "largest");
-  e.proof = bottom.proven ? (top.proven ? EndProof::both : EndProof::smallest)
-                          : (top.proven ? EndProof::largest : EndProof::none);
+  e.proof = bottom.proven ? (top.proven ? ProvenEnds::both : ProvenEnds::smallest)
+                          : (top.proven ? ProvenEnds::largest : ProvenEnds::none);
 }
 
 ConditionEstimate start_estimate(const char* method) {

@@ -26,7 +26,7 @@ inline constexpr int n_words<MatrixStage> = 3;
 template <>
 inline constexpr int n_words<Scaling> = 3;
 template <>
-inline constexpr int n_words<EndProof> = 4;
+inline constexpr int n_words<ProvenEnds> = 4;
 template <>
 inline constexpr int n_words<ConditionStatus> = 5;
 template <>
@@ -90,9 +90,9 @@ struct ConditionSample {
            "lanczos, where Spectra "
            "did not converge in its budget; shifted to, round a factor of its own");
   BB_FIELD(
-      EndProof, proof,
+      ProvenEnds, proof,
       "which eigenvalues a factor of the shifted matrix proves to be the last, to 8e-4 of them; not asked "
-      "where rounding would decide") = EndProof::none;
+      "where rounding would decide") = ProvenEnds::none;
   BB_FIELD(double, residual, "largest |A v - lambda v| / |A| of both pairs") = 0;
   BB_FIELD(int, solves, "triangular solves") = 0;
   BB_FIELD(int, products, "matrix products") = 0;

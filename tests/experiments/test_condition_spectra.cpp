@@ -50,7 +50,7 @@ class Comparison final : public StepObserver {
         const ConditionEstimate e = estimator_.estimate(matrix, {.tier = tier, .scaling = scaling});
         ASSERT_EQ(e.status, ConditionStatus::ok);
         EXPECT_EQ(e.method.substr(0, 7), tier == 2 ? "spectra" : "lanczos");
-        EXPECT_EQ(e.proof, EndProof::both);
+        EXPECT_EQ(e.proof, ProvenEnds::both);
         EXPECT_LE(e.solves, 25 + (tier == 2 ? default_max_solves : 0));
         EXPECT_LE(e.products, 40 + (tier == 2 ? default_max_products : 0));
         EXPECT_NEAR(e.lambda_max / largest, 1, 1e-3);

@@ -34,7 +34,7 @@ TEST(ConditionEnds, ANeighbourIsNeverReportedAsOk) {
         EXPECT_LE(e.products, 40 + (tier == 2 ? default_max_products : 0)) << seed;
         if (e.status != ConditionStatus::ok) continue;
         ++n_ok;
-        EXPECT_EQ(e.proof, EndProof::both) << e.method;
+        EXPECT_EQ(e.proof, ProvenEnds::both) << e.method;
         EXPECT_NEAR(e.lambda_max, 1, 1e-3) << "gap " << gap << " seed " << seed << " tier " << tier;
         EXPECT_NEAR(e.lambda_min / 0.01, 1, 1e-3) << "gap " << gap << " seed " << seed << " tier " << tier;
       }

@@ -34,7 +34,7 @@ TEST(ConditionMethods, SpectraAndLanczosEachSayWhoTheyAre) {
     EXPECT_EQ(by_lanczos.method.substr(0, 7), "lanczos");
     for (const ConditionEstimate& e : {by_spectra, by_lanczos}) {
       EXPECT_EQ(e.status, ConditionStatus::ok);
-      EXPECT_EQ(e.proof, EndProof::both);
+      EXPECT_EQ(e.proof, ProvenEnds::both);
       EXPECT_GE(e.factorizations, 2);
       EXPECT_NEAR(e.cond / truth.cond, 1, 1e-3);
     }
@@ -61,7 +61,7 @@ TEST(ConditionMethods, LanczosTakesOverBeyondTheBudgetAndSaysForWhichEnd) {
   EXPECT_TRUE(has(large, "largest by lanczos") && !has(large, "smallest by lanczos")) << large.method;
   for (const ConditionEstimate& e : {both, small, large}) {
     EXPECT_EQ(e.status, ConditionStatus::ok);
-    EXPECT_EQ(e.proof, EndProof::both);
+    EXPECT_EQ(e.proof, ProvenEnds::both);
     EXPECT_NEAR(e.cond / cond, 1, 1e-3);
   }
   EXPECT_GT(both.solves, 9);  // what Spectra spent counts too
@@ -101,7 +101,7 @@ TEST(ConditionMethods, TheSeedDecidesTheStartAndNothingElse) {
 /// The proof of the small end needs a shift of 8e-4 lambda_min that stands out of 1e-13 lambda_max.
 TEST(ConditionMethods, ProofIsLeftOutWhereRoundingWouldDecide) {
   for (const int tier : {2, 4}) {
-    for (const auto& [cond, proof] : {std::pair{1e9, EndProof::both}, std::pair{1e11, EndProof::largest}}) {
+    for (const auto& [cond, proof] : {std::pair{1e9, ProvenEnds::both}, std::pair{1e11, ProvenEnds::largest}}) {
       const ConditionEstimate e =
           estimate(from_dense(with_spectrum(spectrum("geometric", 90, cond), 2)), {.tier = tier});
       EXPECT_EQ(e.status, ConditionStatus::ok) << tier << " " << cond;
@@ -110,7 +110,7 @@ TEST(ConditionMethods, ProofIsLeftOutWhereRoundingWouldDecide) {
     }
     const ConditionEstimate indefinite =
         estimate(from_dense(with_spectrum(VecXd::LinSpaced(30, -1, 1), 2)), {.tier = tier});
-    EXPECT_EQ(indefinite.proof, EndProof::none);
+    EXPECT_EQ(indefinite.proof, ProvenEnds::none);
     EXPECT_EQ(indefinite.status, ConditionStatus::not_pd);
   }
 }
