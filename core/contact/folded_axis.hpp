@@ -12,7 +12,7 @@ namespace bb {
 /// Groups of bodies that one axis tells apart.
 constexpr int most_stretches = 8;
 /// Points whose sorted coordinates say where a scene is; all of a smaller scene.
-constexpr int most_sampled = 256;
+constexpr int most_sampled = 128;
 
 /// By how much the places of a coordinate that moves from x0 to x1, of which `moved` is shared by all, can be off by
 /// rounding, with room to spare, m; 0 where a number is none, and its box holds none either.

@@ -40,12 +40,18 @@ void StepBoundFinder::find_floors(const Motion& motion) {
         floors_[i] = 2 * static_cast<double>(ulp_floor(static_cast<T>(largest)));
       }
     });
+    double offset = 0;
+    for (const Side& side : surface_.points.side) offset = std::max(offset, side.offset);
+    largest_floor_ = 2 * static_cast<double>(ulp_floor(static_cast<T>(2 * offset)));
   });
+  for (const double of_vertex : floors_) largest_floor_ = std::max(largest_floor_, of_vertex);
 }
 
-/// No less than the least stop level of a pair of these vertices, m, with room for its rounding.
+/// No less than the least stop level of a pair of these vertices, m, with room for its rounding; 0 where twice the
+/// largest of all is no more than `park`.
 template <std::size_t N>
-double StepBoundFinder::floor(const std::array<int, N>& vertices, double offset) const {
+double StepBoundFinder::floor(const std::array<int, N>& vertices, double offset, double park) const {
+  if (park >= 2 * largest_floor_) return 0;
   double out = with_value_scalar(precision_,
                                  [&]<class T>() -> double { return 2 * ulp_floor(static_cast<T>(offset)); });
   for (const int v : vertices) out = std::max(out, floors_[static_cast<std::size_t>(v)]);
@@ -60,8 +66,8 @@ void StepBoundFinder::fit(std::vector<MotionBox>& boxes, const Primitives<N>& pr
     for (std::size_t i = begin; i < end; ++i) {
       // two of these are no less than the distance that ask_lanes needs, whichever side has the larger floor
       const Side side = primitives.side[i];
-      const double least = 2 * floor(primitives.vertices[i], side.offset);
-      const double reach = side.offset + std::max(level_.park * side.d_hat, least);
+      const double park = level_.park * side.d_hat;
+      const double reach = side.offset + std::max(park, 2 * floor(primitives.vertices[i], side.offset, park));
       boxes[i] = motion_box(primitives.vertices[i], reach, motion.x0, motion.x1);
     }
   });
@@ -97,7 +103,8 @@ void StepBoundFinder::ask_lanes(const std::vector<IndexPair>& pairs, const Motio
   Lanes4 reach;
   for (std::size_t lane = 0; lane < n_lanes; ++lane) {
     const Side law = pair[lane].law;
-    reach.v[lane] = law.offset + 2 * std::max(level_.park * law.d_hat, floor(pair[lane].vertex, law.offset));
+    const double park = level_.park * law.d_hat;
+    reach.v[lane] = law.offset + 2 * std::max(park, floor(pair[lane].vertex, law.offset, park));
   }
   const PairLanes<K, Lanes4> points = gather_lanes<K>(pair, motion.x0);
   const Lanes4 proven =

@@ -71,7 +71,7 @@ class StepBoundFinder {
     const Positions &x0, &x1;
   };
   template <std::size_t N>
-  double floor(const std::array<int, N>& vertices, double offset) const;
+  double floor(const std::array<int, N>& vertices, double offset, double park) const;
   void find_floors(const Motion& motion);
   template <int N>
   void fit(std::vector<MotionBox>& boxes, const Primitives<N>& primitives, const Motion& motion) const;
@@ -101,6 +101,7 @@ class StepBoundFinder {
   const StopLevel level_;
   const Precision precision_;
   std::vector<double> floors_;  // m, of each vertex on the motion
+  double largest_floor_ = 0;
   std::vector<MotionBox> points_, edges_, triangles_;
   std::vector<Entry> entries_[4];            // by kind: chunk k of the pairs has its own from k chunk_size on
   std::vector<std::uint32_t> n_entries_[4];  // of each chunk

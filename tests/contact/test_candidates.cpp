@@ -133,7 +133,8 @@ TEST(Surface, HasNoMorePrimitivesThanPairsCanName) {
     EXPECT_STREQ(error.what(), "contact: 8 edges in the surface; at most 7");
   }
   EXPECT_THROW(check_primitive_count("points", std::size_t{1} << 30), std::length_error);
-  const PairId last = pair_id(3, most_primitives, most_primitives);  // in three fields without a bit in common
+  const PairId last =
+      pair_id(3, most_primitives, most_primitives);  // in three fields without a bit in common
   EXPECT_EQ(last >> 60, 3U);
   EXPECT_EQ(last >> 30 & most_primitives, most_primitives);
   EXPECT_EQ(last & most_primitives, most_primitives);

@@ -142,19 +142,18 @@ std::vector<IndexPair> brute_force(const resident::PairSearch& s, const resident
 resident::MotionFrame frame_of(const Surface& s, const Positions& x0, const Positions& x1) {
   resident::MotionFrame out{};
   std::vector<double> at_start[3];
+  const auto n = static_cast<long long>(s.points.size());
   for (int c = 0; c < 3; ++c) {
     std::vector<double> way;
-    for (const auto& v : s.points.vertices) {
-      at_start[c].push_back(x0(c, v[0]));
-      way.push_back(x1(c, v[0]) - x0(c, v[0]));
-    }
+    for (const auto& v : s.points.vertices) way.push_back(x1(c, v[0]) - x0(c, v[0]));
+    for (int k = 0; k < n_sampled(n); ++k)
+      at_start[c].push_back(x0(c, s.points.vertices[static_cast<std::size_t>(sampled(k, n))][0]));
     std::sort(at_start[c].begin(), at_start[c].end());
     std::sort(way.begin(), way.end());
     out.moved[c] = way[way.size() / 2];
   }
-  EXPECT_LE(s.points.size(), std::size_t{most_sampled});
   out.folded = folded_frame([&](int c, int i) { return at_start[c][at(i)]; },
-                            [&](int) { return static_cast<int>(s.points.size()); }, s.element_size);
+                            [&](int) { return n_sampled(n); }, s.element_size);
   return out;
 }
 
