@@ -4,7 +4,6 @@
 #include <stdexcept>
 #include <string>
 
-#include "core/scene/contact_plan.hpp"
 
 namespace bb {
 
@@ -98,11 +97,8 @@ Surface::Surface(const Scene& scene)
   find_filled(scene);
   find_lone();
   if (planar) connect(scene);
-  if (!planar) {
-    for (const auto& e : bb::lone_edges(scene)) {
-      const auto place = std::lower_bound(all_edges.begin(), all_edges.end(), e);
-      lone_edges.push_back(static_cast<int>(place - all_edges.begin()));
-    }
+  for (std::size_t e = 0; e < edges.size() && !planar; ++e) {
+    if (edges.lone[e] != 0) lone_edges.push_back(static_cast<int>(e));
   }
   element_size = bb::element_size(scene, *this);
 }

@@ -4,17 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <iterator>
 #include <nlohmann/json.hpp>
 
 #include "core/energy/triangle_membrane.hpp"
 #include "core/math/error.hpp"
 #include "core/math/svd.hpp"
-#include "core/mesh/topology.hpp"
 #include "core/mesh/write_mesh.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
+#include "core/scene/contact_plan.hpp"
 #include "experiments/matrix/matrix_market.hpp"
 #include "experiments/run/keep_record.hpp"
 
@@ -41,17 +40,6 @@ std::string scene_json(const Scene& scene) {
   for (const Body& body : scene.bodies) out["bodies"].push_back(body.name);
   for (const Obstacle& obstacle : scene.obstacles) out["obstacles"].push_back(to_json(obstacle));
   return out.dump(2) + "\n";
-}
-
-/// Edges of the surface that are no side of a triangle. Both lists of `unique_edges` are sorted alike.
-std::vector<std::array<int, 2>> lone_edges(const Scene& scene) {
-  TriangleMesh triangles, all;
-  triangles.triangles = all.triangles = scene.surface_triangles;
-  all.segments = scene.surface_edges;
-  const auto sides = unique_edges(triangles), edges = unique_edges(all);
-  std::vector<std::array<int, 2>> rods;
-  std::set_difference(edges.begin(), edges.end(), sides.begin(), sides.end(), std::back_inserter(rods));
-  return rods;
 }
 
 void corners_of(const Positions& x, const std::array<int, 3>& triangle, Vec3d (&out)[3]) {
