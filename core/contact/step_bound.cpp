@@ -179,7 +179,7 @@ FirstContact StepBoundFinder::ask_obstacle(const Primitives<N>& primitives, Inde
                              offset, park);
   } else {
     // of the coordinates of the obstacle too, whose point and radius ACCD computes with
-    const double least = floor(vertex, law.offset + exact.radius + exact.point.cwiseAbs().maxCoeff());
+    const double least = floor(vertex, law.offset + exact.radius + exact.point.cwiseAbs().maxCoeff(), 0);
     const double stop = std::max(level_.park * law.d_hat, least);
     const double proven = obstacle_proven_time<N, T>(
         exact, gather(motion.x0, vertex), gather(motion.x1, vertex), law.offset, stop, part.first.toi);
