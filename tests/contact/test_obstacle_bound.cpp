@@ -75,6 +75,28 @@ TEST(ObstacleBound, StopsRodsAndTrianglesWhoseCornersPassBy) {
   }
 }
 
+TEST(ObstacleBound, FindsWideTrianglesThatTouchWithASideAndSmallOnesThatFlyIn) {
+  for (const ObstacleKind kind : {ObstacleKind::sphere, ObstacleKind::cylinder}) {
+    Scene wide;  // its middle is far out, a side is 5 mm away
+    add_body(wide, "wide", {Vec3d(-1, 0, 0.505), Vec3d(1, 0.1, 0.505), Vec3d(0, 1, 4)}, {{0, 1, 2}}, 0.01);
+    wide.obstacles = {round_obstacle(kind, Vec3d::Zero(), 0.5, Vec3d::UnitY())};
+    ContactSystem still(wide, {});
+    const double least = least_gap(wide, wide.x0);
+    ASSERT_LT(least, 0.01);
+    EXPECT_NEAR(rows_at(still, wide.x0).min_gap, least, 1e-9);
+
+    Scene small = wide;
+    small.x0.col(0) = Vec3d(-0.02, -0.01, 2), small.x0.col(1) = Vec3d(0.02, -0.01, 2);
+    small.x0.col(2) = Vec3d(0.01, 0.02, 2);
+    small.rest = small.x0;
+    Positions x1 = small.x0;
+    x1.row(2).array() -= 4;
+    ContactSystem flying(small, {});
+    flying.update_candidates(small.x0, x1);
+    EXPECT_NEAR(flying.step_bound(small.x0, x1).alpha, 1.5 / 4, 1e-4);
+  }
+}
+
 TEST(ObstacleBound, StaysOnTheSafeSideInFloat) {
   int n_bounded = 0;
   for (unsigned seed = 1; seed <= 4; ++seed) {
