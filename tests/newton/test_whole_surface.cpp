@@ -20,15 +20,15 @@ void expect_rest(const Scene& scene, double kappa, int n_steps) {
   Positions before = scene.x0;
   double speed = 0;
   for (int k = 0; k < n_steps; ++k) {
-    before = simulation.x();
+    before = simulation.history().x;
     report = simulation.step(observer);
     ASSERT_EQ(report.status, StepStatus::converged) << report.detail;
-    ASSERT_GT(least_gap(scene, simulation.x()), 0) << "step " << k;
-    speed = (simulation.x() - before).cwiseAbs().maxCoeff() / 0.01;
+    ASSERT_GT(least_gap(scene, simulation.history().x), 0) << "step " << k;
+    speed = (simulation.history().x - before).cwiseAbs().maxCoeff() / 0.01;
   }
   EXPECT_LT(speed, 1e-2);
   EXPECT_GT(report.contacts.obstacle, 0U);
-  EXPECT_NEAR(report.gap_min_m.value, least_gap(scene, simulation.x()), 1e-9);
+  EXPECT_NEAR(report.gap_min_m.value, least_gap(scene, simulation.history().x), 1e-9);
   EXPECT_LT(report.gap_min_m.value, width_m);
   EXPECT_NEAR(report.contact_load_sum_N.value / weight, 1, 0.15);  // normals are nearly upright
 }

@@ -97,7 +97,7 @@ TEST(ResidentRowFinder, HasTheRowsOfTheContactSystemPairByPair) {
 }
 
 TEST(ResidentRowFinder, HasThoseOfRods) {
-  std::array<int, 6> n_kinds{};
+  std::array<int, 8> n_kinds{};
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const Scene scene = rods_and_sheet(seed, 0.04);
     ContactSystem contacts(scene, {});

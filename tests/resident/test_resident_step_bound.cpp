@@ -55,7 +55,7 @@ void expect_that_of_the_cpu_path(const Scene& scene, const Positions& x1, std::a
 }
 
 TEST(ResidentStepBound, IsThatOfTheCpuPathOfRodsAndBesideFarBodies) {
-  std::array<int, 6> n_of_kind{};
+  std::array<int, 8> n_of_kind{};
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const Scene scene = rods_and_sheet(seed, 0.02);
     for (const double size : {0.1, 1e-2}) {
