@@ -113,8 +113,6 @@ class PassSequence {
     seen_ = pass.run([&](Pass::Moment moment) { save(pass, moment); });
     keep_held(seen_);
     recorder.finish();
-    record_.artifacts = files_.artifacts->written();
-    record_.artifacts.push_back(files_.trace->artifact());
     if (recorder.ledger()) ledger_ = *recorder.ledger();
     audited_ = recorder.audit_verdict();
   }

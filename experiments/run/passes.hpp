@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "core/record/writer.hpp"
 #include "core/terms/plan.hpp"
@@ -17,6 +18,14 @@ struct RunFiles {
   std::optional<TraceWriter> trace;
   std::optional<ArtifactWriter> artifacts;
 
+  /// What the record names: frames and matrices so far, and the trace as it is now. Errors: RecordError.
+  /// Cost: reads the trace.
+  std::vector<Artifact> written() {
+    std::vector<Artifact> out;
+    if (artifacts) out = artifacts->written();
+    if (trace) out.push_back(trace->artifact());
+    return out;
+  }
   /// Everything is on the disk, and stays.
   void close() {
     if (trace) trace->close();

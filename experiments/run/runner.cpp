@@ -233,8 +233,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
     remove_unfinished(options.folder);
     throw;
   }
-  if (files.artifacts)
-    record.artifacts = files.artifacts->written();  // also where memory ran out beside a step
+  record.artifacts = files.written();  // also where memory ran out beside a step
   fill_labels(config, options, record);
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "core/newton/simulation.hpp"
+#include "core/terms/contact.hpp"
 #include "tests/experiments/calibrated.hpp"
 
 namespace bb {

@@ -1,4 +1,5 @@
-// A rod that comes to rest on two others: what carries it is its weight, at every angle between them.
+// A rod that comes to rest in the groove of two others: what carries it is its weight, at every small angle between
+// them. From 1.5 degrees on its ends stand out of the groove and it turns out of it.
 #include <gtest/gtest.h>
 
 #include "tests/newton/small_scenes.hpp"
@@ -42,8 +43,8 @@ Vec3d contact_force(const ContactState& contacts, const Positions& x) {
   return out;
 }
 
-TEST(Rods, RestOnRodsOfAnyAngleByTheirWeight) {
-  for (const double degrees : {0.0, 1e-7, 1e-3, 0.5, 1.5, 3.0}) {
+TEST(Rods, RestInAGrooveByTheirWeight) {
+  for (const double degrees : {0.0, 1e-7, 1e-3, 0.1, 0.5}) {
     SceneBuilder builder("rods", false, Vec3d(0, 0, -10), "test");
     builder.add_body(rod("falling", 4, length, Vec3d(0.03, 0, 0.0042), degrees * std::numbers::pi / 180));
     for (const double y : {-0.002, 0.002}) {
