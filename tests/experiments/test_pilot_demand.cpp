@@ -16,7 +16,7 @@ constexpr double d_hat = 0.01;
 
 /// A cloth of 3 x 3 vertices over a floor: its vertex v is at the height that each step gives it.
 const std::string config_text = R"({"schema": "barrierbench.config/1",
-  "scene": {"bodies": [{"name": "cloth", "mesh": {"generator": "grid", "n_x": 2, "n_y": 2}, "transform": {"translate_m": [0, 0, 1]}}],
+  "scene": {"bodies": [{"name": "cloth", "mesh": {"generator": "grid", "n_x": 3, "n_y": 3}, "transform": {"translate_m": [0, 0, 1]}}],
             "obstacles": [{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}]},
   "formulation": {"name": "log", "d_hat_m": 0.01, "stiffness_policy": {"name": "fixed", "kappa_N_per_m": 2}},
   "matching": {"rule": "as_given"}, "time": {"dt_s": 0.01, "steps": 1}})";
