@@ -5,23 +5,27 @@ import json
 import pytest
 
 from analysis import surface_gaps
+from synthetic import bind, write_run
 
 
-def _record(outcome, obstacles=None, between=None, enabled=True):
+def _audit(obstacles=None, between=None, enabled=True):
     audit = {"enabled": enabled, "surface_gaps": 3, "obstacle_triangles": 6, "obstacle_edges": 0, "obstacle_vertices": 0}
     for name, value in (("surface_gap_obstacles_m", obstacles), ("surface_gap_between_m", between)):
         audit |= {name: value} if value is not None else {name: None, f"{name}_status": "none_within_d_hat"}
-    return {"schema": {"name": "barrierbench.run", "version": "3.4.0"}, "status": {"outcome": outcome}, "audit": audit}
+    return audit
 
 
-def _write(folder, **records):
-    for name, record in records.items():
-        (folder / name).mkdir()
+def _write(folder, **runs):
+    """Records that are whole, each with an outcome and an audit of its own."""
+    for name, (outcome, audit) in runs.items():
+        record = write_run(folder, "log", 1.0, 0.1, outcome=outcome, folder=name)
+        record["audit"] |= audit
         (folder / name / "run.json").write_text(json.dumps(record))
+        bind(folder / name)
 
 
 def test_every_run_has_a_row_and_the_smallest_gap_is_that_of_the_ok_ones(tmp_path, capsys):
-    _write(tmp_path, a=_record("ok", 0.004, 0.001), b=_record("penetration", -0.02), c=_record("ok", enabled=False))
+    _write(tmp_path, a=("ok", _audit(0.004, 0.001)), b=("penetration", _audit(-0.02)), c=("ok", _audit(enabled=False)))
     assert surface_gaps.main([str(tmp_path)]) == 0
     out = capsys.readouterr().out
     assert len(out.splitlines()) == 5
@@ -31,7 +35,7 @@ def test_every_run_has_a_row_and_the_smallest_gap_is_that_of_the_ok_ones(tmp_pat
 
 @pytest.mark.parametrize("gaps", [(-1e-6, None), (0.1, -1e-6)])
 def test_an_ok_run_in_an_obstacle_or_another_surface_is_told(tmp_path, capsys, gaps):
-    _write(tmp_path, a=_record("ok", *gaps), b=_record("ok", 0.0, 0.0))
+    _write(tmp_path, a=("ok", _audit(*gaps)), b=("ok", _audit(0.0, 0.0)))
     assert surface_gaps.main([str(tmp_path)]) == 1
     told = capsys.readouterr()
     assert "1 below 0" in told.out and str(tmp_path / "a") in told.err and str(tmp_path / "b") not in told.err
