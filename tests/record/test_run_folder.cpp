@@ -108,8 +108,20 @@ TEST_F(RunFolder, TheLockNamesItsHolderAndGoesWithIt) {
     }
     const FolderLock other(folder_ / "other");
   }
-  EXPECT_TRUE(fs::is_empty(folder_ / "made"));
+  EXPECT_FALSE(fs::exists(folder_ / "made"));  // the lock made it, and nothing was written there
   const FolderLock again(folder_ / "made");
+}
+
+TEST_F(RunFolder, AFolderThatWasThereOrIsNotEmptyOutlivesItsLock) {
+  fs::create_directory(folder_ / "there");
+  { const FolderLock lock(folder_ / "there"); }
+  EXPECT_TRUE(fs::is_empty(folder_ / "there"));
+  {
+    const FolderLock lock(folder_ / "made");
+    std::ofstream(folder_ / "made" / "run.json") << "{}";
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "made" / "run.json"));
+  EXPECT_FALSE(fs::exists(folder_ / "made" / "bench.lock"));
 }
 
 TEST_F(RunFolder, TheLockOfAKilledProcessIsFree) {
