@@ -147,11 +147,14 @@ def test_the_sweep_that_is_made(tmp_path):
 
 def test_the_real_program(match, program, monkeypatch, tmp_path, capsys):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
-    few = ["--formulations", "cubic", "quadratic", "--set", "/time/steps=20"]
+    few = ["--formulations", "two_stage", "cubic", "quadratic", "--set", "/time/steps=20"]
     assert match(*few) == 1, capsys.readouterr()
     rows = answer(tmp_path)["formulations"]
-    assert [row["verdict"] for row in rows] == ["comparable", "comparable", "not_comparable"], rows  # the quadratic's gap is four times the log's
+    assert [row["verdict"] for row in rows] == ["comparable", "comparable", "not_comparable", "not_comparable"], rows
+    cubic, quadratic = rows[2:]  # the smallest gap of the cubic is near the log's, its wide ones are not; the quadratic's is four times the log's
+    assert cubic["gap_ratio"] < 2 < cubic["pair_ratio"] and cubic["pair_quantile"] == "gap_rel_p95"
+    assert quadratic["gap_ratio"] > 2 and quadratic["pair_ratio"] > 2
     assert all(0.05 < row["gap_min_rel"] < 1 and row["newton_iterations"] > 20 for row in rows)
-    assert rows[1]["matching"]["kappa_N_per_m"] > 5 * rows[0]["matching"]["kappa_N_per_m"] > 0  # equal force at 0.1 d_hat, not equal kappa
+    assert cubic["matching"]["kappa_N_per_m"] > 5 * rows[0]["matching"]["kappa_N_per_m"] > 0  # equal force at 0.1 d_hat, not equal kappa
     assert match(*few, "--set", "/scene/nn=3") == 2 and "found the unknown key" in capsys.readouterr().err
     assert match(*few, "--theta", "0.9", "--set", "/time/steps=2") == 2  # another sweep in the same folder
