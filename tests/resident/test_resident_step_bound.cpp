@@ -6,6 +6,7 @@
 
 #include "core/mesh/read_mesh.hpp"
 #include "tests/contact/far_bodies.hpp"
+#include "tests/contact/obstacle_scenes.hpp"
 #include "tests/contact/rods.hpp"
 #include "tests/folders.hpp"
 #include "tests/resident/contact_motion.hpp"
@@ -82,12 +83,31 @@ TEST(ResidentStepBound, IsThatOfTheCpuPathOfRodsAndBesideFarBodies) {
             5);
 }
 
+/// What is about a ball or a bar shrinks onto it, so that nothing else is in the way.
+Positions drawn_to(const Scene& scene, const Obstacle& to, double part) {
+  Positions out = scene.x0;
+  for (Eigen::Index v = 0; v < out.cols(); ++v) {
+    Vec3d q = scene.x0.col(v) - to.point;
+    if (q.norm() > 3) continue;
+    if (to.kind == ObstacleKind::cylinder) q -= to.axis * to.axis.dot(q);
+    out.col(v) -= part * q;
+  }
+  return out;
+}
+
 TEST(ResidentStepBound, IsThatOfTheCpuPathInSoups) {
   std::array<int, 8> n_of_kind{};
   for (unsigned seed = 1; seed <= 60; ++seed) {
     const Scene scene = soup_scene(seed, 5 + static_cast<int>(seed) / 2);
     for (const double size : {1.0, 0.1, 1e-2, 1e-4}) {
       expect_that_of_the_cpu_path(scene, moved(scene, size, seed), n_of_kind);
+    }
+  }
+  // few triangles of a soup are near its ball and its bar, and others stop them before
+  for (unsigned seed = 1; seed <= 20; ++seed) {
+    const Scene scene = around_obstacles(seed);
+    for (const Obstacle& to : scene.obstacles) {
+      expect_that_of_the_cpu_path(scene, drawn_to(scene, to, 0.4), n_of_kind);
     }
   }
   for (const auto kind : {ContactKind::point_triangle, ContactKind::edge_edge, ContactKind::obstacle,

@@ -79,7 +79,7 @@ TEST(SystemKernels, TotalsOfManyBlocks) {
   EXPECT_EQ(total.get(0).load.value(), 1024 * 1023 / 2 + 512);
 }
 
-/// Rows of five kinds, some of them mollified, with a stiffness of their own or one for all.
+/// Rows of every kind, some of them mollified, with a stiffness of their own or one for all.
 struct SomeRows {
   static constexpr std::size_t n = 1000;
   std::vector<double> d = positive(3), d_hat = positive(4), kappa = positive(5), push = positive(6),
@@ -102,7 +102,7 @@ struct SomeRows {
         kind_on(executor, "kinds") {
     for (double& x : push) x = -x;  // kappa b' is not positive
     push_on.upload(push);
-    for (std::size_t r = 0; r < n; ++r) kind.push_back(static_cast<std::uint8_t>(r % 6));
+    for (std::size_t r = 0; r < n; ++r) kind.push_back(static_cast<std::uint8_t>(r % (mollified_kind + 1)));
     kind_on.upload(kind);
   }
   RowView view(bool uniform) {
