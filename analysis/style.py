@@ -20,7 +20,7 @@ from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 from .captions import caption  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
-HOLLOW = r"hollow markers: the run failed, is not valid, or its smallest gap/$\hat{{d}}$ at converged step ends is not within a factor {ratio:g} of {reference}"
+HOLLOW = r"hollow markers: the run failed, is not valid, or a quantile (5, 50 or 95 % of the load) of gap/$\hat{{d}}$ between two bodies at converged step ends is not within a factor {ratio:g} of {reference}"
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
 LEAST_RATIO = 2.0  # a logarithmic axis never shows less
@@ -181,7 +181,8 @@ def legend_below(fig, axis, runs: pd.DataFrame | None = None) -> None:
     """One legend for the figure, below its panels; with `runs`, the rule of hollow markers as its title."""
     handles, labels = axis.get_legend_handles_labels()
     if handles:
-        columns = max(1, min(len(labels), int(fig.get_figwidth() / LEGEND_COLUMN_IN)))
+        width = max(LEGEND_COLUMN_IN, 0.6 + 0.055 * max(map(len, labels)))  # of a column, inches: its line, and letters of 7 points
+        columns = max(1, min(len(labels), int(fig.get_figwidth() / width)))
         title = hollow_rule(runs) if runs is not None else ""
         fig.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, title=title or None, title_fontsize=6)
 

@@ -26,7 +26,7 @@ def _power(x: float | None) -> str:
     """Two digits: 1.2e4, 351."""
     if x is None:
         return "-"
-    return f"{x:.1e}".replace("e+0", "e").replace("e+", "e") if x >= 1e4 else f"{x:.3g}"
+    return f"{x:.1e}".replace("e+0", "e").replace("e+", "e") if x >= 1e3 else f"{x:.3g}"
 
 
 def _outcome(row: dict) -> str:
@@ -72,10 +72,13 @@ def _log_against_cubic(numbers: dict) -> str:
     log, cubic = (_run(numbers, "demo_drape", name) for name in ("log", "cubic"))
     free = [step for step in log["cond_steps"] if step in cubic["cond_steps"] and step not in log["touching_steps"]]
     before = statistics.median(log["cond_steps"][k] / cubic["cond_steps"][k] for k in free) if free else None
-    text = (f"At equal contact forces the largest condition number (cond: how hard a linear system is) of the logarithm is {log['cond_raw_max'] / cubic['cond_raw_max']:.2g} times that of the "
+    text = (f"At equal contact forces under the largest load, with a strain limit, the largest condition number (cond: how hard a linear system is) that the logarithm reaches in a single iteration is {log['cond_raw_max'] / cubic['cond_raw_max']:.2g} times that of the "
             "cubic in five cloth layers on a sphere")
     text += f", and {before:.2g} times before they touch" if before is not None else ""
-    return f"{text}; an iterative solver with a standard preconditioner takes {log['probe_pcg']:g} against {cubic['probe_pcg']:g} iterations."
+    text += f"; an iterative solver with a standard preconditioner takes {log['probe_pcg']:g} against {cubic['probe_pcg']:g} iterations"
+    if cubic["verdict"] == "comparable":
+        return f"{text}."
+    return f"{text}. Equal force is not equal gap: the cubic's contacts rest at other gaps than the logarithm's, and its record says {cubic['verdict'].replace('_', ' ')}."
 
 
 def _refreshed(numbers: dict) -> str:
