@@ -46,7 +46,7 @@ struct Surface {
   Primitives<2> edges;
   Primitives<3> triangles;
   std::vector<std::array<int, 3>>
-      filled;  // triangles with a free vertex, planar scenes' too: what nothing may pierce
+      filled;                   // triangles with a free vertex, planar scenes' too: what nothing may pierce
   std::vector<int> lone_edges;  // of `edges`, in space: those that are no side of a triangle, ascending
   bool planar;
   PlanarPairs planar_pairs;

@@ -71,7 +71,10 @@ const ContactKey between = {-1, -1, 0, 1}, itself = {-1, -1, 1, 1};
 TEST(ContactGaps, EveryPairOfBodiesHasItsOwn) {
   const Scene scene = two_and_two();
   ContactGaps gaps(scene);
-  gaps.add({{between, 0.2, 3}, {obstacle_key(0, std::array{0}), 0.4, 1}, {obstacle_key(1, std::array{1}), 0.6, 2}, {itself, 0.8, 4}},
+  gaps.add({{between, 0.2, 3},
+            {obstacle_key(0, std::array{0}), 0.4, 1},
+            {obstacle_key(1, std::array{1}), 0.6, 2},
+            {itself, 0.8, 4}},
            0.1);
   const GapMap found = gaps.summary();
   ASSERT_EQ(found.size(), 4U);
@@ -119,7 +122,8 @@ TEST(ContactGaps, ACheckpointKeepsThem) {
   Archive again(archive.bytes());
   rest.keep(again);
   EXPECT_TRUE(again.at_end());
-  for (ContactGaps* gaps : {&whole, &rest}) gaps->add({{between, 0.7, 2}, {obstacle_key(0, std::array{1}), 0.3, 2}}, 0.2);
+  for (ContactGaps* gaps : {&whole, &rest})
+    gaps->add({{between, 0.7, 2}, {obstacle_key(0, std::array{1}), 0.3, 2}}, 0.2);
   const GapMap one = whole.summary(), other = rest.summary();
   ASSERT_EQ(one.size(), 2U);
   for (const auto& [name, pair] : one) {

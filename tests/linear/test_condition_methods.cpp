@@ -101,7 +101,8 @@ TEST(ConditionMethods, TheSeedDecidesTheStartAndNothingElse) {
 /// The proof of the small end needs a shift of 8e-4 lambda_min that stands out of 1e-13 lambda_max.
 TEST(ConditionMethods, ProofIsLeftOutWhereRoundingWouldDecide) {
   for (const int tier : {2, 4}) {
-    for (const auto& [cond, proof] : {std::pair{1e9, ProvenEnds::both}, std::pair{1e11, ProvenEnds::largest}}) {
+    for (const auto& [cond, proof] :
+         {std::pair{1e9, ProvenEnds::both}, std::pair{1e11, ProvenEnds::largest}}) {
       const ConditionEstimate e =
           estimate(from_dense(with_spectrum(spectrum("geometric", 90, cond), 2)), {.tier = tier});
       EXPECT_EQ(e.status, ConditionStatus::ok) << tier << " " << cond;

@@ -99,7 +99,8 @@ BB_HD inline double stop_floor(const BoundQuery& q, const int* vertex, int n, do
 /// `enough`. 0: nothing is proven.
 template <PairKind K>
 BB_HD double proven_time(const BoundQuery& q, const PairVertices<K>& pair, double enough) {
-  const double park = q.park * pair.law.d_hat, floor = stop_floor(q, pair.vertex, pair_points(K), pair.law.offset);
+  const double park = q.park * pair.law.d_hat,
+               floor = stop_floor(q, pair.vertex, pair_points(K), pair.law.offset);
   const double reach = pair.law.offset + 2 * (park > floor ? park : floor);
   const PairLanes<K, double> points = relative_points<K>(q.x0, pair.vertex);
   const PairLanes<K, double> motion = relative_points<K>(q.x1, pair.vertex) - points;
