@@ -77,7 +77,9 @@ TEST(Comparability, EveryQuantileOfEveryPairIsHeldToTheFactor) {
   }
   GapMap mine = reference;
   mine.at("a|b").gap_rel_p05 = 0.9;
-  const Comparability found = judge_comparability(with(mine), with(reference));
+  ComparedRun log = with(reference);
+  log.folder = "log";
+  const Comparability found = judge_comparability(with(mine), log);
   EXPECT_NE(found.reason.find("5 % quantile of the gap, a|b: 0.9 d_hat where the reference has 0.3"),
             std::string::npos)
       << found.reason;

@@ -109,10 +109,16 @@ TEST_F(Scenes, EveryVariantOfDrape2dTouchesAndKeepsItsLimit) {
       const RunRecord record = run(drape2d_cubic, overrides);
       if (record.status.outcome != Outcome::penetration) {
         expect_clean(record, std::string(variant) + " " + pairs);
-      } else {  // without edge pairs edges may cross, and the audit sees it
+        EXPECT_GT(record.audit.surface_gap_obstacles_m.value, 0) << variant << " " << pairs;
+      } else {  // without edge pairs edges may cross each other and enter the disk, and the audit sees it
         EXPECT_STREQ(pairs, "vertex_vertex");
         EXPECT_NE(record.status.detail.find("vertex_vertex"), std::string::npos) << record.status.detail;
-        EXPECT_GT(record.audit.crossings, 0);
+        if (std::string(variant) == "stack") {
+          EXPECT_GT(record.audit.crossings, 0);
+        } else {
+          EXPECT_GT(record.audit.obstacle_violations, 0) << variant;
+          EXPECT_LT(record.audit.surface_gap_obstacles_m.value, 0) << variant;
+        }
         EXPECT_FALSE(record.validity.valid);
       }
       EXPECT_GT(record.summary.contacts.max.value, 0) << variant;

@@ -65,7 +65,7 @@ TEST(StepStudy, ATrialWithTheRunsOwnChoiceIsTheRunsStep) {
 
 /// The second step of BDF2 has another weight than the first, and of what a step keeps only the last one counts.
 TEST(StepStudy, ATrialBeginsFromTheHistoryOfItsStep) {
-  const RunConfig config = parsed(two_masses, {R"(/integrator/name="bdf2")", "/matching/load_N=1"});
+  const RunConfig config = parsed(two_masses, {R"(/integrator/name="bdf2")", "/matching/load_N=5"});
   const RunSteps run = run_steps(config);
   const std::vector<StepTrial> trials = study_steps(config, {0, 1, 9}, {});
   std::vector<std::string> seen;

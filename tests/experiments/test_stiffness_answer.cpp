@@ -45,7 +45,7 @@ TEST(StiffnessAnswer, AMatchTakesTheLoadOfTheSheetAndNotTheForceOfThePinch) {
     EXPECT_NEAR(*both.calibration.kappa / *alone.calibration.kappa, 1, 0.05) << n;
     EXPECT_NEAR(both.record.load_N.value / alone.record.load_N.value, 1, 0.05) << n;
     EXPECT_GT(both.record.contacts_left_out, 100);
-    EXPECT_GT(both.record.left_out_N.value, 1.5 * both.record.load_N.value);  // else it would decide nothing
+    EXPECT_GT(both.record.left_out_N.value, 1.2 * both.record.load_N.value);  // else it would decide nothing
     EXPECT_NE(both.record.left_out_contact.find("piece["), std::string::npos) << both.record.left_out_contact;
     EXPECT_NE(both.record.pilot_note.find("no loads"), std::string::npos) << both.record.pilot_note;
     EXPECT_EQ(alone.record.contacts_left_out, 0);
@@ -82,12 +82,12 @@ TEST(StiffnessAnswer, NothingIsLeftOutWhereBodiesFallAndRest) {
   }
 }
 
-/// A cloth, two sides of which are held at 0.6 d_hat over a floor: its middle is pushed up until tension, bending and weight hold
-/// it, so that its forces answer to kappa by more or less of kappa.
+/// A cloth, two sides of which are held at 0.6 d_hat over a floor, so stiff that it sags by less than that: where kappa is
+/// small its tension carries it, and its forces follow kappa; where kappa is large they are its weight.
 std::string held(double kappa) {
   return R"({"schema": "barrierbench.config/1", "scene": {"bodies": [
-      {"name": "cloth", "limited": false, "transform": {"translate_m": [0, 0, 0.006]},
-       "mesh": {"generator": "grid", "n_x": 6, "n_y": 6},
+      {"name": "cloth", "limited": false, "material": {"youngs_N_per_m": 1e6},
+       "transform": {"translate_m": [0, 0, 0.006]}, "mesh": {"generator": "grid", "n_x": 6, "n_y": 6},
        "pins": [{"box_m": [[-1, -1, -1], [-0.49, 1, 1]]}, {"box_m": [[0.49, -1, -1], [1, 1, 1]]}]}],
       "obstacles": [{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}]},
     "formulation": {"name": "log", "d_hat_m": 0.01, "stiffness_policy": {"name": "fixed", "kappa_N_per_m": )" +
