@@ -7,9 +7,9 @@
 namespace bb {
 namespace {
 
-constexpr std::uint64_t seed = 20;    // of the right-hand side
-constexpr int lanczos_products = 40;  // that improve a direction
-constexpr double lanczos_tol = 1e-2;  // of its curvature
+constexpr std::uint64_t side_seed = 20;  // of the right-hand side
+constexpr int lanczos_products = 40;     // that improve a direction
+constexpr double lanczos_tol = 1e-2;     // of its curvature
 
 // The lowest Ritz vector of A in the Krylov space of the direction, which is part of that space itself.
 void improve(const SymmetricProduct& product, Definiteness& out) {
@@ -28,7 +28,7 @@ void improve(const SymmetricProduct& product, Definiteness& out) {
 
 }  // namespace
 
-VecXd definiteness_right_hand_side(Eigen::Index n) { return seeded_vector(n, seed); }
+VecXd definiteness_right_hand_side(Eigen::Index n) { return seeded_vector(n, side_seed); }
 
 Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& preconditioner,
                                   int max_iterations) {

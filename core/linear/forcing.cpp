@@ -4,7 +4,7 @@
 
 namespace bb {
 namespace {
-constexpr double largest = 0.1;  // a looser first direction costs more iterations of Newton than it saves
+constexpr double largest_eta = 0.1;  // a looser first direction costs more iterations of Newton than it saves
 constexpr double gamma = 0.9;
 }  // namespace
 
@@ -23,13 +23,13 @@ double Forcing::tolerance(double b_norm) {
   if (!adaptive_) return tol_rel_;
   if (b_norm == last_norm_) return eta_;
   if (last_norm_ == 0) {
-    eta_ = largest;
+    eta_ = largest_eta;
   } else {
     const double ratio = b_norm / last_norm_, safeguard = gamma * eta_ * eta_;
     eta_ = gamma * ratio * ratio;
-    if (safeguard > largest) eta_ = std::max(eta_, safeguard);
+    if (safeguard > largest_eta) eta_ = std::max(eta_, safeguard);
   }
-  eta_ = std::max(std::min(eta_, largest), tol_rel_);
+  eta_ = std::max(std::min(eta_, largest_eta), tol_rel_);
   last_norm_ = b_norm;
   return eta_;
 }

@@ -12,7 +12,7 @@ namespace bb {
 namespace {
 constexpr int rows_a_task = 256;  // block rows a task
 using Vec4d = Eigen::Matrix<double, 4, 1>;
-using Four = Eigen::Map<const Vec4d>;
+using FourAt = Eigen::Map<const Vec4d>;
 }  // namespace
 
 void SymmetricProduct::update(const ReducedSystem& system) {
@@ -89,11 +89,11 @@ void SymmetricProduct::multiply(const VecXd& x, VecXd& y) const {
   parallel_items(n_blocks(), rows_a_task, [&](int r) {
     Vec4d row0 = Vec4d::Zero(), row1 = row0, row2 = row0;  // the fourth sum is of no meaning
     for (int k = row_start_[at(r)]; k < row_start_[at(r) + 1]; ++k) {
-      const Vec4d v = Four(x_.data() + 4 * at(column_[at(k)]));
+      const Vec4d v = FourAt(x_.data() + 4 * at(column_[at(k)]));
       const double* a = block(k);
-      row0 += Four(a).cwiseProduct(v);
-      row1 += Four(a + 3).cwiseProduct(v);
-      row2 += Four(a + 6).cwiseProduct(v);
+      row0 += FourAt(a).cwiseProduct(v);
+      row1 += FourAt(a + 3).cwiseProduct(v);
+      row2 += FourAt(a + 6).cwiseProduct(v);
     }
     const double sums[] = {row0[0] + row0[1] + row0[2], row1[0] + row1[1] + row1[2],
                            row2[0] + row2[1] + row2[2]};

@@ -13,8 +13,6 @@
 #include "core/record/provenance.hpp"
 
 namespace bb {
-namespace {
-
 static_assert(std::endian::native == std::endian::little, "state_hash hashes memory as it lies");
 
 class Sha256 {
@@ -50,6 +48,8 @@ class Sha256 {
  private:
   std::unique_ptr<EVP_MD_CTX, void (*)(EVP_MD_CTX*)> context_;
 };
+
+namespace {
 
 /// A file is known by its content and by the suffix that chooses its reader, never by where it lies.
 void drop_places(nlohmann::json& j) {
