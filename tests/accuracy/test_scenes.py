@@ -2,6 +2,7 @@
 
 import json
 import subprocess
+from dataclasses import replace
 
 import pytest
 
@@ -78,6 +79,11 @@ def test_refined_reference_is_the_middle_and_its_band_the_distance(program, tmp_
         refined(a, scene(program, tmp_path / "other", "impact", 30, **{"/time/steps": 61}), "middle")
 
 
-def test_a_last_frame_that_is_not_the_end_is_told(program, tmp_path):
-    with pytest.raises(NoReference, match="frames_every has to divide"):
-        measure(scene(program, tmp_path, "stack", 40), CLOSED_FORMS["rigid_stack"]())
+def test_the_last_frame_is_the_end_whatever_the_frames_between(program, tmp_path):
+    """The last state of a run has a frame of its own; a motion that lacks it is told and measured by nothing."""
+    motion = scene(program, tmp_path, "stack", 25)
+    last = motion.record["steps"][-1]
+    assert last["step"] % 25 != 0 and motion.times[-1] == last["t_s"] and len(motion.times) == 2 + last["step"] // 25 + 1
+    assert 1e-4 < measure(motion, CLOSED_FORMS["rigid_stack"]())[0]["e_offset"] < 4 * 0.004
+    with pytest.raises(NoReference, match=r"the last frame is of \S+ s and the run ends at \S+ s"):
+        measure(replace(motion, frames=motion.frames[:-1], times=motion.times[:-1]), CLOSED_FORMS["rigid_stack"]())

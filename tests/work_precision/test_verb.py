@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from analysis.record_file import RecordError
 from analysis.work_precision import __main__ as verb
 from analysis.work_precision import report
 from analysis.work_precision.spec import ROOT, SpecError, read_spec
@@ -66,8 +67,8 @@ def test_refined_references_have_a_band_for_every_time_step(run, tmp_path):
 
 
 def test_a_reference_that_fails_is_told(run, tmp_path, capsys):
-    """With a stiffness that carries nothing the cubic stalls: no reference."""
-    scene = {**STRIP, "set": {"/matching/rule": "equal_force", "/matching/load_N": 1e-6}, "vary": {}}
+    """With a stiffness that carries less than the impact the cubic stalls: no reference."""
+    scene = {**STRIP, "set": {"/matching/rule": "equal_force", "/matching/load_N": 0.02}, "vary": {}}
     assert run({**SPEC, "formulations": ["log"], "scenes": [scene]}) == 2
     said = capsys.readouterr().err
     assert "reference run 'reference cubic dt_s x1' ended stall_overload" in said and "a reference has to be ok and valid" in said
@@ -81,9 +82,13 @@ def test_missing_records_and_bad_numbers_are_told(run, tmp_path, capsys):
     frame = next((tmp_path / "runs").glob("small-stack/log_anchor_direct*/frames/step_000020.ply"))
     good = frame.read_bytes()
     frame.write_bytes(good.replace(good[good.index(b"end_header\n") + 11:][:8], b"\x00\x00\x00\x00\x00\x00\xf8\x7f", 1))
+    with pytest.raises(RecordError, match="step_000020.ply: found sha256"):  # a frame of other content
+        verb.collect(spec, spec.scenes[0], tmp_path / "runs")
+    record = frame.parents[1] / "run.json"  # a record whose own frame has no numbers
+    record.write_text(record.read_text().replace(hashlib.sha256(good).hexdigest(), hashlib.sha256(frame.read_bytes()).hexdigest()))
     with pytest.raises(SpecError, match="log_anchor_direct.*e_traj is nan"):
         verb.collect(spec, spec.scenes[0], tmp_path / "runs")
-    (frame.parents[1] / "run.json").unlink()
+    record.unlink()
     with pytest.raises(SpecError, match="1 of 2 records missing, the first is 'log anchor direct'"):
         verb.collect(spec, spec.scenes[0], tmp_path / "runs")
     capsys.readouterr()
