@@ -338,8 +338,8 @@ SCENE_CASES = [
     for name, (content, says) in WRONG_SCENES.items() for make in (check, refused_run)
 ]
 SCENE_CASES += [
-    check("bowl-smaller-than-what-is-in-it", with_obstacle("sphere", radius_m=0.2, inside=True), "obstacle: thing", "gap -"),
-    check("obstacle-that-touches-at-the-start", with_obstacle("sphere", radius_m=1.0), "obstacle: thing", "gap 0 m"),
+    check("bowl-smaller-than-what-is-in-it", with_obstacle("sphere", radius_m=0.2, inside=True), 'body "cloth" inside obstacle "thing"', "found 1.41421 m across", "less than 0.4 m"),
+    check("obstacle-that-touches-at-the-start", with_obstacle("sphere", radius_m=1.0), "obstacle_triangle: thing, cloth[0]", "gap 0 m"),
     check("plane-that-touches-at-the-start", config({"bodies": [body(grid())], "obstacles": [{"name": "floor", "kind": "plane", "point_m": [0, 0, 0]}]}),
           "obstacle: floor", "gap 0 m"),
     check("ten-thousand-and-one-bodies", bodies(*[body(grid(), name=f"b{i}") for i in range(10_001)]), "at most 10000"),
