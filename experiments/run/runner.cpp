@@ -160,6 +160,17 @@ std::optional<RunRecord> recorded(const RunRecord& asked_for, const RunOptions& 
   return std::move(stored->record);
 }
 
+/// What a process that was killed had finished gets its names. The checkpoint of a run that is over goes first: nothing
+/// would ever go on from it. Returns whether there was a record to put in place.
+bool put_finished_in_place(const std::filesystem::path& folder, Checkpoint& checkpoint) {
+  try {
+    const auto finished = read_run(pending_record(folder));
+    if (finished && !was_cut(finished->status.outcome)) checkpoint.remove();
+  } catch (const ConfigError&) {  // of another version: what lies there is judged as it is
+  }
+  return put_in_place(folder);
+}
+
 int thread_count(const RunConfig& config) {
   return config.threads > 0 ? config.threads : oneapi::tbb::info::default_concurrency();
 }
@@ -203,9 +214,9 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   require_usable(config.linear_solver.name);
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);
-  const bool completed = put_in_place(options.folder);      // what a process that was killed had finished
   const RunRecord asked_for = identified(config, options);  // inputs where they are now
   Checkpoint checkpoint(options.folder, asked_for.ids.build_id);
+  const bool completed = put_finished_in_place(options.folder, checkpoint);
   if (auto record = completed ? recorded(asked_for, options) : std::nullopt) return *record;
   std::optional<Resumed> resumed = resumed_from(checkpoint, asked_for, options);
   resumed ? remove_temporaries(options.folder) : remove_unfinished(options.folder);
