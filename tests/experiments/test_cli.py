@@ -263,7 +263,7 @@ def test_a_full_output_folder(program, tmp_path, limit):
     done = bench(program, "run", BLOCK, "--out", tmp_path / "out", "--set", "/time/steps=1",
                  restore_signals=False, preexec_fn=full)
     refused(done, str(tmp_path / "out"), code=75)
-    assert list((tmp_path / "out").iterdir()) == []
+    assert not (tmp_path / "out").exists()
 
 
 @pytest.mark.parametrize("taken", ["frames", "frames/step_000000.ply"])
@@ -288,7 +288,7 @@ def test_a_disk_that_a_frame_fills(program, tmp_path):
     config = bodies(tmp_path, {"generator": "grid", "n_x": 20, "n_y": 20}, output={"frames_every": 1})
     done = bench(program, "run", config, "--out", tmp_path / "out", restore_signals=False, preexec_fn=full)
     refused(done, "frames.part/start.ply", code=75)
-    assert list((tmp_path / "out").iterdir()) == []
+    assert not (tmp_path / "out").exists()
 
 
 def long_run(tmp_path) -> list:

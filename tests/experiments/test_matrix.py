@@ -179,7 +179,7 @@ def test_a_run_writes_both_files_with_their_hashes_and_they_replay(program, tmp_
     assert done.returncode == 0, done.stderr
     record = json.loads((tmp_path / "out/run.json").read_text())
     kinds = [artifact["kind"] for artifact in record["artifacts"]]
-    assert kinds.count("matrix") == kinds.count("matrix_side_car") >= 1 and len(kinds) == len(list((tmp_path / "out/matrices").iterdir()))
+    assert kinds.count("matrix") == kinds.count("matrix_side_car") >= 1 and kinds.count("trace") == 1 and len(kinds) - 1 == len(list((tmp_path / "out/matrices").iterdir()))
     first = tmp_path / "out/matrices/step_000000_iteration_000.json"
     side_car = json.loads(first.read_text())
     assert (side_car["scene"], side_car["formulation"], side_car["step"], side_car["iteration"]) == ("hang", "log", 0, 0)
