@@ -6,6 +6,7 @@
 #include "barriers/shapes/registry.hpp"
 #include "core/resident/contact/contact_sums.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
+#include "tests/contact/obstacle_scenes.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 #include "tests/resident/contact_on_executor.hpp"
 
@@ -167,9 +168,12 @@ std::vector<Subject> subjects() {
     const Scene scene = full_scene(seed);
     out.push_back({scene, shaken(scene)});
   }
+  // sides along a bar, some of them with a given end
+  const Scene scene = around_obstacles(2);
+  out.push_back({scene, scene.x0});
   for (const PlanarPairs pairs : {PlanarPairs::vertex_vertex, PlanarPairs::point_edge}) {
-    const Scene scene = planar_layers(pairs, 4);
-    out.push_back({scene, scene.x0});
+    const Scene layers = planar_layers(pairs, 4);
+    out.push_back({layers, layers.x0});
   }
   return out;
 }
