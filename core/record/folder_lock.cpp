@@ -42,6 +42,7 @@ FolderLock::FolderLock(const fs::path& folder) : folder_(folder), path_(folder /
   if (::ftruncate(fd_, 0) == 0 && ::write(fd_, text.data(), text.size()) == ::ssize_t(text.size())) return;
   const int error = errno;  // the destructor does not run
   ::unlink(path_.c_str());
+  if (made_) ::rmdir(folder_.c_str());
   ::close(fd_);
   fail_with(path_, "cannot write", error);
 }

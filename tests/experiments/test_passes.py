@@ -69,7 +69,14 @@ def test_a_sweep_goes_on_after_a_case_that_fails_midway(program, build_folder, t
     assert "no record" in done.stdout
     assert [json.loads(p.read_text())["labels"]["integrator"] for p in (tmp_path / "out").glob("*/run.json")] == ["implicit_euler"]
     # what an earlier build left there stays, but takes no part in the sweep
-    failed, = (tmp_path / "out").glob("name=negative_weight-*")
+    words = ["--set", "/time/steps=2", "--set", '/matching/rule="as_given"', "--set", '/integrator/name="{}"']
+    ids = {}
+    for name in ("negative_weight", "implicit_euler"):
+        told = bench(program, "--plugin", plugin, "explain", BLOCK, *(word.format(name) for word in words)).stdout
+        ids[name] = told.splitlines()[0].rsplit("-", 1)[1]
+    assert [p.name for p in (tmp_path / "out").glob("name=*")] == [f"name=implicit_euler-{ids['implicit_euler']}"]
+    failed = tmp_path / "out" / f"name=negative_weight-{ids['negative_weight']}"
+    failed.mkdir()
     for name in ("run.json", "trace.jsonl"):
         write(failed / name, "{}")
     again = bench(program, "--plugin", plugin, "sweep", spec, "--out", tmp_path / "out", "--again")
