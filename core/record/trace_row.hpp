@@ -30,7 +30,7 @@ inline constexpr int n_words<ProvenEnds> = 4;
 template <>
 inline constexpr int n_words<ConditionStatus> = 5;
 template <>
-inline constexpr int n_words<LinearStatus> = 6;
+inline constexpr int n_words<LinearStatus> = 7;
 
 /// Which Hessian of its terms it holds.
 enum class MatrixForm { clamped, solved };
