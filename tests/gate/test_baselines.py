@@ -79,7 +79,9 @@ def test_another_processor_still_passes(gate, folder, answer):
     """Costs may then move as far as those of perturbed copies, and are not averaged."""
     def elsewhere(b):
         b["made_by"]["cpu_model"] = "another processor"
-        b["metrics"]["factorizations"].update(value=66, lower=60, upper=72)  # the run has 69: 4.5% more
+        kept = b["metrics"]["factorizations"]
+        assert kept["value"] > 20
+        kept.update(value=kept["value"] * 0.95, lower=kept["value"] * 0.9, upper=kept["value"] * 1.05)  # the run has 5.3% more
 
     edit(folder, elsewhere)
     assert gate("gate", "--case", "block-log", "--baselines", folder) == 0
