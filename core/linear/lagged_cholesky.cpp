@@ -30,13 +30,16 @@ void keep_matrix(Archive& archive, ReducedSystem& system) {
                                                         start.data(), row.data(), value.data());
 }
 
-/// M = L L^T of the matrix that setup() saw last, of which it has a copy.
+/// M = L L^T of the matrix that it factorised last, of which it has a copy.
 class Factor final : public Preconditioner {
  public:
-  LinearStatus setup(const ReducedSystem& system, const SymmetricProduct&) override {
+  LinearStatus factorize(const ReducedSystem& system) {
     const LinearStatus status = factor_.factorize(system);
     if (status == LinearStatus::ok) of_ = system;
     return status;
+  }
+  LinearStatus setup(const ReducedSystem& system, const SymmetricProduct&) override {
+    return factorize(system);
   }
   /// The matrix; one that read it has to make the factor.
   void keep(Archive& archive) override {
@@ -44,9 +47,9 @@ class Factor final : public Preconditioner {
     keep_matrix(archive, of_);
   }
   LinearStatus make() { return factor_.factorize(of_); }
-  void apply(const VecXd& r, VecXd& z) const override { factor_.solve(r, z); }
+  void solve(const VecXd& r, VecXd& z) const { factor_.solve(r, z); }
+  void apply(const VecXd& r, VecXd& z) const override { solve(r, z); }
   const CholmodFactor& cholmod() const { return factor_; }
-  CholmodFactor& cholmod() { return factor_; }
 
  private:
   mutable CholmodFactor factor_;  // a solve writes to its workspace
@@ -69,7 +72,7 @@ class LaggedCholesky final : public LinearSolver {
 
   // The factor that is left, of A or of the near matrix, serves the solves to come.
   Definiteness examine(const ReducedSystem& a, const NearMatrix& near) override {
-    Definiteness out = examine_directly(factor_.cholmod(), a, near);
+    Definiteness out = examine_directly(factor_, a, near);
     n_ = out.verdict == Definiteness::Verdict::unknown ? -1 : a.lower.rows();
     return out;
   }

@@ -74,7 +74,8 @@ def test_every_status_of_the_corpus(replayed, name):
             assert status in (allowed if isinstance(allowed, list) else [allowed]), (part, which)
 
 
-LOOSE = {("indefinite_clamped", "none")}  # eigenvalues lie dense at its large end: tiers 2 and 4 stop at what they promise, 1e-3; measured 1.4e-5
+# Eigenvalues lie dense at one end: tiers 2 and 4 stop at what they promise, 1e-3; measured 1.4e-5 and 4.7e-6.
+LOOSE = {("indefinite_clamped", "none"): 1e-3, ("tikhonov_literal", "none"): 1e-5}
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -95,7 +96,7 @@ def test_condition_numbers_agree_with_dense_eigenvalues_of_numpy(replayed, name)
             elif low <= noise:
                 assert mine["status"] != "ok" or mine["cond"] >= high / (2 * noise), (scaling, tier)
             elif mine["status"] == "ok":
-                tolerance = 1e-3 if (name, scaling) in LOOSE and tier in (2, 4) else 1e-6
+                tolerance = LOOSE.get((name, scaling), 1e-6) if tier in (2, 4) else 1e-6
                 assert mine["cond"] == pytest.approx(high / low, rel=tolerance + noise / low), (scaling, tier)
             else:
                 assert mine["status"] == "lower_bound" and mine["cond"] <= high / low * (1 + 1e-6 + noise / low), (scaling, tier)

@@ -52,10 +52,17 @@ struct Solved {
   LinearReport report;
 };
 
+/// Every second time another matrix is examined afterwards, whose factor may be what is left.
 Solved solve(LinearSolver& solver, const ReducedSystem& system, unsigned seed) {
   solver.begin_step();
   Solved out;
   out.report = solver.solve(system, random_vector(system.lower.rows(), seed), out.x);
+  if (seed % 2 == 0) return out;
+  ReducedSystem other = system;
+  for (Eigen::Index k = 0; k < other.lower.nonZeros(); ++k) other.lower.valuePtr()[k] *= 1.2;
+  other.lower.coeffRef(0, 0) *= 3;
+  const Definiteness found = solver.examine(other, [&system]() -> const ReducedSystem& { return system; });
+  EXPECT_EQ(found.verdict, Definiteness::Verdict::positive);
   return out;
 }
 
