@@ -24,6 +24,7 @@ struct Particle {
     history.a(0) = force - stiffness * x0;
     history.x_prev = history.x;
     history.v_prev = history.v;
+    a = Positions::Zero(3, 1);  // stays so where the integrator keeps none
   }
   void step(const Integrator& integrator, double dt) {
     integrator.predict(history, dt, prediction);
@@ -64,6 +65,7 @@ TEST(Integrators, reach_their_order_on_the_oscillator) {
 }
 
 TEST(Integrators, velocity_is_consistent_with_the_force) {
+  int with_acceleration = 0;
   for (const IntegratorEntry& entry : integrators()) {
     const auto integrator = make_integrator(entry.name);
     if (integrator->quasi_static()) continue;
@@ -71,8 +73,10 @@ TEST(Integrators, velocity_is_consistent_with_the_force) {
     const double dt = 0.01;
     for (int i = 0; i < 50; ++i) particle.step(*integrator, dt);
     EXPECT_NEAR(particle.history.v(0), 3 - 9.81 * 0.5, 1e-10) << entry.name;
-    EXPECT_NEAR(particle.history.a(0), -9.81, 1e-9) << entry.name;
+    EXPECT_NEAR(particle.history.a(0), integrator->needs_acceleration() ? -9.81 : 0, 1e-9) << entry.name;
+    with_acceleration += integrator->needs_acceleration() ? 1 : 0;
   }
+  EXPECT_EQ(with_acceleration, 1);
 }
 
 TEST(Integrators, newmark_keeps_the_energy_of_the_oscillator_and_implicit_euler_does_not) {
