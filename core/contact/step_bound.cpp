@@ -178,9 +178,9 @@ FirstContact StepBoundFinder::ask_obstacle(const Primitives<N>& primitives, Inde
     found.toi = obstacle_toi(obstacle, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
                              offset, park);
   } else {
-    // of the coordinates of the obstacle too, whose point and radius ACCD computes with
-    const double least = floor(vertex, law.offset + exact.radius + exact.point.cwiseAbs().maxCoeff(), 0);
-    const double stop = std::max(level_.park * law.d_hat, least);
+    const double level = level_.park * law.d_hat;
+    const double stop =
+        std::max(level, floor(vertex, law.offset, level));  // the obstacle's own is added there
     const double proven = obstacle_proven_time<N, T>(
         exact, gather(motion.x0, vertex), gather(motion.x1, vertex), law.offset, stop, part.first.toi);
     if (proven > part.first.toi) return found;

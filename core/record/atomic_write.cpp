@@ -211,16 +211,14 @@ void TraceWriter::end_step() {
   if (std::fflush(file_) != 0) fail("cannot write");
 }
 
-Artifact TraceWriter::artifact() {
-  end_step();
-  std::error_code error;
+Artifact TraceWriter::artifact() const {
+  const FilePrefix written = hash_.so_far();
   Artifact out;
   out.path = path_.filename().string();
   out.kind = "trace";
   out.media_type = "application/jsonl";
-  out.sha256 = sha256_file(part_.string());
-  out.bytes = fs::file_size(part_, error);
-  if (error || out.sha256.empty()) fail_with(part_, "cannot read", error ? error.value() : EIO);
+  out.sha256 = written.sha256;
+  out.bytes = written.bytes;
   return out;
 }
 

@@ -74,9 +74,9 @@ struct Bodies {
   bool pairs_in_one = false;  // a deformable body with vertices that are not neighbours
 };
 
-Bodies count_bodies(const Scene& scene, const Flags& is_free) {
+Bodies count_bodies(const Scene& scene, const Flags& is_free, const PrimitiveCount& lone) {
   // so many vertices of one body never make a pair
-  const int few = scene.planar ? 1 : lone_edges(scene).empty() ? 3 : 2;
+  const int few = scene.planar ? 1 : lone.n > 0 ? 2 : 3;
   Bodies out;
   for (const Body& body : scene.bodies) {
     const auto begin = is_free.begin() + body.first_vertex;
@@ -87,7 +87,8 @@ Bodies count_bodies(const Scene& scene, const Flags& is_free) {
   return out;
 }
 
-void plan_pairs(const Scene& scene, const PrimitiveCount& points, const Flags& is_free, ContactPlan& plan) {
+void plan_pairs(const Scene& scene, const PrimitiveCount& points, const PrimitiveCount& lone,
+                const Flags& is_free, ContactPlan& plan) {
   if (scene.planar && scene.planar_pairs == PlanarPairs::vertex_vertex) {
     plan.point_point = points.n > 1 && points.free;
     return;
@@ -100,7 +101,6 @@ void plan_pairs(const Scene& scene, const PrimitiveCount& points, const Flags& i
   const PrimitiveCount triangles = count_triangles(scene, is_free);
   plan.point_triangle = triangles.n > 0 && points.n > 3 && (points.free || triangles.free);
   plan.edge_edge = edges.n > 1 && edges.n_vertices > 3 && edges.free;
-  const PrimitiveCount lone = count_lone_edges(scene, is_free);
   plan.point_edge = lone.n > 0 && points.n > 2 && (points.free || lone.free);
 }
 
@@ -133,9 +133,10 @@ ContactPlan plan_contact(const Scene& scene, Mollifier mollifier) {
   Flags is_free(static_cast<std::size_t>(scene.n_vertices()), 1);
   for (const Pin& pin : scene.pins) is_free[static_cast<std::size_t>(pin.vertex)] = 0;
   const PrimitiveCount points = count_points(scene, is_free);
-  const Bodies bodies = count_bodies(scene, is_free);
+  const PrimitiveCount lone = count_lone_edges(scene, is_free);
+  const Bodies bodies = count_bodies(scene, is_free, lone);
   ContactPlan plan;
-  plan_pairs(scene, points, is_free, plan);
+  plan_pairs(scene, points, lone, is_free, plan);
   const bool pairs = plan.point_point || plan.point_edge || plan.point_triangle || plan.edge_edge;
   plan.broad_phase = plan_item(pairs, "pairs of surfaces", "no pair of surfaces");
   const bool mollify = mollifier != Mollifier::none;

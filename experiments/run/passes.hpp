@@ -18,9 +18,8 @@ struct RunFiles {
   std::optional<TraceWriter> trace;
   std::optional<ArtifactWriter> artifacts;
 
-  /// What the record names: frames and matrices so far, and the trace as it is now. Errors: RecordError.
-  /// Cost: reads the trace.
-  std::vector<Artifact> written() {
+  /// What the record names: frames and matrices so far, and the trace as it is now.
+  std::vector<Artifact> written() const {
     std::vector<Artifact> out;
     if (artifacts) out = artifacts->written();
     if (trace) out.push_back(trace->artifact());

@@ -149,8 +149,8 @@ BB_HD double obstacle_time(const BoundQuery& q, Index i, Index o, double enough,
   if constexpr (N == 1) {
     toi = obstacle_toi<double>(obstacle, from, to, offset, park);
   } else {
-    const double size = offset + obstacle.radius + obstacle.point.cwiseAbs().maxCoeff();
-    const double floor = stop_floor(q, vertex, N, size), stop = park > floor ? park : floor;
+    const double floor = stop_floor(q, vertex, N, offset);
+    const double stop = park > floor ? park : floor;  // the obstacle's own is added there
     if (obstacle_proven_time<N, double>(obstacle, from, to, offset, stop, enough) > enough) return 1;
     const AccdResult<double> r =
         obstacle_accd<N, double>(obstacle, from, to, offset, park, q.max_probes, enough);
