@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from . import fields
-from .record_file import RecordError, read_record, read_trace
+from .record_file import RecordError, other_meanings, read_record, read_trace
 
 LARGEST_COND = 1e14  # beyond it rounding decides the smallest eigenvalue: what the record calls a lower bound
 
@@ -86,9 +86,19 @@ def load(root: str | Path) -> Records:
         print(f"{line}; left out", file=sys.stderr)
     if unreadable:
         print(f"{root}: {len(unreadable)} of {len(unreadable) + len(runs)} records left out", file=sys.stderr)
+    _say_other_meanings(root, runs)
     table = pd.DataFrame(runs).sort_values(["group", "started_utc"], kind="stable", ignore_index=True)
     table["series"] = _unique_series(table)
     return Records(table, pd.DataFrame(steps), pd.DataFrame(trace), pd.DataFrame(cond), unreadable)
+
+
+def _say_other_meanings(root: Path, runs: list[dict]) -> None:
+    """Records are read as they are: a field that meant something else in their version is named."""
+    earlier = [found for row in runs if (found := other_meanings(row["schema_version"]))]
+    if earlier:
+        since = next(iter(earlier[0].values()))["since"]
+        print(f"{root}: {len(earlier)} of {len(runs)} records are of before {since}, in which these fields mean something else: {', '.join(earlier[0])} (./bench help record, "
+              "./bench help trace)", file=sys.stderr)
 
 
 def _unique_series(runs: pd.DataFrame) -> pd.Series:

@@ -19,6 +19,7 @@ from . import fields
 VERSION = fields.schema("run")["$defs"]["SchemaId"]["properties"]
 SCHEMA_NAME, SCHEMA_MAJOR = VERSION["name"]["enum"][0], VERSION["version"]["pattern"].strip("^").split("\\.")[0]
 OURS = tuple(int(part) for part in fields.schema("run")["$comment"].removeprefix("version ").split("."))
+CHANGED = {**fields.schema("run")["x-changed-meaning"], **{f"trace {field}": change for field, change in fields.schema("trace")["x-changed-meaning"].items()}}
 TRACE = "trace.jsonl"
 HASHED_TRACES = (3, 4)  # the first version whose records name their trace in `artifacts`
 NEEDED = {"ids": ("run_id",), "status": ("outcome", "valid"), "labels": ("scene", "formulation"), "summary": (), "steps": ()}
@@ -38,8 +39,19 @@ def leaves(value, place: str = "") -> Iterator[tuple[str, object]]:
         yield place, value
 
 
+def _parts(version: str) -> tuple[int, ...]:
+    return tuple(int(part) for part in version.split("."))
+
+
 def _version(record: dict) -> tuple[int, ...]:
-    return tuple(int(part) for part in record["schema"]["version"].split("."))
+    return _parts(record["schema"]["version"])
+
+
+def other_meanings(version: str, other: str = ".".join(map(str, OURS))) -> dict[str, dict]:
+    """Fields that mean something else in records of the one version than in those of the other, by default this reader's: place of the field
+    (`trace ...` of a line of the trace) -> since which version it means what it does now, and what it meant before."""
+    low, high = sorted((_parts(version), _parts(other)))
+    return {field: change for field, change in CHANGED.items() if low < _parts(change["since"]) <= high}
 
 
 def _check_schema(record: dict, path: Path) -> None:

@@ -18,9 +18,12 @@ import pandas as pd  # noqa: E402
 from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 
 from .captions import caption  # noqa: E402
+from .record_file import other_meanings  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
 HOLLOW = r"hollow markers: the run failed, is not valid, or a quantile (5, 50 or 95 % of the load) of gap/$\hat{{d}}$ between two bodies at converged step ends is not within a factor {ratio:g} of {reference}"
+FAILED = "hollow markers: the run failed, is not valid or not comparable"  # where all verdicts are of an earlier rule
+VERDICT, JUDGED = "comparability.verdict", ("comparable", "not_comparable")  # the field, and its words that a rule on gaps decides
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
 LEAST_RATIO = 2.0  # a logarithmic axis never shows less
@@ -120,6 +123,22 @@ def verdict_word(row: pd.Series) -> str:
     return row["comparability_verdict"] if row["comparability_verdict"] in ("not_valid", "not_comparable") else ""
 
 
+def earlier_rule(row: pd.Series) -> dict | None:
+    """The rule by which comparability was judged in the version of the record (`since`, `before`); None where it is that of now, or nothing was compared."""
+    if row.get("comparability_verdict") not in JUDGED or not row.get("schema_version"):
+        return None
+    return other_meanings(row["schema_version"]).get(VERDICT)
+
+
+def judged_words(row: pd.Series) -> list[str]:
+    """verdict_word, with the rule where it is another one than that of other records."""
+    word, rule = verdict_word(row), earlier_rule(row)
+    if rule is None:
+        return [word] if word else []
+    judged = f"{row['comparability_verdict']} by the rule before {rule['since']}"
+    return [judged] if word in ("", row["comparability_verdict"]) else [word, judged]
+
+
 def end_word(row: pd.Series) -> str:
     """Which residual the steps of a run end with that its step solver does not ask to converge; else empty."""
     if row.get("convergence") != "not_asked":
@@ -131,7 +150,7 @@ def end_word(row: pd.Series) -> str:
 
 def name_of(row: pd.Series) -> str:
     """The legend's text: the series, the word of a run whose marker is hollow, and of one that does not converge."""
-    words = [word for word in (verdict_word(row), end_word(row)) if word]
+    words = judged_words(row) + [word for word in (end_word(row),) if word]
     return f"{row['series']} ({'; '.join(words)})" if words else row["series"]
 
 
@@ -173,7 +192,10 @@ def hollow_rule(runs: pd.DataFrame) -> str:
         return ""
     names = runs.drop_duplicates("run").set_index("folder")["series"]
     references = " or ".join(dict.fromkeys(names.get(folder, folder) for folder in compared["comparability_reference_run"]))
-    text = HOLLOW.format(ratio=compared["comparability_max_ratio"].iloc[0], reference=references)
+    rules = [earlier_rule(row) for _, row in compared.iterrows() if row["comparability_verdict"] in JUDGED]
+    text = FAILED if rules and all(rules) else HOLLOW.format(ratio=compared["comparability_max_ratio"].iloc[0], reference=references)
+    if rule := next(filter(None, rules), None):
+        text += f"; by the rule before {rule['since']}, with reference {references}, {rule['before']}"
     return "\n".join(textwrap.wrap(text, 110))
 
 

@@ -38,15 +38,12 @@ def summary_table(records: Records) -> pd.DataFrame:
     rows = []
     for _, run in records.runs.iterrows():
         raw, scaled = _cond(records, run["run"], "none"), _cond(records, run["run"], "block_jacobi")
-        word = style.verdict_word(run)
-        verdict = run["outcome"] if word in ("", run["outcome"]) else f"{run['outcome']}, {word}"
-        if end := style.end_word(run):
-            verdict += f", {end}"
+        words = [run["outcome"], *style.judged_words(run), style.end_word(run)]
         rows.append(
             {
                 "group": run["group"],
                 "series": run["series"],
-                "verdict": verdict,
+                "verdict": ", ".join(dict.fromkeys(word for word in words if word)),
                 "cond_raw_median": raw[0],
                 "cond_raw_max": raw[1],
                 "cond_bj_median": scaled[0],

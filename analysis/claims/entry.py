@@ -16,6 +16,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "claims"
 NAME = "barrierbench.claim/1"
 REQUIRED = ("id", "source", "sentence", "dimension", "guarantee")
+SOLVER = "/step_solver/name"
 OPTIONAL = ("schema", "parts", "waits_for", "note", "rule_changes", "frontier")
 
 
@@ -52,6 +53,7 @@ class Sweep:
     name: str
     sha256: str
     cases: dict[str, tuple[str, str, str, int]] = field(hash=False, default_factory=dict)  # note of a record -> its place
+    solvers: dict[str, str] = field(hash=False, default_factory=dict)  # case -> step solver, of those that name one
 
     @property
     def file(self) -> str:
@@ -118,4 +120,5 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
         if not level or not labels[2].startswith("main="):
             raise ClaimError(f"{path}: {labels}: the axes are SCENE LEVEL, case, /seeds/main")
         cases[f"{name}: {' '.join(labels)}"] = scene, level, labels[1], int(labels[2].removeprefix("main="))
-    return Sweep(name, hashlib.sha256(path.read_bytes()).hexdigest(), cases)
+    solvers = {case["label"]: case["set"][SOLVER] for case in data["axes"][1]["cases"] if SOLVER in case["set"]}
+    return Sweep(name, hashlib.sha256(path.read_bytes()).hexdigest(), cases, solvers)

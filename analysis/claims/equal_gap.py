@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import re
 from collections import Counter
 
 from ..matching.front import Point, log_ratio, reached
+from .ends import STIFFNESS
 from .entry import ClaimError
 from .metrics import METRICS
 from .numbers import _scene, judge_cells
 from .table import Runs
 from .verdict import Judged
 
-STIFFNESS = re.compile(r"(.+) x([0-9.e+-]+)$")  # a case of a sweep over stiffness: NAME xSCALE
 LEAST_SCALES = 5
 
 

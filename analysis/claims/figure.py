@@ -17,7 +17,8 @@ COLORS = {HOLDS: "#009E73", ONLY_IF: "#E69F00", NOT: "#D55E00", OPEN: "#888888"}
 RANGE = (0.1, 100.0)  # what is beyond is an arrow at the edge
 SHOWN = ("The main number of every claim that has one, that of its first part: a ratio (or what its line says), geometric mean and 95% interval over scenes, levels "
          "and jittered starts; a proof (diamond) has the range of its numbers. Black ticks: the thresholds of the rule; an arrow: beyond the axis. The colour is the "
-         "verdict of the whole claim, which may have more parts and other conditions (results/CLAIMS.md).")
+         "verdict of the whole claim, which may have more parts and other conditions (results/CLAIMS.md). Where steps are not asked to converge, the label has the residual of "
+         "their ends.")
 
 
 def _inside(x: float) -> float:
@@ -39,7 +40,11 @@ def _row(axis, k: int, a: Answer) -> dict:
             axis.plot([bound, bound], [k - 0.36, k + 0.36], color="black", linewidth=0.9)
     axis.annotate(f"{interval(j)}, asked {j.threshold}", (1.03, k), xycoords=("axes fraction", "data"), va="center", fontsize=6)
     return {"claim": a.claim.id, "verdict": a.verdict.verdict, "measures": j.measures, "value": j.value, "lower": j.lower, "upper": j.upper,
-            "threshold": j.threshold, "proof": j.proof}
+            "threshold": j.threshold, "proof": j.proof, "ends": j.ends}
+
+
+def _says(j: Judged) -> str:
+    return f"{j.says} ({j.ends})" if j.ends else j.says
 
 
 def draw(answers: list[Answer], stem: Path) -> list[Path]:
@@ -48,7 +53,7 @@ def draw(answers: list[Answer], stem: Path) -> list[Path]:
     rows = [_row(axis, k, a) for k, a in enumerate(shown)]
     axis.set_xscale("log")
     axis.set_xlim(*RANGE)
-    axis.set_yticks(range(len(shown)), [f"{a.claim.id}  {_wrapped(a.main.says)}" for a in shown], fontsize=6)
+    axis.set_yticks(range(len(shown)), [f"{a.claim.id}  {_wrapped(_says(a.main))}" for a in shown], fontsize=6)
     axis.set_ylim(len(shown) - 0.4, -0.6)
     axis.set_xlabel("number of the claim's first part")
     for verdict, color in COLORS.items():

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import textwrap
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -12,7 +13,8 @@ from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
 from .. import style
 from ..robustness import Frontier, Trial, expected_cost, frontier, profile, success
-from .entry import Claim, ClaimError
+from .ends import end_of_case
+from .entry import Claim, ClaimError, read_sweep
 from .metrics import METRICS
 from .outcomes import hopeless
 from .table import Runs, Table
@@ -27,6 +29,12 @@ SHOWN = ("Ways to a stiffness over {n} problems of the sweep `{sweep}` (scenes x
 
 def cases(runs: Runs) -> list[str]:
     return list(dict.fromkeys(row["case"] for row in sorted(runs.rows, key=lambda r: list(LOOKS).index(r["case"]) if r["case"] in LOOKS else len(LOOKS))))
+
+
+def case_labels(claim: Claim, runs: Runs) -> dict[str, str]:
+    """Case -> its name with the residual of its ends, where its steps are not asked to converge."""
+    sweep = read_sweep(claim.frontier["sweep"])
+    return {case: f"{case} ({end})" if (end := end_of_case(runs.rows, case, sweep)) else case for case in cases(runs)}
 
 
 def _cost(row: dict, name: str) -> float:
@@ -91,23 +99,23 @@ def lines(claim: Claim, table: Table) -> list[str]:
              "each axis, from the nominal level outwards, in which every run of every scene and start gets through; a bracket that opens outwards means that the next tested value fails."
              + (f" The frontier counts every run. From share and ert {left_out}." if left_out else ""), "",
              f"| case | gets through | ert ({cost}) | " + " | ".join(f"frontier of {axis}" for axis in axes) + " |", "|" + "---|" * (len(axes) + 3)]
-    for case in cases(runs):
+    for case, label in case_labels(claim, runs).items():
         every = trials(runs, case, cost)
         share, ert = success(every), expected_cost(every)
         reaches = [_reach(frontier(along(runs, case, axis, middle), middle)) for axis, middle in axes.items()]
-        found.append(f"| {case} | {share.ok} of {share.n} [{share.low:.3f}, {share.high:.3f}] | {'-' if ert is None else f'{ert:.4g}'} | " + " | ".join(reaches) + " |")
+        found.append(f"| {label} | {share.ok} of {share.n} [{share.low:.3f}, {share.high:.3f}] | {'-' if ert is None else f'{ert:.4g}'} | " + " | ".join(reaches) + " |")
     return [*found, ""]
 
 
-def _profiles(axis, runs: Runs, cost: str) -> list[dict]:
-    spent = {case: trials(runs, case, cost) for case in cases(runs)}
+def _profiles(axis, runs: Runs, names: dict[str, str], cost: str) -> list[dict]:
+    spent = {case: trials(runs, case, cost) for case in names}
     costs = [t.cost for every in spent.values() for t in every if t.cost > 0]
     left, right, numbers = 0.9 * min(costs), max(costs), []
     for case, every in spent.items():
         color, marker = LOOKS.get(case, ("#444444", "x"))
         steps = profile(every)
         x, y = [left, *(b for b, _ in steps), right], [0.0, *(s for _, s in steps), steps[-1][1] if steps else 0.0]
-        axis.plot(x, y, drawstyle="steps-post", color=color, marker=marker, markevery=style.marks(len(x), 8), label=case)
+        axis.plot(x, y, drawstyle="steps-post", color=color, marker=marker, markevery=style.marks(len(x), 8), label=_two_lines(names[case]))
         numbers += [{"panel": "profile", "case": case, "budget": b, "share": s} for b, s in steps]
     axis.set(xscale="log", xlim=(left, 1.05 * right), ylim=(0, 1.02), xlabel=f"budget of {cost}", ylabel="share of problems solved")
     axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5)))
@@ -123,8 +131,8 @@ def _order(level: str, axes: dict) -> tuple:
     return (0, 0.0)
 
 
-def _shares(axis, runs: Runs, axes: dict) -> list[dict]:
-    names, left_out = cases(runs), hopeless(runs)
+def _shares(axis, runs: Runs, labels: dict[str, str], axes: dict) -> list[dict]:
+    names, left_out = list(labels), hopeless(runs)
     levels = sorted({row["level"] for row in runs.rows}, key=lambda level: _order(level, axes))
     share, numbers = np.full((len(names), len(levels)), math.nan), []
     for i, case in enumerate(names):
@@ -137,14 +145,21 @@ def _shares(axis, runs: Runs, axes: dict) -> list[dict]:
             numbers.append({"panel": "share", "case": case, "budget": level, "share": share[i, j]})
     axis.imshow(share, vmin=0, vmax=1, cmap="viridis", aspect="auto", alpha=0.85)
     axis.set_xticks(range(len(levels)), levels, rotation=90)
-    axis.set_yticks(range(len(names)), names)
+    axis.set_yticks(range(len(names)), map(_two_lines, labels.values()), fontsize=6)
     axis.grid(False)
     return numbers
 
 
+def _two_lines(label: str) -> str:
+    """What the steps of a case end with stands below its name."""
+    name, _, end = label.partition(" (")
+    return "\n".join([name, *textwrap.wrap("(" + end, 26)]) if end else name
+
+
 def draw(claim: Claim, runs: Runs, stem: Path) -> list[Path]:
+    names = case_labels(claim, runs)
     fig, axes = plt.subplots(1, 2, figsize=(style.WIDE_IN * 1.25, 2.9), layout="constrained", width_ratios=(1, 1.35))
-    numbers = _profiles(axes[0], runs, claim.frontier["cost"]) + _shares(axes[1], runs, claim.frontier["axes"])
+    numbers = _profiles(axes[0], runs, names, claim.frontier["cost"]) + _shares(axes[1], runs, names, claim.frontier["axes"])
     style.letter_panels(axes)
     handles, labels = axes[0].get_legend_handles_labels()
     fig.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False)

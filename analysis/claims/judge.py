@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from . import equal_gap, numbers, outcomes
+from .ends import ends_of_part
 from .entry import Claim, ClaimError, read_sweep
 from .metrics import METRICS
 from .proofs import PROOFS, Eval
@@ -13,6 +14,7 @@ from .verdict import Judged, together, undecided
 
 RULES = {"ratio": numbers.ratio, "level": numbers.level, "slope": numbers.slope, "outcomes": outcomes.outcomes,
          "at_equal_gap": equal_gap.at_equal_gap}
+BY_GAP = ("ratio", "level", "slope")  # rules that leave out runs that are not comparable
 
 
 @dataclass
@@ -48,7 +50,10 @@ def judge_part(part: dict, table: Table, asker: Eval) -> Judged:
     else:
         if part.get("rule") not in RULES:
             raise ClaimError(f"rule {part.get('rule')!r}: one of {', '.join(RULES)}, or a proof: {', '.join(PROOFS)}")
-        judged = RULES[part["rule"]](part, table.sweeps[part["sweep"]])
+        runs = table.sweeps[part["sweep"]]
+        judged = RULES[part["rule"]](part, runs)
+        judged.ends = ends_of_part(part, runs.rows, read_sweep(part["sweep"]))
+        judged.smallest_gaps = part["rule"] in BY_GAP and part.get("counts", "comparable") == "comparable" and runs.of_earlier_rule
     judged.says, judged.beside, judged.sweep = part["says"], part.get("beside", False), part.get("sweep", "")
     judged.machine = METRICS[part["metric"]][2] if "metric" in part else False
     return judged

@@ -5,13 +5,13 @@ from __future__ import annotations
 import math
 from collections import Counter
 
+from ..gap_rule import MAX_RATIO, farthest
 from .entry import ClaimError
 from .estimate import Cells, interval, mean
 from .metrics import METRICS
 from .table import Runs
 from .verdict import HOLDS, LEVELS, NOT, ONLY_IF, OPEN, SCENES, STARTS, Judged, undecided
 
-MAX_GAP_RATIO = 2.0  # of two runs of a pair, where neither is the reference of the other
 
 
 def by_place(runs: Runs, case: str, sweep: str) -> dict[tuple, dict]:
@@ -26,8 +26,21 @@ def refusal(row: dict, metric: str, counts: str) -> str:
     if row["outcome"] != "ok":
         return row["outcome"]
     if counts == "comparable" and row["comparability"] != "comparable":
-        return row["comparability"]
+        return f"{row['comparability']} ({pair})" if (pair := row.get("pair")) else row["comparability"]
     return "" if row.get(metric) is not None else f"no {metric}"
+
+
+def gap_refusal(a: dict, b: dict) -> str:
+    """Why two runs, of which neither is the reference of the other, did their work at other gaps; empty when they did not. By the rule of the records, pair of
+    bodies by pair of bodies; where neither record has such gaps by the smallest gap, as their own verdicts are."""
+    mine, other = a.get("gaps"), b.get("gaps")
+    if mine is None and other is None:
+        far = a["gap_rel"] and b["gap_rel"] and abs(math.log(a["gap_rel"] / b["gap_rel"])) > math.log(MAX_RATIO)
+        return "not_comparable (smallest gap)" if far else ""
+    if mine is None or other is None:
+        return "not_comparable (one record is of before 3.5.0)"
+    apart = farthest(mine, other)
+    return "" if apart is None or apart.comparable else f"not_comparable ({apart.pair})"
 
 
 def pair_refusal(a: dict, b: dict, part: dict) -> str:
@@ -35,8 +48,8 @@ def pair_refusal(a: dict, b: dict, part: dict) -> str:
     reason = refusal(a, metric, counts) or refusal(b, metric, counts)
     if reason or min(a[metric], b[metric]) <= 0:
         return reason or f"{metric} is 0"
-    if counts == "comparable" and a["gap_rel"] and b["gap_rel"] and abs(math.log(a["gap_rel"] / b["gap_rel"])) > math.log(MAX_GAP_RATIO):
-        return "not_comparable"
+    if counts == "comparable" and (reason := gap_refusal(a, b)):
+        return reason
     equal = part.get("equal")
     if equal:
         x, y = a.get(equal["metric"]), b.get(equal["metric"])

@@ -12,6 +12,7 @@ from .table import Table
 from .verdict import ONLY_IF, OPEN, Judged
 
 WIDTH = 140
+BY_SMALLEST = "; compared by smallest gaps"
 
 
 def number(x: float | None) -> str:
@@ -39,9 +40,11 @@ def sentence(j: Judged) -> str:
 def _part(j: Judged) -> list[str]:
     kind = "proof" if j.proof else f"`{j.sweep}`"
     verdict = f"{sentence(j)}{' (beside, decides nothing)' if j.beside else ''}"
-    lines = [f"- {j.says}: **{verdict}**. {j.measures}{' (depends on the machine)' if j.machine else ''}: {interval(j)}, asked: {j.threshold or '-'}; {j.counted or '-'}; {kind}."]
+    lines = [f"- {j.says}: **{verdict}**. {j.measures}{' (depends on the machine)' if j.machine else ''}: {interval(j)}, asked: {j.threshold or '-'}; {j.counted or '-'}{BY_SMALLEST if j.smallest_gaps else ''}; {kind}."]
     if j.per_scene:
         lines.append("  By scene: " + "; ".join(f"{name} {number(v)} [{number(lo)}, {number(hi)}] (n = {n})" for name, v, lo, hi, n in j.per_scene) + ".")
+    if j.ends:
+        lines.append(f"  Ends of steps: {j.ends}.")
     if j.runs:
         lines.append(f"  First {'pair' if len(j.runs) == 2 else 'run'}: run_id {', '.join(j.runs)}.")
     return lines
@@ -81,7 +84,9 @@ HEAD = """# Claims
 Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/laboratory.md, Claims, has the
 rules. A number is a ratio of geometric means over scenes, levels (resolution, load, limit) and jittered starts with a 95% interval by bootstrap over all
 three, or what its line says. cond is a condition number. From a sentence to its runs: its sweep's command makes the records, `run_id` names them in results/claims.json and in
-their run.json, and `./bench run RUN.json` repeats one.
+their run.json, and `./bench run RUN.json` repeats one. Runs are comparable by the gaps at which each pair of bodies carries its load (docs/design.md, Comparability); where a
+part says "compared by smallest gaps", its numbers are of records before version 3.5.0, whose verdicts are by the smallest gap of the whole run: another rule, and the two are never
+compared with each other. An end of a step that is not asked to converge has a residual, in tolerances of a step that is.
 """
 
 
@@ -91,11 +96,15 @@ def _short(a: Answer) -> str:
     return sentence(a.verdict)
 
 
+def main_number(j: Judged) -> str:
+    return f"{j.measures}: {interval(j)}" + (f" ({j.ends})" if j.ends else "")
+
+
 def verdict_table(answers: list[Answer]) -> list[str]:
     lines = ["| claim | sentence | verdict | number of its first part |", "|---|---|---|---|"]
     for a in answers:
         j = a.main
-        lines.append(f"| {a.claim.id} | {a.claim.sentence} | {_short(a)} | {f'{j.measures}: {interval(j)}' if j else '-'} |")
+        lines.append(f"| {a.claim.id} | {a.claim.sentence} | {_short(a)} | {main_number(j) if j else '-'} |")
     return lines
 
 
@@ -123,5 +132,5 @@ def text(answers: list[Answer]) -> str:
     lines = []
     for a in answers:
         j = a.main
-        lines += textwrap.wrap(f"{a.claim.id:4} {sentence(a.verdict)}" + (f"  [{j.measures}: {interval(j)}]" if j else ""), WIDTH, subsequent_indent="     ")
+        lines += textwrap.wrap(f"{a.claim.id:4} {sentence(a.verdict)}" + (f"  [{main_number(j)}]" if j else ""), WIDTH, subsequent_indent="     ")
     return "\n".join(lines)

@@ -9,8 +9,10 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
+from ..gap_rule import gaps_of
 from ..record_file import RecordError, read_record
 from ..whole_file import write_whole
+from .ends import ENDS, end_of_run
 from .entry import ROOT, Claim, ClaimError, Sweep
 from .metrics import FOLDER, METRICS
 
@@ -18,7 +20,8 @@ FILE = ROOT / "results" / "claims.json"
 RUNS = ROOT / "results" / "runs" / "claims"
 NAME = "barrierbench.claims/1"
 PLACE = ("scene", "level", "case", "seed")
-STATE = ("outcome", "comparability", "gap_rel", "run")  # run: the first 16 digits of run_id
+# run: the first 16 digits of run_id. pair: that is not comparable. Numbers of records before 3.5.0 have no pair, gaps and ends
+STATE = ("outcome", "comparability", "gap_rel", "run", "pair", "gaps", *ENDS)
 ID_DIGITS = 16
 
 
@@ -29,6 +32,11 @@ class Runs:
     about: dict  # sha256 of the sweep file, date, machine, program, seconds
     rows: list[dict]
     expected: int
+
+    @property
+    def of_earlier_rule(self) -> bool:
+        """Whether verdicts on comparability are those of records before 3.5.0, by the smallest gap of a run."""
+        return any(row.get("gaps") is None for row in self.rows)
 
     @property
     def complete(self) -> bool:
@@ -55,15 +63,20 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
 
 
 def _rounded(value):
+    if isinstance(value, dict):
+        return {key: _rounded(one) for key, one in value.items()}
+    if isinstance(value, list):
+        return [_rounded(one) for one in value]
     return float(f"{value:.6g}") if isinstance(value, float) else value
 
 
 def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
-    comparability = record["comparability"]
+    comparability, status = record["comparability"], record["status"]
     row = dict(zip(PLACE, place))
-    row |= {"outcome": record["status"]["outcome"] if record["status"]["valid"] or record["status"]["outcome"] != "ok" else "not_valid",
-            "comparability": comparability["verdict"], "gap_rel": _rounded(comparability.get("gap_rel")),
-            "run": record["ids"]["run_id"][:ID_DIGITS]}
+    row |= {"outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid",
+            "comparability": comparability["verdict"], "gap_rel": _rounded(comparability.get("gap_rel")), "run": record["ids"]["run_id"][:ID_DIGITS],
+            "pair": comparability.get("pair", "") if comparability["verdict"] == "not_comparable" else "", "gaps": _rounded(gaps_of(record)),
+            **_rounded(end_of_run(record))}
     return row | {name: _rounded(METRICS[name][3](record)) for name in metrics}
 
 

@@ -30,6 +30,8 @@ class Judged:
     proof: bool = False
     sweep: str = ""
     machine: bool = False  # the number depends on it
+    ends: str = ""  # cases whose steps are not asked to converge, with their residuals
+    smallest_gaps: bool = False  # its runs are compared by the rule of before 3.5.0
 
     def json(self) -> dict:
         return asdict(self)

@@ -12,7 +12,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..record_file import RecordError
-from . import configs, invariants, judge, report
+from . import configs, invariants, judge, meanings, report
 from .baseline import Kept
 from .determinism import same_state
 from .finding import Finding, failures, without_subject
@@ -47,6 +47,7 @@ def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> l
         raise CannotCompare("\n".join([f"{case}: the configs differ in {len(differ)} settings (--different-configs: compare all the same)",
                                        *(f"  {line}" for line in differ)]))
     findings = _torn(case, old) + _torn(case, new) + [f for f in invariants.judge(case, new, foreign=True) if not (f.metric == "trace" and new.torn)]
+    findings += meanings.of_other_version(case, [old, new], old.version, new.version)
     findings += same_state(case, old, new, bool(differ))
     same_kind = bool(old.made_by["compiler"]) and old.made_by == new.made_by
     return findings + judge.numbers(case, _expected(old), measure(new), same_kind)

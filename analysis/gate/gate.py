@@ -13,7 +13,7 @@ import time
 from pathlib import Path
 
 from ..record_file import RecordError
-from . import baseline, configs, invariants, judge, matrices, report, trend
+from . import baseline, configs, invariants, judge, matrices, meanings, report, trend
 from .baseline import Baseline, BaselineError
 from .build_checks import judge_build
 from .calibrate import copies_of
@@ -98,6 +98,7 @@ def judge_record(record: Path, path: Path) -> list[Finding]:
     case = kept.case or str(record)
     dropped = [Finding(case, "I", "trace lines dropped", "report", run.torn, 0, judged=0, note="torn last line")] if run.torn else []
     lines = [f for f in invariants.judge(case, run, foreign=True) if not (f.metric == "trace" and run.torn)]
+    lines += meanings.of_other_version(case, [run], run.version)
     return dropped + lines + judge.numbers(case, kept.metrics, measure(run), bool(kept.made_by) and kept.made_by == run.made_by)
 
 

@@ -29,6 +29,10 @@ class Run:
         return value if isinstance(value, dict) else {}
 
     @property
+    def version(self) -> str:
+        return self.record["schema"]["version"]
+
+    @property
     def threads(self) -> int | None:
         return self.section("provenance").get("threads")
 

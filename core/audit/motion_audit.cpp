@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/audit/box_tree.hpp"
+#include "core/audit/obstacle_tally.hpp"
 #include "core/audit/pair_verdict.hpp"
 #include "core/audit/rigid_reach.hpp"
 #include "core/audit/state_audit.hpp"
@@ -150,13 +151,8 @@ MotionAudit audit_motion(const AuditMesh& mesh, const std::vector<int>& vertices
   }
   if (mesh.obstacles.empty()) return out;
   const ObstacleAudit found = audit_obstacles(mesh, primitives, x0, x1);
-  out.obstacle_judged = found.judged;
-  out.obstacle_violations = found.violations;
-  out.obstacle_by_vertex = found.by_vertex;
+  add_obstacles(found, out);
   out.obstacle_unproven = found.unproven;
-  out.scene_faults += found.scene_faults;
-  keep_first(out.first_bad, found.first_bad);
-  keep_first(out.first_fault, found.first_fault);
   return out;
 }
 

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "core/audit/box_tree.hpp"
+#include "core/audit/obstacle_tally.hpp"
 #include "core/audit/predicates.hpp"
 #include "core/audit/rigid_reach.hpp"
 #include "core/audit/segment_triangle.hpp"
@@ -143,13 +144,7 @@ StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitiv
   judge.decide_touches(out);
   if (mesh.planar) out.merge(judge.inversions());
   if (mesh.obstacles.empty()) return out;
-  const ObstacleAudit found = audit_obstacles(mesh, primitives, x);
-  out.obstacle_judged = found.judged;
-  out.obstacle_violations = found.violations;
-  out.obstacle_by_vertex = found.by_vertex;
-  out.scene_faults += found.scene_faults;
-  keep_first(out.first_bad, found.first_bad);
-  keep_first(out.first_fault, found.first_fault);
+  add_obstacles(audit_obstacles(mesh, primitives, x), out);
   return out;
 }
 

@@ -156,7 +156,7 @@ bool SceneBuilder::all_prescribed(const std::array<int, n>& vertices) const {
 
 void SceneBuilder::append_masses(const BodySpec& spec, int first) {
   const auto add = [&](int v, double mass) {
-    const auto vertex = static_cast<std::size_t>(first + v);
+    const auto vertex = static_cast<std::size_t>(first) + static_cast<std::size_t>(v);
     if (pin_of_[vertex] < 0) scene_.mass[vertex] += mass;
   };
   for (const auto& t : spec.mesh.triangles) {

@@ -4,6 +4,7 @@
 #include <vector>
 
 #include "core/contact/contact_table.hpp"
+#include "core/contact/gap_along.hpp"
 #include "core/math/precision.hpp"
 #include "core/math/projection.hpp"
 
@@ -32,6 +33,11 @@ void mollified_terms(const MollifiedTable& rows, const Positions& x, Projection 
 void add_given_motion(const ContactTable& rows, const Positions& motion, Positions& force);
 void add_given_motion(const MollifiedTable& rows, const Positions& x, const Positions& motion,
                       Positions& force);
+/// Adds to `force` [3 x n] (N) m kappa b'' w_i n times what the gap of every row misses (gap_along.hpp) along dx
+/// [3 x n] (m, 0 at given vertices): with it on the right-hand side of Newton's system the gaps at x + dx are those
+/// that their slopes say. Rows without mollifier alone. Returns when they hold dx. From kappa and b'' in the table, in
+/// double. Cost O(rows).
+HoldTimes add_detour(const ContactTable& rows, const Positions& x, const Positions& dx, Positions& force);
 /// Energies m kappa b (and m kappa e b) of every row, J.
 void contact_energies(const ContactTable& rows, std::vector<double>& energy,
                       Precision precision = Precision::full);

@@ -6,6 +6,7 @@
 #include "core/contact/chunks.hpp"
 #include "core/contact/contact_row.hpp"
 #include "core/contact/contact_terms.hpp"
+#include "core/contact/gap_along.hpp"
 #include "core/contact/obstacle_shape.hpp"
 #include "core/contact/pair_lanes.hpp"
 #include "core/contact/row_columns.hpp"
@@ -229,7 +230,41 @@ void store_rows(const ContactTable& rows, std::size_t begin, std::size_t end, co
   store_sliding<2, T>(rows, sliding[1].data(), n[1], x, projection, hess);
 }
 
+/// dx on the compact slots.
+Mat<double, 3, 4> motion_of(const ContactTable& rows, std::size_t r, const Positions& dx) {
+  Mat<double, 3, 4> out = Mat<double, 3, 4>::Zero();
+  for (int k = 0; k < rows.n_free[r]; ++k) {
+    out.col(k) = dx.col(rows.vertex[4 * r + static_cast<std::size_t>(k)]);
+  }
+  return out;
+}
+
+GapAlong gap_along(const ContactTable& rows, std::size_t r, const Positions& x, const Positions& dx) {
+  const Mat<double, 3, 4> moved = motion_of(rows, r, dx);
+  const int edges = n_sliding(rows.kind[r]);
+  if (edges == 1) return bb::gap_along(row_shape<1, double>(rows, r, x), moved);
+  if (edges == 2) return bb::gap_along(row_shape<2, double>(rows, r, x), moved);
+  const double curvature = is_obstacle(rows.kind[r]) ? rows.curvature[r] : 1 / (rows.d[r] + rows.offset[r]);
+  return bb::gap_along(normal_of<double>(rows, r), Vec3d::Map(&rows.flat[3 * r]), curvature,
+                       moved * Vec<double, 4>::Map(&rows.weight[4 * r]));
+}
+
 }  // namespace
+
+HoldTimes add_detour(const ContactTable& rows, const Positions& x, const Positions& dx, Positions& force) {
+  HoldTimes held;
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    if (rows.n_free[r] == 0) continue;
+    const GapAlong gap = gap_along(rows, r, x, dx);
+    held.add(rows.d[r], gap);
+    const double push = scale_of<double>(rows, r) * rows.d2b[r] * gap.missing(rows.d[r]);
+    if (!(push > 0)) continue;
+    for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {
+      force.col(rows.vertex[4 * r + k]) += push * rows.weight[4 * r + k] * normal_of<double>(rows, r);
+    }
+  }
+  return held;
+}
 
 void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, Projection projection,
                    std::vector<double>& grad, std::vector<double>& hess, Precision precision) {

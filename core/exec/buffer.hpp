@@ -22,7 +22,7 @@ class Buffer {
   }
   Buffer(Buffer&& other) noexcept
       : executor_(other.executor_),
-        name_(other.name_),
+        name_(std::move(other.name_)),
         data_(std::exchange(other.data_, nullptr)),
         size_(std::exchange(other.size_, 0)),
         room_(std::exchange(other.room_, 0)) {}

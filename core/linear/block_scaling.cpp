@@ -90,7 +90,7 @@ LinearStatus BlockScaling::factorize_block(std::size_t block) {
   }
   if (positive) return LinearStatus::ok;
   const Eigen::SelfAdjointEigenSolver<Mat3d> eigen(d, Eigen::EigenvaluesOnly);
-  const Vec3d lambda = eigen.eigenvalues();
+  const Vec3d& lambda = eigen.eigenvalues();
   const double rounding = 32 * std::numeric_limits<double>::epsilon() * lambda.cwiseAbs().maxCoeff();
   return lambda[0] < -rounding ? LinearStatus::matrix_indefinite : LinearStatus::preconditioner_indefinite;
 }

@@ -23,7 +23,7 @@ void fill_work(IterationReport& report) {
   }
   report.hessian_t = report.solve.t;
   report.hessian_fallbacks = report.solve.fallbacks();
-  report.linear_solves = report.solve.attempts;
+  report.linear_solves = report.solve.attempts + report.solve.detours;
   report.linear_iterations = linear.iterations;
   report.factorizations = report.solve.factorizations;
   report.factor_flop = std::llround(report.solve.factor_flop);

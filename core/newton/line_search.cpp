@@ -6,7 +6,8 @@
 //   3 stop when the estimated error of x + dx is below h tol_velocity, every prescribed vertex is at its pose
 //     and the exact Hessian is positive definite; from a saddle go on along negative curvature
 //   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds
-//   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded
+//   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
+//     with a detour round them
 //   6 accept
 
 #include <fmt/format.h>
@@ -59,8 +60,8 @@ class LineSearch final : public StepSolver {
         show_motion(system, task.step, observer);
         continue;
       }
-      const bool moved = search(system, report, at_pose);
-      error_.took(report.alpha);
+      const bool moved = search(system, report, at_pose, small);
+      error_.took(report.detours > 0 ? 0 : report.alpha);  // the direction itself was not taken
       finish_iteration(system, step, report, observer);
       if (moved) show_motion(system, task.step, observer);
       // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
@@ -148,13 +149,47 @@ class LineSearch final : public StepSolver {
 
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its
   // motion does work.
-  bool search(StepSystem& system, IterationReport& report, bool energy_test) {
+  bool search(StepSystem& system, IterationReport& report, bool energy_test, bool small) {
     system.prepare_motion(MotionEnd::on_target, true);
     bound_ = system.bound_motion(report);
+    const bool held = bound_ < 1 && report.alpha_ccd <= report.alpha_strain;
+    if (held && energy_test && !small && go_round(system, report)) return true;
+    return go_along(system, report, smallest_alpha, energy_test);
+  }
+
+  // A gap that is curved along dx, as that of an edge that rolls over a ball, ends a straight step after the root of what
+  // is left of it, however soft the barrier is. Such a step presses the gap together, the next one as well, and from
+  // then on every one wins no more than the energy of a gap that doubles. Room for the curvature, made by a second
+  // solve, lets the whole direction through. Taken where it goes at least twice as far.
+  bool go_round(StepSystem& system, IterationReport& report) {
+    const double straight = bound_;
+    if (!system.make_detour(straight, report.solve)) return false;
+    bound_again(system, report);
+    if (go_along(system, report, 2 * straight, true)) {
+      report.detours = 1;
+      return true;
+    }
+    system.drop_detour();
+    bound_again(system, report);
+    return false;
+  }
+
+  // Of another dx; the queries of both count.
+  void bound_again(StepSystem& system, IterationReport& report) {
+    const StepBound before = report.bound;
+    system.prepare_motion(MotionEnd::on_target, true);
+    bound_ = system.bound_motion(report);
+    report.bound.queries += before.queries;
+    report.bound.probes += before.probes;
+    report.bound.capped += before.capped;
+    report.bound.zero += before.zero;
+  }
+
+  bool go_along(StepSystem& system, IterationReport& report, double least, bool energy_test) {
     // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
     double alpha = bound_;
     if (alpha < 1) alpha *= cap_fraction_;
-    while (alpha > smallest_alpha) {
+    while (alpha > least) {
       ++report.line_search_trials;
       if (const auto change = system.try_motion(alpha)) {
         const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);

@@ -205,18 +205,39 @@ bool NewtonSystem::direction(const Positions& target, Positions& dx, SolveReport
   const ScopedPhase timer(clock(), Phase::assembly);
   const bool moving = set_right_hand_side(target, dx);
   report.t = level_.t();
-  solve_reduced(report);
+  solve_reduced(rhs_, report);
   if (report.linear.status != LinearStatus::ok) return false;
   blocks_->expand_vector(solution_, dx);
   return moving || rhs_.dot(solution_) > 0 || rhs_.isZero(0);
 }
 
+// With d_i(x + s) = d_i + slope_i - loss_i + grad d_i . s, s with A s = sum of m kappa b'' (what is missing) grad d_i makes
+// up for the loss where the barrier is stiff, at the least cost to the other terms.
+bool NewtonSystem::make_detour(double bound, SolveReport& report) {
+  const ScopedPhase timer(clock(), Phase::assembly);
+  part_.setZero(3, x_.cols());
+  bool held = false;
+  for (const auto& term : terms_) held = term->add_detour(x_, dx_, bound, part_) || held;
+  if (!held) return false;
+  VecXd force;
+  blocks_->restrict_vector(part_, force);
+  SolveReport detour;
+  solve_reduced(force, detour);
+  report.add_detour(detour);
+  if (detour.linear.status != LinearStatus::ok) return false;
+  straight_ = dx_;
+  part_.setZero();
+  blocks_->expand_vector(solution_, part_);
+  dx_ += part_;
+  return true;
+}
+
 // The solver measures its own parts; what is neither analysis nor factorisation is solution.
-void NewtonSystem::solve_reduced(SolveReport& report) {
+void NewtonSystem::solve_reduced(const VecXd& rhs, SolveReport& report) {
   const ReducedSystem& reduced = blocks_->reduce(full_);
   nnz_ = static_cast<std::size_t>(reduced.lower.nonZeros());
   const ScopedPhase timer(clock(), Phase::linear_solve);
-  LinearReport linear = solver_->solve(reduced, rhs_, solution_);
+  LinearReport linear = solver_->solve(reduced, rhs, solution_);
   clock().move(Phase::linear_solve, Phase::linear_analyze, linear.analyze_s);
   clock().move(Phase::linear_solve, Phase::linear_factor, linear.factor_s);
   ++report.attempts;

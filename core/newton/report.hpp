@@ -13,9 +13,18 @@ namespace bb {
 struct SolveReport {
   LinearReport linear;  // of the last attempt; its iterations are sums over all
   int attempts = 0, factorizations = 0, analyses = 0;
+  int detours = 0;  // solves beyond those attempts, with the matrix of the last
   double factor_flop = 0;
   double t = 0;  // of the matrix that was solved, 0 exact to 1 clamped
   int fallbacks() const { return attempts - 1; }
+  /// The work of one more solve; what is said of the direction stays.
+  void add_detour(const SolveReport& solve) {
+    ++detours;
+    factorizations += solve.factorizations;
+    analyses += solve.analyses;
+    factor_flop += solve.factor_flop;
+    linear.iterations += solve.linear.iterations;
+  }
 };
 
 /// `time` is from its assembly to its end, what observers of the matrix took included.

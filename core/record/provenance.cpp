@@ -1,6 +1,7 @@
 // Build, machine and ids of a record, read from the generated build info, /proc and the environment.
 #include "core/record/provenance.hpp"
 
+#include <fmt/format.h>
 #include <sys/resource.h>
 #include <sys/utsname.h>
 #include <unistd.h>
@@ -14,8 +15,6 @@
 
 #include "core/linear/blas_info.hpp"
 #include "core/record/build_info.hpp"
-
-extern "C" char** environ;
 
 namespace bb {
 namespace {
@@ -110,7 +109,8 @@ void fill_ids(RunRecord& record) {
                               record.machine.kernel + card);
   std::string parts = ids.config_id + "\n" + ids.build_id + "\n" + ids.machine_id + "\n" +
                       std::to_string(record.provenance.threads) + "\n";
-  for (const auto& [name, version] : record.provenance.libraries) parts += name + " " + version + "\n";
+  for (const auto& [name, version] : record.provenance.libraries)
+    parts += fmt::format("{} {}\n", name, version);
   parts += "BLAS kernel " + record.provenance.blas.kernel + "\n";
   std::vector<std::string> plugins;  // the order of --plugin means nothing
   for (const PluginFile& plugin : record.provenance.plugins) plugins.push_back(plugin.sha256 + "\n");

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <concepts>
 #include <nlohmann/json.hpp>
+#include <span>
 #include <sstream>
 
 #include "core/record/run_record.hpp"
@@ -14,6 +15,8 @@ namespace bb {
 namespace {
 
 using Json = nlohmann::ordered_json;
+
+constexpr const char* changed_meaning = "x-changed-meaning";
 
 std::vector<std::string> words_in(const std::string& text) {
   std::istringstream in(text);
@@ -117,19 +120,28 @@ std::string lines(const Json& j, std::string indent) {
   return out + "}";
 }
 
+/// Field -> what it meant before. Validators pass over a keyword that they do not know.
+Json changes_of(std::span<const ChangedMeaning> changes) {
+  Json out = Json::object();
+  for (const ChangedMeaning& change : changes)
+    out[change.field] = {{"since", change.since}, {"before", change.before}};
+  return out;
+}
+
 template <class T>
-Json document(const char* title) {
+Json document(const char* title, std::span<const ChangedMeaning> changes) {
   Json defs = Json::object();
   Json out = {{"$schema", "https://json-schema.org/draft/2020-12/schema"},
               {"$comment", std::string("version ") + run_schema_version},
+              {changed_meaning, changes_of(changes)},
               {"title", title}};
   out.update(record_schema<T>(defs));
   out["$defs"] = defs;
   return out;
 }
 
-Json run_document() { return document<RunRecord>("barrierbench run record"); }
-Json trace_document() { return document<TraceRow>("barrierbench trace line"); }
+Json run_document() { return document<RunRecord>("barrierbench run record", changed_in_run); }
+Json trace_document() { return document<TraceRow>("barrierbench trace line", changed_in_trace); }
 
 std::string joined(const Json& words) {
   std::string out;
@@ -137,15 +149,24 @@ std::string joined(const Json& words) {
   return out;
 }
 
+/// " [before 3.5.0: ...]" of a field that meant something else; empty for the others.
+std::string earlier_meaning(const Json& document, const std::string& place) {
+  const Json& changes = document[changed_meaning];
+  const auto found = changes.find(place);
+  if (found == changes.end()) return "";
+  return fmt::format(" [before {}: {}]", (*found)["since"].get<std::string>(),
+                     (*found)["before"].get<std::string>());
+}
+
 /// Appends a line for every field below `schema`.
-void describe(const Json& defs, const Json& schema, const std::string& place, std::string& out) {
+void describe(const Json& document, const Json& schema, const std::string& place, std::string& out) {
   if (schema.contains("$ref")) {
     const auto ref = schema["$ref"].get<std::string>();
-    return describe(defs, defs.at(ref.substr(std::string("#/$defs/").size())), place, out);
+    return describe(document, document["$defs"].at(ref.substr(std::string("#/$defs/").size())), place, out);
   }
-  if (schema.contains("items")) return describe(defs, schema["items"], place + "[]", out);
+  if (schema.contains("items")) return describe(document, schema["items"], place + "[]", out);
   if (schema.contains("additionalProperties") && schema["additionalProperties"].is_object()) {
-    return describe(defs, schema["additionalProperties"], place + ".*", out);
+    return describe(document, schema["additionalProperties"], place + ".*", out);
   }
   if (!schema.contains("properties")) return;
   const Json& properties = schema["properties"];
@@ -157,14 +178,14 @@ void describe(const Json& defs, const Json& schema, const std::string& place, st
     if (const auto reasons = properties.find(name + "_status"); reasons != properties.end()) {
       out += " [or null: " + joined((*reasons)["enum"]) + "]";
     }
-    out += "\n";
-    describe(defs, field, at, out);
+    out += earlier_meaning(document, at) + "\n";
+    describe(document, field, at, out);
   }
 }
 
 std::string dictionary(const Json& document) {
   std::string out;
-  describe(document["$defs"], document, "", out);
+  describe(document, document, "", out);
   return out;
 }
 

@@ -139,6 +139,10 @@ struct WorkCounts {
            "states that were asked whether they are minima of E, factors at hand included") = 0;
   BB_FIELD(long long, end_check_factorizations, "factorisations that only these checks needed") = 0;
   BB_FIELD(long long, end_check_iterations, "iterations of conjugate gradients of these checks") = 0;
+  BB_FIELD(
+      long long, detours,
+      "moves along the direction with a second-order correction, since curved gaps held it: alpha and its "
+      "bounds are of that") = 0;
   BB_FIELD(long long, escapes, "moves along a direction of negative curvature, out of a saddle") = 0;
   BB_RECORD_END;
 

@@ -8,7 +8,7 @@ namespace bb {
 
 Vec3d pin_pose(const Scene& scene, const Pin& pin, double t) {
   const RigidMotion& motion = scene.motions[static_cast<std::size_t>(pin.motion)];
-  const Vec3d x0 = scene.x0.col(pin.vertex);
+  Vec3d x0 = scene.x0.col(pin.vertex);
   if (motion.is_static()) return x0;
   const double s = std::clamp(t, motion.start, motion.end) - motion.start;
   if (motion.angular_velocity == 0) return x0 + motion.velocity * s;  // exact where nothing turns

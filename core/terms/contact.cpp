@@ -134,6 +134,10 @@ double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClo
   return bound_.alpha;
 }
 
+bool ContactTerm::add_detour(const Positions& x, const Positions& dx, double bound, Positions& force) const {
+  return bb::add_detour(state_.rows, x, dx, force).by_curvature(bound);
+}
+
 std::string ContactTerm::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
 
 bool ContactTerm::admits(const Positions& x, PhaseClock& clock) {

@@ -67,6 +67,7 @@ class ContactTerm final : public Term {
   void add_given_motion(const Positions& x, const Positions& motion, Positions& force) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
+  bool add_detour(const Positions& x, const Positions& dx, double bound, Positions& force) const override;
   std::string describe_bound() const override;
   bool admits(const Positions& x, PhaseClock& clock) override;
   void evaluate(const Positions& x, const TermContext& context) override;

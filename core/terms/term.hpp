@@ -115,6 +115,12 @@ class Term {
   virtual void prepare(const Motion&, PhaseClock&) {}
   /// Largest alpha in [0, 1] up to which the motion is feasible. Says it in the report too.
   virtual double bound(const Motion&, IterateNumbers&, PhaseClock&) { return 1; }
+  /// Of a motion dx [3 x n] (m) from x that bound() ends at `bound`, prescribed vertices at rest: adds to `force` (N) what
+  /// makes room for gaps that are curved along it (core/contact/gap_along.hpp). Whether curvature is what holds it.
+  virtual bool add_detour(const Positions& /*x*/, const Positions& /*dx*/, double /*bound*/,
+                          Positions& /*force*/) const {
+    return false;
+  }
   /// What held the last bound() below 1.
   virtual std::string describe_bound() const { return {}; }
 

@@ -225,6 +225,7 @@ bb::PluginFile bb::cli::load_plugin_file(const std::string& file) {
   return {name, file, bb::sha256_file(file)};
 }
 
+// NOLINTNEXTLINE(bugprone-exception-escape): outside guarded() only the parser's own tables are made
 int main(int argc, char** argv) {
   prepare_streams();
   keep_freed_memory();

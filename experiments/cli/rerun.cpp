@@ -91,6 +91,7 @@ int rerun(const StoredRun& stored, const RunVerb& verb, const CommonOptions& com
     throw ConfigError("--out", fmt::format("\"{}\", the folder of the record itself", verb.out),
                       "another folder: a rerun is compared with its record");
   }
+  if (const auto fault = trace_fault(stored)) throw *fault;
   RunOptions options = run_options(common);
   load_plugins(stored, options.plugins);
   RunConfig config =

@@ -59,6 +59,7 @@ bool already_there(const Sweep& sweep, const SweepCase& one, const RunOptions& o
   try {
     const auto stored = read_stored_run(file);
     if (stored) why = why_run_again(stored->record, now);
+    if (const auto fault = stored && why.empty() ? trace_fault(*stored) : std::nullopt) why = fault->what();
     if (why.empty()) return true;
   } catch (const ConfigError& error) {
     why = error.what();

@@ -64,7 +64,7 @@ void check_kind(const json& object, const std::vector<std::string>& of_others, c
                 const std::string& pointer, const char* allowed, const Reader& reader) {
   for (const std::string& key : of_others) {
     if (!reader.complete || !object.contains(key) || object[key] == false) continue;
-    reader.complain(pointer + "/" + key, fmt::format("{} of a {}", key, kind), allowed);
+    reader.complain(fmt::format("{}/{}", pointer, key), fmt::format("{} of a {}", key, kind), allowed);
   }
 }
 

@@ -22,8 +22,8 @@ void keep_own(const json& object, const Registry<Entry>& registry, const std::st
   policy.parameters = to_map(entry.parameters, object);
   for (const auto& [key, value] : object.items()) {
     if (!reader.complete || key == "name" || key == "scale" || find_named(entry.parameters, key)) continue;
-    reader.complain(pointer + "/" + key, value.dump(),
-                    "nothing: the policy " + policy.name + " does not read it");
+    reader.complain(fmt::format("{}/{}", pointer, key), value.dump(),
+                    fmt::format("nothing: the policy {} does not read it", policy.name));
   }
 }
 

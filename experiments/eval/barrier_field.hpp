@@ -19,7 +19,7 @@ inline BarrierFunction barrier_field(Query& q) {
 /// The same with the field `derivative`; included: the potential of kappa (d_hat/d)^2 b'(d), kappa being the
 /// stiffness at d_hat, as a barrier of its own.
 inline BarrierFunction barrier_with_derivative(Query& q) {
-  const BarrierFunction barrier = barrier_field(q);
+  BarrierFunction barrier = barrier_field(q);
   if (q.choice_or("derivative", {"dropped", "included"}) == "dropped") return barrier;
   if (has_potential(barrier)) return potential_of(barrier);
   q.complain("derivative",

@@ -53,7 +53,7 @@ std::string Query::word(const char* name) {
 
 std::string Query::choice(const char* name, const std::vector<std::string>& allowed) {
   const std::size_t before = violations_.size();
-  const std::string found = word(name);
+  std::string found = word(name);
   if (violations_.size() == before) {
     if (std::find(allowed.begin(), allowed.end(), found) != allowed.end()) return found;
     const ConfigError unknown = unknown_name("/" + std::string(name), found, allowed);
@@ -112,7 +112,7 @@ double Query::number_or(const char* name, const Range& range, double fallback) {
 
 std::vector<double> Query::list(const char* name, int size, const Range& range) {
   const json* v = find(name);
-  const std::vector<double> dummy(static_cast<std::size_t>(std::max(size, 1)), smallest(range));
+  std::vector<double> dummy(static_cast<std::size_t>(std::max(size, 1)), smallest(range));
   if (v == nullptr) return dummy;
   if (!v->is_array() || v->empty() || (size >= 0 && v->size() != static_cast<std::size_t>(size))) {
     complain(name, shown(*v), size_text(size, "numbers"));
@@ -127,7 +127,7 @@ std::vector<double> Query::list(const char* name, int size, const Range& range) 
 
 MatX<double> Query::rows(const char* name, int n_rows, int n_cols) {
   const json* v = find(name);
-  const MatX<double> dummy = MatX<double>::Ones(std::max(n_rows, 1), std::max(n_cols, 1));
+  MatX<double> dummy = MatX<double>::Ones(std::max(n_rows, 1), std::max(n_cols, 1));
   if (v == nullptr) return dummy;
   if (!v->is_array() || v->empty() || (n_rows >= 0 && v->size() != static_cast<std::size_t>(n_rows))) {
     complain(name, shown(*v), size_text(n_rows, "rows"));

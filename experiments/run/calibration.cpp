@@ -99,7 +99,7 @@ Demand ask_contacts(const Matching& m, const Match& match, const BarrierFunction
   const std::unique_ptr<StiffnessPolicy> policy = asked_policy(m.config);
   const Demand demand =
       contact_demand(*m.pilot, m.scene, matched_stiffness(match, barrier, m.config.formulation.d_hat),
-                     policy.get(), match.at());
+                     policy.get(), match.at(), m.options.limits());
   m.record.contacts_considered = demand.considered;
   m.record.contacts_left_out = demand.left_out;
   note_left_out(m.record, demand, "contact", "N");
@@ -161,7 +161,8 @@ Demand ask_elements(const Matching& m, const Match& match, const BarrierFunction
   LimitStiffness own;
   if (!needs_k_s(policy)) own = make_limit_policy(policy, {});
   const MatchedStiffness matched = matched_stiffness(match, barrier, m.scene.limit.width.front());
-  const Demand demand = limit_demand(*m.pilot, m.scene, matched, needs_k_s(policy) ? nullptr : &own);
+  const Demand demand =
+      limit_demand(*m.pilot, m.scene, matched, needs_k_s(policy) ? nullptr : &own, m.options.limits());
   m.record.elements_considered = demand.considered;
   m.record.elements_left_out = demand.left_out;
   note_left_out(m.record, demand, "limit", "N/m");

@@ -11,7 +11,7 @@ namespace bb {
 /// does not give. `record` gets every number that went into it. Where the pilot met no contact (or no active
 /// limit) with a load the static weight stands in for a fixed stiffness, and a policy that makes its own stays as given;
 /// the record says so. Errors: ConfigError when the scene has no weight, or a policy gives a contact (an
-/// element) that carried a load no stiffness; Interrupted.
+/// element) that carried a load no stiffness; Interrupted; TimeOver.
 Calibration calibrate(const RunConfig& config, const Scene& scene, const RunOptions& options,
                       MatchingRecord& record);
 

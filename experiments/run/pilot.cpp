@@ -17,6 +17,8 @@
 namespace bb {
 namespace {
 
+constexpr const char* this_part = "pilot";
+
 StaticLoads static_loads(const RunConfig& config, const Scene& scene) {
   double mass = 0;
   int n_free = 0;
@@ -77,10 +79,6 @@ Calibration pilot_stiffness(const RunConfig& pilot, const Scene& scene, const St
   return out;
 }
 
-void look_up(const RunOptions& options) {
-  if (options.interrupted && options.interrupted->load()) throw Interrupted{};
-}
-
 /// The run has to do its passes after the steps that are shown here.
 void show(const RunConfig& config, const RunOptions& options, const StepReport& step, double start_s) {
   if (!options.progress) return;
@@ -125,7 +123,8 @@ void answer(Pilot& pilot, const Scene& scene, const RunOptions& options) {
   PilotReplay replay(pilot, scene);
   pilot.answers = AnswerSums(scene.n_vertices(), part.triangles.size());
   for (int step = 0; step < pilot.steps(); ++step) {
-    look_up(options);
+    options.limits().look_up(
+        this_part, fmt::format("while the forces of its step {} of {} were read", step, pilot.steps()));
     const StiffnessAnswers answers =
         answers_to_stiffness(replay.assembled(step), limited, log_barrier(), pilot.config.time.dt);
     pilot.unanswered += answers.known ? 0 : 1;
@@ -180,7 +179,8 @@ std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& giv
   StepObserver nobody;
   const double start_s = now_s();
   for (int step = 0; step < pilot.config.time.steps; ++step) {
-    look_up(options);
+    options.limits().look_up(this_part,
+                             fmt::format("before its step {} of {}", step, pilot.config.time.steps));
     Prediction prediction;
     method.integrator->predict(simulation.history(), dt, prediction);
     const StepReport report = simulation.step(nobody);
@@ -206,7 +206,8 @@ std::optional<double> policy_start(const RunConfig& config, const Scene& scene,
   StepObserver nobody;
   const double start_s = now_s();
   while (simulation.nominal_steps() < config.time.steps) {
-    look_up(options);
+    options.limits().look_up(this_part, fmt::format("before step {} of {} to the first contact of the policy",
+                                                    simulation.nominal_steps(), config.time.steps));
     const StepReport report = simulation.step(nobody);
     show(config, options, report, start_s);
     if (const double kappa = method.stiffness->state().kappa_start; kappa > 0) return kappa;

@@ -55,13 +55,14 @@ class PilotCache {
 };
 
 /// Runs the pilot of this config, or returns the one that is known: 256 MiB of them are kept.
-/// Errors: ConfigError when the scene has no weight to start from; Interrupted.
+/// The limits are looked at between two of its steps; a pilot that they end is not kept.
+/// Errors: ConfigError when the scene has no weight to start from; Interrupted; TimeOver.
 std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& scene,
                                        const RunOptions& options);
 
 /// kappa (N/m) from which a policy with one global kappa starts in the run of this very config, unscaled:
 /// the run is followed to its first contact, up to which the scale cannot change it. Nothing when it meets
-/// none. Errors: ConfigError of the policy; Interrupted.
+/// none. Errors: ConfigError of the policy; Interrupted; TimeOver.
 std::optional<double> policy_start(const RunConfig& config, const Scene& scene,
                                    const Calibration& calibration, const RunOptions& options);
 

@@ -64,6 +64,11 @@ double own_kappa(const StiffnessPolicy& policy, int row, double u, double dt, do
   return std::min(kappa[0], kappa[1]);
 }
 
+void look_up(const RunLimits& limits, const Pilot& pilot, int step) {
+  limits.look_up("pilot",
+                 fmt::format("while the loads of its step {} of {} were compared", step, pilot.steps()));
+}
+
 std::string name_element(const Scene& scene, std::size_t e) {
   std::string out = fmt::format("limited triangle {}", e);
   const char* separator = ": ";
@@ -98,12 +103,13 @@ double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std:
 }  // namespace
 
 Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                      const StiffnessPolicy* own, double u) {
+                      const StiffnessPolicy* own, double u, const RunLimits& limits) {
   const BarrierFunction log = log_barrier();
   const double dt = pilot.config.time.dt;
   PilotReplay replay(pilot, scene);
   Demand out;
   for (int step = 0; step < pilot.steps(); ++step) {
+    look_up(limits, pilot, step);
     if (own) {
       replay.find_rows(step, own->refresh());
     } else {
@@ -126,7 +132,7 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
 }
 
 Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                    const LimitStiffness* own) {
+                    const LimitStiffness* own, const RunLimits& limits) {
   const BarrierFunction log = log_barrier();
   const StrainLimitPart& part = scene.limit;
   StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width, scene.planar);
@@ -135,6 +141,7 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
   Demand out;
   std::vector<double> y_start(part.width.size());
   for (int step = 0; step < pilot.steps(); ++step) {
+    look_up(limits, pilot, step);
     if (own) replay.find_rows(step, own->refresh);
     limit.measure(replay.start(step));
     for (std::size_t e = 0; e < limit.size(); ++e) y_start[e] = smaller_gap(limit, e);

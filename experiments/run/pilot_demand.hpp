@@ -32,14 +32,14 @@ struct Demand {
 /// contact with the H that it reads: of the step's end when it is refreshed in every iteration, else of the
 /// step's start; and at d_hat, where a new pair gets its kappa, or at u d_hat if that gives less. Rows with a
 /// mollifier are left out: their load is e(x) times that of a row.
-/// Errors: ConfigError when `own` gives a contact that carried a load no stiffness.
+/// Errors: ConfigError when `own` gives a contact that carried a load no stiffness; Interrupted and TimeOver of the limits.
 /// Cost: finding the rows of each step, and with `own` one assembly a step.
 Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                      const StiffnessPolicy* own, double u);
+                      const StiffnessPolicy* own, double u, const RunLimits& limits = {});
 
 /// The same over the limited elements. `own` is asked at the width of the limit; where kappa_e is frozen for a
 /// step as a number, at the gap of the step's start if that is wider. Requires a scene with limited elements.
 Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                    const LimitStiffness* own);
+                    const LimitStiffness* own, const RunLimits& limits = {});
 
 }  // namespace bb

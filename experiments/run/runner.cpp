@@ -72,6 +72,20 @@ void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record) {
   if (!plan.trace.needed) record.skipped.push_back({"trace", "not_requested"});
 }
 
+/// The stiffness of this run by its matching rule, or why there is no first step: only the scene or its pilot can tell that it
+/// cannot be matched, and the time limit may come before the answer.
+std::optional<Verdict> find_stiffness(const RunConfig& config, const Scene& scene, const RunOptions& options,
+                                      MatchingRecord& record, Calibration& out) {
+  try {
+    out = calibrate(config, scene, options, record);
+    return std::nullopt;
+  } catch (const ConfigError& error) {
+    return Verdict{Outcome::invalid_scene, error.what()};
+  } catch (const TimeOver& over) {
+    return Verdict{Outcome::timeout, over.detail};
+  }
+}
+
 // From the scene to the outcome. A scene that cannot start, or cannot be matched, is an outcome: only its
 // geometry or its pilot can show that.
 void simulate(const RunConfig& config, const Scene& scene, const RunOptions& options, Checkpoint& checkpoint,
@@ -81,27 +95,20 @@ void simulate(const RunConfig& config, const Scene& scene, const RunOptions& opt
   const Plan plan = plan_of(config, scene);
   fill_plan(config, plan, record);
   const double before_check = now_s();
-  const auto failure =
-      start_failure(config, scene, {options.interrupted, options.deadline_s, options.time_limit_s});
+  auto failure = start_failure(config, scene, options.limits());
   const double start_check_s = now_s() - before_check;
   record.summary.start_check_s = start_check_s;
+  Calibration calibration;
+  if (!failure && resumed) {
+    calibration = resumed->calibration;
+    record.matching = resumed->record.matching;
+  } else if (!failure) {
+    failure = find_stiffness(config, scene, options, record.matching, calibration);
+  }
   if (failure) {
     record.status.outcome = failure->outcome;
     record.status.detail = failure->detail;
     return;
-  }
-  Calibration calibration;
-  if (resumed) {
-    calibration = resumed->calibration;
-    record.matching = resumed->record.matching;
-  } else {
-    try {
-      calibration = calibrate(config, scene, options, record.matching);
-    } catch (const ConfigError& error) {  // of what only the scene or its pilot can tell: no first step
-      record.status.outcome = Outcome::invalid_scene;
-      record.status.detail = error.what();
-      return;
-    }
   }
   run_passes(config, scene, plan, calibration, options, checkpoint, resumed, record, files);
   record.summary.start_check_s = start_check_s;  // of this process

@@ -11,6 +11,7 @@
 
 #include "core/record/run_record.hpp"
 #include "experiments/config/run_config.hpp"
+#include "experiments/run/run_limits.hpp"
 
 namespace bb {
 
@@ -48,13 +49,10 @@ struct RunOptions {
   std::function<void(const std::string&)> tell;   // what the user should know beside the record; may be empty
   const std::atomic<bool>* interrupted = nullptr;
   Resume resume = Resume::no;
-  double time_limit_s = 0;  // of this process, looked at between two steps; 0: none
+  double time_limit_s = 0;  // of this process, looked at between two steps, those of the pilot too; 0: none
   double deadline_s = 0;    // set by run_config: when that is over, as now_s() counts
-};
 
-/// Thrown when the run was stopped: no run.json is written, an earlier one stays.
-struct Interrupted {
-  std::string kept;  // what a sweep says of the records that it has; empty: nothing was kept
+  RunLimits limits() const { return {interrupted, deadline_s, time_limit_s}; }
 };
 
 /// The run was cut off before it had as many steps as the record of the same run that is in the folder.

@@ -7,13 +7,13 @@
 #include <string>
 
 #include "core/audit/audit.hpp"
-#include "core/record/phase_times.hpp"
 #include "experiments/run/audit_mesh.hpp"
 #include "experiments/run/audit_verdict.hpp"
-#include "experiments/run/runner.hpp"
 
 namespace bb {
 namespace {
+
+constexpr const char* part = "start check";
 
 // The primitives without a free vertex.
 audit::AuditMesh prescribed_part(const audit::AuditMesh& mesh) {
@@ -48,27 +48,9 @@ bool prescribed_may_cross(const Scene& scene) {
   return driven && (motions.size() > 1 || !scene.obstacles.empty());
 }
 
-/// Looked at between two parts of the check.
-class Limit {
- public:
-  explicit Limit(const StartLimits& limits) : limits_(limits) {}
-
-  /// A verdict when time is over; `where` says what the check was doing. Errors: Interrupted.
-  std::optional<Verdict> over(const std::string& where) const {
-    if (limits_.interrupted && limits_.interrupted->load()) throw Interrupted{};
-    if (!(limits_.deadline_s > 0) || now_s() < limits_.deadline_s) return std::nullopt;
-    return Verdict{Outcome::timeout,
-                   fmt::format("start check: the time limit of {:g} s was reached {}; there was no "
-                               "first step",
-                               limits_.time_limit_s, where)};
-  }
-
- private:
-  const StartLimits& limits_;
-};
-
 // The given motions, step by step, as a run would follow them: straight from pose to pose.
-std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene& scene, const Limit& limit) {
+std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene& scene,
+                                           const RunLimits& limits) {
   if (!prescribed_may_cross(scene)) return std::nullopt;
   const audit::AuditMesh mesh = prescribed_part(make_audit_mesh(scene, config.time.dt));
   audit::Audit judge(mesh);
@@ -79,9 +61,7 @@ std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene&
   }
   Positions x0 = scene.x0, x1 = x0;
   for (int step = 0; step < config.time.steps && step * config.time.dt < last_end; ++step) {
-    if (auto late =
-            limit.over(fmt::format("in the given motions, at step {} of {}", step, config.time.steps)))
-      return late;
+    limits.look_up(part, fmt::format("in the given motions, at step {} of {}", step, config.time.steps));
     for (const Pin& pin : scene.pins) x1.col(pin.vertex) = pin_pose(scene, pin, (step + 1) * config.time.dt);
     judge.check_motion(x0, x1, step, tolerance);
     judge.check_state(x1, step);
@@ -91,16 +71,15 @@ std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene&
   return std::nullopt;
 }
 
-}  // namespace
-
-std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene, const StartLimits& limits) {
-  const Limit limit(limits);
-  if (auto late = limit.over("before the start was looked at")) return late;
+// Errors: Interrupted; TimeOver.
+std::optional<Verdict> failure_in_time(const RunConfig& config, const Scene& scene, const RunLimits& limits) {
+  limits.look_up(part, "before the start was looked at");
   const audit::AuditMesh mesh = make_audit_mesh(scene, config.time.dt);
   audit::Audit judge(mesh);
   judge.check_state(scene.x0, -1);
   const audit::AuditLedger& ledger = judge.ledger();
   if (ledger.scene_faults > 0) return judge_audit(scene, mesh, ledger);
+  limits.look_up(part, "before the gaps at the start were looked at");
   ContactSystem contacts(scene, {config.contact.mollifier, config.contact.ccd_park});
   if (const auto overlap = contacts.check_initial(scene.x0)) {
     return Verdict{Outcome::initial_intersection,
@@ -111,7 +90,17 @@ std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene
                                                       ? describe(scene, mesh, *ledger.first_bad)
                                                       : std::string("a state that cannot be judged")};
   }
-  return prescribed_crossing(config, scene, limit);
+  return prescribed_crossing(config, scene, limits);
+}
+
+}  // namespace
+
+std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene, const RunLimits& limits) {
+  try {
+    return failure_in_time(config, scene, limits);
+  } catch (const TimeOver& over) {
+    return Verdict{Outcome::timeout, over.detail};
+  }
 }
 
 }  // namespace bb

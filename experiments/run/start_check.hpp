@@ -2,20 +2,13 @@
 // the surface on the wrong side of an obstacle. The last two are judged exactly, by the audit.
 #pragma once
 
-#include <atomic>
 #include <optional>
 
 #include "experiments/config/run_config.hpp"
 #include "experiments/run/outcome.hpp"
+#include "experiments/run/run_limits.hpp"
 
 namespace bb {
-
-/// What may end the check early.
-struct StartLimits {
-  const std::atomic<bool>* interrupted = nullptr;  // may be null
-  double deadline_s = 0;                           // as now_s() counts; 0: none
-  double time_limit_s = 0;                         // what was asked for, for the message
-};
 
 /// Why there is no first step; nothing when the start is valid. invalid_scene: two prescribed primitives
 /// cross, at the start or where their given motions take them at the end of a step. initial_intersection: the
@@ -24,6 +17,6 @@ struct StartLimits {
 /// relative to each other or to an obstacle; of rigid bodies only what comes near another is looked at.
 /// Errors: Interrupted when limits.interrupted becomes true.
 std::optional<Verdict> start_failure(const RunConfig& config, const Scene& scene,
-                                     const StartLimits& limits = {});
+                                     const RunLimits& limits = {});
 
 }  // namespace bb

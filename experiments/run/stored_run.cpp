@@ -39,6 +39,20 @@ std::optional<StoredRun> read_stored_run(const std::filesystem::path& file) {
   return StoredRun{file, std::move(*record)};
 }
 
+std::optional<ConfigError> trace_fault(const StoredRun& stored) {
+  const std::vector<Artifact>& files = stored.record.artifacts;
+  for (std::size_t i = 0; i < files.size(); ++i) {
+    if (files[i].kind != "trace") continue;
+    const std::filesystem::path trace = stored.file.parent_path() / files[i].path;
+    const std::string sha256 = sha256_file(trace.string());  // empty: not there
+    if (sha256.empty() || sha256 == files[i].sha256) continue;
+    return ConfigError(fmt::format("{}#/artifacts/{}/sha256", stored.file.string(), i),
+                       fmt::format("\"{}\" with sha256 {}", trace.string(), sha256),
+                       fmt::format("the trace that was written with the record, sha256 {}", files[i].sha256));
+  }
+  return {};
+}
+
 std::vector<Difference> differences(const RunRecord& then, const RunRecord& now) {
   const Provenance &made = then.provenance, &makes = now.provenance;
   std::vector<Difference> out;

@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "core/math/error.hpp"
 #include "core/record/run_record.hpp"
 
 namespace bb {
@@ -18,6 +19,10 @@ struct StoredRun {
 
 /// read_run, with its errors.
 std::optional<StoredRun> read_stored_run(const std::filesystem::path& file);
+
+/// What is wrong with the trace beside the record: it is another one than the record names, and then the two are not of one
+/// run. Nothing where there is none, or where the record, of before 3.4, names none. Cost: reading the trace.
+std::optional<ConfigError> trace_fault(const StoredRun& stored);
 
 /// One thing that made the stored run and is another one now.
 struct Difference {

@@ -9,7 +9,7 @@ from analysis import causes, load, render
 from analysis.figures import demo, newton_steps
 from analysis.gate import compare
 from analysis.matching.runs import MatchError, read_strictly
-from analysis.record_file import RecordError, bound_file, read_record, read_trace
+from analysis.record_file import CHANGED, RecordError, bound_file, other_meanings, read_record, read_trace
 from synthetic import bind, write_run, write_set
 
 
@@ -134,6 +134,13 @@ def test_a_file_that_the_record_does_not_name_is_none_of_the_run(folder):
     assert bound_file(record, folder, "trace.jsonl") == folder / "trace.jsonl"
     bind(folder)
     assert bound_file(read_record(folder / "run.json"), folder, "trace.jsonl").is_file()
+
+
+def test_fields_that_changed_their_meaning_are_those_between_two_versions():
+    said = set(other_meanings("3.4.0", "3.5.0"))
+    assert {"comparability.verdict", "trace contraction"} <= said and said == set(other_meanings("3.5.0", "3.4.0")) == set(other_meanings("3.4.0"))
+    assert not other_meanings("3.5.0", "3.99.0") and not other_meanings("3.3.0", "3.4.0") and set(other_meanings("3.3.0")) == said
+    assert "smallest gap" in CHANGED["comparability.verdict"]["before"]
 
 
 STEPS = {"schema": "barrierbench.steps/1", "config": {"scene": {"name": "drape"}, "formulation": {"shape": "log"}},

@@ -69,6 +69,38 @@ def test_runs_that_are_not_comparable_do_not_count():
     assert far.verdict == OPEN and "45 not_comparable" in far.missing
 
 
+GAPS = {"cloth|cloth": [0.3, 0.5, 0.8, True], "cloth|floor": [0.1, 0.2, 0.4, True], "cloth|pin": [0.001, 0.9, 0.9, False]}
+
+
+def with_gaps(change: dict, gap_rel: float = 0.1):
+    """x has these pairs of bodies where y has GAPS."""
+    return runs(lambda s, lv, c, k: {**twice(s, lv, c, k), "gaps": GAPS | (change if c == "x" else {}), "gap_rel": gap_rel if c == "x" else 0.1})
+
+
+def test_two_runs_are_compared_pair_of_bodies_by_pair_of_bodies():
+    """By the rule of the records: neither run is the reference of the other. One smallest gap may belong to a pair that hardly carries anything."""
+    other_smallest = with_gaps({"cloth|pin": [0.0001, 0.9, 0.9, False]}, gap_rel=0.0001)
+    assert ratio(PART, other_smallest).verdict == HOLDS
+    for change, pair in (({"cloth|floor": [0.1, 0.2, 0.81, True]}, "cloth|floor"), ({"cloth|cloth": [0.14, 0.5, 0.8, True]}, "cloth|cloth"),
+                         ({"cloth|ball": [0.4, 0.9, 0.9, True]}, "cloth|ball")):
+        judged = ratio(PART, with_gaps(change))
+        assert judged.verdict == OPEN and f"left out: 45 not_comparable ({pair})" in judged.missing, judged
+        assert ratio({**PART, "counts": "valid"}, with_gaps(change)).verdict == HOLDS
+    assert ratio(PART, with_gaps({"cloth|floor": [0.051, 0.11, 0.79, True]})).verdict == HOLDS
+
+
+def test_the_pair_of_a_run_that_its_record_calls_not_comparable_is_named():
+    judged = ratio(PART, runs(lambda s, lv, c, k: {**twice(s, lv, c, k), **({"comparability": "not_comparable", "pair": "cloth|floor"} if c == "x" else {})}))
+    assert "left out: 45 not_comparable (cloth|floor)" in judged.missing
+
+
+def test_a_record_without_such_gaps_is_compared_with_none_that_has_them():
+    mixed = with_gaps({})
+    for row in mixed.rows:
+        row |= {"gaps": None} if row["case"] == "y" else {}
+    assert "45 not_comparable (one record is of before 3.5.0)" in ratio(PART, mixed).missing
+
+
 def test_runs_that_failed_or_lack_the_number_do_not_count():
     judged = ratio({**PART, "counts": "valid"}, runs(lambda s, lv, c, k: {**twice(s, lv, c, k), **({"outcome": "newton_stall"} if s == "a" else {}),
                                                                       **({"newton": None} if s == "b" else {})}))

@@ -2,9 +2,9 @@
 #include <gtest/gtest.h>
 
 #include "core/contact/pair_name.hpp"
-#include "core/math/lower_blocks.hpp"
+#include "tests/contact/barrier_gradient.hpp"
 #include "tests/contact/obstacle_scenes.hpp"
-#include "tests/oracle/lower_blocks.hpp"
+#include "tests/contact/one_row.hpp"
 
 namespace bb::test {
 namespace {
@@ -101,11 +101,7 @@ TEST(ObstacleRows, OfABallAreOneAPairOfWhatIsPartOfNothingLarger) {
            {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}, 0.1);
   scene.obstacles = {round_obstacle(ObstacleKind::sphere, Vec3d::Zero(), 1)};
   ContactSystem contacts(scene, {});
-  const Rows rows = rows_at(contacts, scene.x0);
-  ASSERT_EQ(rows.table.size(), 1U);
-  EXPECT_EQ(rows.table.kind[0], ContactKind::obstacle);
-  EXPECT_EQ(rows.table.multiplicity[0], 4);
-  EXPECT_NEAR(rows.table.d[0], 0.05, 1e-15);
+  expect_one_row(rows_at(contacts, scene.x0), ContactKind::obstacle, 4, 0.05);
   // the same fan over a bar along y: two sides stand across it, two lie nearly along it, and the corner itself
   scene.obstacles = {round_obstacle(ObstacleKind::cylinder, Vec3d::Zero(), 1, Vec3d::UnitY())};
   ContactSystem along(scene, {});
@@ -145,34 +141,6 @@ TEST(ObstacleRows, OfADiskInThePlaneAreThoseOfEdgesOrWithVertexPairsOfVertices) 
     ContactSystem vertices(scene, {});
     EXPECT_EQ(rows_at(vertices, scene.x0).table.size(), 1U);
   }
-}
-
-/// Gradient [3 n_vertices] of B, and with a mode its Hessian.
-VecXd gradient_of(ContactSystem& contacts, const Positions& x, Eigen::MatrixXd* hessian = nullptr) {
-  Rows rows = rows_at(contacts, x);
-  VecXd out = VecXd::Zero(x.size());
-  std::vector<double> grad, hess;
-  const auto scatter = [&](const std::vector<int>& vertex, std::size_t n) {
-    for (std::size_t r = 0; r < n; ++r) {
-      const Eigen::MatrixXd h = from_lower_blocks(&hess[n_lower_numbers(4) * r], 4);
-      for (int i = 0; i < 4; ++i) {
-        const int vi = vertex[4 * r + at(i)];
-        if (vi < 0) continue;
-        out.segment<3>(3 * vi) += Vec3d::Map(&grad[12 * r + 3 * at(i)]);
-        for (int j = 0; j < 4 && hessian; ++j) {
-          const int vj = vertex[4 * r + at(j)];
-          if (vj >= 0) hessian->block<3, 3>(3 * vi, 3 * vj) += h.block<3, 3>(3 * i, 3 * j);
-        }
-      }
-    }
-  };
-  evaluate(rows.table, 3.5, TestShape::cubic);
-  evaluate(rows.mollified, 3.5, TestShape::cubic);
-  contact_terms(rows.table, x, HessianMode::projected_full, Projection::none, grad, hess);
-  scatter(rows.table.vertex, rows.table.size());
-  mollified_terms(rows.mollified, x, Projection::none, grad, hess);
-  scatter(rows.mollified.free_vertex, rows.mollified.size());
-  return out;
 }
 
 TEST(ObstacleRows, GradientAndHessianAreThoseOfB) {

@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/contact/contact_scenes.hpp"
+#include "tests/contact/one_row.hpp"
 
 namespace bb::test {
 namespace {
@@ -119,11 +120,7 @@ TEST(Rows, PlanarPointEdgeMergesAtACorner) {
   scene.surface_edges = {{0, 1}, {0, 2}};
   add_body(scene, "point", {Vec3d(-0.03, -0.04, 0)}, {}, d_hat);
   ContactSystem contacts(scene, {});
-  const Rows rows = rows_at(contacts, scene.x0);
-  ASSERT_EQ(rows.table.size(), 1U);
-  EXPECT_EQ(rows.table.kind[0], ContactKind::point_point);
-  EXPECT_EQ(rows.table.multiplicity[0], 2);
-  EXPECT_NEAR(rows.table.d[0], 0.05, 1e-16);
+  expect_one_row(rows_at(contacts, scene.x0), ContactKind::point_point, 2, 0.05);
 }
 
 }  // namespace

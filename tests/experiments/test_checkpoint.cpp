@@ -56,6 +56,15 @@ void save(Checkpoint& checkpoint, State& state, bool sync) {
   checkpoint.write(archive, {}, sync);
 }
 
+/// What its checkpoint holds.
+State two_steps_of_a_process_that_is_over(const fs::path& folder) {
+  State state;
+  Checkpoint writer(folder, "program");
+  state.step(), state.step();
+  save(writer, state, true);
+  return state;
+}
+
 State read(Checkpoint& checkpoint) {
   State out;
   std::optional<Archive> archive = checkpoint.read();
@@ -132,12 +141,7 @@ TEST_F(CheckpointFiles, WhatWasCutOffIsNotReadAndTheOneBeforeIs) {
 }
 
 TEST_F(CheckpointFiles, DamageIsRefusedAndNamed) {
-  State state;
-  {
-    Checkpoint writer(folder_, "program");
-    state.step(), state.step();
-    save(writer, state, true);
-  }
+  two_steps_of_a_process_that_is_over(folder_);
   const auto refused = [&](const std::string& file) {
     Checkpoint reader(folder_, "program");
     try {
@@ -167,12 +171,8 @@ TEST_F(CheckpointFiles, DamageIsRefusedAndNamed) {
 }
 
 TEST_F(CheckpointFiles, WhatIsForgottenIsInNoLaterOne) {
-  State earlier, state;
-  {
-    Checkpoint writer(folder_, "program");
-    earlier.step(), earlier.step();
-    save(writer, earlier, true);
-  }
+  State state;
+  const State earlier = two_steps_of_a_process_that_is_over(folder_);
   Checkpoint another(folder_, "program");
   EXPECT_EQ(read(another), earlier);
   another.forget();

@@ -12,24 +12,10 @@
 #include "core/newton/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
-#include "tests/oracle/dense.hpp"
+#include "tests/linear/scaled_spectrum.hpp"
 
 namespace bb {
 namespace {
-
-/// Ends of the spectrum of L^-1 A L^-T by dense algebra: x with A x = lambda D x, D the blocks of the scaling.
-VecXd spectrum_of(const ReducedSystem& system, Scaling scaling) {
-  const Eigen::MatrixXd a = Eigen::MatrixXd(system.lower).selfadjointView<Eigen::Lower>();
-  Eigen::MatrixXd d = Eigen::MatrixXd::Identity(a.rows(), a.cols());
-  if (scaling == Scaling::jacobi) d = a.diagonal().asDiagonal();
-  if (scaling == Scaling::block_jacobi) {
-    for (std::size_t b = 0; b + 1 < system.block_start.size(); ++b) {
-      const int begin = system.block_start[b], size = system.block_start[b + 1] - begin;
-      d.block(begin, begin, size, size) = a.block(begin, begin, size, size);
-    }
-  }
-  return test::eigenvalues(a, d);
-}
 
 /// Compares both on the matrix of every second iteration.
 class Comparison final : public StepObserver {
@@ -42,7 +28,7 @@ class Comparison final : public StepObserver {
     for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
       SCOPED_TRACE(std::string(to_string(scaling)) + ", step " + std::to_string(step) + ", iteration " +
                    std::to_string(iteration));
-      const VecXd truth = spectrum_of(matrix, scaling);
+      const VecXd truth = test::scaled_spectrum(matrix, scaling);
       ASSERT_GT(truth[0], 0);
       const double largest = truth[truth.size() - 1];
       double cond[2] = {};

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "core/math/error.hpp"
+#include "core/record/phase_times.hpp"
 #include "tests/experiments/calibrated.hpp"
 
 namespace bb {
@@ -63,6 +64,21 @@ Heights only(std::initializer_list<std::pair<int, double>> set) {
   Heights out(9, 1.0);
   for (const auto& [vertex, height] : set) out.at(static_cast<std::size_t>(vertex)) = height;
   return out;
+}
+
+TEST(PilotDemand, IsNotAskedAnyMoreWhenTimeIsOver) {
+  const Written written({only({{2, 0.6}}), only({{1, 0.3}})});
+  const RunLimits over{nullptr, now_s(), 3}, in_time{nullptr, now_s() + 1000, 1000};
+  EXPECT_EQ(contact_demand(written.pilot, written.scene, of_load, nullptr, 0.1, in_time).considered, 2);
+  try {
+    contact_demand(written.pilot, written.scene, of_load, nullptr, 0.1, over);
+    ADD_FAILURE() << "the loads are compared to the end";
+  } catch (const TimeOver& time) {
+    EXPECT_EQ(
+        time.detail,
+        "pilot: the time limit of 3 s was reached while the loads of its step 0 of 2 were compared; there "
+        "was no first step");
+  }
 }
 
 TEST(PilotDemand, AmongEqualDemandsTheLargerLoadIsNamedAndOfEqualLoadsTheFirst) {

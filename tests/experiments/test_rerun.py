@@ -104,6 +104,21 @@ def test_a_rerun_never_replaces_its_record(program, block):
     assert (block / "run.json").read_bytes() == before
 
 
+def test_a_record_with_another_trace_is_refused(program, block, tmp_path):
+    """What the record says and what its trace says would be of two runs. Without the trace the record is still whole."""
+    trace = block / "trace.jsonl"
+    (named,) = [file for file in read(block)["artifacts"] if file["kind"] == "trace"]
+    whole = trace.read_text()
+    for other in (whole.replace('"iteration":0', '"iteration":9', 1), whole[:-30], ""):
+        assert other != whole
+        trace.write_text(other)
+        refused(bench(program, "run", block / "run.json", "--out", tmp_path / "two"), str(trace), "/artifacts/", named["sha256"])
+        assert not (tmp_path / "two").exists()
+    trace.unlink()
+    done = bench(program, "run", block / "run.json", "--out", tmp_path / "two")
+    assert done.returncode == 0 and "the same, bit for bit" in done.stdout, done.stderr
+
+
 def test_a_record_without_a_first_step_repeats_its_outcome(program, tmp_path):
     grid = {"generator": "grid", "n_x": 2, "n_y": 2}
     crossing = json.loads(bodies(tmp_path, grid).read_text())

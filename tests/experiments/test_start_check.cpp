@@ -43,7 +43,7 @@ RunConfig given_sheets(double up) {
       3);
 }
 
-std::optional<Verdict> failure(const RunConfig& config, const StartLimits& limits = {}) {
+std::optional<Verdict> failure(const RunConfig& config, const RunLimits& limits = {}) {
   return start_failure(config, build_scene(config), limits);
 }
 

@@ -22,6 +22,22 @@ def test_sweep_skips_what_is_finished(program, tmp_path):
     assert [r.stat().st_mtime_ns for r in records] == before
 
 
+def test_a_record_beside_another_trace_runs_again(program, tmp_path):
+    """Every reader in Python would refuse it: it is no record that is there."""
+    spec, out = sweep_spec(tmp_path, [1, 2]), tmp_path / "out"
+    more = ["--set", "/passes/diagnose=true"]
+    assert bench(program, "sweep", spec, "--out", out, *more).returncode == 0
+    damaged, whole = sorted(out.glob("*/trace.jsonl"))
+    content = damaged.read_bytes()
+    damaged.write_bytes(content[:-1] + b" ")
+    second = bench(program, "sweep", spec, "--out", out, *more)
+    assert second.returncode == 0 and second.stdout.count("already there") == 1
+    assert "runs again: " in second.stdout and f"{damaged.parent / 'run.json'}#/artifacts/" in second.stdout and str(damaged) in second.stdout
+    assert damaged.read_bytes().count(b"\n") == content.count(b"\n")
+    assert bench(program, "sweep", spec, "--out", out, *more).stdout.count("already there") == 2
+    assert whole.is_file()
+
+
 def formulations(tmp_path, second: dict) -> Path:
     """log marked as the reference, and a second case."""
     stiff = {"/matching/rule": "as_given", "/formulation/stiffness_policy/kappa_N_per_m": 1000}

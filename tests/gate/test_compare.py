@@ -108,6 +108,38 @@ def test_another_schema_version(gate, pair, capsys):
     assert "allowed: barrierbench.run 3.x.y" in capsys.readouterr().err
 
 
+def test_fields_that_mean_something_else_in_an_earlier_version_are_named_and_compared_with_nothing(gate, pair, capsys):
+    a, b = pair(lambda record: record["schema"].update(version="3.4.0"))
+    for sides in ((a, b), (b, a)):
+        assert gate("compare", *sides) == 0
+        line = next(line for line in capsys.readouterr().out.splitlines() if " meanings " in line)
+        assert "not_judged" in line and "3.4.0" in line and "comparability.verdict" in line and "trace contraction" in line
+    for same in ((a, a), (b, b)):  # between two records of one version nothing means anything else
+        assert gate("compare", *same) == 0 and " meanings " not in capsys.readouterr().out
+
+
+def test_a_gate_says_what_an_earlier_record_means_otherwise(gate, pair, tmp_path, capsys):
+    a, b = pair(lambda record: record["schema"].update(version="3.4.0"))
+    kept = tmp_path / "kept.json"
+    assert gate("accept", "--record", a / "run.json", "--baseline", kept, "--reason", "a test") == 0
+    for record, said in ((a, False), (b, True)):
+        capsys.readouterr()
+        assert gate("gate", "--record", record / "run.json", "--baseline", kept, "--out", tmp_path / "gate") == 0
+        shown = capsys.readouterr().out
+        assert (" meanings " in shown and "comparability.verdict" in shown) == said, shown
+
+
+def test_a_record_of_another_program_has_no_such_fields(gate, pair, capsys):
+    def foreign(record):
+        record["schema"]["version"] = "3.2.0"
+        for section in ("comparability", "audit", "artifacts"):
+            del record[section]
+
+    a, b = pair(foreign)
+    (b / "trace.jsonl").unlink()
+    assert gate("compare", b, b) in (0, 1) and " meanings " not in capsys.readouterr().out
+
+
 def test_a_record_without_numbers_is_no_green_one(gate, pair):
     def strip(record):
         record["summary"], record["steps"] = {}, []

@@ -12,7 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from tests.hostile.cases import CASES, Case
+from tests.hostile.case import Case
+from tests.hostile.cases import CASES
 from tests.hostile.files import PLUGIN_SOURCE, make
 
 ROOT = Path(__file__).resolve().parents[2]

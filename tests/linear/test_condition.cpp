@@ -7,8 +7,8 @@
 #include <numeric>
 
 #include "core/linear/condition.hpp"
+#include "tests/linear/scaled_spectrum.hpp"
 #include "tests/linear/systems.hpp"
-#include "tests/oracle/dense.hpp"
 
 namespace bb {
 namespace {
@@ -116,20 +116,6 @@ TEST(Condition, Tier1IsALowerBoundWithinAFewPercentOrWorse) {
   EXPECT_LT(worst, 0.9999);  // it is a bound, not the value: the test has something to bound
 }
 
-/// Eigenvalues of L^-1 A L^-T by dense algebra, L from Eigen's own Cholesky of the blocks.
-VecXd dense_scaled(const ReducedSystem& system, Scaling scaling) {
-  const Eigen::MatrixXd a = dense(system);
-  Eigen::MatrixXd d = Eigen::MatrixXd::Identity(a.rows(), a.cols());
-  if (scaling == Scaling::jacobi) d = a.diagonal().asDiagonal();
-  if (scaling == Scaling::block_jacobi) {
-    for (std::size_t b = 0; b + 1 < system.block_start.size(); ++b) {
-      const int begin = system.block_start[b], size = system.block_start[b + 1] - begin;
-      d.block(begin, begin, size, size) = a.block(begin, begin, size, size);
-    }
-  }
-  return test::eigenvalues(a, d);
-}
-
 TEST(Condition, ScalingsMeetDenseAlgebra) {
   Eigen::MatrixXd a = with_spectrum(spectrum("geometric", 100, 1e5), 8);
   VecXd rows =
@@ -140,7 +126,7 @@ TEST(Condition, ScalingsMeetDenseAlgebra) {
   std::vector<double> truths;
   for (const int tier : {2, 3}) {
     for (const Scaling scaling : {Scaling::jacobi, Scaling::block_jacobi}) {
-      const VecXd truth = dense_scaled(system, scaling);
+      const VecXd truth = test::scaled_spectrum(system, scaling);
       const double cond = truth[99] / truth[0];
       const ConditionEstimate e = estimator.estimate(system, {tier, scaling, 1});
       EXPECT_EQ(e.status, ConditionStatus::ok);
@@ -150,7 +136,8 @@ TEST(Condition, ScalingsMeetDenseAlgebra) {
       truths.push_back(cond);
     }
   }
-  const double unscaled = dense_scaled(system, Scaling::none)[99] / dense_scaled(system, Scaling::none)[0];
+  const double unscaled =
+      test::scaled_spectrum(system, Scaling::none)[99] / test::scaled_spectrum(system, Scaling::none)[0];
   EXPECT_GT(unscaled, 10 * truths[0]);                   // the scalings do something
   EXPECT_GT(std::abs(truths[0] / truths[1] - 1), 0.01);  // and not the same
 }
@@ -162,7 +149,7 @@ TEST(Condition, OneFactorisationServesAllScalings) {
   const Scaling scalings[] = {Scaling::none, Scaling::jacobi, Scaling::block_jacobi};
   for (std::size_t k = 0; k < 3; ++k) {
     const ConditionEstimate one = estimate(system, 2, scalings[k], 7);
-    const VecXd truth = dense_scaled(system, scalings[k]);
+    const VecXd truth = test::scaled_spectrum(system, scalings[k]);
     EXPECT_EQ(all[k].lambda_min, one.lambda_min);
     EXPECT_EQ(all[k].lambda_max, one.lambda_max);
     EXPECT_NEAR(all[k].cond / (truth[truth.size() - 1] / truth[0]), 1, 1e-3) << to_string(scalings[k]);

@@ -123,16 +123,26 @@ TEST(AccumulatedToi, the_extension_is_room_that_is_kept_and_not_way_that_is_gone
   EXPECT_NEAR(scene.x0(2, 0) - simulation.history().x(2, 0), 0.02 / 1.25, 1e-4);
 }
 
+Method sheet_method(SaddleRule rule) {
+  Method method = test::saddle_method(rule);
+  method.step_solver.name = "accumulated_toi";
+  return method;
+}
+
+StepReport converged_step(Simulation& simulation) {
+  Watch watch;
+  const StepReport report = simulation.step(watch);
+  EXPECT_EQ(report.status, StepStatus::converged);
+  return report;
+}
+
 /// Where a sheet that buckles over two planes got to: how far that is from a solution is measured from there, and to
 /// measure changes nothing.
 TEST(AccumulatedToi, says_how_far_its_end_is_from_the_solution) {
   const Scene scene = test::driven_sheet({.jitter = 1e-4});
-  Method method = test::saddle_method(SaddleRule::ignore);
-  method.step_solver.name = "accumulated_toi";
+  Method method = sheet_method(SaddleRule::ignore);
   Simulation simulation(scene, method, test::sheet_dt, 2);
-  Watch watch;
-  const StepReport report = simulation.step(watch);
-  ASSERT_EQ(report.status, StepStatus::converged);
+  const StepReport report = converged_step(simulation);
   ASSERT_GT(report.contacts.total(), 0U);
   EXPECT_EQ(report.end_proof, EndProof::not_checked);
   ASSERT_TRUE(report.end_error_m.finite());
@@ -168,12 +178,9 @@ TEST(AccumulatedToi, a_free_fall_ends_at_its_solution) {
 TEST(AccumulatedToi, can_be_asked_whether_it_ends_in_a_saddle) {
   for (const double speed : {0.2, -0.2}) {
     const Scene scene = test::driven_sheet({.speed = speed});
-    Method method = test::saddle_method(SaddleRule::report);
-    method.step_solver.name = "accumulated_toi";
+    Method method = sheet_method(SaddleRule::report);
     Simulation simulation(scene, method, test::sheet_dt, 1);
-    Watch watch;
-    const StepReport report = simulation.step(watch);
-    ASSERT_EQ(report.status, StepStatus::converged);
+    const StepReport report = converged_step(simulation);
     EXPECT_EQ(report.end_proof, speed > 0 ? EndProof::saddle : EndProof::factor);
   }
 }

@@ -58,6 +58,26 @@ TEST(RecordSchema, TheUnitIsTheEndOfTheName) {
   EXPECT_EQ(unit_of("steps"), "");
 }
 
+/// Of every field whose values are not compared with those of earlier records: in the schema for readers, in the
+/// dictionary for people. A place that is no field would warn nobody.
+TEST(RecordSchema, SaysWhichFieldsMeantSomethingElseBefore) {
+  const auto expect_said = [](const ChangedMeaning& change, const std::string& schema,
+                              const std::string& dictionary) {
+    const json said = json::parse(schema)["x-changed-meaning"][change.field];
+    EXPECT_EQ(said["since"], change.since) << change.field;
+    EXPECT_EQ(said["before"], change.before) << change.field;
+    const std::size_t line = ("\n" + dictionary).find("\n" + std::string(change.field) + " ");
+    ASSERT_NE(line, std::string::npos) << change.field;
+    const std::string text = dictionary.substr(line, dictionary.find('\n', line) - line);
+    EXPECT_NE(text.find(std::string(" [before ") + change.since + ": " + change.before + "]"),
+              std::string::npos)
+        << text;
+  };
+  for (const ChangedMeaning& change : changed_in_run) expect_said(change, run_schema(), run_dictionary());
+  for (const ChangedMeaning& change : changed_in_trace)
+    expect_said(change, trace_schema(), trace_dictionary());
+}
+
 TEST(RecordDictionary, HasALineForEveryFieldWithItsMeaning) {
   std::istringstream in(run_dictionary() + trace_dictionary());
   std::set<std::string> places;

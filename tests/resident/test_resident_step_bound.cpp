@@ -9,51 +9,10 @@
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/contact/rods.hpp"
 #include "tests/folders.hpp"
-#include "tests/resident/contact_motion.hpp"
+#include "tests/resident/both_bounds.hpp"
 
 namespace bb::test {
 namespace {
-
-using resident::BoundBatches;
-
-/// By lists and by trees, with the same batches.
-struct BothBounds {
-  StepBound listed, unlisted;
-};
-BothBounds bounds(exec::Executor& executor, ResidentMotion& motion, const BoundBatches& batches = {}) {
-  resident::ResidentStepBound bound(executor, motion.resident, stop_level, batches);
-  motion.update();
-  return {bound.find(motion.candidates, motion.x0, motion.x1),
-          bound.find_without_list(motion.broad_phase.source(), motion.x0, motion.x1)};
-}
-BothBounds bounds(const Scene& scene, const Positions& x1, const BoundBatches& batches = {}) {
-  exec::HostExecutor executor;
-  ResidentMotion motion(executor, scene, scene.x0, x1);
-  return bounds(executor, motion, batches);
-}
-
-void expect_same(const StepBound& found, const StepBound& expected) {
-  EXPECT_EQ(found.alpha, expected.alpha);
-  EXPECT_EQ(found.kind, expected.kind);
-  EXPECT_EQ(found.key, expected.key);
-  EXPECT_EQ(found.zero, expected.zero);
-  EXPECT_EQ(found.capped, 0);
-}
-
-/// Counts into n_of_kind what limits; 7: nothing does.
-void expect_that_of_the_cpu_path(const Scene& scene, const Positions& x1, std::array<int, 8>& n_of_kind) {
-  const Candidates candidates = cpu_candidates(scene, scene.x0, x1);
-  const StepBound expected = cpu_bound(scene, candidates, scene.x0, x1);
-  const BothBounds found = bounds(scene, x1);
-  expect_same(found.listed, expected);
-  expect_same(found.unlisted, expected);
-  const std::size_t n = candidates.point_point.size() + candidates.point_edge.size() +
-                        candidates.point_triangle.size() + candidates.edge_edge.size() +
-                        candidates.obstacle_edge.size() + candidates.obstacle_triangle.size();
-  EXPECT_LE(static_cast<std::size_t>(found.listed.queries), n);
-  EXPECT_GE(found.listed.probes, found.listed.queries);
-  ++n_of_kind[expected.alpha < 1 ? static_cast<std::size_t>(expected.kind) : 7];
-}
 
 TEST(ResidentStepBound, IsThatOfTheCpuPathOfRodsAndBesideFarBodies) {
   std::array<int, 8> n_of_kind{};

@@ -122,18 +122,7 @@ struct GatherStreamed {
   }
   /// Rows whose closest points slide nowhere, grad^2 d included.
   BB_HD void add_fixed_points(Index r, double ww, double* sum) const {
-    Vec3d flat = Vec3d::Zero();
-    double curvature = 0;
-    if (rows.kind[r] == static_cast<std::uint8_t>(ContactKind::obstacle)) {
-      const Index v = rows.vertex[r];
-      const SurfaceGap<double> gap =
-          surface_gap<double>(surface.obstacles[rows.pair[r] & ((Key{1} << 30) - 1)].surface(),
-                              Vec3d(x[3 * v], x[3 * v + 1], x[3 * v + 2]));
-      flat = gap.flat;
-      curvature = gap.curvature;
-    } else {
-      curvature = 1 / (rows.d[r] + pair_offset(surface, rows.pair[r]));
-    }
+    const auto [curvature, flat] = row_curvature(rows, surface, r, x);
     const double stretch = rows.stretch[r], push = rows.push[r] * curvature;
     const Vec3d n = rows.normal_of(r);
     const Mat3d one = fixed_points_block<double>(n, flat, stretch, push,

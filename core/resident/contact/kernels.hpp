@@ -5,6 +5,7 @@
 #include "core/resident/contact/bound_kernels.hpp"
 #include "core/resident/contact/candidate_kernels.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
+#include "core/resident/contact/detour_kernels.hpp"
 #include "core/resident/contact/gather_kernels.hpp"
 #include "core/resident/contact/row_kernels.hpp"
 #include "core/resident/contact/shape_kernels.hpp"

@@ -26,6 +26,7 @@ namespace {
 
 std::vector<PlainObstacle> plain_obstacles(const std::vector<Obstacle>& obstacles) {
   std::vector<PlainObstacle> out;
+  out.reserve(obstacles.size());
   for (const Obstacle& o : obstacles) {
     out.push_back({{o.point[0], o.point[1], o.point[2]},
                    {o.axis[0], o.axis[1], o.axis[2]},

@@ -4,6 +4,7 @@
 
 #include "core/contact/contact_terms.hpp"
 #include "core/contact/mollified_terms.hpp"
+#include "core/contact/obstacle.hpp"
 #include "core/contact/obstacle_pair.hpp"
 #include "core/contact/obstacle_shape.hpp"
 #include "core/contact/row_hessian.hpp"
@@ -206,83 +207,108 @@ BB_HD void store_sliding(const RowHessians& to, Index i, const RowShape<double, 
     to.number[c * to.stride + i] = blend(exact[c], blocks[c], to.choice.t);
 }
 
-/// Rows of K points whose closest points slide along F edges.
+/// The local frame of a row of K points whose closest points slide along edges, 0 at given points.
+template <PairKind K>
+BB_HD RowShape<double, K == PairKind::point_edge ? 1 : 2> sliding_shape(const RowView& rows,
+                                                                        const SurfaceView& surface, Index r,
+                                                                        const double* x) {
+  constexpr int n = pair_points(K), F = K == PairKind::point_edge ? 1 : 2;
+  int vertex[n];
+  Closest<double, n> closest;
+  RowShape<double, F> shape;
+  shape.w.setZero();
+  for (int k = 0; k < n; ++k) {
+    vertex[k] = rows.vertex[k * rows.n + r];
+    closest.weights[k] = rows.weight[k * rows.n + r];
+    if (rows.is_free(r, k)) shape.w[k] = closest.weights[k];
+  }
+  const Mat<double, 3, n> points = points_of<n>(x, vertex);
+  closest.d = rows.d[r] + pair_offset(surface, rows.pair[r]);
+  closest.r = closest.d * rows.normal_of(r);
+  closest.region = K == PairKind::point_edge       ? Region::p_e
+                   : K == PairKind::point_triangle ? Region::p_t
+                                                   : Region::ea_eb;
+  const auto frame = bb::detail::region_frame<double, n>(points, closest);
+  shape.n = frame.n;
+  for (int l = 0; l < F; ++l) {
+    shape.q[l] = frame.q[l];
+    shape.g[l].setZero();
+    for (int k = 0; k < n; ++k) {
+      if (rows.is_free(r, k)) shape.g[l][k] = frame.g[l][k];
+    }
+  }
+  shape.distance = closest.d;
+  shape.stretch = rows.stretch[r];
+  shape.push = rows.push[r];
+  return shape;
+}
+
+/// Rows of K points whose closest points slide along edges.
 template <PairKind K>
 struct SlidingHessians {
   RowHessians to;
-  static constexpr int F = K == PairKind::point_edge ? 1 : 2;
-
   BB_HD void operator()(Index i) const {
-    constexpr int n = pair_points(K);
-    const RowView& rows = to.rows;
     const Index r = to.list[i];
-    if (rows.kind[r] != static_cast<std::uint8_t>(K)) return;
-    int vertex[n];
-    Closest<double, n> closest;
-    RowShape<double, F> shape;
-    shape.w.setZero();
-    for (int k = 0; k < n; ++k) {
-      vertex[k] = rows.vertex[k * rows.n + r];
-      closest.weights[k] = rows.weight[k * rows.n + r];
-      if (rows.is_free(r, k)) shape.w[k] = closest.weights[k];
-    }
-    const Mat<double, 3, n> points = points_of<n>(to.x, vertex);
-    closest.d = rows.d[r] + pair_offset(to.surface, rows.pair[r]);
-    closest.r = closest.d * rows.normal_of(r);
-    closest.region = K == PairKind::point_edge       ? Region::p_e
-                     : K == PairKind::point_triangle ? Region::p_t
-                                                     : Region::ea_eb;
-    const auto frame = bb::detail::region_frame<double, n>(points, closest);
-    shape.n = frame.n;
-    for (int l = 0; l < F; ++l) {
-      shape.q[l] = frame.q[l];
-      shape.g[l].setZero();
-      for (int k = 0; k < n; ++k) {
-        if (rows.is_free(r, k)) shape.g[l][k] = frame.g[l][k];
-      }
-    }
-    shape.distance = closest.d;
-    shape.stretch = rows.stretch[r];
-    shape.push = rows.push[r];
-    store_sliding(to, i, shape);
+    if (to.rows.kind[r] != static_cast<std::uint8_t>(K)) return;
+    store_sliding(to, i, sliding_shape<K>(to.rows, to.surface, r, to.x));
   }
 };
 
-/// Rows of an obstacle and the inside of an edge (N = 2) or a triangle.
+/// Thickness of the primitive of an obstacle's row: that of an edge may come from a triangle, m.
+BB_HD inline double obstacle_offset(const SurfaceView& surface, Key pair) {
+  const Index primitive = static_cast<Index>(pair >> 30 & ((Key{1} << 30) - 1));
+  const bool edge = static_cast<int>(pair >> 60) == obstacle_pairs_of<2>;
+  return edge ? surface.edges.offset[primitive] : surface.triangles.offset[primitive];
+}
+
+/// That of a row of an obstacle and the inside of an edge (N = 2) or a triangle.
+template <int N>
+BB_HD RowShape<double, N - 1> obstacle_row_shape(const RowView& rows, const SurfaceView& surface, Index r,
+                                                 const double* x) {
+  const AnalyticSurface<double> obstacle = obstacle_of(surface, rows.pair[r]);
+  Vec3d axis = Vec3d::Zero();
+  if (obstacle.kind == ObstacleKind::cylinder) axis = obstacle.axis;
+  const double distance = rows.d[r] + (obstacle_offset(surface, rows.pair[r]) + obstacle.radius);
+  RowShape<double, N - 1> shape =
+      obstacle_shape<N, double>(leading_points<N>(rows, r, x), axis, rows.normal_of(r), distance);
+  for (int k = 0; k < N; ++k) {
+    if (rows.is_free(r, k)) {
+      shape.w[k] = rows.weight[k * rows.n + r];
+      continue;
+    }
+    for (int l = 0; l < N - 1; ++l) shape.g[l][k] = 0;
+  }
+  shape.stretch = rows.stretch[r];
+  shape.push = rows.push[r];
+  return shape;
+}
+
 template <int N>
 struct ObstacleHessians {
   RowHessians to;
-
   BB_HD void operator()(Index i) const {
     constexpr ContactKind kind = N == 2 ? ContactKind::obstacle_edge : ContactKind::obstacle_triangle;
-    const RowView& rows = to.rows;
     const Index r = to.list[i];
-    if (rows.kind[r] != static_cast<std::uint8_t>(kind)) return;
-    const AnalyticSurface<double> obstacle = obstacle_of(to.surface, rows.pair[r]);
-    Vec3d axis = Vec3d::Zero();
-    if (obstacle.kind == ObstacleKind::cylinder) axis = obstacle.axis;
-    const double distance = rows.d[r] + (obstacle_offset(rows.pair[r]) + obstacle.radius);
-    RowShape<double, N - 1> shape =
-        obstacle_shape<N, double>(leading_points<N>(rows, r, to.x), axis, rows.normal_of(r), distance);
-    for (int k = 0; k < N; ++k) {
-      if (rows.is_free(r, k)) {
-        shape.w[k] = rows.weight[k * rows.n + r];
-        continue;
-      }
-      for (int l = 0; l < N - 1; ++l) shape.g[l][k] = 0;
-    }
-    shape.stretch = rows.stretch[r];
-    shape.push = rows.push[r];
-    store_sliding(to, i, shape);
-  }
-
- private:
-  /// Thickness of the primitive: an edge row may come from a triangle, m.
-  BB_HD double obstacle_offset(Key pair) const {
-    const Index primitive = static_cast<Index>(pair >> 30 & ((Key{1} << 30) - 1));
-    const bool edge = static_cast<int>(pair >> 60) == obstacle_pairs_of<2>;
-    return edge ? to.surface.edges.offset[primitive] : to.surface.triangles.offset[primitive];
+    if (to.rows.kind[r] != static_cast<std::uint8_t>(kind)) return;
+    store_sliding(to, i, obstacle_row_shape<N>(to.rows, to.surface, r, to.x));
   }
 };
+
+/// grad^2 d = w w^T x curvature (I - n n^T - flat flat^T) of a row whose closest points slide nowhere.
+struct RowCurvature {
+  double curvature;  // 1/m
+  Vec3d flat;
+};
+
+BB_HD inline RowCurvature row_curvature(const RowView& rows, const SurfaceView& surface, Index r,
+                                        const double* x) {
+  if (rows.kind[r] != static_cast<std::uint8_t>(ContactKind::obstacle)) {
+    return {1 / (rows.d[r] + pair_offset(surface, rows.pair[r])), Vec3d::Zero()};
+  }
+  const Index v = rows.vertex[r];
+  const SurfaceGap<double> gap =
+      surface_gap<double>(obstacle_of(surface, rows.pair[r]), Vec3d(x[3 * v], x[3 * v + 1], x[3 * v + 2]));
+  return {gap.curvature, gap.flat};
+}
 
 }  // namespace bb::resident

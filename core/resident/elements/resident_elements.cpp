@@ -31,6 +31,7 @@ ResidentElements::ResidentElements(exec::Executor& executor, const Scene& scene,
     made.push_back(std::move(limit));
   }
   std::vector<Stencils> stencils;
+  stencils.reserve(made.size());
   for (const MadeFamily& one : made) stencils.push_back({one.family->width(), one.vertices});
   const BlockRows rows = block_rows(scene.n_vertices(), stencils);
   row_begin_.upload(rows.row_begin);

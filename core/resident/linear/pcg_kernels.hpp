@@ -170,6 +170,7 @@ struct BeginRun {
       if (t != 0) return;
       const int iteration = first ? 0 : scalars->state[0].iteration;
       PcgEnd end = PcgEnd::running;
+      // NOLINTNEXTLINE(bugprone-branch-clone): what is asked first decides
       if (!is_finite(rr)) {
         end = PcgEnd::non_finite;
       } else if (rr == 0) {
@@ -205,6 +206,7 @@ struct StepDirection {
   BB_HD PcgState next(const PcgState& now, double rz, double rr) const {
     PcgState out{rz, rr, now.iteration, static_cast<int>(PcgEnd::running)};
     PcgEnd end = PcgEnd::running;
+    // NOLINTNEXTLINE(bugprone-branch-clone): what is asked first decides
     if (!is_finite(rr)) {
       end = PcgEnd::non_finite;
     } else if (++out.iteration; std::sqrt(rr) <= scalars->target) {

@@ -21,11 +21,13 @@ struct MatrixPart {
   const Index* row_begin;  // [n_vertices + 1] number of the first block of a row; null: no such part
   const int* column;       // [n_blocks]
   const double* value;     // [value_count(n_blocks)]
+  bool operator==(const MatrixPart&) const = default;
 };
 
 /// The sum of two parts: elements, whose pattern stays, and contacts, whose pattern changes.
 struct ResidentMatrix {
   MatrixPart part[2];
+  bool operator==(const ResidentMatrix&) const = default;
 };
 
 /// Degrees of freedom of a vertex that are prescribed or locked: bit c for coordinate c. Rows and columns of such
@@ -36,6 +38,7 @@ BB_HD inline bool is_fixed(FixedMask mask, int coordinate) { return (mask >> coo
 /// Which rows a block of threads takes: a function of their number alone, so that sums are the same everywhere.
 struct Partition {
   Index n_rows, rows_a_block;
+  bool operator==(const Partition&) const = default;
   static constexpr Index most_blocks = 1024;
   static Partition of(Index n_rows) {
     const Index each = (n_rows + most_blocks - 1) / most_blocks;

@@ -1,7 +1,6 @@
 #include "core/resident/linear/resident_pcg.hpp"
 
 #include <cmath>
-#include <cstring>
 #include <limits>
 
 #include "core/linear/cg_ritz.hpp"
@@ -74,11 +73,9 @@ void ResidentPcg::launch_iterations() {
 }
 
 void ResidentPcg::prepare_graph() {
-  GraphKey key;
-  std::memset(static_cast<void*>(&key), 0, sizeof key);
-  key.matrix = matrix_, key.vectors = v_, key.version = preconditioner_->version();
-  if (graph_ && std::memcmp(&key, &key_, sizeof key) == 0) return;
-  std::memcpy(static_cast<void*>(&key_), &key, sizeof key);
+  const GraphKey key{matrix_, v_, preconditioner_->version()};
+  if (graph_ && key == key_) return;
+  key_ = key;
   graph_.reset();
   executor_.begin_capture();
   try {

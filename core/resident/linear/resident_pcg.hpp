@@ -43,6 +43,7 @@ class ResidentPcg {
     ResidentMatrix matrix;
     PcgVectors vectors;
     int version;
+    bool operator==(const GraphKey&) const = default;
   };
 
   LinearReport solve_prepared(const double* b, double tolerance, int max_iterations, double setup_s);

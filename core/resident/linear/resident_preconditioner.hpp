@@ -16,6 +16,7 @@ struct PcgVectors {
   double *x, *r, *z, *p, *q;                     // [3 n]
   double *partial_pq, *partial_rz, *partial_rr;  // [n_blocks]
   PcgScalars* scalars;
+  bool operator==(const PcgVectors&) const = default;
 };
 
 class ResidentPreconditioner {

@@ -4,6 +4,7 @@
 
 #include "core/contact/pair_name.hpp"
 #include "core/math/error.hpp"
+#include "core/resident/contact/detour_kernels.hpp"
 
 namespace bb::resident {
 namespace {
@@ -36,6 +37,8 @@ ResidentContact::ResidentContact(exec::Executor& executor, const Scene& scene, T
       barrier_(options.contact, rule_of(*options.stiffness).potential()),
       assembly_(executor, resident_surface_, scene.n_vertices()),
       sums_(executor),
+      curved_(executor),
+      straight_(executor),
       gaps_(executor),
       rows_(executor, columns_of(stiffness_.rule())),
       trial_(executor, columns_of(stiffness_.rule())),
@@ -137,10 +140,7 @@ void ResidentContact::use_policy_kappa() {
 void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Column& g) {
   settle(x);
   energy_.reset();
-  if (frugal()) {
-    candidates_.free(), trial_.free(), finder_.free(), broad_phase_.free();
-    executor_.trim();
-  }
+  if (frugal()) give_back_motion();
   pattern_changed_ = !has_pattern_;
   if (!has_pattern_) assembly_.set_pattern(rows_);
   if (frugal()) executor_.trim();
@@ -152,6 +152,11 @@ void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Colu
   first_iterate_ = false;
   barrier_.evaluate(executor_, rows_);
   assembly_.add_gradient(rows_, x, g);
+}
+
+void ResidentContact::give_back_motion() {
+  candidates_.free(), trial_.free(), finder_.free(), broad_phase_.free();
+  executor_.trim();
 }
 
 // A policy with memory starts at the first iterate that has contacts, from B with kappa = 1 and the gradient of
@@ -186,6 +191,23 @@ const StepBound& ResidentContact::bound(const Column& x0, const Column& x1) {
   in_trees_ = true;
   bound_ = step_bound_.find_without_list(broad_phase_.source(), x0, x1);
   return bound_;
+}
+
+// The barrier of the rows is lost meanwhile.
+bool ResidentContact::make_room(const Column& x, const Column& dx, double bound, Column& force) {
+  settle(x);
+  curved_.clear(), straight_.clear();
+  force.fill_zero();
+  executor_.each(rows_.size(), DetourRows{rows_.view(), resident_surface_.view(), x.data(), dx.data(),
+                                          curved_.data(), straight_.data()});
+  const bool held = HoldTimes{curved_.smallest(), straight_.smallest()}.by_curvature(bound);
+  if (held) assembly_.add_gradient(rows_, x, force);
+  barrier_.evaluate(executor_, rows_);
+  if (held && frugal()) {
+    give_back_motion();
+    listed_ = in_trees_ = false;
+  }
+  return held;
 }
 
 std::string ResidentContact::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }

@@ -59,6 +59,9 @@ class ResidentContact {
   // --- a motion, and states on it
   void prepare(const Column& x0, const Column& x1);
   const StepBound& bound(const Column& x0, const Column& x1);
+  /// force [3 n_vertices] (N) becomes what makes room for gaps that are curved along dx; whether they hold a motion that
+  /// bound() ends at `bound`. Where it is frugal the lists of the motion are gone after that.
+  bool make_room(const Column& x, const Column& dx, double bound, Column& force);
   std::string describe_bound() const;
   /// x: the iterate.
   bool admits(const Column& x, const Column& trial);
@@ -99,6 +102,7 @@ class ResidentContact {
   void take_trial();
   void start_policy(const Column& x, const Column& others);
   void use_policy_kappa();
+  void give_back_motion();
 
   exec::Executor& executor_;
   const Scene& scene_;
@@ -114,6 +118,7 @@ class ResidentContact {
   ResidentBarrier barrier_;
   ContactAssembly assembly_;
   ContactSums sums_;
+  ResidentLeast curved_, straight_;  // HoldTimes
   StepEndGaps gaps_;
   ResidentRows rows_, trial_;
   bool lent_ = false;  // the trial has the columns that the two share

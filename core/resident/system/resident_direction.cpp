@@ -142,6 +142,20 @@ bool ResidentSystem::direction(SolveReport& report) {
   return moving || vectors_.free_dot(b_, step_).value() > 0 || vectors_.free_max(b_) == 0;
 }
 
+// As NewtonSystem::make_detour(). A state that is asked for its end makes none, so the column of escapes is free.
+bool ResidentSystem::make_detour(double bound, SolveReport& report) {
+  const ScopedPhase timer(clock(), Phase::assembly);
+  if (!contact_ || !contact_->make_room(x_, dx_, bound, b_)) return false;
+  fill_matrix(false);  // its values may have been given back
+  SolveReport detour;
+  detour.linear = solve_linear();
+  report.add_detour(detour);
+  if (detour.linear.status != LinearStatus::ok) return false;
+  executor_->copy(escape_.data(), dx_.data(), static_cast<std::size_t>(dx_.size()) * sizeof(double));
+  executor_->each(dx_.size(), AddColumn{step_.data(), dx_.data()});
+  return true;
+}
+
 LinearReport ResidentSystem::solve_linear() {
   const ScopedPhase timer(clock(), Phase::linear_solve);
   const double b_norm = pcg_->norm(vectors_.fixed().data(), b_.data());

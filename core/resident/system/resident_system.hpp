@@ -48,6 +48,8 @@ class ResidentSystem final : public StepSystem {
 
   void prepare_motion(MotionEnd end, bool to_bound) override;
   double bound_motion(IterationReport& report) override;
+  bool make_detour(double bound, SolveReport& report) override;
+  void drop_detour() override { dx_.swap(escape_); }
   std::string describe_bound() const override { return holder_; }
   std::optional<EnergyChange> try_motion(double alpha) override;
   void accept() override;
@@ -126,7 +128,7 @@ class ResidentSystem final : public StepSystem {
   bool served_at_once_ = false;
 
   Column x_, trial_, end_, dx_, g_, x_n_, x_tilde_, b_, step_, work_;  // [3 n]
-  Column escape_, body_size_;                                          // [3 n] a direction; [n] m
+  Column escape_, body_size_;  // [3 n] a direction of negative curvature, or dx before its detour; [n] m
   ExactHessians exact_hessians_;
   Column force_;          // [n] N
   Column elastic_value_;  // H that stiffness policies read

@@ -1,0 +1,146 @@
+// A StepSystem whose numbers a test writes down: the decisions of a step solver, each with a number on either side.
+#pragma once
+
+#include <functional>
+#include <stdexcept>
+#include <vector>
+
+#include "core/newton/step_system.hpp"
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb::test {
+
+using Change = std::optional<EnergyChange>;
+
+/// What one iteration meets; all numbers but alpha in SI units.
+struct ScriptedIteration {
+  double dx = 1, residual = 0, rounding = 0;
+  double slope = -1;
+  double bound = 1;
+  std::function<Change(double)> change;  // of the direction at alpha; empty: as its quadratic model says
+  EndProof end = EndProof::factor;
+  // along negative curvature
+  double escape_slope = 0, escape_curvature = -1, escape_bound = 1;
+  std::function<Change(double)> escape_change;  // empty: none is feasible
+  bool at_target = true;
+};
+
+/// Runs through its iterations; the last one is repeated.
+class ScriptedSystem final : public StepSystem {
+ public:
+  explicit ScriptedSystem(std::vector<ScriptedIteration> script)
+      : script_(std::move(script)), scene_(particle_over_plane(1, 1, 0.01)), fixed_(3, 0) {}
+
+  std::vector<double> tried;  // every alpha, in the order of trials
+  std::vector<double> aimed;  // lengths of escapes
+  int accepted = 0, checks = 0;
+
+  void begin_step(const Positions&, const Prediction&, double, double) override { place_ = -1; }
+  void restart_step(const Prediction&, double) override {}
+  void end_step() override {}
+  void set_target(const Positions&) override {}
+  void hold() override {}
+  bool at_target() const override { return now().at_target; }
+  void keep(Archive&) override {}
+  void drop_caches() override {}
+  void assemble() override {
+    if (place_ + 1 < static_cast<int>(script_.size())) ++place_;
+    escaping_ = false;
+  }
+  double add_tikhonov(double, double) override { return 0; }
+  SolveReport find_direction() override {
+    SolveReport out;
+    out.attempts = 1;
+    out.linear.residual_true = now().residual;
+    return out;
+  }
+  DirectionSize direction_size() override {
+    const double slope = escaping_ ? now().escape_slope : now().slope;
+    return {std::max(now().dx, now().rounding), now().dx, now().rounding, slope, now().dx};
+  }
+  void scale_direction(double) override {}
+  double direction_curvature() override { return now().escape_curvature; }
+  EndCheck check_end() override {
+    ++checks;
+    return {now().end, -1, 0, 0};
+  }
+  void aim_at_escape(double length) override {
+    aimed.push_back(length);
+    escaping_ = true;
+  }
+  bool solved_is_exact() const override { return true; }
+  void prepare_motion(MotionEnd, bool) override {}
+  double bound_motion(IterationReport&) override { return escaping_ ? now().escape_bound : now().bound; }
+  // of a detour, where a system has one: there is none
+  bool make_detour(double, SolveReport&) { return false; }
+  void drop_detour() {}
+  std::string describe_bound() const override { return "the script"; }
+  Change try_motion(double alpha) override {
+    tried.push_back(alpha);
+    const auto& change = escaping_ ? now().escape_change : now().change;
+    if (change) return change(alpha);
+    if (escaping_) return std::nullopt;
+    return EnergyChange{now().slope * alpha * (2 - alpha) / 2, 1e-3};
+  }
+  void accept() override {
+    ++accepted;
+    escaping_ = false;
+  }
+
+  const Scene& scene() const override { return scene_; }
+  Precision precision() const override { return Precision::full; }
+  const Positions& x() const override { return scene_.x0; }
+  const Positions& x_before() const override { return scene_.x0; }
+  const Positions& gradient() const override { return scene_.v0; }
+  double grad_inf() const override { return 1; }
+  double energy() const override { return 1; }
+  double energy(TermGroup) const override { return 1; }
+  bool pattern_changed() const override { return false; }
+  int n_free() const override { return 3; }
+  std::size_t nnz() const override { return 6; }
+  const std::vector<std::uint8_t>& fixed() const override { return fixed_; }
+  void report(IterateNumbers&) const override {}
+  void report_end(StepNumbers&) const override {}
+  void report_overload(bool, StepNumbers&) override {}
+  std::string describe_non_finite() const override { return {}; }
+  NewtonSystem& on_cpu() override { throw std::logic_error("a script has no matrices"); }
+
+ private:
+  const ScriptedIteration& now() const { return script_[static_cast<std::size_t>(std::max(place_, 0))]; }
+
+  std::vector<ScriptedIteration> script_;
+  Scene scene_;
+  std::vector<std::uint8_t> fixed_;
+  int place_ = -1;
+  bool escaping_ = false;
+};
+
+/// A step of line_search on a script: what it reports of the step and of every iteration. Tolerance 1e-3 m.
+struct ScriptedStep : private StepObserver {
+  static constexpr double tolerance = 1e-3;
+
+  explicit ScriptedStep(std::vector<ScriptedIteration> script, SaddleRule rule = SaddleRule::escape,
+                        double armijo = 0.1, int max_iterations = 40)
+      : system(std::move(script)) {
+    StepSolverOptions options;
+    options.max_iterations = max_iterations;
+    options.tol_velocity = tolerance;
+    options.saddle = rule;
+    options.parameters["armijo"] = armijo;
+    const auto integrator = make_integrator("implicit_euler");
+    History history;
+    history.x = history.x_prev = system.scene().x0;
+    history.v = history.a = history.v_prev = Positions::Zero(3, 1);
+    StepTask task{0, 1, 1, &history, integrator.get(), [](double, Positions&) {}};
+    Prediction used;
+    report = make_step_solver(options)->advance(system, task, used, *this);
+  }
+  ScriptedSystem system;
+  StepReport report;
+  std::vector<IterationReport> iterations;
+
+ private:
+  void on_iteration(const IterationReport& one) override { iterations.push_back(one); }
+};
+
+}  // namespace bb::test
