@@ -17,7 +17,7 @@ namespace bb {
 /// Of run.json and of the trace beside it. MODEL.REVISION.ADDITION: removed or changed meaning, widened,
 /// added. Readers refuse another first number.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.4.0";
+inline constexpr const char* run_schema_version = "3.4.1";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 using CountMap = std::map<std::string, int>;
