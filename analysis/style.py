@@ -75,6 +75,7 @@ LOOKS = {
     "ipc2020": Look("#56B4E9", "P", ":"),
     "log_squared": Look("#000000", "X", (0, (1, 1))),
     "two_stage": Look("#A6761D", "<", (0, (5, 2, 1, 2))),
+    "exponential": Look("#CC3311", "H", (0, (7, 1, 1, 1))),
     "article_cubic": Look("#999999", ">", "-."),
     "quadratic_as_printed": Look("#8B4513", "h", "--"),
 }

@@ -35,9 +35,16 @@ def _two_stage(u: float) -> tuple[float, float]:
     return ((1 - u) ** 2, -2 * (1 - u)) if u >= 0.5 else (0.25 - 0.5 * np.log(2 * u), -0.5 / u)
 
 
+def _exponential(u: float, a: float = 6.0) -> tuple[float, float]:
+    t = a * (1 - u)
+    p2 = np.expm1(t) - t
+    return (p2 - t * t / 2) / (a * np.exp(a)), -p2 / np.exp(a)
+
+
 # u = d/d_hat in (0, 1] -> b/d_hat^2 and its derivative in u.
 SHAPES: dict[str, Callable[[float], tuple[float, float]]] = {
-    "log": _log, "log_squared": _log_squared, "quadratic": _quadratic, "cubic": _cubic, "two_stage": _two_stage}
+    "log": _log, "log_squared": _log_squared, "quadratic": _quadratic, "cubic": _cubic, "two_stage": _two_stage,
+    "exponential": _exponential}
 
 
 class ShapeError(ValueError):

@@ -1,7 +1,8 @@
 """Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every verdict from the records by the rule of
 its claim, and writes results/CLAIMS.md, results/claims.json (the numbers used), docs/claims.png and the table of docs/results.md. With names of claims it runs the sweeps of these alone.
+Confirmation sweeps are run for claims that are registered (--register ID, then commit claims/confirmation/registry.json).
 
-Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them; a bad entry; no program).
+Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them; a bad entry; no program), or calls itself confirmed and is not.
 """
 
 from __future__ import annotations
@@ -17,7 +18,7 @@ from pathlib import Path
 from ..program import plugin_argument, plugin_words
 from ..record_file import RecordError
 from ..whole_file import write_whole
-from . import figure, frontiers, report
+from . import coverage, figure, frontiers, registry, report
 from .entry import ROOT, Claim, ClaimError, ids, read_claim, read_sweep
 from .judge import judge, missing
 from .proofs import Eval
@@ -34,7 +35,11 @@ def program(needed: bool = True) -> str | None:
 
 
 def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
-    for name in dict.fromkeys(name for claim in claims for name in claim.sweeps):
+    entries = registry.read()
+    for claim in claims:
+        if claim.id in entries:
+            registry.ready(claim, entries)
+    for name in dict.fromkeys(name for claim in claims for name in claim.sweeps + (claim.confirmation_sweeps if claim.id in entries else [])):
         sweep, start = read_sweep(name), time.monotonic()
         print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
         done = subprocess.run([program(), *plugin_words(plugins), "sweep", str(ROOT / sweep.file), "--out", str(runs / name)], stdout=subprocess.DEVNULL, check=False)
@@ -47,7 +52,7 @@ def gather(claims: list[Claim], runs: Path, kept: Table) -> Table:
     """Records where a sweep has any, else the numbers that are kept. Metrics are those of all claims."""
     everything = [read_claim(name) for name in ids()]
     metrics, table = used_metrics(everything), Table(dict(kept.sweeps), dict(kept.answers))
-    for name in dict.fromkeys(name for claim in claims for name in claim.sweeps):
+    for name in dict.fromkeys(name for claim in claims for name in claim.sweeps + claim.confirmation_sweeps):
         if any((runs / name).glob("*/run.json")):
             table.sweeps[name] = collect(read_sweep(name), runs / name, metrics[name])
     return table
@@ -55,10 +60,13 @@ def gather(claims: list[Claim], runs: Path, kept: Table) -> Table:
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="bench claims", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="examples: ./bench claims\n          ./bench claims K3 H1\n          ./bench claims --no-run")
+                                     epilog="examples: ./bench claims\n          ./bench claims K3 H1\n          ./bench claims --no-run\n          ./bench claims --register K3")
     parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
     parser.add_argument("--no-run", action="store_true", help="run nothing: judge the records that are there, or the numbers in results/claims.json")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the sweeps (default: results/runs/claims)")
+    parser.add_argument("--register", action="store_true",
+                        help="run nothing: write rule and confirmation sweeps of these claims to claims/confirmation/registry.json; commit it before the first run")
+    parser.add_argument("--coverage", action="store_true", help="run nothing: simulate how often the intervals cover, and write results/COVERAGE.md")
     plugin_argument(parser)
     return parser.parse_args(argv)
 
@@ -66,18 +74,47 @@ def arguments(argv: list[str]) -> argparse.Namespace:
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     try:
+        if args.coverage:
+            return write_coverage()
         claims = [read_claim(name) for name in args.ids or ids()]
-        if not args.no_run:
-            run_sweeps(claims, args.runs, args.plugin)
-        table = gather(claims, args.runs, read(FILE))
-        if absent := [line for claim in claims for line in missing(claim, table)]:
-            raise ClaimError("\n".join(absent))
-        asker = Eval(program(not args.no_run), table.answers, fresh=not args.no_run, plugins=tuple(args.plugin))
-        print(report.text([judge(claim, table, asker) for claim in claims]))
-        write_all(table, asker)
+        if args.register:
+            return register(claims if args.ids else [], args.runs)
+        return judge_all(claims, args)
     except (ClaimError, RecordError) as error:
         print(f"bench claims: {error}", file=sys.stderr)
         return 2
+
+
+def judge_all(claims: list[Claim], args: argparse.Namespace) -> int:
+    if not args.no_run:
+        run_sweeps(claims, args.runs, args.plugin)
+    table = gather(claims, args.runs, read(FILE))
+    if absent := [line for claim in claims for line in missing(claim, table)]:
+        raise ClaimError("\n".join(absent))
+    asker = Eval(program(not args.no_run), table.answers, fresh=not args.no_run, plugins=tuple(args.plugin))
+    answers = [judge(claim, table, asker) for claim in claims]
+    print(report.text(answers))
+    write_all(table, asker)
+    if refused := [f"{a.claim.id} calls itself confirmed and is not: {a.state.why}" for a in answers if a.state.refused]:
+        raise ClaimError("\n".join(refused))
+    return 0
+
+
+def write_coverage() -> int:
+    text = coverage.markdown()
+    write_whole(ROOT / "results" / "COVERAGE.md", text)
+    print(text)
+    return 0
+
+
+def register(claims: list[Claim], runs: Path) -> int:
+    if not claims:
+        raise ClaimError("--register needs the claims to register, e.g. --register K3")
+    table = gather(claims, runs, read(FILE))
+    for claim in claims:
+        entry = registry.register(claim, table)
+        print(f"{claim.id}: registered on {entry['date']}, rule {entry['rule_sha256'][:12]}, sweeps {', '.join(entry['sweeps'])}. "
+              f"Commit claims/confirmation/registry.json before ./bench claims {claim.id}")
     return 0
 
 

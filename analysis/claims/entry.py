@@ -1,4 +1,4 @@
-"""Claims and their sweeps as data: claims/ID.json, claims/sweeps/NAME.json."""
+"""Claims and their sweeps as data: claims/ID.json, claims/sweeps/NAME.json, and claims/confirmation/NAME.json for scenes that no rule was tuned on."""
 
 from __future__ import annotations
 
@@ -15,7 +15,9 @@ from ..program import read_object
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "claims"
 NAME = "barrierbench.claim/1"
-REQUIRED = ("id", "source", "sentence", "dimension", "guarantee")
+REQUIRED = ("id", "source", "sentence", "dimension", "guarantee", "kind")
+KINDS = ("runs", "closed form", "by dimension", "by construction")  # what makes it true or false; the last two are trivial
+SEEDS = "/seeds/main"
 SOLVER = "/step_solver/name"
 OPTIONAL = ("schema", "parts", "waits_for", "note", "rule_changes", "frontier")
 
@@ -31,6 +33,7 @@ class Claim:
     sentence: str
     dimension: str
     guarantee: str
+    kind: str
     parts: tuple[dict, ...] = ()  # rules with their parameters; all of them together are the claim, but those marked beside
     waits_for: str = ""  # what has to be built before it can be decided
     note: str = ""
@@ -42,22 +45,33 @@ class Claim:
         return list(dict.fromkeys([part["sweep"] for part in self.parts if "sweep" in part] + [self.frontier[k] for k in ("sweep",) if self.frontier]))
 
     @property
+    def deciding(self) -> list[dict]:
+        return [part for part in self.parts if not part.get("beside")]
+
+    @property
+    def confirmation_sweeps(self) -> list[str]:
+        return list(dict.fromkeys(part["confirm"]["sweep"] for part in self.deciding if "confirm" in part))
+
+    @property
     def command(self) -> str:
         return f"./bench claims {self.id}"
 
 
 @dataclass(frozen=True)
 class Sweep:
-    """The cases of a sweep file: SCENE LEVEL, case, seed."""
+    """The cases of a sweep file: SCENE LEVEL, case, seed, and what more it varies."""
 
     name: str
     sha256: str
     cases: dict[str, tuple[str, str, str, int]] = field(hash=False, default_factory=dict)  # note of a record -> its place
+    more: dict[str, dict] = field(hash=False, default_factory=dict)  # note -> values of further axes: theta, ...
+    axes: dict[str, list] = field(hash=False, default_factory=dict)  # of these their values
+    path: Path = Path()
     solvers: dict[str, str] = field(hash=False, default_factory=dict)  # case -> step solver, of those that name one
 
     @property
     def file(self) -> str:
-        return f"claims/sweeps/{self.name}.json"
+        return f"claims/{self.path.parent.name}/{self.name}.json"
 
     @property
     def command(self) -> str:
@@ -91,6 +105,8 @@ def read_claim(name: str, folder: Path = FOLDER) -> Claim:
         raise ClaimError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
     if data["id"] != name:
         raise ClaimError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
+    if data["kind"] not in KINDS:
+        raise ClaimError(f"{path}: /kind: found {data['kind']!r}; one of {', '.join(KINDS)}")
     if "frontier" in data and set(data["frontier"]) != {"sweep", "cost", "axes"}:
         raise ClaimError(f"{path}: /frontier: sweep, cost and axes are needed; found {', '.join(data['frontier'])}")
     if not data.get("parts") and not data.get("waits_for"):
@@ -99,26 +115,44 @@ def read_claim(name: str, folder: Path = FOLDER) -> Claim:
                  note=data.get("note", ""), rule_changes=tuple(data.get("rule_changes", ())), frontier=data.get("frontier", {}))
 
 
+def word(pointer: str) -> str:
+    """The name of an axis by pointer: of /matching/theta theta."""
+    return pointer.rsplit("/", 1)[-1]
+
+
 def _labels(axis: dict, path: Path) -> list[str]:
     if "cases" in axis:
         return [case["label"] for case in axis["cases"]]
-    if axis.get("pointer") != "/seeds/main":
-        raise ClaimError(f"{path}: an axis by pointer is /seeds/main; found {axis.get('pointer')!r}")
-    return [f"main={value}" for value in axis["values"]]
+    if "pointer" not in axis or not axis.get("values"):
+        raise ClaimError(f"{path}: an axis has cases, or a pointer and values; found {', '.join(axis)}")
+    return [f"{word(axis['pointer'])}={json.dumps(value)}" for value in axis["values"]]
+
+
+def sweep_path(name: str, folder: Path = FOLDER) -> Path:
+    """Of a sweep of claims, or of one of confirmation scenes; no name is in both."""
+    found = [path for path in (folder / kind / f"{name}.json" for kind in ("sweeps", "confirmation")) if path.is_file()]
+    if len(found) > 1:
+        raise ClaimError(f"{found[1]}: a sweep of this name is in claims/sweeps as well")
+    return found[0] if found else folder / "sweeps" / f"{name}.json"
 
 
 @cache
 def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
-    """Three axes: cases labelled SCENE LEVEL, the cases that are compared, and values of /seeds/main."""
-    path = folder / "sweeps" / f"{name}.json"
+    """Cases labelled SCENE LEVEL, the cases that are compared, values of /seeds/main, and any further axes by pointer, whose values become part of the place."""
+    path = sweep_path(name, folder)
     data = _read(path)
-    if data.get("name") != name or len(data.get("axes", [])) != 3:
-        raise ClaimError(f"{path}: needs the name of the file and three axes: scenes with levels, cases, seeds")
-    cases = {}
-    for labels in itertools.product(*(_labels(axis, path) for axis in data["axes"])):
+    axes = data.get("axes", [])
+    seeds = [k for k, axis in enumerate(axes) if axis.get("pointer") == SEEDS]
+    if data.get("name") != name or len(axes) < 3 or len(seeds) != 1 or not all("cases" in axis for axis in axes[:2]) or any("cases" in axis for axis in axes[2:]):
+        raise ClaimError(f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is varied beside is an axis by pointer")
+    others = [k for k in range(2, len(axes)) if k != seeds[0]]
+    cases, more = {}, {}
+    for labels in itertools.product(*(_labels(axis, path) for axis in axes)):
         scene, _, level = labels[0].partition(" ")
-        if not level or not labels[2].startswith("main="):
-            raise ClaimError(f"{path}: {labels}: the axes are SCENE LEVEL, case, /seeds/main")
-        cases[f"{name}: {' '.join(labels)}"] = scene, level, labels[1], int(labels[2].removeprefix("main="))
-    solvers = {case["label"]: case["set"][SOLVER] for case in data["axes"][1]["cases"] if SOLVER in case["set"]}
-    return Sweep(name, hashlib.sha256(path.read_bytes()).hexdigest(), cases, solvers)
+        if not level:
+            raise ClaimError(f"{path}: {labels}: the first axis is SCENE LEVEL")
+        note = f"{name}: {' '.join(labels)}"
+        cases[note] = scene, level, labels[1], int(labels[seeds[0]].removeprefix("main="))
+        more[note] = {word(axes[k]["pointer"]): json.loads(labels[k].partition("=")[2]) for k in others}
+    solvers = {case["label"]: case["set"][SOLVER] for case in axes[1]["cases"] if SOLVER in case["set"]}
+    return Sweep(name, hashlib.sha256(path.read_bytes()).hexdigest(), cases, more, {word(axes[k]["pointer"]): axes[k]["values"] for k in others}, path, solvers)

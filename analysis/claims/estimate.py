@@ -1,35 +1,64 @@
-"""Means with intervals over scenes, levels and jittered starts."""
+"""One value a scene, the mean of scenes with its interval, shares, signs, and how much alike starts are. Only scenes are samples."""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
-SEED, DRAWS = 20261122, 2000
+CONFIDENCE = 0.95
 Cells = dict[str, dict[str, list[float]]]  # scene -> level -> one value a start
 
 
-def mean(cells: Cells) -> float:
-    """Of scenes, of their levels, of their starts: every scene counts the same."""
-    return float(np.mean([np.mean([np.mean(starts) for starts in levels.values()]) for levels in cells.values()]))
+@dataclass(frozen=True)
+class OfScene:
+    """The value of a scene, and the least and the largest over its levels: a scatter of repeated measures, no interval."""
+
+    name: str
+    value: float
+    low: float
+    high: float
+    levels: int
+    n: int
 
 
-def interval(cells: Cells, resample_scenes: bool = True) -> tuple[float, float]:
-    """95% by bootstrap: scenes are drawn with replacement (unless it is one), then their levels, then the starts of each."""
-    random = np.random.default_rng(SEED)
-    slots = len(cells)
-    means = np.stack([_resampled([np.asarray(v, float) for v in levels.values()], slots, random) for levels in cells.values()])
-    chosen = random.integers(slots, size=(DRAWS, slots)) if resample_scenes else np.tile(np.arange(slots), (DRAWS, 1))
-    drawn = means[chosen, np.arange(DRAWS)[:, None], np.arange(slots)].mean(axis=1)
-    return float(np.quantile(drawn, 0.025)), float(np.quantile(drawn, 0.975))
+def of_scenes(cells: Cells) -> list[OfScene]:
+    """Mean over the levels of a scene of the mean over their starts."""
+    found = []
+    for name, levels in cells.items():
+        means = [float(np.mean(starts)) for starts in levels.values()]
+        found.append(OfScene(name, float(np.mean(means)), min(means), max(means), len(means), sum(map(len, levels.values()))))
+    return found
 
 
-def _resampled(levels: list[np.ndarray], slots: int, random: np.random.Generator) -> np.ndarray:
-    """Means of one scene, DRAWS x slots of them, each of levels drawn with replacement and of their starts likewise."""
-    n = len(levels)
-    size = (DRAWS, slots, n)
-    of_level = np.stack([starts[random.integers(len(starts), size=(*size, len(starts)))].mean(axis=-1) for starts in levels])
-    which = random.integers(n, size=size)
-    return np.take_along_axis(of_level, which[None], axis=0)[0].mean(axis=-1)
+def student(values) -> tuple:
+    """95% interval of the mean of scene values by Student's t: lower, upper, of the last axis, so that a simulation asks this very function.
+    Needs two scenes. Its coverage is measured: coverage.py."""
+    from scipy.stats import t
+
+    values = np.asarray(values, float)
+    n = values.shape[-1]
+    if n < 2:
+        raise ValueError(f"{n} scenes: an interval over scenes needs two")
+    half = t.ppf(0.5 + CONFIDENCE / 2, n - 1) * values.std(axis=-1, ddof=1) / np.sqrt(n)
+    middle = values.mean(axis=-1)
+    return middle - half, middle + half
+
+
+def intraclass(groups: list[list[float]]) -> float | None:
+    """Intraclass correlation of the starts at a place (one-way random effects, Shrout and Fleiss 1979, (1,1); groups may differ in size).
+    None below two places of two starts, or where all numbers are the same."""
+    groups = [np.asarray(g, float) for g in groups if len(g) > 1]
+    if len(groups) < 2:
+        return None
+    sizes = np.array([len(g) for g in groups])
+    total, places = sizes.sum(), len(groups)
+    middle = np.concatenate(groups).mean()
+    between = sum(len(g) * (g.mean() - middle) ** 2 for g in groups) / (places - 1)
+    within = sum(((g - g.mean()) ** 2).sum() for g in groups) / (total - places)
+    size = (total - (sizes**2).sum() / total) / (places - 1)
+    whole = between + (size - 1) * within
+    return float((between - within) / whole) if whole > 0 else None
 
 
 def sign_test(wins: int, losses: int) -> float:
@@ -43,5 +72,18 @@ def wilson(successes: int, n: int) -> tuple[float, float]:
     """95% interval of a share."""
     from scipy.stats import binomtest
 
-    found = binomtest(successes, n).proportion_ci(0.95, method="wilson")
+    found = binomtest(successes, n).proportion_ci(CONFIDENCE, method="wilson")
     return float(found.low), float(found.high)
+
+
+SEED, DRAWS = 20261122, 2000
+
+
+def interval(cells: Cells, resample_scenes: bool = False) -> tuple[float, float]:
+    """Bootstrap of the starts of ONE path (matching/fronts.py): how far jitter moves it. No verdict on a claim uses it."""
+    lists = [starts for levels in cells.values() for starts in levels.values()]
+    if resample_scenes or len(lists) != 1:
+        raise ValueError("a bootstrap over scenes or levels does not cover (coverage.py); student() is the interval over scenes")
+    starts, random = np.asarray(lists[0], float), np.random.default_rng(SEED)
+    drawn = starts[random.integers(len(starts), size=(DRAWS, len(starts)))].mean(axis=-1)
+    return float(np.quantile(drawn, 0.025)), float(np.quantile(drawn, 0.975))

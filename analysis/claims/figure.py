@@ -1,4 +1,4 @@
-"""One figure: the main number of every claim that has one, with its interval and its threshold."""
+"""One figure, a panel for each kind of number: the main number of every claim that has one, with its scenes, its interval and its threshold."""
 
 from __future__ import annotations
 
@@ -7,6 +7,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
+from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
 from .. import style
 from .judge import Answer
@@ -14,33 +15,53 @@ from .report import interval
 from .verdict import HOLDS, NOT, ONLY_IF, OPEN, Judged
 
 COLORS = {HOLDS: "#009E73", ONLY_IF: "#E69F00", NOT: "#D55E00", OPEN: "#888888"}
-RANGE = (0.1, 100.0)  # what is beyond is an arrow at the edge
-SHOWN = ("The main number of every claim that has one, that of its first part: a ratio (or what its line says), geometric mean and 95% interval over scenes, levels "
-         "and jittered starts; a proof (diamond) has the range of its numbers. Black ticks: the thresholds of the rule; an arrow: beyond the axis. The colour is the "
-         "verdict of the whole claim, which may have more parts and other conditions (results/CLAIMS.md). Where steps are not asked to converge, the label has the residual of "
-         "their ends.")
+# kind of number -> label of its axis, whether it is logarithmic
+PANELS = {"ratio": ("ratio of two cases, geometric mean of scenes", True), "share": ("share (of scenes, of a climb, of a limit)", False),
+          "slope": ("slope of log number over log level", False), "closed form": ("number of a closed form, range over its arguments", True)}
+KINDS = {"ratio": "ratio", "at_equal_gap": "ratio", "outcomes": "share", "level": "share", "slope": "slope"}
+SHOWN = ("The main number of every claim that has one, that of its first part, by kind of number. Light dots below: the scenes, each the mean of its levels; "
+         "dot and bar: their mean with its 95% interval over scenes (Student's t); for shares of scenes in which every run gets through Wilson's interval and no dots; "
+         "where a part asks for every run, or has a closed form (diamond), a bar from the least to the largest number. Black ticks: the threshold of the rule, or the "
+         "share of the case that has to be beaten. The colour is the exploratory verdict of the whole claim (or that of a closed form), which may have more parts and "
+         "other conditions (results/CLAIMS.md). Where steps are not asked to converge, the label has the residual of their ends.")
 
 
-def _inside(x: float) -> float:
-    return min(max(x, RANGE[0]), RANGE[1])
+def kind_of(j: Judged) -> str:
+    return "closed form" if j.proof else KINDS[j.rule]
 
 
-def _marker(j: Judged) -> str:
-    if j.value > RANGE[1]:
-        return ">"
-    return "<" if j.value < RANGE[0] else "D" if j.proof else "o"
+def _dots(j: Judged) -> list[float]:
+    """Values of the scenes, where the number is their mean."""
+    return [] if j.rule == "outcomes" else [value for _, value, *_ in j.per_scene]
 
 
 def _row(axis, k: int, a: Answer) -> dict:
     j, color = a.main, COLORS[a.verdict.verdict]
-    axis.plot([_inside(j.lower), _inside(j.upper)], [k, k], color=color, linewidth=1.8, solid_capstyle="butt")
-    axis.plot([_inside(j.value)], [k], marker=_marker(j), color=color, linestyle="none", clip_on=False)
+    dots = _dots(j)
+    axis.plot(dots, [k + 0.24] * len(dots), marker="o", markersize=2.6, color=color, alpha=0.45, markeredgewidth=0, linestyle="none")
+    if j.lower is not None:
+        axis.plot([j.lower, j.upper], [k, k], color=color, linewidth=1.4, solid_capstyle="butt")
+    axis.plot([j.value], [k], marker="D" if j.proof else "o", color=color, linestyle="none")
     for bound in j.bounds:
-        if RANGE[0] <= bound <= RANGE[1]:
-            axis.plot([bound, bound], [k - 0.36, k + 0.36], color="black", linewidth=0.9)
-    axis.annotate(f"{interval(j)}, asked {j.threshold}", (1.03, k), xycoords=("axes fraction", "data"), va="center", fontsize=6)
-    return {"claim": a.claim.id, "verdict": a.verdict.verdict, "measures": j.measures, "value": j.value, "lower": j.lower, "upper": j.upper,
-            "threshold": j.threshold, "proof": j.proof, "ends": j.ends}
+        axis.plot([bound, bound], [k - 0.36, k + 0.36], color="black", linewidth=0.9)
+    axis.annotate(f"{interval(j)}, asked {j.threshold}", (1.02, k), xycoords=("axes fraction", "data"), va="center", fontsize=5.5)
+    return {"panel": kind_of(j), "claim": a.claim.id, "verdict": a.verdict.verdict, "measures": j.measures, "slice": j.slice, "value": j.value, "lower": j.lower, "upper": j.upper,
+            "threshold": j.threshold, "ends": j.ends, "scenes": " ".join(f"{x:.4g}" for x in dots)}
+
+
+def _panel(axis, kind: str, shown: list[Answer]) -> list[dict]:
+    rows = [_row(axis, k, a) for k, a in enumerate(shown)]
+    label, logarithmic = PANELS[kind]
+    if logarithmic:
+        axis.set_xscale("log")
+        low, high = axis.get_xlim()
+        axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 100 else (1,), numticks=12))
+        axis.xaxis.set_major_formatter(ScalarFormatter() if high < 1e4 else axis.xaxis.get_major_formatter())
+        axis.xaxis.set_minor_formatter(NullFormatter())
+    axis.set_yticks(range(len(shown)), [f"{a.claim.id}  {_wrapped(_says(a.main))}" for a in shown], fontsize=5.5)
+    axis.set_ylim(len(shown) - 0.4, -0.6)
+    axis.set_xlabel(label)
+    return rows
 
 
 def _says(j: Judged) -> str:
@@ -48,20 +69,22 @@ def _says(j: Judged) -> str:
 
 
 def draw(answers: list[Answer], stem: Path) -> list[Path]:
-    shown = [a for a in answers if a.main is not None]
-    fig, axis = plt.subplots(figsize=(style.WIDE_IN, 0.6 + 0.26 * len(shown)), layout="constrained")
-    rows = [_row(axis, k, a) for k, a in enumerate(shown)]
-    axis.set_xscale("log")
-    axis.set_xlim(*RANGE)
-    axis.set_yticks(range(len(shown)), [f"{a.claim.id}  {_wrapped(_says(a.main))}" for a in shown], fontsize=6)
-    axis.set_ylim(len(shown) - 0.4, -0.6)
-    axis.set_xlabel("number of the claim's first part")
+    by_kind = {kind: [a for a in answers if a.main is not None and kind_of(a.main) == kind] for kind in PANELS}
+    by_kind = {kind: shown for kind, shown in by_kind.items() if shown}
+    if not by_kind:
+        return []
+    heights = [len(shown) + 1.6 for shown in by_kind.values()]
+    fig, axes = plt.subplots(len(by_kind), 1, figsize=(style.WIDE_IN, 0.5 + 0.25 * sum(heights)), layout="constrained", height_ratios=heights, squeeze=False)
+    rows = [row for axis, (kind, shown) in zip(axes[:, 0], by_kind.items()) for row in _panel(axis, kind, shown)]
+    style.letter_panels(axes[:, 0])
+    first = axes[0, 0]
     for verdict, color in COLORS.items():
-        axis.plot([], [], color=color, marker="o", label=verdict)
-    axis.plot([], [], color="black", marker="|", linestyle="none", label="threshold")
-    fig.legend(loc="outside lower center", ncols=5, frameon=False)
+        first.plot([], [], color=color, marker="o", label=verdict)
+    first.plot([], [], color="#888888", alpha=0.45, marker="o", markersize=2.6, markeredgewidth=0, linestyle="none", label="a scene")
+    first.plot([], [], color="black", marker="|", linestyle="none", label="threshold")
+    fig.legend(loc="outside lower center", ncols=6, frameon=False)
     return style.save(fig, stem, pd.DataFrame(rows), SHOWN)
 
 
-def _wrapped(text: str, width: int = 52) -> str:
+def _wrapped(text: str, width: int = 58) -> str:
     return "\n".join(textwrap.wrap(text, width))

@@ -15,6 +15,7 @@ from .. import style
 from ..robustness import Frontier, Trial, expected_cost, frontier, profile, success
 from .ends import end_of_case
 from .entry import Claim, ClaimError, read_sweep
+from .estimate import wilson
 from .metrics import METRICS
 from .outcomes import hopeless
 from .table import Runs, Table
@@ -71,6 +72,18 @@ def along(runs: Runs, case: str, axis: str, middle: float) -> list[Trial]:
     return [_trial(row, value, 0.0) for row, value in values if value is not None]
 
 
+def _share(runs: Runs, case: str, every: list[Trial]) -> str:
+    """Share of runs, and of scenes in which every run gets through, whose interval is over scenes."""
+    left_out, through = hopeless(runs), {}
+    for row in runs.rows:
+        if row["case"] == case and (row["scene"], row["level"]) not in left_out:
+            through[row["scene"]] = through.get(row["scene"], True) and row["outcome"] == "ok"
+    good, n = sum(through.values()), len(through)
+    low, high = wilson(good, n)
+    share = success(every)
+    return f"{share.ok} of {share.n} runs; every run in {good} of {n} scenes [{low:.3f}, {high:.3f}]"
+
+
 def _reach(f: Frontier) -> str:
     """The range that all runs get through; a square bracket outwards where the next tested value fails."""
     if f.low is None or f.high is None:
@@ -95,15 +108,15 @@ def lines(claim: Claim, table: Table) -> list[str]:
     runs, cost, axes = table.sweeps[claim.frontier["sweep"]], claim.frontier["cost"], claim.frontier["axes"]
     left_out = _left_out(runs)
     found = [f"![data profile and shares of the policies](../docs/policies_{claim.id}.png)", "",
-             f"Over `{claim.frontier['sweep']}`: share of runs that get through [95%, Wilson], {METRICS[cost][0]} of all runs over the number of successes (ert), and the frontier: the range of "
+             f"Over `{claim.frontier['sweep']}`: runs that get through, and the scenes in which every run does [95% over scenes, Wilson], {METRICS[cost][0]} of all runs over the number of successes (ert), and the frontier: the range of "
              "each axis, from the nominal level outwards, in which every run of every scene and start gets through; a bracket that opens outwards means that the next tested value fails."
              + (f" The frontier counts every run. From share and ert {left_out}." if left_out else ""), "",
              f"| case | gets through | ert ({cost}) | " + " | ".join(f"frontier of {axis}" for axis in axes) + " |", "|" + "---|" * (len(axes) + 3)]
     for case, label in case_labels(claim, runs).items():
         every = trials(runs, case, cost)
-        share, ert = success(every), expected_cost(every)
+        ert = expected_cost(every)
         reaches = [_reach(frontier(along(runs, case, axis, middle), middle)) for axis, middle in axes.items()]
-        found.append(f"| {label} | {share.ok} of {share.n} [{share.low:.3f}, {share.high:.3f}] | {'-' if ert is None else f'{ert:.4g}'} | " + " | ".join(reaches) + " |")
+        found.append(f"| {label} | {_share(runs, case, every)} | {'-' if ert is None else f'{ert:.4g}'} | " + " | ".join(reaches) + " |")
     return [*found, ""]
 
 

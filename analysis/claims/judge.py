@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
-from . import equal_gap, numbers, outcomes
+from . import equal_gap, numbers, outcomes, registry
 from .ends import ends_of_part
 from .entry import Claim, ClaimError, read_sweep
 from .metrics import METRICS
 from .proofs import PROOFS, Eval
+from .registry import State
+from .slices import rows_of, slice_of
 from .table import Table
 from .verdict import Judged, together, undecided
 
@@ -22,6 +24,24 @@ class Answer:
     claim: Claim
     verdict: Judged
     parts: list[Judged]
+    state: State = State()  # of its confirmation
+    confirmed: Judged | None = None  # over scenes that no rule was tuned on
+    confirmed_parts: list[Judged] = field(default_factory=list)
+
+    @property
+    def proven(self) -> bool:
+        """Nothing but closed forms decides it: no scene does."""
+        return bool(self.claim.deciding) and all("proof" in part for part in self.claim.deciding)
+
+    @property
+    def why_exploratory(self) -> str:
+        """Empty for a closed form."""
+        if self.proven or not self.claim.deciding:
+            return ""
+        changes = len(self.claim.rule_changes)
+        if not changes:
+            return "exploratory: its rule was not registered before its first run"
+        return "exploratory: " + ("a change" if changes == 1 else f"{changes} changes") + " after numbers were seen"
 
     @property
     def main(self) -> Judged | None:
@@ -50,17 +70,25 @@ def judge_part(part: dict, table: Table, asker: Eval) -> Judged:
     else:
         if part.get("rule") not in RULES:
             raise ClaimError(f"rule {part.get('rule')!r}: one of {', '.join(RULES)}, or a proof: {', '.join(PROOFS)}")
-        runs = table.sweeps[part["sweep"]]
+        sweep = read_sweep(part["sweep"])
+        runs = rows_of(part, table.sweeps[part["sweep"]], sweep)
         judged = RULES[part["rule"]](part, runs)
-        judged.ends = ends_of_part(part, runs.rows, read_sweep(part["sweep"]))
+        judged.ends = ends_of_part(part, runs.rows, sweep)
         judged.smallest_gaps = part["rule"] in BY_GAP and part.get("counts", "comparable") == "comparable" and runs.of_earlier_rule
+        judged.rule, judged.slice = part["rule"], slice_of(part, sweep)
     judged.says, judged.beside, judged.sweep = part["says"], part.get("beside", False), part.get("sweep", "")
     judged.machine = METRICS[part["metric"]][2] if "metric" in part else False
     return judged
 
 
-def judge(claim: Claim, table: Table, asker: Eval) -> Answer:
+def judge(claim: Claim, table: Table, asker: Eval, entries: dict | None = None) -> Answer:
+    """The exploratory verdict, and the confirmed one where its registration is verified. entries: those of the registry."""
+    state = registry.state(claim, table, registry.read() if entries is None else entries)
     if lines := missing(claim, table):
-        return Answer(claim, undecided("; ".join(lines)), [])
+        return Answer(claim, undecided("; ".join(lines)), [], state)
     parts = [judge_part(part, table, asker) for part in claim.parts]
-    return Answer(claim, together(parts, claim.waits_for), parts)
+    answer = Answer(claim, together(parts, claim.waits_for), parts, state)
+    if state.verified:
+        answer.confirmed_parts = [judge_part(part, table, asker) for part in registry.as_confirmation(claim).parts]
+        answer.confirmed = together(answer.confirmed_parts)
+    return answer

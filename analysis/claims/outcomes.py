@@ -1,12 +1,13 @@
-"""Rule `outcomes`: which of two cases gets through, scene by scene and level by level."""
+"""Rule `outcomes`: which of two cases gets through, scene by scene."""
 
 from __future__ import annotations
 
+from .cells import complete, needed, starts_text
 from .entry import ClaimError
-from .estimate import sign_test, wilson
+from .estimate import of_scenes, sign_test, wilson
 from .numbers import by_place
 from .table import Runs
-from .verdict import HOLDS, LEVELS, NOT, ONLY_IF, SCENES, STARTS, Judged, undecided
+from .verdict import HOLDS, NOT, ONLY_IF, SCENES, Judged, undecided
 
 LEVEL = 0.05
 
@@ -25,11 +26,33 @@ def _cells(runs: Runs, case: str, part: dict) -> dict[tuple[str, str], list[bool
     return found
 
 
-def _enough(cells: dict) -> int:
-    levels: dict[str, int] = {}
-    for (scene, _), starts in cells.items():
-        levels[scene] = levels.get(scene, 0) + (len(starts) >= STARTS)
-    return sum(n >= LEVELS for n in levels.values())
+def _by_scene(cells: dict) -> dict[str, dict[str, list[bool]]]:
+    found: dict[str, dict[str, list[bool]]] = {}
+    for (scene, level), starts in cells.items():
+        found.setdefault(scene, {})[level] = starts
+    return found
+
+
+def _shares(cells: dict) -> list[tuple[str, float, float, float, int, int]]:
+    """Of every scene: mean over its levels of the share of starts that get through, the least and the largest level, levels, runs."""
+    scenes = of_scenes({name: {level: [float(x) for x in starts] for level, starts in levels.items()} for name, levels in _by_scene(cells).items()})
+    return [(s.name, s.value, s.low, s.high, s.levels, s.n) for s in scenes]
+
+
+def _signs(mine: dict, other: dict) -> tuple[int, int, int]:
+    """Scenes that are won, lost and even: by the levels that only one of the two gets through with every start."""
+    ahead: dict[str, int] = {}
+    for place in mine.keys() & other.keys():
+        ahead[place[0]] = ahead.get(place[0], 0) + all(mine[place]) - all(other[place])
+    signs = list(ahead.values())
+    return sum(x > 0 for x in signs), sum(x < 0 for x in signs), sum(x == 0 for x in signs)
+
+
+def _tells(wins: int, losses: int, even: int) -> str:
+    """Why signs tell nothing; with few scenes not even the same sign in each does."""
+    least = next(n for n in range(1, 64) if sign_test(n, 0) < LEVEL)
+    few = f"; of {wins + losses + even} scenes no outcome would, {least} are needed" if wins + losses + even < least else ""
+    return f"{wins} scenes won, {losses} lost, {even} even: a sign test does not tell them apart (p = {sign_test(wins, losses):.2g}{few})"
 
 
 def _through(cells: dict) -> dict[str, bool]:
@@ -50,41 +73,57 @@ def hopeless(runs: Runs, bad: str | None = None) -> set[tuple[str, str]]:
 
 
 def outcomes(part: dict, runs: Runs) -> Judged:
-    """`case` gets through everything, or (needs: "more") through more than `over`: a sign test over scenes x levels, whose starts are
-    no independent trials; without one that only one of the two gets through, it is no more than the other. bad: a metric that is 1 where a run failed in the way meant, in the place of any outcome but ok."""
+    """`case` gets through everything, or (needs: "more") through more than `over`: a sign test over scenes; where each gets through the same places, it is no
+    more than the other. bad: a metric that is 1 where a run failed in the way meant, in the place of any outcome but ok."""
     left_out = hopeless(runs, part.get("bad"))
     mine = {place: starts for place, starts in _cells(runs, part["case"], part).items() if place not in left_out}
     if not mine:
         return undecided("no case of the sweep gets through anything")
-    n, good = sum(map(len, mine.values())), sum(map(sum, mine.values()))
-    lower, upper = wilson(good, n)
-    more = {"value": good / n, "lower": lower, "upper": upper, "bounds": (1.0,), "threshold": "every run gets through",
-            "measures": f"share of runs {'without ' + part['bad'] if 'bad' in part else 'that end ok'}: {part['case']}", "counted": f"{good} of {n} runs"}
-    if left := sorted(" ".join(place) for place in left_out):
-        more["counted"] += f" ({', '.join(left)} left out: no case gets through)"
-    more["runs"] = [row["run"] for row in runs.rows if row["case"] == part["case"]][:1]
-    if (scenes := _enough(mine)) < SCENES:
-        return undecided(f"indication: {scenes} scenes have {LEVELS} levels of {STARTS} starts, {SCENES} are needed", **more)
-    wins = losses = 0
+    more = _numbers(part, runs, mine, left_out)
+    enough = complete(_by_scene(mine), part)
+    if len(enough) < SCENES:
+        return undecided(f"indication: {len(enough)} scenes have {needed(part)}, {SCENES} are needed", **more)
     if "over" in part:
         other = {place: starts for place, starts in _cells(runs, part["over"], part).items() if place not in left_out}
-        pairs = [(all(mine[place]), all(other[place])) for place in mine.keys() & other.keys()]
-        wins, losses = sum(a and not b for a, b in pairs), sum(b and not a for a, b in pairs)
-        more["counted"] += f"; {part['over']}: {sum(map(sum, other.values()))} of {sum(map(len, other.values()))}; scenes x levels that only one gets through: {wins} to {losses}"
+        wins, losses, even = _signs(mine, other)
+        places = [(all(mine[place]), all(other[place])) for place in mine.keys() & other.keys()]
+        only = sum(a and not b for a, b in places), sum(b and not a for a, b in places)
+        more["counted"] += (f"; {part['over']}: {sum(map(sum, other.values()))} of {sum(map(len, other.values()))}; scenes won, lost, even: {wins}, {losses}, {even} "
+                            f"(scenes x levels that only one gets through: {only[0]} to {only[1]})")
         more["threshold"] = f"more than {part['over']}" + ("" if part.get("needs") == "more" else ", and every run")
-        p = sign_test(wins, losses)
-        if wins == losses == 0:
+        if part.get("needs") == "more":
+            more["bounds"] = (sum(low == 1 for _, _, low, *_ in _shares(other)) / len(_shares(other)),)
+        if only == (0, 0):
             return Judged(NOT, **more)
-        if p >= LEVEL:
-            return undecided(f"{wins} wins and {losses} losses: a sign test does not tell them apart (p = {p:.2g})", **more)
+        if sign_test(wins, losses) >= LEVEL:
+            return undecided(_tells(wins, losses, even), **more)
         if losses > wins:
             return Judged(NOT, **more)
         if part.get("needs") == "more":
             return Judged(HOLDS, **more)
-    if good == n:
-        return Judged(HOLDS, **more)
+    return _every_run(mine, more)
+
+
+def _numbers(part: dict, runs: Runs, mine: dict, left_out: set) -> dict:
+    """The share of scenes in which every run gets through, with Wilson's interval over scenes; the mean share of runs stands beside it."""
+    shares = _shares(mine)
+    n, good = sum(map(len, mine.values())), sum(map(sum, mine.values()))
+    whole = sum(low == 1 for _, _, low, _, _, _ in shares)
+    lower, upper = wilson(whole, len(shares))
+    counted = f"every run in {whole} of {len(shares)} scenes; {good} of {n} runs, mean share of scenes {sum(value for _, value, *_ in shares) / len(shares):.3g}"
+    if left := sorted(" ".join(place) for place in left_out):
+        counted += f" ({', '.join(left)} left out: no case gets through)"
+    return {"value": whole / len(shares), "lower": lower, "upper": upper, "bounds": (1.0,), "threshold": "every run gets through",
+            "measures": f"share of scenes in which every run {'is without ' + part['bad'] if 'bad' in part else 'ends ok'}: {part['case']}", "counted": counted,
+            "per_scene": shares, "scenes": len(shares), "starts": starts_text([[float(x) for x in starts] for starts in mine.values()]),
+            "runs": [row["run"] for row in runs.rows if row["case"] == part["case"]][:1]}
+
+
+def _every_run(mine: dict, more: dict) -> Judged:
     levels = _through(mine)
     through = [level for level, ok in levels.items() if ok]
+    if len(through) == len(levels):
+        return Judged(HOLDS, **more)
     if not through:
         return Judged(NOT, **more)
     return Judged(ONLY_IF, condition=f"level {', '.join(through)}; not {', '.join(level for level, ok in levels.items() if not ok)}", **more)

@@ -25,6 +25,8 @@ def number(x: float | None) -> str:
 def interval(j: Judged) -> str:
     if j.value is None:
         return "-"
+    if j.lower is None:
+        return f"{number(j.value)} (one scene: no interval)"
     if j.extremes:
         return number(j.value) if j.lower == j.upper else f"{number(j.lower)} to {number(j.upper)}"
     return f"{number(j.value)} [{number(j.lower)}, {number(j.upper)}]"
@@ -38,11 +40,14 @@ def sentence(j: Judged) -> str:
 
 
 def _part(j: Judged) -> list[str]:
-    kind = "proof" if j.proof else f"`{j.sweep}`"
+    kind = "closed form" if j.proof else f"`{j.sweep}`"
     verdict = f"{sentence(j)}{' (beside, decides nothing)' if j.beside else ''}"
     lines = [f"- {j.says}: **{verdict}**. {j.measures}{' (depends on the machine)' if j.machine else ''}: {interval(j)}, asked: {j.threshold or '-'}; {j.counted or '-'}{BY_SMALLEST if j.smallest_gaps else ''}; {kind}."]
+    if j.slice:
+        lines.append(f"  Slice: {j.slice}." + (f" Samples: {j.scenes} scenes; {j.starts}." if j.scenes else ""))
     if j.per_scene:
-        lines.append("  By scene: " + "; ".join(f"{name} {number(v)} [{number(lo)}, {number(hi)}] (n = {n})" for name, v, lo, hi, n in j.per_scene) + ".")
+        lines.append("  By scene (least and largest of its levels): " + "; ".join(f"{name} {number(v)} ({number(low)} to {number(high)} at {levels}, n = {n})"
+                                                                                    for name, v, low, high, levels, n in j.per_scene) + ".")
     if j.ends:
         lines.append(f"  Ends of steps: {j.ends}.")
     if j.runs:
@@ -50,17 +55,35 @@ def _part(j: Judged) -> list[str]:
     return lines
 
 
+def confirmed_word(a: Answer) -> str:
+    if a.proven:
+        return "closed form"
+    return sentence(a.confirmed) if a.confirmed else a.state.word
+
+
+def _confirmation(a: Answer) -> list[str]:
+    """What stands of the claim over scenes that no rule was tuned on."""
+    if not a.state.why:
+        return []
+    lines = [f"Confirmed: **{confirmed_word(a)}** ({a.state.why}).", ""]
+    for j in a.confirmed_parts:
+        lines += _part(j)
+    return lines + [""] if a.confirmed_parts else lines
+
+
 def _claim(a: Answer, table: Table) -> list[str]:
     claim = a.claim
     lines = [f"## {claim.id}: {a.verdict.verdict}", "", claim.sentence, "",
-             f"Source: {claim.source}. Dimension: {claim.dimension}. Keeps the guarantee: {claim.guarantee}. Rerun: `{claim.command}`.", ""]
+             f"Source: {claim.source}. Dimension: {claim.dimension}. Kind: {claim.kind}. Keeps the guarantee: {claim.guarantee}. Rerun: `{claim.command}`.", ""]
     if a.verdict.verdict in (ONLY_IF, OPEN):
         lines += [f"**{sentence(a.verdict)}.**", ""]
+    if a.why_exploratory:
+        lines += [f"The verdict is {a.why_exploratory}.", ""]
     for j in a.parts:
         lines += _part(j)
     if a.parts:
         lines.append("")
-    lines += frontiers.lines(claim, table)
+    lines += _confirmation(a) + frontiers.lines(claim, table)
     if claim.note:
         lines += [claim.note, ""]
     for change in claim.rule_changes:
@@ -81,12 +104,16 @@ def _sweeps(table: Table) -> list[str]:
 
 HEAD = """# Claims
 
-Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/laboratory.md, Claims, has the
-rules. A number is a ratio of geometric means over scenes, levels (resolution, load, limit) and jittered starts with a 95% interval by bootstrap over all
-three, or what its line says. cond is a condition number. From a sentence to its runs: its sweep's command makes the records, `run_id` names them in results/claims.json and in
-their run.json, and `./bench run RUN.json` repeats one. Runs are comparable by the gaps at which each pair of bodies carries its load (docs/design.md, Comparability); where a
-part says "compared by smallest gaps", its numbers are of records before version 3.5.0, whose verdicts are by the smallest gap of the whole run: another rule, and the two are never
-compared with each other. An end of a step that is not asked to converge has a residual, in tolerances of a step that is.
+Made by `./bench claims` from results/claims.json; every verdict is computed by the rules in claims/ID.json, none is typed. docs/laboratory.md, Claims, has the rules. A
+number is the mean of its scenes (a ratio: of their logarithms), a scene the mean of its levels (resolution, load, limit), a level that of its starts, with a 95% interval
+over scenes by Student's t ([COVERAGE.md](COVERAGE.md)), or what its line says: levels and starts are no samples. cond is a condition number. Every part names its slice.
+Verdicts from runs are exploratory: their rules were changed after numbers were seen, or not registered before them; the confirmed ones are over scenes that no rule was
+tuned on, by a rule that was committed before their first run ("-": none was run). Interval and sign test were changed for all claims when numbers were known
+(2026-11-23): before, a bootstrap drew levels and starts as samples too, and signs were those of scenes x levels. From a sentence to its runs: its sweep's command makes
+the records, `run_id` names them in results/claims.json and in their run.json, and `./bench run RUN.json` repeats one.
+Runs are comparable by the gaps at which each pair of bodies carries its load (docs/design.md, Comparability); where a part says "compared by smallest gaps", its numbers are
+of records before version 3.5.0, whose verdicts are by the smallest gap of the whole run: another rule, and the two are never compared with each other. An end of a step
+that is not asked to converge has a residual, in tolerances of a step that is.
 """
 
 
@@ -101,10 +128,11 @@ def main_number(j: Judged) -> str:
 
 
 def verdict_table(answers: list[Answer]) -> list[str]:
-    lines = ["| claim | sentence | verdict | number of its first part |", "|---|---|---|---|"]
+    lines = ["| claim | sentence | kind | exploratory verdict (or closed form) | confirmed | number of its first part |", "|---|---|---|---|---|---|"]
     for a in answers:
         j = a.main
-        lines.append(f"| {a.claim.id} | {a.claim.sentence} | {_short(a)} | {main_number(j) if j else '-'} |")
+        number_of = f"{main_number(j)}{f' ({j.slice})' if j.slice else ''}" if j else "-"
+        lines.append(f"| {a.claim.id} | {a.claim.sentence} | {a.claim.kind} | {_short(a)} | {confirmed_word(a)} | {number_of} |")
     return lines
 
 
@@ -119,7 +147,7 @@ def in_page(page: str, answers: list[Answer]) -> str:
 
 
 def markdown(answers: list[Answer], table: Table) -> str:
-    lines = [HEAD, "![main number of every claim, with its interval and threshold](../docs/claims.png)", "", *verdict_table(answers), ""]
+    lines = [HEAD, "![main number of every claim by kind, with its scenes, interval and threshold](../docs/claims.png)", "", *verdict_table(answers), ""]
     for a in answers:
         lines += _claim(a, table)
     lines += _sweeps(table)
@@ -132,5 +160,5 @@ def text(answers: list[Answer]) -> str:
     lines = []
     for a in answers:
         j = a.main
-        lines += textwrap.wrap(f"{a.claim.id:4} {sentence(a.verdict)}" + (f"  [{main_number(j)}]" if j else ""), WIDTH, subsequent_indent="     ")
+        lines += textwrap.wrap(f"{a.claim.id:4} {sentence(a.verdict)}; confirmed: {confirmed_word(a)}" + (f"  [{main_number(j)}]" if j else ""), WIDTH, subsequent_indent="     ")
     return "\n".join(lines)

@@ -56,7 +56,8 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
         names = {part.get("metric"), part.get("bad"), (part.get("equal") or {}).get("metric")} - {None}
         if unknown := names - set(METRICS):
             raise ClaimError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
-        used.setdefault(part["sweep"], set()).update(names)
+        for sweep in (part["sweep"], *((part["confirm"]["sweep"],) if "confirm" in part else ())):
+            used.setdefault(sweep, set()).update(names)
     for frontier in (claim.frontier for claim in claims if claim.frontier):
         used.setdefault(frontier["sweep"], set()).add(frontier["cost"])
     return {sweep: sorted(names) for sweep, names in used.items()}
@@ -96,17 +97,19 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
             if place is None:
                 continue
             record[FOLDER] = str(path.parent)
-            row = _row(record, place, metrics)
+            row = _row(record, place, metrics) | sweep.more.get(record["labels"]["note"], {})
         except RecordError as error:
             print(f"{error}; counted as missing", file=sys.stderr)
             continue
         records.append(record)
         rows.append(row)
-    rows.sort(key=lambda row: tuple(str(row[key]) for key in PLACE))
-    if len({tuple(row[key] for key in PLACE) for row in rows}) != len(rows):
+    keys = (*PLACE, *sweep.axes)
+    rows.sort(key=lambda row: tuple(str(row[key]) for key in keys))
+    if len({tuple(row[key] for key in keys) for row in rows}) != len(rows):
         raise ClaimError(f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again")
     file = folder / "sweep.json"  # the program's copy of the sweep file that made the records
-    about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "seconds": round(sum(map(seconds_of_run, records)), 1)}
+    about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "seconds": round(sum(map(seconds_of_run, records)), 1),
+             "first_started_utc": min((r["status"]["started_utc"] for r in records), default="")}
     for name, values in (("date", {r["status"]["started_utc"][:10] for r in records}),
                          ("machine", {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records}),
                          ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),

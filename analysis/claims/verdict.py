@@ -5,7 +5,8 @@ from __future__ import annotations
 from dataclasses import asdict, dataclass, field
 
 HOLDS, ONLY_IF, NOT, OPEN = "holds", "holds only if", "does not hold", "not decided"
-SCENES, LEVELS, STARTS = 3, 3, 5  # what a verdict needs; a proof needs none of it
+SCENES, LEVELS = 3, 3  # what a verdict needs; a proof needs neither
+STARTS = 5  # what a level needs where a part says that starts matter
 
 
 @dataclass
@@ -17,14 +18,18 @@ class Judged:
     condition: str = ""  # of ONLY_IF
     missing: str = ""  # of OPEN
     value: float | None = None
-    lower: float | None = None  # 95% interval
+    lower: float | None = None  # 95% interval, over scenes
     upper: float | None = None
     extremes: bool = False  # the smallest and the largest number in the place of an interval
     threshold: str = ""
     bounds: tuple[float, ...] = ()  # thresholds as numbers, for the figure
     measures: str = ""
     counted: str = ""  # how much was judged, and what was left out and why
-    per_scene: list[tuple[str, float, float, float, int]] = field(default_factory=list)
+    per_scene: list[tuple[str, float, float, float, int, int]] = field(default_factory=list)  # value, least and largest of its levels, levels, runs
+    scenes: int = 0  # samples
+    starts: str = ""  # how much alike the starts are
+    slice: str = ""  # theta and limit of its runs
+    rule: str = ""
     runs: list[str] = field(default_factory=list)  # a pair to follow by hand
     beside: bool = False
     proof: bool = False

@@ -8,10 +8,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..whole_file import write_whole
+from .drift import First, digest
 from .envelope import Envelope
-from .metrics import LOWER_BETTER, TWO_SIDED, Metric, Tolerance
+from .metrics import DIRECTIONS, Metric
 
-NAME, MAJOR, VERSION = "barrierbench.baseline", "1", "1.0.0"
+NAME, MAJOR, VERSION = "barrierbench.baseline", "1", "1.1.0"
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "results" / "baselines"
 
@@ -29,12 +30,15 @@ class Kept:
     direction: str
     envelope: Envelope
     xfail: str = ""  # the issue that waits for it
+    scatter: float = 0.0  # of a cost: how far up its copies reach, without any tolerance
+    first: First | None = None  # what it is held against besides; None: this baseline is the first
 
     def json(self) -> dict:
         e = self.envelope
         line = {"class": self.gate_class, "value": e.value, "lower": e.lower, "upper": e.upper, "unit": self.unit,
                 "direction": self.direction, "n": e.n}
-        return line | ({"sample": list(e.sample)} if e.sample else {}) | ({"xfail": self.xfail} if self.xfail else {})
+        return (line | ({"sample": list(e.sample)} if e.sample else {}) | ({"xfail": self.xfail} if self.xfail else {})
+                | ({"scatter": self.scatter} if self.scatter else {}) | ({"first": self.first.json()} if self.first else {}))
 
 
 @dataclass
@@ -47,10 +51,13 @@ class Baseline:
     config: dict = field(default_factory=dict)
     scene: dict = field(default_factory=dict)
     made_by: dict = field(default_factory=dict)
+    unsteady: list[str] = field(default_factory=list)  # numbers that only some of the copies had: not judged
+    drifts: list[dict] = field(default_factory=list)  # drifts that were accepted on purpose: when, why, and from what to what
 
     def json(self) -> dict:
         return {"schema": {"name": NAME, "version": VERSION}, "case": self.case, "kind": self.kind, "reason": self.reason,
                 "calibrated_at": self.calibrated_at, "made_by": self.made_by, "scene": self.scene, "config": self.config,
+                **({"unsteady": self.unsteady} if self.unsteady else {}), **({"drifts": self.drifts} if self.drifts else {}),
                 "metrics": {name: kept.json() for name, kept in sorted(self.metrics.items())}}
 
 
@@ -58,30 +65,39 @@ def keep(metric: Metric, envelope: Envelope) -> Kept:
     return Kept(metric.gate_class, metric.unit, metric.direction, envelope)
 
 
-def metric_of(name: str, kept: Kept) -> Metric:
-    return Metric(name, kept.gate_class, kept.unit, kept.direction, Tolerance())
-
-
 def write(baseline: Baseline, path: Path) -> None:
     write_whole(path, json.dumps(baseline.json(), indent=1) + "\n")
 
 
-def _line(path: Path, name: str, line) -> Kept:
+def _first(place: str, line: dict, made_by: str) -> First | None:
+    first = line.get("first")
+    if first is None:
+        return None
+    if not isinstance(first, dict) or not _finite(first.get("value")):
+        raise BaselineError(f"{place}/first: {first!r}; an object with a finite value is needed")
+    words = {key: str(first.get(key, "")) for key in ("date", "commit", "reason", "made_by")}
+    return First(first["value"], **words, here=bool(made_by) and words["made_by"] == made_by)
+
+
+def _finite(value) -> bool:
+    return not isinstance(value, bool) and isinstance(value, (int, float)) and math.isfinite(value)
+
+
+def _line(path: Path, name: str, line, made_by: str) -> Kept:
     place = f"{path}: /metrics/{name}"
     if not isinstance(line, dict):
         raise BaselineError(f"{place}: no object")
     for key in ("value", "lower", "upper"):
-        value = line.get(key)
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
-            raise BaselineError(f"{place}/{key}: {value!r}; a finite number is needed")
+        if not _finite(line.get(key)):
+            raise BaselineError(f"{place}/{key}: {line.get(key)!r}; a finite number is needed")
     if not line["lower"] <= line["value"] <= line["upper"]:
         raise BaselineError(f"{place}: value {line['value']} outside its own envelope [{line['lower']}, {line['upper']}]")
     if line.get("class") not in ("III", "IV", "V"):
         raise BaselineError(f"{place}/class: {line.get('class')!r}; III, IV or V (classes I and II are exact and have no baseline)")
-    if line.get("direction") not in (TWO_SIDED, LOWER_BETTER):
-        raise BaselineError(f"{place}/direction: {line.get('direction')!r}; {TWO_SIDED} or {LOWER_BETTER}")
+    if line.get("direction") not in DIRECTIONS:
+        raise BaselineError(f"{place}/direction: {line.get('direction')!r}; one of {', '.join(DIRECTIONS)}")
     envelope = Envelope(line["value"], line["lower"], line["upper"], int(line.get("n", 1)), tuple(line.get("sample", ())))
-    return Kept(line["class"], line.get("unit", ""), line["direction"], envelope, line.get("xfail", ""))
+    return Kept(line["class"], line.get("unit", ""), line["direction"], envelope, line.get("xfail", ""), float(line.get("scatter") or 0), _first(place, line, made_by))
 
 
 def read(path: str | Path, case: str | None = None, kind: str | None = None) -> Baseline:
@@ -105,6 +121,7 @@ def read(path: str | Path, case: str | None = None, kind: str | None = None) -> 
     metrics = data.get("metrics")
     if not isinstance(metrics, dict) or not metrics:
         raise BaselineError(f"{path}: /metrics is empty: it would judge nothing")
-    lines = {name: _line(path, name, line) for name, line in metrics.items()}
+    made_by = data.get("made_by") or {}
+    lines = {name: _line(path, name, line, digest(made_by)) for name, line in metrics.items()}
     return Baseline(data.get("case", ""), data.get("kind", ""), data.get("reason", ""), data.get("calibrated_at") or {}, lines,
-                    data.get("config") or {}, data.get("scene") or {}, data.get("made_by") or {})
+                    data.get("config") or {}, data.get("scene") or {}, made_by, data.get("unsteady") or [], data.get("drifts") or [])

@@ -12,14 +12,15 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from ..record_file import RecordError
-from . import baseline, invariants
+from . import baseline, invariants, shares
 from .baseline import Baseline, Kept, keep
 from .cases import ROOT, Case, GateError, jittered, read_set, run_case
 from .configs import scene_size
-from .envelope import Envelope, calibrate
+from .envelope import Envelope, calibrate, scatter_above
 from .finding import failures
 from .instructions import instructions_of
-from .metrics import Metric, measure
+from .measure import measure
+from .metrics import Metric
 from .records import Run
 
 OUT = ROOT / "results" / "runs" / "calibration"
@@ -34,20 +35,32 @@ def copies_of(case: Case, out: Path, n: int, size_m: float, first_seed: int = 1)
         yield jittered(case, out / f"copy-{k:02d}", first_seed + k, size_m, 1 + k % 2)
 
 
-def envelopes(runs: list[Run]) -> dict[str, Kept]:
-    """Of every metric that all of them have. `value` of a cost is that of the first run, which has no perturbation."""
-    values: dict[Metric, list[float]] = {}
-    for run in runs:
-        for metric, value in measure(run).items():
-            values.setdefault(metric, []).append(value)
+MAY_BE_ABSENT = ("1", shares.UNIT)  # units of numbers that a record leaves out where they are 0
+
+
+def samples(runs: list[Run]) -> tuple[dict[Metric, list[float]], list[str]]:
+    """The values of every metric, one a run, and the names of those that only some runs have though they are no 0."""
+    measured, values, unsteady = [measure(run) for run in runs], {}, []
+    for metric in dict.fromkeys(metric for numbers in measured for metric in numbers):
+        if metric.gate_class == "V":
+            continue
+        if metric.unit not in MAY_BE_ABSENT and any(metric not in numbers for numbers in measured):
+            unsteady.append(metric.name)
+        else:
+            values[metric] = [numbers.get(metric, 0.0) for numbers in measured]
+    return values, sorted(unsteady)
+
+
+def envelopes(values: dict[Metric, list[float]]) -> dict[str, Kept]:
+    """`value` of a cost is that of the first run, which has no perturbation."""
     kept = {}
     for metric, sample in values.items():
-        if metric.gate_class == "V" or len(sample) < len(runs):
-            continue
         e = calibrate(metric, sample)
         if metric.gate_class == "IV":
             e = Envelope(sample[0], min(e.lower, sample[0]), max(e.upper, sample[0]), e.n)
         kept[metric.name] = keep(metric, e)
+        if metric.gate_class == "IV":
+            kept[metric.name].scatter = scatter_above(sample)
     return kept
 
 
@@ -57,14 +70,15 @@ def propose(case_name: str, runs: list[Run], reason: str = "") -> Baseline:
     if red:
         raise GateError("\n".join(["a run that breaks an invariant (class I) makes no baseline:",
                                    *(f"  {f.case}: {f.metric}: {f.note}" for f in red)]))
-    first, kept = runs[0], envelopes(runs)
+    values, unsteady = samples(runs)
+    first, kept = runs[0], envelopes(values)
     if not kept:
         raise GateError(f"{case_name}: no number that all {len(runs)} records have")
     provenance, seeds = first.section("provenance"), runs[-1].section("config").get("seeds") or {}
     at = {"commit": provenance.get("git_commit", ""), "dirty": provenance.get("git_dirty"), "runs": len(runs),
           "jitter_m": seeds.get("jitter_m", 0), "date": datetime.date.today().isoformat()}
     config = {key: value for key, value in first.section("config").items() if key not in ("threads", "seeds")}
-    return Baseline(case_name, "run", reason, at, kept, config, scene_size(first), first.made_by)
+    return Baseline(case_name, "run", reason, at, kept, config, scene_size(first), first.made_by, unsteady)
 
 
 def calibrate_case(case: Case, out: Path, copies: int) -> Baseline:
@@ -93,7 +107,8 @@ def main(argv: list[str]) -> int:
             path = args.out / f"{case.name}.json"
             baseline.write(proposal, path)
             chaotic = sorted(name for name, kept in proposal.metrics.items() if kept.envelope.sample)
-            print(f"{path}: {len(proposal.metrics)} metrics of {args.copies + 1} runs{'; chaotic: ' + ', '.join(chaotic) if chaotic else ''}")
+            print(f"{path}: {len(proposal.metrics)} metrics of {args.copies + 1} runs{'; chaotic: ' + ', '.join(chaotic) if chaotic else ''}"
+                  f"{'; not in all runs, so not judged: ' + ', '.join(proposal.unsteady) if proposal.unsteady else ''}")
     except (GateError, RecordError) as error:
         print(f"bench calibrate: {error}", file=sys.stderr)
         return 2

@@ -33,7 +33,7 @@ def sets() -> list[str]:
 
 
 def read_set(name: str) -> list[Case]:
-    """Every scene with every formulation. Raises GateError with file and place."""
+    """Every scene with every formulation of the set, then with those of its own. Raises GateError with file and place."""
     path = FOLDER / f"{name}.json"
     if not path.is_file():
         raise GateError(f"set {name!r}: one of {', '.join(sets())} (configs/gates/)")
@@ -45,7 +45,7 @@ def read_set(name: str) -> list[Case]:
         raise GateError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
     cases = [Case(f"{scene['name']}-{formulation['name']}", (path.parent / scene["config"]).resolve(),
                   {**data.get("set", {}), **scene.get("set", {}), **formulation.get("set", {})}, scene.get("instructions", False), scene.get("resumed", False))
-             for scene in data.get("scenes", []) for formulation in data.get("formulations", [])]
+             for scene in data.get("scenes", []) for formulation in [*data.get("formulations", []), *scene.get("formulations", [])]]
     if not cases:
         raise GateError(f"{path}: no case: it needs scenes and formulations")
     return cases

@@ -8,15 +8,13 @@ from __future__ import annotations
 
 import argparse
 import sys
-from dataclasses import replace
 from pathlib import Path
 
 from ..record_file import RecordError
 from . import configs, invariants, judge, meanings, report
-from .baseline import Kept
 from .determinism import same_state
 from .finding import Finding, failures, without_subject
-from .metrics import LOWER_BETTER, measure
+from .measure import measure
 from .records import Run, find_runs, read_run
 
 
@@ -50,13 +48,9 @@ def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> l
     findings += meanings.of_other_version(case, [old, new], old.version, new.version)
     findings += same_state(case, old, new, bool(differ))
     same_kind = bool(old.made_by["compiler"]) and old.made_by == new.made_by
-    return findings + judge.numbers(case, _expected(old), measure(new), same_kind)
-
-
-def _expected(old: Run) -> dict[str, Kept]:
-    """The numbers of the reference with their tolerances. A gate holds a build to its condition numbers, in both directions; between two results
-    a lower one is a better one."""
-    return {name: replace(kept, direction=LOWER_BETTER) if kept.unit == "log10" else kept for name, kept in judge.around(measure(old)).items()}
+    another = bool(differ) or old.section("schema").get("version") != new.section("schema").get("version")
+    new_verdict = judge.NOT_JUDGED if another else judge.NOT_IN_THE_REFERENCE
+    return findings + judge.numbers(case, judge.around(measure(old)), measure(new), same_kind, new_verdict)
 
 
 def main(argv: list[str]) -> int:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .finding import Finding
-from .metrics import measure
+from .measure import measure
 from .records import Run
 
 

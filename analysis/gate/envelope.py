@@ -27,24 +27,38 @@ def is_chaotic(metric: Metric, values: np.ndarray) -> bool:
     spread = float(values.max() - values.min())
     if metric.unit == "log10":
         return spread > np.log10(1 + CHAOTIC_SPREAD)
+    if metric.unit == "share":  # a word that turns up in a few copies: its envelope is wide enough, and never wider than all of them
+        return False
     return spread > CHAOTIC_SPREAD * abs(float(np.median(values)))
+
+
+def _in_logarithm(metric: Metric, values: np.ndarray) -> bool:
+    return bool(metric.tolerance.logarithmic) and bool((values > 0).all())
 
 
 def calibrate(metric: Metric, values) -> Envelope:
     """[q05 - 1.5 IQR, q95 + 1.5 IQR] of the copies, no tighter than the metric's tolerance round their median. The sample is kept
-    where it is chaotic. Requires at least one finite value."""
+    where it is chaotic. A gap has its quantiles in the logarithm, so that no scatter lets it reach 0. Requires at least one finite value."""
     values = np.sort(np.asarray(values, dtype=float))
     if len(values) == 0 or not np.isfinite(values).all():
         raise ValueError(f"{metric.name}: needs finite values, has {values.tolist()}")
     middle = float(np.median(values))
-    half = metric.tolerance.around(middle)
-    lower, upper = middle - half, middle + half
+    lower, upper = metric.tolerance.around(middle)
     if len(values) < ENOUGH_COPIES:
         return Envelope(middle, min(lower, float(values[0])), max(upper, float(values[-1])), len(values))
-    q05, q25, q75, q95 = np.quantile(values, [0.05, 0.25, 0.75, 0.95])
+    logarithmic = _in_logarithm(metric, values)
+    q05, q25, q75, q95 = np.quantile(np.log(values) if logarithmic else values, [0.05, 0.25, 0.75, 0.95])
     reach = 1.5 * (q75 - q25)
+    ends = q05 - reach, q95 + reach
+    low, high = np.exp(ends) if logarithmic else ends
     sample = tuple(values.tolist()) if is_chaotic(metric, values) else ()
-    return Envelope(middle, min(lower, float(q05 - reach)), max(upper, float(q95 + reach)), len(values), sample)
+    return Envelope(middle, min(lower, float(low)), max(upper, float(high)), len(values), sample)
+
+
+def scatter_above(values) -> float:
+    """q95 + 1.5 IQR of the copies alone."""
+    q25, q75, q95 = np.quantile(np.asarray(values, dtype=float), [0.25, 0.75, 0.95])
+    return float(q95 + 1.5 * (q75 - q25))
 
 
 def ks_p_value(old, new) -> float:

@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections import Counter
 from dataclasses import asdict, dataclass
 
-JUDGED = ("pass", "FAIL", "better", "xfail", "xpass")  # the others are said and judge nothing: report, not_judged
+RED = ("FAIL", "drift")  # drift: further from the first baseline than the last one shows (drift.py)
+JUDGED = ("pass", *RED, "better", "xfail", "xpass")  # the others are said and judge nothing: report, not_judged
 SAME = 1e-6  # relative: a smaller change is not worth a word
 ALL_CLASSES = ("I", "II", "III", "IV")
 
@@ -31,7 +32,7 @@ class Finding:
 
 
 def failures(findings: list[Finding]) -> list[Finding]:
-    return [f for f in findings if f.verdict == "FAIL"]
+    return [f for f in findings if f.verdict in RED]
 
 
 def judged(findings: list[Finding]) -> Counter:

@@ -19,9 +19,9 @@ from .build_checks import judge_build
 from .calibrate import copies_of
 from .cases import ROOT, Case, GateError, read_set, run_case
 from .determinism import of_one_config
-from .finding import Finding, failures, without_subject
+from .finding import RED, Finding, failures, without_subject
 from .instructions import judge_instructions
-from .metrics import measure
+from .measure import measure
 from .records import Run, read_run
 from .resume import judge_resume
 
@@ -39,17 +39,26 @@ def same_subject(kept: Baseline, run: Run, path: Path) -> None:
         raise BaselineError("\n".join([f"{path}: a baseline of another scene than {run.path}:", *unlike]))
 
 
-def _confirmed(findings: list[Finding], case: Case, kept: Baseline, out: Path, size_m: float) -> list[Finding]:
-    """A number of class III outside its envelope is red when a copy with another seed is outside as well."""
-    outside = {f.metric for f in findings if f.gate_class == "III" and f.verdict == "FAIL"}
+def numbers(case: str, kept: Baseline, run: Run, same_build_kind: bool) -> list[Finding]:
+    """The lines of classes III to V of a run. What only some copies had at the calibration is shown and not judged."""
+    lines = judge.numbers(case, kept.metrics, measure(run), same_build_kind)
+    for f in lines:
+        if f.metric in kept.unsteady and f.metric not in kept.metrics:
+            f.verdict, f.judged, f.note = "not_judged", 0, "only some copies of the calibration had it"
+    return lines
+
+
+def _confirmed(findings: list[Finding], case: Case, kept: Baseline, out: Path, size_m: float, same_build_kind: bool) -> list[Finding]:
+    """A number outside its envelope, or a cost that is too dear, is red when a copy with another seed is outside as well."""
+    outside = {f.metric for f in findings if f.verdict in RED}
     if not outside or not size_m > 0:
         return findings
     again = run_case(case, out, 1, seeds__main=REPEAT_SEED, seeds__jitter_m=1e-12 * size_m)
-    second = {f.metric: f for f in judge.numbers(case.name, kept.metrics, measure(again), False)}
+    second = {f.metric: f.verdict for f in numbers(case.name, kept, again, same_build_kind)}
     for f in findings:
-        if f.metric in outside and f.gate_class == "III":
-            confirmed = second[f.metric].verdict == "FAIL"
-            f.verdict = "FAIL" if confirmed else "pass"
+        if f.metric in outside:
+            confirmed = second.get(f.metric) in RED
+            f.verdict = f.verdict if confirmed else "pass"
             f.note += "; confirmed by a copy" if confirmed else "; a copy with another seed is inside"
     return findings
 
@@ -65,8 +74,8 @@ def judge_case(case: Case, kept: Baseline, path: Path, out: Path) -> tuple[list[
     same_subject(kept, first, path)
     same_kind = bool(kept.made_by) and kept.made_by == first.made_by
     size_m = first.section("scene").get("extent_m") or 0.0
-    lines = judge.numbers(case.name, kept.metrics, measure(first), same_kind)
-    findings += _confirmed(lines, case, kept, out / case.name / "repeat", size_m)
+    lines = numbers(case.name, kept, first, same_kind)
+    findings += _confirmed(lines, case, kept, out / case.name / "repeat", size_m, same_kind)
     samples = []
     if chaotic := judge.chaotic(kept):
         values = [measure(run) for run in copies_of(case, out / case.name / "copies", CHAOS_COPIES, size_m, CHAOS_SEED)]
@@ -99,7 +108,7 @@ def judge_record(record: Path, path: Path) -> list[Finding]:
     dropped = [Finding(case, "I", "trace lines dropped", "report", run.torn, 0, judged=0, note="torn last line")] if run.torn else []
     lines = [f for f in invariants.judge(case, run, foreign=True) if not (f.metric == "trace" and run.torn)]
     lines += meanings.of_other_version(case, [run], run.version)
-    return dropped + lines + judge.numbers(case, kept.metrics, measure(run), bool(kept.made_by) and kept.made_by == run.made_by)
+    return dropped + lines + numbers(case, kept, run, bool(kept.made_by) and kept.made_by == run.made_by)
 
 
 def findings_case(findings: list[Finding]) -> str:
@@ -145,6 +154,8 @@ def main(argv: list[str]) -> int:
     if lines:
         print(report.table(lines))
     print(report.closing(findings))
+    if any(f.verdict == "better" for f in findings):
+        print('bench gate: to hold the better numbers from now on: bench calibrate, then bench accept --better --reason "..."', file=sys.stderr)
     if args.history and not args.baseline:
         made = read_run(args.out / findings_case(findings) / "threads-1", allow_not_finite=True)
         trend.append(args.history, trend.line_of(findings, made.section("provenance").get("git_commit", ""), made.section("status").get("started_utc", "")))

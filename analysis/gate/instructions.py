@@ -15,7 +15,7 @@ from .baseline import Kept, keep
 from .cases import Case, GateError, command, read_set
 from .envelope import Envelope
 from .finding import Finding
-from .judge import COST_EACH
+from .judge import COST_EACH, drifted
 from .metrics import COST, LOWER_BETTER, Metric
 from .records import read_run
 
@@ -59,6 +59,7 @@ def judge_instructions(set_name: str, folder: Path, only: list[str]) -> list[Fin
             why = "the baseline has none" if not was else "no valgrind" if counted is None else "the baseline is of another processor or compiler"
             findings.append(Finding(case.name, "IV", "instructions", "not_judged", judged=0, note=why))
             continue
-        findings.append(Finding(case.name, "IV", "instructions", "FAIL" if counted[0] > was.envelope.upper else "pass", counted[0],
-                                was.envelope.value, None, was.envelope.upper, "1"))
+        note = "" if counted[0] > was.envelope.upper else drifted(was, counted[0], True)
+        verdict = "FAIL" if counted[0] > was.envelope.upper else "drift" if note else "pass"
+        findings.append(Finding(case.name, "IV", "instructions", verdict, counted[0], was.envelope.value, None, was.envelope.upper, "1", note=note))
     return findings

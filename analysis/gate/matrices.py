@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import datetime
+import os
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -16,7 +17,7 @@ from . import baseline, judge
 from .baseline import Baseline, keep
 from .envelope import calibrate
 from .finding import Finding
-from .metrics import COND, LOWER_BETTER, PCG, TWO_SIDED, Metric
+from .metrics import COND, LOWER_BETTER, PCG, Metric
 
 LARGEST_DENSE = 1500  # rows up to which all eigenvalues are computed, half a second
 LARGEST_COND = 1e14
@@ -120,17 +121,54 @@ def spectrum(path: Path, block: int = 3) -> Spectrum:
     return Spectrum(path, matrix.shape[0], raw, _log10_cond_of(path, scaled), pcg_iterations(scaled))
 
 
-def measure(spectra: list[Spectrum]) -> dict[Metric, float]:
-    """Medians and largest values over the matrices."""
+def names(paths: list[Path]) -> list[str]:
+    """Of files by their place below the folder that holds them all: a matrix is compared with the one of its own name. Raises MatrixError."""
+    whole = [path.resolve() for path in paths]
+    top = Path(os.path.commonpath([path.parent for path in whole]))
+    found = [path.relative_to(top).as_posix() for path in whole]
+    if twice := sorted({name for name in found if found.count(name) > 1}):
+        raise MatrixError(f"{', '.join(twice)}: given twice")
+    return found
+
+
+NUMBERS = (("log10_cond raw", "log10", COND, "raw"), ("log10_cond block_jacobi", "log10", COND, "scaled"),
+           ("pcg_iterations block_jacobi", "1", PCG, "pcg"))  # metric, unit, tolerance, attribute of a Spectrum
+
+
+def measure(spectra: dict[str, Spectrum]) -> dict[Metric, float]:
+    """Of each matrix by its name, and medians and largest values over all of them."""
     out = {}
-    for name, unit, direction, tolerance, values in (
-            ("log10_cond raw", "log10", TWO_SIDED, COND, [s.raw for s in spectra if s.raw is not None]),
-            ("log10_cond block_jacobi", "log10", TWO_SIDED, COND, [s.scaled for s in spectra if s.scaled is not None]),
-            ("pcg_iterations block_jacobi", "1", LOWER_BETTER, PCG, [s.pcg for s in spectra if s.pcg is not None])):
-        if values:
-            out[Metric(f"{name} median", "III", unit, direction, tolerance)] = float(np.median(values))
-            out[Metric(f"{name} max", "III", unit, direction, tolerance)] = float(max(values))
+    for name, unit, tolerance, attribute in NUMBERS:
+        values = {matrix: getattr(s, attribute) for matrix, s in spectra.items() if getattr(s, attribute) is not None}
+        lines = {"median": float(np.median(list(values.values()))), "max": float(max(values.values())), **values} if values else {}
+        out |= {Metric(f"{name} {which}", "III", unit, LOWER_BETTER, tolerance): float(value) for which, value in lines.items()}
     return out
+
+
+def _of_matrix(metric: str) -> str | None:
+    """The name of the matrix that a metric is of; None for the medians and largest values."""
+    which = next((metric[len(name) + 1 :] for name, *_ in NUMBERS if metric.startswith(name + " ")), "median")
+    return None if which in ("median", "max") else which
+
+
+def _rows(spectra: dict[str, Spectrum]) -> dict:
+    return {f"/rows/{name}": s.rows for name, s in spectra.items()}
+
+
+def _same_matrices(kept: Baseline, spectra: dict[str, Spectrum], path: Path) -> None:
+    """Raises BaselineError when a matrix has another size than in the baseline, or when they have none in common."""
+    rows = _rows(spectra)
+    unlike = [f"  {place}: {value} and {rows[place]}" for place, value in kept.scene.items() if rows.get(place, value) != value]
+    if not unlike and not any(place in rows for place in kept.scene):
+        unlike = [f"  {', '.join(place for place in kept.scene) or 'no names'} and {', '.join(rows)}"]
+    if unlike:
+        raise baseline.BaselineError("\n".join([f"{path}: a baseline of other matrices:", *unlike]))
+
+
+def _lonely(case: str, old: set[str], new: set[str]) -> list[Finding]:
+    """A line for every matrix that only one side has, instead of one for each of its numbers."""
+    said = [(name, "missing: the baseline has it") for name in sorted(old - new)] + [(name, judge.NOT_IN_THE_BASELINE[1]) for name in sorted(new - old)]
+    return [Finding(case, "III", f"matrix {name}", "FAIL", judged=0, note=note) for name, note in said]
 
 
 def _invariants(case: str, spectra: list[Spectrum]) -> list[Finding]:
@@ -142,24 +180,22 @@ def _invariants(case: str, spectra: list[Spectrum]) -> list[Finding]:
                     note=f"{stuck[0].path}: more than {PCG_CAP}" if stuck else f"of {len(spectra)}")]
 
 
-def _sizes(spectra: list[Spectrum]) -> dict:
-    return {"/rows_min": min(s.rows for s in spectra), "/rows_max": max(s.rows for s in spectra)}
-
-
 def propose(paths: list[Path], case: str) -> Baseline:
     """Raises MatrixError, also for a matrix that is not positive definite: that is never accepted."""
-    spectra = [spectrum(path) for path in paths]
-    if red := [f for f in _invariants(case, spectra) if f.verdict == "FAIL"]:
+    spectra = dict(zip(names(paths), map(spectrum, paths)))
+    if red := [f for f in _invariants(case, list(spectra.values())) if f.verdict == "FAIL"]:
         raise MatrixError("\n".join(f"{f.metric}: {f.value} of {len(spectra)} matrices are not, {f.note}: makes no baseline" for f in red))
     kept = {metric.name: keep(metric, calibrate(metric, [value])) for metric, value in measure(spectra).items()}
-    return Baseline(case, "matrix", "", {"date": datetime.date.today().isoformat(), "runs": 1}, kept, scene=_sizes(spectra))
+    return Baseline(case, "matrix", "", {"date": datetime.date.today().isoformat(), "runs": 1}, kept, scene=_rows(spectra))
 
 
 def judge_matrices(paths: list[Path], path: Path) -> list[Finding]:
     """Against a baseline of kind matrix. Raises MatrixError, BaselineError."""
     kept = baseline.read(path, kind="matrix")
-    spectra = [spectrum(file) for file in paths]
-    sizes = _sizes(spectra)
-    if unlike := [f"  {place}: {value} and {sizes.get(place)}" for place, value in kept.scene.items() if sizes.get(place) != value]:
-        raise baseline.BaselineError("\n".join([f"{path}: a baseline of other matrices:", *unlike]))
-    return _invariants(kept.case, spectra) + judge.numbers(kept.case, kept.metrics, measure(spectra), False)
+    spectra = dict(zip(names(paths), map(spectrum, paths)))
+    _same_matrices(kept, spectra, path)
+    old = {matrix for name in kept.metrics if (matrix := _of_matrix(name))}
+    common = old & spectra.keys()
+    of_common = {name: k for name, k in kept.metrics.items() if (matrix := _of_matrix(name)) is None or matrix in common}
+    values = {metric: value for metric, value in measure(spectra).items() if (matrix := _of_matrix(metric.name)) is None or matrix in common}
+    return _invariants(kept.case, list(spectra.values())) + _lonely(kept.case, old, set(spectra)) + judge.numbers(kept.case, of_common, values, False)

@@ -2,22 +2,31 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
-from .records import Run
-
-TWO_SIDED, LOWER_BETTER = "two_sided", "lower_better"
+TWO_SIDED, LOWER_BETTER, UPPER_BETTER = "two_sided", "lower_better", "upper_better"
+DIRECTIONS = (TWO_SIDED, LOWER_BETTER, UPPER_BETTER)
 
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How far a value may move where nothing was calibrated: the larger of an absolute and a relative distance."""
+    """How far a value may move where nothing was calibrated: the larger of an absolute and a relative distance. The absolute one is at most
+    `share` of the value, so that a small count cannot double; a `logarithmic` number moves by at most that much in log10 as well."""
 
     absolute: float = 0.0
     relative: float = 0.0
+    share: float = math.inf
+    logarithmic: float = 0.0
 
-    def around(self, value: float) -> float:
-        return max(self.absolute, self.relative * abs(value))
+    def around(self, value: float) -> tuple[float, float]:
+        """Lower and upper end. A gap that is 0 or below has no logarithm and keeps the absolute distance."""
+        size = abs(value)
+        half = max(self.absolute if math.isinf(self.share) else min(self.absolute, self.share * size), self.relative * size)
+        if self.logarithmic and value > 0:
+            factor = 10**self.logarithmic
+            return max(value / factor, value - half), min(value * factor, value + half)
+        return value - half, value + half
 
 
 @dataclass(frozen=True)
@@ -29,11 +38,13 @@ class Metric:
     tolerance: Tolerance
 
 
+HALF = 0.5  # of a count: 9 that becomes 18 is no scatter
 COND = Tolerance(absolute=0.05)  # of log10
-NEWTON, PCG, GAP = Tolerance(2, 0.05), Tolerance(5, 0.10), Tolerance(absolute=0.02)
-CONTACTS = Tolerance(0.5, 0.05)
+NEWTON, PCG = Tolerance(2, 0.05, HALF), Tolerance(5, 0.10, HALF)
+GAP = Tolerance(absolute=0.02, logarithmic=0.02)  # 4.7 % up and down
+CONTACTS = Tolerance(0.5, 0.05, HALF)
 PHYSICS = Tolerance(relative=0.02)
-COST = Tolerance(5, 0.10)  # of the copies; on the machine of the baseline judge.py allows 3%
+COST = Tolerance(5, 0.10, HALF)  # of the copies; on the machine of the baseline judge.py allows 3%
 ROUNDING = 1e-12  # of the largest energy: a smaller one is what rounding left
 
 # metric, place in the record below `summary` or in the last of `steps`
@@ -41,6 +52,7 @@ SUMMARY = [
     (Metric("newton_iterations", "III", "1", LOWER_BETTER, NEWTON), ("newton_iterations",)),
     (Metric("linear_iterations", "III", "1", LOWER_BETTER, PCG), ("linear_iterations",)),
     (Metric("probe_pcg_median", "III", "1", LOWER_BETTER, PCG), ("probe_pcg", "median")),
+    (Metric("probe_pcg_p95", "III", "1", LOWER_BETTER, PCG), ("probe_pcg", "p95")),
     (Metric("probe_pcg_max", "III", "1", LOWER_BETTER, PCG), ("probe_pcg", "max")),
     (Metric("gap_min", "III", "d_hat", TWO_SIDED, GAP), ("gap_min_rel", "min")),
     (Metric("gap_p05", "III", "d_hat", TWO_SIDED, GAP), ("gap_min_rel", "p05")),
@@ -48,6 +60,9 @@ SUMMARY = [
     (Metric("contacts_median", "III", "1", TWO_SIDED, CONTACTS), ("contacts", "median")),
     (Metric("contact_load_max", "III", "N", TWO_SIDED, PHYSICS), ("contact_load_max_N",)),
     (Metric("stretch_max", "III", "1", TWO_SIDED, PHYSICS), ("max_stretch",)),
+    (Metric("kappa_start", "III", "N/m", TWO_SIDED, PHYSICS), ("stiffness", "kappa_start_N_per_m")),
+    (Metric("kappa_end", "III", "N/m", TWO_SIDED, PHYSICS), ("stiffness", "kappa_end_N_per_m")),
+    (Metric("kappa_doublings", "III", "1", TWO_SIDED, CONTACTS), ("stiffness", "doublings")),
     (Metric("linear_solves", "IV", "1", LOWER_BETTER, COST), ("linear_solves",)),
     (Metric("factorizations", "IV", "1", LOWER_BETTER, COST), ("factorizations",)),
     (Metric("analyses", "IV", "1", LOWER_BETTER, COST), ("analyses",)),
@@ -69,7 +84,7 @@ def _number(value) -> float | None:
     return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else None
 
 
-def _at(record, place: tuple[str, ...]) -> float | None:
+def at(record, place: tuple[str, ...]) -> float | None:
     for name in place:
         record = record.get(name) if isinstance(record, dict) else None
     return _number(record)
@@ -77,19 +92,4 @@ def _at(record, place: tuple[str, ...]) -> float | None:
 
 def cond_metric(matrix: str, which: str) -> Metric:
     """matrix: stage/scaling as in the summary, such as full/block_jacobi."""
-    return Metric(f"log10_cond {matrix} {which}", "III", "log10", TWO_SIDED, COND)
-
-
-def measure(run: Run) -> dict[Metric, float]:
-    """Every number that the record has. Class III counts of 0 (nothing of the kind ran) and energies of rounding are left out: they
-    judge nothing. A cost of 0 stays: one that appears is a cost."""
-    summary, steps = run.section("summary"), run.record.get("steps") or [{}]
-    found = {metric: _at(summary, place) for metric, place in SUMMARY}
-    found |= {metric: _at(steps[-1], place) for metric, place in LAST_STEP}
-    conditions = summary.get("cond")
-    for matrix, conditioning in sorted(conditions.items() if isinstance(conditions, dict) else []):
-        for which in ("median", "max"):
-            found[cond_metric(matrix, which)] = _at(conditioning, ("log10_cond", which))
-    energies = [abs(value) for metric, value in found.items() if metric.unit == "J" and value is not None]
-    return {metric: value for metric, value in found.items() if value is not None and not (metric.gate_class == "III" and metric.unit == "1" and value == 0)
-            and not (metric.unit == "J" and abs(value) <= ROUNDING * max(energies))}
+    return Metric(f"log10_cond {matrix} {which}", "III", "log10", LOWER_BETTER, COND)

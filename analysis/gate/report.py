@@ -45,7 +45,7 @@ def closing(findings: list[Finding]) -> str:
     count, red = judged(findings), len(failures(findings))
     classes = ", ".join(f"{count[c]} of class {c}" for c in ALL_CLASSES)
     words = Counter(f.verdict for f in findings)
-    other = [f"{words[word]} {word}" for word in ("better", "xfail", "xpass", "not_judged") if words[word]]
+    other = [f"{words[word]} {word}" for word in ("drift", "better", "xfail", "xpass", "not_judged") if words[word]]
     return f"{sum(count.values())} judged ({classes}){', ' + ', '.join(other) if other else ''}: " + (f"RED, {red} failed" if red else "green")
 
 

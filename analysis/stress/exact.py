@@ -127,4 +127,9 @@ def shape(name: str, d: float, d_hat: float) -> tuple[Decimal, Decimal, Decimal]
             return 2 * (-e) ** 3 / (3 * h), -2 * e * e / h, -4 * e / h
         if name == "two_stage":
             return h * h / 4 - h * h / 2 * (2 * d / h).ln(), -h * h / (2 * d), h * h / (2 * d * d)
+        if name == "exponential":
+            a = 6
+            t = a * (h - d) / h
+            p1 = t.exp() - 1
+            return h * h * (p1 - t - t * t / 2) / (a * Decimal(a).exp()), -h * (p1 - t) / Decimal(a).exp(), a * p1 / Decimal(a).exp()
     raise KeyError(name)

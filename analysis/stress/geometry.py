@@ -157,7 +157,7 @@ def shapes(quick: bool) -> list[Count]:
     out = []
     gaps = (1e-6, 1e-3, 0.1, 0.5, 0.9, 0.99, 0.999, 0.9999, 0.99999, 0.999999)
     for precision in PRECISIONS:
-        names = [(name, float(SCALAR[precision](u))) for name in ("log", "log_squared", "quadratic", "cubic", "two_stage") for u in gaps]
+        names = [(name, float(SCALAR[precision](u))) for name in ("log", "log_squared", "quadratic", "cubic", "two_stage", "exponential") for u in gaps]
         answers = ask([{"kind": "shape", "shape": name, "d": u, "d_hat": 1, "precision": precision} for name, u in names])
         counts: dict[str, Count] = {}
         for (name, u), answer in zip(names, answers):

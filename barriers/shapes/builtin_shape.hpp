@@ -1,11 +1,14 @@
 // Turns the inlined element template of a shape into the batch calls that the registry and the plugins share.
 #pragma once
 
+#include <bit>
 #include <cstddef>
 #include <string>
+#include <string_view>
 #include <utility>
 
 #include "barriers/shapes/gap_potential.hpp"
+#include "barriers/shapes/shape_family.hpp"
 #include "core/barrier/shape.hpp"
 
 namespace bb {
@@ -46,6 +49,52 @@ Shape builtin_shape(std::string name, std::string doc) {
     shape.potential_float = &potential_batch<S, float>;
   }
   return shape;
+}
+
+namespace shapes {
+
+/// A shape with an exponent: eval(d, d_hat, a), and the exponents that are allowed.
+template <class S>
+concept HasExponent = requires {
+  S::eval(1.0, 1.0, 1.0);
+  S::least_exponent;
+};
+
+}  // namespace shapes
+
+/// shape_batch of the exponent whose bits `self` holds, so that copies of a shape own nothing.
+template <class S, class T>
+void exponent_batch(void* self, std::size_t n, const T* d, const T* d_hat, T* b, T* db, T* d2b) {
+  const T a = static_cast<T>(std::bit_cast<double>(self));
+  for (std::size_t i = 0; i < n; ++i) {
+    const ShapeTerms<T> terms = S::eval(d[i], d_hat[i], a);
+    b[i] = terms.b;
+    db[i] = terms.db;
+    d2b[i] = terms.d2b;
+  }
+}
+
+/// The shape of another exponent, under the name it was asked by.
+template <class S>
+Shape member_of(Shape shape, std::string_view name, double exponent) {
+  static_assert(sizeof(void*) == sizeof(double));
+  shape.name = name;
+  shape.batch_double = &exponent_batch<S, double>;
+  shape.batch_float = &exponent_batch<S, float>;
+  shape.self = std::bit_cast<void*>(exponent);
+  return shape;
+}
+
+/// Null for a shape without an exponent.
+template <class S>
+const ShapeFamily* shape_family([[maybe_unused]] std::string_view name) {
+  if constexpr (shapes::HasExponent<S>) {
+    static const ShapeFamily family{name, S::least_exponent, S::most_exponent, S::default_exponent,
+                                    &member_of<S>};
+    return &family;
+  } else {
+    return nullptr;
+  }
 }
 
 }  // namespace bb

@@ -1,8 +1,10 @@
 // The shapes this program knows: the lines of registry.inc, then what plugins added.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/barrier/shape.hpp"
 #include "core/parameters/registry.hpp"
@@ -12,8 +14,16 @@ namespace bb {
 /// All shapes, built-ins first, in the order of registry.inc. Host only.
 Registry<Shape>& shapes();
 
-/// Errors: ConfigError at `where` with the names allowed and the nearest one.
-const Shape& require_shape(std::string_view name, std::string_view where = "shape");
+/// Every name that a shape can be asked by, for messages and help: those of shapes(), then NAME:A for each that has an
+/// exponent.
+std::vector<std::string> shape_names();
+
+/// A shape by its name, or by NAME:A with its exponent A, a number. Errors: ConfigError at `where` with the names allowed
+/// and the nearest one, or the exponents allowed.
+Shape require_shape(std::string_view name, std::string_view where = "shape");
+
+/// The same; nothing where require_shape throws.
+std::optional<Shape> find_shape(std::string_view name);
 
 /// Names of the shapes that has_potential() is true of on the argument gap, comma-separated.
 std::string shapes_with_potential();

@@ -29,11 +29,21 @@ bool size_fits(const Rule& rule, std::size_t size) {
   return size >= rule.min_size && (rule.max_size == 0 || size <= rule.max_size);
 }
 
+/// Whether it is one of the words; NAME:A stands for NAME with any number behind the colon, which whoever takes the
+/// word judges.
+bool is_word(const std::string& found, const std::vector<std::string>& words) {
+  const auto holds = [&words](const std::string& word) {
+    return std::find(words.begin(), words.end(), word) != words.end();
+  };
+  const std::size_t colon = found.find(':');
+  return holds(found) || (colon != std::string::npos && holds(found.substr(0, colon) + ":A"));
+}
+
 bool check_word(const json& value, const Rule& rule, const std::string& where,
                 std::vector<Violation>& violations) {
   const std::vector<std::string> words = rule.words();
   const std::string found = value.is_string() ? value.get<std::string>() : "";
-  if (value.is_string() && std::find(words.begin(), words.end(), found) != words.end()) return true;
+  if (value.is_string() && is_word(found, words)) return true;
   Rule alone = rule;
   alone.kind = Kind::word;
   return report(value, words.size() > 1 ? one_of_text(found, words) : allowed_text(alone), where, violations);

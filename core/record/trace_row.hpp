@@ -16,13 +16,14 @@
 namespace bb {
 
 /// Which terms the matrix of a condition estimate holds.
-enum class MatrixStage { full, without_contact, without_contact_and_limit };
+enum class MatrixStage { full, without_contact, without_limit, without_contact_and_limit };
 constexpr std::string_view to_string(MatrixStage stage) {
   if (stage == MatrixStage::full) return "full";
-  return stage == MatrixStage::without_contact ? "without_contact" : "without_contact_and_limit";
+  if (stage == MatrixStage::without_contact) return "without_contact";
+  return stage == MatrixStage::without_limit ? "without_limit" : "without_contact_and_limit";
 }
 template <>
-inline constexpr int n_words<MatrixStage> = 3;
+inline constexpr int n_words<MatrixStage> = 4;
 template <>
 inline constexpr int n_words<Scaling> = 3;
 template <>

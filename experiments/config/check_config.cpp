@@ -24,8 +24,19 @@ struct Complain {
 
 /// Nothing for an unknown name: it has a violation already.
 std::optional<BarrierFunction> barrier_of(const std::string& shape, Argument argument) {
-  const Shape* found = shapes().find(shape);
+  const std::optional<Shape> found = find_shape(shape);
   return found ? std::optional<BarrierFunction>({*found, argument}) : std::nullopt;
+}
+
+/// A registered name may carry an exponent that its shape does not allow; an unknown name has a violation already.
+void check_exponent(const std::string& section, const std::string& shape, const Complain& complain) {
+  if (shape.find(':') == std::string::npos) return;
+  try {
+    require_shape(shape);
+  } catch (const ConfigError& error) {
+    const Violation& v = error.violations().front();
+    complain(section + "/shape", v.found, v.allowed);
+  }
 }
 
 void check_step_solver(const RunConfig& config, const Complain& complain) {
@@ -284,6 +295,10 @@ bool follows_article(const SceneConfig& scene) {
 void check_contradictions(const RunConfig& config, const std::string& source,
                           std::vector<Violation>& violations) {
   const Complain complain{source, violations};
+  check_exponent("/formulation", config.formulation.shape, complain);
+  if (config.strain_limit.shape != config.formulation.shape) {
+    check_exponent("/strain_limit", config.strain_limit.shape, complain);
+  }
   check_step_solver(config, complain);
   check_hessians(config, complain);
   check_policy(config, complain);

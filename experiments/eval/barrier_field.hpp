@@ -7,8 +7,19 @@
 
 namespace bb::eval {
 
-/// Any registered shape, plugins included; the first one when the field is wrong.
-inline Shape shape_field(Query& q) { return shapes().require(q.choice("shape", shapes().names()), "/shape"); }
+/// Any registered shape, plugins included, or NAME:A with its exponent; the first one when the field is wrong.
+inline Shape shape_field(Query& q) {
+  const bool fine = !q.wrong();
+  const std::string name = q.word("shape");
+  if (q.wrong() && fine) return shapes().front();
+  try {
+    return require_shape(name, "/shape");
+  } catch (const ConfigError& error) {
+    const Violation& v = error.violations().front();
+    q.complain("shape", v.found, v.allowed);
+    return shapes().front();
+  }
+}
 
 inline BarrierFunction barrier_field(Query& q) {
   const Shape shape = shape_field(q);

@@ -21,6 +21,7 @@ struct Stage {
 };
 constexpr Stage stages[] = {{MatrixStage::full, {}, {}},
                             {MatrixStage::without_contact, TermGroup::contact, TermGroup::contact},
+                            {MatrixStage::without_limit, TermGroup::limit, TermGroup::limit},
                             {MatrixStage::without_contact_and_limit,
                              TermSet(TermGroup::contact) | TermGroup::limit, TermGroup::limit}};
 

@@ -83,7 +83,7 @@ def test_a_shape_of_a_plugin_has_no_kernels_and_is_refused_on_a_device(program, 
     done = subprocess.run(run, capture_output=True, text=True, check=False)
     assert done.returncode == 2 and done.stdout == "", done.stderr
     assert f'{config}#/formulation/shape: found "inverse", which has no kernel of its own; allowed: one of log' in done.stderr, done.stderr
-    assert "shapes of plugins run on the CPU path" in done.stderr and done.stderr.count("#/") == 1, done.stderr
+    assert "shapes of plugins" in done.stderr and "run on the CPU path" in done.stderr and done.stderr.count("#/") == 1, done.stderr
     assert not (tmp_path / "out").exists()
     done = subprocess.run([*run, "--set", '/device="cpu"'], capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr

@@ -52,8 +52,8 @@ TEST(FormulationPresets, EveryFileNamesKnownParts) {
     EXPECT_NO_THROW(make_policy(config)) << entry.path();
     ++files;
   }
-  EXPECT_GE(files, 12);
-  EXPECT_GE(shapes_used.size(), 5u);
+  EXPECT_GE(files, 13);
+  EXPECT_GE(shapes_used.size(), 6u);
 }
 
 TEST(FormulationPresets, PublishedOnesAreWhatTheyClaim) {

@@ -17,10 +17,11 @@ std::string message(const std::function<void()>& call) {
   return "no error";
 }
 
-TEST(ShapeRegistry, HoldsTheFiveBuiltInsInOrder) {
+TEST(ShapeRegistry, HoldsTheSixBuiltInsInOrder) {
   const std::vector<std::string> names = shapes().names();
-  ASSERT_GE(names.size(), 5u);
-  const std::vector<std::string> expected{"log", "log_squared", "quadratic", "cubic", "two_stage"};
+  ASSERT_GE(names.size(), 6u);
+  const std::vector<std::string> expected{"log",   "log_squared", "quadratic",
+                                          "cubic", "two_stage",   "exponential"};
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), names.begin()));
   for (const Shape& shape : shapes()) {
     EXPECT_FALSE(shape.doc.empty()) << shape.name;
@@ -35,7 +36,8 @@ TEST(ShapeRegistry, UnknownNameGetsTheNamesAllowedAndTheNearest) {
   const std::string text = message([] { require_shape("cubik", "/formulation/shape"); });
   EXPECT_NE(text.find("/formulation/shape"), std::string::npos) << text;
   EXPECT_NE(text.find("\"cubik\""), std::string::npos) << text;
-  EXPECT_NE(text.find("log, log_squared, quadratic, cubic, two_stage"), std::string::npos) << text;
+  EXPECT_NE(text.find("log, log_squared, quadratic, cubic, two_stage, exponential"), std::string::npos)
+      << text;
   EXPECT_NE(text.find("did you mean cubic?"), std::string::npos) << text;
   EXPECT_EQ(message([] { require_shape("zzzzzzzz"); }).find("did you mean"), std::string::npos);
 }

@@ -79,6 +79,16 @@ std::map<std::string, Reference> references() {
                     },
                     [](Real d, Real dh) { return d >= dh / 2 ? 2 * (d - dh) : -dh * dh / (2 * d); },
                     [](Real d, Real dh) { return d >= dh / 2 ? Real(2) : dh * dh / (2 * d * d); }};
+  const Real a = 6;
+  r["exponential"] = {[=](Real d, Real dh) {
+                        const Real t = a * (1 - d / dh);
+                        return dh * dh * (std::expm1(t) - t - t * t / 2) / (a * std::exp(a));
+                      },
+                      [=](Real d, Real dh) {
+                        const Real t = a * (1 - d / dh);
+                        return -dh * (std::expm1(t) - t) / std::exp(a);
+                      },
+                      [=](Real d, Real dh) { return a * std::expm1(a * (1 - d / dh)) / std::exp(a); }};
   return r;
 }
 

@@ -22,6 +22,13 @@ TEST(MaxSlope, OfABoundedShapeOnTheGapIsThatAtZero) {
 }
 
 /// b = (d_hat^2 - d^2)^2/d_hat^2 has |b'| = 4 d (d_hat^2 - d^2)/d_hat^2: largest at d_hat/sqrt(3).
+/// (1 - (1 + a) exp(-a)) d_hat at d = 0, a = 6.
+TEST(MaxSlope, OfTheExponentialIsThatAtZero) {
+  const auto slope = max_slope({require_shape("exponential"), Argument::gap}, d_hat);
+  ASSERT_TRUE(slope);
+  EXPECT_NEAR(*slope / ((1 - 7 * std::exp(-6.0)) * d_hat), 1, 1e-6);
+}
+
 TEST(MaxSlope, InsideTheSupportIsFound) {
   const auto slope = max_slope({require_shape("quadratic"), Argument::squared_gap}, d_hat);
   ASSERT_TRUE(slope);

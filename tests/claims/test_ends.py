@@ -64,7 +64,7 @@ def test_page_and_figure_of_a_claim_say_it(tmp_path, monkeypatch):
     monkeypatch.setattr("analysis.claims.judge.missing", lambda *_: [])
     judged = judge(claim, table, Eval(None))
     page = report.markdown([judged], table)
-    assert f"Ends of steps: published: {WORD}." in page and f"(published: {WORD}) |" in page
+    assert f"Ends of steps: published: {WORD}." in page and f"(published: {WORD})" in page
     assert f"published: {WORD}" in report.text([judged]).replace("\n     ", " ")
     figure.draw([judged], tmp_path / "claims")
     assert WORD in (tmp_path / "claims.csv").read_text() and "residual of their ends" in " ".join((tmp_path / "claims.txt").read_text().split())

@@ -4,20 +4,21 @@ import json
 from pathlib import Path
 
 import pytest
-from synthetic import write_run
+from made import record
 
 from analysis.claims import __main__ as verb
-from analysis.claims import report
+from analysis.claims import fresh, report
 from analysis.claims.entry import FOLDER, ROOT, ClaimError, ids, read_claim, read_sweep
 from analysis.claims.judge import RULES, judge, missing
 from analysis.claims.metrics import METRICS
 from analysis.claims.proofs import PROOFS, Eval
+from analysis.claims.registry import confirmable, confirmed_parts
 from analysis.claims.table import FILE, Table, collect, read, used_metrics, write
 
 WANTED = {*(f"K{k}" for k in range(1, 18)), *(f"H{k}" for k in range(1, 10)), "N1"}
 THRESHOLDS = {"above", "below", "within", "beyond"}
 KEYS = {"says", "rule", "proof", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", "every",
-        "left", "right", "u", "shape", "argument", "theta", "loads", "mass_term", "changes", *THRESHOLDS}
+        "starts", "reason", "confirm", "limit", "left", "right", "u", "shape", "argument", "theta", "loads", "mass_term", "changes", *THRESHOLDS}
 
 
 def test_every_claim_is_there_and_refers_to_what_exists():
@@ -35,17 +36,42 @@ def test_every_claim_is_there_and_refers_to_what_exists():
             paths = part["rule"] == "at_equal_gap"  # its cases are NAME xSCALE
             assert part["rule"] in RULES and {part[k] for k in ("case", "over") if k in part} <= {p[2].rpartition(" x")[0] if paths else p[2] for p in places}, (claim.id, part)
             assert set(part.get("scenes", [])) <= {p[0] for p in places}, (claim.id, part)
-            assert len({p[3] for p in places}) >= 5 and all(len({p[1] for p in places if p[0] == s}) >= 3 for s in {p[0] for p in places})
+            assert all(len({p[1] for p in places if p[0] == s}) >= 3 for s in {p[0] for p in places})
+            assert "starts" not in part or len({p[3] for p in places}) >= 5
             assert part.get("metric", "newton") in METRICS and part.get("bad", "newton") in METRICS
             assert part["rule"] == "outcomes" or len(THRESHOLDS & set(part)) == 1
     assert judged > 50
     assert {path.stem for path in (FOLDER / "sweeps").glob("*.json")} == {s for claim in map(read_claim, ids()) for s in claim.sweeps}
+    confirmations = {path.stem for path in (FOLDER / "confirmation").glob("*.json")} - {"registry"}
+    assert confirmations == {s for claim in map(read_claim, ids()) for s in claim.confirmation_sweeps} and len(confirmations) >= 8
+
+
+def test_trivial_truths_are_named():
+    kinds = {name: read_claim(name).kind for name in ids()}
+    assert {name for name, kind in kinds.items() if kind == "by construction"} == {"K5", "H5"} and kinds["H6"] == "by dimension" and kinds["H8"] == "closed form"
+    for claim in map(read_claim, ids()):
+        proofs = [part for part in claim.deciding if "proof" in part]
+        assert claim.kind not in ("closed form", "by dimension") or len(proofs) == len(claim.deciding), claim.id
+        assert claim.kind != "runs" or len(proofs) < len(claim.deciding) or claim.waits_for, claim.id
+
+
+def test_claims_on_shells_can_be_confirmed():
+    assert {name for name in ids() if confirmable(read_claim(name))} == {"K1", "K3", "K4", "K12", "K13", "H1", "H2", "H3", "H4", "H7", "N1"}
+    for claim in map(read_claim, ids()):
+        for part in confirmed_parts(claim) if confirmable(claim) else []:
+            if "sweep" in part:
+                sweep = read_sweep(part["sweep"])
+                fresh.check(sweep)
+                places = sweep.cases.values()
+                assert {part[k] for k in ("case", "over") if k in part} <= {p[2].rpartition(" x")[0] if part["rule"] == "at_equal_gap" else p[2] for p in places}
+                assert set(part.get("scenes", [])) <= {p[0] for p in places} and "confirm" not in part
+                assert "starts" not in part or len({p[3] for p in places}) >= 5
 
 
 def test_the_program_takes_every_sweep(program):
     import subprocess
 
-    for path in sorted((FOLDER / "sweeps").glob("*.json")):
+    for path in sorted([*(FOLDER / "sweeps").glob("*.json"), *(FOLDER / "confirmation").glob("shells_*.json")]):
         done = subprocess.run([program, "sweep", str(path), "--dry-run"], capture_output=True, text=True, check=False)
         assert done.returncode == 0, done.stderr
         assert len(done.stdout.split("\n")) > len(read_sweep(path.stem).cases)
@@ -98,11 +124,17 @@ def test_numbers_of_another_sweep_file_are_missing():
 
 @pytest.mark.parametrize("edit, said", [
     ({"id": "K2"}, "/id: found 'K2'"), ({"sentence": 1}, "/sentence: a string is needed"), ({"parts": [], "waits_for": ""}, "neither parts"),
-    ({"schema": "x"}, "'barrierbench.claim/1' is needed"), ({"verdict": "holds"}, "/verdict: unknown")])
+    ({"schema": "x"}, "'barrierbench.claim/1' is needed"), ({"verdict": "holds"}, "/verdict: unknown"),
+    ({"kind": "obvious"}, "/kind: found 'obvious'; one of runs, closed form"), ({"kind": None}, "/kind: a string is needed")])
 def test_a_bad_claim(tmp_path, edit, said):
     (tmp_path / "K1.json").write_text(json.dumps({**json.loads((FOLDER / "K1.json").read_text()), **edit}))
     with pytest.raises(ClaimError, match=said):
         read_claim("K1", tmp_path)
+
+
+def test_confirmation_sweeps_have_the_metrics_of_their_parts():
+    used = used_metrics([read_claim("K12"), read_claim("H7")])
+    assert used["shells_modes"] == ["newton"] and used["shells_float"] == ["stopped"] and {"newton", "seconds"} <= set(used["hessian_modes"])
 
 
 def test_unknown_names(capsys):
@@ -111,15 +143,6 @@ def test_unknown_names(capsys):
     claim.parts[0]["metric"] = "speed"
     with pytest.raises(ClaimError, match="'speed': one of cond_max"):
         used_metrics([claim])
-
-
-def record(root: Path, sweep, note: str, folder: str, **status) -> None:
-    body = write_run(root, "log", 1.0, 0.1, note=note, folder=folder)
-    body["status"] |= {"ended_utc": "2024-01-31T12:00:02Z", **status}
-    body["config"] = {"strain_limit": {"onset": 0.01, "width": 0.01}}
-    body["ids"]["build_id"] = "b"
-    body["summary"] |= {"max_stretch": 0.015, "cond": {"full/none": {"log10_cond": {"max": 3.0}}}}
-    (root / folder / "run.json").write_text(json.dumps(body))
 
 
 def test_records_become_rows(tmp_path):

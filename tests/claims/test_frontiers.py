@@ -30,15 +30,15 @@ def made():
 def test_the_table():
     lines = frontiers.lines(CLAIM, Table({"policies": made()}))
     x, y = (next(line for line in lines if line.startswith(f"| {case} |")) for case in "xy")
-    assert x == "| x | 90 of 90 [0.959, 1.000] | 10 | 0.1 to 100 | 1 to 8 |"
-    assert y.startswith("| y | 70 of 90 [") and "| 38.57 | 0.1 to 1[ | 1 to 2[ |" in y  # (70 x 10 + 20 x 100)/70
+    assert x == "| x | 90 of 90 runs; every run in 3 of 3 scenes [0.439, 1.000] | 10 | 0.1 to 100 | 1 to 8 |"
+    assert y.startswith("| y | 70 of 90 runs; every run in 0 of 3 scenes [0.000, 0.561]") and "| 38.57 | 0.1 to 1[ | 1 to 2[ |" in y  # (70 x 10 + 20 x 100)/70
     assert frontiers.lines(replace(CLAIM, frontier={}), Table()) == [] and frontiers.lines(CLAIM, Table()) == []
 
 
 def test_not_even_the_middle():
     all_fail = runs(lambda s, lv, c, k: {"outcome": "newton_stall" if c == "y" else "ok", "factorizations": 3.0}, levels=LEVELS)
     line = frontiers.lines(CLAIM, Table({"policies": all_fail}))[-2]
-    assert line.count("not even the middle") == 2 and "| 0 of 90 [0.000, 0.041] | - |" in line
+    assert line.count("not even the middle") == 2 and "| 0 of 90 runs; every run in 0 of 3 scenes [0.000, 0.561] | - |" in line
 
 
 def too_hard(scene, level, case, seed):
@@ -50,7 +50,7 @@ def test_what_nobody_gets_through_is_left_out_of_shares_and_bounds_the_frontier(
     hard = runs(too_hard, levels=LEVELS)
     lines = frontiers.lines(CLAIM, Table({"policies": hard}))
     x = next(line for line in lines if line.startswith("| x |"))
-    assert x == "| x | 85 of 85 [0.957, 1.000] | 10 | 0.1 to 10[ | 1 to 8 |"
+    assert x == "| x | 85 of 85 runs; every run in 3 of 3 scenes [0.439, 1.000] | 10 | 0.1 to 10[ | 1 to 8 |"
     assert "1 of 18 scenes x levels (5 runs of each case) are left out, since no case gets through: a E100." in "".join(lines)
     assert "left out" not in "".join(frontiers.lines(CLAIM, Table({"policies": made()})))
     frontiers.draw(CLAIM, hard, tmp_path / "policies")
@@ -60,7 +60,7 @@ def test_what_nobody_gets_through_is_left_out_of_shares_and_bounds_the_frontier(
 def test_where_nobody_gets_through_the_middle_there_is_no_frontier():
     hard = runs(lambda s, lv, c, k: {"outcome": "newton_stall" if (s, lv) == ("a", "nominal") else "ok", "factorizations": 3.0}, levels=LEVELS)
     line = next(line for line in frontiers.lines(CLAIM, Table({"policies": hard})) if line.startswith("| x |"))
-    assert "| x | 85 of 85 [" in line and line.count("not even the middle") == 2
+    assert "| x | 85 of 85 runs" in line and line.count("not even the middle") == 2
 
 
 def test_a_run_without_its_cost():

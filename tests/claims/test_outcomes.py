@@ -3,11 +3,12 @@
 import pytest
 from made import runs
 
-from analysis.claims.estimate import interval, sign_test, wilson
+from analysis.claims.entry import ClaimError
 from analysis.claims.outcomes import outcomes
 from analysis.claims.verdict import HOLDS, NOT, ONLY_IF, OPEN, Judged, together
 
 PART = {"says": "x gets through", "sweep": "s", "case": "x", "over": "y"}
+SIX = ("a", "b", "c", "d", "e", "f")  # fewer scenes cannot decide a sign test
 
 
 def failing(where):
@@ -16,35 +17,57 @@ def failing(where):
 
 
 def test_through_everything_where_the_other_fails():
-    judged = outcomes(PART, runs(failing(lambda s, lv, c: c == "y" and lv != "1")))
-    assert judged.verdict == HOLDS and judged.value == 1 and "6 to 0" in judged.counted
+    judged = outcomes(PART, runs(failing(lambda s, lv, c: c == "y" and lv != "1"), scenes=SIX))
+    assert judged.verdict == HOLDS and judged.value == 1 and "won, lost, even: 6, 0, 0" in judged.counted and "12 to 0" in judged.counted
+    assert (judged.lower, judged.scenes) == (pytest.approx(0.6097, abs=1e-3), 6)  # Wilson of 6 of 6 scenes, not of 90 runs
 
 
 def test_only_at_some_levels():
-    made = runs(failing(lambda s, lv, c: (c == "y" and lv != "1") or (c == "x" and lv == "1" and s == "a")), levels=("1", "2", "4", "8"))
+    made = runs(failing(lambda s, lv, c: (c == "y" and lv != "1") or (c == "x" and lv == "1" and s == "a")), levels=("1", "2", "4", "8"), scenes=SIX)
     judged = outcomes(PART, made)
     assert judged.verdict == ONLY_IF and judged.condition == "level 2, 4, 8; not 1"
     assert outcomes({**PART, "needs": "more"}, made).verdict == HOLDS
+    assert judged.value == pytest.approx(5 / 6) and judged.per_scene[0][:4] == ("a", 0.75, 0.0, 1.0)
 
 
 def test_no_more_than_the_other():
     assert outcomes(PART, runs(failing(lambda s, lv, c: False))).verdict == NOT
-    assert outcomes(PART, runs(failing(lambda s, lv, c: c == "x" and lv != "1"))).verdict == NOT
+    assert outcomes(PART, runs(failing(lambda s, lv, c: c == "x" and lv != "1"), scenes=SIX)).verdict == NOT
 
 
-def test_few_wins_tell_nothing():
-    judged = outcomes(PART, runs(failing(lambda s, lv, c: c == "y" and lv == "1")))
-    assert judged.verdict == OPEN and "3 wins and 0 losses" in judged.missing
+def test_a_scene_is_one_sign_whatever_levels_and_starts_it_has():
+    """Three scenes that win at nine levels of nine starts each: three wins."""
+    made = runs(failing(lambda s, lv, c: c == "y"), levels=tuple("123456789"), seeds=tuple(range(9)))
+    judged = outcomes(PART, made)
+    assert judged.verdict == OPEN and "3 scenes won, 0 lost, 0 even" in judged.missing and "of 3 scenes no outcome would, 6 are needed" in judged.missing
+
+
+def test_a_scene_that_each_wins_as_often_is_even():
+    even = runs(failing(lambda s, lv, c: (s, lv, c) in (("a", "1", "x"), ("a", "2", "y")) or (s != "a" and c == "y")), scenes=SIX)
+    judged = outcomes(PART, even)
+    assert judged.verdict == OPEN and "5 scenes won, 0 lost, 1 even" in judged.missing and "would" not in judged.missing
+
+
+def test_scenes_that_are_all_even_decide_nothing():
+    """Each gets through levels that the other does not: no win, and not the same either."""
+    judged = outcomes(PART, runs(failing(lambda s, lv, c: (lv, c) in (("1", "x"), ("2", "y"))), scenes=SIX))
+    assert judged.verdict == OPEN and "0 scenes won, 0 lost, 6 even" in judged.missing
+
+
+def test_a_scene_in_which_one_start_fails_is_not_got_through():
+    made = runs(lambda s, lv, c, k: {"outcome": "newton_stall" if (s, lv, c, k) == ("a", "2", "x", 3) else "ok"})
+    judged = outcomes({"says": "", "sweep": "s", "case": "x"}, made)
+    assert judged.value == pytest.approx(2 / 3) and judged.counted.startswith("every run in 2 of 3 scenes; 44 of 45 runs, mean share of scenes 0.978")
 
 
 def test_what_no_case_gets_through_is_left_out():
-    judged = outcomes(PART, runs(failing(lambda s, lv, c: (s, lv) == ("a", "1") or (c == "y" and lv != "1")), levels=("1", "2", "4", "8")))
+    judged = outcomes(PART, runs(failing(lambda s, lv, c: (s, lv) == ("a", "1") or (c == "y" and lv != "1")), levels=("1", "2", "4", "8"), scenes=SIX))
     assert judged.verdict == HOLDS and "a 1 left out" in judged.counted
     assert outcomes(PART, runs(failing(lambda s, lv, c: True))).verdict == OPEN
 
 
 def test_another_failure_is_meant():
-    made = runs(failing(lambda s, lv, c: c == "y"))
+    made = runs(failing(lambda s, lv, c: c == "y"), scenes=SIX)
     for row in made.rows:
         row["outcome"] = "stall_overload"
     assert outcomes({**PART, "bad": "unsettled"}, made).verdict == HOLDS
@@ -55,6 +78,16 @@ def test_alone_and_too_little():
     assert outcomes(alone, runs(failing(lambda s, lv, c: False))).verdict == HOLDS
     assert outcomes(alone, runs(failing(lambda s, lv, c: s == "a" and c == "x"))).verdict == NOT
     assert outcomes(alone, runs(failing(lambda s, lv, c: False), scenes=("a", "b"))).missing.startswith("indication")
+    assert outcomes(alone, runs(failing(lambda s, lv, c: False), seeds=(1,))).verdict == HOLDS
+
+
+def test_starts_count_where_a_part_says_that_they_matter():
+    matter = {"says": "", "sweep": "s", "case": "x", "starts": "matter", "reason": "chaotic"}
+    assert outcomes(matter, runs(failing(lambda s, lv, c: False), seeds=(1, 2, 3, 4))).missing.startswith("indication: 0 scenes have 3 levels of 5 starts")
+    assert outcomes(matter, runs(failing(lambda s, lv, c: False))).verdict == HOLDS
+    for bad in ({"starts": "matter", "reason": ""}, {"starts": "5", "reason": "many"}):
+        with pytest.raises(ClaimError, match='"matter" with a reason is needed'):
+            outcomes({**matter, **bad}, runs(failing(lambda s, lv, c: False)))
 
 
 @pytest.mark.parametrize("verdicts, expected", [
@@ -65,13 +98,3 @@ def test_parts_together(verdicts, expected):
     assert together(parts).verdict == expected
     assert together([*parts, Judged(NOT, beside=True)]).verdict == expected
     assert together(parts, "solids").verdict == OPEN and "waits for solids" in together(parts, "solids").missing
-
-
-def test_intervals():
-    cells = {s: {lv: [1.0, 2.0, 3.0, 4.0, 5.0] for lv in "123"} for s in "abc"}
-    low, high = interval(cells)
-    assert 2 < low < 3 < high < 4 and interval(cells) == (low, high)
-    spread = interval({"a": cells["a"], "b": {lv: [10.0] * 5 for lv in "123"}, "c": cells["c"]})
-    assert spread[1] - spread[0] > 3 * (high - low)  # scenes that differ widen it
-    assert sign_test(6, 0) == pytest.approx(2 / 64) and sign_test(0, 0) == 1
-    assert wilson(10, 10)[1] == pytest.approx(1) and wilson(10, 10)[0] == pytest.approx(0.722, abs=1e-3)

@@ -28,11 +28,11 @@ def test_every_case_has_a_baseline_and_every_baseline_a_case():
     from analysis.gate.cases import read_set, sets
 
     names = {case.name for name in sets() for case in read_set(name)}
-    assert names == {path.stem for path in baseline.FOLDER.glob("*.json")} and len(names) >= 8
+    assert names == {path.stem for path in baseline.FOLDER.glob("*.json")} and len(names) >= 12
     for name in names:
         kept = baseline.read(baseline.FOLDER / f"{name}.json", name, "run")
         assert kept.reason and kept.calibrated_at["runs"] == 21 and kept.calibrated_at["jitter_m"] > 0
-        assert {"gap_min", "newton_iterations", "log10_cond full/none median"} <= kept.metrics.keys()
+        assert {"gap_min", "newton_iterations", "log10_cond full/none p95", "status full/none: ok", "error_estimate: number"} <= kept.metrics.keys()
         assert "state_hash" not in json.dumps(kept.json())
 
 
@@ -47,6 +47,7 @@ def test_every_case_has_a_baseline_and_every_baseline_a_case():
     (lambda b: b["metrics"]["gap_min"].update(upper=None), "/metrics/gap_min/upper: None"),
     (lambda b: b["metrics"]["gap_min"].update(upper=-1.0), "outside its own envelope"),
     (lambda b: b["metrics"]["gap_min"].update({"class": "I"}), "classes I and II are exact"),
+    (lambda b: b["metrics"]["gap_min"].update(first={"value": None}), "/metrics/gap_min/first"),
     (lambda b: b["metrics"]["gap_min"].update(direction="up"), "/metrics/gap_min/direction: 'up'"),
 ])
 def test_a_baseline_that_cannot_judge(gate, folder, capsys, change, said):
@@ -81,7 +82,7 @@ def test_another_processor_still_passes(gate, folder, answer):
         b["made_by"]["cpu_model"] = "another processor"
         kept = b["metrics"]["factorizations"]
         assert kept["value"] > 20
-        kept.update(value=kept["value"] * 0.95, lower=kept["value"] * 0.9, upper=kept["value"] * 1.05)  # the run has 5.3% more
+        kept.update(value=kept["value"] * 0.95, scatter=kept["scatter"] * 0.95, lower=kept["value"] * 0.9, upper=kept["value"] * 1.05)  # the run has 5.3% more
 
     edit(folder, elsewhere)
     assert gate("gate", "--case", "block-log", "--baselines", folder) == 0
@@ -118,7 +119,9 @@ def test_a_metric_that_vanished_is_red(gate, folder, answer):
 def test_a_baseline_without_a_class_judges_nothing_of_it(gate, folder, answer):
     edit(folder, lambda b: b.update(metrics={k: v for k, v in b["metrics"].items() if v["class"] == "III"}))
     assert gate("gate", "--case", "block-log", "--baselines", folder) == 1
-    assert [f["note"] for f in answer()["findings"] if f["verdict"] == "FAIL"] == ["no line of class IV judged anything"]
+    red = [f for f in answer()["findings"] if f["verdict"] == "FAIL"]
+    assert {f["class"] for f in red} == {"IV"} and red[-1]["note"] == "no line of class IV judged anything"
+    assert all(f["note"].startswith("not in the baseline") for f in red[:-1]) and len(red) > 3
 
 
 def test_an_expected_failure_is_shown_and_no_failure(gate, folder, answer):

@@ -48,6 +48,20 @@ def test_a_worse_number_is_named_with_its_direction(gate, pair, capsys):
     assert any("newton_iterations" in line and "better" in line and "lower, -50%" in line for line in lines)
 
 
+def test_a_stage_that_the_reference_lacks_is_red_unless_the_records_are_of_other_configs(gate, pair, capsys):
+    def stage(record):
+        record["summary"]["cond"]["contact/none"] = record["summary"]["cond"]["full/none"]
+
+    assert gate("compare", *pair(stage)) == 1
+    assert any("log10_cond contact/none max" in line and "not in the reference" in line for line in capsys.readouterr().out.splitlines())
+
+    def other(record):
+        stage(record)
+        record["config"]["time"]["dt_s"] = 0.005
+
+    assert gate("compare", *pair(other, name="other"), "--different-configs") == 0
+
+
 def test_one_build_has_one_state(gate, pair, capsys):
     assert gate("compare", *pair(lambda record: record["summary"].update(state_hash="0" * 64))) == 1
     assert "state_hash" in capsys.readouterr().out

@@ -9,7 +9,7 @@ import pytest
 
 from analysis.gate import baseline, cases, judge
 from analysis.gate.finding import failures
-from analysis.gate.metrics import measure
+from analysis.gate.measure import measure
 
 
 def red(answer) -> dict[str, set]:
@@ -98,9 +98,10 @@ def test_20_clean_repetitions_stay_green(gate, defective, seeds):
         assert gate("gate", "--case", "block-log") == 0, seed
 
 
-def test_20_clean_repetitions_of_a_cloth_stay_green(program, monkeypatch, tmp_path, seeds):
+@pytest.mark.parametrize("name", ["drape-cubic", "strip-adaptive", "strip-dynamic"])
+def test_20_clean_repetitions_of_a_cloth_stay_green(program, monkeypatch, tmp_path, seeds, name):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
-    case = next(case for case in cases.read_set("small") if case.name == "drape-cubic")
+    case = next(case for case in cases.read_set("small") if case.name == name)
     kept = baseline.read(baseline.FOLDER / f"{case.name}.json", case.name)
     for seed in seeds:
         run = cases.jittered(case, tmp_path / "run", seed, 1.0, 1 + seed % 2)

@@ -1,6 +1,9 @@
 """The committed baselines against the program that was built. Also the judge of the mutants of tests/mutation/gate.toml."""
 
-from analysis.gate import build_checks
+import re
+import subprocess
+
+from analysis.gate import baseline, build_checks, cases
 
 
 def test_cases_of_the_small_set_are_green(gate, answer):
@@ -23,3 +26,14 @@ def test_a_check_that_judged_nothing_or_failed_is_red():
     check = {"name": "ccd", "pass": True, "subjects": 9, "value": 0, "bound": 0, "detail": ""}
     verdicts = [build_checks.findings_of({"checks": [{**check, **change}]})[0].verdict for change in ({}, {"pass": False}, {"subjects": 0})]
     assert verdicts == ["pass", "FAIL", "FAIL"]
+
+
+def test_every_stiffness_policy_is_in_the_set(program):
+    """A policy that the program has and no case runs would be judged by nothing, of contacts and of the strain limit."""
+    text = subprocess.run([program, "list", "policies"], capture_output=True, text=True, check=True).stdout
+    contacts, limits = (set(re.findall(r"^  (\w+) ", part, re.MULTILINE)) for part in text.split("policies of the limit"))
+    configs = [baseline.read(baseline.FOLDER / f"{case.name}.json", case.name).config for case in cases.read_set("small")]
+    assert len(contacts) >= 3 and {c["formulation"]["stiffness_policy"]["name"] for c in configs} >= contacts
+    assert len(limits) >= 2 and {c["strain_limit"]["stiffness_policy"]["name"] for c in configs if c["strain_limit"]["enabled"]} >= limits
+    ways = {(p.get("refresh"), p.get("derivative")) for c in configs for p in [c["formulation"]["stiffness_policy"]]}
+    assert ways >= {("per_iteration", "dropped"), ("per_step", "dropped"), ("per_step", "included")}

@@ -17,11 +17,12 @@ struct ScriptedIteration {
   double dx = 1, residual = 0, rounding = 0;
   double slope = -1;
   double bound = 1;
-  std::function<Change(double)> change;  // of the direction at alpha; empty: as its quadratic model says
+  std::function<Change(double)> change =
+      nullptr;  // of the direction at alpha; empty: as its quadratic model says
   EndProof end = EndProof::factor;
   // along negative curvature
   double escape_slope = 0, escape_curvature = -1, escape_bound = 1;
-  std::function<Change(double)> escape_change;  // empty: none is feasible
+  std::function<Change(double)> escape_change = nullptr;  // empty: none is feasible
   bool at_target = true;
 };
 

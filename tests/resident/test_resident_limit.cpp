@@ -34,6 +34,7 @@ std::vector<Rule> all_rules() {
   out.push_back({"log", fixed, 1e-13});
   out.push_back({"log_squared", fixed, 1e-12});
   out.push_back({"two_stage", fixed, 1e-13});
+  out.push_back({"exponential", fixed, 0});
   constexpr auto dropped = KappaDerivative::dropped;
   for (const MassTerm mass : {MassTerm::paper, MassTerm::inertia, MassTerm::scaled, MassTerm::none}) {
     out.push_back({"cubic", elastic(mass, true, Refresh::per_iteration, dropped), 0});
@@ -140,7 +141,7 @@ TEST(ResidentLimit, LiteralAndSquaredGapAreThoseOfTheCpu) {
   const Scene scene = cloth_scene("arap", true, 4);
   const StepFrame frame = step_frame(scene);
   int n_beyond = 0;
-  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage"}) {
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"}) {
     for (const bool literal : {false, true}) {
       TermOptions options = element_options(shape);
       options.limit.literal = literal;

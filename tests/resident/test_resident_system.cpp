@@ -147,7 +147,7 @@ TEST(ResidentSystem, ShowsItsStateToTheCpu) {
 // --- whole runs
 
 TEST(ResidentRun, EndsWhereTheCpuEndsForEveryShape) {
-  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage"}) {
+  for (const char* shape : {"log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"}) {
     SCOPED_TRACE(shape);
     expect_same_run(
         test::cloth_on_plate(), [&] { return test::fixed_method(shape, 20); }, 12, 1e-6);

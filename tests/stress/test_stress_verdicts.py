@@ -151,7 +151,7 @@ def test_exact_distances_and_times():
 
 def test_exact_shapes_are_derivatives_of_each_other():
     step = 2.0**-20
-    for name in ("log", "log_squared", "quadratic", "cubic", "two_stage"):
+    for name in ("log", "log_squared", "quadratic", "cubic", "two_stage", "exponential"):
         for d in (0.2, 0.7):
             low, here, high = (exact.shape(name, d + k * step, 1.0) for k in (-1, 0, 1))
             for order in (0, 1):

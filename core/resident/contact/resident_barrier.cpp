@@ -42,7 +42,8 @@ Launch find(const Entry (&entries)[n], const std::string& name, const char* what
   }
   throw ConfigError(
       "shape", "\"" + name + "\", which has no kernel " + what,
-      "one of " + names + " where the pipeline is resident; shapes of plugins run on the CPU path");
+      "one of " + names +
+          " where the pipeline is resident; shapes of plugins and other exponents run on the CPU path");
 }
 
 }  // namespace

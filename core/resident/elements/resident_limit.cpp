@@ -22,7 +22,8 @@ LaunchShape shape_kernel(const BarrierFunction& barrier) {
   if (barrier.shape.name == #id && !barrier.shape.self) return &launch_shape<shapes::Struct>;
   BB_FOR_EACH_SHAPE(SHAPE)
 #undef SHAPE
-  throw ConfigError("shape", barrier.shape.name, "a shape of barriers/shapes: a plugin's has no kernel");
+  throw ConfigError("shape", barrier.shape.name,
+                    "a shape of barriers/shapes: a plugin's and another exponent have no kernel");
 }
 
 template <int R>

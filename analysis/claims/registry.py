@@ -1,0 +1,190 @@
+"""What was registered before confirmation runs: of each claim the hash of its rule and of its sweeps (claims/confirmation/registry.json)."""
+
+from __future__ import annotations
+
+import ast
+import hashlib
+import inspect
+import json
+import textwrap
+from dataclasses import dataclass, replace
+from datetime import datetime, timezone
+from pathlib import Path
+
+from ..whole_file import write_whole
+from . import fresh
+from .entry import FOLDER, ROOT, Claim, ClaimError, _read, read_sweep
+from .history import NoHistory, brought
+from .metrics import METRICS
+from .outcomes import LEVEL
+from .table import Table
+from .verdict import LEVELS, SCENES, STARTS
+
+FILE = FOLDER / "confirmation" / "registry.json"
+NAME = "barrierbench.confirmation/1"
+# What a rule means beside its parts. A change of how verdicts are computed is a change here, and of every hash.
+STATISTICS = {"interval": "95%, Student's t over scenes, a scene the mean over levels of the mean over starts", "sign_test": LEVEL, "scenes": SCENES, "levels": LEVELS,
+              "starts_where_they_matter": STARTS}
+NONE, NOT_RUN, UNVERIFIED = "-", "registered, not run", "not verifiable here"
+
+
+def confirmed_parts(claim: Claim) -> list[dict]:
+    """The deciding parts with their confirmation sweeps, and what else `confirm` replaces, in the place of those they were tuned on."""
+    return [{key: value for key, value in {**part, **part.get("confirm", {})}.items() if key != "confirm"} for part in claim.deciding]
+
+
+def confirmable(claim: Claim) -> bool:
+    """Whether every deciding part that takes runs has a confirmation sweep, and some part does."""
+    runs = [part for part in claim.deciding if "sweep" in part]
+    return bool(runs) and not claim.waits_for and all("confirm" in part for part in runs)
+
+
+def sha_of(value) -> str:
+    return hashlib.sha256(json.dumps(value, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+
+
+def read_as(name: str) -> str:
+    """Hash of how a metric is read from a record: its meaning, its unit and its code without comments; what that calls is not in it."""
+    meaning, unit, _, reader = METRICS[name]
+    tree = ast.parse(textwrap.dedent(inspect.getsource(reader)))
+    for node in ast.walk(tree):
+        if isinstance(node, ast.FunctionDef) and ast.get_docstring(node):
+            node.body = node.body[1:] or [ast.Pass()]
+    bound = [cell.cell_contents for cell in reader.__closure__ or ()]
+    return sha_of([meaning, unit, ast.unparse(tree), [x for x in bound if isinstance(x, (str, tuple))]])[:16]
+
+
+def rule_of(claim: Claim) -> dict:
+    parts = confirmed_parts(claim)
+    metrics = {name for part in parts for name in (part.get("metric"), part.get("bad"), (part.get("equal") or {}).get("metric")) if name}
+    return {"parts": parts, "metrics": {name: read_as(name) for name in sorted(metrics)}, "statistics": STATISTICS}
+
+
+def read(file: Path = FILE) -> dict:
+    if not file.is_file():
+        return {}
+    data = _read(file)
+    if data.get("schema") != NAME or not isinstance(data.get("claims"), dict):
+        raise ClaimError(f"{file}: schema {data.get('schema')!r}; {NAME!r} with claims is needed")
+    return data["claims"]
+
+
+def differences(old, new, place: str = "") -> list[str]:
+    """Where two JSON values differ: pointer, what was registered, what is there now."""
+    if isinstance(old, dict) and isinstance(new, dict):
+        return [line for key in sorted(old.keys() | new.keys()) for line in differences(old.get(key), new.get(key), f"{place}/{key}")]
+    if isinstance(old, list) and isinstance(new, list) and len(old) == len(new):
+        return [line for k, (a, b) in enumerate(zip(old, new)) for line in differences(a, b, f"{place}/{k}")]
+    return [] if old == new else [f"{place}: registered {json.dumps(old)}, now {json.dumps(new)}"]
+
+
+def register(claim: Claim, table: Table, file: Path = FILE) -> dict:
+    """Writes the entry of a claim. Errors: ClaimError when it has no confirmation, a scene is not fresh, or its sweeps have been run."""
+    if not confirmable(claim):
+        raise ClaimError(f"claims/{claim.id}.json: /parts: every deciding part that takes runs needs confirm.sweep, a sweep of claims/confirmation")
+    entries = read(file)
+    for name in claim.confirmation_sweeps:
+        fresh.check(read_sweep(name))
+        if name in table.sweeps and table.sweeps[name].rows:
+            raise ClaimError(f"{claim.id}: {name} has been run ({table.sweeps[name].about.get('date')}): a rule is registered before the first run of its sweep")
+    rule = rule_of(claim)
+    entries[claim.id] = {"date": datetime.now(timezone.utc).strftime("%Y-%m-%d"), "rule_sha256": sha_of(rule),
+                         "sweeps": {name: read_sweep(name).sha256 for name in claim.confirmation_sweeps}, "rule": rule}
+    write_whole(file, json.dumps({"schema": NAME, "claims": dict(sorted(entries.items()))}, indent=1) + "\n")
+    return entries[claim.id]
+
+
+@dataclass(frozen=True)
+class State:
+    """Where the confirmation of a claim stands. verified: its verdict may be computed and shown."""
+
+    word: str = NONE
+    why: str = ""
+    verified: bool = False
+
+    @property
+    def refused(self) -> bool:
+        return self.word == "refused"
+
+
+def _refused(why: str) -> State:
+    return State("refused", why)
+
+
+def _changed(claim: Claim, entry: dict) -> str:
+    """What is no longer as registered; empty when all is."""
+    place = f"claims/confirmation/registry.json: /claims/{claim.id}"
+    if sha_of(entry.get("rule")) != entry.get("rule_sha256"):
+        return f"{place}/rule: its sha256 is not the rule_sha256 beside it"
+    if lines := differences(entry["rule"], rule_of(claim)):
+        return f"claims/{claim.id}.json: the rule is another than the one registered on {entry['date']}: " + "; ".join(lines)
+    for name, sha in entry.get("sweeps", {}).items():
+        if read_sweep(name).sha256 != sha:
+            return f"{read_sweep(name).file}: sha256 {read_sweep(name).sha256[:12]}, registered {sha[:12]} on {entry['date']}"
+        try:
+            fresh.check(read_sweep(name))
+        except ClaimError as error:
+            return str(error)
+    return ""
+
+
+def _records(claim: Claim, table: Table, entry: dict) -> State | None:
+    """What is wrong with the records, or that there are none; None when all are there and of the registered sweep."""
+    for name, sha in entry["sweeps"].items():
+        runs, expected = table.sweeps.get(name), len(read_sweep(name).cases)
+        if not runs or not runs.rows:
+            return State(NOT_RUN, read_sweep(name).command)
+        if (copy := runs.about.get("sha256", "")) != sha:
+            return _refused(f"results/runs/claims/{name}/sweep.json: the records are of a sweep with sha256 {copy[:12] or 'unknown'}, registered {sha[:12]} on {entry['date']}")
+        if len(runs.rows) < expected:
+            return State(f"registered, {len(runs.rows)} of {expected} runs", read_sweep(name).command)
+    return None
+
+
+def _committed(claim: Claim, table: Table, entry: dict, root: Path) -> State:
+    """The commit that brought the entry is an ancestor of HEAD and older than the first run."""
+    place = f"claims/confirmation/registry.json: /claims/{claim.id}"
+    try:
+        commit = brought(root, "claims/confirmation/registry.json", ("claims", claim.id), entry)
+    except NoHistory as error:
+        return State(UNVERIFIED, f"{place}: no git history here ({error})")
+    if commit is None:
+        return _refused(f"{place}: this entry is in no commit that leads to HEAD, but its sweeps have been run")
+    for name in entry["sweeps"]:
+        text = table.sweeps[name].about.get("first_started_utc", "")
+        started = datetime.fromisoformat(text.replace("Z", "+00:00")) if text else None
+        if started is None or (started <= commit.at and commit.oldest):
+            why = "the history here is shallow" if started else f"the records of {name} keep no time of their start: ./bench claims {claim.id} collects them again"
+            return State(UNVERIFIED, f"{place}: {why}")
+        if started <= commit.at:
+            return _refused(f"{place}: committed {commit.at:%Y-%m-%d %H:%M:%S} UTC ({commit.sha[:10]}), after the first run of {name} ({text})")
+    return State("verified", f"registered {entry['date']} in {commit.sha[:10]}, before the first run", True)
+
+
+def state(claim: Claim, table: Table, entries: dict, root: Path = ROOT) -> State:
+    if not confirmable(claim):
+        return State()
+    entry = entries.get(claim.id)
+    if entry is None:
+        run = [name for name in claim.confirmation_sweeps if name in table.sweeps and table.sweeps[name].rows]
+        return State(NONE, f"not registered before {', '.join(run)} was run" if run else f"not registered: ./bench claims --register {claim.id}")
+    if changed := _changed(claim, entry):
+        return _refused(changed)
+    return _records(claim, table, entry) or _committed(claim, table, entry, root)
+
+
+def ready(claim: Claim, entries: dict, root: Path = ROOT) -> None:
+    """Before a first confirmation run: the entry is committed and nothing has changed since. Errors: ClaimError, so that no scene is used up in vain."""
+    now = state(claim, Table(), entries, root)
+    if now.refused:
+        raise ClaimError(f"{claim.id}: no confirmation is run: {now.why}")
+    try:
+        if brought(root, "claims/confirmation/registry.json", ("claims", claim.id), entries[claim.id]) is None:
+            raise ClaimError(f"{claim.id}: commit claims/confirmation/registry.json before the first run of {', '.join(claim.confirmation_sweeps)}")
+    except NoHistory:
+        pass  # it will not be verifiable here, which is said then
+
+
+def as_confirmation(claim: Claim) -> Claim:
+    """The same claim over its confirmation sweeps."""
+    return replace(claim, parts=tuple(confirmed_parts(claim)), frontier={})

@@ -1,0 +1,4 @@
+from .entry import main
+import sys
+
+sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,211 @@
+"""What the rows of a gap map say: shapes beside the log at equal reached gap, who reaches which gap, and the area law against what was measured."""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..matching.front import Point, reached, value_at
+from .rows import CANNOT, NO_CONTACT, NOT_RUN
+from .spec import REFERENCE
+
+MADE = 3.0  # contact makes the largest eigenvalue where cond is at least this many times that without contact
+FAR = 2.0  # a measured ratio farther than this factor from the predicted one is an exception
+LOADS = 1.25  # two runs whose loads differ by more do not carry the same load
+
+
+def places(rows: list[dict], limit: str) -> list[tuple[str, str]]:
+    return list(dict.fromkeys((r["scene"], r["resolution"]) for r in rows if r["limit"] == limit))
+
+
+def path(rows: list[dict], place: tuple[str, str], limit: str, shape: str, metric: str) -> list[Point]:
+    """theta is the parameter: a smaller target means a softer contact. A run that failed breaks the path."""
+    mine = [r for r in rows if (r["scene"], r["resolution"]) == place and r["limit"] == limit and r["shape"] == shape]
+    return [Point(r["theta"], r["gap"], r[metric]) if r["outcome"] == "ok" else Point(r["theta"], None, None) for r in mine]
+
+
+@dataclass(frozen=True)
+class Ratio:
+    """Geometric mean over scenes of a metric over that of the log, the smallest and the largest scene, and how many scenes have both of how many."""
+
+    value: float
+    low: float
+    high: float
+    n: int
+    of: int
+
+
+def ratio_at(rows: list[dict], limit: str, shape: str, metric: str, gap: float) -> Ratio | None:
+    """At equal reached gap, each along its own path over theta; resolutions of one scene are averaged first. None where no scene has both."""
+    by_scene: dict[str, list[float]] = {}
+    for place in places(rows, limit):
+        by_scene.setdefault(place[0], [])
+        mine, log = (value_at(path(rows, place, limit, s, metric), gap) for s in (shape, REFERENCE))
+        if mine is not None and log is not None:
+            by_scene[place[0]].append(math.log(mine / log))
+    return _over_scenes(by_scene)
+
+
+def _over_scenes(by_scene: dict[str, list[float]]) -> Ratio | None:
+    means = [float(np.mean(logs)) for logs in by_scene.values() if logs]
+    return Ratio(math.exp(np.mean(means)), math.exp(min(means)), math.exp(max(means)), len(means), len(by_scene)) if means else None
+
+
+def at_theta(rows: list[dict], limit: str, shape: str, metric: str, theta: float) -> Ratio | None:
+    """At equal target, so under the same loads, each at the gap that it reaches; a place counts where both runs ended well."""
+    by_scene: dict[str, list[float]] = {}
+    for place in places(rows, limit):
+        by_scene.setdefault(place[0], [])
+        values = [next((p.value for p in path(rows, place, limit, s, metric) if p.scale == theta), None) for s in (shape, REFERENCE)]
+        if all(values):
+            by_scene[place[0]].append(math.log(values[0] / values[1]))
+    return _over_scenes(by_scene)
+
+
+@dataclass(frozen=True)
+class Step:
+    """One target of a shape: geometric means over scenes of the gap that was reached and of a number, and each scene's own."""
+
+    theta: float
+    gap: float
+    value: float
+    scenes: dict[str, tuple[float, float]]
+    of: int  # scenes there are
+
+
+def steps(rows: list[dict], limit: str, shape: str, metric: str, over) -> list[Step]:
+    """Target by target, falling; over(row) is what the metric is divided by, None where that is not known. Only scenes in which a run ended well count."""
+    found, scenes = [], list(dict.fromkeys(p[0] for p in places(rows, limit)))
+    mine = [r for r in rows if r["limit"] == limit and r["shape"] == shape and r["outcome"] == "ok" and r["gap"] and r[metric] and over(r)]
+    for theta in sorted({r["theta"] for r in mine}, reverse=True):
+        of = {}
+        for scene in scenes:
+            good = [r for r in mine if r["theta"] == theta and r["scene"] == scene]
+            if good:
+                of[scene] = (_mean([r["gap"] for r in good]), _mean([r[metric] / over(r) for r in good]))
+        found.append(Step(theta, _mean([g for g, _ in of.values()]), _mean([v for _, v in of.values()]), of, len(scenes)))
+    return found
+
+
+def _mean(values: list[float]) -> float:
+    return math.exp(float(np.mean(np.log(values))))
+
+
+def deepest(rows: list[dict], limit: str, shape: str) -> dict[tuple[str, str], float]:
+    """place -> smallest gap that some run of the shape reached there; places where none did are left out."""
+    found = {}
+    for place in places(rows, limit):
+        gaps = [r["gap"] for r in rows if (r["scene"], r["resolution"]) == place and r["limit"] == limit and r["shape"] == shape and r["outcome"] == "ok" and r["gap"]]
+        if gaps:
+            found[place] = min(gaps)
+    return found
+
+
+def end_of(rows: list[dict], limit: str, shape: str) -> tuple[float, int] | None:
+    """Median over places of the smallest gap that the shape reached, and of how many places."""
+    found = list(deepest(rows, limit, shape).values())
+    return (float(np.median(found)), len(found)) if found else None
+
+
+def failures(rows: list[dict]) -> dict[tuple[str, str, float], dict[str, int]]:
+    """(shape, limit, theta) -> outcome -> runs; runs that reached a gap are not in it."""
+    found: dict[tuple[str, str, float], dict[str, int]] = {}
+    for r in rows:
+        if r["outcome"] != "ok":
+            of = found.setdefault((r["shape"], r["limit"], r["theta"]), {})
+            of[r["outcome"]] = of.get(r["outcome"], 0) + 1
+    return found
+
+
+def unreached(rows: list[dict], targets: list[float]) -> list[tuple[str, str, float]]:
+    """(limit, shape, target) that no place's path comes down to: named, never filled in."""
+    found = []
+    for limit in dict.fromkeys(r["limit"] for r in rows):
+        for shape in dict.fromkeys(r["shape"] for r in rows if r["limit"] == limit):
+            ranges = [reached(path(rows, place, limit, shape, "gap")) for place in places(rows, limit)]
+            found += [(limit, shape, target) for target in targets if not any(r and r[0] <= target <= r[1] for r in ranges)]
+    return found
+
+
+@dataclass(frozen=True)
+class Pair:
+    """A shape and the log in the same place, with the same target: the same loads, each at the gap that it reaches."""
+
+    row: dict
+    log: dict
+    predicted: float  # ratio of rho at the median gaps
+    predicted_p05: float  # the same where the 5% of the load that rests deepest begins
+    measured: float  # ratio of cond at step ends
+    made: tuple[float, float]  # cond over cond without contact, of both
+    floor: float  # cond without contact over the log's cond: the ratio below which contact has nothing to say
+
+    @property
+    def by_contact(self) -> bool:
+        return min(self.made) >= MADE
+
+    @property
+    def by_log(self) -> bool:
+        """Contact makes the log's, so that its share in the shape's can be predicted from it."""
+        return self.made[1] >= MADE
+
+    @property
+    def floored(self) -> float:
+        """The law with its floor: what rho predicts, or what is left without contact."""
+        return max(self.predicted, self.floor)
+
+    @property
+    def error(self) -> float:
+        """ln(measured/predicted)."""
+        return math.log(self.measured / self.predicted)
+
+    @property
+    def floor_error(self) -> float:
+        return math.log(self.measured / self.floored)
+
+    @property
+    def name(self) -> str:
+        return "{scene} {resolution}, limit {limit}, theta {theta:g}, {shape}".format(**self.row)
+
+
+def pairs(rows: list[dict], raw: bool = True) -> list[Pair]:
+    """Every row beside the log's of the same place, limit and theta, where both reached a gap and every number is there. raw: cond, else block-Jacobi scaled."""
+    cond, without = ("cond_end", "nc_end") if raw else ("bj_end", "nc_bj_end")
+    key = lambda r: (r["scene"], r["resolution"], r["limit"], r["theta"])
+    good = [r for r in rows if r["outcome"] == "ok" and all(r[c] and r[c] > 0 for c in ("rho", "rho_p05", cond, without))]
+    logs = {key(r): r for r in good if r["shape"] == REFERENCE}
+    found = []
+    for r in good:
+        log = logs.get(key(r))
+        if log and r["shape"] != REFERENCE:
+            found.append(Pair(r, log, r["rho"] / log["rho"], r["rho_p05"] / log["rho_p05"], r[cond] / log[cond], (r[cond] / r[without], log[cond] / log[without]), r[without] / log[cond]))
+    return found
+
+
+def scatter(errors: list[float]) -> tuple[float, float] | None:
+    """Mean and standard deviation of ln(measured/predicted); None below two pairs."""
+    return (float(np.mean(errors)), float(np.std(errors, ddof=1))) if len(errors) > 1 else None
+
+
+def reason(pair: Pair) -> str:
+    """Why a pair leaves the law with its floor, where its own numbers say so."""
+    if not pair.by_log:
+        return f"contact does not make the log's largest eigenvalue: cond {pair.log['cond_end']:.3g} with contact, {pair.log['nc_end']:.3g} without"
+    load = (pair.row["load"] or 0) / (pair.log["load"] or math.inf)
+    if load > 0 and abs(math.log(load)) > math.log(LOADS) and abs(math.log(pair.measured / max(pair.predicted * load, pair.floor))) < abs(pair.floor_error):
+        return f"the loads are not the same: the largest is {load:.2f} times the log's"
+    if abs(math.log(pair.measured / max(pair.predicted_p05, pair.floor))) <= math.log(FAR):
+        return f"loads rest at very different gaps: with rho where the deepest 5% of the load begins, {pair.predicted_p05:.3g} is predicted"
+    return "not explained by these numbers"
+
+
+def exceptions(found: list[Pair]) -> list[Pair]:
+    """Pairs whose log's is made by contact, and which are farther than FAR from the law with its floor."""
+    return sorted((p for p in found if p.by_log and abs(p.floor_error) > math.log(FAR)), key=lambda p: -abs(p.floor_error))
+
+
+def counts(rows: list[dict]) -> dict[str, int]:
+    """How the cells of the map ended."""
+    return {"cells": len(rows), "ok": sum(r["outcome"] == "ok" for r in rows), **{word: sum(r["outcome"] == word for r in rows) for word in (CANNOT, NO_CONTACT, NOT_RUN)},
+            "failed": sum(r["outcome"] not in ("ok", CANNOT, NO_CONTACT, NOT_RUN) for r in rows)}

@@ -1,0 +1,112 @@
+"""A scene of a confirmation sweep is none that a tuning sweep used, whatever it is called."""
+
+import copy
+import json
+from dataclasses import replace
+
+import pytest
+
+from analysis.claims import fresh
+from analysis.claims.entry import ROOT, ClaimError, read_sweep
+
+SWEEP = read_sweep("shells_contact")
+
+
+def scene(n=4, **more):
+    return {"name": "bodies", "gravity_m_per_s2": [0, 0, -9.81], "obstacles": [{"kind": "plane"}],
+            "bodies": [{"name": "a", "mesh": {"generator": "grid", "n_x": n, "n_y": n, "size_x_m": 0.5}, "material": {"youngs_N_per_m": 20}, **more}]}
+
+
+def changed(way, value):
+    made = scene()
+    at = made
+    for word in way[:-1]:
+        at = at[word]
+    at[way[-1]] = value
+    return made
+
+
+def identity(made):
+    return fresh.identity(made, ROOT)
+
+
+@pytest.mark.parametrize("same", [
+    scene(9), changed(("bodies", 0, "name"), "b"), changed(("obstacles", 0, "name"), "floor"), changed(("bodies", 0, "material", "youngs_N_per_m"), 20.0),
+    changed(("bodies", 0, "material", "poisson"), 0.3), changed(("bodies", 0, "velocity_m_per_s"), [0.0, 0.0, 0.0]), changed(("obstacles", 0, "inside"), False)])
+def test_names_resolution_and_defaults_make_no_other_scene(same):
+    assert identity(same) == identity(scene())
+
+
+@pytest.mark.parametrize("other", [
+    changed(("bodies", 0, "material", "youngs_N_per_m"), 21), changed(("obstacles", 0, "kind"), "sphere"), changed(("bodies", 0, "mesh", "size_x_m"), 0.6),
+    changed(("gravity_m_per_s2",), [0, 0, -1.62]), changed(("bodies", 0, "velocity_m_per_s"), [0, 0, -1]), changed(("bodies", 0, "mesh", "generator"), "box"),
+    changed(("obstacles", 0, "inside"), True)])
+def test_materials_meshes_and_obstacles_do(other):
+    assert identity(other) != identity(scene())
+
+
+def test_a_mesh_file_is_its_contents(tmp_path):
+    for name, text in (("a.obj", "v 0 0 0"), ("b.obj", "v 0 0 0"), ("c.obj", "v 1 0 0")):
+        (tmp_path / name).write_text(text)
+    a, b, c = (fresh.identity({"name": "bodies", "bodies": [{"mesh": {"file": name}}]}, tmp_path) for name in ("a.obj", "b.obj", "c.obj"))
+    assert a == b != c
+
+
+def tuning(tmp_path, folder, data):
+    (tmp_path / folder).mkdir(parents=True, exist_ok=True)
+    (tmp_path / folder / "x.json").write_text(json.dumps(data))
+    fresh.used.cache_clear()
+    return fresh.used(tmp_path)
+
+
+@pytest.mark.parametrize("folder", fresh.TUNING)
+def test_all_folders_of_tuning_are_looked_into(tmp_path, folder):
+    assert identity(scene()) in tuning(tmp_path, folder, {"axes": [{"cases": [{"set": {"/scene": scene()}}]}]})
+
+
+def test_settings_of_a_base_make_its_scenes(tmp_path):
+    (tmp_path / "claims/sweeps").mkdir(parents=True)
+    (tmp_path / "claims/sweeps/base.cfg.json").write_text(json.dumps({"scene": scene()}))
+    softer, faster = {"/scene/bodies/0/material/youngs_N_per_m": 2}, {"/scene/bodies/0/velocity_m_per_s": [0, 0, -1]}
+    found = tuning(tmp_path, "claims/sweeps", {"base": "base.cfg.json", "axes": [{"cases": [{"set": softer}]}, {"cases": [{"set": faster}, {"set": {"/scene/n": 3}}]}]})
+    both = changed(("bodies", 0, "material", "youngs_N_per_m"), 2)
+    both["bodies"][0]["velocity_m_per_s"] = [0, 0, -1]
+    assert {identity(scene()), identity(changed(("bodies", 0, "material", "youngs_N_per_m"), 2)), identity(both)} <= set(found)
+
+
+def edited(tmp_path, edit):
+    data = json.loads(SWEEP.path.read_text())
+    edit(data["axes"][0]["cases"])
+    (tmp_path / "configs/scenes").mkdir(parents=True)
+    (tmp_path / "configs/scenes/hang.json").write_bytes((ROOT / "configs/scenes/hang.json").read_bytes())
+    path = tmp_path / "claims/confirmation/shells_contact.json"
+    path.parent.mkdir(parents=True)
+    path.write_text(json.dumps(data))
+    return replace(SWEEP, path=path)
+
+
+def of_pile(cases):
+    """Scene of the tuning sweep contact_shapes, under another name, finer, with its bodies renamed."""
+    tuned = json.loads((ROOT / "claims/sweeps/contact_shapes.json").read_text())["axes"][0]["cases"]
+    made = copy.deepcopy(next(case["set"]["/scene"] for case in tuned if case["label"].startswith("pile")))
+    for body in made["bodies"]:
+        body["name"] += "_new"
+        body["mesh"] |= {"n_x": 11, "n_y": 11}
+    cases[0]["set"]["/scene"] = made
+
+
+def test_a_scene_that_a_tuning_sweep_used_is_refused(tmp_path):
+    fresh.used.cache_clear()
+    fresh.check(SWEEP)
+    with pytest.raises(ClaimError, match="claims/confirmation/shells_contact.json: bar 6: its scene is one of claims/sweeps/contact_shapes.json"):
+        fresh.check(edited(tmp_path, of_pile))
+
+
+def test_a_scene_with_defaults_is_refused(tmp_path):
+    with pytest.raises(ClaimError, match="bar 6: the scene is 'hang'; a confirmation scene is of bodies, all written out"):
+        fresh.check(edited(tmp_path, lambda cases: cases[0]["set"].update({"/scene": {"name": "hang", "n": 7}})))
+
+
+def test_too_few_scenes_are_refused(tmp_path):
+    with pytest.raises(ClaimError, match="7 scenes; a confirmation has at least 8"):
+        fresh.check(edited(tmp_path, lambda cases: cases.__delitem__(slice(21, None))))

@@ -1,0 +1,305 @@
+"""A claim that calls itself confirmed: registered, committed and unchanged, before its first run. Repositories of their own, made here."""
+
+import copy
+import json
+import os
+import shutil
+import subprocess
+from dataclasses import replace
+
+import pytest
+from made import runs
+
+from analysis.claims import __main__ as verb
+from analysis.claims import registry, report
+from analysis.claims.entry import ROOT, ClaimError, read_claim, read_sweep
+from analysis.claims.judge import judge
+from analysis.claims.metrics import METRICS
+from analysis.claims.proofs import Eval
+from analysis.claims.table import Table
+
+NAME, FILE = "shells_modes", "claims/confirmation/registry.json"
+CLAIM = read_claim("K12")
+
+
+class Repository:
+    """A checkout with the confirmation sweep of K12, its own git, and time as commits are told."""
+
+    def __init__(self, root):
+        self.root = root
+        for file in (f"claims/confirmation/{NAME}.json", "configs/scenes/hang.json"):
+            (root / file).parent.mkdir(parents=True, exist_ok=True)
+            shutil.copyfile(ROOT / file, root / file)
+        self.git("init", "--quiet", "--initial-branch=main")
+
+    def git(self, *words, at="2026-12-01T12:00:00+00:00"):
+        made = {**os.environ, "GIT_AUTHOR_DATE": at, "GIT_COMMITTER_DATE": at}
+        subprocess.run(["git", "-C", str(self.root), "-c", "user.name=t", "-c", "user.email=t@t", *words], check=True, capture_output=True, env=made)
+
+    def commit(self, at="2026-12-01T12:00:00+00:00"):
+        self.git("add", "-A")
+        self.git("commit", "--quiet", "--allow-empty", "-m", "x", at=at)
+
+    def sweep(self, name):
+        return read_sweep.__wrapped__(name, self.root / "claims")
+
+    def register(self, claim=CLAIM, table=None):
+        return registry.register(claim, table or Table(), self.root / FILE)
+
+    def entries(self):
+        return registry.read(self.root / FILE)
+
+    def state(self, table, claim=CLAIM):
+        return registry.state(claim, table, self.entries(), self.root)
+
+    def run(self, started="2026-12-02T00:00:00Z", factor=2.0):
+        """Records of the sweep, in which clamping takes `factor` times the iterations."""
+        sweep = self.sweep(NAME)
+        places = sweep.cases.values()
+        scenes, levels = (tuple(dict.fromkeys(p[k] for p in places)) for k in (0, 1))
+        made = runs(lambda s, lv, c, k: {"newton": 10 * factor if c == "clamped" else 10.0, "seconds": 1.0, "factorizations": 9}, scenes=scenes, levels=levels,
+                    cases=("clamped", "exact_or_clamped", "progressive"), seeds=(1,))
+        made.about |= {"sha256": sweep.sha256, "first_started_utc": started}
+        return Table({NAME: made})
+
+
+@pytest.fixture
+def repository(tmp_path, monkeypatch):
+    made = Repository(tmp_path / "repository")
+    monkeypatch.setattr(registry, "read_sweep", made.sweep)
+    return made
+
+
+def test_registered_committed_and_run(repository):
+    assert repository.state(Table()).word == "-" and "not registered: ./bench claims --register K12" in repository.state(Table()).why
+    entry = repository.register()
+    assert repository.state(Table()).word == "registered, not run"
+    repository.commit()
+    state = repository.state(repository.run())
+    assert state.verified and f"registered {entry['date']} in " in state.why and "before the first run" in state.why
+    part = entry["rule"]["parts"][0]
+    assert part["sweep"] == NAME and part["above"] == 1 and "confirm" not in part and entry["rule"]["statistics"]["scenes"] == 3
+
+
+def test_the_confirmed_verdict_is_that_of_the_confirmation_scenes(repository, monkeypatch):
+    from analysis.claims.table import FILE as KEPT
+    from analysis.claims.table import read
+
+    repository.register()
+    repository.commit()
+    table = read(KEPT)
+    table.sweeps |= repository.run().sweeps
+    monkeypatch.setattr(registry, "ROOT", repository.root)
+    original = registry.state
+    monkeypatch.setattr(registry, "state", lambda claim, table, entries: original(claim, table, entries, repository.root))
+    answer = judge(CLAIM, table, Eval(None), repository.entries())
+    assert answer.verdict.verdict == "not decided" and answer.confirmed.verdict == "holds" and answer.confirmed_parts[0].scenes == 10
+    row = next(line for line in report.verdict_table([answer]) if line.startswith("| K12"))
+    assert "| not decided: fewer Newton" in row and "| holds |" in row
+    table.sweeps |= repository.run(factor=0.5).sweeps
+    answer = judge(CLAIM, table, Eval(None), repository.entries())
+    assert answer.confirmed.verdict == "does not hold" and "Confirmed: **does not hold**" in report.markdown([answer], Table())
+
+
+@pytest.mark.parametrize("edit, said", [
+    (lambda part: part.update(above=0.9), "/parts/0/above: registered 1, now 0.9"),
+    (lambda part: part.update(metric="seconds"), '/parts/0/metric: registered "newton", now "seconds"'),
+    (lambda part: part["confirm"].update(scenes=["bar"]), '/parts/0/scenes: registered null, now ["bar"]')])
+def test_a_rule_that_was_changed_after_its_runs_is_refused(repository, edit, said):
+    repository.register()
+    repository.commit()
+    parts = copy.deepcopy(list(CLAIM.parts))
+    edit(parts[0])
+    state = repository.state(repository.run(), replace(CLAIM, parts=tuple(parts)))
+    assert state.refused and state.why.startswith("claims/K12.json: the rule is another") and said in state.why and not state.verified
+
+
+def test_what_decides_nothing_may_change(repository):
+    repository.register()
+    repository.commit()
+    assert repository.state(repository.run(), replace(CLAIM, parts=CLAIM.parts[:1], note="other")).verified
+
+
+def test_another_way_to_compute_verdicts_is_another_rule(repository, monkeypatch):
+    repository.register()
+    repository.commit()
+    monkeypatch.setattr(registry, "STATISTICS", {**registry.STATISTICS, "interval": "bootstrap"})
+    assert "/statistics/interval: registered" in repository.state(repository.run()).why
+
+
+def test_another_way_to_read_a_metric_is_another_rule(repository, monkeypatch):
+    repository.register()
+    repository.commit()
+    assert repository.state(repository.run()).verified
+    meaning, unit, machine, _ = METRICS["newton"]
+    monkeypatch.setitem(METRICS, "newton", (meaning, unit, machine, METRICS["factorizations"][3]))
+    assert "the rule is another" in repository.state(repository.run()).why and "/metrics/newton: registered" in repository.state(repository.run()).why
+    hashes = {registry.read_as(name) for name in METRICS if name != "newton"}
+    assert len(hashes) == len(METRICS) - 1
+
+
+def test_a_docstring_is_no_rule(monkeypatch):
+    def hashed(text):
+        monkeypatch.setattr(registry.inspect, "getsource", lambda reader: text)
+        return registry.read_as("newton")
+
+    bare = hashed('def f(r):\n    return r["x"]')
+    assert hashed('    def f(r):\n        """Of a record."""\n        return r["x"]  # x') == bare != hashed('def f(r):\n    return 2 * r["x"]')
+
+
+def test_a_sweep_that_was_changed_is_refused(repository):
+    repository.register()
+    repository.commit()
+    table, path = repository.run(), repository.root / f"claims/confirmation/{NAME}.json"
+    path.write_text(path.read_text().replace('"steps": 15', '"steps": 14'))
+    assert repository.state(table).refused and f"claims/confirmation/{NAME}.json: sha256" in repository.state(table).why
+
+
+def test_records_of_another_sweep_are_refused(repository):
+    repository.register()
+    repository.commit()
+    table = repository.run()
+    table.sweeps[NAME].about["sha256"] = "ab" * 32
+    assert repository.state(table).refused and f"results/runs/claims/{NAME}/sweep.json: the records are of a sweep with sha256 abababababab" in repository.state(table).why
+    table = repository.run()
+    del table.sweeps[NAME].rows[3:]
+    assert repository.state(table).word == "registered, 3 of 90 runs" and not repository.state(table).verified
+
+
+@pytest.mark.parametrize("started, refused", [("2026-12-01T11:59:59Z", True), ("2026-12-01T12:00:00Z", True), ("2026-12-01T12:00:01Z", False)])
+def test_registered_after_the_first_run_is_refused(repository, started, refused):
+    repository.register()
+    repository.commit()
+    state = repository.state(repository.run(started))
+    assert state.refused == refused and state.verified != refused and (not refused or "2026-12-01 12:00:00 UTC" in state.why and "after the first run" in state.why)
+
+
+def test_the_commit_is_the_one_since_which_the_entry_stands(repository):
+    """An old entry that was replaced by another one proves nothing for that."""
+    parts = copy.deepcopy(list(CLAIM.parts))
+    parts[0]["above"] = 2
+    repository.register(replace(CLAIM, parts=tuple(parts)))
+    repository.commit("2026-11-01T12:00:00+00:00")
+    repository.register()
+    repository.commit("2026-12-03T12:00:00+00:00")
+    assert repository.state(repository.run("2026-12-02T00:00:00Z")).refused and repository.state(repository.run("2026-12-04T00:00:00Z")).verified
+
+
+def test_an_entry_that_came_back_is_as_old_as_its_return(repository):
+    parts = copy.deepcopy(list(CLAIM.parts))
+    parts[0]["above"] = 2
+    for month, claim in (("10", CLAIM), ("11", replace(CLAIM, parts=tuple(parts))), ("12", CLAIM)):
+        repository.register(claim)
+        repository.commit(f"2026-{month}-03T12:00:00+00:00")
+    assert repository.state(repository.run("2026-12-02T00:00:00Z")).refused and repository.state(repository.run("2026-12-04T00:00:00Z")).verified
+
+
+def test_entries_of_other_claims_may_come_later(repository):
+    repository.register()
+    repository.commit()
+    repository.register(read_claim("K13"))
+    repository.commit("2026-12-09T12:00:00+00:00")
+    assert repository.state(repository.run("2026-12-02T00:00:00Z")).verified
+    assert repository.state(repository.run("2026-12-02T00:00:00Z"), read_claim("K13")).refused
+
+
+def test_an_entry_of_no_commit_or_of_another_branch_is_refused(repository):
+    repository.commit()
+    repository.git("checkout", "--quiet", "-b", "other")
+    repository.register()
+    repository.commit()
+    kept = (repository.root / FILE).read_text()
+    repository.git("checkout", "--quiet", "main")
+    (repository.root / FILE).write_text(kept)
+    assert repository.state(repository.run()).refused and "in no commit that leads to HEAD" in repository.state(repository.run()).why
+
+
+def test_nothing_is_run_before_the_entry_is_committed(repository):
+    repository.commit()
+    repository.register()
+    with pytest.raises(ClaimError, match="K12: commit claims/confirmation/registry.json before the first run of shells_modes"):
+        registry.ready(CLAIM, repository.entries(), repository.root)
+    repository.commit()
+    registry.ready(CLAIM, repository.entries(), repository.root)
+    parts = copy.deepcopy(list(CLAIM.parts))
+    parts[0]["above"] = 2
+    with pytest.raises(ClaimError, match="no confirmation is run: claims/K12.json: the rule is another"):
+        registry.ready(replace(CLAIM, parts=tuple(parts)), repository.entries(), repository.root)
+
+
+def test_the_verb_runs_what_is_registered_and_no_more(monkeypatch, tmp_path):
+    asked = []
+    monkeypatch.setattr(verb, "program", lambda needed=True: "program")
+    monkeypatch.setattr(verb.subprocess, "run", lambda words, **_: asked.append(words[2]) or subprocess.CompletedProcess(words, 0))
+    monkeypatch.setattr(registry, "ready", lambda claim, entries: None)
+    monkeypatch.setattr(registry, "read", lambda: {})
+    verb.run_sweeps([CLAIM], tmp_path, [])
+    monkeypatch.setattr(registry, "read", lambda: {"K12": {}})
+    verb.run_sweeps([CLAIM], tmp_path, [])
+    assert [word.rpartition("/")[2] for word in asked] == ["hessian_modes.json", "hessian_modes.json", "shells_modes.json"]
+
+
+def test_without_a_history_nothing_is_confirmed(repository):
+    repository.register()
+    repository.commit()
+    shutil.rmtree(repository.root / ".git")
+    state = repository.state(repository.run())
+    assert (state.word, state.verified) == ("not verifiable here", False) and "no git history here" in state.why
+
+
+def test_records_that_keep_no_time(repository):
+    repository.register()
+    repository.commit()
+    assert repository.state(repository.run(started="")).word == "not verifiable here"
+
+
+def test_a_shallow_clone_does_not_accuse(repository, tmp_path):
+    repository.register()
+    repository.commit()
+    (repository.root / "x").write_text("x")
+    repository.commit("2026-12-05T12:00:00+00:00")
+    subprocess.run(["git", "clone", "--quiet", "--depth", "1", f"file://{repository.root}", str(tmp_path / "shallow")], check=True, capture_output=True)
+    state = registry.state(CLAIM, repository.run(), repository.entries(), tmp_path / "shallow")
+    assert (state.word, state.verified) == ("not verifiable here", False) and "shallow" in state.why
+
+
+def test_a_registry_that_was_edited_by_hand(repository):
+    repository.register()
+    data = json.loads((repository.root / FILE).read_text())
+    data["claims"]["K12"]["rule"]["parts"][0]["above"] = 0.5
+    (repository.root / FILE).write_text(json.dumps(data))
+    repository.commit()
+    assert "its sha256 is not the rule_sha256 beside it" in repository.state(repository.run()).why
+    (repository.root / FILE).write_text('{"schema": "x"}')
+    with pytest.raises(ClaimError, match="barrierbench.confirmation/1"):
+        repository.entries()
+
+
+def test_what_cannot_be_registered(repository):
+    with pytest.raises(ClaimError, match="shells_modes has been run .*: a rule is registered before the first run"):
+        repository.register(table=repository.run())
+    with pytest.raises(ClaimError, match="claims/K2.json: /parts: every deciding part that takes runs needs confirm.sweep"):
+        repository.register(read_claim("K2"))
+    half = [{key: value for key, value in part.items() if key != "confirm" or k} for k, part in enumerate(read_claim("K13").parts)]
+    with pytest.raises(ClaimError, match="every deciding part that takes runs needs confirm.sweep"):
+        repository.register(replace(read_claim("K13"), parts=tuple(half)))
+    path = repository.root / f"claims/confirmation/{NAME}.json"
+    data = json.loads(path.read_text())
+    data["axes"][0]["cases"] = data["axes"][0]["cases"][:21]
+    path.write_text(json.dumps(data))
+    with pytest.raises(ClaimError, match="7 scenes; a confirmation has at least 8"):
+        repository.register()
+    assert not (repository.root / FILE).exists()
+    assert registry.state(CLAIM, repository.run(), {}, repository.root).why == "not registered before shells_modes was run"
+
+
+def test_the_verb_refuses_a_claim_that_calls_itself_confirmed(monkeypatch, capsys):
+    entry = {"date": "2026-12-01", "rule": {"parts": [], "statistics": {}}, "sweeps": {}}
+    entry["rule_sha256"] = registry.sha_of(entry["rule"])
+    monkeypatch.setattr(registry, "read", lambda: {"K12": entry})
+    monkeypatch.setattr(verb, "write_all", lambda table, asker: None)
+    assert verb.main(["K12", "--no-run"]) == 2
+    said = capsys.readouterr()
+    assert "K12 calls itself confirmed and is not: claims/K12.json: the rule is another than the one registered on 2026-12-01" in said.err and "confirmed: refused" in said.out
+    assert verb.main(["K2", "--no-run"]) == 0
+    assert verb.main(["--register"]) == 2 and "--register needs the claims" in capsys.readouterr().err

@@ -1,0 +1,61 @@
+"""Pages and the figure: kinds side by side, scenes beside the mean, exploratory beside confirmed."""
+
+import csv
+from dataclasses import replace
+
+from made import runs
+
+from analysis.claims import figure, report
+from analysis.claims.entry import read_claim
+from analysis.claims.judge import Answer
+from analysis.claims.numbers import level, ratio, slope
+from analysis.claims.outcomes import outcomes
+from analysis.claims.registry import State
+from analysis.claims.table import Table
+from analysis.claims.verdict import Judged, together
+
+OF = {"a": 18.0, "b": 20.0, "c": 25.0}
+
+
+def judged(rule, function, **part):
+    made = runs(lambda s, lv, c, k: {"newton": OF[s] * float(lv) if c == "x" else 10.0})
+    found = function({"says": rule, "sweep": "s", "metric": "newton", "case": "x", "over": "y", **part}, made)
+    found.rule, found.says = rule, rule
+    return found
+
+
+def answers():
+    parts = {"K3": judged("ratio", ratio, above=1), "K17": judged("slope", slope, above=0.5), "H2": judged("level", level, above=0.5), "K4": judged("outcomes", outcomes, needs="more"),
+             "H8": Judged("holds", says="law", value=2.0, lower=1.0, upper=9.0, extremes=True, proof=True)}
+    return [Answer(replace(read_claim(name), frontier={}), together([part]), [part]) for name, part in parts.items()]
+
+
+def test_panels_by_kind_of_number(tmp_path):
+    drawn = figure.draw(answers(), tmp_path / "claims")
+    rows = {row["claim"]: row for row in csv.DictReader((tmp_path / "claims.csv").read_text().split("\n"))}
+    assert {claim: row["panel"] for claim, row in rows.items()} == {"K3": "ratio", "K17": "slope", "H2": "share", "K4": "share", "H8": "closed form"}
+    assert len(rows["K3"]["scenes"].split()) == 3 and rows["K4"]["scenes"] == "" and (tmp_path / "claims.png") in drawn
+    assert "Light dots below: the scenes" in (tmp_path / "claims.txt").read_text().replace("\n", " ")
+
+
+def test_scatter_slice_and_starts_stand_in_the_text():
+    a = answers()[0]
+    a.parts[0].slice, a.parts[0].sweep = "theta 0.1, limit off", "s"
+    page = report.markdown([a], Table())
+    assert "Slice: theta 0.1, limit off. Samples: 3 scenes; up to 5 starts at each of 9 places, intraclass correlation 1.0000." in page
+    assert "a 3.6 (1.8 to 7.2 at 3, n = 15)" in page and "Kind: runs." in page and "exploratory: 3 changes after numbers were seen" in page
+
+
+def test_exploratory_and_confirmed_side_by_side():
+    for state, confirmed, word in ((State(), None, "-"), (State("registered, not run", "why"), None, "registered, not run"), (State("refused", "why"), None, "refused"),
+                                   (State("verified", "why", True), Judged("does not hold"), "does not hold")):
+        a = answers()[0]
+        a.state, a.confirmed = state, confirmed
+        line = report.verdict_table([a])[2]
+        assert line.split(" | ")[2:5] == ["runs", "holds", word], line
+    assert report.verdict_table(answers()[-1:])[2].split(" | ")[4] == "closed form"
+
+
+def test_one_scene_has_no_interval():
+    alone = ratio({"says": "", "sweep": "s", "metric": "newton", "case": "x", "over": "y", "above": 1}, runs(lambda s, lv, c, k: {"newton": 2.0 if c == "x" else 1.0}, scenes=("a",)))
+    assert report.interval(alone) == "2 (one scene: no interval)"

@@ -1,0 +1,132 @@
+"""The verb gap-map: its spec, a real map of one tiny scene, and what it refuses."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+from barrierbench_analysis.gap_map import entry, report, table
+from barrierbench_analysis.gap_map.spec import GapMapError, cells, limit_settings, make_sweep, quick, read_spec
+
+ROOT = Path(__file__).resolve().parents[2]
+
+SHIPPED = ROOT / "configs" / "gap_map" / "default.json"
+
+
+def small(tmp_path, **edits):
+    """A scene of one resting triangle, whose gap and load are known."""
+    spec = {"schema": "barrierbench.gap_map/1", "name": "small", "doc": "one block", "base": str(ROOT / "configs/scenes/hang.json"), "set": {},
+            "shapes": [{"label": name, "shape": shape, "argument": argument} for name, shape, argument in (
+                ("log", "log", "gap"), ("cubic", "cubic", "gap"), ("cubic_of_square", "cubic", "squared_gap"))],
+            "main": ["log", "cubic"], "gaps": [0.5, 0.1], "limits": ["off"],
+            "scenes": [{"label": "block", "obstacle": "analytic", "set": {"/scene": {"name": "resting_block_1d"}, "/time/steps": 60},
+                        "resolutions": {"1": {"unknowns": 9, "set": {"/scene/mass_kg": 0.3}}}}],
+            "quick": {"scenes": {"block": ["1"]}, "shapes": ["log", "cubic"], "gaps": [0.5], "limits": ["off"]}} | edits
+    file = tmp_path / "small.json"
+    file.write_text(json.dumps(spec))
+    return file
+
+
+def test_the_shipped_map_has_what_was_asked_for():
+    spec = read_spec(SHIPPED)
+    assert len(spec.scenes) >= 6 and any(s.obstacle == "mesh" for s in spec.scenes) and len(spec.shapes) >= 7 and len(spec.gaps) == 8 and set(spec.limits) == {"on", "contact", "off"}
+    assert all(len(s.resolutions) == 4 for s in spec.scenes) and 4000 < max(n for s in spec.scenes for n in s.unknowns.values()) <= 5000
+    part = quick(spec)
+    assert {c.label for c in cells(part)} < {c.label for c in cells(spec)} and len(cells(part)) <= 260 and {"on", "off"} <= set(part.limits)
+    first, same = ([c for c in cells(s) if (c.scene, c.resolution) == ("cloth", "8")] for s in (spec, part))
+    assert entry.folder_of(spec, tmp := SHIPPED, first) == entry.folder_of(part, tmp, same)  # a quick map's records are part of the whole
+    assert len(make_sweep(spec, first).notes) == len(first)
+
+
+def test_a_limit_that_is_the_same_in_every_run_undoes_theta():
+    assert limit_settings("contact", "cubic", "gap", 0.1)["/strain_limit/stiffness_policy"]["scale"] == pytest.approx(1)
+    deep = limit_settings("contact", "cubic", "gap", 0.01)
+    assert deep["/strain_limit/shape"] == "log" and deep["/strain_limit/stiffness_policy"]["scale"] == pytest.approx(8.75, rel=0.01)
+    assert limit_settings("off", "cubic", "gap", 0.01) == {"/strain_limit/enabled": False} and limit_settings("on", "cubic", "gap", 0.01)["/strain_limit/shape"] == "cubic"
+
+
+@pytest.mark.parametrize("edit, words", [({"gaps": [0.1, 0.5]}, "gaps"), ({"gaps": [0.5, 0.0]}, "gaps"), ({"limits": ["of"]}, "on, contact, off"), ({"main": ["cubic"]}, "main"),
+                                         ({"base": "nowhere.json"}, "base"), ({"extra": 1}, "extra"), ({"scenes": [{"label": "x"}]}, "obstacle"), ({"quick": {}}, "")])
+def test_a_bad_spec_is_refused_with_its_place(tmp_path, edit, words):
+    file = small(tmp_path, **edit)
+    with pytest.raises(GapMapError, match=re.escape(str(file)) + f".*{words}"):
+        quick(read_spec(file))
+
+
+@pytest.fixture(scope="module")
+def real(program, tmp_path_factory):
+    """A map of real runs, made once."""
+    folder = tmp_path_factory.mktemp("map")
+    file = small(folder)
+    patch = pytest.MonkeyPatch()
+    patch.setenv("BARRIERBENCH_PROGRAM", program)
+    words = [str(file), "--runs", str(folder / "runs"), "--results", str(folder / "out")]
+    assert entry.main(words) == 0
+    yield folder, words
+    patch.undo()
+
+
+def test_a_block_rests_at_its_target_and_a_theta_beyond_the_peak_is_named(real):
+    folder, _ = real
+    found = {(r["shape"], r["theta"]): r for r in table.read(folder / "out/gap_map.json").rows}
+    for shape in ("log", "cubic"):
+        for theta in (0.5, 0.1):  # matched to the impact, which is more than the weight: the rest is farther off
+            row = found[shape, theta]
+            assert row["outcome"] == "ok" and theta < row["gap"] < 6 * theta and row["unknowns"] == 9 and row["cond_end"] >= row["nc_end"] > 0
+        assert found[shape, 0.1]["gap"] < found[shape, 0.5]["gap"]
+    assert found["log", 0.1]["gap"] < found["cubic", 0.1]["gap"]  # a bounded force is spent on the impact
+    assert found["cubic", 0.1]["rho"] == pytest.approx(2 / (1 - found["cubic", 0.1]["gap"]), rel=1e-4)
+    beyond = found["cubic_of_square", 0.1]
+    assert beyond["outcome"] == "cannot reach" and beyond["gap"] is None and beyond["run"] is None
+    assert found["cubic_of_square", 0.5]["outcome"] == "ok"
+    page = (folder / "out/GAP_MAP.md").read_text()
+    assert "| `cubic_of_square` | no strain limit | 0.1 | cannot reach 1 |" in page and "not run" in page
+    assert all((folder / "out" / name).is_file() for name in ("gap_map.png", "gap_law.png", "gap_map_more.png", "gap_map.txt"))
+
+
+def test_page_and_figures_come_from_the_kept_numbers_alone(real, tmp_path):
+    folder, _ = real
+    page = (folder / "out/GAP_MAP.md").read_text()
+    kept = table.read(folder / "out/gap_map.json")
+    assert report.markdown(kept) == page
+    table.write(kept, tmp_path / "again.json")
+    assert (tmp_path / "again.json").read_text() == (folder / "out/gap_map.json").read_text()
+
+
+def test_finished_runs_are_not_made_again_and_missing_ones_are_named(real, monkeypatch, tmp_path):
+    folder, words = real
+    before = {path: path.stat().st_mtime_ns for path in (folder / "runs").rglob("run.json")}
+    assert before and entry.main(words) == 0 and {path: path.stat().st_mtime_ns for path in (folder / "runs").rglob("run.json")} == before
+    gone = next(path for path in before if "theta0.1" in json.loads(path.read_text())["labels"]["note"])
+    label = json.loads(gone.read_text())["labels"]["note"]
+    kept = gone.read_text()
+    gone.unlink()
+    try:
+        assert entry.main([*words, "--no-run"]) == 0
+        missing = [r for r in table.read(folder / "out/gap_map.json").rows if r["outcome"] == "not run"]
+        assert len(missing) == 1 and f"{missing[0]['shape']} off theta{missing[0]['theta']:g}" in label and missing[0]["gap"] is None
+    finally:
+        gone.write_text(kept)
+        assert entry.main([*words, "--no-run"]) == 0
+
+
+def test_numbers_of_another_spec_and_records_of_other_settings_are_refused(real, tmp_path, capsys):
+    folder, words = real
+    other = small(tmp_path, doc="another")
+    assert entry.main([str(other), "--no-run", "--runs", str(tmp_path / "none"), "--results", str(folder / "out")]) == 2 and "another" in capsys.readouterr().err
+    swapped = json.loads(small(tmp_path).read_text())
+    swapped["shapes"][1]["shape"] = "quadratic"
+    (tmp_path / "swapped.json").write_text(json.dumps(swapped))
+    assert entry.main([str(tmp_path / "swapped.json"), "--no-run", "--runs", str(folder / "runs"), "--results", str(tmp_path)]) == 2
+    assert "asks for" in capsys.readouterr().err
+    sized = json.loads(small(tmp_path).read_text())
+    sized["scenes"][0]["resolutions"]["1"]["unknowns"] = 12
+    (tmp_path / "sized.json").write_text(json.dumps(sized))
+    assert entry.main([str(tmp_path / "sized.json"), "--no-run", "--runs", str(folder / "runs"), "--results", str(tmp_path)]) == 2
+    assert "its runs have 9" in capsys.readouterr().err
+
+
+def test_a_plan_runs_nothing(real, capsys):
+    folder, words = real
+    assert entry.main([*words, "--plan"]) == 0
+    assert re.search(r"all +: 5 runs, 5 there", capsys.readouterr().out)
