@@ -22,16 +22,15 @@ struct Exponential {
   /// Requires d_hat > 0 (m) and an allowed exponent a; total.
   template <class T>
   BB_HD static ShapeTerms<T> eval(T d, T d_hat, T a = T(default_exponent)) {
-    using std::exp;
     if (d >= d_hat) return {T(0), T(0), T(0)};
-    const T t = a * NormalizedGap<T>(d, d_hat).e, at_d_hat = exp(-a);
+    const T t = a * NormalizedGap<T>(d, d_hat).e, at_d_hat = T(std::exp(double(-a)));
     T p1, p2, p3;
     if (t < T(1)) {
       p3 = third_remainder(t);
       p2 = p3 + T(0.5) * (t * t);
       p1 = p2 + t;
     } else {
-      p1 = exp(t) - T(1);
+      p1 = T(std::exp(double(t))) - T(1);  // in double: the exp of float is an approximation on a card
       p2 = p1 - t;
       p3 = p2 - T(0.5) * (t * t);
     }

@@ -119,10 +119,16 @@ class LineSearch final : public StepSolver {
     system.aim_at_escape(length);
     const double slope = std::min(0.0, system.direction_size().slope_J),
                  curvature = system.direction_curvature();
-    if (!(curvature < 0)) return false;
+    if (curvature < 0 && leave(system, report, slope, curvature, tolerance / length)) return true;
+    system.restore_direction();
+    return false;
+  }
+
+  // Lengths are parts of that of the escape.
+  bool leave(StepSystem& system, IterationReport& report, double slope, double curvature, double least) {
     system.prepare_motion(MotionEnd::on_target, true);
     bound_ = system.bound_motion(report);
-    for (double alpha = bound_ < 1 ? cap_fraction_ * bound_ : 1; alpha * length > tolerance; alpha /= 2) {
+    for (double alpha = bound_ < 1 ? cap_fraction_ * bound_ : 1; alpha > least; alpha /= 2) {
       ++report.line_search_trials;
       const auto change = system.try_motion(alpha);
       const double modelled = alpha * slope + alpha * alpha * curvature / 2;
@@ -169,7 +175,7 @@ class LineSearch final : public StepSolver {
       report.detours = 1;
       return true;
     }
-    system.drop_detour();
+    system.restore_direction();
     bound_again(system, report);
     return false;
   }

@@ -152,6 +152,7 @@ EndCheck NewtonSystem::check_end() {
 
 void NewtonSystem::aim_at_escape(double length) {
   const double slope = gradient_.cwiseProduct(escape_).sum(), largest = escape_.cwiseAbs().maxCoeff();
+  straight_ = dx_;
   dx_ = escape_ * ((slope > 0 ? -length : length) / largest);
 }
 

@@ -101,7 +101,7 @@ class NewtonSystem final : public StepSystem {
   void prepare_motion(MotionEnd end, bool to_bound) override;
   double bound_motion(IterationReport& report) override { return bound(motion_end_, dx_, report); }
   bool make_detour(double bound, SolveReport& report) override;
-  void drop_detour() override { dx_.swap(straight_); }
+  void restore_direction() override { dx_.swap(straight_); }
   std::optional<EnergyChange> try_motion(double alpha) override;
   const Positions& x_before() const override { return trial_; }
   const Positions& target() const { return target_; }
@@ -215,7 +215,7 @@ class NewtonSystem final : public StepSystem {
   StepFrame frame_;
   Positions x_, trial_;
   Positions target_, dx_, motion_end_, moved_;
-  Positions straight_;               // dx before its detour
+  Positions straight_;               // dx before its detour or an escape
   Positions escape_;                 // a direction of negative curvature at the iterate
   ReducedSystem examined_;           // the matrix that check_end() asks about
   MotionEnd end_ = MotionEnd::free;  // of the motion in progress

@@ -96,8 +96,8 @@ class StepSystem {
   /// Of a direction that contact ends at `bound`, prescribed vertices at their target: where curved gaps hold it, dx gets
   /// a second-order correction from the matrix that was solved, and becomes another motion. False: it stays.
   virtual bool make_detour(double /*bound*/, SolveReport& /*report*/) { return false; }
-  /// dx as it was before make_detour().
-  virtual void drop_detour() {}
+  /// dx as it was before make_detour() or aim_at_escape().
+  virtual void restore_direction() = 0;
   /// What held the last bound; empty where nothing did.
   virtual std::string describe_bound() const = 0;
   /// Evaluates E at x + alpha dx. Returns the change against the iterate; an infeasible state has none.

@@ -124,7 +124,10 @@ TEST(Settings, AMisspeltWordSuggestsTheNearest) {
   int n = 0;
   for (const Place& place : all_places()) {
     if (place.row.rule.kind != Kind::word || place.row.rule.words().size() < 2) continue;
-    const std::string right = place.row.rule.words().back(), wrong = right + "_";
+    // the last word that is a name; one with a number in it, as exponential:A, is refused by what it allows
+    std::vector<std::string> names = place.row.rule.words();
+    std::erase_if(names, [](const std::string& word) { return word.find(':') != std::string::npos; });
+    const std::string right = names.back(), wrong = right + "_";
     const std::string all = allowed_text(place.row.rule);
     expect_refused(with(place.config, place.pointer, wrong), place.pointer, '"' + wrong + '"',
                    all + " (did you mean " + right + "?)");

@@ -73,8 +73,8 @@ class ScriptedSystem final : public StepSystem {
   void prepare_motion(MotionEnd, bool) override {}
   double bound_motion(IterationReport&) override { return escaping_ ? now().escape_bound : now().bound; }
   // of a detour, where a system has one: there is none
-  bool make_detour(double, SolveReport&) { return false; }
-  void drop_detour() {}
+  bool make_detour(double, SolveReport&) override { return false; }
+  void restore_direction() override { escaping_ = false; }
   std::string describe_bound() const override { return "the script"; }
   Change try_motion(double alpha) override {
     tried.push_back(alpha);

@@ -67,6 +67,17 @@ TEST(EscapeDecisions, AreNotTriedWithoutNegativeCurvature) {
   EXPECT_EQ(escaped(saddle(-1e-30, at_one(-1e6))), 1);
 }
 
+/// The search that follows goes along Newton's direction, and not along that of the escape, d_hat long.
+TEST(EscapeDecisions, LeaveNewtonsDirectionWhereTheyFail) {
+  for (const double curvature : {0.0, -2.0}) {
+    const ScriptedStep step(saddle(curvature, at_one(-0.05)), SaddleRule::escape, 0.1, 2);
+    ASSERT_EQ(step.iterations[0].escapes, 0);
+    EXPECT_NE(step.iterations[0].energy_change_J, -0.05) << "refused as an escape, taken as Newton's step";
+    EXPECT_EQ(step.report.end_proof, EndProof::saddle);
+    EXPECT_EQ(step.report.newton_iterations, 1);
+  }
+}
+
 TEST(EscapeDecisions, AFallWithinRoundingIsNone) {
   constexpr double noise = 64 * std::numeric_limits<double>::epsilon();
   EXPECT_EQ(escaped(saddle(-1e-16, at_one(-0.99 * noise, 1))), 0);
@@ -83,8 +94,9 @@ TEST(EscapeDecisions, KeepToTheBoundAndToFeasibleStatesDownToTheTolerance) {
   ASSERT_GE(asked.size(), 2U);
   EXPECT_EQ(asked[0], 0.4);  // cap_fraction of the bound
   EXPECT_EQ(asked[1], 0.2);
-  EXPECT_GT(asked.back() * 0.01, tol);  // d_hat is 0.01 m
-  EXPECT_LE(asked.back() * 0.01 / 2, tol);
+  const auto next = std::find(asked.begin() + 1, asked.end(), 0.4);  // of the search that follows
+  EXPECT_GT(next[-1] * 0.01, tol);                                   // d_hat is 0.01 m
+  EXPECT_LE(next[-1] * 0.01 / 2, tol);
   asked.clear();
   EXPECT_EQ(escaped(saddle(-1, never)), 0);
   EXPECT_EQ(asked[0], 1);

@@ -159,7 +159,7 @@ TEST(ResidentLimit, LiteralAndSquaredGapAreThoseOfTheCpu) {
           << shape << literal;
     }
   }
-  EXPECT_EQ(n_beyond, 5);
+  EXPECT_EQ(n_beyond, 6);
 }
 
 TEST(ResidentLimit, IsLeftOutWhereNothingIsLimited) {

@@ -224,7 +224,7 @@ EndCheck ResidentSystem::check_end() {
 
 void ResidentSystem::aim_at_escape(double length) {
   const double slope = vectors_.free_dot(g_, escape_).value(), largest = vectors_.free_max(escape_);
-  executor_->copy(dx_.data(), escape_.data(), static_cast<std::size_t>(dx_.size()) * sizeof(double));
+  dx_.swap(escape_);
   scale_direction((slope > 0 ? -length : length) / largest);
 }
 

@@ -49,7 +49,7 @@ class ResidentSystem final : public StepSystem {
   void prepare_motion(MotionEnd end, bool to_bound) override;
   double bound_motion(IterationReport& report) override;
   bool make_detour(double bound, SolveReport& report) override;
-  void drop_detour() override { dx_.swap(escape_); }
+  void restore_direction() override { dx_.swap(escape_); }
   std::string describe_bound() const override { return holder_; }
   std::optional<EnergyChange> try_motion(double alpha) override;
   void accept() override;
