@@ -34,7 +34,7 @@ std::vector<Rule> all_rules() {
   out.push_back({"log", fixed, 1e-13});
   out.push_back({"log_squared", fixed, 1e-12});
   out.push_back({"two_stage", fixed, 1e-13});
-  out.push_back({"exponential", fixed, 0});
+  out.push_back({"exponential", fixed, 1e-13});
   constexpr auto dropped = KappaDerivative::dropped;
   for (const MassTerm mass : {MassTerm::paper, MassTerm::inertia, MassTerm::scaled, MassTerm::none}) {
     out.push_back({"cubic", elastic(mass, true, Refresh::per_iteration, dropped), 0});
