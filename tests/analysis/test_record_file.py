@@ -116,6 +116,19 @@ def test_a_trace_of_another_run_and_one_that_is_named_and_gone_are_refused(tmp_p
         assert any(f"{name}/trace.jsonl" in line and why in line for line in found.unreadable), (name, found.unreadable)
 
 
+@pytest.mark.parametrize("version, bound", [("3.3.9", False), ("3.4.0", True), ("3.4.1", True), ("3.10.0", True)])
+def test_from_version_3_4_on_a_trace_is_read_only_where_its_record_names_it(folder, version, bound):
+    """A blank more in a line: the same iterations, so only the hash can tell."""
+    edit(folder, lambda record: record["schema"].update(version=version))
+    path = folder / "trace.jsonl"
+    path.write_text(path.read_text().replace("{", "{ ", 1))
+    if not bound:
+        assert len(read_trace(read_record(folder / "run.json"), folder)) == 6
+        return
+    with pytest.raises(RecordError, match="trace.jsonl: found sha256"):
+        read_trace(read_record(folder / "run.json"), folder)
+
+
 def test_a_number_that_is_none_in_an_old_trace_is_refused_with_its_line(folder):
     edit(folder, without_trace_hash)
     path = folder / "trace.jsonl"

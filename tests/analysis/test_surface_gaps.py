@@ -33,7 +33,7 @@ def test_every_run_has_a_row_and_the_smallest_gap_is_that_of_the_ok_ones(tmp_pat
     assert "3 runs, 2 ok; 1 of the ok ones with a gap, 1 without" in out and "smallest is 1 mm; 0 below 0" in out
 
 
-@pytest.mark.parametrize("gaps", [(-1e-6, None), (0.1, -1e-6)])
+@pytest.mark.parametrize("gaps", [(-1e-6, None), (0.1, -1e-6), (None, -1e-6), (-1e-6, 0.1)])
 def test_an_ok_run_in_an_obstacle_or_another_surface_is_told(tmp_path, capsys, gaps):
     _write(tmp_path, a=("ok", _audit(*gaps)), b=("ok", _audit(0.0, 0.0)))
     assert surface_gaps.main([str(tmp_path)]) == 1

@@ -42,9 +42,18 @@ def test_signs_and_shares():
     assert wilson(10, 10)[1] == pytest.approx(1) and wilson(10, 10)[0] == pytest.approx(0.722, abs=1e-3)
 
 
+def t_free_half_width(values) -> float:
+    """Half of the 95% interval of a mean of many values, 1.96 standard errors."""
+    middle = sum(values) / len(values)
+    return 1.96 * math.sqrt(sum((x - middle) ** 2 for x in values)) / len(values)
+
+
 def test_a_bootstrap_is_of_the_starts_of_one_path():
     low, high = interval({"": {"": [1.0, 2.0, 3.0, 4.0, 5.0]}}, False)
     assert 1.5 < low < 3 < high < 4.5
+    half = t_free_half_width(list(range(100)))
+    low, high = interval({"": {"": list(map(float, range(100)))}})
+    assert (low, high) == (pytest.approx(49.5 - half, abs=0.3), pytest.approx(49.5 + half, abs=0.3))  # an interval of 90% would be 0.9 narrower on each side
     with pytest.raises(ValueError, match="does not cover"):
         interval({"a": {"1": [1.0]}, "b": {"1": [2.0]}})
     with pytest.raises(ValueError, match="does not cover"):

@@ -136,10 +136,11 @@ def test_runs_that_failed_or_lack_the_number_do_not_count():
     assert judged.verdict == OPEN and "15 newton_stall" in judged.missing and "15 no newton" in judged.missing
 
 
-def test_equal_numbers_are_asked_for():
-    made = runs(lambda s, lv, c, k: {**twice(s, lv, c, k), "stretch": 0.02 if c == "x" or s != "a" else 0.01})
+@pytest.mark.parametrize("more", ["x", "y"])
+def test_equal_numbers_are_asked_for_whichever_run_has_more(more):
+    made = runs(lambda s, lv, c, k: {**twice(s, lv, c, k), "stretch": 0.01 if c != more and s == "a" else 0.02 if s == "a" or c == more else 0.0185})
     judged = ratio({**PART, "equal": {"metric": "stretch", "factor": 1.1}}, made)
-    assert judged.verdict == OPEN and "15 stretch differs by more than 1.1" in judged.missing
+    assert judged.verdict == OPEN and "15 stretch differs by more than 1.1" in judged.missing and "30 pairs count" in judged.missing
 
 
 def test_a_level():
@@ -161,6 +162,8 @@ def test_a_slope():
     half = slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1 * float(lv) ** 0.5}))
     assert (half.verdict, half.value, half.scenes) == (HOLDS, pytest.approx(0.5), 3)
     assert slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1})).verdict == NOT
+    uneven = slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1 * float(lv) ** 0.5}, levels=("3", "24", "1000")))  # a power law has one slope, wherever its levels are
+    assert uneven.value == pytest.approx(0.5) and uneven.per_scene[0][2:4] == (pytest.approx(0.5), pytest.approx(0.5))
     assert slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1 * float(lv)}, scenes=("a", "b"))).missing.startswith("indication")
     assert slope({**part, "scenes": ["a", "b"]}, runs(lambda s, lv, c, k: {"gap_end": 0.1 * float(lv)})).missing.startswith("indication")
 

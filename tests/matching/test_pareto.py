@@ -1,6 +1,7 @@
 """The verb `pareto`: specs, fronts of made-up records, the page, and one sweep of the real program."""
 
 import json
+import math
 import shutil
 from pathlib import Path
 
@@ -160,3 +161,9 @@ def test_the_real_program(program, monkeypatch, tmp_path, capsys):
     assert len(runs.rows) == 10 and gaps == sorted(gaps) and 0 < gaps[0] < 0.3 * gaps[-1]  # more stiffness, more gap
     assert {row["outcome"] for row in runs.of("block", "cubic") if row["scale"] < 1} == {"stall_overload"}  # above capacity
     assert all(row["newton"] and row["cond_p95"] and row["pcg_probe"] and row["seconds"] for row in runs.rows if row["outcome"] == "ok")
+
+
+def test_a_path_inside_another_ends_no_range():
+    """The log's path covers all gaps from 0.05 to 0.5; the cubic's short one begins later and ends earlier."""
+    within = rows(lambda f, s, k: {"gap": 0.05 * 10 ** ((math.log10(s) + 2) / 4)} if f == "log" else {"gap": 0.2 * 1.1 ** math.log10(s)})
+    assert [(pytest.approx(low), pytest.approx(high)) for low, high in unreached(within, "a")] == [(0, 0.05), (0.5, 1)]

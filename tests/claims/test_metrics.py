@@ -1,0 +1,42 @@
+"""Every metric reads the number that it names: a record in which no two numbers are alike."""
+
+import pytest
+
+from analysis.claims.metrics import METRICS
+
+MATRICES = ("full/none", "full/block_jacobi", "without_contact/none", "without_contact_and_limit/none")
+
+
+def record() -> dict:
+    cond = {matrix: {"log10_cond": {"median": 1.0 + k, "p95": 5.0 + 0.125 * k, "max": 9.0 + 0.25 * k}} for k, matrix in enumerate(MATRICES)}
+    return {"status": {"outcome": "ok"},
+            "config": {"strain_limit": {"onset": 0.06, "width": 0.02}},
+            "steps": [{"gap_min_rel": 0.31}, {"gap_min_rel": 0.17}],
+            "summary": {"cond": cond, "probe_pcg": {"median": 37.0, "p95": 41.0}, "linear_per_solve": {"median": 43.0}, "newton_iterations": 20, "factorizations": 23,
+                        "wall_s": 29.0, "time": {"contact_terms_s": 7.0}, "gap_min_rel": {"min": 0.11, "median": 0.13, "max": 0.19}, "max_stretch": 0.04}}
+
+
+WANTED = {"cond_max": 1e9, "cond_p95": 1e5, "cond_median": 10.0, "cond_bj_p95": 10**5.125, "cond_bj_max": 10**9.25, "cond_bj_median": 100.0, "cond_no_contact_p95": 10**5.25,
+          "cond_no_contact_no_limit_p95": 10**5.375, "pcg_probe": 37.0, "pcg_solve": 43.0, "newton": 20.0, "factorizations": 23.0, "seconds": 29.0, "contact_seconds": 0.35,
+          "gap_min": 0.11, "gap_median": 0.13, "gap_end": 0.17, "stretch": 0.04, "stretch_of_limit": 0.5, "climb_of_limit": None, "kappa_cycles": None, "stopped": 0.0,
+          "unsettled": 0.0}
+
+
+def test_every_metric_has_its_number():
+    assert set(WANTED) == set(METRICS)
+    found = {name: metric[3](record()) for name, metric in METRICS.items()}
+    assert found == {name: None if value is None else pytest.approx(value) for name, value in WANTED.items()}
+
+
+@pytest.mark.parametrize("missing", ["onset", "width", "max_stretch"])
+def test_a_share_of_the_limit_needs_all_three_numbers(missing):
+    less = record()
+    (less["summary"] if missing == "max_stretch" else less["config"]["strain_limit"]).pop(missing)
+    assert METRICS["stretch_of_limit"][3](less) is None
+
+
+def test_a_climb_has_shares_from_half_a_decade_on():
+    share, base = METRICS["climb_of_limit"][3], record()
+    for full, wanted in ((5.874, None), (5.876, pytest.approx((5.25 - 5.375) / (5.876 - 5.375)))):
+        base["summary"]["cond"]["full/none"]["log10_cond"]["p95"] = full
+        assert share(base) == wanted
