@@ -73,5 +73,54 @@ TEST(AuditWatch, GapsHaveTheirThicknessTakenOffAndOnlyConvergedEndsCount) {
   EXPECT_STREQ(step.surface_gap_between_m.status, "none_within_d_hat");
 }
 
+/// An attempt at a step that failed: the next one starts where the step did, and what was found on the way of the first
+/// is no part of the run.
+TEST(AuditWatch, AfterAFailedAttemptTheMotionStartsWhereTheStepDid) {
+  const Scene scene = sheet_over_ball();
+  AuditRecord record;
+  AuditWatch watch(scene, 0.01, 0.1, record);
+  const auto lower = [&](double by) {
+    Positions x = scene.x0;
+    x.row(2).array() -= by;
+    return x;
+  };
+  StepRecord step = converged();
+  watch.on_motion(scene.x0, lower(0.001), 0);
+  watch.on_step(lower(0.001), step);
+  watch.on_motion(lower(0.001), lower(0.05), 1);  // through the ball, and given up
+  watch.on_retry();
+  watch.on_motion(lower(0.001), lower(0.002), 1);
+  watch.on_motion(lower(0.002), lower(0.003), 1);
+  step = converged();
+  watch.on_step(lower(0.003), step);
+  EXPECT_EQ(watch.verdict().outcome, Outcome::ok) << watch.verdict().detail;
+  EXPECT_EQ(step.violations, 0);
+  EXPECT_EQ(record.motions, 3);
+  EXPECT_EQ(record.states, 4);
+
+  // from the end of the attempt that failed, where no motion of the run led to
+  watch.on_motion(lower(0.003), lower(0.004), 2);
+  watch.on_retry();
+  watch.on_motion(lower(0.004), lower(0.005), 2);
+  EXPECT_EQ(watch.verdict().outcome, Outcome::unproven);
+  EXPECT_NE(watch.verdict().detail.find("no judged motion"), std::string::npos) << watch.verdict().detail;
+}
+
+/// The first attempt of the first step: the start is the state that it goes back to.
+TEST(AuditWatch, AFailedFirstAttemptGoesBackToTheStart) {
+  const Scene scene = sheet_over_ball();
+  AuditRecord record;
+  AuditWatch watch(scene, 0.01, 0.1, record);
+  Positions x = scene.x0;
+  x.row(2).array() -= 0.05;
+  watch.on_motion(scene.x0, x, 0);
+  watch.on_retry();
+  StepRecord step = converged();
+  watch.on_step(scene.x0, step);
+  EXPECT_EQ(watch.verdict().outcome, Outcome::ok) << watch.verdict().detail;
+  EXPECT_EQ(record.motions, 0);
+  EXPECT_EQ(record.states, 1);
+}
+
 }  // namespace
 }  // namespace bb

@@ -112,6 +112,29 @@ TEST(ContactGaps, AStepCountsWithItsLength) {
   EXPECT_DOUBLE_EQ(whole.summary().at("one|two").gap_rel_p05, parts.summary().at("one|two").gap_rel_p05);
 }
 
+/// Contacts of a pair add up in its load, and touch at one time: a pair of many has load in no more time than one of one.
+TEST(ContactGaps, TheTimeOfAPairIsThatOfItsStepsHoweverManyContactsItHas) {
+  const Scene scene = two_and_two();
+  const ContactLoad one = {between, 0.2, 3}, other = {between, 0.3, 1},
+                    floor = {obstacle_key(0, std::array{0}), 0.4, 2};
+  ContactGaps gaps(scene);
+  gaps.add({one, other, floor, one}, 0.25);
+  gaps.add({floor, other, one, other, other}, 0.25);
+  gaps.add({}, 0.5);
+  const GapMap found = gaps.summary();
+  ASSERT_EQ(found.size(), 2U);
+  EXPECT_DOUBLE_EQ(found.at("one|two").time_share, 0.5);
+  EXPECT_DOUBLE_EQ(found.at("floor|one").time_share, 0.5);
+  EXPECT_DOUBLE_EQ(found.at("one|two").load_N, 0.25 * (7 + 6));
+  EXPECT_DOUBLE_EQ(found.at("floor|one").load_N, 0.25 * 4);
+  double shares = 0;
+  for (const auto& [name, pair] : found) {
+    EXPECT_LE(pair.time_share, 1) << name;
+    shares += pair.load_share;
+  }
+  EXPECT_DOUBLE_EQ(shares, 1);
+}
+
 TEST(ContactGaps, ACheckpointKeepsThem) {
   const Scene scene = two_and_two();
   ContactGaps whole(scene), begun(scene), rest(scene);

@@ -81,6 +81,31 @@ TEST(StartCheck, GivenMotionsAreFollowedAsFarAsTheRunGoes) {
   EXPECT_NE(found->detail.find("sheet["), std::string::npos) << found->detail;
 }
 
+/// One given body alone, which an obstacle is in the way of, or which moves away from it.
+TEST(StartCheck, AGivenBodyThatIsDrivenIntoAnObstacleIsRefused) {
+  const auto driven = [](double speed, const std::string& obstacles) {
+    const RunConfig config = config_of(
+        fmt::format(
+            R"({{"name": "ball", "kind": "rigid", "mesh": {{"generator": "icosphere", "level": 1, "radius_m": 0.1}},
+              "transform": {{"translate_m": [0, 0, 0.25]}}, "motion": {{"velocity_m_per_s": [0, 0, {}]}}}})",
+            speed),
+        20);
+    const std::vector<std::string> set = {"/scene/obstacles=" + obstacles};
+    return failure(parse_config(resolved_json(config), "test", ".", set));
+  };
+  constexpr const char* floor = R"([{"name": "floor", "kind": "plane", "axis": [0, 0, 1]}])";
+  const auto found = driven(-1, floor);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->outcome, Outcome::invalid_scene);
+  EXPECT_NE(found->detail.find("ball["), std::string::npos) << found->detail;
+  EXPECT_NE(found->detail.find("floor"), std::string::npos) << found->detail;
+  EXPECT_FALSE(driven(1, floor)) << "it rises";
+  EXPECT_FALSE(driven(-0.7, floor)) << "it stops 1 cm above the floor";
+  EXPECT_TRUE(driven(-0.95, floor)) << "it goes 4 cm into the floor";
+  EXPECT_FALSE(driven(0, floor)) << "it stays";
+  EXPECT_FALSE(driven(-1, "[]")) << "nothing is in its way";
+}
+
 TEST(StartCheck, ATimeLimitEndsItAndSaysWhere) {
   const RunConfig turning = config_of(
       R"({"name": "ball", "kind": "rigid", "mesh": {"generator": "icosphere", "level": 1, "radius_m": 0.1},

@@ -24,13 +24,22 @@ struct ScriptedIteration {
   double escape_slope = 0, escape_curvature = -1, escape_bound = 1;
   std::function<Change(double)> escape_change = nullptr;  // empty: none is feasible
   bool at_target = true;
+  double curvature = -1;    // that the check of the end finds at a saddle, N/m
+  double detour_bound = 0;  // of the direction round curved gaps; 0: there is none
+};
+
+/// What the system says of itself in every iteration.
+struct ScriptedState {
+  Precision precision = Precision::full;
+  Positions x = one_point(0, 0, 1);
+  std::vector<std::uint8_t> fixed = {0, 0, 0};
 };
 
 /// Runs through its iterations; the last one is repeated.
 class ScriptedSystem final : public StepSystem {
  public:
-  explicit ScriptedSystem(std::vector<ScriptedIteration> script)
-      : script_(std::move(script)), scene_(particle_over_plane(1, 1, 0.01)), fixed_(3, 0) {}
+  explicit ScriptedSystem(std::vector<ScriptedIteration> script, ScriptedState state = {})
+      : script_(std::move(script)), scene_(particle_over_plane(1, 1, 0.01)), state_(std::move(state)) {}
 
   std::vector<double> tried;  // every alpha, in the order of trials
   std::vector<double> aimed;  // lengths of escapes
@@ -46,7 +55,7 @@ class ScriptedSystem final : public StepSystem {
   void drop_caches() override {}
   void assemble() override {
     if (place_ + 1 < static_cast<int>(script_.size())) ++place_;
-    escaping_ = false;
+    escaping_ = detouring_ = false;
   }
   double add_tikhonov(double, double) override { return 0; }
   SolveReport find_direction() override {
@@ -63,7 +72,7 @@ class ScriptedSystem final : public StepSystem {
   double direction_curvature() override { return now().escape_curvature; }
   EndCheck check_end() override {
     ++checks;
-    return {now().end, -1, 0, 0};
+    return {now().end, now().end == EndProof::saddle ? now().curvature : 0, 0, 0};
   }
   void aim_at_escape(double length) override {
     aimed.push_back(length);
@@ -71,10 +80,12 @@ class ScriptedSystem final : public StepSystem {
   }
   bool solved_is_exact() const override { return true; }
   void prepare_motion(MotionEnd, bool) override {}
-  double bound_motion(IterationReport&) override { return escaping_ ? now().escape_bound : now().bound; }
-  // of a detour, where a system has one: there is none
-  bool make_detour(double, SolveReport&) override { return false; }
-  void restore_direction() override { escaping_ = false; }
+  double bound_motion(IterationReport&) override {
+    if (detouring_) return now().detour_bound;
+    return escaping_ ? now().escape_bound : now().bound;
+  }
+  bool make_detour(double, SolveReport&) override { return detouring_ = now().detour_bound > 0; }
+  void restore_direction() override { escaping_ = detouring_ = false; }
   std::string describe_bound() const override { return "the script"; }
   Change try_motion(double alpha) override {
     tried.push_back(alpha);
@@ -85,13 +96,13 @@ class ScriptedSystem final : public StepSystem {
   }
   void accept() override {
     ++accepted;
-    escaping_ = false;
+    escaping_ = detouring_ = false;
   }
 
   const Scene& scene() const override { return scene_; }
-  Precision precision() const override { return Precision::full; }
-  const Positions& x() const override { return scene_.x0; }
-  const Positions& x_before() const override { return scene_.x0; }
+  Precision precision() const override { return state_.precision; }
+  const Positions& x() const override { return state_.x; }
+  const Positions& x_before() const override { return state_.x; }
   const Positions& gradient() const override { return scene_.v0; }
   double grad_inf() const override { return 1; }
   double energy() const override { return 1; }
@@ -99,7 +110,7 @@ class ScriptedSystem final : public StepSystem {
   bool pattern_changed() const override { return false; }
   int n_free() const override { return 3; }
   std::size_t nnz() const override { return 6; }
-  const std::vector<std::uint8_t>& fixed() const override { return fixed_; }
+  const std::vector<std::uint8_t>& fixed() const override { return state_.fixed; }
   void report(IterateNumbers&) const override {}
   void report_end(StepNumbers&) const override {}
   void report_overload(bool, StepNumbers&) override {}
@@ -111,9 +122,9 @@ class ScriptedSystem final : public StepSystem {
 
   std::vector<ScriptedIteration> script_;
   Scene scene_;
-  std::vector<std::uint8_t> fixed_;
+  ScriptedState state_;
   int place_ = -1;
-  bool escaping_ = false;
+  bool escaping_ = false, detouring_ = false;
 };
 
 /// A step of line_search on a script: what it reports of the step and of every iteration. Tolerance 1e-3 m.
@@ -121,8 +132,8 @@ struct ScriptedStep : private StepObserver {
   static constexpr double tolerance = 1e-3;
 
   explicit ScriptedStep(std::vector<ScriptedIteration> script, SaddleRule rule = SaddleRule::escape,
-                        double armijo = 0.1, int max_iterations = 40)
-      : system(std::move(script)) {
+                        double armijo = 0.1, int max_iterations = 40, ScriptedState state = {})
+      : system(std::move(script), std::move(state)) {
     StepSolverOptions options;
     options.max_iterations = max_iterations;
     options.tol_velocity = tolerance;
@@ -130,8 +141,8 @@ struct ScriptedStep : private StepObserver {
     options.parameters["armijo"] = armijo;
     const auto integrator = make_integrator("implicit_euler");
     History history;
-    history.x = history.x_prev = system.scene().x0;
-    history.v = history.a = history.v_prev = Positions::Zero(3, 1);
+    history.x = history.x_prev = system.x();
+    history.v = history.a = history.v_prev = Positions::Zero(3, system.x().cols());
     StepTask task{0, 1, 1, &history, integrator.get(), [](double, Positions&) {}};
     Prediction used;
     report = make_step_solver(options)->advance(system, task, used, *this);

@@ -121,5 +121,30 @@ TEST(ErrorEstimate, says_whether_directions_still_fall) {
   EXPECT_TRUE(after({1, 2, 3}).still_falling());  // too few to say
 }
 
+/// The smallest of the last ten against the smallest of all before them: one of either, wherever they stand.
+TEST(ErrorEstimate, says_that_directions_that_come_back_to_their_size_do_not_fall) {
+  std::vector<double> cycle;
+  for (int k = 0; k < 24; ++k) cycle.push_back(k % 3 == 0 ? 1 : 2);
+  EXPECT_FALSE(after(cycle).still_falling());
+  EXPECT_FALSE(after(std::vector<double>(11, 1.0)).still_falling());
+  for (std::size_t place = cycle.size() - 10; place < cycle.size(); ++place) {
+    std::vector<double> falling = cycle;
+    falling[place] = std::nextafter(1.0, 0.0);
+    EXPECT_TRUE(after(falling).still_falling()) << place;
+  }
+  std::vector<double> before = cycle;
+  before[cycle.size() - 11] = 0.5;  // smaller, but longer ago
+  EXPECT_FALSE(after(before).still_falling());
+}
+
+TEST(ErrorEstimate, needs_eleven_directions_to_say_that_they_do_not_fall) {
+  std::vector<double> growing;
+  for (int k = 0; k < 11; ++k) {
+    EXPECT_TRUE(growing.empty() || after(growing).still_falling()) << k;
+    growing.push_back(1 + k);
+  }
+  EXPECT_FALSE(after(growing).still_falling());
+}
+
 }  // namespace
 }  // namespace bb

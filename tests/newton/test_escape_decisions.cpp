@@ -136,6 +136,28 @@ TEST(EscapeDecisions, AreTakenTenTimesAStepAndThenItEndsInASaddle) {
   EXPECT_EQ(step.report.newton_iterations, 11);
 }
 
+/// Of all saddles that the step met, whichever came last; what is no saddle has no part in it.
+TEST(EscapeDecisions, LeaveTheSmallestCurvatureOfAllSaddlesInTheRecord) {
+  for (const std::vector<double>& met :
+       {std::vector<double>{-3, -1}, {-1, -3}, {-2, -3, -1}, {-3}, {-0.5, -3, -2, -1}}) {
+    std::vector<ScriptedIteration> script;
+    for (const double curvature : met) {
+      script.push_back(saddle(-2, at_one(-1))[0]);
+      script.back().curvature = curvature;
+    }
+    script.push_back({.dx = 1e-3 * tol, .slope = -1e-6});
+    const ScriptedStep step(script);
+    ASSERT_EQ(step.report.status, StepStatus::converged);
+    ASSERT_EQ(step.report.escapes, static_cast<int>(met.size()));
+    EXPECT_EQ(step.report.end_proof, EndProof::factor);  // of the end, which is none
+    EXPECT_EQ(step.report.saddle_curvature_N_per_m.value, -3);
+  }
+  const ScriptedStep none({{.dx = 1e-3 * tol, .slope = -1e-6}});
+  ASSERT_EQ(none.report.status, StepStatus::converged);
+  EXPECT_GT(none.system.checks, 0);
+  EXPECT_FALSE(none.report.saddle_curvature_N_per_m.finite());
+}
+
 /// Behind an escape nothing is known of the rate: one short direction alone proves no end.
 TEST(EscapeDecisions, LeaveNoRateOfConvergenceBehind) {
   auto script = saddle(-2, at_one(-1));

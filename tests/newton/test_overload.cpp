@@ -1,6 +1,7 @@
 // Load over capacity of one contact row, by hand: every number that enters is known.
 #include <gtest/gtest.h>
 
+#include "core/newton/iteration.hpp"
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
@@ -67,6 +68,56 @@ TEST(Overload, the_newton_model_asks_for_the_force_at_the_end_of_its_step) {
   EXPECT_NEAR(overload(scene, 1e9, dx), (force + slope * 0.1) / capacity, 1e-9);
   dx(2, 9) = 0.1;  // opens: only the weight is left, of which so stiff a row carries any
   EXPECT_LT(overload(scene, 1e9, dx), 1e-6);
+}
+
+/// A system at the start of a step from rest, on its way to a pose of the plate that is `rise` higher.
+struct Rising {
+  Scene scene = particle_over_a_plate();
+  Method method = test::fixed_method("cubic", 1e3);
+  NewtonSystem system{scene, method};
+
+  explicit Rising(double rise) {
+    Prediction at_rest;
+    at_rest.x_tilde = scene.x0;
+    system.begin_step(scene.x0, at_rest, dt, 1.0);
+    Positions target = scene.x0;
+    target.row(2).array() += rise;
+    system.set_target(target);
+    system.assemble();
+  }
+  StepReport measured(StepStatus status) {
+    StepReport out;
+    out.status = status;
+    measure_end(system, out);
+    return out;
+  }
+};
+
+constexpr StepStatus stalled[] = {StepStatus::iteration_cap, StepStatus::step_collapse,
+                                  StepStatus::line_search_failed, StepStatus::not_descent};
+
+/// What the barrier has to carry where the step got nowhere: pins stay where they are, wherever they were to go.
+TEST(Overload, of_a_step_without_progress_is_that_of_pins_that_stay) {
+  for (const StepStatus status : stalled) {
+    const double held = Rising(0).measured(status).contact_overload.value;
+    ASSERT_GT(held, 0.1);
+    for (const double rise : {0.001, 0.003, -0.002}) {
+      Rising rising(rise);
+      ASSERT_EQ(rising.system.find_direction().linear.status, LinearStatus::ok);
+      StepNumbers on_the_way;
+      rising.system.report_overload(true, on_the_way);
+      ASSERT_GT(std::abs(on_the_way.contact_overload.value - held), 0.1 * held) << "the motion is not felt";
+      EXPECT_DOUBLE_EQ(rising.measured(status).contact_overload.value, held) << to_string(status) << rise;
+    }
+  }
+}
+
+TEST(Overload, is_measured_only_where_a_step_got_nowhere) {
+  for (const StepStatus status : stalled) EXPECT_TRUE(Rising(0).measured(status).contact_overload.finite());
+  for (const StepStatus status : {StepStatus::converged, StepStatus::linear_failed, StepStatus::non_finite,
+                                  StepStatus::pin_infeasible}) {
+    EXPECT_FALSE(Rising(0).measured(status).contact_overload.finite()) << to_string(status);
+  }
 }
 
 TEST(Overload, an_unbounded_barrier_has_none) {

@@ -59,6 +59,67 @@ TEST(PolicyStart, is_once_a_run_with_the_sums_of_the_first_contacts) {
   EXPECT_EQ(heard[0].c, 0.25);
 }
 
+/// Bodies of unlike d_hat: the smallest of all, whether that body touches or not.
+TEST(PolicyStart, is_told_the_smallest_d_hat_of_the_scene) {
+  for (const std::size_t narrow : {0U, 1U, 2U}) {
+    Scene scene = three_particles();
+    scene.d_hat[narrow] = 0.75 * d_hat;
+    std::vector<StiffnessGlobals> heard;
+    Method method = test::fixed_method("quadratic", 1);
+    method.stiffness = std::make_unique<Balancing>(heard);
+    Simulation simulation(scene, method, dt, 1);
+    StepObserver nobody;
+    EXPECT_GT(simulation.step(nobody).contacts.obstacle, 0U);
+    ASSERT_EQ(heard.size(), 1U);
+    EXPECT_EQ(heard[0].d_hat, 0.75 * d_hat) << narrow;
+    EXPECT_EQ(heard[0].d2b_half, 2);
+  }
+}
+
+/// A step solver that is not asked to converge measures its end in a system of its own: for the policy that is no run.
+TEST(PolicyStart, is_not_repeated_where_the_end_of_a_step_is_measured) {
+  const Scene scene = three_particles();
+  std::vector<StiffnessGlobals> heard;
+  Method method = test::fixed_method("quadratic", 1);
+  method.stiffness = std::make_unique<Balancing>(heard);
+  method.step_solver.name = "accumulated_toi";
+  Simulation simulation(scene, method, dt, 3);
+  StepObserver nobody;
+  for (int i = 0; i < 3; ++i) {
+    const StepReport report = simulation.step(nobody);
+    ASSERT_EQ(report.status, StepStatus::converged);
+    ASSERT_GT(report.contacts.obstacle, 0U);
+    ASSERT_TRUE(report.end_error_m.finite());  // it was measured
+    EXPECT_EQ(heard.size(), 1U) << i;
+  }
+}
+
+/// The same of ipc_adaptive: its kappa after each step is its start times a power of two, and never falls.
+TEST(PolicyStart, of_ipc_adaptive_is_what_later_steps_go_on_from) {
+  const Scene scene = three_particles();
+  for (const char* solver : {"line_search", "accumulated_toi"}) {
+    Method method = test::fixed_method("log", 1);
+    StiffnessPolicyConfig config;
+    config.name = "ipc_adaptive";
+    config.parameters["kappa_min_N_per_m"] = 1;
+    config.parameters["doubling_gap_m"] = d_hat;  // doubles while the gap shrinks
+    method.stiffness = make_policy(config);
+    method.step_solver.name = solver;
+    Simulation simulation(scene, method, dt, 12);
+    StepObserver nobody;
+    simulation.step(nobody);
+    const double start = method.stiffness->state().kappa_start;
+    ASSERT_GT(start, 0);
+    for (int i = 1; i < 12; ++i) {
+      ASSERT_GT(simulation.step(nobody).contacts.obstacle, 0U);
+      const StiffnessPolicy::State now = method.stiffness->state();
+      EXPECT_EQ(now.kappa_start, start) << solver << i;
+      EXPECT_EQ(now.kappa, start * (1 << now.doublings)) << solver << i;
+    }
+    EXPECT_GT(method.stiffness->state().doublings, 3) << solver;
+  }
+}
+
 TEST(PolicyStart, reads_the_curvature_at_half_of_d_hat) {
   const Scene scene = three_particles();
   std::vector<StiffnessGlobals> heard;
