@@ -11,14 +11,13 @@ from analysis.claims import fresh, report
 from analysis.claims.entry import FOLDER, ROOT, ClaimError, ids, read_claim, read_sweep
 from analysis.claims.judge import RULES, judge, missing
 from analysis.claims.metrics import METRICS
+from analysis.claims.parts import KEYS, THRESHOLDS, check
 from analysis.claims.proofs import PROOFS, Eval
 from analysis.claims.registry import confirmable, confirmed_parts
+from analysis.claims.slices import slice_of
 from analysis.claims.table import FILE, Table, collect, read, used_metrics, write
 
 WANTED = {*(f"K{k}" for k in range(1, 18)), *(f"H{k}" for k in range(1, 10)), "N1"}
-THRESHOLDS = {"above", "below", "within", "beyond"}
-KEYS = {"says", "rule", "proof", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", "every",
-        "starts", "reason", "confirm", "limit", "left", "right", "u", "shape", "argument", "theta", "loads", "mass_term", "changes", *THRESHOLDS}
 
 
 def test_every_claim_is_there_and_refers_to_what_exists():
@@ -26,7 +25,7 @@ def test_every_claim_is_there_and_refers_to_what_exists():
     judged = 0
     for claim in map(read_claim, ids()):
         for part in claim.parts:
-            assert set(part) <= KEYS and ("proof" in part) != ("rule" in part), (claim.id, part)
+            assert set(part) <= set(KEYS) and ("proof" in part) != ("rule" in part), (claim.id, part)
             judged += 1
             if "proof" in part:
                 assert part["proof"] in PROOFS
@@ -39,7 +38,8 @@ def test_every_claim_is_there_and_refers_to_what_exists():
             assert all(len({p[1] for p in places if p[0] == s}) >= 3 for s in {p[0] for p in places})
             assert "starts" not in part or len({p[3] for p in places}) >= 5
             assert part.get("metric", "newton") in METRICS and part.get("bad", "newton") in METRICS
-            assert part["rule"] == "outcomes" or len(THRESHOLDS & set(part)) == 1
+            assert part["rule"] == "outcomes" or len(set(THRESHOLDS) & set(part)) == 1
+            slice_of(part, sweep)
     assert judged > 50
     assert {path.stem for path in (FOLDER / "sweeps").glob("*.json")} == {s for claim in map(read_claim, ids()) for s in claim.sweeps}
     confirmations = {path.stem for path in (FOLDER / "confirmation").glob("*.json")} - {"registry"}
@@ -62,6 +62,8 @@ def test_claims_on_shells_can_be_confirmed():
             if "sweep" in part:
                 sweep = read_sweep(part["sweep"])
                 fresh.check(sweep)
+                check(part, sweep)
+                slice_of(part, sweep)
                 places = sweep.cases.values()
                 assert {part[k] for k in ("case", "over") if k in part} <= {p[2].rpartition(" x")[0] if part["rule"] == "at_equal_gap" else p[2] for p in places}
                 assert set(part.get("scenes", [])) <= {p[0] for p in places} and "confirm" not in part

@@ -4,7 +4,7 @@ import pytest
 
 from analysis.claims.metrics import METRICS
 
-MATRICES = ("full/none", "full/block_jacobi", "without_contact/none", "without_contact_and_limit/none")
+MATRICES = ("full/none", "full/block_jacobi", "without_contact/none", "without_contact_and_limit/none", "without_limit/none")
 
 
 def record() -> dict:
@@ -37,6 +37,15 @@ def test_a_share_of_the_limit_needs_all_three_numbers(missing):
 
 def test_a_climb_has_shares_from_half_a_decade_on():
     share, base = METRICS["climb_of_limit"][3], record()
-    for full, wanted in ((5.874, None), (5.876, pytest.approx((5.25 - 5.375) / (5.876 - 5.375)))):
+    for full, wanted in ((5.874, None), (5.876, pytest.approx(((5.25 - 5.375) + (5.876 - 5.5)) / 2 / (5.876 - 5.375)))):
         base["summary"]["cond"]["full/none"]["log10_cond"]["p95"] = full
         assert share(base) == wanted
+
+
+@pytest.mark.parametrize("stage", ["full/none", "without_contact/none", "without_limit/none", "without_contact_and_limit/none"])
+def test_one_order_alone_is_no_share(stage):
+    base = record()
+    base["summary"]["cond"]["full/none"]["log10_cond"]["p95"] = 7.0
+    assert METRICS["climb_of_limit"][3](base) is not None
+    del base["summary"]["cond"][stage]
+    assert METRICS["climb_of_limit"][3](base) is None

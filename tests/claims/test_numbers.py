@@ -3,8 +3,12 @@
 import pytest
 from made import SCENES, runs
 
-from analysis.claims.entry import ClaimError
+from analysis.claims.entry import ClaimError, read_sweep
+from analysis.claims.judge import judge_part
 from analysis.claims.numbers import level, ratio, slope
+from analysis.claims.parts import check
+from analysis.claims.table import DIGITS, Table, _rounded
+from analysis.claims.threshold import Threshold
 from analysis.claims.verdict import HOLDS, NOT, ONLY_IF, OPEN
 
 PART = {"says": "x takes more", "sweep": "s", "metric": "newton", "case": "x", "over": "y", "above": 1.5}
@@ -153,8 +157,11 @@ def test_every_single_value():
     part = {"says": "", "sweep": "s", "metric": "stretch_of_limit", "case": "x", "below": 1, "every": True}
     made = runs(lambda s, lv, c, k: {"stretch_of_limit": 0.99})
     assert level(part, made).verdict == HOLDS
-    made.rows[0]["stretch_of_limit"] = 1.01
-    assert level(part, made).verdict == NOT
+    for value, verdict in ((1.01, NOT), (1.0, NOT), (1 - 1e-12, HOLDS)):
+        made.rows[0]["stretch_of_limit"] = value
+        assert level(part, made).verdict == verdict, value
+    above = {key: value for key, value in part.items() if key != "below"}
+    assert level({**above, "above": 0.99}, made).verdict == NOT  # the others are 0.99
 
 
 def test_a_slope():
@@ -186,3 +193,48 @@ def test_a_bad_entry_says_what_is_allowed():
         ratio({**PART, "over": "z"}, runs(twice))
     with pytest.raises(ClaimError, match="one of above, below, within, beyond"):
         ratio({**PART, "below": 2}, runs(twice))
+
+
+@pytest.mark.parametrize("kind, lower, upper, verdict", [
+    ("above", 1, 1, NOT), ("below", 1, 1, NOT), ("above", 1, 2, OPEN), ("below", 0, 1, OPEN), ("below", 0, 0.999, HOLDS), ("below", 1, 2, NOT), ("above", 0, 1, NOT), ("above", 1.001, 2, HOLDS),
+    ("within", -1, 1, HOLDS), ("beyond", -1, 1, NOT), ("beyond", 1, 1, NOT), ("within", 1, 1, HOLDS), ("beyond", 1.001, 2, HOLDS), ("within", 1.001, 2, NOT)])
+def test_a_number_on_the_threshold(kind, lower, upper, verdict):
+    """Above, below and beyond are strict; within is what is not beyond."""
+    assert Threshold({kind: 1}, False).judge(lower, upper) == verdict
+
+
+def test_a_metric_keeps_the_digits_that_a_threshold_needs():
+    assert _rounded(0.9999999, DIGITS) < 1 < _rounded(1.0000001, DIGITS) and _rounded({"a": [0.12345678]}) == {"a": [0.123457]}
+
+
+def test_a_number_without_a_logarithm_is_left_out_of_a_slope():
+    part = {"says": "", "sweep": "s", "metric": "gap_end", "case": "x", "beyond": 0.05}
+    judged = slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.0 if (s, lv) == ("a", "2") else 0.1 * float(lv)}, levels=("1", "2", "4", "8")))
+    assert judged.verdict == HOLDS and "5 gap_end is not above 0" in judged.counted
+    for bad in ("fine", "0"):
+        with pytest.raises(ClaimError, match=f"sweep s: level '{bad}': a slope needs levels that are numbers above 0"):
+            slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1}, levels=("1", "2", "4", bad)))
+
+
+def test_two_rules_of_comparability_are_not_pooled():
+    """Level and slope take runs one by one, so that no pair says it."""
+    sweep, mixed = read_sweep("policies"), with_gaps({})
+    mixed.check_one_rule(sweep)
+    for row in mixed.rows:
+        row |= {"gaps": None} if row["case"] == "y" else {}
+    with pytest.raises(ClaimError, match="policies: 45 records of before 3.5.0 .* beside 45 later ones.*./bench sweep claims/sweeps/policies.json"):
+        mixed.check_one_rule(sweep)
+    with pytest.raises(ClaimError, match="two rules|of before 3.5.0"):
+        judge_part({**PART, "rule": "ratio", "sweep": "policies"}, Table({"policies": mixed}), None)
+    for row in mixed.rows:
+        row |= {"outcome": "newton_stall"} if row["case"] == "y" else {}
+    mixed.check_one_rule(sweep)  # a run that failed is not compared
+
+
+@pytest.mark.parametrize("more, said", [({"scenes": ["strip", "stackk"]}, "scenes: found 'stackk'; .* has ball, pile, stack, strip"), ({"scenes": []}, "scenes: found none"),
+                                        ({"abowe": 1}, "abowe: unknown; allowed: above"), ({"theta": 0.1, "lim": "off"}, "lim: unknown")])
+def test_a_part_of_words_that_nobody_reads_is_refused(more, said):
+    part = {"says": "x", "rule": "ratio", "sweep": "policies", "metric": "newton", "case": "published", "over": "fixed_log", "above": 1}
+    check(part, read_sweep("policies"))
+    with pytest.raises(ClaimError, match=said):
+        judge_part({**part, **more}, Table({"policies": runs(twice)}), None)

@@ -5,7 +5,7 @@ from made import runs
 
 from analysis.claims.entry import ClaimError
 from analysis.claims.outcomes import outcomes
-from analysis.claims.verdict import HOLDS, NOT, ONLY_IF, OPEN, Judged, together
+from analysis.claims.verdict import HOLDS, IN_PART, NOT, ONLY_IF, OPEN, Judged, together
 
 PART = {"says": "x gets through", "sweep": "s", "case": "x", "over": "y"}
 SIX = ("a", "b", "c", "d", "e", "f")  # fewer scenes cannot decide a sign test
@@ -91,10 +91,51 @@ def test_starts_count_where_a_part_says_that_they_matter():
 
 
 @pytest.mark.parametrize("verdicts, expected", [
-    ([HOLDS, HOLDS], HOLDS), ([NOT, NOT], NOT), ([HOLDS, NOT], ONLY_IF), ([ONLY_IF, HOLDS], ONLY_IF), ([HOLDS, OPEN], OPEN), ([NOT, OPEN], NOT),
-    ([HOLDS, NOT, OPEN], ONLY_IF)])
+    ([HOLDS, HOLDS], HOLDS), ([NOT, NOT], NOT), ([HOLDS, NOT], IN_PART), ([ONLY_IF, HOLDS], ONLY_IF), ([HOLDS, OPEN], OPEN), ([NOT, OPEN], NOT),
+    ([HOLDS, NOT, OPEN], IN_PART), ([ONLY_IF, NOT], IN_PART), ([ONLY_IF, OPEN], OPEN)])
 def test_parts_together(verdicts, expected):
     parts = [Judged(v, says=v, condition="level 1", missing="more") for v in verdicts]
     assert together(parts).verdict == expected
     assert together([*parts, Judged(NOT, beside=True)]).verdict == expected
     assert together(parts, "solids").verdict == OPEN and "waits for solids" in together(parts, "solids").missing
+
+
+def test_what_holds_is_no_condition_for_what_does_not():
+    parts = [Judged(HOLDS, says="a"), Judged(NOT, says="b"), Judged(ONLY_IF, says="c", condition="level 1"), Judged(OPEN, says="d", missing="more")]
+    assert together(parts).condition == "holds: a; c (level 1). does not hold: b. not decided: d"
+    assert together([parts[0], parts[2]]).condition == "c (level 1)"  # a holds everywhere: no condition
+
+
+def failing_by_start(where):
+    """where(scene, level, case, start) -> whether it stalls."""
+    return lambda s, lv, c, k: {"outcome": "newton_stall" if where(s, lv, c, k) else "ok"}
+
+
+def test_a_scene_without_enough_levels_is_in_no_sign_and_no_share():
+    """Six scenes win; three of them with the one level that is left where others are hopeless."""
+    made = runs(failing(lambda s, lv, c: c == "y" or (s in "def" and lv != "1")), scenes=SIX)
+    judged = outcomes({**PART, "needs": "more"}, made)
+    assert judged.verdict == OPEN and "3 scenes won, 0 lost, 0 even" in judged.missing
+    assert judged.scenes == 3 and "every run in 3 of 3 scenes; 45 of 45 runs" in judged.counted
+    assert "without 3 levels that count, so not judged: d, e, f" in judged.counted and "y: 0 of 45" in judged.counted
+
+
+def test_a_level_without_enough_starts_is_in_no_sign_and_no_share():
+    """A fourth level of one start, in which every scene fails."""
+    made = runs(failing(lambda s, lv, c: lv == "8"), levels=("1", "2", "4", "8"))
+    made.rows = [row for row in made.rows if row["level"] != "8" or row["seed"] == 1]
+    next(row for row in made.rows if row["level"] == "8" and row["case"] == "y")["outcome"] = "ok"  # so that it is not hopeless
+    judged = outcomes({"says": "", "sweep": "s", "case": "x", "starts": "matter", "reason": "chaotic"}, made)
+    assert judged.verdict == HOLDS and "not judged: a 8" in judged.counted and "45 of 45 runs" in judged.counted
+
+
+def test_a_case_that_is_ahead_in_every_scene_is_not_refuted():
+    """Neither gets any level through with every start: four starts in five against none."""
+    ahead = runs(failing_by_start(lambda s, lv, c, k: c == "y" or k == 1), scenes=SIX)
+    judged = outcomes({**PART, "needs": "more"}, ahead)
+    assert judged.verdict == HOLDS and "6, 0, 0 (scenes x levels that only one gets through: 0 to 0)" in judged.counted
+    assert outcomes({**PART, "case": "y", "over": "x", "needs": "more"}, ahead).verdict == NOT
+    few = runs(failing_by_start(lambda s, lv, c, k: c == "y" or k == 1))
+    assert outcomes({**PART, "needs": "more"}, few).verdict == OPEN
+    same = runs(failing_by_start(lambda s, lv, c, k: k == (1 if c == "x" else 2)), scenes=SIX)
+    assert outcomes({**PART, "needs": "more"}, same).verdict == NOT

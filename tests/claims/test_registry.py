@@ -13,6 +13,7 @@ from made import runs
 from analysis.claims import __main__ as verb
 from analysis.claims import registry, report
 from analysis.claims.entry import ROOT, ClaimError, read_claim, read_sweep
+from analysis.claims.inputs import inputs_of
 from analysis.claims.judge import judge
 from analysis.claims.metrics import METRICS
 from analysis.claims.proofs import Eval
@@ -59,7 +60,7 @@ class Repository:
         scenes, levels = (tuple(dict.fromkeys(p[k] for p in places)) for k in (0, 1))
         made = runs(lambda s, lv, c, k: {"newton": 10 * factor if c == "clamped" else 10.0, "seconds": 1.0, "factorizations": 9}, scenes=scenes, levels=levels,
                     cases=("clamped", "exact_or_clamped", "progressive"), seeds=(1,))
-        made.about |= {"sha256": sweep.sha256, "first_started_utc": started}
+        made.about |= {"sha256": sweep.sha256, "inputs_sha256": inputs_of(sweep), "first_started_utc": started}
         return Table({NAME: made})
 
 
@@ -89,6 +90,7 @@ def test_the_confirmed_verdict_is_that_of_the_confirmation_scenes(repository, mo
     repository.commit()
     table = read(KEPT)
     table.sweeps |= repository.run().sweeps
+    table.sweeps["hessian_modes"].about["inputs_sha256"] = inputs_of(read_sweep("hessian_modes"))
     monkeypatch.setattr(registry, "ROOT", repository.root)
     original = registry.state
     monkeypatch.setattr(registry, "state", lambda claim, table, entries: original(claim, table, entries, repository.root))
@@ -153,6 +155,39 @@ def test_a_sweep_that_was_changed_is_refused(repository):
     table, path = repository.run(), repository.root / f"claims/confirmation/{NAME}.json"
     path.write_text(path.read_text().replace('"steps": 15', '"steps": 14'))
     assert repository.state(table).refused and f"claims/confirmation/{NAME}.json: sha256" in repository.state(table).why
+
+
+def test_a_base_config_that_was_changed_is_refused(repository):
+    repository.register()
+    repository.commit()
+    table, base = repository.run(), repository.root / "configs/scenes/hang.json"
+    assert repository.state(table).verified
+    base.write_text(base.read_text().replace('"formulation"', '"time": {"dt_s": 0.002},\n  "formulation"'))
+    state = repository.state(table)
+    assert state.refused and f"claims/confirmation/{NAME}.json: base config, presets and meshes have sha256" in state.why and "registered" in state.why
+
+
+def test_records_of_another_base_config_are_refused(repository):
+    """The base is as registered again, but the runs were made between."""
+    repository.register()
+    repository.commit()
+    base = repository.root / "configs/scenes/hang.json"
+    kept = base.read_text()
+    base.write_text(kept.replace('"hang"', '"hang", "n": 7'))
+    table = repository.run()
+    base.write_text(kept)
+    assert repository.state(table).refused and "the records of shells_modes are of base config, presets and meshes" in repository.state(table).why
+    del table.sweeps[NAME].about["inputs_sha256"]
+    assert repository.state(table).refused and "sha256 unknown" in repository.state(table).why
+
+
+def test_an_entry_without_its_inputs_is_refused(repository):
+    repository.register()
+    data = json.loads((repository.root / FILE).read_text())
+    del data["claims"]["K12"]["inputs"]
+    (repository.root / FILE).write_text(json.dumps(data))
+    repository.commit()
+    assert repository.state(repository.run()).refused and "the entry has none" in repository.state(repository.run()).why
 
 
 def test_records_of_another_sweep_are_refused(repository):
@@ -298,6 +333,7 @@ def test_the_verb_refuses_a_claim_that_calls_itself_confirmed(monkeypatch, capsy
     entry["rule_sha256"] = registry.sha_of(entry["rule"])
     monkeypatch.setattr(registry, "read", lambda: {"K12": entry})
     monkeypatch.setattr(verb, "write_all", lambda table, asker: None)
+    monkeypatch.setattr(verb, "missing", lambda claim, table: [])
     assert verb.main(["K12", "--no-run"]) == 2
     said = capsys.readouterr()
     assert "K12 calls itself confirmed and is not: claims/K12.json: the rule is another than the one registered on 2026-12-01" in said.err and "confirmed: refused" in said.out

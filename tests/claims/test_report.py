@@ -56,6 +56,17 @@ def test_exploratory_and_confirmed_side_by_side():
     assert report.verdict_table(answers()[-1:])[2].split(" | ")[4] == "closed form"
 
 
+def test_what_holds_in_part_says_which_parts(tmp_path):
+    refuted = judged("ratio", ratio, below=0.5)
+    refuted.says = "less"
+    a = replace(answers()[0], verdict=together([answers()[0].parts[0], refuted]))
+    assert report.verdict_table([a])[2].split(" | ")[3] == "holds in part (holds: ratio. does not hold: less)"
+    page = report.markdown([a], Table())
+    assert "## K3: holds in part" in page and "**holds in part (holds: ratio. does not hold: less).**" in page and "holds only if: ratio" not in page
+    figure.draw([a], tmp_path / "claims")
+    assert "holds in part" in (tmp_path / "claims.csv").read_text()
+
+
 def test_one_scene_has_no_interval():
     alone = ratio({"says": "", "sweep": "s", "metric": "newton", "case": "x", "over": "y", "above": 1}, runs(lambda s, lv, c, k: {"newton": 2.0 if c == "x" else 1.0}, scenes=("a",)))
     assert report.interval(alone) == "2 (one scene: no interval)"

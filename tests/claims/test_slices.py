@@ -1,13 +1,14 @@
 """Further axes of a sweep, and the slice that a part names."""
 
 import json
+import re
 
 import pytest
 from made import record, row
 
 from analysis.claims import judge as judging
-from analysis.claims.entry import ClaimError, read_claim, read_sweep
-from analysis.claims.merged import limit_of, theta_of
+from analysis.claims.entry import ROOT, ClaimError, read_claim, read_sweep
+from analysis.claims.merged import WITHOUT_LIMIT, limit_of, theta_of
 from analysis.claims.proofs import Eval
 from analysis.claims.slices import rows_of, slice_of
 from analysis.claims.table import Runs, Table, collect, read, write
@@ -78,7 +79,8 @@ def test_a_part_has_the_runs_of_its_slice(tmp_path):
     found = rows_of(part, rows(made), made).rows
     assert len(found) == 4 and {(r["theta"], r["enabled"]) for r in found} == {(0.01, False)}
     assert slice_of(part, made) == "theta 0.01, limit off"
-    assert slice_of({**part, "limit": "log", "theta": 0.1}, made) == "theta 0.1; log: limit log; cubic: limit cubic"
+    with pytest.raises(ClaimError, match="limit: found 'log'; the runs of cubic in .* have strip: 'cubic'"):  # of `over`, whose limit follows its contact
+        slice_of({**part, "limit": "log", "theta": 0.1}, made)
     for bad, said in (({"limit": "off"}, "theta: found None; .* has 0.1, 0.01, and a part names one"), ({"theta": 0.5, "limit": "off"}, "theta: found 0.5"), ({"theta": 0.1}, "enabled: found None")):
         with pytest.raises(ClaimError, match=said):
             rows_of({**PART, **bad}, rows(made), made)
@@ -103,7 +105,7 @@ def test_true_is_not_one(tmp_path):
 def test_a_slice_is_that_of_the_sweep_file(tmp_path):
     made = sweep(tmp_path, SEEDS, **{"/matching/theta": 0.3, "/strain_limit/shape": "log"})
     assert slice_of(PART, made) == "theta 0.3, limit log" and slice_of({**PART, "theta": 0.3, "limit": "log"}, made) == "theta 0.3, limit log"
-    for bad, said in (({"theta": 0.1}, "theta: found 0.1; the runs of log .* have 0.3"), ({"limit": "off"}, "limit: found 'off'; the runs of log .* have 'log'")):
+    for bad, said in (({"theta": 0.1}, "theta: found 0.1; the runs of log .* have strip: 0.3"), ({"limit": "off"}, "limit: found 'off'; the runs of log .* have strip: 'log'")):
         with pytest.raises(ClaimError, match=said):
             slice_of({**PART, **bad}, made)
     dynamic = [{"label": "log", "set": {}}, {"label": "cubic", "set": {"/formulation": "cubic_dynamic", "/matching/rule": "as_given", "/strain_limit/enabled": False}}]
@@ -117,6 +119,34 @@ def test_bodies_without_a_limit_have_none():
     assert limit_of({"scene": {"name": "drape"}, "formulation": {"shape": "quadratic"}}) == "quadratic" and theta_of({"matching": {"rule": "as_given"}}) is None
 
 
+def scenes_without_a_limit() -> set[str]:
+    """As the program has them: `defaults` of a scene end with its limit or with nullopt."""
+    texts = {path.stem: path.read_text() for path in (ROOT / "experiments/scenes").glob("*.cpp") if "scene.defaults = {" in path.read_text()}
+    assert len(texts) >= 5
+    return {name for name, text in texts.items() if re.search(r"scene\.defaults = \{[^}]*nullopt\}", text)} | {"bodies"}
+
+
+def test_scenes_without_a_limit_of_their_own_are_those_of_the_program():
+    assert set(WITHOUT_LIMIT) == scenes_without_a_limit()
+    assert limit_of({"scene": {"name": "resting_block_1d"}, "strain_limit": {"shape": "log"}}) == "off"
+    assert limit_of({"scene": {"name": "resting_block_1d"}, "strain_limit": {"shape": "log", "limit": 0.05}}) == "log"
+
+
+def test_a_slice_is_that_of_every_scene_that_counts(tmp_path):
+    made = sweep(tmp_path, SEEDS, **{"/strain_limit/shape": "log"})
+    data = json.loads(made.path.read_text())
+    for label, set_of in (("strip 6", {"/scene": {"name": "drape2d", "n": 6}}), ("block 1", {"/scene": {"name": "resting_block_1d"}}), ("far 1", {"/scene": {"name": "hang"}, "/matching/theta": 0.5})):
+        data["axes"][0]["cases"].append({"label": label, "set": set_of})
+    made.path.write_text(json.dumps(data))
+    made = read_sweep.__wrapped__("s", tmp_path)
+    assert slice_of(PART, made) == "theta 0.1 (far: theta 0.5), limit log (block: off)"
+    assert slice_of({**PART, "scenes": ["block"]}, made) == "theta 0.1, limit off"
+    for more, said in (({"limit": "log"}, "limit: found 'log'; .* have block: 'off'"), ({"theta": 0.1}, "theta: found 0.1; .* have far: 0.5")):
+        with pytest.raises(ClaimError, match=said):
+            slice_of({**PART, **more}, made)
+    assert slice_of({**PART, "limit": "log", "theta": 0.1, "scenes": ["strip"]}, made) == "theta 0.1, limit log"
+
+
 def test_every_part_prints_its_slice():
     found = {(claim, part["sweep"]): slice_of(part, read_sweep(part["sweep"])) for claim in ("K3", "H3", "K12") for part in read_claim(claim).deciding}
-    assert found["K3", "contact_shapes"] == "theta 0.1, limit log" and found["H3", "derivative"] == "dropped: stiffness as given; cubic: theta 0.5; limit off"
+    assert found["K3", "contact_shapes"] == "theta 0.1, limit log (block, pile: off)" and found["H3", "derivative"] == "dropped: stiffness as given; cubic: theta 0.5; limit off"

@@ -120,7 +120,7 @@ def test_a_longer_record_of_the_same_run_stays(program, config, tmp_path):
 
 def test_a_sweep_goes_on_from_what_time_stopped(program, config, tmp_path):
     spec = write(tmp_path / "sweep.json", {"schema": "barrierbench.sweep/1", "name": "formulations", "base": str(config),
-                                           "set": {**GIVEN, "/time/steps": 100}, "axes": [{"pointer": "/formulation/name", "values": ["log", "cubic"]}]})
+                                           "set": {**GIVEN, "/time/steps": 100}, "axes": [{"pointer": "/formulation/stiffness_policy/kappa_N_per_m", "values": [50, 60]}]})
     out = tmp_path / "out"
     assert bench(program, "sweep", spec, "--out", out, "--time-limit", "0.5").returncode == 0
     stopped = [json.loads(p.read_text())["status"]["outcome"] for p in sorted(out.glob("*/run.json"))]

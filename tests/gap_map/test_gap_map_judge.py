@@ -3,8 +3,9 @@
 import math
 
 import pytest
-from barrierbench_analysis.gap_map import judge, plan, rows
+from barrierbench_analysis.gap_map import judge, plan, report, rows
 from barrierbench_analysis.gap_map.spec import Cell
+from barrierbench_analysis.gap_map.table import Map
 
 
 def made(shape="log", theta=0.1, gap=0.1, scene="s", resolution="1", limit="off", **more):
@@ -13,8 +14,8 @@ def made(shape="log", theta=0.1, gap=0.1, scene="s", resolution="1", limit="off"
     return found | {m: 100.0 for m in rows.METRICS} | {"nc_end": 1.0, "nc_bj_end": 1.0} | more
 
 
-def sample(cond, stage="full", scaling="none"):
-    return {"matrix": "clamped", "stage": stage, "scaling": scaling, "cond": cond}
+def sample(cond, stage="full", scaling="none", status=None):
+    return {"matrix": "clamped", "stage": stage, "scaling": scaling, "cond": cond, "status": status or ("singular" if cond is None else "ok")}
 
 
 def test_the_reached_gap_is_the_load_weighted_median():
@@ -36,8 +37,35 @@ def test_conditions_are_of_iterations_in_contact_and_of_the_last_ones_of_steps()
     assert found["cond_end"] == 20.0 and found["cond_end_max"] == 30.0  # of steps 1 and 2: step 3 ends without contact
     assert found["cond_median"] == 515.0 and found["nc_end"] == 2.0 and found["bj_p95"] is None
     assert found["pcg"] == 51.5 and found["pcg_max"] == 5e4
-    unknown = rows.conditions([{"step": 0, "iteration": 0, "contacts": {"obstacle": 1}, "cond": [sample(None)]}])
-    assert unknown["cond_p95"] == rows.LARGEST and unknown["pcg"] is None
+    infinite = rows.conditions([{"step": 0, "iteration": 0, "contacts": {"obstacle": 1}, "cond": [sample(None)]}])
+    assert infinite["cond_p95"] == rows.LARGEST and infinite["pcg"] is None and infinite["unknown"] == 0
+
+
+@pytest.mark.parametrize("status, largest, unknown", [("singular", rows.LARGEST, 0), ("not_pd", rows.LARGEST, 0), ("not_converged", 10.0, 1), ("lower_bound", 10.0, 1)])
+def test_an_estimate_without_a_number_is_no_condition_number(status, largest, unknown):
+    """As the summary of the program counts."""
+    line = {"step": 0, "iteration": 0, "contacts": {"obstacle": 1}, "cond": [sample(10.0), sample(None, status=status)]}
+    found = rows.conditions([line])
+    assert found["cond_end_max"] == largest and found["unknown"] == unknown
+    alone = rows.conditions([line | {"cond": [sample(None, status="not_converged")]}])
+    assert alone["cond_p95"] is None and alone["cond_end"] is None and alone["unknown"] == 1
+
+
+def test_where_contact_rests_is_said_of_one_target_and_of_shared_places():
+    """cubic reached more at 0.01 in a place that the log did not, and its softest gap is at another target."""
+    every = [made("log", 0.01, 0.02, "a"), made("log", 0.01, None, "b", outcome="newton_stall"), made("log", 0.5, 0.001, "a"),
+             made("cubic", 0.01, 0.3, "a"), made("cubic", 0.01, 0.1, "b"), made("two_stage", 0.01, None, "a", outcome="newton_stall"), made("two_stage", 0.5, 0.2, "a")]
+    gaps, shared, without = judge.at_target(every, "off", 0.01, ["log", "cubic", "two_stage"])
+    assert gaps == {"log": 0.02, "cubic": 0.3} and shared == [("a", "1")] and without == ["two_stage"]
+    page = Map({"shapes": {s: [s, "gap"] for s in ("log", "cubic", "two_stage")}, "gaps": [0.5, 0.01], "limits": ["off"]}, every)
+    said = report.sentences(page)[1]
+    assert said.endswith("rests at 0.02 (`log`), 0.3 (`cubic`) (median of the 1 scenes and resolutions that all of these reached); without a gap there: `two_stage`.")
+
+
+def test_where_nothing_rests_is_said():
+    about = {"shapes": {s: [s, "gap"] for s in ("log", "cubic")}, "gaps": [0.5, 0.01], "limits": ["off"]}
+    for rows_of in ([made("log", 0.5, 0.4), made("cubic", 0.5, 0.4)], [made("log", 0.01, 0.02, "a"), made("cubic", 0.01, 0.02, "b")]):
+        assert report.sentences(Map(about, rows_of))[1].endswith("there is no place where every shape that reached a gap has one.")
 
 
 def test_a_ratio_averages_resolutions_before_scenes():

@@ -126,6 +126,25 @@ def test_numbers_of_another_spec_and_records_of_other_settings_are_refused(real,
     assert "its runs have 9" in capsys.readouterr().err
 
 
+def of_cell(spec, cell, **limit):
+    """What check_cell reads of a record of a cell, with another limit where one is given."""
+    shape, argument = spec.shapes[cell.shape]
+    asked = {key.rpartition("/")[2]: value for key, value in limit_settings(cell.limit, shape, argument, cell.theta).items()}
+    policy = {"scale": 1.0, **asked.get("stiffness_policy", {})}
+    strain = {"enabled": False} if cell.limit == "off" else {"enabled": True, **asked, "stiffness_policy": policy}
+    return {"config": {"formulation": {"shape": shape, "argument": argument}, "strain_limit": {**strain, **limit}}, "matching": {"theta": cell.theta}, "scene": {"free_dofs": 9}}
+
+
+@pytest.mark.parametrize("mode, limit", [("off", {"enabled": True, "shape": "log"}), ("contact", {"enabled": False}), ("contact", {"shape": "cubic"}), ("on", {"shape": "log"}), ("on", {"argument": "squared_gap"}),
+                                         ("contact", {"stiffness_policy": {"name": "fixed", "scale": 1.0}}), ("on", {"stiffness_policy": {"name": "elasticity_inclusive"}}), ("on", {"enabled": False})])
+def test_a_record_of_another_limit_is_none_of_its_cell(tmp_path, mode, limit):
+    spec = read_spec(small(tmp_path, limits=["on", "contact", "off"], gaps=[0.5, 0.01], main=["log", "cubic"], quick={"scenes": {"block": ["1"]}, "shapes": ["log"], "gaps": [0.5], "limits": ["off"]}))
+    cell = next(c for c in cells(spec) if (c.shape, c.limit, c.theta) == ("cubic", mode, 0.01))
+    entry.check_cell(spec, cell, of_cell(spec, cell), tmp_path)
+    with pytest.raises(GapMapError, match="asks for: remove this folder"):
+        entry.check_cell(spec, cell, of_cell(spec, cell, **limit), tmp_path)
+
+
 def test_a_plan_runs_nothing(real, capsys):
     folder, words = real
     assert entry.main([*words, "--plan"]) == 0
