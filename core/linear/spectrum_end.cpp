@@ -26,7 +26,8 @@ void certify(ScaledMatrix& b, double sign, double outside, SpectrumEndPair& end)
   end.resolved = !wide();
   if (inside == end.lambda) return;
   end.proven_inside = inside;
-  end.lambda = inside + (outside - inside) / 2;
+  // An end that is not resolved is a bound: it may not lie beyond the eigenvalue.
+  end.lambda = end.resolved ? inside + (outside - inside) / 2 : inside;
 }
 
 /// Whether the shift that proves an end is above the rounding of its factorisation.

@@ -49,7 +49,8 @@ TEST(ConditionDecisions, OneUnresolvedEndIsALowerBound) {
     const double cond = std::max(2.0, c.value) / std::min(1.0, c.value);
     const ConditionEstimate e = estimate(hidden_from(c.start, c.value), 4);
     EXPECT_EQ(e.status, c.ok ? ConditionStatus::ok : ConditionStatus::lower_bound) << c.value << e.method;
-    EXPECT_LE(e.cond, cond * (1 + (c.ok ? 1e-3 : 1e-12))) << c.value;  // a bound is never above what it bounds
+    EXPECT_LE(e.cond, cond * (1 + (c.ok ? 1e-3 : 1e-12)))
+        << c.value;  // a bound is never above what it bounds
     EXPECT_GE(e.cond, 2 - 1e-9);
     if (c.ok) {
       EXPECT_NEAR(e.cond / cond, 1, 1e-3) << c.value;
