@@ -59,13 +59,31 @@ def pair_up(name: str, by_tier: dict[int, dict[tuple, dict]]) -> list[Pair]:
     return [Pair(name, first[key], second[key]) for key in sorted(first, key=str)]
 
 
+def _labelled(spec: dict) -> list[dict]:
+    return [axis for axis in spec["axes"] if any("label" in case for case in axis.get("cases", []))]
+
+
+def _keep(spec: dict, cases: list[str]) -> None:
+    """Leaves the cases with these labels on every labelled axis. Raises TableError where an axis has none of them."""
+    for axis in _labelled(spec):
+        kept = [case for case in axis["cases"] if case["label"] in cases]
+        if not kept:
+            raise TableError(f"configs/sweeps/{spec['name']}.json: no case {' or '.join(map(repr, cases))}; it has {', '.join(case['label'] for case in axis['cases'])}")
+        axis["cases"] = kept
+
+
+def check_labels(sweeps: list[str], cases: list[str]) -> None:
+    """Raises TableError for a label that no sweep has: a misspelt one would be left out in silence."""
+    labels = {case["label"] for name in sweeps for axis in _labelled(json.loads((ROOT / f"configs/sweeps/{name}.json").read_text())) for case in axis["cases"]}
+    if unknown := [label for label in cases if label not in labels]:
+        raise TableError(f"--cases {unknown[0]}: none of {', '.join(sweeps)} has it; they have {', '.join(sorted(labels))}")
+
+
 def of_sweep(name: str, cases: list[str], work: Path) -> list[Pair]:
     spec = json.loads((ROOT / f"configs/sweeps/{name}.json").read_text())
     spec["base"] = str((ROOT / "configs/sweeps" / spec["base"]).resolve())
     if cases:
-        for axis in spec["axes"]:
-            if any("label" in case for case in axis.get("cases", [])):
-                axis["cases"] = [case for case in axis["cases"] if case["label"] in cases] or axis["cases"][:1]
+        _keep(spec, cases)
     file = work / f"{name}.json"
     file.write_text(json.dumps(spec))
     by_tier = {}
@@ -147,6 +165,7 @@ def main(words: list[str] | None = None) -> int:
     parser.add_argument("--cases", nargs="*", default=[], help="labels of their formulations (default: all)")
     arguments = parser.parse_args(words)
     try:
+        check_labels(arguments.sweeps, arguments.cases)
         with tempfile.TemporaryDirectory() as folder:
             groups = {name: of_sweep(name, arguments.cases, Path(folder)) for name in arguments.sweeps}
             groups["corpus"] = of_corpus(Path(folder))

@@ -183,17 +183,24 @@ def is_hashed(record: dict) -> bool:
     return _version(record)[:2] >= HASHED_TRACES
 
 
-def read_trace(record: dict, folder: Path) -> list[dict]:
-    """The rows of the trace beside the record, one a Newton iteration; none where the run wrote none. Raises RecordError when the file is not
-    the one that the record names; of a record before version 3.4, which names none, when it has not one line an iteration."""
+def own_trace(record: dict, folder: Path) -> Path | None:
+    """The trace beside the record; None where the run wrote none. Raises RecordError when it is not the very one that the record names. A record before
+    version 3.4 names none: of it any trace is the own."""
     path = Path(folder) / TRACE
-    if is_hashed(record):
-        if TRACE not in named_files(record, "trace"):
-            if path.exists():
-                raise RecordError(f"{path}: the record beside it names no trace; allowed: none, since its run wrote none")
-            return []
-        return trace_lines(bound_file(record, folder, TRACE))[0]
-    if not path.exists():
+    if not is_hashed(record):
+        return path if path.exists() else None
+    if TRACE in named_files(record, "trace"):
+        return bound_file(record, folder, TRACE)
+    if path.exists():
+        raise RecordError(f"{path}: the record beside it names no trace; allowed: none, since its run wrote none")
+    return None
+
+
+def read_trace(record: dict, folder: Path) -> list[dict]:
+    """The rows of the trace beside the record, one a Newton iteration; none where the run wrote none. Raises RecordError when it is not the record's, is torn,
+    has not one line an iteration, or a number that is not finite: a hash says whose file it is, not that it is whole."""
+    path = own_trace(record, folder)
+    if path is None:
         return []
     rows, torn = trace_lines(path)
     expected = record["summary"].get("newton_iterations")

@@ -34,18 +34,20 @@ def row(run: str, record: dict) -> list[str]:
 
 
 def verdict(records: list[tuple[str, dict]]) -> tuple[str, list[str]]:
-    """The line below the table, and the runs that are called ok although their surface is in something."""
+    """The line below the table, and what is wrong: runs that are called ok although their surface is in something, or that no run that is ok has a gap,
+    so that nothing was judged."""
     ok = [(run, gap_of(record)) for run, record in records if record["status"]["outcome"] == "ok"]
     measured = [gap for _, gap in ok if gap is not None]
     below = [run for run, gap in ok if gap is not None and gap < 0]
     text = f"{len(records)} runs, {len(ok)} ok; {len(measured)} of the ok ones with a gap, {len(ok) - len(measured)} without (nothing near, not audited, or no such field)"
     if measured:
         text += f"; the smallest is {1e3 * min(measured):.4g} mm"
-    return f"{text}; {len(below)} below 0", below
+    faults = [f"{run} is ok with a surface in an obstacle or in another" for run in below]
+    return f"{text}; {len(below)} below 0", faults if measured else ["no run that is ok has a measured gap: nothing was judged"]
 
 
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench surface-gaps", description="Smallest gaps of whole surfaces at converged step ends, thickness taken off, of the records below some folders; 1 when a run that is ok has one below 0.")
+    parser = argparse.ArgumentParser(prog="bench surface-gaps", description="Smallest gaps of whole surfaces at converged step ends, thickness taken off, of the records below some folders; 1 when a run that is ok has one below 0, or none has any.")
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUNS", help="folders with records, at any depth")
     records, faults = [], []
     for root in parser.parse_args(arguments).runs:
@@ -60,11 +62,11 @@ def main(arguments: list[str]) -> int:
         print("surface-gaps: no run.json below these folders that can be read", file=sys.stderr)
         return 2
     print("\n".join(aligned(HEAD, [row(run, record) for run, record in records], set(range(2, len(HEAD))))))
-    text, below = verdict(records)
+    text, wrong = verdict(records)
     print(text)
-    for run in below:
-        print(f"surface-gaps: {run} is ok with a surface in an obstacle or in another", file=sys.stderr)
-    return 1 if below else 0
+    for line in wrong:
+        print(f"surface-gaps: {line}", file=sys.stderr)
+    return 1 if wrong else 0
 
 
 if __name__ == "__main__":

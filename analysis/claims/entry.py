@@ -120,12 +120,18 @@ def word(pointer: str) -> str:
     return pointer.rsplit("/", 1)[-1]
 
 
-def _labels(axis: dict, path: Path) -> list[str]:
+def settings_of(axis: dict, path: Path) -> list[tuple[str, dict]]:
+    """Label and settings (pointer -> value) of every choice on an axis."""
     if "cases" in axis:
-        return [case["label"] for case in axis["cases"]]
+        return [(case["label"], case["set"]) for case in axis["cases"]]
     if "pointer" not in axis or not axis.get("values"):
         raise ClaimError(f"{path}: an axis has cases, or a pointer and values; found {', '.join(axis)}")
-    return [f"{word(axis['pointer'])}={json.dumps(value)}" for value in axis["values"]]
+    return [(f"{word(axis['pointer'])}={json.dumps(value)}", {axis["pointer"]: value}) for value in axis["values"]]
+
+
+def note_of(name: str, labels) -> str:
+    """labels.note of the record of a case."""
+    return f"{name}: {' '.join(labels)}"
 
 
 def sweep_path(name: str, folder: Path = FOLDER) -> Path:
@@ -147,11 +153,12 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
         raise ClaimError(f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is varied beside is an axis by pointer")
     others = [k for k in range(2, len(axes)) if k != seeds[0]]
     cases, more = {}, {}
-    for labels in itertools.product(*(_labels(axis, path) for axis in axes)):
+    for chosen in itertools.product(*(settings_of(axis, path) for axis in axes)):
+        labels = [label for label, _ in chosen]
         scene, _, level = labels[0].partition(" ")
         if not level:
             raise ClaimError(f"{path}: {labels}: the first axis is SCENE LEVEL")
-        note = f"{name}: {' '.join(labels)}"
+        note = note_of(name, labels)
         cases[note] = scene, level, labels[1], int(labels[seeds[0]].removeprefix("main="))
         more[note] = {word(axes[k]["pointer"]): json.loads(labels[k].partition("=")[2]) for k in others}
     solvers = {case["label"]: case["set"][SOLVER] for case in axes[1]["cases"] if SOLVER in case["set"]}

@@ -12,9 +12,9 @@ from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 from .. import style
 from .judge import Answer
 from .report import interval
-from .verdict import HOLDS, NOT, ONLY_IF, OPEN, Judged
+from .verdict import HOLDS, IN_PART, NOT, ONLY_IF, OPEN, Judged
 
-COLORS = {HOLDS: "#009E73", ONLY_IF: "#E69F00", NOT: "#D55E00", OPEN: "#888888"}
+COLORS = {HOLDS: "#009E73", ONLY_IF: "#E69F00", IN_PART: "#0072B2", NOT: "#D55E00", OPEN: "#888888"}
 # kind of number -> label of its axis, whether it is logarithmic
 PANELS = {"ratio": ("ratio of two cases, geometric mean of scenes", True), "share": ("share (of scenes, of a climb, of a limit)", False),
           "slope": ("slope of log number over log level", False), "closed form": ("number of a closed form, range over its arguments", True)}
@@ -82,7 +82,7 @@ def draw(answers: list[Answer], stem: Path) -> list[Path]:
         first.plot([], [], color=color, marker="o", label=verdict)
     first.plot([], [], color="#888888", alpha=0.45, marker="o", markersize=2.6, markeredgewidth=0, linestyle="none", label="a scene")
     first.plot([], [], color="black", marker="|", linestyle="none", label="threshold")
-    fig.legend(loc="outside lower center", ncols=6, frameon=False)
+    fig.legend(loc="outside lower center", ncols=7, frameon=False)
     return style.save(fig, stem, pd.DataFrame(rows), SHOWN)
 
 

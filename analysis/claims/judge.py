@@ -6,12 +6,14 @@ from dataclasses import dataclass, field
 
 from . import equal_gap, numbers, outcomes, registry
 from .ends import ends_of_part
-from .entry import Claim, ClaimError, read_sweep
+from .entry import Claim, ClaimError, Sweep, read_sweep
+from .inputs import inputs_of
 from .metrics import METRICS
+from .parts import check
 from .proofs import PROOFS, Eval
 from .registry import State
 from .slices import rows_of, slice_of
-from .table import Table
+from .table import Runs, Table
 from .verdict import Judged, together, undecided
 
 RULES = {"ratio": numbers.ratio, "level": numbers.level, "slope": numbers.slope, "outcomes": outcomes.outcomes,
@@ -49,14 +51,23 @@ class Answer:
         return next((j for j in self.parts if not j.beside and j.value is not None), None)
 
 
+def _stale(runs: Runs, sweep: Sweep) -> str:
+    """Why kept numbers are none of this sweep; empty when they are."""
+    if runs.about.get("sha256") != sweep.sha256:
+        return f"the records of {sweep.name} are of another {sweep.file}"
+    if "inputs_sha256" not in runs.about:
+        return f"the numbers of {sweep.name} do not say of which base config, presets and meshes they are"
+    return "" if runs.about["inputs_sha256"] == inputs_of(sweep) else f"the records of {sweep.name} are of another base config, preset or mesh than {sweep.file} names now"
+
+
 def missing(claim: Claim, table: Table) -> list[str]:
-    """One line a sweep whose records are not all there, with the command that makes them."""
+    """One line a sweep whose records are not all there, or of other inputs, with the command that makes them."""
     lines = []
     for name in claim.sweeps:
         sweep, runs = read_sweep(name), table.sweeps.get(name)
         found = len(runs.rows) if runs else 0
-        if runs and runs.about.get("sha256") != sweep.sha256:
-            lines.append(f"{claim.id}: the records of {name} are of another {sweep.file}: {sweep.command}")
+        if runs and (stale := _stale(runs, sweep)):
+            lines.append(f"{claim.id}: {stale}: {sweep.command}")
         elif found < len(sweep.cases):
             lines.append(f"{claim.id}: {len(sweep.cases) - found} of {len(sweep.cases)} records of {name} are missing: {sweep.command}")
     return lines
@@ -71,6 +82,8 @@ def judge_part(part: dict, table: Table, asker: Eval) -> Judged:
         if part.get("rule") not in RULES:
             raise ClaimError(f"rule {part.get('rule')!r}: one of {', '.join(RULES)}, or a proof: {', '.join(PROOFS)}")
         sweep = read_sweep(part["sweep"])
+        check(part, sweep)
+        table.sweeps[part["sweep"]].check_one_rule(sweep)
         runs = rows_of(part, table.sweeps[part["sweep"]], sweep)
         judged = RULES[part["rule"]](part, runs)
         judged.ends = ends_of_part(part, runs.rows, sweep)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import copy
 import json
-from functools import cache
 from pathlib import Path
 
 PRESETS = Path(__file__).resolve().parents[2] / "configs" / "formulations"
+WITHOUT_LIMIT = ("bodies", "resting_block_1d")  # scenes that have no strain limit of their own (experiments/scenes)
 
 
 def put(config: dict, pointer: str, value) -> None:
@@ -27,13 +27,12 @@ def put(config: dict, pointer: str, value) -> None:
         at[last] = copy.deepcopy(value)
 
 
-@cache
-def _file(path: Path) -> str:
-    return path.read_text()
+def base_path(data: dict, path: Path) -> Path:
+    return (path.parent / data["base"]).resolve()
 
 
 def base_of(data: dict, path: Path) -> dict:
-    return json.loads(_file((path.parent / data["base"]).resolve()))
+    return json.loads(base_path(data, path).read_text())
 
 
 def merged(data: dict, path: Path, *sets: dict) -> dict:
@@ -44,11 +43,16 @@ def merged(data: dict, path: Path, *sets: dict) -> dict:
     return config
 
 
-def _preset(formulation) -> dict:
+def formulation_of(config: dict) -> dict:
+    """What a config gives laid over the preset that it names, as in the program; a policy of another name replaces the preset's."""
+    formulation = config.get("formulation")
     given = {"name": formulation} if isinstance(formulation, str) else dict(formulation or {})
     file = PRESETS / f"{given.get('name', '')}.json"
-    made = json.loads(_file(file)).get("formulation", {}) if file.is_file() else {}
-    return {**made, **given}
+    made = json.loads(file.read_text()).get("formulation", {}) if file.is_file() else {}
+    whole, policy = {**made, **given}, given.get("stiffness_policy")
+    if isinstance(policy, dict) and policy.get("name") in (None, made.get("stiffness_policy", {}).get("name")):
+        whole["stiffness_policy"] = {**made.get("stiffness_policy", {}), **policy}
+    return whole
 
 
 def theta_of(config: dict) -> float | None:
@@ -58,8 +62,9 @@ def theta_of(config: dict) -> float | None:
 
 
 def limit_of(config: dict) -> str:
-    """`off`, or the shape of the strain limit; where a scene has none and none is asked for, nothing is limited whatever this says."""
+    """`off`, or the shape of the strain limit. Off as well where neither scene nor config gives a limit: one that is asked for all the same is
+    refused by the program."""
     limit = config.get("strain_limit", {})
-    if limit.get("enabled") is False or (config["scene"].get("name") == "bodies" and not {"limit", "onset"} & limit.keys()):
+    if limit.get("enabled") is False or (config["scene"].get("name") in WITHOUT_LIMIT and not {"limit", "onset"} & limit.keys()):
         return "off"
-    return limit.get("shape") or _preset(config.get("formulation")).get("shape", "as contact")
+    return limit.get("shape") or formulation_of(config).get("shape", "as contact")

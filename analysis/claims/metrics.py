@@ -24,14 +24,13 @@ def _cond(matrix: str, which: str):
 
 
 def _climb_of_limit(record) -> float | None:
-    """Share of the strain limit in what limit and contact add to the 95th percentile of log10 cond; None below half a decade. Where the record has the
-    stage without_limit it is Shapley's share, the mean of what the limit adds before and after contact; else what it adds before contact alone."""
+    """Share of the strain limit in what limit and contact add to the 95th percentile of log10 cond: Shapley's, the mean of what the limit adds before
+    and after contact. None below half a decade, and where the record lacks a stage, since one order alone is another number."""
     full, limit, contact, none = (_at(record, "summary", "cond", f"{stage}/none", "log10_cond", "p95")
                                   for stage in ("full", "without_contact", "without_limit", "without_contact_and_limit"))
-    if None in (full, limit, none) or full - none < 0.5:
+    if None in (full, limit, contact, none) or full - none < 0.5:
         return None
-    first = limit - none
-    return (first if contact is None else (first + full - contact) / 2) / (full - none)
+    return (limit - none + full - contact) / 2 / (full - none)
 
 
 def _stretch_of_limit(record) -> float | None:

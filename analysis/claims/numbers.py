@@ -111,7 +111,7 @@ def _every(cells: Cells, left_out: Counter, part: dict) -> Judged:
     if not values:
         return undecided("no run counts", **more)
     more |= {"value": max(values, key=lambda x: x if part.get("below") is not None else -x), "lower": min(values), "upper": max(values), "extremes": True}
-    if threshold.judge(min(values) - 1e-300, max(values)) != HOLDS:
+    if threshold.judge(min(values), max(values)) != HOLDS:
         return Judged(NOT, **more)
     if (enough := len(complete(cells, part))) < SCENES:
         return undecided(f"indication: {enough} scenes have {LEVELS} levels that count, {SCENES} are needed ({counted})", **more)
@@ -127,17 +127,28 @@ def _line(points: list[tuple[float, float]]) -> tuple[float, float, float]:
     return float(np.polyfit(*zip(*points), 1)[0]), min(between), max(between)
 
 
+def _log_level(name: str, sweep: str) -> float:
+    """Errors: ClaimError for a level that is no positive number."""
+    try:
+        return math.log(float(name))
+    except ValueError:
+        raise ClaimError(f"sweep {sweep}: level {name!r}: a slope needs levels that are numbers above 0") from None
+
+
 def slope(part: dict, runs: Runs) -> Judged:
     """d log(metric) / d log(level), level a number: a least-squares line a start, and one value a scene, the mean over its starts. Its scatter is
-    that of the slopes between neighbouring levels."""
+    that of the slopes between neighbouring levels. A number that has no logarithm is left out. Errors: ClaimError for a level that is no number."""
     lines, left_out, example = {}, Counter(), []
     for place, row in sorted(by_place(runs, part["case"], part["sweep"]).items()):
         if not _scene(part, place):
             continue
-        if reason := refusal(row, part["metric"], part.get("counts", "comparable")):
+        x, reason = _log_level(place[1], part["sweep"]), refusal(row, part["metric"], part.get("counts", "comparable"))
+        if not reason and row[part["metric"]] <= 0:
+            reason = f"{part['metric']} is not above 0"
+        if reason:
             left_out[reason] += 1
             continue
-        lines.setdefault(place[0], {}).setdefault(place[2], []).append((math.log(float(place[1])), math.log(row[part["metric"]])))
+        lines.setdefault(place[0], {}).setdefault(place[2], []).append((x, math.log(row[part["metric"]])))
         example.append(row["run"])
     scenes, groups = [], []
     for name, starts in lines.items():

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from fractions import Fraction
+
 from .cells import complete, needed, starts_text
 from .entry import ClaimError
 from .estimate import of_scenes, sign_test, wilson
@@ -39,13 +41,28 @@ def _shares(cells: dict) -> list[tuple[str, float, float, float, int, int]]:
     return [(s.name, s.value, s.low, s.high, s.levels, s.n) for s in scenes]
 
 
+def _share(starts: list[bool]) -> Fraction:
+    return Fraction(sum(starts), len(starts))
+
+
 def _signs(mine: dict, other: dict) -> tuple[int, int, int]:
-    """Scenes that are won, lost and even: by the levels that only one of the two gets through with every start."""
-    ahead: dict[str, int] = {}
-    for place in mine.keys() & other.keys():
-        ahead[place[0]] = ahead.get(place[0], 0) + all(mine[place]) - all(other[place])
+    """Scenes that are won, lost and even: by the shares of starts that get through, summed over the levels. Levels that get through with every start would
+    call a case that loses one start in ten even with one that loses all, and nothing of what they differ in would be left."""
+    ahead: dict[str, Fraction] = {}
+    for place in mine:
+        ahead[place[0]] = ahead.get(place[0], Fraction()) + _share(mine[place]) - _share(other[place])
     signs = list(ahead.values())
     return sum(x > 0 for x in signs), sum(x < 0 for x in signs), sum(x == 0 for x in signs)
+
+
+def _complete(mine: dict, other: dict | None, part: dict) -> tuple[set[tuple[str, str]], str]:
+    """Scenes x levels with all that a verdict needs, of both cases, and what falls out, in words."""
+    shared = mine if other is None else {place: min(mine[place], other[place], key=len) for place in mine.keys() & other.keys()}
+    levels = complete(_by_scene(shared), part)
+    kept = {(scene, level) for scene, of in levels.items() for level in of}
+    scenes = sorted({place[0] for place in mine} - levels.keys())
+    places = sorted(" ".join(place) for place in mine.keys() - kept if place[0] in levels)
+    return kept, f"; without {needed(part)}, so not judged: {', '.join(scenes + places)}" if scenes or places else ""
 
 
 def _tells(wins: int, losses: int, even: int) -> str:
@@ -73,35 +90,42 @@ def hopeless(runs: Runs, bad: str | None = None) -> set[tuple[str, str]]:
 
 
 def outcomes(part: dict, runs: Runs) -> Judged:
-    """`case` gets through everything, or (needs: "more") through more than `over`: a sign test over scenes; where each gets through the same places, it is no
-    more than the other. bad: a metric that is 1 where a run failed in the way meant, in the place of any outcome but ok."""
+    """`case` gets through everything, or (needs: "more") through more than `over`: a sign test over scenes, of those scenes and levels alone that have what a
+    verdict needs. Where the same share of starts gets through at every place it is no more than the other. bad: a metric that is 1 where a run failed in
+    the way meant, in the place of any outcome but ok."""
     left_out = hopeless(runs, part.get("bad"))
-    mine = {place: starts for place, starts in _cells(runs, part["case"], part).items() if place not in left_out}
-    if not mine:
+    cases = [{place: starts for place, starts in _cells(runs, part[key], part).items() if place not in left_out} for key in ("case", "over") if key in part]
+    if not cases[0]:
         return undecided("no case of the sweep gets through anything")
-    more = _numbers(part, runs, mine, left_out)
-    enough = complete(_by_scene(mine), part)
-    if len(enough) < SCENES:
-        return undecided(f"indication: {len(enough)} scenes have {needed(part)}, {SCENES} are needed", **more)
-    if "over" in part:
-        other = {place: starts for place, starts in _cells(runs, part["over"], part).items() if place not in left_out}
-        wins, losses, even = _signs(mine, other)
-        places = [(all(mine[place]), all(other[place])) for place in mine.keys() & other.keys()]
-        only = sum(a and not b for a, b in places), sum(b and not a for a, b in places)
-        more["counted"] += (f"; {part['over']}: {sum(map(sum, other.values()))} of {sum(map(len, other.values()))}; scenes won, lost, even: {wins}, {losses}, {even} "
-                            f"(scenes x levels that only one gets through: {only[0]} to {only[1]})")
-        more["threshold"] = f"more than {part['over']}" + ("" if part.get("needs") == "more" else ", and every run")
-        if part.get("needs") == "more":
-            more["bounds"] = (sum(low == 1 for _, _, low, *_ in _shares(other)) / len(_shares(other)),)
-        if only == (0, 0):
-            return Judged(NOT, **more)
-        if sign_test(wins, losses) >= LEVEL:
-            return undecided(_tells(wins, losses, even), **more)
-        if losses > wins:
-            return Judged(NOT, **more)
-        if part.get("needs") == "more":
-            return Judged(HOLDS, **more)
-    return _every_run(mine, more)
+    kept, fell_out = _complete(cases[0], cases[1] if "over" in part else None, part)
+    enough = len({scene for scene, _ in kept})
+    judged = [{place: starts for place, starts in cells.items() if place in kept} for cells in cases] if enough >= SCENES else cases
+    more = _numbers(part, runs, judged[0], left_out)
+    more["counted"] += fell_out
+    if enough < SCENES:
+        return undecided(f"indication: {enough} scenes have {needed(part)}, {SCENES} are needed", **more)
+    if "over" in part and (decided := _beside(part, *judged, more)):
+        return decided
+    return _every_run(judged[0], more)
+
+
+def _beside(part: dict, mine: dict, other: dict, more: dict) -> Judged | None:
+    """What the comparison with `over` decides; None where every run is asked for as well. Adds its numbers to `more`."""
+    wins, losses, even = _signs(mine, other)
+    places = [(all(mine[place]), all(other[place])) for place in mine]
+    only = sum(a and not b for a, b in places), sum(b and not a for a, b in places)
+    more["counted"] += (f"; {part['over']}: {sum(map(sum, other.values()))} of {sum(map(len, other.values()))}; scenes won, lost, even: {wins}, {losses}, {even} "
+                        f"(scenes x levels that only one gets through: {only[0]} to {only[1]})")
+    more["threshold"] = f"more than {part['over']}" + ("" if part.get("needs") == "more" else ", and every run")
+    if part.get("needs") == "more":
+        more["bounds"] = (sum(low == 1 for _, _, low, *_ in _shares(other)) / len(_shares(other)),)
+    if all(_share(mine[place]) == _share(other[place]) for place in mine):
+        return Judged(NOT, **more)
+    if sign_test(wins, losses) >= LEVEL:
+        return undecided(_tells(wins, losses, even), **more)
+    if losses > wins:
+        return Judged(NOT, **more)
+    return Judged(HOLDS, **more) if part.get("needs") == "more" else None
 
 
 def _numbers(part: dict, runs: Runs, mine: dict, left_out: set) -> dict:

@@ -1,4 +1,5 @@
-"""What was registered before confirmation runs: of each claim the hash of its rule and of its sweeps (claims/confirmation/registry.json)."""
+"""What was registered before confirmation runs: of each claim the hash of its rule, of its sweeps and of the files that these name
+(claims/confirmation/registry.json)."""
 
 from __future__ import annotations
 
@@ -15,6 +16,7 @@ from ..whole_file import write_whole
 from . import fresh
 from .entry import FOLDER, ROOT, Claim, ClaimError, _read, read_sweep
 from .history import NoHistory, brought
+from .inputs import inputs_of
 from .metrics import METRICS
 from .outcomes import LEVEL
 from .table import Table
@@ -24,7 +26,8 @@ FILE = FOLDER / "confirmation" / "registry.json"
 NAME = "barrierbench.confirmation/1"
 # What a rule means beside its parts. A change of how verdicts are computed is a change here, and of every hash.
 STATISTICS = {"interval": "95%, Student's t over scenes, a scene the mean over levels of the mean over starts", "sign_test": LEVEL, "scenes": SCENES, "levels": LEVELS,
-              "starts_where_they_matter": STARTS}
+              "starts_where_they_matter": STARTS, "sign": "of a scene's mean share of runs", "outcomes": "of scenes and levels that have what is needed",
+              "thresholds": "above, below and beyond are strict, within has its ends"}
 NONE, NOT_RUN, UNVERIFIED = "-", "registered, not run", "not verifiable here"
 
 
@@ -89,7 +92,8 @@ def register(claim: Claim, table: Table, file: Path = FILE) -> dict:
             raise ClaimError(f"{claim.id}: {name} has been run ({table.sweeps[name].about.get('date')}): a rule is registered before the first run of its sweep")
     rule = rule_of(claim)
     entries[claim.id] = {"date": datetime.now(timezone.utc).strftime("%Y-%m-%d"), "rule_sha256": sha_of(rule),
-                         "sweeps": {name: read_sweep(name).sha256 for name in claim.confirmation_sweeps}, "rule": rule}
+                         "sweeps": {name: read_sweep(name).sha256 for name in claim.confirmation_sweeps},
+                         "inputs": {name: inputs_of(read_sweep(name)) for name in claim.confirmation_sweeps}, "rule": rule}
     write_whole(file, json.dumps({"schema": NAME, "claims": dict(sorted(entries.items()))}, indent=1) + "\n")
     return entries[claim.id]
 
@@ -121,6 +125,10 @@ def _changed(claim: Claim, entry: dict) -> str:
     for name, sha in entry.get("sweeps", {}).items():
         if read_sweep(name).sha256 != sha:
             return f"{read_sweep(name).file}: sha256 {read_sweep(name).sha256[:12]}, registered {sha[:12]} on {entry['date']}"
+        registered = entry.get("inputs", {}).get(name, "")
+        if (now := inputs_of(read_sweep(name))) != registered:
+            return (f"{read_sweep(name).file}: base config, presets and meshes have sha256 {now[:12]}, " +
+                    (f"registered {registered[:12]} on {entry['date']}" if registered else "the entry has none: register it before another first run"))
         try:
             fresh.check(read_sweep(name))
         except ClaimError as error:
@@ -136,6 +144,8 @@ def _records(claim: Claim, table: Table, entry: dict) -> State | None:
             return State(NOT_RUN, read_sweep(name).command)
         if (copy := runs.about.get("sha256", "")) != sha:
             return _refused(f"results/runs/claims/{name}/sweep.json: the records are of a sweep with sha256 {copy[:12] or 'unknown'}, registered {sha[:12]} on {entry['date']}")
+        if (inputs := runs.about.get("inputs_sha256", "")) != entry["inputs"][name]:
+            return _refused(f"the records of {name} are of base config, presets and meshes with sha256 {inputs[:12] or 'unknown'}, registered {entry['inputs'][name][:12]} on {entry['date']}")
         if len(runs.rows) < expected:
             return State(f"registered, {len(runs.rows)} of {expected} runs", read_sweep(name).command)
     return None

@@ -9,7 +9,7 @@ from .entry import read_sweep
 from .judge import Answer
 from .metrics import METRICS
 from .table import Table
-from .verdict import ONLY_IF, OPEN, Judged
+from .verdict import IN_PART, ONLY_IF, OPEN, Judged
 
 WIDTH = 140
 BY_SMALLEST = "; compared by smallest gaps"
@@ -33,9 +33,11 @@ def interval(j: Judged) -> str:
 
 
 def sentence(j: Judged) -> str:
-    """The verdict with its condition, or with what is missing."""
+    """The verdict with its condition or its parts, or with what is missing."""
     if j.verdict == ONLY_IF:
         return f"{ONLY_IF}: {j.condition}"
+    if j.verdict == IN_PART:
+        return f"{IN_PART} ({j.condition})"
     return f"{OPEN}: {j.missing}" if j.verdict == OPEN and j.missing else j.verdict
 
 
@@ -75,7 +77,7 @@ def _claim(a: Answer, table: Table) -> list[str]:
     claim = a.claim
     lines = [f"## {claim.id}: {a.verdict.verdict}", "", claim.sentence, "",
              f"Source: {claim.source}. Dimension: {claim.dimension}. Kind: {claim.kind}. Keeps the guarantee: {claim.guarantee}. Rerun: `{claim.command}`.", ""]
-    if a.verdict.verdict in (ONLY_IF, OPEN):
+    if a.verdict.verdict in (ONLY_IF, IN_PART, OPEN):
         lines += [f"**{sentence(a.verdict)}.**", ""]
     if a.why_exploratory:
         lines += [f"The verdict is {a.why_exploratory}.", ""]
@@ -109,7 +111,8 @@ number is the mean of its scenes (a ratio: of their logarithms), a scene the mea
 over scenes by Student's t ([COVERAGE.md](COVERAGE.md)), or what its line says: levels and starts are no samples. cond is a condition number. Every part names its slice.
 Verdicts from runs are exploratory: their rules were changed after numbers were seen, or not registered before them; the confirmed ones are over scenes that no rule was
 tuned on, by a rule that was committed before their first run ("-": none was run). Interval and sign test were changed for all claims when numbers were known
-(2026-11-23): before, a bootstrap drew levels and starts as samples too, and signs were those of scenes x levels. From a sentence to its runs: its sweep's command makes
+(2026-11-23): before, a bootstrap drew levels and starts as samples too, and signs were those of scenes x levels, then of levels got through with every start; now of the
+shares of starts, and thresholds are strict. A claim of which some parts hold and some do not holds in part. From a sentence to its runs: its sweep's command makes
 the records, `run_id` names them in results/claims.json and in their run.json, and `./bench run RUN.json` repeats one.
 Runs are comparable by the gaps at which each pair of bodies carries its load (docs/design.md, Comparability); where a part says "compared by smallest gaps", its numbers are
 of records before version 3.5.0, whose verdicts are by the smallest gap of the whole run: another rule, and the two are never compared with each other. An end of a step

@@ -5,24 +5,10 @@ from __future__ import annotations
 import json
 from functools import cache
 
-from .entry import ClaimError, Sweep, word
-from .merged import limit_of, merged, theta_of
+from .entry import ClaimError, Sweep
+from .inputs import asked_once
+from .merged import limit_of, theta_of
 from .table import Runs
-
-
-@cache
-def _configs(sweep: Sweep) -> dict[str, list[dict]]:
-    """Case (axis 1) -> its configs, one for each value of every further axis, in the first scene and level; `values` has those values."""
-    data = json.loads(sweep.path.read_text())
-    first, found = data["axes"][0]["cases"][0]["set"], {}
-    others = [axis for axis in data["axes"][2:] if word(axis["pointer"]) in sweep.axes]
-    for case in data["axes"][1]["cases"]:
-        configs = [{"values": {}, "set": {}}]
-        for axis in others:
-            name = word(axis["pointer"])
-            configs = [{"values": {**c["values"], name: value}, "set": {**c["set"], axis["pointer"]: value}} for c in configs for value in axis["values"]]
-        found[case["label"]] = [c | {"config": merged(data, sweep.path, first, case["set"], c["set"])} for c in configs]
-    return found
 
 
 def _equal(asked, value) -> bool:
@@ -48,22 +34,58 @@ def rows_of(part: dict, runs: Runs, sweep: Sweep) -> Runs:
     return Runs(runs.about, rows, runs.expected)
 
 
-def _of_case(part: dict, sweep: Sweep, case: str) -> tuple[str, str]:
+@cache
+def _words(sweep: Sweep) -> dict[str, tuple[float | None, str]]:
+    """Note -> theta and limit of its run."""
+    return {note: (theta_of(config), limit_of(config)) for note, config in asked_once(sweep).items()}
+
+
+def _of_case(part: dict, sweep: Sweep, case: str) -> dict[str, set[tuple[float | None, str]]]:
+    """Scene that counts -> theta and limit of its runs of a case, or of all scales of one."""
     wanted = {name: _wanted(part, sweep, name) for name in sweep.axes}
-    configs = [c["config"] for label, found in _configs(sweep).items() if label == case or label.startswith(f"{case} x") for c in found if c["values"] == wanted]
-    if not configs:
-        return "", ""
-    theta, limit = theta_of(configs[0]), limit_of(configs[0])
-    for name, found in (("theta", theta), ("limit", limit)):
-        if name in part and name not in sweep.axes and part[name] != found and case == part.get("case"):
-            raise ClaimError(f"{part.get('says', part)}: {name}: found {part[name]!r}; the runs of {case} in {sweep.file} have {found!r}")
-    return "stiffness as given" if theta is None else f"theta {theta:g}", f"limit {limit}"
+    found: dict[str, set] = {}
+    for note, (scene, _, label, _) in sweep.cases.items():
+        counts = scene in part.get("scenes", [scene]) and (label == case or label.startswith(f"{case} x"))
+        if counts and all(_equal(value, sweep.more[note][name]) for name, value in wanted.items()):
+            found.setdefault(scene, set()).add(_words(sweep)[note])
+    return found
+
+
+def _check(part: dict, sweep: Sweep, case: str, found: dict[str, set[tuple]]) -> None:
+    """Errors: ClaimError where a scene that counts has another theta or limit than the part names."""
+    for k, name in enumerate(("theta", "limit")):
+        unlike = {scene: {words[k] for words in of} for scene, of in found.items() if name in part and {words[k] for words in of} != {part[name]}}
+        if unlike:
+            has = "; ".join(f"{scene}: {', '.join(map(repr, sorted(values, key=str)))}" for scene, values in sorted(unlike.items()))
+            raise ClaimError(f"{part.get('says', part)}: {name}: found {part[name]!r}; the runs of {case} in {sweep.file} have {has} (`scenes` names those that count)")
+
+
+def _pooled(words: dict[str, set[str]], name: str) -> str:
+    """`name` with the word of most scenes, and in brackets which scenes have another: all that is pooled."""
+    by: dict[str, list[str]] = {}
+    for scene, of in words.items():
+        by.setdefault(" or ".join(sorted(of)), []).append(scene)
+    (most, _), *others = sorted(by.items(), key=lambda item: -len(item[1]))
+    rest = "; ".join(f"{', '.join(scenes)}: {word}" for word, scenes in others)
+    return f"{name}{most}" + (f" ({rest})" if rest else "")
+
+
+def _said(found: dict[str, set[tuple]]) -> tuple[str, str]:
+    thetas = {scene: {"stiffness as given" if theta is None else f"theta {theta:g}" for theta, _ in of} for scene, of in found.items()}
+    return _pooled(thetas, ""), _pooled({scene: {limit for _, limit in of} for scene, of in found.items()}, "limit ")
 
 
 def slice_of(part: dict, sweep: Sweep) -> str:
-    """theta and limit in words: once where all cases of the part share them, else case by case."""
-    cases = [part[key] for key in ("case", "over") if key in part] or list(_configs(sweep))
-    found = {case: _of_case(part, sweep, case) for case in cases}
+    """theta and limit in words, of the scenes that count: once where all cases of the part share them, else case by case. Errors: ClaimError where these are
+    not what the part names."""
+    cases = [part[key] for key in ("case", "over") if key in part] or list(dict.fromkeys(place[2] for place in sweep.cases.values()))
+    found = {}
+    for case in cases:
+        if of := _of_case(part, sweep, case):
+            _check(part, sweep, case, of)
+            found[case] = _said(of)
+    if not found:
+        return ""
     if len(set(found.values())) == 1:
         return ", ".join(next(iter(found.values())))
     shared = {limit for _, limit in found.values()}

@@ -5,15 +5,18 @@ from __future__ import annotations
 import hashlib
 import json
 import sys
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
 from ..gap_rule import gaps_of
-from ..record_file import RecordError, read_record
+from ..record_file import RecordError, other_meanings, read_record
 from ..whole_file import write_whole
 from .ends import ENDS, end_of_run
 from .entry import ROOT, Claim, ClaimError, Sweep
+from .inputs import asked, contradiction, inputs_of
+from .merged import base_path
 from .metrics import FOLDER, METRICS
 
 FILE = ROOT / "results" / "claims.json"
@@ -23,13 +26,14 @@ PLACE = ("scene", "level", "case", "seed")
 # run: the first 16 digits of run_id. pair: that is not comparable. Numbers of records before 3.5.0 have no pair, gaps and ends
 STATE = ("outcome", "comparability", "gap_rel", "run", "pair", "gaps", *ENDS)
 ID_DIGITS = 16
+DIGITS = 12  # of a metric, so that a number beside a threshold stays on its side; 6 of gaps and residuals
 
 
 @dataclass
 class Runs:
     """The runs of a sweep as far as rules need them: place -> state and metrics."""
 
-    about: dict  # sha256 of the sweep file, date, machine, program, seconds
+    about: dict  # sha256 of the sweep file, inputs_sha256 of all that it names, date, machine, program, seconds
     rows: list[dict]
     expected: int
 
@@ -37,6 +41,14 @@ class Runs:
     def of_earlier_rule(self) -> bool:
         """Whether verdicts on comparability are those of records before 3.5.0, by the smallest gap of a run."""
         return any(row.get("gaps") is None for row in self.rows)
+
+    def check_one_rule(self, sweep: Sweep) -> None:
+        """Errors: ClaimError where runs are judged comparable by the smallest gap (before 3.5.0) beside others that are by each pair's: no number pools two rules."""
+        earlier = [row for row in self.rows if row["outcome"] == "ok" and row.get("gaps") is None]
+        later = [row for row in self.rows if row["outcome"] == "ok" and row.get("gaps") is not None]
+        if earlier and later:
+            raise ClaimError(f"{sweep.name}: {len(earlier)} records of before 3.5.0 (run_id {earlier[0]['run']}) beside {len(later)} later ones, of another rule of comparability: "
+                             f"remove the folders of the earlier ones, then {sweep.command}")
 
     @property
     def complete(self) -> bool:
@@ -63,12 +75,12 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
     return {sweep: sorted(names) for sweep, names in used.items()}
 
 
-def _rounded(value):
+def _rounded(value, digits: int = 6):
     if isinstance(value, dict):
-        return {key: _rounded(one) for key, one in value.items()}
+        return {key: _rounded(one, digits) for key, one in value.items()}
     if isinstance(value, list):
-        return [_rounded(one) for one in value]
-    return float(f"{value:.6g}") if isinstance(value, float) else value
+        return [_rounded(one, digits) for one in value]
+    return float(f"{value:.{digits}g}") if isinstance(value, float) else value
 
 
 def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
@@ -78,7 +90,7 @@ def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
             "comparability": comparability["verdict"], "gap_rel": _rounded(comparability.get("gap_rel")), "run": record["ids"]["run_id"][:ID_DIGITS],
             "pair": comparability.get("pair", "") if comparability["verdict"] == "not_comparable" else "", "gaps": _rounded(gaps_of(record)),
             **_rounded(end_of_run(record))}
-    return row | {name: _rounded(METRICS[name][3](record)) for name in metrics}
+    return row | {name: _rounded(METRICS[name][3](record), DIGITS) for name in metrics}
 
 
 def seconds_of_run(record: dict) -> float:
@@ -87,29 +99,43 @@ def seconds_of_run(record: dict) -> float:
     return (end - start).total_seconds()
 
 
-def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
-    """The records of a sweep below its folder. Those of other cases than the sweep file has do not count."""
-    rows, records = [], []
+def _records(sweep: Sweep, folder: Path, metrics: list[str]) -> Iterator[tuple[dict, dict]]:
+    """Record and row of every case; what cannot be read, or is of other inputs than the sweep has now, is said and counts as missing."""
+    configs, base = dict(asked(sweep)), base_path(json.loads(sweep.path.read_text()), sweep.path).parent
     for path in sorted(folder.glob("*/run.json")):
         try:
             record = read_record(path)
-            place = sweep.cases.get(record["labels"].get("note", ""))
-            if place is None:
+            note = record["labels"].get("note", "")
+            if note not in sweep.cases:
                 continue
+            if unlike := contradiction(record, configs[note], base):
+                raise RecordError(f"{path}: of other inputs than {sweep.file} has now: {unlike}")
             record[FOLDER] = str(path.parent)
-            row = _row(record, place, metrics) | sweep.more.get(record["labels"]["note"], {})
+            yield record, _row(record, sweep.cases[note], metrics) | sweep.more.get(note, {})
         except RecordError as error:
             print(f"{error}; counted as missing", file=sys.stderr)
-            continue
-        records.append(record)
-        rows.append(row)
+
+
+def _one_version(sweep: Sweep, folder: Path, records: list[dict]) -> str:
+    """The versions of the records in words. Errors: ClaimError where a field means one thing in some of them and another in others."""
+    versions = sorted({r["schema"]["version"] for r in records}, key=lambda v: [int(part) for part in v.split(".")])
+    if records and (fields := other_meanings(versions[0], versions[-1])):
+        raise ClaimError(f"{folder}: records of version {versions[0]} beside those of {versions[-1]}, in which {', '.join(fields)} mean different things: "
+                         f"remove those of the earlier version, then {sweep.command}")
+    return ", ".join(versions)
+
+
+def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
+    """The records of a sweep below its folder. Those of other cases than the sweep file has, or of other inputs, do not count. Errors: ClaimError."""
+    found = list(_records(sweep, folder, metrics))
+    records, rows = [record for record, _ in found], [row for _, row in found]
     keys = (*PLACE, *sweep.axes)
     rows.sort(key=lambda row: tuple(str(row[key]) for key in keys))
     if len({tuple(row[key] for key in keys) for row in rows}) != len(rows):
         raise ClaimError(f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again")
     file = folder / "sweep.json"  # the program's copy of the sweep file that made the records
-    about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "seconds": round(sum(map(seconds_of_run, records)), 1),
-             "first_started_utc": min((r["status"]["started_utc"] for r in records), default="")}
+    about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "inputs_sha256": inputs_of(sweep),
+             "schema": _one_version(sweep, folder, records), "seconds": round(sum(map(seconds_of_run, records)), 1), "first_started_utc": min((r["status"]["started_utc"] for r in records), default="")}
     for name, values in (("date", {r["status"]["started_utc"][:10] for r in records}),
                          ("machine", {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records}),
                          ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),

@@ -23,11 +23,13 @@ class Threshold:
         self.bounds = (number,) if self.low == self.high else (1 / number if log else -number, number)
 
     def judge(self, lower: float, upper: float) -> str:
-        """Of all numbers between two: holds, does not, or both occur."""
-        inside, outside = lower > self.low and upper < self.high, upper < self.low or lower > self.high
+        """Of all numbers between two: holds, does not, or both occur. above, below and beyond are strict, so that a number on the threshold does not hold;
+        within, whose opposite is beyond, has its ends."""
+        inside, outside = lower >= self.low and upper <= self.high, upper < self.low or lower > self.high
         if self.kind == "within":
             return HOLDS if inside else NOT if outside else OPEN
         if self.kind == "beyond":
             return HOLDS if outside else NOT if inside else OPEN
-        above = HOLDS if lower > self.low else NOT if upper <= self.low else OPEN
-        return above if self.kind == "above" or above == OPEN else {HOLDS: NOT, NOT: HOLDS}[above]
+        if self.kind == "above":
+            return HOLDS if lower > self.low else NOT if upper <= self.low else OPEN
+        return HOLDS if upper < self.low else NOT if lower >= self.low else OPEN

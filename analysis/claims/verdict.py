@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import asdict, dataclass, field
 
-HOLDS, ONLY_IF, NOT, OPEN = "holds", "holds only if", "does not hold", "not decided"
+HOLDS, ONLY_IF, IN_PART, NOT, OPEN = "holds", "holds only if", "holds in part", "does not hold", "not decided"
 SCENES, LEVELS = 3, 3  # what a verdict needs; a proof needs neither
 STARTS = 5  # what a level needs where a part says that starts matter
 
@@ -15,7 +15,7 @@ class Judged:
 
     verdict: str
     says: str = ""
-    condition: str = ""  # of ONLY_IF
+    condition: str = ""  # of ONLY_IF the levels or scenes, of IN_PART the parts that hold and those that do not
     missing: str = ""  # of OPEN
     value: float | None = None
     lower: float | None = None  # 95% interval, over scenes
@@ -51,8 +51,15 @@ def _named(j: Judged) -> str:
     return f"{text} ({j.condition})" if j.verdict == ONLY_IF else text
 
 
+def _in_part(good: list[Judged], bad: list[Judged], still: list[Judged]) -> Judged:
+    """Parts are joined by `and`: those that hold are no condition under which the refuted ones would."""
+    groups = (("holds", [_named(j) for j in good]), ("does not hold", [j.says for j in bad]), ("not decided", [j.says for j in still]))
+    return Judged(IN_PART, condition=". ".join(f"{word}: {'; '.join(names)}" for word, names in groups if names))
+
+
 def together(parts: list[Judged], waits_for: str = "") -> Judged:
-    """All parts that are not beside have to hold. What the claim waits for leaves it open, whatever they say."""
+    """All parts that are not beside have to hold. What the claim waits for leaves it open, whatever they say. Where some hold and some do not it holds
+    in part; where every one holds, but some only at levels or in scenes, these are its condition."""
     deciding = [j for j in parts if not j.beside]
     if waits_for or not deciding:
         seen = "; ".join(f"{_named(j)}: {j.verdict}" for j in deciding)
@@ -70,7 +77,6 @@ def together(parts: list[Judged], waits_for: str = "") -> Judged:
         return undecided(missing + (f". Otherwise: {'; '.join(f'{_named(j)}: {j.verdict}' for j in good)}" if good else ""))
     if not good:
         return Judged(NOT)
-    condition = "; ".join(_named(j) for j in good)
-    if bad or still:
-        condition += ". Not: " + "; ".join([j.says for j in bad] + [f"{j.says} (not decided)" for j in still])
-    return Judged(ONLY_IF, condition=condition)
+    if bad:
+        return _in_part(good, bad, still)
+    return Judged(ONLY_IF, condition="; ".join(_named(j) for j in good if j.verdict == ONLY_IF))

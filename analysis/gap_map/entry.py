@@ -22,7 +22,7 @@ from ..record_file import RecordError
 from ..whole_file import write_whole
 from . import figure, plan, report
 from .rows import CANNOT, add_rho, cannot_reach, records_in, row
-from .spec import LIMITS, Cell, GapMapError, Spec, cells, make_sweep, quick, read_spec
+from .spec import LIMITS, Cell, GapMapError, Spec, cells, limit_settings, make_sweep, quick, read_spec
 from .table import Map, read, write
 
 DEFAULT = ROOT / "configs" / "gap_map" / "default.json"
@@ -61,11 +61,25 @@ def run_missing(spec: Spec, beyond: set[tuple[str, float]], runs: Path, jobs: in
         list(pool.map(one, made))
 
 
+def _limit_of(limit: dict) -> tuple:
+    """Whether a resolved config has a strain limit, its shape, argument, policy and scale; whether alone where it has none."""
+    if not limit.get("enabled"):
+        return (False,)
+    policy = limit.get("stiffness_policy") or {}
+    return True, limit.get("shape"), limit.get("argument"), policy.get("name"), policy.get("scale", 1.0)
+
+
+def _limit_asked(spec: Spec, cell: Cell) -> tuple:
+    """The same of what a cell asks for."""
+    asked = limit_settings(cell.limit, *spec.shapes[cell.shape], cell.theta)
+    return _limit_of({"enabled": cell.limit != "off", **{key.rpartition("/")[2]: value for key, value in asked.items()}})
+
+
 def check_cell(spec: Spec, cell: Cell, record: dict, folder: Path) -> None:
     """Errors: GapMapError where a record's settings are not those of its cell."""
     config = record["config"]
-    found = (config["formulation"]["shape"], config["formulation"]["argument"], record["matching"]["theta"], bool((config.get("strain_limit") or {}).get("enabled")))
-    asked = (*spec.shapes[cell.shape], cell.theta, found[3] if cell.limit != "off" else False)
+    found = (config["formulation"]["shape"], config["formulation"]["argument"], record["matching"]["theta"], *_limit_of(config.get("strain_limit") or {}))
+    asked = (*spec.shapes[cell.shape], cell.theta, *_limit_asked(spec, cell))
     size = next(s for s in spec.scenes if s.label == cell.scene).unknowns[cell.resolution]
     if record["scene"]["free_dofs"] != size:
         raise GapMapError(f"{spec.path}#/scenes/{cell.scene}/resolutions/{cell.resolution}/unknowns: found {size}; its runs have {record['scene']['free_dofs']}")

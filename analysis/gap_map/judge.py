@@ -103,6 +103,19 @@ def deepest(rows: list[dict], limit: str, shape: str) -> dict[tuple[str, str], f
     return found
 
 
+def at_target(rows: list[dict], limit: str, theta: float, shapes: list[str]) -> tuple[dict[str, float], list[tuple[str, str]], list[str]]:
+    """Gaps at one target: shape -> median over the places that every shape with any has, these places, and the shapes that reached a gap at none or
+    share no place."""
+    found: dict[str, dict[tuple[str, str], float]] = {shape: {} for shape in shapes}
+    for r in rows:
+        if r["limit"] == limit and r["theta"] == theta and r["shape"] in found and r["outcome"] == "ok" and r["gap"]:
+            found[r["shape"]][r["scene"], r["resolution"]] = r["gap"]
+    some = {shape: of for shape, of in found.items() if of}
+    shared = [place for place in places(rows, limit) if some and all(place in of for of in some.values())]
+    medians = {shape: float(np.median([of[place] for place in shared])) for shape, of in some.items()} if shared else {}
+    return medians, shared, [shape for shape in shapes if shape not in medians]
+
+
 def end_of(rows: list[dict], limit: str, shape: str) -> tuple[float, int] | None:
     """Median over places of the smallest gap that the shape reached, and of how many places."""
     found = list(deepest(rows, limit, shape).values())

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 
 from .figure import TITLES, law_sentence
-from .judge import FAR, MADE, Ratio, at_theta, counts, deepest, end_of, exceptions, failures, pairs, ratio_at, reason, unreached
-from .rows import CANNOT, NO_CONTACT, NOT_RUN
+from .judge import FAR, MADE, Ratio, at_target, at_theta, counts, deepest, end_of, exceptions, failures, pairs, ratio_at, reason, unreached
+from .rows import CANNOT, NO_CONTACT, NOT_RUN, UNKNOWN
 from .spec import LIMITS, REFERENCE
 from .table import Map
 
@@ -61,6 +61,18 @@ def _words(of: dict[str, Ratio]) -> str:
     return ", ".join(f"`{s}` {r.value:.2g} [{r.low:.2g}, {r.high:.2g}]" for s, r in sorted(of.items(), key=lambda item: item[1].value))
 
 
+def _rests(found: Map, limit: str) -> str:
+    """Where contact rests at the smallest target, over the places that all shapes named there reached."""
+    theta = min(found.gaps)
+    gaps, shared, without = at_target(found.rows, limit, theta, found.shapes)
+    asked = f"Asked for {theta:g} d_hat at the largest load, with {TITLES[limit]}, "
+    if not gaps:
+        return f"{asked}there is no place where every shape that reached a gap has one."
+    named = ", ".join(f"{gap:.2g} (`{shape}`)" for shape, gap in sorted(gaps.items(), key=lambda item: item[1]))
+    text = f"{asked}the contact that bears the median load rests at {named} (median of the {len(shared)} scenes and resolutions that all of these reached)"
+    return text + (f"; without a gap there: {', '.join(f'`{shape}`' for shape in without)}." if without else ".")
+
+
 def sentences(found: Map) -> list[str]:
     """What a reader keeps: three sentences, each computed from the rows."""
     off, parts = "off" if "off" in found.limits else found.limits[-1], []
@@ -68,10 +80,7 @@ def sentences(found: Map) -> list[str]:
         of = {s: r for s in _others(found) if (r := at_theta(found.rows, off, s, "cond_p95", theta)) is not None and 2 * r.n >= r.of}
         parts.append(f"at theta {theta:g} " + (_words(of) if of else "no shape got through beside it in half of the scenes"))
     first = f"With {TITLES[off]} and under the same loads, raw condition numbers over the log's are {'; '.join(parts)}."
-    known = sorted((e[0], s) for s in found.shapes if (e := end_of(found.rows, off, s)))
-    second = (f"Asked for {min(found.gaps):g} d_hat at the largest load, with {TITLES[off]}, the contact that bears the median load rests at " + ", ".join(f"{g:.2g} (`{s}`)" for g, s in known)
-              + ".")
-    spans = []
+    second, spans = _rests(found, off), []
     for limit in found.limits:
         of = [[r.value for s in _others(found) for gap in found.gaps if (r := at_theta(found.rows, limit, s, metric, gap)) is not None and 2 * r.n >= r.of] for metric, _ in METRICS[:3]]
         made = [p for p in pairs(found.rows) if p.row["limit"] == limit]
@@ -102,7 +111,7 @@ def markdown(found: Map) -> str:
     low, high = about["unknowns"]
     lines = ["# Gap map", "", f"{about['doc']}." + (" **This is the quick part of it.**" if about["part"] == "quick" else ""), "",
              f"{n['cells']} cells, {about['runs']} runs of {low} to {high} unknowns, {hours:.2g} h of one core in all, diagnosis and pilots included. {n['ok']} reached a gap; {n[CANNOT]} {CANNOT} (theta beyond the "
-             f"peak of the force), {n[NO_CONTACT]} {NO_CONTACT}, {n['failed']} failed, {n[NOT_RUN]} {NOT_RUN}. {about['date']}, {about['machine']}, build {about['build']}.", "",
+             f"peak of the force), {n[NO_CONTACT]} {NO_CONTACT}, {n['failed']} failed, {n[NOT_RUN]} {NOT_RUN}. {sum(r[UNKNOWN] or 0 for r in found.rows)} estimates of condition numbers in contact have no number and are in no percentile. {about['date']}, {about['machine']}, build {about['build']}.", "",
              f"Made by `{about['command']}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the load-weighted median of d/d_hat at converged step ends; theta, the target, is where the largest load of the "
              "pilot would rest. A number is a geometric mean over scenes, [smallest, largest scene], scenes that have both of all.", ""]
     lines += ["## What a reader keeps", "", *(f"{k}. {s}" for k, s in enumerate(sentences(found), 1)), ""]

@@ -20,9 +20,11 @@ STATE = ("outcome", "run", "unknowns", "seconds")
 REACHED = ("gap", "gap_p05", "rho", "rho_p05", "load")
 CONDS = ("cond", "bj", "nc", "nc_bj")  # full raw and block-Jacobi, and both without contact
 METRICS = tuple(f"{name}_{which}" for name in CONDS for which in ("p95", "median", "end", "end_max")) + ("pcg", "pcg_max", "newton")
-COLUMNS = (*PLACE, *STATE, *REACHED, *METRICS)
+UNKNOWN = "unknown"  # estimates of condition numbers in contact that have no number
+COLUMNS = (*PLACE, *STATE, *REACHED, *METRICS, UNKNOWN)
 STAGES = {"cond": ("full", "none"), "bj": ("full", "block_jacobi"), "nc": ("without_contact", "none"), "nc_bj": ("without_contact", "block_jacobi")}
-LARGEST = 1e14  # what a matrix counts with whose condition number is not known
+LARGEST = 1e14  # what a matrix counts with that has no finite condition number
+INFINITE = ("singular", "not_pd")  # statuses of these; one that is not known (not_converged) is no number at all, as in the program's summary
 
 NOT_RUN = "not run"
 CANNOT = "cannot reach"  # theta lies beyond the peak of the force: no contact rests there
@@ -57,7 +59,15 @@ def reached(record: dict, share: float = 0.5) -> float | None:
 
 
 def _samples(line: dict, stage: str, scaling: str) -> list[float]:
-    return [LARGEST if s["cond"] is None else s["cond"] for s in line.get("cond") or [] if (s["matrix"], s["stage"], s["scaling"]) == ("clamped", stage, scaling)]
+    """Condition numbers of a line, in the rule of the program's summary (experiments/run/cond_summary.hpp)."""
+    mine = [s for s in line.get("cond") or [] if (s["matrix"], s["stage"], s["scaling"]) == ("clamped", stage, scaling)]
+    return [LARGEST if s["status"] in INFINITE else s["cond"] for s in mine if s["status"] in INFINITE or s["cond"] is not None]
+
+
+def _unknown(lines: list[dict]) -> int:
+    """Estimates without a number: they are in no percentile, and only counted."""
+    every = [s for line in lines for s in line.get("cond") or [] if s["matrix"] == "clamped" and (s["stage"], s["scaling"]) in STAGES.values()]
+    return sum(s["cond"] is None and s["status"] not in INFINITE for s in every)
 
 
 def in_contact(lines: list[dict]) -> list[dict]:
@@ -65,7 +75,7 @@ def in_contact(lines: list[dict]) -> list[dict]:
 
 
 def conditions(lines: list[dict]) -> dict[str, float | None]:
-    """Of iterations in contact: 95th percentile and median, and median and largest of the last iterations of steps."""
+    """Of iterations in contact: 95th percentile and median, median and largest of the last iterations of steps, and how many have no number."""
     touching = in_contact(lines)
     last = {line["step"]: line for line in touching}
     ends = [last[step] for step in sorted(last) if not any(line["step"] == step and line["iteration"] > last[step]["iteration"] for line in lines)]
@@ -76,7 +86,7 @@ def conditions(lines: list[dict]) -> dict[str, float | None]:
         found |= {f"{name}_p95": float(np.percentile(every, 95)) if every else None, f"{name}_median": float(np.median(every)) if every else None,
                   f"{name}_end": float(np.median(at_end)) if at_end else None, f"{name}_end_max": max(at_end) if at_end else None}
     probes = [line["probe_pcg_iterations"] for line in touching if line.get("probe_pcg_iterations") is not None]
-    return found | {"pcg": float(np.median(probes)) if probes else None, "pcg_max": max(probes) if probes else None}
+    return found | {UNKNOWN: _unknown(touching), "pcg": float(np.median(probes)) if probes else None, "pcg_max": max(probes) if probes else None}
 
 
 def _load(record: dict) -> float | None:

@@ -13,12 +13,13 @@ import sys
 from dataclasses import replace
 from pathlib import Path
 
-from ..record_file import RecordError
+from ..record_file import RecordError, other_meanings
 from . import baseline, calibrate, judge, matrices
 from .baseline import Baseline, BaselineError, Kept
 from .cases import GateError
 from .drift import First, digest
 from .finding import moved
+from .meanings import FAMILIES, PRESENT, shared
 from .metrics import NEVER_RECORDED
 from .records import read_run
 from .report import number
@@ -56,18 +57,23 @@ def _only(old: Baseline | None, new: Baseline, metrics: list[str], path: Path) -
         raise GateError(f"{', '.join(refused)}: class I and II are exact and are never accepted; mend the code")
     if old is None:
         raise GateError(f"{path}: --metric and --better change a baseline, and there is none yet")
+    if fields := [field for field in other_meanings(old.record_version or PRESENT, new.record_version or PRESENT) if FAMILIES[field]]:
+        raise GateError(f"{path}: of record version {old.record_version}, in which {', '.join(fields)} mean something else: --metric and --better would mix two versions; accept all of it")
     if unknown := [name for name in metrics if name not in new.metrics]:
         raise GateError(f"{', '.join(unknown)}: not measured; one of {', '.join(sorted(new.metrics))}")
     return replace(old, metrics=old.metrics | {name: new.metrics[name] for name in metrics})
 
 
 def _remember(old: Baseline, new: Baseline) -> None:
-    """What waits for an issue goes on waiting, and every number keeps what its first baseline said."""
+    """What waits for an issue goes on waiting, and every number keeps what its first baseline said; one that meant something else then starts anew."""
     new.drifts = list(old.drifts)
     at = old.calibrated_at
+    comparable, _, _ = shared(new.case, old.metrics, {}, old.record_version or PRESENT, new.record_version or PRESENT)
     for name, was in old.metrics.items():
         if (now := new.metrics.get(name)) and now is not was:
             now.xfail = was.xfail or now.xfail
+            if name not in comparable:
+                continue
             first = was.first or First(was.envelope.value, at.get("date", ""), at.get("commit", ""), old.reason, digest(old.made_by))
             now.first = replace(first, here=bool(new.made_by) and first.made_by == digest(new.made_by))
 

@@ -12,7 +12,7 @@ from .drift import First, digest
 from .envelope import Envelope
 from .metrics import DIRECTIONS, Metric
 
-NAME, MAJOR, VERSION = "barrierbench.baseline", "1", "1.1.0"
+NAME, MAJOR, VERSION = "barrierbench.baseline", "1", "1.2.0"
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "results" / "baselines"
 
@@ -53,6 +53,11 @@ class Baseline:
     made_by: dict = field(default_factory=dict)
     unsteady: list[str] = field(default_factory=list)  # numbers that only some of the copies had: not judged
     drifts: list[dict] = field(default_factory=list)  # drifts that were accepted on purpose: when, why, and from what to what
+
+    @property
+    def record_version(self) -> str | None:
+        """Schema version of the records that it was made of; None where it does not say, as before 1.2.0."""
+        return self.calibrated_at.get("record_version")
 
     def json(self) -> dict:
         return {"schema": {"name": NAME, "version": VERSION}, "case": self.case, "kind": self.kind, "reason": self.reason,

@@ -70,13 +70,16 @@ def propose(case_name: str, runs: list[Run], reason: str = "") -> Baseline:
     if red:
         raise GateError("\n".join(["a run that breaks an invariant (class I) makes no baseline:",
                                    *(f"  {f.case}: {f.metric}: {f.note}" for f in red)]))
+    versions = sorted({run.version for run in runs})
+    if len(versions) > 1:
+        raise GateError(f"{case_name}: records of versions {', '.join(versions)}: a baseline is of records of one version")
     values, unsteady = samples(runs)
     first, kept = runs[0], envelopes(values)
     if not kept:
         raise GateError(f"{case_name}: no number that all {len(runs)} records have")
     provenance, seeds = first.section("provenance"), runs[-1].section("config").get("seeds") or {}
     at = {"commit": provenance.get("git_commit", ""), "dirty": provenance.get("git_dirty"), "runs": len(runs),
-          "jitter_m": seeds.get("jitter_m", 0), "date": datetime.date.today().isoformat()}
+          "jitter_m": seeds.get("jitter_m", 0), "date": datetime.date.today().isoformat(), "record_version": first.version}
     config = {key: value for key, value in first.section("config").items() if key not in ("threads", "seeds")}
     return Baseline(case_name, "run", reason, at, kept, config, scene_size(first), first.made_by, unsteady)
 

@@ -50,7 +50,8 @@ def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> l
     same_kind = bool(old.made_by["compiler"]) and old.made_by == new.made_by
     another = bool(differ) or old.section("schema").get("version") != new.section("schema").get("version")
     new_verdict = judge.NOT_JUDGED if another else judge.NOT_IN_THE_REFERENCE
-    return findings + judge.numbers(case, judge.around(measure(old)), measure(new), same_kind, new_verdict)
+    before, now, not_compared = meanings.shared(case, judge.around(measure(old)), measure(new), old.version, new.version)
+    return findings + not_compared + judge.numbers(case, before, now, same_kind, new_verdict)
 
 
 def main(argv: list[str]) -> int:

@@ -40,8 +40,10 @@ def same_subject(kept: Baseline, run: Run, path: Path) -> None:
 
 
 def numbers(case: str, kept: Baseline, run: Run, same_build_kind: bool) -> list[Finding]:
-    """The lines of classes III to V of a run. What only some copies had at the calibration is shown and not judged."""
-    lines = judge.numbers(case, kept.metrics, measure(run), same_build_kind)
+    """The lines of classes III to V of a run. What only some copies had at the calibration, or means something else in the baseline's version, is shown and
+    not judged."""
+    metrics, values, not_compared = meanings.shared(case, kept.metrics, measure(run), kept.record_version or meanings.PRESENT, run.version)
+    lines = not_compared + judge.numbers(case, metrics, values, same_build_kind)
     for f in lines:
         if f.metric in kept.unsteady and f.metric not in kept.metrics:
             f.verdict, f.judged, f.note = "not_judged", 0, "only some copies of the calibration had it"
@@ -75,9 +77,11 @@ def judge_case(case: Case, kept: Baseline, path: Path, out: Path) -> tuple[list[
     same_kind = bool(kept.made_by) and kept.made_by == first.made_by
     size_m = first.section("scene").get("extent_m") or 0.0
     lines = numbers(case.name, kept, first, same_kind)
+    findings += meanings.without_version(case.name, kept.record_version)
     findings += _confirmed(lines, case, kept, out / case.name / "repeat", size_m, same_kind)
     samples = []
-    if chaotic := judge.chaotic(kept):
+    metrics, _, _ = meanings.shared(case.name, kept.metrics, {}, kept.record_version or meanings.PRESENT, first.version)
+    if chaotic := judge.chaotic(metrics):
         values = [measure(run) for run in copies_of(case, out / case.name / "copies", CHAOS_COPIES, size_m, CHAOS_SEED)]
         samples = [(case.name, name, k, [v for numbers in values for m, v in numbers.items() if m.name == name]) for name, k in chaotic.items()]
     return findings, samples
@@ -107,7 +111,7 @@ def judge_record(record: Path, path: Path) -> list[Finding]:
     case = kept.case or str(record)
     dropped = [Finding(case, "I", "trace lines dropped", "report", run.torn, 0, judged=0, note="torn last line")] if run.torn else []
     lines = [f for f in invariants.judge(case, run, foreign=True) if not (f.metric == "trace" and run.torn)]
-    lines += meanings.of_other_version(case, [run], run.version)
+    lines += meanings.of_other_version(case, [run], kept.record_version or meanings.PRESENT, run.version) + meanings.without_version(case, kept.record_version)
     return dropped + lines + numbers(case, kept, run, bool(kept.made_by) and kept.made_by == run.made_by)
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from . import drift, shares
-from .baseline import Baseline, Kept, keep
+from .baseline import Kept, keep
 from .envelope import calibrate, holm, ks_p_value
 from .finding import RED, Finding, moved
 from .metrics import LOWER_BETTER, UPPER_BETTER, Metric
@@ -151,5 +151,5 @@ def distributions(samples: list[tuple[str, str, Kept, list[float]]]) -> list[Fin
     return findings
 
 
-def chaotic(baseline: Baseline) -> dict[str, Kept]:
-    return {name: kept for name, kept in baseline.metrics.items() if kept.envelope.sample and kept.gate_class == "III"}
+def chaotic(metrics: dict[str, Kept]) -> dict[str, Kept]:
+    return {name: kept for name, kept in metrics.items() if kept.envelope.sample and kept.gate_class == "III"}

@@ -7,7 +7,7 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..record_file import TRACE, RecordError, is_hashed, leaves, read_record, read_trace, trace_lines
+from ..record_file import TRACE, RecordError, leaves, own_trace, read_record, trace_lines
 
 NOT_FINITE = ("nan", "infinite", "minus_infinite")  # the words of Number in core/record/number.hpp
 MAY_BE_INFINITE = ("error_estimate_m_status", "contraction_status")  # directions that do not shrink bound no error
@@ -69,11 +69,9 @@ def read_run(path: str | Path, allow_not_finite: bool = False) -> Run:
         raise RecordError(f"{path}: no such record; give a run.json or the folder that holds it")
     run = Run(path, read_record(path, foreign=True, allow_not_finite=allow_not_finite))
     trace = path.parent / TRACE
-    if is_hashed(run.record):
-        run.trace = read_trace(run.record, path.parent)
-    elif trace.is_file():  # of another program, or of an earlier version: the invariants count its lines
+    if own_trace(run.record, path.parent):  # the invariants count its lines
         run.trace, run.torn = trace_lines(trace)
-    run.has_trace = bool(run.trace) or trace.is_file()
+    run.has_trace = trace.is_file()
     if not allow_not_finite:
         for file, value in ((path, run.record), (trace, run.trace)):
             if bad := not_finite(value):

@@ -47,11 +47,18 @@ def sweep(name: str, base: Path, common: dict, cases: list[dict], seeds: list[in
     return Sweep(name, json.dumps(data, indent=1) + "\n", tuple(notes))
 
 
+def _last(key: str, above: str) -> str:
+    """The last key of a way; of the name of a formulation `formulation`, since a name alone is a formulation too."""
+    *before, last = [above, *key.strip("/").split("/")]
+    return "formulation" if last == "name" and before[-1] == "formulation" else last
+
+
 def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
     """Contents of the files that settings name: configs under configs, meshes, presets. name: the last key of the way to the node."""
     if isinstance(node, dict):
         for key in sorted(node):
-            yield from _inputs(node[key], folder, key.rpartition("/")[2])
+            of_axis = key == "values" and isinstance(node.get("pointer"), str)
+            yield from _inputs(node[key], folder, _last(node["pointer"] if of_axis else key, name))
     elif isinstance(node, list):
         for one in node:
             yield from _inputs(one, folder, name)

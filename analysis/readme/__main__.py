@@ -14,21 +14,25 @@ from ..record_file import RecordError
 from ..whole_file import write_whole
 from .numbers import FILE, ROOT, RUNS, ReadmeError, gather, read, write
 from .snippets import faults
-from .templates import filled
+from .templates import PARTS, filled, lacking
 
-PAGES = ("README.md", "docs/results.md")
+PAGES = tuple(PARTS)
 
 
 def stale(root: Path, numbers: dict) -> list[str]:
-    """Pages whose generated parts are not what the templates make of the kept numbers."""
+    """Pages whose generated parts are not there, or not what the templates make of the kept numbers."""
     texts = {page: (root / page).read_text() for page in PAGES}
-    return [f"{page}: its numbers are not those of results/demo.json; ./bench readme --write makes them" for page, text in texts.items() if filled(text, numbers, page) != text]
+    absent = [line for page, text in texts.items() for line in lacking(text, page)]
+    return absent + [f"{page}: its numbers are not those of results/demo.json; ./bench readme --write makes them" for page, text in texts.items() if filled(text, numbers, page) != text]
 
 
 def write_pages(root: Path, numbers: dict) -> list[str]:
+    """Errors: ReadmeError for a page without the marks of its parts."""
     changed = []
     for page in PAGES:
         text = (root / page).read_text()
+        if absent := lacking(text, page):
+            raise ReadmeError("\n".join(absent))
         if (made := filled(text, numbers, page)) != text:
             write_whole(root / page, made)
             changed.append(page)

@@ -14,7 +14,8 @@ from pathlib import Path
 
 from .numbers import ROOT
 
-FENCE = re.compile(r"^```(\w+)\n(.*?)^```$", re.DOTALL | re.MULTILINE)
+FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```[ ]*$", re.DOTALL | re.MULTILINE)
+PLAIN = ("", "text")  # what is shown and not run: output, a file's layout
 CHECKED_CONFIG = ("run", "steps", "explain", "check", "causes", "match")  # verbs whose first file is a config
 SAFE = ("list", "help", "eval", "device")  # answer at once
 MADE = ("results/runs", "results/matrices")  # what commands leave; `*` in a name: of a run of the reader's own
@@ -35,7 +36,7 @@ class Snippet:
 
 
 def snippets(text: str, page: str) -> list[Snippet]:
-    return [Snippet(page, text.count("\n", 0, match.start(2)) + 1, match[1], match[2]) for match in FENCE.finditer(text)]
+    return [Snippet(page, text.count("\n", 0, match.start(2)) + 1, match[1].strip(), match[2]) for match in FENCE.finditer(text)]
 
 
 def _ran(words: list[str], **more) -> subprocess.CompletedProcess:
@@ -144,6 +145,12 @@ def _python_faults(snippet: Snippet, program: str) -> list[str]:
 
 
 def faults(text: str, page: str, program: str) -> list[str]:
-    """What does not work, with page and line."""
+    """What does not work, with page and line; a fence of a language that nothing checks as well."""
     judges = {"sh": _shell_faults, "json": _json_faults, "python": _python_faults}
-    return [fault for snippet in snippets(text, page) if snippet.language in judges for fault in judges[snippet.language](snippet, program)]
+    found = []
+    for snippet in snippets(text, page):
+        if snippet.language in judges:
+            found += judges[snippet.language](snippet, program)
+        elif snippet.language not in PLAIN:
+            found.append(f"{snippet.place}: a fence of {snippet.language!r}, which nothing checks; allowed: {', '.join(judges)}, and {PLAIN[1]} for what is no snippet")
+    return found

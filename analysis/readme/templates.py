@@ -61,6 +61,8 @@ def demo_table(numbers: dict) -> list[str]:
 
 def _free_of_crossings(numbers: dict) -> str:
     common = [row for row in numbers["runs"] if row["step_solver"] == "line_search"]
+    if not common:
+        raise ReadmeError("results/demo.json: no run with the step solver line_search, so that nothing is free of crossings; ./bench demo makes them")
     bad = [row for row in common if not row["judged"] or row["crossings"] or row["violations"] or row["unproven"]]
     if not bad:
         return f"In all {len(common)} runs of the demo with the common method no surface passes through another, whichever barrier is used."
@@ -96,12 +98,19 @@ def result_sentences(numbers: dict) -> list[str]:
     return [line for k, text in enumerate(sentences, 1) for line in textwrap.wrap(f"{k}. {text}", WIDTH, subsequent_indent="   ")]
 
 
+PARTS = {"README.md": ("result",), "docs/results.md": ("demo",)}  # page -> its generated parts
 TEMPLATES = {"demo": demo_table, "result": result_sentences}
 
 
 def blocks(text: str) -> dict[str, str]:
     """Name -> content of the generated parts of a page."""
     return {match[2]: match[3] for match in BLOCK.finditer(text)}
+
+
+def lacking(text: str, page: str) -> list[str]:
+    """A line for every part of a page whose marks are not there: what is not marked is never made anew, and would never be stale."""
+    there = blocks(text)
+    return [f"{page}: no <!-- numbers: {name} --> ... <!-- /numbers -->, the marks of a generated part" for name in PARTS.get(page, ()) if name not in there]
 
 
 def filled(text: str, numbers: dict, page: str) -> str:

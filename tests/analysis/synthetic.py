@@ -79,6 +79,9 @@ def write_cycle(folder: Path, change: float, whose: str = "") -> None:
     lines = [_trace_line(3, iteration, 1.0) | {gap: (0.1, 0.6)[iteration % 2], f"{whose}kappa_change_rel": change} for iteration in range(12)]
     with (folder / "trace.jsonl").open("a") as trace:
         trace.writelines(json.dumps(line) + "\n" for line in lines)
+    record = json.loads((folder / "run.json").read_text())
+    record["summary"]["newton_iterations"] += len(lines)
+    (folder / "run.json").write_text(json.dumps(record))
     bind(folder)
 
 

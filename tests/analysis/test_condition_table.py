@@ -1,6 +1,7 @@
 """The table of Spectra beside Lanczos, from samples that are known."""
 
 import json
+from pathlib import Path
 
 import pytest
 
@@ -36,3 +37,18 @@ def test_a_line_counts_who_found_what():
     assert line["both ends proven"] == "1" and line["other status"] == "1" and line["solves: Spectra"] == "33.3 / 60"
     assert line["largest difference of cond"] == "5.0e-03"
     assert "| x | 3 |" in table.page({"x": pairs}, "") and "| all | 3 |" in table.page({"x": pairs}, "")
+
+
+def test_a_label_that_no_case_has_runs_nothing(tmp_path, monkeypatch, capsys):
+    """A misspelt label ran the first case."""
+    asked = []
+    monkeypatch.setattr(table, "run", lambda words: asked.append(json.loads(Path(words[1]).read_text())))
+    monkeypatch.setattr(table, "samples", lambda folder: {("x",): sample()})
+    with pytest.raises(table.TableError, match="configs/sweeps/demo_drape.json: no case 'cubicc'; it has log, quadratic, cubic"):
+        table.of_sweep("demo_drape", ["cubicc"], tmp_path)
+    assert table.main(["--sweeps", "demo_drape", "demo_strip", "--cases", "log", "cubicc", "--out", str(tmp_path / "page.md")]) == 2
+    assert "--cases cubicc: none of demo_drape, demo_strip has it; they have cubic" in capsys.readouterr().err
+    assert not asked and not (tmp_path / "page.md").exists()
+    table.of_sweep("demo_drape", ["log", "cubic"], tmp_path)
+    labels = [case["label"] for axis in asked[0]["axes"] for case in axis["cases"]]
+    assert {"log", "cubic"} <= set(labels) and "quadratic" not in labels and len(asked) == 2

@@ -283,6 +283,9 @@ def test_no_line_of_the_condition_figure_is_cut(tmp_path, monkeypatch):
     lines = [json.loads(line) for line in (tmp_path / "runs/quadratic/trace.jsonl").read_text().splitlines()]
     more = [lines[-2] | {"step": 3, "iteration": k} for k in range(200)]
     (tmp_path / "runs/quadratic/trace.jsonl").write_text("".join(json.dumps(line) + "\n" for line in lines + more))
+    record = json.loads((tmp_path / "runs/quadratic/run.json").read_text())
+    record["summary"]["newton_iterations"] += len(more)
+    (tmp_path / "runs/quadratic/run.json").write_text(json.dumps(record))
     bind(tmp_path / "runs/quadratic")
     figures = []
     monkeypatch.setattr(style, "save", lambda fig, *_: figures.append(fig))

@@ -74,11 +74,35 @@ def test_kept_numbers_come_back_as_they_were(tmp_path):
 
 def test_pages_whose_numbers_are_others_are_named(tmp_path):
     (tmp_path / "docs").mkdir()
-    for page in readme.PAGES:
-        (tmp_path / page).write_text("<!-- numbers: result -->\nold\n<!-- /numbers -->\n")
+    for page, parts in templates.PARTS.items():
+        (tmp_path / page).write_text("".join(f"<!-- numbers: {name} -->\nold\n<!-- /numbers -->\n" for name in parts))
     assert len(readme.stale(tmp_path, kept())) == 2
     assert readme.write_pages(tmp_path, kept()) == list(readme.PAGES)
     assert readme.stale(tmp_path, kept()) == [] and readme.write_pages(tmp_path, kept()) == []
+
+
+def test_a_page_that_lost_its_marks_is_no_page_that_is_right(tmp_path):
+    (tmp_path / "docs").mkdir()
+    (tmp_path / "README.md").write_text("<!-- numbers: result -->\nold\n")  # the end is gone
+    (tmp_path / "docs/results.md").write_text("")
+    found = readme.stale(tmp_path, kept())
+    assert [line.partition(":")[0] for line in found] == list(readme.PAGES) and "no <!-- numbers: demo -->" in found[1]
+    with pytest.raises(numbers.ReadmeError, match="README.md: no <!-- numbers: result -->"):
+        readme.write_pages(tmp_path, kept())
+
+
+def test_a_sentence_on_no_run_is_none():
+    none = kept()
+    none["runs"] = [one | {"step_solver": "article_literal"} for one in none["runs"]]
+    with pytest.raises(numbers.ReadmeError, match="no run with the step solver line_search"):
+        templates.result_sentences(none)
+
+
+@pytest.mark.parametrize("fence", ["bash", "console", "c++", "py", "jsonc x=1"])
+def test_a_fence_that_nothing_checks_is_a_fault(fence):
+    page = f"text\n```\nshown\n```\n```text\nshown\n```\n```{fence}\nls\n```\n"
+    found = snippets.faults(page, "a.md", "no program")
+    assert found == [f"a.md:9: a fence of {fence!r}, which nothing checks; allowed: sh, json, python, and text for what is no snippet"]
 
 
 def test_numbers_are_gathered_from_records_of_the_program(program, tmp_path):

@@ -129,12 +129,20 @@ def test_from_version_3_4_on_a_trace_is_read_only_where_its_record_names_it(fold
         read_trace(read_record(folder / "run.json"), folder)
 
 
-def test_a_number_that_is_none_in_an_old_trace_is_refused_with_its_line(folder):
-    edit(folder, without_trace_hash)
+@pytest.mark.parametrize("hashed", [True, False])
+@pytest.mark.parametrize("change, said", [
+    (lambda lines: [lines[0], json.dumps(json.loads(lines[1]) | {"contacts": {"total": float("nan")}}), *lines[2:]], r"trace.jsonl:2: /contacts/total is not finite"),
+    (lambda lines: [*lines[:-1], lines[-1][:-9]], r"trace.jsonl: found 5 whole lines and a torn one; allowed: 6"),
+    (lambda lines: lines[:-1], r"trace.jsonl: found 5 whole lines; allowed: 6, one for each Newton iteration"),
+    (lambda lines: [*lines, lines[-1]], r"trace.jsonl: found 7 whole lines; allowed: 6")])
+def test_a_hash_makes_no_trace_whole(folder, hashed, change, said):
+    """The record names the very file, and still a line is torn, missing, or has a number that is none."""
     path = folder / "trace.jsonl"
-    lines = path.read_text().splitlines()
-    path.write_text("\n".join([lines[0], json.dumps(json.loads(lines[1]) | {"contacts": {"total": float("nan")}}), *lines[2:]]) + "\n")
-    with pytest.raises(RecordError, match=r"trace.jsonl:2: /contacts/total is not finite"):
+    path.write_text("\n".join(change(path.read_text().splitlines())) + "\n")
+    bind(folder)
+    if not hashed:
+        edit(folder, without_trace_hash)
+    with pytest.raises(RecordError, match=said):
         read_trace(read_record(folder / "run.json"), folder)
 
 

@@ -41,6 +41,13 @@ def test_an_ok_run_in_an_obstacle_or_another_surface_is_told(tmp_path, capsys, g
     assert "1 below 0" in told.out and str(tmp_path / "a") in told.err and str(tmp_path / "b") not in told.err
 
 
+@pytest.mark.parametrize("runs", [{"a": ("ok", _audit(enabled=False))}, {"a": ("ok", _audit())}, {"a": ("newton_stall", _audit(0.1, 0.1))}])
+def test_runs_of_which_none_was_judged_are_no_good_answer(tmp_path, capsys, runs):
+    _write(tmp_path, **runs)
+    assert surface_gaps.main([str(tmp_path)]) == 1
+    assert "surface-gaps: no run that is ok has a measured gap: nothing was judged" in capsys.readouterr().err
+
+
 def test_without_a_record_there_is_nothing_to_say(tmp_path, capsys):
     assert surface_gaps.main([str(tmp_path)]) == 2
     (tmp_path / "run.json").write_text("{")

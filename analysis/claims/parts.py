@@ -1,0 +1,21 @@
+"""What a part of a claim may say, held against its sweep: a word that no rule reads would change nothing and look as if it did."""
+
+from __future__ import annotations
+
+from .entry import ClaimError, Sweep
+
+THRESHOLDS = ("above", "below", "within", "beyond")
+OF_A_PROOF = ("left", "right", "u", "shape", "argument", "loads", "mass_term", "changes")
+KEYS = ("says", "rule", "proof", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", "every", "starts", "reason", "confirm", "limit", "theta",
+        *OF_A_PROOF, *THRESHOLDS)
+
+
+def check(part: dict, sweep: Sweep) -> None:
+    """Errors: ClaimError for a key that no rule reads and the sweep does not vary, and for a scene that the sweep does not have."""
+    says, scenes = part.get("says", part), {place[0] for place in sweep.cases.values()}
+    if unknown := sorted(part.keys() - {*KEYS, *sweep.axes}):
+        raise ClaimError(f"{says}: {unknown[0]}: unknown; allowed: {', '.join(sorted({*KEYS, *sweep.axes}))}")
+    if absent := [name for name in part.get("scenes", []) if name not in scenes]:
+        raise ClaimError(f"{says}: scenes: found {absent[0]!r}; {sweep.file} has {', '.join(sorted(scenes))}")
+    if "scenes" in part and not part["scenes"]:
+        raise ClaimError(f"{says}: scenes: found none; {sweep.file} has {', '.join(sorted(scenes))}")
