@@ -1,4 +1,4 @@
-"""Makes the numbers of README.md and docs/results.md from the records of ./bench demo, and checks them and every snippet.
+"""Makes the numbers of README.md and docs/results.md from the records of ./bench demo and the kept numbers of ./bench claims, and checks them and every snippet.
 
 Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 there is nothing to make it from.
 """
@@ -13,17 +13,23 @@ from ..program import built_program
 from ..record_file import RecordError
 from ..whole_file import write_whole
 from .numbers import FILE, ROOT, RUNS, ReadmeError, gather, read, write
+from .slices import gather as gather_slices
 from .snippets import faults
 from .templates import PARTS, filled, lacking
 
 PAGES = tuple(PARTS)
 
 
+def kept() -> dict:
+    """The numbers of the demo, and those of the claims' slices. Errors: ReadmeError where either is missing."""
+    return read() | {"slices": gather_slices()}
+
+
 def stale(root: Path, numbers: dict) -> list[str]:
     """Pages whose generated parts are not there, or not what the templates make of the kept numbers."""
     texts = {page: (root / page).read_text() for page in PAGES}
     absent = [line for page, text in texts.items() for line in lacking(text, page)]
-    return absent + [f"{page}: its numbers are not those of results/demo.json; ./bench readme --write makes them" for page, text in texts.items() if filled(text, numbers, page) != text]
+    return absent + [f"{page}: its numbers are not those of results/demo.json and results/claims.json; ./bench readme --write makes them" for page, text in texts.items() if filled(text, numbers, page) != text]
 
 
 def write_pages(root: Path, numbers: dict) -> list[str]:
@@ -50,14 +56,14 @@ def main(argv: list[str]) -> int:
     try:
         if args.write:
             write(gather(args.runs))
-            print(f"{FILE}; changed: {', '.join(write_pages(ROOT, read())) or 'no page'}")
+            print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
             return 0
         program = str(built_program(ReadmeError))
-        found = [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)] + stale(ROOT, read())
+        found = [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)] + stale(ROOT, kept())
     except (ReadmeError, RecordError) as error:
         print(f"bench readme: {error}", file=sys.stderr)
         return 2
-    print("\n".join(found) or "every snippet works, and the numbers are those of results/demo.json")
+    print("\n".join(found) or "every snippet works, and the numbers are those of results/demo.json and results/claims.json")
     return 1 if found else 0
 
 

@@ -7,6 +7,7 @@ import statistics
 import textwrap
 
 from .numbers import ReadmeError
+from .slices import sentence
 
 WIDTH = 140
 # series of demo_drape -> what the table calls it
@@ -98,8 +99,8 @@ def result_sentences(numbers: dict) -> list[str]:
     return [line for k, text in enumerate(sentences, 1) for line in textwrap.wrap(f"{k}. {text}", WIDTH, subsequent_indent="   ")]
 
 
-PARTS = {"README.md": ("result",), "docs/results.md": ("demo",)}  # page -> its generated parts
-TEMPLATES = {"demo": demo_table, "result": result_sentences}
+PARTS = {"README.md": ("result", "slices"), "docs/results.md": ("demo",)}  # page -> its generated parts
+TEMPLATES = {"demo": demo_table, "result": result_sentences, "slices": lambda numbers: sentence(numbers["slices"], WIDTH)}
 
 
 def blocks(text: str) -> dict[str, str]:

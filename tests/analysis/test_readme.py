@@ -7,7 +7,9 @@ from pathlib import Path
 import pytest
 
 from analysis.readme import __main__ as readme
-from analysis.readme import numbers, snippets, templates
+from analysis.claims.entry import read_sweep
+from analysis.claims.table import Runs, Table
+from analysis.readme import numbers, slices, snippets, templates
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -24,6 +26,41 @@ def kept(**changed):
             row("demo_drape", "cubic_dynamic x s", scale=2.41, verdict="not_comparable"), row("demo_article", "log", step_solver="article_literal", crossings=7)]
     about = {"processor": "Some CPU", "cores": "2", "blas_kernel": "Haswell", "compiler": "g++ 12", "flags": "-O2", "commit": "0123456789abcdef", "days": "2026-01-02", "runs": 5}
     return {"schema": numbers.NAME, "about": about, "runs": runs}
+
+
+def of_slices(**changed) -> Table:
+    """Runs in which the log's condition number is 2/theta^(1/2) times the cubic's without a limit, and 1.5 times with one; but in block."""
+    sweep, rows = read_sweep(slices.SWEEP), []
+    for note, (scene, level, case, seed) in sweep.cases.items():
+        of = sweep.more[note]
+        ratio = (1.5 if of["enabled"] else 2 / math.sqrt(of["theta"])) if case == "log" else 1.0
+        row = {"scene": scene, "level": level, "case": case, "seed": seed, "outcome": "ok", "comparability": "not_comparable", "gap_rel": 0.1, "run": note, "pair": "", "gaps": {},
+               "cond_p95": 100.0 * ratio, **of}
+        if scene == "block" and of["theta"] < 0.1 and not of["enabled"] and case == "cubic":
+            row |= {"outcome": "stall_overload"}
+        rows.append(row | changed)
+    return Table({slices.SWEEP: Runs({}, rows, len(rows))})
+
+
+def everything(**changed):
+    return kept(**changed) | {"slices": slices.gather(of_slices())}
+
+
+def test_slices_are_those_of_theta_and_limit():
+    found = slices.gather(of_slices())
+    assert [row["theta"] for row in found["off"]] == [0.5, 0.1, 0.01, 0.001]
+    assert [row["ratio"] for row in found["off"]] == pytest.approx([2 / math.sqrt(t) for t in (0.5, 0.1, 0.01, 0.001)])
+    assert [row["ratio"] for row in found["log"]] == pytest.approx([1.5] * 4)
+    assert [(row["scenes"], row["failed"], row["of"]) for row in found["off"]] == [(7, 0, 21), (7, 0, 21), (6, 3, 21), (6, 3, 21)]
+    text = " ".join(" ".join(slices.sentence(found, 140)).split())
+    assert "is 2.8, 6.3, 20 and 63 times the cubic's where contact is alone, and 1.5, 1.5, 1.5 and 1.5 times with a strain limit" in text
+    assert "means over 6 to 7 scenes" in text and "does not get through in 3 of 21 runs at theta 0.01 and 3 of 21 runs at theta 0.001" in text
+
+
+def test_slices_without_runs_are_no_sentence():
+    for table in (Table(), of_slices(outcome="newton_stall")):
+        with pytest.raises(numbers.ReadmeError, match="contact_slices"):
+            slices.gather(table)
 
 
 def test_the_table_has_every_run_and_names_its_processors():
@@ -56,7 +93,7 @@ def test_only_generated_parts_change_and_an_unknown_one_is_refused(tmp_path):
     made = templates.filled(page, kept(), "a.md")
     assert made.startswith("before\n<!-- numbers: result -->\n1. In all") and made.endswith("<!-- /numbers -->\nafter <!-- numbers -->\n") and "old" not in made
     assert templates.filled(made, kept(), "a.md") == made
-    with pytest.raises(numbers.ReadmeError, match="a.md: .*other.*allowed: demo, result"):
+    with pytest.raises(numbers.ReadmeError, match="a.md: .*other.*allowed: demo, result, slices"):
         templates.filled(page.replace("result", "other"), kept(), "a.md")
 
 
@@ -76,19 +113,19 @@ def test_pages_whose_numbers_are_others_are_named(tmp_path):
     (tmp_path / "docs").mkdir()
     for page, parts in templates.PARTS.items():
         (tmp_path / page).write_text("".join(f"<!-- numbers: {name} -->\nold\n<!-- /numbers -->\n" for name in parts))
-    assert len(readme.stale(tmp_path, kept())) == 2
-    assert readme.write_pages(tmp_path, kept()) == list(readme.PAGES)
-    assert readme.stale(tmp_path, kept()) == [] and readme.write_pages(tmp_path, kept()) == []
+    assert len(readme.stale(tmp_path, everything())) == 2
+    assert readme.write_pages(tmp_path, everything()) == list(readme.PAGES)
+    assert readme.stale(tmp_path, everything()) == [] and readme.write_pages(tmp_path, everything()) == []
 
 
 def test_a_page_that_lost_its_marks_is_no_page_that_is_right(tmp_path):
     (tmp_path / "docs").mkdir()
     (tmp_path / "README.md").write_text("<!-- numbers: result -->\nold\n")  # the end is gone
     (tmp_path / "docs/results.md").write_text("")
-    found = readme.stale(tmp_path, kept())
-    assert [line.partition(":")[0] for line in found] == list(readme.PAGES) and "no <!-- numbers: demo -->" in found[1]
+    found = readme.stale(tmp_path, everything())
+    assert [line.partition(":")[0] for line in found] == ["README.md", "README.md", "docs/results.md"] and "no <!-- numbers: demo -->" in found[2]
     with pytest.raises(numbers.ReadmeError, match="README.md: no <!-- numbers: result -->"):
-        readme.write_pages(tmp_path, kept())
+        readme.write_pages(tmp_path, everything())
 
 
 def test_a_sentence_on_no_run_is_none():
@@ -167,4 +204,4 @@ def test_the_pages_have_the_numbers_that_are_kept():
     assert parts == set(templates.TEMPLATES)
     if not numbers.FILE.is_file():
         pytest.skip("results/demo.json is not kept yet: ./bench demo, then ./bench readme --write")
-    assert readme.stale(ROOT, numbers.read()) == []
+    assert readme.stale(ROOT, readme.kept()) == []
