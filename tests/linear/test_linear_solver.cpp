@@ -30,6 +30,14 @@ TEST(LinearSolver, EverySolverOfTheRegistryMeetsTheDenseSolution) {
     EXPECT_EQ(report.status, LinearStatus::ok) << entry.name;
     EXPECT_LT((x - truth).norm(), 1e-10 * truth.norm()) << entry.name;
     EXPECT_LT(report.residual_true, 1e-12);
+    for (const double scale : {1e-9, 1e9}) {  // a residual is relative: it does not know the unit of forces
+      VecXd scaled;
+      const LinearReport same = solver->solve(system, scale * b, scaled);
+      EXPECT_NEAR(same.residual_true, (scale * b - dense(system) * scaled).norm() / (scale * b.norm()),
+                  1e-14);
+      EXPECT_LT(same.residual_true, 1e-12) << entry.name;
+      EXPECT_GT(same.residual_true, 1e-20) << entry.name;
+    }
     VecXd zero;
     EXPECT_EQ(solver->solve(system, VecXd::Zero(b.size()), zero).status, LinearStatus::ok);
     EXPECT_EQ(zero, VecXd::Zero(b.size()));
