@@ -32,8 +32,13 @@ def interval(j: Judged) -> str:
     return f"{number(j.value)} [{number(j.lower)}, {number(j.upper)}]"
 
 
-def sentence(j: Judged) -> str:
-    """The verdict with its condition or its parts, or with what is missing."""
+MANY = 4  # parts: of more a table says how many hold
+
+
+def sentence(j: Judged, brief: bool = False) -> str:
+    """The verdict with its condition or its parts, or with what is missing. brief: of many parts how many hold, for a cell of a table."""
+    if brief and j.verdict == IN_PART and sum(j.groups) > MANY:
+        return f"{IN_PART}: {j.groups[0]} parts of {sum(j.groups)} hold, {j.groups[1]} do not, {j.groups[2]} are not decided"
     if j.verdict == ONLY_IF:
         return f"{ONLY_IF}: {j.condition}"
     if j.verdict == IN_PART:
@@ -60,7 +65,7 @@ def _part(j: Judged) -> list[str]:
 def confirmed_word(a: Answer) -> str:
     if a.proven:
         return "closed form"
-    return sentence(a.confirmed) if a.confirmed else a.state.word
+    return sentence(a.confirmed, brief=True) if a.confirmed else a.state.word
 
 
 def _confirmation(a: Answer) -> list[str]:
@@ -123,7 +128,7 @@ that is not asked to converge has a residual, in tolerances of a step that is.
 def _short(a: Answer) -> str:
     if a.verdict.verdict == OPEN and a.claim.waits_for:
         return f"{OPEN}: waits for {a.claim.waits_for}"
-    return sentence(a.verdict)
+    return sentence(a.verdict, brief=True)
 
 
 def main_number(j: Judged) -> str:
@@ -163,5 +168,5 @@ def text(answers: list[Answer]) -> str:
     lines = []
     for a in answers:
         j = a.main
-        lines += textwrap.wrap(f"{a.claim.id:4} {sentence(a.verdict)}; confirmed: {confirmed_word(a)}" + (f"  [{main_number(j)}]" if j else ""), WIDTH, subsequent_indent="     ")
+        lines += textwrap.wrap(f"{a.claim.id:4} {sentence(a.verdict, brief=True)}; confirmed: {confirmed_word(a)}" + (f"  [{main_number(j)}]" if j else ""), WIDTH, subsequent_indent="     ")
     return "\n".join(lines)

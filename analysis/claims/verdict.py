@@ -16,6 +16,7 @@ class Judged:
     verdict: str
     says: str = ""
     condition: str = ""  # of ONLY_IF the levels or scenes, of IN_PART the parts that hold and those that do not
+    groups: tuple[int, ...] = ()  # of IN_PART: how many parts hold, do not, and are not decided
     missing: str = ""  # of OPEN
     value: float | None = None
     lower: float | None = None  # 95% interval, over scenes
@@ -54,7 +55,7 @@ def _named(j: Judged) -> str:
 def _in_part(good: list[Judged], bad: list[Judged], still: list[Judged]) -> Judged:
     """Parts are joined by `and`: those that hold are no condition under which the refuted ones would."""
     groups = (("holds", [_named(j) for j in good]), ("does not hold", [j.says for j in bad]), ("not decided", [j.says for j in still]))
-    return Judged(IN_PART, condition=". ".join(f"{word}: {'; '.join(names)}" for word, names in groups if names))
+    return Judged(IN_PART, condition=". ".join(f"{word}: {'; '.join(names)}" for word, names in groups if names), groups=tuple(len(names) for _, names in groups))
 
 
 def together(parts: list[Judged], waits_for: str = "") -> Judged:

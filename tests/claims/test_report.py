@@ -70,3 +70,13 @@ def test_what_holds_in_part_says_which_parts(tmp_path):
 def test_one_scene_has_no_interval():
     alone = ratio({"says": "", "sweep": "s", "metric": "newton", "case": "x", "over": "y", "above": 1}, runs(lambda s, lv, c, k: {"newton": 2.0 if c == "x" else 1.0}, scenes=("a",)))
     assert report.interval(alone) == "2 (one scene: no interval)"
+
+
+def test_of_many_parts_a_table_says_how_many_hold():
+    def part(k: int, verdict: str) -> Judged:
+        return Judged(verdict, says=f"part {k}", missing="a scene" if verdict == "not decided" else "")
+
+    few = together([part(1, "holds"), part(2, "does not hold")])
+    assert report.sentence(few, brief=True) == report.sentence(few) == "holds in part (holds: part 1. does not hold: part 2)"
+    many = together([part(k, verdict) for k, verdict in enumerate(("holds", "holds", "does not hold", "not decided", "not decided", "not decided"))])
+    assert report.sentence(many, brief=True) == "holds in part: 2 parts of 6 hold, 1 do not, 3 are not decided" and "part 4" in report.sentence(many)
