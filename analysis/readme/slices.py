@@ -34,6 +34,11 @@ def gather(table: Table | None = None) -> dict[str, list[dict]]:
     return found
 
 
+def _times(ratio: float) -> str:
+    """Two digits, without a power of ten."""
+    return f"{float(f'{ratio:.2g}'):g}"
+
+
 def _listed(values: list[str]) -> str:
     return f"{', '.join(values[:-1])} and {values[-1]}"
 
@@ -42,7 +47,7 @@ def sentence(found: dict[str, list[dict]], width: int) -> list[str]:
     """What theta and the strain limit do to the ratio of condition numbers, as item 4 of the results."""
     off, on = (found[limit] for limit in LIMITS)
     scenes, thetas = [row["scenes"] for row in off + on], _listed([f"{row['theta']:g}" for row in off])
-    alone, limited = (_listed([f"{row['ratio']:.2g}" for row in rows]) for rows in (off, on))
+    alone, limited = (_listed([_times(row["ratio"]) for row in rows]) for rows in (off, on))
     failed = [f"{row['failed']} of {row['of']} runs at theta {row['theta']:g}" for row in off if row["failed"]]
     text = (f"4. Result 2 is one slice. theta says how small a gap, theta times d_hat, the largest load may need. At theta {thetas} the 95th percentile of the logarithm's condition "
             f"numbers is {alone} times the cubic's where contact is alone, and {limited} times with a strain limit, whose own stiffness hides that of contact (means over "
