@@ -38,7 +38,7 @@ MANY = 4  # parts: of more a table says how many hold
 def sentence(j: Judged, brief: bool = False) -> str:
     """The verdict with its condition or its parts, or with what is missing. brief: of many parts how many hold, for a cell of a table."""
     if brief and j.verdict == IN_PART and sum(j.groups) > MANY:
-        return f"{IN_PART}: {j.groups[0]} parts of {sum(j.groups)} hold, {j.groups[1]} do not, {j.groups[2]} are not decided"
+        return f"{IN_PART} (of {sum(j.groups)} parts: {j.groups[0]} upheld, {j.groups[1]} refuted, {j.groups[2]} not decided)"
     if j.verdict == ONLY_IF:
         return f"{ONLY_IF}: {j.condition}"
     if j.verdict == IN_PART:

@@ -79,4 +79,4 @@ def test_of_many_parts_a_table_says_how_many_hold():
     few = together([part(1, "holds"), part(2, "does not hold")])
     assert report.sentence(few, brief=True) == report.sentence(few) == "holds in part (holds: part 1. does not hold: part 2)"
     many = together([part(k, verdict) for k, verdict in enumerate(("holds", "holds", "does not hold", "not decided", "not decided", "not decided"))])
-    assert report.sentence(many, brief=True) == "holds in part: 2 parts of 6 hold, 1 do not, 3 are not decided" and "part 4" in report.sentence(many)
+    assert report.sentence(many, brief=True) == "holds in part (of 6 parts: 2 upheld, 1 refuted, 3 not decided)" and "part 4" in report.sentence(many)
