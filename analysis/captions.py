@@ -5,7 +5,7 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable
 
-SETTINGS = ("scene", "matching_rule", "step_solver", "integrator", "linear_solver", "d_hat_m", "dt_s")
+SETTINGS = ("scene", "matching_rule", "step_solver", "integrator", "linear_solver", "d_hat_m", "dt_s", "steps", "dt_min_s")
 
 
 PLACE = ("machine_cpu_model", "machine_cores", "provenance_threads", "provenance_blas_kernel", "provenance_git_commit")
@@ -16,12 +16,24 @@ def _distinct(rows: Iterable[dict], column: str) -> str:
     return ", ".join(dict.fromkeys(str(row[column]) for row in rows if row.get(column) not in (None, "")))
 
 
+def _settings(rows: list[dict], column: str) -> str:
+    """As _distinct; where most runs share a value, the others say which series they are of."""
+    of: dict[str, list[str]] = {}
+    for row in rows:
+        value = row.get(column)
+        if value not in (None, "") and value == value:  # nan: not in the record
+            of.setdefault(f"{value:g}" if isinstance(value, float) else str(value), []).append(str(row.get("series", "")))
+    most = max(map(len, of.values()), default=0)
+    few = 2 * (len(rows) - most) < len(rows)
+    return ", ".join(f"{value} ({', '.join(names)})" if few and len(names) < most else value for value, names in of.items())
+
+
 def caption(shown: str, rows: list[dict]) -> str:
     """Wrapped text. `shown`: what the figure shows, in sentences; `rows`: its runs, as in load.run_row()."""
     lines = [shown]
     if not rows:
         return textwrap.fill(shown, 100) + "\n"
-    named = {column: _distinct(rows, column) for column in SETTINGS}
+    named = {column: _settings(rows, column) for column in SETTINGS}
     lines.append("Settings: " + "; ".join(f"{column} {value}" for column, value in named.items() if value) + ".")
     cpu, cores, threads, blas, commit = (_distinct(rows, column) for column in PLACE)
     lines.append(

@@ -117,7 +117,20 @@ def condition_of(records: Records, run: str, scaling: str, stage: str = "full", 
     return c[(c["run"] == run) & (c["scaling"] == scaling) & (c["stage"] == stage) & (form == matrix)].sort_values("n")
 
 
+def step_spans(records: Records, run: str) -> pd.DataFrame:
+    """`start` and `length` (s of simulated time) of every step of a run. A step that got nowhere is as long as most."""
+    if records.steps.empty:
+        return pd.DataFrame(columns=["start", "length"], dtype=float)
+    ends = records.steps[records.steps["run"] == run].set_index("step")["t_s"].astype(float)
+    starts = ends.shift(fill_value=0.0)
+    lengths = ends - starts
+    return pd.DataFrame({"start": starts, "length": lengths.where(lengths > 0, lengths.median())})
+
+
 def places_in_time(records: Records, run: str, estimates: pd.DataFrame) -> pd.Series:
-    """Step + iteration / (iterations of that step): nothing is cut off, and a stalled step squeezes no other one."""
-    length = records.trace[records.trace["run"] == run].groupby("step")["iteration"].max() + 1
-    return estimates["step"] + estimates["iteration"] / estimates["step"].map(length)
+    """Simulated time (s): the start of the step and its share of iteration / (iterations of that step). Nothing is cut off, a stalled step squeezes no other
+    one, and runs with other steps stand at the same time."""
+    count = records.trace[records.trace["run"] == run].groupby("step")["iteration"].max() + 1
+    spans = step_spans(records, run)
+    share = estimates["iteration"] / estimates["step"].map(count)
+    return estimates["step"].map(spans["start"]) + share * estimates["step"].map(spans["length"])

@@ -19,6 +19,7 @@ from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 
 from .captions import caption  # noqa: E402
 from .record_file import other_meanings  # noqa: E402
+from .ticks import make_readable  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
 HOLLOW = r"hollow markers: the run failed, is not valid, or a quantile (5, 50 or 95 % of the load) of gap/$\hat{{d}}$ between two bodies at converged step ends is not within a factor {ratio:g} of {reference}"
@@ -173,7 +174,12 @@ def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "defaul
         label=name_of(row),
     )
     if end_mark and row["outcome"] != "ok" and len(x) > 0:
-        axis.plot(x[-1:], y[-1:], linestyle="none", marker="x", markersize=6, markeredgewidth=1.4, color=style.color, gid=FAILURE)
+        draw_failure(axis, x[-1], y[-1], style.color)
+
+
+def draw_failure(axis, x: float, y: float, color: str) -> None:
+    """The cross at the end of a line."""
+    axis.plot([x], [y], linestyle="none", marker="x", markersize=6, markeredgewidth=1.4, color=color, gid=FAILURE)
 
 
 def marker_sentence(runs: pd.DataFrame) -> str:
@@ -216,14 +222,14 @@ def letter_panels(axes) -> None:
         axis.set_title(f"({letter})", loc="left", fontweight="bold")
 
 
-def reference_line(axis, y: float, label: str, dash: str = "-") -> None:
-    """A thin horizontal line with its meaning written on it, at the right end. It counts as no data, and the axis
-    reaches to it. After the scale of the axis is set."""
+def reference_line(axis, y: float, label: str, dash: str = "-", below: bool = False) -> None:
+    """A thin horizontal line with its meaning written on it (or below), at the right end. It counts as no data, and the
+    axis reaches to it. After the scale of the axis is set."""
     low, high = axis.get_ylim()
     axis.set_ylim(min(low, y / 1.2), max(high, 1.2 * y))
     axis.axhline(y, color="#666666", linewidth=0.5, linestyle=dash, gid=REFERENCE)
-    text = axis.annotate(label, (0.995, y), xycoords=("axes fraction", "data"), xytext=(0, 1), textcoords="offset points",
-                         ha="right", va="bottom", fontsize=6, color="#444444",
+    text = axis.annotate(label, (0.995, y), xycoords=("axes fraction", "data"), xytext=(0, -2 if below else 1), textcoords="offset points",
+                         ha="right", va="top" if below else "bottom", fontsize=6, color="#444444",
                          bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5})
     text.set_in_layout(False)
 
@@ -269,6 +275,7 @@ def save(fig, stem: Path, numbers: pd.DataFrame, shown: str, runs: pd.DataFrame 
     shown: sentences on what the figure shows; runs: where settings, machine and day are taken from.
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
+    make_readable(fig.axes)
     paths = [stem.with_name(stem.name + suffix) for suffix in (".png", ".pdf", ".csv", ".txt")]
     fig.savefig(paths[0], metadata={"Software": None})
     fig.savefig(paths[1], metadata={"CreationDate": None, "Producer": None, "Creator": None})

@@ -126,7 +126,7 @@ def write_all(table: Table, asker: Eval) -> None:
     write(table, FILE)
     write_whole(ROOT / "results" / "CLAIMS.md", report.markdown(answers, table))
     drawn = figure.draw(answers, RUNS / "figure" / "claims")
-    for claim in (a.claim for a in answers if a.claim.frontier and a.claim.frontier["sweep"] in table.sweeps):
+    for claim in (a.claim for a in answers if frontiers.has_runs(a.claim, table)):
         drawn += frontiers.draw(claim, table.sweeps[claim.frontier["sweep"]], RUNS / "figure" / f"policies_{claim.id}")
     for path in drawn:
         if path.suffix in (".png", ".txt"):

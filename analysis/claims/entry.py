@@ -19,6 +19,8 @@ REQUIRED = ("id", "source", "sentence", "dimension", "guarantee", "kind")
 KINDS = ("runs", "closed form", "by dimension", "by construction")  # what makes it true or false; the last two are trivial
 SEEDS = "/seeds/main"
 SOLVER = "/step_solver/name"
+METHOD = "/method"
+METHODS = ROOT / "configs" / "methods"
 OPTIONAL = ("schema", "parts", "waits_for", "note", "rule_changes", "frontier")
 
 
@@ -38,7 +40,7 @@ class Claim:
     waits_for: str = ""  # what has to be built before it can be decided
     note: str = ""
     rule_changes: tuple[str, ...] = ()  # of a rule after numbers were seen
-    frontier: dict = field(default_factory=dict, hash=False)  # sweep, cost and axes of the table and figure of who gets how far (frontiers.py)
+    frontier: dict = field(default_factory=dict, hash=False)  # sweep, cost, axes, and which runs are bad, of the table and figure of who gets how far (frontiers.py)
 
     @property
     def sweeps(self) -> list[str]:
@@ -107,12 +109,18 @@ def read_claim(name: str, folder: Path = FOLDER) -> Claim:
         raise ClaimError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
     if data["kind"] not in KINDS:
         raise ClaimError(f"{path}: /kind: found {data['kind']!r}; one of {', '.join(KINDS)}")
-    if "frontier" in data and set(data["frontier"]) != {"sweep", "cost", "axes"}:
-        raise ClaimError(f"{path}: /frontier: sweep, cost and axes are needed; found {', '.join(data['frontier'])}")
+    if "frontier" in data and set(data["frontier"]) - {"bad"} != {"sweep", "cost", "axes"}:
+        raise ClaimError(f"{path}: /frontier: sweep, cost and axes are needed, bad may be given; found {', '.join(data['frontier'])}")
     if not data.get("parts") and not data.get("waits_for"):
         raise ClaimError(f"{path}: neither parts that decide it nor waits_for")
     return Claim(**{key: data[key] for key in REQUIRED}, parts=tuple(data.get("parts", ())), waits_for=data.get("waits_for", ""),
                  note=data.get("note", ""), rule_changes=tuple(data.get("rule_changes", ())), frontier=data.get("frontier", {}))
+
+
+def method_set(name: str | None) -> dict:
+    """Pointer -> value of a published method (configs/methods); of none, or one that the program does not know, nothing."""
+    file = METHODS / f"{name}.json"
+    return _read(file)["set"] if name and file.is_file() else {}
 
 
 def word(pointer: str) -> str:
@@ -161,5 +169,5 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
         note = note_of(name, labels)
         cases[note] = scene, level, labels[1], int(labels[seeds[0]].removeprefix("main="))
         more[note] = {word(axes[k]["pointer"]): json.loads(labels[k].partition("=")[2]) for k in others}
-    solvers = {case["label"]: case["set"][SOLVER] for case in axes[1]["cases"] if SOLVER in case["set"]}
+    solvers = {case["label"]: solver for case in axes[1]["cases"] if (solver := case["set"].get(SOLVER, method_set(case["set"].get(METHOD)).get(SOLVER)))}
     return Sweep(name, hashlib.sha256(path.read_bytes()).hexdigest(), cases, more, {word(axes[k]["pointer"]): axes[k]["values"] for k in others}, path, solvers)

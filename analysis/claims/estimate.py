@@ -74,16 +74,3 @@ def wilson(successes: int, n: int) -> tuple[float, float]:
 
     found = binomtest(successes, n).proportion_ci(CONFIDENCE, method="wilson")
     return float(found.low), float(found.high)
-
-
-SEED, DRAWS = 20261122, 2000
-
-
-def interval(cells: Cells, resample_scenes: bool = False) -> tuple[float, float]:
-    """Bootstrap of the starts of ONE path (matching/fronts.py): how far jitter moves it. No verdict on a claim uses it."""
-    lists = [starts for levels in cells.values() for starts in levels.values()]
-    if resample_scenes or len(lists) != 1:
-        raise ValueError("a bootstrap over scenes or levels does not cover (coverage.py); student() is the interval over scenes")
-    starts, random = np.asarray(lists[0], float), np.random.default_rng(SEED)
-    drawn = starts[random.integers(len(starts), size=(DRAWS, len(starts)))].mean(axis=-1)
-    return float(np.quantile(drawn, 0.025)), float(np.quantile(drawn, 0.975))

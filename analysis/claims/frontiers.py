@@ -11,20 +11,22 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
-from .. import style
+from .. import series, style
 from ..robustness import Frontier, Trial, expected_cost, frontier, profile, success
 from .ends import end_of_case
 from .entry import Claim, ClaimError, read_sweep
 from .estimate import wilson
 from .metrics import METRICS
-from .outcomes import hopeless
+from .outcomes import asked, good, hopeless
+from .success import read_for
 from .table import Runs, Table
 
 MIDDLE = "nominal"  # the level that all axes start from
-LOOKS = {"published": ("#D55E00", "D"), "per_iteration": ("#E69F00", "s"), "per_step": ("#CC79A7", "v"), "consistent": ("#332288", "*"),
+LOOKS = {"published": ("#D55E00", "D"), "ours_per_iteration": ("#E69F00", "s"), "ours_per_step": ("#CC79A7", "v"), "ours_consistent": ("#332288", "*"),
          "fixed_cubic": ("#009E73", "^"), "fixed_log": ("#0072B2", "o")}
-SHOWN = ("Ways to a stiffness over {n} problems of the sweep `{sweep}` (scenes x levels x starts), nothing retuned{left_out}. (a) Data profile: share of the problems that were solved with at "
-         "most so many {cost}; a run that failed is never solved. (b) Share of the runs of a level, over all scenes and starts, that got through: E, m, n, v are Young's modulus, "
+SHOWN = ("Ways to a stiffness over {n} problems of the sweep `{sweep}` (scenes x levels x starts), nothing retuned{left_out}. A run gets through when it {asked}. (a) Data profile: share of the problems that were solved with at "
+         "most so many {cost}; a run that failed is never solved.")
+SHARES = (" (b) Share of the runs of a level, over all scenes and starts, that got through: E, m, n, v are Young's modulus, "
          "mass, resolution and speed of impact times the number, beside the nominal level.")
 
 
@@ -56,32 +58,32 @@ def value_of(level: str, axis: str, middle: float) -> float | None:
         return None
 
 
-def _trial(row: dict, value: float, cost: float) -> Trial:
-    return Trial(f"{row['scene']} {row['level']} {row['seed']}", value, row["outcome"] == "ok", cost)
+def _trial(row: dict, value: float, cost: float, bad: str | None) -> Trial:
+    return Trial(f"{row['scene']} {row['level']} {row['seed']}", value, good(row, bad), cost)
 
 
-def trials(runs: Runs, case: str, cost: str) -> list[Trial]:
-    """Runs of a case for shares, costs and profiles: scenes x levels that no case gets through are left out."""
-    left_out = hopeless(runs)
-    return [_trial(row, 0.0, _cost(row, cost)) for row in runs.rows if row["case"] == case and (row["scene"], row["level"]) not in left_out]
+def trials(runs: Runs, case: str, cost: str, bad: str | None = None) -> list[Trial]:
+    """Runs of a case for shares, costs and profiles: scenes x levels that no case gets through are left out. bad: as of a part (outcomes.py)."""
+    left_out = hopeless(runs, bad)
+    return [_trial(row, 0.0, _cost(row, cost), bad) for row in runs.rows if row["case"] == case and (row["scene"], row["level"]) not in left_out]
 
 
-def along(runs: Runs, case: str, axis: str, middle: float) -> list[Trial]:
+def along(runs: Runs, case: str, axis: str, middle: float, bad: str | None = None) -> list[Trial]:
     """All runs of a case at the levels of an axis, for its frontier: what nobody gets through bounds it as well. No cost is asked."""
     values = [(row, value_of(row["level"], axis, middle)) for row in runs.rows if row["case"] == case]
-    return [_trial(row, value, 0.0) for row, value in values if value is not None]
+    return [_trial(row, value, 0.0, bad) for row, value in values if value is not None]
 
 
-def _share(runs: Runs, case: str, every: list[Trial]) -> str:
+def _share(runs: Runs, case: str, every: list[Trial], bad: str | None) -> str:
     """Share of runs, and of scenes in which every run gets through, whose interval is over scenes."""
-    left_out, through = hopeless(runs), {}
+    left_out, through = hopeless(runs, bad), {}
     for row in runs.rows:
         if row["case"] == case and (row["scene"], row["level"]) not in left_out:
-            through[row["scene"]] = through.get(row["scene"], True) and row["outcome"] == "ok"
-    good, n = sum(through.values()), len(through)
-    low, high = wilson(good, n)
+            through[row["scene"]] = through.get(row["scene"], True) and good(row, bad)
+    whole, n = sum(through.values()), len(through)
+    low, high = wilson(whole, n)
     share = success(every)
-    return f"{share.ok} of {share.n} runs; every run in {good} of {n} scenes [{low:.3f}, {high:.3f}]"
+    return f"{share.ok} of {share.n} runs; every run in {whole} of {n} scenes [{low:.3f}, {high:.3f}]"
 
 
 def _reach(f: Frontier) -> str:
@@ -91,9 +93,9 @@ def _reach(f: Frontier) -> str:
     return f"{']' if f.fails_below is not None else ''}{f.low:g} to {f.high:g}{'[' if f.fails_above is not None else ''}"
 
 
-def _left_out(runs: Runs) -> str:
+def _left_out(runs: Runs, bad: str | None) -> str:
     """How many places are left out, and which; empty when none is."""
-    places = hopeless(runs)
+    places = hopeless(runs, bad)
     if not places:
         return ""
     n = sum(row["case"] == runs.rows[0]["case"] and (row["scene"], row["level"]) in places for row in runs.rows)
@@ -101,27 +103,34 @@ def _left_out(runs: Runs) -> str:
     return f"{len(places)} of {every} scenes x levels ({n} runs of each case) are left out, since no case gets through: {', '.join(sorted(' '.join(p) for p in places))}"
 
 
+def has_runs(claim: Claim, table: Table) -> bool:
+    """Whether there is a frontier and its runs. Numbers that were kept before the frontier asked for more are of other runs."""
+    runs = table.sweeps.get(claim.frontier.get("sweep", ""))
+    return bool(runs and runs.rows) and {claim.frontier["cost"], *read_for(claim.frontier.get("bad"))} <= runs.rows[0].keys()
+
+
 def lines(claim: Claim, table: Table) -> list[str]:
     """The table for results/CLAIMS.md; nothing for a claim without a frontier or without its runs."""
-    if not claim.frontier or claim.frontier["sweep"] not in table.sweeps:
+    if not has_runs(claim, table):
         return []
     runs, cost, axes = table.sweeps[claim.frontier["sweep"]], claim.frontier["cost"], claim.frontier["axes"]
-    left_out = _left_out(runs)
+    bad = claim.frontier.get("bad")
+    left_out = _left_out(runs, bad)
     found = [f"![data profile and shares of the policies](../docs/policies_{claim.id}.png)", "",
-             f"Over `{claim.frontier['sweep']}`: runs that get through, and the scenes in which every run does [95% over scenes, Wilson], {METRICS[cost][0]} of all runs over the number of successes (ert), and the frontier: the range of "
+             f"Over `{claim.frontier['sweep']}`: runs that get through ({asked(claim.frontier)}), and the scenes in which every run does [95% over scenes, Wilson], {METRICS[cost][0]} of all runs over the number of successes (ert), and the frontier: the range of "
              "each axis, from the nominal level outwards, in which every run of every scene and start gets through; a bracket that opens outwards means that the next tested value fails."
              + (f" The frontier counts every run. From share and ert {left_out}." if left_out else ""), "",
              f"| case | gets through | ert ({cost}) | " + " | ".join(f"frontier of {axis}" for axis in axes) + " |", "|" + "---|" * (len(axes) + 3)]
     for case, label in case_labels(claim, runs).items():
-        every = trials(runs, case, cost)
+        every = trials(runs, case, cost, bad)
         ert = expected_cost(every)
-        reaches = [_reach(frontier(along(runs, case, axis, middle), middle)) for axis, middle in axes.items()]
-        found.append(f"| {label} | {_share(runs, case, every)} | {'-' if ert is None else f'{ert:.4g}'} | " + " | ".join(reaches) + " |")
+        reaches = [_reach(frontier(along(runs, case, axis, middle, bad), middle)) for axis, middle in axes.items()]
+        found.append(f"| {label} | {_share(runs, case, every, bad)} | {'-' if ert is None else f'{ert:.4g}'} | " + " | ".join(reaches) + " |")
     return [*found, ""]
 
 
-def _profiles(axis, runs: Runs, names: dict[str, str], cost: str) -> list[dict]:
-    spent = {case: trials(runs, case, cost) for case in names}
+def _profiles(axis, runs: Runs, names: dict[str, str], cost: str, bad: str | None) -> list[dict]:
+    spent = {case: trials(runs, case, cost, bad) for case in names}
     costs = [t.cost for every in spent.values() for t in every if t.cost > 0]
     left, right, numbers = 0.9 * min(costs), max(costs), []
     for case, every in spent.items():
@@ -144,13 +153,13 @@ def _order(level: str, axes: dict) -> tuple:
     return (0, 0.0)
 
 
-def _shares(axis, runs: Runs, labels: dict[str, str], axes: dict) -> list[dict]:
-    names, left_out = list(labels), hopeless(runs)
+def _shares(axis, runs: Runs, labels: dict[str, str], axes: dict, bad: str | None) -> list[dict]:
+    names, left_out = list(labels), hopeless(runs, bad)
     levels = sorted({row["level"] for row in runs.rows}, key=lambda level: _order(level, axes))
     share, numbers = np.full((len(names), len(levels)), math.nan), []
     for i, case in enumerate(names):
         for j, level in enumerate(levels):
-            found = [row["outcome"] == "ok" for row in runs.rows if row["case"] == case and row["level"] == level and (row["scene"], level) not in left_out]
+            found = [good(row, bad) for row in runs.rows if row["case"] == case and row["level"] == level and (row["scene"], level) not in left_out]
             if not found:
                 continue
             share[i, j] = sum(found) / len(found)
@@ -169,12 +178,30 @@ def _two_lines(label: str) -> str:
     return "\n".join([name, *textwrap.wrap("(" + end, 26)]) if end else name
 
 
+def _rank(claim: Claim, names: dict[str, str]) -> list[str]:
+    """The cases that the claim compares first, in the order of its parts."""
+    compared = [case for part in claim.parts for case in (part.get("case"), part.get("over")) if case in names]
+    return list(dict.fromkeys([*compared, *names]))
+
+
 def draw(claim: Claim, runs: Runs, stem: Path) -> list[Path]:
-    names = case_labels(claim, runs)
-    fig, axes = plt.subplots(1, 2, figsize=(style.WIDE_IN * 1.25, 2.9), layout="constrained", width_ratios=(1, 1.35))
-    numbers = _profiles(axes[0], runs, names, claim.frontier["cost"]) + _shares(axes[1], runs, names, claim.frontier["axes"])
-    style.letter_panels(axes)
-    handles, labels = axes[0].get_legend_handles_labels()
-    fig.legend(handles, labels, loc="outside lower center", ncols=6, frameon=False)
-    problems = {(row["scene"], row["level"], row["seed"]) for row in runs.rows if (row["scene"], row["level"]) not in hopeless(runs)}
-    return style.save(fig, stem, pd.DataFrame(numbers), SHOWN.format(n=len(problems), left_out=f"; {left_out}" if (left_out := _left_out(runs)) else "", sweep=claim.frontier["sweep"], cost=claim.frontier["cost"]))
+    """The figure, and the profiles that it has no room for in stem_more."""
+    names, bad, cost = case_labels(claim, runs), claim.frontier.get("bad"), claim.frontier["cost"]
+    problems = {(row["scene"], row["level"], row["seed"]) for row in runs.rows if (row["scene"], row["level"]) not in hopeless(runs, bad)}
+    left_out = _left_out(runs, bad)
+    shown = SHOWN.format(n=len(problems), left_out=f"; {left_out}" if left_out else "", sweep=claim.frontier["sweep"], cost=cost, asked=asked(claim.frontier))
+    paths = []
+    for part in series.parts(names, _rank(claim, names), stem.name):
+        some = {case: names[case] for case in part.names}
+        if part.suffix:
+            fig, axis = plt.subplots(figsize=(style.WIDE_IN / 1.6, 2.9), layout="constrained")
+            numbers = _profiles(axis, runs, some, cost, bad)
+        else:
+            fig, (axis, table) = plt.subplots(1, 2, figsize=(style.WIDE_IN * 1.25, 2.9), layout="constrained", width_ratios=(1, 1.35))
+            numbers = _profiles(axis, runs, some, cost, bad) + _shares(table, runs, names, claim.frontier["axes"], bad)
+            style.letter_panels([axis, table])
+        handles, labels = axis.get_legend_handles_labels()
+        fig.legend(handles, labels, loc="outside lower center", ncols=5, frameon=False)
+        said = f"{part.says} {shown.replace('(a) ', '')}" if part.suffix else f"{shown}{SHARES} {part.says}"
+        paths += style.save(fig, stem.with_name(stem.name + part.suffix), pd.DataFrame(numbers), said.strip())
+    return paths

@@ -6,7 +6,9 @@ import copy
 import json
 from pathlib import Path
 
-PRESETS = Path(__file__).resolve().parents[2] / "configs" / "formulations"
+from .entry import METHOD, ROOT, method_set
+
+PRESETS = ROOT / "configs" / "formulations"
 WITHOUT_LIMIT = ("bodies", "resting_block_1d")  # scenes that have no strain limit of their own (experiments/scenes)
 
 
@@ -35,10 +37,23 @@ def base_of(data: dict, path: Path) -> dict:
     return json.loads(base_path(data, path).read_text())
 
 
+def _length(config: dict, pointer: str) -> None:
+    """steps and duration_s replace each other, as in the program; a new dt leaves the duration."""
+    time = config.get("time")
+    if not isinstance(time, dict) or (pointer == "/time/dt_s" and "duration_s" not in time):
+        return
+    for key in {"/time/steps": ["duration_s"], "/time/duration_s": ["steps"], "/time/dt_s": ["steps"]}.get(pointer, ()):
+        time.pop(key, None)
+
+
 def merged(data: dict, path: Path, *sets: dict) -> dict:
+    """A method lies over the base and under all settings of the sweep, as in the program."""
     config = base_of(data, path)
-    for pointers in (data.get("set", {}), *sets):
+    given = [data.get("set", {}), *sets]
+    methods = [pointers[METHOD] for pointers in given if METHOD in pointers]
+    for pointers in (method_set(methods[-1] if methods else None), *given):
         for pointer, value in pointers.items():
+            _length(config, pointer)
             put(config, pointer, value)
     return config
 

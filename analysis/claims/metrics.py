@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..figures.kappa_cycle import SETTLED, UNSETTLED_ITERATIONS
 from ..record_file import read_trace
+from .success import FAILURES, RESIDUAL, TIME, residual_max, time_asked
 
 
 def _at(record: dict, *place: str):
@@ -113,4 +114,7 @@ METRICS = {
     "kappa_cycles": ("steps in which a contact's kappa changes by more than 1% in ten iterations in a row", "1", False, _kappa_cycles),
     "stopped": ("1 when a step failed or a surface was crossed", "1", False, _stopped),
     "unsettled": ("1 when a stiffness did not settle", "1", False, _unsettled),
+    TIME: ("simulated time that a run was asked for", "s", False, time_asked),
+    RESIDUAL: ("largest residual at a step end", "tolerances", False, residual_max),
+    **{name: (meaning, "1", False, read) for name, (meaning, read) in FAILURES.items()},
 }

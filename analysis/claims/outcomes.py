@@ -2,29 +2,50 @@
 
 from __future__ import annotations
 
+import math
+from collections import Counter
 from fractions import Fraction
 
 from .cells import complete, needed, starts_text
 from .entry import ClaimError
 from .estimate import of_scenes, sign_test, wilson
 from .numbers import by_place
+from .success import COMMON, COMMON_WORDS, RESIDUAL, ROUNDING, TIME, failures
 from .table import Runs
 from .verdict import HOLDS, NOT, ONLY_IF, SCENES, Judged, undecided
 
 LEVEL = 0.05
 
 
-def _good(row: dict, bad: str | None) -> bool:
-    if bad is not None and row[bad] is None:
-        raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {bad}: its record lacks what that is counted in")
-    return row["outcome"] == "ok" if bad is None else not row[bad]
+def _failures(row: dict, bad: str | None) -> list[str]:
+    """In what a run failed; without `bad` its outcome."""
+    if bad is None:
+        return [] if row["outcome"] == "ok" else [row["outcome"]]
+    if absent := [name for name in failures(bad) if row[name] is None]:
+        raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {absent[0]}: its record lacks what that is counted in")
+    return [name for name in failures(bad) if row[name]]
+
+
+def good(row: dict, bad: str | None) -> bool:
+    return not _failures(row, bad)
+
+
+def check_times(rows: list[dict], cases: list[str]) -> None:
+    """Errors: ClaimError where the cases are not asked for one simulated time at one scene and level: what they reach then compares nothing."""
+    firsts: dict[tuple[str, str], dict] = {}
+    for row in rows:
+        if row["case"] not in cases:
+            continue
+        first = firsts.setdefault((row["scene"], row["level"]), row)
+        if first[TIME] is None or row[TIME] is None or not math.isclose(first[TIME], row[TIME], rel_tol=ROUNDING):
+            raise ClaimError(f"{row['scene']} {row['level']}: {first['case']} is asked for {first[TIME]} s and {row['case']} for {row[TIME]} s; equal simulated times are needed (/time/duration_s)")
 
 
 def _cells(runs: Runs, case: str, part: dict) -> dict[tuple[str, str], list[bool]]:
     found: dict[tuple[str, str], list[bool]] = {}
     for (scene, level, _), row in sorted(by_place(runs, case, part["sweep"]).items()):
         if scene in part.get("scenes", [scene]):
-            found.setdefault((scene, level), []).append(_good(row, part.get("bad")))
+            found.setdefault((scene, level), []).append(good(row, part.get("bad")))
     return found
 
 
@@ -82,17 +103,34 @@ def _through(cells: dict) -> dict[str, bool]:
 
 def hopeless(runs: Runs, bad: str | None = None) -> set[tuple[str, str]]:
     """Scenes x levels where no run of any case gets through: they compare nothing."""
-    good: dict[tuple[str, str], bool] = {}
+    found: dict[tuple[str, str], bool] = {}
     for row in runs.rows:
         place = row["scene"], row["level"]
-        good[place] = good.get(place, False) or _good(row, bad)
-    return {place for place, any_good in good.items() if not any_good}
+        found[place] = found.get(place, False) or good(row, bad)
+    return {place for place, any_good in found.items() if not any_good}
+
+
+def _residual(rows: list[dict]) -> str:
+    found = [row[RESIDUAL] for row in rows if row.get(RESIDUAL) is not None]
+    return f", residuals up to {max(found):.2g} tolerances" if found else ""
+
+
+def _why(part: dict, runs: Runs, kept: set[tuple[str, str]]) -> str:
+    """Of every case how many runs were judged, in what they failed, where a run may fail in more than one way, and their residuals where these are read."""
+    said = []
+    for case in (part[key] for key in ("case", "over") if key in part):
+        rows = [row for row in runs.rows if row["case"] == case and (row["scene"], row["level"]) in kept]
+        found = Counter(name for row in rows for name in _failures(row, part["bad"]))
+        said.append(f"{case}: {len(rows)} judged" + "".join(f", {n} {name}" for name, n in sorted(found.items())) + (_residual(rows) if part["bad"] == COMMON else ""))
+    return "; ".join(said)
 
 
 def outcomes(part: dict, runs: Runs) -> Judged:
     """`case` gets through everything, or (needs: "more") through more than `over`: a sign test over scenes, of those scenes and levels alone that have what a
     verdict needs. Where the same share of starts gets through at every place it is no more than the other. bad: a metric that is 1 where a run failed in
-    the way meant, in the place of any outcome but ok."""
+    the way meant, in the place of any outcome but ok; or `common`, the success that all methods share (success.py)."""
+    if part.get("bad") == COMMON:
+        check_times(runs.rows, [part[key] for key in ("case", "over") if key in part])
     left_out = hopeless(runs, part.get("bad"))
     cases = [{place: starts for place, starts in _cells(runs, part[key], part).items() if place not in left_out} for key in ("case", "over") if key in part]
     if not cases[0]:
@@ -101,7 +139,7 @@ def outcomes(part: dict, runs: Runs) -> Judged:
     enough = len({scene for scene, _ in kept})
     judged = [{place: starts for place, starts in cells.items() if place in kept} for cells in cases] if enough >= SCENES else cases
     more = _numbers(part, runs, judged[0], left_out)
-    more["counted"] += fell_out
+    more["counted"] += fell_out + (f"; {_why(part, runs, judged[0].keys())}" if "bad" in part else "")
     if enough < SCENES:
         return undecided(f"indication: {enough} scenes have {needed(part)}, {SCENES} are needed", **more)
     if "over" in part and (decided := _beside(part, *judged, more)):
@@ -128,17 +166,24 @@ def _beside(part: dict, mine: dict, other: dict, more: dict) -> Judged | None:
     return Judged(HOLDS, **more) if part.get("needs") == "more" else None
 
 
+def asked(part: dict) -> str:
+    """What a run has to do, in words."""
+    if "bad" not in part:
+        return "ends ok"
+    return COMMON_WORDS if part["bad"] == COMMON else f"is without {part['bad']}"
+
+
 def _numbers(part: dict, runs: Runs, mine: dict, left_out: set) -> dict:
     """The share of scenes in which every run gets through, with Wilson's interval over scenes; the mean share of runs stands beside it."""
     shares = _shares(mine)
-    n, good = sum(map(len, mine.values())), sum(map(sum, mine.values()))
+    n, through = sum(map(len, mine.values())), sum(map(sum, mine.values()))
     whole = sum(low == 1 for _, _, low, _, _, _ in shares)
     lower, upper = wilson(whole, len(shares))
-    counted = f"every run in {whole} of {len(shares)} scenes; {good} of {n} runs, mean share of scenes {sum(value for _, value, *_ in shares) / len(shares):.3g}"
+    counted = f"every run in {whole} of {len(shares)} scenes; {through} of {n} runs, mean share of scenes {sum(value for _, value, *_ in shares) / len(shares):.3g}"
     if left := sorted(" ".join(place) for place in left_out):
         counted += f" ({', '.join(left)} left out: no case gets through)"
     return {"value": whole / len(shares), "lower": lower, "upper": upper, "bounds": (1.0,), "threshold": "every run gets through",
-            "measures": f"share of scenes in which every run {'is without ' + part['bad'] if 'bad' in part else 'ends ok'}: {part['case']}", "counted": counted,
+            "measures": f"share of scenes in which every run {asked(part)}: {part['case']}", "counted": counted,
             "per_scene": shares, "scenes": len(shares), "starts": starts_text([[float(x) for x in starts] for starts in mine.values()]),
             "runs": [row["run"] for row in runs.rows if row["case"] == part["case"]][:1]}
 

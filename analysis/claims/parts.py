@@ -6,15 +6,16 @@ from .entry import ClaimError, Sweep
 
 THRESHOLDS = ("above", "below", "within", "beyond")
 OF_A_PROOF = ("left", "right", "u", "shape", "argument", "loads", "mass_term", "changes")
-KEYS = ("says", "rule", "proof", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", "every", "starts", "reason", "confirm", "limit", "theta",
-        *OF_A_PROOF, *THRESHOLDS)
+OF_A_RULE = ("says", "rule", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", "every", "starts", "reason", "confirm", "limit", "theta",
+             *THRESHOLDS)
+KEYS = ("proof", *OF_A_RULE, *OF_A_PROOF)
 
 
 def check(part: dict, sweep: Sweep) -> None:
     """Errors: ClaimError for a key that no rule reads and the sweep does not vary, and for a scene that the sweep does not have."""
     says, scenes = part.get("says", part), {place[0] for place in sweep.cases.values()}
-    if unknown := sorted(part.keys() - {*KEYS, *sweep.axes}):
-        raise ClaimError(f"{says}: {unknown[0]}: unknown; allowed: {', '.join(sorted({*KEYS, *sweep.axes}))}")
+    if unknown := sorted(part.keys() - {*OF_A_RULE, *sweep.axes}):
+        raise ClaimError(f"{says}: {unknown[0]}: unknown; allowed: {', '.join(sorted({*OF_A_RULE, *sweep.axes}))}")
     if absent := [name for name in part.get("scenes", []) if name not in scenes]:
         raise ClaimError(f"{says}: scenes: found {absent[0]!r}; {sweep.file} has {', '.join(sorted(scenes))}")
     if "scenes" in part and not part["scenes"]:

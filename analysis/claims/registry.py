@@ -19,6 +19,7 @@ from .history import NoHistory, brought
 from .inputs import inputs_of
 from .metrics import METRICS
 from .outcomes import LEVEL
+from .success import read_for
 from .table import Table
 from .verdict import LEVELS, SCENES, STARTS
 
@@ -59,7 +60,7 @@ def read_as(name: str) -> str:
 
 def rule_of(claim: Claim) -> dict:
     parts = confirmed_parts(claim)
-    metrics = {name for part in parts for name in (part.get("metric"), part.get("bad"), (part.get("equal") or {}).get("metric")) if name}
+    metrics = {name for part in parts for name in (part.get("metric"), *read_for(part.get("bad")), (part.get("equal") or {}).get("metric")) if name}
     return {"parts": parts, "metrics": {name: read_as(name) for name in sorted(metrics)}, "statistics": STATISTICS}
 
 

@@ -12,6 +12,7 @@ from .table import Table
 from .verdict import IN_PART, ONLY_IF, OPEN, Judged
 
 WIDTH = 140
+MANY = 4  # parts: of more a table says how many hold
 BY_SMALLEST = "; compared by smallest gaps"
 
 
@@ -30,9 +31,6 @@ def interval(j: Judged) -> str:
     if j.extremes:
         return number(j.value) if j.lower == j.upper else f"{number(j.lower)} to {number(j.upper)}"
     return f"{number(j.value)} [{number(j.lower)}, {number(j.upper)}]"
-
-
-MANY = 4  # parts: of more a table says how many hold
 
 
 def sentence(j: Judged, brief: bool = False) -> str:

@@ -18,6 +18,7 @@ from .entry import ROOT, Claim, ClaimError, Sweep
 from .inputs import asked, contradiction, inputs_of
 from .merged import base_path
 from .metrics import FOLDER, METRICS
+from .success import read_for
 
 FILE = ROOT / "results" / "claims.json"
 RUNS = ROOT / "results" / "runs" / "claims"
@@ -65,13 +66,13 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
     """Sweep -> metrics that some part reads."""
     used: dict[str, set] = {}
     for part in (part for claim in claims for part in claim.parts if "sweep" in part):
-        names = {part.get("metric"), part.get("bad"), (part.get("equal") or {}).get("metric")} - {None}
+        names = {part.get("metric"), *read_for(part.get("bad")), (part.get("equal") or {}).get("metric")} - {None}
         if unknown := names - set(METRICS):
             raise ClaimError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
         for sweep in (part["sweep"], *((part["confirm"]["sweep"],) if "confirm" in part else ())):
             used.setdefault(sweep, set()).update(names)
     for frontier in (claim.frontier for claim in claims if claim.frontier):
-        used.setdefault(frontier["sweep"], set()).add(frontier["cost"])
+        used.setdefault(frontier["sweep"], set()).update((frontier["cost"], *read_for(frontier.get("bad"))))
     return {sweep: sorted(names) for sweep, names in used.items()}
 
 

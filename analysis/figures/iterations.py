@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from .. import style
+from .. import series, style
 from ..load import Records
 
 
@@ -17,6 +17,7 @@ SHOWN = (
     "Newton matrices on which block-Jacobi preconditioned conjugate gradients (PCG), started from zero on one fixed right-hand side, took at most so many "
     "iterations to a relative residual of 1e-6."
 )
+COLUMNS = ["group", "what", "series", "at", "count"]
 
 
 def _ecdf(values: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
@@ -29,23 +30,25 @@ def _rows_of(table: pd.DataFrame, run: str) -> pd.DataFrame:
     return table[table["run"] == run] if not table.empty else table
 
 
-def figure(records: Records, group: str, out: Path) -> list[Path]:
-    runs = style.runs_of(records.runs, group)
-    fig, axes = plt.subplots(1, 3, figsize=(style.WIDE_IN, 2.6), layout="constrained")
+def _draw_run(axes, records: Records, row: pd.Series) -> list[pd.DataFrame]:
+    """The run's line in every panel; the numbers."""
+    steps, trace = _rows_of(records.steps, row["run"]), _rows_of(records.trace, row["run"])
     numbers = []
-    for _, row in runs.iterrows():
-        steps, trace = _rows_of(records.steps, row["run"]), _rows_of(records.trace, row["run"])
-        if not steps.empty:
-            newton = steps["newton_iterations"].to_numpy()
-            style.draw(axes[0], steps["step"].to_numpy(), newton, row, steps="steps-mid")
-            style.draw(axes[1], *_ecdf(newton), row, end_mark=False, steps="steps-post")
-            numbers.append(pd.DataFrame({"what": "newton_per_step", "series": row["series"], "at": steps["step"], "count": newton}))
-        probes = trace[trace["probe_pcg_iterations"].notna()] if not trace.empty else trace
-        if not probes.empty:
-            pcg = probes["probe_pcg_iterations"].to_numpy(dtype=float)
-            style.draw(axes[2], *_ecdf(pcg), row, end_mark=False, steps="steps-post")
-            numbers.append(pd.DataFrame({"what": "probe_pcg", "series": row["series"], "at": probes["n"], "count": pcg}))
-    axes[0].set(xlabel="time step", ylabel="Newton iterations")
+    if not steps.empty:
+        newton = steps["newton_iterations"].to_numpy()
+        style.draw(axes[0], steps["t_s"].to_numpy(), newton, row, steps="steps-mid")
+        style.draw(axes[1], *_ecdf(newton), row, end_mark=False, steps="steps-post")
+        numbers.append(pd.DataFrame({"what": "newton_per_step", "series": row["series"], "at": steps["t_s"], "count": newton}))
+    probes = trace[trace["probe_pcg_iterations"].notna()] if not trace.empty else trace
+    if not probes.empty:
+        pcg = probes["probe_pcg_iterations"].to_numpy(dtype=float)
+        style.draw(axes[2], *_ecdf(pcg), row, end_mark=False, steps="steps-post")
+        numbers.append(pd.DataFrame({"what": "probe_pcg", "series": row["series"], "at": probes["n"], "count": pcg}))
+    return numbers
+
+
+def _set_axes(axes) -> None:
+    axes[0].set(xlabel="time (s)", ylabel="Newton iterations")
     axes[1].set(xlabel="Newton iterations of a step", ylabel="share of steps", ylim=(0, 1.02))
     axes[2].set(xlabel="block-Jacobi PCG iterations", ylabel="share of matrices", ylim=(0, 1.02))
     style.log_if_decades(axes[0])
@@ -57,8 +60,18 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
     style.letter_panels(axes)
     if not axes[2].lines:
         style.not_measured(axes[2])
-    fig.suptitle(f"{group}: work of every step and of every diagnosed matrix", fontsize=8)
-    style.legend_below(fig, axes[0], runs)
-    columns = ["group", "what", "series", "at", "count"]
-    table = pd.concat(numbers).assign(group=group)[columns] if numbers else pd.DataFrame(columns=columns)
-    return style.save(fig, out / f"iterations_{group}", table, f"{SHOWN.format(group=group)} {style.marker_sentence(runs)}", runs)
+
+
+def figure(records: Records, group: str, out: Path) -> list[Path]:
+    """iterations_GROUP, and its supplement where there are more series than one figure holds."""
+    runs, paths = style.runs_of(records.runs, group), []
+    for part, some in series.parts_of_runs(runs, f"iterations_{group}"):
+        fig, axes = plt.subplots(1, 3, figsize=(style.WIDE_IN, 3.2), layout="constrained")
+        numbers = [table for _, row in some.iterrows() for table in _draw_run(axes, records, row)]
+        _set_axes(axes)
+        fig.suptitle(f"{group}: work of every step and of every diagnosed matrix", fontsize=8)
+        style.legend_below(fig, axes[0], runs)
+        table = pd.concat(numbers).assign(group=group)[COLUMNS] if numbers else pd.DataFrame(columns=COLUMNS)
+        shown = " ".join(filter(None, [SHOWN.format(group=group), part.says, style.marker_sentence(runs)]))
+        paths += style.save(fig, out / f"iterations_{group}{part.suffix}", table, shown, some)
+    return paths

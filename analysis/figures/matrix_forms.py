@@ -15,7 +15,7 @@ FORMS = (("clamped", "every element clamped", "-"), ("solved", "solved", ":"))
 SHOWN = (
     "{group}, run {series}: condition number of two matrices of the same Newton iterations. Clamped: negative eigenvalues of every element set to 0, the "
     "matrix that papers compare. Solved: the one that was factorised, the exact Hessian or as far from it as positive definiteness asks; drawn where it is "
-    "another. Left: as it is; right: scaled by block Jacobi."
+    "another. The Newton iterations of a step stand evenly within it. Left: as it is; right: scaled by block Jacobi."
 )
 
 
@@ -38,7 +38,7 @@ def _draw(records: Records, group: str, row: pd.Series, both: dict, out: Path) -
             part = part[part["status"] == "ok"].assign(at=lambda p: places_in_time(records, row["run"], p))
             axis.plot(part["at"], part["cond"], dash, color=color if form == "clamped" else "#000000", marker="o", markersize=2.5, linewidth=0.9, label=name)
             numbers.append(part)
-        axis.set(xlabel="time step (its Newton iterations evenly within it)", ylabel="condition number")
+        axis.set(xlabel="time (s)", ylabel="condition number")
         axis.set_title(title)
         style.log_if_decades(axis)
     style.letter_panels(axes)

@@ -27,6 +27,12 @@ SHOWN = (
     "choice of Hessian for all terms; both axes logarithmic. Dashed line: the tolerance; a step ends when its estimated error, not |dx|, is below. A cross: "
     "not converged."
 )
+JUMP = 10.0  # times |dx| of the iteration before: a jump
+JUMPS = ("Rings: |dx| at least {jump:g} times that of the iteration before: {list}. {switch}The file does not name the matrix of an iteration; a trace does (hessian_t).")
+SWITCH = ("exact_or_clamped tries the exact matrix, and takes the clamped one for two iterations whenever that is not positive definite: where it "
+          "jumps with |dx| above the tolerance, the exact matrix has become positive definite again, but barely, so that its direction is long and the line search takes a part of it. ")
+RING = "ring"  # gid
+AFTER_SADDLE = ", after a direction below the tolerance: the step goes on from a saddle"
 
 
 def _is_number(value) -> bool:
@@ -74,9 +80,44 @@ def numbers(data: dict) -> pd.DataFrame:
     return pd.DataFrame(rows)
 
 
+def jumps(table: pd.DataFrame) -> pd.DataFrame:
+    """Rows of numbers() whose direction is JUMP times that of the iteration before, with `before_m`."""
+    before = table.groupby(["step", "hessian"], sort=False)["dx_inf_m"].shift()
+    return table.assign(before_m=before)[table["dx_inf_m"] >= JUMP * before]
+
+
+def jump_sentence(found: pd.DataFrame, data: dict) -> str:
+    """What a caption says of the rings; empty without one."""
+    if found.empty:
+        return ""
+    failed = {(trial["step"], trial["hessian"]): trial.get("hessian_fallbacks") for trial in data["trials"]}
+    words = []
+    for row in found.itertuples():
+        text = f"{row.hessian}, step {row.step}, iteration {row.iteration} ({row.before_m:.1e} to {row.dx_inf_m:.1e} m)"
+        if row.before_m < row.tolerance_m:
+            text += AFTER_SADDLE
+        elif row.hessian == "exact_or_clamped" and (attempts := failed[row.step, row.hessian]):
+            text += f", failed attempts with the exact matrix in this step: {attempts}"
+        words.append(text)
+    switched = ((found["hessian"] == "exact_or_clamped") & (found["before_m"] >= found["tolerance_m"])).any()
+    return JUMPS.format(jump=JUMP, list="; ".join(words), switch=SWITCH if switched else "")
+
+
+def same_sentence(table: pd.DataFrame) -> str:
+    """Which choices of a step have one line, the last one drawn over the others; empty without any."""
+    words = []
+    for step, of_step in table.groupby("step"):
+        names: dict[tuple, list[str]] = {}
+        for hessian, part in of_step.groupby("hessian", sort=False):
+            names.setdefault(tuple(part["dx_inf_m"]), []).append(hessian)
+        words += [f"{', '.join(same)} in step {step}" for same in names.values() if len(same) > 1]
+    return f"One line: {'; '.join(words)}." if words else ""
+
+
 def figure(data: dict, stem: Path) -> list[Path]:
     """One panel a step. Returns the files that were written."""
     table = numbers(data)
+    found = jumps(table)
     steps = sorted(table["step"].unique())
     fig, axes = plt.subplots(1, len(steps), figsize=(style.WIDE_IN, 2.9), sharey=True, squeeze=False, layout="constrained")
     for axis, step in zip(axes[0], steps):
@@ -85,6 +126,8 @@ def figure(data: dict, stem: Path) -> list[Path]:
             axis.plot(part["iteration"], part["dx_inf_m"], dash, color=color, linewidth=1.1, label=hessian)
             if part["status"].iloc[0] != "converged":
                 axis.plot(part["iteration"].iloc[-1:], part["dx_inf_m"].iloc[-1:], "x", color=color)
+            ring = found[(found["step"] == step) & (found["hessian"] == hessian)]
+            axis.plot(ring["iteration"], ring["dx_inf_m"], linestyle="none", marker="o", markersize=7, markerfacecolor="none", color=color, gid=RING)
         axis.set(xscale="log", yscale="log", xlabel=f"Newton iteration of step {step}, counted from 1")
     for axis in axes[0]:  # the axes share y: its limits are set when all lines are there
         style.reference_line(axis, table["tolerance_m"].iloc[0], "tolerance", "--")
@@ -93,7 +136,8 @@ def figure(data: dict, stem: Path) -> list[Path]:
     style.legend_below(fig, axes[0, 0])
     config = data["config"]
     formulation = config["formulation"].get("name") or config["formulation"].get("shape", "unknown")
-    return style.save(fig, stem, table, SHOWN.format(scene=config["scene"].get("name", "bodies"), formulation=formulation))
+    shown = SHOWN.format(scene=config["scene"].get("name", "bodies"), formulation=formulation)
+    return style.save(fig, stem, table.assign(jump=table.index.isin(found.index)), " ".join(filter(None, [shown, same_sentence(table), jump_sentence(found, data)])))
 
 
 def main(words: list[str] | None = None) -> int:

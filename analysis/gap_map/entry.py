@@ -1,5 +1,7 @@
 """Runs what is missing of a gap map: every shape in every scene, resolution and limit mode at targets from 0.5 to 0.001 d_hat, and what it took against
 the gap that it reached. Writes results/gap_map.json (the numbers used), results/GAP_MAP.md (made of it), docs/gap_map.png and its company.
+The whole takes many hours of one core: --minutes stops it between two sweeps, rows that gap_map.json keeps are not run again, and the page says what is
+not run yet.
 
 Exit codes: 0 written, 2 bad input, or nothing to write.
 """
@@ -7,58 +9,23 @@ Exit codes: 0 written, 2 bad input, or nothing to write.
 from __future__ import annotations
 
 import argparse
-import hashlib
-import json
 import shutil
 import sys
-import time
-from collections.abc import Iterator
-from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 from ..matching.formulations import ROOT, MatchError
-from ..matching.runs import inputs_sha256, run
 from ..record_file import RecordError
 from ..whole_file import write_whole
 from . import figure, plan, report
-from .rows import CANNOT, add_rho, cannot_reach, records_in, row
-from .spec import LIMITS, Cell, GapMapError, Spec, cells, limit_settings, make_sweep, quick, read_spec
-from .table import Map, read, write
+from .kept import about, digests, kept_rows, read_for, source_of
+from .judge import counts
+from .rows import CANNOT, NOT_RUN, add_rho, cannot_reach, records_in, row
+from .runs import folder_of, run_missing
+from .spec import LIMITS, Cell, GapMapError, Spec, cells, limit_settings, quick, read_spec
+from .table import Map, write
 
 DEFAULT = ROOT / "configs" / "gap_map" / "default.json"
 RUNS = ROOT / "results" / "runs" / "gap_map"
-
-
-def groups(spec: Spec, beyond: set[tuple[str, float]]) -> Iterator[tuple[str, list[Cell]]]:
-    """Cells of one scene and resolution, without those that no run can reach."""
-    for scene in spec.scenes:
-        for resolution in scene.resolutions:
-            yield f"{scene.label}-{resolution}", [c for c in cells(spec) if (c.scene, c.resolution) == (scene.label, resolution) and (c.shape, c.theta) not in beyond]
-
-
-def folder_of(spec: Spec, runs: Path, wanted: list[Cell]) -> Path:
-    """Of the records of a scene and resolution. Its name has a hash of everything that they have in common, so that a quick map's are part of the full one's,
-    and records of another base config, mesh or setting are never taken for these."""
-    first = wanted[0]
-    scene = next(s for s in spec.scenes if s.label == first.scene)
-    made = make_sweep(spec, [])
-    common = json.dumps([json.loads(made.text)["set"], scene.settings, scene.resolutions[first.resolution]], sort_keys=True)
-    digest = hashlib.sha256(f"{common} {inputs_sha256(made)}".encode()).hexdigest()
-    return runs / f"{first.scene}-{first.resolution}-{digest[:8]}"
-
-
-def run_missing(spec: Spec, beyond: set[tuple[str, float]], runs: Path, jobs: int) -> None:
-    """One sweep a scene and resolution, so many at a time; what is there is skipped by its run id."""
-    made = [(name, folder_of(spec, runs, wanted), make_sweep(spec, wanted)) for name, wanted in groups(spec, beyond)]
-
-    def one(item) -> None:
-        name, folder, of = item
-        start = time.monotonic()
-        run(of, folder)
-        print(f"gap-map: {name}, {len(of.notes)} runs, {time.monotonic() - start:.0f} s", file=sys.stderr)
-
-    with ThreadPoolExecutor(jobs) as pool:
-        list(pool.map(one, made))
 
 
 def _limit_of(limit: dict) -> tuple:
@@ -87,31 +54,30 @@ def check_cell(spec: Spec, cell: Cell, record: dict, folder: Path) -> None:
         raise GapMapError(f"{folder}/run.json: shape, argument, theta, limit {found}; {asked} is what {cell.label!r} asks for: remove this folder")
 
 
-def collect(spec: Spec, beyond: set[tuple[str, float]], runs: Path) -> tuple[list[dict], list[dict]]:
-    """Rows in the order of the spec, and the records. A cell without a record is named as not run."""
-    found = records_in(folder_of(spec, runs, wanted) for _, wanted in groups(spec, beyond) if wanted)
-    rows, records = [], []
+def collect(spec: Spec, beyond: set[tuple[str, float]], runs: Path, kept: dict[tuple, tuple[dict, dict]]) -> tuple[list[dict], list[dict]]:
+    """Rows in the order of the spec, and their sources: from its record, else as an earlier call kept it. A cell with neither is named as not run."""
+    folders = digests(spec)
+    found = records_in(folder_of(runs, place, folders) for place in folders)
+    rows, sources = [], []
+
+    def index(source: dict) -> int:
+        if source not in sources:
+            sources.append(source)
+        return sources.index(source)
+
     for cell in cells(spec):
         record, folder = found.get(f"gap_map_{spec.name}: {cell.label}", (None, None))
         if (cell.shape, cell.theta) in beyond:
             rows.append(row(cell, None, outcome=CANNOT))
-            continue
-        if record is not None:
+        elif record is not None:
             check_cell(spec, cell, record, folder)
-            records.append(record)
-        rows.append(row(cell, record, folder))
-    return rows, records
-
-
-def about(spec: Spec, command: str, records: list[dict]) -> dict:
-    def words(values) -> str:
-        return ", ".join(sorted(set(values)))
-
-    sizes = [r["scene"]["free_dofs"] for r in records]
-    return {"command": command, "spec_sha256": spec.sha256, "part": spec.part, "doc": spec.doc, "shapes": {k: list(v) for k, v in spec.shapes.items()}, "main": list(spec.main),
-            "gaps": list(spec.gaps), "limits": list(spec.limits), "scenes": {s.label: {"obstacle": s.obstacle, "resolutions": list(s.resolutions)} for s in spec.scenes},
-            "unknowns": [min(sizes), max(sizes)], "runs": len(records), "date": words(r["status"]["started_utc"][:10] for r in records),
-            "machine": words(f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records), "build": words(r["ids"]["build_id"][:16] for r in records)}
+            rows.append(row(cell, record, folder) | {"source": index(source_of(record))})
+        elif cell.key in kept:
+            mine, source = kept[cell.key]
+            rows.append(mine | {"source": index(source)})
+        else:
+            rows.append(row(cell, None))
+    return rows, sources
 
 
 def write_page(found: Map, results: Path, docs: Path, figures: Path) -> None:
@@ -127,7 +93,9 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="bench gap-map", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog=f"limit modes:\n{modes}\nexamples: ./bench gap-map --quick\n          ./bench gap-map --plan")
     parser.add_argument("spec", nargs="?", type=Path, default=DEFAULT, help="a gap map as data (default: configs/gap_map/default.json)")
-    parser.add_argument("--quick", action="store_true", help="the part of the spec under `quick`: minutes, where the whole takes hours")
+    parser.add_argument("--quick", action="store_true", help="run no more than the part of the spec under `quick`: minutes, where the whole takes hours")
+    parser.add_argument("--minutes", type=float, metavar="M", help="begin no further sweep after so many minutes; what is left is said")
+    parser.add_argument("--anew", action="store_true", help="run again what gap_map.json keeps from other machines or sessions")
     parser.add_argument("--plan", action="store_true", help="say what there is to run and how long it would take, by the seconds of runs that are there; run nothing")
     parser.add_argument("--no-run", action="store_true", help="run nothing: judge the records that are there, or the numbers in gap_map.json")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="sweeps at a time, each of one thread (default 1)")
@@ -136,21 +104,31 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     args = parser.parse_args(argv)
     if args.jobs < 1:
         parser.error(f"--jobs: found {args.jobs}; a number from 1 on is needed")
+    if args.minutes is not None and not args.minutes > 0:
+        parser.error(f"--minutes: found {args.minutes}; a number above 0 is needed")
     return args
 
 
-def kept_map(path: Path, spec: Spec) -> Map:
-    found = read(path)
-    if (found.about["spec_sha256"], found.about["part"]) != (spec.sha256, spec.part):
-        raise GapMapError(f"{path}: its numbers are of another {spec.path}, or of its {found.about['part']} part: ./bench gap-map{' --quick' if spec.part == 'quick' else ''}")
-    return found
-
-
-def show_plan(spec: Spec, runs: Path) -> int:
-    beyond = cannot_reach(spec)
-    rows, _ = collect(spec, beyond, runs)
-    print("\n".join(plan.lines(plan.estimate([c for c in cells(spec) if (c.shape, c.theta) not in beyond], rows, {(s.label, r): n for s in spec.scenes for r, n in s.unknowns.items()}))))
+def show_plan(spec: Spec, rows: list[dict], beyond: set[tuple[str, float]]) -> int:
+    sizes = {(s.label, r): n for s in spec.scenes for r, n in s.unknowns.items()}
+    print("\n".join(plan.lines(plan.estimate([c for c in cells(spec) if (c.shape, c.theta) not in beyond], rows, sizes))))
     return 0
+
+
+def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
+    """Runs what may be run and has no row, and writes gap_map.json. Errors: GapMapError, MatchError, RecordError."""
+    beyond, before = cannot_reach(spec), {} if args.anew else kept_rows(kept, spec)
+    if not args.no_run:
+        asked = quick(spec) if args.quick else spec
+        run_missing(spec, [c for c in cells(asked) if (c.shape, c.theta) not in beyond and c.key not in before], args.runs, digests(spec), args.jobs, args.minutes)
+    rows, sources = collect(spec, beyond, args.runs, before)
+    add_rho(spec, rows)
+    command = "./bench gap-map" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")
+    found = Map(about(spec, command, rows, sources), rows)
+    write(found, kept)
+    if left := counts(rows)[NOT_RUN]:
+        print(f"gap-map: {left} of {len(rows)} cells are not run yet: {command}", file=sys.stderr)
+    return found
 
 
 def main(argv: list[str]) -> int:
@@ -158,24 +136,12 @@ def main(argv: list[str]) -> int:
     results = args.results or ROOT / "results"
     kept = results / "gap_map.json"
     try:
-        whole = read_spec(args.spec)
-        spec = quick(whole) if args.quick else whole
+        spec = read_spec(args.spec)
         if args.plan:
-            return show_plan(spec, args.runs)
-        beyond, records = None, []
-        if not (args.no_run and kept.is_file() and not args.runs.is_dir()):
             beyond = cannot_reach(spec)
-            if not args.no_run:
-                run_missing(spec, beyond, args.runs, args.jobs)
-            rows, records = collect(spec, beyond, args.runs)
-        if records:
-            add_rho(spec, rows)
-            command = "./bench gap-map" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}") + (" --quick" if args.quick else "")
-            found = Map(about(spec, command, records), rows)
-            write(found, kept)
-        else:
-            found = kept_map(kept, spec)
-        write_page(found, results, ROOT / "docs" if args.results is None else results, args.runs / "figures")
+            return show_plan(spec, collect(spec, beyond, args.runs, kept_rows(kept, spec))[0], beyond)
+        alone = args.no_run and kept.is_file() and not args.runs.is_dir()  # the page from the kept numbers, without the program
+        write_page(read_for(kept, spec) if alone else make_map(args, spec, kept), results, ROOT / "docs" if args.results is None else results, args.runs / "figures")
     except (GapMapError, MatchError, RecordError) as error:
         print(f"bench gap-map: {error}", file=sys.stderr)
         return 2

@@ -8,11 +8,11 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
-from matplotlib.ticker import FixedLocator, FuncFormatter, NullFormatter, NullLocator
 
 from .. import style
-from .judge import FAR, MADE, Pair, pairs, scatter, steps
-from .rows import ask
+from ..ticks import log_ticks
+from .judge import FAR, MADE, Pair, counts, extent, pairs, scatter, steps
+from .rows import NOT_RUN, ask
 from .spec import LIMITS, REFERENCE
 from .table import Map
 
@@ -25,20 +25,6 @@ SHOWN = ("What a run takes against the gap that its contacts reach: the load-wei
 LAW = ("The area law against what was measured. A point is a run beside that of the log in the same scene, resolution, limit mode and theta, so under the same loads. Up: the ratio of cond at step ends (median "
        "over steps). (a) Across: the ratio of rho at the median gaps that both reached. Filled: contact makes the largest eigenvalue in both (cond at least {made:g} times that without contact). (b) "
        "Across: the same, but not below the ratio that is left without contact. Filled: contact makes the log's. Lines: equal, and a factor {far:g} off. {sentence}")
-
-
-def _ticks(axis, low: float, high: float, most: int = 7) -> None:
-    """Readable ticks of a logarithmic axis: 1, 2, 5 of every decade while that is at most `most`, else decades, every second or third where there are many."""
-    decades = range(math.floor(math.log10(low)), math.ceil(math.log10(high)) + 1)
-    for steps in ((1, 2, 5), (1, 3), (1,)):
-        ticks = [m * 10.0**d for d in decades for m in steps if low <= m * 10.0**d <= high]
-        if 2 <= len(ticks) <= most:
-            break
-    ticks = ticks[::math.ceil(len(ticks) / most)]
-    axis.set_major_locator(FixedLocator(ticks))
-    axis.set_major_formatter(FuncFormatter(lambda x, _: f"{x:g}" if 1e-3 <= x <= 1e3 else f"$10^{{{round(math.log10(x))}}}$"))
-    axis.set_minor_locator(NullLocator())
-    axis.set_minor_formatter(NullFormatter())
 
 
 def _over(found: Map, limit: str, metric: str):
@@ -84,6 +70,12 @@ def _span(values: list[float], least: float) -> tuple[float, float]:
     return low / room, high * room
 
 
+def _part(found: Map) -> str:
+    """Of which runs a figure is; empty where all are there."""
+    left = counts(found.rows)[NOT_RUN]
+    return f"{left} of {len(found.rows)} cells are not run yet; resolution: runs that are there, of those that can be: {extent(found.rows)}." if left else ""
+
+
 def draw_map(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     limits = found.limits
     fig, axes = plt.subplots(len(METRICS), len(limits), figsize=(max(style.WIDE_IN, 2.45 * len(limits)), 1.75 * len(METRICS) + 0.6), layout="constrained", sharex=True, squeeze=False)
@@ -101,12 +93,12 @@ def draw_map(found: Map, shapes: list[str], stem: Path) -> list[Path]:
             axis.axhline(1, color="#666666", linewidth=0.5, gid=style.REFERENCE)
             low, high = _span([1.0] + [float(y) for shown in axis.lines if shown.get_gid() != style.REFERENCE for y in shown.get_ydata()], 3.0)
             axis.set_ylim(low, high)
-            _ticks(axis.yaxis, low, high)
+            log_ticks(axis.yaxis, low, high)
         axes[k, 0].set_ylabel(f"{title}\nover the log's at first")
     low = min([n["gap"] for n in numbers] or [1e-3]) / 1.3
     axes[0, 0].set_xlim(1.0, low)
     for axis in axes[-1]:
-        _ticks(axis.xaxis, low, 1.0, 7 if len(limits) < 3 else 5)
+        log_ticks(axis.xaxis, low, 1.0, 7 if len(limits) < 3 else 5)
         axis.set_xlabel(r"reached gap / $\hat d$ (deeper to the right)")
     handles, labels = axes[0, 0].get_legend_handles_labels()
     for handle, label in zip(handles, labels):
@@ -115,7 +107,8 @@ def draw_map(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     fig.legend(handles, [*labels, "area law"], loc="outside lower center", ncols=6, frameon=False)
     scenes = found.about["scenes"]
     modes = " ".join(f"{TITLES[m][0].upper()}{TITLES[m][1:]}: {LIMITS[m]}." for m in limits if LIMITS[m] != TITLES[m])
-    return style.save(fig, stem, pd.DataFrame(numbers), SHOWN.format(n=len(scenes), scenes=", ".join(scenes), gaps=", ".join(f"{g:g}" for g in found.gaps), modes=modes))
+    shown = SHOWN.format(n=len(scenes), scenes=", ".join(scenes), gaps=", ".join(f"{g:g}" for g in found.gaps), modes=modes)
+    return style.save(fig, stem, pd.DataFrame(numbers), f"{shown} {_part(found)}".strip())
 
 
 def law_sentence(found: list[Pair], what: str) -> str:
@@ -146,8 +139,8 @@ def draw_law(found: Map, stem: Path) -> list[Path]:
         for factor, width in ((1, 0.8), (FAR, 0.4), (1 / FAR, 0.4)):
             axis.plot([low, high], [factor * low, factor * high], color="#666666", linewidth=width, gid=style.REFERENCE, zorder=0)
         axis.set(xlim=(low, high), ylim=(low, high))
-        _ticks(axis.xaxis, low, high)
-        _ticks(axis.yaxis, low, high)
+        log_ticks(axis.xaxis, low, high)
+        log_ticks(axis.yaxis, low, high)
     axes[0].set_ylabel("measured: ratio of cond to the log's")
     style.letter_panels(axes)
     handles, labels = axes[0].get_legend_handles_labels()
@@ -155,7 +148,7 @@ def draw_law(found: Map, stem: Path) -> list[Path]:
     fig.legend(handles, [*labels, "not made by contact"], loc="outside lower center", ncols=4, frameon=False)
     numbers = [{"pair": p.name, "predicted": p.predicted, "predicted_p05": p.predicted_p05, "floor": p.floor, "measured": p.measured, "made": p.made[0], "made_log": p.made[1]} for p in of]
     sentence = f"{law_sentence(of, 'Raw')} {law_sentence(pairs(found.rows, raw=False), 'Block Jacobi')}"
-    return style.save(fig, stem, pd.DataFrame(numbers), LAW.format(made=MADE, far=FAR, sentence=sentence))
+    return style.save(fig, stem, pd.DataFrame(numbers), f"{LAW.format(made=MADE, far=FAR, sentence=sentence)} {_part(found)}".strip())
 
 
 def draw_all(found: Map, folder: Path) -> list[Path]:

@@ -222,3 +222,12 @@ def counts(rows: list[dict]) -> dict[str, int]:
     """How the cells of the map ended."""
     return {"cells": len(rows), "ok": sum(r["outcome"] == "ok" for r in rows), **{word: sum(r["outcome"] == word for r in rows) for word in (CANNOT, NO_CONTACT, NOT_RUN)},
             "failed": sum(r["outcome"] not in ("ok", CANNOT, NO_CONTACT, NOT_RUN) for r in rows)}
+
+
+def extent(rows: list[dict]) -> str:
+    """Of every scene: its resolutions with the runs that are there, of those that can be."""
+    by: dict[str, dict[str, list[bool]]] = {}
+    for r in rows:
+        if r["outcome"] != CANNOT:
+            by.setdefault(r["scene"], {}).setdefault(r["resolution"], []).append(r["outcome"] != NOT_RUN)
+    return "; ".join(f"{scene} " + ", ".join(f"{size}: {sum(there)} of {len(there)}" for size, there in sizes.items()) for scene, sizes in by.items())

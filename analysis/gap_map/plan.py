@@ -6,6 +6,7 @@ import math
 
 import numpy as np
 
+from .rows import PLACE
 from .spec import Cell
 
 GROWTH = 1.7  # power of the unknowns by which seconds grow where too few sizes were measured; a cloth of 192 to 2352 unknowns has it
@@ -25,12 +26,12 @@ def estimate(cells: list[Cell], rows: list[dict], unknowns: dict[tuple[str, str]
     """(scene, resolution) -> runs, those that are there, seconds of one core for the rest. A place with runs has their mean; another one that of the
     nearest size of its scene, or of all scenes, grown with the unknowns; None where nothing at all was measured."""
     timed = [r for r in rows if r["seconds"] and r["unknowns"]]
-    done = {(r["scene"], r["resolution"], r["shape"], r["limit"], r["theta"]) for r in rows if r["seconds"] is not None}
+    done = {tuple(r[c] for c in PLACE) for r in rows if r["seconds"] is not None}
     power = growth([(r["unknowns"], max(r["seconds"], 1e-3)) for r in timed])
     found = {}
     for place in dict.fromkeys((c.scene, c.resolution) for c in cells):
         mine = [c for c in cells if (c.scene, c.resolution) == place]
-        left = sum((c.scene, c.resolution, c.shape, c.limit, c.theta) not in done for c in mine)
+        left = sum(c.key not in done for c in mine)
         near = [r for r in timed if r["scene"] == place[0]] or timed
         each = None
         if near:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 
 from .figure import TITLES, law_sentence
-from .judge import FAR, MADE, Ratio, at_target, at_theta, counts, deepest, end_of, exceptions, failures, pairs, ratio_at, reason, unreached
+from .judge import FAR, MADE, Ratio, at_target, at_theta, counts, deepest, end_of, exceptions, extent, failures, pairs, ratio_at, reason, unreached
 from .rows import CANNOT, NO_CONTACT, NOT_RUN, UNKNOWN
 from .spec import LIMITS, REFERENCE
 from .table import Map
@@ -105,15 +105,22 @@ def _listed(found: list, text) -> list[str]:
     return [f"- {p.name}: {text(p)}" for p in found[:MOST]] + more
 
 
+def _of(found: Map, key: str) -> str:
+    return ", ".join(sorted({source[key] for source in found.about["sources"]}))
+
+
 def markdown(found: Map) -> str:
     about, n = found.about, counts(found.rows)
     hours = sum(r["seconds"] or 0 for r in found.rows) / 3600
     low, high = about["unknowns"]
-    lines = ["# Gap map", "", f"{about['doc']}." + (" **This is the quick part of it.**" if about["part"] == "quick" else ""), "",
-             f"{n['cells']} cells, {about['runs']} runs of {low} to {high} unknowns, {hours:.2g} h of one core in all, diagnosis and pilots included. {n['ok']} reached a gap; {n[CANNOT]} {CANNOT} (theta beyond the "
-             f"peak of the force), {n[NO_CONTACT]} {NO_CONTACT}, {n['failed']} failed, {n[NOT_RUN]} {NOT_RUN}. {sum(r[UNKNOWN] or 0 for r in found.rows)} estimates of condition numbers in contact have no number and are in no percentile. {about['date']}, {about['machine']}, build {about['build']}.", "",
-             f"Made by `{about['command']}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the load-weighted median of d/d_hat at converged step ends; theta, the target, is where the largest load of the "
-             "pilot would rest. A number is a geometric mean over scenes, [smallest, largest scene], scenes that have both of all.", ""]
+    lines = ["# Gap map", "", f"{about['doc']}.", ""]
+    if n[NOT_RUN]:
+        lines += [f"**{n[NOT_RUN]} of {n['cells']} cells are not run yet**: `./bench gap-map` goes on. By scene, runs that are there of those that can be: {extent(found.rows)}. Every number below is of the runs that are there.", ""]
+    lines += [f"{n['cells']} cells, {about['runs']} runs of {low} to {high} unknowns, {hours:.2g} h of one core in all, diagnosis and pilots included. {n['ok']} reached a gap; {n[CANNOT]} {CANNOT} (theta beyond the "
+              f"peak of the force), {n[NO_CONTACT]} {NO_CONTACT}, {n['failed']} failed, {n[NOT_RUN]} {NOT_RUN}. {sum(r[UNKNOWN] or 0 for r in found.rows)} estimates of condition numbers in contact have no number and are in no percentile. "
+              f"{_of(found, 'date')}; {_of(found, 'machine')}; build {_of(found, 'build')}.", "",
+              f"Made by `{about['command']}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the load-weighted median of d/d_hat at converged step ends; theta, the target, is where the largest load of the "
+              "pilot would rest. Raw and block Jacobi are 95th percentiles of cond over iterations in contact. A number is a geometric mean over scenes, [smallest, largest scene], scenes that have both of all.", ""]
     lines += ["## What a reader keeps", "", *(f"{k}. {s}" for k, s in enumerate(sentences(found), 1)), ""]
     lines += ["![the gap map](../docs/gap_map.png)", ""]
     for title, head, ratio in (("Under the same loads", "theta", at_theta), ("At equal reached gap", "reached gap", ratio_at)):

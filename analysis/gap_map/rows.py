@@ -16,7 +16,7 @@ from ..record_file import RecordError, read_record, read_trace
 from .spec import Cell, GapMapError, Spec
 
 PLACE = ("scene", "resolution", "shape", "limit", "theta")
-STATE = ("outcome", "run", "unknowns", "seconds")
+STATE = ("outcome", "source", "run", "unknowns", "seconds")  # source: index into the sources of the map, None without a run
 REACHED = ("gap", "gap_p05", "rho", "rho_p05", "load")
 CONDS = ("cond", "bj", "nc", "nc_bj")  # full raw and block-Jacobi, and both without contact
 METRICS = tuple(f"{name}_{which}" for name in CONDS for which in ("p95", "median", "end", "end_max")) + ("pcg", "pcg_max", "newton")

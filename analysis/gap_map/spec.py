@@ -50,6 +50,10 @@ class Cell:
     def label(self) -> str:
         return f"{self.scene} {self.resolution} {self.shape} {self.limit} theta{self.theta:g}"
 
+    @property
+    def key(self) -> tuple[str, str, str, str, float]:
+        return self.scene, self.resolution, self.shape, self.limit, self.theta
+
 
 @dataclass(frozen=True)
 class Spec:
@@ -64,7 +68,6 @@ class Spec:
     gaps: tuple[float, ...]  # targets, largest first
     limits: tuple[str, ...]
     scenes: tuple[Scene, ...]
-    part: str = "full"  # or quick
 
 
 def _fail(path: Path, place: str, found, needed: str):
@@ -142,7 +145,7 @@ def quick(spec: Spec) -> Spec:
     gaps = _gaps(asked["gaps"], spec.path, "quick/gaps")
     if not set(gaps) <= set(spec.gaps):
         _fail(spec.path, "quick/gaps", list(gaps), f"some of {list(spec.gaps)}")
-    return replace(spec, shapes={s: spec.shapes[s] for s in shapes}, main=tuple(s for s in spec.main if s in shapes), gaps=gaps, limits=limits, scenes=tuple(scenes), part="quick")
+    return replace(spec, shapes={s: spec.shapes[s] for s in shapes}, main=tuple(s for s in spec.main if s in shapes), gaps=gaps, limits=limits, scenes=tuple(scenes))
 
 
 def cells(spec: Spec) -> list[Cell]:
@@ -175,7 +178,7 @@ def settings(spec: Spec, cell: Cell) -> dict:
     return kept | {"/formulation": formulation, "/matching/theta": cell.theta} | limit_settings(cell.limit, shape, argument, cell.theta)
 
 
-COMMON = {"/threads": 1, "/matching/rule": "equal_force", "/passes": {"time": True, "diagnose": True, "audit": True}, "/diagnose/tier": 4,
+COMMON = {"/threads": 1, "/matching/rule": "equal_force", "/passes": {"time": False, "diagnose": True, "audit": True}, "/diagnose/tier": 4,
           "/diagnose/scalings": ["none", "block_jacobi"], "/diagnose/stages": ["full", "without_contact"]}
 
 

@@ -16,7 +16,7 @@ SCHEMA = "barrierbench.gap_map_result/1"
 
 @dataclass
 class Map:
-    about: dict  # command, sha256 of the spec, part, shapes, main, gaps, limits, scenes, and what measured it
+    about: dict  # command, sha256 of the spec, shapes, main, gaps, limits, scenes, digests of places, and the sources: what measured the rows
     rows: list[dict] = field(default_factory=list)
 
     @property

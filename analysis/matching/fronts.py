@@ -6,9 +6,7 @@ import math
 from collections import Counter
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from ..claims.estimate import interval
+from ..claims.estimate import of_scenes, student
 from .formulations import REFERENCE
 from .front import Point, log_ratio, reached, segments, value_at
 from .runs import check_equal, check_varied, metric
@@ -47,11 +45,23 @@ class Runs:
 
 @dataclass(frozen=True)
 class Estimate:
-    """Geometric mean over starts with its 95% interval, and how many starts it is of."""
+    """Geometric mean of a scene over its starts, the least and the largest of them, and how many starts it is of. Jittered starts are one
+    sample: this is a scatter of repeated measures, no interval."""
 
     value: float
-    lower: float
-    upper: float
+    low: float
+    high: float
+    n: int
+    of: int
+
+
+@dataclass(frozen=True)
+class OverScenes:
+    """Geometric mean over scenes with its 95% interval, None of one scene, and how many scenes it is of."""
+
+    value: float
+    lower: float | None
+    upper: float | None
     n: int
     of: int
 
@@ -80,29 +90,39 @@ def gather(spec: Spec, notes: tuple[str, ...], records: dict[str, dict]) -> list
     return rows
 
 
-def _estimate(logs: list[float], of: int) -> Estimate | None:
+def _estimate(logs: dict[int, float], of: int) -> Estimate | None:
+    """logs: start -> logarithm."""
     if not logs:
         return None
-    low, high = interval({"": {"": logs}}, False)
-    return Estimate(math.exp(float(np.mean(logs))), math.exp(low), math.exp(high), len(logs), of)
+    scene = of_scenes({"": {str(seed): [x] for seed, x in logs.items()}})[0]
+    return Estimate(math.exp(scene.value), math.exp(scene.low), math.exp(scene.high), scene.n, of)
 
 
 def at_gap(runs: Runs, scene: str, formulation: str, name: str, gap: float) -> tuple[Estimate | None, Estimate | None]:
     """The metric at this gap, and its ratio to that of the log from the same start; None where no start reaches the gap."""
-    values, ratios, seeds = [], [], runs.seeds()
+    values, ratios, seeds = {}, {}, runs.seeds()
     for seed in seeds:
         mine = value_at(runs.path(scene, formulation, seed, name), gap)
         other = value_at(runs.path(scene, REFERENCE, seed, name), gap)
-        values += [math.log(mine)] if mine is not None else []
-        ratios += [math.log(mine / other)] if mine is not None and other is not None else []
+        values |= {seed: math.log(mine)} if mine is not None else {}
+        ratios |= {seed: math.log(mine / other)} if mine is not None and other is not None else {}
     return _estimate(values, len(seeds)), _estimate(ratios, len(seeds))
 
 
 def over_shared(runs: Runs, scene: str, formulation: str, name: str) -> Estimate | None:
     """Ratio to the log, mean over all gaps that both reach from the same start."""
     seeds = runs.seeds()
-    found = [log_ratio(runs.path(scene, formulation, seed, name), runs.path(scene, REFERENCE, seed, name)) for seed in seeds]
-    return _estimate([x for x in found if x is not None], len(seeds))
+    found = {seed: log_ratio(runs.path(scene, formulation, seed, name), runs.path(scene, REFERENCE, seed, name)) for seed in seeds}
+    return _estimate({seed: x for seed, x in found.items() if x is not None}, len(seeds))
+
+
+def over_scenes(of_each: list[Estimate | None]) -> OverScenes | None:
+    """Of the same number in every scene, None where a scene has none."""
+    logs = [math.log(e.value) for e in of_each if e is not None]
+    if not logs:
+        return None
+    lower, upper = (math.exp(x) for x in student(logs)) if len(logs) > 1 else (None, None)
+    return OverScenes(math.exp(sum(logs) / len(logs)), lower, upper, len(logs), len(of_each))
 
 
 def range_of(runs: Runs, scene: str, formulation: str) -> tuple[float, float] | None:

@@ -4,83 +4,95 @@ from __future__ import annotations
 
 from pathlib import Path
 
-import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from .. import style
+from .. import panels, series, style
 from .fronts import Runs
 
-PANELS = (("cond_p95", "cond, raw"), ("cond_bj_p95", "cond, block Jacobi"), ("cond_no_contact_p95", "cond, no contact"),
-          ("cond_no_contact_no_limit_p95", "cond, no contact, no limit"), ("newton", "Newton iterations"), ("pcg_probe", "PCG iterations (probe)"),
-          ("seconds", "seconds"), ("scale", "stiffness / matched"))
-EDGE = 0.6  # times the smallest gap: where failed runs stand
-SHOWN = ("{scene}: what a run takes against the smallest gap at its step ends, in units of d_hat. Along a line the stiffness of one formulation grows over {decades:g} decades round the "
+PANELS = {"cond_p95": "cond, raw", "cond_bj_p95": "cond, block Jacobi", "cond_no_contact_p95": "cond, no contact", "cond_no_contact_no_limit_p95": "cond, no contact, no limit",
+          "newton": "Newton iterations", "pcg_probe": "PCG iterations (probe)", "seconds": "seconds", "scale": "stiffness / matched"}
+SHOWN = ("{scene}: what a run takes against the {gap} gap at its step ends, in units of d_hat. Along a line the stiffness of one formulation grows over {decades:g} decades round the "
          "value that equal force gives it (last panel); thick: geometric means over {starts} jittered starts, thin: each start; lines are broken where a run failed. Compare at "
-         "equal gap, that is along a vertical line. Hollow markers left of the dotted line: runs that failed or were never in contact at a step end; what they took until then has "
-         "no gap, and a collapsed run has an excellent condition number. cond: 95th percentile of the condition number over the iterations of a run. Seconds depend on the machine.")
+         "equal gap, that is along a vertical line. {failed} cond: 95th percentile of the condition number over the iterations of a run. Seconds depend on the machine.")
+FAILED = "Not drawn, since runs that failed or were never in contact at a step end have no gap: {runs}."
 
 
 def _geometric(values: list[float]) -> float:
     return float(np.exp(np.mean(np.log(values))))
 
 
-def _means(rows: list[dict], name: str) -> list[tuple[float, float] | None]:
-    """(gap, value) a scale, in order of the scale; None where a start failed, which breaks the line."""
-    found = []
+def _is_good(row: dict) -> bool:
+    return row["outcome"] == "ok" and bool(row["gap"])
+
+
+def _means(rows: list[dict], name: str) -> dict[float, tuple[float, float] | None]:
+    """Scale -> (gap, value), the scales growing; None where a start failed, which breaks the line."""
+    found = {}
     for scale in sorted({row["scale"] for row in rows}):
         of_scale = [row for row in rows if row["scale"] == scale]
-        good = [row for row in of_scale if row["outcome"] == "ok" and row["gap"] and row[name]]
-        found.append((_geometric([r["gap"] for r in good]), _geometric([r[name] for r in good])) if len(good) == len(of_scale) else None)
+        good = [row for row in of_scale if _is_good(row) and row[name]]
+        found[scale] = (_geometric([r["gap"] for r in good]), _geometric([r[name] for r in good])) if len(good) == len(of_scale) else None
     return found
 
 
-def _path(axis, found: list[tuple[float, float] | None], **how) -> None:
-    axis.plot([np.nan if p is None else p[0] for p in found], [np.nan if p is None else p[1] for p in found], **how)
+def _path(axis, found: dict[float, tuple[float, float] | None], **how) -> None:
+    points = found.values()
+    axis.plot([np.nan if p is None else p[0] for p in points], [np.nan if p is None else p[1] for p in points], **how)
 
 
-def _failed(rows: list[dict], name: str) -> list[float]:
-    """One number a scale at which some start failed: the mean of those starts."""
-    found = []
-    for scale in sorted({row["scale"] for row in rows}):
-        bad = [row[name] for row in rows if row["scale"] == scale and (row["outcome"] != "ok" or not row["gap"]) and row[name]]
-        found += [_geometric(bad)] if bad else []
-    return found
+def failures(runs: Runs, scene: str, formulation: str) -> dict[float, int]:
+    """Scale -> how many of its starts have no gap, where some have none."""
+    bad = [row["scale"] for row in runs.of(scene, formulation) if not _is_good(row)]
+    return {scale: bad.count(scale) for scale in sorted(set(bad))}
 
 
-def _panel(axis, runs: Runs, scene: str, name: str, edge: float) -> list[dict]:
-    numbers = []
-    for formulation in runs.formulations:
+def failure_sentence(runs: Runs, scene: str, formulations: tuple[str, ...]) -> str:
+    """Which runs of the scene are not drawn; empty where all are."""
+    starts = len(runs.seeds())
+    of_each = {name: failures(runs, scene, name) for name in formulations}
+    words = [f"{name} at x{', x'.join(f'{scale:g}' + ('' if n == starts else f' ({n} of {starts} starts)') for scale, n in found.items())}" for name, found in of_each.items() if found]
+    return FAILED.format(runs="; ".join(words)) if words else ""
+
+
+def _numbers(runs: Runs, scene: str) -> pd.DataFrame:
+    """A row a metric, formulation and scale; without gap and value where a start has none, and `failed` says how many."""
+    rows = []
+    for name in PANELS:
+        for formulation in runs.formulations:
+            bad = failures(runs, scene, formulation)
+            for scale, point in _means(runs.of(scene, formulation), name).items():
+                rows.append({"scene": scene, "metric": name, "formulation": formulation, "scale": scale, "gap": point and point[0], "value": point and point[1], "failed": bad.get(scale, 0)})
+    return pd.DataFrame(rows)
+
+
+def _draw_panel(axis, runs: Runs, scene: str, name: str, formulations: tuple[str, ...]) -> None:
+    for formulation in formulations:
         rows, look = runs.of(scene, formulation), style.look(formulation)
         for seed in runs.seeds():
             _path(axis, _means([r for r in rows if r["seed"] == seed], name), color=look.color, linewidth=0.5, alpha=0.35)
-        means = _means(rows, name)
-        _path(axis, means, color=look.color, linestyle=look.dash, marker=look.marker, label=formulation)
-        failed = _failed(rows, name)
-        axis.plot([edge] * len(failed), failed, color=look.color, marker=look.marker, linestyle="none", markerfacecolor="none", markeredgewidth=0.8)
-        scales = sorted({row["scale"] for row in rows})
-        numbers += [{"scene": scene, "metric": name, "formulation": formulation, "scale": s, "gap": p[0], "value": p[1]} for s, p in zip(scales, means) if p]
+        _path(axis, _means(rows, name), color=look.color, linestyle=look.dash, marker=look.marker, label=formulation)
     axis.set(xscale="log", yscale="log")
-    axis.axvline(edge / EDGE**0.5, color="#666666", linewidth=0.6, linestyle=":", gid=style.REFERENCE)
+    axis.set_title(PANELS[name], fontsize=7)
     style.keep_span(axis)
-    return numbers
 
 
 def draw(runs: Runs, scene: str, stem: Path) -> list[Path]:
-    """stem.png and its company. Errors: ValueError when no run of the scene reached a gap."""
-    gaps = [row["gap"] for row in runs.rows if row["scene"] == scene and row["gap"] and row["outcome"] == "ok"]
-    if not gaps:
+    """stem.png and its company, and stem_more with the formulations that it has no room for. Errors: ValueError when no run of the scene reached a gap."""
+    if not any(_is_good(row) for row in runs.rows if row["scene"] == scene):
         raise ValueError(f"{scene}: no run reached a gap: there is nothing to draw")
-    fig, axes = plt.subplots(2, 4, figsize=(style.WIDE_IN * 1.35, 4.9), layout="constrained", sharex=True)
-    numbers = []
-    for axis, (name, title) in zip(axes.flat, PANELS):
-        numbers += _panel(axis, runs, scene, name, EDGE * min(gaps))
-        axis.set_title(title, fontsize=7)
-    style.letter_panels(axes)
-    for axis in axes[-1]:
-        axis.set_xlabel(r"smallest gap / $\hat d$")
-    handles, labels = axes[0, 0].get_legend_handles_labels()
-    handles.append(plt.Line2D([], [], color="#444444", marker="o", markerfacecolor="none", linestyle="none"))
-    fig.legend(handles, [*labels, "failed (no gap)"], loc="outside lower center", ncols=6, frameon=False)
-    fig.suptitle(scene, fontsize=8)
-    return style.save(fig, stem, pd.DataFrame(numbers), SHOWN.format(scene=scene, decades=runs.about["decades"], starts=runs.about["starts"]))
+    numbers, paths = _numbers(runs, scene), []
+    for part in series.parts(runs.formulations, series.ranked(runs.formulations), stem.name):
+        mine = numbers[numbers["formulation"].isin(part.names)]
+        drawn = mine.dropna(subset="value").set_index(["formulation", "scale"])
+        kept, left_out = panels.choose([panels.Panel(title, drawn.loc[drawn["metric"] == name, "value"]) for name, title in PANELS.items()])
+        fig, axes = panels.grid(len(kept), style.WIDE_IN * 1.35, 2.2)
+        for axis, name in zip(axes, [name for name, title in PANELS.items() if title in kept]):
+            _draw_panel(axis, runs, scene, name, part.names)
+            axis.set_xlabel(rf"{runs.about['gap']} gap / $\hat d$")
+        style.letter_panels(axes)
+        style.legend_below(fig, axes[0])
+        fig.suptitle(scene, fontsize=8)
+        shown = SHOWN.format(scene=scene, gap=runs.about["gap"], decades=runs.about["decades"], starts=runs.about["starts"], failed=failure_sentence(runs, scene, part.names))
+        paths += style.save(fig, stem.with_name(stem.name + part.suffix), mine, " ".join(filter(None, [shown, left_out, part.says])))
+    return paths

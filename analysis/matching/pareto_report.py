@@ -5,24 +5,34 @@ from __future__ import annotations
 from ..claims.metrics import METRICS as MEANINGS
 from ..claims.report import number
 from .formulations import REFERENCE
-from .fronts import METRICS, Estimate, Runs, at_gap, failures, over_shared, range_of, unreached
+from .fronts import METRICS, Estimate, OverScenes, Runs, at_gap, failures, over_scenes, over_shared, range_of, unreached
 
 HEAD = """# Formulations at equal reached gap
 
 Made by `{command}` from results/pareto.json. For every formulation the stiffness goes over {decades:g} decades round the value that the matching rule
 gives it ({rule}), from {starts} jittered starts. A path of runs is compared with that of `{reference}` where both reach the same gap, by interpolation
 between neighbours in stiffness (logarithms of gap and number); nothing is interpolated across a run that failed, and nothing is compared
-at equal kappa. A gap is the {gap} over the step ends of a run, in units of d_hat. Cells: ratio to `{reference}` from the same start, geometric mean over
-starts [95% interval by bootstrap]; `(n/{starts})`: only n starts reach the gap with both; `-`: none does. Last column: mean over all gaps that both
-reach. An interval knows the spread of the starts, not the error of the interpolation between stiffnesses: a ratio that swings from one gap to the
-next is a shape of the paths, to be read in the figure. Every failed run is listed, and has a hollow marker at the edge of the figure.
+at equal kappa. A gap is the {gap} over the step ends of a run, in units of d_hat. Cells of a scene: ratio to `{reference}` from the same start,
+geometric mean over starts (the least to the largest of them); `(n/{starts})`: only n starts reach the gap with both; `-`: none does. Jittered starts are one
+sample, so their scatter is no interval. Cells of all scenes: geometric mean over scenes [95% interval by Student's t, scenes the samples]; `(n/{scenes})`:
+only n scenes have the number. Last column: mean over all gaps that both reach. Neither knows the error of the interpolation between stiffnesses: a
+ratio that swings from one gap to the next is a shape of the paths, to be read in the figure. Every failed run is listed, here and in the
+caption of its figure.
 """
 
 
 def _cell(e: Estimate | None) -> str:
     if e is None:
         return "-"
-    return f"{number(e.value)} [{number(e.lower)}, {number(e.upper)}]" + (f" ({e.n}/{e.of})" if e.n < e.of else "")
+    scatter = f" ({number(e.low)} to {number(e.high)})" if e.n > 1 else ""
+    return number(e.value) + scatter + (f" ({e.n}/{e.of})" if e.n < e.of else "")
+
+
+def _cell_over_scenes(e: OverScenes | None) -> str:
+    if e is None:
+        return "-"
+    interval = " (one scene: no interval)" if e.lower is None else f" [{number(e.lower)}, {number(e.upper)}]"
+    return number(e.value) + interval + (f" ({e.n}/{e.of})" if 1 < e.n < e.of else "")
 
 
 def _reached(runs: Runs, scene: str) -> list[str]:
@@ -39,8 +49,12 @@ def _nobody(runs: Runs, scene: str) -> str:
     return f"No formulation reaches gaps {', '.join(said)}." if said else "Every gap up to d_hat is reached by some formulation."
 
 
+def _heading(gaps: list[float]) -> list[str]:
+    return ["| number | formulation | " + " | ".join(f"{gap:g} d_hat" for gap in gaps) + " | shared gaps |", "|" + "---|" * (len(gaps) + 3)]
+
+
 def _ratios(runs: Runs, scene: str, gaps: list[float]) -> list[str]:
-    lines = ["| number | formulation | " + " | ".join(f"{gap:g} d_hat" for gap in gaps) + " | shared gaps |", "|" + "---|" * (len(gaps) + 3)]
+    lines = _heading(gaps)
     for name in METRICS:
         values = [at_gap(runs, scene, REFERENCE, name, gap)[0] for gap in gaps]
         lines.append(f"| {name} | {REFERENCE}: value | " + " | ".join("-" if v is None else number(v.value) for v in values) + " | |")
@@ -51,16 +65,27 @@ def _ratios(runs: Runs, scene: str, gaps: list[float]) -> list[str]:
     return lines
 
 
+def _ratios_over_scenes(runs: Runs, gaps: list[float]) -> list[str]:
+    lines = _heading(gaps)
+    for name in METRICS:
+        for formulation in runs.formulations:
+            if formulation != REFERENCE:
+                found = [over_scenes([at_gap(runs, scene, formulation, name, gap)[1] for scene in runs.scenes]) for gap in gaps]
+                found.append(over_scenes([over_shared(runs, scene, formulation, name) for scene in runs.scenes]))
+                lines.append(f"| {name} | {formulation} / {REFERENCE} | " + " | ".join(map(_cell_over_scenes, found)) + " |")
+    return lines
+
+
 def markdown(runs: Runs) -> str:
     about = runs.about
     scales = sorted({row["scale"] for row in runs.rows})
-    lines = [HEAD.format(command=about["command"], decades=about["decades"], rule=about["rule"], starts=about["starts"], reference=REFERENCE, gap=about["gap"])]
+    lines = [HEAD.format(command=about["command"], decades=about["decades"], rule=about["rule"], starts=about["starts"], scenes=len(runs.scenes), reference=REFERENCE, gap=about["gap"])]
     lines += [f"{about['doc']}. Varied: {about['vary']}. Stiffness: " + ", ".join(f"x{s:g}" for s in scales) + f". {len(runs.rows)} runs, {about['unknowns']} unknowns, "
               f"{about['seconds']:.0f} s of one core in all on a machine that did other work as well, {about['date']}, {about['machine']}, build {about['build'][:8]}.", ""]
     for scene in runs.scenes:
         lines += [f"## {scene}", "", f"![cost against reached gap](../docs/pareto_{scene}.png)", "", *_reached(runs, scene), "", _nobody(runs, scene), "",
                   *_ratios(runs, scene, about["gaps"]), ""]
-    lines += ["## Numbers", ""]
+    lines += ["## All scenes", "", *_ratios_over_scenes(runs, about["gaps"]), "", "## Numbers", ""]
     for name in METRICS:
         meaning, unit, machine, _ = MEANINGS[name]
         lines.append(f"- `{name}`: {meaning}{f' ({unit})' if unit != '1' else ''}{' (depends on the machine)' if machine else ''}")

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..claims import entry
 from ..claims.metrics import METRICS
 from ..gate.configs import differences
 from ..record_file import RecordError, read_record
@@ -54,7 +55,7 @@ def _last(key: str, above: str) -> str:
 
 
 def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
-    """Contents of the files that settings name: configs under configs, meshes, presets. name: the last key of the way to the node."""
+    """Contents of the files that settings name: configs under configs, meshes, presets, methods. name: the last key of the way to the node."""
     if isinstance(node, dict):
         for key in sorted(node):
             of_axis = key == "values" and isinstance(node.get("pointer"), str)
@@ -64,6 +65,9 @@ def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
             yield from _inputs(one, folder, name)
     elif name == "formulation" and node in known():
         yield (formulations.PRESETS / f"{node}.json").read_bytes()
+    elif name == "method" and isinstance(node, str) and (file := entry.METHODS / f"{node}.json").is_file():
+        yield file.read_bytes()
+        yield from _inputs(read_object(file)["set"], folder)
     elif name in ("base", "file") and isinstance(node, str) and (folder / node).is_file():
         yield (folder / node).read_bytes()
         if name == "base":

@@ -9,6 +9,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from ..claims.entry import ClaimError
 from ..program import built_program
 from ..record_file import RecordError
 from ..whole_file import write_whole
@@ -29,7 +30,7 @@ def stale(root: Path, numbers: dict) -> list[str]:
     """Pages whose generated parts are not there, or not what the templates make of the kept numbers."""
     texts = {page: (root / page).read_text() for page in PAGES}
     absent = [line for page, text in texts.items() for line in lacking(text, page)]
-    return absent + [f"{page}: its numbers are not those of results/demo.json and results/claims.json; ./bench readme --write makes them" for page, text in texts.items() if filled(text, numbers, page) != text]
+    return absent + [f"{page}: its numbers are not those of results/demo.json and results/claims.json; ./bench readme --fill writes them" for page, text in texts.items() if filled(text, numbers, page) != text]
 
 
 def write_pages(root: Path, numbers: dict) -> list[str]:
@@ -47,20 +48,22 @@ def write_pages(root: Path, numbers: dict) -> list[str]:
 
 def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench readme", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="examples: ./bench demo && ./bench readme --write\n          ./bench readme --check")
+                                     epilog="examples: ./bench demo && ./bench readme --write\n          ./bench claims && ./bench readme --fill\n          ./bench readme --check")
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument("--write", action="store_true", help="keep the numbers of the records in results/demo.json and fill the pages with them")
+    what.add_argument("--fill", action="store_true", help="fill the pages with the numbers that are kept in results/: after ./bench claims, without records of the demo")
     what.add_argument("--check", action="store_true", help="run or parse every snippet, and compare the pages with the kept numbers")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the demo's records (default: results/runs/demo)")
     args = parser.parse_args(argv)
     try:
-        if args.write:
-            write(gather(args.runs))
+        if args.write or args.fill:
+            if args.write:
+                write(gather(args.runs))
             print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
             return 0
         program = str(built_program(ReadmeError))
         found = [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)] + stale(ROOT, kept())
-    except (ReadmeError, RecordError) as error:
+    except (ReadmeError, RecordError, ClaimError) as error:
         print(f"bench readme: {error}", file=sys.stderr)
         return 2
     print("\n".join(found) or "every snippet works, and the numbers are those of results/demo.json and results/claims.json")

@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[2]
 FILE = ROOT / "results" / "demo.json"
 RUNS = ROOT / "results" / "runs" / "demo"
 NAME = "barrierbench.demo_numbers/1"
-GROUPS = ("demo_drape", "demo_strip", "demo_pinned", "demo_article")
+GROUPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")
 
 
 class ReadmeError(ValueError):
@@ -32,10 +32,17 @@ def _plain(value):
     return value.item() if isinstance(value, np.generic) else value
 
 
-def _last_of_steps(records: Records, run: str) -> dict[int, float]:
-    """step -> unscaled condition number of its last diagnosed iteration."""
+def _p95(records: Records, run: str) -> float | None:
+    """95th percentile of the unscaled condition numbers of a run."""
+    found = condition_of(records, run, "none")["cond"].dropna()
+    return None if found.empty else float(np.percentile(found, 95))
+
+
+def _last_in_contact(records: Records, run: str, steps: pd.DataFrame) -> dict[int, float]:
+    """Step with contact at its end -> unscaled condition number of its last diagnosed iteration."""
+    touching = set(steps["step"][steps["contacts_total"].fillna(0) > 0]) if "contacts_total" in steps else set()
     found = condition_of(records, run, "none").dropna(subset=["cond"])
-    return {} if found.empty else {int(step): float(rows["cond"].iloc[-1]) for step, rows in found.groupby("step")}
+    return {int(step): float(rows["cond"].iloc[-1]) for step, rows in found.groupby("step") if step in touching}
 
 
 def _rows(records: Records, table: pd.DataFrame) -> list[dict]:
@@ -43,14 +50,13 @@ def _rows(records: Records, table: pd.DataFrame) -> list[dict]:
     rows = []
     for (_, run), (_, line) in zip(records.runs.iterrows(), table.iterrows()):
         steps = records.steps[records.steps["run"] == run["run"]]
-        touching = steps["contacts_total"].fillna(0) > 0 if "contacts_total" in steps else pd.Series(dtype=bool)
         rows.append({key: _plain(line[key]) for key in ("group", "series", "cond_raw_median", "cond_raw_max", "cond_bj_median", "cond_bj_max", "newton_iterations",
                                                         "probe_pcg", "gap_min_rel")}
                     | {key: _plain(run.get(column)) for key, column in
                        (("outcome", "outcome"), ("verdict", "comparability_verdict"), ("step_solver", "step_solver"), ("crossings", "audit_crossings"),
                         ("violations", "audit_violations"), ("unproven", "audit_unproven"), ("judged", "audit_judged"), ("steps", "summary_steps"), ("run", "run_id"))}
-                    | {"steps": len(steps), "scale": _plain(run.get("matching_scale")), "valid": bool(run["valid"]), "cond_steps": _last_of_steps(records, run["run"]),
-                       "touching_steps": [int(step) for step in steps["step"][touching]]})
+                    | {"steps": len(steps), "scale": _plain(run.get("matching_scale")), "valid": bool(run["valid"]), "cond_raw_p95": _p95(records, run["run"]),
+                       "cond_steps": _last_in_contact(records, run["run"], steps)})
     return rows
 
 

@@ -1,37 +1,41 @@
-"""The log beside the cubic over theta, with the strain limit off and on: from results/claims.json to a sentence of README."""
+"""The log beside the cubic over theta, with the strain limit off and on: from the parts of a claim and results/claims.json to a sentence of README."""
 
 from __future__ import annotations
 
 import textwrap
+from dataclasses import replace
 
-from ..claims.entry import read_sweep
-from ..claims.numbers import ratio
+from ..claims.entry import read_claim, read_sweep
+from ..claims.judge import judge_part, missing
+from ..claims.proofs import Eval
 from ..claims.slices import rows_of
 from ..claims.table import FILE, Table
 from ..claims.table import read as read_claims
 from .numbers import ReadmeError
 
-SWEEP = "contact_slices"
+CLAIM, SWEEP = "H1", "contact_slices"
 LIMITS = ("off", "log")
 
 
-def gather(table: Table | None = None) -> dict[str, list[dict]]:
-    """Strain limit -> of every theta, the largest first: ratio of the 95th percentiles of cond, log over cubic, as the mean over scenes of valid
-    pairs of runs; how many scenes that are, and in how many of all pairs the cubic did not end `ok`. Raises ReadmeError without the runs."""
-    runs = (table or read_claims(FILE)).sweeps.get(SWEEP)
-    if runs is None or not runs.rows:
-        raise ReadmeError(f"{FILE}: no runs of {SWEEP}; ./bench claims K3 makes them")
-    sweep = read_sweep(SWEEP)
+def _parts() -> list[dict]:
+    """The parts of the claim that ask at one theta and strain limit by how much the log is above the cubic."""
+    return [part for part in read_claim(CLAIM).parts if part.get("sweep") == SWEEP and "above" in part]
+
+
+def gather(table: Table | None = None) -> dict:
+    """unknowns: smallest to largest scene, in words. limits: strain limit -> of every theta, the largest first, the claim's ratio of the 95th percentiles
+    of cond, log over cubic, over how many scenes, and in how many runs of all the cubic did not end `ok`. Raises ReadmeError without runs of today's sweep."""
+    table, parts = table or read_claims(FILE), _parts()
+    if lines := missing(replace(read_claim(CLAIM), parts=tuple(parts)), table):
+        raise ReadmeError(f"{FILE}: {lines[0]}")
     found: dict[str, list[dict]] = {limit: [] for limit in LIMITS}
-    for limit, rows in found.items():
-        for theta in sweep.axes["theta"]:
-            part = {"rule": "ratio", "sweep": SWEEP, "theta": theta, "limit": limit, "metric": "cond_p95", "case": "log", "over": "cubic", "counts": "valid", "above": 1}
-            mine = rows_of(part, runs, sweep)
-            judged, cubics = ratio(part, mine), [row for row in mine.rows if row["case"] == "cubic"]
-            if judged.value is None:
-                raise ReadmeError(f"{FILE}: {SWEEP}: no pair of runs counts at theta {theta:g}, limit {limit}")
-            rows.append({"theta": theta, "ratio": judged.value, "scenes": judged.scenes, "failed": sum(row["outcome"] != "ok" for row in cubics), "of": len(cubics)})
-    return found
+    for part in sorted(parts, key=lambda part: -part["theta"]):
+        judged = judge_part(part, table, Eval(None, {}))
+        if judged.value is None:
+            raise ReadmeError(f"{FILE}: {SWEEP}: {part['says']}: no pair of runs counts")
+        cubics = [row["outcome"] for row in rows_of(part, table.sweeps[SWEEP], read_sweep(SWEEP)).rows if row["case"] == part["over"]]
+        found[part["limit"]].append({"theta": part["theta"], "ratio": judged.value, "scenes": judged.scenes, "failed": sum(word != "ok" for word in cubics), "of": len(cubics)})
+    return {"unknowns": table.sweeps[SWEEP].about["unknowns"], "limits": found}
 
 
 def _times(ratio: float) -> str:
@@ -40,17 +44,17 @@ def _times(ratio: float) -> str:
 
 
 def _listed(values: list[str]) -> str:
-    return f"{', '.join(values[:-1])} and {values[-1]}"
+    return f"{', '.join(values[:-1])} and {values[-1]}" if len(values) > 1 else values[0]
 
 
-def sentence(found: dict[str, list[dict]], width: int) -> list[str]:
+def sentence(found: dict, width: int) -> list[str]:
     """What theta and the strain limit do to the ratio of condition numbers, as item 4 of the results."""
-    off, on = (found[limit] for limit in LIMITS)
+    off, on = (found["limits"][limit] for limit in LIMITS)
     scenes, thetas = [row["scenes"] for row in off + on], _listed([f"{row['theta']:g}" for row in off])
-    alone, limited = (_listed([_times(row["ratio"]) for row in rows]) for rows in (off, on))
+    without, limited = (_listed([_times(row["ratio"]) for row in rows]) for rows in (off, on))
     failed = [f"{row['failed']} of {row['of']} runs at theta {row['theta']:g}" for row in off if row["failed"]]
-    text = (f"4. Result 2 is one slice. theta says how small a gap, theta times d_hat, the largest load may need. At theta {thetas} the 95th percentile of the logarithm's condition "
-            f"numbers is {alone} times the cubic's where contact is alone, and {limited} times with a strain limit, whose own stiffness hides that of contact (means over "
-            f"{min(scenes)} to {max(scenes)} scenes of at most 576 unknowns, equal forces)")
-    text += f". The cubic has a largest force: without a limit it does not get through in {_listed(failed) if len(failed) > 1 else failed[0]}" if failed else ""
+    text = (f"4. Result 2 is one slice. Forces are made equal at the gap theta d_hat under the largest load, so that a smaller theta lets contacts come closer. At theta {thetas} the 95th "
+            f"percentile of the logarithm's condition numbers over a run is {without} times the cubic's without a strain limit, and {limited} times with one (geometric means over those "
+            f"{min(scenes)} to {max(scenes)} scenes, of {found['unknowns']} unknowns, in which both get through)")
+    text += f". Without a limit the cubic, whose force has a largest value, does not get through in {_listed(failed)}" if failed else ""
     return textwrap.wrap(f"{text} ([all slices](results/CLAIMS.md)).", width, subsequent_indent="   ", break_long_words=False, break_on_hyphens=False)

@@ -76,7 +76,8 @@ def read_table(file: Path) -> dict:
 def write_all(table: dict, results: Path, docs: Path, scratch: Path) -> None:
     """Page and figures; the pictures with their captions go to docs."""
     write_whole(results / "WORK_PRECISION.md", report.markdown(table))
-    drawn = [figure.draw(scene, scratch / f"work_precision_{scene['name']}") for scene in table["scenes"]]
+    ranks = figure.by_rank(table["scenes"])
+    drawn = [figure.draw(scene, scratch / f"work_precision_{scene['name']}", ranks) for scene in table["scenes"]]
     drawn.append(figure.draw_profile(table["scenes"], scratch / "work_precision_profile"))
     docs.mkdir(parents=True, exist_ok=True)
     for path in (path for paths in drawn for path in paths if path.suffix in (".png", ".txt")):

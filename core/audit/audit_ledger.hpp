@@ -37,12 +37,14 @@ struct AuditLedger {
 
   /// Number of primitives that were compared with all that they may meet, over all states and motions; boxes
   /// decide most of them. 0 when no pair of the surface was, or when a kind of primitive that the obstacles ask
-  /// for was never asked: every scene has a surface, so that such a run was not audited.
+  /// for was never asked: such a run was not audited. Only loose particles, which have neither edges nor
+  /// triangles, have no pairs: they can pass through obstacles and nothing else.
   long judged() const {
     const ObstacleCounts &need = subjects.at_obstacles, &done = obstacle_judged;
     const bool kinds = (need.vertices == 0 || done.vertices > 0) && (need.edges == 0 || done.edges > 0) &&
                        (need.triangles == 0 || done.triangles > 0);
-    const bool all = pair_queries > 0 && kinds && (subjects.obstacles == 0 || done.total() > 0);
+    const bool pairs = subjects.edges + subjects.triangles == 0 || pair_queries > 0;
+    const bool all = pairs && kinds && (subjects.obstacles == 0 || done.total() > 0);
     return all ? pair_queries + done.total() : 0;
   }
 

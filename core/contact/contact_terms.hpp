@@ -11,9 +11,16 @@
 namespace bb {
 
 /// What the Hessian of a row holds, and how it is projected: m kappa b'' n n^T alone; with grad^2 d, projected in the at
-/// most five directions in which it is not zero; the same matrix, projected by a numeric eigensolver on all 12 x 12 of it,
-/// as the IPC Toolkit does: what faster projections are measured against.
-enum class HessianMode { gauss_newton, projected_full, projected_numeric };
+/// most five directions in which it is not zero; the same matrix, projected from its 12 x 12 numbers alone
+/// (numeric_projection.hpp): what projections that know a contact are measured against.
+enum class HessianMode {
+  gauss_newton,
+  projected_full,
+  projected_numeric,
+  projected_lapack,
+  projected_low_rank
+};
+constexpr bool is_numeric(HessianMode mode) { return mode >= HessianMode::projected_numeric; }
 
 /// Local gradients [12 n] and Hessians [90 n, lower blocks of 4 points] of the rows on the compact free
 /// slots (slots beyond n_free are 0), from kappa, b', b'' in the table: m kappa b' w_i n and m kappa b'' w_i

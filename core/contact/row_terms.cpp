@@ -1,5 +1,4 @@
 // Gradients and Hessians of the rows without mollifier, four Hessians at a time.
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <array>
 
@@ -7,12 +6,12 @@
 #include "core/contact/contact_row.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/contact/gap_along.hpp"
+#include "core/contact/numeric_projection.hpp"
 #include "core/contact/obstacle_shape.hpp"
 #include "core/contact/pair_lanes.hpp"
 #include "core/contact/row_columns.hpp"
 #include "core/contact/row_hessian.hpp"
 #include "core/geometry/distance_derivatives.hpp"
-#include "core/math/lower_blocks.hpp"
 
 namespace bb {
 namespace {
@@ -189,21 +188,6 @@ void store_sliding(const ContactTable& rows, const std::size_t* list, std::size_
   }
 }
 
-/// The stored blocks of a row, projected by the eigenvalues of their 12 x 12 matrix.
-void project_numerically(Projection projection, double* hess) {
-  Mat<double, 12, 12> full;
-  const double* block = hess;
-  for (int b = 0; b < 4; ++b) {
-    for (int a = b; a < 4; ++a, block += 9) full.block<3, 3>(3 * a, 3 * b) = Mat3d::Map(block);
-  }
-  const Eigen::SelfAdjointEigenSolver<Mat<double, 12, 12>> eigen(full);  // of the lower triangle
-  if (eigen.eigenvalues()[0] >= 0) return;
-  Vec<double, 12> values = eigen.eigenvalues();
-  for (int k = 0; k < 12; ++k) values[k] = project_eigenvalue(values[k], projection);
-  full.noalias() = eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
-  store_lower_blocks(4, full, hess);
-}
-
 /// The rows [begin, end), at most a chunk of them.
 template <class T>
 void store_rows(const ContactTable& rows, std::size_t begin, std::size_t end, const Positions& x,
@@ -270,14 +254,13 @@ void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mod
                    std::vector<double>& grad, std::vector<double>& hess, Precision precision) {
   grad.resize(12 * rows.size());
   hess.resize(row_hessian_numbers * rows.size());
-  const bool numeric = mode == HessianMode::projected_numeric && projection != Projection::none;
+  const bool numeric = is_numeric(mode) && projection != Projection::none;
   const Projection analytic = numeric ? Projection::none : projection;
   for_each_pass(precision, [&]<class T>(PassParts parts) {
     for_each_chunk(rows.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
       store_rows<T>(rows, begin, end, x, mode, analytic, parts, grad.data(), hess.data());
       if (!numeric || !parts.hessians) return;
-      for (std::size_t r = begin; r < end; ++r)
-        project_numerically(projection, hess.data() + row_hessian_numbers * r);
+      project_numerically(mode, projection, end - begin, hess.data() + row_hessian_numbers * begin);
     });
   });
 }

@@ -51,6 +51,17 @@ BB_HD inline void reflect_symmetric(int first, const Vec<T, N>& v, T beta, Mat<T
   }
 }
 
+/// Rows from r.v's first on of the columns from `column` on of q, reflected.
+template <class T, int N, int C>
+BB_HD inline void reflect_columns(int first, const Reflection<T, N>& r, int column, Mat<T, N, C>& q) {
+  for (int j = column; j < C; ++j) {
+    T sum(0);
+    for (int i = first; i < N; ++i) sum += r.v[i] * q(i, j);
+    sum *= r.beta;
+    for (int i = first; i < N; ++i) q(i, j) -= sum * r.v[i];
+  }
+}
+
 /// A = q T q^T, T tridiagonal with diagonal d and e[i] = T(i, i + 1). Reads all of A, destroys it.
 template <class T, int N>
 BB_HD inline void tridiagonalise(Mat<T, N, N>& a, Vec<T, N>& d, Vec<T, N>& e, Mat<T, N, N>& q) {
@@ -66,14 +77,7 @@ BB_HD inline void tridiagonalise(Mat<T, N, N>& a, Vec<T, N>& d, Vec<T, N>& e, Ma
   e[N - 1] = T(0);
   q.setIdentity();
   for (int k = N - 3; k >= 0; --k) {
-    const Reflection<T, N>& r = reflections[k];
-    if (!any(!(r.beta == T(0)))) continue;
-    for (int j = k + 1; j < N; ++j) {
-      T sum(0);
-      for (int i = k + 1; i < N; ++i) sum += r.v[i] * q(i, j);
-      sum *= r.beta;
-      for (int i = k + 1; i < N; ++i) q(i, j) -= sum * r.v[i];
-    }
+    if (any(!(reflections[k].beta == T(0)))) reflect_columns<T, N, N>(k + 1, reflections[k], k + 1, q);
   }
 }
 
@@ -129,13 +133,10 @@ BB_HD inline void mark_block(int first, const Vec<T, N>& d, const Vec<T, N>& e, 
   }
 }
 
-/// a = q diag(d) q^T, in no order. a: symmetric, largest entry about 1; destroyed. Cost: about 2 sweeps an
-/// eigenvalue, at most 30.   Source: Golub and Van Loan, Matrix Computations, 8.3; EISPACK's tred2 and
-/// imtql2.
+/// The tridiagonal matrix of diagonal d and e next to it becomes diag(d); the columns of q turn along. Cost: about 2
+/// sweeps an eigenvalue, at most 30.
 template <class T, int N>
-BB_HD inline void tridiagonal_eigen(Mat<T, N, N>& a, Vec<T, N>& d, Mat<T, N, N>& q) {
-  Vec<T, N> e;
-  tridiagonalise<T, N>(a, d, e, q);
+BB_HD inline void ql_iterate(Vec<T, N>& d, Vec<T, N>& e, Mat<T, N, N>& q) {
   MaskOf<T> active[N] = {};
   for (int first = 0; first + 1 < N; ++first) {
     for (int sweep = 0; sweep < 30; ++sweep) {
@@ -144,6 +145,15 @@ BB_HD inline void tridiagonal_eigen(Mat<T, N, N>& a, Vec<T, N>& d, Mat<T, N, N>&
       ql_sweep<T, N>(first, active, d, e, q);
     }
   }
+}
+
+/// a = q diag(d) q^T, in no order. a: symmetric, largest entry about 1; destroyed.   Source: Golub and Van Loan, Matrix
+/// Computations, 8.3; EISPACK's tred2 and imtql2.
+template <class T, int N>
+BB_HD inline void tridiagonal_eigen(Mat<T, N, N>& a, Vec<T, N>& d, Mat<T, N, N>& q) {
+  Vec<T, N> e;
+  tridiagonalise<T, N>(a, d, e, q);
+  ql_iterate<T, N>(d, e, q);
 }
 
 }  // namespace bb::detail

@@ -4,6 +4,7 @@
 #include <map>
 #include <optional>
 #include <string>
+#include <vector>
 
 #include "core/record/made_by.hpp"
 #include "core/record/schema_version.hpp"
@@ -37,6 +38,9 @@ struct Ids {
 struct Labels {
   BB_RECORD(Labels, "what tables group by; derived from the config, never read back");
   BB_FIELD(std::string, scene, "name of the scene");
+  BB_FIELD(
+      std::string, method,
+      "name of the published method; `NAME, changed` where the config overrides some of it; empty: none");
   BB_FIELD(std::string, formulation, "name of the preset, or the shape");
   BB_FIELD(std::string, shape, "b(d; d_hat)");
   BB_FIELD(std::string, argument, "what the shape is applied to");
@@ -50,6 +54,17 @@ struct Labels {
   BB_FIELD(double, dt_s, "time step") = 0;
   BB_FIELD(std::string, note, "how a row of a table differs; empty: nothing");
   BB_FIELD(TextMap, swept, "of a case of a sweep: pointer -> value as JSON text, of its axes");
+  BB_RECORD_END;
+};
+
+struct MethodRecord {
+  BB_RECORD(MethodRecord, "the published method that was asked for (configs/methods)");
+  BB_FIELD(std::string, name, "empty: none was asked for");
+  BB_FIELD(std::string, source, "its publication");
+  BB_FIELD(std::vector<std::string>, overridden,
+           "pointers that the config sets otherwise than the method; with any of them the run is of no "
+           "published method");
+  BB_FIELD(TextMap, differs, "subject -> what of the publication this program does otherwise");
   BB_RECORD_END;
 };
 

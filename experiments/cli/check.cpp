@@ -2,6 +2,7 @@
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <set>
 
 #include "core/cuda/device.hpp"
 #include "core/exec/memory_ledger.hpp"
@@ -10,6 +11,7 @@
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/document.hpp"
+#include "experiments/config/methods.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/device_memory.hpp"
 #include "experiments/run/device_run.hpp"
@@ -27,6 +29,24 @@ std::string stiffness_text(const PolicyConfig& policy) {
   std::string out = policy.name;
   for (const auto& [name, value] : policy.parameters) out += fmt::format(", {} {}", name, to_text(value));
   if (policy.scale != 1) out += fmt::format(", times {:g}", policy.scale);
+  return out;
+}
+
+void print_method(const RunConfig& config) {
+  if (config.method.empty()) return;
+  const MethodUse use = method_use(config);
+  fmt::print("method    {}: {}\n", use.title(), use.method.source);
+  for (const std::string& pointer : use.overridden) fmt::print("  overridden: {}\n", pointer);
+  for (const auto& [subject, text] : use.method.differs) fmt::print("  differs, {}: {}\n", subject, text);
+}
+
+/// Pointers of the method that stand as the method has them.
+std::set<std::string> of_method(const RunConfig& config) {
+  std::set<std::string> out;
+  if (config.method.empty()) return out;
+  const MethodUse use = method_use(config);
+  for (const auto& [pointer, value] : leaves_of(use.method)) out.insert(pointer);
+  for (const std::string& pointer : use.overridden) out.erase(pointer);
   return out;
 }
 
@@ -52,10 +72,14 @@ void print_settings(const RunVerb& verb, const RunConfig& config) {
   const nlohmann::json given =
       make_document(read_input_file(verb.config, config_file), verb.config, folder, verb.set, ignored);
   const nlohmann::json flat = nlohmann::json::parse(resolved_json(config)).flatten();
-  fmt::print("\nevery setting of the run (* given by the config or --set; the others are defaults)\n");
+  const std::set<std::string> by_method = of_method(config);
+  fmt::print(
+      "\nevery setting of the run (* given by the config or --set, m as its method has it; the others are "
+      "defaults)\n");
   for (const auto& [pointer, value] : flat.items()) {
     const bool own = given.contains(nlohmann::json::json_pointer(pointer));
-    fmt::print("  {} {:<52} {}\n", own ? '*' : ' ', pointer, value.dump());
+    const char from = by_method.contains(pointer) ? 'm' : own ? '*' : ' ';
+    fmt::print("  {} {:<52} {}\n", from, pointer, value.dump());
   }
 }
 
@@ -114,6 +138,7 @@ int explain(const RunVerb& verb, const ContactDemand& demand) {
   fmt::print("{}\n  {} vertices ({} prescribed), {} membrane triangles, {} steps of {} s\n\n",
              run_label(config), scene.n_vertices(), scene.pins.size(), scene.membrane_triangles().size(),
              config.time.steps, config.time.dt);
+  print_method(config);
   print_formulation(config);
   for (const bool needed : {true, false}) {
     fmt::print("{}\n", needed ? "runs" : "skipped");

@@ -13,6 +13,7 @@
 #include "experiments/cli/verbs.hpp"
 #include "experiments/config/limit_policies.hpp"
 #include "experiments/config/mesh_generators.hpp"
+#include "experiments/config/methods.hpp"
 #include "experiments/config/presets.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
@@ -62,6 +63,17 @@ void print_generators() {
   }
 }
 
+void print_methods() {
+  fmt::print("methods (/method; below each: its settings, why, and what this program does otherwise)\n");
+  for (const PublishedMethod& method : published_methods()) {
+    fmt::print("  {:<22} {} Source: {}.\n", method.name, method.doc, method.source);
+    for (const auto& [pointer, value] : method.set.items()) {
+      fmt::print("    {} = {}\n      {}\n", pointer, value.dump(), method.because.at(pointer));
+    }
+    for (const auto& [subject, text] : method.differs) fmt::print("    differs, {}: {}\n", subject, text);
+  }
+}
+
 struct Section {
   const char* name;
   std::function<void()> print;
@@ -82,6 +94,7 @@ const std::vector<Section>& sections() {
       {"linear_solvers", [] { print_entries("linear_solvers", linear_solvers()); }},
       {"preconditioners", [] { print_entries("preconditioners", preconditioners()); }},
       {"membranes", [] { print_entries("membranes", membrane_models<double>()); }},
+      {"methods", print_methods},
       {"formulations", [] { print_entries("formulations", formulation_presets()); }},
   };
   return list;

@@ -172,7 +172,7 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
 
 int demo(const std::string& out, const CommonOptions& common) {
   const std::filesystem::path specs = std::filesystem::path(configs_folder()) / "sweeps";
-  for (const char* name : {"demo_strip", "demo_pinned", "demo_article", "demo_drape"}) {
+  for (const char* name : {"demo_strip", "demo_pinned", "demo_article", "demo_drape", "demo_long"}) {
     SweepVerb verb;
     verb.spec = (specs / (std::string(name) + ".json")).string();
     verb.out = (std::filesystem::path(out) / name).string();

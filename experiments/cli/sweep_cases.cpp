@@ -53,11 +53,11 @@ std::optional<std::size_t> marked_reference(const json& axes, std::size_t index)
   return any ? std::optional(out) : std::nullopt;
 }
 
-/// Whether an axis changes what is compared (formulation, strain limit, matching), and not the problem that
+/// Whether an axis changes what is compared (method, formulation, strain limit, matching), and not the problem that
 /// it is compared on. One entry that does is enough.
 bool changes_formulation(const json& axis) {
   const auto compared = [](const std::string& pointer) {
-    for (const char* section : {"/formulation", "/strain_limit", "/matching"}) {
+    for (const char* section : {"/method", "/formulation", "/strain_limit", "/matching"}) {
       if (pointer == section || pointer.starts_with(std::string(section) + "/")) return true;
     }
     return false;

@@ -268,8 +268,9 @@ void check_device(const RunConfig& config, const Complain& complain) {
   if (config.precision != Precision::full) {
     complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);
   }
-  if (config.contact.hessian_mode == HessianMode::projected_numeric) {
-    complain("/contact/hessian_mode", "\"projected_numeric\"", "gauss_newton or projected_full " + on);
+  if (is_numeric(config.contact.hessian_mode)) {
+    complain("/contact/hessian_mode", '"' + word_of(config.contact.hessian_mode) + '"',
+             "gauss_newton or projected_full " + on);
   }
   if (config.step_solver.name == "article_literal") {
     complain("/step_solver/name", "\"article_literal\"", "another step solver " + on);

@@ -7,9 +7,11 @@
 #include <cstring>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 
 #include "core/input/json.hpp"
 #include "core/input/names.hpp"
+#include "experiments/config/methods.hpp"
 
 namespace bb {
 namespace {
@@ -53,6 +55,21 @@ void drop_replaced(json& base, const json& over) {
   }
 }
 
+/// steps and duration_s replace each other, and steps that went with a duration end with another dt.
+void drop_other_length(json& base, const json& over) {
+  const json::json_pointer time("/time");
+  if (!base.contains(time) || !over.contains(time) || !base[time].is_object() || !over[time].is_object())
+    return;
+  json& below = base[time];
+  const json& above = over[time];
+  const bool steps = above.contains("steps"), duration = above.contains("duration_s");
+  if (steps && !duration) {
+    below.erase("duration_s");
+  } else if (duration || (above.contains("dt_s") && below.contains("duration_s"))) {
+    below.erase("steps");
+  }
+}
+
 void lay_over(json& base, const json& over) {
   if (!base.is_object() || !over.is_object()) {
     base = over;
@@ -67,14 +84,30 @@ void lay_over(json& base, const json& over) {
   }
 }
 
+/// False when there is no such place.
+bool set_value(json& document, const json::json_pointer& pointer, json value);
+
+/// The settings of a method, over what the document has. A name that no method has is told when the config is checked.
+void lay_method(json& document, const json& name) {
+  const std::vector<std::string> names = method_names();
+  if (!document.is_object() || !name.is_string() ||
+      std::find(names.begin(), names.end(), name) == names.end())
+    return;
+  const PublishedMethod method = load_method(name);
+  for (const auto& [pointer, value] : method.set.items()) {
+    set_value(document, json::json_pointer(pointer), value);
+  }
+}
+
 constexpr std::size_t max_chain = 16;  // configs that extend one another
 
 json with_base(json document, const std::string& source, const std::string& folder,
-               std::vector<std::string> chain) {
-  expand_shorthands(document);
-  absolute_mesh_paths(document, folder);
-  if (!document.is_object() || !document.contains("extends") || !document["extends"].is_string())
-    return document;
+               std::vector<std::string> chain, bool method_above);
+
+/// What the document extends; an empty object where it extends nothing.
+json base_of(const json& document, const std::string& source, const std::string& folder,
+             std::vector<std::string> chain, bool method_above) {
+  if (!document.contains("extends") || !document["extends"].is_string()) return json::object();
   const std::string path =
       fs::absolute(fs::path(folder) / document["extends"].get<std::string>()).lexically_normal();
   if (std::find(chain.begin(), chain.end(), path) != chain.end()) {
@@ -92,9 +125,24 @@ json with_base(json document, const std::string& source, const std::string& fold
     const Violation& wrong = error.violations().front();
     throw ConfigError(source + "#/extends", '"' + path + "\": " + wrong.found, wrong.allowed);
   }
-  json base = with_base(parse_json(text, path), path, fs::path(path).parent_path(), std::move(chain));
-  document.erase("extends");
+  return with_base(parse_json(text, path), path, fs::path(path).parent_path(), std::move(chain),
+                   method_above);
+}
+
+/// From below: what is extended, the method, the document itself. Only the highest method counts: method_above says that
+/// there is a higher one.
+json with_base(json document, const std::string& source, const std::string& folder,
+               std::vector<std::string> chain, bool method_above) {
+  expand_shorthands(document);
+  absolute_mesh_paths(document, folder);
+  if (!document.is_object()) return document;
+  if (method_above) document.erase("method");
+  const bool has_method = document.contains("method");
+  json base = base_of(document, source, folder, std::move(chain), method_above || has_method);
+  if (document.contains("extends") && document["extends"].is_string()) document.erase("extends");
+  if (has_method) lay_method(base, document["method"]);
   drop_replaced(base, document);
+  drop_other_length(base, document);
   lay_over(base, document);
   return base;
 }
@@ -140,10 +188,10 @@ json* place_of(json& document, const std::vector<std::string>& tokens) {
   return at;
 }
 
-/// False when there is no such place.
 bool set_value(json& document, const json::json_pointer& pointer, json value) {
   const std::string name = pointer.to_string();
   if (name != "/formulation" && name != "/formulation/name" && name != "/scene/name") {
+    if (name.starts_with("/time/")) drop_other_length(document, {{"time", {{pointer.back(), value}}}});
     json* place = place_of(document, tokens_of(pointer));
     if (place != nullptr) *place = std::move(value);
     return place != nullptr;
@@ -183,11 +231,28 @@ void apply_override(json& document, const std::string& text, const std::string& 
   absolute_mesh_paths(document, folder);
 }
 
+/// The method that overrides name; nothing where they name none, or where the value cannot be read, which apply_override
+/// tells.
+std::optional<json> named_method(std::span<const std::string> overrides) {
+  const std::string key = "/method=";
+  std::optional<json> out;
+  for (const std::string& text : overrides) {
+    if (!text.starts_with(key)) continue;
+    try {
+      out = override_value(text.substr(key.size()), text);
+    } catch (const JsonError&) {
+    }
+  }
+  return out;
+}
+
 }  // namespace
 
 json make_document(const std::string& text, const std::string& source, const std::string& folder,
                    std::span<const std::string> overrides, std::vector<Violation>& violations) {
-  json document = with_base(parse_json(text, source), source, folder, {});
+  const std::optional<json> method = named_method(overrides);
+  json document = with_base(parse_json(text, source), source, folder, {}, method.has_value());
+  if (method) lay_method(document, *method);
   for (const std::string& text_of_override : overrides) {
     apply_override(document, text_of_override, folder, violations);
   }

@@ -15,6 +15,8 @@ namespace bb {
 /// Text to a document: mesh paths made absolute from `folder`, "extends" laid underneath (and its own, in
 /// turn), then the overrides "/pointer=value": an override
 /// makes missing keys of objects, but never elements of an array. Violations of overrides are appended.
+/// The settings of a method are laid over what its file extends and under what the file itself says; those of a method that
+/// an override names over the file and under all overrides. Only the highest method counts.
 /// Errors: ConfigError as parse_json, unreadable, circular or too long `extends`.
 nlohmann::json make_document(const std::string& text, const std::string& source, const std::string& folder,
                              std::span<const std::string> overrides, std::vector<Violation>& violations);

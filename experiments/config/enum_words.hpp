@@ -30,7 +30,9 @@ inline EnumWords<Mollifier> words_of(Mollifier) {
 inline EnumWords<HessianMode> words_of(HessianMode) {
   return {{HessianMode::gauss_newton, "gauss_newton"},
           {HessianMode::projected_full, "projected_full"},
-          {HessianMode::projected_numeric, "projected_numeric"}};
+          {HessianMode::projected_numeric, "projected_numeric"},
+          {HessianMode::projected_lapack, "projected_lapack"},
+          {HessianMode::projected_low_rank, "projected_low_rank"}};
 }
 inline EnumWords<Scaling> words_of(Scaling) {
   return {{Scaling::none, "none"}, {Scaling::jacobi, "jacobi"}, {Scaling::block_jacobi, "block_jacobi"}};

@@ -17,15 +17,17 @@ namespace {
 
 using nlohmann::json;
 
-/// d_hat and dt have a default only where a scene supplies it.
+/// d_hat, dt and the length of a run have a default only where a scene supplies it.
 void require_scales(const json& document, const Reader& reader) {
   if (!child(document, "formulation").contains("d_hat_m")) {
     reader.missing("/formulation/d_hat_m", "a number > 0 (m): a scene given as bodies has no default");
   }
-  for (const char* key : {"dt_s", "steps"}) {
-    if (!child(document, "time").contains(key)) {
-      reader.missing(std::string("/time/") + key, "a value: a scene given as bodies has no default");
-    }
+  const json& time = child(document, "time");
+  if (!time.contains("dt_s")) {
+    reader.missing("/time/dt_s", "a value: a scene given as bodies has no default");
+  }
+  if (!time.contains("steps") && !time.contains("duration_s")) {
+    reader.missing("/time/steps", "a value, or duration_s: a scene given as bodies has no default");
   }
 }
 
@@ -72,6 +74,11 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   }
 
   settings_of<RunConfig>().read(document, config);
+  const json& time = child(document, "time");
+  if (!config.method.empty() && scene && !time.contains("steps") && !time.contains("duration_s")) {
+    config.time.duration = defaults.dt * defaults.steps;  // whatever dt the method has
+  }
+  settle_time(time, reader, config.time);
   settle_formulation(child(document, "formulation"), reader, config.formulation);
   settle_strain_limit(child(document, "strain_limit"), reader, config.formulation, defaults.limit,
                       config.strain_limit);

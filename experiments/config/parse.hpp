@@ -14,7 +14,8 @@ namespace bb {
 
 /// Reads a config file. "extends": PATH (relative to the file) is laid underneath, object by object; then
 /// each override "/pointer=value" (value: JSON, or a bare word taken as a string) is set, in order. A
-/// formulation or a scene whose name changes on the way starts anew, but the formulation keeps its d_hat_m.
+/// formulation or a scene whose name changes on the way starts anew, but the formulation keeps its d_hat_m. A method lies
+/// underneath what stands beside its name (document.hpp).
 /// Errors: ConfigError: unreadable file, JSON syntax (file:line), schema, unknown name (nearest suggested),
 ///   contradiction, bad override.   Cost: milliseconds; mesh files are hashed.
 RunConfig load_config(const std::string& path, std::span<const std::string> overrides = {});

@@ -36,6 +36,7 @@ const ProceduralScene* read_scene(const nlohmann::json& object, const Reader& re
 
 /// What the rows of these sections alone cannot tell: defaults that other settings decide, and settings that
 /// exclude each other. The sections have been read.
+void settle_time(const nlohmann::json& object, const Reader& reader, TimeConfig& time);
 void settle_formulation(const nlohmann::json& object, const Reader& reader, FormulationConfig& formulation);
 void settle_strain_limit(const nlohmann::json& object, const Reader& reader,
                          const FormulationConfig& formulation, std::optional<double> default_limit,

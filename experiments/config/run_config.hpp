@@ -82,9 +82,13 @@ inline const std::string& label_of(const FormulationConfig& formulation) {
   return formulation.name.empty() ? formulation.shape : formulation.name;
 }
 
+/// Where a run ends, s.
+inline double end_time(const TimeConfig& time) { return time.duration.value_or(time.dt * time.steps); }
+
 struct RunConfig {
   std::string source;  // file it came from, for messages; not part of config_id
   std::string linear_solver_reason = "as asked for";  // or why auto chose it; no setting
+  std::string method;                                 // published method that was asked for; empty: none
   SceneConfig scene;
   FormulationConfig formulation;
   StrainLimitConfig strain_limit;

@@ -10,6 +10,7 @@
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/config/limit_policies.hpp"
+#include "experiments/config/methods.hpp"
 
 namespace bb {
 namespace {
@@ -79,6 +80,13 @@ Settings<RunConfig> list_of() {
   out.add_row({"doc", any_text(), no_default, "Free text; no part of the identity of a run."});
   out.add_row({"extends", any_text(), no_default,
                "Path of a config, relative to this file, that this one is laid over, object by object."});
+  out.add("method", name_in(method_names),
+          "A published method in one piece (configs/methods/NAME.json, `bench list methods`): its settings "
+          "are laid "
+          "underneath those that stand beside its name, and over those of a config that this one extends. "
+          "The record "
+          "names those that are overridden: such a run is of no published method.",
+          &C::method);
   out.add_row({"scene", required(scene_rule()), no_default, ""}, nullptr,
               [](const C& config) { return scene_json(config.scene); });
   out.nest("formulation", settings_of<FormulationConfig>(), &C::formulation, "the name of a preset");

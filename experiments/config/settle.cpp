@@ -1,6 +1,8 @@
-// The formulation, the strain limit and the matching rule: defaults that follow other settings, and settings
+// Time, the formulation, the strain limit and the matching rule: defaults that follow other settings, and settings
 // that exclude each other.
 #include <fmt/format.h>
+
+#include <cmath>
 
 #include "barriers/matching.hpp"
 #include "core/input/names.hpp"
@@ -80,6 +82,23 @@ bool settle_width(const json& object, const Reader& reader, std::optional<double
 }
 
 }  // namespace
+
+void settle_time(const json& object, const Reader& reader, TimeConfig& out) {
+  if (!out.duration) return;
+  constexpr double most = 1e9, rounding = 1e-9;  // 0.4 s are 400 steps of 1e-3 s
+  const double steps = std::max(1.0, std::ceil(*out.duration / out.dt * (1 - rounding)));
+  if (!(steps <= most)) {
+    reader.complain("/time/duration_s", json(*out.duration).dump(),
+                    fmt::format("at most {} steps of dt_s", most));
+    return;
+  }
+  if (object.contains("steps") && out.steps != steps) {
+    reader.complain(
+        "/time/steps", fmt::format("{}", out.steps),
+        fmt::format("{}, which is ceil(duration_s/dt_s), or only one of steps and duration_s", steps));
+  }
+  out.steps = static_cast<int>(steps);
+}
 
 void settle_formulation(const json& object, const Reader& reader, FormulationConfig& out) {
   if (object.contains("name")) {

@@ -30,7 +30,7 @@ Pass::Pass(const RunConfig& config, const Scene& scene, const Calibration& calib
       passes_after_(passes_after),
       method_(make_method(config, calibration)),
       simulation_(scene, method_, plan, config.time.dt, config.time.steps),
-      t_end_(config.time.dt * config.time.steps * (1 - 1e-9)) {}
+      t_end_(end_time(config.time) * (1 - 1e-9)) {}
 
 void Pass::keep(Archive& archive) {
   archive.section("pass");
@@ -85,7 +85,7 @@ void Pass::stop() {
       Outcome::timeout,
       fmt::format("pass {}: the time limit of {:g} s was reached before step {}, at {:.6g} of {:.6g} s",
                   name_, options_.time_limit_s, result_.steps.size(), simulation_.time(),
-                  config_.time.dt * config_.time.steps)};
+                  end_time(config_.time))};
 }
 
 void Pass::step() {
@@ -108,7 +108,7 @@ void Pass::show(const StepReport& step) const {
   progress.gap = step.gap_min_m;
   progress.elapsed_s = now_s() - start_s_;
   progress.t_s = simulation_.time();
-  progress.t_end_s = config_.time.dt * config_.time.steps;
+  progress.t_end_s = end_time(config_.time);
   // accumulated_toi may have gone nowhere yet
   const double rate = progress.elapsed_s / std::max(progress.t_s - t_begin_, 1e-9 * progress.t_end_s);
   progress.eta_s = rate * (std::max(0.0, t_end_ - progress.t_s) + passes_after_ * progress.t_end_s);

@@ -16,6 +16,7 @@
 #include "core/record/writer.hpp"
 #include "core/terms/plan.hpp"
 #include "experiments/config/enum_words.hpp"
+#include "experiments/config/methods.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/comparability.hpp"
@@ -46,6 +47,13 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.dt_s = config.time.dt;
   labels.note = options.note;
   labels.swept = options.swept;
+}
+
+void fill_method(const RunConfig& config, RunRecord& record) {
+  if (config.method.empty()) return;
+  const MethodUse use = method_use(config);
+  record.labels.method = use.title();
+  record.method = {use.method.name, use.method.source, use.overridden, use.method.differs};
 }
 
 void fill_scene(const Scene& scene, RunRecord& record) {
@@ -253,6 +261,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   }
   record.artifacts = files.written();  // also where memory ran out beside a step
   fill_labels(config, options, record);
+  fill_method(config, record);
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();

@@ -8,6 +8,7 @@ import pytest
 
 from analysis.readme import __main__ as readme
 from analysis.claims.entry import read_sweep
+from analysis.claims.inputs import inputs_of
 from analysis.claims.table import Runs, Table
 from analysis.readme import numbers, slices, snippets, templates
 
@@ -17,11 +18,13 @@ ROOT = Path(__file__).resolve().parents[2]
 def row(group, series, **more):
     return {"group": group, "series": series, "outcome": "ok", "verdict": "comparable", "step_solver": "line_search", "crossings": 0, "violations": 0, "unproven": 0, "judged": 9,
             "steps": 12, "scale": None, "valid": True, "cond_raw_median": 5000.0, "cond_raw_max": 44000.0, "cond_bj_median": 351.0, "cond_bj_max": 698.0, "newton_iterations": 83,
-            "probe_pcg": 142.0, "gap_min_rel": 0.1024, "cond_steps": {0: 10.0, 1: 400.0}, "touching_steps": [1], "run": "0" * 64} | more
+            "probe_pcg": 142.0, "gap_min_rel": 0.1024, "cond_raw_p95": 20000.0, "cond_steps": {1: 400.0, 2: 900.0}, "run": "0" * 64} | more
 
 
 def kept(**changed):
-    runs = [row("demo_drape", "log"), row("demo_drape", "cubic", cond_raw_max=11000.0, probe_pcg=157.0, cond_steps={0: 20.0, 1: 100.0}),
+    runs = [row("demo_drape", "log"), row("demo_long", "formula log"), row("demo_long", "formula cubic", cond_raw_max=11000.0, cond_raw_median=10000.0, cond_raw_p95=8000.0, probe_pcg=157.0, cond_steps={0: 1.0, 1: 800.0, 2: 300.0}),
+            row("demo_long", "mesh log", probe_pcg=12.0), row("demo_long", "mesh cubic", cond_raw_max=22000.0, verdict="not_comparable"),
+            row("demo_drape", "cubic_dynamic published", step_solver="accumulated_toi", steps=120),
             row("demo_drape", "cubic_dynamic", outcome="newton_stall", steps=10, gap_min_rel=None, **changed),
             row("demo_drape", "cubic_dynamic x s", scale=2.41, verdict="not_comparable"), row("demo_article", "log", step_solver="article_literal", crossings=7)]
     about = {"processor": "Some CPU", "cores": "2", "blas_kernel": "Haswell", "compiler": "g++ 12", "flags": "-O2", "commit": "0123456789abcdef", "days": "2026-01-02", "runs": 5}
@@ -39,27 +42,31 @@ def of_slices(**changed) -> Table:
         if scene == "block" and of["theta"] < 0.1 and not of["enabled"] and case == "cubic":
             row |= {"outcome": "stall_overload"}
         rows.append(row | changed)
-    return Table({slices.SWEEP: Runs({}, rows, len(rows))})
+    return Table({slices.SWEEP: Runs({"sha256": sweep.sha256, "inputs_sha256": inputs_of(sweep), "unknowns": "9 to 576"}, rows, len(rows))})
 
 
-def everything(**changed):
-    return kept(**changed) | {"slices": slices.gather(of_slices())}
+def everything():
+    return kept() | {"slices": slices.gather(of_slices())}
 
 
 def test_slices_are_those_of_theta_and_limit():
     found = slices.gather(of_slices())
-    assert [row["theta"] for row in found["off"]] == [0.5, 0.1, 0.01, 0.001]
-    assert [row["ratio"] for row in found["off"]] == pytest.approx([2 / math.sqrt(t) for t in (0.5, 0.1, 0.01, 0.001)])
-    assert [row["ratio"] for row in found["log"]] == pytest.approx([1.5] * 4)
-    assert [(row["scenes"], row["failed"], row["of"]) for row in found["off"]] == [(7, 0, 21), (7, 0, 21), (6, 3, 21), (6, 3, 21)]
+    off, on = (found["limits"][limit] for limit in ("off", "log"))
+    assert [row["theta"] for row in off] == [0.5, 0.1, 0.01, 0.001]
+    assert [row["ratio"] for row in off] == pytest.approx([2 / math.sqrt(t) for t in (0.5, 0.1, 0.01, 0.001)])
+    assert [row["ratio"] for row in on] == pytest.approx([1.5] * 4)
+    assert [(row["scenes"], row["failed"], row["of"]) for row in off] == [(7, 0, 21), (7, 0, 21), (6, 3, 21), (6, 3, 21)]
     text = " ".join(" ".join(slices.sentence(found, 140)).split())
-    assert "is 2.8, 6.3, 20 and 63 times the cubic's where contact is alone, and 1.5, 1.5, 1.5 and 1.5 times with a strain limit" in text
-    assert "means over 6 to 7 scenes" in text and "does not get through in 3 of 21 runs at theta 0.01 and 3 of 21 runs at theta 0.001" in text
+    assert "is 2.8, 6.3, 20 and 63 times the cubic's without a strain limit, and 1.5, 1.5, 1.5 and 1.5 times with one" in text
+    assert "6 to 7 scenes, of 9 to 576 unknowns" in text and "does not get through in 3 of 21 runs at theta 0.01 and 3 of 21 runs at theta 0.001" in text
 
 
 def test_slices_without_runs_are_no_sentence():
-    for table in (Table(), of_slices(outcome="newton_stall")):
-        with pytest.raises(numbers.ReadmeError, match="contact_slices"):
+    of_another_sweep, too_few = of_slices(), of_slices()
+    of_another_sweep.sweeps[slices.SWEEP].about["sha256"] = "0" * 64
+    too_few.sweeps[slices.SWEEP].rows.pop()
+    for table, why in ((Table(), "504 of 504 records"), (of_slices(outcome="newton_stall"), "no pair of runs counts"), (of_another_sweep, "are of another"), (too_few, "1 of 504 records")):
+        with pytest.raises(numbers.ReadmeError, match=f"contact_slices.*{why}|{why}.*contact_slices"):
             slices.gather(table)
 
 
@@ -68,7 +75,7 @@ def test_the_table_has_every_run_and_names_its_processors():
     text = " ".join(lines)
     assert "Some CPU" in text and "class of processors" in text and "0123456789" in text and "2026-01-02" in text
     assert "| log | ok | 5.0e3, 4.4e4 | 351, 698 | 83 | 142 | 0.102 |" in lines
-    assert any(line.startswith("| cubic_dynamic (per iteration) | newton_stall in step 9 |") and line.endswith("| - |") for line in lines)
+    assert any(line.startswith("| cubic_dynamic (ours: per iteration, to convergence) | newton_stall in step 9 |") and line.endswith("| - |") for line in lines)
     assert any(line.startswith("| cubic_dynamic x s (s = 2.4) | ok, not comparable |") for line in lines)
     assert len([line for line in lines if line.startswith("| ")]) == 1 + 4
 
@@ -79,13 +86,24 @@ def said(numbers_):
 
 def test_the_sentences_say_what_the_numbers_say():
     text = said(kept())
-    assert "In all 4 runs" in text and "4 times that of the cubic" in text and "0.5 times before they touch" in text and "142 against 157" in text
-    assert "stops in time step 9 (`newton_stall`)" in text and "of the 1 variants" in text
+    assert "In all 7 runs" in text and "as a formula the logarithm's median is 0.5, its 95th percentile 2.5 and its largest 4 times the cubic's" in text and "142 against 157" in text
+    assert "as a mesh the logarithm's median is 1, its 95th percentile 1 and its largest 2 times" in text and "12 against 142" in text and "with the mesh the cubic's contacts rest at other gaps" in text
+    assert "stops in time step 9 (`newton_stall`)" in text and "of our 1 variants" in text and "1 end `ok`" in text and "ends `ok` after 120 steps" in text
     text = said(kept(crossings=1))
-    assert "In 1 of 4 runs" in text and "cubic_dynamic of demo_drape" in text
+    assert "In 1 of 7 runs" in text and "cubic_dynamic of demo_drape" in text
     nothing_judged = kept()
     nothing_judged["runs"][0]["judged"] = 0
-    assert "In 1 of 4 runs" in said(nothing_judged)
+    assert "In 1 of 7 runs" in said(nothing_judged)
+
+
+def test_the_drape_is_judged_by_steps_that_end_in_contact_with_both():
+    text = " ".join(templates.drape_sentences(kept()))
+    assert "in 1 of 2 with the sphere as a formula (0.5 to 3 times the cubic's)" in text and "in 0 of 2 with the sphere as a mesh (1 to 1 times" in text
+    never = kept()
+    for one in never["runs"]:
+        one["cond_steps"] = {}
+    with pytest.raises(numbers.ReadmeError, match="no time step ends in contact"):
+        templates.drape_sentences(never)
 
 
 def test_only_generated_parts_change_and_an_unknown_one_is_refused(tmp_path):
@@ -93,7 +111,7 @@ def test_only_generated_parts_change_and_an_unknown_one_is_refused(tmp_path):
     made = templates.filled(page, kept(), "a.md")
     assert made.startswith("before\n<!-- numbers: result -->\n1. In all") and made.endswith("<!-- /numbers -->\nafter <!-- numbers -->\n") and "old" not in made
     assert templates.filled(made, kept(), "a.md") == made
-    with pytest.raises(numbers.ReadmeError, match="a.md: .*other.*allowed: demo, result, slices"):
+    with pytest.raises(numbers.ReadmeError, match="a.md: .*other.*allowed: demo, result, drape, slices"):
         templates.filled(page.replace("result", "other"), kept(), "a.md")
 
 
@@ -123,7 +141,7 @@ def test_a_page_that_lost_its_marks_is_no_page_that_is_right(tmp_path):
     (tmp_path / "README.md").write_text("<!-- numbers: result -->\nold\n")  # the end is gone
     (tmp_path / "docs/results.md").write_text("")
     found = readme.stale(tmp_path, everything())
-    assert [line.partition(":")[0] for line in found] == ["README.md", "README.md", "docs/results.md"] and "no <!-- numbers: demo -->" in found[2]
+    assert [line.partition(":")[0] for line in found] == ["README.md"] * len(templates.PARTS["README.md"]) + ["docs/results.md"] and "no <!-- numbers: demo -->" in found[-1]
     with pytest.raises(numbers.ReadmeError, match="README.md: no <!-- numbers: result -->"):
         readme.write_pages(tmp_path, everything())
 
@@ -150,8 +168,9 @@ def test_numbers_are_gathered_from_records_of_the_program(program, tmp_path):
     rows = numbers._rows(records, numbers.summary_table(records))
     assert len(rows) == 2 and {row["series"] for row in rows} == {"log", "cubic"}
     for found in rows:
-        assert found["outcome"] == "ok" and found["steps"] == 30 and found["judged"] > 0 and found["touching_steps"]
-        assert set(found["cond_steps"]) == set(range(30)) and all(math.isfinite(value) and value >= 1 for value in found["cond_steps"].values())
+        assert found["outcome"] == "ok" and found["steps"] == 30 and found["judged"] > 0
+        assert found["cond_steps"] and all(1 <= value <= found["cond_raw_max"] for value in found["cond_steps"].values())
+        assert 1 <= found["cond_raw_median"] < found["cond_raw_p95"] <= found["cond_raw_max"]
     assert json.loads(json.dumps(rows)) and numbers._about(records.runs)["runs"] == 2
     with pytest.raises(numbers.ReadmeError, match="no records of demo_drape"):
         numbers.gather(tmp_path / "out")

@@ -17,6 +17,15 @@ inline AuditMesh surface(const Eigen::Matrix3Xi& triangles) {
   return mesh;
 }
 
+/// Vertices 0..2 and 3..5: two triangles that share nothing.
+inline AuditMesh two_triangles() {
+  Eigen::Matrix3Xi t(3, 2);
+  t << 0, 3,  //
+      1, 4,   //
+      2, 5;
+  return surface(t);
+}
+
 /// Vertices 0..3: a square sheet of two triangles, the first at z = 0, the second rising to 0.2; 4..6: a
 /// small triangle above the first.
 inline AuditMesh sheet_and_triangle() {

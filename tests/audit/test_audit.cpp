@@ -96,13 +96,8 @@ TEST(Audit, pairs_that_share_a_vertex_are_exempt_and_no_others) {
 }
 
 AuditMesh planar_elements() {
-  AuditMesh mesh;
+  AuditMesh mesh = two_triangles();
   mesh.planar = true;
-  mesh.triangles.resize(3, 2);
-  mesh.triangles << 0, 3, 1, 4, 2, 5;
-  mesh.edges.resize(2, 6);
-  mesh.edges << 0, 1, 2, 3, 4, 5,  //
-      1, 2, 0, 4, 5, 3;
   return mesh;
 }
 
@@ -149,6 +144,27 @@ TEST(Audit, a_surface_of_which_nothing_was_judged_is_never_ok) {
   surface_only.check_state(sheet_and_triangle_at(0.5), 0);
   EXPECT_GT(surface_only.ledger().pair_queries, 0);
   EXPECT_FALSE(surface_only.ledger().ok());
+}
+
+TEST(Audit, loose_particles_are_judged_at_obstacles_alone) {
+  AuditMesh particles;
+  particles.edges.resize(2, 0), particles.triangles.resize(3, 0);
+  particles.points = {0, 1};
+  Positions above(3, 2), below(3, 2);
+  above << 0, 1, 0, 0, 0.5, 0.25;
+  below << 0, 1, 0, 0, 0.5, -0.25;
+  Audit nothing_to_meet(particles);
+  nothing_to_meet.check_state(above, 0);
+  EXPECT_FALSE(nothing_to_meet.ledger().ok());  // nothing was judged
+
+  particles.obstacles = {{ObstacleKind::plane, Vec3d::Zero(), Vec3d::UnitZ(), 0.0, false}};
+  Audit on_plane(particles);
+  on_plane.check_state(above, 0);
+  EXPECT_EQ(on_plane.ledger().judged(), 2);
+  EXPECT_TRUE(on_plane.ledger().ok());
+  on_plane.check_motion(above, below, 1, tolerance);
+  EXPECT_EQ(on_plane.ledger().obstacle_violations, 1);
+  EXPECT_FALSE(on_plane.ledger().ok());
 }
 
 TEST(Audit, ledger_counts_what_there_is_and_what_was_judged) {

@@ -143,7 +143,13 @@ TEST(Ledger, AKindThatWasNeverAskedLeavesNothingJudged) {
   }
   AuditLedger no_pairs = judged_ledger();
   no_pairs.pair_queries = 0;
-  EXPECT_EQ(no_pairs.judged(), 0);
+  for (long AuditSubjects::*part : {&AuditSubjects::edges, &AuditSubjects::triangles}) {
+    no_pairs.subjects.edges = no_pairs.subjects.triangles = 0;
+    no_pairs.subjects.*part = 1;
+    EXPECT_EQ(no_pairs.judged(), 0);
+  }
+  no_pairs.subjects.edges = no_pairs.subjects.triangles = 0;  // loose particles
+  EXPECT_EQ(no_pairs.judged(), 4 + 6 + 4);
   AuditLedger no_obstacle = judged_ledger();
   no_obstacle.obstacle_judged = {}, no_obstacle.subjects.at_obstacles = {};
   EXPECT_EQ(no_obstacle.judged(), 0);  // there is one

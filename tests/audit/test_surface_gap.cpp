@@ -8,11 +8,12 @@
 
 #include "core/audit/closest_point.hpp"
 #include "core/audit/state_audit.hpp"
+#include "tests/audit/small_scenes.hpp"
 
 namespace bb::audit {
 namespace {
 
-/// Two triangles of random shape about `distance` apart, every side an edge.
+/// Two triangles of random shape about 0.9 apart, every side an edge.
 struct Pair {
   AuditMesh mesh;
   Positions x;
@@ -21,11 +22,7 @@ struct Pair {
 Pair random_pair(std::mt19937& random) {
   std::uniform_real_distribution<double> c(-0.5, 0.5);
   Pair out;
-  out.mesh.triangles.resize(3, 2);
-  out.mesh.triangles << 0, 3, 1, 4, 2, 5;
-  out.mesh.edges.resize(2, 6);
-  out.mesh.edges << 0, 1, 2, 3, 4, 5,  //
-      1, 2, 0, 4, 5, 3;
+  out.mesh = two_triangles();
   out.x.resize(3, 6);
   for (int v = 0; v < 6; ++v) out.x.col(v) = Vec3d(c(random), c(random), c(random) + (v < 3 ? 0.0 : 0.9));
   return out;

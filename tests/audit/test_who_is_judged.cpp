@@ -9,6 +9,7 @@
 #include "core/audit/box_tree.hpp"
 #include "core/audit/obstacle_sign.hpp"
 #include "core/audit/pair_verdict.hpp"
+#include "tests/audit/small_scenes.hpp"
 #include "tests/contact/true_pairs.hpp"
 
 namespace bb::audit {
@@ -28,13 +29,9 @@ struct TwoTriangles {
   Positions x0 = Positions(3, 6), x1;
 };
 
-TwoTriangles two_triangles(unsigned moving, std::mt19937& random) {
+TwoTriangles moving_triangles(unsigned moving, std::mt19937& random) {
   TwoTriangles out;
-  out.mesh.triangles.resize(3, 2);
-  out.mesh.triangles << 0, 3, 1, 4, 2, 5;
-  out.mesh.edges.resize(2, 6);
-  out.mesh.edges << 0, 1, 2, 3, 4, 5,  //
-      1, 2, 0, 4, 5, 3;
+  out.mesh = two_triangles();
   for (int v = 0; v < 6; ++v) out.x0.col(v) = random_point(random, 1) + Vec3d(0, 0, v < 3 ? 0 : 0.7);
   out.x1 = out.x0;
   for (int v = 0; v < 6; ++v) {
@@ -87,7 +84,7 @@ TEST(WhoIsJudged, EveryPairOfWhichAnyVertexMoves) {
   Counts sum;
   int one_moves = 0;
   for (unsigned i = 0; i < 640; ++i) {
-    const TwoTriangles s = two_triangles(i % 64, random);
+    const TwoTriangles s = moving_triangles(i % 64, random);
     const Counts expected = every_pair(s);
     const MotionAudit found = audit_motion(s.mesh, s.x0, s.x1, tolerance);
     ASSERT_EQ(found.pairs, expected.pairs) << "moving " << i % 64;
@@ -175,7 +172,7 @@ TEST(WhoIsJudged, TheGapToWhatIsGivenCounts) {
   std::uniform_real_distribution<double> thickness(0, 0.1);
   int mixed = 0, none = 0, other = 0;
   for (unsigned i = 0; i < 192; ++i) {
-    TwoTriangles s = two_triangles(0, random);
+    TwoTriangles s = moving_triangles(0, random);
     for (unsigned v = 0; v < 6; ++v) {
       s.mesh.prescribed.push_back(i >> v & 1U);
       s.mesh.thickness.push_back(thickness(random));

@@ -5,33 +5,16 @@
 #include <algorithm>
 #include <vector>
 
-#include "barriers/stiffness/registry.hpp"
+#include "tests/barriers/ipc_adaptive.hpp"
 
 namespace bb {
 namespace {
 
+using test::balanced_at;
+using test::ipc_adaptive;
 using PairEnd = StiffnessPolicy::PairEnd;
 
-std::unique_ptr<StiffnessPolicy> adaptive(const ParameterMap& given = {}, double multiplier = 1) {
-  StiffnessPolicyConfig config;
-  config.name = "ipc_adaptive";
-  config.parameters = given;
-  config.multiplier = multiplier;
-  return make_policy(config);
-}
-
 constexpr double scale = 5, range = 100;  // k in N/m; kappa stays within [k, 100 k]
-
-/// Sums of a state whose forces balance at kappa = `balance`, with k = 2e-3/(0.5 1e-4 8) = 5 N/m.
-StiffnessGlobals balanced_at(double balance) {
-  StiffnessGlobals out;
-  out.grad_b_sq = 4e-6;
-  out.grad_b_dot_grad_e = -balance * out.grad_b_sq;
-  out.mean_contact_mass = 2e-3;
-  out.d2b_half = 8;
-  out.dt = 0.01, out.c = 0.5, out.d_hat = 1e-3;
-  return out;
-}
 
 const std::vector<double> balances = {-7, 0.3, 4.5, 5.5, 40, 480, 520, 7000, 1e9};
 
@@ -39,7 +22,7 @@ const std::vector<double> balances = {-7, 0.3, 4.5, 5.5, 40, 480, 520, 7000, 1e9
 TEST(StiffnessDecisions, AGivenBoundOfKappaHoldsOnEitherSideOfThePolicysOwn) {
   for (const double low : {0.01, 4.9, 5.1, 60.0, 499.0, 501.0, 1e6}) {
     for (const double balance : balances) {
-      const auto policy = adaptive({{"kappa_min_N_per_m", low}});
+      const auto policy = ipc_adaptive({{"kappa_min_N_per_m", low}});
       policy->start(balanced_at(balance));
       const double high = std::max(range * scale, low);
       EXPECT_DOUBLE_EQ(policy->state().kappa, std::clamp(balance, low, high)) << low << " " << balance;
@@ -49,7 +32,7 @@ TEST(StiffnessDecisions, AGivenBoundOfKappaHoldsOnEitherSideOfThePolicysOwn) {
   }
   for (const double high : {0.01, 4.9, 5.1, 60.0, 499.0, 501.0, 1e6}) {
     for (const double balance : balances) {
-      const auto policy = adaptive({{"kappa_max_N_per_m", high}});
+      const auto policy = ipc_adaptive({{"kappa_max_N_per_m", high}});
       policy->start(balanced_at(balance));
       const double low = std::min(scale, high);
       EXPECT_DOUBLE_EQ(policy->state().kappa, std::clamp(balance, low, high)) << high << " " << balance;
@@ -71,7 +54,7 @@ TEST(StiffnessDecisions, DoublingsEndAtTheUpperBound) {
                         {{{"kappa_min_N_per_m", 60}}, 60, 500},
                         {{{"kappa_min_N_per_m", 2000}}, 2000, 2000}};
   for (const Case& one : cases) {
-    const auto policy = adaptive(one.given);
+    const auto policy = ipc_adaptive(one.given);
     policy->start(balanced_at(40));
     double expected = one.start;
     int doublings = 0;
@@ -92,7 +75,7 @@ TEST(StiffnessDecisions, KappaDoublesForAPairThatIsSmallTwiceAndClosing) {
   const double park = 1e-9, given = 3e-6;
   for (const double small : {10 * park, given}) {
     const auto doublings = [&](double gap, double before) {
-      const auto policy = small == given ? adaptive({{"doubling_gap_m", given}}) : adaptive();
+      const auto policy = small == given ? ipc_adaptive({{"doubling_gap_m", given}}) : ipc_adaptive();
       policy->start(balanced_at(40));
       // beside a pair that is far from it
       policy->end_step(std::vector<PairEnd>{{0.5, 0.6, park}, {gap * small, before * small, park}});
@@ -112,7 +95,7 @@ TEST(StiffnessDecisions, KappaDoublesForAPairThatIsSmallTwiceAndClosing) {
 
 TEST(StiffnessDecisions, OnePairDoublesAndManyDoubleOnce) {
   const PairEnd presses{4e-9, 5e-9, 1e-9}, opens{5e-9, 4e-9, 1e-9};
-  const auto policy = adaptive();
+  const auto policy = ipc_adaptive();
   policy->start(balanced_at(40));
   policy->end_step(std::vector<PairEnd>{opens, opens, presses});
   EXPECT_DOUBLE_EQ(policy->state().kappa, 80);
@@ -170,7 +153,7 @@ TEST(StiffnessDecisions, AMultiplierActsOnEveryPartOfKappa) {
       EXPECT_DOUBLE_EQ(scaled.per_gap_sq, 7 * one.per_gap_sq) << mass_term;
     }
   }
-  const auto policy = adaptive({}, 7), plain = adaptive({}, 1);
+  const auto policy = ipc_adaptive({}, 7), plain = ipc_adaptive({}, 1);
   policy->start(balanced_at(40)), plain->start(balanced_at(40));
   double scaled = 0, one = 0;
   policy->fill(row.batch(), &scaled), plain->fill(row.batch(), &one);

@@ -6,6 +6,7 @@
 #include "barriers/stiffness/registry.hpp"
 #include "core/math/error.hpp"
 #include "core/parameters/registry.hpp"
+#include "tests/barriers/ipc_adaptive.hpp"
 
 namespace bb {
 namespace {
@@ -18,27 +19,8 @@ std::vector<double> filled(const StiffnessPolicy& policy, std::size_t n) {
   return kappa;
 }
 
-std::unique_ptr<StiffnessPolicy> ipc(const ParameterMap& overrides = {}, double multiplier = 1) {
-  StiffnessPolicyConfig config;
-  config.name = "ipc_adaptive";
-  config.parameters = overrides;
-  config.multiplier = multiplier;
-  return make_policy(config);
-}
-
-/// k = 2e-3/(0.5 * 1e-4 * 8) = 5 N/m, so that the bounds are 5 and 500.
-StiffnessGlobals globals(double balance) {
-  StiffnessGlobals g;
-  g.grad_b_sq = 4e-6;
-  g.grad_b_dot_grad_e = -balance * g.grad_b_sq;
-  g.mean_contact_mass = 2e-3;
-  g.d2b_half = 8;
-  g.dt = 0.01;
-  g.c = 0.5;
-  g.d_hat = 1e-3;
-  return g;
-}
-
+using test::balanced_at;
+using test::ipc_adaptive;
 using PairEnd = StiffnessPolicy::PairEnd;
 const std::vector<PairEnd> pressed{{4e-9, 5e-9, 1e-9}};  // both below 10 parks, shrinking
 
@@ -57,8 +39,8 @@ TEST(FixedPolicy, FillsEveryRow) {
 
 TEST(IpcAdaptivePolicy, StartsAtTheBalanceWithinItsBounds) {
   const auto start = [](double balance) {
-    const auto policy = ipc();
-    policy->start(globals(balance));
+    const auto policy = ipc_adaptive();
+    policy->start(balanced_at(balance));
     return policy->state();
   };
   EXPECT_DOUBLE_EQ(start(40).kappa, 40);
@@ -68,24 +50,24 @@ TEST(IpcAdaptivePolicy, StartsAtTheBalanceWithinItsBounds) {
   EXPECT_DOUBLE_EQ(start(9000).kappa, 500);
   EXPECT_TRUE(start(9000).saturated);
 
-  StiffnessGlobals no_gradient = globals(40);
+  StiffnessGlobals no_gradient = balanced_at(40);
   no_gradient.grad_b_sq = 0;
-  const auto policy = ipc();
+  const auto policy = ipc_adaptive();
   EXPECT_TRUE(policy->needs_globals());
   policy->start(no_gradient);
   EXPECT_DOUBLE_EQ(policy->state().kappa, 5);
 }
 
 TEST(IpcAdaptivePolicy, AnUpperBoundBelowTheScaleHolds) {
-  const auto policy = ipc({{"kappa_max_N_per_m", 2}});  // k = 5
-  policy->start(globals(40));
+  const auto policy = ipc_adaptive({{"kappa_max_N_per_m", 2}});  // k = 5
+  policy->start(balanced_at(40));
   EXPECT_DOUBLE_EQ(policy->state().kappa, 2);
   EXPECT_TRUE(policy->state().saturated);
 }
 
 TEST(IpcAdaptivePolicy, DoublesUpToItsBoundAndThenStays) {
-  const auto policy = ipc({}, 2.0);
-  policy->start(globals(40));
+  const auto policy = ipc_adaptive({}, 2.0);
+  policy->start(balanced_at(40));
   const std::vector<double> expected{80, 160, 320, 500, 500};
   for (std::size_t i = 0; i < expected.size(); ++i) {
     policy->end_step(pressed);
@@ -106,21 +88,22 @@ TEST(IpcAdaptivePolicy, DoublesOnlyWhenSmallTwiceAndShrinking) {
       {{1e-8, 1.1e-8, 1e-9}},                      // not below 10 parks
       {{2e-9, 3e-9, 1e-10}, {2e-7, 3e-7, 1e-8}}};  // each against its own
   for (const std::vector<PairEnd>& end : patient) {
-    const auto policy = ipc();
-    policy->start(globals(40));
+    const auto policy = ipc_adaptive();
+    policy->start(balanced_at(40));
     policy->end_step(end);
     EXPECT_DOUBLE_EQ(policy->state().kappa, 40);
     policy->end_step(pressed);
     EXPECT_DOUBLE_EQ(policy->state().kappa, 80);
   }
-  const auto before_start = ipc();
+  const auto before_start = ipc_adaptive();
   before_start->end_step(pressed);
   EXPECT_EQ(before_start->state().doublings, 0);
 }
 
 TEST(IpcAdaptivePolicy, TakesPublishedNumbersInstead) {
-  const auto policy = ipc({{"kappa_min_N_per_m", 50}, {"kappa_max_N_per_m", 150}, {"doubling_gap_m", 1e-6}});
-  policy->start(globals(40));
+  const auto policy =
+      ipc_adaptive({{"kappa_min_N_per_m", 50}, {"kappa_max_N_per_m", 150}, {"doubling_gap_m", 1e-6}});
+  policy->start(balanced_at(40));
   EXPECT_DOUBLE_EQ(policy->state().kappa, 50);
   policy->end_step(std::vector<PairEnd>{{4e-7, 5e-7, 1e-9}});
   EXPECT_DOUBLE_EQ(policy->state().kappa, 100);
@@ -130,10 +113,10 @@ TEST(IpcAdaptivePolicy, TakesPublishedNumbersInstead) {
 }
 
 TEST(IpcAdaptivePolicy, WithoutInertiaItNeedsBothBounds) {
-  StiffnessGlobals quasi_static = globals(40);
+  StiffnessGlobals quasi_static = balanced_at(40);
   quasi_static.c = 0;
-  EXPECT_THROW(ipc()->start(quasi_static), ConfigError);
-  const auto policy = ipc({{"kappa_min_N_per_m", 1}, {"kappa_max_N_per_m", 100}});
+  EXPECT_THROW(ipc_adaptive()->start(quasi_static), ConfigError);
+  const auto policy = ipc_adaptive({{"kappa_min_N_per_m", 1}, {"kappa_max_N_per_m", 100}});
   policy->start(quasi_static);
   EXPECT_DOUBLE_EQ(policy->state().kappa, 40);
 }
@@ -165,9 +148,9 @@ TEST(PolicyFactory, RefusesBadNumbers) {
   EXPECT_NO_THROW(make_policy(config));
   config.multiplier = 0;
   EXPECT_THROW(make_policy(config), ConfigError);
-  EXPECT_THROW(ipc({{"kappa_min_N_per_m", 2}, {"kappa_max_N_per_m", 1}}), ConfigError);
-  EXPECT_THROW(ipc({{"kappa_min_N_per_m", -2}}), ConfigError);
-  EXPECT_THROW(ipc({{"doubling_gap_m", 0}}), ConfigError);
+  EXPECT_THROW(ipc_adaptive({{"kappa_min_N_per_m", 2}, {"kappa_max_N_per_m", 1}}), ConfigError);
+  EXPECT_THROW(ipc_adaptive({{"kappa_min_N_per_m", -2}}), ConfigError);
+  EXPECT_THROW(ipc_adaptive({{"doubling_gap_m", 0}}), ConfigError);
 }
 
 TEST(PolicyNames, RoundTrip) {

@@ -15,6 +15,7 @@ from analysis.claims.parts import KEYS, THRESHOLDS, check
 from analysis.claims.proofs import PROOFS, Eval
 from analysis.claims.registry import confirmable, confirmed_parts
 from analysis.claims.slices import slice_of
+from analysis.claims.success import read_for
 from analysis.claims.table import FILE, Table, collect, read, used_metrics, write
 
 WANTED = {*(f"K{k}" for k in range(1, 18)), *(f"H{k}" for k in range(1, 10)), "N1"}
@@ -37,7 +38,7 @@ def test_every_claim_is_there_and_refers_to_what_exists():
             assert set(part.get("scenes", [])) <= {p[0] for p in places}, (claim.id, part)
             assert all(len({p[1] for p in places if p[0] == s}) >= 3 for s in {p[0] for p in places})
             assert "starts" not in part or len({p[3] for p in places}) >= 5
-            assert part.get("metric", "newton") in METRICS and part.get("bad", "newton") in METRICS
+            assert {part.get("metric", "newton"), *read_for(part.get("bad"))} <= set(METRICS)
             assert part["rule"] == "outcomes" or len(set(THRESHOLDS) & set(part)) == 1
             slice_of(part, sweep)
     assert judged > 50

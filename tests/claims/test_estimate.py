@@ -5,7 +5,7 @@ import math
 import numpy as np
 import pytest
 
-from analysis.claims.estimate import interval, intraclass, of_scenes, sign_test, student, wilson
+from analysis.claims.estimate import intraclass, of_scenes, sign_test, student, wilson
 
 
 def test_a_scene_is_the_mean_of_its_levels_whatever_starts_they_have():
@@ -40,21 +40,3 @@ def test_intraclass_correlation():
 def test_signs_and_shares():
     assert sign_test(6, 0) == pytest.approx(2 / 64) and sign_test(0, 0) == 1
     assert wilson(10, 10)[1] == pytest.approx(1) and wilson(10, 10)[0] == pytest.approx(0.722, abs=1e-3)
-
-
-def t_free_half_width(values) -> float:
-    """Half of the 95% interval of a mean of many values, 1.96 standard errors."""
-    middle = sum(values) / len(values)
-    return 1.96 * math.sqrt(sum((x - middle) ** 2 for x in values)) / len(values)
-
-
-def test_a_bootstrap_is_of_the_starts_of_one_path():
-    low, high = interval({"": {"": [1.0, 2.0, 3.0, 4.0, 5.0]}}, False)
-    assert 1.5 < low < 3 < high < 4.5
-    half = t_free_half_width(list(range(100)))
-    low, high = interval({"": {"": list(map(float, range(100)))}})
-    assert (low, high) == (pytest.approx(49.5 - half, abs=0.3), pytest.approx(49.5 + half, abs=0.3))  # an interval of 90% would be 0.9 narrower on each side
-    with pytest.raises(ValueError, match="does not cover"):
-        interval({"a": {"1": [1.0]}, "b": {"1": [2.0]}})
-    with pytest.raises(ValueError, match="does not cover"):
-        interval({"a": {"1": [1.0]}}, True)

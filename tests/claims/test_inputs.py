@@ -10,7 +10,7 @@ from analysis.claims import inputs
 from analysis.claims import judge as judging
 from analysis.claims.entry import FOLDER, ROOT, ClaimError, ids, read_claim, read_sweep
 from analysis.claims.judge import missing
-from analysis.claims.merged import put
+from analysis.claims.merged import merged, put
 from analysis.claims.table import Runs, Table, collect
 from analysis.gate.cases import read_set
 from analysis.matching import formulations
@@ -124,3 +124,31 @@ def test_what_the_program_fills_in_is_no_contradiction():
         assert inputs.contradiction({"config": kept}, config, case.config.parent) == "/time/dt_s is 0.01, asked for is 0.003"
         seen += 1
     assert seen >= 12
+
+
+def test_a_method_is_an_input_and_lies_under_what_the_sweep_sets(tmp_path, monkeypatch):
+    methods = tmp_path / "methods"
+    methods.mkdir()
+    monkeypatch.setattr("analysis.claims.entry.METHODS", methods)
+    (methods / "m.json").write_text(json.dumps({"set": {"/formulation": {"name": "cubic"}, "/precision": "float", "/step_solver/name": "accumulated_toi", "/time/dt_s": 0.001}}))
+    (tmp_path / "sweeps").mkdir()
+    (tmp_path / "base.json").write_text(json.dumps({"formulation": "log", "time": {"dt_s": 0.01, "steps": 9}, "scene": {"name": "hang"}}))
+    axes = [{"cases": [{"label": "strip 1", "set": {"/time/duration_s": 0.4}}]},
+            {"cases": [{"label": "whole", "set": {"/method": "m"}}, {"label": "changed", "set": {"/precision": "double", "/method": "m"}}, {"label": "none", "set": {}}]},
+            {"pointer": "/seeds/main", "values": [1]}]
+    (tmp_path / "sweeps/s.json").write_text(json.dumps({"name": "s", "base": "../base.json", "axes": axes}))
+    made = read_sweep.__wrapped__("s", tmp_path)
+    whole, changed, none = (config for _, config in inputs.asked(made))
+    assert whole["time"] == changed["time"] == {"dt_s": 0.001, "duration_s": 0.4} and none["time"] == {"dt_s": 0.01, "duration_s": 0.4}
+    assert (whole["precision"], changed["precision"], whole["formulation"], none["formulation"]) == ("float", "double", {"name": "cubic"}, "log")
+    assert made.solvers == {"whole": "accumulated_toi", "changed": "accumulated_toi"}
+    before = inputs.inputs_of(made)
+    edit(methods / "m.json", "0.001", "0.002")
+    assert inputs.inputs_of(made) != before
+
+
+def test_steps_and_a_duration_replace_each_other():
+    data, path = {"base": "../../configs/scenes/hang.json"}, FOLDER / "sweeps/x.json"
+    assert merged(data, path, {"/time/steps": 3}, {"/time/duration_s": 0.2})["time"] == {"duration_s": 0.2}
+    assert merged(data, path, {"/time/duration_s": 0.2}, {"/time/steps": 3})["time"] == {"steps": 3}
+    assert merged(data, path, {"/time/steps": 3}, {"/time/dt_s": 0.1})["time"] == {"steps": 3, "dt_s": 0.1}

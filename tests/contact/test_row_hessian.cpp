@@ -17,6 +17,8 @@ namespace {
 using Long = long double;
 using LongMatrix = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
 constexpr double d_hat = 0.05;
+constexpr HessianMode numeric_modes[] = {HessianMode::projected_numeric, HessianMode::projected_lapack,
+                                         HessianMode::projected_low_rank};
 
 /// m kappa b'' grad d grad d^T + m kappa b' grad^2 d of a row on its free points, straight from the formulas.
 template <PairKind K>
@@ -191,10 +193,13 @@ void expect_the_whole_matrix(HessianMode mode, Projection projection, Counts* co
 
 TEST(RowHessian, IsTheWholeMatrixWithProjectedEigenvalues) {
   for (const Projection projection : {Projection::none, Projection::psd, Projection::absolute}) {
-    Counts counts, numeric;
+    Counts counts;
     expect_the_whole_matrix(HessianMode::projected_full, projection, &counts);
-    expect_the_whole_matrix(HessianMode::projected_numeric, projection, &numeric);
-    EXPECT_EQ(numeric.rows, counts.rows);
+    for (const HessianMode mode : numeric_modes) {
+      Counts numeric;
+      expect_the_whole_matrix(mode, projection, &numeric);
+      EXPECT_EQ(numeric.rows, counts.rows);
+    }
     for (int n_free = 1; n_free <= 4; ++n_free) {
       const auto seen = [&](ContactKind kind) { return counts.rows[{kind, n_free}]; };
       EXPECT_GT(seen(ContactKind::point_triangle), 1) << n_free;
@@ -235,7 +240,8 @@ TEST(RowHessian, DependsOnNoOtherRowAndOnNoThread) {
   Rows rows = rows_at(contacts, scene.x0);
   evaluate(rows.table, 3.5, TestShape::cubic);
   for (const HessianMode mode :
-       {HessianMode::gauss_newton, HessianMode::projected_full, HessianMode::projected_numeric}) {
+       {HessianMode::gauss_newton, HessianMode::projected_full, HessianMode::projected_numeric,
+        HessianMode::projected_lapack, HessianMode::projected_low_rank}) {
     std::vector<double> grad, hess, alone_grad, alone;
     contact_terms(rows.table, scene.x0, mode, Projection::psd, grad, hess);
     ASSERT_GT(rows.table.size(), 100U);

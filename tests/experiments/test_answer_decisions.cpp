@@ -3,10 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/newton/simulation.hpp"
 #include "core/terms/contact.hpp"
-#include "experiments/run/stiffness_answer.hpp"
-#include "tests/experiments/calibrated.hpp"
+#include "tests/experiments/state_at_rest.hpp"
 
 namespace bb {
 namespace {
@@ -85,29 +83,19 @@ struct LimitAtRest {
 };
 
 LimitAtRest limit_at_rest(double k_s) {
-  const RunConfig config = parsed(curtain(k_s).c_str(), {});
-  const Scene scene = build_scene(config);
-  Method method = make_method(config, {});
-  Simulation simulation(scene, method, config.time.dt, 1);
-  StepObserver nobody;
-  const StepReport report = simulation.step(nobody);
-  EXPECT_EQ(report.status, StepStatus::converged) << report.detail;
-  NewtonSystem system(scene, method);
-  Prediction prediction;
-  prediction.x_tilde = simulation.history().x;
-  system.begin_step(simulation.history().x, prediction, config.time.dt, 1.0);
-  system.assemble();
-  const StrainLimitPart& part = scene.limit;
-  StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width);
-  const StiffnessAnswers answers = answers_to_stiffness(system, &limit, log_barrier(), config.time.dt);
-  EXPECT_TRUE(answers.known);
-  limit.measure(simulation.history().x);
   LimitAtRest out;
-  out.answer = answers.limit;
-  for (std::size_t e = 0; e < limit.size(); ++e) {
-    const double y = smaller_gap(limit, e), width = part.width[e];
-    out.force.push_back(y < width ? -k_s * log_barrier().eval(y, width).db : 0);
-  }
+  at_rest(curtain(k_s), [&](const Scene& scene, const Positions& x, NewtonSystem& system, double dt) {
+    const StrainLimitPart& part = scene.limit;
+    StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width);
+    const StiffnessAnswers answers = answers_to_stiffness(system, &limit, log_barrier(), dt);
+    EXPECT_TRUE(answers.known);
+    limit.measure(x);
+    out.answer = answers.limit;
+    for (std::size_t e = 0; e < limit.size(); ++e) {
+      const double y = smaller_gap(limit, e), width = part.width[e];
+      out.force.push_back(y < width ? -k_s * log_barrier().eval(y, width).db : 0);
+    }
+  });
   return out;
 }
 

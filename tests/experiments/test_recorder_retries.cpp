@@ -8,19 +8,14 @@
 #include "core/newton/simulation.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/recorder.hpp"
-#include "tests/newton/small_scenes.hpp"
+#include "tests/newton/thrown_particle.hpp"
 
 namespace bb {
 namespace {
 
-constexpr double d_hat = 0.01, dt = 0.01;
+constexpr double dt = 0.01;
 
-/// A particle that meets the floor in its first steps and bounces off.
-Scene thrown_particle() {
-  Scene scene = test::particle_over_plane(0.2, 0.012, d_hat);
-  scene.v0 = test::one_point(0.4, 0, -0.3);
-  return scene;
-}
+using test::thrown_particle;
 
 RunConfig observed() {
   return parse_config(

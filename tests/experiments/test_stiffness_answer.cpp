@@ -4,9 +4,8 @@
 
 #include <cmath>
 
-#include "core/newton/simulation.hpp"
 #include "core/terms/contact.hpp"
-#include "tests/experiments/calibrated.hpp"
+#include "tests/experiments/state_at_rest.hpp"
 
 namespace bb {
 namespace {
@@ -96,33 +95,23 @@ std::string held(double kappa) {
     "time": {"dt_s": 0.01, "steps": 1}, "step_solver": {"tol_velocity_m_per_s": 1e-8}})";
 }
 
-struct AtRest {
+struct ContactsAtRest {
   std::vector<double> force, answer;  // N, 1: of every contact
   std::vector<ContactKey> key;
 };
 
-AtRest at_rest(double kappa) {
-  const RunConfig config = parsed(held(kappa).c_str(), {});
-  const Scene scene = build_scene(config);
-  Method method = make_method(config, {});
-  Simulation simulation(scene, method, config.time.dt, 1);
-  StepObserver nobody;
-  const StepReport report = simulation.step(nobody);
-  EXPECT_EQ(report.status, StepStatus::converged) << report.detail;
-  NewtonSystem system(scene, method);
-  Prediction prediction;
-  prediction.x_tilde = simulation.history().x;
-  system.begin_step(simulation.history().x, prediction, config.time.dt, 1.0);
-  system.assemble();
-  const StiffnessAnswers answers = answers_to_stiffness(system, nullptr, log_barrier(), config.time.dt);
-  EXPECT_TRUE(answers.known);
-  AtRest out;
-  const ContactTable& rows = contact_state(system.terms()).rows;
-  for (std::size_t r = 0; r < rows.size(); ++r) {
-    out.force.push_back(-rows.kappa[r] * rows.db[r]);
-    out.answer.push_back(answers.contact[r]);
-    out.key.push_back(rows.key[r]);
-  }
+ContactsAtRest contacts_at_rest(double kappa) {
+  ContactsAtRest out;
+  at_rest(held(kappa), [&](const Scene&, const Positions&, NewtonSystem& system, double dt) {
+    const StiffnessAnswers answers = answers_to_stiffness(system, nullptr, log_barrier(), dt);
+    EXPECT_TRUE(answers.known);
+    const ContactTable& rows = contact_state(system.terms()).rows;
+    for (std::size_t r = 0; r < rows.size(); ++r) {
+      out.force.push_back(-rows.kappa[r] * rows.db[r]);
+      out.answer.push_back(answers.contact[r]);
+      out.key.push_back(rows.key[r]);
+    }
+  });
   return out;
 }
 
@@ -131,7 +120,8 @@ TEST(StiffnessAnswer, IsTheDerivativeOfTheForceAtRest) {
   double smallest = 1, largest = 0;
   std::size_t compared = 0;
   for (const double kappa : {0.01, 0.3, 10.0, 300.0}) {
-    const AtRest here = at_rest(kappa), less = at_rest(0.99 * kappa), more = at_rest(1.01 * kappa);
+    const ContactsAtRest here = contacts_at_rest(kappa), less = contacts_at_rest(0.99 * kappa),
+                         more = contacts_at_rest(1.01 * kappa);
     ASSERT_EQ(less.key, here.key);
     ASSERT_EQ(more.key, here.key);
     for (std::size_t r = 0; r < here.key.size(); ++r) {

@@ -5,7 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
-from barrierbench_analysis.gap_map import entry, report, table
+from barrierbench_analysis.gap_map import entry, kept, report, runs, table
 from barrierbench_analysis.gap_map.spec import GapMapError, cells, limit_settings, make_sweep, quick, read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -33,9 +33,18 @@ def test_the_shipped_map_has_what_was_asked_for():
     assert all(len(s.resolutions) == 4 for s in spec.scenes) and 4000 < max(n for s in spec.scenes for n in s.unknowns.values()) <= 5000
     part = quick(spec)
     assert {c.label for c in cells(part)} < {c.label for c in cells(spec)} and len(cells(part)) <= 260 and {"on", "off"} <= set(part.limits)
-    first, same = ([c for c in cells(s) if (c.scene, c.resolution) == ("cloth", "8")] for s in (spec, part))
-    assert entry.folder_of(spec, tmp := SHIPPED, first) == entry.folder_of(part, tmp, same)  # a quick map's records are part of the whole
+    assert kept.digests(part).items() < kept.digests(spec).items()  # a quick map's records are part of the whole
+    first = [c for c in cells(spec) if (c.scene, c.resolution) == ("cloth", "8")]
     assert len(make_sweep(spec, first).notes) == len(first)
+
+
+def test_sweeps_are_of_one_pilot_and_the_smallest_come_first():
+    spec = read_spec(SHIPPED)
+    parts = runs.chunks(spec, cells(spec))
+    assert sum(map(len, parts)) == len(cells(spec)) and {len(part) for part in parts} == {len(spec.shapes)}
+    assert all(len({(c.scene, c.resolution, c.limit, c.theta) for c in part}) == 1 for part in parts)
+    sizes = [next(s for s in spec.scenes if s.label == part[0].scene).unknowns[part[0].resolution] for part in parts]
+    assert sizes == sorted(sizes) and sizes[0] == 108 and sizes[-1] == 4800
 
 
 def test_a_limit_that_is_the_same_in_every_run_undoes_theta():
@@ -102,12 +111,43 @@ def test_finished_runs_are_not_made_again_and_missing_ones_are_named(real, monke
     kept = gone.read_text()
     gone.unlink()
     try:
-        assert entry.main([*words, "--no-run"]) == 0
+        assert entry.main([*words, "--no-run", "--anew"]) == 0  # as if no row had been kept
         missing = [r for r in table.read(folder / "out/gap_map.json").rows if r["outcome"] == "not run"]
         assert len(missing) == 1 and f"{missing[0]['shape']} off theta{missing[0]['theta']:g}" in label and missing[0]["gap"] is None
     finally:
         gone.write_text(kept)
         assert entry.main([*words, "--no-run"]) == 0
+
+
+def test_rows_of_earlier_calls_are_kept_while_their_settings_are_the_same(real, tmp_path):
+    """Records are gone as on another machine: nothing is run again, until a setting or --anew asks for it."""
+    folder, words = real
+    out = tmp_path / "out"
+    out.mkdir()
+    (out / "gap_map.json").write_text((folder / "out/gap_map.json").read_text())
+    elsewhere = [words[0], "--runs", str(tmp_path / "runs"), "--results", str(out)]
+    (tmp_path / "runs").mkdir()
+    assert entry.main(elsewhere) == 0 and not list((tmp_path / "runs").rglob("run.json"))
+    assert table.read(out / "gap_map.json").rows == table.read(folder / "out/gap_map.json").rows
+    assert entry.main([*elsewhere, "--anew"]) == 0 and len(list((tmp_path / "runs").rglob("run.json"))) == 5
+    longer = small(tmp_path, set={"/time/steps": 61})
+    (tmp_path / "none").mkdir()
+    assert entry.main([str(longer), "--no-run", "--runs", str(tmp_path / "none"), "--results", str(out)]) == 2  # none of them counts
+
+
+def test_a_part_of_a_map_says_what_is_not_run_and_goes_on(real, tmp_path, capsys):
+    folder, words = real
+    mine = [words[0], "--runs", str(tmp_path / "runs"), "--results", str(tmp_path / "out")]
+    (tmp_path / "runs").mkdir(), (tmp_path / "out").mkdir()
+    assert entry.main([*mine, "--minutes", "1e-9"]) == 2 and "no run of this map is there" in capsys.readouterr().err
+    assert not list((tmp_path / "runs").rglob("run.json"))
+    assert entry.main([*mine, "--quick"]) == 0 and "3 of 6 cells are not run yet" in capsys.readouterr().err
+    page = (tmp_path / "out/GAP_MAP.md").read_text()
+    assert "**3 of 6 cells are not run yet**" in page and "block 1: 2 of 5" in page
+    assert [r["outcome"] for r in table.read(tmp_path / "out/gap_map.json").rows].count("not run") == 3
+    assert entry.main(mine) == 0 and "not run yet" not in capsys.readouterr().err
+    mine, whole = (table.read(path / "out/gap_map.json").rows for path in (tmp_path, folder))
+    assert [r | {"seconds": None} for r in mine] == [r | {"seconds": None} for r in whole]
 
 
 def test_numbers_of_another_spec_and_records_of_other_settings_are_refused(real, tmp_path, capsys):

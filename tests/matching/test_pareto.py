@@ -10,7 +10,7 @@ from made_records import install
 
 from analysis.matching import pareto
 from analysis.matching.formulations import MatchError
-from analysis.matching.fronts import Runs, at_gap, failures, over_shared, unreached
+from analysis.matching.fronts import Runs, at_gap, failures, over_scenes, over_shared, unreached
 from analysis.matching.pareto_report import markdown
 from analysis.matching.runs import inputs_sha256
 from analysis.matching.spec import make_sweep, read_spec
@@ -74,10 +74,44 @@ def five_times(f, s, k):
 def test_formulations_at_equal_gap():
     runs = rows(five_times)
     value, ratio = at_gap(runs, "a", "cubic", "newton", 0.2)
-    assert ratio.value == pytest.approx(5) and ratio.lower == pytest.approx(5) and (ratio.n, ratio.of) == (3, 3)  # starts are paired: their spread leaves the ratio
-    assert value.lower < value.value < value.upper and over_shared(runs, "a", "cubic", "newton").value == pytest.approx(5)
+    assert ratio.value == pytest.approx(5) and ratio.low == pytest.approx(5) and (ratio.n, ratio.of) == (3, 3)  # starts are paired: their spread leaves the ratio
+    assert (value.low, value.high) == (pytest.approx(5.5 / 0.2), pytest.approx(6.5 / 0.2)) and over_shared(runs, "a", "cubic", "newton").value == pytest.approx(5)
     assert at_gap(runs, "a", "cubic", "newton", 0.1) == (None, None)  # the cubic does not come that close
     assert at_gap(runs, "a", "log", "newton", 0.1)[0] is not None
+
+
+def of_scenes(ratios: dict[str, float], starts: int = 3) -> Runs:
+    """One path a scene, start and formulation: the cubic takes ratios[scene] times what the log takes, a little more from start to start."""
+    runs = rows(five_times)
+    runs.rows = [{"scene": scene, "formulation": f, "scale": s, "seed": k, "outcome": "ok", "gap": 0.1 * s**0.2, "run": "r", **dict.fromkeys(pareto.METRICS, 1.0),
+                  "newton": (ratio * 1.001**k if f == "cubic" else 1.0)}
+                 for scene, ratio in ratios.items() for f in ("log", "cubic") for s in (0.01, 0.1, 1.0, 10.0, 100.0) for k in range(1, starts + 1)]
+    return runs
+
+
+def test_scenes_are_the_samples_and_starts_are_not():
+    """Thirty starts say no more than three; a third scene that disagrees does."""
+    def found(ratios, starts=3):
+        runs = of_scenes(ratios, starts)
+        return over_scenes([over_shared(runs, scene, "cubic", "newton") for scene in runs.scenes])
+
+    three, thirty = found({"a": 2, "b": 3, "c": 4}), found({"a": 2, "b": 3, "c": 4}, 30)
+    widths = [math.log(e.upper / e.lower) for e in (three, thirty)]
+    logs = [math.log(r) for r in (2, 3, 4)]
+    spread = math.sqrt(sum((x - sum(logs) / 3) ** 2 for x in logs) / 2)
+    assert widths == [pytest.approx(2 * 4.302653 * spread / math.sqrt(3))] * 2 and (three.n, three.of) == (3, 3)  # t of 2 degrees of freedom
+    assert three.value == pytest.approx(24 ** (1 / 3) * 1.001**2) and three.lower < 2 < 4 < three.upper
+    alone = found({"a": 2})
+    assert (alone.lower, alone.upper, alone.n) == (None, None, 1)
+    assert over_scenes([None, None]) is None and over_scenes([None, over_shared(of_scenes({"a": 2}), "a", "cubic", "newton")]).of == 2
+
+
+def test_the_page_calls_no_scatter_an_interval():
+    page = markdown(of_scenes({"a": 2, "b": 3, "c": 4}))
+    of_scene, of_all = page.split("## All scenes")
+    assert "2 (2 to 2.01)" in of_scene.split("## a")[1].split("## b")[0] and "[" not in "".join(line for line in of_scene.splitlines() if line.startswith("| newton |"))
+    assert "| newton | cubic / log | - | 2.89 [1.22, 6.86] | - | 2.89 [1.22, 6.86] |" in of_all and "bootstrap" not in page
+    assert "2 (one scene: no interval)" in markdown(of_scenes({"a": 2}))
 
 
 def test_what_nobody_reaches_and_who_failed():
@@ -90,7 +124,7 @@ def test_what_nobody_reaches_and_who_failed():
     assert failures(runs, "a", "cubic") == {0.01: {"stall_overload": 1}, 0.1: {"stall_overload": 1}} and failures(runs, "a", "log") == {100.0: {"no contact": 3}}
     page = markdown(runs)
     assert "| x0.01: 1 stall_overload; x0.1: 1 stall_overload |" in page and "No formulation reaches gaps below 0.0398, above 0.754." in page
-    assert "| newton | cubic / log | - | - | - | 5 [5, 5] (2/3) |" in page  # start 2 lost the gaps that both reach
+    assert "| newton | cubic / log | - | - | - | 5 (5 to 5) (2/3) |" in page  # start 2 lost the gaps that both reach
     hole = rows(lambda f, s, k: {"gap": 0.01 * (s if s < 5 else 10 * s) ** 0.1} | ({"outcome": "newton_stall"} if s == 1 else {}))
     assert [f"{low:.3f} {high:.3f}" for low, high in unreached(hole, "a")] == ["0.000 0.006", "0.008 0.016", "0.020 1.000"]
 

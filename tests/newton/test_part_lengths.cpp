@@ -3,19 +3,14 @@
 
 #include <vector>
 
-#include "tests/newton/small_scenes.hpp"
+#include "tests/newton/thrown_particle.hpp"
 
 namespace bb {
 namespace {
 
-constexpr double d_hat = 0.01, dt = 0.01;
+constexpr double dt = 0.01;
 
-/// A particle that meets the floor in its first step, and swings on it in those that follow.
-Scene thrown_particle() {
-  Scene scene = test::particle_over_plane(0.2, 0.012, d_hat);
-  scene.v0 = test::one_point(0.4, 0, -0.3);
-  return scene;
-}
+using test::thrown_particle;
 
 Method method_of(const std::string& integrator) { return test::fixed_method("cubic", 2000, integrator); }
 
@@ -83,7 +78,7 @@ TEST(PartLengths, VelocitiesAreThoseOfTheStepsThatWereDone) {
   EXPECT_EQ(before, dt);  // back to whole steps
 }
 
-/// Free fall by implicit Euler with parts of known length: every part has its own dt in x and v.
+/// By implicit Euler, along the floor, where nothing acts: each part moves the particle by its own length times the speed.
 TEST(PartLengths, OfAnAttemptThatFailedIsNothingLeft) {
   const Scene scene = thrown_particle();
   const int cap = needed("implicit_euler") - 1;

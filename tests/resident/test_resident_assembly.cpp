@@ -148,8 +148,10 @@ TEST(ResidentAssembly, OfNoRowsIsNothing) {
 TEST(ResidentAssembly, RefusesAProjectionWithoutAKernel) {
   const Subject s = subjects().front();
   HostExecutor executor;
-  EXPECT_THROW(assemble(executor, s.scene, s.x, motion_of_given(s.scene), {HessianMode::projected_numeric}),
-               std::invalid_argument);
+  for (const HessianMode mode :
+       {HessianMode::projected_numeric, HessianMode::projected_lapack, HessianMode::projected_low_rank}) {
+    EXPECT_THROW(assemble(executor, s.scene, s.x, motion_of_given(s.scene), {mode}), std::invalid_argument);
+  }
 }
 
 TEST(ContactSums, AreExactToRoundingAndTheSameInAnyOrder) {

@@ -67,9 +67,9 @@ void ContactAssembly::add_given_motion(ResidentRows& rows, const exec::Buffer<do
 
 MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double>& x,
                                    const HessianChoice& choice) {
-  if (choice.mode == HessianMode::projected_numeric) {
+  if (is_numeric(choice.mode)) {
     throw std::invalid_argument(
-        "Hessian mode projected_numeric has no kernel; gauss_newton and projected_full have");
+        "numeric projections of contact Hessians have no kernel; gauss_newton and projected_full have");
   }
   const Index n = pattern_.n_blocks();
   value_.resize(value_count(n));

@@ -26,8 +26,8 @@ class ContactAssembly {
 
   /// gradient [3 n_vertices] (N) += that of B at x.
   void add_gradient(ResidentRows& rows, const exec::Buffer<double>& x, exec::Buffer<double>& gradient);
-  /// The Hessian of B at x, both triangles; valid until the next call. Errors: std::invalid_argument for
-  /// HessianMode::projected_numeric, which has no kernel.
+  /// The Hessian of B at x, both triangles; valid until the next call. Errors: std::invalid_argument for the
+  /// modes that project numerically, which have no kernel.
   MatrixPart matrix(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice);
   Index n_blocks() const { return pattern_.n_blocks(); }
   /// force [3 n_vertices] (N) += how the gradient changes along motion [3 n_vertices] (m, 0 at free vertices).

@@ -1,0 +1,136 @@
+#include "experiments/config/methods.hpp"
+
+#include <algorithm>
+#include <filesystem>
+
+#include "core/input/json.hpp"
+#include "core/parameters/registry.hpp"
+#include "experiments/config/parse.hpp"
+#include "experiments/config/sections.hpp"
+
+namespace bb {
+namespace {
+
+using nlohmann::json;
+namespace fs = std::filesystem;
+
+Rule open_object(const char* doc) {
+  Rule rule;
+  rule.kind = Kind::object;
+  rule.list = [doc](const json&) { return ParameterList{doc, {}, true, {}, ""}; };
+  return required(rule);
+}
+
+ParameterList method_list() {
+  return {"A published method.",
+          {{"schema", required(word({"barrierbench.method/1"})), no_default, "Version of this format."},
+           {"name", required(any_text()), no_default, "The name of the file."},
+           {"doc", required(text_up_to(0)), no_default, "What it is."},
+           {"source", required(text_up_to(0)), no_default, "Its publication."},
+           {"set", open_object("JSON pointer into the config: value."), no_default, ""},
+           {"because", open_object("Pointer of set: the fact that it follows."), no_default, ""},
+           {"differs", open_object("Subject: what this program does otherwise."), no_default, ""}},
+          false,
+          {},
+          ""};
+}
+
+Texts texts(const json& object, const std::string& where, std::vector<Violation>& violations) {
+  Texts out;
+  for (const auto& [key, value] : object.items()) {
+    out[key] = value.is_string() ? value.get<std::string>() : "";
+    if (!value.is_string()) violations.push_back({where + "/" + key, value.dump(), "a text"});
+  }
+  return out;
+}
+
+/// The settings as a config of some scene, so that a pointer that no config has is refused where it stands.
+void check_settings(const PublishedMethod& method, const std::string& where,
+                    std::vector<Violation>& violations) {
+  json config = {{"schema", "barrierbench.config/1"}, {"scene", {{"name", "hang"}}}};
+  for (const auto& [pointer, value] : method.set.items()) {
+    if (!method.because.contains(pointer)) {
+      violations.push_back({where + "/because", "nothing", "the fact that " + pointer + " follows"});
+    }
+    try {
+      config[json::json_pointer(pointer)] = value;
+    } catch (const json::exception&) {
+      violations.push_back(
+          {where + "/set", '"' + pointer + '"', "a JSON pointer into the config, such as /time/dt_s"});
+    }
+  }
+  for (const auto& [pointer, fact] : method.because) {
+    if (method.set.contains(pointer)) continue;
+    violations.push_back({where + "/because", '"' + pointer + '"', "a pointer of set"});
+  }
+  check_value(config, settings_of<RunConfig>().rule(), where + "/set", violations);
+}
+
+std::string folder() { return configs_folder() + "/methods"; }
+
+}  // namespace
+
+std::vector<std::string> method_names() {
+  std::vector<std::string> names;
+  std::error_code error;
+  for (const auto& file : fs::directory_iterator(folder(), error)) {
+    if (file.path().extension() == ".json") names.push_back(file.path().stem().string());
+  }
+  std::sort(names.begin(), names.end());
+  return names;
+}
+
+PublishedMethod load_method(const std::string& name) {
+  const std::string path = folder() + "/" + name + ".json", where = path + "#";
+  json file = read_json_file(path, config_file);
+  std::vector<Violation> violations;
+  Rule rule;
+  rule.kind = Kind::object;
+  rule.list = [](const json&) { return method_list(); };
+  check_value(file, rule, where, violations);
+  if (!violations.empty()) throw ConfigError(std::move(violations));
+
+  PublishedMethod out{file["name"], file["doc"], file["source"], file["set"], {}, {}};
+  if (out.name != name)
+    violations.push_back({where + "/name", file["name"].dump(), '"' + name + "\", as its file"});
+  out.because = texts(file["because"], where + "/because", violations);
+  out.differs = texts(file["differs"], where + "/differs", violations);
+  check_settings(out, where, violations);
+  if (!violations.empty()) throw ConfigError(std::move(violations));
+  return out;
+}
+
+std::vector<PublishedMethod> published_methods() {
+  std::vector<PublishedMethod> out;
+  for (const std::string& name : method_names()) out.push_back(load_method(name));
+  return out;
+}
+
+std::map<std::string, json> leaves_of(const PublishedMethod& method) {
+  std::map<std::string, json> out;
+  for (const auto& [pointer, value] : method.set.items()) {
+    const json leaves = value.flatten();  // {"": value} of what is no object
+    for (const auto& [inner, leaf] : leaves.items()) out[pointer + inner] = leaf;
+  }
+  return out;
+}
+
+std::vector<std::string> overridden(const PublishedMethod& method, const json& resolved) {
+  std::vector<std::string> out;
+  for (const auto& [pointer, value] : leaves_of(method)) {
+    const json::json_pointer section(pointer.substr(0, pointer.find('/', 1)));
+    const bool off = resolved.contains(section) && resolved[section].is_object() &&
+                     resolved[section].value("enabled", json(true)) == false;
+    const json::json_pointer place(pointer);
+    if (!off && (!resolved.contains(place) || resolved[place] != value)) out.push_back(pointer);
+  }
+  return out;
+}
+
+MethodUse method_use(const RunConfig& config) {
+  MethodUse use{load_method(config.method), {}};
+  use.overridden = overridden(use.method, settings_of<RunConfig>().write(config));
+  return use;
+}
+
+}  // namespace bb
