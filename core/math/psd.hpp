@@ -32,19 +32,6 @@ BB_HD inline MaskOf<T> has_positive_pivots(const Mat<T, N, N>& A) {
   return positive;
 }
 
-namespace detail {
-
-/// The lower triangle of out += value v v^T, v column k of `vectors`.
-template <class T, int N, int C>
-BB_HD inline void add_lower_outer(T value, const Mat<T, N, C>& vectors, int k, Mat<T, N, N>& out) {
-  for (int j = 0; j < N; ++j) {
-    const T scaled = value * vectors(j, k);
-    for (int i = j; i < N; ++i) out(i, j) += scaled * vectors(i, k);
-  }
-}
-
-}  // namespace detail
-
 /// The symmetric matrix A = V Lambda V^T with its eigenvalues projected; psd gives the nearest positive
 /// semi-definite matrix in the Frobenius norm.
 /// @param n_negative  when not null: how many eigenvalues were negative (those of rounding size included); of
@@ -69,7 +56,11 @@ BB_HD inline Mat<T, N, N> project(const Mat<T, N, N>& A, Projection projection, 
     if (any(negative) && n_negative != nullptr) ++*n_negative;
     keep = keep && !negative;
     const T value = project_eigenvalue(values[k], projection);
-    if (any(!(value == T(0)))) detail::add_lower_outer<T, N, N>(value, vectors, k, out);
+    if (!any(!(value == T(0)))) continue;
+    for (int j = 0; j < N; ++j) {
+      const T scaled = value * vectors(j, k);
+      for (int i = j; i < N; ++i) out(i, j) += scaled * vectors(i, k);
+    }
   }
   for (int j = 0; j < N; ++j) {
     for (int i = j; i < N; ++i) {

@@ -51,17 +51,6 @@ BB_HD inline void reflect_symmetric(int first, const Vec<T, N>& v, T beta, Mat<T
   }
 }
 
-/// Rows from r.v's first on of the columns from `column` on of q, reflected.
-template <class T, int N, int C>
-BB_HD inline void reflect_columns(int first, const Reflection<T, N>& r, int column, Mat<T, N, C>& q) {
-  for (int j = column; j < C; ++j) {
-    T sum(0);
-    for (int i = first; i < N; ++i) sum += r.v[i] * q(i, j);
-    sum *= r.beta;
-    for (int i = first; i < N; ++i) q(i, j) -= sum * r.v[i];
-  }
-}
-
 /// A = q T q^T, T tridiagonal with diagonal d and e[i] = T(i, i + 1). Reads all of A, destroys it.
 template <class T, int N>
 BB_HD inline void tridiagonalise(Mat<T, N, N>& a, Vec<T, N>& d, Vec<T, N>& e, Mat<T, N, N>& q) {
@@ -77,7 +66,14 @@ BB_HD inline void tridiagonalise(Mat<T, N, N>& a, Vec<T, N>& d, Vec<T, N>& e, Ma
   e[N - 1] = T(0);
   q.setIdentity();
   for (int k = N - 3; k >= 0; --k) {
-    if (any(!(reflections[k].beta == T(0)))) reflect_columns<T, N, N>(k + 1, reflections[k], k + 1, q);
+    const Reflection<T, N>& r = reflections[k];
+    if (!any(!(r.beta == T(0)))) continue;
+    for (int j = k + 1; j < N; ++j) {
+      T sum(0);
+      for (int i = k + 1; i < N; ++i) sum += r.v[i] * q(i, j);
+      sum *= r.beta;
+      for (int i = k + 1; i < N; ++i) q(i, j) -= sum * r.v[i];
+    }
   }
 }
 
