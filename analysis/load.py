@@ -73,7 +73,7 @@ def load(root: str | Path) -> Records:
             unreadable.append(str(error))
             continue
         run = str(path.parent.relative_to(root))
-        runs.append(run_row(record, run) | {"plugin_files": _plugins(record, path.parent)})
+        runs.append(run_row(record, run) | {"plugin_files": _plugins(record, path.parent), "config_dt_s": ((record.get("config") or {}).get("time") or {}).get("dt_s")})
         for step in record["steps"]:
             steps.append({"run": run, **fields.row("steps", step)})
         for n, line in enumerate(lines):
@@ -117,14 +117,22 @@ def condition_of(records: Records, run: str, scaling: str, stage: str = "full", 
     return c[(c["run"] == run) & (c["scaling"] == scaling) & (c["stage"] == stage) & (form == matrix)].sort_values("n")
 
 
+def counted(estimates: pd.DataFrame) -> pd.Series:
+    """Condition numbers as the program's summaries count them: lower bounds among them, a matrix that is singular or not positive definite as LARGEST_COND;
+    estimates without a number are left out."""
+    return estimates["cond"].astype(float).where(~estimates["status"].isin(["singular", "not_pd"]), LARGEST_COND).dropna()
+
+
 def step_spans(records: Records, run: str) -> pd.DataFrame:
-    """`start` and `length` (s of simulated time) of every step of a run. A step that got nowhere is as long as most."""
+    """`start` and `length` (s of simulated time) of every step of a run. A step that got nowhere is as long as most, or as dt."""
     if records.steps.empty:
         return pd.DataFrame(columns=["start", "length"], dtype=float)
     ends = records.steps[records.steps["run"] == run].set_index("step")["t_s"].astype(float)
     starts = ends.shift(fill_value=0.0)
     lengths = ends - starts
-    return pd.DataFrame({"start": starts, "length": lengths.where(lengths > 0, lengths.median())})
+    whole = lengths[lengths > 0]
+    usual = whole.median() if len(whole) else float(records.runs.set_index("run").loc[run, "config_dt_s"])
+    return pd.DataFrame({"start": starts, "length": lengths.where(lengths > 0, usual)})
 
 
 def places_in_time(records: Records, run: str, estimates: pd.DataFrame) -> pd.Series:

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from . import style
-from .load import LARGEST_COND, Records, condition_of
+from .load import Records, condition_of, counted
 
 HEADINGS = {
     "group": "scene",
@@ -24,11 +24,11 @@ HEADINGS = {
 
 
 def _cond(records: Records, run: str, scaling: str) -> tuple[float, float]:
-    """Median (of log10) and maximum, lower bounds among them, singular as 1e14; NaN without any."""
+    """Median (of log10) and maximum; NaN without any."""
     c = condition_of(records, run, scaling)
     if c.empty:
         return float("nan"), float("nan")
-    values = c["cond"].where(c["status"] != "singular", LARGEST_COND).dropna().to_numpy(dtype=float)
+    values = counted(c).to_numpy()
     if len(values) == 0:
         return float("nan"), float("nan")
     return float(10 ** np.median(np.log10(values))), float(values.max())

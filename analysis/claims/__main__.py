@@ -66,6 +66,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the sweeps (default: results/runs/claims)")
     parser.add_argument("--register", action="store_true",
                         help="run nothing: write rule and confirmation sweeps of these claims to claims/confirmation/registry.json; commit it before the first run")
+    parser.add_argument("--run-before", default="", metavar="TEXT", help="with --register, where the scenes were run before: when, and by which rule; the page says so")
     parser.add_argument("--coverage", action="store_true", help="run nothing: simulate how often the intervals cover, and write results/COVERAGE.md")
     plugin_argument(parser)
     return parser.parse_args(argv)
@@ -78,7 +79,7 @@ def main(argv: list[str]) -> int:
             return write_coverage()
         claims = [read_claim(name) for name in args.ids or ids()]
         if args.register:
-            return register(claims if args.ids else [], args.runs)
+            return register(claims if args.ids else [], args.runs, args.run_before)
         return judge_all(claims, args)
     except (ClaimError, RecordError) as error:
         print(f"bench claims: {error}", file=sys.stderr)
@@ -107,12 +108,12 @@ def write_coverage() -> int:
     return 0
 
 
-def register(claims: list[Claim], runs: Path) -> int:
+def register(claims: list[Claim], runs: Path, run_before: str) -> int:
     if not claims:
         raise ClaimError("--register needs the claims to register, e.g. --register K3")
     table = gather(claims, runs, read(FILE))
     for claim in claims:
-        entry = registry.register(claim, table)
+        entry = registry.register(claim, table, run_before=run_before)
         print(f"{claim.id}: registered on {entry['date']}, rule {entry['rule_sha256'][:12]}, sweeps {', '.join(entry['sweeps'])}. "
               f"Commit claims/confirmation/registry.json before ./bench claims {claim.id}")
     return 0

@@ -13,7 +13,7 @@ from .parts import check
 from .proofs import PROOFS, Eval
 from .registry import State
 from .slices import rows_of, slice_of
-from .table import Runs, Table
+from .table import Runs, Table, used_metrics
 from .verdict import Judged, together, undecided
 
 RULES = {"ratio": numbers.ratio, "level": numbers.level, "slope": numbers.slope, "outcomes": outcomes.outcomes,
@@ -62,12 +62,14 @@ def _stale(runs: Runs, sweep: Sweep) -> str:
 
 def missing(claim: Claim, table: Table) -> list[str]:
     """One line a sweep whose records are not all there, or of other inputs, with the command that makes them."""
-    lines = []
+    lines, used = [], {name: set(metrics) for name, metrics in used_metrics([claim]).items()}
     for name in claim.sweeps:
         sweep, runs = read_sweep(name), table.sweeps.get(name)
         found = len(runs.rows) if runs else 0
         if runs and (stale := _stale(runs, sweep)):
             lines.append(f"{claim.id}: {stale}: {sweep.command}")
+        elif runs and runs.rows and (absent := used.get(name, set()) - set(runs.rows[0])):
+            lines.append(f"{claim.id}: the kept numbers of {name} have no {', '.join(sorted(absent))}, which its rule reads: {sweep.command}")
         elif found < len(sweep.cases):
             lines.append(f"{claim.id}: {len(sweep.cases) - found} of {len(sweep.cases)} records of {name} are missing: {sweep.command}")
     return lines

@@ -46,12 +46,22 @@ def _length(config: dict, pointer: str) -> None:
         time.pop(key, None)
 
 
+def _keep_duration(config: dict) -> None:
+    """Steps below a method with a dt of its own stand for the time that they take. Steps of a scene's own dt are left: no sweep of a claim has them."""
+    time = config.get("time")
+    if isinstance(time, dict) and {"steps", "dt_s"} <= time.keys() and "duration_s" not in time:
+        time["duration_s"] = time["dt_s"] * time.pop("steps")
+
+
 def merged(data: dict, path: Path, *sets: dict) -> dict:
     """A method lies over the base and under all settings of the sweep, as in the program."""
     config = base_of(data, path)
     given = [data.get("set", {}), *sets]
     methods = [pointers[METHOD] for pointers in given if METHOD in pointers]
-    for pointers in (method_set(methods[-1] if methods else None), *given):
+    method = method_set(methods[-1] if methods else None)
+    if "/time/dt_s" in method:
+        _keep_duration(config)
+    for pointers in (method, *given):
         for pointer, value in pointers.items():
             _length(config, pointer)
             put(config, pointer, value)

@@ -15,19 +15,20 @@ from .table import Runs
 from .verdict import HOLDS, NOT, ONLY_IF, SCENES, Judged, undecided
 
 LEVEL = 0.05
+MOST = "residual_at_most"  # of a part: a larger residual at a step end, in tolerances, is a failure
 
 
-def _failures(row: dict, bad: str | None) -> list[str]:
-    """In what a run failed; without `bad` its outcome."""
+def _failures(row: dict, bad: str | None, residual: float | None = None) -> list[str]:
+    """In what a run failed; without `bad` its outcome. residual: the largest at a step end that is no failure, in tolerances; None: whatever it is."""
     if bad is None:
         return [] if row["outcome"] == "ok" else [row["outcome"]]
-    if absent := [name for name in failures(bad) if row[name] is None]:
+    if absent := [name for name in (*failures(bad), *([] if residual is None else [RESIDUAL])) if row.get(name) is None]:
         raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {absent[0]}: its record lacks what that is counted in")
-    return [name for name in failures(bad) if row[name]]
+    return [name for name in failures(bad) if row[name]] + (["large_residual"] if residual is not None and row[RESIDUAL] > residual else [])
 
 
-def good(row: dict, bad: str | None) -> bool:
-    return not _failures(row, bad)
+def good(row: dict, bad: str | None, residual: float | None = None) -> bool:
+    return not _failures(row, bad, residual)
 
 
 def check_times(rows: list[dict], cases: list[str]) -> None:
@@ -45,7 +46,7 @@ def _cells(runs: Runs, case: str, part: dict) -> dict[tuple[str, str], list[bool
     found: dict[tuple[str, str], list[bool]] = {}
     for (scene, level, _), row in sorted(by_place(runs, case, part["sweep"]).items()):
         if scene in part.get("scenes", [scene]):
-            found.setdefault((scene, level), []).append(good(row, part.get("bad")))
+            found.setdefault((scene, level), []).append(good(row, part.get("bad"), part.get(MOST)))
     return found
 
 
@@ -120,7 +121,7 @@ def _why(part: dict, runs: Runs, kept: set[tuple[str, str]]) -> str:
     said = []
     for case in (part[key] for key in ("case", "over") if key in part):
         rows = [row for row in runs.rows if row["case"] == case and (row["scene"], row["level"]) in kept]
-        found = Counter(name for row in rows for name in _failures(row, part["bad"]))
+        found = Counter(name for row in rows for name in _failures(row, part["bad"], part.get(MOST)))
         said.append(f"{case}: {len(rows)} judged" + "".join(f", {n} {name}" for name, n in sorted(found.items())) + (_residual(rows) if part["bad"] == COMMON else ""))
     return "; ".join(said)
 
@@ -170,7 +171,8 @@ def asked(part: dict) -> str:
     """What a run has to do, in words."""
     if "bad" not in part:
         return "ends ok"
-    return COMMON_WORDS if part["bad"] == COMMON else f"is without {part['bad']}"
+    words = COMMON_WORDS if part["bad"] == COMMON else f"is without {part['bad']}"
+    return f"{words}, residuals of at most {part[MOST]:g} tolerances" if MOST in part else words
 
 
 def _numbers(part: dict, runs: Runs, mine: dict, left_out: set) -> dict:

@@ -6,7 +6,7 @@ from .entry import ClaimError, Sweep
 
 THRESHOLDS = ("above", "below", "within", "beyond")
 OF_A_PROOF = ("left", "right", "u", "shape", "argument", "loads", "mass_term", "changes")
-OF_A_RULE = ("says", "rule", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", "every", "starts", "reason", "confirm", "limit", "theta",
+OF_A_RULE = ("says", "rule", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", "residual_at_most", "every", "starts", "reason", "confirm", "limit", "theta",
              *THRESHOLDS)
 KEYS = ("proof", *OF_A_RULE, *OF_A_PROOF)
 

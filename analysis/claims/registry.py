@@ -13,13 +13,13 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from ..whole_file import write_whole
-from . import fresh
+from . import fresh, success
 from .entry import FOLDER, ROOT, Claim, ClaimError, _read, read_sweep
 from .history import NoHistory, brought
 from .inputs import inputs_of
 from .metrics import METRICS
 from .outcomes import LEVEL
-from .success import read_for
+from .success import COMMON, read_for
 from .table import Table
 from .verdict import LEVELS, SCENES, STARTS
 
@@ -29,6 +29,7 @@ NAME = "barrierbench.confirmation/1"
 STATISTICS = {"interval": "95%, Student's t over scenes, a scene the mean over levels of the mean over starts", "sign_test": LEVEL, "scenes": SCENES, "levels": LEVELS,
               "starts_where_they_matter": STARTS, "sign": "of a scene's mean share of runs", "outcomes": "of scenes and levels that have what is needed",
               "thresholds": "above, below and beyond are strict, within has its ends"}
+RUN_BEFORE = "run_before"  # of an entry
 NONE, NOT_RUN, UNVERIFIED = "-", "registered, not run", "not verifiable here"
 
 
@@ -58,10 +59,20 @@ def read_as(name: str) -> str:
     return sha_of([meaning, unit, ast.unparse(tree), [x for x in bound if isinstance(x, (str, tuple))]])[:16]
 
 
+def code_of(module) -> str:
+    """Hash of a module's code without comments and docstrings."""
+    tree = ast.parse(inspect.getsource(module))
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Module, ast.FunctionDef)) and ast.get_docstring(node):
+            node.body = node.body[1:] or [ast.Pass()]
+    return sha_of(ast.unparse(tree))[:16]
+
+
 def rule_of(claim: Claim) -> dict:
     parts = confirmed_parts(claim)
     metrics = {name for part in parts for name in (part.get("metric"), *read_for(part.get("bad")), (part.get("equal") or {}).get("metric")) if name}
-    return {"parts": parts, "metrics": {name: read_as(name) for name in sorted(metrics)}, "statistics": STATISTICS}
+    common = {"success": code_of(success)} if any(part.get("bad") == COMMON for part in parts) else {}
+    return {"parts": parts, "metrics": {name: read_as(name) for name in sorted(metrics)}, "statistics": STATISTICS, **common}
 
 
 def read(file: Path = FILE) -> dict:
@@ -82,8 +93,8 @@ def differences(old, new, place: str = "") -> list[str]:
     return [] if old == new else [f"{place}: registered {json.dumps(old)}, now {json.dumps(new)}"]
 
 
-def register(claim: Claim, table: Table, file: Path = FILE) -> dict:
-    """Writes the entry of a claim. Errors: ClaimError when it has no confirmation, a scene is not fresh, or its sweeps have been run."""
+def register(claim: Claim, table: Table, file: Path = FILE, run_before: str = "") -> dict:
+    """Writes the entry of a claim. run_before: when its scenes were run before and by which rule, where they were; the page says so. Errors: ClaimError when it has no confirmation, a scene is not fresh, or its sweeps have been run."""
     if not confirmable(claim):
         raise ClaimError(f"claims/{claim.id}.json: /parts: every deciding part that takes runs needs confirm.sweep, a sweep of claims/confirmation")
     entries = read(file)
@@ -92,7 +103,7 @@ def register(claim: Claim, table: Table, file: Path = FILE) -> dict:
         if name in table.sweeps and table.sweeps[name].rows:
             raise ClaimError(f"{claim.id}: {name} has been run ({table.sweeps[name].about.get('date')}): a rule is registered before the first run of its sweep")
     rule = rule_of(claim)
-    entries[claim.id] = {"date": datetime.now(timezone.utc).strftime("%Y-%m-%d"), "rule_sha256": sha_of(rule),
+    entries[claim.id] = ({RUN_BEFORE: run_before} if run_before else {}) | {"date": datetime.now(timezone.utc).strftime("%Y-%m-%d"), "rule_sha256": sha_of(rule),
                          "sweeps": {name: read_sweep(name).sha256 for name in claim.confirmation_sweeps},
                          "inputs": {name: inputs_of(read_sweep(name)) for name in claim.confirmation_sweeps}, "rule": rule}
     write_whole(file, json.dumps({"schema": NAME, "claims": dict(sorted(entries.items()))}, indent=1) + "\n")
@@ -169,7 +180,8 @@ def _committed(claim: Claim, table: Table, entry: dict, root: Path) -> State:
             return State(UNVERIFIED, f"{place}: {why}")
         if started <= commit.at:
             return _refused(f"{place}: committed {commit.at:%Y-%m-%d %H:%M:%S} UTC ({commit.sha[:10]}), after the first run of {name} ({text})")
-    return State("verified", f"registered {entry['date']} in {commit.sha[:10]}, before the first run", True)
+    when = f"before the run of these numbers; an earlier run of these scenes was seen: {entry[RUN_BEFORE]}" if entry.get(RUN_BEFORE) else "before the first run"
+    return State("verified", f"registered {entry['date']} in {commit.sha[:10]}, {when}", True)
 
 
 def state(claim: Claim, table: Table, entries: dict, root: Path = ROOT) -> State:

@@ -15,6 +15,7 @@ SCALINGS = {"none": "raw", "block_jacobi": "block-Jacobi-scaled"}
 FIELDS = {"cond": "condition number", "lambda_max": "largest eigenvalue", "lambda_min": "smallest eigenvalue"}
 LABELS = {"cond": "condition number", "lambda_max": r"$\lambda_{\max}$", "lambda_min": r"$\lambda_{\min}$"}
 UNITS = {"none": " (N/m)", "block_jacobi": ""}
+BOUNDS = ("lower_bound", "singular")
 EIGENVALUES = "_eigenvalues" + series.MORE
 SHOWN = (
     "{group}: {panels}, of {what}. Raw: as it is; scaled by block Jacobi: each 3 x 3 diagonal block made the identity (2 x 2 in planar scenes). Every diagnosed "
@@ -64,9 +65,11 @@ def _estimates(records: Records, group: str, runs: pd.DataFrame) -> pd.DataFrame
 
 def _chosen(group: Group, runs: pd.DataFrame, candidates: list[Panel]) -> tuple[list[Panel], str]:
     """The panels that these runs need, and the sentence on the others."""
-    sure = group.estimates[(group.estimates["status"] == "ok") & group.estimates["run"].isin(runs["run"])].set_index(["run", "n"])
-    kept, said = panels.choose([panels.Panel(panel.name(), sure.loc[sure["scaling"] == panel.scaling, panel.field]) for panel in candidates])
-    return [panel for panel in candidates if panel.name() in kept], said
+    mine = group.estimates[group.estimates["run"].isin(runs["run"])].set_index(["run", "n"])
+    sure, bounds = mine[mine["status"] == "ok"], mine[mine["status"].isin(BOUNDS)]
+    only = [panel for panel in candidates if panel.scaling in set(bounds["scaling"]) - set(sure["scaling"])]  # nothing there is equal to another panel's
+    kept, said = panels.choose([panels.Panel(panel.name(), sure.loc[sure["scaling"] == panel.scaling, panel.field]) for panel in candidates if panel not in only])
+    return [panel for panel in candidates if panel in only or panel.name() in kept], said
 
 
 def _draw_panel(axis, panel: Panel, group: Group, runs: pd.DataFrame, end_mark: bool) -> list[tuple[str, swings.Band]]:
@@ -76,7 +79,7 @@ def _draw_panel(axis, panel: Panel, group: Group, runs: pd.DataFrame, end_mark: 
         estimates = group.of(row, panel.scaling).copy()
         estimates.loc[estimates["status"] == "singular", "cond"] = LARGEST_COND
         sure = estimates[estimates["status"] == "ok"]
-        bound = estimates[estimates["status"].isin(["lower_bound", "singular"]) & estimates[panel.field].notna()]
+        bound = estimates[estimates["status"].isin(BOUNDS) & estimates[panel.field].notna()]
         if not estimates.empty:
             last = int((sure["step"] < sure["step"].max()).sum())  # a cycle is one of the iterations of a step
             swinging = swings.draw(axis, sure["at"].to_numpy(), sure[panel.field].to_numpy(), row, end_mark, last)

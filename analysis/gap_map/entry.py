@@ -22,7 +22,7 @@ from .judge import counts
 from .rows import CANNOT, NOT_RUN, add_rho, cannot_reach, records_in, row
 from .runs import folder_of, run_missing
 from .spec import LIMITS, Cell, GapMapError, Spec, cells, limit_settings, quick, read_spec
-from .table import Map, write
+from .table import Map, read, write
 
 DEFAULT = ROOT / "configs" / "gap_map" / "default.json"
 RUNS = ROOT / "results" / "runs" / "gap_map"
@@ -95,7 +95,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("spec", nargs="?", type=Path, default=DEFAULT, help="a gap map as data (default: configs/gap_map/default.json)")
     parser.add_argument("--quick", action="store_true", help="run no more than the part of the spec under `quick`: minutes, where the whole takes hours")
     parser.add_argument("--minutes", type=float, metavar="M", help="begin no further sweep after so many minutes; what is left is said")
-    parser.add_argument("--anew", action="store_true", help="run again what gap_map.json keeps from other machines or sessions")
+    parser.add_argument("--anew", action="store_true", help="run again what gap_map.json keeps from other machines or sessions; what was not run again by the end stays")
     parser.add_argument("--plan", action="store_true", help="say what there is to run and how long it would take, by the seconds of runs that are there; run nothing")
     parser.add_argument("--no-run", action="store_true", help="run nothing: judge the records that are there, or the numbers in gap_map.json")
     parser.add_argument("--jobs", type=int, default=1, metavar="N", help="sweeps at a time, each of one thread (default 1)")
@@ -115,12 +115,19 @@ def show_plan(spec: Spec, rows: list[dict], beyond: set[tuple[str, float]]) -> i
     return 0
 
 
+def check_store(kept: Path, spec: Spec) -> None:
+    """Errors: GapMapError where the file that would be written has another map: it keeps what no other machine may have."""
+    if kept.is_file() and (of := read(kept).about.get("name", "default")) != spec.name:
+        raise GapMapError(f"{kept}: found the map {of!r}; {spec.path} is the map {spec.name!r}: give it a folder of its own with --results")
+
+
 def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
     """Runs what may be run and has no row, and writes gap_map.json. Errors: GapMapError, MatchError, RecordError."""
-    beyond, before = cannot_reach(spec), {} if args.anew else kept_rows(kept, spec)
+    beyond, before = cannot_reach(spec), kept_rows(kept, spec)
+    check_store(kept, spec)
     if not args.no_run:
         asked = quick(spec) if args.quick else spec
-        run_missing(spec, [c for c in cells(asked) if (c.shape, c.theta) not in beyond and c.key not in before], args.runs, digests(spec), args.jobs, args.minutes)
+        run_missing(spec, [c for c in cells(asked) if (c.shape, c.theta) not in beyond and (args.anew or c.key not in before)], args.runs, digests(spec), args.jobs, args.minutes)
     rows, sources = collect(spec, beyond, args.runs, before)
     add_rho(spec, rows)
     command = "./bench gap-map" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")

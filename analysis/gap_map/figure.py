@@ -19,8 +19,8 @@ from .table import Map
 METRICS = (("cond_p95", "cond, raw"), ("bj_p95", "cond, block Jacobi"), ("pcg", "PCG iterations"), ("newton", "Newton iterations"))
 TITLES = {"on": "limit on", "contact": "limit the same in every run", "off": "no strain limit"}
 SHOWN = ("What a run takes against the gap that its contacts reach: the load-weighted median of d/d_hat at step ends, deeper to the right. A marker is a target theta ({gaps}), geometric mean over {n} scenes "
-         "({scenes}), their resolutions averaged; thin lines: each scene. Markers of the same number along two lines carry the same loads. Hollow: a run of some scene failed, and the mean is of the "
-         "others. A line ends at the gap of its last target: nothing was reached to the right of it. All numbers are over those of the log at its first target in the same place. Dotted, in the first row, where "
+         "({scenes}), their resolutions averaged; thin lines: each scene. Markers of the same number along two lines carry the same loads. Hollow: a run of some scene or resolution "
+         "reached no gap, and the mean is of the others. A line ends at the gap of its last target: nothing was reached to the right of it. All numbers are over those of the log at its first target in the same place. Dotted, in the first row, where "
          "the limit does not follow theta: the area law, C rho(u) but not below 1, with one C in a panel, from the deepest point of the log. cond: 95th percentile over iterations in contact; PCG: median of block-Jacobi PCG to 1e-6 on one right-hand side. {modes}")
 LAW = ("The area law against what was measured. A point is a run beside that of the log in the same scene, resolution, limit mode and theta, so under the same loads. Up: the ratio of cond at step ends (median "
        "over steps). (a) Across: the ratio of rho at the median gaps that both reached. Filled: contact makes the largest eigenvalue in both (cond at least {made:g} times that without contact). (b) "
@@ -60,8 +60,8 @@ def _series(axis, found: Map, limit: str, shape: str, metric: str, over) -> list
         mine = [p.scenes[scene] for p in points if scene in p.scenes]
         axis.plot([g for g, _ in mine], [v for _, v in mine], color=look.color, linewidth=0.4, alpha=0.35)
     for p in points:
-        axis.plot([p.gap], [p.value], color=look.color, marker=look.marker, markerfacecolor=look.color if len(p.scenes) == p.of else "white", markeredgewidth=0.8, linestyle="none")
-    return [{"limit": limit, "shape": shape, "metric": metric, "theta": p.theta, "gap": p.gap, "value": p.value, "scenes": len(p.scenes), "of": p.of} for p in points]
+        axis.plot([p.gap], [p.value], color=look.color, marker=look.marker, markerfacecolor=look.color if p.whole else "white", markeredgewidth=0.8, linestyle="none")
+    return [{"limit": limit, "shape": shape, "metric": metric, "theta": p.theta, "gap": p.gap, "value": p.value, "scenes": len(p.scenes), "whole": p.whole} for p in points]
 
 
 def _span(values: list[float], least: float) -> tuple[float, float]:

@@ -72,12 +72,13 @@ class Step:
     gap: float
     value: float
     scenes: dict[str, tuple[float, float]]
-    of: int  # scenes there are
+    whole: bool  # every run there is reached a gap
 
 
 def steps(rows: list[dict], limit: str, shape: str, metric: str, over) -> list[Step]:
     """Target by target, falling; over(row) is what the metric is divided by, None where that is not known. Only scenes in which a run ended well count."""
     found, scenes = [], list(dict.fromkeys(p[0] for p in places(rows, limit)))
+    there = [r for r in rows if r["limit"] == limit and r["shape"] == shape and r["outcome"] != NOT_RUN]
     mine = [r for r in rows if r["limit"] == limit and r["shape"] == shape and r["outcome"] == "ok" and r["gap"] and r[metric] and over(r)]
     for theta in sorted({r["theta"] for r in mine}, reverse=True):
         of = {}
@@ -85,7 +86,8 @@ def steps(rows: list[dict], limit: str, shape: str, metric: str, over) -> list[S
             good = [r for r in mine if r["theta"] == theta and r["scene"] == scene]
             if good:
                 of[scene] = (_mean([r["gap"] for r in good]), _mean([r[metric] / over(r) for r in good]))
-        found.append(Step(theta, _mean([g for g, _ in of.values()]), _mean([v for _, v in of.values()]), of, len(scenes)))
+        whole = all(r["outcome"] == "ok" for r in there if r["theta"] == theta)
+        found.append(Step(theta, _mean([g for g, _ in of.values()]), _mean([v for _, v in of.values()]), of, whole))
     return found
 
 
@@ -123,10 +125,10 @@ def end_of(rows: list[dict], limit: str, shape: str) -> tuple[float, int] | None
 
 
 def failures(rows: list[dict]) -> dict[tuple[str, str, float], dict[str, int]]:
-    """(shape, limit, theta) -> outcome -> runs; runs that reached a gap are not in it."""
+    """(shape, limit, theta) -> outcome -> runs; runs that reached a gap, and cells that were not run, are not in it."""
     found: dict[tuple[str, str, float], dict[str, int]] = {}
     for r in rows:
-        if r["outcome"] != "ok":
+        if r["outcome"] not in ("ok", NOT_RUN):
             of = found.setdefault((r["shape"], r["limit"], r["theta"]), {})
             of[r["outcome"]] = of.get(r["outcome"], 0) + 1
     return found

@@ -57,7 +57,7 @@ def about(spec: Spec, command: str, rows: list[dict], sources: list[dict]) -> di
     sizes = [row["unknowns"] for row in rows if row["source"] is not None]
     if not sizes:
         raise GapMapError(f"{spec.path}: no run of this map is there: ./bench gap-map --quick")
-    return {"command": command, "spec_sha256": spec.sha256, "doc": spec.doc, "shapes": {k: list(v) for k, v in spec.shapes.items()}, "main": list(spec.main),
+    return {"name": spec.name, "command": command, "spec_sha256": spec.sha256, "doc": spec.doc, "shapes": {k: list(v) for k, v in spec.shapes.items()}, "main": list(spec.main),
             "gaps": list(spec.gaps), "limits": list(spec.limits), "scenes": {s.label: {"obstacle": s.obstacle, "resolutions": list(s.resolutions)} for s in spec.scenes},
             "places": {"-".join(place): digest for place, digest in digests(spec).items()}, "unknowns": [min(sizes), max(sizes)], "runs": len(sizes), "sources": sources}
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..load import Records, condition_of, load
+from ..load import Records, condition_of, counted, load
 from ..table import summary_table
 from ..whole_file import write_whole
 
@@ -34,14 +34,15 @@ def _plain(value):
 
 def _p95(records: Records, run: str) -> float | None:
     """95th percentile of the unscaled condition numbers of a run."""
-    found = condition_of(records, run, "none")["cond"].dropna()
-    return None if found.empty else float(np.percentile(found, 95))
+    found = counted(condition_of(records, run, "none"))
+    return None if found.empty else float(10 ** np.percentile(np.log10(found), 95))
 
 
 def _last_in_contact(records: Records, run: str, steps: pd.DataFrame) -> dict[int, float]:
     """Step with contact at its end -> unscaled condition number of its last diagnosed iteration."""
     touching = set(steps["step"][steps["contacts_total"].fillna(0) > 0]) if "contacts_total" in steps else set()
-    found = condition_of(records, run, "none").dropna(subset=["cond"])
+    found = condition_of(records, run, "none")
+    found = found.assign(cond=counted(found)).dropna(subset=["cond"])
     return {int(step): float(rows["cond"].iloc[-1]) for step, rows in found.groupby("step") if step in touching}
 
 

@@ -66,7 +66,8 @@ void project_by_lapack(Projection projection, double* hess) {
 /// Four Hessians; what is missing to four is made up by the first of them.
 void project_by_rank(Projection projection, std::size_t n, double* hess) {
   using L = Lanes<double, 4>;
-  constexpr int rows = 6;  // a contact's Hessian is zero but in five directions
+  constexpr int rows =
+      6;  // a contact's Hessian is zero but in five directions; any other is right too, and slower
   Mat<L, 12, 12> full;
   for_each_lower([&](int i, int j, int k) {
     L entry;

@@ -9,11 +9,11 @@
 namespace bb {
 namespace detail {
 
-/// Rows from r.v's first on of the columns from `column` on of q, reflected. tridiagonalise() has this loop in place: nvcc
+/// Rows from `first`, that of r.v, on of all columns of q, reflected. tridiagonalise() has this loop in place: nvcc
 /// 13.0 leaves entries of its q unset at N = 9 when it calls this function (DeviceCheck.EigenvaluesAndProjection).
 template <class T, int N, int C>
-inline void reflect_columns(int first, const Reflection<T, N>& r, int column, Mat<T, N, C>& q) {
-  for (int j = column; j < C; ++j) {
+inline void reflect_columns(int first, const Reflection<T, N>& r, Mat<T, N, C>& q) {
+  for (int j = 0; j < C; ++j) {
     T sum(0);
     for (int i = first; i < N; ++i) sum += r.v[i] * q(i, j);
     sum *= r.beta;
@@ -64,7 +64,7 @@ inline Mat<T, N, N> project_rows(const LeadingRows<T, N>& rows, T unit, Projecti
   ql_iterate<T, K>(d, e, turned);
   Mat<T, N, K> vectors = Mat<T, N, K>::Zero();
   vectors.template topRows<K>() = turned;
-  for (int k = rows.n - 1; k >= 0; --k) reflect_columns<T, N, K>(k + 1, rows.reflections[k], 0, vectors);
+  for (int k = rows.n - 1; k >= 0; --k) reflect_columns<T, N, K>(k + 1, rows.reflections[k], vectors);
   Mat<T, N, N> out = Mat<T, N, N>::Zero();
   for (int k = 0; k < K; ++k) {
     const T value = unit * project_eigenvalue(d[k], projection);

@@ -12,6 +12,7 @@
 #include "core/input/json.hpp"
 #include "core/input/names.hpp"
 #include "experiments/config/methods.hpp"
+#include "experiments/scenes/procedural_scene.hpp"
 
 namespace bb {
 namespace {
@@ -55,6 +56,19 @@ void drop_replaced(json& base, const json& over) {
   }
 }
 
+/// A policy of another name starts anew too: parameters of one mean nothing to another.
+void drop_other_policy(json& base, const json& over) {
+  for (const char* section : {"/formulation", "/strain_limit"}) {
+    const json::json_pointer place = json::json_pointer(section) / "stiffness_policy";
+    if (!base.contains(place) || !over.contains(place)) continue;
+    json& below = base[place];
+    const json& above = over[place];
+    if (!below.is_object() || !above.is_object() || !below.contains("name") || !above.contains("name"))
+      continue;
+    if (below["name"] != above["name"]) below = json::object();
+  }
+}
+
 /// steps and duration_s replace each other, and steps that went with a duration end with another dt.
 void drop_other_length(json& base, const json& over) {
   const json::json_pointer time("/time");
@@ -87,6 +101,23 @@ void lay_over(json& base, const json& over) {
 /// False when there is no such place.
 bool set_value(json& document, const json::json_pointer& pointer, json value);
 
+/// Steps of the document become the time that they take, where a method with another dt is laid over them. Without a dt of
+/// its own the document has that of its scene.
+void keep_duration(json& document) {
+  const json::json_pointer time("/time"), name("/scene/name");
+  if (!document.contains(time) || !document[time].is_object() || document[time].contains("duration_s"))
+    return;
+  json& length = document[time];
+  if (!length.contains("steps") || !length["steps"].is_number_integer()) return;
+  const ProceduralScene* scene = document.contains(name) && document[name].is_string()
+                                     ? procedural_scenes().find(document[name].get<std::string>())
+                                     : nullptr;
+  const json dt = length.contains("dt_s") ? length["dt_s"] : scene ? json(scene->defaults.dt) : json();
+  if (!dt.is_number()) return;  // said when the config is checked
+  length["duration_s"] = dt.get<double>() * length["steps"].get<double>();
+  length.erase("steps");
+}
+
 /// The settings of a method, over what the document has. A name that no method has is told when the config is checked.
 void lay_method(json& document, const json& name) {
   const std::vector<std::string> names = method_names();
@@ -94,6 +125,7 @@ void lay_method(json& document, const json& name) {
       std::find(names.begin(), names.end(), name) == names.end())
     return;
   const PublishedMethod method = load_method(name);
+  if (method.set.contains("/time/dt_s")) keep_duration(document);
   for (const auto& [pointer, value] : method.set.items()) {
     set_value(document, json::json_pointer(pointer), value);
   }
@@ -142,6 +174,7 @@ json with_base(json document, const std::string& source, const std::string& fold
   if (document.contains("extends") && document["extends"].is_string()) document.erase("extends");
   if (has_method) lay_method(base, document["method"]);
   drop_replaced(base, document);
+  drop_other_policy(base, document);
   drop_other_length(base, document);
   lay_over(base, document);
   return base;
@@ -190,7 +223,9 @@ json* place_of(json& document, const std::vector<std::string>& tokens) {
 
 bool set_value(json& document, const json::json_pointer& pointer, json value) {
   const std::string name = pointer.to_string();
-  if (name != "/formulation" && name != "/formulation/name" && name != "/scene/name") {
+  const bool replaces = name == "/formulation" || name == "/formulation/name" || name == "/scene/name" ||
+                        name.ends_with("/stiffness_policy/name");
+  if (!replaces) {
     if (name.starts_with("/time/")) drop_other_length(document, {{"time", {{pointer.back(), value}}}});
     json* place = place_of(document, tokens_of(pointer));
     if (place != nullptr) *place = std::move(value);
@@ -200,6 +235,7 @@ bool set_value(json& document, const json::json_pointer& pointer, json value) {
   over[pointer] = std::move(value);
   expand_shorthands(over);
   drop_replaced(document, over);
+  drop_other_policy(document, over);
   lay_over(document, over);
   return true;
 }

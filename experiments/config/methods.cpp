@@ -1,7 +1,11 @@
 #include "experiments/config/methods.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <filesystem>
+#include <set>
 
 #include "core/input/json.hpp"
 #include "core/parameters/registry.hpp"
@@ -39,9 +43,21 @@ Texts texts(const json& object, const std::string& where, std::vector<Violation>
   Texts out;
   for (const auto& [key, value] : object.items()) {
     out[key] = value.is_string() ? value.get<std::string>() : "";
-    if (!value.is_string()) violations.push_back({where + "/" + key, value.dump(), "a text"});
+    const json::json_pointer place =
+        json::json_pointer() / key;  // a pointer as a key: its slashes are escaped
+    if (!value.is_string()) violations.push_back({where + place.to_string(), value.dump(), "a text"});
   }
   return out;
+}
+
+/// What a publication decides: not the scene, nor what is watched and written.
+const std::set<std::string> sections = {"contact",       "formulation", "hessian",   "integrator",
+                                        "linear_solver", "matching",    "precision", "step_solver",
+                                        "strain_limit",  "time"};
+
+bool is_of_a_method(const std::string& pointer, const json& value) {
+  const std::string section = pointer.substr(1, pointer.find('/', 1) - 1);
+  return sections.contains(section) && (pointer != "/formulation" || value.is_object());
 }
 
 /// The settings as a config of some scene, so that a pointer that no config has is refused where it stands.
@@ -57,7 +73,12 @@ void check_settings(const PublishedMethod& method, const std::string& where,
     } catch (const json::exception&) {
       violations.push_back(
           {where + "/set", '"' + pointer + '"', "a JSON pointer into the config, such as /time/dt_s"});
+      continue;
     }
+    if (is_of_a_method(pointer, value)) continue;
+    violations.push_back(
+        {where + "/set", '"' + pointer + "\": " + value.dump(),
+         fmt::format("a setting below one of {}; /formulation is an object", fmt::join(sections, ", "))});
   }
   for (const auto& [pointer, fact] : method.because) {
     if (method.set.contains(pointer)) continue;

@@ -49,6 +49,7 @@ void fill_labels(const RunConfig& config, const RunOptions& options, RunRecord& 
   labels.swept = options.swept;
 }
 
+/// Before the first step: the file of the method may be edited while a run goes on.
 void fill_method(const RunConfig& config, RunRecord& record) {
   if (config.method.empty()) return;
   const MethodUse use = method_use(config);
@@ -238,6 +239,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   check_writable(options.folder);
   if (options.keep_inputs) copy_inputs(options.folder, config, options.plugins);
   RunRecord record = identified(config, options);
+  fill_method(config, record);
   record.status.started_utc = resumed ? resumed->record.status.started_utc : started_utc;
   record.validity.build = options.build;
 
@@ -261,7 +263,6 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   }
   record.artifacts = files.written();  // also where memory ran out beside a step
   fill_labels(config, options, record);
-  fill_method(config, record);
   record.comparability = judge_comparability(compared_run(record, options.folder), std::nullopt);
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();

@@ -1,6 +1,7 @@
 """A claim that calls itself confirmed: registered, committed and unchanged, before its first run. Repositories of their own, made here."""
 
 import copy
+import inspect
 import json
 import os
 import shutil
@@ -71,6 +72,23 @@ def repository(tmp_path, monkeypatch):
     return made
 
 
+def test_an_earlier_run_of_the_scenes_is_said(repository):
+    registry.register(CLAIM, Table(), repository.root / FILE, "2026-11-30, by another rule")
+    repository.commit()
+    state = repository.state(repository.run())
+    assert state.verified and "before the run of these numbers; an earlier run of these scenes was seen: 2026-11-30, by another rule" in state.why
+
+
+def test_the_code_of_the_common_success_is_in_the_rule(repository, monkeypatch):
+    rule = registry.rule_of(read_claim("K4"))
+    assert len(rule["success"]) == 16 and "success" not in registry.rule_of(CLAIM)
+    source = inspect.getsource(registry.success)
+    monkeypatch.setattr(registry.inspect, "getsource", lambda module: source.replace('"""Largest', '"""The largest') + "\n# a comment\n")
+    assert registry.code_of(registry.success) == rule["success"]
+    monkeypatch.setattr(registry.inspect, "getsource", lambda module: source.replace('== "converged"', '!= "failed"'))
+    assert registry.code_of(registry.success) != rule["success"]
+
+
 def test_registered_committed_and_run(repository):
     assert repository.state(Table()).word == "-" and "not registered: ./bench claims --register K12" in repository.state(Table()).why
     entry = repository.register()
@@ -78,6 +96,7 @@ def test_registered_committed_and_run(repository):
     repository.commit()
     state = repository.state(repository.run())
     assert state.verified and f"registered {entry['date']} in " in state.why and "before the first run" in state.why
+    assert "an earlier run" not in state.why
     part = entry["rule"]["parts"][0]
     assert part["sweep"] == NAME and part["above"] == 1 and "confirm" not in part and entry["rule"]["statistics"]["scenes"] == 3
 

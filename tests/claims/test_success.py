@@ -120,4 +120,15 @@ def test_what_is_called_published_is_a_whole_method():
 
 def test_outcomes_beside_the_published_method_are_judged_by_the_common_success():
     parts = [part for claim in map(read_claim, ids()) for part in claim.parts if part.get("rule") == "outcomes" and "published" in (part.get("case"), part.get("over"))]
-    assert len(parts) >= 4 and all(part.get("bad") == COMMON for part in parts) and FOLDER.is_dir()
+    deciding = [part for part in parts if not part.get("beside")]
+    assert len(deciding) >= 4 and all(part.get("bad") == COMMON for part in deciding) and FOLDER.is_dir()
+
+
+def test_a_bound_on_the_residual_is_a_failure_of_its_own():
+    made = runs(lambda s, lv, c, k: good(**{RESIDUAL: 240.0 if c == "x" else 1.0}), scenes=SIX)
+    assert "large_residual" not in outcomes(PART, made).counted
+    bound = outcomes({**PART, "residual_at_most": 100}, made)
+    assert bound.verdict == "does not hold" and "large_residual" in bound.counted and "at most 100 tolerances" in bound.measures
+    assert outcomes({**PART, "residual_at_most": 240}, made).counted == outcomes(PART, made).counted
+    with pytest.raises(ClaimError, match=RESIDUAL):
+        outcomes({**PART, "residual_at_most": 100}, runs(lambda s, lv, c, k: good(**{RESIDUAL: None}), scenes=SIX))

@@ -42,11 +42,6 @@ TEST(Methods, EveryOneIsWholeAndOverriddenByNothing) {
     EXPECT_EQ(use.title(), name);
     EXPECT_FALSE(use.method.differs.empty()) << name;
     EXPECT_EQ(config_id(parse_config(resolved_json(config), "resolved")), config_id(config)) << name;
-    for (const auto& [pointer, value] : leaves_of(use.method)) {
-      const bool of_limit = pointer.starts_with("/strain_limit/");
-      EXPECT_TRUE(of_limit || json::parse(resolved_json(config)).contains(json::json_pointer(pointer)))
-          << pointer;
-    }
   }
 }
 
@@ -76,6 +71,29 @@ TEST(Methods, WhatStandsBesideTheNameWins) {
   EXPECT_EQ(overridden_in(pure_with("ando2024", "/formulation/stiffness_policy/scale", 2)),
             std::vector<std::string>{"/formulation/stiffness_policy/scale"});
   EXPECT_TRUE(overridden_in(pure_with("ando2024", "/strain_limit/enabled", false)).empty());
+}
+
+/// The record of a run has its resolved config, which has the name of the method too.
+void expect_repeats(const RunConfig& config) {
+  EXPECT_EQ(config_id(parse_config(resolved_json(config), "resolved")), config_id(config));
+  EXPECT_EQ(method_use(config).title(), "ando2024, changed");
+}
+
+TEST(Methods, APolicyOfAnotherNameTakesNothingFromTheirs) {
+  const json fixed = {{"name", "fixed"}, {"kappa_N_per_m", 100}},
+             limit = {{"name", "fixed"}, {"k_s_N_per_m", 3}};
+  const RunConfig beside = parsed(pure_with("ando2024", "/formulation/stiffness_policy", fixed));
+  EXPECT_EQ(beside.formulation.stiffness_policy.name, "fixed");
+  EXPECT_EQ(beside.formulation.name, "");
+  expect_repeats(beside);
+  expect_repeats(parsed(pure_with("ando2024", "/strain_limit/stiffness_policy", limit)));
+  json plain = hang_config();
+  plain.erase("formulation");
+  const RunConfig set = parsed(plain, {"/method=ando2024", "/formulation/stiffness_policy/name=fixed",
+                                       "/formulation/stiffness_policy/kappa_N_per_m=100"});
+  EXPECT_EQ(set.formulation.stiffness_policy.parameters, beside.formulation.stiffness_policy.parameters);
+  expect_repeats(set);
+  expect_repeats(parsed(plain, {"/method=ando2024", "/formulation/stiffness_policy=" + fixed.dump()}));
 }
 
 TEST(Methods, AnOverrideThatNamesOneLiesOverTheFileAndUnderTheOthers) {
@@ -178,7 +196,20 @@ TEST_F(MethodFile, SaysWhatIsWrongWithIt) {
   expect_said(file, "/because", "a pointer of set");
   file = whole_;
   file["because"]["/time/dt_s"] = 3;
-  expect_said(file, "/because//time/dt_s", "a text");
+  expect_said(file, "/because/~1time~1dt_s", "a text");
+  for (const char* pointer : {"/scene/name", "/passes/time", "/formulation"}) {
+    file = whole_;
+    file["set"][pointer] = pointer == std::string("/passes/time") ? json(true) : json("log");
+    file["because"][pointer] = "a fact";
+    const std::vector<Violation> found = said(file);
+    ASSERT_FALSE(found.empty()) << pointer;
+    EXPECT_NE(found[0].allowed.find("a setting below one of contact, formulation"), std::string::npos)
+        << pointer;
+  }
+  file = whole_;
+  file["set"]["time"] = 3;
+  file["because"]["time"] = "a fact";
+  expect_said(file, "/set", "a JSON pointer into the config");
   file = whole_;
   file["set"] = {{"/time/dt", 0.001}};
   file["because"] = {{"/time/dt", "a fact"}};
@@ -227,6 +258,13 @@ TEST(Duration, OfASceneIsThatOfAMethodToo) {
   EXPECT_DOUBLE_EQ(end_time(method.time), end_time(plain.time));
   EXPECT_EQ(method.time.steps, 10 * plain.time.steps);
   EXPECT_EQ(parsed(pure_with("ando2024", "/time/steps", 5)).time.steps, 5);
+  // steps of a dt that the method replaces stand for their time
+  const json steps = with(hang_config(), "/time", {{"steps", 7}, {"dt_s", 0.01}});
+  EXPECT_DOUBLE_EQ(end_time(parsed(steps, {"/method=ando2024"}).time), 0.07);
+  const json of_scene = with(hang_config(), "/time", {{"steps", 7}});
+  EXPECT_EQ(parsed(of_scene, {"/method=ando2024"}).time.steps, 7 * 10);
+  EXPECT_EQ(parsed(steps, {"/method=ando2024", "/time/steps=5"}).time.steps, 5);
+  EXPECT_EQ(parsed(steps, {"/method=ipc2020"}).time.steps, 7);  // has no dt of its own
   json bodies = bodies_config();
   bodies["time"] = {{"dt_s", 0.01}};
   expect_violation(bodies, "/time/steps", "nothing", "a value, or duration_s");

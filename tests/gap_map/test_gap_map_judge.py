@@ -88,6 +88,7 @@ def test_nothing_is_filled_in_where_a_gap_was_not_reached():
     assert judge.ratio_at(broken, "off", "cubic", "cond_p95", 0.4) is None  # not across a run that failed
     assert judge.at_theta(broken, "off", "cubic", "cond_p95", 0.1) is None
     assert judge.failures(broken) == {("cubic", "off", 0.1): {"stall_overload": 1}}
+    assert judge.failures([*broken, made("log", 0.25, None, "s", outcome="not run")]) == judge.failures(broken)  # no failure
 
 
 def test_the_steps_of_a_line_leave_failed_scenes_out_and_say_so():
@@ -95,7 +96,8 @@ def test_the_steps_of_a_line_leave_failed_scenes_out_and_say_so():
     first = {"a": 20.0, "b": 80.0}
     shallow, deep = judge.steps(all_rows, "off", "log", "pcg", lambda r: first[r["scene"]])
     assert (shallow.theta, shallow.gap, shallow.value, len(shallow.scenes)) == (0.5, pytest.approx(0.4), pytest.approx(1.0), 2)
-    assert (deep.gap, deep.value, list(deep.scenes), deep.of) == (pytest.approx(0.1), pytest.approx(2.0), ["a"], 2)
+    assert (deep.gap, deep.value, list(deep.scenes), deep.whole) == (pytest.approx(0.1), pytest.approx(2.0), ["a"], False)
+    assert shallow.whole
 
 
 def test_the_law_is_the_ratio_of_rho_and_its_floor_what_is_left_without_contact():

@@ -111,12 +111,23 @@ def test_finished_runs_are_not_made_again_and_missing_ones_are_named(real, monke
     kept = gone.read_text()
     gone.unlink()
     try:
-        assert entry.main([*words, "--no-run", "--anew"]) == 0  # as if no row had been kept
+        assert entry.main([*words, "--no-run", "--anew"]) == 0  # what was not run again stays
+        assert not [r for r in table.read(folder / "out/gap_map.json").rows if r["outcome"] == "not run"]
+        (folder / "out/gap_map.json").unlink()
+        assert entry.main([*words, "--no-run"]) == 0  # as if no row had been kept
         missing = [r for r in table.read(folder / "out/gap_map.json").rows if r["outcome"] == "not run"]
         assert len(missing) == 1 and f"{missing[0]['shape']} off theta{missing[0]['theta']:g}" in label and missing[0]["gap"] is None
     finally:
         gone.write_text(kept)
         assert entry.main([*words, "--no-run"]) == 0
+
+
+def test_the_store_of_another_map_is_not_written_over(real, tmp_path, capsys):
+    folder, _ = real
+    before, other = (folder / "out/gap_map.json").read_bytes(), small(tmp_path, name="mine")
+    (tmp_path / "none").mkdir()
+    assert entry.main([str(other), "--no-run", "--runs", str(tmp_path / "none"), "--results", str(folder / "out")]) == 2
+    assert "'mine'" in capsys.readouterr().err and (folder / "out/gap_map.json").read_bytes() == before
 
 
 def test_rows_of_earlier_calls_are_kept_while_their_settings_are_the_same(real, tmp_path):
