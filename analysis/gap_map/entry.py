@@ -21,7 +21,7 @@ from .kept import about, digests, kept_rows, read_for, source_of
 from .judge import counts
 from .rows import CANNOT, NOT_RUN, add_rho, cannot_reach, records_in, row
 from .runs import folder_of, run_missing
-from .spec import LIMITS, Cell, GapMapError, Spec, cells, limit_settings, quick, read_spec
+from .spec import LIMITS, PARTS, Cell, GapMapError, Spec, cells, limit_settings, part, read_spec
 from .table import Map, read, write
 
 DEFAULT = ROOT / "configs" / "gap_map" / "default.json"
@@ -93,7 +93,8 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="bench gap-map", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog=f"limit modes:\n{modes}\nexamples: ./bench gap-map --quick\n          ./bench gap-map --plan")
     parser.add_argument("spec", nargs="?", type=Path, default=DEFAULT, help="a gap map as data (default: configs/gap_map/default.json)")
-    parser.add_argument("--quick", action="store_true", help="run no more than the part of the spec under `quick`: minutes, where the whole takes hours")
+    for name, text in PARTS.items():
+        parser.add_argument(f"--{name}", dest="part", action="store_const", const=name, help=f"run no more than the part of the spec under `{name}`: {text}")
     parser.add_argument("--minutes", type=float, metavar="M", help="begin no further sweep after so many minutes; what is left is said")
     parser.add_argument("--anew", action="store_true", help="run again what gap_map.json keeps from other machines or sessions; what was not run again by the end stays")
     parser.add_argument("--plan", action="store_true", help="say what there is to run and how long it would take, by the seconds of runs that are there; run nothing")
@@ -126,7 +127,7 @@ def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
     beyond, before = cannot_reach(spec), kept_rows(kept, spec)
     check_store(kept, spec)
     if not args.no_run:
-        asked = quick(spec) if args.quick else spec
+        asked = part(spec, args.part) if args.part else spec
         run_missing(spec, [c for c in cells(asked) if (c.shape, c.theta) not in beyond and (args.anew or c.key not in before)], args.runs, digests(spec), args.jobs, args.minutes)
     rows, sources = collect(spec, beyond, args.runs, before)
     add_rho(spec, rows)

@@ -123,14 +123,15 @@ def law_sentence(found: list[Pair], what: str) -> str:
     return f"{what}: {'; '.join(parts)}."
 
 
-def draw_law(found: Map, stem: Path) -> list[Path]:
-    of = pairs(found.rows)
+def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
+    of = [p for p in pairs(found.rows) if p.row["shape"] in shapes]
+    scaled = [p for p in pairs(found.rows, raw=False) if p.row["shape"] in shapes]
     forms = (("law", lambda p: p.predicted, lambda p: p.by_contact), ("law with its floor", lambda p: p.floored, lambda p: p.by_log))
     fig, axes = plt.subplots(1, 2, figsize=(style.WIDE_IN, 3.7), layout="constrained", sharex=True, sharey=True)
     low, high = _span([0.5, 2.0] + [v for p in of for v in (p.predicted, p.measured)], 10.0)
     for axis, (title, predicted, made) in zip(axes, forms):
         axis.set(xscale="log", yscale="log", xlabel="predicted", title=title)
-        for shape in (s for s in found.shapes if any(p.row["shape"] == s for p in of)):
+        for shape in (s for s in shapes if any(p.row["shape"] == s for p in of)):
             look = style.look(shape)
             for full in (False, True):
                 some = [p for p in of if p.row["shape"] == shape and made(p) == full]
@@ -147,15 +148,16 @@ def draw_law(found: Map, stem: Path) -> list[Path]:
     handles.append(plt.Line2D([], [], color="#444444", marker="o", markerfacecolor="none", linestyle="none"))
     fig.legend(handles, [*labels, "not made by contact"], loc="outside lower center", ncols=4, frameon=False)
     numbers = [{"pair": p.name, "predicted": p.predicted, "predicted_p05": p.predicted_p05, "floor": p.floor, "measured": p.measured, "made": p.made[0], "made_log": p.made[1]} for p in of]
-    sentence = f"{law_sentence(of, 'Raw')} {law_sentence(pairs(found.rows, raw=False), 'Block Jacobi')}"
+    sentence = f"{law_sentence(of, 'Raw')} {law_sentence(scaled, 'Block Jacobi')}"
     return style.save(fig, stem, pd.DataFrame(numbers), f"{LAW.format(made=MADE, far=FAR, sentence=sentence)} {_part(found)}".strip())
 
 
 def draw_all(found: Map, folder: Path) -> list[Path]:
-    """gap_map, gap_map_more where there are more shapes than one figure holds, and gap_law; all their files. Asks `eval` for rho."""
+    """gap_map and gap_law, and each with _more where there are more shapes than one figure holds; all their files. Asks `eval` for rho."""
     folder.mkdir(parents=True, exist_ok=True)
     rest = [s for s in found.shapes if s not in found.main]
     paths = draw_map(found, list(found.main), folder / "gap_map")
     if rest:
         paths += draw_map(found, [REFERENCE, *rest], folder / "gap_map_more")
-    return paths + draw_law(found, folder / "gap_law")
+        paths += draw_law(found, rest, folder / "gap_law_more")
+    return paths + draw_law(found, list(found.main), folder / "gap_law")

@@ -121,6 +121,8 @@ def markdown(found: Map) -> str:
               f"{_of(found, 'date')}; {_of(found, 'machine')}; build {_of(found, 'build')}.", "",
               f"Made by `{about['command']}` (spec sha256 {about['spec_sha256'][:16]}). The gap is the load-weighted median of d/d_hat at converged step ends; theta, the target, is where the largest load of the "
               "pilot would rest. Raw and block Jacobi are 95th percentiles of cond over iterations in contact. A number is a geometric mean over scenes, [smallest, largest scene], scenes that have both of all.", ""]
+    if len(builds := {source["build"] for source in about["sources"]}) > 1:
+        lines += [f"The runs are of {len(builds)} builds of the program: a row counts as long as its settings and the meaning of its record are those of now.", ""]
     lines += ["## What a reader keeps", "", *(f"{k}. {s}" for k, s in enumerate(sentences(found), 1)), ""]
     lines += ["![the gap map](../docs/gap_map.png)", ""]
     for title, head, ratio in (("Under the same loads", "theta", at_theta), ("At equal reached gap", "reached gap", ratio_at)):
@@ -131,5 +133,5 @@ def markdown(found: Map) -> str:
     never = _never(found)
     lines += ["Targets that no path comes down to, or starts above:" if never else "Every target lies on some path of every shape.", "", *never, ""]
     lines += ["## Cells without a gap", "", *_failed(found), ""]
-    lines += ["## The area law", "", "![predicted against measured](../docs/gap_law.png)", "", *_law(found), ""]
+    lines += ["## The area law", "", "![predicted against measured](../docs/gap_law.png)", "", "Every shape is in the numbers; the other shapes are drawn in [gap_law_more](../docs/gap_law_more.png)." if len(found.shapes) - 1 > len(found.main) else "", "", *_law(found), ""]
     return "\n".join(lines) + "\n"

@@ -16,6 +16,7 @@ LIMITS = {"on": "contact and strain limit take shape and theta", "contact": "con
           "off": "no strain limit"}
 REFERENCE = "log"
 LIMIT_THETA = 0.1
+PARTS = {"quick": "minutes, where the whole takes hours", "large": "the larger resolutions of few shapes and gaps"}  # of a spec that may be run alone; quick has to be there
 REQUIRED = ("schema", "name", "doc", "base", "set", "shapes", "main", "gaps", "limits", "scenes", "quick")
 OF_SCENE = ("label", "obstacle", "set", "resolutions")
 OBSTACLES = ("analytic", "mesh", "none")
@@ -111,8 +112,7 @@ def read_spec(path: Path) -> Spec:
     data = read_object(path, GapMapError)
     if data.get("schema") != SCHEMA:
         _fail(path, "schema", data.get("schema"), repr(SCHEMA))
-    if set(data) != set(REQUIRED):
-        odd = sorted(set(data) ^ set(REQUIRED))
+    if odd := sorted((set(REQUIRED) - set(data)) | (set(data) - {*REQUIRED, *PARTS})):
         raise GapMapError(f"{path}#/{odd[0]}: {'unknown' if odd[0] in data else 'is missing'}; the keys are {', '.join(REQUIRED)}")
     if not isinstance(data["base"], str) or not (path.parent / data["base"]).is_file():
         _fail(path, "base", data["base"], "the path of a config, relative to this file,")
@@ -128,23 +128,23 @@ def read_spec(path: Path) -> Spec:
                 _gaps(data["gaps"], path, "gaps"), limits, scenes)
 
 
-def quick(spec: Spec) -> Spec:
-    """The documented part of a spec that takes minutes. Errors: GapMapError."""
-    asked = read_object(spec.path, GapMapError)["quick"]
+def part(spec: Spec, name: str) -> Spec:
+    """A documented part of a spec, one of PARTS. Errors: GapMapError."""
+    asked = read_object(spec.path, GapMapError).get(name)
     if not isinstance(asked, dict) or set(asked) != {"scenes", "shapes", "gaps", "limits"} or not isinstance(asked["scenes"], dict):
-        _fail(spec.path, "quick", asked, "scenes, shapes, gaps, limits")
-    limits = _words(asked["limits"], spec.limits, spec.path, "quick/limits")
+        _fail(spec.path, name, asked, "scenes, shapes, gaps, limits")
+    limits = _words(asked["limits"], spec.limits, spec.path, f"{name}/limits")
     scenes = []
-    for label in _words(list(asked["scenes"]), tuple(s.label for s in spec.scenes), spec.path, "quick/scenes"):
+    for label in _words(list(asked["scenes"]), tuple(s.label for s in spec.scenes), spec.path, f"{name}/scenes"):
         whole = next(s for s in spec.scenes if s.label == label)
-        kept = _words(asked["scenes"][label], tuple(whole.resolutions), spec.path, f"quick/scenes/{label}")
+        kept = _words(asked["scenes"][label], tuple(whole.resolutions), spec.path, f"{name}/scenes/{label}")
         scenes.append(replace(whole, resolutions={r: whole.resolutions[r] for r in kept}, unknowns={r: whole.unknowns[r] for r in kept}, limits=tuple(x for x in whole.limits if x in limits)))
-    shapes = _words(asked["shapes"], tuple(spec.shapes), spec.path, "quick/shapes")
+    shapes = _words(asked["shapes"], tuple(spec.shapes), spec.path, f"{name}/shapes")
     if REFERENCE not in shapes:
-        _fail(spec.path, "quick/shapes", list(shapes), f"{REFERENCE!r} among them")
-    gaps = _gaps(asked["gaps"], spec.path, "quick/gaps")
+        _fail(spec.path, f"{name}/shapes", list(shapes), f"{REFERENCE!r} among them")
+    gaps = _gaps(asked["gaps"], spec.path, f"{name}/gaps")
     if not set(gaps) <= set(spec.gaps):
-        _fail(spec.path, "quick/gaps", list(gaps), f"some of {list(spec.gaps)}")
+        _fail(spec.path, f"{name}/gaps", list(gaps), f"some of {list(spec.gaps)}")
     return replace(spec, shapes={s: spec.shapes[s] for s in shapes}, main=tuple(s for s in spec.main if s in shapes), gaps=gaps, limits=limits, scenes=tuple(scenes))
 
 

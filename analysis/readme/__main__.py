@@ -13,6 +13,7 @@ from ..claims.entry import ClaimError
 from ..program import built_program
 from ..record_file import RecordError
 from ..whole_file import write_whole
+from . import figures
 from .numbers import FILE, ROOT, RUNS, ReadmeError, gather, read, write
 from .slices import gather as gather_slices
 from .snippets import faults
@@ -50,7 +51,7 @@ def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench readme", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog="examples: ./bench demo && ./bench readme --write\n          ./bench claims && ./bench readme --fill\n          ./bench readme --check")
     what = parser.add_mutually_exclusive_group(required=True)
-    what.add_argument("--write", action="store_true", help="keep the numbers of the records in results/demo.json and fill the pages with them")
+    what.add_argument("--write", action="store_true", help="keep the numbers of the records in results/demo.json, fill the pages with them, and copy the figures that they show")
     what.add_argument("--fill", action="store_true", help="fill the pages with the numbers that are kept in results/: after ./bench claims, without records of the demo")
     what.add_argument("--check", action="store_true", help="run or parse every snippet, and compare the pages with the kept numbers")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the demo's records (default: results/runs/demo)")
@@ -59,10 +60,12 @@ def main(argv: list[str]) -> int:
         if args.write or args.fill:
             if args.write:
                 write(gather(args.runs))
+                copied = figures.copy([(ROOT / page).read_text() for page in PAGES], args.runs / "figures", ROOT / "docs")
+                print(f"docs: {', '.join(copied) or 'no figure'}")
             print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
             return 0
         program = str(built_program(ReadmeError))
-        found = [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)] + stale(ROOT, kept())
+        found = [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)] + stale(ROOT, kept()) + figures.absent(ROOT / "docs")
     except (ReadmeError, RecordError, ClaimError) as error:
         print(f"bench readme: {error}", file=sys.stderr)
         return 2

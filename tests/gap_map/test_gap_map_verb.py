@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 from barrierbench_analysis.gap_map import entry, kept, report, runs, table
-from barrierbench_analysis.gap_map.spec import GapMapError, cells, limit_settings, make_sweep, quick, read_spec
+from barrierbench_analysis.gap_map.spec import GapMapError, cells, limit_settings, make_sweep, part, read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -31,9 +31,11 @@ def test_the_shipped_map_has_what_was_asked_for():
     spec = read_spec(SHIPPED)
     assert len(spec.scenes) >= 6 and any(s.obstacle == "mesh" for s in spec.scenes) and len(spec.shapes) >= 7 and len(spec.gaps) == 8 and set(spec.limits) == {"on", "contact", "off"}
     assert all(len(s.resolutions) == 4 for s in spec.scenes) and 4000 < max(n for s in spec.scenes for n in s.unknowns.values()) <= 5000
-    part = quick(spec)
-    assert {c.label for c in cells(part)} < {c.label for c in cells(spec)} and len(cells(part)) <= 260 and {"on", "off"} <= set(part.limits)
-    assert kept.digests(part).items() < kept.digests(spec).items()  # a quick map's records are part of the whole
+    some = part(spec, "quick")
+    assert {c.label for c in cells(some)} < {c.label for c in cells(spec)} and len(cells(some)) <= 260 and {"on", "off"} <= set(some.limits)
+    large = part(spec, "large")
+    assert {s.label for s in large.scenes} == {s.label for s in spec.scenes} and max(n for s in large.scenes for n in s.unknowns.values()) > 4000
+    assert kept.digests(some).items() < kept.digests(spec).items()  # a quick map's records are part of the whole
     first = [c for c in cells(spec) if (c.scene, c.resolution) == ("cloth", "8")]
     assert len(make_sweep(spec, first).notes) == len(first)
 
@@ -55,11 +57,11 @@ def test_a_limit_that_is_the_same_in_every_run_undoes_theta():
 
 
 @pytest.mark.parametrize("edit, words", [({"gaps": [0.1, 0.5]}, "gaps"), ({"gaps": [0.5, 0.0]}, "gaps"), ({"limits": ["of"]}, "on, contact, off"), ({"main": ["cubic"]}, "main"),
-                                         ({"base": "nowhere.json"}, "base"), ({"extra": 1}, "extra"), ({"scenes": [{"label": "x"}]}, "obstacle"), ({"quick": {}}, "")])
+                                         ({"base": "nowhere.json"}, "base"), ({"extra": 1}, "extra"), ({"scenes": [{"label": "x"}]}, "obstacle"), ({"quick": {}}, ""), ({"quick": []}, "quick")])
 def test_a_bad_spec_is_refused_with_its_place(tmp_path, edit, words):
     file = small(tmp_path, **edit)
     with pytest.raises(GapMapError, match=re.escape(str(file)) + f".*{words}"):
-        quick(read_spec(file))
+        part(read_spec(file), "quick")
 
 
 @pytest.fixture(scope="module")
