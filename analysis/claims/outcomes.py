@@ -22,9 +22,14 @@ def _failures(row: dict, bad: str | None, residual: float | None = None) -> list
     """In what a run failed; without `bad` its outcome. residual: the largest at a step end that is no failure, in tolerances; None: whatever it is."""
     if bad is None:
         return [] if row["outcome"] == "ok" else [row["outcome"]]
-    if absent := [name for name in (*failures(bad), *([] if residual is None else [RESIDUAL])) if row.get(name) is None]:
+    if absent := [name for name in failures(bad) if row[name] is None]:
         raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {absent[0]}: its record lacks what that is counted in")
-    return [name for name in failures(bad) if row[name]] + (["large_residual"] if residual is not None and row[RESIDUAL] > residual else [])
+    found = [name for name in failures(bad) if row[name]]
+    if residual is None or (found and row[RESIDUAL] is None):  # without a step end there is no residual
+        return found
+    if row[RESIDUAL] is None:
+        raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {RESIDUAL}: its record lacks what that is counted in")
+    return found + ["large_residual"] * (row[RESIDUAL] > residual)
 
 
 def good(row: dict, bad: str | None, residual: float | None = None) -> bool:
