@@ -13,6 +13,7 @@ from .spec import REFERENCE
 
 MADE = 3.0  # contact makes the largest eigenvalue where cond is at least this many times that without contact
 FAR = 2.0  # a measured ratio farther than this factor from the predicted one is an exception
+STIFF_AT_FIRST_TOUCH = ("quadratic", "two_stage")  # b'' does not vanish at d_hat
 LOADS = 1.25  # two runs whose loads differ by more do not carry the same load
 
 
@@ -212,6 +213,9 @@ def reason(pair: Pair) -> str:
         return f"the loads are not the same: the largest is {load:.2f} times the log's"
     if abs(math.log(pair.measured / max(pair.predicted_p05, pair.floor))) <= math.log(FAR):
         return f"loads rest at very different gaps: with rho where the deepest 5% of the load begins, {pair.predicted_p05:.3g} is predicted"
+    if pair.row["shape"] in STIFF_AT_FIRST_TOUCH and pair.measured > pair.floored:
+        return (f"stiffer than predicted: a `{pair.row['shape']}` contact is as stiff when it bears nothing as at its load, so that those beside it, which the median load does not "
+                "count, add up in one place")
     return "not explained by these numbers"
 
 

@@ -123,6 +123,9 @@ def test_exceptions_are_those_of_the_log_by_contact_and_have_reasons():
     assert {p.row["shape"] for p in judge.exceptions(of)} == {"quadratic", "two_stage", "log_squared"}
     text = {p.row["shape"]: judge.reason(p) for p in of}
     assert "10.00 times the log's" in text["quadratic"] and "deepest 5%" in text["two_stage"] and text["log_squared"].startswith("not explained")
+    [light] = judge.pairs([log, made("quadratic", rho=10.0, rho_p05=10.0, cond_end=900.0)])
+    [below] = judge.pairs([log, made("quadratic", rho=10.0, rho_p05=10.0, cond_end=5.0)])
+    assert "as stiff when it bears nothing" in judge.reason(light) and judge.reason(below).startswith("not explained")
     masked = judge.pairs([made("log", cond_end=1.5, nc_end=1.0), made("cubic")])[0]
     assert "does not make the log's" in judge.reason(masked) and judge.exceptions([masked]) == []
     assert judge.scatter([p.error for p in of if p.row["shape"] == "cubic"]) is None
