@@ -74,7 +74,7 @@ def draw(answers: list[Answer], stem: Path) -> list[Path]:
     if not by_kind:
         return []
     heights = [len(shown) + 1.6 for shown in by_kind.values()]
-    fig, axes = plt.subplots(len(by_kind), 1, figsize=(style.WIDE_IN, 0.5 + 0.25 * sum(heights)), layout="constrained", height_ratios=heights, squeeze=False)
+    fig, axes = plt.subplots(len(by_kind), 1, figsize=(style.WIDE_IN, 0.5 + 0.31 * sum(heights)), layout="constrained", height_ratios=heights, squeeze=False)
     rows = [row for axis, (kind, shown) in zip(axes[:, 0], by_kind.items()) for row in _panel(axis, kind, shown)]
     style.letter_panels(axes[:, 0])
     first = axes[0, 0]

@@ -86,7 +86,7 @@ def sentences(found: Map) -> list[str]:
         made = [p for p in pairs(found.rows) if p.row["limit"] == limit]
         spans.append(f"{TITLES[limit]}: " + ", ".join(f"{title} {min(v):.2g} to {max(v):.2g}" for (_, title), v in zip(METRICS, of) if v)
                      + f", and contact makes the log's largest eigenvalue at step ends in {sum(p.by_log for p in made)} of {len(made)} pairs")
-    return [first, second, f"What of it arrives, over all shapes and targets, over the log's: {'; '.join(spans)}."]
+    return [first, second, f"What of this arrives in iterations, as ratios to the log's, smallest to largest over all shapes and targets: {'; '.join(spans)}."]
 
 
 def _law(found: Map) -> list[str]:

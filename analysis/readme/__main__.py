@@ -14,6 +14,7 @@ from ..program import built_program
 from ..record_file import RecordError
 from ..whole_file import write_whole
 from . import figures
+from .map import gather as gather_map
 from .numbers import FILE, ROOT, RUNS, ReadmeError, gather, read, write
 from .slices import gather as gather_slices
 from .snippets import faults
@@ -23,15 +24,15 @@ PAGES = tuple(PARTS)
 
 
 def kept() -> dict:
-    """The numbers of the demo, and those of the claims' slices. Errors: ReadmeError where either is missing."""
-    return read() | {"slices": gather_slices()}
+    """The numbers of the demo, those of the claims' slices, and the sentences of the gap map. Errors: ReadmeError where one is missing."""
+    return read() | {"slices": gather_slices(), "gap_map": gather_map()}
 
 
 def stale(root: Path, numbers: dict) -> list[str]:
     """Pages whose generated parts are not there, or not what the templates make of the kept numbers."""
     texts = {page: (root / page).read_text() for page in PAGES}
     absent = [line for page, text in texts.items() for line in lacking(text, page)]
-    return absent + [f"{page}: its numbers are not those of results/demo.json and results/claims.json; ./bench readme --fill writes them" for page, text in texts.items() if filled(text, numbers, page) != text]
+    return absent + [f"{page}: its numbers are not those of results/demo.json, claims.json and gap_map.json; ./bench readme --fill writes them" for page, text in texts.items() if filled(text, numbers, page) != text]
 
 
 def write_pages(root: Path, numbers: dict) -> list[str]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 import textwrap
 
+from .map import lines
 from .numbers import ReadmeError
 from .slices import sentence
 
@@ -118,8 +119,9 @@ def result_sentences(numbers: dict) -> list[str]:
     return [line for k, text in enumerate(sentences, 1) for line in textwrap.wrap(f"{k}. {text}", WIDTH, subsequent_indent="   ")]
 
 
-PARTS = {"README.md": ("result", "slices", "drape"), "docs/results.md": ("demo",)}  # page -> its generated parts
-TEMPLATES = {"demo": demo_table, "result": result_sentences, "drape": drape_sentences, "slices": lambda numbers: sentence(numbers["slices"], WIDTH)}
+PARTS = {"README.md": ("result", "slices", "drape", "gap_map"), "docs/results.md": ("demo",)}  # page -> its generated parts
+TEMPLATES = {"demo": demo_table, "result": result_sentences, "drape": drape_sentences, "slices": lambda numbers: sentence(numbers["slices"], WIDTH),
+             "gap_map": lambda numbers: lines(numbers["gap_map"], WIDTH)}
 
 
 def blocks(text: str) -> dict[str, str]:

@@ -10,6 +10,7 @@ from analysis.readme import __main__ as readme
 from analysis.claims.entry import read_sweep
 from analysis.claims.inputs import inputs_of
 from analysis.claims.table import Runs, Table
+from analysis.readme import map as gap_map
 from analysis.readme import numbers, slices, snippets, templates
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -46,7 +47,7 @@ def of_slices(**changed) -> Table:
 
 
 def everything():
-    return kept() | {"slices": slices.gather(of_slices())}
+    return kept() | {"slices": slices.gather(of_slices()), "gap_map": ["With no limit raw 0.01.", "Of 4 cells 3 are decided."]}
 
 
 def test_slices_are_those_of_theta_and_limit():
@@ -224,3 +225,11 @@ def test_the_pages_have_the_numbers_that_are_kept():
     if not numbers.FILE.is_file():
         pytest.skip("results/demo.json is not kept yet: ./bench demo, then ./bench readme --write")
     assert readme.stale(ROOT, readme.kept()) == []
+
+
+def test_the_gap_map_says_how_much_of_it_is_there(tmp_path):
+    found = gap_map.gather()
+    assert len(found) == 4 and found[0].startswith("With no strain limit") and " cells " in found[3] and " unknowns" in found[3]
+    assert all(len(line) <= 100 for line in gap_map.lines(found, 100)) and gap_map.lines(["one"], 100) == ["- one"]
+    with pytest.raises(numbers.ReadmeError, match="gap-map --quick"):
+        gap_map.gather(tmp_path / "none.json")
