@@ -45,10 +45,11 @@ def samples(folder: Path) -> dict[tuple, dict]:
     """The samples of all traces under a folder, by case, step, iteration, matrix, stage and scaling."""
     found = {}
     for trace in sorted(folder.rglob("trace.jsonl")):
+        case = trace.parent.name.rpartition("-")[0] or trace.parent.name  # LABEL-ID, and the id knows the tier
         for line in trace.read_text().splitlines():
             row = json.loads(line)
             for one in row.get("cond", []):
-                found[(trace.parent.name, row["step"], row["iteration"], one["matrix"], one["stage"], one["scaling"])] = one
+                found[(case, row["step"], row["iteration"], one["matrix"], one["stage"], one["scaling"])] = one
     return found
 
 

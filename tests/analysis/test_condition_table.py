@@ -20,7 +20,8 @@ def write(folder, rows):
 
 def test_samples_of_two_tiers_pair_up_by_case_and_iteration(tmp_path):
     for tier, cond in ((2, 100.0), (4, 101.0)):
-        write(tmp_path / f"{tier}" / "log", [{"step": 0, "iteration": k, "cond": [sample(cond + k)]} for k in range(3)])
+        write(tmp_path / f"{tier}" / f"log-{tier}abc", [  # the id of a run knows its tier
+            {"step": 0, "iteration": k, "cond": [sample(cond + k)]} for k in range(3)])
     pairs = table.pair_up("demo", {tier: table.samples(tmp_path / f"{tier}") for tier in (2, 4)})
     assert [(p.spectra["cond"], p.lanczos["cond"]) for p in pairs] == [(100, 101), (101, 102), (102, 103)]
     assert table.difference(pairs[0]) == pytest.approx(1 / 101)
