@@ -19,7 +19,7 @@ from .table import Map
 METRICS = (("cond_p95", "cond, raw"), ("bj_p95", "cond, block Jacobi"), ("pcg", "PCG iterations"), ("newton", "Newton iterations"))
 TITLES = {"on": "limit on", "contact": "limit the same in every run", "off": "no strain limit"}
 SHOWN = ("What a run takes against the gap that its contacts reach: the load-weighted median of d/d_hat at step ends, deeper to the right. A marker is a target theta ({gaps}), geometric mean over {n} scenes "
-         "({scenes}), their resolutions averaged; thin lines: each scene. Markers of the same number along two lines carry the same loads. Hollow: a run of some scene or resolution "
+         "({scenes}), their resolutions averaged, of those whose whole path was run; thin lines: each scene. Markers of the same number along two lines carry the same loads. Hollow: a run of some scene or resolution "
          "reached no gap, and the mean is of the others. A line ends at the gap of its last target: nothing was reached to the right of it. All numbers are over those of the log at its first target in the same place. Dotted, in the first row, where "
          "the limit does not follow theta: the area law, C rho(u) but not below 1, with one C in a panel, from the deepest point of the log. cond: 95th percentile over iterations in contact; PCG: median of block-Jacobi PCG to 1e-6 on one right-hand side. {modes}")
 LAW = ("The area law against what was measured. A point is a run beside that of the log in the same scene, resolution, limit mode and theta, so under the same loads. Up: the ratio of cond at step ends (median "

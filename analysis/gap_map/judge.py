@@ -77,10 +77,13 @@ class Step:
 
 
 def steps(rows: list[dict], limit: str, shape: str, metric: str, over) -> list[Step]:
-    """Target by target, falling; over(row) is what the metric is divided by, None where that is not known. Only scenes in which a run ended well count."""
+    """Target by target, falling; over(row) is what the metric is divided by, None where that is not known. Only places whose whole path was run count, so that
+    every target is of the same ones, and of these only runs that ended well."""
     found, scenes = [], list(dict.fromkeys(p[0] for p in places(rows, limit)))
-    there = [r for r in rows if r["limit"] == limit and r["shape"] == shape and r["outcome"] != NOT_RUN]
-    mine = [r for r in rows if r["limit"] == limit and r["shape"] == shape and r["outcome"] == "ok" and r["gap"] and r[metric] and over(r)]
+    of_shape = [r for r in rows if r["limit"] == limit and r["shape"] == shape]
+    part = {(r["scene"], r["resolution"]) for r in of_shape if r["outcome"] == NOT_RUN}
+    there = [r for r in of_shape if (r["scene"], r["resolution"]) not in part]
+    mine = [r for r in there if r["outcome"] == "ok" and r["gap"] and r[metric] and over(r)]
     for theta in sorted({r["theta"] for r in mine}, reverse=True):
         of = {}
         for scene in scenes:

@@ -100,6 +100,13 @@ def test_the_steps_of_a_line_leave_failed_scenes_out_and_say_so():
     assert shallow.whole
 
 
+def test_a_line_is_of_places_whose_whole_path_was_run():
+    whole = [made("log", theta, theta, "a", pcg=20.0) for theta in (0.5, 0.1)]
+    part = [made("log", 0.5, 0.5, "b", pcg=80.0), made("log", 0.1, None, "b", outcome="not run")]
+    assert [list(s.scenes) for s in judge.steps([*whole, *part], "off", "log", "pcg", lambda r: 1.0)] == [["a"], ["a"]]
+    assert [list(s.scenes) for s in judge.steps([*whole, part[0], made("log", 0.1, 0.1, "b", pcg=80.0)], "off", "log", "pcg", lambda r: 1.0)] == [["a", "b"], ["a", "b"]]
+
+
 def test_the_law_is_the_ratio_of_rho_and_its_floor_what_is_left_without_contact():
     log = made("log", rho=100.0, cond_end=1000.0, nc_end=10.0)
     [both] = judge.pairs([log, made("cubic", rho=5.0, cond_end=60.0, nc_end=10.0)])
