@@ -267,7 +267,9 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   record.status.ended_utc = utc_now();
   record.summary.peak_rss_bytes = peak_rss_bytes();
   const bool device_stopped = can_lose_device(config) && stops_device(record.status.outcome);
-  if (const std::string why = resumed ? "" : why_earlier_stays(record, options); !why.empty()) {
+  // A resumed run that has made a step of its pass is beyond what is kept; one that was stopped before has nothing yet.
+  const bool beyond = resumed && !record.steps.empty();
+  if (const std::string why = beyond ? "" : why_earlier_stays(record, options); !why.empty()) {
     const std::string told = checkpoint.exists() ? why + "; " + goes_on_text(checkpoint) : why;
     if (device_stopped) throw DeviceStopped(record.status.outcome, record.status.detail + "\n" + told);
     throw EarlierStays(told);

@@ -74,8 +74,8 @@ def test_every_status_of_the_corpus(replayed, name):
             assert status in (allowed if isinstance(allowed, list) else [allowed]), (part, which)
 
 
-# Eigenvalues lie dense at one end: tiers 2 and 4 stop at what they promise, 1e-3; measured 1.4e-5 and 4.7e-6.
-LOOSE = {("indefinite_clamped", "none"): 1e-3, ("tikhonov_literal", "none"): 1e-5}
+# Eigenvalues lie dense at one end: tiers 2 and 4 stop at what they promise, 1e-3; measured 1.5e-4, 1.4e-5 and 4.7e-6.
+LOOSE = {("contact_log_small_gap", "none"): 1e-3, ("contact_log_small_gap", "block_jacobi"): 1e-3, ("indefinite_clamped", "none"): 1e-3, ("tikhonov_literal", "none"): 1e-5}
 
 
 @pytest.mark.parametrize("name", NAMES)
