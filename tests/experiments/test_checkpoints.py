@@ -209,6 +209,7 @@ def test_a_checkpoint_does_not_grow_with_the_steps(program, tmp_path):
                 time.sleep(0.002)
             process.kill()
             process.communicate()
-        sizes[steps] = (log.stat().st_size, (folder / "checkpoint.next.bin").stat().st_size)
+        # one of the two may have been half written when it was killed
+        sizes[steps] = (log.stat().st_size, max(file.stat().st_size for file in folder.glob("checkpoint*.bin")))
     assert sizes[400][0] > 3 * sizes[40][0]  # what is written before the first step is part of the first
     assert abs(sizes[400][1] - sizes[40][1]) < 200, sizes
