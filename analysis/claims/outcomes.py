@@ -10,12 +10,12 @@ from .cells import complete, needed, starts_text
 from .entry import ClaimError
 from .estimate import of_scenes, sign_test, wilson
 from .numbers import by_place
+from .parts import MOST
 from .success import COMMON, COMMON_WORDS, RESIDUAL, ROUNDING, TIME, failures
 from .table import Runs
 from .verdict import HOLDS, NOT, ONLY_IF, SCENES, Judged, undecided
 
 LEVEL = 0.05
-MOST = "residual_at_most"  # of a part: a larger residual at a step end, in tolerances, is a failure
 
 
 def _failures(row: dict, bad: str | None, residual: float | None = None) -> list[str]:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from .entry import ClaimError, Sweep
 
+MOST = "residual_at_most"  # of a part: a larger residual at a step end, in tolerances, is a failure
 THRESHOLDS = ("above", "below", "within", "beyond")
 OF_A_PROOF = ("left", "right", "u", "shape", "argument", "loads", "mass_term", "changes")
-OF_A_RULE = ("says", "rule", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", "residual_at_most", "every", "starts", "reason", "confirm", "limit", "theta",
+OF_A_RULE = ("says", "rule", "sweep", "metric", "case", "over", "counts", "scenes", "equal", "beside", "needs", "bad", MOST, "every", "starts", "reason", "confirm", "limit", "theta",
              *THRESHOLDS)
 KEYS = ("proof", *OF_A_RULE, *OF_A_PROOF)
 

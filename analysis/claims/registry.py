@@ -48,24 +48,25 @@ def sha_of(value) -> str:
     return hashlib.sha256(json.dumps(value, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
 
 
+def _bare(code) -> str:
+    """Source of a function or module without comments and docstrings."""
+    tree = ast.parse(textwrap.dedent(inspect.getsource(code)))
+    for node in ast.walk(tree):
+        if isinstance(node, (ast.Module, ast.FunctionDef)) and ast.get_docstring(node):
+            node.body = node.body[1:] or [ast.Pass()]
+    return ast.unparse(tree)
+
+
 def read_as(name: str) -> str:
     """Hash of how a metric is read from a record: its meaning, its unit and its code without comments; what that calls is not in it."""
     meaning, unit, _, reader = METRICS[name]
-    tree = ast.parse(textwrap.dedent(inspect.getsource(reader)))
-    for node in ast.walk(tree):
-        if isinstance(node, ast.FunctionDef) and ast.get_docstring(node):
-            node.body = node.body[1:] or [ast.Pass()]
     bound = [cell.cell_contents for cell in reader.__closure__ or ()]
-    return sha_of([meaning, unit, ast.unparse(tree), [x for x in bound if isinstance(x, (str, tuple))]])[:16]
+    return sha_of([meaning, unit, _bare(reader), [x for x in bound if isinstance(x, (str, tuple))]])[:16]
 
 
 def code_of(module) -> str:
     """Hash of a module's code without comments and docstrings."""
-    tree = ast.parse(inspect.getsource(module))
-    for node in ast.walk(tree):
-        if isinstance(node, (ast.Module, ast.FunctionDef)) and ast.get_docstring(node):
-            node.body = node.body[1:] or [ast.Pass()]
-    return sha_of(ast.unparse(tree))[:16]
+    return sha_of(_bare(module))[:16]
 
 
 def rule_of(claim: Claim) -> dict:

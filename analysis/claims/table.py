@@ -18,6 +18,7 @@ from .entry import ROOT, Claim, ClaimError, Sweep
 from .inputs import asked, contradiction, inputs_of
 from .merged import base_path
 from .metrics import FOLDER, METRICS
+from .parts import MOST
 from .success import RESIDUAL, read_for
 
 FILE = ROOT / "results" / "claims.json"
@@ -66,7 +67,7 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
     """Sweep -> metrics that some part reads."""
     used: dict[str, set] = {}
     for part in (part for claim in claims for part in claim.parts if "sweep" in part):
-        names = {part.get("metric"), *read_for(part.get("bad")), (part.get("equal") or {}).get("metric"), RESIDUAL if "residual_at_most" in part else None} - {None}
+        names = {part.get("metric"), *read_for(part.get("bad")), (part.get("equal") or {}).get("metric"), RESIDUAL if MOST in part else None} - {None}
         if unknown := names - set(METRICS):
             raise ClaimError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
         for sweep in (part["sweep"], *((part["confirm"]["sweep"],) if "confirm" in part else ())):

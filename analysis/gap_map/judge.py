@@ -217,7 +217,7 @@ def reason(pair: Pair) -> str:
     if abs(math.log(pair.measured / max(pair.predicted_p05, pair.floor))) <= math.log(FAR):
         return f"loads rest at very different gaps: with rho where the deepest 5% of the load begins, {pair.predicted_p05:.3g} is predicted"
     if pair.row["shape"] in STIFF_AT_FIRST_TOUCH and pair.measured > pair.floored:
-        return (f"stiffer than predicted: a `{pair.row['shape']}` contact is as stiff when it bears nothing as at its load, so that those beside it, which the median load does not "
+        return (f"stiffer than predicted, and not explained by these numbers; a reason it can have: a `{pair.row['shape']}` contact is as stiff when it bears nothing as at its load, so that those beside it, which the median load does not "
                 "count, add up in one place")
     return "not explained by these numbers"
 
