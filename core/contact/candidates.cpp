@@ -15,7 +15,7 @@ namespace bb {
 namespace {
 /// Median of x1 - x0 over all points, a coordinate at a time: the frame in which the boxes are shortest. 0
 /// where that is not finite. `moved`: a buffer.
-Vec3d common_motion(const Primitives<1>& points, const Positions& x0, const Positions& x1,
+Vec3d common_motion(const Primitives<1>& points, const PositionsView& x0, const PositionsView& x1,
                     std::vector<double>& moved) {
   Vec3d out = Vec3d::Zero();
   if (points.size() == 0) return out;
@@ -44,7 +44,7 @@ BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<doubl
 }
 
 /// Sampled coordinates at the start, sorted; those that are no numbers are left out.
-FoldedFrame BroadPhase::folded(const Positions& x0) {
+FoldedFrame BroadPhase::folded(const PositionsView& x0) {
   const auto n = static_cast<long long>(surface_.points.size());
   for (int c = 0; c < 3; ++c) {
     std::vector<double>& sample = sample_[c];
@@ -62,13 +62,13 @@ FoldedFrame BroadPhase::folded(const Positions& x0) {
                       values_in_float(precision_) ? never : surface_.element_size);
 }
 
-BroadPhase::Frame BroadPhase::frame(const Positions& x0, const Positions& x1) {
+BroadPhase::Frame BroadPhase::frame(const PositionsView& x0, const PositionsView& x1) {
   Frame out{folded(x0), Vec3d::Zero()};
   if (x0.data() != x1.data()) out.moved = common_motion(surface_.points, x0, x1, moved_);
   return out;
 }
 
-void BroadPhase::fit_vertices(const Positions& x0, const Positions& x1, const Frame& frame) {
+void BroadPhase::fit_vertices(const PositionsView& x0, const PositionsView& x1, const Frame& frame) {
   const std::size_t n = static_cast<std::size_t>(x0.cols());
   vertices_.resize(n);
   const auto place = [&](const Vec3d& x) {
@@ -118,12 +118,12 @@ void BroadPhase::fit_edges() {
 }
 
 /// Of any distance on the motion, m; 0 in double, where nothing is asked of the states.
-double BroadPhase::state_rounding(const Positions& x0, const Positions& x1) const {
+double BroadPhase::state_rounding(const PositionsView& x0, const PositionsView& x1) const {
   if (!values_in_float(precision_) || x0.size() == 0) return 0;
   return distance_rounding(precision_, std::max(x0.cwiseAbs().maxCoeff(), x1.cwiseAbs().maxCoeff()));
 }
 
-void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& out) {
+void BroadPhase::update(const PositionsView& x0, const PositionsView& x1, Candidates& out) {
   const Surface& s = surface_;
   if (plan_.broad_phase.needed) {
     // Which pairs come close depends on relative motion alone: what most points share, a fall say, would only
@@ -171,7 +171,7 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
 
 /// Every primitive is asked about every obstacle that it makes pairs with.
 template <int N>
-void BroadPhase::update_obstacles(const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
+void BroadPhase::update_obstacles(const Primitives<N>& primitives, const PositionsView& x0, const PositionsView& x1,
                                   std::vector<IndexPair>& out) {
   out.clear();
   if (!plan_.obstacles.needed) return;

@@ -39,7 +39,7 @@ class BroadPhase {
   bool active() const { return plan_.any(); }
   /// All pairs with a free vertex, not adjacent, that may come within d_hat + offset on x0 -> x1, and more.
   /// All vertices move together: a state is (1 - t) x0 + t x1 with one t.
-  void update(const Positions& x0, const Positions& x1, Candidates& out);
+  void update(const PositionsView& x0, const PositionsView& x1, Candidates& out);
 
  private:
   struct Tree {
@@ -52,15 +52,15 @@ class BroadPhase {
     FoldedFrame folded;
     Vec3d moved;
   };
-  Frame frame(const Positions& x0, const Positions& x1);
-  FoldedFrame folded(const Positions& x0);
-  double state_rounding(const Positions& x0, const Positions& x1) const;
-  void fit_vertices(const Positions& x0, const Positions& x1, const Frame& frame);
+  Frame frame(const PositionsView& x0, const PositionsView& x1);
+  FoldedFrame folded(const PositionsView& x0);
+  double state_rounding(const PositionsView& x0, const PositionsView& x1) const;
+  void fit_vertices(const PositionsView& x0, const PositionsView& x1, const Frame& frame);
   template <int N>
   void fit(Tree& tree, const Primitives<N>& primitives) const;
   void fit_edges();
   template <int N>
-  void update_obstacles(const Primitives<N>& primitives, const Positions& x0, const Positions& x1,
+  void update_obstacles(const Primitives<N>& primitives, const PositionsView& x0, const PositionsView& x1,
                         std::vector<IndexPair>& out);
 
   const Surface& surface_;

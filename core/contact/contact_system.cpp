@@ -49,12 +49,12 @@ ContactSystem::~ContactSystem() = default;
 
 bool ContactSystem::active() const { return data_->broad_phase.active(); }
 
-void ContactSystem::update_candidates(const Positions& x0, const Positions& x1) {
+void ContactSystem::update_candidates(const PositionsView& x0, const PositionsView& x1) {
   data_->near_asked = {};
   if (active()) data_->broad_phase.update(x0, x1, data_->candidates);
 }
 
-void ContactSystem::update_candidates_to_bound(const Positions& x0, const Positions& x1) {
+void ContactSystem::update_candidates_to_bound(const PositionsView& x0, const PositionsView& x1) {
   if (!active()) return;
   Data& data = *data_;
   if (!(x0.allFinite() && x1.allFinite())) return update_candidates(x0, x1);
@@ -68,11 +68,11 @@ void ContactSystem::update_candidates_to_bound(const Positions& x0, const Positi
   data.broad_phase.update(x0, data.stop, data.candidates);
 }
 
-double ContactSystem::find_rows(const Positions& x, ContactTable& rows, MollifiedTable& mollified) const {
+double ContactSystem::find_rows(const PositionsView& x, ContactTable& rows, MollifiedTable& mollified) const {
   return data_->builder.build(x, data_->candidates, rows, mollified);
 }
 
-StepBound ContactSystem::step_bound(const Positions& x0, const Positions& x1) const {
+StepBound ContactSystem::step_bound(const PositionsView& x0, const PositionsView& x1) const {
   if (!(x0.allFinite() && x1.allFinite())) {
     StepBound stop;
     stop.alpha = 0;
@@ -90,7 +90,7 @@ ContactSystem::Counts ContactSystem::candidate_counts() const {
           c.obstacle.size() + c.obstacle_edge.size() + c.obstacle_triangle.size()};
 }
 
-std::optional<Overlap> ContactSystem::check_initial(const Positions& x) {
+std::optional<Overlap> ContactSystem::check_initial(const PositionsView& x) {
   update_candidates(x, x);
   const Data& data = *data_;
   std::optional<Overlap> found = first_overlap(data.surface, data.obstacles, data.candidates, x);

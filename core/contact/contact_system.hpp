@@ -49,22 +49,22 @@ class ContactSystem {
 
   /// Candidate pairs of every state (1 - t) x0 + t x1, one t in [0, 1] for all vertices, boxes inflated by
   /// d_hat and offset. [3 x n] m. Both find_rows and step_bound use them until the next call.
-  void update_candidates(const Positions& x0, const Positions& x1);
+  void update_candidates(const PositionsView& x0, const PositionsView& x1);
 
   /// The same for states up to the step bound of the motion alone, which step_bound and find_rows need no more
   /// than: pairs of the last rows are asked first, and boxes end where the earliest of them stops the motion.
   /// Which candidates there are depends on those rows; alpha and rows do not. Motions finite.
-  void update_candidates_to_bound(const Positions& x0, const Positions& x1);
+  void update_candidates_to_bound(const PositionsView& x0, const PositionsView& x1);
 
   /// Rows with d < d_hat_row at x, merged with multiplicity, sorted; kappa, b, db, d2b are left at 0.
   /// Requires x to be such a state of the last update_candidates. Returns the smallest gap over all
   /// rows (infinity without rows); a value <= 0 means that x is not feasible. x that is not finite: no
   /// rows and -infinity.
-  double find_rows(const Positions& x, ContactTable& rows, MollifiedTable& mollified) const;
+  double find_rows(const PositionsView& x, ContactTable& rows, MollifiedTable& mollified) const;
 
   /// All non-adjacent pairs, whatever rule keeps them from having a row. A motion that is not
   /// finite: alpha 0.
-  StepBound step_bound(const Positions& x0, const Positions& x1) const;
+  StepBound step_bound(const PositionsView& x0, const PositionsView& x1) const;
 
   struct Counts {  // obstacle: with points, edges and triangles
     std::size_t point_triangle = 0, edge_edge = 0, point_point = 0, point_edge = 0, obstacle = 0;
@@ -73,7 +73,7 @@ class ContactSystem {
 
   /// The first pair of the scene that overlaps at x, named; none when x is a valid start. Replaces the
   /// candidates.
-  std::optional<Overlap> check_initial(const Positions& x);
+  std::optional<Overlap> check_initial(const PositionsView& x);
 
  private:
   struct Data;

@@ -39,21 +39,21 @@ Vec<T, 3> axis_of(const MollifiedTable& rows, std::size_t r) {
 
 /// Points across the axis of a row of an edge and an axis.
 template <class T>
-Mat<T, 3, 3> points_across_axis(const MollifiedTable& rows, std::size_t r, const Positions& x) {
+Mat<T, 3, 3> points_across_axis(const MollifiedTable& rows, std::size_t r, const PositionsView& x) {
   const AnalyticSurface<T> line{ObstacleKind::cylinder, Vec3d::Map(&rows.axis_point[3 * r]).cast<T>(),
                                 axis_of<T>(rows, r), T(0), false};
   return about_centre<2, T>(line, gather_in<T>(x, std::array{rows.stencil[4 * r], rows.stencil[4 * r + 1]}));
 }
 
 template <class T>
-Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const Positions& x) {
+Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const PositionsView& x) {
   return gather_in<T>(x, std::array{rows.stencil[4 * r], rows.stencil[4 * r + 1], rows.stencil[4 * r + 2],
                                     rows.stencil[4 * r + 3]});
 }
 
 /// Of m kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
 template <class T>
-MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r, const Positions& x) {
+MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r, const PositionsView& x) {
   const T scale = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r), eps = entry<T>(rows.eps, r);
   const T b = scale * entry<T>(rows.b, r), db = scale * entry<T>(rows.db, r),
           d2b = scale * entry<T>(rows.d2b, r);
@@ -66,7 +66,7 @@ MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::s
 
 /// grad and hess on the compact free slots.
 template <class T>
-void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positions& x, Projection projection,
+void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const PositionsView& x, Projection projection,
                          PassParts parts, double* grad, double* hess) {
   const auto [g, full] = mollified_derivatives<T>(rows, r, x);
   if (parts.hessians) {
@@ -85,7 +85,7 @@ void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const Positi
 
 }  // namespace
 
-void mollified_terms(const MollifiedTable& rows, const Positions& x, Projection projection,
+void mollified_terms(const MollifiedTable& rows, const PositionsView& x, Projection projection,
                      std::vector<double>& grad, std::vector<double>& hess, Precision precision) {
   grad.resize(12 * rows.size());
   hess.resize(row_hessian_numbers * rows.size());
@@ -96,7 +96,7 @@ void mollified_terms(const MollifiedTable& rows, const Positions& x, Projection 
   });
 }
 
-void add_given_motion(const ContactTable& rows, const Positions& motion, Positions& force) {
+void add_given_motion(const ContactTable& rows, const PositionsView& motion, PositionsSpan force) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
     double closing = 0;
@@ -112,8 +112,8 @@ void add_given_motion(const ContactTable& rows, const Positions& motion, Positio
   }
 }
 
-void add_given_motion(const MollifiedTable& rows, const Positions& x, const Positions& motion,
-                      Positions& force) {
+void add_given_motion(const MollifiedTable& rows, const PositionsView& x, const PositionsView& motion,
+                      PositionsSpan force) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     Vec<double, 12> moved = Vec<double, 12>::Zero();
     for (int k = 0; k < (rows.of_axis(r) ? 2 : 4); ++k) {
@@ -137,7 +137,7 @@ void contact_energies(const ContactTable& rows, std::vector<double>& energy, Pre
   });
 }
 
-void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy,
+void mollified_energies(const MollifiedTable& rows, const PositionsView& x, std::vector<double>& energy,
                         Precision precision) {
   energy.resize(rows.size());
   with_value_scalar(precision, [&]<class T>() {

@@ -27,28 +27,28 @@ constexpr bool is_numeric(HessianMode mode) { return mode >= HessianMode::projec
 /// w_j n n^T, plus m kappa b' grad^2 d in the other modes. The block of a row's free points is projected;
 /// without grad^2 d it is positive semi-definite as it is. x: [3 x n]. precision: the scalars of either. Resizes the outputs, no other
 /// allocation.
-void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, Projection projection,
+void contact_terms(const ContactTable& rows, const PositionsView& x, HessianMode mode, Projection projection,
                    std::vector<double>& grad, std::vector<double>& hess,
                    Precision precision = Precision::full);
-void mollified_terms(const MollifiedTable& rows, const Positions& x, Projection projection,
+void mollified_terms(const MollifiedTable& rows, const PositionsView& x, Projection projection,
                      std::vector<double>& grad, std::vector<double>& hess,
                      Precision precision = Precision::full);
 /// Adds to the free columns of `force` [3 x n] (N) how the gradient of B at x changes, to first order, when
 /// its given vertices move by `motion` [3 x n] (m, 0 at free vertices): they have no block in the matrix.
 /// Rows of both tables count; a ContactTable's by m kappa b'' w_i w_j n n^T in either Hessian mode, a
 /// mollified row's by its whole Hessian. From kappa, b', b'' in the tables. Cost O(rows).
-void add_given_motion(const ContactTable& rows, const Positions& motion, Positions& force);
-void add_given_motion(const MollifiedTable& rows, const Positions& x, const Positions& motion,
-                      Positions& force);
+void add_given_motion(const ContactTable& rows, const PositionsView& motion, PositionsSpan force);
+void add_given_motion(const MollifiedTable& rows, const PositionsView& x, const PositionsView& motion,
+                      PositionsSpan force);
 /// Adds to `force` [3 x n] (N) m kappa b'' w_i n times what the gap of every row misses (gap_along.hpp) along dx
 /// [3 x n] (m, 0 at given vertices): with it on the right-hand side of Newton's system the gaps at x + dx are those
 /// that their slopes say. Rows without mollifier alone. Returns when they hold dx. From kappa and b'' in the table, in
 /// double. Cost O(rows).
-HoldTimes add_detour(const ContactTable& rows, const Positions& x, const Positions& dx, Positions& force);
+HoldTimes add_detour(const ContactTable& rows, const PositionsView& x, const PositionsView& dx, PositionsSpan force);
 /// Energies m kappa b (and m kappa e b) of every row, J.
 void contact_energies(const ContactTable& rows, std::vector<double>& energy,
                       Precision precision = Precision::full);
-void mollified_energies(const MollifiedTable& rows, const Positions& x, std::vector<double>& energy,
+void mollified_energies(const MollifiedTable& rows, const PositionsView& x, std::vector<double>& energy,
                         Precision precision = Precision::full);
 
 }  // namespace bb

@@ -51,7 +51,7 @@ FarTest::FarTest(const Surface& surface, Precision precision)
       edges_(corners(surface.edges)),
       triangles_(corners(surface.triangles)) {}
 
-void FarTest::set_state(const Positions& x) {
+void FarTest::set_state(const PositionsView& x) {
   x_.resize(static_cast<std::size_t>(x.cols()));
   for_each_chunk(x_.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {

@@ -21,7 +21,7 @@ class FarTest {
   /// precision: that in which distances are evaluated.
   explicit FarTest(const Surface& surface, Precision precision = Precision::full);
   /// [3 x n] m, finite.
-  void set_state(const Positions& x);
+  void set_state(const PositionsView& x);
   /// Those of n <= 8 pairs of kind K that are proven farther apart than the d_hat and offset of their two sides,
   /// however their distance is rounded.
   template <PairKind K>

@@ -20,7 +20,7 @@ struct alignas(64) MotionBox {
 
 /// Box of the points that `corners` numbers, every one of them surrounded by `reach` (m).
 template <class Corners>
-MotionBox motion_box(const Corners& corners, double reach, const Positions& x0, const Positions& x1) {
+MotionBox motion_box(const Corners& corners, double reach, const PositionsView& x0, const PositionsView& x1) {
   constexpr double inf = std::numeric_limits<double>::infinity();
   Vec3d lo = Vec3d::Constant(inf), hi = -lo, slowest = lo, fastest = hi;
   for (const int v : corners) {

@@ -11,7 +11,7 @@ namespace bb {
 namespace {
 
 template <PairKind K>
-std::optional<Overlap> pair_overlap(const Surface& surface, const Positions& x, IndexPair index) {
+std::optional<Overlap> pair_overlap(const Surface& surface, const PositionsView& x, IndexPair index) {
   const ContactPair<K> pair = contact_pair<K>(surface, index);
   const auto points = gather(x, pair.vertex);
   if (farther_than<K>(points, pair.law.offset)) return std::nullopt;
@@ -22,7 +22,7 @@ std::optional<Overlap> pair_overlap(const Surface& surface, const Positions& x, 
 
 template <int N>
 std::optional<Overlap> obstacle_overlap(const Primitives<N>& primitives,
-                                        const AnalyticSurface<double>& obstacle, const Positions& x,
+                                        const AnalyticSurface<double>& obstacle, const PositionsView& x,
                                         IndexPair index) {
   const std::size_t i = static_cast<std::size_t>(index.first);
   const auto& vertex = primitives.vertices[i];
@@ -54,7 +54,7 @@ bool holds_axis(const AnalyticSurface<double>& obstacle, const Vec3d& axis, cons
 /// Triangles that a cylinder, or in the plane a disk, pierces between their sides.
 std::optional<Overlap> first_pierced(const Surface& surface,
                                      const std::vector<AnalyticSurface<double>>& obstacles,
-                                     const Positions& x) {
+                                     const PositionsView& x) {
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
     const AnalyticSurface<double>& obstacle = obstacles[o];
     const bool line = is_line(obstacle, surface.planar);
@@ -73,7 +73,7 @@ std::optional<Overlap> first_pierced(const Surface& surface,
 
 std::optional<Overlap> first_overlap(const Surface& surface,
                                      const std::vector<AnalyticSurface<double>>& obstacles,
-                                     const Candidates& candidates, const Positions& x) {
+                                     const Candidates& candidates, const PositionsView& x) {
   std::optional<Overlap> first;
   const auto scan = [&](const std::vector<IndexPair>& pairs, const auto& test) {
     over_chunks<std::optional<Overlap>>(

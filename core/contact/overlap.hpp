@@ -22,6 +22,6 @@ struct Overlap {
 /// pierces without touching is the audit's to find.
 std::optional<Overlap> first_overlap(const Surface& surface,
                                      const std::vector<AnalyticSurface<double>>& obstacles,
-                                     const Candidates& candidates, const Positions& x);
+                                     const Candidates& candidates, const PositionsView& x);
 
 }  // namespace bb

@@ -38,7 +38,7 @@ ContactPair<K> contact_pair(const Surface& s, IndexPair pair) {
 }
 
 template <std::size_t N>
-Mat<double, 3, static_cast<int>(N)> gather(const Positions& x, const std::array<int, N>& vertex) {
+Mat<double, 3, static_cast<int>(N)> gather(const PositionsView& x, const std::array<int, N>& vertex) {
   Mat<double, 3, static_cast<int>(N)> out;
   for (std::size_t k = 0; k < N; ++k) out.col(static_cast<int>(k)) = x.col(vertex[k]);
   return out;
@@ -46,7 +46,7 @@ Mat<double, 3, static_cast<int>(N)> gather(const Positions& x, const std::array<
 
 /// The same in the scalar T.
 template <class T, std::size_t N>
-Mat<T, 3, static_cast<int>(N)> gather_in(const Positions& x, const std::array<int, N>& vertex) {
+Mat<T, 3, static_cast<int>(N)> gather_in(const PositionsView& x, const std::array<int, N>& vertex) {
   return gather(x, vertex).template cast<T>();
 }
 

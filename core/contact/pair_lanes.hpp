@@ -17,7 +17,7 @@ using Lanes8 = Lanes<float, 8>;
 constexpr std::size_t n_lanes = 4;
 
 template <PairKind K>
-PairLanes<K, Lanes4> gather_lanes(const std::array<ContactPair<K>, n_lanes>& pairs, const Positions& x) {
+PairLanes<K, Lanes4> gather_lanes(const std::array<ContactPair<K>, n_lanes>& pairs, const PositionsView& x) {
   const auto coordinates = [&](std::size_t k, Lanes4(&out)[3]) {
     const double* const p[n_lanes] = {x.col(pairs[0].vertex[k]).data(), x.col(pairs[1].vertex[k]).data(),
                                       x.col(pairs[2].vertex[k]).data(), x.col(pairs[3].vertex[k]).data()};

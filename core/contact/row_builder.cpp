@@ -34,7 +34,7 @@ bool RowBuilder::moves(const ContactRow& row) const {
 }
 
 template <PairKind K, class T>
-void RowBuilder::add_pairs(const Positions& x, const std::vector<IndexPair>& pairs, std::size_t begin,
+void RowBuilder::add_pairs(const PositionsView& x, const std::vector<IndexPair>& pairs, std::size_t begin,
                            std::size_t end, Part& part) const {
   constexpr std::size_t width = FarTest::width, ahead = 3 * width;
   for (; begin < end; begin += width) {
@@ -51,7 +51,7 @@ void RowBuilder::add_pairs(const Positions& x, const std::vector<IndexPair>& pai
 }
 
 template <PairKind K, class T>
-void RowBuilder::add_pair(const Positions& x, IndexPair index, ContactPair<K> pair, Part& part) const {
+void RowBuilder::add_pair(const PositionsView& x, IndexPair index, ContactPair<K> pair, Part& part) const {
   const auto points = gather_in<T>(x, pair.vertex);
   const auto closest = closest_points<K, T>(points);
   const T gap = closest.d - static_cast<T>(pair.law.offset);
@@ -83,7 +83,7 @@ void RowBuilder::add_pair(const Positions& x, IndexPair index, ContactPair<K> pa
 }
 
 template <class T>
-void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) const {
+void RowBuilder::add_obstacle(const PositionsView& x, IndexPair pair, Part& part) const {
   const std::size_t i = static_cast<std::size_t>(pair.first);
   const int v = surface_.points.vertices[i][0];
   const auto obstacle = surface_in<T>(obstacles_[static_cast<std::size_t>(pair.second)]);
@@ -108,7 +108,7 @@ void RowBuilder::add_obstacle(const Positions& x, IndexPair pair, Part& part) co
 }
 
 template <int N, class T>
-void RowBuilder::add_obstacle_pair(const Positions& x, const Primitives<N>& primitives, IndexPair pair,
+void RowBuilder::add_obstacle_pair(const PositionsView& x, const Primitives<N>& primitives, IndexPair pair,
                                    Part& part) const {
   const std::size_t i = static_cast<std::size_t>(pair.first);
   const auto& vertex = primitives.vertices[i];
@@ -158,7 +158,7 @@ void RowBuilder::add_obstacle_pair(const Positions& x, const Primitives<N>& prim
   }
 }
 
-double RowBuilder::build(const Positions& x, const Candidates& candidates, ContactTable& rows,
+double RowBuilder::build(const PositionsView& x, const Candidates& candidates, ContactTable& rows,
                          MollifiedTable& mollified) {
   if (!x.allFinite()) {  // boxes and comparisons mean nothing then
     rows.resize(0);

@@ -27,7 +27,7 @@ class RowBuilder {
         far_(surface, precision) {}
 
   /// See ContactSystem::find_rows.
-  double build(const Positions& x, const Candidates& candidates, ContactTable& rows,
+  double build(const PositionsView& x, const Candidates& candidates, ContactTable& rows,
                MollifiedTable& mollified);
 
   /// The candidates that had a row in the last build, sorted; no obstacles.
@@ -52,15 +52,15 @@ class RowBuilder {
   };
   /// The pairs [begin, end): what is proven to be far is done with.
   template <PairKind K, class T>
-  void add_pairs(const Positions& x, const std::vector<IndexPair>& pairs, std::size_t begin, std::size_t end,
+  void add_pairs(const PositionsView& x, const std::vector<IndexPair>& pairs, std::size_t begin, std::size_t end,
                  Part& part) const;
   template <PairKind K, class T>
-  void add_pair(const Positions& x, IndexPair index, ContactPair<K> pair, Part& part) const;
+  void add_pair(const PositionsView& x, IndexPair index, ContactPair<K> pair, Part& part) const;
   template <class T>
-  void add_obstacle(const Positions& x, IndexPair pair, Part& part) const;
+  void add_obstacle(const PositionsView& x, IndexPair pair, Part& part) const;
   /// Of an edge (N = 2) or a triangle outside a sphere or cylinder.
   template <int N, class T>
-  void add_obstacle_pair(const Positions& x, const Primitives<N>& primitives, IndexPair pair,
+  void add_obstacle_pair(const PositionsView& x, const Primitives<N>& primitives, IndexPair pair,
                          Part& part) const;
   bool moves(const ContactRow& row) const;
   int compact_free(const ContactRow& row, int* vertex, double* weight) const;

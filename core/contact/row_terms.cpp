@@ -80,7 +80,7 @@ void store_fixed_points(const ContactTable& rows, std::size_t r, Projection proj
 
 /// The local frame of an obstacle and an edge (N = 2) or a triangle: that of a point with it, across a cylinder's axis.
 template <int N, class T>
-RowShape<T, N - 1> obstacle_shape(const ContactTable& rows, std::size_t r, const Positions& x) {
+RowShape<T, N - 1> obstacle_shape(const ContactTable& rows, std::size_t r, const PositionsView& x) {
   const Vec<T, 3> axis = Vec3d::Map(&rows.flat[3 * r]).template cast<T>();
   std::array<int, N> vertex;
   std::copy_n(&rows.stencil[4 * r], N, vertex.begin());
@@ -106,7 +106,7 @@ RowShape<T, N - 1> obstacle_shape(const ContactTable& rows, std::size_t r, const
 /// The local frame of a row; the closest points are those that the row keeps.
 template <PairKind K, class T>
 RowShape<T, n_sliding(contact_kind<K>())> row_shape(const ContactTable& rows, std::size_t r,
-                                                    const Positions& x, Region interior) {
+                                                    const PositionsView& x, Region interior) {
   constexpr int n = pair_points(K), F = n_sliding(contact_kind<K>());
   std::array<int, n> vertex;
   Closest<T, n> closest;
@@ -137,7 +137,7 @@ RowShape<T, n_sliding(contact_kind<K>())> row_shape(const ContactTable& rows, st
 }
 
 template <int F, class T>
-RowShape<T, F> row_shape(const ContactTable& rows, std::size_t r, const Positions& x) {
+RowShape<T, F> row_shape(const ContactTable& rows, std::size_t r, const PositionsView& x) {
   if (is_obstacle(rows.kind[r])) return obstacle_shape<F + 1, T>(rows, r, x);
   if constexpr (F == 1) {
     return row_shape<PairKind::point_edge, T>(rows, r, x, Region::p_e);
@@ -171,7 +171,7 @@ void set_lane(RowShape<FourOf<T>, F>& lanes, std::size_t lane, const RowShape<T,
 /// Rows of one number of sliding edges, four Hessians at a time; what is missing to four is made up by the
 /// first of them.
 template <int F, class T>
-void store_sliding(const ContactTable& rows, const std::size_t* list, std::size_t n, const Positions& x,
+void store_sliding(const ContactTable& rows, const std::size_t* list, std::size_t n, const PositionsView& x,
                    Projection projection, double* hess) {
   RowShape<FourOf<T>, F> shape;
   FourOf<T> blocks[row_hessian_numbers];
@@ -190,7 +190,7 @@ void store_sliding(const ContactTable& rows, const std::size_t* list, std::size_
 
 /// The rows [begin, end), at most a chunk of them.
 template <class T>
-void store_rows(const ContactTable& rows, std::size_t begin, std::size_t end, const Positions& x,
+void store_rows(const ContactTable& rows, std::size_t begin, std::size_t end, const PositionsView& x,
                 HessianMode mode, Projection projection, PassParts parts, double* grad, double* hess) {
   std::array<std::size_t, chunk_size> sliding[2];
   std::size_t n[2] = {0, 0};
@@ -215,7 +215,7 @@ void store_rows(const ContactTable& rows, std::size_t begin, std::size_t end, co
 }
 
 /// dx on the compact slots.
-Mat<double, 3, 4> motion_of(const ContactTable& rows, std::size_t r, const Positions& dx) {
+Mat<double, 3, 4> motion_of(const ContactTable& rows, std::size_t r, const PositionsView& dx) {
   Mat<double, 3, 4> out = Mat<double, 3, 4>::Zero();
   for (int k = 0; k < rows.n_free[r]; ++k) {
     out.col(k) = dx.col(rows.vertex[4 * r + static_cast<std::size_t>(k)]);
@@ -223,7 +223,7 @@ Mat<double, 3, 4> motion_of(const ContactTable& rows, std::size_t r, const Posit
   return out;
 }
 
-GapAlong gap_along(const ContactTable& rows, std::size_t r, const Positions& x, const Positions& dx) {
+GapAlong gap_along(const ContactTable& rows, std::size_t r, const PositionsView& x, const PositionsView& dx) {
   const Mat<double, 3, 4> moved = motion_of(rows, r, dx);
   const int edges = n_sliding(rows.kind[r]);
   if (edges == 1) return bb::gap_along(row_shape<1, double>(rows, r, x), moved);
@@ -235,7 +235,7 @@ GapAlong gap_along(const ContactTable& rows, std::size_t r, const Positions& x, 
 
 }  // namespace
 
-HoldTimes add_detour(const ContactTable& rows, const Positions& x, const Positions& dx, Positions& force) {
+HoldTimes add_detour(const ContactTable& rows, const PositionsView& x, const PositionsView& dx, PositionsSpan force) {
   HoldTimes held;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     if (rows.n_free[r] == 0) continue;
@@ -250,7 +250,7 @@ HoldTimes add_detour(const ContactTable& rows, const Positions& x, const Positio
   return held;
 }
 
-void contact_terms(const ContactTable& rows, const Positions& x, HessianMode mode, Projection projection,
+void contact_terms(const ContactTable& rows, const PositionsView& x, HessianMode mode, Projection projection,
                    std::vector<double>& grad, std::vector<double>& hess, Precision precision) {
   grad.resize(12 * rows.size());
   hess.resize(row_hessian_numbers * rows.size());

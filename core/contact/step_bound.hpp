@@ -54,7 +54,7 @@ class StepBoundFinder {
       : surface_(surface), obstacles_(obstacles), level_(level), precision_(precision) {}
 
   /// Of all candidates. A motion with an end that is not finite has the bound 0.
-  StepBound find(const Candidates& candidates, const Positions& x0, const Positions& x1);
+  StepBound find(const Candidates& candidates, const PositionsView& x0, const PositionsView& x1);
 
  private:
   /// A pair that boxes do not clear for the whole motion.
@@ -68,7 +68,7 @@ class StepBoundFinder {
     long long queries = 0, probes = 0, capped = 0, zero = 0;
   };
   struct Motion {
-    const Positions &x0, &x1;
+    PositionsView x0, x1;
   };
   template <std::size_t N>
   double floor(const std::array<int, N>& vertices, double offset, double park) const;

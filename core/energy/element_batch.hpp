@@ -36,9 +36,9 @@ class EnergyBatch {
   /// [w n] vertex indices, element-major.
   virtual std::span<const int> vertices() const = 0;
   /// Energies [n], J. Cost: O(n), allocates nothing.
-  virtual void values(const Positions& x, double* energy) const = 0;
+  virtual void values(const PositionsView& x, double* energy) const = 0;
   /// Energies, gradients and Hessians, projected element by element. Cost: O(n); out is resized once and never allocated again.
-  virtual void derivatives(const Positions& x, Projection projection, LocalTerms& out) const = 0;
+  virtual void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const = 0;
 
   std::size_t size() const { return vertices().size() / static_cast<std::size_t>(width()); }
 };

@@ -31,7 +31,7 @@ void for_each_element(std::size_t n, const F& f) {
 template <int W, class T = double>
 struct Points {
   Vec<T, 3> x[W];
-  Points(const Positions& all, std::span<const int> vertices, std::size_t e) {
+  Points(const PositionsView& all, std::span<const int> vertices, std::size_t e) {
     for (std::size_t i = 0; i < W; ++i) x[i] = all.col(vertices[W * e + i]).template cast<T>();
   }
 };

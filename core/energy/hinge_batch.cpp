@@ -53,7 +53,7 @@ HingeBatch::HingeBatch(std::span<const std::array<int, 4>> hinges, std::vector<d
   for (const auto& hinge : hinges) vertices_.insert(vertices_.end(), hinge.begin(), hinge.end());
 }
 
-void HingeBatch::values(const Positions& x, double* energy) const {
+void HingeBatch::values(const PositionsView& x, double* energy) const {
   const auto value = [&]<class T>(std::size_t e) {
     const Points<4, T> p(x, vertices_, e);
     return hinge_value<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_angle_[e]));
@@ -61,13 +61,13 @@ void HingeBatch::values(const Positions& x, double* energy) const {
   store_energies(size(), precision_, value, energy);
 }
 
-void HingeBatch::derivatives(const Positions& x, Projection projection, LocalTerms& out) const {
+void HingeBatch::derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
   for_each_pass(precision_, [&]<class T>(PassParts parts) { fill<T>(x, projection, parts, out); });
 }
 
 template <class T>
-void HingeBatch::fill(const Positions& x, Projection projection, PassParts parts, LocalTerms& out) const {
+void HingeBatch::fill(const PositionsView& x, Projection projection, PassParts parts, LocalTerms& out) const {
   using Real = typename HingeGroup<T>::Real;
   for_each_element((size() + kLanes - 1) / kLanes, [&](std::size_t g) {
     const std::size_t first = kLanes * g, n = std::min(kLanes, size() - first);
@@ -83,7 +83,7 @@ void HingeBatch::fill(const Positions& x, Projection projection, PassParts parts
   });
 }
 
-std::vector<double> hinge_angles(std::span<const std::array<int, 4>> hinges, const Positions& x) {
+std::vector<double> hinge_angles(std::span<const std::array<int, 4>> hinges, const PositionsView& x) {
   std::vector<double> angles;
   for (const auto& [e0, e1, v0, v1] : hinges) {
     const Vec3d points[4] = {x.col(e0), x.col(e1), x.col(v0), x.col(v1)};

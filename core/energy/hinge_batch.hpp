@@ -17,12 +17,12 @@ class HingeBatch final : public EnergyBatch {
   std::string_view name() const override { return "hinge"; }
   int width() const override { return 4; }
   std::span<const int> vertices() const override { return vertices_; }
-  void values(const Positions& x, double* energy) const override;
-  void derivatives(const Positions& x, Projection projection, LocalTerms& out) const override;
+  void values(const PositionsView& x, double* energy) const override;
+  void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override;
 
  private:
   template <class T>
-  void fill(const Positions& x, Projection projection, PassParts parts, LocalTerms& out) const;
+  void fill(const PositionsView& x, Projection projection, PassParts parts, LocalTerms& out) const;
 
   std::vector<int> vertices_;
   std::vector<double> stiffness_, rest_angle_;
@@ -30,6 +30,6 @@ class HingeBatch final : public EnergyBatch {
 };
 
 /// Angles [n] (rad) of hinges e0 e1 v0 v1 at x: the rest angles when x is the rest shape.
-std::vector<double> hinge_angles(std::span<const std::array<int, 4>> hinges, const Positions& x);
+std::vector<double> hinge_angles(std::span<const std::array<int, 4>> hinges, const PositionsView& x);
 
 }  // namespace bb

@@ -8,7 +8,7 @@
 namespace bb {
 
 std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int, 3>> triangles,
-                                                 const Positions& x_rest, bool planar,
+                                                 const PositionsView& x_rest, bool planar,
                                                  std::span<const Vec3d> warp) {
   std::vector<TriangleRest<double>> rests;
   rests.reserve(triangles.size());
@@ -29,7 +29,7 @@ std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int,
 }
 
 MembraneBatch::MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
-                             const Positions& x_rest, std::vector<double> lame_mu,
+                             const PositionsView& x_rest, std::vector<double> lame_mu,
                              std::vector<double> lame_lambda, bool planar, std::span<const Vec3d> warp,
                              Precision precision)
     : models_(&membrane_models<double>().require(model, "membrane/model"),
@@ -44,7 +44,7 @@ MembraneBatch::MembraneBatch(std::string_view model, std::span<const std::array<
   for (const auto& triangle : triangles) vertices_.insert(vertices_.end(), triangle.begin(), triangle.end());
 }
 
-void MembraneBatch::values(const Positions& x, double* energy) const {
+void MembraneBatch::values(const PositionsView& x, double* energy) const {
   const auto value = [&]<class T>(std::size_t e) {
     const Points<3, T> p(x, vertices_, e);
     const auto of_model = planar_ ? model<T>().value_planar : model<T>().value;
@@ -53,7 +53,7 @@ void MembraneBatch::values(const Positions& x, double* energy) const {
   store_energies(size(), precision_, value, energy);
 }
 
-void MembraneBatch::derivatives(const Positions& x, Projection projection, LocalTerms& out) const {
+void MembraneBatch::derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
   const auto terms = [&]<class T>(std::size_t e) {
     const Points<3, T> p(x, vertices_, e);

@@ -20,7 +20,7 @@ TriangleRest<T> rest_in(const TriangleRest<double>& rest) {
 /// triangle's first edge. ConfigError when a triangle has no area (or the warp direction is normal to
 /// it).
 std::vector<TriangleRest<double>> triangle_rests(std::span<const std::array<int, 3>> triangles,
-                                                 const Positions& x_rest, bool planar,
+                                                 const PositionsView& x_rest, bool planar,
                                                  std::span<const Vec3d> warp = {});
 
 class MembraneBatch final : public EnergyBatch {
@@ -30,14 +30,14 @@ class MembraneBatch final : public EnergyBatch {
   /// @param precision  the scalars of values and derivatives
   /// ConfigError: unknown model, columns of another length, triangles without area.
   MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
-                const Positions& x_rest, std::vector<double> lame_mu, std::vector<double> lame_lambda,
+                const PositionsView& x_rest, std::vector<double> lame_mu, std::vector<double> lame_lambda,
                 bool planar = false, std::span<const Vec3d> warp = {}, Precision precision = Precision::full);
   std::string_view name() const override { return model<double>().name; }
   int width() const override { return 3; }
   std::span<const int> vertices() const override { return vertices_; }
   std::span<const TriangleRest<double>> rests() const { return rests_; }
-  void values(const Positions& x, double* energy) const override;
-  void derivatives(const Positions& x, Projection projection, LocalTerms& out) const override;
+  void values(const PositionsView& x, double* energy) const override;
+  void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override;
 
  private:
   template <class T>

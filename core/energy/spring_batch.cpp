@@ -6,7 +6,7 @@
 
 namespace bb {
 
-SpringBatch::SpringBatch(std::span<const std::array<int, 2>> edges, const Positions& x_rest,
+SpringBatch::SpringBatch(std::span<const std::array<int, 2>> edges, const PositionsView& x_rest,
                          std::vector<double> stiffness, Precision precision)
     : stiffness_(std::move(stiffness)), precision_(precision) {
   check_column("spring/stiffness", edges.size(), stiffness_, false);
@@ -16,7 +16,7 @@ SpringBatch::SpringBatch(std::span<const std::array<int, 2>> edges, const Positi
   }
 }
 
-void SpringBatch::values(const Positions& x, double* energy) const {
+void SpringBatch::values(const PositionsView& x, double* energy) const {
   const auto value = [&]<class T>(std::size_t e) {
     const Points<2, T> p(x, vertices_, e);
     return spring_value<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_length_[e]));
@@ -24,7 +24,7 @@ void SpringBatch::values(const Positions& x, double* energy) const {
   store_energies(size(), precision_, value, energy);
 }
 
-void SpringBatch::derivatives(const Positions& x, Projection projection, LocalTerms& out) const {
+void SpringBatch::derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const {
   out.resize(size(), width());
   const auto terms = [&]<class T>(std::size_t e) {
     const Points<2, T> p(x, vertices_, e);

@@ -24,7 +24,7 @@ Vec<T, 2> two_in(const double* column) {
 
 }  // namespace
 
-StrainLimitBatch::StrainLimitBatch(std::span<const std::array<int, 3>> triangles, const Positions& x_rest,
+StrainLimitBatch::StrainLimitBatch(std::span<const std::array<int, 3>> triangles, const PositionsView& x_rest,
                                    std::vector<double> onset, std::vector<double> width, bool planar,
                                    Precision precision)
     : planar_(planar), rests_(triangle_rests(triangles, x_rest, planar)), precision_(precision) {
@@ -40,7 +40,7 @@ StrainLimitBatch::StrainLimitBatch(std::span<const std::array<int, 3>> triangles
     column->assign(2 * n, 0.0);
 }
 
-void StrainLimitBatch::measure(const Positions& x) {
+void StrainLimitBatch::measure(const PositionsView& x) {
   if (x.cols() == measured_.cols() && x == measured_) return;
   measured_ = x;
   ++sweeps_;
@@ -72,7 +72,7 @@ double StrainLimitBatch::min_gap() const {
   return gap_.empty() ? std::numeric_limits<double>::infinity() : *std::min_element(gap_.begin(), gap_.end());
 }
 
-void StrainLimitBatch::fill_terms(const Positions& x, const double* kappa, Projection projection,
+void StrainLimitBatch::fill_terms(const PositionsView& x, const double* kappa, Projection projection,
                                   LocalTerms& out) const {
   out.resize(size(), width());
   const auto terms = [&]<class T>(std::size_t e) {
@@ -93,7 +93,7 @@ void StrainLimitBatch::fill_terms(const Positions& x, const double* kappa, Proje
   store_elements(size(), precision_, terms, out);
 }
 
-double StrainLimitBatch::step_bound(const Positions& x, const Positions& dx, double alpha_max,
+double StrainLimitBatch::step_bound(const PositionsView& x, const PositionsView& dx, double alpha_max,
                                     double park) const {
   return with_value_scalar(precision_, [&]<class T>() -> double {
     return step_bound_in<T>(x, dx, static_cast<T>(alpha_max), static_cast<T>(park));
@@ -101,7 +101,7 @@ double StrainLimitBatch::step_bound(const Positions& x, const Positions& dx, dou
 }
 
 template <class T>
-T StrainLimitBatch::step_bound_in(const Positions& x, const Positions& dx, T alpha_max, T park) const {
+T StrainLimitBatch::step_bound_in(const PositionsView& x, const PositionsView& dx, T alpha_max, T park) const {
   const auto smallest = [&](T alpha) {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, size(), 64), alpha,
@@ -129,7 +129,7 @@ void StrainLimitBatch::fixed_stiffness(double k_s, double* kappa) const {
   for (std::size_t e = 0; e < size(); ++e) kappa[e] = k_s * rests_[e].area;
 }
 
-void StrainLimitBatch::elastic_stiffness(const Positions& x_start, const double* hess,
+void StrainLimitBatch::elastic_stiffness(const PositionsView& x_start, const double* hess,
                                          const double* vertex_mass, const double* element_mass,
                                          const StrainStiffnessRule& rule, KappaParts* kappa) const {
   for_each_element(size(), [&](std::size_t e) {

@@ -18,7 +18,7 @@ class StrainLimitBatch {
  public:
   /// @param onset, width [n] 1, width > 0. ConfigError: columns of another length or value,
   /// triangles without area.
-  StrainLimitBatch(std::span<const std::array<int, 3>> triangles, const Positions& x_rest,
+  StrainLimitBatch(std::span<const std::array<int, 3>> triangles, const PositionsView& x_rest,
                    std::vector<double> onset, std::vector<double> width, bool planar = false,
                    Precision precision = Precision::full);
 
@@ -30,7 +30,7 @@ class StrainLimitBatch {
 
   /// Singular values and pseudo-gaps at x, kept in sigma() and gaps(). Cost: one SVD an element; only a
   /// comparison of positions when x is what was measured last.
-  void measure(const Positions& x);
+  void measure(const PositionsView& x);
   /// How many states were measured.
   long long sweeps() const { return sweeps_; }
   std::span<const double> sigma() const { return sigma_; }  // [2n] descending within an element
@@ -41,7 +41,7 @@ class StrainLimitBatch {
 
   /// S_e [n], J; infinite at or beyond the limit. kappa [n], J. Measures.
   template <class Barrier>
-  void values(const Positions& x, Barrier& barrier, const double* kappa, double* energy) {
+  void values(const PositionsView& x, Barrier& barrier, const double* kappa, double* energy) {
     measure(x);
     evaluate(barrier);
     for (std::size_t e = 0; e < size(); ++e) energy[e] = kappa[e] * (b_[2 * e] + b_[2 * e + 1]);
@@ -49,7 +49,7 @@ class StrainLimitBatch {
   /// Energies, gradients and Hessians; exact zeros where inactive, not finite at or beyond the limit.
   /// Measures.
   template <class Barrier>
-  void derivatives(const Positions& x, Barrier& barrier, const double* kappa, Projection projection,
+  void derivatives(const PositionsView& x, Barrier& barrier, const double* kappa, Projection projection,
                    LocalTerms& out) {
     measure(x);
     evaluate(barrier);
@@ -59,20 +59,20 @@ class StrainLimitBatch {
   /// Largest alpha in [0, alpha_max] whose state x + alpha dx, rounded coordinate by coordinate, keeps every
   /// y above park x width (strain_step_bound). Does not depend on the number of threads. Cost: one SVD an
   /// element, about 60 more for those that would pass their limit.
-  double step_bound(const Positions& x, const Positions& dx, double alpha_max = 1, double park = 0) const;
+  double step_bound(const PositionsView& x, const PositionsView& dx, double alpha_max = 1, double park = 0) const;
 
   /// kappa_e = k_s x rest area; k_s in N/m.
   void fixed_stiffness(double k_s, double* kappa) const;
   /// strain_stiffness of every element, as functions of its pseudo-gap.
   /// @param x_start step start, m   @param hess [81 n] column-major   @param vertex_mass [n_vertices] kg
   /// @param element_mass [n] kg
-  void elastic_stiffness(const Positions& x_start, const double* hess, const double* vertex_mass,
+  void elastic_stiffness(const PositionsView& x_start, const double* hess, const double* vertex_mass,
                          const double* element_mass, const StrainStiffnessRule& rule,
                          KappaParts* kappa) const;
 
  private:
   template <class T>
-  T step_bound_in(const Positions& x, const Positions& dx, T alpha_max, T park) const;
+  T step_bound_in(const PositionsView& x, const PositionsView& dx, T alpha_max, T park) const;
   template <class Barrier>
   void evaluate(Barrier& barrier) {
     if constexpr (requires { barrier.literal; }) {
@@ -90,7 +90,7 @@ class StrainLimitBatch {
       db_[i] = -infinity;
     }
   }
-  void fill_terms(const Positions& x, const double* kappa, Projection projection, LocalTerms& out) const;
+  void fill_terms(const PositionsView& x, const double* kappa, Projection projection, LocalTerms& out) const;
 
   bool planar_;
   Positions measured_;  // what sigma_ and gap_ belong to

@@ -73,6 +73,8 @@ class Executor {
   virtual std::string memory_state() const { return ""; }
   /// True when nothing is computed and nothing may be read: buffers are counted only.
   virtual bool counts_only() const { return false; }
+  /// Whether the host reads and writes the memory of buffers in place.
+  virtual bool in_host_memory() const { return false; }
 
  protected:
   virtual void launch(const KernelInfo& kernel, Index n, const void* f) = 0;

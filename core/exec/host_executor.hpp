@@ -15,6 +15,7 @@ class HostExecutor : public Executor {
  public:
   explicit HostExecutor(Order order = Order::threads, unsigned seed = 1) : order_(order), random_(seed) {}
   std::string_view name() const override { return "host"; }
+  bool in_host_memory() const override { return true; }
 
   void sort(Key* keys, std::uint32_t* values, Index n, int bits) override;
   void exclusive_scan(Index* values, Index n) override;

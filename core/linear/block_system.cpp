@@ -141,11 +141,11 @@ void BlockSystem::add_contacts(std::size_t family, std::span<const double> hess)
 
 const BlockSystem::Values& BlockSystem::values() const { return data_->values; }
 
-void BlockSystem::gather_elements(std::size_t family, std::span<const double> grad, Positions& g) const {
+void BlockSystem::gather_elements(std::size_t family, std::span<const double> grad, PositionsSpan g) const {
   family_of(data_->elements, data_->elements.size(), family).add_gradients(grad, g);
 }
 
-void BlockSystem::gather_contacts(std::size_t family, std::span<const double> grad, Positions& g) const {
+void BlockSystem::gather_contacts(std::size_t family, std::span<const double> grad, PositionsSpan g) const {
   family_of(data_->contacts, data_->n_contact_families, family).add_gradients(grad, g);
 }
 
@@ -191,7 +191,7 @@ void BlockSystem::element_submatrix(const Values& element_values, const int* ver
   submatrix_of(data_->element_pattern, element_values, vertices, k, out);
 }
 
-void BlockSystem::multiply_add(const Values& values, const Positions& v, Positions& y) const {
+void BlockSystem::multiply_add(const Values& values, const PositionsView& v, PositionsSpan y) const {
   const BlockPattern& pattern = data_->pattern;
   for (int c = 0; c < data_->n_vertices; ++c) {
     const int begin = pattern.column_start[at(c)], end = pattern.column_start[at(c) + 1];
@@ -208,10 +208,10 @@ void BlockSystem::multiply_add(const Values& values, const Positions& v, Positio
 
 const ReducedSystem& BlockSystem::reduce(const Values& values) { return data_->reduction.fill(values); }
 int BlockSystem::n_free() const { return data_->reduction.n_free(); }
-void BlockSystem::restrict_vector(const Positions& full, VecXd& reduced) const {
+void BlockSystem::restrict_vector(const PositionsView& full, VecXd& reduced) const {
   data_->reduction.restrict_vector(full, reduced);
 }
-void BlockSystem::expand_vector(const VecXd& reduced, Positions& full) const {
+void BlockSystem::expand_vector(const VecXd& reduced, PositionsSpan full) const {
   data_->reduction.expand_vector(reduced, full);
 }
 

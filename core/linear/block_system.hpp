@@ -63,8 +63,8 @@ class BlockSystem {
   void take_values(Values& out);
 
   /// Gradient gathers: g [3 x n] += local gradients [size * 3w].
-  void gather_elements(std::size_t family, std::span<const double> grad, Positions& g) const;
-  void gather_contacts(std::size_t family, std::span<const double> grad, Positions& g) const;
+  void gather_elements(std::size_t family, std::span<const double> grad, PositionsSpan g) const;
+  void gather_contacts(std::size_t family, std::span<const double> grad, PositionsSpan g) const;
 
   /// 3k x 3k sub-matrix of `values` on k <= 4 vertices, written into the top left of a 12 x 12 column-major
   /// block (leading dimension 12); blocks between unconnected vertices are 0.
@@ -75,14 +75,14 @@ class BlockSystem {
   /// submatrix() of such a copy.
   void element_submatrix(const Values& element_values, const int* vertices, int k, double* out) const;
   /// y += A v over all vertices, fixed ones included (used to lift prescribed motion to the right-hand side).
-  void multiply_add(const Values& values, const Positions& v, Positions& y) const;
+  void multiply_add(const Values& values, const PositionsView& v, PositionsSpan y) const;
 
   /// Restriction to the free degrees of freedom. The reference stays valid; values are overwritten
   /// by each call.
   const ReducedSystem& reduce(const Values& values);
   int n_free() const;
-  void restrict_vector(const Positions& full, VecXd& reduced) const;
-  void expand_vector(const VecXd& reduced, Positions& full) const;  // leaves fixed entries as they are
+  void restrict_vector(const PositionsView& full, VecXd& reduced) const;
+  void expand_vector(const VecXd& reduced, PositionsSpan full) const;  // leaves fixed entries as they are
 
  private:
   struct Data;

@@ -233,7 +233,7 @@ void GatherMap::add_targets(const double* hess, double* values) const {
   });
 }
 
-void GatherMap::add_gradients(std::span<const double> grad, Positions& g) const {
+void GatherMap::add_gradients(std::span<const double> grad, PositionsSpan g) const {
   if (grad.size() != 3 * vertices_.size()) {
     throw ConfigError("local gradients", std::to_string(grad.size()) + " numbers", "size * 3 width");
   }

@@ -43,7 +43,7 @@ class GatherMap {
   /// Cost: one read of `hess`, one read and write of the targets, 4 bytes of index a contribution.
   void add_hessians(std::span<const double> hess, std::vector<double>& values) const;
   /// g [3 x n] += local gradients [size * 3 width].
-  void add_gradients(std::span<const double> grad, Positions& g) const;
+  void add_gradients(std::span<const double> grad, PositionsSpan g) const;
 
  private:
   void check(const Stencils& stencils, int n_vertices) const;

@@ -93,12 +93,12 @@ const ReducedSystem& Reduction::fill(const std::vector<double>& values) {
   return system_;
 }
 
-void Reduction::restrict_vector(const Positions& full, VecXd& reduced) const {
+void Reduction::restrict_vector(const PositionsView& full, VecXd& reduced) const {
   reduced.resize(n_free());
   for (int i = 0; i < n_free(); ++i) reduced[i] = full.data()[free_[at(i)]];
 }
 
-void Reduction::expand_vector(const VecXd& reduced, Positions& full) const {
+void Reduction::expand_vector(const VecXd& reduced, PositionsSpan full) const {
   for (int i = 0; i < n_free(); ++i) full.data()[free_[at(i)]] = reduced[i];
 }
 

@@ -23,8 +23,8 @@ class Reduction {
 
   int n_free() const { return static_cast<int>(free_.size()); }
   const ReducedSystem& system() const { return system_; }
-  void restrict_vector(const Positions& full, VecXd& reduced) const;
-  void expand_vector(const VecXd& reduced, Positions& full) const;
+  void restrict_vector(const PositionsView& full, VecXd& reduced) const;
+  void expand_vector(const VecXd& reduced, PositionsSpan full) const;
 
  private:
   int n_free_of(int vertex) const;

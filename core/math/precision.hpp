@@ -49,7 +49,7 @@ void for_each_pass(Precision precision, const F& f) {
 }
 
 /// Every coordinate to the nearest number that a state of this precision may have.
-inline void round_state(Precision precision, Positions& x) {
+inline void round_state(Precision precision, PositionsSpan x) {
   if (values_in_float(precision)) x = x.cast<float>().cast<double>().eval();
 }
 

@@ -21,4 +21,21 @@ using VecXd = Eigen::VectorXd;
 /// [3 x n_vertices] positions (m), velocities (m/s) or forces (N); contiguous, 3 numbers a vertex.
 using Positions = Eigen::Matrix3Xd;
 
+/// Positions in memory that another object owns (a column of an executor on the host): nothing is copied.
+class PositionsView : public Eigen::Map<const Positions> {
+ public:
+  PositionsView(const Positions& x) : Map(x.data(), 3, x.cols()) {}  // NOLINT(google-explicit-constructor)
+  /// x: 3 n_vertices numbers.
+  PositionsView(const double* x, Eigen::Index n_vertices) : Map(x, 3, n_vertices) {}
+};
+
+/// The same to write to.
+class PositionsSpan : public Eigen::Map<Positions> {
+ public:
+  PositionsSpan(Positions& x) : Map(x.data(), 3, x.cols()) {}  // NOLINT(google-explicit-constructor)
+  PositionsSpan(double* x, Eigen::Index n_vertices) : Map(x, 3, n_vertices) {}
+  using Map::operator=;
+  operator PositionsView() const { return {data(), cols()}; }  // NOLINT(google-explicit-constructor)
+};
+
 }  // namespace bb

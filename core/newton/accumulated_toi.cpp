@@ -65,7 +65,7 @@ class AccumulatedToi final : public StepSolver {
     if (moved) {
       show_motion(system, step_index, observer);
     } else {
-      step.status = system.at_target() ? StepStatus::step_collapse : StepStatus::pin_infeasible;
+      step.status = system.view().at_target() ? StepStatus::step_collapse : StepStatus::pin_infeasible;
       step.detail = describe_bound(system);
     }
     return report.alpha;

@@ -50,7 +50,7 @@ class ArticleLiteral final : public StepSolver {
       const auto change = system.try_motion(alpha);
       if (!change) continue;
       const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
-      report.rounding_accepts = !decrease && within_rounding(*change, system.precision());
+      report.rounding_accepts = !decrease && within_rounding(*change, system.view().precision());
       if (!decrease && !report.rounding_accepts) continue;
       report.alpha = alpha;
       report.energy_change_J = change->change;

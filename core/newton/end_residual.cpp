@@ -6,8 +6,8 @@ namespace bb {
 
 Number EndResidual::measure(StepSystem& system, const StepFrame& frame) {
   const WholePhase timer(system.clock(), Phase::output);
-  NewtonSystem* seen = &system.on_cpu();
-  if (system.is_on_cpu()) {
+  NewtonSystem* seen = &system.on_host();
+  if (system.is_on_host()) {
     if (!own_) own_ = std::make_unique<NewtonSystem>(scene_, method_, plan_);
     Archive memory;  // of the terms, from step to step
     seen->keep(memory);
@@ -16,7 +16,7 @@ Number EndResidual::measure(StepSystem& system, const StepFrame& frame) {
     own_->adopt(frame, *seen);
     seen = own_.get();
   }
-  seen->hold();
+  seen->set_target(seen->view().x());
   const LinearStatus status = seen->find_direction().linear.status;
   return status == LinearStatus::ok ? Number(seen->direction_size().inf_m) : Number::missing("not_estimated");
 }

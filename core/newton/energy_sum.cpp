@@ -47,8 +47,9 @@ void add_blocks(std::size_t n, const Add& add, Sums& total) {
 /// The terms on vertices, and the others.
 struct Order {
   std::vector<std::size_t> on_vertices, others;
-  explicit Order(const TermList& terms) {
+  explicit Order(const TermList& terms, TermSet set = TermSet::all()) {
     for (std::size_t i = 0; i < terms.size(); ++i) {
+      if (!set.has(terms[i].group())) continue;
       (terms[i].on_vertices() ? on_vertices : others).push_back(i);
     }
   }
@@ -56,7 +57,7 @@ struct Order {
 
 }  // namespace
 
-EnergyChange EnergySums::change(const TermList& terms, const Positions& x0, const Positions& x1) {
+EnergyChange EnergySums::change(const TermList& terms, const PositionsView& x0, const PositionsView& x1) {
   parts_.resize(terms.size());
   for (std::size_t i = 0; i < terms.size(); ++i) {
     parts_[i].clear();
@@ -79,11 +80,11 @@ EnergyChange EnergySums::change(const TermList& terms, const Positions& x0, cons
   return {total.change.value(), total.magnitude};
 }
 
-double total_energy(const TermList& terms) {
+double total_energy(const TermList& terms, TermSet set) {
   const auto energies = [&](std::size_t i) -> const std::vector<double>& {
     return terms[i].families()[0].local.energy;
   };
-  const Order order(terms);
+  const Order order(terms, set);
   Sums total;
   const auto add_vertex = [&](std::size_t v, Sums& sums) {
     for (const std::size_t i : order.on_vertices) sums.change.add(energies(i)[v]);

@@ -3,14 +3,10 @@
 
 #include <vector>
 
+#include "core/newton/energy_change.hpp"
 #include "core/terms/term.hpp"
 
 namespace bb {
-
-struct EnergyChange {
-  double change = 0;     // E(trial) - E(iterate), J
-  double magnitude = 0;  // sum of |parts|, J: rounding noise is some multiple of eps times this
-};
 
 /// Parts of terms on vertices are summed vertex by vertex, then those of the others term by term, all in the
 /// order of the list and in blocks of fixed size, so that a sum does not depend on the number of threads. Keeps
@@ -18,13 +14,13 @@ struct EnergyChange {
 class EnergySums {
  public:
   /// From the iterate x0 to the trial x1.
-  EnergyChange change(const TermList& terms, const Positions& x0, const Positions& x1);
+  EnergyChange change(const TermList& terms, const PositionsView& x0, const PositionsView& x1);
 
  private:
   std::vector<EnergyParts> parts_;  // one a term
 };
 
-/// E at the iterate, J, in the same order.
-double total_energy(const TermList& terms);
+/// The terms of a set at the iterate, J, in the same order.
+double total_energy(const TermList& terms, TermSet set);
 
 }  // namespace bb

@@ -61,7 +61,7 @@ bool within_rounding(const EnergyChange& change, Precision precision) {
 
 void fail_step(const StepSystem& system, StepReport& step, StepStatus status, const IterationReport& report) {
   step.status = status;
-  if (status == StepStatus::non_finite) step.detail = system.describe_non_finite();
+  if (status == StepStatus::non_finite) step.detail = system.view().describe_non_finite();
   if (status == StepStatus::not_descent) {
     char text[80];
     std::snprintf(text, sizeof text, "g . dx = %.3g J along the last direction", -2 * report.decrement_J);
@@ -78,10 +78,10 @@ IterationReport begin_iteration(StepSystem& system, int step, int iteration) {
   report.iteration = iteration;
   system.clock().lap();
   system.assemble();
-  report.energy_J = system.energy();
-  report.grad_inf_N = system.grad_inf();
-  report.pattern_changed = system.pattern_changed();
-  system.report(report);
+  report.energy_J = system.view().energy();
+  report.grad_inf_N = system.view().grad_inf();
+  report.pattern_changed = system.view().pattern_changed();
+  system.view().report(report);
   if (iteration == 0) report.forget_changes();
   return report;
 }
@@ -93,8 +93,8 @@ void find_direction(StepSystem& system, IterationReport& report, StepObserver& o
   report.dx_beyond_m = size.beyond_m;
   report.dx_rounding_m = size.rounding_m;
   report.decrement_J = -size.slope_J / 2;
-  report.n_free = static_cast<std::size_t>(system.n_free());
-  report.nnz = system.nnz();
+  report.n_free = static_cast<std::size_t>(system.view().n_free());
+  report.nnz = system.view().nnz();
   observer.on_matrix(system, report.step, report.iteration);
 }
 
@@ -132,20 +132,20 @@ void finish_iteration(StepSystem& system, StepReport& step, IterationReport& rep
 }
 
 void show_motion(const StepSystem& system, int step, StepObserver& observer) {
-  if (observer.watches_motions()) observer.on_motion(system.x_before(), system.x(), step);
+  if (observer.watches_motions()) observer.on_motion(system.view().x_before(), system.view().x(), step);
 }
 
 std::string describe_bound(const StepSystem& system) {
-  const std::string holder = system.describe_bound();
+  const std::string holder = system.view().describe_bound();
   return holder.empty() ? "no bound held it" : "held by " + holder;
 }
 
 std::string describe_short_pin(const StepSystem& system, const StepTask& task) {
-  const Scene& scene = system.scene();
+  const Scene& scene = system.view().scene();
   Positions target = task.history->x;
   task.pose(task.dt, target);
   for (const Pin& pin : scene.pins) {
-    if (system.x().col(pin.vertex) == target.col(pin.vertex)) continue;
+    if (system.view().x().col(pin.vertex) == target.col(pin.vertex)) continue;
     const int body = scene.body[static_cast<std::size_t>(pin.vertex)];
     return "pinned vertex " + std::to_string(pin.vertex) + " of body '" +
            scene.bodies[static_cast<std::size_t>(body)].name + "' cannot reach its pose";
@@ -154,7 +154,7 @@ std::string describe_short_pin(const StepSystem& system, const StepTask& task) {
 }
 
 void measure_end(StepSystem& system, StepReport& step) {
-  system.report_end(step);
+  system.view().report_end(step);
   step.close();
   const bool stalled = step.status == StepStatus::iteration_cap || step.status == StepStatus::step_collapse ||
                        step.status == StepStatus::line_search_failed ||
@@ -166,10 +166,10 @@ void measure_end(StepSystem& system, StepReport& step) {
     return;  // what a kappa that moves can carry is no number
   }
   system.assemble();  // the rows that were accepted last and their gradients, of one state
-  system.hold();
+  system.set_target(system.view().x());
   const bool solved = system.find_direction().linear.status == LinearStatus::ok;
   step.begin_overload();
-  system.report_overload(solved, step);
+  system.view().report_overload(solved, step);
 }
 
 }  // namespace bb

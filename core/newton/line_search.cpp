@@ -44,7 +44,7 @@ class LineSearch final : public StepSolver {
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       IterationReport report = begin_iteration(system, task.step, iteration);
       find_direction(system, report, observer);
-      const bool at_pose = system.at_target();
+      const bool at_pose = system.view().at_target();
       const bool small = estimate_error(report) < tolerance && at_pose;
       if (const auto failed = direction_failure(report, at_pose && !small)) {
         finish_iteration(system, step, report, observer);
@@ -99,20 +99,20 @@ class LineSearch final : public StepSolver {
   // m. In float no step is asked for less than the rounding of the coordinates that are free to move.
   double tolerance_of(const StepSystem& system, double dt) const {
     const double asked = options_.tol_velocity * dt;
-    if (!values_in_float(system.precision())) return asked;
+    if (!values_in_float(system.view().precision())) return asked;
     double largest = 0;
-    for (Eigen::Index i = 0; i < system.x().size(); ++i) {
-      if (system.fixed()[static_cast<std::size_t>(i)] == 0)
-        largest = std::max(largest, std::abs(system.x().data()[i]));
+    for (Eigen::Index i = 0; i < system.view().x().size(); ++i) {
+      if (system.view().fixed()[static_cast<std::size_t>(i)] == 0)
+        largest = std::max(largest, std::abs(system.view().x().data()[i]));
     }
-    return std::max(asked, 8 * value_epsilon(system.precision()) * largest);
+    return std::max(asked, 8 * value_epsilon(system.view().precision()) * largest);
   }
 
   // A step along negative curvature, from d_hat down to the tolerance, as far as the bound allows: E has to fall by a
   // part of what slope and curvature promise, and by more than rounding. False where no length does: within rounding
   // E is level there.
   bool escape(StepSystem& system, IterationReport& report, double tolerance) {
-    const std::vector<double>& d_hat = system.scene().d_hat;
+    const std::vector<double>& d_hat = system.view().scene().d_hat;
     const double widest = d_hat.empty() ? 0 : *std::max_element(d_hat.begin(), d_hat.end());
     const double length = std::max(widest, 2 * tolerance);
     const WholePhase timer(system.clock(), Phase::end_check);
@@ -132,7 +132,7 @@ class LineSearch final : public StepSolver {
       ++report.line_search_trials;
       const auto change = system.try_motion(alpha);
       const double modelled = alpha * slope + alpha * alpha * curvature / 2;
-      if (!change || change->change > armijo_ * modelled || within_rounding(*change, system.precision()))
+      if (!change || change->change > armijo_ * modelled || within_rounding(*change, system.view().precision()))
         continue;
       report.alpha = alpha;
       report.energy_change_J = change->change;
@@ -199,11 +199,11 @@ class LineSearch final : public StepSolver {
       ++report.line_search_trials;
       if (const auto change = system.try_motion(alpha)) {
         const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
-        report.rounding_accepts = energy_test && !decrease && within_rounding(*change, system.precision());
+        report.rounding_accepts = energy_test && !decrease && within_rounding(*change, system.view().precision());
         if (decrease || !energy_test || report.rounding_accepts) {
           report.alpha = alpha;
           report.energy_change_J = change->change;
-          noise_ = within_rounding(*change, system.precision());
+          noise_ = within_rounding(*change, system.view().precision());
           system.accept();
           return true;
         }

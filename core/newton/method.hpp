@@ -7,6 +7,7 @@
 #include <memory>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "core/integrators/integrator.hpp"
 #include "core/linear/linear_solver.hpp"
@@ -17,9 +18,16 @@
 
 namespace bb {
 
-class StepSystem;
+class IncrementalPotential;
+class PhaseClock;
+struct Method;
 struct Plan;
 struct Scene;
+
+/// Makes E of a scene in the memory of some executor. fixed: [3 n] prescribed or locked degrees of freedom. All arguments
+/// outlive it.
+using MakePotential = std::function<std::unique_ptr<IncrementalPotential>(
+    const Scene&, Method&, const Plan&, const std::vector<std::uint8_t>& fixed, PhaseClock&)>;
 
 struct StepSolverOptions {
   std::string name = "line_search";
@@ -40,8 +48,8 @@ struct Method : TermOptions {
   std::unique_ptr<Integrator> integrator;
   StepSolverOptions step_solver;
   LinearOptions linear;
-  /// Who assembles and solves; empty: NewtonSystem, on the CPU.
-  std::function<std::unique_ptr<StepSystem>(const Scene&, Method&, const Plan&)> make_system;
+  /// Where E is summed and solved; empty: on the host (HostPotential).
+  MakePotential make_potential;
 };
 
 }  // namespace bb

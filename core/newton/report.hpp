@@ -17,6 +17,16 @@ struct SolveReport {
   double factor_flop = 0;
   double t = 0;  // of the matrix that was solved, 0 exact to 1 clamped
   int fallbacks() const { return attempts - 1; }
+  /// One more attempt.
+  void add_attempt(const LinearReport& attempt) {
+    ++attempts;
+    factorizations += attempt.factorized ? 1 : 0;
+    factor_flop += attempt.factor_flop;
+    analyses += attempt.analyzed ? 1 : 0;
+    const int before = linear.iterations;
+    linear = attempt;
+    linear.iterations += before;
+  }
   /// The work of one more solve; what is said of the direction stays.
   void add_detour(const SolveReport& solve) {
     ++detours;

@@ -50,8 +50,7 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       dt_(dt),
       n_steps_(n_steps),
       parts_(method.step_solver.retries),
-      system_(method.make_system ? method.make_system(scene, method, plan)
-                                 : std::make_unique<NewtonSystem>(scene, method, plan)),
+      system_(std::make_unique<NewtonSystem>(scene, method, plan)),
       solver_(make_step_solver(method.step_solver)) {
   if (!step_solvers().require(method.step_solver.name, "/step_solver/name").asked_to_converge) {
     end_residual_ = std::make_unique<EndResidual>(scene_, method_, plan_);
@@ -88,7 +87,7 @@ StepReport Simulation::step(StepObserver& observer) {
   if (step_ == 0 && method_.integrator->needs_acceleration()) start_acceleration();
   StepReport report = attempt_until_converged(charged);
 
-  remember(system_->x(), report.dt_s);
+  remember(system_->view().x(), report.dt_s);
   report.t_s = time_;
   measure_end(*system_, report);
   if (end_residual_ && report.status == StepStatus::converged) measure_residual(report);
@@ -148,8 +147,8 @@ void Simulation::start_acceleration() {
   for (Eigen::Index i = 0; i < history_.a.cols(); ++i) {
     const double mass = scene_.mass[static_cast<std::size_t>(i)];
     for (Eigen::Index k = 0; k < 3; ++k) {
-      const bool fixed = system_->fixed()[static_cast<std::size_t>(3 * i + k)] != 0;
-      history_.a(k, i) = fixed ? 0 : -system_->gradient()(k, i) / mass;
+      const bool fixed = system_->view().fixed()[static_cast<std::size_t>(3 * i + k)] != 0;
+      history_.a(k, i) = fixed ? 0 : -system_->view().gradient()(k, i) / mass;
     }
   }
 }
@@ -163,7 +162,7 @@ void Simulation::measure_residual(StepReport& report) {
   }
 }
 
-void Simulation::remember(const Positions& x, double dt_used) {
+void Simulation::remember(const PositionsView& x, double dt_used) {
   const ScopedPhase timer(system_->clock(), Phase::prediction);
   if (dt_used > 0) {
     method_.integrator->finish(history_, dt_used, prediction_, x, v_next_, a_next_);

@@ -32,9 +32,9 @@ class Simulation {
   void drop_caches();
 
   const History& history() const { return history_; }
-  StepSystem& step_system() { return *system_; }
+  NewtonSystem& step_system() { return *system_; }
   /// The state as the CPU sees it.
-  NewtonSystem& system() { return system_->on_cpu(); }
+  NewtonSystem& system() { return system_->on_host(); }
   double time() const { return time_; }
   /// Nominal steps that are over.
   int nominal_steps() const { return nominal_; }
@@ -44,7 +44,7 @@ class Simulation {
   StepReport attempt(StepObserver& observer);
   StepReport attempt_until_converged(StepObserver& observer);
   void measure_residual(StepReport& report);
-  void remember(const Positions& x, double dt_used);
+  void remember(const PositionsView& x, double dt_used);
   void advance_time(double dt_used);
 
   const Scene& scene_;
@@ -55,7 +55,7 @@ class Simulation {
   double nominal_start_ = 0;                  // s
   double load_factor_ = 1;                    // of the last attempt
   StepParts parts_;
-  std::unique_ptr<StepSystem> system_;
+  std::unique_ptr<NewtonSystem> system_;
   std::unique_ptr<StepSolver> solver_;
   std::unique_ptr<EndResidual> end_residual_;  // of a step solver that is not asked to converge
   History history_;

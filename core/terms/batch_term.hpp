@@ -12,11 +12,11 @@ class BatchTerm final : public Term {
   std::string_view name() const override { return name_; }
   TermGroup group() const override { return TermGroup::elastic; }
   Phase phase() const override { return Phase::elastic; }
-  void linearise(const Positions& x, const TermContext& context) override {
+  void linearise(const PositionsView& x, const TermContext& context) override {
     batch_->derivatives(x, context.projection, families_[0].local);
   }
-  void clamp(const Positions& x) override { batch_->derivatives(x, Projection::psd, families_[0].clamped); }
-  void evaluate(const Positions& x, const TermContext&) override {
+  void clamp(const PositionsView& x) override { batch_->derivatives(x, Projection::psd, families_[0].clamped); }
+  void evaluate(const PositionsView& x, const TermContext&) override {
     batch_->values(x, families_[0].trial_energy.data());
   }
 

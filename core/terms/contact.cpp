@@ -69,7 +69,7 @@ void ContactTerm::change_frame(const StepFrame& frame) {
   stiffness_.set_time(frame.dt, frame.c);
 }
 
-void ContactTerm::linearise(const Positions& x, const TermContext& context) {
+void ContactTerm::linearise(const PositionsView& x, const TermContext& context) {
   {
     const ScopedPhase timer(context.clock, Phase::stiffness);
     start_policy(x, context);
@@ -93,7 +93,7 @@ void ContactTerm::fill_shape(ContactState& state) {
 }
 
 // Gradients and Hessians of the current rows, from the kappa that they have.
-void ContactTerm::fill_local(const Positions& x, Projection projection) {
+void ContactTerm::fill_local(const PositionsView& x, Projection projection) {
   fill_shape(state_);
   LocalTerms &local = families_[0].local, &mollified = families_[1].local;
   contact_terms(state_.rows, x, options_.hessian_mode, projection, local.grad, local.hess,
@@ -101,7 +101,7 @@ void ContactTerm::fill_local(const Positions& x, Projection projection) {
   mollified_terms(state_.mollified, x, projection, mollified.grad, mollified.hess, options_.precision);
 }
 
-void ContactTerm::clamp(const Positions& x) {
+void ContactTerm::clamp(const PositionsView& x) {
   LocalTerms &rows = families_[0].clamped, &mollified = families_[1].clamped;
   if (options_.hessian_mode == HessianMode::gauss_newton) {
     rows.hess = families_[0].local.hess;  // positive semi-definite as it is
@@ -112,7 +112,7 @@ void ContactTerm::clamp(const Positions& x) {
   mollified_terms(state_.mollified, x, Projection::psd, mollified.grad, mollified.hess, options_.precision);
 }
 
-void ContactTerm::add_given_motion(const Positions& x, const Positions& motion, Positions& force) const {
+void ContactTerm::add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) const {
   bb::add_given_motion(state_.rows, motion, force);
   bb::add_given_motion(state_.mollified, x, motion, force);
 }
@@ -134,19 +134,19 @@ double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClo
   return bound_.alpha;
 }
 
-bool ContactTerm::add_detour(const Positions& x, const Positions& dx, double bound, Positions& force) const {
+bool ContactTerm::add_detour(const PositionsView& x, const PositionsView& dx, double bound, PositionsSpan force) const {
   return bb::add_detour(state_.rows, x, dx, force).by_curvature(bound);
 }
 
 std::string ContactTerm::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
 
-bool ContactTerm::admits(const Positions& x, PhaseClock& clock) {
+bool ContactTerm::admits(const PositionsView& x, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::contact_rows);
   trial_.gap_min = contacts_.find_rows(x, trial_.rows, trial_.mollified);
   return trial_.gap_min > 0 || options_.contact.literal;
 }
 
-void ContactTerm::evaluate(const Positions& x, const TermContext& context) {
+void ContactTerm::evaluate(const PositionsView& x, const TermContext& context) {
   {
     const ScopedPhase timer(context.clock, Phase::stiffness);
     stiffness_.freeze(trial_.rows, trial_.mollified, context.blocks, context.elastic);

@@ -62,19 +62,19 @@ class ContactTerm final : public Term {
     adopt(known);
   }
   void keep(Archive& archive) override;
-  void linearise(const Positions& x, const TermContext& context) override;
-  void clamp(const Positions& x) override;
-  void add_given_motion(const Positions& x, const Positions& motion, Positions& force) const override;
+  void linearise(const PositionsView& x, const TermContext& context) override;
+  void clamp(const PositionsView& x) override;
+  void add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
-  bool add_detour(const Positions& x, const Positions& dx, double bound, Positions& force) const override;
+  bool add_detour(const PositionsView& x, const PositionsView& dx, double bound, PositionsSpan force) const override;
   std::string describe_bound() const override;
-  bool admits(const Positions& x, PhaseClock& clock) override;
-  void evaluate(const Positions& x, const TermContext& context) override;
+  bool admits(const PositionsView& x, PhaseClock& clock) override;
+  void evaluate(const PositionsView& x, const TermContext& context) override;
   void accept(PhaseClock& clock) override;
-  void report(const Positions& x, IterateNumbers& out, PhaseClock& clock) override;
-  void report_end(const Positions& x, StepNumbers& out, PhaseClock& clock) override;
-  void report_overload(const Positions& x, const Positions& others, const Positions& dx,
+  void report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) override;
+  void report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) override;
+  void report_overload(const PositionsView& x, const PositionsView& others, const PositionsView& dx,
                        StepNumbers& out) override;
 
   const ContactState& state() const { return state_; }
@@ -84,9 +84,9 @@ class ContactTerm final : public Term {
  private:
   void use_state();
   void fill_shape(ContactState& state);
-  void fill_local(const Positions& x, Projection projection);
-  void start_policy(const Positions& x, const TermContext& context);
-  StiffnessGlobals policy_globals(const Positions& others) const;
+  void fill_local(const PositionsView& x, Projection projection);
+  void start_policy(const PositionsView& x, const TermContext& context);
+  StiffnessGlobals policy_globals(const PositionsView& others) const;
   void list_pair_gaps();
 
   const Scene& scene_;

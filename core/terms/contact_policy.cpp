@@ -9,7 +9,7 @@ namespace bb {
 namespace {
 
 // Local gradients onto the vertices, in the order of the rows.
-void scatter(const TermFamily& family, Positions& gradient) {
+void scatter(const TermFamily& family, PositionsSpan gradient) {
   const std::span<const int> vertices = family.stencils.vertices;
   for (std::size_t i = 0; i < vertices.size(); ++i) {
     if (vertices[i] >= 0) gradient.col(vertices[i]) += Vec3d::Map(&family.local.grad[3 * i]);
@@ -20,7 +20,7 @@ void scatter(const TermFamily& family, Positions& gradient) {
 
 // A policy with memory starts at the first iterate that has contacts, from B with kappa = 1 and the gradient
 // of everything else.
-void ContactTerm::start_policy(const Positions& x, const TermContext& context) {
+void ContactTerm::start_policy(const PositionsView& x, const TermContext& context) {
   StiffnessPolicy& policy = stiffness_.policy();
   if (policy_started_ || !policy.needs_globals() || state_.size() == 0) return;
   std::fill(state_.rows.kappa.begin(), state_.rows.kappa.end(), 1.0);
@@ -30,7 +30,7 @@ void ContactTerm::start_policy(const Positions& x, const TermContext& context) {
   policy_started_ = true;
 }
 
-StiffnessGlobals ContactTerm::policy_globals(const Positions& others) const {
+StiffnessGlobals ContactTerm::policy_globals(const PositionsView& others) const {
   StiffnessGlobals globals;
   Positions own = Positions::Zero(3, others.cols());
   for (const TermFamily& family : families_) scatter(family, own);

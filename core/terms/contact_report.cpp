@@ -80,7 +80,7 @@ void fill(const RowNumbers& rows, Numbers& out) {
 
 }  // namespace
 
-void ContactTerm::report(const Positions&, IterateNumbers& out, PhaseClock&) {
+void ContactTerm::report(const PositionsView&, IterateNumbers& out, PhaseClock&) {
   out.kappa_change_rel = kappa_change_;
   out.contacts = count_contacts(state_);
   if (out.contacts.total() == 0) return;
@@ -91,7 +91,7 @@ void ContactTerm::report(const Positions&, IterateNumbers& out, PhaseClock&) {
   out.contact_curvature_max_N_per_m = rows.curvature_max;
 }
 
-void ContactTerm::report_end(const Positions& x, StepNumbers& out, PhaseClock&) {
+void ContactTerm::report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) {
   out.contacts = count_contacts(state_);
   if (out.contacts.total() == 0) return;
   const RowNumbers rows = measure(state_);
@@ -111,7 +111,7 @@ void ContactTerm::report_end(const Positions& x, StepNumbers& out, PhaseClock&) 
 // The larger of two estimates of the load of a row: what everything but contact puts on it on its own, and
 // the force at which the Newton model would come to rest, which knows how loads are shared but yields where
 // the barrier would have to hold.
-void ContactTerm::report_overload(const Positions&, const Positions& others, const Positions& dx,
+void ContactTerm::report_overload(const PositionsView&, const PositionsView& others, const PositionsView& dx,
                                   StepNumbers& out) {
   out.contact_overload = 0;
   const BarrierFunction& barrier = options_.contact;

@@ -34,13 +34,13 @@ class ExternalForce final : public Term {
     Positions::Map(families_[0].local.grad.data(), 3, x_n_.cols()) = -force_;
   }
 
-  void linearise(const Positions& x, const TermContext&) override {
+  void linearise(const PositionsView& x, const TermContext&) override {
     fill_energies(x, families_[0].local.energy);
   }
-  void evaluate(const Positions& x, const TermContext&) override {
+  void evaluate(const PositionsView& x, const TermContext&) override {
     fill_energies(x, families_[0].trial_energy);
   }
-  void change(const Positions& x0, const Positions& x1, EnergyParts& out) const override {
+  void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const override {
     const std::size_t start = out.size();
     out.resize(start + vertices_.size());
     parallel_items(x0.cols(), block_items, [&](Eigen::Index i) {
@@ -51,7 +51,7 @@ class ExternalForce final : public Term {
   }
 
  private:
-  void fill_energies(const Positions& x, std::vector<double>& energy) const {
+  void fill_energies(const PositionsView& x, std::vector<double>& energy) const {
     parallel_items(x.cols(), block_items, [&](Eigen::Index i) {
       energy[static_cast<std::size_t>(i)] = -force_.col(i).dot(x.col(i) - x_n_.col(i));
     });

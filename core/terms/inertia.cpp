@@ -32,17 +32,17 @@ class Inertia final : public Term {
     }
   }
 
-  void linearise(const Positions& x, const TermContext&) override {
+  void linearise(const PositionsView& x, const TermContext&) override {
     LocalTerms& local = families_[0].local;
     fill_energies(x, local.energy);
     parallel_items(weight_.size(), block_items,
                    [&](std::size_t i) { Vec3d::Map(&local.grad[3 * i]) = weight_[i] * off_target(x, i); });
   }
-  void evaluate(const Positions& x, const TermContext&) override {
+  void evaluate(const PositionsView& x, const TermContext&) override {
     fill_energies(x, families_[0].trial_energy);
   }
 
-  void change(const Positions& x0, const Positions& x1, EnergyParts& out) const override {
+  void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const override {
     const std::size_t start = out.size();
     out.resize(start + weight_.size());
     parallel_items(weight_.size(), block_items, [&](std::size_t i) {
@@ -54,11 +54,11 @@ class Inertia final : public Term {
   }
 
  private:
-  Vec3d off_target(const Positions& x, std::size_t i) const {
+  Vec3d off_target(const PositionsView& x, std::size_t i) const {
     const auto v = static_cast<Eigen::Index>(i);
     return x.col(v) - x_tilde_.col(v);
   }
-  void fill_energies(const Positions& x, std::vector<double>& energy) const {
+  void fill_energies(const PositionsView& x, std::vector<double>& energy) const {
     parallel_items(weight_.size(), block_items,
                    [&](std::size_t i) { energy[i] = inertia_value(weight_[i], off_target(x, i)); });
   }

@@ -41,16 +41,16 @@ void StrainLimitTerm::change_frame(const StepFrame& frame) {
   c_ = frame.c;
 }
 
-void StrainLimitTerm::linearise(const Positions& x, const TermContext& context) {
+void StrainLimitTerm::linearise(const PositionsView& x, const TermContext& context) {
   kappa_change_ = 0;
   refresh_stiffness(x, context);
   first_iterate_ = false;
   fill(x, context.projection, families_[0].local);
 }
 
-void StrainLimitTerm::clamp(const Positions& x) { fill(x, Projection::psd, families_[0].clamped); }
+void StrainLimitTerm::clamp(const PositionsView& x) { fill(x, Projection::psd, families_[0].clamped); }
 
-void StrainLimitTerm::fill(const Positions& x, Projection projection, LocalTerms& out) {
+void StrainLimitTerm::fill(const PositionsView& x, Projection projection, LocalTerms& out) {
   if (folded_) {
     batch_.derivatives(x, *folded_, kappa_.data(), projection, out);
   } else {
@@ -58,7 +58,7 @@ void StrainLimitTerm::fill(const Positions& x, Projection projection, LocalTerms
   }
 }
 
-void StrainLimitTerm::refresh_stiffness(const Positions& x, const TermContext& context) {
+void StrainLimitTerm::refresh_stiffness(const PositionsView& x, const TermContext& context) {
   const LimitStiffness& rule = options_.limit_stiffness;
   if (kappa_fresh_ && (rule.kind == LimitStiffness::Kind::fixed || rule.refresh == Refresh::per_step)) return;
   kappa_fresh_ = true;
@@ -114,12 +114,12 @@ double StrainLimitTerm::bound(const Motion& motion, IterateNumbers& report, Phas
   return report.alpha_strain;
 }
 
-bool StrainLimitTerm::admits(const Positions& x, PhaseClock&) {
+bool StrainLimitTerm::admits(const PositionsView& x, PhaseClock&) {
   batch_.measure(x);
   return options_.limit.literal || batch_.min_gap() > 0;
 }
 
-void StrainLimitTerm::evaluate(const Positions& x, const TermContext&) {
+void StrainLimitTerm::evaluate(const PositionsView& x, const TermContext&) {
   std::vector<double>& energy = families_[0].trial_energy;
   if (folded_) {
     batch_.values(x, *folded_, kappa_.data(), energy.data());
@@ -146,7 +146,7 @@ double StrainLimitTerm::load_max() const {
   return largest;
 }
 
-void StrainLimitTerm::report(const Positions& x, IterateNumbers& out, PhaseClock& clock) {
+void StrainLimitTerm::report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_limit);
   batch_.measure(x);
   out.max_stretch = batch_.max_stretch();
@@ -159,7 +159,7 @@ void StrainLimitTerm::report(const Positions& x, IterateNumbers& out, PhaseClock
   out.limit_gap_min_rel = gap;
 }
 
-void StrainLimitTerm::report_end(const Positions& x, StepNumbers& out, PhaseClock& clock) {
+void StrainLimitTerm::report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::strain_limit);
   batch_.measure(x);
   out.max_stretch = batch_.max_stretch();
@@ -167,7 +167,7 @@ void StrainLimitTerm::report_end(const Positions& x, StepNumbers& out, PhaseCloc
 }
 
 // Of element e on its own: how many times larger its force would have to be to balance the rest along itself.
-double StrainLimitTerm::times_larger(std::size_t e, const Positions& others) const {
+double StrainLimitTerm::times_larger(std::size_t e, const PositionsView& others) const {
   const std::vector<double>& gradient = families_[0].local.grad;
   double needed = 0, own = 0;
   for (std::size_t k = 0; k < 3; ++k) {
@@ -192,13 +192,13 @@ std::string StrainLimitTerm::element_name(std::size_t e) const {
 
 // The larger of two estimates: what everything but the limit puts on an element on its own, and the force at
 // which the Newton model would come to rest.
-void StrainLimitTerm::report_overload(const Positions& x, const Positions& others, const Positions& dx,
+void StrainLimitTerm::report_overload(const PositionsView& x, const PositionsView& others, const PositionsView& dx,
                                       StepNumbers& out) {
   out.limit_overload = 0;
   if (options_.limit.shape.infinite_at_zero || folded_) return;
   batch_.measure(x);
   const std::vector<double> gaps(batch_.gaps().begin(), batch_.gaps().end());
-  batch_.measure(x + dx);
+  batch_.measure(Positions(x + dx));
   LargestSlope slope(options_.limit);
   double largest = 0;
   for (std::size_t e = 0; e < batch_.size(); ++e) {

@@ -23,30 +23,30 @@ class StrainLimitTerm final : public Term {
 
   void begin_step(const StepFrame& frame, PhaseClock& clock) override;
   void change_frame(const StepFrame& frame) override;
-  void linearise(const Positions& x, const TermContext& context) override;
-  void clamp(const Positions& x) override;
+  void linearise(const PositionsView& x, const TermContext& context) override;
+  void clamp(const PositionsView& x) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
   std::string describe_bound() const override { return "the strain limit"; }
-  bool admits(const Positions& x, PhaseClock& clock) override;
-  void evaluate(const Positions& x, const TermContext& context) override;
-  void report(const Positions& x, IterateNumbers& out, PhaseClock& clock) override;
-  void report_end(const Positions& x, StepNumbers& out, PhaseClock& clock) override;
-  void report_overload(const Positions& x, const Positions& others, const Positions& dx,
+  bool admits(const PositionsView& x, PhaseClock& clock) override;
+  void evaluate(const PositionsView& x, const TermContext& context) override;
+  void report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) override;
+  void report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) override;
+  void report_overload(const PositionsView& x, const PositionsView& others, const PositionsView& dx,
                        StepNumbers& out) override;
 
   /// SVD sweeps over the limited elements so far: one a state that was measured.
   long long sweeps() const { return batch_.sweeps(); }
 
  private:
-  void refresh_stiffness(const Positions& x, const TermContext& context);
-  void fill(const Positions& x, Projection projection, LocalTerms& out);
+  void refresh_stiffness(const PositionsView& x, const TermContext& context);
+  void fill(const PositionsView& x, Projection projection, LocalTerms& out);
   void fold(double multiplier);
   double stiffness_change() const;
   double smaller_gap(std::size_t e) const;
   double force(std::size_t e, double gap) const;
   double load_max() const;
   std::string element_name(std::size_t e) const;
-  double times_larger(std::size_t e, const Positions& others) const;
+  double times_larger(std::size_t e, const PositionsView& others) const;
 
   const Scene& scene_;
   const TermOptions& options_;

@@ -15,7 +15,7 @@ std::size_t Term::size() const {
   return n;
 }
 
-void Term::change(const Positions&, const Positions&, EnergyParts& out) const {
+void Term::change(const PositionsView&, const PositionsView&, EnergyParts& out) const {
   for (const TermFamily& family : families_) {
     const std::vector<double>&from = family.local.energy, &to = family.trial_energy;
     const std::size_t start = out.size();

@@ -33,7 +33,7 @@ struct StepFrame {
 struct TermContext {
   const BlockSystem& blocks;           // pattern of the iterate's matrix
   const BlockSystem::Values& elastic;  // H at the iterate; empty unless the plan has policy_submatrix
-  const Positions& gradient;           // N, at the iterate: of the terms before this one (of all, in a trial)
+  PositionsView gradient;           // N, at the iterate: of the terms before this one (of all, in a trial)
   Projection projection;               // of the Hessian of every element
   PhaseClock& clock;
 };
@@ -41,7 +41,7 @@ struct TermContext {
 /// Straight motion of a whole step: x0 -> x1, x1 - x0 = dx up to rounding; x1 is exact
 /// at prescribed vertices.
 struct Motion {
-  const Positions &x0, &x1, &dx;
+  PositionsView x0, x1, dx;
   bool to_bound = false;  // no state beyond what bound() allows will be tried
 };
 
@@ -101,14 +101,14 @@ class Term {
   // --- an iterate
   /// Energies, gradients and Hessians of all families at the iterate x. Elastic terms come first and read of
   /// the context only the projection; convex terms (registry.inc) need none.
-  virtual void linearise(const Positions& x, const TermContext& context) = 0;
+  virtual void linearise(const PositionsView& x, const TermContext& context) = 0;
   /// Fills `clamped` of all families with the Hessians of the same iterate under Projection::psd. Convex
   /// terms have nothing to do.
-  virtual void clamp(const Positions& /*x*/) {}
+  virtual void clamp(const PositionsView& /*x*/) {}
   /// Adds to the free columns of `force` (N) how this term's gradient changes, to first order, when
   /// prescribed vertices move by `motion` (m, 0 at free vertices), as far as it is in no block of the matrix.
-  virtual void add_given_motion(const Positions& /*x*/, const Positions& /*motion*/,
-                                Positions& /*force*/) const {}
+  virtual void add_given_motion(const PositionsView& /*x*/, const PositionsView& /*motion*/,
+                                PositionsSpan /*force*/) const {}
 
   // --- a motion
   /// Before bound() and trials along it.
@@ -117,8 +117,8 @@ class Term {
   virtual double bound(const Motion&, IterateNumbers&, PhaseClock&) { return 1; }
   /// Of a motion dx [3 x n] (m) from x that bound() ends at `bound`, prescribed vertices at rest: adds to `force` (N) what
   /// makes room for gaps that are curved along it (core/contact/gap_along.hpp). Whether curvature is what holds it.
-  virtual bool add_detour(const Positions& /*x*/, const Positions& /*dx*/, double /*bound*/,
-                          Positions& /*force*/) const {
+  virtual bool add_detour(const PositionsView& /*x*/, const PositionsView& /*dx*/, double /*bound*/,
+                          PositionsSpan /*force*/) const {
     return false;
   }
   /// What held the last bound() below 1.
@@ -126,20 +126,20 @@ class Term {
 
   // --- a trial state x, every number of it finite
   /// Whether x is feasible.
-  virtual bool admits(const Positions& /*x*/, PhaseClock&) { return true; }
+  virtual bool admits(const PositionsView& /*x*/, PhaseClock&) { return true; }
   /// Energies at the trial, after admits(). What changes with the iterate only, like kappa, stays as it is.
-  virtual void evaluate(const Positions& x, const TermContext& context) = 0;
+  virtual void evaluate(const PositionsView& x, const TermContext& context) = 0;
   /// The parts of E(trial x1) - E(iterate x0), in the order of the elements. Appends.
-  virtual void change(const Positions& x0, const Positions& x1, EnergyParts& out) const;
+  virtual void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const;
   /// The trial becomes the iterate.
   virtual void accept(PhaseClock& clock);
 
   // --- what is said of it, at the iterate x
-  virtual void report(const Positions& /*x*/, IterateNumbers&, PhaseClock&) {}
-  virtual void report_end(const Positions& /*x*/, StepNumbers&, PhaseClock&) {}
+  virtual void report(const PositionsView& /*x*/, IterateNumbers&, PhaseClock&) {}
+  virtual void report_end(const PositionsView& /*x*/, StepNumbers&, PhaseClock&) {}
   /// How many times the largest force of a bounded barrier the loads of a step without progress are. others:
   /// gradient of all other terms at the iterate x. dx: the Newton direction there, or 0.
-  virtual void report_overload(const Positions& /*x*/, const Positions& /*others*/, const Positions& /*dx*/,
+  virtual void report_overload(const PositionsView& /*x*/, const PositionsView& /*others*/, const PositionsView& /*dx*/,
                                StepNumbers&) {}
 
  protected:

@@ -17,7 +17,13 @@ DrapeState& drape_of(benchmark::State& state) {
 
 template <class T>
 T& term_of(DrapeState& drape) {
-  return *drape.system().terms().find<T>();
+  return *drape.diagnosis().terms().find<T>();
+}
+
+/// The motion along the Newton direction at the state.
+void prepare(DrapeState& drape) {
+  drape.system().set_direction(drape.dx);
+  drape.system().prepare_motion(MotionEnd::free, false);
 }
 
 /// The step bound of one term.
@@ -41,7 +47,7 @@ void measure(benchmark::State& state, const DrapeState& drape, const Part& part)
 
 void symbolic_analysis(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  const ReducedSystem& matrix = drape.system().solved();
+  const ReducedSystem& matrix = drape.diagnosis().solved();
   double seconds = 0;
   for (auto _ : state) {
     CholmodFactor factor;
@@ -55,7 +61,7 @@ void symbolic_analysis(benchmark::State& state) {
 
 void numeric_factorization(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  const ReducedSystem& matrix = drape.system().solved();
+  const ReducedSystem& matrix = drape.diagnosis().solved();
   CholmodFactor factor;
   factor.factorize(matrix);
   measure(state, drape, [&] { factor.factorize(matrix); });
@@ -67,8 +73,8 @@ void numeric_factorization(benchmark::State& state) {
 void triangular_solve(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   CholmodFactor factor;
-  factor.factorize(drape.system().solved());
-  const VecXd b = VecXd::LinSpaced(drape.system().n_free(), -1, 1);
+  factor.factorize(drape.diagnosis().solved());
+  const VecXd b = VecXd::LinSpaced(drape.system().view().n_free(), -1, 1);
   VecXd x;
   measure(state, drape, [&] { factor.solve(b, x); });
 }
@@ -79,14 +85,14 @@ void assembly(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   measure(state, drape, [&] {
     drape.system().assemble();
-    benchmark::DoNotOptimize(&drape.system().solved());
+    benchmark::DoNotOptimize(&drape.diagnosis().solved());
   });
   state.counters["rows"] = static_cast<double>(drape.n_rows());
 }
 
 void broad_phase(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  measure(state, drape, [&] { drape.system().prepare(drape.x1, drape.dx); });
+  measure(state, drape, [&] { prepare(drape); });
   const ContactSystem::Counts counts = term_of<ContactTerm>(drape).contacts().candidate_counts();
   state.counters["candidates"] =
       static_cast<double>(counts.point_triangle + counts.edge_edge + counts.obstacle);
@@ -94,7 +100,7 @@ void broad_phase(benchmark::State& state) {
 
 void step_bound(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
-  drape.system().prepare(drape.x1, drape.dx);
+  prepare(drape);
   IterateNumbers report;
   measure(state, drape, [&] { bound_of<ContactTerm>(drape, report); });
   state.counters["accd_queries"] = static_cast<double>(report.bound.queries);
@@ -112,12 +118,11 @@ void strain_bound(benchmark::State& state) {
 void energy_evaluation(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   NewtonSystem& system = drape.system();
-  system.prepare(drape.x1, drape.dx);
+  prepare(drape);
   IterationReport report;
-  const double alpha = system.bound(drape.x1, drape.dx, report);
-  const Positions trial = system.x() + 0.5 * alpha * drape.dx;
+  const double alpha = system.bound_motion(report);
   bool feasible = true;
-  measure(state, drape, [&] { feasible = system.try_state(trial).has_value(); });
+  measure(state, drape, [&] { feasible = system.try_motion(0.5 * alpha).has_value(); });
   if (!feasible) state.SkipWithError("the trial is not feasible");
 }
 

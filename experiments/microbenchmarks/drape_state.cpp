@@ -73,12 +73,14 @@ std::unique_ptr<DrapeState> make_state(int n) {
   StepObserver nobody;
   for (int step = 0; step < kMaxSteps && !state->all_layers_touch; ++step) {
     state->simulation->step(nobody);
-    state->all_layers_touch = all_touch(state->scene, contact_state(state->system().terms()).rows);
+    state->all_layers_touch = all_touch(state->scene, contact_state(state->diagnosis().terms()).rows);
   }
   state->system().assemble();
-  state->system().solve(state->x(), state->dx);
+  state->system().set_target(state->x());
+  state->system().find_direction();
+  state->dx = state->diagnosis().direction();
   state->x1 = state->x() + state->dx;
-  state->factor_s = median_factor_s(state->system().solved());
+  state->factor_s = median_factor_s(state->diagnosis().solved());
   return state;
 }
 

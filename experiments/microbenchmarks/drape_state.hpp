@@ -22,8 +22,9 @@ struct DrapeState {
   bool all_layers_touch = false;
 
   NewtonSystem& system() { return simulation->system(); }
-  const Positions& x() { return system().x(); }
-  std::size_t n_rows() { return contact_state(system().terms()).size(); }
+  Diagnosis& diagnosis() { return system().diagnosis(); }
+  PositionsView x() { return system().view().x(); }
+  std::size_t n_rows() { return contact_state(diagnosis().terms()).size(); }
 };
 
 /// 5 x n^2 vertices. Runs steps of a few Newton iterations until the sphere and every two neighbouring layers

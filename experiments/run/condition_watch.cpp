@@ -79,7 +79,7 @@ void ConditionWatch::estimate(const ReducedSystem& matrix, MatrixForm form, Matr
 }
 
 // Of the clamped samples that were taken last, one a scaling.
-void ConditionWatch::find_ends(NewtonSystem& system, TermSet set) {
+void ConditionWatch::find_ends(Diagnosis& system, TermSet set) {
   const ReducedSystem& matrix = system.clamped(set);
   const std::size_t first = samples_.size() - config_.diagnose.scalings.size();
   for (std::size_t i = first; i < samples_.size(); ++i) {
@@ -93,7 +93,7 @@ void ConditionWatch::on_matrix(StepSystem& step_system, int step, int iteration)
   probed_ = Number::missing("not_due");
   due_ = due(iteration);
   if (!due_) return;
-  NewtonSystem& system = step_system.on_cpu();
+  Diagnosis& system = step_system.on_host().diagnosis();
   form_ = system.solved_is_clamped() ? MatrixForm::clamped : MatrixForm::solved;
   const double start = now_s();
   if (config_.diagnose.tier > 0) {  // tier 0 reads what the solve leaves
@@ -113,7 +113,7 @@ void ConditionWatch::on_matrix(StepSystem& step_system, int step, int iteration)
   spent_s_ += now_s() - start;
 }
 
-void ConditionWatch::write_matrices(NewtonSystem& system, int step, int iteration) {
+void ConditionWatch::write_matrices(Diagnosis& system, int step, int iteration) {
   const auto write = [&](const ReducedSystem& matrix, const std::string& form) {
     artifacts_->matrix(stored_system(system, matrix, form, config_, step, iteration, samples_));
   };

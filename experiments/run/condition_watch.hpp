@@ -34,9 +34,9 @@ class ConditionWatch {
 
  private:
   bool due(int iteration) const;
-  void write_matrices(NewtonSystem& system, int step, int iteration);
+  void write_matrices(Diagnosis& system, int step, int iteration);
   void estimate(const ReducedSystem& matrix, MatrixForm form, MatrixStage stage);
-  void find_ends(NewtonSystem& system, TermSet set);
+  void find_ends(Diagnosis& system, TermSet set);
 
   const RunConfig& config_;
   ArtifactWriter* artifacts_;

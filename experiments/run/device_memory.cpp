@@ -8,7 +8,8 @@
 
 #include "core/contact/surface.hpp"
 #include "core/exec/counting_executor.hpp"
-#include "core/resident/system/resident_system.hpp"
+#include "core/newton/newton_system.hpp"
+#include "core/resident/system/resident_potential.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {
@@ -77,9 +78,15 @@ DeviceMemory count_device_memory(const RunConfig& config, const Scene& scene, co
     }
     out.bytes_a_row = bytes_a_row(method);
   }
-  resident::ResidentSystem system(std::make_unique<exec::CountingExecutor>(true), scene, method, plan);
-  system.count_memory(expected_contacts(demand, out.contacts, plan.contacts));
-  const exec::MemoryLedger& memory = system.memory();
+  method.make_potential = [](const Scene& of, Method& with, const Plan& parts,
+                             const std::vector<std::uint8_t>& fixed, PhaseClock& clock) {
+    return std::make_unique<resident::ResidentPotential>(std::make_unique<exec::CountingExecutor>(true), of, with,
+                                                         parts, fixed, clock);
+  };
+  NewtonSystem system(scene, method, plan);
+  auto& potential = dynamic_cast<resident::ResidentPotential&>(system.potential());
+  resident::count_memory(system, potential, scene, expected_contacts(demand, out.contacts, plan.contacts));
+  const exec::MemoryLedger& memory = potential.memory();
   out.total = memory.peak();
   out.buffers.assign(memory.at_peak().begin(), memory.at_peak().end());
   std::ranges::stable_sort(out.buffers, std::greater<>{}, &std::pair<std::string, std::size_t>::second);

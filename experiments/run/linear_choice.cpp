@@ -136,7 +136,7 @@ void decide_linear_solver(RunConfig& config) {
   Method method = make_method(config, any);
   method.linear = {};  // any solver will do: nothing is solved
   NewtonSystem system(scene, method);
-  const LinearWork work = linear_work(system.fixed_pattern());
+  const LinearWork work = linear_work(system.diagnosis().fixed_pattern());
   const LinearCost& chosen = model.costs[cheapest(model.costs, work)];
   config.linear_solver.name = chosen.solver;
   if (!chosen.preconditioner.empty())

@@ -45,7 +45,7 @@ std::string cause_of(const std::vector<ConditionSample>& samples, const std::vec
   return "elasticity_and_inertia";
 }
 
-StoredSystem stored_system(const NewtonSystem& system, const ReducedSystem& matrix, const std::string& form,
+StoredSystem stored_system(Diagnosis& system, const ReducedSystem& matrix, const std::string& form,
                            const RunConfig& config, int step, int iteration,
                            const std::vector<ConditionSample>& samples) {
   StoredSystem out;

@@ -18,7 +18,7 @@ std::string cause_of(const std::vector<ConditionSample>& samples, const std::vec
 
 /// @param matrix   solved or exact, as `form` says; copied
 /// @param samples  of the iteration; those of this very matrix become its known cond
-StoredSystem stored_system(const NewtonSystem& system, const ReducedSystem& matrix, const std::string& form,
+StoredSystem stored_system(Diagnosis& system, const ReducedSystem& matrix, const std::string& form,
                            const RunConfig& config, int step, int iteration,
                            const std::vector<ConditionSample>& samples);
 

@@ -4,7 +4,7 @@
 #include "core/integrators/registry.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
-#include "core/resident/system/resident_system.hpp"
+#include "core/resident/system/resident_potential.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/run/device_run.hpp"
 
@@ -82,8 +82,9 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   }
   method.linear = {config.linear_solver.name, config.linear_solver.parameters};
   if (config.device != Device::cpu) {
-    method.make_system = [device = config.device](const Scene& scene, Method& of, const Plan& plan) {
-      return std::make_unique<resident::ResidentSystem>(make_executor(device), scene, of, plan);
+    method.make_potential = [device = config.device](const Scene& scene, Method& of, const Plan& plan,
+                                                     const std::vector<std::uint8_t>& fixed, PhaseClock& clock) {
+      return std::make_unique<resident::ResidentPotential>(make_executor(device), scene, of, plan, fixed, clock);
     };
   }
   return method;

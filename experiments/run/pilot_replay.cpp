@@ -1,7 +1,5 @@
 #include "experiments/run/pilot_replay.hpp"
 
-#include <stdexcept>
-
 namespace bb {
 
 void PilotReplay::begin(const Positions& x, int step) {
@@ -13,17 +11,15 @@ void PilotReplay::begin(const Positions& x, int step) {
 void PilotReplay::find_rows(int step, Refresh refresh) {
   begin(refresh == Refresh::per_step ? start(step) : end(step), step);
   system_.assemble();
-  elastic_ = system_.clamped_values(TermGroup::elastic);
+  elastic_ = diagnosis_.clamped_values(TermGroup::elastic);
   if (refresh != Refresh::per_step) return;
-  system_.prepare(end(step), end(step) - start(step));
-  if (!system_.try_state(end(step))) throw std::logic_error("a state of the pilot is infeasible");
-  system_.accept();
+  system_.go_to(end(step));
 }
 
-NewtonSystem& PilotReplay::assembled(int step) {
+Diagnosis& PilotReplay::assembled(int step) {
   begin(end(step), step);
   system_.assemble();
-  return system_;
+  return diagnosis_;
 }
 
 }  // namespace bb

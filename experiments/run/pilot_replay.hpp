@@ -13,24 +13,25 @@ class PilotReplay {
  public:
   /// Both must outlive it.
   PilotReplay(const Pilot& pilot, const Scene& scene)
-      : pilot_(pilot), method_(make_method(pilot.config, pilot.stiffness)), system_(scene, method_) {}
+      : pilot_(pilot), method_(make_method(pilot.config, pilot.stiffness)), system_(scene, method_),
+        diagnosis_(system_.diagnosis()) {}
 
   /// The rows of the end of this step.
   void find_rows(int step) { begin(end(step), step); }
   /// The same, with the H that a policy of this refresh reads while the step's end is reached. Cost: an assembly.
   void find_rows(int step, Refresh refresh);
   /// All terms at the end of this step. Cost: an assembly.
-  NewtonSystem& assembled(int step);
+  Diagnosis& assembled(int step);
 
   const Positions& start(int step) const { return pilot_.x[static_cast<std::size_t>(step)]; }
   const Positions& end(int step) const { return pilot_.x[static_cast<std::size_t>(step) + 1]; }
   double c(int step) const { return pilot_.c[static_cast<std::size_t>(step)]; }
-  const ContactTable& rows() const { return contact_state(system_.terms()).rows; }
+  const ContactTable& rows() const { return contact_state(diagnosis_.terms()).rows; }
   /// Requires rows.
-  ContactTerm& contact() const { return *system_.terms().find<ContactTerm>(); }
+  ContactTerm& contact() const { return *diagnosis_.terms().find<ContactTerm>(); }
   /// H of the last find_rows with a refresh, and the system whose pattern it has.
   const BlockSystem::Values& elastic() const { return elastic_; }
-  const BlockSystem& blocks() const { return system_.blocks(); }
+  const BlockSystem& blocks() const { return diagnosis_.blocks(); }
 
  private:
   void begin(const Positions& x, int step);
@@ -38,6 +39,7 @@ class PilotReplay {
   const Pilot& pilot_;
   Method method_;
   NewtonSystem system_;
+  Diagnosis& diagnosis_;
   Prediction prediction_;
   BlockSystem::Values elastic_;
 };

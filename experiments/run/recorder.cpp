@@ -51,10 +51,10 @@ void Recorder::on_retry(int step) {
 // Frames and first contacts. A run on a device that is only timed has neither: rows would have to be found again on
 // the CPU.
 void Recorder::look_at_rows(StepSystem& system, const StepReport& report, const Positions& x) {
-  if (!system.is_on_cpu() && !trace_ && !audit_ && !artifacts_) return;
-  const ContactState& contact = contact_state(system.on_cpu().terms());
+  if (!system.is_on_host() && !trace_ && !audit_ && !artifacts_) return;
+  const ContactState& contact = contact_state(system.on_host().diagnosis().terms());
   if (artifacts_ && config_.output.frames_every > 0) {
-    last_.emplace(LastState{report.step, x, contact_fields(contact, system.scene().n_vertices())});
+    last_.emplace(LastState{report.step, x, contact_fields(contact, system.view().scene().n_vertices())});
     if (report.step % config_.output.frames_every == 0) write_last();
   }
   first_contacts_.note(contact, report.step, record_.summary.first_contact);

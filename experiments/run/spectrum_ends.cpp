@@ -23,7 +23,7 @@ double element_energy(std::span<const int> vertex, const double* hess, const Pos
   return sum;
 }
 
-std::string element_name(const NewtonSystem& system, const Term& term, std::size_t family,
+std::string element_name(const Diagnosis& system, const Term& term, std::size_t family,
                          std::size_t element) {
   const Scene& scene = system.scene();
   if (term.group() == TermGroup::contact && family == 0) {
@@ -44,7 +44,7 @@ std::string element_name(const NewtonSystem& system, const Term& term, std::size
 }
 
 /// The parts of lambda: of each term, and of the element with the largest one.
-void add_terms(NewtonSystem& system, TermSet set, const Positions& u, SpectrumEnd& end) {
+void add_terms(Diagnosis& system, TermSet set, const Positions& u, SpectrumEnd& end) {
   double largest = 0, total = 0;
   const Term* holder = nullptr;
   std::size_t holder_family = 0, holder_element = 0;
@@ -97,7 +97,7 @@ void add_vertices(const Scene& scene, const Positions& v, SpectrumEnd& end) {
 
 }  // namespace
 
-std::vector<SpectrumEnd> describe_ends(NewtonSystem& system, TermSet set, const EndVectors& ends) {
+std::vector<SpectrumEnd> describe_ends(Diagnosis& system, TermSet set, const EndVectors& ends) {
   std::vector<SpectrumEnd> out;
   Positions full = Positions::Zero(3, system.x().cols());
   for (const SpectrumSide side : {SpectrumSide::smallest, SpectrumSide::largest}) {

@@ -14,6 +14,6 @@ namespace bb {
 /// u_e, u the unscaled eigenvector, so every element has a part of it.
 /// @param ends  of system.clamped(set), which has to be the last call of `system`
 /// Errors: none.   Cost: O(elements).
-std::vector<SpectrumEnd> describe_ends(NewtonSystem& system, TermSet set, const EndVectors& ends);
+std::vector<SpectrumEnd> describe_ends(Diagnosis& system, TermSet set, const EndVectors& ends);
 
 }  // namespace bb

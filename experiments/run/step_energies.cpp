@@ -3,14 +3,14 @@
 namespace bb {
 
 void fill_energies(const StepSystem& system, StepRecord& step) {
-  const Scene& scene = system.scene();
+  const Scene& scene = system.view().scene();
   step.gravity_J = 0;
   for (std::size_t i = 0; i < scene.mass.size(); ++i) {
-    step.gravity_J -= scene.mass[i] * scene.gravity.dot(system.x().col(static_cast<Eigen::Index>(i)));
+    step.gravity_J -= scene.mass[i] * scene.gravity.dot(system.view().x().col(static_cast<Eigen::Index>(i)));
   }
-  step.elastic_J = system.energy(TermGroup::elastic);
-  step.limit_J = system.energy(TermGroup::limit);
-  step.contact_J = system.energy(TermGroup::contact);
+  step.elastic_J = system.view().energy(TermGroup::elastic);
+  step.limit_J = system.view().energy(TermGroup::limit);
+  step.contact_J = system.view().energy(TermGroup::contact);
 }
 
 }  // namespace bb

@@ -87,7 +87,7 @@ StepTrial run_step(const Study& study, const Start& start, StepHessian hessian, 
   out.tolerance_m = method.step_solver.tol_velocity * study.config.time.dt;
   out.error_estimate_m = watch.estimate_;
   out.dx_inf_m = watch.dx_;
-  out.contacts = contact_state(simulation.system().terms()).size();
+  out.contacts = contact_state(simulation.system().diagnosis().terms()).size();
   out.state_hash = state_hash(x);
   return out;
 }

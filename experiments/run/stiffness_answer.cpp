@@ -9,7 +9,7 @@ namespace bb {
 namespace {
 
 // The gradient of the terms of these groups at the iterate, N.
-Positions gradient_of(const NewtonSystem& system, TermSet set) {
+Positions gradient_of(const Diagnosis& system, TermSet set) {
   Positions out = Positions::Zero(3, system.x().cols());
   for (const auto& term : system.terms()) {
     if (!set.has(term->group())) continue;
@@ -36,7 +36,7 @@ ReducedSystem with_inertia(ReducedSystem matrix, const std::vector<double>& mass
 }
 
 // How the quasi-static state moves with the factor s; false where no factor was found even with all inertia.
-bool response(NewtonSystem& system, const Positions& push, double dt, Positions& dx) {
+bool response(Diagnosis& system, const Positions& push, double dt, Positions& dx) {
   const TermSet set = TermSet(TermGroup::elastic) | TermGroup::limit | TermGroup::contact;
   const ReducedSystem matrix = system.clamped(set);
   VecXd rhs, solution;
@@ -108,7 +108,7 @@ double AnswerSums::of_contact(const ContactTable& rows, std::size_t row) const {
   return weights > 0 ? sum / weights : 0;
 }
 
-StiffnessAnswers answers_to_stiffness(NewtonSystem& system, StrainLimitBatch* limit,
+StiffnessAnswers answers_to_stiffness(Diagnosis& system, StrainLimitBatch* limit,
                                       const BarrierFunction& limit_barrier, double dt) {
   StiffnessAnswers out;
   const ContactTable& rows = contact_state(system.terms()).rows;

@@ -58,7 +58,7 @@ double smaller_gap(const StrainLimitBatch& limit, std::size_t element);
 /// @param limit  the limited elements of the scene, or null; measured anew
 /// @param dt     s
 /// Cost: an assembly of clamped elements, a factorisation, a solve; none without an active barrier.
-StiffnessAnswers answers_to_stiffness(NewtonSystem& system, StrainLimitBatch* limit,
+StiffnessAnswers answers_to_stiffness(Diagnosis& system, StrainLimitBatch* limit,
                                       const BarrierFunction& limit_barrier, double dt);
 
 }  // namespace bb

@@ -24,19 +24,20 @@ class Disturbed {
     const Positions x = x_ + Eigen::Map<const Positions>(move.data(), 3, x_.cols());
     system_.begin_step(x, prediction_, 0.01, 1);
     system_.assemble();
-    return Eigen::Map<const VecXd>(system_.gradient().data(), system_.gradient().size());
+    return Eigen::Map<const VecXd>(system_.view().gradient().data(), system_.view().gradient().size());
   }
   /// E(x + move) - E(x), J; after gradient(0).
   double change(const VecXd& move) {
     const Positions x = x_ + Eigen::Map<const Positions>(move.data(), 3, x_.cols());
     const Positions dx = x - x_;
-    system_.prepare(x, dx);
-    const auto change = system_.try_state(x);
+    system_.set_direction(dx);
+    system_.prepare_motion(MotionEnd::free, false);
+    const auto change = system_.try_motion(1);
     return change ? change->change : std::nan("");
   }
   Eigen::Index size() const { return x_.size(); }
-  NewtonSystem& system() { return system_; }
-  std::size_t contacts() { return contact_state(system_.terms()).rows.size(); }
+  Diagnosis& diagnosis() { return system_.diagnosis(); }
+  std::size_t contacts() { return contact_state(diagnosis().terms()).rows.size(); }
   VecXd unit(Eigen::Index i) const { return VecXd::Unit(size(), i); }
 
  private:
@@ -79,7 +80,7 @@ void check_gradient(BlockCheck& check) {
 void check_hessian(BlockCheck& check) {
   Disturbed at;
   if (no_contact(at, check)) return;
-  const Eigen::SparseMatrix<double> symmetric = at.system().exact().lower.selfadjointView<Eigen::Lower>();
+  const Eigen::SparseMatrix<double> symmetric = at.diagnosis().exact().lower.selfadjointView<Eigen::Lower>();
   const Eigen::MatrixXd hessian = symmetric;
   const Eigen::MatrixXd error = differences(at) - hessian;
   const double largest = hessian.cwiseAbs().maxCoeff();

@@ -22,7 +22,7 @@ class Comparison final : public StepObserver {
  public:
   void on_matrix(StepSystem& step_system, int step, int iteration) override {
     if (iteration % 2 != 0) return;
-    NewtonSystem& system = step_system.on_cpu();
+    NewtonSystem& system = step_system.on_host();
     with_contact += system.active(TermGroup::contact);
     const ReducedSystem& matrix = system.solved();
     for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {

@@ -46,7 +46,7 @@ inline Method method_with(StepHessian hessian, double tol_velocity = 1e-6) {
 class Watch final : public StepObserver {
  public:
   void on_matrix(StepSystem& step_system, int, int) override {
-    NewtonSystem& system = step_system.on_cpu();
+    NewtonSystem& system = step_system.on_host();
     differ += system.solved_is_clamped() ? 0 : 1;
     contacts = std::max(contacts, rows_of(system).size());
   }

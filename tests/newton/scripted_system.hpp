@@ -115,7 +115,7 @@ class ScriptedSystem final : public StepSystem {
   void report_end(StepNumbers&) const override {}
   void report_overload(bool, StepNumbers&) override {}
   std::string describe_non_finite() const override { return {}; }
-  NewtonSystem& on_cpu() override { throw std::logic_error("a script has no matrices"); }
+  NewtonSystem& on_host() override { throw std::logic_error("a script has no matrices"); }
 
  private:
   const ScriptedIteration& now() const { return script_[static_cast<std::size_t>(std::max(place_, 0))]; }

@@ -14,7 +14,7 @@ using namespace test;
 class Spectrum final : public StepObserver {
  public:
   void on_matrix(StepSystem& step_system, int, int) override {
-    NewtonSystem& system = step_system.on_cpu();
+    NewtonSystem& system = step_system.on_host();
     const Eigen::MatrixXd full = Eigen::MatrixXd(system.exact().lower).selfadjointView<Eigen::Lower>();
     smallest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full, Eigen::EigenvaluesOnly).eigenvalues()[0];
     contacts = std::max(contacts, rows_of(system).size());

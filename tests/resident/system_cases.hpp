@@ -170,10 +170,10 @@ inline void expect_same_end(const RunEnd& resident, const RunEnd& cpu, double to
 /// The run on the CPU path, after comparing it with that of the resident pipeline.
 inline RunEnd expect_same_run(const Scene& scene, const std::function<Method()>& method, int steps,
                               double tolerance) {
-  Method on_cpu = method(), resident = method();
-  use_resident_solver(on_cpu);
+  Method on_host = method(), resident = method();
+  use_resident_solver(on_host);
   run_resident(resident);
-  RunEnd cpu = run_steps(scene, std::move(on_cpu), steps);
+  RunEnd cpu = run_steps(scene, std::move(on_host), steps);
   expect_same_end(run_steps(scene, std::move(resident), steps), cpu, tolerance);
   EXPECT_GT((cpu.x - scene.x0).cwiseAbs().maxCoeff(), 1e-3);
   return cpu;

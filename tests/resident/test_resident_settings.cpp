@@ -84,12 +84,12 @@ Scene held_sheet() {
 }
 
 TEST(ResidentSettings, LoadStepsWithoutInertia) {
-  Method on_cpu = test::fixed_method("cubic", 20, "quasi_static"),
+  Method on_host = test::fixed_method("cubic", 20, "quasi_static"),
          resident = test::fixed_method("cubic", 20, "quasi_static");
-  test::use_resident_solver(on_cpu);
+  test::use_resident_solver(on_host);
   test::run_resident(resident);
   const Scene scene = held_sheet();
-  Simulation cpu(scene, on_cpu, 0.01, 8), ours(scene, resident, 0.01, 8);
+  Simulation cpu(scene, on_host, 0.01, 8), ours(scene, resident, 0.01, 8);
   for (int part = 0; part < 2; ++part) {  // at 3/8 and 6/8 of the load
     const RunEnd expected = test::run_steps(cpu, 3);
     test::expect_same_end(test::run_steps(ours, 3), expected, tolerance);
@@ -172,13 +172,13 @@ TEST(ResidentSettings, StiffnessOfTheStrainLimit) {
 TEST(ResidentSettings, InexactSolvesAndClusters) {
   for (const char* preconditioner : {"block_jacobi", "schwarz"}) {
     SCOPED_TRACE(preconditioner);
-    Method on_cpu = cubic(), resident = cubic();
-    test::use_resident_solver(on_cpu);
+    Method on_host = cubic(), resident = cubic();
+    test::use_resident_solver(on_host);
     test::run_resident(resident);
     resident.linear.parameters["resident_preconditioner"] = std::string(preconditioner);
     resident.linear.parameters["forcing"] = std::string("eisenstat_walker");
     const Scene scene = test::cloth_on_plate();
-    const RunEnd cpu = test::run_steps(scene, std::move(on_cpu), 8);
+    const RunEnd cpu = test::run_steps(scene, std::move(on_host), 8);
     test::expect_same_end(test::run_steps(scene, std::move(resident), 8), cpu, 10 * tolerance);
   }
 }

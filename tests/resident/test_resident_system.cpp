@@ -137,7 +137,7 @@ TEST(ResidentSystem, ShowsItsStateToTheCpu) {
   ASSERT_TRUE(both.resident.try_motion(0.5 * both.resident.bound_motion(report)).has_value());
   both.resident.accept();
   both.resident.assemble();
-  NewtonSystem& seen = both.resident.on_cpu();
+  NewtonSystem& seen = both.resident.on_host();
   EXPECT_EQ(seen.x(), both.resident.x());
   EXPECT_GT(contact_state(seen.terms()).size(), 0u);
   EXPECT_LT(relative(both.resident.gradient(), seen.gradient()), 1e-13);
@@ -208,7 +208,7 @@ std::map<std::set<int>, std::pair<double, double>> sums_of(const Scene& scene,
 class CompareWithCpu final : public StepObserver {
  public:
   void on_step(StepSystem& system, const StepReport& report, const Positions&) override {
-    NewtonSystem& seen = system.on_cpu();
+    NewtonSystem& seen = system.on_host();
     EXPECT_EQ(seen.x(), system.x());
     for (const TermGroup group : {TermGroup::elastic, TermGroup::limit, TermGroup::contact}) {
       const double own = system.energy(group);

@@ -1,5 +1,5 @@
 // The kernels of core/resident/system, each against a plain loop.
-#include "core/resident/system/system_kernels.hpp"
+#include "core/resident/sums/vector_kernels.hpp"
 
 #include <gtest/gtest.h>
 

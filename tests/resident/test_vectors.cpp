@@ -1,5 +1,5 @@
 // Vector operations of a Newton iteration on an executor, against loops.
-#include "core/resident/elements/vectors.hpp"
+#include "core/resident/sums/vectors.hpp"
 
 #include <gtest/gtest.h>
 

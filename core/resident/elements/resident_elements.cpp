@@ -4,7 +4,7 @@
 
 #include "core/math/error.hpp"
 #include "core/math/lower_blocks.hpp"
-#include "core/resident/elements/vector_kernels.hpp"
+#include "core/resident/sums/vector_kernels.hpp"
 
 namespace bb::resident {
 

@@ -3,4 +3,4 @@
 
 #include "core/resident/sums/sum_kernels.hpp"
 #include "core/resident/system/row_totals.hpp"
-#include "core/resident/system/system_kernels.hpp"
+#include "core/resident/sums/vector_kernels.hpp"

@@ -1,10 +1,10 @@
-// What is said of a state: numbers of rows in one pass, everything else through the CPU's view of it.
+// What is said of a state: numbers of rows in one pass.
 #include <array>
 #include <cmath>
 
 #include "core/archive/archive.hpp"
 #include "core/contact/contact_row.hpp"
-#include "core/resident/system/resident_system.hpp"
+#include "core/resident/system/resident_potential.hpp"
 #include "core/terms/contact.hpp"
 
 namespace bb::resident {
@@ -48,31 +48,24 @@ void fill(const RowTotals& rows, Numbers& out) {
 
 }  // namespace
 
-double ResidentSystem::energy() const {
+double ResidentPotential::energy(TermSet set, const Column& x) {
   sum_.clear();
-  elements_.add_energy(TermSet::all(), x_.data(), sum_);
+  elements_.add_energy(set, x.data(), sum_);
   const double fixed = sum_.get().value();
-  return contact_ ? fixed + contact_->energy(x_).value() : fixed;
+  return contact_ && set.has(TermGroup::contact) ? fixed + contact_->energy(x).value() : fixed;
 }
 
-double ResidentSystem::energy(TermGroup group) const {
-  if (group == TermGroup::contact) return contact_ ? contact_->energy(x_).value() : 0;
-  sum_.clear();
-  elements_.add_energy(group, x_.data(), sum_);
-  return sum_.get().value();
-}
-
-RowTotals ResidentSystem::row_totals() const {
-  const RowView rows = contact_->rows(x_).view();
+RowTotals ResidentPotential::row_totals(const Column& x) {
+  const RowView rows = contact_->rows(x).view();
   row_totals_.clear();
   row_totals_.add(rows.n, TotalsOfRows{rows});
   return row_totals_.get();
 }
 
-void ResidentSystem::report(IterateNumbers& out) const {
+void ResidentPotential::report(const Column& x, IterateNumbers& out) {
   if (plan_.term("strain_limit").needed) {
     const ScopedPhase timer(clock(), Phase::strain_limit);
-    const LimitNumbers limit = elements_.limit_numbers(x_.data());
+    const LimitNumbers limit = elements_.limit_numbers(x.data());
     out.max_stretch = limit.max_stretch;
     out.limit_load_max_N_per_m = limit.load_max;
     out.limit_kappa_change_rel = limit_kappa_change_;
@@ -80,61 +73,52 @@ void ResidentSystem::report(IterateNumbers& out) const {
   }
   if (!contact_) return;
   out.kappa_change_rel = contact_->kappa_change();
-  if (contact_->rows(x_).size() == 0) return;
-  const RowTotals rows = row_totals();
+  if (contact_->rows(x).size() == 0) return;
+  const RowTotals rows = row_totals(x);
   fill(rows, out);
-  out.gap_min_iterates_m = contact_->rows(x_).min_gap;
+  out.gap_min_iterates_m = contact_->rows(x).min_gap;
   out.gap_min_iterates_rel = smallest_of(rows.gap_rel_min);
   out.contact_curvature_max_N_per_m = largest_of(rows.curvature_max);
 }
 
-void ResidentSystem::report_end(StepNumbers& out) const {
+void ResidentPotential::report_end(const Column& x, StepNumbers& out) {
   if (plan_.term("strain_limit").needed) {
-    const LimitNumbers limit = elements_.limit_numbers(x_.data());
+    const LimitNumbers limit = elements_.limit_numbers(x.data());
     out.max_stretch = limit.max_stretch;
     out.limit_load_max_N_per_m = limit.load_max;
   }
-  if (!contact_ || contact_->rows(x_).size() == 0) return;
-  const RowTotals rows = row_totals();
+  if (!contact_ || contact_->rows(x).size() == 0) return;
+  const RowTotals rows = row_totals(x);
   fill(rows, out);
   out.contact_load_sum_N = rows.load.value();
-  list_loads(contact_->rows(x_).on_host(), out.contact_loads);
-  out.gap_min_m = contact_->rows(x_).min_gap;
+  list_loads(contact_->rows(x).on_host(), out.contact_loads);
+  out.gap_min_m = contact_->rows(x).min_gap;
   out.gap_min_rel = smallest_of(rows.gap_rel_min);
-  const double largest = vectors_.max(x_);
-  out.gap_min_ulps = contact_->rows(x_).min_gap / (std::nextafter(largest, 2 * largest) - largest);
+  const double largest = vectors_.max(x);
+  out.gap_min_ulps = contact_->rows(x).min_gap / (std::nextafter(largest, 2 * largest) - largest);
 }
 
-void ResidentSystem::report_overload(bool with_direction, StepNumbers& out) {
-  Positions dx = Positions::Zero(3, x().cols());
-  if (with_direction) dx_.download({dx.data(), static_cast<std::size_t>(dx.size())});
-  static_cast<const NewtonSystem&>(on_cpu()).report_overload(dx, out);
-}
-
-std::string ResidentSystem::describe_non_finite() const {
+std::string ResidentPotential::describe_non_finite() {
   const ResidentElements::BadElement bad = elements_.first_not_finite();
-  if (bad.element >= 0) return "element " + std::to_string(bad.element) + " of term " + std::string(bad.term);
-  if (const Index i = vectors_.first_not_finite(g_); i >= 0)
-    return "gradient at vertex " + std::to_string(i / 3);
-  if (const Index i = vectors_.first_not_finite(dx_); i >= 0)
-    return "direction at vertex " + std::to_string(i / 3);
-  return "a sum over all vertices";
+  if (bad.element < 0) return {};
+  return "element " + std::to_string(bad.element) + " of term " + std::string(bad.term);
 }
 
-// Memory of the terms from step to step, in the order of NewtonSystem::keep, which reads it; park, which is read of the
+KnownStiffness ResidentPotential::known_stiffness() const {
+  return contact_ ? contact_->stiffness().known() : KnownStiffness();
+}
+
+// Memory of the terms from step to step, in the order of HostPotential::keep, which reads it; park, which is read of the
 // later of two step ends only, is 0.
-void ResidentSystem::keep(Archive& archive) {
-  for (const auto& term : cpu().terms()) {
-    archive.section(term->name());
-    if (contact_ && term->group() == TermGroup::contact) {
-      keep_contact(archive);
-    } else {
-      term->keep(archive);
-    }
+void ResidentPotential::keep(Archive& archive) {
+  for (std::size_t i = 0; i < plan_.terms.size(); ++i) {
+    if (!plan_.terms[i].needed) continue;
+    archive.section(term_entries()[i].name);
+    if (contact_ && term_entries()[i].name == std::string_view("contact")) keep_contact(archive);
   }
 }
 
-void ResidentSystem::keep_contact(Archive& archive) {
+void ResidentPotential::keep_contact(Archive& archive) {
   bool started = contact_->policy_started();
   std::vector<Key> pair;
   std::vector<double> gap;
@@ -149,29 +133,6 @@ void ResidentSystem::keep_contact(Archive& archive) {
   pair.clear(), gap.clear();
   for (const PairGap& each : gaps) pair.push_back(each.pair), gap.push_back(each.gap);
   contact_->step_end_gaps().upload(pair, gap);
-}
-
-// The clusters of a preconditioner go with the pattern that they were made for.
-void ResidentSystem::drop_caches() {
-  contact_matrix_ = {};
-  ++pattern_id_;
-}
-
-NewtonSystem& ResidentSystem::cpu() {
-  if (!cpu_) cpu_ = std::make_unique<NewtonSystem>(scene_, method_, plan_);
-  return *cpu_;
-}
-
-NewtonSystem& ResidentSystem::on_cpu() {
-  Archive memory;
-  keep(memory);
-  Archive again(memory.bytes());
-  cpu().keep(again);
-  KnownStiffness known;
-  if (contact_) known = contact_->stiffness().known();
-  cpu().adopt({x_start_, prediction_.x_tilde, frame_.dt, prediction_.c, frame_.load_factor}, x(), target_,
-              level_, known);
-  return cpu();
 }
 
 }  // namespace bb::resident

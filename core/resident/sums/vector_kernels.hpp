@@ -76,14 +76,44 @@ struct RoundingSize {
   const double *dx, *x;     // [3 n] m
   const double* body_size;  // [n] m
   const FixedMask* fixed;
+  double epsilon;  // relative rounding of a coordinate
   bool within;
   BB_HD Key operator()(Index i) const {
     const Index v = i / 3;
     if (is_fixed(fixed[v], static_cast<int>(i % 3))) return largest_key(0);
-    const double epsilon = std::numeric_limits<double>::epsilon();
     const bool rounding = within_coordinate_rounding(dx[i], x + 3 * v, body_size[v], epsilon);
     using std::abs;
     return largest_key(rounding == within ? abs(dx[i]) : 0);
+  }
+};
+
+/// b = -(g + lifted); lifted may be null.
+struct RightHandSide {
+  const double *g, *lifted;
+  double* b;
+  BB_HD void operator()(Index i) const { b[i] = -(lifted ? g[i] + lifted[i] : g[i]); }
+};
+
+/// y += x.
+struct AddColumn {
+  const double* x;
+  double* y;
+  BB_HD void operator()(Index i) const { y[i] += x[i]; }
+};
+
+/// y *= factor.
+struct ScaleColumn {
+  double factor;
+  double* y;
+  BB_HD void operator()(Index i) const { y[i] *= factor; }
+};
+
+/// Largest length of a column of three numbers.
+struct ColumnNorms {
+  const double* x;
+  BB_HD Key operator()(Index v) const {
+    using std::sqrt;
+    return largest_key(sqrt(x[3 * v] * x[3 * v] + x[3 * v + 1] * x[3 * v + 1] + x[3 * v + 2] * x[3 * v + 2]));
   }
 };
 

@@ -1,4 +1,4 @@
-#include "core/resident/elements/vectors.hpp"
+#include "core/resident/sums/vectors.hpp"
 
 namespace bb::resident {
 
@@ -33,7 +33,10 @@ void VectorTools::move(const Buffer<double>& x, const Buffer<double>& dx, double
                        Buffer<double>& trial) {
   trial.resize(x.size());
   executor_.each(x.size(), MoveAlong{x.data(), dx.data(), alpha, trial.data()});
-  if (alpha != 1) return;
+}
+
+void VectorTools::move_to_targets(const Buffer<double>& x, const Buffer<double>& dx, Buffer<double>& trial) {
+  move(x, dx, 1, trial);
   executor_.each(pin_vertex_.size(), PlacePins{pin_vertex_.data(), pin_target_.data(), trial.data()});
 }
 
@@ -55,9 +58,15 @@ double VectorTools::free_max(const Buffer<double>& column) {
 }
 
 double VectorTools::rounding_max(const Buffer<double>& dx, const Buffer<double>& x,
-                                 const Buffer<double>& body_size, bool within) {
+                                 const Buffer<double>& body_size, double epsilon, bool within) {
   least_.clear();
-  least_.add(dx.size(), RoundingSize{dx.data(), x.data(), body_size.data(), fixed_.data(), within});
+  least_.add(dx.size(), RoundingSize{dx.data(), x.data(), body_size.data(), fixed_.data(), epsilon, within});
+  return least_.largest();
+}
+
+double VectorTools::vertex_max(const Buffer<double>& column) {
+  least_.clear();
+  least_.add(column.size() / 3, ColumnNorms{column.data()});
   return least_.largest();
 }
 

@@ -4,7 +4,7 @@
 #include <span>
 #include <vector>
 
-#include "core/resident/elements/vector_kernels.hpp"
+#include "core/resident/sums/vector_kernels.hpp"
 #include "core/resident/sums/resident_sum.hpp"
 #include "core/scene/scene.hpp"
 
@@ -22,7 +22,9 @@ class VectorTools {
 
   /// Where prescribed vertices have to be at the end of the step; target: [3 x n], read at pins only.
   void set_targets(const Positions& target);
-  /// trial = x + alpha dx; at alpha = 1 prescribed vertices are exactly on target.
+  /// trial = x + dx, prescribed vertices exactly on target.
+  void move_to_targets(const Buffer<double>& x, const Buffer<double>& dx, Buffer<double>& trial);
+  /// trial = x + alpha dx.
   void move(const Buffer<double>& x, const Buffer<double>& dx, double alpha, Buffer<double>& trial);
   /// dx of prescribed vertices = target - x.
   void set_pin_motion(const Buffer<double>& x, Buffer<double>& dx);
@@ -32,9 +34,11 @@ class VectorTools {
   /// Largest |value| over free degrees of freedom; NaN where one is no number.
   double free_max(const Buffer<double>& column);
   /// Largest |dx| over the free degrees of freedom that are within the rounding of their vertex at x, or over the
-  /// others (core/math/rounding_room.hpp). body_size: [n] m.
+  /// others (core/math/rounding_room.hpp). body_size: [n] m. epsilon: of a coordinate.
   double rounding_max(const Buffer<double>& dx, const Buffer<double>& x, const Buffer<double>& body_size,
-                      bool within);
+                      double epsilon, bool within);
+  /// Largest length of the three numbers of a vertex.
+  double vertex_max(const Buffer<double>& column);
   /// Largest |value| over all.
   double max(const Buffer<double>& column);
   /// Over free degrees of freedom: value() is a . b.

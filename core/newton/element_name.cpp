@@ -1,16 +1,19 @@
 // Where numbers that are no numbers began: for the message of a step that ended with them.
+#include "core/newton/element_name.hpp"
+
 #include <algorithm>
 #include <cmath>
 
-#include "core/newton/newton_system.hpp"
+
 
 namespace bb {
-namespace {
 
-std::string vertex_name(const Scene& scene, int v) {
-  const Body& body = scene.bodies[static_cast<std::size_t>(scene.body[static_cast<std::size_t>(v)])];
-  return body.name + "[" + std::to_string(v - body.first_vertex) + "]";
+std::string vertex_name(const Scene& scene, int vertex) {
+  const Body& body = scene.bodies[static_cast<std::size_t>(scene.body[static_cast<std::size_t>(vertex)])];
+  return body.name + "[" + std::to_string(vertex - body.first_vertex) + "]";
 }
+
+namespace {
 
 /// Whether any of the numbers of element e, of which `list` has n for all, is not finite.
 bool broken(const std::vector<double>& list, std::size_t e, std::size_t n) {
@@ -40,28 +43,18 @@ std::string element_name(const Scene& scene, const Stencils& stencils, int eleme
   return out;
 }
 
-/// The first vertex of which a column is not finite, -1 without one.
-int broken_vertex(const Positions& columns) {
-  for (Eigen::Index v = 0; v < columns.cols(); ++v) {
-    if (!columns.col(v).allFinite()) return static_cast<int>(v);
-  }
-  return -1;
-}
-
 }  // namespace
 
-std::string NewtonSystem::describe_non_finite(const Positions& dx) const {
-  for (const auto& term : terms_) {
+std::string broken_element_name(const Scene& scene, const TermList& terms) {
+  for (const auto& term : terms) {
     for (const TermFamily& family : term->families()) {
       const int element = broken_element(family);
       if (element < 0) continue;
       return "element " + std::to_string(element) + " of term " + std::string(term->name()) + " (" +
-             element_name(scene_, family.stencils, element) + ")";
+             element_name(scene, family.stencils, element) + ")";
     }
   }
-  if (const int v = broken_vertex(gradient_); v >= 0) return "gradient at vertex " + vertex_name(scene_, v);
-  if (const int v = broken_vertex(dx); v >= 0) return "direction at vertex " + vertex_name(scene_, v);
-  return "a sum over all vertices";
+  return {};
 }
 
 }  // namespace bb

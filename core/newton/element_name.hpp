@@ -1,0 +1,17 @@
+// Names of vertices and elements, for messages of a step that ended with numbers that are no numbers.
+#pragma once
+
+#include <string>
+
+#include "core/scene/scene.hpp"
+#include "core/terms/term.hpp"
+
+namespace bb {
+
+/// BODY[number of the vertex in it].
+std::string vertex_name(const Scene& scene, int vertex);
+/// The first element of which an energy, a gradient or a Hessian is not finite, with its term and its vertices; empty
+/// without one.
+std::string broken_element_name(const Scene& scene, const TermList& terms);
+
+}  // namespace bb

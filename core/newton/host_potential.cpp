@@ -1,0 +1,151 @@
+// Steps, energies and motions. The matrix is in host_matrix.cpp.
+#include "core/newton/host_potential.hpp"
+
+#include <algorithm>
+
+#include "core/archive/archive.hpp"
+#include "core/contact/kappa_memory.hpp"
+#include "core/newton/element_name.hpp"
+
+namespace bb {
+
+HostPotential::HostPotential(const Scene& scene, Method& method, const Plan& plan,
+                             const std::vector<std::uint8_t>& fixed, PhaseClock& clock)
+    : IncrementalPotential(clock),
+      scene_(scene),
+      plan_(plan),
+      precision_(method.precision),
+      terms_(make_terms(plan, {scene, method, plan.contacts, fixed})),
+      blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed)),
+      solver_(make_linear_solver(plan.linear)) {
+  set_fixed_families(method);
+}
+
+// Families that come and go are numbered apart from those that stay.
+void HostPotential::set_fixed_families(const Method& method) {
+  std::vector<Stencils> families;
+  std::size_t n_changing = 0;
+  for (const auto& term : terms_) {
+    const bool fixed = term->fixed_stencils();
+    slots_.push_back(
+        {term.get(), fixed ? families.size() : n_changing, method.hessian_of(term->name()), false});
+    matrix_order_.push_back(matrix_order_.size());
+    if (!fixed) {
+      n_changing += term->families().size();
+      continue;
+    }
+    for (const TermFamily& family : term->families()) families.push_back(family.stencils);
+  }
+  blocks_->set_elements(families);
+  std::stable_partition(matrix_order_.begin(), matrix_order_.end(),
+                        [this](std::size_t i) { return slots_[i].term->group() == TermGroup::elastic; });
+}
+
+void HostPotential::begin_step(const StepColumns& step) {
+  frame_ = {points(step.x_n), points(step.x_tilde), step.dt, step.c, step.load_factor};
+  solver_->begin_step();
+  for (const auto& term : terms_) term->begin_step(frame_, clock());
+}
+
+void HostPotential::change_step(const StepColumns& step) {
+  frame_.x_tilde = points(step.x_tilde);
+  frame_.dt = step.dt;
+  frame_.c = step.c;
+  for (const auto& term : terms_) term->change_frame(frame_);
+}
+
+void HostPotential::end_step() {
+  for (const auto& term : terms_) term->end_step(clock());
+}
+
+void HostPotential::keep(Archive& archive) {
+  for (const auto& term : terms_) {
+    archive.section(term->name());
+    term->keep(archive);
+  }
+}
+
+void HostPotential::keep_solver(Archive& archive) {
+  archive.section("linear solver");
+  blocks_->keep(archive);
+  solver_->keep(archive);
+}
+
+void HostPotential::drop_caches() {
+  solver_ = make_linear_solver(plan_.linear);
+  blocks_->set_contacts({});
+}
+
+void HostPotential::adopt(const KnownStiffness& known) {
+  for (const auto& term : terms_) term->adopt(known);
+}
+
+void HostPotential::adopt(const HostPotential& other) {
+  for (std::size_t i = 0; i < slots_.size(); ++i) slots_[i].term->adopt_from(*other.slots_[i].term);
+}
+
+void HostPotential::prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) {
+  for (const auto& term : terms_) term->prepare({points(x0), points(x1), points(dx), to_bound}, clock());
+}
+
+double HostPotential::bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {
+  double smallest = 1;
+  holder_ = nullptr;
+  for (const auto& term : terms_) {
+    const double said = term->bound({points(x0), points(x1), points(dx)}, report, clock());
+    const double alpha = said >= 0 ? said : 0;  // what is no number proves nothing
+    if (!(alpha < 1) || alpha > smallest) continue;
+    smallest = alpha;
+    holder_ = term.get();
+  }
+  return smallest;
+}
+
+bool HostPotential::make_room(const Column& x, const Column& dx, double bound, Column& force) {
+  force.fill_zero();
+  bool held = false;
+  for (const auto& term : terms_) {
+    held = term->add_detour(points(x), points(dx), bound, points(force)) || held;
+  }
+  return held;
+}
+
+void HostPotential::round(Column& x) { round_state(precision_, points(x)); }
+
+std::optional<EnergyChange> HostPotential::try_state(const Column& x, const Column& trial, const Column& g) {
+  for (const auto& term : terms_) {
+    if (!term->admits(points(trial), clock())) return std::nullopt;
+  }
+  for (const auto& term : terms_) term->evaluate(points(trial), context(points(g)));
+  return sums_.change(terms_, points(x), points(trial));
+}
+
+void HostPotential::accept() {
+  for (const auto& term : terms_) term->accept(clock());
+}
+
+double HostPotential::energy(TermSet set, const Column&) { return total_energy(terms_, set); }
+
+void HostPotential::report(const Column& x, IterateNumbers& out) {
+  for (const auto& term : terms_) term->report(points(x), out, clock());
+}
+
+void HostPotential::report_end(const Column& x, StepNumbers& out) {
+  for (const auto& term : terms_) term->report_end(points(x), out, clock());
+}
+
+void HostPotential::report_overload(const Column& x, const Column& g, const Column& dx, StepNumbers& out) {
+  Positions own;
+  for (const Slot& slot : slots_) {
+    own.setZero(3, points(x).cols());
+    add_families(slot, own);
+    const Positions others = points(g) - own;
+    slot.term->report_overload(points(x), others, points(dx), out);
+  }
+}
+
+std::string HostPotential::describe_non_finite() { return broken_element_name(scene_, terms_); }
+
+KnownStiffness HostPotential::known_stiffness() const { return {}; }
+
+}  // namespace bb

@@ -1,0 +1,121 @@
+// E as a list of terms in the host's memory (core/terms). It knows no term by name.
+#pragma once
+
+#include <functional>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "core/exec/host_executor.hpp"
+#include "core/linear/block_system.hpp"
+#include "core/linear/linear_solver.hpp"
+#include "core/newton/energy_sum.hpp"
+#include "core/newton/incremental_potential.hpp"
+#include "core/newton/method.hpp"
+#include "core/scene/scene.hpp"
+#include "core/terms/plan.hpp"
+#include "core/terms/term.hpp"
+
+namespace bb {
+
+/// A column of the host's memory as points; nothing is copied.
+inline PositionsView points(const Column& column) { return {column.data(), column.size() / 3}; }
+inline PositionsSpan points(Column& column) { return {column.data(), column.size() / 3}; }
+
+class HostPotential final : public IncrementalPotential {
+ public:
+  /// All arguments must outlive it. fixed: [3 n] prescribed or locked degrees of freedom.
+  HostPotential(const Scene& scene, Method& method, const Plan& plan, const std::vector<std::uint8_t>& fixed,
+                PhaseClock& clock);
+  exec::Executor& executor() override { return executor_; }
+
+  void begin_step(const StepColumns& step) override;
+  void change_step(const StepColumns& step) override;
+  void end_step() override;
+  void keep(Archive& archive) override;
+  void keep_solver(Archive& archive) override;
+  void drop_caches() override;
+  /// The step that has begun is that of another potential: stiffness that is frozen there is known here.
+  void adopt(const KnownStiffness& known);
+  void adopt(const HostPotential& other);
+
+  void linearise(const Column& x, Column& g) override;
+  bool pattern_changed() const override { return pattern_changed_; }
+  void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;
+  void fill_exact(const Column& x, const Column& force) override;
+  double add_tikhonov(double relative, double absolute) override;
+  double multiply(const Column& v, Column& out) override;
+  void add_given_motion(const Column& x, const Column& motion, Column& force) override;
+  void solve(const Column& b, Column& step, SolveReport& report) override;
+  Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b, Column& step,
+                       Column& direction) override;
+  std::size_t nnz() const override { return nnz_; }
+
+  void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) override;
+  double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
+  std::string describe_bound() const override { return holder_ ? holder_->describe_bound() : std::string(); }
+  bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
+  void round(Column& x) override;
+  std::optional<EnergyChange> try_state(const Column& x, const Column& trial, const Column& g) override;
+  void accept() override;
+
+  double energy(TermSet set, const Column& x) override;
+  void report(const Column& x, IterateNumbers& out) override;
+  void report_end(const Column& x, StepNumbers& out) override;
+  std::string describe_non_finite() override;
+  KnownStiffness known_stiffness() const override;
+  /// How many times the largest force of a bounded barrier the loads of a step without progress are. dx: the Newton
+  /// direction at x, or 0.
+  void report_overload(const Column& x, const Column& g, const Column& dx, StepNumbers& out);
+
+ private:
+  friend class Diagnosis;
+  /// Where the families of a term are in the block system, whose families are fixed or changing.
+  struct Slot {
+    Term* term;
+    std::size_t first;
+    StepHessian hessian;
+    bool clamped;  // the term's clamped Hessians are those of this iterate
+  };
+  void set_fixed_families(const Method& method);
+  bool set_changing_families();
+  TermContext context(const PositionsView& gradient, StepHessian hessian = StepHessian::clamped) const {
+    return {*blocks_, elastic_, gradient, first_projection(hessian), clock()};
+  }
+  void linearise(Slot& slot, const Column& x, const Column& g);
+  void add_families(const Slot& slot, PositionsSpan gradient) const;
+  void add_gradient(const Slot& slot, Column& g);
+  void clamp(Slot& slot);
+  void clamp(TermSet set);
+  template <class HessianOf>
+  void sum_matrices(TermSet set, const HessianOf& hessian_of);
+  void sum_clamped(TermSet set);
+  static std::span<const double> clamped_hessians(const Slot& slot, const TermFamily& family);
+  void sum_exact();
+  void keep_point(const Column& x);
+
+  exec::HostExecutor executor_;
+  const Scene& scene_;
+  const Plan& plan_;
+  const Precision precision_;
+  TermList terms_;
+  std::vector<Slot> slots_;                // one a term
+  std::vector<std::size_t> matrix_order_;  // of the slots: H first, since its snapshot is taken there
+  std::unique_ptr<BlockSystem> blocks_;
+  std::unique_ptr<LinearSolver> solver_;
+
+  StepFrame frame_;
+  const Column* x_ = nullptr;  // the iterate that was linearised last
+  Positions part_;
+  BlockSystem::Values elastic_, full_;           // H where the plan needs it; all terms
+  const BlockSystem::Values* filled_ = nullptr;  // the matrix that was filled last
+  ReducedSystem examined_;                       // the matrix that examine() asks about
+  EnergySums sums_;
+  const Term* holder_ = nullptr;  // of the last bound
+  std::size_t nnz_ = 0;
+  std::vector<double> hess_buffer_;
+  bool pattern_changed_ = false;
+  VecXd rhs_, solution_;
+};
+
+}  // namespace bb

@@ -1,0 +1,149 @@
+// Gradient and matrix of the iterate, and the Newton direction: the matrix at the level that makes it positive definite,
+// its solve with prescribed motion lifted to the right-hand side, negative curvature.
+#include "core/newton/newton_system.hpp"
+#include "core/resident/sums/vector_kernels.hpp"
+
+namespace bb {
+
+void NewtonSystem::assemble() {
+  state_.potential->linearise(state_.x, state_.g);
+  view_.forget_gradient();
+  state_.shift = 0;
+  const double residual = largest_force();
+  if (served_at_once_) state_.level.lower(residual);
+  served_at_once_ = false;
+  fill_matrix();
+}
+
+// Of a vertex, over its free degrees of freedom.
+double NewtonSystem::largest_force() {
+  const ScopedPhase timer(clock(), Phase::assembly);
+  state_.vectors.force_norms(state_.g, state_.force);
+  return state_.vectors.max(state_.force);
+}
+
+// At the level of the next attempt.
+void NewtonSystem::fill_matrix() { state_.potential->fill_matrix(state_.x, state_.level, state_.force); }
+
+double NewtonSystem::add_tikhonov(double relative, double absolute) {
+  state_.shift = state_.potential->add_tikhonov(relative, absolute);
+  return state_.shift;
+}
+
+SolveReport NewtonSystem::find_direction() {
+  SolveReport report;
+  while (!find_one_direction(report)) {
+    const LinearStatus status = report.linear.status;  // another Hessian mends neither of these
+    if (state_.level.last() || status == LinearStatus::non_finite || status == LinearStatus::factor_too_large)
+      break;
+    state_.level.raise(largest_force());
+    fill_matrix();
+  }
+  served_at_once_ = report.attempts == 1;
+  return report;
+}
+
+// dx: the motion of prescribed vertices. Whether there is one.
+bool NewtonSystem::set_right_hand_side() {
+  state_.dx.fill_zero();
+  state_.vectors.set_pin_motion(state_.x, state_.dx);
+  const bool moving = state_.vectors.first_short_pin(state_.x) >= 0;
+  if (moving) {
+    state_.potential->multiply(state_.dx, state_.work);
+    state_.potential->add_given_motion(state_.x, state_.dx, state_.work);
+  }
+  state_.executor.each(state_.b.size(),
+                       resident::RightHandSide{state_.g.data(), moving ? state_.work.data() : nullptr,
+                                               state_.b.data()});
+  return moving;
+}
+
+// One attempt. False when the matrix is not positive definite, or dx does not descend: that is asked for only
+// where no prescribed motion does work.
+bool NewtonSystem::find_one_direction(SolveReport& report) {
+  const ScopedPhase timer(clock(), Phase::assembly);
+  const bool moving = set_right_hand_side();
+  report.t = state_.level.t();
+  state_.potential->solve(state_.b, state_.step, report);
+  factored_ = report.linear.factorized;
+  if (report.linear.status != LinearStatus::ok) return false;
+  add_solution();
+  return moving || state_.vectors.free_dot(state_.b, state_.step).value() > 0 ||
+         state_.vectors.free_max(state_.b) == 0;
+}
+
+void NewtonSystem::add_solution() {
+  state_.executor.each(state_.dx.size(), resident::AddColumn{state_.step.data(), state_.dx.data()});
+}
+
+DirectionSize NewtonSystem::direction_size() {
+  DirectionSize size;
+  const double epsilon = value_epsilon(state_.precision);
+  size.inf_m = state_.vectors.free_max(state_.dx);
+  size.rounding_m = state_.vectors.rounding_max(state_.dx, state_.x, state_.body_size, epsilon, true);
+  size.beyond_m = state_.vectors.rounding_max(state_.dx, state_.x, state_.body_size, epsilon, false);
+  size.slope_J = state_.vectors.free_dot(state_.g, state_.dx).value();
+  size.vertex_m = state_.vectors.vertex_max(state_.dx);
+  return size;
+}
+
+void NewtonSystem::scale_direction(double factor) {
+  state_.executor.each(state_.dx.size(), resident::ScaleColumn{factor, state_.dx.data()});
+}
+
+double NewtonSystem::direction_curvature() {
+  state_.potential->fill_exact(state_.x, state_.force);
+  return state_.potential->multiply(state_.dx, state_.work);
+}
+
+// Where the exact matrix is the one that was factorised, that is the proof. Rows that are clamped add to it: where it is
+// not positive definite then, the exact one is not either.
+EndCheck NewtonSystem::check_end() {
+  const WholePhase timer(clock(), Phase::end_check);
+  EndCheck out;
+  const bool known = exact_hessians_ == ExactHessians::all;
+  out.proof = EndProof::clamped;
+  if (exact_hessians_ == ExactHessians::none) return out;
+  if (factored_ && state_.level.exact() && state_.shift == 0) {
+    if (known) out.proof = EndProof::factor;
+    return out;
+  }
+  const Definiteness found = state_.potential->examine(state_.x, state_.level, state_.force, state_.b,
+                                                       state_.step, state_.aside);
+  factored_ = false;
+  out.factorizations = found.factorizations;
+  out.iterations = found.iterations;
+  if (found.verdict == Definiteness::Verdict::unknown) out.proof = EndProof::unproven;
+  if (found.verdict == Definiteness::Verdict::positive && known) {
+    out.proof = found.by_factor ? EndProof::factor : EndProof::lanczos;
+  }
+  if (found.verdict != Definiteness::Verdict::negative) return out;
+  out.proof = EndProof::saddle;
+  out.curvature_N_per_m = found.curvature;
+  return out;
+}
+
+void NewtonSystem::aim_at_escape(double length) {
+  const double slope = state_.vectors.free_dot(state_.g, state_.aside).value(),
+               largest = state_.vectors.free_max(state_.aside);
+  state_.dx.swap(state_.aside);
+  scale_direction((slope > 0 ? -length : length) / largest);
+}
+
+// With d_i(x + s) = d_i + slope_i - loss_i + grad d_i . s, s with A s = sum of m kappa b'' (what is missing) grad d_i makes
+// up for the loss where the barrier is stiff, at the least cost to the other terms. A state that is asked for its end
+// makes no detour, so the column of escapes is free.
+bool NewtonSystem::make_detour(double bound, SolveReport& report) {
+  const ScopedPhase timer(clock(), Phase::assembly);
+  if (!state_.potential->make_room(state_.x, state_.dx, bound, state_.b)) return false;
+  SolveReport detour;
+  state_.potential->solve(state_.b, state_.step, detour);
+  factored_ = detour.linear.factorized;
+  report.add_detour(detour);
+  if (detour.linear.status != LinearStatus::ok) return false;
+  state_.aside.copy_from(state_.dx);
+  add_solution();
+  return true;
+}
+
+}  // namespace bb

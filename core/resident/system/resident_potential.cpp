@@ -1,0 +1,160 @@
+// Set-up, the step and its motions. The matrix is in resident_matrix_fill.cpp, what is said of the state in
+// resident_report.cpp.
+#include "core/resident/system/resident_potential.hpp"
+
+#include <algorithm>
+
+#include "core/math/error.hpp"
+#include "core/newton/newton_system.hpp"
+#include "core/resident/linear/block_jacobi.hpp"
+#include "core/resident/linear/schwarz.hpp"
+
+namespace bb::resident {
+namespace {
+
+/// Of the resident solver, complete. Errors: ConfigError for another one.
+ParameterMap linear_parameters(const Method& method) {
+  if (method.linear.name != "pcg_resident") {
+    throw ConfigError("/linear_solver/name", method.linear.name,
+                      "pcg_resident: the matrix stays where it is assembled");
+  }
+  const LinearSolverEntry& entry = linear_solvers().require(method.linear.name, "/linear_solver/name");
+  return own_parameters(entry.parameters, method.linear.parameters, "/linear_solver");
+}
+
+// The clusters of Schwarz are made from the matrix, which an executor that only counts does not have.
+std::unique_ptr<ResidentPreconditioner> make_preconditioner(exec::Executor& executor, const Method& method) {
+  const ParameterMap parameters = linear_parameters(method);
+  if (text(parameters, "resident_preconditioner") == "schwarz" && !executor.counts_only()) {
+    return std::make_unique<Schwarz>(executor, integer(parameters, "resident_cluster_vertices"));
+  }
+  return std::make_unique<BlockJacobi>(executor);
+}
+
+}  // namespace
+
+ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method,
+                                     const Plan& plan, const std::vector<std::uint8_t>& fixed, PhaseClock& clock)
+    : IncrementalPotential(clock),
+      executor_(std::move(executor)),
+      scene_(scene),
+      method_(method),
+      plan_(plan),
+      vectors_(*executor_, fixed, scene.pins),
+      elements_(*executor_, scene, method),
+      forcing_(linear_parameters(method)),
+      max_pcg_iterations_(integer(linear_parameters(method), "max_iterations")),
+      elastic_value_(*executor_, "elastic matrix of the iterate"),
+      product_partial_(*executor_, "partial products", Partition::most_blocks),
+      sum_(*executor_),
+      row_totals_(*executor_) {
+  if (plan.term("contact").needed) {
+    contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, vectors_.fixed());
+  }
+  pcg_ = std::make_unique<ResidentPcg>(*executor_, scene.n_vertices(), make_preconditioner(*executor_, method));
+}
+
+ResidentPotential::~ResidentPotential() = default;
+
+void ResidentPotential::begin_step(const StepColumns& step) {
+  has_step_elastic_ = false;
+  forcing_.begin_step();
+  frame_ = {step.x_n.data(), step.x_tilde.data(), step.dt, step.c, step.load_factor};
+  elements_.begin_step(frame_);
+  if (contact_) contact_->begin_step(step.x_n, step.dt, step.c);
+}
+
+void ResidentPotential::change_step(const StepColumns& step) {
+  frame_.dt = step.dt;
+  frame_.c = step.c;
+  elements_.change_frame(frame_);
+  if (contact_) contact_->change_time(step.dt, step.c);
+}
+
+void ResidentPotential::end_step() {
+  const ScopedPhase timer(clock(), Phase::stiffness);
+  if (contact_) contact_->end_step();
+}
+
+// The clusters of a preconditioner go with the pattern that they were made for.
+void ResidentPotential::drop_caches() {
+  contact_matrix_ = {};
+  ++pattern_id_;
+}
+
+void ResidentPotential::prepare(const Column& x0, const Column& x1, const Column&, bool) {
+  const ScopedPhase timer(clock(), Phase::broad_phase);
+  if (contact_) contact_->prepare(x0, x1);
+}
+
+double ResidentPotential::bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {
+  double smallest = 1;
+  holder_.clear();
+  if (plan_.term("strain_limit").needed) {
+    const ScopedPhase timer(clock(), Phase::strain_bound);
+    smallest = report.alpha_strain = elements_.bound(x0.data(), dx.data(), method_.contact_options.ccd_park);
+    if (smallest < 1) holder_ = "the strain limit";
+  }
+  if (contact_) {
+    const ScopedPhase timer(clock(), Phase::step_bound);
+    report.bound = contact_->bound(x0, x1);
+    report.alpha_ccd = report.bound.alpha;
+    if (report.bound.alpha < 1 && report.bound.alpha <= smallest) holder_ = contact_->describe_bound();
+    smallest = std::min(smallest, report.bound.alpha);
+  }
+  return smallest;
+}
+
+// The values of the matrix may have been given back.
+bool ResidentPotential::make_room(const Column& x, const Column& dx, double bound, Column& force) {
+  if (!contact_ || !contact_->make_room(x, dx, bound, force)) return false;
+  fill(x);
+  return true;
+}
+
+std::optional<EnergyChange> ResidentPotential::try_state(const Column& x, const Column& trial, const Column&) {
+  if (!elements_.admits(trial.data())) return std::nullopt;
+  if (contact_) {
+    const ScopedPhase rows(clock(), Phase::contact_rows);
+    if (!contact_->admits(x, trial)) return std::nullopt;
+  }
+  elements_.evaluate(trial.data());
+  sum_.clear();
+  elements_.add_change(x.data(), trial.data(), sum_);
+  const Compensated fixed = sum_.get();
+  EnergyChange out{fixed.value(), fixed.magnitude};
+  if (!contact_) return out;
+  contact_->evaluate(trial, kept_elastic());
+  // rows come and go: their energies are compared as sums
+  const auto before = contact_->energy(x), after = contact_->trial_energy(trial);
+  const double change = (fixed.sum + (after.sum - before.sum)) + (fixed.carry + (after.carry - before.carry));
+  return EnergyChange{change, fixed.magnitude + before.magnitude + after.magnitude};
+}
+
+void ResidentPotential::accept() {
+  elements_.accept();
+  if (contact_) contact_->accept();
+}
+
+void ResidentPotential::expect(const ExpectedContacts& expected) {
+  if (contact_) contact_->expect(expected);
+}
+
+void count_memory(NewtonSystem& system, ResidentPotential& potential, const Scene& scene,
+                  const ExpectedContacts& expected) {
+  potential.expect(expected);
+  system.begin_step(scene.x0, {1, scene.x0}, 1, 1);
+  for (int iterate = 0; iterate < 2; ++iterate) {  // the second finds the columns of the first in place
+    system.assemble();
+    system.find_direction();
+    system.check_end();
+    system.prepare_motion(MotionEnd::free, false);
+    IterationReport unread;
+    system.bound_motion(unread);
+    system.try_motion(1);
+    system.accept();
+  }
+  system.end_step();
+}
+
+}  // namespace bb::resident

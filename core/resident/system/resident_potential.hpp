@@ -1,0 +1,121 @@
+// E in an executor's memory (docs/device.md): elements, limit and contact as kernels, conjugate gradients on the matrix
+// where it was assembled. Numbers alone go to the host.
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "core/linear/forcing.hpp"
+#include "core/newton/incremental_potential.hpp"
+#include "core/newton/method.hpp"
+#include "core/resident/elements/resident_elements.hpp"
+#include "core/resident/linear/resident_pcg.hpp"
+#include "core/resident/sums/vectors.hpp"
+#include "core/resident/system/resident_contact.hpp"
+#include "core/resident/system/row_totals.hpp"
+#include "core/terms/plan.hpp"
+
+namespace bb::resident {
+
+class ResidentPotential final : public IncrementalPotential {
+ public:
+  /// scene, method and plan must outlive it. fixed: [3 n] prescribed or locked degrees of freedom. Errors: ConfigError for
+  /// what has no device form; OutOfMemory.
+  ResidentPotential(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method, const Plan& plan,
+                    const std::vector<std::uint8_t>& fixed, PhaseClock& clock);
+  ~ResidentPotential() override;
+  exec::Executor& executor() override { return *executor_; }
+
+  void begin_step(const StepColumns& step) override;
+  void change_step(const StepColumns& step) override;
+  void end_step() override;
+  void keep(Archive& archive) override;
+  void drop_caches() override;
+
+  void linearise(const Column& x, Column& g) override;
+  bool pattern_changed() const override { return contact_ && contact_->pattern_changed(); }
+  void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;
+  void fill_exact(const Column& x, const Column& force) override;
+  /// Errors: std::logic_error always: only article_literal asks, which runs on the host.
+  double add_tikhonov(double relative, double absolute) override;
+  double multiply(const Column& v, Column& out) override;
+  void add_given_motion(const Column& x, const Column& motion, Column& force) override;
+  void solve(const Column& b, Column& step, SolveReport& report) override;
+  Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b, Column& step,
+                       Column& direction) override;
+  std::size_t nnz() const override;
+
+  void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) override;
+  double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
+  std::string describe_bound() const override { return holder_; }
+  bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
+  std::optional<EnergyChange> try_state(const Column& x, const Column& trial, const Column& g) override;
+  void accept() override;
+
+  double energy(TermSet set, const Column& x) override;
+  void report(const Column& x, IterateNumbers& out) override;
+  void report_end(const Column& x, StepNumbers& out) override;
+  std::string describe_non_finite() override;
+  KnownStiffness known_stiffness() const override;
+
+  /// On an executor that only counts buffers: what the rows are to be taken for.
+  void expect(const ExpectedContacts& expected);
+  /// As ResidentContact::set_frugal_from.
+  void set_frugal_from(Index rows) {
+    if (contact_) contact_->set_frugal_from(rows);
+  }
+  /// As ResidentContact::set_list_budget.
+  void set_list_budget(std::size_t bytes) {
+    if (contact_) contact_->set_list_budget(bytes);
+  }
+  /// Who holds how much memory.
+  const exec::MemoryLedger& memory() const { return executor_->memory(); }
+
+ private:
+  static constexpr double infinity = std::numeric_limits<double>::infinity();
+  /// The level of the matrix that was filled last: t and threshold of HessianLevel.
+  struct Filled {
+    double t = 0, threshold = infinity;
+    const double* force = nullptr;
+  };
+  ResidentMatrix matrix() const;
+  void fill(const Column& x);
+  void fill_elastic(const Column& x);
+  void keep_elastic();
+  MatrixPart kept_elastic() const;
+  HessianChoice contact_choice() const;
+  /// Requires contact_.
+  RowTotals row_totals(const Column& x);
+  void keep_contact(Archive& archive);
+
+  std::unique_ptr<exec::Executor> executor_;
+  const Scene& scene_;
+  Method& method_;
+  const Plan& plan_;
+  VectorTools vectors_;
+  ResidentElements elements_;
+  std::unique_ptr<ResidentContact> contact_;  // where something can touch
+  std::unique_ptr<ResidentPcg> pcg_;
+  Forcing forcing_;
+  int max_pcg_iterations_;
+
+  Column elastic_value_;  // H that stiffness policies read
+  bool has_step_elastic_ = false;
+  exec::Buffer<double> product_partial_;
+  ResidentSum sum_;
+  ResidentSums<RowTotals> row_totals_;
+  MatrixPart contact_matrix_{};
+  Filled filled_;
+  ResidentFrame frame_;
+  std::uint64_t pattern_id_ = 1;  // of the matrix
+  std::string holder_;            // of the last bound
+  double limit_kappa_change_ = 0;
+};
+
+/// Goes through every stage of a step with so many contacts on an executor that only counts buffers, so that
+/// memory().peak() is what a step needs. system: of that potential.
+void count_memory(NewtonSystem& system, ResidentPotential& potential, const Scene& scene,
+                  const ExpectedContacts& expected);
+
+}  // namespace bb::resident
