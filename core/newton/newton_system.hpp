@@ -12,7 +12,7 @@
 
 namespace bb {
 
-class NewtonSystem final : public StepSystem {
+class NewtonSystem : public StepSystem {
  public:
   /// scene and method must outlive the system. plan: of both. Its terms are those of the method's make_potential, or on
   /// the host. Errors: ConfigError for what the potential refuses; exec::OutOfMemory.

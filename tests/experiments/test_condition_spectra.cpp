@@ -23,8 +23,8 @@ class Comparison final : public StepObserver {
   void on_matrix(StepSystem& step_system, int step, int iteration) override {
     if (iteration % 2 != 0) return;
     NewtonSystem& system = step_system.on_host();
-    with_contact += system.active(TermGroup::contact);
-    const ReducedSystem& matrix = system.solved();
+    with_contact += system.diagnosis().active(TermGroup::contact);
+    const ReducedSystem& matrix = system.diagnosis().solved();
     for (const Scaling scaling : {Scaling::none, Scaling::jacobi, Scaling::block_jacobi}) {
       SCOPED_TRACE(std::string(to_string(scaling)) + ", step " + std::to_string(step) + ", iteration " +
                    std::to_string(iteration));

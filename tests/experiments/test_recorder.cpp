@@ -201,8 +201,8 @@ TEST(Recorder, the_closest_row_and_the_range_of_kappa_are_of_both_tables) {
   ASSERT_EQ(report.contacts.mollified, 1U);
   ASSERT_EQ(report.contacts.obstacle, 1U);
   const StepRecord& step = record.steps.at(0);
-  const double gap = contact_state(simulation.system().terms()).mollified.d.at(0);
-  ASSERT_LT(gap, contact_state(simulation.system().terms()).rows.d.at(0));
+  const double gap = contact_state(simulation.system().diagnosis().terms()).mollified.d.at(0);
+  ASSERT_LT(gap, contact_state(simulation.system().diagnosis().terms()).rows.d.at(0));
   EXPECT_EQ(step.gap_min_m.value, gap);
   EXPECT_EQ(step.gap_min_rel.value, gap / d_hat);
   EXPECT_EQ(step.kappa_min_N_per_m.value, 10);
@@ -218,7 +218,7 @@ TEST(Recorder, a_load_sum_counts_every_pair_of_a_merged_row) {
   Simulation simulation(scene, method, 1e-3, 1);
   StepObserver nobody;
   const StepReport report = simulation.step(nobody);
-  ASSERT_EQ(contact_state(simulation.system().terms()).rows.multiplicity.at(0), 6);
+  ASSERT_EQ(contact_state(simulation.system().diagnosis().terms()).rows.multiplicity.at(0), 6);
   EXPECT_GT(report.contact_load_max_N.value, 0);
   EXPECT_NEAR(report.contact_load_sum_N.value, 6 * report.contact_load_max_N.value, 1e-12);
 }

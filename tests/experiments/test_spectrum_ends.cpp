@@ -28,7 +28,7 @@ struct EndsOf final : StepObserver {
   void on_matrix(StepSystem& step_system, int, int iteration) override {
     if (iteration > 0) return;
     NewtonSystem& system = step_system.on_host();
-    const ReducedSystem& matrix = system.clamped(set);
+    const ReducedSystem& matrix = system.diagnosis().clamped(set);
     dense = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(bb::dense(matrix)).eigenvalues();
     const auto vectors = end_vectors(matrix, scaling, 5);
     ends.clear();

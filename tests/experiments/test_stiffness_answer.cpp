@@ -105,7 +105,7 @@ ContactsAtRest contacts_at_rest(double kappa) {
   at_rest(held(kappa), [&](const Scene&, const Positions&, NewtonSystem& system, double dt) {
     const StiffnessAnswers answers = answers_to_stiffness(system, nullptr, log_barrier(), dt);
     EXPECT_TRUE(answers.known);
-    const ContactTable& rows = contact_state(system.terms()).rows;
+    const ContactTable& rows = contact_state(system.diagnosis().terms()).rows;
     for (std::size_t r = 0; r < rows.size(); ++r) {
       out.force.push_back(-rows.kappa[r] * rows.db[r]);
       out.answer.push_back(answers.contact[r]);

@@ -47,7 +47,7 @@ class Watch final : public StepObserver {
  public:
   void on_matrix(StepSystem& step_system, int, int) override {
     NewtonSystem& system = step_system.on_host();
-    differ += system.solved_is_clamped() ? 0 : 1;
+    differ += system.diagnosis().solved_is_clamped() ? 0 : 1;
     contacts = std::max(contacts, rows_of(system).size());
   }
   void on_iteration(const IterationReport& report) override {

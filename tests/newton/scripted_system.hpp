@@ -36,7 +36,7 @@ struct ScriptedState {
 };
 
 /// Runs through its iterations; the last one is repeated.
-class ScriptedSystem final : public StepSystem {
+class ScriptedSystem final : public StepSystem, public StepView {
  public:
   explicit ScriptedSystem(std::vector<ScriptedIteration> script, ScriptedState state = {})
       : script_(std::move(script)), scene_(particle_over_plane(1, 1, 0.01)), state_(std::move(state)) {}
@@ -49,9 +49,9 @@ class ScriptedSystem final : public StepSystem {
   void restart_step(const Prediction&, double) override {}
   void end_step() override {}
   void set_target(const Positions&) override {}
-  void hold() override {}
   bool at_target() const override { return now().at_target; }
   void keep(Archive&) override {}
+  void keep_solver(Archive&) override {}
   void drop_caches() override {}
   void assemble() override {
     if (place_ + 1 < static_cast<int>(script_.size())) ++place_;
@@ -78,7 +78,6 @@ class ScriptedSystem final : public StepSystem {
     aimed.push_back(length);
     escaping_ = true;
   }
-  bool solved_is_exact() const override { return true; }
   void prepare_motion(MotionEnd, bool) override {}
   double bound_motion(IterationReport&) override {
     if (detouring_) return now().detour_bound;
@@ -101,9 +100,9 @@ class ScriptedSystem final : public StepSystem {
 
   const Scene& scene() const override { return scene_; }
   Precision precision() const override { return state_.precision; }
-  const Positions& x() const override { return state_.x; }
-  const Positions& x_before() const override { return state_.x; }
-  const Positions& gradient() const override { return scene_.v0; }
+  PositionsView x() const override { return state_.x; }
+  PositionsView x_before() const override { return state_.x; }
+  PositionsView gradient() const override { return scene_.v0; }
   double grad_inf() const override { return 1; }
   double energy() const override { return 1; }
   double energy(TermGroup) const override { return 1; }
@@ -115,6 +114,9 @@ class ScriptedSystem final : public StepSystem {
   void report_end(StepNumbers&) const override {}
   void report_overload(bool, StepNumbers&) override {}
   std::string describe_non_finite() const override { return {}; }
+  using StepSystem::view;
+  StepView& view() override { return *this; }
+  bool is_on_host() const override { return true; }
   NewtonSystem& on_host() override { throw std::logic_error("a script has no matrices"); }
 
  private:

@@ -34,12 +34,27 @@ inline Positions one_point(double x, double y, double z) {
 }
 
 /// The rows of the iterate.
-inline const ContactState& rows_of(const NewtonSystem& system) { return contact_state(system.terms()); }
+inline const ContactState& rows_of(NewtonSystem& system) { return contact_state(system.diagnosis().terms()); }
+
+/// Tries x [3 x n] m, at the end of a straight motion from the iterate.
+inline std::optional<EnergyChange> try_state(NewtonSystem& system, const Positions& x) {
+  system.set_direction(x - system.view().x());
+  system.prepare_motion(MotionEnd::free, false);
+  return system.try_motion(1);
+}
+
+/// Newton direction towards a target, both [3 x n] m.
+inline SolveReport solve(NewtonSystem& system, const Positions& target, Positions& dx) {
+  system.set_target(target);
+  const SolveReport report = system.find_direction();
+  dx = system.diagnosis().direction();
+  return report;
+}
 
 /// What the terms say of the iterate.
-inline IterateNumbers reported(const NewtonSystem& system) {
+inline IterateNumbers reported(NewtonSystem& system) {
   IterateNumbers out;
-  system.report(out);
+  system.view().report(out);
   return out;
 }
 

@@ -31,7 +31,7 @@ struct Advanced : private StepObserver {
     options.parameters["min_newton_steps"] = settings.least;
     const auto integrator = make_integrator("implicit_euler");
     History history;
-    history.x = history.x_prev = system.x();
+    history.x = history.x_prev = system.view().x();
     history.v = history.a = history.v_prev = Positions::Zero(3, 1);
     const StepTask task{0, dt, 1, &history, integrator.get(), [](double, Positions&) {}};
     Prediction used;

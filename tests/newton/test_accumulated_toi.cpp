@@ -158,11 +158,10 @@ TEST(AccumulatedToi, says_how_far_its_end_is_from_the_solution) {
   system.begin_step(scene.x0, prediction, report.dt_s, 1);
   system.assemble();
   const Positions& x = simulation.history().x;
-  system.prepare(x, x - scene.x0);
-  ASSERT_TRUE(system.try_state(x));
+  ASSERT_TRUE(test::try_state(system, x));
   system.accept();
   system.assemble();
-  system.hold();
+  system.set_target(system.view().x());
   ASSERT_EQ(system.find_direction().linear.status, LinearStatus::ok);
   EXPECT_NEAR(system.direction_size().inf_m, report.end_error_m.value, 1e-6 * report.end_error_m.value);
 }

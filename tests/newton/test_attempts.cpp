@@ -21,7 +21,7 @@ struct AtStart {
     at_rest.x_tilde = scene.x0;
     system.begin_step(scene.x0, at_rest, dt, 1);
     system.assemble();
-    system.hold();
+    system.set_target(system.view().x());
   }
   Method& with(const std::string& solver) {
     method.linear.name = solver;
@@ -48,8 +48,8 @@ TEST_P(AttemptsOf, AddUpTheirWork) {
   const std::unique_ptr<LinearSolver> solver = make_linear_solver(at.method.linear);
   solver->begin_step();
   VecXd solution;
-  const LinearReport refused = solver->solve(at.system.exact(), at.system.rhs(), solution);
-  const LinearReport served = solver->solve(at.system.solved(), at.system.rhs(), solution);
+  const LinearReport refused = solver->solve(at.system.diagnosis().exact(), at.system.diagnosis().rhs(), solution);
+  const LinearReport served = solver->solve(at.system.diagnosis().solved(), at.system.diagnosis().rhs(), solution);
   ASSERT_EQ(refused.status, LinearStatus::matrix_indefinite);
   ASSERT_EQ(served.status, LinearStatus::ok);
   EXPECT_EQ(report.linear.iterations, refused.iterations + served.iterations);

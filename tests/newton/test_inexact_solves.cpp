@@ -49,16 +49,15 @@ Positions minimum_at(const Scene& scene, const Positions& x) {
   system.assemble();
   Positions next = x, dx = x - scene.x0;
   for (int k = 0; k < 10; ++k) {
-    system.prepare(next, dx);
-    EXPECT_TRUE(system.try_state(next).has_value());
+    EXPECT_TRUE(test::try_state(system, next).has_value());
     system.accept();
     system.assemble();
-    EXPECT_EQ(system.solve(system.x(), dx).linear.status, LinearStatus::ok);
-    EXPECT_TRUE(system.solved_is_exact());  // no saddle
-    next = system.x() + dx;
+    EXPECT_EQ(test::solve(system, system.view().x(), dx).linear.status, LinearStatus::ok);
+    EXPECT_TRUE(system.diagnosis().solved_is_exact());  // no saddle
+    next = system.view().x() + dx;
   }
   EXPECT_LT(dx.cwiseAbs().maxCoeff(), 1e-5 * tolerance);
-  return system.x();
+  return system.view().x();
 }
 
 struct Choice {

@@ -32,8 +32,8 @@ Assembled assemble(const std::vector<BodySpec>& bodies) {
   system.begin_step(scene.x0, prediction, 0.01, 1);
   system.assemble();
   Assembled out;
-  out.elastic = system.energy(TermGroup::elastic);
-  out.gradient = system.gradient();
+  out.elastic = system.view().energy(TermGroup::elastic);
+  out.gradient = system.view().gradient();
   return out;
 }
 

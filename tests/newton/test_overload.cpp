@@ -22,7 +22,8 @@ double overload(const Scene& scene, double kappa, const Positions& dx, double* m
   EXPECT_EQ(test::reported(system).contacts.total(), 1U);
   if (multiplicity != nullptr) *multiplicity = test::rows_of(system).rows.multiplicity.at(0);
   StepNumbers out;
-  system.report_overload(dx, out);
+  system.set_direction(dx);
+  system.view().report_overload(true, out);
   return out.contact_overload.value;
 }
 
@@ -105,7 +106,7 @@ TEST(Overload, of_a_step_without_progress_is_that_of_pins_that_stay) {
       Rising rising(rise);
       ASSERT_EQ(rising.system.find_direction().linear.status, LinearStatus::ok);
       StepNumbers on_the_way;
-      rising.system.report_overload(true, on_the_way);
+      rising.system.view().report_overload(true, on_the_way);
       ASSERT_GT(std::abs(on_the_way.contact_overload.value - held), 0.1 * held) << "the motion is not felt";
       EXPECT_DOUBLE_EQ(rising.measured(status).contact_overload.value, held) << to_string(status) << rise;
     }
@@ -130,7 +131,7 @@ TEST(Overload, an_unbounded_barrier_has_none) {
   system.assemble();
   ASSERT_EQ(test::reported(system).contacts.total(), 1U);
   StepNumbers out;
-  system.report_overload(Positions::Zero(3, scene.n_vertices()), out);
+  system.view().report_overload(false, out);
   EXPECT_EQ(out.contact_overload.value, 0);
 }
 

@@ -110,26 +110,25 @@ TEST(Pins, the_motion_of_a_given_edge_is_lifted_through_a_mollified_row) {
   system.assemble();
   ASSERT_EQ(test::reported(system).contacts.mollified, 1U);
   ASSERT_EQ(test::reported(system).contacts.total(), 1U);
-  const Positions gradient = system.gradient();
+  const Positions gradient = system.view().gradient();
 
   const double motion = 1e-6;  // m
   Positions target = scene.x0, dx;
   for (const Pin& pin : scene.pins) target(2, pin.vertex) += motion;
-  ASSERT_EQ(system.solve(target, dx).linear.status, LinearStatus::ok);
+  ASSERT_EQ(test::solve(system, target, dx).linear.status, LinearStatus::ok);
   Positions free_motion = dx;
   for (const Pin& pin : scene.pins) free_motion.col(pin.vertex).setZero();
   VecXd moved, wanted;
-  system.blocks().restrict_vector(free_motion, moved);
-  const VecXd model = system.solved().lower.selfadjointView<Eigen::Lower>() * moved;
+  system.diagnosis().blocks().restrict_vector(free_motion, moved);
+  const VecXd model = system.diagnosis().solved().lower.selfadjointView<Eigen::Lower>() * moved;
 
-  system.prepare(target, target - scene.x0);
-  ASSERT_TRUE(system.try_state(target).has_value());
+  ASSERT_TRUE(test::try_state(system, target).has_value());
   system.accept();
   system.assemble();
-  system.blocks().restrict_vector(-system.gradient(), wanted);
-  ASSERT_GT((system.gradient() - gradient).cwiseAbs().maxCoeff(), 1e-6);  // N: the motion is felt
+  system.diagnosis().blocks().restrict_vector(-system.view().gradient(), wanted);
+  ASSERT_GT((system.view().gradient() - gradient).cwiseAbs().maxCoeff(), 1e-6);  // N: the motion is felt
   EXPECT_LT((model - wanted).lpNorm<Eigen::Infinity>(),
-            1e-3 * (system.gradient() - gradient).cwiseAbs().maxCoeff());
+            1e-3 * (system.view().gradient() - gradient).cwiseAbs().maxCoeff());
 }
 
 /// A plate that rises by three times its distance to a free particle, both too far apart for a contact at the

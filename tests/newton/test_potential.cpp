@@ -50,8 +50,7 @@ struct AtIterate {
     system.assemble();
   }
   void move_to(const Positions& to) {
-    system.prepare(to, to - system.x());
-    ASSERT_TRUE(system.try_state(to).has_value());
+    ASSERT_TRUE(test::try_state(system, to).has_value());
     system.accept();
     system.assemble();
   }
@@ -75,22 +74,21 @@ double largest_difference(const ContactTable& a, const ContactTable& b) {
 TEST(Potential, the_gradient_is_that_of_E_with_everything_moving_that_moves) {
   for (const char* mass_term : {"paper", "scaled"}) {
     AtIterate at(mass_term);
-    const Positions gradient = at.system.gradient();
+    const Positions gradient = at.system.view().gradient();
     ASSERT_GT(at.rows().rows.size(), 10U);
     ASSERT_GT(at.rows().mollified.size(), 3U);
     ASSERT_GT(test::reported(at.system).limit_load_max_N_per_m.value, 0);
-    ASSERT_GT(at.system.energy(TermGroup::contact), 0);
-    ASSERT_GT(at.system.energy(TermGroup::limit), 0);
+    ASSERT_GT(at.system.view().energy(TermGroup::contact), 0);
+    ASSERT_GT(at.system.view().energy(TermGroup::limit), 0);
 
     const double h = 1e-6;
-    at.system.prepare(at.x, Positions::Zero(3, at.x.cols()));
     Positions numeric(3, at.x.cols());
     for (Eigen::Index i = 0; i < at.x.size(); ++i) {
       double change[2];
       for (const int side : {0, 1}) {
         Positions to = at.x;
         to.data()[i] += side == 0 ? -h : h;
-        change[side] = at.system.try_state(to).value().change;
+        change[side] = test::try_state(at.system, to).value().change;
       }
       numeric.data()[i] = (change[1] - change[0]) / (2 * h);
     }
@@ -118,9 +116,9 @@ TEST(Potential, the_matrix_has_the_curvature_that_the_force_shows_where_the_deri
       const Positions x = test::one_point(0, 0, z);
       system.begin_step(x, prediction, dt, 1.0);
       system.assemble();
-      const double force = system.gradient()(2, 0);
+      const double force = system.view().gradient()(2, 0);
       if (z != gap) shown += (z > gap ? force : -force) / (2e-5 * gap);
-      curvature = system.clamped().lower.coeff(2, 2);
+      curvature = system.diagnosis().clamped().lower.coeff(2, 2);
     }
     const double exact = mass / (dt * dt) + 4 * mass / (gap * gap) * (d_hat - gap) / gap;  // E''
     EXPECT_NEAR(shown, exact, 1e-6 * exact);  // the force is the same function of the gap

@@ -43,7 +43,7 @@ TEST(Precision, every_state_of_a_float_run_is_a_float) {
   simulation.step(states);
   EXPECT_GT(states.motions, 2);
   EXPECT_EQ(states.floats, states.motions);
-  EXPECT_GT(contact_state(simulation.system().terms()).size(), 10U);
+  EXPECT_GT(contact_state(simulation.system().diagnosis().terms()).size(), 10U);
   EXPECT_TRUE(all_floats(simulation.history().x));
 }
 
@@ -82,7 +82,7 @@ TEST(Precision, far_from_the_origin_a_gap_of_few_ulps_stops_a_float_step_and_no_
     Simulation simulation(scene, method, 0.01, 1);
     StepObserver nobody;
     const StepStatus status = simulation.step(nobody).status;
-    return End{status, contact_state(simulation.system().terms()).gap_min};
+    return End{status, contact_state(simulation.system().diagnosis().terms()).gap_min};
   };
   const End full = run(Precision::full), single = run(Precision::single);
   EXPECT_EQ(full.status, StepStatus::converged);

@@ -31,7 +31,7 @@ std::vector<DirectionSize> sizes(bool far_body) {
   prediction.x_tilde = scene.x0;
   system.begin_step(scene.x0, prediction, test::sheet_dt, 1);
   system.assemble();
-  system.hold();
+  system.set_target(system.view().x());
   EXPECT_EQ(system.find_direction().linear.status, LinearStatus::ok);
   EXPECT_GT(test::rows_of(system).size(), 0U);
   std::vector<DirectionSize> out;

@@ -15,7 +15,7 @@ class Spectrum final : public StepObserver {
  public:
   void on_matrix(StepSystem& step_system, int, int) override {
     NewtonSystem& system = step_system.on_host();
-    const Eigen::MatrixXd full = Eigen::MatrixXd(system.exact().lower).selfadjointView<Eigen::Lower>();
+    const Eigen::MatrixXd full = Eigen::MatrixXd(system.diagnosis().exact().lower).selfadjointView<Eigen::Lower>();
     smallest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full, Eigen::EigenvaluesOnly).eigenvalues()[0];
     contacts = std::max(contacts, rows_of(system).size());
   }
@@ -229,23 +229,22 @@ TEST(Saddle, the_way_out_does_not_climb) {
     pressed.row(0) *= 0.97;
     const Positions motion = pressed - scene.x0;
     system.assemble();
-    system.prepare(pressed, motion);
-    ASSERT_TRUE(system.try_state(pressed).has_value());
+    ASSERT_TRUE(test::try_state(system, pressed).has_value());
     system.accept();
     system.assemble();
-    system.hold();
+    system.set_target(system.view().x());
     ASSERT_EQ(system.find_direction().linear.status, LinearStatus::ok);
-    const Positions newton = system.direction();
+    const Positions newton = system.diagnosis().direction();
     const EndCheck end = system.check_end();
     ASSERT_EQ(end.proof, EndProof::saddle);
-    EXPECT_EQ(system.direction(), newton);  // to look moves nothing
+    EXPECT_EQ(system.diagnosis().direction(), newton);  // to look moves nothing
     system.aim_at_escape(1e-3);
     const DirectionSize size = system.direction_size();
     EXPECT_NEAR(size.inf_m, 1e-3, 1e-12);
     EXPECT_LE(size.slope_J, 0) << seed;
     EXPECT_LT(system.direction_curvature(), 0);
-    EXPECT_NEAR(system.direction_curvature(), end.curvature_N_per_m * system.direction().squaredNorm(), 1e-9);
-    for (const Pin& pin : scene.pins) EXPECT_TRUE(system.direction().col(pin.vertex).isZero(0));
+    EXPECT_NEAR(system.direction_curvature(), end.curvature_N_per_m * system.diagnosis().direction().squaredNorm(), 1e-9);
+    for (const Pin& pin : scene.pins) EXPECT_TRUE(system.diagnosis().direction().col(pin.vertex).isZero(0));
     steep += size.slope_J < -1e-9 ? 1 : 0;
   }
   EXPECT_GE(steep, 4);

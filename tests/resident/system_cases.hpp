@@ -6,7 +6,8 @@
 #include <functional>
 
 #include "core/exec/host_executor.hpp"
-#include "core/resident/system/resident_system.hpp"
+#include "core/newton/newton_system.hpp"
+#include "core/resident/system/resident_potential.hpp"
 #include "tests/newton/small_scenes.hpp"
 
 namespace bb::test {
@@ -18,13 +19,39 @@ inline void use_resident_solver(Method& method, double tolerance = 1e-11) {
   method.linear.parameters["tol_rel"] = tolerance;
 }
 
+/// E on an executor of its own; prepare: before anything is asked of it.
+inline MakePotential on_executor(
+    const std::function<std::unique_ptr<exec::Executor>()>& make,
+    const std::function<void(resident::ResidentPotential&)>& prepare = [](resident::ResidentPotential&) {}) {
+  return [=](const Scene& scene, Method& method, const Plan& plan, const std::vector<std::uint8_t>& fixed,
+             PhaseClock& clock) {
+    auto out = std::make_unique<resident::ResidentPotential>(make(), scene, method, plan, fixed, clock);
+    prepare(*out);
+    return out;
+  };
+}
+
+/// A Newton system on that executor, whatever the method says.
+class ResidentSystem final : public NewtonSystem {
+ public:
+  ResidentSystem(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method, const Plan& plan)
+      : NewtonSystem(scene, put_on(executor, method), plan) {
+    method.make_potential = nullptr;
+  }
+  resident::ResidentPotential& resident() { return dynamic_cast<resident::ResidentPotential&>(potential()); }
+  const exec::MemoryLedger& memory() { return resident().memory(); }
+
+ private:
+  static Method& put_on(std::unique_ptr<exec::Executor>& executor, Method& method) {
+    method.make_potential = on_executor([&executor] { return std::move(executor); });
+    return method;
+  }
+};
+
 /// Makes the method run on a host executor in that order.
 inline void run_resident(Method& method, exec::Order order = exec::Order::threads) {
   use_resident_solver(method);
-  method.make_system = [order](const Scene& scene, Method& of, const Plan& plan) {
-    return std::make_unique<resident::ResidentSystem>(std::make_unique<exec::HostExecutor>(order, 7u), scene,
-                                                      of, plan);
-  };
+  method.make_potential = on_executor([order] { return std::make_unique<exec::HostExecutor>(order, 7u); });
 }
 
 /// A cloth of 5 x 5 vertices with bending and a strain limit, tilted, that falls on a smaller rigid plate and on the

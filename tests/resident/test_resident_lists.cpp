@@ -28,19 +28,19 @@ struct AtAMotion {
   Scene scene = test::cloth_on_plate();  // farther apart than d_hat
   Method method = test::fixed_method("cubic", 40);
   WatchingExecutor* executor = nullptr;  // of the system
-  std::unique_ptr<resident::ResidentSystem> system;
+  std::unique_ptr<test::ResidentSystem> system;
 
   explicit AtAMotion(std::size_t budget = all_lists) {
     test::use_resident_solver(method);
     auto own = std::make_unique<WatchingExecutor>();
     executor = own.get();
     const Plan plan = make_plan(scene, method, plan_options(method));
-    system = std::make_unique<resident::ResidentSystem>(std::move(own), scene, method, plan);
-    system->set_list_budget(budget);
+    system = std::make_unique<test::ResidentSystem>(std::move(own), scene, method, plan);
+    system->resident().set_list_budget(budget);
     Prediction falling{1, scene.x0};
     falling.x_tilde.row(2).array() -= 2e-3;
     system->begin_step(scene.x0, falling, 0.01, 1);
-    system->hold();
+    system->set_target(system->view().x());
     system->assemble();
     EXPECT_EQ(system->find_direction().linear.status, LinearStatus::ok);
     system->scale_direction(30);
@@ -75,7 +75,7 @@ TEST(ResidentLists, OfAMotionAreLeftOutBeyondTheirBudget) {
   ASSERT_LT(expected.alpha, 1);
   ASSERT_NE(expected.kind, ContactKind::obstacle);
   expect_same(found, expected);
-  EXPECT_EQ(unlisted.system->describe_bound(), listed.system->describe_bound());
+  EXPECT_EQ(unlisted.system->view().describe_bound(), listed.system->view().describe_bound());
   EXPECT_EQ(listed.executor->in_trees, 0);
   EXPECT_EQ(unlisted.executor->in_lists, 0);
   EXPECT_GT(listed.executor->in_lists, 0);
@@ -87,7 +87,7 @@ TEST(ResidentLists, OfAMotionAreLeftOutBeyondTheirBudget) {
     ASSERT_TRUE(to && same);
     ASSERT_NE(to->change, 0);
     EXPECT_EQ(same->change, to->change);
-    EXPECT_EQ(unlisted.system->energy(), listed.system->energy());
+    EXPECT_EQ(unlisted.system->view().energy(), listed.system->view().energy());
     EXPECT_EQ(unlisted.system->direction_curvature(), listed.system->direction_curvature());
     expect_same(unlisted.bound(), expected);  // the trees were those of a state
   }
@@ -117,14 +117,15 @@ WatchedRun watched_run(std::size_t budget, exec::Index frugal_from) {
   method.hessian_mode = HessianMode::projected_full;
   test::use_resident_solver(method);
   WatchingExecutor* executor = nullptr;
-  method.make_system = [&](const Scene& scene, Method& of, const Plan& plan) {
+  const auto make = [&executor] {
     auto own = std::make_unique<WatchingExecutor>();
     executor = own.get();
-    auto system = std::make_unique<resident::ResidentSystem>(std::move(own), scene, of, plan);
-    system->set_list_budget(budget);
-    system->set_frugal_from(frugal_from);
-    return system;
+    return own;
   };
+  method.make_potential = test::on_executor(make, [=](resident::ResidentPotential& potential) {
+    potential.set_list_budget(budget);
+    potential.set_frugal_from(frugal_from);
+  });
   const Scene scene = test::cloth_on_plate();
   Simulation simulation(scene, method, 0.01, 10);
   return {test::run_steps(simulation, 10), executor->in_trees};
@@ -150,12 +151,12 @@ TEST(ResidentLists, AreCountedWhereOnlyStatesHaveThem) {
   Method method = test::fixed_method("cubic", 20);
   test::use_resident_solver(method);
   const Plan plan = make_plan(scene, method, plan_options(method));
-  resident::ResidentSystem system(std::make_unique<exec::CountingExecutor>(), scene, method, plan);
-  system.set_list_budget(no_lists);
+  test::ResidentSystem system(std::make_unique<exec::CountingExecutor>(), scene, method, plan);
+  system.resident().set_list_budget(no_lists);
   resident::ExpectedContacts expected;
   expected.rows = 1 << 20;
   expected.candidates.edge_edge = 2 << 20;
-  system.count_memory(expected);
+  resident::count_memory(system, system.resident(), scene, expected);
   EXPECT_GE(system.memory().at_peak().at("candidates edge-edge"), std::size_t{16} << 20);
 }
 

@@ -46,8 +46,8 @@ Peak counted(const Scene& scene, const resident::ExpectedContacts& contacts) {
   test::use_resident_solver(method);
   const Plan plan = make_plan(scene, method, plan_options(method));
   EXPECT_TRUE(plan.term("contact").needed);
-  resident::ResidentSystem system(std::make_unique<exec::CountingExecutor>(true), scene, method, plan);
-  system.count_memory(contacts);
+  test::ResidentSystem system(std::make_unique<exec::CountingExecutor>(true), scene, method, plan);
+  resident::count_memory(system, system.resident(), scene, contacts);
   return {system.memory().at_peak(), static_cast<double>(system.memory().peak())};
 }
 
@@ -81,7 +81,7 @@ TEST(ResidentMemory, IsCountedAsTheHostAllocatesIt) {
   Method method = test::fixed_method("log", 40);
   test::use_resident_solver(method);
   const Plan plan = make_plan(scene, method, plan_options(method));
-  resident::ResidentSystem on_host(std::make_unique<exec::HostExecutor>(), scene, method, plan);
+  test::ResidentSystem on_host(std::make_unique<exec::HostExecutor>(), scene, method, plan);
   on_host.begin_step(scene.x0, {1, scene.x0}, 0.01, 1);
   on_host.assemble();
   ASSERT_GT(on_host.memory().by_name().at("contact gaps"), 0u);
@@ -99,12 +99,10 @@ Method resident_method(Index frugal_from) {
   Method method = test::fixed_method("cubic", 40);
   method.hessian_mode = HessianMode::projected_full;
   test::use_resident_solver(method);
-  method.make_system = [frugal_from](const Scene& scene, Method& of, const Plan& plan) {
-    auto system =
-        std::make_unique<resident::ResidentSystem>(std::make_unique<exec::HostExecutor>(), scene, of, plan);
-    system->set_frugal_from(frugal_from);
-    return system;
-  };
+  method.make_potential = test::on_executor([] { return std::make_unique<exec::HostExecutor>(); },
+                                            [frugal_from](resident::ResidentPotential& potential) {
+                                              potential.set_frugal_from(frugal_from);
+                                            });
   return method;
 }
 
@@ -121,23 +119,23 @@ TEST(ResidentMemory, ARefusedTrialLeavesTheIterate) {
   const Scene scene = test::touching(test::two_sheets(), 0.01);
   Method method = resident_method(1);
   const Plan plan = make_plan(scene, method, plan_options(method));
-  resident::ResidentSystem system(std::make_unique<exec::HostExecutor>(), scene, method, plan);
+  test::ResidentSystem system(std::make_unique<exec::HostExecutor>(), scene, method, plan);
   Prediction falling{1, scene.x0};
   falling.x_tilde.row(2).array() -= 2e-3;
   system.begin_step(scene.x0, falling, 0.01, 1);
-  system.hold();
+  system.set_target(system.view().x());
   system.assemble();
   ASSERT_EQ(system.find_direction().linear.status, LinearStatus::ok);
   StepNumbers before, after;
-  system.report_end(before);
+  system.view().report_end(before);
   ASSERT_GT(before.contacts.total(), 0u);
-  const double curvature = system.direction_curvature(), energy = system.energy();
+  const double curvature = system.direction_curvature(), energy = system.view().energy();
   system.prepare_motion(MotionEnd::free, false);
   IterationReport unread;
   const double alpha = system.bound_motion(unread);
   ASSERT_TRUE(system.try_motion(0.5 * alpha));
-  EXPECT_EQ(system.energy(), energy);
-  system.report_end(after);
+  EXPECT_EQ(system.view().energy(), energy);
+  system.view().report_end(after);
   EXPECT_EQ(after.contact_load_max_N.value, before.contact_load_max_N.value);
   EXPECT_EQ(after.contacts.total(), before.contacts.total());
   ASSERT_TRUE(system.try_motion(0.25 * alpha));
@@ -151,7 +149,7 @@ TEST(ResidentMemory, ThatIsMissingIsNamed) {
   auto executor = std::make_unique<exec::HostExecutor>();
   executor->limit_memory(100000);
   try {
-    resident::ResidentSystem system(std::move(executor), scene, method, plan);
+    test::ResidentSystem system(std::move(executor), scene, method, plan);
     system.begin_step(scene.x0, {1, scene.x0}, 0.01, 1);
     system.assemble();
     FAIL();

@@ -32,13 +32,11 @@ End take_steps(Method method) {
 Method resident_method(exec::Index frugal_from, std::size_t list_budget) {
   Method method = test::soft_method(1e-3);
   test::use_resident_solver(method);
-  method.make_system = [=](const Scene& scene, Method& of, const Plan& plan) {
-    auto system =
-        std::make_unique<resident::ResidentSystem>(std::make_unique<exec::HostExecutor>(), scene, of, plan);
-    system->set_frugal_from(frugal_from);
-    system->set_list_budget(list_budget);
-    return system;
-  };
+  method.make_potential = test::on_executor([] { return std::make_unique<exec::HostExecutor>(); },
+                                            [=](resident::ResidentPotential& potential) {
+                                              potential.set_frugal_from(frugal_from);
+                                              potential.set_list_budget(list_budget);
+                                            });
   return method;
 }
 

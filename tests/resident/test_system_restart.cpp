@@ -37,17 +37,17 @@ struct Restarted {
   }
   static Iterate iterate(StepSystem& system) {
     system.assemble();
-    system.hold();
+    system.set_target(system.view().x());
     EXPECT_EQ(system.find_direction().linear.status, LinearStatus::ok);
     IterateNumbers numbers;
-    system.report(numbers);
+    system.view().report(numbers);
     EXPECT_GT(numbers.contacts.total(), 0U);
-    return {system.energy(),
+    return {system.view().energy(),
             numbers.kappa_max_N_per_m.value,
             numbers.limit_load_max_N_per_m.value,
             system.direction_curvature(),
             system.direction_size().slope_J,
-            system.gradient()};
+            system.view().gradient()};
   }
   std::pair<Iterate, Iterate> both_lengths(StepSystem& system, double length, double c) const {
     system.begin_step(scene.x0, predicted(dt, 1), dt, 1);
@@ -99,7 +99,7 @@ TEST(SystemRestart, TheNumbersOfAnIterateAreThoseOfTheNewLength) {
       const std::string what = std::string(policy.name) + " " + policy.mass_term + " " + policy.refresh;
       Restarted of_cpu(method_of(policy)), of_resident(method_of(policy));
       NewtonSystem cpu(of_cpu.scene, of_cpu.method, of_cpu.plan);
-      resident::ResidentSystem resident(std::make_unique<exec::HostExecutor>(), of_resident.scene,
+      test::ResidentSystem resident(std::make_unique<exec::HostExecutor>(), of_resident.scene,
                                         of_resident.method, of_resident.plan);
       const auto expected = of_cpu.both_lengths(cpu, length, c),
                  found = of_resident.both_lengths(resident, length, c);

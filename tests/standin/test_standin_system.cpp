@@ -33,9 +33,7 @@ using MakeExecutor = std::function<std::unique_ptr<exec::Executor>()>;
 test::RunEnd run(const Scene& scene, const std::string& shape, int steps, const MakeExecutor& make) {
   Method method = test::fixed_method(shape, 20);
   test::use_resident_solver(method);
-  method.make_system = [&](const Scene& of, Method& by, const Plan& plan) {
-    return std::make_unique<resident::ResidentSystem>(make(), of, by, plan);
-  };
+  method.make_potential = test::on_executor(make);
   return test::run_steps(scene, std::move(method), steps);
 }
 

@@ -64,15 +64,15 @@ HessianChoice ResidentPotential::contact_choice() const {
 
 void ResidentPotential::fill_matrix(const Column& x, const HessianLevel& level, const Column& force) {
   filled_ = {level.t(), level.threshold(), force.data()};
-  fill(x);
+  refill(x);
 }
 
 void ResidentPotential::fill_exact(const Column& x, const Column& force) {
   filled_ = {0, infinity, force.data()};
-  fill(x);
+  refill(x);
 }
 
-void ResidentPotential::fill(const Column& x) {
+void ResidentPotential::refill(const Column& x) {
   const ScopedPhase timer(clock(), Phase::assembly);
   elements_.clear_matrix();
   elements_.add_matrix(TermSet::all(), x.data(), [&](std::string_view term) {

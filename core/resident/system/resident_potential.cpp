@@ -108,7 +108,7 @@ double ResidentPotential::bound(const Column& x0, const Column& x1, const Column
 // The values of the matrix may have been given back.
 bool ResidentPotential::make_room(const Column& x, const Column& dx, double bound, Column& force) {
   if (!contact_ || !contact_->make_room(x, dx, bound, force)) return false;
-  fill(x);
+  refill(x);
   return true;
 }
 

@@ -16,6 +16,10 @@
 #include "core/resident/system/row_totals.hpp"
 #include "core/terms/plan.hpp"
 
+namespace bb {
+class NewtonSystem;
+}
+
 namespace bb::resident {
 
 class ResidentPotential final : public IncrementalPotential {
@@ -80,7 +84,7 @@ class ResidentPotential final : public IncrementalPotential {
     const double* force = nullptr;
   };
   ResidentMatrix matrix() const;
-  void fill(const Column& x);
+  void refill(const Column& x);
   void fill_elastic(const Column& x);
   void keep_elastic();
   MatrixPart kept_elastic() const;
