@@ -1,4 +1,4 @@
-"""A condition number taken apart: python -m barrierbench_analysis.causes RUN, verb `bench causes`.
+"""A condition number taken apart: the verb `bench causes`.
 
 Of the diagnosed Newton iteration with the largest condition number (or the one that is named): every stage and scaling side by side, what contact,
 strain limit and scaling make of it, and where the eigenvectors of both ends live: on which term, element, body and vertices.
@@ -13,7 +13,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from .load import LARGEST_COND
+from .records import LARGEST_COND
 from .program import built_program, plugin_argument, plugin_words
 from .record_file import RecordError, read_record, read_trace
 from .text_table import aligned

@@ -1,4 +1,4 @@
-"""Who finds the condition numbers, and at what price: python -m barrierbench_analysis.condition_table writes results/CONDITION.md.
+"""Who finds the condition numbers, and at what price: the verb `bench condition-table` writes results/CONDITION.md.
 
 Tier 2 (Spectra) and tier 4 (our Lanczos) estimate the same matrices: those of every diagnosed iteration of the demo's sweeps, run once with each
 tier, and those of results/matrices. A run goes through the same states whatever is estimated, so that its samples pair up one by one.

@@ -11,17 +11,22 @@ from __future__ import annotations
 import argparse
 import datetime
 import json
+import os
 import re
-import sys
+import subprocess
 from itertools import combinations
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from .load import RecordError, Records, load
+from .errors import UserError, tells
+from .program import built_program
+from .records import RecordError, Records, load
 from .whole_file import write_whole
 
+ROOT = Path(__file__).resolve().parents[1]
+RECORDS = ROOT / "results/runs/linear_fit"
 WORK_TERMS = ("solve", "entry", "entry_sqrt_unknown", "factor_entry", "factor_flop")
 TIMES = ["time_linear_analyze_s", "time_linear_factor_s", "time_linear_solve_s"]
 TERMS_OF = {"cholmod": ("solve", "entry", "factor_entry", "factor_flop"), "pcg": ("solve", "entry", "entry_sqrt_unknown")}  # others: all
@@ -119,23 +124,25 @@ def print_table(table: pd.DataFrame) -> None:
     print(shown.pivot(index="scene", columns="name", values="text").loc[list(dict.fromkeys(table["scene"]))].to_string())
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(prog="./bench fit-linear", description=__doc__)
-    parser.add_argument("records", type=Path, help="folder of the records")
-    parser.add_argument("--out", type=Path, required=True, help="folder of the models: the file is named after the processor")
-    asked = parser.parse_args()
-    try:
-        content, table = model(load(asked.records))
-    except RecordError as error:
-        print(error, file=sys.stderr)
-        return 2
+def collect() -> Path:
+    """Runs what is missing of the sweep; the folder of its records. Errors: UserError."""
+    done = subprocess.run([str(built_program(UserError)), "sweep", str(ROOT / "configs/sweeps/linear_fit.json"), "--out", str(RECORDS)], check=False)
+    if done.returncode != 0:
+        raise UserError(f"the sweep ended with {done.returncode}", done.returncode)
+    return RECORDS
+
+
+@tells("fit-linear")
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="bench fit-linear", description=__doc__)
+    parser.add_argument("records", type=Path, nargs="?", help="folder of the records (default: the sweep is run)")
+    parser.add_argument("--out", type=Path, default=Path(os.environ.get("BARRIERBENCH_CONFIGS", ROOT / "configs")) / "linear_models",
+                        help="folder of the models: the file is named after the processor (default: configs/linear_models)")
+    asked = parser.parse_args(argv)
+    content, table = model(load(asked.records or collect()))
     print_table(table)
     name = re.sub(r"[^a-z0-9]+", "_", content["machine"]["cpu_model"].lower()).strip("_")
     path = asked.out / f"{name}.json"
     write_whole(path, json.dumps(content, indent=2) + "\n")
     print(f"relative error: median {content['fitted']['relative_error_median']}, largest {content['fitted']['relative_error_max']}; {path}")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

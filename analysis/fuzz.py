@@ -1,4 +1,4 @@
-"""Fuzzing: python -m barrierbench_analysis.fuzz [TARGET...] runs the targets of tests/fuzz that were built and prints one table.
+"""Fuzzing: builds the targets of tests/fuzz with clang, which this verb alone installs, runs them and prints one table.
 
 Every target starts from seeds that its build writes (fuzz_seeds) and from the corpus of earlier runs in build/fuzz/corpus. A crash, a report of a
 sanitizer, a leak or an input that takes longer than 10 s ends the target; the input is kept. Exit code 1 when there was one, 2 for a wrong request.
@@ -15,6 +15,8 @@ import sys
 import time
 from pathlib import Path
 
+from .errors import tells
+from .front import building
 from .whole_file import write_whole
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -100,7 +102,15 @@ def positive(text: str) -> int:
     return value
 
 
-def main() -> int:
+def prepare(names: list[str]) -> None:
+    """Targets and seeds. Errors: UserError where clang cannot be installed or something does not build."""
+    building.setup("clang", "libclang-rt-14-dev")
+    building.build("fuzz", "fuzz_seeds", *(f"fuzz_{name}" for name in names))
+    subprocess.run([str(BUILD / "tests/fuzz/fuzz_seeds"), str(BUILD / "seeds")], check=True, env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"})
+
+
+@tells("fuzz")
+def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench fuzz", description=__doc__.split("\n\n", maxsplit=1)[1],
                                      epilog="example: ./bench fuzz mesh_ply config --seconds 60")
     parser.add_argument("targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)")
@@ -109,12 +119,13 @@ def main() -> int:
     length.add_argument("--runs", type=positive, help="executions of each target")
     parser.add_argument("--seed", type=positive, default=1, help="of libFuzzer; the corpus of earlier runs matters too (default 1)")
     parser.add_argument("--json", type=Path, help="file of everything that the table shows")
-    arguments = parser.parse_args()
+    arguments = parser.parse_args(argv)
     try:
         names = chosen(arguments.targets)
     except FuzzError as error:
         print(f"bench fuzz: {error}", file=sys.stderr)
         return 2
+    prepare(names)
     rows = []
     for name in names:
         print(f"bench: fuzzing {name}", file=sys.stderr, flush=True)
@@ -128,5 +139,3 @@ def main() -> int:
     return 1 if any(row["failed"] for row in rows) else 0
 
 
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,4 +1,4 @@
-"""The corpus of hard systems: python -m barrierbench_analysis.matrix_corpus makes results/matrices and its table from configs/matrices/corpus.json.
+"""The corpus of hard systems: the verb `bench matrix-corpus` makes results/matrices and its table from configs/matrices/corpus.json.
 
 Every system is that of one Newton iteration of a small run, written by /output/matrices; only its `cause` is added here. The table replays all of
 them (`barrierbench matrix`); it has no times, so that it is the same on every machine with the same libraries.

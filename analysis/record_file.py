@@ -15,6 +15,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from . import fields
+from .errors import UserError
 
 VERSION = fields.schema("run")["$defs"]["SchemaId"]["properties"]
 SCHEMA_NAME, SCHEMA_MAJOR = VERSION["name"]["enum"][0], VERSION["version"]["pattern"].strip("^").split("\\.")[0]
@@ -26,7 +27,7 @@ NEEDED = {"ids": ("run_id",), "status": ("outcome", "valid"), "labels": ("scene"
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
 
 
-class RecordError(ValueError):
+class RecordError(UserError):
     """A file that is not a record this version can read, or that does not belong to its record."""
 
 

@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 from . import style
 from .captions import caption
 from .frames import Frame, FrameError, frame_of, frame_paths, read_scene
-from .load import run_row
+from .records import run_row
 from .obstacle_rays import Hits, hits, primitive_gaps, signed_gap
 from .rasterizer import Camera, DepthBuffer, corner_normals
 from .record_file import RecordError, read_record

@@ -6,7 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from .load import RecordError, read_record
+from .records import RecordError, read_record
 from .text_table import aligned
 
 HEAD = ["run", "outcome", "to obstacles (mm)", "between (mm)", "step ends", "triangles", "edges", "vertices"]

@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from . import style
-from .load import Records, condition_of, counted
+from .records import Records, condition_of, counted
 
 HEADINGS = {
     "group": "scene",

@@ -8,7 +8,7 @@ from pathlib import Path
 import pandas as pd
 
 from .. import panels, series, style
-from ..load import LARGEST_COND, Records, condition_of, places_in_time
+from ..records import LARGEST_COND, Records, condition_of, places_in_time
 from . import swings
 
 SCALINGS = {"none": "raw", "block_jacobi": "block-Jacobi-scaled"}

@@ -1,4 +1,4 @@
-"""All figures and the table of a folder of runs: python -m barrierbench_analysis.figures.demo RUNS [OUT]."""
+"""All figures and the table of a folder of runs."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 
 from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
-from ..load import Records, load
+from ..records import Records, load
 from ..record_file import RecordError
 from ..table import as_text, summary_table
 
@@ -54,7 +54,7 @@ def make_all_of(records: Records, out: Path) -> str:
 
 def main(arguments: list[str]) -> int:
     if not 1 <= len(arguments) <= 2:
-        print("usage: python -m barrierbench_analysis.figures.demo RUNS [OUT]", file=sys.stderr)
+        print("usage: ./bench figures RUNS [OUT]", file=sys.stderr)
         return 2
     runs = Path(arguments[0])
     out = Path(arguments[1]) if len(arguments) == 2 else runs / "figures"

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from .. import series, style
-from ..load import Records
+from ..records import Records
 
 SHOWN = "{group}: the smallest gap between any two surfaces at the end of each converged time step, in units of d_hat, the gap at which contact begins. Steps without contact have no point."
 COLUMNS = ["group", "series", "run", "step", "t_s", "gap_min_m", "gap_min_rel"]

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 
 from .. import series, style
-from ..load import Records
+from ..records import Records
 
 
 SHOWN = (

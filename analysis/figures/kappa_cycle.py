@@ -10,7 +10,7 @@ import numpy as np
 import pandas as pd
 
 from .. import series, style
-from ..load import Records, step_spans
+from ..records import Records, step_spans
 from . import swings
 
 # Copies of settled_kappa and unsettled_iterations in core/newton/iteration.cpp.

@@ -8,7 +8,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from .. import style
-from ..load import Records, condition_of, places_in_time
+from ..records import Records, condition_of, places_in_time
 
 SCALINGS = (("none", "raw"), ("block_jacobi", "block-Jacobi-scaled"))
 FORMS = (("clamped", "every element clamped", "-"), ("solved", "solved", ":"))

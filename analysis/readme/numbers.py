@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..load import Records, condition_of, counted, load
+from ..records import Records, condition_of, counted, load
 from ..table import summary_table
 from ..whole_file import write_whole
 

@@ -12,6 +12,7 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..front import verbs
 from .numbers import ROOT
 
 FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```[ ]*$", re.DOTALL | re.MULTILINE)
@@ -19,7 +20,6 @@ PLAIN = ("", "text")  # what is shown and not run: output, a file's layout
 CHECKED_CONFIG = ("run", "steps", "explain", "check", "causes", "match")  # verbs whose first file is a config
 SAFE = ("list", "help", "eval", "device")  # answer at once
 MADE = ("results/runs", "results/matrices")  # what commands leave; `*` in a name: of a run of the reader's own
-LONG_VERBS = ("setup", "build", "demo", "test", "format", "tidy", "rooms")
 SECONDS = 120
 
 
@@ -47,12 +47,6 @@ def _told(done: subprocess.CompletedProcess) -> str:
     return (done.stderr.strip() or done.stdout.strip()).splitlines()[-1] if (done.stderr or done.stdout).strip() else "it said nothing"
 
 
-def script_verbs() -> set[str]:
-    """Verbs that the script ./bench handles itself, as it tells the program."""
-    found = re.search(r'BENCH_VERBS="([^"]+)"', (ROOT / "bench").read_text())
-    return set(found[1].split()) if found else set()
-
-
 def _settings(words: list[str]) -> list[str]:
     return [word for k, value in enumerate(words[:-1]) if value == "--set" for word in ("--set", words[k + 1])]
 
@@ -67,12 +61,8 @@ def _command_fault(words: list[str], program: str) -> str:
     verb, rest = words[1], words[2:]
     if missing := _missing_files(rest):
         return f"{missing[0]}: not there"
-    if verb in LONG_VERBS or verb == "mutate":
+    if verbs.find(verb):
         return ""
-    own = verb in script_verbs()
-    if own:
-        usage = _ran([str(ROOT / "bench")]).stdout
-        return "" if re.search(rf"^  (?:\w+, )*{verb}\b", usage, re.MULTILINE) else f"{verb} is not in the usage of ./bench"
     helped = _ran([program, verb, "--help"])
     if helped.returncode != 0:
         return _told(helped)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from analysis.readme import __main__ as readme
+from analysis.readme import verb as readme
 from analysis.claims.entry import read_sweep
 from analysis.claims.inputs import inputs_of
 from analysis.claims.table import Runs, Table
@@ -162,7 +162,7 @@ def test_a_fence_that_nothing_checks_is_a_fault(fence):
 
 
 def test_numbers_are_gathered_from_records_of_the_program(program, tmp_path):
-    from analysis.load import load
+    from analysis.records import load
     from small_sweep import sweep_of
 
     records = load(sweep_of(program, tmp_path))

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from made import record
 
-from analysis.claims import __main__ as verb
+from analysis.claims import verb
 from analysis.claims import fresh, report
 from analysis.claims.entry import FOLDER, ROOT, ClaimError, ids, read_claim, read_sweep
 from analysis.claims.judge import RULES, judge, missing

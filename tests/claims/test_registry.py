@@ -11,7 +11,7 @@ from dataclasses import replace
 import pytest
 from made import runs
 
-from analysis.claims import __main__ as verb
+from analysis.claims import verb
 from analysis.claims import registry, report
 from analysis.claims.entry import ROOT, ClaimError, read_claim, read_sweep
 from analysis.claims.inputs import inputs_of

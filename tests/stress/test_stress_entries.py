@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from analysis.stress.__main__ import main
+from analysis.stress.verb import main
 from analysis.stress.entry import FOLDER, Expected, StressError, ids, left_out, read_test
 from analysis.stress.relations import check
 from analysis.stress.run import known

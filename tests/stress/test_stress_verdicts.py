@@ -6,7 +6,7 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from analysis.stress import __main__ as verb
+from analysis.stress import verb
 from analysis.stress import exact
 from analysis.stress.entry import ROOT, StressError, ids, read_test
 from analysis.stress.geometry import Count, _judge_ccd

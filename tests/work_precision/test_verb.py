@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from analysis.record_file import RecordError
-from analysis.work_precision import __main__ as verb
+from analysis.work_precision import verb
 from analysis.work_precision import report
 from analysis.work_precision.spec import ROOT, SpecError, read_spec
 
