@@ -10,12 +10,12 @@ import argparse
 import json
 import math
 import subprocess
-import sys
 from pathlib import Path
 
+from .errors import UserError, tells
 from .records import LARGEST_COND
 from .program import built_program, plugin_argument, plugin_words
-from .record_file import RecordError, read_record, read_trace
+from .record_file import read_record, read_trace
 from .text_table import aligned
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -25,20 +25,16 @@ OPTIONS = ["/passes/diagnose=true", "/passes/time=false", "/diagnose/ends=true",
 WITHOUT = {"contact": ("full", "without_contact"), "strain limit": ("without_contact", "without_contact_and_limit")}
 
 
-class CausesError(ValueError):
-    """A run that cannot be taken apart, with what would make it possible."""
-
-
 def program() -> str:
-    return str(built_program(CausesError))
+    return str(built_program(UserError))
 
 
 def diagnosed(folder: Path) -> tuple[dict, list[dict]]:
-    """The record in a folder, and the lines of its trace that have condition numbers. Raises CausesError, RecordError."""
+    """The record in a folder, and the lines of its trace that have condition numbers. Raises UserError, RecordError."""
     record = read_record(folder / "run.json")
     rows = read_trace(record, folder)
     if not rows:
-        raise CausesError(f"{folder / 'trace.jsonl'}: not there; allowed: a run with the pass diagnose, e.g. ./bench causes CONFIG.json")
+        raise UserError(f"{folder / 'trace.jsonl'}: not there; allowed: a run with the pass diagnose, e.g. ./bench causes CONFIG.json")
     return record, [row for row in rows if row["cond"]]
 
 
@@ -59,7 +55,7 @@ def pick(rows: list[dict], scaling: str, at: tuple[int, int] | None) -> dict:
         known = [row for row in known if (row["step"], row["iteration"]) == at]
     if not known:
         what = f"step {at[0]}, iteration {at[1]}" if at else "any iteration"
-        raise CausesError(f"no condition number of the full matrix, scaling {scaling}, at {what}; allowed: a run with --set /passes/diagnose=true")
+        raise UserError(f"no condition number of the full matrix, scaling {scaling}, at {what}; allowed: a run with --set /passes/diagnose=true")
     return max(known, key=lambda row: cond_of(clamped(row)["full", scaling]))
 
 
@@ -106,12 +102,12 @@ def text(row: dict, count: int, scaling: str) -> str:
 
 
 def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list[str]) -> Path:
-    """The folder of a record, or of the run that is made of a config with everything diagnosed. Raises CausesError for what a record, whose run
+    """The folder of a record, or of the run that is made of a config with everything diagnosed. Raises UserError for what a record, whose run
     is over, cannot take: settings, plugins, another folder."""
     if given.is_dir() or given.name == "run.json":
         asked = [f"--set {text}" for text in settings] + [f"--plugin {file}" for file in plugins] + ([f"--out {out}"] if out else [])
         if asked:
-            raise CausesError(f"{asked[0]}: given with a record, whose run is over: {given}; allowed: with a config, which is run, e.g. ./bench causes CONFIG.json {asked[0]}")
+            raise UserError(f"{asked[0]}: given with a record, whose run is over: {given}; allowed: with a config, which is run, e.g. ./bench causes CONFIG.json {asked[0]}")
         return given if given.is_dir() else given.parent
     folder = out or ROOT / "results/runs" / f"causes-{given.stem}"
     words = [program(), *plugin_words(plugins), "run", str(given), "--out", str(folder)]
@@ -119,11 +115,12 @@ def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list
         words += ["--set", option]
     code = subprocess.run(words, check=False, stdout=subprocess.DEVNULL).returncode
     if code != 0:
-        raise CausesError(f"{given}: the run ended with exit code {code}")
+        raise UserError(f"{given}: the run ended with exit code {code}")
     return folder
 
 
-def main(words: list[str] | None = None) -> int:
+@tells("causes")
+def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench causes", description=__doc__.split("\n\n", 1)[1], epilog="example: ./bench causes configs/scenes/drape2d.json --set /scene/variant=strip")
     parser.add_argument("run", type=Path, help="folder of a record with a trace, its run.json, or a config, which is run with everything diagnosed")
     parser.add_argument("--scaling", choices=SCALINGS, default="none", help="by which the worst iteration is picked (default none)")
@@ -138,16 +135,8 @@ def main(words: list[str] | None = None) -> int:
             raise ValueError
     except ValueError:
         parser.error(f"--at {given.at}: allowed: STEP,ITERATION, both from 0")
-    try:
-        folder = run_folder(given.run, given.out, given.set, given.plugin)
-        record, rows = diagnosed(folder)
-        row = pick(rows, given.scaling, at)
-    except (CausesError, RecordError) as error:
-        print(error, file=sys.stderr)
-        return 2
+    folder = run_folder(given.run, given.out, given.set, given.plugin)
+    record, rows = diagnosed(folder)
+    row = pick(rows, given.scaling, at)
     print(f"{record['labels']['scene']} {record['labels']['formulation']}: {text(row, len(rows), given.scaling)}")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -18,6 +18,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from .errors import UserError, tells
 from .toolkit_meshes import generated_sheets, read_ply, write_problem
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -47,7 +48,7 @@ class Ours:
         self.process.stdin.flush()
         line = self.process.stdout.readline()
         if not line:
-            raise SystemExit(f"contact_stages ended in stage {stage} (exit code {self.process.wait()})")
+            raise UserError(f"contact_stages ended in stage {stage} (exit code {self.process.wait()})")
         return json.loads(line)
 
     def close(self) -> None:
@@ -133,7 +134,7 @@ def compare(ours: Ours, toolkit: Toolkit, rounds: int) -> dict[str, dict[str, li
             pair = {name: side.run(stage) for name, side in (sides if turn % 2 == 0 else sides[::-1])}
             wrong = disagreement(pair["ours"], pair["toolkit"])
             if wrong:
-                raise SystemExit(f"compare-toolkit: the two disagree: {wrong}")
+                raise UserError(f"the two disagree: {wrong}")
             for name, answer in pair.items():
                 if turn > 0:
                     answers[stage][name].append(answer)
@@ -189,7 +190,8 @@ def arguments(argv: list[str] | None) -> argparse.Namespace:
     return args
 
 
-def main(argv: list[str] | None = None) -> int:
+@tells("compare-toolkit")
+def main(argv: list[str]) -> int:
     args = arguments(argv)
     try:
         import ipctk
@@ -219,7 +221,3 @@ def main(argv: list[str] | None = None) -> int:
     print(table_text(rows))
     print(f"compare-toolkit: all samples in {path}", file=sys.stderr)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

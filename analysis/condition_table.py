@@ -10,20 +10,16 @@ import argparse
 import datetime
 import json
 import subprocess
-import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from .errors import UserError, tells
 from .program import built_program
 
 ROOT = Path(__file__).resolve().parents[1]
 SWEEPS = ("demo_strip", "demo_pinned", "demo_article", "demo_drape")
 TIERS = (2, 4)
-
-
-class TableError(ValueError):
-    """Runs or replays whose estimates do not pair up."""
 
 
 @dataclass
@@ -36,9 +32,9 @@ class Pair:
 
 
 def run(words: list[str]) -> None:
-    done = subprocess.run([str(built_program(TableError)), *words], capture_output=True, text=True, check=False)
+    done = subprocess.run([str(built_program(UserError)), *words], capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise TableError(f"{' '.join(words)}: {done.stderr.strip()}")
+        raise UserError(f"{' '.join(words)}: {done.stderr.strip()}")
 
 
 def samples(folder: Path) -> dict[tuple, dict]:
@@ -56,7 +52,7 @@ def samples(folder: Path) -> dict[tuple, dict]:
 def pair_up(name: str, by_tier: dict[int, dict[tuple, dict]]) -> list[Pair]:
     first, second = (by_tier[tier] for tier in TIERS)
     if first.keys() != second.keys() or not first:
-        raise TableError(f"{name}: {len(first)} estimates of tier 2, {len(second)} of tier 4, not of the same matrices")
+        raise UserError(f"{name}: {len(first)} estimates of tier 2, {len(second)} of tier 4, not of the same matrices")
     return [Pair(name, first[key], second[key]) for key in sorted(first, key=str)]
 
 
@@ -65,19 +61,19 @@ def _labelled(spec: dict) -> list[dict]:
 
 
 def _keep(spec: dict, cases: list[str]) -> None:
-    """Leaves the cases with these labels on every labelled axis. Raises TableError where an axis has none of them."""
+    """Leaves the cases with these labels on every labelled axis. Raises UserError where an axis has none of them."""
     for axis in _labelled(spec):
         kept = [case for case in axis["cases"] if case["label"] in cases]
         if not kept:
-            raise TableError(f"configs/sweeps/{spec['name']}.json: no case {' or '.join(map(repr, cases))}; it has {', '.join(case['label'] for case in axis['cases'])}")
+            raise UserError(f"configs/sweeps/{spec['name']}.json: no case {' or '.join(map(repr, cases))}; it has {', '.join(case['label'] for case in axis['cases'])}")
         axis["cases"] = kept
 
 
 def check_labels(sweeps: list[str], cases: list[str]) -> None:
-    """Raises TableError for a label that no sweep has: a misspelt one would be left out in silence."""
+    """Raises UserError for a label that no sweep has: a misspelt one would be left out in silence."""
     labels = {case["label"] for name in sweeps for axis in _labelled(json.loads((ROOT / f"configs/sweeps/{name}.json").read_text())) for case in axis["cases"]}
     if unknown := [label for label in cases if label not in labels]:
-        raise TableError(f"--cases {unknown[0]}: none of {', '.join(sweeps)} has it; they have {', '.join(sorted(labels))}")
+        raise UserError(f"--cases {unknown[0]}: none of {', '.join(sweeps)} has it; they have {', '.join(sorted(labels))}")
 
 
 def of_sweep(name: str, cases: list[str], work: Path) -> list[Pair]:
@@ -159,24 +155,17 @@ def processor() -> str:
     return "unknown processor"
 
 
-def main(words: list[str] | None = None) -> int:
+@tells("condition-table")
+def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench condition-table", description=__doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "results/CONDITION.md")
     parser.add_argument("--sweeps", nargs="*", default=list(SWEEPS), help="of configs/sweeps; none: the corpus alone")
     parser.add_argument("--cases", nargs="*", default=[], help="labels of their formulations (default: all)")
     arguments = parser.parse_args(words)
-    try:
-        check_labels(arguments.sweeps, arguments.cases)
-        with tempfile.TemporaryDirectory() as folder:
-            groups = {name: of_sweep(name, arguments.cases, Path(folder)) for name in arguments.sweeps}
-            groups["corpus"] = of_corpus(Path(folder))
-    except TableError as error:
-        print(error, file=sys.stderr)
-        return 2
+    check_labels(arguments.sweeps, arguments.cases)
+    with tempfile.TemporaryDirectory() as folder:
+        groups = {name: of_sweep(name, arguments.cases, Path(folder)) for name in arguments.sweeps}
+        groups["corpus"] = of_corpus(Path(folder))
     arguments.out.write_text(page(groups, f" for the cases {', '.join(arguments.cases)}" if arguments.cases else ""))
     print(arguments.out)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

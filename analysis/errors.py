@@ -19,16 +19,18 @@ class UserError(ValueError):
 
 
 def tells(verb: str) -> Callable:
-    """For `main(argv)` of a verb: an error for the user is said on stderr, and its code is the exit code."""
+    """For `main(argv)` of a verb: an error for the user, or of a file, is said on stderr, and its code is the exit code."""
 
     def around(main: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
         @functools.wraps(main)
         def guarded(argv: list[str]) -> int:
             try:
                 return main(argv)
-            except UserError as error:
+            except BrokenPipeError:
+                raise  # nobody reads: no error of the input
+            except (UserError, OSError) as error:
                 print(f"bench {verb}: {error}", file=sys.stderr)
-                return error.code
+                return getattr(error, "code", BAD_INPUT)
 
         return guarded
 

@@ -14,6 +14,7 @@ import json
 import os
 import re
 import subprocess
+import sys
 from itertools import combinations
 from pathlib import Path
 

@@ -15,7 +15,7 @@ import sys
 import time
 from pathlib import Path
 
-from .errors import tells
+from .errors import UserError, tells
 from .front import building
 from .whole_file import write_whole
 
@@ -29,10 +29,6 @@ SANITIZER = {"ASAN_OPTIONS": "malloc_context_size=3:quarantine_size_mb=8:detect_
 LIMITS = ["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=1"]
 
 
-class FuzzError(ValueError):
-    """A request that names no target."""
-
-
 def targets() -> list[str]:
     text = (ROOT / "tests" / "fuzz" / "targets.inc").read_text()
     return re.findall(r"^BB_FUZZ_TARGET\((\w+)\)", text, re.MULTILINE)
@@ -42,7 +38,7 @@ def chosen(names: list[str]) -> list[str]:
     known = targets()
     for name in names:
         if name not in known:
-            raise FuzzError(f"found target {name!r}; allowed: {', '.join(known)}")
+            raise UserError(f"found target {name!r}; allowed: {', '.join(known)}")
     return names or known
 
 
@@ -110,6 +106,7 @@ def prepare(names: list[str]) -> None:
 
 
 @tells("fuzz")
+@tells("fuzz")
 def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench fuzz", description=__doc__.split("\n\n", maxsplit=1)[1],
                                      epilog="example: ./bench fuzz mesh_ply config --seconds 60")
@@ -120,11 +117,7 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--seed", type=positive, default=1, help="of libFuzzer; the corpus of earlier runs matters too (default 1)")
     parser.add_argument("--json", type=Path, help="file of everything that the table shows")
     arguments = parser.parse_args(argv)
-    try:
-        names = chosen(arguments.targets)
-    except FuzzError as error:
-        print(f"bench fuzz: {error}", file=sys.stderr)
-        return 2
+    names = chosen(arguments.targets)
     prepare(names)
     rows = []
     for name in names:
@@ -137,5 +130,3 @@ def main(argv: list[str]) -> int:
     if arguments.json:
         write_whole(arguments.json, json.dumps(rows, indent=1) + "\n")
     return 1 if any(row["failed"] for row in rows) else 0
-
-

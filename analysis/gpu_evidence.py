@@ -10,6 +10,7 @@ import re
 import sys
 from pathlib import Path
 
+from .errors import UserError
 from .program import read_object
 from .record_file import RecordError, read_record
 from .whole_file import write_whole
@@ -17,10 +18,6 @@ from .whole_file import write_whole
 SCHEMA = "barrierbench.gpu_evidence/1"
 SCENES = ("drape_82k", "drape_1m", "dense_184m")
 RECORDS = Path(__file__).resolve().parents[1] / "results/gpu"
-
-
-class EvidenceError(ValueError):
-    """A raw file that is not what the script writes."""
 
 
 def parts_of(folder: Path) -> dict[str, dict]:
@@ -31,7 +28,7 @@ def parts_of(folder: Path) -> dict[str, dict]:
             name, status, more, seconds = line.split("\t")
             parts[name] = {"status": status, "seconds": int(seconds), "why": more if status == "left_out" else ""}
         except ValueError:
-            raise EvidenceError(f"{folder}/parts.tsv: not a part: {line!r}") from None
+            raise UserError(f"{folder}/parts.tsv: not a part: {line!r}") from None
         if status in ("failed", "timed_out"):
             log = folder / "logs" / f"{name}.err"
             said = log.read_text(errors="replace").strip().splitlines() if log.exists() else []
@@ -54,7 +51,7 @@ def scene_numbers(folder: Path) -> dict | None:
     try:
         run = read_record(path)
     except RecordError as error:
-        raise EvidenceError(str(error)) from None
+        raise UserError(str(error)) from None
     summary, steps = run["summary"], max(run["summary"]["steps"], 1)
     newton, pcg = summary["newton_iterations"], summary["linear_iterations"]
     wall, solve = summary["wall_s"], summary["time"]["linear_solve_s"] if summary["wall_s"] is not None else None
@@ -94,16 +91,16 @@ def kernels_of(folder: Path) -> list[dict]:
     kernels = measured_kernels(folder)
     path = folder / "kernel_times.json"
     if not kernels and path.exists():
-        kernels = {name: {**times, "bytes": None} for name, times in read_object(path, EvidenceError)["kernels"].items()}
+        kernels = {name: {**times, "bytes": None} for name, times in read_object(path, UserError)["kernels"].items()}
     rows = [{"name": name, **entry, "Bps": entry["bytes"] / entry["seconds"] if entry["bytes"] and entry["seconds"] else None} for name, entry in kernels.items()]
     return sorted(rows, key=lambda row: (-row["seconds"], row["name"]))
 
 
 def collect(folder: Path, commit: str, seconds: int) -> dict:
-    """The record. Errors: EvidenceError."""
-    device = read_object(folder / "device.json", EvidenceError)
+    """The record. Errors: UserError."""
+    device = read_object(folder / "device.json", UserError)
     if not device.get("usable") or not device.get("copy"):
-        raise EvidenceError(f"{folder}/device.json: no usable card with a measured copy")
+        raise UserError(f"{folder}/device.json: no usable card with a measured copy")
     return {"schema": SCHEMA, "date_utc": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"), "git_commit": commit, "seconds": seconds,
             "device": device, "card": card_state(folder), "parts": parts_of(folder),
             "scenes": {name: scene_numbers(folder / name) for name in SCENES}, "kernels": kernels_of(folder)}
@@ -123,7 +120,7 @@ def main(arguments: list[str] | None = None) -> int:
     asked = parser.parse_args(arguments)
     try:
         record = collect(asked.folder, asked.commit, asked.seconds)
-    except (EvidenceError, OSError, KeyError) as error:
+    except (UserError, OSError, KeyError) as error:
         print(f"gpu_evidence: {asked.folder}: {error}", file=sys.stderr)
         return 2
     path = asked.records / file_name(record)

@@ -7,15 +7,15 @@ from __future__ import annotations
 
 import argparse
 import shutil
-import sys
 import tempfile
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
 
+from .errors import UserError, tells
 from . import style
-from .gpu_evidence import RECORDS, SCHEMA, EvidenceError
+from .gpu_evidence import RECORDS, SCHEMA
 from .program import read_object
 from .whole_file import write_whole
 
@@ -28,14 +28,14 @@ WORDS = {"passed": "passed", "failed": "**failed**", "timed_out": "**timed out**
 
 
 def read_records(folder: Path) -> list[dict]:
-    """By card, then day. Errors: EvidenceError for a file of another schema; prices.json is none of them."""
+    """By card, then day. Errors: UserError for a file of another schema; prices.json is none of them."""
     records = []
     for path in sorted(folder.glob("*.json")):
-        record = read_object(path, EvidenceError)
+        record = read_object(path, UserError)
         if path.name == "prices.json":
             continue
         if record.get("schema") != SCHEMA:
-            raise EvidenceError(f"{path}: schema {record.get('schema')!r} instead of {SCHEMA!r}")
+            raise UserError(f"{path}: schema {record.get('schema')!r} instead of {SCHEMA!r}")
         records.append(record)
     return sorted(records, key=lambda record: (record["device"]["card"], record["date_utc"]))
 
@@ -134,18 +134,18 @@ def draw(records: list[dict], stem: Path) -> list[Path]:
     return style.save(fig, stem, pd.DataFrame(numbers), "How fast the longest kernels of the drape at 82 thousand vertices move memory, against a copy on the same card.")
 
 
-def main(arguments: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="./bench gpu-report", description=__doc__)
+@tells("gpu-report")
+def main(arguments: list[str]) -> int:
+    parser = argparse.ArgumentParser(prog="bench gpu-report", description=__doc__)
     parser.add_argument("--records", type=Path, default=RECORDS, help="folder of records and prices (default: results/gpu)")
     parser.add_argument("--results", type=Path, help="folder of page and figure (default: results/ and docs/)")
     asked = parser.parse_args(arguments)
+    records = read_records(asked.records)
+    prices = read_object(asked.records / "prices.json", UserError)
     try:
-        records = read_records(asked.records)
-        prices = read_object(asked.records / "prices.json", EvidenceError)
         page = markdown(records, prices)
-    except (EvidenceError, KeyError) as error:
-        print(f"gpu-report: {error}", file=sys.stderr)
-        return 2
+    except KeyError as missing:
+        raise UserError(f"{asked.records}: no field {missing} in a record") from None
     write_whole((asked.results or ROOT / "results") / "GPU.md", page)
     with tempfile.TemporaryDirectory() as scratch:
         for path in draw(records, Path(scratch) / "gpu_kernels"):
@@ -153,7 +153,3 @@ def main(arguments: list[str] | None = None) -> int:
                 shutil.copyfile(path, (asked.results or ROOT / "docs") / path.name)
     print(page)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

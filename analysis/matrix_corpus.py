@@ -15,6 +15,7 @@ import sys
 import tempfile
 from pathlib import Path
 
+from .errors import UserError, tells
 from .program import built_program
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -39,21 +40,17 @@ without a side-car will do: blocks of 3 if that divides its rows, and b = A * on
 """
 
 
-class CorpusError(ValueError):
-    """A corpus file or a run that gives no system."""
-
-
 def program() -> str:
-    return str(built_program(CorpusError))
+    return str(built_program(UserError))
 
 
 def read_spec(path: Path) -> dict:
     spec = json.loads(path.read_text())
     if spec.get("schema") != SCHEMA:
-        raise CorpusError(f"{path}#/schema: found {spec.get('schema')!r}; allowed: {SCHEMA!r}")
+        raise UserError(f"{path}#/schema: found {spec.get('schema')!r}; allowed: {SCHEMA!r}")
     names = [system["name"] for system in spec["systems"]]
     if len(set(names)) != len(names):
-        raise CorpusError(f"{path}: a name twice in {', '.join(sorted(names))}")
+        raise UserError(f"{path}: a name twice in {', '.join(sorted(names))}")
     return spec
 
 
@@ -67,7 +64,7 @@ def run(system: dict, common: dict, folder: Path, out: Path) -> None:
         words += ["--set", f"{pointer}={json.dumps(value)}"]
     done = subprocess.run(words, capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise CorpusError(f"{system['name']}: {done.stderr.strip()}")
+        raise UserError(f"{system['name']}: {done.stderr.strip()}")
 
 
 def unscaled_cond(side_car: dict) -> float:
@@ -82,7 +79,7 @@ def pick(system: dict, matrices: Path) -> Path:
     if system["pick"] == "with_exact":
         found = [path for path in found if path.with_name(f"{path.stem}_exact.json").is_file()]
     if not found:
-        raise CorpusError(f"{system['name']}: no matrix of form {system['form']} in its run")
+        raise UserError(f"{system['name']}: no matrix of form {system['form']} in its run")
     if system["pick"] == "largest_cond":
         return max(found, key=lambda path: unscaled_cond(json.loads(path.read_text())))
     return found[0]
@@ -119,12 +116,12 @@ def replay(out: Path) -> list[dict]:
     """The matrices of `barrierbench matrix --json`, by name."""
     files = sorted(out.glob("*.mtx"))
     if not files:
-        raise CorpusError(f"{out}: no matrices")
+        raise UserError(f"{out}: no matrices")
     with tempfile.TemporaryDirectory() as scratch:
         answer = Path(scratch) / "replay.json"
         done = subprocess.run([program(), "matrix", *map(str, files), "--json", str(answer)], capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            raise CorpusError(done.stderr.strip())
+            raise UserError(done.stderr.strip())
         return json.loads(answer.read_text())["matrices"]
 
 
@@ -159,27 +156,20 @@ def write_readme(out: Path) -> None:
     matrices = replay(out)
     size = sum(path.stat().st_size for path in out.iterdir() if path.suffix in (".mtx", ".json"))
     if size > MOST_BYTES:
-        raise CorpusError(f"{out}: {size} bytes; at most {MOST_BYTES} go into the repository")
+        raise UserError(f"{out}: {size} bytes; at most {MOST_BYTES} go into the repository")
     notes = (f"\n{len(matrices)} systems, {size / 2**20:.1f} MiB. cond: tier 2, unscaled and scaled; `>` is a lower bound. Solvers: PCG iterations to a residual of "
              "1e-8, at most 10000, `ok` for none, or how the solve ended.\n")
     (out / "README.md").write_text(f"{HEAD}{notes}\n{table(matrices)}\n")
 
 
-def main(argv: list[str] | None = None) -> int:
+@tells("matrix-corpus")
+def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench matrix-corpus", description="the corpus of hard systems and its table")
     parser.add_argument("--spec", type=Path, default=ROOT / "configs/matrices/corpus.json")
     parser.add_argument("--out", type=Path, default=ROOT / "results/matrices")
     parser.add_argument("--table", action="store_true", help="only README.md, from the files that are there")
     args = parser.parse_args(argv)
-    try:
-        if not args.table:
-            make(args.spec, args.out)
-        write_readme(args.out)
-    except (CorpusError, OSError) as error:
-        print(f"bench matrix-corpus: {error}", file=sys.stderr)
-        return 2
+    if not args.table:
+        make(args.spec, args.out)
+    write_readme(args.out)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -13,13 +12,14 @@ from matplotlib.cm import ScalarMappable
 from matplotlib.colors import Normalize, to_rgb
 from matplotlib.patches import Patch
 
+from .errors import UserError, tells
 from . import style
 from .captions import caption
-from .frames import Frame, FrameError, frame_of, frame_paths, read_scene
+from .frames import Frame, frame_of, frame_paths, read_scene
 from .records import run_row
 from .obstacle_rays import Hits, hits, primitive_gaps, signed_gap
 from .rasterizer import Camera, DepthBuffer, corner_normals
-from .record_file import RecordError, read_record
+from .record_file import read_record
 
 BODY_COLORS = ("#0072B2", "#E69F00", "#009E73", "#CC79A7", "#56B4E9", "#D55E00", "#F0E442", "#999999")  # Okabe-Ito
 OBSTACLE_COLOR = "#C9C9C9"
@@ -60,10 +60,10 @@ class Surfaces:
 
 
 def _values(frame: Frame, coloring: Coloring) -> np.ndarray:
-    """[m, 3]: the field at the corners of every triangle. Raises FrameError when the frame has none."""
+    """[m, 3]: the field at the corners of every triangle. Raises UserError when the frame has none."""
     fields = frame.of_vertices if coloring.element == "vertex" else frame.of_triangles
     if coloring.key not in fields:
-        raise FrameError(f"this frame has no {coloring.key}: nothing is solved before the first step; choose a step or --color body")
+        raise UserError(f"this frame has no {coloring.key}: nothing is solved before the first step; choose a step or --color body")
     values = np.asarray(fields[coloring.key], float) * coloring.factor
     return values[frame.triangles] if coloring.element == "vertex" else np.repeat(values[:, None], 3, axis=1)
 
@@ -259,14 +259,14 @@ def render(run: str | Path, step: int | None = None, color: str = "body", out: s
     """Writes a PNG of one frame and its caption; returns the PNG.
 
     run: folder of run.json. step: a step with a frame, -1 for the start; None: the last one. view: azimuth and
-    elevation of the camera, degrees. size: pixels of the picture without legend. Raises FrameError, RecordError.
+    elevation of the camera, degrees. size: pixels of the picture without legend. Raises UserError, RecordError.
     """
     run = Path(run).parent if Path(run).name == "run.json" else Path(run)
     record = read_record(run / "run.json")
     paths, scene = frame_paths(record, run), read_scene(record, run)
     step = max(paths) if step is None else step
     if step not in paths:
-        raise FrameError(f"{run}: no frame of step {step}; there are {', '.join(map(str, paths))} (-1: the start)")
+        raise UserError(f"{run}: no frame of step {step}; there are {', '.join(map(str, paths))} (-1: the start)")
     frame = frame_of(record, run, step)
     focus = np.concatenate([frame.vertices, _round_obstacles(scene)])
     camera = _camera(focus, scene["planar"], view, size)
@@ -289,6 +289,7 @@ def render(run: str | Path, step: int | None = None, color: str = "body", out: s
     return path
 
 
+@tells("render")
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench render", description="A still (PNG) of one step of a run that kept frames (--set /output/frames_every=1).")
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json")
@@ -300,13 +301,5 @@ def main(arguments: list[str]) -> int:
     given = parser.parse_args(arguments)
     if min(given.size) < 16 or max(given.size) > 8000:
         parser.error("--size: from 16 to 8000 pixels")
-    try:
-        print(render(given.run, given.step, given.color, given.out, tuple(given.view), tuple(given.size)))
-    except (FrameError, RecordError, OSError) as error:
-        print(f"render: {error}", file=sys.stderr)
-        return 2
+    print(render(given.run, given.step, given.color, given.out, tuple(given.view), tuple(given.size)))
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -6,6 +6,7 @@ import argparse
 import sys
 from pathlib import Path
 
+from .errors import tells
 from .records import RecordError, read_record
 from .text_table import aligned
 
@@ -46,6 +47,7 @@ def verdict(records: list[tuple[str, dict]]) -> tuple[str, list[str]]:
     return f"{text}; {len(below)} below 0", faults if measured else ["no run that is ok has a measured gap: nothing was judged"]
 
 
+@tells("surface-gaps")
 def main(arguments: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench surface-gaps", description="Smallest gaps of whole surfaces at converged step ends, thickness taken off, of the records below some folders; 1 when a run that is ok has one below 0, or none has any.")
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUNS", help="folders with records, at any depth")
@@ -67,7 +69,3 @@ def main(arguments: list[str]) -> int:
     for line in wrong:
         print(f"surface-gaps: {line}", file=sys.stderr)
     return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

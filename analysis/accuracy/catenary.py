@@ -10,15 +10,13 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import root
 
-
-class CatenaryError(ValueError):
-    """No chain of these numbers was found."""
+from ..errors import UserError
 
 
 def chain_nodes(segments: int, rest_length: float, stiffness: float, node_weight: float, span: np.ndarray) -> np.ndarray:
     """Nodes [segments + 1, 2] m (x, height) from (0, 0) to span.
 
-    rest_length: of one spring, m; stiffness: of one spring, N/m; node_weight: m g of an inner node, N. Errors: CatenaryError.
+    rest_length: of one spring, m; stiffness: of one spring, N/m; node_weight: m g of an inner node, N. Errors: UserError.
     """
     span = np.asarray(span, float)
     order = np.arange(segments)
@@ -33,4 +31,4 @@ def chain_nodes(segments: int, rest_length: float, stiffness: float, node_weight
         found = root(lambda u: (legs(u * weight).sum(axis=0) - span) / (segments * rest_length), np.array([guess, -0.5]), tol=1e-15)
         if np.abs(legs(found.x * weight).sum(axis=0) - span).max() < 1e-12 * segments * rest_length:
             return np.vstack([np.zeros(2), np.cumsum(legs(found.x * weight), axis=0)])
-    raise CatenaryError(f"no equilibrium of {segments} springs over {span} m found: {found.message}")
+    raise UserError(f"no equilibrium of {segments} springs over {span} m found: {found.message}")

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..frames import Frame, FrameError, frame_of, frame_paths, read_scene
+from ..errors import UserError
+from ..frames import Frame, frame_of, frame_paths, read_scene
 from ..record_file import read_record
 
 
@@ -57,7 +58,7 @@ class Motion:
         weight = np.array([np.where(self.body_of == b, self.masses, 0.0) for b in range(len(self.bodies))])
         total = weight.sum(axis=1)
         if not (total > 0).all():
-            raise FrameError(f"{self.bodies[int(np.argmin(total))]}: a body without mass has no centre of mass")
+            raise UserError(f"{self.bodies[int(np.argmin(total))]}: a body without mass has no centre of mass")
         return np.einsum("bv,...vk->...bk", weight / total[:, None], x)
 
     @property
@@ -94,7 +95,7 @@ def _lengths(x: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def read_motion(folder: Path) -> Motion:
-    """The run in a folder with run.json and frames/. Errors: RecordError, FrameError (no frames: /output/frames_every)."""
+    """The run in a folder with run.json and frames/. Errors: RecordError, UserError (no frames: /output/frames_every)."""
     record = read_record(folder / "run.json")
     paths = frame_paths(record, folder)
     times = [0.0 if step < 0 else record["steps"][step]["t_s"] for step in paths]

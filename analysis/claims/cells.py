@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections import Counter
 
-from .entry import ClaimError
+from ..errors import UserError
 from .estimate import Cells, OfScene, intraclass, of_scenes, student
 from .threshold import Threshold
 from .verdict import HOLDS, LEVELS, NOT, ONLY_IF, OPEN, SCENES, STARTS, Judged, undecided
@@ -16,7 +16,7 @@ def starts_asked(part: dict) -> int:
     if "starts" not in part:
         return 1
     if part["starts"] != "matter" or not part.get("reason"):
-        raise ClaimError(f"{part.get('says', part)}: starts: found {part['starts']!r}; \"matter\" with a reason is needed, or neither")
+        raise UserError(f"{part.get('says', part)}: starts: found {part['starts']!r}; \"matter\" with a reason is needed, or neither")
     return STARTS
 
 

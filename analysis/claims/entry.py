@@ -10,6 +10,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
+from ..errors import UserError
 from ..program import read_object
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -22,10 +23,6 @@ SOLVER = "/step_solver/name"
 METHOD = "/method"
 METHODS = ROOT / "configs" / "methods"
 OPTIONAL = ("schema", "parts", "waits_for", "note", "rule_changes", "frontier")
-
-
-class ClaimError(ValueError):
-    """A claim or sweep that cannot be judged: file, place and what is needed."""
 
 
 @dataclass(frozen=True)
@@ -81,7 +78,7 @@ class Sweep:
 
 
 def _read(path: Path) -> dict:
-    return read_object(path, ClaimError)
+    return read_object(path, UserError)
 
 
 def order(name: str) -> tuple:
@@ -97,22 +94,22 @@ def ids(folder: Path = FOLDER) -> list[str]:
 def read_claim(name: str, folder: Path = FOLDER) -> Claim:
     path = folder / f"{name}.json"
     if not path.is_file():
-        raise ClaimError(f"claim {name!r}: one of {', '.join(ids(folder))} (claims/)")
+        raise UserError(f"claim {name!r}: one of {', '.join(ids(folder))} (claims/)")
     data = _read(path)
     if data.get("schema") != NAME:
-        raise ClaimError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
+        raise UserError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
     if missing := [key for key in REQUIRED if not isinstance(data.get(key), str)]:
-        raise ClaimError(f"{path}: /{missing[0]}: a string is needed")
+        raise UserError(f"{path}: /{missing[0]}: a string is needed")
     if unknown := [key for key in data if key not in (*REQUIRED, *OPTIONAL)]:
-        raise ClaimError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
+        raise UserError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
     if data["id"] != name:
-        raise ClaimError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
+        raise UserError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
     if data["kind"] not in KINDS:
-        raise ClaimError(f"{path}: /kind: found {data['kind']!r}; one of {', '.join(KINDS)}")
+        raise UserError(f"{path}: /kind: found {data['kind']!r}; one of {', '.join(KINDS)}")
     if "frontier" in data and set(data["frontier"]) - {"bad"} != {"sweep", "cost", "axes"}:
-        raise ClaimError(f"{path}: /frontier: sweep, cost and axes are needed, bad may be given; found {', '.join(data['frontier'])}")
+        raise UserError(f"{path}: /frontier: sweep, cost and axes are needed, bad may be given; found {', '.join(data['frontier'])}")
     if not data.get("parts") and not data.get("waits_for"):
-        raise ClaimError(f"{path}: neither parts that decide it nor waits_for")
+        raise UserError(f"{path}: neither parts that decide it nor waits_for")
     return Claim(**{key: data[key] for key in REQUIRED}, parts=tuple(data.get("parts", ())), waits_for=data.get("waits_for", ""),
                  note=data.get("note", ""), rule_changes=tuple(data.get("rule_changes", ())), frontier=data.get("frontier", {}))
 
@@ -133,7 +130,7 @@ def settings_of(axis: dict, path: Path) -> list[tuple[str, dict]]:
     if "cases" in axis:
         return [(case["label"], case["set"]) for case in axis["cases"]]
     if "pointer" not in axis or not axis.get("values"):
-        raise ClaimError(f"{path}: an axis has cases, or a pointer and values; found {', '.join(axis)}")
+        raise UserError(f"{path}: an axis has cases, or a pointer and values; found {', '.join(axis)}")
     return [(f"{word(axis['pointer'])}={json.dumps(value)}", {axis["pointer"]: value}) for value in axis["values"]]
 
 
@@ -146,7 +143,7 @@ def sweep_path(name: str, folder: Path = FOLDER) -> Path:
     """Of a sweep of claims, or of one of confirmation scenes; no name is in both."""
     found = [path for path in (folder / kind / f"{name}.json" for kind in ("sweeps", "confirmation")) if path.is_file()]
     if len(found) > 1:
-        raise ClaimError(f"{found[1]}: a sweep of this name is in claims/sweeps as well")
+        raise UserError(f"{found[1]}: a sweep of this name is in claims/sweeps as well")
     return found[0] if found else folder / "sweeps" / f"{name}.json"
 
 
@@ -158,14 +155,14 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
     axes = data.get("axes", [])
     seeds = [k for k, axis in enumerate(axes) if axis.get("pointer") == SEEDS]
     if data.get("name") != name or len(axes) < 3 or len(seeds) != 1 or not all("cases" in axis for axis in axes[:2]) or any("cases" in axis for axis in axes[2:]):
-        raise ClaimError(f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is varied beside is an axis by pointer")
+        raise UserError(f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is varied beside is an axis by pointer")
     others = [k for k in range(2, len(axes)) if k != seeds[0]]
     cases, more = {}, {}
     for chosen in itertools.product(*(settings_of(axis, path) for axis in axes)):
         labels = [label for label, _ in chosen]
         scene, _, level = labels[0].partition(" ")
         if not level:
-            raise ClaimError(f"{path}: {labels}: the first axis is SCENE LEVEL")
+            raise UserError(f"{path}: {labels}: the first axis is SCENE LEVEL")
         note = note_of(name, labels)
         cases[note] = scene, level, labels[1], int(labels[seeds[0]].removeprefix("main="))
         more[note] = {word(axes[k]["pointer"]): json.loads(labels[k].partition("=")[2]) for k in others}

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections import Counter
 
+from ..errors import UserError
 from ..matching.front import Point, log_ratio, reached
 from .ends import STIFFNESS
-from .entry import ClaimError
 from .metrics import METRICS
 from .numbers import _scene, judge_cells
 from .table import Runs
@@ -25,7 +25,7 @@ def paths(runs: Runs, name: str, sweep: str) -> dict[tuple, list[dict]]:
         if match and match.group(1) == name:
             found.setdefault((row["scene"], row["level"], row["seed"]), []).append(row | {"scale": float(match.group(2))})
     if not found or min(len({r["scale"] for r in rows}) for rows in found.values()) < LEAST_SCALES:
-        raise ClaimError(f"sweep {sweep} has no {LEAST_SCALES} cases '{name} xSCALE'; it has {', '.join(sorted(cases))}")
+        raise UserError(f"sweep {sweep} has no {LEAST_SCALES} cases '{name} xSCALE'; it has {', '.join(sorted(cases))}")
     return found
 
 

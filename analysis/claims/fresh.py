@@ -9,7 +9,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from .entry import ROOT, ClaimError, Sweep
+from ..errors import UserError
+from .entry import ROOT, Sweep
 from .merged import merged, put
 
 # Where rules and thresholds were tuned, or could have been.
@@ -104,14 +105,14 @@ def used(root: Path = ROOT) -> dict[str, str]:
 
 
 def check(sweep: Sweep, root: Path = ROOT) -> None:
-    """Errors: ClaimError when a scene is no `bodies` (whose definition is all written out), is a tuning sweep's, or when there are too few."""
+    """Errors: UserError when a scene is no `bodies` (whose definition is all written out), is a tuning sweep's, or when there are too few."""
     data = json.loads(sweep.path.read_text())
     names = {case["label"].partition(" ")[0] for case in data["axes"][0]["cases"]}
     if len(names) < LEAST:
-        raise ClaimError(f"{sweep.file}: {len(names)} scenes; a confirmation has at least {LEAST}")
+        raise UserError(f"{sweep.file}: {len(names)} scenes; a confirmation has at least {LEAST}")
     for case in data["axes"][0]["cases"]:
         scene = merged(data, sweep.path, case["set"])["scene"]
         if scene.get("name") != "bodies":
-            raise ClaimError(f"{sweep.file}: {case['label']}: the scene is {scene.get('name')!r}; a confirmation scene is of bodies, all written out")
+            raise UserError(f"{sweep.file}: {case['label']}: the scene is {scene.get('name')!r}; a confirmation scene is of bodies, all written out")
         if file := used(root).get(identity(scene, sweep.path.parent)):
-            raise ClaimError(f"{sweep.file}: {case['label']}: its scene is one of {file}, where rules were tuned; labels and resolution make no other scene")
+            raise UserError(f"{sweep.file}: {case['label']}: its scene is one of {file}, where rules were tuned; labels and resolution make no other scene")

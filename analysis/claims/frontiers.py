@@ -11,10 +11,11 @@ import numpy as np
 import pandas as pd
 from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 
+from ..errors import UserError
 from .. import series, style
 from ..robustness import Frontier, Trial, expected_cost, frontier, profile, success
 from .ends import end_of_case
-from .entry import Claim, ClaimError, read_sweep
+from .entry import Claim, read_sweep
 from .estimate import wilson
 from .metrics import METRICS
 from .outcomes import asked, good, hopeless
@@ -42,7 +43,7 @@ def case_labels(claim: Claim, runs: Runs) -> dict[str, str]:
 
 def _cost(row: dict, name: str) -> float:
     if row[name] is None:
-        raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {name}")
+        raise UserError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {name}")
     return float(row[name])
 
 

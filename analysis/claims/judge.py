@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ..errors import UserError
 from . import equal_gap, numbers, outcomes, registry
 from .ends import ends_of_part
-from .entry import Claim, ClaimError, Sweep, read_sweep
+from .entry import Claim, Sweep, read_sweep
 from .inputs import inputs_of
 from .metrics import METRICS
 from .parts import check
@@ -78,11 +79,11 @@ def missing(claim: Claim, table: Table) -> list[str]:
 def judge_part(part: dict, table: Table, asker: Eval) -> Judged:
     if "proof" in part:
         if part["proof"] not in PROOFS:
-            raise ClaimError(f"proof {part['proof']!r}: one of {', '.join(PROOFS)}")
+            raise UserError(f"proof {part['proof']!r}: one of {', '.join(PROOFS)}")
         judged = PROOFS[part["proof"]](part, asker)
     else:
         if part.get("rule") not in RULES:
-            raise ClaimError(f"rule {part.get('rule')!r}: one of {', '.join(RULES)}, or a proof: {', '.join(PROOFS)}")
+            raise UserError(f"rule {part.get('rule')!r}: one of {', '.join(RULES)}, or a proof: {', '.join(PROOFS)}")
         sweep = read_sweep(part["sweep"])
         check(part, sweep)
         table.sweeps[part["sweep"]].check_one_rule(sweep)

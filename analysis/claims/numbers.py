@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections import Counter
 
+from ..errors import UserError
 from ..gap_rule import MAX_RATIO, farthest
 from .cells import complete, judge_cells, judge_scenes, left_out_text
-from .entry import ClaimError
 from .estimate import Cells, OfScene
 from .metrics import METRICS
 from .table import Runs
@@ -19,7 +19,7 @@ from .verdict import HOLDS, LEVELS, NOT, SCENES, Judged, undecided
 def by_place(runs: Runs, case: str, sweep: str) -> dict[tuple, dict]:
     found = {(row["scene"], row["level"], row["seed"]): row for row in runs.rows if row["case"] == case}
     if not found:
-        raise ClaimError(f"sweep {sweep} has no case {case!r}; it has {', '.join(sorted({row['case'] for row in runs.rows}))}")
+        raise UserError(f"sweep {sweep} has no case {case!r}; it has {', '.join(sorted({row['case'] for row in runs.rows}))}")
     return found
 
 
@@ -128,16 +128,16 @@ def _line(points: list[tuple[float, float]]) -> tuple[float, float, float]:
 
 
 def _log_level(name: str, sweep: str) -> float:
-    """Errors: ClaimError for a level that is no positive number."""
+    """Errors: UserError for a level that is no positive number."""
     try:
         return math.log(float(name))
     except ValueError:
-        raise ClaimError(f"sweep {sweep}: level {name!r}: a slope needs levels that are numbers above 0") from None
+        raise UserError(f"sweep {sweep}: level {name!r}: a slope needs levels that are numbers above 0") from None
 
 
 def slope(part: dict, runs: Runs) -> Judged:
     """d log(metric) / d log(level), level a number: a least-squares line a start, and one value a scene, the mean over its starts. Its scatter is
-    that of the slopes between neighbouring levels. A number that has no logarithm is left out. Errors: ClaimError for a level that is no number."""
+    that of the slopes between neighbouring levels. A number that has no logarithm is left out. Errors: UserError for a level that is no number."""
     lines, left_out, example = {}, Counter(), []
     for place, row in sorted(by_place(runs, part["case"], part["sweep"]).items()):
         if not _scene(part, place):

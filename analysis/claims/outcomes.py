@@ -6,8 +6,8 @@ import math
 from collections import Counter
 from fractions import Fraction
 
+from ..errors import UserError
 from .cells import complete, needed, starts_text
-from .entry import ClaimError
 from .estimate import of_scenes, sign_test, wilson
 from .numbers import by_place
 from .parts import MOST
@@ -23,12 +23,12 @@ def _failures(row: dict, bad: str | None, residual: float | None = None) -> list
     if bad is None:
         return [] if row["outcome"] == "ok" else [row["outcome"]]
     if absent := [name for name in failures(bad) if row[name] is None]:
-        raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {absent[0]}: its record lacks what that is counted in")
+        raise UserError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {absent[0]}: its record lacks what that is counted in")
     found = [name for name in failures(bad) if row[name]]
     if residual is None or (found and row[RESIDUAL] is None):  # without a step end there is no residual
         return found
     if row[RESIDUAL] is None:
-        raise ClaimError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {RESIDUAL}: its record lacks what that is counted in")
+        raise UserError(f"{row['scene']} {row['level']} {row['case']} main={row['seed']}: no {RESIDUAL}: its record lacks what that is counted in")
     return found + ["large_residual"] * (row[RESIDUAL] > residual)
 
 
@@ -37,14 +37,14 @@ def good(row: dict, bad: str | None, residual: float | None = None) -> bool:
 
 
 def check_times(rows: list[dict], cases: list[str]) -> None:
-    """Errors: ClaimError where the cases are not asked for one simulated time at one scene and level: what they reach then compares nothing."""
+    """Errors: UserError where the cases are not asked for one simulated time at one scene and level: what they reach then compares nothing."""
     firsts: dict[tuple[str, str], dict] = {}
     for row in rows:
         if row["case"] not in cases:
             continue
         first = firsts.setdefault((row["scene"], row["level"]), row)
         if first[TIME] is None or row[TIME] is None or not math.isclose(first[TIME], row[TIME], rel_tol=ROUNDING):
-            raise ClaimError(f"{row['scene']} {row['level']}: {first['case']} is asked for {first[TIME]} s and {row['case']} for {row[TIME]} s; equal simulated times are needed (/time/duration_s)")
+            raise UserError(f"{row['scene']} {row['level']}: {first['case']} is asked for {first[TIME]} s and {row['case']} for {row[TIME]} s; equal simulated times are needed (/time/duration_s)")
 
 
 def _cells(runs: Runs, case: str, part: dict) -> dict[tuple[str, str], list[bool]]:

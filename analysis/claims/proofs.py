@@ -8,8 +8,8 @@ import json
 import subprocess
 from dataclasses import dataclass, field
 
+from ..errors import UserError
 from ..program import plugin_words
-from .entry import ClaimError
 from .verdict import HOLDS, NOT, ONLY_IF, Judged
 
 
@@ -30,10 +30,10 @@ class Eval:
             return self.answers[text]
         self.asked.add(text)
         if self.program is None:
-            raise ClaimError(f"no kept answer of eval to {text}: ./bench claims asks it")
+            raise UserError(f"no kept answer of eval to {text}: ./bench claims asks it")
         done = subprocess.run([self.program, *plugin_words(list(self.plugins)), "eval"], input=text + "\n", capture_output=True, text=True, check=False)
         if done.returncode != 0:
-            raise ClaimError(f"eval {text}: {done.stderr.strip() or done.stdout.strip()}")
+            raise UserError(f"eval {text}: {done.stderr.strip() or done.stdout.strip()}")
         self.answers[text] = json.loads(done.stdout)
         return self.answers[text]
 

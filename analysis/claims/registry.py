@@ -12,9 +12,10 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
+from ..errors import UserError
 from ..whole_file import write_whole
 from . import fresh, success
-from .entry import FOLDER, ROOT, Claim, ClaimError, _read, read_sweep
+from .entry import FOLDER, ROOT, Claim, _read, read_sweep
 from .history import NoHistory, brought
 from .inputs import inputs_of
 from .metrics import METRICS
@@ -81,7 +82,7 @@ def read(file: Path = FILE) -> dict:
         return {}
     data = _read(file)
     if data.get("schema") != NAME or not isinstance(data.get("claims"), dict):
-        raise ClaimError(f"{file}: schema {data.get('schema')!r}; {NAME!r} with claims is needed")
+        raise UserError(f"{file}: schema {data.get('schema')!r}; {NAME!r} with claims is needed")
     return data["claims"]
 
 
@@ -95,14 +96,14 @@ def differences(old, new, place: str = "") -> list[str]:
 
 
 def register(claim: Claim, table: Table, file: Path = FILE, run_before: str = "") -> dict:
-    """Writes the entry of a claim. run_before: when its scenes were run before and by which rule, where they were; the page says so. Errors: ClaimError when it has no confirmation, a scene is not fresh, or its sweeps have been run."""
+    """Writes the entry of a claim. run_before: when its scenes were run before and by which rule, where they were; the page says so. Errors: UserError when it has no confirmation, a scene is not fresh, or its sweeps have been run."""
     if not confirmable(claim):
-        raise ClaimError(f"claims/{claim.id}.json: /parts: every deciding part that takes runs needs confirm.sweep, a sweep of claims/confirmation")
+        raise UserError(f"claims/{claim.id}.json: /parts: every deciding part that takes runs needs confirm.sweep, a sweep of claims/confirmation")
     entries = read(file)
     for name in claim.confirmation_sweeps:
         fresh.check(read_sweep(name))
         if name in table.sweeps and table.sweeps[name].rows:
-            raise ClaimError(f"{claim.id}: {name} has been run ({table.sweeps[name].about.get('date')}): a rule is registered before the first run of its sweep")
+            raise UserError(f"{claim.id}: {name} has been run ({table.sweeps[name].about.get('date')}): a rule is registered before the first run of its sweep")
     rule = rule_of(claim)
     entries[claim.id] = ({RUN_BEFORE: run_before} if run_before else {}) | {"date": datetime.now(timezone.utc).strftime("%Y-%m-%d"), "rule_sha256": sha_of(rule),
                          "sweeps": {name: read_sweep(name).sha256 for name in claim.confirmation_sweeps},
@@ -144,7 +145,7 @@ def _changed(claim: Claim, entry: dict) -> str:
                     (f"registered {registered[:12]} on {entry['date']}" if registered else "the entry has none: register it before another first run"))
         try:
             fresh.check(read_sweep(name))
-        except ClaimError as error:
+        except UserError as error:
             return str(error)
     return ""
 
@@ -198,13 +199,13 @@ def state(claim: Claim, table: Table, entries: dict, root: Path = ROOT) -> State
 
 
 def ready(claim: Claim, entries: dict, root: Path = ROOT) -> None:
-    """Before a first confirmation run: the entry is committed and nothing has changed since. Errors: ClaimError, so that no scene is used up in vain."""
+    """Before a first confirmation run: the entry is committed and nothing has changed since. Errors: UserError, so that no scene is used up in vain."""
     now = state(claim, Table(), entries, root)
     if now.refused:
-        raise ClaimError(f"{claim.id}: no confirmation is run: {now.why}")
+        raise UserError(f"{claim.id}: no confirmation is run: {now.why}")
     try:
         if brought(root, "claims/confirmation/registry.json", ("claims", claim.id), entries[claim.id]) is None:
-            raise ClaimError(f"{claim.id}: commit claims/confirmation/registry.json before the first run of {', '.join(claim.confirmation_sweeps)}")
+            raise UserError(f"{claim.id}: commit claims/confirmation/registry.json before the first run of {', '.join(claim.confirmation_sweeps)}")
     except NoHistory:
         pass  # it will not be verifiable here, which is said then
 

@@ -10,11 +10,12 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
+from ..errors import UserError
 from ..gap_rule import gaps_of
 from ..record_file import RecordError, other_meanings, read_record
 from ..whole_file import write_whole
 from .ends import ENDS, end_of_run
-from .entry import ROOT, Claim, ClaimError, Sweep
+from .entry import ROOT, Claim, Sweep
 from .inputs import asked, contradiction, inputs_of
 from .merged import base_path
 from .metrics import FOLDER, METRICS
@@ -45,11 +46,11 @@ class Runs:
         return any(row.get("gaps") is None for row in self.rows)
 
     def check_one_rule(self, sweep: Sweep) -> None:
-        """Errors: ClaimError where runs are judged comparable by the smallest gap (before 3.5.0) beside others that are by each pair's: no number pools two rules."""
+        """Errors: UserError where runs are judged comparable by the smallest gap (before 3.5.0) beside others that are by each pair's: no number pools two rules."""
         earlier = [row for row in self.rows if row["outcome"] == "ok" and row.get("gaps") is None]
         later = [row for row in self.rows if row["outcome"] == "ok" and row.get("gaps") is not None]
         if earlier and later:
-            raise ClaimError(f"{sweep.name}: {len(earlier)} records of before 3.5.0 (run_id {earlier[0]['run']}) beside {len(later)} later ones, of another rule of comparability: "
+            raise UserError(f"{sweep.name}: {len(earlier)} records of before 3.5.0 (run_id {earlier[0]['run']}) beside {len(later)} later ones, of another rule of comparability: "
                              f"remove the folders of the earlier ones, then {sweep.command}")
 
     @property
@@ -69,7 +70,7 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
     for part in (part for claim in claims for part in claim.parts if "sweep" in part):
         names = {part.get("metric"), *read_for(part.get("bad")), (part.get("equal") or {}).get("metric"), RESIDUAL if MOST in part else None} - {None}
         if unknown := names - set(METRICS):
-            raise ClaimError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
+            raise UserError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
         for sweep in (part["sweep"], *((part["confirm"]["sweep"],) if "confirm" in part else ())):
             used.setdefault(sweep, set()).update(names)
     for frontier in (claim.frontier for claim in claims if claim.frontier):
@@ -119,22 +120,22 @@ def _records(sweep: Sweep, folder: Path, metrics: list[str]) -> Iterator[tuple[d
 
 
 def _one_version(sweep: Sweep, folder: Path, records: list[dict]) -> str:
-    """The versions of the records in words. Errors: ClaimError where a field means one thing in some of them and another in others."""
+    """The versions of the records in words. Errors: UserError where a field means one thing in some of them and another in others."""
     versions = sorted({r["schema"]["version"] for r in records}, key=lambda v: [int(part) for part in v.split(".")])
     if records and (fields := other_meanings(versions[0], versions[-1])):
-        raise ClaimError(f"{folder}: records of version {versions[0]} beside those of {versions[-1]}, in which {', '.join(fields)} mean different things: "
+        raise UserError(f"{folder}: records of version {versions[0]} beside those of {versions[-1]}, in which {', '.join(fields)} mean different things: "
                          f"remove those of the earlier version, then {sweep.command}")
     return ", ".join(versions)
 
 
 def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
-    """The records of a sweep below its folder. Those of other cases than the sweep file has, or of other inputs, do not count. Errors: ClaimError."""
+    """The records of a sweep below its folder. Those of other cases than the sweep file has, or of other inputs, do not count. Errors: UserError."""
     found = list(_records(sweep, folder, metrics))
     records, rows = [record for record, _ in found], [row for _, row in found]
     keys = (*PLACE, *sweep.axes)
     rows.sort(key=lambda row: tuple(str(row[key]) for key in keys))
     if len({tuple(row[key] for key in keys) for row in rows}) != len(rows):
-        raise ClaimError(f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again")
+        raise UserError(f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again")
     file = folder / "sweep.json"  # the program's copy of the sweep file that made the records
     about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "inputs_sha256": inputs_of(sweep),
              "schema": _one_version(sweep, folder, records), "seconds": round(sum(map(seconds_of_run, records)), 1), "first_started_utc": min((r["status"]["started_utc"] for r in records), default="")}
@@ -169,10 +170,10 @@ def read(path: Path) -> Table:
         data = json.loads(path.read_text())
         schema = data.get("schema") if isinstance(data, dict) else None
         if schema != NAME:
-            raise ClaimError(f"{path}: schema {schema!r}; {NAME!r} is needed; {again}")
+            raise UserError(f"{path}: schema {schema!r}; {NAME!r} is needed; {again}")
         sweeps = {name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"]) for name, s in data["sweeps"].items()}
         return Table(sweeps, data["answers"])
-    except ClaimError:
+    except UserError:
         raise
     except (KeyError, TypeError, AttributeError, ValueError) as error:  # ValueError: not JSON
-        raise ClaimError(f"{path}: not a whole table ({type(error).__name__}: {error}); {again}") from None
+        raise UserError(f"{path}: not a whole table ({type(error).__name__}: {error}); {again}") from None

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 
-from .entry import ClaimError
+from ..errors import UserError
 from .verdict import HOLDS, NOT, OPEN
 
 
@@ -14,7 +14,7 @@ class Threshold:
     def __init__(self, part: dict, log: bool):
         kinds = [k for k in ("above", "below", "within", "beyond") if k in part]
         if len(kinds) != 1:
-            raise ClaimError(f"{part.get('says', part)}: one of above, below, within, beyond is needed")
+            raise UserError(f"{part.get('says', part)}: one of above, below, within, beyond is needed")
         self.kind, number = kinds[0], part[kinds[0]]
         t = math.log(number) if log else number
         self.low, self.high = (t, t) if self.kind in ("above", "below") else (-t, t)

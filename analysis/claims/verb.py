@@ -15,11 +15,11 @@ import sys
 import time
 from pathlib import Path
 
+from ..errors import UserError, tells
 from ..program import plugin_argument, plugin_words
-from ..record_file import RecordError
 from ..whole_file import write_whole
 from . import coverage, figure, frontiers, registry, report
-from .entry import ROOT, Claim, ClaimError, ids, read_claim, read_sweep
+from .entry import ROOT, Claim, ids, read_claim, read_sweep
 from .judge import judge, missing
 from .proofs import Eval
 from .table import FILE, RUNS, Table, collect, read, used_metrics, write
@@ -30,7 +30,7 @@ def program(needed: bool = True) -> str | None:
     if path.exists():
         return str(path)
     if needed:
-        raise ClaimError(f"{path} is not built: ./bench build; --no-run judges the numbers that are kept")
+        raise UserError(f"{path} is not built: ./bench build; --no-run judges the numbers that are kept")
     return None
 
 
@@ -44,7 +44,7 @@ def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
         print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
         done = subprocess.run([program(), *plugin_words(plugins), "sweep", str(ROOT / sweep.file), "--out", str(runs / name)], stdout=subprocess.DEVNULL, check=False)
         if done.returncode != 0:
-            raise ClaimError(f"{sweep.file}: the program ended with {done.returncode}")
+            raise UserError(f"{sweep.file}: the program ended with {done.returncode}")
         print(f"claims: {name}: {time.monotonic() - start:.0f} s", file=sys.stderr)
 
 
@@ -72,18 +72,15 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
+@tells("claims")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
-    try:
-        if args.coverage:
-            return write_coverage()
-        claims = [read_claim(name) for name in args.ids or ids()]
-        if args.register:
-            return register(claims if args.ids else [], args.runs, args.run_before)
-        return judge_all(claims, args)
-    except (ClaimError, RecordError) as error:
-        print(f"bench claims: {error}", file=sys.stderr)
-        return 2
+    if args.coverage:
+        return write_coverage()
+    claims = [read_claim(name) for name in args.ids or ids()]
+    if args.register:
+        return register(claims if args.ids else [], args.runs, args.run_before)
+    return judge_all(claims, args)
 
 
 def judge_all(claims: list[Claim], args: argparse.Namespace) -> int:
@@ -91,13 +88,13 @@ def judge_all(claims: list[Claim], args: argparse.Namespace) -> int:
         run_sweeps(claims, args.runs, args.plugin)
     table = gather(claims, args.runs, read(FILE))
     if absent := [line for claim in claims for line in missing(claim, table)]:
-        raise ClaimError("\n".join(absent))
+        raise UserError("\n".join(absent))
     asker = Eval(program(not args.no_run), table.answers, fresh=not args.no_run, plugins=tuple(args.plugin))
     answers = [judge(claim, table, asker) for claim in claims]
     print(report.text(answers))
     write_all(table, asker)
     if refused := [f"{a.claim.id} calls itself confirmed and is not: {a.state.why}" for a in answers if a.state.refused]:
-        raise ClaimError("\n".join(refused))
+        raise UserError("\n".join(refused))
     return 0
 
 
@@ -110,7 +107,7 @@ def write_coverage() -> int:
 
 def register(claims: list[Claim], runs: Path, run_before: str) -> int:
     if not claims:
-        raise ClaimError("--register needs the claims to register, e.g. --register K3")
+        raise UserError("--register needs the claims to register, e.g. --register K3")
     table = gather(claims, runs, read(FILE))
     for claim in claims:
         entry = registry.register(claim, table, run_before=run_before)
@@ -134,7 +131,3 @@ def write_all(table: Table, asker: Eval) -> None:
             shutil.copyfile(path, ROOT / "docs" / path.name)
     page = ROOT / "docs" / "results.md"
     write_whole(page, report.in_page(page.read_text(), answers))
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

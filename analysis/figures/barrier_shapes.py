@@ -14,6 +14,7 @@ import pandas as pd
 
 from .. import style
 from ..program import plugin_words
+from ..errors import UserError
 from ..record_file import sha256_of
 
 OF_NO_RUN = {"log": ("log", "gap"), "quadratic": ("quadratic", "gap"), "cubic": ("cubic", "gap")}  # drawn where there are no runs
@@ -51,13 +52,13 @@ def plugins_of(runs: pd.DataFrame | None) -> list[str]:
 
 
 def ask(queries: list[dict], plugins: list[str]) -> list[dict]:
-    """Answers of `eval`, in order. Raises RuntimeError with the first error."""
+    """Answers of `eval`, in order. Raises UserError with the first error."""
     lines = "".join(json.dumps(q) + "\n" for q in queries)
     done = subprocess.run([program(), *plugin_words(plugins), "eval", "-"], input=lines, capture_output=True, text=True, check=False)
     answers = [json.loads(line) for line in done.stdout.splitlines()]
     errors = [a["error"] for a in answers if "error" in a]
     if errors or len(answers) != len(queries):
-        raise RuntimeError(f"eval: {errors[0] if errors else done.stderr}")
+        raise UserError(f"eval: {errors[0] if errors else done.stderr}")
     return answers
 
 

@@ -5,12 +5,12 @@ from __future__ import annotations
 import argparse
 import json
 import math
-import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
 
+from ..errors import UserError, tells
 from .. import style
 
 SCHEMA = "barrierbench.steps/1"
@@ -50,23 +50,23 @@ TRIAL = {
 
 
 def read_steps(path: Path) -> dict:
-    """The file as it is. Raises ValueError with place, value and what is allowed when it is none of `./bench steps --out`."""
+    """The file as it is. Raises UserError with place, value and what is allowed when it is none of `./bench steps --out`."""
     try:
         data = json.loads(path.read_text())
     except ValueError as error:  # not JSON, not UTF-8
-        raise ValueError(f"{path}: not JSON ({error}); a file of ./bench steps --out is needed") from error
+        raise UserError(f"{path}: not JSON ({error}); a file of ./bench steps --out is needed") from error
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-        raise ValueError(f"{path}: schema is {data.get('schema') if isinstance(data, dict) else None!r}; allowed: {SCHEMA!r}")
+        raise UserError(f"{path}: schema is {data.get('schema') if isinstance(data, dict) else None!r}; allowed: {SCHEMA!r}")
     trials, config = data.get("trials"), data.get("config")
     if not isinstance(trials, list) or not trials:
-        raise ValueError(f"{path}#/trials: no trials; allowed: a list of at least one")
+        raise UserError(f"{path}#/trials: no trials; allowed: a list of at least one")
     if not isinstance(config, dict) or not all(isinstance(config.get(name), dict) for name in ("scene", "formulation")):
-        raise ValueError(f"{path}#/config: found {json.dumps(config)[:60]}; allowed: the resolved config of the run")
+        raise UserError(f"{path}#/config: found {json.dumps(config)[:60]}; allowed: the resolved config of the run")
     for k, trial in enumerate(trials):
         for name, (is_right, allowed) in TRIAL.items():
             found = trial.get(name) if isinstance(trial, dict) else None
             if not is_right(found):
-                raise ValueError(f"{path}#/trials/{k}/{name}: found {json.dumps(found)[:60]}; allowed: {allowed}")
+                raise UserError(f"{path}#/trials/{k}/{name}: found {json.dumps(found)[:60]}; allowed: {allowed}")
     return data
 
 
@@ -140,20 +140,13 @@ def figure(data: dict, stem: Path) -> list[Path]:
     return style.save(fig, stem, table.assign(jump=table.index.isin(found.index)), " ".join(filter(None, [shown, same_sentence(table), jump_sentence(found, data)])))
 
 
-def main(words: list[str] | None = None) -> int:
+@tells("figures")
+def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench figures", description=__doc__)
     parser.add_argument("file", type=Path)
     parser.add_argument("out", type=Path, nargs="?", help="folder of the figure; default: that of the file")
     given = parser.parse_args(words)
-    try:
-        paths = figure(read_steps(given.file), (given.out or given.file.parent) / given.file.stem)
-    except (OSError, ValueError) as error:
-        print(f"bench figures: {error}", file=sys.stderr)
-        return 2
+    paths = figure(read_steps(given.file), (given.out or given.file.parent) / given.file.stem)
     for path in paths:
         print(path)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -13,15 +13,15 @@ import shutil
 import sys
 from pathlib import Path
 
-from ..matching.formulations import ROOT, MatchError
-from ..record_file import RecordError
+from ..errors import UserError, tells
+from ..matching.formulations import ROOT
 from ..whole_file import write_whole
 from . import figure, plan, report
 from .kept import about, digests, kept_rows, read_for, source_of
 from .judge import counts
 from .rows import CANNOT, NOT_RUN, add_rho, cannot_reach, records_in, row
 from .runs import folder_of, run_missing
-from .spec import LIMITS, PARTS, Cell, GapMapError, Spec, cells, limit_settings, part, read_spec
+from .spec import LIMITS, PARTS, Cell, Spec, cells, limit_settings, part, read_spec
 from .table import Map, read, write
 
 DEFAULT = ROOT / "configs" / "gap_map" / "default.json"
@@ -43,15 +43,15 @@ def _limit_asked(spec: Spec, cell: Cell) -> tuple:
 
 
 def check_cell(spec: Spec, cell: Cell, record: dict, folder: Path) -> None:
-    """Errors: GapMapError where a record's settings are not those of its cell."""
+    """Errors: UserError where a record's settings are not those of its cell."""
     config = record["config"]
     found = (config["formulation"]["shape"], config["formulation"]["argument"], record["matching"]["theta"], *_limit_of(config.get("strain_limit") or {}))
     asked = (*spec.shapes[cell.shape], cell.theta, *_limit_asked(spec, cell))
     size = next(s for s in spec.scenes if s.label == cell.scene).unknowns[cell.resolution]
     if record["scene"]["free_dofs"] != size:
-        raise GapMapError(f"{spec.path}#/scenes/{cell.scene}/resolutions/{cell.resolution}/unknowns: found {size}; its runs have {record['scene']['free_dofs']}")
+        raise UserError(f"{spec.path}#/scenes/{cell.scene}/resolutions/{cell.resolution}/unknowns: found {size}; its runs have {record['scene']['free_dofs']}")
     if found != asked:
-        raise GapMapError(f"{folder}/run.json: shape, argument, theta, limit {found}; {asked} is what {cell.label!r} asks for: remove this folder")
+        raise UserError(f"{folder}/run.json: shape, argument, theta, limit {found}; {asked} is what {cell.label!r} asks for: remove this folder")
 
 
 def collect(spec: Spec, beyond: set[tuple[str, float]], runs: Path, kept: dict[tuple, tuple[dict, dict]]) -> tuple[list[dict], list[dict]]:
@@ -117,13 +117,13 @@ def show_plan(spec: Spec, rows: list[dict], beyond: set[tuple[str, float]]) -> i
 
 
 def check_store(kept: Path, spec: Spec) -> None:
-    """Errors: GapMapError where the file that would be written has another map: it keeps what no other machine may have."""
+    """Errors: UserError where the file that would be written has another map: it keeps what no other machine may have."""
     if kept.is_file() and (of := read(kept).about.get("name", "default")) != spec.name:
-        raise GapMapError(f"{kept}: found the map {of!r}; {spec.path} is the map {spec.name!r}: give it a folder of its own with --results")
+        raise UserError(f"{kept}: found the map {of!r}; {spec.path} is the map {spec.name!r}: give it a folder of its own with --results")
 
 
 def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
-    """Runs what may be run and has no row, and writes gap_map.json. Errors: GapMapError, MatchError, RecordError."""
+    """Runs what may be run and has no row, and writes gap_map.json. Errors: UserError, RecordError."""
     beyond, before = cannot_reach(spec), kept_rows(kept, spec)
     check_store(kept, spec)
     if not args.no_run:
@@ -139,19 +139,16 @@ def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
     return found
 
 
+@tells("gap-map")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     results = args.results or ROOT / "results"
     kept = results / "gap_map.json"
-    try:
-        spec = read_spec(args.spec)
-        if args.plan:
-            beyond = cannot_reach(spec)
-            return show_plan(spec, collect(spec, beyond, args.runs, kept_rows(kept, spec))[0], beyond)
-        alone = args.no_run and kept.is_file() and not args.runs.is_dir()  # the page from the kept numbers, without the program
-        write_page(read_for(kept, spec) if alone else make_map(args, spec, kept), results, ROOT / "docs" if args.results is None else results, args.runs / "figures")
-    except (GapMapError, MatchError, RecordError) as error:
-        print(f"bench gap-map: {error}", file=sys.stderr)
-        return 2
+    spec = read_spec(args.spec)
+    if args.plan:
+        beyond = cannot_reach(spec)
+        return show_plan(spec, collect(spec, beyond, args.runs, kept_rows(kept, spec))[0], beyond)
+    alone = args.no_run and kept.is_file() and not args.runs.is_dir()  # the page from the kept numbers, without the program
+    write_page(read_for(kept, spec) if alone else make_map(args, spec, kept), results, ROOT / "docs" if args.results is None else results, args.runs / "figures")
     print(results / "GAP_MAP.md")
     return 0

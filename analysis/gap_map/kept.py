@@ -7,10 +7,11 @@ import hashlib
 import json
 from pathlib import Path
 
+from ..errors import UserError
 from ..matching.runs import inputs_sha256
 from ..record_file import other_meanings
 from .rows import PLACE
-from .spec import GapMapError, Spec, make_sweep
+from .spec import Spec, make_sweep
 from .table import Map, read
 
 Place = tuple[str, str]  # scene, resolution
@@ -38,7 +39,7 @@ def source_of(record: dict) -> dict[str, str]:
 
 def kept_rows(path: Path, spec: Spec) -> dict[tuple, tuple[dict, dict]]:
     """PLACE -> row and its source, of the rows in `path` that count for the spec as it is now; nothing without the file.
-    Errors: GapMapError for a file that cannot be read."""
+    Errors: UserError for a file that cannot be read."""
     if not path.is_file():
         return {}
     kept, now = read(path), digests(spec)
@@ -53,18 +54,18 @@ def kept_rows(path: Path, spec: Spec) -> dict[tuple, tuple[dict, dict]]:
 
 
 def about(spec: Spec, command: str, rows: list[dict], sources: list[dict]) -> dict:
-    """What the numbers are of. Errors: GapMapError where there are none."""
+    """What the numbers are of. Errors: UserError where there are none."""
     sizes = [row["unknowns"] for row in rows if row["source"] is not None]
     if not sizes:
-        raise GapMapError(f"{spec.path}: no run of this map is there: ./bench gap-map --quick")
+        raise UserError(f"{spec.path}: no run of this map is there: ./bench gap-map --quick")
     return {"name": spec.name, "command": command, "spec_sha256": spec.sha256, "doc": spec.doc, "shapes": {k: list(v) for k, v in spec.shapes.items()}, "main": list(spec.main),
             "gaps": list(spec.gaps), "limits": list(spec.limits), "scenes": {s.label: {"obstacle": s.obstacle, "resolutions": list(s.resolutions)} for s in spec.scenes},
             "places": {"-".join(place): digest for place, digest in digests(spec).items()}, "unknowns": [min(sizes), max(sizes)], "runs": len(sizes), "sources": sources}
 
 
 def read_for(path: Path, spec: Spec) -> Map:
-    """The kept map. Errors: GapMapError where it is of another spec."""
+    """The kept map. Errors: UserError where it is of another spec."""
     found = read(path)
     if found.about["spec_sha256"] != spec.sha256:
-        raise GapMapError(f"{path}: its numbers are of another {spec.path}: ./bench gap-map")
+        raise UserError(f"{path}: its numbers are of another {spec.path}: ./bench gap-map")
     return found

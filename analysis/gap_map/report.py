@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 
 from .figure import TITLES, law_sentence
 from .judge import FAR, MADE, Ratio, at_target, at_theta, counts, deepest, end_of, exceptions, extent, failures, pairs, ratio_at, reason, unreached

@@ -10,10 +10,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ..errors import UserError
 from ..claims.table import seconds_of_run
 from ..program import built_program
 from ..record_file import RecordError, read_record, read_trace
-from .spec import Cell, GapMapError, Spec
+from .spec import Cell, Spec
 
 PLACE = ("scene", "resolution", "shape", "limit", "theta")
 STATE = ("outcome", "source", "run", "unknowns", "seconds")  # source: index into the sources of the map, None without a run
@@ -115,12 +116,12 @@ def row(cell: Cell, record: dict | None, folder: Path | None = None, outcome: st
 
 
 def ask(queries: list[dict]) -> list[dict]:
-    """Answers of one process of `eval`, in order. Errors: GapMapError."""
-    done = subprocess.run([str(built_program(GapMapError)), "eval"], input="".join(json.dumps(q) + "\n" for q in queries), capture_output=True, text=True, check=False)
+    """Answers of one process of `eval`, in order. Errors: UserError."""
+    done = subprocess.run([str(built_program(UserError)), "eval"], input="".join(json.dumps(q) + "\n" for q in queries), capture_output=True, text=True, check=False)
     answers = [json.loads(line) for line in done.stdout.splitlines()]
     bad = next((a for a in answers if "error" in a), None)
     if len(answers) != len(queries) or bad:
-        raise GapMapError(f"eval: {bad['error'] if bad else done.stderr.strip()[:300]}")
+        raise UserError(f"eval: {bad['error'] if bad else done.stderr.strip()[:300]}")
     return answers
 
 
@@ -142,16 +143,16 @@ def add_rho(spec: Spec, rows: list[dict]) -> None:
 
 
 def records_in(folders: Iterable[Path]) -> dict[str, tuple[dict, Path]]:
-    """note -> record and its folder. Errors: GapMapError for a file that is no record, and for two records of one note."""
+    """note -> record and its folder. Errors: UserError for a file that is no record, and for two records of one note."""
     found: dict[str, tuple[dict, Path]] = {}
     for folder in folders:
         for path in sorted(folder.glob("*/run.json")):
             try:
                 record = read_record(path)
             except RecordError as error:
-                raise GapMapError(str(error)) from None
+                raise UserError(str(error)) from None
             note = record["labels"].get("note", "")
             if note in found:
-                raise GapMapError(f"{path}: a second record of {note!r}, beside {found[note][1]}: remove one")
+                raise UserError(f"{path}: a second record of {note!r}, beside {found[note][1]}: remove one")
             found[note] = (record, path.parent)
     return found

@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from ..errors import UserError
 from ..accuracy.shapes import barrier
 from ..matching.runs import Sweep, sweep
 from ..program import read_object
@@ -21,10 +22,6 @@ REQUIRED = ("schema", "name", "doc", "base", "set", "shapes", "main", "gaps", "l
 OF_SCENE = ("label", "obstacle", "set", "resolutions")
 OBSTACLES = ("analytic", "mesh", "none")
 MAIN_MOST = 5  # series of a panel, the reference among them
-
-
-class GapMapError(ValueError):
-    """Bad input, or a result that is not there: file, place, what was found, what is allowed."""
 
 
 @dataclass(frozen=True)
@@ -72,7 +69,7 @@ class Spec:
 
 
 def _fail(path: Path, place: str, found, needed: str):
-    raise GapMapError(f"{path}#/{place}: found {found!r}; {needed} is needed")
+    raise UserError(f"{path}#/{place}: found {found!r}; {needed} is needed")
 
 
 def _gaps(values, path: Path, place: str) -> tuple[float, ...]:
@@ -108,12 +105,12 @@ def _scene(found, path: Path, limits: tuple[str, ...]) -> Scene:
 
 
 def read_spec(path: Path) -> Spec:
-    """Errors: GapMapError with file, place, what was found and what is allowed."""
-    data = read_object(path, GapMapError)
+    """Errors: UserError with file, place, what was found and what is allowed."""
+    data = read_object(path, UserError)
     if data.get("schema") != SCHEMA:
         _fail(path, "schema", data.get("schema"), repr(SCHEMA))
     if odd := sorted((set(REQUIRED) - set(data)) | (set(data) - {*REQUIRED, *PARTS})):
-        raise GapMapError(f"{path}#/{odd[0]}: {'unknown' if odd[0] in data else 'is missing'}; the keys are {', '.join(REQUIRED)}")
+        raise UserError(f"{path}#/{odd[0]}: {'unknown' if odd[0] in data else 'is missing'}; the keys are {', '.join(REQUIRED)}")
     if not isinstance(data["base"], str) or not (path.parent / data["base"]).is_file():
         _fail(path, "base", data["base"], "the path of a config, relative to this file,")
     shapes = _shapes(data, path)
@@ -129,8 +126,8 @@ def read_spec(path: Path) -> Spec:
 
 
 def part(spec: Spec, name: str) -> Spec:
-    """A documented part of a spec, one of PARTS. Errors: GapMapError."""
-    asked = read_object(spec.path, GapMapError).get(name)
+    """A documented part of a spec, one of PARTS. Errors: UserError."""
+    asked = read_object(spec.path, UserError).get(name)
     if not isinstance(asked, dict) or set(asked) != {"scenes", "shapes", "gaps", "limits"} or not isinstance(asked["scenes"], dict):
         _fail(spec.path, name, asked, "scenes, shapes, gaps, limits")
     limits = _words(asked["limits"], spec.limits, spec.path, f"{name}/limits")

@@ -6,10 +6,10 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..errors import UserError
 from ..program import read_object
 from ..whole_file import write_whole
 from .rows import COLUMNS
-from .spec import GapMapError
 
 SCHEMA = "barrierbench.gap_map_result/1"
 
@@ -43,8 +43,8 @@ def write(found: Map, path: Path) -> None:
 
 
 def read(path: Path) -> Map:
-    """Errors: GapMapError."""
-    data = read_object(path, GapMapError)
+    """Errors: UserError."""
+    data = read_object(path, UserError)
     if data.get("schema") != SCHEMA or data.get("columns") != list(COLUMNS):
-        raise GapMapError(f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with {list(COLUMNS)} is needed: ./bench gap-map")
+        raise UserError(f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with {list(COLUMNS)} is needed: ./bench gap-map")
     return Map(data["about"], [dict(zip(COLUMNS, row)) for row in data["rows"]])

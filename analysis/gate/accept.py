@@ -9,14 +9,13 @@ from __future__ import annotations
 
 import argparse
 import datetime
-import sys
 from dataclasses import replace
 from pathlib import Path
 
-from ..record_file import RecordError, other_meanings
+from ..errors import UserError, tells
+from ..record_file import other_meanings
 from . import baseline, calibrate, judge, matrices
-from .baseline import Baseline, BaselineError, Kept
-from .cases import GateError
+from .baseline import Baseline, Kept
 from .drift import First, digest
 from .finding import moved
 from .meanings import FAMILIES, PRESENT, shared
@@ -54,13 +53,13 @@ def better(old: Baseline, new: Baseline) -> list[str]:
 def _only(old: Baseline | None, new: Baseline, metrics: list[str], path: Path) -> Baseline:
     """The old baseline with these metrics of the new one."""
     if refused := [name for name in metrics if name in NEVER_RECORDED]:
-        raise GateError(f"{', '.join(refused)}: class I and II are exact and are never accepted; mend the code")
+        raise UserError(f"{', '.join(refused)}: class I and II are exact and are never accepted; mend the code")
     if old is None:
-        raise GateError(f"{path}: --metric and --better change a baseline, and there is none yet")
+        raise UserError(f"{path}: --metric and --better change a baseline, and there is none yet")
     if fields := [field for field in other_meanings(old.record_version or PRESENT, new.record_version or PRESENT) if FAMILIES[field]]:
-        raise GateError(f"{path}: of record version {old.record_version}, in which {', '.join(fields)} mean something else: --metric and --better would mix two versions; accept all of it")
+        raise UserError(f"{path}: of record version {old.record_version}, in which {', '.join(fields)} mean something else: --metric and --better would mix two versions; accept all of it")
     if unknown := [name for name in metrics if name not in new.metrics]:
-        raise GateError(f"{', '.join(unknown)}: not measured; one of {', '.join(sorted(new.metrics))}")
+        raise UserError(f"{', '.join(unknown)}: not measured; one of {', '.join(sorted(new.metrics))}")
     return replace(old, metrics=old.metrics | {name: new.metrics[name] for name in metrics})
 
 
@@ -116,6 +115,7 @@ def keep(new: Baseline, path: Path, reason: str, metrics: list[str], only_better
         print(f"  better than before: {', '.join(offered)} (--better accepts these alone)")
 
 
+@tells("accept")
 def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench accept", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("--reason", required=True, help="why the numbers may change; it stays in the baseline")
@@ -136,18 +136,14 @@ def main(argv: list[str]) -> int:
     if args.better and args.metric:
         parser.error("--better chooses the metrics itself; leave --metric out")
     how = args.reason, args.metric, args.better, args.drift
-    try:
-        if args.record:
-            keep(calibrate.propose(args.baseline.stem, [read_run(path) for path in args.record]), args.baseline, *how)
-        elif args.matrix:
-            keep(matrices.propose(args.matrix, args.baseline.stem), args.baseline, *how)
-        else:
-            proposals = [p for p in sorted(args.proposals.glob("*.json")) if not args.case or any(word in p.stem for word in args.case)]
-            if not proposals:
-                raise GateError(f"{args.proposals}: no proposal; `bench calibrate` makes them")
-            for path in proposals:
-                keep(baseline.read(path, path.stem, "run"), args.baselines / path.name, *how)
-    except (GateError, BaselineError, RecordError, matrices.MatrixError) as error:
-        print(f"bench accept: {error}", file=sys.stderr)
-        return 2
+    if args.record:
+        keep(calibrate.propose(args.baseline.stem, [read_run(path) for path in args.record]), args.baseline, *how)
+    elif args.matrix:
+        keep(matrices.propose(args.matrix, args.baseline.stem), args.baseline, *how)
+    else:
+        proposals = [p for p in sorted(args.proposals.glob("*.json")) if not args.case or any(word in p.stem for word in args.case)]
+        if not proposals:
+            raise UserError(f"{args.proposals}: no proposal; `bench calibrate` makes them")
+        for path in proposals:
+            keep(baseline.read(path, path.stem, "run"), args.baselines / path.name, *how)
     return 0

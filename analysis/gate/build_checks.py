@@ -5,7 +5,8 @@ from __future__ import annotations
 import json
 import subprocess
 
-from .cases import GateError, program
+from ..errors import UserError
+from .cases import program
 from .finding import Finding
 
 CASE = "build"
@@ -19,10 +20,10 @@ def findings_of(report: dict) -> list[Finding]:
 
 
 def judge_build() -> list[Finding]:
-    """Raises GateError when the program has no report."""
+    """Raises UserError when the program has no report."""
     done = subprocess.run([str(program()), "validity", "--json"], capture_output=True, text=True, check=False)
     try:
         found = findings_of(json.loads(done.stdout))
     except (ValueError, KeyError, TypeError) as error:
-        raise GateError(f"{program()} validity: no report ({error}): {done.stderr.strip()}") from None
+        raise UserError(f"{program()} validity: no report ({error}): {done.stderr.strip()}") from None
     return found or [Finding(CASE, "I", "validity", "FAIL", judged=0, note="the report has no check")]

@@ -7,19 +7,14 @@ Gates). Exit codes: 0 nothing regressed, 1 something did, 2 the two cannot be co
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
-from ..record_file import RecordError
+from ..errors import UserError, tells
 from . import configs, invariants, judge, meanings, report
 from .determinism import same_state
 from .finding import Finding, failures, without_subject
 from .measure import measure
 from .records import Run, find_runs, read_run
-
-
-class CannotCompare(ValueError):
-    """The two sides are no two results of the same thing."""
 
 
 def _pairs(a: Path, b: Path, common: bool) -> list[tuple[str, Path, Path]]:
@@ -28,9 +23,9 @@ def _pairs(a: Path, b: Path, common: bool) -> list[tuple[str, Path, Path]]:
         return [(next(iter(new.values())).parent.name or "run", *old.values(), *new.values())]
     lonely = [f"{place}: only in {a}" for place in old.keys() - new.keys()] + [f"{place}: only in {b}" for place in new.keys() - old.keys()]
     if lonely and not common:
-        raise CannotCompare("\n".join([*sorted(lonely), "these records have no counterpart (--common: compare the others)"]))
+        raise UserError("\n".join([*sorted(lonely), "these records have no counterpart (--common: compare the others)"]))
     if not old.keys() & new.keys():
-        raise CannotCompare(f"{a} and {b} have no record in common")
+        raise UserError(f"{a} and {b} have no record in common")
     return [(place, old[place], new[place]) for place in sorted(old.keys() & new.keys())]
 
 
@@ -39,10 +34,10 @@ def _torn(case: str, run: Run) -> list[Finding]:
 
 
 def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> list[Finding]:
-    """Raises CannotCompare when the configs differ and that was not asked for."""
+    """Raises UserError when the configs differ and that was not asked for."""
     differ = configs.differences(old.section("config"), new.section("config"))
     if differ and not different_configs:
-        raise CannotCompare("\n".join([f"{case}: the configs differ in {len(differ)} settings (--different-configs: compare all the same)",
+        raise UserError("\n".join([f"{case}: the configs differ in {len(differ)} settings (--different-configs: compare all the same)",
                                        *(f"  {line}" for line in differ)]))
     findings = _torn(case, old) + _torn(case, new) + [f for f in invariants.judge(case, new, foreign=True) if not (f.metric == "trace" and new.torn)]
     findings += meanings.of_other_version(case, [old, new], old.version, new.version)
@@ -54,6 +49,7 @@ def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> l
     return findings + not_compared + judge.numbers(case, before, now, same_kind, new_verdict)
 
 
+@tells("compare")
 def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench compare", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog="example: ./bench compare results/runs/before results/runs/after")
@@ -65,15 +61,11 @@ def main(argv: list[str]) -> int:
     parser.add_argument("--json", type=Path, metavar="FILE", help="the answer as JSON")
     args = parser.parse_args(argv)
     findings: list[Finding] = []
-    try:
-        for case, a, b in _pairs(args.a, args.b, args.common):
-            old, new = read_run(a), read_run(b)
-            for line in configs.differences(old.section("config"), new.section("config")) if args.different_configs else []:
-                print(f"{case}: differs in {line}")
-            findings += compare(case, old, new, args.different_configs)
-    except (RecordError, CannotCompare) as error:
-        print(f"bench compare: {error}", file=sys.stderr)
-        return 2
+    for case, a, b in _pairs(args.a, args.b, args.common):
+        old, new = read_run(a), read_run(b)
+        for line in configs.differences(old.section("config"), new.section("config")) if args.different_configs else []:
+            print(f"{case}: differs in {line}")
+        findings += compare(case, old, new, args.different_configs)
     findings += without_subject(findings, ("I", "III"))
     print(report.table(report.shown(findings, args.verbose)))
     print(report.closing(findings))

@@ -12,12 +12,12 @@ import sys
 import time
 from pathlib import Path
 
-from ..record_file import RecordError
+from ..errors import UserError, tells
 from . import baseline, configs, invariants, judge, matrices, meanings, report, trend
-from .baseline import Baseline, BaselineError
+from .baseline import Baseline
 from .build_checks import judge_build
 from .calibrate import copies_of
-from .cases import ROOT, Case, GateError, read_set, run_case
+from .cases import ROOT, Case, read_set, run_case
 from .determinism import of_one_config
 from .finding import RED, Finding, failures, without_subject
 from .instructions import judge_instructions
@@ -31,12 +31,12 @@ CHAOS_SEED, CHAOS_COPIES = 2001, 8
 
 
 def same_subject(kept: Baseline, run: Run, path: Path) -> None:
-    """Raises BaselineError when the baseline is of another scene or of other settings."""
+    """Raises UserError when the baseline is of another scene or of other settings."""
     if lines := configs.contradictions(kept.config, run.section("config")):
-        raise BaselineError("\n".join([f"{path}: a baseline of other settings than {run.path}:", *(f"  {line}" for line in lines)]))
+        raise UserError("\n".join([f"{path}: a baseline of other settings than {run.path}:", *(f"  {line}" for line in lines)]))
     size = configs.scene_size(run)
     if unlike := [f"  {place}: {value!r} and {size.get(place)!r}" for place, value in sorted(kept.scene.items()) if value != size.get(place)]:
-        raise BaselineError("\n".join([f"{path}: a baseline of another scene than {run.path}:", *unlike]))
+        raise UserError("\n".join([f"{path}: a baseline of another scene than {run.path}:", *unlike]))
 
 
 def numbers(case: str, kept: Baseline, run: Run, same_build_kind: bool) -> list[Finding]:
@@ -88,10 +88,10 @@ def judge_case(case: Case, kept: Baseline, path: Path, out: Path) -> tuple[list[
 
 
 def run_set(name: str, baselines: Path, out: Path, only: list[str]) -> list[Finding]:
-    """Raises GateError, BaselineError, RecordError. Every baseline is read before the first run."""
+    """Raises UserError, RecordError. Every baseline is read before the first run."""
     cases = [case for case in read_set(name) if not only or any(word in case.name for word in only)]
     if not cases:
-        raise GateError(f"set {name}: no case whose name contains {' or '.join(only)}")
+        raise UserError(f"set {name}: no case whose name contains {' or '.join(only)}")
     kept = {case.name: baseline.read(baselines / f"{case.name}.json", case.name, "run") for case in cases}
     findings, samples = judge_build(), []
     for case in cases:
@@ -139,20 +139,17 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return args
 
 
+@tells("gate")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
-    try:
-        if args.record:
-            findings, required = judge_record(args.record, args.baseline), ("I", "III")
-        elif args.matrix:
-            findings, required = matrices.judge_matrices(args.matrix, args.baseline), ("I", "III")
-        else:
-            findings, required = run_set(args.set, args.baselines, args.out, args.case), ("I", "II", "III", "IV")
-            if args.instructions:
-                findings += judge_instructions(args.set, args.baselines, args.case)
-    except (RecordError, BaselineError, GateError, matrices.MatrixError) as error:
-        print(f"bench gate: {error}", file=sys.stderr)
-        return 2
+    if args.record:
+        findings, required = judge_record(args.record, args.baseline), ("I", "III")
+    elif args.matrix:
+        findings, required = matrices.judge_matrices(args.matrix, args.baseline), ("I", "III")
+    else:
+        findings, required = run_set(args.set, args.baselines, args.out, args.case), ("I", "II", "III", "IV")
+        if args.instructions:
+            findings += judge_instructions(args.set, args.baselines, args.case)
     findings += without_subject(findings, required)
     lines = report.shown(findings, args.verbose)
     if lines:

@@ -10,9 +10,10 @@ import subprocess
 import tempfile
 from pathlib import Path
 
+from ..errors import UserError
 from . import baseline
 from .baseline import Kept, keep
-from .cases import Case, GateError, command, read_set
+from .cases import Case, command, read_set
 from .envelope import Envelope
 from .finding import Finding
 from .judge import COST_EACH, drifted
@@ -36,7 +37,7 @@ def count(case: Case) -> tuple[float, dict] | None:
         done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment)
         found = re.search(r"Collected : (\d+)", done.stderr)
         if done.returncode != 0 or found is None:
-            raise GateError(f"{case.name}: callgrind ended with {done.returncode}: {done.stderr.strip()[-400:]}")
+            raise UserError(f"{case.name}: callgrind ended with {done.returncode}: {done.stderr.strip()[-400:]}")
         return float(found.group(1)), read_run(out).made_by
 
 

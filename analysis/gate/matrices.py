@@ -13,6 +13,7 @@ import scipy.linalg
 import scipy.sparse as sparse
 import scipy.sparse.linalg as sparse_linalg
 
+from ..errors import UserError
 from . import baseline, judge
 from .baseline import Baseline, keep
 from .envelope import calibrate
@@ -25,33 +26,29 @@ SYMMETRY = 1e-10  # largest |A - A^T| over the largest entry: what summation in 
 PCG_TOLERANCE, PCG_CAP = 1e-6, 20000
 
 
-class MatrixError(ValueError):
-    """A file that holds no matrix that has a condition number."""
-
-
 def read_matrix(path: Path) -> sparse.csc_matrix:
-    """Raises MatrixError with file and reason: no Matrix Market, not real, not square, not symmetric, a number that is none, empty."""
+    """Raises UserError with file and reason: no Matrix Market, not real, not square, not symmetric, a number that is none, empty."""
     if not path.is_file():
-        raise MatrixError(f"{path}: no such file")
+        raise UserError(f"{path}: no such file")
     try:
         matrix = sparse.csc_matrix(scipy.io.mmread(path))
     except (ValueError, TypeError, OverflowError) as error:
-        raise MatrixError(f"{path}: not Matrix Market: {error}") from None
+        raise UserError(f"{path}: not Matrix Market: {error}") from None
     if np.iscomplexobj(matrix.data):
-        raise MatrixError(f"{path}: complex; a real matrix is needed")
+        raise UserError(f"{path}: complex; a real matrix is needed")
     matrix = matrix.astype(float)
     rows, columns = matrix.shape
     if rows != columns:
-        raise MatrixError(f"{path}: {rows} x {columns}; a square matrix is needed")
+        raise UserError(f"{path}: {rows} x {columns}; a square matrix is needed")
     if rows == 0 or matrix.nnz == 0:
-        raise MatrixError(f"{path}: empty")
+        raise UserError(f"{path}: empty")
     if not np.isfinite(matrix.data).all():
         entry = matrix.tocoo()
         k = int(np.flatnonzero(~np.isfinite(entry.data))[0])
-        raise MatrixError(f"{path}: entry ({entry.row[k] + 1}, {entry.col[k] + 1}): {entry.data[k]}; finite numbers are needed")
+        raise UserError(f"{path}: entry ({entry.row[k] + 1}, {entry.col[k] + 1}): {entry.data[k]}; finite numbers are needed")
     departure = abs(matrix - matrix.T).max() / abs(matrix).max()
     if departure > SYMMETRY:
-        raise MatrixError(f"{path}: not symmetric: |A - A^T| is {departure:.2g} of the largest entry, at most {SYMMETRY:g} is rounding")
+        raise UserError(f"{path}: not symmetric: |A - A^T| is {departure:.2g} of the largest entry, at most {SYMMETRY:g} is rounding")
     return sparse.csc_matrix(0.5 * (matrix + matrix.T))
 
 
@@ -90,7 +87,7 @@ def _log10_cond_of(path: Path, matrix: sparse.csc_matrix) -> float | None:
     try:
         return log10_cond(matrix)
     except sparse_linalg.ArpackNoConvergence:
-        raise MatrixError(f"{path}: the eigenvalues of {matrix.shape[0]} rows did not converge") from None
+        raise UserError(f"{path}: the eigenvalues of {matrix.shape[0]} rows did not converge") from None
 
 
 def pcg_iterations(matrix: sparse.csc_matrix) -> int | None:
@@ -122,12 +119,12 @@ def spectrum(path: Path, block: int = 3) -> Spectrum:
 
 
 def names(paths: list[Path]) -> list[str]:
-    """Of files by their place below the folder that holds them all: a matrix is compared with the one of its own name. Raises MatrixError."""
+    """Of files by their place below the folder that holds them all: a matrix is compared with the one of its own name. Raises UserError."""
     whole = [path.resolve() for path in paths]
     top = Path(os.path.commonpath([path.parent for path in whole]))
     found = [path.relative_to(top).as_posix() for path in whole]
     if twice := sorted({name for name in found if found.count(name) > 1}):
-        raise MatrixError(f"{', '.join(twice)}: given twice")
+        raise UserError(f"{', '.join(twice)}: given twice")
     return found
 
 
@@ -156,13 +153,13 @@ def _rows(spectra: dict[str, Spectrum]) -> dict:
 
 
 def _same_matrices(kept: Baseline, spectra: dict[str, Spectrum], path: Path) -> None:
-    """Raises BaselineError when a matrix has another size than in the baseline, or when they have none in common."""
+    """Raises UserError when a matrix has another size than in the baseline, or when they have none in common."""
     rows = _rows(spectra)
     unlike = [f"  {place}: {value} and {rows[place]}" for place, value in kept.scene.items() if rows.get(place, value) != value]
     if not unlike and not any(place in rows for place in kept.scene):
         unlike = [f"  {', '.join(place for place in kept.scene) or 'no names'} and {', '.join(rows)}"]
     if unlike:
-        raise baseline.BaselineError("\n".join([f"{path}: a baseline of other matrices:", *unlike]))
+        raise UserError("\n".join([f"{path}: a baseline of other matrices:", *unlike]))
 
 
 def _lonely(case: str, old: set[str], new: set[str]) -> list[Finding]:
@@ -181,16 +178,16 @@ def _invariants(case: str, spectra: list[Spectrum]) -> list[Finding]:
 
 
 def propose(paths: list[Path], case: str) -> Baseline:
-    """Raises MatrixError, also for a matrix that is not positive definite: that is never accepted."""
+    """Raises UserError, also for a matrix that is not positive definite: that is never accepted."""
     spectra = dict(zip(names(paths), map(spectrum, paths)))
     if red := [f for f in _invariants(case, list(spectra.values())) if f.verdict == "FAIL"]:
-        raise MatrixError("\n".join(f"{f.metric}: {f.value} of {len(spectra)} matrices are not, {f.note}: makes no baseline" for f in red))
+        raise UserError("\n".join(f"{f.metric}: {f.value} of {len(spectra)} matrices are not, {f.note}: makes no baseline" for f in red))
     kept = {metric.name: keep(metric, calibrate(metric, [value])) for metric, value in measure(spectra).items()}
     return Baseline(case, "matrix", "", {"date": datetime.date.today().isoformat(), "runs": 1}, kept, scene=_rows(spectra))
 
 
 def judge_matrices(paths: list[Path], path: Path) -> list[Finding]:
-    """Against a baseline of kind matrix. Raises MatrixError, BaselineError."""
+    """Against a baseline of kind matrix. Raises UserError."""
     kept = baseline.read(path, kind="matrix")
     spectra = dict(zip(names(paths), map(spectrum, paths)))
     _same_matrices(kept, spectra, path)

@@ -6,7 +6,8 @@ import subprocess
 import time
 from pathlib import Path
 
-from .cases import Case, GateError, command, run_case
+from ..errors import UserError
+from .cases import Case, command, run_case
 from .finding import Finding
 from .records import Run, read_run
 
@@ -19,13 +20,13 @@ def _step(record: dict) -> dict:
 
 
 def kill_after_checkpoint(words: list[str], out: Path) -> bool:
-    """Starts a run and kills it (SIGKILL) as soon as its checkpoint is there; False when it was over before. Raises GateError."""
+    """Starts a run and kills it (SIGKILL) as soon as its checkpoint is there; False when it was over before. Raises UserError."""
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     start = time.monotonic()
     while process.poll() is None and not (out / "checkpoint.bin").exists():
         if time.monotonic() - start > LONGEST_S:
             process.kill()
-            raise GateError(f"{out}: no checkpoint within {LONGEST_S:.0f} s")
+            raise UserError(f"{out}: no checkpoint within {LONGEST_S:.0f} s")
         time.sleep(0.0005)
     alive = process.poll() is None
     process.kill()
@@ -36,7 +37,7 @@ def kill_after_checkpoint(words: list[str], out: Path) -> bool:
 def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
     """whole: the record of the same case with one thread and without checkpoints, which has to end in the same state. Every other number is compared with a
     run that writes the same checkpoints and is left alone.
-    Raises GateError when the program cannot resume."""
+    Raises UserError when the program cannot resume."""
     alone = run_case(case, out.with_name(out.name + "-not-killed"), 1, output__checkpoint_every=1)
     for name in ("run.json", "checkpoint.bin"):
         (out / name).unlink(missing_ok=True)
@@ -44,7 +45,7 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
     killed = kill_after_checkpoint(words, out)
     done = subprocess.run([*words, "--resume"], capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise GateError(f"{case.name}: --resume ended with {done.returncode}: {done.stderr.strip()}")
+        raise UserError(f"{case.name}: --resume ended with {done.returncode}: {done.stderr.strip()}")
     resumed = read_run(out, allow_not_finite=True)
     from_step = resumed.section("status").get("resumed_from_step")
     steps, wanted = resumed.record["steps"], alone.record["steps"]

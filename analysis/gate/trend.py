@@ -15,6 +15,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
+from ..errors import UserError, tells
 from ..text_table import aligned
 from .finding import Finding
 
@@ -22,10 +23,6 @@ SCHEMA = "barrierbench.history/1"
 THRESHOLD, FEWEST = 0.05, 5
 SHORTEST = 2  # runs of a piece: a single outlier is no step
 KEPT = ("III", "IV", "V")
-
-
-class HistoryError(ValueError):
-    """A history that cannot be read, with file and line."""
 
 
 @dataclass(frozen=True)
@@ -88,9 +85,9 @@ def append(path: Path, line: dict) -> None:
 
 
 def read(path: Path) -> list[dict]:
-    """The lines in their order; a torn last one is left out and said. Raises HistoryError."""
+    """The lines in their order; a torn last one is left out and said. Raises UserError."""
     if not path.is_file():
-        raise HistoryError(f"{path}: not there; ./bench gate --history {path} writes it")
+        raise UserError(f"{path}: not there; ./bench gate --history {path} writes it")
     lines, rows = path.read_text().splitlines(), []
     for number, text in enumerate(lines, 1):
         try:
@@ -99,12 +96,12 @@ def read(path: Path) -> list[dict]:
             if number == len(lines):
                 print(f"{path}:{number}: torn last line left out", file=sys.stderr)
                 continue
-            raise HistoryError(f"{path}:{number}: not JSON") from None
+            raise UserError(f"{path}:{number}: not JSON") from None
         if not isinstance(row, dict) or row.get("schema") != SCHEMA or not isinstance(row.get("values"), dict):
-            raise HistoryError(f"{path}:{number}: no line of {SCHEMA}")
+            raise UserError(f"{path}:{number}: no line of {SCHEMA}")
         rows.append(row)
     if not rows:
-        raise HistoryError(f"{path}: empty")
+        raise UserError(f"{path}: empty")
     return rows
 
 
@@ -124,15 +121,12 @@ def steps(rows: list[dict]) -> tuple[list[Step], int]:
     return sorted(found, key=lambda s: -abs(s.after - s.before) / (abs(s.before) or 1.0)), looked
 
 
+@tells("trend")
 def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench trend", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("history", type=Path, help="file of ./bench gate --history")
     args = parser.parse_args(argv)
-    try:
-        rows = read(args.history)
-    except HistoryError as error:
-        print(f"bench trend: {error}", file=sys.stderr)
-        return 2
+    rows = read(args.history)
     found, looked = steps(rows)
     if found:
         print("\n".join(aligned(["case", "metric", "before", "after", "since", "runs"],

@@ -6,6 +6,7 @@ import json
 from difflib import get_close_matches
 from pathlib import Path
 
+from ..errors import UserError
 from ..program import read_object
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -15,25 +16,21 @@ VARY = ("contact", "limit", "both")
 OF_LIMIT = ("mass_term", "elastic_term", "refresh", "gap_floor", "derivative")  # what the policy of a limit may take from that of contact
 
 
-class MatchError(ValueError):
-    """Bad input of `match` or `pareto`: file, place, what was found, what is allowed."""
-
-
 def known() -> list[str]:
     return sorted(path.stem for path in PRESETS.glob("*.json"))
 
 
 def preset(name: str) -> dict:
     """The section `formulation` of a preset, or of a file like those of configs/formulations, NAME.json: of a shape or policy of a plugin, say.
-    Errors: MatchError with the nearest name."""
+    Errors: UserError with the nearest name."""
     if name.endswith(".json"):
-        formulation = read_object(Path(name), MatchError).get("formulation")
+        formulation = read_object(Path(name), UserError).get("formulation")
         if not isinstance(formulation, dict) or not {"shape", "argument", "stiffness_policy"} <= formulation.keys():
-            raise MatchError(f"{name}#/formulation: found {json.dumps(formulation)[:60]}; allowed: a formulation with shape, argument and stiffness_policy")
+            raise UserError(f"{name}#/formulation: found {json.dumps(formulation)[:60]}; allowed: a formulation with shape, argument and stiffness_policy")
         return formulation
     if name not in known():
         near = get_close_matches(name, known(), 1)
-        raise MatchError(f"formulation {name!r}: one of {', '.join(known())}" + (f"; did you mean {near[0]!r}?" if near else ""))
+        raise UserError(f"formulation {name!r}: one of {', '.join(known())}" + (f"; did you mean {near[0]!r}?" if near else ""))
     return json.loads((PRESETS / f"{name}.json").read_text())["formulation"]
 
 

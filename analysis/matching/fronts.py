@@ -71,7 +71,7 @@ def _rounded(x: float | None) -> float | None:
 
 
 def gather(spec: Spec, notes: tuple[str, ...], records: dict[str, dict]) -> list[dict]:
-    """Rows in the order of the sweep. Errors: MatchError where records of one scene are of different configs."""
+    """Rows in the order of the sweep. Errors: UserError where records of one scene are of different configs."""
     rows, k = [], 0
     for scene in spec.scenes:
         of_scene = len(spec.formulations) * len(spec.scales) * spec.starts

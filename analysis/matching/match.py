@@ -11,12 +11,12 @@ from __future__ import annotations
 import argparse
 import hashlib
 import json
-import sys
 from pathlib import Path
 
+from ..errors import UserError, tells
 from ..program import plugin_argument
 from ..whole_file import write_whole
-from .formulations import REFERENCE, ROOT, VARY, MatchError, label, preset, settings
+from .formulations import REFERENCE, ROOT, VARY, label, preset, settings
 from .runs import Sweep, check_equal, check_varied, collect, inputs_sha256, read_object, run, sweep
 
 DEFAULT = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
@@ -32,7 +32,7 @@ def make_sweep(config: Path, formulations: list[str], rule: str, theta: float, v
     d_hat = chosen.get("d_hat_m") if isinstance(chosen, dict) else None
     names = list(dict.fromkeys([REFERENCE, *formulations]))
     if names == [REFERENCE]:
-        raise MatchError(f"--formulations: found {REFERENCE} alone; a formulation to compare with it is needed")
+        raise UserError(f"--formulations: found {REFERENCE} alone; a formulation to compare with it is needed")
     for name in names:
         preset(name)
     cases = [{"label": label(name), "set": settings(name, vary, d_hat)} | ({"reference": True} if name == REFERENCE else {}) for name in names]
@@ -54,14 +54,14 @@ def _row(name: str, record: dict) -> dict:
 
 
 def judge(made: Sweep, records: dict[str, dict], vary: str) -> dict:
-    """The content of match.json. Errors: MatchError where the reference never is in contact, or records are not of one config."""
+    """The content of match.json. Errors: UserError where the reference never is in contact, or records are not of one config."""
     check_equal(records)
     check_varied(records[made.notes[0]], vary, "--vary limit")
     rows = [_row(note.partition(": ")[2], records[note]) for note in made.notes]
     reference = rows[0]
     if reference["outcome"] == "ok" and reference["gap_min_rel"] is None:
         scene = records[made.notes[0]]["labels"]["scene"]
-        raise MatchError(f"scene {scene!r}: no contact at the end of any step with {REFERENCE}: there is no gap to compare; a scene whose bodies "
+        raise UserError(f"scene {scene!r}: no contact at the end of any step with {REFERENCE}: there is no gap to compare; a scene whose bodies "
                          "touch is needed (or more steps: --set /time/steps=N)")
     first = records[made.notes[0]]
     return {"schema": SCHEMA, "scene": first["labels"]["scene"], "reference": REFERENCE, "vary": vary, "rule": first["matching"]["rule"], "theta": first["matching"]["theta"],
@@ -115,23 +115,16 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
+@tells("match")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
-    try:
-        if not 0 < args.theta < 1:
-            raise MatchError(f"--theta: found {args.theta:g}; a number in (0, 1) is needed")
-        made = make_sweep(args.config, args.formulations, args.rule, args.theta, args.vary)
-        digest = hashlib.sha256("\n".join([made.text, inputs_sha256(made, args.overrides, args.plugin), *args.overrides]).encode()).hexdigest()[:8]
-        out = args.out or ROOT / "results" / "runs" / "match" / f"{args.config.stem}-{digest}"
-        run(made, out, args.overrides, args.plugin)
-        answer = judge(made, collect(made, out), args.vary)
-        write_whole(out / "match.json", json.dumps(answer, indent=1) + "\n")
-    except MatchError as error:
-        print(f"bench match: {error}", file=sys.stderr)
-        return 2
+    if not 0 < args.theta < 1:
+        raise UserError(f"--theta: found {args.theta:g}; a number in (0, 1) is needed")
+    made = make_sweep(args.config, args.formulations, args.rule, args.theta, args.vary)
+    digest = hashlib.sha256("\n".join([made.text, inputs_sha256(made, args.overrides, args.plugin), *args.overrides]).encode()).hexdigest()[:8]
+    out = args.out or ROOT / "results" / "runs" / "match" / f"{args.config.stem}-{digest}"
+    run(made, out, args.overrides, args.plugin)
+    answer = judge(made, collect(made, out), args.vary)
+    write_whole(out / "match.json", json.dumps(answer, indent=1) + "\n")
     print(text(answer))
     return 0 if all(row["verdict"] == "comparable" for row in answer["formulations"]) else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -15,11 +15,12 @@ import shutil
 import sys
 from pathlib import Path
 
+from ..errors import UserError, tells
 from ..claims.table import seconds_of_run
 from ..program import plugin_argument
 from ..whole_file import write_whole
 from . import pareto_figure, pareto_report
-from .formulations import ROOT, MatchError
+from .formulations import ROOT
 from .fronts import METRICS, PLACE, STATE, Runs, gather
 from .runs import collect, inputs_sha256, read_object, run
 from .spec import Spec, make_sweep, read_spec
@@ -50,7 +51,7 @@ def to_json(runs: Runs) -> str:
 def from_json(path: Path) -> Runs:
     data = read_object(path)
     if data.get("schema") != SCHEMA or data.get("columns") != list(COLUMNS):
-        raise MatchError(f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with {list(COLUMNS)} is needed: ./bench pareto")
+        raise UserError(f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with {list(COLUMNS)} is needed: ./bench pareto")
     return Runs(data["about"], [dict(zip(COLUMNS, row)) for row in data["rows"]])
 
 
@@ -63,7 +64,7 @@ def make(spec: Spec, command: str, folder: Path, run_missing: bool, plugins: lis
     runs = Runs(_about(spec, command, list(records.values()), plugins), gather(spec, made.notes, records))
     for scene in runs.scenes:
         if not any(row["gap"] for row in runs.rows if row["scene"] == scene):
-            raise MatchError(f"{spec.path}#/scenes/{scene}: no run is in contact at the end of any step: there is no gap to compare at")
+            raise UserError(f"{spec.path}#/scenes/{scene}: no run is in contact at the end of any step: there is no gap to compare at")
     return runs
 
 
@@ -87,32 +88,25 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return parser.parse_args(argv)
 
 
+@tells("pareto")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     results = args.results or ROOT / "results"
-    try:
-        spec = read_spec(args.spec)
-        inputs = inputs_sha256(make_sweep(spec), plugins=args.plugin)
-        digest = hashlib.sha256(f"{spec.sha256} {inputs}".encode()).hexdigest()
-        folder = args.runs or ROOT / "results" / "runs" / "pareto" / f"{spec.name}-{digest[:8]}"
-        kept = results / "pareto.json"
-        if args.no_run and not any(folder.glob("*/run.json")) and kept.is_file():
-            runs = from_json(kept)
-            if runs.about["spec_sha256"] != spec.sha256 or runs.about.get("inputs_sha256", inputs) != inputs:
-                raise MatchError(f"{kept}: its numbers are of another {args.spec}, base config, mesh or preset: ./bench pareto {args.spec}")
-            if "inputs_sha256" not in runs.about:
-                print(f"bench pareto: {kept} does not say of which base config and presets its numbers are", file=sys.stderr)
-        else:
-            command = "./bench pareto" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}") + "".join(f" --plugin {file}" for file in args.plugin)
-            runs = make(spec, command, folder, not args.no_run, args.plugin)
-        write_whole(kept, to_json(runs))
-        write_page(runs, results, ROOT / "docs" if args.results is None else results, folder / "figures")
-    except MatchError as error:
-        print(f"bench pareto: {error}", file=sys.stderr)
-        return 2
+    spec = read_spec(args.spec)
+    inputs = inputs_sha256(make_sweep(spec), plugins=args.plugin)
+    digest = hashlib.sha256(f"{spec.sha256} {inputs}".encode()).hexdigest()
+    folder = args.runs or ROOT / "results" / "runs" / "pareto" / f"{spec.name}-{digest[:8]}"
+    kept = results / "pareto.json"
+    if args.no_run and not any(folder.glob("*/run.json")) and kept.is_file():
+        runs = from_json(kept)
+        if runs.about["spec_sha256"] != spec.sha256 or runs.about.get("inputs_sha256", inputs) != inputs:
+            raise UserError(f"{kept}: its numbers are of another {args.spec}, base config, mesh or preset: ./bench pareto {args.spec}")
+        if "inputs_sha256" not in runs.about:
+            print(f"bench pareto: {kept} does not say of which base config and presets its numbers are", file=sys.stderr)
+    else:
+        command = "./bench pareto" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}") + "".join(f" --plugin {file}" for file in args.plugin)
+        runs = make(spec, command, folder, not args.no_run, args.plugin)
+    write_whole(kept, to_json(runs))
+    write_page(runs, results, ROOT / "docs" if args.results is None else results, folder / "figures")
     print(f"{results / 'PARETO.md'}: {len(runs.rows)} runs, {sum(row['outcome'] == 'ok' for row in runs.rows)} ok")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -10,6 +10,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import UserError
 from ..claims import entry
 from ..claims.metrics import METRICS
 from ..gate.configs import differences
@@ -17,7 +18,7 @@ from ..record_file import RecordError, read_record
 from ..program import built_program, plugin_words
 from ..program import read_object as read_json_object
 from . import formulations
-from .formulations import MatchError, known
+from .formulations import known
 
 # What formulations may differ in; everything else of two configs has to be equal.
 OF_A_FORMULATION = ("/formulation/name", "/formulation/shape", "/formulation/argument", "/formulation/stiffness_policy/", "/strain_limit/shape",
@@ -87,16 +88,16 @@ def inputs_sha256(made: Sweep, overrides: list[str] | None = None, plugins: list
 
 
 def program() -> str:
-    return str(built_program(MatchError))
+    return str(built_program(UserError))
 
 
 def read_object(path: Path) -> dict:
-    """A JSON object from a file; MatchError says what it is instead."""
-    return read_json_object(path, MatchError)
+    """A JSON object from a file; UserError says what it is instead."""
+    return read_json_object(path, UserError)
 
 
 def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: list[str] | None = None) -> None:
-    """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file. Errors: MatchError with the first line of what the
+    """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file. Errors: UserError with the first line of what the
     program said; input that it refuses leaves nothing."""
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / f"{made.name}.json"
@@ -108,19 +109,19 @@ def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: lis
     if done.returncode != 0:
         first, *more = (done.stderr.strip() or done.stdout.strip()).splitlines() or ["it said nothing"]
         first = first.removeprefix(f"{file} ")
-        raise MatchError(f"the program ended with {done.returncode}: {first}" + (f" (and {len(more)} more lines)" if more else ""))
+        raise UserError(f"the program ended with {done.returncode}: {first}" + (f" (and {len(more)} more lines)" if more else ""))
 
 
 def read_strictly(path: Path) -> dict:
-    """A record. Errors: MatchError."""
+    """A record. Errors: UserError."""
     try:
         return read_record(path)
     except RecordError as error:
-        raise MatchError(str(error)) from None
+        raise UserError(str(error)) from None
 
 
 def collect(made: Sweep, out: Path) -> dict[str, dict]:
-    """note -> record, of every case of the sweep. Errors: MatchError when one is missing or there twice."""
+    """note -> record, of every case of the sweep. Errors: UserError when one is missing or there twice."""
     found: dict[str, dict] = {}
     for path in sorted(out.glob("*/run.json")):
         record = read_strictly(path)
@@ -128,10 +129,10 @@ def collect(made: Sweep, out: Path) -> dict[str, dict]:
         if note not in made.notes:
             continue
         if note in found:
-            raise MatchError(f"{path}: a second record of {note!r}: {out} holds runs with other settings; name another folder with --out")
+            raise UserError(f"{path}: a second record of {note!r}: {out} holds runs with other settings; name another folder with --out")
         found[note] = record
     if missing := [note for note in made.notes if note not in found]:
-        raise MatchError(f"{out}: {len(missing)} of {len(made.notes)} records are missing, the first {missing[0]!r}")
+        raise UserError(f"{out}: {len(missing)} of {len(made.notes)} records are missing, the first {missing[0]!r}")
     return found
 
 
@@ -141,17 +142,17 @@ def check_equal(records: dict[str, dict]) -> None:
     for note in notes[1:]:
         found = differences(records[notes[0]]["config"], records[note]["config"])
         if unlike := [line for line in found if not line.startswith(OF_A_FORMULATION)]:
-            raise MatchError(f"{notes[0]!r} and {note!r} are not runs of the same config: {unlike[0]}")
+            raise UserError(f"{notes[0]!r} and {note!r} are not runs of the same config: {unlike[0]}")
 
 
 def check_varied(record: dict, vary: str, place: str) -> None:
     """Refuses to vary a strain limit that the run does not have: all formulations would be the same run."""
     if vary == "limit" and record["matching"].get("limit_load_N_per_m") is None:
-        raise MatchError(f"{place}: no strain limit acts in scene {record['labels']['scene']!r}, so that nothing varies; contact or both, or a limit: /strain_limit/limit")
+        raise UserError(f"{place}: no strain limit acts in scene {record['labels']['scene']!r}, so that nothing varies; contact or both, or a limit: /strain_limit/limit")
 
 
 def metric(record: dict, name: str) -> float | None:
     """A number of analysis/claims/metrics.py; None where the record has none."""
     if name not in METRICS:
-        raise MatchError(f"metric {name!r}: one of {', '.join(METRICS)}")
+        raise UserError(f"metric {name!r}: one of {', '.join(METRICS)}")
     return METRICS[name][3](record)

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from ..errors import UserError
 from ..records import Records, condition_of, counted, load
 from ..table import summary_table
 from ..whole_file import write_whole
@@ -19,10 +20,6 @@ FILE = ROOT / "results" / "demo.json"
 RUNS = ROOT / "results" / "runs" / "demo"
 NAME = "barrierbench.demo_numbers/1"
 GROUPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")
-
-
-class ReadmeError(ValueError):
-    """A page or its numbers that are not as they have to be, with the place and what is allowed."""
 
 
 def _plain(value):
@@ -71,12 +68,12 @@ def _about(runs: pd.DataFrame) -> dict:
 
 
 def gather(folder: Path) -> dict:
-    """The numbers of all records of the demo below `folder`. Raises RecordError without any, ReadmeError where a sweep is missing."""
+    """The numbers of all records of the demo below `folder`. Raises RecordError without any, UserError where a sweep is missing."""
     records = load(folder)
     if records.unreadable:
-        raise ReadmeError("\n".join(records.unreadable))
+        raise UserError("\n".join(records.unreadable))
     if missing := [name for name in GROUPS if name not in set(records.runs["group"])]:
-        raise ReadmeError(f"{folder}: no records of {', '.join(missing)}; ./bench demo makes them")
+        raise UserError(f"{folder}: no records of {', '.join(missing)}; ./bench demo makes them")
     return {"schema": NAME, "about": _about(records.runs), "runs": _rows(records, summary_table(records))}
 
 
@@ -86,15 +83,15 @@ def write(numbers: dict, path: Path = FILE) -> None:
 
 
 def read(path: Path = FILE) -> dict:
-    """Raises ReadmeError when the file is not there or not one of write()."""
+    """Raises UserError when the file is not there or not one of write()."""
     if not path.is_file():
-        raise ReadmeError(f"{path}: not there; allowed: the numbers of the demo: ./bench demo, then ./bench readme --write")
+        raise UserError(f"{path}: not there; allowed: the numbers of the demo: ./bench demo, then ./bench readme --write")
     try:
         data = json.loads(path.read_text())
     except ValueError as error:
-        raise ReadmeError(f"{path}: not JSON: {error}") from None
+        raise UserError(f"{path}: not JSON: {error}") from None
     if not isinstance(data, dict) or data.get("schema") != NAME or not data.get("runs"):
-        raise ReadmeError(f"{path}#/schema: found {data.get('schema') if isinstance(data, dict) else data!r}; allowed: {NAME!r} with runs")
+        raise UserError(f"{path}#/schema: found {data.get('schema') if isinstance(data, dict) else data!r}; allowed: {NAME!r} with runs")
     for row in data["runs"]:
         row["cond_steps"] = {int(step): cond for step, cond in row["cond_steps"].items()}
     return data

@@ -5,13 +5,13 @@ from __future__ import annotations
 import textwrap
 from dataclasses import replace
 
+from ..errors import UserError
 from ..claims.entry import read_claim, read_sweep
 from ..claims.judge import judge_part, missing
 from ..claims.proofs import Eval
 from ..claims.slices import rows_of
 from ..claims.table import FILE, Table
 from ..claims.table import read as read_claims
-from .numbers import ReadmeError
 
 CLAIM, SWEEP = "H1", "contact_slices"
 LIMITS = ("off", "log")
@@ -24,15 +24,15 @@ def _parts() -> list[dict]:
 
 def gather(table: Table | None = None) -> dict:
     """unknowns: smallest to largest scene, in words. limits: strain limit -> of every theta, the largest first, the claim's ratio of the 95th percentiles
-    of cond, log over cubic, over how many scenes, and in how many runs of all the cubic did not end `ok`. Raises ReadmeError without runs of today's sweep."""
+    of cond, log over cubic, over how many scenes, and in how many runs of all the cubic did not end `ok`. Raises UserError without runs of today's sweep."""
     table, parts = table or read_claims(FILE), _parts()
     if lines := missing(replace(read_claim(CLAIM), parts=tuple(parts)), table):
-        raise ReadmeError(f"{FILE}: {lines[0]}")
+        raise UserError(f"{FILE}: {lines[0]}")
     found: dict[str, list[dict]] = {limit: [] for limit in LIMITS}
     for part in sorted(parts, key=lambda part: -part["theta"]):
         judged = judge_part(part, table, Eval(None, {}))
         if judged.value is None:
-            raise ReadmeError(f"{FILE}: {SWEEP}: {part['says']}: no pair of runs counts")
+            raise UserError(f"{FILE}: {SWEEP}: {part['says']}: no pair of runs counts")
         cubics = [row["outcome"] for row in rows_of(part, table.sweeps[SWEEP], read_sweep(SWEEP)).rows if row["case"] == part["over"]]
         found[part["limit"]].append({"theta": part["theta"], "ratio": judged.value, "scenes": judged.scenes, "failed": sum(word != "ok" for word in cubics), "of": len(cubics)})
     return {"unknowns": table.sweeps[SWEEP].about["unknowns"], "limits": found}

@@ -5,8 +5,8 @@ from __future__ import annotations
 import re
 import textwrap
 
+from ..errors import UserError
 from .map import lines
-from .numbers import ReadmeError
 from .slices import sentence
 
 WIDTH = 140
@@ -20,7 +20,7 @@ def _run(numbers: dict, group: str, series: str) -> dict:
     for row in numbers["runs"]:
         if (row["group"], row["series"]) == (group, series):
             return row
-    raise ReadmeError(f"results/demo.json: no run {series!r} of {group}; allowed: the runs of ./bench demo")
+    raise UserError(f"results/demo.json: no run {series!r} of {group}; allowed: the runs of ./bench demo")
 
 
 def _power(x: float | None) -> str:
@@ -63,7 +63,7 @@ def demo_table(numbers: dict) -> list[str]:
 def _free_of_crossings(numbers: dict) -> str:
     common = [row for row in numbers["runs"] if row["step_solver"] == "line_search"]
     if not common:
-        raise ReadmeError("results/demo.json: no run with the step solver line_search, so that nothing is free of crossings; ./bench demo makes them")
+        raise UserError("results/demo.json: no run with the step solver line_search, so that nothing is free of crossings; ./bench demo makes them")
     bad = [row for row in common if not row["judged"] or row["crossings"] or row["violations"] or row["unproven"]]
     if not bad:
         return f"In all {len(common)} runs of the demo with the common method no surface passes through another, whichever barrier is used."
@@ -102,7 +102,7 @@ def _step_ends(numbers: dict, sphere: str) -> str:
     log, cubic = (_run(numbers, "demo_long", f"{sphere} {name}")["cond_steps"] for name in ("log", "cubic"))
     ratios = [log[step] / cubic[step] for step in log if step in cubic]
     if not ratios:
-        raise ReadmeError(f"results/demo.json: demo_long, {sphere}: no time step ends in contact with both log and cubic; ./bench demo makes them")
+        raise UserError(f"results/demo.json: demo_long, {sphere}: no time step ends in contact with both log and cubic; ./bench demo makes them")
     return f"in {sum(ratio < 0.99 for ratio in ratios)} of {len(ratios)} with the sphere as a {sphere} ({min(ratios):.2g} to {max(ratios):.2g} times the cubic's)"
 
 
@@ -136,10 +136,10 @@ def lacking(text: str, page: str) -> list[str]:
 
 
 def filled(text: str, numbers: dict, page: str) -> str:
-    """The page with its generated parts made anew. Raises ReadmeError for a part that no template makes."""
+    """The page with its generated parts made anew. Raises UserError for a part that no template makes."""
     def one(match: re.Match) -> str:
         if match[2] not in TEMPLATES:
-            raise ReadmeError(f"{page}: <!-- numbers: {match[2]} -->; allowed: {', '.join(TEMPLATES)}")
+            raise UserError(f"{page}: <!-- numbers: {match[2]} -->; allowed: {', '.join(TEMPLATES)}")
         return match[1] + "\n".join(TEMPLATES[match[2]](numbers)) + "\n" + match[4]
 
     return BLOCK.sub(one, text)

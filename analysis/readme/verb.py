@@ -6,16 +6,14 @@ Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 th
 from __future__ import annotations
 
 import argparse
-import sys
 from pathlib import Path
 
-from ..claims.entry import ClaimError
+from ..errors import UserError, tells
 from ..program import built_program
-from ..record_file import RecordError
 from ..whole_file import write_whole
 from . import figures
 from .map import gather as gather_map
-from .numbers import FILE, ROOT, RUNS, ReadmeError, gather, read, write
+from .numbers import FILE, ROOT, RUNS, gather, read, write
 from .slices import gather as gather_slices
 from .snippets import faults
 from .templates import PARTS, filled, lacking
@@ -24,7 +22,7 @@ PAGES = tuple(PARTS)
 
 
 def kept() -> dict:
-    """The numbers of the demo, those of the claims' slices, and the sentences of the gap map. Errors: ReadmeError where one is missing."""
+    """The numbers of the demo, those of the claims' slices, and the sentences of the gap map. Errors: UserError where one is missing."""
     return read() | {"slices": gather_slices(), "gap_map": gather_map()}
 
 
@@ -36,18 +34,19 @@ def stale(root: Path, numbers: dict) -> list[str]:
 
 
 def write_pages(root: Path, numbers: dict) -> list[str]:
-    """Errors: ReadmeError for a page without the marks of its parts."""
+    """Errors: UserError for a page without the marks of its parts."""
     changed = []
     for page in PAGES:
         text = (root / page).read_text()
         if absent := lacking(text, page):
-            raise ReadmeError("\n".join(absent))
+            raise UserError("\n".join(absent))
         if (made := filled(text, numbers, page)) != text:
             write_whole(root / page, made)
             changed.append(page)
     return changed
 
 
+@tells("readme")
 def main(argv: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench readme", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
                                      epilog="examples: ./bench demo && ./bench readme --write\n          ./bench claims && ./bench readme --fill\n          ./bench readme --check")
@@ -57,22 +56,14 @@ def main(argv: list[str]) -> int:
     what.add_argument("--check", action="store_true", help="run or parse every snippet, and compare the pages with the kept numbers")
     parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the demo's records (default: results/runs/demo)")
     args = parser.parse_args(argv)
-    try:
-        if args.write or args.fill:
-            if args.write:
-                write(gather(args.runs))
-                copied = figures.copy([(ROOT / page).read_text() for page in PAGES], args.runs / "figures", ROOT / "docs")
-                print(f"docs: {', '.join(copied) or 'no figure'}")
-            print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
-            return 0
-        program = str(built_program(ReadmeError))
-        found = [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)] + stale(ROOT, kept()) + figures.absent(ROOT / "docs")
-    except (ReadmeError, RecordError, ClaimError) as error:
-        print(f"bench readme: {error}", file=sys.stderr)
-        return 2
+    if args.write or args.fill:
+        if args.write:
+            write(gather(args.runs))
+            copied = figures.copy([(ROOT / page).read_text() for page in PAGES], args.runs / "figures", ROOT / "docs")
+            print(f"docs: {', '.join(copied) or 'no figure'}")
+        print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
+        return 0
+    program = str(built_program(UserError))
+    found = [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)] + stale(ROOT, kept()) + figures.absent(ROOT / "docs")
     print("\n".join(found) or "every snippet works, and the numbers are those of results/demo.json and results/claims.json")
     return 1 if found else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

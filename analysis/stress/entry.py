@@ -8,6 +8,7 @@ from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
 from pathlib import Path
 
+from ..errors import UserError
 from .. import fields
 
 ROOT = Path(__file__).resolve().parents[2]
@@ -23,10 +24,6 @@ BESIDE = ("not_valid", "refused", "crash")
 OUTCOMES = tuple(fields.schema("run")["$defs"]["Status"]["properties"]["outcome"]["enum"]) + BESIDE
 NEVER_NAMED = ("penetration", "unproven", "oom", "timeout", "crash", "not_valid", "refused", "ok")
 NAMED = "named"  # in an expectation: any failure but these
-
-
-class StressError(ValueError):
-    """A test that cannot be read or judged: file, place and what is needed."""
 
 
 @dataclass(frozen=True)
@@ -74,7 +71,7 @@ class Test:
         for name in names:
             found = [f.label for f in self.formulations] if name == "@all" else self.groups.get(name[1:]) if name.startswith("@") else [name]
             if found is None or not set(found) <= {f.label for f in self.formulations}:
-                raise StressError(f"{self.path}: {place}: {name!r}; allowed: {', '.join(f.label for f in self.formulations)}, @all, "
+                raise UserError(f"{self.path}: {place}: {name!r}; allowed: {', '.join(f.label for f in self.formulations)}, @all, "
                                   + ", ".join(f"@{group}" for group in self.groups))
             out += found
         return out
@@ -84,7 +81,7 @@ class Test:
         for k, entry in enumerate(self.data["expect"]):
             if formulation in self.named(entry["formulations"], f"/expect/{k}/formulations") and _covers(entry, case):
                 return Expected(tuple(entry["outcomes"]), entry["reason"])
-        raise StressError(f"{self.path}: /expect: nothing is expected of {formulation} in case {case!r}")
+        raise UserError(f"{self.path}: /expect: nothing is expected of {formulation} in case {case!r}")
 
     def defect(self, formulation: str, case: str, outcome: str) -> str:
         """What is known to be wrong with the program where this outcome is found in the place of the expected one; empty: nothing."""
@@ -102,9 +99,9 @@ def read_json(path: Path, schema: str) -> dict:
     try:
         data = json.loads(path.read_text())
     except (OSError, ValueError) as error:
-        raise StressError(f"{path}: {error}") from None
+        raise UserError(f"{path}: {error}") from None
     if not isinstance(data, dict) or data.get("schema") != schema:
-        raise StressError(f"{path}: /schema: {data.get('schema') if isinstance(data, dict) else data!r}; {schema!r} is needed")
+        raise UserError(f"{path}: /schema: {data.get('schema') if isinstance(data, dict) else data!r}; {schema!r} is needed")
     return data
 
 
@@ -127,10 +124,10 @@ def _cases(axes: list[dict], path: Path) -> tuple[Case, ...]:
     out = [Case("", {})]
     for k, axis in enumerate(axes):
         if not axis.get("cases"):
-            raise StressError(f"{path}: /axes/{k}: cases with label and set are needed")
+            raise UserError(f"{path}: /axes/{k}: cases with label and set are needed")
         for j, entry in enumerate(axis["cases"]):
             if unknown := set(entry) - {"label", "set", "needs"}:
-                raise StressError(f"{path}: /axes/{k}/cases/{j}/{sorted(unknown)[0]}: unknown; allowed: label, set, needs")
+                raise UserError(f"{path}: /axes/{k}/cases/{j}/{sorted(unknown)[0]}: unknown; allowed: label, set, needs")
         out = [Case(f"{one.label} {entry['label']}".strip(), {**one.set, **entry.get("set", {})}, (*one.needs, *entry.get("needs", ())))
                for one in out for entry in axis["cases"]]
     return tuple(Case(one.label or ONE, one.set, one.needs) for one in out)
@@ -141,12 +138,12 @@ def _formulations(data: dict, folder: Path, path: Path) -> tuple[tuple[Formulati
     common = read_json(folder / "formulations.json", "barrierbench.stress_formulations/1")
     choice = data.get("formulations", {})
     if unknown := set(choice) - {"base", "add", "own"}:
-        raise StressError(f"{path}: /formulations/{sorted(unknown)[0]}: unknown; allowed: base, add, own")
+        raise UserError(f"{path}: /formulations/{sorted(unknown)[0]}: unknown; allowed: base, add, own")
     if "own" in choice:
         return tuple(Formulation(f["label"], f["set"], f.get("by_case", {})) for f in choice["own"]), {}
     add = choice.get("add", {})
     if unknown := set(add) - {f["label"] for f in common["comparable"]}:
-        raise StressError(f"{path}: /formulations/add/{sorted(unknown)[0]}: no formulation of formulations.json")
+        raise UserError(f"{path}: /formulations/add/{sorted(unknown)[0]}: no formulation of formulations.json")
     return tuple(Formulation(f["label"], {**f["set"], **add.get(f["label"], {})}) for f in common["comparable"]), common["groups"]
 
 
@@ -154,40 +151,40 @@ def _check_expect(test: Test) -> None:
     for k, entry in enumerate(test.data["expect"]):
         place = f"{test.path}: /expect/{k}"
         if unknown := set(entry) - {"formulations", "cases", "outcomes", "reason"}:
-            raise StressError(f"{place}/{sorted(unknown)[0]}: unknown; allowed: formulations, cases, outcomes, reason")
+            raise UserError(f"{place}/{sorted(unknown)[0]}: unknown; allowed: formulations, cases, outcomes, reason")
         if not entry.get("reason") or not entry.get("outcomes") or not entry.get("formulations"):
-            raise StressError(f"{place}: formulations, outcomes and a reason are needed")
+            raise UserError(f"{place}: formulations, outcomes and a reason are needed")
         if wrong := [word for word in entry["outcomes"] if word not in (*OUTCOMES, NAMED)]:
-            raise StressError(f"{place}/outcomes: {wrong[0]!r}; allowed: {', '.join((*OUTCOMES, NAMED))}")
+            raise UserError(f"{place}/outcomes: {wrong[0]!r}; allowed: {', '.join((*OUTCOMES, NAMED))}")
         if idle := [p for p in entry.get("cases", []) if not any(fnmatchcase(case.label, p) for case in test.cases)]:
-            raise StressError(f"{place}/cases: {idle[0]!r} is no case; cases: {', '.join(case.label for case in test.cases)}")
+            raise UserError(f"{place}/cases: {idle[0]!r} is no case; cases: {', '.join(case.label for case in test.cases)}")
     for key, needed in (("changed", {"what", "old", "new", "why"}), ("defects", {"formulations", "cases", "outcomes", "why"})):
         for k, entry in enumerate(test.data.get(key, [])):
             if set(entry) != needed or not all(entry.values()):
-                raise StressError(f"{test.path}: /{key}/{k}: {', '.join(sorted(needed))} are needed, and nothing else")
+                raise UserError(f"{test.path}: /{key}/{k}: {', '.join(sorted(needed))} are needed, and nothing else")
     for formulation in test.formulations:
         for case in test.cases:
             test.expected(formulation.label, case.label)
 
 
 def read_test(name: str, folder: Path = FOLDER, full: bool = False) -> Test:
-    """Raises StressError: unknown id or key, a formulation in a case of which nothing is expected."""
+    """Raises UserError: unknown id or key, a formulation in a case of which nothing is expected."""
     path = folder / f"{name}.json"
     if not path.is_file():
-        raise StressError(f"stress test {name!r}: one of {', '.join(ids(folder))} (configs/stress/)")
+        raise UserError(f"stress test {name!r}: one of {', '.join(ids(folder))} (configs/stress/)")
     data = read_json(path, NAME)
     if missing := [key for key in REQUIRED if not data.get(key)]:
-        raise StressError(f"{path}: /{missing[0]} is needed")
+        raise UserError(f"{path}: /{missing[0]} is needed")
     if unknown := [key for key in data if key not in (*REQUIRED, *OPTIONAL)]:
-        raise StressError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
+        raise UserError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
     if data["id"] != name:
-        raise StressError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
+        raise UserError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
     if "geometry" in data:
         if both := [key for key in RUNS if key in data]:
-            raise StressError(f"{path}: /{both[0]}: a test of geometry runs no scene")
+            raise UserError(f"{path}: /{both[0]}: a test of geometry runs no scene")
         return Test(path, data, (), (), {})
     if "base" not in data or not (path.parent / data["base"]).is_file():
-        raise StressError(f"{path}: /base: {data.get('base')!r}; the path of a config is needed")
+        raise UserError(f"{path}: /base: {data.get('base')!r}; the path of a config is needed")
     if full and "full" in data:
         data = {**data, "axes": data["full"]["axes"], "set": {**data.get("set", {}), **data["full"].get("set", {})}}
         # what is said of cases by name holds of those that are left
@@ -197,8 +194,8 @@ def read_test(name: str, folder: Path = FOLDER, full: bool = False) -> Test:
     test = Test(path, data, _cases(data.get("axes", []), path), formulations, groups)
     labels = [case.label for case in test.cases]
     if len(set(labels)) != len(labels):
-        raise StressError(f"{path}: /axes: two cases with one label")
+        raise UserError(f"{path}: /axes: two cases with one label")
     if idle := [label for label in data.get("quick", []) if label not in labels and not full]:
-        raise StressError(f"{path}: /quick: {idle[0]!r} is no case; cases: {', '.join(labels)}")
+        raise UserError(f"{path}: /quick: {idle[0]!r} is no case; cases: {', '.join(labels)}")
     _check_expect(test)
     return test

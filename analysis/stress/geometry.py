@@ -12,8 +12,9 @@ from fractions import Fraction
 
 import numpy as np
 
+from ..errors import UserError
 from . import exact
-from .entry import StressError, Test
+from .entry import Test
 from .run import program
 
 PRECISIONS = ("double", "float")
@@ -42,7 +43,7 @@ def ask(queries: list[dict]) -> list[dict]:
     done = subprocess.run([str(program()), "eval"], input="".join(json.dumps(q) + "\n" for q in queries), capture_output=True, text=True, check=False)
     answers = [json.loads(line) for line in done.stdout.splitlines()]
     if len(answers) != len(queries) or any("error" in answer for answer in answers):
-        raise StressError(f"eval: {len(answers)} answers to {len(queries)} queries: {done.stderr.strip()[:300] or next(a for a in answers if 'error' in a)}")
+        raise UserError(f"eval: {len(answers)} answers to {len(queries)} queries: {done.stderr.strip()[:300] or next(a for a in answers if 'error' in a)}")
     return answers
 
 
@@ -164,7 +165,7 @@ def shapes(quick: bool) -> list[Count]:
             count = counts.setdefault(name, Count("M16", name, precision, 0, {"error": 0.0}))
             for key, true in zip(("b", "db", "d2b"), exact.shape(name, u, 1.0)):
                 if answer[key] is None:
-                    raise StressError(f"eval: shape {name} at {u}: no {key}")
+                    raise UserError(f"eval: shape {name} at {u}: no {key}")
                 count.judged += 1
                 count.numbers["error"] = max(count.numbers["error"], float(abs(Decimal(answer[key]) / true - 1)))
         out += list(counts.values())
@@ -175,10 +176,10 @@ TESTS = {"ccd": ccd, "obtuse": obtuse, "parallel": parallel, "shapes": shapes}
 
 
 def run_geometry(test: Test, quick: bool = False) -> list[Count]:
-    """Counts of one test, judged. Raises StressError: unknown kind, a case that nothing is expected of."""
+    """Counts of one test, judged. Raises UserError: unknown kind, a case that nothing is expected of."""
     kind = test.data["geometry"]
     if kind not in TESTS:
-        raise StressError(f"{test.path}: /geometry: {kind!r}; one of {', '.join(TESTS)}")
+        raise UserError(f"{test.path}: /geometry: {kind!r}; one of {', '.join(TESTS)}")
     return [judge(count, test) for count in TESTS[kind](quick)]
 
 
@@ -186,12 +187,12 @@ def judge(count: Count, test: Test) -> Count:
     """By the first expectation that covers its precision and case. What judged nothing is not as expected."""
     for k, entry in enumerate(test.data["expect"]):
         if unknown := set(entry) - {"precisions", "cases", "most", "reason"}:
-            raise StressError(f"{test.path}: /expect/{k}/{sorted(unknown)[0]}: unknown; allowed: precisions, cases, most, reason")
+            raise UserError(f"{test.path}: /expect/{k}/{sorted(unknown)[0]}: unknown; allowed: precisions, cases, most, reason")
         if count.precision in entry["precisions"] and any(fnmatchcase(count.case, p) for p in entry.get("cases", ["*"])):
             if missing := set(entry["most"]) - set(count.numbers):
-                raise StressError(f"{test.path}: /expect/{k}/most: {sorted(missing)[0]!r}; one of {', '.join(count.numbers)}")
+                raise UserError(f"{test.path}: /expect/{k}/most: {sorted(missing)[0]!r}; one of {', '.join(count.numbers)}")
             count.reason, count.allowed = entry["reason"], entry["most"]
             free = not entry["most"]  # anything is expected: rounding may leave nothing to judge
             count.as_expected = free or (count.judged > 0 and all(count.numbers[key] <= most for key, most in entry["most"].items()))
             return count
-    raise StressError(f"{test.path}: /expect: nothing is expected of {count.precision} in case {count.case!r}")
+    raise UserError(f"{test.path}: /expect: nothing is expected of {count.precision} in case {count.case!r}")

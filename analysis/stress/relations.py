@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .entry import StressError, Test
+from ..errors import UserError
+from .entry import Test
 from .run import METRICS, WAITS, Row
 
 KINDS = {"equal": ("within",), "differs": ("beyond",), "ratio": ("above", "below"), "rises": (), "bound": ()}
@@ -29,25 +30,25 @@ class Relation:
 
 
 def check(test: Test, entry: dict, k: int) -> None:
-    """Raises StressError for a relation that cannot be judged."""
+    """Raises UserError for a relation that cannot be judged."""
     place = f"{test.path}: /relations/{k}"
     kind = entry.get("kind")
     if kind not in KINDS:
-        raise StressError(f"{place}/kind: {kind!r}; one of {', '.join(KINDS)}")
+        raise UserError(f"{place}/kind: {kind!r}; one of {', '.join(KINDS)}")
     if unknown := set(entry) - {*COMMON, *KINDS[kind]}:
-        raise StressError(f"{place}/{sorted(unknown)[0]}: unknown; allowed: {', '.join((*COMMON, *KINDS[kind]))}")
+        raise UserError(f"{place}/{sorted(unknown)[0]}: unknown; allowed: {', '.join((*COMMON, *KINDS[kind]))}")
     if entry.get("metric") not in METRICS:
-        raise StressError(f"{place}/metric: {entry.get('metric')!r}; one of {', '.join(METRICS)}")
+        raise UserError(f"{place}/metric: {entry.get('metric')!r}; one of {', '.join(METRICS)}")
     if not entry.get("reason") or any(key not in entry for key in KINDS[kind]) or (kind == "bound" and not {"below", "above"} & set(entry)):
-        raise StressError(f"{place}: a reason and {', '.join(KINDS[kind]) or 'below or above'} are needed")
+        raise UserError(f"{place}: a reason and {', '.join(KINDS[kind]) or 'below or above'} are needed")
     labels = [case.label for case in test.cases]
     for group in entry.get("groups", []):
         if missing := [label for label in group if label not in labels]:
-            raise StressError(f"{place}/groups: {missing[0]!r} is no case; cases: {', '.join(labels)}")
+            raise UserError(f"{place}/groups: {missing[0]!r} is no case; cases: {', '.join(labels)}")
         if len(group) < 2:
-            raise StressError(f"{place}/groups: two cases at least")
+            raise UserError(f"{place}/groups: two cases at least")
     if kind != "bound" and not entry.get("groups"):
-        raise StressError(f"{place}/groups: needed")
+        raise UserError(f"{place}/groups: needed")
 
 
 def _says(entry: dict) -> str:

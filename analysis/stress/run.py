@@ -11,10 +11,11 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import UserError
 from ..record_file import RecordError, read_record
 from ..program import built_program
 from ..whole_file import write_whole
-from .entry import ROOT, Case, Formulation, StressError, Test
+from .entry import ROOT, Case, Formulation, Test
 
 LIMIT_S = 60.0  # of processor time, of one run, whatever other runs took or whether they had records already
 CLOCK = 4  # times as much on the clock, so that a busy machine makes no timeouts
@@ -55,14 +56,14 @@ METRICS = ("newton", "linear", "contacts", "gap_min_rel", "gap_min_ulps", "gap_e
 
 
 def program() -> Path:
-    return built_program(StressError)
+    return built_program(UserError)
 
 
 def config_schema() -> dict:
     """That of the program which will run, not of the tree."""
     done = subprocess.run([str(program()), "help", "config", "--schema"], capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise StressError(f"{program()} help config --schema: {done.stderr.strip()}")
+        raise UserError(f"{program()} help config --schema: {done.stderr.strip()}")
     return json.loads(done.stdout)
 
 
@@ -120,7 +121,7 @@ def judge(row: Row, test: Test) -> Row:
 
 
 def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, limit_s: float) -> Row:
-    """One run, or its record if it is there. Raises StressError when the test itself is wrong."""
+    """One run, or its record if it is there. Raises UserError when the test itself is wrong."""
     place = folder / test.id / _folder(formulation.label) / _folder(case.label)
     spec = place / "spec.json"
     write_whole(spec, json.dumps(spec_of(test, formulation, case), indent=1) + "\n")

@@ -7,8 +7,9 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..errors import UserError
 from ..whole_file import write_whole
-from .entry import ROOT, StressError, order, read_json
+from .entry import ROOT, order, read_json
 from .geometry import Count
 from .relations import Relation
 from .run import Row
@@ -67,12 +68,12 @@ def read(path: Path) -> dict[str, Result]:
         return {}
     try:
         data = read_json(path, NAME)
-    except StressError as error:
-        raise StressError(f"{error}; remove it, then ./bench stress") from None
+    except UserError as error:
+        raise UserError(f"{error}; remove it, then ./bench stress") from None
     try:
         return _results(data)
     except (KeyError, TypeError, AttributeError, ValueError) as error:
-        raise StressError(f"{path}: not a whole table ({type(error).__name__}: {error}); remove it, then ./bench stress") from None
+        raise UserError(f"{path}: not a whole table ({type(error).__name__}: {error}); remove it, then ./bench stress") from None
 
 
 def _results(data: dict) -> dict[str, Result]:

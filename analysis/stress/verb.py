@@ -12,10 +12,11 @@ import time
 from datetime import datetime, timezone
 from pathlib import Path
 
-from ..record_file import RecordError, read_record
+from ..errors import UserError, tells
+from ..record_file import read_record
 from ..whole_file import write_whole
 from . import report
-from .entry import ROOT, StressError, Test, ids, read_test
+from .entry import ROOT, Test, ids, read_test
 from .geometry import run_geometry
 from .relations import relations
 from .run import config_schema, run_test
@@ -62,22 +63,19 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     return args
 
 
+@tells("stress")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
-    try:
-        names = args.ids or ids()
-        tests = {name: read_test(name, full=args.full) for name in names}
-        if args.quick:
-            tests = {name: test for name, test in tests.items() if "quick" in test.data}
-            if not tests:
-                raise StressError(f"{', '.join(names)}: no quick case")
-        if args.list:
-            print("\n".join(f"{name}  {test.data['title']}; varied: {test.data['varies']}" for name, test in tests.items()))
-            return 0
-        return judge_all(tests, args)
-    except (StressError, RecordError) as error:
-        print(f"bench stress: {error}", file=sys.stderr)
-        return 2
+    names = args.ids or ids()
+    tests = {name: read_test(name, full=args.full) for name in names}
+    if args.quick:
+        tests = {name: test for name, test in tests.items() if "quick" in test.data}
+        if not tests:
+            raise UserError(f"{', '.join(names)}: no quick case")
+    if args.list:
+        print("\n".join(f"{name}  {test.data['title']}; varied: {test.data['varies']}" for name, test in tests.items()))
+        return 0
+    return judge_all(tests, args)
 
 
 def write_all(results: dict[str, Result], runs: Path, full: bool) -> None:
@@ -96,7 +94,7 @@ def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
     kept = {} if args.quick else read(file)
     if args.no_run:
         if missing := [name for name in tests if name not in kept]:
-            raise StressError(f"{file}: nothing kept of {missing[0]}: ./bench stress {missing[0]}{' --full' if args.full else ''}")
+            raise UserError(f"{file}: nothing kept of {missing[0]}: ./bench stress {missing[0]}{' --full' if args.full else ''}")
         results = {name: kept[name] for name in tests}
     else:
         results = {}
@@ -109,7 +107,3 @@ def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
         print(report.text(results, tests))
         write_all(kept, runs, args.full)
     return 0 if all(result.as_expected for result in results.values()) else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

@@ -10,21 +10,21 @@ import time
 from datetime import datetime
 from pathlib import Path
 
+from ..errors import UserError
 from ..accuracy.errors import NotFinite
 from ..accuracy.reference import CLOSED_FORMS, NoReference, Reference, measure, refined
 from ..accuracy.state import Motion, read_motion
-from ..frames import FrameError
 from ..record_file import RecordError, read_record
 from ..program import built_program
 from ..whole_file import write_whole
-from .spec import REFERENCE_D_HAT, ROOT, SOLVERS, Scene, Spec, SpecError
+from .spec import REFERENCE_D_HAT, ROOT, SOLVERS, Scene, Spec
 
 RUNS = ROOT / "results" / "runs" / "work_precision"
 ID_DIGITS = 16
 
 
 def program() -> str:
-    return str(built_program(SpecError, "; --no-run makes the page of the numbers that are kept"))
+    return str(built_program(UserError, "; --no-run makes the page of the numbers that are kept"))
 
 
 def sweep_name(spec: Spec, scene: Scene) -> str:
@@ -32,12 +32,12 @@ def sweep_name(spec: Spec, scene: Scene) -> str:
 
 
 def _sweep(spec: Spec, scene: Scene, runs: Path, *words: str) -> str:
-    """Runs the sweep of a scene -> what the program answers. Errors: SpecError with what it says."""
+    """Runs the sweep of a scene -> what the program answers. Errors: UserError with what it says."""
     folder = runs / sweep_name(spec, scene)
     done = subprocess.run([program(), "sweep", str(runs / f"{folder.name}.sweep.json"), "--out", str(folder), "--progress", "none", *words], capture_output=True,
                           text=True, check=False)
     if done.returncode != 0:
-        raise SpecError(f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}: {done.stderr.strip()[-2000:]}")
+        raise UserError(f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}: {done.stderr.strip()[-2000:]}")
     return done.stdout
 
 
@@ -68,7 +68,7 @@ def _records(spec: Spec, scene: Scene, runs: Path) -> dict[str, Path]:
         except (RecordError, KeyError):
             continue  # counted as missing
     if missing := [label for label in wanted.values() if label not in found]:
-        raise SpecError(f"{folder}: {len(missing)} of {len(wanted)} records missing, the first is {missing[0]!r}; ./bench work-precision {spec.file} makes them")
+        raise UserError(f"{folder}: {len(missing)} of {len(wanted)} records missing, the first is {missing[0]!r}; ./bench work-precision {spec.file} makes them")
     return found
 
 
@@ -76,7 +76,7 @@ def _reference_motion(scene: Scene, label: str, folder: Path) -> Motion:
     motion = read_motion(folder)
     status = motion.record["status"]
     if status["outcome"] != "ok" or not status["valid"]:
-        raise SpecError(f"scene {scene.name}: reference run {label!r} ended {status['outcome']} {status['detail']}; a reference has to be ok and valid")
+        raise UserError(f"scene {scene.name}: reference run {label!r} ended {status['outcome']} {status['detail']}; a reference has to be ok and valid")
     return motion
 
 
@@ -111,10 +111,10 @@ def _row(scene: Scene, key: tuple, folder: Path, reference: Reference) -> dict:
         return row
     try:
         row["errors"], skipped = measure(read_motion(folder), reference)
-    except (NotFinite, NoReference, FrameError) as error:
-        raise SpecError(f"scene {scene.name}: {folder}: {error}") from None
+    except (NotFinite, NoReference, UserError) as error:
+        raise UserError(f"scene {scene.name}: {folder}: {error}") from None
     if scene.error not in row["errors"]:
-        raise SpecError(f"scene {scene.name}: {folder}: {scene.error} does not apply: {skipped.get(scene.error)}; it has {', '.join(row['errors'])}")
+        raise UserError(f"scene {scene.name}: {folder}: {scene.error} does not apply: {skipped.get(scene.error)}; it has {', '.join(row['errors'])}")
     row["error"] = row["errors"][scene.error]
     return row
 

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from ..errors import UserError
 from ..accuracy.errors import NAMES
 from ..accuracy.reference import CLOSED_FORMS
 
@@ -24,10 +25,6 @@ GRAVITY, STANDARD_GRAVITY = "gravity_m_per_s2", 9.81  # key of a scene, and m/s^
 REFERENCE_D_HAT, REFERENCE_TOLERANCE = 1 / 16, 1e-3  # of a refined reference, in units of the anchor
 # A direct solver has factorisations and no products; the same run by conjugate gradients has products.
 SOLVERS = {"direct": {"/linear_solver/name": "cholmod"}, "pcg": {"/linear_solver/name": "pcg", "/linear_solver/preconditioner": "block_jacobi"}}
-
-
-class SpecError(ValueError):
-    """A spec, or runs, that cannot be judged: file, place, what was found and what is allowed."""
 
 
 @dataclass(frozen=True)
@@ -124,7 +121,7 @@ class _Reader:
         self.file = file
 
     def fail(self, pointer: str, found, allowed: str):
-        raise SpecError(f"{self.file}: {pointer}: found {json.dumps(found)}; allowed: {allowed}")
+        raise UserError(f"{self.file}: {pointer}: found {json.dumps(found)}; allowed: {allowed}")
 
     def keys(self, data, pointer: str, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> dict:
         if not isinstance(data, dict):
@@ -183,9 +180,9 @@ def _gravity(base: Path, settings: dict, reader: _Reader, pointer: str) -> float
     try:
         config = json.loads(base.read_bytes())
     except OSError as error:
-        raise SpecError(f"{base}: {error.strerror}") from None
+        raise UserError(f"{base}: {error.strerror}") from None
     except ValueError as error:
-        raise SpecError(f"{base}: not JSON: {error}") from None
+        raise UserError(f"{base}: not JSON: {error}") from None
     if not isinstance(config, dict):
         own.fail("/", config, "an object: a config with a scene")
     if not isinstance(scene := config.get("scene"), dict):
@@ -237,14 +234,14 @@ def _scene(reader: _Reader, data, pointer: str) -> Scene:
 
 
 def read_spec(file: Path) -> Spec:
-    """Errors: SpecError, which names the first fault."""
+    """Errors: UserError, which names the first fault."""
     try:
         text = file.read_bytes()
         data = json.loads(text)
     except OSError as error:
-        raise SpecError(f"{file}: {error.strerror}") from None
+        raise UserError(f"{file}: {error.strerror}") from None
     except ValueError as error:
-        raise SpecError(f"{file}: not JSON: {error}") from None
+        raise UserError(f"{file}: not JSON: {error}") from None
     reader = _Reader(file)
     reader.keys(data, "", ("schema", "name", "formulations", "scenes"), ("doc",))
     reader.text(data["schema"], "/schema", (NAME,))

@@ -9,14 +9,13 @@ from __future__ import annotations
 import argparse
 import json
 import shutil
-import sys
 from pathlib import Path
 
-from ..record_file import RecordError
+from ..errors import UserError, tells
 from ..whole_file import write_whole
 from . import figure, report
 from .runs import RUNS, collect, run_scene
-from .spec import ROOT, Spec, SpecError, read_spec
+from .spec import ROOT, Spec, read_spec
 
 DEFAULT = ROOT / "configs" / "work_precision" / "default.json"
 TABLE = "barrierbench.work_precision_table/1"
@@ -61,15 +60,15 @@ def table_text(table: dict) -> str:
 
 
 def read_table(file: Path) -> dict:
-    """Errors: SpecError."""
+    """Errors: UserError."""
     try:
         table = json.loads(file.read_text())
     except OSError as error:
-        raise SpecError(f"{file}: {error.strerror}; ./bench work-precision makes it") from None
+        raise UserError(f"{file}: {error.strerror}; ./bench work-precision makes it") from None
     except ValueError as error:
-        raise SpecError(f"{file}: not JSON: {error}") from None
+        raise UserError(f"{file}: not JSON: {error}") from None
     if not isinstance(table, dict) or table.get("schema") != TABLE:
-        raise SpecError(f"{file}: /schema: found {table.get('schema') if isinstance(table, dict) else table!r}; allowed: {TABLE!r}")
+        raise UserError(f"{file}: /schema: found {table.get('schema') if isinstance(table, dict) else table!r}; allowed: {TABLE!r}")
     return table
 
 
@@ -84,29 +83,22 @@ def write_all(table: dict, results: Path, docs: Path, scratch: Path) -> None:
         shutil.copyfile(path, docs / path.name)
 
 
+@tells("work-precision")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
-    try:
-        spec = read_spec(args.spec)
-        if args.spec.resolve() == DEFAULT and args.out is None:
-            results, docs = ROOT / "results", ROOT / "docs"
-        else:
-            results = args.out or RUNS / spec.name
-            docs = results / "docs" if args.out is None else results
-        file = results / "work_precision.json"
-        if not args.no_run:
-            write_whole(file, table_text(_rounded(made(spec, args.runs))))
-        table = read_table(file)
-        if table.get("spec_sha256") != spec.sha256:
-            raise SpecError(f"{file}: /spec_sha256: found {table.get('spec_sha256')!r}; allowed: {spec.sha256!r}, of {args.spec}: its numbers are of another spec; "
-                            f"./bench work-precision {args.spec} makes them")
-        print(report.text(table))
-        write_all(table, results, docs, args.runs / "figure")
-    except (SpecError, RecordError) as error:
-        print(f"bench work-precision: {error}", file=sys.stderr)
-        return 2
+    spec = read_spec(args.spec)
+    if args.spec.resolve() == DEFAULT and args.out is None:
+        results, docs = ROOT / "results", ROOT / "docs"
+    else:
+        results = args.out or RUNS / spec.name
+        docs = results / "docs" if args.out is None else results
+    file = results / "work_precision.json"
+    if not args.no_run:
+        write_whole(file, table_text(_rounded(made(spec, args.runs))))
+    table = read_table(file)
+    if table.get("spec_sha256") != spec.sha256:
+        raise UserError(f"{file}: /spec_sha256: found {table.get('spec_sha256')!r}; allowed: {spec.sha256!r}, of {args.spec}: its numbers are of another spec; "
+                        f"./bench work-precision {args.spec} makes them")
+    print(report.text(table))
+    write_all(table, results, docs, args.runs / "figure")
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

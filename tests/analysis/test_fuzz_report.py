@@ -57,7 +57,7 @@ def test_targets_are_those_of_the_list():
     assert len(fuzz.targets()) >= 11
     for name in fuzz.targets():
         assert (folder / f"{name}.cpp").is_file(), name
-    with pytest.raises(fuzz.FuzzError, match="'mesh'.*mesh_obj"):
+    with pytest.raises(fuzz.UserError, match="'mesh'.*mesh_obj"):
         fuzz.chosen(["mesh"])
 
 

@@ -4,8 +4,9 @@ import json
 
 import pytest
 
+from analysis.errors import UserError
 from analysis.stress.verb import main
-from analysis.stress.entry import FOLDER, Expected, StressError, ids, left_out, read_test
+from analysis.stress.entry import FOLDER, Expected, ids, left_out, read_test
 from analysis.stress.relations import check
 from analysis.stress.run import known
 
@@ -62,7 +63,7 @@ def test_every_preset_is_compared_or_left_out():
 ])
 def test_a_wrong_test_is_refused(tmp_path, change, message):
     read_test("M09", made(tmp_path))
-    with pytest.raises(StressError, match="M09.json") as told:
+    with pytest.raises(UserError, match="M09.json") as told:
         read_test("M09", made(tmp_path, change))
     assert message in str(told.value)
 
@@ -88,6 +89,6 @@ def test_a_setting_that_the_program_does_not_have_is_told_from_one_that_it_has()
     ({"kind": "equal", "metric": "newton", "groups": [["d_hat", "one ulp less"]]}, "within"), ({"kind": "rises", "metric": "newton", "groups": [["d_hat", "x"]]}, "'x' is no case"),
     ({"kind": "rises", "metric": "newton", "groups": [["d_hat"]]}, "two cases"), ({"kind": "rises", "metric": "newton"}, "groups"), ({"kind": "bound", "metric": "newton"}, "below or above")])
 def test_a_wrong_relation_is_refused(entry, message):
-    with pytest.raises(StressError) as told:
+    with pytest.raises(UserError) as told:
         check(read_test("M09"), {"reason": "r", **entry}, 0)
     assert message in str(told.value)
