@@ -1,4 +1,6 @@
-"""Records to tidy tables to figures and pictures: `load`, `Records` and `RecordError` of records.py, read when they are first asked for."""
+"""Records to tidy tables to figures and pictures: `load`, `Records` and `RecordError` of records.py, read
+when they are first asked for.
+"""
 
 __all__ = ["RecordError", "Records", "load"]
 

@@ -1,4 +1,6 @@
-"""The one kind of error that a user sees: what is wrong, where, what was found and what is allowed. Everything else is a mistake of this code."""
+"""The one kind of error that a user sees: what is wrong, where, what was found and what is allowed.
+Everything else is a mistake of this code.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ BUILD_FAILED = 70
 
 
 class UserError(ValueError):
-    """Bad input, or something that is not there. Its text is shown without a traceback, and the command ends with `code`."""
+    """Bad input, or something that is not there. Its text is shown without a traceback, and the command ends
+    with `code`.
+    """
 
     def __init__(self, text: str, code: int = BAD_INPUT):
         super().__init__(text)
@@ -19,7 +23,9 @@ class UserError(ValueError):
 
 
 def tells(verb: str) -> Callable:
-    """For `main(argv)` of a verb: an error for the user, or of a file, is said on stderr, and its code is the exit code."""
+    """For `main(argv)` of a verb: an error for the user, or of a file, is said on stderr, and its code is the
+    exit code.
+    """
 
     def around(main: Callable[[list[str]], int]) -> Callable[[list[str]], int]:
         @functools.wraps(main)

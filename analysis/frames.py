@@ -1,4 +1,5 @@
-"""Frames of a run: the positions of all bodies at the start and at the ends of steps, with what is known there.
+"""Frames of a run: the positions of all bodies at the start and at the ends of steps, with what is known
+there.
 
 A frame is the binary PLY file that `bench run --set /output/frames_every=N` leaves in `frames/`.
 """
@@ -71,24 +72,31 @@ def read_frame(path: str | Path) -> Frame:
 
 
 def frame_paths(record: dict, run: str | Path) -> dict[int, Path]:
-    """Step -> file of the frames that the record in the folder `run` names, in order; -1 is the start, 0 the end of the first step. What else
-    lies in frames/ is of no run that is known. Raises UserError without any."""
+    """Step -> file of the frames that the record in the folder `run` names, in order; -1 is the start, 0 the
+    end of the first step. What else lies in frames/ is of no run that is known. Raises UserError without any.
+    """
     found = {}
     for name in named_files(record, "frame"):
         if match := re.fullmatch(r"frames/(start|step_(\d+))\.ply", name):
             found[-1 if match[1] == "start" else int(match[2])] = Path(run) / name
     if not found:
-        raise UserError(f"{run}: the record names no frames; run the config with --set /output/frames_every=1")
+        raise UserError(
+            f"{run}: the record names no frames; run the config with --set /output/frames_every=1"
+        )
     return dict(sorted(found.items()))
 
 
 def frame_of(record: dict, run: str | Path, step: int) -> Frame:
     """One of frame_paths(). Raises UserError, RecordError: the file is not the one that the record names."""
-    return read_frame(bound_file(record, Path(run), frame_paths(record, run)[step].relative_to(run).as_posix()))
+    return read_frame(
+        bound_file(record, Path(run), frame_paths(record, run)[step].relative_to(run).as_posix())
+    )
 
 
 def read_scene(record: dict, run: str | Path) -> dict:
-    """frames/scene.json: `bodies` (names), `obstacles` (kind, point_m, axis, radius_m, inside), `planar`. Raises UserError, RecordError."""
+    """frames/scene.json: `bodies` (names), `obstacles` (kind, point_m, axis, radius_m, inside), `planar`.
+    Raises UserError, RecordError.
+    """
     path = bound_file(record, Path(run), "frames/scene.json")
     try:
         return json.loads(path.read_text())

@@ -1,7 +1,9 @@
-"""Fuzzing: builds the targets of tests/fuzz with clang, which this verb alone installs, runs them and prints one table.
+"""Fuzzing: builds the targets of tests/fuzz with clang, which this verb alone installs, runs them and prints
+one table.
 
-Every target starts from seeds that its build writes (fuzz_seeds) and from the corpus of earlier runs in build/fuzz/corpus. A crash, a report of a
-sanitizer, a leak or an input that takes longer than 10 s ends the target; the input is kept. Exit code 1 when there was one, 2 for a wrong request.
+Every target starts from seeds that its build writes (fuzz_seeds) and from the corpus of earlier runs in
+build/fuzz/corpus. A crash, a report of a sanitizer, a leak or an input that takes longer than 10 s ends the
+target; the input is kept. Exit code 1 when there was one, 2 for a wrong request.
 """
 
 from __future__ import annotations
@@ -49,28 +51,53 @@ def parse_log(text: str) -> dict:
     stats = dict(re.findall(r"stat::(\w+):\s+(\d+)", text))
     last = re.findall(r"^#(\d+)\s", text, re.MULTILINE)
     executions = int(stats.get("number_of_executed_units", last[-1] if last else 0))
-    return {"executions": executions, "coverage": max(cov, default=None),
-            "new_coverage": max(cov) - int(started.group(1)) if cov and started else None}
+    return {
+        "executions": executions,
+        "coverage": max(cov, default=None),
+        "new_coverage": max(cov) - int(started.group(1)) if cov and started else None,
+    }
 
 
-def run_target(name: str, build: Path, crashes: Path, seconds: int | None, runs: int | None, seed: int) -> dict:
-    """One target until its seconds or runs are over, or to its first finding. A run without any execution is a failure too."""
+def run_target(
+    name: str, build: Path, crashes: Path, seconds: int | None, runs: int | None, seed: int
+) -> dict:
+    """One target until its seconds or runs are over, or to its first finding. A run without any execution is
+    a failure too.
+    """
     corpus, kept = build / "corpus" / name, crashes / name
     corpus.mkdir(parents=True, exist_ok=True)
     kept.mkdir(parents=True, exist_ok=True)
     before = {path.name for path in kept.iterdir()}
-    words = [str(build / "tests" / "fuzz" / f"fuzz_{name}"), *LIMITS, f"-max_len={MAX_LEN.get(name, 1024)}", f"-seed={seed}",
-             f"-artifact_prefix={kept}/", f"-runs={runs}" if runs is not None else f"-max_total_time={seconds}"]
+    words = [
+        str(build / "tests" / "fuzz" / f"fuzz_{name}"),
+        *LIMITS,
+        f"-max_len={MAX_LEN.get(name, 1024)}",
+        f"-seed={seed}",
+        f"-artifact_prefix={kept}/",
+        f"-runs={runs}" if runs is not None else f"-max_total_time={seconds}",
+    ]
     dictionary = build / "seeds" / f"{name}.dict"
     if dictionary.is_file() and dictionary.stat().st_size > 0:
         words.append(f"-dict={dictionary}")
     start = time.monotonic()
-    done = subprocess.run([*words, str(corpus), str(build / "seeds" / name)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False,
-                          cwd=kept, env={**os.environ, **SANITIZER})
+    done = subprocess.run(
+        [*words, str(corpus), str(build / "seeds" / name)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        check=False,
+        cwd=kept,
+        env={**os.environ, **SANITIZER},
+    )
     took = time.monotonic() - start
     log = done.stderr.decode(errors="replace")
     found = [str(path) for path in sorted(kept.iterdir()) if path.name not in before]
-    row = {"target": name, **parse_log(log), "seconds": took, "findings": found, "failed": done.returncode != 0}
+    row = {
+        "target": name,
+        **parse_log(log),
+        "seconds": took,
+        "findings": found,
+        "failed": done.returncode != 0,
+    }
     if row["failed"]:
         write_whole(kept / "log.txt", log)
         row["findings"] = found or [str(kept / "log.txt")]
@@ -83,12 +110,32 @@ def table(rows: list[dict]) -> str:
     lines = [head]
     for row in rows:
         per_second = row["executions"] / row["seconds"] if row["seconds"] > 0 else 0
-        lines.append([row["target"], f"{row['executions']:,}", f"{row['seconds']:.0f}", f"{per_second:,.0f}",
-                      *("-" if row[key] is None else str(row[key]) for key in ("coverage", "new_coverage")), str(int(row["failed"]))])
-    lines.append(["all", f"{sum(r['executions'] for r in rows):,}", f"{sum(r['seconds'] for r in rows):.0f}", "", "", "",
-                  str(sum(r["failed"] for r in rows))])
+        lines.append(
+            [
+                row["target"],
+                f"{row['executions']:,}",
+                f"{row['seconds']:.0f}",
+                f"{per_second:,.0f}",
+                *("-" if row[key] is None else str(row[key]) for key in ("coverage", "new_coverage")),
+                str(int(row["failed"])),
+            ]
+        )
+    lines.append(
+        [
+            "all",
+            f"{sum(r['executions'] for r in rows):,}",
+            f"{sum(r['seconds'] for r in rows):.0f}",
+            "",
+            "",
+            "",
+            str(sum(r["failed"] for r in rows)),
+        ]
+    )
     widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
-    return "\n".join("  ".join(c.ljust(w) if i == 0 else c.rjust(w) for i, (c, w) in enumerate(zip(line, widths))) for line in lines)
+    return "\n".join(
+        "  ".join(c.ljust(w) if i == 0 else c.rjust(w) for i, (c, w) in enumerate(zip(line, widths)))
+        for line in lines
+    )
 
 
 def positive(text: str) -> int:
@@ -102,19 +149,33 @@ def prepare(names: list[str]) -> None:
     """Targets and seeds. Errors: UserError where clang cannot be installed or something does not build."""
     building.setup("clang", "libclang-rt-14-dev")
     building.build("fuzz", "fuzz_seeds", *(f"fuzz_{name}" for name in names))
-    subprocess.run([str(BUILD / "tests/fuzz/fuzz_seeds"), str(BUILD / "seeds")], check=True, env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"})
+    subprocess.run(
+        [str(BUILD / "tests/fuzz/fuzz_seeds"), str(BUILD / "seeds")],
+        check=True,
+        env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"},
+    )
 
 
 @tells("fuzz")
 @tells("fuzz")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench fuzz", description=__doc__.split("\n\n", maxsplit=1)[1],
-                                     epilog="example: ./bench fuzz mesh_ply config --seconds 60")
-    parser.add_argument("targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)")
+    parser = argparse.ArgumentParser(
+        prog="bench fuzz",
+        description=__doc__.split("\n\n", maxsplit=1)[1],
+        epilog="example: ./bench fuzz mesh_ply config --seconds 60",
+    )
+    parser.add_argument(
+        "targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)"
+    )
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--seconds", type=positive, default=30, help="for each target (default 30)")
     length.add_argument("--runs", type=positive, help="executions of each target")
-    parser.add_argument("--seed", type=positive, default=1, help="of libFuzzer; the corpus of earlier runs matters too (default 1)")
+    parser.add_argument(
+        "--seed",
+        type=positive,
+        default=1,
+        help="of libFuzzer; the corpus of earlier runs matters too (default 1)",
+    )
     parser.add_argument("--json", type=Path, help="file of everything that the table shows")
     arguments = parser.parse_args(argv)
     names = chosen(arguments.targets)

@@ -1,4 +1,6 @@
-"""One record of what experiments/gpu_evidence.sh saw on a card, from its raw files: results/gpu/<card>-<day>.json."""
+"""One record of what experiments/gpu_evidence.sh saw on a card, from its raw files:
+results/gpu/<card>-<day>.json.
+"""
 
 from __future__ import annotations
 
@@ -26,7 +28,11 @@ def parts_of(folder: Path) -> dict[str, dict]:
     for line in (folder / "parts.tsv").read_text().splitlines():
         try:
             name, status, more, seconds = line.split("\t")
-            parts[name] = {"status": status, "seconds": int(seconds), "why": more if status == "left_out" else ""}
+            parts[name] = {
+                "status": status,
+                "seconds": int(seconds),
+                "why": more if status == "left_out" else "",
+            }
         except ValueError:
             raise UserError(f"{folder}/parts.tsv: not a part: {line!r}") from None
         if status in ("failed", "timed_out"):
@@ -54,21 +60,43 @@ def scene_numbers(folder: Path) -> dict | None:
         raise UserError(str(error)) from None
     summary, steps = run["summary"], max(run["summary"]["steps"], 1)
     newton, pcg = summary["newton_iterations"], summary["linear_iterations"]
-    wall, solve = summary["wall_s"], summary["time"]["linear_solve_s"] if summary["wall_s"] is not None else None
-    per = lambda seconds, n: 1e3 * seconds / n if seconds is not None and n > 0 else None
-    return {"outcome": run["status"]["outcome"], "vertices": run["scene"]["vertices"], "contacts": summary["contacts"]["max"], "steps": summary["steps"],
-            "dt_s": run["labels"]["dt_s"], "newton_iterations": newton, "pcg_iterations": pcg, "wall_s": wall, "step_s": wall / steps if wall is not None else None,
-            "newton_ms": per(wall, newton), "pcg_ms": per(solve, pcg), "linear_solver": run["labels"]["linear_solver"], "run_id": run["ids"]["run_id"]}
+    wall, solve = (
+        summary["wall_s"],
+        (summary["time"]["linear_solve_s"] if summary["wall_s"] is not None else None),
+    )
+
+    def per(seconds, n):
+        return 1000.0 * seconds / n if seconds is not None and n > 0 else None
+
+    return {
+        "outcome": run["status"]["outcome"],
+        "vertices": run["scene"]["vertices"],
+        "contacts": summary["contacts"]["max"],
+        "steps": summary["steps"],
+        "dt_s": run["labels"]["dt_s"],
+        "newton_iterations": newton,
+        "pcg_iterations": pcg,
+        "wall_s": wall,
+        "step_s": wall / steps if wall is not None else None,
+        "newton_ms": per(wall, newton),
+        "pcg_ms": per(solve, pcg),
+        "linear_solver": run["labels"]["linear_solver"],
+        "run_id": run["ids"]["run_id"],
+    }
 
 
 def functor(kernel: str) -> str:
-    """bb::resident::SpmvDot of `void bb::exec::run_each<bb::resident::SpmvDot>(long, T1)`; another name as it is."""
+    """bb::resident::SpmvDot of `void bb::exec::run_each<bb::resident::SpmvDot>(long, T1)`; another name as it
+    is.
+    """
     found = re.search(r"run_(?:each|blocks)<(.*)>\(", kernel)
     return found.group(1) if found else kernel
 
 
 def measured_kernels(folder: Path) -> dict[str, dict]:
-    """functor -> launches, seconds, bytes, of Nsight Compute's table; empty where it was not there or had no rights."""
+    """functor -> launches, seconds, bytes, of Nsight Compute's table; empty where it was not there or had no
+    rights.
+    """
     path = folder / "logs/kernels.out"
     lines = path.read_text(errors="replace").splitlines() if path.exists() else []
     start = next((i for i, line in enumerate(lines) if line.startswith('"ID"')), None)
@@ -91,8 +119,17 @@ def kernels_of(folder: Path) -> list[dict]:
     kernels = measured_kernels(folder)
     path = folder / "kernel_times.json"
     if not kernels and path.exists():
-        kernels = {name: {**times, "bytes": None} for name, times in read_object(path, UserError)["kernels"].items()}
-    rows = [{"name": name, **entry, "Bps": entry["bytes"] / entry["seconds"] if entry["bytes"] and entry["seconds"] else None} for name, entry in kernels.items()]
+        kernels = {
+            name: {**times, "bytes": None} for name, times in read_object(path, UserError)["kernels"].items()
+        }
+    rows = [
+        {
+            "name": name,
+            **entry,
+            "Bps": entry["bytes"] / entry["seconds"] if entry["bytes"] and entry["seconds"] else None,
+        }
+        for name, entry in kernels.items()
+    ]
     return sorted(rows, key=lambda row: (-row["seconds"], row["name"]))
 
 
@@ -101,9 +138,17 @@ def collect(folder: Path, commit: str, seconds: int) -> dict:
     device = read_object(folder / "device.json", UserError)
     if not device.get("usable") or not device.get("copy"):
         raise UserError(f"{folder}/device.json: no usable card with a measured copy")
-    return {"schema": SCHEMA, "date_utc": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"), "git_commit": commit, "seconds": seconds,
-            "device": device, "card": card_state(folder), "parts": parts_of(folder),
-            "scenes": {name: scene_numbers(folder / name) for name in SCENES}, "kernels": kernels_of(folder)}
+    return {
+        "schema": SCHEMA,
+        "date_utc": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "git_commit": commit,
+        "seconds": seconds,
+        "device": device,
+        "card": card_state(folder),
+        "parts": parts_of(folder),
+        "scenes": {name: scene_numbers(folder / name) for name in SCENES},
+        "kernels": kernels_of(folder),
+    }
 
 
 def file_name(record: dict) -> str:
@@ -116,7 +161,9 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("folder", type=Path, help="raw files")
     parser.add_argument("--commit", default="", help="of the program")
     parser.add_argument("--seconds", type=int, default=0, help="that the script took")
-    parser.add_argument("--records", type=Path, default=RECORDS, help="folder of the record (default: results/gpu)")
+    parser.add_argument(
+        "--records", type=Path, default=RECORDS, help="folder of the record (default: results/gpu)"
+    )
     asked = parser.parse_args(arguments)
     try:
         record = collect(asked.folder, asked.commit, asked.seconds)

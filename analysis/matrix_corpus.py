@@ -1,7 +1,9 @@
-"""The corpus of hard systems: the verb `bench matrix-corpus` makes results/matrices and its table from configs/matrices/corpus.json.
+"""The corpus of hard systems: the verb `bench matrix-corpus` makes results/matrices and its table from
+configs/matrices/corpus.json.
 
-Every system is that of one Newton iteration of a small run, written by /output/matrices; only its `cause` is added here. The table replays all of
-them (`barrierbench matrix`); it has no times, so that it is the same on every machine with the same libraries.
+Every system is that of one Newton iteration of a small run, written by /output/matrices; only its `cause` is
+added here. The table replays all of them (`barrierbench matrix`); it has no times, so that it is the same on
+every machine with the same libraries.
 """
 
 from __future__ import annotations
@@ -69,7 +71,14 @@ def run(system: dict, common: dict, folder: Path, out: Path) -> None:
 
 def unscaled_cond(side_car: dict) -> float:
     """1e14 where there is none: singular or not positive definite."""
-    return next((1e14 if c["cond"] is None else c["cond"] for c in side_car.get("cond", []) if c["scaling"] == "none"), -math.inf)
+    return next(
+        (
+            1e14 if c["cond"] is None else c["cond"]
+            for c in side_car.get("cond", [])
+            if c["scaling"] == "none"
+        ),
+        -math.inf,
+    )
 
 
 def pick(system: dict, matrices: Path) -> Path:
@@ -108,7 +117,9 @@ def make(spec_file: Path, out: Path) -> None:
             shutil.rmtree(folder)
             print(f"{system['name']}: {side_car.stem}", file=sys.stderr)
     for stale in out.iterdir():
-        if stale.suffix in (".mtx", ".json") and stale.stem not in {system["name"] for system in spec["systems"]}:
+        if stale.suffix in (".mtx", ".json") and stale.stem not in {
+            system["name"] for system in spec["systems"]
+        }:
             stale.unlink()
 
 
@@ -119,7 +130,12 @@ def replay(out: Path) -> list[dict]:
         raise UserError(f"{out}: no matrices")
     with tempfile.TemporaryDirectory() as scratch:
         answer = Path(scratch) / "replay.json"
-        done = subprocess.run([program(), "matrix", *map(str, files), "--json", str(answer)], capture_output=True, text=True, check=False)
+        done = subprocess.run(
+            [program(), "matrix", *map(str, files), "--json", str(answer)],
+            capture_output=True,
+            text=True,
+            check=False,
+        )
         if done.returncode != 0:
             raise UserError(done.stderr.strip())
         return json.loads(answer.read_text())["matrices"]
@@ -141,14 +157,25 @@ def solve_text(solve: dict) -> str:
 
 
 def table(matrices: list[dict]) -> str:
-    rows = ["| system | cause | rows | entries | cond | Jacobi | block Jacobi | " + " | ".join(f"pcg {s}" if s not in SOLVERS[:2] else s for s in SOLVERS) + " |",
-            "|" + "---|" * (7 + len(SOLVERS))]
+    rows = [
+        "| system | cause | rows | entries | cond | Jacobi | block Jacobi | "
+        + " | ".join(f"pcg {s}" if s not in SOLVERS[:2] else s for s in SOLVERS)
+        + " |",
+        "|" + "---|" * (7 + len(SOLVERS)),
+    ]
     for one in matrices:
         tier2 = {e["scaling"]: cond_text(e) for e in one["estimates"] if e["tier"] == 2}
-        solves = {s["solver"] if s["solver"] != "pcg" else s["preconditioner"]: solve_text(s) for s in one["solves"]}
+        solves = {
+            s["solver"] if s["solver"] != "pcg" else s["preconditioner"]: solve_text(s) for s in one["solves"]
+        }
         cause, _, why = one["cause"].partition(": ")
-        rows.append(f"| `{Path(one['file']).stem}` | **{cause}**: {why} | {one['rows']} | {one['entries']} | "
-                    + " | ".join([*(tier2[s] for s in ("none", "jacobi", "block_jacobi")), *(solves[s] for s in SOLVERS)]) + " |")
+        rows.append(
+            f"| `{Path(one['file']).stem}` | **{cause}**: {why} | {one['rows']} | {one['entries']} | "
+            + " | ".join(
+                [*(tier2[s] for s in ("none", "jacobi", "block_jacobi")), *(solves[s] for s in SOLVERS)]
+            )
+            + " |"
+        )
     return "\n".join(rows)
 
 
@@ -157,14 +184,19 @@ def write_readme(out: Path) -> None:
     size = sum(path.stat().st_size for path in out.iterdir() if path.suffix in (".mtx", ".json"))
     if size > MOST_BYTES:
         raise UserError(f"{out}: {size} bytes; at most {MOST_BYTES} go into the repository")
-    notes = (f"\n{len(matrices)} systems, {size / 2**20:.1f} MiB. cond: tier 2, unscaled and scaled; `>` is a lower bound. Solvers: PCG iterations to a residual of "
-             "1e-8, at most 10000, `ok` for none, or how the solve ended.\n")
+    notes = (
+        f"\n{len(matrices)} systems, {size / 2**20:.1f} MiB. cond: tier 2, unscaled and scaled; `>` is a"
+        " lower bound. Solvers: PCG iterations to a residual of 1e-8, at most 10000, `ok` for none, or how"
+        " the solve ended.\n"
+    )
     (out / "README.md").write_text(f"{HEAD}{notes}\n{table(matrices)}\n")
 
 
 @tells("matrix-corpus")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench matrix-corpus", description="the corpus of hard systems and its table")
+    parser = argparse.ArgumentParser(
+        prog="bench matrix-corpus", description="the corpus of hard systems and its table"
+    )
     parser.add_argument("--spec", type=Path, default=ROOT / "configs/matrices/corpus.json")
     parser.add_argument("--out", type=Path, default=ROOT / "results/matrices")
     parser.add_argument("--table", action="store_true", help="only README.md, from the files that are there")

@@ -11,7 +11,9 @@ RELEASE = Path(__file__).resolve().parents[1] / "build/release/experiments/barri
 
 
 def built_program(error: type[Exception], more: str = "") -> Path:
-    """BARRIERBENCH_PROGRAM, or the release build. Raises `error` where it is not built, with `more` after what to do."""
+    """BARRIERBENCH_PROGRAM, or the release build. Raises `error` where it is not built, with `more` after
+    what to do.
+    """
     path = Path(os.environ.get("BARRIERBENCH_PROGRAM", RELEASE))
     if not path.exists():
         raise error(f"{path} is not built: ./bench build{more}")
@@ -20,8 +22,16 @@ def built_program(error: type[Exception], more: str = "") -> Path:
 
 def plugin_argument(parser: argparse.ArgumentParser) -> None:
     """--plugin, as the program takes it; may be repeated."""
-    parser.add_argument("--plugin", action="append", default=[], metavar="FILE.so",
-                        help="a shared library with shapes, stiffness policies or integrators, loaded by every run; may be repeated (examples/plugins/README.md)")
+    parser.add_argument(
+        "--plugin",
+        action="append",
+        default=[],
+        metavar="FILE.so",
+        help=(
+            "a shared library with shapes, stiffness policies or integrators, loaded by every run; may be"
+            " repeated (examples/plugins/README.md)"
+        ),
+    )
 
 
 def plugin_words(plugins: list[str]) -> list[str]:

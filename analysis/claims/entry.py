@@ -1,4 +1,6 @@
-"""Claims and their sweeps as data: claims/ID.json, claims/sweeps/NAME.json, and claims/confirmation/NAME.json for scenes that no rule was tuned on."""
+"""Claims and their sweeps as data: claims/ID.json, claims/sweeps/NAME.json, and claims/confirmation/NAME.json
+for scenes that no rule was tuned on.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,12 @@ ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "claims"
 NAME = "barrierbench.claim/1"
 REQUIRED = ("id", "source", "sentence", "dimension", "guarantee", "kind")
-KINDS = ("runs", "closed form", "by dimension", "by construction")  # what makes it true or false; the last two are trivial
+KINDS = (
+    "runs",
+    "closed form",
+    "by dimension",
+    "by construction",
+)  # what makes it true or false; the last two are trivial
 SEEDS = "/seeds/main"
 SOLVER = "/step_solver/name"
 METHOD = "/method"
@@ -33,15 +40,24 @@ class Claim:
     dimension: str
     guarantee: str
     kind: str
-    parts: tuple[dict, ...] = ()  # rules with their parameters; all of them together are the claim, but those marked beside
+    parts: tuple[
+        dict, ...
+    ] = ()  # rules with their parameters; all of them together are the claim, but those marked beside
     waits_for: str = ""  # what has to be built before it can be decided
     note: str = ""
     rule_changes: tuple[str, ...] = ()  # of a rule after numbers were seen
-    frontier: dict = field(default_factory=dict, hash=False)  # sweep, cost, axes, and which runs are bad, of the table and figure of who gets how far (frontiers.py)
+    frontier: dict = field(
+        default_factory=dict, hash=False
+    )  # sweep, cost, axes, and which runs are bad, of the table and figure of who gets how far (frontiers.py)
 
     @property
     def sweeps(self) -> list[str]:
-        return list(dict.fromkeys([part["sweep"] for part in self.parts if "sweep" in part] + [self.frontier[k] for k in ("sweep",) if self.frontier]))
+        return list(
+            dict.fromkeys(
+                [part["sweep"] for part in self.parts if "sweep" in part]
+                + [self.frontier[k] for k in ("sweep",) if self.frontier]
+            )
+        )
 
     @property
     def deciding(self) -> list[dict]:
@@ -62,11 +78,17 @@ class Sweep:
 
     name: str
     sha256: str
-    cases: dict[str, tuple[str, str, str, int]] = field(hash=False, default_factory=dict)  # note of a record -> its place
-    more: dict[str, dict] = field(hash=False, default_factory=dict)  # note -> values of further axes: theta, ...
+    cases: dict[str, tuple[str, str, str, int]] = field(
+        hash=False, default_factory=dict
+    )  # note of a record -> its place
+    more: dict[str, dict] = field(
+        hash=False, default_factory=dict
+    )  # note -> values of further axes: theta, ...
     axes: dict[str, list] = field(hash=False, default_factory=dict)  # of these their values
     path: Path = Path()
-    solvers: dict[str, str] = field(hash=False, default_factory=dict)  # case -> step solver, of those that name one
+    solvers: dict[str, str] = field(
+        hash=False, default_factory=dict
+    )  # case -> step solver, of those that name one
 
     @property
     def file(self) -> str:
@@ -107,15 +129,26 @@ def read_claim(name: str, folder: Path = FOLDER) -> Claim:
     if data["kind"] not in KINDS:
         raise UserError(f"{path}: /kind: found {data['kind']!r}; one of {', '.join(KINDS)}")
     if "frontier" in data and set(data["frontier"]) - {"bad"} != {"sweep", "cost", "axes"}:
-        raise UserError(f"{path}: /frontier: sweep, cost and axes are needed, bad may be given; found {', '.join(data['frontier'])}")
+        raise UserError(
+            f"{path}: /frontier: sweep, cost and axes are needed, bad may be given; found"
+            f" {', '.join(data['frontier'])}"
+        )
     if not data.get("parts") and not data.get("waits_for"):
         raise UserError(f"{path}: neither parts that decide it nor waits_for")
-    return Claim(**{key: data[key] for key in REQUIRED}, parts=tuple(data.get("parts", ())), waits_for=data.get("waits_for", ""),
-                 note=data.get("note", ""), rule_changes=tuple(data.get("rule_changes", ())), frontier=data.get("frontier", {}))
+    return Claim(
+        **{key: data[key] for key in REQUIRED},
+        parts=tuple(data.get("parts", ())),
+        waits_for=data.get("waits_for", ""),
+        note=data.get("note", ""),
+        rule_changes=tuple(data.get("rule_changes", ())),
+        frontier=data.get("frontier", {}),
+    )
 
 
 def method_set(name: str | None) -> dict:
-    """Pointer -> value of a published method (configs/methods); of none, or one that the program does not know, nothing."""
+    """Pointer -> value of a published method (configs/methods); of none, or one that the program does not
+    know, nothing.
+    """
     file = METHODS / f"{name}.json"
     return _read(file)["set"] if name and file.is_file() else {}
 
@@ -131,7 +164,9 @@ def settings_of(axis: dict, path: Path) -> list[tuple[str, dict]]:
         return [(case["label"], case["set"]) for case in axis["cases"]]
     if "pointer" not in axis or not axis.get("values"):
         raise UserError(f"{path}: an axis has cases, or a pointer and values; found {', '.join(axis)}")
-    return [(f"{word(axis['pointer'])}={json.dumps(value)}", {axis["pointer"]: value}) for value in axis["values"]]
+    return [
+        (f"{word(axis['pointer'])}={json.dumps(value)}", {axis["pointer"]: value}) for value in axis["values"]
+    ]
 
 
 def note_of(name: str, labels) -> str:
@@ -141,7 +176,11 @@ def note_of(name: str, labels) -> str:
 
 def sweep_path(name: str, folder: Path = FOLDER) -> Path:
     """Of a sweep of claims, or of one of confirmation scenes; no name is in both."""
-    found = [path for path in (folder / kind / f"{name}.json" for kind in ("sweeps", "confirmation")) if path.is_file()]
+    found = [
+        path
+        for path in (folder / kind / f"{name}.json" for kind in ("sweeps", "confirmation"))
+        if path.is_file()
+    ]
     if len(found) > 1:
         raise UserError(f"{found[1]}: a sweep of this name is in claims/sweeps as well")
     return found[0] if found else folder / "sweeps" / f"{name}.json"
@@ -149,13 +188,24 @@ def sweep_path(name: str, folder: Path = FOLDER) -> Path:
 
 @cache
 def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
-    """Cases labelled SCENE LEVEL, the cases that are compared, values of /seeds/main, and any further axes by pointer, whose values become part of the place."""
+    """Cases labelled SCENE LEVEL, the cases that are compared, values of /seeds/main, and any further axes by
+    pointer, whose values become part of the place.
+    """
     path = sweep_path(name, folder)
     data = _read(path)
     axes = data.get("axes", [])
     seeds = [k for k, axis in enumerate(axes) if axis.get("pointer") == SEEDS]
-    if data.get("name") != name or len(axes) < 3 or len(seeds) != 1 or not all("cases" in axis for axis in axes[:2]) or any("cases" in axis for axis in axes[2:]):
-        raise UserError(f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is varied beside is an axis by pointer")
+    if (
+        data.get("name") != name
+        or len(axes) < 3
+        or len(seeds) != 1
+        or not all("cases" in axis for axis in axes[:2])
+        or any("cases" in axis for axis in axes[2:])
+    ):
+        raise UserError(
+            f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is"
+            " varied beside is an axis by pointer"
+        )
     others = [k for k in range(2, len(axes)) if k != seeds[0]]
     cases, more = {}, {}
     for chosen in itertools.product(*(settings_of(axis, path) for axis in axes)):
@@ -166,5 +216,17 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
         note = note_of(name, labels)
         cases[note] = scene, level, labels[1], int(labels[seeds[0]].removeprefix("main="))
         more[note] = {word(axes[k]["pointer"]): json.loads(labels[k].partition("=")[2]) for k in others}
-    solvers = {case["label"]: solver for case in axes[1]["cases"] if (solver := case["set"].get(SOLVER, method_set(case["set"].get(METHOD)).get(SOLVER)))}
-    return Sweep(name, hashlib.sha256(path.read_bytes()).hexdigest(), cases, more, {word(axes[k]["pointer"]): axes[k]["values"] for k in others}, path, solvers)
+    solvers = {
+        case["label"]: solver
+        for case in axes[1]["cases"]
+        if (solver := case["set"].get(SOLVER, method_set(case["set"].get(METHOD)).get(SOLVER)))
+    }
+    return Sweep(
+        name,
+        hashlib.sha256(path.read_bytes()).hexdigest(),
+        cases,
+        more,
+        {word(axes[k]["pointer"]): axes[k]["values"] for k in others},
+        path,
+        solvers,
+    )

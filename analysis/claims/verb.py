@@ -1,8 +1,11 @@
-"""Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every verdict from the records by the rule of
-its claim, and writes results/CLAIMS.md, results/claims.json (the numbers used), docs/claims.png and the table of docs/results.md. With names of claims it runs the sweeps of these alone.
-Confirmation sweeps are run for claims that are registered (--register ID, then commit claims/confirmation/registry.json).
+"""Runs the sweeps that decide the claims in claims/ (records that are there are skipped), computes every
+verdict from the records by the rule of its claim, and writes results/CLAIMS.md, results/claims.json (the
+numbers used), docs/claims.png and the table of docs/results.md. With names of claims it runs the sweeps of
+these alone. Confirmation sweeps are run for claims that are registered (--register ID, then commit
+claims/confirmation/registry.json).
 
-Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them; a bad entry; no program), or calls itself confirmed and is not.
+Exit codes: 0 verdicts written, 2 a claim cannot be judged (records missing, with the command that makes them;
+a bad entry; no program), or calls itself confirmed and is not.
 """
 
 from __future__ import annotations
@@ -39,10 +42,18 @@ def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
     for claim in claims:
         if claim.id in entries:
             registry.ready(claim, entries)
-    for name in dict.fromkeys(name for claim in claims for name in claim.sweeps + (claim.confirmation_sweeps if claim.id in entries else [])):
+    for name in dict.fromkeys(
+        name
+        for claim in claims
+        for name in claim.sweeps + (claim.confirmation_sweeps if claim.id in entries else [])
+    ):
         sweep, start = read_sweep(name), time.monotonic()
         print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
-        done = subprocess.run([program(), *plugin_words(plugins), "sweep", str(ROOT / sweep.file), "--out", str(runs / name)], stdout=subprocess.DEVNULL, check=False)
+        done = subprocess.run(
+            [program(), *plugin_words(plugins), "sweep", str(ROOT / sweep.file), "--out", str(runs / name)],
+            stdout=subprocess.DEVNULL,
+            check=False,
+        )
         if done.returncode != 0:
             raise UserError(f"{sweep.file}: the program ended with {done.returncode}")
         print(f"claims: {name}: {time.monotonic() - start:.0f} s", file=sys.stderr)
@@ -59,15 +70,47 @@ def gather(claims: list[Claim], runs: Path, kept: Table) -> Table:
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="bench claims", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="examples: ./bench claims\n          ./bench claims K3 H1\n          ./bench claims --no-run\n          ./bench claims --register K3")
+    parser = argparse.ArgumentParser(
+        prog="bench claims",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=(
+            "examples: ./bench claims\n          ./bench claims K3 H1\n          ./bench claims --no-run\n   "
+            "       ./bench claims --register K3"
+        ),
+    )
     parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
-    parser.add_argument("--no-run", action="store_true", help="run nothing: judge the records that are there, or the numbers in results/claims.json")
-    parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the sweeps (default: results/runs/claims)")
-    parser.add_argument("--register", action="store_true",
-                        help="run nothing: write rule and confirmation sweeps of these claims to claims/confirmation/registry.json; commit it before the first run")
-    parser.add_argument("--run-before", default="", metavar="TEXT", help="with --register, where the scenes were run before: when, and by which rule; the page says so")
-    parser.add_argument("--coverage", action="store_true", help="run nothing: simulate how often the intervals cover, and write results/COVERAGE.md")
+    parser.add_argument(
+        "--no-run",
+        action="store_true",
+        help="run nothing: judge the records that are there, or the numbers in results/claims.json",
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        default=RUNS,
+        metavar="DIR",
+        help="folder of the sweeps (default: results/runs/claims)",
+    )
+    parser.add_argument(
+        "--register",
+        action="store_true",
+        help=(
+            "run nothing: write rule and confirmation sweeps of these claims to"
+            " claims/confirmation/registry.json; commit it before the first run"
+        ),
+    )
+    parser.add_argument(
+        "--run-before",
+        default="",
+        metavar="TEXT",
+        help="with --register, where the scenes were run before: when, and by which rule; the page says so",
+    )
+    parser.add_argument(
+        "--coverage",
+        action="store_true",
+        help="run nothing: simulate how often the intervals cover, and write results/COVERAGE.md",
+    )
     plugin_argument(parser)
     return parser.parse_args(argv)
 
@@ -93,7 +136,9 @@ def judge_all(claims: list[Claim], args: argparse.Namespace) -> int:
     answers = [judge(claim, table, asker) for claim in claims]
     print(report.text(answers))
     write_all(table, asker)
-    if refused := [f"{a.claim.id} calls itself confirmed and is not: {a.state.why}" for a in answers if a.state.refused]:
+    if refused := [
+        f"{a.claim.id} calls itself confirmed and is not: {a.state.why}" for a in answers if a.state.refused
+    ]:
         raise UserError("\n".join(refused))
     return 0
 
@@ -111,8 +156,11 @@ def register(claims: list[Claim], runs: Path, run_before: str) -> int:
     table = gather(claims, runs, read(FILE))
     for claim in claims:
         entry = registry.register(claim, table, run_before=run_before)
-        print(f"{claim.id}: registered on {entry['date']}, rule {entry['rule_sha256'][:12]}, sweeps {', '.join(entry['sweeps'])}. "
-              f"Commit claims/confirmation/registry.json before ./bench claims {claim.id}")
+        print(
+            f"{claim.id}: registered on {entry['date']}, rule {entry['rule_sha256'][:12]}, sweeps"
+            f" {', '.join(entry['sweeps'])}. Commit claims/confirmation/registry.json before ./bench claims"
+            f" {claim.id}"
+        )
     return 0
 
 
@@ -125,7 +173,9 @@ def write_all(table: Table, asker: Eval) -> None:
     write_whole(ROOT / "results" / "CLAIMS.md", report.markdown(answers, table))
     drawn = figure.draw(answers, RUNS / "figure" / "claims")
     for claim in (a.claim for a in answers if frontiers.has_runs(a.claim, table)):
-        drawn += frontiers.draw(claim, table.sweeps[claim.frontier["sweep"]], RUNS / "figure" / f"policies_{claim.id}")
+        drawn += frontiers.draw(
+            claim, table.sweeps[claim.frontier["sweep"]], RUNS / "figure" / f"policies_{claim.id}"
+        )
     for path in drawn:
         if path.suffix in (".png", ".txt"):
             shutil.copyfile(path, ROOT / "docs" / path.name)

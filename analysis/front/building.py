@@ -39,7 +39,9 @@ def program() -> Path:
 
 
 def setup(*packages: str) -> None:
-    """Packages of the system and the Python environment, by the script ./bench. Errors: UserError; the script has said why."""
+    """Packages of the system and the Python environment, by the script ./bench. Errors: UserError; the script
+    has said why.
+    """
     done = subprocess.run([str(ROOT / "bench"), "setup", *packages], check=False)
     if done.returncode != 0:
         raise UserError("the setup failed", done.returncode)
@@ -48,7 +50,10 @@ def setup(*packages: str) -> None:
 def _has_options(preset: str, options: dict[str, str]) -> bool:
     cache = folder(preset) / "CMakeCache.txt"
     known = cache.read_text().splitlines() if options else []
-    return all(any(line.startswith(f"{name}:") and line.endswith(f"={value}") for line in known) for name, value in options.items())
+    return all(
+        any(line.startswith(f"{name}:") and line.endswith(f"={value}") for line in known)
+        for name, value in options.items()
+    )
 
 
 def configure(preset: str, options: dict[str, str] | None = None) -> None:
@@ -87,7 +92,9 @@ def _build_quietly(words: list[str], preset: str) -> int:
 
 
 def build(preset: str, *targets: str, options: dict[str, str] | None = None) -> None:
-    """Targets of a preset, all without any, with these CMake options; silent when nothing is to be done. Errors: UserError, 70 where code does not build."""
+    """Targets of a preset, all without any, with these CMake options; silent when nothing is to be done.
+    Errors: UserError, 70 where code does not build.
+    """
     configure(preset, options)
     words = ["ninja", "-C", str(folder(preset)), "-j", str(job_count())]
     if sys.stderr.isatty():
@@ -101,7 +108,12 @@ def build(preset: str, *targets: str, options: dict[str, str] | None = None) -> 
 def regenerate(preset: str) -> None:
     """Configured, and every generated header as the CMake files say. Errors: UserError."""
     configure(preset)
-    if subprocess.run(["ninja", "-C", str(folder(preset)), "--quiet", "build.ninja"], stdout=sys.stderr, check=False).returncode != 0:
+    if (
+        subprocess.run(
+            ["ninja", "-C", str(folder(preset)), "--quiet", "build.ninja"], stdout=sys.stderr, check=False
+        ).returncode
+        != 0
+    ):
         raise UserError("configuration failed")
 
 

@@ -7,7 +7,8 @@ import subprocess
 
 from ..errors import tells
 from .building import ensure_program
-from .verbs import HELP, ROOT
+from .table import HELP
+from .verbs import ROOT
 
 OUT = ROOT / "results/runs/demo"
 

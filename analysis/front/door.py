@@ -30,14 +30,19 @@ def usage() -> str:
 
 
 def become_program(arguments: list[str]) -> int:
-    """Replaces this process by the program, so that standard streams and signals are its own. Errors: UserError where it cannot be built."""
+    """Replaces this process by the program, so that standard streams and signals are its own. Errors:
+    UserError where it cannot be built.
+    """
     from . import building
 
     word = arguments[0]
     everything = verbs.every()
     if not word.startswith("-") and word not in [verb.name for verb in everything]:
         near = verbs.nearest(word, everything)
-        raise UserError(f"found {word!r}; allowed: one of the verbs of ./bench help" + (f"; did you mean {near}?" if near else ""))
+        raise UserError(
+            f"found {word!r}; allowed: one of the verbs of ./bench help"
+            + (f"; did you mean {near}?" if near else "")
+        )
     program = str(building.ensure_program())
     os.environ["BENCH_VERBS"] = " ".join(verb.name for verb in verbs.TABLE)  # for its own suggestion
     sys.stdout.flush()

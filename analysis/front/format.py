@@ -10,7 +10,6 @@ from .sources import sources
 from .verbs import ROOT
 
 RUFF = (sys.executable, "-m", "ruff")
-CONFIG = ("--config", str(ROOT / "analysis/pyproject.toml"))
 
 
 def clang_format(*words: str) -> int:
@@ -23,7 +22,9 @@ def clang_format(*words: str) -> int:
 
 def ruff(verb: str, *words: str) -> int:
     """Exit code of `ruff format` or `ruff check` on analysis/."""
-    return subprocess.run([*RUFF, verb, *CONFIG, "--no-cache", *words, "analysis"], cwd=ROOT, stdout=sys.stderr, check=False).returncode
+    return subprocess.run(
+        [*RUFF, verb, "--no-cache", *words, "analysis"], cwd=ROOT, stdout=sys.stderr, check=False
+    ).returncode
 
 
 @tells("format")

@@ -18,5 +18,9 @@ def main(argv: list[str]) -> int:
     out = ROOT / "results/runs/microbenchmarks"
     out.mkdir(parents=True, exist_ok=True)
     kept = out / f"{datetime.now(timezone.utc):%Y-%m-%dT%H%M%SZ}.json"
-    words = [str(folder("release") / "experiments/microbenchmarks" / TARGET), "--benchmark_out_format=json", f"--benchmark_out={kept}"]
+    words = [
+        str(folder("release") / "experiments/microbenchmarks" / TARGET),
+        "--benchmark_out_format=json",
+        f"--benchmark_out={kept}",
+    ]
     return subprocess.run([*words, *argv], check=False).returncode

@@ -7,11 +7,14 @@ import sys
 
 from ..errors import tells
 from .building import setup
-from .verbs import HELP, ROOT
+from .table import HELP
+from .verbs import ROOT
 
 
 @tells("mutate")
 def main(argv: list[str]) -> int:
     if not set(argv) & set(HELP):
         setup()
-    return subprocess.run([sys.executable, str(ROOT / "tests/mutation/mutate.py"), *argv], check=False).returncode
+    return subprocess.run(
+        [sys.executable, str(ROOT / "tests/mutation/mutate.py"), *argv], check=False
+    ).returncode

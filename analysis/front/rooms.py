@@ -13,5 +13,12 @@ from .verbs import ROOT
 def main(argv: list[str]) -> int:
     regenerate("release")
     rooms = folder("release") / "rooms.txt"
-    words = ["cmake", f"-DROOMS={rooms}", f"-DSOURCE_DIR={ROOT}", "-DPRINT=ON", "-P", str(ROOT / "cmake/RoomCheck.cmake")]
+    words = [
+        "cmake",
+        f"-DROOMS={rooms}",
+        f"-DSOURCE_DIR={ROOT}",
+        "-DPRINT=ON",
+        "-P",
+        str(ROOT / "cmake/RoomCheck.cmake"),
+    ]
     return subprocess.run(words, check=False).returncode

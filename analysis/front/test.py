@@ -1,5 +1,6 @@
-"""The verb test: setup, build, format, rooms, C++ tests, Python tests, gate. A later part never hides an earlier failure, and the summary
-names every skip."""
+"""The verb test: setup, build, format, rooms, C++ tests, Python tests, gate. A later part never hides an
+earlier failure, and the summary names every skip.
+"""
 
 from __future__ import annotations
 
@@ -49,12 +50,28 @@ def skipped_cpp(log: str) -> list[str]:
     """Lines of the summary about tests that ctest skipped."""
     lines = [line for line in log.splitlines() if "***Skipped" in line]
     names = [re.sub(r" \.*\*\*\*Skipped.*", "", re.sub(r"^.*Test +#[0-9]+: ", "", line)) for line in lines]
-    return [f"SKIPPED  {len(names)} C++ tests:", *(f"           {name}" for name in names[:NAMED_SKIPS])] if names else []
+    return (
+        [f"SKIPPED  {len(names)} C++ tests:", *(f"           {name}" for name in names[:NAMED_SKIPS])]
+        if names
+        else []
+    )
 
 
 def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
     log = folder(preset) / "ctest.log"
-    code = _into(log, ["ctest", "--test-dir", str(folder(preset)), "--parallel", "2", "--output-on-failure", "--no-tests=error", *arguments])
+    code = _into(
+        log,
+        [
+            "ctest",
+            "--test-dir",
+            str(folder(preset)),
+            "--parallel",
+            "2",
+            "--output-on-failure",
+            "--no-tests=error",
+            *arguments,
+        ],
+    )
     text = log.read_text(errors="replace")
     print("\n".join(text.splitlines()[-6:]) if code == 0 else text, flush=True)
     summary.lines += skipped_cpp(text)
@@ -63,12 +80,34 @@ def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
 
 def python_tests(preset: str, summary: Summary) -> int:
     log = ROOT / "build/pytest.log"
-    words = [sys.executable, "-m", "pytest", "-c", str(ROOT / "pytest.ini"), "-q", "-rs", "-p", "no:cacheprovider",
-             "-n", str(job_count()), "--dist", "loadfile", str(ROOT / "tests")]
-    code = _into(log, words, env={**os.environ, "BARRIERBENCH_PROGRAM": str(folder(preset) / "experiments/barrierbench")})
+    words = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-c",
+        str(ROOT / "pytest.ini"),
+        "-q",
+        "-rs",
+        "-p",
+        "no:cacheprovider",
+        "-n",
+        str(job_count()),
+        "--dist",
+        "loadfile",
+        str(ROOT / "tests"),
+    ]
+    code = _into(
+        log,
+        words,
+        env={**os.environ, "BARRIERBENCH_PROGRAM": str(folder(preset) / "experiments/barrierbench")},
+    )
     text = log.read_text(errors="replace")
     print(text, flush=True)
-    summary.lines += [f"SKIPPED  {line.removeprefix('SKIPPED ')}" for line in text.splitlines() if line.startswith("SKIPPED")]
+    summary.lines += [
+        f"SKIPPED  {line.removeprefix('SKIPPED ')}"
+        for line in text.splitlines()
+        if line.startswith("SKIPPED")
+    ]
     return code
 
 

@@ -12,7 +12,9 @@ from .sources import sources
 from .verbs import ROOT
 
 TIDIED = ("core/", "barriers/", "experiments/")
-OF_GCC = re.compile(r" -include [^ ]*cmake_pch\.hxx| -fpch-preprocess| -Winvalid-pch")  # these mean nothing to clang
+OF_GCC = re.compile(
+    r" -include [^ ]*cmake_pch\.hxx| -fpch-preprocess| -Winvalid-pch"
+)  # these mean nothing to clang
 
 
 @tells("tidy")
@@ -22,7 +24,9 @@ def main(argv: list[str]) -> int:
     files = argv or [file for file in sources() if file.startswith(TIDIED) and file.endswith(".cpp")]
     base = folder("tidy")
     base.mkdir(parents=True, exist_ok=True)
-    (base / "compile_commands.json").write_text(OF_GCC.sub("", (folder("dev") / "compile_commands.json").read_text()))
+    (base / "compile_commands.json").write_text(
+        OF_GCC.sub("", (folder("dev") / "compile_commands.json").read_text())
+    )
 
     def tidied(file: str) -> int:
         words = ["clang-tidy-14", "--quiet", "--extra-arg=-Wno-unknown-warning-option", "-p", str(base), file]

@@ -32,10 +32,22 @@ class Kept:
 
     def json(self) -> dict:
         e = self.envelope
-        line = {"class": self.gate_class, "value": e.value, "lower": e.lower, "upper": e.upper, "unit": self.unit,
-                "direction": self.direction, "n": e.n}
-        return (line | ({"sample": list(e.sample)} if e.sample else {}) | ({"xfail": self.xfail} if self.xfail else {})
-                | ({"scatter": self.scatter} if self.scatter else {}) | ({"first": self.first.json()} if self.first else {}))
+        line = {
+            "class": self.gate_class,
+            "value": e.value,
+            "lower": e.lower,
+            "upper": e.upper,
+            "unit": self.unit,
+            "direction": self.direction,
+            "n": e.n,
+        }
+        return (
+            line
+            | ({"sample": list(e.sample)} if e.sample else {})
+            | ({"xfail": self.xfail} if self.xfail else {})
+            | ({"scatter": self.scatter} if self.scatter else {})
+            | ({"first": self.first.json()} if self.first else {})
+        )
 
 
 @dataclass
@@ -49,7 +61,9 @@ class Baseline:
     scene: dict = field(default_factory=dict)
     made_by: dict = field(default_factory=dict)
     unsteady: list[str] = field(default_factory=list)  # numbers that only some of the copies had: not judged
-    drifts: list[dict] = field(default_factory=list)  # drifts that were accepted on purpose: when, why, and from what to what
+    drifts: list[dict] = field(
+        default_factory=list
+    )  # drifts that were accepted on purpose: when, why, and from what to what
 
     @property
     def record_version(self) -> str | None:
@@ -57,10 +71,19 @@ class Baseline:
         return self.calibrated_at.get("record_version")
 
     def json(self) -> dict:
-        return {"schema": {"name": NAME, "version": VERSION}, "case": self.case, "kind": self.kind, "reason": self.reason,
-                "calibrated_at": self.calibrated_at, "made_by": self.made_by, "scene": self.scene, "config": self.config,
-                **({"unsteady": self.unsteady} if self.unsteady else {}), **({"drifts": self.drifts} if self.drifts else {}),
-                "metrics": {name: kept.json() for name, kept in sorted(self.metrics.items())}}
+        return {
+            "schema": {"name": NAME, "version": VERSION},
+            "case": self.case,
+            "kind": self.kind,
+            "reason": self.reason,
+            "calibrated_at": self.calibrated_at,
+            "made_by": self.made_by,
+            "scene": self.scene,
+            "config": self.config,
+            **({"unsteady": self.unsteady} if self.unsteady else {}),
+            **({"drifts": self.drifts} if self.drifts else {}),
+            "metrics": {name: kept.json() for name, kept in sorted(self.metrics.items())},
+        }
 
 
 def keep(metric: Metric, envelope: Envelope) -> Kept:
@@ -93,20 +116,40 @@ def _line(path: Path, name: str, line, made_by: str) -> Kept:
         if not _finite(line.get(key)):
             raise UserError(f"{place}/{key}: {line.get(key)!r}; a finite number is needed")
     if not line["lower"] <= line["value"] <= line["upper"]:
-        raise UserError(f"{place}: value {line['value']} outside its own envelope [{line['lower']}, {line['upper']}]")
+        raise UserError(
+            f"{place}: value {line['value']} outside its own envelope [{line['lower']}, {line['upper']}]"
+        )
     if line.get("class") not in ("III", "IV", "V"):
-        raise UserError(f"{place}/class: {line.get('class')!r}; III, IV or V (classes I and II are exact and have no baseline)")
+        raise UserError(
+            f"{place}/class: {line.get('class')!r}; III, IV or V (classes I and II are exact and have no"
+            " baseline)"
+        )
     if line.get("direction") not in DIRECTIONS:
         raise UserError(f"{place}/direction: {line.get('direction')!r}; one of {', '.join(DIRECTIONS)}")
-    envelope = Envelope(line["value"], line["lower"], line["upper"], int(line.get("n", 1)), tuple(line.get("sample", ())))
-    return Kept(line["class"], line.get("unit", ""), line["direction"], envelope, line.get("xfail", ""), float(line.get("scatter") or 0), _first(place, line, made_by))
+    envelope = Envelope(
+        line["value"], line["lower"], line["upper"], int(line.get("n", 1)), tuple(line.get("sample", ()))
+    )
+    return Kept(
+        line["class"],
+        line.get("unit", ""),
+        line["direction"],
+        envelope,
+        line.get("xfail", ""),
+        float(line.get("scatter") or 0),
+        _first(place, line, made_by),
+    )
 
 
 def read(path: str | Path, case: str | None = None, kind: str | None = None) -> Baseline:
-    """Raises UserError with file and place: not there, empty, another version, of another case or kind, a number that is none."""
+    """Raises UserError with file and place: not there, empty, another version, of another case or kind, a
+    number that is none.
+    """
     path = Path(path)
     if not path.is_file():
-        raise UserError(f"{path}: no such baseline; `bench calibrate` measures one and `bench accept --reason \"...\"` keeps it")
+        raise UserError(
+            f'{path}: no such baseline; `bench calibrate` measures one and `bench accept --reason "..."`'
+            " keeps it"
+        )
     text = path.read_text(errors="replace")
     if not text.strip():
         raise UserError(f"{path}: empty")
@@ -115,7 +158,11 @@ def read(path: str | Path, case: str | None = None, kind: str | None = None) -> 
     except ValueError as error:
         raise UserError(f"{path}: not JSON: {error}") from None
     schema = data.get("schema") if isinstance(data, dict) else None
-    if not isinstance(schema, dict) or schema.get("name") != NAME or str(schema.get("version", "")).split(".")[0] != MAJOR:
+    if (
+        not isinstance(schema, dict)
+        or schema.get("name") != NAME
+        or str(schema.get("version", "")).split(".")[0] != MAJOR
+    ):
         raise UserError(f"{path}: schema {schema}; this version reads {NAME} {MAJOR}.x.y")
     for key, wanted in (("case", case), ("kind", kind)):
         if wanted is not None and data.get(key) != wanted:
@@ -125,5 +172,15 @@ def read(path: str | Path, case: str | None = None, kind: str | None = None) -> 
         raise UserError(f"{path}: /metrics is empty: it would judge nothing")
     made_by = data.get("made_by") or {}
     lines = {name: _line(path, name, line, digest(made_by)) for name, line in metrics.items()}
-    return Baseline(data.get("case", ""), data.get("kind", ""), data.get("reason", ""), data.get("calibrated_at") or {}, lines,
-                    data.get("config") or {}, data.get("scene") or {}, made_by, data.get("unsteady") or [], data.get("drifts") or [])
+    return Baseline(
+        data.get("case", ""),
+        data.get("kind", ""),
+        data.get("reason", ""),
+        data.get("calibrated_at") or {},
+        lines,
+        data.get("config") or {},
+        data.get("scene") or {},
+        made_by,
+        data.get("unsteady") or [],
+        data.get("drifts") or [],
+    )

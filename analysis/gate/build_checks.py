@@ -14,9 +14,19 @@ CASE = "build"
 
 def findings_of(report: dict) -> list[Finding]:
     """A line for every check of a report; none that judged nothing passes."""
-    return [Finding(CASE, "I", check["name"], "pass" if check["pass"] and check["subjects"] > 0 else "FAIL", value=check["value"],
-                    reference=check["bound"], judged=check["subjects"], note=check["detail"] or f"of {check['subjects']}")
-            for check in report["checks"]]
+    return [
+        Finding(
+            CASE,
+            "I",
+            check["name"],
+            "pass" if check["pass"] and check["subjects"] > 0 else "FAIL",
+            value=check["value"],
+            reference=check["bound"],
+            judged=check["subjects"],
+            note=check["detail"] or f"of {check['subjects']}",
+        )
+        for check in report["checks"]
+    ]
 
 
 def judge_build() -> list[Finding]:

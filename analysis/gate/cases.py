@@ -30,7 +30,9 @@ def sets() -> list[str]:
 
 
 def read_set(name: str) -> list[Case]:
-    """Every scene with every formulation of the set, then with those of its own. Raises UserError with file and place."""
+    """Every scene with every formulation of the set, then with those of its own. Raises UserError with file
+    and place.
+    """
     path = FOLDER / f"{name}.json"
     if not path.is_file():
         raise UserError(f"set {name!r}: one of {', '.join(sets())} (configs/gates/)")
@@ -40,9 +42,17 @@ def read_set(name: str) -> list[Case]:
         raise UserError(f"{path}: not JSON: {error}") from None
     if data.get("schema") != NAME:
         raise UserError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
-    cases = [Case(f"{scene['name']}-{formulation['name']}", (path.parent / scene["config"]).resolve(),
-                  {**data.get("set", {}), **scene.get("set", {}), **formulation.get("set", {})}, scene.get("instructions", False), scene.get("resumed", False))
-             for scene in data.get("scenes", []) for formulation in [*data.get("formulations", []), *scene.get("formulations", [])]]
+    cases = [
+        Case(
+            f"{scene['name']}-{formulation['name']}",
+            (path.parent / scene["config"]).resolve(),
+            {**data.get("set", {}), **scene.get("set", {}), **formulation.get("set", {})},
+            scene.get("instructions", False),
+            scene.get("resumed", False),
+        )
+        for scene in data.get("scenes", [])
+        for formulation in [*data.get("formulations", []), *scene.get("formulations", [])]
+    ]
     if not cases:
         raise UserError(f"{path}: no case: it needs scenes and formulations")
     return cases
@@ -54,8 +64,18 @@ def program() -> Path:
 
 def command(case: Case, out: Path, threads: int, more: dict) -> list[str]:
     settings = {**case.set, "/threads": threads, **more}
-    return [str(program()), "run", str(case.config), "--out", str(out),
-            *(word for pointer, value in settings.items() for word in ("--set", f"{pointer}={json.dumps(value)}"))]
+    return [
+        str(program()),
+        "run",
+        str(case.config),
+        "--out",
+        str(out),
+        *(
+            word
+            for pointer, value in settings.items()
+            for word in ("--set", f"{pointer}={json.dumps(value)}")
+        ),
+    ]
 
 
 def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
@@ -65,7 +85,10 @@ def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
     (out / "run.json").unlink(missing_ok=True)
     done = subprocess.run(command(case, out, threads, settings), capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise UserError(f"{case.name}: the program ended with {done.returncode}: {done.stderr.strip() or done.stdout.strip()}")
+        raise UserError(
+            f"{case.name}: the program ended with {done.returncode}:"
+            f" {done.stderr.strip() or done.stdout.strip()}"
+        )
     return read_run(out, allow_not_finite=True)
 
 

@@ -1,4 +1,6 @@
-"""Matrix Market files of another program: their condition numbers, raw and scaled by block Jacobi, and how many iterations of PCG they ask for."""
+"""Matrix Market files of another program: their condition numbers, raw and scaled by block Jacobi, and how
+many iterations of PCG they ask for.
+"""
 
 from __future__ import annotations
 
@@ -27,7 +29,9 @@ PCG_TOLERANCE, PCG_CAP = 1e-6, 20000
 
 
 def read_matrix(path: Path) -> sparse.csc_matrix:
-    """Raises UserError with file and reason: no Matrix Market, not real, not square, not symmetric, a number that is none, empty."""
+    """Raises UserError with file and reason: no Matrix Market, not real, not square, not symmetric, a number
+    that is none, empty.
+    """
     if not path.is_file():
         raise UserError(f"{path}: no such file")
     try:
@@ -45,19 +49,32 @@ def read_matrix(path: Path) -> sparse.csc_matrix:
     if not np.isfinite(matrix.data).all():
         entry = matrix.tocoo()
         k = int(np.flatnonzero(~np.isfinite(entry.data))[0])
-        raise UserError(f"{path}: entry ({entry.row[k] + 1}, {entry.col[k] + 1}): {entry.data[k]}; finite numbers are needed")
+        raise UserError(
+            f"{path}: entry ({entry.row[k] + 1}, {entry.col[k] + 1}): {entry.data[k]}; finite numbers are"
+            " needed"
+        )
     departure = abs(matrix - matrix.T).max() / abs(matrix).max()
     if departure > SYMMETRY:
-        raise UserError(f"{path}: not symmetric: |A - A^T| is {departure:.2g} of the largest entry, at most {SYMMETRY:g} is rounding")
+        raise UserError(
+            f"{path}: not symmetric: |A - A^T| is {departure:.2g} of the largest entry, at most"
+            f" {SYMMETRY:g} is rounding"
+        )
     return sparse.csc_matrix(0.5 * (matrix + matrix.T))
 
 
 def block_jacobi(matrix: sparse.csc_matrix, size: int = 3) -> sparse.csc_matrix:
-    """L^-1 A L^-T with the Cholesky factors of the blocks on the diagonal; the last one is smaller where the rows do not divide.
-    Raises LinAlgError when a block is not positive definite."""
+    """L^-1 A L^-T with the Cholesky factors of the blocks on the diagonal; the last one is smaller where the
+    rows do not divide. Raises LinAlgError when a block is not positive definite.
+    """
     n = matrix.shape[0]
-    inverses = [scipy.linalg.solve_triangular(np.linalg.cholesky(matrix[k : k + size, k : k + size].toarray()),
-                                              np.eye(min(size, n - k)), lower=True) for k in range(0, n, size)]
+    inverses = [
+        scipy.linalg.solve_triangular(
+            np.linalg.cholesky(matrix[k : k + size, k : k + size].toarray()),
+            np.eye(min(size, n - k)),
+            lower=True,
+        )
+        for k in range(0, n, size)
+    ]
     inverse = sparse.block_diag(inverses, format="csc")
     return sparse.csc_matrix(inverse @ matrix @ inverse.T)
 
@@ -69,15 +86,21 @@ def log10_cond(matrix: sparse.csc_matrix) -> float | None:
         low, high = float(values[0]), float(values[-1])
     else:
         try:
-            factor = sparse_linalg.splu(matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True})
+            factor = sparse_linalg.splu(
+                matrix, permc_spec="MMD_AT_PLUS_A", diag_pivot_thresh=0.0, options={"SymmetricMode": True}
+            )
         except RuntimeError:  # exactly singular
             return None
         if not (np.array_equal(factor.perm_r, factor.perm_c) and (factor.U.diagonal() > 0).all()):
             return None  # Sylvester: as many negative pivots as eigenvalues
         inverse = sparse_linalg.LinearOperator(matrix.shape, factor.solve)
         start = np.random.default_rng(1).standard_normal(matrix.shape[0])
-        high = float(sparse_linalg.eigsh(matrix, k=1, which="LA", tol=1e-4, v0=start, return_eigenvectors=False)[0])
-        low = 1 / float(sparse_linalg.eigsh(inverse, k=1, which="LA", tol=1e-4, v0=start, return_eigenvectors=False)[0])
+        high = float(
+            sparse_linalg.eigsh(matrix, k=1, which="LA", tol=1e-4, v0=start, return_eigenvectors=False)[0]
+        )
+        low = 1 / float(
+            sparse_linalg.eigsh(inverse, k=1, which="LA", tol=1e-4, v0=start, return_eigenvectors=False)[0]
+        )
     if low <= 0 and -low > 1e-14 * high:
         return None
     return float(np.log10(min(LARGEST_COND, high / low))) if low > 0 else 14.0
@@ -93,7 +116,9 @@ def _log10_cond_of(path: Path, matrix: sparse.csc_matrix) -> float | None:
 def pcg_iterations(matrix: sparse.csc_matrix) -> int | None:
     """Of conjugate gradients to a residual of 1e-6 on one fixed right-hand side; None at the cap."""
     b, steps = np.random.default_rng(1).standard_normal(matrix.shape[0]), []
-    _, info = sparse_linalg.cg(matrix, b, rtol=PCG_TOLERANCE, atol=0.0, maxiter=PCG_CAP, callback=steps.append)
+    _, info = sparse_linalg.cg(
+        matrix, b, rtol=PCG_TOLERANCE, atol=0.0, maxiter=PCG_CAP, callback=steps.append
+    )
     return len(steps) if info == 0 else None
 
 
@@ -119,7 +144,9 @@ def spectrum(path: Path, block: int = 3) -> Spectrum:
 
 
 def names(paths: list[Path]) -> list[str]:
-    """Of files by their place below the folder that holds them all: a matrix is compared with the one of its own name. Raises UserError."""
+    """Of files by their place below the folder that holds them all: a matrix is compared with the one of its
+    own name. Raises UserError.
+    """
     whole = [path.resolve() for path in paths]
     top = Path(os.path.commonpath([path.parent for path in whole]))
     found = [path.relative_to(top).as_posix() for path in whole]
@@ -128,17 +155,31 @@ def names(paths: list[Path]) -> list[str]:
     return found
 
 
-NUMBERS = (("log10_cond raw", "log10", COND, "raw"), ("log10_cond block_jacobi", "log10", COND, "scaled"),
-           ("pcg_iterations block_jacobi", "1", PCG, "pcg"))  # metric, unit, tolerance, attribute of a Spectrum
+NUMBERS = (
+    ("log10_cond raw", "log10", COND, "raw"),
+    ("log10_cond block_jacobi", "log10", COND, "scaled"),
+    ("pcg_iterations block_jacobi", "1", PCG, "pcg"),
+)  # metric, unit, tolerance, attribute of a Spectrum
 
 
 def measure(spectra: dict[str, Spectrum]) -> dict[Metric, float]:
     """Of each matrix by its name, and medians and largest values over all of them."""
     out = {}
     for name, unit, tolerance, attribute in NUMBERS:
-        values = {matrix: getattr(s, attribute) for matrix, s in spectra.items() if getattr(s, attribute) is not None}
-        lines = {"median": float(np.median(list(values.values()))), "max": float(max(values.values())), **values} if values else {}
-        out |= {Metric(f"{name} {which}", "III", unit, LOWER_BETTER, tolerance): float(value) for which, value in lines.items()}
+        values = {
+            matrix: getattr(s, attribute)
+            for matrix, s in spectra.items()
+            if getattr(s, attribute) is not None
+        }
+        lines = (
+            {"median": float(np.median(list(values.values()))), "max": float(max(values.values())), **values}
+            if values
+            else {}
+        )
+        out |= {
+            Metric(f"{name} {which}", "III", unit, LOWER_BETTER, tolerance): float(value)
+            for which, value in lines.items()
+        }
     return out
 
 
@@ -153,9 +194,14 @@ def _rows(spectra: dict[str, Spectrum]) -> dict:
 
 
 def _same_matrices(kept: Baseline, spectra: dict[str, Spectrum], path: Path) -> None:
-    """Raises UserError when a matrix has another size than in the baseline, or when they have none in common."""
+    """Raises UserError when a matrix has another size than in the baseline, or when they have none in
+    common."""
     rows = _rows(spectra)
-    unlike = [f"  {place}: {value} and {rows[place]}" for place, value in kept.scene.items() if rows.get(place, value) != value]
+    unlike = [
+        f"  {place}: {value} and {rows[place]}"
+        for place, value in kept.scene.items()
+        if rows.get(place, value) != value
+    ]
     if not unlike and not any(place in rows for place in kept.scene):
         unlike = [f"  {', '.join(place for place in kept.scene) or 'no names'} and {', '.join(rows)}"]
     if unlike:
@@ -164,26 +210,57 @@ def _same_matrices(kept: Baseline, spectra: dict[str, Spectrum], path: Path) -> 
 
 def _lonely(case: str, old: set[str], new: set[str]) -> list[Finding]:
     """A line for every matrix that only one side has, instead of one for each of its numbers."""
-    said = [(name, "missing: the baseline has it") for name in sorted(old - new)] + [(name, judge.NOT_IN_THE_BASELINE[1]) for name in sorted(new - old)]
+    said = [(name, "missing: the baseline has it") for name in sorted(old - new)] + [
+        (name, judge.NOT_IN_THE_BASELINE[1]) for name in sorted(new - old)
+    ]
     return [Finding(case, "III", f"matrix {name}", "FAIL", judged=0, note=note) for name, note in said]
 
 
 def _invariants(case: str, spectra: list[Spectrum]) -> list[Finding]:
     bad = [s for s in spectra if s.raw is None or s.scaled is None]
     stuck = [s for s in spectra if s not in bad and s.pcg is None]
-    return [Finding(case, "I", "positive definite", "FAIL" if bad else "pass", len(bad), 0, unit="1", judged=len(spectra),
-                    note=f"{bad[0].path}" if bad else f"of {len(spectra)}"),
-            Finding(case, "I", "pcg converges", "FAIL" if stuck else "pass", len(stuck), 0, unit="1", judged=len(spectra),
-                    note=f"{stuck[0].path}: more than {PCG_CAP}" if stuck else f"of {len(spectra)}")]
+    return [
+        Finding(
+            case,
+            "I",
+            "positive definite",
+            "FAIL" if bad else "pass",
+            len(bad),
+            0,
+            unit="1",
+            judged=len(spectra),
+            note=f"{bad[0].path}" if bad else f"of {len(spectra)}",
+        ),
+        Finding(
+            case,
+            "I",
+            "pcg converges",
+            "FAIL" if stuck else "pass",
+            len(stuck),
+            0,
+            unit="1",
+            judged=len(spectra),
+            note=f"{stuck[0].path}: more than {PCG_CAP}" if stuck else f"of {len(spectra)}",
+        ),
+    ]
 
 
 def propose(paths: list[Path], case: str) -> Baseline:
     """Raises UserError, also for a matrix that is not positive definite: that is never accepted."""
     spectra = dict(zip(names(paths), map(spectrum, paths)))
     if red := [f for f in _invariants(case, list(spectra.values())) if f.verdict == "FAIL"]:
-        raise UserError("\n".join(f"{f.metric}: {f.value} of {len(spectra)} matrices are not, {f.note}: makes no baseline" for f in red))
-    kept = {metric.name: keep(metric, calibrate(metric, [value])) for metric, value in measure(spectra).items()}
-    return Baseline(case, "matrix", "", {"date": datetime.date.today().isoformat(), "runs": 1}, kept, scene=_rows(spectra))
+        raise UserError(
+            "\n".join(
+                f"{f.metric}: {f.value} of {len(spectra)} matrices are not, {f.note}: makes no baseline"
+                for f in red
+            )
+        )
+    kept = {
+        metric.name: keep(metric, calibrate(metric, [value])) for metric, value in measure(spectra).items()
+    }
+    return Baseline(
+        case, "matrix", "", {"date": datetime.date.today().isoformat(), "runs": 1}, kept, scene=_rows(spectra)
+    )
 
 
 def judge_matrices(paths: list[Path], path: Path) -> list[Finding]:
@@ -193,6 +270,18 @@ def judge_matrices(paths: list[Path], path: Path) -> list[Finding]:
     _same_matrices(kept, spectra, path)
     old = {matrix for name in kept.metrics if (matrix := _of_matrix(name))}
     common = old & spectra.keys()
-    of_common = {name: k for name, k in kept.metrics.items() if (matrix := _of_matrix(name)) is None or matrix in common}
-    values = {metric: value for metric, value in measure(spectra).items() if (matrix := _of_matrix(metric.name)) is None or matrix in common}
-    return _invariants(kept.case, list(spectra.values())) + _lonely(kept.case, old, set(spectra)) + judge.numbers(kept.case, of_common, values, False)
+    of_common = {
+        name: k
+        for name, k in kept.metrics.items()
+        if (matrix := _of_matrix(name)) is None or matrix in common
+    }
+    values = {
+        metric: value
+        for metric, value in measure(spectra).items()
+        if (matrix := _of_matrix(metric.name)) is None or matrix in common
+    }
+    return (
+        _invariants(kept.case, list(spectra.values()))
+        + _lonely(kept.case, old, set(spectra))
+        + judge.numbers(kept.case, of_common, values, False)
+    )

@@ -1,4 +1,6 @@
-"""Class I: a run that is killed after a checkpoint and resumed ends in the bits of the run that was left alone."""
+"""Class I: a run that is killed after a checkpoint and resumed ends in the bits of the run that was left
+alone.
+"""
 
 from __future__ import annotations
 
@@ -20,7 +22,9 @@ def _step(record: dict) -> dict:
 
 
 def kill_after_checkpoint(words: list[str], out: Path) -> bool:
-    """Starts a run and kills it (SIGKILL) as soon as its checkpoint is there; False when it was over before. Raises UserError."""
+    """Starts a run and kills it (SIGKILL) as soon as its checkpoint is there; False when it was over before.
+    Raises UserError.
+    """
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     start = time.monotonic()
     while process.poll() is None and not (out / "checkpoint.bin").exists():
@@ -35,9 +39,10 @@ def kill_after_checkpoint(words: list[str], out: Path) -> bool:
 
 
 def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
-    """whole: the record of the same case with one thread and without checkpoints, which has to end in the same state. Every other number is compared with a
-    run that writes the same checkpoints and is left alone.
-    Raises UserError when the program cannot resume."""
+    """whole: the record of the same case with one thread and without checkpoints, which has to end in the
+    same state. Every other number is compared with a run that writes the same checkpoints and is left alone.
+    Raises UserError when the program cannot resume.
+    """
     alone = run_case(case, out.with_name(out.name + "-not-killed"), 1, output__checkpoint_every=1)
     for name in ("run.json", "checkpoint.bin"):
         (out / name).unlink(missing_ok=True)
@@ -50,7 +55,22 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
     from_step = resumed.section("status").get("resumed_from_step")
     steps, wanted = resumed.record["steps"], alone.record["steps"]
     same = len({run.section("summary").get("state_hash") for run in (resumed, alone, whole)}) == 1
-    unlike = sum(_step(a) != _step(b) for a, b in zip(steps, wanted)) + abs(len(steps) - len(wanted)) + (not same)
+    unlike = (
+        sum(_step(a) != _step(b) for a, b in zip(steps, wanted)) + abs(len(steps) - len(wanted)) + (not same)
+    )
     judged = len(steps) if killed and from_step is not None else 0
-    note = f"killed, resumed from step {from_step:.0f}" if judged else "the run was over before it could be killed"
-    return Finding(case.name, "I", "resumed run", "pass" if judged and not unlike else "FAIL", value=unlike, reference=0, judged=judged, note=note)
+    note = (
+        f"killed, resumed from step {from_step:.0f}"
+        if judged
+        else "the run was over before it could be killed"
+    )
+    return Finding(
+        case.name,
+        "I",
+        "resumed run",
+        "pass" if judged and not unlike else "FAIL",
+        value=unlike,
+        reference=0,
+        judged=judged,
+        note=note,
+    )

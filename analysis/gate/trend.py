@@ -1,8 +1,10 @@
-"""Class VI: steps in the history of the numbers of a gate. `bench gate --history FILE` appends a line a run, `bench trend FILE` looks for steps.
+"""Class VI: steps in the history of the numbers of a gate. `bench gate --history FILE` appends a line a run,
+`bench trend FILE` looks for steps.
 
-A history of one metric is fitted by a piecewise constant function: the sum of |value - median of its piece| plus a penalty for every step is least
-(L1, exact by dynamic programming). The penalty is twice the median |difference of neighbours| times log n, as asv chooses it by scale. A step of more than
-5 % between the last two pieces is shown. A trend never blocks: the exit code is 0, 2 for a file that cannot be read.
+A history of one metric is fitted by a piecewise constant function: the sum of |value - median of its piece|
+plus a penalty for every step is least (L1, exact by dynamic programming). The penalty is twice the median
+|difference of neighbours| times log n, as asv chooses it by scale. A step of more than 5 % between the last
+two pieces is shown. A trend never blocks: the exit code is 0, 2 for a file that cannot be read.
 """
 
 from __future__ import annotations
@@ -56,8 +58,10 @@ def pieces(values: list[float]) -> list[tuple[int, int]]:
 
 
 def last_step(values: list[float]) -> tuple[int, float, float] | None:
-    """Index of the first value after the last step, medians before and after; None without a step above the threshold. Metrics in log10 are
-    compared in log10, as the gate keeps them: of a condition number of 1e4 a step is a factor of 1.6."""
+    """Index of the first value after the last step, medians before and after; None without a step above the
+    threshold. Metrics in log10 are compared in log10, as the gate keeps them: of a condition number of 1e4 a
+    step is a factor of 1.6.
+    """
     if len(values) < FEWEST or not all(math.isfinite(v) for v in values):
         return None
     found = pieces(values)
@@ -97,7 +101,11 @@ def read(path: Path) -> list[dict]:
                 print(f"{path}:{number}: torn last line left out", file=sys.stderr)
                 continue
             raise UserError(f"{path}:{number}: not JSON") from None
-        if not isinstance(row, dict) or row.get("schema") != SCHEMA or not isinstance(row.get("values"), dict):
+        if (
+            not isinstance(row, dict)
+            or row.get("schema") != SCHEMA
+            or not isinstance(row.get("values"), dict)
+        ):
             raise UserError(f"{path}:{number}: no line of {SCHEMA}")
         rows.append(row)
     if not rows:
@@ -106,7 +114,9 @@ def read(path: Path) -> list[dict]:
 
 
 def steps(rows: list[dict]) -> tuple[list[Step], int]:
-    """The last step of every metric, largest ratio first, and how many histories were long enough to be looked at."""
+    """The last step of every metric, largest ratio first, and how many histories were long enough to be
+    looked at.
+    """
     series: dict[tuple[str, str], list[tuple[str, float]]] = {}
     for row in rows:
         for case, values in row["values"].items():
@@ -123,14 +133,28 @@ def steps(rows: list[dict]) -> tuple[list[Step], int]:
 
 @tells("trend")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench trend", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="bench trend", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("history", type=Path, help="file of ./bench gate --history")
     args = parser.parse_args(argv)
     rows = read(args.history)
     found, looked = steps(rows)
     if found:
-        print("\n".join(aligned(["case", "metric", "before", "after", "since", "runs"],
-                                [[s.case, s.metric, f"{s.before:.6g}", f"{s.after:.6g}", s.commit[:12], str(s.runs)] for s in found], {2, 3, 5})))
-    print(f"{len(found)} steps in {looked} histories of {FEWEST} or more runs ({len(rows)} runs)"
-          + ("; nothing to look at yet" if looked == 0 else ""))
+        print(
+            "\n".join(
+                aligned(
+                    ["case", "metric", "before", "after", "since", "runs"],
+                    [
+                        [s.case, s.metric, f"{s.before:.6g}", f"{s.after:.6g}", s.commit[:12], str(s.runs)]
+                        for s in found
+                    ],
+                    {2, 3, 5},
+                )
+            )
+        )
+    print(
+        f"{len(found)} steps in {looked} histories of {FEWEST} or more runs ({len(rows)} runs)"
+        + ("; nothing to look at yet" if looked == 0 else "")
+    )
     return 0

@@ -20,7 +20,9 @@ REQUIRED = ("schema", "name", "base", "formulations", "scales", "starts", "jitte
 
 @dataclass(frozen=True)
 class Spec:
-    """A sweep over stiffness. scales: factors on the matched stiffness; starts: how many values of /seeds/main; gaps: d/d_hat of the tables."""
+    """A sweep over stiffness. scales: factors on the matched stiffness; starts: how many values of
+    /seeds/main; gaps: d/d_hat of the tables.
+    """
 
     path: Path
     sha256: str
@@ -58,14 +60,24 @@ def _scales(data: dict, path: Path) -> tuple[float, ...]:
     scales = _numbers(data, "scales", "a number > 0", lambda x: x > 0, path)
     decades = math.log10(scales[-1] / scales[0])
     if decades < DECADES - 1e-9 or not scales[0] < 1 < scales[-1]:
-        raise UserError(f"{path}#/scales: found {scales[0]:g} to {scales[-1]:g}, {decades:.2g} decades; at least {DECADES:g} decades round 1 are needed")
+        raise UserError(
+            f"{path}#/scales: found {scales[0]:g} to {scales[-1]:g}, {decades:.2g} decades; at least"
+            f" {DECADES:g} decades round 1 are needed"
+        )
     return scales
 
 
 def _formulations(data: dict, path: Path) -> tuple[str, ...]:
     names = data["formulations"]
-    if not isinstance(names, list) or REFERENCE not in names or len(set(map(str, names))) < max(2, len(names)):
-        raise UserError(f"{path}#/formulations: found {names!r}; at least two names, each once, {REFERENCE!r} among them, are needed")
+    if (
+        not isinstance(names, list)
+        or REFERENCE not in names
+        or len(set(map(str, names))) < max(2, len(names))
+    ):
+        raise UserError(
+            f"{path}#/formulations: found {names!r}; at least two names, each once, {REFERENCE!r} among them,"
+            " are needed"
+        )
     for k, name in enumerate(names):
         try:
             preset(name)
@@ -79,17 +91,35 @@ def _overrides(found, place: str) -> dict:
     if not isinstance(found, dict):
         raise UserError(f'{place}: found {found!r}; overrides, {{"/POINTER": value}}, are needed')
     for pointer in found:
-        if pointer.startswith(("/matching", "/passes", "/seeds", "/formulation")) and pointer != "/formulation/d_hat_m":
-            raise UserError(f"{place}: found {pointer!r}; the sweep sets formulation, matching, passes and seeds itself; of these only /formulation/d_hat_m is allowed")
+        if (
+            pointer.startswith(("/matching", "/passes", "/seeds", "/formulation"))
+            and pointer != "/formulation/d_hat_m"
+        ):
+            raise UserError(
+                f"{place}: found {pointer!r}; the sweep sets formulation, matching, passes and seeds itself;"
+                " of these only /formulation/d_hat_m is allowed"
+            )
     return found
 
 
 def _scenes(data: dict, path: Path) -> dict[str, dict]:
     scenes = data["scenes"]
-    good = isinstance(scenes, list) and scenes and all(
-        isinstance(s, dict) and set(s) == {"label", "set"} and isinstance(s["label"], str) and s["label"].isidentifier() and isinstance(s["set"], dict) for s in scenes)
+    good = (
+        isinstance(scenes, list)
+        and scenes
+        and all(
+            isinstance(s, dict)
+            and set(s) == {"label", "set"}
+            and isinstance(s["label"], str)
+            and s["label"].isidentifier()
+            and isinstance(s["set"], dict)
+            for s in scenes
+        )
+    )
     if not good or len({s["label"] for s in scenes}) != len(scenes):
-        raise UserError(f"{path}#/scenes: a list of {{\"label\": one word, each once, \"set\": overrides}} is needed")
+        raise UserError(
+            f'{path}#/scenes: a list of {{"label": one word, each once, "set": overrides}} is needed'
+        )
     for s in scenes:
         _overrides(s["set"], f"{path}#/scenes/{s['label']}/set")
     return {s["label"]: s["set"] for s in scenes}
@@ -111,15 +141,36 @@ def read_spec(path: Path) -> Spec:
     if not isinstance(data["doc"], str):
         raise UserError(f"{path}#/doc: found {data['doc']!r}; text is needed")
     if not isinstance(data["base"], str) or not (path.parent / data["base"]).is_file():
-        raise UserError(f"{path}#/base: found {data['base']!r}; the path of a config is needed, relative to this file")
-    if isinstance(data["starts"], bool) or not isinstance(data["starts"], int) or not 1 <= data["starts"] <= 100:
+        raise UserError(
+            f"{path}#/base: found {data['base']!r}; the path of a config is needed, relative to this file"
+        )
+    if (
+        isinstance(data["starts"], bool)
+        or not isinstance(data["starts"], int)
+        or not 1 <= data["starts"] <= 100
+    ):
         raise UserError(f"{path}#/starts: found {data['starts']!r}; a whole number from 1 to 100 is needed")
     if not isinstance(data["name"], str) or not data["name"].isidentifier():
         raise UserError(f"{path}#/name: found {data['name']!r}; one word is needed")
-    jitter = _numbers({"jitter_m": [data["jitter_m"]]}, "jitter_m", "a length >= 0", lambda x: x >= 0, path)[0]
-    return Spec(path, hashlib.sha256(path.read_bytes()).hexdigest(), data["name"], data["doc"], path.parent / data["base"], _formulations(data, path), data["vary"],
-                _scales(data, path), data["starts"], jitter, data["gap"], _numbers(data, "gaps", "a number in (0, 1)", lambda x: 0 < x < 1, path), _overrides(data["set"], f"{path}#/set"),
-                _scenes(data, path))
+    jitter = _numbers({"jitter_m": [data["jitter_m"]]}, "jitter_m", "a length >= 0", lambda x: x >= 0, path)[
+        0
+    ]
+    return Spec(
+        path,
+        hashlib.sha256(path.read_bytes()).hexdigest(),
+        data["name"],
+        data["doc"],
+        path.parent / data["base"],
+        _formulations(data, path),
+        data["vary"],
+        _scales(data, path),
+        data["starts"],
+        jitter,
+        data["gap"],
+        _numbers(data, "gaps", "a number in (0, 1)", lambda x: 0 < x < 1, path),
+        _overrides(data["set"], f"{path}#/set"),
+        _scenes(data, path),
+    )
 
 
 def label(scene: str, formulation: str, scale: float) -> str:
@@ -132,7 +183,17 @@ def make_sweep(spec: Spec) -> Sweep:
     for scene, overrides in spec.scenes.items():
         d_hat = overrides.get("/formulation/d_hat_m", spec.common.get("/formulation/d_hat_m"))
         kept = {pointer: value for pointer, value in overrides.items() if pointer != "/formulation/d_hat_m"}
-        cases += [{"label": label(scene, name, scale), "set": kept | settings(name, spec.vary, d_hat, scale)} for name in spec.formulations for scale in spec.scales]
-    common = {"/threads": 1, "/matching/rule": "equal_force", "/seeds/jitter_m": spec.jitter_m, "/passes": {"time": True, "diagnose": True, "audit": True},
-              "/diagnose/scalings": ["none", "block_jacobi"], "/diagnose/stages": ["full", "without_contact", "without_contact_and_limit"]} | spec.common
+        cases += [
+            {"label": label(scene, name, scale), "set": kept | settings(name, spec.vary, d_hat, scale)}
+            for name in spec.formulations
+            for scale in spec.scales
+        ]
+    common = {
+        "/threads": 1,
+        "/matching/rule": "equal_force",
+        "/seeds/jitter_m": spec.jitter_m,
+        "/passes": {"time": True, "diagnose": True, "audit": True},
+        "/diagnose/scalings": ["none", "block_jacobi"],
+        "/diagnose/stages": ["full", "without_contact", "without_contact_and_limit"],
+    } | spec.common
     return sweep(f"pareto_{spec.name}", spec.base, common, cases, list(range(1, spec.starts + 1)))

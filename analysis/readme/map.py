@@ -22,8 +22,14 @@ def gather(file: Path = FILE) -> list[str]:
     except (UserError, OSError) as error:
         raise UserError(f"{file}: {error}; ./bench gap-map --quick makes one") from error
     n, (low, high) = counts(found.rows), found.about["unknowns"]
-    of = f"Of {n['cells']} cells {n['cells'] - n[NOT_RUN]} are decided, with {found.about['runs']} runs of {low} to {high} unknowns"
-    return [*sentences(found), of + (f"; {n[NOT_RUN]} are not run yet, most of them of the larger scenes." if n[NOT_RUN] else ".")]
+    of = (
+        f"Of {n['cells']} cells {n['cells'] - n[NOT_RUN]} are decided, with {found.about['runs']} runs of"
+        f" {low} to {high} unknowns"
+    )
+    return [
+        *sentences(found),
+        of + (f"; {n[NOT_RUN]} are not run yet, most of them of the larger scenes." if n[NOT_RUN] else "."),
+    ]
 
 
 def lines(found: list[str], width: int) -> list[str]:

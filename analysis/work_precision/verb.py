@@ -1,7 +1,9 @@
-"""Runs what is missing of a work-precision spec, measures every run against its reference, and writes results/work_precision.json,
-results/WORK_PRECISION.md and docs/work_precision_*.png: error against seconds, Newton iterations, factorisations and products.
+"""Runs what is missing of a work-precision spec, measures every run against its reference, and writes
+results/work_precision.json, results/WORK_PRECISION.md and docs/work_precision_*.png: error against seconds,
+Newton iterations, factorisations and products.
 
-Exit codes: 0 written, 2 it cannot be judged (a bad spec, records missing, --no-run with numbers of another spec, a reference run that failed, an error that is no number; no program).
+Exit codes: 0 written, 2 it cannot be judged (a bad spec, records missing, --no-run with numbers of another
+spec, a reference run that failed, an error that is no number; no program).
 """
 
 from __future__ import annotations
@@ -22,13 +24,43 @@ TABLE = "barrierbench.work_precision_table/1"
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="bench work-precision", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="examples: ./bench work-precision\n          ./bench work-precision my_spec.json --out results/runs/mine")
-    parser.add_argument("spec", nargs="?", type=Path, default=DEFAULT, help="configs/work_precision/NAME.json (default: default.json)")
-    parser.add_argument("--no-run", action="store_true", help="run nothing: make page and figures of the numbers in work_precision.json")
-    parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the sweeps (default: results/runs/work_precision)")
-    parser.add_argument("--out", type=Path, metavar="DIR",
-                        help="folder of table, page and figures (default: results/ and docs/ for default.json, else results/runs/work_precision/NAME)")
+    parser = argparse.ArgumentParser(
+        prog="bench work-precision",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=(
+            "examples: ./bench work-precision\n          ./bench work-precision my_spec.json --out"
+            " results/runs/mine"
+        ),
+    )
+    parser.add_argument(
+        "spec",
+        nargs="?",
+        type=Path,
+        default=DEFAULT,
+        help="configs/work_precision/NAME.json (default: default.json)",
+    )
+    parser.add_argument(
+        "--no-run",
+        action="store_true",
+        help="run nothing: make page and figures of the numbers in work_precision.json",
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        default=RUNS,
+        metavar="DIR",
+        help="folder of the sweeps (default: results/runs/work_precision)",
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help=(
+            "folder of table, page and figures (default: results/ and docs/ for default.json, else"
+            " results/runs/work_precision/NAME)"
+        ),
+    )
     return parser.parse_args(argv)
 
 
@@ -36,7 +68,13 @@ def made(spec: Spec, runs: Path) -> dict:
     """The table of all scenes."""
     for scene in spec.scenes:
         run_scene(spec, scene, runs)
-    return {"schema": TABLE, "name": spec.name, "doc": spec.doc, "spec_sha256": spec.sha256, "scenes": [collect(spec, scene, runs) for scene in spec.scenes]}
+    return {
+        "schema": TABLE,
+        "name": spec.name,
+        "doc": spec.doc,
+        "spec_sha256": spec.sha256,
+        "scenes": [collect(spec, scene, runs) for scene in spec.scenes],
+    }
 
 
 def _rounded(value):
@@ -68,7 +106,10 @@ def read_table(file: Path) -> dict:
     except ValueError as error:
         raise UserError(f"{file}: not JSON: {error}") from None
     if not isinstance(table, dict) or table.get("schema") != TABLE:
-        raise UserError(f"{file}: /schema: found {table.get('schema') if isinstance(table, dict) else table!r}; allowed: {TABLE!r}")
+        raise UserError(
+            f"{file}: /schema: found {table.get('schema') if isinstance(table, dict) else table!r}; allowed:"
+            f" {TABLE!r}"
+        )
     return table
 
 
@@ -76,7 +117,9 @@ def write_all(table: dict, results: Path, docs: Path, scratch: Path) -> None:
     """Page and figures; the pictures with their captions go to docs."""
     write_whole(results / "WORK_PRECISION.md", report.markdown(table))
     ranks = figure.by_rank(table["scenes"])
-    drawn = [figure.draw(scene, scratch / f"work_precision_{scene['name']}", ranks) for scene in table["scenes"]]
+    drawn = [
+        figure.draw(scene, scratch / f"work_precision_{scene['name']}", ranks) for scene in table["scenes"]
+    ]
     drawn.append(figure.draw_profile(table["scenes"], scratch / "work_precision_profile"))
     docs.mkdir(parents=True, exist_ok=True)
     for path in (path for paths in drawn for path in paths if path.suffix in (".png", ".txt")):
@@ -97,8 +140,10 @@ def main(argv: list[str]) -> int:
         write_whole(file, table_text(_rounded(made(spec, args.runs))))
     table = read_table(file)
     if table.get("spec_sha256") != spec.sha256:
-        raise UserError(f"{file}: /spec_sha256: found {table.get('spec_sha256')!r}; allowed: {spec.sha256!r}, of {args.spec}: its numbers are of another spec; "
-                        f"./bench work-precision {args.spec} makes them")
+        raise UserError(
+            f"{file}: /spec_sha256: found {table.get('spec_sha256')!r}; allowed: {spec.sha256!r}, of"
+            f" {args.spec}: its numbers are of another spec; ./bench work-precision {args.spec} makes them"
+        )
     print(report.text(table))
     write_all(table, results, docs, args.runs / "figure")
     return 0
