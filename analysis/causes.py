@@ -14,7 +14,7 @@ import subprocess
 from pathlib import Path
 
 from .errors import UserError, tells
-from .program import built_program, plugin_argument, plugin_words
+from .program import plugin_argument, started
 from .record_file import read_record, read_trace
 from .records import LARGEST_COND
 from .text_table import aligned
@@ -33,10 +33,6 @@ WITHOUT = {
     "contact": ("full", "without_contact"),
     "strain limit": ("without_contact", "without_contact_and_limit"),
 }
-
-
-def program() -> str:
-    return str(built_program(UserError))
 
 
 def diagnosed(folder: Path) -> tuple[dict, list[dict]]:
@@ -192,10 +188,10 @@ def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list
             )
         return given if given.is_dir() else given.parent
     folder = out or ROOT / "results/runs" / f"causes-{given.stem}"
-    words = [program(), *plugin_words(plugins), "run", str(given), "--out", str(folder)]
+    words = ["run", str(given), "--out", str(folder)]
     for option in [*OPTIONS, *settings]:
         words += ["--set", option]
-    code = subprocess.run(words, check=False, stdout=subprocess.DEVNULL).returncode
+    code = started(*words, plugins=plugins, stdout=subprocess.DEVNULL).returncode
     if code != 0:
         raise UserError(f"{given}: the run ended with exit code {code}")
     return folder

@@ -11,13 +11,12 @@ from __future__ import annotations
 import argparse
 import datetime
 import json
-import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 from .errors import UserError, tells
-from .program import built_program
+from .program import started
 
 ROOT = Path(__file__).resolve().parents[1]
 SWEEPS = ("demo_strip", "demo_pinned", "demo_article", "demo_drape")
@@ -34,9 +33,7 @@ class Pair:
 
 
 def run(words: list[str]) -> None:
-    done = subprocess.run(
-        [str(built_program(UserError)), *words], capture_output=True, text=True, check=False
-    )
+    done = started(*words)
     if done.returncode != 0:
         raise UserError(f"{' '.join(words)}: {done.stderr.strip()}")
 

@@ -14,7 +14,6 @@ import datetime
 import json
 import os
 import re
-import subprocess
 import sys
 from itertools import combinations
 from pathlib import Path
@@ -23,7 +22,7 @@ import numpy as np
 import pandas as pd
 
 from .errors import UserError, tells
-from .program import built_program
+from .program import run_sweep
 from .records import RecordError, Records, load
 from .whole_file import write_whole
 
@@ -162,16 +161,7 @@ def print_table(table: pd.DataFrame) -> None:
 
 def collect() -> Path:
     """Runs what is missing of the sweep; the folder of its records. Errors: UserError."""
-    done = subprocess.run(
-        [
-            str(built_program(UserError)),
-            "sweep",
-            str(ROOT / "configs/sweeps/linear_fit.json"),
-            "--out",
-            str(RECORDS),
-        ],
-        check=False,
-    )
+    done = run_sweep(ROOT / "configs/sweeps/linear_fit.json", RECORDS, stdout=None)
     if done.returncode != 0:
         raise UserError(f"the sweep ended with {done.returncode}", done.returncode)
     return RECORDS

@@ -119,9 +119,7 @@ def kernels_of(folder: Path) -> list[dict]:
     kernels = measured_kernels(folder)
     path = folder / "kernel_times.json"
     if not kernels and path.exists():
-        kernels = {
-            name: {**times, "bytes": None} for name, times in read_object(path, UserError)["kernels"].items()
-        }
+        kernels = {name: {**times, "bytes": None} for name, times in read_object(path)["kernels"].items()}
     rows = [
         {
             "name": name,
@@ -135,7 +133,7 @@ def kernels_of(folder: Path) -> list[dict]:
 
 def collect(folder: Path, commit: str, seconds: int) -> dict:
     """The record. Errors: UserError."""
-    device = read_object(folder / "device.json", UserError)
+    device = read_object(folder / "device.json")
     if not device.get("usable") or not device.get("copy"):
         raise UserError(f"{folder}/device.json: no usable card with a measured copy")
     return {

@@ -32,7 +32,7 @@ def read_records(folder: Path) -> list[dict]:
     """By card, then day. Errors: UserError for a file of another schema; prices.json is none of them."""
     records = []
     for path in sorted(folder.glob("*.json")):
-        record = read_object(path, UserError)
+        record = read_object(path)
         if path.name == "prices.json":
             continue
         if record.get("schema") != SCHEMA:
@@ -277,7 +277,7 @@ def main(arguments: list[str]) -> int:
     )
     asked = parser.parse_args(arguments)
     records = read_records(asked.records)
-    prices = read_object(asked.records / "prices.json", UserError)
+    prices = read_object(asked.records / "prices.json")
     try:
         page = markdown(records, prices)
     except KeyError as missing:

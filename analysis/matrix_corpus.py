@@ -12,13 +12,12 @@ import argparse
 import json
 import math
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
 from .errors import UserError, tells
-from .program import built_program
+from .program import started
 
 ROOT = Path(__file__).resolve().parents[1]
 SCHEMA = "barrierbench.matrix_corpus/1"
@@ -42,10 +41,6 @@ without a side-car will do: blocks of 3 if that divides its rows, and b = A * on
 """
 
 
-def program() -> str:
-    return str(built_program(UserError))
-
-
 def read_spec(path: Path) -> dict:
     spec = json.loads(path.read_text())
     if spec.get("schema") != SCHEMA:
@@ -61,10 +56,10 @@ def run(system: dict, common: dict, folder: Path, out: Path) -> None:
     config = folder / system["base"] if "base" in system else out.parent / f"{system['name']}.json"
     if "config" in system:
         config.write_text(json.dumps(system["config"]))
-    words = [program(), "run", str(config), "--out", str(out), "--progress", "none"]
+    words = ["run", str(config), "--out", str(out), "--progress", "none"]
     for pointer, value in {**common, **system.get("set", {})}.items():
         words += ["--set", f"{pointer}={json.dumps(value)}"]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    done = started(*words)
     if done.returncode != 0:
         raise UserError(f"{system['name']}: {done.stderr.strip()}")
 
@@ -130,12 +125,7 @@ def replay(out: Path) -> list[dict]:
         raise UserError(f"{out}: no matrices")
     with tempfile.TemporaryDirectory() as scratch:
         answer = Path(scratch) / "replay.json"
-        done = subprocess.run(
-            [program(), "matrix", *map(str, files), "--json", str(answer)],
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        done = started("matrix", *map(str, files), "--json", str(answer))
         if done.returncode != 0:
             raise UserError(done.stderr.strip())
         return json.loads(answer.read_text())["matrices"]

@@ -100,7 +100,7 @@ class Sweep:
 
 
 def _read(path: Path) -> dict:
-    return read_object(path, UserError)
+    return read_object(path)
 
 
 def order(name: str) -> tuple:

@@ -8,11 +8,10 @@ interval but a range.
 from __future__ import annotations
 
 import json
-import subprocess
 from dataclasses import dataclass, field
 
 from ..errors import UserError
-from ..program import plugin_words
+from ..program import started
 from .verdict import HOLDS, NOT, ONLY_IF, Judged
 
 
@@ -36,13 +35,7 @@ class Eval:
         self.asked.add(text)
         if self.program is None:
             raise UserError(f"no kept answer of eval to {text}: ./bench claims asks it")
-        done = subprocess.run(
-            [self.program, *plugin_words(list(self.plugins)), "eval"],
-            input=text + "\n",
-            capture_output=True,
-            text=True,
-            check=False,
-        )
+        done = started("eval", plugins=list(self.plugins), input=text + "\n")
         if done.returncode != 0:
             raise UserError(f"eval {text}: {done.stderr.strip() or done.stdout.strip()}")
         self.answers[text] = json.loads(done.stdout)

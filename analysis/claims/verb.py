@@ -11,7 +11,6 @@ a bad entry; no program), or calls itself confirmed and is not.
 from __future__ import annotations
 
 import argparse
-import os
 import shutil
 import subprocess
 import sys
@@ -19,7 +18,7 @@ import time
 from pathlib import Path
 
 from ..errors import UserError, tells
-from ..program import plugin_argument, plugin_words
+from ..program import built_program, plugin_argument, run_sweep
 from ..whole_file import write_whole
 from . import coverage, figure, frontiers, registry, report
 from .entry import ROOT, Claim, ids, read_claim, read_sweep
@@ -29,12 +28,13 @@ from .table import FILE, RUNS, Table, collect, read, used_metrics, write
 
 
 def program(needed: bool = True) -> str | None:
-    path = Path(os.environ.get("BARRIERBENCH_PROGRAM", ROOT / "build/release/experiments/barrierbench"))
-    if path.exists():
-        return str(path)
-    if needed:
-        raise UserError(f"{path} is not built: ./bench build; --no-run judges the numbers that are kept")
-    return None
+    """None where it is not needed and not built."""
+    try:
+        return str(built_program("; --no-run judges the numbers that are kept"))
+    except UserError:
+        if needed:
+            raise
+        return None
 
 
 def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
@@ -49,11 +49,7 @@ def run_sweeps(claims: list[Claim], runs: Path, plugins: list[str]) -> None:
     ):
         sweep, start = read_sweep(name), time.monotonic()
         print(f"claims: {name}: {len(sweep.cases)} cases", file=sys.stderr)
-        done = subprocess.run(
-            [program(), *plugin_words(plugins), "sweep", str(ROOT / sweep.file), "--out", str(runs / name)],
-            stdout=subprocess.DEVNULL,
-            check=False,
-        )
+        done = run_sweep(ROOT / sweep.file, runs / name, plugins=plugins, stdout=subprocess.DEVNULL)
         if done.returncode != 0:
             raise UserError(f"{sweep.file}: the program ended with {done.returncode}")
         print(f"claims: {name}: {time.monotonic() - start:.0f} s", file=sys.stderr)

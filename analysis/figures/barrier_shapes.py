@@ -3,9 +3,7 @@ twice."""
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -14,8 +12,7 @@ import numpy as np
 import pandas as pd
 
 from .. import style
-from ..errors import UserError
-from ..program import plugin_words
+from ..program import evaluated, started
 from ..record_file import sha256_of
 
 OF_NO_RUN = {
@@ -74,28 +71,9 @@ def plugins_of(runs: pd.DataFrame | None) -> list[str]:
     return list(found.values())
 
 
-def ask(queries: list[dict], plugins: list[str]) -> list[dict]:
-    """Answers of `eval`, in order. Raises UserError with the first error."""
-    lines = "".join(json.dumps(q) + "\n" for q in queries)
-    done = subprocess.run(
-        [program(), *plugin_words(plugins), "eval", "-"],
-        input=lines,
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
-    errors = [a["error"] for a in answers if "error" in a]
-    if errors or len(answers) != len(queries):
-        raise UserError(f"eval: {errors[0] if errors else done.stderr}")
-    return answers
-
-
 def known_shapes(plugins: list[str]) -> set[str]:
     """Shapes that the program has with these plugins."""
-    done = subprocess.run(
-        [program(), *plugin_words(plugins), "list", "shapes"], capture_output=True, text=True, check=False
-    )
+    done = started("list", "shapes", plugins=plugins)
     return {line.split()[0] for line in done.stdout.splitlines() if line.startswith("  ") and line.strip()}
 
 
@@ -104,8 +82,8 @@ def values(u: np.ndarray, shapes: dict[str, tuple[str, str]], plugins: list[str]
     tables = []
     for name, (shape, argument) in shapes.items():
         base = {"shape": shape, "argument": argument}
-        terms = ask([{"kind": "shape", **base, "d": float(v), "d_hat": 1.0} for v in u], plugins)
-        rho = ask([{"kind": "rho", **base, "u": float(v)} for v in u], plugins)
+        terms = evaluated([{"kind": "shape", **base, "d": float(v), "d_hat": 1.0} for v in u], plugins)
+        rho = evaluated([{"kind": "rho", **base, "u": float(v)} for v in u], plugins)
         columns = {
             "b": [t["b"] for t in terms],
             "minus_db": [-t["db"] for t in terms],

@@ -12,9 +12,10 @@ import numpy as np
 import pandas as pd
 
 from .. import style
+from ..program import evaluated
 from ..ticks import log_ticks
 from .judge import FAR, MADE, Pair, counts, extent, pairs, scatter, steps
-from .rows import NOT_RUN, ask
+from .rows import NOT_RUN
 from .spec import LIMITS, REFERENCE
 from .table import Map
 
@@ -62,7 +63,8 @@ def _over(found: Map, limit: str, metric: str):
 def _rho(found: Map, shape: str, gaps: list[float]) -> list[float]:
     name, argument = found.about["shapes"][shape]
     return [
-        a["rho"] for a in ask([{"kind": "rho", "shape": name, "argument": argument, "u": u} for u in gaps])
+        a["rho"]
+        for a in evaluated([{"kind": "rho", "shape": name, "argument": argument, "u": u} for u in gaps])
     ]
 
 

@@ -2,9 +2,7 @@
 
 from __future__ import annotations
 
-import json
 import math
-import subprocess
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -12,7 +10,7 @@ import numpy as np
 
 from ..claims.table import seconds_of_run
 from ..errors import UserError
-from ..program import built_program
+from ..program import evaluated
 from ..record_file import RecordError, read_record, read_trace
 from .spec import Cell, Spec
 
@@ -186,28 +184,12 @@ def row(cell: Cell, record: dict | None, folder: Path | None = None, outcome: st
     return {key: _rounded(value) for key, value in found.items()}
 
 
-def ask(queries: list[dict]) -> list[dict]:
-    """Answers of one process of `eval`, in order. Errors: UserError."""
-    done = subprocess.run(
-        [str(built_program(UserError)), "eval"],
-        input="".join(json.dumps(q) + "\n" for q in queries),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
-    bad = next((a for a in answers if "error" in a), None)
-    if len(answers) != len(queries) or bad:
-        raise UserError(f"eval: {bad['error'] if bad else done.stderr.strip()[:300]}")
-    return answers
-
-
 def cannot_reach(spec: Spec) -> set[tuple[str, float]]:
     """(shape, theta) where the force falls towards contact: what equal force would give rests at another gap,
     on the far side of the peak.
     """
     places = [(shape, theta) for shape in spec.shapes for theta in spec.gaps]
-    answers = ask(
+    answers = evaluated(
         [
             {
                 "kind": "shape",
@@ -229,7 +211,7 @@ def add_rho(spec: Spec, rows: list[dict]) -> None:
     ]
     if not places:
         return
-    answers = ask(
+    answers = evaluated(
         [
             {
                 "kind": "rho",

@@ -158,7 +158,7 @@ def _scene(found, path: Path, limits: tuple[str, ...]) -> Scene:
 
 def read_spec(path: Path) -> Spec:
     """Errors: UserError with file, place, what was found and what is allowed."""
-    data = read_object(path, UserError)
+    data = read_object(path)
     if data.get("schema") != SCHEMA:
         _fail(path, "schema", data.get("schema"), repr(SCHEMA))
     if odd := sorted((set(REQUIRED) - set(data)) | (set(data) - {*REQUIRED, *PARTS})):
@@ -193,7 +193,7 @@ def read_spec(path: Path) -> Spec:
 
 def part(spec: Spec, name: str) -> Spec:
     """A documented part of a spec, one of PARTS. Errors: UserError."""
-    asked = read_object(spec.path, UserError).get(name)
+    asked = read_object(spec.path).get(name)
     if (
         not isinstance(asked, dict)
         or set(asked) != {"scenes", "shapes", "gaps", "limits"}

@@ -52,7 +52,7 @@ def write(found: Map, path: Path) -> None:
 
 def read(path: Path) -> Map:
     """Errors: UserError."""
-    data = read_object(path, UserError)
+    data = read_object(path)
     if data.get("schema") != SCHEMA or data.get("columns") != list(COLUMNS):
         raise UserError(
             f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with"

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import json
-import subprocess
 
 from ..errors import UserError
+from ..program import started
 from .cases import program
 from .finding import Finding
 
@@ -31,7 +31,7 @@ def findings_of(report: dict) -> list[Finding]:
 
 def judge_build() -> list[Finding]:
     """Raises UserError when the program has no report."""
-    done = subprocess.run([str(program()), "validity", "--json"], capture_output=True, text=True, check=False)
+    done = started("validity", "--json")
     try:
         found = findings_of(json.loads(done.stdout))
     except (ValueError, KeyError, TypeError) as error:

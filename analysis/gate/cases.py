@@ -59,7 +59,7 @@ def read_set(name: str) -> list[Case]:
 
 
 def program() -> Path:
-    return built_program(UserError)
+    return built_program()
 
 
 def command(case: Case, out: Path, threads: int, more: dict) -> list[str]:

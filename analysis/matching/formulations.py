@@ -33,7 +33,7 @@ def preset(name: str) -> dict:
     shape or policy of a plugin, say. Errors: UserError with the nearest name.
     """
     if name.endswith(".json"):
-        formulation = read_object(Path(name), UserError).get("formulation")
+        formulation = read_object(Path(name)).get("formulation")
         if (
             not isinstance(formulation, dict)
             or not {"shape", "argument", "stiffness_policy"} <= formulation.keys()

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import subprocess
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -14,8 +13,7 @@ from ..claims import entry
 from ..claims.metrics import METRICS
 from ..errors import UserError
 from ..gate.configs import differences
-from ..program import built_program, plugin_words
-from ..program import read_object as read_json_object
+from ..program import read_object, run_sweep
 from ..record_file import RecordError, read_record
 from . import formulations
 from .formulations import known
@@ -108,15 +106,6 @@ def inputs_sha256(made: Sweep, overrides: list[str] | None = None, plugins: list
     return found.hexdigest()
 
 
-def program() -> str:
-    return str(built_program(UserError))
-
-
-def read_object(path: Path) -> dict:
-    """A JSON object from a file; UserError says what it is instead."""
-    return read_json_object(path, UserError)
-
-
 def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: list[str] | None = None) -> None:
     """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file. Errors: UserError
     with the first line of what the program said; input that it refuses leaves nothing.
@@ -124,19 +113,10 @@ def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: lis
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / f"{made.name}.json"
         file.write_text(made.text)
-        words = [
-            program(),
-            *plugin_words(plugins or []),
-            "sweep",
-            str(file),
-            "--out",
-            str(out),
-            "--progress",
-            "none",
-        ]
+        words = ["--progress", "none"]
         for override in overrides or []:
             words += ["--set", override]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        done = run_sweep(file, out, *words, plugins=plugins or [])
     if done.returncode != 0:
         first, *more = (done.stderr.strip() or done.stdout.strip()).splitlines() or ["it said nothing"]
         first = first.removeprefix(f"{file} ")

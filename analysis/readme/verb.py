@@ -105,7 +105,7 @@ def main(argv: list[str]) -> int:
             print(f"docs: {', '.join(copied) or 'no figure'}")
         print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
         return 0
-    program = str(built_program(UserError))
+    program = str(built_program())
     found = (
         [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)]
         + stale(ROOT, kept())

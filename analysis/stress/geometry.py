@@ -4,9 +4,7 @@ exact.py. Each counts its subjects.
 
 from __future__ import annotations
 
-import json
 import math
-import subprocess
 from dataclasses import dataclass, field
 from decimal import Decimal
 from fnmatch import fnmatchcase
@@ -15,9 +13,9 @@ from fractions import Fraction
 import numpy as np
 
 from ..errors import UserError
+from ..program import evaluated
 from . import exact
 from .entry import Test
-from .run import program
 
 PRECISIONS = ("double", "float")
 SCALAR = {"double": np.float64, "float": np.float32}
@@ -38,24 +36,6 @@ class Count:
     reason: str = ""
     allowed: dict = field(default_factory=dict)
     as_expected: bool = False
-
-
-def ask(queries: list[dict]) -> list[dict]:
-    """Answers of one process of `eval`, in order."""
-    done = subprocess.run(
-        [str(program()), "eval"],
-        input="".join(json.dumps(q) + "\n" for q in queries),
-        capture_output=True,
-        text=True,
-        check=False,
-    )
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
-    if len(answers) != len(queries) or any("error" in answer for answer in answers):
-        raise UserError(
-            f"eval: {len(answers)} answers to {len(queries)} queries:"
-            f" {done.stderr.strip()[:300] or next(a for a in answers if 'error' in a)}"
-        )
-    return answers
 
 
 def _ulp(x: np.ndarray) -> float:
@@ -106,7 +86,7 @@ def ccd(quick: bool) -> list[Count]:
                         (pair, offset, gap, *_approach(rng, pair, gap, offset, SCALAR[precision]))
                         for _ in range(n)
                     ]
-        answers = ask(
+        answers = evaluated(
             [
                 {
                     "kind": "ccd",
@@ -157,7 +137,7 @@ def _judge_ccd(count: Count, pair: str, x0, x1, ulp: float, answer: dict) -> Non
 def _distances(test: str, pair: str, made: list[tuple[str, np.ndarray]], precision: str) -> list[Count]:
     """made: case and points. Largest relative error of the distance, and by how much it is over-reported."""
     counts: dict[str, Count] = {}
-    answers = ask(
+    answers = evaluated(
         [
             {"kind": "distance", "pair": pair, "points": x.astype(float).tolist(), "precision": precision}
             for _, x in made
@@ -219,7 +199,7 @@ def shapes(quick: bool) -> list[Count]:
             for name in ("log", "log_squared", "quadratic", "cubic", "two_stage", "exponential")
             for u in gaps
         ]
-        answers = ask(
+        answers = evaluated(
             [
                 {"kind": "shape", "shape": name, "d": u, "d_hat": 1, "precision": precision}
                 for name, u in names

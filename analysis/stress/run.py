@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UserError
-from ..program import built_program
+from ..program import built_program, run_sweep, started
 from ..record_file import RecordError, read_record
 from ..whole_file import write_whole
 from .entry import ROOT, Case, Formulation, Test
@@ -72,16 +72,14 @@ METRICS = (
 
 
 def program() -> Path:
-    return built_program(UserError)
+    return built_program()
 
 
 def config_schema() -> dict:
     """That of the program which will run, not of the tree."""
-    done = subprocess.run(
-        [str(program()), "help", "config", "--schema"], capture_output=True, text=True, check=False
-    )
+    done = started("help", "config", "--schema")
     if done.returncode != 0:
-        raise UserError(f"{program()} help config --schema: {done.stderr.strip()}")
+        raise UserError(f"{built_program()} help config --schema: {done.stderr.strip()}")
     return json.loads(done.stdout)
 
 
@@ -173,14 +171,13 @@ def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, lim
     def blank(outcome, detail):
         return Row(test.id, case.label, formulation.label, outcome, detail)
 
-    command = [str(program()), "sweep", str(spec), "--out", str(place / "runs"), "--progress", "none"]
     try:
-        done = subprocess.run(
-            command,
-            capture_output=True,
-            text=True,
+        done = run_sweep(
+            spec,
+            place / "runs",
+            "--progress",
+            "none",
             timeout=CLOCK * limit_s,
-            check=False,
             preexec_fn=lambda: _limit(limit_s),
         )
     except subprocess.TimeoutExpired:
@@ -192,17 +189,17 @@ def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, lim
     if done.returncode != 0:
         return blank("crash", f"the program ended with {done.returncode}: {_told(done.stderr)}")
     try:
-        return row_of(read_record(_record(command, place / "runs")), test.id, case.label, formulation.label)
+        return row_of(read_record(_record(spec, place / "runs")), test.id, case.label, formulation.label)
     except RecordError as error:
         return blank("crash", str(error))
 
 
-def _record(command: list[str], folder: Path) -> Path:
+def _record(spec: Path, folder: Path) -> Path:
     """The record of this very config; those of earlier versions of the case may lie beside it."""
     made = sorted(folder.glob("*/run.json"))
     if len(made) == 1:
         return made[0]
-    told = subprocess.run([*command, "--dry-run"], capture_output=True, text=True, check=False).stdout.strip()
+    told = run_sweep(spec, folder, "--dry-run").stdout.strip()
     return Path(told or folder) / "run.json"
 
 

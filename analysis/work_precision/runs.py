@@ -6,7 +6,6 @@ from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 import time
 from datetime import datetime
@@ -16,7 +15,7 @@ from ..accuracy.errors import NotFinite
 from ..accuracy.reference import CLOSED_FORMS, NoReference, Reference, measure, refined
 from ..accuracy.state import Motion, read_motion
 from ..errors import UserError
-from ..program import built_program
+from ..program import built_program, run_sweep
 from ..record_file import RecordError, read_record
 from ..whole_file import write_whole
 from .spec import REFERENCE_D_HAT, ROOT, SOLVERS, Scene, Spec
@@ -25,8 +24,7 @@ RUNS = ROOT / "results" / "runs" / "work_precision"
 ID_DIGITS = 16
 
 
-def program() -> str:
-    return str(built_program(UserError, "; --no-run makes the page of the numbers that are kept"))
+NEEDED = "; --no-run makes the page of the numbers that are kept"
 
 
 def sweep_name(spec: Spec, scene: Scene) -> str:
@@ -36,21 +34,8 @@ def sweep_name(spec: Spec, scene: Scene) -> str:
 def _sweep(spec: Spec, scene: Scene, runs: Path, *words: str) -> str:
     """Runs the sweep of a scene -> what the program answers. Errors: UserError with what it says."""
     folder = runs / sweep_name(spec, scene)
-    done = subprocess.run(
-        [
-            program(),
-            "sweep",
-            str(runs / f"{folder.name}.sweep.json"),
-            "--out",
-            str(folder),
-            "--progress",
-            "none",
-            *words,
-        ],
-        capture_output=True,
-        text=True,
-        check=False,
-    )
+    built_program(NEEDED)
+    done = run_sweep(runs / f"{folder.name}.sweep.json", folder, "--progress", "none", *words)
     if done.returncode != 0:
         raise UserError(
             f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}:"

@@ -284,8 +284,7 @@ def test_nothing_is_run_before_the_entry_is_committed(repository):
 
 def test_the_verb_runs_what_is_registered_and_no_more(monkeypatch, tmp_path):
     asked = []
-    monkeypatch.setattr(verb, "program", lambda needed=True: "program")
-    monkeypatch.setattr(verb.subprocess, "run", lambda words, **_: asked.append(words[2]) or subprocess.CompletedProcess(words, 0))
+    monkeypatch.setattr(verb, "run_sweep", lambda file, out, **_: asked.append(str(file)) or subprocess.CompletedProcess([], 0))
     monkeypatch.setattr(registry, "ready", lambda claim, entries: None)
     monkeypatch.setattr(registry, "read", lambda: {})
     verb.run_sweeps([CLAIM], tmp_path, [])
