@@ -18,9 +18,9 @@ from pathlib import Path
 
 from .errors import UserError, tells
 from .program import started
+from .spec_file import read_spec
 
 ROOT = Path(__file__).resolve().parents[1]
-SCHEMA = "barrierbench.matrix_corpus/1"
 MOST_BYTES = 8 << 20
 SOLVERS = ["cholmod", "lagged_cholesky", "none", "jacobi", "block_jacobi", "ic0", "schwarz"]
 HEAD = """# Hard systems as data
@@ -41,13 +41,12 @@ without a side-car will do: blocks of 3 if that divides its rows, and b = A * on
 """
 
 
-def read_spec(path: Path) -> dict:
-    spec = json.loads(path.read_text())
-    if spec.get("schema") != SCHEMA:
-        raise UserError(f"{path}#/schema: found {spec.get('schema')!r}; allowed: {SCHEMA!r}")
+def read_corpus(path: Path) -> dict:
+    """Errors: UserError, also for two systems of one name."""
+    spec = read_spec(path, "matrix_corpus")
     names = [system["name"] for system in spec["systems"]]
     if len(set(names)) != len(names):
-        raise UserError(f"{path}: a name twice in {', '.join(sorted(names))}")
+        raise UserError(f"{path}#/systems: a name twice in {', '.join(sorted(names))}")
     return spec
 
 
@@ -101,7 +100,7 @@ def keep(system: dict, side_car: Path, out: Path) -> None:
 
 
 def make(spec_file: Path, out: Path) -> None:
-    spec = read_spec(spec_file)
+    spec = read_corpus(spec_file)
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         for system in spec["systems"]:

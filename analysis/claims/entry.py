@@ -14,22 +14,15 @@ from pathlib import Path
 
 from ..errors import UserError
 from ..program import read_object
+from ..spec_file import read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "claims"
-NAME = "barrierbench.claim/1"
 REQUIRED = ("id", "source", "sentence", "dimension", "guarantee", "kind")
-KINDS = (
-    "runs",
-    "closed form",
-    "by dimension",
-    "by construction",
-)  # what makes it true or false; the last two are trivial
 SEEDS = "/seeds/main"
 SOLVER = "/step_solver/name"
 METHOD = "/method"
 METHODS = ROOT / "configs" / "methods"
-OPTIONAL = ("schema", "parts", "waits_for", "note", "rule_changes", "frontier")
 
 
 @dataclass(frozen=True)
@@ -39,10 +32,9 @@ class Claim:
     sentence: str
     dimension: str
     guarantee: str
-    kind: str
-    parts: tuple[
-        dict, ...
-    ] = ()  # rules with their parameters; all of them together are the claim, but those marked beside
+    kind: str  # what makes it true or false; by dimension and by construction are trivial
+    # rules with their parameters; all of them together are the claim, but those marked beside
+    parts: tuple[dict, ...] = ()
     waits_for: str = ""  # what has to be built before it can be decided
     note: str = ""
     rule_changes: tuple[str, ...] = ()  # of a rule after numbers were seen
@@ -117,17 +109,9 @@ def read_claim(name: str, folder: Path = FOLDER) -> Claim:
     path = folder / f"{name}.json"
     if not path.is_file():
         raise UserError(f"claim {name!r}: one of {', '.join(ids(folder))} (claims/)")
-    data = _read(path)
-    if data.get("schema") != NAME:
-        raise UserError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
-    if missing := [key for key in REQUIRED if not isinstance(data.get(key), str)]:
-        raise UserError(f"{path}: /{missing[0]}: a string is needed")
-    if unknown := [key for key in data if key not in (*REQUIRED, *OPTIONAL)]:
-        raise UserError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
+    data = read_spec(path, "claim")
     if data["id"] != name:
         raise UserError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
-    if data["kind"] not in KINDS:
-        raise UserError(f"{path}: /kind: found {data['kind']!r}; one of {', '.join(KINDS)}")
     if "frontier" in data and set(data["frontier"]) - {"bad"} != {"sweep", "cost", "axes"}:
         raise UserError(
             f"{path}: /frontier: sweep, cost and axes are needed, bad may be given; found"

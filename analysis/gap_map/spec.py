@@ -11,8 +11,9 @@ from ..accuracy.shapes import barrier
 from ..errors import UserError
 from ..matching.runs import Sweep, sweep
 from ..program import read_object
+from ..spec_file import read_spec as read_json_spec
+from ..spec_file import require_base
 
-SCHEMA = "barrierbench.gap_map/1"
 LIMITS = {
     "on": "contact and strain limit take shape and theta",
     "contact": "contact alone takes them; the limit is a log matched at theta 0.1, the same in every run",
@@ -24,7 +25,6 @@ PARTS = {
     "quick": "minutes, where the whole takes hours",
     "large": "the larger resolutions of few shapes and gaps",
 }  # of a spec that may be run alone; quick has to be there
-REQUIRED = ("schema", "name", "doc", "base", "set", "shapes", "main", "gaps", "limits", "scenes", "quick")
 OF_SCENE = ("label", "obstacle", "set", "resolutions")
 OBSTACLES = ("analytic", "mesh", "none")
 MAIN_MOST = 5  # series of a panel, the reference among them
@@ -158,16 +158,8 @@ def _scene(found, path: Path, limits: tuple[str, ...]) -> Scene:
 
 def read_spec(path: Path) -> Spec:
     """Errors: UserError with file, place, what was found and what is allowed."""
-    data = read_object(path)
-    if data.get("schema") != SCHEMA:
-        _fail(path, "schema", data.get("schema"), repr(SCHEMA))
-    if odd := sorted((set(REQUIRED) - set(data)) | (set(data) - {*REQUIRED, *PARTS})):
-        raise UserError(
-            f"{path}#/{odd[0]}: {'unknown' if odd[0] in data else 'is missing'}; the keys are"
-            f" {', '.join(REQUIRED)}"
-        )
-    if not isinstance(data["base"], str) or not (path.parent / data["base"]).is_file():
-        _fail(path, "base", data["base"], "the path of a config, relative to this file,")
+    data = read_json_spec(path, "gap_map")
+    base = require_base(data, path)
     shapes = _shapes(data, path)
     limits = _words(data["limits"], tuple(LIMITS), path, "limits")
     scenes = tuple(_scene(found, path, limits) for found in data["scenes"])
@@ -181,7 +173,7 @@ def read_spec(path: Path) -> Spec:
         hashlib.sha256(path.read_bytes()).hexdigest(),
         data["name"],
         data["doc"],
-        path.parent / data["base"],
+        base,
         data["set"],
         shapes,
         main,

@@ -9,11 +9,11 @@ from pathlib import Path
 
 from ..errors import UserError
 from ..program import built_program
+from ..spec_file import read_spec
 from .records import Run, read_run
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "configs" / "gates"
-NAME = "barrierbench.gates/1"
 
 
 @dataclass(frozen=True)
@@ -36,12 +36,7 @@ def read_set(name: str) -> list[Case]:
     path = FOLDER / f"{name}.json"
     if not path.is_file():
         raise UserError(f"set {name!r}: one of {', '.join(sets())} (configs/gates/)")
-    try:
-        data = json.loads(path.read_text())
-    except ValueError as error:
-        raise UserError(f"{path}: not JSON: {error}") from None
-    if data.get("schema") != NAME:
-        raise UserError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
+    data = read_spec(path, "gates")
     cases = [
         Case(
             f"{scene['name']}-{formulation['name']}",

@@ -8,14 +8,14 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..errors import UserError
-from .formulations import REFERENCE, VARY, preset, settings
-from .runs import Sweep, read_object, sweep
+from ..spec_file import read_spec as read_json_spec
+from ..spec_file import require_base
+from .formulations import REFERENCE, preset, settings
+from .runs import Sweep, sweep
 
-SCHEMA = "barrierbench.pareto/1"
 DECADES = 4.0  # a sweep over stiffness spans at least these
 GAPS = {"min": "gap_min", "median": "gap_median"}  # word of a spec -> metric
 OPTIONAL = {"doc": "", "vary": "both", "gap": "min", "set": {}}
-REQUIRED = ("schema", "name", "base", "formulations", "scales", "starts", "jitter_m", "gaps", "scenes")
 
 
 @dataclass(frozen=True)
@@ -127,31 +127,8 @@ def _scenes(data: dict, path: Path) -> dict[str, dict]:
 
 def read_spec(path: Path) -> Spec:
     """Errors: UserError with file, place, what was found and what is allowed."""
-    data = read_object(path)
-    if data.get("schema") != SCHEMA:
-        raise UserError(f"{path}#/schema: found {data.get('schema')!r}; {SCHEMA!r} is needed")
-    if missing := [key for key in REQUIRED if key not in data]:
-        raise UserError(f"{path}#/{missing[0]}: is missing")
-    if unknown := [key for key in data if key not in (*REQUIRED, *OPTIONAL)]:
-        raise UserError(f"{path}#/{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
-    data = OPTIONAL | data
-    for key, words in (("vary", VARY), ("gap", tuple(GAPS))):
-        if data[key] not in words:
-            raise UserError(f"{path}#/{key}: found {data[key]!r}; one of {', '.join(words)} is needed")
-    if not isinstance(data["doc"], str):
-        raise UserError(f"{path}#/doc: found {data['doc']!r}; text is needed")
-    if not isinstance(data["base"], str) or not (path.parent / data["base"]).is_file():
-        raise UserError(
-            f"{path}#/base: found {data['base']!r}; the path of a config is needed, relative to this file"
-        )
-    if (
-        isinstance(data["starts"], bool)
-        or not isinstance(data["starts"], int)
-        or not 1 <= data["starts"] <= 100
-    ):
-        raise UserError(f"{path}#/starts: found {data['starts']!r}; a whole number from 1 to 100 is needed")
-    if not isinstance(data["name"], str) or not data["name"].isidentifier():
-        raise UserError(f"{path}#/name: found {data['name']!r}; one word is needed")
+    data = OPTIONAL | read_json_spec(path, "pareto")
+    base = require_base(data, path)
     jitter = _numbers({"jitter_m": [data["jitter_m"]]}, "jitter_m", "a length >= 0", lambda x: x >= 0, path)[
         0
     ]
@@ -160,7 +137,7 @@ def read_spec(path: Path) -> Spec:
         hashlib.sha256(path.read_bytes()).hexdigest(),
         data["name"],
         data["doc"],
-        path.parent / data["base"],
+        base,
         _formulations(data, path),
         data["vary"],
         _scales(data, path),

@@ -12,13 +12,11 @@ from pathlib import Path
 
 from .. import fields
 from ..errors import UserError
+from ..spec_file import read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "configs" / "stress"
-NAME = "barrierbench.stress/1"
-REQUIRED = ("schema", "id", "title", "varies", "measures", "expect")
 RUNS = ("base", "set", "axes", "formulations", "contacts", "full", "relations")  # of a test that runs scenes
-OPTIONAL = ("geometry", "quick", "changed", "defects", *RUNS)
 ONE = "-"  # the case of a test without axes
 
 # What a record cannot say of itself: ok but not valid; no record because the config was refused; the
@@ -229,11 +227,7 @@ def read_test(name: str, folder: Path = FOLDER, full: bool = False) -> Test:
     path = folder / f"{name}.json"
     if not path.is_file():
         raise UserError(f"stress test {name!r}: one of {', '.join(ids(folder))} (configs/stress/)")
-    data = read_json(path, NAME)
-    if missing := [key for key in REQUIRED if not data.get(key)]:
-        raise UserError(f"{path}: /{missing[0]} is needed")
-    if unknown := [key for key in data if key not in (*REQUIRED, *OPTIONAL)]:
-        raise UserError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
+    data = read_spec(path, "stress")
     if data["id"] != name:
         raise UserError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
     if "geometry" in data:

@@ -143,6 +143,8 @@ def _row(scene: Scene, key: tuple, folder: Path, reference: Reference) -> dict:
         return row
     try:
         row["errors"], skipped = measure(read_motion(folder), reference)
+    except RecordError:
+        raise  # it names its file
     except (NotFinite, NoReference, UserError) as error:
         raise UserError(f"scene {scene.name}: {folder}: {error}") from None
     if scene.error not in row["errors"]:

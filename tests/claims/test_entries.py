@@ -126,9 +126,9 @@ def test_numbers_of_another_sweep_file_are_missing():
 
 
 @pytest.mark.parametrize("edit, said", [
-    ({"id": "K2"}, "/id: found 'K2'"), ({"sentence": 1}, "/sentence: a string is needed"), ({"parts": [], "waits_for": ""}, "neither parts"),
+    ({"id": "K2"}, "/id: found 'K2'"), ({"sentence": 1}, "/sentence: found 1; a string is needed"), ({"parts": [], "waits_for": ""}, "neither parts"),
     ({"schema": "x"}, "'barrierbench.claim/1' is needed"), ({"verdict": "holds"}, "/verdict: unknown"),
-    ({"kind": "obvious"}, "/kind: found 'obvious'; one of runs, closed form"), ({"kind": None}, "/kind: a string is needed")])
+    ({"kind": "obvious"}, "/kind: found 'obvious'; one of runs, closed form"), ({"kind": None}, "/kind: found None; one of runs, closed form")])
 def test_a_bad_claim(tmp_path, edit, said):
     (tmp_path / "K1.json").write_text(json.dumps({**json.loads((FOLDER / "K1.json").read_text()), **edit}))
     with pytest.raises(UserError, match=said):

@@ -58,8 +58,8 @@ def test_every_preset_is_compared_or_left_out():
     (lambda d: d.update(quick=["gone"]), "/quick: 'gone' is no case"),
     (lambda d: d["axes"][0]["cases"][0].update(sets={}), "/axes/0/cases/0/sets: unknown"),
     (lambda d: d.update(id="M10"), "/id: found 'M10'"),
-    (lambda d: d.update(schema="x/1"), "/schema: 'x/1'"),
-    (lambda d: d.pop("title"), "/title is needed"),
+    (lambda d: d.update(schema="x/1"), "/schema: found 'x/1'"),
+    (lambda d: d.pop("title"), "/title: is missing"),
 ])
 def test_a_wrong_test_is_refused(tmp_path, change, message):
     read_test("M09", made(tmp_path))
