@@ -17,6 +17,7 @@ from pathlib import Path
 
 from .errors import UserError, tells
 from .program import started
+from .text_table import markdown as table_lines
 
 ROOT = Path(__file__).resolve().parents[1]
 SWEEPS = ("demo_strip", "demo_pinned", "demo_article", "demo_drape")
@@ -221,12 +222,10 @@ def page(groups: dict[str, list[Pair]], note: str) -> str:
         ),
         "the method. *Largest difference*: relative, over the pairs that both call ok.",
         "",
-        "| " + " | ".join(COLUMNS) + " |",
-        "|" + "---|" * len(COLUMNS),
     ]
-    lines += ["| " + " | ".join(row(name, pairs)) + " |" for name, pairs in groups.items()]
     every = [pair for pairs in groups.values() for pair in pairs]
-    lines += ["| " + " | ".join(row("all", every)) + " |", ""]
+    rows = [row(name, pairs) for name, pairs in [*groups.items(), ("all", every)]]
+    lines += [*table_lines(list(COLUMNS), rows), ""]
     return "\n".join(lines)
 
 

@@ -19,6 +19,7 @@ from pathlib import Path
 
 from .errors import UserError, tells
 from .front import building
+from .text_table import aligned
 from .whole_file import write_whole
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -131,11 +132,7 @@ def table(rows: list[dict]) -> str:
             str(sum(r["failed"] for r in rows)),
         ]
     )
-    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
-    return "\n".join(
-        "  ".join(c.ljust(w) if i == 0 else c.rjust(w) for i, (c, w) in enumerate(zip(line, widths)))
-        for line in lines
-    )
+    return "\n".join(aligned(head, lines[1:], set(range(1, len(head)))))
 
 
 def positive(text: str) -> int:

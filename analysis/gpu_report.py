@@ -18,6 +18,7 @@ from . import style
 from .errors import UserError, tells
 from .gpu_evidence import RECORDS, SCHEMA
 from .program import read_object
+from .text_table import markdown as table_lines
 from .whole_file import write_whole
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -42,12 +43,7 @@ def read_records(folder: Path) -> list[dict]:
 
 
 def _table(head: list[str], rows: list[list[str]]) -> list[str]:
-    return [
-        "| " + " | ".join(head) + " |",
-        "|" + "---|" * len(head),
-        *("| " + " | ".join(row) + " |" for row in rows),
-        "",
-    ]
+    return [*table_lines(head, rows), ""]
 
 
 def _number(value: float | None, digits: int = 3) -> str:

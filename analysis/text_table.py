@@ -1,4 +1,4 @@
-"""Tables of plain text."""
+"""Tables, as plain text and as Markdown."""
 
 from __future__ import annotations
 
@@ -13,3 +13,8 @@ def aligned(head: list[str], rows: list[list[str]], right: set[int] = frozenset(
         ).rstrip()
         for row in cells
     ]
+
+
+def markdown(head: list[str], rows: list[list[str]]) -> list[str]:
+    """Lines of a table in Markdown."""
+    return [f"| {' | '.join(head)} |", "|" + "---|" * len(head), *(f"| {' | '.join(row)} |" for row in rows)]

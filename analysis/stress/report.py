@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 
+from ..text_table import markdown as table_lines
 from .entry import Test, left_out
 from .run import WAITS, Row
 from .table import Result
@@ -39,12 +40,7 @@ def _numbers(rows: list[Row]) -> str:
 
 
 def _table(head: list[str], lines: list[list[str]]) -> list[str]:
-    return [
-        "| " + " | ".join(head) + " |",
-        "|" + "---|" * len(head),
-        *("| " + " | ".join(line) + " |" for line in lines),
-        "",
-    ]
+    return [*table_lines(head, lines), ""]
 
 
 def columns(results: dict[str, Result], tests: dict[str, Test]) -> list[str]:
