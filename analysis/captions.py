@@ -5,10 +5,26 @@ from __future__ import annotations
 import textwrap
 from collections.abc import Iterable
 
-SETTINGS = ("scene", "matching_rule", "step_solver", "integrator", "linear_solver", "d_hat_m", "dt_s", "steps", "dt_min_s")
+SETTINGS = (
+    "scene",
+    "matching_rule",
+    "step_solver",
+    "integrator",
+    "linear_solver",
+    "d_hat_m",
+    "dt_s",
+    "steps",
+    "dt_min_s",
+)
 
 
-PLACE = ("machine_cpu_model", "machine_cores", "provenance_threads", "provenance_blas_kernel", "provenance_git_commit")
+PLACE = (
+    "machine_cpu_model",
+    "machine_cores",
+    "provenance_threads",
+    "provenance_blas_kernel",
+    "provenance_git_commit",
+)
 
 
 def _distinct(rows: Iterable[dict], column: str) -> str:
@@ -22,10 +38,14 @@ def _settings(rows: list[dict], column: str) -> str:
     for row in rows:
         value = row.get(column)
         if value not in (None, "") and value == value:  # nan: not in the record
-            of.setdefault(f"{value:g}" if isinstance(value, float) else str(value), []).append(str(row.get("series", "")))
+            of.setdefault(f"{value:g}" if isinstance(value, float) else str(value), []).append(
+                str(row.get("series", ""))
+            )
     most = max(map(len, of.values()), default=0)
     few = 2 * (len(rows) - most) < len(rows)
-    return ", ".join(f"{value} ({', '.join(names)})" if few and len(names) < most else value for value, names in of.items())
+    return ", ".join(
+        f"{value} ({', '.join(names)})" if few and len(names) < most else value for value, names in of.items()
+    )
 
 
 def caption(shown: str, rows: list[dict]) -> str:
@@ -34,12 +54,17 @@ def caption(shown: str, rows: list[dict]) -> str:
     if not rows:
         return textwrap.fill(shown, 100) + "\n"
     named = {column: _settings(rows, column) for column in SETTINGS}
-    lines.append("Settings: " + "; ".join(f"{column} {value}" for column, value in named.items() if value) + ".")
+    lines.append(
+        "Settings: " + "; ".join(f"{column} {value}" for column, value in named.items() if value) + "."
+    )
     cpu, cores, threads, blas, commit = (_distinct(rows, column) for column in PLACE)
     lines.append(
         f"Machine: {cpu or 'not recorded'}, {cores or '?'} cores, {threads or '?'} threads; "
         f"BLAS: {blas or 'not recorded'}; program: commit {commit[:10] or 'not recorded'}."
     )
     days = sorted({str(row.get("started_utc") or "")[:10] for row in rows} - {""})
-    lines.append(f"Recorded: {' to '.join(dict.fromkeys((days[0], days[-1]))) if days else 'no date'} (UTC), {len(rows)} run{'s' if len(rows) != 1 else ''}.")
+    lines.append(
+        f"Recorded: {' to '.join(dict.fromkeys((days[0], days[-1]))) if days else 'no date'} (UTC),"
+        f" {len(rows)} run{'s' if len(rows) != 1 else ''}."
+    )
     return "\n\n".join(textwrap.fill(line, 100) for line in lines) + "\n"

@@ -1,7 +1,8 @@
-"""A condition number taken apart: python -m barrierbench_analysis.causes RUN, verb `bench causes`.
+"""A condition number taken apart: the verb `bench causes`.
 
-Of the diagnosed Newton iteration with the largest condition number (or the one that is named): every stage and scaling side by side, what contact,
-strain limit and scaling make of it, and where the eigenvectors of both ends live: on which term, element, body and vertices.
+Of the diagnosed Newton iteration with the largest condition number (or the one that is named): every stage
+and scaling side by side, what contact, strain limit and scaling make of it, and where the eigenvectors of
+both ends live: on which term, element, body and vertices.
 """
 
 from __future__ import annotations
@@ -10,35 +11,41 @@ import argparse
 import json
 import math
 import subprocess
-import sys
 from pathlib import Path
 
-from .load import LARGEST_COND
-from .program import built_program, plugin_argument, plugin_words
-from .record_file import RecordError, read_record, read_trace
+from .errors import UserError, tells
+from .program import plugin_argument, started
+from .record_file import read_record, read_trace
+from .records import LARGEST_COND
 from .text_table import aligned
 
 ROOT = Path(__file__).resolve().parents[1]
 STAGES = ["full", "without_contact", "without_contact_and_limit"]
 SCALINGS = ["none", "jacobi", "block_jacobi"]
-OPTIONS = ["/passes/diagnose=true", "/passes/time=false", "/diagnose/ends=true", f"/diagnose/stages={json.dumps(STAGES)}", f"/diagnose/scalings={json.dumps(SCALINGS)}"]
-WITHOUT = {"contact": ("full", "without_contact"), "strain limit": ("without_contact", "without_contact_and_limit")}
-
-
-class CausesError(ValueError):
-    """A run that cannot be taken apart, with what would make it possible."""
-
-
-def program() -> str:
-    return str(built_program(CausesError))
+OPTIONS = [
+    "/passes/diagnose=true",
+    "/passes/time=false",
+    "/diagnose/ends=true",
+    f"/diagnose/stages={json.dumps(STAGES)}",
+    f"/diagnose/scalings={json.dumps(SCALINGS)}",
+]
+WITHOUT = {
+    "contact": ("full", "without_contact"),
+    "strain limit": ("without_contact", "without_contact_and_limit"),
+}
 
 
 def diagnosed(folder: Path) -> tuple[dict, list[dict]]:
-    """The record in a folder, and the lines of its trace that have condition numbers. Raises CausesError, RecordError."""
+    """The record in a folder, and the lines of its trace that have condition numbers. Raises UserError,
+    RecordError.
+    """
     record = read_record(folder / "run.json")
     rows = read_trace(record, folder)
     if not rows:
-        raise CausesError(f"{folder / 'trace.jsonl'}: not there; allowed: a run with the pass diagnose, e.g. ./bench causes CONFIG.json")
+        raise UserError(
+            f"{folder / 'trace.jsonl'}: not there; allowed: a run with the pass diagnose, e.g. ./bench causes"
+            " CONFIG.json"
+        )
     return record, [row for row in rows if row["cond"]]
 
 
@@ -53,26 +60,43 @@ def cond_of(sample: dict) -> float:
 
 
 def pick(rows: list[dict], scaling: str, at: tuple[int, int] | None) -> dict:
-    """The iteration `at` (step, iteration), or the one with the largest condition number of the full matrix under `scaling`."""
+    """The iteration `at` (step, iteration), or the one with the largest condition number of the full matrix
+    under `scaling`.
+    """
     known = [row for row in rows if ("full", scaling) in clamped(row)]
     if at is not None:
         known = [row for row in known if (row["step"], row["iteration"]) == at]
     if not known:
         what = f"step {at[0]}, iteration {at[1]}" if at else "any iteration"
-        raise CausesError(f"no condition number of the full matrix, scaling {scaling}, at {what}; allowed: a run with --set /passes/diagnose=true")
+        raise UserError(
+            f"no condition number of the full matrix, scaling {scaling}, at {what}; allowed: a run with --set"
+            " /passes/diagnose=true"
+        )
     return max(known, key=lambda row: cond_of(clamped(row)["full", scaling]))
 
 
 def ratios(samples: dict[tuple[str, str], dict]) -> list[tuple[str, float]]:
-    """By what a cause multiplies the condition number: contact and limit (a stage over the next, unscaled), scaling (over unscaled)."""
+    """By what a cause multiplies the condition number: contact and limit (a stage over the next, unscaled),
+    scaling (over unscaled).
+    """
     found = []
     for cause, (with_it, without) in WITHOUT.items():
         for scaling in SCALINGS:
             if (with_it, scaling) in samples and (without, scaling) in samples:
-                found.append((f"{cause}, scaling {scaling}", cond_of(samples[with_it, scaling]) / cond_of(samples[without, scaling])))
+                found.append(
+                    (
+                        f"{cause}, scaling {scaling}",
+                        cond_of(samples[with_it, scaling]) / cond_of(samples[without, scaling]),
+                    )
+                )
     for scaling in SCALINGS[1:]:
         if ("full", scaling) in samples and ("full", "none") in samples:
-            found.append((f"scaling {scaling}, full matrix", cond_of(samples["full", scaling]) / cond_of(samples["full", "none"])))
+            found.append(
+                (
+                    f"scaling {scaling}, full matrix",
+                    cond_of(samples["full", scaling]) / cond_of(samples["full", "none"]),
+                )
+            )
     return found
 
 
@@ -85,48 +109,115 @@ def end_lines(samples: dict[tuple[str, str], dict]) -> list[list[str]]:
     for (stage, scaling), sample in samples.items():
         for end in sample.get("ends", []):
             terms = ", ".join(f"{t['term']} {t['share']:.0%}" for t in end["terms"] if t["share"] >= 0.005)
-            rows.append([stage, scaling, end["side"], number(end["lambda"]), terms, f"{end['element']} ({end['element_share']:.0%})",
-                         f"{end['body']} ({end['body_share']:.0%})", f"{end['vertices']:.1f}"])
+            rows.append(
+                [
+                    stage,
+                    scaling,
+                    end["side"],
+                    number(end["lambda"]),
+                    terms,
+                    f"{end['element']} ({end['element_share']:.0%})",
+                    f"{end['body']} ({end['body_share']:.0%})",
+                    f"{end['vertices']:.1f}",
+                ]
+            )
     return rows
 
 
 def text(row: dict, count: int, scaling: str) -> str:
     samples = clamped(row)
     worst = samples["full", scaling]
-    lines = [f"step {row['step']}, iteration {row['iteration']} of {count} diagnosed: cond 10^{math.log10(cond_of(worst)):.2f} (scaling {scaling}, {worst['status']})", ""]
-    lines += aligned(["stage", "scaling", "cond", "lambda_min", "lambda_max", "status"],
-                     [[stage, name, number(s["cond"]), number(s["lambda_min"]), number(s["lambda_max"]), s["status"]] for (stage, name), s in samples.items()])
-    lines += ["", *aligned(["what is added", "multiplies cond by"], [[what, f"{factor:.3g}"] for what, factor in ratios(samples)])]
+    lines = [
+        (
+            f"step {row['step']}, iteration {row['iteration']} of {count} diagnosed: cond"
+            f" 10^{math.log10(cond_of(worst)):.2f} (scaling {scaling}, {worst['status']})"
+        ),
+        "",
+    ]
+    lines += aligned(
+        ["stage", "scaling", "cond", "lambda_min", "lambda_max", "status"],
+        [
+            [stage, name, number(s["cond"]), number(s["lambda_min"]), number(s["lambda_max"]), s["status"]]
+            for (stage, name), s in samples.items()
+        ],
+    )
+    lines += [
+        "",
+        *aligned(
+            ["what is added", "multiplies cond by"],
+            [[what, f"{factor:.3g}"] for what, factor in ratios(samples)],
+        ),
+    ]
     ends = end_lines(samples)
     if ends:
-        lines += ["", *aligned(["stage", "scaling", "end", "lambda", "made by (share of lambda)", "largest element", "body (share of |v|^2)", "vertices"], ends)]
+        lines += [
+            "",
+            *aligned(
+                [
+                    "stage",
+                    "scaling",
+                    "end",
+                    "lambda",
+                    "made by (share of lambda)",
+                    "largest element",
+                    "body (share of |v|^2)",
+                    "vertices",
+                ],
+                ends,
+            ),
+        ]
     else:
         lines += ["", "no eigenvectors: the run had no --set /diagnose/ends=true, or no Cholesky factor"]
     return "\n".join(lines)
 
 
 def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list[str]) -> Path:
-    """The folder of a record, or of the run that is made of a config with everything diagnosed. Raises CausesError for what a record, whose run
-    is over, cannot take: settings, plugins, another folder."""
+    """The folder of a record, or of the run that is made of a config with everything diagnosed. Raises
+    UserError for what a record, whose run is over, cannot take: settings, plugins, another folder.
+    """
     if given.is_dir() or given.name == "run.json":
-        asked = [f"--set {text}" for text in settings] + [f"--plugin {file}" for file in plugins] + ([f"--out {out}"] if out else [])
+        asked = (
+            [f"--set {text}" for text in settings]
+            + [f"--plugin {file}" for file in plugins]
+            + ([f"--out {out}"] if out else [])
+        )
         if asked:
-            raise CausesError(f"{asked[0]}: given with a record, whose run is over: {given}; allowed: with a config, which is run, e.g. ./bench causes CONFIG.json {asked[0]}")
+            raise UserError(
+                f"{asked[0]}: given with a record, whose run is over: {given}; allowed: with a config, which"
+                f" is run, e.g. ./bench causes CONFIG.json {asked[0]}"
+            )
         return given if given.is_dir() else given.parent
     folder = out or ROOT / "results/runs" / f"causes-{given.stem}"
-    words = [program(), *plugin_words(plugins), "run", str(given), "--out", str(folder)]
+    words = ["run", str(given), "--out", str(folder)]
     for option in [*OPTIONS, *settings]:
         words += ["--set", option]
-    code = subprocess.run(words, check=False, stdout=subprocess.DEVNULL).returncode
+    code = started(*words, plugins=plugins, stdout=subprocess.DEVNULL).returncode
     if code != 0:
-        raise CausesError(f"{given}: the run ended with exit code {code}")
+        raise UserError(f"{given}: the run ended with exit code {code}")
     return folder
 
 
-def main(words: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="bench causes", description=__doc__.split("\n\n", 1)[1], epilog="example: ./bench causes configs/scenes/drape2d.json --set /scene/variant=strip")
-    parser.add_argument("run", type=Path, help="folder of a record with a trace, its run.json, or a config, which is run with everything diagnosed")
-    parser.add_argument("--scaling", choices=SCALINGS, default="none", help="by which the worst iteration is picked (default none)")
+@tells("causes")
+def main(words: list[str]) -> int:
+    parser = argparse.ArgumentParser(
+        prog="bench causes",
+        description=__doc__.split("\n\n", 1)[1],
+        epilog="example: ./bench causes configs/scenes/drape2d.json --set /scene/variant=strip",
+    )
+    parser.add_argument(
+        "run",
+        type=Path,
+        help=(
+            "folder of a record with a trace, its run.json, or a config, which is run with everything"
+            " diagnosed"
+        ),
+    )
+    parser.add_argument(
+        "--scaling",
+        choices=SCALINGS,
+        default="none",
+        help="by which the worst iteration is picked (default none)",
+    )
     parser.add_argument("--at", metavar="STEP,ITERATION", help="that iteration in place of the worst")
     parser.add_argument("--set", action="append", default=[], help="of a config: /pointer=value")
     parser.add_argument("--out", type=Path, help="folder of that run (default results/runs/causes-NAME)")
@@ -138,16 +229,11 @@ def main(words: list[str] | None = None) -> int:
             raise ValueError
     except ValueError:
         parser.error(f"--at {given.at}: allowed: STEP,ITERATION, both from 0")
-    try:
-        folder = run_folder(given.run, given.out, given.set, given.plugin)
-        record, rows = diagnosed(folder)
-        row = pick(rows, given.scaling, at)
-    except (CausesError, RecordError) as error:
-        print(error, file=sys.stderr)
-        return 2
-    print(f"{record['labels']['scene']} {record['labels']['formulation']}: {text(row, len(rows), given.scaling)}")
+    folder = run_folder(given.run, given.out, given.set, given.plugin)
+    record, rows = diagnosed(folder)
+    row = pick(rows, given.scaling, at)
+    print(
+        f"{record['labels']['scene']} {record['labels']['formulation']}:"
+        f" {text(row, len(rows), given.scaling)}"
+    )
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,8 +1,8 @@
 """The stages of our contact pipeline beside those of the IPC Toolkit (ipctk), on one surface in motion.
 
-Ours run in the program contact_stages, the toolkit's in this process: stage by stage in turn, so that what else
-the machine does meets both. Prints a table of the shortest times and their ratios, since other work can only
-lengthen a sample; every sample is kept as JSON beside it.
+Ours run in the program contact_stages, the toolkit's in this process: stage by stage in turn, so that what
+else the machine does meets both. Prints a table of the shortest times and their ratios, since other work can
+only lengthen a sample; every sample is kept as JSON beside it.
 """
 
 from __future__ import annotations
@@ -18,6 +18,7 @@ import tempfile
 import time
 from pathlib import Path
 
+from .errors import UserError, tells
 from .toolkit_meshes import generated_sheets, read_ply, write_problem
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -39,15 +40,16 @@ class Ours:
     """contact_stages, asked line by line."""
 
     def __init__(self, program: Path, problem: Path, threads: int):
-        self.process = subprocess.Popen([program, problem, str(threads)], stdin=subprocess.PIPE,
-                                        stdout=subprocess.PIPE, text=True)
+        self.process = subprocess.Popen(
+            [program, problem, str(threads)], stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
+        )
 
     def run(self, stage: str) -> dict:
         self.process.stdin.write(stage + "\n")
         self.process.stdin.flush()
         line = self.process.stdout.readline()
         if not line:
-            raise SystemExit(f"contact_stages ended in stage {stage} (exit code {self.process.wait()})")
+            raise UserError(f"contact_stages ended in stage {stage} (exit code {self.process.wait()})")
         return json.loads(line)
 
     def close(self) -> None:
@@ -95,8 +97,9 @@ class Toolkit:
         return len(self.moving), 0
 
     def step_bound(self):
-        alpha = self.moving.compute_collision_free_stepsize(self.mesh, self.x0, self.x1,
-                                                            narrow_phase_ccd=self.kit.AdditiveCCD())
+        alpha = self.moving.compute_collision_free_stepsize(
+            self.mesh, self.x0, self.x1, narrow_phase_ccd=self.kit.AdditiveCCD()
+        )
         return len(self.moving), alpha
 
     def motion_to_bound(self):
@@ -111,8 +114,9 @@ class Toolkit:
 
 
 def disagreement(ours: dict, theirs: dict) -> str | None:
-    """What differs between two answers of one stage although it must not; what a stage handles may differ where
-    each code has its own rule for candidates, and a step bound is conservative in its own way."""
+    """What differs between two answers of one stage although it must not; what a stage handles may differ
+    where each code has its own rule for candidates, and a step bound is conservative in its own way.
+    """
     stage = ours["stage"]
     if stage == "rows" and ours["items"] != theirs["items"]:
         return f"{ours['items']} rows, toolkit {theirs['items']}"
@@ -133,7 +137,7 @@ def compare(ours: Ours, toolkit: Toolkit, rounds: int) -> dict[str, dict[str, li
             pair = {name: side.run(stage) for name, side in (sides if turn % 2 == 0 else sides[::-1])}
             wrong = disagreement(pair["ours"], pair["toolkit"])
             if wrong:
-                raise SystemExit(f"compare-toolkit: the two disagree: {wrong}")
+                raise UserError(f"the two disagree: {wrong}")
             for name, answer in pair.items():
                 if turn > 0:
                     answers[stage][name].append(answer)
@@ -144,18 +148,28 @@ def rows_of_table(answers) -> list[dict]:
     out = []
     for stage, sides in answers.items():
         least = {name: min(a["s"] for a in side) for name, side in sides.items()}
-        out.append({"stage": stage, "ours_s": least["ours"], "toolkit_s": least["toolkit"],
-                    "ratio": least["toolkit"] / least["ours"],
-                    "ours_items": sides["ours"][-1]["items"], "toolkit_items": sides["toolkit"][-1]["items"],
-                    "ours_value": sides["ours"][-1]["value"], "toolkit_value": sides["toolkit"][-1]["value"]})
+        out.append(
+            {
+                "stage": stage,
+                "ours_s": least["ours"],
+                "toolkit_s": least["toolkit"],
+                "ratio": least["toolkit"] / least["ours"],
+                "ours_items": sides["ours"][-1]["items"],
+                "toolkit_items": sides["toolkit"][-1]["items"],
+                "ours_value": sides["ours"][-1]["value"],
+                "toolkit_value": sides["toolkit"][-1]["value"],
+            }
+        )
     return out
 
 
 def table_text(rows: list[dict]) -> str:
     lines = ["| stage | ours | toolkit | ratio | items: ours, toolkit |", "|---|---|---|---|---|"]
     for row in rows:
-        lines.append(f"| {STAGES[row['stage']]} | {row['ours_s']:.3g} s | {row['toolkit_s']:.3g} s "
-                     f"| {row['ratio']:.1f}x | {row['ours_items']}, {row['toolkit_items']} |")
+        lines.append(
+            f"| {STAGES[row['stage']]} | {row['ours_s']:.3g} s | {row['toolkit_s']:.3g} s "
+            f"| {row['ratio']:.1f}x | {row['ours_items']}, {row['toolkit_items']} |"
+        )
     return "\n".join(lines)
 
 
@@ -167,21 +181,30 @@ def load_mesh(name: str, size: int, d_hat: float):
             x0, faces = read_ply(meshes / "cloth_ball92.ply")
             x1, _ = read_ply(meshes / "cloth_ball93.ply")
             return "cloth_ball92 -> 93", x0, x1, faces
-        print(f"compare-toolkit: no cloth_ball92.ply and cloth_ball93.ply in {meshes} (BARRIERBENCH_DATA): "
-              "three generated sheets instead", file=sys.stderr)
+        print(
+            f"compare-toolkit: no cloth_ball92.ply and cloth_ball93.ply in {meshes} (BARRIERBENCH_DATA): "
+            "three generated sheets instead",
+            file=sys.stderr,
+        )
     x0, x1, faces = generated_sheets(size, d_hat)
     return f"three sheets of {size + 1}^2", x0, x1, faces
 
 
 def arguments(argv: list[str] | None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(prog="./bench compare-toolkit", description=__doc__)
-    parser.add_argument("--mesh", choices=["cloth_ball", "sheets"], default="cloth_ball",
-                        help="cloth_ball needs the optional data folder (BARRIERBENCH_DATA)")
+    parser.add_argument(
+        "--mesh",
+        choices=["cloth_ball", "sheets"],
+        default="cloth_ball",
+        help="cloth_ball needs the optional data folder (BARRIERBENCH_DATA)",
+    )
     parser.add_argument("--size", type=int, default=120, help="cells along a generated sheet")
     parser.add_argument("--d-hat", type=float, default=1e-2, help="m")
     parser.add_argument("--rounds", type=int, default=5, help="timed after one that warms up")
     parser.add_argument("--threads", type=int, default=1, help="of both")
-    parser.add_argument("--out", type=Path, default=ROOT / "results/runs/compare_toolkit", help="folder of the JSON")
+    parser.add_argument(
+        "--out", type=Path, default=ROOT / "results/runs/compare_toolkit", help="folder of the JSON"
+    )
     parser.add_argument("--program", type=Path, default=PROGRAM, help=argparse.SUPPRESS)
     args = parser.parse_args(argv)
     if args.rounds < 1 or args.size < 2 or args.threads < 1 or not args.d_hat > 0:
@@ -189,13 +212,16 @@ def arguments(argv: list[str] | None) -> argparse.Namespace:
     return args
 
 
-def main(argv: list[str] | None = None) -> int:
+@tells("compare-toolkit")
+def main(argv: list[str]) -> int:
     args = arguments(argv)
     try:
         import ipctk
     except ImportError:
-        print("compare-toolkit: the Python package ipctk is not installed (analysis/requirements-oracle.txt)",
-              file=sys.stderr)
+        print(
+            "compare-toolkit: the Python package ipctk is not installed (analysis/requirements-oracle.txt)",
+            file=sys.stderr,
+        )
         return 2
     name, x0, x1, faces = load_mesh(args.mesh, args.size, args.d_hat)
     with tempfile.TemporaryDirectory() as folder:
@@ -207,19 +233,28 @@ def main(argv: list[str] | None = None) -> int:
         ours.close()
     rows = rows_of_table(answers)
     now = datetime.datetime.now(datetime.timezone.utc)
-    record = {"mesh": name, "vertices": len(x0), "triangles": len(faces), "d_hat_m": args.d_hat,
-              "threads": args.threads, "rounds": args.rounds, "ipctk": ipctk.__version__,
-              "date": now.isoformat(timespec="seconds"), "machine": platform.machine(), "cores": os.cpu_count(),
-              "load_at_start": load, "table": rows, "answers": answers}
+    record = {
+        "mesh": name,
+        "vertices": len(x0),
+        "triangles": len(faces),
+        "d_hat_m": args.d_hat,
+        "threads": args.threads,
+        "rounds": args.rounds,
+        "ipctk": ipctk.__version__,
+        "date": now.isoformat(timespec="seconds"),
+        "machine": platform.machine(),
+        "cores": os.cpu_count(),
+        "load_at_start": load,
+        "table": rows,
+        "answers": answers,
+    }
     args.out.mkdir(parents=True, exist_ok=True)
     path = args.out / f"{now:%Y-%m-%dT%H%M%SZ}.json"
     path.write_text(json.dumps(record, indent=1) + "\n")
-    print(f"{name}, {len(x0)} vertices, d_hat {args.d_hat} m, {args.threads} thread(s), shortest of {args.rounds}; "
-          f"ipctk {ipctk.__version__}")
+    print(
+        f"{name}, {len(x0)} vertices, d_hat {args.d_hat} m, {args.threads} thread(s), shortest of"
+        f" {args.rounds}; ipctk {ipctk.__version__}"
+    )
     print(table_text(rows))
     print(f"compare-toolkit: all samples in {path}", file=sys.stderr)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,7 +1,9 @@
-"""Who finds the condition numbers, and at what price: python -m barrierbench_analysis.condition_table writes results/CONDITION.md.
+"""Who finds the condition numbers, and at what price: the verb `bench condition-table` writes
+results/CONDITION.md.
 
-Tier 2 (Spectra) and tier 4 (our Lanczos) estimate the same matrices: those of every diagnosed iteration of the demo's sweeps, run once with each
-tier, and those of results/matrices. A run goes through the same states whatever is estimated, so that its samples pair up one by one.
+Tier 2 (Spectra) and tier 4 (our Lanczos) estimate the same matrices: those of every diagnosed iteration of
+the demo's sweeps, run once with each tier, and those of results/matrices. A run goes through the same states
+whatever is estimated, so that its samples pair up one by one.
 """
 
 from __future__ import annotations
@@ -9,21 +11,17 @@ from __future__ import annotations
 import argparse
 import datetime
 import json
-import subprocess
-import sys
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from .program import built_program
+from .errors import UserError, tells
+from .program import started
+from .text_table import markdown as table_lines
 
 ROOT = Path(__file__).resolve().parents[1]
 SWEEPS = ("demo_strip", "demo_pinned", "demo_article", "demo_drape")
 TIERS = (2, 4)
-
-
-class TableError(ValueError):
-    """Runs or replays whose estimates do not pair up."""
 
 
 @dataclass
@@ -36,27 +34,33 @@ class Pair:
 
 
 def run(words: list[str]) -> None:
-    done = subprocess.run([str(built_program(TableError)), *words], capture_output=True, text=True, check=False)
+    done = started(*words)
     if done.returncode != 0:
-        raise TableError(f"{' '.join(words)}: {done.stderr.strip()}")
+        raise UserError(f"{' '.join(words)}: {done.stderr.strip()}")
 
 
 def samples(folder: Path) -> dict[tuple, dict]:
     """The samples of all traces under a folder, by case, step, iteration, matrix, stage and scaling."""
     found = {}
     for trace in sorted(folder.rglob("trace.jsonl")):
-        case = trace.parent.name.rpartition("-")[0] or trace.parent.name  # LABEL-ID, and the id knows the tier
+        case = (
+            trace.parent.name.rpartition("-")[0] or trace.parent.name
+        )  # LABEL-ID, and the id knows the tier
         for line in trace.read_text().splitlines():
             row = json.loads(line)
             for one in row.get("cond", []):
-                found[(case, row["step"], row["iteration"], one["matrix"], one["stage"], one["scaling"])] = one
+                found[(case, row["step"], row["iteration"], one["matrix"], one["stage"], one["scaling"])] = (
+                    one
+                )
     return found
 
 
 def pair_up(name: str, by_tier: dict[int, dict[tuple, dict]]) -> list[Pair]:
     first, second = (by_tier[tier] for tier in TIERS)
     if first.keys() != second.keys() or not first:
-        raise TableError(f"{name}: {len(first)} estimates of tier 2, {len(second)} of tier 4, not of the same matrices")
+        raise UserError(
+            f"{name}: {len(first)} estimates of tier 2, {len(second)} of tier 4, not of the same matrices"
+        )
     return [Pair(name, first[key], second[key]) for key in sorted(first, key=str)]
 
 
@@ -65,19 +69,31 @@ def _labelled(spec: dict) -> list[dict]:
 
 
 def _keep(spec: dict, cases: list[str]) -> None:
-    """Leaves the cases with these labels on every labelled axis. Raises TableError where an axis has none of them."""
+    """Leaves the cases with these labels on every labelled axis. Raises UserError where an axis has none of
+    them.
+    """
     for axis in _labelled(spec):
         kept = [case for case in axis["cases"] if case["label"] in cases]
         if not kept:
-            raise TableError(f"configs/sweeps/{spec['name']}.json: no case {' or '.join(map(repr, cases))}; it has {', '.join(case['label'] for case in axis['cases'])}")
+            raise UserError(
+                f"configs/sweeps/{spec['name']}.json: no case {' or '.join(map(repr, cases))}; it has"
+                f" {', '.join(case['label'] for case in axis['cases'])}"
+            )
         axis["cases"] = kept
 
 
 def check_labels(sweeps: list[str], cases: list[str]) -> None:
-    """Raises TableError for a label that no sweep has: a misspelt one would be left out in silence."""
-    labels = {case["label"] for name in sweeps for axis in _labelled(json.loads((ROOT / f"configs/sweeps/{name}.json").read_text())) for case in axis["cases"]}
+    """Raises UserError for a label that no sweep has: a misspelt one would be left out in silence."""
+    labels = {
+        case["label"]
+        for name in sweeps
+        for axis in _labelled(json.loads((ROOT / f"configs/sweeps/{name}.json").read_text()))
+        for case in axis["cases"]
+    }
     if unknown := [label for label in cases if label not in labels]:
-        raise TableError(f"--cases {unknown[0]}: none of {', '.join(sweeps)} has it; they have {', '.join(sorted(labels))}")
+        raise UserError(
+            f"--cases {unknown[0]}: none of {', '.join(sweeps)} has it; they have {', '.join(sorted(labels))}"
+        )
 
 
 def of_sweep(name: str, cases: list[str], work: Path) -> list[Pair]:
@@ -90,8 +106,26 @@ def of_sweep(name: str, cases: list[str], work: Path) -> list[Pair]:
     by_tier = {}
     for tier in TIERS:
         out = work / f"{name}_{tier}"
-        run(["sweep", str(file), "--out", str(out), "--progress", "none", "--set", f"/diagnose/tier={tier}", "--set", "/passes/time=false",
-             "--set", "/passes/audit=false", "--set", "/passes/diagnose=true", "--set", "/diagnose/pcg=false"])
+        run(
+            [
+                "sweep",
+                str(file),
+                "--out",
+                str(out),
+                "--progress",
+                "none",
+                "--set",
+                f"/diagnose/tier={tier}",
+                "--set",
+                "/passes/time=false",
+                "--set",
+                "/passes/audit=false",
+                "--set",
+                "/passes/diagnose=true",
+                "--set",
+                "/diagnose/pcg=false",
+            ]
+        )
         by_tier[tier] = samples(out)
     return pair_up(name, by_tier)
 
@@ -128,27 +162,70 @@ def row(name: str, pairs: list[Pair]) -> list[str]:
     took_over = sum(" by lanczos" in pair.spectra["method"] for pair in with_factor)
     shifted = sum(" shifted to" in pair.spectra["method"] for pair in with_factor)
     both = sum(pair.spectra["proof"] == "both" for pair in pairs)
-    return [name, str(len(pairs)), str(len(with_factor)), str(took_over), str(shifted), str(both), spread("spectra", "solves"),
-            spread("lanczos", "solves"), spread("spectra", "products"), spread("lanczos", "products"), seconds("spectra"), seconds("lanczos"),
-            f"{max(known):.1e}" if known else "-", str(other)]
+    return [
+        name,
+        str(len(pairs)),
+        str(len(with_factor)),
+        str(took_over),
+        str(shifted),
+        str(both),
+        spread("spectra", "solves"),
+        spread("lanczos", "solves"),
+        spread("spectra", "products"),
+        spread("lanczos", "products"),
+        seconds("spectra"),
+        seconds("lanczos"),
+        f"{max(known):.1e}" if known else "-",
+        str(other),
+    ]
 
 
-COLUMNS = ["matrices", "estimates", "by Spectra", "an end by Lanczos", "an end shifted to", "both ends proven", "solves: Spectra", "Lanczos",
-           "products: Spectra", "Lanczos", "ms: Spectra", "Lanczos", "largest difference of cond", "other status"]
+COLUMNS = [
+    "matrices",
+    "estimates",
+    "by Spectra",
+    "an end by Lanczos",
+    "an end shifted to",
+    "both ends proven",
+    "solves: Spectra",
+    "Lanczos",
+    "products: Spectra",
+    "Lanczos",
+    "ms: Spectra",
+    "Lanczos",
+    "largest difference of cond",
+    "other status",
+]
 
 
 def page(groups: dict[str, list[Pair]], note: str) -> str:
-    lines = ["# Condition numbers by Spectra and by Lanczos", "",
-             f"{datetime.date.today()}, {processor()}. Made by `./bench condition-table`{note}.", "",
-             "Every line compares tier 2 with tier 4 on the same matrices, in every scaling that their run asks for. *By Spectra*: tier 2 had a factor to",
-             "invert round, so that Spectra's solvers ran; without one the matrix is not positive definite. *An end by Lanczos*: Spectra was not done in its",
-             "budget. *An end shifted to*: a factor disproved what was found, or it stayed open, and our Lanczos looked round a factor of its own. Solves and",
-             "products: mean / largest. Times are those of one estimate with its proofs, the first of a matrix with its factorisation; they are no times of",
-             "the method. *Largest difference*: relative, over the pairs that both call ok.", "",
-             "| " + " | ".join(COLUMNS) + " |", "|" + "---|" * len(COLUMNS)]
-    lines += ["| " + " | ".join(row(name, pairs)) + " |" for name, pairs in groups.items()]
+    lines = [
+        "# Condition numbers by Spectra and by Lanczos",
+        "",
+        f"{datetime.date.today()}, {processor()}. Made by `./bench condition-table`{note}.",
+        "",
+        (
+            "Every line compares tier 2 with tier 4 on the same matrices, in every scaling that their run"
+            " asks for. *By Spectra*: tier 2 had a factor to"
+        ),
+        (
+            "invert round, so that Spectra's solvers ran; without one the matrix is not positive definite."
+            " *An end by Lanczos*: Spectra was not done in its"
+        ),
+        (
+            "budget. *An end shifted to*: a factor disproved what was found, or it stayed open, and our"
+            " Lanczos looked round a factor of its own. Solves and"
+        ),
+        (
+            "products: mean / largest. Times are those of one estimate with its proofs, the first of a matrix"
+            " with its factorisation; they are no times of"
+        ),
+        "the method. *Largest difference*: relative, over the pairs that both call ok.",
+        "",
+    ]
     every = [pair for pairs in groups.values() for pair in pairs]
-    lines += ["| " + " | ".join(row("all", every)) + " |", ""]
+    rows = [row(name, pairs) for name, pairs in [*groups.items(), ("all", every)]]
+    lines += [*table_lines(list(COLUMNS), rows), ""]
     return "\n".join(lines)
 
 
@@ -159,24 +236,21 @@ def processor() -> str:
     return "unknown processor"
 
 
-def main(words: list[str] | None = None) -> int:
+@tells("condition-table")
+def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench condition-table", description=__doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "results/CONDITION.md")
-    parser.add_argument("--sweeps", nargs="*", default=list(SWEEPS), help="of configs/sweeps; none: the corpus alone")
+    parser.add_argument(
+        "--sweeps", nargs="*", default=list(SWEEPS), help="of configs/sweeps; none: the corpus alone"
+    )
     parser.add_argument("--cases", nargs="*", default=[], help="labels of their formulations (default: all)")
     arguments = parser.parse_args(words)
-    try:
-        check_labels(arguments.sweeps, arguments.cases)
-        with tempfile.TemporaryDirectory() as folder:
-            groups = {name: of_sweep(name, arguments.cases, Path(folder)) for name in arguments.sweeps}
-            groups["corpus"] = of_corpus(Path(folder))
-    except TableError as error:
-        print(error, file=sys.stderr)
-        return 2
-    arguments.out.write_text(page(groups, f" for the cases {', '.join(arguments.cases)}" if arguments.cases else ""))
+    check_labels(arguments.sweeps, arguments.cases)
+    with tempfile.TemporaryDirectory() as folder:
+        groups = {name: of_sweep(name, arguments.cases, Path(folder)) for name in arguments.sweeps}
+        groups["corpus"] = of_corpus(Path(folder))
+    arguments.out.write_text(
+        page(groups, f" for the cases {', '.join(arguments.cases)}" if arguments.cases else "")
+    )
     print(arguments.out)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,4 +1,5 @@
-"""Columns of the tables. They come from the schemas, which the program makes from its lists of record fields."""
+"""Columns of the tables. They come from the schemas, which the program makes from its lists of record
+fields."""
 
 from __future__ import annotations
 
@@ -17,13 +18,19 @@ def schema(name: str) -> dict:
     return json.loads((SCHEMAS / f"{name}.schema.json").read_text())
 
 
-def _leaves(document: dict, record: dict, path: tuple[str, ...] = ()) -> Iterator[tuple[tuple[str, ...], str]]:
+def _leaves(
+    document: dict, record: dict, path: tuple[str, ...] = ()
+) -> Iterator[tuple[tuple[str, ...], str]]:
     """Place and meaning of every field below `record` that holds one value; lists are tables of their own."""
     for name, field in record["properties"].items():
         below = document["$defs"][field["$ref"].rsplit("/", 1)[1]] if "$ref" in field else field
         if "properties" in below:
             yield from _leaves(document, below, (*path, name))
-        elif "description" in field and field.get("type") != "array" and (path or name not in ("config", "samples")):
+        elif (
+            "description" in field
+            and field.get("type") != "array"
+            and (path or name not in ("config", "samples"))
+        ):
             yield (*path, name), field["description"]
 
 
@@ -33,15 +40,23 @@ def _column(path: tuple[str, ...]) -> str:
 
 @cache
 def columns(table: str) -> dict[str, tuple[tuple[str, ...], str]]:
-    """Of a row of `runs`, `steps`, `trace` or `cond`: column -> place in the record, meaning. A field of a record inside
-    the row is PLACE_FIELD (`contacts_total`, `gap_min_rel_median`), in `runs` without ids, status, labels and summary."""
+    """Of a row of `runs`, `steps`, `trace` or `cond`: column -> place in the record, meaning. A field of a
+    record inside the row is PLACE_FIELD (`contacts_total`, `gap_min_rel_median`), in `runs` without ids,
+    status, labels and summary.
+    """
     document = schema("run" if table in ("runs", "steps") else "trace")
-    record = {"runs": document, "steps": document["$defs"].get("StepRecord"), "trace": document,
-              "cond": document["$defs"].get("ConditionSample")}[table]
+    record = {
+        "runs": document,
+        "steps": document["$defs"].get("StepRecord"),
+        "trace": document,
+        "cond": document["$defs"].get("ConditionSample"),
+    }[table]
     found = {}
     for path, doc in _leaves(document, record):
         if _column(path) in found:
-            raise ValueError(f"{table}: {'/'.join(path)} and {'/'.join(found[_column(path)][0])} are both {_column(path)}")
+            raise ValueError(
+                f"{table}: {'/'.join(path)} and {'/'.join(found[_column(path)][0])} are both {_column(path)}"
+            )
         found[_column(path)] = path, doc
     return found
 

@@ -1,4 +1,5 @@
-"""Frames of a run: the positions of all bodies at the start and at the ends of steps, with what is known there.
+"""Frames of a run: the positions of all bodies at the start and at the ends of steps, with what is known
+there.
 
 A frame is the binary PLY file that `bench run --set /output/frames_every=N` leaves in `frames/`.
 """
@@ -12,13 +13,10 @@ from pathlib import Path
 
 import numpy as np
 
+from .errors import UserError
 from .record_file import bound_file, named_files
 
 TYPES = {"double": "<f8", "float": "<f4", "int": "<i4", "uchar": "u1"}
-
-
-class FrameError(ValueError):
-    """No frame, or a file that is none of ours."""
 
 
 @dataclass
@@ -44,26 +42,26 @@ def _elements(header: list[str], path: Path) -> list[tuple[str, int, np.dtype]]:
         elif words[:1] == ["property"]:
             elements[-1][2].append((words[2], TYPES[words[1]]))
     if "format binary_little_endian 1.0" not in header:
-        raise FrameError(f"{path}: not a binary little-endian PLY file")
+        raise UserError(f"{path}: not a binary little-endian PLY file")
     return [(name, count, np.dtype(fields)) for name, count, fields in elements]
 
 
 def read_frame(path: str | Path) -> Frame:
-    """One PLY file as the program writes it (all faces are triangles). Raises FrameError."""
+    """One PLY file as the program writes it (all faces are triangles). Raises UserError."""
     path = Path(path)
     data = path.read_bytes()
     head, mark, body = data.partition(b"end_header\n")
     if not data.startswith(b"ply\n") or not mark:
-        raise FrameError(f"{path}: not a PLY file")
+        raise UserError(f"{path}: not a PLY file")
     tables, at = {}, 0
     for name, count, row in _elements(head.decode("ascii", "replace").splitlines(), path):
         if at + count * row.itemsize > len(body):
-            raise FrameError(f"{path}: ends before its last {name}")
+            raise UserError(f"{path}: ends before its last {name}")
         tables[name] = np.frombuffer(body, row, count, at)
         at += count * row.itemsize
     v, f, e = tables["vertex"], tables["face"], tables.get("edge")
     if len(f) and (f["corners"] != 3).any():
-        raise FrameError(f"{path}: a face that is no triangle")
+        raise UserError(f"{path}: a face that is no triangle")
     return Frame(
         vertices=np.stack([v["x"], v["y"], v["z"]], axis=1),
         triangles=np.array(f["vertex_indices"]).reshape(-1, 3),
@@ -74,26 +72,33 @@ def read_frame(path: str | Path) -> Frame:
 
 
 def frame_paths(record: dict, run: str | Path) -> dict[int, Path]:
-    """Step -> file of the frames that the record in the folder `run` names, in order; -1 is the start, 0 the end of the first step. What else
-    lies in frames/ is of no run that is known. Raises FrameError without any."""
+    """Step -> file of the frames that the record in the folder `run` names, in order; -1 is the start, 0 the
+    end of the first step. What else lies in frames/ is of no run that is known. Raises UserError without any.
+    """
     found = {}
     for name in named_files(record, "frame"):
         if match := re.fullmatch(r"frames/(start|step_(\d+))\.ply", name):
             found[-1 if match[1] == "start" else int(match[2])] = Path(run) / name
     if not found:
-        raise FrameError(f"{run}: the record names no frames; run the config with --set /output/frames_every=1")
+        raise UserError(
+            f"{run}: the record names no frames; run the config with --set /output/frames_every=1"
+        )
     return dict(sorted(found.items()))
 
 
 def frame_of(record: dict, run: str | Path, step: int) -> Frame:
-    """One of frame_paths(). Raises FrameError, RecordError: the file is not the one that the record names."""
-    return read_frame(bound_file(record, Path(run), frame_paths(record, run)[step].relative_to(run).as_posix()))
+    """One of frame_paths(). Raises UserError, RecordError: the file is not the one that the record names."""
+    return read_frame(
+        bound_file(record, Path(run), frame_paths(record, run)[step].relative_to(run).as_posix())
+    )
 
 
 def read_scene(record: dict, run: str | Path) -> dict:
-    """frames/scene.json: `bodies` (names), `obstacles` (kind, point_m, axis, radius_m, inside), `planar`. Raises FrameError, RecordError."""
+    """frames/scene.json: `bodies` (names), `obstacles` (kind, point_m, axis, radius_m, inside), `planar`.
+    Raises UserError, RecordError.
+    """
     path = bound_file(record, Path(run), "frames/scene.json")
     try:
         return json.loads(path.read_text())
     except (OSError, ValueError) as error:
-        raise FrameError(f"{path}: {error}") from None
+        raise UserError(f"{path}: {error}") from None

@@ -1,7 +1,9 @@
-"""Fuzzing: python -m barrierbench_analysis.fuzz [TARGET...] runs the targets of tests/fuzz that were built and prints one table.
+"""Fuzzing: builds the targets of tests/fuzz with clang, which this verb alone installs, runs them and prints
+one table.
 
-Every target starts from seeds that its build writes (fuzz_seeds) and from the corpus of earlier runs in build/fuzz/corpus. A crash, a report of a
-sanitizer, a leak or an input that takes longer than 10 s ends the target; the input is kept. Exit code 1 when there was one, 2 for a wrong request.
+Every target starts from seeds that its build writes (fuzz_seeds) and from the corpus of earlier runs in
+build/fuzz/corpus. A crash, a report of a sanitizer, a leak or an input that takes longer than 10 s ends the
+target; the input is kept. Exit code 1 when there was one, 2 for a wrong request.
 """
 
 from __future__ import annotations
@@ -15,6 +17,9 @@ import sys
 import time
 from pathlib import Path
 
+from .errors import UserError, tells
+from .front import building
+from .text_table import aligned
 from .whole_file import write_whole
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -27,10 +32,6 @@ SANITIZER = {"ASAN_OPTIONS": "malloc_context_size=3:quarantine_size_mb=8:detect_
 LIMITS = ["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1", "-verbosity=1"]
 
 
-class FuzzError(ValueError):
-    """A request that names no target."""
-
-
 def targets() -> list[str]:
     text = (ROOT / "tests" / "fuzz" / "targets.inc").read_text()
     return re.findall(r"^BB_FUZZ_TARGET\((\w+)\)", text, re.MULTILINE)
@@ -40,7 +41,7 @@ def chosen(names: list[str]) -> list[str]:
     known = targets()
     for name in names:
         if name not in known:
-            raise FuzzError(f"found target {name!r}; allowed: {', '.join(known)}")
+            raise UserError(f"found target {name!r}; allowed: {', '.join(known)}")
     return names or known
 
 
@@ -51,28 +52,53 @@ def parse_log(text: str) -> dict:
     stats = dict(re.findall(r"stat::(\w+):\s+(\d+)", text))
     last = re.findall(r"^#(\d+)\s", text, re.MULTILINE)
     executions = int(stats.get("number_of_executed_units", last[-1] if last else 0))
-    return {"executions": executions, "coverage": max(cov, default=None),
-            "new_coverage": max(cov) - int(started.group(1)) if cov and started else None}
+    return {
+        "executions": executions,
+        "coverage": max(cov, default=None),
+        "new_coverage": max(cov) - int(started.group(1)) if cov and started else None,
+    }
 
 
-def run_target(name: str, build: Path, crashes: Path, seconds: int | None, runs: int | None, seed: int) -> dict:
-    """One target until its seconds or runs are over, or to its first finding. A run without any execution is a failure too."""
+def run_target(
+    name: str, build: Path, crashes: Path, seconds: int | None, runs: int | None, seed: int
+) -> dict:
+    """One target until its seconds or runs are over, or to its first finding. A run without any execution is
+    a failure too.
+    """
     corpus, kept = build / "corpus" / name, crashes / name
     corpus.mkdir(parents=True, exist_ok=True)
     kept.mkdir(parents=True, exist_ok=True)
     before = {path.name for path in kept.iterdir()}
-    words = [str(build / "tests" / "fuzz" / f"fuzz_{name}"), *LIMITS, f"-max_len={MAX_LEN.get(name, 1024)}", f"-seed={seed}",
-             f"-artifact_prefix={kept}/", f"-runs={runs}" if runs is not None else f"-max_total_time={seconds}"]
+    words = [
+        str(build / "tests" / "fuzz" / f"fuzz_{name}"),
+        *LIMITS,
+        f"-max_len={MAX_LEN.get(name, 1024)}",
+        f"-seed={seed}",
+        f"-artifact_prefix={kept}/",
+        f"-runs={runs}" if runs is not None else f"-max_total_time={seconds}",
+    ]
     dictionary = build / "seeds" / f"{name}.dict"
     if dictionary.is_file() and dictionary.stat().st_size > 0:
         words.append(f"-dict={dictionary}")
     start = time.monotonic()
-    done = subprocess.run([*words, str(corpus), str(build / "seeds" / name)], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, check=False,
-                          cwd=kept, env={**os.environ, **SANITIZER})
+    done = subprocess.run(
+        [*words, str(corpus), str(build / "seeds" / name)],
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        check=False,
+        cwd=kept,
+        env={**os.environ, **SANITIZER},
+    )
     took = time.monotonic() - start
     log = done.stderr.decode(errors="replace")
     found = [str(path) for path in sorted(kept.iterdir()) if path.name not in before]
-    row = {"target": name, **parse_log(log), "seconds": took, "findings": found, "failed": done.returncode != 0}
+    row = {
+        "target": name,
+        **parse_log(log),
+        "seconds": took,
+        "findings": found,
+        "failed": done.returncode != 0,
+    }
     if row["failed"]:
         write_whole(kept / "log.txt", log)
         row["findings"] = found or [str(kept / "log.txt")]
@@ -85,12 +111,28 @@ def table(rows: list[dict]) -> str:
     lines = [head]
     for row in rows:
         per_second = row["executions"] / row["seconds"] if row["seconds"] > 0 else 0
-        lines.append([row["target"], f"{row['executions']:,}", f"{row['seconds']:.0f}", f"{per_second:,.0f}",
-                      *("-" if row[key] is None else str(row[key]) for key in ("coverage", "new_coverage")), str(int(row["failed"]))])
-    lines.append(["all", f"{sum(r['executions'] for r in rows):,}", f"{sum(r['seconds'] for r in rows):.0f}", "", "", "",
-                  str(sum(r["failed"] for r in rows))])
-    widths = [max(len(line[i]) for line in lines) for i in range(len(head))]
-    return "\n".join("  ".join(c.ljust(w) if i == 0 else c.rjust(w) for i, (c, w) in enumerate(zip(line, widths))) for line in lines)
+        lines.append(
+            [
+                row["target"],
+                f"{row['executions']:,}",
+                f"{row['seconds']:.0f}",
+                f"{per_second:,.0f}",
+                *("-" if row[key] is None else str(row[key]) for key in ("coverage", "new_coverage")),
+                str(int(row["failed"])),
+            ]
+        )
+    lines.append(
+        [
+            "all",
+            f"{sum(r['executions'] for r in rows):,}",
+            f"{sum(r['seconds'] for r in rows):.0f}",
+            "",
+            "",
+            "",
+            str(sum(r["failed"] for r in rows)),
+        ]
+    )
+    return "\n".join(aligned(head, lines[1:], set(range(1, len(head)))))
 
 
 def positive(text: str) -> int:
@@ -100,21 +142,41 @@ def positive(text: str) -> int:
     return value
 
 
-def main() -> int:
-    parser = argparse.ArgumentParser(prog="bench fuzz", description=__doc__.split("\n\n", maxsplit=1)[1],
-                                     epilog="example: ./bench fuzz mesh_ply config --seconds 60")
-    parser.add_argument("targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)")
+def prepare(names: list[str]) -> None:
+    """Targets and seeds. Errors: UserError where clang cannot be installed or something does not build."""
+    building.setup("clang", "libclang-rt-14-dev")
+    building.build("fuzz", "fuzz_seeds", *(f"fuzz_{name}" for name in names))
+    subprocess.run(
+        [str(BUILD / "tests/fuzz/fuzz_seeds"), str(BUILD / "seeds")],
+        check=True,
+        env={**os.environ, "ASAN_OPTIONS": "detect_leaks=0"},
+    )
+
+
+@tells("fuzz")
+@tells("fuzz")
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(
+        prog="bench fuzz",
+        description=__doc__.split("\n\n", maxsplit=1)[1],
+        epilog="example: ./bench fuzz mesh_ply config --seconds 60",
+    )
+    parser.add_argument(
+        "targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)"
+    )
     length = parser.add_mutually_exclusive_group()
     length.add_argument("--seconds", type=positive, default=30, help="for each target (default 30)")
     length.add_argument("--runs", type=positive, help="executions of each target")
-    parser.add_argument("--seed", type=positive, default=1, help="of libFuzzer; the corpus of earlier runs matters too (default 1)")
+    parser.add_argument(
+        "--seed",
+        type=positive,
+        default=1,
+        help="of libFuzzer; the corpus of earlier runs matters too (default 1)",
+    )
     parser.add_argument("--json", type=Path, help="file of everything that the table shows")
-    arguments = parser.parse_args()
-    try:
-        names = chosen(arguments.targets)
-    except FuzzError as error:
-        print(f"bench fuzz: {error}", file=sys.stderr)
-        return 2
+    arguments = parser.parse_args(argv)
+    names = chosen(arguments.targets)
+    prepare(names)
     rows = []
     for name in names:
         print(f"bench: fuzzing {name}", file=sys.stderr, flush=True)
@@ -126,7 +188,3 @@ def main() -> int:
     if arguments.json:
         write_whole(arguments.json, json.dumps(rows, indent=1) + "\n")
     return 1 if any(row["failed"] for row in rows) else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

@@ -1,5 +1,7 @@
-"""The rule of comparability (docs/design.md, Comparability) for two runs of which neither is the reference of the other: at which gaps each pair of
-bodies carries its load. The program judges a run against its reference; a test holds this rule to its verdicts."""
+"""The rule of comparability (docs/design.md, Comparability) for two runs of which neither is the reference of
+the other: at which gaps each pair of bodies carries its load. The program judges a run against its reference;
+a test holds this rule to its verdicts.
+"""
 
 from __future__ import annotations
 
@@ -32,13 +34,22 @@ def gaps_of(record: dict) -> Gaps | None:
     pairs = record["summary"].get("contact_gaps")
     if pairs is None:
         return None
-    return {pair: [*(of[name] for name in QUANTILES), of["load_share"] >= LEAST_LOAD_SHARE or of["time_share"] >= LEAST_TIME_SHARE]
-            for pair, of in sorted(pairs.items())}
+    return {
+        pair: [
+            *(of[name] for name in QUANTILES),
+            of["load_share"] >= LEAST_LOAD_SHARE or of["time_share"] >= LEAST_TIME_SHARE,
+        ]
+        for pair, of in sorted(pairs.items())
+    }
 
 
 def farthest(run: Gaps, other: Gaps) -> Apart | None:
     """None when no pair carries load in either. Among equals the first, as in the program."""
     counting = sorted({pair for gaps in (run, other) for pair, (*_, counts) in gaps.items() if counts})
     none = [NO_LOAD] * len(QUANTILES)
-    found = [Apart(pair, name, run.get(pair, none)[k] / other.get(pair, none)[k]) for pair in counting for k, name in enumerate(QUANTILES)]
+    found = [
+        Apart(pair, name, run.get(pair, none)[k] / other.get(pair, none)[k])
+        for pair in counting
+        for k, name in enumerate(QUANTILES)
+    ]
     return max(found, key=lambda apart: abs(math.log(apart.ratio)), default=None)

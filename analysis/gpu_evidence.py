@@ -1,4 +1,6 @@
-"""One record of what experiments/gpu_evidence.sh saw on a card, from its raw files: results/gpu/<card>-<day>.json."""
+"""One record of what experiments/gpu_evidence.sh saw on a card, from its raw files:
+results/gpu/<card>-<day>.json.
+"""
 
 from __future__ import annotations
 
@@ -10,6 +12,7 @@ import re
 import sys
 from pathlib import Path
 
+from .errors import UserError
 from .program import read_object
 from .record_file import RecordError, read_record
 from .whole_file import write_whole
@@ -19,19 +22,19 @@ SCENES = ("drape_82k", "drape_1m", "dense_184m")
 RECORDS = Path(__file__).resolve().parents[1] / "results/gpu"
 
 
-class EvidenceError(ValueError):
-    """A raw file that is not what the script writes."""
-
-
 def parts_of(folder: Path) -> dict[str, dict]:
     """name -> status (passed, failed, timed_out, left_out), seconds, why."""
     parts = {}
     for line in (folder / "parts.tsv").read_text().splitlines():
         try:
             name, status, more, seconds = line.split("\t")
-            parts[name] = {"status": status, "seconds": int(seconds), "why": more if status == "left_out" else ""}
+            parts[name] = {
+                "status": status,
+                "seconds": int(seconds),
+                "why": more if status == "left_out" else "",
+            }
         except ValueError:
-            raise EvidenceError(f"{folder}/parts.tsv: not a part: {line!r}") from None
+            raise UserError(f"{folder}/parts.tsv: not a part: {line!r}") from None
         if status in ("failed", "timed_out"):
             log = folder / "logs" / f"{name}.err"
             said = log.read_text(errors="replace").strip().splitlines() if log.exists() else []
@@ -54,24 +57,46 @@ def scene_numbers(folder: Path) -> dict | None:
     try:
         run = read_record(path)
     except RecordError as error:
-        raise EvidenceError(str(error)) from None
+        raise UserError(str(error)) from None
     summary, steps = run["summary"], max(run["summary"]["steps"], 1)
     newton, pcg = summary["newton_iterations"], summary["linear_iterations"]
-    wall, solve = summary["wall_s"], summary["time"]["linear_solve_s"] if summary["wall_s"] is not None else None
-    per = lambda seconds, n: 1e3 * seconds / n if seconds is not None and n > 0 else None
-    return {"outcome": run["status"]["outcome"], "vertices": run["scene"]["vertices"], "contacts": summary["contacts"]["max"], "steps": summary["steps"],
-            "dt_s": run["labels"]["dt_s"], "newton_iterations": newton, "pcg_iterations": pcg, "wall_s": wall, "step_s": wall / steps if wall is not None else None,
-            "newton_ms": per(wall, newton), "pcg_ms": per(solve, pcg), "linear_solver": run["labels"]["linear_solver"], "run_id": run["ids"]["run_id"]}
+    wall, solve = (
+        summary["wall_s"],
+        (summary["time"]["linear_solve_s"] if summary["wall_s"] is not None else None),
+    )
+
+    def per(seconds, n):
+        return 1000.0 * seconds / n if seconds is not None and n > 0 else None
+
+    return {
+        "outcome": run["status"]["outcome"],
+        "vertices": run["scene"]["vertices"],
+        "contacts": summary["contacts"]["max"],
+        "steps": summary["steps"],
+        "dt_s": run["labels"]["dt_s"],
+        "newton_iterations": newton,
+        "pcg_iterations": pcg,
+        "wall_s": wall,
+        "step_s": wall / steps if wall is not None else None,
+        "newton_ms": per(wall, newton),
+        "pcg_ms": per(solve, pcg),
+        "linear_solver": run["labels"]["linear_solver"],
+        "run_id": run["ids"]["run_id"],
+    }
 
 
 def functor(kernel: str) -> str:
-    """bb::resident::SpmvDot of `void bb::exec::run_each<bb::resident::SpmvDot>(long, T1)`; another name as it is."""
+    """bb::resident::SpmvDot of `void bb::exec::run_each<bb::resident::SpmvDot>(long, T1)`; another name as it
+    is.
+    """
     found = re.search(r"run_(?:each|blocks)<(.*)>\(", kernel)
     return found.group(1) if found else kernel
 
 
 def measured_kernels(folder: Path) -> dict[str, dict]:
-    """functor -> launches, seconds, bytes, of Nsight Compute's table; empty where it was not there or had no rights."""
+    """functor -> launches, seconds, bytes, of Nsight Compute's table; empty where it was not there or had no
+    rights.
+    """
     path = folder / "logs/kernels.out"
     lines = path.read_text(errors="replace").splitlines() if path.exists() else []
     start = next((i for i, line in enumerate(lines) if line.startswith('"ID"')), None)
@@ -94,19 +119,34 @@ def kernels_of(folder: Path) -> list[dict]:
     kernels = measured_kernels(folder)
     path = folder / "kernel_times.json"
     if not kernels and path.exists():
-        kernels = {name: {**times, "bytes": None} for name, times in read_object(path, EvidenceError)["kernels"].items()}
-    rows = [{"name": name, **entry, "Bps": entry["bytes"] / entry["seconds"] if entry["bytes"] and entry["seconds"] else None} for name, entry in kernels.items()]
+        kernels = {name: {**times, "bytes": None} for name, times in read_object(path)["kernels"].items()}
+    rows = [
+        {
+            "name": name,
+            **entry,
+            "Bps": entry["bytes"] / entry["seconds"] if entry["bytes"] and entry["seconds"] else None,
+        }
+        for name, entry in kernels.items()
+    ]
     return sorted(rows, key=lambda row: (-row["seconds"], row["name"]))
 
 
 def collect(folder: Path, commit: str, seconds: int) -> dict:
-    """The record. Errors: EvidenceError."""
-    device = read_object(folder / "device.json", EvidenceError)
+    """The record. Errors: UserError."""
+    device = read_object(folder / "device.json")
     if not device.get("usable") or not device.get("copy"):
-        raise EvidenceError(f"{folder}/device.json: no usable card with a measured copy")
-    return {"schema": SCHEMA, "date_utc": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"), "git_commit": commit, "seconds": seconds,
-            "device": device, "card": card_state(folder), "parts": parts_of(folder),
-            "scenes": {name: scene_numbers(folder / name) for name in SCENES}, "kernels": kernels_of(folder)}
+        raise UserError(f"{folder}/device.json: no usable card with a measured copy")
+    return {
+        "schema": SCHEMA,
+        "date_utc": datetime.datetime.now(datetime.timezone.utc).strftime("%Y-%m-%dT%H:%M:%SZ"),
+        "git_commit": commit,
+        "seconds": seconds,
+        "device": device,
+        "card": card_state(folder),
+        "parts": parts_of(folder),
+        "scenes": {name: scene_numbers(folder / name) for name in SCENES},
+        "kernels": kernels_of(folder),
+    }
 
 
 def file_name(record: dict) -> str:
@@ -119,11 +159,13 @@ def main(arguments: list[str] | None = None) -> int:
     parser.add_argument("folder", type=Path, help="raw files")
     parser.add_argument("--commit", default="", help="of the program")
     parser.add_argument("--seconds", type=int, default=0, help="that the script took")
-    parser.add_argument("--records", type=Path, default=RECORDS, help="folder of the record (default: results/gpu)")
+    parser.add_argument(
+        "--records", type=Path, default=RECORDS, help="folder of the record (default: results/gpu)"
+    )
     asked = parser.parse_args(arguments)
     try:
         record = collect(asked.folder, asked.commit, asked.seconds)
-    except (EvidenceError, OSError, KeyError) as error:
+    except (UserError, OSError, KeyError) as error:
         print(f"gpu_evidence: {asked.folder}: {error}", file=sys.stderr)
         return 2
     path = asked.records / file_name(record)

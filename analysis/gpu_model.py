@@ -1,5 +1,5 @@
-"""What a Newton iteration on a card should take, from the bytes that it has to move: a prediction to be held against the
-first record of a card, not a measurement.
+"""What a Newton iteration on a card should take, from the bytes that it has to move: a prediction to be held
+against the first record of a card, not a measurement.
 
     python -m barrierbench_analysis.gpu_model    prints the table of docs/device.md
 """
@@ -8,11 +8,15 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-# Bytes a second of a device-to-device copy: H100 SXM and H200, published measurements; A100 80 GB by the same part (0.9) of
+# Bytes a second of a device-to-device copy: H100 SXM and H200, published measurements; A100 80 GB by the
+# same part (0.9) of
 # its data sheet.
 COPY_RATES = {"A100 80 GB": 1.83e12, "H100": 3.0e12, "H200": 4.3e12}
 PART_OF_COPY = 0.8  # that kernels are assumed to reach
-ITERATIONS = {"block Jacobi": 1100, "Schwarz": 450}  # of conjugate gradients to 1e-3, from CPU runs of stacked sheets
+ITERATIONS = {
+    "block Jacobi": 1100,
+    "Schwarz": 450,
+}  # of conjugate gradients to 1e-3, from CPU runs of stacked sheets
 SCHWARZ_COST = 1.15  # of an iteration, over block Jacobi
 
 
@@ -38,22 +42,28 @@ SIZES = [
 
 
 def solver_bytes(size: Size) -> float:
-    """Of an iteration of conjugate gradients: 72 B and an index a block; 336 B a vertex: 48 in the product, 216 in the
-    update with its block-Jacobi factor, 72 in the direction."""
+    """Of an iteration of conjugate gradients: 72 B and an index a block; 336 B a vertex: 48 in the product,
+    216 in the update with its block-Jacobi factor, 72 in the direction.
+    """
     return 76 * size.blocks + 336 * size.vertices
 
 
 def assembly_bytes(size: Size) -> float:
-    """Of everything else in an iteration: three candidates a contact, sorted; rows of 138 B, written once and read three
-    times, for iterate and trial; ten contributions a row of 4 B and 60 B of its row; pairs of two motions; blocks written
-    and read; trees of 43 B a primitive, passed eight times; elements, 1 KB a triangle."""
+    """Of everything else in an iteration: three candidates a contact, sorted; rows of 138 B, written once and
+    read three times, for iterate and trial; ten contributions a row of 4 B and 60 B of its row; pairs of two
+    motions; blocks written and read; trees of 43 B a primitive, passed eight times; elements, 1 KB a
+    triangle.
+    """
     candidates = 3 * 8 * (2 + 12)
     rows = 2 * 138 * 4
     blocks = 10 * 64
     bound = 3 * 200
     trees = 43 * 8 * (size.vertices + 2.5 * size.triangles)
     return (
-        (candidates + rows + blocks + bound) * size.contacts + 144 * size.blocks + trees + 1024 * size.triangles
+        (candidates + rows + blocks + bound) * size.contacts
+        + 144 * size.blocks
+        + trees
+        + 1024 * size.triangles
     )
 
 
@@ -77,7 +87,10 @@ def seconds_text(seconds: float) -> str:
 
 def table() -> str:
     lines = [
-        "| scene | bytes an iteration of PCG | card | PCG iteration | all but the solve | Newton iteration, block Jacobi | with Schwarz |",
+        (
+            "| scene | bytes an iteration of PCG | card | PCG iteration | all but the solve | Newton"
+            " iteration, block Jacobi | with Schwarz |"
+        ),
         "|---|---|---|---|---|---|---|",
     ]
     for size in SIZES:
@@ -86,9 +99,8 @@ def table() -> str:
             _, rest = newton_seconds(size, rate, "block Jacobi")
             whole = [sum(newton_seconds(size, rate, name)) for name in ITERATIONS]
             lines.append(
-                f"| {size.name} | {solver_bytes(size) / 1e9:.3g} GB | {card} | {seconds_text(iteration)} | {seconds_text(rest)} | "
-                + " | ".join(seconds_text(value) for value in whole)
-                + " |"
+                f"| {size.name} | {solver_bytes(size) / 1e9:.3g} GB | {card} | {seconds_text(iteration)} |"
+                f" {seconds_text(rest)} | " + " | ".join(seconds_text(value) for value in whole) + " |"
             )
     return "\n".join(lines) + "\n"
 

@@ -1,7 +1,9 @@
-"""The corpus of hard systems: python -m barrierbench_analysis.matrix_corpus makes results/matrices and its table from configs/matrices/corpus.json.
+"""The corpus of hard systems: the verb `bench matrix-corpus` makes results/matrices and its table from
+configs/matrices/corpus.json.
 
-Every system is that of one Newton iteration of a small run, written by /output/matrices; only its `cause` is added here. The table replays all of
-them (`barrierbench matrix`); it has no times, so that it is the same on every machine with the same libraries.
+Every system is that of one Newton iteration of a small run, written by /output/matrices; only its `cause` is
+added here. The table replays all of them (`barrierbench matrix`); it has no times, so that it is the same on
+every machine with the same libraries.
 """
 
 from __future__ import annotations
@@ -10,15 +12,15 @@ import argparse
 import json
 import math
 import shutil
-import subprocess
 import sys
 import tempfile
 from pathlib import Path
 
-from .program import built_program
+from .errors import UserError, tells
+from .program import started
+from .spec_file import read_spec
 
 ROOT = Path(__file__).resolve().parents[1]
-SCHEMA = "barrierbench.matrix_corpus/1"
 MOST_BYTES = 8 << 20
 SOLVERS = ["cholmod", "lagged_cholesky", "none", "jacobi", "block_jacobi", "ic0", "schwarz"]
 HEAD = """# Hard systems as data
@@ -39,21 +41,12 @@ without a side-car will do: blocks of 3 if that divides its rows, and b = A * on
 """
 
 
-class CorpusError(ValueError):
-    """A corpus file or a run that gives no system."""
-
-
-def program() -> str:
-    return str(built_program(CorpusError))
-
-
-def read_spec(path: Path) -> dict:
-    spec = json.loads(path.read_text())
-    if spec.get("schema") != SCHEMA:
-        raise CorpusError(f"{path}#/schema: found {spec.get('schema')!r}; allowed: {SCHEMA!r}")
+def read_corpus(path: Path) -> dict:
+    """Errors: UserError, also for two systems of one name."""
+    spec = read_spec(path, "matrix_corpus")
     names = [system["name"] for system in spec["systems"]]
     if len(set(names)) != len(names):
-        raise CorpusError(f"{path}: a name twice in {', '.join(sorted(names))}")
+        raise UserError(f"{path}#/systems: a name twice in {', '.join(sorted(names))}")
     return spec
 
 
@@ -62,17 +55,24 @@ def run(system: dict, common: dict, folder: Path, out: Path) -> None:
     config = folder / system["base"] if "base" in system else out.parent / f"{system['name']}.json"
     if "config" in system:
         config.write_text(json.dumps(system["config"]))
-    words = [program(), "run", str(config), "--out", str(out), "--progress", "none"]
+    words = ["run", str(config), "--out", str(out), "--progress", "none"]
     for pointer, value in {**common, **system.get("set", {})}.items():
         words += ["--set", f"{pointer}={json.dumps(value)}"]
-    done = subprocess.run(words, capture_output=True, text=True, check=False)
+    done = started(*words)
     if done.returncode != 0:
-        raise CorpusError(f"{system['name']}: {done.stderr.strip()}")
+        raise UserError(f"{system['name']}: {done.stderr.strip()}")
 
 
 def unscaled_cond(side_car: dict) -> float:
     """1e14 where there is none: singular or not positive definite."""
-    return next((1e14 if c["cond"] is None else c["cond"] for c in side_car.get("cond", []) if c["scaling"] == "none"), -math.inf)
+    return next(
+        (
+            1e14 if c["cond"] is None else c["cond"]
+            for c in side_car.get("cond", [])
+            if c["scaling"] == "none"
+        ),
+        -math.inf,
+    )
 
 
 def pick(system: dict, matrices: Path) -> Path:
@@ -82,7 +82,7 @@ def pick(system: dict, matrices: Path) -> Path:
     if system["pick"] == "with_exact":
         found = [path for path in found if path.with_name(f"{path.stem}_exact.json").is_file()]
     if not found:
-        raise CorpusError(f"{system['name']}: no matrix of form {system['form']} in its run")
+        raise UserError(f"{system['name']}: no matrix of form {system['form']} in its run")
     if system["pick"] == "largest_cond":
         return max(found, key=lambda path: unscaled_cond(json.loads(path.read_text())))
     return found[0]
@@ -100,7 +100,7 @@ def keep(system: dict, side_car: Path, out: Path) -> None:
 
 
 def make(spec_file: Path, out: Path) -> None:
-    spec = read_spec(spec_file)
+    spec = read_corpus(spec_file)
     out.mkdir(parents=True, exist_ok=True)
     with tempfile.TemporaryDirectory() as scratch:
         for system in spec["systems"]:
@@ -111,7 +111,9 @@ def make(spec_file: Path, out: Path) -> None:
             shutil.rmtree(folder)
             print(f"{system['name']}: {side_car.stem}", file=sys.stderr)
     for stale in out.iterdir():
-        if stale.suffix in (".mtx", ".json") and stale.stem not in {system["name"] for system in spec["systems"]}:
+        if stale.suffix in (".mtx", ".json") and stale.stem not in {
+            system["name"] for system in spec["systems"]
+        }:
             stale.unlink()
 
 
@@ -119,12 +121,12 @@ def replay(out: Path) -> list[dict]:
     """The matrices of `barrierbench matrix --json`, by name."""
     files = sorted(out.glob("*.mtx"))
     if not files:
-        raise CorpusError(f"{out}: no matrices")
+        raise UserError(f"{out}: no matrices")
     with tempfile.TemporaryDirectory() as scratch:
         answer = Path(scratch) / "replay.json"
-        done = subprocess.run([program(), "matrix", *map(str, files), "--json", str(answer)], capture_output=True, text=True, check=False)
+        done = started("matrix", *map(str, files), "--json", str(answer))
         if done.returncode != 0:
-            raise CorpusError(done.stderr.strip())
+            raise UserError(done.stderr.strip())
         return json.loads(answer.read_text())["matrices"]
 
 
@@ -144,14 +146,25 @@ def solve_text(solve: dict) -> str:
 
 
 def table(matrices: list[dict]) -> str:
-    rows = ["| system | cause | rows | entries | cond | Jacobi | block Jacobi | " + " | ".join(f"pcg {s}" if s not in SOLVERS[:2] else s for s in SOLVERS) + " |",
-            "|" + "---|" * (7 + len(SOLVERS))]
+    rows = [
+        "| system | cause | rows | entries | cond | Jacobi | block Jacobi | "
+        + " | ".join(f"pcg {s}" if s not in SOLVERS[:2] else s for s in SOLVERS)
+        + " |",
+        "|" + "---|" * (7 + len(SOLVERS)),
+    ]
     for one in matrices:
         tier2 = {e["scaling"]: cond_text(e) for e in one["estimates"] if e["tier"] == 2}
-        solves = {s["solver"] if s["solver"] != "pcg" else s["preconditioner"]: solve_text(s) for s in one["solves"]}
+        solves = {
+            s["solver"] if s["solver"] != "pcg" else s["preconditioner"]: solve_text(s) for s in one["solves"]
+        }
         cause, _, why = one["cause"].partition(": ")
-        rows.append(f"| `{Path(one['file']).stem}` | **{cause}**: {why} | {one['rows']} | {one['entries']} | "
-                    + " | ".join([*(tier2[s] for s in ("none", "jacobi", "block_jacobi")), *(solves[s] for s in SOLVERS)]) + " |")
+        rows.append(
+            f"| `{Path(one['file']).stem}` | **{cause}**: {why} | {one['rows']} | {one['entries']} | "
+            + " | ".join(
+                [*(tier2[s] for s in ("none", "jacobi", "block_jacobi")), *(solves[s] for s in SOLVERS)]
+            )
+            + " |"
+        )
     return "\n".join(rows)
 
 
@@ -159,27 +172,25 @@ def write_readme(out: Path) -> None:
     matrices = replay(out)
     size = sum(path.stat().st_size for path in out.iterdir() if path.suffix in (".mtx", ".json"))
     if size > MOST_BYTES:
-        raise CorpusError(f"{out}: {size} bytes; at most {MOST_BYTES} go into the repository")
-    notes = (f"\n{len(matrices)} systems, {size / 2**20:.1f} MiB. cond: tier 2, unscaled and scaled; `>` is a lower bound. Solvers: PCG iterations to a residual of "
-             "1e-8, at most 10000, `ok` for none, or how the solve ended.\n")
+        raise UserError(f"{out}: {size} bytes; at most {MOST_BYTES} go into the repository")
+    notes = (
+        f"\n{len(matrices)} systems, {size / 2**20:.1f} MiB. cond: tier 2, unscaled and scaled; `>` is a"
+        " lower bound. Solvers: PCG iterations to a residual of 1e-8, at most 10000, `ok` for none, or how"
+        " the solve ended.\n"
+    )
     (out / "README.md").write_text(f"{HEAD}{notes}\n{table(matrices)}\n")
 
 
-def main(argv: list[str] | None = None) -> int:
-    parser = argparse.ArgumentParser(prog="bench matrix-corpus", description="the corpus of hard systems and its table")
+@tells("matrix-corpus")
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(
+        prog="bench matrix-corpus", description="the corpus of hard systems and its table"
+    )
     parser.add_argument("--spec", type=Path, default=ROOT / "configs/matrices/corpus.json")
     parser.add_argument("--out", type=Path, default=ROOT / "results/matrices")
     parser.add_argument("--table", action="store_true", help="only README.md, from the files that are there")
     args = parser.parse_args(argv)
-    try:
-        if not args.table:
-            make(args.spec, args.out)
-        write_readme(args.out)
-    except (CorpusError, OSError) as error:
-        print(f"bench matrix-corpus: {error}", file=sys.stderr)
-        return 2
+    if not args.table:
+        make(args.spec, args.out)
+    write_readme(args.out)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

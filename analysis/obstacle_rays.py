@@ -1,4 +1,6 @@
-"""Analytic obstacles in a picture, each pixel by its own ray: no facets, so that no gap looks wider or narrower than it is."""
+"""Analytic obstacles in a picture, each pixel by its own ray: no facets, so that no gap looks wider or
+narrower than it is.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ from .rasterizer import Camera
 
 @dataclass
 class Hits:
-    """Where the rays of all pixels meet one obstacle: arrays [height, width], points and normals [height, width, 3]."""
+    """Where the rays of all pixels meet one obstacle: arrays [height, width], points and normals [height,
+    width, 3].
+    """
 
     depth: np.ndarray  # as Camera.project's, -inf where the ray misses
     points: np.ndarray  # m
@@ -45,8 +49,10 @@ def _round_times(obstacle: dict, origin: np.ndarray, way: np.ndarray) -> list[np
 
 
 def hits(obstacle: dict, camera: Camera, width: int, height: int, center: np.ndarray, reach: float) -> Hits:
-    """The surface of an obstacle that a camera sees. A plane is shown as a square and a cylinder as a tube of half length
-    `reach` (m) round the point nearest `center`; of an obstacle that bodies are inside of the far side is shown."""
+    """The surface of an obstacle that a camera sees. A plane is shown as a square and a cylinder as a tube of
+    half length `reach` (m) round the point nearest `center`; of an obstacle that bodies are inside of the far
+    side is shown.
+    """
     origin, way = camera.rays(width, height)
     point = np.array(obstacle["point_m"], float)
     axis = np.array(obstacle.get("axis", (0, 0, 1)), float)
@@ -63,11 +69,19 @@ def hits(obstacle: dict, camera: Camera, width: int, height: int, center: np.nda
         if obstacle["kind"] != "sphere":
             middle = center if obstacle["kind"] == "plane" else point + axis * np.dot(center - point, axis)
             off = x - middle
-            across = off - (off @ axis)[..., None] * axis if obstacle["kind"] == "plane" else (off @ axis)[..., None] * axis
+            across = (
+                off - (off @ axis)[..., None] * axis
+                if obstacle["kind"] == "plane"
+                else (off @ axis)[..., None] * axis
+            )
             shown &= (np.abs(across) <= reach).all(axis=-1)
         best = np.where(shown, t, best)
     x = origin + np.where(np.isfinite(best), best, 0.0)[..., None] * way
-    normal = np.broadcast_to(axis, x.shape) if obstacle["kind"] == "plane" else _radial(obstacle, x - point) / obstacle["radius_m"]
+    normal = (
+        np.broadcast_to(axis, x.shape)
+        if obstacle["kind"] == "plane"
+        else _radial(obstacle, x - point) / obstacle["radius_m"]
+    )
     depth = camera.depth(np.where(np.isfinite(best), best, 1.0))
     return Hits(np.where(np.isfinite(best), depth, -np.inf), x, normal)
 
@@ -91,15 +105,22 @@ def _closest_on_triangle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndar
         inside &= (n * np.cross(p, q)).sum(-1) >= 0
     length = np.linalg.norm(n, axis=-1)
     height = np.abs((n * a).sum(-1)) / np.maximum(length, 1e-300)
-    sides = np.minimum(np.minimum(_closest_on_segment(a, b), _closest_on_segment(b, c)), _closest_on_segment(c, a))
+    sides = np.minimum(
+        np.minimum(_closest_on_segment(a, b), _closest_on_segment(b, c)), _closest_on_segment(c, a)
+    )
     return np.where(inside & (length > 0), height, sides)
 
 
 def primitive_gaps(obstacle: dict, corners: np.ndarray) -> np.ndarray:
-    """[n] smallest signed gap (m) over flat primitives [n, k, 3] (k = 2: edges, 3: triangles), negative beyond the surface.
-    Where the allowed side is convex the corners decide."""
+    """[n] smallest signed gap (m) over flat primitives [n, k, 3] (k = 2: edges, 3: triangles), negative
+    beyond the surface. Where the allowed side is convex the corners decide.
+    """
     if obstacle["kind"] == "plane" or obstacle.get("inside"):
         return signed_gap(obstacle, corners).min(axis=1)
     arms = _radial(obstacle, corners - np.array(obstacle["point_m"], float))
-    distance = _closest_on_segment(*arms.transpose(1, 0, 2)) if arms.shape[1] == 2 else _closest_on_triangle(*arms.transpose(1, 0, 2))
+    distance = (
+        _closest_on_segment(*arms.transpose(1, 0, 2))
+        if arms.shape[1] == 2
+        else _closest_on_triangle(*arms.transpose(1, 0, 2))
+    )
     return distance - obstacle["radius_m"]

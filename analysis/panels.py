@@ -13,12 +13,17 @@ from .style import LEAST_RATIO
 FLAT = 1.05  # largest over smallest number of a flat line
 SAME = 0.03  # of the height of a panel: a smaller difference is not seen
 SHARE = 0.95  # of the points have to keep to it
-RULE = f"(a panel is left out where {SHARE:.0%} of its points are within a factor {FLAT:g}, or within {SAME:.0%} of its height of another panel times a constant)"
+RULE = (
+    f"(a panel is left out where {SHARE:.0%} of its points are within a factor {FLAT:g}, or within"
+    f" {SAME:.0%} of its height of another panel times a constant)"
+)
 
 
 @dataclass(frozen=True)
 class Panel:
-    """name: for captions; numbers: those that would be drawn, by whose they are (the index); across: on the other axis, where that differs between panels."""
+    """name: for captions; numbers: those that would be drawn, by whose they are (the index); across: on the
+    other axis, where that differs between panels.
+    """
 
     name: str
     numbers: pd.Series
@@ -45,18 +50,30 @@ def is_flat(panel: Panel) -> bool:
 
 
 def _constant(of: pd.Series, over: pd.Series) -> float | None:
-    """Of two logarithms: what their difference is where it is the same, as far as one sees, for SHARE of the points; None where it is not."""
+    """Of two logarithms: what their difference is where it is the same, as far as one sees, for SHARE of the
+    points; None where it is not.
+    """
     both = pd.concat([of, over], axis=1, join="inner")
     if len(both) < SHARE * max(len(of), len(over)):
         return None
     differences = both.iloc[:, 0] - both.iloc[:, 1]
     seen = SAME * max(np.ptp(both.iloc[:, 0]), np.log(LEAST_RATIO))
-    return float(differences.median()) if ((differences - differences.median()).abs() <= seen).mean() >= SHARE else None
+    return (
+        float(differences.median())
+        if ((differences - differences.median()).abs() <= seen).mean() >= SHARE
+        else None
+    )
 
 
 def constant(panel: Panel, other: Panel) -> float | None:
-    """What the other's numbers are multiplied by to be those of the panel; None where no constant does it, or they are not of the same points."""
-    if panel.across is not None and other.across is not None and _constant(_logs(panel.across), _logs(other.across)) is None:
+    """What the other's numbers are multiplied by to be those of the panel; None where no constant does it, or
+    they are not of the same points.
+    """
+    if (
+        panel.across is not None
+        and other.across is not None
+        and _constant(_logs(panel.across), _logs(other.across)) is None
+    ):
         return None
     found = _constant(panel.logs(), other.logs())
     return None if found is None else float(np.exp(found))
@@ -68,7 +85,10 @@ def _why_out(panel: Panel, kept: list[Panel]) -> str:
     if logs.empty:
         return "not measured"
     if is_flat(panel):
-        return f"one flat line at {np.exp(logs.median()):.3g} ({np.exp(logs.min()):.3g} to {np.exp(logs.max()):.3g})"
+        return (
+            f"one flat line at {np.exp(logs.median()):.3g} ({np.exp(logs.min()):.3g} to"
+            f" {np.exp(logs.max()):.3g})"
+        )
     for other in kept:
         if (factor := constant(panel, other)) is not None:
             return f"{other.name} times {factor:.3g}"
@@ -87,10 +107,14 @@ def choose(panels: list[Panel]) -> tuple[list[str], str]:
 
 
 def grid(count: int, width: float, height: float, most: int = 4, **how):
-    """A figure with so many panels, in rows of equal length as far as it goes; height: of a row. Returns figure and panels."""
+    """A figure with so many panels, in rows of equal length as far as it goes; height: of a row. Returns
+    figure and panels.
+    """
     rows = -(-count // most)
     columns = -(-count // rows)
-    fig, axes = plt.subplots(rows, columns, figsize=(width, height * rows + 0.6), layout="constrained", squeeze=False, **how)
+    fig, axes = plt.subplots(
+        rows, columns, figsize=(width, height * rows + 0.6), layout="constrained", squeeze=False, **how
+    )
     for axis in axes.flat[count:]:
         axis.remove()
     return fig, list(axes.flat[:count])

@@ -37,14 +37,22 @@ class Camera:
         z = local[:, 2]
         if self.perspective:
             near = 1 / np.maximum(z, 1e-9)
-            return np.stack([self.center[0] + self.scale * local[:, 0] * near,
-                             self.center[1] + self.scale * local[:, 1] * near, near], axis=1)
-        return np.stack([self.center[0] + self.scale * local[:, 0], self.center[1] + self.scale * local[:, 1], -z], axis=1)
-
+            return np.stack(
+                [
+                    self.center[0] + self.scale * local[:, 0] * near,
+                    self.center[1] + self.scale * local[:, 1] * near,
+                    near,
+                ],
+                axis=1,
+            )
+        return np.stack(
+            [self.center[0] + self.scale * local[:, 0], self.center[1] + self.scale * local[:, 1], -z], axis=1
+        )
 
     def rays(self, width: int, height: int) -> tuple[np.ndarray, np.ndarray]:
-        """Of the middles of all pixels: origins [3] or [height, width, 3] and ways [height, width, 3] (m), such that origin
-        + z way is z metres in front of the camera."""
+        """Of the middles of all pixels: origins [3] or [height, width, 3] and ways [height, width, 3] (m),
+        such that origin + z way is z metres in front of the camera.
+        """
         x = (np.arange(width) + 0.5 - self.center[0]) / self.scale
         y = (np.arange(height) + 0.5 - self.center[1]) / self.scale
         right, down, forward = self.axes()
@@ -67,11 +75,15 @@ class DepthBuffer:
         self.weights = np.zeros((height, width, 3))  # of the corners, linear on the screen
 
     def draw(self, points: np.ndarray, triangles: np.ndarray) -> None:
-        """points: [n, 3] as Camera.project gives them; triangles: [m, 3]. Triangles that are edge-on draw nothing."""
+        """points: [n, 3] as Camera.project gives them; triangles: [m, 3]. Triangles that are edge-on draw
+        nothing.
+        """
         height, width = self.depth.shape
         for index, (a, b, c) in enumerate(points[triangles]):
             low = np.maximum(np.ceil(np.minimum(np.minimum(a, b), c)[:2] - 0.5), 0).astype(int)
-            high = np.minimum(np.floor(np.maximum(np.maximum(a, b), c)[:2] - 0.5), (width - 1, height - 1)).astype(int)
+            high = np.minimum(
+                np.floor(np.maximum(np.maximum(a, b), c)[:2] - 0.5), (width - 1, height - 1)
+            ).astype(int)
             area = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
             if (high < low).any() or area == 0:
                 continue
@@ -93,8 +105,10 @@ def _unit(v: np.ndarray) -> np.ndarray:
 
 
 def corner_normals(x: np.ndarray, triangles: np.ndarray, crease_deg: float = 40.0) -> np.ndarray:
-    """[m, 3, 3] unit normals at the corners of every triangle: the mean over the triangles of the vertex, weighted
-    by area, or the triangle's own where the two differ by more than crease_deg (a sharp edge stays sharp)."""
+    """[m, 3, 3] unit normals at the corners of every triangle: the mean over the triangles of the vertex,
+    weighted by area, or the triangle's own where the two differ by more than crease_deg (a sharp edge stays
+    sharp).
+    """
     area = np.cross(x[triangles[:, 1]] - x[triangles[:, 0]], x[triangles[:, 2]] - x[triangles[:, 0]])
     sums = np.zeros_like(x)
     for corner in range(3):

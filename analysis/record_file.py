@@ -1,8 +1,9 @@
-"""The one reader of what a run leaves: run.json, the trace and the frames beside it. Every verb in Python reads records through it.
+"""The one reader of what a run leaves: run.json, the trace and the frames beside it. Every verb in Python
+reads records through it.
 
-A record is read when it is JSON of this schema, holds finite numbers, and its fields have the types that the schema says. The files beside it
-are read when they are those that the record names, byte for byte: `artifacts` has the sha256 of each. Whatever else is refused with file,
-place, value and what is allowed.
+A record is read when it is JSON of this schema, holds finite numbers, and its fields have the types that the
+schema says. The files beside it are read when they are those that the record names, byte for byte:
+`artifacts` has the sha256 of each. Whatever else is refused with file, place, value and what is allowed.
 """
 
 from __future__ import annotations
@@ -15,18 +16,31 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from . import fields
+from .errors import UserError
 
 VERSION = fields.schema("run")["$defs"]["SchemaId"]["properties"]
-SCHEMA_NAME, SCHEMA_MAJOR = VERSION["name"]["enum"][0], VERSION["version"]["pattern"].strip("^").split("\\.")[0]
+SCHEMA_NAME, SCHEMA_MAJOR = (
+    VERSION["name"]["enum"][0],
+    VERSION["version"]["pattern"].strip("^").split("\\.")[0],
+)
 OURS = tuple(int(part) for part in fields.schema("run")["$comment"].removeprefix("version ").split("."))
-CHANGED = {**fields.schema("run")["x-changed-meaning"], **{f"trace {field}": change for field, change in fields.schema("trace")["x-changed-meaning"].items()}}
+CHANGED = {
+    **fields.schema("run")["x-changed-meaning"],
+    **{f"trace {field}": change for field, change in fields.schema("trace")["x-changed-meaning"].items()},
+}
 TRACE = "trace.jsonl"
 HASHED_TRACES = (3, 4)  # the first version whose records name their trace in `artifacts`
-NEEDED = {"ids": ("run_id",), "status": ("outcome", "valid"), "labels": ("scene", "formulation"), "summary": (), "steps": ()}
+NEEDED = {
+    "ids": ("run_id",),
+    "status": ("outcome", "valid"),
+    "labels": ("scene", "formulation"),
+    "summary": (),
+    "steps": (),
+}
 TYPES = {"object": dict, "array": list, "string": str, "boolean": bool, "null": type(None)}
 
 
-class RecordError(ValueError):
+class RecordError(UserError):
     """A file that is not a record this version can read, or that does not belong to its record."""
 
 
@@ -48,8 +62,10 @@ def _version(record: dict) -> tuple[int, ...]:
 
 
 def other_meanings(version: str, other: str = ".".join(map(str, OURS))) -> dict[str, dict]:
-    """Fields that mean something else in records of the one version than in those of the other, by default this reader's: place of the field
-    (`trace ...` of a line of the trace) -> since which version it means what it does now, and what it meant before."""
+    """Fields that mean something else in records of the one version than in those of the other, by default
+    this reader's: place of the field (`trace ...` of a line of the trace) -> since which version it means
+    what it does now, and what it meant before.
+    """
     low, high = sorted((_parts(version), _parts(other)))
     return {field: change for field, change in CHANGED.items() if low < _parts(change["since"]) <= high}
 
@@ -59,7 +75,10 @@ def _check_schema(record: dict, path: Path) -> None:
     schema = schema if isinstance(schema, dict) else {}
     version = str(schema.get("version", ""))
     if schema.get("name") != SCHEMA_NAME or not re.fullmatch(rf"{SCHEMA_MAJOR}\.[0-9]+\.[0-9]+", version):
-        raise RecordError(f"{path}#/schema: found {json.dumps(record.get('schema'))[:100]}; allowed: {SCHEMA_NAME} {SCHEMA_MAJOR}.x.y")
+        raise RecordError(
+            f"{path}#/schema: found {json.dumps(record.get('schema'))[:100]}; allowed:"
+            f" {SCHEMA_NAME} {SCHEMA_MAJOR}.x.y"
+        )
 
 
 def _shown(value) -> str:
@@ -67,16 +86,25 @@ def _shown(value) -> str:
 
 
 def _fault(value, rule: dict, place: str, complete: bool, words: bool) -> str:
-    """What is wrong with the first value that is not as the schema says; empty when all is well. complete: every field has to be there.
-    words: only the words of the schema are allowed; a later version may have more. Unknown fields are passed over."""
+    """What is wrong with the first value that is not as the schema says; empty when all is well. complete:
+    every field has to be there. words: only the words of the schema are allowed; a later version may have
+    more. Unknown fields are passed over.
+    """
     while "$ref" in rule:
         rule = fields.schema("run")["$defs"][rule["$ref"].rsplit("/", 1)[1]]
     if "enum" in rule:
-        return "" if value in rule["enum"] or not words and isinstance(value, str) else f"{place}: found {_shown(value)}; allowed: {', '.join(map(str, rule['enum']))}"
+        return (
+            ""
+            if value in rule["enum"] or not words and isinstance(value, str)
+            else f"{place}: found {_shown(value)}; allowed: {', '.join(map(str, rule['enum']))}"
+        )
     kinds = rule.get("type", ())
     kinds = [kinds] if isinstance(kinds, str) else kinds
     is_number = isinstance(value, (int, float)) and not isinstance(value, bool)
-    right = any(isinstance(value, TYPES[k]) if k in TYPES else is_number and (k == "number" or value == int(value)) for k in kinds)
+    right = any(
+        isinstance(value, TYPES[k]) if k in TYPES else is_number and (k == "number" or value == int(value))
+        for k in kinds
+    )
     if kinds and not right:
         return f"{place}: found {_shown(value)}; allowed: {' or '.join(kinds)}"
     if is_number and "minimum" in rule and value < rule["minimum"]:
@@ -84,7 +112,14 @@ def _fault(value, rule: dict, place: str, complete: bool, words: bool) -> str:
     if isinstance(value, dict):
         return _object_fault(value, rule, place, complete, words)
     items = rule.get("items") if isinstance(value, list) else None
-    return next((fault for k, below in enumerate(value if items else ()) if (fault := _fault(below, items, f"{place}/{k}", complete, words))), "")
+    return next(
+        (
+            fault
+            for k, below in enumerate(value if items else ())
+            if (fault := _fault(below, items, f"{place}/{k}", complete, words))
+        ),
+        "",
+    )
 
 
 def _object_fault(value: dict, rule: dict, place: str, complete: bool, words: bool) -> str:
@@ -111,9 +146,11 @@ def _needed_fault(record: dict) -> str:
 
 
 def read_record(path: Path, foreign: bool = False, allow_not_finite: bool = False) -> dict:
-    """One run.json. foreign: a record that another program may have written, whose sections may be missing. allow_not_finite: the caller
-    judges numbers that are none. Raises RecordError with file and place: torn or otherwise not JSON, no record, a version this one does not
-    read, a number that is not finite, a field of another type or with an unknown word, a field that is missing.   Cost: of the size."""
+    """One run.json. foreign: a record that another program may have written, whose sections may be missing.
+    allow_not_finite: the caller judges numbers that are none. Raises RecordError with file and place: torn or
+    otherwise not JSON, no record, a version this one does not read, a number that is not finite, a field of
+    another type or with an unknown word, a field that is missing.   Cost: of the size.
+    """
     path = Path(path)
     try:
         record = json.loads(path.read_text())
@@ -122,12 +159,25 @@ def read_record(path: Path, foreign: bool = False, allow_not_finite: bool = Fals
     if not isinstance(record, dict):
         raise RecordError(f"{path}: not JSON of a record: found {_shown(record)}; allowed: an object")
     _check_schema(record, path)
-    bad = None if allow_not_finite else next((f"{place}: found {value}" for place, value in leaves(record) if isinstance(value, float) and not math.isfinite(value)), None)
+    bad = (
+        None
+        if allow_not_finite
+        else next(
+            (
+                f"{place}: found {value}"
+                for place, value in leaves(record)
+                if isinstance(value, float) and not math.isfinite(value)
+            ),
+            None,
+        )
+    )
     if bad:
         raise RecordError(f"{path}#{bad}; allowed: a finite number, or null with the word that says why")
     if not foreign:
         version = _version(record)
-        fault = _needed_fault(record) or _fault(record, fields.schema("run"), "", version == OURS, version <= OURS)
+        fault = _needed_fault(record) or _fault(
+            record, fields.schema("run"), "", version == OURS, version <= OURS
+        )
         if fault:
             raise RecordError(f"{path}#{fault}")
     return record
@@ -146,24 +196,33 @@ def sha256_of(path: Path) -> str:
 
 
 def named_files(record: dict, kind: str) -> list[str]:
-    """Paths of the files of a kind (frame, frame_scene, matrix, matrix_side_car, trace) that the record names, relative to its folder."""
+    """Paths of the files of a kind (frame, frame_scene, matrix, matrix_side_car, trace) that the record
+    names, relative to its folder.
+    """
     return [file["path"] for file in record.get("artifacts") or [] if file["kind"] == kind]
 
 
 def bound_file(record: dict, folder: Path, relative: str) -> Path:
-    """The file beside the record, if it is the very one that the record names. Raises RecordError: not named, not there, another content."""
+    """The file beside the record, if it is the very one that the record names. Raises RecordError: not named,
+    not there, another content.
+    """
     path = Path(folder) / relative
     known = next((file for file in record.get("artifacts") or [] if file["path"] == relative), None)
     if known is None:
         raise RecordError(f"{path}: the record beside it names no such file; allowed: one of its `artifacts`")
     if (found := sha256_of(path)) != known["sha256"]:
-        raise RecordError(f"{path}: found sha256 {found[:16]}, {path.stat().st_size} bytes; allowed: sha256 {known['sha256'][:16]}, {known['bytes']} bytes, as the record beside it says")
+        raise RecordError(
+            f"{path}: found sha256 {found[:16]}, {path.stat().st_size} bytes; allowed: sha256"
+            f" {known['sha256'][:16]}, {known['bytes']} bytes, as the record beside it says"
+        )
     return path
 
 
 def trace_lines(path: Path) -> tuple[list[dict], int]:
-    """The rows of a trace, whoever wrote it, and how many of its lines were torn by a crash: 0 or 1, since only the last one can be.
-    Raises RecordError: a line before the last one that is no JSON object, a number that is none."""
+    """The rows of a trace, whoever wrote it, and how many of its lines were torn by a crash: 0 or 1, since
+    only the last one can be. Raises RecordError: a line before the last one that is no JSON object, a number
+    that is none.
+    """
     lines = path.read_text(errors="replace").splitlines()
     rows = []
     for number, line in enumerate(lines, 1):
@@ -174,7 +233,9 @@ def trace_lines(path: Path) -> tuple[list[dict], int]:
         if isinstance(row, dict):
             rows.append(row)
         elif number < len(lines):
-            raise RecordError(f"{path}:{number}: not a JSON object; only the last line of a trace may be torn")
+            raise RecordError(
+                f"{path}:{number}: not a JSON object; only the last line of a trace may be torn"
+            )
     return rows, len(lines) - len(rows)
 
 
@@ -184,30 +245,44 @@ def is_hashed(record: dict) -> bool:
 
 
 def own_trace(record: dict, folder: Path) -> Path | None:
-    """The trace beside the record; None where the run wrote none. Raises RecordError when it is not the very one that the record names. A record before
-    version 3.4 names none: of it any trace is the own."""
+    """The trace beside the record; None where the run wrote none. Raises RecordError when it is not the very
+    one that the record names. A record before version 3.4 names none: of it any trace is the own.
+    """
     path = Path(folder) / TRACE
     if not is_hashed(record):
         return path if path.exists() else None
     if TRACE in named_files(record, "trace"):
         return bound_file(record, folder, TRACE)
     if path.exists():
-        raise RecordError(f"{path}: the record beside it names no trace; allowed: none, since its run wrote none")
+        raise RecordError(
+            f"{path}: the record beside it names no trace; allowed: none, since its run wrote none"
+        )
     return None
 
 
 def read_trace(record: dict, folder: Path) -> list[dict]:
-    """The rows of the trace beside the record, one a Newton iteration; none where the run wrote none. Raises RecordError when it is not the record's, is torn,
-    has not one line an iteration, or a number that is not finite: a hash says whose file it is, not that it is whole."""
+    """The rows of the trace beside the record, one a Newton iteration; none where the run wrote none. Raises
+    RecordError when it is not the record's, is torn, has not one line an iteration, or a number that is not
+    finite: a hash says whose file it is, not that it is whole.
+    """
     path = own_trace(record, folder)
     if path is None:
         return []
     rows, torn = trace_lines(path)
     expected = record["summary"].get("newton_iterations")
     if torn or len(rows) != expected:
-        raise RecordError(f"{path}: found {len(rows)} whole lines{' and a torn one' if torn else ''}; allowed: {expected}, one for each Newton iteration of the record beside it")
+        raise RecordError(
+            f"{path}: found {len(rows)} whole lines{' and a torn one' if torn else ''}; allowed: {expected},"
+            " one for each Newton iteration of the record beside it"
+        )
     for number, row in enumerate(rows, 1):
-        bad = next((place for place, value in leaves(row) if isinstance(value, float) and not math.isfinite(value)), None)
+        bad = next(
+            (place for place, value in leaves(row) if isinstance(value, float) and not math.isfinite(value)),
+            None,
+        )
         if bad:
-            raise RecordError(f"{path}:{number}: {bad} is not finite; allowed: a finite number, or null with the word that says why")
+            raise RecordError(
+                f"{path}:{number}: {bad} is not finite; allowed: a finite number, or null with the word that"
+                " says why"
+            )
     return rows

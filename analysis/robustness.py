@@ -1,4 +1,6 @@
-"""Who gets through a sweep, at what cost and how far: share of runs, expected cost of a success, frontier of failure, data profile."""
+"""Who gets through a sweep, at what cost and how far: share of runs, expected cost of a success, frontier of
+failure, data profile.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,9 @@ from .claims.estimate import wilson
 
 @dataclass(frozen=True)
 class Trial:
-    """One run: which problem (scene, seed and all else that is equal), the value of the axis, whether it got through, and its cost."""
+    """One run: which problem (scene, seed and all else that is equal), the value of the axis, whether it got
+    through, and its cost.
+    """
 
     problem: str
     value: float
@@ -31,7 +35,9 @@ class Share:
 
 @dataclass(frozen=True)
 class Frontier:
-    """From the middle outwards: the least and the largest value up to which every run of every problem gets through. None: not even the middle."""
+    """From the middle outwards: the least and the largest value up to which every run of every problem gets
+    through. None: not even the middle.
+    """
 
     low: float | None
     high: float | None
@@ -45,7 +51,10 @@ def _checked(trials: Iterable[Trial]) -> list[Trial]:
         raise ValueError("no trials: nothing is judged")
     for trial in found:
         if not math.isfinite(trial.value) or not math.isfinite(trial.cost) or trial.cost < 0:
-            raise ValueError(f"{trial.problem}: value {trial.value}, cost {trial.cost}; a finite value and a finite cost >= 0 are needed")
+            raise ValueError(
+                f"{trial.problem}: value {trial.value}, cost {trial.cost}; a finite value and a finite cost"
+                " >= 0 are needed"
+            )
     return found
 
 
@@ -57,7 +66,9 @@ def success(trials: Iterable[Trial]) -> Share:
 
 
 def expected_cost(trials: Iterable[Trial]) -> float | None:
-    """`ert` of COCO (Hansen et al. 2021): cost of all trials, failed ones included, over the number of successes; None without a success."""
+    """`ert` of COCO (Hansen et al. 2021): cost of all trials, failed ones included, over the number of
+    successes; None without a success.
+    """
     found = _checked(trials)
     ok = sum(t.ok for t in found)
     return sum(t.cost for t in found) / ok if ok else None
@@ -74,7 +85,9 @@ def _walk(values: list[float], through: dict[float, bool]) -> tuple[float | None
 
 
 def frontier(trials: Iterable[Trial], middle: float) -> Frontier:
-    """How far from `middle` all trials get through, in both directions. Errors: ValueError when no trial is at the middle."""
+    """How far from `middle` all trials get through, in both directions. Errors: ValueError when no trial is
+    at the middle.
+    """
     found = _checked(trials)
     through: dict[float, bool] = {}
     for t in found:
@@ -87,11 +100,17 @@ def frontier(trials: Iterable[Trial], middle: float) -> Frontier:
 
 
 def profile(trials: Iterable[Trial]) -> list[tuple[float, float]]:
-    """Data profile (More and Wild 2009): (budget, share of problems that were solved with at most it), from the cheapest solved one on.
-    Every problem counts once in the denominator, solved or not. Errors: ValueError when a problem occurs twice."""
+    """Data profile (More and Wild 2009): (budget, share of problems that were solved with at most it), from
+    the cheapest solved one on. Every problem counts once in the denominator, solved or not. Errors:
+    ValueError when a problem occurs twice.
+    """
     found = _checked(trials)
     problems = [(t.problem, t.value) for t in found]
     if len(set(problems)) != len(problems):
         raise ValueError(f"problem {max(problems, key=problems.count)} occurs twice")
     costs = sorted(t.cost for t in found if t.ok)
-    return [(cost, (k + 1) / len(found)) for k, cost in enumerate(costs) if k + 1 == len(costs) or costs[k + 1] > cost]
+    return [
+        (cost, (k + 1) / len(found))
+        for k, cost in enumerate(costs)
+        if k + 1 == len(costs) or costs[k + 1] > cost
+    ]

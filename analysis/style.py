@@ -22,14 +22,29 @@ from .record_file import other_meanings  # noqa: E402
 from .ticks import make_readable  # noqa: E402
 
 NARROW_IN, WIDE_IN = 3.33, 7.0
-HOLLOW = r"hollow markers: the run failed, is not valid, or a quantile (5, 50 or 95 % of the load) of gap/$\hat{{d}}$ between two bodies at converged step ends is not within a factor {ratio:g} of {reference}"
-FAILED = "hollow markers: the run failed, is not valid or not comparable"  # where all verdicts are of an earlier rule
-VERDICT, JUDGED = "comparability.verdict", ("comparable", "not_comparable")  # the field, and its words that a rule on gaps decides
+HOLLOW = (
+    r"hollow markers: the run failed, is not valid, or a quantile (5, 50 or 95 % of the load) of"
+    r" gap/$\hat{{d}}$ between two bodies at converged step ends is not within a factor {ratio:g} of"
+    r" {reference}"
+)
+FAILED = (  # where all verdicts are of an earlier rule
+    "hollow markers: the run failed, is not valid or not comparable"
+)
+VERDICT, JUDGED = (
+    "comparability.verdict",
+    (
+        "comparable",
+        "not_comparable",
+    ),
+)  # the field, and its words that a rule on gaps decides
 LEGEND_COLUMN_IN = 2.3  # the longest series with its verdict
 LEAST_SPAN = 0.25  # of the largest value: a linear axis never shows less
 LEAST_RATIO = 2.0  # a logarithmic axis never shows less
 REFERENCE = "reference"  # marks lines that are no data
-MARKERS = "A formulation has one colour and one marker in every figure; {hollow} A cross ends the line of a run that failed; the legend has its outcome."
+MARKERS = (
+    "A formulation has one colour and one marker in every figure; {hollow} A cross ends the line of a run"
+    " that failed; the legend has its outcome."
+)
 FAILURE = "failure"  # gid of that cross
 
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # it comments on the missing date of the PDF
@@ -96,7 +111,9 @@ def _shade(color: str, lighter: float) -> str:
 
 
 def look(formulation: str, variant: int = 0) -> Look:
-    """Of the formulation. A variant (another d_hat, another step solver) keeps hue and marker and has its own shade and dash."""
+    """Of the formulation. A variant (another d_hat, another step solver) keeps hue and marker and has its own
+    shade and dash.
+    """
     base = LOOKS.get(formulation)
     if base is None:
         looks = list(LOOKS.values())
@@ -108,7 +125,9 @@ def look(formulation: str, variant: int = 0) -> Look:
 
 
 def runs_of(runs: pd.DataFrame, group: str) -> pd.DataFrame:
-    """The runs of one figure, with `variant`: 0 for the first run of a formulation, the plain one before all others."""
+    """The runs of one figure, with `variant`: 0 for the first run of a formulation, the plain one before all
+    others.
+    """
     chosen = runs[runs["group"] == group]
     plain = chosen["series"] != chosen["formulation"]
     order = chosen.assign(plain=plain).sort_values("plain", kind="stable")
@@ -121,14 +140,22 @@ def marks(length: int, wanted: int = 12) -> int:
 
 
 def verdict_word(row: pd.Series) -> str:
-    """Why the markers of a run are hollow: its outcome, or the program's verdict on comparability; else empty."""
+    """Why the markers of a run are hollow: its outcome, or the program's verdict on comparability; else
+    empty.
+    """
     if row["outcome"] != "ok":
         return row["outcome"]
-    return row["comparability_verdict"] if row["comparability_verdict"] in ("not_valid", "not_comparable") else ""
+    return (
+        row["comparability_verdict"]
+        if row["comparability_verdict"] in ("not_valid", "not_comparable")
+        else ""
+    )
 
 
 def earlier_rule(row: pd.Series) -> dict | None:
-    """The rule by which comparability was judged in the version of the record (`since`, `before`); None where it is that of now, or nothing was compared."""
+    """The rule by which comparability was judged in the version of the record (`since`, `before`); None where
+    it is that of now, or nothing was compared.
+    """
     if row.get("comparability_verdict") not in JUDGED or not row.get("schema_version"):
         return None
     return other_meanings(row["schema_version"]).get(VERDICT)
@@ -144,7 +171,8 @@ def judged_words(row: pd.Series) -> list[str]:
 
 
 def end_word(row: pd.Series) -> str:
-    """Which residual the steps of a run end with that its step solver does not ask to converge; else empty."""
+    """Which residual the steps of a run end with that its step solver does not ask to converge; else
+    empty."""
     if row.get("convergence") != "not_asked":
         return ""
     median = row["end_error_tolerances_median"]
@@ -153,7 +181,9 @@ def end_word(row: pd.Series) -> str:
 
 
 def name_of(row: pd.Series) -> str:
-    """The legend's text: the series, the word of a run whose marker is hollow, and of one that does not converge."""
+    """The legend's text: the series, the word of a run whose marker is hollow, and of one that does not
+    converge.
+    """
     words = judged_words(row) + [word for word in (end_word(row),) if word]
     return f"{row['series']} ({'; '.join(words)})" if words else row["series"]
 
@@ -181,7 +211,9 @@ def draw(axis, x, y, row: pd.Series, end_mark: bool = True, steps: str = "defaul
 
 def draw_failure(axis, x: float, y: float, color: str) -> None:
     """The cross at the end of a line."""
-    axis.plot([x], [y], linestyle="none", marker="x", markersize=6, markeredgewidth=1.4, color=color, gid=FAILURE)
+    axis.plot(
+        [x], [y], linestyle="none", marker="x", markersize=6, markeredgewidth=1.4, color=color, gid=FAILURE
+    )
 
 
 def marker_sentence(runs: pd.DataFrame) -> str:
@@ -200,9 +232,15 @@ def hollow_rule(runs: pd.DataFrame) -> str:
     if compared.empty:
         return ""
     names = runs.drop_duplicates("run").set_index("folder")["series"]
-    references = " or ".join(dict.fromkeys(names.get(folder, folder) for folder in compared["comparability_reference_run"]))
+    references = " or ".join(
+        dict.fromkeys(names.get(folder, folder) for folder in compared["comparability_reference_run"])
+    )
     rules = [earlier_rule(row) for _, row in compared.iterrows() if row["comparability_verdict"] in JUDGED]
-    text = FAILED if rules and all(rules) else HOLLOW.format(ratio=compared["comparability_max_ratio"].iloc[0], reference=references)
+    text = (
+        FAILED
+        if rules and all(rules)
+        else HOLLOW.format(ratio=compared["comparability_max_ratio"].iloc[0], reference=references)
+    )
     if rule := next(filter(None, rules), None):
         text += f"; by the rule before {rule['since']}, with reference {references}, {rule['before']}"
     return "\n".join(textwrap.wrap(text, 110))
@@ -212,10 +250,20 @@ def legend_below(fig, axis, runs: pd.DataFrame | None = None) -> None:
     """One legend for the figure, below its panels; with `runs`, the rule of hollow markers as its title."""
     handles, labels = axis.get_legend_handles_labels()
     if handles:
-        width = max(LEGEND_COLUMN_IN, 0.6 + 0.055 * max(map(len, labels)))  # of a column, inches: its line, and letters of 7 points
+        width = max(
+            LEGEND_COLUMN_IN, 0.6 + 0.055 * max(map(len, labels))
+        )  # of a column, inches: its line, and letters of 7 points
         columns = max(1, min(len(labels), int(fig.get_figwidth() / width)))
         title = hollow_rule(runs) if runs is not None else ""
-        fig.legend(handles, labels, loc="outside lower center", ncols=columns, frameon=False, title=title or None, title_fontsize=6)
+        fig.legend(
+            handles,
+            labels,
+            loc="outside lower center",
+            ncols=columns,
+            frameon=False,
+            title=title or None,
+            title_fontsize=6,
+        )
 
 
 def letter_panels(axes) -> None:
@@ -225,14 +273,24 @@ def letter_panels(axes) -> None:
 
 
 def reference_line(axis, y: float, label: str, dash: str = "-", below: bool = False) -> None:
-    """A thin horizontal line with its meaning written on it (or below), at the right end. It counts as no data, and the
-    axis reaches to it. After the scale of the axis is set."""
+    """A thin horizontal line with its meaning written on it (or below), at the right end. It counts as no
+    data, and the axis reaches to it. After the scale of the axis is set.
+    """
     low, high = axis.get_ylim()
     axis.set_ylim(min(low, y / 1.2), max(high, 1.2 * y))
     axis.axhline(y, color="#666666", linewidth=0.5, linestyle=dash, gid=REFERENCE)
-    text = axis.annotate(label, (0.995, y), xycoords=("axes fraction", "data"), xytext=(0, -2 if below else 1), textcoords="offset points",
-                         ha="right", va="top" if below else "bottom", fontsize=6, color="#444444",
-                         bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5})
+    text = axis.annotate(
+        label,
+        (0.995, y),
+        xycoords=("axes fraction", "data"),
+        xytext=(0, -2 if below else 1),
+        textcoords="offset points",
+        ha="right",
+        va="top" if below else "bottom",
+        fontsize=6,
+        color="#444444",
+        bbox={"facecolor": "white", "alpha": 0.75, "edgecolor": "none", "pad": 0.5},
+    )
     text.set_in_layout(False)
 
 
@@ -254,8 +312,8 @@ def log_if_decades(axis) -> None:
 def keep_span(axis, which: str = "y") -> None:
     """Widens an axis whose data differ by little, so that a difference of 1% looks like one.
 
-    A linear axis spans at least LEAST_SPAN of its largest value, a logarithmic one at least LEAST_RATIO. After
-    the scale of the axis is set.
+    A linear axis spans at least LEAST_SPAN of its largest value, a logarithmic one at least LEAST_RATIO.
+    After the scale of the axis is set.
     """
     scale, limits = (axis.get_xscale(), axis.set_xlim) if which == "x" else (axis.get_yscale(), axis.set_ylim)
     values = _numbers(axis, which)

@@ -1,4 +1,6 @@
-"""How close the whole surface came to obstacles and to itself in every run below some folders: ./bench surface-gaps RUNS..."""
+"""How close the whole surface came to obstacles and to itself in every run below some folders: ./bench
+surface-gaps RUNS...
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,8 @@ import argparse
 import sys
 from pathlib import Path
 
-from .load import RecordError, read_record
+from .errors import tells
+from .records import RecordError, read_record
 from .text_table import aligned
 
 HEAD = ["run", "outcome", "to obstacles (mm)", "between (mm)", "step ends", "triangles", "edges", "vertices"]
@@ -23,32 +26,60 @@ def _cell(audit: dict, name: str) -> str:
 def gap_of(record: dict) -> float | None:
     """Smallest of the two gaps, m; None where neither was measured."""
     audit = record["audit"]
-    found = [audit[name] for name in ("surface_gap_obstacles_m", "surface_gap_between_m") if audit.get(name) is not None]
+    found = [
+        audit[name]
+        for name in ("surface_gap_obstacles_m", "surface_gap_between_m")
+        if audit.get(name) is not None
+    ]
     return min(found, default=None)
 
 
 def row(run: str, record: dict) -> list[str]:
     audit = record["audit"]
-    counts = [str(audit.get(name, "-")) for name in ("surface_gaps", "obstacle_triangles", "obstacle_edges", "obstacle_vertices")]
-    return [run, record["status"]["outcome"], _cell(audit, "surface_gap_obstacles_m"), _cell(audit, "surface_gap_between_m"), *counts]
+    counts = [
+        str(audit.get(name, "-"))
+        for name in ("surface_gaps", "obstacle_triangles", "obstacle_edges", "obstacle_vertices")
+    ]
+    return [
+        run,
+        record["status"]["outcome"],
+        _cell(audit, "surface_gap_obstacles_m"),
+        _cell(audit, "surface_gap_between_m"),
+        *counts,
+    ]
 
 
 def verdict(records: list[tuple[str, dict]]) -> tuple[str, list[str]]:
-    """The line below the table, and what is wrong: runs that are called ok although their surface is in something, or that no run that is ok has a gap,
-    so that nothing was judged."""
+    """The line below the table, and what is wrong: runs that are called ok although their surface is in
+    something, or that no run that is ok has a gap, so that nothing was judged.
+    """
     ok = [(run, gap_of(record)) for run, record in records if record["status"]["outcome"] == "ok"]
     measured = [gap for _, gap in ok if gap is not None]
     below = [run for run, gap in ok if gap is not None and gap < 0]
-    text = f"{len(records)} runs, {len(ok)} ok; {len(measured)} of the ok ones with a gap, {len(ok) - len(measured)} without (nothing near, not audited, or no such field)"
+    text = (
+        f"{len(records)} runs, {len(ok)} ok; {len(measured)} of the ok ones with a gap,"
+        f" {len(ok) - len(measured)} without (nothing near, not audited, or no such field)"
+    )
     if measured:
         text += f"; the smallest is {1e3 * min(measured):.4g} mm"
     faults = [f"{run} is ok with a surface in an obstacle or in another" for run in below]
-    return f"{text}; {len(below)} below 0", faults if measured else ["no run that is ok has a measured gap: nothing was judged"]
+    return f"{text}; {len(below)} below 0", (
+        faults if measured else ["no run that is ok has a measured gap: nothing was judged"]
+    )
 
 
+@tells("surface-gaps")
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench surface-gaps", description="Smallest gaps of whole surfaces at converged step ends, thickness taken off, of the records below some folders; 1 when a run that is ok has one below 0, or none has any.")
-    parser.add_argument("runs", type=Path, nargs="+", metavar="RUNS", help="folders with records, at any depth")
+    parser = argparse.ArgumentParser(
+        prog="bench surface-gaps",
+        description=(
+            "Smallest gaps of whole surfaces at converged step ends, thickness taken off, of the records"
+            " below some folders; 1 when a run that is ok has one below 0, or none has any."
+        ),
+    )
+    parser.add_argument(
+        "runs", type=Path, nargs="+", metavar="RUNS", help="folders with records, at any depth"
+    )
     records, faults = [], []
     for root in parser.parse_args(arguments).runs:
         for path in sorted(root.rglob("run.json")):
@@ -67,7 +98,3 @@ def main(arguments: list[str]) -> int:
     for line in wrong:
         print(f"surface-gaps: {line}", file=sys.stderr)
     return 1 if wrong else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

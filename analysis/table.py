@@ -6,7 +6,7 @@ import numpy as np
 import pandas as pd
 
 from . import style
-from .load import Records, condition_of, counted
+from .records import Records, condition_of, counted
 
 HEADINGS = {
     "group": "scene",
@@ -73,7 +73,9 @@ def _cell(name: str, value) -> str:
 
 def as_text(table: pd.DataFrame) -> str:
     """Aligned columns for a terminal; a blank line between groups."""
-    pointers = [name for name in table.columns if name.startswith("/") and table[name].map(str).nunique() > 1]  # one value tells no run from another
+    pointers = [
+        name for name in table.columns if name.startswith("/") and table[name].map(str).nunique() > 1
+    ]  # one value tells no run from another
     names = [*HEADINGS, *pointers]
     cells = [[_cell(name, row[name]) for name in names] for _, row in table.iterrows()]
     rows = [[*HEADINGS.values(), *pointers], *cells]

@@ -7,7 +7,9 @@ from pathlib import Path
 
 
 def write_whole(path: Path, text: str) -> None:
-    """Writes beside the file and puts that in its place: a full disk or an interrupt leaves what was there. Makes the folder."""
+    """Writes beside the file and puts that in its place: a full disk or an interrupt leaves what was there.
+    Makes the folder.
+    """
     path.parent.mkdir(parents=True, exist_ok=True)
     part = path.with_name(f"{path.name}.tmp.{os.getpid()}")
     try:

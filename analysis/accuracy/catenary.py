@@ -1,8 +1,10 @@
-"""A chain of equal springs with equal masses at its inner nodes, hung at two ends: the discrete elastic catenary in closed form.
+"""A chain of equal springs with equal masses at its inner nodes, hung at two ends: the discrete elastic
+catenary in closed form.
 
-The horizontal force H is the same in every spring; the vertical one changes by m g from spring to spring. A spring under the force T has the
-length l0 + T/k along it. The two numbers that are left, H and the vertical force of the first spring, are those with which the springs reach from one
-end to the other: two equations, solved to rounding.
+The horizontal force H is the same in every spring; the vertical one changes by m g from spring to spring. A
+spring under the force T has the length l0 + T/k along it. The two numbers that are left, H and the vertical
+force of the first spring, are those with which the springs reach from one end to the other: two equations,
+solved to rounding.
 """
 
 from __future__ import annotations
@@ -10,15 +12,16 @@ from __future__ import annotations
 import numpy as np
 from scipy.optimize import root
 
-
-class CatenaryError(ValueError):
-    """No chain of these numbers was found."""
+from ..errors import UserError
 
 
-def chain_nodes(segments: int, rest_length: float, stiffness: float, node_weight: float, span: np.ndarray) -> np.ndarray:
+def chain_nodes(
+    segments: int, rest_length: float, stiffness: float, node_weight: float, span: np.ndarray
+) -> np.ndarray:
     """Nodes [segments + 1, 2] m (x, height) from (0, 0) to span.
 
-    rest_length: of one spring, m; stiffness: of one spring, N/m; node_weight: m g of an inner node, N. Errors: CatenaryError.
+    rest_length: of one spring, m; stiffness: of one spring, N/m; node_weight: m g of an inner node, N.
+    Errors: UserError.
     """
     span = np.asarray(span, float)
     order = np.arange(segments)
@@ -30,7 +33,11 @@ def chain_nodes(segments: int, rest_length: float, stiffness: float, node_weight
 
     weight = node_weight * (segments - 1)
     for guess in (0.1, 0.3, 1.0, 3.0, 10.0):
-        found = root(lambda u: (legs(u * weight).sum(axis=0) - span) / (segments * rest_length), np.array([guess, -0.5]), tol=1e-15)
+        found = root(
+            lambda u: (legs(u * weight).sum(axis=0) - span) / (segments * rest_length),
+            np.array([guess, -0.5]),
+            tol=1e-15,
+        )
         if np.abs(legs(found.x * weight).sum(axis=0) - span).max() < 1e-12 * segments * rest_length:
             return np.vstack([np.zeros(2), np.cumsum(legs(found.x * weight), axis=0)])
-    raise CatenaryError(f"no equilibrium of {segments} springs over {span} m found: {found.message}")
+    raise UserError(f"no equilibrium of {segments} springs over {span} m found: {found.message}")

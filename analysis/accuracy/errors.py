@@ -1,6 +1,8 @@
-"""The errors of a run against a reference, as plain functions of arrays. Every one says its unit; none hides a value that is not finite.
+"""The errors of a run against a reference, as plain functions of arrays. Every one says its unit; none hides
+a value that is not finite.
 
-Positions are [times, vertices, 3] in m. Sources: Ando and others judge contact by gap and offset, work-precision studies by trajectory.
+Positions are [times, vertices, 3] in m. Sources: Ando and others judge contact by gap and offset,
+work-precision studies by trajectory.
 """
 
 from __future__ import annotations
@@ -8,10 +10,18 @@ from __future__ import annotations
 import numpy as np
 
 MEANING = {
-    "e_traj": "largest distance of a vertex from the reference over the sampled times, over the size of the scene",
+    "e_traj": (
+        "largest distance of a vertex from the reference over the sampled times, over the size of the scene"
+    ),
     "e_com": "the same of the centres of mass of the bodies",
-    "e_gap": "largest |d - d*| over the layers at rest, in units of d_hat; d* carries the load above it in closed form",
-    "e_offset": "largest height of a body's centre of mass above the reference at the end, in m: the thickness of the barrier",
+    "e_gap": (
+        "largest |d - d*| over the layers at rest, in units of d_hat; d* carries the load above it in closed"
+        " form"
+    ),
+    "e_offset": (
+        "largest height of a body's centre of mass above the reference at the end, in m: the thickness of the"
+        " barrier"
+    ),
     "e_momentum": "|p_end - p_0| / |p_0| of all bodies together, with nothing outside that acts on them",
     "e_energy": "|E_end - E_0| / E_0; nothing in the program dissipates but its time integrator",
 }
@@ -48,7 +58,9 @@ def e_gap(gaps: np.ndarray, reference: np.ndarray, d_hat: float) -> float:
 
 
 def e_offset(com: np.ndarray, reference: np.ndarray, up: np.ndarray) -> float:
-    """m. com, reference: [bodies, 3] at the end; up: unit vector against gravity. Absolute: below the reference is an error too."""
+    """m. com, reference: [bodies, 3] at the end; up: unit vector against gravity. Absolute: below the
+    reference is an error too.
+    """
     return _checked(np.abs((com - reference) @ up).max(), "e_offset")
 
 

@@ -1,6 +1,8 @@
-"""What a run is compared with: a closed form, or runs with a much smaller d_hat and tolerance from two formulations.
+"""What a run is compared with: a closed form, or runs with a much smaller d_hat and tolerance from two
+formulations.
 
-A reference says its name, positions at the times of a run, and its own uncertainty: 0 for a closed form, the distance of the two runs for a refined one.
+A reference says its name, positions at the times of a run, and its own uncertainty: 0 for a closed form, the
+distance of the two runs for a refined one.
 """
 
 from __future__ import annotations
@@ -24,9 +26,13 @@ class NoReference(ValueError):
 @dataclass
 class Reference:
     name: str
-    positions: Callable[[Motion], np.ndarray]  # of a run -> [frames, vertices, 3] m at its times, NaN where it says nothing
+    positions: Callable[
+        [Motion], np.ndarray
+    ]  # of a run -> [frames, vertices, 3] m at its times, NaN where it says nothing
     band: dict[str, float] = field(default_factory=dict)  # error -> its own uncertainty
-    rest_gaps: Callable[[Motion], tuple[np.ndarray, np.ndarray]] | None = None  # of a run at rest -> measured and exact gaps, m
+    rest_gaps: Callable[[Motion], tuple[np.ndarray, np.ndarray]] | None = (
+        None  # of a run at rest -> measured and exact gaps, m
+    )
     momentum: Callable[[Motion], np.ndarray] | None = None  # of the start, kg m/s
     energy_J: Callable[[Motion], float] | None = None  # of the start
 
@@ -35,8 +41,10 @@ def measure(motion: Motion, reference: Reference) -> tuple[dict[str, float], dic
     """Error -> value, and error -> why it does not apply. Errors: NotFinite."""
     found, skipped = {}, {}
     if motion.times[-1] != motion.record["steps"][-1]["t_s"]:
-        raise NoReference(f"the last frame is of {motion.times[-1]:g} s and the run ends at {motion.record['steps'][-1]['t_s']:g} s; "
-                          "/output/frames_every has to divide /time/steps - 1")
+        raise NoReference(
+            f"the last frame is of {motion.times[-1]:g} s and the run ends at"
+            f" {motion.record['steps'][-1]['t_s']:g} s; /output/frames_every has to divide /time/steps - 1"
+        )
     x = reference.positions(motion)
     known = np.isfinite(x).all(axis=(1, 2))
     if not known.any():
@@ -73,11 +81,16 @@ def refined(first: Motion, second: Motion, name: str) -> Reference:
         raise NoReference(f"{name}: the two runs have other frames: {first.x.shape} and {second.x.shape}")
 
     def positions(motion: Motion) -> np.ndarray:
-        if motion.x.shape != first.x.shape or not np.allclose(motion.times, first.times, rtol=1e-9, atol=1e-12):
+        if motion.x.shape != first.x.shape or not np.allclose(
+            motion.times, first.times, rtol=1e-9, atol=1e-12
+        ):
             raise NoReference(f"{name}: frames at other times than those of the run")
         return 0.5 * (first.x + second.x)
 
-    band = {"e_traj": errors.e_traj(first.x, second.x, first.size), "e_com": errors.e_com(first.com, second.com, first.size)}
+    band = {
+        "e_traj": errors.e_traj(first.x, second.x, first.size),
+        "e_com": errors.e_com(first.com, second.com, first.size),
+    }
     if first.up is not None:
         band["e_offset"] = errors.e_offset(first.com[-1], second.com[-1], first.up)
     return Reference(name, positions, band)
@@ -89,6 +102,7 @@ def _gravity(motion: Motion) -> float:
 
 def rigid_bounce() -> Reference:
     """One flat body over the plane z = 0, dropped: in the limit d_hat -> 0 an elastic bounce."""
+
     def positions(motion: Motion) -> np.ndarray:
         start = motion.x[0]
         height, speed = start[:, 2].min(), -_velocities(motion)[0, 2]
@@ -97,9 +111,16 @@ def rigid_bounce() -> Reference:
         return x
 
     def energy(motion: Motion) -> float:
-        return float(sum(motion.masses * (0.5 * (_velocities(motion) ** 2).sum(axis=1) + _gravity(motion) * motion.x[0, :, 2])))
+        return float(
+            sum(
+                motion.masses
+                * (0.5 * (_velocities(motion) ** 2).sum(axis=1) + _gravity(motion) * motion.x[0, :, 2])
+            )
+        )
 
-    return Reference("closed form: elastic bounce on a plane, the limit d_hat -> 0", positions, energy_J=energy)
+    return Reference(
+        "closed form: elastic bounce on a plane, the limit d_hat -> 0", positions, energy_J=energy
+    )
 
 
 def _velocities(motion: Motion) -> np.ndarray:
@@ -113,7 +134,10 @@ def _offsets(motion: Motion) -> np.ndarray:
 
 
 def rigid_stack() -> Reference:
-    """Flat bodies on each other over the plane z = 0 at rest: heights without any gap; gaps that carry the weight above."""
+    """Flat bodies on each other over the plane z = 0 at rest: heights without any gap; gaps that carry the
+    weight above.
+    """
+
     def positions(motion: Motion) -> np.ndarray:
         offsets = _offsets(motion)
         height = offsets[0] + np.concatenate([[0.0], np.cumsum(offsets[:-1] + offsets[1:])])
@@ -125,16 +149,30 @@ def rigid_stack() -> Reference:
     def gaps(motion: Motion) -> tuple[np.ndarray, np.ndarray]:
         offsets, heights = _offsets(motion), motion.com[-1, :, 2]
         measured = np.diff(heights, prepend=0.0) - (offsets + np.concatenate([[0.0], offsets[:-1]]))
-        weight = np.array([motion.masses[motion.body_of == b].sum() for b in range(len(motion.bodies))]) * _gravity(motion)
+        weight = np.array(
+            [motion.masses[motion.body_of == b].sum() for b in range(len(motion.bodies))]
+        ) * _gravity(motion)
         above = np.cumsum(weight[::-1])[::-1]
         labels, kappa = motion.record["labels"], motion.record["steps"][-1]["kappa_max_N_per_m"]
-        return measured, np.array([gap_of_load(labels["shape"], labels["argument"], kappa, labels["d_hat_m"], load / 3) for load in above])
+        return measured, np.array(
+            [
+                gap_of_load(labels["shape"], labels["argument"], kappa, labels["d_hat_m"], load / 3)
+                for load in above
+            ]
+        )
 
-    return Reference("closed form: layers at rest, the limit d_hat -> 0; gaps from kappa |b'(d)| = weight above/3", positions, rest_gaps=gaps)
+    return Reference(
+        "closed form: layers at rest, the limit d_hat -> 0; gaps from kappa |b'(d)| = weight above/3",
+        positions,
+        rest_gaps=gaps,
+    )
 
 
 def free_impact() -> Reference:
-    """Two flat bodies of equal mass without gravity, the second one moving at the first: in the limit d_hat -> 0 they exchange their velocities."""
+    """Two flat bodies of equal mass without gravity, the second one moving at the first: in the limit d_hat
+    -> 0 they exchange their velocities.
+    """
+
     def positions(motion: Motion) -> np.ndarray:
         v = _velocities(motion)
         first, second = motion.com[0]
@@ -147,18 +185,28 @@ def free_impact() -> Reference:
                 x[frame, motion.body_of == b] += min(t, when) * speeds[b] + max(t - when, 0.0) * speeds[1 - b]
         return x
 
-    return Reference("closed form: elastic impact of equal masses, the limit d_hat -> 0", positions,
-                     momentum=lambda motion: motion.masses @ _velocities(motion),
-                     energy_J=lambda motion: float(0.5 * motion.masses @ (_velocities(motion) ** 2).sum(axis=1)))
+    return Reference(
+        "closed form: elastic impact of equal masses, the limit d_hat -> 0",
+        positions,
+        momentum=lambda motion: motion.masses @ _velocities(motion),
+        energy_J=lambda motion: float(0.5 * motion.masses @ (_velocities(motion) ** 2).sum(axis=1)),
+    )
 
 
 def catenary() -> Reference:
     """A chain of springs at rest between its two ends, as they stand at the end of the run."""
+
     def positions(motion: Motion) -> np.ndarray:
         body = motion.record["config"]["scene"]["bodies"][0]["material"]
         start, end = motion.x[0], motion.x[-1]
         length = np.linalg.norm(start[1] - start[0])
-        nodes = chain_nodes(len(start) - 1, length, body["springs_N_per_m"], motion.masses[1] * _gravity(motion), (end[-1] - end[0])[[0, 2]])
+        nodes = chain_nodes(
+            len(start) - 1,
+            length,
+            body["springs_N_per_m"],
+            motion.masses[1] * _gravity(motion),
+            (end[-1] - end[0])[[0, 2]],
+        )
         x = np.full(motion.x.shape, np.nan)
         x[-1] = end[0]
         x[-1][:, [0, 2]] += nodes
@@ -168,4 +216,8 @@ def catenary() -> Reference:
 
 
 CLOSED_FORMS: dict[str, Callable[[], Reference]] = {
-    "rigid_bounce": rigid_bounce, "rigid_stack": rigid_stack, "free_impact": free_impact, "catenary": catenary}
+    "rigid_bounce": rigid_bounce,
+    "rigid_stack": rigid_stack,
+    "free_impact": free_impact,
+    "catenary": catenary,
+}

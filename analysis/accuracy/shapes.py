@@ -1,4 +1,5 @@
-"""Barrier shapes b(d; d_hat), written anew from their definitions: closed forms must not share code with the program that they judge.
+"""Barrier shapes b(d; d_hat), written anew from their definitions: closed forms must not share code with the
+program that they judge.
 
 A test compares them with `barrierbench eval`. Lengths in m, b in m^2, b' in m.
 """
@@ -9,6 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 from scipy.optimize import brentq
+
+from ..errors import UserError
 
 TINY = 1e-300  # u below which a logarithm is not asked for
 
@@ -43,21 +46,27 @@ def _exponential(u: float, a: float = 6.0) -> tuple[float, float]:
 
 # u = d/d_hat in (0, 1] -> b/d_hat^2 and its derivative in u.
 SHAPES: dict[str, Callable[[float], tuple[float, float]]] = {
-    "log": _log, "log_squared": _log_squared, "quadratic": _quadratic, "cubic": _cubic, "two_stage": _two_stage,
-    "exponential": _exponential}
-
-
-class ShapeError(ValueError):
-    """A shape or an argument without a closed form here."""
+    "log": _log,
+    "log_squared": _log_squared,
+    "quadratic": _quadratic,
+    "cubic": _cubic,
+    "two_stage": _two_stage,
+    "exponential": _exponential,
+}
 
 
 def barrier(shape: str, argument: str, d: float, d_hat: float) -> tuple[float, float]:
-    """b (m^2) and b' (m) at the gap d > 0; (0, 0) from d_hat on. argument squared_gap: f(d^2; d_hat^2)/d_hat^2 with f the same formula.
+    """b (m^2) and b' (m) at the gap d > 0; (0, 0) from d_hat on. argument squared_gap: f(d^2;
+    d_hat^2)/d_hat^2 with f the same formula.
 
-    Errors: ShapeError for a name that is not in SHAPES. Cost O(1). Source: docs/design.md, Shapes and arguments.
+    Errors: UserError for a name that is not in SHAPES. Cost O(1). Source: docs/design.md, Shapes and
+    arguments.
     """
     if shape not in SHAPES or argument not in ("gap", "squared_gap"):
-        raise ShapeError(f"shape {shape!r} of {argument!r}: closed forms are there for {', '.join(SHAPES)} of gap or squared_gap")
+        raise UserError(
+            f"shape {shape!r} of {argument!r}: closed forms are there for {', '.join(SHAPES)} of gap or"
+            " squared_gap"
+        )
     if d >= d_hat:
         return 0.0, 0.0
     u = max(d / d_hat, TINY)
@@ -71,12 +80,16 @@ def barrier(shape: str, argument: str, d: float, d_hat: float) -> tuple[float, f
 def gap_of_load(shape: str, argument: str, kappa: float, d_hat: float, load: float) -> float:
     """The gap d (m) at which kappa |b'(d)| = load (N): where one contact rests. kappa in N/m, load > 0.
 
-    Errors: ShapeError when the shape cannot carry the load at any gap. By bisection to rounding.
+    Errors: UserError when the shape cannot carry the load at any gap. By bisection to rounding.
     """
+
     def missing(log_u: float) -> float:
         return kappa * -barrier(shape, argument, float(np.exp(log_u)) * d_hat, d_hat)[1] - load
 
     low, high = np.log(1e-12), 0.0
     if missing(low) <= 0:
-        raise ShapeError(f"{shape} with kappa {kappa:g} N/m and d_hat {d_hat:g} m carries at most {load + missing(low):.6g} N; {load:.6g} N are asked")
+        raise UserError(
+            f"{shape} with kappa {kappa:g} N/m and d_hat {d_hat:g} m carries at most"
+            f" {load + missing(low):.6g} N; {load:.6g} N are asked"
+        )
     return float(np.exp(brentq(missing, low, high, xtol=1e-15, rtol=1e-15))) * d_hat

@@ -8,7 +8,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..frames import Frame, FrameError, frame_of, frame_paths, read_scene
+from ..errors import UserError
+from ..frames import Frame, frame_of, frame_paths, read_scene
 from ..record_file import read_record
 
 
@@ -32,15 +33,24 @@ class Motion:
 
     @cached_property
     def masses(self) -> np.ndarray:
-        """[vertices] kg, lumped: a third of each triangle, half of each lone edge. The start is the rest shape, as in every scene of bodies.
-        Vertices of a procedural scene have the mass of one material, 1 kg/m^2: its centres of mass are right, its momenta are not known."""
+        """[vertices] kg, lumped: a third of each triangle, half of each lone edge. The start is the rest
+        shape, as in every scene of bodies. Vertices of a procedural scene have the mass of one material, 1
+        kg/m^2: its centres of mass are right, its momenta are not known.
+        """
         start = self.frames[0]
-        given = [body.get("material", {}) for body in self.record["config"]["scene"].get("bodies", [])] or [{"density_kg_per_m2": 1.0}] * len(self.bodies)
+        given = [body.get("material", {}) for body in self.record["config"]["scene"].get("bodies", [])] or [
+            {"density_kg_per_m2": 1.0}
+        ] * len(self.bodies)
         mass = np.zeros(len(start.vertices))
-        for corners, measure, key in ((start.triangles, _areas, "density_kg_per_m2"), (start.edges, _lengths, "line_density_kg_per_m")):
+        for corners, measure, key in (
+            (start.triangles, _areas, "density_kg_per_m2"),
+            (start.edges, _lengths, "line_density_kg_per_m"),
+        ):
             if len(corners):
                 density = np.array([given[b].get(key, 0.0) for b in self.body_of[corners[:, 0]]])
-                np.add.at(mass, corners, (density * measure(start.vertices, corners) / corners.shape[1])[:, None])
+                np.add.at(
+                    mass, corners, (density * measure(start.vertices, corners) / corners.shape[1])[:, None]
+                )
         return mass
 
     @cached_property
@@ -57,7 +67,9 @@ class Motion:
         weight = np.array([np.where(self.body_of == b, self.masses, 0.0) for b in range(len(self.bodies))])
         total = weight.sum(axis=1)
         if not (total > 0).all():
-            raise FrameError(f"{self.bodies[int(np.argmin(total))]}: a body without mass has no centre of mass")
+            raise UserError(
+                f"{self.bodies[int(np.argmin(total))]}: a body without mass has no centre of mass"
+            )
         return np.einsum("bv,...vk->...bk", weight / total[:, None], x)
 
     @property
@@ -75,7 +87,9 @@ class Motion:
         return vector / size if size > 0 else None
 
     def momentum(self, first: int, last: int) -> np.ndarray:
-        """[3] kg m/s, the mean between two frames: masses times the way over the time. Exact where nothing outside acts."""
+        """[3] kg m/s, the mean between two frames: masses times the way over the time. Exact where nothing
+        outside acts.
+        """
         return self.masses @ (self.x[last] - self.x[first]) / (self.times[last] - self.times[first])
 
     def energy(self, step: int) -> float:
@@ -94,8 +108,15 @@ def _lengths(x: np.ndarray, corners: np.ndarray) -> np.ndarray:
 
 
 def read_motion(folder: Path) -> Motion:
-    """The run in a folder with run.json and frames/. Errors: RecordError, FrameError (no frames: /output/frames_every)."""
+    """The run in a folder with run.json and frames/. Errors: RecordError, UserError (no frames:
+    /output/frames_every).
+    """
     record = read_record(folder / "run.json")
     paths = frame_paths(record, folder)
     times = [0.0 if step < 0 else record["steps"][step]["t_s"] for step in paths]
-    return Motion(record, tuple(frame_of(record, folder, step) for step in paths), np.array(times), tuple(read_scene(record, folder)["bodies"]))
+    return Motion(
+        record,
+        tuple(frame_of(record, folder, step) for step in paths),
+        np.array(times),
+        tuple(read_scene(record, folder)["bodies"]),
+    )

@@ -1,4 +1,6 @@
-"""Claims and their sweeps as data: claims/ID.json, claims/sweeps/NAME.json, and claims/confirmation/NAME.json for scenes that no rule was tuned on."""
+"""Claims and their sweeps as data: claims/ID.json, claims/sweeps/NAME.json, and claims/confirmation/NAME.json
+for scenes that no rule was tuned on.
+"""
 
 from __future__ import annotations
 
@@ -10,22 +12,17 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
+from ..errors import UserError
 from ..program import read_object
+from ..spec_file import read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "claims"
-NAME = "barrierbench.claim/1"
 REQUIRED = ("id", "source", "sentence", "dimension", "guarantee", "kind")
-KINDS = ("runs", "closed form", "by dimension", "by construction")  # what makes it true or false; the last two are trivial
 SEEDS = "/seeds/main"
 SOLVER = "/step_solver/name"
 METHOD = "/method"
 METHODS = ROOT / "configs" / "methods"
-OPTIONAL = ("schema", "parts", "waits_for", "note", "rule_changes", "frontier")
-
-
-class ClaimError(ValueError):
-    """A claim or sweep that cannot be judged: file, place and what is needed."""
 
 
 @dataclass(frozen=True)
@@ -35,16 +32,24 @@ class Claim:
     sentence: str
     dimension: str
     guarantee: str
-    kind: str
-    parts: tuple[dict, ...] = ()  # rules with their parameters; all of them together are the claim, but those marked beside
+    kind: str  # what makes it true or false; by dimension and by construction are trivial
+    # rules with their parameters; all of them together are the claim, but those marked beside
+    parts: tuple[dict, ...] = ()
     waits_for: str = ""  # what has to be built before it can be decided
     note: str = ""
     rule_changes: tuple[str, ...] = ()  # of a rule after numbers were seen
-    frontier: dict = field(default_factory=dict, hash=False)  # sweep, cost, axes, and which runs are bad, of the table and figure of who gets how far (frontiers.py)
+    frontier: dict = field(
+        default_factory=dict, hash=False
+    )  # sweep, cost, axes, and which runs are bad, of the table and figure of who gets how far (frontiers.py)
 
     @property
     def sweeps(self) -> list[str]:
-        return list(dict.fromkeys([part["sweep"] for part in self.parts if "sweep" in part] + [self.frontier[k] for k in ("sweep",) if self.frontier]))
+        return list(
+            dict.fromkeys(
+                [part["sweep"] for part in self.parts if "sweep" in part]
+                + [self.frontier[k] for k in ("sweep",) if self.frontier]
+            )
+        )
 
     @property
     def deciding(self) -> list[dict]:
@@ -65,11 +70,17 @@ class Sweep:
 
     name: str
     sha256: str
-    cases: dict[str, tuple[str, str, str, int]] = field(hash=False, default_factory=dict)  # note of a record -> its place
-    more: dict[str, dict] = field(hash=False, default_factory=dict)  # note -> values of further axes: theta, ...
+    cases: dict[str, tuple[str, str, str, int]] = field(
+        hash=False, default_factory=dict
+    )  # note of a record -> its place
+    more: dict[str, dict] = field(
+        hash=False, default_factory=dict
+    )  # note -> values of further axes: theta, ...
     axes: dict[str, list] = field(hash=False, default_factory=dict)  # of these their values
     path: Path = Path()
-    solvers: dict[str, str] = field(hash=False, default_factory=dict)  # case -> step solver, of those that name one
+    solvers: dict[str, str] = field(
+        hash=False, default_factory=dict
+    )  # case -> step solver, of those that name one
 
     @property
     def file(self) -> str:
@@ -81,7 +92,7 @@ class Sweep:
 
 
 def _read(path: Path) -> dict:
-    return read_object(path, ClaimError)
+    return read_object(path)
 
 
 def order(name: str) -> tuple:
@@ -97,28 +108,31 @@ def ids(folder: Path = FOLDER) -> list[str]:
 def read_claim(name: str, folder: Path = FOLDER) -> Claim:
     path = folder / f"{name}.json"
     if not path.is_file():
-        raise ClaimError(f"claim {name!r}: one of {', '.join(ids(folder))} (claims/)")
-    data = _read(path)
-    if data.get("schema") != NAME:
-        raise ClaimError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
-    if missing := [key for key in REQUIRED if not isinstance(data.get(key), str)]:
-        raise ClaimError(f"{path}: /{missing[0]}: a string is needed")
-    if unknown := [key for key in data if key not in (*REQUIRED, *OPTIONAL)]:
-        raise ClaimError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
+        raise UserError(f"claim {name!r}: one of {', '.join(ids(folder))} (claims/)")
+    data = read_spec(path, "claim")
     if data["id"] != name:
-        raise ClaimError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
-    if data["kind"] not in KINDS:
-        raise ClaimError(f"{path}: /kind: found {data['kind']!r}; one of {', '.join(KINDS)}")
+        raise UserError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
     if "frontier" in data and set(data["frontier"]) - {"bad"} != {"sweep", "cost", "axes"}:
-        raise ClaimError(f"{path}: /frontier: sweep, cost and axes are needed, bad may be given; found {', '.join(data['frontier'])}")
+        raise UserError(
+            f"{path}: /frontier: sweep, cost and axes are needed, bad may be given; found"
+            f" {', '.join(data['frontier'])}"
+        )
     if not data.get("parts") and not data.get("waits_for"):
-        raise ClaimError(f"{path}: neither parts that decide it nor waits_for")
-    return Claim(**{key: data[key] for key in REQUIRED}, parts=tuple(data.get("parts", ())), waits_for=data.get("waits_for", ""),
-                 note=data.get("note", ""), rule_changes=tuple(data.get("rule_changes", ())), frontier=data.get("frontier", {}))
+        raise UserError(f"{path}: neither parts that decide it nor waits_for")
+    return Claim(
+        **{key: data[key] for key in REQUIRED},
+        parts=tuple(data.get("parts", ())),
+        waits_for=data.get("waits_for", ""),
+        note=data.get("note", ""),
+        rule_changes=tuple(data.get("rule_changes", ())),
+        frontier=data.get("frontier", {}),
+    )
 
 
 def method_set(name: str | None) -> dict:
-    """Pointer -> value of a published method (configs/methods); of none, or one that the program does not know, nothing."""
+    """Pointer -> value of a published method (configs/methods); of none, or one that the program does not
+    know, nothing.
+    """
     file = METHODS / f"{name}.json"
     return _read(file)["set"] if name and file.is_file() else {}
 
@@ -133,8 +147,10 @@ def settings_of(axis: dict, path: Path) -> list[tuple[str, dict]]:
     if "cases" in axis:
         return [(case["label"], case["set"]) for case in axis["cases"]]
     if "pointer" not in axis or not axis.get("values"):
-        raise ClaimError(f"{path}: an axis has cases, or a pointer and values; found {', '.join(axis)}")
-    return [(f"{word(axis['pointer'])}={json.dumps(value)}", {axis["pointer"]: value}) for value in axis["values"]]
+        raise UserError(f"{path}: an axis has cases, or a pointer and values; found {', '.join(axis)}")
+    return [
+        (f"{word(axis['pointer'])}={json.dumps(value)}", {axis["pointer"]: value}) for value in axis["values"]
+    ]
 
 
 def note_of(name: str, labels) -> str:
@@ -144,30 +160,57 @@ def note_of(name: str, labels) -> str:
 
 def sweep_path(name: str, folder: Path = FOLDER) -> Path:
     """Of a sweep of claims, or of one of confirmation scenes; no name is in both."""
-    found = [path for path in (folder / kind / f"{name}.json" for kind in ("sweeps", "confirmation")) if path.is_file()]
+    found = [
+        path
+        for path in (folder / kind / f"{name}.json" for kind in ("sweeps", "confirmation"))
+        if path.is_file()
+    ]
     if len(found) > 1:
-        raise ClaimError(f"{found[1]}: a sweep of this name is in claims/sweeps as well")
+        raise UserError(f"{found[1]}: a sweep of this name is in claims/sweeps as well")
     return found[0] if found else folder / "sweeps" / f"{name}.json"
 
 
 @cache
 def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
-    """Cases labelled SCENE LEVEL, the cases that are compared, values of /seeds/main, and any further axes by pointer, whose values become part of the place."""
+    """Cases labelled SCENE LEVEL, the cases that are compared, values of /seeds/main, and any further axes by
+    pointer, whose values become part of the place.
+    """
     path = sweep_path(name, folder)
     data = _read(path)
     axes = data.get("axes", [])
     seeds = [k for k, axis in enumerate(axes) if axis.get("pointer") == SEEDS]
-    if data.get("name") != name or len(axes) < 3 or len(seeds) != 1 or not all("cases" in axis for axis in axes[:2]) or any("cases" in axis for axis in axes[2:]):
-        raise ClaimError(f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is varied beside is an axis by pointer")
+    if (
+        data.get("name") != name
+        or len(axes) < 3
+        or len(seeds) != 1
+        or not all("cases" in axis for axis in axes[:2])
+        or any("cases" in axis for axis in axes[2:])
+    ):
+        raise UserError(
+            f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is"
+            " varied beside is an axis by pointer"
+        )
     others = [k for k in range(2, len(axes)) if k != seeds[0]]
     cases, more = {}, {}
     for chosen in itertools.product(*(settings_of(axis, path) for axis in axes)):
         labels = [label for label, _ in chosen]
         scene, _, level = labels[0].partition(" ")
         if not level:
-            raise ClaimError(f"{path}: {labels}: the first axis is SCENE LEVEL")
+            raise UserError(f"{path}: {labels}: the first axis is SCENE LEVEL")
         note = note_of(name, labels)
         cases[note] = scene, level, labels[1], int(labels[seeds[0]].removeprefix("main="))
         more[note] = {word(axes[k]["pointer"]): json.loads(labels[k].partition("=")[2]) for k in others}
-    solvers = {case["label"]: solver for case in axes[1]["cases"] if (solver := case["set"].get(SOLVER, method_set(case["set"].get(METHOD)).get(SOLVER)))}
-    return Sweep(name, hashlib.sha256(path.read_bytes()).hexdigest(), cases, more, {word(axes[k]["pointer"]): axes[k]["values"] for k in others}, path, solvers)
+    solvers = {
+        case["label"]: solver
+        for case in axes[1]["cases"]
+        if (solver := case["set"].get(SOLVER, method_set(case["set"].get(METHOD)).get(SOLVER)))
+    }
+    return Sweep(
+        name,
+        hashlib.sha256(path.read_bytes()).hexdigest(),
+        cases,
+        more,
+        {word(axes[k]["pointer"]): axes[k]["values"] for k in others},
+        path,
+        solvers,
+    )

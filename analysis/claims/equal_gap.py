@@ -1,12 +1,14 @@
-"""Rule `at_equal_gap`: a metric of two formulations where both reach the same gap, each along its own sweep over stiffness."""
+"""Rule `at_equal_gap`: a metric of two formulations where both reach the same gap, each along its own sweep
+over stiffness.
+"""
 
 from __future__ import annotations
 
 from collections import Counter
 
+from ..errors import UserError
 from ..matching.front import Point, log_ratio, reached
 from .ends import STIFFNESS
-from .entry import ClaimError
 from .metrics import METRICS
 from .numbers import _scene, judge_cells
 from .table import Runs
@@ -23,15 +25,28 @@ def paths(runs: Runs, name: str, sweep: str) -> dict[tuple, list[dict]]:
         match = STIFFNESS.match(row["case"])
         cases.add(match.group(1) if match else row["case"])
         if match and match.group(1) == name:
-            found.setdefault((row["scene"], row["level"], row["seed"]), []).append(row | {"scale": float(match.group(2))})
+            found.setdefault((row["scene"], row["level"], row["seed"]), []).append(
+                row | {"scale": float(match.group(2))}
+            )
     if not found or min(len({r["scale"] for r in rows}) for rows in found.values()) < LEAST_SCALES:
-        raise ClaimError(f"sweep {sweep} has no {LEAST_SCALES} cases '{name} xSCALE'; it has {', '.join(sorted(cases))}")
+        raise UserError(
+            f"sweep {sweep} has no {LEAST_SCALES} cases '{name} xSCALE'; it has {', '.join(sorted(cases))}"
+        )
     return found
 
 
 def _points(rows: list[dict], metric: str) -> list[Point]:
-    """Runs that ended ok. Comparability is not asked: the reference of a sweep has one gap, and here gaps are made equal."""
-    return [Point(r["scale"], r["gap_rel"], r.get(metric)) if r["outcome"] == "ok" else Point(r["scale"], None, None) for r in rows]
+    """Runs that ended ok. Comparability is not asked: the reference of a sweep has one gap, and here gaps are
+    made equal.
+    """
+    return [
+        (
+            Point(r["scale"], r["gap_rel"], r.get(metric))
+            if r["outcome"] == "ok"
+            else Point(r["scale"], None, None)
+        )
+        for r in rows
+    ]
 
 
 def _why_not(mine: list[Point], other: list[Point]) -> str:
@@ -41,7 +56,9 @@ def _why_not(mine: list[Point], other: list[Point]) -> str:
 
 
 def at_equal_gap(part: dict, runs: Runs) -> Judged:
-    """metric of `case` over that of `over` at equal reached gap: mean over all gaps that both reach from the same start, then as `ratio`."""
+    """metric of `case` over that of `over` at equal reached gap: mean over all gaps that both reach from the
+    same start, then as `ratio`.
+    """
     mine, other = (paths(runs, part[key], part["sweep"]) for key in ("case", "over"))
     cells, left_out, example = {}, Counter(), []
     for place in sorted(mine.keys() & other.keys()):
@@ -53,7 +70,11 @@ def at_equal_gap(part: dict, runs: Runs) -> Judged:
             left_out[_why_not(a, b)] += 1
             continue
         cells.setdefault(place[0], {}).setdefault(place[1], []).append(ratio)
-        example = example or [next(r["run"] for r in rows if r["scale"] == 1) for rows in (mine[place], other[place]) if any(r["scale"] == 1 for r in rows)]
+        example = example or [
+            next(r["run"] for r in rows if r["scale"] == 1)
+            for rows in (mine[place], other[place])
+            if any(r["scale"] == 1 for r in rows)
+        ]
     judged = judge_cells(cells, left_out, part, True, "pairs of paths over stiffness")
     judged.measures = f"{METRICS[part['metric']][0]} at equal reached gap: {part['case']} / {part['over']}"
     judged.runs = example

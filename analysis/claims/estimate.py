@@ -1,4 +1,6 @@
-"""One value a scene, the mean of scenes with its interval, shares, signs, and how much alike starts are. Only scenes are samples."""
+"""One value a scene, the mean of scenes with its interval, shares, signs, and how much alike starts are. Only
+scenes are samples.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,9 @@ Cells = dict[str, dict[str, list[float]]]  # scene -> level -> one value a start
 
 @dataclass(frozen=True)
 class OfScene:
-    """The value of a scene, and the least and the largest over its levels: a scatter of repeated measures, no interval."""
+    """The value of a scene, and the least and the largest over its levels: a scatter of repeated measures, no
+    interval.
+    """
 
     name: str
     value: float
@@ -27,13 +31,23 @@ def of_scenes(cells: Cells) -> list[OfScene]:
     found = []
     for name, levels in cells.items():
         means = [float(np.mean(starts)) for starts in levels.values()]
-        found.append(OfScene(name, float(np.mean(means)), min(means), max(means), len(means), sum(map(len, levels.values()))))
+        found.append(
+            OfScene(
+                name,
+                float(np.mean(means)),
+                min(means),
+                max(means),
+                len(means),
+                sum(map(len, levels.values())),
+            )
+        )
     return found
 
 
 def student(values) -> tuple:
-    """95% interval of the mean of scene values by Student's t: lower, upper, of the last axis, so that a simulation asks this very function.
-    Needs two scenes. Its coverage is measured: coverage.py."""
+    """95% interval of the mean of scene values by Student's t: lower, upper, of the last axis, so that a
+    simulation asks this very function. Needs two scenes. Its coverage is measured: coverage.py.
+    """
     from scipy.stats import t
 
     values = np.asarray(values, float)
@@ -46,8 +60,9 @@ def student(values) -> tuple:
 
 
 def intraclass(groups: list[list[float]]) -> float | None:
-    """Intraclass correlation of the starts at a place (one-way random effects, Shrout and Fleiss 1979, (1,1); groups may differ in size).
-    None below two places of two starts, or where all numbers are the same."""
+    """Intraclass correlation of the starts at a place (one-way random effects, Shrout and Fleiss 1979, (1,1);
+    groups may differ in size). None below two places of two starts, or where all numbers are the same.
+    """
     groups = [np.asarray(g, float) for g in groups if len(g) > 1]
     if len(groups) < 2:
         return None

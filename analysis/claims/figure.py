@@ -1,4 +1,6 @@
-"""One figure, a panel for each kind of number: the main number of every claim that has one, with its scenes, its interval and its threshold."""
+"""One figure, a panel for each kind of number: the main number of every claim that has one, with its scenes,
+its interval and its threshold.
+"""
 
 from __future__ import annotations
 
@@ -16,14 +18,23 @@ from .verdict import HOLDS, IN_PART, NOT, ONLY_IF, OPEN, Judged
 
 COLORS = {HOLDS: "#009E73", ONLY_IF: "#E69F00", IN_PART: "#0072B2", NOT: "#D55E00", OPEN: "#888888"}
 # kind of number -> label of its axis, whether it is logarithmic
-PANELS = {"ratio": ("ratio of two cases, geometric mean of scenes", True), "share": ("share (of scenes, of a climb, of a limit)", False),
-          "slope": ("slope of log number over log level", False), "closed form": ("number of a closed form, range over its arguments", True)}
+PANELS = {
+    "ratio": ("ratio of two cases, geometric mean of scenes", True),
+    "share": ("share (of scenes, of a climb, of a limit)", False),
+    "slope": ("slope of log number over log level", False),
+    "closed form": ("number of a closed form, range over its arguments", True),
+}
 KINDS = {"ratio": "ratio", "at_equal_gap": "ratio", "outcomes": "share", "level": "share", "slope": "slope"}
-SHOWN = ("The main number of every claim that has one, that of its first part, by kind of number. Light dots below: the scenes, each the mean of its levels; "
-         "dot and bar: their mean with its 95% interval over scenes (Student's t); for shares of scenes in which every run gets through Wilson's interval and no dots; "
-         "where a part asks for every run, or has a closed form (diamond), a bar from the least to the largest number. Black ticks: the threshold of the rule, or the "
-         "share of the case that has to be beaten. The colour is the exploratory verdict of the whole claim (or that of a closed form), which may have more parts and "
-         "other conditions (results/CLAIMS.md). Where steps are not asked to converge, the label has the residual of their ends.")
+SHOWN = (
+    "The main number of every claim that has one, that of its first part, by kind of number. Light dots"
+    " below: the scenes, each the mean of its levels; dot and bar: their mean with its 95% interval over"
+    " scenes (Student's t); for shares of scenes in which every run gets through Wilson's interval and no"
+    " dots; where a part asks for every run, or has a closed form (diamond), a bar from the least to the"
+    " largest number. Black ticks: the threshold of the rule, or the share of the case that has to be beaten."
+    " The colour is the exploratory verdict of the whole claim (or that of a closed form), which may have"
+    " more parts and other conditions (results/CLAIMS.md). Where steps are not asked to converge, the label"
+    " has the residual of their ends."
+)
 
 
 def kind_of(j: Judged) -> str:
@@ -38,15 +49,41 @@ def _dots(j: Judged) -> list[float]:
 def _row(axis, k: int, a: Answer) -> dict:
     j, color = a.main, COLORS[a.verdict.verdict]
     dots = _dots(j)
-    axis.plot(dots, [k + 0.24] * len(dots), marker="o", markersize=2.6, color=color, alpha=0.45, markeredgewidth=0, linestyle="none")
+    axis.plot(
+        dots,
+        [k + 0.24] * len(dots),
+        marker="o",
+        markersize=2.6,
+        color=color,
+        alpha=0.45,
+        markeredgewidth=0,
+        linestyle="none",
+    )
     if j.lower is not None:
         axis.plot([j.lower, j.upper], [k, k], color=color, linewidth=1.4, solid_capstyle="butt")
     axis.plot([j.value], [k], marker="D" if j.proof else "o", color=color, linestyle="none")
     for bound in j.bounds:
         axis.plot([bound, bound], [k - 0.36, k + 0.36], color="black", linewidth=0.9)
-    axis.annotate(f"{interval(j)}, asked {j.threshold}", (1.02, k), xycoords=("axes fraction", "data"), va="center", fontsize=5.5)
-    return {"panel": kind_of(j), "claim": a.claim.id, "verdict": a.verdict.verdict, "measures": j.measures, "slice": j.slice, "value": j.value, "lower": j.lower, "upper": j.upper,
-            "threshold": j.threshold, "ends": j.ends, "scenes": " ".join(f"{x:.4g}" for x in dots)}
+    axis.annotate(
+        f"{interval(j)}, asked {j.threshold}",
+        (1.02, k),
+        xycoords=("axes fraction", "data"),
+        va="center",
+        fontsize=5.5,
+    )
+    return {
+        "panel": kind_of(j),
+        "claim": a.claim.id,
+        "verdict": a.verdict.verdict,
+        "measures": j.measures,
+        "slice": j.slice,
+        "value": j.value,
+        "lower": j.lower,
+        "upper": j.upper,
+        "threshold": j.threshold,
+        "ends": j.ends,
+        "scenes": " ".join(f"{x:.4g}" for x in dots),
+    }
 
 
 def _panel(axis, kind: str, shown: list[Answer]) -> list[dict]:
@@ -58,7 +95,9 @@ def _panel(axis, kind: str, shown: list[Answer]) -> list[dict]:
         axis.xaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if high / low < 100 else (1,), numticks=12))
         axis.xaxis.set_major_formatter(ScalarFormatter() if high < 1e4 else axis.xaxis.get_major_formatter())
         axis.xaxis.set_minor_formatter(NullFormatter())
-    axis.set_yticks(range(len(shown)), [f"{a.claim.id}  {_wrapped(_says(a.main))}" for a in shown], fontsize=5.5)
+    axis.set_yticks(
+        range(len(shown)), [f"{a.claim.id}  {_wrapped(_says(a.main))}" for a in shown], fontsize=5.5
+    )
     axis.set_ylim(len(shown) - 0.4, -0.6)
     axis.set_xlabel(label)
     return rows
@@ -69,18 +108,39 @@ def _says(j: Judged) -> str:
 
 
 def draw(answers: list[Answer], stem: Path) -> list[Path]:
-    by_kind = {kind: [a for a in answers if a.main is not None and kind_of(a.main) == kind] for kind in PANELS}
+    by_kind = {
+        kind: [a for a in answers if a.main is not None and kind_of(a.main) == kind] for kind in PANELS
+    }
     by_kind = {kind: shown for kind, shown in by_kind.items() if shown}
     if not by_kind:
         return []
     heights = [len(shown) + 1.6 for shown in by_kind.values()]
-    fig, axes = plt.subplots(len(by_kind), 1, figsize=(style.WIDE_IN, 0.5 + 0.31 * sum(heights)), layout="constrained", height_ratios=heights, squeeze=False)
-    rows = [row for axis, (kind, shown) in zip(axes[:, 0], by_kind.items()) for row in _panel(axis, kind, shown)]
+    fig, axes = plt.subplots(
+        len(by_kind),
+        1,
+        figsize=(style.WIDE_IN, 0.5 + 0.31 * sum(heights)),
+        layout="constrained",
+        height_ratios=heights,
+        squeeze=False,
+    )
+    rows = [
+        row for axis, (kind, shown) in zip(axes[:, 0], by_kind.items()) for row in _panel(axis, kind, shown)
+    ]
     style.letter_panels(axes[:, 0])
     first = axes[0, 0]
     for verdict, color in COLORS.items():
         first.plot([], [], color=color, marker="o", label=verdict)
-    first.plot([], [], color="#888888", alpha=0.45, marker="o", markersize=2.6, markeredgewidth=0, linestyle="none", label="a scene")
+    first.plot(
+        [],
+        [],
+        color="#888888",
+        alpha=0.45,
+        marker="o",
+        markersize=2.6,
+        markeredgewidth=0,
+        linestyle="none",
+        label="a scene",
+    )
     first.plot([], [], color="black", marker="|", linestyle="none", label="threshold")
     fig.legend(loc="outside lower center", ncols=7, frameon=False)
     return style.save(fig, stem, pd.DataFrame(rows), SHOWN)

@@ -1,4 +1,6 @@
-"""Whether a scene of a confirmation sweep is one that no tuning sweep used: by its definition, not by its label."""
+"""Whether a scene of a confirmation sweep is one that no tuning sweep used: by its definition, not by its
+label.
+"""
 
 from __future__ import annotations
 
@@ -9,12 +11,29 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from .entry import ROOT, ClaimError, Sweep
+from ..errors import UserError
+from .entry import ROOT, Sweep
 from .merged import merged, put
 
 # Where rules and thresholds were tuned, or could have been.
-TUNING = ("claims/sweeps", "configs/sweeps", "configs/pareto", "configs/work_precision", "configs/gates", "configs/stress", "configs/gap_map")
-RESOLUTION = {"n", "n_x", "n_y", "level", "n_around", "n_along", "n_segments"}  # of a generated mesh: a finer mesh is no other scene
+TUNING = (
+    "claims/sweeps",
+    "configs/sweeps",
+    "configs/pareto",
+    "configs/work_precision",
+    "configs/gates",
+    "configs/stress",
+    "configs/gap_map",
+)
+RESOLUTION = {
+    "n",
+    "n_x",
+    "n_y",
+    "level",
+    "n_around",
+    "n_along",
+    "n_segments",
+}  # of a generated mesh: a finer mesh is no other scene
 LEAST = 8  # confirmation scenes of a sweep
 
 
@@ -24,24 +43,39 @@ def _defaults() -> dict:
 
 
 def _plain(value, schema: dict, folder: Path):
-    """A scene without names, without resolution, without what is a default, and with the contents of mesh files in the place of their paths."""
+    """A scene without names, without resolution, without what is a default, and with the contents of mesh
+    files in the place of their paths.
+    """
     if isinstance(value, list):
-        return [_plain(one, schema.get("items", {}) if isinstance(schema.get("items"), dict) else {}, folder) for one in value]
+        return [
+            _plain(one, schema.get("items", {}) if isinstance(schema.get("items"), dict) else {}, folder)
+            for one in value
+        ]
     if isinstance(value, bool) or not isinstance(value, dict):
         return float(value) if isinstance(value, (int, float)) and not isinstance(value, bool) else value
     rules, found = schema.get("properties", {}), {}
     for key, one in value.items():
         rule = rules.get(key, {})
         mesh = "generator" in value or "file" in value
-        if (key == "name" and not ("generator" in value)) or (mesh and key in RESOLUTION) or ("default" in rule and one == rule["default"]):
+        if (
+            (key == "name" and "generator" not in value)
+            or (mesh and key in RESOLUTION)
+            or ("default" in rule and one == rule["default"])
+        ):
             continue
         file = folder / one if key == "file" and isinstance(one, str) else None
-        found[key] = hashlib.sha256(file.read_bytes()).hexdigest() if file and file.is_file() else _plain(one, rule, folder)
+        found[key] = (
+            hashlib.sha256(file.read_bytes()).hexdigest()
+            if file and file.is_file()
+            else _plain(one, rule, folder)
+        )
     return found
 
 
 def identity(scene: dict, folder: Path) -> str:
-    """Canonical hash of what a scene is made of: bodies with meshes, materials, places and speeds, obstacles, gravity."""
+    """Canonical hash of what a scene is made of: bodies with meshes, materials, places and speeds, obstacles,
+    gravity.
+    """
     if scene.get("name") != "bodies":
         return hashlib.sha256(json.dumps(scene, sort_keys=True).encode()).hexdigest()
     text = json.dumps(_plain(scene, _defaults(), folder), sort_keys=True)
@@ -65,7 +99,11 @@ def _bases(data: dict, path: Path) -> Iterator[dict]:
         for name in _found(data, key):
             file = (path.parent / name).resolve() if isinstance(name, str) else path
             if file.suffix == ".json" and file.is_file() and file != path:
-                yield from (scene for scene in _found(json.loads(file.read_text()), "scene") if isinstance(scene, dict))
+                yield from (
+                    scene
+                    for scene in _found(json.loads(file.read_text()), "scene")
+                    if isinstance(scene, dict)
+                )
     yield from (scene for scene in _found(data, "scene") if isinstance(scene, dict))
 
 
@@ -80,14 +118,24 @@ def _changed(scene: dict, pointers: dict) -> dict | None:
 
 
 def scenes_of(path: Path) -> list[dict]:
-    """Every scene that a file of runs can make: its bases and whole scenes, with each of its settings of a scene, and with each two of them."""
+    """Every scene that a file of runs can make: its bases and whole scenes, with each of its settings of a
+    scene, and with each two of them.
+    """
     data = json.loads(path.read_text())
-    sets = [{p: v for p, v in one.items() if p.startswith("/scene")} for one in _found(data, "set") if isinstance(one, dict)]
+    sets = [
+        {p: v for p, v in one.items() if p.startswith("/scene")}
+        for one in _found(data, "set")
+        if isinstance(one, dict)
+    ]
     whole = [one["/scene"] for one in sets if isinstance(one.get("/scene"), dict)]
     parts = [p for p in ({q: v for q, v in one.items() if q != "/scene"} for one in sets) if p]
     scenes = [*_bases(data, path), *whole]
     once = [made for scene in scenes for p in parts if (made := _changed(scene, p)) is not None]
-    twice = [made for scene in once for p in parts if (made := _changed(scene, p)) is not None] if len(once) * len(parts) < 5000 else []
+    twice = (
+        [made for scene in once for p in parts if (made := _changed(scene, p)) is not None]
+        if len(once) * len(parts) < 5000
+        else []
+    )
     return [*scenes, *once, *twice]
 
 
@@ -104,14 +152,22 @@ def used(root: Path = ROOT) -> dict[str, str]:
 
 
 def check(sweep: Sweep, root: Path = ROOT) -> None:
-    """Errors: ClaimError when a scene is no `bodies` (whose definition is all written out), is a tuning sweep's, or when there are too few."""
+    """Errors: UserError when a scene is no `bodies` (whose definition is all written out), is a tuning
+    sweep's, or when there are too few.
+    """
     data = json.loads(sweep.path.read_text())
     names = {case["label"].partition(" ")[0] for case in data["axes"][0]["cases"]}
     if len(names) < LEAST:
-        raise ClaimError(f"{sweep.file}: {len(names)} scenes; a confirmation has at least {LEAST}")
+        raise UserError(f"{sweep.file}: {len(names)} scenes; a confirmation has at least {LEAST}")
     for case in data["axes"][0]["cases"]:
         scene = merged(data, sweep.path, case["set"])["scene"]
         if scene.get("name") != "bodies":
-            raise ClaimError(f"{sweep.file}: {case['label']}: the scene is {scene.get('name')!r}; a confirmation scene is of bodies, all written out")
+            raise UserError(
+                f"{sweep.file}: {case['label']}: the scene is {scene.get('name')!r}; a confirmation scene is"
+                " of bodies, all written out"
+            )
         if file := used(root).get(identity(scene, sweep.path.parent)):
-            raise ClaimError(f"{sweep.file}: {case['label']}: its scene is one of {file}, where rules were tuned; labels and resolution make no other scene")
+            raise UserError(
+                f"{sweep.file}: {case['label']}: its scene is one of {file}, where rules were tuned; labels"
+                " and resolution make no other scene"
+            )

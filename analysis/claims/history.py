@@ -35,7 +35,9 @@ def _is_shallow(root: Path) -> bool:
 
 
 def brought(root: Path, file: str, way: tuple[str, ...], value) -> Commit | None:
-    """The commit, an ancestor of HEAD, since which every commit of the file has this value at this place; None when HEAD has another."""
+    """The commit, an ancestor of HEAD, since which every commit of the file has this value at this place;
+    None when HEAD has another.
+    """
     lines = _git(root, "log", "--format=%H %ct", "HEAD", "--", file).split("\n")
     known, found = [line.split() for line in lines if line], None
     for k, (sha, seconds) in enumerate(known):
@@ -47,5 +49,7 @@ def brought(root: Path, file: str, way: tuple[str, ...], value) -> Commit | None
             at = at.get(word) if isinstance(at, dict) else None
         if at != value:
             break
-        found = Commit(sha, datetime.fromtimestamp(int(seconds), timezone.utc), k == len(known) - 1 and _is_shallow(root))
+        found = Commit(
+            sha, datetime.fromtimestamp(int(seconds), timezone.utc), k == len(known) - 1 and _is_shallow(root)
+        )
     return found

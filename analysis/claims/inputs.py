@@ -1,5 +1,7 @@
-"""What the runs of a sweep are made from beside the sweep file: base config, presets and meshes. Two questions: are a record's settings those that these
-files ask for now, and are they the files that numbers or a registration were made with?"""
+"""What the runs of a sweep are made from beside the sweep file: base config, presets and meshes. Two
+questions: are a record's settings those that these files ask for now, and are they the files that numbers or
+a registration were made with?
+"""
 
 from __future__ import annotations
 
@@ -11,13 +13,14 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
-from ..matching.runs import inputs_sha256
 from ..matching.runs import Sweep as Made
+from ..matching.runs import inputs_sha256
 from ..record_file import leaves
 from .entry import Sweep, note_of, settings_of
 from .merged import base_path, formulation_of, merged
 
-# Settings that a record may have otherwise though its inputs are the same: --threads, names, conventions of kappa, lengths of directions.
+# Settings that a record may have otherwise though its inputs are the same: --threads, names, conventions of
+# kappa, lengths of directions.
 NOT_COMPARED = ("/threads", "/schema", "/formulation/name", "/matching/reference")
 CONVERTED = ("kappa_", "file")  # beginnings of keys
 DIRECTIONS = {"axis", "warp_axis"}  # made unit vectors
@@ -32,10 +35,15 @@ def inputs_of(sweep: Sweep) -> str:
 
 
 def asked(sweep: Sweep) -> Iterator[tuple[str, dict]]:
-    """Of every case its note, and the config that sweep file and base ask for now; defaults of the program are not in it."""
+    """Of every case its note, and the config that sweep file and base ask for now; defaults of the program
+    are not in it.
+    """
     data = json.loads(sweep.path.read_text())
     for chosen in itertools.product(*(settings_of(axis, sweep.path) for axis in data["axes"])):
-        yield note_of(sweep.name, [label for label, _ in chosen]), merged(data, sweep.path, *(settings for _, settings in chosen))
+        yield (
+            note_of(sweep.name, [label for label, _ in chosen]),
+            merged(data, sweep.path, *(settings for _, settings in chosen)),
+        )
 
 
 @cache
@@ -57,13 +65,19 @@ def _same(found, value) -> bool:
 
 def _meshes(config: dict, folder: Path) -> dict[str, str]:
     """sha256 -> path of the mesh files that a config names and that are there."""
-    files = [folder / value for place, value in leaves(config.get("scene")) if place.endswith("/file") and isinstance(value, str)]
+    files = [
+        folder / value
+        for place, value in leaves(config.get("scene"))
+        if place.endswith("/file") and isinstance(value, str)
+    ]
     return {hashlib.sha256(file.read_bytes()).hexdigest(): str(file) for file in files if file.is_file()}
 
 
 def contradiction(record: dict, config: dict, folder: Path) -> str:
-    """The first setting that a record has otherwise than `config`, which asked() made, asks for now; a mesh of another content; empty when there is none.
-    A setting that was taken out of base or preset is not seen here: the program sees it, and inputs_of() of kept numbers does."""
+    """The first setting that a record has otherwise than `config`, which asked() made, asks for now; a mesh
+    of another content; empty when there is none. A setting that was taken out of base or preset is not seen
+    here: the program sees it, and inputs_of() of kept numbers does.
+    """
     whole = {**config, "formulation": formulation_of(config)} if "formulation" in config else config
     found = dict(leaves(record.get("config") or {}))
     for place, value in leaves(whole):

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ..errors import UserError
 from . import equal_gap, numbers, outcomes, registry
 from .ends import ends_of_part
-from .entry import Claim, ClaimError, Sweep, read_sweep
+from .entry import Claim, Sweep, read_sweep
 from .inputs import inputs_of
 from .metrics import METRICS
 from .parts import check
@@ -16,8 +17,13 @@ from .slices import rows_of, slice_of
 from .table import Runs, Table, used_metrics
 from .verdict import Judged, together, undecided
 
-RULES = {"ratio": numbers.ratio, "level": numbers.level, "slope": numbers.slope, "outcomes": outcomes.outcomes,
-         "at_equal_gap": equal_gap.at_equal_gap}
+RULES = {
+    "ratio": numbers.ratio,
+    "level": numbers.level,
+    "slope": numbers.slope,
+    "outcomes": outcomes.outcomes,
+    "at_equal_gap": equal_gap.at_equal_gap,
+}
 BY_GAP = ("ratio", "level", "slope")  # rules that leave out runs that are not comparable
 
 
@@ -43,7 +49,11 @@ class Answer:
         changes = len(self.claim.rule_changes)
         if not changes:
             return "exploratory: its rule was not registered before its first run"
-        return "exploratory: " + ("a change" if changes == 1 else f"{changes} changes") + " after numbers were seen"
+        return (
+            "exploratory: "
+            + ("a change" if changes == 1 else f"{changes} changes")
+            + " after numbers were seen"
+        )
 
     @property
     def main(self) -> Judged | None:
@@ -57,11 +67,19 @@ def _stale(runs: Runs, sweep: Sweep) -> str:
         return f"the records of {sweep.name} are of another {sweep.file}"
     if "inputs_sha256" not in runs.about:
         return f"the numbers of {sweep.name} do not say of which base config, presets and meshes they are"
-    return "" if runs.about["inputs_sha256"] == inputs_of(sweep) else f"the records of {sweep.name} are of another base config, preset or mesh than {sweep.file} names now"
+    return (
+        ""
+        if runs.about["inputs_sha256"] == inputs_of(sweep)
+        else (
+            f"the records of {sweep.name} are of another base config, preset or mesh than"
+            f" {sweep.file} names now"
+        )
+    )
 
 
 def missing(claim: Claim, table: Table) -> list[str]:
-    """One line a sweep whose records are not all there, or of other inputs, with the command that makes them."""
+    """One line a sweep whose records are not all there, or of other inputs, with the command that makes
+    them."""
     lines, used = [], {name: set(metrics) for name, metrics in used_metrics([claim]).items()}
     for name in claim.sweeps:
         sweep, runs = read_sweep(name), table.sweeps.get(name)
@@ -69,27 +87,39 @@ def missing(claim: Claim, table: Table) -> list[str]:
         if runs and (stale := _stale(runs, sweep)):
             lines.append(f"{claim.id}: {stale}: {sweep.command}")
         elif runs and runs.rows and (absent := used.get(name, set()) - set(runs.rows[0])):
-            lines.append(f"{claim.id}: the kept numbers of {name} have no {', '.join(sorted(absent))}, which its rule reads: {sweep.command}")
+            lines.append(
+                f"{claim.id}: the kept numbers of {name} have no {', '.join(sorted(absent))}, which its rule"
+                f" reads: {sweep.command}"
+            )
         elif found < len(sweep.cases):
-            lines.append(f"{claim.id}: {len(sweep.cases) - found} of {len(sweep.cases)} records of {name} are missing: {sweep.command}")
+            lines.append(
+                f"{claim.id}: {len(sweep.cases) - found} of {len(sweep.cases)} records of {name} are missing:"
+                f" {sweep.command}"
+            )
     return lines
 
 
 def judge_part(part: dict, table: Table, asker: Eval) -> Judged:
     if "proof" in part:
         if part["proof"] not in PROOFS:
-            raise ClaimError(f"proof {part['proof']!r}: one of {', '.join(PROOFS)}")
+            raise UserError(f"proof {part['proof']!r}: one of {', '.join(PROOFS)}")
         judged = PROOFS[part["proof"]](part, asker)
     else:
         if part.get("rule") not in RULES:
-            raise ClaimError(f"rule {part.get('rule')!r}: one of {', '.join(RULES)}, or a proof: {', '.join(PROOFS)}")
+            raise UserError(
+                f"rule {part.get('rule')!r}: one of {', '.join(RULES)}, or a proof: {', '.join(PROOFS)}"
+            )
         sweep = read_sweep(part["sweep"])
         check(part, sweep)
         table.sweeps[part["sweep"]].check_one_rule(sweep)
         runs = rows_of(part, table.sweeps[part["sweep"]], sweep)
         judged = RULES[part["rule"]](part, runs)
         judged.ends = ends_of_part(part, runs.rows, sweep)
-        judged.smallest_gaps = part["rule"] in BY_GAP and part.get("counts", "comparable") == "comparable" and runs.of_earlier_rule
+        judged.smallest_gaps = (
+            part["rule"] in BY_GAP
+            and part.get("counts", "comparable") == "comparable"
+            and runs.of_earlier_rule
+        )
         judged.rule, judged.slice = part["rule"], slice_of(part, sweep)
     judged.says, judged.beside, judged.sweep = part["says"], part.get("beside", False), part.get("sweep", "")
     judged.machine = METRICS[part["metric"]][2] if "metric" in part else False
@@ -97,13 +127,17 @@ def judge_part(part: dict, table: Table, asker: Eval) -> Judged:
 
 
 def judge(claim: Claim, table: Table, asker: Eval, entries: dict | None = None) -> Answer:
-    """The exploratory verdict, and the confirmed one where its registration is verified. entries: those of the registry."""
+    """The exploratory verdict, and the confirmed one where its registration is verified. entries: those of
+    the registry.
+    """
     state = registry.state(claim, table, registry.read() if entries is None else entries)
     if lines := missing(claim, table):
         return Answer(claim, undecided("; ".join(lines)), [], state)
     parts = [judge_part(part, table, asker) for part in claim.parts]
     answer = Answer(claim, together(parts, claim.waits_for), parts, state)
     if state.verified:
-        answer.confirmed_parts = [judge_part(part, table, asker) for part in registry.as_confirmation(claim).parts]
+        answer.confirmed_parts = [
+            judge_part(part, table, asker) for part in registry.as_confirmation(claim).parts
+        ]
         answer.confirmed = together(answer.confirmed_parts)
     return answer

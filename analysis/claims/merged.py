@@ -1,4 +1,5 @@
-"""What a sweep file asks of a run: its base with the settings of every axis, as far as claims have to know."""
+"""What a sweep file asks of a run: its base with the settings of every axis, as far as claims have to
+know."""
 
 from __future__ import annotations
 
@@ -9,11 +10,16 @@ from pathlib import Path
 from .entry import METHOD, ROOT, method_set
 
 PRESETS = ROOT / "configs" / "formulations"
-WITHOUT_LIMIT = ("bodies", "resting_block_1d")  # scenes that have no strain limit of their own (experiments/scenes)
+WITHOUT_LIMIT = (
+    "bodies",
+    "resting_block_1d",
+)  # scenes that have no strain limit of their own (experiments/scenes)
 
 
 def put(config: dict, pointer: str, value) -> None:
-    """config[pointer] = value. A formulation given by its name becomes an object where something of it is set."""
+    """config[pointer] = value. A formulation given by its name becomes an object where something of it is
+    set.
+    """
     *way, last = pointer.strip("/").split("/")
     at = config
     for word in way:
@@ -42,12 +48,16 @@ def _length(config: dict, pointer: str) -> None:
     time = config.get("time")
     if not isinstance(time, dict) or (pointer == "/time/dt_s" and "duration_s" not in time):
         return
-    for key in {"/time/steps": ["duration_s"], "/time/duration_s": ["steps"], "/time/dt_s": ["steps"]}.get(pointer, ()):
+    for key in {"/time/steps": ["duration_s"], "/time/duration_s": ["steps"], "/time/dt_s": ["steps"]}.get(
+        pointer, ()
+    ):
         time.pop(key, None)
 
 
 def _keep_duration(config: dict) -> None:
-    """Steps below a method with a dt of its own stand for the time that they take. Steps of a scene's own dt are left: no sweep of a claim has them."""
+    """Steps below a method with a dt of its own stand for the time that they take. Steps of a scene's own dt
+    are left: no sweep of a claim has them.
+    """
     time = config.get("time")
     if isinstance(time, dict) and {"steps", "dt_s"} <= time.keys() and "duration_s" not in time:
         time["duration_s"] = time["dt_s"] * time.pop("steps")
@@ -69,13 +79,18 @@ def merged(data: dict, path: Path, *sets: dict) -> dict:
 
 
 def formulation_of(config: dict) -> dict:
-    """What a config gives laid over the preset that it names, as in the program; a policy of another name replaces the preset's."""
+    """What a config gives laid over the preset that it names, as in the program; a policy of another name
+    replaces the preset's.
+    """
     formulation = config.get("formulation")
     given = {"name": formulation} if isinstance(formulation, str) else dict(formulation or {})
     file = PRESETS / f"{given.get('name', '')}.json"
     made = json.loads(file.read_text()).get("formulation", {}) if file.is_file() else {}
     whole, policy = {**made, **given}, given.get("stiffness_policy")
-    if isinstance(policy, dict) and policy.get("name") in (None, made.get("stiffness_policy", {}).get("name")):
+    if isinstance(policy, dict) and policy.get("name") in (
+        None,
+        made.get("stiffness_policy", {}).get("name"),
+    ):
         whole["stiffness_policy"] = {**made.get("stiffness_policy", {}), **policy}
     return whole
 
@@ -87,9 +102,12 @@ def theta_of(config: dict) -> float | None:
 
 
 def limit_of(config: dict) -> str:
-    """`off`, or the shape of the strain limit. Off as well where neither scene nor config gives a limit: one that is asked for all the same is
-    refused by the program."""
+    """`off`, or the shape of the strain limit. Off as well where neither scene nor config gives a limit: one
+    that is asked for all the same is refused by the program.
+    """
     limit = config.get("strain_limit", {})
-    if limit.get("enabled") is False or (config["scene"].get("name") in WITHOUT_LIMIT and not {"limit", "onset"} & limit.keys()):
+    if limit.get("enabled") is False or (
+        config["scene"].get("name") in WITHOUT_LIMIT and not {"limit", "onset"} & limit.keys()
+    ):
         return "off"
     return limit.get("shape") or formulation_of(config).get("shape", "as contact")

@@ -5,9 +5,9 @@ from __future__ import annotations
 import math
 from collections import Counter
 
+from ..errors import UserError
 from ..gap_rule import MAX_RATIO, farthest
 from .cells import complete, judge_cells, judge_scenes, left_out_text
-from .entry import ClaimError
 from .estimate import Cells, OfScene
 from .metrics import METRICS
 from .table import Runs
@@ -15,11 +15,13 @@ from .threshold import Threshold
 from .verdict import HOLDS, LEVELS, NOT, SCENES, Judged, undecided
 
 
-
 def by_place(runs: Runs, case: str, sweep: str) -> dict[tuple, dict]:
     found = {(row["scene"], row["level"], row["seed"]): row for row in runs.rows if row["case"] == case}
     if not found:
-        raise ClaimError(f"sweep {sweep} has no case {case!r}; it has {', '.join(sorted({row['case'] for row in runs.rows}))}")
+        raise UserError(
+            f"sweep {sweep} has no case {case!r}; it has"
+            f" {', '.join(sorted({row['case'] for row in runs.rows}))}"
+        )
     return found
 
 
@@ -33,11 +35,15 @@ def refusal(row: dict, metric: str, counts: str) -> str:
 
 
 def gap_refusal(a: dict, b: dict) -> str:
-    """Why two runs, of which neither is the reference of the other, did their work at other gaps; empty when they did not. By the rule of the records, pair of
-    bodies by pair of bodies; where neither record has such gaps by the smallest gap, as their own verdicts are."""
+    """Why two runs, of which neither is the reference of the other, did their work at other gaps; empty when
+    they did not. By the rule of the records, pair of bodies by pair of bodies; where neither record has such
+    gaps by the smallest gap, as their own verdicts are.
+    """
     mine, other = a.get("gaps"), b.get("gaps")
     if mine is None and other is None:
-        far = a["gap_rel"] and b["gap_rel"] and abs(math.log(a["gap_rel"] / b["gap_rel"])) > math.log(MAX_RATIO)
+        far = (
+            a["gap_rel"] and b["gap_rel"] and abs(math.log(a["gap_rel"] / b["gap_rel"])) > math.log(MAX_RATIO)
+        )
         return "not_comparable (smallest gap)" if far else ""
     if mine is None or other is None:
         return "not_comparable (one record is of before 3.5.0)"
@@ -75,7 +81,9 @@ def ratio(part: dict, runs: Runs) -> Judged:
         if reason := pair_refusal(a, b, part):
             left_out[reason] += 1
             continue
-        cells.setdefault(place[0], {}).setdefault(place[1], []).append(math.log(a[part["metric"]] / b[part["metric"]]))
+        cells.setdefault(place[0], {}).setdefault(place[1], []).append(
+            math.log(a[part["metric"]] / b[part["metric"]])
+        )
         example = example or [a["run"], b["run"]]
     judged = judge_cells(cells, left_out, part, True, "pairs")
     judged.measures = f"{METRICS[part['metric']][0]}: {part['case']} / {part['over']}"
@@ -96,25 +104,38 @@ def level(part: dict, runs: Runs) -> Judged:
                 continue
             cells.setdefault(place[0], {}).setdefault(place[1], []).append(row[part["metric"]])
             example = example or [row["run"]]
-    judged = _every(cells, left_out, part) if part.get("every") else judge_cells(cells, left_out, part, False, "runs")
+    judged = (
+        _every(cells, left_out, part)
+        if part.get("every")
+        else judge_cells(cells, left_out, part, False, "runs")
+    )
     judged.measures = f"{METRICS[part['metric']][0]}: {', '.join(cases)}"
     judged.runs = example
     return judged
 
 
 def _every(cells: Cells, left_out: Counter, part: dict) -> Judged:
-    """Every single value on the right side: a statement about the runs that were made, without an interval."""
+    """Every single value on the right side: a statement about the runs that were made, without an
+    interval."""
     threshold = Threshold(part, False)
     values = [x for levels in cells.values() for v in levels.values() for x in v]
     counted = f"{len(values)} runs count{left_out_text(left_out)}"
     more = {"threshold": f"{threshold.text} in every run", "bounds": threshold.bounds, "counted": counted}
     if not values:
         return undecided("no run counts", **more)
-    more |= {"value": max(values, key=lambda x: x if part.get("below") is not None else -x), "lower": min(values), "upper": max(values), "extremes": True}
+    more |= {
+        "value": max(values, key=lambda x: x if part.get("below") is not None else -x),
+        "lower": min(values),
+        "upper": max(values),
+        "extremes": True,
+    }
     if threshold.judge(min(values), max(values)) != HOLDS:
         return Judged(NOT, **more)
     if (enough := len(complete(cells, part))) < SCENES:
-        return undecided(f"indication: {enough} scenes have {LEVELS} levels that count, {SCENES} are needed ({counted})", **more)
+        return undecided(
+            f"indication: {enough} scenes have {LEVELS} levels that count, {SCENES} are needed ({counted})",
+            **more,
+        )
     return Judged(HOLDS, **more)
 
 
@@ -128,21 +149,28 @@ def _line(points: list[tuple[float, float]]) -> tuple[float, float, float]:
 
 
 def _log_level(name: str, sweep: str) -> float:
-    """Errors: ClaimError for a level that is no positive number."""
+    """Errors: UserError for a level that is no positive number."""
     try:
         return math.log(float(name))
     except ValueError:
-        raise ClaimError(f"sweep {sweep}: level {name!r}: a slope needs levels that are numbers above 0") from None
+        raise UserError(
+            f"sweep {sweep}: level {name!r}: a slope needs levels that are numbers above 0"
+        ) from None
 
 
 def slope(part: dict, runs: Runs) -> Judged:
-    """d log(metric) / d log(level), level a number: a least-squares line a start, and one value a scene, the mean over its starts. Its scatter is
-    that of the slopes between neighbouring levels. A number that has no logarithm is left out. Errors: ClaimError for a level that is no number."""
+    """d log(metric) / d log(level), level a number: a least-squares line a start, and one value a scene, the
+    mean over its starts. Its scatter is that of the slopes between neighbouring levels. A number that has no
+    logarithm is left out. Errors: UserError for a level that is no number.
+    """
     lines, left_out, example = {}, Counter(), []
     for place, row in sorted(by_place(runs, part["case"], part["sweep"]).items()):
         if not _scene(part, place):
             continue
-        x, reason = _log_level(place[1], part["sweep"]), refusal(row, part["metric"], part.get("counts", "comparable"))
+        x, reason = (
+            _log_level(place[1], part["sweep"]),
+            refusal(row, part["metric"], part.get("counts", "comparable")),
+        )
         if not reason and row[part["metric"]] <= 0:
             reason = f"{part['metric']} is not above 0"
         if reason:
@@ -155,7 +183,14 @@ def slope(part: dict, runs: Runs) -> Judged:
         found = [_line(points) for points in starts.values() if len(points) >= LEVELS]
         if found:
             groups.append([line[0] for line in found])
-            scenes.append(OfScene(name, *(sum(column) / len(found) for column in zip(*found)), levels=min(map(len, starts.values())), n=len(found)))
+            scenes.append(
+                OfScene(
+                    name,
+                    *(sum(column) / len(found) for column in zip(*found)),
+                    levels=min(map(len, starts.values())),
+                    n=len(found),
+                )
+            )
     judged = judge_scenes(scenes, groups, left_out, part, False, "lines")
     judged.measures = f"slope of log {part['metric']} over log level: {part['case']}"
     judged.runs = example[:2]

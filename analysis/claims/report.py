@@ -34,9 +34,14 @@ def interval(j: Judged) -> str:
 
 
 def sentence(j: Judged, brief: bool = False) -> str:
-    """The verdict with its condition or its parts, or with what is missing. brief: of many parts how many hold, for a cell of a table."""
+    """The verdict with its condition or its parts, or with what is missing. brief: of many parts how many
+    hold, for a cell of a table.
+    """
     if brief and j.verdict == IN_PART and sum(j.groups) > MANY:
-        return f"{IN_PART} (of {sum(j.groups)} parts: {j.groups[0]} upheld, {j.groups[1]} refuted, {j.groups[2]} not decided)"
+        return (
+            f"{IN_PART} (of {sum(j.groups)} parts: {j.groups[0]} upheld, {j.groups[1]} refuted,"
+            f" {j.groups[2]} not decided)"
+        )
     if j.verdict == ONLY_IF:
         return f"{ONLY_IF}: {j.condition}"
     if j.verdict == IN_PART:
@@ -47,12 +52,24 @@ def sentence(j: Judged, brief: bool = False) -> str:
 def _part(j: Judged) -> list[str]:
     kind = "closed form" if j.proof else f"`{j.sweep}`"
     verdict = f"{sentence(j)}{' (beside, decides nothing)' if j.beside else ''}"
-    lines = [f"- {j.says}: **{verdict}**. {j.measures}{' (depends on the machine)' if j.machine else ''}: {interval(j)}, asked: {j.threshold or '-'}; {j.counted or '-'}{BY_SMALLEST if j.smallest_gaps else ''}; {kind}."]
+    lines = [
+        f"- {j.says}: **{verdict}**. {j.measures}{' (depends on the machine)' if j.machine else ''}:"
+        f" {interval(j)}, asked: {j.threshold or '-'};"
+        f" {j.counted or '-'}{BY_SMALLEST if j.smallest_gaps else ''}; {kind}."
+    ]
     if j.slice:
-        lines.append(f"  Slice: {j.slice}." + (f" Samples: {j.scenes} scenes; {j.starts}." if j.scenes else ""))
+        lines.append(
+            f"  Slice: {j.slice}." + (f" Samples: {j.scenes} scenes; {j.starts}." if j.scenes else "")
+        )
     if j.per_scene:
-        lines.append("  By scene (least and largest of its levels): " + "; ".join(f"{name} {number(v)} ({number(low)} to {number(high)} at {levels}, n = {n})"
-                                                                                    for name, v, low, high, levels, n in j.per_scene) + ".")
+        lines.append(
+            "  By scene (least and largest of its levels): "
+            + "; ".join(
+                f"{name} {number(v)} ({number(low)} to {number(high)} at {levels}, n = {n})"
+                for name, v, low, high, levels, n in j.per_scene
+            )
+            + "."
+        )
     if j.ends:
         lines.append(f"  Ends of steps: {j.ends}.")
     if j.runs:
@@ -78,8 +95,17 @@ def _confirmation(a: Answer) -> list[str]:
 
 def _claim(a: Answer, table: Table) -> list[str]:
     claim = a.claim
-    lines = [f"## {claim.id}: {a.verdict.verdict}", "", claim.sentence, "",
-             f"Source: {claim.source}. Dimension: {claim.dimension}. Kind: {claim.kind}. Keeps the guarantee: {claim.guarantee}. Rerun: `{claim.command}`.", ""]
+    lines = [
+        f"## {claim.id}: {a.verdict.verdict}",
+        "",
+        claim.sentence,
+        "",
+        (
+            f"Source: {claim.source}. Dimension: {claim.dimension}. Kind: {claim.kind}. Keeps the guarantee:"
+            f" {claim.guarantee}. Rerun: `{claim.command}`."
+        ),
+        "",
+    ]
     if a.verdict.verdict in (ONLY_IF, IN_PART, OPEN):
         lines += [f"**{sentence(a.verdict)}.**", ""]
     if a.why_exploratory:
@@ -97,14 +123,32 @@ def _claim(a: Answer, table: Table) -> list[str]:
 
 
 def _sweeps(table: Table) -> list[str]:
-    lines = ["## Sweeps", "", "| sweep | runs | unknowns | ok | comparable | seconds | date | machine | build | command |", "|---|---|---|---|---|---|---|---|---|---|"]
+    lines = [
+        "## Sweeps",
+        "",
+        "| sweep | runs | unknowns | ok | comparable | seconds | date | machine | build | command |",
+        "|---|---|---|---|---|---|---|---|---|---|",
+    ]
     for name, runs in sorted(table.sweeps.items()):
         sweep, about = read_sweep(name), runs.about
-        ok, comparable = (sum(row[key] == word for row in runs.rows) for key, word in (("outcome", "ok"), ("comparability", "comparable")))
-        lines.append(f"| {name} | {len(runs.rows)} of {len(sweep.cases)} | {about['unknowns']} | {ok} | {comparable} | {about['seconds']:.0f} | {about['date']} | {about['machine']} "
-                     f"| {about['build'][:8]} | `{sweep.command}` |")
+        ok, comparable = (
+            sum(row[key] == word for row in runs.rows)
+            for key, word in (("outcome", "ok"), ("comparability", "comparable"))
+        )
+        lines.append(
+            f"| {name} | {len(runs.rows)} of {len(sweep.cases)} | {about['unknowns']} | {ok} | {comparable} |"
+            f" {about['seconds']:.0f} | {about['date']} | {about['machine']} | {about['build'][:8]} |"
+            f" `{sweep.command}` |"
+        )
     total = sum(runs.about["seconds"] for runs in table.sweeps.values())
-    return lines + ["", f"Seconds are those of the runs, diagnosis and audit included: {total:.0f} s of one core in all, on a machine that did other work as well.", ""]
+    return lines + [
+        "",
+        (
+            f"Seconds are those of the runs, diagnosis and audit included: {total:.0f} s of one core in all,"
+            " on a machine that did other work as well."
+        ),
+        "",
+    ]
 
 
 HEAD = """# Claims
@@ -134,11 +178,20 @@ def main_number(j: Judged) -> str:
 
 
 def verdict_table(answers: list[Answer]) -> list[str]:
-    lines = ["| claim | sentence | kind | exploratory verdict (or closed form) | confirmed | number of its first part |", "|---|---|---|---|---|---|"]
+    lines = [
+        (
+            "| claim | sentence | kind | exploratory verdict (or closed form) | confirmed | number of its"
+            " first part |"
+        ),
+        "|---|---|---|---|---|---|",
+    ]
     for a in answers:
         j = a.main
         number_of = f"{main_number(j)}{f' ({j.slice})' if j.slice else ''}" if j else "-"
-        lines.append(f"| {a.claim.id} | {a.claim.sentence} | {a.claim.kind} | {_short(a)} | {confirmed_word(a)} | {number_of} |")
+        lines.append(
+            f"| {a.claim.id} | {a.claim.sentence} | {a.claim.kind} | {_short(a)} | {confirmed_word(a)} |"
+            f" {number_of} |"
+        )
     return lines
 
 
@@ -153,11 +206,24 @@ def in_page(page: str, answers: list[Answer]) -> str:
 
 
 def markdown(answers: list[Answer], table: Table) -> str:
-    lines = [HEAD, "![main number of every claim by kind, with its scenes, interval and threshold](../docs/claims.png)", "", *verdict_table(answers), ""]
+    lines = [
+        HEAD,
+        "![main number of every claim by kind, with its scenes, interval and threshold](../docs/claims.png)",
+        "",
+        *verdict_table(answers),
+        "",
+    ]
     for a in answers:
         lines += _claim(a, table)
     lines += _sweeps(table)
-    lines += ["## Metrics", "", *(f"- `{name}`: {meaning}{' (depends on the machine)' if machine else ''}" for name, (meaning, _, machine, _) in METRICS.items())]
+    lines += [
+        "## Metrics",
+        "",
+        *(
+            f"- `{name}`: {meaning}{' (depends on the machine)' if machine else ''}"
+            for name, (meaning, _, machine, _) in METRICS.items()
+        ),
+    ]
     return "\n".join(lines) + "\n"
 
 
@@ -166,5 +232,10 @@ def text(answers: list[Answer]) -> str:
     lines = []
     for a in answers:
         j = a.main
-        lines += textwrap.wrap(f"{a.claim.id:4} {sentence(a.verdict, brief=True)}; confirmed: {confirmed_word(a)}" + (f"  [{main_number(j)}]" if j else ""), WIDTH, subsequent_indent="     ")
+        lines += textwrap.wrap(
+            f"{a.claim.id:4} {sentence(a.verdict, brief=True)}; confirmed: {confirmed_word(a)}"
+            + (f"  [{main_number(j)}]" if j else ""),
+            WIDTH,
+            subsequent_indent="     ",
+        )
     return "\n".join(lines)

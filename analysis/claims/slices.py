@@ -1,11 +1,14 @@
-"""The slice of a part: which theta and strain limit its runs have. Taken from the sweep file, and held against what the part says."""
+"""The slice of a part: which theta and strain limit its runs have. Taken from the sweep file, and held
+against what the part says.
+"""
 
 from __future__ import annotations
 
 import json
 from functools import cache
 
-from .entry import ClaimError, Sweep
+from ..errors import UserError
+from .entry import Sweep
 from .inputs import asked_once
 from .merged import limit_of, theta_of
 from .table import Runs
@@ -21,7 +24,10 @@ def _wanted(part: dict, sweep: Sweep, name: str):
     values = sweep.axes[name]
     asked = part.get(name, part["limit"] != "off" if name == "enabled" and "limit" in part else None)
     if not any(_equal(asked, value) for value in values):
-        raise ClaimError(f"{part.get('says', part)}: {name}: found {asked!r}; {sweep.file} has {', '.join(map(json.dumps, values))}, and a part names one of them")
+        raise UserError(
+            f"{part.get('says', part)}: {name}: found {asked!r}; {sweep.file} has"
+            f" {', '.join(map(json.dumps, values))}, and a part names one of them"
+        )
     return asked
 
 
@@ -52,12 +58,22 @@ def _of_case(part: dict, sweep: Sweep, case: str) -> dict[str, set[tuple[float |
 
 
 def _check(part: dict, sweep: Sweep, case: str, found: dict[str, set[tuple]]) -> None:
-    """Errors: ClaimError where a scene that counts has another theta or limit than the part names."""
+    """Errors: UserError where a scene that counts has another theta or limit than the part names."""
     for k, name in enumerate(("theta", "limit")):
-        unlike = {scene: {words[k] for words in of} for scene, of in found.items() if name in part and {words[k] for words in of} != {part[name]}}
+        unlike = {
+            scene: {words[k] for words in of}
+            for scene, of in found.items()
+            if name in part and {words[k] for words in of} != {part[name]}
+        }
         if unlike:
-            has = "; ".join(f"{scene}: {', '.join(map(repr, sorted(values, key=str)))}" for scene, values in sorted(unlike.items()))
-            raise ClaimError(f"{part.get('says', part)}: {name}: found {part[name]!r}; the runs of {case} in {sweep.file} have {has} (`scenes` names those that count)")
+            has = "; ".join(
+                f"{scene}: {', '.join(map(repr, sorted(values, key=str)))}"
+                for scene, values in sorted(unlike.items())
+            )
+            raise UserError(
+                f"{part.get('says', part)}: {name}: found {part[name]!r}; the runs of {case} in"
+                f" {sweep.file} have {has} (`scenes` names those that count)"
+            )
 
 
 def _pooled(words: dict[str, set[str]], name: str) -> str:
@@ -71,14 +87,22 @@ def _pooled(words: dict[str, set[str]], name: str) -> str:
 
 
 def _said(found: dict[str, set[tuple]]) -> tuple[str, str]:
-    thetas = {scene: {"stiffness as given" if theta is None else f"theta {theta:g}" for theta, _ in of} for scene, of in found.items()}
-    return _pooled(thetas, ""), _pooled({scene: {limit for _, limit in of} for scene, of in found.items()}, "limit ")
+    thetas = {
+        scene: {"stiffness as given" if theta is None else f"theta {theta:g}" for theta, _ in of}
+        for scene, of in found.items()
+    }
+    return _pooled(thetas, ""), _pooled(
+        {scene: {limit for _, limit in of} for scene, of in found.items()}, "limit "
+    )
 
 
 def slice_of(part: dict, sweep: Sweep) -> str:
-    """theta and limit in words, of the scenes that count: once where all cases of the part share them, else case by case. Errors: ClaimError where these are
-    not what the part names."""
-    cases = [part[key] for key in ("case", "over") if key in part] or list(dict.fromkeys(place[2] for place in sweep.cases.values()))
+    """theta and limit in words, of the scenes that count: once where all cases of the part share them, else
+    case by case. Errors: UserError where these are not what the part names.
+    """
+    cases = [part[key] for key in ("case", "over") if key in part] or list(
+        dict.fromkeys(place[2] for place in sweep.cases.values())
+    )
     found = {}
     for case in cases:
         if of := _of_case(part, sweep, case):

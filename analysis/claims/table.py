@@ -1,4 +1,6 @@
-"""What the verdicts are computed from: the numbers of all runs and the answers of `eval`, in results/claims.json."""
+"""What the verdicts are computed from: the numbers of all runs and the answers of `eval`, in
+results/claims.json.
+"""
 
 from __future__ import annotations
 
@@ -10,11 +12,12 @@ from dataclasses import dataclass, field
 from datetime import datetime
 from pathlib import Path
 
+from ..errors import UserError
 from ..gap_rule import gaps_of
 from ..record_file import RecordError, other_meanings, read_record
 from ..whole_file import write_whole
 from .ends import ENDS, end_of_run
-from .entry import ROOT, Claim, ClaimError, Sweep
+from .entry import ROOT, Claim, Sweep
 from .inputs import asked, contradiction, inputs_of
 from .merged import base_path
 from .metrics import FOLDER, METRICS
@@ -25,7 +28,8 @@ FILE = ROOT / "results" / "claims.json"
 RUNS = ROOT / "results" / "runs" / "claims"
 NAME = "barrierbench.claims/1"
 PLACE = ("scene", "level", "case", "seed")
-# run: the first 16 digits of run_id. pair: that is not comparable. Numbers of records before 3.5.0 have no pair, gaps and ends
+# run: the first 16 digits of run_id. pair: that is not comparable. Numbers of records before 3.5.0 have no
+# pair, gaps and ends
 STATE = ("outcome", "comparability", "gap_rel", "run", "pair", "gaps", *ENDS)
 ID_DIGITS = 16
 DIGITS = 12  # of a metric, so that a number beside a threshold stays on its side; 6 of gaps and residuals
@@ -35,22 +39,30 @@ DIGITS = 12  # of a metric, so that a number beside a threshold stays on its sid
 class Runs:
     """The runs of a sweep as far as rules need them: place -> state and metrics."""
 
-    about: dict  # sha256 of the sweep file, inputs_sha256 of all that it names, date, machine, program, seconds
+    about: (
+        dict  # sha256 of the sweep file, inputs_sha256 of all that it names, date, machine, program, seconds
+    )
     rows: list[dict]
     expected: int
 
     @property
     def of_earlier_rule(self) -> bool:
-        """Whether verdicts on comparability are those of records before 3.5.0, by the smallest gap of a run."""
+        """Whether verdicts on comparability are those of records before 3.5.0, by the smallest gap of a
+        run."""
         return any(row.get("gaps") is None for row in self.rows)
 
     def check_one_rule(self, sweep: Sweep) -> None:
-        """Errors: ClaimError where runs are judged comparable by the smallest gap (before 3.5.0) beside others that are by each pair's: no number pools two rules."""
+        """Errors: UserError where runs are judged comparable by the smallest gap (before 3.5.0) beside others
+        that are by each pair's: no number pools two rules.
+        """
         earlier = [row for row in self.rows if row["outcome"] == "ok" and row.get("gaps") is None]
         later = [row for row in self.rows if row["outcome"] == "ok" and row.get("gaps") is not None]
         if earlier and later:
-            raise ClaimError(f"{sweep.name}: {len(earlier)} records of before 3.5.0 (run_id {earlier[0]['run']}) beside {len(later)} later ones, of another rule of comparability: "
-                             f"remove the folders of the earlier ones, then {sweep.command}")
+            raise UserError(
+                f"{sweep.name}: {len(earlier)} records of before 3.5.0 (run_id {earlier[0]['run']}) beside"
+                f" {len(later)} later ones, of another rule of comparability: remove the folders of the"
+                f" earlier ones, then {sweep.command}"
+            )
 
     @property
     def complete(self) -> bool:
@@ -67,9 +79,14 @@ def used_metrics(claims: list[Claim]) -> dict[str, list[str]]:
     """Sweep -> metrics that some part reads."""
     used: dict[str, set] = {}
     for part in (part for claim in claims for part in claim.parts if "sweep" in part):
-        names = {part.get("metric"), *read_for(part.get("bad")), (part.get("equal") or {}).get("metric"), RESIDUAL if MOST in part else None} - {None}
+        names = {
+            part.get("metric"),
+            *read_for(part.get("bad")),
+            (part.get("equal") or {}).get("metric"),
+            RESIDUAL if MOST in part else None,
+        } - {None}
         if unknown := names - set(METRICS):
-            raise ClaimError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
+            raise UserError(f"metric {sorted(unknown)[0]!r}: one of {', '.join(METRICS)}")
         for sweep in (part["sweep"], *((part["confirm"]["sweep"],) if "confirm" in part else ())):
             used.setdefault(sweep, set()).update(names)
     for frontier in (claim.frontier for claim in claims if claim.frontier):
@@ -88,21 +105,31 @@ def _rounded(value, digits: int = 6):
 def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
     comparability, status = record["comparability"], record["status"]
     row = dict(zip(PLACE, place))
-    row |= {"outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid",
-            "comparability": comparability["verdict"], "gap_rel": _rounded(comparability.get("gap_rel")), "run": record["ids"]["run_id"][:ID_DIGITS],
-            "pair": comparability.get("pair", "") if comparability["verdict"] == "not_comparable" else "", "gaps": _rounded(gaps_of(record)),
-            **_rounded(end_of_run(record))}
+    row |= {
+        "outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid",
+        "comparability": comparability["verdict"],
+        "gap_rel": _rounded(comparability.get("gap_rel")),
+        "run": record["ids"]["run_id"][:ID_DIGITS],
+        "pair": comparability.get("pair", "") if comparability["verdict"] == "not_comparable" else "",
+        "gaps": _rounded(gaps_of(record)),
+        **_rounded(end_of_run(record)),
+    }
     return row | {name: _rounded(METRICS[name][3](record), DIGITS) for name in metrics}
 
 
 def seconds_of_run(record: dict) -> float:
     """From start to end of a run, all passes."""
-    start, end = (datetime.fromisoformat(record["status"][key].replace("Z", "+00:00")) for key in ("started_utc", "ended_utc"))
+    start, end = (
+        datetime.fromisoformat(record["status"][key].replace("Z", "+00:00"))
+        for key in ("started_utc", "ended_utc")
+    )
     return (end - start).total_seconds()
 
 
 def _records(sweep: Sweep, folder: Path, metrics: list[str]) -> Iterator[tuple[dict, dict]]:
-    """Record and row of every case; what cannot be read, or is of other inputs than the sweep has now, is said and counts as missing."""
+    """Record and row of every case; what cannot be read, or is of other inputs than the sweep has now, is
+    said and counts as missing.
+    """
     configs, base = dict(asked(sweep)), base_path(json.loads(sweep.path.read_text()), sweep.path).parent
     for path in sorted(folder.glob("*/run.json")):
         try:
@@ -119,29 +146,50 @@ def _records(sweep: Sweep, folder: Path, metrics: list[str]) -> Iterator[tuple[d
 
 
 def _one_version(sweep: Sweep, folder: Path, records: list[dict]) -> str:
-    """The versions of the records in words. Errors: ClaimError where a field means one thing in some of them and another in others."""
-    versions = sorted({r["schema"]["version"] for r in records}, key=lambda v: [int(part) for part in v.split(".")])
+    """The versions of the records in words. Errors: UserError where a field means one thing in some of them
+    and another in others.
+    """
+    versions = sorted(
+        {r["schema"]["version"] for r in records}, key=lambda v: [int(part) for part in v.split(".")]
+    )
     if records and (fields := other_meanings(versions[0], versions[-1])):
-        raise ClaimError(f"{folder}: records of version {versions[0]} beside those of {versions[-1]}, in which {', '.join(fields)} mean different things: "
-                         f"remove those of the earlier version, then {sweep.command}")
+        raise UserError(
+            f"{folder}: records of version {versions[0]} beside those of {versions[-1]}, in which"
+            f" {', '.join(fields)} mean different things: remove those of the earlier version, then"
+            f" {sweep.command}"
+        )
     return ", ".join(versions)
 
 
 def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
-    """The records of a sweep below its folder. Those of other cases than the sweep file has, or of other inputs, do not count. Errors: ClaimError."""
+    """The records of a sweep below its folder. Those of other cases than the sweep file has, or of other
+    inputs, do not count. Errors: UserError.
+    """
     found = list(_records(sweep, folder, metrics))
     records, rows = [record for record, _ in found], [row for _, row in found]
     keys = (*PLACE, *sweep.axes)
     rows.sort(key=lambda row: tuple(str(row[key]) for key in keys))
     if len({tuple(row[key] for key in keys) for row in rows}) != len(rows):
-        raise ClaimError(f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again")
+        raise UserError(
+            f"{folder}: two records of one case; remove the folder and run ./bench sweep {sweep.file} again"
+        )
     file = folder / "sweep.json"  # the program's copy of the sweep file that made the records
-    about = {"sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "", "inputs_sha256": inputs_of(sweep),
-             "schema": _one_version(sweep, folder, records), "seconds": round(sum(map(seconds_of_run, records)), 1), "first_started_utc": min((r["status"]["started_utc"] for r in records), default="")}
-    for name, values in (("date", {r["status"]["started_utc"][:10] for r in records}),
-                         ("machine", {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records}),
-                         ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),
-                         ("build", {r["ids"]["build_id"][:ID_DIGITS] for r in records})):
+    about = {
+        "sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "",
+        "inputs_sha256": inputs_of(sweep),
+        "schema": _one_version(sweep, folder, records),
+        "seconds": round(sum(map(seconds_of_run, records)), 1),
+        "first_started_utc": min((r["status"]["started_utc"] for r in records), default=""),
+    }
+    for name, values in (
+        ("date", {r["status"]["started_utc"][:10] for r in records}),
+        (
+            "machine",
+            {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records},
+        ),
+        ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),
+        ("build", {r["ids"]["build_id"][:ID_DIGITS] for r in records}),
+    ):
         about[name] = ", ".join(sorted(values))
     sizes = [r["scene"]["free_dofs"] for r in records]
     about["unknowns"] = f"{min(sizes)} to {max(sizes)}" if sizes else ""
@@ -153,10 +201,21 @@ def write(table: Table, path: Path) -> None:
     blocks = []
     for name, runs in sorted(table.sweeps.items()):
         columns = list(runs.rows[0]) if runs.rows else list(PLACE + STATE)
-        rows = ",\n   ".join(json.dumps([row[c] for c in columns], separators=(",", ":")) for row in runs.rows)
-        blocks.append(f'  "{name}": {{"about": {json.dumps(runs.about)}, "expected": {runs.expected},\n   "columns": {json.dumps(columns)}, "rows": [\n   {rows}]}}')
+        rows = ",\n   ".join(
+            json.dumps([row[c] for c in columns], separators=(",", ":")) for row in runs.rows
+        )
+        blocks.append(
+            f'  "{name}": {{"about": {json.dumps(runs.about)}, "expected": {runs.expected},\n   "columns":'
+            f' {json.dumps(columns)}, "rows": [\n   {rows}]}}'
+        )
     lines += [",\n".join(blocks), " },", ' "answers": {']
-    lines += [",\n".join(f"  {json.dumps(query)}: {json.dumps(answer)}" for query, answer in sorted(table.answers.items())), " }", "}"]
+    lines += [
+        ",\n".join(
+            f"  {json.dumps(query)}: {json.dumps(answer)}" for query, answer in sorted(table.answers.items())
+        ),
+        " }",
+        "}",
+    ]
     write_whole(path, "\n".join(lines) + "\n")
 
 
@@ -169,10 +228,13 @@ def read(path: Path) -> Table:
         data = json.loads(path.read_text())
         schema = data.get("schema") if isinstance(data, dict) else None
         if schema != NAME:
-            raise ClaimError(f"{path}: schema {schema!r}; {NAME!r} is needed; {again}")
-        sweeps = {name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"]) for name, s in data["sweeps"].items()}
+            raise UserError(f"{path}: schema {schema!r}; {NAME!r} is needed; {again}")
+        sweeps = {
+            name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"])
+            for name, s in data["sweeps"].items()
+        }
         return Table(sweeps, data["answers"])
-    except ClaimError:
+    except UserError:
         raise
     except (KeyError, TypeError, AttributeError, ValueError) as error:  # ValueError: not JSON
-        raise ClaimError(f"{path}: not a whole table ({type(error).__name__}: {error}); {again}") from None
+        raise UserError(f"{path}: not a whole table ({type(error).__name__}: {error}); {again}") from None

@@ -15,7 +15,9 @@ class Judged:
 
     verdict: str
     says: str = ""
-    condition: str = ""  # of ONLY_IF the levels or scenes, of IN_PART the parts that hold and those that do not
+    condition: str = (
+        ""  # of ONLY_IF the levels or scenes, of IN_PART the parts that hold and those that do not
+    )
     groups: tuple[int, ...] = ()  # of IN_PART: how many parts hold, do not, and are not decided
     missing: str = ""  # of OPEN
     value: float | None = None
@@ -26,7 +28,9 @@ class Judged:
     bounds: tuple[float, ...] = ()  # thresholds as numbers, for the figure
     measures: str = ""
     counted: str = ""  # how much was judged, and what was left out and why
-    per_scene: list[tuple[str, float, float, float, int, int]] = field(default_factory=list)  # value, least and largest of its levels, levels, runs
+    per_scene: list[tuple[str, float, float, float, int, int]] = field(
+        default_factory=list
+    )  # value, least and largest of its levels, levels, runs
     scenes: int = 0  # samples
     starts: str = ""  # how much alike the starts are
     slice: str = ""  # theta and limit of its runs
@@ -54,13 +58,23 @@ def _named(j: Judged) -> str:
 
 def _in_part(good: list[Judged], bad: list[Judged], still: list[Judged]) -> Judged:
     """Parts are joined by `and`: those that hold are no condition under which the refuted ones would."""
-    groups = (("holds", [_named(j) for j in good]), ("does not hold", [j.says for j in bad]), ("not decided", [j.says for j in still]))
-    return Judged(IN_PART, condition=". ".join(f"{word}: {'; '.join(names)}" for word, names in groups if names), groups=tuple(len(names) for _, names in groups))
+    groups = (
+        ("holds", [_named(j) for j in good]),
+        ("does not hold", [j.says for j in bad]),
+        ("not decided", [j.says for j in still]),
+    )
+    return Judged(
+        IN_PART,
+        condition=". ".join(f"{word}: {'; '.join(names)}" for word, names in groups if names),
+        groups=tuple(len(names) for _, names in groups),
+    )
 
 
 def together(parts: list[Judged], waits_for: str = "") -> Judged:
-    """All parts that are not beside have to hold. What the claim waits for leaves it open, whatever they say. Where some hold and some do not it holds
-    in part; where every one holds, but some only at levels or in scenes, these are its condition."""
+    """All parts that are not beside have to hold. What the claim waits for leaves it open, whatever they say.
+    Where some hold and some do not it holds in part; where every one holds, but some only at levels or in
+    scenes, these are its condition.
+    """
     deciding = [j for j in parts if not j.beside]
     if waits_for or not deciding:
         seen = "; ".join(f"{_named(j)}: {j.verdict}" for j in deciding)
@@ -75,7 +89,9 @@ def together(parts: list[Judged], waits_for: str = "") -> Judged:
     still = [j for j in deciding if j.verdict == OPEN]
     if still and not bad:
         missing = "; ".join(f"{j.says}: {j.missing}" for j in still)
-        return undecided(missing + (f". Otherwise: {'; '.join(f'{_named(j)}: {j.verdict}' for j in good)}" if good else ""))
+        return undecided(
+            missing + (f". Otherwise: {'; '.join(f'{_named(j)}: {j.verdict}' for j in good)}" if good else "")
+        )
     if not good:
         return Judged(NOT)
     if bad:

@@ -1,10 +1,9 @@
-"""The shapes themselves: b, -b', b'' and rho(u), asked from the program, so that no formula is written twice."""
+"""The shapes themselves: b, -b', b'' and rho(u), asked from the program, so that no formula is written
+twice."""
 
 from __future__ import annotations
 
-import json
 import os
-import subprocess
 import sys
 from pathlib import Path
 
@@ -13,15 +12,25 @@ import numpy as np
 import pandas as pd
 
 from .. import style
-from ..program import plugin_words
+from ..program import evaluated, started
 from ..record_file import sha256_of
 
-OF_NO_RUN = {"log": ("log", "gap"), "quadratic": ("quadratic", "gap"), "cubic": ("cubic", "gap")}  # drawn where there are no runs
-PANELS = (("b", r"$b/\hat d^2$"), ("minus_db", r"$-b'/\hat d$"), ("d2b", r"$b''$"), ("rho", r"$\rho=\hat d\,b''/|b'|$"))
+OF_NO_RUN = {
+    "log": ("log", "gap"),
+    "quadratic": ("quadratic", "gap"),
+    "cubic": ("cubic", "gap"),
+}  # drawn where there are no runs
+PANELS = (
+    ("b", r"$b/\hat d^2$"),
+    ("minus_db", r"$-b'/\hat d$"),
+    ("d2b", r"$b''$"),
+    ("rho", r"$\rho=\hat d\,b''/|b'|$"),
+)
 SHOWN = (
-    "The barrier shapes over the gap d in units of d_hat, the gap at which contact begins, for stiffness 1: (a) the energy b, (b) the force -b', (c) the "
-    "curvature b'', (d) rho = d_hat b''/|b'|, curvature for the same force. Drawn are the shapes of the runs, each on the argument that they apply it to. "
-    "The numbers are the program's own (bench eval)."
+    "The barrier shapes over the gap d in units of d_hat, the gap at which contact begins, for stiffness 1:"
+    " (a) the energy b, (b) the force -b', (c) the curvature b'', (d) rho = d_hat b''/|b'|, curvature for the"
+    " same force. Drawn are the shapes of the runs, each on the argument that they apply it to. The numbers"
+    " are the program's own (bench eval)."
 )
 
 
@@ -31,39 +40,40 @@ def program() -> str:
 
 
 def shapes_of(runs: pd.DataFrame | None) -> dict[str, tuple[str, str]]:
-    """Name -> shape, argument, of all runs of contact and limit, in the order of the runs. A shape on the gap is called by itself."""
+    """Name -> shape, argument, of all runs of contact and limit, in the order of the runs. A shape on the gap
+    is called by itself.
+    """
     if runs is None or runs.empty:
         return OF_NO_RUN
     pairs = zip(runs["shape"], runs["argument"])
-    return {shape if argument == "gap" else f"{shape} on {argument}": (shape, argument) for shape, argument in pairs if isinstance(shape, str)}
+    return {
+        shape if argument == "gap" else f"{shape} on {argument}": (shape, argument)
+        for shape, argument in pairs
+        if isinstance(shape, str)
+    }
 
 
 def plugins_of(runs: pd.DataFrame | None) -> list[str]:
-    """Plugin files of the runs that are there still with the content that the records name; others are said and left out."""
+    """Plugin files of the runs that are there still with the content that the records name; others are said
+    and left out.
+    """
     found: dict[str, str] = {}
     for plugins in runs["plugin_files"] if runs is not None and "plugin_files" in runs else []:
         for file, sha256 in plugins:
             if not Path(file).is_file() or sha256_of(Path(file)) != sha256:
-                print(f"figures: {file}: the plugin of a run is not there with the content that its record names; its shapes are not drawn", file=sys.stderr)
+                print(
+                    f"figures: {file}: the plugin of a run is not there with the content that its record"
+                    " names; its shapes are not drawn",
+                    file=sys.stderr,
+                )
             elif sha256 not in found:
                 found[sha256] = file
     return list(found.values())
 
 
-def ask(queries: list[dict], plugins: list[str]) -> list[dict]:
-    """Answers of `eval`, in order. Raises RuntimeError with the first error."""
-    lines = "".join(json.dumps(q) + "\n" for q in queries)
-    done = subprocess.run([program(), *plugin_words(plugins), "eval", "-"], input=lines, capture_output=True, text=True, check=False)
-    answers = [json.loads(line) for line in done.stdout.splitlines()]
-    errors = [a["error"] for a in answers if "error" in a]
-    if errors or len(answers) != len(queries):
-        raise RuntimeError(f"eval: {errors[0] if errors else done.stderr}")
-    return answers
-
-
 def known_shapes(plugins: list[str]) -> set[str]:
     """Shapes that the program has with these plugins."""
-    done = subprocess.run([program(), *plugin_words(plugins), "list", "shapes"], capture_output=True, text=True, check=False)
+    done = started("list", "shapes", plugins=plugins)
     return {line.split()[0] for line in done.stdout.splitlines() if line.startswith("  ") and line.strip()}
 
 
@@ -72,9 +82,14 @@ def values(u: np.ndarray, shapes: dict[str, tuple[str, str]], plugins: list[str]
     tables = []
     for name, (shape, argument) in shapes.items():
         base = {"shape": shape, "argument": argument}
-        terms = ask([{"kind": "shape", **base, "d": float(v), "d_hat": 1.0} for v in u], plugins)
-        rho = ask([{"kind": "rho", **base, "u": float(v)} for v in u], plugins)
-        columns = {"b": [t["b"] for t in terms], "minus_db": [-t["db"] for t in terms], "d2b": [t["d2b"] for t in terms], "rho": [r["rho"] for r in rho]}
+        terms = evaluated([{"kind": "shape", **base, "d": float(v), "d_hat": 1.0} for v in u], plugins)
+        rho = evaluated([{"kind": "rho", **base, "u": float(v)} for v in u], plugins)
+        columns = {
+            "b": [t["b"] for t in terms],
+            "minus_db": [-t["db"] for t in terms],
+            "d2b": [t["d2b"] for t in terms],
+            "rho": [r["rho"] for r in rho],
+        }
         tables.append(pd.DataFrame({"name": name, **base, "u": u, **columns}))
     return pd.concat(tables, ignore_index=True)
 
@@ -85,7 +100,11 @@ def figure(out: Path, runs: pd.DataFrame | None = None) -> list[Path]:
     known, asked = known_shapes(plugins), shapes_of(runs)
     shapes = {name: pair for name, pair in asked.items() if pair[0] in known}
     for name in asked.keys() - shapes.keys():
-        print(f"figures: the shape {name} of a run is not known to {program()} with its plugins; it is not drawn", file=sys.stderr)
+        print(
+            f"figures: the shape {name} of a run is not known to {program()} with its plugins; it is not"
+            " drawn",
+            file=sys.stderr,
+        )
     u = np.concatenate([np.geomspace(1e-3, 0.05, 25, endpoint=False), np.linspace(0.05, 0.99, 60)])
     table = values(u, shapes, plugins)
     fig, axes = plt.subplots(1, 4, figsize=(style.WIDE_IN, 2.3), layout="constrained")
@@ -93,8 +112,13 @@ def figure(out: Path, runs: pd.DataFrame | None = None) -> list[Path]:
         look = style.look(str(name))
         for axis, (field, _) in zip(axes, PANELS):
             axis.plot(
-                rows["u"], rows[field], color=look.color, linestyle=look.dash, marker=look.marker,
-                markevery=style.marks(len(rows), 6), label=name,
+                rows["u"],
+                rows[field],
+                color=look.color,
+                linestyle=look.dash,
+                marker=look.marker,
+                markevery=style.marks(len(rows), 6),
+                label=name,
             )
     for axis, (_, title) in zip(axes, PANELS):
         axis.set(xlabel=r"$u=d/\hat d$", title=title, yscale="log")

@@ -1,14 +1,14 @@
-"""All figures and the table of a folder of runs: python -m barrierbench_analysis.figures.demo RUNS [OUT]."""
+"""All figures and the table of a folder of runs."""
 
 from __future__ import annotations
 
 import sys
 from pathlib import Path
 
-from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
-from ..load import Records, load
-from ..record_file import RecordError
+from ..errors import tells
+from ..records import Records, load
 from ..table import as_text, summary_table
+from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
 
 MUST_END_OK = ("log", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
 LAYERED = ("demo_drape", "demo_long")  # five layers, each of which has to touch the next
@@ -21,12 +21,20 @@ def broken_promises(records: Records) -> list[str]:
         where = f"{run['group']}: {run['series']}"
         if not str(run["group"]).startswith("demo_") or run["group"] == "demo_article":
             continue
-        if run["formulation"] in MUST_END_OK and run["series"].split()[-1] == run["formulation"] and run["outcome"] != "ok":
+        if (
+            run["formulation"] in MUST_END_OK
+            and run["series"].split()[-1] == run["formulation"]
+            and run["outcome"] != "ok"
+        ):
             lines.append(f"{where} has to end ok with the audit on, and ended {run['outcome']}")
         if run["group"] in LAYERED and run["outcome"] == "ok":
-            layers = sorted(name for pair in run["first_contact"] for name in pair.split("|") if name.startswith("layer"))
+            layers = sorted(
+                name for pair in run["first_contact"] for name in pair.split("|") if name.startswith("layer")
+            )
             touching = {f"layer{k}|layer{k + 1}" for k in range(len(set(layers)) - 1)} | {"layer0|sphere"}
-            missing = sorted(touching - set(run["first_contact"])) if len(set(layers)) >= 5 else ["five layers"]
+            missing = (
+                sorted(touching - set(run["first_contact"])) if len(set(layers)) >= 5 else ["five layers"]
+            )
             lines += [f"{where} has no contact {pair}" for pair in missing]
     return lines
 
@@ -38,37 +46,36 @@ def make_all(runs: Path, out: Path) -> str:
 
 def make_all_of(records: Records, out: Path) -> str:
     """The same of records that are loaded."""
-    paths = [path for group in sorted(records.runs["group"].unique())
-             for module in (condition, matrix_forms, iterations, gaps, kappa_cycle) for path in module.figure(records, group, out)]
+    paths = [
+        path
+        for group in sorted(records.runs["group"].unique())
+        for module in (condition, matrix_forms, iterations, gaps, kappa_cycle)
+        for path in module.figure(records, group, out)
+    ]
     paths += barrier_shapes.figure(out, records.runs)
     table = summary_table(records)
     table.to_csv(out / "table.csv", index=False)
     failed = records.runs[records.runs["outcome"] != "ok"]
     lines = [as_text(table), ""]
-    lines += [f"{r['group']}: {r['series']} ended {r['outcome']}: {r['detail']}" for _, r in failed.iterrows()]
+    lines += [
+        f"{r['group']}: {r['series']} ended {r['outcome']}: {r['detail']}" for _, r in failed.iterrows()
+    ]
     figures = [path for path in paths if path.suffix == ".png"]
     lines += [f"{len(figures)} figures (PNG, PDF, CSV of the plotted numbers, caption TXT) in {out}:"]
     lines += [f"  {path}" for path in figures]
     return "\n".join(lines)
 
 
+@tells("figures")
 def main(arguments: list[str]) -> int:
     if not 1 <= len(arguments) <= 2:
-        print("usage: python -m barrierbench_analysis.figures.demo RUNS [OUT]", file=sys.stderr)
+        print("usage: ./bench figures RUNS [OUT]", file=sys.stderr)
         return 2
     runs = Path(arguments[0])
     out = Path(arguments[1]) if len(arguments) == 2 else runs / "figures"
-    try:
-        records = load(runs)
-        print(make_all_of(records, out))
-        broken = broken_promises(records)
-    except (RecordError, RuntimeError, OSError) as error:
-        print(f"figures: {error}", file=sys.stderr)
-        return 2
+    records = load(runs)
+    print(make_all_of(records, out))
+    broken = broken_promises(records)
     for line in broken:
         print(f"figures: {line}", file=sys.stderr)
     return 1 if broken else 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

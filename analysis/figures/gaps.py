@@ -8,14 +8,19 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from .. import series, style
-from ..load import Records
+from ..records import Records
 
-SHOWN = "{group}: the smallest gap between any two surfaces at the end of each converged time step, in units of d_hat, the gap at which contact begins. Steps without contact have no point."
+SHOWN = (
+    "{group}: the smallest gap between any two surfaces at the end of each converged time step, in units of"
+    " d_hat, the gap at which contact begins. Steps without contact have no point."
+)
 COLUMNS = ["group", "series", "run", "step", "t_s", "gap_min_m", "gap_min_rel"]
 
 
 def _matched_at(runs: pd.DataFrame) -> float | None:
-    """The gap / d_hat at which equal_force makes the forces of the formulations equal, if one rule holds for all that are matched."""
+    """The gap / d_hat at which equal_force makes the forces of the formulations equal, if one rule holds for
+    all that are matched.
+    """
     if "matching_theta" not in runs:
         return None
     thetas = runs.loc[runs["matching_rule"] == "equal_force", "matching_theta"].dropna().unique()

@@ -1,4 +1,6 @@
-"""Work of a run: Newton iterations of each step, their distribution, and PCG iterations on each diagnosed matrix."""
+"""Work of a run: Newton iterations of each step, their distribution, and PCG iterations on each diagnosed
+matrix.
+"""
 
 from __future__ import annotations
 
@@ -9,13 +11,13 @@ import numpy as np
 import pandas as pd
 
 from .. import series, style
-from ..load import Records
-
+from ..records import Records
 
 SHOWN = (
-    "{group}: (a) Newton iterations of every time step; (b) the share of time steps that took at most so many; (c) the share of diagnosed "
-    "Newton matrices on which block-Jacobi preconditioned conjugate gradients (PCG), started from zero on one fixed right-hand side, took at most so many "
-    "iterations to a relative residual of 1e-6."
+    "{group}: (a) Newton iterations of every time step; (b) the share of time steps that took at most so"
+    " many; (c) the share of diagnosed Newton matrices on which block-Jacobi preconditioned conjugate"
+    " gradients (PCG), started from zero on one fixed right-hand side, took at most so many iterations to a"
+    " relative residual of 1e-6."
 )
 COLUMNS = ["group", "what", "series", "at", "count"]
 
@@ -38,12 +40,18 @@ def _draw_run(axes, records: Records, row: pd.Series) -> list[pd.DataFrame]:
         newton = steps["newton_iterations"].to_numpy()
         style.draw(axes[0], steps["t_s"].to_numpy(), newton, row, steps="steps-mid")
         style.draw(axes[1], *_ecdf(newton), row, end_mark=False, steps="steps-post")
-        numbers.append(pd.DataFrame({"what": "newton_per_step", "series": row["series"], "at": steps["t_s"], "count": newton}))
+        numbers.append(
+            pd.DataFrame(
+                {"what": "newton_per_step", "series": row["series"], "at": steps["t_s"], "count": newton}
+            )
+        )
     probes = trace[trace["probe_pcg_iterations"].notna()] if not trace.empty else trace
     if not probes.empty:
         pcg = probes["probe_pcg_iterations"].to_numpy(dtype=float)
         style.draw(axes[2], *_ecdf(pcg), row, end_mark=False, steps="steps-post")
-        numbers.append(pd.DataFrame({"what": "probe_pcg", "series": row["series"], "at": probes["n"], "count": pcg}))
+        numbers.append(
+            pd.DataFrame({"what": "probe_pcg", "series": row["series"], "at": probes["n"], "count": pcg})
+        )
     return numbers
 
 

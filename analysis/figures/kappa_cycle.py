@@ -1,4 +1,6 @@
-"""The step in which a refresh of kappa in every iteration does not settle, beside the runs that get through it."""
+"""The step in which a refresh of kappa in every iteration does not settle, beside the runs that get through
+it.
+"""
 
 from __future__ import annotations
 
@@ -10,15 +12,17 @@ import numpy as np
 import pandas as pd
 
 from .. import series, style
-from ..load import Records, step_spans
+from ..records import Records, step_spans
 from . import swings
 
 # Copies of settled_kappa and unsettled_iterations in core/newton/iteration.cpp.
 SETTLED = 0.01  # a change of kappa below it leaves Newton alone
 UNSETTLED_ITERATIONS = 10  # that many above it in a row are a cycle
 SHOWN = (
-    "{group}, the time step of {time} in which the stiffness kappa of the {whose}, computed anew in every Newton iteration, does not settle: the smallest gap "
-    "that this kappa is computed from ({left}), and the largest relative change of a kappa since the iteration before ({right}). All iterations of the step are drawn."
+    "{group}, the time step of {time} in which the stiffness kappa of the {whose}, computed anew in every"
+    " Newton iteration, does not settle: the smallest gap that this kappa is computed from ({left}), and the"
+    " largest relative change of a kappa since the iteration before ({right}). All iterations of the step are"
+    " drawn."
 )
 OTHER = "Steps of other lengths, in the middle of that time: {names}."
 EDGE = 0.5  # of the width: below it kappa = m/gap^2 with the cubic amplifies an error (docs/design.md)
@@ -26,7 +30,9 @@ EDGE = 0.5  # of the width: below it kappa = m/gap^2 with the cubic amplifies an
 
 @dataclass(frozen=True)
 class Kappa:
-    """One of the two stiffnesses that a policy refreshes: where the trace keeps its change and its gap, and their names."""
+    """One of the two stiffnesses that a policy refreshes: where the trace keeps its change and its gap, and
+    their names.
+    """
 
     whose: str
     change: str
@@ -36,7 +42,12 @@ class Kappa:
 
 KAPPAS = (
     Kappa("contacts", "kappa_change_rel", "gap_min_iterates_rel", r"smallest gap / $\hat d$"),
-    Kappa("strain limit", "limit_kappa_change_rel", "limit_gap_min_rel", "smallest distance to the limit / width"),
+    Kappa(
+        "strain limit",
+        "limit_kappa_change_rel",
+        "limit_gap_min_rel",
+        "smallest distance to the limit / width",
+    ),
 )
 
 
@@ -52,12 +63,18 @@ def _cycling(trace: pd.DataFrame) -> list[tuple[int, Kappa]]:
     last = trace[trace["step"] == trace["step"].max()].tail(UNSETTLED_ITERATIONS)
     if len(last) < UNSETTLED_ITERATIONS:
         return []
-    return [(int(last["step"].iloc[0]), kappa) for kappa in KAPPAS if (_column(last, kappa.change) > SETTLED).all()]
+    return [
+        (int(last["step"].iloc[0]), kappa)
+        for kappa in KAPPAS
+        if (_column(last, kappa.change) > SETTLED).all()
+    ]
 
 
 @dataclass(frozen=True)
 class Cycle:
-    """A kappa that does not settle, and which step of every run is drawn beside it: that of the same simulated time."""
+    """A kappa that does not settle, and which step of every run is drawn beside it: that of the same
+    simulated time.
+    """
 
     kappa: Kappa
     run: str
@@ -68,7 +85,9 @@ class Cycle:
 
 
 def _same_time(records: Records, run: str, step: int, runs: pd.DataFrame) -> dict[str, int]:
-    """Run -> its step in the middle of that step's time; the step of the same number where the record has no times."""
+    """Run -> its step in the middle of that step's time; the step of the same number where the record has no
+    times.
+    """
     spans = step_spans(records, run)
     if step not in spans.index:
         return {other: step for other in runs["run"]}
@@ -76,19 +95,28 @@ def _same_time(records: Records, run: str, step: int, runs: pd.DataFrame) -> dic
     for other in runs["run"]:
         of_other = step_spans(records, other)
         over = of_other[(of_other["start"] <= middle) & (middle < of_other["start"] + of_other["length"])]
-        found |= {other: int(index) for index in over.index[:1]}
+        if len(over) > 0:
+            found[other] = int(over.index[0])
     return found
 
 
 def _time(records: Records, run: str, step: int) -> str:
     spans = step_spans(records, run)
-    return f"{spans['start'][step]:.3g} to {spans['start'][step] + spans['length'][step]:.3g} s" if step in spans.index else f"number {step}"
+    return (
+        f"{spans['start'][step]:.3g} to {spans['start'][step] + spans['length'][step]:.3g} s"
+        if step in spans.index
+        else f"number {step}"
+    )
 
 
-def _found(records: Records, runs: pd.DataFrame, traces: dict[str, pd.DataFrame]) -> tuple[list[Cycle], list[str]]:
+def _found(
+    records: Records, runs: pd.DataFrame, traces: dict[str, pd.DataFrame]
+) -> tuple[list[Cycle], list[str]]:
     """The first step of every kappa that does not settle, and the series in which one does not."""
     stopped = [row["run"] for _, row in runs.iterrows() if row["outcome"] != "ok"]
-    found = [(step, run, kappa) for run in stopped for step, kappa in _cycling(traces.get(run, pd.DataFrame()))]
+    found = [
+        (step, run, kappa) for run in stopped for step, kappa in _cycling(traces.get(run, pd.DataFrame()))
+    ]
     cycles = []
     for kappa in KAPPAS:
         of_kappa = [(step, run) for step, run, other in found if other == kappa]
@@ -99,8 +127,12 @@ def _found(records: Records, runs: pd.DataFrame, traces: dict[str, pd.DataFrame]
     return cycles, [row["series"] for _, row in runs.iterrows() if row["run"] in cycling]
 
 
-def _draw(axes: np.ndarray, cycle: Cycle, runs: pd.DataFrame, traces: dict[str, pd.DataFrame]) -> tuple[pd.DataFrame, list[tuple[str, swings.Band]]]:
-    """One row of panels: the gap that this kappa is computed from, and how much the kappa changes. Returns the numbers, and what swings."""
+def _draw(
+    axes: np.ndarray, cycle: Cycle, runs: pd.DataFrame, traces: dict[str, pd.DataFrame]
+) -> tuple[pd.DataFrame, list[tuple[str, swings.Band]]]:
+    """One row of panels: the gap that this kappa is computed from, and how much the kappa changes. Returns
+    the numbers, and what swings.
+    """
     numbers, bands, kappa = [], [], cycle.kappa
     for _, row in runs[runs["run"].isin(cycle.steps)].iterrows():
         part, step = traces[row["run"]], cycle.steps[row["run"]]
@@ -108,9 +140,22 @@ def _draw(axes: np.ndarray, cycle: Cycle, runs: pd.DataFrame, traces: dict[str, 
         gap, change = (_column(part, key).to_numpy(dtype=float) for key in (kappa.gap, kappa.change))
         iteration = part["iteration"].to_numpy()
         bands += [(f"gap, {kappa.whose}", band) for band in swings.draw(axes[0], 1 + iteration, gap, row)]
-        bands += [(f"change, {kappa.whose}", band) for band in swings.draw(axes[1], 1 + iteration[change > 0], change[change > 0], row)]
-        numbers.append(pd.DataFrame({"series": row["series"], "kappa": kappa.whose, "step": step, "iteration": iteration,
-                                     "gap_min_iterates_rel": gap, "kappa_change_rel": change}))
+        bands += [
+            (f"change, {kappa.whose}", band)
+            for band in swings.draw(axes[1], 1 + iteration[change > 0], change[change > 0], row)
+        ]
+        numbers.append(
+            pd.DataFrame(
+                {
+                    "series": row["series"],
+                    "kappa": kappa.whose,
+                    "step": step,
+                    "iteration": iteration,
+                    "gap_min_iterates_rel": gap,
+                    "kappa_change_rel": change,
+                }
+            )
+        )
     for axis in axes:
         if any(len(line.get_ydata()) for line in axis.lines):
             axis.set_yscale("log")
@@ -119,7 +164,12 @@ def _draw(axes: np.ndarray, cycle: Cycle, runs: pd.DataFrame, traces: dict[str, 
         axis.set(xscale="log", xlabel="Newton iteration of the step, counted from 1")
         style.keep_span(axis)
     ends = [line.get_ydata()[-1] for line in axes[0].lines if len(line.get_ydata())]
-    style.reference_line(axes[0], EDGE, r"half of it: below, $\kappa = m/$gap$^2$ amplifies errors", below=max(ends, default=0) > EDGE)
+    style.reference_line(
+        axes[0],
+        EDGE,
+        r"half of it: below, $\kappa = m/$gap$^2$ amplifies errors",
+        below=max(ends, default=0) > EDGE,
+    )
     style.reference_line(axes[1], SETTLED, "1%: settled below", ":")
     axes[0].set_ylabel(kappa.gap_label)
     axes[1].set_ylabel(rf"relative change of a $\kappa$, {kappa.whose}")
@@ -139,28 +189,71 @@ def _other_lengths(records: Records, cycle: Cycle, some: pd.DataFrame) -> list[s
     return found
 
 
-def _caption(records: Records, group: str, cycles: list[Cycle], some: pd.DataFrame, bands: list[tuple[str, swings.Band]]) -> str:
+def _caption(
+    records: Records,
+    group: str,
+    cycles: list[Cycle],
+    some: pd.DataFrame,
+    bands: list[tuple[str, swings.Band]],
+) -> str:
     letters = "abcd"
-    said = [SHOWN.format(group=group, time=_time(records, c.run, c.step()), whose=c.kappa.whose, left=letters[2 * k], right=letters[2 * k + 1])
-            for k, c in enumerate(cycles)]
+    said = [
+        SHOWN.format(
+            group=group,
+            time=_time(records, c.run, c.step()),
+            whose=c.kappa.whose,
+            left=letters[2 * k],
+            right=letters[2 * k + 1],
+        )
+        for k, c in enumerate(cycles)
+    ]
     others = list(dict.fromkeys(name for cycle in cycles for name in _other_lengths(records, cycle, some)))
-    return " ".join(filter(None, [*said, swings.sentence(bands, "iteration {:g}"), OTHER.format(names=", ".join(others)) if others else ""]))
+    return " ".join(
+        filter(
+            None,
+            [
+                *said,
+                swings.sentence(bands, "iteration {:g}"),
+                OTHER.format(names=", ".join(others)) if others else "",
+            ],
+        )
+    )
 
 
 def figure(records: Records, group: str, out: Path) -> list[Path]:
-    """One row of panels for each kappa, of the contacts or of the strain limit, that does not settle; nothing where both do."""
+    """One row of panels for each kappa, of the contacts or of the strain limit, that does not settle; nothing
+    where both do.
+    """
     runs = style.runs_of(records.runs, group)
-    traces = {row["run"]: records.trace[records.trace["run"] == row["run"]] for _, row in runs.iterrows()} if not records.trace.empty else {}
+    traces = (
+        {row["run"]: records.trace[records.trace["run"] == row["run"]] for _, row in runs.iterrows()}
+        if not records.trace.empty
+        else {}
+    )
     cycles, cycling = _found(records, runs, traces)
     paths, name = [], f"kappa_cycle_{group}"
     for part, some in series.parts_of_runs(runs, name, cycling) if cycles else []:
-        fig, axes = plt.subplots(len(cycles), 2, figsize=(style.WIDE_IN, 2.6 * len(cycles) + 0.8), layout="constrained", squeeze=False)
+        fig, axes = plt.subplots(
+            len(cycles),
+            2,
+            figsize=(style.WIDE_IN, 2.6 * len(cycles) + 0.8),
+            layout="constrained",
+            squeeze=False,
+        )
         drawn = [_draw(of_kappa, cycle, some, traces) for of_kappa, cycle in zip(axes, cycles)]
         style.letter_panels(axes.flatten())
         whose = " and ".join(cycle.kappa.whose for cycle in cycles)
-        fig.suptitle(f"{group}: kappa of the {whose}, refreshed in every iteration, does not settle", fontsize=8)
+        fig.suptitle(
+            f"{group}: kappa of the {whose}, refreshed in every iteration, does not settle", fontsize=8
+        )
         style.legend_below(fig, axes[0, 0], runs)
         said = _caption(records, group, cycles, some, [band for _, bands in drawn for band in bands])
         table = pd.concat([numbers for numbers, _ in drawn]).assign(group=group)
-        paths += style.save(fig, out / f"{name}{part.suffix}", table, " ".join(filter(None, [said, part.says, style.marker_sentence(runs)])), some)
+        paths += style.save(
+            fig,
+            out / f"{name}{part.suffix}",
+            table,
+            " ".join(filter(None, [said, part.says, style.marker_sentence(runs)])),
+            some,
+        )
     return paths

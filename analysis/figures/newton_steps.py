@@ -1,17 +1,19 @@
-"""Residual curves of single time steps, one line a choice of Hessian, from the file that `./bench steps --out` writes."""
+"""Residual curves of single time steps, one line a choice of Hessian, from the file that `./bench steps
+--out` writes.
+"""
 
 from __future__ import annotations
 
 import argparse
 import json
 import math
-import sys
 from pathlib import Path
 
 import matplotlib.pyplot as plt
 import pandas as pd
 
 from .. import style
+from ..errors import UserError, tells
 
 SCHEMA = "barrierbench.steps/1"
 # colour and dash of each choice; black is the default of line_search
@@ -23,14 +25,21 @@ LOOKS = {
     "blend": ("#000000", "-"),
 }
 SHOWN = (
-    "{scene}, {formulation}: largest entry of the Newton direction over the iterations of single time steps, each step from one state with every "
-    "choice of Hessian for all terms; both axes logarithmic. Dashed line: the tolerance; a step ends when its estimated error, not |dx|, is below. A cross: "
-    "not converged."
+    "{scene}, {formulation}: largest entry of the Newton direction over the iterations of single time steps,"
+    " each step from one state with every choice of Hessian for all terms; both axes logarithmic. Dashed"
+    " line: the tolerance; a step ends when its estimated error, not |dx|, is below. A cross: not converged."
 )
 JUMP = 10.0  # times |dx| of the iteration before: a jump
-JUMPS = ("Rings: |dx| at least {jump:g} times that of the iteration before: {list}. {switch}The file does not name the matrix of an iteration; a trace does (hessian_t).")
-SWITCH = ("exact_or_clamped tries the exact matrix, and takes the clamped one for two iterations whenever that is not positive definite: where it "
-          "jumps with |dx| above the tolerance, the exact matrix has become positive definite again, but barely, so that its direction is long and the line search takes a part of it. ")
+JUMPS = (
+    "Rings: |dx| at least {jump:g} times that of the iteration before: {list}. {switch}The file does not name"
+    " the matrix of an iteration; a trace does (hessian_t)."
+)
+SWITCH = (
+    "exact_or_clamped tries the exact matrix, and takes the clamped one for two iterations whenever that is"
+    " not positive definite: where it jumps with |dx| above the tolerance, the exact matrix has become"
+    " positive definite again, but barely, so that its direction is long and the line search takes a part of"
+    " it. "
+)
 RING = "ring"  # gid
 AFTER_SADDLE = ", after a direction below the tolerance: the step goes on from a saddle"
 
@@ -45,28 +54,42 @@ TRIAL = {
     "hessian": (lambda value: value in LOOKS, f"one of {', '.join(LOOKS)}"),
     "status": (lambda value: isinstance(value, str), "a word"),
     "tolerance_m": (_is_number, "a finite number"),
-    "dx_inf_m": (lambda value: isinstance(value, list) and all(_is_number(dx) for dx in value), "a list of finite numbers"),
+    "dx_inf_m": (
+        lambda value: isinstance(value, list) and all(_is_number(dx) for dx in value),
+        "a list of finite numbers",
+    ),
 }
 
 
 def read_steps(path: Path) -> dict:
-    """The file as it is. Raises ValueError with place, value and what is allowed when it is none of `./bench steps --out`."""
+    """The file as it is. Raises UserError with place, value and what is allowed when it is none of `./bench
+    steps --out`.
+    """
     try:
         data = json.loads(path.read_text())
     except ValueError as error:  # not JSON, not UTF-8
-        raise ValueError(f"{path}: not JSON ({error}); a file of ./bench steps --out is needed") from error
+        raise UserError(f"{path}: not JSON ({error}); a file of ./bench steps --out is needed") from error
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-        raise ValueError(f"{path}: schema is {data.get('schema') if isinstance(data, dict) else None!r}; allowed: {SCHEMA!r}")
+        raise UserError(
+            f"{path}: schema is {data.get('schema') if isinstance(data, dict) else None!r}; allowed:"
+            f" {SCHEMA!r}"
+        )
     trials, config = data.get("trials"), data.get("config")
     if not isinstance(trials, list) or not trials:
-        raise ValueError(f"{path}#/trials: no trials; allowed: a list of at least one")
-    if not isinstance(config, dict) or not all(isinstance(config.get(name), dict) for name in ("scene", "formulation")):
-        raise ValueError(f"{path}#/config: found {json.dumps(config)[:60]}; allowed: the resolved config of the run")
+        raise UserError(f"{path}#/trials: no trials; allowed: a list of at least one")
+    if not isinstance(config, dict) or not all(
+        isinstance(config.get(name), dict) for name in ("scene", "formulation")
+    ):
+        raise UserError(
+            f"{path}#/config: found {json.dumps(config)[:60]}; allowed: the resolved config of the run"
+        )
     for k, trial in enumerate(trials):
         for name, (is_right, allowed) in TRIAL.items():
             found = trial.get(name) if isinstance(trial, dict) else None
             if not is_right(found):
-                raise ValueError(f"{path}#/trials/{k}/{name}: found {json.dumps(found)[:60]}; allowed: {allowed}")
+                raise UserError(
+                    f"{path}#/trials/{k}/{name}: found {json.dumps(found)[:60]}; allowed: {allowed}"
+                )
     return data
 
 
@@ -75,8 +98,16 @@ def numbers(data: dict) -> pd.DataFrame:
     rows = []
     for trial in data["trials"]:
         for k, dx in enumerate(trial["dx_inf_m"]):
-            rows.append({"step": trial["step"], "hessian": trial["hessian"], "iteration": k + 1, "dx_inf_m": dx, "status": trial["status"],
-                         "tolerance_m": trial["tolerance_m"]})
+            rows.append(
+                {
+                    "step": trial["step"],
+                    "hessian": trial["hessian"],
+                    "iteration": k + 1,
+                    "dx_inf_m": dx,
+                    "status": trial["status"],
+                    "tolerance_m": trial["tolerance_m"],
+                }
+            )
     return pd.DataFrame(rows)
 
 
@@ -93,7 +124,10 @@ def jump_sentence(found: pd.DataFrame, data: dict) -> str:
     failed = {(trial["step"], trial["hessian"]): trial.get("hessian_fallbacks") for trial in data["trials"]}
     words = []
     for row in found.itertuples():
-        text = f"{row.hessian}, step {row.step}, iteration {row.iteration} ({row.before_m:.1e} to {row.dx_inf_m:.1e} m)"
+        text = (
+            f"{row.hessian}, step {row.step}, iteration {row.iteration} ({row.before_m:.1e} to"
+            f" {row.dx_inf_m:.1e} m)"
+        )
         if row.before_m < row.tolerance_m:
             text += AFTER_SADDLE
         elif row.hessian == "exact_or_clamped" and (attempts := failed[row.step, row.hessian]):
@@ -119,7 +153,9 @@ def figure(data: dict, stem: Path) -> list[Path]:
     table = numbers(data)
     found = jumps(table)
     steps = sorted(table["step"].unique())
-    fig, axes = plt.subplots(1, len(steps), figsize=(style.WIDE_IN, 2.9), sharey=True, squeeze=False, layout="constrained")
+    fig, axes = plt.subplots(
+        1, len(steps), figsize=(style.WIDE_IN, 2.9), sharey=True, squeeze=False, layout="constrained"
+    )
     for axis, step in zip(axes[0], steps):
         for hessian, part in table[table["step"] == step].groupby("hessian", sort=False):
             color, dash = LOOKS[hessian]
@@ -127,7 +163,16 @@ def figure(data: dict, stem: Path) -> list[Path]:
             if part["status"].iloc[0] != "converged":
                 axis.plot(part["iteration"].iloc[-1:], part["dx_inf_m"].iloc[-1:], "x", color=color)
             ring = found[(found["step"] == step) & (found["hessian"] == hessian)]
-            axis.plot(ring["iteration"], ring["dx_inf_m"], linestyle="none", marker="o", markersize=7, markerfacecolor="none", color=color, gid=RING)
+            axis.plot(
+                ring["iteration"],
+                ring["dx_inf_m"],
+                linestyle="none",
+                marker="o",
+                markersize=7,
+                markerfacecolor="none",
+                color=color,
+                gid=RING,
+            )
         axis.set(xscale="log", yscale="log", xlabel=f"Newton iteration of step {step}, counted from 1")
     for axis in axes[0]:  # the axes share y: its limits are set when all lines are there
         style.reference_line(axis, table["tolerance_m"].iloc[0], "tolerance", "--")
@@ -137,23 +182,21 @@ def figure(data: dict, stem: Path) -> list[Path]:
     config = data["config"]
     formulation = config["formulation"].get("name") or config["formulation"].get("shape", "unknown")
     shown = SHOWN.format(scene=config["scene"].get("name", "bodies"), formulation=formulation)
-    return style.save(fig, stem, table.assign(jump=table.index.isin(found.index)), " ".join(filter(None, [shown, same_sentence(table), jump_sentence(found, data)])))
+    return style.save(
+        fig,
+        stem,
+        table.assign(jump=table.index.isin(found.index)),
+        " ".join(filter(None, [shown, same_sentence(table), jump_sentence(found, data)])),
+    )
 
 
-def main(words: list[str] | None = None) -> int:
+@tells("figures")
+def main(words: list[str]) -> int:
     parser = argparse.ArgumentParser(prog="bench figures", description=__doc__)
     parser.add_argument("file", type=Path)
     parser.add_argument("out", type=Path, nargs="?", help="folder of the figure; default: that of the file")
     given = parser.parse_args(words)
-    try:
-        paths = figure(read_steps(given.file), (given.out or given.file.parent) / given.file.stem)
-    except (OSError, ValueError) as error:
-        print(f"bench figures: {error}", file=sys.stderr)
-        return 2
+    paths = figure(read_steps(given.file), (given.out or given.file.parent) / given.file.stem)
     for path in paths:
         print(path)
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main())

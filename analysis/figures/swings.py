@@ -15,11 +15,15 @@ BAND = "band"  # gid of its edges
 
 
 def swings_from(values: np.ndarray) -> int | None:
-    """From which index on, to the end and for at least WINDOW values, at least half of every WINDOW values turn back; None where it does not."""
+    """From which index on, to the end and for at least WINDOW values, at least half of every WINDOW values
+    turn back; None where it does not.
+    """
     if len(values) < WINDOW + 2:
         return None
     moves = np.diff(values)
-    turns = (moves[1:] * moves[:-1] < 0) & (np.minimum(abs(moves[1:]), abs(moves[:-1])) > LEAST_SWING * abs(values[1:-1]))
+    turns = (moves[1:] * moves[:-1] < 0) & (
+        np.minimum(abs(moves[1:]), abs(moves[:-1])) > LEAST_SWING * abs(values[1:-1])
+    )
     share = np.convolve(turns, np.ones(WINDOW) / WINDOW, mode="valid")
     calm = np.flatnonzero(share < 0.5)
     start = int(calm[-1]) + 1 if len(calm) else 0
@@ -42,14 +46,18 @@ class Band:
     high: float
 
 
-def draw(axis, x: np.ndarray, y: np.ndarray, row: pd.Series, end_mark: bool = False, since: int = 0) -> list[Band]:
-    """The run's line, as a filled band from where it swings, `since` at the earliest. Returns the band, or nothing."""
+def draw(
+    axis, x: np.ndarray, y: np.ndarray, row: pd.Series, end_mark: bool = False, since: int = 0
+) -> list[Band]:
+    """The run's line, as a filled band from where it swings, `since` at the earliest. Returns the band, or
+    nothing.
+    """
     found = swings_from(y[since:])
     if found is None:
         style.draw(axis, x, y, row, end_mark=end_mark)
         return []
     start = since + found
-    style.draw(axis, x[:start + 1], y[:start + 1], row, end_mark=False)
+    style.draw(axis, x[: start + 1], y[: start + 1], row, end_mark=False)
     low, high = band(y[start:])
     color = style.look(row["formulation"], int(row.get("variant", 0))).color
     axis.fill_between(x[start:], low, high, color=color, alpha=0.25, linewidth=0)
@@ -61,6 +69,16 @@ def draw(axis, x: np.ndarray, y: np.ndarray, row: pd.Series, end_mark: bool = Fa
 
 
 def sentence(bands: list[tuple[str, Band]], start: str) -> str:
-    """For a caption; bands: what is drawn, and its band; start: where a band begins, as "iteration {:g}". Empty without bands."""
-    words = [f"{what}, {b.series} from {start.format(b.start)} on, {b.low:.2g} to {b.high:.2g} at the end" for what, b in bands]
-    return f"Filled, in place of a line: the least to the largest of {WINDOW} iterations, once at least half of them go back ({'; '.join(words)})." if words else ""
+    """For a caption; bands: what is drawn, and its band; start: where a band begins, as "iteration {:g}".
+    Empty without bands.
+    """
+    words = [
+        f"{what}, {b.series} from {start.format(b.start)} on, {b.low:.2g} to {b.high:.2g} at the end"
+        for what, b in bands
+    ]
+    return (
+        f"Filled, in place of a line: the least to the largest of {WINDOW} iterations, once at least half of"
+        f" them go back ({'; '.join(words)})."
+        if words
+        else ""
+    )

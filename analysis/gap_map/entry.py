@@ -1,7 +1,8 @@
-"""Runs what is missing of a gap map: every shape in every scene, resolution and limit mode at targets from 0.5 to 0.001 d_hat, and what it took against
-the gap that it reached. Writes results/gap_map.json (the numbers used), results/GAP_MAP.md (made of it), docs/gap_map.png and its company.
-The whole takes many hours of one core: --minutes stops it between two sweeps, rows that gap_map.json keeps are not run again, and the page says what is
-not run yet.
+"""Runs what is missing of a gap map: every shape in every scene, resolution and limit mode at targets from
+0.5 to 0.001 d_hat, and what it took against the gap that it reached. Writes results/gap_map.json (the numbers
+used), results/GAP_MAP.md (made of it), docs/gap_map.png and its company. The whole takes many hours of one
+core: --minutes stops it between two sweeps, rows that gap_map.json keeps are not run again, and the page says
+what is not run yet.
 
 Exit codes: 0 written, 2 bad input, or nothing to write.
 """
@@ -13,15 +14,15 @@ import shutil
 import sys
 from pathlib import Path
 
-from ..matching.formulations import ROOT, MatchError
-from ..record_file import RecordError
+from ..errors import UserError, tells
+from ..matching.formulations import ROOT
 from ..whole_file import write_whole
 from . import figure, plan, report
-from .kept import about, digests, kept_rows, read_for, source_of
 from .judge import counts
+from .kept import about, digests, kept_rows, read_for, source_of
 from .rows import CANNOT, NOT_RUN, add_rho, cannot_reach, records_in, row
 from .runs import folder_of, run_missing
-from .spec import LIMITS, PARTS, Cell, GapMapError, Spec, cells, limit_settings, part, read_spec
+from .spec import LIMITS, PARTS, Cell, Spec, cells, limit_settings, part, read_spec
 from .table import Map, read, write
 
 DEFAULT = ROOT / "configs" / "gap_map" / "default.json"
@@ -29,7 +30,9 @@ RUNS = ROOT / "results" / "runs" / "gap_map"
 
 
 def _limit_of(limit: dict) -> tuple:
-    """Whether a resolved config has a strain limit, its shape, argument, policy and scale; whether alone where it has none."""
+    """Whether a resolved config has a strain limit, its shape, argument, policy and scale; whether alone
+    where it has none.
+    """
     if not limit.get("enabled"):
         return (False,)
     policy = limit.get("stiffness_policy") or {}
@@ -39,23 +42,40 @@ def _limit_of(limit: dict) -> tuple:
 def _limit_asked(spec: Spec, cell: Cell) -> tuple:
     """The same of what a cell asks for."""
     asked = limit_settings(cell.limit, *spec.shapes[cell.shape], cell.theta)
-    return _limit_of({"enabled": cell.limit != "off", **{key.rpartition("/")[2]: value for key, value in asked.items()}})
+    return _limit_of(
+        {"enabled": cell.limit != "off", **{key.rpartition("/")[2]: value for key, value in asked.items()}}
+    )
 
 
 def check_cell(spec: Spec, cell: Cell, record: dict, folder: Path) -> None:
-    """Errors: GapMapError where a record's settings are not those of its cell."""
+    """Errors: UserError where a record's settings are not those of its cell."""
     config = record["config"]
-    found = (config["formulation"]["shape"], config["formulation"]["argument"], record["matching"]["theta"], *_limit_of(config.get("strain_limit") or {}))
+    found = (
+        config["formulation"]["shape"],
+        config["formulation"]["argument"],
+        record["matching"]["theta"],
+        *_limit_of(config.get("strain_limit") or {}),
+    )
     asked = (*spec.shapes[cell.shape], cell.theta, *_limit_asked(spec, cell))
     size = next(s for s in spec.scenes if s.label == cell.scene).unknowns[cell.resolution]
     if record["scene"]["free_dofs"] != size:
-        raise GapMapError(f"{spec.path}#/scenes/{cell.scene}/resolutions/{cell.resolution}/unknowns: found {size}; its runs have {record['scene']['free_dofs']}")
+        raise UserError(
+            f"{spec.path}#/scenes/{cell.scene}/resolutions/{cell.resolution}/unknowns: found {size}; its runs"
+            f" have {record['scene']['free_dofs']}"
+        )
     if found != asked:
-        raise GapMapError(f"{folder}/run.json: shape, argument, theta, limit {found}; {asked} is what {cell.label!r} asks for: remove this folder")
+        raise UserError(
+            f"{folder}/run.json: shape, argument, theta, limit {found}; {asked} is what {cell.label!r} asks"
+            " for: remove this folder"
+        )
 
 
-def collect(spec: Spec, beyond: set[tuple[str, float]], runs: Path, kept: dict[tuple, tuple[dict, dict]]) -> tuple[list[dict], list[dict]]:
-    """Rows in the order of the spec, and their sources: from its record, else as an earlier call kept it. A cell with neither is named as not run."""
+def collect(
+    spec: Spec, beyond: set[tuple[str, float]], runs: Path, kept: dict[tuple, tuple[dict, dict]]
+) -> tuple[list[dict], list[dict]]:
+    """Rows in the order of the spec, and their sources: from its record, else as an earlier call kept it. A
+    cell with neither is named as not run.
+    """
     folders = digests(spec)
     found = records_in(folder_of(runs, place, folders) for place in folders)
     rows, sources = [], []
@@ -88,20 +108,77 @@ def write_page(found: Map, results: Path, docs: Path, figures: Path) -> None:
     write_whole(results / "GAP_MAP.md", report.markdown(found))
 
 
+def what_arguments(parser: argparse.ArgumentParser) -> None:
+    """Which runs are made: all that are missing, a part of them, none."""
+    for name, text in PARTS.items():
+        parser.add_argument(
+            f"--{name}",
+            dest="part",
+            action="store_const",
+            const=name,
+            help=f"run no more than the part of the spec under `{name}`: {text}",
+        )
+    parser.add_argument(
+        "--minutes",
+        type=float,
+        metavar="M",
+        help="begin no further sweep after so many minutes; what is left is said",
+    )
+    parser.add_argument(
+        "--anew",
+        action="store_true",
+        help=(
+            "run again what gap_map.json keeps from other machines or sessions; what was not run again by the"
+            " end stays"
+        ),
+    )
+    parser.add_argument(
+        "--plan",
+        action="store_true",
+        help=(
+            "say what there is to run and how long it would take, by the seconds of runs that are there; run"
+            " nothing"
+        ),
+    )
+    parser.add_argument(
+        "--no-run",
+        action="store_true",
+        help="run nothing: judge the records that are there, or the numbers in gap_map.json",
+    )
+
+
 def arguments(argv: list[str]) -> argparse.Namespace:
     modes = "\n".join(f"  {mode:8} {text}" for mode, text in LIMITS.items())
-    parser = argparse.ArgumentParser(prog="bench gap-map", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog=f"limit modes:\n{modes}\nexamples: ./bench gap-map --quick\n          ./bench gap-map --plan")
-    parser.add_argument("spec", nargs="?", type=Path, default=DEFAULT, help="a gap map as data (default: configs/gap_map/default.json)")
-    for name, text in PARTS.items():
-        parser.add_argument(f"--{name}", dest="part", action="store_const", const=name, help=f"run no more than the part of the spec under `{name}`: {text}")
-    parser.add_argument("--minutes", type=float, metavar="M", help="begin no further sweep after so many minutes; what is left is said")
-    parser.add_argument("--anew", action="store_true", help="run again what gap_map.json keeps from other machines or sessions; what was not run again by the end stays")
-    parser.add_argument("--plan", action="store_true", help="say what there is to run and how long it would take, by the seconds of runs that are there; run nothing")
-    parser.add_argument("--no-run", action="store_true", help="run nothing: judge the records that are there, or the numbers in gap_map.json")
-    parser.add_argument("--jobs", type=int, default=1, metavar="N", help="sweeps at a time, each of one thread (default 1)")
-    parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the records (default: results/runs/gap_map)")
-    parser.add_argument("--results", type=Path, metavar="DIR", help="folder of GAP_MAP.md, gap_map.json and figures (default: results/ and docs/)")
+    parser = argparse.ArgumentParser(
+        prog="bench gap-map",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=f"limit modes:\n{modes}\nexamples: ./bench gap-map --quick\n          ./bench gap-map --plan",
+    )
+    parser.add_argument(
+        "spec",
+        nargs="?",
+        type=Path,
+        default=DEFAULT,
+        help="a gap map as data (default: configs/gap_map/default.json)",
+    )
+    what_arguments(parser)
+    parser.add_argument(
+        "--jobs", type=int, default=1, metavar="N", help="sweeps at a time, each of one thread (default 1)"
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        default=RUNS,
+        metavar="DIR",
+        help="folder of the records (default: results/runs/gap_map)",
+    )
+    parser.add_argument(
+        "--results",
+        type=Path,
+        metavar="DIR",
+        help="folder of GAP_MAP.md, gap_map.json and figures (default: results/ and docs/)",
+    )
     args = parser.parse_args(argv)
     if args.jobs < 1:
         parser.error(f"--jobs: found {args.jobs}; a number from 1 on is needed")
@@ -112,23 +189,45 @@ def arguments(argv: list[str]) -> argparse.Namespace:
 
 def show_plan(spec: Spec, rows: list[dict], beyond: set[tuple[str, float]]) -> int:
     sizes = {(s.label, r): n for s in spec.scenes for r, n in s.unknowns.items()}
-    print("\n".join(plan.lines(plan.estimate([c for c in cells(spec) if (c.shape, c.theta) not in beyond], rows, sizes))))
+    print(
+        "\n".join(
+            plan.lines(
+                plan.estimate([c for c in cells(spec) if (c.shape, c.theta) not in beyond], rows, sizes)
+            )
+        )
+    )
     return 0
 
 
 def check_store(kept: Path, spec: Spec) -> None:
-    """Errors: GapMapError where the file that would be written has another map: it keeps what no other machine may have."""
+    """Errors: UserError where the file that would be written has another map: it keeps what no other machine
+    may have.
+    """
     if kept.is_file() and (of := read(kept).about.get("name", "default")) != spec.name:
-        raise GapMapError(f"{kept}: found the map {of!r}; {spec.path} is the map {spec.name!r}: give it a folder of its own with --results")
+        raise UserError(
+            f"{kept}: found the map {of!r}; {spec.path} is the map {spec.name!r}: give it a folder of its own"
+            " with --results"
+        )
 
 
 def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
-    """Runs what may be run and has no row, and writes gap_map.json. Errors: GapMapError, MatchError, RecordError."""
+    """Runs what may be run and has no row, and writes gap_map.json. Errors: UserError, RecordError."""
     beyond, before = cannot_reach(spec), kept_rows(kept, spec)
     check_store(kept, spec)
     if not args.no_run:
         asked = part(spec, args.part) if args.part else spec
-        run_missing(spec, [c for c in cells(asked) if (c.shape, c.theta) not in beyond and (args.anew or c.key not in before)], args.runs, digests(spec), args.jobs, args.minutes)
+        run_missing(
+            spec,
+            [
+                c
+                for c in cells(asked)
+                if (c.shape, c.theta) not in beyond and (args.anew or c.key not in before)
+            ],
+            args.runs,
+            digests(spec),
+            args.jobs,
+            args.minutes,
+        )
     rows, sources = collect(spec, beyond, args.runs, before)
     add_rho(spec, rows)
     command = "./bench gap-map" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")
@@ -139,19 +238,23 @@ def make_map(args: argparse.Namespace, spec: Spec, kept: Path) -> Map:
     return found
 
 
+@tells("gap-map")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     results = args.results or ROOT / "results"
     kept = results / "gap_map.json"
-    try:
-        spec = read_spec(args.spec)
-        if args.plan:
-            beyond = cannot_reach(spec)
-            return show_plan(spec, collect(spec, beyond, args.runs, kept_rows(kept, spec))[0], beyond)
-        alone = args.no_run and kept.is_file() and not args.runs.is_dir()  # the page from the kept numbers, without the program
-        write_page(read_for(kept, spec) if alone else make_map(args, spec, kept), results, ROOT / "docs" if args.results is None else results, args.runs / "figures")
-    except (GapMapError, MatchError, RecordError) as error:
-        print(f"bench gap-map: {error}", file=sys.stderr)
-        return 2
+    spec = read_spec(args.spec)
+    if args.plan:
+        beyond = cannot_reach(spec)
+        return show_plan(spec, collect(spec, beyond, args.runs, kept_rows(kept, spec))[0], beyond)
+    alone = (
+        args.no_run and kept.is_file() and not args.runs.is_dir()
+    )  # the page from the kept numbers, without the program
+    write_page(
+        read_for(kept, spec) if alone else make_map(args, spec, kept),
+        results,
+        ROOT / "docs" if args.results is None else results,
+        args.runs / "figures",
+    )
     print(results / "GAP_MAP.md")
     return 0

@@ -1,4 +1,6 @@
-"""The figures of a gap map: cost against reached gap, by limit mode, and the area law against what was measured."""
+"""The figures of a gap map: cost against reached gap, by limit mode, and the area law against what was
+measured.
+"""
 
 from __future__ import annotations
 
@@ -10,33 +12,60 @@ import numpy as np
 import pandas as pd
 
 from .. import style
+from ..program import evaluated
 from ..ticks import log_ticks
 from .judge import FAR, MADE, Pair, counts, extent, pairs, scatter, steps
-from .rows import NOT_RUN, ask
+from .rows import NOT_RUN
 from .spec import LIMITS, REFERENCE
 from .table import Map
 
-METRICS = (("cond_p95", "cond, raw"), ("bj_p95", "cond, block Jacobi"), ("pcg", "PCG iterations"), ("newton", "Newton iterations"))
+METRICS = (
+    ("cond_p95", "cond, raw"),
+    ("bj_p95", "cond, block Jacobi"),
+    ("pcg", "PCG iterations"),
+    ("newton", "Newton iterations"),
+)
 TITLES = {"on": "limit on", "contact": "limit the same in every run", "off": "no strain limit"}
-SHOWN = ("What a run takes against the gap that its contacts reach: the load-weighted median of d/d_hat at step ends, deeper to the right. A marker is a target theta ({gaps}), geometric mean over {n} scenes "
-         "({scenes}), their resolutions averaged, of those whose whole path was run; thin lines: each scene. Markers of the same number along two lines carry the same loads. Hollow: a run of some scene or resolution "
-         "reached no gap, and the mean is of the others. A line ends at the gap of its last target: nothing was reached to the right of it. All numbers are over those of the log at its first target in the same place. Dotted, in the first row, where "
-         "the limit does not follow theta: the area law, C rho(u) but not below 1, with one C in a panel, from the deepest point of the log. cond: 95th percentile over iterations in contact; PCG: median of block-Jacobi PCG to 1e-6 on one right-hand side. {modes}")
-LAW = ("The area law against what was measured. A point is a run beside that of the log in the same scene, resolution, limit mode and theta, so under the same loads. Up: the ratio of cond at step ends (median "
-       "over steps). (a) Across: the ratio of rho at the median gaps that both reached. Filled: contact makes the largest eigenvalue in both (cond at least {made:g} times that without contact). (b) "
-       "Across: the same, but not below the ratio that is left without contact. Filled: contact makes the log's. Lines: equal, and a factor {far:g} off. {sentence}")
+SHOWN = (
+    "What a run takes against the gap that its contacts reach: the load-weighted median of d/d_hat at step"
+    " ends, deeper to the right. A marker is a target theta ({gaps}), geometric mean over {n} scenes"
+    " ({scenes}), their resolutions averaged, of those whose whole path was run; thin lines: each scene."
+    " Markers of the same number along two lines carry the same loads. Hollow: a run of some scene or"
+    " resolution reached no gap, and the mean is of the others. A line ends at the gap of its last target:"
+    " nothing was reached to the right of it. All numbers are over those of the log at its first target in"
+    " the same place. Dotted, in the first row, where the limit does not follow theta: the area law, C rho(u)"
+    " but not below 1, with one C in a panel, from the deepest point of the log. cond: 95th percentile over"
+    " iterations in contact; PCG: median of block-Jacobi PCG to 1e-6 on one right-hand side. {modes}"
+)
+LAW = (
+    "The area law against what was measured. A point is a run beside that of the log in the same scene,"
+    " resolution, limit mode and theta, so under the same loads. Up: the ratio of cond at step ends (median"
+    " over steps). (a) Across: the ratio of rho at the median gaps that both reached. Filled: contact makes"
+    " the largest eigenvalue in both (cond at least {made:g} times that without contact). (b) Across: the"
+    " same, but not below the ratio that is left without contact. Filled: contact makes the log's. Lines:"
+    " equal, and a factor {far:g} off. {sentence}"
+)
 
 
 def _over(found: Map, limit: str, metric: str):
     """What a number of a row is divided by: the log's at its first target in the same place."""
-    first = {(r["scene"], r["resolution"]): r[metric] for r in found.rows
-             if r["limit"] == limit and r["shape"] == REFERENCE and r["theta"] == max(found.gaps) and r["outcome"] == "ok"}
+    first = {
+        (r["scene"], r["resolution"]): r[metric]
+        for r in found.rows
+        if r["limit"] == limit
+        and r["shape"] == REFERENCE
+        and r["theta"] == max(found.gaps)
+        and r["outcome"] == "ok"
+    }
     return lambda row: first.get((row["scene"], row["resolution"]))
 
 
 def _rho(found: Map, shape: str, gaps: list[float]) -> list[float]:
     name, argument = found.about["shapes"][shape]
-    return [a["rho"] for a in ask([{"kind": "rho", "shape": name, "argument": argument, "u": u} for u in gaps])]
+    return [
+        a["rho"]
+        for a in evaluated([{"kind": "rho", "shape": name, "argument": argument, "u": u} for u in gaps])
+    ]
 
 
 def _law(axis, found: Map, limit: str, shapes: list[str], metric: str, over) -> None:
@@ -50,18 +79,47 @@ def _law(axis, found: Map, limit: str, shapes: list[str], metric: str, over) -> 
         reached = [p.gap for p in steps(found.rows, limit, shape, metric, over)]
         if len(reached) > 1:
             gaps = list(np.geomspace(min(reached), max(reached), 40))
-            axis.plot(gaps, [max(1.0, scale * r) for r in _rho(found, shape, gaps)], color=style.look(shape).color, linestyle=":", linewidth=1.0, gid=style.REFERENCE)
+            axis.plot(
+                gaps,
+                [max(1.0, scale * r) for r in _rho(found, shape, gaps)],
+                color=style.look(shape).color,
+                linestyle=":",
+                linewidth=1.0,
+                gid=style.REFERENCE,
+            )
 
 
 def _series(axis, found: Map, limit: str, shape: str, metric: str, over) -> list[dict]:
     points, look = steps(found.rows, limit, shape, metric, over), style.look(shape)
-    axis.plot([p.gap for p in points], [p.value for p in points], color=look.color, linestyle=look.dash, label=shape)
+    axis.plot(
+        [p.gap for p in points], [p.value for p in points], color=look.color, linestyle=look.dash, label=shape
+    )
     for scene in dict.fromkeys(s for p in points for s in p.scenes):
         mine = [p.scenes[scene] for p in points if scene in p.scenes]
         axis.plot([g for g, _ in mine], [v for _, v in mine], color=look.color, linewidth=0.4, alpha=0.35)
     for p in points:
-        axis.plot([p.gap], [p.value], color=look.color, marker=look.marker, markerfacecolor=look.color if p.whole else "white", markeredgewidth=0.8, linestyle="none")
-    return [{"limit": limit, "shape": shape, "metric": metric, "theta": p.theta, "gap": p.gap, "value": p.value, "scenes": len(p.scenes), "whole": p.whole} for p in points]
+        axis.plot(
+            [p.gap],
+            [p.value],
+            color=look.color,
+            marker=look.marker,
+            markerfacecolor=look.color if p.whole else "white",
+            markeredgewidth=0.8,
+            linestyle="none",
+        )
+    return [
+        {
+            "limit": limit,
+            "shape": shape,
+            "metric": metric,
+            "theta": p.theta,
+            "gap": p.gap,
+            "value": p.value,
+            "scenes": len(p.scenes),
+            "whole": p.whole,
+        }
+        for p in points
+    ]
 
 
 def _span(values: list[float], least: float) -> tuple[float, float]:
@@ -73,12 +131,24 @@ def _span(values: list[float], least: float) -> tuple[float, float]:
 def _part(found: Map) -> str:
     """Of which runs a figure is; empty where all are there."""
     left = counts(found.rows)[NOT_RUN]
-    return f"{left} of {len(found.rows)} cells are not run yet; resolution: runs that are there, of those that can be: {extent(found.rows)}." if left else ""
+    return (
+        f"{left} of {len(found.rows)} cells are not run yet; resolution: runs that are there, of those that"
+        f" can be: {extent(found.rows)}."
+        if left
+        else ""
+    )
 
 
 def draw_map(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     limits = found.limits
-    fig, axes = plt.subplots(len(METRICS), len(limits), figsize=(max(style.WIDE_IN, 2.45 * len(limits)), 1.75 * len(METRICS) + 0.6), layout="constrained", sharex=True, squeeze=False)
+    fig, axes = plt.subplots(
+        len(METRICS),
+        len(limits),
+        figsize=(max(style.WIDE_IN, 2.45 * len(limits)), 1.75 * len(METRICS) + 0.6),
+        layout="constrained",
+        sharex=True,
+        squeeze=False,
+    )
     numbers = []
     for k, (metric, title) in enumerate(METRICS):
         for axis, limit in zip(axes[k], limits):
@@ -91,7 +161,16 @@ def draw_map(found: Map, shapes: list[str], stem: Path) -> list[Path]:
             if k == 0 and limit != "on":
                 _law(axis, found, limit, shapes, metric, over)
             axis.axhline(1, color="#666666", linewidth=0.5, gid=style.REFERENCE)
-            low, high = _span([1.0] + [float(y) for shown in axis.lines if shown.get_gid() != style.REFERENCE for y in shown.get_ydata()], 3.0)
+            low, high = _span(
+                [1.0]
+                + [
+                    float(y)
+                    for shown in axis.lines
+                    if shown.get_gid() != style.REFERENCE
+                    for y in shown.get_ydata()
+                ],
+                3.0,
+            )
             axis.set_ylim(low, high)
             log_ticks(axis.yaxis, low, high)
         axes[k, 0].set_ylabel(f"{title}\nover the log's at first")
@@ -106,39 +185,97 @@ def draw_map(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     handles.append(plt.Line2D([], [], color="#444444", linestyle=":", linewidth=1.0))
     fig.legend(handles, [*labels, "area law"], loc="outside lower center", ncols=6, frameon=False)
     scenes = found.about["scenes"]
-    modes = " ".join(f"{TITLES[m][0].upper()}{TITLES[m][1:]}: {LIMITS[m]}." for m in limits if LIMITS[m] != TITLES[m])
-    shown = SHOWN.format(n=len(scenes), scenes=", ".join(scenes), gaps=", ".join(f"{g:g}" for g in found.gaps), modes=modes)
+    modes = " ".join(
+        f"{TITLES[m][0].upper()}{TITLES[m][1:]}: {LIMITS[m]}." for m in limits if LIMITS[m] != TITLES[m]
+    )
+    shown = SHOWN.format(
+        n=len(scenes), scenes=", ".join(scenes), gaps=", ".join(f"{g:g}" for g in found.gaps), modes=modes
+    )
     return style.save(fig, stem, pd.DataFrame(numbers), f"{shown} {_part(found)}".strip())
 
 
 def law_sentence(found: list[Pair], what: str) -> str:
     """Scatter of both forms of the law."""
     parts = []
-    for form, errors in (("the law, contact making both", [p.error for p in found if p.by_contact]), ("the law with its floor, contact making the log's", [p.floor_error for p in found if p.by_log])):
+    for form, errors in (
+        ("the law, contact making both", [p.error for p in found if p.by_contact]),
+        ("the law with its floor, contact making the log's", [p.floor_error for p in found if p.by_log]),
+    ):
         spread = scatter(errors)
-        parts.append(f"{form}: {len(errors)} of {len(found)} pairs" + (f", ln(measured/predicted) {spread[0]:+.2f} in the mean with standard deviation {spread[1]:.2f} (a factor {math.exp(spread[1]):.2f})"
-                                                                     if spread else ", too few for a scatter"))
+        parts.append(
+            f"{form}: {len(errors)} of {len(found)} pairs"
+            + (
+                f", ln(measured/predicted) {spread[0]:+.2f} in the mean with standard deviation"
+                f" {spread[1]:.2f} (a factor {math.exp(spread[1]):.2f})"
+                if spread
+                else ", too few for a scatter"
+            )
+        )
     floor = sum(p.by_log and p.floor > p.predicted for p in found)
-    parts.append(f"in {floor} of the latter the floor decides, which says no more than that contact adds nothing there")
+    parts.append(
+        f"in {floor} of the latter the floor decides, which says no more than that contact adds nothing there"
+    )
     return f"{what}: {'; '.join(parts)}."
+
+
+def _draw_pairs(axis, of: list, shapes: list[str], predicted, made) -> None:
+    """Measured against predicted; full where `made` says that contact made the end of the spectrum."""
+    for shape in (s for s in shapes if any(p.row["shape"] == s for p in of)):
+        look = style.look(shape)
+        for full in (False, True):
+            some = [p for p in of if p.row["shape"] == shape and made(p) == full]
+            axis.plot(
+                [predicted(p) for p in some],
+                [p.measured for p in some],
+                linestyle="none",
+                marker=look.marker,
+                color=look.color,
+                alpha=0.85 if full else 0.4,
+                markerfacecolor=look.color if full else "none",
+                markeredgewidth=0.6,
+                label=shape if full else None,
+            )
+
+
+def _law_numbers(of: list) -> pd.DataFrame:
+    rows = [
+        {
+            "pair": p.name,
+            "predicted": p.predicted,
+            "predicted_p05": p.predicted_p05,
+            "floor": p.floor,
+            "measured": p.measured,
+            "made": p.made[0],
+            "made_log": p.made[1],
+        }
+        for p in of
+    ]
+    return pd.DataFrame(rows)
 
 
 def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     of = [p for p in pairs(found.rows) if p.row["shape"] in shapes]
     scaled = [p for p in pairs(found.rows, raw=False) if p.row["shape"] in shapes]
-    forms = (("law", lambda p: p.predicted, lambda p: p.by_contact), ("law with its floor", lambda p: p.floored, lambda p: p.by_log))
-    fig, axes = plt.subplots(1, 2, figsize=(style.WIDE_IN, 3.7), layout="constrained", sharex=True, sharey=True)
+    forms = (
+        ("law", lambda p: p.predicted, lambda p: p.by_contact),
+        ("law with its floor", lambda p: p.floored, lambda p: p.by_log),
+    )
+    fig, axes = plt.subplots(
+        1, 2, figsize=(style.WIDE_IN, 3.7), layout="constrained", sharex=True, sharey=True
+    )
     low, high = _span([0.5, 2.0] + [v for p in of for v in (p.predicted, p.measured)], 10.0)
     for axis, (title, predicted, made) in zip(axes, forms):
         axis.set(xscale="log", yscale="log", xlabel="predicted", title=title)
-        for shape in (s for s in shapes if any(p.row["shape"] == s for p in of)):
-            look = style.look(shape)
-            for full in (False, True):
-                some = [p for p in of if p.row["shape"] == shape and made(p) == full]
-                axis.plot([predicted(p) for p in some], [p.measured for p in some], linestyle="none", marker=look.marker, color=look.color, alpha=0.85 if full else 0.4,
-                          markerfacecolor=look.color if full else "none", markeredgewidth=0.6, label=shape if full else None)
+        _draw_pairs(axis, of, shapes, predicted, made)
         for factor, width in ((1, 0.8), (FAR, 0.4), (1 / FAR, 0.4)):
-            axis.plot([low, high], [factor * low, factor * high], color="#666666", linewidth=width, gid=style.REFERENCE, zorder=0)
+            axis.plot(
+                [low, high],
+                [factor * low, factor * high],
+                color="#666666",
+                linewidth=width,
+                gid=style.REFERENCE,
+                zorder=0,
+            )
         axis.set(xlim=(low, high), ylim=(low, high))
         log_ticks(axis.xaxis, low, high)
         log_ticks(axis.yaxis, low, high)
@@ -147,13 +284,19 @@ def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     handles, labels = axes[0].get_legend_handles_labels()
     handles.append(plt.Line2D([], [], color="#444444", marker="o", markerfacecolor="none", linestyle="none"))
     fig.legend(handles, [*labels, "not made by contact"], loc="outside lower center", ncols=4, frameon=False)
-    numbers = [{"pair": p.name, "predicted": p.predicted, "predicted_p05": p.predicted_p05, "floor": p.floor, "measured": p.measured, "made": p.made[0], "made_log": p.made[1]} for p in of]
     sentence = f"{law_sentence(of, 'Raw')} {law_sentence(scaled, 'Block Jacobi')}"
-    return style.save(fig, stem, pd.DataFrame(numbers), f"{LAW.format(made=MADE, far=FAR, sentence=sentence)} {_part(found)}".strip())
+    return style.save(
+        fig,
+        stem,
+        _law_numbers(of),
+        f"{LAW.format(made=MADE, far=FAR, sentence=sentence)} {_part(found)}".strip(),
+    )
 
 
 def draw_all(found: Map, folder: Path) -> list[Path]:
-    """gap_map and gap_law, and each with _more where there are more shapes than one figure holds; all their files. Asks `eval` for rho."""
+    """gap_map and gap_law, and each with _more where there are more shapes than one figure holds; all their
+    files. Asks `eval` for rho.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     rest = [s for s in found.shapes if s not in found.main]
     paths = draw_map(found, list(found.main), folder / "gap_map")

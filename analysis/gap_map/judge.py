@@ -1,4 +1,6 @@
-"""What the rows of a gap map say: shapes beside the log at equal reached gap, who reaches which gap, and the area law against what was measured."""
+"""What the rows of a gap map say: shapes beside the log at equal reached gap, who reaches which gap, and the
+area law against what was measured.
+"""
 
 from __future__ import annotations
 
@@ -23,13 +25,22 @@ def places(rows: list[dict], limit: str) -> list[tuple[str, str]]:
 
 def path(rows: list[dict], place: tuple[str, str], limit: str, shape: str, metric: str) -> list[Point]:
     """theta is the parameter: a smaller target means a softer contact. A run that failed breaks the path."""
-    mine = [r for r in rows if (r["scene"], r["resolution"]) == place and r["limit"] == limit and r["shape"] == shape]
-    return [Point(r["theta"], r["gap"], r[metric]) if r["outcome"] == "ok" else Point(r["theta"], None, None) for r in mine]
+    mine = [
+        r
+        for r in rows
+        if (r["scene"], r["resolution"]) == place and r["limit"] == limit and r["shape"] == shape
+    ]
+    return [
+        Point(r["theta"], r["gap"], r[metric]) if r["outcome"] == "ok" else Point(r["theta"], None, None)
+        for r in mine
+    ]
 
 
 @dataclass(frozen=True)
 class Ratio:
-    """Geometric mean over scenes of a metric over that of the log, the smallest and the largest scene, and how many scenes have both of how many."""
+    """Geometric mean over scenes of a metric over that of the log, the smallest and the largest scene, and
+    how many scenes have both of how many.
+    """
 
     value: float
     low: float
@@ -39,7 +50,9 @@ class Ratio:
 
 
 def ratio_at(rows: list[dict], limit: str, shape: str, metric: str, gap: float) -> Ratio | None:
-    """At equal reached gap, each along its own path over theta; resolutions of one scene are averaged first. None where no scene has both."""
+    """At equal reached gap, each along its own path over theta; resolutions of one scene are averaged first.
+    None where no scene has both.
+    """
     by_scene: dict[str, list[float]] = {}
     for place in places(rows, limit):
         by_scene.setdefault(place[0], [])
@@ -51,15 +64,24 @@ def ratio_at(rows: list[dict], limit: str, shape: str, metric: str, gap: float) 
 
 def _over_scenes(by_scene: dict[str, list[float]]) -> Ratio | None:
     means = [float(np.mean(logs)) for logs in by_scene.values() if logs]
-    return Ratio(math.exp(np.mean(means)), math.exp(min(means)), math.exp(max(means)), len(means), len(by_scene)) if means else None
+    return (
+        Ratio(math.exp(np.mean(means)), math.exp(min(means)), math.exp(max(means)), len(means), len(by_scene))
+        if means
+        else None
+    )
 
 
 def at_theta(rows: list[dict], limit: str, shape: str, metric: str, theta: float) -> Ratio | None:
-    """At equal target, so under the same loads, each at the gap that it reaches; a place counts where both runs ended well."""
+    """At equal target, so under the same loads, each at the gap that it reaches; a place counts where both
+    runs ended well.
+    """
     by_scene: dict[str, list[float]] = {}
     for place in places(rows, limit):
         by_scene.setdefault(place[0], [])
-        values = [next((p.value for p in path(rows, place, limit, s, metric) if p.scale == theta), None) for s in (shape, REFERENCE)]
+        values = [
+            next((p.value for p in path(rows, place, limit, s, metric) if p.scale == theta), None)
+            for s in (shape, REFERENCE)
+        ]
         if all(values):
             by_scene[place[0]].append(math.log(values[0] / values[1]))
     return _over_scenes(by_scene)
@@ -67,7 +89,9 @@ def at_theta(rows: list[dict], limit: str, shape: str, metric: str, theta: float
 
 @dataclass(frozen=True)
 class Step:
-    """One target of a shape: geometric means over scenes of the gap that was reached and of a number, and each scene's own."""
+    """One target of a shape: geometric means over scenes of the gap that was reached and of a number, and
+    each scene's own.
+    """
 
     theta: float
     gap: float
@@ -77,8 +101,10 @@ class Step:
 
 
 def steps(rows: list[dict], limit: str, shape: str, metric: str, over) -> list[Step]:
-    """Target by target, falling; over(row) is what the metric is divided by, None where that is not known. Only places whose whole path was run count, so that
-    every target is of the same ones, and of these only runs that ended well."""
+    """Target by target, falling; over(row) is what the metric is divided by, None where that is not known.
+    Only places whose whole path was run count, so that every target is of the same ones, and of these only
+    runs that ended well.
+    """
     found, scenes = [], list(dict.fromkeys(p[0] for p in places(rows, limit)))
     of_shape = [r for r in rows if r["limit"] == limit and r["shape"] == shape]
     part = {(r["scene"], r["resolution"]) for r in of_shape if r["outcome"] == NOT_RUN}
@@ -91,7 +117,9 @@ def steps(rows: list[dict], limit: str, shape: str, metric: str, over) -> list[S
             if good:
                 of[scene] = (_mean([r["gap"] for r in good]), _mean([r[metric] / over(r) for r in good]))
         whole = all(r["outcome"] == "ok" for r in there if r["theta"] == theta)
-        found.append(Step(theta, _mean([g for g, _ in of.values()]), _mean([v for _, v in of.values()]), of, whole))
+        found.append(
+            Step(theta, _mean([g for g, _ in of.values()]), _mean([v for _, v in of.values()]), of, whole)
+        )
     return found
 
 
@@ -103,22 +131,43 @@ def deepest(rows: list[dict], limit: str, shape: str) -> dict[tuple[str, str], f
     """place -> smallest gap that some run of the shape reached there; places where none did are left out."""
     found = {}
     for place in places(rows, limit):
-        gaps = [r["gap"] for r in rows if (r["scene"], r["resolution"]) == place and r["limit"] == limit and r["shape"] == shape and r["outcome"] == "ok" and r["gap"]]
+        gaps = [
+            r["gap"]
+            for r in rows
+            if (r["scene"], r["resolution"]) == place
+            and r["limit"] == limit
+            and r["shape"] == shape
+            and r["outcome"] == "ok"
+            and r["gap"]
+        ]
         if gaps:
             found[place] = min(gaps)
     return found
 
 
-def at_target(rows: list[dict], limit: str, theta: float, shapes: list[str]) -> tuple[dict[str, float], list[tuple[str, str]], list[str]]:
-    """Gaps at one target: shape -> median over the places that every shape with any has, these places, and the shapes that reached a gap at none or
-    share no place."""
+def at_target(
+    rows: list[dict], limit: str, theta: float, shapes: list[str]
+) -> tuple[dict[str, float], list[tuple[str, str]], list[str]]:
+    """Gaps at one target: shape -> median over the places that every shape with any has, these places, and
+    the shapes that reached a gap at none or share no place.
+    """
     found: dict[str, dict[tuple[str, str], float]] = {shape: {} for shape in shapes}
     for r in rows:
-        if r["limit"] == limit and r["theta"] == theta and r["shape"] in found and r["outcome"] == "ok" and r["gap"]:
+        if (
+            r["limit"] == limit
+            and r["theta"] == theta
+            and r["shape"] in found
+            and r["outcome"] == "ok"
+            and r["gap"]
+        ):
             found[r["shape"]][r["scene"], r["resolution"]] = r["gap"]
     some = {shape: of for shape, of in found.items() if of}
     shared = [place for place in places(rows, limit) if some and all(place in of for of in some.values())]
-    medians = {shape: float(np.median([of[place] for place in shared])) for shape, of in some.items()} if shared else {}
+    medians = (
+        {shape: float(np.median([of[place] for place in shared])) for shape, of in some.items()}
+        if shared
+        else {}
+    )
     return medians, shared, [shape for shape in shapes if shape not in medians]
 
 
@@ -129,7 +178,9 @@ def end_of(rows: list[dict], limit: str, shape: str) -> tuple[float, int] | None
 
 
 def failures(rows: list[dict]) -> dict[tuple[str, str, float], dict[str, int]]:
-    """(shape, limit, theta) -> outcome -> runs; runs that reached a gap, and cells that were not run, are not in it."""
+    """(shape, limit, theta) -> outcome -> runs; runs that reached a gap, and cells that were not run, are not
+    in it.
+    """
     found: dict[tuple[str, str, float], dict[str, int]] = {}
     for r in rows:
         if r["outcome"] not in ("ok", NOT_RUN):
@@ -144,13 +195,19 @@ def unreached(rows: list[dict], targets: list[float]) -> list[tuple[str, str, fl
     for limit in dict.fromkeys(r["limit"] for r in rows):
         for shape in dict.fromkeys(r["shape"] for r in rows if r["limit"] == limit):
             ranges = [reached(path(rows, place, limit, shape, "gap")) for place in places(rows, limit)]
-            found += [(limit, shape, target) for target in targets if not any(r and r[0] <= target <= r[1] for r in ranges)]
+            found += [
+                (limit, shape, target)
+                for target in targets
+                if not any(r and r[0] <= target <= r[1] for r in ranges)
+            ]
     return found
 
 
 @dataclass(frozen=True)
 class Pair:
-    """A shape and the log in the same place, with the same target: the same loads, each at the gap that it reaches."""
+    """A shape and the log in the same place, with the same target: the same loads, each at the gap that it
+    reaches.
+    """
 
     row: dict
     log: dict
@@ -189,16 +246,35 @@ class Pair:
 
 
 def pairs(rows: list[dict], raw: bool = True) -> list[Pair]:
-    """Every row beside the log's of the same place, limit and theta, where both reached a gap and every number is there. raw: cond, else block-Jacobi scaled."""
+    """Every row beside the log's of the same place, limit and theta, where both reached a gap and every
+    number is there. raw: cond, else block-Jacobi scaled.
+    """
     cond, without = ("cond_end", "nc_end") if raw else ("bj_end", "nc_bj_end")
-    key = lambda r: (r["scene"], r["resolution"], r["limit"], r["theta"])
-    good = [r for r in rows if r["outcome"] == "ok" and all(r[c] and r[c] > 0 for c in ("rho", "rho_p05", cond, without))]
+
+    def key(r):
+        return r["scene"], r["resolution"], r["limit"], r["theta"]
+
+    good = [
+        r
+        for r in rows
+        if r["outcome"] == "ok" and all(r[c] and r[c] > 0 for c in ("rho", "rho_p05", cond, without))
+    ]
     logs = {key(r): r for r in good if r["shape"] == REFERENCE}
     found = []
     for r in good:
         log = logs.get(key(r))
         if log and r["shape"] != REFERENCE:
-            found.append(Pair(r, log, r["rho"] / log["rho"], r["rho_p05"] / log["rho_p05"], r[cond] / log[cond], (r[cond] / r[without], log[cond] / log[without]), r[without] / log[cond]))
+            found.append(
+                Pair(
+                    r,
+                    log,
+                    r["rho"] / log["rho"],
+                    r["rho_p05"] / log["rho_p05"],
+                    r[cond] / log[cond],
+                    (r[cond] / r[without], log[cond] / log[without]),
+                    r[without] / log[cond],
+                )
+            )
     return found
 
 
@@ -210,27 +286,47 @@ def scatter(errors: list[float]) -> tuple[float, float] | None:
 def reason(pair: Pair) -> str:
     """Why a pair leaves the law with its floor, where its own numbers say so."""
     if not pair.by_log:
-        return f"contact does not make the log's largest eigenvalue: cond {pair.log['cond_end']:.3g} with contact, {pair.log['nc_end']:.3g} without"
+        return (
+            f"contact does not make the log's largest eigenvalue: cond {pair.log['cond_end']:.3g} with"
+            f" contact, {pair.log['nc_end']:.3g} without"
+        )
     load = (pair.row["load"] or 0) / (pair.log["load"] or math.inf)
-    if load > 0 and abs(math.log(load)) > math.log(LOADS) and abs(math.log(pair.measured / max(pair.predicted * load, pair.floor))) < abs(pair.floor_error):
+    if (
+        load > 0
+        and abs(math.log(load)) > math.log(LOADS)
+        and abs(math.log(pair.measured / max(pair.predicted * load, pair.floor))) < abs(pair.floor_error)
+    ):
         return f"the loads are not the same: the largest is {load:.2f} times the log's"
     if abs(math.log(pair.measured / max(pair.predicted_p05, pair.floor))) <= math.log(FAR):
-        return f"loads rest at very different gaps: with rho where the deepest 5% of the load begins, {pair.predicted_p05:.3g} is predicted"
+        return (
+            "loads rest at very different gaps: with rho where the deepest 5% of the load begins,"
+            f" {pair.predicted_p05:.3g} is predicted"
+        )
     if pair.row["shape"] in STIFF_AT_FIRST_TOUCH and pair.measured > pair.floored:
-        return (f"stiffer than predicted, and not explained by these numbers; a reason it can have: a `{pair.row['shape']}` contact is as stiff when it bears nothing as at its load, so that those beside it, which the median load does not "
-                "count, add up in one place")
+        return (
+            "stiffer than predicted, and not explained by these numbers; a reason it can have: a"
+            f" `{pair.row['shape']}` contact is as stiff when it bears nothing as at its load, so that those"
+            " beside it, which the median load does not count, add up in one place"
+        )
     return "not explained by these numbers"
 
 
 def exceptions(found: list[Pair]) -> list[Pair]:
     """Pairs whose log's is made by contact, and which are farther than FAR from the law with its floor."""
-    return sorted((p for p in found if p.by_log and abs(p.floor_error) > math.log(FAR)), key=lambda p: -abs(p.floor_error))
+    return sorted(
+        (p for p in found if p.by_log and abs(p.floor_error) > math.log(FAR)),
+        key=lambda p: -abs(p.floor_error),
+    )
 
 
 def counts(rows: list[dict]) -> dict[str, int]:
     """How the cells of the map ended."""
-    return {"cells": len(rows), "ok": sum(r["outcome"] == "ok" for r in rows), **{word: sum(r["outcome"] == word for r in rows) for word in (CANNOT, NO_CONTACT, NOT_RUN)},
-            "failed": sum(r["outcome"] not in ("ok", CANNOT, NO_CONTACT, NOT_RUN) for r in rows)}
+    return {
+        "cells": len(rows),
+        "ok": sum(r["outcome"] == "ok" for r in rows),
+        **{word: sum(r["outcome"] == word for r in rows) for word in (CANNOT, NO_CONTACT, NOT_RUN)},
+        "failed": sum(r["outcome"] not in ("ok", CANNOT, NO_CONTACT, NOT_RUN) for r in rows),
+    }
 
 
 def extent(rows: list[dict]) -> str:
@@ -239,4 +335,7 @@ def extent(rows: list[dict]) -> str:
     for r in rows:
         if r["outcome"] != CANNOT:
             by.setdefault(r["scene"], {}).setdefault(r["resolution"], []).append(r["outcome"] != NOT_RUN)
-    return "; ".join(f"{scene} " + ", ".join(f"{size}: {sum(there)} of {len(there)}" for size, there in sizes.items()) for scene, sizes in by.items())
+    return "; ".join(
+        f"{scene} " + ", ".join(f"{size}: {sum(there)} of {len(there)}" for size, there in sizes.items())
+        for scene, sizes in by.items()
+    )

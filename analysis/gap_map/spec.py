@@ -8,23 +8,26 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..accuracy.shapes import barrier
+from ..errors import UserError
 from ..matching.runs import Sweep, sweep
 from ..program import read_object
+from ..spec_file import read_spec as read_json_spec
+from ..spec_file import require_base
 
-SCHEMA = "barrierbench.gap_map/1"
-LIMITS = {"on": "contact and strain limit take shape and theta", "contact": "contact alone takes them; the limit is a log matched at theta 0.1, the same in every run",
-          "off": "no strain limit"}
+LIMITS = {
+    "on": "contact and strain limit take shape and theta",
+    "contact": "contact alone takes them; the limit is a log matched at theta 0.1, the same in every run",
+    "off": "no strain limit",
+}
 REFERENCE = "log"
 LIMIT_THETA = 0.1
-PARTS = {"quick": "minutes, where the whole takes hours", "large": "the larger resolutions of few shapes and gaps"}  # of a spec that may be run alone; quick has to be there
-REQUIRED = ("schema", "name", "doc", "base", "set", "shapes", "main", "gaps", "limits", "scenes", "quick")
+PARTS = {
+    "quick": "minutes, where the whole takes hours",
+    "large": "the larger resolutions of few shapes and gaps",
+}  # of a spec that may be run alone; quick has to be there
 OF_SCENE = ("label", "obstacle", "set", "resolutions")
 OBSTACLES = ("analytic", "mesh", "none")
 MAIN_MOST = 5  # series of a panel, the reference among them
-
-
-class GapMapError(ValueError):
-    """Bad input, or a result that is not there: file, place, what was found, what is allowed."""
 
 
 @dataclass(frozen=True)
@@ -72,50 +75,91 @@ class Spec:
 
 
 def _fail(path: Path, place: str, found, needed: str):
-    raise GapMapError(f"{path}#/{place}: found {found!r}; {needed} is needed")
+    raise UserError(f"{path}#/{place}: found {found!r}; {needed} is needed")
 
 
 def _gaps(values, path: Path, place: str) -> tuple[float, ...]:
-    good = isinstance(values, list) and values and all(isinstance(x, (int, float)) and not isinstance(x, bool) and math.isfinite(x) and 0 < x < 1 for x in values)
+    good = (
+        isinstance(values, list)
+        and values
+        and all(
+            isinstance(x, (int, float)) and not isinstance(x, bool) and math.isfinite(x) and 0 < x < 1
+            for x in values
+        )
+    )
     if not good or sorted(set(values), reverse=True) != values:
         _fail(path, place, values, "a falling list of gaps in (0, 1), each once,")
     return tuple(map(float, values))
 
 
 def _words(values, allowed, path: Path, place: str) -> tuple[str, ...]:
-    if not isinstance(values, list) or not values or len(set(map(str, values))) < len(values) or any(v not in allowed for v in values):
+    if (
+        not isinstance(values, list)
+        or not values
+        or len(set(map(str, values))) < len(values)
+        or any(v not in allowed for v in values)
+    ):
         _fail(path, place, values, f"a list of some of {', '.join(allowed)}, each once,")
     return tuple(values)
 
 
 def _shapes(data: dict, path: Path) -> dict[str, tuple[str, str]]:
     shapes = data["shapes"]
-    good = isinstance(shapes, list) and all(isinstance(s, dict) and set(s) == {"label", "shape", "argument"} and s["argument"] in ("gap", "squared_gap") for s in shapes)
-    if not good or REFERENCE not in [s["label"] for s in shapes] or len({s["label"] for s in shapes}) < len(shapes):
-        _fail(path, "shapes", shapes, f'a list of {{"label", "shape", "argument"}}, each label once, {REFERENCE!r} among them,')
+    good = isinstance(shapes, list) and all(
+        isinstance(s, dict)
+        and set(s) == {"label", "shape", "argument"}
+        and s["argument"] in ("gap", "squared_gap")
+        for s in shapes
+    )
+    if (
+        not good
+        or REFERENCE not in [s["label"] for s in shapes]
+        or len({s["label"] for s in shapes}) < len(shapes)
+    ):
+        _fail(
+            path,
+            "shapes",
+            shapes,
+            f'a list of {{"label", "shape", "argument"}}, each label once, {REFERENCE!r} among them,',
+        )
     return {s["label"]: (s["shape"], s["argument"]) for s in shapes}
 
 
 def _scene(found, path: Path, limits: tuple[str, ...]) -> Scene:
     place = f"scenes/{found.get('label') if isinstance(found, dict) else found}"
-    if not isinstance(found, dict) or not set(OF_SCENE) <= set(found) <= {*OF_SCENE, "limits"} or found["obstacle"] not in OBSTACLES:
-        _fail(path, place, sorted(found) if isinstance(found, dict) else found, f"{', '.join(OF_SCENE)} (obstacle one of {', '.join(OBSTACLES)}), and limits where not all are asked for,")
+    if (
+        not isinstance(found, dict)
+        or not set(OF_SCENE) <= set(found) <= {*OF_SCENE, "limits"}
+        or found["obstacle"] not in OBSTACLES
+    ):
+        _fail(
+            path,
+            place,
+            sorted(found) if isinstance(found, dict) else found,
+            f"{', '.join(OF_SCENE)} (obstacle one of {', '.join(OBSTACLES)}), and limits where not all are"
+            " asked for,",
+        )
     resolutions = found["resolutions"]
-    if not isinstance(resolutions, dict) or not resolutions or not all(isinstance(r, dict) and set(r) == {"unknowns", "set"} for r in resolutions.values()):
+    if (
+        not isinstance(resolutions, dict)
+        or not resolutions
+        or not all(isinstance(r, dict) and set(r) == {"unknowns", "set"} for r in resolutions.values())
+    ):
         _fail(path, f"{place}/resolutions", resolutions, '{"LABEL": {"unknowns": number, "set": overrides}}')
-    return Scene(found["label"], found["obstacle"], found["set"], {label: r["set"] for label, r in resolutions.items()},
-                 {label: r["unknowns"] for label, r in resolutions.items()}, _words(found.get("limits", list(limits)), limits, path, f"{place}/limits"))
+    return Scene(
+        found["label"],
+        found["obstacle"],
+        found["set"],
+        {label: r["set"] for label, r in resolutions.items()},
+        {label: r["unknowns"] for label, r in resolutions.items()},
+        _words(found.get("limits", list(limits)), limits, path, f"{place}/limits"),
+    )
 
 
 def read_spec(path: Path) -> Spec:
-    """Errors: GapMapError with file, place, what was found and what is allowed."""
-    data = read_object(path, GapMapError)
-    if data.get("schema") != SCHEMA:
-        _fail(path, "schema", data.get("schema"), repr(SCHEMA))
-    if odd := sorted((set(REQUIRED) - set(data)) | (set(data) - {*REQUIRED, *PARTS})):
-        raise GapMapError(f"{path}#/{odd[0]}: {'unknown' if odd[0] in data else 'is missing'}; the keys are {', '.join(REQUIRED)}")
-    if not isinstance(data["base"], str) or not (path.parent / data["base"]).is_file():
-        _fail(path, "base", data["base"], "the path of a config, relative to this file,")
+    """Errors: UserError with file, place, what was found and what is allowed."""
+    data = read_json_spec(path, "gap_map")
+    base = require_base(data, path)
     shapes = _shapes(data, path)
     limits = _words(data["limits"], tuple(LIMITS), path, "limits")
     scenes = tuple(_scene(found, path, limits) for found in data["scenes"])
@@ -124,33 +168,70 @@ def read_spec(path: Path) -> Spec:
     main = _words(data["main"], tuple(shapes), path, "main")
     if len(main) > MAIN_MOST or REFERENCE not in main:
         _fail(path, "main", list(main), f"at most {MAIN_MOST} shapes, {REFERENCE!r} among them,")
-    return Spec(path, hashlib.sha256(path.read_bytes()).hexdigest(), data["name"], data["doc"], path.parent / data["base"], data["set"], shapes, main,
-                _gaps(data["gaps"], path, "gaps"), limits, scenes)
+    return Spec(
+        path,
+        hashlib.sha256(path.read_bytes()).hexdigest(),
+        data["name"],
+        data["doc"],
+        base,
+        data["set"],
+        shapes,
+        main,
+        _gaps(data["gaps"], path, "gaps"),
+        limits,
+        scenes,
+    )
 
 
 def part(spec: Spec, name: str) -> Spec:
-    """A documented part of a spec, one of PARTS. Errors: GapMapError."""
-    asked = read_object(spec.path, GapMapError).get(name)
-    if not isinstance(asked, dict) or set(asked) != {"scenes", "shapes", "gaps", "limits"} or not isinstance(asked["scenes"], dict):
+    """A documented part of a spec, one of PARTS. Errors: UserError."""
+    asked = read_object(spec.path).get(name)
+    if (
+        not isinstance(asked, dict)
+        or set(asked) != {"scenes", "shapes", "gaps", "limits"}
+        or not isinstance(asked["scenes"], dict)
+    ):
         _fail(spec.path, name, asked, "scenes, shapes, gaps, limits")
     limits = _words(asked["limits"], spec.limits, spec.path, f"{name}/limits")
     scenes = []
-    for label in _words(list(asked["scenes"]), tuple(s.label for s in spec.scenes), spec.path, f"{name}/scenes"):
+    for label in _words(
+        list(asked["scenes"]), tuple(s.label for s in spec.scenes), spec.path, f"{name}/scenes"
+    ):
         whole = next(s for s in spec.scenes if s.label == label)
         kept = _words(asked["scenes"][label], tuple(whole.resolutions), spec.path, f"{name}/scenes/{label}")
-        scenes.append(replace(whole, resolutions={r: whole.resolutions[r] for r in kept}, unknowns={r: whole.unknowns[r] for r in kept}, limits=tuple(x for x in whole.limits if x in limits)))
+        scenes.append(
+            replace(
+                whole,
+                resolutions={r: whole.resolutions[r] for r in kept},
+                unknowns={r: whole.unknowns[r] for r in kept},
+                limits=tuple(x for x in whole.limits if x in limits),
+            )
+        )
     shapes = _words(asked["shapes"], tuple(spec.shapes), spec.path, f"{name}/shapes")
     if REFERENCE not in shapes:
         _fail(spec.path, f"{name}/shapes", list(shapes), f"{REFERENCE!r} among them")
     gaps = _gaps(asked["gaps"], spec.path, f"{name}/gaps")
     if not set(gaps) <= set(spec.gaps):
         _fail(spec.path, f"{name}/gaps", list(gaps), f"some of {list(spec.gaps)}")
-    return replace(spec, shapes={s: spec.shapes[s] for s in shapes}, main=tuple(s for s in spec.main if s in shapes), gaps=gaps, limits=limits, scenes=tuple(scenes))
+    return replace(
+        spec,
+        shapes={s: spec.shapes[s] for s in shapes},
+        main=tuple(s for s in spec.main if s in shapes),
+        gaps=gaps,
+        limits=limits,
+        scenes=tuple(scenes),
+    )
 
 
 def cells(spec: Spec) -> list[Cell]:
-    return [Cell(scene.label, resolution, shape, limit, theta)
-            for scene in spec.scenes for resolution in scene.resolutions for limit in scene.limits for shape in spec.shapes for theta in spec.gaps]
+    return [
+        Cell(scene.label, resolution, shape, limit, theta)
+        for scene in spec.scenes
+        for resolution in scene.resolutions
+        for limit in scene.limits
+        for shape in spec.shapes
+        for theta in spec.gaps
+    ]
 
 
 def _log_slope(u: float) -> float:
@@ -158,31 +239,63 @@ def _log_slope(u: float) -> float:
 
 
 def limit_settings(limit: str, shape: str, argument: str, theta: float) -> dict:
-    """Of the strain limit. Matching has one theta for contact and limit; where contact alone varies, the scale undoes what theta does to the limit."""
+    """Of the strain limit. Matching has one theta for contact and limit; where contact alone varies, the
+    scale undoes what theta does to the limit.
+    """
     if limit == "off":
         return {"/strain_limit/enabled": False}
     if limit == "on":
-        return {"/strain_limit/shape": shape, "/strain_limit/argument": argument, "/strain_limit/stiffness_policy": {"name": "fixed"}}
-    return {"/strain_limit/shape": "log", "/strain_limit/argument": "gap",
-            "/strain_limit/stiffness_policy": {"name": "fixed", "scale": _log_slope(theta) / _log_slope(LIMIT_THETA)}}
+        return {
+            "/strain_limit/shape": shape,
+            "/strain_limit/argument": argument,
+            "/strain_limit/stiffness_policy": {"name": "fixed"},
+        }
+    return {
+        "/strain_limit/shape": "log",
+        "/strain_limit/argument": "gap",
+        "/strain_limit/stiffness_policy": {
+            "name": "fixed",
+            "scale": _log_slope(theta) / _log_slope(LIMIT_THETA),
+        },
+    }
 
 
 def settings(spec: Spec, cell: Cell) -> dict:
     """Overrides of the base config: pointer -> value."""
     scene = next(s for s in spec.scenes if s.label == cell.scene)
     shape, argument = spec.shapes[cell.shape]
-    formulation = {"name": cell.shape, "shape": shape, "argument": argument, "stiffness_policy": {"name": "fixed"}}
+    formulation = {
+        "name": cell.shape,
+        "shape": shape,
+        "argument": argument,
+        "stiffness_policy": {"name": "fixed"},
+    }
     kept = {**scene.settings, **scene.resolutions[cell.resolution]}
     if "/formulation/d_hat_m" in kept:
         formulation["d_hat_m"] = kept.pop("/formulation/d_hat_m")
-    return kept | {"/formulation": formulation, "/matching/theta": cell.theta} | limit_settings(cell.limit, shape, argument, cell.theta)
+    return (
+        kept
+        | {"/formulation": formulation, "/matching/theta": cell.theta}
+        | limit_settings(cell.limit, shape, argument, cell.theta)
+    )
 
 
-COMMON = {"/threads": 1, "/matching/rule": "equal_force", "/passes": {"time": False, "diagnose": True, "audit": True}, "/diagnose/tier": 4,
-          "/diagnose/scalings": ["none", "block_jacobi"], "/diagnose/stages": ["full", "without_contact"]}
+COMMON = {
+    "/threads": 1,
+    "/matching/rule": "equal_force",
+    "/passes": {"time": False, "diagnose": True, "audit": True},
+    "/diagnose/tier": 4,
+    "/diagnose/scalings": ["none", "block_jacobi"],
+    "/diagnose/stages": ["full", "without_contact"],
+}
 
 
 def make_sweep(spec: Spec, wanted: list[Cell]) -> Sweep:
     """The runs of some cells as one sweep file; those of one scene and resolution share their pilots."""
     name = f"gap_map_{spec.name}"
-    return sweep(name, spec.base, COMMON | spec.common, [{"label": cell.label, "set": settings(spec, cell)} for cell in wanted])
+    return sweep(
+        name,
+        spec.base,
+        COMMON | spec.common,
+        [{"label": cell.label, "set": settings(spec, cell)} for cell in wanted],
+    )

@@ -6,17 +6,19 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..errors import UserError
 from ..program import read_object
 from ..whole_file import write_whole
 from .rows import COLUMNS
-from .spec import GapMapError
 
 SCHEMA = "barrierbench.gap_map_result/1"
 
 
 @dataclass
 class Map:
-    about: dict  # command, sha256 of the spec, shapes, main, gaps, limits, scenes, digests of places, and the sources: what measured the rows
+    # command, sha256 of the spec, shapes, main, gaps, limits, scenes, digests of places, and the sources:
+    # what measured the rows
+    about: dict
     rows: list[dict] = field(default_factory=list)
 
     @property
@@ -37,14 +39,23 @@ class Map:
 
 
 def write(found: Map, path: Path) -> None:
-    rows = ",\n  ".join(json.dumps([row[c] for c in COLUMNS], separators=(",", ":"), allow_nan=False) for row in found.rows)
+    rows = ",\n  ".join(
+        json.dumps([row[c] for c in COLUMNS], separators=(",", ":"), allow_nan=False) for row in found.rows
+    )
     about = ",\n  ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in found.about.items())
-    write_whole(path, f'{{"schema": "{SCHEMA}",\n "about": {{\n  {about}}},\n "columns": {json.dumps(COLUMNS)},\n "rows": [\n  {rows}]}}\n')
+    write_whole(
+        path,
+        f'{{"schema": "{SCHEMA}",\n "about": {{\n  {about}}},\n "columns": {json.dumps(COLUMNS)},\n "rows":'
+        f" [\n  {rows}]}}\n",
+    )
 
 
 def read(path: Path) -> Map:
-    """Errors: GapMapError."""
-    data = read_object(path, GapMapError)
+    """Errors: UserError."""
+    data = read_object(path)
     if data.get("schema") != SCHEMA or data.get("columns") != list(COLUMNS):
-        raise GapMapError(f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with {list(COLUMNS)} is needed: ./bench gap-map")
+        raise UserError(
+            f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with"
+            f" {list(COLUMNS)} is needed: ./bench gap-map"
+        )
     return Map(data["about"], [dict(zip(COLUMNS, row)) for row in data["rows"]])

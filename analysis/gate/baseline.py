@@ -7,6 +7,7 @@ import math
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..errors import UserError
 from ..whole_file import write_whole
 from .drift import First, digest
 from .envelope import Envelope
@@ -15,10 +16,6 @@ from .metrics import DIRECTIONS, Metric
 NAME, MAJOR, VERSION = "barrierbench.baseline", "1", "1.2.0"
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "results" / "baselines"
-
-
-class BaselineError(ValueError):
-    """A file that is no baseline of this version, or not of what it is asked about."""
 
 
 @dataclass
@@ -35,10 +32,22 @@ class Kept:
 
     def json(self) -> dict:
         e = self.envelope
-        line = {"class": self.gate_class, "value": e.value, "lower": e.lower, "upper": e.upper, "unit": self.unit,
-                "direction": self.direction, "n": e.n}
-        return (line | ({"sample": list(e.sample)} if e.sample else {}) | ({"xfail": self.xfail} if self.xfail else {})
-                | ({"scatter": self.scatter} if self.scatter else {}) | ({"first": self.first.json()} if self.first else {}))
+        line = {
+            "class": self.gate_class,
+            "value": e.value,
+            "lower": e.lower,
+            "upper": e.upper,
+            "unit": self.unit,
+            "direction": self.direction,
+            "n": e.n,
+        }
+        return (
+            line
+            | ({"sample": list(e.sample)} if e.sample else {})
+            | ({"xfail": self.xfail} if self.xfail else {})
+            | ({"scatter": self.scatter} if self.scatter else {})
+            | ({"first": self.first.json()} if self.first else {})
+        )
 
 
 @dataclass
@@ -52,7 +61,9 @@ class Baseline:
     scene: dict = field(default_factory=dict)
     made_by: dict = field(default_factory=dict)
     unsteady: list[str] = field(default_factory=list)  # numbers that only some of the copies had: not judged
-    drifts: list[dict] = field(default_factory=list)  # drifts that were accepted on purpose: when, why, and from what to what
+    drifts: list[dict] = field(
+        default_factory=list
+    )  # drifts that were accepted on purpose: when, why, and from what to what
 
     @property
     def record_version(self) -> str | None:
@@ -60,10 +71,19 @@ class Baseline:
         return self.calibrated_at.get("record_version")
 
     def json(self) -> dict:
-        return {"schema": {"name": NAME, "version": VERSION}, "case": self.case, "kind": self.kind, "reason": self.reason,
-                "calibrated_at": self.calibrated_at, "made_by": self.made_by, "scene": self.scene, "config": self.config,
-                **({"unsteady": self.unsteady} if self.unsteady else {}), **({"drifts": self.drifts} if self.drifts else {}),
-                "metrics": {name: kept.json() for name, kept in sorted(self.metrics.items())}}
+        return {
+            "schema": {"name": NAME, "version": VERSION},
+            "case": self.case,
+            "kind": self.kind,
+            "reason": self.reason,
+            "calibrated_at": self.calibrated_at,
+            "made_by": self.made_by,
+            "scene": self.scene,
+            "config": self.config,
+            **({"unsteady": self.unsteady} if self.unsteady else {}),
+            **({"drifts": self.drifts} if self.drifts else {}),
+            "metrics": {name: kept.json() for name, kept in sorted(self.metrics.items())},
+        }
 
 
 def keep(metric: Metric, envelope: Envelope) -> Kept:
@@ -79,7 +99,7 @@ def _first(place: str, line: dict, made_by: str) -> First | None:
     if first is None:
         return None
     if not isinstance(first, dict) or not _finite(first.get("value")):
-        raise BaselineError(f"{place}/first: {first!r}; an object with a finite value is needed")
+        raise UserError(f"{place}/first: {first!r}; an object with a finite value is needed")
     words = {key: str(first.get(key, "")) for key in ("date", "commit", "reason", "made_by")}
     return First(first["value"], **words, here=bool(made_by) and words["made_by"] == made_by)
 
@@ -91,42 +111,76 @@ def _finite(value) -> bool:
 def _line(path: Path, name: str, line, made_by: str) -> Kept:
     place = f"{path}: /metrics/{name}"
     if not isinstance(line, dict):
-        raise BaselineError(f"{place}: no object")
+        raise UserError(f"{place}: no object")
     for key in ("value", "lower", "upper"):
         if not _finite(line.get(key)):
-            raise BaselineError(f"{place}/{key}: {line.get(key)!r}; a finite number is needed")
+            raise UserError(f"{place}/{key}: {line.get(key)!r}; a finite number is needed")
     if not line["lower"] <= line["value"] <= line["upper"]:
-        raise BaselineError(f"{place}: value {line['value']} outside its own envelope [{line['lower']}, {line['upper']}]")
+        raise UserError(
+            f"{place}: value {line['value']} outside its own envelope [{line['lower']}, {line['upper']}]"
+        )
     if line.get("class") not in ("III", "IV", "V"):
-        raise BaselineError(f"{place}/class: {line.get('class')!r}; III, IV or V (classes I and II are exact and have no baseline)")
+        raise UserError(
+            f"{place}/class: {line.get('class')!r}; III, IV or V (classes I and II are exact and have no"
+            " baseline)"
+        )
     if line.get("direction") not in DIRECTIONS:
-        raise BaselineError(f"{place}/direction: {line.get('direction')!r}; one of {', '.join(DIRECTIONS)}")
-    envelope = Envelope(line["value"], line["lower"], line["upper"], int(line.get("n", 1)), tuple(line.get("sample", ())))
-    return Kept(line["class"], line.get("unit", ""), line["direction"], envelope, line.get("xfail", ""), float(line.get("scatter") or 0), _first(place, line, made_by))
+        raise UserError(f"{place}/direction: {line.get('direction')!r}; one of {', '.join(DIRECTIONS)}")
+    envelope = Envelope(
+        line["value"], line["lower"], line["upper"], int(line.get("n", 1)), tuple(line.get("sample", ()))
+    )
+    return Kept(
+        line["class"],
+        line.get("unit", ""),
+        line["direction"],
+        envelope,
+        line.get("xfail", ""),
+        float(line.get("scatter") or 0),
+        _first(place, line, made_by),
+    )
 
 
 def read(path: str | Path, case: str | None = None, kind: str | None = None) -> Baseline:
-    """Raises BaselineError with file and place: not there, empty, another version, of another case or kind, a number that is none."""
+    """Raises UserError with file and place: not there, empty, another version, of another case or kind, a
+    number that is none.
+    """
     path = Path(path)
     if not path.is_file():
-        raise BaselineError(f"{path}: no such baseline; `bench calibrate` measures one and `bench accept --reason \"...\"` keeps it")
+        raise UserError(
+            f'{path}: no such baseline; `bench calibrate` measures one and `bench accept --reason "..."`'
+            " keeps it"
+        )
     text = path.read_text(errors="replace")
     if not text.strip():
-        raise BaselineError(f"{path}: empty")
+        raise UserError(f"{path}: empty")
     try:
         data = json.loads(text)
     except ValueError as error:
-        raise BaselineError(f"{path}: not JSON: {error}") from None
+        raise UserError(f"{path}: not JSON: {error}") from None
     schema = data.get("schema") if isinstance(data, dict) else None
-    if not isinstance(schema, dict) or schema.get("name") != NAME or str(schema.get("version", "")).split(".")[0] != MAJOR:
-        raise BaselineError(f"{path}: schema {schema}; this version reads {NAME} {MAJOR}.x.y")
+    if (
+        not isinstance(schema, dict)
+        or schema.get("name") != NAME
+        or str(schema.get("version", "")).split(".")[0] != MAJOR
+    ):
+        raise UserError(f"{path}: schema {schema}; this version reads {NAME} {MAJOR}.x.y")
     for key, wanted in (("case", case), ("kind", kind)):
         if wanted is not None and data.get(key) != wanted:
-            raise BaselineError(f"{path}: a baseline of {key} {data.get(key)!r}, asked about {wanted!r}")
+            raise UserError(f"{path}: a baseline of {key} {data.get(key)!r}, asked about {wanted!r}")
     metrics = data.get("metrics")
     if not isinstance(metrics, dict) or not metrics:
-        raise BaselineError(f"{path}: /metrics is empty: it would judge nothing")
+        raise UserError(f"{path}: /metrics is empty: it would judge nothing")
     made_by = data.get("made_by") or {}
     lines = {name: _line(path, name, line, digest(made_by)) for name, line in metrics.items()}
-    return Baseline(data.get("case", ""), data.get("kind", ""), data.get("reason", ""), data.get("calibrated_at") or {}, lines,
-                    data.get("config") or {}, data.get("scene") or {}, made_by, data.get("unsteady") or [], data.get("drifts") or [])
+    return Baseline(
+        data.get("case", ""),
+        data.get("kind", ""),
+        data.get("reason", ""),
+        data.get("calibrated_at") or {},
+        lines,
+        data.get("config") or {},
+        data.get("scene") or {},
+        made_by,
+        data.get("unsteady") or [],
+        data.get("drifts") or [],
+    )

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import json
-import subprocess
 
-from .cases import GateError, program
+from ..errors import UserError
+from ..program import started
+from .cases import program
 from .finding import Finding
 
 CASE = "build"
@@ -13,16 +14,26 @@ CASE = "build"
 
 def findings_of(report: dict) -> list[Finding]:
     """A line for every check of a report; none that judged nothing passes."""
-    return [Finding(CASE, "I", check["name"], "pass" if check["pass"] and check["subjects"] > 0 else "FAIL", value=check["value"],
-                    reference=check["bound"], judged=check["subjects"], note=check["detail"] or f"of {check['subjects']}")
-            for check in report["checks"]]
+    return [
+        Finding(
+            CASE,
+            "I",
+            check["name"],
+            "pass" if check["pass"] and check["subjects"] > 0 else "FAIL",
+            value=check["value"],
+            reference=check["bound"],
+            judged=check["subjects"],
+            note=check["detail"] or f"of {check['subjects']}",
+        )
+        for check in report["checks"]
+    ]
 
 
 def judge_build() -> list[Finding]:
-    """Raises GateError when the program has no report."""
-    done = subprocess.run([str(program()), "validity", "--json"], capture_output=True, text=True, check=False)
+    """Raises UserError when the program has no report."""
+    done = started("validity", "--json")
     try:
         found = findings_of(json.loads(done.stdout))
     except (ValueError, KeyError, TypeError) as error:
-        raise GateError(f"{program()} validity: no report ({error}): {done.stderr.strip()}") from None
+        raise UserError(f"{program()} validity: no report ({error}): {done.stderr.strip()}") from None
     return found or [Finding(CASE, "I", "validity", "FAIL", judged=0, note="the report has no check")]

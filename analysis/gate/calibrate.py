@@ -1,6 +1,8 @@
-"""Measures what `bench accept` may keep: each case of a set as it is, and 20 copies whose start is perturbed by 1e-12 of its size.
+"""Measures what `bench accept` may keep: each case of a set as it is, and 20 copies whose start is perturbed
+by 1e-12 of its size.
 
-Nothing of results/baselines/ is changed: the proposals stand in results/runs/calibration/ until `bench accept --reason "..."`.
+Nothing of results/baselines/ is changed: the proposals stand in results/runs/calibration/ until `bench accept
+--reason "..."`.
 """
 
 from __future__ import annotations
@@ -11,10 +13,10 @@ import sys
 from collections.abc import Iterator
 from pathlib import Path
 
-from ..record_file import RecordError
+from ..errors import UserError, tells
 from . import baseline, invariants, shares
 from .baseline import Baseline, Kept, keep
-from .cases import ROOT, Case, GateError, jittered, read_set, run_case
+from .cases import ROOT, Case, jittered, read_set, run_case
 from .configs import scene_size
 from .envelope import Envelope, calibrate, scatter_above
 from .finding import failures
@@ -30,7 +32,7 @@ COPIES = 20
 def copies_of(case: Case, out: Path, n: int, size_m: float, first_seed: int = 1) -> Iterator[Run]:
     """Perturbed copies, with 1 and 2 threads in turn."""
     if not size_m > 0:
-        raise GateError(f"{case.name}: the scene has no size to perturb")
+        raise UserError(f"{case.name}: the scene has no size to perturb")
     for k in range(n):
         yield jittered(case, out / f"copy-{k:02d}", first_seed + k, size_m, 1 + k % 2)
 
@@ -39,7 +41,9 @@ MAY_BE_ABSENT = ("1", shares.UNIT)  # units of numbers that a record leaves out 
 
 
 def samples(runs: list[Run]) -> tuple[dict[Metric, list[float]], list[str]]:
-    """The values of every metric, one a run, and the names of those that only some runs have though they are no 0."""
+    """The values of every metric, one a run, and the names of those that only some runs have though they are
+    no 0.
+    """
     measured, values, unsteady = [measure(run) for run in runs], {}, []
     for metric in dict.fromkeys(metric for numbers in measured for metric in numbers):
         if metric.gate_class == "V":
@@ -65,21 +69,39 @@ def envelopes(values: dict[Metric, list[float]]) -> dict[str, Kept]:
 
 
 def propose(case_name: str, runs: list[Run], reason: str = "") -> Baseline:
-    """What a baseline of these runs would be. Raises GateError when one of them breaks an invariant: that is never accepted."""
-    red = [f for run in runs for f in failures(invariants.judge(f"{case_name}: {run.path}", run, foreign=True))]
+    """What a baseline of these runs would be. Raises UserError when one of them breaks an invariant: that is
+    never accepted.
+    """
+    red = [
+        f for run in runs for f in failures(invariants.judge(f"{case_name}: {run.path}", run, foreign=True))
+    ]
     if red:
-        raise GateError("\n".join(["a run that breaks an invariant (class I) makes no baseline:",
-                                   *(f"  {f.case}: {f.metric}: {f.note}" for f in red)]))
+        raise UserError(
+            "\n".join(
+                [
+                    "a run that breaks an invariant (class I) makes no baseline:",
+                    *(f"  {f.case}: {f.metric}: {f.note}" for f in red),
+                ]
+            )
+        )
     versions = sorted({run.version for run in runs})
     if len(versions) > 1:
-        raise GateError(f"{case_name}: records of versions {', '.join(versions)}: a baseline is of records of one version")
+        raise UserError(
+            f"{case_name}: records of versions {', '.join(versions)}: a baseline is of records of one version"
+        )
     values, unsteady = samples(runs)
     first, kept = runs[0], envelopes(values)
     if not kept:
-        raise GateError(f"{case_name}: no number that all {len(runs)} records have")
+        raise UserError(f"{case_name}: no number that all {len(runs)} records have")
     provenance, seeds = first.section("provenance"), runs[-1].section("config").get("seeds") or {}
-    at = {"commit": provenance.get("git_commit", ""), "dirty": provenance.get("git_dirty"), "runs": len(runs),
-          "jitter_m": seeds.get("jitter_m", 0), "date": datetime.date.today().isoformat(), "record_version": first.version}
+    at = {
+        "commit": provenance.get("git_commit", ""),
+        "dirty": provenance.get("git_dirty"),
+        "runs": len(runs),
+        "jitter_m": seeds.get("jitter_m", 0),
+        "date": datetime.date.today().isoformat(),
+        "record_version": first.version,
+    }
     config = {key: value for key, value in first.section("config").items() if key not in ("threads", "seeds")}
     return Baseline(case_name, "run", reason, at, kept, config, scene_size(first), first.made_by, unsteady)
 
@@ -93,27 +115,38 @@ def calibrate_case(case: Case, out: Path, copies: int) -> Baseline:
     return proposal
 
 
+@tells("calibrate")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench calibrate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="bench calibrate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--set", default="small", help="configs/gates/SET.json (default: small)")
-    parser.add_argument("--case", action="append", default=[], metavar="TEXT", help="only cases whose name contains it (repeatable)")
+    parser.add_argument(
+        "--case",
+        action="append",
+        default=[],
+        metavar="TEXT",
+        help="only cases whose name contains it (repeatable)",
+    )
     parser.add_argument("--copies", type=int, default=COPIES, help=f"perturbed copies (default: {COPIES})")
-    parser.add_argument("--out", type=Path, default=OUT, metavar="DIR", help="default: results/runs/calibration")
+    parser.add_argument(
+        "--out", type=Path, default=OUT, metavar="DIR", help="default: results/runs/calibration"
+    )
     args = parser.parse_args(argv)
     if args.copies < 1:
         parser.error(f"--copies {args.copies}: at least 1")
-    try:
-        for case in read_set(args.set):
-            if args.case and not any(word in case.name for word in args.case):
-                continue
-            proposal = calibrate_case(case, args.out / case.name, args.copies)
-            path = args.out / f"{case.name}.json"
-            baseline.write(proposal, path)
-            chaotic = sorted(name for name, kept in proposal.metrics.items() if kept.envelope.sample)
-            print(f"{path}: {len(proposal.metrics)} metrics of {args.copies + 1} runs{'; chaotic: ' + ', '.join(chaotic) if chaotic else ''}"
-                  f"{'; not in all runs, so not judged: ' + ', '.join(proposal.unsteady) if proposal.unsteady else ''}")
-    except (GateError, RecordError) as error:
-        print(f"bench calibrate: {error}", file=sys.stderr)
-        return 2
+    for case in read_set(args.set):
+        if args.case and not any(word in case.name for word in args.case):
+            continue
+        proposal = calibrate_case(case, args.out / case.name, args.copies)
+        path = args.out / f"{case.name}.json"
+        baseline.write(proposal, path)
+        chaotic = sorted(name for name, kept in proposal.metrics.items() if kept.envelope.sample)
+        words = [f"{path}: {len(proposal.metrics)} metrics of {args.copies + 1} runs"]
+        if chaotic:
+            words.append(f"chaotic: {', '.join(chaotic)}")
+        if proposal.unsteady:
+            words.append(f"not in all runs, so not judged: {', '.join(proposal.unsteady)}")
+        print("; ".join(words))
     print('bench calibrate: ./bench accept --reason "..." makes these the baselines', file=sys.stderr)
     return 0

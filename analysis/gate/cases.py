@@ -7,16 +7,13 @@ import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..errors import UserError
 from ..program import built_program
+from ..spec_file import read_spec
 from .records import Run, read_run
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "configs" / "gates"
-NAME = "barrierbench.gates/1"
-
-
-class GateError(ValueError):
-    """A set that cannot be read, or a program that cannot be run."""
 
 
 @dataclass(frozen=True)
@@ -33,42 +30,60 @@ def sets() -> list[str]:
 
 
 def read_set(name: str) -> list[Case]:
-    """Every scene with every formulation of the set, then with those of its own. Raises GateError with file and place."""
+    """Every scene with every formulation of the set, then with those of its own. Raises UserError with file
+    and place.
+    """
     path = FOLDER / f"{name}.json"
     if not path.is_file():
-        raise GateError(f"set {name!r}: one of {', '.join(sets())} (configs/gates/)")
-    try:
-        data = json.loads(path.read_text())
-    except ValueError as error:
-        raise GateError(f"{path}: not JSON: {error}") from None
-    if data.get("schema") != NAME:
-        raise GateError(f"{path}: schema {data.get('schema')!r}; {NAME!r} is needed")
-    cases = [Case(f"{scene['name']}-{formulation['name']}", (path.parent / scene["config"]).resolve(),
-                  {**data.get("set", {}), **scene.get("set", {}), **formulation.get("set", {})}, scene.get("instructions", False), scene.get("resumed", False))
-             for scene in data.get("scenes", []) for formulation in [*data.get("formulations", []), *scene.get("formulations", [])]]
+        raise UserError(f"set {name!r}: one of {', '.join(sets())} (configs/gates/)")
+    data = read_spec(path, "gates")
+    cases = [
+        Case(
+            f"{scene['name']}-{formulation['name']}",
+            (path.parent / scene["config"]).resolve(),
+            {**data.get("set", {}), **scene.get("set", {}), **formulation.get("set", {})},
+            scene.get("instructions", False),
+            scene.get("resumed", False),
+        )
+        for scene in data.get("scenes", [])
+        for formulation in [*data.get("formulations", []), *scene.get("formulations", [])]
+    ]
     if not cases:
-        raise GateError(f"{path}: no case: it needs scenes and formulations")
+        raise UserError(f"{path}: no case: it needs scenes and formulations")
     return cases
 
 
 def program() -> Path:
-    return built_program(GateError)
+    return built_program()
 
 
 def command(case: Case, out: Path, threads: int, more: dict) -> list[str]:
     settings = {**case.set, "/threads": threads, **more}
-    return [str(program()), "run", str(case.config), "--out", str(out),
-            *(word for pointer, value in settings.items() for word in ("--set", f"{pointer}={json.dumps(value)}"))]
+    return [
+        str(program()),
+        "run",
+        str(case.config),
+        "--out",
+        str(out),
+        *(
+            word
+            for pointer, value in settings.items()
+            for word in ("--set", f"{pointer}={json.dumps(value)}")
+        ),
+    ]
 
 
 def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
-    """Runs it and reads its record. A failed run has a record too. Raises GateError when there is none."""
+    """Runs it and reads its record. A failed run has a record too. Raises UserError when there is none."""
     settings = {"/" + name.replace("__", "/"): value for name, value in more.items()}
     # A record of an earlier call must not stand in for one that this program fails to write.
     (out / "run.json").unlink(missing_ok=True)
     done = subprocess.run(command(case, out, threads, settings), capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise GateError(f"{case.name}: the program ended with {done.returncode}: {done.stderr.strip() or done.stdout.strip()}")
+        raise UserError(
+            f"{case.name}: the program ended with {done.returncode}:"
+            f" {done.stderr.strip() or done.stdout.strip()}"
+        )
     return read_run(out, allow_not_finite=True)
 
 

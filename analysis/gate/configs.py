@@ -1,4 +1,5 @@
-"""Which settings of two configs differ. The number of threads and the jitter of the start change no method."""
+"""Which settings of two configs differ. The number of threads and the jitter of the start change no
+method."""
 
 from __future__ import annotations
 
@@ -9,7 +10,11 @@ OF_THE_RUN = ("/passes/", "/output/")
 
 
 def settings(config: dict) -> dict[str, object]:
-    return {place: value for place, value in leaves(config) if place not in NO_METHOD and not place.startswith(OF_THE_RUN)}
+    return {
+        place: value
+        for place, value in leaves(config)
+        if place not in NO_METHOD and not place.startswith(OF_THE_RUN)
+    }
 
 
 def differences(old: dict, new: dict) -> list[str]:
@@ -21,9 +26,15 @@ def differences(old: dict, new: dict) -> list[str]:
 
 
 def contradictions(old: dict, new: dict) -> list[str]:
-    """As differences(), but a setting that only the later program knows is no contradiction: it has its default."""
+    """As differences(), but a setting that only the later program knows is no contradiction: it has its
+    default.
+    """
     return [line for line in differences(old, new) if ": absent and " not in line]
 
 
 def scene_size(run: Run) -> dict[str, object]:
-    return {place: value for place, value in leaves(run.section("scene")) if place != "/extent_m" and not place.startswith("/mesh_sha256")}
+    return {
+        place: value
+        for place, value in leaves(run.section("scene"))
+        if place != "/extent_m" and not place.startswith("/mesh_sha256")
+    }

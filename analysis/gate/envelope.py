@@ -1,4 +1,5 @@
-"""How far a number may move: envelopes from perturbed copies, and distributions for numbers that are chaotic."""
+"""How far a number may move: envelopes from perturbed copies, and distributions for numbers that are
+chaotic."""
 
 from __future__ import annotations
 
@@ -27,7 +28,9 @@ def is_chaotic(metric: Metric, values: np.ndarray) -> bool:
     spread = float(values.max() - values.min())
     if metric.unit == "log10":
         return spread > np.log10(1 + CHAOTIC_SPREAD)
-    if metric.unit == "share":  # a word that turns up in a few copies: its envelope is wide enough, and never wider than all of them
+    if (
+        metric.unit == "share"
+    ):  # a word that turns up in a few copies: its envelope is wide enough, and never wider than all of them
         return False
     return spread > CHAOTIC_SPREAD * abs(float(np.median(values)))
 
@@ -37,8 +40,10 @@ def _in_logarithm(metric: Metric, values: np.ndarray) -> bool:
 
 
 def calibrate(metric: Metric, values) -> Envelope:
-    """[q05 - 1.5 IQR, q95 + 1.5 IQR] of the copies, no tighter than the metric's tolerance round their median. The sample is kept
-    where it is chaotic. A gap has its quantiles in the logarithm, so that no scatter lets it reach 0. Requires at least one finite value."""
+    """[q05 - 1.5 IQR, q95 + 1.5 IQR] of the copies, no tighter than the metric's tolerance round their
+    median. The sample is kept where it is chaotic. A gap has its quantiles in the logarithm, so that no
+    scatter lets it reach 0. Requires at least one finite value.
+    """
     values = np.sort(np.asarray(values, dtype=float))
     if len(values) == 0 or not np.isfinite(values).all():
         raise ValueError(f"{metric.name}: needs finite values, has {values.tolist()}")
@@ -67,7 +72,9 @@ def ks_p_value(old, new) -> float:
 
 
 def holm(p_values: list[float], level: float = KS_LEVEL) -> list[bool]:
-    """Which of a family of tests are significant when all of them together may give one false alarm in 1/level."""
+    """Which of a family of tests are significant when all of them together may give one false alarm in
+    1/level.
+    """
     order = np.argsort(p_values)
     significant = [False] * len(p_values)
     for rank, k in enumerate(order):

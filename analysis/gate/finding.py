@@ -6,7 +6,13 @@ from collections import Counter
 from dataclasses import asdict, dataclass
 
 RED = ("FAIL", "drift")  # drift: further from the first baseline than the last one shows (drift.py)
-JUDGED = ("pass", *RED, "better", "xfail", "xpass")  # the others are said and judge nothing: report, not_judged
+JUDGED = (
+    "pass",
+    *RED,
+    "better",
+    "xfail",
+    "xpass",
+)  # the others are said and judge nothing: report, not_judged
 SAME = 1e-6  # relative: a smaller change is not worth a word
 ALL_CLASSES = ("I", "II", "III", "IV")
 
@@ -43,13 +49,27 @@ def judged(findings: list[Finding]) -> Counter:
 def without_subject(findings: list[Finding], required: tuple[str, ...] = ALL_CLASSES) -> list[Finding]:
     """A failure for each class that has judged nothing: such a gate is no green one."""
     count = judged(findings)
-    return [Finding("all cases", c, "judged", "FAIL", value=0, lower=1, judged=0, note=f"no line of class {c} judged anything")
-            for c in required if count[c] == 0]
+    return [
+        Finding(
+            "all cases",
+            c,
+            "judged",
+            "FAIL",
+            value=0,
+            lower=1,
+            judged=0,
+            note=f"no line of class {c} judged anything",
+        )
+        for c in required
+        if count[c] == 0
+    ]
 
 
 def moved(value: float, reference: float, unit: str) -> str:
     """Direction and size of a change."""
-    if value == reference or abs(value - reference) < SAME * max(abs(reference), 1.0 if unit == "log10" else 0.0):
+    if value == reference or abs(value - reference) < SAME * max(
+        abs(reference), 1.0 if unit == "log10" else 0.0
+    ):
         return "same"
     word = "higher" if value > reference else "lower"
     if unit == "log10":

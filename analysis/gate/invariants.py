@@ -1,4 +1,6 @@
-"""Class I: what must hold exactly, with no tolerance. Each check counts what it judged, and judging nothing is a failure."""
+"""Class I: what must hold exactly, with no tolerance. Each check counts what it judged, and judging nothing
+is a failure.
+"""
 
 from __future__ import annotations
 
@@ -11,7 +13,12 @@ from .. import fields
 from .finding import Finding
 from .records import Run, leaves, not_finite
 
-NOT_A_SPECTRUM = ("not_pd", "singular", "not_converged", "non_finite")  # statuses that no clamped matrix may have
+NOT_A_SPECTRUM = (
+    "not_pd",
+    "singular",
+    "not_converged",
+    "non_finite",
+)  # statuses that no clamped matrix may have
 
 
 @dataclass(frozen=True)
@@ -26,7 +33,9 @@ def _outcome(run: Run) -> Checked:
     failed = [c.get("name", "?") for c in checks if not c.get("pass")]
     bad = status.get("outcome") != "ok"
     note = f"{status.get('outcome')}: {status.get('detail', '')}" if bad else ", ".join(failed)
-    return Checked(len(checks) + ("outcome" in status), len(failed) + bad + (status.get("valid", True) is not True), note)
+    return Checked(
+        len(checks) + ("outcome" in status), len(failed) + bad + (status.get("valid", True) is not True), note
+    )
 
 
 def _audit(run: Run) -> Checked:
@@ -35,7 +44,9 @@ def _audit(run: Run) -> Checked:
     if not audit.get("enabled"):
         return Checked(0, 1, "the audit did not run")
     idle = [name for name in ("states", "motions") if not audit.get(name)]
-    return Checked(int(audit.get("judged") or 0), len(idle), f"no {' and no '.join(idle)} judged" if idle else "")
+    return Checked(
+        int(audit.get("judged") or 0), len(idle), f"no {' and no '.join(idle)} judged" if idle else ""
+    )
 
 
 def _audit_count(name: str):
@@ -43,8 +54,11 @@ def _audit_count(name: str):
         audit = run.section("audit")
         judged, found = audit.get("judged"), audit.get(name)
         if not isinstance(found, int):  # absent, null, a word
-            return Checked(judged if isinstance(judged, int) else 0, 1, f"audit/{name} is {json.dumps(found)}, no count")
+            return Checked(
+                judged if isinstance(judged, int) else 0, 1, f"audit/{name} is {json.dumps(found)}, no count"
+            )
         return Checked(judged if isinstance(judged, int) else 0, found)
+
     return check
 
 
@@ -56,7 +70,9 @@ def _numbers(run: Run) -> Checked:
 
 
 def _matrices(run: Run) -> Checked:
-    """Of clamped matrices, which are positive definite by construction. Solved ones may fail: Newton then raises its level."""
+    """Of clamped matrices, which are positive definite by construction. Solved ones may fail: Newton then
+    raises its level.
+    """
     statuses: dict[str, int] = {}
     for matrix, conditioning in (run.section("summary").get("cond") or {}).items():
         if not matrix.startswith("solved/"):
@@ -76,7 +92,10 @@ def _trace(run: Run) -> Checked:
 
 def _schema(run: Run) -> Checked:
     validator = jsonschema.Draft202012Validator(fields.schema("run"))
-    errors = [f"/{'/'.join(map(str, e.absolute_path))}: {e.message}"[:200] for e in validator.iter_errors(run.record)]
+    errors = [
+        f"/{'/'.join(map(str, e.absolute_path))}: {e.message}"[:200]
+        for e in validator.iter_errors(run.record)
+    ]
     return Checked(len(run.record), len(errors), errors[0] if errors else "")
 
 
@@ -92,21 +111,46 @@ CHECKS = {
     "trace": _trace,
 }
 # What a record of another program cannot be blamed for when the section is not there at all.
-SECTION_OF = {"audit": "audit", "crossings": "audit", "violations": "audit", "unproven": "audit", "matrices": "summary"}
+SECTION_OF = {
+    "audit": "audit",
+    "crossings": "audit",
+    "violations": "audit",
+    "unproven": "audit",
+    "matrices": "summary",
+}
 
 
 def judge(case: str, run: Run, foreign: bool = False) -> list[Finding]:
-    """A line a check. foreign: a record that our program may not have written; sections that it lacks judge nothing and say so."""
+    """A line a check. foreign: a record that our program may not have written; sections that it lacks judge
+    nothing and say so.
+    """
     findings = []
     for name, check in CHECKS.items():
-        absent = foreign and ((name in SECTION_OF and SECTION_OF[name] not in run.record) or (name == "trace" and not run.has_trace)
-                              or (name == "schema") or (name == "matrices" and not run.section("summary").get("cond"))
-                              or (SECTION_OF.get(name) == "audit" and not run.section("audit").get("enabled")))
+        absent = foreign and (
+            (name in SECTION_OF and SECTION_OF[name] not in run.record)
+            or (name == "trace" and not run.has_trace)
+            or (name == "schema")
+            or (name == "matrices" and not run.section("summary").get("cond"))
+            or (SECTION_OF.get(name) == "audit" and not run.section("audit").get("enabled"))
+        )
         if absent:
-            findings.append(Finding(case, "I", name, "not_judged", judged=0, note="the record has no such part"))
+            findings.append(
+                Finding(case, "I", name, "not_judged", judged=0, note="the record has no such part")
+            )
             continue
         result = check(run)
         note = result.note or ("judged nothing" if result.judged == 0 else f"of {result.judged}")
-        findings.append(Finding(case, "I", name, "pass" if result.faults == 0 and result.judged > 0 else "FAIL",
-                                value=result.faults, reference=0, unit="1", judged=result.judged, note=note))
+        findings.append(
+            Finding(
+                case,
+                "I",
+                name,
+                "pass" if result.faults == 0 and result.judged > 0 else "FAIL",
+                value=result.faults,
+                reference=0,
+                unit="1",
+                judged=result.judged,
+                note=note,
+            )
+        )
     return findings

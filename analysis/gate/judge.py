@@ -1,4 +1,6 @@
-"""Verdicts on the numbers of a run: class III inside its envelope, class IV at most 3% dearer each and 1% together, or what copies differ by."""
+"""Verdicts on the numbers of a run: class III inside its envelope, class IV at most 3% dearer each and 1%
+together, or what copies differ by.
+"""
 
 from __future__ import annotations
 
@@ -12,7 +14,10 @@ from .metrics import LOWER_BETTER, UPPER_BETTER, Metric
 
 COST_EACH, COST_TOGETHER = 1.03, 1.01
 NOT_OF_A_RECORD = ("instructions",)  # counted in a run of its own (instructions.py)
-NOT_IN_THE_BASELINE = ("FAIL", "not in the baseline: accept it (bench calibrate, bench accept)")  # verdict and note
+NOT_IN_THE_BASELINE = (
+    "FAIL",
+    "not in the baseline: accept it (bench calibrate, bench accept)",
+)  # verdict and note
 NOT_IN_THE_REFERENCE = ("FAIL", "not in the reference")
 NOT_JUDGED = ("not_judged", "not in the reference, which is of another config or version")
 
@@ -22,12 +27,31 @@ def around(values: dict[Metric, float]) -> dict[str, Kept]:
     return {metric.name: keep(metric, calibrate(metric, [value])) for metric, value in values.items()}
 
 
-def _finding(case: str, name: str, kept: Kept, value: float, verdict: str, lower: float | None, upper: float, note: str = "") -> Finding:
+def _finding(
+    case: str,
+    name: str,
+    kept: Kept,
+    value: float,
+    verdict: str,
+    lower: float | None,
+    upper: float,
+    note: str = "",
+) -> Finding:
     if kept.xfail:
         verdict, note = ("xfail" if verdict in RED else "xpass"), f"expected to fail: {kept.xfail}"
     change = moved(value, kept.envelope.value, kept.unit)
-    return Finding(case, kept.gate_class, name, verdict, value, kept.envelope.value, lower, upper, kept.unit,
-                   note="; ".join(text for text in (change if change != "same" else "", note) if text))
+    return Finding(
+        case,
+        kept.gate_class,
+        name,
+        verdict,
+        value,
+        kept.envelope.value,
+        lower,
+        upper,
+        kept.unit,
+        note="; ".join(text for text in (change if change != "same" else "", note) if text),
+    )
 
 
 def outside(direction: str, value: float, lower: float, upper: float) -> str:
@@ -39,18 +63,25 @@ def outside(direction: str, value: float, lower: float, upper: float) -> str:
 
 
 def dearer(kept: Kept) -> float:
-    """How many times a cost may be what it was, on the machine of the baseline: 3%, or what copies of one and the same program differ by."""
+    """How many times a cost may be what it was, on the machine of the baseline: 3%, or what copies of one and
+    the same program differ by.
+    """
     return max(COST_EACH, kept.scatter / kept.envelope.value) if kept.envelope.value > 0 else COST_EACH
 
 
 def drifted(kept: Kept, value: float, same_build_kind: bool) -> str:
-    """What a value that the last baseline passes says against the first one: empty when it has not drifted."""
+    """What a value that the last baseline passes says against the first one: empty when it has not
+    drifted."""
     first, e = kept.first, kept.envelope
     if first is None:
         return ""
     each = dearer(kept) if kept.gate_class == "IV" and same_build_kind and first.here else None
     lower, upper = drift.limits(first.value, e.value, e.lower, e.upper, kept.unit, each)
-    return drift.note(first, lower, upper, moved(value, first.value, kept.unit)) if outside(kept.direction, value, lower, upper) == "FAIL" else ""
+    return (
+        drift.note(first, lower, upper, moved(value, first.value, kept.unit))
+        if outside(kept.direction, value, lower, upper) == "FAIL"
+        else ""
+    )
 
 
 def _held(kept: Kept, value: float, verdict: str, same_build_kind: bool = False) -> tuple[str, str]:
@@ -66,10 +97,14 @@ def _numeric(case: str, name: str, kept: Kept, value: float) -> Finding:
 
 
 def _cost(case: str, name: str, kept: Kept, value: float, same_build_kind: bool) -> Finding:
-    """Elsewhere than on the machine of the baseline rounding differs, and with it what the perturbed copies differ in."""
+    """Elsewhere than on the machine of the baseline rounding differs, and with it what the perturbed copies
+    differ in.
+    """
     e = kept.envelope
     upper = dearer(kept) * e.value if same_build_kind else max(COST_EACH * e.value, e.upper)
-    verdict = "FAIL" if value > upper else "better" if value < e.value / COST_EACH and same_build_kind else "pass"
+    verdict = (
+        "FAIL" if value > upper else "better" if value < e.value / COST_EACH and same_build_kind else "pass"
+    )
     verdict, note = _held(kept, value, verdict, same_build_kind)
     return _finding(case, name, kept, value, verdict, None, upper, note)
 
@@ -78,8 +113,19 @@ def _together(case: str, ratios: list[float], scatter: list[float]) -> Finding:
     """scatter: what copies of each cost reach, over its value."""
     mean, copies = (float(np.exp(np.mean(np.log(values)))) for values in (ratios, scatter))
     upper = max(COST_TOGETHER, copies)
-    return Finding(case, "IV", "geometric mean", "FAIL" if mean > upper else "pass", mean, 1.0, None, upper, "ratio",
-                   judged=len(ratios), note=f"of {len(ratios)} costs")
+    return Finding(
+        case,
+        "IV",
+        "geometric mean",
+        "FAIL" if mean > upper else "pass",
+        mean,
+        1.0,
+        None,
+        upper,
+        "ratio",
+        judged=len(ratios),
+        note=f"of {len(ratios)} costs",
+    )
 
 
 def _new(case: str, metric: Metric, value: float, new: tuple[str, str]) -> Finding:
@@ -89,21 +135,38 @@ def _new(case: str, metric: Metric, value: float, new: tuple[str, str]) -> Findi
         verdict = "report"
     elif metric.gate_class == "IV" and value == 0:
         verdict = "not_judged"
-    return Finding(case, metric.gate_class, metric.name, verdict, value, unit=metric.unit, judged=0, note=note)
+    return Finding(
+        case, metric.gate_class, metric.name, verdict, value, unit=metric.unit, judged=0, note=note
+    )
 
 
 def _absent(case: str, name: str, k: Kept, seen: set[str]) -> Finding:
-    """A number that the run does not have: a share of a family that it has, or a count that may be 0, is 0; else it has vanished."""
+    """A number that the run does not have: a share of a family that it has, or a count that may be 0, is 0;
+    else it has vanished.
+    """
     e = k.envelope
     counted = k.unit == shares.UNIT and shares.family_of(name) in seen
     if k.gate_class == "III" and (counted or (k.unit == "1" and e.lower <= 0)):
         return _numeric(case, name, k, 0.0)
-    return Finding(case, k.gate_class, name, "not_judged" if k.gate_class == "V" else "FAIL", None, e.value, e.lower, e.upper, k.unit,
-                   judged=0, note="the run has no such number any more")
+    return Finding(
+        case,
+        k.gate_class,
+        name,
+        "not_judged" if k.gate_class == "V" else "FAIL",
+        None,
+        e.value,
+        e.lower,
+        e.upper,
+        k.unit,
+        judged=0,
+        note="the run has no such number any more",
+    )
 
 
 def _unseen(case: str, metric: Metric, value: float, new: tuple[str, str], seen: set[str]) -> Finding:
-    """A word that no copy had is judged against the share 0; what else is new has nothing that it could be judged against."""
+    """A word that no copy had is judged against the share 0; what else is new has nothing that it could be
+    judged against.
+    """
     if metric.unit == shares.UNIT and shares.family_of(metric.name) in seen:
         return _numeric(case, metric.name, keep(metric, calibrate(metric, [0.0])), value)
     return _new(case, metric, value, new)
@@ -113,10 +176,21 @@ def _families(metrics) -> set[str]:
     return {shares.family_of(name) for name, unit in metrics if unit == shares.UNIT}
 
 
-def numbers(case: str, kept: dict[str, Kept], values: dict[Metric, float], same_build_kind: bool, new: tuple[str, str] = NOT_IN_THE_BASELINE) -> list[Finding]:
-    """A line for every metric of either side. Chaotic ones are left to distributions(). new: verdict and note of what only the run has."""
+def numbers(
+    case: str,
+    kept: dict[str, Kept],
+    values: dict[Metric, float],
+    same_build_kind: bool,
+    new: tuple[str, str] = NOT_IN_THE_BASELINE,
+) -> list[Finding]:
+    """A line for every metric of either side. Chaotic ones are left to distributions(). new: verdict and note
+    of what only the run has.
+    """
     findings, ratios, scatter, found = [], [], [], {metric.name: value for metric, value in values.items()}
-    here, there = _families((m.name, m.unit) for m in values), _families((name, k.unit) for name, k in kept.items())
+    here, there = (
+        _families((m.name, m.unit) for m in values),
+        _families((name, k.unit) for name, k in kept.items()),
+    )
     for name, k in kept.items():
         if name in NOT_OF_A_RECORD:
             continue
@@ -136,7 +210,11 @@ def numbers(case: str, kept: dict[str, Kept], values: dict[Metric, float], same_
             findings.append(_numeric(case, name, k, value))
     if ratios and same_build_kind:
         findings.append(_together(case, ratios, scatter))
-    return findings + [_unseen(case, metric, value, new, there) for metric, value in values.items() if metric.name not in kept]
+    return findings + [
+        _unseen(case, metric, value, new, there)
+        for metric, value in values.items()
+        if metric.name not in kept
+    ]
 
 
 def distributions(samples: list[tuple[str, str, Kept, list[float]]]) -> list[Finding]:
@@ -147,7 +225,18 @@ def distributions(samples: list[tuple[str, str, Kept, list[float]]]) -> list[Fin
         note = f"chaotic: {len(values)} copies against {len(kept.envelope.sample)}, KS p = {p:.2g}"
         e, middle = kept.envelope, float(np.median(values))
         verdict, more = _held(kept, middle, "FAIL" if red else "pass")
-        findings.append(_finding(case, name, kept, middle, verdict, e.lower, e.upper, "; ".join(text for text in (note, more) if text)))
+        findings.append(
+            _finding(
+                case,
+                name,
+                kept,
+                middle,
+                verdict,
+                e.lower,
+                e.upper,
+                "; ".join(text for text in (note, more) if text),
+            )
+        )
     return findings
 
 

@@ -1,4 +1,6 @@
-"""What a gate measures in a record: one line a number, with its class (docs/laboratory.md, Gates), unit, direction and tolerance."""
+"""What a gate measures in a record: one line a number, with its class (docs/laboratory.md, Gates), unit,
+direction and tolerance.
+"""
 
 from __future__ import annotations
 
@@ -11,8 +13,10 @@ DIRECTIONS = (TWO_SIDED, LOWER_BETTER, UPPER_BETTER)
 
 @dataclass(frozen=True)
 class Tolerance:
-    """How far a value may move where nothing was calibrated: the larger of an absolute and a relative distance. The absolute one is at most
-    `share` of the value, so that a small count cannot double; a `logarithmic` number moves by at most that much in log10 as well."""
+    """How far a value may move where nothing was calibrated: the larger of an absolute and a relative
+    distance. The absolute one is at most `share` of the value, so that a small count cannot double; a
+    `logarithmic` number moves by at most that much in log10 as well.
+    """
 
     absolute: float = 0.0
     relative: float = 0.0
@@ -22,7 +26,10 @@ class Tolerance:
     def around(self, value: float) -> tuple[float, float]:
         """Lower and upper end. A gap that is 0 or below has no logarithm and keeps the absolute distance."""
         size = abs(value)
-        half = max(self.absolute if math.isinf(self.share) else min(self.absolute, self.share * size), self.relative * size)
+        half = max(
+            self.absolute if math.isinf(self.share) else min(self.absolute, self.share * size),
+            self.relative * size,
+        )
         if self.logarithmic and value > 0:
             factor = 10**self.logarithmic
             return max(value / factor, value - half), min(value * factor, value + half)
@@ -32,7 +39,9 @@ class Tolerance:
 @dataclass(frozen=True)
 class Metric:
     name: str
-    gate_class: str  # III: inside an envelope. IV: a cost that does not depend on the clock. V: a time, reported only
+    gate_class: (
+        str  # III: inside an envelope. IV: a cost that does not depend on the clock. V: a time, reported only
+    )
     unit: str
     direction: str
     tolerance: Tolerance
@@ -76,8 +85,20 @@ LAST_STEP = [
     (Metric("elastic_end", "III", "J", TWO_SIDED, PHYSICS), ("elastic_J",)),
     (Metric("gravity_end", "III", "J", TWO_SIDED, PHYSICS), ("gravity_J",)),
 ]
-NEVER_RECORDED = ("crossings", "violations", "unproven", "audit", "numbers", "state_hash", "matrices", "outcome", "trace", "schema",
-                  "config_id", "judged")  # class I and II: exact, so there is nothing to accept
+NEVER_RECORDED = (
+    "crossings",
+    "violations",
+    "unproven",
+    "audit",
+    "numbers",
+    "state_hash",
+    "matrices",
+    "outcome",
+    "trace",
+    "schema",
+    "config_id",
+    "judged",
+)  # class I and II: exact, so there is nothing to accept
 
 
 def _number(value) -> float | None:

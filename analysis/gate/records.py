@@ -10,7 +10,10 @@ from pathlib import Path
 from ..record_file import TRACE, RecordError, leaves, own_trace, read_record, trace_lines
 
 NOT_FINITE = ("nan", "infinite", "minus_infinite")  # the words of Number in core/record/number.hpp
-MAY_BE_INFINITE = ("error_estimate_m_status", "contraction_status")  # directions that do not shrink bound no error
+MAY_BE_INFINITE = (
+    "error_estimate_m_status",
+    "contraction_status",
+)  # directions that do not shrink bound no error
 
 
 @dataclass
@@ -44,9 +47,13 @@ class Run:
     def made_by(self) -> dict:
         """What decides the last bits of a run: two that agree in all of it must agree in every bit."""
         provenance, machine = self.section("provenance"), self.section("machine")
-        return {"cpu_model": machine.get("cpu_model", ""), "compiler": provenance.get("compiler", ""),
-                "flags": provenance.get("flags", ""), "blas_kernel": (provenance.get("blas") or {}).get("kernel", ""),
-                "libraries": provenance.get("libraries", {})}
+        return {
+            "cpu_model": machine.get("cpu_model", ""),
+            "compiler": provenance.get("compiler", ""),
+            "flags": provenance.get("flags", ""),
+            "blas_kernel": (provenance.get("blas") or {}).get("kernel", ""),
+            "libraries": provenance.get("libraries", {}),
+        }
 
     @property
     def made_by_same_build(self) -> tuple:
@@ -54,15 +61,24 @@ class Run:
 
 
 def not_finite(value) -> list[str]:
-    """Places of numbers that are none: written as NaN or Infinity, or absent with a `_status` that says so."""
-    return [f"{place}: {found}" for place, found in leaves(value)
-            if (isinstance(found, float) and not math.isfinite(found))
-            or (place.endswith("_status") and found in NOT_FINITE and not (found == "infinite" and place.endswith(MAY_BE_INFINITE)))]
+    """Places of numbers that are none: written as NaN or Infinity, or absent with a `_status` that says
+    so."""
+    return [
+        f"{place}: {found}"
+        for place, found in leaves(value)
+        if (isinstance(found, float) and not math.isfinite(found))
+        or (
+            place.endswith("_status")
+            and found in NOT_FINITE
+            and not (found == "infinite" and place.endswith(MAY_BE_INFINITE))
+        )
+    ]
 
 
 def read_run(path: str | Path, allow_not_finite: bool = False) -> Run:
-    """The record in a folder, or a run.json. Raises RecordError with file and place: none there, not JSON, another schema,
-    a number that is NaN or infinite (unless allowed: then the invariants say so)."""
+    """The record in a folder, or a run.json. Raises RecordError with file and place: none there, not JSON,
+    another schema, a number that is NaN or infinite (unless allowed: then the invariants say so).
+    """
     path = Path(path)
     path = path / "run.json" if path.is_dir() else path
     if not path.is_file():
@@ -76,12 +92,17 @@ def read_run(path: str | Path, allow_not_finite: bool = False) -> Run:
         for file, value in ((path, run.record), (trace, run.trace)):
             if bad := not_finite(value):
                 more = f" (and {len(bad) - 1} more)" if len(bad) > 1 else ""
-                raise RecordError(f"{file}: {bad[0]}{more}; a record holds finite numbers, or null and the word that says why")
+                raise RecordError(
+                    f"{file}: {bad[0]}{more}; a record holds finite numbers, or null and the word that"
+                    " says why"
+                )
     return run
 
 
 def find_runs(root: str | Path) -> dict[str, Path]:
-    """Every run.json below a folder by its place in it, or the one file. Raises RecordError when there is none."""
+    """Every run.json below a folder by its place in it, or the one file. Raises RecordError when there is
+    none.
+    """
     root = Path(root)
     if not root.exists():
         raise RecordError(f"{root}: no such file or folder")

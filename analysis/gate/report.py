@@ -27,12 +27,24 @@ def _allowed(f: Finding) -> str:
 
 
 def table(findings: list[Finding]) -> str:
-    rows = [HEADINGS] + [(f.case, f.gate_class, f.metric, number(f.value), number(f.reference), _allowed(f), f.verdict, f.note)
-                         for f in findings]
+    rows = [HEADINGS] + [
+        (f.case, f.gate_class, f.metric, number(f.value), number(f.reference), _allowed(f), f.verdict, f.note)
+        for f in findings
+    ]
     width = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS) - 1)]
     right = {3, 4}
-    return "\n".join("  ".join([*((cell.rjust(w) if i in right else cell.ljust(w)) for i, (cell, w) in enumerate(zip(row, width))), row[-1]]).rstrip()
-                     for row in rows)
+    return "\n".join(
+        "  ".join(
+            [
+                *(
+                    (cell.rjust(w) if i in right else cell.ljust(w))
+                    for i, (cell, w) in enumerate(zip(row, width))
+                ),
+                row[-1],
+            ]
+        ).rstrip()
+        for row in rows
+    )
 
 
 def shown(findings: list[Finding], verbose: bool) -> list[Finding]:
@@ -45,13 +57,24 @@ def closing(findings: list[Finding]) -> str:
     count, red = judged(findings), len(failures(findings))
     classes = ", ".join(f"{count[c]} of class {c}" for c in ALL_CLASSES)
     words = Counter(f.verdict for f in findings)
-    other = [f"{words[word]} {word}" for word in ("drift", "better", "xfail", "xpass", "not_judged") if words[word]]
-    return f"{sum(count.values())} judged ({classes}){', ' + ', '.join(other) if other else ''}: " + (f"RED, {red} failed" if red else "green")
+    other = [
+        f"{words[word]} {word}" for word in ("drift", "better", "xfail", "xpass", "not_judged") if words[word]
+    ]
+    return f"{sum(count.values())} judged ({classes}){', ' + ', '.join(other) if other else ''}: " + (
+        f"RED, {red} failed" if red else "green"
+    )
 
 
 def write_json(path: Path, name: str, findings: list[Finding], **more) -> None:
     red = bool(failures(findings))
-    body = {"schema": {"name": name, "version": "1.0.0"}, "green": not red, "judged": {c: judged(findings)[c] for c in ALL_CLASSES},
-            "failed": len(failures(findings)), "lines": len(findings), "verdicts": list(JUDGED) + ["report", "not_judged"], **more,
-            "findings": [f.json() for f in findings]}
+    body = {
+        "schema": {"name": name, "version": "1.0.0"},
+        "green": not red,
+        "judged": {c: judged(findings)[c] for c in ALL_CLASSES},
+        "failed": len(failures(findings)),
+        "lines": len(findings),
+        "verdicts": list(JUDGED) + ["report", "not_judged"],
+        **more,
+        "findings": [f.json() for f in findings],
+    }
     write_whole(path, json.dumps(body, indent=1) + "\n")

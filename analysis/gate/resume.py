@@ -1,4 +1,6 @@
-"""Class I: a run that is killed after a checkpoint and resumed ends in the bits of the run that was left alone."""
+"""Class I: a run that is killed after a checkpoint and resumed ends in the bits of the run that was left
+alone.
+"""
 
 from __future__ import annotations
 
@@ -6,7 +8,8 @@ import subprocess
 import time
 from pathlib import Path
 
-from .cases import Case, GateError, command, run_case
+from ..errors import UserError
+from .cases import Case, command, run_case
 from .finding import Finding
 from .records import Run, read_run
 
@@ -19,13 +22,15 @@ def _step(record: dict) -> dict:
 
 
 def kill_after_checkpoint(words: list[str], out: Path) -> bool:
-    """Starts a run and kills it (SIGKILL) as soon as its checkpoint is there; False when it was over before. Raises GateError."""
+    """Starts a run and kills it (SIGKILL) as soon as its checkpoint is there; False when it was over before.
+    Raises UserError.
+    """
     process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
     start = time.monotonic()
     while process.poll() is None and not (out / "checkpoint.bin").exists():
         if time.monotonic() - start > LONGEST_S:
             process.kill()
-            raise GateError(f"{out}: no checkpoint within {LONGEST_S:.0f} s")
+            raise UserError(f"{out}: no checkpoint within {LONGEST_S:.0f} s")
         time.sleep(0.0005)
     alive = process.poll() is None
     process.kill()
@@ -34,9 +39,10 @@ def kill_after_checkpoint(words: list[str], out: Path) -> bool:
 
 
 def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
-    """whole: the record of the same case with one thread and without checkpoints, which has to end in the same state. Every other number is compared with a
-    run that writes the same checkpoints and is left alone.
-    Raises GateError when the program cannot resume."""
+    """whole: the record of the same case with one thread and without checkpoints, which has to end in the
+    same state. Every other number is compared with a run that writes the same checkpoints and is left alone.
+    Raises UserError when the program cannot resume.
+    """
     alone = run_case(case, out.with_name(out.name + "-not-killed"), 1, output__checkpoint_every=1)
     for name in ("run.json", "checkpoint.bin"):
         (out / name).unlink(missing_ok=True)
@@ -44,12 +50,27 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
     killed = kill_after_checkpoint(words, out)
     done = subprocess.run([*words, "--resume"], capture_output=True, text=True, check=False)
     if done.returncode != 0:
-        raise GateError(f"{case.name}: --resume ended with {done.returncode}: {done.stderr.strip()}")
+        raise UserError(f"{case.name}: --resume ended with {done.returncode}: {done.stderr.strip()}")
     resumed = read_run(out, allow_not_finite=True)
     from_step = resumed.section("status").get("resumed_from_step")
     steps, wanted = resumed.record["steps"], alone.record["steps"]
     same = len({run.section("summary").get("state_hash") for run in (resumed, alone, whole)}) == 1
-    unlike = sum(_step(a) != _step(b) for a, b in zip(steps, wanted)) + abs(len(steps) - len(wanted)) + (not same)
+    unlike = (
+        sum(_step(a) != _step(b) for a, b in zip(steps, wanted)) + abs(len(steps) - len(wanted)) + (not same)
+    )
     judged = len(steps) if killed and from_step is not None else 0
-    note = f"killed, resumed from step {from_step:.0f}" if judged else "the run was over before it could be killed"
-    return Finding(case.name, "I", "resumed run", "pass" if judged and not unlike else "FAIL", value=unlike, reference=0, judged=judged, note=note)
+    note = (
+        f"killed, resumed from step {from_step:.0f}"
+        if judged
+        else "the run was over before it could be killed"
+    )
+    return Finding(
+        case.name,
+        "I",
+        "resumed run",
+        "pass" if judged and not unlike else "FAIL",
+        value=unlike,
+        reference=0,
+        judged=judged,
+        note=note,
+    )

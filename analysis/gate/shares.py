@@ -1,7 +1,10 @@
-"""Words of a record as numbers: of all condition numbers, estimates and steps, which share has which status, method or proof.
+"""Words of a record as numbers: of all condition numbers, estimates and steps, which share has which status,
+method or proof.
 
-A list of words (one for every matrix, say) is a family; the share of a word that a record of the family does not have is 0. So half of the
-numbers turned to `bound` is a share that moved, and a word that nobody has seen before is judged against 0."""
+A list of words (one for every matrix, say) is a family; the share of a word that a record of the family does
+not have is 0. So half of the numbers turned to `bound` is a share that moved, and a word that nobody has seen
+before is judged against 0.
+"""
 
 from __future__ import annotations
 
@@ -14,8 +17,27 @@ UNIT = "share"
 SHARE = Tolerance(absolute=0.05)
 SEPARATOR = ": "  # between family and word in the name of a metric
 GOOD = ("ok", "converged", "number")
-BAD = ("bound", "lower_bound", "upper_bound", "failed", "not_converged", "not_estimated", "not_pd", "singular", "non_finite", "nan", "infinite",
-       "unproven", "not_checked", "saddle", "none", "not_measured", "matrix_indefinite", "iteration_cap", "linear_failed")
+BAD = (
+    "bound",
+    "lower_bound",
+    "upper_bound",
+    "failed",
+    "not_converged",
+    "not_estimated",
+    "not_pd",
+    "singular",
+    "non_finite",
+    "nan",
+    "infinite",
+    "unproven",
+    "not_checked",
+    "saddle",
+    "none",
+    "not_measured",
+    "matrix_indefinite",
+    "iteration_cap",
+    "linear_failed",
+)
 
 
 def metric(family: str, word: str) -> Metric:
@@ -66,4 +88,8 @@ def families(run: Run) -> dict[str, Counter]:
 
 
 def measure(run: Run) -> dict[Metric, float]:
-    return {metric(family, word): n / words.total() for family, words in families(run).items() for word, n in words.items()}
+    return {
+        metric(family, word): n / words.total()
+        for family, words in families(run).items()
+        for word, n in words.items()
+    }

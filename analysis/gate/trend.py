@@ -1,8 +1,10 @@
-"""Class VI: steps in the history of the numbers of a gate. `bench gate --history FILE` appends a line a run, `bench trend FILE` looks for steps.
+"""Class VI: steps in the history of the numbers of a gate. `bench gate --history FILE` appends a line a run,
+`bench trend FILE` looks for steps.
 
-A history of one metric is fitted by a piecewise constant function: the sum of |value - median of its piece| plus a penalty for every step is least
-(L1, exact by dynamic programming). The penalty is twice the median |difference of neighbours| times log n, as asv chooses it by scale. A step of more than
-5 % between the last two pieces is shown. A trend never blocks: the exit code is 0, 2 for a file that cannot be read.
+A history of one metric is fitted by a piecewise constant function: the sum of |value - median of its piece|
+plus a penalty for every step is least (L1, exact by dynamic programming). The penalty is twice the median
+|difference of neighbours| times log n, as asv chooses it by scale. A step of more than 5 % between the last
+two pieces is shown. A trend never blocks: the exit code is 0, 2 for a file that cannot be read.
 """
 
 from __future__ import annotations
@@ -15,6 +17,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 
+from ..errors import UserError, tells
 from ..text_table import aligned
 from .finding import Finding
 
@@ -22,10 +25,6 @@ SCHEMA = "barrierbench.history/1"
 THRESHOLD, FEWEST = 0.05, 5
 SHORTEST = 2  # runs of a piece: a single outlier is no step
 KEPT = ("III", "IV", "V")
-
-
-class HistoryError(ValueError):
-    """A history that cannot be read, with file and line."""
 
 
 @dataclass(frozen=True)
@@ -59,8 +58,10 @@ def pieces(values: list[float]) -> list[tuple[int, int]]:
 
 
 def last_step(values: list[float]) -> tuple[int, float, float] | None:
-    """Index of the first value after the last step, medians before and after; None without a step above the threshold. Metrics in log10 are
-    compared in log10, as the gate keeps them: of a condition number of 1e4 a step is a factor of 1.6."""
+    """Index of the first value after the last step, medians before and after; None without a step above the
+    threshold. Metrics in log10 are compared in log10, as the gate keeps them: of a condition number of 1e4 a
+    step is a factor of 1.6.
+    """
     if len(values) < FEWEST or not all(math.isfinite(v) for v in values):
         return None
     found = pieces(values)
@@ -88,9 +89,9 @@ def append(path: Path, line: dict) -> None:
 
 
 def read(path: Path) -> list[dict]:
-    """The lines in their order; a torn last one is left out and said. Raises HistoryError."""
+    """The lines in their order; a torn last one is left out and said. Raises UserError."""
     if not path.is_file():
-        raise HistoryError(f"{path}: not there; ./bench gate --history {path} writes it")
+        raise UserError(f"{path}: not there; ./bench gate --history {path} writes it")
     lines, rows = path.read_text().splitlines(), []
     for number, text in enumerate(lines, 1):
         try:
@@ -99,17 +100,23 @@ def read(path: Path) -> list[dict]:
             if number == len(lines):
                 print(f"{path}:{number}: torn last line left out", file=sys.stderr)
                 continue
-            raise HistoryError(f"{path}:{number}: not JSON") from None
-        if not isinstance(row, dict) or row.get("schema") != SCHEMA or not isinstance(row.get("values"), dict):
-            raise HistoryError(f"{path}:{number}: no line of {SCHEMA}")
+            raise UserError(f"{path}:{number}: not JSON") from None
+        if (
+            not isinstance(row, dict)
+            or row.get("schema") != SCHEMA
+            or not isinstance(row.get("values"), dict)
+        ):
+            raise UserError(f"{path}:{number}: no line of {SCHEMA}")
         rows.append(row)
     if not rows:
-        raise HistoryError(f"{path}: empty")
+        raise UserError(f"{path}: empty")
     return rows
 
 
 def steps(rows: list[dict]) -> tuple[list[Step], int]:
-    """The last step of every metric, largest ratio first, and how many histories were long enough to be looked at."""
+    """The last step of every metric, largest ratio first, and how many histories were long enough to be
+    looked at.
+    """
     series: dict[tuple[str, str], list[tuple[str, float]]] = {}
     for row in rows:
         for case, values in row["values"].items():
@@ -124,19 +131,30 @@ def steps(rows: list[dict]) -> tuple[list[Step], int]:
     return sorted(found, key=lambda s: -abs(s.after - s.before) / (abs(s.before) or 1.0)), looked
 
 
+@tells("trend")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench trend", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser = argparse.ArgumentParser(
+        prog="bench trend", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("history", type=Path, help="file of ./bench gate --history")
     args = parser.parse_args(argv)
-    try:
-        rows = read(args.history)
-    except HistoryError as error:
-        print(f"bench trend: {error}", file=sys.stderr)
-        return 2
+    rows = read(args.history)
     found, looked = steps(rows)
     if found:
-        print("\n".join(aligned(["case", "metric", "before", "after", "since", "runs"],
-                                [[s.case, s.metric, f"{s.before:.6g}", f"{s.after:.6g}", s.commit[:12], str(s.runs)] for s in found], {2, 3, 5})))
-    print(f"{len(found)} steps in {looked} histories of {FEWEST} or more runs ({len(rows)} runs)"
-          + ("; nothing to look at yet" if looked == 0 else ""))
+        print(
+            "\n".join(
+                aligned(
+                    ["case", "metric", "before", "after", "since", "runs"],
+                    [
+                        [s.case, s.metric, f"{s.before:.6g}", f"{s.after:.6g}", s.commit[:12], str(s.runs)]
+                        for s in found
+                    ],
+                    {2, 3, 5},
+                )
+            )
+        )
+    print(
+        f"{len(found)} steps in {looked} histories of {FEWEST} or more runs ({len(rows)} runs)"
+        + ("; nothing to look at yet" if looked == 0 else "")
+    )
     return 0

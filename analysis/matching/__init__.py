@@ -1,1 +1,3 @@
-"""Formulations made comparable: the verbs `match` and `pareto`. Stiffness is matched by the program alone; this package asks it and shows the answers."""
+"""Formulations made comparable: the verbs `match` and `pareto`. Stiffness is matched by the program alone;
+this package asks it and shows the answers.
+"""

@@ -1,4 +1,6 @@
-"""Presets of configs/formulations as settings of a run: which of contact and strain limit take a formulation, and which stay with the reference."""
+"""Presets of configs/formulations as settings of a run: which of contact and strain limit take a formulation,
+and which stay with the reference.
+"""
 
 from __future__ import annotations
 
@@ -6,17 +8,20 @@ import json
 from difflib import get_close_matches
 from pathlib import Path
 
+from ..errors import UserError
 from ..program import read_object
 
 ROOT = Path(__file__).resolve().parents[2]
 PRESETS = ROOT / "configs" / "formulations"
 REFERENCE = "log"  # the pilot's formulation, whose run the others are compared with
 VARY = ("contact", "limit", "both")
-OF_LIMIT = ("mass_term", "elastic_term", "refresh", "gap_floor", "derivative")  # what the policy of a limit may take from that of contact
-
-
-class MatchError(ValueError):
-    """Bad input of `match` or `pareto`: file, place, what was found, what is allowed."""
+OF_LIMIT = (
+    "mass_term",
+    "elastic_term",
+    "refresh",
+    "gap_floor",
+    "derivative",
+)  # what the policy of a limit may take from that of contact
 
 
 def known() -> list[str]:
@@ -24,16 +29,26 @@ def known() -> list[str]:
 
 
 def preset(name: str) -> dict:
-    """The section `formulation` of a preset, or of a file like those of configs/formulations, NAME.json: of a shape or policy of a plugin, say.
-    Errors: MatchError with the nearest name."""
+    """The section `formulation` of a preset, or of a file like those of configs/formulations, NAME.json: of a
+    shape or policy of a plugin, say. Errors: UserError with the nearest name.
+    """
     if name.endswith(".json"):
-        formulation = read_object(Path(name), MatchError).get("formulation")
-        if not isinstance(formulation, dict) or not {"shape", "argument", "stiffness_policy"} <= formulation.keys():
-            raise MatchError(f"{name}#/formulation: found {json.dumps(formulation)[:60]}; allowed: a formulation with shape, argument and stiffness_policy")
+        formulation = read_object(Path(name)).get("formulation")
+        if (
+            not isinstance(formulation, dict)
+            or not {"shape", "argument", "stiffness_policy"} <= formulation.keys()
+        ):
+            raise UserError(
+                f"{name}#/formulation: found {json.dumps(formulation)[:60]}; allowed: a formulation with"
+                " shape, argument and stiffness_policy"
+            )
         return formulation
     if name not in known():
         near = get_close_matches(name, known(), 1)
-        raise MatchError(f"formulation {name!r}: one of {', '.join(known())}" + (f"; did you mean {near[0]!r}?" if near else ""))
+        raise UserError(
+            f"formulation {name!r}: one of {', '.join(known())}"
+            + (f"; did you mean {near[0]!r}?" if near else "")
+        )
     return json.loads((PRESETS / f"{name}.json").read_text())["formulation"]
 
 
@@ -43,17 +58,25 @@ def label(name: str) -> str:
 
 
 def _limit(formulation: dict) -> dict:
-    """Settings of a strain limit of this formulation. A policy that only contact can have becomes one fixed number, as in the program."""
+    """Settings of a strain limit of this formulation. A policy that only contact can have becomes one fixed
+    number, as in the program.
+    """
     policy = formulation["stiffness_policy"]
     taken = {"name": "fixed"}
     if policy["name"] == "elasticity_inclusive":
         taken = {"name": policy["name"], **{key: policy[key] for key in OF_LIMIT if key in policy}}
-    return {"/strain_limit/shape": formulation["shape"], "/strain_limit/argument": formulation["argument"], "/strain_limit/stiffness_policy": taken}
+    return {
+        "/strain_limit/shape": formulation["shape"],
+        "/strain_limit/argument": formulation["argument"],
+        "/strain_limit/stiffness_policy": taken,
+    }
 
 
 def settings(name: str, vary: str, d_hat_m: float | None = None, scale: float | None = None) -> dict:
-    """Overrides of a config: pointer -> value. vary: what takes the formulation; the other stays with the reference. scale: factor on the
-    matched stiffness of what is varied; None leaves it. d_hat_m: kept where the config gives one."""
+    """Overrides of a config: pointer -> value. vary: what takes the formulation; the other stays with the
+    reference. scale: factor on the matched stiffness of what is varied; None leaves it. d_hat_m: kept where
+    the config gives one.
+    """
     chosen, reference = preset(name), preset(REFERENCE)
     from_file = {**chosen, "name": label(name)} if name.endswith(".json") else name
     found = {"/formulation": REFERENCE if vary == "limit" else from_file}

@@ -1,7 +1,8 @@
 """Paths of one formulation over its stiffness, and their comparison at equal reached gap.
 
-A point of a path is one run: the gap it reached and what that took. The stiffness itself is no coordinate, since the same number means different
-forces in different formulas (docs/laboratory.md, Matching verb and Pareto fronts).
+A point of a path is one run: the gap it reached and what that took. The stiffness itself is no coordinate,
+since the same number means different forces in different formulas (docs/laboratory.md, Matching verb and
+Pareto fronts).
 """
 
 from __future__ import annotations
@@ -17,7 +18,8 @@ SHARED_GAPS = 9  # gaps at which paths are compared, evenly spaced in the logari
 
 @dataclass(frozen=True)
 class Point:
-    """One run. gap: d/d_hat; value: what is compared; both None where the run failed or has no such number."""
+    """One run. gap: d/d_hat; value: what is compared; both None where the run failed or has no such
+    number."""
 
     scale: float
     gap: float | None
@@ -29,7 +31,8 @@ class Point:
 
 
 def segments(points: list[Point]) -> list[tuple[Point, Point]]:
-    """Neighbours in stiffness that both count. A run that failed in between breaks the path: nothing is interpolated across it.
+    """Neighbours in stiffness that both count. A run that failed in between breaks the path: nothing is
+    interpolated across it.
 
     Errors: ValueError when a stiffness occurs twice or a number is not finite. Cost O(n log n).
     """
@@ -39,7 +42,9 @@ def segments(points: list[Point]) -> list[tuple[Point, Point]]:
             raise ValueError(f"two runs with scale {after.scale:g}")
     for point in path:
         if not all(math.isfinite(x) for x in (point.scale, point.gap or 0.0, point.value or 0.0)):
-            raise ValueError(f"scale {point.scale:g}: gap {point.gap}, value {point.value}; finite numbers are needed")
+            raise ValueError(
+                f"scale {point.scale:g}: gap {point.gap}, value {point.value}; finite numbers are needed"
+            )
     return [(a, b) for a, b in zip(path, path[1:]) if a.counts and b.counts]
 
 
@@ -61,14 +66,17 @@ def _on(segment: tuple[Point, Point], gap: float) -> float | None:
 
 
 def value_at(points: list[Point], gap: float) -> float | None:
-    """The value with which the path reaches this gap; None where it does not reach it. Where the path comes back to a gap it reached
-    with less stiffness, the geometric mean of all its passes."""
+    """The value with which the path reaches this gap; None where it does not reach it. Where the path comes
+    back to a gap it reached with less stiffness, the geometric mean of all its passes.
+    """
     passes = [y for segment in segments(points) if (y := _on(segment, gap)) is not None]
     return math.exp(float(np.mean(passes))) if passes else None
 
 
 def shared(a: list[Point], b: list[Point]) -> np.ndarray:
-    """Gaps that both paths reach, SHARED_GAPS of them; empty when they share less than a factor LEAST_OVERLAP."""
+    """Gaps that both paths reach, SHARED_GAPS of them; empty when they share less than a factor
+    LEAST_OVERLAP.
+    """
     ranges = reached(a), reached(b)
     if None in ranges:
         return np.array([])
@@ -77,8 +85,13 @@ def shared(a: list[Point], b: list[Point]) -> np.ndarray:
 
 
 def log_ratio(a: list[Point], b: list[Point]) -> float | None:
-    """Mean over the shared gaps of log(value of a / value of b); None unless the gaps at which both have a value, which failed runs may
-    leave holes in, span a factor LEAST_OVERLAP."""
+    """Mean over the shared gaps of log(value of a / value of b); None unless the gaps at which both have a
+    value, which failed runs may leave holes in, span a factor LEAST_OVERLAP.
+    """
     found = [(gap, value_at(a, gap), value_at(b, gap)) for gap in shared(a, b)]
     both = [(gap, math.log(x / y)) for gap, x, y in found if x is not None and y is not None]
-    return float(np.mean([ratio for _, ratio in both])) if both and both[-1][0] >= LEAST_OVERLAP * both[0][0] else None
+    return (
+        float(np.mean([ratio for _, ratio in both]))
+        if both and both[-1][0] >= LEAST_OVERLAP * both[0][0]
+        else None
+    )

@@ -1,6 +1,8 @@
-"""Runs every formulation over decades of stiffness and compares them at equal reached gap, never at equal kappa.
+"""Runs every formulation over decades of stiffness and compares them at equal reached gap, never at equal
+kappa.
 
-Writes results/pareto.json (the numbers used), results/PARETO.md (made of it) and docs/pareto_SCENE.png. Records that are there are not run again.
+Writes results/pareto.json (the numbers used), results/PARETO.md (made of it) and docs/pareto_SCENE.png.
+Records that are there are not run again.
 
 Exit codes: 0 written, 2 bad input, or a record is missing.
 """
@@ -16,10 +18,11 @@ import sys
 from pathlib import Path
 
 from ..claims.table import seconds_of_run
+from ..errors import UserError, tells
 from ..program import plugin_argument
 from ..whole_file import write_whole
 from . import pareto_figure, pareto_report
-from .formulations import ROOT, MatchError
+from .formulations import ROOT
 from .fronts import METRICS, PLACE, STATE, Runs, gather
 from .runs import collect, inputs_sha256, read_object, run
 from .spec import Spec, make_sweep, read_spec
@@ -31,26 +34,49 @@ COLUMNS = (*PLACE, *STATE, *METRICS)
 
 def _about(spec: Spec, command: str, records: list[dict], plugins: list[str]) -> dict:
     sizes = [r["scene"]["free_dofs"] for r in records]
-    about = {"command": command, "spec_sha256": spec.sha256, "inputs_sha256": inputs_sha256(make_sweep(spec), plugins=plugins), "doc": spec.doc, "vary": spec.vary, "gap": {"min": "smallest", "median": "median of the smallest"}[spec.gap],
-             "gaps": list(spec.gaps), "starts": spec.starts, "decades": round(math.log10(spec.scales[-1] / spec.scales[0]), 3),
-             "unknowns": f"{min(sizes)} to {max(sizes)}", "seconds": round(sum(map(seconds_of_run, records)), 1)}
-    for key, values in (("rule", {f"{r['matching']['rule']}, theta {r['matching']['theta']:g}" for r in records}),
-                        ("date", {r["status"]["started_utc"][:10] for r in records}),
-                        ("machine", {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records}),
-                        ("build", {r["ids"]["build_id"][:16] for r in records})):
+    about = {
+        "command": command,
+        "spec_sha256": spec.sha256,
+        "inputs_sha256": inputs_sha256(make_sweep(spec), plugins=plugins),
+        "doc": spec.doc,
+        "vary": spec.vary,
+        "gap": {"min": "smallest", "median": "median of the smallest"}[spec.gap],
+        "gaps": list(spec.gaps),
+        "starts": spec.starts,
+        "decades": round(math.log10(spec.scales[-1] / spec.scales[0]), 3),
+        "unknowns": f"{min(sizes)} to {max(sizes)}",
+        "seconds": round(sum(map(seconds_of_run, records)), 1),
+    }
+    for key, values in (
+        ("rule", {f"{r['matching']['rule']}, theta {r['matching']['theta']:g}" for r in records}),
+        ("date", {r["status"]["started_utc"][:10] for r in records}),
+        (
+            "machine",
+            {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records},
+        ),
+        ("build", {r["ids"]["build_id"][:16] for r in records}),
+    ):
         about[key] = ", ".join(sorted(values))
     return about
 
 
 def to_json(runs: Runs) -> str:
-    rows = ",\n  ".join(json.dumps([row[c] for c in COLUMNS], separators=(",", ":"), allow_nan=False) for row in runs.rows)
-    return f'{{"schema": "{SCHEMA}", "about": {json.dumps(runs.about)},\n "columns": {json.dumps(COLUMNS)}, "rows": [\n  {rows}]}}\n'
+    rows = ",\n  ".join(
+        json.dumps([row[c] for c in COLUMNS], separators=(",", ":"), allow_nan=False) for row in runs.rows
+    )
+    return (
+        f'{{"schema": "{SCHEMA}", "about": {json.dumps(runs.about)},\n "columns": {json.dumps(COLUMNS)},'
+        f' "rows": [\n  {rows}]}}\n'
+    )
 
 
 def from_json(path: Path) -> Runs:
     data = read_object(path)
     if data.get("schema") != SCHEMA or data.get("columns") != list(COLUMNS):
-        raise MatchError(f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with {list(COLUMNS)} is needed: ./bench pareto")
+        raise UserError(
+            f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with"
+            f" {list(COLUMNS)} is needed: ./bench pareto"
+        )
     return Runs(data["about"], [dict(zip(COLUMNS, row)) for row in data["rows"]])
 
 
@@ -63,7 +89,10 @@ def make(spec: Spec, command: str, folder: Path, run_missing: bool, plugins: lis
     runs = Runs(_about(spec, command, list(records.values()), plugins), gather(spec, made.notes, records))
     for scene in runs.scenes:
         if not any(row["gap"] for row in runs.rows if row["scene"] == scene):
-            raise MatchError(f"{spec.path}#/scenes/{scene}: no run is in contact at the end of any step: there is no gap to compare at")
+            raise UserError(
+                f"{spec.path}#/scenes/{scene}: no run is in contact at the end of any step: there is no gap"
+                " to compare at"
+            )
     return runs
 
 
@@ -77,42 +106,75 @@ def write_page(runs: Runs, results: Path, docs: Path, figures: Path) -> None:
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="bench pareto", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="examples: ./bench pareto\n          ./bench pareto configs/pareto/default.json --results results/runs/mine")
-    parser.add_argument("spec", nargs="?", type=Path, default=DEFAULT, help="a sweep over stiffness (default: configs/pareto/default.json)")
-    parser.add_argument("--no-run", action="store_true", help="run nothing: judge the records that are there, or the numbers in pareto.json")
-    parser.add_argument("--runs", type=Path, metavar="DIR", help="folder of the records (default: results/runs/pareto/NAME-HASH)")
-    parser.add_argument("--results", type=Path, metavar="DIR", help="folder of PARETO.md, pareto.json and figures (default: results/ and docs/)")
+    parser = argparse.ArgumentParser(
+        prog="bench pareto",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=(
+            "examples: ./bench pareto\n          ./bench pareto configs/pareto/default.json --results"
+            " results/runs/mine"
+        ),
+    )
+    parser.add_argument(
+        "spec",
+        nargs="?",
+        type=Path,
+        default=DEFAULT,
+        help="a sweep over stiffness (default: configs/pareto/default.json)",
+    )
+    parser.add_argument(
+        "--no-run",
+        action="store_true",
+        help="run nothing: judge the records that are there, or the numbers in pareto.json",
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        metavar="DIR",
+        help="folder of the records (default: results/runs/pareto/NAME-HASH)",
+    )
+    parser.add_argument(
+        "--results",
+        type=Path,
+        metavar="DIR",
+        help="folder of PARETO.md, pareto.json and figures (default: results/ and docs/)",
+    )
     plugin_argument(parser)
     return parser.parse_args(argv)
 
 
+@tells("pareto")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
     results = args.results or ROOT / "results"
-    try:
-        spec = read_spec(args.spec)
-        inputs = inputs_sha256(make_sweep(spec), plugins=args.plugin)
-        digest = hashlib.sha256(f"{spec.sha256} {inputs}".encode()).hexdigest()
-        folder = args.runs or ROOT / "results" / "runs" / "pareto" / f"{spec.name}-{digest[:8]}"
-        kept = results / "pareto.json"
-        if args.no_run and not any(folder.glob("*/run.json")) and kept.is_file():
-            runs = from_json(kept)
-            if runs.about["spec_sha256"] != spec.sha256 or runs.about.get("inputs_sha256", inputs) != inputs:
-                raise MatchError(f"{kept}: its numbers are of another {args.spec}, base config, mesh or preset: ./bench pareto {args.spec}")
-            if "inputs_sha256" not in runs.about:
-                print(f"bench pareto: {kept} does not say of which base config and presets its numbers are", file=sys.stderr)
-        else:
-            command = "./bench pareto" + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}") + "".join(f" --plugin {file}" for file in args.plugin)
-            runs = make(spec, command, folder, not args.no_run, args.plugin)
-        write_whole(kept, to_json(runs))
-        write_page(runs, results, ROOT / "docs" if args.results is None else results, folder / "figures")
-    except MatchError as error:
-        print(f"bench pareto: {error}", file=sys.stderr)
-        return 2
-    print(f"{results / 'PARETO.md'}: {len(runs.rows)} runs, {sum(row['outcome'] == 'ok' for row in runs.rows)} ok")
+    spec = read_spec(args.spec)
+    inputs = inputs_sha256(make_sweep(spec), plugins=args.plugin)
+    digest = hashlib.sha256(f"{spec.sha256} {inputs}".encode()).hexdigest()
+    folder = args.runs or ROOT / "results" / "runs" / "pareto" / f"{spec.name}-{digest[:8]}"
+    kept = results / "pareto.json"
+    if args.no_run and not any(folder.glob("*/run.json")) and kept.is_file():
+        runs = from_json(kept)
+        if runs.about["spec_sha256"] != spec.sha256 or runs.about.get("inputs_sha256", inputs) != inputs:
+            raise UserError(
+                f"{kept}: its numbers are of another {args.spec}, base config, mesh or preset: ./bench pareto"
+                f" {args.spec}"
+            )
+        if "inputs_sha256" not in runs.about:
+            print(
+                f"bench pareto: {kept} does not say of which base config and presets its numbers are",
+                file=sys.stderr,
+            )
+    else:
+        command = (
+            "./bench pareto"
+            + ("" if args.spec.resolve() == DEFAULT else f" {args.spec}")
+            + "".join(f" --plugin {file}" for file in args.plugin)
+        )
+        runs = make(spec, command, folder, not args.no_run, args.plugin)
+    write_whole(kept, to_json(runs))
+    write_page(runs, results, ROOT / "docs" if args.results is None else results, folder / "figures")
+    print(
+        f"{results / 'PARETO.md'}: {len(runs.rows)} runs,"
+        f" {sum(row['outcome'] == 'ok' for row in runs.rows)} ok"
+    )
     return 0
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

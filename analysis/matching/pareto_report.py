@@ -5,7 +5,18 @@ from __future__ import annotations
 from ..claims.metrics import METRICS as MEANINGS
 from ..claims.report import number
 from .formulations import REFERENCE
-from .fronts import METRICS, Estimate, OverScenes, Runs, at_gap, failures, over_scenes, over_shared, range_of, unreached
+from .fronts import (
+    METRICS,
+    Estimate,
+    OverScenes,
+    Runs,
+    at_gap,
+    failures,
+    over_scenes,
+    over_shared,
+    range_of,
+    unreached,
+)
 
 HEAD = """# Formulations at equal reached gap
 
@@ -36,32 +47,64 @@ def _cell_over_scenes(e: OverScenes | None) -> str:
 
 
 def _reached(runs: Runs, scene: str) -> list[str]:
-    lines = ["| formulation | gaps reached | runs that failed or touched nothing, by stiffness |", "|---|---|---|"]
+    lines = [
+        "| formulation | gaps reached | runs that failed or touched nothing, by stiffness |",
+        "|---|---|---|",
+    ]
     for name in runs.formulations:
         span, failed = range_of(runs, scene, name), failures(runs, scene, name)
-        said = "; ".join(f"x{scale:g}: {', '.join(f'{n} {word}' for word, n in sorted(words.items()))}" for scale, words in sorted(failed.items()))
-        lines.append(f"| {name} | {f'{number(span[0])} to {number(span[1])}' if span else 'none'} | {said or 'none'} |")
+        said = "; ".join(
+            f"x{scale:g}: {', '.join(f'{n} {word}' for word, n in sorted(words.items()))}"
+            for scale, words in sorted(failed.items())
+        )
+        lines.append(
+            f"| {name} | {f'{number(span[0])} to {number(span[1])}' if span else 'none'} | {said or 'none'} |"
+        )
     return lines
 
 
 def _nobody(runs: Runs, scene: str) -> str:
-    said = [f"below {number(high)}" if low == 0 else f"above {number(low)}" if high == 1 else f"{number(low)} to {number(high)}" for low, high in unreached(runs, scene)]
-    return f"No formulation reaches gaps {', '.join(said)}." if said else "Every gap up to d_hat is reached by some formulation."
+    said = [
+        (
+            f"below {number(high)}"
+            if low == 0
+            else f"above {number(low)}"
+            if high == 1
+            else f"{number(low)} to {number(high)}"
+        )
+        for low, high in unreached(runs, scene)
+    ]
+    return (
+        f"No formulation reaches gaps {', '.join(said)}."
+        if said
+        else "Every gap up to d_hat is reached by some formulation."
+    )
 
 
 def _heading(gaps: list[float]) -> list[str]:
-    return ["| number | formulation | " + " | ".join(f"{gap:g} d_hat" for gap in gaps) + " | shared gaps |", "|" + "---|" * (len(gaps) + 3)]
+    return [
+        "| number | formulation | " + " | ".join(f"{gap:g} d_hat" for gap in gaps) + " | shared gaps |",
+        "|" + "---|" * (len(gaps) + 3),
+    ]
 
 
 def _ratios(runs: Runs, scene: str, gaps: list[float]) -> list[str]:
     lines = _heading(gaps)
     for name in METRICS:
         values = [at_gap(runs, scene, REFERENCE, name, gap)[0] for gap in gaps]
-        lines.append(f"| {name} | {REFERENCE}: value | " + " | ".join("-" if v is None else number(v.value) for v in values) + " | |")
+        lines.append(
+            f"| {name} | {REFERENCE}: value | "
+            + " | ".join("-" if v is None else number(v.value) for v in values)
+            + " | |"
+        )
         for formulation in runs.formulations:
             if formulation != REFERENCE:
                 cells = [_cell(at_gap(runs, scene, formulation, name, gap)[1]) for gap in gaps]
-                lines.append(f"| {name} | {formulation} / {REFERENCE} | " + " | ".join(cells) + f" | {_cell(over_shared(runs, scene, formulation, name))} |")
+                lines.append(
+                    f"| {name} | {formulation} / {REFERENCE} | "
+                    + " | ".join(cells)
+                    + f" | {_cell(over_shared(runs, scene, formulation, name))} |"
+                )
     return lines
 
 
@@ -70,23 +113,61 @@ def _ratios_over_scenes(runs: Runs, gaps: list[float]) -> list[str]:
     for name in METRICS:
         for formulation in runs.formulations:
             if formulation != REFERENCE:
-                found = [over_scenes([at_gap(runs, scene, formulation, name, gap)[1] for scene in runs.scenes]) for gap in gaps]
-                found.append(over_scenes([over_shared(runs, scene, formulation, name) for scene in runs.scenes]))
-                lines.append(f"| {name} | {formulation} / {REFERENCE} | " + " | ".join(map(_cell_over_scenes, found)) + " |")
+                found = [
+                    over_scenes([at_gap(runs, scene, formulation, name, gap)[1] for scene in runs.scenes])
+                    for gap in gaps
+                ]
+                found.append(
+                    over_scenes([over_shared(runs, scene, formulation, name) for scene in runs.scenes])
+                )
+                lines.append(
+                    f"| {name} | {formulation} / {REFERENCE} | "
+                    + " | ".join(map(_cell_over_scenes, found))
+                    + " |"
+                )
     return lines
 
 
 def markdown(runs: Runs) -> str:
     about = runs.about
     scales = sorted({row["scale"] for row in runs.rows})
-    lines = [HEAD.format(command=about["command"], decades=about["decades"], rule=about["rule"], starts=about["starts"], scenes=len(runs.scenes), reference=REFERENCE, gap=about["gap"])]
-    lines += [f"{about['doc']}. Varied: {about['vary']}. Stiffness: " + ", ".join(f"x{s:g}" for s in scales) + f". {len(runs.rows)} runs, {about['unknowns']} unknowns, "
-              f"{about['seconds']:.0f} s of one core in all on a machine that did other work as well, {about['date']}, {about['machine']}, build {about['build'][:8]}.", ""]
+    lines = [
+        HEAD.format(
+            command=about["command"],
+            decades=about["decades"],
+            rule=about["rule"],
+            starts=about["starts"],
+            scenes=len(runs.scenes),
+            reference=REFERENCE,
+            gap=about["gap"],
+        )
+    ]
+    lines += [
+        f"{about['doc']}. Varied: {about['vary']}. Stiffness: "
+        + ", ".join(f"x{s:g}" for s in scales)
+        + f". {len(runs.rows)} runs, {about['unknowns']} unknowns, {about['seconds']:.0f} s of one core in"
+        f" all on a machine that did other work as well, {about['date']}, {about['machine']}, build"
+        f" {about['build'][:8]}.",
+        "",
+    ]
     for scene in runs.scenes:
-        lines += [f"## {scene}", "", f"![cost against reached gap](../docs/pareto_{scene}.png)", "", *_reached(runs, scene), "", _nobody(runs, scene), "",
-                  *_ratios(runs, scene, about["gaps"]), ""]
+        lines += [
+            f"## {scene}",
+            "",
+            f"![cost against reached gap](../docs/pareto_{scene}.png)",
+            "",
+            *_reached(runs, scene),
+            "",
+            _nobody(runs, scene),
+            "",
+            *_ratios(runs, scene, about["gaps"]),
+            "",
+        ]
     lines += ["## All scenes", "", *_ratios_over_scenes(runs, about["gaps"]), "", "## Numbers", ""]
     for name in METRICS:
         meaning, unit, machine, _ = MEANINGS[name]
-        lines.append(f"- `{name}`: {meaning}{f' ({unit})' if unit != '1' else ''}{' (depends on the machine)' if machine else ''}")
+        lines.append(
+            f"- `{name}`:"
+            f" {meaning}{f' ({unit})' if unit != '1' else ''}{' (depends on the machine)' if machine else ''}"
+        )
     return "\n".join(lines) + "\n"

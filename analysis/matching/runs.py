@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import hashlib
 import json
-import subprocess
 import tempfile
 from collections.abc import Iterator
 from dataclasses import dataclass
@@ -12,16 +11,24 @@ from pathlib import Path
 
 from ..claims import entry
 from ..claims.metrics import METRICS
+from ..errors import UserError
 from ..gate.configs import differences
+from ..program import read_object, run_sweep
 from ..record_file import RecordError, read_record
-from ..program import built_program, plugin_words
-from ..program import read_object as read_json_object
 from . import formulations
-from .formulations import MatchError, known
+from .formulations import known
 
 # What formulations may differ in; everything else of two configs has to be equal.
-OF_A_FORMULATION = ("/formulation/name", "/formulation/shape", "/formulation/argument", "/formulation/stiffness_policy/", "/strain_limit/shape",
-                    "/strain_limit/argument", "/strain_limit/stiffness_policy/", "/matching/")
+OF_A_FORMULATION = (
+    "/formulation/name",
+    "/formulation/shape",
+    "/formulation/argument",
+    "/formulation/stiffness_policy/",
+    "/strain_limit/shape",
+    "/strain_limit/argument",
+    "/strain_limit/stiffness_policy/",
+    "/matching/",
+)
 
 
 @dataclass(frozen=True)
@@ -44,18 +51,28 @@ def sweep(name: str, base: Path, common: dict, cases: list[dict], seeds: list[in
     if seeds:
         axes.append({"pointer": "/seeds/main", "values": seeds})
         notes = [f"{note} main={seed}" for note in notes for seed in seeds]
-    data = {"schema": "barrierbench.sweep/1", "name": name, "base": str(base.resolve()), "set": common, "axes": axes}
+    data = {
+        "schema": "barrierbench.sweep/1",
+        "name": name,
+        "base": str(base.resolve()),
+        "set": common,
+        "axes": axes,
+    }
     return Sweep(name, json.dumps(data, indent=1) + "\n", tuple(notes))
 
 
 def _last(key: str, above: str) -> str:
-    """The last key of a way; of the name of a formulation `formulation`, since a name alone is a formulation too."""
+    """The last key of a way; of the name of a formulation `formulation`, since a name alone is a formulation
+    too.
+    """
     *before, last = [above, *key.strip("/").split("/")]
     return "formulation" if last == "name" and before[-1] == "formulation" else last
 
 
 def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
-    """Contents of the files that settings name: configs under configs, meshes, presets, methods. name: the last key of the way to the node."""
+    """Contents of the files that settings name: configs under configs, meshes, presets, methods. name: the
+    last key of the way to the node.
+    """
     if isinstance(node, dict):
         for key in sorted(node):
             of_axis = key == "values" and isinstance(node.get("pointer"), str)
@@ -75,52 +92,50 @@ def _inputs(node, folder: Path, name: str = "") -> Iterator[bytes]:
 
 
 def inputs_sha256(made: Sweep, overrides: list[str] | None = None, plugins: list[str] | None = None) -> str:
-    """Of the contents, not the places, of all files that the runs of a sweep are made from. A base or a plugin that is missing adds nothing: the program
-    refuses it."""
+    """Of the contents, not the places, of all files that the runs of a sweep are made from. A base or a
+    plugin that is missing adds nothing: the program refuses it.
+    """
     data = json.loads(made.text)
     found = hashlib.sha256()
-    for part in _inputs([data, dict(text.partition("=")[::2] for text in overrides or [])], Path(data["base"]).parent):
+    for part in _inputs(
+        [data, dict(text.partition("=")[::2] for text in overrides or [])], Path(data["base"]).parent
+    ):
         found.update(hashlib.sha256(part).digest())
     for plugin in plugins or []:
         found.update(hashlib.sha256(Path(plugin).read_bytes() if Path(plugin).is_file() else b"").digest())
     return found.hexdigest()
 
 
-def program() -> str:
-    return str(built_program(MatchError))
-
-
-def read_object(path: Path) -> dict:
-    """A JSON object from a file; MatchError says what it is instead."""
-    return read_json_object(path, MatchError)
-
-
 def run(made: Sweep, out: Path, overrides: list[str] | None = None, plugins: list[str] | None = None) -> None:
-    """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file. Errors: MatchError with the first line of what the
-    program said; input that it refuses leaves nothing."""
+    """Runs what is missing of the sweep into `out`, which keeps a copy of the sweep file. Errors: UserError
+    with the first line of what the program said; input that it refuses leaves nothing.
+    """
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / f"{made.name}.json"
         file.write_text(made.text)
-        words = [program(), *plugin_words(plugins or []), "sweep", str(file), "--out", str(out), "--progress", "none"]
+        words = ["--progress", "none"]
         for override in overrides or []:
             words += ["--set", override]
-        done = subprocess.run(words, capture_output=True, text=True, check=False)
+        done = run_sweep(file, out, *words, plugins=plugins or [])
     if done.returncode != 0:
         first, *more = (done.stderr.strip() or done.stdout.strip()).splitlines() or ["it said nothing"]
         first = first.removeprefix(f"{file} ")
-        raise MatchError(f"the program ended with {done.returncode}: {first}" + (f" (and {len(more)} more lines)" if more else ""))
+        raise UserError(
+            f"the program ended with {done.returncode}: {first}"
+            + (f" (and {len(more)} more lines)" if more else "")
+        )
 
 
 def read_strictly(path: Path) -> dict:
-    """A record. Errors: MatchError."""
+    """A record. Errors: UserError."""
     try:
         return read_record(path)
     except RecordError as error:
-        raise MatchError(str(error)) from None
+        raise UserError(str(error)) from None
 
 
 def collect(made: Sweep, out: Path) -> dict[str, dict]:
-    """note -> record, of every case of the sweep. Errors: MatchError when one is missing or there twice."""
+    """note -> record, of every case of the sweep. Errors: UserError when one is missing or there twice."""
     found: dict[str, dict] = {}
     for path in sorted(out.glob("*/run.json")):
         record = read_strictly(path)
@@ -128,10 +143,15 @@ def collect(made: Sweep, out: Path) -> dict[str, dict]:
         if note not in made.notes:
             continue
         if note in found:
-            raise MatchError(f"{path}: a second record of {note!r}: {out} holds runs with other settings; name another folder with --out")
+            raise UserError(
+                f"{path}: a second record of {note!r}: {out} holds runs with other settings; name another"
+                " folder with --out"
+            )
         found[note] = record
     if missing := [note for note in made.notes if note not in found]:
-        raise MatchError(f"{out}: {len(missing)} of {len(made.notes)} records are missing, the first {missing[0]!r}")
+        raise UserError(
+            f"{out}: {len(missing)} of {len(made.notes)} records are missing, the first {missing[0]!r}"
+        )
     return found
 
 
@@ -141,17 +161,20 @@ def check_equal(records: dict[str, dict]) -> None:
     for note in notes[1:]:
         found = differences(records[notes[0]]["config"], records[note]["config"])
         if unlike := [line for line in found if not line.startswith(OF_A_FORMULATION)]:
-            raise MatchError(f"{notes[0]!r} and {note!r} are not runs of the same config: {unlike[0]}")
+            raise UserError(f"{notes[0]!r} and {note!r} are not runs of the same config: {unlike[0]}")
 
 
 def check_varied(record: dict, vary: str, place: str) -> None:
     """Refuses to vary a strain limit that the run does not have: all formulations would be the same run."""
     if vary == "limit" and record["matching"].get("limit_load_N_per_m") is None:
-        raise MatchError(f"{place}: no strain limit acts in scene {record['labels']['scene']!r}, so that nothing varies; contact or both, or a limit: /strain_limit/limit")
+        raise UserError(
+            f"{place}: no strain limit acts in scene {record['labels']['scene']!r}, so that nothing varies;"
+            " contact or both, or a limit: /strain_limit/limit"
+        )
 
 
 def metric(record: dict, name: str) -> float | None:
     """A number of analysis/claims/metrics.py; None where the record has none."""
     if name not in METRICS:
-        raise MatchError(f"metric {name!r}: one of {', '.join(METRICS)}")
+        raise UserError(f"metric {name!r}: one of {', '.join(METRICS)}")
     return METRICS[name][3](record)

@@ -7,19 +7,22 @@ import math
 from dataclasses import dataclass
 from pathlib import Path
 
-from .formulations import REFERENCE, VARY, MatchError, preset, settings
-from .runs import Sweep, read_object, sweep
+from ..errors import UserError
+from ..spec_file import read_spec as read_json_spec
+from ..spec_file import require_base
+from .formulations import REFERENCE, preset, settings
+from .runs import Sweep, sweep
 
-SCHEMA = "barrierbench.pareto/1"
 DECADES = 4.0  # a sweep over stiffness spans at least these
 GAPS = {"min": "gap_min", "median": "gap_median"}  # word of a spec -> metric
 OPTIONAL = {"doc": "", "vary": "both", "gap": "min", "set": {}}
-REQUIRED = ("schema", "name", "base", "formulations", "scales", "starts", "jitter_m", "gaps", "scenes")
 
 
 @dataclass(frozen=True)
 class Spec:
-    """A sweep over stiffness. scales: factors on the matched stiffness; starts: how many values of /seeds/main; gaps: d/d_hat of the tables."""
+    """A sweep over stiffness. scales: factors on the matched stiffness; starts: how many values of
+    /seeds/main; gaps: d/d_hat of the tables.
+    """
 
     path: Path
     sha256: str
@@ -44,12 +47,12 @@ class Spec:
 def _numbers(data: dict, key: str, allowed: str, ok, path: Path) -> tuple[float, ...]:
     values = data[key]
     if not isinstance(values, list) or not values:
-        raise MatchError(f"{path}#/{key}: found {values!r}; a list of numbers is needed")
+        raise UserError(f"{path}#/{key}: found {values!r}; a list of numbers is needed")
     for k, x in enumerate(values):
         if isinstance(x, bool) or not isinstance(x, (int, float)) or not math.isfinite(x) or not ok(x):
-            raise MatchError(f"{path}#/{key}/{k}: found {x!r}; {allowed} is needed")
+            raise UserError(f"{path}#/{key}/{k}: found {x!r}; {allowed} is needed")
     if list(values) != sorted(set(values)):
-        raise MatchError(f"{path}#/{key}: found {values}; growing numbers, each once, are needed")
+        raise UserError(f"{path}#/{key}: found {values}; growing numbers, each once, are needed")
     return tuple(map(float, values))
 
 
@@ -57,68 +60,94 @@ def _scales(data: dict, path: Path) -> tuple[float, ...]:
     scales = _numbers(data, "scales", "a number > 0", lambda x: x > 0, path)
     decades = math.log10(scales[-1] / scales[0])
     if decades < DECADES - 1e-9 or not scales[0] < 1 < scales[-1]:
-        raise MatchError(f"{path}#/scales: found {scales[0]:g} to {scales[-1]:g}, {decades:.2g} decades; at least {DECADES:g} decades round 1 are needed")
+        raise UserError(
+            f"{path}#/scales: found {scales[0]:g} to {scales[-1]:g}, {decades:.2g} decades; at least"
+            f" {DECADES:g} decades round 1 are needed"
+        )
     return scales
 
 
 def _formulations(data: dict, path: Path) -> tuple[str, ...]:
     names = data["formulations"]
-    if not isinstance(names, list) or REFERENCE not in names or len(set(map(str, names))) < max(2, len(names)):
-        raise MatchError(f"{path}#/formulations: found {names!r}; at least two names, each once, {REFERENCE!r} among them, are needed")
+    if (
+        not isinstance(names, list)
+        or REFERENCE not in names
+        or len(set(map(str, names))) < max(2, len(names))
+    ):
+        raise UserError(
+            f"{path}#/formulations: found {names!r}; at least two names, each once, {REFERENCE!r} among them,"
+            " are needed"
+        )
     for k, name in enumerate(names):
         try:
             preset(name)
-        except MatchError as error:
-            raise MatchError(f"{path}#/formulations/{k}: {error}") from None
+        except UserError as error:
+            raise UserError(f"{path}#/formulations/{k}: {error}") from None
     return tuple(names)
 
 
 def _overrides(found, place: str) -> dict:
     """Settings that are not the sweep's own; d_hat is the scene's."""
     if not isinstance(found, dict):
-        raise MatchError(f'{place}: found {found!r}; overrides, {{"/POINTER": value}}, are needed')
+        raise UserError(f'{place}: found {found!r}; overrides, {{"/POINTER": value}}, are needed')
     for pointer in found:
-        if pointer.startswith(("/matching", "/passes", "/seeds", "/formulation")) and pointer != "/formulation/d_hat_m":
-            raise MatchError(f"{place}: found {pointer!r}; the sweep sets formulation, matching, passes and seeds itself; of these only /formulation/d_hat_m is allowed")
+        if (
+            pointer.startswith(("/matching", "/passes", "/seeds", "/formulation"))
+            and pointer != "/formulation/d_hat_m"
+        ):
+            raise UserError(
+                f"{place}: found {pointer!r}; the sweep sets formulation, matching, passes and seeds itself;"
+                " of these only /formulation/d_hat_m is allowed"
+            )
     return found
 
 
 def _scenes(data: dict, path: Path) -> dict[str, dict]:
     scenes = data["scenes"]
-    good = isinstance(scenes, list) and scenes and all(
-        isinstance(s, dict) and set(s) == {"label", "set"} and isinstance(s["label"], str) and s["label"].isidentifier() and isinstance(s["set"], dict) for s in scenes)
+    good = (
+        isinstance(scenes, list)
+        and scenes
+        and all(
+            isinstance(s, dict)
+            and set(s) == {"label", "set"}
+            and isinstance(s["label"], str)
+            and s["label"].isidentifier()
+            and isinstance(s["set"], dict)
+            for s in scenes
+        )
+    )
     if not good or len({s["label"] for s in scenes}) != len(scenes):
-        raise MatchError(f"{path}#/scenes: a list of {{\"label\": one word, each once, \"set\": overrides}} is needed")
+        raise UserError(
+            f'{path}#/scenes: a list of {{"label": one word, each once, "set": overrides}} is needed'
+        )
     for s in scenes:
         _overrides(s["set"], f"{path}#/scenes/{s['label']}/set")
     return {s["label"]: s["set"] for s in scenes}
 
 
 def read_spec(path: Path) -> Spec:
-    """Errors: MatchError with file, place, what was found and what is allowed."""
-    data = read_object(path)
-    if data.get("schema") != SCHEMA:
-        raise MatchError(f"{path}#/schema: found {data.get('schema')!r}; {SCHEMA!r} is needed")
-    if missing := [key for key in REQUIRED if key not in data]:
-        raise MatchError(f"{path}#/{missing[0]}: is missing")
-    if unknown := [key for key in data if key not in (*REQUIRED, *OPTIONAL)]:
-        raise MatchError(f"{path}#/{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
-    data = OPTIONAL | data
-    for key, words in (("vary", VARY), ("gap", tuple(GAPS))):
-        if data[key] not in words:
-            raise MatchError(f"{path}#/{key}: found {data[key]!r}; one of {', '.join(words)} is needed")
-    if not isinstance(data["doc"], str):
-        raise MatchError(f"{path}#/doc: found {data['doc']!r}; text is needed")
-    if not isinstance(data["base"], str) or not (path.parent / data["base"]).is_file():
-        raise MatchError(f"{path}#/base: found {data['base']!r}; the path of a config is needed, relative to this file")
-    if isinstance(data["starts"], bool) or not isinstance(data["starts"], int) or not 1 <= data["starts"] <= 100:
-        raise MatchError(f"{path}#/starts: found {data['starts']!r}; a whole number from 1 to 100 is needed")
-    if not isinstance(data["name"], str) or not data["name"].isidentifier():
-        raise MatchError(f"{path}#/name: found {data['name']!r}; one word is needed")
-    jitter = _numbers({"jitter_m": [data["jitter_m"]]}, "jitter_m", "a length >= 0", lambda x: x >= 0, path)[0]
-    return Spec(path, hashlib.sha256(path.read_bytes()).hexdigest(), data["name"], data["doc"], path.parent / data["base"], _formulations(data, path), data["vary"],
-                _scales(data, path), data["starts"], jitter, data["gap"], _numbers(data, "gaps", "a number in (0, 1)", lambda x: 0 < x < 1, path), _overrides(data["set"], f"{path}#/set"),
-                _scenes(data, path))
+    """Errors: UserError with file, place, what was found and what is allowed."""
+    data = OPTIONAL | read_json_spec(path, "pareto")
+    base = require_base(data, path)
+    jitter = _numbers({"jitter_m": [data["jitter_m"]]}, "jitter_m", "a length >= 0", lambda x: x >= 0, path)[
+        0
+    ]
+    return Spec(
+        path,
+        hashlib.sha256(path.read_bytes()).hexdigest(),
+        data["name"],
+        data["doc"],
+        base,
+        _formulations(data, path),
+        data["vary"],
+        _scales(data, path),
+        data["starts"],
+        jitter,
+        data["gap"],
+        _numbers(data, "gaps", "a number in (0, 1)", lambda x: 0 < x < 1, path),
+        _overrides(data["set"], f"{path}#/set"),
+        _scenes(data, path),
+    )
 
 
 def label(scene: str, formulation: str, scale: float) -> str:
@@ -131,7 +160,17 @@ def make_sweep(spec: Spec) -> Sweep:
     for scene, overrides in spec.scenes.items():
         d_hat = overrides.get("/formulation/d_hat_m", spec.common.get("/formulation/d_hat_m"))
         kept = {pointer: value for pointer, value in overrides.items() if pointer != "/formulation/d_hat_m"}
-        cases += [{"label": label(scene, name, scale), "set": kept | settings(name, spec.vary, d_hat, scale)} for name in spec.formulations for scale in spec.scales]
-    common = {"/threads": 1, "/matching/rule": "equal_force", "/seeds/jitter_m": spec.jitter_m, "/passes": {"time": True, "diagnose": True, "audit": True},
-              "/diagnose/scalings": ["none", "block_jacobi"], "/diagnose/stages": ["full", "without_contact", "without_contact_and_limit"]} | spec.common
+        cases += [
+            {"label": label(scene, name, scale), "set": kept | settings(name, spec.vary, d_hat, scale)}
+            for name in spec.formulations
+            for scale in spec.scales
+        ]
+    common = {
+        "/threads": 1,
+        "/matching/rule": "equal_force",
+        "/seeds/jitter_m": spec.jitter_m,
+        "/passes": {"time": True, "diagnose": True, "audit": True},
+        "/diagnose/scalings": ["none", "block_jacobi"],
+        "/diagnose/stages": ["full", "without_contact", "without_contact_and_limit"],
+    } | spec.common
     return sweep(f"pareto_{spec.name}", spec.base, common, cases, list(range(1, spec.starts + 1)))

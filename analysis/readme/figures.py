@@ -1,4 +1,6 @@
-"""Figures beside the pages: those of the demo that a page shows, with every figure that a caption sends its readers to."""
+"""Figures beside the pages: those of the demo that a page shows, with every figure that a caption sends its
+readers to.
+"""
 
 from __future__ import annotations
 
@@ -15,7 +17,9 @@ def shown(pages: list[str]) -> set[str]:
 
 
 def copy(pages: list[str], made: Path, docs: Path) -> list[str]:
-    """Copies picture and caption of every figure in `made` that a page shows or the caption of one names. Returns their names."""
+    """Copies picture and caption of every figure in `made` that a page shows or the caption of one names.
+    Returns their names.
+    """
     found, todo = [], sorted(shown(pages))
     while todo:
         name = todo.pop()
@@ -30,5 +34,9 @@ def copy(pages: list[str], made: Path, docs: Path) -> list[str]:
 
 def absent(docs: Path) -> list[str]:
     """One line for every figure that a caption names and that is not there."""
-    return [f"{path}: names {name}, and {docs}/{name}.png is not there; ./bench readme --write copies it" for path in sorted(docs.glob("*.txt"))
-            for name in dict.fromkeys(COMPANY.findall(path.read_text())) if not (docs / f"{name}.png").is_file()]
+    return [
+        f"{path}: names {name}, and {docs}/{name}.png is not there; ./bench readme --write copies it"
+        for path in sorted(docs.glob("*.txt"))
+        for name in dict.fromkeys(COMPANY.findall(path.read_text()))
+        if not (docs / f"{name}.png").is_file()
+    ]

@@ -5,25 +5,31 @@ from __future__ import annotations
 import textwrap
 from pathlib import Path
 
+from ..errors import UserError
 from ..gap_map.judge import counts
 from ..gap_map.report import sentences
 from ..gap_map.rows import NOT_RUN
-from ..gap_map.spec import GapMapError
 from ..gap_map.table import read
-from .numbers import ROOT, ReadmeError
+from .numbers import ROOT
 
 FILE = ROOT / "results" / "gap_map.json"
 
 
 def gather(file: Path = FILE) -> list[str]:
-    """Errors: ReadmeError where the kept map cannot be read."""
+    """Errors: UserError where the kept map cannot be read."""
     try:
         found = read(file)
-    except (GapMapError, OSError) as error:
-        raise ReadmeError(f"{file}: {error}; ./bench gap-map --quick makes one") from error
+    except (UserError, OSError) as error:
+        raise UserError(f"{file}: {error}; ./bench gap-map --quick makes one") from error
     n, (low, high) = counts(found.rows), found.about["unknowns"]
-    of = f"Of {n['cells']} cells {n['cells'] - n[NOT_RUN]} are decided, with {found.about['runs']} runs of {low} to {high} unknowns"
-    return [*sentences(found), of + (f"; {n[NOT_RUN]} are not run yet, most of them of the larger scenes." if n[NOT_RUN] else ".")]
+    of = (
+        f"Of {n['cells']} cells {n['cells'] - n[NOT_RUN]} are decided, with {found.about['runs']} runs of"
+        f" {low} to {high} unknowns"
+    )
+    return [
+        *sentences(found),
+        of + (f"; {n[NOT_RUN]} are not run yet, most of them of the larger scenes." if n[NOT_RUN] else "."),
+    ]
 
 
 def lines(found: list[str], width: int) -> list[str]:

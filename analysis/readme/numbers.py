@@ -1,4 +1,6 @@
-"""What the generated parts of README.md and docs/results.md are made of: numbers of the demo's records, kept in results/demo.json."""
+"""What the generated parts of README.md and docs/results.md are made of: numbers of the demo's records, kept
+in results/demo.json.
+"""
 
 from __future__ import annotations
 
@@ -10,7 +12,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..load import Records, condition_of, counted, load
+from ..errors import UserError
+from ..records import Records, condition_of, counted, load
 from ..table import summary_table
 from ..whole_file import write_whole
 
@@ -19,10 +22,6 @@ FILE = ROOT / "results" / "demo.json"
 RUNS = ROOT / "results" / "runs" / "demo"
 NAME = "barrierbench.demo_numbers/1"
 GROUPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")
-
-
-class ReadmeError(ValueError):
-    """A page or its numbers that are not as they have to be, with the place and what is allowed."""
 
 
 def _plain(value):
@@ -40,10 +39,14 @@ def _p95(records: Records, run: str) -> float | None:
 
 def _last_in_contact(records: Records, run: str, steps: pd.DataFrame) -> dict[int, float]:
     """Step with contact at its end -> unscaled condition number of its last diagnosed iteration."""
-    touching = set(steps["step"][steps["contacts_total"].fillna(0) > 0]) if "contacts_total" in steps else set()
+    touching = (
+        set(steps["step"][steps["contacts_total"].fillna(0) > 0]) if "contacts_total" in steps else set()
+    )
     found = condition_of(records, run, "none")
     found = found.assign(cond=counted(found)).dropna(subset=["cond"])
-    return {int(step): float(rows["cond"].iloc[-1]) for step, rows in found.groupby("step") if step in touching}
+    return {
+        int(step): float(rows["cond"].iloc[-1]) for step, rows in found.groupby("step") if step in touching
+    }
 
 
 def _rows(records: Records, table: pd.DataFrame) -> list[dict]:
@@ -51,50 +54,104 @@ def _rows(records: Records, table: pd.DataFrame) -> list[dict]:
     rows = []
     for (_, run), (_, line) in zip(records.runs.iterrows(), table.iterrows()):
         steps = records.steps[records.steps["run"] == run["run"]]
-        rows.append({key: _plain(line[key]) for key in ("group", "series", "cond_raw_median", "cond_raw_max", "cond_bj_median", "cond_bj_max", "newton_iterations",
-                                                        "probe_pcg", "gap_min_rel")}
-                    | {key: _plain(run.get(column)) for key, column in
-                       (("outcome", "outcome"), ("verdict", "comparability_verdict"), ("step_solver", "step_solver"), ("crossings", "audit_crossings"),
-                        ("violations", "audit_violations"), ("unproven", "audit_unproven"), ("judged", "audit_judged"), ("steps", "summary_steps"), ("run", "run_id"))}
-                    | {"steps": len(steps), "scale": _plain(run.get("matching_scale")), "valid": bool(run["valid"]), "cond_raw_p95": _p95(records, run["run"]),
-                       "cond_steps": _last_in_contact(records, run["run"], steps)})
+        rows.append(
+            {
+                key: _plain(line[key])
+                for key in (
+                    "group",
+                    "series",
+                    "cond_raw_median",
+                    "cond_raw_max",
+                    "cond_bj_median",
+                    "cond_bj_max",
+                    "newton_iterations",
+                    "probe_pcg",
+                    "gap_min_rel",
+                )
+            }
+            | {
+                key: _plain(run.get(column))
+                for key, column in (
+                    ("outcome", "outcome"),
+                    ("verdict", "comparability_verdict"),
+                    ("step_solver", "step_solver"),
+                    ("crossings", "audit_crossings"),
+                    ("violations", "audit_violations"),
+                    ("unproven", "audit_unproven"),
+                    ("judged", "audit_judged"),
+                    ("steps", "summary_steps"),
+                    ("run", "run_id"),
+                )
+            }
+            | {
+                "steps": len(steps),
+                "scale": _plain(run.get("matching_scale")),
+                "valid": bool(run["valid"]),
+                "cond_raw_p95": _p95(records, run["run"]),
+                "cond_steps": _last_in_contact(records, run["run"], steps),
+            }
+        )
     return rows
 
 
 def _about(runs: pd.DataFrame) -> dict:
-    """Where and when, each once. The processor class is what the numbers hold for: another one adds in another order."""
-    names = {"processor": "machine_cpu_model", "cores": "machine_cores", "blas_kernel": "provenance_blas_kernel", "compiler": "provenance_compiler",
-             "flags": "provenance_flags", "commit": "provenance_git_commit"}
-    about = {key: ", ".join(dict.fromkeys(str(value) for value in runs[column] if value is not None)) for key, column in names.items()}
+    """Where and when, each once. The processor class is what the numbers hold for: another one adds in
+    another order.
+    """
+    names = {
+        "processor": "machine_cpu_model",
+        "cores": "machine_cores",
+        "blas_kernel": "provenance_blas_kernel",
+        "compiler": "provenance_compiler",
+        "flags": "provenance_flags",
+        "commit": "provenance_git_commit",
+    }
+    about = {
+        key: ", ".join(dict.fromkeys(str(value) for value in runs[column] if value is not None))
+        for key, column in names.items()
+    }
     days = sorted({str(value)[:10] for value in runs["started_utc"]})
-    return about | {"days": " to ".join(dict.fromkeys((days[0], days[-1]))), "runs": len(runs), "outcomes": dict(Counter(runs["outcome"]))}
+    return about | {
+        "days": " to ".join(dict.fromkeys((days[0], days[-1]))),
+        "runs": len(runs),
+        "outcomes": dict(Counter(runs["outcome"])),
+    }
 
 
 def gather(folder: Path) -> dict:
-    """The numbers of all records of the demo below `folder`. Raises RecordError without any, ReadmeError where a sweep is missing."""
+    """The numbers of all records of the demo below `folder`. Raises RecordError without any, UserError where
+    a sweep is missing.
+    """
     records = load(folder)
     if records.unreadable:
-        raise ReadmeError("\n".join(records.unreadable))
+        raise UserError("\n".join(records.unreadable))
     if missing := [name for name in GROUPS if name not in set(records.runs["group"])]:
-        raise ReadmeError(f"{folder}: no records of {', '.join(missing)}; ./bench demo makes them")
+        raise UserError(f"{folder}: no records of {', '.join(missing)}; ./bench demo makes them")
     return {"schema": NAME, "about": _about(records.runs), "runs": _rows(records, summary_table(records))}
 
 
 def write(numbers: dict, path: Path = FILE) -> None:
     lines = ",\n  ".join(json.dumps(row, allow_nan=False) for row in numbers["runs"])
-    write_whole(path, f'{{"schema": "{NAME}", "about": {json.dumps(numbers["about"])},\n "runs": [\n  {lines}]}}\n')
+    write_whole(
+        path, f'{{"schema": "{NAME}", "about": {json.dumps(numbers["about"])},\n "runs": [\n  {lines}]}}\n'
+    )
 
 
 def read(path: Path = FILE) -> dict:
-    """Raises ReadmeError when the file is not there or not one of write()."""
+    """Raises UserError when the file is not there or not one of write()."""
     if not path.is_file():
-        raise ReadmeError(f"{path}: not there; allowed: the numbers of the demo: ./bench demo, then ./bench readme --write")
+        raise UserError(
+            f"{path}: not there; allowed: the numbers of the demo: ./bench demo, then ./bench readme --write"
+        )
     try:
         data = json.loads(path.read_text())
     except ValueError as error:
-        raise ReadmeError(f"{path}: not JSON: {error}") from None
+        raise UserError(f"{path}: not JSON: {error}") from None
     if not isinstance(data, dict) or data.get("schema") != NAME or not data.get("runs"):
-        raise ReadmeError(f"{path}#/schema: found {data.get('schema') if isinstance(data, dict) else data!r}; allowed: {NAME!r} with runs")
+        raise UserError(
+            f"{path}#/schema: found {data.get('schema') if isinstance(data, dict) else data!r}; allowed:"
+            f" {NAME!r} with runs"
+        )
     for row in data["runs"]:
         row["cond_steps"] = {int(step): cond for step, cond in row["cond_steps"].items()}
     return data

@@ -12,14 +12,17 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..front import verbs
 from .numbers import ROOT
 
 FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```[ ]*$", re.DOTALL | re.MULTILINE)
 PLAIN = ("", "text")  # what is shown and not run: output, a file's layout
 CHECKED_CONFIG = ("run", "steps", "explain", "check", "causes", "match")  # verbs whose first file is a config
 SAFE = ("list", "help", "eval", "device")  # answer at once
-MADE = ("results/runs", "results/matrices")  # what commands leave; `*` in a name: of a run of the reader's own
-LONG_VERBS = ("setup", "build", "demo", "test", "format", "tidy", "rooms")
+MADE = (
+    "results/runs",
+    "results/matrices",
+)  # what commands leave; `*` in a name: of a run of the reader's own
 SECONDS = 120
 
 
@@ -36,7 +39,10 @@ class Snippet:
 
 
 def snippets(text: str, page: str) -> list[Snippet]:
-    return [Snippet(page, text.count("\n", 0, match.start(2)) + 1, match[1].strip(), match[2]) for match in FENCE.finditer(text)]
+    return [
+        Snippet(page, text.count("\n", 0, match.start(2)) + 1, match[1].strip(), match[2])
+        for match in FENCE.finditer(text)
+    ]
 
 
 def _ran(words: list[str], **more) -> subprocess.CompletedProcess:
@@ -44,21 +50,25 @@ def _ran(words: list[str], **more) -> subprocess.CompletedProcess:
 
 
 def _told(done: subprocess.CompletedProcess) -> str:
-    return (done.stderr.strip() or done.stdout.strip()).splitlines()[-1] if (done.stderr or done.stdout).strip() else "it said nothing"
-
-
-def script_verbs() -> set[str]:
-    """Verbs that the script ./bench handles itself, as it tells the program."""
-    found = re.search(r'BENCH_VERBS="([^"]+)"', (ROOT / "bench").read_text())
-    return set(found[1].split()) if found else set()
+    return (
+        (done.stderr.strip() or done.stdout.strip()).splitlines()[-1]
+        if (done.stderr or done.stdout).strip()
+        else "it said nothing"
+    )
 
 
 def _settings(words: list[str]) -> list[str]:
-    return [word for k, value in enumerate(words[:-1]) if value == "--set" for word in ("--set", words[k + 1])]
+    return [
+        word for k, value in enumerate(words[:-1]) if value == "--set" for word in ("--set", words[k + 1])
+    ]
 
 
 def _missing_files(words: list[str]) -> list[str]:
-    named = [word for word in words if re.match(r"(configs|examples|tests|core|experiments|claims|docs)/", word) and "=" not in word]
+    named = [
+        word
+        for word in words
+        if re.match(r"(configs|examples|tests|core|experiments|claims|docs)/", word) and "=" not in word
+    ]
     return [word for word in named if not any(ROOT.glob(word))]
 
 
@@ -67,12 +77,8 @@ def _command_fault(words: list[str], program: str) -> str:
     verb, rest = words[1], words[2:]
     if missing := _missing_files(rest):
         return f"{missing[0]}: not there"
-    if verb in LONG_VERBS or verb == "mutate":
+    if verbs.find(verb):
         return ""
-    own = verb in script_verbs()
-    if own:
-        usage = _ran([str(ROOT / "bench")]).stdout
-        return "" if re.search(rf"^  (?:\w+, )*{verb}\b", usage, re.MULTILINE) else f"{verb} is not in the usage of ./bench"
     helped = _ran([program, verb, "--help"])
     if helped.returncode != 0:
         return _told(helped)
@@ -88,7 +94,12 @@ def _command_fault(words: list[str], program: str) -> str:
 def _config_fault(words: list[str], program: str) -> str:
     verb, files = words[1], [word for word in words[2:] if word.startswith("configs/")]
     if verb in CHECKED_CONFIG and files:
-        verify = [program, "explain" if any("/device" in word for word in words) else "check", str(ROOT / files[0]), *_settings(words)]
+        verify = [
+            program,
+            "explain" if any("/device" in word for word in words) else "check",
+            str(ROOT / files[0]),
+            *_settings(words),
+        ]
         if any("cudss" in word or '"cuda"' in word or "dense_184m" in word for word in words):
             return ""  # needs a card, or minutes
         done = _ran(verify)
@@ -112,7 +123,11 @@ def _shell_faults(snippet: Snippet, program: str) -> list[str]:
             elif words[0].endswith("bench") and len(words) > 1:
                 fault = _command_fault(words, program) or _config_fault(words, program)
             else:
-                fault = "" if (ROOT / words[0]).exists() or words[0] in ("echo", "python3", "cp", "cd", "git", "pip") else f"{words[0]}: not there"
+                fault = (
+                    ""
+                    if (ROOT / words[0]).exists() or words[0] in ("echo", "python3", "cp", "cd", "git", "pip")
+                    else f"{words[0]}: not there"
+                )
             if fault:
                 faults.append(f"{snippet.page}:{snippet.line + k}: {command.strip()}: {fault}")
     return faults
@@ -128,7 +143,11 @@ def _json_faults(snippet: Snippet, program: str) -> list[str]:
         file = Path(folder) / "sweeps" / "snippet.json"
         file.parent.mkdir()
         file.write_text(snippet.text)
-        words = ["sweep", str(file), "--dry-run"] if str(data.get("schema", "")).startswith("barrierbench.sweep") else ["check", str(file)]
+        words = (
+            ["sweep", str(file), "--dry-run"]
+            if str(data.get("schema", "")).startswith("barrierbench.sweep")
+            else ["check", str(file)]
+        )
         done = _ran([program, *words])
     return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
 
@@ -136,11 +155,28 @@ def _json_faults(snippet: Snippet, program: str) -> list[str]:
 def _python_faults(snippet: Snippet, program: str) -> list[str]:
     """In a folder with one small record where the page has its demo."""
     with tempfile.TemporaryDirectory() as folder:
-        made = _ran([program, "run", str(ROOT / "configs/scenes/resting_block_1d.json"), "--set", "/time/steps=2", "--set", "/passes/diagnose=true", "--out", "results/runs/demo/one"], cwd=folder)
+        made = _ran(
+            [
+                program,
+                "run",
+                str(ROOT / "configs/scenes/resting_block_1d.json"),
+                "--set",
+                "/time/steps=2",
+                "--set",
+                "/passes/diagnose=true",
+                "--out",
+                "results/runs/demo/one",
+            ],
+            cwd=folder,
+        )
         if made.returncode != 0:
             return [f"{snippet.place}: {_told(made)}"]
         prelude = "import sys, types\nimport analysis\nsys.modules['barrierbench_analysis'] = analysis\n"
-        done = _ran([sys.executable, "-c", prelude + snippet.text], cwd=folder, env={**os.environ, "PYTHONPATH": str(ROOT)})
+        done = _ran(
+            [sys.executable, "-c", prelude + snippet.text],
+            cwd=folder,
+            env={**os.environ, "PYTHONPATH": str(ROOT)},
+        )
     return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
 
 
@@ -152,5 +188,8 @@ def faults(text: str, page: str, program: str) -> list[str]:
         if snippet.language in judges:
             found += judges[snippet.language](snippet, program)
         elif snippet.language not in PLAIN:
-            found.append(f"{snippet.place}: a fence of {snippet.language!r}, which nothing checks; allowed: {', '.join(judges)}, and {PLAIN[1]} for what is no snippet")
+            found.append(
+                f"{snippet.place}: a fence of {snippet.language!r}, which nothing checks; allowed:"
+                f" {', '.join(judges)}, and {PLAIN[1]} for what is no snippet"
+            )
     return found

@@ -1,4 +1,6 @@
-"""A stress test as data: configs/stress/ID.json, the formulations of configs/stress/formulations.json, the words an outcome may be."""
+"""A stress test as data: configs/stress/ID.json, the formulations of configs/stress/formulations.json, the
+words an outcome may be.
+"""
 
 from __future__ import annotations
 
@@ -9,24 +11,20 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from .. import fields
+from ..errors import UserError
+from ..spec_file import read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "configs" / "stress"
-NAME = "barrierbench.stress/1"
-REQUIRED = ("schema", "id", "title", "varies", "measures", "expect")
 RUNS = ("base", "set", "axes", "formulations", "contacts", "full", "relations")  # of a test that runs scenes
-OPTIONAL = ("geometry", "quick", "changed", "defects", *RUNS)
 ONE = "-"  # the case of a test without axes
 
-# What a record cannot say of itself: ok but not valid; no record because the config was refused; the program died without a record.
+# What a record cannot say of itself: ok but not valid; no record because the config was refused; the
+# program died without a record.
 BESIDE = ("not_valid", "refused", "crash")
 OUTCOMES = tuple(fields.schema("run")["$defs"]["Status"]["properties"]["outcome"]["enum"]) + BESIDE
 NEVER_NAMED = ("penetration", "unproven", "oom", "timeout", "crash", "not_valid", "refused", "ok")
 NAMED = "named"  # in an expectation: any failure but these
-
-
-class StressError(ValueError):
-    """A test that cannot be read or judged: file, place and what is needed."""
 
 
 @dataclass(frozen=True)
@@ -40,7 +38,9 @@ class Formulation:
 class Case:
     label: str
     set: dict = field(hash=False)
-    needs: tuple = field(default=(), hash=False)  # settings that a program may not have yet: pointer and value
+    needs: tuple = field(
+        default=(), hash=False
+    )  # settings that a program may not have yet: pointer and value
 
 
 @dataclass(frozen=True)
@@ -72,24 +72,41 @@ class Test:
         """Labels of formulations; @GROUP stands for several, @all for those of this test."""
         out = []
         for name in names:
-            found = [f.label for f in self.formulations] if name == "@all" else self.groups.get(name[1:]) if name.startswith("@") else [name]
+            found = (
+                [f.label for f in self.formulations]
+                if name == "@all"
+                else self.groups.get(name[1:])
+                if name.startswith("@")
+                else [name]
+            )
             if found is None or not set(found) <= {f.label for f in self.formulations}:
-                raise StressError(f"{self.path}: {place}: {name!r}; allowed: {', '.join(f.label for f in self.formulations)}, @all, "
-                                  + ", ".join(f"@{group}" for group in self.groups))
+                raise UserError(
+                    f"{self.path}: {place}: {name!r}; allowed:"
+                    f" {', '.join(f.label for f in self.formulations)}, @all, "
+                    + ", ".join(f"@{group}" for group in self.groups)
+                )
             out += found
         return out
 
     def expected(self, formulation: str, case: str) -> Expected:
         """The first expectation that names both. Every pair needs one."""
         for k, entry in enumerate(self.data["expect"]):
-            if formulation in self.named(entry["formulations"], f"/expect/{k}/formulations") and _covers(entry, case):
+            if formulation in self.named(entry["formulations"], f"/expect/{k}/formulations") and _covers(
+                entry, case
+            ):
                 return Expected(tuple(entry["outcomes"]), entry["reason"])
-        raise StressError(f"{self.path}: /expect: nothing is expected of {formulation} in case {case!r}")
+        raise UserError(f"{self.path}: /expect: nothing is expected of {formulation} in case {case!r}")
 
     def defect(self, formulation: str, case: str, outcome: str) -> str:
-        """What is known to be wrong with the program where this outcome is found in the place of the expected one; empty: nothing."""
+        """What is known to be wrong with the program where this outcome is found in the place of the expected
+        one; empty: nothing.
+        """
         for k, entry in enumerate(self.data.get("defects", [])):
-            if formulation in self.named(entry["formulations"], f"/defects/{k}/formulations") and _covers(entry, case) and outcome in entry["outcomes"]:
+            if (
+                formulation in self.named(entry["formulations"], f"/defects/{k}/formulations")
+                and _covers(entry, case)
+                and outcome in entry["outcomes"]
+            ):
                 return entry["why"]
         return ""
 
@@ -102,9 +119,12 @@ def read_json(path: Path, schema: str) -> dict:
     try:
         data = json.loads(path.read_text())
     except (OSError, ValueError) as error:
-        raise StressError(f"{path}: {error}") from None
+        raise UserError(f"{path}: {error}") from None
     if not isinstance(data, dict) or data.get("schema") != schema:
-        raise StressError(f"{path}: /schema: {data.get('schema') if isinstance(data, dict) else data!r}; {schema!r} is needed")
+        raise UserError(
+            f"{path}: /schema: {data.get('schema') if isinstance(data, dict) else data!r}; {schema!r} is"
+            " needed"
+        )
     return data
 
 
@@ -114,12 +134,18 @@ def order(name: str) -> tuple:
 
 
 def ids(folder: Path = FOLDER) -> list[str]:
-    return sorted((path.stem for path in folder.glob("*.json") if re.fullmatch(r"[SM]\d\d", path.stem)), key=order)
+    return sorted(
+        (path.stem for path in folder.glob("*.json") if re.fullmatch(r"[SM]\d\d", path.stem)), key=order
+    )
 
 
 def left_out(folder: Path = FOLDER) -> dict[str, str]:
     """Proposed tests that are not here, and why."""
-    return {k: v for k, v in read_json(folder / "left_out.json", "barrierbench.stress_left_out/1").items() if k != "schema"}
+    return {
+        k: v
+        for k, v in read_json(folder / "left_out.json", "barrierbench.stress_left_out/1").items()
+        if k != "schema"
+    }
 
 
 def _cases(axes: list[dict], path: Path) -> tuple[Case, ...]:
@@ -127,12 +153,21 @@ def _cases(axes: list[dict], path: Path) -> tuple[Case, ...]:
     out = [Case("", {})]
     for k, axis in enumerate(axes):
         if not axis.get("cases"):
-            raise StressError(f"{path}: /axes/{k}: cases with label and set are needed")
+            raise UserError(f"{path}: /axes/{k}: cases with label and set are needed")
         for j, entry in enumerate(axis["cases"]):
             if unknown := set(entry) - {"label", "set", "needs"}:
-                raise StressError(f"{path}: /axes/{k}/cases/{j}/{sorted(unknown)[0]}: unknown; allowed: label, set, needs")
-        out = [Case(f"{one.label} {entry['label']}".strip(), {**one.set, **entry.get("set", {})}, (*one.needs, *entry.get("needs", ())))
-               for one in out for entry in axis["cases"]]
+                raise UserError(
+                    f"{path}: /axes/{k}/cases/{j}/{sorted(unknown)[0]}: unknown; allowed: label, set, needs"
+                )
+        out = [
+            Case(
+                f"{one.label} {entry['label']}".strip(),
+                {**one.set, **entry.get("set", {})},
+                (*one.needs, *entry.get("needs", ())),
+            )
+            for one in out
+            for entry in axis["cases"]
+        ]
     return tuple(Case(one.label or ONE, one.set, one.needs) for one in out)
 
 
@@ -141,64 +176,85 @@ def _formulations(data: dict, folder: Path, path: Path) -> tuple[tuple[Formulati
     common = read_json(folder / "formulations.json", "barrierbench.stress_formulations/1")
     choice = data.get("formulations", {})
     if unknown := set(choice) - {"base", "add", "own"}:
-        raise StressError(f"{path}: /formulations/{sorted(unknown)[0]}: unknown; allowed: base, add, own")
+        raise UserError(f"{path}: /formulations/{sorted(unknown)[0]}: unknown; allowed: base, add, own")
     if "own" in choice:
         return tuple(Formulation(f["label"], f["set"], f.get("by_case", {})) for f in choice["own"]), {}
     add = choice.get("add", {})
     if unknown := set(add) - {f["label"] for f in common["comparable"]}:
-        raise StressError(f"{path}: /formulations/add/{sorted(unknown)[0]}: no formulation of formulations.json")
-    return tuple(Formulation(f["label"], {**f["set"], **add.get(f["label"], {})}) for f in common["comparable"]), common["groups"]
+        raise UserError(
+            f"{path}: /formulations/add/{sorted(unknown)[0]}: no formulation of formulations.json"
+        )
+    return (
+        tuple(Formulation(f["label"], {**f["set"], **add.get(f["label"], {})}) for f in common["comparable"]),
+        common["groups"],
+    )
 
 
 def _check_expect(test: Test) -> None:
     for k, entry in enumerate(test.data["expect"]):
         place = f"{test.path}: /expect/{k}"
         if unknown := set(entry) - {"formulations", "cases", "outcomes", "reason"}:
-            raise StressError(f"{place}/{sorted(unknown)[0]}: unknown; allowed: formulations, cases, outcomes, reason")
+            raise UserError(
+                f"{place}/{sorted(unknown)[0]}: unknown; allowed: formulations, cases, outcomes, reason"
+            )
         if not entry.get("reason") or not entry.get("outcomes") or not entry.get("formulations"):
-            raise StressError(f"{place}: formulations, outcomes and a reason are needed")
+            raise UserError(f"{place}: formulations, outcomes and a reason are needed")
         if wrong := [word for word in entry["outcomes"] if word not in (*OUTCOMES, NAMED)]:
-            raise StressError(f"{place}/outcomes: {wrong[0]!r}; allowed: {', '.join((*OUTCOMES, NAMED))}")
-        if idle := [p for p in entry.get("cases", []) if not any(fnmatchcase(case.label, p) for case in test.cases)]:
-            raise StressError(f"{place}/cases: {idle[0]!r} is no case; cases: {', '.join(case.label for case in test.cases)}")
-    for key, needed in (("changed", {"what", "old", "new", "why"}), ("defects", {"formulations", "cases", "outcomes", "why"})):
+            raise UserError(f"{place}/outcomes: {wrong[0]!r}; allowed: {', '.join((*OUTCOMES, NAMED))}")
+        if idle := [
+            p for p in entry.get("cases", []) if not any(fnmatchcase(case.label, p) for case in test.cases)
+        ]:
+            raise UserError(
+                f"{place}/cases: {idle[0]!r} is no case; cases:"
+                f" {', '.join(case.label for case in test.cases)}"
+            )
+    for key, needed in (
+        ("changed", {"what", "old", "new", "why"}),
+        ("defects", {"formulations", "cases", "outcomes", "why"}),
+    ):
         for k, entry in enumerate(test.data.get(key, [])):
             if set(entry) != needed or not all(entry.values()):
-                raise StressError(f"{test.path}: /{key}/{k}: {', '.join(sorted(needed))} are needed, and nothing else")
+                raise UserError(
+                    f"{test.path}: /{key}/{k}: {', '.join(sorted(needed))} are needed, and nothing else"
+                )
     for formulation in test.formulations:
         for case in test.cases:
             test.expected(formulation.label, case.label)
 
 
 def read_test(name: str, folder: Path = FOLDER, full: bool = False) -> Test:
-    """Raises StressError: unknown id or key, a formulation in a case of which nothing is expected."""
+    """Raises UserError: unknown id or key, a formulation in a case of which nothing is expected."""
     path = folder / f"{name}.json"
     if not path.is_file():
-        raise StressError(f"stress test {name!r}: one of {', '.join(ids(folder))} (configs/stress/)")
-    data = read_json(path, NAME)
-    if missing := [key for key in REQUIRED if not data.get(key)]:
-        raise StressError(f"{path}: /{missing[0]} is needed")
-    if unknown := [key for key in data if key not in (*REQUIRED, *OPTIONAL)]:
-        raise StressError(f"{path}: /{unknown[0]}: unknown; allowed: {', '.join((*REQUIRED, *OPTIONAL))}")
+        raise UserError(f"stress test {name!r}: one of {', '.join(ids(folder))} (configs/stress/)")
+    data = read_spec(path, "stress")
     if data["id"] != name:
-        raise StressError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
+        raise UserError(f"{path}: /id: found {data['id']!r}; the name of the file is needed")
     if "geometry" in data:
         if both := [key for key in RUNS if key in data]:
-            raise StressError(f"{path}: /{both[0]}: a test of geometry runs no scene")
+            raise UserError(f"{path}: /{both[0]}: a test of geometry runs no scene")
         return Test(path, data, (), (), {})
     if "base" not in data or not (path.parent / data["base"]).is_file():
-        raise StressError(f"{path}: /base: {data.get('base')!r}; the path of a config is needed")
+        raise UserError(f"{path}: /base: {data.get('base')!r}; the path of a config is needed")
     if full and "full" in data:
-        data = {**data, "axes": data["full"]["axes"], "set": {**data.get("set", {}), **data["full"].get("set", {})}}
+        data = {
+            **data,
+            "axes": data["full"]["axes"],
+            "set": {**data.get("set", {}), **data["full"].get("set", {})},
+        }
         # what is said of cases by name holds of those that are left
         labels = [case.label for case in _cases(data["axes"], path)]
-        data["expect"] = [e for e in data["expect"] if "cases" not in e or any(fnmatchcase(x, p) for x in labels for p in e["cases"])]
+        data["expect"] = [
+            e
+            for e in data["expect"]
+            if "cases" not in e or any(fnmatchcase(x, p) for x in labels for p in e["cases"])
+        ]
     formulations, groups = _formulations(data, folder, path)
     test = Test(path, data, _cases(data.get("axes", []), path), formulations, groups)
     labels = [case.label for case in test.cases]
     if len(set(labels)) != len(labels):
-        raise StressError(f"{path}: /axes: two cases with one label")
+        raise UserError(f"{path}: /axes: two cases with one label")
     if idle := [label for label in data.get("quick", []) if label not in labels and not full]:
-        raise StressError(f"{path}: /quick: {idle[0]!r} is no case; cases: {', '.join(labels)}")
+        raise UserError(f"{path}: /quick: {idle[0]!r} is no case; cases: {', '.join(labels)}")
     _check_expect(test)
     return test

@@ -1,6 +1,8 @@
-"""Distances, times of impact and barrier shapes in exact or very long arithmetic: what the answers of `eval` are held against. Shares nothing with the program.
+"""Distances, times of impact and barrier shapes in exact or very long arithmetic: what the answers of `eval`
+are held against. Shares nothing with the program.
 
-Points are tuples of three Fractions; the numbers that the program was given are exactly representable."""
+Points are tuples of three Fractions; the numbers that the program was given are exactly representable.
+"""
 
 from __future__ import annotations
 
@@ -68,7 +70,12 @@ def edge_edge(x) -> Fraction:
         if 0 <= s <= 1 and 0 <= t <= 1:
             n = cross(u, v)
             return dot(r, n) ** 2 / dot(n, n)
-    return min(point_segment(a0, b0, b1), point_segment(a1, b0, b1), point_segment(b0, a0, a1), point_segment(b1, a0, a1))
+    return min(
+        point_segment(a0, b0, b1),
+        point_segment(a1, b0, b1),
+        point_segment(b0, a0, a1),
+        point_segment(b1, a0, a1),
+    )
 
 
 SQUARED = {"point_triangle": point_triangle, "edge_edge": edge_edge}
@@ -90,10 +97,15 @@ def _cubic(x0, x1) -> list[Fraction]:
 
 
 def time_of_impact(pair: str, x0, x1) -> Fraction | None:
-    """First time in [0, 1] at which the four points lie in a plane with the pair in contact, None: none. The volume of the four is a cubic in
-    time; intervals between sign changes on equal parts are bisected, so that two roots in one part may be missed."""
+    """First time in [0, 1] at which the four points lie in a plane with the pair in contact, None: none. The
+    volume of the four is a cubic in time; intervals between sign changes on equal parts are bisected, so that
+    two roots in one part may be missed.
+    """
     c = _cubic(x0, x1)
-    volume = lambda t: c[0] + t * (c[1] + t * (c[2] + t * c[3]))
+
+    def volume(t):
+        return c[0] + t * (c[1] + t * (c[2] + t * c[3]))
+
     marks = [Fraction(k, PARTS) for k in range(PARTS + 1)]
     values = [volume(t) for t in marks]
     scale = max(root(dot(minus(a, b), minus(a, b))) for a in x0 for b in x0)
@@ -120,7 +132,11 @@ def shape(name: str, d: float, d_hat: float) -> tuple[Decimal, Decimal, Decimal]
         if name == "log":
             return -e * e * log, -2 * e * log - e * e / d, -2 * log - 4 * e / d + e * e / (d * d)
         if name == "log_squared":
-            return e * e * log**2, 2 * e * log**2 + 2 * e * e * log / d, 2 * log**2 + 8 * e * log / d + 2 * e * e * (1 - log) / (d * d)
+            return (
+                e * e * log**2,
+                2 * e * log**2 + 2 * e * e * log / d,
+                2 * log**2 + 8 * e * log / d + 2 * e * e * (1 - log) / (d * d),
+            )
         if name == "quadratic" or (name == "two_stage" and d >= h / 2):
             return e * e, 2 * e, Decimal(2)
         if name == "cubic":
@@ -131,5 +147,9 @@ def shape(name: str, d: float, d_hat: float) -> tuple[Decimal, Decimal, Decimal]
             a = 6
             t = a * (h - d) / h
             p1 = t.exp() - 1
-            return h * h * (p1 - t - t * t / 2) / (a * Decimal(a).exp()), -h * (p1 - t) / Decimal(a).exp(), a * p1 / Decimal(a).exp()
+            return (
+                h * h * (p1 - t - t * t / 2) / (a * Decimal(a).exp()),
+                -h * (p1 - t) / Decimal(a).exp(),
+                a * p1 / Decimal(a).exp(),
+            )
     raise KeyError(name)

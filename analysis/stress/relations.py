@@ -1,10 +1,12 @@
-"""What has to hold between runs of one formulation: equal, differs, ratio, rises, and bounds on single runs."""
+"""What has to hold between runs of one formulation: equal, differs, ratio, rises, and bounds on single
+runs."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from .entry import StressError, Test
+from ..errors import UserError
+from .entry import Test
 from .run import METRICS, WAITS, Row
 
 KINDS = {"equal": ("within",), "differs": ("beyond",), "ratio": ("above", "below"), "rises": (), "bound": ()}
@@ -29,34 +31,45 @@ class Relation:
 
 
 def check(test: Test, entry: dict, k: int) -> None:
-    """Raises StressError for a relation that cannot be judged."""
+    """Raises UserError for a relation that cannot be judged."""
     place = f"{test.path}: /relations/{k}"
     kind = entry.get("kind")
     if kind not in KINDS:
-        raise StressError(f"{place}/kind: {kind!r}; one of {', '.join(KINDS)}")
+        raise UserError(f"{place}/kind: {kind!r}; one of {', '.join(KINDS)}")
     if unknown := set(entry) - {*COMMON, *KINDS[kind]}:
-        raise StressError(f"{place}/{sorted(unknown)[0]}: unknown; allowed: {', '.join((*COMMON, *KINDS[kind]))}")
+        raise UserError(
+            f"{place}/{sorted(unknown)[0]}: unknown; allowed: {', '.join((*COMMON, *KINDS[kind]))}"
+        )
     if entry.get("metric") not in METRICS:
-        raise StressError(f"{place}/metric: {entry.get('metric')!r}; one of {', '.join(METRICS)}")
-    if not entry.get("reason") or any(key not in entry for key in KINDS[kind]) or (kind == "bound" and not {"below", "above"} & set(entry)):
-        raise StressError(f"{place}: a reason and {', '.join(KINDS[kind]) or 'below or above'} are needed")
+        raise UserError(f"{place}/metric: {entry.get('metric')!r}; one of {', '.join(METRICS)}")
+    if (
+        not entry.get("reason")
+        or any(key not in entry for key in KINDS[kind])
+        or (kind == "bound" and not {"below", "above"} & set(entry))
+    ):
+        raise UserError(f"{place}: a reason and {', '.join(KINDS[kind]) or 'below or above'} are needed")
     labels = [case.label for case in test.cases]
     for group in entry.get("groups", []):
         if missing := [label for label in group if label not in labels]:
-            raise StressError(f"{place}/groups: {missing[0]!r} is no case; cases: {', '.join(labels)}")
+            raise UserError(f"{place}/groups: {missing[0]!r} is no case; cases: {', '.join(labels)}")
         if len(group) < 2:
-            raise StressError(f"{place}/groups: two cases at least")
+            raise UserError(f"{place}/groups: two cases at least")
     if kind != "bound" and not entry.get("groups"):
-        raise StressError(f"{place}/groups: needed")
+        raise UserError(f"{place}/groups: needed")
 
 
 def _says(entry: dict) -> str:
     metric, kind = entry["metric"], entry["kind"]
     among = "; ".join(" | ".join(group) for group in entry.get("groups", [])) or "every run"
-    rule = {"equal": lambda: "equal" if entry["within"] == 0 else f"equal within {entry['within']:g}",
-            "differs": lambda: f"differs by more than {entry['beyond']:g}", "rises": lambda: "rises from each to the next",
-            "ratio": lambda: f"first over second between {entry['above']:g} and {entry['below']:g}",
-            "bound": lambda: " and ".join(f"{word} {entry[word]:g}" for word in ("above", "below") if word in entry)}[kind]()
+    rule = {
+        "equal": lambda: "equal" if entry["within"] == 0 else f"equal within {entry['within']:g}",
+        "differs": lambda: f"differs by more than {entry['beyond']:g}",
+        "rises": lambda: "rises from each to the next",
+        "ratio": lambda: f"first over second between {entry['above']:g} and {entry['below']:g}",
+        "bound": lambda: " and ".join(
+            f"{word} {entry[word]:g}" for word in ("above", "below") if word in entry
+        ),
+    }[kind]()
     return f"{metric} of {among}: {rule}"
 
 
@@ -73,12 +86,20 @@ def _verdict(entry: dict, values: list) -> tuple[bool, float]:
         return min(steps) > 1, min(steps)
     if kind == "ratio":
         return entry["above"] <= values[0] / values[1] <= entry["below"], values[0] / values[1]
-    spread = 0.0 if min(values) == max(values) else max(values) / min(values) - 1 if min(values) > 0 else float("inf")
+    spread = (
+        0.0
+        if min(values) == max(values)
+        else max(values) / min(values) - 1
+        if min(values) > 0
+        else float("inf")
+    )
     return (spread <= entry["within"], spread) if kind == "equal" else (spread > entry["beyond"], spread)
 
 
 def relations(test: Test, rows: list[Row], only: list[str] | None = None) -> list[Relation]:
-    """All relations of a test whose cases were run. only: cases that were asked for; a group that was not asked for as a whole is left out."""
+    """All relations of a test whose cases were run. only: cases that were asked for; a group that was not
+    asked for as a whole is left out.
+    """
     out = []
     for k, entry in enumerate(test.data.get("relations", [])):
         check(test, entry, k)
@@ -92,19 +113,39 @@ def relations(test: Test, rows: list[Row], only: list[str] | None = None) -> lis
         numbers = []
         for label in dict.fromkeys(row.formulation for row in rows):
             if label in test.named(entry.get("formulations", ["@all"]), f"/relations/{k}/formulations"):
-                _judge(found, entry, groups, {row.case: row for row in rows if row.formulation == label}, label, numbers)
+                _judge(
+                    found,
+                    entry,
+                    groups,
+                    {row.case: row for row in rows if row.formulation == label},
+                    label,
+                    numbers,
+                )
         if numbers:
             low, high = min(numbers), max(numbers)
-            found.worst = f"{low[0]:.4g} ({low[1]})" + (f" to {high[0]:.4g} ({high[1]})" if high[0] != low[0] else "")
+            found.worst = f"{low[0]:.4g} ({low[1]})" + (
+                f" to {high[0]:.4g} ({high[1]})" if high[0] != low[0] else ""
+            )
         out.append(found)
     return out
 
 
-def _judge(found: Relation, entry: dict, groups: list, rows: dict[str, Row], label: str, numbers: list) -> None:
+def _judge(
+    found: Relation, entry: dict, groups: list, rows: dict[str, Row], label: str, numbers: list
+) -> None:
     for group in groups:
-        values = [getattr(rows[case], entry["metric"]) if case in rows and rows[case].outcome not in (WAITS, "timeout", "crash") else None for case in group]
+        values = [
+            (
+                getattr(rows[case], entry["metric"])
+                if case in rows and rows[case].outcome not in (WAITS, "timeout", "crash")
+                else None
+            )
+            for case in group
+        ]
         # An end that did not converge is no state to compare.
-        if any(value in (None, "") for value in values) or (entry["kind"] != "bound" and any(rows[case].outcome != "ok" for case in group)):
+        if any(value in (None, "") for value in values) or (
+            entry["kind"] != "bound" and any(rows[case].outcome != "ok" for case in group)
+        ):
             found.not_judged += 1
             continue
         if entry["kind"] in ("ratio", "rises") and 0 in values:  # what is over zero says nothing

@@ -1,4 +1,6 @@
-"""Running a case: a sweep of one case, so that the program itself knows a record that is already there. A hang, a crash, a refusal touch no other case."""
+"""Running a case: a sweep of one case, so that the program itself knows a record that is already there. A
+hang, a crash, a refusal touch no other case.
+"""
 
 from __future__ import annotations
 
@@ -11,15 +13,20 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..errors import UserError
+from ..program import built_program, run_sweep, started
 from ..record_file import RecordError, read_record
-from ..program import built_program
 from ..whole_file import write_whole
-from .entry import ROOT, Case, Formulation, StressError, Test
+from .entry import ROOT, Case, Formulation, Test
 
 LIMIT_S = 60.0  # of processor time, of one run, whatever other runs took or whether they had records already
 CLOCK = 4  # times as much on the clock, so that a busy machine makes no timeouts
 ALWAYS = {"/threads": 1, "/passes": {"time": True, "diagnose": False, "audit": True}}
-TO_THE_END = ("ok", "not_valid", "unproven")  # contacts are counted at step ends; a run that stopped earlier may have had them before its first one
+TO_THE_END = (
+    "ok",
+    "not_valid",
+    "unproven",
+)  # contacts are counted at step ends; a run that stopped earlier may have had them before its first one
 WAITS = "waits"  # in place of an outcome: the program has no such setting yet
 
 
@@ -51,18 +58,28 @@ class Row:
     defect: str = ""  # a known one of the program that explains it
 
 
-METRICS = ("newton", "linear", "contacts", "gap_min_rel", "gap_min_ulps", "gap_end_rel", "load_end_N", "max_stretch", "state_hash")
+METRICS = (
+    "newton",
+    "linear",
+    "contacts",
+    "gap_min_rel",
+    "gap_min_ulps",
+    "gap_end_rel",
+    "load_end_N",
+    "max_stretch",
+    "state_hash",
+)
 
 
 def program() -> Path:
-    return built_program(StressError)
+    return built_program()
 
 
 def config_schema() -> dict:
     """That of the program which will run, not of the tree."""
-    done = subprocess.run([str(program()), "help", "config", "--schema"], capture_output=True, text=True, check=False)
+    done = started("help", "config", "--schema")
     if done.returncode != 0:
-        raise StressError(f"{program()} help config --schema: {done.stderr.strip()}")
+        raise UserError(f"{built_program()} help config --schema: {done.stderr.strip()}")
     return json.loads(done.stdout)
 
 
@@ -81,9 +98,21 @@ def known(need: dict, schema: dict) -> bool:
 
 def spec_of(test: Test, formulation: Formulation, case: Case) -> dict:
     """The sweep of this one case."""
-    settings = {**formulation.set, **ALWAYS, **test.data.get("set", {}), **case.set, **formulation.by_case.get(case.label, {})}
-    return {"schema": "barrierbench.sweep/1", "name": f"stress {test.id}", "base": str((test.path.parent / test.data["base"]).resolve()),
-            "axes": [{"cases": [{"label": f"{formulation.label} {case.label}".replace("/", " per "), "set": settings}]}]}
+    settings = {
+        **formulation.set,
+        **ALWAYS,
+        **test.data.get("set", {}),
+        **case.set,
+        **formulation.by_case.get(case.label, {}),
+    }
+    return {
+        "schema": "barrierbench.sweep/1",
+        "name": f"stress {test.id}",
+        "base": str((test.path.parent / test.data["base"]).resolve()),
+        "axes": [
+            {"cases": [{"label": f"{formulation.label} {case.label}".replace("/", " per "), "set": settings}]}
+        ],
+    }
 
 
 def _folder(text: str) -> str:
@@ -99,12 +128,26 @@ def row_of(record: dict, test: str, case: str, formulation: str) -> Row:
     status, summary, steps = record["status"], record["summary"], record["steps"]
     outcome = "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
     last = steps[-1] if steps else {}
-    return Row(test, case, formulation, outcome, status["detail"], record["ids"]["run_id"][:16], status["valid"],
-               seconds=_number(summary["wall_s"]), newton=summary["newton_iterations"], linear=_number(summary["linear_per_solve"]["sum"]),
-               contacts=int(_number(summary["contacts"]["max"]) or 0), gap_min_rel=_number(summary["gap_min_rel"]["min"]),
-               gap_min_iterates_rel=_number(summary["gap_min_iterates_rel"]), gap_min_ulps=_number(summary.get("gap_min_ulps")),
-               gap_end_rel=_number(last.get("gap_min_rel")), load_end_N=_number(last.get("contact_load_sum_N")),
-               max_stretch=_number(summary["max_stretch"]), state_hash=summary["state_hash"])
+    return Row(
+        test,
+        case,
+        formulation,
+        outcome,
+        status["detail"],
+        record["ids"]["run_id"][:16],
+        status["valid"],
+        seconds=_number(summary["wall_s"]),
+        newton=summary["newton_iterations"],
+        linear=_number(summary["linear_per_solve"]["sum"]),
+        contacts=int(_number(summary["contacts"]["max"]) or 0),
+        gap_min_rel=_number(summary["gap_min_rel"]["min"]),
+        gap_min_iterates_rel=_number(summary["gap_min_iterates_rel"]),
+        gap_min_ulps=_number(summary.get("gap_min_ulps")),
+        gap_end_rel=_number(last.get("gap_min_rel")),
+        load_end_N=_number(last.get("contact_load_sum_N")),
+        max_stretch=_number(summary["max_stretch"]),
+        state_hash=summary["state_hash"],
+    )
 
 
 def judge(row: Row, test: Test) -> Row:
@@ -120,14 +163,23 @@ def judge(row: Row, test: Test) -> Row:
 
 
 def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, limit_s: float) -> Row:
-    """One run, or its record if it is there. Raises StressError when the test itself is wrong."""
+    """One run, or its record if it is there. Raises UserError when the test itself is wrong."""
     place = folder / test.id / _folder(formulation.label) / _folder(case.label)
     spec = place / "spec.json"
     write_whole(spec, json.dumps(spec_of(test, formulation, case), indent=1) + "\n")
-    blank = lambda outcome, detail: Row(test.id, case.label, formulation.label, outcome, detail)
-    command = [str(program()), "sweep", str(spec), "--out", str(place / "runs"), "--progress", "none"]
+
+    def blank(outcome, detail):
+        return Row(test.id, case.label, formulation.label, outcome, detail)
+
     try:
-        done = subprocess.run(command, capture_output=True, text=True, timeout=CLOCK * limit_s, check=False, preexec_fn=lambda: _limit(limit_s))
+        done = run_sweep(
+            spec,
+            place / "runs",
+            "--progress",
+            "none",
+            timeout=CLOCK * limit_s,
+            preexec_fn=lambda: _limit(limit_s),
+        )
     except subprocess.TimeoutExpired:
         return blank("timeout", f"not over after {CLOCK * limit_s:.0f} s")
     if done.returncode == -signal.SIGXCPU:
@@ -137,36 +189,51 @@ def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, lim
     if done.returncode != 0:
         return blank("crash", f"the program ended with {done.returncode}: {_told(done.stderr)}")
     try:
-        return row_of(read_record(_record(command, place / "runs")), test.id, case.label, formulation.label)
+        return row_of(read_record(_record(spec, place / "runs")), test.id, case.label, formulation.label)
     except RecordError as error:
         return blank("crash", str(error))
 
 
-def _record(command: list[str], folder: Path) -> Path:
+def _record(spec: Path, folder: Path) -> Path:
     """The record of this very config; those of earlier versions of the case may lie beside it."""
     made = sorted(folder.glob("*/run.json"))
     if len(made) == 1:
         return made[0]
-    told = subprocess.run([*command, "--dry-run"], capture_output=True, text=True, check=False).stdout.strip()
+    told = run_sweep(spec, folder, "--dry-run").stdout.strip()
     return Path(told or folder) / "run.json"
 
 
 def _told(text: str) -> str:
     """What the program says, without the place of the generated sweep."""
-    lines = [re.sub(r"\S*spec\.json\S*( \[[^]]*\])? ?", "", line).strip() for line in text.splitlines() if line.strip()]
+    lines = [
+        re.sub(r"\S*spec\.json\S*( \[[^]]*\])? ?", "", line).strip()
+        for line in text.splitlines()
+        if line.strip()
+    ]
     return "; ".join(lines).replace(f"{ROOT}/", "")[:400]
 
 
 def _limit(seconds: float) -> None:
-    """Of processor time of this process, which is about to become the program; SIGXCPU ends it, without a core file."""
+    """Of processor time of this process, which is about to become the program; SIGXCPU ends it, without a
+    core file.
+    """
     soft = math.ceil(seconds)
     resource.setrlimit(resource.RLIMIT_CPU, (soft, soft + 1))
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
 
 
-def run_test(test: Test, folder: Path, schema: dict, formulations: list[str] | None = None, cases: list[str] | None = None, say=lambda text: None,
-             limit_s: float = LIMIT_S) -> list[Row]:
-    """All formulations and cases. Each run has limit_s of processor time for itself, so that no verdict depends on what else was run."""
+def run_test(
+    test: Test,
+    folder: Path,
+    schema: dict,
+    formulations: list[str] | None = None,
+    cases: list[str] | None = None,
+    say=lambda text: None,
+    limit_s: float = LIMIT_S,
+) -> list[Row]:
+    """All formulations and cases. Each run has limit_s of processor time for itself, so that no verdict
+    depends on what else was run.
+    """
     rows = []
     for formulation in test.formulations:
         if formulations is not None and formulation.label not in formulations:
@@ -176,10 +243,21 @@ def run_test(test: Test, folder: Path, schema: dict, formulations: list[str] | N
                 continue
             missing = [need for need in case.needs if not known(need, schema)]
             if missing:
-                rows.append(Row(test.id, case.label, formulation.label, WAITS, f"waits for {missing[0]['pointer']} = {missing[0]['value']}"))
+                rows.append(
+                    Row(
+                        test.id,
+                        case.label,
+                        formulation.label,
+                        WAITS,
+                        f"waits for {missing[0]['pointer']} = {missing[0]['value']}",
+                    )
+                )
                 continue
             row = judge(run_case(test, formulation, case, folder, limit_s), test)
             rows.append(row)
             if not row.as_expected and not row.defect:
-                say(f"{test.id} {formulation.label}, {case.label}: {row.outcome}, expected {' or '.join(row.expected)}: {row.detail[:160]}")
+                say(
+                    f"{test.id} {formulation.label}, {case.label}: {row.outcome}, expected"
+                    f" {' or '.join(row.expected)}: {row.detail[:160]}"
+                )
     return rows

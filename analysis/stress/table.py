@@ -1,4 +1,6 @@
-"""What the page is made of: every run, count and relation, in results/stress.json. Tests that were not run keep what they had."""
+"""What the page is made of: every run, count and relation, in results/stress.json. Tests that were not run
+keep what they had.
+"""
 
 from __future__ import annotations
 
@@ -7,8 +9,9 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..errors import UserError
 from ..whole_file import write_whole
-from .entry import ROOT, StressError, order, read_json
+from .entry import ROOT, order, read_json
 from .geometry import Count
 from .relations import Relation
 from .run import Row
@@ -35,7 +38,12 @@ class Result:
     def as_expected(self) -> bool:
         """Red when nothing was judged. What a known defect explains is neither as expected nor red."""
         judged = [row for row in self.rows if row.outcome != "waits"]
-        return (bool(judged) or any(c.judged for c in self.counts)) and not self.unexpected and all(c.as_expected for c in self.counts) and all(r.holds for r in self.relations)
+        return (
+            (bool(judged) or any(c.judged for c in self.counts))
+            and not self.unexpected
+            and all(c.as_expected for c in self.counts)
+            and all(r.holds for r in self.relations)
+        )
 
 
 def _rounded(value):
@@ -50,15 +58,26 @@ def _row(row: Row) -> list:
 
 def write(results: dict[str, Result], path: Path) -> None:
     """A line a run."""
-    one = lambda x: json.dumps(x, ensure_ascii=False)
+
+    def one(x):
+        return json.dumps(x, ensure_ascii=False)
+
     blocks = []
     for name in sorted(results, key=order):
         result = results[name]
         rows = ",\n   ".join(one(_row(row)) for row in result.rows)
         counts = ",\n   ".join(one(dataclasses.asdict(count)) for count in result.counts)
         relations = ",\n   ".join(one(dataclasses.asdict(relation)) for relation in result.relations)
-        blocks.append(f'  "{name}": {{"about": {one(result.about)},\n  "rows": [\n   {rows}],\n  "counts": [\n   {counts}],\n  "relations": [\n   {relations}]}}')
-    write_whole(path, f'{{\n "schema": "{NAME}",\n "columns": {one(KEPT)},\n "tests": {{\n' + ",\n".join(blocks) + "\n }\n}\n")
+        blocks.append(
+            f'  "{name}": {{"about": {one(result.about)},\n  "rows": [\n   {rows}],\n  "counts": [\n  '
+            f' {counts}],\n  "relations": [\n   {relations}]}}'
+        )
+    write_whole(
+        path,
+        f'{{\n "schema": "{NAME}",\n "columns": {one(KEPT)},\n "tests": {{\n'
+        + ",\n".join(blocks)
+        + "\n }\n}\n",
+    )
 
 
 def read(path: Path) -> dict[str, Result]:
@@ -67,17 +86,27 @@ def read(path: Path) -> dict[str, Result]:
         return {}
     try:
         data = read_json(path, NAME)
-    except StressError as error:
-        raise StressError(f"{error}; remove it, then ./bench stress") from None
+    except UserError as error:
+        raise UserError(f"{error}; remove it, then ./bench stress") from None
     try:
         return _results(data)
     except (KeyError, TypeError, AttributeError, ValueError) as error:
-        raise StressError(f"{path}: not a whole table ({type(error).__name__}: {error}); remove it, then ./bench stress") from None
+        raise UserError(
+            f"{path}: not a whole table ({type(error).__name__}: {error}); remove it, then ./bench stress"
+        ) from None
 
 
 def _results(data: dict) -> dict[str, Result]:
     out = {}
     for name, t in data["tests"].items():
-        rows = [Row(test=name, **{**values, "expected": tuple(values["expected"])}) for values in (dict(zip(data["columns"], row)) for row in t["rows"])]
-        out[name] = Result(rows, [Count(**count) for count in t["counts"]], [Relation(**relation) for relation in t["relations"]], t["about"])
+        rows = [
+            Row(test=name, **{**values, "expected": tuple(values["expected"])})
+            for values in (dict(zip(data["columns"], row)) for row in t["rows"])
+        ]
+        out[name] = Result(
+            rows,
+            [Count(**count) for count in t["counts"]],
+            [Relation(**relation) for relation in t["relations"]],
+            t["about"],
+        )
     return out

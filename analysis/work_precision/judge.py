@@ -1,4 +1,6 @@
-"""Numbers of a work-precision study: what a formulation reaches, what it costs, who is cheaper. Failed runs never solve anything and stay counted."""
+"""Numbers of a work-precision study: what a formulation reaches, what it costs, who is cheaper. Failed runs
+never solve anything and stay counted.
+"""
 
 from __future__ import annotations
 
@@ -6,8 +8,12 @@ import math
 from dataclasses import dataclass
 
 # Cost -> the solver whose runs have it, and what it is.
-COSTS = {"seconds": ("direct", "seconds"), "newton": ("direct", "Newton iterations"), "factorizations": ("direct", "factorisations"),
-         "products": ("pcg", "matrix products of PCG")}
+COSTS = {
+    "seconds": ("direct", "seconds"),
+    "newton": ("direct", "Newton iterations"),
+    "factorizations": ("direct", "factorisations"),
+    "products": ("pcg", "matrix products of PCG"),
+}
 
 
 @dataclass(frozen=True)
@@ -21,32 +27,48 @@ class Point:
 
 
 def band_of(scene: dict, row: dict | None = None) -> float:
-    """The uncertainty of the reference of a run, of the anchor's without one: errors below it are not ranked."""
+    """The uncertainty of the reference of a run, of the anchor's without one: errors below it are not
+    ranked."""
     factor = row["factor"] if row is not None and row["axis"] == "dt_s" else 1.0
     bands = {ref["dt_factor"]: ref["band"].get(scene["error"], 0.0) for ref in scene["references"]}
     return bands.get(factor, bands[1.0])
 
 
 def shares_time_step(scene: dict) -> bool:
-    """Whether every run is compared with a refined reference of its own time step, which sees no error in time; only those references have a band."""
+    """Whether every run is compared with a refined reference of its own time step, which sees no error in
+    time; only those references have a band.
+    """
     return any(ref["band"] for ref in scene["references"])
 
 
 def _points(scene: dict, cost: str, ranked: bool) -> list[Point]:
     solver, shared = COSTS[cost][0], shares_time_step(scene)
-    return [Point(r["formulation"], (r["axis"], r["factor"]), math.inf if r[cost] is None else r[cost],
-                  None if r["error"] is None else max(r["error"], band_of(scene, r)), r["outcome"], r["run"])
-            for r in scene["rows"] if r["solver"] == solver and ranked != (shared and r["axis"] == "dt_s")]
+    return [
+        Point(
+            r["formulation"],
+            (r["axis"], r["factor"]),
+            math.inf if r[cost] is None else r[cost],
+            None if r["error"] is None else max(r["error"], band_of(scene, r)),
+            r["outcome"],
+            r["run"],
+        )
+        for r in scene["rows"]
+        if r["solver"] == solver and ranked != (shared and r["axis"] == "dt_s")
+    ]
 
 
 def points(scene: dict, cost: str) -> list[Point]:
-    """What is ranked by one cost. An error below its band counts as the band: below it nothing is known. A cost that was not measured is infinite. Other
-    time steps are left out where no error in time is seen: a large step would be cheap and cost no precision."""
+    """What is ranked by one cost. An error below its band counts as the band: below it nothing is known. A
+    cost that was not measured is infinite. Other time steps are left out where no error in time is seen: a
+    large step would be cheap and cost no precision.
+    """
     return _points(scene, cost, True)
 
 
 def aside(scene: dict, cost: str) -> list[Point]:
-    """What is not ranked: the runs of other time steps in a scene whose references share the time step of the runs."""
+    """What is not ranked: the runs of other time steps in a scene whose references share the time step of the
+    runs.
+    """
     return _points(scene, cost, False)
 
 
@@ -56,25 +78,42 @@ def formulations(scene: dict) -> list[str]:
 
 def smallest_error(all_points: list[Point], formulation: str) -> float:
     """inf where no run counts."""
-    return min((p.error for p in all_points if p.formulation == formulation and p.error is not None), default=math.inf)
+    return min(
+        (p.error for p in all_points if p.formulation == formulation and p.error is not None),
+        default=math.inf,
+    )
 
 
 def cost_to(all_points: list[Point], formulation: str, error: float) -> float:
     """The least cost of a run of the formulation with at most that error; inf: none of its runs."""
-    return min((p.cost for p in all_points if p.formulation == formulation and p.error is not None and p.error <= error), default=math.inf)
+    return min(
+        (
+            p.cost
+            for p in all_points
+            if p.formulation == formulation and p.error is not None and p.error <= error
+        ),
+        default=math.inf,
+    )
 
 
 def front(all_points: list[Point], formulation: str) -> list[tuple[float, float]]:
-    """(cost, error) of the runs that no cheaper run of the same formulation equals or betters, by growing cost."""
+    """(cost, error) of the runs that no cheaper run of the same formulation equals or betters, by growing
+    cost.
+    """
     out: list[tuple[float, float]] = []
-    for p in sorted((p for p in all_points if p.formulation == formulation and p.error is not None and p.cost < math.inf), key=lambda p: (p.cost, p.error)):
+    for p in sorted(
+        (p for p in all_points if p.formulation == formulation and p.error is not None and p.cost < math.inf),
+        key=lambda p: (p.cost, p.error),
+    ):
         if not out or p.error < out[-1][1]:
             out.append((p.cost, p.error))
     return out
 
 
 def cheapest(all_points: list[Point], names: list[str]) -> list[tuple[float, tuple[str, ...]]]:
-    """(error, formulations): who reaches each error that occurs at the least cost, all that cost the same, from the largest error to the smallest."""
+    """(error, formulations): who reaches each error that occurs at the least cost, all that cost the same,
+    from the largest error to the smallest.
+    """
     out = []
     for error in sorted({p.error for p in all_points if p.error is not None}, reverse=True):
         costs = {name: cost_to(all_points, name, error) for name in names}
@@ -90,7 +129,9 @@ class Standing:
     runs: int
     smallest: float
     cost_there: float
-    cheapest_in: tuple[tuple[float, float], ...]  # [from, to) of an error that is asked for, the largest first; inf: no upper end
+    cheapest_in: tuple[
+        tuple[float, float], ...
+    ]  # [from, to) of an error that is asked for, the largest first; inf: no upper end
 
 
 def standing(all_points: list[Point], names: list[str], formulation: str) -> Standing:
@@ -103,12 +144,21 @@ def standing(all_points: list[Point], names: list[str], formulation: str) -> Sta
             joined = intervals and intervals[-1][0] == above
             intervals[-1:] = [(error, intervals[-1][1])] if joined else [*intervals[-1:], (error, above)]
         above = error
-    return Standing(formulation, sum(p.error is not None for p in mine), len(mine), smallest, cost_to(all_points, formulation, smallest), tuple(intervals))
+    return Standing(
+        formulation,
+        sum(p.error is not None for p in mine),
+        len(mine),
+        smallest,
+        cost_to(all_points, formulation, smallest),
+        tuple(intervals),
+    )
 
 
 def profile(scenes: list[dict], cost: str, formulation: str, level: int) -> tuple[list[float], int]:
-    """Data profile: the costs at which problems (scene, variation) were solved, sorted, and the number of all problems. A problem is solved when its
-    run counts, has this cost, and its error is at most target number `level` of its scene (the last one where it has fewer)."""
+    """Data profile: the costs at which problems (scene, variation) were solved, sorted, and the number of all
+    problems. A problem is solved when its run counts, has this cost, and its error is at most target number
+    `level` of its scene (the last one where it has fewer).
+    """
     costs, total = [], 0
     for scene in scenes:
         target = scene["targets"][min(level, len(scene["targets"]) - 1)]

@@ -1,11 +1,23 @@
-"""results/WORK_PRECISION.md: what each formulation reaches, what a target costs, and within which errors it is the cheapest."""
+"""results/WORK_PRECISION.md: what each formulation reaches, what a target costs, and within which errors it
+is the cheapest.
+"""
 
 from __future__ import annotations
 
 import math
 
 from ..accuracy.errors import MEANING
-from .judge import COSTS, Standing, band_of, cost_to, formulations, points, profile, shares_time_step, standing
+from .judge import (
+    COSTS,
+    Standing,
+    band_of,
+    cost_to,
+    formulations,
+    points,
+    profile,
+    shares_time_step,
+    standing,
+)
 
 HEAD = """# Work and precision
 
@@ -31,22 +43,37 @@ def number(x: float | None) -> str:
 
 def intervals(s: Standing) -> str:
     """Errors that are asked for in which it is the cheapest, as words."""
-    return "; ".join(f"from {number(low)} up" if math.isinf(high) else " to ".join(_apart(low, high)) for low, high in s.cheapest_in) or "nowhere"
+    return (
+        "; ".join(
+            f"from {number(low)} up" if math.isinf(high) else " to ".join(_apart(low, high))
+            for low, high in s.cheapest_in
+        )
+        or "nowhere"
+    )
 
 
 def _apart(low: float, high: float) -> tuple[str, str]:
     """With as many digits as tell them apart."""
-    return next(pair for pair in ((f"{low:.{digits}g}", f"{high:.{digits}g}") for digits in range(3, 18)) if pair[0] != pair[1])
+    return next(
+        pair
+        for pair in ((f"{low:.{digits}g}", f"{high:.{digits}g}") for digits in range(3, 18))
+        if pair[0] != pair[1]
+    )
 
 
 def _standings(scene: dict) -> list[str]:
     names, band = formulations(scene), band_of(scene)
     all_points = points(scene, "newton")
-    lines = ["| formulation | runs that count | useless below | Newton iterations there | cheapest within |", "|---|---|---|---|---|"]
+    lines = [
+        "| formulation | runs that count | useless below | Newton iterations there | cheapest within |",
+        "|---|---|---|---|---|",
+    ]
     for name in names:
         s = standing(all_points, names, name)
         smallest = number(s.smallest) + (" (band)" if band and s.smallest <= band else "")
-        lines.append(f"| {name} | {s.solved} of {s.runs} | {smallest} | {number(s.cost_there)} | {intervals(s)} |")
+        lines.append(
+            f"| {name} | {s.solved} of {s.runs} | {smallest} | {number(s.cost_there)} | {intervals(s)} |"
+        )
     return lines
 
 
@@ -62,7 +89,11 @@ def _targets(scene: dict) -> list[str]:
 
 def _failures(scene: dict) -> list[str]:
     failed = [_failure(r) for r in scene["rows"] if r["error"] is None]
-    return [f"Failed or not valid, {len(failed)} of {len(scene['rows'])}: " + "; ".join(failed) + ".", ""] if failed else [f"All {len(scene['rows'])} runs count.", ""]
+    return (
+        [f"Failed or not valid, {len(failed)} of {len(scene['rows'])}: " + "; ".join(failed) + ".", ""]
+        if failed
+        else [f"All {len(scene['rows'])} runs count.", ""]
+    )
 
 
 def _failure(row: dict) -> str:
@@ -72,27 +103,61 @@ def _failure(row: dict) -> str:
 
 def _scene(scene: dict) -> list[str]:
     anchor, band, about = scene["anchor"], band_of(scene), scene["about"]
-    lines = [f"## {scene['name']}", "", f"`{scene['base']}`, {scene['duration_s']:g} s and one step, anchor: dt {anchor['dt_s']:g} s, d_hat {anchor['d_hat_m']:g} m, "
-             f"tolerance {anchor['tolerance']:g} of min(d_hat, fall of a step)/dt. Error: `{scene['error']}`, {MEANING[scene['error']]}. {about['runs']} runs, {about['seconds']:.0f} s in all "
-             f"(pilots and audit included), {about['unknowns']} unknowns, {about['machine']}, {about['date']}, build {about['build'][:8]}.", ""]
-    lines += [f"- Reference, dt x{ref['dt_factor']:g}: {ref['name']}" + "".join(f"; {e} {number(b)}" for e, b in ref["band"].items()) + "." for ref in scene["references"]]
+    lines = [
+        f"## {scene['name']}",
+        "",
+        (
+            f"`{scene['base']}`, {scene['duration_s']:g} s and one step, anchor: dt {anchor['dt_s']:g} s,"
+            f" d_hat {anchor['d_hat_m']:g} m, tolerance {anchor['tolerance']:g} of min(d_hat, fall of a"
+            f" step)/dt. Error: `{scene['error']}`, {MEANING[scene['error']]}. {about['runs']} runs,"
+            f" {about['seconds']:.0f} s in all (pilots and audit included), {about['unknowns']} unknowns,"
+            f" {about['machine']}, {about['date']}, build {about['build'][:8]}."
+        ),
+        "",
+    ]
+    lines += [
+        f"- Reference, dt x{ref['dt_factor']:g}: {ref['name']}"
+        + "".join(f"; {e} {number(b)}" for e, b in ref["band"].items())
+        + "."
+        for ref in scene["references"]
+    ]
     lines += ["", f"![{scene['error']} against work](../docs/work_precision_{scene['name']}.png)", ""]
     if band:
         lines += [f"Uncertainty of the reference (band): {number(band)}.", ""]
     if shares_time_step(scene) and (unranked := sum(r["axis"] == "dt_s" for r in scene["rows"])):
-        lines += [f"{unranked} runs of other time steps (dt_s) are not ranked: the references do not see their error in time.", ""]
+        lines += [
+            (
+                f"{unranked} runs of other time steps (dt_s) are not ranked: the references do not see their"
+                " error in time."
+            ),
+            "",
+        ]
     return lines + _standings(scene) + [""] + _targets(scene) + [""] + _failures(scene)
 
 
 def _profiles(scenes: list[dict]) -> list[str]:
     budgets = (50, 100, 200, 500, 1000)
-    lines = ["## Over all scenes", "", "![share of problems solved within a budget](../docs/work_precision_profile.png)", "",
-             "Problems (scene, variation) solved with at most so many factorisations, by target (first, second, third of each scene); failed runs never are.", "",
-             "| formulation | problems | " + " | ".join(f"{b} factorisations" for b in budgets) + " | any number |", "|---|---|" + "---|" * (len(budgets) + 1)]
+    lines = [
+        "## Over all scenes",
+        "",
+        "![share of problems solved within a budget](../docs/work_precision_profile.png)",
+        "",
+        (
+            "Problems (scene, variation) solved with at most so many factorisations, by target (first,"
+            " second, third of each scene); failed runs never are."
+        ),
+        "",
+        "| formulation | problems | "
+        + " | ".join(f"{b} factorisations" for b in budgets)
+        + " | any number |",
+        "|---|---|" + "---|" * (len(budgets) + 1),
+    ]
     levels = range(max(len(scene["targets"]) for scene in scenes))
     for name in formulations(scenes[0]):
         found = [profile(scenes, "factorizations", name, level) for level in levels]
-        cells = [", ".join(str(sum(c <= b for c in costs)) for costs, _ in found) for b in (*budgets, math.inf)]
+        cells = [
+            ", ".join(str(sum(c <= b for c in costs)) for costs, _ in found) for b in (*budgets, math.inf)
+        ]
         lines.append(f"| {name} | {found[0][1]} | " + " | ".join(cells) + " |")
     return lines
 
@@ -109,9 +174,14 @@ def text(table: dict) -> str:
     lines = []
     for scene in table["scenes"]:
         names, all_points = formulations(scene), points(scene, "newton")
-        lines.append(f"{scene['name']}: {scene['error']}, {scene['references'][0]['name']}, band {number(band_of(scene)) if band_of(scene) else '0'}")
+        lines.append(
+            f"{scene['name']}: {scene['error']}, {scene['references'][0]['name']}, band"
+            f" {number(band_of(scene)) if band_of(scene) else '0'}"
+        )
         for name in names:
             s = standing(all_points, names, name)
-            lines.append(f"  {name:32} {s.solved:3} of {s.runs:3} count, useless below {number(s.smallest):>9}, {number(s.cost_there):>6} Newton iterations there"
-                         + f"; cheapest {intervals(s)}")
+            lines.append(
+                f"  {name:32} {s.solved:3} of {s.runs:3} count, useless below {number(s.smallest):>9},"
+                f" {number(s.cost_there):>6} Newton iterations there" + f"; cheapest {intervals(s)}"
+            )
     return "\n".join(lines)

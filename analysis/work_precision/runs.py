@@ -1,10 +1,11 @@
-"""Runs what a spec asks for (records that are there are skipped by their run_id) and measures every run against its reference."""
+"""Runs what a spec asks for (records that are there are skipped by their run_id) and measures every run
+against its reference.
+"""
 
 from __future__ import annotations
 
 import json
 import os
-import subprocess
 import sys
 import time
 from datetime import datetime
@@ -13,18 +14,17 @@ from pathlib import Path
 from ..accuracy.errors import NotFinite
 from ..accuracy.reference import CLOSED_FORMS, NoReference, Reference, measure, refined
 from ..accuracy.state import Motion, read_motion
-from ..frames import FrameError
+from ..errors import UserError
+from ..program import built_program, run_sweep
 from ..record_file import RecordError, read_record
-from ..program import built_program
 from ..whole_file import write_whole
-from .spec import REFERENCE_D_HAT, ROOT, SOLVERS, Scene, Spec, SpecError
+from .spec import REFERENCE_D_HAT, ROOT, SOLVERS, Scene, Spec
 
 RUNS = ROOT / "results" / "runs" / "work_precision"
 ID_DIGITS = 16
 
 
-def program() -> str:
-    return str(built_program(SpecError, "; --no-run makes the page of the numbers that are kept"))
+NEEDED = "; --no-run makes the page of the numbers that are kept"
 
 
 def sweep_name(spec: Spec, scene: Scene) -> str:
@@ -32,12 +32,15 @@ def sweep_name(spec: Spec, scene: Scene) -> str:
 
 
 def _sweep(spec: Spec, scene: Scene, runs: Path, *words: str) -> str:
-    """Runs the sweep of a scene -> what the program answers. Errors: SpecError with what it says."""
+    """Runs the sweep of a scene -> what the program answers. Errors: UserError with what it says."""
     folder = runs / sweep_name(spec, scene)
-    done = subprocess.run([program(), "sweep", str(runs / f"{folder.name}.sweep.json"), "--out", str(folder), "--progress", "none", *words], capture_output=True,
-                          text=True, check=False)
+    built_program(NEEDED)
+    done = run_sweep(runs / f"{folder.name}.sweep.json", folder, "--progress", "none", *words)
     if done.returncode != 0:
-        raise SpecError(f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}: {done.stderr.strip()[-2000:]}")
+        raise UserError(
+            f"{spec.file}: scene {scene.name}: the program ended with {done.returncode}:"
+            f" {done.stderr.strip()[-2000:]}"
+        )
     return done.stdout
 
 
@@ -46,8 +49,13 @@ def run_scene(spec: Spec, scene: Scene, runs: Path) -> None:
     folder = runs / sweep_name(spec, scene)
     file = runs / f"{folder.name}.sweep.json"
     cases = spec.cases(scene)
-    sweep = {"schema": "barrierbench.sweep/1", "name": folder.name, "base": os.path.relpath(scene.base, runs),
-             "set": {"/threads": 1, "/passes": {"time": True, "diagnose": False, "audit": True}}, "axes": [{"cases": cases}]}
+    sweep = {
+        "schema": "barrierbench.sweep/1",
+        "name": folder.name,
+        "base": os.path.relpath(scene.base, runs),
+        "set": {"/threads": 1, "/passes": {"time": True, "diagnose": False, "audit": True}},
+        "axes": [{"cases": cases}],
+    }
     write_whole(file, json.dumps(sweep, indent=1) + "\n")
     start = time.monotonic()
     print(f"work-precision: {scene.name}: {len(cases)} runs", file=sys.stderr)
@@ -56,7 +64,9 @@ def run_scene(spec: Spec, scene: Scene, runs: Path) -> None:
 
 
 def _records(spec: Spec, scene: Scene, runs: Path) -> dict[str, Path]:
-    """Label of a case -> its folder. Only folders that the sweep names now count: those of settings that the spec no longer has may lie beside them."""
+    """Label of a case -> its folder. Only folders that the sweep names now count: those of settings that the
+    spec no longer has may lie beside them.
+    """
     folder, found = runs / sweep_name(spec, scene), {}
     wanted = {f"{folder.name}: {case['label']}": case["label"] for case in spec.cases(scene)}
     for planned in _sweep(spec, scene, runs, "--dry-run").split("\n"):
@@ -68,7 +78,10 @@ def _records(spec: Spec, scene: Scene, runs: Path) -> dict[str, Path]:
         except (RecordError, KeyError):
             continue  # counted as missing
     if missing := [label for label in wanted.values() if label not in found]:
-        raise SpecError(f"{folder}: {len(missing)} of {len(wanted)} records missing, the first is {missing[0]!r}; ./bench work-precision {spec.file} makes them")
+        raise UserError(
+            f"{folder}: {len(missing)} of {len(wanted)} records missing, the first is {missing[0]!r}; ./bench"
+            f" work-precision {spec.file} makes them"
+        )
     return found
 
 
@@ -76,7 +89,10 @@ def _reference_motion(scene: Scene, label: str, folder: Path) -> Motion:
     motion = read_motion(folder)
     status = motion.record["status"]
     if status["outcome"] != "ok" or not status["valid"]:
-        raise SpecError(f"scene {scene.name}: reference run {label!r} ended {status['outcome']} {status['detail']}; a reference has to be ok and valid")
+        raise UserError(
+            f"scene {scene.name}: reference run {label!r} ended {status['outcome']} {status['detail']}; a"
+            " reference has to be ok and valid"
+        )
     return motion
 
 
@@ -89,13 +105,19 @@ def references(scene: Scene, folders: dict[str, Path]) -> dict[float, Reference]
         labels = [scene.reference_case(name, factor)["label"] for name in scene.reference["refined"]]
         pair = [_reference_motion(scene, label, folders[label]) for label in labels]
         ids = ", ".join(motion.record["ids"]["run_id"][:ID_DIGITS] for motion in pair)
-        made[factor] = refined(*pair, f"middle of {' and '.join(scene.reference['refined'])} with d_hat x{REFERENCE_D_HAT:g}, tolerance/1000, "
-                                      f"dt {pair[0].record['labels']['dt_s']:g} s (run_id {ids})")
+        made[factor] = refined(
+            *pair,
+            f"middle of {' and '.join(scene.reference['refined'])} with d_hat x{REFERENCE_D_HAT:g},"
+            f" tolerance/1000, dt {pair[0].record['labels']['dt_s']:g} s (run_id {ids})",
+        )
     return made
 
 
 def _seconds(record: dict) -> float:
-    start, end = (datetime.fromisoformat(record["status"][key].replace("Z", "+00:00")) for key in ("started_utc", "ended_utc"))
+    start, end = (
+        datetime.fromisoformat(record["status"][key].replace("Z", "+00:00"))
+        for key in ("started_utc", "ended_utc")
+    )
     return (end - start).total_seconds()
 
 
@@ -103,18 +125,33 @@ def _row(scene: Scene, key: tuple, folder: Path, reference: Reference) -> dict:
     formulation, variation, solver = key
     record = read_record(folder / "run.json")
     status, summary = record["status"], record["summary"]
-    row = {"formulation": formulation.label, "axis": variation.axis, "factor": variation.factor, "solver": solver,
-           "outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid", "error": None,
-           "seconds": summary["wall_s"], "newton": summary["newton_iterations"], "factorizations": summary["factorizations"],
-           "products": summary["linear_iterations"], "run": record["ids"]["run_id"][:ID_DIGITS], "errors": {}}
+    row = {
+        "formulation": formulation.label,
+        "axis": variation.axis,
+        "factor": variation.factor,
+        "solver": solver,
+        "outcome": status["outcome"] if status["valid"] or status["outcome"] != "ok" else "not_valid",
+        "error": None,
+        "seconds": summary["wall_s"],
+        "newton": summary["newton_iterations"],
+        "factorizations": summary["factorizations"],
+        "products": summary["linear_iterations"],
+        "run": record["ids"]["run_id"][:ID_DIGITS],
+        "errors": {},
+    }
     if row["outcome"] != "ok":
         return row
     try:
         row["errors"], skipped = measure(read_motion(folder), reference)
-    except (NotFinite, NoReference, FrameError) as error:
-        raise SpecError(f"scene {scene.name}: {folder}: {error}") from None
+    except RecordError:
+        raise  # it names its file
+    except (NotFinite, NoReference, UserError) as error:
+        raise UserError(f"scene {scene.name}: {folder}: {error}") from None
     if scene.error not in row["errors"]:
-        raise SpecError(f"scene {scene.name}: {folder}: {scene.error} does not apply: {skipped.get(scene.error)}; it has {', '.join(row['errors'])}")
+        raise UserError(
+            f"scene {scene.name}: {folder}: {scene.error} does not apply: {skipped.get(scene.error)}; it has"
+            f" {', '.join(row['errors'])}"
+        )
     row["error"] = row["errors"][scene.error]
     return row
 
@@ -126,12 +163,34 @@ def collect(spec: Spec, scene: Scene, runs: Path) -> dict:
     keys = [(f, v, s) for f in spec.formulations for v in scene.variations for s in SOLVERS]
     rows = [_row(scene, key, folders[scene.case(*key)["label"]], known[key[1].of("dt_s")]) for key in keys]
     records = [read_record(folder / "run.json") for folder in folders.values()]
-    about = {"unknowns": records[0]["scene"]["free_dofs"], "seconds": round(sum(map(_seconds, records)), 1), "runs": len(records)}
-    for name, values in (("date", {r["status"]["started_utc"][:10] for r in records}),
-                         ("machine", {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records}),
-                         ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}), ("build", {r["ids"]["build_id"][:ID_DIGITS] for r in records})):
+    about = {
+        "unknowns": records[0]["scene"]["free_dofs"],
+        "seconds": round(sum(map(_seconds, records)), 1),
+        "runs": len(records),
+    }
+    for name, values in (
+        ("date", {r["status"]["started_utc"][:10] for r in records}),
+        (
+            "machine",
+            {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records},
+        ),
+        ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),
+        ("build", {r["ids"]["build_id"][:ID_DIGITS] for r in records}),
+    ):
         about[name] = ", ".join(sorted(values))
     first = known[1.0]
-    return {"name": scene.name, "base": os.path.relpath(scene.base, ROOT), "error": scene.error, "targets": list(scene.targets), "anchor": scene.anchor,
-            "duration_s": scene.duration_s, "references": [{"dt_factor": k, "name": r.name, "band": r.band} for k, r in known.items()] if first.band else
-            [{"dt_factor": 1.0, "name": first.name, "band": {}}], "about": about, "rows": rows}
+    return {
+        "name": scene.name,
+        "base": os.path.relpath(scene.base, ROOT),
+        "error": scene.error,
+        "targets": list(scene.targets),
+        "anchor": scene.anchor,
+        "duration_s": scene.duration_s,
+        "references": (
+            [{"dt_factor": k, "name": r.name, "band": r.band} for k, r in known.items()]
+            if first.band
+            else [{"dt_factor": 1.0, "name": first.name, "band": {}}]
+        ),
+        "about": about,
+        "rows": rows,
+    }

@@ -8,7 +8,7 @@
 #include "experiments/ccd/random_queries.hpp"
 #include "experiments/ccd/read_queries.hpp"
 #include "experiments/ccd/score.hpp"
-#include "experiments/cli/verbs.hpp"
+#include "experiments/cli/options.hpp"
 
 namespace bb::cli {
 namespace {
@@ -16,6 +16,14 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr int most_queries = 10'000'000;
+
+struct CcdVerb {
+  std::string folder;      // of query files; empty: none
+  int random = 0;          // queries of each kind by construction; 0: none
+  int head_on = 0;         // sweeps of each gap; 0: none
+  std::uint64_t seed = 1;  // of both
+  std::string json;        // file; empty: none
+};
 
 /// Errors: ConfigError unless exactly one source of queries is named, and its count is in range.
 void check_request(const CcdVerb& verb) {
@@ -65,8 +73,8 @@ Json to_json(const std::vector<ccd::HeadOn>& rows) {
   return out;
 }
 
-}  // namespace
-
+/// CCD queries with a known truth through ACCD and the audit. exit_wrong_answer when a pair that meets was proven free, or
+/// an accepted state has crossed. Errors: ConfigError as read_queries, and unless one source is named.
 int ccd(const CcdVerb& verb) {
   check_request(verb);
   Json out = {{"schema", "barrierbench.ccd/1"}};
@@ -88,6 +96,20 @@ int ccd(const CcdVerb& verb) {
   }
   if (!verb.json.empty()) write_atomically(verb.json, out.dump(1) + "\n");
   return sound ? exit_ok : exit_wrong_answer;
+}
+
+}  // namespace
+
+Action verb::ccd(CLI::App& app) {
+  const auto verb = std::make_shared<CcdVerb>();
+  app.add_option("folder", verb->folder,
+                 "SCENE/vertex-face/*.csv and SCENE/edge-edge/*.csv, rational coordinates");
+  app.add_option("--random", verb->random, "so many queries of each kind, their truth known by construction");
+  app.add_option("--head-on", verb->head_on,
+                 "so many sweeps of a point through a triangle for each gap and offset");
+  app.add_option("--seed", verb->seed, "of both (default 1)");
+  app.add_option("--json", verb->json, "file of everything that the table shows");
+  return [verb](const CommonOptions&) { return cli::ccd(*verb); };
 }
 
 }  // namespace bb::cli

@@ -1,124 +1,16 @@
+// The verb check: parses, builds the scene and looks for intersections; runs nothing.
 #include <fmt/format.h>
 
-#include <filesystem>
-#include <nlohmann/json.hpp>
-#include <set>
-
-#include "core/cuda/device.hpp"
-#include "core/exec/memory_ledger.hpp"
-#include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
+#include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
-#include "experiments/cli/verbs.hpp"
-#include "experiments/config/document.hpp"
-#include "experiments/config/methods.hpp"
 #include "experiments/config/parse.hpp"
-#include "experiments/run/device_memory.hpp"
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/linear_choice.hpp"
-#include "experiments/run/plan.hpp"
-#include "experiments/run/runner.hpp"
 #include "experiments/run/start_check.hpp"
 
 namespace bb::cli {
-
 namespace {
-
-/// The policy with what the config gives of its parameters.
-std::string stiffness_text(const PolicyConfig& policy) {
-  std::string out = policy.name;
-  for (const auto& [name, value] : policy.parameters) out += fmt::format(", {} {}", name, to_text(value));
-  if (policy.scale != 1) out += fmt::format(", times {:g}", policy.scale);
-  return out;
-}
-
-void print_method(const RunConfig& config) {
-  if (config.method.empty()) return;
-  const MethodUse use = method_use(config);
-  fmt::print("method    {}: {}\n", use.title(), use.method.source);
-  for (const std::string& pointer : use.overridden) fmt::print("  overridden: {}\n", pointer);
-  for (const auto& [subject, text] : use.method.differs) fmt::print("  differs, {}: {}\n", subject, text);
-}
-
-/// Pointers of the method that stand as the method has them.
-std::set<std::string> of_method(const RunConfig& config) {
-  std::set<std::string> out;
-  if (config.method.empty()) return out;
-  const MethodUse use = method_use(config);
-  for (const auto& [pointer, value] : leaves_of(use.method)) out.insert(pointer);
-  for (const std::string& pointer : use.overridden) out.erase(pointer);
-  return out;
-}
-
-void print_formulation(const RunConfig& config) {
-  const FormulationConfig& contact = config.formulation;
-  const StrainLimitConfig& limit = config.strain_limit;
-  fmt::print("contact   {} on {}, d_hat {:g} m, {}\n", contact.shape, to_string(contact.argument),
-             contact.d_hat, stiffness_text(contact.stiffness_policy));
-  if (limit.enabled) {
-    fmt::print("limit     {} on {}, onset {:g}, width {:g}, {}\n", limit.shape, to_string(limit.argument),
-               limit.onset, limit.width, stiffness_text(limit.stiffness_policy));
-  }
-  fmt::print("matching  {}{}\n\n", to_string(config.matching.rule),
-             config.matching.rule == MatchingRule::as_given
-                 ? ""
-                 : fmt::format(", theta {:g}: a given stiffness is replaced", config.matching.theta));
-}
-
-/// One line a number, word or list of the resolved config: pointer, value, and where the value is from.
-void print_settings(const RunVerb& verb, const RunConfig& config) {
-  std::vector<Violation> ignored;  // load_config has judged the same text
-  const std::string folder = std::filesystem::path(verb.config).parent_path().string();
-  const nlohmann::json given =
-      make_document(read_input_file(verb.config, config_file), verb.config, folder, verb.set, ignored);
-  const nlohmann::json flat = nlohmann::json::parse(resolved_json(config)).flatten();
-  const std::set<std::string> by_method = of_method(config);
-  fmt::print(
-      "\nevery setting of the run (* given by the config or --set, m as its method has it; the others are "
-      "defaults)\n");
-  for (const auto& [pointer, value] : flat.items()) {
-    const bool own = given.contains(nlohmann::json::json_pointer(pointer));
-    const char from = by_method.contains(pointer) ? 'm' : own ? '*' : ' ';
-    fmt::print("  {} {:<52} {}\n", from, pointer, value.dump());
-  }
-}
-
-/// Whether the card of this machine has room, or that there is none to ask.
-void print_card(std::size_t total) {
-  const cuda::DeviceProbe probe = cuda::probe_device();
-  if (!probe.usable) {
-    fmt::print("  no card to ask: {}\n", probe.why);
-    return;
-  }
-  fmt::print(
-      "  {}: {} free of {}: {}\n", probe.card, exec::bytes_text(probe.free), exec::bytes_text(probe.memory),
-      total <= probe.free ? "it fits"
-                          : "it does not fit, " + exec::bytes_text(total - probe.free) + " are missing");
-}
-
-void print_memory(const DeviceMemory& memory) {
-  fmt::print("\nmemory of the device at the peak of a step, buffer by buffer\n");
-  fmt::print("  {:.6g} contacts ({})\n", memory.contacts, memory.source);
-  std::size_t rest = 0;
-  for (const auto& [name, bytes] : memory.buffers) {
-    if (200 * bytes < memory.total) {
-      rest += bytes;
-      continue;
-    }
-    fmt::print("  {:<40} {:>12}", name, exec::bytes_text(bytes));
-    fmt::print("{}\n", memory.contacts > 0 ? fmt::format(" {:>8.2f} B a contact",
-                                                         static_cast<double>(bytes) / memory.contacts)
-                                           : "");
-  }
-  fmt::print("  {:<40} {:>12}\n", "all others, below 0.5 % each", exec::bytes_text(rest));
-  fmt::print("  {:<40} {:>12}", "total", exec::bytes_text(memory.total));
-  fmt::print("{}\n", memory.contacts > 0 ? fmt::format(" {:>8.2f} B a contact, {:g} B a contact row",
-                                                       memory.bytes_a_contact(), memory.bytes_a_row)
-                                         : "");
-  print_card(memory.total);
-}
-
-}  // namespace
 
 int check(const RunVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
@@ -131,24 +23,12 @@ int check(const RunVerb& verb) {
   return exit_ok;
 }
 
-int explain(const RunVerb& verb, const ContactDemand& demand) {
-  const RunConfig config = load_run(verb.config, verb.set);
-  const Scene scene = build_scene(config);
-  const Plan plan = plan_of(config, scene);
-  fmt::print("{}\n  {} vertices ({} prescribed), {} membrane triangles, {} steps of {} s\n\n",
-             run_label(config), scene.n_vertices(), scene.pins.size(), scene.membrane_triangles().size(),
-             config.time.steps, config.time.dt);
-  print_method(config);
-  print_formulation(config);
-  for (const bool needed : {true, false}) {
-    fmt::print("{}\n", needed ? "runs" : "skipped");
-    for (const auto& [name, item] : plan.items()) {
-      if (item->needed == needed) fmt::print("  {:<18} {}\n", name, item->reason);
-    }
-  }
-  if (config.device != Device::cpu) print_memory(count_device_memory(config, scene, plan, demand));
-  print_settings(verb, config);
-  return exit_ok;
+}  // namespace
+
+Action verb::check(CLI::App& app) {
+  const auto verb = std::make_shared<RunVerb>();
+  config_arguments(app, *verb);
+  return [verb](const CommonOptions&) { return cli::check(*verb); };
 }
 
 }  // namespace bb::cli

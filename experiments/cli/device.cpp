@@ -7,12 +7,17 @@
 #include <optional>
 
 #include "core/cuda/copy_rates.hpp"
-#include "experiments/cli/verbs.hpp"
+#include "experiments/cli/options.hpp"
 
 namespace bb::cli {
 namespace {
 
 using cuda::DeviceProbe;
+
+struct DeviceVerb {
+  bool json = false;
+  bool measure = false;  // rates of copies too
+};
 
 std::string version_or_none(int version) { return version == 0 ? "none" : cuda::version_text(version); }
 
@@ -53,8 +58,7 @@ void print(const DeviceProbe& probe, const std::optional<cuda::CopyRates>& rates
       exec::bytes_text(rates->bytes), 1e-9 * rates->copy, 1e-9 * rates->upload, 1e-9 * rates->download);
 }
 
-}  // namespace
-
+/// The card that this build can use. exit_no_card without one. Errors: as measure_copies.
 int device(const DeviceVerb& verb) {
   const DeviceProbe probe = cuda::probe_device();
   std::optional<cuda::CopyRates> rates;
@@ -68,6 +72,15 @@ int device(const DeviceVerb& verb) {
     print(probe, rates);
   }
   return probe.usable ? exit_ok : exit_no_card;
+}
+
+}  // namespace
+
+Action verb::device(CLI::App& app) {
+  const auto verb = std::make_shared<DeviceVerb>();
+  app.add_flag("--json", verb->json, "as JSON");
+  app.add_flag("--measure", verb->measure, "how fast copies are");
+  return [verb](const CommonOptions&) { return cli::device(*verb); };
 }
 
 }  // namespace bb::cli

@@ -2,10 +2,12 @@
 #include <iostream>
 
 #include "core/input/read_file.hpp"
-#include "experiments/cli/verbs.hpp"
+#include "experiments/cli/options.hpp"
 #include "experiments/eval/eval.hpp"
 
 namespace bb::cli {
+
+namespace {
 
 int eval(const std::string& file, bool schema) {
   if (schema) {
@@ -16,6 +18,19 @@ int eval(const std::string& file, bool schema) {
   require_regular_file(file, query_file);
   std::ifstream in(file);
   return run_eval(in, std::cout, std::cerr);
+}
+
+}  // namespace
+
+Action verb::eval(CLI::App& app) {
+  struct Given {
+    std::string file = "-";
+    bool schema = false;
+  };
+  const auto given = std::make_shared<Given>();
+  app.add_option("file", given->file, "queries, - for standard input");
+  app.add_flag("--schema", given->schema, "print the JSON Schema of all kinds");
+  return [given](const CommonOptions&) { return cli::eval(given->file, given->schema); };
 }
 
 }  // namespace bb::cli

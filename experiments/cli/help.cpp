@@ -7,7 +7,7 @@
 #include "core/parameters/check.hpp"
 #include "core/parameters/registry.hpp"
 #include "core/record/schema.hpp"
-#include "experiments/cli/verbs.hpp"
+#include "experiments/cli/options.hpp"
 #include "experiments/config/config_list.hpp"
 
 namespace bb::cli {
@@ -46,13 +46,11 @@ void print_list(const std::string& pointer, const ParameterList& list) {
   }
 }
 
-}  // namespace
-
-std::vector<std::string> help_formats() { return names_of(formats); }
-
+/// Every setting of a format that is read, every field of one that is written, with what it means; or the
+/// JSON Schema of it. Errors: ConfigError for another format.
 int help(const std::string& format, bool schema) {
   const Format* known = find_named(formats, format);
-  if (known == nullptr) throw unknown_name("help", format, help_formats());
+  if (known == nullptr) throw unknown_name("help", format, names_of(formats));
   if (known->dictionary != nullptr) {
     fmt::print("{}", schema ? known->schema() : known->dictionary());
     return exit_ok;
@@ -64,6 +62,19 @@ int help(const std::string& format, bool schema) {
   fmt::print("every setting of a {}: name, default, what is allowed; below it what it means\n", format);
   print_list("", known->list());
   return exit_ok;
+}
+
+}  // namespace
+
+Action verb::help(CLI::App& app) {
+  struct Given {
+    std::string format = "config";
+    bool schema = false;
+  };
+  const auto given = std::make_shared<Given>();
+  app.add_option("format", given->format, fmt::format("which file: {}", fmt::join(names_of(formats), ", ")));
+  app.add_flag("--schema", given->schema, "print the JSON Schema instead");
+  return [given](const CommonOptions&) { return cli::help(given->format, given->schema); };
 }
 
 }  // namespace bb::cli

@@ -10,7 +10,7 @@
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
 #include "core/parameters/registry.hpp"
-#include "experiments/cli/verbs.hpp"
+#include "experiments/cli/options.hpp"
 #include "experiments/config/limit_policies.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/methods.hpp"
@@ -74,6 +74,11 @@ void print_methods() {
   }
 }
 
+void print_verbs() {
+  fmt::print("verbs (verb, group, what it is for)\n");
+  for (const Verb& verb : verbs()) fmt::print("  {:<22} {:<8} {}\n", verb.name, verb.group, verb.doc);
+}
+
 struct Section {
   const char* name;
   std::function<void()> print;
@@ -96,11 +101,10 @@ const std::vector<Section>& sections() {
       {"membranes", [] { print_entries("membranes", membrane_models<double>()); }},
       {"methods", print_methods},
       {"formulations", [] { print_entries("formulations", formulation_presets()); }},
+      {"verbs", print_verbs},
   };
   return list;
 }
-
-}  // namespace
 
 std::vector<std::string> list_sections() {
   std::vector<std::string> names{"all"};
@@ -108,6 +112,8 @@ std::vector<std::string> list_sections() {
   return names;
 }
 
+/// Everything that can be named in a config, and the verbs; one section or "all"; scenes and mesh generators with
+/// their parameters. Errors: ConfigError for a section that is not in list_sections().
 int list(const std::string& what) {
   bool known = what == "all";
   for (const Section& section : sections()) {
@@ -117,6 +123,14 @@ int list(const std::string& what) {
   }
   if (!known) throw unknown_name("list", what, list_sections());
   return exit_ok;
+}
+
+}  // namespace
+
+Action verb::list(CLI::App& app) {
+  const auto what = std::make_shared<std::string>("all");
+  app.add_option("what", *what, fmt::format("which section: {}", fmt::join(list_sections(), ", ")));
+  return [what](const CommonOptions&) { return cli::list(*what); };
 }
 
 }  // namespace bb::cli

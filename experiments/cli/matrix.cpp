@@ -5,11 +5,19 @@
 
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
-#include "experiments/cli/verbs.hpp"
+#include "experiments/cli/options.hpp"
 #include "experiments/matrix/replay_text.hpp"
 
 namespace bb::cli {
 namespace {
+
+struct MatrixVerb {
+  std::vector<std::string> files;  // NAME.mtx, with NAME.json beside it or without
+  std::string json;                // file; empty: none
+  double tol_rel = 1e-8;           // of iterative solvers
+  int max_iterations = 10000;
+  int dense_rows = 1500;  // up to which all eigenvalues are computed
+};
 
 /// Errors: ConfigError for an option outside its range.
 ReplayOptions options_of(const MatrixVerb& verb) {
@@ -22,8 +30,8 @@ ReplayOptions options_of(const MatrixVerb& verb) {
   return {verb.tol_rel, verb.max_iterations, verb.dense_rows, 1};
 }
 
-}  // namespace
-
+/// Stored systems through every linear solver, preconditioner and condition estimator. What fails there is a
+/// result. Errors: ConfigError as read_system.
 int matrix(const MatrixVerb& verb, const CommonOptions& common) {
   const ReplayOptions options = options_of(verb);
   std::vector<StoredSystem> systems;  // all are read before the first is solved
@@ -43,6 +51,23 @@ int matrix(const MatrixVerb& verb, const CommonOptions& common) {
   }
   if (!verb.json.empty()) write_atomically(verb.json, out.dump(1) + "\n");
   return exit_ok;
+}
+
+}  // namespace
+
+Action verb::matrix(CLI::App& app) {
+  const auto verb = std::make_shared<MatrixVerb>();
+  app.add_option("files", verb->files, "Matrix Market files, each with its side-car NAME.json or without")
+      ->required();
+  app.add_option("--json", verb->json, "file of everything that the tables show");
+  app.add_option("--tol", verb->tol_rel, "|b - A x| <= tol |b| of iterative solvers (default 1e-8)")
+      ->check(finite_number(0, 1, true));
+  app.add_option("--max-iterations", verb->max_iterations, "their cap (default 10000)")
+      ->check(CLI::Range(1, 1000000000));
+  app.add_option("--dense-rows", verb->dense_rows,
+                 "up to so many rows (default 1500, at most 3000) all eigenvalues are computed too")
+      ->check(CLI::Range(0, 3000));
+  return [verb](const CommonOptions& common) { return cli::matrix(*verb, common); };
 }
 
 }  // namespace bb::cli

@@ -3,9 +3,9 @@
 #include <filesystem>
 
 #include "core/record/run_folder.hpp"
+#include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
-#include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/linear_choice.hpp"
 
@@ -46,8 +46,7 @@ bool is_over(const RunConfig& config, const RunOptions& options) {
   return why_run_again(stored->record, identified(chosen, options)).empty() && !trace_fault(*stored);
 }
 
-}  // namespace
-
+/// A config, or a record: rerun().
 int run(const RunVerb& verb, const CommonOptions& common) {
   if (const auto stored = read_stored_run(verb.config)) return rerun(*stored, verb, common);
   const RunConfig config = load_run(verb.config, verb.set);
@@ -62,6 +61,17 @@ int run(const RunVerb& verb, const CommonOptions& common) {
   }
   run_and_show(config, options, common);
   return exit_ok;
+}
+
+}  // namespace
+
+Action verb::run(CLI::App& app) {
+  const auto verb = std::make_shared<RunVerb>();
+  config_arguments(app, *verb);
+  app.add_option("--out", verb->out, "folder of run.json (default results/runs/<label>)");
+  app.add_flag("--keep-inputs", verb->keep_inputs, "copy meshes and plugins beside the record");
+  limit_arguments(app, verb->limits);
+  return [verb](const CommonOptions& common) { return install_interrupt(), cli::run(*verb, common); };
 }
 
 }  // namespace bb::cli

@@ -2,8 +2,8 @@
 #include <fmt/format.h>
 
 #include "core/record/writer.hpp"
+#include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
-#include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/linear_choice.hpp"
 #include "experiments/run/step_study.hpp"
@@ -11,12 +11,18 @@
 namespace bb::cli {
 namespace {
 
+struct StepsVerb {
+  std::string config;
+  std::vector<std::string> set;
+  std::vector<int> at;  // steps, from 0
+  std::string out;      // JSON file; empty: none
+};
+
 std::string in_tolerances(const Number& error, double tolerance) {
   return error.finite() ? fmt::format("{:.3g}", error.value / tolerance) : "-";
 }
 
-}  // namespace
-
+/// Single steps of a run with every choice of Hessian: study_steps() as a table.
 int steps(const StepsVerb& verb, const CommonOptions& common) {
   const RunConfig config = load_run(verb.config, verb.set);
   RunOptions options = run_options(common);
@@ -34,6 +40,20 @@ int steps(const StepsVerb& verb, const CommonOptions& common) {
       trials.front().tolerance_m);
   if (!verb.out.empty()) write_atomically(verb.out, to_json(config, trials));
   return exit_ok;
+}
+
+}  // namespace
+
+Action verb::steps(CLI::App& app) {
+  const auto verb = std::make_shared<StepsVerb>();
+  app.add_option("config", verb->config, "a config file")->required();
+  set_argument(app, verb->set, "override: /pointer=value");
+  app.add_option("--at", verb->at, "steps, from 0, ascending, with commas between")
+      ->required()
+      ->delimiter(',')
+      ->allow_extra_args(false);
+  app.add_option("--out", verb->out, "JSON file with every |dx|, for ./bench figures");
+  return [verb](const CommonOptions& common) { return install_interrupt(), cli::steps(*verb, common); };
 }
 
 }  // namespace bb::cli

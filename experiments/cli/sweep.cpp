@@ -6,10 +6,10 @@
 #include "core/record/folder_lock.hpp"
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
+#include "experiments/cli/options.hpp"
 #include "experiments/cli/progress.hpp"
 #include "experiments/cli/say.hpp"
 #include "experiments/cli/sweep_spec.hpp"
-#include "experiments/cli/verbs.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/comparability.hpp"
 
@@ -137,6 +137,26 @@ void print_comparability(const Sweep& sweep) {
   std::fflush(stdout);
 }
 
+constexpr const char* sweep_help =
+    R"(A sweep file is JSON (schema: configs/schema/sweep.schema.json), for example:
+{
+  "schema": "barrierbench.sweep/1",
+  "name": "my_sweep",
+  "base": "../scenes/drape.json",
+  "set": {"/time/steps": 12},
+  "axes": [
+    {"pointer": "/time/dt_s", "values": [0.01, 0.005]},
+    {"cases": [{"label": "log", "set": {"/formulation": "log"}},
+               {"label": "cubic", "set": {"/formulation": "cubic"}}]}
+  ]
+}
+
+name: the folder results/runs/my_sweep. base: a config, relative to this file. set: overrides of every case.
+An axis is either {pointer, values}, one setting with one case for each value, or {cases}, named cases that
+each set several. With more than one axis every combination is run: here 2 x 2 = 4 records.
+
+)";
+
 }  // namespace
 
 int sweep(const SweepVerb& verb, const CommonOptions& common) {
@@ -170,16 +190,17 @@ int sweep(const SweepVerb& verb, const CommonOptions& common) {
   return exit_ok;
 }
 
-int demo(const std::string& out, const CommonOptions& common) {
-  const std::filesystem::path specs = std::filesystem::path(configs_folder()) / "sweeps";
-  for (const char* name : {"demo_strip", "demo_pinned", "demo_article", "demo_drape", "demo_long"}) {
-    SweepVerb verb;
-    verb.spec = (specs / (std::string(name) + ".json")).string();
-    verb.out = (std::filesystem::path(out) / name).string();
-    if (const int code = sweep(verb, common); code != exit_ok) return code;
-    fmt::print("\n");
-  }
-  return exit_ok;
+Action verb::sweep(CLI::App& app) {
+  const auto verb = std::make_shared<SweepVerb>();
+  app.add_option("spec", verb->spec, "a sweep file, e.g. configs/sweeps/demo_strip.json")->required();
+  set_argument(app, verb->set, "override in every case");
+  app.add_option("--out", verb->out, "folder (default results/runs/<name>)");
+  app.add_flag("--keep-inputs", verb->keep_inputs, "copy meshes and plugins beside each record");
+  app.add_flag("--dry-run", verb->dry_run, "print what would run");
+  app.add_flag("--again", verb->again, "run finished ones too");
+  limit_arguments(app, verb->limits);
+  app.footer(sweep_help + app.get_footer());
+  return [verb](const CommonOptions& common) { return install_interrupt(), cli::sweep(*verb, common); };
 }
 
 }  // namespace bb::cli

@@ -3,8 +3,8 @@
 
 #include <nlohmann/json.hpp>
 
+#include "experiments/cli/options.hpp"
 #include "experiments/cli/say.hpp"
-#include "experiments/cli/verbs.hpp"
 #include "experiments/validity/stored_block.hpp"
 
 namespace bb::cli {
@@ -25,9 +25,12 @@ BuildValidity build_validity(const CommonOptions& common) {
   return block.validity;
 }
 
-int validity(const ValidityVerb& verb, const CommonOptions& common) {
+namespace {
+
+/// The checks of the block as a table, or the report itself; exit_wrong_answer when one failed.
+int validity(bool json, const CommonOptions& common) {
   const StoredBlock block = block_of_this_build(validity_folder(), common.loaded);
-  if (verb.json) {
+  if (json) {
     fmt::print("{}", block.report);
   } else {
     const nlohmann::json report = nlohmann::json::parse(block.report);
@@ -44,6 +47,17 @@ int validity(const ValidityVerb& verb, const CommonOptions& common) {
                block.kept ? block.file.string() : "not kept: the folder of the program cannot be written");
   }
   return block.validity.valid ? exit_ok : exit_wrong_answer;
+}
+
+}  // namespace
+
+Action verb::validity(CLI::App& app) {
+  const auto json = std::make_shared<bool>(false);
+  app.add_flag("--json", *json, "the report as JSON");
+  app.footer(
+      "Made by the first run of a build and kept beside the program; a build that fails shows no times.\n" +
+      app.get_footer());
+  return [json](const CommonOptions& common) { return cli::validity(*json, common); };
 }
 
 }  // namespace bb::cli

@@ -7,9 +7,10 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
+from analysis.errors import UserError
 from analysis.accuracy.bounce import BarrierBounce, rigid_gap
-from analysis.accuracy.catenary import CatenaryError, chain_nodes
-from analysis.accuracy.shapes import SHAPES, ShapeError, barrier, gap_of_load
+from analysis.accuracy.catenary import chain_nodes
+from analysis.accuracy.shapes import SHAPES, barrier, gap_of_load
 
 D_HAT = 0.01
 
@@ -41,9 +42,9 @@ def test_gap_of_load_carries_the_load(shape):
 def test_a_load_above_the_capacity_is_told():
     """kappa 500: the quadratic carries at most 2 kappa d_hat = 10 N."""
     assert gap_of_load("quadratic", "gap", 500.0, D_HAT, 5.0) == pytest.approx(D_HAT / 2)
-    with pytest.raises(ShapeError, match="at most 10 N"):
+    with pytest.raises(UserError, match="at most 10 N"):
         gap_of_load("quadratic", "gap", 500.0, D_HAT, 11.0)
-    with pytest.raises(ShapeError, match="cubik"):
+    with pytest.raises(UserError, match="cubik"):
         barrier("cubik", "gap", 0.1, 1.0)
 
 
@@ -108,5 +109,5 @@ def test_a_stiff_fine_chain_is_the_catenary_of_the_textbook():
 
 
 def test_a_chain_without_an_equilibrium_is_told():
-    with pytest.raises(CatenaryError):
+    with pytest.raises(UserError):
         chain_nodes(10, 0.1, 500.0, 0.4, np.array([np.nan, 0.0]))

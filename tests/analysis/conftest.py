@@ -2,7 +2,7 @@
 
 import pytest
 
-from analysis.load import load
+from analysis.records import load
 from synthetic import write_set
 
 

@@ -36,7 +36,7 @@ def test_the_worst_iteration_is_that_of_the_full_matrix():
 
 @pytest.mark.parametrize("scaling, at", [("block_jacobi", None), ("none", (7, 0)), ("none", (2, 0))])
 def test_an_iteration_without_a_number_is_refused(scaling, at):
-    with pytest.raises(causes.CausesError, match="passes/diagnose"):
+    with pytest.raises(causes.UserError, match="passes/diagnose"):
         causes.pick(ROWS, scaling, at)
 
 

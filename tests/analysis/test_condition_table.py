@@ -25,7 +25,7 @@ def test_samples_of_two_tiers_pair_up_by_case_and_iteration(tmp_path):
     pairs = table.pair_up("demo", {tier: table.samples(tmp_path / f"{tier}") for tier in (2, 4)})
     assert [(p.spectra["cond"], p.lanczos["cond"]) for p in pairs] == [(100, 101), (101, 102), (102, 103)]
     assert table.difference(pairs[0]) == pytest.approx(1 / 101)
-    with pytest.raises(table.TableError, match="not of the same matrices"):
+    with pytest.raises(table.UserError, match="not of the same matrices"):
         table.pair_up("demo", {2: table.samples(tmp_path / "2"), 4: {}})
 
 
@@ -45,7 +45,7 @@ def test_a_label_that_no_case_has_runs_nothing(tmp_path, monkeypatch, capsys):
     asked = []
     monkeypatch.setattr(table, "run", lambda words: asked.append(json.loads(Path(words[1]).read_text())))
     monkeypatch.setattr(table, "samples", lambda folder: {("x",): sample()})
-    with pytest.raises(table.TableError, match="configs/sweeps/demo_drape.json: no case 'cubicc'; it has log, quadratic, cubic"):
+    with pytest.raises(table.UserError, match="configs/sweeps/demo_drape.json: no case 'cubicc'; it has log, quadratic, cubic"):
         table.of_sweep("demo_drape", ["cubicc"], tmp_path)
     assert table.main(["--sweeps", "demo_drape", "demo_strip", "--cases", "log", "cubicc", "--out", str(tmp_path / "page.md")]) == 2
     assert "--cases cubicc: none of demo_drape, demo_strip has it; they have cubic" in capsys.readouterr().err

@@ -9,7 +9,7 @@ import pytest
 
 from analysis import style
 from analysis.figures import barrier_shapes, condition, gaps, iterations, matrix_forms
-from analysis.load import load
+from analysis.records import load
 from synthetic import bind, write_run, write_set
 
 

@@ -12,7 +12,7 @@ import pytest
 
 from analysis import style
 from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle
-from analysis.load import load
+from analysis.records import load
 from analysis.record_file import sha256_of
 from analysis.table import as_text, summary_table
 from synthetic import write_cycle, write_run, write_set

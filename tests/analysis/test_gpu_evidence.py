@@ -73,7 +73,7 @@ def test_a_device_without_a_card_is_no_record(raw, capsys):
 
 def test_raw_files_of_another_form_are_named(raw):
     (raw / "parts.tsv").write_text("device_tests passed\n")
-    with pytest.raises(gpu_evidence.EvidenceError, match="not a part: 'device_tests passed'"):
+    with pytest.raises(gpu_evidence.UserError, match="not a part: 'device_tests passed'"):
         gpu_evidence.collect(raw, "", 1)
 
 

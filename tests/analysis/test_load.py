@@ -5,7 +5,7 @@ import json
 import pytest
 
 from analysis.figures import demo
-from analysis.load import RecordError, load
+from analysis.records import RecordError, load
 from analysis.whole_file import write_whole
 from synthetic import write_set
 

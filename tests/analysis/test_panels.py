@@ -5,7 +5,7 @@ import pandas as pd
 import pytest
 
 from analysis.figures import condition
-from analysis.load import load
+from analysis.records import load
 from analysis.panels import Panel, choose, constant, is_flat
 from synthetic import write_set
 

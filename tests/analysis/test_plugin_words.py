@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from analysis import causes
-from analysis.claims import __main__ as claims
+from analysis.claims import verb as claims
 from analysis.matching import match, pareto
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from analysis.readme import __main__ as readme
+from analysis.errors import UserError
+from analysis.readme import verb as readme
 from analysis.claims.entry import read_sweep
 from analysis.claims.inputs import inputs_of
 from analysis.claims.table import Runs, Table
@@ -67,7 +68,7 @@ def test_slices_without_runs_are_no_sentence():
     of_another_sweep.sweeps[slices.SWEEP].about["sha256"] = "0" * 64
     too_few.sweeps[slices.SWEEP].rows.pop()
     for table, why in ((Table(), "504 of 504 records"), (of_slices(outcome="newton_stall"), "no pair of runs counts"), (of_another_sweep, "are of another"), (too_few, "1 of 504 records")):
-        with pytest.raises(numbers.ReadmeError, match=f"contact_slices.*{why}|{why}.*contact_slices"):
+        with pytest.raises(UserError, match=f"contact_slices.*{why}|{why}.*contact_slices"):
             slices.gather(table)
 
 
@@ -103,7 +104,7 @@ def test_the_drape_is_judged_by_steps_that_end_in_contact_with_both():
     never = kept()
     for one in never["runs"]:
         one["cond_steps"] = {}
-    with pytest.raises(numbers.ReadmeError, match="no time step ends in contact"):
+    with pytest.raises(UserError, match="no time step ends in contact"):
         templates.drape_sentences(never)
 
 
@@ -112,7 +113,7 @@ def test_only_generated_parts_change_and_an_unknown_one_is_refused(tmp_path):
     made = templates.filled(page, kept(), "a.md")
     assert made.startswith("before\n<!-- numbers: result -->\n1. In all") and made.endswith("<!-- /numbers -->\nafter <!-- numbers -->\n") and "old" not in made
     assert templates.filled(made, kept(), "a.md") == made
-    with pytest.raises(numbers.ReadmeError, match="a.md: .*other.*allowed: demo, result, drape, slices"):
+    with pytest.raises(UserError, match="a.md: .*other.*allowed: demo, result, drape, slices"):
         templates.filled(page.replace("result", "other"), kept(), "a.md")
 
 
@@ -122,9 +123,9 @@ def test_kept_numbers_come_back_as_they_were(tmp_path):
     assert numbers.read(path) == kept()
     for text in ("", "{", "[]", '{"schema": "x"}'):
         path.write_text(text)
-        with pytest.raises(numbers.ReadmeError, match="demo.json"):
+        with pytest.raises(UserError, match="demo.json"):
             numbers.read(path)
-    with pytest.raises(numbers.ReadmeError, match="./bench demo"):
+    with pytest.raises(UserError, match="./bench demo"):
         numbers.read(tmp_path / "none.json")
 
 
@@ -143,14 +144,14 @@ def test_a_page_that_lost_its_marks_is_no_page_that_is_right(tmp_path):
     (tmp_path / "docs/results.md").write_text("")
     found = readme.stale(tmp_path, everything())
     assert [line.partition(":")[0] for line in found] == ["README.md"] * len(templates.PARTS["README.md"]) + ["docs/results.md"] and "no <!-- numbers: demo -->" in found[-1]
-    with pytest.raises(numbers.ReadmeError, match="README.md: no <!-- numbers: result -->"):
+    with pytest.raises(UserError, match="README.md: no <!-- numbers: result -->"):
         readme.write_pages(tmp_path, everything())
 
 
 def test_a_sentence_on_no_run_is_none():
     none = kept()
     none["runs"] = [one | {"step_solver": "article_literal"} for one in none["runs"]]
-    with pytest.raises(numbers.ReadmeError, match="no run with the step solver line_search"):
+    with pytest.raises(UserError, match="no run with the step solver line_search"):
         templates.result_sentences(none)
 
 
@@ -162,7 +163,7 @@ def test_a_fence_that_nothing_checks_is_a_fault(fence):
 
 
 def test_numbers_are_gathered_from_records_of_the_program(program, tmp_path):
-    from analysis.load import load
+    from analysis.records import load
     from small_sweep import sweep_of
 
     records = load(sweep_of(program, tmp_path))
@@ -173,7 +174,7 @@ def test_numbers_are_gathered_from_records_of_the_program(program, tmp_path):
         assert found["cond_steps"] and all(1 <= value <= found["cond_raw_max"] for value in found["cond_steps"].values())
         assert 1 <= found["cond_raw_median"] < found["cond_raw_p95"] <= found["cond_raw_max"]
     assert json.loads(json.dumps(rows)) and numbers._about(records.runs)["runs"] == 2
-    with pytest.raises(numbers.ReadmeError, match="no records of demo_drape"):
+    with pytest.raises(UserError, match="no records of demo_drape"):
         numbers.gather(tmp_path / "out")
 
 
@@ -231,5 +232,5 @@ def test_the_gap_map_says_how_much_of_it_is_there(tmp_path):
     found = gap_map.gather()
     assert len(found) == 4 and found[0].startswith("With no strain limit") and " cells " in found[3] and " unknowns" in found[3]
     assert all(len(line) <= 100 for line in gap_map.lines(found, 100)) and gap_map.lines(["one"], 100) == ["- one"]
-    with pytest.raises(numbers.ReadmeError, match="gap-map --quick"):
+    with pytest.raises(UserError, match="gap-map --quick"):
         gap_map.gather(tmp_path / "none.json")

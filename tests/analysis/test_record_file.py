@@ -5,10 +5,11 @@ import shutil
 
 import pytest
 
+from analysis.errors import UserError
 from analysis import causes, load, render
 from analysis.figures import demo, newton_steps
 from analysis.gate import compare
-from analysis.matching.runs import MatchError, read_strictly
+from analysis.matching.runs import read_strictly
 from analysis.record_file import CHANGED, RecordError, bound_file, other_meanings, read_record, read_trace
 from synthetic import bind, write_run, write_set
 
@@ -66,7 +67,7 @@ def test_every_verb_refuses_a_wrong_record_and_says_where(folder, tmp_path, caps
     if "trace" not in place:
         assert render.main([str(folder)]) == 2
         said.append(capsys.readouterr().err)
-        with pytest.raises(MatchError) as error:
+        with pytest.raises(UserError) as error:
             read_strictly(folder / "run.json")
         said.append(str(error.value))
     for text in said:

@@ -9,8 +9,9 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pytest
 
+from analysis.errors import UserError
 from analysis import render
-from analysis.frames import Frame, FrameError, frame_paths, read_frame, read_scene
+from analysis.frames import Frame, frame_paths, read_frame, read_scene
 from analysis.obstacle_rays import hits, primitive_gaps, signed_gap
 from analysis.rasterizer import Camera, DepthBuffer
 from analysis.record_file import read_record
@@ -228,7 +229,7 @@ def test_what_cannot_be_drawn_is_said(run, tmp_path, capsys):
     assert "no gap_rel" in capsys.readouterr().err
     record = json.loads((run / "run.json").read_text())
     (tmp_path / "run.json").write_text(json.dumps(record | {"artifacts": []}))
-    with pytest.raises(FrameError, match="frames_every=1"):
+    with pytest.raises(UserError, match="frames_every=1"):
         render.render(tmp_path)
 
 
@@ -260,7 +261,7 @@ def test_frames_that_are_not_those_of_the_record_are_not_drawn(run, tmp_path, ca
 @pytest.mark.parametrize("content", [b"", b"ply\nend_header\n", b"not a mesh", b"ply\nformat ascii 1.0\nend_header\n"])
 def test_files_that_are_no_frames(tmp_path, content):
     (tmp_path / "a.ply").write_bytes(content)
-    with pytest.raises(FrameError, match="a.ply"):
+    with pytest.raises(UserError, match="a.ply"):
         read_frame(tmp_path / "a.ply")
 
 

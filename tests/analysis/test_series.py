@@ -5,7 +5,7 @@ import pytest
 
 from analysis import series, style
 from analysis.figures import condition, gaps, iterations
-from analysis.load import load
+from analysis.records import load
 from synthetic import write_run
 
 NAMES = ("quadratic", "cubic x s", "cubic_dynamic_consistent", "cubic_dynamic_lagged", "cubic_dynamic", "cubic", "log", "ipc2020", "cubic_dynamic published")

@@ -9,7 +9,7 @@ import pytest
 
 from analysis import style
 from analysis.figures import kappa_cycle, swings
-from analysis.load import load
+from analysis.records import load
 from synthetic import write_cycle, write_set
 
 CALM = np.linspace(1, 0.5, 20)

@@ -3,7 +3,7 @@
 import pytest
 from made import runs
 
-from analysis.claims.entry import ClaimError
+from analysis.errors import UserError
 from analysis.claims.equal_gap import at_equal_gap
 from analysis.claims.verdict import HOLDS, NOT, OPEN
 
@@ -50,8 +50,8 @@ def test_too_few_scenes_are_an_indication():
 
 def test_a_sweep_without_the_paths():
     made = runs(lambda s, lv, c, k: at(c, {"log": 5.0, "cubic": 1.0}), cases=CASES)
-    with pytest.raises(ClaimError, match="has no 5 cases 'quadratic xSCALE'; it has cubic, log"):
+    with pytest.raises(UserError, match="has no 5 cases 'quadratic xSCALE'; it has cubic, log"):
         at_equal_gap({**PART, "over": "quadratic"}, made)
     made.rows = [row for row in made.rows if row["case"] != "log x1"]
-    with pytest.raises(ClaimError, match="has no 5 cases 'log xSCALE'"):
+    with pytest.raises(UserError, match="has no 5 cases 'log xSCALE'"):
         at_equal_gap(PART, made)

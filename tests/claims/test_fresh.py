@@ -6,8 +6,9 @@ from dataclasses import replace
 
 import pytest
 
+from analysis.errors import UserError
 from analysis.claims import fresh
-from analysis.claims.entry import ROOT, ClaimError, read_sweep
+from analysis.claims.entry import ROOT, read_sweep
 
 SWEEP = read_sweep("shells_contact")
 
@@ -98,15 +99,15 @@ def of_pile(cases):
 def test_a_scene_that_a_tuning_sweep_used_is_refused(tmp_path):
     fresh.used.cache_clear()
     fresh.check(SWEEP)
-    with pytest.raises(ClaimError, match="claims/confirmation/shells_contact.json: bar 6: its scene is one of claims/sweeps/contact_shapes.json"):
+    with pytest.raises(UserError, match="claims/confirmation/shells_contact.json: bar 6: its scene is one of claims/sweeps/contact_shapes.json"):
         fresh.check(edited(tmp_path, of_pile))
 
 
 def test_a_scene_with_defaults_is_refused(tmp_path):
-    with pytest.raises(ClaimError, match="bar 6: the scene is 'hang'; a confirmation scene is of bodies, all written out"):
+    with pytest.raises(UserError, match="bar 6: the scene is 'hang'; a confirmation scene is of bodies, all written out"):
         fresh.check(edited(tmp_path, lambda cases: cases[0]["set"].update({"/scene": {"name": "hang", "n": 7}})))
 
 
 def test_too_few_scenes_are_refused(tmp_path):
-    with pytest.raises(ClaimError, match="7 scenes; a confirmation has at least 8"):
+    with pytest.raises(UserError, match="7 scenes; a confirmation has at least 8"):
         fresh.check(edited(tmp_path, lambda cases: cases.__delitem__(slice(21, None))))

@@ -6,8 +6,9 @@ from dataclasses import replace
 import pytest
 from made import runs
 
+from analysis.errors import UserError
 from analysis.claims import frontiers
-from analysis.claims.entry import FOLDER, ClaimError, read_claim
+from analysis.claims.entry import FOLDER, read_claim
 from analysis.claims.metrics import FOLDER as PLACE
 from analysis.claims.metrics import METRICS, longest_run
 from analysis.claims.outcomes import outcomes
@@ -66,7 +67,7 @@ def test_where_nobody_gets_through_the_middle_there_is_no_frontier():
 def test_a_run_without_its_cost():
     broken = made()
     broken.rows[0]["factorizations"] = None
-    with pytest.raises(ClaimError, match="a nominal x main=1: no factorizations"):
+    with pytest.raises(UserError, match="a nominal x main=1: no factorizations"):
         frontiers.lines(CLAIM, Table({"policies": broken}))
 
 
@@ -90,7 +91,7 @@ def test_a_frontier_that_lacks_something(tmp_path):
     data = json.loads((FOLDER / "K4.json").read_text())
     del data["frontier"]["cost"]
     (tmp_path / "K4.json").write_text(json.dumps(data))
-    with pytest.raises(ClaimError, match="/frontier: sweep, cost and axes are needed"):
+    with pytest.raises(UserError, match="/frontier: sweep, cost and axes are needed"):
         read_claim("K4", tmp_path)
 
 
@@ -113,5 +114,5 @@ def test_cycles_are_ten_changes_in_a_row(tmp_path):
 
 def test_without_a_trace_no_cycle_is_no_proof():
     missing = runs(lambda s, lv, c, k: {"kappa_cycles": None})
-    with pytest.raises(ClaimError, match="no kappa_cycles"):
+    with pytest.raises(UserError, match="no kappa_cycles"):
         outcomes({"says": "x", "sweep": "s", "case": "x", "over": "y", "bad": "kappa_cycles"}, missing)

@@ -6,9 +6,10 @@ import shutil
 import pytest
 from made import record
 
+from analysis.errors import UserError
 from analysis.claims import inputs
 from analysis.claims import judge as judging
-from analysis.claims.entry import FOLDER, ROOT, ClaimError, ids, read_claim, read_sweep
+from analysis.claims.entry import FOLDER, ROOT, ids, read_claim, read_sweep
 from analysis.claims.judge import missing
 from analysis.claims.merged import merged, put
 from analysis.claims.table import Runs, Table, collect
@@ -102,7 +103,7 @@ def test_a_preset_is_an_input_however_it_is_named(tmp_path, monkeypatch):
 def test_records_of_two_versions_whose_fields_mean_different_things(sweep, tmp_path):
     run(sweep, tmp_path / "runs")
     edit(tmp_path / "runs/0/run.json", '"version": "3.99.0"', '"version": "3.4.0"')
-    with pytest.raises(ClaimError, match=r"runs: records of version 3.4.0 beside those of 3.99.0, in which comparability.verdict, .* ./bench sweep claims/sweeps/s.json"):
+    with pytest.raises(UserError, match=r"runs: records of version 3.4.0 beside those of 3.99.0, in which comparability.verdict, .* ./bench sweep claims/sweeps/s.json"):
         collect(sweep, tmp_path / "runs", ["newton"])
 
 

@@ -3,7 +3,8 @@
 import pytest
 from made import SCENES, runs
 
-from analysis.claims.entry import ClaimError, read_sweep
+from analysis.errors import UserError
+from analysis.claims.entry import read_sweep
 from analysis.claims.judge import judge_part
 from analysis.claims.numbers import level, ratio, slope
 from analysis.claims.parts import check
@@ -189,9 +190,9 @@ def test_a_line_counts_once():
 
 
 def test_a_bad_entry_says_what_is_allowed():
-    with pytest.raises(ClaimError, match="no case 'z'; it has x, y"):
+    with pytest.raises(UserError, match="no case 'z'; it has x, y"):
         ratio({**PART, "over": "z"}, runs(twice))
-    with pytest.raises(ClaimError, match="one of above, below, within, beyond"):
+    with pytest.raises(UserError, match="one of above, below, within, beyond"):
         ratio({**PART, "below": 2}, runs(twice))
 
 
@@ -212,7 +213,7 @@ def test_a_number_without_a_logarithm_is_left_out_of_a_slope():
     judged = slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.0 if (s, lv) == ("a", "2") else 0.1 * float(lv)}, levels=("1", "2", "4", "8")))
     assert judged.verdict == HOLDS and "5 gap_end is not above 0" in judged.counted
     for bad in ("fine", "0"):
-        with pytest.raises(ClaimError, match=f"sweep s: level '{bad}': a slope needs levels that are numbers above 0"):
+        with pytest.raises(UserError, match=f"sweep s: level '{bad}': a slope needs levels that are numbers above 0"):
             slope(part, runs(lambda s, lv, c, k: {"gap_end": 0.1}, levels=("1", "2", "4", bad)))
 
 
@@ -222,9 +223,9 @@ def test_two_rules_of_comparability_are_not_pooled():
     mixed.check_one_rule(sweep)
     for row in mixed.rows:
         row |= {"gaps": None} if row["case"] == "y" else {}
-    with pytest.raises(ClaimError, match="policies: 45 records of before 3.5.0 .* beside 45 later ones.*./bench sweep claims/sweeps/policies.json"):
+    with pytest.raises(UserError, match="policies: 45 records of before 3.5.0 .* beside 45 later ones.*./bench sweep claims/sweeps/policies.json"):
         mixed.check_one_rule(sweep)
-    with pytest.raises(ClaimError, match="two rules|of before 3.5.0"):
+    with pytest.raises(UserError, match="two rules|of before 3.5.0"):
         judge_part({**PART, "rule": "ratio", "sweep": "policies"}, Table({"policies": mixed}), None)
     for row in mixed.rows:
         row |= {"outcome": "newton_stall"} if row["case"] == "y" else {}
@@ -236,5 +237,5 @@ def test_two_rules_of_comparability_are_not_pooled():
 def test_a_part_of_words_that_nobody_reads_is_refused(more, said):
     part = {"says": "x", "rule": "ratio", "sweep": "policies", "metric": "newton", "case": "published", "over": "fixed_log", "above": 1}
     check(part, read_sweep("policies"))
-    with pytest.raises(ClaimError, match=said):
+    with pytest.raises(UserError, match=said):
         judge_part({**part, **more}, Table({"policies": runs(twice)}), None)

@@ -3,7 +3,7 @@
 import pytest
 from made import runs
 
-from analysis.claims.entry import ClaimError
+from analysis.errors import UserError
 from analysis.claims.outcomes import outcomes
 from analysis.claims.verdict import HOLDS, IN_PART, NOT, ONLY_IF, OPEN, Judged, together
 
@@ -86,7 +86,7 @@ def test_starts_count_where_a_part_says_that_they_matter():
     assert outcomes(matter, runs(failing(lambda s, lv, c: False), seeds=(1, 2, 3, 4))).missing.startswith("indication: 0 scenes have 3 levels of 5 starts")
     assert outcomes(matter, runs(failing(lambda s, lv, c: False))).verdict == HOLDS
     for bad in ({"starts": "matter", "reason": ""}, {"starts": "5", "reason": "many"}):
-        with pytest.raises(ClaimError, match='"matter" with a reason is needed'):
+        with pytest.raises(UserError, match='"matter" with a reason is needed'):
             outcomes({**matter, **bad}, runs(failing(lambda s, lv, c: False)))
 
 

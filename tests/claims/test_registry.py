@@ -11,9 +11,10 @@ from dataclasses import replace
 import pytest
 from made import runs
 
-from analysis.claims import __main__ as verb
+from analysis.errors import UserError
+from analysis.claims import verb
 from analysis.claims import registry, report
-from analysis.claims.entry import ROOT, ClaimError, read_claim, read_sweep
+from analysis.claims.entry import ROOT, read_claim, read_sweep
 from analysis.claims.inputs import inputs_of
 from analysis.claims.judge import judge
 from analysis.claims.metrics import METRICS
@@ -271,20 +272,19 @@ def test_an_entry_of_no_commit_or_of_another_branch_is_refused(repository):
 def test_nothing_is_run_before_the_entry_is_committed(repository):
     repository.commit()
     repository.register()
-    with pytest.raises(ClaimError, match="K12: commit claims/confirmation/registry.json before the first run of shells_modes"):
+    with pytest.raises(UserError, match="K12: commit claims/confirmation/registry.json before the first run of shells_modes"):
         registry.ready(CLAIM, repository.entries(), repository.root)
     repository.commit()
     registry.ready(CLAIM, repository.entries(), repository.root)
     parts = copy.deepcopy(list(CLAIM.parts))
     parts[0]["above"] = 2
-    with pytest.raises(ClaimError, match="no confirmation is run: claims/K12.json: the rule is another"):
+    with pytest.raises(UserError, match="no confirmation is run: claims/K12.json: the rule is another"):
         registry.ready(replace(CLAIM, parts=tuple(parts)), repository.entries(), repository.root)
 
 
 def test_the_verb_runs_what_is_registered_and_no_more(monkeypatch, tmp_path):
     asked = []
-    monkeypatch.setattr(verb, "program", lambda needed=True: "program")
-    monkeypatch.setattr(verb.subprocess, "run", lambda words, **_: asked.append(words[2]) or subprocess.CompletedProcess(words, 0))
+    monkeypatch.setattr(verb, "run_sweep", lambda file, out, **_: asked.append(str(file)) or subprocess.CompletedProcess([], 0))
     monkeypatch.setattr(registry, "ready", lambda claim, entries: None)
     monkeypatch.setattr(registry, "read", lambda: {})
     verb.run_sweeps([CLAIM], tmp_path, [])
@@ -325,23 +325,23 @@ def test_a_registry_that_was_edited_by_hand(repository):
     repository.commit()
     assert "its sha256 is not the rule_sha256 beside it" in repository.state(repository.run()).why
     (repository.root / FILE).write_text('{"schema": "x"}')
-    with pytest.raises(ClaimError, match="barrierbench.confirmation/1"):
+    with pytest.raises(UserError, match="barrierbench.confirmation/1"):
         repository.entries()
 
 
 def test_what_cannot_be_registered(repository):
-    with pytest.raises(ClaimError, match="shells_modes has been run .*: a rule is registered before the first run"):
+    with pytest.raises(UserError, match="shells_modes has been run .*: a rule is registered before the first run"):
         repository.register(table=repository.run())
-    with pytest.raises(ClaimError, match="claims/K2.json: /parts: every deciding part that takes runs needs confirm.sweep"):
+    with pytest.raises(UserError, match="claims/K2.json: /parts: every deciding part that takes runs needs confirm.sweep"):
         repository.register(read_claim("K2"))
     half = [{key: value for key, value in part.items() if key != "confirm" or k} for k, part in enumerate(read_claim("K13").parts)]
-    with pytest.raises(ClaimError, match="every deciding part that takes runs needs confirm.sweep"):
+    with pytest.raises(UserError, match="every deciding part that takes runs needs confirm.sweep"):
         repository.register(replace(read_claim("K13"), parts=tuple(half)))
     path = repository.root / f"claims/confirmation/{NAME}.json"
     data = json.loads(path.read_text())
     data["axes"][0]["cases"] = data["axes"][0]["cases"][:21]
     path.write_text(json.dumps(data))
-    with pytest.raises(ClaimError, match="7 scenes; a confirmation has at least 8"):
+    with pytest.raises(UserError, match="7 scenes; a confirmation has at least 8"):
         repository.register()
     assert not (repository.root / FILE).exists()
     assert registry.state(CLAIM, repository.run(), {}, repository.root).why == "not registered before shells_modes was run"

@@ -6,8 +6,9 @@ import re
 import pytest
 from made import record, row
 
+from analysis.errors import UserError
 from analysis.claims import judge as judging
-from analysis.claims.entry import ROOT, ClaimError, read_claim, read_sweep
+from analysis.claims.entry import ROOT, read_claim, read_sweep
 from analysis.claims.merged import WITHOUT_LIMIT, limit_of, theta_of
 from analysis.claims.proofs import Eval
 from analysis.claims.slices import rows_of, slice_of
@@ -57,7 +58,7 @@ def test_records_of_a_further_axis_become_rows(tmp_path):
 
 @pytest.mark.parametrize("axes", [(THETA,), (SEEDS, SEEDS), (SEEDS, {"cases": [{"label": "a", "set": {}}]}), (SEEDS, {"pointer": "/x"})])
 def test_axes_that_are_none(tmp_path, axes):
-    with pytest.raises(ClaimError, match="axes: scenes with levels, cases, /seeds/main|an axis has cases, or a pointer and values"):
+    with pytest.raises(UserError, match="axes: scenes with levels, cases, /seeds/main|an axis has cases, or a pointer and values"):
         sweep(tmp_path, *axes)
 
 
@@ -65,7 +66,7 @@ def test_a_name_is_of_one_folder(tmp_path):
     sweep(tmp_path, SEEDS)
     (tmp_path / "confirmation").mkdir()
     (tmp_path / "confirmation/s.json").write_text((tmp_path / "sweeps/s.json").read_text())
-    with pytest.raises(ClaimError, match="confirmation/s.json: a sweep of this name is in claims/sweeps as well"):
+    with pytest.raises(UserError, match="confirmation/s.json: a sweep of this name is in claims/sweeps as well"):
         read_sweep.__wrapped__("s", tmp_path)
 
 
@@ -79,10 +80,10 @@ def test_a_part_has_the_runs_of_its_slice(tmp_path):
     found = rows_of(part, rows(made), made).rows
     assert len(found) == 4 and {(r["theta"], r["enabled"]) for r in found} == {(0.01, False)}
     assert slice_of(part, made) == "theta 0.01, limit off"
-    with pytest.raises(ClaimError, match="limit: found 'log'; the runs of cubic in .* have strip: 'cubic'"):  # of `over`, whose limit follows its contact
+    with pytest.raises(UserError, match="limit: found 'log'; the runs of cubic in .* have strip: 'cubic'"):  # of `over`, whose limit follows its contact
         slice_of({**part, "limit": "log", "theta": 0.1}, made)
     for bad, said in (({"limit": "off"}, "theta: found None; .* has 0.1, 0.01, and a part names one"), ({"theta": 0.5, "limit": "off"}, "theta: found 0.5"), ({"theta": 0.1}, "enabled: found None")):
-        with pytest.raises(ClaimError, match=said):
+        with pytest.raises(UserError, match=said):
             rows_of({**PART, **bad}, rows(made), made)
 
 
@@ -98,7 +99,7 @@ def test_a_verdict_is_of_its_slice(tmp_path, monkeypatch):
 
 def test_true_is_not_one(tmp_path):
     made = sweep(tmp_path, {"pointer": "/x/count", "values": [1, 2]}, SEEDS)
-    with pytest.raises(ClaimError, match="count: found True"):
+    with pytest.raises(UserError, match="count: found True"):
         rows_of({**PART, "count": True}, rows(made), made)
 
 
@@ -106,7 +107,7 @@ def test_a_slice_is_that_of_the_sweep_file(tmp_path):
     made = sweep(tmp_path, SEEDS, **{"/matching/theta": 0.3, "/strain_limit/shape": "log"})
     assert slice_of(PART, made) == "theta 0.3, limit log" and slice_of({**PART, "theta": 0.3, "limit": "log"}, made) == "theta 0.3, limit log"
     for bad, said in (({"theta": 0.1}, "theta: found 0.1; the runs of log .* have strip: 0.3"), ({"limit": "off"}, "limit: found 'off'; the runs of log .* have strip: 'log'")):
-        with pytest.raises(ClaimError, match=said):
+        with pytest.raises(UserError, match=said):
             slice_of({**PART, **bad}, made)
     dynamic = [{"label": "log", "set": {}}, {"label": "cubic", "set": {"/formulation": "cubic_dynamic", "/matching/rule": "as_given", "/strain_limit/enabled": False}}]
     assert slice_of(PART, sweep(tmp_path, SEEDS, second=dynamic)) == "log: theta 0.1, limit log; cubic: stiffness as given, limit off"
@@ -142,7 +143,7 @@ def test_a_slice_is_that_of_every_scene_that_counts(tmp_path):
     assert slice_of(PART, made) == "theta 0.1 (far: theta 0.5), limit log (block: off)"
     assert slice_of({**PART, "scenes": ["block"]}, made) == "theta 0.1, limit off"
     for more, said in (({"limit": "log"}, "limit: found 'log'; .* have block: 'off'"), ({"theta": 0.1}, "theta: found 0.1; .* have far: 0.5")):
-        with pytest.raises(ClaimError, match=said):
+        with pytest.raises(UserError, match=said):
             slice_of({**PART, **more}, made)
     assert slice_of({**PART, "limit": "log", "theta": 0.1, "scenes": ["strip"]}, made) == "theta 0.1, limit log"
 

@@ -5,8 +5,9 @@ import json
 import pytest
 from made import runs
 
+from analysis.errors import UserError
 from analysis.claims import success
-from analysis.claims.entry import FOLDER, METHODS, ClaimError, ids, read_claim, read_sweep, settings_of
+from analysis.claims.entry import FOLDER, METHODS, ids, read_claim, read_sweep, settings_of
 from analysis.claims.frontiers import has_runs, trials
 from analysis.claims.inputs import asked
 from analysis.claims.metrics import METRICS
@@ -80,10 +81,10 @@ def test_an_outcome_that_is_ok_is_no_success_by_itself():
 
 def test_unequal_times_compare_nothing():
     made = runs(lambda s, lv, c, k: good(**{TIME: 0.4 if c == "x" else 0.04}))
-    with pytest.raises(ClaimError, match=r"a 1: x is asked for 0.4 s and y for 0.04 s; equal simulated times are needed"):
+    with pytest.raises(UserError, match=r"a 1: x is asked for 0.4 s and y for 0.04 s; equal simulated times are needed"):
         outcomes(PART, made)
     outcomes(PART, runs(lambda s, lv, c, k: good(**{TIME: 0.4 if s == "a" else 0.3})))  # scenes may differ
-    with pytest.raises(ClaimError, match="no close_gap"):
+    with pytest.raises(UserError, match="no close_gap"):
         outcomes(PART, runs(lambda s, lv, c, k: good(close_gap=None)))
 
 
@@ -130,5 +131,5 @@ def test_a_bound_on_the_residual_is_a_failure_of_its_own():
     bound = outcomes({**PART, "residual_at_most": 100}, made)
     assert bound.verdict == "does not hold" and "large_residual" in bound.counted and "at most 100 tolerances" in bound.measures
     assert outcomes({**PART, "residual_at_most": 240}, made).counted == outcomes(PART, made).counted
-    with pytest.raises(ClaimError, match=RESIDUAL):
+    with pytest.raises(UserError, match=RESIDUAL):
         outcomes({**PART, "residual_at_most": 100}, runs(lambda s, lv, c, k: good(**{RESIDUAL: None}), scenes=SIX))

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from barrierbench_analysis import fit_linear
-from barrierbench_analysis.load import RecordError, load
+from barrierbench_analysis.records import RecordError, load
 
 ROOT = Path(__file__).resolve().parents[2]
 SCENES = [{"/scene/layers": 1, "/scene/n": 4}, {"/scene/layers": 1, "/scene/n": 8}, {"/scene/layers": 2, "/scene/n": 8}]

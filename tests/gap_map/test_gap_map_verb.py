@@ -5,8 +5,9 @@ import re
 from pathlib import Path
 
 import pytest
+from barrierbench_analysis.errors import UserError
 from barrierbench_analysis.gap_map import entry, kept, report, runs, table
-from barrierbench_analysis.gap_map.spec import GapMapError, cells, limit_settings, make_sweep, part, read_spec
+from barrierbench_analysis.gap_map.spec import cells, limit_settings, make_sweep, part, read_spec
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -60,7 +61,7 @@ def test_a_limit_that_is_the_same_in_every_run_undoes_theta():
                                          ({"base": "nowhere.json"}, "base"), ({"extra": 1}, "extra"), ({"scenes": [{"label": "x"}]}, "obstacle"), ({"quick": {}}, ""), ({"quick": []}, "quick")])
 def test_a_bad_spec_is_refused_with_its_place(tmp_path, edit, words):
     file = small(tmp_path, **edit)
-    with pytest.raises(GapMapError, match=re.escape(str(file)) + f".*{words}"):
+    with pytest.raises(UserError, match=re.escape(str(file)) + f".*{words}"):
         part(read_spec(file), "quick")
 
 
@@ -194,7 +195,7 @@ def test_a_record_of_another_limit_is_none_of_its_cell(tmp_path, mode, limit):
     spec = read_spec(small(tmp_path, limits=["on", "contact", "off"], gaps=[0.5, 0.01], main=["log", "cubic"], quick={"scenes": {"block": ["1"]}, "shapes": ["log"], "gaps": [0.5], "limits": ["off"]}))
     cell = next(c for c in cells(spec) if (c.shape, c.limit, c.theta) == ("cubic", mode, 0.01))
     entry.check_cell(spec, cell, of_cell(spec, cell), tmp_path)
-    with pytest.raises(GapMapError, match="asks for: remove this folder"):
+    with pytest.raises(UserError, match="asks for: remove this folder"):
         entry.check_cell(spec, cell, of_cell(spec, cell, **limit), tmp_path)
 
 

@@ -43,10 +43,11 @@ def gate(program, monkeypatch, tmp_path):
     monkeypatch.setenv("BARRIERBENCH_PROGRAM", program)
 
     def call(verb: str, *arguments) -> int:
-        from analysis.gate.__main__ import main
+        from analysis.gate import accept, calibrate, compare, gate, trend
 
+        verbs = {"accept": accept, "calibrate": calibrate, "compare": compare, "gate": gate, "trend": trend}
         more = ["--out", str(tmp_path / "gate")] if verb == "gate" and "--out" not in arguments else []
-        return main([verb, *map(str, arguments), *more])
+        return verbs[verb].main([*map(str, arguments), *more])
 
     return call
 

@@ -5,8 +5,8 @@ from pathlib import Path
 
 import pytest
 
+from analysis.errors import UserError
 from analysis.gate import accept, baseline, calibrate, compare, gate, meanings
-from analysis.gate.cases import GateError
 from analysis.gate.finding import failures
 from analysis.gate.records import Run
 from analysis.record_file import CHANGED
@@ -44,7 +44,7 @@ def test_every_field_that_changed_its_meaning_says_what_is_made_of_it():
 
 def test_a_baseline_says_of_which_record_version_it_is(tmp_path):
     assert kept_of("3.4.0", tmp_path).record_version == "3.4.0" and json.loads((tmp_path / "made.json").read_text())["calibrated_at"]["record_version"] == "3.4.0"
-    with pytest.raises(GateError, match="records of versions 3.4.0, 3.5.0: a baseline is of records of one version"):
+    with pytest.raises(UserError, match="records of versions 3.4.0, 3.5.0: a baseline is of records of one version"):
         calibrate.propose("made", [run("3.4.0", 10), run("3.5.0", 10)])
 
 
@@ -84,7 +84,7 @@ def test_accepting_over_an_older_version(tmp_path):
     path = tmp_path / "kept.json"
     accept.keep(calibrate.propose("made", [run("3.4.0", 10)]), path, "old", [])
     new = calibrate.propose("made", [run("3.5.0", 10)])
-    with pytest.raises(GateError, match="of record version 3.4.0, in which trace error_estimate_m mean something else"):
+    with pytest.raises(UserError, match="of record version 3.4.0, in which trace error_estimate_m mean something else"):
         accept.keep(new, path, "a part", ["newton_iterations"])
     accept.keep(new, path, "all", [])
     found = baseline.read(path)

@@ -7,7 +7,8 @@ from pathlib import Path
 import pytest
 from made_records import install
 
-from analysis.matching.formulations import MatchError, settings
+from analysis.errors import UserError
+from analysis.matching.formulations import settings
 from analysis.matching.match import main, make_sweep
 
 BLOCK = Path(__file__).resolve().parents[2] / "configs" / "scenes" / "resting_block_1d.json"
@@ -138,10 +139,10 @@ def test_the_sweep_that_is_made(tmp_path):
     assert [case["label"] for case in data["axes"][0]["cases"]] == ["log", "cubic"] and data["axes"][0]["cases"][0]["reference"] is True
     assert all(case["set"]["/formulation/d_hat_m"] == 0.02 for case in data["axes"][0]["cases"])
     assert data["set"]["/matching/rule"] == "equal_curvature" and data["set"]["/matching/theta"] == 0.3 and data["set"]["/passes/audit"] is True
-    with pytest.raises(MatchError, match="none.json: No such file"):
+    with pytest.raises(UserError, match="none.json: No such file"):
         make_sweep(tmp_path / "none.json", ["cubic"], "equal_force", 0.1, "both")
     config.write_text("[1]")
-    with pytest.raises(MatchError, match="a.json: not a JSON object"):
+    with pytest.raises(UserError, match="a.json: not a JSON object"):
         make_sweep(config, ["cubic"], "equal_force", 0.1, "both")
 
 

@@ -8,8 +8,8 @@ from pathlib import Path
 import pytest
 from made_records import install
 
+from analysis.errors import UserError
 from analysis.matching import pareto
-from analysis.matching.formulations import MatchError
 from analysis.matching.fronts import Runs, at_gap, failures, over_scenes, over_shared, unreached
 from analysis.matching.pareto_report import markdown
 from analysis.matching.runs import inputs_sha256
@@ -41,7 +41,7 @@ def spec_file(tmp_path, **edit) -> Path:
       for pointer in ("/matching/rule", "/matching", "/passes", "/passes/audit", "/formulation", "/formulation/shape", "/seeds/main")),
     ({"scenes": [{"label": "a", "set": {"/passes/audit": False}}]}, "#/scenes/a/set: found '/passes/audit'; the sweep sets")])
 def test_a_bad_spec(tmp_path, edit, said):
-    with pytest.raises(MatchError) as error:
+    with pytest.raises(UserError) as error:
         read_spec(spec_file(tmp_path, **edit))
     assert said in str(error.value) and "spec.json" in str(error.value)
     assert pareto.main([str(tmp_path / "spec.json"), "--results", str(tmp_path / "r")]) == 2 and not (tmp_path / "r").exists()

@@ -4,8 +4,9 @@ import json
 
 import pytest
 
-from analysis.stress.__main__ import main
-from analysis.stress.entry import FOLDER, Expected, StressError, ids, left_out, read_test
+from analysis.errors import UserError
+from analysis.stress.verb import main
+from analysis.stress.entry import FOLDER, Expected, ids, left_out, read_test
 from analysis.stress.relations import check
 from analysis.stress.run import known
 
@@ -57,12 +58,12 @@ def test_every_preset_is_compared_or_left_out():
     (lambda d: d.update(quick=["gone"]), "/quick: 'gone' is no case"),
     (lambda d: d["axes"][0]["cases"][0].update(sets={}), "/axes/0/cases/0/sets: unknown"),
     (lambda d: d.update(id="M10"), "/id: found 'M10'"),
-    (lambda d: d.update(schema="x/1"), "/schema: 'x/1'"),
-    (lambda d: d.pop("title"), "/title is needed"),
+    (lambda d: d.update(schema="x/1"), "/schema: found 'x/1'"),
+    (lambda d: d.pop("title"), "/title: is missing"),
 ])
 def test_a_wrong_test_is_refused(tmp_path, change, message):
     read_test("M09", made(tmp_path))
-    with pytest.raises(StressError, match="M09.json") as told:
+    with pytest.raises(UserError, match="M09.json") as told:
         read_test("M09", made(tmp_path, change))
     assert message in str(told.value)
 
@@ -88,6 +89,6 @@ def test_a_setting_that_the_program_does_not_have_is_told_from_one_that_it_has()
     ({"kind": "equal", "metric": "newton", "groups": [["d_hat", "one ulp less"]]}, "within"), ({"kind": "rises", "metric": "newton", "groups": [["d_hat", "x"]]}, "'x' is no case"),
     ({"kind": "rises", "metric": "newton", "groups": [["d_hat"]]}, "two cases"), ({"kind": "rises", "metric": "newton"}, "groups"), ({"kind": "bound", "metric": "newton"}, "below or above")])
 def test_a_wrong_relation_is_refused(entry, message):
-    with pytest.raises(StressError) as told:
+    with pytest.raises(UserError) as told:
         check(read_test("M09"), {"reason": "r", **entry}, 0)
     assert message in str(told.value)

@@ -6,9 +6,10 @@ from fractions import Fraction
 import numpy as np
 import pytest
 
-from analysis.stress import __main__ as verb
+from analysis.errors import UserError
+from analysis.stress import verb
 from analysis.stress import exact
-from analysis.stress.entry import ROOT, StressError, ids, read_test
+from analysis.stress.entry import ROOT, ids, read_test
 from analysis.stress.geometry import Count, _judge_ccd
 from analysis.stress.geometry import judge as judge_count
 from analysis.stress.relations import relations
@@ -120,7 +121,7 @@ def test_counts_against_expectations():
     count = lambda judged, through: judge_count(Count("S02", case, "float", judged, {"let_through": through, "early": 3}), test)
     assert count(5, 0).as_expected and not count(5, 1).as_expected and not count(0, 0).as_expected
     assert judge_count(Count("S02", "x below 10 ulps", "float", 5, {"let_through": 5, "early": 0}), test).as_expected
-    with pytest.raises(StressError, match="nothing is expected of half"):
+    with pytest.raises(UserError, match="nothing is expected of half"):
         judge_count(Count("S02", case, "half", 5, {"let_through": 0, "early": 0}), test)
 
 
@@ -169,7 +170,7 @@ def test_the_table_is_read_as_it_was_written(tmp_path):
 def test_a_torn_table_is_refused(tmp_path, monkeypatch, capsys, kept):
     file = tmp_path / "stress.json"
     file.write_text(kept)
-    with pytest.raises(StressError, match="stress.json: .*remove it, then ./bench stress"):
+    with pytest.raises(UserError, match="stress.json: .*remove it, then ./bench stress"):
         read(file)
     monkeypatch.setattr(verb, "FILE", file)
     assert verb.main(["M09", "--no-run"]) == 2 and "stress.json" in capsys.readouterr().err

@@ -6,10 +6,11 @@ from pathlib import Path
 
 import pytest
 
+from analysis.errors import UserError
 from analysis.record_file import RecordError
-from analysis.work_precision import __main__ as verb
+from analysis.work_precision import verb
 from analysis.work_precision import report
-from analysis.work_precision.spec import ROOT, SpecError, read_spec
+from analysis.work_precision.spec import ROOT, read_spec
 
 SCENE = {"name": "stack", "base": str(ROOT / "configs/scenes/stack.json"), "set": {"/matching/rule": "equal_force", "/matching/load_N": 10}, "duration_s": 2, "samples": 1,
          "anchor": {"dt_s": 0.1, "d_hat_m": 0.004, "tolerance": 0.01}, "vary": {"d_hat_m": [0.25], "kappa": [0.001]}, "reference": {"closed_form": "rigid_stack"},
@@ -86,10 +87,10 @@ def test_missing_records_and_bad_numbers_are_told(run, tmp_path, capsys):
         verb.collect(spec, spec.scenes[0], tmp_path / "runs")
     record = frame.parents[1] / "run.json"  # a record whose own frame has no numbers
     record.write_text(record.read_text().replace(hashlib.sha256(good).hexdigest(), hashlib.sha256(frame.read_bytes()).hexdigest()))
-    with pytest.raises(SpecError, match="log_anchor_direct.*e_traj is nan"):
+    with pytest.raises(UserError, match="log_anchor_direct.*e_traj is nan"):
         verb.collect(spec, spec.scenes[0], tmp_path / "runs")
     record.unlink()
-    with pytest.raises(SpecError, match="1 of 2 records missing, the first is 'log anchor direct'"):
+    with pytest.raises(UserError, match="1 of 2 records missing, the first is 'log anchor direct'"):
         verb.collect(spec, spec.scenes[0], tmp_path / "runs")
     capsys.readouterr()
     assert verb.main([str(tmp_path / "spec.json"), "--no-run", "--out", str(tmp_path / "none")]) == 2
@@ -141,7 +142,7 @@ def test_files_that_are_none(tmp_path, capsys):
 ])
 def test_a_base_whose_gravity_cannot_be_read_is_told_with_its_place(tmp_path, base, said):
     (tmp_path / "base.json").write_text(base if base == "torn" else json.dumps(base))
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(UserError) as told:
         read_spec(write(tmp_path, {**SPEC, "scenes": [{**SCENE, "base": "base.json"}]}))
     assert f"{tmp_path / 'base.json'}: {said}" in str(told.value)
 
@@ -165,7 +166,7 @@ def test_the_gravity_that_a_scene_sets_counts(tmp_path, given, gravity):
 ])
 def test_a_gravity_that_a_scene_cannot_set_is_told_with_its_place(tmp_path, given, said):
     file = write(tmp_path, {**SPEC, "scenes": [{**SCENE, "set": given}]})
-    with pytest.raises(SpecError) as told:
+    with pytest.raises(UserError) as told:
         read_spec(file)
     assert f"{file}: {said}" in str(told.value)
 

@@ -1,7 +1,9 @@
-"""Runs the stress tests of configs/stress over all formulations (records that are there are skipped), holds every outcome against what was expected before
-the first run, and every relation between runs; writes results/stress.json and results/STRESS.md. With names it runs these alone and keeps the rest.
+"""Runs the stress tests of configs/stress over all formulations (records that are there are skipped), holds
+every outcome against what was expected before the first run, and every relation between runs; writes
+results/stress.json and results/STRESS.md. With names it runs these alone and keeps the rest.
 
-Exit codes: 0 everything as expected, 1 something is not, or was not judged, 2 a test cannot be run (unknown id or key, no expectation, no program).
+Exit codes: 0 everything as expected, 1 something is not, or was not judged, 2 a test cannot be run (unknown
+id or key, no expectation, no program).
 """
 
 from __future__ import annotations
@@ -12,10 +14,11 @@ import time
 from datetime import datetime, timezone
 from pathlib import Path
 
-from ..record_file import RecordError, read_record
+from ..errors import UserError, tells
+from ..record_file import read_record
 from ..whole_file import write_whole
 from . import report
-from .entry import ROOT, StressError, Test, ids, read_test
+from .entry import ROOT, Test, ids, read_test
 from .geometry import run_geometry
 from .relations import relations
 from .run import config_schema, run_test
@@ -28,14 +31,21 @@ QUICK = ["log", "cubic", "cubic_dynamic_consistent"]  # formulations of --quick
 def run_one(test: Test, runs: Path, quick: bool = False, limit_s: float = 60.0) -> Result:
     """All runs or counts of one test, judged."""
     start = time.monotonic()
-    say = lambda text: print(f"stress: {text}", file=sys.stderr)
+
+    def say(text):
+        return print(f"stress: {text}", file=sys.stderr)
+
     if "geometry" in test.data:
         result = Result(counts=run_geometry(test, quick))
     else:
         cases = test.data["quick"] if quick else None
         rows = run_test(test, runs, config_schema(), QUICK if quick else None, cases, say, limit_s)
         result = Result(rows, relations=relations(test, rows, cases))
-    result.about = {"date": datetime.now(timezone.utc).strftime("%Y-%m-%d"), "seconds": round(time.monotonic() - start, 1), **about(runs / test.id)}
+    result.about = {
+        "date": datetime.now(timezone.utc).strftime("%Y-%m-%d"),
+        "seconds": round(time.monotonic() - start, 1),
+        **about(runs / test.id),
+    }
     return result
 
 
@@ -43,41 +53,71 @@ def about(folder: Path) -> dict:
     """Machine and commit of one of the records below."""
     for path in sorted(folder.glob("*/*/runs/*/run.json")):
         record = read_record(path)
-        return {"machine": f"{record['machine']['cpu_model']}, {record['machine']['cores']} cores", "commit": record["provenance"]["git_commit"][:10]}
+        return {
+            "machine": f"{record['machine']['cpu_model']}, {record['machine']['cores']} cores",
+            "commit": record["provenance"]["git_commit"][:10],
+        }
     return {}
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="bench stress", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter,
-                                     epilog="examples: ./bench stress\n          ./bench stress S09 M10\n          ./bench stress --quick\n          ./bench stress S18 --full")
+    parser = argparse.ArgumentParser(
+        prog="bench stress",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=(
+            "examples: ./bench stress\n          ./bench stress S09 M10\n          ./bench stress --quick\n  "
+            "        ./bench stress S18 --full"
+        ),
+    )
     parser.add_argument("ids", nargs="*", metavar="ID", help="configs/stress/ID.json (default: all)")
     parser.add_argument("--list", action="store_true", help="print the tests and run nothing")
-    parser.add_argument("--full", action="store_true", help="the sizes and seeds of `full`, 600 s of processor time a run; results go to the folder of the runs")
-    parser.add_argument("--quick", action="store_true", help=f"the cases marked quick with {', '.join(QUICK)}, under a minute; nothing is written")
-    parser.add_argument("--no-run", action="store_true", help="run nothing: write results/STRESS.md from results/stress.json")
-    parser.add_argument("--runs", type=Path, default=RUNS, metavar="DIR", help="folder of the records (default: results/runs/stress)")
+    parser.add_argument(
+        "--full",
+        action="store_true",
+        help=(
+            "the sizes and seeds of `full`, 600 s of processor time a run; results go to the folder of the"
+            " runs"
+        ),
+    )
+    parser.add_argument(
+        "--quick",
+        action="store_true",
+        help=f"the cases marked quick with {', '.join(QUICK)}, under a minute; nothing is written",
+    )
+    parser.add_argument(
+        "--no-run", action="store_true", help="run nothing: write results/STRESS.md from results/stress.json"
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        default=RUNS,
+        metavar="DIR",
+        help="folder of the records (default: results/runs/stress)",
+    )
     args = parser.parse_args(argv)
     if args.full and args.quick:
         parser.error("--full and --quick contradict each other")
     return args
 
 
+@tells("stress")
 def main(argv: list[str]) -> int:
     args = arguments(argv)
-    try:
-        names = args.ids or ids()
-        tests = {name: read_test(name, full=args.full) for name in names}
-        if args.quick:
-            tests = {name: test for name, test in tests.items() if "quick" in test.data}
-            if not tests:
-                raise StressError(f"{', '.join(names)}: no quick case")
-        if args.list:
-            print("\n".join(f"{name}  {test.data['title']}; varied: {test.data['varies']}" for name, test in tests.items()))
-            return 0
-        return judge_all(tests, args)
-    except (StressError, RecordError) as error:
-        print(f"bench stress: {error}", file=sys.stderr)
-        return 2
+    names = args.ids or ids()
+    tests = {name: read_test(name, full=args.full) for name in names}
+    if args.quick:
+        tests = {name: test for name, test in tests.items() if "quick" in test.data}
+        if not tests:
+            raise UserError(f"{', '.join(names)}: no quick case")
+    if args.list:
+        print(
+            "\n".join(
+                f"{name}  {test.data['title']}; varied: {test.data['varies']}" for name, test in tests.items()
+            )
+        )
+        return 0
+    return judge_all(tests, args)
 
 
 def write_all(results: dict[str, Result], runs: Path, full: bool) -> None:
@@ -86,7 +126,9 @@ def write_all(results: dict[str, Result], runs: Path, full: bool) -> None:
     results = {name: result for name, result in results.items() if name in everything}
     write(results, runs / "stress.json" if full else FILE)
     page = runs / "STRESS.md" if full else ROOT / "results" / "STRESS.md"
-    write_whole(page, report.markdown(results, everything, "./bench stress --full" if full else "./bench stress"))
+    write_whole(
+        page, report.markdown(results, everything, "./bench stress --full" if full else "./bench stress")
+    )
 
 
 def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
@@ -96,7 +138,10 @@ def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
     kept = {} if args.quick else read(file)
     if args.no_run:
         if missing := [name for name in tests if name not in kept]:
-            raise StressError(f"{file}: nothing kept of {missing[0]}: ./bench stress {missing[0]}{' --full' if args.full else ''}")
+            raise UserError(
+                f"{file}: nothing kept of {missing[0]}: ./bench stress"
+                f" {missing[0]}{' --full' if args.full else ''}"
+            )
         results = {name: kept[name] for name in tests}
     else:
         results = {}
@@ -109,7 +154,3 @@ def judge_all(tests: dict[str, Test], args: argparse.Namespace) -> int:
         print(report.text(results, tests))
         write_all(kept, runs, args.full)
     return 0 if all(result.as_expected for result in results.values()) else 1
-
-
-if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))

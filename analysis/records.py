@@ -1,4 +1,5 @@
-"""Records below a folder as tidy tables. record_file.py judges every file first; unknown fields are ignored."""
+"""Records below a folder as tidy tables. record_file.py judges every file first; unknown fields are
+ignored."""
 
 from __future__ import annotations
 
@@ -34,7 +35,9 @@ def _series(labels: dict) -> str:
 
 
 def _swept(text: str):
-    """The value of a swept pointer, which the record keeps as JSON text; what is no number or word stays text."""
+    """The value of a swept pointer, which the record keeps as JSON text; what is no number or word stays
+    text.
+    """
     try:
         value = json.loads(text)
     except ValueError:
@@ -43,7 +46,9 @@ def _swept(text: str):
 
 
 def run_row(record: dict, run: str = "") -> dict:
-    """A row of `runs`: the fields of the record, a column for every pointer that its sweep varies (`/time/dt_s`), and where it belongs."""
+    """A row of `runs`: the fields of the record, a column for every pointer that its sweep varies
+    (`/time/dt_s`), and where it belongs.
+    """
     row = fields.row("runs", record)
     row |= {"run": run, "folder": Path(run).name, "series": _series(record["labels"])}
     row |= {pointer: _swept(text) for pointer, text in (row.get("swept") or {}).items()}
@@ -60,8 +65,8 @@ def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
 def load(root: str | Path) -> Records:
     """Every record below `root`, in the order of their paths.
 
-    A record that record_file.py refuses, or whose trace is not the one that it names, is left out: `unreadable` and a line on stderr say why.
-    Raises RecordError when no record can be read.
+    A record that record_file.py refuses, or whose trace is not the one that it names, is left out:
+    `unreadable` and a line on stderr say why. Raises RecordError when no record can be read.
     """
     root = Path(root)
     runs, steps, trace, cond, unreadable = [], [], [], [], []
@@ -73,7 +78,13 @@ def load(root: str | Path) -> Records:
             unreadable.append(str(error))
             continue
         run = str(path.parent.relative_to(root))
-        runs.append(run_row(record, run) | {"plugin_files": _plugins(record, path.parent), "config_dt_s": ((record.get("config") or {}).get("time") or {}).get("dt_s")})
+        runs.append(
+            run_row(record, run)
+            | {
+                "plugin_files": _plugins(record, path.parent),
+                "config_dt_s": ((record.get("config") or {}).get("time") or {}).get("dt_s"),
+            }
+        )
         for step in record["steps"]:
             steps.append({"run": run, **fields.row("steps", step)})
         for n, line in enumerate(lines):
@@ -97,8 +108,11 @@ def _say_other_meanings(root: Path, runs: list[dict]) -> None:
     earlier = [found for row in runs if (found := other_meanings(row["schema_version"]))]
     if earlier:
         since = next(iter(earlier[0].values()))["since"]
-        print(f"{root}: {len(earlier)} of {len(runs)} records are of before {since}, in which these fields mean something else: {', '.join(earlier[0])} (./bench help record, "
-              "./bench help trace)", file=sys.stderr)
+        print(
+            f"{root}: {len(earlier)} of {len(runs)} records are of before {since}, in which these fields mean"
+            f" something else: {', '.join(earlier[0])} (./bench help record, ./bench help trace)",
+            file=sys.stderr,
+        )
 
 
 def _unique_series(runs: pd.DataFrame) -> pd.Series:
@@ -107,24 +121,38 @@ def _unique_series(runs: pd.DataFrame) -> pd.Series:
     return runs["series"].where(count == 0, runs["series"] + " #" + (count + 1).astype(str))
 
 
-def condition_of(records: Records, run: str, scaling: str, stage: str = "full", matrix: str = "clamped") -> pd.DataFrame:
-    """Condition estimates of one run, in the order of the iterations; empty when there are none. matrix: "clamped", or "solved" for
-    the matrices that were factorised where they differ. Records before version 3.1 have clamped ones only."""
+def condition_of(
+    records: Records, run: str, scaling: str, stage: str = "full", matrix: str = "clamped"
+) -> pd.DataFrame:
+    """Condition estimates of one run, in the order of the iterations; empty when there are none. matrix:
+    "clamped", or "solved" for the matrices that were factorised where they differ. Records before version 3.1
+    have clamped ones only.
+    """
     if records.cond.empty:
         return records.cond
     c = records.cond
     form = c["matrix"].fillna("clamped") if "matrix" in c else "clamped"
-    return c[(c["run"] == run) & (c["scaling"] == scaling) & (c["stage"] == stage) & (form == matrix)].sort_values("n")
+    return c[
+        (c["run"] == run) & (c["scaling"] == scaling) & (c["stage"] == stage) & (form == matrix)
+    ].sort_values("n")
 
 
 def counted(estimates: pd.DataFrame) -> pd.Series:
-    """Condition numbers as the program's summaries count them: lower bounds among them, a matrix that is singular or not positive definite as LARGEST_COND;
-    estimates without a number are left out."""
-    return estimates["cond"].astype(float).where(~estimates["status"].isin(["singular", "not_pd"]), LARGEST_COND).dropna()
+    """Condition numbers as the program's summaries count them: lower bounds among them, a matrix that is
+    singular or not positive definite as LARGEST_COND; estimates without a number are left out.
+    """
+    return (
+        estimates["cond"]
+        .astype(float)
+        .where(~estimates["status"].isin(["singular", "not_pd"]), LARGEST_COND)
+        .dropna()
+    )
 
 
 def step_spans(records: Records, run: str) -> pd.DataFrame:
-    """`start` and `length` (s of simulated time) of every step of a run. A step that got nowhere is as long as most, or as dt."""
+    """`start` and `length` (s of simulated time) of every step of a run. A step that got nowhere is as long
+    as most, or as dt.
+    """
     if records.steps.empty:
         return pd.DataFrame(columns=["start", "length"], dtype=float)
     ends = records.steps[records.steps["run"] == run].set_index("step")["t_s"].astype(float)
@@ -136,8 +164,10 @@ def step_spans(records: Records, run: str) -> pd.DataFrame:
 
 
 def places_in_time(records: Records, run: str, estimates: pd.DataFrame) -> pd.Series:
-    """Simulated time (s): the start of the step and its share of iteration / (iterations of that step). Nothing is cut off, a stalled step squeezes no other
-    one, and runs with other steps stand at the same time."""
+    """Simulated time (s): the start of the step and its share of iteration / (iterations of that step).
+    Nothing is cut off, a stalled step squeezes no other one, and runs with other steps stand at the same
+    time.
+    """
     count = records.trace[records.trace["run"] == run].groupby("step")["iteration"].max() + 1
     spans = step_spans(records, run)
     share = estimates["iteration"] / estimates["step"].map(count)

@@ -1,0 +1,11 @@
+"""python analysis VERB ARGUMENTS: the front door, as the script ./bench starts it."""
+
+import sys
+from pathlib import Path
+
+sys.path[0] = str(Path(__file__).resolve().parents[1])
+
+from analysis.front.door import main  # noqa: E402  (the line above says where it is)
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,129 @@
+"""Builds: presets of CMakePresets.json, their targets, and the program."""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+import tempfile
+from pathlib import Path
+
+from ..errors import BUILD_FAILED, UserError
+from .verbs import ROOT
+
+KIB_A_JOB = 1572864  # 1.5 GiB
+MINUTE = 60  # seconds between two words about a build off the terminal
+
+
+def say(text: str) -> None:
+    print(f"bench: {text}", file=sys.stderr, flush=True)
+
+
+def job_count() -> int:
+    """One job a core, and 1.5 GiB of memory for each."""
+    try:
+        lines = Path("/proc/meminfo").read_text().splitlines()
+        free_kib = next(int(line.split()[1]) for line in lines if line.startswith("MemAvailable:"))
+    except (OSError, StopIteration):
+        free_kib = 4 << 20
+    return max(1, min(free_kib // KIB_A_JOB, len(os.sched_getaffinity(0))))
+
+
+def folder(preset: str) -> Path:
+    return ROOT / "build" / preset
+
+
+def program() -> Path:
+    return folder("release") / "experiments/barrierbench"
+
+
+def setup(*packages: str) -> None:
+    """Packages of the system and the Python environment, by the script ./bench. Errors: UserError; the script
+    has said why.
+    """
+    done = subprocess.run([str(ROOT / "bench"), "setup", *packages], check=False)
+    if done.returncode != 0:
+        raise UserError("the setup failed", done.returncode)
+
+
+def _has_options(preset: str, options: dict[str, str]) -> bool:
+    cache = folder(preset) / "CMakeCache.txt"
+    known = cache.read_text().splitlines() if options else []
+    return all(
+        any(line.startswith(f"{name}:") and line.endswith(f"={value}") for line in known)
+        for name, value in options.items()
+    )
+
+
+def configure(preset: str, options: dict[str, str] | None = None) -> None:
+    """Once, and again when one of the CMake options has another value. Errors: UserError."""
+    options = options or {}
+    if not shutil.which("cmake") or not shutil.which("ninja"):
+        raise UserError("cmake and ninja are needed: ./bench setup")
+    if (folder(preset) / "build.ninja").is_file() and _has_options(preset, options):
+        return
+    say(f"configuring build/{preset}")
+    words = ["cmake", "--preset", preset, *(f"-D{name}={value}" for name, value in options.items())]
+    if subprocess.run(words, cwd=ROOT, stdout=sys.stderr, check=False).returncode != 0:
+        raise UserError("configuration failed")
+
+
+def _last_line(log: Path) -> str:
+    lines = log.read_text(errors="replace").splitlines()
+    return lines[-1] if lines else ""
+
+
+def _build_quietly(words: list[str], preset: str) -> int:
+    """Off the terminal: every minute how far it is, and the log of ninja when it fails."""
+    with tempfile.TemporaryDirectory() as scratch:
+        log = Path(scratch) / "ninja.log"
+        with log.open("wb") as out:
+            process = subprocess.Popen(words, stdout=out, stderr=subprocess.STDOUT)
+            while True:
+                try:
+                    code = process.wait(MINUTE)
+                    break
+                except subprocess.TimeoutExpired:
+                    say(f"building build/{preset}: {_last_line(log)}")
+        if code != 0:
+            sys.stderr.write(log.read_text(errors="replace"))
+        return code
+
+
+def build(preset: str, *targets: str, options: dict[str, str] | None = None) -> None:
+    """Targets of a preset, all without any, with these CMake options; silent when nothing is to be done.
+    Errors: UserError, 70 where code does not build.
+    """
+    configure(preset, options)
+    words = ["ninja", "-C", str(folder(preset)), "-j", str(job_count())]
+    if sys.stderr.isatty():
+        code = subprocess.run([*words, "--quiet", *targets], stdout=sys.stderr, check=False).returncode
+    else:
+        code = _build_quietly([*words, *targets], preset)
+    if code != 0:
+        raise UserError("build failed", BUILD_FAILED)
+
+
+def regenerate(preset: str) -> None:
+    """Configured, and every generated header as the CMake files say. Errors: UserError."""
+    configure(preset)
+    if (
+        subprocess.run(
+            ["ninja", "-C", str(folder(preset)), "--quiet", "build.ninja"], stdout=sys.stderr, check=False
+        ).returncode
+        != 0
+    ):
+        raise UserError("configuration failed")
+
+
+def ensure(*targets: str) -> None:
+    """Targets of the release build, after the setup where nothing was configured. Errors: UserError."""
+    if not (folder("release") / "build.ninja").is_file():
+        setup()
+    build("release", *targets)
+
+
+def ensure_program() -> Path:
+    ensure("barrierbench")
+    return program()

@@ -1,0 +1,80 @@
+"""What ./bench starts: finds the verb, sees to what it needs, and runs it or becomes the program."""
+
+from __future__ import annotations
+
+import importlib
+import os
+import sys
+import textwrap
+
+from ..errors import UserError
+from . import verbs
+
+INTERRUPTED = 130
+WIDTH = 116
+
+
+def usage() -> str:
+    """Every verb in its group, with an example."""
+    lines = ["usage: ./bench VERB [ARGUMENTS]", ""]
+    for group, meaning in verbs.GROUPS.items():
+        lines.append(f"{group}: {meaning}")
+        for verb in verbs.every():
+            if verb.group == group:
+                lines.append(f"  {verb.name} {verb.arguments}".rstrip())
+                lines += textwrap.wrap(verb.help, WIDTH, initial_indent=6 * " ", subsequent_indent=6 * " ")
+                lines.append(f"        {verb.example}")
+        lines.append("")
+    lines.append("./bench VERB --help says more; what runs the program is run after an incremental build.")
+    return "\n".join(lines)
+
+
+def become_program(arguments: list[str]) -> int:
+    """Replaces this process by the program, so that standard streams and signals are its own. Errors:
+    UserError where it cannot be built.
+    """
+    from . import building
+
+    word = arguments[0]
+    everything = verbs.every()
+    if not word.startswith("-") and word not in [verb.name for verb in everything]:
+        near = verbs.nearest(word, everything)
+        raise UserError(
+            f"found {word!r}; allowed: one of the verbs of ./bench help"
+            + (f"; did you mean {near}?" if near else "")
+        )
+    program = str(building.ensure_program())
+    os.environ["BENCH_VERBS"] = " ".join(verb.name for verb in verbs.TABLE)  # for its own suggestion
+    sys.stdout.flush()
+    os.execv(program, [program, *arguments])
+
+
+def run(verb: verbs.Verb, arguments: list[str]) -> int:
+    """Runs a verb of the table in this process."""
+    from . import building
+
+    if verbs.needs_program(verb, arguments) and "BARRIERBENCH_PROGRAM" not in os.environ:
+        if verb.needs == verbs.PROGRAM:
+            building.ensure_program()
+        else:
+            building.ensure(verb.needs)
+    os.environ.setdefault("BARRIERBENCH_PROGRAM", str(building.program()))
+    return importlib.import_module(f"analysis.{verb.module}").main(arguments)
+
+
+def main(arguments: list[str]) -> int:
+    """The exit code."""
+    try:
+        if not arguments or arguments in (["help"], ["-h"], ["--help"]):
+            print(usage(), flush=True)
+            return 0
+        verb = verbs.find(arguments[0])
+        return run(verb, arguments[1:]) if verb else become_program(arguments)
+    except UserError as error:
+        print(f"bench: {error}", file=sys.stderr)
+        return error.code
+    except BrokenPipeError:  # the reader, a pager, has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return 0
+    except KeyboardInterrupt:
+        return INTERRUPTED

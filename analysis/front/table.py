@@ -1,0 +1,60 @@
+"""The rows of the verbs in Python: one line each, beside the file that it names."""
+
+from __future__ import annotations
+
+from typing import NamedTuple
+
+ENVIRONMENT = "environment"  # the Python environment, which ./bench has made
+PROGRAM = "program"  # the release build of barrierbench too
+HELP = ("-h", "--help")
+WITHOUT = (*HELP, "--no-run", "--list")  # with one of these no verb needs a built program
+
+
+class Verb(NamedTuple):
+    """One row of the table."""
+
+    name: str
+    group: str  # one of GROUPS
+    needs: str  # ENVIRONMENT, PROGRAM, or a target of the release build
+    module: str  # below analysis/; empty: a verb of the program, or of the script itself
+    arguments: str
+    help: str
+    example: str
+    without: tuple[str, ...] = ()  # more options with which it needs no built program
+
+
+# fmt: off
+TABLE = (
+    Verb("demo", "run", PROGRAM, "front.demo", "", "setup, build, the demonstration sweep, its figures and its table", "./bench demo"),
+    Verb("figures", "look", ENVIRONMENT, "figures.verb", "RUNS [OUT]", "figures and table of the records below a folder, or of the file of ./bench steps --out", "./bench figures results/runs/demo"),
+    Verb("render", "look", ENVIRONMENT, "render", "RUN", "a still (PNG) of one step of a run that kept frames (--set /output/frames_every=1)", "./bench render results/runs/drape --color gap"),
+    Verb("surface-gaps", "look", ENVIRONMENT, "surface_gaps", "RUNS...", "how close the whole surface came to obstacles and to itself in each run; 1 when an ok run entered something", "./bench surface-gaps results/runs/demo results/runs/claims"),
+    Verb("causes", "study", PROGRAM, "causes", "RUN|CONFIG", "a condition number taken apart: stages, scalings, and where the eigenvectors of both ends live", "./bench causes configs/scenes/sphere_on_sheet.json --set /time/steps=5"),
+    Verb("match", "study", PROGRAM, "matching.match", "CONFIG", "calibrates formulations on one scene, runs each, says which may be compared: 0 all, 1 not all, 2 bad input", "./bench match configs/scenes/drape2d.json --formulations cubic quadratic"),
+    Verb("pareto", "study", PROGRAM, "matching.pareto", "[SPEC]", "formulations over decades of stiffness, compared at equal reached gap: results/PARETO.md and docs/pareto_*.png", "./bench pareto configs/pareto/default.json"),
+    Verb("gap-map", "study", PROGRAM, "gap_map.entry", "[SPEC]", "condition numbers and iterations against the gap that contact reaches, beside the area law: results/GAP_MAP.md and docs/gap_map.png", "./bench gap-map --quick"),
+    Verb("work-precision", "study", PROGRAM, "work_precision.verb", "[SPEC]", "error against work of every formulation: results/WORK_PRECISION.md and docs/work_precision_*.png", "./bench work-precision configs/work_precision/default.json"),
+    Verb("gate", "judge", PROGRAM, "gate.gate", "[--set SET]", "runs a small set of cases and judges them against results/baselines; or another solver's matrices", "./bench gate --matrix dumps/*.mtx --baseline conditioning.json", without=("--matrix", "--record")),
+    Verb("compare", "judge", ENVIRONMENT, "gate.compare", "A B", "two records, or folders of them: which numbers differ, in which direction, 0 same, 1 regressed, 2 cannot compare", "./bench compare results/runs/before results/runs/after"),
+    Verb("calibrate", "judge", PROGRAM, "gate.calibrate", "", "measures envelopes for the gate by 20 perturbed copies a case", "./bench calibrate", without=("--matrix", "--record")),
+    Verb("accept", "judge", ENVIRONMENT, "gate.accept", "--reason TEXT", "keeps the envelopes that were measured last as baselines, with a reason", './bench accept --reason "the contact Hessian is exact"'),
+    Verb("trend", "judge", ENVIRONMENT, "gate.trend", "FILE", "steps in the numbers that ./bench gate --history FILE has kept, run after run; never a failure", "./bench trend history.jsonl"),
+    Verb("claims", "judge", PROGRAM, "claims.verb", "[ID...]", "runs what is missing, computes the verdict on every claim from its records: results/CLAIMS.md, docs/claims.png, docs/results.md", "./bench claims K3 H1"),
+    Verb("stress", "judge", PROGRAM, "stress.verb", "[ID...]", "the hard cases of configs/stress over all formulations, against what was expected of each: results/STRESS.md", "./bench stress S09 M10"),
+    Verb("readme", "make", PROGRAM, "readme.verb", "--check | --write | --fill", "runs or parses every snippet of README.md and docs/results.md; fills their numbers from the records of the demo, or from those that are kept", "./bench readme --check"),
+    Verb("matrix-corpus", "make", PROGRAM, "matrix_corpus", "[--table]", "the hard systems of results/matrices from configs/matrices/corpus.json, and their table", "./bench matrix-corpus --table"),
+    Verb("condition-table", "make", PROGRAM, "condition_table", "", "results/CONDITION.md: what Spectra and our Lanczos take for the condition numbers of the demo and of results/matrices, and how far they differ", "./bench condition-table"),
+    Verb("fit-linear", "make", PROGRAM, "fit_linear", "", "measures every linear solver on this machine and fits what `linear_solver: auto` chooses by", "./bench fit-linear"),
+    Verb("gpu-report", "make", ENVIRONMENT, "gpu_report", "", "results/GPU.md and its figure from the records of cards that experiments/gpu_evidence.sh made", "./bench gpu-report"),
+    Verb("setup", "develop", ENVIRONMENT, "", "", "packages, compiler cache, Python environment; instant when all is there", "./bench setup"),
+    Verb("build", "develop", ENVIRONMENT, "front.build", "[PRESET]", "configures and builds (release by default; dev, sanitize, cuda-compile)", "./bench build sanitize"),
+    Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate", "./bench test -R eval"),
+    Verb("format", "develop", ENVIRONMENT, "front.format", "", "clang-format every C++ file and ruff every Python file of analysis/, in place", "./bench format"),
+    Verb("tidy", "develop", ENVIRONMENT, "front.tidy", "[FILES]", "clang-tidy the sources (all, or the files named)", "./bench tidy core/record/hash.cpp"),
+    Verb("rooms", "develop", ENVIRONMENT, "front.rooms", "", "the rooms of the code, what each one includes, lowest first; fails on a circle or an undeclared one", "./bench rooms"),
+    Verb("mutate", "develop", ENVIRONMENT, "front.mutate", "", "puts mistakes into the code one at a time and counts those that the tests catch", "./bench mutate --only 'newton/armijo*'"),
+    Verb("fuzz", "develop", ENVIRONMENT, "fuzz", "[TARGET...]", "feeds broken input to every reader under clang's sanitizers; 1 when one of them fails", "./bench fuzz mesh_ply config --seconds 60"),
+    Verb("microbenchmarks", "develop", "barrierbench_microbenchmarks", "front.microbenchmarks", "[GOOGLE BENCHMARK ARGUMENTS]", "ns per shape, query, contact, element, tier; JSON kept in results/runs/microbenchmarks", "./bench microbenchmarks --benchmark_filter='drape/.*:48'"),
+    Verb("compare-toolkit", "develop", "contact_stages", "compare_toolkit", "", "our stages of contact beside those of the IPC Toolkit, in turn: a table of ratios", "./bench compare-toolkit --mesh sheets --rounds 3"),
+)
+# fmt: on

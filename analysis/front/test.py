@@ -1,0 +1,136 @@
+"""The verb test: setup, build, format, rooms, C++ tests, Python tests, gate. A later part never hides an
+earlier failure, and the summary names every skip.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+from ..errors import tells
+from . import format as formatting
+from . import rooms
+from .building import build, folder, job_count, say, setup
+from .verbs import ROOT
+
+NAMED_SKIPS = 20  # C++ tests that the summary names
+
+
+class Summary:
+    """Verdicts of the parts, in their order."""
+
+    def __init__(self):
+        self.lines: list[str] = []
+        self.failures = 0
+
+    def step(self, name: str, part: Callable[[], int]) -> None:
+        """Runs one part and keeps its verdict."""
+        start = time.monotonic()
+        say(f"== {name}")
+        failed = part() != 0
+        self.failures += failed
+        self.lines.append(f"{'FAILED  ' if failed else 'passed  '} {name} ({time.monotonic() - start:.0f} s)")
+
+    def text(self) -> str:
+        lines = ["", "== summary", *(f"  {line}" for line in self.lines)]
+        return "\n".join(lines + ([f"  {self.failures} of the parts failed"] if self.failures else []))
+
+
+def _into(log: Path, words: list[str], **more) -> int:
+    with log.open("wb") as out:
+        return subprocess.run(words, stdout=out, stderr=subprocess.STDOUT, check=False, **more).returncode
+
+
+def skipped_cpp(log: str) -> list[str]:
+    """Lines of the summary about tests that ctest skipped."""
+    lines = [line for line in log.splitlines() if "***Skipped" in line]
+    names = [re.sub(r" \.*\*\*\*Skipped.*", "", re.sub(r"^.*Test +#[0-9]+: ", "", line)) for line in lines]
+    return (
+        [f"SKIPPED  {len(names)} C++ tests:", *(f"           {name}" for name in names[:NAMED_SKIPS])]
+        if names
+        else []
+    )
+
+
+def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
+    log = folder(preset) / "ctest.log"
+    code = _into(
+        log,
+        [
+            "ctest",
+            "--test-dir",
+            str(folder(preset)),
+            "--parallel",
+            "2",
+            "--output-on-failure",
+            "--no-tests=error",
+            *arguments,
+        ],
+    )
+    text = log.read_text(errors="replace")
+    print("\n".join(text.splitlines()[-6:]) if code == 0 else text, flush=True)
+    summary.lines += skipped_cpp(text)
+    return code
+
+
+def python_tests(preset: str, summary: Summary) -> int:
+    log = ROOT / "build/pytest.log"
+    words = [
+        sys.executable,
+        "-m",
+        "pytest",
+        "-c",
+        str(ROOT / "pytest.ini"),
+        "-q",
+        "-rs",
+        "-p",
+        "no:cacheprovider",
+        "-n",
+        str(job_count()),
+        "--dist",
+        "loadfile",
+        str(ROOT / "tests"),
+    ]
+    code = _into(
+        log,
+        words,
+        env={**os.environ, "BARRIERBENCH_PROGRAM": str(folder(preset) / "experiments/barrierbench")},
+    )
+    text = log.read_text(errors="replace")
+    print(text, flush=True)
+    summary.lines += [
+        f"SKIPPED  {line.removeprefix('SKIPPED ')}"
+        for line in text.splitlines()
+        if line.startswith("SKIPPED")
+    ]
+    return code
+
+
+def _gate() -> int:
+    from ..gate import gate
+
+    return gate.main([])
+
+
+@tells("test")
+def main(argv: list[str]) -> int:
+    preset, arguments = ("sanitize", argv[1:]) if argv[:1] == ["--sanitize"] else ("release", argv)
+    setup()
+    build(preset)
+    summary = Summary()
+    summary.step("clang-format", lambda: formatting.clang_format("--dry-run", "--Werror"))
+    summary.step("rooms", lambda: rooms.main([]))
+    summary.step(f"C++ tests ({preset})", lambda: cpp_tests(preset, arguments, summary))
+    if arguments:
+        summary.lines.append("not run  Python tests (ctest arguments were given)")
+    else:
+        summary.step(f"Python tests ({preset})", lambda: python_tests(preset, summary))
+        if preset == "release":
+            summary.step("gate (small set)", _gate)
+    print(summary.text())
+    return 1 if summary.failures else 0

@@ -1,4 +1,0 @@
-from .entry import main
-import sys
-
-sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,118 @@
+"""Makes the numbers of README.md and docs/results.md from the records of ./bench demo and the kept numbers of
+./bench claims, and checks them and every snippet.
+
+Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 there is nothing to make it
+from.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ..errors import UserError, tells
+from ..program import built_program
+from ..whole_file import write_whole
+from . import figures
+from .map import gather as gather_map
+from .numbers import FILE, ROOT, RUNS, gather, read, write
+from .slices import gather as gather_slices
+from .snippets import faults
+from .templates import PARTS, filled, lacking
+
+PAGES = tuple(PARTS)
+
+
+def kept() -> dict:
+    """The numbers of the demo, those of the claims' slices, and the sentences of the gap map. Errors:
+    UserError where one is missing.
+    """
+    return read() | {"slices": gather_slices(), "gap_map": gather_map()}
+
+
+def stale(root: Path, numbers: dict) -> list[str]:
+    """Pages whose generated parts are not there, or not what the templates make of the kept numbers."""
+    texts = {page: (root / page).read_text() for page in PAGES}
+    absent = [line for page, text in texts.items() for line in lacking(text, page)]
+    return absent + [
+        f"{page}: its numbers are not those of results/demo.json, claims.json and gap_map.json; ./bench"
+        " readme --fill writes them"
+        for page, text in texts.items()
+        if filled(text, numbers, page) != text
+    ]
+
+
+def write_pages(root: Path, numbers: dict) -> list[str]:
+    """Errors: UserError for a page without the marks of its parts."""
+    changed = []
+    for page in PAGES:
+        text = (root / page).read_text()
+        if absent := lacking(text, page):
+            raise UserError("\n".join(absent))
+        if (made := filled(text, numbers, page)) != text:
+            write_whole(root / page, made)
+            changed.append(page)
+    return changed
+
+
+@tells("readme")
+def main(argv: list[str]) -> int:
+    parser = argparse.ArgumentParser(
+        prog="bench readme",
+        description=__doc__,
+        formatter_class=argparse.RawDescriptionHelpFormatter,
+        epilog=(
+            "examples: ./bench demo && ./bench readme --write\n          ./bench claims && ./bench readme"
+            " --fill\n          ./bench readme --check"
+        ),
+    )
+    what = parser.add_mutually_exclusive_group(required=True)
+    what.add_argument(
+        "--write",
+        action="store_true",
+        help=(
+            "keep the numbers of the records in results/demo.json, fill the pages with them, and copy the"
+            " figures that they show"
+        ),
+    )
+    what.add_argument(
+        "--fill",
+        action="store_true",
+        help=(
+            "fill the pages with the numbers that are kept in results/: after ./bench claims, without records"
+            " of the demo"
+        ),
+    )
+    what.add_argument(
+        "--check",
+        action="store_true",
+        help="run or parse every snippet, and compare the pages with the kept numbers",
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        default=RUNS,
+        metavar="DIR",
+        help="folder of the demo's records (default: results/runs/demo)",
+    )
+    args = parser.parse_args(argv)
+    if args.write or args.fill:
+        if args.write:
+            write(gather(args.runs))
+            copied = figures.copy(
+                [(ROOT / page).read_text() for page in PAGES], args.runs / "figures", ROOT / "docs"
+            )
+            print(f"docs: {', '.join(copied) or 'no figure'}")
+        print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
+        return 0
+    program = str(built_program())
+    found = (
+        [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)]
+        + stale(ROOT, kept())
+        + figures.absent(ROOT / "docs")
+    )
+    print(
+        "\n".join(found)
+        or "every snippet works, and the numbers are those of results/demo.json and results/claims.json"
+    )
+    return 1 if found else 0

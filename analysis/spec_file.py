@@ -1,0 +1,83 @@
+"""The one reader of specs: JSON files of what to run and to judge (claims, gap maps, Pareto sweeps, stress
+tests, sets of gates, the corpus of matrices), held against their JSON Schema in configs/schema/. What no
+schema can say, a reader checks after it.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+
+from jsonschema import Draft202012Validator, validators
+from jsonschema.exceptions import ValidationError
+
+from .errors import UserError
+from .program import read_object
+
+# An integer is written as one: 2.0 is none.
+_Validator = validators.extend(
+    Draft202012Validator,
+    type_checker=Draft202012Validator.TYPE_CHECKER.redefine(
+        "integer", lambda _, value: isinstance(value, int) and not isinstance(value, bool)
+    ),
+)
+SCHEMAS = Path(__file__).resolve().parents[1] / "configs/schema"
+
+
+@cache
+def _validator(kind: str) -> Draft202012Validator:
+    return _Validator(json.loads((SCHEMAS / f"{kind}.schema.json").read_text()))
+
+
+def _order(error: ValidationError) -> tuple:
+    """Of what a reader hears first: another schema, a key that is missing, an unknown one, a value."""
+    keywords = ("const", "required", "additionalProperties")
+    rank = keywords.index(error.validator) if error.validator in keywords else len(keywords)
+    return (len(error.absolute_path) > 1, rank, [str(part) for part in error.absolute_path])
+
+
+def _words(error: ValidationError) -> str:
+    """What is allowed at the place of an error: the `$comment` of its schema, or the rule itself."""
+    if "$comment" in error.schema:
+        return error.schema["$comment"]
+    if error.validator == "const":
+        return repr(error.validator_value)
+    if error.validator == "enum":
+        return f"one of {', '.join(map(str, error.validator_value))}"
+    return f"{error.validator} {error.validator_value}"
+
+
+def _fault(error: ValidationError) -> str:
+    """Place, what was found there and what is allowed."""
+    place = "/".join(map(str, error.absolute_path))
+    below = f"{place}/" if place else ""
+    if error.validator == "required":
+        missing = next(key for key in error.validator_value if key not in error.instance)
+        return f"{below}{missing}: is missing"
+    if error.validator == "additionalProperties":
+        known = error.schema["properties"]
+        unknown = next(key for key in error.instance if key not in known)
+        return f"{below}{unknown}: unknown; allowed: {', '.join(known)}"
+    found = error.instance
+    return f"{place}: found {found!r}; {_words(error)} is needed"
+
+
+def read_spec(path: Path, kind: str) -> dict:
+    """A spec as its file has it. Errors: UserError with file and place: no JSON object, another schema, a key
+    that is missing or unknown, a value of another type or out of its range.
+    """
+    data = read_object(path)
+    if errors := sorted(_validator(kind).iter_errors(data), key=_order):
+        raise UserError(f"{path}#/{_fault(errors[0])}")
+    return data
+
+
+def require_base(data: dict, path: Path) -> Path:
+    """The config that a spec names, relative to its file. Errors: UserError where it is not there."""
+    base = data.get("base")
+    if not isinstance(base, str) or not (path.parent / base).is_file():
+        raise UserError(
+            f"{path}#/base: found {base!r}; the path of a config is needed, relative to this file"
+        )
+    return path.parent / base

@@ -1,0 +1,36 @@
+// A verb of the program: its row of verbs.inc, and the function of its own file that declares its options.
+#pragma once
+
+#include <functional>
+#include <vector>
+
+#include "experiments/cli/verbs.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace bb::cli {
+
+/// What a verb does once the command line is read; the exit code. Errors end in main.cpp.
+using Action = std::function<int(const CommonOptions&)>;
+
+/// Adds the options of a verb to its part of the command line.
+namespace verb {
+#define BB_VERB(name, group, doc, example) Action name(CLI::App& app);
+#include "experiments/cli/verbs.inc"
+#undef BB_VERB
+}  // namespace verb
+
+struct Verb {
+  const char* name;
+  const char* group;  // run, look, study, judge, make, develop
+  const char* doc;
+  const char* example;
+  Action (*declare)(CLI::App&);
+};
+
+/// In the order of verbs.inc.
+const std::vector<Verb>& verbs();
+
+}  // namespace bb::cli

@@ -1,0 +1,49 @@
+"""The Python of analysis/: formatted and without faults by ruff, no function longer than a screen, one package."""
+
+import ast
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+ANALYSIS = ROOT / "analysis"
+LONGEST = 60
+
+
+def ruff(*words: str) -> subprocess.CompletedProcess:
+    return subprocess.run([sys.executable, "-m", "ruff", *words, "--no-cache", str(ANALYSIS)], capture_output=True, text=True, check=False)
+
+
+@pytest.mark.parametrize("words", [("format", "--check"), ("check",)])
+def test_ruff_finds_nothing(words):
+    done = ruff(*words)
+    assert done.returncode == 0, done.stdout + done.stderr + "\n./bench format writes the form"
+
+
+def test_no_function_is_longer_than_a_screen():
+    long = []
+    for path in ANALYSIS.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.FunctionDef) and node.end_lineno - node.lineno + 1 > LONGEST:
+                long.append(f"{path.relative_to(ROOT)}: {node.name}")
+    assert not long
+
+
+def test_every_folder_of_python_is_part_of_the_package():
+    text = (ANALYSIS / "pyproject.toml").read_text()
+    folders = {path.parent.name for path in ANALYSIS.glob("*/__init__.py")}
+    assert set(re.findall(r'^    "barrierbench_analysis\.(\w+)",$', text, re.MULTILINE)) == folders
+    assert set(re.findall(r'^"barrierbench_analysis\.(\w+)" = "\1"$', text, re.MULTILINE)) == folders
+
+
+def test_users_see_one_kind_of_error():
+    """Other exceptions are a mistake of this code, or are caught where something is decided by them."""
+    classes = {}
+    for path in ANALYSIS.rglob("*.py"):
+        for node in ast.walk(ast.parse(path.read_text())):
+            if isinstance(node, ast.ClassDef) and any(isinstance(base, ast.Name) and base.id.endswith(("Error", "Exception")) for base in node.bases):
+                classes[node.name] = [base.id for base in node.bases]
+    assert classes == {"UserError": ["ValueError"], "RecordError": ["UserError"], "NoReference": ["ValueError"], "NotFinite": ["ValueError"], "NoHistory": ["Exception"]}
