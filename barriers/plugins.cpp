@@ -35,12 +35,12 @@ void check_names(const std::string& file, const char* kind, const Registry<Known
 Plugin register_plugin(const std::string& file) {
   Plugin plugin = load_plugin(file);
   std::vector<Violation> wrong;
-  check_names(file, "shape", shapes(), plugin.shapes, wrong);
+  check_names(file, "shape", all_shapes(), plugin.shapes, wrong);
   check_names(file, "stiffness policy", stiffness_policies(), plugin.policies, wrong);
   check_names(file, "integrator", integrators(), plugin.integrators, wrong);
   if (!wrong.empty()) throw ConfigError(std::move(wrong));
 
-  for (const Shape& shape : plugin.shapes) shapes().add(shape, file);
+  for (const Shape& shape : plugin.shapes) all_shapes().add(shape, file);
   for (const PluginPolicy& policy : plugin.policies) {
     const auto make = [policy](const StiffnessPolicyConfig& config) {
       return policy.make(require_refresh(text(config.parameters, "refresh")), config.multiplier);

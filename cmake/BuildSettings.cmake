@@ -11,6 +11,10 @@ if(NOT CMAKE_CXX_FLAGS_DEBUG MATCHES "-O")
   set(CMAKE_CXX_FLAGS_DEBUG "-O0 -g1")
 endif()
 
+# With CMAKE_UNITY_BUILD (presets release and cuda-compile) the compiler reads up to so many files of a target at once: most of its
+# time goes into headers.
+set(CMAKE_UNITY_BUILD_BATCH_SIZE 12)
+
 find_program(BB_CCACHE ccache)
 if(BB_CCACHE)
   set(CMAKE_C_COMPILER_LAUNCHER "${BB_CCACHE}")

@@ -55,10 +55,7 @@ function(bb_plain_rooms name)
   add_library(${name} OBJECT ${sources})
   set_target_properties(${name} PROPERTIES BB_PLAIN_ROOMS "${rooms}")
   target_link_libraries(${name} PUBLIC bb_settings Eigen3::Eigen ${libraries})
-  # Many files at once: most of the time goes into headers. A shape lies in namespace shapes, the registry is shapes().
-  set(alone ${sources})
-  list(FILTER alone INCLUDE REGEX "/shapes/")
-  set_source_files_properties(${alone} PROPERTIES SKIP_UNITY_BUILD_INCLUSION ON)
+  # Many files at once: most of the time goes into headers.
   set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 14)
   # The optimiser's first level: no bit depends on it, and it takes less time to compile.
   target_compile_options(${name} PUBLIC ${BB_PLAIN_OPTIONS} PRIVATE -O1)

@@ -69,6 +69,9 @@ function(bb_room name)
   endif()
 endfunction()
 
+# Rooms whose tests are compiled many files at once where CMAKE_UNITY_BUILD is on: no two of their files share a name.
+set(BB_JOINED_TESTS exec input math parameters)
+
 # bb_test(NAME SOURCES ... [DEPS ...]): executable test_NAME whose cases ctest knows one by one.
 function(bb_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
@@ -76,5 +79,8 @@ function(bb_test name)
   target_link_libraries(test_${name} PRIVATE bb_pch ${ARG_DEPS} GTest::gtest GTest::gtest_main)
   target_precompile_headers(test_${name} REUSE_FROM bb_pch)
   target_include_directories(test_${name} PRIVATE "${PROJECT_BINARY_DIR}/generated")
+  if(NOT name IN_LIST BB_JOINED_TESTS)
+    set_target_properties(test_${name} PROPERTIES UNITY_BUILD OFF)
+  endif()
   gtest_discover_tests(test_${name} DISCOVERY_MODE PRE_TEST PROPERTIES TIMEOUT 600)
 endfunction()

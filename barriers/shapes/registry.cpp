@@ -16,7 +16,7 @@ namespace bb {
 #include "barriers/shapes/registry.inc"
 #undef ENTRY
 
-Registry<Shape>& shapes() {
+Registry<Shape>& all_shapes() {
 #define ENTRY(name, doc) make_shape_##name(#name, doc),
   static Registry<Shape> all({
 #include "barriers/shapes/registry.inc"
@@ -51,19 +51,19 @@ std::optional<double> number_in_text(std::string_view text) {
 }  // namespace
 
 std::vector<std::string> shape_names() {
-  std::vector<std::string> names = shapes().names();
+  std::vector<std::string> names = all_shapes().names();
   for (const ShapeFamily* family : families()) names.push_back(std::string(family->name) + ":A");
   return names;
 }
 
 Shape require_shape(std::string_view name, std::string_view where) {
-  if (const Shape* shape = shapes().find(name)) return *shape;
+  if (const Shape* shape = all_shapes().find(name)) return *shape;
   for (const ShapeFamily* family : families()) {
     const std::size_t colon = family->name.size();
     if (!name.starts_with(family->name) || name.size() == colon || name[colon] != ':') continue;
     const std::optional<double> a = number_in_text(name.substr(colon + 1));
     if (a && *a >= family->least && *a <= family->most) {
-      return family->member(shapes().require(family->name, where), name, *a);
+      return family->member(all_shapes().require(family->name, where), name, *a);
     }
     throw ConfigError(std::string(where), fmt::format("\"{}\"", name),
                       fmt::format("{}:A with an exponent A from {:g} to {:g}, {:g} without one", family->name,
@@ -82,7 +82,7 @@ std::optional<Shape> find_shape(std::string_view name) {
 
 std::string shapes_with_potential() {
   std::string names;
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     if (has_potential({shape, Argument::gap})) names += (names.empty() ? "" : ", ") + shape.name;
   }
   return names;

@@ -12,9 +12,9 @@
 namespace bb {
 
 /// All shapes, built-ins first, in the order of registry.inc. Host only.
-Registry<Shape>& shapes();
+Registry<Shape>& all_shapes();
 
-/// Every name that a shape can be asked by, for messages and help: those of shapes(), then NAME:A for each that has an
+/// Every name that a shape can be asked by, for messages and help: those of all_shapes(), then NAME:A for each that has an
 /// exponent.
 std::vector<std::string> shape_names();
 

@@ -10,7 +10,7 @@
 namespace bb::audit {
 namespace {
 
-constexpr int max_spans = 4000;
+constexpr int max_motion_spans = 4000;
 constexpr int max_exact_tests = 200;       // of rationals, some tens of microseconds each
 constexpr double smallest_move = 0x1p-49;  // a span that moves less of the reach is left to the rationals
 
@@ -41,7 +41,7 @@ class PastObstacle {
     stack[top++] = TimeSpan{};
     bool doubt = false;
     for (int spans = 0; top > 0; ++spans) {
-      if (spans == max_spans || exact_tests_ >= max_exact_tests) return Verdict::unproven;
+      if (spans == max_motion_spans || exact_tests_ >= max_exact_tests) return Verdict::unproven;
       const TimeSpan span = stack[--top];
       const Vec3d m = middle_direction(span);
       if (separates(m, span)) continue;

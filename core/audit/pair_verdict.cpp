@@ -10,7 +10,7 @@ namespace bb::audit {
 namespace {
 
 // A pair in lasting contact would be split for ever; a proper pair needs some tens of spans.
-constexpr int max_spans = 2000;
+constexpr int max_pair_spans = 2000;
 // The same for spans tried by integers, which cost some tens of microseconds each.
 constexpr int max_exact_spans = 200;
 // A span in which nothing moves by more than this part of the pair's size is left to the integers: the
@@ -36,7 +36,7 @@ class Bisection {
     bool doubt = false;
     int exact_spans = 0;
     for (int spans = 0; top > 0; ++spans) {
-      if (spans == max_spans || exact_spans == max_exact_spans) return Verdict::unproven;
+      if (spans == max_pair_spans || exact_spans == max_exact_spans) return Verdict::unproven;
       const TimeSpan span = stack[--top];
       if (polygon_.any_separates(span)) continue;
       const double moved = speed_ * span.length();

@@ -81,7 +81,7 @@ struct Section {
 
 const std::vector<Section>& sections() {
   static const std::vector<Section> list = {
-      {"shapes", [] { print_entries("shapes", shapes()); }},
+      {"shapes", [] { print_entries("shapes", all_shapes()); }},
       {"policies",
        [] {
          print_entries("policies (/formulation/stiffness_policy)", stiffness_policies());

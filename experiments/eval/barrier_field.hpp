@@ -11,13 +11,13 @@ namespace bb::eval {
 inline Shape shape_field(Query& q) {
   const bool fine = !q.wrong();
   const std::string name = q.word("shape");
-  if (q.wrong() && fine) return shapes().front();
+  if (q.wrong() && fine) return all_shapes().front();
   try {
     return require_shape(name, "/shape");
   } catch (const ConfigError& error) {
     const Violation& v = error.violations().front();
     q.complain("shape", v.found, v.allowed);
-    return shapes().front();
+    return all_shapes().front();
   }
 }
 

@@ -11,7 +11,7 @@
 namespace bb::bench {
 namespace {
 
-constexpr std::size_t kQueries = 1024;
+constexpr std::size_t kMotions = 1024;
 
 enum class Motion { hitting, missing, sliding };
 constexpr const char* kMotionNames[] = {"hitting", "missing", "sliding"};
@@ -44,7 +44,7 @@ std::vector<Query<T>> make_queries(Motion motion, T park) {
   std::mt19937_64 random(1);
   std::uniform_real_distribution<T> unit(T(-1), T(1));
   const T gap = motion == Motion::sliding ? 100 * park : T(0.01);
-  std::vector<Query<T>> queries(kQueries);
+  std::vector<Query<T>> queries(kMotions);
   for (Query<T>& q : queries) {
     q.x0 = resting_pair<K, T>(gap);
     Mat<T, 3, 4> drift = Mat<T, 3, 4>::Zero();
@@ -61,40 +61,40 @@ std::vector<Query<T>> make_queries(Motion motion, T park) {
 }
 
 template <PairKind K, class T>
-void query(benchmark::State& state, Motion motion) {
+void accd(benchmark::State& state, Motion motion) {
   const T park = std::is_same_v<T, float> ? T(1e-5) : T(1e-8);
   const std::vector<Query<T>> queries = make_queries<K, T>(motion, park);
   long long probes = 0, hits = 0;
   for (auto _ : state) {
     probes = hits = 0;
     for (const Query<T>& q : queries) {
-      const AccdResult<T> result = accd<K, T>(q.x0, q.x1, T(0), park);
+      const AccdResult<T> result = bb::accd<K, T>(q.x0, q.x1, T(0), park);
       probes += result.probes;
       hits += result.hit;
     }
     benchmark::DoNotOptimize(probes);
   }
-  const long long expected = motion == Motion::hitting ? static_cast<long long>(kQueries) : 0;
+  const long long expected = motion == Motion::hitting ? static_cast<long long>(kMotions) : 0;
   if (hits != expected) state.SkipWithError("another number of hits than the motion is made for");
-  count_items(state, kQueries);
-  state.counters["probes"] = static_cast<double>(probes) / static_cast<double>(kQueries);
+  count_items(state, kMotions);
+  state.counters["probes"] = static_cast<double>(probes) / static_cast<double>(kMotions);
 }
 
 template <PairKind K>
-void register_kind() {
+void register_motions() {
   for (const Motion motion : {Motion::hitting, Motion::missing, Motion::sliding}) {
     const std::string name =
         std::string("accd/") + pair_name(K) + "/" + kMotionNames[static_cast<int>(motion)];
-    add(name + "/double", [motion](benchmark::State& state) { query<K, double>(state, motion); });
-    add(name + "/float", [motion](benchmark::State& state) { query<K, float>(state, motion); });
+    add(name + "/double", [motion](benchmark::State& state) { accd<K, double>(state, motion); });
+    add(name + "/float", [motion](benchmark::State& state) { accd<K, float>(state, motion); });
   }
 }
 
 }  // namespace
 
 void register_accd() {
-  register_kind<PairKind::point_triangle>();
-  register_kind<PairKind::edge_edge>();
+  register_motions<PairKind::point_triangle>();
+  register_motions<PairKind::edge_edge>();
 }
 
 }  // namespace bb::bench

@@ -47,7 +47,7 @@ void refit(benchmark::State& state) {
   count_items(state, stack.boxes.size());
 }
 
-void query(benchmark::State& state) {
+void tree_query(benchmark::State& state) {
   const Stack stack;
   Bvh bvh;
   bvh.update(stack.boxes, stack.surface.edges.free);
@@ -81,7 +81,7 @@ void update(benchmark::State& state) {
 void register_broad_phase() {
   add("broad_phase/build", build);
   add("broad_phase/refit", refit);
-  add("broad_phase/query", query);
+  add("broad_phase/query", tree_query);
   add("broad_phase/update", update);
 }
 

@@ -8,14 +8,14 @@
 namespace bb::bench {
 namespace {
 
-constexpr std::size_t kQueries = 1024;
+constexpr std::size_t kPairs = 1024;
 
 template <PairKind K, class T>
-void query(benchmark::State& state) {
+void closest_points_of(benchmark::State& state) {
   using Points = Mat<T, 3, pair_points(K)>;
   std::mt19937_64 random(1);
   std::uniform_real_distribution<T> unit(T(-1), T(1));
-  std::vector<Points> pairs(kQueries);
+  std::vector<Points> pairs(kPairs);
   for (Points& points : pairs) {
     for (Eigen::Index i = 0; i < points.size(); ++i) points.data()[i] = unit(random);
   }
@@ -24,23 +24,23 @@ void query(benchmark::State& state) {
     for (const Points& points : pairs) sum += closest_points<K, T>(points).d;
     benchmark::DoNotOptimize(sum);
   }
-  count_items(state, kQueries);
+  count_items(state, kPairs);
 }
 
 template <PairKind K>
-void register_kind() {
+void register_pairs() {
   const std::string name = std::string("closest_points/") + pair_name(K);
-  add(name + "/double", query<K, double>);
-  add(name + "/float", query<K, float>);
+  add(name + "/double", closest_points_of<K, double>);
+  add(name + "/float", closest_points_of<K, float>);
 }
 
 }  // namespace
 
 void register_closest_points() {
-  register_kind<PairKind::point_point>();
-  register_kind<PairKind::point_edge>();
-  register_kind<PairKind::point_triangle>();
-  register_kind<PairKind::edge_edge>();
+  register_pairs<PairKind::point_point>();
+  register_pairs<PairKind::point_edge>();
+  register_pairs<PairKind::point_triangle>();
+  register_pairs<PairKind::edge_edge>();
 }
 
 }  // namespace bb::bench

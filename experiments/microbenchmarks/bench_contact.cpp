@@ -24,7 +24,7 @@ struct Contacts {
   Contacts() {
     system.update_candidates(scene.x0, scene.x0);
     system.find_rows(scene.x0, rows, mollified);
-    const BarrierFunction barrier{shapes().front(), Argument::gap};
+    const BarrierFunction barrier{all_shapes().front(), Argument::gap};
     evaluate(barrier, rows);
     evaluate(barrier, mollified);
   }
@@ -51,7 +51,7 @@ void find_rows(benchmark::State& state) {
   state.counters["mollified"] = static_cast<double>(contacts.mollified.size());
 }
 
-void step_bound(benchmark::State& state) {
+void contact_bound(benchmark::State& state) {
   Contacts contacts;
   const Positions& x0 = contacts.scene.x0;
   const Positions x1 = moved(x0, 2e-3, 2);
@@ -65,7 +65,7 @@ void step_bound(benchmark::State& state) {
   state.counters["accd_queries"] = static_cast<double>(queries);
 }
 
-void value(benchmark::State& state) {
+void contact_value(benchmark::State& state) {
   Contacts contacts;
   for (auto _ : state) {
     contact_energies(contacts.rows, contacts.energy);
@@ -119,7 +119,7 @@ void mollified_gradient_and_hessian(benchmark::State& state) {
   count_items(state, contacts.mollified.size());
 }
 
-void assemble(benchmark::State& state) {
+void contact_assembly(benchmark::State& state) {
   Contacts contacts;
   const int n = contacts.scene.n_vertices();
   contact_terms(contacts.rows, contacts.scene.x0, HessianMode::gauss_newton, Projection::psd, contacts.grad,
@@ -142,8 +142,8 @@ void assemble(benchmark::State& state) {
 
 void register_contact() {
   add("contact/find_rows", find_rows);
-  add("contact/step_bound", step_bound);
-  add("contact/value", value);
+  add("contact/step_bound", contact_bound);
+  add("contact/value", contact_value);
   for (const auto& [mode, word] : words_of(HessianMode())) {
     add("contact/gradient_and_hessian/" + word,
         [mode](benchmark::State& state) { gradient_and_hessian(state, mode); });
@@ -152,7 +152,7 @@ void register_contact() {
   }
   add("contact/mollified/value", mollified_value);
   add("contact/mollified/gradient_and_hessian", mollified_gradient_and_hessian);
-  add("contact/assembly", assemble);
+  add("contact/assembly", contact_assembly);
 }
 
 }  // namespace bb::bench

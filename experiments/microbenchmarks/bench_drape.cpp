@@ -92,7 +92,7 @@ void broad_phase(benchmark::State& state) {
       static_cast<double>(counts.point_triangle + counts.edge_edge + counts.obstacle);
 }
 
-void step_bound(benchmark::State& state) {
+void drape_bound(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   drape.system().prepare(drape.x1, drape.dx);
   IterateNumbers report;
@@ -101,7 +101,7 @@ void step_bound(benchmark::State& state) {
   state.counters["probes"] = static_cast<double>(report.bound.probes);
 }
 
-void strain_bound(benchmark::State& state) {
+void drape_strain_bound(benchmark::State& state) {
   DrapeState& drape = drape_of(state);
   IterateNumbers report;
   measure(state, drape, [&] { bound_of<StrainLimitTerm>(drape, report); });
@@ -153,8 +153,8 @@ void register_drape() {
   sizes(add("drape/triangular_solve", triangular_solve));
   sizes(add("drape/assembly", assembly));
   sizes(add("drape/broad_phase", broad_phase));
-  sizes(add("drape/step_bound", step_bound));
-  sizes(add("drape/strain_bound", strain_bound));
+  sizes(add("drape/step_bound", drape_bound));
+  sizes(add("drape/strain_bound", drape_strain_bound));
   sizes(add("drape/energy_evaluation", energy_evaluation));
   sizes(add("drape/newton_iteration", newton_iteration))->Iterations(1);
 }

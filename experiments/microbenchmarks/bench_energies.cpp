@@ -57,7 +57,7 @@ void strain_limit(benchmark::State& state, bool with_derivatives) {
   const Sheet sheet;
   const StrainLimitPart& part = sheet.scene.limit;
   StrainLimitBatch batch(part.triangles, sheet.scene.rest, part.onset, part.width);
-  const BarrierFunction barrier{shapes().front(), Argument::gap};
+  const BarrierFunction barrier{all_shapes().front(), Argument::gap};
   const std::vector<double> kappa(batch.size(), 1.0);
   LocalTerms terms;
   terms.resize(batch.size(), 3);

@@ -30,7 +30,7 @@ void set_contacts(benchmark::State& state) {
   state.counters["contacts"] = static_cast<double>(cloth.contacts_a.stencils().size());
 }
 
-void assemble(benchmark::State& state) {
+void assemble_cloth(benchmark::State& state) {
   const Cloth cloth(static_cast<int>(state.range(0)));
   const auto s = cloth.system();
   s->set_contacts({cloth.contacts_a.stencils()});
@@ -95,7 +95,7 @@ void register_sizes(const std::string& name, void (*run)(benchmark::State&)) {
 void register_linear() {
   register_sizes("linear/set_elements", set_elements);
   register_sizes("linear/set_contacts", set_contacts);
-  register_sizes("linear/assemble", assemble);
+  register_sizes("linear/assemble", assemble_cloth);
   register_sizes("linear/cholmod_analyze_and_factorize", cholmod_analyze_and_factorize);
   register_sizes("linear/cholmod_refactorize", cholmod_refactorize);
   for (const LinearSolverEntry& solver : linear_solvers()) {

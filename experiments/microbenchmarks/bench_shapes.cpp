@@ -27,7 +27,7 @@ void evaluate(benchmark::State& state, const BarrierFunction& barrier) {
 }  // namespace
 
 void register_shapes() {
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
       const BarrierFunction barrier{shape, argument};
       const std::string name = "shape/" + shape.name + "/" + std::string(to_string(argument));

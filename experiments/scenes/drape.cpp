@@ -56,7 +56,7 @@ void add_sphere(SceneBuilder& builder, const ParameterMap& p, const SceneContext
   }
 }
 
-Scene build(const ParameterMap& p, const SceneContext& context) {
+Scene build_drape(const ParameterMap& p, const SceneContext& context) {
   SceneBuilder builder("drape", false, Vec3d(0, 0, -number(p, "gravity_m_per_s2")), "scene drape");
   add_layers(builder, p, context);
   add_sphere(builder, p, context);
@@ -68,7 +68,7 @@ Scene build(const ParameterMap& p, const SceneContext& context) {
 ProceduralScene make_scene_drape() {
   ProceduralScene scene;
   scene.defaults = {0.01, 100, 5e-3, 0.02};
-  scene.build = build;
+  scene.build = build_drape;
   scene.parameters = {
       {"layers", count(1, 100), 5, "number of cloths"},
       {"n", count(2, 1000), 16, "vertices along a side of each cloth"},

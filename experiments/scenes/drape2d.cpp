@@ -26,7 +26,7 @@ Material material_of(const ParameterMap& p, const SceneContext& context) {
   return material;
 }
 
-Scene build(const ParameterMap& p, const SceneContext& context) {
+Scene build_drape2d(const ParameterMap& p, const SceneContext& context) {
   const std::string& variant = text(p, "variant");
   const Layout layout = layout_of(variant, integer(p, "n"));
   const double width = number(p, "width_m"), radius = number(p, "disk_radius_m");
@@ -62,7 +62,7 @@ ProceduralScene make_scene_drape2d() {
   ProceduralScene scene;
   scene.planar = true;
   scene.defaults = {0.01, 40, 0.01, 0.02};
-  scene.build = build;
+  scene.build = build_drape2d;
   scene.parameters = {
       {"variant", word({"pinned", "free", "strip", "stack"}), "pinned",
        "n x n with its top row held, n x n free, 3n x 3 draped over the disk, three 2n x 2 sheets"},

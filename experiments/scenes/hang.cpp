@@ -5,7 +5,7 @@
 namespace bb {
 namespace {
 
-Scene build(const ParameterMap& p, const SceneContext& context) {
+Scene build_hang(const ParameterMap& p, const SceneContext& context) {
   const int n = integer(p, "n");
   const double width = number(p, "width_m");
   SceneBuilder builder("hang", false, Vec3d(0, 0, -number(p, "gravity_m_per_s2")), "scene hang");
@@ -24,7 +24,7 @@ Scene build(const ParameterMap& p, const SceneContext& context) {
 ProceduralScene make_scene_hang() {
   ProceduralScene scene;
   scene.defaults = {0.01, 100, 5e-3, 0.05};
-  scene.build = build;
+  scene.build = build_hang;
   scene.parameters = {
       {"n", count(2, 1000), 16, "vertices along a side"},
       {"width_m", positive("m"), 1, "side of the cloth"},

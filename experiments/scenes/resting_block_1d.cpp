@@ -21,7 +21,7 @@ TriangleMesh equilateral_triangle(double height) {
   return mesh;
 }
 
-Scene build(const ParameterMap& p, const SceneContext& context) {
+Scene build_resting_block_1d(const ParameterMap& p, const SceneContext& context) {
   SceneBuilder builder("resting_block_1d", false, Vec3d(0, 0, -number(p, "gravity_m_per_s2")),
                        "scene resting_block_1d");
   BodySpec block;
@@ -47,7 +47,7 @@ double resting_block_load(const ParameterMap& p) {
 ProceduralScene make_scene_resting_block_1d() {
   ProceduralScene scene;
   scene.defaults = {0.01, 200, 0.01, std::nullopt};
-  scene.build = build;
+  scene.build = build_resting_block_1d;
   scene.parameters = {
       {"mass_kg", positive("kg"), 0.3, "mass of the block"},
       {"youngs_N_per_m", positive("N/m"), 100, "Young's modulus times thickness; never strained"},

@@ -36,7 +36,7 @@ BodySpec make_sphere(const ParameterMap& p, const SceneContext& context) {
   return sphere;
 }
 
-Scene build(const ParameterMap& p, const SceneContext& context) {
+Scene build_sphere_on_sheet(const ParameterMap& p, const SceneContext& context) {
   SceneBuilder builder("sphere_on_sheet", false, Vec3d(0, 0, -number(p, "gravity_m_per_s2")),
                        "scene sphere_on_sheet");
   builder.add_body(make_sheet(p, context));
@@ -49,7 +49,7 @@ Scene build(const ParameterMap& p, const SceneContext& context) {
 ProceduralScene make_scene_sphere_on_sheet() {
   ProceduralScene scene;
   scene.defaults = {0.01, 50, 5e-3, 0.05};
-  scene.build = build;
+  scene.build = build_sphere_on_sheet;
   scene.parameters = {
       {"n", count(3, 1000), 17, "vertices along a side of the sheet"},
       {"width_m", positive("m"), 1, "side of the sheet"},

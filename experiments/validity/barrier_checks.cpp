@@ -12,7 +12,7 @@ namespace bb {
 // |b'|, |b''| at d and at d/2, and of |b'|/d_hat, since b' vanishes at d_hat and b'' everywhere on a straight line.
 void check_shape_derivatives(BlockCheck& check) {
   constexpr double d_hat = 0.01;
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
       const BarrierFunction barrier{shape, argument};
       for (const double u : {0.05, 0.2, 0.4, 0.6, 0.8, 0.95}) {

@@ -17,17 +17,17 @@ constexpr int n_vertices = 60;
 /// 2 + shift - 2 cos(k pi/(n + 1)), k = 1 .. n, each three times.
 ReducedSystem chain(double shift) {
   ReducedSystem out;
-  std::vector<Eigen::Triplet<double>> entries;
+  std::vector<Eigen::Triplet<double>> triplets;
   for (int v = 0; v < n_vertices; ++v) {
     for (int c = 0; c < 3; ++c) {
-      entries.emplace_back(3 * v + c, 3 * v + c, 2 + shift);
-      if (v > 0) entries.emplace_back(3 * v + c, 3 * (v - 1) + c, -1);
+      triplets.emplace_back(3 * v + c, 3 * v + c, 2 + shift);
+      if (v > 0) triplets.emplace_back(3 * v + c, 3 * (v - 1) + c, -1);
     }
     out.block_start.push_back(3 * v);
   }
   out.block_start.push_back(3 * n_vertices);
   out.lower.resize(3 * n_vertices, 3 * n_vertices);
-  out.lower.setFromTriplets(entries.begin(), entries.end());
+  out.lower.setFromTriplets(triplets.begin(), triplets.end());
   return out;
 }
 

@@ -50,7 +50,7 @@ Vec3d momentum(const Scene& scene, const Positions& v) {
 }  // namespace
 
 void check_resting_block(BlockCheck& check) {
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     if (shape.self) continue;  // of a plugin: it may have no rest
     SmallScene small(block, {"/formulation/shape=" + shape.name});
     Simulation simulation(small.scene, small.method, small.config.time.dt, small.config.time.steps);

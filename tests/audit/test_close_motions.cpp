@@ -5,7 +5,7 @@
 #include "core/audit/motion_audit.hpp"
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::audit {
+namespace bb::audit::close_motions_test {
 namespace {
 
 using test::CloseBodies;
@@ -95,4 +95,4 @@ TEST(CloseMotions, AreCertifiedWhereAndOnlyWhereTheyStayFree) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::close_motions_test

@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace bb::audit {
+namespace bb::audit::exact_polygon_test {
 namespace {
 
 using Long = std::int64_t;
@@ -186,4 +186,4 @@ TEST(ExactPolygon, NothingIsBothSeparatedAndPassing) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::exact_polygon_test

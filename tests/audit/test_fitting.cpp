@@ -7,7 +7,7 @@
 
 #include "core/audit/audit.hpp"
 
-namespace bb::audit {
+namespace bb::audit::fitting_test {
 namespace {
 
 struct Body {
@@ -158,4 +158,4 @@ TEST(Fitting, ALineThatEndsInTheSquareIsACrossing) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::fitting_test

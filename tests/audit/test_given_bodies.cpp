@@ -6,7 +6,7 @@
 
 #include "core/audit/audit.hpp"
 
-namespace bb::audit {
+namespace bb::audit::given_bodies_test {
 namespace {
 
 constexpr double tolerance = 1e-9;
@@ -162,4 +162,4 @@ TEST(GivenBodies, OneFreeVertexOfAPairMakesItTheSolvers) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::given_bodies_test

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <random>
 
-namespace bb::audit {
+namespace bb::audit::obstacle_sign_test {
 namespace {
 
 AuditObstacle sphere(const Vec3d& centre, double radius, bool inside) {
@@ -84,4 +84,4 @@ TEST(ObstacleHit, agrees_with_the_distance_of_the_chord_on_random_chords) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::obstacle_sign_test

@@ -10,7 +10,7 @@
 #include "core/audit/obstacle_motion.hpp"
 #include "core/audit/obstacle_sign.hpp"
 
-namespace bb::audit {
+namespace bb::audit::obstacle_surface_test {
 namespace {
 
 using Triangle = std::array<Vec3d, 3>;
@@ -279,4 +279,4 @@ TEST(PastObstacle, exact_ends_and_a_mere_touch) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::obstacle_surface_test

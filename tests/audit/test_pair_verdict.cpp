@@ -10,7 +10,7 @@
 #include "core/audit/exact_polygon.hpp"
 #include "core/audit/segment_triangle.hpp"
 
-namespace bb::audit {
+namespace bb::audit::pair_verdict_test {
 namespace {
 
 constexpr double tolerance = 1e-9;
@@ -172,4 +172,4 @@ TEST(PairVerdict, every_planted_hit_is_a_violation) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::pair_verdict_test

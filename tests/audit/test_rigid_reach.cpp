@@ -7,7 +7,7 @@
 
 #include "core/audit/audit.hpp"
 
-namespace bb::audit {
+namespace bb::audit::rigid_reach_test {
 namespace {
 
 constexpr double tolerance = 1e-9;
@@ -88,4 +88,4 @@ TEST(RigidReach, what_is_found_between_bodies_is_what_is_found_without_them) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::rigid_reach_test

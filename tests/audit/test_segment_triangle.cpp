@@ -6,7 +6,7 @@
 
 #include <random>
 
-namespace bb::audit {
+namespace bb::audit::segment_triangle_test {
 namespace {
 
 constexpr Crossing none = Crossing::none, touch = Crossing::touch, crossing = Crossing::crossing;
@@ -79,4 +79,4 @@ TEST(SegmentSegment2d, classes) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::segment_triangle_test

@@ -8,7 +8,7 @@
 
 #include "core/audit/audit.hpp"
 
-namespace bb::audit {
+namespace bb::audit::touch_test {
 namespace {
 
 struct Surface {
@@ -223,4 +223,4 @@ TEST(Touch, planar_lines_that_cross_at_a_vertex) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::touch_test

@@ -12,7 +12,7 @@
 #include "tests/audit/small_scenes.hpp"
 #include "tests/contact/true_pairs.hpp"
 
-namespace bb::audit {
+namespace bb::audit::who_is_judged_test {
 namespace {
 
 constexpr double tolerance = 1e-9;
@@ -197,4 +197,4 @@ TEST(WhoIsJudged, TheGapToWhatIsGivenCounts) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::who_is_judged_test

@@ -12,7 +12,7 @@ namespace bb::test {
 
 inline std::vector<BarrierFunction> all_barriers() {
   std::vector<BarrierFunction> barriers;
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     barriers.push_back({shape, Argument::gap});
     barriers.push_back({shape, Argument::squared_gap});
   }

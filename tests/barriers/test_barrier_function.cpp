@@ -54,7 +54,7 @@ TEST(BarrierFunction, FloatIsTheDoubleFormulaInFloat) {
 /// b(d) = f(d^2; d_hat^2)/d_hat^2 with f the shape's own formula, for every shape.
 TEST(BarrierFunction, SquaredGapIsTheShapeOfTheSquare) {
   const double d_hat = 0.05;
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     const BarrierFunction plain{shape, Argument::gap}, squared{shape, Argument::squared_gap};
     for (const double u : {0.01, 0.3, 0.7, 0.99}) {
       const double d = u * d_hat;

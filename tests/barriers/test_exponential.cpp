@@ -5,7 +5,7 @@
 #include "core/math/error.hpp"
 #include "tests/barriers/barrier_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::exponential_test {
 namespace {
 
 using Real = long double;
@@ -134,7 +134,7 @@ TEST(Exponential, TheExponentIsPartOfTheName) {
     const float single = static_cast<float>(u);
     EXPECT_LT(relative(other.eval(single, 1.0F).db, other.eval(static_cast<double>(single), 1.0).db), 1e-5);
   }
-  EXPECT_EQ(shapes().find("exponential:8"), nullptr);  // no entry of its own
+  EXPECT_EQ(all_shapes().find("exponential:8"), nullptr);  // no entry of its own
 }
 
 TEST(Exponential, AnExponentThatIsNotAllowedIsNamed) {
@@ -160,4 +160,4 @@ TEST(Exponential, AnExponentThatIsNotAllowedIsNamed) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::exponential_test

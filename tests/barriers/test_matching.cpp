@@ -64,7 +64,7 @@ TEST(Matching, EqualForceRoundTrips) {
 }
 
 TEST(Matching, EqualCurvatureRoundTrips) {
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     const BarrierFunction fn{shape, Argument::gap};
     const double kappa = match_equal_curvature(fn, 1e-3, 250, 0.5);
     EXPECT_LT(relative(kappa * fn.eval(0.5e-3, 1e-3).d2b, 250), 1e-15) << shape.name;

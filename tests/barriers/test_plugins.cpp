@@ -150,15 +150,15 @@ TEST(Plugins, MissingSymbolAndOtherAbiAreRefused) {
 }
 
 TEST(Plugins, TakenNamesAreAllNamedAndNothingIsRegistered) {
-  const std::size_t n_shapes = shapes().size();
+  const std::size_t n_shapes = all_shapes().size();
   const std::string text = refusal(test_plugin("name_clash"));
   expect_in(text, test_plugin("name_clash") + ": found shape \"log\"");
   expect_in(text, "shape \"fresh_shape\"");  // given twice
   expect_in(text, "stiffness policy \"fixed\"");
   expect_in(text, "integrator \"bdf2\"");
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 3) << text;
-  EXPECT_EQ(shapes().size(), n_shapes);
-  EXPECT_EQ(shapes().find("fresh_shape"), nullptr);
+  EXPECT_EQ(all_shapes().size(), n_shapes);
+  EXPECT_EQ(all_shapes().find("fresh_shape"), nullptr);
 
   register_once(test_plugin("cubic_copy"));
   expect_in(refusal(test_plugin("cubic_copy")), "found shape \"cubic_copy\"");
@@ -169,7 +169,7 @@ TEST(Plugins, EntriesWithoutNameOrCallAreAllNamed) {
   expect_in(text, "shape \"half_a_shape\" with a NULL call");
   expect_in(text, "stiffness policy named \"\"");
   expect_in(text, "integrator named \"Theta\"");
-  EXPECT_EQ(shapes().find("half_a_shape"), nullptr);
+  EXPECT_EQ(all_shapes().find("half_a_shape"), nullptr);
 }
 
 }  // namespace

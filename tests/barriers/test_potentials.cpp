@@ -12,7 +12,7 @@
 #include "core/math/error.hpp"
 #include "tests/barriers/barrier_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::potentials_test {
 namespace {
 
 using Real = long double;
@@ -214,4 +214,4 @@ TEST(KappaDerivative, IsIncludedOnlyPerStepAndWhereKappaDependsOnTheGap) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::potentials_test

@@ -27,7 +27,7 @@ TEST(ShapeLimits, AreExactlyZeroFromDHatOn) {
 }
 
 TEST(ShapeLimits, SignsAreThoseOfARepulsiveConvexBarrier) {
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     const BarrierFunction fn{shape, Argument::gap};
     for (const double u : spaced_u(1e-12, 1e-12)) {
       const ShapeTerms<double> at = fn.eval(u, 1.0);
@@ -91,7 +91,7 @@ TEST(ShapeLimits, LimitAtContactIsAsDeclared) {
 }
 
 TEST(ShapeLimits, TinyGapsAreFiniteOrRightlyInfinite) {
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     const BarrierFunction fn{shape, Argument::gap};
     for (double u = 1e-300; u < 1e-140; u *= 1e10) {
       const ShapeTerms<double> at = fn.eval(u, 1.0);

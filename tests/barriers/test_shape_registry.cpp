@@ -18,18 +18,18 @@ std::string message(const std::function<void()>& call) {
 }
 
 TEST(ShapeRegistry, HoldsTheSixBuiltInsInOrder) {
-  const std::vector<std::string> names = shapes().names();
+  const std::vector<std::string> names = all_shapes().names();
   ASSERT_GE(names.size(), 6u);
   const std::vector<std::string> expected{"log",   "log_squared", "quadratic",
                                           "cubic", "two_stage",   "exponential"};
   EXPECT_TRUE(std::equal(expected.begin(), expected.end(), names.begin()));
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     EXPECT_FALSE(shape.doc.empty()) << shape.name;
     EXPECT_NE(shape.batch_double, nullptr) << shape.name;
     EXPECT_NE(shape.batch_float, nullptr) << shape.name;
-    EXPECT_EQ(shapes().find(shape.name), &shape);
+    EXPECT_EQ(all_shapes().find(shape.name), &shape);
   }
-  EXPECT_EQ(shapes().find("nothing"), nullptr);
+  EXPECT_EQ(all_shapes().find("nothing"), nullptr);
 }
 
 TEST(ShapeRegistry, UnknownNameGetsTheNamesAllowedAndTheNearest) {
@@ -44,10 +44,10 @@ TEST(ShapeRegistry, UnknownNameGetsTheNamesAllowedAndTheNearest) {
 
 TEST(ShapeRegistry, TakenNameIsRefused) {
   Shape shape = require_shape("log");
-  const std::size_t before = shapes().size();
-  const std::string text = message([&] { shapes().add(shape, "my.so"); });
+  const std::size_t before = all_shapes().size();
+  const std::string text = message([&] { all_shapes().add(shape, "my.so"); });
   EXPECT_NE(text.find("my.so: found \"log\""), std::string::npos) << text;
-  EXPECT_EQ(shapes().size(), before);
+  EXPECT_EQ(all_shapes().size(), before);
 }
 
 TEST(ShapeRegistry, ArgumentsByName) {

@@ -7,7 +7,7 @@
 
 #include "tests/barriers/barrier_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::shapes_test {
 namespace {
 
 constexpr double d_hat = 2.5e-3;
@@ -146,4 +146,4 @@ TEST(Shapes, MatchHandComputedValues) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::shapes_test

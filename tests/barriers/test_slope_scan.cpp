@@ -7,7 +7,7 @@
 
 #include "barriers/shapes/registry.hpp"
 
-namespace bb {
+namespace bb::slope_scan_test {
 namespace {
 
 constexpr double d_hat = 0.02;
@@ -42,4 +42,4 @@ TEST(MaxSlope, OfAnUnboundedShapeThereIsNone) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::slope_scan_test

@@ -7,7 +7,7 @@
 
 #include "tests/barriers/ipc_adaptive.hpp"
 
-namespace bb {
+namespace bb::stiffness_decisions_test {
 namespace {
 
 using test::balanced_at;
@@ -179,4 +179,4 @@ TEST(StiffnessDecisions, PartsAndNumberAreOneKappaAtEveryGap) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::stiffness_decisions_test

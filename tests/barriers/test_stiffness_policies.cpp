@@ -8,7 +8,7 @@
 #include "core/parameters/registry.hpp"
 #include "tests/barriers/ipc_adaptive.hpp"
 
-namespace bb {
+namespace bb::stiffness_policies_test {
 namespace {
 
 std::vector<double> filled(const StiffnessPolicy& policy, std::size_t n) {
@@ -165,4 +165,4 @@ TEST(PolicyNames, RoundTrip) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::stiffness_policies_test

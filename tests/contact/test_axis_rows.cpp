@@ -5,7 +5,7 @@
 #include "tests/contact/barrier_gradient.hpp"
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::axis_rows_test {
 namespace {
 
 /// An edge, half of d_hat from a bar far from the origin, at a small angle to it. Planar: the axis leans out of the
@@ -145,4 +145,4 @@ TEST(AxisRows, TheHessianIsTheChangeOfTheGradient) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::axis_rows_test

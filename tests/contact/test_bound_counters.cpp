@@ -3,7 +3,7 @@
 
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::bound_counters_test {
 namespace {
 
 struct Tally {
@@ -81,4 +81,4 @@ TEST(BoundCounters, OfAFreeMotionAfterAStoppedOneAreItsOwn) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::bound_counters_test

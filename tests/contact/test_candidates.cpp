@@ -7,7 +7,7 @@
 #include "core/contact/pair_row.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::candidates_test {
 namespace {
 
 Candidates candidates_of(const Scene& scene, const Positions& x0, const Positions& x1) {
@@ -220,4 +220,4 @@ TEST(Candidates, NothingToDoWithoutSurfaceOrWithoutFreeVertices) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::candidates_test

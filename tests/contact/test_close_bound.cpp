@@ -4,7 +4,7 @@
 
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::close_bound_test {
 namespace {
 
 /// Where a pair is stopped (docs/design.md, Step bound), m.
@@ -137,4 +137,4 @@ TEST(CloseBound, TheStartIsValidWhileTheLeastGapIsPositive) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::close_bound_test

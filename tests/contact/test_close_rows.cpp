@@ -4,7 +4,7 @@
 #include "core/geometry/edge_edge_mollifier.hpp"
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::close_rows_test {
 namespace {
 
 /// A pair that is nearer than its activation distance.
@@ -152,4 +152,4 @@ TEST(CloseRows, OfManyBodiesAreThoseOfAllPairs) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::close_rows_test

@@ -7,7 +7,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
-namespace bb::test {
+namespace bb::test::contact_terms_test {
 namespace {
 
 constexpr double kappa = 3.5;
@@ -272,4 +272,4 @@ TEST(MollifiedTerms, NoneWithoutTheMollifier) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::contact_terms_test

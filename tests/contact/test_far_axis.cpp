@@ -4,7 +4,7 @@
 
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::far_axis_test {
 namespace {
 
 /// A body beside a bar whose point is `far` along its axis, or beside a ball whose centre is so far away.
@@ -95,4 +95,4 @@ TEST(FarAxis, InFloatThatIsSoForAnyScene) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::far_axis_test

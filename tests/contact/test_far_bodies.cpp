@@ -8,7 +8,7 @@
 #include "core/contact/folded_axis.hpp"
 #include "tests/contact/far_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::far_bodies_test {
 namespace {
 
 std::size_t n_pairs(const ContactSystem::Counts& c) { return c.point_triangle + c.edge_edge; }
@@ -183,4 +183,4 @@ TEST(FoldedAxis, LeavesAScenesOwnSizeAlone) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::far_bodies_test

@@ -6,7 +6,7 @@
 #include "tests/contact/close_bodies.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
-namespace bb::test {
+namespace bb::test::given_motion_test {
 namespace {
 
 void evaluate_both(Rows& rows) {
@@ -113,4 +113,4 @@ TEST(GivenMotion, AddsTheHessianTimesTheMotionWhateverVerticesAreGiven) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::given_motion_test

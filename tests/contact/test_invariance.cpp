@@ -6,7 +6,7 @@
 
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::invariance_test {
 namespace {
 
 /// A scene, a motion of it, and what is found: alpha, all gaps with their numbers, B.
@@ -212,4 +212,4 @@ TEST(Invariance, UnderALongerMotionTheStateThatStopsIsTheSame) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::invariance_test

@@ -8,7 +8,7 @@
 #include "core/contact/pair_geometry.hpp"
 #include "tests/contact/rods.hpp"
 
-namespace bb::test {
+namespace bb::test::lone_edges_test {
 namespace {
 
 constexpr double reach = 0.01;
@@ -171,4 +171,4 @@ TEST(LoneEdges, OfScenesThatHaveNoneMakeNoPairs) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::lone_edges_test

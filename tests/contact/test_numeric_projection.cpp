@@ -10,7 +10,7 @@
 #include "core/math/lower_blocks.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
-namespace bb::test {
+namespace bb::test::numeric_projection_test {
 namespace {
 
 constexpr std::size_t n_numbers = n_lower_numbers(4);
@@ -92,4 +92,4 @@ TEST(NumericProjection, RefusesAModeThatIsNone) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::numeric_projection_test

@@ -6,7 +6,7 @@
 
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::pierced_test {
 namespace {
 
 /// Whether the axis crosses the inside of a triangle, by the weights of the crossing.
@@ -114,4 +114,4 @@ TEST(Pierced, TheAxisOfAnObstacleThatHoldsTheBodyIsFree) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::pierced_test

@@ -3,7 +3,7 @@
 
 #include "tests/contact/contact_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::rest_rule_test {
 namespace {
 
 constexpr double d_hat = 0.1;
@@ -39,4 +39,4 @@ TEST(RestRule, AGridAtRestHasNoRowsHoweverLargeDHatIs) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::rest_rule_test

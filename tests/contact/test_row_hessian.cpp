@@ -11,7 +11,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
-namespace bb::test {
+namespace bb::test::row_hessian_test {
 namespace {
 
 using Long = long double;
@@ -261,4 +261,4 @@ TEST(RowHessian, DependsOnNoOtherRowAndOnNoThread) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::row_hessian_test

@@ -6,7 +6,7 @@
 #include "core/contact/pair_geometry.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::rows_test {
 namespace {
 
 constexpr double d_hat = 0.1;
@@ -230,4 +230,4 @@ TEST(Rows, ObstaclesActOnFreeVerticesWithASignedGap) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::rows_test

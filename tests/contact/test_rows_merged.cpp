@@ -4,7 +4,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/contact/one_row.hpp"
 
-namespace bb::test {
+namespace bb::test::rows_merged_test {
 namespace {
 
 constexpr double d_hat = 0.1;
@@ -124,4 +124,4 @@ TEST(Rows, PlanarPointEdgeMergesAtACorner) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::rows_merged_test

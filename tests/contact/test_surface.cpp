@@ -8,7 +8,7 @@
 
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::surface_test {
 namespace {
 
 /// Triangles, edges and points at random on few vertices: fans, rods that begin or end on a sheet, lone vertices. Edges in
@@ -128,4 +128,4 @@ TEST(Surface, SaysWhatIsFreeAloneAndFilled) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::surface_test

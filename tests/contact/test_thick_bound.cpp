@@ -4,7 +4,7 @@
 
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::thick_bound_test {
 namespace {
 
 /// Two flat bodies over each other, across one axis, both of thickness, `gap` beyond it apart.
@@ -157,4 +157,4 @@ TEST(ThickBound, IsThatOfTheFirstOfManyThickPairs) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::thick_bound_test

@@ -4,7 +4,7 @@
 
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::thick_rest_test {
 namespace {
 
 /// One body of two pieces whose least gap at rest is `gap`: that of two bodies, called one.
@@ -98,4 +98,4 @@ TEST(ThickRest, AThickBodyAtRestDoesNotPress) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::thick_rest_test

@@ -6,7 +6,7 @@
 #include "core/energy/hinge.hpp"
 #include "tests/energy/energy_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::hinge_test {
 namespace {
 
 constexpr double stiffness = 0.7;
@@ -154,4 +154,4 @@ TEST(Hinge, FloatAgreesWithDouble) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::hinge_test

@@ -7,7 +7,7 @@
 
 #include "tests/energy/energy_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::membrane_test {
 namespace {
 
 constexpr double lame_mu = 3.0, lame_lambda = 2.0;
@@ -260,4 +260,4 @@ TEST(Membrane, FloatAgreesWithDouble) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::membrane_test

@@ -7,7 +7,7 @@
 #include "core/energy/membrane_model.hpp"
 #include "tests/energy/energy_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::membrane_model_test {
 namespace {
 
 constexpr double lame_mu = 3.0, lame_lambda = 2.0;
@@ -145,4 +145,4 @@ TEST(MembraneModel, FloatRunsTheSameFunction) {
 TEST(MembraneModel, UnknownNameIsNull) { EXPECT_EQ(membrane_models<double>().find("corotationel"), nullptr); }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::membrane_model_test

@@ -4,7 +4,7 @@
 #include "core/energy/spring.hpp"
 #include "tests/energy/energy_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::spring_test {
 namespace {
 
 constexpr double stiffness = 7.0;
@@ -61,4 +61,4 @@ TEST(Spring, CoincidentPointsGiveFiniteTerms) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::spring_test

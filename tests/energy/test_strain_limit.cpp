@@ -6,7 +6,7 @@
 #include "tests/energy/energy_cases.hpp"
 #include "tests/energy/strain_shapes.hpp"
 
-namespace bb::test {
+namespace bb::test::strain_limit_test {
 namespace {
 
 constexpr double kappa = 2.5;
@@ -197,4 +197,4 @@ TEST(StrainStiffness, MatchesHandComputedTerms) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::strain_limit_test

@@ -11,7 +11,7 @@
 #include "tests/exact/exact_closest.hpp"
 #include "tests/exact/hard_pairs.hpp"
 
-namespace bb::test {
+namespace bb::test::exact_closest_test {
 namespace {
 
 /// In ulps: eps of the precision times the largest difference of coordinates in the pair.
@@ -116,4 +116,4 @@ TEST(ExactClosest, EdgeEdgeDouble) { judge_kind<PairKind::edge_edge, double>("do
 TEST(ExactClosest, EdgeEdgeFloat) { judge_kind<PairKind::edge_edge, float>("float"); }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::exact_closest_test

@@ -11,7 +11,7 @@
 #include "tests/exact/exact_closest.hpp"
 #include "tests/exact/hard_pairs.hpp"
 
-namespace bb::test {
+namespace bb::test::exact_crossing_test {
 namespace {
 
 using audit::Crossing;
@@ -107,4 +107,4 @@ TEST(ExactCrossing, SegmentAgainstTriangle) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::exact_crossing_test

@@ -11,7 +11,7 @@
 #include "core/record/folder_lock.hpp"
 #include "core/record/writer.hpp"
 
-namespace bb {
+namespace bb::comparability_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -276,4 +276,4 @@ TEST_F(ComparabilityFiles, AFolderThatAnotherProcessHoldsIsNotWrittenTo) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::comparability_test

@@ -5,7 +5,7 @@
 
 #include "experiments/run/cond_summary.hpp"
 
-namespace bb {
+namespace bb::cond_summary_test {
 namespace {
 
 ConditionSample sample(ConditionStatus status, double lambda_min, double lambda_max, double cond) {
@@ -37,4 +37,4 @@ TEST(CondSummary, a_singular_matrix_counts_with_the_bound) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::cond_summary_test

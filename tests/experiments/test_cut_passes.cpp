@@ -10,7 +10,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/runner.hpp"
 
-namespace bb {
+namespace bb::cut_passes_test {
 namespace {
 
 constexpr const char* falling_sheet = R"({"schema": "barrierbench.config/1",
@@ -73,4 +73,4 @@ TEST(CutPasses, APassThatWasCutOffIsComparedWithNothing) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::cut_passes_test

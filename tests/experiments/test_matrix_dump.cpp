@@ -3,7 +3,7 @@
 
 #include "experiments/run/matrix_dump.hpp"
 
-namespace bb {
+namespace bb::matrix_dump_test {
 namespace {
 
 ConditionSample sample(MatrixStage stage, Number cond) {
@@ -46,4 +46,4 @@ TEST(MatrixDump, AMatrixWithoutACondCountsWithTheLargest) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::matrix_dump_test

@@ -16,7 +16,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::recorder_test {
 namespace {
 
 constexpr double mass = 0.2, d_hat = 0.04, kappa = 400, dt = 0.01;
@@ -296,4 +296,4 @@ TEST(Recorder, an_estimate_without_a_value_is_counted_and_is_no_condition_number
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::recorder_test

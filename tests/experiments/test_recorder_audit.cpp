@@ -6,7 +6,7 @@
 #include "experiments/run/calibration.hpp"
 #include "experiments/run/recorder.hpp"
 
-namespace bb {
+namespace bb::recorder_audit_test {
 namespace {
 
 constexpr const char* falling_block = R"({"schema": "barrierbench.config/1",
@@ -61,4 +61,4 @@ TEST(RecorderAudit, AStateThatNoJudgedMotionLedToIsNeverOk) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::recorder_audit_test

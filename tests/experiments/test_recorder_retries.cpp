@@ -10,7 +10,7 @@
 #include "experiments/run/recorder.hpp"
 #include "tests/newton/thrown_particle.hpp"
 
-namespace bb {
+namespace bb::recorder_retries_test {
 namespace {
 
 constexpr double dt = 0.01;
@@ -197,4 +197,4 @@ TEST(RecorderRetries, WhatWasSeenBeforeACheckpointIsInTheSummary) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::recorder_retries_test

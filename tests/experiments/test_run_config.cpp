@@ -12,7 +12,7 @@
 #include "experiments/run/method.hpp"
 #include "experiments/run/runner.hpp"
 
-namespace bb {
+namespace bb::run_config_test {
 namespace {
 
 constexpr const char* block = R"({"schema": "barrierbench.config/1", "scene": {"name": "resting_block_1d"},
@@ -121,4 +121,4 @@ TEST(RunConfig, factors_of_a_limit_multiply_what_it_is_given) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::run_config_test

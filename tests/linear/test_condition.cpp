@@ -10,7 +10,7 @@
 #include "tests/linear/scaled_spectrum.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::condition_test {
 namespace {
 
 ConditionEstimate estimate(const ReducedSystem& system, int tier, Scaling scaling = Scaling::none,
@@ -171,4 +171,4 @@ TEST(Condition, LargestEigenvalueAgreesWithSpectra) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::condition_test

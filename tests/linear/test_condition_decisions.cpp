@@ -9,7 +9,7 @@
 #include "tests/linear/scaled_spectrum.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::condition_decisions_test {
 namespace {
 
 constexpr std::uint64_t seed = 7;
@@ -190,4 +190,4 @@ TEST(ConditionDecisions, ResidualsAreRaisedAndNeverLowered) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::condition_decisions_test

@@ -9,7 +9,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb {
+namespace bb::condition_methods_test {
 namespace {
 
 constexpr Scaling all_scalings[] = {Scaling::none, Scaling::jacobi, Scaling::block_jacobi};
@@ -170,4 +170,4 @@ TEST(SpectraEnd, NumbersThatAreNotFiniteAndSpacesThatAreTooSmallAreNotConverged)
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::condition_methods_test

@@ -6,7 +6,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb {
+namespace bb::condition_status_test {
 namespace {
 
 ConditionEstimate estimate(const ReducedSystem& system, int tier, Scaling scaling = Scaling::none) {
@@ -131,4 +131,4 @@ TEST(ConditionStatus, TheSameEstimatorServesChangingMatrices) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::condition_status_test

@@ -10,7 +10,7 @@
 #include "core/linear/linear_solver.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::definiteness_test {
 namespace {
 
 using Verdict = Definiteness::Verdict;
@@ -87,4 +87,4 @@ TEST_P(DefinitenessOf, what_is_no_number_is_unknown) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::definiteness_test

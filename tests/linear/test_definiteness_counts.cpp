@@ -7,7 +7,7 @@
 #include "core/linear/preconditioner.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::definiteness_counts_test {
 namespace {
 
 using Verdict = Definiteness::Verdict;
@@ -112,4 +112,4 @@ TEST(DefinitenessCounts, TheCapItselfIsEnough) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::definiteness_counts_test

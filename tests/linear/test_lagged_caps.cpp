@@ -6,7 +6,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb {
+namespace bb::lagged_caps_test {
 namespace {
 
 constexpr int n_unknowns = 90;
@@ -137,4 +137,4 @@ TEST(LaggedCaps, AFreshFactorHasItsOwnIterationsWhateverTheEarlierOneTook) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::lagged_caps_test

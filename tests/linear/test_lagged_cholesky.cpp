@@ -7,7 +7,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb {
+namespace bb::lagged_cholesky_test {
 namespace {
 
 std::unique_ptr<LinearSolver> lagged(double tol = 1e-10, int cap = 15) {
@@ -131,4 +131,4 @@ TEST(LaggedCholesky, ThreadsDoNotChangeABit) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::lagged_cholesky_test

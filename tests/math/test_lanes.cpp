@@ -10,6 +10,7 @@
 #include "core/math/lanes_log.hpp"
 #include "core/math/psd.hpp"
 
+namespace lanes_test {
 namespace {
 
 using namespace bb;
@@ -125,3 +126,4 @@ TEST(Lanes, MinusLogIsTheLogarithmToAFewUlps) {
 }
 
 }  // namespace
+}  // namespace lanes_test

@@ -8,7 +8,7 @@
 #include "core/math/lanes.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb::test {
+namespace bb::test::low_rank_test {
 namespace {
 
 constexpr int n = 12;
@@ -101,4 +101,4 @@ TEST(ProjectLowRank, DoesNotHideWhatIsNotFinite) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::low_rank_test

@@ -9,6 +9,7 @@
 
 #include "tests/oracle/dense.hpp"
 
+namespace psd_test {
 namespace {
 
 using namespace bb;
@@ -144,3 +145,4 @@ TEST(HasPositivePivots, TellsDefiniteFromIndefinite) {
 }
 
 }  // namespace
+}  // namespace psd_test

@@ -10,6 +10,7 @@
 
 #include "tests/oracle/dense.hpp"
 
+namespace svd_test {
 namespace {
 
 using namespace bb;
@@ -158,3 +159,4 @@ TEST(Svd22, ShearHasItsClosedForm) {
 }
 
 }  // namespace
+}  // namespace svd_test

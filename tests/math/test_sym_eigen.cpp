@@ -10,6 +10,7 @@
 
 #include "tests/oracle/dense.hpp"
 
+namespace sym_eigen_test {
 namespace {
 
 using namespace bb;
@@ -139,3 +140,4 @@ TEST(SymEigenSmall, TinyEigenvalueKeepsItsDigits) {
 }
 
 }  // namespace
+}  // namespace sym_eigen_test

@@ -9,7 +9,7 @@
 #include "core/math/error.hpp"
 #include "experiments/matrix/matrix_market.hpp"
 
-namespace bb {
+namespace bb::matrix_market_test {
 namespace {
 
 Eigen::SparseMatrix<double> lower(int n, const std::vector<Eigen::Triplet<double>>& entries) {
@@ -141,4 +141,4 @@ TEST(MatrixMarket, NoPrefixOfAFileIsReadAsAnotherMatrixOfItsCount) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::matrix_market_test

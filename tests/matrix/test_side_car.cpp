@@ -7,7 +7,7 @@
 #include "core/math/error.hpp"
 #include "tests/matrix/stored.hpp"
 
-namespace bb {
+namespace bb::side_car_test {
 namespace {
 
 using nlohmann::json;
@@ -178,4 +178,4 @@ TEST(SideCar, ATornOneIsRefusedWithItsLine) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::side_car_test

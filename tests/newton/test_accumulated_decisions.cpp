@@ -6,7 +6,7 @@
 
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::accumulated_decisions_test {
 namespace {
 
 constexpr double dt = 0.01;
@@ -99,4 +99,4 @@ TEST(AccumulatedDecisions, TheEndErrorIsInTolerancesOfTheLengthThatWasReached) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::accumulated_decisions_test

@@ -4,7 +4,7 @@
 
 #include "tests/newton/scripted_system.hpp"
 
-namespace bb {
+namespace bb::accumulated_scripted_test {
 namespace {
 
 using test::Change;
@@ -136,4 +136,4 @@ TEST(AccumulatedScripted, TheEndIsLookedAtInTheLastPassAlone) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::accumulated_scripted_test

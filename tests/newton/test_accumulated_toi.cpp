@@ -6,7 +6,7 @@
 
 #include "tests/newton/saddle_scenes.hpp"
 
-namespace bb {
+namespace bb::accumulated_toi_test {
 namespace {
 
 constexpr double dt = 0.01, gravity = 10;
@@ -186,4 +186,4 @@ TEST(AccumulatedToi, can_be_asked_whether_it_ends_in_a_saddle) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::accumulated_toi_test

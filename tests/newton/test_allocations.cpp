@@ -7,7 +7,7 @@
 #include "tests/newton/counting_malloc.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::allocations_test {
 namespace {
 
 Scene two_layers(int n) {
@@ -84,4 +84,4 @@ TEST(Allocations, do_not_grow_with_contacts_and_elements) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::allocations_test

@@ -7,7 +7,7 @@
 #include "barriers/matching.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::contact_equilibrium_test {
 namespace {
 
 constexpr double mass = 0.2, d_hat = 0.01, weight = 2.0;
@@ -29,7 +29,7 @@ double resting_gap(const Scene& scene, Method& method, int steps, double dt, Con
 
 TEST(ContactEquilibrium, every_shape_and_argument_rests_where_its_force_is_the_weight) {
   int tested = 0;
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
       const BarrierFunction barrier{shape, argument};
       const double kappa = match_equal_force(barrier, d_hat, weight, 0.6);
@@ -100,4 +100,4 @@ TEST(ContactEquilibrium, adaptive_stiffness_starts_at_the_first_contact_and_is_r
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::contact_equilibrium_test

@@ -3,7 +3,7 @@
 
 #include "tests/newton/curved_gaps.hpp"
 
-namespace bb {
+namespace bb::detour_test {
 namespace {
 
 struct Log final : StepObserver {
@@ -92,4 +92,4 @@ TEST(Detour, is_not_made_where_gaps_are_straight) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::detour_test

@@ -3,7 +3,7 @@
 
 #include "tests/newton/scripted_system.hpp"
 
-namespace bb {
+namespace bb::end_decisions_test {
 namespace {
 
 using test::ScriptedIteration;
@@ -162,4 +162,4 @@ TEST(EndDecisions, ADirectionThatDoesNotDescendIsAFailureOnlyWhereItHasToAndIsNo
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::end_decisions_test

@@ -3,7 +3,7 @@
 
 #include "tests/newton/scripted_system.hpp"
 
-namespace bb {
+namespace bb::escape_decisions_test {
 namespace {
 
 using test::Change;
@@ -169,4 +169,4 @@ TEST(EscapeDecisions, LeaveNoRateOfConvergenceBehind) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::escape_decisions_test

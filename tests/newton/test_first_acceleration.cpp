@@ -3,7 +3,7 @@
 
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::first_acceleration_test {
 namespace {
 
 constexpr double mass = 0.2, d_hat = 0.01, dt = 0.002;
@@ -68,4 +68,4 @@ TEST(FirstAcceleration, holds_elastic_forces_and_none_at_prescribed_vertices) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::first_acceleration_test

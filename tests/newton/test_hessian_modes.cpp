@@ -6,7 +6,7 @@
 
 #include "tests/newton/buckling_step.hpp"
 
-namespace bb {
+namespace bb::hessian_modes_test {
 namespace {
 
 using namespace test;
@@ -78,4 +78,4 @@ TEST(BucklingStep, exact_curvature_sees_the_saddle_that_the_clamped_matrix_hides
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::hessian_modes_test

@@ -7,7 +7,7 @@
 #include "core/linear/preconditioner.hpp"
 #include "tests/newton/buckling_step.hpp"
 
-namespace bb {
+namespace bb::inexact_solves_test {
 namespace {
 
 using namespace test;
@@ -173,4 +173,4 @@ TEST(InexactSolves, a_vertex_without_stiffness_is_named) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::inexact_solves_test

@@ -7,7 +7,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::iteration_report_test {
 namespace {
 
 constexpr double d_hat = 0.01, kappa = 5;
@@ -78,4 +78,4 @@ TEST(IterationReport, a_load_is_one_pairs_and_a_curvature_is_the_rows) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::iteration_report_test

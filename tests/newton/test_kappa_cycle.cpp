@@ -10,7 +10,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::kappa_cycle_test {
 namespace {
 
 constexpr double mass = 0.2, d_hat = 0.01, dt = 0.1;
@@ -173,4 +173,4 @@ TEST(KappaCycle, kept_for_the_step_both_converge) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::kappa_cycle_test

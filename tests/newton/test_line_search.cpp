@@ -47,7 +47,7 @@ class EnergyWatch final : public StepObserver {
 
 TEST(LineSearch, energy_falls_in_every_iteration_of_a_draping_cloth) {
   Scene scene = cloth_on_sphere(8);
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     Method method = test::fixed_method(shape.name, 400);
     method.limit_stiffness.k_s = 2e4;
     Simulation simulation(scene, method, 0.01, 15);

@@ -3,7 +3,7 @@
 
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::models_test {
 namespace {
 
 BodySpec stretched(const std::string& name, const std::string& model, double height) {
@@ -47,4 +47,4 @@ TEST(Models, every_body_keeps_its_own) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::models_test

@@ -6,7 +6,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::newton_system_test {
 namespace {
 
 constexpr double d_hat = 0.01, dt = 0.01;
@@ -178,4 +178,4 @@ TEST(NewtonSystem, the_motion_of_a_given_vertex_reaches_a_merged_row_in_full) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::newton_system_test

@@ -5,7 +5,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::overload_test {
 namespace {
 
 constexpr double d_hat = 0.01, gravity = 10, dt = 0.01;
@@ -135,4 +135,4 @@ TEST(Overload, an_unbounded_barrier_has_none) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::overload_test

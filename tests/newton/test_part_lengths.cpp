@@ -5,7 +5,7 @@
 
 #include "tests/newton/thrown_particle.hpp"
 
-namespace bb {
+namespace bb::part_lengths_test {
 namespace {
 
 constexpr double dt = 0.01;
@@ -103,4 +103,4 @@ TEST(PartLengths, OfAnAttemptThatFailedIsNothingLeft) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::part_lengths_test

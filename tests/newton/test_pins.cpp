@@ -6,7 +6,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::pins_test {
 namespace {
 
 PinSpec corners(std::vector<int> indices, const Vec3d& velocity) {
@@ -191,4 +191,4 @@ TEST(Pins, a_pose_beyond_the_strain_limit_is_infeasible_and_names_the_pin) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::pins_test

@@ -6,7 +6,7 @@
 
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::policy_start_test {
 namespace {
 
 constexpr double d_hat = 0.01, dt = 0.002;
@@ -133,4 +133,4 @@ TEST(PolicyStart, reads_the_curvature_at_half_of_d_hat) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::policy_start_test

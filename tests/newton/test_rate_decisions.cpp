@@ -6,7 +6,7 @@
 
 #include "tests/newton/scripted_system.hpp"
 
-namespace bb {
+namespace bb::rate_decisions_test {
 namespace {
 
 using test::Change;
@@ -109,4 +109,4 @@ TEST(RateDecisions, ADetourIsForDirectionsThatAreLongAndOnTheirPose) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::rate_decisions_test

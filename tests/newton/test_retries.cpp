@@ -10,7 +10,7 @@
 #include "core/newton/step_parts.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::retries_test {
 namespace {
 
 constexpr double d_hat = 0.01, dt = 0.01;
@@ -248,4 +248,4 @@ TEST(Retries, bdf2_starts_anew_where_the_length_changes) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::retries_test

@@ -4,7 +4,7 @@
 
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::rods_test {
 namespace {
 
 constexpr double d_hat = 0.005, line_density = 0.02, length = 0.4;
@@ -72,4 +72,4 @@ TEST(Rods, RestInAGrooveByTheirWeight) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::rods_test

@@ -7,7 +7,7 @@
 
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::simulation_test {
 namespace {
 
 constexpr double mass = 0.2, d_hat = 0.01, dt = 0.01;
@@ -234,4 +234,4 @@ TEST(Simulation, accepted_motions_follow_each_other_from_the_start_to_the_end) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::simulation_test

@@ -7,7 +7,7 @@
 #include "tests/contact/contact_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::step_end_test {
 namespace {
 
 constexpr double d_hat = 0.01, dt = 0.002;
@@ -123,4 +123,4 @@ TEST(StepEnd, does_not_disturb_a_policy_that_never_adapts) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::step_end_test

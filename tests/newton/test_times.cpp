@@ -8,7 +8,7 @@
 #include "core/terms/strain_limit.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::times_test {
 namespace {
 
 /// Two limited cloths, the upper one falling onto the lower, which falls onto a floor; a corner is held.
@@ -98,4 +98,4 @@ TEST(Times, a_state_of_the_limit_is_measured_once) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::times_test

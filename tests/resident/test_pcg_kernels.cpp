@@ -11,7 +11,7 @@
 #include "core/resident/linear/schwarz_kernels.hpp"
 #include "tests/resident/linear_cases.hpp"
 
-namespace bb::resident {
+namespace bb::resident::pcg_kernels_test {
 namespace {
 
 using exec::Buffer;
@@ -188,4 +188,4 @@ TEST(FactorizeDiagonal, LooksAtEveryNumber) {
 }
 
 }  // namespace
-}  // namespace bb::resident
+}  // namespace bb::resident::pcg_kernels_test

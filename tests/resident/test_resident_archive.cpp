@@ -4,7 +4,7 @@
 #include "core/archive/archive.hpp"
 #include "tests/resident/system_cases.hpp"
 
-namespace bb {
+namespace bb::resident_archive_test {
 namespace {
 
 using test::RunEnd;
@@ -116,4 +116,4 @@ TEST(ResidentArchive, GoesOnFromPathToPath) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::resident_archive_test

@@ -8,7 +8,7 @@
 #include "tests/contact/rods.hpp"
 #include "tests/resident/contact_motion.hpp"
 
-namespace bb::test {
+namespace bb::test::resident_broad_phase_test {
 namespace {
 
 using exec::Index;
@@ -351,4 +351,4 @@ TEST(ResidentBroadPhase, NeedsTheMemoryThatACountForetells) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::resident_broad_phase_test

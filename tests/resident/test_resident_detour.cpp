@@ -8,7 +8,7 @@
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/resident/contact_on_executor.hpp"
 
-namespace bb::test {
+namespace bb::test::resident_detour_test {
 namespace {
 
 constexpr double kappa = 350;
@@ -94,4 +94,4 @@ TEST(ResidentDetour, IsThatOfTheCpuPathInAnyOrder) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::resident_detour_test

@@ -5,7 +5,7 @@
 #include "core/exec/counting_executor.hpp"
 #include "tests/resident/on_executor.hpp"
 
-namespace bb {
+namespace bb::resident_elements_test {
 namespace {
 
 using namespace bb::test;
@@ -266,4 +266,4 @@ TEST(ResidentElements, NameTheFirstElementThatIsNoNumber) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::resident_elements_test

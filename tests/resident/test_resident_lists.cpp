@@ -4,7 +4,7 @@
 #include "core/exec/counting_executor.hpp"
 #include "tests/resident/system_cases.hpp"
 
-namespace bb {
+namespace bb::resident_lists_test {
 namespace {
 
 constexpr std::size_t no_lists = 0, all_lists = std::size_t{1} << 40;  // B
@@ -160,4 +160,4 @@ TEST(ResidentLists, AreCountedWhereOnlyStatesHaveThem) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::resident_lists_test

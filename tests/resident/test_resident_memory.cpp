@@ -8,7 +8,7 @@
 #include "core/exec/counting_executor.hpp"
 #include "tests/resident/system_cases.hpp"
 
-namespace bb {
+namespace bb::resident_memory_test {
 namespace {
 
 using exec::Index;
@@ -164,4 +164,4 @@ TEST(ResidentMemory, ThatIsMissingIsNamed) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::resident_memory_test

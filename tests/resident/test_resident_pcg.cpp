@@ -10,7 +10,7 @@
 #include "tests/oracle/dense.hpp"
 #include "tests/resident/linear_cases.hpp"
 
-namespace bb::resident {
+namespace bb::resident::resident_pcg_test {
 namespace {
 
 using exec::Buffer;
@@ -392,4 +392,4 @@ TEST(PcgResident, TakesPlanarScenes) {
 }
 
 }  // namespace
-}  // namespace bb::resident
+}  // namespace bb::resident::resident_pcg_test

@@ -8,7 +8,7 @@
 #include "tests/oracle/dense.hpp"
 #include "tests/resident/linear_cases.hpp"
 
-namespace bb::resident {
+namespace bb::resident::resident_schwarz_test {
 namespace {
 
 using exec::Buffer;
@@ -273,4 +273,4 @@ TEST(PcgResident, KeepsLevelsWhileThePatternStays) {
 }
 
 }  // namespace
-}  // namespace bb::resident
+}  // namespace bb::resident::resident_schwarz_test

@@ -5,7 +5,7 @@
 
 #include "tests/resident/system_cases.hpp"
 
-namespace bb {
+namespace bb::resident_settings_test {
 namespace {
 
 using test::expect_same_run;
@@ -203,4 +203,4 @@ TEST(ResidentSettings, StepsThatAreTriedAgain) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::resident_settings_test

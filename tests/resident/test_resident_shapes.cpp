@@ -7,7 +7,7 @@
 #include "core/resident/contact/resident_barrier.hpp"
 #include "tests/resident/contact_on_executor.hpp"
 
-namespace bb::test {
+namespace bb::test::resident_shapes_test {
 namespace {
 
 using resident::KappaColumns;
@@ -33,7 +33,7 @@ double relative(double a, double b) { return a == b ? 0 : std::abs(a - b) / std:
 
 TEST(ResidentBarrier, EvaluatesEveryShapeOfTheRegistry) {
   int n_shapes = 0;
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
       HostExecutor executor(exec::Order::shuffled);
       ResidentRows rows(executor, KappaColumns::kept);
@@ -63,7 +63,7 @@ TEST(ResidentBarrier, EvaluatesEveryShapeOfTheRegistry) {
 
 TEST(ResidentBarrier, FoldsTheStiffnessIntoShapesWithAPotential) {
   int n_shapes = 0;
-  for (const Shape& shape : shapes()) {
+  for (const Shape& shape : all_shapes()) {
     const BarrierFunction barrier{shape, Argument::gap};
     if (!has_potential(barrier)) {
       EXPECT_THROW(ResidentBarrier(barrier, true), ConfigError) << shape.name;
@@ -111,4 +111,4 @@ TEST(ResidentBarrier, RefusesWhatHasNoKernelByName) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::resident_shapes_test

@@ -10,7 +10,7 @@
 #include "core/terms/stiffness_update.hpp"
 #include "tests/resident/contact_on_executor.hpp"
 
-namespace bb::test {
+namespace bb::test::resident_stiffness_test {
 namespace {
 
 using resident::MatrixPart;
@@ -303,4 +303,4 @@ TEST(StepEndGaps, ListsPairsOfTwoStepEndsWhoseGapShrank) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::resident_stiffness_test

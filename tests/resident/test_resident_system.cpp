@@ -9,7 +9,7 @@
 #include "tests/newton/saddle_scenes.hpp"
 #include "tests/resident/system_cases.hpp"
 
-namespace bb {
+namespace bb::resident_system_test {
 namespace {
 
 using test::expect_same_run;
@@ -342,4 +342,4 @@ TEST(ResidentSystem, SplitsDirectionsAtTheSameRounding) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::resident_system_test

@@ -4,7 +4,7 @@
 #include "tests/newton/curved_gaps.hpp"
 #include "tests/resident/system_cases.hpp"
 
-namespace bb {
+namespace bb::system_detour_test {
 namespace {
 
 struct End {
@@ -62,4 +62,4 @@ TEST(ResidentSystem, GoesRoundCurvedGapsAsTheCpuPathDoes) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::system_detour_test

@@ -13,7 +13,7 @@
 #include "core/resident/sums/resident_sum.hpp"
 #include "core/resident/system/row_totals.hpp"
 
-namespace bb::resident {
+namespace bb::resident::system_kernels_test {
 namespace {
 
 std::vector<double> random_numbers(std::size_t n, unsigned seed) {
@@ -219,4 +219,4 @@ TEST(SystemKernels, ProductOverFreeNumbers) {
 }
 
 }  // namespace
-}  // namespace bb::resident
+}  // namespace bb::resident::system_kernels_test

@@ -6,7 +6,7 @@
 
 #include "tests/resident/system_cases.hpp"
 
-namespace bb {
+namespace bb::system_restart_test {
 namespace {
 
 constexpr double dt = 0.01;
@@ -113,4 +113,4 @@ TEST(SystemRestart, TheNumbersOfAnIterateAreThoseOfTheNewLength) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::system_restart_test

@@ -8,7 +8,7 @@
 #include "core/terms/strain_limit.hpp"
 #include "tests/terms/all_terms.hpp"
 
-namespace bb {
+namespace bb::limit_stiffness_test {
 namespace {
 
 constexpr double dt = 0.05, c = 0.25, diagonal = 7;  // s, 1, N/m of the elastic matrix
@@ -189,4 +189,4 @@ TEST(LimitStiffness, TheMultiplierActsOnAllOfIt) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::limit_stiffness_test

@@ -4,7 +4,7 @@
 #include "barriers/stiffness/registry.hpp"
 #include "core/terms/stiffness_update.hpp"
 
-namespace bb {
+namespace bb::stiffness_update_test {
 namespace {
 
 constexpr double dt = 0.01;
@@ -137,4 +137,4 @@ TEST(StiffnessUpdate, a_potential_reads_the_matrix_of_the_step_s_first_iterate) 
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::stiffness_update_test
