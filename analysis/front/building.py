@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 import shutil
 import subprocess
 import sys
@@ -56,17 +57,53 @@ def _has_options(preset: str, options: dict[str, str]) -> bool:
     )
 
 
+def _cuda_here() -> str:
+    """What decides whether there is device code: compilers and cards, each with its time."""
+    places = [
+        os.environ.get("CUDACXX", ""),
+        shutil.which("nvcc") or "",
+        *(os.environ.get(name, "") + "/bin/nvcc" for name in ("CUDA_HOME", "CUDA_PATH")),
+        "/usr/local/cuda/bin/nvcc",
+        "/opt/cuda/bin/nvcc",
+        "/dev/nvidiactl",
+    ]
+    found = [place for place in places if place and Path(place).exists()]
+    return "".join(f"{place} {int(Path(place).stat().st_mtime)}\n" for place in found)
+
+
+def _device_options(preset: str, options: dict[str, str]) -> dict[str, str]:
+    """The options with BB_CUDA (cmake/Cuda.cmake) where this build needs a word about device code. Kernels take
+    minutes of nvcc, so where no card is only what compiles and tests them asks for them (AUTO); a compiler or a card
+    that is found later is used later.
+    """
+    cache = folder(preset) / "CMakeCache.txt"
+    if not (folder(preset) / "build.ninja").is_file():
+        return {"BB_CUDA": "CARD", **options} if preset == "release" else options
+    known = cache.read_text()
+    asked = re.search(r"^BB_CUDA:STRING=(AUTO|CARD)$", known, re.M)
+    without = {name: value for name, value in options.items() if name != "BB_CUDA"}
+    if not asked or "BB_CUDA_BUILT:INTERNAL=OFF" not in known:
+        return without  # it has device code, or somebody has said that it shall have none
+    stamp = folder(preset) / "cuda_asked"
+    wanted = "AUTO" if options.get("BB_CUDA") == "AUTO" else asked[1]
+    same = wanted == asked[1] and stamp.is_file() and stamp.read_text() == _cuda_here()
+    if not same:
+        cache.write_text(known.replace(asked[0], "BB_CUDA:STRING=LOOK"))  # so that CMake looks again
+    return {**without, "BB_CUDA": wanted}
+
+
 def configure(preset: str, options: dict[str, str] | None = None) -> None:
     """Once, and again when one of the CMake options has another value. Errors: UserError."""
-    options = options or {}
     if not shutil.which("cmake") or not shutil.which("ninja"):
         raise UserError("cmake and ninja are needed: ./bench setup")
+    options = _device_options(preset, options or {})
     if (folder(preset) / "build.ninja").is_file() and _has_options(preset, options):
         return
     say(f"configuring build/{preset}")
     words = ["cmake", "--preset", preset, *(f"-D{name}={value}" for name, value in options.items())]
     if subprocess.run(words, cwd=ROOT, stdout=sys.stderr, check=False).returncode != 0:
         raise UserError("configuration failed")
+    (folder(preset) / "cuda_asked").write_text(_cuda_here())
 
 
 def _last_line(log: Path) -> str:

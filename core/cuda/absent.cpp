@@ -6,7 +6,7 @@ namespace bb::cuda {
 
 DeviceProbe probe_device() {
   DeviceProbe probe;
-  probe.why = "this program was built without CUDA (nvcc was not found, or BB_CUDA is OFF)";
+  probe.why = "this program was built without CUDA (" BB_CUDA_WHY ")";
   return probe;
 }
 
