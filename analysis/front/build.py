@@ -10,6 +10,6 @@ from .building import build, say, setup
 def main(argv: list[str]) -> int:
     preset = argv[0] if argv else "release"
     setup()
-    build(preset)
+    build(preset, options={"BB_CUDA": "AUTO"})
     say(f"built build/{preset}")
     return 0

@@ -71,33 +71,31 @@ def _cuda_here() -> str:
     return "".join(f"{place} {int(Path(place).stat().st_mtime)}\n" for place in found)
 
 
-def _device_options(preset: str, options: dict[str, str]) -> dict[str, str]:
-    """The options with BB_CUDA (cmake/Cuda.cmake) where this build needs a word about device code. Kernels take
-    minutes of nvcc, so where no card is only what compiles and tests them asks for them (AUTO); a compiler or a card
-    that is found later is used later.
+def _device_options(preset: str, options: dict[str, str]) -> tuple[dict[str, str], bool]:
+    """The options with BB_CUDA (cmake/Cuda.cmake) where this build needs a word about device code, and whether CMake has
+    to look again. Kernels take minutes of nvcc, so where no card is only what compiles and tests them asks for them
+    (AUTO); a compiler or a card that is found later is used later.
     """
     cache = folder(preset) / "CMakeCache.txt"
     if not (folder(preset) / "build.ninja").is_file():
-        return {"BB_CUDA": "CARD", **options} if preset == "release" else options
+        return ({"BB_CUDA": "CARD", **options} if preset == "release" else options), True
     known = cache.read_text()
     asked = re.search(r"^BB_CUDA:STRING=(AUTO|CARD)$", known, re.M)
     without = {name: value for name, value in options.items() if name != "BB_CUDA"}
     if not asked or "BB_CUDA_BUILT:INTERNAL=OFF" not in known:
-        return without  # it has device code, or somebody has said that it shall have none
+        return without, False  # it has device code, or somebody has said that it shall have none
     stamp = folder(preset) / "cuda_asked"
     wanted = "AUTO" if options.get("BB_CUDA") == "AUTO" else asked[1]
     same = wanted == asked[1] and stamp.is_file() and stamp.read_text() == _cuda_here()
-    if not same:
-        cache.write_text(known.replace(asked[0], "BB_CUDA:STRING=LOOK"))  # so that CMake looks again
-    return {**without, "BB_CUDA": wanted}
+    return {**without, "BB_CUDA": wanted}, not same
 
 
 def configure(preset: str, options: dict[str, str] | None = None) -> None:
     """Once, and again when one of the CMake options has another value. Errors: UserError."""
     if not shutil.which("cmake") or not shutil.which("ninja"):
         raise UserError("cmake and ninja are needed: ./bench setup")
-    options = _device_options(preset, options or {})
-    if (folder(preset) / "build.ninja").is_file() and _has_options(preset, options):
+    options, look_again = _device_options(preset, options or {})
+    if not look_again and _has_options(preset, options):
         return
     say(f"configuring build/{preset}")
     words = ["cmake", "--preset", preset, *(f"-D{name}={value}" for name, value in options.items())]

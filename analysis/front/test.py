@@ -121,7 +121,7 @@ def _gate() -> int:
 def main(argv: list[str]) -> int:
     preset, arguments = ("sanitize", argv[1:]) if argv[:1] == ["--sanitize"] else ("release", argv)
     setup()
-    build(preset)
+    build(preset, options={"BB_CUDA": "AUTO"})
     summary = Summary()
     summary.step("clang-format", lambda: formatting.clang_format("--dry-run", "--Werror"))
     summary.step("rooms", lambda: rooms.main([]))

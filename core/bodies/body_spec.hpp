@@ -19,21 +19,9 @@ struct StrainLimitSpec {
   static StrainLimitSpec from_limit(double limit) { return {0.5 * limit, 0.5 * limit}; }
 };
 
-/// Material of a shell (triangles) or of rods (lone edges). Stiffness 0 switches a term off.
-struct Material {
-  std::string model = "corotational";    // membrane model; "none" for springs only
-  std::optional<Vec3d> warp_axis;        // unit; anisotropic models: warp direction at rest, absent: x
-  double density = 0.2;                  // kg/m^2 of triangles
-  double line_density = 0;               // kg/m of lone edges
-  double youngs = 1e5;                   // Pa when thickness is given, N/m (times thickness) otherwise
-  std::optional<double> thickness;       // m
-  double poisson = 0.3;                  // 1
-  double bending = 0;                    // J, stiffness of every hinge
-  double springs = 0;                    // N/m, on every unique edge
+/// What a body says of all parts that it can be made of (core/scene/parts). Stiffness 0 switches elements off.
+struct Material : parts::AllKeys {
   std::optional<StrainLimitSpec> limit;  // absent: no limit
-
-  /// Young's modulus times thickness, N/m.
-  double youngs_per_width() const { return youngs * thickness.value_or(1.0); }
 };
 
 /// Which vertices of a body are prescribed; a vertex is selected when any of the given ways selects it.

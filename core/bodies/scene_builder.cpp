@@ -5,21 +5,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "core/bodies/part.hpp"
 #include "core/bodies/pin_selection.hpp"
 #include "core/bodies/scene_checks.hpp"
-#include "core/energy/hinge.hpp"
-#include "core/energy/membrane_model.hpp"
 #include "core/input/memory.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace bb {
 namespace {
-
-template <std::size_t n>
-std::array<int, n> shifted(std::array<int, n> vertices, int first) {
-  for (int& v : vertices) v += first;
-  return vertices;
-}
 
 /// Velocity that a prescribed vertex has at the start of the run.
 Vec3d start_velocity(const RigidMotion& motion, const Vec3d& x) {
@@ -34,10 +27,6 @@ void append_columns(Positions& all, const Positions& more) {
 }
 
 }  // namespace
-
-LameParameters shell_lame(double youngs_per_width, double poisson) {
-  return {youngs_per_width / (2 * (1 + poisson)), youngs_per_width * poisson / (1 - poisson * poisson)};
-}
 
 SceneBuilder::SceneBuilder(std::string name, bool planar, const Vec3d& gravity, std::string where)
     : where_(std::move(where)) {
@@ -67,10 +56,7 @@ void SceneBuilder::add_body(const BodySpec& spec) {
   check_name("body", spec.name);
   const std::size_t before = violations_.size();
   check_body(spec, scene_.planar, where_, violations_);
-  require_memory(fmt::format("{}: body \"{}\"", where_, spec.name),
-                 {static_cast<double>(scene_.n_vertices()) + spec.mesh.n_vertices(),
-                  static_cast<double>(scene_.surface_triangles.size() + spec.mesh.triangles.size()),
-                  static_cast<double>(spec.mesh.segments.size())});
+  require_room(spec);
   if (violations_.size() != before) return;
   const int first = scene_.n_vertices();
   const Positions& start = spec.start ? *spec.start : spec.mesh.vertices;
@@ -78,11 +64,19 @@ void SceneBuilder::add_body(const BodySpec& spec) {
   append_pins(spec, start, first);
   if (spec.kind == BodyKind::deformable) {
     append_masses(spec, first);
-    append_membrane(spec, first);
-    append_springs(spec, first);
-    append_hinges(spec, first);
+    append_elements(spec, first);
   }
   append_surface(spec, first);
+}
+
+void SceneBuilder::require_room(const BodySpec& spec) const {
+  std::vector<MemoryItem> items{
+      vertex_memory(static_cast<double>(scene_.n_vertices()) + spec.mesh.n_vertices())};
+  for (const PartEntry& entry : part_entries()) {
+    const std::vector<MemoryItem> more = entry.part.memory(scene_, spec.mesh);
+    items.insert(items.end(), more.begin(), more.end());
+  }
+  require_memory(fmt::format("{}: body \"{}\"", where_, spec.name), items);
 }
 
 void SceneBuilder::append_vertices(const BodySpec& spec, const Positions& start) {
@@ -148,113 +142,47 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
   }
 }
 
-template <std::size_t n>
-bool SceneBuilder::all_prescribed(const std::array<int, n>& vertices) const {
-  return std::all_of(vertices.begin(), vertices.end(),
-                     [this](int v) { return pin_of_[static_cast<std::size_t>(v)] >= 0; });
-}
-
 void SceneBuilder::append_masses(const BodySpec& spec, int first) {
-  const auto add = [&](int v, double mass) {
+  const AddMass add = [&](int v, double mass) {
     const auto vertex = static_cast<std::size_t>(first) + static_cast<std::size_t>(v);
     if (pin_of_[vertex] < 0) scene_.mass[vertex] += mass;
   };
-  for (const auto& t : spec.mesh.triangles) {
-    const double third = spec.material.density * area_vector(spec.mesh.vertices, t).norm() / 3;
-    for (const int v : t) add(v, third);
-  }
-  for (const auto& s : spec.mesh.segments) {
-    const double length = (spec.mesh.vertices.col(s[1]) - spec.mesh.vertices.col(s[0])).norm();
-    for (const int v : s) add(v, 0.5 * spec.material.line_density * length);
-  }
+  for (const PartEntry& entry : part_entries()) entry.part.add_masses(spec, add);
 }
 
-/// Index of the part of that model, added where there is none yet; -1 for the model none.
-int SceneBuilder::membrane_part(const std::string& model) {
-  if (model == "none") return -1;
-  std::vector<MembranePart>& parts = scene_.membranes;
-  const auto found =
-      std::find_if(parts.begin(), parts.end(), [&](const MembranePart& part) { return part.model == model; });
-  const auto index = static_cast<int>(found - parts.begin());
-  if (found == parts.end()) {
-    parts.emplace_back();
-    parts.back().model = model;
-  }
-  return index;
-}
-
-/// The warp axis needs a part in the plane of every triangle that has an energy.
-void SceneBuilder::check_warp(const BodySpec& spec, const Vec3d& warp, int first) {
-  for (std::size_t t = 0; t < spec.mesh.triangles.size(); ++t) {
-    if (all_prescribed(shifted(spec.mesh.triangles[t], first))) continue;
-    const Vec3d normal = area_vector(spec.mesh.vertices, spec.mesh.triangles[t]).normalized();
-    if ((warp - normal.dot(warp) * normal).norm() > 1e-6) continue;
-    return complain(fmt::format("body \"{}\"/material/warp_axis", spec.name),
-                    fmt::format("[{}, {}, {}], the normal of triangle {}", warp[0], warp[1], warp[2], t),
-                    "an axis that is normal to no triangle of the rest shape");
-  }
-}
-
-void SceneBuilder::append_membrane(const BodySpec& spec, int first) {
-  if (spec.mesh.triangles.empty()) return;
-  const Material& material = spec.material;
-  const LameParameters lame = shell_lame(material.youngs_per_width(), material.poisson);
-  const int membrane = membrane_part(material.model);
-  const bool directed = is_anisotropic(material.model);
-  const Vec3d warp = material.warp_axis.value_or(Vec3d::UnitX());
-  if (directed) check_warp(spec, warp, first);
+void SceneBuilder::append_elements(const BodySpec& spec, int first) {
+  const Complaints complain{fmt::format("{}: body \"{}\"", where_, spec.name), violations_};
+  BodyElements to{scene_, first, pin_of_, complain};
+  for (const PartEntry& entry : part_entries()) entry.part.add_elements(spec, to);
+  if (!spec.material.limit) return;
   for (const auto& local : spec.mesh.triangles) {
-    const auto t = shifted(local, first);
-    if (all_prescribed(t)) continue;
-    if (membrane >= 0) {
-      MembranePart& part = scene_.membranes[static_cast<std::size_t>(membrane)];
-      part.triangles.push_back(t);
-      part.lame_mu.push_back(lame.mu);
-      part.lame_lambda.push_back(lame.lambda);
-      if (directed) part.warp.push_back(warp);
-    }
-    if (material.limit) {
-      scene_.limit.triangles.push_back(t);
-      scene_.limit.onset.push_back(material.limit->onset);
-      scene_.limit.width.push_back(material.limit->width);
-      scene_.limit.mass.push_back(material.density * area_vector(spec.mesh.vertices, local).norm());
-    }
-  }
-}
-
-void SceneBuilder::append_springs(const BodySpec& spec, int first) {
-  if (spec.material.springs == 0) return;
-  for (const auto& local : unique_edges(spec.mesh)) {
-    const auto edge = shifted(local, first);
-    if (all_prescribed(edge)) continue;
-    scene_.springs.edges.push_back(edge);
-    scene_.springs.stiffness.push_back(spec.material.springs);
-  }
-}
-
-void SceneBuilder::append_hinges(const BodySpec& spec, int first) {
-  if (spec.material.bending == 0) return;
-  for (const auto& local : edge_hinges(spec.mesh.triangles)) {
-    const auto hinge = shifted(local, first);
-    if (all_prescribed(hinge)) continue;
-    Vec3d x[4];
-    for (std::size_t k = 0; k < 4; ++k) x[k] = spec.mesh.vertices.col(local[k]);
-    scene_.hinges.hinges.push_back(hinge);
-    scene_.hinges.stiffness.push_back(spec.material.bending);
-    scene_.hinges.rest_angle.push_back(hinge_angle(x));
+    const auto t = to.in_scene(local);
+    if (to.all_prescribed(t)) continue;
+    scene_.limit.triangles.push_back(t);
+    scene_.limit.onset.push_back(spec.material.limit->onset);
+    scene_.limit.width.push_back(spec.material.limit->width);
+    scene_.limit.mass.push_back(spec.material.density * area_vector(spec.mesh.vertices, local).norm());
   }
 }
 
 void SceneBuilder::append_surface(const BodySpec& spec, int first) {
-  for (const auto& t : spec.mesh.triangles) scene_.surface_triangles.push_back(shifted(t, first));
+  BodySurface surface;
+  surface.enclosed.assign(static_cast<std::size_t>(spec.mesh.n_vertices()), 0);
+  for (const PartEntry& entry : part_entries()) entry.part.add_surface(spec.mesh, surface);
+  const auto in_scene = [first](auto vertices) {
+    for (int& v : vertices) v += first;
+    return vertices;
+  };
+  for (const auto& t : surface.mesh.triangles) scene_.surface_triangles.push_back(in_scene(t));
   if (!scene_.planar) {
-    for (const auto& e : unique_edges(spec.mesh)) scene_.surface_edges.push_back(shifted(e, first));
+    for (const auto& e : unique_edges(surface.mesh)) scene_.surface_edges.push_back(in_scene(e));
   } else {  // whatever pairs contact makes of them
-    for (const auto& e : boundary_edges(spec.mesh.triangles))
-      scene_.surface_edges.push_back(shifted(e, first));
-    for (const auto& s : spec.mesh.segments) scene_.surface_edges.push_back(shifted(s, first));
+    for (const auto& e : boundary_edges(surface.mesh.triangles)) scene_.surface_edges.push_back(in_scene(e));
+    for (const auto& s : surface.mesh.segments) scene_.surface_edges.push_back(in_scene(s));
   }
-  for (int v = 0; v < spec.mesh.n_vertices(); ++v) scene_.surface_vertices.push_back(first + v);
+  for (int v = 0; v < spec.mesh.n_vertices(); ++v) {
+    if (surface.enclosed[static_cast<std::size_t>(v)] == 0) scene_.surface_vertices.push_back(first + v);
+  }
 }
 
 void SceneBuilder::add_obstacle(const Obstacle& obstacle) {

@@ -10,13 +10,6 @@
 
 namespace bb {
 
-/// Lame parameters of a shell in plane stress, times the thickness, N/m:
-///   mu = E t / (2 (1 + nu)), lambda = E t nu / (1 - nu^2).
-struct LameParameters {
-  double mu = 0, lambda = 0;  // N/m
-};
-LameParameters shell_lame(double youngs_per_width, double poisson);
-
 /// Collects bodies and obstacles, then finishes the scene. Violations are kept until finish(), so that all of
 /// them are reported at once.
 class SceneBuilder {
@@ -27,9 +20,8 @@ class SceneBuilder {
   /// Planar scenes only; before the first body.
   void set_planar_pairs(PlanarPairs pairs) { scene_.planar_pairs = pairs; }
 
-  /// Appends a body: mass of a vertex = density x a third of its rest triangles' areas + line density x half
-  /// of its segments, 0 when prescribed. Elements all of whose vertices are prescribed hold no unknown and
-  /// are left out.
+  /// Appends a body: what every part (part.hpp) makes of its mesh and material. The mass of a vertex is 0 when it is prescribed.
+  /// Elements all of whose vertices are prescribed hold no unknown and are left out.
   void add_body(const BodySpec& spec);
   void add_obstacle(const Obstacle& obstacle);
 
@@ -42,19 +34,14 @@ class SceneBuilder {
  private:
   void complain(const std::string& what, std::string found, std::string allowed);
   void check_name(const std::string& what, const std::string& name);
+  void require_room(const BodySpec& spec) const;
   void append_vertices(const BodySpec& spec, const Positions& start);
   void append_pins(const BodySpec& spec, const Positions& start, int first);
   void pin_vertex(const std::string& body, int vertex, int motion);
   int motion_index(const RigidMotion& motion);
   void append_masses(const BodySpec& spec, int first);
-  int membrane_part(const std::string& model);
-  void check_warp(const BodySpec& spec, const Vec3d& warp, int first);
-  void append_membrane(const BodySpec& spec, int first);
-  void append_springs(const BodySpec& spec, int first);
-  void append_hinges(const BodySpec& spec, int first);
+  void append_elements(const BodySpec& spec, int first);
   void append_surface(const BodySpec& spec, int first);
-  template <std::size_t n>
-  bool all_prescribed(const std::array<int, n>& vertices) const;
 
   Scene scene_;
   std::string where_;

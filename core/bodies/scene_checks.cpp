@@ -5,69 +5,30 @@
 #include <algorithm>
 #include <cmath>
 
-#include "core/energy/membrane_model.hpp"
+#include "core/bodies/part.hpp"
 #include "core/mesh/bounds.hpp"
 #include "core/mesh/topology.hpp"
-#include "core/parameters/registry.hpp"
 
 namespace bb {
 namespace {
-
-/// Appends violations that share a prefix.
-struct Report {
-  std::string prefix;
-  std::vector<Violation>& out;
-  void operator()(const std::string& what, std::string found, std::string allowed) const {
-    out.push_back({prefix + what, std::move(found), std::move(allowed)});
-  }
-  void number(const std::string& what, double found, bool good, const char* allowed) const {
-    if (!good || !std::isfinite(found)) (*this)(what, fmt::format("{}", found), allowed);
-  }
-};
 
 std::string allowed_coordinates() {
   return fmt::format("finite coordinates between -{0:g} and {0:g} m", max_coordinate);
 }
 
-void check_model(const Report& report, const std::string& model) {
-  std::vector<std::string> names = membrane_models<double>().names();
-  names.emplace_back("none");
-  if (std::find(names.begin(), names.end(), model) != names.end()) return;
-  report("/material/model", '"' + model + '"', one_of_text(model, names));
+void check_material(const Complaints& complain, const BodySpec& spec, bool planar) {
+  settings_of<Material>().check_numbers(
+      spec.material, [&complain](const std::string& name, double value, const std::string& allowed) {
+        complain.number("/material/" + name, value, false, allowed);
+      });
+  for (const PartEntry& entry : part_entries()) entry.part.check(spec, planar, complain);
+  const std::optional<StrainLimitSpec>& limit = spec.material.limit;
+  if (!limit) return;
+  complain.number("/limit/onset", limit->onset, limit->onset >= 0, "a number >= 0");
+  complain.number("/limit/width", limit->width, limit->width > 0, "a number > 0");
 }
 
-void check_warp_axis(const Report& report, const Material& m, bool planar) {
-  if (!m.warp_axis) return;
-  const Vec3d& axis = *m.warp_axis;
-  const std::string found = fmt::format("[{}, {}, {}]", axis[0], axis[1], axis[2]);
-  if (!is_anisotropic(m.model)) {
-    report("/material/warp_axis", found, "nothing: the model " + m.model + " has no direction");
-  } else if (!(std::abs(axis.norm() - 1) < 1e-9)) {
-    report("/material/warp_axis", found, "a unit vector");
-  } else if (planar && axis[2] != 0) {
-    report("/material/warp_axis", found, "z = 0: the scene is planar");
-  }
-}
-
-void check_material(const Report& report, const BodySpec& spec, bool planar) {
-  const Material& m = spec.material;
-  check_model(report, m.model);
-  check_warp_axis(report, m, planar);
-  report.number("/material/density", m.density, m.density >= 0, "a number >= 0");
-  report.number("/material/line_density", m.line_density, m.line_density >= 0, "a number >= 0");
-  report.number("/material/youngs", m.youngs, m.youngs > 0, "a number > 0");
-  report.number("/material/thickness", m.thickness.value_or(1), m.thickness.value_or(1) > 0, "a number > 0");
-  report.number("/material/poisson", m.poisson, m.poisson > -1 && m.poisson < 1, "a number > -1 and < 1");
-  report.number("/material/bending", m.bending, m.bending >= 0, "a number >= 0");
-  report.number("/material/springs", m.springs, m.springs >= 0, "a number >= 0");
-  if (planar && m.bending > 0)
-    report("/material/bending", fmt::format("{}", m.bending), "0: the scene is planar");
-  if (!m.limit) return;
-  report.number("/limit/onset", m.limit->onset, m.limit->onset >= 0, "a number >= 0");
-  report.number("/limit/width", m.limit->width, m.limit->width > 0, "a number > 0");
-}
-
-void check_mesh(const Report& report, const BodySpec& spec, bool planar) {
+void check_mesh(const Complaints& report, const BodySpec& spec, bool planar) {
   const int n = spec.mesh.n_vertices();
   if (n == 0) report("/mesh", "no vertex", "at least one vertex");
   if (!within_bounds(spec.mesh.vertices))
@@ -93,7 +54,7 @@ void check_mesh(const Report& report, const BodySpec& spec, bool planar) {
   }
 }
 
-void check_motion(const Report& report, const std::string& what, const RigidMotion& motion) {
+void check_motion(const Complaints& report, const std::string& what, const RigidMotion& motion) {
   const bool finite = motion.velocity.allFinite() && motion.center.allFinite() && motion.axis.allFinite() &&
                       std::isfinite(motion.angular_velocity) && std::isfinite(motion.start);
   if (!finite || std::isnan(motion.end)) report(what, "a non-finite motion", "finite numbers");
@@ -125,7 +86,7 @@ double least_width(const Scene& scene, const Body& body, const std::vector<int>&
 }
 
 /// What is inside a sphere or a cylinder has to fit in, wherever it starts.
-void check_room(const Scene& scene, const std::vector<int>& pin_of, const Report& report) {
+void check_room(const Scene& scene, const std::vector<int>& pin_of, const Complaints& report) {
   for (const Obstacle& o : scene.obstacles) {
     if (!o.inside || o.kind == ObstacleKind::plane) continue;
     for (const Body& body : scene.bodies) {
@@ -147,7 +108,7 @@ void check_room(const Scene& scene, const std::vector<int>& pin_of, const Report
 bool within_bounds(const Positions& x) { return (x.array().abs() <= max_coordinate).all(); }
 
 void check_body(const BodySpec& spec, bool planar, const std::string& where, std::vector<Violation>& out) {
-  const Report report{fmt::format("{}: body \"{}\"", where, spec.name), out};
+  const Complaints report{fmt::format("{}: body \"{}\"", where, spec.name), out};
   check_mesh(report, spec, planar);
   report.number("/d_hat", spec.d_hat, spec.d_hat > 0, "a number > 0");
   report.number("/offset", spec.offset, spec.offset >= 0, "a number >= 0");
@@ -163,7 +124,7 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
 
 void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& where,
                     std::vector<Violation>& out) {
-  const Report report{fmt::format("{}: obstacle \"{}\"", where, obstacle.name), out};
+  const Complaints report{fmt::format("{}: obstacle \"{}\"", where, obstacle.name), out};
   if (!within_bounds(obstacle.point))
     report("/point", "a coordinate that is too large", allowed_coordinates());
   if (obstacle.kind != ObstacleKind::sphere && !(std::abs(obstacle.axis.norm() - 1) <= 1e-9)) {
@@ -184,7 +145,7 @@ void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& wh
 
 void check_scene(const Scene& scene, const std::vector<int>& pin_of, const std::string& where,
                  std::vector<Violation>& out) {
-  const Report report{where + ": ", out};
+  const Complaints report{where + ": ", out};
   if (scene.bodies.empty() && out.empty()) return report("scene", "no body", "at least one deformable body");
   if (!out.empty()) return;  // bodies were left out: what follows would mislead
   if (std::count(pin_of.begin(), pin_of.end(), -1) == 0) {

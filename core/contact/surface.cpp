@@ -105,7 +105,7 @@ Surface::Surface(const Scene& scene)
 void Surface::find_filled(const Scene& scene) {
   std::vector<std::array<int, 3>> all = scene.surface_triangles;
   if (planar) {
-    const auto elastic = scene.membrane_triangles();
+    const auto elastic = parts::filled_triangles(scene);
     all.insert(all.end(), elastic.begin(), elastic.end());
     sort_unique(all);
   }
@@ -134,16 +134,16 @@ void Surface::find_lone() {
 void Surface::connect(const Scene& scene) {
   if (planar_pairs == PlanarPairs::vertex_vertex) {
     for (const auto& e : scene.surface_edges) connected_.push_back(ascending(e[0], e[1]));
-    add_sides(connected_, scene.membrane_triangles());
+    add_sides(connected_, parts::filled_triangles(scene));
     add_sides(connected_, scene.surface_triangles);
-    for (const auto& e : scene.springs.edges) {  // a spring between two bodies is a stitch, not a mesh edge
+    for (const auto& e : parts::joined_edges(scene)) {  // what joins two bodies is a stitch, not a mesh edge
       const std::size_t a = static_cast<std::size_t>(e[0]), b = static_cast<std::size_t>(e[1]);
       if (scene.body[a] == scene.body[b]) connected_.push_back(ascending(e[0], e[1]));
     }
     sort_unique(connected_);
     return;
   }
-  const std::vector<std::array<int, 3>> elastic = scene.membrane_triangles();
+  const std::vector<std::array<int, 3>> elastic = parts::filled_triangles(scene);
   for (const auto* list : {&elastic, &scene.surface_triangles}) {
     for (const auto& t : *list) {
       for (std::size_t k = 0; k < 3; ++k) {

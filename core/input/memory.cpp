@@ -14,8 +14,6 @@
 namespace bb {
 namespace {
 
-constexpr double bytes_per_vertex = 400, bytes_per_triangle = 800, bytes_per_segment = 400;
-
 constexpr std::uint64_t unknown = std::numeric_limits<std::uint64_t>::max();
 
 /// "max" and absent files mean no limit.
@@ -45,17 +43,18 @@ std::uint64_t memory_bytes() {
                    number_in("/sys/fs/cgroup/memory/memory.limit_in_bytes")});
 }
 
-double scene_bytes(const SurfaceSize& size) {
-  return size.vertices * bytes_per_vertex + size.triangles * bytes_per_triangle +
-         size.segments * bytes_per_segment;
+double scene_bytes(const std::vector<MemoryItem>& items) {
+  double sum = 0;
+  for (const MemoryItem& item : items) sum += item.count * item.bytes_each;
+  return sum;
 }
 
-void require_memory(const std::string& where, const SurfaceSize& size) {
-  const double needed = scene_bytes(size), there = static_cast<double>(memory_bytes());
+void require_memory(const std::string& where, const std::vector<MemoryItem>& items) {
+  const double needed = scene_bytes(items), there = static_cast<double>(memory_bytes());
   if (needed <= there) return;
-  throw ConfigError(where,
-                    fmt::format("{:.0f} vertices, {:.0f} triangles, {:.0f} segments, which need at least {}",
-                                size.vertices, size.triangles, size.segments, in_gib(needed)),
+  std::string counts;
+  for (const MemoryItem& item : items) counts += fmt::format("{:.0f} {}, ", item.count, item.name);
+  throw ConfigError(where, fmt::format("{}which need at least {}", counts, in_gib(needed)),
                     fmt::format("a scene that fits into the {} of this process", in_gib(there)));
 }
 

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 namespace bb {
 
@@ -10,16 +11,24 @@ namespace bb {
 /// limit on address space (ulimit -v). Reads files of /proc and /sys; never fails.
 std::uint64_t memory_bytes();
 
-/// Elements of a surface that is about to be built.
-struct SurfaceSize {
-  double vertices = 0, triangles = 0, segments = 0;  // double: a product of counts may be beyond any integer
+/// Primitives of one kind that are about to be built, and what each of them takes before the first step, from below: mesh, elements,
+/// contact surface, matrix pattern. Measured: `check` of a grid of 250000 vertices and 498002 triangles takes 514 MB.
+struct MemoryItem {
+  const char* name;
+  double count;  // double: a product of counts may be beyond any integer
+  double bytes_each;
 };
+inline MemoryItem vertex_memory(double count) { return {"vertices", count, 400}; }
+inline MemoryItem triangle_memory(double count) { return {"triangles", count, 800}; }
+inline MemoryItem segment_memory(double count) { return {"segments", count, 400}; }
+/// The three of a surface of triangles.
+inline std::vector<MemoryItem> surface_memory(double vertices, double triangles) {
+  return {vertex_memory(vertices), triangle_memory(triangles), segment_memory(0)};
+}
 
-/// Bytes that a scene of that size needs before its first step, from below: mesh, elements, contact surface,
-/// matrix pattern. Measured: `check` of a grid of 250000 vertices and 498002 triangles takes 514 MB.
-double scene_bytes(const SurfaceSize& size);
+double scene_bytes(const std::vector<MemoryItem>& items);
 
-/// Errors: ConfigError at `where` with the estimate when a scene of that size needs more than memory_bytes().
-void require_memory(const std::string& where, const SurfaceSize& size);
+/// Errors: ConfigError at `where` with the estimate when a scene of these primitives needs more than memory_bytes().
+void require_memory(const std::string& where, const std::vector<MemoryItem>& items);
 
 }  // namespace bb

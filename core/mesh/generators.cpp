@@ -48,7 +48,7 @@ TriangleMesh grid_mesh(int n_x, int n_y, double size_x, double size_y) {
   require_size("grid/size_x_m", size_x);
   require_size("grid/size_y_m", size_y);
   const double quads = (n_x - 1.0) * (n_y - 1.0);
-  require_memory("grid", {static_cast<double>(n_x) * n_y, 2 * quads, 0});
+  require_memory("grid", surface_memory(static_cast<double>(n_x) * n_y, 2 * quads));
   std::vector<Vec3d> points;
   for (int j = 0; j < n_y; ++j) {
     for (int i = 0; i < n_x; ++i) {
@@ -101,7 +101,7 @@ TriangleMesh cylinder_mesh(int n_around, int n_along, double radius, double leng
   require_count("cylinder/n_along", n_along, 1, max_count);
   require_size("cylinder/radius_m", radius);
   require_size("cylinder/length_m", length);
-  require_memory("cylinder", {n_around * (n_along + 1.0), 2.0 * n_around * n_along, 0});
+  require_memory("cylinder", surface_memory(n_around * (n_along + 1.0), 2.0 * n_around * n_along));
   std::vector<Vec3d> points;
   for (int j = 0; j <= n_along; ++j) {
     for (int i = 0; i < n_around; ++i) {
@@ -132,7 +132,7 @@ TriangleMesh cylinder_mesh(int n_around, int n_along, double radius, double leng
 TriangleMesh box_mesh(int n, const Vec3d& size) {
   require_count("box/n", n, 1, 1000);
   for (int k = 0; k < 3; ++k) require_size("box/size_m", size[k]);
-  require_memory("box", {6.0 * n * n, 12.0 * n * n, 0});
+  require_memory("box", surface_memory(6.0 * n * n, 12.0 * n * n));
   std::vector<Vec3d> points;
   std::map<std::array<int, 3>, int> index;
   const auto vertex = [&](const std::array<int, 3>& cell) {

@@ -20,11 +20,6 @@ bool report(const json& found, const std::string& allowed, const std::string& wh
   return false;
 }
 
-bool in_range(const Rule& rule, double value) {
-  return std::isfinite(value) && (rule.low_open ? value > rule.low : value >= rule.low) &&
-         (rule.high_open ? value < rule.high : value <= rule.high);
-}
-
 bool size_fits(const Rule& rule, std::size_t size) {
   return size >= rule.min_size && (rule.max_size == 0 || size <= rule.max_size);
 }
@@ -104,6 +99,11 @@ std::string keys_text(const json& object) {
 }
 
 }  // namespace
+
+bool in_range(const Rule& rule, double value) {
+  return std::isfinite(value) && (rule.low_open ? value > rule.low : value >= rule.low) &&
+         (rule.high_open ? value < rule.high : value <= rule.high);
+}
 
 bool check_value(json& value, const Rule& rule, const std::string& where,
                  std::vector<Violation>& violations) {

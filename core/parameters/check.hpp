@@ -19,6 +19,9 @@ void check_object(nlohmann::json& object, const ParameterList& list, const std::
 bool check_value(nlohmann::json& value, const Rule& rule, const std::string& where,
                  std::vector<Violation>& violations);
 
+/// Finite, and within the rule's bounds.
+bool in_range(const Rule& rule, double value);
+
 /// The rows' values in a checked object, with their defaults; without rows that are neither given nor have
 /// a default.
 ParameterMap to_map(const std::vector<Parameter>& rows, const nlohmann::json& object);

@@ -46,16 +46,39 @@ struct FieldLine {};
   }                                                               \
   Type name() const
 
+/// BB_FIELDS_OF(Base): the fields of a record that this one derives from, in this place. Base says with BB_RECORD_LIST that its
+/// fields are lines of another file, which is included behind it.
+template <class Base>
+struct FieldsOf {};
+#define BB_FIELDS_OF(Base) \
+  static constexpr auto field(FieldLine<__LINE__>) { return FieldsOf<Base>{}; }
+#define BB_RECORD_LIST(Type, text)                  \
+  using Self = Type;                                \
+  static constexpr const char* record_name = #Type; \
+  static constexpr const char* record_doc = text;   \
+  static constexpr int first_line = 0, last_line = 100
+
 template <class T>
 concept Record = requires {
   T::record_name;
 };
 
+template <Record T, class Visitor>
+void for_each_field(Visitor&& visitor);
+
+template <class Base, class Visitor>
+void visit_field(FieldsOf<Base>, Visitor& visitor) {
+  for_each_field<Base>(visitor);
+}
+template <class Member, class Visitor>
+void visit_field(const std::pair<FieldText, Member>& field, Visitor& visitor) {
+  visitor(field.first, field.second);
+}
 template <class T, int Line, class Visitor>
 void visit_line(Visitor& visitor) {
   if constexpr (requires { T::field(FieldLine<Line>{}); }) {
     constexpr auto field = T::field(FieldLine<Line>{});
-    visitor(field.first, field.second);
+    visit_field(field, visitor);
   }
 }
 

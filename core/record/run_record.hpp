@@ -37,13 +37,19 @@ struct Status {
   BB_RECORD_END;
 };
 
-struct SceneSize {
+/// Elements of every part, part by part.
+struct PartSizes {
+  BB_RECORD_LIST(PartSizes, "elements of the scene");
+#define PART(name, term, convex, field, ...) BB_FIELD(std::size_t, field, __VA_ARGS__) = 0;
+#include "core/scene/parts/registry.inc"
+#undef PART
+};
+
+struct SceneSize : PartSizes {
   BB_RECORD(SceneSize, "sizes of the scene that was built");
   BB_FIELD(std::size_t, vertices, "given and free") = 0;
   BB_FIELD(std::size_t, free_dofs, "degrees of freedom of vertices that are not prescribed") = 0;
-  BB_FIELD(std::size_t, triangles, "with a membrane") = 0;
-  BB_FIELD(std::size_t, springs, "edges with a spring") = 0;
-  BB_FIELD(std::size_t, hinges, "edges that resist bending") = 0;
+  BB_FIELDS_OF(PartSizes)
   BB_FIELD(std::size_t, obstacles, "analytic surfaces") = 0;
   BB_FIELD(double, extent_m, "largest side of the start box") = 0;
   BB_FIELD(TextMap, mesh_sha256, "mesh file, relative to the folder of this record -> sha256");

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "core/math/types.hpp"
+#include "core/scene/all_parts.hpp"
 
 namespace bb {
 
@@ -36,24 +37,6 @@ struct Body {
   int first_vertex = 0, n_vertices = 0;
 };
 
-/// Membrane elements of one model, of all bodies that have it. Lame parameters already multiplied by
-/// the thickness, N/m.
-struct MembranePart {
-  std::string model;
-  std::vector<std::array<int, 3>> triangles;
-  std::vector<double> lame_mu, lame_lambda;  // [n] N/m
-  std::vector<Vec3d>
-      warp;  // anisotropic models: [n] direction, turned into the triangle's plane at rest; else empty
-};
-struct SpringPart {
-  std::vector<std::array<int, 2>> edges;
-  std::vector<double> stiffness;  // [n] N/m
-};
-/// e0 e1 v0 v1 of each interior edge.
-struct HingePart {
-  std::vector<std::array<int, 4>> hinges;
-  std::vector<double> stiffness, rest_angle;  // [n] J, rad
-};
 /// Elements with a hard limit 1 + onset + width on their singular values.
 struct StrainLimitPart {
   std::vector<std::array<int, 3>> triangles;
@@ -74,7 +57,8 @@ struct Obstacle {
 
 enum class PlanarPairs { vertex_vertex, point_edge };
 
-struct Scene {
+/// The elements of every part are the columns that it derives from (parts/).
+struct Scene : parts::AllColumns {
   std::string name;
   bool planar = false;  // x-y plane, z locked, F is 2x2
   PlanarPairs planar_pairs = PlanarPairs::point_edge;
@@ -86,9 +70,6 @@ struct Scene {
   std::vector<double> d_hat, offset;  // [n] m
   Vec3d gravity = Vec3d::Zero();      // m/s^2
 
-  std::vector<MembranePart> membranes;  // one a model in use, in the order in which bodies bring them
-  SpringPart springs;
-  HingePart hinges;
   StrainLimitPart limit;
 
   std::vector<std::array<int, 3>> surface_triangles;  // collision surface
@@ -100,14 +81,6 @@ struct Scene {
   std::vector<Pin> pins;  // one entry a prescribed vertex, each vertex at most once
 
   int n_vertices() const { return static_cast<int>(rest.cols()); }
-  /// Triangles of all membranes, part by part.
-  std::vector<std::array<int, 3>> membrane_triangles() const {
-    std::vector<std::array<int, 3>> all;
-    for (const MembranePart& part : membranes) {
-      all.insert(all.end(), part.triangles.begin(), part.triangles.end());
-    }
-    return all;
-  }
 };
 
 /// Pose of a prescribed vertex at time t (s).

@@ -1,18 +1,25 @@
 #include "core/terms/registry.hpp"
 
+#include "core/terms/part_term.hpp"
+
 namespace bb {
 
 #define ENTRY(name, doc, convex)           \
   PlanItem needs_##name(const TermNeeds&); \
   void make_##name(const TermInputs&, TermList&);
+#define PART(...)
 #include "core/terms/registry.inc"
 #undef ENTRY
+#undef PART
 
 std::span<const TermEntry> term_entries() {
   static constexpr TermEntry all[] = {
 #define ENTRY(name, doc, convex) {#name, doc, convex, needs_##name, make_##name},
+#define PART(name, doc, convex, ...) \
+  {#name, doc, convex, needs_part<parts::name::part>, make_part<parts::name::part>},
 #include "core/terms/registry.inc"
 #undef ENTRY
+#undef PART
   };
   return all;
 }

@@ -6,6 +6,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "core/bodies/part.hpp"
 #include "core/cuda/device.hpp"
 #include "core/exec/memory_ledger.hpp"
 #include "core/input/read_file.hpp"
@@ -117,13 +118,22 @@ void print_memory(const DeviceMemory& memory) {
   print_card(memory.total);
 }
 
+/// "450 triangles, 640 hinges, " of the parts that the scene has.
+std::string elements_text(const Scene& scene) {
+  std::string out;
+  for (const PartEntry& entry : part_entries()) {
+    const std::size_t n = entry.part.size(scene);
+    if (n > 0) out += fmt::format("{} {}, ", n, entry.part.elements());
+  }
+  return out;
+}
+
 int explain(const RunVerb& verb, const ContactDemand& demand) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
   const Plan plan = plan_of(config, scene);
-  fmt::print("{}\n  {} vertices ({} prescribed), {} membrane triangles, {} steps of {} s\n\n",
-             run_label(config), scene.n_vertices(), scene.pins.size(), scene.membrane_triangles().size(),
-             config.time.steps, config.time.dt);
+  fmt::print("{}\n  {} vertices ({} prescribed), {}{} steps of {} s\n\n", run_label(config),
+             scene.n_vertices(), scene.pins.size(), elements_text(scene), config.time.steps, config.time.dt);
   print_method(config);
   print_formulation(config);
   for (const bool needed : {true, false}) {

@@ -4,6 +4,7 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
+#include "core/bodies/part.hpp"
 #include "core/energy/membrane_model.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/linear/preconditioner.hpp"
@@ -63,6 +64,16 @@ void print_generators() {
   }
 }
 
+void print_parts() {
+  fmt::print("parts (/scene/bodies/N/material; below each: {})\n", parameter_columns);
+  for (const PartEntry& entry : part_entries()) {
+    fmt::print("  {:<22} {}\n", entry.name, entry.doc);
+    Settings<Material> keys("");
+    entry.part.add_keys(keys);
+    print_parameters(keys.rows().rows);
+  }
+}
+
 void print_methods() {
   fmt::print("methods (/method; below each: its settings, why, and what this program does otherwise)\n");
   for (const PublishedMethod& method : published_methods()) {
@@ -96,6 +107,7 @@ const std::vector<Section>& sections() {
       {"step_solvers", [] { print_entries("step_solvers", step_solvers()); }},
       {"scenes", print_scenes},
       {"generators", print_generators},
+      {"parts", print_parts},
       {"linear_solvers", [] { print_entries("linear_solvers", linear_solvers()); }},
       {"preconditioners", [] { print_entries("preconditioners", preconditioners()); }},
       {"membranes", [] { print_entries("membranes", membrane_models<double>()); }},

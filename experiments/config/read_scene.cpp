@@ -4,7 +4,7 @@
 
 #include <set>
 
-#include "core/energy/membrane_model.hpp"
+#include "core/bodies/part.hpp"
 #include "core/input/read_file.hpp"
 #include "core/record/provenance.hpp"
 #include "experiments/config/mesh_generators.hpp"
@@ -48,15 +48,8 @@ void check_motion(const RigidMotion& motion, const std::string& pointer, const R
 }
 
 void settle_material(const json& object, const std::string& pointer, const Reader& reader, Material& m) {
-  if (!m.warp_axis && is_anisotropic(m.model)) m.warp_axis = Vec3d::UnitX();
-  if (!reader.complete) return;  // one of the two may be there and wrong
-  const bool pascal = object.contains("youngs_Pa"), thick = object.contains("thickness_m");
-  if (pascal && object.contains("youngs_N_per_m")) {
-    reader.complain(pointer, "youngs_Pa and youngs_N_per_m", "one of the two");
-  } else if (pascal != thick) {
-    reader.complain(pointer, pascal ? "youngs_Pa without thickness_m" : "thickness_m without youngs_Pa",
-                    "youngs_Pa with thickness_m, or youngs_N_per_m alone");
-  }
+  const Complaints complain{reader.source + "#" + pointer, reader.violations};
+  for (const PartEntry& entry : part_entries()) entry.part.settle({object, reader.complete}, complain, m);
 }
 
 /// Settings that only bodies or obstacles of another kind have.

@@ -11,20 +11,6 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double config_youngs = 100;  // N/m, of a material that says nothing
-
-/// The one member `youngs` has two names: times thickness where there is none.
-void add_youngs(Settings<Material>& out) {
-  out.add_row(
-      {"youngs_Pa", positive("Pa"), no_default, "Young's modulus; needs thickness_m."},
-      [](const json* given, Material& m) { m.youngs = given ? given->get<double>() : config_youngs; },
-      [](const Material& m) { return m.thickness ? json(m.youngs) : json(); });
-  out.add_row(
-      {"youngs_N_per_m", positive("N/m"), config_youngs, "Young's modulus times thickness."},
-      [](const json* given, Material& m) { m.youngs = given ? given->get<double>() : m.youngs; },
-      [](const Material& m) { return m.thickness ? json() : json(m.youngs); });
-}
-
 /// Read by read_scene, which opens its file.
 void add_mesh(Settings<BodyConfig>& out) {
   out.add_row({"mesh", required(mesh_rule()), no_default, ""}, nullptr, [](const BodyConfig& body) {

@@ -2,7 +2,9 @@
 // help and the schema print.
 #pragma once
 
-#include "experiments/config/settings.hpp"
+#include "core/bodies/material_settings.hpp"
+#include "core/parameters/settings.hpp"
+#include "experiments/config/enum_words.hpp"
 
 namespace bb {
 

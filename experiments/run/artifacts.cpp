@@ -6,9 +6,8 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "core/energy/triangle_membrane.hpp"
+#include "core/bodies/part.hpp"
 #include "core/math/error.hpp"
-#include "core/math/svd.hpp"
 #include "core/mesh/write_mesh.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/run_folder.hpp"
@@ -40,24 +39,6 @@ std::string scene_json(const Scene& scene) {
   for (const Body& body : scene.bodies) out["bodies"].push_back(body.name);
   for (const Obstacle& obstacle : scene.obstacles) out["obstacles"].push_back(to_json(obstacle));
   return out.dump(2) + "\n";
-}
-
-void corners_of(const Positions& x, const std::array<int, 3>& triangle, Vec3d (&out)[3]) {
-  for (std::size_t k = 0; k < 3; ++k) out[k] = x.col(triangle[k]);
-}
-
-/// Largest singular value of F, minus 1, of every surface triangle; 0 for one that only moves.
-std::vector<double> stretches(const Scene& scene, const Positions& x) {
-  std::vector<double> out;
-  out.reserve(scene.surface_triangles.size());
-  for (const auto& triangle : scene.surface_triangles) {
-    Vec3d rest[3], now[3];
-    corners_of(scene.rest, triangle, rest);
-    corners_of(x, triangle, now);
-    const auto shape = triangle_rest<double>(rest, Vec3d(rest[1] - rest[0]));
-    out.push_back(svd_3x2<double>(deformation_gradient<3, double>(shape, now)).sigma.maxCoeff() - 1);
-  }
-  return out;
 }
 
 }  // namespace
@@ -145,8 +126,9 @@ void ArtifactWriter::write_frame(const std::filesystem::path& relative, const Po
     of_vertices.push_back({"gap_rel", fields->gap_rel});
     of_vertices.push_back({"load_N", fields->load});
   }
-  const std::vector<PlyColumn> of_triangles{{"body", triangle_body_}, {"stretch", stretches(scene_, x)}};
-  write(relative, ply_bytes(mesh, of_vertices, of_triangles), "frame", "model/ply");
+  FrameFields columns{std::move(of_vertices), {{"body", triangle_body_}}};
+  for (const PartEntry& entry : part_entries()) entry.part.add_frame_fields(scene_, x, columns);
+  write(relative, ply_bytes(mesh, columns.of_vertices, columns.of_triangles), "frame", "model/ply");
 }
 
 void ArtifactWriter::matrix(const StoredSystem& stored) {

@@ -24,8 +24,8 @@ ContactFields contact_fields(const ContactState& state, int n_vertices);
 /// Files of one run below `folder`/frames and `folder`/matrices.
 ///
 /// A frame is a binary PLY file of all bodies: triangles, and rods as edges. Every vertex has `body` (index
-/// into the bodies of frames/scene.json), every triangle `body` and `stretch` (largest singular value of its
-/// deformation gradient, minus 1). At the end of a step vertices also have `gap_rel` and `load_N`, as in
+/// into the bodies of frames/scene.json), every triangle `body`; parts (core/bodies/part.hpp) add theirs: membranes `stretch`, the
+/// largest singular value of its deformation gradient, minus 1. At the end of a step vertices also have `gap_rel` and `load_N`, as in
 /// ContactFields. Errors of every function: RecordError when a file cannot be written whole.
 ///
 /// Files lie in frames.part and matrices.part until put_in_place() (core/record/run_folder.hpp), so that those of an

@@ -60,14 +60,14 @@ std::vector<Edge> edges_of(const Scene& scene) {
   return out;
 }
 
-// Vertices of no edge; in space every vertex of a triangle has one.
+// Vertices of the surface and of no edge; in space every vertex of a triangle has one.
 std::vector<int> points_of(const Scene& scene, const std::vector<Edge>& edges) {
   std::vector<char> covered(static_cast<std::size_t>(scene.n_vertices()), 0);
   for (const Edge& e : edges) {
     for (const int v : e) covered[static_cast<std::size_t>(v)] = 1;
   }
   std::vector<int> out;
-  for (int v = 0; v < scene.n_vertices(); ++v) {
+  for (const int v : scene.surface_vertices) {
     if (!covered[static_cast<std::size_t>(v)]) out.push_back(v);
   }
   return out;

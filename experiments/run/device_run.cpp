@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <functional>
 
+#include "core/bodies/part.hpp"
 #include "core/cuda/device.hpp"
 #include "core/exec/counting_executor.hpp"
 #include "core/exec/host_executor.hpp"
@@ -98,6 +99,7 @@ std::optional<std::string> card_of(const RunConfig& config) {
 
 void check_device_forms(const RunConfig& config, const Scene& scene) {
   if (config.device == Device::cpu) return;
+  at_config(config, "/scene", [&] { require_kernels(part_entries(), scene, "/scene"); });
   Calibration any;  // numbers of the stiffness do not matter
   any.kappa = any.k_s = 1;
   Method method = make_method(config, any);

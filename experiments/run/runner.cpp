@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <new>
 
+#include "core/bodies/part.hpp"
 #include "core/linear/blas_info.hpp"
 #include "core/linear/cudss.hpp"
 #include "core/math/error.hpp"
@@ -62,9 +63,9 @@ void fill_scene(const Scene& scene, RunRecord& record) {
   size.vertices = static_cast<std::size_t>(scene.n_vertices());
   const std::size_t per_vertex = scene.planar ? 2 : 3;
   size.free_dofs = per_vertex * (size.vertices - scene.pins.size());
-  size.triangles = scene.membrane_triangles().size();
-  size.springs = scene.springs.edges.size();
-  size.hinges = scene.hinges.hinges.size();
+#define PART(name, term, convex, field, ...) size.field = parts::name::part().size(scene);
+#include "core/scene/parts/registry.inc"
+#undef PART
   size.obstacles = scene.obstacles.size();
   size.extent_m = (scene.x0.rowwise().maxCoeff() - scene.x0.rowwise().minCoeff()).maxCoeff();
 }

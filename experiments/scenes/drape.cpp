@@ -21,7 +21,7 @@ void turn(Positions& x, double angle) {
 void add_layers(SceneBuilder& builder, const ParameterMap& p, const SceneContext& context) {
   const int n = integer(p, "n"), layers = integer(p, "layers");
   require_memory("scene drape: n, layers",  // of all layers, before the first is made
-                 {1.0 * layers * n * n, 2.0 * layers * (n - 1) * (n - 1), 0});
+                 surface_memory(1.0 * layers * n * n, 2.0 * layers * (n - 1) * (n - 1)));
   const double width = number(p, "width_m");
   for (int layer = 0; layer < layers; ++layer) {
     BodySpec cloth;

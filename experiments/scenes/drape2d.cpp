@@ -17,15 +17,6 @@ Layout layout_of(const std::string& variant, int n) {
   return {n, n, 1};
 }
 
-Material material_of(const ParameterMap& p, const SceneContext& context) {
-  Material material;
-  material.youngs = number(p, "youngs_N_per_m");
-  material.poisson = number(p, "poisson");
-  material.density = number(p, "density_kg_per_m2");
-  material.limit = context.limit;
-  return material;
-}
-
 Scene build_drape2d(const ParameterMap& p, const SceneContext& context) {
   const std::string& variant = text(p, "variant");
   const Layout layout = layout_of(variant, integer(p, "n"));
@@ -42,7 +33,7 @@ Scene build_drape2d(const ParameterMap& p, const SceneContext& context) {
     sheet.mesh = grid_mesh(layout.n_x, layout.n_y, width, height);
     const double bottom = radius + gap + s * (height + gap);
     sheet.mesh.vertices.row(1).array() += bottom + 0.5 * height;
-    sheet.material = material_of(p, context);
+    sheet.material = cloth_material(p, context);
     sheet.velocity = Vec3d(0, -number(p, "start_speed_m_per_s"), 0);
     sheet.d_hat = context.d_hat;
     if (variant == "pinned") sheet.pins.emplace_back().top_row = true;

@@ -1,5 +1,7 @@
 #include "experiments/scenes/procedural_scene.hpp"
 
+#include "core/bodies/material_settings.hpp"
+
 namespace bb {
 
 #define ENTRY(name, doc) ProceduralScene make_scene_##name();
@@ -36,13 +38,18 @@ std::vector<Parameter> cloth_parameters() {
   };
 }
 
-Material cloth_material(const ParameterMap& parameters, const SceneContext& context) {
+Material material_from(const ParameterMap& parameters, const std::string& prefix) {
+  ParameterMap keys;
+  for (const auto& [name, value] : parameters) {
+    if (name.starts_with(prefix)) keys[name.substr(prefix.size())] = value;
+  }
   Material material;
-  material.youngs = number(parameters, "youngs_Pa");
-  material.thickness = number(parameters, "thickness_m");
-  material.poisson = number(parameters, "poisson");
-  material.density = number(parameters, "density_kg_per_m2");
-  material.bending = number(parameters, "bending_J");
+  settings_of<Material>().read(to_json(keys), material);
+  return material;
+}
+
+Material cloth_material(const ParameterMap& parameters, const SceneContext& context) {
+  Material material = material_from(parameters);
   material.limit = context.limit;
   return material;
 }

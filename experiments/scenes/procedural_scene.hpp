@@ -43,7 +43,11 @@ Vec3d gravity_of(const ProceduralScene& scene, const ParameterMap& parameters);
 /// The parameter every scene has.
 Parameter gravity_parameter();
 
-/// Cloth parameters shared by the shell scenes, and the material they make.
+/// The material of the parameters that are named like its keys (`bench list parts`), behind `prefix`: one of youngs_Pa and
+/// youngs_N_per_m is among them.
+Material material_from(const ParameterMap& parameters, const std::string& prefix = "");
+
+/// Cloth parameters shared by the shell scenes, and the material they make with the strain limit of the config.
 ///   Defaults: cotton, E 0.8 MPa, nu 0.243, 472.6 kg/m^3, 0.318 mm (values used by Li, Kaufman, Jiang 2021,
 ///   measured by Penava et al. 2014).
 std::vector<Parameter> cloth_parameters();

@@ -27,10 +27,7 @@ BodySpec make_sphere(const ParameterMap& p, const SceneContext& context) {
   const double radius = number(p, "sphere_radius_m");
   sphere.mesh = icosphere_mesh(integer(p, "sphere_level"), radius);
   sphere.mesh.vertices.row(2).array() += radius + number(p, "start_gap_d_hat") * context.d_hat;
-  sphere.material.youngs = number(p, "sphere_youngs_N_per_m");
-  sphere.material.poisson = 0.3;
-  sphere.material.density = number(p, "sphere_density_kg_per_m2");
-  sphere.material.bending = number(p, "sphere_bending_J");
+  sphere.material = material_from(p, "sphere_");
   sphere.velocity = Vec3d(0, 0, -number(p, "start_speed_m_per_s"));
   sphere.d_hat = context.d_hat;
   return sphere;

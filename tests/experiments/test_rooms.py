@@ -35,11 +35,22 @@ def test_a_declared_include_passes_and_the_graph_is_printed(tmp_path):
     ("low|core/low|-\nhigh|core/high|low\n", LOW | {"core/high/b.cpp": "int b;\n"}, ["core/high", "includes nothing"]),
     ("low|core/low|high\nhigh|core/high|low\n", HIGH | {"core/low/a.hpp": '#include "core/high/b.hpp"\n'},
      ["circle", "low", "high"]),
+    ("low|core/low|-\nhigh|core/high|-\n", LOW | {"core/high/list.inc": '#include "core/low/a.hpp"\n'},
+     ["core/high/list.inc", "'low'"]),
     ("low|core/low|-\nnone|core/none|-\n", HIGH | LOW, ["core/none", "no files"]),
-], ids=["undeclared", "unused", "circle", "empty"])
+], ids=["undeclared", "unused", "circle", "list", "empty"])
 def test_what_is_not_declared_is_refused(tmp_path, rooms, files, words):
     done = check(tmp_path, rooms, files)
     assert done.returncode != 0
     text = " ".join(done.stderr.split())
     for word in words:
         assert word in text
+
+
+def test_links_that_no_include_shows_are_printed(tmp_path):
+    rooms = "low|core/low|-|high,low\nhigh|core/high|low|low\nover|core/over|-|-\n"
+    more = {"core/over/c.hpp": "", "generated/core/over/c.cpp": '#include "core/high/b.hpp"\n#include "core/over/c.hpp"\n'}
+    done = check(tmp_path, rooms, LOW | HIGH | more)
+    assert done.returncode == 0, done.stderr
+    lines = {line.split()[0]: line.split("<-")[1].split() for line in done.stdout.splitlines() if "<-" in line}
+    assert lines == {"low": ["linked:", "high"], "high": ["low"], "over": ["generated:", "high"]}

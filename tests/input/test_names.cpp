@@ -35,10 +35,10 @@ TEST(Names, Utf8IsTold) {
 
 TEST(Memory, ASceneThatCannotFitIsRefusedWithItsEstimate) {
   EXPECT_GT(memory_bytes(), std::uint64_t{1} << 28);
-  EXPECT_NO_THROW(require_memory("a", {1e5, 2e5, 0}));
-  EXPECT_GT(scene_bytes({1e5, 2e5, 0}), 1e5 * 3 * 8);
+  EXPECT_NO_THROW(require_memory("a", surface_memory(1e5, 2e5)));
+  EXPECT_GT(scene_bytes(surface_memory(1e5, 2e5)), 1e5 * 3 * 8);
   try {
-    require_memory("a", {4e12, 8e12, 0});
+    require_memory("a", surface_memory(4e12, 8e12));
     FAIL() << "accepted";
   } catch (const ConfigError& error) {
     EXPECT_NE(error.violations().front().found.find("GiB"), std::string::npos);

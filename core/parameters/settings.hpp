@@ -11,11 +11,10 @@
 
 #include "core/math/types.hpp"
 #include "core/parameters/check.hpp"
-#include "experiments/config/enum_words.hpp"
 
 namespace bb {
 
-/// From a checked value.
+/// From a checked value. The words of an enumeration are those of its words_of, which is found beside it.
 template <class T>
 void take(const nlohmann::json& value, T& out) {
   if constexpr (std::is_enum_v<T>) {
@@ -86,6 +85,10 @@ class Settings {
     const json fallback = give(std::invoke(access, std::as_const(blank_)));
     const bool unit_vector = rule.kind == Kind::direction;
     ParameterValue value = fallback.is_null() ? ParameterValue() : to_value(rule, fallback);
+    std::function<std::optional<double>(const S&)> number;
+    if constexpr (is_number<decltype(std::invoke(access, std::as_const(blank_)))>) {
+      number = [access](const S& from) { return std::optional<double>(std::invoke(access, from)); };
+    }
     const auto read = [access, unit_vector](const json* given, S& out) {
       if (given == nullptr) return;
       auto& held = std::invoke(access, out);
@@ -94,6 +97,7 @@ class Settings {
     };
     add_row({std::move(name), std::move(rule), std::move(value), std::move(doc)}, read,
             [access](const S& from) { return give(std::invoke(access, from)); });
+    settings_.back().number = std::move(number);
   }
 
   /// An object of settings of its own. `settings` outlives this list. `or_text` says what a string in
@@ -152,7 +156,7 @@ class Settings {
   /// without them the row is only checked.
   void add_row(Parameter row, std::function<void(const json*, S&)> read = nullptr,
                std::function<json(const S&)> write = nullptr) {
-    settings_.push_back({std::move(row), std::move(read), std::move(write)});
+    settings_.push_back({std::move(row), std::move(read), std::move(write), nullptr});
   }
 
   /// Settings that are not given stay as they stand in `out`, except in nested maps of parameters.
@@ -170,6 +174,16 @@ class Settings {
       if (!value.is_null()) out[one.row.name] = std::move(value);
     }
     return out;
+  }
+
+  /// Calls found(name, value, what is allowed) for every number of `from` that its rule does not allow. Values that no JSON
+  /// gave: a scene made in C++.
+  template <class Found>
+  void check_numbers(const S& from, const Found& found) const {
+    for (const Setting& one : settings_) {
+      const std::optional<double> value = one.number ? one.number(from) : std::nullopt;
+      if (value && !in_range(one.row.rule, *value)) found(one.row.name, *value, allowed_text(one.row.rule));
+    }
   }
 
   ParameterList rows() const {
@@ -190,7 +204,12 @@ class Settings {
     Parameter row;
     std::function<void(const json*, S&)> read;
     std::function<json(const S&)> write;
+    std::function<std::optional<double>(const S&)> number;  // of a member that is one
   };
+
+  template <class T>
+  static constexpr bool is_number = std::is_same_v<std::remove_cvref_t<T>, double> ||
+                                    std::is_same_v<std::remove_cvref_t<T>, std::optional<double>>;
 
   /// What was normalised once is left as it is, so that a resolved config reads back bit for bit.
   static void normalise(Vec3d& axis) {

@@ -1,0 +1,47 @@
+// The list of parts, and what is the same for all of them.
+#include "core/bodies/part.hpp"
+
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
+namespace bb {
+
+std::span<const PartEntry> part_entries() {
+  static const PartEntry all[] = {
+#define PART(name, doc, ...) {#name, doc, parts::name::part()},
+#include "core/scene/parts/registry.inc"
+#undef PART
+  };
+  return all;
+}
+
+void require_kernels(std::span<const PartEntry> entries, const Scene& scene, const std::string& where) {
+  std::vector<std::string_view> with_kernels;
+  for (const PartEntry& entry : entries) {
+    if (entry.part.has_kernels()) with_kernels.push_back(entry.name);
+  }
+  for (const PartEntry& entry : entries) {
+    const std::size_t n = entry.part.size(scene);
+    if (n == 0 || entry.part.has_kernels()) continue;
+    throw ConfigError(where, fmt::format("{} {}, a part without kernels", n, entry.part.elements()),
+                      fmt::format("elements of {}", fmt::join(with_kernels, ", ")));
+  }
+}
+
+void Complaints::number(const std::string& what, double found, bool good, const std::string& allowed) const {
+  if (!good || !std::isfinite(found)) (*this)(what, fmt::format("{}", found), allowed);
+}
+
+template <>
+Settings<Material> list_of() {
+  std::string doc;
+  for (const PartEntry& entry : part_entries()) {
+    const std::string_view more = entry.part.keys_doc();
+    doc += (doc.empty() || more.empty() ? "" : " ") + std::string(more);
+  }
+  Settings<Material> out(doc);
+  for (const PartEntry& entry : part_entries()) entry.part.add_keys(out);
+  return out;
+}
+
+}  // namespace bb

@@ -1,0 +1,239 @@
+// Membranes: the triangles of a body, their mass and surface; elements of the model that the body names, out of the registry of
+// membrane models (core/energy/registry.inc).
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/bodies/part.hpp"
+#include "core/energy/membrane_batch.hpp"
+#include "core/math/svd.hpp"
+#include "core/mesh/topology.hpp"
+#include "core/parameters/registry.hpp"
+
+namespace bb {
+namespace {
+
+using nlohmann::json;
+
+constexpr double config_youngs = 100;  // N/m, of a material that says nothing
+
+/// Lame parameters of a shell in plane stress, times the thickness, N/m:
+///   mu = E t / (2 (1 + nu)), lambda = E t nu / (1 - nu^2).
+struct LameParameters {
+  double mu = 0, lambda = 0;  // N/m
+};
+LameParameters shell_lame(double youngs_per_width, double poisson) {
+  return {youngs_per_width / (2 * (1 + poisson)), youngs_per_width * poisson / (1 - poisson * poisson)};
+}
+
+/// The one member `youngs` has two names: times thickness where there is none.
+void add_youngs(Settings<Material>& out) {
+  out.add_row(
+      {"youngs_Pa", positive("Pa"), no_default, "Young's modulus; needs thickness_m."},
+      [](const json* given, Material& m) { m.youngs = given ? given->get<double>() : config_youngs; },
+      [](const Material& m) { return m.thickness ? json(m.youngs) : json(); });
+  out.add_row(
+      {"youngs_N_per_m", positive("N/m"), config_youngs, "Young's modulus times thickness."},
+      [](const json* given, Material& m) { m.youngs = given ? given->get<double>() : m.youngs; },
+      [](const Material& m) { return m.thickness ? json() : json(m.youngs); });
+}
+
+void check_model(const Complaints& complain, const std::string& model) {
+  std::vector<std::string> names = membrane_models<double>().names();
+  names.emplace_back("none");
+  if (std::find(names.begin(), names.end(), model) != names.end()) return;
+  complain("/material/model", '"' + model + '"', one_of_text(model, names));
+}
+
+void check_warp_axis(const Complaints& complain, const Material& m, bool planar) {
+  if (!m.warp_axis) return;
+  const Vec3d& axis = *m.warp_axis;
+  const std::string found = fmt::format("[{}, {}, {}]", axis[0], axis[1], axis[2]);
+  if (!is_anisotropic(m.model)) {
+    complain("/material/warp_axis", found, "nothing: the model " + m.model + " has no direction");
+  } else if (!(std::abs(axis.norm() - 1) < 1e-9)) {
+    complain("/material/warp_axis", found, "a unit vector");
+  } else if (planar && axis[2] != 0) {
+    complain("/material/warp_axis", found, "z = 0: the scene is planar");
+  }
+}
+
+/// The warp axis needs a part in the plane of every triangle that has an energy.
+void check_warp(const BodySpec& spec, const Vec3d& warp, const BodyElements& to) {
+  for (std::size_t t = 0; t < spec.mesh.triangles.size(); ++t) {
+    if (to.all_prescribed(to.in_scene(spec.mesh.triangles[t]))) continue;
+    const Vec3d normal = area_vector(spec.mesh.vertices, spec.mesh.triangles[t]).normalized();
+    if ((warp - normal.dot(warp) * normal).norm() > 1e-6) continue;
+    return to.complain("/material/warp_axis",
+                       fmt::format("[{}, {}, {}], the normal of triangle {}", warp[0], warp[1], warp[2], t),
+                       "an axis that is normal to no triangle of the rest shape");
+  }
+}
+
+/// The elements of that model, begun where there are none yet.
+MembranePart& of_model(const std::string& model, Scene& scene) {
+  std::vector<MembranePart>& parts = scene.membranes;
+  const auto found =
+      std::find_if(parts.begin(), parts.end(), [&](const MembranePart& part) { return part.model == model; });
+  if (found != parts.end()) return *found;
+  parts.emplace_back().model = model;
+  return parts.back();
+}
+
+/// Largest singular value of F, minus 1, of every surface triangle; 0 for one that only moves.
+std::vector<double> stretches(const Scene& scene, const Positions& x) {
+  std::vector<double> out;
+  out.reserve(scene.surface_triangles.size());
+  for (const auto& [a, b, c] : scene.surface_triangles) {
+    const Vec3d rest[3] = {scene.rest.col(a), scene.rest.col(b), scene.rest.col(c)};
+    const Vec3d now[3] = {x.col(a), x.col(b), x.col(c)};
+    const auto shape = triangle_rest<double>(rest, Vec3d(rest[1] - rest[0]));
+    out.push_back(svd_3x2<double>(deformation_gradient<3, double>(shape, now)).sigma.maxCoeff() - 1);
+  }
+  return out;
+}
+
+/// The warp direction of a model that depends on one: `warp_axis`, x by default, as of a body of a scene. Others take the first edge
+/// of the rest triangle as their frame, and no warp_axis.
+template <class T>
+Vec<T, 3> warp_of(Fields& fields, const MembraneModel<T>& model, const Vec<T, 3>& first_edge) {
+  if (!model.anisotropic) {
+    if (fields.has("warp_axis")) {
+      fields.complain("warp_axis", "an axis",
+                      "nothing: the model " + std::string(model.name) + " has no direction");
+    }
+    return first_edge;
+  }
+  Vec<T, 3> axis = Vec<T, 3>::UnitX();
+  if (!fields.has("warp_axis")) return axis;
+  const std::vector<double> given = fields.list("warp_axis", 3, kFinite);
+  for (int k = 0; k < 3; ++k) axis[k] = static_cast<T>(given[static_cast<std::size_t>(k)]);
+  if (!fields.wrong() && std::abs(axis.norm() - 1) > T(1e-6))
+    fields.complain("warp_axis", "no unit vector", "a unit vector");
+  return axis;
+}
+
+template <class T>
+ElementAnswer triangle_answer(Fields& fields, const MembraneModel<T>& model) {
+  const FieldPoints<T, 3> rest(fields, "rest"), x(fields, "x");
+  const T mu = static_cast<T>(fields.number("lame_mu", kNonNegative));
+  const T lambda = static_cast<T>(fields.number("lame_lambda", kFinite));
+  const Vec<T, 3> warp = warp_of<T>(fields, model, rest.x[1] - rest.x[0]);
+  const TriangleRest<T> triangle = triangle_rest<T>(rest.x, warp);
+  const Vec<T, 3> normal = (rest.x[1] - rest.x[0]).cross(rest.x[2] - rest.x[0]);
+  const T size = normal.norm(), cosine = size > T(0) ? warp.dot(normal) / (warp.norm() * size) : T(1);
+  const bool usable = triangle.area > T(0) && triangle.dm_inv.allFinite();
+  if (fields.wrong()) {
+    // complained of
+  } else if (!(size > T(0)) || !normal.allFinite() || (!model.anisotropic && !usable)) {
+    fields.complain("rest", "a triangle without area", "three points that are not on one line");
+  } else if (!usable || std::abs(cosine) > T(1) - T(1e-6)) {
+    fields.complain("warp_axis", "the normal of the triangle at rest",
+                    "an axis with a part in its plane (default: x)");
+  }
+  fields.finish();
+  return element_answer<T, 9>(model.terms(triangle, x.x, mu, lambda, Projection::none),
+                              model.terms(triangle, x.x, mu, lambda, Projection::psd));
+}
+
+class Membrane final : public Part {
+ public:
+  void add_keys(Settings<Material>& out) const override {
+    out.add("model", any_text(), "A membrane model (`bench list membranes`), or none (springs only).",
+            &Material::model);
+    out.add(
+        "warp_axis", computed(direction(), "x, where the model has a direction"),
+        "Warp direction in the coordinates of the scene at rest, turned into the plane of every triangle.",
+        &Material::warp_axis);
+    add_youngs(out);
+    out.add("thickness_m", positive("m"), "Thickness that multiplies youngs_Pa; contact ignores it.",
+            &Material::thickness);
+    out.add("poisson", open_high(open_low(number_in(-1, 1, "1"))), "Poisson's ratio, plane stress.",
+            &Material::poisson);
+    out.add("density_kg_per_m2", non_negative("kg/m^2"), "Mass per area of triangles.", &Material::density);
+  }
+  std::string_view keys_doc() const override {
+    return "Young's modulus either in Pa with a thickness, or already multiplied by the thickness in N/m.";
+  }
+  void settle(const GivenMaterial& given, const Complaints& complain, Material& m) const override {
+    if (!m.warp_axis && is_anisotropic(m.model)) m.warp_axis = Vec3d::UnitX();
+    if (!given.complete) return;  // one of the two may be there and wrong
+    const bool pascal = given.object.contains("youngs_Pa"), thick = given.object.contains("thickness_m");
+    if (pascal && given.object.contains("youngs_N_per_m")) {
+      complain("", "youngs_Pa and youngs_N_per_m", "one of the two");
+    } else if (pascal != thick) {
+      complain("", pascal ? "youngs_Pa without thickness_m" : "thickness_m without youngs_Pa",
+               "youngs_Pa with thickness_m, or youngs_N_per_m alone");
+    }
+  }
+  void check(const BodySpec& spec, bool planar, const Complaints& complain) const override {
+    const Material& m = spec.material;
+    check_model(complain, m.model);
+    check_warp_axis(complain, m, planar);
+    complain.number("/material/youngs", m.youngs, m.youngs > 0, "a number > 0");  // under either name
+  }
+
+  std::vector<MemoryItem> memory(const Scene& scene, const TriangleMesh& mesh) const override {
+    return {triangle_memory(static_cast<double>(scene.surface_triangles.size() + mesh.triangles.size()))};
+  }
+  void add_surface(const TriangleMesh& mesh, BodySurface& out) const override {
+    out.mesh.triangles.insert(out.mesh.triangles.end(), mesh.triangles.begin(), mesh.triangles.end());
+  }
+
+  void add_masses(const BodySpec& spec, const AddMass& add) const override {
+    for (const auto& t : spec.mesh.triangles) {
+      const double third = spec.material.density * area_vector(spec.mesh.vertices, t).norm() / 3;
+      for (const int v : t) add(v, third);
+    }
+  }
+  void add_elements(const BodySpec& spec, BodyElements& to) const override {
+    const Material& material = spec.material;
+    if (spec.mesh.triangles.empty()) return;
+    const bool directed = is_anisotropic(material.model);
+    const Vec3d warp = material.warp_axis.value_or(Vec3d::UnitX());
+    if (directed) check_warp(spec, warp, to);
+    if (material.model == "none") return;
+    const LameParameters lame = shell_lame(material.youngs_per_width(), material.poisson);
+    MembranePart& part = of_model(material.model, to.scene);
+    for (const auto& local : spec.mesh.triangles) {
+      const auto t = to.in_scene(local);
+      if (to.all_prescribed(t)) continue;
+      part.triangles.push_back(t);
+      part.lame_mu.push_back(lame.mu);
+      part.lame_lambda.push_back(lame.lambda);
+      if (directed) part.warp.push_back(warp);
+    }
+  }
+
+  std::size_t size(const Scene& scene) const override { return scene.membrane_triangles().size(); }
+  std::string_view elements() const override { return "triangles"; }
+  std::string_view no_elements() const override { return "no membrane element"; }
+  void add_batches(const Scene& scene, Precision precision,
+                   std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
+    for (const MembranePart& part : scene.membranes) {
+      if (part.triangles.empty()) continue;
+      out.push_back(std::make_unique<MembraneBatch>(part.model, part.triangles, scene.rest, part.lame_mu,
+                                                    part.lame_lambda, scene.planar, part.warp, precision));
+    }
+  }
+  bool has_kernels() const override { return true; }
+  void add_frame_fields(const Scene& scene, const Positions& x, FrameFields& out) const override {
+    out.of_triangles.push_back({"stretch", stretches(scene, x)});
+  }
+
+  std::vector<std::string> element_names() const override { return membrane_models<double>().names(); }
+  ElementAnswer element(const std::string& name, Fields& fields) const override {
+    return in_scalar_of(
+        fields, [&]<class T>() { return triangle_answer<T>(fields, *membrane_models<T>().find(name)); });
+  }
+};
+
+}  // namespace
+
+const Part& parts::membrane::part() {
+  static const Membrane part;
+  return part;
+}
+
+}  // namespace bb

@@ -1,0 +1,74 @@
+// Springs: on every edge of a body, of triangles and of rods. Lone edges are rods, whose mass this part brings.
+#include "core/energy/spring_batch.hpp"
+
+#include "core/bodies/part.hpp"
+#include "core/energy/spring.hpp"
+#include "core/mesh/topology.hpp"
+
+namespace bb {
+namespace {
+
+class Springs final : public Part {
+ public:
+  void add_keys(Settings<Material>& out) const override {
+    out.add("line_density_kg_per_m", non_negative("kg/m"), "Mass per length of lone edges.",
+            &Material::line_density);
+    out.add("springs_N_per_m", non_negative("N/m"), "Stiffness of a spring on every edge.",
+            &Material::springs);
+  }
+
+  std::vector<MemoryItem> memory(const Scene&, const TriangleMesh& mesh) const override {
+    return {segment_memory(static_cast<double>(mesh.segments.size()))};
+  }
+  void add_surface(const TriangleMesh& mesh, BodySurface& out) const override {
+    out.mesh.segments.insert(out.mesh.segments.end(), mesh.segments.begin(), mesh.segments.end());
+  }
+
+  void add_masses(const BodySpec& spec, const AddMass& add) const override {
+    for (const auto& s : spec.mesh.segments) {
+      const double length = (spec.mesh.vertices.col(s[1]) - spec.mesh.vertices.col(s[0])).norm();
+      for (const int v : s) add(v, 0.5 * spec.material.line_density * length);
+    }
+  }
+  void add_elements(const BodySpec& spec, BodyElements& to) const override {
+    if (spec.material.springs == 0) return;
+    for (const auto& local : unique_edges(spec.mesh)) {
+      const auto edge = to.in_scene(local);
+      if (to.all_prescribed(edge)) continue;
+      to.scene.springs.edges.push_back(edge);
+      to.scene.springs.stiffness.push_back(spec.material.springs);
+    }
+  }
+
+  std::size_t size(const Scene& scene) const override { return scene.springs.edges.size(); }
+  std::string_view elements() const override { return "springs"; }
+  std::string_view no_elements() const override { return "no spring"; }
+  void add_batches(const Scene& scene, Precision precision,
+                   std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
+    const SpringPart& part = scene.springs;
+    if (part.edges.empty()) return;
+    out.push_back(std::make_unique<SpringBatch>(part.edges, scene.rest, part.stiffness, precision));
+  }
+  bool has_kernels() const override { return true; }
+
+  std::vector<std::string> element_names() const override { return {"spring"}; }
+  ElementAnswer element(const std::string&, Fields& fields) const override {
+    return in_scalar_of(fields, [&]<class T>() {
+      const FieldPoints<T, 2> rest(fields, "rest"), x(fields, "x");
+      const T k = static_cast<T>(fields.number("k", kNonNegative));
+      fields.finish();
+      const T length = (rest.x[1] - rest.x[0]).norm();
+      return element_answer<T, 6>(spring_terms<T>(x.x, k, length, Projection::none),
+                                  spring_terms<T>(x.x, k, length, Projection::psd));
+    });
+  }
+};
+
+}  // namespace
+
+const Part& parts::springs::part() {
+  static const Springs part;
+  return part;
+}
+
+}  // namespace bb

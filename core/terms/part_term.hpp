@@ -1,0 +1,22 @@
+// The elastic terms: the elements of a part (core/bodies/part.hpp), one term a batch.
+#pragma once
+
+#include "core/bodies/part.hpp"
+#include "core/terms/registry.hpp"
+
+namespace bb {
+
+PlanItem needs_part(const Part& part, const TermNeeds& needs);
+void make_part(const Part& part, const TermInputs& inputs, TermList& terms);
+
+/// The same as the functions that a TermEntry has.
+template <const Part& (*part)()>
+PlanItem needs_part(const TermNeeds& needs) {
+  return needs_part(part(), needs);
+}
+template <const Part& (*part)()>
+void make_part(const TermInputs& inputs, TermList& terms) {
+  make_part(part(), inputs, terms);
+}
+
+}  // namespace bb
