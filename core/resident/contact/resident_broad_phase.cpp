@@ -104,6 +104,8 @@ PairSearch ResidentBroadPhase::search() const {
           surface_.view(),
           {connected_.data(), connected_.size() / 2},
           {opposite_.data(), opposite_.size() / 3},
+          x0_,
+          x1_,
           lone ? edge_of_.data() : nullptr};
 }
 
