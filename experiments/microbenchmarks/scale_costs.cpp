@@ -23,13 +23,15 @@ class Printer final : public StepObserver {
   void on_iteration(const IterationReport& report) override {
     const exec::ExecutionCounts& c = executor->counts();
     const exec::Index launches = c.launches - of_solver(c), candidates = c.items("MarkRows");
-    std::printf("{\"step\": %d, \"iteration\": %d, \"launches\": %lld, \"solver_launches\": %lld, ", report.step,
-                report.iteration, static_cast<long long>(launches),
+    std::printf("{\"step\": %d, \"iteration\": %d, \"launches\": %lld, \"solver_launches\": %lld, ",
+                report.step, report.iteration, static_cast<long long>(launches),
                 static_cast<long long>(c.replayed + of_solver(c)));
-    std::printf("\"sorts\": %lld, \"scans\": %lld, \"downloads\": %lld, \"uploads\": %lld, \"graphs\": %lld, \"allocations\": %lld, ",
-                static_cast<long long>(c.sorts), static_cast<long long>(c.scans),
-                static_cast<long long>(c.downloads), static_cast<long long>(c.uploads),
-                static_cast<long long>(c.graphs), static_cast<long long>(c.allocations));
+    std::printf(
+        "\"sorts\": %lld, \"scans\": %lld, \"downloads\": %lld, \"uploads\": %lld, \"graphs\": %lld, "
+        "\"allocations\": %lld, ",
+        static_cast<long long>(c.sorts), static_cast<long long>(c.scans), static_cast<long long>(c.downloads),
+        static_cast<long long>(c.uploads), static_cast<long long>(c.graphs),
+        static_cast<long long>(c.allocations));
     std::printf("\"candidates\": %lld, \"rows\": %zu}\n", static_cast<long long>(candidates),
                 report.contacts.total());
     if (std::getenv("SCALE_COSTS_KERNELS")) print_kernels(c);
@@ -43,9 +45,9 @@ class Printer final : public StepObserver {
     return out;
   }
   static bool is_of_solver(const std::string& kernel) {
-    for (const char* part : {"::MultiplyDot", "::MagnitudeDot", "::SetResidual", "::FinishSum", "::BeginRun", "::StepDirection",
-                             "BlockJacobi", "::FactorizeDiagonal", "::BlockNorms", "::CoarseValues", "::UpdateResidual",
-                             "::AddLevels", "Clusters"}) {
+    for (const char* part : {"::MultiplyDot", "::MagnitudeDot", "::SetResidual", "::FinishSum", "::BeginRun",
+                             "::StepDirection", "BlockJacobi", "::FactorizeDiagonal", "::BlockNorms",
+                             "::CoarseValues", "::UpdateResidual", "::AddLevels", "Clusters"}) {
       if (kernel.find(part) != std::string::npos) return true;
     }
     return false;
