@@ -106,13 +106,13 @@ TEST(ResidentRowFinder, TellsStencilsApart) {
   OnExecutor a(executor, scene, x);
   OnExecutor b(executor, scene, random_motion(x, 1e-13, 5));
   ASSERT_GT(a.rows.size(), 100);
-  EXPECT_TRUE(resident::same_stencils(executor, a.rows, b.rows));
+  EXPECT_TRUE(a.finder.same_stencils(a.rows, b.rows));
   const RowView v = b.rows.view();
   v.vertex[v.n + 57] += 1;
-  EXPECT_FALSE(resident::same_stencils(executor, a.rows, b.rows));
+  EXPECT_FALSE(a.finder.same_stencils(a.rows, b.rows));
   v.vertex[v.n + 57] -= 1;
   v.free[80] ^= 1;
-  EXPECT_FALSE(resident::same_stencils(executor, a.rows, b.rows));
+  EXPECT_FALSE(a.finder.same_stencils(a.rows, b.rows));
 }
 
 TEST(ResidentRows, TakeAtMost140BytesEach) {
