@@ -97,4 +97,13 @@ struct FirstNotFinite {
   }
 };
 
+/// Largest length of a column of three numbers.
+struct ColumnNorms {
+  const double* x;
+  BB_HD Key operator()(Index v) const {
+    using std::sqrt;
+    return largest_key(sqrt(x[3 * v] * x[3 * v] + x[3 * v + 1] * x[3 * v + 1] + x[3 * v + 2] * x[3 * v + 2]));
+  }
+};
+
 }  // namespace bb::resident

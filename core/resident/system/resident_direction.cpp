@@ -174,13 +174,12 @@ LinearReport ResidentSystem::solve_linear() {
 
 DirectionSize ResidentSystem::direction_size() {
   DirectionSize size;
-  size.inf_m = vectors_.free_max(dx_);
-  size.rounding_m = vectors_.rounding_max(dx_, x_, body_size_, true);
-  size.beyond_m = vectors_.rounding_max(dx_, x_, body_size_, false);
+  const DirectionSizes found = vectors_.sizes(dx_, x_, body_size_);
+  size.inf_m = found.largest;
+  size.rounding_m = found.within;
+  size.beyond_m = found.beyond;
+  size.vertex_m = found.vertex;
   size.slope_J = vectors_.free_dot(g_, dx_).value();
-  least_.clear();
-  least_.add(dx_.size() / 3, ColumnNorms{dx_.data()});
-  size.vertex_m = least_.largest();
   return size;
 }
 

@@ -76,7 +76,6 @@ ResidentSystem::ResidentSystem(std::unique_ptr<exec::Executor> executor, const S
       elastic_value_(*executor_, "elastic matrix of the iterate"),
       product_partial_(*executor_, "partial products", Partition::most_blocks),
       sum_(*executor_),
-      least_(*executor_),
       row_totals_(*executor_) {
   const Index n = scene.n_vertices();
   for (Column* column : {&x_, &trial_, &end_, &dx_, &g_, &x_n_, &x_tilde_, &b_, &step_, &work_, &escape_})
@@ -181,7 +180,7 @@ double ResidentSystem::bound_motion(IterationReport& report) {
 std::optional<EnergyChange> ResidentSystem::try_motion(double alpha) {
   const ScopedPhase timer(clock(), Phase::line_search);
   move(alpha, trial_);
-  if (vectors_.first_not_finite(trial_) >= 0) return std::nullopt;
+  if (!contact_ && vectors_.first_not_finite(trial_) >= 0) return std::nullopt;  // else contact looks
   if (!elements_.admits(trial_.data())) return std::nullopt;
   if (contact_) {
     const ScopedPhase rows(clock(), Phase::contact_rows);

@@ -135,7 +135,6 @@ class ResidentSystem final : public StepSystem {
   bool has_step_elastic_ = false;
   exec::Buffer<double> product_partial_;
   mutable ResidentSum sum_;
-  mutable ResidentLeast least_;
   mutable ResidentSums<RowTotals> row_totals_;
   MatrixPart contact_matrix_{};
   ResidentFrame frame_;

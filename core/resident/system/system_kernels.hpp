@@ -26,13 +26,4 @@ struct ScaleColumn {
   BB_HD void operator()(Index i) const { y[i] *= factor; }
 };
 
-/// Largest length of a column of three numbers.
-struct ColumnNorms {
-  const double* x;
-  BB_HD Key operator()(Index v) const {
-    using std::sqrt;
-    return largest_key(sqrt(x[3 * v] * x[3 * v] + x[3 * v + 1] * x[3 * v + 1] + x[3 * v + 2] * x[3 * v + 2]));
-  }
-};
-
 }  // namespace bb::resident
