@@ -136,8 +136,8 @@ void BroadPhase::find(const Bvh& a, const Bvh& b, const Positions& x0, const Pos
         const ContactPair<K> pair = contact_pair<K>(surface_, p);
         const auto body = [&](int k) { return surface_.body[static_cast<std::size_t>(pair.vertex[k])]; };
         return body(0) != body(pair_split(K)) ||
-               !apart_by_rest_rule<K>(pair.law, bb::gather(surface_.rest, pair.vertex), bb::gather(x0, pair.vertex),
-                                      bb::gather(x1, pair.vertex), eps);
+               !apart_by_rest_rule<K>(pair.law, bb::gather(surface_.rest, pair.vertex),
+                                      bb::gather(x0, pair.vertex), bb::gather(x1, pair.vertex), eps);
       },
       out);
 }
@@ -161,6 +161,12 @@ void BroadPhase::update(const Positions& x0, const Positions& x1, Candidates& ou
   for_each_obstacle_list(s, out, [&]<int N>(const Primitives<N>& of, std::vector<IndexPair>& pairs) {
     update_obstacles<N>(of, x0, x1, pairs);
   });
+  find_pairs(x0, x1, out);
+}
+
+/// Of surface primitives, from the trees.
+void BroadPhase::find_pairs(const Positions& x0, const Positions& x1, Candidates& out) {
+  const Surface& s = surface_;
   const auto point = [&s](int i) { return s.points.vertices[static_cast<std::size_t>(i)][0]; };
   const auto edge = [&s](int i) { return s.edges.vertices[static_cast<std::size_t>(i)]; };
   const auto triangle = [&s](int i) { return s.triangles.vertices[static_cast<std::size_t>(i)]; };

@@ -60,6 +60,7 @@ class BroadPhase {
   template <int N>
   void fit(Tree& tree, const Primitives<N>& primitives) const;
   void fit_edges();
+  void find_pairs(const Positions& x0, const Positions& x1, Candidates& out);
   template <PairKind K, class Second, class MayPair>
   void find(const Bvh& a, const Bvh& b, const Positions& x0, const Positions& x1, const Second& second_of,
             const MayPair& may_pair, std::vector<IndexPair>& out);
