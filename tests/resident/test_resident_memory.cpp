@@ -61,8 +61,12 @@ TEST(ResidentMemory, OfTheDensestSceneFitsSeventyGibibytes) {
   constexpr double contacts = 184.1e6, vertices = 8.2e6, bytes_a_piece = 8 * 90.0 * (1 << 18);
   const Scene small = cloth(30), large = cloth(60);
   Peak few = counted(small, {}), many = counted(large, {});
-  for (Peak* peak : {&few, &many})
+  for (Peak* peak : {&few, &many}) {
     peak->total -= static_cast<double>(peak->by_name["local terms of elements"]);
+    for (const auto& [name, bytes] : peak->by_name) {  // so many contacts give them back with the trees
+      if (name.starts_with("held ")) peak->total -= static_cast<double>(bytes);
+    }
+  }
   const double a_vertex = (many.total - few.total) / (large.n_vertices() - small.n_vertices());
   EXPECT_GT(a_vertex, 1000);
   EXPECT_GE(many.by_name.at("limit bands"), 16u * 2 * 59 * 59);
