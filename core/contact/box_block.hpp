@@ -44,6 +44,8 @@ class BoxBlock {
     meet &= (lo_[2] <= box.hi[2]) & (box.lo[2] <= hi_[2]);
     return lanes_of(meet);
   }
+  /// The lanes that are proven apart from this box, by what both were grown by (box_gap.hpp); in bvh.cpp, since compilers of kernels know no vectors.
+  LaneSet apart(const AskingBox& box, const EightFloats& reach) const;
   /// The box of all lanes that were set.
   TreeBox hull() const {
     TreeBox out;

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "core/contact/box_gap.hpp"
 #include "core/math/at.hpp"
 
 namespace bb {
@@ -41,7 +42,12 @@ void add_children(LaneList& list, int node, LaneSet lanes) {
 
 }  // namespace
 
-void Bvh::update(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free) {
+LaneSet BoxBlock::apart(const AskingBox& box, const EightFloats& reach) const {
+  return lanes_of(apart_by_boxes<EightFloats>(lo_, hi_, box.lo, box.hi, reach));
+}
+
+void Bvh::update(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free,
+                 std::span<const float> reach) {
   if (boxes.empty()) {
     n_ = 0;
     order_.clear();
@@ -49,11 +55,11 @@ void Bvh::update(std::span<const TreeBox> boxes, std::span<const std::uint8_t> f
     return;
   }
   if (boxes.size() == n_) {
-    refit(boxes, free);
+    refit(boxes, free, reach);
     if (!(looseness() > rebuild_growth * built_looseness_)) return;
   }
   build(boxes);
-  refit(boxes, free);
+  refit(boxes, free, reach);
   built_looseness_ = looseness();
 }
 
@@ -106,7 +112,8 @@ void Bvh::Level::fill(std::size_t n, const BoxOf& box_of, const IsFree& is_free)
   });
 }
 
-void Bvh::refit(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free) {
+void Bvh::refit(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free,
+                std::span<const float> reach) {
   levels_[0].fill(
       n_, [&](std::size_t place) { return boxes[at(primitive(place))]; },
       [&](std::size_t place) { return free[at(primitive(place))] != 0; });
@@ -115,6 +122,10 @@ void Bvh::refit(std::span<const TreeBox> boxes, std::span<const std::uint8_t> fr
     levels_[l].fill(
         below.boxes.size(), [&](std::size_t node) { return below.boxes[node].hull(); },
         [&](std::size_t node) { return below.free[node] != 0; });
+  }
+  reach_.assign(order_.size(), EightFloats{});
+  for (std::size_t place = 0; place < reach.size(); ++place) {
+    reach_[place / width][place % width] = reach[at(primitive(place))];
   }
 }
 
@@ -153,12 +164,14 @@ std::size_t Bvh::find_primitives(const Bvh& asking, std::size_t node, std::size_
   const std::span<const int> nodes = search.nodes_of[lane].all();
   const AskingBox box = asking.levels_[0].boxes[node].asking(lane);
   const bool is_free = (asking.levels_[0].free[node] >> lane & 1) != 0;
+  const EightFloats reach = asking.reach_[node][lane] - EightFloats{};
   const EightInts above = (this == &asking ? asking.order_[node][lane] : -1) - EightInts{};
   int* const begin = found.end(width * nodes.size());
   int* end = begin;
   for (const int leaf : nodes) {
     const EightInts order = order_[at(leaf)];
-    const LaneSet lanes = levels_[0].overlaps(at(leaf), box, is_free) & lanes_of(order > above);
+    const LaneSet lanes = levels_[0].overlaps(at(leaf), box, is_free) & lanes_of(order > above) &
+                          ~levels_[0].boxes[at(leaf)].apart(box, reach + reach_[at(leaf)]);
     end += pack(order, lanes, end);
   }
   return static_cast<std::size_t>(end - begin);

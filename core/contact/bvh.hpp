@@ -48,10 +48,12 @@ struct TreeSearch {
 /// of every other level hold the boxes of eight nodes of the level below. The last level is one node.
 class Bvh {
  public:
-  /// Takes the boxes of all n primitives; `free` says which of them a solver can move. The first call, and a
+  /// Takes the boxes of all n primitives; `free` says which of them a solver can move; `reach` what each box was grown
+  /// by on every side, m, or empty: boxes that meet are all that is asked. The first call, and a
   /// call with another n, builds: O(n log n). Later calls refit, O(n), and rebuild when the boxes of the
   /// nodes, relative to those of the primitives, have grown by more than a half since the last build.
-  void update(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free);
+  void update(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free,
+              std::span<const float> reach = {});
 
   std::size_t size() const { return n_; }
   /// The primitive at a place of the order.
@@ -61,8 +63,8 @@ class Bvh {
   /// Nodes of level 0 of this tree that overlap node `node` of level 0 of `asking`, and then each of its
   /// primitives: search.nodes_of. One of any two with a free primitive.
   void find_nodes(const Bvh& asking, std::size_t node, TreeSearch& search) const;
-  /// Appends to `found` the primitives of those nodes that overlap primitive `lane` of the node, one of the two
-  /// free; when `asking` is this tree itself, only those with a larger index. Returns how many.
+  /// Appends to `found` the primitives of those nodes that overlap primitive `lane` of the node and are not proven
+  /// apart from it by their reaches, one of the two free; when `asking` is this tree itself, only those with a larger index. Returns how many.
   std::size_t find_primitives(const Bvh& asking, std::size_t node, std::size_t lane, const TreeSearch& search,
                               LaneList& found) const;
 
@@ -86,11 +88,13 @@ class Bvh {
   };
   void build(std::span<const TreeBox> boxes);
   void split(std::span<const Vec3d> centres, std::span<int> places);
-  void refit(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free);
+  void refit(std::span<const TreeBox> boxes, std::span<const std::uint8_t> free,
+             std::span<const float> reach);
   double looseness() const;
 
   std::size_t n_ = 0;
-  std::vector<EightInts> order_;  // by node, 0 padded
+  std::vector<EightInts> order_;    // by node, 0 padded
+  std::vector<EightFloats> reach_;  // m, likewise
   std::vector<Level> levels_;
   double built_looseness_ = 0;
   int builds_ = 0;

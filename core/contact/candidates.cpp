@@ -9,6 +9,7 @@
 #include "core/contact/chunks.hpp"
 #include "core/contact/float_rounding.hpp"
 #include "core/contact/obstacle_pair.hpp"
+#include "core/contact/rest_rule.hpp"
 
 namespace bb {
 
@@ -97,24 +98,48 @@ template <int N>
 void BroadPhase::fit(Tree& tree, const Primitives<N>& primitives) const {
   if (!tree.needed) return;
   tree.boxes.resize(primitives.size());
+  tree.reach.resize(primitives.size());
   for_each_chunk(primitives.size(), [&](std::size_t, std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       TreeBox box;
       for (int v : primitives.vertices[i]) box.add(vertices_[static_cast<std::size_t>(v)]);
-      box.inflate(primitives.side[i].d_hat / 2 + primitives.side[i].offset);
+      const double reach = primitives.side[i].d_hat / 2 + primitives.side[i].offset;
+      box.inflate(reach);
       tree.boxes[i] = box;
+      tree.reach[i] = float_above(reach);
     }
   });
-  tree.bvh.update(tree.boxes, primitives.free);
+  tree.bvh.update(tree.boxes, primitives.free, tree.reach);
 }
 
 void BroadPhase::fit_edges() {
   fit(edges_, surface_.edges);
   if (!lone_edges_.needed) return;
-  lone_edges_.boxes.clear();
-  for (const int e : surface_.lone_edges)
+  lone_edges_.boxes.clear(), lone_edges_.reach.clear();
+  for (const int e : surface_.lone_edges) {
     lone_edges_.boxes.push_back(edges_.boxes[static_cast<std::size_t>(e)]);
-  lone_edges_.bvh.update(lone_edges_.boxes, lone_free_);
+    lone_edges_.reach.push_back(edges_.reach[static_cast<std::size_t>(e)]);
+  }
+  lone_edges_.bvh.update(lone_edges_.boxes, lone_free_, lone_edges_.reach);
+}
+
+/// Pairs of kind K: may_pair says which there are, second_of what a primitive of b is in the surface.
+template <PairKind K, class Second, class MayPair>
+void BroadPhase::find(const Bvh& a, const Bvh& b, const Positions& x0, const Positions& x1,
+                      const Second& second_of, const MayPair& may_pair, std::vector<IndexPair>& out) {
+  const double eps = value_epsilon(precision_);
+  finder_.find(
+      a, b,
+      [&](IndexPair p) {
+        p.second = second_of(p.second);
+        if (!may_pair(p)) return false;
+        const ContactPair<K> pair = contact_pair<K>(surface_, p);
+        const auto body = [&](int k) { return surface_.body[static_cast<std::size_t>(pair.vertex[k])]; };
+        return body(0) != body(pair_split(K)) ||
+               !apart_by_rest_rule<K>(pair.law, bb::gather(surface_.rest, pair.vertex),
+                                      bb::gather(x0, pair.vertex), bb::gather(x1, pair.vertex), eps);
+      },
+      out);
 }
 
 /// Of any distance on the motion, m; 0 in double, where nothing is asked of the states.
@@ -136,36 +161,43 @@ void BroadPhase::update(const PositionsView& x0, const PositionsView& x1, Candid
   for_each_obstacle_list(s, out, [&]<int N>(const Primitives<N>& of, std::vector<IndexPair>& pairs) {
     update_obstacles<N>(of, x0, x1, pairs);
   });
+  find_pairs(x0, x1, out);
+}
+
+/// Of surface primitives, from the trees.
+void BroadPhase::find_pairs(const Positions& x0, const Positions& x1, Candidates& out) {
+  const Surface& s = surface_;
   const auto point = [&s](int i) { return s.points.vertices[static_cast<std::size_t>(i)][0]; };
   const auto edge = [&s](int i) { return s.edges.vertices[static_cast<std::size_t>(i)]; };
   const auto triangle = [&s](int i) { return s.triangles.vertices[static_cast<std::size_t>(i)]; };
 
+  const auto same = [](int i) { return i; };
   if (plan_.point_point) {
-    finder_.find(
-        points_.bvh, points_.bvh, [&](IndexPair p) { return !s.connected(point(p.first), point(p.second)); },
-        out.point_point);
+    find<PairKind::point_point>(
+        points_.bvh, points_.bvh, x0, x1, same,
+        [&](IndexPair p) { return !s.connected(point(p.first), point(p.second)); }, out.point_point);
   }
   if (lone_edges_.needed) {
     const auto lone = [&s](int i) { return s.lone_edges[static_cast<std::size_t>(i)]; };
-    finder_.find(
-        points_.bvh, lone_edges_.bvh,
-        [&](IndexPair p) { return Surface::disjoint(point(p.first), edge(lone(p.second))); }, out.point_edge);
+    find<PairKind::point_edge>(
+        points_.bvh, lone_edges_.bvh, x0, x1, lone,
+        [&](IndexPair p) { return Surface::disjoint(point(p.first), edge(p.second)); }, out.point_edge);
     for (IndexPair& p : out.point_edge)
       p.second = lone(p.second);  // ascending, so that the list stays sorted
   } else if (plan_.point_edge) {
-    finder_.find(
-        points_.bvh, edges_.bvh, [&](IndexPair p) { return !s.adjacent(point(p.first), edge(p.second)); },
-        out.point_edge);
+    find<PairKind::point_edge>(
+        points_.bvh, edges_.bvh, x0, x1, same,
+        [&](IndexPair p) { return !s.adjacent(point(p.first), edge(p.second)); }, out.point_edge);
   }
   if (plan_.point_triangle) {
-    finder_.find(
-        points_.bvh, triangles_.bvh,
+    find<PairKind::point_triangle>(
+        points_.bvh, triangles_.bvh, x0, x1, same,
         [&](IndexPair p) { return s.disjoint(point(p.first), triangle(p.second)); }, out.point_triangle);
   }
   if (plan_.edge_edge) {
-    finder_.find(
-        edges_.bvh, edges_.bvh, [&](IndexPair p) { return s.disjoint(edge(p.first), edge(p.second)); },
-        out.edge_edge);
+    find<PairKind::edge_edge>(
+        edges_.bvh, edges_.bvh, x0, x1, same,
+        [&](IndexPair p) { return s.disjoint(edge(p.first), edge(p.second)); }, out.edge_edge);
   }
 }
 

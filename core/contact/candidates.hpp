@@ -46,6 +46,7 @@ class BroadPhase {
     bool needed = false;
     Bvh bvh;
     std::vector<TreeBox> boxes;
+    std::vector<float> reach;  // m, what each box is grown by
   };
   /// Where positions are put before boxes are made, and what is subtracted at the end of the motion before that, m.
   struct Frame {
@@ -59,6 +60,10 @@ class BroadPhase {
   template <int N>
   void fit(Tree& tree, const Primitives<N>& primitives) const;
   void fit_edges();
+  void find_pairs(const Positions& x0, const Positions& x1, Candidates& out);
+  template <PairKind K, class Second, class MayPair>
+  void find(const Bvh& a, const Bvh& b, const Positions& x0, const Positions& x1, const Second& second_of,
+            const MayPair& may_pair, std::vector<IndexPair>& out);
   template <int N>
   void update_obstacles(const Primitives<N>& primitives, const PositionsView& x0, const PositionsView& x1,
                         std::vector<IndexPair>& out);

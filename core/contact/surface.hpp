@@ -42,6 +42,8 @@ struct Surface {
   explicit Surface(const Scene& scene);
 
   std::vector<std::uint8_t> vertex_free;  // [n_vertices]
+  std::vector<int> body;                  // [n_vertices]
+  Positions rest;                         // [3 x n_vertices] m
   Primitives<1> points;
   Primitives<2> edges;
   Primitives<3> triangles;

@@ -79,11 +79,13 @@ void NewtonSystem::add_solution() {
 DirectionSize NewtonSystem::direction_size() {
   DirectionSize size;
   const double epsilon = value_epsilon(state_.precision);
-  size.inf_m = state_.vectors.free_max(state_.dx);
-  size.rounding_m = state_.vectors.rounding_max(state_.dx, state_.x, state_.body_size, epsilon, true);
-  size.beyond_m = state_.vectors.rounding_max(state_.dx, state_.x, state_.body_size, epsilon, false);
+  const resident::DirectionSizes found =
+      state_.vectors.sizes(state_.dx, state_.x, state_.body_size, epsilon);
+  size.inf_m = found.largest;
+  size.rounding_m = found.within;
+  size.beyond_m = found.beyond;
+  size.vertex_m = found.vertex;
   size.slope_J = state_.vectors.free_dot(state_.g, state_.dx).value();
-  size.vertex_m = state_.vectors.vertex_max(state_.dx);
   return size;
 }
 

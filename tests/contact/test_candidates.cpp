@@ -3,8 +3,10 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "core/contact/candidates.hpp"
+#include "core/contact/contact_row.hpp"
 #include "core/contact/pair_geometry.hpp"
 #include "core/contact/pair_row.hpp"
+#include "core/geometry/accd.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
 namespace bb::test::candidates_test {
@@ -18,7 +20,7 @@ Candidates candidates_of(const Scene& scene, const Positions& x0, const Position
   return out;
 }
 
-/// Every pair of kind K that comes within d_hat + offset at a sample of the motion.
+/// Every pair of kind K that comes within its own d_hat (the rest rule's) and offset at a sample of the motion.
 template <PairKind K, class A, class B, class Allowed>
 std::vector<IndexPair> close_pairs(const Scene& scene, const A& a, const B& b, const Positions& x0,
                                    const Positions& x1, const Allowed& allowed) {
@@ -34,7 +36,7 @@ std::vector<IndexPair> close_pairs(const Scene& scene, const A& a, const B& b, c
       for (double t : {0.0, 0.3, 0.7, 1.0}) {
         const Positions x = x0 + t * (x1 - x0);
         const double gap = closest_points<K, double>(gather(x, pair.vertex)).d - pair.law.offset;
-        if (gap > pair.law.d_hat) continue;
+        if (gap > row_d_hat<K>(scene, pair)) continue;
         out.push_back(index);
         break;
       }
@@ -77,6 +79,72 @@ TEST(Candidates, HoldEveryClosePairOfASoup) {
                   close_pairs<PairKind::edge_edge>(scene, s.edges, s.edges, scene.rest, x1, disjoint_ee));
 }
 
+/// Two layers of cloth with a mesh of half d_hat, one above the other.
+Scene dense_layers(double apart) {
+  Scene scene;
+  for (int layer = 0; layer < 2; ++layer) {
+    const auto [vertices, triangles] = grid(8, 8, 0.05, Vec3d(0.02 * layer, 0.01 * layer, apart * layer));
+    add_body(scene, layer == 0 ? "lower" : "upper", vertices, triangles, 0.1);
+  }
+  return scene;
+}
+
+/// Pairs of kind K with a row or a time below 1 on the motion, of which each has to be a candidate.
+template <PairKind K, class A, class B, class Allowed>
+std::size_t expect_all_that_matter(const Scene& scene, const std::vector<IndexPair>& candidates, const A& a,
+                                   const B& b, const Positions& x1, const Allowed& allowed) {
+  const Surface surface(scene);
+  std::size_t n = 0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    for (std::size_t j = K == PairKind::edge_edge ? i + 1 : 0; j < b.size(); ++j) {
+      if (!allowed(a.vertices[i], b.vertices[j])) continue;
+      const IndexPair index{static_cast<int>(i), static_cast<int>(j)};
+      const ContactPair<K> pair = contact_pair<K>(surface, index);
+      const auto from = gather(scene.x0, pair.vertex), to = gather(x1, pair.vertex);
+      const double park = ContactOptions().ccd_park * pair.law.d_hat, row = row_d_hat<K>(scene, pair);
+      bool matters = accd<K, double>(from, to, pair.law.offset, park).hit;
+      for (const double t : {0.0, 0.5, 1.0}) {
+        const auto x = ((1 - t) * from + t * to).eval();
+        matters = matters || closest_points<K, double>(x).d - pair.law.offset < row;
+      }
+      if (!matters) continue;
+      EXPECT_TRUE(std::binary_search(candidates.begin(), candidates.end(), index)) << i << " " << j;
+      ++n;
+    }
+  }
+  return n;
+}
+
+/// What the rest rule drops, or is beyond reach across a corner, is no candidate; a row or a bound never gets lost: on a
+/// flat sheet, a crumpled one and motions of any size.
+TEST(Candidates, OfADenseMeshAreThePairsThatMatterAndFewMore) {
+  std::size_t n_matter = 0, n_candidates = 0;
+  for (const double apart : {0.099, 0.03}) {
+    Scene scene = dense_layers(apart);
+    const Surface s(scene);
+    for (const double crumpled : {0.0, 0.01, 0.04}) {
+      scene.x0 = random_motion(scene.rest, crumpled, 5);
+      for (const double size : {0.0, 0.002, 0.03}) {
+        const Positions x1 = random_motion(scene.x0, size, 7);
+        const Candidates c = candidates_of(scene, scene.x0, x1);
+        const std::size_t n = expect_all_that_matter<PairKind::point_triangle>(
+                                  scene, c.point_triangle, s.points, s.triangles, x1,
+                                  [](const auto& p, const auto& t) { return Surface::disjoint(p[0], t); }) +
+                              expect_all_that_matter<PairKind::edge_edge>(
+                                  scene, c.edge_edge, s.edges, s.edges, x1,
+                                  [](const auto& p, const auto& q) { return Surface::disjoint(p, q); });
+        n_matter += n;
+        if (crumpled == 0 && size == 0) {
+          EXPECT_LT(c.point_triangle.size() + c.edge_edge.size(), 8 * n) << apart;
+          n_candidates += n;
+        }
+      }
+    }
+  }
+  EXPECT_GT(n_candidates, 500U);
+  EXPECT_GT(n_matter, 20000U);
+}
+
 /// A fall of all bodies adds no pairs; a fall of one of them adds those that it passes.
 TEST(Candidates, DependOnRelativeMotion) {
   const Scene scene = soup_scene();
@@ -106,7 +174,8 @@ TEST(Candidates, NeverHoldAdjacentOrWhollyGivenPairs) {
   const auto [v2, t2] = grid(3, 3, 0.1, Vec3d(0, 0, 0.1));
   const int first = add_body(scene, "floor", v2, t2, 0.3, true);
   const Surface s(scene);
-  const Candidates c = candidates_of(scene, scene.rest, scene.rest);
+  const Positions x = 0.5 * scene.rest;
+  const Candidates c = candidates_of(scene, x, x);
 
   ASSERT_GT(c.point_triangle.size(), 100U);
   ASSERT_GT(c.edge_edge.size(), 100U);
@@ -170,7 +239,8 @@ Scene planar_scene(PlanarPairs pairs) {
 
 TEST(Candidates, PlanarVertexPairsAreThoseWithoutAMeshEdge) {
   const Scene scene = planar_scene(PlanarPairs::vertex_vertex);
-  const Candidates c = candidates_of(scene, scene.rest, scene.rest);
+  const Positions x = 0.3 * scene.rest;  // nearer than the rest rule asks for
+  const Candidates c = candidates_of(scene, x, x);
   // 9 vertices have 36 pairs; the grid has 12 straight edges and 4 diagonals
   EXPECT_EQ(c.point_point.size(), 20U);
   EXPECT_TRUE(c.point_edge.empty() && c.point_triangle.empty() && c.edge_edge.empty());
@@ -186,7 +256,8 @@ TEST(Candidates, PlanarSpringsOfOneBodyAreMeshEdgesAndStitchesAreNot) {
   add_body(scene, "rope", {Vec3d(0, 0, 0), Vec3d(1, 0, 0), Vec3d(2, 0, 0)}, {}, 3.0);
   add_body(scene, "bead", {Vec3d(2, 1, 0)}, {}, 3.0);
   scene.springs.edges = {{0, 1}, {1, 2}, {2, 3}};
-  const Candidates c = candidates_of(scene, scene.rest, scene.rest);
+  const Positions x = 0.3 * scene.rest;
+  const Candidates c = candidates_of(scene, x, x);
   const std::vector<IndexPair> expected{{0, 2}, {0, 3}, {1, 3}, {2, 3}};
   EXPECT_EQ(c.point_point, expected);
 }
@@ -194,7 +265,8 @@ TEST(Candidates, PlanarSpringsOfOneBodyAreMeshEdgesAndStitchesAreNot) {
 TEST(Candidates, PlanarPointEdgeSkipsTheEdgesOfAVertexsOwnTriangles) {
   const Scene scene = planar_scene(PlanarPairs::point_edge);
   const Surface s(scene);
-  const Candidates c = candidates_of(scene, scene.rest, scene.rest);
+  const Positions x = 0.3 * scene.rest;
+  const Candidates c = candidates_of(scene, x, x);
   // 8 vertices x 8 edges less 16 end points. The triangles on boundary edges have their third corner at
   // 4 (inside, no point), or, in the two corners that the diagonal cuts off, on the boundary: triangles
   // (1 2 5), (1 5 4) and (3 7 6), (3 4 7) give edge 1-2 corner 5, edge 2-5 corner 1, edge 7-6 corner 3,

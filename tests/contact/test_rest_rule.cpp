@@ -34,8 +34,12 @@ TEST(RestRule, AGridAtRestHasNoRowsHoweverLargeDHatIs) {
   add_body(scene, "cloth", vertices, triangles, 0.5);
   ContactSystem contacts(scene, {});
   const Rows rows = rows_at(contacts, scene.x0);
-  EXPECT_GT(contacts.candidate_counts().point_triangle, 1000U);
   EXPECT_EQ(rows.table.size() + rows.mollified.size(), 0U);
+  const std::size_t at_rest = contacts.candidate_counts().point_triangle;
+  const Rows pressed = rows_at(contacts, 0.6 * scene.x0);
+  EXPECT_GT(pressed.table.size(), 100U);
+  EXPECT_GT(contacts.candidate_counts().point_triangle,
+            2 * at_rest);  // nor candidates, but those that touch nearly
 }
 
 }  // namespace

@@ -1,6 +1,7 @@
 // Candidates found on an executor: those of the CPU path, of all pairs of boxes, and in any order the same.
 #include <gtest/gtest.h>
 
+#include "core/contact/contact_row.hpp"
 #include "core/contact/pair_geometry.hpp"
 #include "core/exec/counting_executor.hpp"
 #include "tests/contact/far_bodies.hpp"
@@ -138,7 +139,10 @@ std::vector<IndexPair> brute_force(const resident::PairSearch& s, const resident
       const auto q = primitive_box(b, j, motion);
       bool meet = a.free[i] != 0 || b.free[j] != 0;
       for (int c = 0; c < 3; ++c) meet = meet && p.lo[c] <= q.hi[c] && q.lo[c] <= p.hi[c];
-      if (meet && resident::may_pair<K>(s, i, j)) out.push_back({static_cast<int>(i), static_cast<int>(j)});
+      const float reach = float_above(contact_reach(a, i)) + float_above(contact_reach(b, j));
+      meet = meet && !apart_by_boxes<float>(p.lo, p.hi, q.lo, q.hi, reach);
+      if (meet && resident::may_pair<K>(s, i, j) && !resident::apart_by_rest_rule<K>(s, i, j))
+        out.push_back({static_cast<int>(i), static_cast<int>(j)});
     }
   }
   return out;
@@ -208,8 +212,8 @@ TEST(ResidentBroadPhase, HoldsEveryClosePair) {
           bool close = false;
           for (const double t : {0.0, 0.35, 1.0}) {
             const Positions x = scene.x0 + t * (x1 - scene.x0);
-            close = close ||
-                    closest_points<K, double>(gather(x, pair.vertex)).d <= pair.law.offset + pair.law.d_hat;
+            close = close || closest_points<K, double>(gather(x, pair.vertex)).d <=
+                                 pair.law.offset + row_d_hat<K>(scene, pair);
           }
           if (!close) continue;
           EXPECT_TRUE(std::binary_search(all.begin(), all.end(), index));

@@ -10,6 +10,7 @@
 #include <random>
 
 #include "core/exec/host_executor.hpp"
+#include "core/resident/elements/vector_kernels.hpp"
 #include "core/resident/sums/resident_sum.hpp"
 #include "core/resident/system/row_totals.hpp"
 

@@ -120,8 +120,11 @@ TEST(Vectors, DirectionsAreSplitAtTheRoundingOfTheirVertex) {
       const bool within = within_coordinate_rounding(dx.data()[i], x, sizes[i / 3], 0x1p-52);
       largest[within] = std::max(largest[within], std::abs(dx.data()[i]));
     }
-    EXPECT_EQ(tools.rounding_max(v.dx, v.x, body_size, true), largest[1]) << scale;
-    EXPECT_EQ(tools.rounding_max(v.dx, v.x, body_size, false), largest[0]) << scale;
+    const resident::DirectionSizes found = tools.sizes(v.dx, v.x, body_size, 0x1p-52);
+    EXPECT_EQ(found.within, largest[1]) << scale;
+    EXPECT_EQ(found.beyond, largest[0]) << scale;
+    EXPECT_EQ(found.largest, std::max(largest[0], largest[1])) << scale;
+    EXPECT_DOUBLE_EQ(found.vertex, dx.colwise().norm().maxCoeff()) << scale;
     split += largest[0] > 0 && largest[1] > 0 ? 1 : 0;
   }
   EXPECT_GT(split, 0);

@@ -8,6 +8,7 @@
 #include "core/geometry/accd.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/pair_search.hpp"
+#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 
@@ -15,11 +16,31 @@ constexpr int n_bound_lists =
     7;  // the kinds of PairKind in their order, then obstacles with points, edges, triangles
 constexpr Key no_pair = ~Key{0};
 
-/// What is known of the bound of a motion.
-struct BoundRecord {
-  Key known, next;          // bits of the smallest time: before a batch, and with it
-  Key pair[n_bound_lists];  // the first of each list that stops the motion at `known`; no_pair
-  Key queries, probes, capped, zero;
+/// What the queries of one item counted.
+struct QueryCounts {
+  std::uint32_t queries = 0, probes = 0, capped = 0, zero = 0;
+};
+
+/// What is known of the bound of a motion: a sum (sum_kernels.hpp) over the items of its batches.
+struct BoundTotal {
+  Key sooner;      // complemented bits of the smallest time below 1; 0: there is none
+  Key list, pair;  // the first that stops the motion then
+  Key queries, probes, capped, at_zero;
+
+  BB_HD static BoundTotal zero() { return {0, 0, 0, 0, 0, 0, 0}; }
+  BB_HD double time() const { return sooner == 0 ? 1 : exec::from_ordered_bits(~sooner); }
+  /// The earlier one stops the motion; on a tie the first in the order of lists and pairs.
+  BB_HD void meet(Key its_sooner, Key its_list, Key its_pair) {
+    const bool first = its_list != list ? its_list < list : its_pair < pair;
+    if (its_sooner < sooner || its_sooner == 0 || (its_sooner == sooner && !first)) return;
+    sooner = its_sooner, list = its_list, pair = its_pair;
+  }
+  friend BB_HD BoundTotal operator+(const BoundTotal& a, const BoundTotal& b) {
+    BoundTotal out = a;
+    out.meet(b.sooner, b.list, b.pair);
+    out.queries += b.queries, out.probes += b.probes, out.capped += b.capped, out.at_zero += b.at_zero;
+    return out;
+  }
 };
 
 /// What every query of a motion reads.
@@ -28,9 +49,9 @@ struct BoundQuery {
   const double *x0, *x1;
   double park;  // in units of d_hat
   int max_probes;
-  BoundRecord* record;
+  const BoundTotal* total;  // of the batches before
 
-  BB_HD double known() const { return exec::from_ordered_bits(record->known); }
+  BB_HD double known() const { return total->time(); }
 };
 
 /// largest: the least complemented bits of |x[i]|; no numbers are above infinity.
@@ -110,17 +131,6 @@ BB_HD double proven_time(const BoundQuery& q, const PairVertices<K>& pair, doubl
   return by_planes > by_axes ? by_planes : by_axes;
 }
 
-/// What the queries of one item counted.
-struct QueryCounts {
-  Key queries = 0, probes = 0, capped = 0, zero = 0;
-  BB_HD void add_to(BoundRecord& record) const {
-    if (queries > 0) exec::atomic_add(&record.queries, queries);
-    if (probes > 0) exec::atomic_add(&record.probes, probes);
-    if (capped > 0) exec::atomic_add(&record.capped, capped);
-    if (zero > 0) exec::atomic_add(&record.zero, zero);
-  }
-};
-
 /// The pair's own time, 1 when it is proven to be above `enough`.
 template <PairKind K>
 BB_HD double time_of(const BoundQuery& q, const PairVertices<K>& pair, double enough, QueryCounts& counts) {
@@ -130,7 +140,7 @@ BB_HD double time_of(const BoundQuery& q, const PairVertices<K>& pair, double en
                       q.park * pair.law.d_hat, q.max_probes, enough);
   const double toi = r.hit ? r.toi : 1;
   counts.queries += 1;
-  counts.probes += static_cast<Key>(r.probes);
+  counts.probes += static_cast<std::uint32_t>(r.probes);
   counts.capped += r.capped ? 1 : 0;
   counts.zero += toi == 0 ? 1 : 0;
   return toi;
@@ -156,21 +166,35 @@ BB_HD double obstacle_time(const BoundQuery& q, Index i, Index o, double enough,
         obstacle_accd<N, double>(obstacle, from, to, offset, park, q.max_probes, enough);
     if (r.hit) toi = r.toi;
     counts.queries += 1;
-    counts.probes += static_cast<Key>(r.probes);
+    counts.probes += static_cast<std::uint32_t>(r.probes);
     counts.capped += r.capped ? 1 : 0;
   }
   counts.zero += toi == 0 ? 1 : 0;
   return toi;
 }
 
-/// The earliest time of each item of a batch, and its pair.
+/// The earliest time of each item of a batch, its pair, and what it counted.
 struct BatchTimes {
   Key *time, *pair;
-  BB_HD void put(const BoundQuery& q, Index i, double toi, Key which) const {
-    const Key bits = exec::ordered_bits(toi);
-    time[i] = bits;
+  QueryCounts* counts;
+  BB_HD void put(Index i, double toi, Key which, const QueryCounts& counted) const {
+    time[i] = exec::ordered_bits(toi);
     pair[i] = which;
-    if (toi < 1) exec::atomic_min(&q.record->next, bits);
+    counts[i] = counted;
+  }
+};
+
+/// Parts of SumParts: what the items of a batch say.
+struct BatchParts {
+  using Sum = BoundTotal;
+  BatchTimes of;
+  Key list;
+  BB_HD void operator()(Index i, BoundTotal& sum) const {
+    if (of.time[i] < exec::ordered_bits(1.0) && of.pair[i] != no_pair)
+      sum.meet(~of.time[i], list, of.pair[i]);
+    const QueryCounts counted = of.counts[i];
+    sum.queries += counted.queries, sum.probes += counted.probes;
+    sum.capped += counted.capped, sum.at_zero += counted.zero;
   }
 };
 
@@ -223,8 +247,7 @@ struct AskPairs {
       const auto pair = pair_vertices<K>(query.surface, first_of(which), second_of(which));
       toi = time_of<K>(query, pair, known, counts);
     }
-    out.put(query, i, toi, which);
-    counts.add_to(*query.record);
+    out.put(i, toi, which, counts);
   }
 };
 
@@ -248,8 +271,7 @@ struct AskInTree {
       const Key key = pair_of(a, b);
       if (toi < first || (toi == first && key < which)) first = toi, which = key;
     });
-    out.put(query, i, first, which);
-    counts.add_to(*query.record);
+    out.put(i, first, which, counts);
   }
 };
 
@@ -263,8 +285,7 @@ struct AskObstacles {
     QueryCounts counts;
     const double toi =
         obstacle_time<N>(query, first_of(candidate[i]), second_of(candidate[i]), query.known(), counts);
-    out.put(query, i, toi, candidate[i]);
-    counts.add_to(*query.record);
+    out.put(i, toi, candidate[i], counts);
   }
 };
 
@@ -285,31 +306,7 @@ struct AskObstaclesOf {
       const double toi = obstacle_time<N>(query, first_primitive + i, o, enough, counts);
       if (toi < first) first = toi, which = pair_of(first_primitive + i, o);
     }
-    out.put(query, i, first, which);
-    counts.add_to(*query.record);
-  }
-};
-
-/// What the batch found is known from here on; earlier pairs of a later time are not the first any more.
-struct SettleBatch {
-  BoundRecord* record;
-  BB_HD void operator()(Index) const {
-    if (!(record->next < record->known)) return;
-    record->known = record->next;
-    for (Key& pair : record->pair) pair = no_pair;
-  }
-};
-
-/// The first pair of a list, in its order, among those of the batch that stop the motion when it stops.
-struct NamePairs {
-  BatchTimes times;
-  int list;
-  BoundRecord* record;
-  BB_HD void operator()(Index i) const {
-    if (times.time[i] == record->known && times.pair[i] != no_pair &&
-        record->known < exec::ordered_bits(1.0)) {
-      exec::atomic_min(&record->pair[list], times.pair[i]);
-    }
+    out.put(i, first, which, counts);
   }
 };
 

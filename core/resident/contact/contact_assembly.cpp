@@ -30,8 +30,8 @@ void ContactAssembly::set_pattern(ResidentRows& rows, bool blocks) {
 
 const exec::Buffer<double>& ContactAssembly::mollifiers(ResidentRows& rows, const exec::Buffer<double>& x) {
   const Index n = rows.list.size();
-  mollified_.resize(12 * n);
-  mollifier_.resize(n);
+  mollified_.fit(12 * n);
+  mollifier_.fit(n);
   executor_.each(n, MollifiedGradients{{rows.view(), surface_.view(), x.data()},
                                        rows.list.data(),
                                        n,
@@ -57,7 +57,7 @@ void ContactAssembly::gather(ResidentRows& rows, const Term& term, exec::Buffer<
 void ContactAssembly::add_given_motion(ResidentRows& rows, const exec::Buffer<double>& x,
                                        const exec::Buffer<double>& motion, exec::Buffer<double>& force) {
   const Index n = rows.list.size();
-  mollified_.resize(12 * n);
+  mollified_.fit(12 * n);
   executor_.each(
       n,
       MollifiedChanges{
@@ -72,7 +72,7 @@ MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double
         "numeric projections of contact Hessians have no kernel; gauss_newton and projected_full have");
   }
   const Index n = pattern_.n_blocks();
-  value_.resize(value_count(n));
+  value_.fit(value_count(n));
   const BlockSources blocks = pattern_.blocks();
   if (rows.size() > 0) {
     std::uint8_t* const dense = dense_.counts(rows.size());
@@ -83,16 +83,16 @@ MatrixPart ContactAssembly::matrix(ResidentRows& rows, const exec::Buffer<double
     value_.fill_zero();  // the last plane may be longer than the blocks are
     executor_.each(
         n, GatherStreamed{rows.view(), blocks, dense, x.data(), surface_.view(), choice, value_.data()});
-    add_dense(rows, x, choice);
+    add_dense(rows, dense, x, choice);
     executor_.each(n, MirrorBlocks{blocks, pattern_.n_vertices(), value_.data()});
   }
   return {blocks.row_begin, blocks.column, value_.data()};
 }
 
-void ContactAssembly::add_dense(ResidentRows& rows, const exec::Buffer<double>& x,
+void ContactAssembly::add_dense(ResidentRows& rows, const std::uint8_t* dense, const exec::Buffer<double>& x,
                                 const HessianChoice& choice) {
   const Index n = dense_rows_.size(), stride = std::min(options_.hessians_a_chunk, n);
-  row_hessians_.resize(row_numbers * stride);
+  row_hessians_.fit(row_numbers * stride);
   for (Index first = 0; first < n; first += stride) {
     const Index size = std::min(stride, n - first);
     const std::uint32_t* const list = dense_rows_.data() + first;
@@ -105,8 +105,8 @@ void ContactAssembly::add_dense(ResidentRows& rows, const exec::Buffer<double>& 
       executor_.each(size, ObstacleHessians<2>{to});
       executor_.each(size, ObstacleHessians<3>{to});
     }
-    executor_.each(pattern_.n_blocks(),
-                   GatherDense{pattern_.blocks(), list, size, stride, row_hessians_.data(), value_.data()});
+    executor_.each(16 * size, GatherDense{rows.view(), pattern_.blocks(), dense, list, size, stride,
+                                          row_hessians_.data(), value_.data()});
   }
 }
 

@@ -46,7 +46,8 @@ class ContactAssembly {
  private:
   template <class Term>
   void gather(ResidentRows& rows, const Term& term, exec::Buffer<double>& out);
-  void add_dense(ResidentRows& rows, const exec::Buffer<double>& x, const HessianChoice& choice);
+  void add_dense(ResidentRows& rows, const std::uint8_t* dense, const exec::Buffer<double>& x,
+                 const HessianChoice& choice);
 
   exec::Executor& executor_;
   const ResidentSurface& surface_;

@@ -29,14 +29,28 @@ class ContactPattern {
   BlockSources blocks() const { return {row_begin_.data(), column_.data(), begin_.data(), code_.data()}; }
 
  private:
+  /// Slots that scratch memory is given back from, 16 million.
+  static constexpr Index exact_from = Index{1} << 24;
   struct Piece;
+  struct Numbers {
+    Index slots, contributions;  // of a chunk of vertices: blocks, contributions
+  };
+  /// The vertices [first, last): pairs of points, and contributions to the blocks of those before.
+  struct Chunk {
+    int first, last;
+    Index n_pairs, n_before;
+  };
   /// The first slot of a vertex, read.
   Index slot_begin(int vertex) const;
   int end_of_chunk(int first, Index most) const;
   void starts(const exec::Buffer<std::uint32_t>& counts, exec::Buffer<Index>& begin);
+  void count(ResidentRows& rows, bool blocks);
+  void fill_all_slots(const RowView& rows);
   void fill_slots(const RowView& rows, int first, int last);
-  Piece fill_blocks(const RowView& rows, int first, int last, Index n_before);
-  void join(std::vector<Piece>& pieces, Index n_contributions);
+  void build_in_pieces(const RowView& rows);
+  Index fill_blocks(const RowView& rows, const Chunk& chunk, exec::Buffer<int>& column,
+                    exec::Buffer<std::uint32_t>& begin);
+  void join(std::vector<Piece>& pieces);
 
   exec::Executor& executor_;
   int n_vertices_;
@@ -48,6 +62,8 @@ class ContactPattern {
   exec::Buffer<int> column_;
   exec::Buffer<std::uint32_t> begin_;
   exec::Buffer<std::uint32_t> code_;
+  Numbers n_{0, 0};
+  exec::Buffer<Numbers> numbers_;
   Compaction places_, upper_;
   exec::Buffer<Key> key_;
   exec::Buffer<std::uint32_t> value_;

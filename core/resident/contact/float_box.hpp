@@ -55,6 +55,12 @@ struct MotionView {
   const MotionFrame* frame;
 };
 
+/// The share of primitive i of the contact distance, m.
+template <int N>
+BB_HD double contact_reach(const PrimitiveView<N>& of, Index i) {
+  return of.d_hat[i] / 2 + of.offset[i];
+}
+
 /// The box of primitive i with its share of the contact distance.
 template <int N>
 BB_HD FloatBox primitive_box(const PrimitiveView<N>& of, Index i, const MotionView& motion) {
@@ -72,7 +78,7 @@ BB_HD FloatBox primitive_box(const PrimitiveView<N>& of, Index i, const MotionVi
       widen(box, c, vertex.lo[c], vertex.hi[c]);
     }
   }
-  inflate(box, of.d_hat[i] / 2 + of.offset[i]);
+  inflate(box, contact_reach(of, i));
   return box;
 }
 

@@ -136,19 +136,26 @@ struct GatherStreamed {
   }
 };
 
-/// Adds the Hessians of a chunk of rows to the upper blocks.
+/// Adds the Hessians of a chunk of rows to the upper blocks. An item is a pair of points of a row: of those with one
+/// block, the first in the order of the block adds all of them up. So the cost is that of the chunk, whatever the matrix
+/// holds besides.
 struct GatherDense {
+  RowView rows;
   BlockSources blocks;
+  const std::uint8_t* dense;  // [rows.n] 1: has a Hessian
   const std::uint32_t* list;  // [n] ascending rows of the chunk
   Index n, stride;
   const double* number;  // [row_numbers][stride]
   double* value;
 
-  BB_HD void operator()(Index j) const {
+  BB_HD void operator()(Index item) const {
+    const std::uint32_t own = list[item >> 4] << 4 | static_cast<std::uint32_t>(item & 15);
+    const Index j = block_of(own);
+    if (j < 0) return;
     const Index end = blocks.begin[j + 1];
-    Index i = first_not_below(blocks.code, Index{blocks.begin[j]}, end, list[0] << 4);
+    Index i = first_not_below(blocks.code, Index{blocks.begin[j]}, end, own);
+    if (!is_first(j, i)) return;
     const Index last = list[n - 1];
-    if (i >= end || pair_row_of(blocks.code[i]) > last) return;
     double sum[9];
     for (int c = 0; c < 9; ++c) sum[c] = value[value_index(j, c)];
     for (; i < end && pair_row_of(blocks.code[i]) <= last; ++i) {
@@ -160,6 +167,24 @@ struct GatherDense {
   }
 
  private:
+  /// The upper block of two free points of a row; -1 where they have none.
+  BB_HD Index block_of(std::uint32_t code) const {
+    const Index r = pair_row_of(code);
+    const int a = pair_a(code), b = pair_b(code);
+    if (!rows.is_free(r, a) || !rows.is_free(r, b)) return -1;
+    const int row = rows.vertex[a * rows.n + r], column = rows.vertex[b * rows.n + r];
+    if (column < row) return -1;
+    return first_not_below(blocks.column, blocks.row_begin[row], blocks.row_begin[row + 1], column);
+  }
+  /// Whether no row of the chunk comes before contribution i of block j.
+  BB_HD bool is_first(Index j, Index i) const {
+    while (i > static_cast<Index>(blocks.begin[j]) &&
+           pair_row_of(blocks.code[i - 1]) >= static_cast<Index>(list[0])) {
+      if (dense[pair_row_of(blocks.code[i - 1])] != 0) return false;
+      --i;
+    }
+    return true;
+  }
   /// Block (a, b) of a row is stored, column-major, when a >= b; else its transpose is.
   BB_HD void add(Index at, int a, int b, double* sum) const {
     const bool stored = a >= b;

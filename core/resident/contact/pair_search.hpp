@@ -2,6 +2,7 @@
 #pragma once
 
 #include "core/contact/obstacle_pair.hpp"
+#include "core/contact/rest_rule.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/tree_view.hpp"
 
@@ -34,6 +35,7 @@ struct PairSearch {
   SurfaceView surface;
   SortedRows<2> connected;  // planar, of two vertices: mesh edges
   SortedRows<3> opposite;   // planar, of a vertex and an edge: edge and third corner of a triangle
+  const double *x0, *x1;    // the motion
   const int*
       edge_of;  // in space, of a vertex and an edge: of the leaves of `second` in the edges of the surface; or null
 };
@@ -62,18 +64,29 @@ BB_HD bool may_pair(const PairSearch& s, Index i, Index j) {
   }
 }
 
+/// Whether the pair is of one body, and stays apart as far as the rest rule asks for it.
+template <PairKind K>
+BB_HD bool apart_by_rest_rule(const PairSearch& s, Index i, Index j) {
+  const PairVertices<K> pair = pair_vertices<K>(s.surface, i, j);
+  if (s.surface.body[pair.vertex[0]] != s.surface.body[pair.vertex[pair_split(K)]]) return false;
+  constexpr int n = pair_points(K);
+  return bb::apart_by_rest_rule<K>(pair.law, points_of<n>(s.surface.rest, pair.vertex),
+                                   points_of<n>(s.x0, pair.vertex), points_of<n>(s.x1, pair.vertex),
+                                   value_epsilon(Precision::full));
+}
+
 /// Calls f(first, second) for the candidates of kind K that the leaf at a place of the first tree has: within one tree
 /// those with the leaves behind it, first < second, so that each pair comes once.
 template <PairKind K, class F>
 BB_HD void for_each_pair(const PairSearch& s, Index place, const F& f) {
   const TreeNode asking = s.first.node[place];
-  const Index own = asking.primitive;
+  const Index own = asking.primitive();
   for_each_overlap(s.second, asking, one_tree<K> ? place + 1 : 0, [&](const TreeNode& leaf) {
     const Index other =
-        K == PairKind::point_edge && s.edge_of != nullptr ? s.edge_of[leaf.primitive] : leaf.primitive;
+        K == PairKind::point_edge && s.edge_of != nullptr ? s.edge_of[leaf.primitive()] : leaf.primitive();
     const bool swapped = one_tree<K> && other < own;
     const Index i = swapped ? other : own, j = swapped ? own : other;
-    if (may_pair<K>(s, i, j)) f(i, j);
+    if (may_pair<K>(s, i, j) && !apart_by_rest_rule<K>(s, i, j)) f(i, j);
   });
 }
 

@@ -45,13 +45,14 @@ ResidentBroadPhase::ResidentBroadPhase(exec::Executor& executor, const ResidentS
       lone_(executor, "lone edges", lone_primitives(surface, plan)),
       edge_of_(executor, "numbers of lone edges"),
       lone_edges_(executor, "tree of lone edges"),
-      point_points_(executor, "places of point-point candidates"),
-      point_edges_(executor, "places of point-edge candidates"),
-      point_triangles_(executor, "places of point-triangle candidates"),
-      edge_edges_(executor, "places of edge-edge candidates"),
-      obstacle_points_(executor, "places of obstacle candidates"),
-      obstacle_edges_(executor, "places of obstacle-edge candidates"),
-      obstacle_triangles_(executor, "places of obstacle-triangle candidates") {
+      point_points_(executor, "point-point"),
+      point_edges_(executor, "point-edge"),
+      point_triangles_(executor, "point-triangle"),
+      edge_edges_(executor, "edge-edge"),
+      obstacle_points_(executor, "obstacle"),
+      obstacle_edges_(executor, "obstacle-edge"),
+      obstacle_triangles_(executor, "obstacle-triangle"),
+      total_(executor, "numbers of candidates", 1) {
   if (plan.point_point) upload_rows(connected_, surface.connected_pairs());
   if (plan.point_edge) upload_rows(opposite_, surface.opposite_corners());
   if (lone_.free.size() > 0) edge_of_.upload(surface.lone_edges);
@@ -104,6 +105,8 @@ PairSearch ResidentBroadPhase::search() const {
           surface_.view(),
           {connected_.data(), connected_.size() / 2},
           {opposite_.data(), opposite_.size() / 3},
+          x0_,
+          x1_,
           lone ? edge_of_.data() : nullptr};
 }
 
@@ -121,64 +124,71 @@ CandidateSource ResidentBroadPhase::source() const {
   return out;
 }
 
-/// From counts [n] to places [n + 1]; the last is their number.
-void ResidentBroadPhase::sum_up(exec::Buffer<Index>& begin, Index& total) {
-  const Index n = begin.size() - 1;
-  scan_counts(executor_, begin.data(), n);
-  if (!executor_.counts_only()) total = begin.get(n);
+/// From counts [n] to places [n + 1]; the last is their number, which is read with those of all kinds.
+void ResidentBroadPhase::sum_up(Found& found) {
+  const Index n = found.begin.size() - 1;
+  scan_counts(executor_, found.begin.data(), n);
+  executor_.copy(reinterpret_cast<Index*>(total_.data()) + n_counted_, found.begin.data() + n, sizeof(Index));
 }
 
 template <PairKind K>
-void ResidentBroadPhase::count_kind(bool needed, exec::Buffer<Index>& begin, Index& total) {
-  if (!needed) return;
-  const PairSearch s = search<K>();
-  const Index n = s.first.top < 0 ? 0 : s.first.size(0);
-  begin.resize(n + 1);
-  executor_.each(n, CountPairs<K>{s, begin.data()});
-  sum_up(begin, total);
+void ResidentBroadPhase::count_kind(bool needed, Found& found) {
+  if (needed) {
+    const PairSearch s = search<K>();
+    const Index n = s.first.top < 0 ? 0 : s.first.size(0);
+    found.begin.resize(n + 1), found.held.resize(pairs_held * n);
+    executor_.each(n, CountPairs<K>{s, found.begin.data(), found.held.data(), n});
+    sum_up(found);
+  }
+  ++n_counted_;
 }
 
 template <int N>
-void ResidentBroadPhase::count_obstacles(exec::Buffer<Index>& begin, Index& total) {
-  if (!plan_.obstacles.needed) return;
-  const SurfaceView s = surface_.view();
-  const Index n = s.primitives<N>().n;
-  begin.resize(n + 1);
-  executor_.each(n, CountObstacles<N>{s, x0_, x1_, begin.data()});
-  sum_up(begin, total);
+void ResidentBroadPhase::count_obstacles(Found& found) {
+  if (plan_.obstacles.needed) {
+    const SurfaceView s = surface_.view();
+    const Index n = s.primitives<N>().n;
+    found.begin.resize(n + 1);
+    executor_.each(n, CountObstacles<N>{s, x0_, x1_, found.begin.data()});
+    sum_up(found);
+  }
+  ++n_counted_;
 }
 
 template <int N>
-void ResidentBroadPhase::fill_obstacles(const exec::Buffer<Index>& begin, Index total,
-                                        exec::Buffer<Key>& out) {
+void ResidentBroadPhase::fill_obstacles(const Found& found, Index total, exec::Buffer<Key>& out) {
   out.grow(plan_.obstacles.needed ? total : 0);
   if (!plan_.obstacles.needed || total == 0) return;
   const SurfaceView s = surface_.view();
-  executor_.each(s.primitives<N>().n, FillObstacles<N>{s, x0_, x1_, begin.data(), out.data()});
+  executor_.each(s.primitives<N>().n, FillObstacles<N>{s, x0_, x1_, found.begin.data(), out.data()});
 }
 
 CandidateCounts ResidentBroadPhase::count(const Column& x0, const Column& x1) {
+  static_assert(sizeof(CandidateCounts) == 7 * sizeof(Index), "one number a kind");
   x0_ = x0.data();
   x1_ = x1.data();
   fit(x0, x1);
-  count_kind<PairKind::point_point>(plan_.point_point, point_points_, counts_.point_point);
-  count_kind<PairKind::point_edge>(plan_.point_edge, point_edges_, counts_.point_edge);
-  count_kind<PairKind::point_triangle>(plan_.point_triangle, point_triangles_, counts_.point_triangle);
-  count_kind<PairKind::edge_edge>(plan_.edge_edge, edge_edges_, counts_.edge_edge);
-  count_obstacles<1>(obstacle_points_, counts_.obstacle);
-  count_obstacles<2>(obstacle_edges_, counts_.obstacle_edge);
-  count_obstacles<3>(obstacle_triangles_, counts_.obstacle_triangle);
+  n_counted_ = 0;  // in the order of CandidateCounts
+  total_.fill_zero();
+  count_kind<PairKind::point_point>(plan_.point_point, point_points_);
+  count_kind<PairKind::point_edge>(plan_.point_edge, point_edges_);
+  count_kind<PairKind::point_triangle>(plan_.point_triangle, point_triangles_);
+  count_kind<PairKind::edge_edge>(plan_.edge_edge, edge_edges_);
+  count_obstacles<1>(obstacle_points_);
+  count_obstacles<2>(obstacle_edges_);
+  count_obstacles<3>(obstacle_triangles_);
+  if (!executor_.counts_only()) counts_ = total_.get(0);
   return counts_;
 }
 
 template <PairKind K>
-void ResidentBroadPhase::fill_kind(bool needed, const exec::Buffer<Index>& begin, Index total,
-                                   exec::Buffer<Key>& out) {
+void ResidentBroadPhase::fill_kind(bool needed, const Found& found, Index total, exec::Buffer<Key>& out) {
   room_ ? out.grow(needed ? total : 0) : out.resize(needed ? total : 0);
   if (!needed || total == 0) return;
   const PairSearch s = search<K>();
-  executor_.each(s.first.size(0), FillPairs<K>{s, begin.data(), out.data()});
-  const auto bits = std::bit_width(static_cast<Key>(s.first.size(0) - 1));
+  const Index n = s.first.size(0);
+  executor_.each(n, FillPairs<K>{s, found.begin.data(), found.held.data(), n, out.data()});
+  const auto bits = std::bit_width(static_cast<Key>(n - 1));
   executor_.sort(out.data(), nullptr, total, 32 + static_cast<int>(bits));
 }
 
@@ -196,9 +206,9 @@ void ResidentBroadPhase::fill(ResidentCandidates& out) {
 void ResidentBroadPhase::free() {
   points_.free(), edges_.free(), triangles_.free(), lone_edges_.free();
   scratch_.key.free(), scratch_.order.free();
-  for (auto* begin : {&point_points_, &point_edges_, &point_triangles_, &edge_edges_, &obstacle_points_,
-                      &obstacle_edges_, &obstacle_triangles_}) {
-    begin->free();
+  for (Found* found : {&point_points_, &point_edges_, &point_triangles_, &edge_edges_, &obstacle_points_,
+                       &obstacle_edges_, &obstacle_triangles_}) {
+    found->free();
   }
 }
 

@@ -53,17 +53,26 @@ class ResidentBroadPhase {
  private:
   void find_frame(const Column& x0, const Column& x1);
   void fit(const Column& x0, const Column& x1);
+  /// Of one kind of pair: where those of each primitive begin ([n + 1]), and the first of each that are held.
+  struct Found {
+    Found(exec::Executor& executor, const std::string& name)
+        : begin(executor, "places of " + name + " candidates"),
+          held(executor, "held " + name + " candidates") {}
+    void free() { begin.free(), held.free(); }
+    exec::Buffer<Index> begin;
+    exec::Buffer<Key> held;
+  };
   template <PairKind K>
-  void count_kind(bool needed, exec::Buffer<Index>& begin, Index& total);
+  void count_kind(bool needed, Found& found);
   template <PairKind K>
-  void fill_kind(bool needed, const exec::Buffer<Index>& begin, Index total, exec::Buffer<Key>& out);
+  void fill_kind(bool needed, const Found& found, Index total, exec::Buffer<Key>& out);
   template <int N>
-  void count_obstacles(exec::Buffer<Index>& begin, Index& total);
+  void count_obstacles(Found& found);
   template <int N>
-  void fill_obstacles(const exec::Buffer<Index>& begin, Index total, exec::Buffer<Key>& out);
+  void fill_obstacles(const Found& found, Index total, exec::Buffer<Key>& out);
   template <PairKind K>
   PairSearch search() const;
-  void sum_up(exec::Buffer<Index>& begin, Index& total);
+  void sum_up(Found& found);
 
   exec::Executor& executor_;
   const ResidentSurface& surface_;
@@ -79,8 +88,10 @@ class ResidentBroadPhase {
       lone_;  // edges without triangles in space, what they are in the surface, and their tree
   exec::Buffer<int> edge_of_;
   BoxTree<2> lone_edges_;
-  exec::Buffer<Index> point_points_, point_edges_, point_triangles_, edge_edges_, obstacle_points_,
-      obstacle_edges_, obstacle_triangles_;  // [n + 1] where those of each begin
+  Found point_points_, point_edges_, point_triangles_, edge_edges_, obstacle_points_, obstacle_edges_,
+      obstacle_triangles_;
+  exec::Buffer<CandidateCounts> total_;
+  int n_counted_ = 0;
   CandidateCounts counts_;
   bool room_ = true;
   const double *x0_ = nullptr, *x1_ = nullptr;

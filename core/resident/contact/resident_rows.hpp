@@ -85,12 +85,12 @@ class ResidentRows {
 
   /// Values are lost. Errors: OutOfMemory.
   void resize(Index n) {
-    vertex_.resize(4 * n), weight_.resize(4 * n), normal_.resize(3 * n);
-    for (auto* column : {&d_, &d_hat_, &energy_, &push_, &stretch_}) column->resize(n);
-    pair_.resize(n), kind_.resize(n), free_.resize(n);
-    if (columns_ != KappaColumns::uniform) kappa_.resize(n);
-    if (columns_ == KappaColumns::compared) kappa_before_.resize(n);
-    if (columns_ == KappaColumns::potential) per_gap_sq_.resize(n);
+    vertex_.fit(4 * n), weight_.fit(4 * n), normal_.fit(3 * n);
+    for (auto* column : {&d_, &d_hat_, &energy_, &push_, &stretch_}) column->fit(n);
+    pair_.fit(n), kind_.fit(n), free_.fit(n);
+    if (columns_ != KappaColumns::uniform) kappa_.fit(n);
+    if (columns_ == KappaColumns::compared) kappa_before_.fit(n);
+    if (columns_ == KappaColumns::potential) per_gap_sq_.fit(n);
   }
   void swap(ResidentRows& other) noexcept {
     for (auto column :

@@ -13,53 +13,49 @@ ResidentStepBound::ResidentStepBound(exec::Executor& executor, const ResidentSur
       surface_(surface),
       level_(level),
       batches_(batches),
-      record_(executor, "step bound", 1),
-      largest_(executor, "largest coordinate", 1),
+      total_(executor),
+      numbers_(executor, "step bound", 1),
       proven_(executor, "proven times"),
       places_(executor, "asked pairs"),
       asked_(executor, "asked pairs"),
       time_(executor, "times of asked pairs"),
-      pair_(executor, "pairs of those times") {}
+      pair_(executor, "pairs of those times"),
+      counts_(executor, "counts of those times") {}
 
-bool ResidentStepBound::start(const Column& x0, const Column& x1) {
-  executor_.fill_bytes(largest_.data(), 0xff, sizeof(Key));
+void ResidentStepBound::start(const Column& x0, const Column& x1) {
+  Key* const largest = &numbers_.data()->largest;
+  executor_.fill_bytes(largest, 0xff, sizeof(Key));
   for (const Column* x : {&x0, &x1}) {
     const Index n_blocks = (x->size() + LargestCoordinate::a_block - 1) / LargestCoordinate::a_block;
-    executor_.blocks(n_blocks, LargestCoordinate{x->data(), x->size(), largest_.data()});
+    executor_.blocks(n_blocks, LargestCoordinate{x->data(), x->size(), largest});
   }
-  BoundRecord record{};
-  record.known = record.next = exec::ordered_bits(1.0);
-  std::fill(std::begin(record.pair), std::end(record.pair), no_pair);
-  record_.set(0, record);
-  query_ = {surface_.view(), x0.data(), x1.data(), level_.park, level_.max_probes, record_.data()};
-  if (executor_.counts_only() || x0.size() == 0) return true;
-  return ~largest_.get(0) < exec::ordered_bits(std::numeric_limits<double>::infinity());
+  total_.clear();
+  query_ = {surface_.view(), x0.data(), x1.data(), level_.park, level_.max_probes, total_.data()};
 }
 
 /// ask(begin, n, times) for batches of [0, n), one after another.
 template <class Ask>
 void ResidentStepBound::in_batches(Index n, int list, const Ask& ask) {
   const Index most = std::min(n, batches_.most_asked);
-  if (time_.size() < most) time_.resize(most), pair_.resize(most);
-  const BatchTimes times{time_.data(), pair_.data()};
+  if (time_.size() < most) time_.fit(most), pair_.fit(most), counts_.fit(most);
+  const BatchTimes times{time_.data(), pair_.data(), counts_.data()};
   Index length = batches_.first_asked;
   for (Index begin = 0; begin < n; begin += length) {
     if (begin > 0) length = std::min(2 * length, batches_.most_asked);
     const Index m = std::min(length, n - begin);
     ask(begin, m, times);
-    executor_.each(1, SettleBatch{record_.data()});
-    executor_.each(m, NamePairs{times, list, record_.data()});
+    total_.add(m, BatchParts{times, static_cast<Key>(list)});
   }
 }
 
 /// Those of n pairs that have to be asked, early ones first, into asked_. Returns how many.
 template <PairKind K>
 Index ResidentStepBound::screen(const Key* candidates, Index n) {
-  if (proven_.size() < n) proven_.resize(n);
+  if (proven_.size() < n) proven_.fit(n);
   std::uint8_t* const keep = places_.counts(n);
   executor_.each(n, ScreenPairs<K>{query_, candidates, proven_.data(), keep});
   const Index m = places_.rank(n);
-  if (asked_.size() < m) asked_.grow(m);
+  if (asked_.size() < m) asked_.fit(m);
   executor_.each(n, KeepPairs{proven_.data(), keep, places_.places(), asked_.data()});
   executor_.sort(asked_.data(), nullptr, m, 32);
   return m;
@@ -126,34 +122,31 @@ ContactKey ResidentStepBound::key_of(int list, Key pair) const {
   return pair_key(std::array{a[0], a[1], b[0], b[1]});
 }
 
-StepBound ResidentStepBound::result() const {
+/// A motion that is not finite has the bound 0, whatever its pairs say.
+StepBound ResidentStepBound::result() {
   StepBound out;
   if (executor_.counts_only()) return out;
-  const BoundRecord record = record_.get(0);
-  out.alpha = exec::from_ordered_bits(record.known);
-  out.queries = static_cast<long long>(record.queries);
-  out.probes = static_cast<long long>(record.probes);
-  out.capped = static_cast<long long>(record.capped);
-  out.zero = static_cast<long long>(record.zero);
-  for (int list = 0; list < n_bound_lists; ++list) {
-    if (record.pair[list] == no_pair) continue;
-    out.kind = static_cast<ContactKind>(list);
-    out.key = key_of(list, record.pair[list]);
-    break;
+  executor_.copy(&numbers_.data()->total, total_.data(), sizeof(BoundTotal));
+  const Numbers numbers = numbers_.get(0);
+  if (~numbers.largest >= exec::ordered_bits(std::numeric_limits<double>::infinity()) &&
+      numbers.largest != no_pair) {
+    out.alpha = 0;
+    return out;
   }
+  const BoundTotal& total = numbers.total;
+  out.alpha = total.time();
+  out.queries = static_cast<long long>(total.queries);
+  out.probes = static_cast<long long>(total.probes);
+  out.capped = static_cast<long long>(total.capped);
+  out.zero = static_cast<long long>(total.at_zero);
+  if (total.sooner == 0) return out;
+  out.kind = static_cast<ContactKind>(total.list);
+  out.key = key_of(static_cast<int>(total.list), total.pair);
   return out;
 }
-
-namespace {
-StepBound of_no_motion() {
-  StepBound out;
-  out.alpha = 0;
-  return out;
-}
-}  // namespace
 
 StepBound ResidentStepBound::find(const ResidentCandidates& candidates, const Column& x0, const Column& x1) {
-  if (!start(x0, x1)) return of_no_motion();
+  start(x0, x1);
   ask_obstacle_list<1>(candidates.obstacle);
   ask_obstacle_list<2>(candidates.obstacle_edge);
   ask_obstacle_list<3>(candidates.obstacle_triangle);
@@ -166,7 +159,7 @@ StepBound ResidentStepBound::find(const ResidentCandidates& candidates, const Co
 
 StepBound ResidentStepBound::find_without_list(const CandidateSource& source, const Column& x0,
                                                const Column& x1) {
-  if (!start(x0, x1)) return of_no_motion();
+  start(x0, x1);
   if (source.obstacles) {
     ask_all_obstacles<1>();
     ask_all_obstacles<2>();

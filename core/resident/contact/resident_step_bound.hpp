@@ -6,6 +6,7 @@
 #include "core/resident/contact/bound_kernels.hpp"
 #include "core/resident/contact/compaction.hpp"
 #include "core/resident/contact/resident_broad_phase.hpp"
+#include "core/resident/sums/resident_sum.hpp"
 
 namespace bb::resident {
 
@@ -20,7 +21,7 @@ struct BoundBatches {
 /// Pairs are screened in chunks of their lists: axes and planes prove of most that they come later than the smallest
 /// time known. The rest is asked in batches, in the order of what is proven of it. Counters are the same in any order
 /// of a launch; they differ from the CPU path's, whose batches are others. Keeps its buffers: 7 B a pair of a
-/// chunk, 8 B a pair that has to be asked, 16 B a pair of a batch.
+/// chunk, 8 B a pair that has to be asked, 32 B a pair of a batch.
 class ResidentStepBound {
  public:
   using Column = exec::Buffer<double>;
@@ -36,8 +37,12 @@ class ResidentStepBound {
   StepBound find_without_list(const CandidateSource& source, const Column& x0, const Column& x1);
 
  private:
-  /// False when the motion is not finite.
-  bool start(const Column& x0, const Column& x1);
+  /// What is read of a motion, once.
+  struct Numbers {
+    BoundTotal total;
+    Key largest;  // complemented bits of the largest coordinate
+  };
+  void start(const Column& x0, const Column& x1);
   template <PairKind K>
   void ask_list(const exec::Buffer<Key>& candidates);
   template <PairKind K>
@@ -50,7 +55,7 @@ class ResidentStepBound {
   void ask_all_obstacles();
   template <class Ask>
   void in_batches(Index n, int list, const Ask& ask);
-  StepBound result() const;
+  StepBound result();
   ContactKey key_of(int list, Key pair) const;
 
   exec::Executor& executor_;
@@ -58,11 +63,12 @@ class ResidentStepBound {
   const StopLevel level_;
   const BoundBatches batches_;
   BoundQuery query_{};
-  exec::Buffer<BoundRecord> record_;
-  exec::Buffer<Key> largest_;
+  ResidentSums<BoundTotal> total_;
+  exec::Buffer<Numbers> numbers_;
   exec::Buffer<float> proven_;
   Compaction places_;
   exec::Buffer<Key> asked_, time_, pair_;
+  exec::Buffer<QueryCounts> counts_;
 };
 
 }  // namespace bb::resident

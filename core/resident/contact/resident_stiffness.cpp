@@ -43,7 +43,7 @@ double ResidentStiffness::refresh(ResidentRows& rows, const MatrixPart& elastic)
     return 0;
   }
   compute(rows, nullptr, false, elastic);
-  change_.set(0, ~exec::ordered_bits(0.0));
+  executor_.fill_bytes(change_.data(), 0xff, sizeof(Key));  // no change
   executor_.each(rows.size(), SettleKappa{rows.view(), change_.data()});
   return executor_.counts_only() ? 0 : exec::from_ordered_bits(~change_.get(0));
 }

@@ -2,6 +2,8 @@
 
 #include <limits>
 
+#include "core/resident/sums/resident_sum.hpp"
+
 namespace bb::resident {
 namespace {
 
@@ -22,13 +24,6 @@ Index n_candidates(const ResidentCandidates& c) {
          c.obstacle.size() + c.obstacle_edge.size() + c.obstacle_triangle.size();
 }
 
-double smallest_gap(const GapBits& bits) {
-  constexpr Key none = ~Key{0};
-  if (bits.most_negative != none) return -exec::from_ordered_bits(~bits.most_negative);
-  if (bits.least_positive != none) return exec::from_ordered_bits(bits.least_positive);
-  return std::numeric_limits<double>::infinity();
-}
-
 }  // namespace
 
 RowFinder::RowFinder(exec::Executor& executor, const ResidentSurface& surface, bool mollifier)
@@ -36,23 +31,13 @@ RowFinder::RowFinder(exec::Executor& executor, const ResidentSurface& surface, b
       surface_(surface),
       mollifier_(mollifier),
       places_(executor, "narrow phase"),
-      gap_(executor, "smallest gap", 1),
-      found_(executor, "non-finite flag", 1) {}
-
-bool RowFinder::finite(const exec::Buffer<double>& x) {
-  found_.fill_zero();
-  executor_.each(x.size(), FindNonFinite{x.data(), found_.data()});
-  return executor_.counts_only() || found_.get(0) == 0;
-}
+      numbers_(executor, "numbers of rows", 1) {}
 
 void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& candidates,
                      ResidentRows& rows) {
   rows.list.resize(0);
-  if (!finite(x)) {  // comparisons mean nothing then
-    rows.resize(0);
-    rows.min_gap = -std::numeric_limits<double>::infinity();
-    return;
-  }
+  numbers_.fill_zero();
+  executor_.each(x.size(), FindNonFinite{x.data(), &numbers_.data()->not_finite});
   const NarrowPhase phase{surface_.view(), x.data(), mollifier_};
   std::uint8_t* const mark = places_.counts(n_candidates(candidates));
   Index first = 0;
@@ -60,33 +45,47 @@ void RowFinder::find(const exec::Buffer<double>& x, const ResidentCandidates& ca
     executor_.each(list.size(), MarkRows<Rows>{of, list.data(), mark + first});
     first += list.size();
   });
-
-  rows.resize(places_.rank(expected_.rows));
-  gap_.set(0, {~Key{0}, ~Key{0}});
+  places_.rank_to(&numbers_.data()->rows);
+  RowNumbers numbers{0, 0, expected_.rows, ~Key{0}, expected_.mollified};
+  if (!executor_.counts_only()) numbers = numbers_.get(0);
+  if (numbers.not_finite != 0) {  // comparisons mean nothing then
+    rows.resize(0);
+    rows.min_gap = -std::numeric_limits<double>::infinity();
+    return;
+  }
+  rows.resize(numbers.rows);
   const RowView view = rows.view();
   first = 0;
   for_each_list(phase, candidates, [&]<class Rows>(const Rows& of, const exec::Buffer<Key>& list) {
-    executor_.each(list.size(),
-                   FillRows<Rows>{of, list.data(), mark + first, first, places_.places(), view, gap_.data()});
+    executor_.each(list.size(), FillRows<Rows>{of, list.data(), mark + first, first, places_.places(), view});
     first += list.size();
   });
-  rows.min_gap =
-      executor_.counts_only() ? std::numeric_limits<double>::infinity() : smallest_gap(gap_.get(0));
-  list_mollified(rows);
+  measure(rows);
 }
 
-void RowFinder::list_mollified(ResidentRows& rows) {
-  if (!mollifier_ || rows.size() == 0) return;
-  executor_.each(rows.size(), MarkMollified{rows.view().kind, places_.counts(rows.size())});
-  places_.list(places_.rank(expected_.mollified), rows.list);
+/// The smallest gap, and which rows are mollified.
+void RowFinder::measure(ResidentRows& rows) {
+  rows.min_gap = std::numeric_limits<double>::infinity();
+  if (rows.size() == 0) return;
+  Key* const least = &numbers_.data()->least_gap;
+  const Index n = rows.size(), items = items_a_block(n);
+  executor_.fill_bytes(least, 0xff, sizeof(Key));
+  executor_.blocks((n + items - 1) / items, LeastKey<RowGaps>{{rows.view().d}, n, least});
+  if (mollifier_) {
+    executor_.each(n, MarkMollified{rows.view().kind, places_.counts(n)});
+    places_.rank_to(&numbers_.data()->mollified);
+  }
+  RowNumbers numbers{0, 0, 0, ~Key{0}, expected_.mollified};
+  if (!executor_.counts_only()) numbers = numbers_.get(0);
+  if (numbers.least_gap != ~Key{0}) rows.min_gap = from_smallest_key(numbers.least_gap);
+  if (mollifier_) places_.list(numbers.mollified, rows.list);
 }
 
-bool same_stencils(exec::Executor& executor, ResidentRows& a, ResidentRows& b) {
-  if (a.size() != b.size() || executor.counts_only()) return false;
-  exec::Buffer<std::uint32_t> found(executor, "stencil flag", 1);
-  found.fill_zero();
-  executor.each(a.size(), CompareStencils{a.view(), b.view(), found.data()});
-  return found.get(0) == 0;
+bool RowFinder::same_stencils(ResidentRows& a, ResidentRows& b) {
+  if (a.size() != b.size() || executor_.counts_only()) return false;
+  numbers_.fill_zero();
+  executor_.each(a.size(), CompareStencils{a.view(), b.view(), &numbers_.data()->not_finite});
+  return numbers_.get(0).not_finite == 0;
 }
 
 }  // namespace bb::resident

@@ -24,20 +24,25 @@ class RowFinder {
   /// What an executor that only counts buffers is to take the rows for.
   void expect(const ExpectedContacts& expected) { expected_ = expected; }
 
+  /// Whether two tables have the same stencils and free vertices, so that one pattern serves both.
+  bool same_stencils(ResidentRows& a, ResidentRows& b);
+
  private:
-  bool finite(const exec::Buffer<double>& x);
-  void list_mollified(ResidentRows& rows);
+  /// What is read of a search, at most twice.
+  struct RowNumbers {
+    std::uint32_t not_finite, unused;  // a number that is none; where two tables differ
+    Index rows;
+    Key least_gap;  // smallest_key
+    Index mollified;
+  };
+  void measure(ResidentRows& rows);
 
   exec::Executor& executor_;
   const ResidentSurface& surface_;
   bool mollifier_;
   ExpectedContacts expected_;
   Compaction places_;
-  exec::Buffer<GapBits> gap_;
-  exec::Buffer<std::uint32_t> found_;
+  exec::Buffer<RowNumbers> numbers_;
 };
-
-/// Whether two tables have the same stencils and free vertices, so that one pattern serves both.
-bool same_stencils(exec::Executor& executor, ResidentRows& a, ResidentRows& b);
 
 }  // namespace bb::resident

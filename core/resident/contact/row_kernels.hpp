@@ -7,6 +7,7 @@
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_pair.hpp"
 #include "core/resident/contact/resident_rows.hpp"
+#include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
 
@@ -124,16 +125,11 @@ struct NarrowPhase {
   }
 };
 
-/// The smallest gap as two integers, each the least over the rows: bits of the gaps >= 0; for those below 0, the
-/// complement of the bits of -d.
-struct GapBits {
-  Key least_positive, most_negative;
+/// Keys of LeastKey: the smallest gap of rows; what is no number counts for none.
+struct RowGaps {
+  const double* d;
+  BB_HD Key operator()(Index r) const { return d[r] == d[r] ? smallest_key(d[r] + 0.0) : ~Key{0}; }
 };
-
-BB_HD inline void note_gap(GapBits* bits, double d) {
-  if (d >= 0) exec::atomic_min(&bits->least_positive, exec::ordered_bits(d + 0.0));
-  if (d < 0) exec::atomic_min(&bits->most_negative, ~exec::ordered_bits(-d));
-}
 
 BB_HD inline void put_row(const RowView& rows, Index at, const FoundRow& row, Key pair) {
   for (int k = 0; k < 4; ++k) {
@@ -194,12 +190,10 @@ struct FillRows {
   Index first;
   Places places;
   RowView rows;
-  GapBits* gap;
   BB_HD void operator()(Index i) const {
     FoundRow row;
     if (mark[i] == 0 || !of.find(candidate[i], row)) return;
     put_row(rows, places.of(first + i), row, pair_of(Rows::kind, candidate[i]));
-    note_gap(gap, row.d);
   }
 };
 

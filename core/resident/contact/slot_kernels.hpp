@@ -121,10 +121,11 @@ struct MarkBlocks {
   }
 };
 
-/// Columns and contributions of the blocks of a chunk, behind those of the chunks before.
+/// Columns and contributions of the blocks of a chunk, behind those of the chunks before; begin [blocks + 1].
 struct FillBlocks {
   const Key* key;
   const std::uint32_t* code;
+  Index n;
   int first, bits;
   const std::uint8_t *head, *upper;
   Places blocks, contributions;
@@ -135,6 +136,7 @@ struct FillBlocks {
   BB_HD void operator()(Index i) const {
     const Index to = n_before + contributions.of(i);
     if (upper[i] != 0) contribution[to] = code[i];
+    if (i == n - 1) begin[blocks.of(i) + head[i]] = static_cast<std::uint32_t>(to + upper[i]);
     if (head[i] == 0) return;
     const Index j = blocks.of(i);
     column[j] = static_cast<int>(key[i] & ((Key{1} << bits) - 1));

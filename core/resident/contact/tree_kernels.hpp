@@ -127,8 +127,8 @@ struct TreeLeaves {
     const FloatBox box = primitive_box(of, i, motion);
     TreeNode out;
     for (int c = 0; c < 3; ++c) out.lo[c] = box.lo[c], out.hi[c] = box.hi[c];
-    out.primitive = static_cast<int>(i);
-    out.free = of.free[i] != 0 ? 1 : 0;
+    out.reach = float_above(contact_reach(of, i));
+    out.tag = 2 * static_cast<std::uint32_t>(i) + (of.free[i] != 0 ? 1 : 0);
     node[place] = out;
   }
 };
@@ -141,8 +141,8 @@ struct TreeLevel {
   BB_HD void operator()(Index i) const {
     FloatBox box = empty_box();
     TreeNode out;
-    out.primitive = -1;
-    out.free = 0;
+    out.reach = 0;
+    out.tag = 0;
     const Index begin = tree_width * i, end = begin + tree_width < n ? begin + tree_width : n;
     for (Index child = begin; child < end; ++child) {
       const TreeNode at = below[child];
@@ -150,7 +150,7 @@ struct TreeLevel {
         box.lo[c] = at.lo[c] < box.lo[c] ? at.lo[c] : box.lo[c];
         box.hi[c] = at.hi[c] > box.hi[c] ? at.hi[c] : box.hi[c];
       }
-      out.free |= at.free;
+      out.tag |= at.free();
     }
     for (int c = 0; c < 3; ++c) out.lo[c] = box.lo[c], out.hi[c] = box.hi[c];
     node[i] = out;

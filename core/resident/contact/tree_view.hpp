@@ -8,24 +8,34 @@
 
 #include <cstdint>
 
+#include "core/contact/box_gap.hpp"
 #include "core/exec/kernel.hpp"
 
 namespace bb::resident {
 
 using exec::Index;
 
-/// One sector of memory: a box, whether something in it is free, and for a leaf its primitive.
+/// One sector of memory: a box, whether something in it is free, and for a leaf its primitive and what the box was grown
+/// by on every side.
 struct alignas(16) TreeNode {
   float lo[3];
-  int primitive;
+  float reach;  // m; 0 above the leaves
   float hi[3];
-  std::uint32_t free;  // 1 or 0
+  std::uint32_t tag;  // 2 primitive + 1 where something is free
+
+  BB_HD int primitive() const { return static_cast<int>(tag >> 1); }
+  BB_HD std::uint32_t free() const { return tag & 1; }
 };
 
 /// One of the two free, boxes overlapping. False where a number is none.
 BB_HD inline bool may_meet(const TreeNode& a, const TreeNode& b) {
-  return (a.free | b.free) != 0 && a.lo[0] <= b.hi[0] && b.lo[0] <= a.hi[0] && a.lo[1] <= b.hi[1] &&
+  return (a.free() | b.free()) != 0 && a.lo[0] <= b.hi[0] && b.lo[0] <= a.hi[0] && a.lo[1] <= b.hi[1] &&
          b.lo[1] <= a.hi[1] && a.lo[2] <= b.hi[2] && b.lo[2] <= a.hi[2];
+}
+
+/// Whether two leaves are proven farther apart than their reaches.
+BB_HD inline bool apart(const TreeNode& a, const TreeNode& b) {
+  return apart_by_boxes<float>(a.lo, a.hi, b.lo, b.hi, a.reach + b.reach);
 }
 
 constexpr int tree_width = 4, max_tree_levels = 17;  // 2^32 primitives
@@ -37,7 +47,8 @@ struct TreeView {
   BB_HD Index size(int level) const { return begin[level + 1] - begin[level]; }
 };
 
-/// Calls f(leaf) for the leaves from place `from` on that may meet the box of `asking`, in the order of their places.
+/// Calls f(leaf) for the leaves from place `from` on that may come within reach of the leaf `asking`, in the order of
+/// their places.
 template <class F>
 BB_HD void for_each_overlap(const TreeView& tree, const TreeNode& asking, Index from, const F& f) {
   if (tree.top < 0) return;
@@ -57,7 +68,7 @@ BB_HD void for_each_overlap(const TreeView& tree, const TreeNode& asking, Index 
       --level;
       at *= tree_width;
     } else {
-      f(node);
+      if (!apart(asking, node)) f(node);
       ++at;
       climb();
     }

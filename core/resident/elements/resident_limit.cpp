@@ -45,7 +45,8 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
         kappa_(executor, "limit stiffness", n_of(batch)),
         before_(executor, "limit stiffness before"),
         parts_(executor, "limit stiffness parts"),
-        least_(executor) {
+        least_(executor),
+        numbers_(executor) {
     std::vector<double> band = scene.limit.onset;
     band.insert(band.end(), scene.limit.width.begin(), scene.limit.width.end());
     band_.upload(band);
@@ -106,6 +107,7 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
   Buffer<double> band_, mass_, state_, kappa_, before_;
   Buffer<KappaParts> parts_;
   ResidentLeast least_;
+  ResidentLeasts<3> numbers_;
   bool fresh_ = false, first_ = true;  // kappa is that of this step; no iterate of the step was refreshed
 };
 
@@ -146,16 +148,15 @@ double LimitFamily<R>::bound(const double* x, const double* dx, double park) {
 
 template <int R>
 LimitNumbers LimitFamily<R>::numbers() {
+  numbers_.clear();
+  numbers_.add(0, size(), LimitStretch{elements_});
+  numbers_.add(1, 2 * size(), LimitLoad{elements_});
+  numbers_.add(2, size(), LimitRelativeGap{elements_});
+  const auto least = numbers_.get();
   LimitNumbers out;
-  least_.clear();
-  least_.add(size(), LimitStretch{elements_});
-  out.max_stretch = least_.largest() - 1;
-  least_.clear();
-  least_.add(2 * size(), LimitLoad{elements_});
-  out.load_max = least_.largest();
-  least_.clear();
-  least_.add(size(), LimitRelativeGap{elements_});
-  out.gap_min_rel = least_.smallest();
+  out.max_stretch = least.largest(0) - 1;
+  out.load_max = least.largest(1);
+  out.gap_min_rel = least.smallest(2);
   return out;
 }
 

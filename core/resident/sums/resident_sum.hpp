@@ -24,6 +24,8 @@ class ResidentSums {
     executor_.blocks(n_blocks, SumParts<Parts>{parts, n, partial_.data()});
     executor_.blocks(1, FoldPartials<Sum>{partial_.data(), n_blocks, total_.data()});
   }
+  /// Of the executor, for kernels that read what is known so far.
+  const Sum* data() const { return total_.data(); }
   /// Waits.
   Sum get() const { return executor_.counts_only() ? Sum::zero() : total_.get(0); }
 
@@ -34,13 +36,49 @@ class ResidentSums {
 /// value(): the sum; magnitude: the sum of |parts|, of which rounding noise is some multiple of eps.
 using ResidentSum = ResidentSums<Compensated>;
 
+/// The least of several kinds of keys, read together.
+template <int N>
+class ResidentLeasts {
+ public:
+  static constexpr Key none = ~Key{0};
+  struct Keys {
+    Key of[N];
+    /// Of keys made by largest_key; 0 where nothing came.
+    double largest(int kind) const { return of[kind] == none ? 0 : from_largest_key(of[kind]); }
+    /// Of keys made by smallest_key; infinity where nothing came.
+    double smallest(int kind) const {
+      return of[kind] == none ? std::numeric_limits<double>::infinity() : from_smallest_key(of[kind]);
+    }
+  };
+  explicit ResidentLeasts(exec::Executor& executor)
+      : executor_(executor), least_(executor, "least keys", 1) {}
+  void clear() { executor_.fill_bytes(least_.data(), 0xff, sizeof(Keys)); }
+  /// Keys: sum_kernels.hpp, LeastKey.
+  template <class KeysOf>
+  void add(int kind, Index n, const KeysOf& keys) {
+    const Index items = items_a_block(n);
+    executor_.blocks((n + items - 1) / items, LeastKey<KeysOf>{keys, n, least_.data()->of + kind});
+  }
+  /// Waits.
+  Keys get() const {
+    if (!executor_.counts_only()) return least_.get(0);
+    Keys out;
+    for (Key& key : out.of) key = none;
+    return out;
+  }
+
+ private:
+  exec::Executor& executor_;
+  exec::Buffer<Keys> least_;
+};
+
 /// The least of keys that several calls bring: largest and smallest numbers, first items.
 class ResidentLeast {
  public:
   explicit ResidentLeast(exec::Executor& executor) : executor_(executor), least_(executor, "least key", 1) {
     clear();
   }
-  void clear() { clear(none); }
+  void clear() { executor_.fill_bytes(least_.data(), 0xff, sizeof(Key)); }
   /// Starts from a key.
   void clear(Key key) { least_.set(0, key); }
   /// Keys: sum_kernels.hpp, LeastKey.

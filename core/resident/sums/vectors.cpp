@@ -17,7 +17,8 @@ VectorTools::VectorTools(exec::Executor& executor, std::span<const std::uint8_t>
       pin_vertex_(executor, "prescribed vertices"),
       pin_target_(executor, "prescribed positions", 3 * static_cast<Index>(pins.size())),
       sum_(executor),
-      least_(executor) {
+      least_(executor),
+      sizes_(executor) {
   fixed_.upload(fixed_bits(fixed));
   for (const Pin& pin : pins) pins_.push_back(pin.vertex);
   pin_vertex_.upload(pins_);
@@ -45,6 +46,7 @@ void VectorTools::set_pin_motion(const Buffer<double>& x, Buffer<double>& dx) {
 }
 
 Index VectorTools::first_short_pin(const Buffer<double>& x) {
+  if (pins_.empty()) return -1;
   least_.clear();
   executor_.each(pin_vertex_.size(),
                  FirstShortPin{pin_vertex_.data(), pin_target_.data(), x.data(), least_.data()});
@@ -57,17 +59,18 @@ double VectorTools::free_max(const Buffer<double>& column) {
   return least_.largest();
 }
 
-double VectorTools::rounding_max(const Buffer<double>& dx, const Buffer<double>& x,
-                                 const Buffer<double>& body_size, double epsilon, bool within) {
-  least_.clear();
-  least_.add(dx.size(), RoundingSize{dx.data(), x.data(), body_size.data(), fixed_.data(), epsilon, within});
-  return least_.largest();
-}
-
-double VectorTools::vertex_max(const Buffer<double>& column) {
-  least_.clear();
-  least_.add(column.size() / 3, ColumnNorms{column.data()});
-  return least_.largest();
+DirectionSizes VectorTools::sizes(const Buffer<double>& dx, const Buffer<double>& x,
+                                  const Buffer<double>& body_size, double epsilon) {
+  const RoundingSize within{dx.data(), x.data(), body_size.data(), fixed_.data(), epsilon, true};
+  RoundingSize beyond = within;
+  beyond.within = false;
+  sizes_.clear();
+  sizes_.add(0, dx.size(), FreeSize{dx.data(), fixed_.data()});
+  sizes_.add(1, dx.size(), within);
+  sizes_.add(2, dx.size(), beyond);
+  sizes_.add(3, dx.size() / 3, ColumnNorms{dx.data()});
+  const auto least = sizes_.get();
+  return {least.largest(0), least.largest(1), least.largest(2), least.largest(3)};
 }
 
 double VectorTools::max(const Buffer<double>& column) {

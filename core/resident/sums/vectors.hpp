@@ -15,6 +15,12 @@ using exec::Buffer;
 /// Three bits a vertex, set where the degree of freedom is prescribed or locked. fixed: [3 n] flags.
 std::vector<FixedMask> fixed_bits(std::span<const std::uint8_t> fixed);
 
+/// Of a direction, m: the largest |dx| over free degrees of freedom, over those of them that are within the rounding of
+/// their vertex, over the others (core/math/rounding_room.hpp), and the largest length of a vertex's.
+struct DirectionSizes {
+  double largest, within, beyond, vertex;
+};
+
 class VectorTools {
  public:
   /// fixed: [3 n] flags. pins: vertices that are prescribed.
@@ -33,12 +39,9 @@ class VectorTools {
 
   /// Largest |value| over free degrees of freedom; NaN where one is no number.
   double free_max(const Buffer<double>& column);
-  /// Largest |dx| over the free degrees of freedom that are within the rounding of their vertex at x, or over the
-  /// others (core/math/rounding_room.hpp). body_size: [n] m. epsilon: of a coordinate.
-  double rounding_max(const Buffer<double>& dx, const Buffer<double>& x, const Buffer<double>& body_size,
-                      double epsilon, bool within);
-  /// Largest length of the three numbers of a vertex.
-  double vertex_max(const Buffer<double>& column);
+  /// body_size: [n] m. epsilon: relative rounding of a coordinate.
+  DirectionSizes sizes(const Buffer<double>& dx, const Buffer<double>& x, const Buffer<double>& body_size,
+                       double epsilon);
   /// Largest |value| over all.
   double max(const Buffer<double>& column);
   /// Over free degrees of freedom: value() is a . b.
@@ -60,6 +63,7 @@ class VectorTools {
   Buffer<double> pin_target_;
   ResidentSum sum_;
   ResidentLeast least_;
+  ResidentLeasts<4> sizes_;
 };
 
 }  // namespace bb::resident

@@ -64,7 +64,7 @@ void ResidentContact::begin_step(const Column& x_n, double dt, double c) {
 }
 
 void ResidentContact::take_trial() {
-  has_pattern_ = has_pattern_ && same_stencils(executor_, rows_, trial_);
+  has_pattern_ = has_pattern_ && finder_.same_stencils(rows_, trial_);
   rows_.swap(trial_);
   lent_ = false;
   energy_.reset();
