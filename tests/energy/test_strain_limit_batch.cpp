@@ -113,14 +113,14 @@ TEST(StrainLimitBatch, StepBoundIsTheLastFeasibleNumberOfTheWholeMesh) {
     const double alpha = batch.step_bound(strip.rest, dx);
     ASSERT_GT(alpha, 0);
     ASSERT_LT(alpha, 1);
-    batch.measure(strip.rest + alpha * dx);
+    batch.measure(Positions(strip.rest + alpha * dx));
     EXPECT_GT(batch.min_gap(), 0);
-    batch.measure(strip.rest + std::nextafter(alpha, 1.0) * dx);
+    batch.measure(Positions(strip.rest + std::nextafter(alpha, 1.0) * dx));
     EXPECT_LE(batch.min_gap(), 0);
     const tbb::global_control serial(tbb::global_control::max_allowed_parallelism, 1);
     EXPECT_EQ(batch.step_bound(strip.rest, dx), alpha);
     EXPECT_EQ(batch.step_bound(strip.rest, dx, alpha / 2), alpha / 2);
-    EXPECT_EQ(batch.step_bound(strip.rest, 1e-3 * dx), 1);
+    EXPECT_EQ(batch.step_bound(strip.rest, Positions(1e-3 * dx)), 1);
   }
 }
 

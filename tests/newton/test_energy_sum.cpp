@@ -22,8 +22,8 @@ class Given final : public Term {
   Phase phase() const override { return Phase::elastic; }
   bool on_vertices() const override { return vertices_; }
   bool fixed_stencils() const override { return fixed_; }
-  void linearise(const Positions&, const TermContext&) override {}
-  void evaluate(const Positions&, const TermContext&) override {}
+  void linearise(const PositionsView&, const TermContext&) override {}
+  void evaluate(const PositionsView&, const TermContext&) override {}
 
  private:
   bool vertices_, fixed_;
@@ -37,7 +37,7 @@ struct Sums {
 Sums sums_of(TermList terms) {
   EnergySums sums;
   const Positions none;
-  const double total = total_energy(terms);
+  const double total = total_energy(terms, TermSet::all());
   return {sums.change(terms, none, none), total};
 }
 

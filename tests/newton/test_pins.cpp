@@ -125,7 +125,7 @@ TEST(Pins, the_motion_of_a_given_edge_is_lifted_through_a_mollified_row) {
   ASSERT_TRUE(test::try_state(system, target).has_value());
   system.accept();
   system.assemble();
-  system.diagnosis().blocks().restrict_vector(-system.view().gradient(), wanted);
+  system.diagnosis().blocks().restrict_vector(Positions(-system.view().gradient()), wanted);
   ASSERT_GT((system.view().gradient() - gradient).cwiseAbs().maxCoeff(), 1e-6);  // N: the motion is felt
   EXPECT_LT((model - wanted).lpNorm<Eigen::Infinity>(),
             1e-3 * (system.view().gradient() - gradient).cwiseAbs().maxCoeff());

@@ -54,7 +54,7 @@ struct AtIterate {
     system.accept();
     system.assemble();
   }
-  const ContactState& rows() const { return test::rows_of(system); }
+  const ContactState& rows() { return test::rows_of(system); }
 };
 
 /// Largest relative difference of the mass parts of rows that both tables have.

@@ -44,7 +44,7 @@ TEST(Vectors, MovePutsPinsOnTargetAtTheEndOfAStepOnly) {
   tools.move(v.x, v.dx, 0.3, v.out);
   EXPECT_EQ(v.down(v.out), Positions(v.x_host + 0.3 * v.dx_host));
   EXPECT_EQ(tools.first_short_pin(v.out), 0);
-  tools.move(v.x, v.dx, 1, v.out);
+  tools.move_to_targets(v.x, v.dx, v.out);
   Positions expected = v.x_host + v.dx_host;
   for (const Pin& pin : v.scene.pins) expected.col(pin.vertex) = v.target.col(pin.vertex);
   EXPECT_EQ(v.down(v.out), expected);

@@ -147,8 +147,8 @@ TEST(EveryTerm, allows_a_motion_up_to_its_bound_and_says_what_held_it) {
     if (alpha == 1) continue;
     ++bounded;
     EXPECT_FALSE(term->describe_bound().empty()) << term->name();
-    EXPECT_TRUE(term->admits(at.x + 0.99 * alpha * dx, at.clock)) << term->name();
-    EXPECT_FALSE(term->admits(at.x + dx, at.clock)) << term->name();
+    EXPECT_TRUE(term->admits(Positions(at.x + 0.99 * alpha * dx), at.clock)) << term->name();
+    EXPECT_FALSE(term->admits(Positions(at.x + dx), at.clock)) << term->name();
   }
   EXPECT_EQ(bounded, 2);  // contact and strain limit
 }
