@@ -7,7 +7,7 @@
 
 #include "core/exec/metered_executor.hpp"
 #include "core/newton/simulation.hpp"
-#include "core/resident/system/resident_system.hpp"
+#include "core/resident/system/resident_potential.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/calibration.hpp"
 
@@ -66,10 +66,11 @@ int run(const std::string& path, int steps) {
   MatchingRecord record;
   Method method = make_method(config, calibrate(config, scene, RunOptions{}, record));
   Printer printer;
-  method.make_system = [&printer](const Scene& of, Method& with, const Plan& plan) {
+  method.make_potential = [&printer](const Scene& of, Method& with, const Plan& plan,
+                                     const std::vector<std::uint8_t>& fixed, PhaseClock& clock) {
     auto executor = std::make_unique<exec::MeteredExecutor>();
     printer.executor = executor.get();
-    return std::make_unique<resident::ResidentSystem>(std::move(executor), of, with, plan);
+    return std::make_unique<resident::ResidentPotential>(std::move(executor), of, with, plan, fixed, clock);
   };
   Simulation simulation(scene, method, config.time.dt, steps);
   for (int i = 0; i < steps; ++i) simulation.step(printer);

@@ -139,11 +139,11 @@ TEST(ResidentMemory, ASteadyIterationAllocatesNothing) {
   const Scene scene = test::cloth_on_plate();
   Method method = resident_method(Index{1} << 40);
   Meter meter;
-  method.make_system = [&meter](const Scene& of, Method& with, const Plan& plan) {
+  method.make_potential = test::on_executor([&meter] {
     auto executor = std::make_unique<exec::MeteredExecutor>();
     meter.executor = executor.get();
-    return std::make_unique<resident::ResidentSystem>(std::move(executor), of, with, plan);
-  };
+    return executor;
+  });
   Simulation simulation(scene, method, 0.01, 24);
   for (int step = 0; step < 16; ++step) simulation.step(meter);  // falls, and finds what room it needs
   meter.iterations.clear(), meter.contacts = 0;

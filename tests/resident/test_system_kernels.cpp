@@ -10,7 +10,6 @@
 #include <random>
 
 #include "core/exec/host_executor.hpp"
-#include "core/resident/elements/vector_kernels.hpp"
 #include "core/resident/sums/resident_sum.hpp"
 #include "core/resident/system/row_totals.hpp"
 
