@@ -30,22 +30,28 @@ void improve(const SymmetricProduct& product, Definiteness& out) {
 
 VecXd definiteness_right_hand_side(Eigen::Index n) { return seeded_vector(n, side_seed); }
 
+Definiteness definiteness_of(const LinearReport& report) {
+  Definiteness out;
+  out.iterations = report.iterations;
+  if (report.status == LinearStatus::ok) out.verdict = Definiteness::Verdict::positive;
+  if (report.status == LinearStatus::matrix_indefinite) {
+    out.verdict = Definiteness::Verdict::negative;
+    ++out.iterations;  // the one that met it
+  }
+  return out;
+}
+
 Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& preconditioner,
                                   int max_iterations) {
-  Definiteness out;
   SymmetricProduct product;
   product.update(a);
   ConjugateGradients gradients;
   LinearReport report;
   VecXd x;
   const VecXd b = definiteness_right_hand_side(a.lower.rows());
-  const LinearStatus status =
-      gradients.solve(product, preconditioner, b, definiteness_tolerance, max_iterations, x, report);
-  out.iterations = report.iterations;
-  if (status == LinearStatus::ok) out.verdict = Definiteness::Verdict::positive;
-  if (status != LinearStatus::matrix_indefinite) return out;
-  ++out.iterations;  // the one that met it
-  out.verdict = Definiteness::Verdict::negative;
+  gradients.solve(product, preconditioner, b, definiteness_tolerance, max_iterations, x, report);
+  Definiteness out = definiteness_of(report);
+  if (out.verdict != Definiteness::Verdict::negative) return out;
   out.direction = gradients.direction();
   VecXd image;
   product.multiply(out.direction, image);

@@ -9,6 +9,7 @@
 namespace bb {
 
 class Preconditioner;
+struct LinearReport;
 
 struct Definiteness {
   enum class Verdict { positive, negative, unknown };
@@ -24,14 +25,18 @@ struct Definiteness {
 /// A positive definite matrix with the pattern of the one in question and close to it, made when it is asked for.
 using NearMatrix = std::function<const ReducedSystem&()>;
 
+/// While all curvature met is positive, the part of the residual along a direction of negative curvature only grows, so
+/// that a residual below b's own part there is impossible: no answer `positive` is wrong unless b has less than 1e-6 of
+/// its length along the eigenvector, which a random b has with a probability of about 1e-6 sqrt(n).
 inline constexpr double definiteness_tolerance = 1e-6;
 /// Seeded, [n].
 VecXd definiteness_right_hand_side(Eigen::Index n);
 
-/// By conjugate gradients on a seeded right-hand side b, until the residual is 1e-6 |b|. While all curvature met is
-/// positive, the part of the residual along a direction of negative curvature only grows, so that a residual below
-/// b's own part there is impossible: no answer `positive` is wrong unless b has less than 1e-6 of its length along
-/// the eigenvector, which a random b has with a probability of about 1e-6 sqrt(n). A direction that is found is
+/// What conjugate gradients on that right-hand side b say, to that tolerance, on the host or on an executor: verdict and
+/// iterations. direction and curvature are for the caller, from the last direction of the iterations.
+Definiteness definiteness_of(const LinearReport& report);
+
+/// By conjugate gradients on a seeded right-hand side b, until the residual is 1e-6 |b|. A direction that is found is
 /// improved by Lanczos, at most 40 products. preconditioner: set up from a positive definite matrix.
 Definiteness examine_by_gradients(const ReducedSystem& a, const Preconditioner& preconditioner,
                                   int max_iterations);

@@ -13,7 +13,7 @@
 
 namespace bb {
 
-class NewtonSystem;
+class Diagnosis;
 
 class ConditionWatch {
  public:

@@ -87,7 +87,7 @@ LimitAtRest limit_at_rest(double k_s) {
   at_rest(curtain(k_s), [&](const Scene& scene, const Positions& x, NewtonSystem& system, double dt) {
     const StrainLimitPart& part = scene.limit;
     StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width);
-    const StiffnessAnswers answers = answers_to_stiffness(system, &limit, log_barrier(), dt);
+    const StiffnessAnswers answers = answers_to_stiffness(system.diagnosis(), &limit, log_barrier(), dt);
     EXPECT_TRUE(answers.known);
     limit.measure(x);
     out.answer = answers.limit;

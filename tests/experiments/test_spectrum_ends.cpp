@@ -27,8 +27,8 @@ struct EndsOf final : StepObserver {
   Eigen::VectorXd dense;
   void on_matrix(StepSystem& step_system, int, int iteration) override {
     if (iteration > 0) return;
-    NewtonSystem& system = step_system.on_host();
-    const ReducedSystem& matrix = system.diagnosis().clamped(set);
+    Diagnosis& system = step_system.on_host().diagnosis();
+    const ReducedSystem& matrix = system.clamped(set);
     dense = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(bb::dense(matrix)).eigenvalues();
     const auto vectors = end_vectors(matrix, scaling, 5);
     ends.clear();

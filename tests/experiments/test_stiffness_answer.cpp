@@ -103,7 +103,7 @@ struct ContactsAtRest {
 ContactsAtRest contacts_at_rest(double kappa) {
   ContactsAtRest out;
   at_rest(held(kappa), [&](const Scene&, const Positions&, NewtonSystem& system, double dt) {
-    const StiffnessAnswers answers = answers_to_stiffness(system, nullptr, log_barrier(), dt);
+    const StiffnessAnswers answers = answers_to_stiffness(system.diagnosis(), nullptr, log_barrier(), dt);
     EXPECT_TRUE(answers.known);
     const ContactTable& rows = contact_state(system.diagnosis().terms()).rows;
     for (std::size_t r = 0; r < rows.size(); ++r) {

@@ -43,7 +43,7 @@ void expect_partial_sums(const Numbers& got, const Numbers& a, const Numbers& b)
 PcgScalars running_state() {
   PcgScalars out{};
   out.max_iterations = 100, out.curvature = 1;
-  out.state[0] = {0.75, 0.5, 3, static_cast<int>(PcgEnd::running)};
+  out.state[0] = {0.75, 0.5, 3, CgEnd::running};
   return out;
 }
 
@@ -159,7 +159,7 @@ TEST_P(PcgKernels, StepDirectionEndsAtACurvatureThatIsNone) {
     before.curvature = curvature;
     scalars.set(0, before);
     executor.blocks(3, StepDirection{partition, rz.data(), rr.data(), z.data(), p.data(), scalars.data(), 0});
-    EXPECT_EQ(scalars.get(0).state[1].end, static_cast<int>(PcgEnd::curvature)) << curvature;
+    EXPECT_EQ(scalars.get(0).state[1].end, CgEnd::curvature) << curvature;
     EXPECT_EQ(p.download(), random_numbers(1)) << curvature;
   }
 }

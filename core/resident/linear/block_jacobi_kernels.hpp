@@ -90,7 +90,7 @@ BB_HD bool step_length(Block& block, double* scratch, const double* partial_pq, 
   block.threads([&](int t) {
     if (b == 0 && t == 0) scalars->curvature = curvature, scalars->alpha[k] = kept;
   });
-  return curvature > 0 && is_finite(curvature);
+  return gives_step(curvature);
 }
 
 /// x += alpha p, r -= alpha q, z = M^-1 r; partial sums of r^T z and r^T r.

@@ -140,7 +140,7 @@ struct SolveClusters {
   ClusterLevel level;
   const double* r;
   double *z, *coarse_r;
-  const PcgState* state;
+  const CgState* state;
   template <class Block>
   BB_HD void operator()(Block& block, Shared& s, Index b) const {
     if (state && !state->running()) return;

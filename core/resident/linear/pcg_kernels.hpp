@@ -17,7 +17,7 @@ struct MultiplyDot {
   const FixedMask* fixed;
   const double* p;
   double *q, *partial;
-  const PcgState* state;
+  const CgState* state;
 
   BB_HD Vec3d sum_of_lane(Index row, int lane) const {
     double y0 = 0, y1 = 0, y2 = 0;
@@ -168,25 +168,11 @@ struct BeginRun {
     const double rr = fold_partials(block, shared.a, partial_rr, n);
     block.threads([&](int t) {
       if (t != 0) return;
+      const bool factors = faults->non_finite == no_fault && faults->indefinite == no_fault &&
+                           faults->singular == no_fault;
+      if (first) scalars->goal = cg_goal(rr, scalars->tolerance);
       const int iteration = first ? 0 : scalars->state[0].iteration;
-      PcgEnd end = PcgEnd::running;
-      // NOLINTNEXTLINE(bugprone-branch-clone): what is asked first decides
-      if (!is_finite(rr)) {
-        end = PcgEnd::non_finite;
-      } else if (rr == 0) {
-        end = PcgEnd::zero;
-      } else if (faults->non_finite != no_fault || faults->indefinite != no_fault ||
-                 faults->singular != no_fault) {
-        end = PcgEnd::bad_factor;
-      } else if (!is_finite(rz)) {
-        end = PcgEnd::non_finite;
-      } else if (rz <= 0) {
-        end = PcgEnd::preconditioner_indefinite;
-      } else if (iteration >= scalars->max_iterations) {
-        end = PcgEnd::cap;
-      }
-      if (first) scalars->b_norm = std::sqrt(rr), scalars->target = scalars->tolerance * std::sqrt(rr);
-      scalars->state[0] = {rz, rr, iteration, static_cast<int>(end)};
+      scalars->state[0] = cg_begin(rz, rr, iteration, scalars->max_iterations, factors);
     });
   }
 };
@@ -203,36 +189,17 @@ struct StepDirection {
   PcgScalars* scalars;
   int k;
 
-  BB_HD PcgState next(const PcgState& now, double rz, double rr) const {
-    PcgState out{rz, rr, now.iteration, static_cast<int>(PcgEnd::running)};
-    PcgEnd end = PcgEnd::running;
-    // NOLINTNEXTLINE(bugprone-branch-clone): what is asked first decides
-    if (!is_finite(rr)) {
-      end = PcgEnd::non_finite;
-    } else if (++out.iteration; std::sqrt(rr) <= scalars->target) {
-      end = PcgEnd::converged;
-    } else if (!is_finite(rz)) {
-      end = PcgEnd::non_finite;
-    } else if (rz <= 0) {
-      end = PcgEnd::preconditioner_indefinite;
-    } else if (out.iteration >= scalars->max_iterations) {
-      end = PcgEnd::cap;
-    }
-    out.end = static_cast<int>(end);
-    return out;
-  }
-
   template <class Block>
   BB_HD void operator()(Block& block, Shared& shared, Index b) const {
-    const PcgState now = scalars->state[k % 2];
-    PcgState after = now;
+    const CgState now = scalars->state[k % 2];
+    CgState after = now;
     if (now.running()) {
-      if (scalars->curvature > 0 && is_finite(scalars->curvature)) {
+      if (gives_step(scalars->curvature)) {
         const double rz = fold_partials(block, shared.a, partial_rz, partition.n_blocks());
         const double rr = fold_partials(block, shared.a, partial_rr, partition.n_blocks());
-        after = next(now, rz, rr);
+        after = cg_go_on(cg_take_residual(now, rr, scalars->goal.target), rz, scalars->max_iterations);
       } else {
-        after.end = static_cast<int>(PcgEnd::curvature);
+        after.end = CgEnd::curvature;
       }
     }
     const double beta = after.rz / now.rz;

@@ -1,28 +1,10 @@
 // What conjugate gradients keep in the executor's memory beside vectors: numbers that decide how an iteration goes on.
 #pragma once
 
+#include "core/linear/cg_decisions.hpp"
 #include "core/resident/linear/resident_matrix.hpp"
 
 namespace bb::resident {
-
-/// What a run of the recurrence ended with. `converged` still has to face the true residual.
-enum class PcgEnd : int {
-  running,
-  converged,
-  cap,
-  curvature,                  // p^T A p is not positive, or not finite
-  preconditioner_indefinite,  // r^T M^-1 r <= 0
-  non_finite,
-  zero,        // nothing to solve: r is 0 at the start
-  bad_factor,  // a diagonal block or a cluster without a factor: FactorFaults
-};
-
-struct PcgState {
-  double rz;  // r^T M^-1 r
-  double rr;  // r^T r
-  int iteration, end;
-  BB_HD bool running() const { return end == static_cast<int>(PcgEnd::running); }
-};
 
 /// Iterations of a graph. Even, so that state[0] is the present one between graphs.
 constexpr int graph_iterations = 16;
@@ -33,11 +15,11 @@ struct PcgScalars {
   double tolerance;  // on |r| / |b|
   int max_iterations;
   // BeginRun
-  double b_norm, target;  // |b|, and what |r| has to come to
+  CgGoal goal;
   // UpdateX..., read by StepDirection
   double curvature;  // p^T A p of the last iteration
   double alpha[graph_iterations], beta[graph_iterations];
-  PcgState state[2];
+  CgState state[2];
   // FinishSum
   double sum;
 };
@@ -47,8 +29,5 @@ struct FactorFaults {
   Key non_finite, indefinite, singular;
 };
 constexpr Key no_fault = ~Key{0};
-
-/// Neither infinite nor NaN.
-BB_HD inline bool is_finite(double x) { return x - x == 0; }
 
 }  // namespace bb::resident

@@ -1,9 +1,8 @@
 #include "core/resident/linear/resident_pcg.hpp"
 
+#include <algorithm>
 #include <cmath>
-#include <limits>
 
-#include "core/linear/cg_ritz.hpp"
 #include "core/linear/solve_detail.hpp"
 #include "core/linear/stopwatch.hpp"
 #include "core/resident/linear/pcg_kernels.hpp"
@@ -46,11 +45,21 @@ double ResidentPcg::norm(const FixedMask* fixed, const double* v) {
   return std::sqrt(sum_of(v_.partial_rr));
 }
 
-double ResidentPcg::true_residual(const double* b) {
+double ResidentPcg::true_residual() {
   executor_.blocks(v_.partition.n_blocks(),
                    MultiplyDot{v_.partition, matrix_, v_.fixed, v_.x, v_.q, v_.partial_pq, nullptr});
-  set_residual(b, v_.q, v_.q);
+  set_residual(b_, v_.q, v_.q);
   return std::sqrt(sum_of(v_.partial_rr));
+}
+
+double ResidentPcg::curvature_magnitude() {
+  executor_.blocks(v_.partition.n_blocks(), MagnitudeDot{v_.partition, matrix_, v_.p, v_.partial_pq});
+  return sum_of(v_.partial_pq);
+}
+
+void ResidentPcg::restart() {
+  set_residual(v_.q, nullptr, v_.r);
+  begin_run(false);
 }
 
 // r is set.
@@ -90,10 +99,10 @@ void ResidentPcg::prepare_graph() {
   graph_ = executor_.end_capture();
 }
 
-// Until the recurrence ends. False where it had nothing to begin with: no factor, no finite or no right-hand side.
-bool ResidentPcg::run() {
+CgRun ResidentPcg::run() {
   alpha_.clear(), beta_.clear();
-  for (int before = host_.state[0].iteration;; before = host_.state[0].iteration) {
+  do {
+    const int before = host_.state[0].iteration;
     if (plain_) {
       launch_iterations();
     } else {
@@ -103,42 +112,8 @@ bool ResidentPcg::run() {
     const int done = host_.state[0].iteration - before;
     alpha_.insert(alpha_.end(), host_.alpha, host_.alpha + done);
     beta_.insert(beta_.end(), host_.beta, host_.beta + done);
-    if (host_.state[0].running()) continue;
-    const auto end = static_cast<PcgEnd>(host_.state[0].end);
-    return end != PcgEnd::zero && end != PcgEnd::bad_factor && std::isfinite(host_.b_norm);
-  }
-}
-
-ResidentPcg::End ResidentPcg::judge_curvature() {
-  const double curvature = host_.curvature;
-  if (!std::isfinite(curvature)) return End::non_finite;
-  executor_.blocks(v_.partition.n_blocks(), MagnitudeDot{v_.partition, matrix_, v_.p, v_.partial_pq});
-  const double scale = sum_of(v_.partial_pq);
-  const double rounding = 256 * std::numeric_limits<double>::epsilon() * scale;
-  return curvature < -rounding || scale == 0 ? End::matrix_indefinite : End::truncated;
-}
-
-ResidentPcg::End ResidentPcg::judge_end() {
-  switch (static_cast<PcgEnd>(host_.state[0].end)) {
-    case PcgEnd::converged:
-    case PcgEnd::zero:  // of a restart
-      return End::converged;
-    case PcgEnd::cap:
-      return End::cap;
-    case PcgEnd::curvature:
-      return judge_curvature();
-    case PcgEnd::preconditioner_indefinite:
-      return End::preconditioner_indefinite;
-    default:
-      return End::non_finite;
-  }
-}
-
-void ResidentPcg::add_ritz(LinearReport& report) const {
-  const RitzExtremes run = cg_ritz_extremes(alpha_, beta_);
-  if (run.max == 0) return;
-  report.ritz_min = report.ritz_max == 0 ? run.min : std::min(report.ritz_min, run.min);
-  report.ritz_max = std::max(report.ritz_max, run.max);
+  } while (host_.state[0].running());
+  return {host_.state[0], host_.goal, host_.curvature};
 }
 
 // What of the preconditioner has no factor.
@@ -153,35 +128,6 @@ LinearStatus ResidentPcg::judge_fault(LinearReport& report) {
   }
   report.detail += worst == faults.non_finite ? " is not finite" : " is not positive definite";
   return worst == faults.non_finite ? LinearStatus::non_finite : LinearStatus::matrix_indefinite;
-}
-
-LinearStatus ResidentPcg::iterate(const double* b, LinearReport& report) {
-  double last_true = std::numeric_limits<double>::infinity();
-  for (;; ++report.restarts) {
-    const bool ran = run();
-    const auto reached = static_cast<PcgEnd>(host_.state[0].end);
-    if (!ran && report.restarts == 0) {
-      if (reached == PcgEnd::zero) return LinearStatus::ok;
-      report.residual_true = report.residual_recurrence = 1;
-      return reached == PcgEnd::bad_factor ? judge_fault(report) : LinearStatus::non_finite;
-    }
-    const End end = judge_end();
-    add_ritz(report);
-    const double residual = true_residual(b);
-    report.iterations = host_.state[0].iteration;
-    report.residual_recurrence = std::sqrt(host_.state[0].rr) / host_.b_norm;
-    report.residual_true = residual / host_.b_norm;
-    if (end == End::matrix_indefinite) return LinearStatus::matrix_indefinite;
-    if (end == End::preconditioner_indefinite) return LinearStatus::preconditioner_indefinite;
-    if (end == End::non_finite || !std::isfinite(residual)) return LinearStatus::non_finite;
-    if (residual <= host_.target) return LinearStatus::ok;
-    if (end == End::cap) return LinearStatus::iteration_cap;
-    // The recurrence claims more than the solution holds. Start again from the true residual while that helps.
-    if (end == End::truncated || residual > 0.5 * last_true) return LinearStatus::tolerance_below_rounding;
-    last_true = residual;
-    set_residual(v_.q, nullptr, v_.r);
-    begin_run(false);
-  }
 }
 
 void ResidentPcg::place(const ResidentMatrix& matrix, const FixedMask* fixed, double* x) {
@@ -212,6 +158,7 @@ LinearReport ResidentPcg::solve_prepared(const double* b, double tolerance, int 
   report.iterative = true;
   report.tolerance = tolerance;
   const Stopwatch stopwatch;
+  b_ = b;
   host_ = {};
   host_.tolerance = tolerance, host_.max_iterations = max_iterations;
   scalars_.set(0, host_);
@@ -222,7 +169,8 @@ LinearReport ResidentPcg::solve_prepared(const double* b, double tolerance, int 
   set_residual(b, nullptr, v_.r);
   begin_run(true);
   if (!plain_) prepare_graph();
-  report.status = iterate(b, report);
+  report.status = solve_by_runs(report);
+  if (host_.state[0].end == CgEnd::no_preconditioner) report.status = judge_fault(report);
   if (report.detail.empty()) report.detail = solve_detail(report);
   report.solve_s = stopwatch.seconds();
   return report;

@@ -3,14 +3,13 @@
 #pragma once
 
 #include <memory>
-#include <vector>
 
-#include "core/linear/linear_solver.hpp"
+#include "core/linear/cg_runs.hpp"
 #include "core/resident/linear/resident_preconditioner.hpp"
 
 namespace bb::resident {
 
-class ResidentPcg {
+class ResidentPcg final : CgRuns {
  public:
   /// Errors: OutOfMemory.
   ResidentPcg(exec::Executor& executor, Index n_vertices,
@@ -20,7 +19,7 @@ class ResidentPcg {
   /// x [3 n] are the executor's; x is 0 where degrees of freedom are fixed, b is not read there. All launches of an
   /// iteration are one graph, kept while pointers stay; the pattern may change in place. pattern_id: as in
   /// ResidentPreconditioner::setup.
-  /// Every way to fail has its status; the true residual decides (core/linear/conjugate_gradients.hpp).
+  /// Every way to fail has its status; the true residual decides (core/linear/cg_runs.hpp).
   LinearReport solve(const ResidentMatrix& matrix, const FixedMask* fixed, const double* b, double* x,
                      double tolerance, int max_iterations, std::uint64_t pattern_id = 0);
   /// The same with the preconditioner of the last solve, whose matrix was positive definite.
@@ -37,8 +36,6 @@ class ResidentPcg {
   void launch_plainly(bool plainly) { plain_ = plainly; }
 
  private:
-  /// As in ConjugateGradients.
-  enum class End { converged, cap, truncated, matrix_indefinite, preconditioner_indefinite, non_finite };
   struct GraphKey {
     ResidentMatrix matrix;
     PcgVectors vectors;
@@ -52,13 +49,11 @@ class ResidentPcg {
   void begin_run(bool first);
   void launch_iterations();
   void prepare_graph();
-  bool run();
-  End judge_end();
-  End judge_curvature();
+  CgRun run() override;
+  double curvature_magnitude() override;
+  double true_residual() override;
+  void restart() override;
   double sum_of(const double* partial);
-  double true_residual(const double* b);
-  void add_ritz(LinearReport& report) const;
-  LinearStatus iterate(const double* b, LinearReport& report);
   LinearStatus judge_fault(LinearReport& report);
 
   exec::Executor& executor_;
@@ -68,12 +63,12 @@ class ResidentPcg {
   exec::Buffer<FactorFaults> faults_;
   PcgVectors v_{};
   ResidentMatrix matrix_{};
+  const double* b_ = nullptr;  // of the solve
   std::unique_ptr<exec::LaunchGraph> graph_;
   GraphKey key_{};
   bool plain_ = false;
   Index fault_ = -1;
   PcgScalars host_{};  // as they were last read
-  std::vector<double> alpha_, beta_;
 };
 
 }  // namespace bb::resident

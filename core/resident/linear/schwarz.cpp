@@ -119,7 +119,7 @@ void Schwarz::setup(const ResidentMatrix& matrix, const PcgVectors& v, std::uint
   }
 }
 
-void Schwarz::launch(const PcgVectors& v, const PcgState* state) {
+void Schwarz::launch(const PcgVectors& v, const CgState* state) {
   AddLevels add{};
   add.partition = v.partition, add.fixed = v.fixed, add.r = v.r, add.z = v.z;
   add.partial_rz = v.partial_rz, add.state = state, add.n_above = n_levels() - 1;

@@ -32,7 +32,7 @@ class Schwarz final : public ResidentPreconditioner {
   void build(const ResidentMatrix& matrix, const PcgVectors& v);
   HostPattern download(const ResidentMatrix& matrix, Index n) const;
   void download_norms(const ResidentMatrix& matrix, const FixedMask* fixed, HostPattern& pattern);
-  void launch(const PcgVectors& v, const PcgState* state);
+  void launch(const PcgVectors& v, const CgState* state);
 
   exec::Executor& executor_;
   int cluster_vertices_, version_ = 0;

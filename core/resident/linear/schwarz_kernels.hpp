@@ -95,7 +95,7 @@ struct AddLevels {
   int n_above;
   const int* of[most_levels];  // the node above, from each level
   const double* z_above[most_levels];
-  const PcgState* state;
+  const CgState* state;
 
   BB_HD double above(Index vertex, int c) const {
     double sum = 0;

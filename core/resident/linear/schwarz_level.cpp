@@ -99,7 +99,7 @@ void SchwarzLevel::launch_factors(const ResidentMatrix& matrix, const FixedMask*
 }
 
 void SchwarzLevel::launch_solves(const FixedMask* fixed, const double* r, double* z, double* coarse_r,
-                                 const PcgState* state) {
+                                 const CgState* state) {
   constexpr Index each = SolveClusters::clusters_a_block;
   executor_.blocks((offset_.size() + each - 1) / each, SolveClusters{view(fixed), r, z, coarse_r, state});
 }

@@ -28,7 +28,7 @@ class SchwarzLevel {
                       FactorFaults* faults);
   /// z = the solves of all clusters; coarse_r may be null.
   void launch_solves(const FixedMask* fixed, const double* r, double* z, double* coarse_r,
-                     const PcgState* state);
+                     const CgState* state);
 
   ResidentMatrix matrix() const {
     return {{{row_begin_.data(), column_.data(), value_.data()}, {nullptr, nullptr, nullptr}}};

@@ -127,19 +127,14 @@ Definiteness ResidentPotential::examine(const Column& x, const HessianLevel&, co
   fill_exact(x, force);
   const VecXd seeded = definiteness_right_hand_side(b.size());
   b.upload({seeded.data(), static_cast<std::size_t>(seeded.size())});
-  const LinearReport report =
-      pcg_->solve_with_last(matrix(), vectors_.fixed().data(), b.data(), step.data(), definiteness_tolerance,
-                            max_pcg_iterations_);
-  Definiteness out;
-  out.iterations = report.iterations;
-  if (report.status == LinearStatus::ok) out.verdict = Definiteness::Verdict::positive;
-  if (report.status != LinearStatus::matrix_indefinite) return out;
+  Definiteness found =
+      definiteness_of(pcg_->solve_with_last(matrix(), vectors_.fixed().data(), b.data(), step.data(),
+                                            definiteness_tolerance, max_pcg_iterations_));
+  if (found.verdict != Definiteness::Verdict::negative) return found;
   direction.copy_from(pcg_->direction());
   const double curvature = multiply(direction, step);
-  ++out.iterations;  // the one that met it
-  out.verdict = Definiteness::Verdict::negative;
-  out.curvature = curvature / vectors_.free_dot(direction, direction).value();
-  return out;
+  found.curvature = curvature / vectors_.free_dot(direction, direction).value();
+  return found;
 }
 
 }  // namespace bb::resident
