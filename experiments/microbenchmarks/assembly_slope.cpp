@@ -54,7 +54,7 @@ Times measure(int layers) {
   resident::ResidentBarrier({require_shape("log"), Argument::gap}, false).evaluate(executor, rows);
 
   resident::ContactAssembly assembly(executor, on, scene.n_vertices());
-  const HessianChoice choice{HessianMode::projected_full, Projection::psd, false, 1};
+  const resident::HessianChoice choice{HessianMode::projected_full, Projection::psd, false, 1};
   Times out{static_cast<double>(rows.size()), 0, 0, 0};
   out.pattern = seconds([&] { assembly.set_pattern(rows); });
   out.gradient = seconds([&] { assembly.add_gradient(rows, x, gradient); });
