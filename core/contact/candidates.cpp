@@ -203,8 +203,8 @@ void BroadPhase::find_pairs(const Positions& x0, const Positions& x1, Candidates
 
 /// Every primitive is asked about every obstacle that it makes pairs with.
 template <int N>
-void BroadPhase::update_obstacles(const Primitives<N>& primitives, const PositionsView& x0, const PositionsView& x1,
-                                  std::vector<IndexPair>& out) {
+void BroadPhase::update_obstacles(const Primitives<N>& primitives, const PositionsView& x0,
+                                  const PositionsView& x1, std::vector<IndexPair>& out) {
   out.clear();
   if (!plan_.obstacles.needed) return;
   const double of_states = state_rounding(x0, x1);

@@ -53,7 +53,8 @@ Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const P
 
 /// Of m kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
 template <class T>
-MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r, const PositionsView& x) {
+MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r,
+                                              const PositionsView& x) {
   const T scale = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r), eps = entry<T>(rows.eps, r);
   const T b = scale * entry<T>(rows.b, r), db = scale * entry<T>(rows.db, r),
           d2b = scale * entry<T>(rows.d2b, r);
@@ -66,8 +67,8 @@ MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::s
 
 /// grad and hess on the compact free slots.
 template <class T>
-void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const PositionsView& x, Projection projection,
-                         PassParts parts, double* grad, double* hess) {
+void mollified_row_terms(const MollifiedTable& rows, std::size_t r, const PositionsView& x,
+                         Projection projection, PassParts parts, double* grad, double* hess) {
   const auto [g, full] = mollified_derivatives<T>(rows, r, x);
   if (parts.hessians) {
     Hessian12<T> h = compact<T>(&rows.stencil[4 * r], &rows.free_vertex[4 * r], full);

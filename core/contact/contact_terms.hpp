@@ -44,7 +44,8 @@ void add_given_motion(const MollifiedTable& rows, const PositionsView& x, const 
 /// [3 x n] (m, 0 at given vertices): with it on the right-hand side of Newton's system the gaps at x + dx are those
 /// that their slopes say. Rows without mollifier alone. Returns when they hold dx. From kappa and b'' in the table, in
 /// double. Cost O(rows).
-HoldTimes add_detour(const ContactTable& rows, const PositionsView& x, const PositionsView& dx, PositionsSpan force);
+HoldTimes add_detour(const ContactTable& rows, const PositionsView& x, const PositionsView& dx,
+                     PositionsSpan force);
 /// Energies m kappa b (and m kappa e b) of every row, J.
 void contact_energies(const ContactTable& rows, std::vector<double>& energy,
                       Precision precision = Precision::full);

@@ -52,8 +52,8 @@ class RowBuilder {
   };
   /// The pairs [begin, end): what is proven to be far is done with.
   template <PairKind K, class T>
-  void add_pairs(const PositionsView& x, const std::vector<IndexPair>& pairs, std::size_t begin, std::size_t end,
-                 Part& part) const;
+  void add_pairs(const PositionsView& x, const std::vector<IndexPair>& pairs, std::size_t begin,
+                 std::size_t end, Part& part) const;
   template <PairKind K, class T>
   void add_pair(const PositionsView& x, IndexPair index, ContactPair<K> pair, Part& part) const;
   template <class T>

@@ -235,7 +235,8 @@ StepBound StepBoundFinder::result(const Candidates& candidates) const {
   return out;
 }
 
-StepBound StepBoundFinder::find(const Candidates& candidates, const PositionsView& x0, const PositionsView& x1) {
+StepBound StepBoundFinder::find(const Candidates& candidates, const PositionsView& x0,
+                                const PositionsView& x1) {
   if (!x0.allFinite() || !x1.allFinite()) {  // boxes and planes below would lose what is no number
     StepBound none;
     none.alpha = 0;

@@ -101,7 +101,8 @@ double StrainLimitBatch::step_bound(const PositionsView& x, const PositionsView&
 }
 
 template <class T>
-T StrainLimitBatch::step_bound_in(const PositionsView& x, const PositionsView& dx, T alpha_max, T park) const {
+T StrainLimitBatch::step_bound_in(const PositionsView& x, const PositionsView& dx, T alpha_max,
+                                  T park) const {
   const auto smallest = [&](T alpha) {
     return tbb::parallel_reduce(
         tbb::blocked_range<std::size_t>(0, size(), 64), alpha,

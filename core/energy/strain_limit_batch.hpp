@@ -59,7 +59,8 @@ class StrainLimitBatch {
   /// Largest alpha in [0, alpha_max] whose state x + alpha dx, rounded coordinate by coordinate, keeps every
   /// y above park x width (strain_step_bound). Does not depend on the number of threads. Cost: one SVD an
   /// element, about 60 more for those that would pass their limit.
-  double step_bound(const PositionsView& x, const PositionsView& dx, double alpha_max = 1, double park = 0) const;
+  double step_bound(const PositionsView& x, const PositionsView& dx, double alpha_max = 1,
+                    double park = 0) const;
 
   /// kappa_e = k_s x rest area; k_s in N/m.
   void fixed_stiffness(double k_s, double* kappa) const;

@@ -23,16 +23,23 @@ void HostExecutor::launch(const KernelInfo& kernel, Index n, const void* f) {
   run(kernel, n, f);
 }
 
+// On threads a launch of few items runs at once: one that is small costs less than to hand it out.
 void HostExecutor::run(const KernelInfo& kernel, Index n, const void* f) {
-  std::vector<int> threads;
-  make_order(order_, block_threads, random_, threads);
   if (order_ == Order::threads) {
+    static const std::vector<int> in_order = [] {
+      std::vector<int> out(block_threads);
+      std::iota(out.begin(), out.end(), 0);
+      return out;
+    }();
     const Index grain = kernel.blocks ? 1 : 256;
+    if (n <= grain) return kernel.run(f, nullptr, 0, n, in_order.data());
     tbb::parallel_for(
         tbb::blocked_range<Index>(0, n, static_cast<std::size_t>(grain)),
-        [&](const auto& range) { kernel.run(f, nullptr, range.begin(), range.end(), threads.data()); });
+        [&](const auto& range) { kernel.run(f, nullptr, range.begin(), range.end(), in_order.data()); });
     return;
   }
+  std::vector<int> threads;
+  make_order(order_, block_threads, random_, threads);
   make_order(order_, n, random_, items_);
   kernel.run(f, items_.data(), 0, n, threads.data());
 }

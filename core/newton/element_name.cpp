@@ -4,8 +4,6 @@
 #include <algorithm>
 #include <cmath>
 
-
-
 namespace bb {
 
 std::string vertex_name(const Scene& scene, int vertex) {

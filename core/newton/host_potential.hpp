@@ -47,8 +47,8 @@ class HostPotential final : public IncrementalPotential {
   double multiply(const Column& v, Column& out) override;
   void add_given_motion(const Column& x, const Column& motion, Column& force) override;
   void solve(const Column& b, Column& step, SolveReport& report) override;
-  Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b, Column& step,
-                       Column& direction) override;
+  Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
+                       Column& step, Column& direction) override;
   std::size_t nnz() const override { return nnz_; }
 
   void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) override;

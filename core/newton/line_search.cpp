@@ -132,7 +132,8 @@ class LineSearch final : public StepSolver {
       ++report.line_search_trials;
       const auto change = system.try_motion(alpha);
       const double modelled = alpha * slope + alpha * alpha * curvature / 2;
-      if (!change || change->change > armijo_ * modelled || within_rounding(*change, system.view().precision()))
+      if (!change || change->change > armijo_ * modelled ||
+          within_rounding(*change, system.view().precision()))
         continue;
       report.alpha = alpha;
       report.energy_change_J = change->change;
@@ -199,7 +200,8 @@ class LineSearch final : public StepSolver {
       ++report.line_search_trials;
       if (const auto change = system.try_motion(alpha)) {
         const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
-        report.rounding_accepts = energy_test && !decrease && within_rounding(*change, system.view().precision());
+        report.rounding_accepts =
+            energy_test && !decrease && within_rounding(*change, system.view().precision());
         if (decrease || !energy_test || report.rounding_accepts) {
           report.alpha = alpha;
           report.energy_change_J = change->change;

@@ -52,9 +52,9 @@ bool NewtonSystem::set_right_hand_side() {
     state_.potential->multiply(state_.dx, state_.work);
     state_.potential->add_given_motion(state_.x, state_.dx, state_.work);
   }
-  state_.executor.each(state_.b.size(),
-                       resident::RightHandSide{state_.g.data(), moving ? state_.work.data() : nullptr,
-                                               state_.b.data()});
+  state_.executor.each(
+      state_.b.size(),
+      resident::RightHandSide{state_.g.data(), moving ? state_.work.data() : nullptr, state_.b.data()});
   return moving;
 }
 
@@ -79,8 +79,7 @@ void NewtonSystem::add_solution() {
 DirectionSize NewtonSystem::direction_size() {
   DirectionSize size;
   const double epsilon = value_epsilon(state_.precision);
-  const resident::DirectionSizes found =
-      state_.vectors.sizes(state_.dx, state_.x, state_.body_size, epsilon);
+  const resident::DirectionSizes found = state_.vectors.sizes(state_.dx, state_.x, state_.body_size, epsilon);
   size.inf_m = found.largest;
   size.rounding_m = found.within;
   size.beyond_m = found.beyond;
@@ -110,8 +109,8 @@ EndCheck NewtonSystem::check_end() {
     if (known) out.proof = EndProof::factor;
     return out;
   }
-  const Definiteness found = state_.potential->examine(state_.x, state_.level, state_.force, state_.b,
-                                                       state_.step, state_.aside);
+  const Definiteness found =
+      state_.potential->examine(state_.x, state_.level, state_.force, state_.b, state_.step, state_.aside);
   factored_ = false;
   out.factorizations = found.factorizations;
   out.iterations = found.iterations;

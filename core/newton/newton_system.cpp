@@ -10,7 +10,8 @@
 namespace bb {
 namespace {
 
-std::unique_ptr<IncrementalPotential> make_host_potential(const Scene& scene, Method& method, const Plan& plan,
+std::unique_ptr<IncrementalPotential> make_host_potential(const Scene& scene, Method& method,
+                                                          const Plan& plan,
                                                           const std::vector<std::uint8_t>& fixed,
                                                           PhaseClock& clock) {
   return std::make_unique<HostPotential>(scene, method, plan, fixed, clock);
@@ -43,9 +44,7 @@ NewtonSystem::NewtonSystem(const Scene& scene, Method& method)
 
 NewtonSystem::~NewtonSystem() = default;
 
-StepColumns NewtonSystem::step_columns() const {
-  return {state_.x_n, state_.x_tilde, dt_, c_, load_factor_};
-}
+StepColumns NewtonSystem::step_columns() const { return {state_.x_n, state_.x_tilde, dt_, c_, load_factor_}; }
 
 void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt,
                               double load_factor) {

@@ -15,7 +15,9 @@ class BatchTerm final : public Term {
   void linearise(const PositionsView& x, const TermContext& context) override {
     batch_->derivatives(x, context.projection, families_[0].local);
   }
-  void clamp(const PositionsView& x) override { batch_->derivatives(x, Projection::psd, families_[0].clamped); }
+  void clamp(const PositionsView& x) override {
+    batch_->derivatives(x, Projection::psd, families_[0].clamped);
+  }
   void evaluate(const PositionsView& x, const TermContext&) override {
     batch_->values(x, families_[0].trial_energy.data());
   }

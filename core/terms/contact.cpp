@@ -112,7 +112,8 @@ void ContactTerm::clamp(const PositionsView& x) {
   mollified_terms(state_.mollified, x, Projection::psd, mollified.grad, mollified.hess, options_.precision);
 }
 
-void ContactTerm::add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) const {
+void ContactTerm::add_given_motion(const PositionsView& x, const PositionsView& motion,
+                                   PositionsSpan force) const {
   bb::add_given_motion(state_.rows, motion, force);
   bb::add_given_motion(state_.mollified, x, motion, force);
 }
@@ -134,7 +135,8 @@ double ContactTerm::bound(const Motion& motion, IterateNumbers& report, PhaseClo
   return bound_.alpha;
 }
 
-bool ContactTerm::add_detour(const PositionsView& x, const PositionsView& dx, double bound, PositionsSpan force) const {
+bool ContactTerm::add_detour(const PositionsView& x, const PositionsView& dx, double bound,
+                             PositionsSpan force) const {
   return bb::add_detour(state_.rows, x, dx, force).by_curvature(bound);
 }
 

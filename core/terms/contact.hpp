@@ -64,10 +64,12 @@ class ContactTerm final : public Term {
   void keep(Archive& archive) override;
   void linearise(const PositionsView& x, const TermContext& context) override;
   void clamp(const PositionsView& x) override;
-  void add_given_motion(const PositionsView& x, const PositionsView& motion, PositionsSpan force) const override;
+  void add_given_motion(const PositionsView& x, const PositionsView& motion,
+                        PositionsSpan force) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
-  bool add_detour(const PositionsView& x, const PositionsView& dx, double bound, PositionsSpan force) const override;
+  bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,
+                  PositionsSpan force) const override;
   std::string describe_bound() const override;
   bool admits(const PositionsView& x, PhaseClock& clock) override;
   void evaluate(const PositionsView& x, const TermContext& context) override;

@@ -192,8 +192,8 @@ std::string StrainLimitTerm::element_name(std::size_t e) const {
 
 // The larger of two estimates: what everything but the limit puts on an element on its own, and the force at
 // which the Newton model would come to rest.
-void StrainLimitTerm::report_overload(const PositionsView& x, const PositionsView& others, const PositionsView& dx,
-                                      StepNumbers& out) {
+void StrainLimitTerm::report_overload(const PositionsView& x, const PositionsView& others,
+                                      const PositionsView& dx, StepNumbers& out) {
   out.limit_overload = 0;
   if (options_.limit.shape.infinite_at_zero || folded_) return;
   batch_.measure(x);

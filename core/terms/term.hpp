@@ -33,7 +33,7 @@ struct StepFrame {
 struct TermContext {
   const BlockSystem& blocks;           // pattern of the iterate's matrix
   const BlockSystem::Values& elastic;  // H at the iterate; empty unless the plan has policy_submatrix
-  PositionsView gradient;           // N, at the iterate: of the terms before this one (of all, in a trial)
+  PositionsView gradient;              // N, at the iterate: of the terms before this one (of all, in a trial)
   Projection projection;               // of the Hessian of every element
   PhaseClock& clock;
 };
@@ -139,8 +139,8 @@ class Term {
   virtual void report_end(const PositionsView& /*x*/, StepNumbers&, PhaseClock&) {}
   /// How many times the largest force of a bounded barrier the loads of a step without progress are. others:
   /// gradient of all other terms at the iterate x. dx: the Newton direction there, or 0.
-  virtual void report_overload(const PositionsView& /*x*/, const PositionsView& /*others*/, const PositionsView& /*dx*/,
-                               StepNumbers&) {}
+  virtual void report_overload(const PositionsView& /*x*/, const PositionsView& /*others*/,
+                               const PositionsView& /*dx*/, StepNumbers&) {}
 
  protected:
   std::vector<TermFamily> families_;

@@ -80,8 +80,8 @@ DeviceMemory count_device_memory(const RunConfig& config, const Scene& scene, co
   }
   method.make_potential = [](const Scene& of, Method& with, const Plan& parts,
                              const std::vector<std::uint8_t>& fixed, PhaseClock& clock) {
-    return std::make_unique<resident::ResidentPotential>(std::make_unique<exec::CountingExecutor>(true), of, with,
-                                                         parts, fixed, clock);
+    return std::make_unique<resident::ResidentPotential>(std::make_unique<exec::CountingExecutor>(true), of,
+                                                         with, parts, fixed, clock);
   };
   NewtonSystem system(scene, method, plan);
   auto& potential = dynamic_cast<resident::ResidentPotential&>(system.potential());

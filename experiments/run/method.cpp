@@ -83,8 +83,10 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   method.linear = {config.linear_solver.name, config.linear_solver.parameters};
   if (config.device != Device::cpu) {
     method.make_potential = [device = config.device](const Scene& scene, Method& of, const Plan& plan,
-                                                     const std::vector<std::uint8_t>& fixed, PhaseClock& clock) {
-      return std::make_unique<resident::ResidentPotential>(make_executor(device), scene, of, plan, fixed, clock);
+                                                     const std::vector<std::uint8_t>& fixed,
+                                                     PhaseClock& clock) {
+      return std::make_unique<resident::ResidentPotential>(make_executor(device), scene, of, plan, fixed,
+                                                           clock);
     };
   }
   return method;

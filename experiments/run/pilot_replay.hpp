@@ -13,7 +13,9 @@ class PilotReplay {
  public:
   /// Both must outlive it.
   PilotReplay(const Pilot& pilot, const Scene& scene)
-      : pilot_(pilot), method_(make_method(pilot.config, pilot.stiffness)), system_(scene, method_),
+      : pilot_(pilot),
+        method_(make_method(pilot.config, pilot.stiffness)),
+        system_(scene, method_),
         diagnosis_(system_.diagnosis()) {}
 
   /// The rows of the end of this step.

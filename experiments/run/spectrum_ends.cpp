@@ -23,8 +23,7 @@ double element_energy(std::span<const int> vertex, const double* hess, const Pos
   return sum;
 }
 
-std::string element_name(const Diagnosis& system, const Term& term, std::size_t family,
-                         std::size_t element) {
+std::string element_name(const Diagnosis& system, const Term& term, std::size_t family, std::size_t element) {
   const Scene& scene = system.scene();
   if (term.group() == TermGroup::contact && family == 0) {
     const ContactTable& rows = contact_state(system.terms()).rows;

@@ -193,9 +193,9 @@ TEST(Batches, BadInputIsAConfigError) {
   const std::vector<double> ones(strip.triangles.size(), 1.0), short_column(1, 1.0);
   EXPECT_THROW(MembraneBatch("corotationel", strip.triangles, strip.rest, ones, ones), ConfigError);
   EXPECT_THROW(MembraneBatch("arap", strip.triangles, strip.rest, short_column, ones), ConfigError);
-  EXPECT_THROW(MembraneBatch("arap", strip.triangles, Positions(Positions::Zero(3, strip.rest.cols())), ones,
-                             ones),
-               ConfigError);
+  EXPECT_THROW(
+      MembraneBatch("arap", strip.triangles, Positions(Positions::Zero(3, strip.rest.cols())), ones, ones),
+      ConfigError);
   EXPECT_THROW(SpringBatch(strip.edges, strip.rest, short_column), ConfigError);
   EXPECT_THROW(HingeBatch(strip.hinges, short_column, short_column), ConfigError);
 }

@@ -48,8 +48,10 @@ TEST_P(AttemptsOf, AddUpTheirWork) {
   const std::unique_ptr<LinearSolver> solver = make_linear_solver(at.method.linear);
   solver->begin_step();
   VecXd solution;
-  const LinearReport refused = solver->solve(at.system.diagnosis().exact(), at.system.diagnosis().rhs(), solution);
-  const LinearReport served = solver->solve(at.system.diagnosis().solved(), at.system.diagnosis().rhs(), solution);
+  const LinearReport refused =
+      solver->solve(at.system.diagnosis().exact(), at.system.diagnosis().rhs(), solution);
+  const LinearReport served =
+      solver->solve(at.system.diagnosis().solved(), at.system.diagnosis().rhs(), solution);
   ASSERT_EQ(refused.status, LinearStatus::matrix_indefinite);
   ASSERT_EQ(served.status, LinearStatus::ok);
   EXPECT_EQ(report.linear.iterations, refused.iterations + served.iterations);

@@ -70,7 +70,8 @@ TEST(BucklingStep, exact_curvature_sees_the_saddle_that_the_clamped_matrix_hides
     system.set_direction(dx);
     const double exact = system.direction_curvature();
     const VecXd reduced = dx.reshaped();
-    const double clamped = reduced.dot(system.diagnosis().clamped().lower.selfadjointView<Eigen::Lower>() * reduced);
+    const double clamped =
+        reduced.dot(system.diagnosis().clamped().lower.selfadjointView<Eigen::Lower>() * reduced);
     EXPECT_GE(clamped, 0);
     EXPECT_LE(exact, clamped * (1 + 1e-12));
     lowest = std::min(lowest, exact);

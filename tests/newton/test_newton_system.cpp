@@ -128,7 +128,9 @@ TEST(NewtonSystem, stages_hold_the_terms_that_they_are_named_after) {
   AtRest rest(scene, test::fixed_method("quadratic", 7), scene.x0);
   rest.system.assemble();
   const double inertia = 0.2 / (dt * dt), curvature = 7 * 2;
-  const auto vertical = [&rest](TermSet set) { return rest.system.diagnosis().clamped(set).lower.coeff(2, 2); };
+  const auto vertical = [&rest](TermSet set) {
+    return rest.system.diagnosis().clamped(set).lower.coeff(2, 2);
+  };
   EXPECT_DOUBLE_EQ(vertical(TermSet::all()), inertia + curvature);
   EXPECT_TRUE(rest.system.diagnosis().active(TermGroup::contact));
   EXPECT_DOUBLE_EQ(vertical(without_contact), inertia);

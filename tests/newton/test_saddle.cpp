@@ -15,7 +15,8 @@ class Spectrum final : public StepObserver {
  public:
   void on_matrix(StepSystem& step_system, int, int) override {
     NewtonSystem& system = step_system.on_host();
-    const Eigen::MatrixXd full = Eigen::MatrixXd(system.diagnosis().exact().lower).selfadjointView<Eigen::Lower>();
+    const Eigen::MatrixXd full =
+        Eigen::MatrixXd(system.diagnosis().exact().lower).selfadjointView<Eigen::Lower>();
     smallest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full, Eigen::EigenvaluesOnly).eigenvalues()[0];
     contacts = std::max(contacts, rows_of(system).size());
   }
@@ -243,7 +244,8 @@ TEST(Saddle, the_way_out_does_not_climb) {
     EXPECT_NEAR(size.inf_m, 1e-3, 1e-12);
     EXPECT_LE(size.slope_J, 0) << seed;
     EXPECT_LT(system.direction_curvature(), 0);
-    EXPECT_NEAR(system.direction_curvature(), end.curvature_N_per_m * system.diagnosis().direction().squaredNorm(), 1e-9);
+    EXPECT_NEAR(system.direction_curvature(),
+                end.curvature_N_per_m * system.diagnosis().direction().squaredNorm(), 1e-9);
     for (const Pin& pin : scene.pins) EXPECT_TRUE(system.diagnosis().direction().col(pin.vertex).isZero(0));
     steep += size.slope_J < -1e-9 ? 1 : 0;
   }

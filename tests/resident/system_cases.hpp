@@ -34,7 +34,8 @@ inline MakePotential on_executor(
 /// A Newton system on that executor, whatever the method says.
 class ResidentSystem final : public NewtonSystem {
  public:
-  ResidentSystem(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method, const Plan& plan)
+  ResidentSystem(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method,
+                 const Plan& plan)
       : NewtonSystem(scene, put_on(executor, method), plan) {
     method.make_potential = nullptr;
   }

@@ -104,10 +104,9 @@ Method resident_method(Index frugal_from) {
   Method method = test::fixed_method("cubic", 40);
   method.hessian_mode = HessianMode::projected_full;
   test::use_resident_solver(method);
-  method.make_potential = test::on_executor([] { return std::make_unique<exec::HostExecutor>(); },
-                                            [frugal_from](resident::ResidentPotential& potential) {
-                                              potential.set_frugal_from(frugal_from);
-                                            });
+  method.make_potential = test::on_executor(
+      [] { return std::make_unique<exec::HostExecutor>(); },
+      [frugal_from](resident::ResidentPotential& potential) { potential.set_frugal_from(frugal_from); });
   return method;
 }
 

@@ -68,7 +68,8 @@ double relative(const Positions& a, const Positions& b) {
 void expect_same_iterate(Both& both) {
   ASSERT_GT(contact_state(both.cpu.diagnosis().terms()).size(), 0u);
   ASSERT_GT(both.cpu.view().energy(TermGroup::contact), 0);
-  EXPECT_NEAR(both.resident.view().energy(), both.cpu.view().energy(), 1e-13 * std::abs(both.cpu.view().energy()));
+  EXPECT_NEAR(both.resident.view().energy(), both.cpu.view().energy(),
+              1e-13 * std::abs(both.cpu.view().energy()));
   for (const TermGroup group : {TermGroup::load, TermGroup::elastic, TermGroup::limit, TermGroup::contact}) {
     EXPECT_NEAR(both.resident.view().energy(group), both.cpu.view().energy(group),
                 1e-13 * (1 + std::abs(both.cpu.view().energy(group))));

@@ -42,12 +42,9 @@ struct Restarted {
     IterateNumbers numbers;
     system.view().report(numbers);
     EXPECT_GT(numbers.contacts.total(), 0U);
-    return {system.view().energy(),
-            numbers.kappa_max_N_per_m.value,
-            numbers.limit_load_max_N_per_m.value,
-            system.direction_curvature(),
-            system.direction_size().slope_J,
-            system.view().gradient()};
+    return {
+        system.view().energy(),       numbers.kappa_max_N_per_m.value, numbers.limit_load_max_N_per_m.value,
+        system.direction_curvature(), system.direction_size().slope_J, system.view().gradient()};
   }
   std::pair<Iterate, Iterate> both_lengths(StepSystem& system, double length, double c) const {
     system.begin_step(scene.x0, predicted(dt, 1), dt, 1);
@@ -100,7 +97,7 @@ TEST(SystemRestart, TheNumbersOfAnIterateAreThoseOfTheNewLength) {
       Restarted of_cpu(method_of(policy)), of_resident(method_of(policy));
       NewtonSystem cpu(of_cpu.scene, of_cpu.method, of_cpu.plan);
       test::ResidentSystem resident(std::make_unique<exec::HostExecutor>(), of_resident.scene,
-                                        of_resident.method, of_resident.plan);
+                                    of_resident.method, of_resident.plan);
       const auto expected = of_cpu.both_lengths(cpu, length, c),
                  found = of_resident.both_lengths(resident, length, c);
       expect_same(found.first, expected.first, (what + ", whole").c_str());

@@ -7,5 +7,5 @@
 #include "core/resident/elements/gather_kernels.hpp"
 #include "core/resident/elements/limit_kernels.hpp"
 #include "core/resident/elements/load_kernels.hpp"
-#include "core/resident/sums/vector_kernels.hpp"
 #include "core/resident/sums/sum_kernels.hpp"
+#include "core/resident/sums/vector_kernels.hpp"

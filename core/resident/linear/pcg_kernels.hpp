@@ -168,8 +168,8 @@ struct BeginRun {
     const double rr = fold_partials(block, shared.a, partial_rr, n);
     block.threads([&](int t) {
       if (t != 0) return;
-      const bool factors = faults->non_finite == no_fault && faults->indefinite == no_fault &&
-                           faults->singular == no_fault;
+      const bool factors =
+          faults->non_finite == no_fault && faults->indefinite == no_fault && faults->singular == no_fault;
       if (first) scalars->goal = cg_goal(rr, scalars->tolerance);
       const int iteration = first ? 0 : scalars->state[0].iteration;
       scalars->state[0] = cg_begin(rz, rr, iteration, scalars->max_iterations, factors);

@@ -4,8 +4,8 @@
 #include <span>
 #include <vector>
 
-#include "core/resident/sums/vector_kernels.hpp"
 #include "core/resident/sums/resident_sum.hpp"
+#include "core/resident/sums/vector_kernels.hpp"
 #include "core/scene/scene.hpp"
 
 namespace bb::resident {

@@ -127,9 +127,8 @@ Definiteness ResidentPotential::examine(const Column& x, const HessianLevel&, co
   fill_exact(x, force);
   const VecXd seeded = definiteness_right_hand_side(b.size());
   b.upload({seeded.data(), static_cast<std::size_t>(seeded.size())});
-  Definiteness found =
-      definiteness_of(pcg_->solve_with_last(matrix(), vectors_.fixed().data(), b.data(), step.data(),
-                                            definiteness_tolerance, max_pcg_iterations_));
+  Definiteness found = definiteness_of(pcg_->solve_with_last(
+      matrix(), vectors_.fixed().data(), b.data(), step.data(), definiteness_tolerance, max_pcg_iterations_));
   if (found.verdict != Definiteness::Verdict::negative) return found;
   direction.copy_from(pcg_->direction());
   const double curvature = multiply(direction, step);

@@ -33,8 +33,9 @@ std::unique_ptr<ResidentPreconditioner> make_preconditioner(exec::Executor& exec
 
 }  // namespace
 
-ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method,
-                                     const Plan& plan, const std::vector<std::uint8_t>& fixed, PhaseClock& clock)
+ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, const Scene& scene,
+                                     Method& method, const Plan& plan, const std::vector<std::uint8_t>& fixed,
+                                     PhaseClock& clock)
     : IncrementalPotential(clock),
       executor_(std::move(executor)),
       scene_(scene),
@@ -51,7 +52,8 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
   if (plan.term("contact").needed) {
     contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, vectors_.fixed());
   }
-  pcg_ = std::make_unique<ResidentPcg>(*executor_, scene.n_vertices(), make_preconditioner(*executor_, method));
+  pcg_ =
+      std::make_unique<ResidentPcg>(*executor_, scene.n_vertices(), make_preconditioner(*executor_, method));
 }
 
 ResidentPotential::~ResidentPotential() = default;
@@ -87,7 +89,8 @@ void ResidentPotential::prepare(const Column& x0, const Column& x1, const Column
   if (contact_) contact_->prepare(x0, x1);
 }
 
-double ResidentPotential::bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) {
+double ResidentPotential::bound(const Column& x0, const Column& x1, const Column& dx,
+                                IterationReport& report) {
   double smallest = 1;
   holder_.clear();
   if (plan_.term("strain_limit").needed) {
@@ -112,7 +115,8 @@ bool ResidentPotential::make_room(const Column& x, const Column& dx, double boun
   return true;
 }
 
-std::optional<EnergyChange> ResidentPotential::try_state(const Column& x, const Column& trial, const Column&) {
+std::optional<EnergyChange> ResidentPotential::try_state(const Column& x, const Column& trial,
+                                                         const Column&) {
   if (!elements_.admits(trial.data())) return std::nullopt;
   if (contact_) {
     const ScopedPhase rows(clock(), Phase::contact_rows);

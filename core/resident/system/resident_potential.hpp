@@ -26,8 +26,8 @@ class ResidentPotential final : public IncrementalPotential {
  public:
   /// scene, method and plan must outlive it. fixed: [3 n] prescribed or locked degrees of freedom. Errors: ConfigError for
   /// what has no device form; OutOfMemory.
-  ResidentPotential(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method, const Plan& plan,
-                    const std::vector<std::uint8_t>& fixed, PhaseClock& clock);
+  ResidentPotential(std::unique_ptr<exec::Executor> executor, const Scene& scene, Method& method,
+                    const Plan& plan, const std::vector<std::uint8_t>& fixed, PhaseClock& clock);
   ~ResidentPotential() override;
   exec::Executor& executor() override { return *executor_; }
 
@@ -46,8 +46,8 @@ class ResidentPotential final : public IncrementalPotential {
   double multiply(const Column& v, Column& out) override;
   void add_given_motion(const Column& x, const Column& motion, Column& force) override;
   void solve(const Column& b, Column& step, SolveReport& report) override;
-  Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b, Column& step,
-                       Column& direction) override;
+  Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
+                       Column& step, Column& direction) override;
   std::size_t nnz() const override;
 
   void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) override;
