@@ -72,9 +72,9 @@ def _cuda_here() -> str:
 
 
 def _device_options(preset: str, options: dict[str, str]) -> tuple[dict[str, str], bool]:
-    """The options with BB_CUDA (cmake/Cuda.cmake) where this build needs a word about device code, and whether
-    CMake has to look again. Kernels take minutes of nvcc, so where no card is only what compiles and tests them
-    asks for them (AUTO); a compiler or a card that is found later is used later.
+    """The options with BB_CUDA (cmake/Cuda.cmake) where this build needs a word about device code, and
+    whether CMake has to look again. Kernels take minutes of nvcc, so where no card is only what compiles and
+    tests them asks for them (AUTO); a compiler or a card that is found later is used later.
     """
     cache = folder(preset) / "CMakeCache.txt"
     if not (folder(preset) / "build.ninja").is_file():

@@ -53,7 +53,7 @@ def scaled(matrix: np.ndarray, side_car: dict, scaling: str) -> np.ndarray | Non
 
 
 def test_the_corpus_is_what_its_list_says():
-    spec = matrix_corpus.read_spec(ROOT / "configs/matrices/corpus.json")
+    spec = matrix_corpus.read_spec(ROOT / "configs/matrices/corpus.json", "matrix_corpus")
     assert sorted(system["name"] for system in spec["systems"]) == NAMES
     assert 12 <= len(NAMES) <= 20
     files = [path for path in CORPUS.iterdir() if path.suffix in (".mtx", ".json")]
@@ -194,7 +194,7 @@ def test_a_run_writes_both_files_with_their_hashes_and_they_replay(program, tmp_
 
 
 def test_where_the_exact_matrix_was_not_solved_it_is_beside_the_solved_one(program, tmp_path):
-    spec = matrix_corpus.read_spec(ROOT / "configs/matrices/corpus.json")
+    spec = matrix_corpus.read_spec(ROOT / "configs/matrices/corpus.json", "matrix_corpus")
     system = next(s for s in spec["systems"] if s["form"] == "exact")
     matrix_corpus.run(system, spec["set"], ROOT / "configs/matrices", tmp_path / "run")
     folder = tmp_path / "run/matrices"

@@ -46,27 +46,6 @@ TEST(SystemKernels, Columns) {
   executor.each(b.size(), ScaleColumn{0.3, b.data()});
   found = b.download();
   for (std::size_t i = 0; i < n; ++i) ASSERT_EQ(found[i], 0.3 * (-(a[i] + c[i]) + a[i]));
-  ResidentLeast least(executor);
-  least.add(b.size() / 3, ColumnNorms{g.data()});
-  double longest = 0;
-  for (std::size_t v = 0; v < n / 3; ++v) {
-    longest = std::max(
-        longest, std::sqrt(a[3 * v] * a[3 * v] + a[3 * v + 1] * a[3 * v + 1] + a[3 * v + 2] * a[3 * v + 2]));
-  }
-  ASSERT_GT(longest, 1);
-  EXPECT_EQ(least.largest(), longest);
-}
-
-// Several items a thread.
-TEST(SystemKernels, LongestOfManyVectors) {
-  constexpr std::size_t n = 1'310'721;
-  exec::HostExecutor executor;
-  std::vector<double> values = random_numbers(3 * n, 8);
-  values[3 * (n - 2)] = 3, values[3 * (n - 2) + 1] = 4, values[3 * (n - 2) + 2] = 0;
-  const auto g = on(executor, values);
-  ResidentLeast least(executor);
-  least.add(static_cast<Index>(n), ColumnNorms{g.data()});
-  EXPECT_EQ(least.largest(), 5);
 }
 
 TEST(SystemKernels, TotalsOfManyBlocks) {

@@ -130,5 +130,19 @@ TEST(Vectors, DirectionsAreSplitAtTheRoundingOfTheirVertex) {
   EXPECT_GT(split, 0);
 }
 
+// Several items a thread.
+TEST(Vectors, LongestOfMany) {
+  constexpr std::size_t n = 1'310'721;
+  std::vector<double> values(3 * n);
+  for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(static_cast<double>(i));
+  values[3 * (n - 2)] = 3, values[3 * (n - 2) + 1] = 4, values[3 * (n - 2) + 2] = 0;
+  exec::HostExecutor executor;
+  exec::Buffer<double> column(executor, "many vectors");
+  column.upload(values);
+  ResidentLeast least(executor);
+  least.add(static_cast<Index>(n), ColumnNorms{column.data()});
+  EXPECT_EQ(least.largest(), 5);
+}
+
 }  // namespace
 }  // namespace bb::resident
