@@ -125,7 +125,7 @@ void BroadPhase::fit_edges() {
 
 /// Pairs of kind K: may_pair says which there are, second_of what a primitive of b is in the surface.
 template <PairKind K, class Second, class MayPair>
-void BroadPhase::find(const Bvh& a, const Bvh& b, const Positions& x0, const Positions& x1,
+void BroadPhase::find(const Bvh& a, const Bvh& b, const PositionsView& x0, const PositionsView& x1,
                       const Second& second_of, const MayPair& may_pair, std::vector<IndexPair>& out) {
   const double eps = value_epsilon(precision_);
   finder_.find(
@@ -165,7 +165,7 @@ void BroadPhase::update(const PositionsView& x0, const PositionsView& x1, Candid
 }
 
 /// Of surface primitives, from the trees.
-void BroadPhase::find_pairs(const Positions& x0, const Positions& x1, Candidates& out) {
+void BroadPhase::find_pairs(const PositionsView& x0, const PositionsView& x1, Candidates& out) {
   const Surface& s = surface_;
   const auto point = [&s](int i) { return s.points.vertices[static_cast<std::size_t>(i)][0]; };
   const auto edge = [&s](int i) { return s.edges.vertices[static_cast<std::size_t>(i)]; };

@@ -37,7 +37,8 @@ class BroadPhase {
 
   /// True when some pair or obstacle contact can exist at all.
   bool active() const { return plan_.any(); }
-  /// All pairs with a free vertex, not adjacent, that may come within d_hat + offset on x0 -> x1, and more.
+  /// All pairs with a free vertex, not adjacent, that may have a row or bound the motion x0 -> x1, and more. A pair that
+  /// the rest rule keeps from both is left out (rest_rule.hpp).
   /// All vertices move together: a state is (1 - t) x0 + t x1 with one t.
   void update(const PositionsView& x0, const PositionsView& x1, Candidates& out);
 
@@ -60,10 +61,10 @@ class BroadPhase {
   template <int N>
   void fit(Tree& tree, const Primitives<N>& primitives) const;
   void fit_edges();
-  void find_pairs(const Positions& x0, const Positions& x1, Candidates& out);
+  void find_pairs(const PositionsView& x0, const PositionsView& x1, Candidates& out);
   template <PairKind K, class Second, class MayPair>
-  void find(const Bvh& a, const Bvh& b, const Positions& x0, const Positions& x1, const Second& second_of,
-            const MayPair& may_pair, std::vector<IndexPair>& out);
+  void find(const Bvh& a, const Bvh& b, const PositionsView& x0, const PositionsView& x1,
+            const Second& second_of, const MayPair& may_pair, std::vector<IndexPair>& out);
   template <int N>
   void update_obstacles(const Primitives<N>& primitives, const PositionsView& x0, const PositionsView& x1,
                         std::vector<IndexPair>& out);

@@ -104,10 +104,10 @@ BB_HD inline PairRow pair_row(const int* vertex, const T* weights, const Vec<T, 
 /// Activation distance of a pair of one body with these points at rest: see row_d_hat().
 template <PairKind K>
 BB_HD inline double d_hat_at_rest(const Side& law, const Mat<double, 3, pair_points(K)>& rest) {
-  const double reach = 1.5 * law.d_hat;
+  const double reach = rest_rule_factor * law.d_hat;
   if (pair_box_distance<K>(rest) - law.offset >= reach) return law.d_hat;
   const double gap = closest_points<K, double>(rest).d - law.offset;
-  return gap > 0 && gap < reach ? gap / 1.5 : law.d_hat;
+  return gap > 0 && gap < reach ? gap / rest_rule_factor : law.d_hat;
 }
 
 // Primitives keep their index for a run, and there are at most most_primitives of each.

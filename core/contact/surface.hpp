@@ -16,6 +16,12 @@ struct Side {
   double d_hat, offset;
 };
 
+/// The largest level at which a collision-free step may stop (/contact/ccd_park), in units of d_hat.
+inline constexpr double most_ccd_park = 0.1;
+
+/// A pair of one body that rests closer than this many d_hat has a d_hat of its own: its gap at rest over the same number.
+inline constexpr double rest_rule_factor = 1.5;
+
 /// Gap law of a pair: mean activation distance and summed offset of its two sides, m.
 BB_HD inline Side combine(const Side& a, const Side& b) {
   return {a.d_hat + (b.d_hat - a.d_hat) / 2, a.offset + b.offset};

@@ -134,12 +134,9 @@ double HostPotential::add_tikhonov(double relative, double absolute) {
   return shift;
 }
 
-double HostPotential::multiply(const Column& v, Column& out) {
+void HostPotential::multiply(const Column& v, Column& out) {
   out.fill_zero();
   blocks_->multiply_add(*filled_, points(v), points(out));
-  blocks_->restrict_vector(points(v), rhs_);
-  blocks_->restrict_vector(points(out), solution_);
-  return rhs_.dot(solution_);
 }
 
 void HostPotential::add_given_motion(const Column& x, const Column& motion, Column& force) {

@@ -110,9 +110,9 @@ bool HostPotential::make_room(const Column& x, const Column& dx, double bound, C
   return held;
 }
 
-void HostPotential::round(Column& x) { round_state(precision_, points(x)); }
-
-std::optional<EnergyChange> HostPotential::try_state(const Column& x, const Column& trial, const Column& g) {
+std::optional<EnergyChange> HostPotential::try_state(const Column& x, Column& trial, const Column& g) {
+  round_state(precision_, points(trial));
+  if (!points(trial).allFinite()) return std::nullopt;
   for (const auto& term : terms_) {
     if (!term->admits(points(trial), clock())) return std::nullopt;
   }

@@ -44,7 +44,7 @@ class HostPotential final : public IncrementalPotential {
   void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;
   void fill_exact(const Column& x, const Column& force) override;
   double add_tikhonov(double relative, double absolute) override;
-  double multiply(const Column& v, Column& out) override;
+  void multiply(const Column& v, Column& out) override;
   void add_given_motion(const Column& x, const Column& motion, Column& force) override;
   void solve(const Column& b, Column& step, SolveReport& report) override;
   Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
@@ -55,8 +55,7 @@ class HostPotential final : public IncrementalPotential {
   double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
   std::string describe_bound() const override { return holder_ ? holder_->describe_bound() : std::string(); }
   bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
-  void round(Column& x) override;
-  std::optional<EnergyChange> try_state(const Column& x, const Column& trial, const Column& g) override;
+  std::optional<EnergyChange> try_state(const Column& x, Column& trial, const Column& g) override;
   void accept() override;
 
   double energy(TermSet set, const Column& x) override;
@@ -92,7 +91,6 @@ class HostPotential final : public IncrementalPotential {
   void sum_clamped(TermSet set);
   static std::span<const double> clamped_hessians(const Slot& slot, const TermFamily& family);
   void sum_exact();
-  void keep_point(const Column& x);
 
   exec::HostExecutor executor_;
   const Scene& scene_;

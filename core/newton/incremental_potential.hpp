@@ -59,8 +59,8 @@ class IncrementalPotential {
   virtual void fill_exact(const Column& x, const Column& force) = 0;
   /// Adds eps I to the matrix, eps = max(relative trace/n, absolute), N/m; returns eps.
   virtual double add_tikhonov(double relative, double absolute) = 0;
-  /// out = A v over free rows at least, A the matrix that was filled last; returns v . out over these.
-  virtual double multiply(const Column& v, Column& out) = 0;
+  /// out = A v over free rows at least, A the matrix that was filled last.
+  virtual void multiply(const Column& v, Column& out) = 0;
   /// force (N) += how the gradient changes along the motion of prescribed vertices, as far as it is in no block of A.
   virtual void add_given_motion(const Column& x, const Column& motion, Column& force) = 0;
   /// step = A^-1 b over free degrees of freedom, A of the last fill_matrix(). Adds its work to the report.
@@ -79,12 +79,11 @@ class IncrementalPotential {
   virtual double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) = 0;
   virtual std::string describe_bound() const = 0;
   /// force (N) becomes what makes room for gaps that are curved along dx, of a motion that bound() ends at `bound`. Whether
-  /// curvature is what holds it. The matrix is that of the last fill_matrix() again.
+  /// curvature is what holds it. The matrix is that of the last fill_matrix() again, whatever was filled since.
   virtual bool make_room(const Column& x, const Column& dx, double bound, Column& force) = 0;
-  /// x to the nearest numbers that a state of this precision may have.
-  virtual void round(Column&) {}
-  /// E(trial) - E(x), and what the terms keep of the trial. trial: finite numbers. Without value where it is not feasible.
-  virtual std::optional<EnergyChange> try_state(const Column& x, const Column& trial, const Column& g) = 0;
+  /// E(trial) - E(x), and what the terms keep of the trial, which is rounded to the precision of the run first. Without
+  /// value where it is not feasible, or not finite.
+  virtual std::optional<EnergyChange> try_state(const Column& x, Column& trial, const Column& g) = 0;
   /// The last trial is the iterate.
   virtual void accept() = 0;
 

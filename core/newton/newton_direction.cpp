@@ -94,7 +94,8 @@ void NewtonSystem::scale_direction(double factor) {
 
 double NewtonSystem::direction_curvature() {
   state_.potential->fill_exact(state_.x, state_.force);
-  return state_.potential->multiply(state_.dx, state_.work);
+  state_.potential->multiply(state_.dx, state_.work);
+  return state_.vectors.free_dot(state_.dx, state_.work).value();
 }
 
 // Where the exact matrix is the one that was factorised, that is the proof. Rows that are clamped add to it: where it is

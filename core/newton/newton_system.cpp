@@ -98,8 +98,6 @@ double NewtonSystem::bound_motion(IterationReport& report) {
 std::optional<EnergyChange> NewtonSystem::try_motion(double alpha) {
   const ScopedPhase timer(clock(), Phase::line_search);
   move(alpha, state_.trial);
-  state_.potential->round(state_.trial);
-  if (state_.vectors.first_not_finite(state_.trial) >= 0) return std::nullopt;
   return state_.potential->try_state(state_.x, state_.trial, state_.g);
 }
 

@@ -45,8 +45,7 @@ class NewtonSystem : public StepSystem {
   std::optional<EnergyChange> try_motion(double alpha) override;
   void accept() override;
 
-  using StepSystem::view;
-  StepView& view() override { return view_; }
+  const StepView& view() const override { return view_; }
   NewtonSystem& on_host() override;
   bool is_on_host() const override;
 

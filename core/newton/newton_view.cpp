@@ -20,7 +20,7 @@ PositionsView NewtonView::host(const Column& column, HostCopy& to) const {
   return to.values;
 }
 
-void NewtonView::report_overload(bool with_direction, StepNumbers& out) {
+void NewtonView::report_overload(bool with_direction, StepNumbers& out) const {
   if (!with_direction) state_.dx.fill_zero();
   system_.on_host().diagnosis().report_overload(out);
 }

@@ -34,7 +34,7 @@ class NewtonView final : public StepView {
 
   void report(IterateNumbers& out) const override { state_.potential->report(state_.x, out); }
   void report_end(StepNumbers& out) const override { state_.potential->report_end(state_.x, out); }
-  void report_overload(bool with_direction, StepNumbers& out) override;
+  void report_overload(bool with_direction, StepNumbers& out) const override;
   std::string describe_bound() const override { return state_.potential->describe_bound(); }
   std::string describe_non_finite() const override;
 

@@ -96,8 +96,7 @@ class StepSystem {
   virtual void accept() = 0;
 
   // --- what is read of it
-  virtual StepView& view() = 0;
-  const StepView& view() const { return const_cast<StepSystem*>(this)->view(); }
+  virtual const StepView& view() const = 0;
   /// The state in the host's memory, assembled, for what reads terms and matrices: this system, or a copy at the cost of
   /// two assemblies. Valid until the next call of this one.
   virtual NewtonSystem& on_host() = 0;

@@ -47,7 +47,7 @@ class StepView {
   virtual void report(IterateNumbers& out) const = 0;
   virtual void report_end(StepNumbers& out) const = 0;
   /// Of a step without progress. with_direction: the Newton direction at the iterate is known, else it counts as 0.
-  virtual void report_overload(bool with_direction, StepNumbers& out) = 0;
+  virtual void report_overload(bool with_direction, StepNumbers& out) const = 0;
   /// What held the last bound; empty where nothing did.
   virtual std::string describe_bound() const = 0;
   /// Where numbers that are no numbers began.

@@ -112,10 +112,9 @@ class ScriptedSystem final : public StepSystem, public StepView {
   const std::vector<std::uint8_t>& fixed() const override { return state_.fixed; }
   void report(IterateNumbers&) const override {}
   void report_end(StepNumbers&) const override {}
-  void report_overload(bool, StepNumbers&) override {}
+  void report_overload(bool, StepNumbers&) const override {}
   std::string describe_non_finite() const override { return {}; }
-  using StepSystem::view;
-  StepView& view() override { return *this; }
+  const StepView& view() const override { return *this; }
   bool is_on_host() const override { return true; }
   NewtonSystem& on_host() override { throw std::logic_error("a script has no matrices"); }
 

@@ -132,8 +132,7 @@ class Meter final : public StepObserver {
   std::size_t contacts = 0;
 };
 
-// A cloth that lies still: iterates like the last ones need no memory that is not there, and the host waits for few
-// numbers.
+// A cloth that lies still: iterates like the last ones need no memory that is not there.
 TEST(ResidentMemory, ASteadyIterationAllocatesNothing) {
   const Scene scene = test::cloth_on_plate();
   Method method = resident_method(Index{1} << 40);

@@ -51,34 +51,33 @@ MatrixPart ResidentPotential::kept_elastic() const {
   return part;
 }
 
-HessianChoice ResidentPotential::contact_choice() const {
+HessianChoice ResidentPotential::contact_choice(double t) const {
   const StepHessian choice = method_.hessian_of("contact");
   HessianChoice out{method_.hessian_mode, first_projection(choice), false, 1};
   const bool begins_exact = choice == StepHessian::blend || choice == StepHessian::exact_or_clamped;
-  if (!begins_exact || filled_.t == 0) return out;
+  if (!begins_exact || t == 0) return out;
   out.projection = Projection::psd;
-  out.blended = choice == StepHessian::blend && filled_.t < 1;
-  out.t = filled_.t;
+  out.blended = choice == StepHessian::blend && t < 1;
+  out.t = t;
   return out;
 }
 
 void ResidentPotential::fill_matrix(const Column& x, const HessianLevel& level, const Column& force) {
-  filled_ = {level.t(), level.threshold(), force.data()};
-  refill(x);
+  level_ = {level.t(), level.threshold(), force.data()};
+  fill(x, level_);
 }
 
 void ResidentPotential::fill_exact(const Column& x, const Column& force) {
-  filled_ = {0, infinity, force.data()};
-  refill(x);
+  fill(x, {0, infinity, force.data()});
 }
 
-void ResidentPotential::refill(const Column& x) {
+void ResidentPotential::fill(const Column& x, const Filled& level) {
   const ScopedPhase timer(clock(), Phase::assembly);
   elements_.clear_matrix();
   elements_.add_matrix(TermSet::all(), x.data(), [&](std::string_view term) {
-    return hessian_request(method_.hessian_of(term), filled_.t, filled_.threshold, filled_.force);
+    return hessian_request(method_.hessian_of(term), level.t, level.threshold, level.force);
   });
-  if (contact_) contact_matrix_ = contact_->matrix(x, contact_choice());
+  if (contact_) contact_matrix_ = contact_->matrix(x, contact_choice(level.t));
 }
 
 ResidentMatrix ResidentPotential::matrix() const { return {{elements_.matrix(), contact_matrix_}}; }
@@ -91,13 +90,10 @@ double ResidentPotential::add_tikhonov(double, double) {
   throw std::logic_error("the matrix on an executor has no Tikhonov term: only article_literal asks for one");
 }
 
-double ResidentPotential::multiply(const Column& v, Column& out) {
+void ResidentPotential::multiply(const Column& v, Column& out) {
   const Partition partition = Partition::of(v.size() / 3);
   executor_->blocks(partition.n_blocks(), MultiplyDot{partition, matrix(), vectors_.fixed().data(), v.data(),
                                                       out.data(), product_partial_.data(), nullptr});
-  sum_.clear();
-  sum_.add(partition.n_blocks(), ColumnSum{product_partial_.data()});
-  return sum_.get().value();
 }
 
 void ResidentPotential::add_given_motion(const Column& x, const Column& motion, Column& force) {
@@ -131,8 +127,9 @@ Definiteness ResidentPotential::examine(const Column& x, const HessianLevel&, co
       matrix(), vectors_.fixed().data(), b.data(), step.data(), definiteness_tolerance, max_pcg_iterations_));
   if (found.verdict != Definiteness::Verdict::negative) return found;
   direction.copy_from(pcg_->direction());
-  const double curvature = multiply(direction, step);
-  found.curvature = curvature / vectors_.free_dot(direction, direction).value();
+  multiply(direction, step);
+  found.curvature =
+      vectors_.free_dot(direction, step).value() / vectors_.free_dot(direction, direction).value();
   return found;
 }
 

@@ -111,12 +111,13 @@ double ResidentPotential::bound(const Column& x0, const Column& x1, const Column
 // The values of the matrix may have been given back.
 bool ResidentPotential::make_room(const Column& x, const Column& dx, double bound, Column& force) {
   if (!contact_ || !contact_->make_room(x, dx, bound, force)) return false;
-  refill(x);
+  fill(x, level_);
   return true;
 }
 
-std::optional<EnergyChange> ResidentPotential::try_state(const Column& x, const Column& trial,
-                                                         const Column&) {
+// Contact sees for itself that a number is not finite.
+std::optional<EnergyChange> ResidentPotential::try_state(const Column& x, Column& trial, const Column&) {
+  if (!contact_ && vectors_.first_not_finite(trial) >= 0) return std::nullopt;
   if (!elements_.admits(trial.data())) return std::nullopt;
   if (contact_) {
     const ScopedPhase rows(clock(), Phase::contact_rows);

@@ -43,7 +43,7 @@ class ResidentPotential final : public IncrementalPotential {
   void fill_exact(const Column& x, const Column& force) override;
   /// Errors: std::logic_error always: only article_literal asks, which runs on the host.
   double add_tikhonov(double relative, double absolute) override;
-  double multiply(const Column& v, Column& out) override;
+  void multiply(const Column& v, Column& out) override;
   void add_given_motion(const Column& x, const Column& motion, Column& force) override;
   void solve(const Column& b, Column& step, SolveReport& report) override;
   Definiteness examine(const Column& x, const HessianLevel& near, const Column& force, Column& b,
@@ -54,7 +54,7 @@ class ResidentPotential final : public IncrementalPotential {
   double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
   std::string describe_bound() const override { return holder_; }
   bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
-  std::optional<EnergyChange> try_state(const Column& x, const Column& trial, const Column& g) override;
+  std::optional<EnergyChange> try_state(const Column& x, Column& trial, const Column& g) override;
   void accept() override;
 
   double energy(TermSet set, const Column& x) override;
@@ -78,17 +78,17 @@ class ResidentPotential final : public IncrementalPotential {
 
  private:
   static constexpr double infinity = std::numeric_limits<double>::infinity();
-  /// The level of the matrix that was filled last: t and threshold of HessianLevel.
+  /// How far a matrix is from the exact one: t and threshold of HessianLevel.
   struct Filled {
     double t = 0, threshold = infinity;
     const double* force = nullptr;
   };
   ResidentMatrix matrix() const;
-  void refill(const Column& x);
+  void fill(const Column& x, const Filled& level);
   void fill_elastic(const Column& x);
   void keep_elastic();
   MatrixPart kept_elastic() const;
-  HessianChoice contact_choice() const;
+  HessianChoice contact_choice(double t) const;
   /// Requires contact_.
   RowTotals row_totals(const Column& x);
   void keep_contact(Archive& archive);
@@ -110,7 +110,7 @@ class ResidentPotential final : public IncrementalPotential {
   ResidentSum sum_;
   ResidentSums<RowTotals> row_totals_;
   MatrixPart contact_matrix_{};
-  Filled filled_;
+  Filled level_;  // of the last fill_matrix()
   ResidentFrame frame_;
   std::uint64_t pattern_id_ = 1;  // of the matrix
   std::string holder_;            // of the last bound

@@ -39,7 +39,7 @@ void list_loads(const HostRows& rows, std::vector<ContactLoad>& out) {
 }
 
 template <class Numbers>
-void fill(const RowTotals& rows, Numbers& out) {
+void fill_numbers(const RowTotals& rows, Numbers& out) {
   out.contacts = counts_of(rows);
   out.kappa_min_N_per_m = smallest_of(rows.kappa_min);
   out.kappa_max_N_per_m = largest_of(rows.kappa_max);
@@ -75,7 +75,7 @@ void ResidentPotential::report(const Column& x, IterateNumbers& out) {
   out.kappa_change_rel = contact_->kappa_change();
   if (contact_->rows(x).size() == 0) return;
   const RowTotals rows = row_totals(x);
-  fill(rows, out);
+  fill_numbers(rows, out);
   out.gap_min_iterates_m = contact_->rows(x).min_gap;
   out.gap_min_iterates_rel = smallest_of(rows.gap_rel_min);
   out.contact_curvature_max_N_per_m = largest_of(rows.curvature_max);
@@ -89,7 +89,7 @@ void ResidentPotential::report_end(const Column& x, StepNumbers& out) {
   }
   if (!contact_ || contact_->rows(x).size() == 0) return;
   const RowTotals rows = row_totals(x);
-  fill(rows, out);
+  fill_numbers(rows, out);
   out.contact_load_sum_N = rows.load.value();
   list_loads(contact_->rows(x).on_host(), out.contact_loads);
   out.gap_min_m = contact_->rows(x).min_gap;
