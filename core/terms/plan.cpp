@@ -1,4 +1,5 @@
 #include "core/terms/plan.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 #include <fmt/format.h>
 

@@ -1,4 +1,5 @@
 #include "experiments/run/pcg_probe.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 #include <random>
 

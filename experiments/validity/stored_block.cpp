@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/input/read_file.hpp"
-#include "core/linear/cudss.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {

@@ -1,4 +1,5 @@
 // linear_solver: auto: which solver a model of this processor makes of it, and models that cannot be read.
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/run/linear_choice.hpp"
 
 #include <gtest/gtest.h>

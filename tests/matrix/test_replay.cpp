@@ -1,5 +1,6 @@
 // The replay: every solver and estimator has its line, a failure is one, and a singular or indefinite matrix is
 // nowhere ok.
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/matrix/replay.hpp"
 
 #include <gtest/gtest.h>
@@ -8,7 +9,6 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/linear/cudss.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "experiments/matrix/replay_text.hpp"
 #include "tests/matrix/stored.hpp"
