@@ -1,4 +1,6 @@
 // cudss.hpp of a build without CUDA or without cudss.h.
+#include <stdexcept>
+
 #include "core/cuda/device.hpp"
 #include "core/cudss/cudss.hpp"
 

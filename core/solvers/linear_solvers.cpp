@@ -1,5 +1,7 @@
 #include "core/solvers/linear_solvers.hpp"
 
+#include <stdexcept>
+
 namespace bb {
 
 #define ENTRY(name, doc) LinearSolverEntry linear_solver_##name();

@@ -1,9 +1,10 @@
 #include "core/terms/plan.hpp"
-#include "core/solvers/linear_solvers.hpp"
 
 #include <fmt/format.h>
 
 #include <stdexcept>
+
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {

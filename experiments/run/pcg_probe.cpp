@@ -1,7 +1,8 @@
 #include "experiments/run/pcg_probe.hpp"
-#include "core/solvers/linear_solvers.hpp"
 
 #include <random>
+
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 

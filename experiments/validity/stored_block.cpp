@@ -68,7 +68,10 @@ BuildKey this_build(const std::vector<PluginFile>& plugins) {
   record.provenance.plugins = plugins;
   record.config.text = "{}";
   fill_ids(record);  // with an empty config and one thread the run_id is that of build and machine
-  const std::string text = record.ids.run_id + (missing_for("cudss").empty() ? " with cudss" : "");
+  std::string text = record.ids.run_id;
+  for (const LinearSolverEntry& entry : linear_solvers()) {
+    if (entry.missing && entry.missing().empty()) text += " with " + entry.name;
+  }
   return {text, sha256_hex(text)};
 }
 

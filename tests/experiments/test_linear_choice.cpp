@@ -1,5 +1,4 @@
 // linear_solver: auto: which solver a model of this processor makes of it, and models that cannot be read.
-#include "core/solvers/linear_solvers.hpp"
 #include "experiments/run/linear_choice.hpp"
 
 #include <gtest/gtest.h>
@@ -11,6 +10,7 @@
 
 #include "core/math/error.hpp"
 #include "core/record/provenance.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/plan.hpp"
 

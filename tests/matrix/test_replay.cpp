@@ -1,6 +1,5 @@
 // The replay: every solver and estimator has its line, a failure is one, and a singular or indefinite matrix is
 // nowhere ok.
-#include "core/solvers/linear_solvers.hpp"
 #include "experiments/matrix/replay.hpp"
 
 #include <gtest/gtest.h>
@@ -10,6 +9,7 @@
 #include <set>
 
 #include "core/linear/preconditioner.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/matrix/replay_text.hpp"
 #include "tests/matrix/stored.hpp"
 
