@@ -5,10 +5,10 @@ find_package(Python3 REQUIRED COMPONENTS Interpreter)
 set(BB_PLAIN_OPTIONS -DEIGEN_DONT_VECTORIZE)
 file(GLOB BB_PTX_TRANSLATOR CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/ptx/translator/*.py")
 
-# bb_plain_rooms(NAME rooms... [WITHOUT other]): object library NAME of the sources of these rooms and of all that they
-# name, but for the rooms of another such library.
+# bb_plain_rooms(NAME rooms... [WITHOUT other] [EXCEPT rooms...]): object library NAME of the sources of these rooms and of
+# all that they name, but for the rooms of another such library and for those of EXCEPT.
 function(bb_plain_rooms name)
-  cmake_parse_arguments(ARG "" "WITHOUT" "" ${ARGN})
+  cmake_parse_arguments(ARG "" "WITHOUT" "EXCEPT" ${ARGN})
   set(open ${ARG_UNPARSED_ARGUMENTS})
   set(others "")
   if(ARG_WITHOUT)
@@ -22,7 +22,7 @@ function(bb_plain_rooms name)
       list(APPEND libraries ${room})
       continue()
     endif()
-    if(room IN_LIST rooms OR room STREQUAL "bb_pch" OR room STREQUAL "bb_settings")
+    if(room IN_LIST rooms OR room IN_LIST ARG_EXCEPT OR room STREQUAL "bb_pch" OR room STREQUAL "bb_settings")
       continue()
     endif()
     list(APPEND rooms ${room})

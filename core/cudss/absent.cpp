@@ -1,10 +1,10 @@
-// provide.hpp of a build without CUDA or without cudss.h.
+// cudss.hpp of a build without CUDA or without cudss.h.
+#include <stdexcept>
+
 #include "core/cuda/device.hpp"
-#include "core/cudss/provide.hpp"
-#include "core/linear/cudss.hpp"
+#include "core/cudss/cudss.hpp"
 
 namespace bb::cudss {
-namespace {
 
 std::string missing() {
   const cuda::DeviceProbe probe = cuda::probe_device();
@@ -14,8 +14,6 @@ std::string missing() {
          "-cu12, and configure with -DBB_CUDSS_ROOT=FOLDER, where FOLDER/include/cudss.h is";
 }
 
-}  // namespace
-
-void provide() { set_cudss({&missing, nullptr}); }
+std::unique_ptr<LinearSolver> make_solver() { throw std::logic_error(missing()); }
 
 }  // namespace bb::cudss

@@ -1,8 +1,7 @@
 // The linear solver cudss: a cuDSS factor with its report.
 #include "core/cuda/device.hpp"
+#include "core/cudss/cudss.hpp"
 #include "core/cudss/factor.hpp"
-#include "core/cudss/provide.hpp"
-#include "core/linear/cudss.hpp"
 #include "core/linear/direct_solve.hpp"
 
 namespace bb::cudss {
@@ -24,6 +23,8 @@ class Cudss final : public LinearSolver {
   VecXd residual_;
 };
 
+}  // namespace
+
 std::string missing() {
   const std::string why = open_library().why;
   if (!why.empty()) return why;
@@ -31,10 +32,6 @@ std::string missing() {
   return probe.usable ? "" : "no card here: " + probe.why;
 }
 
-std::unique_ptr<LinearSolver> make() { return std::make_unique<Cudss>(); }
-
-}  // namespace
-
-void provide() { set_cudss({&missing, &make}); }
+std::unique_ptr<LinearSolver> make_solver() { return std::make_unique<Cudss>(); }
 
 }  // namespace bb::cudss

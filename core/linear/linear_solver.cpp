@@ -1,13 +1,9 @@
-// The registry of linear solvers and the words of their statuses.
+// What all linear solvers do alike, and the words of their statuses.
 #include "core/linear/linear_solver.hpp"
 
 #include "core/linear/preconditioner.hpp"
 
 namespace bb {
-
-#define ENTRY(name, doc) LinearSolverEntry linear_solver_##name();
-#include "core/linear/registry.inc"
-#undef ENTRY
 
 std::string_view to_string(LinearStatus status) {
   switch (status) {
@@ -49,35 +45,6 @@ LinearReport LinearSolver::solve(const ReducedSystem& system, const VecXd& b, Ve
 Definiteness LinearSolver::examine(const ReducedSystem& a, const NearMatrix& near) {
   constexpr int most_iterations = 10000;
   return examine_preconditioned(a, near, *make_preconditioner("block_jacobi"), most_iterations);
-}
-
-const Registry<LinearSolverEntry>& linear_solvers() {
-#define ENTRY(name, doc) named(linear_solver_##name(), #name, doc),
-  static const Registry<LinearSolverEntry> all({
-#include "core/linear/registry.inc"
-  });
-#undef ENTRY
-  return all;
-}
-
-std::unique_ptr<LinearSolver> make_linear_solver(const LinearOptions& options) {
-  const LinearSolverEntry& entry = linear_solvers().require(options.name, "/linear_solver/name");
-  ParameterMap complete = own_parameters(entry.parameters, options.parameters, "/linear_solver");
-  // The preconditioner reads its own of the rest.
-  for (const auto& given : options.parameters) complete.insert(given);
-  return entry.make(complete);
-}
-
-std::vector<std::string> linear_solver_choices() {
-  std::vector<std::string> names = linear_solvers().names();
-  names.emplace_back(linear_solver_auto);
-  return names;
-}
-
-std::string preconditioner_of(const LinearOptions& options) {
-  const LinearSolverEntry& entry = linear_solvers().require(options.name, "/linear_solver/name");
-  if (!find_named(entry.parameters, "preconditioner")) return "none";
-  return text(own_parameters(entry.parameters, options.parameters, "/linear_solver"), "preconditioner");
 }
 
 }  // namespace bb

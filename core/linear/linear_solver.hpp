@@ -80,24 +80,4 @@ class LinearSolver {
   virtual LinearReport solve_checked(const ReducedSystem& system, const VecXd& b, VecXd& x) = 0;
 };
 
-/// Errors: ConfigError for an unknown name and for what own_parameters refuses.
-std::unique_ptr<LinearSolver> make_linear_solver(const LinearOptions& options);
-
-struct LinearSolverEntry {
-  std::string name, doc;
-  std::vector<Parameter> parameters;  // its own, with defaults
-  bool iterative = false;
-  std::unique_ptr<LinearSolver> (*make)(const ParameterMap& complete) = nullptr;
-};
-/// The registry, in its order.
-const Registry<LinearSolverEntry>& linear_solvers();
-
-/// In the place of a solver's name: a cost model chooses it (core/linear/cost_model.hpp).
-inline constexpr std::string_view linear_solver_auto = "auto";
-/// The names of the registry, and linear_solver_auto.
-std::vector<std::string> linear_solver_choices();
-
-/// The preconditioner of a solver that has one, "none" for the others.
-std::string preconditioner_of(const LinearOptions& options);
-
 }  // namespace bb

@@ -6,6 +6,7 @@
 #include "core/archive/archive.hpp"
 #include "core/contact/kappa_memory.hpp"
 #include "core/newton/element_name.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 

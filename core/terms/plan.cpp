@@ -4,6 +4,8 @@
 
 #include <stdexcept>
 
+#include "core/solvers/linear_solvers.hpp"
+
 namespace bb {
 namespace {
 

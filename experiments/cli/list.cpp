@@ -11,6 +11,7 @@
 #include "core/math/error.hpp"
 #include "core/newton/step_solver.hpp"
 #include "core/parameters/registry.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/config/limit_policies.hpp"
 #include "experiments/config/mesh_generators.hpp"

@@ -8,7 +8,6 @@
 #include <sstream>
 
 #include "barriers/plugins.hpp"
-#include "core/cudss/provide.hpp"
 #include "core/math/error.hpp"
 #include "core/parameters/registry.hpp"
 #include "core/record/provenance.hpp"
@@ -142,7 +141,6 @@ bb::PluginFile bb::cli::load_plugin_file(const std::string& file) {
 int main(int argc, char** argv) {
   prepare_streams();
   keep_freed_memory();
-  bb::cudss::provide();
   Given given;
   CommonOptions& common = given.common;
   common.argv.assign(argv, argv + argc);

@@ -6,6 +6,7 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/policy_request.hpp"
@@ -275,9 +276,11 @@ void check_device(const RunConfig& config, const Complain& complain) {
   if (config.step_solver.name == "article_literal") {
     complain("/step_solver/name", "\"article_literal\"", "another step solver " + on);
   }
-  if (config.linear_solver.name != resident_solver) {
+  const LinearSolverEntry* solver = find_named(linear_solvers(), config.linear_solver.name);
+  if (!solver || solver->matrix != MatrixPlace::executor) {
     complain("/linear_solver/name", '"' + config.linear_solver.name + '"',
-             fmt::format("{} {}: the matrix stays where it is assembled", resident_solver, on));
+             fmt::format("{} {}: the matrix stays where it is assembled",
+                         linear_solver_at(MatrixPlace::executor).name, on));
   }
   for (const auto& [term, choice] : config.hessian.parameters) {
     if (choice != ParameterValue(std::string("progressive"))) continue;

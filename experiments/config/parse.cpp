@@ -5,6 +5,7 @@
 
 #include "core/input/read_file.hpp"
 #include "core/record/provenance.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/document.hpp"
 #include "experiments/config/enum_words.hpp"
@@ -70,7 +71,7 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   config.formulation.d_hat = defaults.d_hat;
   if (literal) config.step_solver.name = "article_literal";
   if (document.value("device", word_of(Device::cpu)) != word_of(Device::cpu)) {
-    config.linear_solver.name = resident_solver;
+    config.linear_solver.name = linear_solver_at(MatrixPlace::executor).name;
   }
 
   settings_of<RunConfig>().read(document, config);

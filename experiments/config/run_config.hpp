@@ -31,8 +31,6 @@ struct PolicyConfig {
 /// Where a run computes. cpu: the pipeline of core/newton. host: the resident pipeline (core/resident) on threads of this
 /// machine, the same kernels as on a device. cuda: on a device.
 enum class Device { cpu, host, cuda };
-/// The linear solver of the resident pipeline, and the default there.
-inline constexpr const char* resident_solver = "pcg_resident";
 
 enum class MatchingRule { as_given, equal_force, equal_curvature };
 inline const char* to_string(MatchingRule rule) {

@@ -7,6 +7,7 @@
 #include "core/integrators/registry.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "core/newton/step_solver.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/config/limit_policies.hpp"

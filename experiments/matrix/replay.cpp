@@ -3,9 +3,9 @@
 #include <cmath>
 #include <limits>
 
-#include "core/linear/cudss.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "core/parameters/parameter.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {

@@ -6,6 +6,7 @@
 #include "core/linear/condition.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "core/record/phase_times.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/microbenchmarks/cloth_matrix.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 

@@ -5,8 +5,8 @@
 
 #include "core/linear/block_system.hpp"
 #include "core/linear/cholmod_factor.hpp"
-#include "core/linear/cudss.hpp"
 #include "core/linear/preconditioner.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/microbenchmarks/cloth_matrix.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 

@@ -13,6 +13,7 @@
 #include "core/math/error.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
 #include "core/resident/elements/resident_limit.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/run/method.hpp"
 
 namespace bb {
@@ -76,6 +77,11 @@ void at_config(const RunConfig& config, const std::string& section, const std::f
   }
 }
 
+bool solves_on_card(const RunConfig& config) {
+  const LinearSolverEntry* solver = find_named(linear_solvers(), config.linear_solver.name);
+  return solver && solver->matrix == MatrixPlace::card;
+}
+
 }  // namespace
 
 std::unique_ptr<exec::Executor> make_executor(Device device) {
@@ -86,11 +92,11 @@ std::unique_ptr<exec::Executor> make_executor(Device device) {
 }
 
 bool can_lose_device(const RunConfig& config) {
-  return config.device != Device::cpu || config.linear_solver.name == "cudss";
+  return config.device != Device::cpu || solves_on_card(config);
 }
 
 std::optional<std::string> card_of(const RunConfig& config) {
-  if (config.device != Device::cuda && config.linear_solver.name != "cudss") return std::nullopt;
+  if (config.device != Device::cuda && !solves_on_card(config)) return std::nullopt;
   const cuda::DeviceProbe probe = cuda::probe_device();
   if (!probe.usable) return std::nullopt;
   return fmt::format("{}, compute capability {}.{}, driver of CUDA {}", probe.card, probe.capability / 10,

@@ -12,6 +12,7 @@
 #include "core/newton/newton_system.hpp"
 #include "core/parameters/check.hpp"
 #include "core/record/provenance.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/method.hpp"
 

@@ -2,6 +2,8 @@
 
 #include <random>
 
+#include "core/solvers/linear_solvers.hpp"
+
 namespace bb {
 
 PcgProbe::PcgProbe(std::uint64_t seed) : seed_(seed) {

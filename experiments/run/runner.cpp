@@ -9,12 +9,12 @@
 
 #include "core/bodies/part.hpp"
 #include "core/linear/blas_info.hpp"
-#include "core/linear/cudss.hpp"
 #include "core/math/error.hpp"
 #include "core/record/folder_lock.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/run_folder.hpp"
 #include "core/record/writer.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "core/terms/plan.hpp"
 #include "experiments/config/enum_words.hpp"
 #include "experiments/config/methods.hpp"

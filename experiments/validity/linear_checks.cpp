@@ -3,9 +3,9 @@
 #include <numbers>
 
 #include "core/linear/condition.hpp"
-#include "core/linear/cudss.hpp"
 #include "core/linear/linear_solver.hpp"
 #include "core/linear/preconditioner.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/validity/block.hpp"
 
 namespace bb {

@@ -3,9 +3,9 @@
 #include <nlohmann/json.hpp>
 
 #include "core/input/read_file.hpp"
-#include "core/linear/cudss.hpp"
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {
@@ -68,7 +68,10 @@ BuildKey this_build(const std::vector<PluginFile>& plugins) {
   record.provenance.plugins = plugins;
   record.config.text = "{}";
   fill_ids(record);  // with an empty config and one thread the run_id is that of build and machine
-  const std::string text = record.ids.run_id + (missing_for("cudss").empty() ? " with cudss" : "");
+  std::string text = record.ids.run_id;
+  for (const LinearSolverEntry& entry : linear_solvers()) {
+    if (entry.missing && entry.missing().empty()) text += " with " + entry.name;
+  }
   return {text, sha256_hex(text)};
 }
 

@@ -11,6 +11,7 @@
 #include "core/linear/preconditioner.hpp"
 #include "core/newton/step_solver.hpp"
 #include "core/parameters/check.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/config/config_list.hpp"
 #include "experiments/config/limit_policies.hpp"
 #include "experiments/config/mesh_generators.hpp"

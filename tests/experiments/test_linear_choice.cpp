@@ -10,6 +10,7 @@
 
 #include "core/math/error.hpp"
 #include "core/record/provenance.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/plan.hpp"
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <random>
 
-#include "core/linear/cudss.hpp"
 #include "core/linear/linear_solver.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 
 namespace bb::definiteness_test {

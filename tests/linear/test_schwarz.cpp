@@ -6,6 +6,7 @@
 
 #include "core/linear/linear_solver.hpp"
 #include "core/linear/vertex_clusters.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 
 namespace bb::schwarz_test {

@@ -3,6 +3,7 @@
 
 #include "core/archive/archive.hpp"
 #include "core/linear/preconditioner.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 
 namespace bb::solver_keep_test {

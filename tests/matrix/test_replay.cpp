@@ -8,8 +8,8 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
-#include "core/linear/cudss.hpp"
 #include "core/linear/preconditioner.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "experiments/matrix/replay_text.hpp"
 #include "tests/matrix/stored.hpp"
 

@@ -3,8 +3,8 @@
 #include <gtest/gtest.h>
 #include <tbb/global_control.h>
 
-#include "core/linear/cudss.hpp"
 #include "core/linear/preconditioner.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "tests/newton/buckling_step.hpp"
 
 namespace bb::inexact_solves_test {

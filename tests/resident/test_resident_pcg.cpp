@@ -7,6 +7,7 @@
 #include "core/exec/counting_executor.hpp"
 #include "core/resident/linear/block_jacobi.hpp"
 #include "core/resident/linear/pcg_kernels.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "tests/oracle/dense.hpp"
 #include "tests/resident/linear_cases.hpp"
 

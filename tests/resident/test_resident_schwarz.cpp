@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "core/resident/linear/schwarz.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "tests/oracle/dense.hpp"
 #include "tests/resident/linear_cases.hpp"
 

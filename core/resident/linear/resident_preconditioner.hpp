@@ -1,10 +1,13 @@
 // A preconditioner whose data and kernels are the executor's: z = M^-1 r, M symmetric positive definite or refused.
 #pragma once
 
+#include <memory>
 #include <string>
+#include <vector>
 
 #include "core/archive/archive.hpp"
 #include "core/exec/buffer.hpp"
+#include "core/parameters/parameter.hpp"
 #include "core/resident/linear/pcg_scalars.hpp"
 
 namespace bb::resident {
@@ -37,5 +40,11 @@ class ResidentPreconditioner {
   /// "vertex 17", or what else FactorFaults counts.
   virtual std::string fault_text(Index number) const = 0;
 };
+
+/// resident_preconditioner and resident_cluster_vertices.
+std::vector<Parameter> preconditioner_parameters();
+/// Of complete parameters. Where nothing is computed block Jacobi stands for all: clusters are made from the matrix.
+std::unique_ptr<ResidentPreconditioner> make_preconditioner(exec::Executor& executor,
+                                                            const ParameterMap& parameters);
 
 }  // namespace bb::resident

@@ -6,29 +6,20 @@
 
 #include "core/math/error.hpp"
 #include "core/newton/newton_system.hpp"
-#include "core/resident/linear/block_jacobi.hpp"
-#include "core/resident/linear/schwarz.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb::resident {
 namespace {
 
 /// Of the resident solver, complete. Errors: ConfigError for another one.
 ParameterMap linear_parameters(const Method& method) {
-  if (method.linear.name != "pcg_resident") {
-    throw ConfigError("/linear_solver/name", method.linear.name,
-                      "pcg_resident: the matrix stays where it is assembled");
-  }
   const LinearSolverEntry& entry = linear_solvers().require(method.linear.name, "/linear_solver/name");
-  return own_parameters(entry.parameters, method.linear.parameters, "/linear_solver");
-}
-
-// The clusters of Schwarz are made from the matrix, which an executor that only counts does not have.
-std::unique_ptr<ResidentPreconditioner> make_preconditioner(exec::Executor& executor, const Method& method) {
-  const ParameterMap parameters = linear_parameters(method);
-  if (text(parameters, "resident_preconditioner") == "schwarz" && !executor.counts_only()) {
-    return std::make_unique<Schwarz>(executor, integer(parameters, "resident_cluster_vertices"));
+  if (entry.matrix != MatrixPlace::executor) {
+    throw ConfigError(
+        "/linear_solver/name", method.linear.name,
+        linear_solver_at(MatrixPlace::executor).name + ": the matrix stays where it is assembled");
   }
-  return std::make_unique<BlockJacobi>(executor);
+  return own_parameters(entry.parameters, method.linear.parameters, "/linear_solver");
 }
 
 }  // namespace
@@ -52,8 +43,8 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
   if (plan.term("contact").needed) {
     contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, vectors_.fixed());
   }
-  pcg_ =
-      std::make_unique<ResidentPcg>(*executor_, scene.n_vertices(), make_preconditioner(*executor_, method));
+  pcg_ = std::make_unique<ResidentPcg>(*executor_, scene.n_vertices(),
+                                       make_preconditioner(*executor_, linear_parameters(method)));
 }
 
 ResidentPotential::~ResidentPotential() = default;

@@ -5,7 +5,6 @@
 
 #include <cstdlib>
 
-#include "core/cudss/provide.hpp"
 #include "tests/standin/cudart.hpp"
 #include "tests/standin/cudss/state.hpp"
 
@@ -17,7 +16,6 @@ class CudssStandin : public testing::Test {
     standin::reset();
     standin::cudss() = {};
     setenv("BARRIERBENCH_CUDSS", BB_STANDIN_CUDSS, 1);
-    cudss::provide();
   }
   /// Nothing was called wrongly, and everything was given back.
   void TearDown() override {

@@ -2,8 +2,8 @@
 // pattern is analysed, what fails and what is said then.
 #include "core/cudss/library.hpp"
 #include "core/exec/executor.hpp"
-#include "core/linear/cudss.hpp"
 #include "core/math/error.hpp"
+#include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/standin/cudss/fixture.hpp"
 #include "tests/standin/messages.hpp"

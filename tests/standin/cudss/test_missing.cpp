@@ -4,9 +4,8 @@
 #include <cstdlib>
 
 #include "core/cuda/device.hpp"
-#include "core/cudss/provide.hpp"
-#include "core/linear/cudss.hpp"
 #include "core/math/error.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {
@@ -21,7 +20,6 @@ std::string refusal() {
 }
 
 TEST(CudssMissing, SaysWhatIsMissingAndWhatToDo) {
-  cudss::provide();
   setenv("BARRIERBENCH_CUDSS", "/nowhere/libcudss.so", 1);
   const std::string said = refusal();
   EXPECT_EQ(said.find("/linear_solver/name: found \"cudss\"; allowed: another solver: "), 0U) << said;

@@ -6,10 +6,9 @@
 #include "core/linear/block_starts.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/linear/parallel.hpp"
-#include "core/resident/linear/block_jacobi.hpp"
 #include "core/resident/linear/reduced_upload.hpp"
 #include "core/resident/linear/resident_pcg.hpp"
-#include "core/resident/linear/schwarz.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {
@@ -19,8 +18,7 @@ class PcgResident final : public LinearSolver {
   explicit PcgResident(const ParameterMap& parameters)
       : forcing_(parameters),
         max_iterations_(integer(parameters, "max_iterations")),
-        preconditioner_(text(parameters, "resident_preconditioner")),
-        cluster_vertices_(integer(parameters, "resident_cluster_vertices")),
+        parameters_(parameters),
         system_(executor_),
         b_(executor_, "right-hand side"),
         x_(executor_, "solution") {}
@@ -31,12 +29,10 @@ class PcgResident final : public LinearSolver {
 
  private:
   void prepare(const ReducedSystem& system, const VecXd& b);
-  std::unique_ptr<resident::ResidentPreconditioner> make();
 
   Forcing forcing_;
   int max_iterations_;
-  std::string preconditioner_;
-  int cluster_vertices_;
+  ParameterMap parameters_;
   exec::HostExecutor executor_;  // first: what follows lives in its memory
   resident::UploadedSystem system_;
   exec::Buffer<double> b_, x_;
@@ -44,11 +40,6 @@ class PcgResident final : public LinearSolver {
   std::string kept_;  // of a preconditioner that is not made yet
   ChunkedDot dot_;
 };
-
-std::unique_ptr<resident::ResidentPreconditioner> PcgResident::make() {
-  if (preconditioner_ == "schwarz") return std::make_unique<resident::Schwarz>(executor_, cluster_vertices_);
-  return std::make_unique<resident::BlockJacobi>(executor_);
-}
 
 void PcgResident::keep(Archive& archive) {
   Archive apart;
@@ -66,7 +57,7 @@ void PcgResident::prepare(const ReducedSystem& system, const VecXd& b) {
   system_.upload(b, b_);
   x_.resize(3 * system_.n_vertices());
   if (!pcg_ || x_.size() != before) {
-    auto preconditioner = make();
+    auto preconditioner = resident::make_preconditioner(executor_, parameters_);
     if (!kept_.empty()) {
       Archive kept(std::move(kept_));
       preconditioner->keep(kept);
@@ -94,7 +85,8 @@ LinearReport PcgResident::solve_checked(const ReducedSystem& system, const VecXd
   const bool vertex = pcg_->fault() >= 0 && pcg_->fault() < system_.n_vertices();
   if (vertex && report.status == LinearStatus::preconditioner_indefinite) {
     const int dof = system.block_start[static_cast<std::size_t>(pcg_->fault())];
-    report.detail = bad_diagonal_text(system, dof) + preconditioner_ + " needs positive definite ones";
+    report.detail = bad_diagonal_text(system, dof) + text(parameters_, "resident_preconditioner") +
+                    " needs positive definite ones";
   }
   return report;
 }
@@ -104,11 +96,9 @@ LinearReport PcgResident::solve_checked(const ReducedSystem& system, const VecXd
 LinearSolverEntry linear_solver_pcg_resident() {
   LinearSolverEntry entry;
   entry.iterative = true;
+  entry.matrix = MatrixPlace::executor;
   entry.parameters = Forcing::parameters();
-  entry.parameters.push_back({"resident_preconditioner", word({"block_jacobi", "schwarz"}), "block_jacobi",
-                              "the 3 x 3 blocks of the diagonal, or clusters of vertices on several levels"});
-  entry.parameters.push_back({"resident_cluster_vertices", count(1, resident::Schwarz::most_cluster_vertices),
-                              8, "vertices of a cluster of schwarz, and clusters of one on the level above"});
+  for (Parameter& one : resident::preconditioner_parameters()) entry.parameters.push_back(std::move(one));
   entry.parameters.push_back({"max_iterations", count(1, 1000000000), 10000, "cap on iterations of a solve"});
   entry.make = [](const ParameterMap& complete) -> std::unique_ptr<LinearSolver> {
     return std::make_unique<PcgResident>(complete);

@@ -5,6 +5,7 @@
 #include "core/linear/conjugate_gradients.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/linear/stopwatch.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {

@@ -14,6 +14,7 @@
 #include "core/linear/direct_solve.hpp"
 #include "core/linear/forcing.hpp"
 #include "core/linear/stopwatch.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {

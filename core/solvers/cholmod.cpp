@@ -1,6 +1,7 @@
 // The direct solver of the registry: a CholmodFactor with its report.
 #include "core/linear/cholmod_factor.hpp"
 #include "core/linear/direct_solve.hpp"
+#include "core/solvers/linear_solvers.hpp"
 
 namespace bb {
 namespace {
