@@ -12,7 +12,6 @@
 #include "core/newton/step_solver.hpp"
 #include "core/parameters/registry.hpp"
 #include "experiments/cli/options.hpp"
-#include "experiments/config/limit_policies.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/config/presets.hpp"

@@ -9,7 +9,6 @@
 #include "core/newton/step_solver.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/config_list.hpp"
-#include "experiments/config/limit_policies.hpp"
 #include "experiments/config/methods.hpp"
 
 namespace bb {

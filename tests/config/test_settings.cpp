@@ -12,7 +12,6 @@
 #include "core/newton/step_solver.hpp"
 #include "core/parameters/check.hpp"
 #include "experiments/config/config_list.hpp"
-#include "experiments/config/limit_policies.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "tests/config/config_text.hpp"
 

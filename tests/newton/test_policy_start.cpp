@@ -99,7 +99,7 @@ TEST(PolicyStart, of_ipc_adaptive_is_what_later_steps_go_on_from) {
   const Scene scene = three_particles();
   for (const char* solver : {"line_search", "accumulated_toi"}) {
     Method method = test::fixed_method("log", 1);
-    StiffnessPolicyConfig config;
+    PolicyConfig config;
     config.name = "ipc_adaptive";
     config.parameters["kappa_min_N_per_m"] = 1;
     config.parameters["doubling_gap_m"] = d_hat;  // doubles while the gap shrinks

@@ -147,9 +147,9 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
             int& n_changed) {
   const Scene scene = full_scene(3);
   const Elastic elastic(scene);
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "elasticity_inclusive";
-  config.multiplier = 1.7;
+  config.scale = 1.7;
   config.parameters.emplace("mass_term", p.mass_term);
   config.parameters["elastic_term"] = p.elastic;
   config.parameters["refresh"] = p.refresh;
@@ -159,19 +159,16 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
   StiffnessUpdate update(*policy, scene.mass);
   update.set_time(0.01, 1);
 
-  const StiffnessRule rule{
-      false,       require_mass_term(p.mass_term),   p.elastic, require_refresh(p.refresh),
-      p.gap_floor, require_derivative(p.derivative), 1.7};
   HostExecutor executor(order);
   const ElasticOnExecutor there(executor, elastic);
-  ResidentStiffness stiffness(executor, rule, scene.mass);
-  stiffness.set_time(0.01, 1);
+  ResidentStiffness stiffness(executor, *policy, scene.mass);
+  stiffness.set_time({0.01, 1});
 
   ContactSystem contacts(scene, {});
   const Positions x[] = {shaken(scene), random_motion(scene.x0, 0.02, 7), random_motion(scene.x0, 0.012, 8)};
   Rows state = rows_at(contacts, x[0]);
-  OnExecutor on(executor, scene, x[0], resident::columns_of(rule));
-  ResidentRows trial(executor, resident::columns_of(rule));
+  OnExecutor on(executor, scene, x[0], resident::columns_of(*policy));
+  ResidentRows trial(executor, resident::columns_of(*policy));
   const auto refresh = [&] {
     const double change = update.refresh(state.table, state.mollified, elastic.blocks, elastic.values);
     const double resident_change = stiffness.refresh(on.rows, there.part());
@@ -242,11 +239,12 @@ TEST(ResidentStiffness, ReadsTheMatrixBlockByBlock) {
   const Scene scene = full_scene(1);
   const Elastic elastic(scene);
   HostExecutor executor;
-  StiffnessRule rule;
-  rule.uniform = false, rule.mass_term = MassTerm::none;
-  OnExecutor on(executor, scene, shaken(scene), resident::columns_of(rule));
+  PolicyConfig config{"elasticity_inclusive", 1, {}};
+  config.parameters.emplace("mass_term", "none");
+  const auto policy = make_policy(config);
+  OnExecutor on(executor, scene, shaken(scene), resident::columns_of(*policy));
   const ElasticOnExecutor there(executor, elastic);
-  ResidentStiffness stiffness(executor, rule, scene.mass);
+  ResidentStiffness stiffness(executor, *policy, scene.mass);
   stiffness.refresh(on.rows, there.part());
   const RowView v = on.rows.view();
   int n_coupled = 0;

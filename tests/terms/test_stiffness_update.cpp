@@ -11,7 +11,7 @@ constexpr double dt = 0.01;
 
 /// kappa = m/dt^2 of a row of one free vertex.
 std::unique_ptr<StiffnessPolicy> inertia_policy() {
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "elasticity_inclusive";
   config.parameters.emplace("mass_term", "inertia");
   config.parameters["elastic_term"] = false;
@@ -80,7 +80,7 @@ TEST(StiffnessUpdate, a_row_of_an_accepted_trial_is_compared_with_what_it_came_w
 
 /// kappa = n^T H n + m/d^2 once a step.
 std::unique_ptr<StiffnessPolicy> step_policy(const char* derivative) {
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "elasticity_inclusive";
   config.parameters.emplace("refresh", "per_step");
   config.parameters.emplace("derivative", derivative);
