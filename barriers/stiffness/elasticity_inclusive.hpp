@@ -107,7 +107,7 @@ struct ElasticityInclusive {
   }
 
  private:
-  /// width_sq is length times other_length: the order of the product is part of the results.
+  /// The square of the width is length times other_length, multiplied in this order: it is part of the results.
   template <class T>
   BB_HD static KappaPartsOf<T> parts(const MassPart<T>& mass, T elastic, T w_sq, T length, T other_length) {
     return {(elastic + mass.fixed) / w_sq,

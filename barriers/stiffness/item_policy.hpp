@@ -8,6 +8,7 @@
 
 #include "barriers/stiffness/scaled_policy.hpp"
 #include "core/barrier/stiffness_policy.hpp"
+#include "core/math/error.hpp"
 
 namespace bb {
 
@@ -15,6 +16,7 @@ namespace bb {
 /// element_parts it serves no strain limit.
 template <class P>
 class ItemPolicy final : public StiffnessPolicy {
+ public:
   static constexpr bool of_contacts = requires(const P& p, ContactSums<double> s) {
     p.contact_kappa(s, 1.0, 1.0, StiffnessTime{});
   };
@@ -22,7 +24,6 @@ class ItemPolicy final : public StiffnessPolicy {
     p.element_parts(s, 1.0, StiffnessTime{});
   };
 
- public:
   ItemPolicy(std::string name, const P& values, double multiplier)
       : name_(std::move(name)), scaled_{values, multiplier} {}
   /// With its factor.
@@ -94,11 +95,28 @@ class ItemPolicy final : public StiffnessPolicy {
   ScaledPolicy<P> scaled_;
 };
 
-/// The values of this policy where it is of struct P, else null.
-template <class P>
-const ScaledPolicy<P>* scaled_policy(const StiffnessPolicy& policy) {
-  const auto* of = dynamic_cast<const ItemPolicy<P>*>(&policy);
-  return of ? &of->scaled() : nullptr;
-}
+/// Policies that have kernels, as policy_list.hpp names them.
+template <class... P>
+struct PolicyStructs {
+  /// call(values) with the ScaledPolicy of a policy that is one of them; false where it is none.
+  template <class Call>
+  static bool with(const StiffnessPolicy& policy, const Call& call) {
+    return (with_struct<P>(policy, call) || ...);
+  }
+  /// Errors: ConfigError at `where` for a policy that is none of them: one of a plugin.
+  static void require(const StiffnessPolicy& policy, const std::string& where) {
+    if (with(policy, [](const auto&) {})) return;
+    throw ConfigError(where, std::string(policy.name()),
+                      "a policy with a device form; this one runs with device cpu only");
+  }
+
+ private:
+  template <class Q, class Call>
+  static bool with_struct(const StiffnessPolicy& policy, const Call& call) {
+    const auto* of = dynamic_cast<const ItemPolicy<Q>*>(&policy);
+    if (of) call(of->scaled());
+    return of != nullptr;
+  }
+};
 
 }  // namespace bb

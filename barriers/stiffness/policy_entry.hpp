@@ -13,7 +13,7 @@ namespace bb {
 template <class P>
 std::optional<StiffnessPolicyEntry> policy_entry(const char* name, const char* doc, PolicyUse use) {
   if (use == PolicyUse::limit) {
-    if constexpr (requires { P::limit_doc; }) {
+    if constexpr (ItemPolicy<P>::of_elements) {
       doc = P::limit_doc;
     } else {
       return std::nullopt;

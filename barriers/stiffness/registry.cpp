@@ -37,12 +37,15 @@ const Registry<StiffnessPolicyEntry>& limit_policies() {
   return all;
 }
 
+const Registry<StiffnessPolicyEntry>& policies_of(PolicyUse use) {
+  return use == PolicyUse::limit ? limit_policies() : stiffness_policies();
+}
+
 std::unique_ptr<StiffnessPolicy> make_policy(const PolicyConfig& config, PolicyUse use) {
   if (!(config.scale > 0) || !std::isfinite(config.scale)) {
     throw ConfigError("stiffness_policy/scale", fmt::format("{}", config.scale), "a number > 0");
   }
-  const auto& registry = use == PolicyUse::limit ? limit_policies() : stiffness_policies();
-  const StiffnessPolicyEntry& entry = registry.require(config.name, "stiffness_policy/name");
+  const StiffnessPolicyEntry& entry = policies_of(use).require(config.name, "stiffness_policy/name");
   PolicyConfig complete = config;
   complete.parameters = own_parameters(entry.parameters, config.parameters, "stiffness_policy");
   return entry.make(complete);

@@ -36,6 +36,8 @@ struct StiffnessPolicyEntry {
 Registry<StiffnessPolicyEntry>& stiffness_policies();
 /// Those of them that serve strain limits, as such: plugins bring none.
 const Registry<StiffnessPolicyEntry>& limit_policies();
+/// One of these two.
+const Registry<StiffnessPolicyEntry>& policies_of(PolicyUse use);
 
 /// A policy for one run. Errors: ConfigError for an unknown name (with the names allowed and the nearest
 /// one), for what own_parameters refuses, for a scale that is not a finite number > 0, and for what the

@@ -126,8 +126,9 @@ T StrainLimitBatch::step_bound_in(const PositionsView& x, const PositionsView& d
   }
 }
 
-void StrainLimitBatch::stiffness_sums(const PositionsView& x_start, const double* hess, const double* vertex_mass,
-                                      const double* element_mass, ElementSums<double>* sums) const {
+void StrainLimitBatch::stiffness_sums(const PositionsView& x_start, const double* hess,
+                                      const double* vertex_mass, const double* element_mass,
+                                      ElementSums<double>* sums) const {
   for_each_element(size(), [&](std::size_t e) {
     const Points<3> p(x_start, vertices_, e);
     const int* v = vertices_.data() + 3 * e;

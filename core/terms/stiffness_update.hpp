@@ -28,7 +28,7 @@ class StiffnessUpdate {
   /// Forgets the kappa and the H of the step before.
   void begin_step();
   /// Step length (s) and inertia weight c that policies read.
-  void set_time(double dt, double c) { time_ = {dt, c}; }
+  void set_time(const StiffnessTime& time) { time_ = time; }
 
   /// kappa of the rows of a Newton iterate. elastic: values of the elastic matrix H, read only when the
   /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a pair had

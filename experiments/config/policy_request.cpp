@@ -5,8 +5,7 @@ namespace {
 
 /// The setting that is the stiffness; empty where the policy makes its own, and for a name that is not known.
 std::string matched(const PolicyConfig& policy, PolicyUse use) {
-  const auto& registry = use == PolicyUse::limit ? limit_policies() : stiffness_policies();
-  const StiffnessPolicyEntry* entry = registry.find(policy.name);
+  const StiffnessPolicyEntry* entry = policies_of(use).find(policy.name);
   return entry ? entry->matched : "";
 }
 

@@ -12,6 +12,7 @@
 #include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
+#include "core/resident/contact/resident_stiffness.hpp"
 #include "core/resident/elements/resident_limit.hpp"
 #include "experiments/run/method.hpp"
 

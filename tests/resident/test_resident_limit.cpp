@@ -2,6 +2,9 @@
 #include <cmath>
 #include <optional>
 
+#include "core/math/error.hpp"
+#include "core/resident/elements/resident_limit.hpp"
+#include "tests/barriers/host_policy.hpp"
 #include "tests/resident/on_executor.hpp"
 
 namespace bb {
@@ -167,6 +170,21 @@ TEST(ResidentLimit, IsLeftOutWhereNothingIsLimited) {
   EXPECT_EQ(resident.bound(wave(scene, 10), 0), 1);
   EXPECT_FALSE(resident.elements.limit_reads_matrix());
   EXPECT_EQ(resident.elements.limit_numbers(resident.x.data()).max_stretch, 0);
+}
+
+TEST(ResidentLimit, RefusesAPolicyWithoutKernelByItsName) {
+  const Scene scene = cloth_scene("corotational", false);
+  TermOptions options = element_options();
+  options.limit_stiffness = std::make_unique<HostPolicy>();
+  exec::HostExecutor executor;
+  std::vector<int> vertices;
+  try {
+    resident::make_limit(executor, scene, options, vertices);
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.violations()[0].where, "stiffness_policy/name");
+    EXPECT_EQ(error.violations()[0].found, "host_only");
+  }
 }
 
 }  // namespace

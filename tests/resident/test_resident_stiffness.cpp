@@ -5,9 +5,11 @@
 
 #include "barriers/stiffness/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
+#include "core/math/error.hpp"
 #include "core/resident/contact/contact_sums.hpp"
 #include "core/resident/contact/resident_stiffness.hpp"
 #include "core/terms/stiffness_update.hpp"
+#include "tests/barriers/host_policy.hpp"
 #include "tests/resident/contact_on_executor.hpp"
 
 namespace bb::test::resident_stiffness_test {
@@ -157,7 +159,7 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
   config.parameters["derivative"] = p.derivative;
   const auto policy = make_policy(config);
   StiffnessUpdate update(*policy, scene.mass);
-  update.set_time(0.01, 1);
+  update.set_time({0.01, 1});
 
   HostExecutor executor(order);
   const ElasticOnExecutor there(executor, elastic);
@@ -298,6 +300,21 @@ TEST(StepEndGaps, ListsPairsOfTwoStepEndsWhoseGapShrank) {
     EXPECT_EQ(listed[i].gap_before, expected[i].gap_before);
     EXPECT_EQ(listed[i].park, expected[i].park);
   }
+}
+
+TEST(ResidentStiffness, RefusesAPolicyWithoutKernelByItsName) {
+  try {
+    resident::require_kernel(HostPolicy(), "/formulation/stiffness_policy/name");
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.violations()[0].where, "/formulation/stiffness_policy/name");
+    EXPECT_EQ(error.violations()[0].found, "host_only");
+  }
+  const Scene scene = full_scene(3);
+  HostExecutor executor;
+  EXPECT_THROW(ResidentStiffness(executor, HostPolicy(), scene.mass), ConfigError);
+  const auto fixed = make_policy({"fixed", 1, {{"kappa_N_per_m", 3.0}}});  // one kappa needs no kernel
+  EXPECT_NO_THROW(ResidentStiffness(executor, *fixed, scene.mass));
 }
 
 }  // namespace

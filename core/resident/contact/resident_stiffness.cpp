@@ -2,27 +2,11 @@
 
 #include "barriers/stiffness/item_policy.hpp"
 #include "barriers/stiffness/policy_list.hpp"
-#include "core/math/error.hpp"
 
 namespace bb::resident {
-namespace {
-
-/// launch(struct) of the policy's kernel; false where it has none.
-template <class Launch>
-bool with_kernel(const StiffnessPolicy& policy, const Launch& launch) {
-#define BB_POLICY(name, P) \
-  if (const ScaledPolicy<P>* of = scaled_policy<P>(policy)) return launch(*of), true;
-  BB_FOR_EACH_CONTACT_POLICY(BB_POLICY)
-#undef BB_POLICY
-  return false;
-}
-
-}  // namespace
 
 void require_kernel(const StiffnessPolicy& policy, const std::string& where) {
-  if (policy.uniform() || with_kernel(policy, [](const auto&) {})) return;
-  throw ConfigError(where, std::string(policy.name()),
-                    "a policy with a device form; this one runs with device cpu only");
+  if (!policy.uniform()) ContactPolicies::require(policy, where);
 }
 
 ResidentStiffness::ResidentStiffness(exec::Executor& executor, const StiffnessPolicy& policy,
@@ -46,7 +30,7 @@ KnownPairs ResidentStiffness::memory() const {
 
 void ResidentStiffness::compute(ResidentRows& rows, const std::uint8_t* missing, bool at_d_hat,
                                 const MatrixPart& elastic) {
-  with_kernel(policy_, [&]<class P>(const ScaledPolicy<P>& policy) {
+  ContactPolicies::with(policy_, [&]<class P>(const ScaledPolicy<P>& policy) {
     executor_.each(rows.size(), RowKappa<P>{rows.view(), missing, policy, policy_.needs_hessian(), time_,
                                             at_d_hat, mass_.data(), elastic});
   });

@@ -49,6 +49,7 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
         parts_(executor, "limit stiffness parts"),
         least_(executor),
         numbers_(executor) {
+    LimitPolicies::require(policy(), "stiffness_policy/name");
     std::vector<double> band = scene.limit.onset;
     band.insert(band.end(), scene.limit.width.begin(), scene.limit.width.end());
     band_.upload(band);
@@ -128,21 +129,18 @@ double LimitFamily<R>::refresh(const double* x, const ResidentFrame& frame, cons
 template <int R>
 void LimitFamily<R>::fill_kappa(const ResidentFrame& frame, const double* mass, const MatrixPart& elastic) {
   KappaParts* const parts = policy().has_potential() ? parts_.data() : nullptr;
-#define LIMIT_POLICY(name, P)                                        \
-  if (const ScaledPolicy<P>* of = scaled_policy<P>(policy())) {      \
-    executor_.each(size(), ElementKappa<P>{elements_,                \
-                                           *of,                      \
-                                           policy().needs_hessian(), \
-                                           {frame.dt, frame.c},      \
-                                           frame.x_n,                \
-                                           mass,                     \
-                                           mass_.data(),             \
-                                           elastic,                  \
-                                           parts,                    \
-                                           before_.data()});         \
-  }
-  BB_FOR_EACH_LIMIT_POLICY(LIMIT_POLICY)
-#undef LIMIT_POLICY
+  LimitPolicies::with(policy(), [&]<class P>(const ScaledPolicy<P>& values) {
+    executor_.each(size(), ElementKappa<P>{elements_,
+                                           values,
+                                           policy().needs_hessian(),
+                                           {frame.dt, frame.c},
+                                           frame.x_n,
+                                           mass,
+                                           mass_.data(),
+                                           elastic,
+                                           parts,
+                                           before_.data()});
+  });
 }
 
 template <int R>
