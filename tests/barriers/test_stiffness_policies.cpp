@@ -1,6 +1,7 @@
 // The policies `fixed` and `ipc_adaptive`, and the factory.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <limits>
 
 #include "barriers/stiffness/registry.hpp"

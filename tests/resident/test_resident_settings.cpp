@@ -157,7 +157,7 @@ TEST(ResidentSettings, StiffnessOfTheStrainLimit) {
     const auto method = [refresh = refresh, derivative = derivative] {
       Method out = cubic();
       out.limit_stiffness =
-          elastic_limit({.mass_term = MassTerm::scaled, .refresh = refresh, .derivative = derivative});
+          test::elastic_limit({.mass_term = MassTerm::scaled, .refresh = refresh, .derivative = derivative});
       return out;
     };
     Scene scene = test::cloth_on_plate();

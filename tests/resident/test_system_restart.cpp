@@ -69,7 +69,7 @@ Method method_of(const Policy& policy) {
   config.parameters.emplace("mass_term", policy.mass_term);
   config.parameters.emplace("refresh", policy.refresh);
   method.stiffness = make_policy(config);
-  method.limit_stiffness = elastic_limit({.mass_term = MassTerm::inertia});
+  method.limit_stiffness = test::elastic_limit({.mass_term = MassTerm::inertia});
   return method;
 }
 
