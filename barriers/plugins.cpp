@@ -42,8 +42,8 @@ Plugin register_plugin(const std::string& file) {
 
   for (const Shape& shape : plugin.shapes) all_shapes().add(shape, file);
   for (const PluginPolicy& policy : plugin.policies) {
-    const auto make = [policy](const StiffnessPolicyConfig& config) {
-      return policy.make(require_refresh(text(config.parameters, "refresh")), config.multiplier);
+    const auto make = [policy](const PolicyConfig& config) {
+      return policy.make(require_refresh(text(config.parameters, "refresh")), config.scale);
     };
     stiffness_policies().add({policy.name, policy.doc, {refresh_parameter()}, "", make}, file);
   }

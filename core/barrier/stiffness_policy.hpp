@@ -1,28 +1,20 @@
-// What the pipeline knows of a stiffness policy: a batch call over columns that fills kappa (N/m).
+// What the pipeline knows of a stiffness policy: batch calls over columns that fill the kappa of contacts (N/m) and of
+// limited triangles (J).
 // The policies themselves live in barriers/stiffness/.
 #pragma once
 
 #include <cstddef>
-#include <memory>
-#include <optional>
 #include <span>
-#include <string>
 #include <string_view>
 
+#include "core/barrier/stiffness_sums.hpp"
 #include "core/math/host_device.hpp"
 
 namespace bb {
 
 class Archive;
 
-enum class Refresh { per_iteration, per_step };        // when kappa is computed anew
-enum class MassTerm { paper, inertia, scaled, none };  // docs/design.md, Stiffness policies
-/// What becomes of kappa'(d): left out of the curvature, kappa being a number, or included, the force kappa(d)
-/// b'(d) being derived from its potential (core/barrier/folded_barrier.hpp).
-enum class KappaDerivative { dropped, included };
-
-/// Whether this mass term falls with the gap, as 1/d^2.
-constexpr bool depends_on_gap(MassTerm term) { return term == MassTerm::paper || term == MassTerm::scaled; }
+enum class Refresh { per_iteration, per_step };  // when kappa is computed anew
 
 /// kappa as a function of the gap alone: fixed + per_gap_sq/d^2. Of a strain limit the gap is y and both parts
 /// are in J.
@@ -35,21 +27,6 @@ struct KappaPartsOf {
 };
 using KappaParts = KappaPartsOf<double>;
 
-/// A policy as plain numbers: what pipelines without virtual calls evaluate.
-struct StiffnessRule {
-  /// One kappa for all rows, that of StiffnessPolicy::state(); nothing of what follows is read then.
-  bool uniform = true;
-  MassTerm mass_term = MassTerm::paper;
-  bool elastic_term = true;  // whether the elastic Hessian counts
-  Refresh refresh = Refresh::per_iteration;
-  double gap_floor = 0;  // of d_hat
-  KappaDerivative derivative = KappaDerivative::dropped;
-  double multiplier = 1;
-
-  bool potential() const { return !uniform && derivative == KappaDerivative::included; }
-  bool needs_hessian() const { return !uniform && elastic_term; }
-};
-
 /// Columns of n contact rows, free vertices only; row r owns slots 4 r .. 4 r + n_free[r].
 struct StiffnessBatch {
   std::size_t n = 0;
@@ -61,8 +38,16 @@ struct StiffnessBatch {
   const double* mass = nullptr;     // [4 n] lumped vertex masses, kg
   const double* hessian = nullptr;  // [144 n] 12 x 12 column-major sub-matrix of the elastic Hessian, N/m;
                                     // null unless the policy says needs_hessian
-  double dt = 0;                    // s
-  double c = 1;                     // the integrator's c: inertia weight is M/(c dt^2); 0 when quasi-static
+  StiffnessTime time;
+};
+
+/// Columns of n limited triangles.
+struct ElementStiffnessBatch {
+  std::size_t n = 0;
+  const ElementSums<double>* sums = nullptr;  // [n] elastic is 0 unless the policy says needs_hessian
+  const double* gap = nullptr;                // [n] smaller pseudo-gap; not read by fill_element_parts
+  const double* width = nullptr;              // [n] of the limit
+  StiffnessTime time;
 };
 
 /// Sums over the state that a policy with memory may read. grad_b: gradient of B with kappa = 1; grad_e: of E
@@ -72,10 +57,14 @@ struct StiffnessGlobals {
   double grad_b_sq = 0;          // m^2
   double mean_contact_mass = 0;  // kg
   double d2b_half = 0;           // b''(d_hat/2) for kappa = 1
-  double dt = 0, c = 1, d_hat = 0;
+  double d_hat = 0;              // m, the smallest of the scene
+  StiffnessTime time;
 };
 
-/// A stiffness policy of one run. Not thread-safe: one object a run, called by the step driver only.
+/// Whether a pair came closer from one step end to the next: no other can make a policy adapt. Host-device.
+BB_HD constexpr bool closes(double gap, double gap_before) { return gap < gap_before; }
+
+/// A stiffness policy of one run, of its contacts or of its strain limit. Not thread-safe: one object a run, called by the step driver only.
 class StiffnessPolicy {
  public:
   virtual ~StiffnessPolicy() = default;
@@ -83,6 +72,11 @@ class StiffnessPolicy {
   virtual Refresh refresh() const = 0;
   virtual bool needs_hessian() const { return false; }
   virtual bool needs_globals() const { return false; }
+
+  /// One stiffness for all items: state() has the kappa of the rows, and nothing is remembered of them.
+  virtual bool uniform() const { return false; }
+  /// Whether kappa stays as the first iterate of a step has it.
+  bool frozen_in_step() const { return uniform() || refresh() == Refresh::per_step; }
 
   /// Called once, at the first iterate that has contacts, when needs_globals().
   virtual void start(const StiffnessGlobals&) {}
@@ -93,12 +87,16 @@ class StiffnessPolicy {
   virtual bool has_potential() const { return false; }
   /// kappa of every row as a function of its gap; d is not read. Called when has_potential().
   virtual void fill_parts(const StiffnessBatch&, KappaParts*) const {}
-  /// Nothing: the policy is no rule of these numbers, and runs on the CPU only.
-  virtual std::optional<StiffnessRule> rule() const { return std::nullopt; }
+  /// kappa_e (J) of limited triangles: the number at their gap, or where has_potential() as a function of it. A policy
+  /// that does not serve strain limits has none.
+  virtual void fill_elements(const ElementStiffnessBatch&, double*) const {}
+  virtual void fill_element_parts(const ElementStiffnessBatch&, KappaParts*) const {}
+
   /// A pair that has a row at the end of this step and of the one before.
   struct PairEnd {
     double gap = 0, gap_before = 0;  // m
     double park = 0;                 // m, ccd_park times the row's d_hat
+    bool closing() const { return closes(gap, gap_before); }
   };
   /// Whether end_step has to be called: listing the pairs costs a sort a step.
   virtual bool adapts() const { return false; }

@@ -126,19 +126,17 @@ T StrainLimitBatch::step_bound_in(const PositionsView& x, const PositionsView& d
   }
 }
 
-void StrainLimitBatch::fixed_stiffness(double k_s, double* kappa) const {
-  for (std::size_t e = 0; e < size(); ++e) kappa[e] = k_s * rests_[e].area;
-}
-
-void StrainLimitBatch::elastic_stiffness(const PositionsView& x_start, const double* hess,
-                                         const double* vertex_mass, const double* element_mass,
-                                         const StrainStiffnessRule& rule, KappaParts* kappa) const {
+void StrainLimitBatch::stiffness_sums(const PositionsView& x_start, const double* hess,
+                                      const double* vertex_mass, const double* element_mass,
+                                      ElementSums<double>* sums) const {
   for_each_element(size(), [&](std::size_t e) {
     const Points<3> p(x_start, vertices_, e);
-    const Mat<double, 9, 9> h = Eigen::Map<const Mat<double, 9, 9>>(hess + 81 * e);
     const int* v = vertices_.data() + 3 * e;
     const Vec3d mass(vertex_mass[v[0]], vertex_mass[v[1]], vertex_mass[v[2]]);
-    kappa[e] = strain_stiffness<double>(p.x, h, mass, element_mass[e], width_[2 * e], rule);
+    const auto hessian = [&] {
+      return Mat<double, 9, 9>(Eigen::Map<const Mat<double, 9, 9>>(hess + 81 * e));
+    };
+    sums[e] = element_sums<double>(p.x, mass, element_mass[e], rests_[e].area, hessian, hess != nullptr);
   });
 }
 

@@ -62,14 +62,11 @@ class StrainLimitBatch {
   double step_bound(const PositionsView& x, const PositionsView& dx, double alpha_max = 1,
                     double park = 0) const;
 
-  /// kappa_e = k_s x rest area; k_s in N/m.
-  void fixed_stiffness(double k_s, double* kappa) const;
-  /// strain_stiffness of every element, as functions of its pseudo-gap.
-  /// @param x_start step start, m   @param hess [81 n] column-major   @param vertex_mass [n_vertices] kg
-  /// @param element_mass [n] kg
-  void elastic_stiffness(const PositionsView& x_start, const double* hess, const double* vertex_mass,
-                         const double* element_mass, const StrainStiffnessRule& rule,
-                         KappaParts* kappa) const;
+  /// element_sums of every element, from which its policy makes kappa_e.
+  /// @param x_start step start, m   @param hess [81 n] column-major; null: w^T H w is not asked for
+  /// @param vertex_mass [n_vertices] kg   @param element_mass [n] kg
+  void stiffness_sums(const PositionsView& x_start, const double* hess, const double* vertex_mass,
+                      const double* element_mass, ElementSums<double>* sums) const;
 
  private:
   template <class T>

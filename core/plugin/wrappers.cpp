@@ -23,8 +23,8 @@ class PluginStiffness final : public StiffnessPolicy {
   bool needs_hessian() const override { return policy_.needs_hessian != 0; }
 
   void fill(const StiffnessBatch& rows, double* kappa) const override {
-    const bb_plugin_rows columns{rows.n,     rows.n_free, rows.weight,  rows.normal, rows.d,
-                                 rows.d_hat, rows.mass,   rows.hessian, rows.dt,     rows.c};
+    const bb_plugin_rows columns{rows.n,     rows.n_free, rows.weight,  rows.normal,  rows.d,
+                                 rows.d_hat, rows.mass,   rows.hessian, rows.time.dt, rows.time.c};
     policy_.fill(policy_.self, &columns, kappa);
     for (std::size_t r = 0; r < rows.n; ++r) kappa[r] *= multiplier_;
   }

@@ -64,9 +64,8 @@ void ContactTerm::begin_step(const StepFrame& frame, PhaseClock& clock) {
 }
 
 void ContactTerm::change_frame(const StepFrame& frame) {
-  dt_ = frame.dt;
-  c_ = frame.c;
-  stiffness_.set_time(frame.dt, frame.c);
+  time_ = {frame.dt, frame.c};
+  stiffness_.set_time(time_);
 }
 
 void ContactTerm::linearise(const PositionsView& x, const TermContext& context) {

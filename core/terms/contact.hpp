@@ -10,6 +10,7 @@
 #include "core/barrier/folded_barrier.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/scene/contact_plan.hpp"
+#include "core/terms/policy_start.hpp"
 #include "core/terms/stiffness_update.hpp"
 #include "core/terms/term.hpp"
 #include "core/terms/term_options.hpp"
@@ -54,7 +55,7 @@ class ContactTerm final : public Term {
   void end_step(PhaseClock& clock) override;
   void adopt(const KnownStiffness& known) override {
     stiffness_.adopt(known);
-    policy_started_ = true;  // or not yet: that is for the other system to do
+    policy_start_.set_started(true);  // or not yet: that is for the other system to do
   }
   void adopt_from(const Term& other) override {
     KnownStiffness known;
@@ -88,7 +89,7 @@ class ContactTerm final : public Term {
   void fill_shape(ContactState& state);
   void fill_local(const PositionsView& x, Projection projection);
   void start_policy(const PositionsView& x, const TermContext& context);
-  StiffnessGlobals policy_globals(const PositionsView& others) const;
+  StartSums start_sums(const PositionsView& others) const;
   void list_pair_gaps();
 
   const Scene& scene_;
@@ -98,9 +99,10 @@ class ContactTerm final : public Term {
   StiffnessUpdate stiffness_;
   std::optional<FoldedBarrier> folded_;  // where the policy has a potential
   ContactState state_, trial_;
-  double dt_ = 0, c_ = 1;
+  StiffnessTime time_;
   double kappa_change_ = 0;
-  bool first_iterate_ = true, policy_started_ = false;
+  bool first_iterate_ = true;
+  PolicyStart policy_start_;
   StepBound bound_;
   std::vector<PairGap> gaps_, previous_gaps_;  // by pair
   std::vector<StiffnessPolicy::PairEnd> pair_ends_;

@@ -18,26 +18,23 @@ void scatter(const TermFamily& family, PositionsSpan gradient) {
 
 }  // namespace
 
-// A policy with memory starts at the first iterate that has contacts, from B with kappa = 1 and the gradient
-// of everything else.
 void ContactTerm::start_policy(const PositionsView& x, const TermContext& context) {
   StiffnessPolicy& policy = stiffness_.policy();
-  if (policy_started_ || !policy.needs_globals() || state_.size() == 0) return;
+  if (!policy_start_.due(policy, state_.size())) return;
   std::fill(state_.rows.kappa.begin(), state_.rows.kappa.end(), 1.0);
   std::fill(state_.mollified.kappa.begin(), state_.mollified.kappa.end(), 1.0);
   fill_local(x, context.projection);
-  policy.start(policy_globals(context.gradient));
-  policy_started_ = true;
+  policy_start_.start(policy, scene_, options_.contact, start_sums(context.gradient), time_);
 }
 
-StiffnessGlobals ContactTerm::policy_globals(const PositionsView& others) const {
-  StiffnessGlobals globals;
+StartSums ContactTerm::start_sums(const PositionsView& others) const {
+  StartSums sums;
   Positions own = Positions::Zero(3, others.cols());
   for (const TermFamily& family : families_) scatter(family, own);
   for (std::size_t i = 0; i < fixed_.size(); ++i) {
     if (fixed_[i]) continue;
-    globals.grad_b_dot_grad_e += own.data()[i] * others.data()[i];
-    globals.grad_b_sq += own.data()[i] * own.data()[i];
+    sums.grad_b_dot_grad_e += own.data()[i] * others.data()[i];
+    sums.grad_b_sq += own.data()[i] * own.data()[i];
   }
   double mass = 0;
   int count = 0;
@@ -48,12 +45,8 @@ StiffnessGlobals ContactTerm::policy_globals(const PositionsView& others) const 
       ++count;
     }
   }
-  globals.mean_contact_mass = mass / count;
-  globals.d_hat = *std::min_element(scene_.d_hat.begin(), scene_.d_hat.end());
-  globals.d2b_half = options_.contact.eval(globals.d_hat / 2, globals.d_hat).d2b;
-  globals.dt = dt_;
-  globals.c = c_;
-  return globals;
+  sums.mean_contact_mass = mass / count;
+  return sums;
 }
 
 void ContactTerm::end_step(PhaseClock& clock) {
@@ -74,7 +67,9 @@ void ContactTerm::end_step(PhaseClock& clock) {
 void PairGap::keep(Archive& archive) { archive(pair, gap, park); }
 
 void ContactTerm::keep(Archive& archive) {
-  archive(policy_started_, previous_gaps_);
+  bool started = policy_start_.started();
+  archive(started, previous_gaps_);
+  policy_start_.set_started(started);
   stiffness_.policy().keep(archive);
 }
 

@@ -14,7 +14,8 @@ void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const 
   plan.step_bound = plan_item(contact && options.collision_free_steps, "every step stays free of contact",
                               contact ? "the step solver has no step bound" : "nothing can touch");
   const bool contact_reads = contact && terms.stiffness && terms.stiffness->needs_hessian();
-  const bool limit_reads = plan.term("strain_limit").needed && terms.limit_stiffness.needs_hessian();
+  const bool limit_reads =
+      plan.term("strain_limit").needed && terms.limit_stiffness && terms.limit_stiffness->needs_hessian();
   plan.policy_submatrix =
       plan_item(contact_reads || limit_reads, "a stiffness policy reads the elastic matrix",
                 "no stiffness policy of a term in use reads it");

@@ -27,7 +27,7 @@ void note_before(Table& rows, std::span<const int> missing) {
 
 }  // namespace
 
-StiffnessBatch PolicyColumns::batch(double dt, double c, bool with_hessian) const {
+StiffnessBatch PolicyColumns::batch(const StiffnessTime& time, bool with_hessian) const {
   StiffnessBatch rows;
   rows.n = d.size();
   rows.n_free = n_free.data();
@@ -37,18 +37,12 @@ StiffnessBatch PolicyColumns::batch(double dt, double c, bool with_hessian) cons
   rows.d_hat = d_hat.data();
   rows.mass = mass.data();
   rows.hessian = with_hessian ? hessian.data() : nullptr;
-  rows.dt = dt;
-  rows.c = c;
+  rows.time = time;
   return rows;
 }
 
 StiffnessUpdate::StiffnessUpdate(StiffnessPolicy& policy, std::span<const double> mass)
     : policy_(policy), mass_(mass) {}
-
-void StiffnessUpdate::set_time(double dt, double c) {
-  dt_ = dt;
-  c_ = c;
-}
 
 void StiffnessUpdate::begin_step() {
   memory_.clear();
@@ -104,7 +98,7 @@ template <class Table>
 void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const Hessian& hessian, bool at_d_hat) {
   if (rows.empty()) return;
   gather(table, rows, hessian, at_d_hat);
-  const StiffnessBatch batch = columns_.batch(dt_, c_, hessian.values != nullptr);
+  const StiffnessBatch batch = columns_.batch(time_, hessian.values != nullptr);
   parts_.assign(rows.size(), {});
   if (policy_.has_potential()) {
     policy_.fill_parts(batch, parts_.data());
@@ -126,12 +120,12 @@ void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified
 
 double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                                 const BlockSystem::Values& elastic) {
-  const bool anew = policy_.refresh() == Refresh::per_iteration;
-  if (uniform() || anew) memory_.clear();
+  const bool anew = !policy_.frozen_in_step();
+  if (policy_.uniform() || anew) memory_.clear();
   memory_.recall(rows, mollified, missing_, missing_mollified_);
   fill_missing(rows, mollified, blocks, elastic, false);
   keep(rows, mollified);
-  if (uniform() || !anew) return 0;
+  if (!anew) return 0;
   return std::max(settle(rows), settle(mollified));
 }
 
@@ -145,7 +139,7 @@ void StiffnessUpdate::freeze(ContactTable& rows, MollifiedTable& mollified, cons
 }
 
 void StiffnessUpdate::keep(const ContactTable& rows, const MollifiedTable& mollified) {
-  if (!uniform()) memory_.store(rows, mollified);
+  if (!policy_.uniform()) memory_.store(rows, mollified);
 }
 
 PolicyColumns StiffnessUpdate::columns(const ContactTable& rows, int row, const BlockSystem& blocks,

@@ -17,7 +17,7 @@ namespace bb {
 struct PolicyColumns {
   std::vector<int> n_free;
   std::vector<double> weight, normal, d, d_hat, mass, hessian;
-  StiffnessBatch batch(double dt, double c, bool with_hessian) const;
+  StiffnessBatch batch(const StiffnessTime& time, bool with_hessian) const;
 };
 
 class StiffnessUpdate {
@@ -28,7 +28,7 @@ class StiffnessUpdate {
   /// Forgets the kappa and the H of the step before.
   void begin_step();
   /// Step length (s) and inertia weight c that policies read.
-  void set_time(double dt, double c);
+  void set_time(const StiffnessTime& time) { time_ = time; }
 
   /// kappa of the rows of a Newton iterate. elastic: values of the elastic matrix H, read only when the
   /// policy needs it. per_iteration computes every row anew; per_step keeps the first value that a pair had
@@ -59,8 +59,6 @@ class StiffnessUpdate {
                         const BlockSystem::Values& elastic);
 
  private:
-  /// One kappa for all rows: nothing to remember.
-  bool uniform() const { return policy_.state().kappa > 0; }
   void fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
                     const BlockSystem::Values& elastic, bool at_d_hat);
   /// Where sub-matrices of H come from; without values none are read.
@@ -79,7 +77,7 @@ class StiffnessUpdate {
 
   StiffnessPolicy& policy_;
   std::span<const double> mass_;
-  double dt_ = 0, c_ = 1;
+  StiffnessTime time_;
   KappaMemory memory_;
   PolicyColumns columns_;
   std::vector<int> missing_, missing_mollified_;

@@ -5,10 +5,10 @@
 #include <algorithm>
 #include <limits>
 
+#include "core/barrier/relative_change.hpp"
 #include "core/math/parallel.hpp"
 #include "core/terms/barrier_load.hpp"
 #include "core/terms/registry.hpp"
-#include "core/terms/stiffness_update.hpp"
 
 namespace bb {
 
@@ -20,7 +20,7 @@ StrainLimitTerm::StrainLimitTerm(const Scene& scene, const TermOptions& options,
       batch_(scene.limit.triangles, scene.rest, scene.limit.onset, scene.limit.width, scene.planar,
              options.precision),
       kappa_(batch_.size()) {
-  if (options.limit_stiffness.has_potential()) {
+  if (options.limit_stiffness->has_potential()) {
     folded_.emplace(Folded{FoldedBarrier(options.limit), std::vector<KappaParts>(2 * batch_.size())});
   }
   TermFamily& family = families_.emplace_back();
@@ -36,10 +36,7 @@ void StrainLimitTerm::begin_step(const StepFrame& frame, PhaseClock&) {
   first_iterate_ = true;
 }
 
-void StrainLimitTerm::change_frame(const StepFrame& frame) {
-  dt_ = frame.dt;
-  c_ = frame.c;
-}
+void StrainLimitTerm::change_frame(const StepFrame& frame) { time_ = {frame.dt, frame.c}; }
 
 void StrainLimitTerm::linearise(const PositionsView& x, const TermContext& context) {
   kappa_change_ = 0;
@@ -59,38 +56,42 @@ void StrainLimitTerm::fill(const PositionsView& x, Projection projection, LocalT
 }
 
 void StrainLimitTerm::refresh_stiffness(const PositionsView& x, const TermContext& context) {
-  const LimitStiffness& rule = options_.limit_stiffness;
-  if (kappa_fresh_ && (rule.kind == LimitStiffness::Kind::fixed || rule.refresh == Refresh::per_step)) return;
+  const StiffnessPolicy& policy = *options_.limit_stiffness;
+  if (kappa_fresh_ && policy.frozen_in_step()) return;
   kappa_fresh_ = true;
-  if (rule.kind == LimitStiffness::Kind::fixed) {
-    batch_.fixed_stiffness(rule.k_s, kappa_.data());
-    return;
-  }
   kappa_before_ = kappa_;
-  hess_.resize(81 * batch_.size());
-  parallel_items(rule.elastic_term ? batch_.size() : 0, 64, [&](std::size_t e) {
+  fill_sums(context, policy.needs_hessian());
+  ElementStiffnessBatch batch{batch_.size(), sums_.data(), nullptr, scene_.limit.width.data(), time_};
+  if (folded_) {
+    parts_.resize(batch_.size());
+    policy.fill_element_parts(batch, parts_.data());
+    return fold();
+  }
+  batch_.measure(x);
+  smaller_gaps_.resize(batch_.size());
+  for (std::size_t e = 0; e < batch_.size(); ++e) smaller_gaps_[e] = smaller_gap(e);
+  batch.gap = smaller_gaps_.data();
+  policy.fill_elements(batch, kappa_.data());
+  kappa_change_ = first_iterate_ || policy.uniform() ? 0 : stiffness_change();
+}
+
+// What the policy reads of every element.
+void StrainLimitTerm::fill_sums(const TermContext& context, bool with_hessian) {
+  hess_.resize(with_hessian ? 81 * batch_.size() : 0);
+  parallel_items(with_hessian ? batch_.size() : 0, 64, [&](std::size_t e) {
     Mat<double, 12, 12> block;
     context.blocks.submatrix(context.elastic, &batch_.vertices()[3 * e], 3, block.data());
     Eigen::Map<Mat<double, 9, 9>> target(&hess_[81 * e]);
     target = block.topLeftCorner<9, 9>();
   });
-  parts_.resize(batch_.size());
-  batch_.elastic_stiffness(x_n_, hess_.data(), scene_.mass.data(), scene_.limit.mass.data(),
-                           rule.rule(dt_, c_), parts_.data());
-  if (folded_) return fold(rule.multiplier);
-  batch_.measure(x);
-  for (std::size_t e = 0; e < batch_.size(); ++e) {
-    const double gap = std::max(smaller_gap(e), rule.gap_floor * scene_.limit.width[e]);
-    kappa_[e] = parts_[e].at(gap) * rule.multiplier;
-  }
-  kappa_change_ = first_iterate_ ? 0 : stiffness_change();
+  sums_.resize(batch_.size());
+  batch_.stiffness_sums(x_n_, with_hessian ? hess_.data() : nullptr, scene_.mass.data(),
+                        scene_.limit.mass.data(), sums_.data());
 }
 
-void StrainLimitTerm::fold(double multiplier) {
+void StrainLimitTerm::fold() {
   folded_->parts.clear();
-  for (const KappaParts& one : parts_) {
-    folded_->parts.insert(folded_->parts.end(), 2, {multiplier * one.fixed, multiplier * one.per_gap_sq});
-  }
+  for (const KappaParts& one : parts_) folded_->parts.insert(folded_->parts.end(), 2, one);
   std::fill(kappa_.begin(), kappa_.end(), 1.0);
 }
 

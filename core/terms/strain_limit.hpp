@@ -40,7 +40,8 @@ class StrainLimitTerm final : public Term {
  private:
   void refresh_stiffness(const PositionsView& x, const TermContext& context);
   void fill(const PositionsView& x, Projection projection, LocalTerms& out);
-  void fold(double multiplier);
+  void fill_sums(const TermContext& context, bool with_hessian);
+  void fold();
   double stiffness_change() const;
   double smaller_gap(std::size_t e) const;
   double force(std::size_t e, double gap) const;
@@ -53,7 +54,7 @@ class StrainLimitTerm final : public Term {
   const std::vector<std::uint8_t>& fixed_;
   StrainLimitBatch batch_;
   Positions x_n_;
-  double dt_ = 0, c_ = 1;
+  StiffnessTime time_;
   /// kappa_e(y) (J) with its potential, as the batch asks a barrier: at both pseudo-gaps of every element.
   struct Folded {
     FoldedBarrier barrier;
@@ -62,9 +63,11 @@ class StrainLimitTerm final : public Term {
       barrier.eval(n, y, width, parts.data(), s, ds, d2s);
     }
   };
-  std::optional<Folded> folded_;   // where kappa_e has a potential
-  std::vector<KappaParts> parts_;  // [n] J
-  std::vector<double> kappa_;      // [n] J, parts_ at the smaller pseudo-gap; 1 where folded_ has it
+  std::optional<Folded> folded_;             // where kappa_e has a potential
+  std::vector<KappaParts> parts_;            // [n] J
+  std::vector<double> kappa_;                // [n] J, at the smaller pseudo-gap; 1 where folded_ has it
+  std::vector<ElementSums<double>> sums_;    // [n]
+  std::vector<double> smaller_gaps_;         // [n]
   std::vector<double> kappa_before_, hess_;  // [n] J, [81 n] N/m
   bool kappa_fresh_ = false, first_iterate_ = true;
   double kappa_change_ = 0;

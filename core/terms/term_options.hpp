@@ -8,30 +8,9 @@
 #include "core/barrier/stiffness_policy.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
-#include "core/energy/strain_stiffness.hpp"
 #include "core/math/precision.hpp"
 
 namespace bb {
-
-/// Stiffness of the strain limit, J per element.
-struct LimitStiffness {
-  enum class Kind { fixed, elasticity_inclusive };
-  Kind kind = Kind::fixed;
-  double k_s = 0;                        // N/m, fixed: kappa_e = k_s x rest area
-  MassTerm mass_term = MassTerm::paper;  // elasticity_inclusive
-  bool elastic_term = true;              // elasticity_inclusive
-  Refresh refresh = Refresh::per_iteration;
-  KappaDerivative derivative = KappaDerivative::dropped;  // included: refreshed per step
-  double gap_floor = 0;   // of the width: the smallest y at which a kappa without potential is asked
-  double multiplier = 1;  // the config's own factor times s of the matching rule
-
-  /// What elasticity_inclusive asks of one element, in a step of length dt (s) and inertia weight c.
-  StrainStiffnessRule rule(double dt, double c) const { return {mass_term, elastic_term, dt, c}; }
-  bool has_potential() const {
-    return kind == Kind::elasticity_inclusive && derivative == KappaDerivative::included;
-  }
-  bool needs_hessian() const { return kind == Kind::elasticity_inclusive && elastic_term; }
-};
 
 struct TermOptions {
   BarrierFunction contact;
@@ -41,7 +20,7 @@ struct TermOptions {
   ContactOptions contact_options;
   bool strain_limit = true;  // false: limits of the scene are left out
   BarrierFunction limit;
-  LimitStiffness limit_stiffness;
+  std::unique_ptr<StiffnessPolicy> limit_stiffness;  // of the elements; read where an element has a limit
 };
 
 }  // namespace bb

@@ -13,7 +13,6 @@
 #include "core/parameters/registry.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "experiments/cli/options.hpp"
-#include "experiments/config/limit_policies.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/config/presets.hpp"

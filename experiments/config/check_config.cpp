@@ -74,18 +74,17 @@ void check_hessians(const RunConfig& config, const Complain& complain) {
   }
 }
 
-/// The policy judges its own settings; what matching will supply is 1 here.
-void check_policy(const RunConfig& config, const Complain& complain) {
-  const PolicyConfig& policy = config.formulation.stiffness_policy;
+/// A policy judges its own settings; what matching will supply is 1 here.
+void check_policy(const std::string& section, const PolicyConfig& policy, PolicyUse use,
+                  const std::optional<double>& given, const Complain& complain) {
   try {
-    make_policy(policy_request(policy, given_kappa(policy).value_or(1)));
+    make_policy(policy_request(policy, use, given.value_or(1)), use);
   } catch (const ConfigError& error) {
-    for (const Violation& v : error.violations()) complain("/formulation/" + v.where, v.found, v.allowed);
+    for (const Violation& v : error.violations()) complain(section + "/" + v.where, v.found, v.allowed);
   }
 }
 
-/// derivative `included` asks for a shape with a potential; of the limit's policy, which no registry makes, all
-/// that goes with it.
+/// A policy whose kappa has a potential asks for a shape that has one too.
 void check_potential(const std::string& section, const std::string& shape, Argument argument,
                      const PolicyConfig& policy, bool literal, const Complain& complain) {
   const auto derivative = policy.parameters.find("derivative");
@@ -102,20 +101,18 @@ void check_potential(const std::string& section, const std::string& shape, Argum
   if (literal) complain(pointer, "\"included\"", "dropped: the step solver is article_literal");
 }
 
-void check_potentials(const RunConfig& config, const Complain& complain) {
+void check_policies(const RunConfig& config, const Complain& complain) {
   const bool literal = config.step_solver.name == "article_literal";
   const FormulationConfig& contact = config.formulation;
+  check_policy("/formulation", contact.stiffness_policy, PolicyUse::contact,
+               given_kappa(contact.stiffness_policy), complain);
   check_potential("/formulation", contact.shape, contact.argument, contact.stiffness_policy, literal,
                   complain);
   const StrainLimitConfig& limit = config.strain_limit;
   if (!limit.enabled) return;
   check_potential("/strain_limit", limit.shape, limit.argument, limit.stiffness_policy, literal, complain);
-  if (limit.stiffness_policy.name != "elasticity_inclusive") return;
-  try {
-    check_derivative(limit.stiffness_policy.parameters, "stiffness_policy");
-  } catch (const ConfigError& error) {
-    for (const Violation& v : error.violations()) complain("/strain_limit/" + v.where, v.found, v.allowed);
-  }
+  check_policy("/strain_limit", limit.stiffness_policy, PolicyUse::limit, given_k_s(limit.stiffness_policy),
+               complain);
 }
 
 bool given_both_bounds(const PolicyConfig& policy) {
@@ -305,8 +302,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   }
   check_step_solver(config, complain);
   check_hessians(config, complain);
-  check_policy(config, complain);
-  check_potentials(config, complain);
+  check_policies(config, complain);
   check_adaptive_start(config, complain);
   check_matching(config, complain);
   check_tolerance(config, complain);

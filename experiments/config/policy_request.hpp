@@ -1,11 +1,9 @@
-// What matching has to know of a config's policies, and the request from which the registry of stiffness
-// policies makes one.
+// What matching has to know of a config's policies.
 #pragma once
 
 #include <optional>
 
 #include "barriers/stiffness/registry.hpp"
-#include "experiments/config/run_config.hpp"
 
 namespace bb {
 
@@ -17,7 +15,7 @@ bool needs_k_s(const PolicyConfig& policy);
 std::optional<double> given_kappa(const PolicyConfig& policy);
 std::optional<double> given_k_s(const PolicyConfig& policy);
 
-/// @param kappa  N/m, read by a policy that needs it   @param scale  s of the matching rule
-StiffnessPolicyConfig policy_request(const PolicyConfig& policy, double kappa, double scale = 1);
+/// The policy with that number, N/m, where it needs one, and with its own factor times `scale`, s of the matching rule.
+PolicyConfig policy_request(PolicyConfig policy, PolicyUse use, double stiffness, double scale = 1);
 
 }  // namespace bb

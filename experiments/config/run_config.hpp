@@ -8,8 +8,8 @@
 #include <string>
 #include <vector>
 
+#include "barriers/stiffness/registry.hpp"
 #include "core/barrier/shape.hpp"
-#include "core/barrier/stiffness_policy.hpp"
 #include "core/bodies/body_spec.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/contact/contact_terms.hpp"
@@ -19,14 +19,6 @@
 #include "core/parameters/parameter.hpp"
 
 namespace bb {
-
-/// Stiffness policy of the contacts, or of the strain limit.
-struct PolicyConfig {
-  std::string name = "fixed";
-  double scale = 1;  // factor on every kappa of the policy
-  ParameterMap
-      parameters;  // of the policy of that name; its stiffness is left out where matching supplies it
-};
 
 /// Where a run computes. cpu: the pipeline of core/newton. host: the resident pipeline (core/resident) on threads of this
 /// machine, the same kernels as on a device. cuda: on a device.

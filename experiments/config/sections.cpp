@@ -10,7 +10,6 @@
 #include "core/solvers/linear_solvers.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/config_list.hpp"
-#include "experiments/config/limit_policies.hpp"
 #include "experiments/config/methods.hpp"
 
 namespace bb {

@@ -6,7 +6,6 @@
 
 #include "barriers/matching.hpp"
 #include "core/input/names.hpp"
-#include "experiments/config/limit_policies.hpp"
 #include "experiments/config/policy_request.hpp"
 #include "experiments/config/reader.hpp"
 #include "experiments/config/sections.hpp"
@@ -55,7 +54,7 @@ void convert_kappa(const json& object, const std::string& pointer, const Reader&
 
 /// The limit follows the contact's policy where it has it, with all its settings.
 json followed(const json& object, const PolicyConfig& contact) {
-  const LimitPolicyEntry* same = limit_policies().find(contact.name);
+  const StiffnessPolicyEntry* same = limit_policies().find(contact.name);
   const bool another = object.contains("name") && object["name"] != contact.name;
   if (same == nullptr || !same->matched.empty() || another) return object;
   json out = to_json(contact.parameters);

@@ -1,7 +1,7 @@
 // stiffness: kappa of one contact by a stiffness policy. A field that cannot touch the answer may
 // be left out.
 #include "barriers/stiffness/elasticity_inclusive.hpp"
-#include "barriers/stiffness/registry.hpp"
+#include "barriers/stiffness/policy_parameters.hpp"
 #include "experiments/eval/kinds.hpp"
 
 namespace bb::eval {
@@ -52,32 +52,36 @@ std::vector<T> rounded(const std::vector<double>& values) {
 
 template <class T>
 Answer elasticity_inclusive(Query& q) {
-  ElasticityInclusiveRule rule;
-  rule.mass_term =
-      require_mass_term(q.choice("mass_term", {"paper", "inertia", "scaled", "none"}), "/mass_term");
-  rule.elastic_term = q.flag_or("elastic_term", true);
-  const bool scaled = rule.mass_term == MassTerm::scaled;
-  if (scaled || rule.mass_term == MassTerm::inertia) {
-    rule.dt = q.number("dt", kPositive);
-    rule.c = q.number("c", kPositive);
+  ParameterMap given;
+  given["mass_term"] = q.choice("mass_term", {"paper", "inertia", "scaled", "none"});
+  given["elastic_term"] = q.flag_or("elastic_term", true);
+  const PolicyParameters<ElasticityInclusive> list(PolicyUse::contact);
+  const ElasticityInclusive policy = list.unchecked(own_parameters(list.rows(), given, ""));
+  const bool scaled = policy.mass_term == MassTerm::scaled;
+  StiffnessTime time;
+  if (scaled || policy.mass_term == MassTerm::inertia) {
+    time.dt = q.number("dt", kPositive);
+    time.c = q.number("c", kPositive);
   }
-  const bool gap = depends_on_gap(rule.mass_term), mass = rule.mass_term != MassTerm::none;
-  const ContactFields c = contact_fields(q, {true, gap, scaled, mass, rule.elastic_term});
+  const bool mass = policy.mass_term != MassTerm::none;
+  const ContactFields c =
+      contact_fields(q, {true, policy.depends_on_gap(), scaled, mass, policy.elastic_term});
   q.finish();
 
   const auto weights = rounded<T>(c.weights), normal = rounded<T>(c.normal), masses = rounded<T>(c.masses);
   const MatX<T> hessian = c.hessian.cast<T>();
   const int n = static_cast<int>(weights.size());
   Answer a;
-  a.number("kappa", static_cast<double>(elasticity_inclusive_kappa<T>(
-                        n, weights.data(), normal.data(), static_cast<T>(c.gap), static_cast<T>(c.d_hat),
-                        masses.data(), hessian.data(), 3 * n, rule)));
+  const ContactSums<T> sums = contact_sums(n, weights.data(), normal.data(), mass ? masses.data() : nullptr,
+                                           ColumnMajor<T>{hessian.data(), 3 * n}, policy.elastic_term);
+  a.number("kappa", static_cast<double>(
+                        policy.contact_kappa(sums, static_cast<T>(c.gap), static_cast<T>(c.d_hat), time)));
   return a;
 }
 
 template <class T>
 Answer fixed(Query& q) {
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.parameters["kappa_N_per_m"] = q.number("kappa", kPositive);
   contact_fields(q, {false, false, false, false, false});
   q.finish();

@@ -155,14 +155,19 @@ void match_contact(const Matching& m, Calibration& out) {
   m.record.scale = out.scale;
 }
 
+/// The same of the limit.
+std::unique_ptr<StiffnessPolicy> asked_limit_policy(PolicyConfig policy) {
+  if (needs_k_s(policy)) return nullptr;
+  policy.scale = 1;
+  return make_limit_policy(policy, {});
+}
+
 Demand ask_elements(const Matching& m, const Match& match, const BarrierFunction& barrier) {
   const PolicyConfig& policy = m.config.strain_limit.stiffness_policy;
   if (!m.pilot || (m.config.matching.limit_load && needs_k_s(policy))) return {};
-  LimitStiffness own;
-  if (!needs_k_s(policy)) own = make_limit_policy(policy, {});
+  const std::unique_ptr<StiffnessPolicy> own = asked_limit_policy(policy);
   const MatchedStiffness matched = matched_stiffness(match, barrier, m.scene.limit.width.front());
-  const Demand demand =
-      limit_demand(*m.pilot, m.scene, matched, needs_k_s(policy) ? nullptr : &own, m.options.limits());
+  const Demand demand = limit_demand(*m.pilot, m.scene, matched, own.get(), m.options.limits());
   m.record.elements_considered = demand.considered;
   m.record.elements_left_out = demand.left_out;
   note_left_out(m.record, demand, "limit", "N/m");

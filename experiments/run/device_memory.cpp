@@ -25,7 +25,7 @@ double mean_edge(const Surface& surface, const Scene& scene) {
 double bytes_a_row(const Method& method) {
   exec::CountingExecutor executor;
   constexpr exec::Index n = 1 << 20;
-  resident::ResidentRows rows(executor, resident::columns_of(*method.stiffness->rule()));
+  resident::ResidentRows rows(executor, resident::columns_of(*method.stiffness));
   rows.resize(n);
   return static_cast<double>(executor.memory().bytes()) / n;
 }

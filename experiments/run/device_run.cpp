@@ -12,6 +12,7 @@
 #include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
+#include "core/resident/contact/resident_stiffness.hpp"
 #include "core/resident/elements/resident_limit.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "experiments/run/method.hpp"
@@ -109,13 +110,9 @@ void check_device_forms(const RunConfig& config, const Scene& scene) {
   Calibration any;  // numbers of the stiffness do not matter
   any.kappa = any.k_s = 1;
   Method method = make_method(config, any);
-  const std::optional<StiffnessRule> rule = method.stiffness->rule();
-  if (!rule) {
-    throw ConfigError(config.source + "#/formulation/stiffness_policy/name",
-                      std::string(method.stiffness->name()),
-                      "a policy with a device form; this one runs with device cpu only");
-  }
-  at_config(config, "/formulation", [&] { resident::ResidentBarrier(method.contact, rule->potential()); });
+  resident::require_kernel(*method.stiffness, config.source + "#/formulation/stiffness_policy/name");
+  at_config(config, "/formulation",
+            [&] { resident::ResidentBarrier(method.contact, method.stiffness->has_potential()); });
   exec::CountingExecutor executor;
   std::vector<int> unread;
   at_config(config, "/strain_limit", [&] { resident::make_limit(executor, scene, method, unread); });

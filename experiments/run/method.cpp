@@ -38,25 +38,18 @@ std::unique_ptr<StiffnessPolicy> make_contact_policy(const PolicyConfig& policy,
     kappa = require_stiffness(calibration.kappa, given_kappa(policy),
                               "/formulation/stiffness_policy/kappa_N_per_m");
   }
-  return make_policy(policy_request(policy, kappa, calibration.scale));
+  return make_policy(policy_request(policy, PolicyUse::contact, kappa, calibration.scale));
 }
 
-LimitStiffness make_limit_policy(const PolicyConfig& policy, const Calibration& calibration) {
-  LimitStiffness out;
-  if (!calibration.limited) return out;
+std::unique_ptr<StiffnessPolicy> make_limit_policy(const PolicyConfig& policy,
+                                                   const Calibration& calibration) {
+  if (!calibration.limited) return nullptr;
+  double k_s = 0;
   if (needs_k_s(policy)) {
-    out.k_s = policy.scale * require_stiffness(calibration.k_s, given_k_s(policy),
-                                               "/strain_limit/stiffness_policy/k_s_N_per_m");
-    return out;
+    k_s = require_stiffness(calibration.k_s, given_k_s(policy), "/strain_limit/stiffness_policy/k_s_N_per_m");
   }
-  out.kind = LimitStiffness::Kind::elasticity_inclusive;
-  out.mass_term = require_mass_term(text(policy.parameters, "mass_term"));
-  out.elastic_term = boolean(policy.parameters, "elastic_term");
-  out.refresh = require_refresh(text(policy.parameters, "refresh"));
-  out.gap_floor = number(policy.parameters, "gap_floor");
-  out.derivative = require_derivative(text(policy.parameters, "derivative"));
-  out.multiplier = policy.scale * calibration.limit_scale;
-  return out;
+  return make_policy(policy_request(policy, PolicyUse::limit, k_s, calibration.limit_scale),
+                     PolicyUse::limit);
 }
 
 Method make_method(const RunConfig& config, const Calibration& calibration) {

@@ -24,6 +24,8 @@ Method make_method(const RunConfig& config, const Calibration& calibration);
 /// The two policies alone. Errors: as make_method.
 std::unique_ptr<StiffnessPolicy> make_contact_policy(const PolicyConfig& policy,
                                                      const Calibration& calibration);
-LimitStiffness make_limit_policy(const PolicyConfig& policy, const Calibration& calibration);
+/// Null where no element has a limit.
+std::unique_ptr<StiffnessPolicy> make_limit_policy(const PolicyConfig& policy,
+                                                   const Calibration& calibration);
 
 }  // namespace bb

@@ -59,7 +59,7 @@ double own_kappa(const StiffnessPolicy& policy, int row, double u, double dt, do
   double kappa[2];
   for (int k = 0; k < 2; ++k) {
     columns.d[0] = (k == 0 ? 1 : u) * columns.d_hat[0];
-    policy.fill(columns.batch(dt, c, with_hessian), &kappa[k]);
+    policy.fill(columns.batch({dt, c}, with_hessian), &kappa[k]);
   }
   return std::min(kappa[0], kappa[1]);
 }
@@ -81,8 +81,8 @@ std::string name_element(const Scene& scene, std::size_t e) {
 }
 
 /// kappa_e/area (N/m) by the policy of the limit, with w from the start of the step, at the gap y.
-double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std::size_t e, double area,
-                           double y, double dt, double c, const Positions& x_start,
+double own_limit_stiffness(const StiffnessPolicy& policy, const Scene& scene, std::size_t e, double area,
+                           double y, const StiffnessTime& time, const Positions& x_start,
                            const PilotReplay& replay) {
   const std::array<int, 3>& vertices = scene.limit.triangles[e];
   Vec3d x[3], mass;
@@ -91,13 +91,16 @@ double own_limit_stiffness(const LimitStiffness& limit, const Scene& scene, std:
     x[k] = x_start.col(v);
     mass[k] = scene.mass[static_cast<std::size_t>(v)];
   }
-  Mat<double, 12, 12> block = Mat<double, 12, 12>::Zero();
-  replay.blocks().submatrix(replay.elastic(), vertices.data(), 3, block.data());
-  const Mat<double, 9, 9> hessian = block.topLeftCorner<9, 9>();
-  const StrainStiffnessRule rule = limit.rule(dt, c);
-  return strain_stiffness<double>(x, hessian, mass, scene.limit.mass[e], scene.limit.width[e], rule)
-             .at(std::max(y, limit.gap_floor * scene.limit.width[e])) /
-         area;
+  const auto hessian = [&]() -> Mat<double, 9, 9> {
+    Mat<double, 12, 12> block = Mat<double, 12, 12>::Zero();
+    replay.blocks().submatrix(replay.elastic(), vertices.data(), 3, block.data());
+    return block.topLeftCorner<9, 9>();
+  };
+  const ElementSums<double> sums =
+      element_sums<double>(x, mass, scene.limit.mass[e], area, hessian, policy.needs_hessian());
+  double kappa = 0;
+  policy.fill_elements({1, &sums, &y, &scene.limit.width[e], time}, &kappa);
+  return kappa / area;
 }
 
 }  // namespace
@@ -132,7 +135,7 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
 }
 
 Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                    const LimitStiffness* own, const RunLimits& limits) {
+                    const StiffnessPolicy* own, const RunLimits& limits) {
   const BarrierFunction log = log_barrier();
   const StrainLimitPart& part = scene.limit;
   StrainLimitBatch limit(part.triangles, scene.rest, part.onset, part.width, scene.planar);
@@ -142,7 +145,7 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
   std::vector<double> y_start(part.width.size());
   for (int step = 0; step < pilot.steps(); ++step) {
     look_up(limits, pilot, step);
-    if (own) replay.find_rows(step, own->refresh);
+    if (own) replay.find_rows(step, own->refresh());
     limit.measure(replay.start(step));
     for (std::size_t e = 0; e < limit.size(); ++e) y_start[e] = smaller_gap(limit, e);
     limit.measure(replay.end(step));
@@ -157,9 +160,9 @@ Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffne
       if (!is_load(answer, load, step, where, out)) continue;
       double k_s = 1;
       if (own) {
-        const bool frozen = own->refresh == Refresh::per_step && !own->has_potential();
+        const bool frozen = own->frozen_in_step() && !own->has_potential();
         const double softest = frozen ? std::max(width, y_start[e]) : width;
-        k_s = own_limit_stiffness(*own, scene, e, area, softest, dt, replay.c(step), replay.start(step),
+        k_s = own_limit_stiffness(*own, scene, e, area, softest, {dt, replay.c(step)}, replay.start(step),
                                   replay);
         if (too_soft(k_s, matched(load, width))) refuse(k_s * area, "kappa_e", step, where());
       }

@@ -40,6 +40,6 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
 /// The same over the limited elements. `own` is asked at the width of the limit; where kappa_e is frozen for a
 /// step as a number, at the gap of the step's start if that is wider. Requires a scene with limited elements.
 Demand limit_demand(const Pilot& pilot, const Scene& scene, const MatchedStiffness& matched,
-                    const LimitStiffness* own, const RunLimits& limits = {});
+                    const StiffnessPolicy* own, const RunLimits& limits = {});
 
 }  // namespace bb

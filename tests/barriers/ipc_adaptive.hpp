@@ -8,10 +8,10 @@
 namespace bb::test {
 
 inline std::unique_ptr<StiffnessPolicy> ipc_adaptive(const ParameterMap& given = {}, double multiplier = 1) {
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "ipc_adaptive";
   config.parameters = given;
-  config.multiplier = multiplier;
+  config.scale = multiplier;
   return make_policy(config);
 }
 
@@ -23,7 +23,7 @@ inline StiffnessGlobals balanced_at(double balance) {
   out.grad_b_dot_grad_e = -balance * out.grad_b_sq;
   out.mean_contact_mass = 2e-3;
   out.d2b_half = 8;
-  out.dt = 0.01, out.c = 0.5, out.d_hat = 1e-3;
+  out.time = {0.01, 0.5}, out.d_hat = 1e-3;
   return out;
 }
 

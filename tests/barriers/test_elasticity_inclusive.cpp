@@ -7,6 +7,7 @@
 #include <random>
 
 #include "barriers/stiffness/registry.hpp"
+#include "barriers/stiffness/scaled_policy.hpp"
 #include "core/math/error.hpp"
 #include "core/math/types.hpp"
 
@@ -14,6 +15,25 @@ namespace bb::elasticity_inclusive_test {
 namespace {
 
 using Mat12 = Eigen::Matrix<double, 12, 12>;
+
+struct Rule {
+  MassTerm mass_term;
+  bool elastic_term;
+  double dt, c;
+  ElasticityInclusive policy() const { return {.mass_term = mass_term, .elastic_term = elastic_term}; }
+  StiffnessTime time() const { return {dt, c}; }
+};
+
+template <class T>
+ContactSums<T> sums_of(int n, const T* weight, const T* normal, const T* mass, const T* hessian,
+                       const Rule& rule) {
+  return contact_sums(n, weight, normal, mass, ColumnMajor<T>{hessian, 12}, rule.elastic_term);
+}
+template <class T>
+T kappa_of(int n, const T* weight, const T* normal, T d, T d_hat, const T* mass, const T* hessian,
+           const Rule& rule) {
+  return rule.policy().contact_kappa(sums_of(n, weight, normal, mass, hessian, rule), d, d_hat, rule.time());
+}
 
 /// A random row of n free vertices with a symmetric positive semi-definite Hessian.
 struct Row {
@@ -37,18 +57,16 @@ struct Row {
     hessian.topLeftCorner(3 * n, 3 * n) = 40 * root * root.transpose();
   }
 
-  double kappa(const ElasticityInclusiveRule& rule) const {
-    return elasticity_inclusive_kappa(n_free, weight.data(), normal.data(), d, d_hat, mass.data(),
-                                      hessian.data(), 12, rule);
+  double kappa(const Rule& rule) const {
+    return kappa_of(n_free, weight.data(), normal.data(), d, d_hat, mass.data(), hessian.data(), rule);
   }
 };
 
 TEST(ElasticityInclusive, TwoFreePointMasses) {
   const double weight[] = {1, -1}, normal[] = {0, 1, 0}, mass[] = {2e-3, 6e-3}, d = 1e-3, h = 0.01,
                c = 4.0 / 9;
-  const auto kappa = [&](const ElasticityInclusiveRule& rule) {
-    return elasticity_inclusive_kappa(2, weight, normal, d, 3 * d, mass, static_cast<const double*>(nullptr),
-                                      12, rule);
+  const auto kappa = [&](const Rule& rule) {
+    return kappa_of(2, weight, normal, d, 3 * d, mass, static_cast<const double*>(nullptr), rule);
   };
   // w^T M w/(w^T w) = (m1 + m2)/2 = 4e-3 kg
   EXPECT_NEAR(kappa({MassTerm::paper, false, h, c}), 4e-3 / 1e-6, 1e-9);
@@ -93,7 +111,7 @@ TEST(ElasticityInclusive, IsTheRayleighQuotientOfTheWholeSubMatrix) {
 }
 
 TEST(ElasticityInclusive, DoesNotDependOnTheScaleOrSignOfTheWeights) {
-  const ElasticityInclusiveRule rule{MassTerm::paper, true, 0, 1};
+  const Rule rule{MassTerm::paper, true, 0, 1};
   for (const int n : {1, 2, 3, 4}) {
     Row row(n, 30u + static_cast<unsigned>(n));
     const double before = row.kappa(rule);
@@ -105,13 +123,12 @@ TEST(ElasticityInclusive, DoesNotDependOnTheScaleOrSignOfTheWeights) {
 
 TEST(ElasticityInclusive, FloatAgreesWithDouble) {
   const Row row(4, 51);
-  const ElasticityInclusiveRule rule{MassTerm::paper, true, 0, 1};
+  const Rule rule{MassTerm::paper, true, 0, 1};
   const Eigen::Matrix<float, 12, 12> hessian = row.hessian.cast<float>();
   const Eigen::Vector4f weight = row.weight.cast<float>(), mass = row.mass.cast<float>();
   const Eigen::Vector3f normal = row.normal.cast<float>();
-  const float single =
-      elasticity_inclusive_kappa(4, weight.data(), normal.data(), static_cast<float>(row.d),
-                                 static_cast<float>(row.d_hat), mass.data(), hessian.data(), 12, rule);
+  const float single = kappa_of(4, weight.data(), normal.data(), static_cast<float>(row.d),
+                                static_cast<float>(row.d_hat), mass.data(), hessian.data(), rule);
   EXPECT_NEAR(static_cast<double>(single), row.kappa(rule), 1e-5 * row.kappa(rule));
 }
 
@@ -119,12 +136,12 @@ TEST(ElasticityInclusive, AsAFunctionOfTheGapItIsTheSameKappa) {
   int falls = 0;
   for (const MassTerm term : {MassTerm::paper, MassTerm::inertia, MassTerm::scaled, MassTerm::none}) {
     Row row(3, 41);
-    const ElasticityInclusiveRule rule{term, true, 0.01, 0.25};
-    const KappaParts parts =
-        elasticity_inclusive_parts(row.n_free, row.weight.data(), row.normal.data(), row.d_hat,
-                                   row.mass.data(), row.hessian.data(), 12, rule);
+    const Rule rule{term, true, 0.01, 0.25};
+    const KappaParts parts = rule.policy().contact_parts(
+        sums_of(row.n_free, row.weight.data(), row.normal.data(), row.mass.data(), row.hessian.data(), rule),
+        row.d_hat, rule.time());
     EXPECT_GT(parts.fixed, 0);
-    EXPECT_EQ(parts.per_gap_sq > 0, depends_on_gap(term));
+    EXPECT_EQ(parts.per_gap_sq > 0, rule.policy().depends_on_gap());
     falls += parts.per_gap_sq > 0;
     for (const double d : {1e-6, 3e-4, 9.9e-4}) {
       row.d = d;
@@ -134,12 +151,50 @@ TEST(ElasticityInclusive, AsAFunctionOfTheGapItIsTheSameKappa) {
   EXPECT_EQ(falls, 2);
 }
 
+/// The same ladder of mass terms serves a limited triangle: closed forms, and contact and limit side by side.
+TEST(ElasticityInclusive, KappaOfALimitedTriangleHasTheSameMassTerms) {
+  const ElementSums<double> sums{26, 7, 6, 0.5};
+  const double width = 0.4, y = 0.1;  // a quarter of the width
+  const StiffnessTime time{0.1, 0.25};
+  const long double inertia = 26 / (0.25L * 0.1L * 0.1L);
+  const auto kappa = [&](MassTerm term, bool elastic, const StiffnessTime& t) {
+    return ElasticityInclusive{.mass_term = term, .elastic_term = elastic}
+        .element_parts(sums, width, t)
+        .at(y);
+  };
+  const auto expect = [](double found, long double expected) {
+    EXPECT_NEAR(found, static_cast<double>(expected), 1e-14 * static_cast<double>(expected));
+  };
+  expect(kappa(MassTerm::paper, true, time), 7 + 6 / (0.1L * 0.1L));
+  expect(kappa(MassTerm::inertia, true, time), 7 + inertia);
+  expect(kappa(MassTerm::scaled, true, time), 7 + 16 * inertia);
+  EXPECT_EQ(kappa(MassTerm::none, true, time), 7);
+  EXPECT_EQ(kappa(MassTerm::scaled, true, {0.1, 0}), 7);  // quasi-static: no inertia
+  for (const MassTerm term : {MassTerm::inertia, MassTerm::scaled, MassTerm::none}) {
+    const ContactSums<double> contact{26, 7, 1};
+    const ElasticityInclusive policy{.mass_term = term};
+    EXPECT_NEAR(policy.contact_kappa(contact, y, width, time), kappa(term, true, time), 1e-9);
+  }
+}
+
+/// The floor of the gap and the factor act alike on contacts and on limited triangles.
+TEST(ElasticityInclusive, IsAskedAtTheFloorAndMultiplied) {
+  const ScaledPolicy<ElasticityInclusive> policy{{.gap_floor = 0.5}, 3};
+  const ContactSums<double> contact{2, 0, 1};
+  const ElementSums<double> element{9, 0, 2, 0};
+  for (const double gap : {1e-9, 0.2, 0.5, 0.8}) {
+    const double asked = std::max(gap, 0.5), expected = 3 * 2 / (asked * asked);
+    EXPECT_DOUBLE_EQ(policy.contact_kappa(contact, gap, 1, {}), expected) << gap;
+    EXPECT_DOUBLE_EQ(policy.element_kappa(element, gap, 1, {}), expected) << gap;
+  }
+}
+
 TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "elasticity_inclusive";
   config.parameters.emplace("mass_term", "inertia");
   config.parameters.emplace("refresh", "per_step");
-  config.multiplier = 3;
+  config.scale = 3;
   const std::unique_ptr<StiffnessPolicy> policy = make_policy(config);
   EXPECT_EQ(policy->name(), "elasticity_inclusive");
   EXPECT_EQ(policy->refresh(), Refresh::per_step);

@@ -42,7 +42,7 @@ TEST(FormulationPresets, EveryFileNamesKnownParts) {
     shapes_used.insert(f.at("shape").get<std::string>());
 
     const json& policy = f.at("stiffness_policy");
-    StiffnessPolicyConfig config;
+    PolicyConfig config;
     config.name = policy.at("name");
     for (const auto& [key, value] : policy.items()) {
       if (key.starts_with("kappa_")) config.parameters["kappa_N_per_m"] = kappa_of(key, value);

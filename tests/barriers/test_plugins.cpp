@@ -67,10 +67,10 @@ TEST(Plugins, ExampleShapeHasTheValuesOfItsFormula) {
 
 TEST(Plugins, ExamplePolicyFillsKappa) {
   register_once(example("effective_mass_policy"));
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "effective_mass";
   config.parameters.emplace("refresh", "per_step");
-  config.multiplier = 10;
+  config.scale = 10;
   const auto policy = make_policy(config);
   EXPECT_EQ(policy->name(), "effective_mass");
   EXPECT_EQ(policy->refresh(), Refresh::per_step);
@@ -84,8 +84,7 @@ TEST(Plugins, ExamplePolicyFillsKappa) {
   rows.n_free = n_free;
   rows.weight = weight;
   rows.mass = mass;
-  rows.dt = 0.1;
-  rows.c = 0.25;
+  rows.time = {0.1, 0.25};
   double kappa[2] = {-1, -1};
   policy->fill(rows, kappa);
   EXPECT_NEAR(kappa[0], 10 * 1.5 / 2.5e-3, 1e-9);

@@ -185,7 +185,7 @@ TEST(FoldedBarrier, IsRefusedWhereThereIsNoPotential) {
 /// What a policy says of its own settings: place, value and what is allowed.
 TEST(KappaDerivative, IsIncludedOnlyPerStepAndWhereKappaDependsOnTheGap) {
   const auto refusal = [](const char* mass_term, const char* refresh) -> std::vector<Violation> {
-    StiffnessPolicyConfig config;
+    PolicyConfig config;
     config.name = "elasticity_inclusive";
     config.parameters.emplace("mass_term", std::string(mass_term));
     config.parameters.emplace("refresh", std::string(refresh));

@@ -121,13 +121,13 @@ struct OneRow {
 
 std::unique_ptr<StiffnessPolicy> inclusive(const char* mass_term, bool elastic, const char* derivative,
                                            double multiplier) {
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "elasticity_inclusive";
   config.parameters.emplace("mass_term", mass_term);
   config.parameters["elastic_term"] = elastic;
   config.parameters.emplace("refresh", "per_step");
   config.parameters.emplace("derivative", derivative);
-  config.multiplier = multiplier;
+  config.scale = multiplier;
   return make_policy(config);
 }
 

@@ -13,7 +13,6 @@
 #include "core/parameters/check.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "experiments/config/config_list.hpp"
-#include "experiments/config/limit_policies.hpp"
 #include "experiments/config/mesh_generators.hpp"
 #include "tests/config/config_text.hpp"
 

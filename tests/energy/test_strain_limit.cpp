@@ -174,26 +174,18 @@ TEST(StrainLimit, StepBoundOfFreeAndOfInfeasibleSteps) {
   EXPECT_EQ(bound(stretched(1.151, 1), stretched(1.0, 1)), 1);
 }
 
-TEST(StrainStiffness, MatchesHandComputedTerms) {
+TEST(StrainStiffness, SumsMatchHandComputedTerms) {
   // equilateral-like hand case: points at (+-1, 0, 0) and (0, 3, 0): centroid (0, 1, 0)
   const Vec3d x[3] = {{-1, 0, 0}, {1, 0, 0}, {0, 3, 0}};
   Mat<double, 9, 9> h = Mat<double, 9, 9>::Identity();
   h(0, 3) = h(3, 0) = 0.5;  // couples x of points 0 and 1: w_0x w_1x = -1
-  const Vec3d mass(2, 3, 4);
-  const double elastic = 2 + 2 + 4 - 1, inertia = 2 * 2 + 3 * 2 + 4 * 4;
-  StrainStiffnessRule rule;
-  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), elastic + 6 / 0.01, 1e-12);
-  rule.mass_term = MassTerm::inertia;
-  rule.dt = 0.1;
-  rule.c = 0.25;
-  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), elastic + inertia / 0.0025, 1e-10);
-  rule.mass_term = MassTerm::scaled;  // at a quarter of the width
-  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), elastic + 16 * inertia / 0.0025,
-              1e-9);
-  rule.mass_term = MassTerm::none;
-  EXPECT_NEAR(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), elastic, 1e-14);
-  rule.elastic_term = false;
-  EXPECT_EQ(strain_stiffness<double>(x, h, mass, 6, 0.4, rule).at(0.1), 0);
+  const auto hessian = [&] { return h; };
+  const ElementSums<double> sums = element_sums<double>(x, Vec3d(2, 3, 4), 6, 0.7, hessian, true);
+  EXPECT_NEAR(sums.elastic, 2 + 2 + 4 - 1, 1e-14);
+  EXPECT_NEAR(sums.mass, 2 * 2 + 3 * 2 + 4 * 4, 1e-14);
+  EXPECT_EQ(sums.element_mass, 6);
+  EXPECT_EQ(sums.area, 0.7);
+  EXPECT_EQ(element_sums<double>(x, Vec3d(2, 3, 4), 6, 0.7, hessian, false).elastic, 0);
 }
 
 }  // namespace

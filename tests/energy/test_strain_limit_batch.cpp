@@ -24,7 +24,7 @@ TEST(StrainLimitBatch, ColumnsAndTermsAreThoseOfTheElements) {
   for (const bool planar : {false, true}) {
     StrainLimitBatch batch = make_batch(strip, 0.1, 0.9, planar);
     std::vector<double> kappa(batch.size()), energy(batch.size());
-    batch.fixed_stiffness(5.0, kappa.data());
+    for (std::size_t e = 0; e < kappa.size(); ++e) kappa[e] = 5 * batch.rests()[e].area;
     LocalTerms out;
     batch.derivatives(strip.deformed, barrier, kappa.data(), Projection::psd, out);
     batch.values(strip.deformed, barrier, kappa.data(), energy.data());
@@ -124,29 +124,29 @@ TEST(StrainLimitBatch, StepBoundIsTheLastFeasibleNumberOfTheWholeMesh) {
   }
 }
 
-TEST(StrainLimitBatch, StiffnessPolicies) {
+TEST(StrainLimitBatch, SumsForPoliciesAreThoseOfTheElements) {
   const Strip strip(10);
   StrainLimitBatch batch = make_batch(strip, 0.1, 0.9);
   const std::size_t n = batch.size();
-  std::vector<double> kappa(n);
-  batch.fixed_stiffness(5.0, kappa.data());
-  EXPECT_EQ(kappa[3], 5.0 * batch.rests()[3].area);
-
-  batch.measure(strip.deformed);
   std::vector<double> hess(81 * n, 0.0), element_mass(n, 0.3);
   for (std::size_t e = 0; e < n; ++e) {
     for (std::size_t i = 0; i < 9; ++i) hess[81 * e + 10 * i] = 1 + static_cast<double>(e);
   }
   const std::vector<double> mass(static_cast<std::size_t>(strip.rest.cols()), 0.01);
-  std::vector<KappaParts> parts(n);
-  batch.elastic_stiffness(strip.deformed, hess.data(), mass.data(), element_mass.data(), {}, parts.data());
+  std::vector<ElementSums<double>> sums(n);
+  batch.stiffness_sums(strip.deformed, hess.data(), mass.data(), element_mass.data(), sums.data());
   const auto& t = strip.triangles[4];
   Vec3d centroid = Vec3d::Zero();
   for (const int v : t) centroid += strip.deformed.col(v) / 3;
   double w_sq = 0;
   for (const int v : t) w_sq += (strip.deformed.col(v) - centroid).squaredNorm();
-  const double y = batch.gaps()[8];
-  EXPECT_NEAR(parts[4].at(y), 5 * w_sq + 0.3 / (y * y), 1e-14);
+  ASSERT_GT(w_sq, 0);
+  EXPECT_NEAR(sums[4].elastic, 5 * w_sq, 1e-14);
+  EXPECT_NEAR(sums[4].mass, 0.01 * w_sq, 1e-16);
+  EXPECT_EQ(sums[4].element_mass, 0.3);
+  EXPECT_EQ(sums[4].area, batch.rests()[4].area);
+  batch.stiffness_sums(strip.deformed, nullptr, mass.data(), element_mass.data(), sums.data());
+  EXPECT_EQ(sums[4].elastic, 0);
 }
 
 TEST(StrainLimitBatch, BadColumnsAreConfigErrors) {

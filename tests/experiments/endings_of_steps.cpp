@@ -86,7 +86,7 @@ Ending torn_cloth() {
   spec.pins = {left, right};
   builder.add_body(spec);
   Method method = fixed_method("log", 1);
-  method.limit_stiffness.k_s = 10;
+  method.limit_stiffness = test::fixed_limit(10);
   return simulate(builder.finish(), method, 2);
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "tests/barriers/limit_policies.hpp"
 #include "tests/experiments/calibrated.hpp"
 
 namespace bb::limit_calibration_test {
@@ -26,7 +27,9 @@ TEST(Calibration, ADynamicLimitCarriesThePilotsLoads) {
     EXPECT_NE(c.record.limit_element.find("sheet["), std::string::npos) << c.record.limit_element;
     EXPECT_GE(c.record.limit_step.value, 0);
     EXPECT_EQ(c.record.limit_scale.value, c.calibration.limit_scale);
-    EXPECT_EQ(make_method(c.config, c.calibration).limit_stiffness.multiplier, c.calibration.limit_scale);
+    const Method method = make_method(c.config, c.calibration), unscaled = make_method(c.config, {});
+    EXPECT_DOUBLE_EQ(test::kappa_of_element(*method.limit_stiffness),
+                     c.calibration.limit_scale * test::kappa_of_element(*unscaled.limit_stiffness));
     scale[lagged] = c.calibration.limit_scale;
     const RunRecord record = run(c.config);
     EXPECT_EQ(record.status.outcome, Outcome::ok) << record.status.detail;

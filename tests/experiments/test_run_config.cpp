@@ -11,6 +11,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/method.hpp"
 #include "experiments/run/runner.hpp"
+#include "tests/barriers/limit_policies.hpp"
 
 namespace bb::run_config_test {
 namespace {
@@ -103,9 +104,9 @@ TEST(RunConfig, factors_of_a_limit_multiply_what_it_is_given) {
   fixed.scale = 3;
   Calibration calibration;
   calibration.limited = true;
-  EXPECT_EQ(make_limit_policy(fixed, calibration).k_s, 12);
+  EXPECT_EQ(test::kappa_of_element(*make_limit_policy(fixed, calibration)), 2 * 12);
   calibration.k_s = 5;
-  EXPECT_EQ(make_limit_policy(fixed, calibration).k_s, 15);
+  EXPECT_EQ(test::kappa_of_element(*make_limit_policy(fixed, calibration)), 2 * 15);
 
   PolicyConfig dynamic;
   dynamic.name = "elasticity_inclusive";
@@ -116,8 +117,8 @@ TEST(RunConfig, factors_of_a_limit_multiply_what_it_is_given) {
                         {"derivative", "included"}};
   dynamic.scale = 3;
   calibration.limit_scale = 7;
-  EXPECT_EQ(make_limit_policy(dynamic, calibration).multiplier, 21);
-  EXPECT_TRUE(make_limit_policy(dynamic, calibration).has_potential());
+  EXPECT_EQ(test::kappa_of_element(*make_limit_policy(dynamic, calibration)), 21 * 1 / 0.25);
+  EXPECT_TRUE(make_limit_policy(dynamic, calibration)->has_potential());
 }
 
 }  // namespace

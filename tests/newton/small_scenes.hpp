@@ -11,6 +11,7 @@
 #include "core/newton/method.hpp"
 #include "core/newton/simulation.hpp"
 #include "core/terms/contact.hpp"
+#include "tests/barriers/limit_policies.hpp"
 
 namespace bb::test {
 
@@ -18,7 +19,7 @@ inline Method fixed_method(const std::string& shape, double kappa,
                            const std::string& integrator = "implicit_euler") {
   Method method;
   method.contact = {require_shape(shape), Argument::gap};
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.parameters["kappa_N_per_m"] = kappa;
   method.stiffness = make_policy(policy);
   method.limit = {require_shape(shape), Argument::gap};

@@ -53,8 +53,8 @@ struct Result {
 Result allocations_per_iteration(int n, const char* policy_name) {
   const Scene scene = two_layers(n);
   Method method = test::fixed_method("cubic", 200);
-  method.limit_stiffness.k_s = 1e3;
-  StiffnessPolicyConfig policy;
+  method.limit_stiffness = test::fixed_limit(1e3);
+  PolicyConfig policy;
   policy.name = policy_name;
   policy.parameters["kappa_N_per_m"] = 200;
   policy.parameters.emplace("refresh", "per_step");

@@ -57,7 +57,7 @@ TEST(ContactEquilibrium, dynamic_stiffness_rests_at_the_closed_form) {
   for (const Refresh refresh : {Refresh::per_iteration, Refresh::per_step}) {
     Scene scene = test::particle_over_plane(mass, 0.9 * d_hat, d_hat);
     Method method = test::fixed_method("cubic", 1);
-    StiffnessPolicyConfig policy;
+    PolicyConfig policy;
     policy.name = "elasticity_inclusive";
     policy.parameters.emplace("refresh", std::string(to_string(refresh)));
     method.stiffness = make_policy(policy);
@@ -87,7 +87,7 @@ TEST(ContactEquilibrium, every_integrator_with_inertia_conserves_free_fall) {
 TEST(ContactEquilibrium, adaptive_stiffness_starts_at_the_first_contact_and_is_recorded) {
   Scene scene = test::particle_over_plane(mass, 0.9 * d_hat, d_hat);
   Method method = test::fixed_method("log", 1);
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.name = "ipc_adaptive";
   method.stiffness = make_policy(policy);
   ContactCounts contacts;

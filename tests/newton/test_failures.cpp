@@ -89,7 +89,7 @@ StepReport hang(double k_s, int steps) {
   builder.add_body(spec);
   Scene scene = builder.finish();
   Method method = test::fixed_method("cubic", 1);
-  method.limit_stiffness.k_s = k_s;
+  method.limit_stiffness = test::fixed_limit(k_s);
   Simulation simulation(scene, method, 0.01, steps);
   StepObserver observer;
   StepReport report;
@@ -124,7 +124,7 @@ TEST(Failures, a_load_that_neighbours_share_is_an_overload_of_the_limit) {
   const double middle = scene.x0.row(0).mean();
   scene.v0.row(0) = 4 * (scene.x0.row(0).array() - middle);
   Method method = test::fixed_method("cubic", 1);
-  method.limit_stiffness.k_s = 300;
+  method.limit_stiffness = test::fixed_limit(300);
   Simulation simulation(scene, method, 0.01, 1);
   StepObserver observer;
   const StepReport report = simulation.step(observer);

@@ -40,7 +40,7 @@ StepReport step_near_rest(double gap, Refresh refresh, Log& log) {
   Scene scene = test::particle_over_plane(mass, gap * (1 + 1e-5), d_hat);
   scene.gravity = Vec3d(0, 0, kappa_of(gap) * db(gap) / mass);
   Method method = test::fixed_method("cubic", 1);
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.name = "elasticity_inclusive";
   policy.parameters.emplace("refresh", std::string(to_string(refresh)));
   method.stiffness = make_policy(policy);
@@ -83,7 +83,7 @@ TEST(KappaCycle, a_contact_that_appears_has_not_changed) {
   scene.v0.col(0) = Vec3d(0, 0, -0.04);  // to 0.7 d_hat in one step without contact
   scene.gravity.setZero();
   Method method = test::fixed_method("cubic", 1);
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.name = "elasticity_inclusive";
   method.stiffness = make_policy(policy);
   Simulation simulation(scene, method, dt, 1);
@@ -106,8 +106,7 @@ TEST(KappaCycle, the_step_says_that_it_is_the_strain_limit_whose_kappa_does_not_
   builder.add_body(spec);
   const Scene scene = builder.finish();
   Method method = test::fixed_method("cubic", 1);
-  method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
-  method.limit_stiffness.elastic_term = false;
+  method.limit_stiffness = test::elastic_limit({.elastic_term = false});
   method.step_solver.max_iterations = 60;
   Simulation simulation(scene, method, 0.1, 1);
   Log log;
@@ -130,7 +129,7 @@ TEST(KappaCycle, a_contact_that_a_line_search_meets_keeps_its_kappa_for_the_step
   scene.v0.col(0) = Vec3d(0, 0, -0.04);
   scene.gravity.setZero();
   Method method = test::fixed_method("cubic", 1);
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.name = "elasticity_inclusive";
   policy.parameters.emplace("refresh", "per_step");
   method.stiffness = make_policy(policy);
@@ -150,7 +149,7 @@ TEST(KappaCycle, a_mollified_row_whose_kappa_moves_is_seen) {
   scene.surface_edges = {{0, 1}, {2, 3}};
   scene.v0.rightCols(2).row(2).setConstant(-0.02);
   Method method = test::fixed_method("cubic", 1);
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.name = "elasticity_inclusive";
   method.stiffness = make_policy(policy);
   Simulation simulation(scene, method, dt, 1);

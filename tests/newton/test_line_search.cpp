@@ -49,7 +49,7 @@ TEST(LineSearch, energy_falls_in_every_iteration_of_a_draping_cloth) {
   Scene scene = cloth_on_sphere(8);
   for (const Shape& shape : all_shapes()) {
     Method method = test::fixed_method(shape.name, 400);
-    method.limit_stiffness.k_s = 2e4;
+    method.limit_stiffness = test::fixed_limit(2e4);
     Simulation simulation(scene, method, 0.01, 15);
     EnergyWatch watch;
     for (int i = 0; i < 15; ++i) {
@@ -120,7 +120,7 @@ TEST(LineSearch, threads_change_no_bit) {
   const auto final_state = [&scene](std::size_t threads) {
     const oneapi::tbb::global_control control(oneapi::tbb::global_control::max_allowed_parallelism, threads);
     Method method = test::fixed_method("cubic", 2000);
-    method.limit_stiffness.k_s = 2e4;
+    method.limit_stiffness = test::fixed_limit(2e4);
     Simulation simulation(scene, method, 0.01, 10);
     StepObserver observer;
     std::size_t contacts = 0;
@@ -222,7 +222,7 @@ TEST(LineSearch, takes_its_fraction_of_a_binding_strain_bound_at_the_first_trial
   Scene scene = builder.finish();
   scene.v0.row(0) = 10 * (scene.x0.row(0).array() - scene.x0.row(0).mean());
   Method method = test::fixed_method("log", 1);
-  method.limit_stiffness.k_s = 300;
+  method.limit_stiffness = test::fixed_limit(300);
   Simulation simulation(scene, method, 0.01, 1);
   StrainWatch watch;
   simulation.step(watch);
@@ -303,10 +303,10 @@ TEST(LineSearch, accumulated_toi_reaches_the_same_state_without_contact) {
 TEST(LineSearch, accumulated_toi_drapes_without_touching) {
   Scene scene = cloth_on_sphere(8);
   Method method = test::fixed_method("cubic", 1);
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.name = "elasticity_inclusive";
   method.stiffness = make_policy(policy);
-  method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+  method.limit_stiffness = test::elastic_limit();
   method.step_solver.name = "accumulated_toi";
   Simulation simulation(scene, method, 0.01, 15);
   StepObserver observer;

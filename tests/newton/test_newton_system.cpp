@@ -61,7 +61,7 @@ Positions stretched(const Scene& scene, double strain) {
 TEST(NewtonSystem, a_state_at_its_strain_limit_or_beyond_has_no_energy) {
   const Scene scene = limited_triangle();
   Method method = test::fixed_method("cubic", 1);
-  method.limit_stiffness.k_s = 30;
+  method.limit_stiffness = test::fixed_limit(30);
   AtRest rest(scene, std::move(method), scene.x0);
   rest.system.assemble();
   for (const double strain : {0.021, 0.1}) {
@@ -73,7 +73,7 @@ TEST(NewtonSystem, a_state_at_its_strain_limit_or_beyond_has_no_energy) {
 TEST(NewtonSystem, the_tension_of_the_limit_is_the_force_per_width) {
   const Scene scene = limited_triangle();
   Method method = test::fixed_method("cubic", 1);
-  method.limit_stiffness.k_s = 30;
+  method.limit_stiffness = test::fixed_limit(30);
   const double strain = 0.015, width = 0.01, beyond = strain - 0.01;
   AtRest rest(scene, std::move(method), stretched(scene, strain));
   rest.system.assemble();
@@ -88,8 +88,7 @@ TEST(NewtonSystem, the_factor_of_a_limit_that_makes_its_own_stiffness_multiplies
   const Scene scene = limited_triangle();
   const auto energy = [&scene](double multiplier) {
     Method method = test::fixed_method("cubic", 1);
-    method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
-    method.limit_stiffness.multiplier = multiplier;
+    method.limit_stiffness = test::elastic_limit({}, multiplier);
     AtRest rest(scene, std::move(method), stretched(scene, 0.015));
     rest.system.assemble();
     return rest.system.view().energy(TermGroup::limit);
@@ -148,7 +147,7 @@ TEST(NewtonSystem, stages_hold_the_terms_that_they_are_named_after) {
 TEST(NewtonSystem, without_the_limit_a_stage_has_only_elasticity_and_inertia) {
   const Scene scene = limited_triangle();
   Method method = test::fixed_method("cubic", 1);
-  method.limit_stiffness.k_s = 1e4;
+  method.limit_stiffness = test::fixed_limit(1e4);
   AtRest rest(scene, std::move(method), stretched(scene, 0.015));
   rest.system.assemble();
   ASSERT_TRUE(rest.system.diagnosis().active(TermGroup::limit));

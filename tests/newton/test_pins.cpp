@@ -179,7 +179,7 @@ TEST(Pins, a_pose_beyond_the_strain_limit_is_infeasible_and_names_the_pin) {
   builder.add_body(spec);
   Scene scene = builder.finish();
   Method method = test::fixed_method("log", 1);
-  method.limit_stiffness.k_s = 10;
+  method.limit_stiffness = test::fixed_limit(10);
   Simulation simulation(scene, method, 0.01, 2);
   StepObserver observer;
   StepReport report;

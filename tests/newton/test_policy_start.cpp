@@ -55,8 +55,8 @@ TEST(PolicyStart, is_once_a_run_with_the_sums_of_the_first_contacts) {
   EXPECT_NEAR(heard[0].mean_contact_mass, 0.3, 1e-15);
   EXPECT_EQ(heard[0].d2b_half, 2);
   EXPECT_EQ(heard[0].d_hat, d_hat);
-  EXPECT_EQ(heard[0].dt, dt);
-  EXPECT_EQ(heard[0].c, 0.25);
+  EXPECT_EQ(heard[0].time.dt, dt);
+  EXPECT_EQ(heard[0].time.c, 0.25);
 }
 
 /// Bodies of unlike d_hat: the smallest of all, whether that body touches or not.
@@ -99,7 +99,7 @@ TEST(PolicyStart, of_ipc_adaptive_is_what_later_steps_go_on_from) {
   const Scene scene = three_particles();
   for (const char* solver : {"line_search", "accumulated_toi"}) {
     Method method = test::fixed_method("log", 1);
-    StiffnessPolicyConfig config;
+    PolicyConfig config;
     config.name = "ipc_adaptive";
     config.parameters["kappa_min_N_per_m"] = 1;
     config.parameters["doubling_gap_m"] = d_hat;  // doubles while the gap shrinks

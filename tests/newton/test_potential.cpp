@@ -11,8 +11,8 @@
 namespace bb::potential_test {
 namespace {
 
-StiffnessPolicyConfig dynamic_policy(const char* mass_term, bool included) {
-  StiffnessPolicyConfig policy;
+PolicyConfig dynamic_policy(const char* mass_term, bool included) {
+  PolicyConfig policy;
   policy.name = "elasticity_inclusive";
   policy.parameters.emplace("mass_term", std::string(mass_term));
   policy.parameters.emplace("refresh", std::string(included ? "per_step" : "per_iteration"));
@@ -23,10 +23,7 @@ StiffnessPolicyConfig dynamic_policy(const char* mass_term, bool included) {
 Method potential_method(const char* mass_term) {
   Method method = test::fixed_method("cubic", 1);
   method.stiffness = make_policy(dynamic_policy(mass_term, true));
-  method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
-  method.limit_stiffness.mass_term = require_mass_term(mass_term);
-  method.limit_stiffness.refresh = Refresh::per_step;
-  method.limit_stiffness.derivative = KappaDerivative::included;
+  method.limit_stiffness = make_policy(dynamic_policy(mass_term, true), PolicyUse::limit);
   return method;
 }
 

@@ -32,7 +32,7 @@ Method with_policy(const std::string& policy, const std::string& solver,
                    const std::string& integrator = "implicit_euler") {
   Method method = test::fixed_method("log", 20, integrator);
   if (policy != "fixed") {
-    StiffnessPolicyConfig config;
+    PolicyConfig config;
     config.name = policy;
     if (policy == "elasticity_inclusive") config.parameters.emplace("refresh", "per_step");
     method.stiffness = make_policy(config);

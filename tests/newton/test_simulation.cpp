@@ -130,12 +130,11 @@ Scene hung_cloth() {
 
 Method kept_for_the_step() {
   Method method = test::fixed_method("cubic", 1);
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.name = "elasticity_inclusive";
   policy.parameters.emplace("refresh", "per_step");
   method.stiffness = make_policy(policy);
-  method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
-  method.limit_stiffness.refresh = Refresh::per_step;
+  method.limit_stiffness = test::elastic_limit({.refresh = Refresh::per_step});
   return method;
 }
 
@@ -185,7 +184,7 @@ TEST(Simulation, the_change_of_a_limits_kappa_is_measured_within_a_step_and_wher
     builder.add_body(spec);
     const Scene scene = builder.finish();
     Method method = test::fixed_method("cubic", 1);
-    method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+    method.limit_stiffness = test::elastic_limit();
     Simulation simulation(scene, method, dt, 3);
     Watch watch;
     for (int i = 0; i < 3; ++i) simulation.step(watch);

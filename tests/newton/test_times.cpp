@@ -32,8 +32,7 @@ Scene falling_cloths() {
 
 Method limited_method() {
   Method method = test::fixed_method("cubic", 200);
-  method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
-  method.limit_stiffness.refresh = Refresh::per_step;
+  method.limit_stiffness = test::elastic_limit({.refresh = Refresh::per_step});
   return method;
 }
 

@@ -11,17 +11,18 @@
 #include "core/newton/energy_sum.hpp"
 #include "core/newton/hessian_level.hpp"
 #include "core/terms/plan.hpp"
+#include "tests/barriers/limit_policies.hpp"
 
 namespace bb::test {
 
 inline TermOptions element_options(const char* shape = "cubic") {
   TermOptions options;
   options.contact = {require_shape("cubic"), Argument::gap};
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.parameters["kappa_N_per_m"] = 40.0;
   options.stiffness = make_policy(policy);
   options.limit = {require_shape(shape), Argument::gap};
-  options.limit_stiffness.k_s = 30;
+  options.limit_stiffness = test::fixed_limit(30);
   return options;
 }
 

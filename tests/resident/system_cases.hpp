@@ -141,7 +141,7 @@ inline Scene touching(Scene scene, double by) {
 inline Method method_with_policy(const std::string& shape, const std::string& policy,
                                  const ParameterMap& parameters) {
   Method method = fixed_method(shape, 20);
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = policy;
   config.parameters = parameters;
   method.stiffness = make_policy(config);

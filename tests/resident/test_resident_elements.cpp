@@ -189,7 +189,7 @@ TEST(ResidentElements, SumTheGroupsThatAreAskedFor) {
 TEST(ResidentElements, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
   const Scene scene = cloth_scene("baraff_witkin", false);
   TermOptions options = element_options("log");
-  options.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+  options.limit_stiffness = elastic_limit();
   const StepFrame frame = step_frame(scene);
   const Positions x = strained(scene), dx = wave(scene, 0.3);
   struct Found {

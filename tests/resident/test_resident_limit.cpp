@@ -1,6 +1,10 @@
 // The strain limit of an executor against the term of the CPU path: stiffness, feasibility, bound, reports.
 #include <cmath>
+#include <optional>
 
+#include "core/math/error.hpp"
+#include "core/resident/elements/resident_limit.hpp"
+#include "tests/barriers/host_policy.hpp"
 #include "tests/resident/on_executor.hpp"
 
 namespace bb::resident_limit_test {
@@ -10,26 +14,21 @@ using namespace bb::test;
 
 struct Rule {
   const char* shape;
-  LimitStiffness stiffness;
-  double tolerance;  // relative: 0 where the arithmetic is the same
+  std::optional<ElasticityInclusive> elastic;  // else fixed
+  double tolerance;                            // relative: 0 where the arithmetic is the same
+
+  std::unique_ptr<StiffnessPolicy> policy() const {
+    return elastic ? elastic_limit(*elastic, 1.7) : fixed_limit(30);
+  }
 };
 
-LimitStiffness elastic(MassTerm mass, bool with_h, Refresh refresh, KappaDerivative derivative) {
-  LimitStiffness out;
-  out.kind = LimitStiffness::Kind::elasticity_inclusive;
-  out.mass_term = mass;
-  out.elastic_term = with_h;
-  out.refresh = refresh;
-  out.derivative = derivative;
-  out.gap_floor = 0.01;
-  out.multiplier = 1.7;
-  return out;
+ElasticityInclusive elastic(MassTerm mass, bool with_h, Refresh refresh, KappaDerivative derivative) {
+  return {mass, with_h, refresh, 0.01, derivative};
 }
 
 std::vector<Rule> all_rules() {
   std::vector<Rule> out;
-  LimitStiffness fixed;
-  fixed.k_s = 30;
+  constexpr std::nullopt_t fixed = std::nullopt;
   out.push_back({"quadratic", fixed, 0});
   out.push_back({"log", fixed, 1e-13});
   out.push_back({"log_squared", fixed, 1e-12});
@@ -54,7 +53,7 @@ TEST(ResidentLimit, HasTheTermsOfTheCpuForEveryRule) {
     const StepFrame frame = step_frame(scene);
     for (const Rule& rule : all_rules()) {
       TermOptions options = element_options(rule.shape);
-      options.limit_stiffness = rule.stiffness;
+      options.limit_stiffness = rule.policy();
       CpuElements cpu(scene, options, frame);
       exec::HostExecutor executor;
       OnExecutor resident(executor, scene, options, frame);
@@ -75,8 +74,7 @@ TEST(ResidentLimit, HasTheTermsOfTheCpuForEveryRule) {
         EXPECT_NEAR(numbers.load_max, report.limit_load_max_N_per_m.value,
                     std::max(tolerance, 1e-14) * numbers.load_max);
         EXPECT_NEAR(moved, report.limit_kappa_change_rel.value, tolerance * (1 + moved));
-        const bool moves = rule.stiffness.kind != LimitStiffness::Kind::fixed &&
-                           rule.stiffness.refresh == Refresh::per_iteration && size > 0.007;
+        const bool moves = rule.elastic && rule.elastic->refresh == Refresh::per_iteration && size > 0.007;
         EXPECT_EQ(moved > 1e-6, moves) << rule.shape;
         double energy = 0;
         for (const double e : term.families()[0].local.energy) energy += e;
@@ -172,6 +170,21 @@ TEST(ResidentLimit, IsLeftOutWhereNothingIsLimited) {
   EXPECT_EQ(resident.bound(wave(scene, 10), 0), 1);
   EXPECT_FALSE(resident.elements.limit_reads_matrix());
   EXPECT_EQ(resident.elements.limit_numbers(resident.x.data()).max_stretch, 0);
+}
+
+TEST(ResidentLimit, RefusesAPolicyWithoutKernelByItsName) {
+  const Scene scene = cloth_scene("corotational", false);
+  TermOptions options = element_options();
+  options.limit_stiffness = std::make_unique<HostPolicy>();
+  exec::HostExecutor executor;
+  std::vector<int> vertices;
+  try {
+    resident::make_limit(executor, scene, options, vertices);
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.violations()[0].where, "stiffness_policy/name");
+    EXPECT_EQ(error.violations()[0].found, "host_only");
+  }
 }
 
 }  // namespace

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "tests/barriers/limit_policies.hpp"
 #include "tests/resident/system_cases.hpp"
 
 namespace bb::resident_settings_test {
@@ -148,7 +149,6 @@ TEST(ResidentSettings, OptionsOfContact) {
 }
 
 TEST(ResidentSettings, StiffnessOfTheStrainLimit) {
-  using Kind = LimitStiffness::Kind;
   const std::pair<Refresh, KappaDerivative> rules[] = {{Refresh::per_iteration, KappaDerivative::dropped},
                                                        {Refresh::per_step, KappaDerivative::dropped},
                                                        {Refresh::per_step, KappaDerivative::included}};
@@ -156,10 +156,8 @@ TEST(ResidentSettings, StiffnessOfTheStrainLimit) {
     SCOPED_TRACE(static_cast<int>(refresh) + 2 * static_cast<int>(derivative));
     const auto method = [refresh = refresh, derivative = derivative] {
       Method out = cubic();
-      out.limit_stiffness.kind = Kind::elasticity_inclusive;
-      out.limit_stiffness.mass_term = MassTerm::scaled;
-      out.limit_stiffness.refresh = refresh;
-      out.limit_stiffness.derivative = derivative;
+      out.limit_stiffness =
+          test::elastic_limit({.mass_term = MassTerm::scaled, .refresh = refresh, .derivative = derivative});
       return out;
     };
     Scene scene = test::cloth_on_plate();

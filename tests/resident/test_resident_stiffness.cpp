@@ -5,9 +5,11 @@
 
 #include "barriers/stiffness/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
+#include "core/math/error.hpp"
 #include "core/resident/contact/contact_sums.hpp"
 #include "core/resident/contact/resident_stiffness.hpp"
 #include "core/terms/stiffness_update.hpp"
+#include "tests/barriers/host_policy.hpp"
 #include "tests/resident/contact_on_executor.hpp"
 
 namespace bb::test::resident_stiffness_test {
@@ -147,9 +149,9 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
             int& n_changed) {
   const Scene scene = full_scene(3);
   const Elastic elastic(scene);
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "elasticity_inclusive";
-  config.multiplier = 1.7;
+  config.scale = 1.7;
   config.parameters.emplace("mass_term", p.mass_term);
   config.parameters["elastic_term"] = p.elastic;
   config.parameters["refresh"] = p.refresh;
@@ -157,21 +159,18 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
   config.parameters["derivative"] = p.derivative;
   const auto policy = make_policy(config);
   StiffnessUpdate update(*policy, scene.mass);
-  update.set_time(0.01, 1);
+  update.set_time({0.01, 1});
 
-  const StiffnessRule rule{
-      false,       require_mass_term(p.mass_term),   p.elastic, require_refresh(p.refresh),
-      p.gap_floor, require_derivative(p.derivative), 1.7};
   HostExecutor executor(order);
   const ElasticOnExecutor there(executor, elastic);
-  ResidentStiffness stiffness(executor, rule, scene.mass);
-  stiffness.set_time(0.01, 1);
+  ResidentStiffness stiffness(executor, *policy, scene.mass);
+  stiffness.set_time({0.01, 1});
 
   ContactSystem contacts(scene, {});
   const Positions x[] = {shaken(scene), random_motion(scene.x0, 0.02, 7), random_motion(scene.x0, 0.012, 8)};
   Rows state = rows_at(contacts, x[0]);
-  OnExecutor on(executor, scene, x[0], resident::columns_of(rule));
-  ResidentRows trial(executor, resident::columns_of(rule));
+  OnExecutor on(executor, scene, x[0], resident::columns_of(*policy));
+  ResidentRows trial(executor, resident::columns_of(*policy));
   const auto refresh = [&] {
     const double change = update.refresh(state.table, state.mollified, elastic.blocks, elastic.values);
     const double resident_change = stiffness.refresh(on.rows, there.part());
@@ -242,11 +241,12 @@ TEST(ResidentStiffness, ReadsTheMatrixBlockByBlock) {
   const Scene scene = full_scene(1);
   const Elastic elastic(scene);
   HostExecutor executor;
-  StiffnessRule rule;
-  rule.uniform = false, rule.mass_term = MassTerm::none;
-  OnExecutor on(executor, scene, shaken(scene), resident::columns_of(rule));
+  PolicyConfig config{"elasticity_inclusive", 1, {}};
+  config.parameters.emplace("mass_term", "none");
+  const auto policy = make_policy(config);
+  OnExecutor on(executor, scene, shaken(scene), resident::columns_of(*policy));
   const ElasticOnExecutor there(executor, elastic);
-  ResidentStiffness stiffness(executor, rule, scene.mass);
+  ResidentStiffness stiffness(executor, *policy, scene.mass);
   stiffness.refresh(on.rows, there.part());
   const RowView v = on.rows.view();
   int n_coupled = 0;
@@ -300,6 +300,21 @@ TEST(StepEndGaps, ListsPairsOfTwoStepEndsWhoseGapShrank) {
     EXPECT_EQ(listed[i].gap_before, expected[i].gap_before);
     EXPECT_EQ(listed[i].park, expected[i].park);
   }
+}
+
+TEST(ResidentStiffness, RefusesAPolicyWithoutKernelByItsName) {
+  try {
+    resident::require_kernel(HostPolicy(), "/formulation/stiffness_policy/name");
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.violations()[0].where, "/formulation/stiffness_policy/name");
+    EXPECT_EQ(error.violations()[0].found, "host_only");
+  }
+  const Scene scene = full_scene(3);
+  HostExecutor executor;
+  EXPECT_THROW(ResidentStiffness(executor, HostPolicy(), scene.mass), ConfigError);
+  const auto fixed = make_policy({"fixed", 1, {{"kappa_N_per_m", 3.0}}});  // one kappa needs no kernel
+  EXPECT_NO_THROW(ResidentStiffness(executor, *fixed, scene.mass));
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 
 #include <functional>
 
+#include "tests/barriers/limit_policies.hpp"
 #include "tests/resident/system_cases.hpp"
 
 namespace bb::system_restart_test {
@@ -63,13 +64,12 @@ Method method_of(const Policy& policy) {
   Method method = test::fixed_method("cubic", 40);
   method.hessian_mode = HessianMode::projected_full;
   if (std::string(policy.name) == "fixed") return method;
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = policy.name;
   config.parameters.emplace("mass_term", policy.mass_term);
   config.parameters.emplace("refresh", policy.refresh);
   method.stiffness = make_policy(config);
-  method.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
-  method.limit_stiffness.mass_term = MassTerm::inertia;
+  method.limit_stiffness = test::elastic_limit({.mass_term = MassTerm::inertia});
   return method;
 }
 

@@ -8,17 +8,18 @@
 #include "core/bodies/scene_builder.hpp"
 #include "core/mesh/generators.hpp"
 #include "core/terms/plan.hpp"
+#include "tests/barriers/limit_policies.hpp"
 
 namespace bb::test {
 
 inline TermOptions term_options() {
   TermOptions options;
   options.contact = {require_shape("cubic"), Argument::gap};
-  StiffnessPolicyConfig policy;
+  PolicyConfig policy;
   policy.parameters["kappa_N_per_m"] = 40.0;
   options.stiffness = make_policy(policy);
   options.limit = {require_shape("cubic"), Argument::gap};
-  options.limit_stiffness.k_s = 30;
+  options.limit_stiffness = test::fixed_limit(30);
   return options;
 }
 

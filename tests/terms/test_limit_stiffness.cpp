@@ -24,8 +24,8 @@ struct Limited {
   PhaseClock clock;
   std::unique_ptr<StrainLimitTerm> term;
 
-  explicit Limited(const LimitStiffness& rule) {
-    options.limit_stiffness = rule;
+  explicit Limited(std::unique_ptr<StiffnessPolicy> policy) {
+    options.limit_stiffness = std::move(policy);
     blocks.set_elements({});
     elastic.assign(9 * 4, 0.0);
     for (std::size_t i = 0; i < elastic.size(); i += 9)
@@ -57,11 +57,11 @@ struct Limited {
   }
 };
 
-LimitStiffness rule_of(MassTerm mass_term, bool elastic_term, Refresh refresh) {
-  LimitStiffness out;
-  out.kind = LimitStiffness::Kind::elasticity_inclusive;
-  out.mass_term = mass_term, out.elastic_term = elastic_term, out.refresh = refresh;
-  return out;
+using Rule = ElasticityInclusive;
+using test::elastic_limit;
+
+Rule rule_of(MassTerm mass_term, bool elastic_term, Refresh refresh) {
+  return {.mass_term = mass_term, .elastic_term = elastic_term, .refresh = refresh};
 }
 
 /// Smaller pseudo-gap of every element.
@@ -75,11 +75,9 @@ std::vector<double> gaps_at(const Scene& scene, const Positions& x) {
 }
 
 /// kappa of every element by the formula: w of x_n, the gap of `x_gap`; and the energy at x that it makes.
-std::vector<double> by_hand(const LimitStiffness& rule, const Positions& x_n, const Positions& x_gap,
+std::vector<double> by_hand(const Rule& rule, const Positions& x_n, const Positions& x_gap,
                             const Positions& x) {
-  LimitStiffness one;
-  one.k_s = 1;  // kappa is the area
-  Limited unit(one);
+  Limited unit(test::fixed_limit(1));  // kappa is the area
   unit.begin(x);
   std::vector<double> out = unit.linearised(x);
   const std::vector<double> y = gaps_at(unit.scene, x_gap);
@@ -122,8 +120,8 @@ Positions stretched(double along, double across) {
   return x;
 }
 
-std::vector<LimitStiffness> rules(Refresh refresh) {
-  std::vector<LimitStiffness> out;
+std::vector<Rule> rules(Refresh refresh) {
+  std::vector<Rule> out;
   for (const MassTerm term : {MassTerm::paper, MassTerm::inertia, MassTerm::scaled, MassTerm::none}) {
     for (const bool elastic : {true, false}) {
       if (elastic || term != MassTerm::none) out.push_back(rule_of(term, elastic, refresh));
@@ -135,8 +133,8 @@ std::vector<LimitStiffness> rules(Refresh refresh) {
 /// Else the stiffness would follow the stretch that it is to limit.
 TEST(LimitStiffness, IsOfTheTriangleAtTheStartOfTheStepInEveryIteration) {
   const Positions x_n = stretched(0.6, 1.02), first = stretched(1.05, 1.03), second = stretched(1.12, 0.9);
-  for (const LimitStiffness& rule : rules(Refresh::per_iteration)) {
-    Limited limited(rule);
+  for (const Rule& rule : rules(Refresh::per_iteration)) {
+    Limited limited(elastic_limit(rule));
     limited.begin(x_n);
     expect_near(limited.linearised(first), by_hand(rule, x_n, first, first), "the first iterate");
     expect_near(limited.linearised(second), by_hand(rule, x_n, second, second), "the second iterate");
@@ -147,8 +145,8 @@ TEST(LimitStiffness, IsOfTheTriangleAtTheStartOfTheStepInEveryIteration) {
 
 TEST(LimitStiffness, OncePerStepIsAlsoOfTheGapOfTheFirstIterate) {
   const Positions x_n = stretched(0.6, 1.02), first = stretched(1.05, 1.03), second = stretched(1.12, 0.9);
-  for (const LimitStiffness& rule : rules(Refresh::per_step)) {
-    Limited limited(rule);
+  for (const Rule& rule : rules(Refresh::per_step)) {
+    Limited limited(elastic_limit(rule));
     limited.begin(x_n);
     expect_near(limited.linearised(first), by_hand(rule, x_n, first, first), "the first iterate");
     expect_near(limited.linearised(second), by_hand(rule, x_n, first, second), "the second iterate");
@@ -160,13 +158,13 @@ TEST(LimitStiffness, OncePerStepIsAlsoOfTheGapOfTheFirstIterate) {
 /// The smaller of the two gaps of an element is asked, but none below the floor.
 TEST(LimitStiffness, IsAskedAtTheFloorWhereTheGapIsSmaller) {
   const Positions x_n = stretched(1, 1), near_limit = stretched(1.2, 1), far = stretched(1.03, 1);
-  LimitStiffness rule = rule_of(MassTerm::paper, false, Refresh::per_iteration);
+  Rule rule = rule_of(MassTerm::paper, false, Refresh::per_iteration);
   rule.gap_floor = 0.5;
   const Scene scene = Limited::two_triangles();
   const double floor = 0.5 * scene.limit.width[0];
   ASSERT_LT(gaps_at(scene, near_limit)[0], floor);
   ASSERT_GT(gaps_at(scene, far)[0], floor);
-  Limited limited(rule);
+  Limited limited(elastic_limit(rule));
   limited.begin(x_n);
   expect_near(limited.linearised(far), by_hand(rule, x_n, far, far), "above the floor");
   std::vector<double> expected = by_hand(rule, x_n, near_limit, near_limit);
@@ -177,10 +175,8 @@ TEST(LimitStiffness, IsAskedAtTheFloorWhereTheGapIsSmaller) {
 
 TEST(LimitStiffness, TheMultiplierActsOnAllOfIt) {
   const Positions x_n = stretched(0.9, 1), x = stretched(1.05, 1.02);
-  for (const LimitStiffness& rule : rules(Refresh::per_iteration)) {
-    LimitStiffness scaled = rule;
-    scaled.multiplier = 3;
-    Limited limited(scaled);
+  for (const Rule& rule : rules(Refresh::per_iteration)) {
+    Limited limited(elastic_limit(rule, 3));
     limited.begin(x_n);
     std::vector<double> expected = by_hand(rule, x_n, x, x);
     for (double& energy : expected) energy *= 3;

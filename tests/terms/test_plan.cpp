@@ -66,7 +66,7 @@ TEST(plan, follows_every_option) {
   BodySpec box = rigid_box("box");
   box.motion.velocity = Vec3d(0, 0, 1);
   TermOptions terms = term_options();
-  terms.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+  terms.limit_stiffness = test::elastic_limit();
   PlanOptions options;
   options.linear.name = "pcg";
   options.diagnose = options.audit = options.trace = options.frames = options.matrices = true;
@@ -124,7 +124,7 @@ TEST(plan, keeps_the_submatrix_for_a_limit_without_contact) {
   body.material.limit = StrainLimitSpec{};
   body.d_hat = 0.01;
   TermOptions terms;
-  terms.limit_stiffness.kind = LimitStiffness::Kind::elasticity_inclusive;
+  terms.limit_stiffness = test::elastic_limit();
 
   EXPECT_TRUE(plan_of(scene_of({body}), terms).policy_submatrix.needed);
   terms.strain_limit = false;

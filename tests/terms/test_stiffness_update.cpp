@@ -11,7 +11,7 @@ constexpr double dt = 0.01;
 
 /// kappa = m/dt^2 of a row of one free vertex.
 std::unique_ptr<StiffnessPolicy> inertia_policy() {
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "elasticity_inclusive";
   config.parameters.emplace("mass_term", "inertia");
   config.parameters["elastic_term"] = false;
@@ -53,34 +53,34 @@ struct Updated {
 
 TEST(StiffnessUpdate, a_trial_that_was_rejected_says_nothing_of_the_rows_that_stay) {
   Updated u;
-  u.update.set_time(dt, 1);
+  u.update.set_time({dt, 1});
   ContactTable state = rows_of({7});
   EXPECT_EQ(u.refresh(state), 0);  // the row is new
   EXPECT_NEAR(state.kappa[0], 0.3 / (dt * dt), 1e-9);
 
   ContactTable rejected = rows_of({1, 2, 3});  // more rows than the state has, all of them new
   u.freeze(rejected);
-  u.update.set_time(2 * dt, 1);
+  u.update.set_time({2 * dt, 1});
   EXPECT_NEAR(u.refresh(state), 3, 1e-12);  // kappa fell to a quarter
 }
 
 TEST(StiffnessUpdate, a_row_of_an_accepted_trial_is_compared_with_what_it_came_with) {
   Updated u;
-  u.update.set_time(dt, 1);
+  u.update.set_time({dt, 1});
   ContactTable state = rows_of({7});
   u.refresh(state);
   ContactTable accepted = rows_of({7, 8});
   u.freeze(accepted);
   u.update.keep(accepted, u.none);
   EXPECT_EQ(accepted.kappa_before[1], 0);  // met for the first time
-  u.update.set_time(2 * dt, 1);
+  u.update.set_time({2 * dt, 1});
   EXPECT_NEAR(u.refresh(accepted), 3, 1e-12);
   EXPECT_EQ(u.refresh(accepted), 0);  // an iterate that was kept has not changed
 }
 
 /// kappa = n^T H n + m/d^2 once a step.
 std::unique_ptr<StiffnessPolicy> step_policy(const char* derivative) {
-  StiffnessPolicyConfig config;
+  PolicyConfig config;
   config.name = "elasticity_inclusive";
   config.parameters.emplace("refresh", "per_step");
   config.parameters.emplace("derivative", derivative);

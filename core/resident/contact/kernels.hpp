@@ -2,6 +2,7 @@
 #pragma once
 
 #include "barriers/shapes/shape_list.hpp"
+#include "barriers/stiffness/policy_list.hpp"
 #include "core/resident/contact/bound_kernels.hpp"
 #include "core/resident/contact/candidate_kernels.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"

@@ -1,30 +1,39 @@
 #include "core/resident/contact/resident_stiffness.hpp"
 
+#include "barriers/stiffness/item_policy.hpp"
+#include "barriers/stiffness/policy_list.hpp"
+
 namespace bb::resident {
 
-ResidentStiffness::ResidentStiffness(exec::Executor& executor, const StiffnessRule& rule,
+void require_kernel(const StiffnessPolicy& policy, const std::string& where) {
+  if (!policy.uniform()) ContactPolicies::require(policy, where);
+}
+
+ResidentStiffness::ResidentStiffness(exec::Executor& executor, const StiffnessPolicy& policy,
                                      std::span<const double> mass)
     : executor_(executor),
-      rule_(rule),
+      policy_(policy),
       mass_(executor, "vertex masses"),
       missing_(executor, "rows without kappa"),
       known_pair_(executor, "known pairs"),
       known_kappa_(executor, "known kappa"),
       known_per_gap_(executor, "known kappa per gap"),
       change_(executor, "kappa change", 1) {
-  if (!rule.uniform) mass_.upload(mass);
+  require_kernel(policy, "/formulation/stiffness_policy/name");
+  if (!policy.uniform()) mass_.upload(mass);
 }
 
 KnownPairs ResidentStiffness::memory() const {
   return {n_known_, known_pair_.data(), known_kappa_.data(),
-          rule_.potential() ? known_per_gap_.data() : nullptr};
+          policy_.has_potential() ? known_per_gap_.data() : nullptr};
 }
 
 void ResidentStiffness::compute(ResidentRows& rows, const std::uint8_t* missing, bool at_d_hat,
                                 const MatrixPart& elastic) {
-  const ElasticityInclusiveRule rule{rule_.mass_term, rule_.elastic_term, dt_, c_};
-  executor_.each(rows.size(), InclusiveKappa{rows.view(), missing, rule, rule_.gap_floor, rule_.multiplier,
-                                             at_d_hat, mass_.data(), elastic});
+  ContactPolicies::with(policy_, [&]<class P>(const ScaledPolicy<P>& policy) {
+    executor_.each(rows.size(), RowKappa<P>{rows.view(), missing, policy, policy_.needs_hessian(), time_,
+                                            at_d_hat, mass_.data(), elastic});
+  });
 }
 
 void ResidentStiffness::recall_and_compute(ResidentRows& rows, const KnownPairs& known, bool at_d_hat,
@@ -36,7 +45,7 @@ void ResidentStiffness::recall_and_compute(ResidentRows& rows, const KnownPairs&
 
 double ResidentStiffness::refresh(ResidentRows& rows, const MatrixPart& elastic) {
   rows.uniform_kappa = uniform_kappa_;
-  if (rule_.uniform || rows.size() == 0) return 0;
+  if (policy_.uniform() || rows.size() == 0) return 0;
   if (!rows_are_memory()) {
     recall_and_compute(rows, memory(), false, elastic);
     keep(rows);
@@ -50,18 +59,18 @@ double ResidentStiffness::refresh(ResidentRows& rows, const MatrixPart& elastic)
 
 void ResidentStiffness::freeze(ResidentRows& trial, ResidentRows& iterate, const MatrixPart& elastic) {
   trial.uniform_kappa = uniform_kappa_;
-  if (rule_.uniform || trial.size() == 0) return;
+  if (policy_.uniform() || trial.size() == 0) return;
   const RowView from = iterate.view();
   recall_and_compute(trial, rows_are_memory() ? KnownPairs{from.n, from.pair, from.kappa, nullptr} : memory(),
                      true, elastic);
   if (rows_are_memory()) {
     executor_.each(trial.size(), NoteKappaBefore{trial.view(), missing_.counts(trial.size())});
   }
-  if (rule_.potential()) keep(trial);
+  if (policy_.has_potential()) keep(trial);
 }
 
 void ResidentStiffness::keep(ResidentRows& rows) {
-  if (rule_.uniform || rows_are_memory() || rows.size() == 0) return;
+  if (policy_.uniform() || rows_are_memory() || rows.size() == 0) return;
   const RowView view = rows.view();
   const KnownPairs known = memory();
   std::uint8_t* const mark = missing_.counts(rows.size());
@@ -71,8 +80,8 @@ void ResidentStiffness::keep(ResidentRows& rows) {
   const Index n = n_known_ + n_fresh;
   exec::Buffer<Key> pair(executor_, "known pairs", n);
   exec::Buffer<double> kappa(executor_, "known kappa", n), per_gap(executor_, "known kappa per gap");
-  if (rule_.potential()) per_gap.resize(n);
-  double* const per_gap_sq = rule_.potential() ? per_gap.data() : nullptr;
+  if (policy_.has_potential()) per_gap.resize(n);
+  double* const per_gap_sq = policy_.has_potential() ? per_gap.data() : nullptr;
   executor_.each(n_known_,
                  MergeKnown{known, view, missing_.places(), n_fresh, pair.data(), kappa.data(), per_gap_sq});
   executor_.each(rows.size(),
@@ -117,7 +126,7 @@ KnownStiffness ResidentStiffness::known() const {
   out.pair.resize(n);
   const std::vector<double> fixed = known_kappa_.download();
   const std::vector<double> per_gap_sq =
-      rule_.potential() ? known_per_gap_.download() : std::vector<double>(n, 0.0);
+      policy_.has_potential() ? known_per_gap_.download() : std::vector<double>(n, 0.0);
   for (std::size_t i = 0; i < n; ++i) out.parts.push_back({fixed[i], per_gap_sq[i]});
   return out;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <span>
+#include <string>
 
 #include "core/contact/kappa_memory.hpp"
 #include "core/resident/contact/compaction.hpp"
@@ -9,26 +10,29 @@
 
 namespace bb::resident {
 
-/// The columns that rows need for a policy. Where the rule is uniform, its one kappa is in ResidentStiffness::set_uniform.
-inline KappaColumns columns_of(const StiffnessRule& rule) {
-  if (rule.uniform) return KappaColumns::uniform;
-  if (rule.potential()) return KappaColumns::potential;
-  return rule.refresh == Refresh::per_iteration ? KappaColumns::compared : KappaColumns::kept;
+/// The columns that rows need for a policy. Where it is uniform, its one kappa is in ResidentStiffness::set_uniform.
+inline KappaColumns columns_of(const StiffnessPolicy& policy) {
+  if (policy.uniform()) return KappaColumns::uniform;
+  if (policy.has_potential()) return KappaColumns::potential;
+  return policy.refresh() == Refresh::per_iteration ? KappaColumns::compared : KappaColumns::kept;
 }
+
+/// Errors: ConfigError at `where` for a policy that has no kernel: one of a plugin.
+void require_kernel(const StiffnessPolicy& policy, const std::string& where);
 
 class ResidentStiffness {
  public:
-  /// mass: [n_vertices] kg.
-  ResidentStiffness(exec::Executor& executor, const StiffnessRule& rule, std::span<const double> mass);
+  /// policy must outlive it. mass: [n_vertices] kg. Errors: those of require_kernel.
+  ResidentStiffness(exec::Executor& executor, const StiffnessPolicy& policy, std::span<const double> mass);
 
   /// N/m, of all rows from now on.
   void set_uniform(double kappa) { uniform_kappa_ = kappa; }
   /// Step length (s) and inertia weight c.
-  void set_time(double dt, double c) { dt_ = dt, c_ = c; }
+  void set_time(const StiffnessTime& time) { time_ = time; }
   /// Forgets the kappa of the step before.
   void begin_step() { n_known_ = 0; }
 
-  /// kappa of the rows of a Newton iterate. elastic: the elastic matrix H, read where needs_hessian(); a potential
+  /// kappa of the rows of a Newton iterate. elastic: the elastic matrix H, read where the policy needs it; a potential
   /// asks for that of the step's first iterate all through the step. @return the largest relative change of a
   /// row's kappa since its iterate was accepted; 0 where there is one kappa, or kappa is kept for the step.
   double refresh(ResidentRows& rows, const MatrixPart& elastic);
@@ -38,22 +42,22 @@ class ResidentStiffness {
   /// The pairs of an accepted trial keep their kappa for the rest of the step.
   void keep(ResidentRows& rows);
 
-  const StiffnessRule& rule() const { return rule_; }
   Index n_known() const { return n_known_; }
   /// The pairs whose kappa is frozen for the step, copied to the host.
   KnownStiffness known() const;
 
  private:
   /// One kappa a pair and iterate: the rows of the iterate are the memory.
-  bool rows_are_memory() const { return rule_.refresh == Refresh::per_iteration; }
+  bool rows_are_memory() const { return !policy_.frozen_in_step(); }
   KnownPairs memory() const;
   void compute(ResidentRows& rows, const std::uint8_t* missing, bool at_d_hat, const MatrixPart& elastic);
   void recall_and_compute(ResidentRows& rows, const KnownPairs& known, bool at_d_hat,
                           const MatrixPart& elastic);
 
   exec::Executor& executor_;
-  StiffnessRule rule_;
-  double uniform_kappa_ = 0, dt_ = 0, c_ = 1;
+  const StiffnessPolicy& policy_;
+  double uniform_kappa_ = 0;
+  StiffnessTime time_;
   exec::Buffer<double> mass_;
   Compaction missing_;
   exec::Buffer<Key> known_pair_;

@@ -1,31 +1,23 @@
-// Stiffness of rows: the elasticity-inclusive rule with w^T H w streamed from the blocks of the matrix, and the pairs
-// that have a kappa already.
+// Stiffness of rows: a policy's kappa with w^T H w streamed from the blocks of the matrix, and the pairs that have a
+// kappa already.
 #pragma once
 
-#include "barriers/stiffness/elasticity_inclusive.hpp"
+#include "barriers/stiffness/scaled_policy.hpp"
+#include "core/barrier/relative_change.hpp"
 #include "core/resident/contact/compaction_kernels.hpp"
 #include "core/resident/contact/resident_rows.hpp"
-#include "core/resident/linear/find_block.hpp"
-#include "core/resident/linear/resident_matrix.hpp"
+#include "core/resident/linear/sub_matrix.hpp"
 
 namespace bb::resident {
 
-/// The sub-matrix of at most four vertices, entry by entry.
-struct SubMatrix {
-  MatrixPart matrix;
-  Index block[4][4];
-  BB_HD double operator()(int row, int column) const {
-    const Index j = block[row / 3][column / 3];
-    return j < 0 ? 0.0 : matrix.value[value_index(j, 3 * (column % 3) + row % 3)];
-  }
-};
-
-/// kappa of rows as the policy elasticity_inclusive has it.
-struct InclusiveKappa {
+/// kappa of rows by a policy of contacts, P a struct of barriers/stiffness.
+template <class P>
+struct RowKappa {
   RowView rows;
   const std::uint8_t* missing;  // only rows marked here; null: all
-  ElasticityInclusiveRule rule;
-  double gap_floor, multiplier;
+  ScaledPolicy<P> policy;
+  bool with_hessian;
+  StiffnessTime time;
   bool at_d_hat;       // the gap is d_hat
   const double* mass;  // [n_vertices] kg
   MatrixPart elastic;
@@ -42,24 +34,16 @@ struct InclusiveKappa {
       ++n;
     }
     for (int c = 0; c < 3; ++c) normal[c] = rows.normal[c * rows.n + r];
-    SubMatrix h{elastic, {}};
-    if (rule.elastic_term) {
-      for (int i = 0; i < n; ++i) {
-        for (int j = 0; j < n; ++j) {
-          h.block[i][j] = find_block(elastic.row_begin, elastic.column, vertex[i], vertex[j]);
-        }
-      }
-    }
+    const SubMatrix h(elastic, vertex, with_hessian ? n : 0);
+    const ContactSums<double> sums = contact_sums(n, weight, normal, masses, h, with_hessian);
     const double d_hat = rows.d_hat[r];
     if (rows.per_gap_sq) {
-      const KappaParts one = elasticity_inclusive_parts(n, weight, normal, d_hat, masses, h, rule);
-      rows.kappa[r] = multiplier * one.fixed;
-      rows.per_gap_sq[r] = multiplier * one.per_gap_sq;
+      const KappaParts one = policy.contact_parts(sums, d_hat, time);
+      rows.kappa[r] = one.fixed;
+      rows.per_gap_sq[r] = one.per_gap_sq;
       return;
     }
-    const double d = at_d_hat ? d_hat : rows.d[r], floor = gap_floor * d_hat;
-    rows.kappa[r] = multiplier * elasticity_inclusive_kappa(n, weight, normal, d < floor ? floor : d, d_hat,
-                                                            masses, h, rule);
+    rows.kappa[r] = policy.contact_kappa(sums, at_d_hat ? d_hat : rows.d[r], d_hat, time);
   }
 };
 
@@ -92,16 +76,14 @@ struct NoteKappaBefore {
   BB_HD void operator()(Index r) const { rows.kappa_before[r] = missing[r] != 0 ? 0.0 : rows.kappa[r]; }
 };
 
-/// Largest change max(a, b)/min(a, b) - 1 of a row's kappa, as the complement of its bits; then kappa is what the
-/// next change is against.
+/// Largest relative_change of a row's kappa, as the complement of its bits; then kappa is what the next change is
+/// against.
 struct SettleKappa {
   RowView rows;
   Key* largest;
   BB_HD void operator()(Index r) const {
-    const double a = rows.kappa_before[r], b = rows.kappa[r];
-    rows.kappa_before[r] = b;
-    if (!(a > 0 && b > 0)) return;
-    const double change = (a > b ? a : b) / (a > b ? b : a) - 1;
+    const double change = relative_change(rows.kappa_before[r], rows.kappa[r]);
+    rows.kappa_before[r] = rows.kappa[r];
     if (change > 0)
       exec::atomic_min(largest, ~exec::ordered_bits(change));  // two infinite kappa: not a number
   }
@@ -152,7 +134,7 @@ struct MergeFresh {
   }
 };
 
-/// Pairs with a row at the end of two steps whose gap shrank: what ipc_adaptive asks before it doubles kappa.
+/// Pairs with a row at the end of two steps whose gap shrank: no others can make a policy adapt.
 struct MarkShrinking {
   RowView rows;
   const Key* pair_before;
@@ -161,7 +143,7 @@ struct MarkShrinking {
   std::uint8_t* mark;
   BB_HD void operator()(Index r) const {
     const Index at = first_not_below(pair_before, Index{0}, n_before, rows.pair[r]);
-    mark[r] = at < n_before && pair_before[at] == rows.pair[r] && rows.d[r] < gap_before[at] ? 1 : 0;
+    mark[r] = at < n_before && pair_before[at] == rows.pair[r] && closes(rows.d[r], gap_before[at]) ? 1 : 0;
   }
 };
 struct ListShrinking {

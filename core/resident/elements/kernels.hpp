@@ -2,6 +2,7 @@
 #pragma once
 
 #include "barriers/shapes/shape_list.hpp"
+#include "barriers/stiffness/policy_list.hpp"
 #include "core/resident/elements/element_kernels.hpp"
 #include "core/resident/elements/family_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"

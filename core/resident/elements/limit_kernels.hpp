@@ -2,12 +2,14 @@
 #pragma once
 
 #include "barriers/shapes/gap_potential.hpp"
+#include "barriers/stiffness/scaled_policy.hpp"
 #include "core/barrier/barrier_row.hpp"
 #include "core/barrier/relative_change.hpp"
 #include "core/energy/strain_limit.hpp"
 #include "core/energy/strain_stiffness.hpp"
 #include "core/resident/elements/family_kernels.hpp"
 #include "core/resident/elements/gather_kernels.hpp"
+#include "core/resident/linear/sub_matrix.hpp"
 #include "core/resident/sums/sum_kernels.hpp"
 
 namespace bb::resident {
@@ -84,52 +86,42 @@ struct LimitShape {
   }
 };
 
-/// kappa_e = k_s x rest area.
-struct FixedLimitStiffness {
+/// kappa_e at the measured pseudo-gaps by a policy of strain limits, P a struct of barriers/stiffness.
+template <class P>
+struct ElementKappa {
   LimitColumns limit;
-  double k_s;  // N/m
-  BB_HD void operator()(Index e) const { limit.kappa[e] = k_s * limit.rest.area[e]; }
-};
-
-/// kappa_e of the elasticity-inclusive rule at the measured pseudo-gaps.
-struct ElasticLimitStiffness {
-  LimitColumns limit;
-  StrainStiffnessRule rule;
-  double gap_floor, multiplier;
+  ScaledPolicy<P> policy;
+  bool with_hessian;
+  StiffnessTime time;
   const double* x_n;           // [3 n_vertices] m, start of the step
   const double* vertex_mass;   // [n_vertices] kg
-  const double* element_mass;  // [n] kg
-  const Index* row_begin;      // the elastic matrix, read where the rule has an elastic term
-  const int* column;
-  const double* value;
-  KappaParts* parts;  // [n] J, written where kappa has a potential; else null
-  double* before;     // [n] J, kappa before this refresh
+  const double* element_mass;  // [n] kg; null where the policy is uniform
+  MatrixPart elastic;          // read where the policy needs it
+  KappaParts* parts;           // [n] J, written where kappa has a potential; else null
+  double* before;              // [n] J, kappa before this refresh; null where the policy is uniform
   BB_HD void operator()(Index e) const {
     Vec3d p[3], mass;
     limit.points(x_n, e, p);
     for (int k = 0; k < 3; ++k) mass[k] = vertex_mass[limit.vertex(k, e)];
-    const KappaParts kappa =
-        strain_stiffness<double>(p, elastic_block(e), mass, element_mass[e], limit.band_width[e], rule);
-    before[e] = limit.kappa[e];
+    const ElementSums<double> sums = element_sums<double>(
+        p, mass, element_mass ? element_mass[e] : 0.0, limit.rest.area[e], [&] { return elastic_block(e); },
+        with_hessian);
+    if (before) before[e] = limit.kappa[e];
     if (parts) {
-      parts[e].fixed = multiplier * kappa.fixed;
-      parts[e].per_gap_sq = multiplier * kappa.per_gap_sq;
+      parts[e] = policy.element_parts(sums, limit.band_width[e], time);
       limit.kappa[e] = 1;
       return;
     }
-    const double least = gap_floor * limit.band_width[e], gap = limit.smaller_gap(e);
-    limit.kappa[e] = kappa.at(gap < least ? least : gap) * multiplier;
+    limit.kappa[e] = policy.element_kappa(sums, limit.smaller_gap(e), limit.band_width[e], time);
   }
 
  private:
   BB_HD Mat<double, 9, 9> elastic_block(Index e) const {
-    Mat<double, 9, 9> out = Mat<double, 9, 9>::Zero();
-    if (!rule.elastic_term) return out;
-    for (int a = 0; a < 3; ++a) {
-      for (int b = 0; b < 3; ++b) {
-        const Index block = find_block(row_begin, column, limit.vertex(a, e), limit.vertex(b, e));
-        for (int c = 0; c < 9; ++c) out(3 * a + c % 3, 3 * b + c / 3) = value[value_index(block, c)];
-      }
+    const int vertices[3] = {limit.vertex(0, e), limit.vertex(1, e), limit.vertex(2, e)};
+    const SubMatrix h(elastic, vertices, 3);
+    Mat<double, 9, 9> out;
+    for (int j = 0; j < 9; ++j) {
+      for (int i = 0; i < 9; ++i) out(i, j) = h(i, j);
     }
     return out;
   }

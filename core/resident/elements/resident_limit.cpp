@@ -1,6 +1,8 @@
 #include "core/resident/elements/resident_limit.hpp"
 
 #include "barriers/shapes/shape_list.hpp"
+#include "barriers/stiffness/item_policy.hpp"
+#include "barriers/stiffness/policy_list.hpp"
 #include "core/energy/strain_limit_batch.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/elements/limit_kernels.hpp"
@@ -47,15 +49,15 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
         parts_(executor, "limit stiffness parts"),
         least_(executor),
         numbers_(executor) {
+    LimitPolicies::require(policy(), "stiffness_policy/name");
     std::vector<double> band = scene.limit.onset;
     band.insert(band.end(), scene.limit.width.begin(), scene.limit.width.end());
     band_.upload(band);
-    const LimitStiffness& rule = options.limit_stiffness;
-    if (rule.kind == LimitStiffness::Kind::elasticity_inclusive) {
+    if (!policy().uniform()) {
       mass_.upload(scene.limit.mass);
       before_.resize(n_of(batch));
-      if (rule.has_potential()) parts_.resize(n_of(batch));
     }
+    if (policy().has_potential()) parts_.resize(n_of(batch));
     set_columns(n_of(batch));
   }
 
@@ -64,7 +66,7 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
     fill_barrier();
   }
   void begin_step() override { fresh_ = false, first_ = true; }
-  bool reads_elastic() const override { return rule().needs_hessian() && !keeps(); }
+  bool reads_elastic() const override { return policy().needs_hessian() && !keeps(); }
   double refresh(const double* x, const ResidentFrame& frame, const double* mass,
                  const MatrixPart& elastic) override;
   bool feasible() override {
@@ -78,15 +80,14 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
 
  private:
   static Index n_of(const StrainLimitBatch& batch) { return static_cast<Index>(batch.size()); }
-  const LimitStiffness& rule() const { return options_.limit_stiffness; }
+  const StiffnessPolicy& policy() const { return *options_.limit_stiffness; }
+  void fill_kappa(const ResidentFrame& frame, const double* mass, const MatrixPart& elastic);
   /// Whether kappa stays at the next refresh.
-  bool keeps() const {
-    return fresh_ && (rule().kind == LimitStiffness::Kind::fixed || rule().refresh == Refresh::per_step);
-  }
+  bool keeps() const { return fresh_ && policy().frozen_in_step(); }
   void measure_stretch(const double* x) { executor_.each(size(), MeasureStretch<R>{elements_, x}); }
   /// Barrier terms at the measured pseudo-gaps.
   void fill_barrier() {
-    launch_shape_(executor_, elements_, options_.limit, rule().has_potential() ? parts_.data() : nullptr);
+    launch_shape_(executor_, elements_, options_.limit, policy().has_potential() ? parts_.data() : nullptr);
   }
   void set_columns(Index n) {
     elements_.of = triangles_.vertex.data();
@@ -114,23 +115,32 @@ class LimitFamily final : public FamilyOf<Limit<R>, ResidentLimit> {
 template <int R>
 double LimitFamily<R>::refresh(const double* x, const ResidentFrame& frame, const double* mass,
                                const MatrixPart& elastic) {
-  const bool first = first_, keep = keeps(), potential = rule().has_potential();
+  const bool first = first_, keep = keeps();
   first_ = false, fresh_ = true;
   measure_stretch(x);
-  if (!keep && rule().kind == LimitStiffness::Kind::fixed) {
-    executor_.each(size(), FixedLimitStiffness{elements_, rule().k_s});
-  } else if (!keep) {
-    executor_.each(size(), ElasticLimitStiffness{elements_, rule().rule(frame.dt, frame.c), rule().gap_floor,
-                                                 rule().multiplier, frame.x_n, mass, mass_.data(),
-                                                 elastic.row_begin, elastic.column, elastic.value,
-                                                 potential ? parts_.data() : nullptr, before_.data()});
-  }
+  if (!keep) fill_kappa(frame, mass, elastic);
   fill_barrier();
-  if (keep || rule().kind == LimitStiffness::Kind::fixed) return 0;
-  if (first || potential) return 0;
+  if (keep || first || policy().uniform() || policy().has_potential()) return 0;
   least_.clear();
   least_.add(size(), LimitKappaChange{elements_, before_.data()});
   return least_.largest();
+}
+
+template <int R>
+void LimitFamily<R>::fill_kappa(const ResidentFrame& frame, const double* mass, const MatrixPart& elastic) {
+  KappaParts* const parts = policy().has_potential() ? parts_.data() : nullptr;
+  LimitPolicies::with(policy(), [&]<class P>(const ScaledPolicy<P>& values) {
+    executor_.each(size(), ElementKappa<P>{elements_,
+                                           values,
+                                           policy().needs_hessian(),
+                                           {frame.dt, frame.c},
+                                           frame.x_n,
+                                           mass,
+                                           mass_.data(),
+                                           elastic,
+                                           parts,
+                                           before_.data()});
+  });
 }
 
 template <int R>

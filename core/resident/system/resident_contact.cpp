@@ -7,18 +7,6 @@
 #include "core/resident/contact/detour_kernels.hpp"
 
 namespace bb::resident {
-namespace {
-
-StiffnessRule rule_of(const StiffnessPolicy& policy) {
-  const std::optional<StiffnessRule> rule = policy.rule();
-  if (!rule) {
-    throw ConfigError("/formulation/stiffness_policy/name", std::string(policy.name()),
-                      "a policy with a device form; this one runs with device cpu only");
-  }
-  return *rule;
-}
-
-}  // namespace
 
 ResidentContact::ResidentContact(exec::Executor& executor, const Scene& scene, TermOptions& options,
                                  const ContactPlan& plan, const exec::Buffer<std::uint8_t>& fixed)
@@ -33,15 +21,15 @@ ResidentContact::ResidentContact(exec::Executor& executor, const Scene& scene, T
       step_bound_(executor, resident_surface_,
                   {options.contact_options.ccd_park, options.contact_options.ccd_max_probes}),
       finder_(executor, resident_surface_, plan.mollifier.needed),
-      stiffness_(executor, rule_of(*options.stiffness), scene.mass),
-      barrier_(options.contact, rule_of(*options.stiffness).potential()),
+      stiffness_(executor, *options.stiffness, scene.mass),
+      barrier_(options.contact, options.stiffness->has_potential()),
       assembly_(executor, resident_surface_, scene.n_vertices()),
       sums_(executor),
       curved_(executor),
       straight_(executor),
       gaps_(executor),
-      rows_(executor, columns_of(stiffness_.rule())),
-      trial_(executor, columns_of(stiffness_.rule())),
+      rows_(executor, columns_of(*options.stiffness)),
+      trial_(executor, columns_of(*options.stiffness)),
       part_(executor, "contact gradient"),
       mass_(executor, "contact masses") {
   mass_.upload(scene.mass);
@@ -128,13 +116,12 @@ Compensated ResidentContact::energy(const Column& x) {
 }
 
 void ResidentContact::change_time(double dt, double c) {
-  dt_ = dt;
-  c_ = c;
-  stiffness_.set_time(dt, c);
+  time_ = {dt, c};
+  stiffness_.set_time(time_);
 }
 
 void ResidentContact::use_policy_kappa() {
-  if (stiffness_.rule().uniform) stiffness_.set_uniform(options_.stiffness->state().kappa);
+  if (options_.stiffness->uniform()) stiffness_.set_uniform(options_.stiffness->state().kappa);
 }
 
 void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Column& g) {
@@ -159,27 +146,19 @@ void ResidentContact::give_back_motion() {
   executor_.trim();
 }
 
-// A policy with memory starts at the first iterate that has contacts, from B with kappa = 1 and the gradient of
-// everything else.
 void ResidentContact::start_policy(const Column& x, const Column& others) {
   StiffnessPolicy& policy = *options_.stiffness;
-  if (policy_started_ || !policy.needs_globals() || rows_.size() == 0) return;
+  if (!policy_start_.due(policy, static_cast<std::size_t>(rows_.size()))) return;
   stiffness_.set_uniform(1);
   stiffness_.refresh(rows_, {});
   barrier_.evaluate(executor_, rows_);
   part_.resize(others.size());
   part_.fill_zero();
   assembly_.add_gradient(rows_, x, part_);
-  StiffnessGlobals globals;
-  globals.grad_b_dot_grad_e = sums_.product(part_, others, fixed_);
-  globals.grad_b_sq = sums_.product(part_, part_, fixed_);
-  globals.mean_contact_mass = sums_.mean_mass(rows_, mass_);
-  globals.d_hat = *std::min_element(scene_.d_hat.begin(), scene_.d_hat.end());
-  globals.d2b_half = options_.contact.eval(globals.d_hat / 2, globals.d_hat).d2b;
-  globals.dt = dt_;
-  globals.c = c_;
-  policy_started_ = true;
-  if (!executor_.counts_only()) policy.start(globals);
+  const StartSums sums{sums_.product(part_, others, fixed_), sums_.product(part_, part_, fixed_),
+                       sums_.mean_mass(rows_, mass_)};
+  if (executor_.counts_only()) return policy_start_.set_started(true);
+  policy_start_.start(policy, scene_, options_.contact, sums, time_);
 }
 
 const StepBound& ResidentContact::bound(const Column& x0, const Column& x1) {

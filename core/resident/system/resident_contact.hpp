@@ -13,6 +13,7 @@
 #include "core/resident/contact/resident_step_bound.hpp"
 #include "core/resident/contact/resident_stiffness.hpp"
 #include "core/resident/contact/row_finder.hpp"
+#include "core/terms/policy_start.hpp"
 #include "core/terms/report.hpp"
 #include "core/terms/term_options.hpp"
 
@@ -37,7 +38,7 @@ class ResidentContact {
   void end_step();
 
   // --- an iterate. elastic: the clamped elastic matrix, read where needs_hessian()
-  bool needs_hessian() const { return stiffness_.rule().needs_hessian(); }
+  bool needs_hessian() const { return options_.stiffness->needs_hessian(); }
   /// kappa and barrier of the rows at x; g (N) is the gradient of all other terms and gets that of B.
   void linearise(const Column& x, const MatrixPart& elastic, Column& g);
   /// Valid until the next call, or the next prepare().
@@ -83,10 +84,10 @@ class ResidentContact {
   /// trees, and every state on it gets its own lists. Results do not depend on it; counters of the bound do.
   void set_list_budget(std::size_t bytes) { list_budget_ = bytes; }
   const ResidentStiffness& stiffness() const { return stiffness_; }
+  const StiffnessPolicy& policy() const { return *options_.stiffness; }
   /// Of the last linearise(): largest relative change of a row's kappa.
   double kappa_change() const { return kappa_change_; }
-  bool policy_started() const { return policy_started_; }
-  void set_policy_started(bool started) { policy_started_ = started; }
+  PolicyStart& policy_start() { return policy_start_; }
   StepEndGaps& step_end_gaps() { return gaps_; }
 
  private:
@@ -130,8 +131,10 @@ class ResidentContact {
   Column part_;            // [3 n] gradient of B with kappa = 1
   exec::Buffer<double> mass_;
   StepBound bound_;
-  double dt_ = 0, c_ = 1, kappa_change_ = 0;
-  bool first_iterate_ = true, policy_started_ = false, pattern_changed_ = false;
+  StiffnessTime time_;
+  PolicyStart policy_start_;
+  double kappa_change_ = 0;
+  bool first_iterate_ = true, pattern_changed_ = false;
   bool has_pattern_ = false;  // that of the rows
 };
 

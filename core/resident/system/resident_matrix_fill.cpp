@@ -37,7 +37,7 @@ void ResidentPotential::fill_elastic(const Column& x) {
 // again; of a policy with a potential that of the step's first iterate, all through it.
 void ResidentPotential::keep_elastic() {
   if (!contact_ || !contact_->needs_hessian()) return;
-  if (contact_->stiffness().rule().potential() && has_step_elastic_) return;
+  if (contact_->policy().has_potential() && has_step_elastic_) return;
   has_step_elastic_ = true;
   const MatrixPart matrix = elements_.matrix();
   elastic_value_.resize(value_count(elements_.n_blocks()));

@@ -119,7 +119,7 @@ void ResidentPotential::keep(Archive& archive) {
 }
 
 void ResidentPotential::keep_contact(Archive& archive) {
-  bool started = contact_->policy_started();
+  bool started = contact_->policy_start().started();
   std::vector<Key> pair;
   std::vector<double> gap;
   contact_->step_end_gaps().download(pair, gap);
@@ -129,7 +129,7 @@ void ResidentPotential::keep_contact(Archive& archive) {
   archive(started, gaps);
   method_.stiffness->keep(archive);
   if (!archive.reads()) return;
-  contact_->set_policy_started(started);
+  contact_->policy_start().set_started(started);
   pair.clear(), gap.clear();
   for (const PairGap& each : gaps) pair.push_back(each.pair), gap.push_back(each.gap);
   contact_->step_end_gaps().upload(pair, gap);
