@@ -19,6 +19,7 @@ import time
 from pathlib import Path
 
 from .errors import UserError, tells
+from .text_table import markdown
 from .toolkit_meshes import generated_sheets, read_ply, write_problem
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -164,13 +165,17 @@ def rows_of_table(answers) -> list[dict]:
 
 
 def table_text(rows: list[dict]) -> str:
-    lines = ["| stage | ours | toolkit | ratio | items: ours, toolkit |", "|---|---|---|---|---|"]
-    for row in rows:
-        lines.append(
-            f"| {STAGES[row['stage']]} | {row['ours_s']:.3g} s | {row['toolkit_s']:.3g} s "
-            f"| {row['ratio']:.1f}x | {row['ours_items']}, {row['toolkit_items']} |"
-        )
-    return "\n".join(lines)
+    cells = [
+        [
+            STAGES[row["stage"]],
+            f"{row['ours_s']:.3g} s",
+            f"{row['toolkit_s']:.3g} s",
+            f"{row['ratio']:.1f}x",
+            f"{row['ours_items']}, {row['toolkit_items']}",
+        ]
+        for row in rows
+    ]
+    return "\n".join(markdown(["stage", "ours", "toolkit", "ratio", "items: ours, toolkit"], cells))
 
 
 def load_mesh(name: str, size: int, d_hat: float):

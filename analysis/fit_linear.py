@@ -24,6 +24,7 @@ import pandas as pd
 from .errors import UserError, tells
 from .program import run_sweep
 from .records import RecordError, Records, load
+from .text_table import aligned
 from .whole_file import write_whole
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -151,12 +152,10 @@ def print_table(table: pd.DataFrame) -> None:
         name=names,
         text=[f"{s * 1e3:.4g} ({e * 1e3:.4g})" for s, e in zip(table["seconds"], table["expected"])],
     )
+    by_scene = shown.pivot(index="scene", columns="name", values="text").fillna("-")
+    rows = [[scene, *by_scene.loc[scene]] for scene in dict.fromkeys(table["scene"])]
     print("ms of a linear solve, measured (expected by the model)")
-    print(
-        shown.pivot(index="scene", columns="name", values="text")
-        .loc[list(dict.fromkeys(table["scene"]))]
-        .to_string()
-    )
+    print("\n".join(aligned(["scene", *by_scene.columns], rows, set(range(1, 1 + len(by_scene.columns))))))
 
 
 def collect() -> Path:

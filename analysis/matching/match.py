@@ -17,6 +17,7 @@ from pathlib import Path
 
 from ..errors import UserError, tells
 from ..program import plugin_argument
+from ..text_table import aligned
 from ..whole_file import write_whole
 from .formulations import REFERENCE, ROOT, VARY, label, preset, settings
 from .runs import Sweep, check_equal, check_varied, collect, inputs_sha256, read_object, run, sweep
@@ -142,7 +143,7 @@ def _farthest(row: dict) -> str:
 
 def text(answer: dict) -> str:
     """The table, and a line for each that is not comparable."""
-    lines = [COLUMNS]
+    lines = []
     pilot = answer["formulations"][0]["matching"]
     head = (
         f"{answer['rule']}, theta {answer['theta']:g}; scene {answer['scene']}; load of"
@@ -167,9 +168,8 @@ def text(answer: dict) -> str:
                 row["verdict"],
             )
         )
-    widths = [max(len(line[k]) for line in lines) for k in range(len(COLUMNS))]
     shown = [head + (f" ({pilot['pilot_note']})" if pilot["pilot_note"] else "")]
-    shown += ["  ".join(word.ljust(width) for word, width in zip(line, widths)).rstrip() for line in lines]
+    shown += aligned(COLUMNS, lines)
     shown += [
         f"{row['formulation']}: {row['why']}"
         for row in answer["formulations"]
