@@ -9,7 +9,6 @@ and one build. Times are those of the threads of the sweep: one.
 
 from __future__ import annotations
 
-import argparse
 import datetime
 import json
 import os
@@ -22,12 +21,13 @@ import numpy as np
 import pandas as pd
 
 from .errors import UserError, tells
+from .front.arguments import parser_of
+from .places import ROOT
 from .program import run_sweep
 from .records import RecordError, Records, load
 from .text_table import aligned
 from .whole_file import write_whole
 
-ROOT = Path(__file__).resolve().parents[1]
 RECORDS = ROOT / "results/runs/linear_fit"
 WORK_TERMS = ("solve", "entry", "entry_sqrt_unknown", "factor_entry", "factor_flop")
 TIMES = ["time_linear_analyze_s", "time_linear_factor_s", "time_linear_solve_s"]
@@ -168,7 +168,7 @@ def collect() -> Path:
 
 @tells("fit-linear")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench fit-linear", description=__doc__)
+    parser = parser_of("fit-linear", __doc__)
     parser.add_argument(
         "records", type=Path, nargs="?", help="folder of the records (default: the sweep is run)"
     )
