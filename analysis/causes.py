@@ -7,19 +7,19 @@ both ends live: on which term, element, body and vertices.
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 import subprocess
 from pathlib import Path
 
 from .errors import UserError, tells
-from .program import plugin_argument, started
+from .front.arguments import parser_of, plugin_argument
+from .places import ROOT
+from .program import started
 from .record_file import read_record, read_trace
 from .records import LARGEST_COND
 from .text_table import aligned
 
-ROOT = Path(__file__).resolve().parents[1]
 STAGES = ["full", "without_contact", "without_contact_and_limit"]
 SCALINGS = ["none", "jacobi", "block_jacobi"]
 OPTIONS = [
@@ -199,11 +199,7 @@ def run_folder(given: Path, out: Path | None, settings: list[str], plugins: list
 
 @tells("causes")
 def main(words: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench causes",
-        description=__doc__.split("\n\n", 1)[1],
-        epilog="example: ./bench causes configs/scenes/drape2d.json --set /scene/variant=strip",
-    )
+    parser = parser_of("causes", __doc__.split("\n\n", 1)[1])
     parser.add_argument(
         "run",
         type=Path,
@@ -228,7 +224,7 @@ def main(words: list[str]) -> int:
         if at is not None and len(at) != 2:
             raise ValueError
     except ValueError:
-        parser.error(f"--at {given.at}: allowed: STEP,ITERATION, both from 0")
+        raise UserError(f"--at {given.at}: allowed: STEP,ITERATION, both from 0") from None
     folder = run_folder(given.run, given.out, given.set, given.plugin)
     record, rows = diagnosed(folder)
     row = pick(rows, given.scaling, at)

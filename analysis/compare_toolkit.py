@@ -19,9 +19,11 @@ import time
 from pathlib import Path
 
 from .errors import UserError, tells
+from .front.arguments import parser_of
+from .places import ROOT
+from .text_table import markdown
 from .toolkit_meshes import generated_sheets, read_ply, write_problem
 
-ROOT = Path(__file__).resolve().parents[1]
 DATA = Path(os.environ.get("BARRIERBENCH_DATA", ROOT / ".." / "shared" / "data"))
 PROGRAM = ROOT / "build/release/experiments/microbenchmarks/contact_stages"
 
@@ -164,13 +166,17 @@ def rows_of_table(answers) -> list[dict]:
 
 
 def table_text(rows: list[dict]) -> str:
-    lines = ["| stage | ours | toolkit | ratio | items: ours, toolkit |", "|---|---|---|---|---|"]
-    for row in rows:
-        lines.append(
-            f"| {STAGES[row['stage']]} | {row['ours_s']:.3g} s | {row['toolkit_s']:.3g} s "
-            f"| {row['ratio']:.1f}x | {row['ours_items']}, {row['toolkit_items']} |"
-        )
-    return "\n".join(lines)
+    cells = [
+        [
+            STAGES[row["stage"]],
+            f"{row['ours_s']:.3g} s",
+            f"{row['toolkit_s']:.3g} s",
+            f"{row['ratio']:.1f}x",
+            f"{row['ours_items']}, {row['toolkit_items']}",
+        ]
+        for row in rows
+    ]
+    return "\n".join(markdown(["stage", "ours", "toolkit", "ratio", "items: ours, toolkit"], cells))
 
 
 def load_mesh(name: str, size: int, d_hat: float):
@@ -191,7 +197,7 @@ def load_mesh(name: str, size: int, d_hat: float):
 
 
 def arguments(argv: list[str] | None) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(prog="./bench compare-toolkit", description=__doc__)
+    parser = parser_of("compare-toolkit", __doc__)
     parser.add_argument(
         "--mesh",
         choices=["cloth_ball", "sheets"],
@@ -208,7 +214,7 @@ def arguments(argv: list[str] | None) -> argparse.Namespace:
     parser.add_argument("--program", type=Path, default=PROGRAM, help=argparse.SUPPRESS)
     args = parser.parse_args(argv)
     if args.rounds < 1 or args.size < 2 or args.threads < 1 or not args.d_hat > 0:
-        parser.error("--rounds and --threads at least 1, --size at least 2, --d-hat above 0")
+        raise UserError("--rounds and --threads at least 1, --size at least 2, --d-hat above 0")
     return args
 
 

@@ -8,7 +8,6 @@ whatever is estimated, so that its samples pair up one by one.
 
 from __future__ import annotations
 
-import argparse
 import datetime
 import json
 import tempfile
@@ -16,10 +15,11 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from .errors import UserError, tells
+from .front.arguments import parser_of
+from .places import ROOT
 from .program import started
 from .text_table import markdown as table_lines
 
-ROOT = Path(__file__).resolve().parents[1]
 SWEEPS = ("demo_strip", "demo_pinned", "demo_article", "demo_drape")
 TIERS = (2, 4)
 
@@ -238,7 +238,7 @@ def processor() -> str:
 
 @tells("condition-table")
 def main(words: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench condition-table", description=__doc__)
+    parser = parser_of("condition-table", __doc__)
     parser.add_argument("--out", type=Path, default=ROOT / "results/CONDITION.md")
     parser.add_argument(
         "--sweeps", nargs="*", default=list(SWEEPS), help="of configs/sweeps; none: the corpus alone"

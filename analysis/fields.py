@@ -6,9 +6,9 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from functools import cache
-from pathlib import Path
 
-SCHEMAS = Path(__file__).resolve().parents[1] / "configs" / "schema"
+from .places import SCHEMAS
+
 OWN_NAMES = ("ids", "status", "labels", "summary")  # sections of a run whose fields need no prefix
 
 

@@ -9,7 +9,6 @@ and one build. Times are those of the threads of the sweep: one.
 
 from __future__ import annotations
 
-import argparse
 import datetime
 import json
 import os
@@ -22,11 +21,13 @@ import numpy as np
 import pandas as pd
 
 from .errors import UserError, tells
+from .front.arguments import parser_of
+from .places import ROOT
 from .program import run_sweep
 from .records import RecordError, Records, load
+from .text_table import aligned
 from .whole_file import write_whole
 
-ROOT = Path(__file__).resolve().parents[1]
 RECORDS = ROOT / "results/runs/linear_fit"
 WORK_TERMS = ("solve", "entry", "entry_sqrt_unknown", "factor_entry", "factor_flop")
 TIMES = ["time_linear_analyze_s", "time_linear_factor_s", "time_linear_solve_s"]
@@ -151,12 +152,10 @@ def print_table(table: pd.DataFrame) -> None:
         name=names,
         text=[f"{s * 1e3:.4g} ({e * 1e3:.4g})" for s, e in zip(table["seconds"], table["expected"])],
     )
+    by_scene = shown.pivot(index="scene", columns="name", values="text").fillna("-")
+    rows = [[scene, *by_scene.loc[scene]] for scene in dict.fromkeys(table["scene"])]
     print("ms of a linear solve, measured (expected by the model)")
-    print(
-        shown.pivot(index="scene", columns="name", values="text")
-        .loc[list(dict.fromkeys(table["scene"]))]
-        .to_string()
-    )
+    print("\n".join(aligned(["scene", *by_scene.columns], rows, set(range(1, 1 + len(by_scene.columns))))))
 
 
 def collect() -> Path:
@@ -169,7 +168,7 @@ def collect() -> Path:
 
 @tells("fit-linear")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench fit-linear", description=__doc__)
+    parser = parser_of("fit-linear", __doc__)
     parser.add_argument(
         "records", type=Path, nargs="?", help="folder of the records (default: the sweep is run)"
     )

@@ -19,10 +19,11 @@ from pathlib import Path
 
 from .errors import UserError, tells
 from .front import building
+from .front.arguments import parser_of
+from .places import ROOT
 from .text_table import aligned
 from .whole_file import write_whole
 
-ROOT = Path(__file__).resolve().parents[1]
 BUILD = ROOT / "build" / "fuzz"
 CRASHES = ROOT / "results" / "runs" / "fuzz"
 # Longest input: what a target's seeds need, and short enough that an execution stays below a millisecond.
@@ -156,11 +157,7 @@ def prepare(names: list[str]) -> None:
 @tells("fuzz")
 @tells("fuzz")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench fuzz",
-        description=__doc__.split("\n\n", maxsplit=1)[1],
-        epilog="example: ./bench fuzz mesh_ply config --seconds 60",
-    )
+    parser = parser_of("fuzz", __doc__.split("\n\n", 1)[1])
     parser.add_argument(
         "targets", nargs="*", metavar="TARGET", help=f"of {', '.join(targets())} (default: all)"
     )

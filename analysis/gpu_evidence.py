@@ -13,13 +13,14 @@ import sys
 from pathlib import Path
 
 from .errors import UserError
-from .program import read_object
+from .json_file import read_object
+from .places import ROOT
 from .record_file import RecordError, read_record
 from .whole_file import write_whole
 
 SCHEMA = "barrierbench.gpu_evidence/1"
 SCENES = ("drape_82k", "drape_1m", "dense_184m")
-RECORDS = Path(__file__).resolve().parents[1] / "results/gpu"
+RECORDS = ROOT / "results/gpu"
 
 
 def parts_of(folder: Path) -> dict[str, dict]:

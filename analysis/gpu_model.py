@@ -8,6 +8,8 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+from .text_table import markdown
+
 # Bytes a second of a device-to-device copy: H100 SXM and H200, published measurements; A100 80 GB by the
 # same part (0.9) of
 # its data sheet.
@@ -86,23 +88,17 @@ def seconds_text(seconds: float) -> str:
 
 
 def table() -> str:
-    lines = [
-        (
-            "| scene | bytes an iteration of PCG | card | PCG iteration | all but the solve | Newton"
-            " iteration, block Jacobi | with Schwarz |"
-        ),
-        "|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for size in SIZES:
         for card, rate in COPY_RATES.items():
             iteration = solver_bytes(size) / (PART_OF_COPY * rate)
             _, rest = newton_seconds(size, rate, "block Jacobi")
             whole = [sum(newton_seconds(size, rate, name)) for name in ITERATIONS]
-            lines.append(
-                f"| {size.name} | {solver_bytes(size) / 1e9:.3g} GB | {card} | {seconds_text(iteration)} |"
-                f" {seconds_text(rest)} | " + " | ".join(seconds_text(value) for value in whole) + " |"
-            )
-    return "\n".join(lines) + "\n"
+            times = [seconds_text(value) for value in (iteration, rest, *whole)]
+            rows.append([size.name, f"{solver_bytes(size) / 1e9:.3g} GB", card, *times])
+    head = ["scene", "bytes an iteration of PCG", "card", "PCG iteration", "all but the solve"]
+    head += ["Newton iteration, block Jacobi", "with Schwarz"]
+    return "\n".join(markdown(head, rows)) + "\n"
 
 
 if __name__ == "__main__":

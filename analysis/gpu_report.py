@@ -6,7 +6,6 @@ One row a card. Without a record the page says that nothing was timed. Prices ar
 
 from __future__ import annotations
 
-import argparse
 import shutil
 import tempfile
 from pathlib import Path
@@ -16,12 +15,13 @@ import pandas as pd
 
 from . import style
 from .errors import UserError, tells
+from .front.arguments import parser_of
 from .gpu_evidence import RECORDS, SCHEMA
-from .program import read_object
+from .json_file import read_object
+from .places import ROOT
 from .text_table import markdown as table_lines
 from .whole_file import write_whole
 
-ROOT = Path(__file__).resolve().parents[1]
 NEVER = "Correct by emulation, never timed."
 LARGE = "drape_1m"
 MOST_KERNELS = 12
@@ -264,7 +264,7 @@ def draw(records: list[dict], stem: Path) -> list[Path]:
 
 @tells("gpu-report")
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench gpu-report", description=__doc__)
+    parser = parser_of("gpu-report", __doc__)
     parser.add_argument(
         "--records", type=Path, default=RECORDS, help="folder of records and prices (default: results/gpu)"
     )

@@ -8,7 +8,6 @@ every machine with the same libraries.
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 import shutil
@@ -17,10 +16,12 @@ import tempfile
 from pathlib import Path
 
 from .errors import UserError, tells
+from .front.arguments import parser_of
+from .places import ROOT
 from .program import started
 from .spec_file import read_spec
+from .text_table import markdown as table_lines
 
-ROOT = Path(__file__).resolve().parents[1]
 MOST_BYTES = 8 << 20
 SOLVERS = ["cholmod", "lagged_cholesky", "none", "jacobi", "block_jacobi", "ic0", "schwarz"]
 HEAD = """# Hard systems as data
@@ -146,12 +147,7 @@ def solve_text(solve: dict) -> str:
 
 
 def table(matrices: list[dict]) -> str:
-    rows = [
-        "| system | cause | rows | entries | cond | Jacobi | block Jacobi | "
-        + " | ".join(f"pcg {s}" if s not in SOLVERS[:2] else s for s in SOLVERS)
-        + " |",
-        "|" + "---|" * (7 + len(SOLVERS)),
-    ]
+    rows = []
     for one in matrices:
         tier2 = {e["scaling"]: cond_text(e) for e in one["estimates"] if e["tier"] == 2}
         solves = {
@@ -159,13 +155,18 @@ def table(matrices: list[dict]) -> str:
         }
         cause, _, why = one["cause"].partition(": ")
         rows.append(
-            f"| `{Path(one['file']).stem}` | **{cause}**: {why} | {one['rows']} | {one['entries']} | "
-            + " | ".join(
-                [*(tier2[s] for s in ("none", "jacobi", "block_jacobi")), *(solves[s] for s in SOLVERS)]
-            )
-            + " |"
+            [
+                f"`{Path(one['file']).stem}`",
+                f"**{cause}**: {why}",
+                f"{one['rows']}",
+                f"{one['entries']}",
+                *(tier2[s] for s in ("none", "jacobi", "block_jacobi")),
+                *(solves[s] for s in SOLVERS),
+            ]
         )
-    return "\n".join(rows)
+    head = ["system", "cause", "rows", "entries", "cond", "Jacobi", "block Jacobi"]
+    head += [f"pcg {s}" if s not in SOLVERS[:2] else s for s in SOLVERS]
+    return "\n".join(table_lines(head, rows))
 
 
 def write_readme(out: Path) -> None:
@@ -183,9 +184,7 @@ def write_readme(out: Path) -> None:
 
 @tells("matrix-corpus")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench matrix-corpus", description="the corpus of hard systems and its table"
-    )
+    parser = parser_of("matrix-corpus")
     parser.add_argument("--spec", type=Path, default=ROOT / "configs/matrices/corpus.json")
     parser.add_argument("--out", type=Path, default=ROOT / "results/matrices")
     parser.add_argument("--table", action="store_true", help="only README.md, from the files that are there")

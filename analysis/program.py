@@ -1,16 +1,19 @@
-"""The one place that starts the program: questions, queries of `eval`, sweeps; JSON objects from files."""
+"""The one place that starts the program: questions, queries of `eval`, runs and sweeps."""
 
 from __future__ import annotations
 
-import argparse
 import json
 import os
+import shlex
 import subprocess
+import sys
 from pathlib import Path
+from typing import NoReturn
 
 from .errors import UserError
+from .places import ROOT
 
-RELEASE = Path(__file__).resolve().parents[1] / "build/release/experiments/barrierbench"
+RELEASE = ROOT / "build/release/experiments/barrierbench"
 
 
 def built_program(more: str = "") -> Path:
@@ -23,32 +26,39 @@ def built_program(more: str = "") -> Path:
     return path
 
 
-def plugin_argument(parser: argparse.ArgumentParser) -> None:
-    """--plugin, as the program takes it; may be repeated."""
-    parser.add_argument(
-        "--plugin",
-        action="append",
-        default=[],
-        metavar="FILE.so",
-        help=(
-            "a shared library with shapes, stiffness policies or integrators, loaded by every run; may be"
-            " repeated (examples/plugins/README.md)"
-        ),
-    )
-
-
 def plugin_words(plugins: list[str]) -> list[str]:
     """The arguments of the program, before its verb, that load these plugins."""
     return [word for file in plugins for word in ("--plugin", str(Path(file).resolve()))]
 
 
-def started(*words: str, plugins: list[str] = (), **options) -> subprocess.CompletedProcess:
-    """The program with these words, until it ends; what it says is kept unless `options` (of subprocess.run)
-    say otherwise. Errors: UserError where it is not built. What its exit code means is the caller's.
+def started(
+    *words: str, plugins: list[str] = (), under: list[str] = (), **options
+) -> subprocess.CompletedProcess:
+    """The program with these words, until it ends, as an argument of another program where `under` names one;
+    what it says is kept unless `options` (of subprocess.run) say otherwise. Errors: UserError where it is not
+    built. What its exit code means is the caller's.
     """
     said = {} if {"stdout", "stderr", "capture_output"} & set(options) else {"capture_output": True}
-    command = [str(built_program()), *plugin_words(list(plugins)), *words]
+    command = [*under, str(built_program()), *plugin_words(list(plugins)), *words]
     return subprocess.run(command, check=False, **{"text": True, **said, **options})
+
+
+def begun(*words: str) -> subprocess.Popen:
+    """The program with these words, not waited for; its errors can be read. Errors: as `started`."""
+    command = [str(built_program()), *words]
+    return subprocess.Popen(command, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+
+
+def in_shell(line: str, **options) -> subprocess.CompletedProcess:
+    """A line of bash in which ./bench stands for the program; otherwise as `started`."""
+    command = line.replace("./bench", shlex.quote(str(built_program())))
+    return subprocess.run(["bash", "-c", command], check=False, capture_output=True, text=True, **options)
+
+
+def become(program: Path, words: list[str]) -> NoReturn:
+    """Replaces this process by the program."""
+    sys.stdout.flush()
+    os.execv(program, [str(program), *words])
 
 
 def run_sweep(
@@ -67,16 +77,3 @@ def evaluated(queries: list[dict], plugins: list[str] = ()) -> list[dict]:
         why = bad or done.stderr.strip()[:300]
         raise UserError(f"eval: {len(answers)} answers to {len(queries)} queries: {why}")
     return answers
-
-
-def read_object(path: Path) -> dict:
-    """A JSON object from a file. Errors: UserError, which says what the file is instead."""
-    try:
-        data = json.loads(path.read_text())
-    except OSError as fault:
-        raise UserError(f"{path}: {fault.strerror}") from None
-    except ValueError as fault:
-        raise UserError(f"{path}: not JSON: {fault}") from None
-    if not isinstance(data, dict):
-        raise UserError(f"{path}: not a JSON object")
-    return data

@@ -4,7 +4,6 @@ gap|stretch|load|body].
 
 from __future__ import annotations
 
-import argparse
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -18,6 +17,7 @@ from . import style
 from .captions import caption
 from .errors import UserError, tells
 from .frames import Frame, frame_of, frame_paths, read_scene
+from .front.arguments import parser_of
 from .obstacle_rays import Hits, hits, primitive_gaps, signed_gap
 from .rasterizer import Camera, DepthBuffer, corner_normals
 from .record_file import read_record
@@ -393,10 +393,7 @@ def render(
 
 @tells("render")
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench render",
-        description="A still (PNG) of one step of a run that kept frames (--set /output/frames_every=1).",
-    )
+    parser = parser_of("render")
     parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json")
     parser.add_argument("--step", type=int, help="a step with a frame, -1: the start (default: the last)")
     parser.add_argument(
@@ -421,6 +418,6 @@ def main(arguments: list[str]) -> int:
     )
     given = parser.parse_args(arguments)
     if min(given.size) < 16 or max(given.size) > 8000:
-        parser.error("--size: from 16 to 8000 pixels")
+        raise UserError("--size: from 16 to 8000 pixels")
     print(render(given.run, given.step, given.color, given.out, tuple(given.view), tuple(given.size)))
     return 0

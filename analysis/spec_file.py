@@ -13,7 +13,8 @@ from jsonschema import Draft202012Validator, validators
 from jsonschema.exceptions import ValidationError
 
 from .errors import UserError
-from .program import read_object
+from .json_file import read_object
+from .places import SCHEMAS
 
 # An integer is written as one: 2.0 is none.
 _Validator = validators.extend(
@@ -22,7 +23,6 @@ _Validator = validators.extend(
         "integer", lambda _, value: isinstance(value, int) and not isinstance(value, bool)
     ),
 )
-SCHEMAS = Path(__file__).resolve().parents[1] / "configs/schema"
 
 
 @cache

@@ -4,11 +4,11 @@ surface-gaps RUNS...
 
 from __future__ import annotations
 
-import argparse
 import sys
 from pathlib import Path
 
 from .errors import tells
+from .front.arguments import parser_of
 from .records import RecordError, read_record
 from .text_table import aligned
 
@@ -70,13 +70,7 @@ def verdict(records: list[tuple[str, dict]]) -> tuple[str, list[str]]:
 
 @tells("surface-gaps")
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench surface-gaps",
-        description=(
-            "Smallest gaps of whole surfaces at converged step ends, thickness taken off, of the records"
-            " below some folders; 1 when a run that is ok has one below 0, or none has any."
-        ),
-    )
+    parser = parser_of("surface-gaps")
     parser.add_argument(
         "runs", type=Path, nargs="+", metavar="RUNS", help="folders with records, at any depth"
     )

@@ -7,6 +7,7 @@ import pandas as pd
 
 from . import style
 from .records import Records, condition_of, counted
+from .text_table import aligned
 
 HEADINGS = {
     "group": "scene",
@@ -21,6 +22,7 @@ HEADINGS = {
     "gap_min_rel": "min gap/d_hat",
     "crossings": "crossings",
 }
+WORDS = ("group", "series", "verdict")  # the first columns; the others are numbers
 
 
 def _cond(records: Records, run: str, scaling: str) -> tuple[float, float]:
@@ -78,14 +80,8 @@ def as_text(table: pd.DataFrame) -> str:
     ]  # one value tells no run from another
     names = [*HEADINGS, *pointers]
     cells = [[_cell(name, row[name]) for name in names] for _, row in table.iterrows()]
-    rows = [[*HEADINGS.values(), *pointers], *cells]
-    width = [max(len(row[i]) for row in rows) for i in range(len(names))]
-    lines, last = [], None
-    for k, row in enumerate(rows):
-        if k > 1 and row[0] != last:
-            lines.append("")
-        last = row[0]
-        left, right = row[:3], row[3:]
-        text = [c.ljust(w) for c, w in zip(left, width)] + [c.rjust(w) for c, w in zip(right, width[3:])]
-        lines.append("  ".join(text).rstrip())
-    return "\n".join(lines)
+    head, *lines = aligned([*HEADINGS.values(), *pointers], cells, set(range(len(WORDS), len(names))))
+    shown = [head]
+    for k, line in enumerate(lines):
+        shown += ["", line] if k and cells[k][0] != cells[k - 1][0] else [line]
+    return "\n".join(shown)

@@ -1,10 +1,22 @@
-"""Tables, as plain text and as Markdown."""
+"""The one printer of tables, as plain text and as Markdown."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence, Set
 
-def aligned(head: list[str], rows: list[list[str]], right: set[int] = frozenset()) -> list[str]:
-    """Lines of a table with columns two spaces apart; those in `right` end at their right edge."""
+
+def _check_rows(head: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
+    """Errors: ValueError for a row with more or fewer cells than the head."""
+    for row in rows:
+        if len(row) != len(head):
+            raise ValueError(f"{len(row)} cells below {len(head)} columns: {row}")
+
+
+def aligned(head: Sequence[str], rows: Sequence[Sequence[str]], right: Set[int] = frozenset()) -> list[str]:
+    """Lines of a table with columns two spaces apart; those in `right` end at their right edge. Errors:
+    ValueError for a row that does not fit the head.
+    """
+    _check_rows(head, rows)
     cells = [head, *rows]
     width = [max(len(row[i]) for row in cells) for i in range(len(head))]
     return [
@@ -15,6 +27,11 @@ def aligned(head: list[str], rows: list[list[str]], right: set[int] = frozenset(
     ]
 
 
-def markdown(head: list[str], rows: list[list[str]]) -> list[str]:
-    """Lines of a table in Markdown."""
-    return [f"| {' | '.join(head)} |", "|" + "---|" * len(head), *(f"| {' | '.join(row)} |" for row in rows)]
+def markdown(head: Sequence[str], rows: Sequence[Sequence[str]]) -> list[str]:
+    """Lines of a table in Markdown. Errors: ValueError for a row that does not fit the head."""
+    _check_rows(head, rows)
+
+    def line(cells: Sequence[str]) -> str:
+        return "|" + "".join(f" {cell} |" if cell else " |" for cell in cells)
+
+    return [line(head), "|" + "---|" * len(head), *map(line, rows)]

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 
 import numpy as np
 
+from ..text_table import markdown as table_lines
 from .estimate import student
 
 SEED, RUNS = 20261123, 20000
@@ -85,14 +86,9 @@ and no method sees the other; a verdict from three or four scenes is one about s
 
 def markdown() -> str:
     found = {(effects, scenes): share_covered(by_scene, drawn) for effects, scenes, drawn in simulations()}
-    lines = [
-        "| effects of scenes | " + " | ".join(f"{n} scenes" for n in SCENES) + " |",
-        "|---|" + "---|" * len(SCENES),
-    ]
-    lines += [
-        f"| {effects} | "
-        + " | ".join(f"{found[effects, n]:.3f} (floor {floor(effects, n):.3f})" for n in SCENES)
-        + " |"
+    rows = [
+        [effects, *(f"{found[effects, n]:.3f} (floor {floor(effects, n):.3f})" for n in SCENES)]
         for effects in EFFECTS
     ]
+    lines = table_lines(["effects of scenes", *(f"{n} scenes" for n in SCENES)], rows)
     return HEAD + "\n".join(lines) + "\n"

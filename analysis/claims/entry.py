@@ -13,10 +13,10 @@ from functools import cache
 from pathlib import Path
 
 from ..errors import UserError
-from ..program import read_object
+from ..json_file import read_object
+from ..places import ROOT
 from ..spec_file import read_spec
 
-ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "claims"
 REQUIRED = ("id", "source", "sentence", "dimension", "guarantee", "kind")
 SEEDS = "/seeds/main"

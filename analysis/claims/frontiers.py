@@ -16,6 +16,7 @@ from matplotlib.ticker import LogLocator, NullFormatter, ScalarFormatter
 from .. import series, style
 from ..errors import UserError
 from ..robustness import Frontier, Trial, expected_cost, frontier, profile, success
+from ..text_table import markdown as table_lines
 from .ends import end_of_case
 from .entry import Claim, read_sweep
 from .estimate import wilson
@@ -172,23 +173,17 @@ def lines(claim: Claim, table: Table) -> list[str]:
         " the next tested value fails."
         + (f" The frontier counts every run. From share and ert {left_out}." if left_out else ""),
         "",
-        f"| case | gets through | ert ({cost}) | "
-        + " | ".join(f"frontier of {axis}" for axis in axes)
-        + " |",
-        "|" + "---|" * (len(axes) + 3),
     ]
+    rows = []
     for case, label in case_labels(claim, runs).items():
         every = trials(runs, case, cost, bad)
         ert = expected_cost(every)
         reaches = [
             _reach(frontier(along(runs, case, axis, middle, bad), middle)) for axis, middle in axes.items()
         ]
-        found.append(
-            f"| {label} | {_share(runs, case, every, bad)} | {'-' if ert is None else f'{ert:.4g}'} | "
-            + " | ".join(reaches)
-            + " |"
-        )
-    return [*found, ""]
+        rows.append([label, _share(runs, case, every, bad), "-" if ert is None else f"{ert:.4g}", *reaches])
+    head = ["case", "gets through", f"ert ({cost})", *(f"frontier of {axis}" for axis in axes)]
+    return [*found, *table_lines(head, rows), ""]
 
 
 def _profiles(axis, runs: Runs, names: dict[str, str], cost: str, bad: str | None) -> list[dict]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 
+from ..text_table import markdown as table_lines
 from . import frontiers
 from .entry import read_sweep
 from .judge import Answer
@@ -122,26 +123,47 @@ def _claim(a: Answer, table: Table) -> list[str]:
     return lines
 
 
+SWEEP_COLUMNS = (
+    "sweep",
+    "runs",
+    "unknowns",
+    "ok",
+    "comparable",
+    "seconds",
+    "date",
+    "machine",
+    "build",
+    "command",
+)
+
+
 def _sweeps(table: Table) -> list[str]:
-    lines = [
-        "## Sweeps",
-        "",
-        "| sweep | runs | unknowns | ok | comparable | seconds | date | machine | build | command |",
-        "|---|---|---|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for name, runs in sorted(table.sweeps.items()):
         sweep, about = read_sweep(name), runs.about
         ok, comparable = (
             sum(row[key] == word for row in runs.rows)
             for key, word in (("outcome", "ok"), ("comparability", "comparable"))
         )
-        lines.append(
-            f"| {name} | {len(runs.rows)} of {len(sweep.cases)} | {about['unknowns']} | {ok} | {comparable} |"
-            f" {about['seconds']:.0f} | {about['date']} | {about['machine']} | {about['build'][:8]} |"
-            f" `{sweep.command}` |"
+        rows.append(
+            [
+                name,
+                f"{len(runs.rows)} of {len(sweep.cases)}",
+                about["unknowns"],
+                f"{ok}",
+                f"{comparable}",
+                f"{about['seconds']:.0f}",
+                about["date"],
+                about["machine"],
+                about["build"][:8],
+                f"`{sweep.command}`",
+            ]
         )
     total = sum(runs.about["seconds"] for runs in table.sweeps.values())
-    return lines + [
+    return [
+        "## Sweeps",
+        "",
+        *table_lines(SWEEP_COLUMNS, rows),
         "",
         (
             f"Seconds are those of the runs, diagnosis and audit included: {total:.0f} s of one core in all,"
@@ -177,22 +199,23 @@ def main_number(j: Judged) -> str:
     return f"{j.measures}: {interval(j)}" + (f" ({j.ends})" if j.ends else "")
 
 
+VERDICT_COLUMNS = (
+    "claim",
+    "sentence",
+    "kind",
+    "exploratory verdict (or closed form)",
+    "confirmed",
+    "number of its first part",
+)
+
+
 def verdict_table(answers: list[Answer]) -> list[str]:
-    lines = [
-        (
-            "| claim | sentence | kind | exploratory verdict (or closed form) | confirmed | number of its"
-            " first part |"
-        ),
-        "|---|---|---|---|---|---|",
-    ]
+    rows = []
     for a in answers:
         j = a.main
         number_of = f"{main_number(j)}{f' ({j.slice})' if j.slice else ''}" if j else "-"
-        lines.append(
-            f"| {a.claim.id} | {a.claim.sentence} | {a.claim.kind} | {_short(a)} | {confirmed_word(a)} |"
-            f" {number_of} |"
-        )
-    return lines
+        rows.append([a.claim.id, a.claim.sentence, a.claim.kind, _short(a), confirmed_word(a), number_of])
+    return table_lines(VERDICT_COLUMNS, rows)
 
 
 BEGIN, END = "<!-- claims: written by ./bench claims -->\n", "<!-- /claims -->"

@@ -18,7 +18,8 @@ import time
 from pathlib import Path
 
 from ..errors import UserError, tells
-from ..program import built_program, plugin_argument, run_sweep
+from ..front.arguments import parser_of, plugin_argument
+from ..program import built_program, run_sweep
 from ..whole_file import write_whole
 from . import coverage, figure, frontiers, registry, report
 from .entry import ROOT, Claim, ids, read_claim, read_sweep
@@ -66,14 +67,8 @@ def gather(claims: list[Claim], runs: Path, kept: Table) -> Table:
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="bench claims",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=(
-            "examples: ./bench claims\n          ./bench claims K3 H1\n          ./bench claims --no-run\n   "
-            "       ./bench claims --register K3"
-        ),
+    parser = parser_of(
+        "claims", __doc__, "./bench claims", "./bench claims --no-run", "./bench claims --register K3"
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="claims/ID.json (default: all)")
     parser.add_argument(

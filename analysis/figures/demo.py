@@ -5,7 +5,6 @@ from __future__ import annotations
 import sys
 from pathlib import Path
 
-from ..errors import tells
 from ..records import Records, load
 from ..table import as_text, summary_table
 from . import barrier_shapes, condition, gaps, iterations, kappa_cycle, matrix_forms
@@ -66,15 +65,10 @@ def make_all_of(records: Records, out: Path) -> str:
     return "\n".join(lines)
 
 
-@tells("figures")
-def main(arguments: list[str]) -> int:
-    if not 1 <= len(arguments) <= 2:
-        print("usage: ./bench figures RUNS [OUT]", file=sys.stderr)
-        return 2
-    runs = Path(arguments[0])
-    out = Path(arguments[1]) if len(arguments) == 2 else runs / "figures"
+def make(runs: Path, out: Path | None) -> int:
+    """Figures and table of the records below a folder; the exit code."""
     records = load(runs)
-    print(make_all_of(records, out))
+    print(make_all_of(records, out or runs / "figures"))
     broken = broken_promises(records)
     for line in broken:
         print(f"figures: {line}", file=sys.stderr)

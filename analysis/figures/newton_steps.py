@@ -4,7 +4,6 @@
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 from pathlib import Path
@@ -13,7 +12,7 @@ import matplotlib.pyplot as plt
 import pandas as pd
 
 from .. import style
-from ..errors import UserError, tells
+from ..errors import UserError
 
 SCHEMA = "barrierbench.steps/1"
 # colour and dash of each choice; black is the default of line_search
@@ -190,13 +189,8 @@ def figure(data: dict, stem: Path) -> list[Path]:
     )
 
 
-@tells("figures")
-def main(words: list[str]) -> int:
-    parser = argparse.ArgumentParser(prog="bench figures", description=__doc__)
-    parser.add_argument("file", type=Path)
-    parser.add_argument("out", type=Path, nargs="?", help="folder of the figure; default: that of the file")
-    given = parser.parse_args(words)
-    paths = figure(read_steps(given.file), (given.out or given.file.parent) / given.file.stem)
-    for path in paths:
+def make(file: Path, out: Path | None) -> int:
+    """The figure of a file of `./bench steps --out`; the exit code."""
+    for path in figure(read_steps(file), (out or file.parent) / file.stem):
         print(path)
     return 0

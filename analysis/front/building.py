@@ -11,7 +11,8 @@ import tempfile
 from pathlib import Path
 
 from ..errors import BUILD_FAILED, UserError
-from .verbs import ROOT
+from ..places import ROOT
+from ..program import RELEASE
 
 KIB_A_JOB = 1572864  # 1.5 GiB
 MINUTE = 60  # seconds between two words about a build off the terminal
@@ -33,10 +34,6 @@ def job_count() -> int:
 
 def folder(preset: str) -> Path:
     return ROOT / "build" / preset
-
-
-def program() -> Path:
-    return folder("release") / "experiments/barrierbench"
 
 
 def setup(*packages: str) -> None:
@@ -161,4 +158,4 @@ def ensure(*targets: str) -> None:
 
 def ensure_program() -> Path:
     ensure("barrierbench")
-    return program()
+    return RELEASE

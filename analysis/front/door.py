@@ -6,8 +6,10 @@ import importlib
 import os
 import sys
 import textwrap
+from typing import NoReturn
 
 from ..errors import UserError
+from ..program import RELEASE, become
 from . import verbs
 
 INTERRUPTED = 130
@@ -29,7 +31,7 @@ def usage() -> str:
     return "\n".join(lines)
 
 
-def become_program(arguments: list[str]) -> int:
+def become_program(arguments: list[str]) -> NoReturn:
     """Replaces this process by the program, so that standard streams and signals are its own. Errors:
     UserError where it cannot be built.
     """
@@ -43,10 +45,9 @@ def become_program(arguments: list[str]) -> int:
             f"found {word!r}; allowed: one of the verbs of ./bench help"
             + (f"; did you mean {near}?" if near else "")
         )
-    program = str(building.ensure_program())
+    built = building.ensure_program()
     os.environ["BENCH_VERBS"] = " ".join(verb.name for verb in verbs.TABLE)  # for its own suggestion
-    sys.stdout.flush()
-    os.execv(program, [program, *arguments])
+    become(built, arguments)
 
 
 def run(verb: verbs.Verb, arguments: list[str]) -> int:
@@ -58,7 +59,7 @@ def run(verb: verbs.Verb, arguments: list[str]) -> int:
             building.ensure_program()
         else:
             building.ensure(verb.needs)
-    os.environ.setdefault("BARRIERBENCH_PROGRAM", str(building.program()))
+    os.environ.setdefault("BARRIERBENCH_PROGRAM", str(RELEASE))
     return importlib.import_module(f"analysis.{verb.module}").main(arguments)
 
 

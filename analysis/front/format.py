@@ -6,8 +6,8 @@ import subprocess
 import sys
 
 from ..errors import UserError, tells
+from ..places import ROOT
 from .sources import sources
-from .verbs import ROOT
 
 RUFF = (sys.executable, "-m", "ruff")
 

@@ -6,8 +6,8 @@ import subprocess
 from datetime import datetime, timezone
 
 from ..errors import tells
+from ..places import ROOT
 from .building import ensure, folder
-from .verbs import ROOT
 
 TARGET = "barrierbench_microbenchmarks"
 

@@ -6,9 +6,9 @@ import subprocess
 import sys
 
 from ..errors import tells
+from ..places import ROOT
 from .building import setup
 from .table import HELP
-from .verbs import ROOT
 
 
 @tells("mutate")

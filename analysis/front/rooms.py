@@ -5,8 +5,8 @@ from __future__ import annotations
 import subprocess
 
 from ..errors import tells
+from ..places import ROOT
 from .building import folder, regenerate
-from .verbs import ROOT
 
 
 @tells("rooms")

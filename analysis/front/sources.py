@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .verbs import ROOT
+from ..places import ROOT
 
 FOLDERS = ("core", "barriers", "experiments", "examples", "tests")
 SUFFIXES = (".cpp", ".hpp", ".c", ".h", ".cu", ".cuh")

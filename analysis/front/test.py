@@ -13,10 +13,10 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ..errors import tells
+from ..places import ROOT
 from . import format as formatting
 from . import rooms
 from .building import build, folder, job_count, say, setup
-from .verbs import ROOT
 
 NAMED_SKIPS = 20  # C++ tests that the summary names
 

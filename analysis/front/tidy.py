@@ -7,9 +7,9 @@ import subprocess
 from concurrent.futures import ThreadPoolExecutor
 
 from ..errors import tells
+from ..places import ROOT
 from .building import folder, job_count, regenerate, setup
 from .sources import sources
-from .verbs import ROOT
 
 TIDIED = ("core/", "barriers/", "experiments/")
 OF_GCC = re.compile(

@@ -8,9 +8,9 @@ import difflib
 import re
 from pathlib import Path
 
+from ..places import ROOT
 from .table import ENVIRONMENT, PROGRAM, TABLE, WITHOUT, Verb
 
-ROOT = Path(__file__).resolve().parents[2]
 PROGRAM_VERBS = ROOT / "experiments/cli/verbs.inc"
 GROUPS = {
     "run": "records of scenes",

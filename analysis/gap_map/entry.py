@@ -15,6 +15,7 @@ import sys
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
 from ..matching.formulations import ROOT
 from ..whole_file import write_whole
 from . import figure, plan, report
@@ -149,12 +150,7 @@ def what_arguments(parser: argparse.ArgumentParser) -> None:
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     modes = "\n".join(f"  {mode:8} {text}" for mode, text in LIMITS.items())
-    parser = argparse.ArgumentParser(
-        prog="bench gap-map",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=f"limit modes:\n{modes}\nexamples: ./bench gap-map --quick\n          ./bench gap-map --plan",
-    )
+    parser = parser_of("gap-map", f"{__doc__}\nlimit modes:\n{modes}", "./bench gap-map --plan")
     parser.add_argument(
         "spec",
         nargs="?",
@@ -181,9 +177,9 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     )
     args = parser.parse_args(argv)
     if args.jobs < 1:
-        parser.error(f"--jobs: found {args.jobs}; a number from 1 on is needed")
+        raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")
     if args.minutes is not None and not args.minutes > 0:
-        parser.error(f"--minutes: found {args.minutes}; a number above 0 is needed")
+        raise UserError(f"--minutes: found {args.minutes}; a number above 0 is needed")
     return args
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..text_table import markdown as table_lines
 from .figure import TITLES, law_sentence
 from .judge import (
     FAR,
@@ -37,23 +38,17 @@ def _others(found: Map) -> list[str]:
 
 
 def _table(found: Map, limit: str, head: str, ratio) -> list[str]:
-    lines = [
-        f"| {head} | shape | " + " | ".join(f"{title} over the log's" for _, title in METRICS) + " |",
-        "|---|---|" + "---|" * len(METRICS),
-    ]
+    rows = []
     for gap in found.gaps:
         for shape in _others(found):
             ratios = [ratio(found.rows, limit, shape, metric, gap) for metric, _ in METRICS]
             if any(ratios):
-                lines.append(f"| {gap:g} | `{shape}` | " + " | ".join(map(_share, ratios)) + " |")
-    return lines
+                rows.append([f"{gap:g}", f"`{shape}`", *map(_share, ratios)])
+    return table_lines([head, "shape", *(f"{title} over the log's" for _, title in METRICS)], rows)
 
 
 def _ends(found: Map) -> list[str]:
-    lines = [
-        "| shape | " + " | ".join(TITLES[m] for m in found.limits) + " |",
-        "|---|" + "---|" * len(found.limits),
-    ]
+    rows = []
     for shape in found.shapes:
         cells = []
         for limit in found.limits:
@@ -66,21 +61,23 @@ def _ends(found: Map) -> list[str]:
                     f" {end[1]} places)"
                 )
             )
-        lines.append(f"| `{shape}` | " + " | ".join(cells) + " |")
-    return lines
+        rows.append([f"`{shape}`", *cells])
+    return table_lines(["shape", *(TITLES[m] for m in found.limits)], rows)
 
 
 def _failed(found: Map) -> list[str]:
-    lines = []
-    for (shape, limit, theta), outcomes in failures(found.rows).items():
-        lines.append(
-            f"| `{shape}` | {TITLES[limit]} | {theta:g} | "
-            + ", ".join(f"{word} {n}" for word, n in sorted(outcomes.items()))
-            + " |"
-        )
+    rows = [
+        [
+            f"`{shape}`",
+            TITLES[limit],
+            f"{theta:g}",
+            ", ".join(f"{word} {n}" for word, n in sorted(outcomes.items())),
+        ]
+        for (shape, limit, theta), outcomes in failures(found.rows).items()
+    ]
     return (
-        ["| shape | limit | theta | runs without a gap |", "|---|---|---|---|", *lines]
-        if lines
+        table_lines(["shape", "limit", "theta", "runs without a gap"], rows)
+        if rows
         else ["Every cell of the map has a run that reached a gap."]
     )
 

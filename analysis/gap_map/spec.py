@@ -9,8 +9,8 @@ from pathlib import Path
 
 from ..accuracy.shapes import barrier
 from ..errors import UserError
+from ..json_file import read_object
 from ..matching.runs import Sweep, sweep
-from ..program import read_object
 from ..spec_file import read_spec as read_json_spec
 from ..spec_file import require_base
 

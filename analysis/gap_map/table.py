@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..errors import UserError
-from ..program import read_object
+from ..json_file import read_object
 from ..whole_file import write_whole
 from .rows import COLUMNS
 

@@ -14,6 +14,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
 from ..record_file import other_meanings
 from . import baseline, calibrate, judge, matrices
 from .baseline import Baseline, Kept
@@ -166,9 +167,7 @@ def keep(
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="bench accept", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of("accept", __doc__)
     parser.add_argument(
         "--reason", required=True, help="why the numbers may change; it stays in the baseline"
     )
@@ -215,11 +214,11 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--baseline", type=Path, metavar="FILE.json", help="of --record and --matrix")
     args = parser.parse_args(argv)
     if bool(args.record or args.matrix) != bool(args.baseline) or (args.record and args.matrix):
-        parser.error("--record or --matrix goes with --baseline FILE.json")
+        raise UserError("--record or --matrix goes with --baseline FILE.json")
     if not args.reason.strip():
-        parser.error("--reason: say why in a sentence")
+        raise UserError("--reason: say why in a sentence")
     if args.better and args.metric:
-        parser.error("--better chooses the metrics itself; leave --metric out")
+        raise UserError("--better chooses the metrics itself; leave --metric out")
     return args
 
 

@@ -8,13 +8,13 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..errors import UserError
+from ..places import ROOT
 from ..whole_file import write_whole
 from .drift import First, digest
 from .envelope import Envelope
 from .metrics import DIRECTIONS, Metric
 
 NAME, MAJOR, VERSION = "barrierbench.baseline", "1", "1.2.0"
-ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "results" / "baselines"
 
 

@@ -5,8 +5,7 @@ from __future__ import annotations
 import json
 
 from ..errors import UserError
-from ..program import started
-from .cases import program
+from ..program import built_program, started
 from .finding import Finding
 
 CASE = "build"
@@ -35,5 +34,5 @@ def judge_build() -> list[Finding]:
     try:
         found = findings_of(json.loads(done.stdout))
     except (ValueError, KeyError, TypeError) as error:
-        raise UserError(f"{program()} validity: no report ({error}): {done.stderr.strip()}") from None
+        raise UserError(f"{built_program()} validity: no report ({error}): {done.stderr.strip()}") from None
     return found or [Finding(CASE, "I", "validity", "FAIL", judged=0, note="the report has no check")]

@@ -7,16 +7,17 @@ Nothing of results/baselines/ is changed: the proposals stand in results/runs/ca
 
 from __future__ import annotations
 
-import argparse
 import datetime
 import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
+from ..places import ROOT
 from . import baseline, invariants, shares
 from .baseline import Baseline, Kept, keep
-from .cases import ROOT, Case, jittered, read_set, run_case
+from .cases import Case, jittered, read_set, run_case
 from .configs import scene_size
 from .envelope import Envelope, calibrate, scatter_above
 from .finding import failures
@@ -117,9 +118,7 @@ def calibrate_case(case: Case, out: Path, copies: int) -> Baseline:
 
 @tells("calibrate")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench calibrate", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of("calibrate", __doc__)
     parser.add_argument("--set", default="small", help="configs/gates/SET.json (default: small)")
     parser.add_argument(
         "--case",
@@ -134,7 +133,7 @@ def main(argv: list[str]) -> int:
     )
     args = parser.parse_args(argv)
     if args.copies < 1:
-        parser.error(f"--copies {args.copies}: at least 1")
+        raise UserError(f"--copies {args.copies}: at least 1")
     for case in read_set(args.set):
         if args.case and not any(word in case.name for word in args.case):
             continue

@@ -3,16 +3,15 @@
 from __future__ import annotations
 
 import json
-import subprocess
 from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..errors import UserError
-from ..program import built_program
+from ..places import ROOT
+from ..program import started
 from ..spec_file import read_spec
 from .records import Run, read_run
 
-ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "configs" / "gates"
 
 
@@ -53,14 +52,10 @@ def read_set(name: str) -> list[Case]:
     return cases
 
 
-def program() -> Path:
-    return built_program()
-
-
-def command(case: Case, out: Path, threads: int, more: dict) -> list[str]:
+def words_of(case: Case, out: Path, threads: int, more: dict) -> list[str]:
+    """What the program is asked for a run of a case."""
     settings = {**case.set, "/threads": threads, **more}
     return [
-        str(program()),
         "run",
         str(case.config),
         "--out",
@@ -78,7 +73,7 @@ def run_case(case: Case, out: Path, threads: int = 1, **more) -> Run:
     settings = {"/" + name.replace("__", "/"): value for name, value in more.items()}
     # A record of an earlier call must not stand in for one that this program fails to write.
     (out / "run.json").unlink(missing_ok=True)
-    done = subprocess.run(command(case, out, threads, settings), capture_output=True, text=True, check=False)
+    done = started(*words_of(case, out, threads, settings))
     if done.returncode != 0:
         raise UserError(
             f"{case.name}: the program ended with {done.returncode}:"

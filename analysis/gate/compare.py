@@ -8,10 +8,10 @@ compared.
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
 from . import configs, invariants, judge, meanings, report
 from .determinism import same_state
 from .finding import Finding, failures, without_subject
@@ -87,12 +87,7 @@ def compare(case: str, old: Run, new: Run, different_configs: bool = False) -> l
 
 @tells("compare")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench compare",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog="example: ./bench compare results/runs/before results/runs/after",
-    )
+    parser = parser_of("compare", __doc__)
     parser.add_argument("a", type=Path, help="reference: a run.json, its folder, or a folder of such folders")
     parser.add_argument("b", type=Path, help="what is judged")
     parser.add_argument(

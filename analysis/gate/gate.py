@@ -13,11 +13,13 @@ import time
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
+from ..places import ROOT
 from . import baseline, configs, invariants, judge, matrices, meanings, report, trend
 from .baseline import Baseline
 from .build_checks import judge_build
 from .calibrate import copies_of
-from .cases import ROOT, Case, read_set, run_case
+from .cases import Case, read_set, run_case
 from .determinism import of_one_config
 from .finding import RED, Finding, failures, without_subject
 from .instructions import judge_instructions
@@ -159,14 +161,7 @@ def findings_case(findings: list[Finding]) -> str:
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="bench gate",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=(
-            "examples: ./bench gate\n          ./bench gate --matrix dumps/*.mtx --baseline conditioning.json"
-        ),
-    )
+    parser = parser_of("gate", __doc__, "./bench gate")
     parser.add_argument("--set", default="small", help="configs/gates/SET.json (default: small)")
     parser.add_argument(
         "--case",
@@ -199,7 +194,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument("--verbose", action="store_true", help="lines that pass as well")
     args = parser.parse_args(argv)
     if bool(args.record or args.matrix) != bool(args.baseline) or (args.record and args.matrix):
-        parser.error("--record or --matrix goes with --baseline FILE.json")
+        raise UserError("--record or --matrix goes with --baseline FILE.json")
     return args
 
 

@@ -7,14 +7,14 @@ from __future__ import annotations
 import os
 import re
 import shutil
-import subprocess
 import tempfile
 from pathlib import Path
 
 from ..errors import UserError
+from ..program import started
 from . import baseline
 from .baseline import Kept, keep
-from .cases import Case, command, read_set
+from .cases import Case, read_set, words_of
 from .envelope import Envelope
 from .finding import Finding
 from .judge import COST_EACH, drifted
@@ -38,13 +38,8 @@ def count(case: Case) -> tuple[float, dict] | None:
     environment = {**os.environ, "OPENBLAS_CORETYPE": os.environ.get("OPENBLAS_CORETYPE", "Haswell")}
     with tempfile.TemporaryDirectory() as folder:
         out = Path(folder) / "run"
-        words = [
-            valgrind,
-            "--tool=callgrind",
-            f"--callgrind-out-file={folder}/out",
-            *command(case, out, 1, WITHOUT_TIMES),
-        ]
-        done = subprocess.run(words, capture_output=True, text=True, check=False, env=environment)
+        under = [valgrind, "--tool=callgrind", f"--callgrind-out-file={folder}/out"]
+        done = started(*words_of(case, out, 1, WITHOUT_TIMES), under=under, env=environment)
         found = re.search(r"Collected : (\d+)", done.stderr)
         if done.returncode != 0 or found is None:
             raise UserError(

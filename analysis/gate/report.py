@@ -6,10 +6,12 @@ import json
 from collections import Counter
 from pathlib import Path
 
+from ..text_table import aligned
 from ..whole_file import write_whole
 from .finding import ALL_CLASSES, JUDGED, Finding, failures, judged
 
 HEADINGS = ("case", "class", "metric", "value", "was", "allowed", "verdict", "")
+NUMBERS = {3, 4}  # columns of HEADINGS
 
 
 def number(value) -> str:
@@ -27,24 +29,11 @@ def _allowed(f: Finding) -> str:
 
 
 def table(findings: list[Finding]) -> str:
-    rows = [HEADINGS] + [
+    rows = [
         (f.case, f.gate_class, f.metric, number(f.value), number(f.reference), _allowed(f), f.verdict, f.note)
         for f in findings
     ]
-    width = [max(len(row[i]) for row in rows) for i in range(len(HEADINGS) - 1)]
-    right = {3, 4}
-    return "\n".join(
-        "  ".join(
-            [
-                *(
-                    (cell.rjust(w) if i in right else cell.ljust(w))
-                    for i, (cell, w) in enumerate(zip(row, width))
-                ),
-                row[-1],
-            ]
-        ).rstrip()
-        for row in rows
-    )
+    return "\n".join(aligned(HEADINGS, rows, NUMBERS))
 
 
 def shown(findings: list[Finding], verbose: bool) -> list[Finding]:

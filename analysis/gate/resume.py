@@ -4,12 +4,12 @@ alone.
 
 from __future__ import annotations
 
-import subprocess
 import time
 from pathlib import Path
 
 from ..errors import UserError
-from .cases import Case, command, run_case
+from ..program import begun, started
+from .cases import Case, run_case, words_of
 from .finding import Finding
 from .records import Run, read_run
 
@@ -25,7 +25,7 @@ def kill_after_checkpoint(words: list[str], out: Path) -> bool:
     """Starts a run and kills it (SIGKILL) as soon as its checkpoint is there; False when it was over before.
     Raises UserError.
     """
-    process = subprocess.Popen(words, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE)
+    process = begun(*words)
     start = time.monotonic()
     while process.poll() is None and not (out / "checkpoint.bin").exists():
         if time.monotonic() - start > LONGEST_S:
@@ -46,9 +46,9 @@ def judge_resume(case: Case, out: Path, whole: Run) -> Finding:
     alone = run_case(case, out.with_name(out.name + "-not-killed"), 1, output__checkpoint_every=1)
     for name in ("run.json", "checkpoint.bin"):
         (out / name).unlink(missing_ok=True)
-    words = [*command(case, out, 1, {"/output/checkpoint_every": 1}), "--progress", "none"]
+    words = [*words_of(case, out, 1, {"/output/checkpoint_every": 1}), "--progress", "none"]
     killed = kill_after_checkpoint(words, out)
-    done = subprocess.run([*words, "--resume"], capture_output=True, text=True, check=False)
+    done = started(*words, "--resume")
     if done.returncode != 0:
         raise UserError(f"{case.name}: --resume ended with {done.returncode}: {done.stderr.strip()}")
     resumed = read_run(out, allow_not_finite=True)

@@ -9,7 +9,6 @@ two pieces is shown. A trend never blocks: the exit code is 0, 2 for a file that
 
 from __future__ import annotations
 
-import argparse
 import json
 import math
 import sys
@@ -18,6 +17,7 @@ from pathlib import Path
 from statistics import median
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
 from ..text_table import aligned
 from .finding import Finding
 
@@ -133,9 +133,7 @@ def steps(rows: list[dict]) -> tuple[list[Step], int]:
 
 @tells("trend")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench trend", description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
-    )
+    parser = parser_of("trend", __doc__)
     parser.add_argument("history", type=Path, help="file of ./bench gate --history")
     args = parser.parse_args(argv)
     rows = read(args.history)

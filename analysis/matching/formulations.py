@@ -9,9 +9,9 @@ from difflib import get_close_matches
 from pathlib import Path
 
 from ..errors import UserError
-from ..program import read_object
+from ..json_file import read_object
+from ..places import ROOT
 
-ROOT = Path(__file__).resolve().parents[2]
 PRESETS = ROOT / "configs" / "formulations"
 REFERENCE = "log"  # the pilot's formulation, whose run the others are compared with
 VARY = ("contact", "limit", "both")

@@ -16,9 +16,11 @@ import json
 from pathlib import Path
 
 from ..errors import UserError, tells
-from ..program import plugin_argument
+from ..front.arguments import parser_of, plugin_argument
+from ..places import ROOT
+from ..text_table import aligned
 from ..whole_file import write_whole
-from .formulations import REFERENCE, ROOT, VARY, label, preset, settings
+from .formulations import REFERENCE, VARY, label, preset, settings
 from .runs import Sweep, check_equal, check_varied, collect, inputs_sha256, read_object, run, sweep
 
 DEFAULT = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
@@ -142,7 +144,7 @@ def _farthest(row: dict) -> str:
 
 def text(answer: dict) -> str:
     """The table, and a line for each that is not comparable."""
-    lines = [COLUMNS]
+    lines = []
     pilot = answer["formulations"][0]["matching"]
     head = (
         f"{answer['rule']}, theta {answer['theta']:g}; scene {answer['scene']}; load of"
@@ -167,9 +169,8 @@ def text(answer: dict) -> str:
                 row["verdict"],
             )
         )
-    widths = [max(len(line[k]) for line in lines) for k in range(len(COLUMNS))]
     shown = [head + (f" ({pilot['pilot_note']})" if pilot["pilot_note"] else "")]
-    shown += ["  ".join(word.ljust(width) for word, width in zip(line, widths)).rstrip() for line in lines]
+    shown += aligned(COLUMNS, lines)
     shown += [
         f"{row['formulation']}: {row['why']}"
         for row in answer["formulations"]
@@ -179,14 +180,11 @@ def text(answer: dict) -> str:
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="bench match",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=(
-            "examples: ./bench match configs/scenes/drape2d.json\n          ./bench match"
-            " configs/scenes/drape.json --formulations cubic quadratic --vary limit --set /scene/n=8"
-        ),
+    parser = parser_of(
+        "match",
+        __doc__,
+        "./bench match configs/scenes/drape2d.json",
+        "./bench match configs/scenes/drape.json --formulations cubic quadratic --vary limit",
     )
     parser.add_argument(
         "config",

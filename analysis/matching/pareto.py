@@ -19,10 +19,10 @@ from pathlib import Path
 
 from ..claims.table import seconds_of_run
 from ..errors import UserError, tells
-from ..program import plugin_argument
+from ..front.arguments import parser_of, plugin_argument
+from ..places import ROOT
 from ..whole_file import write_whole
 from . import pareto_figure, pareto_report
-from .formulations import ROOT
 from .fronts import METRICS, PLACE, STATE, Runs, gather
 from .runs import collect, inputs_sha256, read_object, run
 from .spec import Spec, make_sweep, read_spec
@@ -106,14 +106,8 @@ def write_page(runs: Runs, results: Path, docs: Path, figures: Path) -> None:
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="bench pareto",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=(
-            "examples: ./bench pareto\n          ./bench pareto configs/pareto/default.json --results"
-            " results/runs/mine"
-        ),
+    parser = parser_of(
+        "pareto", __doc__, "./bench pareto configs/pareto/default.json --results results/runs/mine"
     )
     parser.add_argument(
         "spec",

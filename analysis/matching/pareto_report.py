@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from ..claims.metrics import METRICS as MEANINGS
 from ..claims.report import number
+from ..text_table import markdown as table_lines
 from .formulations import REFERENCE
 from .fronts import (
     METRICS,
@@ -47,20 +48,18 @@ def _cell_over_scenes(e: OverScenes | None) -> str:
 
 
 def _reached(runs: Runs, scene: str) -> list[str]:
-    lines = [
-        "| formulation | gaps reached | runs that failed or touched nothing, by stiffness |",
-        "|---|---|---|",
-    ]
+    rows = []
     for name in runs.formulations:
         span, failed = range_of(runs, scene, name), failures(runs, scene, name)
         said = "; ".join(
             f"x{scale:g}: {', '.join(f'{n} {word}' for word, n in sorted(words.items()))}"
             for scale, words in sorted(failed.items())
         )
-        lines.append(
-            f"| {name} | {f'{number(span[0])} to {number(span[1])}' if span else 'none'} | {said or 'none'} |"
-        )
-    return lines
+        reached = f"{number(span[0])} to {number(span[1])}" if span else "none"
+        rows.append([name, reached, said or "none"])
+    return table_lines(
+        ["formulation", "gaps reached", "runs that failed or touched nothing, by stiffness"], rows
+    )
 
 
 def _nobody(runs: Runs, scene: str) -> str:
@@ -82,34 +81,25 @@ def _nobody(runs: Runs, scene: str) -> str:
 
 
 def _heading(gaps: list[float]) -> list[str]:
-    return [
-        "| number | formulation | " + " | ".join(f"{gap:g} d_hat" for gap in gaps) + " | shared gaps |",
-        "|" + "---|" * (len(gaps) + 3),
-    ]
+    return ["number", "formulation", *(f"{gap:g} d_hat" for gap in gaps), "shared gaps"]
 
 
 def _ratios(runs: Runs, scene: str, gaps: list[float]) -> list[str]:
-    lines = _heading(gaps)
+    rows = []
     for name in METRICS:
         values = [at_gap(runs, scene, REFERENCE, name, gap)[0] for gap in gaps]
-        lines.append(
-            f"| {name} | {REFERENCE}: value | "
-            + " | ".join("-" if v is None else number(v.value) for v in values)
-            + " | |"
-        )
+        shown = ["-" if v is None else number(v.value) for v in values]
+        rows.append([name, f"{REFERENCE}: value", *shown, ""])
         for formulation in runs.formulations:
             if formulation != REFERENCE:
-                cells = [_cell(at_gap(runs, scene, formulation, name, gap)[1]) for gap in gaps]
-                lines.append(
-                    f"| {name} | {formulation} / {REFERENCE} | "
-                    + " | ".join(cells)
-                    + f" | {_cell(over_shared(runs, scene, formulation, name))} |"
-                )
-    return lines
+                found = [at_gap(runs, scene, formulation, name, gap)[1] for gap in gaps]
+                found.append(over_shared(runs, scene, formulation, name))
+                rows.append([name, f"{formulation} / {REFERENCE}", *map(_cell, found)])
+    return table_lines(_heading(gaps), rows)
 
 
 def _ratios_over_scenes(runs: Runs, gaps: list[float]) -> list[str]:
-    lines = _heading(gaps)
+    rows = []
     for name in METRICS:
         for formulation in runs.formulations:
             if formulation != REFERENCE:
@@ -120,12 +110,8 @@ def _ratios_over_scenes(runs: Runs, gaps: list[float]) -> list[str]:
                 found.append(
                     over_scenes([over_shared(runs, scene, formulation, name) for scene in runs.scenes])
                 )
-                lines.append(
-                    f"| {name} | {formulation} / {REFERENCE} | "
-                    + " | ".join(map(_cell_over_scenes, found))
-                    + " |"
-                )
-    return lines
+                rows.append([name, f"{formulation} / {REFERENCE}", *map(_cell_over_scenes, found)])
+    return table_lines(_heading(gaps), rows)
 
 
 def markdown(runs: Runs) -> str:

@@ -13,7 +13,8 @@ from ..claims import entry
 from ..claims.metrics import METRICS
 from ..errors import UserError
 from ..gate.configs import differences
-from ..program import read_object, run_sweep
+from ..json_file import read_object
+from ..program import run_sweep
 from ..record_file import RecordError, read_record
 from . import formulations
 from .formulations import known

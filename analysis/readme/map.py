@@ -10,7 +10,7 @@ from ..gap_map.judge import counts
 from ..gap_map.report import sentences
 from ..gap_map.rows import NOT_RUN
 from ..gap_map.table import read
-from .numbers import ROOT
+from ..places import ROOT
 
 FILE = ROOT / "results" / "gap_map.json"
 

@@ -13,11 +13,11 @@ import numpy as np
 import pandas as pd
 
 from ..errors import UserError
+from ..places import ROOT
 from ..records import Records, condition_of, counted, load
 from ..table import summary_table
 from ..whole_file import write_whole
 
-ROOT = Path(__file__).resolve().parents[2]
 FILE = ROOT / "results" / "demo.json"
 RUNS = ROOT / "results" / "runs" / "demo"
 NAME = "barrierbench.demo_numbers/1"

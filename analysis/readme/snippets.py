@@ -13,7 +13,8 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from ..front import verbs
-from .numbers import ROOT
+from ..places import ROOT
+from ..program import in_shell, started
 
 FENCE = re.compile(r"^```([^\n`]*)\n(.*?)^```[ ]*$", re.DOTALL | re.MULTILINE)
 PLAIN = ("", "text")  # what is shown and not run: output, a file's layout
@@ -45,10 +46,6 @@ def snippets(text: str, page: str) -> list[Snippet]:
     ]
 
 
-def _ran(words: list[str], **more) -> subprocess.CompletedProcess:
-    return subprocess.run(words, capture_output=True, text=True, check=False, timeout=SECONDS, **more)
-
-
 def _told(done: subprocess.CompletedProcess) -> str:
     return (
         (done.stderr.strip() or done.stdout.strip()).splitlines()[-1]
@@ -72,45 +69,44 @@ def _missing_files(words: list[str]) -> list[str]:
     return [word for word in named if not any(ROOT.glob(word))]
 
 
-def _command_fault(words: list[str], program: str) -> str:
+def _command_fault(words: list[str]) -> str:
     """Of `./bench VERB ...`; empty when it is well."""
     verb, rest = words[1], words[2:]
     if missing := _missing_files(rest):
         return f"{missing[0]}: not there"
     if verbs.find(verb):
         return ""
-    helped = _ran([program, verb, "--help"])
+    helped = started(verb, "--help", timeout=SECONDS)
     if helped.returncode != 0:
         return _told(helped)
     flags = [word.split("=")[0] for word in rest if word.startswith("--")]
     if unknown := [flag for flag in flags if not re.search(rf"{flag}\b", helped.stdout)]:
         return f"{verb} has no {unknown[0]}"
     if verb in SAFE:
-        done = _ran([program, verb, *rest])
+        done = started(verb, *rest, timeout=SECONDS)
         return "" if done.returncode in (0, 5) else _told(done)
     return ""
 
 
-def _config_fault(words: list[str], program: str) -> str:
+def _config_fault(words: list[str]) -> str:
     verb, files = words[1], [word for word in words[2:] if word.startswith("configs/")]
     if verb in CHECKED_CONFIG and files:
         verify = [
-            program,
             "explain" if any("/device" in word for word in words) else "check",
             str(ROOT / files[0]),
             *_settings(words),
         ]
         if any("cudss" in word or '"cuda"' in word or "dense_184m" in word for word in words):
             return ""  # needs a card, or minutes
-        done = _ran(verify)
+        done = started(*verify, timeout=SECONDS)
         return "" if done.returncode == 0 else _told(done)
     if verb == "sweep" and files:
-        done = _ran([program, "sweep", str(ROOT / files[0]), "--dry-run", *_settings(words)])
+        done = started("sweep", str(ROOT / files[0]), "--dry-run", *_settings(words), timeout=SECONDS)
         return "" if done.returncode == 0 else _told(done)
     return ""
 
 
-def _shell_faults(snippet: Snippet, program: str) -> list[str]:
+def _shell_faults(snippet: Snippet) -> list[str]:
     faults = []
     for k, line in enumerate(snippet.text.splitlines()):
         for command in re.split(r"&&", line):
@@ -118,10 +114,10 @@ def _shell_faults(snippet: Snippet, program: str) -> list[str]:
             if not words:
                 continue
             if "|" in words and "./bench" in words:
-                done = _ran(["bash", "-c", command.replace("./bench", shlex.quote(program))], cwd=ROOT)
+                done = in_shell(command, cwd=ROOT, timeout=SECONDS)
                 fault = "" if done.returncode == 0 else _told(done)
             elif words[0].endswith("bench") and len(words) > 1:
-                fault = _command_fault(words, program) or _config_fault(words, program)
+                fault = _command_fault(words) or _config_fault(words)
             else:
                 fault = (
                     ""
@@ -133,7 +129,7 @@ def _shell_faults(snippet: Snippet, program: str) -> list[str]:
     return faults
 
 
-def _json_faults(snippet: Snippet, program: str) -> list[str]:
+def _json_faults(snippet: Snippet) -> list[str]:
     try:
         data = json.loads(snippet.text)
     except ValueError as error:
@@ -148,45 +144,38 @@ def _json_faults(snippet: Snippet, program: str) -> list[str]:
             if str(data.get("schema", "")).startswith("barrierbench.sweep")
             else ["check", str(file)]
         )
-        done = _ran([program, *words])
+        done = started(*words, timeout=SECONDS)
     return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
 
 
-def _python_faults(snippet: Snippet, program: str) -> list[str]:
+def _python_faults(snippet: Snippet) -> list[str]:
     """In a folder with one small record where the page has its demo."""
     with tempfile.TemporaryDirectory() as folder:
-        made = _ran(
-            [
-                program,
-                "run",
-                str(ROOT / "configs/scenes/resting_block_1d.json"),
-                "--set",
-                "/time/steps=2",
-                "--set",
-                "/passes/diagnose=true",
-                "--out",
-                "results/runs/demo/one",
-            ],
-            cwd=folder,
-        )
+        words = ["run", str(ROOT / "configs/scenes/resting_block_1d.json"), "--out", "results/runs/demo/one"]
+        words += ["--set", "/time/steps=2", "--set", "/passes/diagnose=true"]
+        made = started(*words, cwd=folder, timeout=SECONDS)
         if made.returncode != 0:
             return [f"{snippet.place}: {_told(made)}"]
         prelude = "import sys, types\nimport analysis\nsys.modules['barrierbench_analysis'] = analysis\n"
-        done = _ran(
+        done = subprocess.run(
             [sys.executable, "-c", prelude + snippet.text],
             cwd=folder,
             env={**os.environ, "PYTHONPATH": str(ROOT)},
+            capture_output=True,
+            text=True,
+            check=False,
+            timeout=SECONDS,
         )
     return [] if done.returncode == 0 else [f"{snippet.place}: {_told(done)}"]
 
 
-def faults(text: str, page: str, program: str) -> list[str]:
+def faults(text: str, page: str) -> list[str]:
     """What does not work, with page and line; a fence of a language that nothing checks as well."""
     judges = {"sh": _shell_faults, "json": _json_faults, "python": _python_faults}
     found = []
     for snippet in snippets(text, page):
         if snippet.language in judges:
-            found += judges[snippet.language](snippet, program)
+            found += judges[snippet.language](snippet)
         elif snippet.language not in PLAIN:
             found.append(
                 f"{snippet.place}: a fence of {snippet.language!r}, which nothing checks; allowed:"

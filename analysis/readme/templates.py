@@ -8,6 +8,7 @@ import re
 import textwrap
 
 from ..errors import UserError
+from ..text_table import markdown as table_lines
 from .map import lines
 from .slices import sentence
 
@@ -68,24 +69,16 @@ def conditions(numbers: dict) -> list[str]:
 
 def demo_table(numbers: dict) -> list[str]:
     """The runs of five cloth layers on a sphere."""
-    lines = [
-        *conditions(numbers),
-        "",
-        (
-            "| five layers, 16^2 | outcome | cond raw median, max | cond bJ median, max | Newton | PCG | min"
-            " gap/d_hat |"
-        ),
-        "|---|---|---|---|---|---|---|",
-    ]
+    rows = []
     for row in (row for row in numbers["runs"] if row["group"] == "demo_drape"):
         gap = "-" if row["gap_min_rel"] is None else f"{row['gap_min_rel']:.3f}"
         pcg = "-" if row["probe_pcg"] is None else f"{row['probe_pcg']:g}"
-        lines.append(
-            f"| {_name(row)} | {_outcome(row)} | {_power(row['cond_raw_median'])},"
-            f" {_power(row['cond_raw_max'])} | {_power(row['cond_bj_median'])},"
-            f" {_power(row['cond_bj_max'])} | {row['newton_iterations']} | {pcg} | {gap} |"
+        raw, scaled = (
+            f"{_power(row[f'cond_{of}_median'])}, {_power(row[f'cond_{of}_max'])}" for of in ("raw", "bj")
         )
-    return lines
+        rows.append([_name(row), _outcome(row), raw, scaled, f"{row['newton_iterations']}", pcg, gap])
+    head = ["five layers, 16^2", "outcome", "cond raw median, max", "cond bJ median, max", "Newton", "PCG"]
+    return [*conditions(numbers), "", *table_lines([*head, "min gap/d_hat"], rows)]
 
 
 def _free_of_crossings(numbers: dict) -> str:

@@ -7,15 +7,16 @@ from.
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
+from ..places import ROOT
 from ..program import built_program
 from ..whole_file import write_whole
 from . import figures
 from .map import gather as gather_map
-from .numbers import FILE, ROOT, RUNS, gather, read, write
+from .numbers import FILE, RUNS, gather, read, write
 from .slices import gather as gather_slices
 from .snippets import faults
 from .templates import PARTS, filled, lacking
@@ -57,14 +58,8 @@ def write_pages(root: Path, numbers: dict) -> list[str]:
 
 @tells("readme")
 def main(argv: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench readme",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=(
-            "examples: ./bench demo && ./bench readme --write\n          ./bench claims && ./bench readme"
-            " --fill\n          ./bench readme --check"
-        ),
+    parser = parser_of(
+        "readme", __doc__, "./bench demo && ./bench readme --write", "./bench claims && ./bench readme --fill"
     )
     what = parser.add_mutually_exclusive_group(required=True)
     what.add_argument(
@@ -105,9 +100,9 @@ def main(argv: list[str]) -> int:
             print(f"docs: {', '.join(copied) or 'no figure'}")
         print(f"{FILE}; changed: {', '.join(write_pages(ROOT, kept())) or 'no page'}")
         return 0
-    program = str(built_program())
+    built_program()
     found = (
-        [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page, program)]
+        [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page)]
         + stale(ROOT, kept())
         + figures.absent(ROOT / "docs")
     )

@@ -12,9 +12,9 @@ from pathlib import Path
 
 from .. import fields
 from ..errors import UserError
+from ..places import ROOT
 from ..spec_file import read_spec
 
-ROOT = Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "configs" / "stress"
 RUNS = ("base", "set", "axes", "formulations", "contacts", "full", "relations")  # of a test that runs scenes
 ONE = "-"  # the case of a test without axes

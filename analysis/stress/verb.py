@@ -15,6 +15,7 @@ from datetime import datetime, timezone
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
 from ..record_file import read_record
 from ..whole_file import write_whole
 from . import report
@@ -61,14 +62,8 @@ def about(folder: Path) -> dict:
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="bench stress",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=(
-            "examples: ./bench stress\n          ./bench stress S09 M10\n          ./bench stress --quick\n  "
-            "        ./bench stress S18 --full"
-        ),
+    parser = parser_of(
+        "stress", __doc__, "./bench stress", "./bench stress --quick", "./bench stress S18 --full"
     )
     parser.add_argument("ids", nargs="*", metavar="ID", help="configs/stress/ID.json (default: all)")
     parser.add_argument("--list", action="store_true", help="print the tests and run nothing")
@@ -97,7 +92,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     )
     args = parser.parse_args(argv)
     if args.full and args.quick:
-        parser.error("--full and --quick contradict each other")
+        raise UserError("--full and --quick contradict each other")
     return args
 
 

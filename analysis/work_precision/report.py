@@ -7,6 +7,7 @@ from __future__ import annotations
 import math
 
 from ..accuracy.errors import MEANING
+from ..text_table import markdown as table_lines
 from .judge import (
     COSTS,
     Standing,
@@ -64,27 +65,23 @@ def _apart(low: float, high: float) -> tuple[str, str]:
 def _standings(scene: dict) -> list[str]:
     names, band = formulations(scene), band_of(scene)
     all_points = points(scene, "newton")
-    lines = [
-        "| formulation | runs that count | useless below | Newton iterations there | cheapest within |",
-        "|---|---|---|---|---|",
-    ]
+    rows = []
     for name in names:
         s = standing(all_points, names, name)
         smallest = number(s.smallest) + (" (band)" if band and s.smallest <= band else "")
-        lines.append(
-            f"| {name} | {s.solved} of {s.runs} | {smallest} | {number(s.cost_there)} | {intervals(s)} |"
-        )
-    return lines
+        rows.append([name, f"{s.solved} of {s.runs}", smallest, number(s.cost_there), intervals(s)])
+    head = ["formulation", "runs that count", "useless below", "Newton iterations there", "cheapest within"]
+    return table_lines(head, rows)
 
 
 def _targets(scene: dict) -> list[str]:
     targets, names = scene["targets"], formulations(scene)
     heads = [f"{text}: error <= " + ", ".join(f"{t:g}" for t in targets) for _, text in COSTS.values()]
-    lines = ["| formulation | " + " | ".join(heads) + " |", "|" + "---|" * (1 + len(COSTS))]
+    rows = []
     for name in names:
         cells = [", ".join(number(cost_to(points(scene, cost), name, t)) for t in targets) for cost in COSTS]
-        lines.append(f"| {name} | " + " | ".join(cells) + " |")
-    return lines
+        rows.append([name, *cells])
+    return table_lines(["formulation", *heads], rows)
 
 
 def _failures(scene: dict) -> list[str]:
@@ -147,19 +144,17 @@ def _profiles(scenes: list[dict]) -> list[str]:
             " second, third of each scene); failed runs never are."
         ),
         "",
-        "| formulation | problems | "
-        + " | ".join(f"{b} factorisations" for b in budgets)
-        + " | any number |",
-        "|---|---|" + "---|" * (len(budgets) + 1),
     ]
+    rows = []
     levels = range(max(len(scene["targets"]) for scene in scenes))
     for name in formulations(scenes[0]):
         found = [profile(scenes, "factorizations", name, level) for level in levels]
         cells = [
             ", ".join(str(sum(c <= b for c in costs)) for costs, _ in found) for b in (*budgets, math.inf)
         ]
-        lines.append(f"| {name} | {found[0][1]} | " + " | ".join(cells) + " |")
-    return lines
+        rows.append([name, f"{found[0][1]}", *cells])
+    head = ["formulation", "problems", *(f"{b} factorisations" for b in budgets), "any number"]
+    return lines + table_lines(head, rows)
 
 
 def markdown(table: dict) -> str:

@@ -15,10 +15,11 @@ from ..accuracy.errors import NotFinite
 from ..accuracy.reference import CLOSED_FORMS, NoReference, Reference, measure, refined
 from ..accuracy.state import Motion, read_motion
 from ..errors import UserError
+from ..places import ROOT
 from ..program import built_program, run_sweep
 from ..record_file import RecordError, read_record
 from ..whole_file import write_whole
-from .spec import REFERENCE_D_HAT, ROOT, SOLVERS, Scene, Spec
+from .spec import REFERENCE_D_HAT, SOLVERS, Scene, Spec
 
 RUNS = ROOT / "results" / "runs" / "work_precision"
 ID_DIGITS = 16

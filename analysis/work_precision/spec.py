@@ -18,7 +18,6 @@ from ..accuracy.errors import NAMES
 from ..accuracy.reference import CLOSED_FORMS
 from ..errors import UserError
 
-ROOT = Path(__file__).resolve().parents[2]
 NAME = "barrierbench.work_precision/1"
 AXES = ("tolerance", "dt_s", "d_hat_m", "kappa")
 ANCHOR = AXES[:3]

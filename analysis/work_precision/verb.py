@@ -14,24 +14,20 @@ import shutil
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
+from ..places import ROOT
 from ..whole_file import write_whole
 from . import figure, report
 from .runs import RUNS, collect, run_scene
-from .spec import ROOT, Spec, read_spec
+from .spec import Spec, read_spec
 
 DEFAULT = ROOT / "configs" / "work_precision" / "default.json"
 TABLE = "barrierbench.work_precision_table/1"
 
 
 def arguments(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="bench work-precision",
-        description=__doc__,
-        formatter_class=argparse.RawDescriptionHelpFormatter,
-        epilog=(
-            "examples: ./bench work-precision\n          ./bench work-precision my_spec.json --out"
-            " results/runs/mine"
-        ),
+    parser = parser_of(
+        "work-precision", __doc__, "./bench work-precision my_spec.json --out results/runs/mine"
     )
     parser.add_argument(
         "spec",

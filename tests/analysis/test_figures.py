@@ -12,6 +12,7 @@ import pytest
 
 from analysis import style
 from analysis.figures import barrier_shapes, condition, demo, gaps, iterations, kappa_cycle
+from analysis.figures import verb as figures_verb
 from analysis.records import load
 from analysis.record_file import sha256_of
 from analysis.table import as_text, summary_table
@@ -220,5 +221,5 @@ def test_demo_makes_everything_and_names_failures(program, tmp_path, monkeypatch
 
 
 def test_a_folder_without_runs_is_one_clear_line(tmp_path, capsys):
-    assert demo.main([str(tmp_path)]) == 2
+    assert figures_verb.main([str(tmp_path)]) == 2
     assert "no run.json" in capsys.readouterr().err

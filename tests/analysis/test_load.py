@@ -4,7 +4,7 @@ import json
 
 import pytest
 
-from analysis.figures import demo
+from analysis.figures import verb as figures
 from analysis.records import RecordError, load
 from analysis.whole_file import write_whole
 from synthetic import write_set
@@ -46,14 +46,14 @@ def test_figures_end_well_beside_a_torn_record_and_not_without_any(tmp_path, cap
     write_set(tmp_path / "runs")
     path = tmp_path / "runs" / "cubic" / "run.json"
     path.write_text("{")
-    assert demo.main([str(tmp_path / "runs"), str(tmp_path / "out")]) == 0
+    assert figures.main([str(tmp_path / "runs"), str(tmp_path / "out")]) == 0
     said = capsys.readouterr()
     assert said.err.count(str(path)) == 1 and "1 of 4 records left out" in said.err
     assert "cubic_dynamic" in said.out and (tmp_path / "out" / "table.csv").exists()
 
     for other in tmp_path.rglob("run.json"):
         other.write_text("{")
-    assert demo.main([str(tmp_path / "runs"), str(tmp_path / "none")]) == 2
+    assert figures.main([str(tmp_path / "runs"), str(tmp_path / "none")]) == 2
     assert str(path) in capsys.readouterr().err
 
 

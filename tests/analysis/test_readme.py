@@ -158,7 +158,7 @@ def test_a_sentence_on_no_run_is_none():
 @pytest.mark.parametrize("fence", ["bash", "console", "c++", "py", "jsonc x=1"])
 def test_a_fence_that_nothing_checks_is_a_fault(fence):
     page = f"text\n```\nshown\n```\n```text\nshown\n```\n```{fence}\nls\n```\n"
-    found = snippets.faults(page, "a.md", "no program")
+    found = snippets.faults(page, "a.md")
     assert found == [f"a.md:9: a fence of {fence!r}, which nothing checks; allowed: sh, json, python, and text for what is no snippet"]
 
 
@@ -206,7 +206,7 @@ print(records.runs[["outcome", "gap_min_rel_min"]])
     ("```python\nfrom barrierbench_analysis import load\nload('results/runs/demo').runs['gap_min_rel']\n```\n", "a.md:13", "KeyError"),
 ])
 def test_a_snippet_that_does_not_work_is_named_with_its_line(program, wrong, place, said):
-    found = snippets.faults(GOOD + wrong, "a.md", program)
+    found = snippets.faults(GOOD + wrong, "a.md")
     if not wrong:
         assert found == []
     else:
@@ -217,7 +217,7 @@ def test_a_snippet_that_does_not_work_is_named_with_its_line(program, wrong, pla
 def test_every_snippet_of_the_pages_works(program, page):
     text = (ROOT / page).read_text()
     assert snippets.snippets(text, page) or page != "README.md"
-    assert snippets.faults(text, page, program) == []
+    assert snippets.faults(text, page) == []
 
 
 def test_the_pages_have_the_numbers_that_are_kept():

@@ -7,7 +7,8 @@ import pytest
 
 from analysis.errors import UserError
 from analysis import causes, load, render
-from analysis.figures import demo, newton_steps
+from analysis.figures import newton_steps
+from analysis.figures import verb as figures
 from analysis.gate import compare
 from analysis.matching.runs import read_strictly
 from analysis.record_file import CHANGED, RecordError, bound_file, other_meanings, read_record, read_trace
@@ -58,7 +59,7 @@ def test_every_verb_refuses_a_wrong_record_and_says_where(folder, tmp_path, caps
     read_record(folder / "run.json")
     edit(folder, change)
     said = []
-    for verb in (lambda: causes.main([str(folder)]), lambda: demo.main([str(tmp_path), str(tmp_path / "out")])):
+    for verb in (lambda: causes.main([str(folder)]), lambda: figures.main([str(tmp_path), str(tmp_path / "out")])):
         assert verb() == 2
         said.append(capsys.readouterr().err)
     with pytest.raises(RecordError) as error:
@@ -97,7 +98,7 @@ def test_a_part_of_a_trace_is_never_read_as_the_whole(folder, capsys, hashed, ke
     with pytest.raises(RecordError, match="trace.jsonl: found .*; allowed: .*as the record beside it says|trace.jsonl: found .*Newton iteration"):
         read_trace(read_record(folder / "run.json"), folder)
     assert causes.main([str(folder)]) == 2
-    assert demo.main([str(folder.parent)]) == 2
+    assert figures.main([str(folder.parent)]) == 2
     assert compare.main([str(folder), str(folder)]) != 0
     assert "trace" in capsys.readouterr().err
 
@@ -182,7 +183,7 @@ def test_figures_of_a_broken_steps_file_are_refused(tmp_path, capsys, change, pl
     assert newton_steps.read_steps(path)["trials"]
     change(data)
     path.write_text(json.dumps(data))
-    assert newton_steps.main([str(path)]) == 2
+    assert figures.main([str(path)]) == 2
     said = capsys.readouterr().err
     assert str(path) in said and place in said and "allowed" in said
 
@@ -191,5 +192,5 @@ def test_figures_of_a_broken_steps_file_are_refused(tmp_path, capsys, change, pl
 def test_figures_of_a_torn_steps_file_are_refused(tmp_path, capsys, text):
     path = tmp_path / "steps.json"
     path.write_bytes(text if isinstance(text, bytes) else text.encode())
-    assert newton_steps.main([str(path)]) == 2
+    assert figures.main([str(path)]) == 2
     assert str(path) in capsys.readouterr().err

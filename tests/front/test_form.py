@@ -47,3 +47,16 @@ def test_users_see_one_kind_of_error():
             if isinstance(node, ast.ClassDef) and any(isinstance(base, ast.Name) and base.id.endswith(("Error", "Exception")) for base in node.bases):
                 classes[node.name] = [base.id for base in node.bases]
     assert classes == {"UserError": ["ValueError"], "RecordError": ["UserError"], "NoReference": ["ValueError"], "NotFinite": ["ValueError"], "NoHistory": ["Exception"]}
+
+
+def test_one_place_starts_the_program():
+    """Other files start git, compilers and their like, Python, or targets of their own."""
+    others = {"claims/history.py", "compare_toolkit.py", "fuzz.py", "readme/snippets.py",
+              *(f"front/{name}.py" for name in ("building", "format", "microbenchmarks", "mutate", "rooms", "test", "tidy"))}
+    starters, program = set(), re.compile(r"built_program\(|ensure_program\(|RELEASE|BARRIERBENCH_PROGRAM")
+    for path in ANALYSIS.rglob("*.py"):
+        name = path.relative_to(ANALYSIS).as_posix()
+        if re.search(r"subprocess\.(run|Popen|call|check_\w+)\(|os\.(exec|spawn|system|popen)", text := path.read_text()):
+            starters.add(name)
+            assert name in ("program.py", "front/building.py", "front/test.py") or not program.search(text), name
+    assert starters == {"program.py", *others}

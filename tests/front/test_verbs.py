@@ -1,5 +1,6 @@
 """The table of verbs: one row and one file make a verb, the help lists all of them in six groups, a wrong word gets the nearest."""
 
+import importlib
 import importlib.util
 import os
 import re
@@ -79,6 +80,31 @@ def test_the_program_has_the_verbs_and_groups_of_the_table(program):
     for verb in verbs.of_program():
         helped = subprocess.run([program, verb.name, "--help"], capture_output=True, text=True, check=True).stdout
         assert f"example: {verb.example}" in helped
+
+
+def rows_with_a_parser() -> list[verbs.Verb]:
+    """The verbs in Python that take their arguments by themselves."""
+    return [verb for verb in verbs.TABLE if verb.module and "parser_of(" in (ROOT / f"analysis/{verb.module.replace('.', '/')}.py").read_text()]
+
+
+@pytest.mark.parametrize("verb", rows_with_a_parser(), ids=lambda verb: verb.name)
+def test_the_help_of_a_verb_in_python_is_made_of_its_row(verb, capsys):
+    main = importlib.import_module(f"analysis.{verb.module}").main
+    with pytest.raises(SystemExit) as ended:
+        main(["--help"])
+    said = capsys.readouterr().out
+    assert ended.value.code == 0 and said.startswith(f"usage: bench {verb.name} ")
+    assert verb.help[1:] in " ".join(said.split()) and f"\n  {verb.example}\n" in said
+    assert main(["--no-such-option"]) == 2
+    said = capsys.readouterr()
+    assert said.out == "" and said.err.startswith(f"bench {verb.name}: ") and said.err.endswith(f"(./bench {verb.name} --help says what there is)\n")
+
+
+def test_one_place_makes_parsers_of_verbs():
+    """gpu_evidence is no verb: a script of experiments/ calls it."""
+    assert len(rows_with_a_parser()) > 20
+    makers = {path.relative_to(ROOT).as_posix() for path in (ROOT / "analysis").rglob("*.py") if "ArgumentParser(" in path.read_text()}
+    assert makers == {"analysis/gpu_evidence.py"}
 
 
 @pytest.mark.parametrize(("word", "meant"), [("claim", "claims"), ("swep", "sweep"), ("gapmap", "gap-map"), ("buidl", "build")])
