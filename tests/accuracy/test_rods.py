@@ -1,14 +1,13 @@
 """Rods in whole runs against beams, the elastica, the catenary and a loop on a sphere; momentum; contact of rods with rods and with cloth."""
 
 import json
+import subprocess
 
 import numpy as np
 import pytest
 from motions import FIXED, ROOT, G, run
 from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
-
-from analysis.accuracy.state import read_motion
 
 EI = 1e-3  # N m^2
 
@@ -151,8 +150,6 @@ def test_a_loop_lies_on_cloth(program, tmp_path):
 
 
 def test_a_device_names_the_part_without_kernels(program, tmp_path):
-    import subprocess
-
     body = rod(4, 1.0, line_density_kg_per_m=0.1, rod_bending_N_m2=EI)
     file = tmp_path / "config.json"
     file.write_text(json.dumps({**config([body]), "device": "host", "linear_solver": {"name": "pcg"}, "time": {"dt_s": 0.01, "steps": 1}}))
