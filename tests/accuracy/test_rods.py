@@ -67,11 +67,11 @@ def test_a_cantilever_bends_as_the_beam_and_as_the_elastica(program, tmp_path, l
     assert all(3.5 < a / b < 4.5 for a, b in zip(errors, errors[1:])), errors
 
 
-def scene(program, tmp_path, name: str, every: int):
+def scene(program, tmp_path, name: str, every: int, tolerance: float = 1e-5):
     file = json.loads((ROOT / f"configs/scenes/{name}.json").read_text())
     duration, steps = file["time"]["dt_s"] * file["time"]["steps"], file["time"]["steps"]
     settings = {key: file[key] for key in ("schema", "scene", "formulation")}
-    motion = run(program, {**settings, **FIXED}, "implicit_euler", duration, steps, tmp_path / name, every=every)
+    motion = run(program, {**settings, **FIXED}, "implicit_euler", duration, steps, tmp_path / name, tolerance, every=every)
     assert motion.record["audit"]["judged"] > 0 and motion.record["audit"]["crossings"] == 0 and motion.record["audit"]["violations"] == 0
     return motion
 
@@ -92,7 +92,8 @@ def test_a_loop_on_a_sphere_is_held_by_its_hoop_tension(program, tmp_path):
     first, x = motion.x[0], motion.x[-1]
     radius, height = np.linalg.norm(x[:, :2], axis=1), x[:, 2]
     assert np.ptp(height) < 1e-4 and motion.record["steps"][-1]["contacts"]["total"] >= 48
-    assert 0.151 < np.hypot(radius, height).min() < 0.153
+    middles = 0.5 * (x + np.roll(x, 1, axis=0))  # where edges are closest to the ball
+    assert 0.151 < np.linalg.norm(middles, axis=1).min() < 0.153
     strain = np.linalg.norm(x - np.roll(x, 1, axis=0), axis=1) / np.linalg.norm(first - np.roll(first, 1, axis=0), axis=1) - 1
     tension = 0.05 * G * radius.mean() * radius.mean() / height.mean()
     print("tension N:", 20 * strain.mean(), "closed form:", tension)
@@ -131,8 +132,10 @@ def test_rods_lie_along_and_across_a_rod_without_a_crossing(program, tmp_path):
     record = motion.record
     assert record["scene"]["rods"] == 57 and record["audit"]["crossings"] == 0 and record["audit"]["violations"] == 0 and record["audit"]["judged"] > 100
     assert max(step["contacts"]["total"] for step in record["steps"]) > 20 and max(step["contacts"]["edge_edge"] for step in record["steps"]) > 0
-    middles = [motion.x[-1][motion.body_of == b, 2].max() for b in range(3)]
-    assert middles[1] > middles[0] and middles[2] > middles[1] + 0.004
+    held, along, across = (motion.x[-1][motion.body_of == b] for b in range(3))
+    height = [np.interp(0.003, held[:, 0], held[:, 2]), np.interp(0.003, along[:, 0], along[:, 2]), np.interp(0, across[:, 1], across[:, 2])]
+    print("heights where they cross, m:", height)
+    assert height[1] > height[0] + 0.004 and height[2] > height[1] + 0.004  # twice the radius
     assert min(step["gap_min_m"] for step in record["steps"] if step["gap_min_m"] is not None) > 0
 
 
@@ -152,6 +155,6 @@ def test_a_loop_lies_on_cloth(program, tmp_path):
 def test_a_device_names_the_part_without_kernels(program, tmp_path):
     body = rod(4, 1.0, line_density_kg_per_m=0.1, rod_bending_N_m2=EI)
     file = tmp_path / "config.json"
-    file.write_text(json.dumps({**config([body]), "device": "host", "linear_solver": {"name": "pcg"}, "time": {"dt_s": 0.01, "steps": 1}}))
+    file.write_text(json.dumps({**config([body]), "device": "host", "linear_solver": {"name": "pcg_resident"}, "time": {"dt_s": 0.01, "steps": 1}}))
     done = subprocess.run([program, "check", str(file)], capture_output=True, text=True, check=False)
     assert done.returncode == 2 and "3 rod bends, a part without kernels" in done.stderr, done.stderr
