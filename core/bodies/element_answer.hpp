@@ -1,6 +1,8 @@
 // What one element of a part answers: energy and derivatives at given points.
 #pragma once
 
+#include <string>
+
 #include "core/energy/terms.hpp"
 #include "core/parameters/fields.hpp"
 
@@ -10,6 +12,7 @@ struct ElementAnswer {
   double energy = 0;                     // J
   Eigen::VectorXd gradient;              // N
   Eigen::MatrixXd hessian, hessian_psd;  // N/m
+  std::string status;                    // where derivatives are a choice; else empty
 };
 
 /// N points, each a row of the field `name`.
@@ -25,8 +28,11 @@ struct FieldPoints {
 /// exact: under Projection::none; psd: under Projection::psd.
 template <class T, int N>
 ElementAnswer element_answer(const ElementTerms<T, N>& exact, const ElementTerms<T, N>& psd) {
-  return {static_cast<double>(exact.energy), exact.grad.template cast<double>(),
-          exact.hess.template cast<double>(), psd.hess.template cast<double>()};
+  return {static_cast<double>(exact.energy),
+          exact.grad.template cast<double>(),
+          exact.hess.template cast<double>(),
+          psd.hess.template cast<double>(),
+          {}};
 }
 
 /// f.operator()<T>() in the scalar that the fields ask for.

@@ -183,4 +183,33 @@ TriangleMesh rod_mesh(int n_segments, const Vec3d& from, const Vec3d& to) {
   return mesh;
 }
 
+TriangleMesh ring_mesh(int n_segments, double radius) {
+  require_count("ring/n_segments", n_segments, 3, max_count);
+  require_size("ring/radius_m", radius);
+  TriangleMesh mesh;
+  mesh.vertices.resize(3, n_segments);
+  for (int i = 0; i < n_segments; ++i) {
+    const double angle = 2 * std::numbers::pi * i / n_segments;
+    mesh.vertices.col(i) = radius * Vec3d(std::cos(angle), std::sin(angle), 0);
+    mesh.segments.push_back({i, (i + 1) % n_segments});
+  }
+  return mesh;
+}
+
+TriangleMesh helix_mesh(int n_segments, double n_turns, double radius, double pitch) {
+  require_count("helix/n_segments", n_segments, 1, max_count);
+  require_size("helix/n_turns", n_turns);
+  require_size("helix/radius_m", radius);
+  require_size("helix/pitch_m", pitch);
+  TriangleMesh mesh;
+  mesh.vertices.resize(3, n_segments + 1);
+  for (int i = 0; i <= n_segments; ++i) {
+    const double turned = n_turns * i / n_segments, angle = 2 * std::numbers::pi * turned;
+    mesh.vertices.col(i) =
+        Vec3d(radius * std::cos(angle), radius * std::sin(angle), pitch * (turned - 0.5 * n_turns));
+    if (i > 0) mesh.segments.push_back({i - 1, i});
+  }
+  return mesh;
+}
+
 }  // namespace bb

@@ -24,4 +24,11 @@ TriangleMesh box_mesh(int n, const Vec3d& size);
 /// n_segments >= 1 equal segments from `from` to `to`; no triangles.
 TriangleMesh rod_mesh(int n_segments, const Vec3d& from, const Vec3d& to);
 
+/// Closed loop of n_segments >= 3 equal segments with its vertices on a circle in the x-y plane; no triangles.
+TriangleMesh ring_mesh(int n_segments, double radius);
+
+/// n_segments >= 1 equal segments with their vertices on a helix of axis z, right-handed, that rises by `pitch` (m) a turn; no
+/// triangles.
+TriangleMesh helix_mesh(int n_segments, double n_turns, double radius, double pitch);
+
 }  // namespace bb

@@ -47,6 +47,20 @@ const Registry<MeshGenerator>& mesh_generators() {
          const double half = 0.5 * number(p, "length_m");
          return rod_mesh(integer(p, "n_segments"), Vec3d(-half, 0, 0), Vec3d(half, 0, 0));
        }},
+      {"ring",
+       "closed loop of lone edges on a circle in the x-y plane",
+       {{"n_segments", count(3, 20000), 24, "segments"}, {"radius_m", positive("m"), 0.5, "radius"}},
+       [](const ParameterMap& p) { return ring_mesh(integer(p, "n_segments"), number(p, "radius_m")); }},
+      {"helix",
+       "right-handed helix of lone edges round z",
+       {{"n_segments", count(1, 20000), 48, "segments"},
+        {"n_turns", positive("1"), 3, "turns"},
+        {"radius_m", positive("m"), 0.5, "radius"},
+        {"pitch_m", positive("m"), 0.2, "rise a turn"}},
+       [](const ParameterMap& p) {
+         return helix_mesh(integer(p, "n_segments"), number(p, "n_turns"), number(p, "radius_m"),
+                           number(p, "pitch_m"));
+       }},
   });
   return list;
 }

@@ -21,6 +21,7 @@ Answer answer::energy(Query& q) {
     a.vector("gradient", element.gradient);
     a.matrix("hessian", element.hessian);
     a.matrix("hessian_psd", element.hessian_psd);
+    if (!element.status.empty()) a.status(element.status);
   }
   return a;
 }

@@ -36,6 +36,8 @@ QUERIES = [
       for model in ("corotational", "arap", "stvk", "stable_neo_hookean", "baraff_witkin")),
     {"kind": "energy", "model": "spring", "rest": SQUARE[:2], "x": MOVED[:2], "k": 8},
     {"kind": "energy", "model": "hinge", "x": [[0, 0, 0], [1, 0, 0], [0, 1, 0.2], [0, -1, 0]], "k": 2, "rest_angle": 0.1},
+    {"kind": "energy", "model": "rod_bend", "x": SQUARE, "k": 2, "rest_angle": 0.1},
+    {"kind": "energy", "model": "rod_bend", "rest": SQUARE, "x": [[0, 0, 0], [1, 0, 0], [3, 0, 0]], "k": 2, "rest_angle": 0.1, "precision": "float"},
     {"kind": "svd", "F": [[3, 0], [0, -2]]},
     *({"kind": "condition", "rows": [0, 1, 1], "cols": [0, 0, 1], "values": [2, 1, 2], "scaling": scaling, "tier": tier}
       for scaling in ("none", "jacobi", "block_jacobi") for tier in range(5)),

@@ -305,6 +305,35 @@ TEST(EvalEnergy, SpringMembraneAndHinge) {
             std::string::npos);
 }
 
+json rod_bend(const json& points, double rest_angle) {
+  return {{"kind", "energy"}, {"model", "rod_bend"}, {"x", points}, {"k", 2}, {"rest_angle", rest_angle}};
+}
+
+TEST(EvalEnergy, BendingOfARod) {
+  const double right_angle = std::numbers::pi / 2;
+  const json bent = ask(rod_bend({{0, 0, 0}, {1, 0, 0}, {1, 2, 0}}, 0.5));
+  const double deviation = right_angle - 0.5;
+  expect_close(bent["energy"], deviation * deviation);
+  // p0 turns its segment of 1 m, p2 its segment of 2 m: forces of k deviation over the length
+  expect_close(bent["gradient"][1], 2 * deviation);
+  expect_close(bent["gradient"][6], -2 * deviation / 2);
+  EXPECT_EQ(bent["hessian"].size(), 9u);
+  EXPECT_FALSE(bent.contains("status"));
+
+  const json straight = {{0, 0, 0}, {1, 0, 0}, {3, 0, 0}};
+  EXPECT_FALSE(ask(rod_bend(straight, 0)).contains("status"));
+  const json cusp = ask(rod_bend(straight, 0.5));
+  EXPECT_EQ(cusp["status"], "cusp");
+  expect_close(cusp["energy"], 0.25);
+  EXPECT_EQ(cusp["gradient"], json(std::vector<double>(9, 0.0)));
+  for (const json& points :
+       {json({{0, 0, 0}, {0, 0, 0}, {3, 0, 0}}), json({{0, 0, 0}, {3, 0, 0}, {3, 0, 0}})}) {
+    const std::string said = refused(rod_bend(points, 0));
+    EXPECT_NE(said.find("/x"), std::string::npos) << said;
+    EXPECT_NE(said.find("coincide"), std::string::npos) << said;
+  }
+}
+
 TEST(EvalSvd, SignsAndOrder) {
   const json flat = ask({{"kind", "svd"}, {"F", {{2, 0}, {0, -3}}}});
   EXPECT_EQ(flat["sigma"], json({3.0, -2.0}));

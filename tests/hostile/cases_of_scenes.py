@@ -102,6 +102,10 @@ SCENE_CASES += [
     check("obstacle-that-touches-at-the-start", with_obstacle("sphere", radius_m=1.0), "obstacle_triangle: thing, cloth[0]", "gap 0 m"),
     check("plane-that-touches-at-the-start", config({"bodies": [body(grid())], "obstacles": [{"name": "floor", "kind": "plane", "point_m": [0, 0, 0]}]}),
           "obstacle: floor", "gap 0 m"),
+    check("rod-that-branches", one_mesh("m.obj", material={"line_density_kg_per_m": 0.1, "rod_bending_N_m2": 1}), 'body "cloth"/material/rod_bending_N_m2',
+          "vertex 1 in 3 lone edges", "at most 2", files={"m.obj": "v 0 0 0\nv 1 0 0\nv 2 0 0\nv 1 1 0\nl 1 2 3\nl 2 4\n"}),
+    check("rod-that-folds-back", one_mesh("m.obj", material={"line_density_kg_per_m": 0.1, "rod_bending_N_m2": 1}), "folds back at vertex 1",
+          files={"m.obj": "v 0 0 0\nv 1 0 0\nv 0.5 0 0\nl 1 2 3\n"}),
     check("ten-thousand-and-one-bodies", bodies(*[body(grid(), name=f"b{i}") for i in range(10_001)]), "at most 10000"),
     check("formulation-upwards", {**bodies(body(grid())), "formulation": {
         "name": "../../up", "shape": "log", "argument": "gap", "stiffness_policy": {"name": "fixed"}, "d_hat_m": 0.01}}, "/formulation/name"),

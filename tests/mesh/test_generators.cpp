@@ -111,6 +111,31 @@ TEST(rod_mesh, joins_its_ends_by_equal_segments) {
   EXPECT_EQ(mesh.vertices.col(4), Vec3d(1, 0, 0));
 }
 
+TEST(ring_mesh, closes_on_a_circle_with_equal_segments) {
+  const TriangleMesh mesh = ring_mesh(6, 2.0);
+
+  EXPECT_EQ(mesh.segments, (std::vector<std::array<int, 2>>{{0, 1}, {1, 2}, {2, 3}, {3, 4}, {4, 5}, {5, 0}}));
+  EXPECT_TRUE(mesh.triangles.empty());
+  for (const auto& [a, b] : mesh.segments) {
+    EXPECT_NEAR(mesh.vertices.col(a).norm(), 2.0, 1e-15);
+    EXPECT_NEAR((mesh.vertices.col(b) - mesh.vertices.col(a)).norm(), 2.0, 1e-14);  // a hexagon
+  }
+}
+
+TEST(helix_mesh, rises_by_its_pitch_every_turn) {
+  const TriangleMesh mesh = helix_mesh(24, 2, 0.5, 0.3);
+
+  EXPECT_EQ(mesh.n_vertices(), 25);
+  EXPECT_EQ(mesh.segments.size(), 24u);
+  EXPECT_NEAR(mesh.vertices(2, 0), -0.3, 1e-15);
+  EXPECT_NEAR(mesh.vertices(2, 24), 0.3, 1e-15);
+  EXPECT_LT((mesh.vertices.col(12) - mesh.vertices.col(0) - Vec3d(0, 0, 0.3)).norm(), 1e-15);
+  EXPECT_LT((mesh.vertices.col(3) - Vec3d(0, 0.5, -0.3 + 0.3 / 4)).norm(), 1e-15);  // right-handed
+  const double length = (mesh.vertices.col(1) - mesh.vertices.col(0)).norm();
+  for (const auto& [a, b] : mesh.segments)
+    EXPECT_NEAR((mesh.vertices.col(b) - mesh.vertices.col(a)).norm(), length, 1e-14);
+}
+
 TEST(generators, refuse_what_makes_no_mesh) {
   EXPECT_THROW(grid_mesh(1, 2, 1, 1), ConfigError);
   EXPECT_THROW(grid_mesh(2, 2, 0, 1), ConfigError);
@@ -119,6 +144,10 @@ TEST(generators, refuse_what_makes_no_mesh) {
   EXPECT_THROW(cylinder_mesh(2, 1, 1, 1, true), ConfigError);
   EXPECT_THROW(box_mesh(0, Vec3d(1, 1, 1)), ConfigError);
   EXPECT_THROW(rod_mesh(1, Vec3d::Zero(), Vec3d::Zero()), ConfigError);
+  EXPECT_THROW(ring_mesh(2, 1), ConfigError);
+  EXPECT_THROW(ring_mesh(3, 0), ConfigError);
+  EXPECT_THROW(helix_mesh(0, 1, 1, 1), ConfigError);
+  EXPECT_THROW(helix_mesh(8, 1, 1, -1), ConfigError);
 }
 
 }  // namespace

@@ -24,7 +24,7 @@ inline TermOptions term_options() {
 }
 
 /// Two small cloths with bending, springs and a strain limit, the lower one close above a floor, the upper
-/// one close above the lower.
+/// one close above the lower, each with a rod of two segments on its side.
 inline Scene scene_with_everything() {
   constexpr double d_hat = 0.05;
   SceneBuilder builder("everything", false, Vec3d(0, 0, -10), "test");
@@ -32,12 +32,14 @@ inline Scene scene_with_everything() {
     BodySpec body;
     body.name = "cloth" + std::to_string(layer);
     body.mesh = grid_mesh(3, 3, 1.0, 1.0);
+    body.mesh.segments = {{0, 3}, {3, 6}};
     body.mesh.vertices.row(2).array() += 0.02 + 0.03 * layer;
     body.mesh.vertices.row(0) *= 1 + 0.03 * layer;  // vertices not above vertices
     body.material.density = 0.3;
     body.material.youngs = 20;
     body.material.bending = 0.01;
     body.material.springs = 3;
+    body.material.rod_bending = 0.004;
     body.material.limit = StrainLimitSpec{0.001, 0.2};
     body.d_hat = d_hat;
     builder.add_body(body);

@@ -62,6 +62,8 @@ TEST(plan, follows_every_option) {
   BodySpec body = cloth("cloth", 1);
   body.material.bending = 1;
   body.material.springs = 1;
+  body.mesh.segments = {{0, 1}, {1, 2}};
+  body.material.rod_bending = 1;
   body.material.limit = StrainLimitSpec{};
   BodySpec box = rigid_box("box");
   box.motion.velocity = Vec3d(0, 0, 1);

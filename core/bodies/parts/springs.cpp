@@ -1,12 +1,30 @@
 // Springs: on every edge of a body, of triangles and of rods. Lone edges are rods, whose mass this part brings.
 #include "core/energy/spring_batch.hpp"
 
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <set>
+
 #include "core/bodies/part.hpp"
 #include "core/energy/spring.hpp"
 #include "core/mesh/topology.hpp"
 
 namespace bb {
 namespace {
+
+/// Each with the lower vertex first.
+std::set<std::array<int, 2>> lone_edges_of(const TriangleMesh& mesh) {
+  std::set<std::array<int, 2>> out;
+  for (const auto& [a, b] : mesh.segments) out.insert({std::min(a, b), std::max(a, b)});
+  return out;
+}
+
+void refuse_length(const std::array<int, 2>& edge, const BodyElements& to) {
+  to.complain("/material/rod_stretching_N",
+              fmt::format("a lone edge without length, of vertices {} and {}", edge[0], edge[1]),
+              "edges longer than 0 m");
+}
 
 class Springs final : public Part {
  public:
@@ -15,6 +33,10 @@ class Springs final : public Part {
             &Material::line_density);
     out.add("springs_N_per_m", non_negative("N/m"), "Stiffness of a spring on every edge.",
             &Material::springs);
+    out.add("rod_stretching_N", non_negative("N"),
+            "Stretching stiffness E A of lone edges: the spring on one has this over its length, beside "
+            "springs_N_per_m.",
+            &Material::rod_stretching);
   }
 
   std::vector<MemoryItem> memory(const Scene&, const TriangleMesh& mesh) const override {
@@ -31,12 +53,20 @@ class Springs final : public Part {
     }
   }
   void add_elements(const BodySpec& spec, BodyElements& to) const override {
-    if (spec.material.springs == 0) return;
+    if (spec.material.springs == 0 && spec.material.rod_stretching == 0) return;
+    const std::set<std::array<int, 2>> lone = lone_edges_of(spec.mesh);
     for (const auto& local : unique_edges(spec.mesh)) {
       const auto edge = to.in_scene(local);
       if (to.all_prescribed(edge)) continue;
+      double stiffness = spec.material.springs;
+      if (spec.material.rod_stretching > 0 && lone.contains(local)) {
+        const double length = (spec.mesh.vertices.col(local[1]) - spec.mesh.vertices.col(local[0])).norm();
+        if (!(length > 0)) return refuse_length(local, to);
+        stiffness += spec.material.rod_stretching / length;
+      }
+      if (stiffness == 0) continue;
       to.scene.springs.edges.push_back(edge);
-      to.scene.springs.stiffness.push_back(spec.material.springs);
+      to.scene.springs.stiffness.push_back(stiffness);
     }
   }
 

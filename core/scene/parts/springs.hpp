@@ -14,8 +14,9 @@ struct SpringPart {
 namespace parts::springs {
 
 struct Keys {
-  double line_density = 0;  // kg/m of lone edges
-  double springs = 0;       // N/m, on every unique edge; 0: none
+  double line_density = 0;    // kg/m of lone edges
+  double springs = 0;         // N/m, on every unique edge; 0: none
+  double rod_stretching = 0;  // N, E A of lone edges; 0: none
 };
 
 struct Columns {
