@@ -19,6 +19,7 @@
 namespace bb {
 
 class Archive;
+struct ContactLoads;
 struct KnownStiffness;
 
 /// One time step, the same for all terms.
@@ -110,6 +111,10 @@ class Term {
   virtual void add_given_motion(const PositionsView& /*x*/, const PositionsView& /*motion*/,
                                 PositionsSpan /*force*/) const {}
 
+  /// Appends the contacts that this term holds at the iterate x, with their loads once it is linearised there. Terms of later
+  /// lines, which are handed it when they are made, read them at the start of a step: friction, restitution.
+  virtual void add_loads(const PositionsView& /*x*/, ContactLoads& /*out*/) const {}
+
   // --- a motion
   /// Before bound() and trials along it.
   virtual void prepare(const Motion&, PhaseClock&) {}
@@ -143,6 +148,9 @@ class Term {
                                const PositionsView& /*dx*/, StepNumbers&) {}
 
  protected:
+  /// The parts of a family whose elements are the same at the iterate and at the trial: one an element. Appends.
+  static void compare_elements(const TermFamily& family, EnergyParts& out);
+
   std::vector<TermFamily> families_;
 };
 
