@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "core/barrier/shape.hpp"
 #include "core/barrier/stiffness_policy.hpp"
@@ -33,6 +34,16 @@ struct LimitStiffness {
   bool needs_hessian() const { return kind == Kind::elasticity_inclusive && elastic_term; }
 };
 
+/// How two coefficients of friction make one.
+enum class FrictionRule { min, max, mean };
+
+struct FrictionOptions {
+  std::string law = "smoothed_coulomb";  // of core/energy/friction_laws/registry.inc
+  double mu = 0;                         // of bodies and obstacles that have none of their own
+  FrictionRule combine = FrictionRule::min;
+  double eps_v = 1e-3;  // m/s, sliding speed from which the force is whole
+};
+
 struct TermOptions {
   BarrierFunction contact;
   std::unique_ptr<StiffnessPolicy> stiffness;
@@ -42,6 +53,7 @@ struct TermOptions {
   bool strain_limit = true;  // false: limits of the scene are left out
   BarrierFunction limit;
   LimitStiffness limit_stiffness;
+  FrictionOptions friction;
 };
 
 }  // namespace bb

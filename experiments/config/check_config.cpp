@@ -261,10 +261,25 @@ void check_protocol(const RunConfig& config, const Complain& complain) {
                : "another step solver: article_literal needs scene drape2d with protocol article_literal");
 }
 
+/// Friction has no kernels.
+void check_friction_on_device(const RunConfig& config, const std::string& on, const Complain& complain) {
+  const auto refuse = [&](const std::string& pointer, double mu) {
+    if (mu > 0) complain(pointer, fmt::format("{}", mu), "0 " + on + ": friction runs with device cpu only");
+  };
+  refuse("/friction/mu", config.friction.mu);
+  for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
+    refuse(fmt::format("/scene/bodies/{}/friction", i), config.scene.bodies[i].spec.friction.value_or(0));
+  }
+  for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+    refuse(fmt::format("/scene/obstacles/{}/friction", i), config.scene.obstacles[i].friction.value_or(0));
+  }
+}
+
 /// What the resident pipeline does not have.
 void check_device(const RunConfig& config, const Complain& complain) {
   if (config.device == Device::cpu) return;
   const std::string on = fmt::format("with device {}", word_of(config.device));
+  check_friction_on_device(config, on, complain);
   if (config.precision != Precision::full) {
     complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);
   }
