@@ -36,15 +36,21 @@ class Friction final : public Term {
     const ScopedPhase timer(clock, Phase::contact_terms);
     x_n_ = frame.x_n;
     change_frame(frame);
-    loads_known_ = false;
-    read_contacts();
-    choose_rows();
+    solved_ = 0;
+    take_lag(x_n_);
   }
   void change_frame(const StepFrame& frame) override { eps_ = options_.friction.eps_v * frame.dt; }
   void adopt_from(const Term& other) override {
     const auto& same = static_cast<const Friction&>(other);
+    take_rows(same.contacts_);
     strength_ = same.strength_;
     loads_known_ = same.loads_known_;
+  }
+  bool renew_lag(const PositionsView& x) override {
+    if (++solved_ >= options_.friction.lag_iterations) return false;
+    const bool had_rows = size() > 0;
+    take_lag(x);
+    return had_rows || size() > 0;
   }
 
   void linearise(const PositionsView& x, const TermContext&) override {
@@ -118,13 +124,22 @@ class Friction final : public Term {
     }
   };
 
-  void read_contacts() {
-    contacts_.clear();
-    for (const Term* term : before_) term->add_loads(x_n_, contacts_);
+  ContactLoads contacts_now() const {
+    ContactLoads out;
+    for (const Term* term : before_) term->add_loads(lagged_, out);
+    return out;
   }
 
-  /// Those with friction, of the contacts at x_n.
-  void choose_rows() {
+  /// Rows of the iterate x; their loads are known once the terms before have been linearised there.
+  void take_lag(const PositionsView& x) {
+    lagged_ = x;
+    take_rows(contacts_now());
+    loads_known_ = false;
+  }
+
+  /// Those with friction become elements.
+  void take_rows(ContactLoads contacts) {
+    contacts_ = std::move(contacts);
     row_.clear();
     mu_.clear();
     vertices_.clear();
@@ -160,25 +175,26 @@ class Friction final : public Term {
     return combined(options_.friction.combine, first, of_body(*last));
   }
 
-  // The terms before have been linearised at x_n, where the step begins: their rows are those of begin_step.
+  // The terms before have been linearised where the rows are of.
   void learn_loads() {
-    const std::size_t n = contacts_.size();
-    read_contacts();
-    if (contacts_.size() != n) throw std::logic_error("a step is linearised first where it begins");
-    for (std::size_t e = 0; e < row_.size(); ++e) strength_[e] = mu_[e] * contacts_.load[row_[e]];
+    const ContactLoads now = contacts_now();
+    if (now.stencil != contacts_.stencil)
+      throw std::logic_error("the rows of a lag changed before their loads");
+    for (std::size_t e = 0; e < row_.size(); ++e) strength_[e] = mu_[e] * now.load[row_[e]];
     loads_known_ = true;
   }
 
   const Scene& scene_;
   const TermOptions& options_;
   std::vector<const Term*> before_;
-  Positions x_n_;
   double eps_ = 0;                     // m
-  ContactLoads contacts_;              // at x_n
+  Positions x_n_, lagged_;             // m, where slides begin, and where the rows are of
+  ContactLoads contacts_;              // there
   std::vector<std::size_t> row_;       // [n] the contact of each element
   std::vector<double> mu_, strength_;  // [n] 1; mu times load, N
   std::vector<int> vertices_;          // [4 n]
   bool loads_known_ = false;
+  int solved_ = 0;  // times that this step converged
 };
 
 }  // namespace

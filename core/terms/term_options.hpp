@@ -41,7 +41,8 @@ struct FrictionOptions {
   std::string law = "smoothed_coulomb";  // of core/energy/friction_laws/registry.inc
   double mu = 0;                         // of bodies and obstacles that have none of their own
   FrictionRule combine = FrictionRule::min;
-  double eps_v = 1e-3;  // m/s, sliding speed from which the force is whole
+  int lag_iterations = 1;  // times that a step is solved, with loads of its start and of the ends before
+  double eps_v = 1e-3;     // m/s, sliding speed from which the force is whole
 };
 
 struct TermOptions {

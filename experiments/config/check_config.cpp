@@ -56,6 +56,10 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
     complain("/step_solver/saddle", "\"escape\"",
              "report or ignore: only line_search, which tests energies, can leave a saddle");
   }
+  if (config.friction.lag_iterations > 1 && solver.name != "line_search") {
+    complain("/friction/lag_iterations", fmt::format("{}", config.friction.lag_iterations),
+             "1: only line_search solves a step again");
+  }
   const int min_newton_steps = integer(solver.parameters, "min_newton_steps");
   if (solver.name == "accumulated_toi" && min_newton_steps > solver.max_iterations) {
     complain("/step_solver/min_newton_steps", fmt::format("{}", min_newton_steps),
