@@ -4,7 +4,7 @@
 
 #include "tests/experiments/eval_asking.hpp"
 
-namespace bb::test {
+namespace bb::test::eval_kinds_test {
 namespace {
 
 void expect_close(const json& value, double expected, double relative = 1e-12) {
@@ -445,4 +445,4 @@ TEST(EvalFriction, RunsInFloatAndRefusesWhatHasNoMeaning) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::eval_kinds_test

@@ -5,7 +5,7 @@
 #include "core/terms/contact.hpp"
 #include "tests/terms/at_iterate.hpp"
 
-namespace bb {
+namespace bb::friction_test {
 namespace {
 
 using test::AtIterate, test::gradient_of, test::iterate_energy;
@@ -172,4 +172,4 @@ TEST(Friction, LeavesOutWhatHasNoCoefficientAndIsMadeOnlyWhereSomeContactCanRub)
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::friction_test
