@@ -117,6 +117,8 @@ endfunction()
 function(bb_ptx_test name)
   cmake_parse_arguments(ARG "" "LEAST;ROOMS;SKIP" "MODULES;USES;SOURCES" ${ARGN})
   add_library(${name}_cases OBJECT ${ARG_SOURCES} "${PROJECT_SOURCE_DIR}/tests/ptx/main.cpp")
+  set_target_properties(${name}_cases PROPERTIES UNITY_BUILD ON)
+  target_link_libraries(${name}_cases PRIVATE bb_joined)
   target_link_libraries(${name}_cases PUBLIC bb_settings Eigen3::Eigen GTest::gtest TBB::tbb nlohmann_json::nlohmann_json fmt::fmt)
   target_compile_options(${name}_cases PRIVATE ${BB_PLAIN_OPTIONS})
   target_compile_definitions(${name}_cases PRIVATE BB_PTX_LEAST=${ARG_LEAST} "BB_PTX_SKIP=\"${ARG_SKIP}\""
