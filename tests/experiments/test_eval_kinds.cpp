@@ -426,7 +426,7 @@ TEST(EvalFriction, RunsInFloatAndRefusesWhatHasNoMeaning) {
   query["precision"] = "float";
   const json single = ask(query);
   EXPECT_NE(single["energy"], exact["energy"]);
-  expect_close(single["energy"], exact["energy"], 1e-6);
+  expect_close(single["energy"], exact["energy"], 1e-5);  // 0.03 m on coordinates of 5 m
   for (const char* name : {"mu", "load", "eps"}) {
     query = sliding("capped", 0.03);
     query[name] = -1;
