@@ -46,6 +46,7 @@ struct BodySpec {
   std::vector<PinSpec> pins;       // deformable only
   double d_hat = 0;                // m, > 0
   double offset = 0;               // m, >= 0
+  std::optional<double> friction;  // coefficient, >= 0; absent: that of the run
 };
 
 }  // namespace bb

@@ -82,7 +82,7 @@ void SceneBuilder::require_room(const BodySpec& spec) const {
 void SceneBuilder::append_vertices(const BodySpec& spec, const Positions& start) {
   const auto n = static_cast<std::size_t>(spec.mesh.n_vertices());
   const int body = static_cast<int>(scene_.bodies.size());
-  scene_.bodies.push_back({spec.name, scene_.n_vertices(), static_cast<int>(n)});
+  scene_.bodies.push_back({spec.name, scene_.n_vertices(), static_cast<int>(n), spec.friction});
   append_columns(scene_.rest, spec.mesh.vertices);
   append_columns(scene_.x0, start);
   const Vec3d velocity = spec.kind == BodyKind::deformable ? spec.velocity : Vec3d(Vec3d::Zero());

@@ -112,6 +112,7 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
   check_mesh(report, spec, planar);
   report.number("/d_hat", spec.d_hat, spec.d_hat > 0, "a number > 0");
   report.number("/offset", spec.offset, spec.offset >= 0, "a number >= 0");
+  if (spec.friction) report.number("/friction", *spec.friction, *spec.friction >= 0, "a number >= 0");
   if (!spec.velocity.allFinite()) report("/velocity", "a non-finite value", "finite numbers");
   if (planar && spec.velocity[2] != 0) report("/velocity", "a z component", "0: the scene is planar");
   if (spec.kind == BodyKind::rigid) {
@@ -133,6 +134,9 @@ void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& wh
   if (obstacle.kind != ObstacleKind::plane) {
     report.number("/radius", obstacle.radius, obstacle.radius > 0 && obstacle.radius <= max_coordinate,
                   "a number > 0 and <= 1e15 m");
+  }
+  if (obstacle.friction) {
+    report.number("/friction", *obstacle.friction, *obstacle.friction >= 0, "a number >= 0");
   }
   if (!planar) return;
   if (obstacle.kind == ObstacleKind::plane && obstacle.axis[2] != 0) {

@@ -21,7 +21,7 @@ void ContactTable::resize(std::size_t n) {
 void MollifiedTable::resize(std::size_t n) {
   key.resize(n);
   for (auto* column : {&stencil, &vertex, &free_vertex}) column->resize(4 * n);
-  weight.resize(4 * n);
+  for (auto* column : {&stencil_weight, &weight}) column->resize(4 * n);
   n_free.resize(n);
   pair.resize(n);
   parts.resize(n);

@@ -70,6 +70,7 @@ struct ContactTable {
 struct MollifiedTable {
   std::vector<ContactKey> key;
   std::vector<int> stencil;              // [4 n] ea0 ea1 eb0 eb1; e0 e1 -1 -1 of an edge and an axis
+  std::vector<double> stencil_weight;    // [4 n] w_i in the same order, 0 padded
   std::vector<int> vertex;               // [4 n] = stencil, -1 where the vertex is given
   std::vector<double> eps;               // [n] threshold on |ea x eb|^2, m^4; on |e x axis|^2, m^2
   std::vector<double> axis, axis_point;  // [3 n] unit, and a point of it, m; 0 in rows of two edges

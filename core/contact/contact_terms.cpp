@@ -51,6 +51,13 @@ Mat<T, 3, 4> mollified_points(const MollifiedTable& rows, std::size_t r, const P
                                     rows.stencil[4 * r + 3]});
 }
 
+template <class T>
+T mollifier_value(const MollifiedTable& rows, std::size_t r, const PositionsView& x) {
+  const T eps = entry<T>(rows.eps, r);
+  return rows.of_axis(r) ? edge_axis_mollifier_value<T>(points_across_axis<T>(rows, r, x), eps)
+                         : edge_edge_mollifier_value<T>(mollified_points<T>(rows, r, x), eps);
+}
+
 /// Of m kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
 template <class T>
 MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r,
@@ -138,14 +145,16 @@ void contact_energies(const ContactTable& rows, std::vector<double>& energy, Pre
   });
 }
 
+double mollifier_of(const MollifiedTable& rows, std::size_t r, const PositionsView& x) {
+  return mollifier_value<double>(rows, r, x);
+}
+
 void mollified_energies(const MollifiedTable& rows, const PositionsView& x, std::vector<double>& energy,
                         Precision precision) {
   energy.resize(rows.size());
   with_value_scalar(precision, [&]<class T>() {
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const T eps = entry<T>(rows.eps, r);
-      const T e = rows.of_axis(r) ? edge_axis_mollifier_value<T>(points_across_axis<T>(rows, r, x), eps)
-                                  : edge_edge_mollifier_value<T>(mollified_points<T>(rows, r, x), eps);
+      const T e = mollifier_value<T>(rows, r, x);
       energy[r] = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r) * e * entry<T>(rows.b, r);
     }
   });

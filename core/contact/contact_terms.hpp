@@ -46,6 +46,8 @@ void add_given_motion(const MollifiedTable& rows, const PositionsView& x, const 
 /// double. Cost O(rows).
 HoldTimes add_detour(const ContactTable& rows, const PositionsView& x, const PositionsView& dx,
                      PositionsSpan force);
+/// The mollifier e of row r at x, in double.
+double mollifier_of(const MollifiedTable& rows, std::size_t r, const PositionsView& x);
 /// Energies m kappa b (and m kappa e b) of every row, J.
 void contact_energies(const ContactTable& rows, std::vector<double>& energy,
                       Precision precision = Precision::full);

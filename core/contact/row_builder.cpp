@@ -309,6 +309,7 @@ void RowBuilder::fill_mollified(std::size_t n_parts, MollifiedTable& out) {
     for (std::size_t k = 0; k < 4; ++k) {
       const int v = row.stencil[k];
       out.stencil[4 * at + k] = v;
+      out.stencil_weight[4 * at + k] = row.weight[k];
       out.vertex[4 * at + k] = v >= 0 && surface_.vertex_free[static_cast<std::size_t>(v)] ? v : -1;
     }
     const int o = sorted_mollified_[at].obstacle;

@@ -55,6 +55,12 @@ void HostPotential::change_step(const StepColumns& step) {
   for (const auto& term : terms_) term->change_frame(frame_);
 }
 
+bool HostPotential::renew_lag(const Column& x) {
+  bool renewed = false;
+  for (const auto& term : terms_) renewed = term->renew_lag(points(x)) || renewed;
+  return renewed;
+}
+
 void HostPotential::end_step() {
   for (const auto& term : terms_) term->end_step(clock());
 }

@@ -8,7 +8,7 @@
 //   4 bound the step: ACCD over all pairs, strain limit; cap_fraction of a bound that binds
 //   5 Armijo on E, kappa frozen; every trial state is re-checked as rounded; where curved gaps hold the step, first
 //     with a detour round them
-//   6 accept
+//   6 accept; what converged goes on where terms renew what they lag
 
 #include <fmt/format.h>
 
@@ -67,6 +67,10 @@ class LineSearch final : public StepSolver {
       // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
       const bool enough = report.alpha == 1 || report.dx_inf_m < tolerance;
       if (small && enough && (report.contraction.finite() || as_modelled(report))) {
+        if (system.renew_lag()) {
+          error_.reset();
+          continue;
+        }
         end_converged(step, end, report.error_estimate_m, options_.tol_velocity * task.dt);
         return step;
       }

@@ -48,6 +48,8 @@ class StepSystem {
                           double load_factor) = 0;
   /// The same step and iterate with another prediction and length (accumulated_toi).
   virtual void restart_step(const Prediction& prediction, double dt) = 0;
+  /// The step has converged: whether terms take what they lag from this iterate (friction), so that it has to go on.
+  virtual bool renew_lag() { return false; }
   virtual void end_step() = 0;
   /// Where directions lead the prescribed vertices: [3 x n] m, read at these only.
   virtual void set_target(const Positions& target) = 0;

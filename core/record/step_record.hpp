@@ -53,6 +53,9 @@ struct StepRecord : WorkCounts {
   BB_FIELD(Number, contact_load_max_N, "largest kappa |b'| per unit multiplicity at its end", "no_contacts");
   BB_FIELD(Number, contact_load_sum_N, "sum of m kappa |b'| at its end, without mollified rows",
            "no_contacts");
+  BB_FIELD(int, friction_sticking, "contacts with friction that slid by less than eps_v dt in it") = 0;
+  BB_FIELD(int, friction_sliding, "contacts with friction that slid farther") = 0;
+  BB_FIELD(Number, friction_dissipation_J, "sum over these of friction force times slide", "no_friction");
   BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma at its end", "no_limit");
   BB_FIELD(Number, contact_overload,
            "largest load / capacity of a row where no progress was made; 0: unbounded capacity, or no load",

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,7 @@ struct Pin {
 struct Body {
   std::string name;
   int first_vertex = 0, n_vertices = 0;
+  std::optional<double> friction = std::nullopt;  // coefficient; absent: that of the run
 };
 
 /// Elements with a hard limit 1 + onset + width on their singular values.
@@ -53,6 +55,7 @@ struct Obstacle {
   Vec3d axis = Vec3d::UnitZ();  // plane: unit normal towards the allowed side; cylinder: unit axis
   double radius = 0;            // m
   bool inside = false;          // the allowed side is the inside (sphere, cylinder)
+  std::optional<double> friction = std::nullopt;  // coefficient; absent: that of the run
 };
 
 enum class PlanarPairs { vertex_vertex, point_edge };

@@ -2,6 +2,7 @@
 // itself in contact_report.cpp.
 #include "core/terms/contact.hpp"
 
+#include "core/contact/contact_loads.hpp"
 #include "core/contact/pair_name.hpp"
 #include "core/terms/registry.hpp"
 
@@ -115,6 +116,11 @@ void ContactTerm::add_given_motion(const PositionsView& x, const PositionsView& 
                                    PositionsSpan force) const {
   bb::add_given_motion(state_.rows, motion, force);
   bb::add_given_motion(state_.mollified, x, motion, force);
+}
+
+void ContactTerm::add_loads(const PositionsView& x, ContactLoads& out) const {
+  bb::add_loads(state_.rows, out);
+  bb::add_loads(state_.mollified, x, out);
 }
 
 void ContactTerm::prepare(const Motion& motion, PhaseClock& clock) {

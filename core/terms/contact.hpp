@@ -67,6 +67,7 @@ class ContactTerm final : public Term {
   void clamp(const PositionsView& x) override;
   void add_given_motion(const PositionsView& x, const PositionsView& motion,
                         PositionsSpan force) const override;
+  void add_loads(const PositionsView& x, ContactLoads& out) const override;
   void prepare(const Motion& motion, PhaseClock& clock) override;
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
   bool add_detour(const PositionsView& x, const PositionsView& dx, double bound,

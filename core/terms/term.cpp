@@ -15,17 +15,23 @@ std::size_t Term::size() const {
   return n;
 }
 
+void Term::compare_elements(const TermFamily& family, EnergyParts& out) {
+  const std::vector<double>&from = family.local.energy, &to = family.trial_energy;
+  const std::size_t start = out.size();
+  out.resize(start + from.size());
+  parallel_items(from.size(), block_items, [&](std::size_t e) {
+    out[start + e] = {to[e] - from[e], std::abs(from[e]) + std::abs(to[e])};
+  });
+}
+
 void Term::change(const PositionsView&, const PositionsView&, EnergyParts& out) const {
   for (const TermFamily& family : families_) {
-    const std::vector<double>&from = family.local.energy, &to = family.trial_energy;
-    const std::size_t start = out.size();
     if (fixed_stencils()) {
-      out.resize(start + from.size());
-      parallel_items(from.size(), block_items, [&](std::size_t e) {
-        out[start + e] = {to[e] - from[e], std::abs(from[e]) + std::abs(to[e])};
-      });
+      compare_elements(family, out);
       continue;
     }
+    const std::vector<double>&from = family.local.energy, &to = family.trial_energy;
+    const std::size_t start = out.size();
     out.resize(start + from.size() + to.size());
     parallel_items(from.size(), block_items, [&](std::size_t e) {
       out[start + e] = {-from[e], std::abs(from[e])};

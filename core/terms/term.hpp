@@ -19,6 +19,7 @@
 namespace bb {
 
 class Archive;
+struct ContactLoads;
 struct KnownStiffness;
 
 /// One time step, the same for all terms.
@@ -93,6 +94,8 @@ class Term {
   virtual void adopt(const KnownStiffness&) {}
   /// The same of that system's own term, which is of the same class.
   virtual void adopt_from(const Term&) {}
+  /// The step has converged at the iterate x: what was taken from its start is taken from there, and the step goes on, if true.
+  virtual bool renew_lag(const PositionsView& /*x*/) { return false; }
   /// The step is over.
   virtual void end_step(PhaseClock&) {}
   /// What it remembers from step to step (core/archive). A term that begin_step makes anew has nothing.
@@ -109,6 +112,10 @@ class Term {
   /// prescribed vertices move by `motion` (m, 0 at free vertices), as far as it is in no block of the matrix.
   virtual void add_given_motion(const PositionsView& /*x*/, const PositionsView& /*motion*/,
                                 PositionsSpan /*force*/) const {}
+
+  /// Appends the contacts that this term holds at the iterate x, with their loads once it is linearised there. Terms of later
+  /// lines, which are handed it when they are made, read them at the start of a step: friction, restitution.
+  virtual void add_loads(const PositionsView& /*x*/, ContactLoads& /*out*/) const {}
 
   // --- a motion
   /// Before bound() and trials along it.
@@ -143,6 +150,9 @@ class Term {
                                const PositionsView& /*dx*/, StepNumbers&) {}
 
  protected:
+  /// The parts of a family whose elements are the same at the iterate and at the trial: one an element. Appends.
+  static void compare_elements(const TermFamily& family, EnergyParts& out);
+
   std::vector<TermFamily> families_;
 };
 

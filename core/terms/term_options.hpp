@@ -3,6 +3,7 @@
 #pragma once
 
 #include <memory>
+#include <string>
 
 #include "core/barrier/shape.hpp"
 #include "core/barrier/stiffness_policy.hpp"
@@ -11,6 +12,17 @@
 #include "core/math/precision.hpp"
 
 namespace bb {
+
+/// How two coefficients of friction make one.
+enum class FrictionRule { min, max, mean };
+
+struct FrictionOptions {
+  std::string law = "smoothed_coulomb";  // of core/energy/friction_laws/registry.inc
+  double mu = 0;                         // of bodies and obstacles that have none of their own
+  FrictionRule combine = FrictionRule::min;
+  int lag_iterations = 1;  // times that a step is solved, with loads of its start and of the ends before
+  double eps_v = 1e-3;     // m/s, sliding speed from which the force is whole
+};
 
 struct TermOptions {
   BarrierFunction contact;
@@ -21,6 +33,7 @@ struct TermOptions {
   bool strain_limit = true;  // false: limits of the scene are left out
   BarrierFunction limit;
   std::unique_ptr<StiffnessPolicy> limit_stiffness;  // of the elements; read where an element has a limit
+  FrictionOptions friction;
 };
 
 }  // namespace bb

@@ -5,10 +5,11 @@
 namespace bb {
 
 enum class TermGroup : unsigned {
-  load = 1,     // inertia and external forces
-  elastic = 2,  // what H holds: what stiffness policies read
-  limit = 4,    // limits of deformation
-  contact = 8   // everything between surfaces
+  load = 1,      // inertia and external forces
+  elastic = 2,   // what H holds: what stiffness policies read
+  limit = 4,     // limits of deformation
+  contact = 8,   // what keeps surfaces apart
+  friction = 16  // what holds them along each other
 };
 
 class TermSet {

@@ -57,6 +57,10 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
     complain("/step_solver/saddle", "\"escape\"",
              "report or ignore: only line_search, which tests energies, can leave a saddle");
   }
+  if (config.friction.lag_iterations > 1 && solver.name != "line_search") {
+    complain("/friction/lag_iterations", fmt::format("{}", config.friction.lag_iterations),
+             "1: only line_search solves a step again");
+  }
   const int min_newton_steps = integer(solver.parameters, "min_newton_steps");
   if (solver.name == "accumulated_toi" && min_newton_steps > solver.max_iterations) {
     complain("/step_solver/min_newton_steps", fmt::format("{}", min_newton_steps),
@@ -259,10 +263,25 @@ void check_protocol(const RunConfig& config, const Complain& complain) {
                : "another step solver: article_literal needs scene drape2d with protocol article_literal");
 }
 
+/// Friction has no kernels.
+void check_friction_on_device(const RunConfig& config, const std::string& on, const Complain& complain) {
+  const auto refuse = [&](const std::string& pointer, double mu) {
+    if (mu > 0) complain(pointer, fmt::format("{}", mu), "0 " + on + ": friction runs with device cpu only");
+  };
+  refuse("/friction/mu", config.friction.mu);
+  for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
+    refuse(fmt::format("/scene/bodies/{}/friction", i), config.scene.bodies[i].spec.friction.value_or(0));
+  }
+  for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+    refuse(fmt::format("/scene/obstacles/{}/friction", i), config.scene.obstacles[i].friction.value_or(0));
+  }
+}
+
 /// What the resident pipeline does not have.
 void check_device(const RunConfig& config, const Complain& complain) {
   if (config.device == Device::cpu) return;
   const std::string on = fmt::format("with device {}", word_of(config.device));
+  check_friction_on_device(config, on, complain);
   if (config.precision != Precision::full) {
     complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);
   }

@@ -27,6 +27,9 @@ inline EnumWords<MatchingRule> words_of(MatchingRule) {
 inline EnumWords<Mollifier> words_of(Mollifier) {
   return {{Mollifier::ipc, "ipc"}, {Mollifier::none, "none"}};
 }
+inline EnumWords<FrictionRule> words_of(FrictionRule) {
+  return {{FrictionRule::min, "min"}, {FrictionRule::max, "max"}, {FrictionRule::mean, "mean"}};
+}
 inline EnumWords<HessianMode> words_of(HessianMode) {
   return {{HessianMode::gauss_newton, "gauss_newton"},
           {HessianMode::projected_full, "projected_full"},

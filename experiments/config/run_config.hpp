@@ -17,6 +17,7 @@
 #include "core/math/precision.hpp"
 #include "core/newton/saddle_rule.hpp"
 #include "core/parameters/parameter.hpp"
+#include "core/terms/term_options.hpp"
 
 namespace bb {
 
@@ -84,6 +85,7 @@ struct RunConfig {
   StrainLimitConfig strain_limit;
   MatchingConfig matching;
   ContactConfig contact;
+  FrictionConfig friction;
   IntegratorConfig integrator;
   TimeConfig time;
   StepSolverConfig step_solver;

@@ -3,6 +3,7 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "barriers/stiffness/registry.hpp"
+#include "core/energy/friction_law.hpp"
 #include "core/input/json.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/linear/preconditioner.hpp"
@@ -101,6 +102,7 @@ Settings<RunConfig> list_of() {
       });
   out.nest("matching", settings_of<MatchingConfig>(), &C::matching);
   out.nest("contact", settings_of<ContactConfig>(), &C::contact);
+  out.nest("friction", settings_of<FrictionConfig>(), &C::friction);
   out.nest("integrator", settings_of<IntegratorConfig>(), &C::integrator);
   out.nest("time", settings_of<TimeConfig>(), &C::time);
   out.nest("step_solver", settings_of<StepSolverConfig>(), &C::step_solver);

@@ -20,11 +20,12 @@ struct Stage {
   TermSet left_out;
   std::optional<TermGroup> last;
 };
-constexpr Stage stages[] = {{MatrixStage::full, {}, {}},
-                            {MatrixStage::without_contact, TermGroup::contact, TermGroup::contact},
-                            {MatrixStage::without_limit, TermGroup::limit, TermGroup::limit},
-                            {MatrixStage::without_contact_and_limit,
-                             TermSet(TermGroup::contact) | TermGroup::limit, TermGroup::limit}};
+constexpr TermSet of_contact = TermSet(TermGroup::contact) | TermGroup::friction;
+constexpr Stage stages[] = {
+    {MatrixStage::full, {}, {}},
+    {MatrixStage::without_contact, of_contact, TermGroup::contact},
+    {MatrixStage::without_limit, TermGroup::limit, TermGroup::limit},
+    {MatrixStage::without_contact_and_limit, of_contact | TermGroup::limit, TermGroup::limit}};
 
 /// What the preconditioner of PCG makes of the matrix; nothing for one that is no scaling.
 std::optional<Scaling> scaling_of(const LinearSolverConfig& solver) {

@@ -68,6 +68,8 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
   method.hessian_mode = config.contact.hessian_mode;
   method.contact_options.mollifier = config.contact.mollifier;
   method.contact_options.ccd_park = config.contact.ccd_park;
+  method.friction = {config.friction.law, config.friction.mu, config.friction.combine,
+                     config.friction.lag_iterations, config.friction.eps_v};
   method.integrator = make_integrator(config.integrator.name, config.integrator.parameters);
   method.step_solver = step_solver_options(config);
   for (const HessianChoice& choice : hessian_choices()) {

@@ -10,6 +10,7 @@ import pytest
 
 SCHEMA = json.loads((Path(__file__).resolve().parents[2] / "configs/schema/eval.schema.json").read_text())
 SQUARE = [[0, 0, 0], [1, 0, 0], [0, 1, 0]]
+POINTS = [[0, 0, 1], [0, 0, 0]]
 MOVED = [[0, 0, 0.1], [1.2, 0, 0], [0, 0.9, 0.05]]
 
 QUERIES = [
@@ -38,6 +39,8 @@ QUERIES = [
     {"kind": "energy", "model": "hinge", "x": [[0, 0, 0], [1, 0, 0], [0, 1, 0.2], [0, -1, 0]], "k": 2, "rest_angle": 0.1},
     {"kind": "energy", "model": "rod_bend", "x": SQUARE, "k": 2, "rest_angle": 0.1},
     {"kind": "energy", "model": "rod_bend", "rest": SQUARE, "x": [[0, 0, 0], [1, 0, 0], [3, 0, 0]], "k": 2, "rest_angle": 0.1, "precision": "float"},
+    *({"kind": "friction", "law": law, "mu": 0.5, "load": 2, "eps": 0.1, "pair": "point_point", "points_lagged": POINTS,
+       "points_start": POINTS, "points_end": [[0.03, 0.01, 2], [0, 0, 0]]} for law in ("smoothed_coulomb", "capped")),
     {"kind": "svd", "F": [[3, 0], [0, -2]]},
     *({"kind": "condition", "rows": [0, 1, 1], "cols": [0, 0, 1], "values": [2, 1, 2], "scaling": scaling, "tier": tier}
       for scaling in ("none", "jacobi", "block_jacobi") for tier in range(5)),

@@ -20,6 +20,7 @@ inline TermOptions term_options() {
   options.stiffness = make_policy(policy);
   options.limit = {require_shape("cubic"), Argument::gap};
   options.limit_stiffness = test::fixed_limit(30);
+  options.friction.mu = 0.4;
   return options;
 }
 
@@ -63,7 +64,7 @@ inline Positions disturbed(const Scene& scene, double size) {
 /// The terms of a scene at the start of a step.
 struct TermsOf {
   Scene scene;
-  TermOptions options = term_options();
+  TermOptions options;
   Plan plan;
   std::vector<std::uint8_t> fixed;
   BlockSystem blocks;
@@ -73,13 +74,24 @@ struct TermsOf {
   TermList terms;
 
   TermsOf(Scene given, const Positions& x_n, const StepFrame& frame)
+      : TermsOf(std::move(given), x_n, frame, [](TermOptions&) {}) {}
+  /// change(options): before the plan is made.
+  template <class Change>
+  TermsOf(Scene given, const Positions& x_n, const StepFrame& frame, const Change& change)
       : scene(std::move(given)),
+        options(changed(change)),
         plan(make_plan(scene, options, {})),
         fixed(3 * scene.mass.size(), 0),
         blocks(scene.n_vertices(), fixed),
         terms(make_terms(plan, {scene, options, plan.contacts, fixed})) {
     no_gradient.setZero(3, x_n.cols());
     for (const auto& term : terms) term->begin_step(frame, clock);
+  }
+  template <class Change>
+  static TermOptions changed(const Change& change) {
+    TermOptions out = term_options();
+    change(out);
+    return out;
   }
   TermContext context(Projection projection = Projection::psd) const {
     return {blocks, no_elastic, no_gradient, projection, const_cast<PhaseClock&>(clock)};

@@ -15,6 +15,7 @@ struct AtIterate : TermsOf {
 
   AtIterate() : AtIterate(scene_with_everything()) {}
   explicit AtIterate(const Scene& all) : TermsOf(all, all.x0, frame(all)), x(disturbed(scene, 0.004)) {
+    for (const auto& term : terms) term->linearise(scene.x0, context());
     move_to(x);
   }
   void move_to(const Positions& to, Projection projection = Projection::psd) {

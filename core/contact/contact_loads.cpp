@@ -1,0 +1,50 @@
+#include "core/contact/contact_loads.hpp"
+
+#include <algorithm>
+
+#include "core/contact/contact_terms.hpp"
+
+namespace bb {
+namespace {
+
+/// That of a row's key; -1 without one.
+int obstacle_of(const ContactKey& key) {
+  const auto named = std::find_if(key.begin(), key.end(), [](int id) { return id < -1; });
+  return named == key.end() ? -1 : -2 - *named;
+}
+
+/// All of a row but its load.
+template <class Table>
+void add_row(const Table& rows, std::size_t r, ContactLoads& out) {
+  const auto append = [r](const auto& from, std::size_t n, auto& to) {
+    to.insert(to.end(), &from[n * r], &from[n * r] + n);
+  };
+  append(rows.stencil, 4, out.stencil);
+  append(rows.stencil_weight, 4, out.weight);
+  append(rows.normal, 3, out.normal);
+  out.obstacle.push_back(obstacle_of(rows.key[r]));
+}
+
+}  // namespace
+
+void ContactLoads::clear() {
+  for (auto* column : {&stencil, &obstacle}) column->clear();
+  for (auto* column : {&weight, &normal, &load}) column->clear();
+}
+
+void add_loads(const ContactTable& rows, ContactLoads& out) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    add_row(rows, r, out);
+    out.load.push_back(-rows.multiplicity[r] * rows.kappa[r] * rows.db[r]);
+  }
+}
+
+void add_loads(const MollifiedTable& rows, const PositionsView& x, ContactLoads& out) {
+  for (std::size_t r = 0; r < rows.size(); ++r) {
+    add_row(rows, r, out);
+    const double e = mollifier_of(rows, r, x);
+    out.load.push_back(-rows.multiplicity[r] * rows.kappa[r] * e * rows.db[r]);
+  }
+}
+
+}  // namespace bb

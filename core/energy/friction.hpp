@@ -1,0 +1,60 @@
+// Friction of one contact over one time step (docs/design.md, Friction): mu load f0(|u|), u the slide of its two closest points
+// in the tangent plane. Load, normal and weights are those of the start of the step, so this is one convex function of x.
+#pragma once
+
+#include <cmath>
+#include <limits>
+
+#include "core/energy/friction_laws/profile.hpp"
+#include "core/energy/terms.hpp"
+
+namespace bb {
+
+/// What is left of a relative motion (m) in the plane across the unit normal. Host-device.
+template <class T>
+BB_HD inline Vec<T, 3> slide_of(const Vec<T, 3>& motion, const Vec<T, 3>& normal) {
+  return motion - normal.dot(motion) * normal;
+}
+
+/// In the relative motion of the closest points.
+template <class T>
+struct FrictionTerms {
+  T energy;           // J
+  Vec<T, 3> grad;     // N
+  Mat<T, 3, 3> hess;  // N/m, symmetric bit for bit, no eigenvalue below rounding: exact and clamped are one
+};
+
+/// slide: across the unit normal, of length y (m); strength = mu times load (N); profile: that of y. The matrix is strength
+/// (f2 t t^T + f1/y b b^T), t along the slide and b across it; both are the same for slides that are nothing beside eps, which
+/// have no direction. Host-device. Total.
+template <class T>
+BB_HD inline FrictionTerms<T> friction_terms(const Vec<T, 3>& slide, T y, const Vec<T, 3>& normal, T strength,
+                                             const FrictionProfile<T>& profile) {
+  const T turning = strength * profile.f1_over_y, along = strength * profile.f2;
+  FrictionTerms<T> out{strength * profile.f0, turning * slide, {}};
+  if (y * profile.f1_over_y > std::numeric_limits<T>::epsilon()) {
+    const Vec<T, 3> t = slide / y, b = normal.cross(t);
+    out.hess = along * (t * t.transpose()) + turning * (b * b.transpose());
+  } else {
+    out.hess = turning * (Mat<T, 3, 3>::Identity() - normal * normal.transpose());
+  }
+  mirror_lower<T, 3>(out.hess);
+  return out;
+}
+
+/// The same in N points, of whose motions sum w_i dx_i is the relative one: gradient w_i g, blocks w_i w_j H. Host-device.
+template <class T, int N>
+BB_HD inline ElementTerms<T, 3 * N> friction_in_points(const FrictionTerms<T>& terms,
+                                                       const Vec<T, N>& weights) {
+  ElementTerms<T, 3 * N> out;
+  out.energy = terms.energy;
+  for (int i = 0; i < N; ++i) {
+    out.grad.template segment<3>(3 * i) = weights[i] * terms.grad;
+    for (int j = 0; j < N; ++j) {
+      out.hess.template block<3, 3>(3 * i, 3 * j) = (weights[i] * weights[j]) * terms.hess;
+    }
+  }
+  return out;
+}
+
+}  // namespace bb

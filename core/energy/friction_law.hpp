@@ -1,0 +1,26 @@
+// Friction laws by name: what the friction term, eval and tests loop over.
+#pragma once
+
+#include <string_view>
+
+#include "core/energy/friction_laws/profile.hpp"
+#include "core/parameters/registry.hpp"
+
+namespace bb {
+
+/// One line of friction_laws/registry.inc.
+template <class T>
+struct FrictionLaw {
+  std::string_view name, doc;
+  /// y >= 0: length of the slide, eps > 0: from which length on the force is whole, m.
+  FrictionProfile<T> (*eval)(T y, T eps);
+};
+
+/// Every registered law, in the order of registry.inc. T: float or double.
+template <class T>
+const Registry<FrictionLaw<T>>& friction_laws_in();
+
+/// Their names.
+std::vector<std::string> friction_law_names();
+
+}  // namespace bb

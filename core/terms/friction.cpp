@@ -1,0 +1,218 @@
+// Friction: mu load f0(slide) of every contact that a step begins with (docs/design.md, Friction). Normal, weights and load are
+// those of the start of the step, so that E stays one function of x within a step; contacts that come later rub from the next step on.
+#include <fmt/format.h>
+
+#include <algorithm>
+#include <stdexcept>
+
+#include "core/contact/contact_loads.hpp"
+#include "core/energy/element_loop.hpp"
+#include "core/energy/friction.hpp"
+#include "core/energy/friction_law.hpp"
+#include "core/terms/registry.hpp"
+
+namespace bb {
+namespace {
+
+double combined(FrictionRule rule, double a, double b) {
+  if (rule == FrictionRule::mean) return (a + b) / 2;
+  return rule == FrictionRule::min ? std::min(a, b) : std::max(a, b);
+}
+
+class Friction final : public Term {
+ public:
+  /// All arguments outlive the term. before: the terms whose contacts rub.
+  Friction(const Scene& scene, const TermOptions& options, const TermList& before)
+      : scene_(scene), options_(options) {
+    for (const auto& term : before) before_.push_back(term.get());
+    families_.resize(1);
+  }
+  std::string_view name() const override { return "friction"; }
+  TermGroup group() const override { return TermGroup::friction; }
+  Phase phase() const override { return Phase::contact_terms; }
+  bool fixed_stencils() const override { return false; }
+
+  void begin_step(const StepFrame& frame, PhaseClock& clock) override {
+    const ScopedPhase timer(clock, Phase::contact_terms);
+    x_n_ = frame.x_n;
+    change_frame(frame);
+    solved_ = 0;
+    take_lag(x_n_);
+  }
+  void change_frame(const StepFrame& frame) override { eps_ = options_.friction.eps_v * frame.dt; }
+  void adopt_from(const Term& other) override {
+    const auto& same = static_cast<const Friction&>(other);
+    take_rows(same.contacts_);
+    strength_ = same.strength_;
+    loads_known_ = same.loads_known_;
+  }
+  bool renew_lag(const PositionsView& x) override {
+    if (++solved_ >= options_.friction.lag_iterations) return false;
+    const bool had_rows = size() > 0;
+    take_lag(x);
+    return had_rows || size() > 0;
+  }
+
+  void linearise(const PositionsView& x, const TermContext&) override {
+    if (!loads_known_) learn_loads();
+    for_each_pass(options_.precision, [&]<class T>(PassParts parts) {
+      const Law<T> law = this->law<T>();
+      for_each_element(size(), [&](std::size_t e) {
+        const Row<T> row(*this, e);
+        const Vec<T, 3> slide = row.slide(x, x_n_);
+        const T y = slide.norm();
+        const auto terms = friction_terms<T>(slide, y, row.normal, row.strength, law(y));
+        store_terms<T, 12>(friction_in_points<T, 4>(terms, row.weight), e, parts, families_[0].local);
+      });
+    });
+  }
+  void evaluate(const PositionsView& x, const TermContext&) override {
+    with_value_scalar(options_.precision, [&]<class T>() {
+      const Law<T> law = this->law<T>();
+      for_each_element(size(), [&](std::size_t e) {
+        const Row<T> row(*this, e);
+        families_[0].trial_energy[e] = row.strength * law(row.slide(x, x_n_).norm()).f0;
+      });
+    });
+  }
+  void change(const PositionsView&, const PositionsView&, EnergyParts& out) const override {
+    compare_elements(families_[0], out);  // the rows of a step stay
+  }
+
+  void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override {
+    const Law<double> law = this->law<double>();
+    double work = 0;
+    for (std::size_t e = 0; e < size(); ++e) {
+      if (!(strength_[e] > 0)) continue;
+      const double y = Row<double>(*this, e).slide(x, x_n_).norm();
+      work += strength_[e] * law(y).f1_over_y * y * y;
+      ++(y < eps_ ? out.friction_sticking : out.friction_sliding);
+    }
+    out.friction_dissipation_J = work;
+  }
+
+ private:
+  template <class T>
+  struct Law {
+    FrictionProfile<T> (*eval)(T y, T eps);
+    T eps;
+    FrictionProfile<T> operator()(T y) const { return eval(y, eps); }
+  };
+  template <class T>
+  Law<T> law() const {
+    return {friction_laws_in<T>().require(options_.friction.law, "/friction/law").eval, static_cast<T>(eps_)};
+  }
+
+  /// Element e in the scalar T.
+  template <class T>
+  struct Row {
+    const int* vertex;
+    Vec<T, 4> weight;
+    Vec<T, 3> normal;
+    T strength;  // mu times load, N
+    Row(const Friction& of, std::size_t e)
+        : vertex(&of.vertices_[4 * e]),
+          weight(Vec<double, 4>::Map(&of.contacts_.weight[4 * of.row_[e]]).template cast<T>()),
+          normal(Vec3d::Map(&of.contacts_.normal[3 * of.row_[e]]).template cast<T>()),
+          strength(static_cast<T>(of.strength_[e])) {}
+    Vec<T, 3> slide(const PositionsView& x, const PositionsView& x_n) const {
+      Vec<T, 3> motion = Vec<T, 3>::Zero();
+      for (int k = 0; k < 4 && vertex[k] >= 0; ++k) {
+        motion += weight[k] * (x.col(vertex[k]) - x_n.col(vertex[k])).template cast<T>();
+      }
+      return slide_of<T>(motion, normal);
+    }
+  };
+
+  ContactLoads contacts_now() const {
+    ContactLoads out;
+    for (const Term* term : before_) term->add_loads(lagged_, out);
+    return out;
+  }
+
+  /// Rows of the iterate x; their loads are known once the terms before have been linearised there.
+  void take_lag(const PositionsView& x) {
+    lagged_ = x;
+    take_rows(contacts_now());
+    loads_known_ = false;
+  }
+
+  /// Those with friction become elements.
+  void take_rows(ContactLoads contacts) {
+    contacts_ = std::move(contacts);
+    row_.clear();
+    mu_.clear();
+    vertices_.clear();
+    for (std::size_t r = 0; r < contacts_.size(); ++r) {
+      const double mu = coefficient(r);
+      if (mu == 0) continue;
+      row_.push_back(r);
+      mu_.push_back(mu);
+      vertices_.insert(vertices_.end(), &contacts_.stencil[4 * r], &contacts_.stencil[4 * r] + 4);
+    }
+    strength_.assign(row_.size(), 0.0);
+    families_[0].stencils = {4, vertices_};
+    families_[0].local.resize(row_.size(), 4);
+    families_[0].trial_energy.resize(row_.size());
+  }
+
+  // The bodies of a row are those of its first and its last vertex.
+  double coefficient(std::size_t r) const {
+    const auto of = [this](const std::optional<double>& own) { return own.value_or(options_.friction.mu); };
+    const auto of_body = [&](int vertex) {
+      const int body = scene_.body[static_cast<std::size_t>(vertex)];
+      return of(scene_.bodies[static_cast<std::size_t>(body)].friction);
+    };
+    const int* vertex = &contacts_.stencil[4 * r];
+    const int obstacle = contacts_.obstacle[r];
+    const double first = of_body(vertex[0]);
+    if (obstacle >= 0) {
+      return combined(options_.friction.combine, first,
+                      of(scene_.obstacles[static_cast<std::size_t>(obstacle)].friction));
+    }
+    const auto last = std::find_if(std::reverse_iterator(vertex + 4), std::reverse_iterator(vertex),
+                                   [](int id) { return id >= 0; });
+    return combined(options_.friction.combine, first, of_body(*last));
+  }
+
+  // The terms before have been linearised where the rows are of.
+  void learn_loads() {
+    const ContactLoads now = contacts_now();
+    if (now.stencil != contacts_.stencil)
+      throw std::logic_error("the rows of a lag changed before their loads");
+    for (std::size_t e = 0; e < row_.size(); ++e) strength_[e] = mu_[e] * now.load[row_[e]];
+    loads_known_ = true;
+  }
+
+  const Scene& scene_;
+  const TermOptions& options_;
+  std::vector<const Term*> before_;
+  double eps_ = 0;                     // m
+  Positions x_n_, lagged_;             // m, where slides begin, and where the rows are of
+  ContactLoads contacts_;              // there
+  std::vector<std::size_t> row_;       // [n] the contact of each element
+  std::vector<double> mu_, strength_;  // [n] 1; mu times load, N
+  std::vector<int> vertices_;          // [4 n]
+  bool loads_known_ = false;
+  int solved_ = 0;  // times that this step converged
+};
+
+}  // namespace
+
+PlanItem needs_friction(const TermNeeds& needs) {
+  const FrictionOptions& options = needs.options.friction;
+  const auto rubs = [&](const auto& one) { return one.friction.value_or(options.mu) > 0; };
+  const auto& bodies = needs.scene.bodies;
+  const auto& obstacles = needs.scene.obstacles;
+  const bool some =
+      std::any_of(bodies.begin(), bodies.end(), rubs) ||
+      (options.combine != FrictionRule::min && std::any_of(obstacles.begin(), obstacles.end(), rubs));
+  return plan_item(needs.contacts.any() && some, options.law,
+                   needs.contacts.any() ? "no coefficient of friction is > 0" : "nothing can touch");
+}
+
+void make_friction(const TermInputs& inputs, TermList& terms) {
+  terms.add(std::make_unique<Friction>(inputs.scene, inputs.options, terms));
+}
+
+}  // namespace bb

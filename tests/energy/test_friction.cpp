@@ -1,0 +1,123 @@
+// Friction of one contact: derivatives, curvature, limits of every registered law.
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "core/energy/friction.hpp"
+#include "core/energy/friction_law.hpp"
+#include "tests/energy/energy_cases.hpp"
+
+namespace bb::test::friction_test {
+namespace {
+
+constexpr double eps = 1e-3, strength = 3.5;  // m, N
+const Vec3d normal = Vec3d(2, -1, 2) / 3;
+const Vec<double, 4> weights{{0.2, 0.5, 0.3, -1}};
+
+/// f0 as its publication states it.
+Long closed_form(std::string_view law, Long y) {
+  const Long e = eps;
+  if (y >= e) return y;
+  return law == "capped" ? (e + y * y / e) / 2 : e / 3 + y * y / e - y * y * y / (3 * e * e);
+}
+
+template <class T>
+ElementTerms<T, 12> terms_of(const FrictionLaw<T>& law, const Vec<T, 12>& motion) {
+  Vec<T, 3> relative = Vec<T, 3>::Zero();
+  for (int i = 0; i < 4; ++i) relative += T(weights[i]) * motion.template segment<3>(3 * i);
+  const Vec<T, 3> n = normal.cast<T>(), slide = slide_of<T>(relative, n);
+  const T y = slide.norm();
+  return friction_in_points<T, 4>(friction_terms<T>(slide, y, n, T(strength), law.eval(y, T(eps))),
+                                  weights.cast<T>());
+}
+
+/// Motions whose slide is `length`, with some motion along the normal that costs nothing.
+Vec<double, 12> motion_with(double length) {
+  Vec<double, 12> out;
+  for (int i = 0; i < 12; ++i) out[i] = std::sin(1.3 * i + 0.2);
+  Vec3d relative = Vec3d::Zero();
+  for (int i = 0; i < 4; ++i) relative += weights[i] * out.segment<3>(3 * i);
+  return out * (length / slide_of<double>(relative, normal).norm());
+}
+
+class EveryFrictionLaw : public testing::TestWithParam<double> {};  // slide/eps
+
+TEST_P(EveryFrictionLaw, HasTheDerivativesOfItsClosedFormAndNoNegativeCurvature) {
+  std::size_t judged = 0;
+  for (const FrictionLaw<double>& law : friction_laws_in<double>()) {
+    const Vec<double, 12> motion = motion_with(GetParam() * eps);
+    const auto energy = [&](const VecXl& at) {
+      Eigen::Matrix<Long, 3, 1> relative = Eigen::Matrix<Long, 3, 1>::Zero();
+      for (int i = 0; i < 4; ++i) relative += Long(weights[i]) * at.segment<3>(3 * i);
+      const Eigen::Matrix<Long, 3, 1> n = normal.cast<Long>().normalized();
+      return Long(strength) * closed_form(law.name, (relative - n.dot(relative) * n).norm());
+    };
+    const auto exact = terms_of<double>(law, motion);
+    const auto gradient = [&](const VecXl& at) -> VecXl {
+      VecXl out(12);
+      for (int i = 0; i < 12; ++i) {  // of the closed form, by a difference of its own
+        VecXl up = at, down = at;
+        const Long h = 1e-8L;
+        up[i] += h;
+        down[i] -= h;
+        out[i] = (energy(up) - energy(down)) / (2 * h);
+      }
+      return out;
+    };
+    EXPECT_NEAR(exact.energy, static_cast<double>(energy(motion.cast<Long>())), 1e-15) << law.name;
+    EXPECT_LT(gradient_error(energy, motion.cast<Long>(), exact.grad), 1e-9) << law.name;
+    EXPECT_LT(jacobian_error(gradient, motion.cast<Long>(), exact.hess), 1e-6) << law.name;
+    EXPECT_EQ(exact.hess, exact.hess.transpose());
+    EXPECT_GT(exact.grad.norm(), 1e-3);
+    const double largest = eigenvalues(MatXd(exact.hess))[11];
+    EXPECT_GT(largest, 1);
+    EXPECT_GT(eigenvalues(MatXd(exact.hess))[0], -1e-13 * largest) << law.name;
+    EXPECT_LT(relative_difference(clamped(exact.hess), exact.hess, largest), 1e-13) << law.name;
+
+    const auto& in_float = friction_laws_in<float>().require(law.name, "law");
+    const auto single = terms_of<float>(in_float, motion.cast<float>());
+    EXPECT_LT(relative_difference(single.hess.cast<double>(), exact.hess, largest), 1e-5) << law.name;
+    EXPECT_LT(relative_difference(single.grad.cast<double>(), exact.grad, strength), 1e-5) << law.name;
+    ++judged;
+  }
+  EXPECT_GE(judged, 2U);
+}
+INSTANTIATE_TEST_SUITE_P(StickingAndSliding, EveryFrictionLaw, testing::Values(0.01, 0.4, 0.97, 1.1, 50.0));
+
+TEST(FrictionLaws, AreC1AtEpsAndReachTheWholeForceThere) {
+  std::size_t judged = 0;
+  for (const FrictionLaw<double>& law : friction_laws_in<double>()) {
+    const double below = eps * (1 - 1e-9), above = eps * (1 + 1e-9);
+    const auto low = law.eval(below, eps), high = law.eval(above, eps);
+    EXPECT_NEAR(low.f0, high.f0, 3e-12) << law.name;
+    EXPECT_NEAR(below * low.f1_over_y, 1, 3e-9) << law.name;
+    EXPECT_NEAR(above * high.f1_over_y, 1, 1e-15) << law.name;
+    EXPECT_EQ(high.f2, 0) << law.name;
+    EXPECT_EQ(law.eval(eps, eps).f0, eps) << law.name;
+    ++judged;
+  }
+  EXPECT_GE(judged, 2U);
+}
+
+// Without a direction the matrix is the same in all of the tangent plane, and grows out of that of small slides.
+TEST(FrictionLaws, HaveALimitWithoutSlide) {
+  std::size_t judged = 0;
+  for (const FrictionLaw<double>& law : friction_laws_in<double>()) {
+    const auto rest = terms_of<double>(law, Vec<double, 12>::Zero());
+    EXPECT_NEAR(rest.energy, strength * static_cast<double>(closed_form(law.name, 0)), 1e-18) << law.name;
+    EXPECT_TRUE(rest.grad.isZero(0)) << law.name;
+    const double largest = eigenvalues(MatXd(rest.hess))[11];
+    EXPECT_GT(largest, 1e3) << law.name;
+    EXPECT_GT(eigenvalues(MatXd(rest.hess))[0], -1e-13 * largest) << law.name;
+    for (const double length : {1e-25, 1e-21, 1e-12}) {
+      const auto small = terms_of<double>(law, motion_with(length));
+      EXPECT_GT(small.grad.norm(), 0) << law.name;
+      EXPECT_LT(relative_difference(small.hess, rest.hess, largest), 1e-8) << law.name << length;
+    }
+    ++judged;
+  }
+  EXPECT_GE(judged, 2U);
+}
+
+}  // namespace
+}  // namespace bb::test::friction_test

@@ -1,0 +1,113 @@
+"""Friction of a whole run: a patch on a slope against Coulomb's law, every law and rule through the config, and what is refused."""
+
+import json
+import math
+from pathlib import Path
+
+import pytest
+from test_cli import bench, refused
+
+ROOT = Path(__file__).resolve().parents[2]
+SLOPE = ROOT / "configs/scenes/friction_slope.json"
+G, ANGLE = 9.81, math.atan(0.5)
+MASS = 0.2 * 0.2  # kg
+EPS_V = 1e-3  # m/s
+
+
+def slope(program: str, out: Path, **settings) -> list[dict]:
+    """The steps of the run; settings by pointer, / written as __."""
+    words = [w for name, value in settings.items() for w in ("--set", f"/{name.replace('__', '/')}={value}")]
+    done = bench(program, "run", SLOPE, "--out", out, "--progress", "none", *words)
+    assert done.returncode == 0, done.stderr
+    record = json.loads((out / "run.json").read_text())
+    assert record["status"]["outcome"] == "ok", record["status"]
+    assert len(record["steps"]) == 60
+    return record["steps"]
+
+
+def speed(step: dict) -> float:
+    return math.sqrt(2 * step["kinetic_J"] / MASS)
+
+
+def acceleration(steps: list[dict]) -> float:
+    """m/s^2, over the second half, when the patch has settled on its gap."""
+    return (speed(steps[59]) - speed(steps[29])) / (steps[59]["t_s"] - steps[29]["t_s"])
+
+
+def creep(law: str, mu: float) -> float:
+    """m/s, at which the force of the law balances the slope: tan(ANGLE)/mu of mu times the load."""
+    part = math.tan(ANGLE) / mu
+    return EPS_V * (part if law == "capped" else 1 - math.sqrt(1 - part))
+
+
+@pytest.mark.parametrize("law", ["smoothed_coulomb", "capped"])
+@pytest.mark.parametrize("mu", [0.51, 0.6])
+def test_above_the_tangent_of_the_slope_it_sticks_and_creeps(program, tmp_path, law, mu):
+    steps = slope(program, tmp_path, friction__mu=mu, friction__law=law)
+    assert speed(steps[59]) == pytest.approx(creep(law, mu), rel=0.05)
+    assert speed(steps[59]) == pytest.approx(speed(steps[44]), rel=1e-3)
+    assert (steps[59]["friction_sticking"], steps[59]["friction_sliding"]) == (9, 0)
+    work = MASS * G * math.sin(ANGLE) * speed(steps[59]) * 0.005  # of the weight, all of it dissipated
+    assert steps[59]["friction_dissipation_J"] == pytest.approx(work, rel=0.01)
+
+
+@pytest.mark.parametrize(("mu", "tolerance"), [(0.2, 0.01), (0.4, 0.01), (0.49, 0.05)])
+def test_below_it_slides_as_coulomb_says(program, tmp_path, mu, tolerance):
+    steps = slope(program, tmp_path, friction__mu=mu)
+    expected = G * (math.sin(ANGLE) - mu * math.cos(ANGLE))
+    assert expected > 0.08
+    assert acceleration(steps) == pytest.approx(expected, rel=tolerance)
+    assert (steps[59]["friction_sticking"], steps[59]["friction_sliding"]) == (0, 9)
+    lost = mu * MASS * G * math.cos(ANGLE) * (speed(steps[58]) + speed(steps[59])) / 2 * 0.005
+    assert steps[59]["friction_dissipation_J"] == pytest.approx(lost, rel=0.02)
+
+
+def test_the_coefficient_is_the_one_that_the_rule_makes_of_both_sides(program, tmp_path):
+    sides = {"scene__bodies__0__friction": 0.1, "scene__obstacles__0__friction": 0.3}
+    for rule, mu in {"min": 0.1, "max": 0.3, "mean": 0.2}.items():
+        steps = slope(program, tmp_path / rule, friction__combine=rule, **sides)
+        assert acceleration(steps) == pytest.approx(G * (math.sin(ANGLE) - mu * math.cos(ANGLE)), rel=0.01), rule
+
+
+def test_a_repeated_lag_rubs_in_the_step_of_the_impact(program, tmp_path):
+    """Let fall from 2 d_hat: no contact at the start of the step that makes the first one."""
+    fall = {"scene__bodies__0__transform__translate_m": "[0.0008944271909999159,0,0.0017888543819998318]", "friction__mu": 0.2}
+    rubbing = {}
+    for times in (1, 2, 3):
+        steps = slope(program, tmp_path / str(times), friction__lag_iterations=times, **fall)
+        rubbing[times] = [step["step"] for step in steps if step["friction_sliding"] + step["friction_sticking"] > 0]
+        touching = [step["step"] for step in steps if step["contact_load_sum_N"]]
+        assert rubbing[times][0] == touching[0] + (times == 1) > 1
+    assert rubbing[2][0] == rubbing[1][0] - 1
+
+
+def test_without_a_coefficient_there_is_no_term_and_no_loss(program, tmp_path):
+    steps = slope(program, tmp_path, friction__mu=0)
+    assert acceleration(steps) == pytest.approx(G * math.sin(ANGLE), rel=1e-3)
+    assert steps[59]["friction_dissipation_J"] is None and steps[59]["friction_dissipation_J_status"] == "no_friction"
+    plan = json.loads((tmp_path / "run.json").read_text())["plan"]
+    assert [item["active"] for item in plan if item["item"] == "friction"] == [False]
+
+
+def test_bits_do_not_depend_on_threads(program, tmp_path):
+    hashes = set()
+    for threads in (1, 2):
+        steps = slope(program, tmp_path / str(threads), threads=threads)
+        assert steps[59]["friction_sticking"] == 9
+        hashes.add(json.loads((tmp_path / str(threads) / "run.json").read_text())["summary"]["state_hash"])
+    assert len(hashes) == 1
+
+
+@pytest.mark.parametrize(("setting", "said"), [
+    ("/friction/mu=-0.1", "/friction/mu"), ("/scene/bodies/0/friction=-1", "/scene/bodies/0/friction"),
+    ("/scene/obstacles/0/friction=-1", "/scene/obstacles/0/friction"), ("/friction/eps_v_m_per_s=0", "/friction/eps_v_m_per_s"),
+    ("/friction/lag_iterations=0", "/friction/lag_iterations"), ("/friction/law=coulomb", "smoothed_coulomb, capped"), ("/friction/combine=most", "min, max, mean"),
+])
+def test_what_has_no_meaning_is_refused(program, tmp_path, setting, said):
+    refused(bench(program, "run", SLOPE, "--out", tmp_path, "--set", setting), said)
+
+
+@pytest.mark.parametrize("setting", ["/friction/mu", "/scene/bodies/0/friction", "/scene/obstacles/0/friction"])
+def test_a_device_refuses_friction_by_the_name_of_the_setting(program, tmp_path, setting):
+    words = ["--set", "/device=host", "--set", "/linear_solver/name=pcg_resident", "--set", "/friction/mu=0", "--set", f"{setting}=0.3"]
+    refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), setting, "friction runs with device cpu only")
