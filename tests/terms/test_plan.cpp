@@ -6,7 +6,7 @@
 #include "tests/bodies/bodies.hpp"
 #include "tests/terms/all_terms.hpp"
 
-namespace bb {
+namespace bb::plan_test {
 namespace {
 
 using namespace test;
@@ -132,4 +132,4 @@ TEST(plan, keeps_the_submatrix_for_a_limit_without_contact) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::plan_test

@@ -6,7 +6,7 @@
 #include "core/terms/step_hessian.hpp"
 #include "tests/terms/at_iterate.hpp"
 
-namespace bb {
+namespace bb::projections_test {
 namespace {
 
 /// Compressed one way and stretched the other, so that elements have negative eigenvalues and the limit acts.
@@ -114,4 +114,4 @@ TEST(Projections, absolute_has_no_negative_eigenvalue_and_at_least_the_clamped_c
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::projections_test
