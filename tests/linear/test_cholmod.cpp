@@ -10,7 +10,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb {
+namespace bb::cholmod_test {
 namespace {
 
 TEST(Cholmod, AnalysisStaysWhileThePatternStays) {
@@ -112,4 +112,4 @@ TEST(BlasInfo, NamesTheLoadedLibrary) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::cholmod_test
