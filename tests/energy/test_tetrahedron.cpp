@@ -158,7 +158,7 @@ TEST(Tetrahedron, derivatives_in_the_twelve_coordinates) {
     EXPECT_LT(jacobian_error(gradient, x, terms.hess), 1e-9);
     EXPECT_EQ(terms.hess, terms.hess.transpose());
     EXPECT_NEAR(terms.energy, static_cast<double>(value(x)), 1e-14);
-    EXPECT_NEAR(static_cast<double>(rest.volume), 0.7 / 6, 0.05);
+    EXPECT_NEAR(static_cast<double>(rest.volume), 0.716 / 6, 1e-15);
     const auto single = element_at<Model, float>(x);
     EXPECT_NEAR(static_cast<double>(single.energy), terms.energy, 1e-5 * terms.energy);
     EXPECT_LT(relative_difference(single.hess.template cast<double>(), terms.hess,
