@@ -106,7 +106,7 @@ TEST(SolidBodies, are_refused_with_the_number_of_the_tetrahedron) {
 TEST(SolidBodies, materials_out_of_range_are_refused) {
   BodySpec body = block("block");
   body.material.solid_model = "stvc";
-  EXPECT_NE(complaint({body}).find("/material/solid_model: \"stvc\""), std::string::npos)
+  EXPECT_NE(complaint({body}).find("/material/solid_model: found \"stvc\""), std::string::npos)
       << complaint({body});
   body.material.solid_model = "arap";
   body.material.solid_poisson = 0.5;
