@@ -28,6 +28,26 @@ void check_material(const Complaints& complain, const BodySpec& spec, bool plana
   complain.number("/limit/width", limit->width, limit->width > 0, "a number > 0");
 }
 
+/// Every corner is a vertex, every volume positive, and no face belongs to three.
+void check_tetrahedra(const Complaints& report, const TriangleMesh& mesh) {
+  for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
+    const auto& corners = mesh.tetrahedra[t];
+    const auto [low, high] = std::minmax_element(corners.begin(), corners.end());
+    if (*low < 0 || *high >= mesh.n_vertices()) {
+      return report("/mesh", fmt::format("tetrahedron {} with an unknown vertex", t),
+                    fmt::format("vertices 0 to {}", mesh.n_vertices() - 1));
+    }
+    const double volume = tetrahedron_volume(mesh.vertices, corners);
+    if (volume > 0 && std::isfinite(volume)) continue;
+    return report("/mesh", fmt::format("tetrahedron {} of {:g} m^3", t, volume),
+                  "volume > 0: corner 3 on the side to which 0 1 2 runs counter-clockwise");
+  }
+  const int crowded = solid_faces(mesh.tetrahedra).crowded;
+  if (crowded < 0) return;
+  report("/mesh", fmt::format("tetrahedron {} with a face that two others have too", crowded),
+         "faces of one or two tetrahedra");
+}
+
 void check_mesh(const Complaints& report, const BodySpec& spec, bool planar) {
   const int n = spec.mesh.n_vertices();
   if (n == 0) report("/mesh", "no vertex", "at least one vertex");
@@ -48,6 +68,7 @@ void check_mesh(const Complaints& report, const BodySpec& spec, bool planar) {
                          [&](const auto& t) { return !(area_vector(spec.mesh.vertices, t).norm() > 0); })) {
     report("/mesh", "a triangle of zero area", "triangles of positive area");
   }
+  check_tetrahedra(report, spec.mesh);
   const auto off_plane = [](const Positions& x) { return x.cols() > 0 && !x.row(2).isZero(0); };
   if (planar && (off_plane(spec.mesh.vertices) || (spec.start && off_plane(*spec.start)))) {
     report("/mesh", "a vertex with z != 0", "z = 0: the scene is planar");

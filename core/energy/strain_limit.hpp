@@ -45,9 +45,9 @@ BB_HD Density2<T> strain_limit_density(const Vec<T, 2>& sigma, const StrainBand<
   for (int k = 0; k < 2; ++k) out.d2psi(k, k) = kappa * shape.d2b[k];
   const T difference = sigma[0] - sigma[1], sum = sigma[0] + sigma[1];
   const T close = cbrt(std::numeric_limits<T>::epsilon()) * abs(strain_gap(sigma[0], band));
-  out.flip = abs(difference) > close ? (out.dpsi[0] - out.dpsi[1]) / difference
-                                     : (out.d2psi(0, 0) + out.d2psi(1, 1)) / T(2);
-  out.twist = sum > T(0) ? (out.dpsi[0] + out.dpsi[1]) / sum : T(0);
+  out.flip[0] = abs(difference) > close ? (out.dpsi[0] - out.dpsi[1]) / difference
+                                        : (out.d2psi(0, 0) + out.d2psi(1, 1)) / T(2);
+  out.twist[0] = sum > T(0) ? (out.dpsi[0] + out.dpsi[1]) / sum : T(0);
   return out;
 }
 
@@ -64,13 +64,13 @@ BB_HD ElementTerms<T, 9> strain_limit_terms(const TriangleRest<T>& rest, const S
     return {T(0), Vec<T, 9>::Zero(), Mat<T, 9, 9>::Zero()};
   }
   const Density2<T> density = strain_limit_density(svd.sigma, band, shape, kappa);
-  return pull_back<R, T>(rest, T(1), isotropic_terms<T, R>(svd, density, projection));
+  return pull_back<R, 2, T>(rest.dm_inv, T(1), isotropic_terms<T, R>(svd, density, projection));
 }
 
 /// Smallest pseudo-gap at x, the one number that step bound and energy share: > 0 within the limit.
 template <int R, class T>
 BB_HD T smallest_strain_gap(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3], const StrainBand<T>& band) {
-  return strain_gap(membrane_svd(deformation_gradient<R>(rest, x)).sigma[0], band);
+  return strain_gap(signed_svd(deformation_gradient<R>(rest, x)).sigma[0], band);
 }
 
 /// Largest alpha in [0, alpha_max] whose rounded state x + alpha dx keeps y above the stop level; 0 when x is

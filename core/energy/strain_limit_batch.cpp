@@ -48,8 +48,8 @@ void StrainLimitBatch::measure(const PositionsView& x) {
     for_each_element(size(), [&](std::size_t e) {
       const Points<3, T> p(x, vertices_, e);
       const TriangleRest<T> rest = rest_in<T>(rests_[e]);
-      const Vec<T, 2> sigma = planar_ ? membrane_svd(deformation_gradient<2>(rest, p.x)).sigma
-                                      : membrane_svd(deformation_gradient<3>(rest, p.x)).sigma;
+      const Vec<T, 2> sigma = planar_ ? signed_svd(deformation_gradient<2>(rest, p.x)).sigma
+                                      : signed_svd(deformation_gradient<3>(rest, p.x)).sigma;
       for (int k = 0; k < 2; ++k) {
         sigma_[2 * e + static_cast<std::size_t>(k)] = sigma[k];
         gap_[2 * e + static_cast<std::size_t>(k)] = strain_gap(sigma[k], band_in<T>(bands_[e]));
@@ -83,7 +83,7 @@ void StrainLimitBatch::fill_terms(const PositionsView& x, const double* kappa, P
     const auto in_dimension = [&]<int R>() {
       // an inactive element needs no SVD; its factors are not read
       const bool active = gap_[i] < width_[i];
-      const Svd<T, R, 2> svd = active ? membrane_svd(deformation_gradient<R>(rest, p.x))
+      const Svd<T, R, 2> svd = active ? signed_svd(deformation_gradient<R>(rest, p.x))
                                       : Svd<T, R, 2>{{}, two_in<T>(&sigma_[i]), {}};
       return strain_limit_terms<R, T>(rest, svd, band_in<T>(bands_[e]), shape, static_cast<T>(kappa[e]),
                                       projection);

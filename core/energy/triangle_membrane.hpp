@@ -1,10 +1,10 @@
-// One membrane triangle: from three points to F and, by the constant dF/dx, from a density's derivatives in F
-// to gradient and Hessian in the nine coordinates.
+// One membrane triangle: from three points to F, and to energy, gradient and Hessian in the nine coordinates.
 #pragma once
 
 #include <cmath>
 
 #include "core/energy/isotropic.hpp"
+#include "core/energy/pull_back.hpp"
 
 namespace bb {
 
@@ -61,34 +61,6 @@ BB_HD Mat<T, R, 2> deformation_gradient(const TriangleRest<T>& rest, const Vec<T
   return f;
 }
 
-/// Gradient and Hessian in x of weight * psi(F(x)): dF_aj/dx_ia = w_ij with w the rows of dm_inv and, for
-/// point 0, minus their sum. With R = 2 the z entries are 0.
-template <int R, class T>
-BB_HD ElementTerms<T, 9> pull_back(const TriangleRest<T>& rest, T weight, const DensityTerms<T, R>& density) {
-  Mat<T, 3, 2> w;
-  w.template bottomRows<2>() = rest.dm_inv;
-  w.row(0) = -(rest.dm_inv.row(0) + rest.dm_inv.row(1));
-  ElementTerms<T, 9> out;
-  out.energy = weight * density.psi;
-  out.grad.setZero();
-  out.hess.setZero();
-  for (int i = 0; i < 3; ++i) {
-    out.grad.template segment<R>(3 * i) =
-        weight * (w(i, 0) * density.pk1.col(0) + w(i, 1) * density.pk1.col(1));
-    for (int k = 0; k <= i; ++k) {
-      Mat<T, R, R> block = Mat<T, R, R>::Zero();
-      for (int j = 0; j < 2; ++j) {
-        for (int l = 0; l < 2; ++l) {
-          block += (weight * w(i, j) * w(k, l)) * density.hess.template block<R, R>(R * j, R * l);
-        }
-      }
-      out.hess.template block<R, R>(3 * i, 3 * k) = block;
-    }
-  }
-  mirror_lower<T, 9>(out.hess);
-  return out;
-}
-
 /// Energy (J) of a membrane triangle: rest area x psi(F). Model: a name of registry.inc in bb::membrane; Lame
 /// parameters in N/m. Host-device: yes. Total for a proper rest triangle.
 template <class Model, int R, class T>
@@ -101,7 +73,8 @@ template <class Model, int R, class T>
 BB_HD ElementTerms<T, 9> membrane_terms(const TriangleRest<T>& rest, const Vec<T, 3> (&x)[3], T lame_mu,
                                         T lame_lambda, Projection projection) {
   const Mat<T, R, 2> f = deformation_gradient<R>(rest, x);
-  return pull_back<R, T>(rest, rest.area, Model::template terms<T, R>(f, lame_mu, lame_lambda, projection));
+  return pull_back<R, 2, T>(rest.dm_inv, rest.area,
+                            Model::template terms<T, R>(f, lame_mu, lame_lambda, projection));
 }
 
 }  // namespace bb

@@ -21,6 +21,7 @@ struct MemoryItem {
 inline MemoryItem vertex_memory(double count) { return {"vertices", count, 400}; }
 inline MemoryItem triangle_memory(double count) { return {"triangles", count, 800}; }
 inline MemoryItem segment_memory(double count) { return {"segments", count, 400}; }
+inline MemoryItem tetrahedron_memory(double count) { return {"tetrahedra", count, 1200}; }
 /// The three of a surface of triangles.
 inline std::vector<MemoryItem> surface_memory(double vertices, double triangles) {
   return {vertex_memory(vertices), triangle_memory(triangles), segment_memory(0)};

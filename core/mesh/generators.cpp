@@ -1,25 +1,14 @@
 #include "core/mesh/generators.hpp"
 
-#include <fmt/format.h>
-
 #include <cmath>
 #include <map>
 #include <numbers>
 
 #include "core/input/memory.hpp"
-#include "core/math/error.hpp"
+#include "core/mesh/generator_checks.hpp"
 
 namespace bb {
 namespace {
-
-void require_count(const char* where, int found, int low, int high) {
-  if (found < low || found > high)
-    throw ConfigError(where, fmt::format("{}", found), fmt::format("{} to {}", low, high));
-}
-void require_size(const char* where, double found) {
-  if (!(found > 0) || !std::isfinite(found))
-    throw ConfigError(where, fmt::format("{}", found), "a number > 0");
-}
 
 constexpr int max_count = 20000;  // n x n triangles still count within int
 

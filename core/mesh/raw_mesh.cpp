@@ -4,6 +4,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <map>
 
@@ -25,6 +26,19 @@ void RawMesh::add_segment(long long a, long long b, long long place) {
   segments.push_back({a, b});
   segment_place.push_back(place);
 }
+void RawMesh::close_tetrahedron(std::size_t first, long long place) {
+  if (corners.size() != first + 4) {
+    throw ConfigError(where("tetrahedron", place), fmt::format("{} corners", corners.size() - first),
+                      "4 corners");
+  }
+  tetrahedra.push_back({corners[first], corners[first + 1], corners[first + 2], corners[first + 3]});
+  tetrahedron_place.push_back(place);
+  corners.resize(first);
+}
+std::string RawMesh::where(const char* element, long long place) const {
+  return places_are_lines ? fmt::format("{}:{}", name, place)
+                          : fmt::format("{}: {} {}", name, element, place);
+}
 
 namespace {
 
@@ -38,6 +52,7 @@ class Assembler {
     copy_vertices();
     for (std::size_t p = 0; p < raw_.first_corner.size(); ++p) add_polygon(p);
     for (std::size_t s = 0; s < raw_.segments.size(); ++s) add_segment(s);
+    for (std::size_t t = 0; t < raw_.tetrahedra.size(); ++t) add_tetrahedron(t);
     if (!violations_.empty()) throw ConfigError(std::move(violations_));
     return std::move(mesh_);
   }
@@ -45,9 +60,7 @@ class Assembler {
  private:
   void complain(const char* element, long long place, std::string found, std::string allowed) {
     if (violations_.size() >= max_violations) return;
-    violations_.push_back({raw_.places_are_lines ? fmt::format("{}:{}", raw_.name, place)
-                                                 : fmt::format("{}: {} {}", raw_.name, element, place),
-                           std::move(found), std::move(allowed)});
+    violations_.push_back({raw_.where(element, place), std::move(found), std::move(allowed)});
   }
 
   void copy_vertices() {
@@ -145,10 +158,42 @@ class Assembler {
     mesh_.segments.push_back({static_cast<int>(a), static_cast<int>(b)});
   }
 
+  void add_tetrahedron(std::size_t t) {
+    const long long place = raw_.tetrahedron_place[t];
+    std::array<int, 4> corners{};
+    for (std::size_t k = 0; k < 4; ++k) {
+      if (!in_range("tetrahedron", raw_.tetrahedra[t][k], place)) return;
+      corners[k] = static_cast<int>(raw_.tetrahedra[t][k]);
+    }
+    std::array<int, 4> sorted = corners;
+    std::sort(sorted.begin(), sorted.end());
+    const auto [other, is_new] = tetrahedra_.try_emplace(sorted, place);
+    if (!is_new) {
+      return complain("tetrahedron", place, fmt::format("the same corners as at {}", other->second),
+                      "each tetrahedron once");
+    }
+    const double volume = tetrahedron_volume(mesh_.vertices, corners);
+    if (std::isfinite(volume) && !(volume > flat_volume(corners))) {
+      return complain("tetrahedron", place, fmt::format("a tetrahedron of {:g} m^3", volume),
+                      "volume > 0: corner 3 on the side to which 0 1 2 runs counter-clockwise");
+    }
+    mesh_.tetrahedra.push_back(corners);
+  }
+
+  /// Volume of a tetrahedron that is flat up to the rounding of its coordinates.
+  double flat_volume(const std::array<int, 4>& t) const {
+    double longest = 0;
+    for (std::size_t k = 1; k < 4; ++k) {
+      longest = std::max(longest, (mesh_.vertices.col(t[k]) - mesh_.vertices.col(t[0])).norm());
+    }
+    return std::numeric_limits<double>::epsilon() * longest * longest * longest;
+  }
+
   const RawMesh& raw_;
   TriangleMesh mesh_;
   std::map<std::vector<int>, long long> faces_;
   std::map<std::pair<long long, long long>, long long> edges_;
+  std::map<std::array<int, 4>, long long> tetrahedra_;
   std::vector<Violation> violations_;
 };
 

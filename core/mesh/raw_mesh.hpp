@@ -20,11 +20,17 @@ struct RawMesh {
   std::vector<long long> polygon_place;
   std::vector<std::array<long long, 2>> segments;
   std::vector<long long> segment_place;
+  std::vector<std::array<long long, 4>> tetrahedra;
+  std::vector<long long> tetrahedron_place;
 
   void add_vertex(const Vec3d& x, long long place);
   /// Takes the corners appended since the last call (or since the start) as one polygon.
   void close_polygon(std::size_t first, long long place);
   void add_segment(long long a, long long b, long long place);
+  /// Takes the corners from `first` on as a tetrahedron. Errors: ConfigError when they are not four.
+  void close_tetrahedron(std::size_t first, long long place);
+  /// "file:line", or "file: element number".
+  std::string where(const char* element, long long place) const;
 };
 
 /// Errors: ConfigError, see read_mesh.

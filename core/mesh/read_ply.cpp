@@ -118,6 +118,7 @@ class BinaryValues {
 /// Where the values we keep stand in an element; -1 when the element has none of them.
 struct Slots {
   int x = -1, y = -1, z = -1, list = -1, edge0 = -1, edge1 = -1;
+  bool of_tetrahedron = false;  // `list`
 };
 
 Slots slots_of(const PlyElement& element, const std::string& name) {
@@ -132,10 +133,12 @@ Slots slots_of(const PlyElement& element, const std::string& name) {
   };
   if (element.name == "vertex") {
     slots.x = need("x"), slots.y = need("y"), slots.z = need("z");
-  } else if (element.name == "face") {
+  } else if (element.name == "face" || element.name == "tetrahedron") {
+    slots.of_tetrahedron = element.name == "tetrahedron";
     slots.list = element.find("vertex_indices");
     if (slots.list < 0 || !element.properties[static_cast<std::size_t>(slots.list)].is_list) {
-      throw ConfigError(name, "element face without its corners", "property list ... vertex_indices");
+      throw ConfigError(name, fmt::format("element {} without its corners", element.name),
+                        "property list ... vertex_indices");
     }
   } else if (element.name == "edge") {
     slots.edge0 = need("vertex1"), slots.edge1 = need("vertex2");
@@ -177,7 +180,11 @@ void read_element(Values& values, const PlyElement& element, const Slots& slots,
   values.end();
   const long long place = values.place(number);
   if (slots.x >= 0) mesh.add_vertex(x, place);
-  if (slots.list >= 0) mesh.close_polygon(first, place);
+  if (slots.list >= 0 && slots.of_tetrahedron) {
+    mesh.close_tetrahedron(first, place);
+  } else if (slots.list >= 0) {
+    mesh.close_polygon(first, place);
+  }
   if (slots.edge0 >= 0) mesh.add_segment(edge[0], edge[1], place);
 }
 

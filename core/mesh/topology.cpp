@@ -2,6 +2,9 @@
 
 #include <algorithm>
 #include <numeric>
+#include <tuple>
+
+#include "core/math/products.hpp"
 
 namespace bb {
 namespace {
@@ -44,7 +47,7 @@ int root_of(std::vector<int>& parent, int i) {
 
 std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh) {
   std::vector<std::array<int, 2>> edges;
-  edges.reserve(3 * mesh.triangles.size() + mesh.segments.size());
+  edges.reserve(3 * mesh.triangles.size() + mesh.segments.size() + 6 * mesh.tetrahedra.size());
   for (const auto& t : mesh.triangles) {
     for (std::size_t k = 0; k < 3; ++k) {
       const auto [low, high] = std::minmax(t[k], t[(k + 1) % 3]);
@@ -52,6 +55,11 @@ std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh) {
     }
   }
   for (const auto& s : mesh.segments) edges.push_back({std::min(s[0], s[1]), std::max(s[0], s[1])});
+  for (const auto& t : mesh.tetrahedra) {
+    for (std::size_t i = 0; i < 4; ++i) {
+      for (std::size_t j = i + 1; j < 4; ++j) edges.push_back({std::min(t[i], t[j]), std::max(t[i], t[j])});
+    }
+  }
   std::sort(edges.begin(), edges.end());
   edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
   return edges;
@@ -79,6 +87,34 @@ std::vector<std::array<int, 4>> edge_hinges(std::span<const std::array<int, 3>> 
   return hinges;
 }
 
+SolidFaces solid_faces(std::span<const std::array<int, 4>> tetrahedra) {
+  struct Face {
+    std::array<int, 3> sorted, outward;
+    int tetrahedron;
+  };
+  std::vector<Face> faces;
+  faces.reserve(4 * tetrahedra.size());
+  for (std::size_t t = 0; t < tetrahedra.size(); ++t) {
+    const auto& [a, b, c, d] = tetrahedra[t];
+    for (const std::array<int, 3>& outward : {std::array{a, c, b}, {a, b, d}, {a, d, c}, {b, c, d}}) {
+      faces.push_back({outward, outward, static_cast<int>(t)});
+      std::sort(faces.back().sorted.begin(), faces.back().sorted.end());
+    }
+  }
+  std::sort(faces.begin(), faces.end(), [](const Face& a, const Face& b) {
+    return std::tie(a.sorted, a.tetrahedron) < std::tie(b.sorted, b.tetrahedron);
+  });
+  SolidFaces out;
+  for (std::size_t i = 0; i < faces.size();) {
+    std::size_t end = i + 1;
+    while (end < faces.size() && faces[end].sorted == faces[i].sorted) ++end;
+    if (end == i + 1) out.surface.push_back(faces[i].outward);
+    if (end > i + 2 && out.crowded < 0) out.crowded = faces[i].tetrahedron;
+    i = end;
+  }
+  return out;
+}
+
 std::vector<int> connected_components(const TriangleMesh& mesh, int* n_components) {
   const auto n = static_cast<std::size_t>(mesh.n_vertices());
   std::vector<int> parent(n);
@@ -101,6 +137,11 @@ std::vector<int> connected_components(const TriangleMesh& mesh, int* n_component
 Vec3d area_vector(const Positions& x, const std::array<int, 3>& t) {
   const Vec3d u = x.col(t[1]) - x.col(t[0]), v = x.col(t[2]) - x.col(t[0]);
   return 0.5 * u.cross(v);
+}
+
+double tetrahedron_volume(const Positions& x, const std::array<int, 4>& t) {
+  const Vec3d u = x.col(t[1]) - x.col(t[0]), v = x.col(t[2]) - x.col(t[0]), w = x.col(t[3]) - x.col(t[0]);
+  return w.dot(accurate_cross<double>(u, v)) / 6;
 }
 
 double surface_area(const TriangleMesh& mesh) {

@@ -1,4 +1,4 @@
-// Sets derived from a mesh: unique edges, boundary, interior edges with their opposite vertices, components.
+// Sets derived from a mesh: unique edges, boundary, interior edges with their opposite vertices, components, surface of solids.
 #pragma once
 
 #include <array>
@@ -9,7 +9,7 @@
 
 namespace bb {
 
-/// Every edge of a triangle and every segment once, as (smaller, larger) index, sorted. Cost O(n log n).
+/// Every edge of a triangle or a tetrahedron and every segment once, as (smaller, larger) index, sorted. Cost O(n log n).
 std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh);
 
 /// Edges of exactly one triangle, in the direction that the triangle runs through them, sorted
@@ -21,6 +21,14 @@ std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3
 /// hinge for each pair of consecutive triangles in index order.
 std::vector<std::array<int, 4>> edge_hinges(std::span<const std::array<int, 3>> triangles);
 
+/// Faces of tetrahedra of positive volume.
+struct SolidFaces {
+  std::vector<std::array<int, 3>>
+      surface;       // of one tetrahedron only, seen counter-clockwise from outside; sorted by vertices
+  int crowded = -1;  // a tetrahedron with a face that two others have too; -1: none
+};
+SolidFaces solid_faces(std::span<const std::array<int, 4>> tetrahedra);
+
 /// Component of each vertex, numbered from 0 in order of their smallest vertex; vertices joined by edges.
 std::vector<int> connected_components(const TriangleMesh& mesh, int* n_components = nullptr);
 
@@ -28,5 +36,7 @@ std::vector<int> connected_components(const TriangleMesh& mesh, int* n_component
 double surface_area(const TriangleMesh& mesh);
 /// (x1 - x0) x (x2 - x0) / 2, m^2.
 Vec3d area_vector(const Positions& x, const std::array<int, 3>& triangle);
+/// Signed volume, m^3.
+double tetrahedron_volume(const Positions& x, const std::array<int, 4>& tetrahedron);
 
 }  // namespace bb

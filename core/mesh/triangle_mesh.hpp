@@ -1,4 +1,4 @@
-// A surface as numbers: vertices, triangles and lone edges (segments that no triangle owns, such as rods).
+// A mesh as numbers: vertices, triangles, lone edges (segments that no triangle owns, such as rods) and tetrahedra.
 // Readers are in read_mesh.hpp, procedural meshes in generators.hpp, derived sets in topology.hpp.
 #pragma once
 
@@ -13,6 +13,8 @@ struct TriangleMesh {
   Positions vertices = Positions(3, 0);       // [3 x n] m
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<std::array<int, 2>> segments;   // lone edges
+  std::vector<std::array<int, 4>>
+      tetrahedra;  // corner 3 on the side to which 0 1 2 runs counter-clockwise: volume > 0
 
   int n_vertices() const { return static_cast<int>(vertices.cols()); }
 };

@@ -55,6 +55,10 @@ void append_row(std::string& bytes, const std::vector<PlyColumn>& columns, std::
 }  // namespace
 
 void write_obj(const std::string& path, const TriangleMesh& mesh) {
+  if (!mesh.tetrahedra.empty()) {
+    throw ConfigError(path, fmt::format("{} tetrahedra", mesh.tetrahedra.size()),
+                      "triangles and segments: OBJ has no tetrahedra, PLY does");
+  }
   std::string text;
   auto out = std::back_inserter(text);
   for (int i = 0; i < mesh.n_vertices(); ++i) {
@@ -76,6 +80,10 @@ std::string ply_bytes(const TriangleMesh& mesh, const std::vector<PlyColumn>& of
     bytes +=
         fmt::format("element edge {}\nproperty int vertex1\nproperty int vertex2\n", mesh.segments.size());
   }
+  if (!mesh.tetrahedra.empty()) {
+    bytes += fmt::format("element tetrahedron {}\nproperty list uchar int vertex_indices\n",
+                         mesh.tetrahedra.size());
+  }
   bytes += "end_header\n";
   for (int i = 0; i < mesh.n_vertices(); ++i) {
     for (int k = 0; k < 3; ++k) append(bytes, mesh.vertices(k, i));
@@ -88,6 +96,10 @@ std::string ply_bytes(const TriangleMesh& mesh, const std::vector<PlyColumn>& of
   }
   for (const auto& s : mesh.segments) {
     for (const int end : s) append(bytes, static_cast<std::int32_t>(end));
+  }
+  for (const auto& t : mesh.tetrahedra) {
+    append(bytes, std::uint8_t{4});
+    for (const int corner : t) append(bytes, static_cast<std::int32_t>(corner));
   }
   return bytes;
 }

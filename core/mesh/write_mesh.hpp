@@ -10,7 +10,8 @@
 namespace bb {
 
 /// Vertices with 17 digits (read back bit for bit), faces, segments as `l`.
-/// Errors: ConfigError when the file cannot be written whole; nothing half-written stays.
+/// Errors: ConfigError for tetrahedra, which OBJ does not have, and when the file cannot be written whole; nothing half-written
+/// stays.
 void write_obj(const std::string& path, const TriangleMesh& mesh);
 
 /// One more scalar property of a PLY element, beside the coordinates or the corners: a value for each vertex
@@ -20,7 +21,8 @@ struct PlyColumn {
   std::variant<std::vector<int>, std::vector<double>> values;
 };
 
-/// The bytes of a binary little-endian PLY file, double coordinates; segments as `edge` elements.
+/// The bytes of a binary little-endian PLY file, double coordinates; segments as `edge` elements,
+/// tetrahedra as `tetrahedron` elements.
 /// @param of_vertices columns of n_vertices values, after x y z
 /// @param of_triangles columns of one value a triangle, after vertex_indices
 std::string ply_bytes(const TriangleMesh& mesh, const std::vector<PlyColumn>& of_vertices = {},

@@ -6,6 +6,7 @@
 #include "barriers/stiffness/registry.hpp"
 #include "core/bodies/part.hpp"
 #include "core/energy/membrane_model.hpp"
+#include "core/energy/tetrahedron_batch.hpp"
 #include "core/integrators/registry.hpp"
 #include "core/linear/preconditioner.hpp"
 #include "core/math/error.hpp"
@@ -111,6 +112,8 @@ const std::vector<Section>& sections() {
       {"linear_solvers", [] { print_entries("linear_solvers", linear_solvers()); }},
       {"preconditioners", [] { print_entries("preconditioners", preconditioners()); }},
       {"membranes", [] { print_entries("membranes", membrane_models<double>()); }},
+      {"solids",
+       [] { print_entries("solids (/scene/bodies/N/material/solid_model)", solid_models<double>()); }},
       {"methods", print_methods},
       {"formulations", [] { print_entries("formulations", formulation_presets()); }},
       {"verbs", print_verbs},

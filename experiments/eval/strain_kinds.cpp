@@ -80,7 +80,7 @@ Answer answer::strain_limit(Query& q) {
   std::vector<double> sigma = from_sigma ? q.list("sigma", -1, kFinite) : std::vector<double>();
   q.finish();
 
-  const Svd<T, 3, 2> svd = membrane_svd<T>(f);
+  const Svd<T, 3, 2> svd = signed_svd<T>(f);
   if (from_f) sigma = {static_cast<double>(svd.sigma[0]), static_cast<double>(svd.sigma[1])};
   const LimitTerms<T> terms = limit_terms(barrier, sigma, band);
   Answer a;

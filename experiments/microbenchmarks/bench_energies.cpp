@@ -1,4 +1,4 @@
-// One element of every energy: all membrane models of the registry, springs, hinges, the strain limit.
+// One element of every energy: all models of membranes and of solids, springs, hinges, the strain limit.
 #include <functional>
 #include <memory>
 #include <vector>
@@ -8,6 +8,8 @@
 #include "core/energy/membrane_batch.hpp"
 #include "core/energy/spring_batch.hpp"
 #include "core/energy/strain_limit_batch.hpp"
+#include "core/energy/tetrahedron_batch.hpp"
+#include "core/mesh/solid_generators.hpp"
 #include "experiments/microbenchmarks/cloth_stack.hpp"
 #include "experiments/microbenchmarks/microbenchmark.hpp"
 
@@ -50,6 +52,15 @@ void register_batch(const std::string& name, const MakeBatch& make) {
     const Sheet sheet;
     derivatives(state, *make(sheet.scene), sheet.scene.x0);
   });
+}
+
+/// A block of 10368 tetrahedra, strained by about 3 %.
+void solid(benchmark::State& state, std::string_view model, bool with_derivatives) {
+  const TriangleMesh mesh = solid_box_mesh({12, 12, 12}, Vec3d(1, 1, 1));
+  const std::vector<double> lame(mesh.tetrahedra.size(), 1e5);
+  const TetrahedronBatch batch(model, mesh.tetrahedra, mesh.vertices, lame, lame);
+  const Positions x = moved(mesh.vertices, 2e-3, 2);
+  with_derivatives ? derivatives(state, batch, x) : value(state, batch, x);
 }
 
 /// The limit of the sheet with the first shape of the registry; `terms` null for values.
@@ -104,6 +115,12 @@ void register_energies() {
   register_batch("hinge", [](const Scene& scene) {
     return std::make_unique<HingeBatch>(scene.hinges.hinges, scene.hinges.stiffness, scene.hinges.rest_angle);
   });
+  for (const SolidModel<double>& model : solid_models<double>()) {
+    const std::string name = "energy/" + std::string(model.name) + "_solid";
+    add(name + "/value", [&model](benchmark::State& state) { solid(state, model.name, false); });
+    add(name + "/gradient_and_hessian",
+        [&model](benchmark::State& state) { solid(state, model.name, true); });
+  }
   add("energy/strain_limit/value", [](benchmark::State& state) { strain_limit(state, false); });
   add("energy/strain_limit/gradient_and_hessian", [](benchmark::State& state) { strain_limit(state, true); });
   add("energy/strain_limit/step_bound", strain_bound);

@@ -34,7 +34,7 @@ template <class T, class Shape>
 ElementTerms<T, 9> terms_at(const Vec<T, 9>& x, const Shape& shape, Projection projection) {
   const TriangleRest<T> rest = rest_triangle<T>();
   const StrainBand<T> b{T(band.onset), T(band.width)};
-  const Svd<T, 3, 2> svd = membrane_svd(deformation_gradient<3>(rest, Points<T, 3>(x).x));
+  const Svd<T, 3, 2> svd = signed_svd(deformation_gradient<3>(rest, Points<T, 3>(x).x));
   StrainShape<T> terms;
   for (int k = 0; k < 2; ++k) {
     const auto [value, db, d2b] = shape(strain_gap(svd.sigma[k], b), b.width);
@@ -76,7 +76,7 @@ TEST(StrainLimit, ProjectionIsThatOfTheHessianInF) {
   int changed = 0;
   for (const auto& [s0, s1] : active_states) {
     const TriangleRest<double> rest = rest_triangle<double>();
-    const auto svd = membrane_svd(deformation_gradient<3>(rest, Points<double, 3>(stretched(s0, s1)).x));
+    const auto svd = signed_svd(deformation_gradient<3>(rest, Points<double, 3>(stretched(s0, s1)).x));
     StrainShape<double> shape;
     for (int k = 0; k < 2; ++k) {
       const auto [value, db, d2b] = LogStandIn{}(strain_gap(svd.sigma[k], band), band.width);
@@ -122,7 +122,7 @@ void check_step_bound(const Vec<double, 9>& from, const Vec<double, 9>& to) {
   const Points<T, 3> x(from), dx(Vec<double, 9>(to - from));
   const auto within = [&](T alpha) {
     const Vec<T, 3> moved[3] = {x.x[0] + alpha * dx.x[0], x.x[1] + alpha * dx.x[1], x.x[2] + alpha * dx.x[2]};
-    const auto sigma = membrane_svd(deformation_gradient<3>(rest, moved)).sigma;
+    const auto sigma = signed_svd(deformation_gradient<3>(rest, moved)).sigma;
     return strain_gap(sigma[0], b) > 0 && strain_gap(sigma[1], b) > 0;
   };
   const T alpha = strain_step_bound<3, T>(rest, x.x, dx.x, b);
@@ -139,7 +139,7 @@ TEST(StrainLimit, StepBoundIsTheLastFeasibleNumber) {
     Vec<double, 9> to = stretched(1.12, 1.0);
     for (double& coordinate : to) coordinate += uniform(random);
     const Points<double, 3> end(to);
-    const auto sigma = membrane_svd(deformation_gradient<3>(rest_triangle<double>(), end.x)).sigma;
+    const auto sigma = signed_svd(deformation_gradient<3>(rest_triangle<double>(), end.x)).sigma;
     if (sigma[0] < 1.2) continue;
     check_step_bound<double>(stretched(1.12, 1.0), to);
     check_step_bound<float>(stretched(1.12, 1.0), to);

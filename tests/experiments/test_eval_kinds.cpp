@@ -334,6 +334,34 @@ TEST(EvalEnergy, BendingOfARod) {
   }
 }
 
+TEST(EvalEnergy, Solids) {
+  const json rest = {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}, {0, 0, 3}};  // volume 1
+  const json x = {
+      {0, 0, 0}, {2.2, 0, 0}, {0, 1.3, 0}, {0, 0, -1.2}};  // turned inside out: sigma 1.3, 1.1, -0.4
+  const double mu = 3, lambda = 2, sum = 0.1 + 0.3 - 1.4, squares = 0.01 + 0.09 + 1.96, j = 1.1 * 1.3 * -0.4;
+  const double g0 = (1.21 - 1) / 2, g1 = (1.69 - 1) / 2, g2 = (0.16 - 1) / 2, green = g0 + g1 + g2;
+  json query = {{"kind", "energy"}, {"rest", rest}, {"x", x}, {"lame_mu", mu}, {"lame_lambda", lambda}};
+  const auto energy = [&](const char* model) {
+    query["model"] = model;
+    const json answer = ask(query);
+    EXPECT_EQ(answer["gradient"].size(), 12u);
+    EXPECT_EQ(answer["hessian"].size(), 12u);
+    EXPECT_EQ(answer["hessian_psd"][11].size(), 12u);
+    return answer["energy"];
+  };
+  expect_close(energy("arap_solid"), mu * squares);
+  expect_close(energy("corotational_solid"), mu * squares + lambda / 2 * sum * sum);
+  expect_close(energy("stvk_solid"), mu * (g0 * g0 + g1 * g1 + g2 * g2) + lambda / 2 * green * green);
+  expect_close(energy("stable_neo_hookean_solid"),
+               mu / 2 * (1.21 + 1.69 + 0.16 - 3) - mu * (j - 1) + lambda / 2 * (j - 1) * (j - 1));
+  query["rest"] = {{0, 0, 0}, {0, 1, 0}, {2, 0, 0}, {0, 0, 3}};
+  EXPECT_NE(refused(query).find("a tetrahedron of -1 m^3"), std::string::npos) << refused(query);
+  query["rest"] = {{0, 0, 0}, {0, 1, 0}, {2, 0, 0}, {1, 3, 0}};
+  EXPECT_NE(refused(query).find("a tetrahedron of 0 m^3"), std::string::npos);
+  query["rest"] = {{0, 0, 0}, {2, 0, 0}, {0, 1, 0}};
+  EXPECT_NE(refused(query).find("/rest"), std::string::npos);
+}
+
 TEST(EvalSvd, SignsAndOrder) {
   const json flat = ask({{"kind", "svd"}, {"F", {{2, 0}, {0, -3}}}});
   EXPECT_EQ(flat["sigma"], json({3.0, -2.0}));

@@ -7,6 +7,7 @@
 #include "barriers/stiffness/registry.hpp"
 #include "core/bodies/scene_builder.hpp"
 #include "core/mesh/generators.hpp"
+#include "core/mesh/solid_generators.hpp"
 #include "core/terms/plan.hpp"
 #include "tests/barriers/limit_policies.hpp"
 
@@ -25,7 +26,7 @@ inline TermOptions term_options() {
 }
 
 /// Two small cloths with bending, springs and a strain limit, the lower one close above a floor, the upper
-/// one close above the lower, each with a rod of two segments on its side.
+/// one close above the lower, each with a rod of two segments on its side; a solid block far from both.
 inline Scene scene_with_everything() {
   constexpr double d_hat = 0.05;
   SceneBuilder builder("everything", false, Vec3d(0, 0, -10), "test");
@@ -45,6 +46,14 @@ inline Scene scene_with_everything() {
     body.d_hat = d_hat;
     builder.add_body(body);
   }
+  BodySpec block;
+  block.name = "block";
+  block.mesh = solid_box_mesh({1, 1, 1}, Vec3d(0.5, 0.4, 0.3));
+  block.mesh.vertices.colwise() += Vec3d(3, 0, 1);
+  block.material.solid_youngs = 100;
+  block.material.solid_density = 10;
+  block.d_hat = d_hat;
+  builder.add_body(block);
   Obstacle floor;
   floor.name = "floor";
   builder.add_obstacle(floor);

@@ -38,7 +38,7 @@ struct Limit : LimitColumns {
     points(x, e, p);
     const TriangleRest<double> at_rest = rest.at(e, n);
     Svd<double, R, 2> svd{{}, Vec2d(sigma[e], sigma[n + e]), {}};  // an inactive element needs no factors
-    if (gap[e] < band_width[e]) svd = membrane_svd(deformation_gradient<R>(at_rest, p));
+    if (gap[e] < band_width[e]) svd = signed_svd(deformation_gradient<R>(at_rest, p));
     return strain_limit_terms<R, double>(at_rest, svd, band(e), shape(e), kappa[e], projection);
   }
 };
@@ -53,7 +53,7 @@ struct MeasureStretch {
   BB_HD void operator()(Index e) const {
     Vec3d p[3];
     limit.points(x, e, p);
-    const Vec2d sigma = membrane_svd(deformation_gradient<R>(limit.rest.at(e, limit.n), p)).sigma;
+    const Vec2d sigma = signed_svd(deformation_gradient<R>(limit.rest.at(e, limit.n), p)).sigma;
     for (int k = 0; k < 2; ++k) {
       limit.sigma[k * limit.n + e] = sigma[k];
       limit.gap[k * limit.n + e] = strain_gap(sigma[k], limit.band(e));

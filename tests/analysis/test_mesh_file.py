@@ -1,0 +1,170 @@
+"""`bench mesh`: meshes of Gmsh and VTK as PLY that the program reads; what is left out, what is refused."""
+
+import json
+import os
+import subprocess
+from pathlib import Path
+
+import meshio
+import numpy as np
+import pytest
+
+from analysis import mesh_file
+
+# Two tetrahedra on one face, one point between that belongs to nothing, a triangle and an edge beside them.
+POINTS = np.array(
+    [
+        [0, 0, 0],
+        [1, 0, 0],
+        [0, 1, 0],
+        [9, 9, 9],
+        [0, 0, 1],
+        [1, 1, 1.125],
+        [3, 0, 0],
+        [4, 0, 0],
+        [3, 1, 0.3125],
+        [5, 5, 5],
+    ]
+)
+TETRAHEDRA = np.array([[0, 1, 2, 4], [1, 5, 2, 4]])
+TRIANGLES = np.array([[2, 1, 0], [6, 7, 8]])  # the first is a face of tetrahedron 0
+LINES = np.array([[0, 1], [6, 7], [7, 9]])  # the last is a side of nothing
+
+
+def written(path: Path, **options) -> Path:
+    if options.get("file_format") == "gmsh41":
+        path.write_text(msh41())
+        return path
+    cells = [("vertex", np.array([[3]])), ("line", LINES), ("triangle", TRIANGLES), ("tetra", TETRAHEDRA)]
+    meshio.Mesh(POINTS, cells).write(path, **options)
+    return path
+
+
+def msh41() -> str:
+    """What Gmsh writes; meshio writes 4.1 of one kind of cells only."""
+    blocks = [(0, 15, np.array([[3]])), (1, 1, LINES), (2, 2, TRIANGLES), (3, 4, TETRAHEDRA)]
+    lines = ["$MeshFormat", "4.1 0 8", "$EndMeshFormat", "$Nodes", "1 10 1 10", "3 1 0 10"]
+    lines += [str(i + 1) for i in range(10)] + [" ".join(map(str, point)) for point in POINTS]
+    lines += ["$EndNodes", "$Elements", "4 8 1 8"]
+    number = 0
+    for dimension, kind, corners in blocks:
+        lines.append(f"{dimension} 1 {kind} {len(corners)}")
+        for row in corners + 1:
+            number += 1
+            lines.append(" ".join(map(str, [number, *row])))
+    return "\n".join([*lines, "$EndElements", ""])
+
+
+def convert(source: Path, *words: str) -> tuple[int, Path]:
+    target = source.with_name("out.ply")
+    return mesh_file.main([str(source), str(target), *words]), target
+
+
+def numbers_of(path: Path) -> dict:
+    """The elements of a PLY of ours."""
+    header, body = path.read_bytes().split(b"end_header\n", 1)
+    count = {
+        line.split()[1]: int(line.split()[2])
+        for line in header.decode().splitlines()
+        if line.startswith("element")
+    }
+    kinds = {
+        "vertex": np.dtype(("<f8", 3)),
+        "face": np.dtype([("n", "u1"), ("v", "<i4", 3)]),
+        "tetrahedron": np.dtype([("n", "u1"), ("v", "<i4", 4)]),
+        "edge": np.dtype(("<i4", 2)),
+    }
+    out, at = {}, 0
+    for name, kind in kinds.items():
+        out[name] = np.frombuffer(body, kind, count[name], at)
+        at += count[name] * kind.itemsize
+    assert at == len(body)
+    return out
+
+
+FORMATS = {
+    "msh22_ascii": ("a.msh", {"file_format": "gmsh22", "binary": False}),
+    "msh22_binary": ("a.msh", {"file_format": "gmsh22", "binary": True}),
+    "msh41_ascii": ("a.msh", {"file_format": "gmsh41"}),
+    "vtu_ascii": ("a.vtu", {"binary": False}),
+    "vtu_binary": ("a.VTU", {"file_format": "vtu"}),
+}
+
+
+@pytest.mark.parametrize("name", FORMATS)
+def test_every_format_gives_the_same_bits(tmp_path, name):
+    file, options = FORMATS[name]
+    code, target = convert(written(tmp_path / file, **options))
+    assert code == 0
+    ply = numbers_of(target)
+    assert (ply["vertex"] == POINTS[[0, 1, 2, 4, 5, 6, 7, 8, 9]]).all()
+    assert (
+        ply["tetrahedron"]["v"].tolist() == [[0, 1, 2, 3], [1, 4, 2, 3]]
+        and (ply["tetrahedron"]["n"] == 4).all()
+    )
+    assert ply["face"]["v"].tolist() == [[5, 6, 7]]
+    assert ply["edge"].tolist() == [[6, 8]]
+
+
+def test_binary_msh41_of_tetrahedra(tmp_path):
+    meshio.Mesh(POINTS, [("tetra", TETRAHEDRA)]).write(tmp_path / "a.msh", file_format="gmsh", binary=True)
+    code, target = convert(tmp_path / "a.msh")
+    assert code == 0 and b"4.1 1 8" in (tmp_path / "a.msh").read_bytes()[:40]
+    ply = numbers_of(target)
+    assert (ply["vertex"] == POINTS[[0, 1, 2, 4, 5]]).all()
+    assert ply["tetrahedron"]["v"].tolist() == [[0, 1, 2, 3], [1, 4, 2, 3]]
+
+
+def test_a_skin_stays_where_it_is_asked_for(tmp_path, capsys):
+    source = written(tmp_path / "a.vtu")
+    assert convert(source)[0] == 0
+    assert "1 triangles are faces of tetrahedra" in capsys.readouterr().err
+    code, target = convert(source, "--skin")
+    assert code == 0 and capsys.readouterr().err == ""
+    assert numbers_of(target)["face"]["v"].tolist() == [[2, 1, 0], [5, 6, 7]]
+
+
+def test_the_program_reads_it(tmp_path):
+    program = os.environ.get("BARRIERBENCH_PROGRAM")
+    if not program:
+        pytest.skip("no program")
+    mesh = meshio.Mesh(POINTS, [("tetra", TETRAHEDRA)])
+    mesh.write(tmp_path / "a.vtu")
+    _, target = convert(tmp_path / "a.vtu")
+    body = {"name": "solid", "mesh": {"file": str(target)}}
+    config = {
+        "schema": "barrierbench.config/1",
+        "scene": {"bodies": [body]},
+        "formulation": {"d_hat_m": 0.01},
+    }
+    config["time"] = {"dt_s": 0.01, "steps": 1}
+    (tmp_path / "config.json").write_text(json.dumps(config))
+    explained = subprocess.run(
+        [program, "explain", str(tmp_path / "config.json")], capture_output=True, text=True, check=False
+    )
+    assert explained.returncode == 0, explained.stderr
+    assert "2 tetrahedra" in explained.stdout
+
+
+def refused(capsys, source: Path, *words: str) -> str:
+    code, target = convert(source, *words)
+    assert code == 2 and not target.exists()
+    return capsys.readouterr().err
+
+
+def test_what_cannot_be_used_is_refused(tmp_path, capsys):
+    assert "no such file" in refused(capsys, tmp_path / "missing.vtu")
+    (tmp_path / "a.xyz").write_text("1 2 3\n")
+    assert "extension '.xyz'; allowed: .msh, .vtu" in refused(capsys, tmp_path / "a.xyz")
+    for suffix in (".msh", ".vtu"):
+        for text in ("", "nonsense\n", "$MeshFormat\n4.1 0 8\n", "<VTKFile>"):
+            (tmp_path / f"b{suffix}").write_text(text)
+            assert "no mesh that meshio can read" in refused(capsys, tmp_path / f"b{suffix}")
+    meshio.Mesh(POINTS, [("line", LINES)]).write(tmp_path / "lines.vtu")
+    assert "no tetrahedron and no triangle" in refused(capsys, tmp_path / "lines.vtu")
+    meshio.Mesh(POINTS, [("quad", [[0, 1, 5, 2]]), ("tetra", TETRAHEDRA)]).write(tmp_path / "quad.vtu")
+    assert "cells of type quad; allowed: line, triangle, tetra" in refused(capsys, tmp_path / "quad.vtu")
+    meshio.Mesh(POINTS, [("tetra", TETRAHEDRA[:, [1, 0, 2, 3]])]).write(tmp_path / "inverted.vtu")
+    assert "tetrahedron 0 of -0.166667 m^3" in refused(capsys, tmp_path / "inverted.vtu")
+    code = mesh_file.main([str(written(tmp_path / "a.vtu")), str(tmp_path / "out.obj")])
+    assert code == 2 and "extension '.obj'; allowed: .ply" in capsys.readouterr().err
