@@ -5,7 +5,7 @@
 
 #include "tests/experiments/calibrated.hpp"
 
-namespace bb::limit_calibration_test {
+namespace bb {
 namespace {
 
 using namespace test;
@@ -142,4 +142,4 @@ TEST(Calibration, ALimitOnNothingNeedsNoStiffness) {
 }
 
 }  // namespace
-}  // namespace bb::limit_calibration_test
+}  // namespace bb

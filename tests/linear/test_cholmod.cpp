@@ -10,7 +10,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb::cholmod_test {
+namespace bb {
 namespace {
 
 TEST(Cholmod, AnalysisStaysWhileThePatternStays) {
@@ -112,4 +112,4 @@ TEST(BlasInfo, NamesTheLoadedLibrary) {
 }
 
 }  // namespace
-}  // namespace bb::cholmod_test
+}  // namespace bb

@@ -6,7 +6,7 @@
 #include "core/linear/linear_solver.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb::forcing_test {
+namespace bb {
 namespace {
 
 Forcing forcing(const std::string& kind, double tol_rel = 1e-8) {
@@ -74,4 +74,4 @@ TEST(Forcing, SolversStopWhereItSays) {
 }
 
 }  // namespace
-}  // namespace bb::forcing_test
+}  // namespace bb

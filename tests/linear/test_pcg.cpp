@@ -9,7 +9,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb::pcg_test {
+namespace bb {
 namespace {
 
 std::unique_ptr<LinearSolver> pcg(const std::string& preconditioner, double tol, int cap = 10000) {
@@ -202,4 +202,4 @@ TEST(CgRitz, MeetsTheDenseTridiagonalMatrix) {
 }
 
 }  // namespace
-}  // namespace bb::pcg_test
+}  // namespace bb

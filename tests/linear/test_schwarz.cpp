@@ -8,7 +8,7 @@
 #include "core/linear/vertex_clusters.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb::schwarz_test {
+namespace bb {
 namespace {
 
 int iterations(const ReducedSystem& system, const std::string& preconditioner) {
@@ -71,4 +71,4 @@ TEST(Schwarz, TakesPlanarScenes) {
 }
 
 }  // namespace
-}  // namespace bb::schwarz_test
+}  // namespace bb

@@ -5,7 +5,7 @@
 #include "core/linear/preconditioner.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb::solver_keep_test {
+namespace bb {
 namespace {
 
 struct Named {
@@ -111,4 +111,4 @@ TEST(SolverKeep, AnArchiveOfTheSameMomentIsTheSame) {
 }
 
 }  // namespace
-}  // namespace bb::solver_keep_test
+}  // namespace bb

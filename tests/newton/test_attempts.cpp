@@ -5,7 +5,7 @@
 
 #include "tests/newton/buckling_step.hpp"
 
-namespace bb::attempts_test {
+namespace bb {
 namespace {
 
 using namespace test;
@@ -104,4 +104,4 @@ TEST(Attempts, AreInTheNumbersOfTheirIterationAndStep) {
 }
 
 }  // namespace
-}  // namespace bb::attempts_test
+}  // namespace bb

@@ -3,7 +3,7 @@
 
 #include "tests/resident/on_executor.hpp"
 
-namespace bb::resident_limit_test {
+namespace bb {
 namespace {
 
 using namespace bb::test;
@@ -175,4 +175,4 @@ TEST(ResidentLimit, IsLeftOutWhereNothingIsLimited) {
 }
 
 }  // namespace
-}  // namespace bb::resident_limit_test
+}  // namespace bb
