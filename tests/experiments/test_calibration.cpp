@@ -5,7 +5,7 @@
 
 #include "tests/experiments/calibrated.hpp"
 
-namespace bb::calibration_test {
+namespace bb {
 namespace {
 
 using namespace test;
@@ -192,4 +192,4 @@ TEST(Calibration, WhatOnlyThePilotTellsIsAnOutcome) {
 }
 
 }  // namespace
-}  // namespace bb::calibration_test
+}  // namespace bb

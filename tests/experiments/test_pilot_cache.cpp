@@ -3,7 +3,7 @@
 
 #include "experiments/run/pilot.hpp"
 
-namespace bb::pilot_cache_test {
+namespace bb {
 namespace {
 
 TEST(PilotCache, KeepsWhatWasAskedForLastWithinItsBytes) {
@@ -29,4 +29,4 @@ TEST(PilotCache, KeepsWhatWasAskedForLastWithinItsBytes) {
 }
 
 }  // namespace
-}  // namespace bb::pilot_cache_test
+}  // namespace bb

@@ -11,7 +11,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb::cholmod_test {
+namespace bb {
 namespace {
 
 TEST(Cholmod, AnalysisStaysWhileThePatternStays) {
@@ -113,4 +113,4 @@ TEST(BlasInfo, NamesTheLoadedLibrary) {
 }
 
 }  // namespace
-}  // namespace bb::cholmod_test
+}  // namespace bb

@@ -5,7 +5,7 @@
 
 #include "tests/linear/systems.hpp"
 
-namespace bb::cost_model_test {
+namespace bb {
 namespace {
 
 const LinearWork work{100, 700, 2000, 50000};
@@ -49,4 +49,4 @@ TEST(CostModel, TheCheapestIsChosenAndOfEqualOnesTheFirst) {
 }
 
 }  // namespace
-}  // namespace bb::cost_model_test
+}  // namespace bb

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace bb::hessian_level_test {
+namespace bb {
 namespace {
 
 constexpr double residual = 8;  // N
@@ -95,4 +95,4 @@ TEST(HessianLevel, a_mixture_ends_when_all_are_clamped_and_begins_anew_with_a_st
 }
 
 }  // namespace
-}  // namespace bb::hessian_level_test
+}  // namespace bb

@@ -11,7 +11,7 @@
 #include "core/record/writer.hpp"
 #include "tests/record/sample_record.hpp"
 
-namespace bb::read_run_test {
+namespace bb {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ TEST(ReadRun, WhatIsNoRecordIsNothing) {
 }
 
 }  // namespace
-}  // namespace bb::read_run_test
+}  // namespace bb
