@@ -28,6 +28,7 @@ TABLE = (
     Verb("demo", "run", PROGRAM, "front.demo", "", "setup, build, the demonstration sweep, its figures and its table", "./bench demo"),
     Verb("figures", "look", ENVIRONMENT, "figures.verb", "RUNS [OUT]", "figures and table of the records below a folder, or of the file of ./bench steps --out", "./bench figures results/runs/demo"),
     Verb("render", "look", ENVIRONMENT, "render", "RUN", "a still (PNG) of one step of a run that kept frames (--set /output/frames_every=1)", "./bench render results/runs/drape --color gap"),
+    Verb("play", "look", ENVIRONMENT, "play.verb", "RUN [RUN2]", "one HTML file, which needs no network, that plays a run that kept frames (--set /output/frames_every=1), or two side by side", "./bench play results/runs/drape-log results/runs/drape-cubic --colour gap"),
     Verb("surface-gaps", "look", ENVIRONMENT, "surface_gaps", "RUNS...", "how close the whole surface came to obstacles and to itself in each run; 1 when an ok run entered something", "./bench surface-gaps results/runs/demo results/runs/claims"),
     Verb("causes", "study", PROGRAM, "causes", "RUN|CONFIG", "a condition number taken apart: stages, scalings, and where the eigenvectors of both ends live", "./bench causes configs/scenes/sphere_on_sheet.json --set /time/steps=5"),
     Verb("match", "study", PROGRAM, "matching.match", "CONFIG", "calibrates formulations on one scene, runs each, says which may be compared: 0 all, 1 not all, 2 bad input", "./bench match configs/scenes/drape2d.json --formulations cubic quadratic"),
