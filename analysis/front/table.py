@@ -49,7 +49,7 @@ TABLE = (
     Verb("gpu-report", "make", ENVIRONMENT, "gpu_report", "", "results/GPU.md and its figure from the records of cards that experiments/gpu_evidence.sh made", "./bench gpu-report"),
     Verb("setup", "develop", ENVIRONMENT, "", "", "packages, compiler cache, Python environment; instant when all is there", "./bench setup"),
     Verb("build", "develop", ENVIRONMENT, "front.build", "[PRESET]", "configures and builds (release by default; dev, sanitize, cuda-compile)", "./bench build sanitize"),
-    Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate", "./bench test -R eval"),
+    Verb("test", "develop", ENVIRONMENT, "front.test", "[--sanitize] [--browser] [CTEST ARGUMENTS]", "setup, build, format check, C++ tests, Python tests, the gate; --browser installs chromium first, so that the player is tested in it", "./bench test -R eval"),
     Verb("format", "develop", ENVIRONMENT, "front.format", "", "clang-format every C++ file and ruff every Python file of analysis/, in place", "./bench format"),
     Verb("tidy", "develop", ENVIRONMENT, "front.tidy", "[FILES]", "clang-tidy the sources (all, or the files named)", "./bench tidy core/record/hash.cpp"),
     Verb("rooms", "develop", ENVIRONMENT, "front.rooms", "", "the rooms of the code, what each one includes, lowest first; fails on a circle or an undeclared one", "./bench rooms"),
