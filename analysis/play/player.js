@@ -32,7 +32,8 @@ function figureOf(film, number) {
   name.textContent = twice ? `${film.formulation} (${film.run})` : film.formulation;
   outcome.textContent = film.outcome;
   outcome.className = film.outcome === "ok" ? "" : "bad";
-  caption.append(name, " · outcome ", outcome, " · ", when);
+  when.className = "when";
+  caption.append(name, " · outcome ", outcome, when);
   const plot = document.createElement("div");
   plot.className = "plot";
   plot.tabIndex = 0;

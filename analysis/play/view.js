@@ -23,14 +23,16 @@ function unpacked(film, buffer) {
 
 /** Colours of a field, or one a body, as K3D takes them: [share, r, g, b, ...], after what is not computed. */
 function colourMap(words, colour) {
-  const grey = rgb(words.not_computed), out = [0, ...grey, 0.9 * GREY_END, ...grey];
+  const grey = rgb(words.not_computed), out = [0, ...grey, 0.4 * GREY_END, ...grey];
   const place = (share) => GREY_END + (1 - GREY_END) * share;
   if (colour === "body") {
     const all = words.body_colours;
+    out.push(0.6 * GREY_END, ...rgb(all[0]));
     all.forEach((c, k) => out.push(place(k / all.length), ...rgb(c), place((k + 0.98) / all.length), ...rgb(c)));
     out.push(1, ...rgb(all[all.length - 1]));
   } else {
     const all = words.scales[colour].colours;
+    out.push(0.6 * GREY_END, ...rgb(all[0]));  // the low end of the scale, where most values are, lies within one colour
     all.forEach((c, k) => out.push(place(k / (all.length - 1)), ...rgb(c)));
   }
   return new Float32Array(out);

@@ -74,7 +74,7 @@ def share_that_differs(one: np.ndarray, two: np.ndarray) -> float:
 def test_pixels_follow_slider_colours_and_camera_and_nothing_is_asked_of_a_network(browser, both):
     opened = Opened(browser, both)
     page = opened.page
-    assert page.locator("figcaption").all_inner_texts() == [f"{name} · outcome ok · t = 0 s (start)" for name in ("log", "cubic")]
+    assert page.locator("figcaption").all_inner_texts() == [f"{name} · outcome ok\nt = 0 s (start)" for name in ("log", "cubic")]
     start = [opened.pixels(view) for view in (0, 1)]
     for picture in start:
         drawn = np.abs(picture - picture[0, 0]).max(axis=-1) > 0.05
@@ -83,7 +83,7 @@ def test_pixels_follow_slider_colours_and_camera_and_nothing_is_asked_of_a_netwo
 
     opened.slide("End", 5)
     assert page.locator("#now").inner_text() == "t = 0.05 s (6 of 6)"
-    assert page.locator("figcaption").first.inner_text() == "log · outcome ok · t = 0.05 s (end of step 4)"
+    assert page.locator("figcaption").first.inner_text() == "log · outcome ok\nt = 0.05 s (end of step 4)"
     end = [opened.pixels(view) for view in (0, 1)]
     assert min(share_that_differs(a, b) for a, b in zip(start, end)) > 0.01
     opened.slide("Home", 0)
