@@ -53,8 +53,14 @@ def read_frame(path: str | Path) -> Frame:
     head, mark, body = data.partition(b"end_header\n")
     if not data.startswith(b"ply\n") or not mark:
         raise UserError(f"{path}: not a PLY file")
+    try:
+        elements = _elements(head.decode("ascii", "replace").splitlines(), path)
+    except (KeyError, IndexError, TypeError) as error:
+        raise UserError(f"{path}: a header that no frame has: {error!r}") from None
+    if {"vertex", "face"} - {name for name, _, _ in elements}:
+        raise UserError(f"{path}: no vertices or no faces; allowed: the elements vertex and face")
     tables, at = {}, 0
-    for name, count, row in _elements(head.decode("ascii", "replace").splitlines(), path):
+    for name, count, row in elements:
         if at + count * row.itemsize > len(body):
             raise UserError(f"{path}: ends before its last {name}")
         tables[name] = np.frombuffer(body, row, count, at)

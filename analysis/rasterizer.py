@@ -10,6 +10,10 @@ from dataclasses import dataclass
 
 import numpy as np
 
+CREASE_DEG = (
+    40.0  # angle between the normal of a triangle and the mean of its vertex that makes an edge sharp
+)
+
 
 @dataclass(frozen=True)
 class Camera:
@@ -104,15 +108,29 @@ def _unit(v: np.ndarray) -> np.ndarray:
     return np.divide(v, length, out=np.zeros_like(v), where=length > 0)
 
 
-def corner_normals(x: np.ndarray, triangles: np.ndarray, crease_deg: float = 40.0) -> np.ndarray:
+def _corner_normals(x: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     """[m, 3, 3] unit normals at the corners of every triangle: the mean over the triangles of the vertex,
-    weighted by area, or the triangle's own where the two differ by more than crease_deg (a sharp edge stays
-    sharp).
+    weighted by area, and the triangle's own.
     """
     area = np.cross(x[triangles[:, 1]] - x[triangles[:, 0]], x[triangles[:, 2]] - x[triangles[:, 0]])
     sums = np.zeros_like(x)
     for corner in range(3):
         np.add.at(sums, triangles[:, corner], area)
-    smooth, own = _unit(sums)[triangles], np.repeat(_unit(area)[:, None, :], 3, axis=1)
-    sharp = np.einsum("mkc,mkc->mk", smooth, own) < np.cos(np.radians(crease_deg))
-    return np.where(sharp[..., None], own, smooth)
+    return _unit(sums)[triangles], np.repeat(_unit(area)[:, None, :], 3, axis=1)
+
+
+def _differ(smooth: np.ndarray, own: np.ndarray) -> np.ndarray:
+    return np.einsum("mkc,mkc->mk", smooth, own) < np.cos(np.radians(CREASE_DEG))
+
+
+def sharp_corners(x: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """[m, 3] whether a triangle's own normal differs from the mean at the corner by more than CREASE_DEG."""
+    return _differ(*_corner_normals(x, triangles))
+
+
+def corner_normals(x: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """[m, 3, 3] unit normals at the corners of every triangle: the mean over the triangles of the vertex,
+    or the triangle's own at a sharp corner (a sharp edge stays sharp).
+    """
+    smooth, own = _corner_normals(x, triangles)
+    return np.where(_differ(smooth, own)[..., None], own, smooth)

@@ -12,12 +12,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from ..errors import tells
+from ..errors import UserError, tells
 from ..places import ROOT
 from . import format as formatting
 from . import rooms
 from .building import build, folder, job_count, say, setup
 
+OWN = ("--sanitize", "--browser")  # what ctest does not see
 NAMED_SKIPS = 20  # C++ tests that the summary names
 
 
@@ -117,10 +118,24 @@ def _gate() -> int:
     return gate.main([])
 
 
+def set_up(browser: bool) -> None:
+    """What every test needs; with `browser` also Debian's chromium (about 100 MB) and what drives it. Errors:
+    UserError.
+    """
+    setup(*(["chromium"] if browser else []))
+    if browser:
+        words = [sys.executable, "-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+        file = ROOT / "analysis/requirements-browser.txt"
+        if subprocess.run([*words, "--requirement", str(file)], stdout=sys.stderr, check=False).returncode:
+            raise UserError(f"cannot install {file.relative_to(ROOT)}: is there a network?")
+
+
 @tells("test")
 def main(argv: list[str]) -> int:
-    preset, arguments = ("sanitize", argv[1:]) if argv[:1] == ["--sanitize"] else ("release", argv)
-    setup()
+    own = {word for word in argv if word in OWN}
+    arguments = [word for word in argv if word not in OWN]
+    preset = "sanitize" if "--sanitize" in own else "release"
+    set_up("--browser" in own)
     build(preset, options={"BB_CUDA": "AUTO"})
     summary = Summary()
     summary.step("clang-format", lambda: formatting.clang_format("--dry-run", "--Werror"))

@@ -1,0 +1,141 @@
+// One film in one plot of K3D: its surfaces, rods and obstacles in the state of a frame.
+
+const MESH = 1, ROD = 2, OBSTACLE = 10;  // ids of objects in a plot
+const FIELD_OF_VIEW = {planar: 8, solid: 30};  // degrees
+const GREY_END = 0.02;  // share of a colour map below its scale: what was not computed
+
+const shaped = (data, columns) => ({data, shape: [data.length / columns, columns]});
+const rgb = (hex) => [1, 3, 5].map((k) => parseInt(hex.slice(k, k + 2), 16) / 255);
+
+/** The arrays of a film, in the order in which they were written. */
+function unpacked(film, buffer) {
+  const {n_vertices: n, n_drawn, n_triangles: m, n_edges, steps} = film;
+  let at = 0;
+  const take = (Type, count) => { const a = new Type(buffer, at, count); at += 4 * count; return a; };
+  const rows = (count) => { const all = take(Float32Array, count * steps.length);
+    return steps.map((_, f) => all.subarray(f * count, (f + 1) * count)); };
+  return {
+    drawn: take(Uint32Array, 3 * m), triangles: take(Uint32Array, 3 * m), source: take(Uint32Array, n_drawn),
+    edges: take(Uint32Array, 2 * n_edges), body: take(Uint32Array, n),
+    positions: rows(3 * n), gap: rows(n), force: rows(n), stretch: rows(m),
+  };
+}
+
+/** Colours of a field, or one a body, as K3D takes them: [share, r, g, b, ...], after what is not computed. */
+function colourMap(words, colour) {
+  const grey = rgb(words.not_computed), out = [0, ...grey, 0.4 * GREY_END, ...grey];
+  const place = (share) => GREY_END + (1 - GREY_END) * share;
+  if (colour === "body") {
+    const all = words.body_colours;
+    out.push(0.6 * GREY_END, ...rgb(all[0]));
+    all.forEach((c, k) => out.push(place(k / all.length), ...rgb(c), place((k + 0.98) / all.length), ...rgb(c)));
+    out.push(1, ...rgb(all[all.length - 1]));
+  } else {
+    const all = words.scales[colour].colours;
+    out.push(0.6 * GREY_END, ...rgb(all[0]));  // the low end of the scale, where most values are, lies within one colour
+    all.forEach((c, k) => out.push(place(k / (all.length - 1)), ...rgb(c)));
+  }
+  return new Float32Array(out);
+}
+
+class View {
+  constructor(library, node, film, arrays, words, ground) {
+    Object.assign(this, {film, words, ...arrays});
+    const planar = words.planar;
+    this.plot = new library.K3D(library.ThreeJsProvider, node, {
+      menuVisibility: false, gridVisible: false, axesHelper: 0, cameraAutoFit: false, clearColor: ground,
+      colorbarObjectId: 0,  // no object has it: the page draws the colour bar
+      cameraMode: planar ? "trackball" : "orbit", cameraNoRotate: planar, cameraFov: FIELD_OF_VIEW[planar ? "planar" : "solid"],
+    });
+    this.frame = 0;
+    this.colour = "";
+    this.rodIndices = tubeIndices(film.n_edges);
+  }
+
+  /** Obstacles, once. */
+  obstacles() {
+    const {middle, radius, planar, obstacle_colour} = this.words;
+    return Promise.all(this.film.obstacles.map((o, k) => {
+      const {vertices, indices} = obstacleShape(o, planar, middle, 1.6 * radius);
+      return this.plot.load({objects: [this.surface(OBSTACLE + k, shaped(new Float32Array(vertices), 3),
+        shaped(new Uint32Array(indices), 3), {color: parseInt(obstacle_colour.slice(1), 16), side: o.inside && !planar ? "back" : "double"})]});
+    }));
+  }
+
+  surface(id, vertices, indices, more) {
+    const none = {data: new Float32Array(0), shape: [0]};
+    return {
+      id, type: "Mesh", visible: true, vertices, indices, side: "double", flat_shading: false, normals: none, roughness: 0.75,
+      attribute: none, triangles_attribute: none, color_map: none, color_range: [], opacity: 1, color: 0xffffff,
+      model_matrix: shaped(new Float32Array([1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]), 4), ...more,
+    };
+  }
+
+  /** Whether the field of triangles is shown: then every triangle has corners of its own. */
+  get perTriangle() { return this.colour !== "body" && this.words.scales[this.colour].element === "triangle"; }
+
+  share(value) {
+    const {factor, top} = this.words.scales[this.colour];
+    return Number.isNaN(value) ? 0 : GREY_END + (1 - GREY_END) * Math.min(Math.max(factor * value / top, 0), 1);
+  }
+
+  bodyShare(vertex) {
+    const many = this.words.body_colours.length;
+    return GREY_END + (1 - GREY_END) * (this.body[vertex] % many + 0.5) / many;
+  }
+
+  /** Place on the colour map of a vertex, which for a field of triangles has none. */
+  vertexShare(vertex) {
+    if (this.colour === "body") return this.bodyShare(vertex);
+    return this.perTriangle ? 0 : this.share(this[this.colour][this.frame][vertex]);
+  }
+
+  state() {
+    const x = this.positions[this.frame], source = this.perTriangle ? this.triangles : this.source;
+    const vertices = new Float32Array(3 * source.length), attribute = new Float32Array(source.length);
+    source.forEach((from, k) => {
+      vertices.set(x.subarray(3 * from, 3 * from + 3), 3 * k);
+      attribute[k] = this.perTriangle ? this.share(this.stretch[this.frame][Math.floor(k / 3)]) : this.vertexShare(from);
+    });
+    return {vertices: shaped(vertices, 3), attribute: {data: attribute, shape: [attribute.length]}};
+  }
+
+  rods() {
+    const attribute = new Float32Array(this.edges.length * SIDES);
+    this.edges.forEach((from, k) => attribute.fill(this.vertexShare(from), k * SIDES, (k + 1) * SIDES));
+    const vertices = tubeVertices(this.positions[this.frame], this.edges, this.words.rod_radius);
+    return {vertices: shaped(vertices, 3), attribute: {data: attribute, shape: [attribute.length]}};
+  }
+
+  /** New objects: for the first frame, and when colours mean something else. */
+  async coloured(colour) {
+    this.colour = colour;
+    const map = colourMap(this.words, colour);
+    const colours = {color_map: {data: map, shape: [map.length]}, color_range: [0, 1]};
+    const indices = this.perTriangle ? Uint32Array.from(this.triangles.keys()) : this.drawn;
+    this.objects = [];
+    for (const [id, state, corners] of [[MESH, this.state(), indices], [ROD, this.rods(), this.rodIndices]]) {
+      if (!corners.length) continue;
+      if (this.plot.getWorld().ObjectsListJson[id]) await this.plot.removeObject(id);
+      const object = this.surface(id, state.vertices, shaped(corners, 3), {attribute: state.attribute, ...colours});
+      await this.plot.load({objects: [object]});
+      this.objects.push(object);
+    }
+  }
+
+  async shown(frame) {
+    this.frame = frame;
+    for (const object of this.objects) {
+      const state = object.id === MESH ? this.state() : this.rods();
+      Object.assign(object, state);
+      await this.plot.reload(object, state);
+    }
+  }
+
+  /** The last frame up to a time, s. */
+  frameAt(time) {
+    let frame = 0;
+    while (frame + 1 < this.film.times.length && this.film.times[frame + 1] <= time + 1e-9) frame += 1;
+    return frame;
+  }
+}
