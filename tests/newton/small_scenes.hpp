@@ -23,6 +23,7 @@ inline Method fixed_method(const std::string& shape, double kappa,
   policy.parameters["kappa_N_per_m"] = kappa;
   method.stiffness = make_policy(policy);
   method.limit = {require_shape(shape), Argument::gap};
+  method.limit_stiffness = fixed_limit(0);  // a limit bounds steps and has no force, unless a test says
   method.integrator = make_integrator(integrator);
   method.step_solver.tol_velocity = 1e-6;
   return method;
