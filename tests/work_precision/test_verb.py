@@ -10,7 +10,8 @@ from analysis.errors import UserError
 from analysis.record_file import RecordError
 from analysis.work_precision import verb
 from analysis.work_precision import report
-from analysis.work_precision.spec import ROOT, read_spec
+from analysis.places import ROOT
+from analysis.work_precision.spec import read_spec
 
 SCENE = {"name": "stack", "base": str(ROOT / "configs/scenes/stack.json"), "set": {"/matching/rule": "equal_force", "/matching/load_N": 10}, "duration_s": 2, "samples": 1,
          "anchor": {"dt_s": 0.1, "d_hat_m": 0.004, "tolerance": 0.01}, "vary": {"d_hat_m": [0.25], "kappa": [0.001]}, "reference": {"closed_form": "rigid_stack"},
