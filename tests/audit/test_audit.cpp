@@ -11,7 +11,7 @@
 #include "core/math/error.hpp"
 #include "tests/audit/small_scenes.hpp"
 
-namespace bb::audit {
+namespace bb::audit::audit_test {
 namespace {
 
 TEST(Audit, clean_scene_is_ok_and_was_judged) {
@@ -325,4 +325,4 @@ TEST(Audit, counts_do_not_depend_on_the_number_of_threads) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::audit_test

@@ -4,7 +4,7 @@
 #include "core/audit/audit.hpp"
 #include "tests/audit/small_scenes.hpp"
 
-namespace bb::audit {
+namespace bb::audit::audit_obstacles_test {
 namespace {
 
 TEST(Audit, obstacles_judge_triangles_outside_and_vertices_inside) {
@@ -116,4 +116,4 @@ TEST(Audit, moved_obstacle_is_judged_in_its_new_pose) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::audit_obstacles_test

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <random>
 
-namespace bb::audit {
+namespace bb::audit::box_tree_test {
 namespace {
 
 std::vector<Box> grid_boxes(int n, unsigned seed) {
@@ -56,4 +56,4 @@ TEST(BoxTree, equal_boxes_and_boxes_that_share_a_face) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::box_tree_test

@@ -13,7 +13,7 @@
 #include "core/audit/pair_verdict.hpp"
 #include "tests/folders.hpp"
 
-namespace bb::audit {
+namespace bb::audit::ccd_queries_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -118,4 +118,4 @@ TEST(CcdQueries, edge_edge) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::ccd_queries_test

@@ -11,7 +11,7 @@
 #include "core/audit/predicates.hpp"
 #include "core/audit/segment_triangle.hpp"
 
-namespace bb::audit {
+namespace bb::audit::cgal_oracle_test {
 namespace {
 
 using Kernel = CGAL::Exact_predicates_exact_constructions_kernel;
@@ -144,4 +144,4 @@ TEST(CgalOracle, segment_triangle_on_an_integer_grid) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::cgal_oracle_test

@@ -8,7 +8,7 @@
 #include "core/audit/obstacle_motion.hpp"
 #include "core/audit/obstacle_sign.hpp"
 
-namespace bb::audit {
+namespace bb::audit::exact_ends_test {
 namespace {
 
 Vec3d integers(std::mt19937& random, int size) {
@@ -145,4 +145,4 @@ TEST(ExactEnds, WhatIsCertifiedFarFromTheObstacleIsFreeExactly) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::exact_ends_test

@@ -6,7 +6,7 @@
 
 #include <functional>
 
-namespace bb::audit {
+namespace bb::audit::ledger_test {
 namespace {
 
 /// A ledger of a scene in which everything was asked once.
@@ -187,4 +187,4 @@ TEST(Ledger, TheFirstFindsAreKept) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::ledger_test

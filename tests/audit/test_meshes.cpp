@@ -10,7 +10,7 @@
 #include "tests/audit/ply.hpp"
 #include "tests/folders.hpp"
 
-namespace bb::audit {
+namespace bb::audit::meshes_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -85,4 +85,4 @@ TEST(Meshes, part_of_a_cloth_on_a_ball_is_judged) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::meshes_test

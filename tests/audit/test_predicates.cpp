@@ -8,7 +8,7 @@
 #include <cmath>
 #include <random>
 
-namespace bb::audit {
+namespace bb::audit::predicates_test {
 namespace {
 
 TEST(Predicates, self_test_passes_in_this_build) { EXPECT_TRUE(predicates_self_test()); }
@@ -66,4 +66,4 @@ TEST(Predicates, filter_agrees_with_integers_near_degeneracy) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::predicates_test

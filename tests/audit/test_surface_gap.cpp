@@ -10,7 +10,7 @@
 #include "core/audit/state_audit.hpp"
 #include "tests/audit/small_scenes.hpp"
 
-namespace bb::audit {
+namespace bb::audit::surface_gap_test {
 namespace {
 
 /// Two triangles of random shape about 0.9 apart, every side an edge.
@@ -129,4 +129,4 @@ TEST(ClosestPoint, segments_agree_with_samples_and_need_no_length) {
 }
 
 }  // namespace
-}  // namespace bb::audit
+}  // namespace bb::audit::surface_gap_test

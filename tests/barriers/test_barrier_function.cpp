@@ -5,7 +5,7 @@
 
 #include "tests/barriers/barrier_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::barrier_function_test {
 namespace {
 
 template <class T>
@@ -71,4 +71,4 @@ TEST(BarrierFunction, ArgumentsHaveNames) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::barrier_function_test

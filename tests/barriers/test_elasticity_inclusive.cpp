@@ -11,7 +11,7 @@
 #include "core/math/error.hpp"
 #include "core/math/types.hpp"
 
-namespace bb {
+namespace bb::elasticity_inclusive_test {
 namespace {
 
 using Mat12 = Eigen::Matrix<double, 12, 12>;
@@ -265,4 +265,4 @@ TEST(ElasticityInclusive, PolicyFillsEveryRowWithTheFormulaTimesTheMultiplier) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::elasticity_inclusive_test

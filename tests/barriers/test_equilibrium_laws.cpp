@@ -7,7 +7,7 @@
 #include "core/math/error.hpp"
 #include "tests/barriers/barrier_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::equilibrium_laws_test {
 namespace {
 
 constexpr double kappa = 350, d_hat = 1.7e-3, unit = kappa * d_hat;  // N
@@ -182,4 +182,4 @@ TEST(Equilibrium, RefusesWhatIsNotPositive) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::equilibrium_laws_test

@@ -11,7 +11,7 @@
 #include "tests/barriers/barrier_cases.hpp"
 #include "tests/folders.hpp"
 
-namespace bb::test {
+namespace bb::test::formulation_presets_test {
 namespace {
 
 using nlohmann::json;
@@ -89,4 +89,4 @@ TEST(FormulationPresets, PublishedOnesAreWhatTheyClaim) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::formulation_presets_test

@@ -5,7 +5,7 @@
 #include "core/math/error.hpp"
 #include "tests/barriers/barrier_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::matching_test {
 namespace {
 
 TEST(Rho, MatchesTheClosedForms) {
@@ -102,4 +102,4 @@ TEST(Conventions, GiveTheSameEnergyAsThePublishedForm) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::matching_test

@@ -13,7 +13,7 @@
 #include "core/parameters/registry.hpp"
 #include "tests/barriers/barrier_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::plugins_test {
 namespace {
 
 std::string test_plugin(const char* name) { return fmt::format("{}/plugin_{}.so", BB_PLUGIN_DIR, name); }
@@ -172,4 +172,4 @@ TEST(Plugins, EntriesWithoutNameOrCallAreAllNamed) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::plugins_test

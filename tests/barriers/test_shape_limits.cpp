@@ -5,7 +5,7 @@
 
 #include "tests/barriers/barrier_cases.hpp"
 
-namespace bb::test {
+namespace bb::test::shape_limits_test {
 namespace {
 
 constexpr double inf = std::numeric_limits<double>::infinity();
@@ -107,4 +107,4 @@ TEST(ShapeLimits, TinyGapsAreFiniteOrRightlyInfinite) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::shape_limits_test

@@ -5,7 +5,7 @@
 #include "core/math/error.hpp"
 #include "core/parameters/registry.hpp"
 
-namespace bb {
+namespace bb::shape_registry_test {
 namespace {
 
 std::string message(const std::function<void()>& call) {
@@ -58,4 +58,4 @@ TEST(ShapeRegistry, ArgumentsByName) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::shape_registry_test

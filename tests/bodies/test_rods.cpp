@@ -6,7 +6,7 @@
 #include "core/bodies/part.hpp"
 #include "tests/bodies/bodies.hpp"
 
-namespace bb {
+namespace bb::rods_test {
 namespace {
 
 using namespace test;
@@ -123,4 +123,4 @@ TEST(rods, stretch_by_their_force_a_strain_whatever_the_length_of_their_segments
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::rods_test

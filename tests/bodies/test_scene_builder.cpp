@@ -8,7 +8,7 @@
 #include "core/mesh/topology.hpp"
 #include "tests/bodies/bodies.hpp"
 
-namespace bb {
+namespace bb::scene_builder_test {
 namespace {
 
 using namespace test;
@@ -247,4 +247,4 @@ TEST(pin_pose, has_the_start_velocity_as_its_derivative) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::scene_builder_test

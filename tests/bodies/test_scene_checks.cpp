@@ -6,7 +6,7 @@
 
 #include "tests/bodies/bodies.hpp"
 
-namespace bb {
+namespace bb::scene_checks_test {
 namespace {
 
 using namespace test;
@@ -174,4 +174,4 @@ TEST(scene_checks, refuse_bad_obstacles) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::scene_checks_test

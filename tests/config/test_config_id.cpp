@@ -4,7 +4,7 @@
 
 #include "tests/config/config_text.hpp"
 
-namespace bb::test {
+namespace bb::test::config_id_test {
 namespace {
 
 TEST(ConfigId, DoesNotDependOnTheOrderOfKeys) {
@@ -97,4 +97,4 @@ TEST(ConfigId, ExtendsIsLaidUnderneath) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::config_id_test

@@ -1,7 +1,7 @@
 // Settings that are right one by one and wrong together.
 #include "tests/config/config_text.hpp"
 
-namespace bb::test {
+namespace bb::test::contradictions_test {
 namespace {
 
 TEST(Contradictions, StepSolverAndIntegrator) {
@@ -193,4 +193,4 @@ TEST(Contradictions, BodiesOfOneKindWithKeysOfAnother) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::contradictions_test

@@ -8,7 +8,7 @@
 
 #include "tests/config/config_text.hpp"
 
-namespace bb::test {
+namespace bb::test::methods_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -273,4 +273,4 @@ TEST(Duration, OfASceneIsThatOfAMethodToo) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::methods_test

@@ -3,7 +3,7 @@
 
 #include "tests/config/config_text.hpp"
 
-namespace bb::test {
+namespace bb::test::parse_test {
 namespace {
 
 struct Wrong {
@@ -194,4 +194,4 @@ TEST(Parse, MissingMeshFilesAreNamed) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::parse_test

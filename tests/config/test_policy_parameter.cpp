@@ -6,7 +6,7 @@
 #include "experiments/config/config_list.hpp"
 #include "tests/config/config_text.hpp"
 
-namespace bb {
+namespace bb::policy_parameter_test {
 namespace {
 
 /// kappa = stiffness per gap over the gap, with one parameter and nothing else.
@@ -113,4 +113,4 @@ TEST(PolicyParameter, ThoseOfTheBuiltInPoliciesAreAllSettings) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::policy_parameter_test

@@ -16,7 +16,7 @@
 #include "experiments/config/mesh_generators.hpp"
 #include "tests/config/config_text.hpp"
 
-namespace bb::test {
+namespace bb::test::settings_test {
 namespace {
 
 /// One row with its place, in a config in which that place exists.
@@ -232,4 +232,4 @@ TEST(Settings, TheSchemaOfTheTreeIsTheOneOfTheLists) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::settings_test

@@ -7,7 +7,7 @@
 #include "core/contact/aabb.hpp"
 #include "core/contact/bvh.hpp"
 
-namespace bb {
+namespace bb::bvh_test {
 namespace {
 
 std::vector<TreeBox> random_boxes(int n, double size, unsigned seed) {
@@ -233,4 +233,4 @@ TEST(Aabb, DistanceOfBoxesIsAcrossTheGapAlone) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::bvh_test

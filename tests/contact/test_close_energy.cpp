@@ -5,7 +5,7 @@
 #include "tests/contact/barrier_gradient.hpp"
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::close_energy_test {
 namespace {
 
 /// A path from x0 along which nothing touches.
@@ -130,4 +130,4 @@ TEST(CloseEnergy, HasItsDerivativesOnBothSidesOfEveryChangeOfTheClosestFeature) 
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::close_energy_test

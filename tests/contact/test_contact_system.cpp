@@ -3,7 +3,7 @@
 
 #include "tests/contact/contact_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::contact_system_test {
 namespace {
 
 Scene cloth_and_ball(double height) {
@@ -118,4 +118,4 @@ TEST(InitialCheck, SeesObstaclesAndDescribesThemByName) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::contact_system_test

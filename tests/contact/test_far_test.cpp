@@ -4,7 +4,7 @@
 #include "core/contact/far_test.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::far_test_test {
 namespace {
 
 /// Claims and what they were about, over all pairs of one kind.
@@ -152,4 +152,4 @@ TEST(FarTest, ClaimsNothingOfPointsThatAreOne) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::far_test_test

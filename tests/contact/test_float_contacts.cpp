@@ -9,7 +9,7 @@
 #include "core/math/precision.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::float_contacts_test {
 namespace {
 
 constexpr double float_eps = std::numeric_limits<float>::epsilon();
@@ -195,4 +195,4 @@ TEST(FloatContacts, the_step_bound_stops_at_the_ulps_of_the_coordinates_in_float
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::float_contacts_test

@@ -3,7 +3,7 @@
 
 #include "tests/contact/obstacle_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::gap_along_test {
 namespace {
 
 constexpr double never = std::numeric_limits<double>::infinity();
@@ -142,4 +142,4 @@ TEST(HoldTimes, NameCurvatureWhereAnEdgeRolls) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::gap_along_test

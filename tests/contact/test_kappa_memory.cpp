@@ -8,7 +8,7 @@
 
 #include "tests/contact/contact_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::kappa_memory_test {
 namespace {
 
 // A point (vertex 0) above two triangles that share the edge x = 0.
@@ -242,4 +242,4 @@ TEST(KappaMemory, AnEdgePairKeepsItsValueWhenItBecomesMollified) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::kappa_memory_test

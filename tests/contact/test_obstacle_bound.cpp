@@ -4,7 +4,7 @@
 
 #include "tests/contact/obstacle_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::obstacle_bound_test {
 namespace {
 
 /// The gap of the whole surface stays positive up to the bound; returns the state there.
@@ -118,4 +118,4 @@ TEST(ObstacleBound, StaysOnTheSafeSideInFloat) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::obstacle_bound_test

@@ -6,7 +6,7 @@
 #include "core/contact/pair_geometry.hpp"
 #include "tests/contact/close_bodies.hpp"
 
-namespace bb::test {
+namespace bb::test::obstacle_proven_test {
 namespace {
 
 template <int N>
@@ -58,4 +58,4 @@ TEST(ObstacleProven, IsNeverLaterThanTheStopLevelAndOftenTheWholeMotion) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::obstacle_proven_test

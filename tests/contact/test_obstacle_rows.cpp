@@ -6,7 +6,7 @@
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/contact/one_row.hpp"
 
-namespace bb::test {
+namespace bb::test::obstacle_rows_test {
 namespace {
 
 /// A triangle (or a rod, without triangles) at random about an obstacle, far or near.
@@ -262,4 +262,4 @@ TEST(ObstacleStart, NamesWhatTouchesWithItsPrimitiveAndGap) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::obstacle_rows_test

@@ -6,7 +6,7 @@
 #include "core/contact/obstacle.hpp"
 #include "core/contact/obstacle_motion.hpp"
 
-namespace bb {
+namespace bb::obstacles_test {
 namespace {
 
 Obstacle make(ObstacleKind kind, bool inside) {
@@ -154,4 +154,4 @@ TEST(Obstacle, NoMotionNeverHits) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::obstacles_test

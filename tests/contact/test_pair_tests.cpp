@@ -8,7 +8,7 @@
 #include "core/contact/pair_lanes.hpp"
 #include "core/geometry/accd.hpp"
 
-namespace bb {
+namespace bb::pair_tests_test {
 namespace {
 
 /// Random pairs of all shapes: primitives of any size, at any distance, some of them flat, far
@@ -207,4 +207,4 @@ TEST(Accd, GivesUpAPairOnlyWhenItIsProvenPastEnough) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::pair_tests_test

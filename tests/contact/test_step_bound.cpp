@@ -8,7 +8,7 @@
 #include "core/contact/pair_planes.hpp"
 #include "tests/contact/bound_of.hpp"
 
-namespace bb::test {
+namespace bb::test::step_bound_test {
 namespace {
 
 Scene point_above_floor(double height) {
@@ -278,4 +278,4 @@ TEST(StepBound, PlanarPairsAreBoundedToo) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::step_bound_test

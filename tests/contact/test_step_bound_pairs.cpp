@@ -7,7 +7,7 @@
 #include "core/geometry/accd.hpp"
 #include "tests/contact/bound_of.hpp"
 
-namespace bb::test {
+namespace bb::test::step_bound_pairs_test {
 namespace {
 
 /// The bound that asks every candidate for its time, in their order.
@@ -221,4 +221,4 @@ TEST(StepBound, NamesTheFirstOfPairsThatTieInSeveralBatches) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::step_bound_pairs_test

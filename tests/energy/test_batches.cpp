@@ -17,7 +17,7 @@
 #include "tests/energy/strip.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
-namespace bb::test {
+namespace bb::test::batches_test {
 namespace {
 
 Eigen::MatrixXd stored_hessian(const LocalTerms& out, std::size_t e, int width) {
@@ -209,4 +209,4 @@ TEST(Batches, EmptyIsAllowed) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::batches_test

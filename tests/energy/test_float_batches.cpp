@@ -10,7 +10,7 @@
 #include "core/energy/strain_limit_batch.hpp"
 #include "tests/energy/strip.hpp"
 
-namespace bb::test {
+namespace bb::test::float_batches_test {
 namespace {
 
 double difference(const std::vector<double>& a, const std::vector<double>& b) {
@@ -120,4 +120,4 @@ TEST(FloatBatches, the_strain_limit_measures_and_bounds_in_float) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::float_batches_test

@@ -8,7 +8,7 @@
 #include "tests/energy/strain_shapes.hpp"
 #include "tests/energy/strip.hpp"
 
-namespace bb::test {
+namespace bb::test::strain_limit_batch_test {
 namespace {
 
 const BatchOf<LogStandIn> barrier;
@@ -157,4 +157,4 @@ TEST(StrainLimitBatch, BadColumnsAreConfigErrors) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::strain_limit_batch_test

@@ -6,7 +6,7 @@
 #include "core/terms/contact.hpp"
 #include "tests/experiments/state_at_rest.hpp"
 
-namespace bb {
+namespace bb::answer_decisions_test {
 namespace {
 
 using namespace test;
@@ -158,4 +158,4 @@ TEST(AnswerDecisions, TheStaticLoadIsTheWeightOverTheFreeVertices) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::answer_decisions_test

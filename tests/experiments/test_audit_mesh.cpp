@@ -6,7 +6,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/audit_verdict.hpp"
 
-namespace bb {
+namespace bb::audit_mesh_test {
 namespace {
 
 Scene drape2d(const std::string& pairs) {
@@ -122,4 +122,4 @@ TEST(AuditVerdict, SaysWhatTheContactModelAllows) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::audit_mesh_test

@@ -6,7 +6,7 @@
 
 #include "experiments/config/parse.hpp"
 
-namespace bb {
+namespace bb::audit_watch_test {
 namespace {
 
 /// A sheet of two triangles, 1 m wide, above a ball of radius 0.1 m whose top is at z = 0 and off the diagonal.
@@ -123,4 +123,4 @@ TEST(AuditWatch, AFailedFirstAttemptGoesBackToTheStart) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::audit_watch_test

@@ -5,7 +5,7 @@
 
 #include "tests/experiments/calibrated.hpp"
 
-namespace bb {
+namespace bb::calibration_test {
 namespace {
 
 using namespace test;
@@ -192,4 +192,4 @@ TEST(Calibration, WhatOnlyThePilotTellsIsAnOutcome) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::calibration_test

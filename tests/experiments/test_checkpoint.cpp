@@ -10,7 +10,7 @@
 
 #include "core/math/error.hpp"
 
-namespace bb {
+namespace bb::checkpoint_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -196,4 +196,4 @@ TEST_F(CheckpointFiles, AListThatBecameShorterIsAnError) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::checkpoint_test

@@ -14,7 +14,7 @@
 #include "experiments/run/calibration.hpp"
 #include "tests/linear/scaled_spectrum.hpp"
 
-namespace bb {
+namespace bb::condition_spectra_test {
 namespace {
 
 /// Compares both on the matrix of every second iteration.
@@ -77,4 +77,4 @@ TEST(ConditionSpectra, BothTiersAgreeOnEveryDiagnosedMatrixOfTheStrip) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::condition_spectra_test

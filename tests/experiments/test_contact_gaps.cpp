@@ -12,7 +12,7 @@
 #include "core/archive/archive.hpp"
 #include "core/contact/contact_row.hpp"
 
-namespace bb {
+namespace bb::contact_gaps_test {
 namespace {
 
 struct Weighted {
@@ -165,4 +165,4 @@ TEST(ContactGaps, WithoutLoadThereIsNoPair) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::contact_gaps_test

@@ -3,7 +3,7 @@
 
 #include "tests/experiments/eval_asking.hpp"
 
-namespace bb::test {
+namespace bb::test::eval_protocol_test {
 namespace {
 
 const char* const kCubic = R"("kind": "shape", "shape": "cubic", "d": 0.5, "d_hat": 1)";
@@ -196,4 +196,4 @@ TEST(EvalProtocol, TheSchemaIsPrintedAndNamesEveryKind) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::eval_protocol_test

@@ -8,7 +8,7 @@
 #include "core/record/trace_row.hpp"
 #include "tests/experiments/endings.hpp"
 
-namespace bb::test {
+namespace bb::test::every_outcome_test {
 namespace {
 
 std::string grids(const std::string& more) {
@@ -199,4 +199,4 @@ TEST(EveryOutcome, contacts_are_there_where_they_decide) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::every_outcome_test

@@ -12,7 +12,7 @@
 #include "experiments/run/audit_mesh.hpp"
 #include "tests/terms/at_iterate.hpp"
 
-namespace bb {
+namespace bb::every_part_test {
 namespace {
 
 using nlohmann::json;
@@ -255,4 +255,4 @@ TEST(RequireKernels, names_a_part_that_no_kernel_is_there_for) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::every_part_test

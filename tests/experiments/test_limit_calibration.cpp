@@ -6,7 +6,7 @@
 #include "tests/barriers/limit_policies.hpp"
 #include "tests/experiments/calibrated.hpp"
 
-namespace bb {
+namespace bb::limit_calibration_test {
 namespace {
 
 using namespace test;
@@ -145,4 +145,4 @@ TEST(Calibration, ALimitOnNothingNeedsNoStiffness) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::limit_calibration_test

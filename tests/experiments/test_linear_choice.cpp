@@ -14,7 +14,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/plan.hpp"
 
-namespace bb {
+namespace bb::linear_choice_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ TEST_F(LinearChoiceTest, AModelThatCannotBeReadIsNamedWithPlaceValueAndWhatIsAll
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::linear_choice_test

@@ -5,7 +5,7 @@
 
 #include "experiments/run/outcome.hpp"
 
-namespace bb {
+namespace bb::outcome_test {
 namespace {
 
 StepReport ended(StepStatus status, Number contact = Number(), Number limit = Number()) {
@@ -70,4 +70,4 @@ TEST(JudgeStep, every_other_failure_has_its_own_word) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::outcome_test

@@ -3,7 +3,7 @@
 
 #include "experiments/run/pilot.hpp"
 
-namespace bb {
+namespace bb::pilot_cache_test {
 namespace {
 
 TEST(PilotCache, KeepsWhatWasAskedForLastWithinItsBytes) {
@@ -29,4 +29,4 @@ TEST(PilotCache, KeepsWhatWasAskedForLastWithinItsBytes) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::pilot_cache_test

@@ -8,7 +8,7 @@
 #include "core/record/phase_times.hpp"
 #include "tests/experiments/calibrated.hpp"
 
-namespace bb {
+namespace bb::pilot_demand_test {
 namespace {
 
 using namespace test;
@@ -220,4 +220,4 @@ TEST(Pilot, WhoseFirstStepFailsLeavesTheStaticWeight) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::pilot_demand_test

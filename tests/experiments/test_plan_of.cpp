@@ -4,7 +4,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/plan.hpp"
 
-namespace bb {
+namespace bb::plan_of_test {
 namespace {
 
 Plan planned(const char* scene, const std::vector<std::string>& overrides) {
@@ -46,4 +46,4 @@ TEST(PlanOf, ATraceIsLeftByARunThatIsObserved) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::plan_of_test

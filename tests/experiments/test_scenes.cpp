@@ -13,7 +13,7 @@
 #include "experiments/scenes/procedural_scene.hpp"
 #include "experiments/scenes/resting_block_1d.hpp"
 
-namespace bb {
+namespace bb::scenes_test {
 namespace {
 
 class Scenes : public ::testing::Test {
@@ -254,4 +254,4 @@ TEST_F(Scenes, AreBitIdenticalForAnyNumberOfThreadsAndRerunFromTheirRecord) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::scenes_test

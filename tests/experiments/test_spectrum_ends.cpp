@@ -9,7 +9,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::spectrum_ends_test {
 namespace {
 
 double share_of(const SpectrumEnd& end, const std::string& term) {
@@ -112,4 +112,4 @@ TEST(SpectrumEnds, block_jacobi_takes_a_single_stiff_vertex_off_the_largest_end)
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::spectrum_ends_test

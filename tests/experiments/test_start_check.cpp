@@ -12,7 +12,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/runner.hpp"
 
-namespace bb {
+namespace bb::start_check_test {
 namespace {
 
 constexpr const char* material = R"("limited": false, "material": {"model": "corotational",
@@ -147,4 +147,4 @@ TEST(StartCheck, TheRecordHasItsOutcomeAndItsSeconds) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::start_check_test

@@ -8,7 +8,7 @@
 #include "experiments/run/plan.hpp"
 #include "tests/experiments/calibrated.hpp"
 
-namespace bb {
+namespace bb::step_study_test {
 namespace {
 
 using namespace test;
@@ -78,4 +78,4 @@ TEST(StepStudy, ATrialBeginsFromTheHistoryOfItsStep) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::step_study_test

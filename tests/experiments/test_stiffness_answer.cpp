@@ -7,7 +7,7 @@
 #include "core/terms/contact.hpp"
 #include "tests/experiments/state_at_rest.hpp"
 
-namespace bb {
+namespace bb::stiffness_answer_test {
 namespace {
 
 using namespace test;
@@ -137,4 +137,4 @@ TEST(StiffnessAnswer, IsTheDerivativeOfTheForceAtRest) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::stiffness_answer_test

@@ -10,7 +10,7 @@
 #include "experiments/run/runner.hpp"
 #include "tests/experiments/calibrated.hpp"
 
-namespace bb {
+namespace bb::time_limit_test {
 namespace {
 
 using namespace test;
@@ -75,4 +75,4 @@ TEST(TimeLimit, EndsTheWayOfAPolicyToItsFirstContact) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::time_limit_test

@@ -5,7 +5,7 @@
 
 #include <algorithm>
 
-namespace bb {
+namespace bb::validity_test {
 namespace {
 
 /// A run to which nothing can be objected.
@@ -119,4 +119,4 @@ TEST(Validity, AStepThatEndsInASaddleFailsAndWhatWasNotLookedAtIsNoProof) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::validity_test

@@ -6,7 +6,7 @@
 #include "core/integrators/registry.hpp"
 #include "core/math/error.hpp"
 
-namespace bb {
+namespace bb::integrators_test {
 namespace {
 
 /// One particle, mass 1, force f0 - k x along x; the implicit step is solved in closed form:
@@ -118,4 +118,4 @@ TEST(Integrators, unknown_name_lists_the_known_ones) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::integrators_test

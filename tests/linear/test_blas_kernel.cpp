@@ -5,7 +5,7 @@
 
 #include "core/linear/blas_info.hpp"
 
-namespace bb {
+namespace bb::blas_kernel_test {
 namespace {
 
 BlasKernelFacts machine(const std::string& running, const std::string& environment = "") {
@@ -50,4 +50,4 @@ TEST(BlasKernel, TheFactsAreThoseOfThisProcess) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::blas_kernel_test

@@ -11,7 +11,7 @@
 #include "core/math/at.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::block_analysis_test {
 namespace {
 
 /// Diagonally dominant, vertices of the given sizes, every coupled pair a full block.
@@ -179,4 +179,4 @@ TEST(BlockAnalysis, RemembersNoEarlierPattern) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::block_analysis_test

@@ -11,7 +11,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
-namespace bb {
+namespace bb::block_system_test {
 namespace {
 
 /// Random stencils with symmetric local Hessians and local gradients.
@@ -331,4 +331,4 @@ TEST_F(BlockSystemTest, BadInputIsAConfigError) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::block_system_test

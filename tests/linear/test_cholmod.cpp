@@ -11,7 +11,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb {
+namespace bb::cholmod_test {
 namespace {
 
 TEST(Cholmod, AnalysisStaysWhileThePatternStays) {
@@ -113,4 +113,4 @@ TEST(BlasInfo, NamesTheLoadedLibrary) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::cholmod_test

@@ -6,7 +6,7 @@
 #include "core/linear/condition.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::condition_ends_test {
 namespace {
 
 /// Diagonal: the eigenvalues are the entries. Each end has one neighbour at the relative distance `gap`.
@@ -44,4 +44,4 @@ TEST(ConditionEnds, ANeighbourIsNeverReportedAsOk) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::condition_ends_test

@@ -5,7 +5,7 @@
 
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::cost_model_test {
 namespace {
 
 const LinearWork work{100, 700, 2000, 50000};
@@ -49,4 +49,4 @@ TEST(CostModel, TheCheapestIsChosenAndOfEqualOnesTheFirst) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::cost_model_test

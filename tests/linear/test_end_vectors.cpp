@@ -7,7 +7,7 @@
 #include "core/linear/end_vectors.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::end_vectors_test {
 namespace {
 
 /// |sin| of the angle between two directions.
@@ -52,4 +52,4 @@ TEST(EndVectors, of_a_matrix_that_is_not_positive_definite_there_are_none) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::end_vectors_test

@@ -7,7 +7,7 @@
 #include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::forcing_test {
 namespace {
 
 Forcing forcing(const std::string& kind, double tol_rel = 1e-8) {
@@ -75,4 +75,4 @@ TEST(Forcing, SolversStopWhereItSays) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::forcing_test

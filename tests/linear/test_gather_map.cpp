@@ -9,7 +9,7 @@
 #include "core/math/at.hpp"
 #include "core/math/lower_blocks.hpp"
 
-namespace bb {
+namespace bb::gather_map_test {
 namespace {
 
 struct Case {
@@ -87,4 +87,4 @@ INSTANTIATE_TEST_SUITE_P(Families, GatherMapTest,
                                            Case{4, 12500, 3000, 6}));
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::gather_map_test

@@ -8,7 +8,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb {
+namespace bb::linear_solver_test {
 namespace {
 
 TEST(LinearSolver, EverySolverOfTheRegistryMeetsTheDenseSolution) {
@@ -103,4 +103,4 @@ TEST(LinearSolver, EveryStatusHasItsWord) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::linear_solver_test

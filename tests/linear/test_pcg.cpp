@@ -10,7 +10,7 @@
 #include "tests/linear/systems.hpp"
 #include "tests/oracle/dense.hpp"
 
-namespace bb {
+namespace bb::pcg_test {
 namespace {
 
 std::unique_ptr<LinearSolver> pcg(const std::string& preconditioner, double tol, int cap = 10000) {
@@ -203,4 +203,4 @@ TEST(CgRitz, MeetsTheDenseTridiagonalMatrix) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::pcg_test

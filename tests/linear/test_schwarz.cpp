@@ -9,7 +9,7 @@
 #include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::schwarz_test {
 namespace {
 
 int iterations(const ReducedSystem& system, const std::string& preconditioner) {
@@ -72,4 +72,4 @@ TEST(Schwarz, TakesPlanarScenes) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::schwarz_test

@@ -6,7 +6,7 @@
 #include "core/solvers/linear_solvers.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::solver_keep_test {
 namespace {
 
 struct Named {
@@ -112,4 +112,4 @@ TEST(SolverKeep, AnArchiveOfTheSameMomentIsTheSame) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::solver_keep_test

@@ -10,7 +10,7 @@
 #include "core/math/error.hpp"
 #include "tests/linear/systems.hpp"
 
-namespace bb {
+namespace bb::symmetric_product_test {
 namespace {
 
 /// The same matrix with its degrees of freedom cut into blocks of 3, 1, 2, 3, 1, 2, ...
@@ -124,4 +124,4 @@ TEST(SymmetricProduct, RefusesWhatIsNoLowerTriangle) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::symmetric_product_test

@@ -13,7 +13,7 @@
 #include "experiments/matrix/replay_text.hpp"
 #include "tests/matrix/stored.hpp"
 
-namespace bb {
+namespace bb::replay_test {
 namespace {
 
 TEST(Replay, EverySolverPreconditionerAndEstimatorHasALine) {
@@ -126,4 +126,4 @@ TEST(Replay, JsonHasEveryLineOfTheTableAndNullForTheUnknown) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::replay_test

@@ -6,7 +6,7 @@
 #include "core/solvers/linear_solvers.hpp"
 #include "tests/newton/buckling_step.hpp"
 
-namespace bb {
+namespace bb::attempts_test {
 namespace {
 
 using namespace test;
@@ -105,4 +105,4 @@ TEST(Attempts, AreInTheNumbersOfTheirIterationAndStep) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::attempts_test

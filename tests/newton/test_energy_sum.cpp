@@ -5,7 +5,7 @@
 
 #include "core/newton/energy_sum.hpp"
 
-namespace bb {
+namespace bb::energy_sum_test {
 namespace {
 
 /// Energies that are given, in one family.
@@ -88,4 +88,4 @@ TEST(EnergySum, takes_terms_on_vertices_vertex_by_vertex_before_the_others) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::energy_sum_test

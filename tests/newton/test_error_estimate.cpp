@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-namespace bb {
+namespace bb::error_estimate_test {
 namespace {
 
 ErrorEstimate after(const std::vector<double>& dx, double alpha = 1) {
@@ -147,4 +147,4 @@ TEST(ErrorEstimate, needs_eleven_directions_to_say_that_they_do_not_fall) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::error_estimate_test

@@ -7,7 +7,7 @@
 #include "core/newton/step_solver.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::failures_test {
 namespace {
 
 TEST(Failures, a_load_over_the_capacity_ends_the_step_and_is_measured) {
@@ -165,4 +165,4 @@ TEST(Failures, an_unknown_step_solver_lists_the_known_ones) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::failures_test

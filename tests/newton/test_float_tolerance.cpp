@@ -3,7 +3,7 @@
 
 #include "tests/newton/scripted_system.hpp"
 
-namespace bb {
+namespace bb::float_tolerance_test {
 namespace {
 
 using test::ScriptedState;
@@ -100,4 +100,4 @@ TEST(FloatTolerance, OfAParticleIsTheSameBesideAPrescribedBodyFarAway) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::float_tolerance_test

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-namespace bb {
+namespace bb::hessian_level_test {
 namespace {
 
 constexpr double residual = 8;  // N
@@ -95,4 +95,4 @@ TEST(HessianLevel, a_mixture_ends_when_all_are_clamped_and_begins_anew_with_a_st
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::hessian_level_test

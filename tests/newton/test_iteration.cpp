@@ -8,7 +8,7 @@
 #include "core/newton/simulation.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::iteration_test {
 namespace {
 
 constexpr double eps = std::numeric_limits<double>::epsilon();
@@ -160,4 +160,4 @@ TEST(Iteration, a_gap_of_a_step_is_that_of_a_converged_end) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::iteration_test

@@ -6,7 +6,7 @@
 
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::line_search_test {
 namespace {
 
 Scene cloth_on_sphere(int n) {
@@ -325,4 +325,4 @@ TEST(LineSearch, accumulated_toi_drapes_without_touching) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::line_search_test

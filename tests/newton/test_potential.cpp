@@ -8,7 +8,7 @@
 #include "tests/newton/small_scenes.hpp"
 #include "tests/terms/all_terms.hpp"
 
-namespace bb {
+namespace bb::potential_test {
 namespace {
 
 PolicyConfig dynamic_policy(const char* mass_term, bool included) {
@@ -162,4 +162,4 @@ TEST(Potential, a_contact_that_a_line_search_meets_has_the_kappa_of_its_gap) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::potential_test

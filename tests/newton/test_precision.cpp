@@ -4,7 +4,7 @@
 #include "core/newton/iteration.hpp"
 #include "tests/newton/buckling_step.hpp"
 
-namespace bb::test {
+namespace bb::test::precision_test {
 namespace {
 
 Method method_in(Precision precision) {
@@ -101,4 +101,4 @@ TEST(Precision, a_change_of_the_energy_is_judged_by_the_rounding_of_the_precisio
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::precision_test

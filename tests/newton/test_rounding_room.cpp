@@ -7,7 +7,7 @@
 
 #include "tests/newton/saddle_scenes.hpp"
 
-namespace bb {
+namespace bb::rounding_room_test {
 namespace {
 
 TEST(RoundingRoom, is_that_of_the_vertex_and_of_its_body) {
@@ -82,4 +82,4 @@ TEST(RoundingRoom, a_far_body_leaves_the_estimate_as_it_is) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::rounding_room_test

@@ -5,7 +5,7 @@
 
 #include "tests/newton/saddle_scenes.hpp"
 
-namespace bb {
+namespace bb::saddle_test {
 namespace {
 
 using namespace test;
@@ -264,4 +264,4 @@ TEST(Saddle, time_of_checks_has_a_phase_of_its_own) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::saddle_test

@@ -7,7 +7,7 @@
 #include "core/record/step_record.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb {
+namespace bb::step_attempts_test {
 namespace {
 
 /// An attempt with numbers of its own in every counter.
@@ -73,4 +73,4 @@ TEST(StepAttempts, SayHowManyIterationsWereBeforeTheLast) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::step_attempts_test

@@ -4,7 +4,7 @@
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/newton/small_scenes.hpp"
 
-namespace bb::test {
+namespace bb::test::whole_surface_test {
 namespace {
 
 constexpr double width_m = 0.02;  // d_hat
@@ -71,4 +71,4 @@ TEST(WholeSurface, ARodOfOneSegmentComesToRestOnTwoBars) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::whole_surface_test

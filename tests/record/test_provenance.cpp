@@ -11,7 +11,7 @@
 
 #include "tests/record/sample_record.hpp"
 
-namespace bb {
+namespace bb::provenance_test {
 namespace {
 
 TEST(Sha256, KnownAnswers) {  // FIPS 180-4 examples
@@ -212,4 +212,4 @@ TEST(Outcome, TheMoreSpecificWordWins) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::provenance_test

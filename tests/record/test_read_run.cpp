@@ -11,7 +11,7 @@
 #include "core/record/writer.hpp"
 #include "tests/record/sample_record.hpp"
 
-namespace bb {
+namespace bb::read_run_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -139,4 +139,4 @@ TEST(ReadRun, WhatIsNoRecordIsNothing) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::read_run_test

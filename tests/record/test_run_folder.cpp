@@ -13,7 +13,7 @@
 #include "core/record/provenance.hpp"
 #include "core/record/writer.hpp"
 
-namespace bb {
+namespace bb::run_folder_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -137,4 +137,4 @@ TEST_F(RunFolder, TheLockOfAKilledProcessIsFree) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::run_folder_test

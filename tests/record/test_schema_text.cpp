@@ -11,7 +11,7 @@
 #include "core/record/schema.hpp"
 #include "tests/folders.hpp"
 
-namespace bb {
+namespace bb::schema_text_test {
 namespace {
 
 using nlohmann::json;
@@ -102,4 +102,4 @@ TEST(RecordDictionary, HasALineForEveryFieldWithItsMeaning) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::schema_text_test

@@ -15,7 +15,7 @@
 #include "tests/folders.hpp"
 #include "tests/record/sample_record.hpp"
 
-namespace bb {
+namespace bb::writer_test {
 namespace {
 
 namespace fs = std::filesystem;
@@ -221,4 +221,4 @@ TEST_F(Writer, AConfigThatIsNotJsonIsRefused) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::writer_test

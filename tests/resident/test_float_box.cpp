@@ -7,7 +7,7 @@
 #include "core/resident/contact/pair_search.hpp"
 #include "core/resident/contact/tree_kernels.hpp"
 
-namespace bb::test {
+namespace bb::test::float_box_test {
 namespace {
 
 using namespace resident;
@@ -98,4 +98,4 @@ TEST(SortedRows, HoldsWhatIsThere) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::float_box_test

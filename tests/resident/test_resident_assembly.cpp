@@ -6,7 +6,7 @@
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/resident/assembled.hpp"
 
-namespace bb::test {
+namespace bb::test::resident_assembly_test {
 namespace {
 
 struct Subject {
@@ -201,4 +201,4 @@ TEST(ContactSums, GiveTheMeanMassOfTheRows) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::resident_assembly_test

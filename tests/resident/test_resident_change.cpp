@@ -3,7 +3,7 @@
 
 #include "tests/resident/on_executor.hpp"
 
-namespace bb {
+namespace bb::resident_change_test {
 namespace {
 
 using namespace bb::test;
@@ -125,4 +125,4 @@ TEST(ResidentChange, BelongsToTheIterateThatWasAccepted) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::resident_change_test

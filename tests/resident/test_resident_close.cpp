@@ -4,7 +4,7 @@
 #include "tests/resident/both_bounds.hpp"
 #include "tests/resident/rows_pair_by_pair.hpp"
 
-namespace bb::test {
+namespace bb::test::resident_close_test {
 namespace {
 
 /// Calls f(scene, a state near its own): alone, and several of them side by side with partly given bodies.
@@ -112,4 +112,4 @@ TEST(ResidentClose, AddsUpGradientAndMatrixOfTheCpuPath) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::resident_close_test

@@ -7,7 +7,7 @@
 #include "tests/barriers/host_policy.hpp"
 #include "tests/resident/on_executor.hpp"
 
-namespace bb {
+namespace bb::resident_limit_test {
 namespace {
 
 using namespace bb::test;
@@ -188,4 +188,4 @@ TEST(ResidentLimit, RefusesAPolicyWithoutKernelByItsName) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::resident_limit_test

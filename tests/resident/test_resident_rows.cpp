@@ -5,7 +5,7 @@
 #include "tests/contact/rods.hpp"
 #include "tests/resident/rows_pair_by_pair.hpp"
 
-namespace bb::test {
+namespace bb::test::resident_rows_test {
 namespace {
 
 using resident::KappaColumns;
@@ -135,4 +135,4 @@ TEST(ResidentRows, TakeAtMost140BytesEach) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::resident_rows_test

@@ -11,7 +11,7 @@
 #include "tests/folders.hpp"
 #include "tests/resident/both_bounds.hpp"
 
-namespace bb::test {
+namespace bb::test::resident_step_bound_test {
 namespace {
 
 TEST(ResidentStepBound, IsThatOfTheCpuPathOfRodsAndBesideFarBodies) {
@@ -255,4 +255,4 @@ TEST(ResidentStepBound, IsThatOfTheCpuPathBetweenTwoFramesOfACloth) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::resident_step_bound_test

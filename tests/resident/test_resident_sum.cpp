@@ -9,7 +9,7 @@
 
 #include "tests/resident/on_executor.hpp"
 
-namespace bb::resident {
+namespace bb::resident::resident_sum_test {
 namespace {
 
 using test::all_orders;
@@ -161,4 +161,4 @@ TEST(Keys, CompareAsTheNumbersDo) {
 }
 
 }  // namespace
-}  // namespace bb::resident
+}  // namespace bb::resident::resident_sum_test

@@ -5,7 +5,7 @@
 #include "tests/contact/rods.hpp"
 #include "tests/resident/rows_pair_by_pair.hpp"
 
-namespace bb::test {
+namespace bb::test::resident_thickness_test {
 namespace {
 
 constexpr double d_hat = 0.08, radius = 0.5;
@@ -89,4 +89,4 @@ TEST(ResidentThickness, PairsOfThickBodiesHaveTheRowsOfTheCpuPath) {
 }
 
 }  // namespace
-}  // namespace bb::test
+}  // namespace bb::test::resident_thickness_test

@@ -8,7 +8,7 @@
 #include "core/exec/host_executor.hpp"
 #include "core/resident/sums/resident_sum.hpp"
 
-namespace bb::resident {
+namespace bb::resident::sum_kernels_test {
 namespace {
 
 using exec::Buffer;
@@ -66,4 +66,4 @@ TEST(SumKernels, MultiplyOverTheFreeDegreesOfFreedom) {
 }
 
 }  // namespace
-}  // namespace bb::resident
+}  // namespace bb::resident::sum_kernels_test

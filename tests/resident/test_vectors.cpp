@@ -7,7 +7,7 @@
 
 #include "tests/resident/on_executor.hpp"
 
-namespace bb::resident {
+namespace bb::resident::vectors_test {
 namespace {
 
 using namespace bb::test;
@@ -145,4 +145,4 @@ TEST(Vectors, LongestOfMany) {
 }
 
 }  // namespace
-}  // namespace bb::resident
+}  // namespace bb::resident::vectors_test

@@ -4,7 +4,7 @@
 #include "core/scene/contact_plan.hpp"
 #include "tests/bodies/bodies.hpp"
 
-namespace bb {
+namespace bb::contact_plan_test {
 namespace {
 
 using namespace test;
@@ -93,4 +93,4 @@ TEST(ContactPlan, of_a_scene_without_free_surface_is_empty) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::contact_plan_test

@@ -8,7 +8,7 @@
 #include "core/math/lower_blocks.hpp"
 #include "tests/terms/at_iterate.hpp"
 
-namespace bb {
+namespace bb::every_term_test {
 namespace {
 
 using test::AtIterate, test::curvature_along, test::gradient_of;
@@ -154,4 +154,4 @@ TEST(EveryTerm, allows_a_motion_up_to_its_bound_and_says_what_held_it) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::every_term_test

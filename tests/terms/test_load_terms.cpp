@@ -3,7 +3,7 @@
 
 #include "tests/terms/all_terms.hpp"
 
-namespace bb {
+namespace bb::load_terms_test {
 namespace {
 
 Positions one_point(double x, double y, double z) {
@@ -70,4 +70,4 @@ TEST(LoadTerms, the_weight_grows_with_the_load_factor) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::load_terms_test

@@ -5,7 +5,7 @@
 
 #include "experiments/validity/block.hpp"
 
-namespace bb {
+namespace bb::block_test {
 namespace {
 
 BlockCheck check_with(double bound) {
@@ -53,4 +53,4 @@ TEST(Block, every_check_of_this_build_passes_and_has_subjects) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::block_test

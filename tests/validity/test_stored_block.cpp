@@ -8,7 +8,7 @@
 #include "core/record/writer.hpp"
 #include "experiments/validity/stored_block.hpp"
 
-namespace bb {
+namespace bb::stored_block_test {
 namespace {
 
 class StoredBlocks : public ::testing::Test {
@@ -82,4 +82,4 @@ TEST_F(StoredBlocks, a_plugin_has_a_report_of_its_own) {
 }
 
 }  // namespace
-}  // namespace bb
+}  // namespace bb::stored_block_test
