@@ -13,6 +13,7 @@ import meshio
 import numpy as np
 
 from .errors import UserError, tells
+from .front.arguments import parser_of
 from .whole_file import write_whole_bytes
 
 READERS = {".msh": meshio.gmsh.read, ".vtu": meshio.vtu.read}
@@ -128,11 +129,7 @@ def ply_bytes(cells: Cells) -> bytes:
 
 
 def parse(argv: list[str]) -> argparse.Namespace:
-    parser = argparse.ArgumentParser(
-        prog="bench mesh",
-        description="A mesh of Gmsh (.msh, 2.2 or 4.1) or VTK (.vtu) as PLY for /scene/bodies/N/mesh/file. "
-        "Lengths are taken as m.",
-    )
+    parser = parser_of("mesh", "Lengths are taken as m.")
     parser.add_argument("source", type=Path, metavar="IN", help=f"one of {', '.join(READERS)}")
     parser.add_argument("target", type=Path, metavar="OUT.ply")
     parser.add_argument(

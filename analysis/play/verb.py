@@ -4,10 +4,10 @@
 
 from __future__ import annotations
 
-import argparse
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..front.arguments import parser_of
 from ..whole_file import write_whole
 from .film import Film, Source, filmed, kept, opened
 from .page import page, page_bytes
@@ -104,13 +104,7 @@ _count.__name__ = "number of frames, 1 or more"
 
 @tells("play")
 def main(arguments: list[str]) -> int:
-    parser = argparse.ArgumentParser(
-        prog="bench play",
-        description=(
-            "One HTML file, which needs no network, that plays the frames of a run (--set"
-            " /output/frames_every=1), or of two runs side by side with one camera."
-        ),
-    )
+    parser = parser_of("play", "Frames are written by runs with --set /output/frames_every=1.")
     parser.add_argument("runs", type=Path, nargs="+", metavar="RUN", help="folder of run.json; one or two")
     parser.add_argument("--out", type=Path, help="the HTML file (default: play.html in the folder of RUN)")
     parser.add_argument(

@@ -222,6 +222,4 @@ def test_without_its_library_it_says_how_to_have_it(log_run, tmp_path, capsys, m
 
 @pytest.mark.parametrize("words", [("--every", "0"), ("--every", "x"), ("--colour", "heat"), ("--limit-mb", "x")])
 def test_options_that_are_none_are_refused(words, log_run, capsys):
-    with pytest.raises(SystemExit) as ended:
-        verb.main([str(log_run), *words])
-    assert ended.value.code == 2 and words[0] in capsys.readouterr().err
+    assert verb.main([str(log_run), *words]) == 2 and words[0] in capsys.readouterr().err
