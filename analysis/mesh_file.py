@@ -6,6 +6,7 @@ from __future__ import annotations
 
 import argparse
 import sys
+from collections import Counter
 from pathlib import Path
 from typing import NamedTuple
 
@@ -80,26 +81,26 @@ def checked(path: Path, cells: Cells) -> Cells:
     return cells
 
 
-def rows_of(corners: np.ndarray, cells: np.ndarray, choices: list[tuple[int, ...]]) -> np.ndarray:
-    """Which rows of `corners` are, in any order, those of a cell that a choice of its corners picks."""
+def sharers_of(corners: np.ndarray, cells: np.ndarray, choices: list[tuple[int, ...]]) -> np.ndarray:
+    """Of each row of `corners`, how many cells have it, in any order, as one of the choices of their corners."""
     faces = (
         np.concatenate([cells[:, list(choice)] for choice in choices])
         if len(cells)
         else np.empty((0, corners.shape[1]))
     )
-    known = {tuple(face) for face in np.sort(faces, axis=1).tolist()}
-    return np.array([tuple(row) in known for row in np.sort(corners, axis=1).tolist()], bool)
+    known = Counter(tuple(face) for face in np.sort(faces, axis=1).tolist())
+    return np.array([known[tuple(row)] for row in np.sort(corners, axis=1).tolist()], int)
 
 
 def without_sides(cells: Cells, skin: bool) -> Cells:
-    """Without the triangles that are faces of tetrahedra (they stay as a skin), and the lines that are sides
-    of what there is.
+    """Without the triangles that are faces of tetrahedra (as a skin, those of one tetrahedron stay), and the
+    lines that are sides of what there is.
     """
-    faces = rows_of(cells.triangles, cells.tetrahedra, [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)])
-    triangles = cells.triangles if skin else cells.triangles[~faces]
-    sides = rows_of(cells.lines, cells.triangles, [(0, 1), (0, 2), (1, 2)])
-    edges = rows_of(cells.lines, cells.tetrahedra, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
-    return cells._replace(triangles=triangles, lines=cells.lines[~(sides | edges)])
+    sharers = sharers_of(cells.triangles, cells.tetrahedra, [(0, 1, 2), (0, 1, 3), (0, 2, 3), (1, 2, 3)])
+    triangles = cells.triangles[(sharers == 0) | (skin & (sharers == 1))]
+    sides = sharers_of(cells.lines, cells.triangles, [(0, 1), (0, 2), (1, 2)])
+    edges = sharers_of(cells.lines, cells.tetrahedra, [(0, 1), (0, 2), (0, 3), (1, 2), (1, 3), (2, 3)])
+    return cells._replace(triangles=triangles, lines=cells.lines[sides + edges == 0])
 
 
 def without_loose_points(cells: Cells) -> Cells:

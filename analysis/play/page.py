@@ -127,13 +127,12 @@ def page(films: list[Film], colour: str, notes: list[str]) -> str:
         for k, (_, arrays) in enumerate(packed)
     )
     text = (HERE / "page.html").read_text()
-    for name, value in {
+    values = {
         "style": (HERE / "page.css").read_text(),
         "licences": licences.replace("&", "&amp;").replace("<", "&lt;"),
         "words": _for_script(json.dumps(words, allow_nan=False)),
         "films": data,
         "library": _packed(source.encode()),
         "scripts": "\n".join((HERE / name).read_text() for name in SCRIPTS),
-    }.items():
-        text = text.replace("{{" + name + "}}", value)
-    return text
+    }
+    return re.sub(r"\{\{(\w+)\}\}", lambda slot: values[slot[1]], text)

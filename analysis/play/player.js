@@ -138,16 +138,31 @@ class Player {
     $("time").setAttribute("aria-valuetext", `${number(time)} seconds`);
     if (this.drawing) { this.pending = place; return; }
     this.drawing = true;
+    try {
+      await this.draw(time);
+    } finally {
+      this.drawing = false;
+    }
+    document.body.dataset.shown = place;
+    if (this.pending !== null) { const next = this.pending; this.pending = null; await this.show(next); }
+  }
+
+  /** New colours, in turn with the frames that are drawn: the scale says them at once. */
+  async recolour(colour) {
+    drawBar(colour);
+    this.colour = colour;
+    await this.show(this.place());
+  }
+
+  async draw(time) {
     for (const [k, view] of this.views.entries()) {
       const frame = view.frameAt(time), {times, steps} = view.film;
+      if (view.colour !== this.colour) await view.coloured(this.colour);
       await view.shown(frame);
       const what = steps[frame] < 0 ? "start" : `end of step ${steps[frame]}`;
       const over = frame === times.length - 1 && time > times[frame] + 1e-9 ? ", its last frame" : "";
       this.whens[k].textContent = `t = ${number(times[frame])} s (${what}${over})`;
     }
-    this.drawing = false;
-    document.body.dataset.shown = place;
-    if (this.pending !== null) { const next = this.pending; this.pending = null; await this.show(next); }
   }
 
   place() { return Number($("time").value); }
@@ -196,15 +211,13 @@ async function start() {
   const player = new Player(views, whens);
   fillChoices(player.times[player.times.length - 1] - player.times[0] || 1);
   const home = () => views.forEach((view, k) => view.plot.setCamera(homeCamera(plots[k])));
-  const recolour = async () => { drawBar($("colour").value); for (const view of views) await view.coloured($("colour").value); };
   for (const view of views) await view.obstacles();
-  await recolour();
+  await player.recolour($("colour").value);
   tieCameras(views);
   home();
-  await player.show(0);
   $("time").addEventListener("input", () => { player.toggle(false); player.show(player.place()); });
   $("play").addEventListener("click", () => player.toggle());
-  $("colour").addEventListener("change", recolour);
+  $("colour").addEventListener("change", () => player.recolour($("colour").value));
   $("home").addEventListener("click", home);
   dark.addEventListener("change", () => views.forEach((view) => { view.plot.setClearColor(ground()); view.plot.render(); }));
   plots.forEach((plot, k) => plot.addEventListener("keydown", (event) => {

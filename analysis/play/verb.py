@@ -102,6 +102,16 @@ def _count(text: str) -> int:
 _count.__name__ = "number of frames, 1 or more"
 
 
+def _megabytes_asked(text: str) -> float:
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise ValueError(text)
+    return value
+
+
+_megabytes_asked.__name__ = "number of MB above 0"
+
+
 @tells("play")
 def main(arguments: list[str]) -> int:
     parser = parser_of("play", "Frames are written by runs with --set /output/frames_every=1.")
@@ -122,7 +132,7 @@ def main(arguments: list[str]) -> int:
     )
     parser.add_argument(
         "--limit-mb",
-        type=float,
+        type=_megabytes_asked,
         default=LIMIT_MB,
         metavar="MB",
         help=f"most that the file may take where --every is not given (default: {LIMIT_MB})",

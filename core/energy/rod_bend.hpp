@@ -153,10 +153,13 @@ BB_HD Mat<T, 9, 9> rod_point_hessian(const RodCorner<T>& corner, const RodHessia
   return out;
 }
 
-/// Energy (J) k/2 (theta - theta0)^2, theta the angle between p1 - p0 and p2 - p1, k in J, angles in rad. Host-device: yes. Total.
+/// Energy (J) k/2 (theta - theta0)^2, theta the angle between p1 - p0 and p2 - p1, k in J, angles in rad. NaN when two neighbours
+/// coincide, as the terms are. Host-device: yes.
 template <class T>
 BB_HD T rod_bend_value(const Vec<T, 3> (&x)[3], T stiffness, T rest_angle) {
-  const T deviation = angle_between<T>(x[1] - x[0], x[2] - x[1]) - rest_angle;
+  const Vec<T, 3> a = x[1] - x[0], b = x[2] - x[1];
+  if (a.isZero(T(0)) || b.isZero(T(0))) return std::numeric_limits<T>::quiet_NaN();
+  const T deviation = angle_between<T>(a, b) - rest_angle;
   return stiffness / T(2) * deviation * deviation;
 }
 

@@ -8,7 +8,7 @@ namespace bb {
 /// psi = mu/2 (|F|^2 - N) - mu (J-1) + lambda/2 (J-1)^2, J the product of all s: that of two values is that of three whose last is
 /// 1. Written without cancellation near rest: with p = s0 s1 - 1 and c = s2 - 1,
 ///   mu/2 (s0-s1)^2 + mu/2 c (c - 2p) + lambda/2 (J-1)^2,   J - 1 = p s2 + c.
-/// Two values: smallest at rest where lambda > 0; three: where lambda > mu/3 (a Poisson's ratio above 1/8), else unbounded below.
+/// Two values: smallest at rest where lambda > 0; three: where lambda > mu/3 (a Poisson's ratio above 1/8); unbounded below where lambda <= 0.
 /// Its moduli at rest are mu and lambda - mu. A polynomial in a square F. Host-device: yes. Total.
 struct StableNeoHookean {
   template <class T, int N>

@@ -67,8 +67,9 @@ class LineSearch final : public StepSolver {
       // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
       const bool enough = report.alpha == 1 || report.dx_inf_m < tolerance;
       if (small && enough && (report.contraction.finite() || as_modelled(report))) {
-        if (system.renew_lag()) {
-          error_.reset();
+        if (system.renew_lag()) {  // another minimum is looked for, by what is left of the iterations
+          collapsed = 0;
+          if (iteration + 1 < options_.max_iterations) error_.reset();
           continue;
         }
         end_converged(step, end, report.error_estimate_m, options_.tol_velocity * task.dt);

@@ -80,6 +80,7 @@ class Friction final : public Term {
   }
 
   void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override {
+    if (!loads_known_) return;  // the step ended where a lag was taken anew
     const Law<double> law = this->law<double>();
     double work = 0;
     for (std::size_t e = 0; e < size(); ++e) {

@@ -263,10 +263,10 @@ void check_protocol(const RunConfig& config, const Complain& complain) {
                : "another step solver: article_literal needs scene drape2d with protocol article_literal");
 }
 
-/// Friction has no kernels.
-void check_friction_on_device(const RunConfig& config, const std::string& on, const Complain& complain) {
+/// Says of every coefficient above 0 what is allowed.
+void refuse_friction(const RunConfig& config, const std::string& allowed, const Complain& complain) {
   const auto refuse = [&](const std::string& pointer, double mu) {
-    if (mu > 0) complain(pointer, fmt::format("{}", mu), "0 " + on + ": friction runs with device cpu only");
+    if (mu > 0) complain(pointer, fmt::format("{}", mu), allowed);
   };
   refuse("/friction/mu", config.friction.mu);
   for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
@@ -281,7 +281,7 @@ void check_friction_on_device(const RunConfig& config, const std::string& on, co
 void check_device(const RunConfig& config, const Complain& complain) {
   if (config.device == Device::cpu) return;
   const std::string on = fmt::format("with device {}", word_of(config.device));
-  check_friction_on_device(config, on, complain);
+  refuse_friction(config, "0 " + on + ": friction runs with device cpu only", complain);
   if (config.precision != Precision::full) {
     complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);
   }
@@ -327,6 +327,10 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   check_tolerance(config, complain);
   check_protocol(config, complain);
   check_ritz(config, complain);
+  if (!config.method.empty()) {
+    refuse_friction(config, "0 with method " + config.method + ", whose file says nothing of friction",
+                    complain);
+  }
   check_device(config, complain);
   if (config.output.matrices && !config.passes.diagnose) {
     complain("/output/matrices", "true",

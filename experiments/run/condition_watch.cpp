@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cmath>
 #include <optional>
+#include <vector>
 
 #include "core/archive/archive.hpp"
 #include "core/linear/end_vectors.hpp"
@@ -14,18 +15,18 @@
 namespace bb {
 namespace {
 
-/// A stage leaves out groups of terms; it is there when the last of them has elements.
+/// A stage leaves out groups of terms; it is there when one of `needed` has elements, or when it leaves out nothing.
 struct Stage {
   MatrixStage name;
   TermSet left_out;
-  std::optional<TermGroup> last;
+  std::vector<TermGroup> needed;
 };
 constexpr TermSet of_contact = TermSet(TermGroup::contact) | TermGroup::friction;
-constexpr Stage stages[] = {
+const Stage stages[] = {
     {MatrixStage::full, {}, {}},
-    {MatrixStage::without_contact, of_contact, TermGroup::contact},
-    {MatrixStage::without_limit, TermGroup::limit, TermGroup::limit},
-    {MatrixStage::without_contact_and_limit, of_contact | TermGroup::limit, TermGroup::limit}};
+    {MatrixStage::without_contact, of_contact, {TermGroup::contact, TermGroup::friction}},
+    {MatrixStage::without_limit, TermGroup::limit, {TermGroup::limit}},
+    {MatrixStage::without_contact_and_limit, of_contact | TermGroup::limit, {TermGroup::limit}}};
 
 /// What the preconditioner of PCG makes of the matrix; nothing for one that is no scaling.
 std::optional<Scaling> scaling_of(const LinearSolverConfig& solver) {
@@ -101,7 +102,10 @@ void ConditionWatch::on_matrix(StepSystem& step_system, int step, int iteration)
   if (config_.diagnose.tier > 0) {  // tier 0 reads what the solve leaves
     for (const std::string& name : config_.diagnose.stages) {
       for (const Stage& stage : stages) {
-        if (name != to_string(stage.name) || (stage.last && !system.active(*stage.last))) continue;
+        const auto has_elements = [&](TermGroup group) { return system.active(group); };
+        if (name != to_string(stage.name)) continue;
+        if (!stage.needed.empty() && std::none_of(stage.needed.begin(), stage.needed.end(), has_elements))
+          continue;
         const TermSet set = TermSet::all().without(stage.left_out);
         estimate(system.clamped(set), MatrixForm::clamped, stage.name);
         if (config_.diagnose.ends) find_ends(system, set);

@@ -124,6 +124,14 @@ def test_a_skin_stays_where_it_is_asked_for(tmp_path, capsys):
     assert numbers_of(target)["face"]["v"].tolist() == [[2, 1, 0], [5, 6, 7]]
 
 
+def test_no_skin_is_kept_between_two_tetrahedra(tmp_path, capsys):
+    cells = [("tetra", TETRAHEDRA), ("triangle", [[2, 1, 0], [1, 2, 4]])]  # of one tetrahedron, of both
+    meshio.Mesh(POINTS, cells).write(tmp_path / "a.vtu")
+    code, target = convert(tmp_path / "a.vtu", "--skin")
+    assert code == 0
+    assert numbers_of(target)["face"]["v"].tolist() == [[2, 1, 0]]
+
+
 def test_the_program_reads_it(tmp_path):
     program = os.environ.get("BARRIERBENCH_PROGRAM")
     if not program:

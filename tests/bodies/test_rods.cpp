@@ -44,6 +44,10 @@ TEST(rods, are_as_stiff_as_their_mean_segment_and_mass_say) {
   EXPECT_NEAR(scene_of({rod}).rods.stiffness[0], 0.02 / 1.25 + 7 * 0.3 * 1.25, 1e-15);
   rod.material.rod_bending = 0;
   EXPECT_NEAR(scene_of({rod}).rods.stiffness[0], 7 * 0.3 * 1.25, 1e-15);
+  BodySpec weightless = rod;
+  weightless.material.line_density = 0;
+  const std::string said = complaint({weightless});
+  EXPECT_NE(said.find("/material/rod_bending_J_per_kg: found 7"), std::string::npos) << said;
   rod.material.rod_bending_per_mass = 0;
   EXPECT_TRUE(scene_of({rod}).rods.corners.empty());
 }

@@ -154,6 +154,15 @@ TEST(RodBend, HasFiniteTermsAtItsCusps) {
   }
 }
 
+TEST(RodBend, HasNoNumberWhereNeighboursCoincide) {
+  const Vec3d p(0.3, 0.1, 0.2), q(0.4, 0.1, 0.2);
+  for (const auto& points : {std::array{p, p, q}, std::array{p, q, q}}) {
+    const Vec3d x[3] = {points[0], points[1], points[2]};
+    EXPECT_TRUE(std::isnan(rod_bend_value<double>(x, stiffness, 0.4)));
+    EXPECT_FALSE(rod_bend_terms<double>(x, stiffness, 0.4, Projection::none).grad.allFinite());
+  }
+}
+
 TEST(RodBend, StaysFiniteUpToTheCusps) {
   for (const double off : {1e-4, 1e-8, 1e-12, 3e-16, 1e-18}) {
     for (const bool folded : {false, true}) {

@@ -111,3 +111,45 @@ def test_what_has_no_meaning_is_refused(program, tmp_path, setting, said):
 def test_a_device_refuses_friction_by_the_name_of_the_setting(program, tmp_path, setting):
     words = ["--set", "/device=host", "--set", "/linear_solver/name=pcg_resident", "--set", "/friction/mu=0", "--set", f"{setting}=0.3"]
     refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), setting, "friction runs with device cpu only")
+
+
+def test_a_published_method_refuses_friction_that_its_file_does_not_set(program, tmp_path):
+    words = ["--set", "/method=ando2024", "--set", "/friction/mu=0.3"]
+    refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), "/friction/mu", "0 with method ando2024")
+
+
+def test_another_step_solver_does_not_repeat_the_lag(program, tmp_path):
+    words = ["--set", "/step_solver/name=accumulated_toi", "--set", "/friction/lag_iterations=2"]
+    refused(bench(program, "run", SLOPE, "--out", tmp_path, *words), "/friction/lag_iterations")
+
+
+def test_a_step_whose_iterations_end_with_a_lag_is_not_converged(program, tmp_path):
+    """A cap from 1 up: each run ends with a word, and one of them at the very iteration that takes the lag anew."""
+    words = ["--set", "/time/steps=30", "--set", "/friction/mu=0.6", "--set", "/friction/lag_iterations=2", "--progress", "none"]
+    free = bench(program, "run", SLOPE, "--out", tmp_path / "free", *words)
+    assert free.returncode == 0, free.stderr
+    most = max(step["newton_iterations"] for step in json.loads((tmp_path / "free/run.json").read_text())["steps"])
+    assert most > 2
+    unfinished = 0
+    for cap in range(1, most):
+        done = bench(program, "run", SLOPE, "--out", tmp_path / str(cap), *words, "--set", f"/step_solver/max_iterations={cap}")
+        assert done.returncode == 0, done.stderr
+        record = json.loads((tmp_path / str(cap) / "run.json").read_text())
+        assert record["status"]["outcome"] != "ok"
+        last = record["steps"][-1]
+        assert last["status"] == "iteration_cap" and float(last["detail"].split()[1]) > 0, last
+        unfinished += last["friction_dissipation_J"] is None
+    assert unfinished > 0  # a lag that no iterate has read yet is no dissipation
+
+
+def test_a_run_that_goes_on_from_a_checkpoint_slides_as_one_that_was_not_stopped(program, tmp_path):
+    words = ["--set", "/friction/mu=0.3", "--set", "/output/checkpoint_every=10", "--progress", "none"]
+    whole = bench(program, "run", SLOPE, "--out", tmp_path / "whole", *words)
+    cut = bench(program, "run", SLOPE, "--out", tmp_path / "cut", *words, "--time-limit", "0.02")
+    assert whole.returncode == 0, whole.stderr
+    assert json.loads((tmp_path / "cut/run.json").read_text())["status"]["outcome"] == "timeout", cut.stderr
+    on = bench(program, "run", SLOPE, "--out", tmp_path / "cut", *words, "--resume")
+    assert on.returncode == 0, on.stderr
+    one, other = (json.loads((tmp_path / name / "run.json").read_text()) for name in ("whole", "cut"))
+    assert other["summary"]["state_hash"] == one["summary"]["state_hash"]
+    assert other["steps"][59]["friction_sliding"] == one["steps"][59]["friction_sliding"] == 9

@@ -220,6 +220,6 @@ def test_without_its_library_it_says_how_to_have_it(log_run, tmp_path, capsys, m
     assert "k3d is not installed (analysis/requirements-play.txt): ./bench setup" in refused(capsys, log_run, "--out", tmp_path / "a.html")
 
 
-@pytest.mark.parametrize("words", [("--every", "0"), ("--every", "x"), ("--colour", "heat"), ("--limit-mb", "x")])
+@pytest.mark.parametrize("words", [("--every", "0"), ("--every", "x"), ("--colour", "heat"), ("--limit-mb", "x"), ("--limit-mb", "nan"), ("--limit-mb", "0")])
 def test_options_that_are_none_are_refused(words, log_run, capsys):
     assert verb.main([str(log_run), *words]) == 2 and words[0] in capsys.readouterr().err

@@ -148,6 +148,19 @@ TEST(ResidentSettings, OptionsOfContact) {
   }
 }
 
+TEST(ResidentSettings, FrictionHasNoKernels) {
+  Method method = cubic();
+  method.friction.mu = 0.3;
+  test::run_resident(method);
+  const Scene scene = test::cloth_on_plate();
+  try {
+    const Simulation simulation(scene, method, 0.01, 1);
+    FAIL() << "not refused";
+  } catch (const ConfigError& error) {
+    EXPECT_EQ(error.violations()[0].where, "/device");
+  }
+}
+
 TEST(ResidentSettings, StiffnessOfTheStrainLimit) {
   const std::pair<Refresh, KappaDerivative> rules[] = {{Refresh::per_iteration, KappaDerivative::dropped},
                                                        {Refresh::per_step, KappaDerivative::dropped},

@@ -74,6 +74,13 @@ class Rods final : public Part {
     out.add("rod_rest", word({"shape", "straight"}),
             "Angles at which rods are at rest: those of the rest shape, or none.", &Material::rod_rest);
   }
+  void check(const BodySpec& spec, bool, const Complaints& complain) const override {
+    const Material& m = spec.material;
+    if (m.rod_bending_per_mass > 0 && !(m.line_density > 0)) {
+      complain("/material/rod_bending_J_per_kg", fmt::format("{}", m.rod_bending_per_mass),
+               "0 without line_density_kg_per_m: it multiplies the mass of the edges");
+    }
+  }
   std::string_view keys_doc() const override {
     return "A rod resists bending by one angle a vertex, the same in all directions, and no twist.";
   }

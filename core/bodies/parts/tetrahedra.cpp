@@ -84,8 +84,9 @@ class Tetrahedra final : public Part {
       complain("/material/solid_model", '"' + m.solid_model + '"', one_of_text(m.solid_model, names));
     }
     if (m.solid_model == "stable_neo_hookean" && !(m.solid_poisson > 0.125)) {
-      complain("/material/solid_poisson", fmt::format("{}", m.solid_poisson),
-               "a number > 0.125 with solid_model stable_neo_hookean, which has no smallest energy below");
+      complain(
+          "/material/solid_poisson", fmt::format("{}", m.solid_poisson),
+          "a number > 0.125 with solid_model stable_neo_hookean: else its energy is not smallest at rest");
     }
   }
 

@@ -40,6 +40,10 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
       product_partial_(*executor_, "partial products", Partition::most_blocks),
       sum_(*executor_),
       row_totals_(*executor_) {
+  if (plan.term("friction").needed) {
+    throw ConfigError("/device", "friction, a term without kernels",
+                      "a scene without friction, or device cpu");
+  }
   if (plan.term("contact").needed) {
     contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, vectors_.fixed());
   }
