@@ -82,7 +82,7 @@ def checked(path: Path, cells: Cells) -> Cells:
 
 
 def sharers_of(corners: np.ndarray, cells: np.ndarray, choices: list[tuple[int, ...]]) -> np.ndarray:
-    """Of each row of `corners`, how many cells have it, in any order, as one of the choices of their corners."""
+    """Of each row of `corners`, how many cells have it, in any order, as a choice of their corners."""
     faces = (
         np.concatenate([cells[:, list(choice)] for choice in choices])
         if len(cells)
