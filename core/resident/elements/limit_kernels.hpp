@@ -100,12 +100,7 @@ struct ElementKappa {
   KappaParts* parts;           // [n] J, written where kappa has a potential; else null
   double* before;              // [n] J, kappa before this refresh; null where the policy is uniform
   BB_HD void operator()(Index e) const {
-    Vec3d p[3], mass;
-    limit.points(x_n, e, p);
-    for (int k = 0; k < 3; ++k) mass[k] = vertex_mass[limit.vertex(k, e)];
-    const ElementSums<double> sums = element_sums<double>(
-        p, mass, element_mass ? element_mass[e] : 0.0, limit.rest.area[e], [&] { return elastic_block(e); },
-        with_hessian);
+    const ElementSums<double> sums = sums_of(e);
     if (before) before[e] = limit.kappa[e];
     if (parts) {
       parts[e] = policy.element_parts(sums, limit.band_width[e], time);
@@ -116,6 +111,21 @@ struct ElementKappa {
   }
 
  private:
+  /// A policy of one stiffness reads the area alone.
+  BB_HD ElementSums<double> sums_of(Index e) const {
+    if constexpr (requires { policy.values.uniform_kappa(); }) {
+      ElementSums<double> out;
+      out.area = limit.rest.area[e];
+      return out;
+    } else {
+      Vec3d p[3], mass;
+      limit.points(x_n, e, p);
+      for (int k = 0; k < 3; ++k) mass[k] = vertex_mass[limit.vertex(k, e)];
+      return element_sums<double>(
+          p, mass, element_mass ? element_mass[e] : 0.0, limit.rest.area[e], [&] { return elastic_block(e); },
+          with_hessian);
+    }
+  }
   BB_HD Mat<double, 9, 9> elastic_block(Index e) const {
     const int vertices[3] = {limit.vertex(0, e), limit.vertex(1, e), limit.vertex(2, e)};
     const SubMatrix h(elastic, vertices, 3);
