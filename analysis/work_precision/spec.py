@@ -17,6 +17,7 @@ from pathlib import Path
 from ..accuracy.errors import NAMES
 from ..accuracy.reference import CLOSED_FORMS
 from ..errors import UserError
+from ..json_file import read_json
 
 NAME = "barrierbench.work_precision/1"
 AXES = ("tolerance", "dt_s", "d_hat_m", "kappa")
@@ -228,12 +229,7 @@ def _gravity(base: Path, settings: dict, reader: _Reader, pointer: str) -> float
     9.81 where neither says.
     """
     own = _Reader(base)
-    try:
-        config = json.loads(base.read_bytes())
-    except OSError as error:
-        raise UserError(f"{base}: {error.strerror}") from None
-    except ValueError as error:
-        raise UserError(f"{base}: not JSON: {error}") from None
+    config = read_json(base)
     if not isinstance(config, dict):
         own.fail("/", config, "an object: a config with a scene")
     if not isinstance(scene := config.get("scene"), dict):

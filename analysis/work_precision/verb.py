@@ -15,6 +15,7 @@ from pathlib import Path
 
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
+from ..json_file import read_json
 from ..places import ROOT
 from ..whole_file import write_whole
 from . import figure, report
@@ -95,12 +96,7 @@ def table_text(table: dict) -> str:
 
 def read_table(file: Path) -> dict:
     """Errors: UserError."""
-    try:
-        table = json.loads(file.read_text())
-    except OSError as error:
-        raise UserError(f"{file}: {error.strerror}; ./bench work-precision makes it") from None
-    except ValueError as error:
-        raise UserError(f"{file}: not JSON: {error}") from None
+    table = read_json(file, "; ./bench work-precision makes it")
     if not isinstance(table, dict) or table.get("schema") != TABLE:
         raise UserError(
             f"{file}: /schema: found {table.get('schema') if isinstance(table, dict) else table!r}; allowed:"

@@ -15,33 +15,17 @@ from analysis.frames import Frame, frame_paths, read_frame, read_scene
 from analysis.obstacle_rays import hits, primitive_gaps, signed_gap
 from analysis.rasterizer import Camera, DepthBuffer
 from analysis.record_file import read_record
+from tests.falling_cloth import CLOTH_ON_BALL
 
 SMALL = (120, 90)
-CLOTH_ON_SPHERE = {
-    "schema": "barrierbench.config/1",
-    "scene": {
-        "bodies": [
-            {"name": "cloth", "mesh": {"generator": "grid", "n_x": 6, "n_y": 6, "size_x_m": 0.4, "size_y_m": 0.4},
-             "transform": {"translate_m": [0.03, 0.01, 0.106]}, "velocity_m_per_s": [0, 0, -0.5]},
-            {"name": "rod", "mesh": {"generator": "rod", "n_segments": 3, "length_m": 0.2},
-             "transform": {"translate_m": [0, 0, 0.2]}, "limited": False,
-             "material": {"springs_N_per_m": 100, "line_density_kg_per_m": 0.1}},
-        ],
-        "obstacles": [{"name": "ball", "kind": "sphere", "point_m": [0, 0, 0], "radius_m": 0.1}],
-    },
-    "formulation": {"name": "log", "d_hat_m": 0.005},
-    "strain_limit": {"limit": 0.05},
-    "time": {"dt_s": 0.01, "steps": 5},
-    "output": {"frames_every": 2},
-}
 
 
 @pytest.fixture(scope="module")
 def run(program, tmp_path_factory):
     """A cloth that has fallen onto a sphere, with frames of the start and of steps 0, 2 and 4."""
     folder = tmp_path_factory.mktemp("render")
-    (folder / "config.json").write_text(json.dumps(CLOTH_ON_SPHERE))
-    done = subprocess.run([program, "run", folder / "config.json", "--out", folder / "out", "--set", "/passes/time=false"],
+    (folder / "config.json").write_text(json.dumps({**CLOTH_ON_BALL, "output": {"frames_every": 2}}))
+    done = subprocess.run([program, "run", folder / "config.json", "--out", folder / "out"],
                           capture_output=True, text=True, check=False, timeout=60)
     assert done.returncode == 0, done.stderr
     return folder / "out"
