@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <functional>
+#include <string>
 #include <vector>
 
 #include "core/bodies/complaints.hpp"
@@ -13,6 +14,16 @@ namespace bb {
 
 /// Adds a mass (kg) to a vertex of the body.
 using AddMass = std::function<void(int vertex, double mass)>;
+
+/// The elements of that model among those of a part, one list a model; begun where there are none yet.
+template <class List>
+List& of_model(const std::string& model, std::vector<List>& lists) {
+  const auto found =
+      std::find_if(lists.begin(), lists.end(), [&](const List& list) { return list.model == model; });
+  if (found != lists.end()) return *found;
+  lists.emplace_back().model = model;
+  return lists.back();
+}
 
 struct BodyElements {
   Scene& scene;

@@ -19,6 +19,8 @@ struct Complaints {
   }
   /// Of a number that is not good, or not finite.
   void number(const std::string& what, double found, bool good, const std::string& allowed) const;
+  /// Of a model that is none of these, and not "none", which makes no elements.
+  void model(const std::string& what, const std::string& found, std::vector<std::string> names) const;
 };
 
 }  // namespace bb

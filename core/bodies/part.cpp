@@ -4,6 +4,10 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
+#include <algorithm>
+
+#include "core/parameters/registry.hpp"
+
 namespace bb {
 
 std::span<const PartEntry> part_entries() {
@@ -30,6 +34,13 @@ void require_kernels(std::span<const PartEntry> entries, const Scene& scene, con
 
 void Complaints::number(const std::string& what, double found, bool good, const std::string& allowed) const {
   if (!good || !std::isfinite(found)) (*this)(what, fmt::format("{}", found), allowed);
+}
+
+void Complaints::model(const std::string& what, const std::string& found,
+                       std::vector<std::string> names) const {
+  names.emplace_back("none");
+  if (std::find(names.begin(), names.end(), found) != names.end()) return;
+  (*this)(what, '"' + found + '"', one_of_text(found, names));
 }
 
 template <>

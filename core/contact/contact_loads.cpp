@@ -7,12 +7,6 @@
 namespace bb {
 namespace {
 
-/// That of a row's key; -1 without one.
-int obstacle_of(const ContactKey& key) {
-  const auto named = std::find_if(key.begin(), key.end(), [](int id) { return id < -1; });
-  return named == key.end() ? -1 : -2 - *named;
-}
-
 /// All of a row but its load.
 template <class Table>
 void add_row(const Table& rows, std::size_t r, ContactLoads& out) {
@@ -22,7 +16,7 @@ void add_row(const Table& rows, std::size_t r, ContactLoads& out) {
   append(rows.stencil, 4, out.stencil);
   append(rows.stencil_weight, 4, out.weight);
   append(rows.normal, 3, out.normal);
-  out.obstacle.push_back(obstacle_of(rows.key[r]));
+  out.obstacle.push_back(obstacle_of(*std::min_element(rows.key[r].begin(), rows.key[r].end())));
 }
 
 }  // namespace

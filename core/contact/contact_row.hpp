@@ -56,7 +56,7 @@ ContactKey obstacle_key(int obstacle, const std::array<int, N>& vertex) {
   ContactKey key{-1, ids[0], ids[1], ids[2]};
   for (std::size_t k = 4; k-- > 0;) {
     if (key[k] != -1) continue;
-    key[k] = -2 - obstacle;
+    key[k] = id_of_obstacle(obstacle);
     break;
   }
   return key;

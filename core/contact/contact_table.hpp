@@ -27,6 +27,9 @@ constexpr bool is_obstacle(ContactKind kind) { return kind >= ContactKind::obsta
 /// Identity of a contact across iterations: sorted ids of all its vertices, given ones included, -1 padded in
 /// front; an obstacle o appears as -2 - o.
 using ContactKey = std::array<int, 4>;
+constexpr int id_of_obstacle(int obstacle) { return -2 - obstacle; }
+/// The obstacle of an entry of a key; -1 where it is a vertex or padding.
+constexpr int obstacle_of(int id) { return id < -1 ? -2 - id : -1; }
 
 /// Identity of one candidate pair over a whole run, whatever features realise it; compare only.
 using PairId = std::uint64_t;

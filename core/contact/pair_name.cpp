@@ -12,7 +12,7 @@ std::string pair_name(const Scene& scene, const ContactKey& key, ContactKind kin
     out += separator;
     separator = ", ";
     if (id < -1) {
-      const std::size_t o = static_cast<std::size_t>(-2 - id);
+      const std::size_t o = static_cast<std::size_t>(obstacle_of(id));
       out += scene.obstacles[o].name.empty() ? "obstacle " + std::to_string(o) : scene.obstacles[o].name;
       continue;
     }

@@ -17,8 +17,9 @@ TetrahedronRest<T> solid_rest_in(const TetrahedronRest<double>& rest) {
 
 template <class T>
 const Registry<SolidModel<T>>& solid_models() {
-#define ENTRY(name, doc) \
-  SolidModel<T>{#name, doc, &tetrahedron_value<solid::name, T>, &tetrahedron_terms<solid::name, T>},
+#define ENTRY(name, doc, poisson_above)                                        \
+  SolidModel<T>{#name, doc, poisson_above, &tetrahedron_value<solid::name, T>, \
+                &tetrahedron_terms<solid::name, T>},
   static const Registry<SolidModel<T>> models({
 #include "core/energy/solids.inc"
   });

@@ -18,6 +18,7 @@ struct SolidModel {
   using Terms = ElementTerms<T, 12> (*)(const TetrahedronRest<T>&, const Vec<T, 3> (&)[4], T lame_mu,
                                         T lame_lambda, Projection);
   std::string_view name, doc;
+  double poisson_above;  // Poisson's ratios from here down make an energy that is not smallest at rest
   Value value;
   Terms terms;
 };

@@ -4,7 +4,7 @@
 
 namespace bb {
 
-#define ENTRY(name, doc, convex)           \
+#define ENTRY(name, ...)                   \
   PlanItem needs_##name(const TermNeeds&); \
   void make_##name(const TermInputs&, TermList&);
 #define PART(...)
@@ -14,9 +14,15 @@ namespace bb {
 
 std::span<const TermEntry> term_entries() {
   static constexpr TermEntry all[] = {
-#define ENTRY(name, doc, convex) {#name, doc, convex, needs_##name, make_##name},
-#define PART(name, doc, convex, ...) \
-  {#name, doc, convex, needs_part<parts::name::part>, make_part<parts::name::part>},
+#define ENTRY(name, doc, convex, kernels) \
+  {#name, doc, convex, [] { return kernels; }, needs_##name, make_##name},
+#define PART(name, doc, convex, ...)                 \
+  {#name,                                            \
+   doc,                                              \
+   convex,                                           \
+   [] { return parts::name::part().has_kernels(); }, \
+   needs_part<parts::name::part>,                    \
+   make_part<parts::name::part>},
 #include "core/terms/registry.inc"
 #undef ENTRY
 #undef PART

@@ -10,7 +10,7 @@ BodyPair body_pair(const Scene& scene, const ContactKey& key) {
   int low = std::numeric_limits<int>::max(), high = -1;
   for (const int id : key) {
     if (id == -1) continue;
-    const int owner = id < 0 ? n_bodies - 2 - id : scene.body[static_cast<std::size_t>(id)];
+    const int owner = id < 0 ? n_bodies + obstacle_of(id) : scene.body[static_cast<std::size_t>(id)];
     low = std::min(low, owner);
     high = std::max(high, owner);
   }

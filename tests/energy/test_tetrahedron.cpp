@@ -17,7 +17,7 @@ constexpr double lame_mu = 3.0, lame_lambda = 2.0;
 
 template <class F>
 void for_each_solid(const F& f) {
-#define ENTRY(name, doc) f.template operator()<solid::name>(std::string(#name));
+#define ENTRY(name, ...) f.template operator()<solid::name>(std::string(#name));
 #include "core/energy/solids.inc"
 #undef ENTRY
 }

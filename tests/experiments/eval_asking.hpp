@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <nlohmann/json.hpp>
 #include <sstream>
 #include <string>
@@ -46,6 +48,11 @@ inline std::string refused(const json& query) {
   if (reply.answers.size() != 1 || !reply.answers[0].contains("error")) return {};
   EXPECT_EQ(reply.answers[0].size(), 2u);
   return reply.answers[0]["error"];
+}
+
+inline void expect_close(const json& value, double expected, double relative = 1e-12) {
+  ASSERT_TRUE(value.is_number()) << value;
+  EXPECT_NEAR(value.get<double>(), expected, relative * std::max(std::abs(expected), 1e-300));
 }
 
 /// A complete, valid query of every kind, with the names of the fields that may be left out.

@@ -39,13 +39,6 @@ void add_youngs(Settings<Material>& out) {
       [](const Material& m) { return m.thickness ? json() : json(m.youngs); });
 }
 
-void check_model(const Complaints& complain, const std::string& model) {
-  std::vector<std::string> names = membrane_models<double>().names();
-  names.emplace_back("none");
-  if (std::find(names.begin(), names.end(), model) != names.end()) return;
-  complain("/material/model", '"' + model + '"', one_of_text(model, names));
-}
-
 void check_warp_axis(const Complaints& complain, const Material& m, bool planar) {
   if (!m.warp_axis) return;
   const Vec3d& axis = *m.warp_axis;
@@ -69,16 +62,6 @@ void check_warp(const BodySpec& spec, const Vec3d& warp, const BodyElements& to)
                        fmt::format("[{}, {}, {}], the normal of triangle {}", warp[0], warp[1], warp[2], t),
                        "an axis that is normal to no triangle of the rest shape");
   }
-}
-
-/// The elements of that model, begun where there are none yet.
-MembranePart& of_model(const std::string& model, Scene& scene) {
-  std::vector<MembranePart>& parts = scene.membranes;
-  const auto found =
-      std::find_if(parts.begin(), parts.end(), [&](const MembranePart& part) { return part.model == model; });
-  if (found != parts.end()) return *found;
-  parts.emplace_back().model = model;
-  return parts.back();
 }
 
 /// Largest singular value of F, minus 1, of every surface triangle; 0 for one that only moves.
@@ -169,7 +152,7 @@ class Membrane final : public Part {
   }
   void check(const BodySpec& spec, bool planar, const Complaints& complain) const override {
     const Material& m = spec.material;
-    check_model(complain, m.model);
+    complain.model("/material/model", m.model, membrane_models<double>().names());
     check_warp_axis(complain, m, planar);
     complain.number("/material/youngs", m.youngs, m.youngs > 0, "a number > 0");  // under either name
   }
@@ -195,7 +178,7 @@ class Membrane final : public Part {
     if (directed) check_warp(spec, warp, to);
     if (material.model == "none") return;
     const LameParameters lame = shell_lame(material.youngs_per_width(), material.poisson);
-    MembranePart& part = of_model(material.model, to.scene);
+    MembranePart& part = of_model(material.model, to.scene.membranes);
     for (const auto& local : spec.mesh.triangles) {
       const auto t = to.in_scene(local);
       if (to.all_prescribed(t)) continue;

@@ -19,15 +19,6 @@ SolidLame solid_lame(double youngs, double poisson) {
   return {youngs / (2 * (1 + poisson)), youngs * poisson / ((1 + poisson) * (1 - 2 * poisson))};
 }
 
-/// The elements of that model, begun where there are none yet.
-SolidPart& solids_of(const std::string& model, Scene& scene) {
-  for (SolidPart& part : scene.solids) {
-    if (part.model == model) return part;
-  }
-  scene.solids.emplace_back().model = model;
-  return scene.solids.back();
-}
-
 /// Smallest volume over volume at rest of the tetrahedra at each vertex; 1 where there are none.
 std::vector<double> volume_ratios(const Scene& scene, const Positions& x) {
   std::vector<double> out(static_cast<std::size_t>(scene.n_vertices()), 1.0);
@@ -78,15 +69,12 @@ class Tetrahedra final : public Part {
   }
   void check(const BodySpec& spec, bool, const Complaints& complain) const override {
     const Material& m = spec.material;
-    std::vector<std::string> names = solid_models<double>().names();
-    names.emplace_back("none");
-    if (std::find(names.begin(), names.end(), m.solid_model) == names.end()) {
-      complain("/material/solid_model", '"' + m.solid_model + '"', one_of_text(m.solid_model, names));
-    }
-    if (m.solid_model == "stable_neo_hookean" && !(m.solid_poisson > 0.125)) {
-      complain(
-          "/material/solid_poisson", fmt::format("{}", m.solid_poisson),
-          "a number > 0.125 with solid_model stable_neo_hookean: else its energy is not smallest at rest");
+    complain.model("/material/solid_model", m.solid_model, solid_models<double>().names());
+    const SolidModel<double>* model = solid_models<double>().find(m.solid_model);
+    if (model && !(m.solid_poisson > model->poisson_above)) {
+      complain("/material/solid_poisson", fmt::format("{}", m.solid_poisson),
+               fmt::format("a number > {} with solid_model {}: else its energy is not smallest at rest",
+                           model->poisson_above, m.solid_model));
     }
   }
 
@@ -128,7 +116,7 @@ class Tetrahedra final : public Part {
     const Material& material = spec.material;
     if (spec.mesh.tetrahedra.empty() || material.solid_model == "none") return;
     const SolidLame lame = solid_lame(material.solid_youngs, material.solid_poisson);
-    SolidPart& part = solids_of(material.solid_model, to.scene);
+    SolidPart& part = of_model(material.solid_model, to.scene.solids);
     for (const auto& local : spec.mesh.tetrahedra) {
       const auto t = to.in_scene(local);
       if (to.all_prescribed(t)) continue;

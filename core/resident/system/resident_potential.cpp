@@ -22,6 +22,15 @@ ParameterMap linear_parameters(const Method& method) {
   return own_parameters(entry.parameters, method.linear.parameters, "/linear_solver");
 }
 
+/// A term that the plan needs and no kernel computes would be left out of E.
+void require_kernels(const Plan& plan) {
+  for (const TermEntry& entry : term_entries()) {
+    if (!plan.term(entry.name).needed || entry.has_kernels()) continue;
+    throw ConfigError("/device", std::string(entry.name) + ", a term without kernels",
+                      "a scene without it, or device cpu");
+  }
+}
+
 }  // namespace
 
 ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, const Scene& scene,
@@ -40,10 +49,7 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
       product_partial_(*executor_, "partial products", Partition::most_blocks),
       sum_(*executor_),
       row_totals_(*executor_) {
-  if (plan.term("friction").needed) {
-    throw ConfigError("/device", "friction, a term without kernels",
-                      "a scene without friction, or device cpu");
-  }
+  require_kernels(plan);
   if (plan.term("contact").needed) {
     contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, vectors_.fixed());
   }
