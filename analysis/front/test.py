@@ -58,6 +58,15 @@ def skipped_cpp(log: str) -> list[str]:
     )
 
 
+def ptx_share(log: str) -> list[str]:
+    """A line of the summary about the tests that run nvcc's PTX: how many, and their share of the time of all."""
+    seconds = {name: float(s) for name, s in re.findall(r"Test +#\d+: (\S+) .*?([\d.]+) sec", log)}
+    ptx = [s for name, s in seconds.items() if name.startswith("ptx.")]
+    if not ptx:
+        return []
+    return [f"PTX      {len(ptx)} C++ tests run PTX: {sum(ptx):.0f} of {sum(seconds.values()):.0f} s of one core"]
+
+
 def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
     log = folder(preset) / "ctest.log"
     code = _into(
@@ -75,7 +84,7 @@ def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
     )
     text = log.read_text(errors="replace")
     print("\n".join(text.splitlines()[-6:]) if code == 0 else text, flush=True)
-    summary.lines += skipped_cpp(text)
+    summary.lines += ptx_share(text) + skipped_cpp(text)
     return code
 
 
@@ -136,8 +145,10 @@ def main(argv: list[str]) -> int:
     arguments = [word for word in argv if word not in OWN]
     preset = "sanitize" if "--sanitize" in own else "release"
     set_up("--browser" in own)
-    build(preset, options={"BB_CUDA": "AUTO"})
     summary = Summary()
+    start = time.monotonic()
+    build(preset, options={"BB_CUDA": "AUTO"})
+    summary.lines.append(f"built    {preset} ({time.monotonic() - start:.0f} s)")
     summary.step("clang-format", lambda: formatting.clang_format("--dry-run", "--Werror"))
     summary.step("rooms", lambda: rooms.main([]))
     summary.step(f"C++ tests ({preset})", lambda: cpp_tests(preset, arguments, summary))
