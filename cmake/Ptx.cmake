@@ -1,71 +1,6 @@
-# Tests that run nvcc's PTX on the CPU (tests/ptx). Everything in such an executable is compiled without Eigen's
-# vectors, whose sums have an order of their own; that changes Eigen's alignment too, so that none of the bb_ libraries
-# may be linked: bb_plain_rooms compiles their sources again.
+# Tests that run nvcc's PTX on the CPU (tests/ptx), linked with the rooms of the program itself.
 find_package(Python3 REQUIRED COMPONENTS Interpreter)
-set(BB_PLAIN_OPTIONS -DEIGEN_DONT_VECTORIZE)
 file(GLOB BB_PTX_TRANSLATOR CONFIGURE_DEPENDS "${PROJECT_SOURCE_DIR}/tests/ptx/translator/*.py")
-
-# bb_plain_rooms(NAME rooms... [WITHOUT other] [EXCEPT rooms...]): object library NAME of the sources of these rooms and of
-# all that they name, but for the rooms of another such library and for those of EXCEPT.
-function(bb_plain_rooms name)
-  cmake_parse_arguments(ARG "" "WITHOUT" "EXCEPT" ${ARGN})
-  set(open ${ARG_UNPARSED_ARGUMENTS})
-  set(others "")
-  if(ARG_WITHOUT)
-    get_target_property(others ${ARG_WITHOUT} BB_PLAIN_ROOMS)
-  endif()
-  set(rooms "")
-  set(libraries "")
-  while(open)
-    list(POP_FRONT open room)
-    if(NOT room MATCHES "^bb_" OR NOT TARGET ${room})
-      list(APPEND libraries ${room})
-      continue()
-    endif()
-    if(room IN_LIST rooms OR room IN_LIST ARG_EXCEPT OR room STREQUAL "bb_pch" OR room STREQUAL "bb_settings")
-      continue()
-    endif()
-    list(APPEND rooms ${room})
-    get_target_property(links ${room} INTERFACE_LINK_LIBRARIES)
-    if(links)
-      list(APPEND open ${links})
-    endif()
-  endwhile()
-  set(sources "")
-  foreach(room IN LISTS rooms)
-    if(room IN_LIST others)
-      continue()
-    endif()
-    get_target_property(type ${room} TYPE)
-    if(type STREQUAL "INTERFACE_LIBRARY")
-      continue()
-    endif()
-    get_target_property(folder ${room} SOURCE_DIR)
-    get_target_property(files ${room} SOURCES)
-    foreach(file IN LISTS files)
-      if(file MATCHES "\\.cpp$" AND NOT file MATCHES "cmake_pch")
-        cmake_path(ABSOLUTE_PATH file BASE_DIRECTORY "${folder}")
-        list(APPEND sources "${file}")
-      endif()
-    endforeach()
-  endforeach()
-  list(REMOVE_DUPLICATES sources)
-  list(REMOVE_DUPLICATES libraries)
-  list(FILTER libraries EXCLUDE REGEX "LINK_ONLY")
-  add_library(${name} OBJECT ${sources})
-  set_target_properties(${name} PROPERTIES BB_PLAIN_ROOMS "${rooms}")
-  target_link_libraries(${name} PUBLIC bb_settings Eigen3::Eigen ${libraries})
-  # Many files at once: most of the time goes into headers.
-  set_target_properties(${name} PROPERTIES UNITY_BUILD ON UNITY_BUILD_BATCH_SIZE 14)
-  # The optimiser's first level: no bit depends on it, and it takes less time to compile.
-  target_compile_options(${name} PUBLIC ${BB_PLAIN_OPTIONS} PRIVATE -O1)
-  target_include_directories(${name} PUBLIC "${PROJECT_BINARY_DIR}/generated")
-  target_precompile_headers(${name} PRIVATE <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> <algorithm> <array> <functional>
-    <memory> <optional> <span> <string> <vector>)
-  foreach(room IN LISTS rooms)  # headers that a room generates
-    add_dependencies(${name} ${room})
-  endforeach()
-endfunction()
 
 # bb_ptx_module(NAME SOURCE file.cu): object library NAME, the PTX of the file as C++.
 function(bb_ptx_module name)
@@ -110,17 +45,16 @@ function(bb_ptx_translation name ptx option)
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
 endfunction()
 
-# bb_ptx_test(NAME LEAST n MODULES ... [USES ...] SOURCES ... [ROOMS library of bb_plain_rooms] [SKIP cases]): test_NAME,
+# bb_ptx_test(NAME LEAST n MODULES ... [USES ...] SOURCES ... [ROOMS libraries ...] [SKIP cases]): test_NAME,
 # one test of ctest without the cases of a pattern of GoogleTest, which also fails when less than LEAST per cent of the
 # instructions of one of its MODULES ran; those that it only USES are judged elsewhere. test_NAME_faults, built on demand:
 # the same with switches for inject_faults.py.
 function(bb_ptx_test name)
-  cmake_parse_arguments(ARG "" "LEAST;ROOMS;SKIP" "MODULES;USES;SOURCES" ${ARGN})
+  cmake_parse_arguments(ARG "" "LEAST;SKIP" "MODULES;USES;SOURCES;ROOMS" ${ARGN})
   add_library(${name}_cases OBJECT ${ARG_SOURCES} "${PROJECT_SOURCE_DIR}/tests/ptx/main.cpp")
   set_target_properties(${name}_cases PROPERTIES UNITY_BUILD ON)
   target_link_libraries(${name}_cases PRIVATE bb_joined)
   target_link_libraries(${name}_cases PUBLIC bb_settings Eigen3::Eigen GTest::gtest TBB::tbb nlohmann_json::nlohmann_json fmt::fmt)
-  target_compile_options(${name}_cases PRIVATE ${BB_PLAIN_OPTIONS})
   target_compile_definitions(${name}_cases PRIVATE BB_PTX_LEAST=${ARG_LEAST} "BB_PTX_SKIP=\"${ARG_SKIP}\""
     "BB_PTX_MODULES=\"$<JOIN:${ARG_MODULES}, >\"")
   target_include_directories(${name}_cases PRIVATE "${PROJECT_BINARY_DIR}/generated")
