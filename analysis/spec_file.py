@@ -5,7 +5,6 @@ in configs/schema/. What no schema can say, a reader checks after it.
 
 from __future__ import annotations
 
-import json
 import math
 from functools import cache
 from pathlib import Path
@@ -13,9 +12,9 @@ from pathlib import Path
 from jsonschema import Draft202012Validator, validators
 from jsonschema.exceptions import ValidationError
 
+from . import fields
 from .errors import UserError
 from .json_file import read_object
-from .places import SCHEMAS
 
 
 def _is_integer(_, value) -> bool:
@@ -38,7 +37,7 @@ _Validator = validators.extend(
 
 @cache
 def _validator(kind: str) -> Draft202012Validator:
-    return _Validator(json.loads((SCHEMAS / f"{kind}.schema.json").read_text()))
+    return _Validator(fields.schema(kind))
 
 
 def _order(error: ValidationError) -> tuple:

@@ -7,11 +7,11 @@ dt^2/2)/dt, since what a step may leave out depends on both; the program takes a
 
 from __future__ import annotations
 
-import hashlib
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
+from ..digests import of_file
 from ..spec_file import read_spec as read_json_spec
 from ..spec_file import refused, require_base
 from .gravity import gravity_of
@@ -189,7 +189,7 @@ def read_spec(file: Path) -> Spec:
         data["name"],
         data.get("doc", ""),
         file,
-        hashlib.sha256(file.read_bytes()).hexdigest(),
+        of_file(file),
         tuple(map(_formulation, data["formulations"])),
         tuple(_scene(scene, file, f"scenes/{k}") for k, scene in enumerate(data["scenes"])),
     )
