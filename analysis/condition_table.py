@@ -16,6 +16,7 @@ from pathlib import Path
 
 from .errors import UserError, tells
 from .front.arguments import parser_of
+from .json_file import read_object
 from .places import ROOT
 from .program import started
 from .text_table import markdown as table_lines
@@ -82,14 +83,13 @@ def _keep(spec: dict, cases: list[str]) -> None:
         axis["cases"] = kept
 
 
+def _sweep(name: str) -> dict:
+    return read_object(ROOT / f"configs/sweeps/{name}.json")
+
+
 def check_labels(sweeps: list[str], cases: list[str]) -> None:
     """Raises UserError for a label that no sweep has: a misspelt one would be left out in silence."""
-    labels = {
-        case["label"]
-        for name in sweeps
-        for axis in _labelled(json.loads((ROOT / f"configs/sweeps/{name}.json").read_text()))
-        for case in axis["cases"]
-    }
+    labels = {case["label"] for name in sweeps for axis in _labelled(_sweep(name)) for case in axis["cases"]}
     if unknown := [label for label in cases if label not in labels]:
         raise UserError(
             f"--cases {unknown[0]}: none of {', '.join(sweeps)} has it; they have {', '.join(sorted(labels))}"
@@ -97,7 +97,7 @@ def check_labels(sweeps: list[str], cases: list[str]) -> None:
 
 
 def of_sweep(name: str, cases: list[str], work: Path) -> list[Pair]:
-    spec = json.loads((ROOT / f"configs/sweeps/{name}.json").read_text())
+    spec = _sweep(name)
     spec["base"] = str((ROOT / "configs/sweeps" / spec["base"]).resolve())
     if cases:
         _keep(spec, cases)
@@ -134,7 +134,7 @@ def of_corpus(work: Path) -> list[Pair]:
     out = work / "replay.json"
     run(["matrix", *map(str, sorted((ROOT / "results/matrices").glob("*.mtx"))), "--json", str(out)])
     by_tier: dict[int, dict[tuple, dict]] = {tier: {} for tier in TIERS}
-    for one in json.loads(out.read_text())["matrices"]:
+    for one in read_object(out)["matrices"]:
         for estimate in one["estimates"]:
             if estimate["tier"] in TIERS:
                 by_tier[estimate["tier"]][(one["file"], estimate["scaling"])] = estimate

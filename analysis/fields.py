@@ -14,7 +14,7 @@ OWN_NAMES = ("ids", "status", "labels", "summary")  # sections of a run whose fi
 
 @cache
 def schema(name: str) -> dict:
-    """configs/schema/NAME.schema.json: `run` or `trace`."""
+    """configs/schema/NAME.schema.json."""
     return json.loads((SCHEMAS / f"{name}.schema.json").read_text())
 
 

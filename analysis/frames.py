@@ -6,15 +6,16 @@ A frame is the binary PLY file that `bench run --set /output/frames_every=N` lea
 
 from __future__ import annotations
 
-import json
 import re
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
 
 from .errors import UserError
-from .record_file import bound_file, named_files
+from .json_file import read_object
+from .record_file import bound_file, bound_files, named_files
 
 TYPES = {"double": "<f8", "float": "<f4", "int": "<i4", "uchar": "u1"}
 
@@ -92,11 +93,18 @@ def frame_paths(record: dict, run: str | Path) -> dict[int, Path]:
     return dict(sorted(found.items()))
 
 
+def frames_of(record: dict, run: str | Path, steps: Iterable[int]) -> Iterator[Frame]:
+    """Those of frame_paths() that these steps end with, read one after the other. Raises UserError,
+    RecordError: a file is not the one that the record names.
+    """
+    paths = frame_paths(record, run)
+    relatives = (paths[step].relative_to(run).as_posix() for step in steps)
+    return map(read_frame, bound_files(record, Path(run), relatives))
+
+
 def frame_of(record: dict, run: str | Path, step: int) -> Frame:
-    """One of frame_paths(). Raises UserError, RecordError: the file is not the one that the record names."""
-    return read_frame(
-        bound_file(record, Path(run), frame_paths(record, run)[step].relative_to(run).as_posix())
-    )
+    """One frame, otherwise as frames_of."""
+    return next(frames_of(record, run, [step]))
 
 
 def read_scene(record: dict, run: str | Path) -> dict:
@@ -104,7 +112,4 @@ def read_scene(record: dict, run: str | Path) -> dict:
     Raises UserError, RecordError.
     """
     path = bound_file(record, Path(run), "frames/scene.json")
-    try:
-        return json.loads(path.read_text())
-    except (OSError, ValueError) as error:
-        raise UserError(f"{path}: {error}") from None
+    return read_object(path)

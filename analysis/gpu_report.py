@@ -6,7 +6,6 @@ One row a card. Without a record the page says that nothing was timed. Prices ar
 
 from __future__ import annotations
 
-import shutil
 import tempfile
 from pathlib import Path
 
@@ -15,6 +14,7 @@ import pandas as pd
 
 from . import style
 from .errors import UserError, tells
+from .figure_files import copy_to_page
 from .front.arguments import parser_of
 from .gpu_evidence import RECORDS, SCHEMA
 from .json_file import read_object
@@ -280,8 +280,6 @@ def main(arguments: list[str]) -> int:
         raise UserError(f"{asked.records}: no field {missing} in a record") from None
     write_whole((asked.results or ROOT / "results") / "GPU.md", page)
     with tempfile.TemporaryDirectory() as scratch:
-        for path in draw(records, Path(scratch) / "gpu_kernels"):
-            if path.suffix in (".png", ".txt"):
-                shutil.copyfile(path, (asked.results or ROOT / "docs") / path.name)
+        copy_to_page(draw(records, Path(scratch) / "gpu_kernels"), asked.results or ROOT / "docs")
     print(page)
     return 0

@@ -1,4 +1,4 @@
-"""JSON from files."""
+"""JSON from files, and tables in them: columns once, one line a row."""
 
 from __future__ import annotations
 
@@ -14,13 +14,37 @@ def read_json(path: Path, remedy: str = "") -> object:
         return json.loads(path.read_bytes())
     except OSError as fault:
         raise UserError(f"{path}: {fault.strerror}{remedy}") from None
-    except ValueError as fault:
-        raise UserError(f"{path}: not JSON: {fault}") from None
+    except (ValueError, RecursionError) as fault:
+        raise UserError(f"{path}: not JSON: {fault}{remedy}") from None
 
 
-def read_object(path: Path) -> dict:
+def read_object(path: Path, remedy: str = "") -> dict:
     """A JSON object from a file. Errors: UserError, which says what the file is instead."""
-    data = read_json(path)
+    data = read_json(path, remedy)
     if not isinstance(data, dict):
-        raise UserError(f"{path}: not a JSON object")
+        raise UserError(f"{path}: not a JSON object{remedy}")
     return data
+
+
+def read_of_schema(path: Path, schema: str, remedy: str = "") -> dict:
+    """A JSON object whose `schema` is this one. Errors: UserError."""
+    data = read_object(path, remedy)
+    if data.get("schema") != schema:
+        raise UserError(f"{path}#/schema: found {data.get('schema')!r}; {schema!r} is needed{remedy}")
+    return data
+
+
+def lines_of(rows: list[dict], columns: tuple[str, ...]) -> str:
+    """The rows as JSON arrays in the order of the columns, one a line. Errors: ValueError for a number that
+    is none.
+    """
+    return ",\n  ".join(
+        json.dumps([row[c] for c in columns], separators=(",", ":"), allow_nan=False) for row in rows
+    )
+
+
+def rows_of(data: dict, columns: tuple[str, ...], path: Path, remedy: str = "") -> list[dict]:
+    """The rows of an object that has `columns` and `rows`. Errors: UserError where the columns are others."""
+    if data.get("columns") != list(columns):
+        raise UserError(f"{path}#/columns: found {data.get('columns')!r}; {list(columns)} are needed{remedy}")
+    return [dict(zip(columns, row)) for row in data["rows"]]

@@ -17,6 +17,7 @@ from pathlib import Path
 
 from .errors import UserError, tells
 from .front.arguments import parser_of
+from .json_file import read_object
 from .places import ROOT
 from .program import started
 from .spec_file import read_spec
@@ -85,13 +86,13 @@ def pick(system: dict, matrices: Path) -> Path:
     if not found:
         raise UserError(f"{system['name']}: no matrix of form {system['form']} in its run")
     if system["pick"] == "largest_cond":
-        return max(found, key=lambda path: unscaled_cond(json.loads(path.read_text())))
+        return max(found, key=lambda path: unscaled_cond(read_object(path)))
     return found[0]
 
 
 def keep(system: dict, side_car: Path, out: Path) -> None:
     shutil.copyfile(side_car.with_suffix(".mtx"), out / f"{system['name']}.mtx")
-    kept = json.loads(side_car.read_text())
+    kept = read_object(side_car)
     kept["matrix"]["file"] = f"{system['name']}.mtx"
     kept["cause"] = f"{system['cause']}: {system['why']}"
     order = [key for key in kept if key not in ("block_start", "block_vertex", "coordinates_m", "rhs")]
@@ -128,7 +129,7 @@ def replay(out: Path) -> list[dict]:
         done = started("matrix", *map(str, files), "--json", str(answer))
         if done.returncode != 0:
             raise UserError(done.stderr.strip())
-        return json.loads(answer.read_text())["matrices"]
+        return read_object(answer)["matrices"]
 
 
 def cond_text(estimate: dict) -> str:

@@ -8,14 +8,14 @@ schema says. The files beside it are read when they are those that the record na
 
 from __future__ import annotations
 
-import hashlib
 import json
 import math
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 from . import fields
+from .digests import of_file
 from .errors import UserError
 
 VERSION = fields.schema("run")["$defs"]["SchemaId"]["properties"]
@@ -186,11 +186,7 @@ def read_record(path: Path, foreign: bool = False, allow_not_finite: bool = Fals
 def sha256_of(path: Path) -> str:
     """Of the bytes of a file, in hexadecimal digits. Raises RecordError where it cannot be read."""
     try:
-        with path.open("rb") as file:
-            digest = hashlib.sha256()
-            while block := file.read(1 << 20):
-                digest.update(block)
-            return digest.hexdigest()
+        return of_file(path)
     except OSError as error:
         raise RecordError(f"{path}: {error.strerror}; allowed: the file that its record names") from None
 
@@ -204,10 +200,19 @@ def named_files(record: dict, kind: str) -> list[str]:
 
 def bound_file(record: dict, folder: Path, relative: str) -> Path:
     """The file beside the record, if it is the very one that the record names. Raises RecordError: not named,
-    not there, another content.
+    not there, another content. Cost: of the artifacts that the record names; bound_files for many.
     """
-    path = Path(folder) / relative
-    known = next((file for file in record.get("artifacts") or [] if file["path"] == relative), None)
+    return next(bound_files(record, folder, [relative]))
+
+
+def bound_files(record: dict, folder: Path, relatives: Iterable[str]) -> Iterator[Path]:
+    """bound_file of each, one after the other."""
+    named = {file["path"]: file for file in record.get("artifacts") or []}
+    for relative in relatives:
+        yield _same_file(Path(folder) / relative, named.get(relative))
+
+
+def _same_file(path: Path, known: dict | None) -> Path:
     if known is None:
         raise RecordError(f"{path}: the record beside it names no such file; allowed: one of its `artifacts`")
     if (found := sha256_of(path)) != known["sha256"]:

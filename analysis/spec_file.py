@@ -1,33 +1,43 @@
-"""The one reader of specs: JSON files of what to run and to judge (claims, gap maps, Pareto sweeps, stress
-tests, sets of gates, the corpus of matrices), held against their JSON Schema in configs/schema/. What no
-schema can say, a reader checks after it.
+"""The one reader of specs: JSON files of what to run and to judge (claims, gap maps, Pareto sweeps,
+work-precision studies, stress tests, sets of gates, the corpus of matrices), held against their JSON Schema
+in configs/schema/. What no schema can say, a reader checks after it.
 """
 
 from __future__ import annotations
 
-import json
+import math
 from functools import cache
 from pathlib import Path
 
 from jsonschema import Draft202012Validator, validators
 from jsonschema.exceptions import ValidationError
 
+from . import fields
 from .errors import UserError
 from .json_file import read_object
-from .places import SCHEMAS
 
-# An integer is written as one: 2.0 is none.
+
+def _is_integer(_, value) -> bool:
+    """2.0 is none."""
+    return isinstance(value, int) and not isinstance(value, bool)
+
+
+def _is_number(_, value) -> bool:
+    """NaN, Infinity and 1e999, which Python reads, are none."""
+    return _is_integer(_, value) or isinstance(value, float) and math.isfinite(value)
+
+
 _Validator = validators.extend(
     Draft202012Validator,
-    type_checker=Draft202012Validator.TYPE_CHECKER.redefine(
-        "integer", lambda _, value: isinstance(value, int) and not isinstance(value, bool)
+    type_checker=Draft202012Validator.TYPE_CHECKER.redefine("integer", _is_integer).redefine(
+        "number", _is_number
     ),
 )
 
 
 @cache
 def _validator(kind: str) -> Draft202012Validator:
-    return _Validator(json.loads((SCHEMAS / f"{kind}.schema.json").read_text()))
+    return _Validator(fields.schema(kind))
 
 
 def _order(error: ValidationError) -> tuple:
@@ -73,11 +83,16 @@ def read_spec(path: Path, kind: str) -> dict:
     return data
 
 
-def require_base(data: dict, path: Path) -> Path:
-    """The config that a spec names, relative to its file. Errors: UserError where it is not there."""
+def refused(path: Path, place: str, found, needed: str) -> UserError:
+    """What a reader raises for what no schema can say. place: the keys to it, joined by /."""
+    return UserError(f"{path}#/{place}: found {found!r}; {needed} is needed")
+
+
+def require_base(data: dict, path: Path, above: str = "") -> Path:
+    """The config that a spec, or the part of one at `above`, names relative to its file. Errors: UserError
+    where it is not there.
+    """
     base = data.get("base")
     if not isinstance(base, str) or not (path.parent / base).is_file():
-        raise UserError(
-            f"{path}#/base: found {base!r}; the path of a config is needed, relative to this file"
-        )
+        raise refused(path, f"{above}base", base, "the path of a config, relative to this file,")
     return path.parent / base

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..frames import Frame, frame_of, frame_paths, read_scene
+from ..frames import Frame, frame_paths, frames_of, read_scene
 from ..record_file import read_record
 
 
@@ -116,7 +116,7 @@ def read_motion(folder: Path) -> Motion:
     times = [0.0 if step < 0 else record["steps"][step]["t_s"] for step in paths]
     return Motion(
         record,
-        tuple(frame_of(record, folder, step) for step in paths),
+        tuple(frames_of(record, folder, paths)),
         np.array(times),
         tuple(read_scene(record, folder)["bodies"]),
     )

@@ -4,7 +4,6 @@ for scenes that no rule was tuned on.
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import json
 import re
@@ -12,6 +11,7 @@ from dataclasses import dataclass, field
 from functools import cache
 from pathlib import Path
 
+from ..digests import of_file
 from ..errors import UserError
 from ..json_file import read_object
 from ..places import ROOT
@@ -91,10 +91,6 @@ class Sweep:
         return f"./bench sweep {self.file} --out results/runs/claims/{self.name}"
 
 
-def _read(path: Path) -> dict:
-    return read_object(path)
-
-
 def order(name: str) -> tuple:
     """K before H before N, and 9 before 10."""
     letter, number = re.match(r"([A-Z]+)(\d+)$", name).groups()
@@ -134,7 +130,7 @@ def method_set(name: str | None) -> dict:
     know, nothing.
     """
     file = METHODS / f"{name}.json"
-    return _read(file)["set"] if name and file.is_file() else {}
+    return read_object(file)["set"] if name and file.is_file() else {}
 
 
 def word(pointer: str) -> str:
@@ -176,7 +172,7 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
     pointer, whose values become part of the place.
     """
     path = sweep_path(name, folder)
-    data = _read(path)
+    data = read_object(path)
     axes = data.get("axes", [])
     seeds = [k for k, axis in enumerate(axes) if axis.get("pointer") == SEEDS]
     if (
@@ -207,7 +203,7 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
     }
     return Sweep(
         name,
-        hashlib.sha256(path.read_bytes()).hexdigest(),
+        of_file(path),
         cases,
         more,
         {word(axes[k]["pointer"]): axes[k]["values"] for k in others},

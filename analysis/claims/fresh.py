@@ -5,13 +5,15 @@ label.
 from __future__ import annotations
 
 import copy
-import hashlib
 import json
 from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from .. import fields
+from ..digests import of_file, of_text
 from ..errors import UserError
+from ..json_file import read_json, read_object
 from .entry import ROOT, Sweep
 from .merged import merged, put
 
@@ -39,7 +41,7 @@ LEAST = 8  # confirmation scenes of a sweep
 
 @cache
 def _defaults() -> dict:
-    return json.loads((ROOT / "configs/schema/config.schema.json").read_text())["properties"]["scene"]
+    return fields.schema("config")["properties"]["scene"]
 
 
 def _plain(value, schema: dict, folder: Path):
@@ -64,11 +66,7 @@ def _plain(value, schema: dict, folder: Path):
         ):
             continue
         file = folder / one if key == "file" and isinstance(one, str) else None
-        found[key] = (
-            hashlib.sha256(file.read_bytes()).hexdigest()
-            if file and file.is_file()
-            else _plain(one, rule, folder)
-        )
+        found[key] = of_file(file) if file and file.is_file() else _plain(one, rule, folder)
     return found
 
 
@@ -77,9 +75,8 @@ def identity(scene: dict, folder: Path) -> str:
     gravity.
     """
     if scene.get("name") != "bodies":
-        return hashlib.sha256(json.dumps(scene, sort_keys=True).encode()).hexdigest()
-    text = json.dumps(_plain(scene, _defaults(), folder), sort_keys=True)
-    return hashlib.sha256(text.encode()).hexdigest()
+        return of_text(json.dumps(scene, sort_keys=True))
+    return of_text(json.dumps(_plain(scene, _defaults(), folder), sort_keys=True))
 
 
 def _found(value, key: str) -> Iterator:
@@ -99,11 +96,7 @@ def _bases(data: dict, path: Path) -> Iterator[dict]:
         for name in _found(data, key):
             file = (path.parent / name).resolve() if isinstance(name, str) else path
             if file.suffix == ".json" and file.is_file() and file != path:
-                yield from (
-                    scene
-                    for scene in _found(json.loads(file.read_text()), "scene")
-                    if isinstance(scene, dict)
-                )
+                yield from (scene for scene in _found(read_json(file), "scene") if isinstance(scene, dict))
     yield from (scene for scene in _found(data, "scene") if isinstance(scene, dict))
 
 
@@ -121,7 +114,7 @@ def scenes_of(path: Path) -> list[dict]:
     """Every scene that a file of runs can make: its bases and whole scenes, with each of its settings of a
     scene, and with each two of them.
     """
-    data = json.loads(path.read_text())
+    data = read_json(path)
     sets = [
         {p: v for p, v in one.items() if p.startswith("/scene")}
         for one in _found(data, "set")
@@ -155,7 +148,7 @@ def check(sweep: Sweep, root: Path = ROOT) -> None:
     """Errors: UserError when a scene is no `bodies` (whose definition is all written out), is a tuning
     sweep's, or when there are too few.
     """
-    data = json.loads(sweep.path.read_text())
+    data = read_object(sweep.path)
     names = {case["label"].partition(" ")[0] for case in data["axes"][0]["cases"]}
     if len(names) < LEAST:
         raise UserError(f"{sweep.file}: {len(names)} scenes; a confirmation has at least {LEAST}")

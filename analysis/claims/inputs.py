@@ -5,7 +5,6 @@ a registration were made with?
 
 from __future__ import annotations
 
-import hashlib
 import itertools
 import json
 import math
@@ -13,6 +12,8 @@ from collections.abc import Iterator
 from functools import cache
 from pathlib import Path
 
+from ..digests import of_file, of_text
+from ..json_file import read_object
 from ..matching.runs import Sweep as Made
 from ..matching.runs import inputs_sha256
 from ..record_file import leaves
@@ -28,17 +29,17 @@ DIRECTIONS = {"axis", "warp_axis"}  # made unit vectors
 
 def inputs_of(sweep: Sweep) -> str:
     """sha256 of the contents of the sweep file and of all that it names: base, presets, meshes."""
-    data = json.loads(sweep.path.read_text())
+    data = read_object(sweep.path)
     data["base"] = str(base_path(data, sweep.path))
     parts = sweep.sha256 + inputs_sha256(Made(sweep.name, json.dumps(data), ()))
-    return hashlib.sha256(parts.encode()).hexdigest()
+    return of_text(parts)
 
 
 def asked(sweep: Sweep) -> Iterator[tuple[str, dict]]:
     """Of every case its note, and the config that sweep file and base ask for now; defaults of the program
     are not in it.
     """
-    data = json.loads(sweep.path.read_text())
+    data = read_object(sweep.path)
     for chosen in itertools.product(*(settings_of(axis, sweep.path) for axis in data["axes"])):
         yield (
             note_of(sweep.name, [label for label, _ in chosen]),
@@ -70,7 +71,7 @@ def _meshes(config: dict, folder: Path) -> dict[str, str]:
         for place, value in leaves(config.get("scene"))
         if place.endswith("/file") and isinstance(value, str)
     ]
-    return {hashlib.sha256(file.read_bytes()).hexdigest(): str(file) for file in files if file.is_file()}
+    return {of_file(file): str(file) for file in files if file.is_file()}
 
 
 def contradiction(record: dict, config: dict, folder: Path) -> str:

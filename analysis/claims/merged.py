@@ -4,9 +4,9 @@ know."""
 from __future__ import annotations
 
 import copy
-import json
 from pathlib import Path
 
+from ..json_file import read_object
 from .entry import METHOD, ROOT, method_set
 
 PRESETS = ROOT / "configs" / "formulations"
@@ -40,7 +40,7 @@ def base_path(data: dict, path: Path) -> Path:
 
 
 def base_of(data: dict, path: Path) -> dict:
-    return json.loads(base_path(data, path).read_text())
+    return read_object(base_path(data, path))
 
 
 def _length(config: dict, pointer: str) -> None:
@@ -85,7 +85,7 @@ def formulation_of(config: dict) -> dict:
     formulation = config.get("formulation")
     given = {"name": formulation} if isinstance(formulation, str) else dict(formulation or {})
     file = PRESETS / f"{given.get('name', '')}.json"
-    made = json.loads(file.read_text()).get("formulation", {}) if file.is_file() else {}
+    made = read_object(file).get("formulation", {}) if file.is_file() else {}
     whole, policy = {**made, **given}, given.get("stiffness_policy")
     if isinstance(policy, dict) and policy.get("name") in (
         None,

@@ -5,7 +5,6 @@ files that these name (claims/confirmation/registry.json).
 from __future__ import annotations
 
 import ast
-import hashlib
 import inspect
 import json
 import textwrap
@@ -13,10 +12,12 @@ from dataclasses import dataclass, replace
 from datetime import datetime, timezone
 from pathlib import Path
 
+from ..digests import of_text
 from ..errors import UserError
+from ..json_file import read_object
 from ..whole_file import write_whole
 from . import fresh, success
-from .entry import FOLDER, ROOT, Claim, _read, read_sweep
+from .entry import FOLDER, ROOT, Claim, read_sweep
 from .history import NoHistory, brought
 from .inputs import inputs_of
 from .metrics import METRICS
@@ -60,7 +61,7 @@ def confirmable(claim: Claim) -> bool:
 
 
 def sha_of(value) -> str:
-    return hashlib.sha256(json.dumps(value, sort_keys=True, separators=(",", ":")).encode()).hexdigest()
+    return of_text(json.dumps(value, sort_keys=True, separators=(",", ":")))
 
 
 def _bare(code) -> str:
@@ -106,7 +107,7 @@ def rule_of(claim: Claim) -> dict:
 def read(file: Path = FILE) -> dict:
     if not file.is_file():
         return {}
-    data = _read(file)
+    data = read_object(file)
     if data.get("schema") != NAME or not isinstance(data.get("claims"), dict):
         raise UserError(f"{file}: schema {data.get('schema')!r}; {NAME!r} with claims is needed")
     return data["claims"]

@@ -4,16 +4,17 @@ results/claims.json.
 
 from __future__ import annotations
 
-import hashlib
 import json
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass, field
-from datetime import datetime
 from pathlib import Path
 
+from ..digests import of_file
 from ..errors import UserError
 from ..gap_rule import gaps_of
+from ..json_file import read_object, read_of_schema
+from ..origin import ID_DIGITS, origin, seconds_of_run
 from ..record_file import RecordError, other_meanings, read_record
 from ..whole_file import write_whole
 from .ends import ENDS, end_of_run
@@ -27,11 +28,11 @@ from .success import RESIDUAL, read_for
 FILE = ROOT / "results" / "claims.json"
 RUNS = ROOT / "results" / "runs" / "claims"
 NAME = "barrierbench.claims/1"
+AGAIN = "; remove it, then ./bench claims"
 PLACE = ("scene", "level", "case", "seed")
 # run: the first 16 digits of run_id. pair: that is not comparable. Numbers of records before 3.5.0 have no
 # pair, gaps and ends
 STATE = ("outcome", "comparability", "gap_rel", "run", "pair", "gaps", *ENDS)
-ID_DIGITS = 16
 DIGITS = 12  # of a metric, so that a number beside a threshold stays on its side; 6 of gaps and residuals
 
 
@@ -117,20 +118,11 @@ def _row(record: dict, place: tuple, metrics: list[str]) -> dict:
     return row | {name: _rounded(METRICS[name][3](record), DIGITS) for name in metrics}
 
 
-def seconds_of_run(record: dict) -> float:
-    """From start to end of a run, all passes."""
-    start, end = (
-        datetime.fromisoformat(record["status"][key].replace("Z", "+00:00"))
-        for key in ("started_utc", "ended_utc")
-    )
-    return (end - start).total_seconds()
-
-
 def _records(sweep: Sweep, folder: Path, metrics: list[str]) -> Iterator[tuple[dict, dict]]:
     """Record and row of every case; what cannot be read, or is of other inputs than the sweep has now, is
     said and counts as missing.
     """
-    configs, base = dict(asked(sweep)), base_path(json.loads(sweep.path.read_text()), sweep.path).parent
+    configs, base = dict(asked(sweep)), base_path(read_object(sweep.path), sweep.path).parent
     for path in sorted(folder.glob("*/run.json")):
         try:
             record = read_record(path)
@@ -175,22 +167,13 @@ def collect(sweep: Sweep, folder: Path, metrics: list[str]) -> Runs:
         )
     file = folder / "sweep.json"  # the program's copy of the sweep file that made the records
     about = {
-        "sha256": hashlib.sha256(file.read_bytes()).hexdigest() if file.is_file() else "",
+        "sha256": of_file(file) if file.is_file() else "",
         "inputs_sha256": inputs_of(sweep),
         "schema": _one_version(sweep, folder, records),
         "seconds": round(sum(map(seconds_of_run, records)), 1),
         "first_started_utc": min((r["status"]["started_utc"] for r in records), default=""),
     }
-    for name, values in (
-        ("date", {r["status"]["started_utc"][:10] for r in records}),
-        (
-            "machine",
-            {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records},
-        ),
-        ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),
-        ("build", {r["ids"]["build_id"][:ID_DIGITS] for r in records}),
-    ):
-        about[name] = ", ".join(sorted(values))
+    about |= origin(records)
     sizes = [r["scene"]["free_dofs"] for r in records]
     about["unknowns"] = f"{min(sizes)} to {max(sizes)}" if sizes else ""
     return Runs(about, rows, len(sweep.cases))
@@ -223,18 +206,12 @@ def read(path: Path) -> Table:
     """The kept table; empty when there is none."""
     if not path.is_file():
         return Table()
-    again = "remove it, then ./bench claims"
+    data = read_of_schema(path, NAME, AGAIN)
     try:
-        data = json.loads(path.read_text())
-        schema = data.get("schema") if isinstance(data, dict) else None
-        if schema != NAME:
-            raise UserError(f"{path}: schema {schema!r}; {NAME!r} is needed; {again}")
         sweeps = {
             name: Runs(s["about"], [dict(zip(s["columns"], row)) for row in s["rows"]], s["expected"])
             for name, s in data["sweeps"].items()
         }
         return Table(sweeps, data["answers"])
-    except UserError:
-        raise
-    except (KeyError, TypeError, AttributeError, ValueError) as error:  # ValueError: not JSON
-        raise UserError(f"{path}: not a whole table ({type(error).__name__}: {error}); {again}") from None
+    except (KeyError, TypeError, AttributeError) as error:
+        raise UserError(f"{path}: not a whole table ({type(error).__name__}: {error}){AGAIN}") from None

@@ -11,13 +11,13 @@ a bad entry; no program), or calls itself confirmed and is not.
 from __future__ import annotations
 
 import argparse
-import shutil
 import subprocess
 import sys
 import time
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..figure_files import copy_to_page
 from ..front.arguments import parser_of, plugin_argument
 from ..program import built_program, run_sweep
 from ..whole_file import write_whole
@@ -167,8 +167,6 @@ def write_all(table: Table, asker: Eval) -> None:
         drawn += frontiers.draw(
             claim, table.sweeps[claim.frontier["sweep"]], RUNS / "figure" / f"policies_{claim.id}"
         )
-    for path in drawn:
-        if path.suffix in (".png", ".txt"):
-            shutil.copyfile(path, ROOT / "docs" / path.name)
+    copy_to_page(drawn, ROOT / "docs")
     page = ROOT / "docs" / "results.md"
     write_whole(page, report.in_page(page.read_text(), answers))

@@ -13,6 +13,7 @@ import pandas as pd
 
 from .. import style
 from ..errors import UserError
+from ..json_file import read_of_schema
 
 SCHEMA = "barrierbench.steps/1"
 # colour and dash of each choice; black is the default of line_search
@@ -64,15 +65,7 @@ def read_steps(path: Path) -> dict:
     """The file as it is. Raises UserError with place, value and what is allowed when it is none of `./bench
     steps --out`.
     """
-    try:
-        data = json.loads(path.read_text())
-    except ValueError as error:  # not JSON, not UTF-8
-        raise UserError(f"{path}: not JSON ({error}); a file of ./bench steps --out is needed") from error
-    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
-        raise UserError(
-            f"{path}: schema is {data.get('schema') if isinstance(data, dict) else None!r}; allowed:"
-            f" {SCHEMA!r}"
-        )
+    data = read_of_schema(path, SCHEMA, "; ./bench steps --out makes it")
     trials, config = data.get("trials"), data.get("config")
     if not isinstance(trials, list) or not trials:
         raise UserError(f"{path}#/trials: no trials; allowed: a list of at least one")

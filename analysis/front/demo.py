@@ -1,23 +1,71 @@
-"""The verb demo: the sweeps of the README by the program, then their figures and their table."""
+"""Runs the sweeps of the README, as many at a time as there are cores, then makes their figures and their
+table. Records that this program has made are not run again.
+
+Exit codes: 0 all is there, 1 a run does not keep what the demonstration promises, else that of the sweep that
+failed first.
+"""
 
 from __future__ import annotations
 
 import importlib
+import subprocess
+import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
+from pathlib import Path
 
-from ..errors import tells
+from ..errors import UserError, tells
 from ..places import ROOT
-from ..program import started
-from .building import ensure_program
-from .table import HELP
+from ..program import run_sweep
+from .arguments import parser_of
+from .building import job_count, say
 
 OUT = ROOT / "results/runs/demo"
+# configs/sweeps/NAME.json, the longest first, so that none is left alone at the end
+SWEEPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")
+
+
+def run_all(out: Path, jobs: int) -> int:
+    """Every sweep into its folder below `out`, `jobs` at a time; what each says is printed when it ends. The
+    exit code of the first one that failed, or 0.
+    """
+    begun = time.monotonic()
+
+    def one(name: str) -> subprocess.CompletedProcess:
+        return run_sweep(ROOT / f"configs/sweeps/{name}.json", out / name, "--progress", "none")
+
+    say(f"{', '.join(SWEEPS)}: {jobs} at a time, minutes")
+    failed = 0
+    with ThreadPoolExecutor(jobs) as pool:
+        running = {pool.submit(one, name): name for name in SWEEPS}
+        try:
+            for future in as_completed(running):
+                done = future.result()
+                print(done.stdout, flush=True)
+                seconds = time.monotonic() - begun
+                say(f"{running[future]} ended after {seconds:.0f} s {done.stderr}".rstrip())
+                failed = failed or done.returncode
+        except BaseException:
+            pool.shutdown(cancel_futures=True)  # an interrupt has reached the sweeps too; no other is begun
+            raise
+    return failed
 
 
 @tells("demo")
 def main(argv: list[str]) -> int:
-    if set(argv) & set(HELP):
-        ensure_program()  # its help is that of the program
-    done = started("demo", "--out", str(OUT), *argv, capture_output=False)
-    if done.returncode != 0 or set(argv) & set(HELP):
-        return done.returncode
-    return importlib.import_module("analysis.figures.verb").main([str(OUT), str(OUT / "figures")])
+    parser = parser_of("demo", __doc__, "./bench demo --jobs 1 --out results/runs/demo_again")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=OUT,
+        metavar="DIR",
+        help="folder of the records (default: results/runs/demo)",
+    )
+    parser.add_argument(
+        "--jobs", type=int, default=job_count(), metavar="N", help="sweeps at a time (default: one a core)"
+    )
+    args = parser.parse_args(argv)
+    if args.jobs < 1:
+        raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")
+    if code := run_all(args.out, args.jobs):
+        return code
+    return importlib.import_module("analysis.figures.demo").make(args.out, None)

@@ -10,11 +10,11 @@ Exit codes: 0 written, 2 bad input, or nothing to write.
 from __future__ import annotations
 
 import argparse
-import shutil
 import sys
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..figure_files import copy_to_page
 from ..front.arguments import parser_of
 from ..matching.formulations import ROOT
 from ..whole_file import write_whole
@@ -102,10 +102,7 @@ def collect(
 
 
 def write_page(found: Map, results: Path, docs: Path, figures: Path) -> None:
-    docs.mkdir(parents=True, exist_ok=True)
-    for path in figure.draw_all(found, figures):
-        if path.suffix in (".png", ".txt"):
-            shutil.copyfile(path, docs / path.name)
+    copy_to_page(figure.draw_all(found, figures), docs)
     write_whole(results / "GAP_MAP.md", report.markdown(found))
 
 

@@ -5,12 +5,13 @@ and its record means the same.
 
 from __future__ import annotations
 
-import hashlib
 import json
 from pathlib import Path
 
+from ..digests import of_text
 from ..errors import UserError
 from ..matching.runs import inputs_sha256
+from ..origin import ID_DIGITS, machine_of
 from ..record_file import other_meanings
 from .rows import PLACE
 from .spec import Spec, make_sweep
@@ -36,16 +37,15 @@ def digests(spec: Spec) -> dict[Place, str]:
     for scene in spec.scenes:
         for resolution, overrides in scene.resolutions.items():
             common = json.dumps([shared, scene.settings, overrides], sort_keys=True)
-            found[scene.label, resolution] = hashlib.sha256(f"{common} {inputs}".encode()).hexdigest()[:8]
+            found[scene.label, resolution] = of_text(f"{common} {inputs}")[:8]
     return found
 
 
 def source_of(record: dict) -> dict[str, str]:
-    machine = record["machine"]
     return {
-        "build": record["ids"]["build_id"][:16],
+        "build": record["ids"]["build_id"][:ID_DIGITS],
         "date": record["status"]["started_utc"][:10],
-        "machine": f"{machine['cpu_model']}, {machine['cores']} cores, 1 thread a run",
+        "machine": machine_of(record),
         "version": record["schema"]["version"],
     }
 

@@ -2,17 +2,16 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from dataclasses import dataclass, replace
 from pathlib import Path
 
 from ..accuracy.shapes import barrier
-from ..errors import UserError
+from ..digests import of_file
 from ..json_file import read_object
 from ..matching.runs import Sweep, sweep
 from ..spec_file import read_spec as read_json_spec
-from ..spec_file import require_base
+from ..spec_file import refused, require_base
 
 LIMITS = {
     "on": "contact and strain limit take shape and theta",
@@ -74,10 +73,6 @@ class Spec:
     scenes: tuple[Scene, ...]
 
 
-def _fail(path: Path, place: str, found, needed: str):
-    raise UserError(f"{path}#/{place}: found {found!r}; {needed} is needed")
-
-
 def _gaps(values, path: Path, place: str) -> tuple[float, ...]:
     good = (
         isinstance(values, list)
@@ -88,7 +83,7 @@ def _gaps(values, path: Path, place: str) -> tuple[float, ...]:
         )
     )
     if not good or sorted(set(values), reverse=True) != values:
-        _fail(path, place, values, "a falling list of gaps in (0, 1), each once,")
+        raise refused(path, place, values, "a falling list of gaps in (0, 1), each once,")
     return tuple(map(float, values))
 
 
@@ -99,7 +94,7 @@ def _words(values, allowed, path: Path, place: str) -> tuple[str, ...]:
         or len(set(map(str, values))) < len(values)
         or any(v not in allowed for v in values)
     ):
-        _fail(path, place, values, f"a list of some of {', '.join(allowed)}, each once,")
+        raise refused(path, place, values, f"a list of some of {', '.join(allowed)}, each once,")
     return tuple(values)
 
 
@@ -116,7 +111,7 @@ def _shapes(data: dict, path: Path) -> dict[str, tuple[str, str]]:
         or REFERENCE not in [s["label"] for s in shapes]
         or len({s["label"] for s in shapes}) < len(shapes)
     ):
-        _fail(
+        raise refused(
             path,
             "shapes",
             shapes,
@@ -132,7 +127,7 @@ def _scene(found, path: Path, limits: tuple[str, ...]) -> Scene:
         or not set(OF_SCENE) <= set(found) <= {*OF_SCENE, "limits"}
         or found["obstacle"] not in OBSTACLES
     ):
-        _fail(
+        raise refused(
             path,
             place,
             sorted(found) if isinstance(found, dict) else found,
@@ -145,7 +140,9 @@ def _scene(found, path: Path, limits: tuple[str, ...]) -> Scene:
         or not resolutions
         or not all(isinstance(r, dict) and set(r) == {"unknowns", "set"} for r in resolutions.values())
     ):
-        _fail(path, f"{place}/resolutions", resolutions, '{"LABEL": {"unknowns": number, "set": overrides}}')
+        raise refused(
+            path, f"{place}/resolutions", resolutions, '{"LABEL": {"unknowns": number, "set": overrides}}'
+        )
     return Scene(
         found["label"],
         found["obstacle"],
@@ -164,13 +161,13 @@ def read_spec(path: Path) -> Spec:
     limits = _words(data["limits"], tuple(LIMITS), path, "limits")
     scenes = tuple(_scene(found, path, limits) for found in data["scenes"])
     if len({s.label for s in scenes}) < len(scenes):
-        _fail(path, "scenes", [s.label for s in scenes], "labels, each once,")
+        raise refused(path, "scenes", [s.label for s in scenes], "labels, each once,")
     main = _words(data["main"], tuple(shapes), path, "main")
     if len(main) > MAIN_MOST or REFERENCE not in main:
-        _fail(path, "main", list(main), f"at most {MAIN_MOST} shapes, {REFERENCE!r} among them,")
+        raise refused(path, "main", list(main), f"at most {MAIN_MOST} shapes, {REFERENCE!r} among them,")
     return Spec(
         path,
-        hashlib.sha256(path.read_bytes()).hexdigest(),
+        of_file(path),
         data["name"],
         data["doc"],
         base,
@@ -191,7 +188,7 @@ def part(spec: Spec, name: str) -> Spec:
         or set(asked) != {"scenes", "shapes", "gaps", "limits"}
         or not isinstance(asked["scenes"], dict)
     ):
-        _fail(spec.path, name, asked, "scenes, shapes, gaps, limits")
+        raise refused(spec.path, name, asked, "scenes, shapes, gaps, limits")
     limits = _words(asked["limits"], spec.limits, spec.path, f"{name}/limits")
     scenes = []
     for label in _words(
@@ -209,10 +206,10 @@ def part(spec: Spec, name: str) -> Spec:
         )
     shapes = _words(asked["shapes"], tuple(spec.shapes), spec.path, f"{name}/shapes")
     if REFERENCE not in shapes:
-        _fail(spec.path, f"{name}/shapes", list(shapes), f"{REFERENCE!r} among them")
+        raise refused(spec.path, f"{name}/shapes", list(shapes), f"{REFERENCE!r} among them")
     gaps = _gaps(asked["gaps"], spec.path, f"{name}/gaps")
     if not set(gaps) <= set(spec.gaps):
-        _fail(spec.path, f"{name}/gaps", list(gaps), f"some of {list(spec.gaps)}")
+        raise refused(spec.path, f"{name}/gaps", list(gaps), f"some of {list(spec.gaps)}")
     return replace(
         spec,
         shapes={s: spec.shapes[s] for s in shapes},

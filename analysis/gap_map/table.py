@@ -6,12 +6,12 @@ import json
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..errors import UserError
-from ..json_file import read_object
+from ..json_file import lines_of, read_of_schema, rows_of
 from ..whole_file import write_whole
 from .rows import COLUMNS
 
 SCHEMA = "barrierbench.gap_map_result/1"
+REMEDY = "; ./bench gap-map makes it"
 
 
 @dataclass
@@ -39,23 +39,15 @@ class Map:
 
 
 def write(found: Map, path: Path) -> None:
-    rows = ",\n  ".join(
-        json.dumps([row[c] for c in COLUMNS], separators=(",", ":"), allow_nan=False) for row in found.rows
-    )
     about = ",\n  ".join(f"{json.dumps(key)}: {json.dumps(value)}" for key, value in found.about.items())
     write_whole(
         path,
         f'{{"schema": "{SCHEMA}",\n "about": {{\n  {about}}},\n "columns": {json.dumps(COLUMNS)},\n "rows":'
-        f" [\n  {rows}]}}\n",
+        f" [\n  {lines_of(found.rows, COLUMNS)}]}}\n",
     )
 
 
 def read(path: Path) -> Map:
     """Errors: UserError."""
-    data = read_object(path)
-    if data.get("schema") != SCHEMA or data.get("columns") != list(COLUMNS):
-        raise UserError(
-            f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with"
-            f" {list(COLUMNS)} is needed: ./bench gap-map"
-        )
-    return Map(data["about"], [dict(zip(COLUMNS, row)) for row in data["rows"]])
+    data = read_of_schema(path, SCHEMA, REMEDY)
+    return Map(data["about"], rows_of(data, COLUMNS, path, REMEDY))

@@ -18,6 +18,7 @@ from ..front.arguments import parser_of
 from ..record_file import other_meanings
 from . import baseline, calibrate, judge, matrices
 from .baseline import Baseline, Kept
+from .cases import case_argument
 from .drift import First, digest
 from .finding import moved
 from .meanings import FAMILIES, PRESENT, shared
@@ -171,13 +172,7 @@ def arguments(argv: list[str]) -> argparse.Namespace:
     parser.add_argument(
         "--reason", required=True, help="why the numbers may change; it stays in the baseline"
     )
-    parser.add_argument(
-        "--case",
-        action="append",
-        default=[],
-        metavar="TEXT",
-        help="only cases whose name contains it (repeatable)",
-    )
+    case_argument(parser)
     parser.add_argument(
         "--metric", action="append", default=[], metavar="NAME", help="only this metric (repeatable)"
     )

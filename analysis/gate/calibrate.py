@@ -17,7 +17,7 @@ from ..front.arguments import parser_of
 from ..places import ROOT
 from . import baseline, invariants, shares
 from .baseline import Baseline, Kept, keep
-from .cases import Case, jittered, read_set, run_case
+from .cases import Case, case_argument, jittered, read_set, run_case, set_argument
 from .configs import scene_size
 from .envelope import Envelope, calibrate, scatter_above
 from .finding import failures
@@ -119,14 +119,8 @@ def calibrate_case(case: Case, out: Path, copies: int) -> Baseline:
 @tells("calibrate")
 def main(argv: list[str]) -> int:
     parser = parser_of("calibrate", __doc__)
-    parser.add_argument("--set", default="small", help="configs/gates/SET.json (default: small)")
-    parser.add_argument(
-        "--case",
-        action="append",
-        default=[],
-        metavar="TEXT",
-        help="only cases whose name contains it (repeatable)",
-    )
+    set_argument(parser)
+    case_argument(parser)
     parser.add_argument("--copies", type=int, default=COPIES, help=f"perturbed copies (default: {COPIES})")
     parser.add_argument(
         "--out", type=Path, default=OUT, metavar="DIR", help="default: results/runs/calibration"

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import argparse
 import json
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -26,6 +27,20 @@ class Case:
 
 def sets() -> list[str]:
     return sorted(path.stem for path in FOLDER.glob("*.json"))
+
+
+def set_argument(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--set", default="small", help="configs/gates/SET.json (default: small)")
+
+
+def case_argument(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument(
+        "--case",
+        action="append",
+        default=[],
+        metavar="TEXT",
+        help="only cases whose name contains it (repeatable)",
+    )
 
 
 def read_set(name: str) -> list[Case]:

@@ -8,9 +8,10 @@ width of its envelope, on the side that is no better. `bench accept --drift
 
 from __future__ import annotations
 
-import hashlib
 import json
 from dataclasses import dataclass
+
+from ..digests import of_text
 
 FACTOR = 2
 LOGARITHMIC_UNIT = "d_hat"  # gaps: their envelopes are ratios
@@ -38,7 +39,7 @@ class First:
 
 
 def digest(made_by: dict) -> str:
-    return hashlib.sha256(json.dumps(made_by, sort_keys=True).encode()).hexdigest()[:12]
+    return of_text(json.dumps(made_by, sort_keys=True))[:12]
 
 
 def limits(

@@ -19,7 +19,7 @@ from . import baseline, configs, invariants, judge, matrices, meanings, report, 
 from .baseline import Baseline
 from .build_checks import judge_build
 from .calibrate import copies_of
-from .cases import Case, read_set, run_case
+from .cases import Case, case_argument, read_set, run_case, set_argument
 from .determinism import of_one_config
 from .finding import RED, Finding, failures, without_subject
 from .instructions import judge_instructions
@@ -162,14 +162,8 @@ def findings_case(findings: list[Finding]) -> str:
 
 def arguments(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("gate", __doc__, "./bench gate")
-    parser.add_argument("--set", default="small", help="configs/gates/SET.json (default: small)")
-    parser.add_argument(
-        "--case",
-        action="append",
-        default=[],
-        metavar="TEXT",
-        help="only cases whose name contains it (repeatable)",
-    )
+    set_argument(parser)
+    case_argument(parser)
     parser.add_argument(
         "--baselines", type=Path, default=baseline.FOLDER, metavar="DIR", help="default: results/baselines"
     )

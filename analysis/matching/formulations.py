@@ -49,7 +49,7 @@ def preset(name: str) -> dict:
             f"formulation {name!r}: one of {', '.join(known())}"
             + (f"; did you mean {near[0]!r}?" if near else "")
         )
-    return json.loads((PRESETS / f"{name}.json").read_text())["formulation"]
+    return read_object(PRESETS / f"{name}.json")["formulation"]
 
 
 def label(name: str) -> str:

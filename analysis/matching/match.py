@@ -11,17 +11,18 @@ Exit codes: 0 all are comparable, 1 some are not, 2 bad input, or nothing to com
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 from pathlib import Path
 
+from ..digests import of_text
 from ..errors import UserError, tells
 from ..front.arguments import parser_of, plugin_argument
+from ..json_file import read_object
 from ..places import ROOT
 from ..text_table import aligned
 from ..whole_file import write_whole
 from .formulations import REFERENCE, VARY, label, preset, settings
-from .runs import Sweep, check_equal, check_varied, collect, inputs_sha256, read_object, run, sweep
+from .runs import Sweep, check_equal, check_varied, collect, inputs_sha256, run, sweep
 
 DEFAULT = ("log", "quadratic", "cubic", "cubic_dynamic_lagged", "cubic_dynamic_consistent")
 RULES = ("equal_force", "equal_curvature")
@@ -241,9 +242,9 @@ def main(argv: list[str]) -> int:
     if not 0 < args.theta < 1:
         raise UserError(f"--theta: found {args.theta:g}; a number in (0, 1) is needed")
     made = make_sweep(args.config, args.formulations, args.rule, args.theta, args.vary)
-    digest = hashlib.sha256(
-        "\n".join([made.text, inputs_sha256(made, args.overrides, args.plugin), *args.overrides]).encode()
-    ).hexdigest()[:8]
+    digest = of_text(
+        "\n".join([made.text, inputs_sha256(made, args.overrides, args.plugin), *args.overrides])
+    )[:8]
     out = args.out or ROOT / "results" / "runs" / "match" / f"{args.config.stem}-{digest}"
     run(made, out, args.overrides, args.plugin)
     answer = judge(made, collect(made, out), args.vary)

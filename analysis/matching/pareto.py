@@ -10,26 +10,28 @@ Exit codes: 0 written, 2 bad input, or a record is missing.
 from __future__ import annotations
 
 import argparse
-import hashlib
 import json
 import math
-import shutil
 import sys
 from pathlib import Path
 
-from ..claims.table import seconds_of_run
+from ..digests import of_text
 from ..errors import UserError, tells
+from ..figure_files import copy_to_page
 from ..front.arguments import parser_of, plugin_argument
+from ..json_file import lines_of, read_of_schema, rows_of
+from ..origin import origin, seconds_of_run
 from ..places import ROOT
 from ..whole_file import write_whole
 from . import pareto_figure, pareto_report
 from .fronts import METRICS, PLACE, STATE, Runs, gather
-from .runs import collect, inputs_sha256, read_object, run
+from .runs import collect, inputs_sha256, run
 from .spec import Spec, make_sweep, read_spec
 
 SCHEMA = "barrierbench.pareto_result/1"
 DEFAULT = ROOT / "configs" / "pareto" / "default.json"
 COLUMNS = (*PLACE, *STATE, *METRICS)
+REMEDY = "; ./bench pareto makes it"
 
 
 def _about(spec: Spec, command: str, records: list[dict], plugins: list[str]) -> dict:
@@ -47,37 +49,20 @@ def _about(spec: Spec, command: str, records: list[dict], plugins: list[str]) ->
         "unknowns": f"{min(sizes)} to {max(sizes)}",
         "seconds": round(sum(map(seconds_of_run, records)), 1),
     }
-    for key, values in (
-        ("rule", {f"{r['matching']['rule']}, theta {r['matching']['theta']:g}" for r in records}),
-        ("date", {r["status"]["started_utc"][:10] for r in records}),
-        (
-            "machine",
-            {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records},
-        ),
-        ("build", {r["ids"]["build_id"][:16] for r in records}),
-    ):
-        about[key] = ", ".join(sorted(values))
-    return about
+    rules = {f"{r['matching']['rule']}, theta {r['matching']['theta']:g}" for r in records}
+    return about | {"rule": ", ".join(sorted(rules))} | origin(records)
 
 
 def to_json(runs: Runs) -> str:
-    rows = ",\n  ".join(
-        json.dumps([row[c] for c in COLUMNS], separators=(",", ":"), allow_nan=False) for row in runs.rows
-    )
     return (
         f'{{"schema": "{SCHEMA}", "about": {json.dumps(runs.about)},\n "columns": {json.dumps(COLUMNS)},'
-        f' "rows": [\n  {rows}]}}\n'
+        f' "rows": [\n  {lines_of(runs.rows, COLUMNS)}]}}\n'
     )
 
 
 def from_json(path: Path) -> Runs:
-    data = read_object(path)
-    if data.get("schema") != SCHEMA or data.get("columns") != list(COLUMNS):
-        raise UserError(
-            f"{path}: schema {data.get('schema')!r} with columns {data.get('columns')}; {SCHEMA!r} with"
-            f" {list(COLUMNS)} is needed: ./bench pareto"
-        )
-    return Runs(data["about"], [dict(zip(COLUMNS, row)) for row in data["rows"]])
+    data = read_of_schema(path, SCHEMA, REMEDY)
+    return Runs(data["about"], rows_of(data, COLUMNS, path, REMEDY))
 
 
 def make(spec: Spec, command: str, folder: Path, run_missing: bool, plugins: list[str]) -> Runs:
@@ -98,10 +83,7 @@ def make(spec: Spec, command: str, folder: Path, run_missing: bool, plugins: lis
 
 def write_page(runs: Runs, results: Path, docs: Path, figures: Path) -> None:
     for scene in runs.scenes:
-        for path in pareto_figure.draw(runs, scene, figures / f"pareto_{scene}"):
-            if path.suffix in (".png", ".txt"):
-                docs.mkdir(parents=True, exist_ok=True)
-                shutil.copyfile(path, docs / path.name)
+        copy_to_page(pareto_figure.draw(runs, scene, figures / f"pareto_{scene}"), docs)
     write_whole(results / "PARETO.md", pareto_report.markdown(runs))
 
 
@@ -143,7 +125,7 @@ def main(argv: list[str]) -> int:
     results = args.results or ROOT / "results"
     spec = read_spec(args.spec)
     inputs = inputs_sha256(make_sweep(spec), plugins=args.plugin)
-    digest = hashlib.sha256(f"{spec.sha256} {inputs}".encode()).hexdigest()
+    digest = of_text(f"{spec.sha256} {inputs}")
     folder = args.runs or ROOT / "results" / "runs" / "pareto" / f"{spec.name}-{digest[:8]}"
     kept = results / "pareto.json"
     if args.no_run and not any(folder.glob("*/run.json")) and kept.is_file():

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import hashlib
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
+from ..digests import of_file
 from ..errors import UserError
 from ..spec_file import read_spec as read_json_spec
-from ..spec_file import require_base
+from ..spec_file import refused, require_base
 from .formulations import REFERENCE, preset, settings
 from .runs import Sweep, sweep
 
@@ -47,12 +47,12 @@ class Spec:
 def _numbers(data: dict, key: str, allowed: str, ok, path: Path) -> tuple[float, ...]:
     values = data[key]
     if not isinstance(values, list) or not values:
-        raise UserError(f"{path}#/{key}: found {values!r}; a list of numbers is needed")
+        raise refused(path, key, values, "a list of numbers")
     for k, x in enumerate(values):
         if isinstance(x, bool) or not isinstance(x, (int, float)) or not math.isfinite(x) or not ok(x):
-            raise UserError(f"{path}#/{key}/{k}: found {x!r}; {allowed} is needed")
+            raise refused(path, f"{key}/{k}", x, allowed)
     if list(values) != sorted(set(values)):
-        raise UserError(f"{path}#/{key}: found {values}; growing numbers, each once, are needed")
+        raise refused(path, key, values, "a list of growing numbers, each once,")
     return tuple(map(float, values))
 
 
@@ -74,10 +74,8 @@ def _formulations(data: dict, path: Path) -> tuple[str, ...]:
         or REFERENCE not in names
         or len(set(map(str, names))) < max(2, len(names))
     ):
-        raise UserError(
-            f"{path}#/formulations: found {names!r}; at least two names, each once, {REFERENCE!r} among them,"
-            " are needed"
-        )
+        needed = f"a list of at least two names, each once, {REFERENCE!r} among them,"
+        raise refused(path, "formulations", names, needed)
     for k, name in enumerate(names):
         try:
             preset(name)
@@ -117,9 +115,8 @@ def _scenes(data: dict, path: Path) -> dict[str, dict]:
         )
     )
     if not good or len({s["label"] for s in scenes}) != len(scenes):
-        raise UserError(
-            f'{path}#/scenes: a list of {{"label": one word, each once, "set": overrides}} is needed'
-        )
+        needed = 'a list of {"label": one word, each once, "set": overrides}'
+        raise refused(path, "scenes", scenes, needed)
     for s in scenes:
         _overrides(s["set"], f"{path}#/scenes/{s['label']}/set")
     return {s["label"]: s["set"] for s in scenes}
@@ -134,7 +131,7 @@ def read_spec(path: Path) -> Spec:
     ]
     return Spec(
         path,
-        hashlib.sha256(path.read_bytes()).hexdigest(),
+        of_file(path),
         data["name"],
         data["doc"],
         base,

@@ -12,7 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
-from ..frames import Frame, frame_of, frame_paths, read_scene
+from ..frames import Frame, frame_of, frame_paths, frames_of, read_scene
 from ..rasterizer import sharp_corners
 from ..record_file import read_record
 
@@ -118,10 +118,10 @@ def filmed(source: Source, every: int = 1) -> Film:
     """
     run, record = source.run, source.record
     steps, scene = kept(source.steps, every), _checked_scene(record, run)
-    frames = []
-    for step in steps:
-        frames.append(frame_of(record, run, step))
-        _check_same_bodies(frames[-1], frames[0], frame_paths(record, run)[step])
+    paths, frames = frame_paths(record, run), []
+    for step, frame in zip(steps, frames_of(record, run, steps)):
+        frames.append(frame)
+        _check_same_bodies(frame, frames[0], paths[step])
     n, m = len(frames[0].vertices), len(frames[0].triangles)
     return Film(
         run=str(run),

@@ -13,6 +13,7 @@ import numpy as np
 import pandas as pd
 
 from ..errors import UserError
+from ..json_file import read_of_schema
 from ..places import ROOT
 from ..records import Records, condition_of, counted, load
 from ..table import summary_table
@@ -21,6 +22,7 @@ from ..whole_file import write_whole
 FILE = ROOT / "results" / "demo.json"
 RUNS = ROOT / "results" / "runs" / "demo"
 NAME = "barrierbench.demo_numbers/1"
+REMEDY = "; ./bench demo, then ./bench readme --write, makes it"
 GROUPS = ("demo_drape", "demo_long", "demo_strip", "demo_pinned", "demo_article")
 
 
@@ -139,19 +141,9 @@ def write(numbers: dict, path: Path = FILE) -> None:
 
 def read(path: Path = FILE) -> dict:
     """Raises UserError when the file is not there or not one of write()."""
-    if not path.is_file():
-        raise UserError(
-            f"{path}: not there; allowed: the numbers of the demo: ./bench demo, then ./bench readme --write"
-        )
-    try:
-        data = json.loads(path.read_text())
-    except ValueError as error:
-        raise UserError(f"{path}: not JSON: {error}") from None
-    if not isinstance(data, dict) or data.get("schema") != NAME or not data.get("runs"):
-        raise UserError(
-            f"{path}#/schema: found {data.get('schema') if isinstance(data, dict) else data!r}; allowed:"
-            f" {NAME!r} with runs"
-        )
+    data = read_of_schema(path, NAME, REMEDY)
+    if not data.get("runs"):
+        raise UserError(f"{path}#/runs: found {data.get('runs')!r}; the runs of the demo are needed{REMEDY}")
     for row in data["runs"]:
         row["cond_steps"] = {int(step): cond for step, cond in row["cond_steps"].items()}
     return data

@@ -4,7 +4,6 @@ words an outcome may be.
 
 from __future__ import annotations
 
-import json
 import re
 from dataclasses import dataclass, field
 from fnmatch import fnmatchcase
@@ -12,6 +11,7 @@ from pathlib import Path
 
 from .. import fields
 from ..errors import UserError
+from ..json_file import read_of_schema
 from ..places import ROOT
 from ..spec_file import read_spec
 
@@ -115,19 +115,6 @@ def _covers(entry: dict, case: str) -> bool:
     return any(fnmatchcase(case, pattern) for pattern in entry.get("cases", ["*"]))
 
 
-def read_json(path: Path, schema: str) -> dict:
-    try:
-        data = json.loads(path.read_text())
-    except (OSError, ValueError) as error:
-        raise UserError(f"{path}: {error}") from None
-    if not isinstance(data, dict) or data.get("schema") != schema:
-        raise UserError(
-            f"{path}: /schema: {data.get('schema') if isinstance(data, dict) else data!r}; {schema!r} is"
-            " needed"
-        )
-    return data
-
-
 def order(name: str) -> tuple:
     """S before M, and 9 before 10."""
     return "SM".find(name[0]), int(name[1:])
@@ -143,7 +130,7 @@ def left_out(folder: Path = FOLDER) -> dict[str, str]:
     """Proposed tests that are not here, and why."""
     return {
         k: v
-        for k, v in read_json(folder / "left_out.json", "barrierbench.stress_left_out/1").items()
+        for k, v in read_of_schema(folder / "left_out.json", "barrierbench.stress_left_out/1").items()
         if k != "schema"
     }
 
@@ -173,7 +160,7 @@ def _cases(axes: list[dict], path: Path) -> tuple[Case, ...]:
 
 def _formulations(data: dict, folder: Path, path: Path) -> tuple[tuple[Formulation, ...], dict]:
     """The comparable ones with what the test adds to them, or the test's own."""
-    common = read_json(folder / "formulations.json", "barrierbench.stress_formulations/1")
+    common = read_of_schema(folder / "formulations.json", "barrierbench.stress_formulations/1")
     choice = data.get("formulations", {})
     if unknown := set(choice) - {"base", "add", "own"}:
         raise UserError(f"{path}: /formulations/{sorted(unknown)[0]}: unknown; allowed: base, add, own")

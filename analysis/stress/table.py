@@ -10,14 +10,16 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 from ..errors import UserError
+from ..json_file import read_of_schema
 from ..whole_file import write_whole
-from .entry import ROOT, order, read_json
+from .entry import ROOT, order
 from .geometry import Count
 from .relations import Relation
 from .run import Row
 
 FILE = ROOT / "results" / "stress.json"
 NAME = "barrierbench.stress_results/1"
+AGAIN = "; remove it, then ./bench stress"
 KEPT = [f.name for f in dataclasses.fields(Row) if f.name not in ("test", "reason")]
 
 
@@ -84,16 +86,11 @@ def read(path: Path) -> dict[str, Result]:
     """The kept results; empty when there are none."""
     if not path.is_file():
         return {}
-    try:
-        data = read_json(path, NAME)
-    except UserError as error:
-        raise UserError(f"{error}; remove it, then ./bench stress") from None
+    data = read_of_schema(path, NAME, AGAIN)
     try:
         return _results(data)
     except (KeyError, TypeError, AttributeError, ValueError) as error:
-        raise UserError(
-            f"{path}: not a whole table ({type(error).__name__}: {error}); remove it, then ./bench stress"
-        ) from None
+        raise UserError(f"{path}: not a whole table ({type(error).__name__}: {error}){AGAIN}") from None
 
 
 def _results(data: dict) -> dict[str, Result]:

@@ -8,13 +8,13 @@ import json
 import os
 import sys
 import time
-from datetime import datetime
 from pathlib import Path
 
 from ..accuracy.errors import NotFinite
 from ..accuracy.reference import CLOSED_FORMS, NoReference, Reference, measure, refined
 from ..accuracy.state import Motion, read_motion
 from ..errors import UserError
+from ..origin import ID_DIGITS, origin, seconds_of_run
 from ..places import ROOT
 from ..program import built_program, run_sweep
 from ..record_file import RecordError, read_record
@@ -22,7 +22,6 @@ from ..whole_file import write_whole
 from .spec import REFERENCE_D_HAT, SOLVERS, Scene, Spec
 
 RUNS = ROOT / "results" / "runs" / "work_precision"
-ID_DIGITS = 16
 
 
 NEEDED = "; --no-run makes the page of the numbers that are kept"
@@ -114,14 +113,6 @@ def references(scene: Scene, folders: dict[str, Path]) -> dict[float, Reference]
     return made
 
 
-def _seconds(record: dict) -> float:
-    start, end = (
-        datetime.fromisoformat(record["status"][key].replace("Z", "+00:00"))
-        for key in ("started_utc", "ended_utc")
-    )
-    return (end - start).total_seconds()
-
-
 def _row(scene: Scene, key: tuple, folder: Path, reference: Reference) -> dict:
     formulation, variation, solver = key
     record = read_record(folder / "run.json")
@@ -166,19 +157,10 @@ def collect(spec: Spec, scene: Scene, runs: Path) -> dict:
     records = [read_record(folder / "run.json") for folder in folders.values()]
     about = {
         "unknowns": records[0]["scene"]["free_dofs"],
-        "seconds": round(sum(map(_seconds, records)), 1),
+        "seconds": round(sum(map(seconds_of_run, records)), 1),
         "runs": len(records),
+        **origin(records),
     }
-    for name, values in (
-        ("date", {r["status"]["started_utc"][:10] for r in records}),
-        (
-            "machine",
-            {f"{r['machine']['cpu_model']}, {r['machine']['cores']} cores, 1 thread a run" for r in records},
-        ),
-        ("commit", {r["provenance"].get("git_commit", "")[:10] for r in records}),
-        ("build", {r["ids"]["build_id"][:ID_DIGITS] for r in records}),
-    ):
-        about[name] = ", ".join(sorted(values))
     first = known[1.0]
     return {
         "name": scene.name,

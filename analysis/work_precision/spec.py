@@ -7,22 +7,17 @@ dt^2/2)/dt, since what a step may leave out depends on both; the program takes a
 
 from __future__ import annotations
 
-import hashlib
-import json
-import math
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
 
-from ..accuracy.errors import NAMES
-from ..accuracy.reference import CLOSED_FORMS
-from ..errors import UserError
-from ..json_file import read_json
+from ..digests import of_file
+from ..spec_file import read_spec as read_json_spec
+from ..spec_file import refused, require_base
+from .gravity import gravity_of
 
-NAME = "barrierbench.work_precision/1"
 AXES = ("tolerance", "dt_s", "d_hat_m", "kappa")
 ANCHOR = AXES[:3]
-GRAVITY, STANDARD_GRAVITY = "gravity_m_per_s2", 9.81  # key of a scene, and m/s^2 without it
 REFERENCE_D_HAT, REFERENCE_TOLERANCE = 1 / 16, 1e-3  # of a refined reference, in units of the anchor
 # A direct solver has factorisations and no products; the same run by conjugate gradients has products.
 SOLVERS = {
@@ -148,213 +143,60 @@ class Spec:
         ]
 
 
-class _Reader:
-    """Values of a JSON object with a message that names file, pointer, what was found and what is allowed."""
-
-    def __init__(self, file: Path):
-        self.file = file
-
-    def fail(self, pointer: str, found, allowed: str):
-        raise UserError(f"{self.file}: {pointer}: found {json.dumps(found)}; allowed: {allowed}")
-
-    def keys(self, data, pointer: str, required: tuple[str, ...], optional: tuple[str, ...] = ()) -> dict:
-        if not isinstance(data, dict):
-            self.fail(pointer or "/", data, "an object")
-        for key in data:
-            if key not in (*required, *optional):
-                self.fail(
-                    f"{pointer}/{key}", data[key], f"one of the keys {', '.join((*required, *optional))}"
-                )
-        for key in required:
-            if key not in data:
-                self.fail(f"{pointer}/{key}", None, "this key is needed")
-        return data
-
-    def number(self, value, pointer: str) -> float:
-        if isinstance(value, bool) or not isinstance(value, (int, float)) or not (0 < value < math.inf):
-            self.fail(pointer, value, "a number > 0")
-        return float(value)
-
-    def numbers(self, value, pointer: str) -> tuple[float, ...]:
-        if not isinstance(value, list) or not value:
-            self.fail(pointer, value, "an array of at least one number > 0")
-        return tuple(self.number(v, f"{pointer}/{k}") for k, v in enumerate(value))
-
-    def text(self, value, pointer: str, allowed: tuple[str, ...] = ()) -> str:
-        if not isinstance(value, str) or not value or (allowed and value not in allowed):
-            self.fail(
-                pointer, value, f"one of {', '.join(allowed)}" if allowed else "a string that is not empty"
-            )
-        return value
-
-    def settings(self, value, pointer: str) -> dict:
-        if not isinstance(value, dict) or not all(key.startswith("/") for key in value):
-            self.fail(pointer, value, "an object of JSON pointers into a config and values")
-        return value
-
-
-def _formulation(reader: _Reader, data, pointer: str) -> Formulation:
+def _formulation(data: str | dict) -> Formulation:
     if isinstance(data, str):
         return Formulation(data, data)
-    reader.keys(data, pointer, ("name",), ("label", "set"))
-    name = reader.text(data["name"], f"{pointer}/name")
-    return Formulation(
-        reader.text(data.get("label", name), f"{pointer}/label"),
-        name,
-        reader.settings(data.get("set", {}), f"{pointer}/set"),
-    )
+    return Formulation(data.get("label", data["name"]), data["name"], data.get("set", {}))
 
 
-def _reference(reader: _Reader, data, pointer: str) -> dict:
-    reader.keys(data, pointer, (), ("closed_form", "refined"))
-    if len(data) != 1:
-        reader.fail(pointer, data, "either closed_form or refined")
-    if "closed_form" in data:
-        reader.text(data["closed_form"], f"{pointer}/closed_form", tuple(CLOSED_FORMS))
-    elif (
-        not isinstance(data["refined"], list)
-        or len(set(map(str, data["refined"]))) != 2
-        or len(data["refined"]) != 2
-    ):
-        reader.fail(
-            f"{pointer}/refined",
-            data["refined"],
-            "two formulations, so that their distance says how far the reference is to be trusted",
-        )
-    return data
-
-
-def _gravity(base: Path, settings: dict, reader: _Reader, pointer: str) -> float:
-    """Of a config with the settings of a scene placed in it, in the order and by the rules of the program;
-    9.81 where neither says.
-    """
-    own = _Reader(base)
-    config = read_json(base)
-    if not isinstance(config, dict):
-        own.fail("/", config, "an object: a config with a scene")
-    if not isinstance(scene := config.get("scene"), dict):
-        own.fail("/scene", scene, "an object")
-    name, given, fail, place = (
-        scene.get("name"),
-        scene.get(GRAVITY, STANDARD_GRAVITY),
-        own.fail,
-        f"/scene/{GRAVITY}",
-    )
-    for key in sorted(settings):
-        value = settings[key]
-        if key == "/scene":
-            if not isinstance(value, dict):
-                reader.fail(pointer + key, value, "an object")
-            name, given, fail, place = (
-                value.get("name"),
-                value.get(GRAVITY, STANDARD_GRAVITY),
-                reader.fail,
-                f"{pointer}{key}/{GRAVITY}",
-            )
-        elif key == "/scene/name" and value != name:
-            name, given = value, STANDARD_GRAVITY  # a scene named anew starts anew
-        elif key == f"/scene/{GRAVITY}":
-            given, fail, place = value, reader.fail, pointer + key
-        elif key.startswith(f"/scene/{GRAVITY}/"):
-            index = key.rpartition("/")[2]
-            if not isinstance(given, list) or index not in map(str, range(len(given))):
-                reader.fail(pointer + key, value, f"a place in {json.dumps(given)}")
-            given, fail, place = (
-                [value if str(k) == index else old for k, old in enumerate(given)],
-                reader.fail,
-                pointer + key,
-            )
-    parts = given if isinstance(given, list) else [given]
-    if not all(
-        isinstance(g, (int, float)) and not isinstance(g, bool) and math.isfinite(g) for g in parts
-    ) or (len(parts) != 3 if isinstance(given, list) else given < 0):
-        fail(place, given, "a number >= 0 or an array of three numbers")
-    return math.hypot(*parts)
-
-
-def _scene(reader: _Reader, data, pointer: str) -> Scene:
-    reader.keys(
-        data,
-        pointer,
-        ("name", "base", "duration_s", "samples", "anchor", "vary", "reference", "error", "targets"),
-        ("set",),
-    )
-    base = (reader.file.parent / reader.text(data["base"], f"{pointer}/base")).resolve()
-    if not base.is_file():
-        reader.fail(f"{pointer}/base", data["base"], "a config, relative to this file")
-    anchor = {
-        k: reader.number(v, f"{pointer}/anchor/{k}")
-        for k, v in reader.keys(data["anchor"], f"{pointer}/anchor", ANCHOR).items()
-    }
-    vary = {
-        k: reader.numbers(v, f"{pointer}/vary/{k}")
-        for k, v in reader.keys(data["vary"], f"{pointer}/vary", (), AXES).items()
-    }
-    for k, factors in vary.items():
-        if 1.0 in factors or len(set(factors)) != len(factors):
-            reader.fail(f"{pointer}/vary/{k}", list(factors), "factors of the anchor, each once and none 1")
-    if (
-        "refined" in _reference(reader, data["reference"], f"{pointer}/reference")
-        and min(vary.get("d_hat_m", (1.0,))) < 2 * REFERENCE_D_HAT
-    ):
-        reader.fail(
-            f"{pointer}/vary/d_hat_m",
-            min(vary["d_hat_m"]),
-            f"at least {2 * REFERENCE_D_HAT:g}: the reference has d_hat x{REFERENCE_D_HAT:g}",
-        )
-    samples = reader.number(data["samples"], f"{pointer}/samples")
-    settings = reader.settings(data.get("set", {}), f"{pointer}/set")
-    scene = Scene(
-        reader.text(data["name"], f"{pointer}/name"),
-        base,
-        _gravity(base, settings, reader, f"{pointer}/set"),
-        settings,
-        reader.number(data["duration_s"], f"{pointer}/duration_s"),
-        int(samples),
-        anchor,
-        vary,
-        data["reference"],
-        reader.text(data["error"], f"{pointer}/error", NAMES),
-        tuple(sorted(reader.numbers(data["targets"], f"{pointer}/targets"), reverse=True)),
-    )
+def _check_steps(scene: Scene, file: Path, place: str) -> None:
+    """Refuses samples that are not at the ends of steps, with any time step."""
     for factor in scene.dt_factors:
-        exact, steps = scene.duration_s / (anchor["dt_s"] * factor), scene.steps(factor)
-        if samples != int(samples) or steps < 1 or abs(exact - steps) > 1e-6 * steps or steps % int(samples):
-            reader.fail(
-                f"{pointer}/samples",
-                data["samples"],
-                f"an integer that divides the steps of every time step; dt x{factor:g} has {exact:g} steps",
-            )
+        exact, steps = scene.duration_s / (scene.anchor["dt_s"] * factor), scene.steps(factor)
+        if steps < 1 or abs(exact - steps) > 1e-6 * steps or steps % scene.samples:
+            needed = f"an integer that divides the steps of every time step (dt x{factor:g} has {exact:g})"
+            raise refused(file, f"{place}/samples", scene.samples, needed)
+
+
+def _scene(data: dict, file: Path, place: str) -> Scene:
+    base = require_base(data, file, f"{place}/").resolve()
+    d_hat = min(data["vary"].get("d_hat_m", (1.0,)))
+    if "refined" in data["reference"] and d_hat < 2 * REFERENCE_D_HAT:
+        needed = f"at least {2 * REFERENCE_D_HAT:g} (the reference has d_hat x{REFERENCE_D_HAT:g})"
+        raise refused(file, f"{place}/vary/d_hat_m", d_hat, needed)
+    settings = data.get("set", {})
+    scene = Scene(
+        data["name"],
+        base,
+        gravity_of(base, settings, file, f"{place}/set"),
+        settings,
+        float(data["duration_s"]),
+        data["samples"],
+        {axis: float(value) for axis, value in data["anchor"].items()},
+        {axis: tuple(map(float, factors)) for axis, factors in data["vary"].items()},
+        data["reference"],
+        data["error"],
+        tuple(sorted(map(float, data["targets"]), reverse=True)),
+    )
+    _check_steps(scene, file, place)
     return scene
 
 
 def read_spec(file: Path) -> Spec:
-    """Errors: UserError, which names the first fault."""
-    try:
-        text = file.read_bytes()
-        data = json.loads(text)
-    except OSError as error:
-        raise UserError(f"{file}: {error.strerror}") from None
-    except ValueError as error:
-        raise UserError(f"{file}: not JSON: {error}") from None
-    reader = _Reader(file)
-    reader.keys(data, "", ("schema", "name", "formulations", "scenes"), ("doc",))
-    reader.text(data["schema"], "/schema", (NAME,))
-    for key in ("formulations", "scenes"):
-        if not isinstance(data[key], list) or not data[key]:
-            reader.fail(f"/{key}", data[key], "an array that is not empty")
+    """Errors: UserError with file, place, what was found and what is allowed."""
+    data = read_json_spec(file, "work_precision")
     spec = Spec(
-        reader.text(data["name"], "/name"),
+        data["name"],
         data.get("doc", ""),
         file,
-        hashlib.sha256(text).hexdigest(),
-        tuple(_formulation(reader, f, f"/formulations/{k}") for k, f in enumerate(data["formulations"])),
-        tuple(_scene(reader, s, f"/scenes/{k}") for k, s in enumerate(data["scenes"])),
+        of_file(file),
+        tuple(map(_formulation, data["formulations"])),
+        tuple(_scene(scene, file, f"scenes/{k}") for k, scene in enumerate(data["scenes"])),
     )
     for key, names in (
         ("formulations", [f.label for f in spec.formulations]),
         ("scenes", [s.name for s in spec.scenes]),
     ):
         if len(set(names)) != len(names):
-            reader.fail(f"/{key}", names, "every name once")
+            raise refused(file, key, names, "every name once")
     return spec

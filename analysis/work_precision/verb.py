@@ -10,12 +10,12 @@ from __future__ import annotations
 
 import argparse
 import json
-import shutil
 from pathlib import Path
 
 from ..errors import UserError, tells
+from ..figure_files import copy_to_page
 from ..front.arguments import parser_of
-from ..json_file import read_json
+from ..json_file import read_of_schema
 from ..places import ROOT
 from ..whole_file import write_whole
 from . import figure, report
@@ -96,13 +96,7 @@ def table_text(table: dict) -> str:
 
 def read_table(file: Path) -> dict:
     """Errors: UserError."""
-    table = read_json(file, "; ./bench work-precision makes it")
-    if not isinstance(table, dict) or table.get("schema") != TABLE:
-        raise UserError(
-            f"{file}: /schema: found {table.get('schema') if isinstance(table, dict) else table!r}; allowed:"
-            f" {TABLE!r}"
-        )
-    return table
+    return read_of_schema(file, TABLE, "; ./bench work-precision makes it")
 
 
 def write_all(table: dict, results: Path, docs: Path, scratch: Path) -> None:
@@ -113,9 +107,7 @@ def write_all(table: dict, results: Path, docs: Path, scratch: Path) -> None:
         figure.draw(scene, scratch / f"work_precision_{scene['name']}", ranks) for scene in table["scenes"]
     ]
     drawn.append(figure.draw_profile(table["scenes"], scratch / "work_precision_profile"))
-    docs.mkdir(parents=True, exist_ok=True)
-    for path in (path for paths in drawn for path in paths if path.suffix in (".png", ".txt")):
-        shutil.copyfile(path, docs / path.name)
+    copy_to_page((path for paths in drawn for path in paths), docs)
 
 
 @tells("work-precision")

@@ -175,7 +175,7 @@ STEPS = {"schema": "barrierbench.steps/1", "config": {"scene": {"name": "drape"}
     (lambda d: d.update(config=None), "#/config"), (lambda d: d["config"].pop("formulation"), "#/config"),
     (lambda d: d["trials"][0].update(dx_inf_m=[float("nan")]), "#/trials/0/dx_inf_m"), (lambda d: d["trials"][0].pop("dx_inf_m"), "#/trials/0/dx_inf_m"),
     (lambda d: d["trials"][0].update(hessian="other"), "#/trials/0/hessian"), (lambda d: d["trials"][0].update(step="1"), "#/trials/0/step"),
-    (lambda d: d["trials"][0].update(tolerance_m=None), "#/trials/0/tolerance_m"), (lambda d: d.update(schema="x"), "schema is 'x'")])
+    (lambda d: d["trials"][0].update(tolerance_m=None), "#/trials/0/tolerance_m"), (lambda d: d.update(schema="x"), "schema: found 'x'")])
 def test_figures_of_a_broken_steps_file_are_refused(tmp_path, capsys, change, place):
     data = json.loads(json.dumps(STEPS))
     path = tmp_path / "steps.json"
@@ -185,7 +185,7 @@ def test_figures_of_a_broken_steps_file_are_refused(tmp_path, capsys, change, pl
     path.write_text(json.dumps(data))
     assert figures.main([str(path)]) == 2
     said = capsys.readouterr().err
-    assert str(path) in said and place in said and "allowed" in said
+    assert str(path) in said and place in said and ("allowed" in said or "is needed" in said)
 
 
 @pytest.mark.parametrize("text", ["", "{", "[]", b"\xff", '{"schema": "barrierbench.steps/1"}'])

@@ -32,10 +32,10 @@ def spec_file(tmp_path, **edit) -> Path:
     ({"scales": [0.01, 1, 1, 100]}, "growing numbers, each once"), ({"scales": [0, 1, 1e5]}, "#/scales/0: found 0; a number > 0"), ({"scales": [0.01, float("nan"), 100]}, "#/scales/1: found nan"),
     ({"gaps": [0.1, 1.0]}, "#/gaps/1: found 1.0; a number in (0, 1)"), ({"starts": 0}, "#/starts: found 0; a whole number from 1 to 100"),
     ({"formulations": ["cubic", "quadratic"]}, "'log' among them"), ({"formulations": ["log", "cubci"]}, "#/formulations/1: formulation 'cubci'"),
-    ({"formulations": ["log", "log"]}, "at least two names, each once"), ({"scenes": []}, "#/scenes: a list"), ({"scenes": [{"label": "a b", "set": {}}]}, "one word, each once"),
+    ({"formulations": ["log", "log"]}, "at least two names, each once"), ({"scenes": []}, "#/scenes: found []; a list"), ({"scenes": [{"label": "a b", "set": {}}]}, "one word, each once"),
     ({"scenes": [{"label": "a", "set": {"/formulation": "log"}}]}, "#/scenes/a/set: found '/formulation'; the sweep sets formulation, matching, passes and seeds itself"), ({"jitter_m": -1}, "a length >= 0"),
     ({"gap": "max"}, "#/gap: found 'max'; one of min, median"), ({"set": []}, "#/set: found []; overrides, {\"/POINTER\": value}, are needed"),
-    ({"base": 3}, "#/base: found 3; the path of a config is needed"), ({"base": "none.json"}, "#/base: found 'none.json'; the path of a config is needed"),
+    ({"base": 3}, "#/base: found 3; the path of a config, relative to this file, is needed"), ({"base": "none.json"}, "#/base: found 'none.json'; the path of a config, relative to this file, is needed"),
     ({"starts": True}, "#/starts: found True; a whole number from 1 to 100"), ({"doc": 3}, "#/doc: found 3; text is needed"),
     *(({"set": {pointer: 1}}, f"#/set: found '{pointer}'; the sweep sets formulation, matching, passes and seeds itself")
       for pointer in ("/matching/rule", "/matching", "/passes", "/passes/audit", "/formulation", "/formulation/shape", "/seeds/main")),

@@ -6,12 +6,14 @@ from pathlib import Path
 
 import pytest
 
+from analysis.accuracy.errors import NAMES
+from analysis.accuracy.reference import CLOSED_FORMS
 from analysis.errors import UserError
 from analysis.record_file import RecordError
 from analysis.work_precision import verb
 from analysis.work_precision import report
-from analysis.places import ROOT
-from analysis.work_precision.spec import read_spec
+from analysis.places import ROOT, SCHEMAS
+from analysis.work_precision.spec import ANCHOR, AXES, read_spec
 
 SCENE = {"name": "stack", "base": str(ROOT / "configs/scenes/stack.json"), "set": {"/matching/rule": "equal_force", "/matching/load_N": 10}, "duration_s": 2, "samples": 1,
          "anchor": {"dt_s": 0.1, "d_hat_m": 0.004, "tolerance": 0.01}, "vary": {"d_hat_m": [0.25], "kappa": [0.001]}, "reference": {"closed_form": "rigid_stack"},
@@ -99,28 +101,40 @@ def test_missing_records_and_bad_numbers_are_told(run, tmp_path, capsys):
 
 
 @pytest.mark.parametrize("edit, said", [
-    ({"schema": "x"}, "/schema: found \"x\"; allowed: one of barrierbench.work_precision/1"),
-    ({"formulation": []}, "/formulation: found []; allowed: one of the keys schema"),
-    ({"formulations": []}, "/formulations: found []; allowed: an array that is not empty"),
-    ({"formulations": ["log", "log"]}, "/formulations: found [\"log\", \"log\"]; allowed: every name once"),
-    ({"scenes": [{**SCENE, "speed": 1}]}, "/scenes/0/speed: found 1; allowed: one of the keys name, base"),
-    ({"scenes": [{**SCENE, "base": "none.json"}]}, "/scenes/0/base: found \"none.json\"; allowed: a config"),
-    ({"scenes": [{k: v for k, v in SCENE.items() if k != "reference"}]}, "/scenes/0/reference: found null; allowed: this key is needed"),
-    ({"scenes": [{**SCENE, "reference": {}}]}, "/scenes/0/reference: found {}; allowed: either closed_form or refined"),
-    ({"scenes": [{**SCENE, "reference": {"closed_form": "truth"}}]}, "/scenes/0/reference/closed_form: found \"truth\"; allowed: one of rigid_bounce, rigid_stack"),
-    ({"scenes": [{**SCENE, "reference": {"refined": ["log"]}}]}, "/scenes/0/reference/refined: found [\"log\"]; allowed: two formulations"),
-    ({"scenes": [{**SCENE, "error": "e_work"}]}, "/scenes/0/error: found \"e_work\"; allowed: one of e_traj"),
-    ({"scenes": [{**SCENE, "vary": {"mass": [2]}}]}, "/scenes/0/vary/mass: found [2]; allowed: one of the keys tolerance"),
-    ({"scenes": [{**SCENE, "vary": {"kappa": [1]}}]}, "/scenes/0/vary/kappa: found [1.0]; allowed: factors of the anchor"),
-    ({"scenes": [{**SCENE, "vary": {"kappa": [-2]}}]}, "/scenes/0/vary/kappa/0: found -2; allowed: a number > 0"),
-    ({"scenes": [{**SCENE, "vary": {"dt_s": [3]}}]}, "/scenes/0/samples: found 1; allowed: an integer that divides"),
-    ({"scenes": [{**STRIP, "vary": {"d_hat_m": [0.1]}}]}, "/scenes/0/vary/d_hat_m: found 0.1; allowed: at least 0.125"),
+    ({"schema": "x"}, "schema: found 'x'; 'barrierbench.work_precision/1' is needed"),
+    ({"formulation": []}, "formulation: unknown; allowed: schema, name, doc, formulations, scenes"),
+    ({"formulations": []}, "formulations: found []; a list of formulations is needed"),
+    ({"formulations": ["log", "log"]}, "formulations: found ['log', 'log']; every name once is needed"),
+    ({"scenes": [{**SCENE, "speed": 1}]}, "scenes/0/speed: unknown; allowed: name, base, set"),
+    ({"scenes": [{**SCENE, "base": "none.json"}]}, "scenes/0/base: found 'none.json'; the path of a config, relative to this file, is needed"),
+    ({"scenes": [{k: v for k, v in SCENE.items() if k != "reference"}]}, "scenes/0/reference: is missing"),
+    ({"scenes": [{**SCENE, "reference": {}}]}, "scenes/0/reference: found {}; either closed_form or refined is needed"),
+    ({"scenes": [{**SCENE, "reference": {"closed_form": "truth"}}]}, "scenes/0/reference/closed_form: found 'truth'; one of rigid_bounce, rigid_stack"),
+    ({"scenes": [{**SCENE, "reference": {"refined": ["log"]}}]}, "scenes/0/reference/refined: found ['log']; a list of two formulations"),
+    ({"scenes": [{**SCENE, "error": "e_work"}]}, "scenes/0/error: found 'e_work'; one of e_traj"),
+    ({"scenes": [{**SCENE, "vary": {"mass": [2]}}]}, "scenes/0/vary/mass: unknown; allowed: tolerance"),
+    ({"scenes": [{**SCENE, "vary": {"kappa": [1]}}]}, "scenes/0/vary/kappa/0: found 1; a factor > 0 of the anchor, other than 1, is needed"),
+    ({"scenes": [{**SCENE, "vary": {"kappa": [-2]}}]}, "scenes/0/vary/kappa/0: found -2; a factor > 0 of the anchor, other than 1, is needed"),
+    ({"scenes": [{**SCENE, "vary": {"dt_s": [3]}}]}, "scenes/0/samples: found 1; an integer that divides"),
+    ({"scenes": [{**STRIP, "vary": {"d_hat_m": [0.1]}}]}, "scenes/0/vary/d_hat_m: found 0.1; at least 0.125"),
+    ({"name": ""}, "name: found ''; a string that is not empty is needed"),
+    ({"formulations": [3]}, "formulations/0: found 3; the name of a formulation, or an object"),
+    ({"formulations": [{"label": "third"}]}, "formulations/0/name: is missing"),
+    ({"formulations": [{"name": "log", "set": {"matching": 1}}]}, "formulations/0/set: found 'matching'; overrides"),
+    ({"scenes": [{**SCENE, "duration_s": True}]}, "scenes/0/duration_s: found True; a number > 0 is needed"),
+    ({"scenes": [{**SCENE, "duration_s": float("inf")}]}, "scenes/0/duration_s: found inf; a number > 0 is needed"),
+    ({"scenes": [{**SCENE, "samples": 1.5}]}, "scenes/0/samples: found 1.5; a whole number >= 1 is needed"),
+    ({"scenes": [{**SCENE, "anchor": {"dt_s": 0.1}}]}, "scenes/0/anchor/tolerance: is missing"),
+    ({"scenes": [{**SCENE, "vary": {"kappa": [2, 2.0]}}]}, "scenes/0/vary/kappa: found [2, 2.0]; a list of factors of the anchor, each once, is needed"),
+    ({"scenes": [{**SCENE, "reference": {"refined": ["log", "log"]}}]}, "scenes/0/reference/refined: found ['log', 'log']; a list of two formulations"),
+    ({"scenes": [{**SCENE, "reference": {"refined": ["log", "cubic"], "closed_form": "rigid_stack"}}]}, "scenes/0/reference: found {"),
+    ({"scenes": [{**SCENE, "targets": [0.1, float("nan")]}]}, "scenes/0/targets/1: found nan; a number > 0 is needed"),
 ])
 def test_a_bad_spec_is_told_with_its_place(tmp_path, capsys, edit, said):
     file = write(tmp_path, {**SPEC, **edit})
     assert verb.main([str(file), "--runs", str(tmp_path / "runs"), "--out", str(tmp_path / "out")]) == 2
     error = capsys.readouterr().err
-    assert f"{file}: {said}" in error, error
+    assert f"{file}#/{said}" in error, error
     assert not (tmp_path / "runs").exists() and not (tmp_path / "out").exists()
 
 
@@ -131,21 +145,21 @@ def test_files_that_are_none(tmp_path, capsys):
 
 
 @pytest.mark.parametrize("base, said", [
-    ([], "/: found []; allowed: an object: a config with a scene"),
-    ("torn", "not JSON"),
-    ({"formulation": "log"}, "/scene: found null; allowed: an object"),
-    ({"scene": {"gravity_m_per_s2": "x"}}, '/scene/gravity_m_per_s2: found "x"; allowed: a number >= 0 or an array of three numbers'),
-    ({"scene": {"gravity_m_per_s2": None}}, "/scene/gravity_m_per_s2: found null; allowed: a number >= 0"),
-    ({"scene": {"gravity_m_per_s2": True}}, "/scene/gravity_m_per_s2: found true; allowed: a number >= 0"),
-    ({"scene": {"gravity_m_per_s2": [0, "x", 0]}}, '/scene/gravity_m_per_s2: found [0, "x", 0]; allowed: a number >= 0'),
-    ({"scene": {"gravity_m_per_s2": [9.81]}}, "/scene/gravity_m_per_s2: found [9.81]; allowed: a number >= 0"),
-    ({"scene": {"gravity_m_per_s2": -1}}, "/scene/gravity_m_per_s2: found -1; allowed: a number >= 0"),
+    ([], ": not a JSON object"),
+    ("torn", ": not JSON"),
+    ({"formulation": "log"}, "#/scene: found None; an object is needed"),
+    ({"scene": {"gravity_m_per_s2": "x"}}, "#/scene/gravity_m_per_s2: found 'x'; a number >= 0 or an array of three numbers is needed"),
+    ({"scene": {"gravity_m_per_s2": None}}, "#/scene/gravity_m_per_s2: found None; a number >= 0"),
+    ({"scene": {"gravity_m_per_s2": True}}, "#/scene/gravity_m_per_s2: found True; a number >= 0"),
+    ({"scene": {"gravity_m_per_s2": [0, "x", 0]}}, "#/scene/gravity_m_per_s2: found [0, 'x', 0]; a number >= 0"),
+    ({"scene": {"gravity_m_per_s2": [9.81]}}, "#/scene/gravity_m_per_s2: found [9.81]; a number >= 0"),
+    ({"scene": {"gravity_m_per_s2": -1}}, "#/scene/gravity_m_per_s2: found -1; a number >= 0"),
 ])
 def test_a_base_whose_gravity_cannot_be_read_is_told_with_its_place(tmp_path, base, said):
     (tmp_path / "base.json").write_text(base if base == "torn" else json.dumps(base))
     with pytest.raises(UserError) as told:
         read_spec(write(tmp_path, {**SPEC, "scenes": [{**SCENE, "base": "base.json"}]}))
-    assert f"{tmp_path / 'base.json'}: {said}" in str(told.value)
+    assert f"{tmp_path / 'base.json'}{said}" in str(told.value)
 
 
 @pytest.mark.parametrize("given, gravity", [
@@ -160,16 +174,16 @@ def test_the_gravity_that_a_scene_sets_counts(tmp_path, given, gravity):
 
 
 @pytest.mark.parametrize("given, said", [
-    ({"/scene/gravity_m_per_s2": "x"}, '/scenes/0/set/scene/gravity_m_per_s2: found "x"; allowed: a number >= 0 or an array of three numbers'),
-    ({"/scene/gravity_m_per_s2/3": 1}, "/scenes/0/set/scene/gravity_m_per_s2/3: found 1; allowed: a place in [0, 0, -9.81]"),
-    ({"/scene/gravity_m_per_s2/1": "x"}, '/scenes/0/set/scene/gravity_m_per_s2/1: found [0, "x", -9.81]; allowed: a number >= 0'),
-    ({"/scene": 7}, "/scenes/0/set/scene: found 7; allowed: an object"),
+    ({"/scene/gravity_m_per_s2": "x"}, "scenes/0/set/scene/gravity_m_per_s2: found 'x'; a number >= 0 or an array of three numbers is needed"),
+    ({"/scene/gravity_m_per_s2/3": 1}, "scenes/0/set/scene/gravity_m_per_s2/3: found 1; a place in [0, 0, -9.81] is needed"),
+    ({"/scene/gravity_m_per_s2/1": "x"}, "scenes/0/set/scene/gravity_m_per_s2/1: found [0, 'x', -9.81]; a number >= 0"),
+    ({"/scene": 7}, "scenes/0/set/scene: found 7; an object is needed"),
 ])
 def test_a_gravity_that_a_scene_cannot_set_is_told_with_its_place(tmp_path, given, said):
     file = write(tmp_path, {**SPEC, "scenes": [{**SCENE, "set": given}]})
     with pytest.raises(UserError) as told:
         read_spec(file)
-    assert f"{file}: {said}" in str(told.value)
+    assert f"{file}#/{said}" in str(told.value)
 
 
 def test_numbers_of_another_spec_are_refused(tmp_path, capsys):
@@ -211,3 +225,9 @@ def test_the_committed_spec_and_page():
         assert kept["targets"] == list(scene.targets) and (ROOT / "docs" / f"work_precision_{scene.name}.png").is_file()
     assert (ROOT / "results" / "WORK_PRECISION.md").read_text() == report.markdown(table)
     assert {"refined", "closed_form"} == {key for scene in spec.scenes for key in scene.reference}
+
+
+def test_the_schema_names_the_errors_and_closed_forms_that_there_are():
+    scene = json.loads((SCHEMAS / "work_precision.schema.json").read_text())["properties"]["scenes"]["items"]["properties"]
+    assert scene["error"]["enum"] == list(NAMES) and scene["reference"]["properties"]["closed_form"]["enum"] == list(CLOSED_FORMS)
+    assert list(scene["vary"]["properties"]) == list(AXES) and list(scene["anchor"]["properties"]) == list(ANCHOR)

@@ -1,0 +1,56 @@
+"""The demonstration: every sweep of the README once, several at a time, and figures only of a whole demonstration."""
+
+import json
+import threading
+from pathlib import Path
+from subprocess import CompletedProcess
+
+import pytest
+
+from analysis.figures import demo as figures
+from analysis.front import demo
+from analysis.places import ROOT
+from analysis.readme.numbers import GROUPS
+
+
+@pytest.fixture
+def calls(monkeypatch):
+    """Sweeps that are no runs: what was asked of each; `codes` says how each ends."""
+    made, codes, together = [], {}, threading.Barrier(2, timeout=20)
+
+    def run_sweep(file: Path, out: Path, *words: str) -> CompletedProcess:
+        if len(made) < 2:
+            made.append((file, out, words))
+            together.wait()  # passed only by two at a time
+        else:
+            made.append((file, out, words))
+        return CompletedProcess([], codes.get(out.name, 0), f"table of {out.name}\n", "no more disk\n" if out.name in codes else "")
+
+    monkeypatch.setattr(demo, "run_sweep", run_sweep)
+    monkeypatch.setattr(figures, "make", lambda runs, out: made.append((runs, out)) or 1)
+    return made, codes
+
+
+def test_every_sweep_runs_once_beside_another_and_then_the_figures(calls, tmp_path, capsys):
+    made, _ = calls
+    assert demo.main(["--out", str(tmp_path), "--jobs", "2"]) == 1  # that of the figures
+    *sweeps, drawn = made
+    assert {(file.stem, out) for file, out, _ in sweeps} == {(name, tmp_path / name) for name in demo.SWEEPS} and len(sweeps) == len(demo.SWEEPS) == 5
+    assert drawn == (tmp_path, None)
+    assert sorted(capsys.readouterr().out.split("\n\n")[:-1]) == sorted(f"table of {name}" for name in demo.SWEEPS)
+
+
+def test_a_sweep_that_fails_is_said_and_nothing_is_drawn(calls, tmp_path, capsys):
+    made, codes = calls
+    codes["demo_strip"] = 75
+    assert demo.main(["--out", str(tmp_path), "--jobs", "2"]) == 75
+    assert len(made) == len(demo.SWEEPS) and "no more disk" in capsys.readouterr().err
+
+
+def test_no_job_is_refused(capsys):
+    assert demo.main(["--jobs", "0"]) == 2 and "--jobs: found 0; a number from 1 on is needed" in capsys.readouterr().err
+
+
+def test_the_sweeps_are_those_of_the_page():
+    assert set(demo.SWEEPS) == set(GROUPS) == {path.stem for path in (ROOT / "configs/sweeps").glob("demo_*.json")}
+    assert all(json.loads((ROOT / f"configs/sweeps/{name}.json").read_text())["name"] == name for name in demo.SWEEPS)
