@@ -1,5 +1,5 @@
-// One time step after Ando 2024 (A Cubic Barrier with Elasticity-Inclusive Dynamic Stiffness): E is never
-// evaluated, feasibility alone limits the step. Newton iterations on the same x_tilde accumulate the fraction
+// One time step after Ando 2024 (A Cubic Barrier with Elasticity-Inclusive Dynamic Stiffness): no energy of a trial is
+// asked for, feasibility alone limits the step. Newton iterations on the same x_tilde accumulate the fraction
 // of the motion that was feasible, beta; once beta >= target the step is shortened to beta dt and one more
 // iteration with the shortened prediction reduces the error. Only with implicit Euler, whose prediction
 // scales with dt.
@@ -60,7 +60,10 @@ class AccumulatedToi final : public StepSolver {
     const double alpha = feasible_step(system, report);
     report.alpha = scale * alpha;
     const bool moved = alpha > 0;
-    if (moved) system.accept();
+    if (moved) {
+      system.accept();
+      report.energy_change_J = Number::missing(no_energies_compared);
+    }
     finish_iteration(system, step, report, observer);
     if (moved) {
       show_motion(system, step_index, observer);
@@ -79,7 +82,7 @@ class AccumulatedToi final : public StepSolver {
     double alpha = system.bound_motion(report);
     for (; alpha > 0; alpha = alpha < 1e-14 ? 0 : alpha / 2) {
       ++report.line_search_trials;
-      if (system.try_motion(alpha / extension)) break;
+      if (system.try_feasible(alpha / extension)) break;
     }
     return alpha;
   }

@@ -56,7 +56,8 @@ class HostPotential final : public IncrementalPotential {
   double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
   std::string describe_bound() const override { return holder_ ? holder_->describe_bound() : std::string(); }
   bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
-  std::optional<EnergyChange> try_state(const Column& x, Column& trial, const Column& g) override;
+  bool admits(const Column& x, Column& trial) override;
+  EnergyChange change(const Column& x, const Column& trial) override;
   void accept() override;
 
   double energy(TermSet set, const Column& x) override;
@@ -83,6 +84,7 @@ class HostPotential final : public IncrementalPotential {
     return {*blocks_, elastic_, gradient, first_projection(hessian), clock()};
   }
   void linearise(Slot& slot, const Column& x, const Column& g);
+  void know_energies(const Column& x);
   void add_families(const Slot& slot, PositionsSpan gradient) const;
   void add_gradient(const Slot& slot, Column& g);
   void clamp(Slot& slot);
@@ -114,6 +116,7 @@ class HostPotential final : public IncrementalPotential {
   std::size_t nnz_ = 0;
   std::vector<double> hess_buffer_;
   bool pattern_changed_ = false;
+  bool energies_known_ = false, trial_evaluated_ = false;  // of the iterate; of the trial
   VecXd rhs_, solution_;
 };
 

@@ -43,6 +43,7 @@ class NewtonSystem : public StepSystem {
   double bound_motion(IterationReport& report) override;
   bool make_detour(double bound, SolveReport& report) override;
   void restore_direction() override { state_.dx.swap(state_.aside); }
+  bool try_feasible(double alpha) override;
   std::optional<EnergyChange> try_motion(double alpha) override;
   void accept() override;
 

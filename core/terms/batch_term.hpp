@@ -18,7 +18,7 @@ class BatchTerm final : public Term {
   void clamp(const PositionsView& x) override {
     batch_->derivatives(x, Projection::psd, families_[0].clamped);
   }
-  void evaluate(const PositionsView& x, const TermContext&) override {
+  void evaluate(const PositionsView& x) override {
     batch_->values(x, families_[0].trial_energy.data());
   }
 

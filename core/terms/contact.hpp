@@ -74,7 +74,9 @@ class ContactTerm final : public Term {
                   PositionsSpan force) const override;
   std::string describe_bound() const override;
   bool admits(const PositionsView& x, PhaseClock& clock) override;
-  void evaluate(const PositionsView& x, const TermContext& context) override;
+  void freeze(const BlockSystem& blocks, const BlockSystem::Values& elastic, PhaseClock& clock) override;
+  void evaluate(const PositionsView& x) override;
+  void evaluate_iterate(const PositionsView& x) override;
   void accept(PhaseClock& clock) override;
   void report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) override;
   void report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) override;
@@ -88,6 +90,8 @@ class ContactTerm final : public Term {
  private:
   void use_state();
   void fill_shape(ContactState& state);
+  void evaluate(ContactState& state, const PositionsView& x, std::vector<double>& rows,
+                std::vector<double>& mollified);
   void fill_local(const PositionsView& x, Projection projection);
   void start_policy(const PositionsView& x, const TermContext& context);
   StartSums start_sums(const PositionsView& others) const;

@@ -30,11 +30,11 @@ struct StepFrame {
   double load_factor = 1;  // of the external force
 };
 
-/// What a term may read of the others while it is linearised at an iterate, or evaluated at a trial state.
+/// What a term may read of the others while it is linearised at an iterate.
 struct TermContext {
   const BlockSystem& blocks;           // pattern of the iterate's matrix
   const BlockSystem::Values& elastic;  // H at the iterate; empty unless the plan has policy_submatrix
-  PositionsView gradient;              // N, at the iterate: of the terms before this one (of all, in a trial)
+  PositionsView gradient;              // N, of the terms before this one
   Projection projection;               // of the Hessian of every element
   PhaseClock& clock;
 };
@@ -134,12 +134,20 @@ class Term {
   // --- a trial state x, every number of it finite
   /// Whether x is feasible.
   virtual bool admits(const PositionsView& /*x*/, PhaseClock&) { return true; }
-  /// Energies at the trial, after admits(). What changes with the iterate only, like kappa, stays as it is.
-  virtual void evaluate(const PositionsView& x, const TermContext& context) = 0;
+  /// All terms admit the trial: what it brings that the rest of the step keeps, like the kappa of pairs that turn up.
+  /// elastic: H at the iterate, as in TermContext.
+  virtual void freeze(const BlockSystem& /*blocks*/, const BlockSystem::Values& /*elastic*/, PhaseClock&) {}
+  /// Energies at the trial, after freeze(), where they are asked for. What changes with the iterate only, like kappa, stays
+  /// as it is.
+  virtual void evaluate(const PositionsView& x) = 0;
   /// The parts of E(trial x1) - E(iterate x0), in the order of the elements. Appends.
   virtual void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const;
-  /// The trial becomes the iterate.
-  virtual void accept(PhaseClock& clock);
+  /// The trial becomes the iterate. take_energies() comes next where it was evaluated.
+  virtual void accept(PhaseClock&) {}
+  /// The energies of the trial are those of the iterate.
+  void take_energies();
+  /// Energies of the iterate x, which was accepted without them.
+  virtual void evaluate_iterate(const PositionsView& x);
 
   // --- what is said of it, at the iterate x
   virtual void report(const PositionsView& /*x*/, IterateNumbers&, PhaseClock&) {}
