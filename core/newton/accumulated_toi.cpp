@@ -26,11 +26,12 @@ class AccumulatedToi final : public StepSolver {
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
     step.dt_s = 0;  // until a part of it is reached
-    double beta = 0;
+    double &beta = step.solver.values["toi"] = 0, &iterations = step.solver.values["toi_iterations"] = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       const double advanced = iterate(system, step, task.step, iteration, SaddleRule::ignore, observer);
       if (step.status != StepStatus::iteration_cap) return step;
       beta += std::max(0.0, 1.0 - beta) * advanced;
+      ++iterations;
       if (beta >= target_toi_ && iteration + 1 >= min_newton_steps_) {
         step.dt_s = beta * task.dt;
         reduce_error(system, step, task, used, iteration + 1, observer);
@@ -113,6 +114,11 @@ StepSolverEntry step_solver_accumulated_toi() {
       {"target_toi", open_low(number_in(0, 1, "1")), 0.25, "accumulated time of impact that ends the step"},
       {"min_newton_steps", count(1, 1000000), 1, "smallest number of iterations"},
   };
+  entry.counters = {
+      {"toi", "accumulated_toi: time of impact that a step accumulates, as a part of its dt", OverSteps::smallest},
+      {"toi_iterations", "accumulated_toi: iterations before the one that reduces the error", OverSteps::sum},
+  };
+  entry.needs.energies = entry.needs.minimum = false;
   entry.asked_to_converge = false;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AccumulatedToi>(options);

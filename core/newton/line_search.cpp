@@ -38,6 +38,7 @@ class LineSearch final : public StepSolver {
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
+    feasibility_trials_ = &(step.solver.values["feasibility_trials"] = 0);
     error_.reset();
     const double tolerance = tolerance_of(system, task.dt);
     int collapsed = 0, escapes = 0;
@@ -223,6 +224,7 @@ class LineSearch final : public StepSolver {
   }
 
   bool is_feasible(StepSystem& system, IterationReport& report, double alpha) {
+    ++*feasibility_trials_;
     if (!system.try_feasible(alpha)) return false;
     report.energy_change_J = Number::missing(no_energies_compared);
     return true;
@@ -232,6 +234,7 @@ class LineSearch final : public StepSolver {
   double armijo_, cap_fraction_;
   double bound_ = 1;    // of the step taken last
   bool noise_ = false;  // its change of E is
+  double* feasibility_trials_ = nullptr;
   ErrorEstimate error_;
 };
 
@@ -244,6 +247,9 @@ StepSolverEntry step_solver_line_search() {
       {"cap_fraction", open_low(number_in(0, 1, "1")), 0.8,
        "part of a binding contact or strain bound that is taken; 1 goes to the stop level"},
   };
+  entry.counters = {{"feasibility_trials",
+                     "line_search: those of line_search_trials that feasibility alone judged, short of a pose",
+                     OverSteps::sum}};
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<LineSearch>(options);
   };

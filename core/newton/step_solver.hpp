@@ -10,6 +10,8 @@
 #include "core/newton/report.hpp"
 #include "core/newton/step_system.hpp"
 #include "core/parameters/registry.hpp"
+#include "core/record/solver_counts.hpp"
+#include "core/terms/step_needs.hpp"
 
 namespace bb {
 
@@ -37,11 +39,14 @@ class StepSolver {
 struct StepSolverEntry {
   std::string name, doc;
   std::vector<Parameter> parameters;  // its own, with defaults
-  bool bounds_steps = true;  // false: steps may pass through surfaces, barriers are read beyond their end
+  std::vector<SolverCounter> counters;  // that its steps fill in StepReport::solver, all of them
+  StepNeeds needs;
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
   std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
 };
 const Registry<StepSolverEntry>& step_solvers();
+/// Those of all of them, in the order of registry.inc. Errors: std::logic_error for a name that two declare.
+std::vector<SolverCounter> step_solver_counters();
 /// Errors: ConfigError for an unknown name. Ranges are checked where a config is read.
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options);
 

@@ -23,8 +23,8 @@ bool has_observed_run(const RunConfig& config) {
 
 Plan plan_of(const RunConfig& config, const Scene& scene) {
   PlanOptions options;
-  options.collision_free_steps =
-      step_solvers().require(config.step_solver.name, "/step_solver/name").bounds_steps;
+  options.step = step_solvers().require(config.step_solver.name, "/step_solver/name").needs;
+  options.end_check = config.step_solver.saddle != SaddleRule::ignore;
   options.linear = {config.linear_solver.name, config.linear_solver.parameters};
   options.linear_reason = config.linear_solver_reason;
   options.diagnose = config.passes.diagnose;

@@ -101,7 +101,7 @@ TEST(plan, skips_the_step_bound_of_a_solver_without_one) {
   TermOptions terms;
   terms.contact_options.mollifier = Mollifier::none;
   PlanOptions options;
-  options.collision_free_steps = false;
+  options.step.step_bound = false;
 
   const Plan plan = plan_of(scene_of({cloth("cloth")}), terms, options);
 
