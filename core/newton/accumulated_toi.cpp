@@ -115,7 +115,8 @@ StepSolverEntry step_solver_accumulated_toi() {
       {"min_newton_steps", count(1, 1000000), 1, "smallest number of iterations"},
   };
   entry.counters = {
-      {"toi", "accumulated_toi: time of impact that a step accumulates, as a part of its dt", OverSteps::smallest},
+      {"toi", "accumulated_toi: time of impact that a step accumulates, as a part of its dt",
+       OverSteps::smallest},
       {"toi_iterations", "accumulated_toi: iterations before the one that reduces the error", OverSteps::sum},
   };
   entry.needs.energies = entry.needs.minimum = false;

@@ -17,9 +17,13 @@ HostPotential::HostPotential(const Scene& scene, Method& method, const Plan& pla
       plan_(plan),
       precision_(method.precision),
       terms_(make_terms(plan, {scene, method, plan.contacts, fixed})),
-      blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed)),
-      solver_(make_linear_solver(plan.linear)) {
+      blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed)) {
+  make_solver();
   set_fixed_families(method);
+}
+
+void HostPotential::make_solver() {
+  if (plan_.linear_solver.needed) solver_ = make_linear_solver(plan_.linear);
 }
 
 // Families that come and go are numbered apart from those that stay.
@@ -45,7 +49,7 @@ void HostPotential::set_fixed_families(const Method& method) {
 void HostPotential::begin_step(const StepColumns& step) {
   frame_ = {points(step.x_n), points(step.x_tilde), step.dt, step.c, step.load_factor};
   energies_known_ = trial_evaluated_ = false;
-  solver_->begin_step();
+  if (solver_) solver_->begin_step();
   for (const auto& term : terms_) term->begin_step(frame_, clock());
 }
 
@@ -77,11 +81,11 @@ void HostPotential::keep(Archive& archive) {
 void HostPotential::keep_solver(Archive& archive) {
   archive.section("linear solver");
   blocks_->keep(archive);
-  solver_->keep(archive);
+  if (solver_) solver_->keep(archive);
 }
 
 void HostPotential::drop_caches() {
-  solver_ = make_linear_solver(plan_.linear);
+  make_solver();
   blocks_->set_contacts({});
 }
 

@@ -71,6 +71,7 @@ class HostPotential final : public IncrementalPotential {
 
  private:
   friend class Diagnosis;
+  friend class ConstraintSystem;
   /// Where the families of a term are in the block system, whose families are fixed or changing.
   struct Slot {
     Term* term;
@@ -79,6 +80,7 @@ class HostPotential final : public IncrementalPotential {
     bool clamped;  // the term's clamped Hessians are those of this iterate
   };
   void set_fixed_families(const Method& method);
+  void make_solver();
   bool set_changing_families();
   TermContext context(const PositionsView& gradient, StepHessian hessian = StepHessian::clamped) const {
     return {*blocks_, elastic_, gradient, first_projection(hessian), clock()};
@@ -103,7 +105,7 @@ class HostPotential final : public IncrementalPotential {
   std::vector<Slot> slots_;                // one a term
   std::vector<std::size_t> matrix_order_;  // of the slots: H first, since its snapshot is taken there
   std::unique_ptr<BlockSystem> blocks_;
-  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<LinearSolver> solver_;  // where the plan needs one
 
   StepFrame frame_;
   const Column* x_ = nullptr;  // the iterate that was linearised last

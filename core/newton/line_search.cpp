@@ -247,9 +247,10 @@ StepSolverEntry step_solver_line_search() {
       {"cap_fraction", open_low(number_in(0, 1, "1")), 0.8,
        "part of a binding contact or strain bound that is taken; 1 goes to the stop level"},
   };
-  entry.counters = {{"feasibility_trials",
-                     "line_search: those of line_search_trials that feasibility alone judged, short of a pose",
-                     OverSteps::sum}};
+  entry.counters = {
+      {"feasibility_trials",
+       "line_search: those of line_search_trials that feasibility alone judged, short of a pose",
+       OverSteps::sum}};
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<LineSearch>(options);
   };

@@ -163,11 +163,20 @@ NewtonSystem& NewtonSystem::on_host() {
   return *host_;
 }
 
-Diagnosis& NewtonSystem::diagnosis() {
+HostPotential& NewtonSystem::host_potential() {
   auto* potential = dynamic_cast<HostPotential*>(state_.potential.get());
   if (!potential) throw std::logic_error("terms and matrices are read on the host: on_host()");
-  if (!diagnosis_) diagnosis_ = std::make_unique<Diagnosis>(*potential, state_);
+  return *potential;
+}
+
+Diagnosis& NewtonSystem::diagnosis() {
+  if (!diagnosis_) diagnosis_ = std::make_unique<Diagnosis>(host_potential(), state_);
   return *diagnosis_;
+}
+
+ConstraintSystem& NewtonSystem::constraints() {
+  if (!constraints_) constraints_ = std::make_unique<ConstraintSystem>(host_potential(), state_, method_);
+  return *constraints_;
 }
 
 }  // namespace bb

@@ -58,7 +58,8 @@ struct StepReport : StepNumbers {
     newton_iterations += failed.newton_iterations;
     *this += failed;
     for (const SolverCounter& counter : counters) {
-      if (counter.over_steps == OverSteps::sum) solver.values[counter.name] += failed.solver.values.at(counter.name);
+      if (counter.over_steps == OverSteps::sum)
+        solver.values[counter.name] += failed.solver.values.at(counter.name);
     }
   }
 };

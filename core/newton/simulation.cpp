@@ -66,6 +66,7 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
   if (!entry_.asked_to_converge && entry_.needs.matrix) {
     end_residual_ = std::make_unique<EndResidual>(scene_, method_, plan_);
   }
+  solver_->require(*system_);
   history_.x = scene.x0;
   round_state(method.precision, history_.x);
   history_.v = scene.v0;

@@ -30,6 +30,8 @@ class StepSolver {
  public:
   virtual ~StepSolver() = default;
   virtual std::string_view name() const = 0;
+  /// Errors: ConfigError for what a system has that it cannot step.
+  virtual void require(StepSystem&) const {}
   /// Leaves the reached state in system.x(), and in `used` the prediction that it belongs to. The
   /// report's counters, status and dt_s are filled; the rest is the caller's.
   virtual StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
@@ -38,7 +40,7 @@ class StepSolver {
 
 struct StepSolverEntry {
   std::string name, doc;
-  std::vector<Parameter> parameters;  // its own, with defaults
+  std::vector<Parameter> parameters;    // its own, with defaults
   std::vector<SolverCounter> counters;  // that its steps fill in StepReport::solver, all of them
   StepNeeds needs;
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions

@@ -180,6 +180,21 @@ void ContactTerm::accept(PhaseClock& clock) {
   stiffness_.keep(state_.rows, state_.mollified);
 }
 
+void ContactTerm::add_constraints(const ConstraintRequest& request,
+                                  std::vector<const ConstraintBatch*>& out) {
+  {
+    const ScopedPhase timer(request.clock, Phase::broad_phase);
+    contacts_.update_candidates(request.x, request.x);
+  }
+  const ScopedPhase timer(request.clock, Phase::contact_rows);
+  ContactState& found = constrained_;
+  contacts_.find_rows(request.x, found.rows, found.mollified);
+  const bool compliant = request.inequalities == Inequalities::compliant;
+  if (compliant) stiffness_.freeze(found.rows, found.mollified, request.blocks, request.elastic);
+  constraints_.set(found.rows, found.mollified, request.x, compliant);
+  out.push_back(&constraints_);
+}
+
 const ContactState& contact_state(const TermList& terms) {
   static const ContactState none;
   const ContactTerm* term = terms.find<ContactTerm>();

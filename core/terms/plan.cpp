@@ -21,9 +21,9 @@ void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const 
   const bool contact_reads = contact && terms.stiffness && terms.stiffness->needs_hessian();
   const bool limit_reads =
       plan.term("strain_limit").needed && terms.limit_stiffness && terms.limit_stiffness->needs_hessian();
-  plan.policy_submatrix =
-      plan_item(options.step.matrix && (contact_reads || limit_reads), "a stiffness policy reads the elastic matrix",
-                options.step.matrix ? "no stiffness policy of a term in use reads it" : no_matrix);
+  plan.policy_submatrix = plan_item(
+      options.step.matrix && (contact_reads || limit_reads), "a stiffness policy reads the elastic matrix",
+      options.step.matrix ? "no stiffness policy of a term in use reads it" : no_matrix);
   bool moving = false;
   for (const Pin& pin : scene.pins) {
     moving = moving || !scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
@@ -49,17 +49,18 @@ void plan_passes(Plan& plan, const PlanOptions& options) {
   plan.linear = options.linear;
   const bool solves = options.step.matrix;
   plan.linear_solver = plan_item(solves, plan.linear.name + ", " + options.linear_reason, no_matrix);
-  plan.preconditioner =
-      plan_item(solves && preconditioner_of(plan.linear) != "none",
-                preconditioner_of(plan.linear) + ", of the linear solver",
-                solves ? "the linear solver has none" : no_matrix);
-  plan.conditioning = plan_item(options.diagnose, "passes.diagnose", "passes.diagnose is off");
+  plan.preconditioner = plan_item(solves && preconditioner_of(plan.linear) != "none",
+                                  preconditioner_of(plan.linear) + ", of the linear solver",
+                                  solves ? "the linear solver has none" : no_matrix);
+  plan.conditioning =
+      plan_item(solves && options.diagnose, "passes.diagnose", solves ? "passes.diagnose is off" : no_matrix);
   plan.audit = plan_item(options.audit, "passes.audit", "passes.audit is off");
   plan.trace =
       plan_item(options.trace, "a run is observed",
                 "only the pass time: passes.diagnose, passes.audit or output.frames_every leave one");
   plan.frames = plan_item(options.frames, "output.frames_every", "output.frames_every is 0");
-  plan.matrices = plan_item(options.matrices, "output.matrices", "output.matrices is off");
+  plan.matrices =
+      plan_item(solves && options.matrices, "output.matrices", solves ? "output.matrices is off" : no_matrix);
 }
 
 }  // namespace

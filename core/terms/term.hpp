@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/energy/constraint_batch.hpp"
 #include "core/energy/element_batch.hpp"
 #include "core/linear/block_system.hpp"
 #include "core/math/types.hpp"
@@ -60,6 +61,18 @@ struct EnergyPart {
   double change, magnitude;  // J; rounding noise is some multiple of eps times the magnitudes
 };
 using EnergyParts = std::vector<EnergyPart>;
+
+/// Whether inequalities are rigid, or as compliant as the stiffness says that the term has.
+enum class Inequalities { rigid, compliant };
+
+/// What constraints are asked for, and what may be read for it.
+struct ConstraintRequest {
+  PositionsView x;  // [3 x n] m, where those that come and go are found
+  Inequalities inequalities;
+  const BlockSystem& blocks;
+  const BlockSystem::Values& elastic;  // H, as in TermContext
+  PhaseClock& clock;
+};
 
 class Term {
  public:
@@ -148,6 +161,12 @@ class Term {
   void take_energies();
   /// Energies of the iterate x, which was accepted without them.
   virtual void evaluate_iterate(const PositionsView& x);
+
+  // --- constraints, for a step solver that asks for them in the place of all above, but for loads of vertices
+  /// Whether constraints stand for this term.
+  virtual bool offers_constraints() const { return false; }
+  /// Appends them: always as many batches in the same order, which stay the term's, until the next call.
+  virtual void add_constraints(const ConstraintRequest&, std::vector<const ConstraintBatch*>& /*out*/) {}
 
   // --- what is said of it, at the iterate x
   virtual void report(const PositionsView& /*x*/, IterateNumbers&, PhaseClock&) {}

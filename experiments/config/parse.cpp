@@ -4,7 +4,6 @@
 #include <nlohmann/json.hpp>
 
 #include "core/input/read_file.hpp"
-#include "core/newton/step_solver.hpp"
 #include "core/record/provenance.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "core/terms/step_hessian.hpp"
@@ -41,16 +40,10 @@ double default_tolerance(const RunConfig& config) {
   return (fall > 0 && config.integrator.name != "quasi_static" ? std::min(length, 0.1 * fall) : length) / dt;
 }
 
-/// An unknown step solver has a violation already.
-bool needs_minimum(const RunConfig& config) {
-  const StepSolverEntry* entry = step_solvers().find(config.step_solver.name);
-  return entry && entry->needs.minimum;
-}
-
 /// What is left out: a step solver that tests energies goes down from any state, the others keep to
 /// matrices that are positive semi-definite term by term.
 void fill_hessians(const json& document, RunConfig& config) {
-  const bool minimum = needs_minimum(config);
+  const bool minimum = needs_of(config).minimum;
   if (minimum && !child(document, "contact").contains("hessian_mode")) {
     config.contact.hessian_mode = HessianMode::projected_full;
   }
@@ -94,7 +87,7 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   if (!child(document, "step_solver").contains("tol_velocity_m_per_s")) {
     config.step_solver.tol_velocity = default_tolerance(config);
   }
-  if (!child(document, "step_solver").contains("saddle") && !needs_minimum(config)) {
+  if (!child(document, "step_solver").contains("saddle") && !needs_of(config).minimum) {
     config.step_solver.saddle = SaddleRule::ignore;
   }
   fill_hessians(document, config);

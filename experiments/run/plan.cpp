@@ -1,6 +1,8 @@
 #include "experiments/run/plan.hpp"
 
 #include "core/linear/linear_solver.hpp"
+#include "core/math/error.hpp"
+#include "core/newton/newton_system.hpp"
 #include "core/newton/step_solver.hpp"
 #include "experiments/run/method.hpp"
 
@@ -33,6 +35,19 @@ Plan plan_of(const RunConfig& config, const Scene& scene) {
   options.frames = config.output.frames_every > 0;
   options.matrices = config.output.matrices;
   return make_plan(scene, uncalibrated(config), options);
+}
+
+void check_step_solver_forms(const RunConfig& config, const Scene& scene) {
+  if (step_solvers().require(config.step_solver.name, "/step_solver/name").needs.matrix) return;
+  Method method = uncalibrated(config);
+  NewtonSystem system(scene, method, plan_of(config, scene));
+  try {
+    make_step_solver(method.step_solver)->require(system);
+  } catch (const ConfigError& error) {
+    std::vector<Violation> violations = error.violations();
+    for (Violation& v : violations) v.where = config.source + "#" + v.where;
+    throw ConfigError(std::move(violations));
+  }
 }
 
 }  // namespace bb

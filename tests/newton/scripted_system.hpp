@@ -43,7 +43,7 @@ class ScriptedSystem final : public StepSystem, public StepView {
 
   std::vector<double> tried;           // every alpha whose energy was asked for, in the order of trials
   std::vector<double> feasible_asked;  // those of which feasibility alone was
-  std::vector<double> aimed;  // lengths of escapes
+  std::vector<double> aimed;           // lengths of escapes
   int accepted = 0, checks = 0;
 
   void begin_step(const Positions&, const Prediction&, double, double) override { place_ = -1; }

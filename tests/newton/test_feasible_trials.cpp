@@ -79,7 +79,9 @@ struct Two {
   NewtonSystem known, late;
 
   explicit Two(const std::string& policy = "fixed")
-      : method{contact_method(policy), contact_method(policy)}, known(scene, method[0]), late(scene, method[1]) {
+      : method{contact_method(policy), contact_method(policy)},
+        known(scene, method[0]),
+        late(scene, method[1]) {
     Prediction prediction;
     prediction.x_tilde = scene.x0;
     prediction.x_tilde.row(2).array() -= 0.01;
@@ -109,7 +111,8 @@ TEST(FeasibleTrials, WhatIsSaidOfTheAcceptedStateIsWhatItWouldBe) {
     EXPECT_GT(known.contact_load_sum_N.value, 0);
     EXPECT_EQ(late.contact_load_sum_N.value, known.contact_load_sum_N.value);
     EXPECT_EQ(late.limit_load_max_N_per_m.value, known.limit_load_max_N_per_m.value);
-    for (const TermGroup group : {TermGroup::load, TermGroup::elastic, TermGroup::limit, TermGroup::contact}) {
+    for (const TermGroup group :
+         {TermGroup::load, TermGroup::elastic, TermGroup::limit, TermGroup::contact}) {
       EXPECT_NE(two.known.view().energy(group), 0);
       EXPECT_EQ(two.late.view().energy(group), two.known.view().energy(group));
     }

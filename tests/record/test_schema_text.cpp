@@ -23,7 +23,8 @@ std::string committed(const char* name) {
 }
 
 TEST(RecordSchema, TheCopyInTheTreeIsTheOneOfThisProgram) {
-  EXPECT_EQ(committed("run"), run_schema(step_solver_counters())) << "write it anew: ./bench help record --schema";
+  EXPECT_EQ(committed("run"), run_schema(step_solver_counters()))
+      << "write it anew: ./bench help record --schema";
   EXPECT_EQ(committed("trace"), trace_schema()) << "write it anew: ./bench help trace --schema";
 }
 
@@ -74,7 +75,8 @@ TEST(RecordSchema, SaysWhichFieldsMeantSomethingElseBefore) {
               std::string::npos)
         << text;
   };
-  for (const ChangedMeaning& change : changed_in_run) expect_said(change, run_schema(step_solver_counters()), run_dictionary(step_solver_counters()));
+  for (const ChangedMeaning& change : changed_in_run)
+    expect_said(change, run_schema(step_solver_counters()), run_dictionary(step_solver_counters()));
   for (const ChangedMeaning& change : changed_in_trace)
     expect_said(change, trace_schema(), trace_dictionary());
 }

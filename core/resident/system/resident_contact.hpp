@@ -126,7 +126,7 @@ class ResidentContact {
   ResidentLeast curved_, straight_;  // HoldTimes
   StepEndGaps gaps_;
   ResidentRows rows_, trial_;
-  bool lent_ = false;  // the trial has the columns that the two share
+  bool lent_ = false;                                // the trial has the columns that the two share
   bool evaluated_ = true, trial_evaluated_ = false;  // the rows have a barrier; those of the trial
   std::optional<Compensated> energy_;
   Index frugal_from_ = default_frugal_from;
