@@ -7,6 +7,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/energy/constraint_batch.hpp"
 #include "core/math/projection.hpp"
 #include "core/math/types.hpp"
 
@@ -39,6 +40,9 @@ class EnergyBatch {
   virtual void values(const PositionsView& x, double* energy) const = 0;
   /// Energies, gradients and Hessians, projected element by element. Cost: O(n); out is resized once and never allocated again.
   virtual void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const = 0;
+
+  /// Constraints whose energy is this one; null: it has no such form.
+  virtual const ConstraintBatch* constraints() const { return nullptr; }
 
   std::size_t size() const { return vertices().size() / static_cast<std::size_t>(width()); }
 };

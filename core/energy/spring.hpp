@@ -12,6 +12,17 @@ BB_HD T spring_value(const Vec<T, 3> (&x)[2], T stiffness, T rest_length) {
   return stiffness / T(2) * stretch * stretch;
 }
 
+/// C = l - l0 (m), whose energy C^2/(2 compliance) with compliance 1/k is that of the spring; gradient -n, n, 0 at l = 0.
+/// Host-device: yes. Total.
+template <class T>
+BB_HD T spring_stretch(const Vec<T, 3> (&x)[2], T rest_length, Vec<T, 3> (&gradient)[2]) {
+  const Vec<T, 3> difference = x[1] - x[0];
+  const T length = difference.norm();
+  gradient[1] = length > T(0) ? Vec<T, 3>(difference / length) : Vec<T, 3>(Vec<T, 3>::Zero());
+  gradient[0] = -gradient[1];
+  return length - rest_length;
+}
+
 /// Energy, gradient and Hessian k (n n^T + (1 - l0/l)(1 - n n^T)), n the unit direction; the transverse part
 /// is negative in compression. At l = 0 (a cusp unless l0 = 0) gradient and Hessian are those with n = 0.
 /// Host-device: yes. Total.

@@ -6,6 +6,20 @@
 
 namespace bb {
 
+SpringConstraints::SpringConstraints(std::span<const int> vertices, std::span<const double> rest_length,
+                                     std::span<const double> stiffness)
+    : vertices_(vertices), rest_length_(rest_length) {
+  for (const double k : stiffness) compliance_.push_back(1 / k);
+}
+
+double SpringConstraints::value(std::size_t e, const PositionsView& x, double* gradient) const {
+  const Points<2> p(x, vertices_, e);
+  Vec3d of[2];
+  const double out = spring_stretch<double>(p.x, rest_length_[e], of);
+  for (std::size_t i = 0; i < 2; ++i) Vec3d::Map(gradient + 3 * i) = of[i];
+  return out;
+}
+
 SpringBatch::SpringBatch(std::span<const std::array<int, 2>> edges, const PositionsView& x_rest,
                          std::vector<double> stiffness, Precision precision)
     : stiffness_(std::move(stiffness)), precision_(precision) {
@@ -14,6 +28,7 @@ SpringBatch::SpringBatch(std::span<const std::array<int, 2>> edges, const Positi
     vertices_.insert(vertices_.end(), {a, b});
     rest_length_.push_back((x_rest.col(b) - x_rest.col(a)).norm());
   }
+  constraints_.emplace(vertices_, rest_length_, stiffness_);
 }
 
 void SpringBatch::values(const PositionsView& x, double* energy) const {

@@ -1,5 +1,5 @@
-// One time step after Ando 2024 (A Cubic Barrier with Elasticity-Inclusive Dynamic Stiffness): E is never
-// evaluated, feasibility alone limits the step. Newton iterations on the same x_tilde accumulate the fraction
+// One time step after Ando 2024 (A Cubic Barrier with Elasticity-Inclusive Dynamic Stiffness): no energy of a trial is
+// asked for, feasibility alone limits the step. Newton iterations on the same x_tilde accumulate the fraction
 // of the motion that was feasible, beta; once beta >= target the step is shortened to beta dt and one more
 // iteration with the shortened prediction reduces the error. Only with implicit Euler, whose prediction
 // scales with dt.
@@ -26,11 +26,12 @@ class AccumulatedToi final : public StepSolver {
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
     step.dt_s = 0;  // until a part of it is reached
-    double beta = 0;
+    double &beta = step.solver.values["toi"] = 0, &iterations = step.solver.values["toi_iterations"] = 0;
     for (int iteration = 0; iteration < options_.max_iterations; ++iteration) {
       const double advanced = iterate(system, step, task.step, iteration, SaddleRule::ignore, observer);
       if (step.status != StepStatus::iteration_cap) return step;
       beta += std::max(0.0, 1.0 - beta) * advanced;
+      ++iterations;
       if (beta >= target_toi_ && iteration + 1 >= min_newton_steps_) {
         step.dt_s = beta * task.dt;
         reduce_error(system, step, task, used, iteration + 1, observer);
@@ -60,7 +61,10 @@ class AccumulatedToi final : public StepSolver {
     const double alpha = feasible_step(system, report);
     report.alpha = scale * alpha;
     const bool moved = alpha > 0;
-    if (moved) system.accept();
+    if (moved) {
+      system.accept();
+      report.energy_change_J = Number::missing(no_energies_compared);
+    }
     finish_iteration(system, step, report, observer);
     if (moved) {
       show_motion(system, step_index, observer);
@@ -79,7 +83,7 @@ class AccumulatedToi final : public StepSolver {
     double alpha = system.bound_motion(report);
     for (; alpha > 0; alpha = alpha < 1e-14 ? 0 : alpha / 2) {
       ++report.line_search_trials;
-      if (system.try_motion(alpha / extension)) break;
+      if (system.try_feasible(alpha / extension)) break;
     }
     return alpha;
   }
@@ -110,6 +114,12 @@ StepSolverEntry step_solver_accumulated_toi() {
       {"target_toi", open_low(number_in(0, 1, "1")), 0.25, "accumulated time of impact that ends the step"},
       {"min_newton_steps", count(1, 1000000), 1, "smallest number of iterations"},
   };
+  entry.counters = {
+      {"toi", "accumulated_toi: time of impact that a step accumulates, as a part of its dt",
+       OverSteps::smallest},
+      {"toi_iterations", "accumulated_toi: iterations before the one that reduces the error", OverSteps::sum},
+  };
+  entry.needs.energies = entry.needs.minimum = false;
   entry.asked_to_converge = false;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<AccumulatedToi>(options);

@@ -69,7 +69,7 @@ class ArticleLiteral final : public StepSolver {
 StepSolverEntry step_solver_article_literal() {
   StepSolverEntry entry;
   entry.parameters = {{"armijo", open_high(open_low(number_in(0, 0.5, "1"))), 1e-4, "sufficient decrease"}};
-  entry.bounds_steps = false;
+  entry.needs.minimum = entry.needs.step_bound = false;
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<ArticleLiteral>(options);
   };

@@ -23,6 +23,7 @@ void HostPotential::linearise(const Column& x, Column& g) {
     if (slot.term->group() != TermGroup::elastic) linearise(slot, x, g);
     add_gradient(slot, g);
   }
+  energies_known_ = true;
 }
 
 void HostPotential::linearise(Slot& slot, const Column& x, const Column& g) {

@@ -17,9 +17,13 @@ HostPotential::HostPotential(const Scene& scene, Method& method, const Plan& pla
       plan_(plan),
       precision_(method.precision),
       terms_(make_terms(plan, {scene, method, plan.contacts, fixed})),
-      blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed)),
-      solver_(make_linear_solver(plan.linear)) {
+      blocks_(std::make_unique<BlockSystem>(scene.n_vertices(), fixed)) {
+  make_solver();
   set_fixed_families(method);
+}
+
+void HostPotential::make_solver() {
+  if (plan_.linear_solver.needed) solver_ = make_linear_solver(plan_.linear);
 }
 
 // Families that come and go are numbered apart from those that stay.
@@ -44,7 +48,8 @@ void HostPotential::set_fixed_families(const Method& method) {
 
 void HostPotential::begin_step(const StepColumns& step) {
   frame_ = {points(step.x_n), points(step.x_tilde), step.dt, step.c, step.load_factor};
-  solver_->begin_step();
+  energies_known_ = trial_evaluated_ = false;
+  if (solver_) solver_->begin_step();
   for (const auto& term : terms_) term->begin_step(frame_, clock());
 }
 
@@ -52,6 +57,7 @@ void HostPotential::change_step(const StepColumns& step) {
   frame_.x_tilde = points(step.x_tilde);
   frame_.dt = step.dt;
   frame_.c = step.c;
+  energies_known_ = false;
   for (const auto& term : terms_) term->change_frame(frame_);
 }
 
@@ -75,11 +81,11 @@ void HostPotential::keep(Archive& archive) {
 void HostPotential::keep_solver(Archive& archive) {
   archive.section("linear solver");
   blocks_->keep(archive);
-  solver_->keep(archive);
+  if (solver_) solver_->keep(archive);
 }
 
 void HostPotential::drop_caches() {
-  solver_ = make_linear_solver(plan_.linear);
+  make_solver();
   blocks_->set_contacts({});
 }
 
@@ -117,27 +123,52 @@ bool HostPotential::make_room(const Column& x, const Column& dx, double bound, C
   return held;
 }
 
-std::optional<EnergyChange> HostPotential::try_state(const Column& x, Column& trial, const Column& g) {
+bool HostPotential::admits(const Column&, Column& trial) {
+  trial_evaluated_ = false;
   round_state(precision_, points(trial));
-  if (!points(trial).allFinite()) return std::nullopt;
+  if (!points(trial).allFinite()) return false;
   for (const auto& term : terms_) {
-    if (!term->admits(points(trial), clock())) return std::nullopt;
+    if (!term->admits(points(trial), clock())) return false;
   }
-  for (const auto& term : terms_) term->evaluate(points(trial), context(points(g)));
+  for (const auto& term : terms_) term->freeze(*blocks_, elastic_, clock());
+  return true;
+}
+
+EnergyChange HostPotential::change(const Column& x, const Column& trial) {
+  know_energies(x);
+  for (const auto& term : terms_) term->evaluate(points(trial));
+  trial_evaluated_ = true;
   return sums_.change(terms_, points(x), points(trial));
 }
 
 void HostPotential::accept() {
-  for (const auto& term : terms_) term->accept(clock());
+  for (const auto& term : terms_) {
+    term->accept(clock());
+    if (trial_evaluated_) term->take_energies();
+  }
+  energies_known_ = trial_evaluated_;
+  trial_evaluated_ = false;
 }
 
-double HostPotential::energy(TermSet set, const Column&) { return total_energy(terms_, set); }
+// A step that compares no energies ends with a state that has none, which the record asks for.
+void HostPotential::know_energies(const Column& x) {
+  if (energies_known_) return;
+  const WholePhase timer(clock(), Phase::output);
+  for (const auto& term : terms_) term->evaluate_iterate(points(x));
+  energies_known_ = true;
+}
+
+double HostPotential::energy(TermSet set, const Column& x) {
+  know_energies(x);
+  return total_energy(terms_, set);
+}
 
 void HostPotential::report(const Column& x, IterateNumbers& out) {
   for (const auto& term : terms_) term->report(points(x), out, clock());
 }
 
 void HostPotential::report_end(const Column& x, StepNumbers& out) {
+  know_energies(x);
   for (const auto& term : terms_) term->report_end(points(x), out, clock());
 }
 

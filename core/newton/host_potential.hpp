@@ -56,7 +56,8 @@ class HostPotential final : public IncrementalPotential {
   double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
   std::string describe_bound() const override { return holder_ ? holder_->describe_bound() : std::string(); }
   bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
-  std::optional<EnergyChange> try_state(const Column& x, Column& trial, const Column& g) override;
+  bool admits(const Column& x, Column& trial) override;
+  EnergyChange change(const Column& x, const Column& trial) override;
   void accept() override;
 
   double energy(TermSet set, const Column& x) override;
@@ -70,6 +71,7 @@ class HostPotential final : public IncrementalPotential {
 
  private:
   friend class Diagnosis;
+  friend class ConstraintSystem;
   /// Where the families of a term are in the block system, whose families are fixed or changing.
   struct Slot {
     Term* term;
@@ -78,11 +80,13 @@ class HostPotential final : public IncrementalPotential {
     bool clamped;  // the term's clamped Hessians are those of this iterate
   };
   void set_fixed_families(const Method& method);
+  void make_solver();
   bool set_changing_families();
   TermContext context(const PositionsView& gradient, StepHessian hessian = StepHessian::clamped) const {
     return {*blocks_, elastic_, gradient, first_projection(hessian), clock()};
   }
   void linearise(Slot& slot, const Column& x, const Column& g);
+  void know_energies(const Column& x);
   void add_families(const Slot& slot, PositionsSpan gradient) const;
   void add_gradient(const Slot& slot, Column& g);
   void clamp(Slot& slot);
@@ -101,7 +105,7 @@ class HostPotential final : public IncrementalPotential {
   std::vector<Slot> slots_;                // one a term
   std::vector<std::size_t> matrix_order_;  // of the slots: H first, since its snapshot is taken there
   std::unique_ptr<BlockSystem> blocks_;
-  std::unique_ptr<LinearSolver> solver_;
+  std::unique_ptr<LinearSolver> solver_;  // where the plan needs one
 
   StepFrame frame_;
   const Column* x_ = nullptr;  // the iterate that was linearised last
@@ -114,6 +118,7 @@ class HostPotential final : public IncrementalPotential {
   std::size_t nnz_ = 0;
   std::vector<double> hess_buffer_;
   bool pattern_changed_ = false;
+  bool energies_known_ = false, trial_evaluated_ = false;  // of the iterate; of the trial
   VecXd rhs_, solution_;
 };
 

@@ -3,7 +3,6 @@
 // degrees of freedom are 0 at the others.
 #pragma once
 
-#include <optional>
 #include <string>
 
 #include "core/exec/buffer.hpp"
@@ -83,10 +82,12 @@ class IncrementalPotential {
   /// force (N) becomes what makes room for gaps that are curved along dx, of a motion that bound() ends at `bound`. Whether
   /// curvature is what holds it. The matrix is that of the last fill_matrix() again, whatever was filled since.
   virtual bool make_room(const Column& x, const Column& dx, double bound, Column& force) = 0;
-  /// E(trial) - E(x), and what the terms keep of the trial, which is rounded to the precision of the run first. Without
-  /// value where it is not feasible, or not finite.
-  virtual std::optional<EnergyChange> try_state(const Column& x, Column& trial, const Column& g) = 0;
-  /// The last trial is the iterate.
+  /// Whether the trial, which is rounded to the precision of the run first, is finite and feasible, and what the terms
+  /// keep of it then. No energy is evaluated.
+  virtual bool admits(const Column& x, Column& trial) = 0;
+  /// E(trial) - E(x) of the trial that was admitted last.
+  virtual EnergyChange change(const Column& x, const Column& trial) = 0;
+  /// The trial that was admitted last is the iterate. What is said of it holds whether its energies were asked for or not.
   virtual void accept() = 0;
 
   // --- what is said of the iterate x

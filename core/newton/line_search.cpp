@@ -38,6 +38,7 @@ class LineSearch final : public StepSolver {
   StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
                      StepObserver& observer) override {
     StepReport step = start_step(system, task, used);
+    feasibility_trials_ = &(step.solver.values["feasibility_trials"] = 0);
     error_.reset();
     const double tolerance = tolerance_of(system, task.dt);
     int collapsed = 0, escapes = 0;
@@ -151,12 +152,12 @@ class LineSearch final : public StepSolver {
 
   // Whether E has changed along the step as its quadratic model says, or by noise. Where the rate of convergence
   // is not known a short direction says nothing without it: a gap far below its equilibrium under an unbounded
-  // barrier doubles with every iteration, by directions as short as the gap.
+  // barrier doubles with every iteration, by directions as short as the gap. Requires that energies were compared.
   bool as_modelled(const IterationReport& report) const {
     constexpr double tolerance = 0.25;
     const double modelled = -report.alpha * (2 - report.alpha) * report.decrement_J;
     if (report.alpha == 0) return report.decrement_J == 0;
-    return noise_ || std::abs(report.energy_change_J - modelled) <= tolerance * std::abs(modelled);
+    return noise_ || std::abs(report.energy_change_J.value - modelled) <= tolerance * std::abs(modelled);
   }
 
   // Steps 4 to 6. Without an energy test while a prescribed vertex is short of its pose: its
@@ -201,29 +202,39 @@ class LineSearch final : public StepSolver {
     // A step all the way to the stop level would leave a gap that takes a dozen iterations to open again.
     double alpha = bound_;
     if (alpha < 1) alpha *= cap_fraction_;
-    while (alpha > least) {
+    for (; alpha > least; alpha /= 2) {
       ++report.line_search_trials;
-      if (const auto change = system.try_motion(alpha)) {
-        const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
-        report.rounding_accepts =
-            energy_test && !decrease && within_rounding(*change, system.view().precision());
-        if (decrease || !energy_test || report.rounding_accepts) {
-          report.alpha = alpha;
-          report.energy_change_J = change->change;
-          noise_ = within_rounding(*change, system.view().precision());
-          system.accept();
-          return true;
-        }
-      }
-      alpha /= 2;
+      if (!(energy_test ? decreases(system, report, alpha) : is_feasible(system, report, alpha))) continue;
+      report.alpha = alpha;
+      system.accept();
+      return true;
     }
     return false;
+  }
+
+  bool decreases(StepSystem& system, IterationReport& report, double alpha) {
+    const auto change = system.try_motion(alpha);
+    if (!change) return false;
+    const bool decrease = change->change <= -armijo_ * alpha * (2 * report.decrement_J);
+    noise_ = within_rounding(*change, system.view().precision());
+    report.rounding_accepts = !decrease && noise_;
+    if (!decrease && !noise_) return false;
+    report.energy_change_J = change->change;
+    return true;
+  }
+
+  bool is_feasible(StepSystem& system, IterationReport& report, double alpha) {
+    ++*feasibility_trials_;
+    if (!system.try_feasible(alpha)) return false;
+    report.energy_change_J = Number::missing(no_energies_compared);
+    return true;
   }
 
   StepSolverOptions options_;
   double armijo_, cap_fraction_;
   double bound_ = 1;    // of the step taken last
   bool noise_ = false;  // its change of E is
+  double* feasibility_trials_ = nullptr;
   ErrorEstimate error_;
 };
 
@@ -236,6 +247,10 @@ StepSolverEntry step_solver_line_search() {
       {"cap_fraction", open_low(number_in(0, 1, "1")), 0.8,
        "part of a binding contact or strain bound that is taken; 1 goes to the stop level"},
   };
+  entry.counters = {
+      {"feasibility_trials",
+       "line_search: those of line_search_trials that feasibility alone judged, short of a pose",
+       OverSteps::sum}};
   entry.make = [](const StepSolverOptions& options) -> std::unique_ptr<StepSolver> {
     return std::make_unique<LineSearch>(options);
   };

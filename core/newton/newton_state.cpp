@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "core/newton/step_solver.hpp"
+
 namespace bb {
 
 std::vector<std::uint8_t> fixed_dofs(const Scene& scene, const Plan& plan) {
@@ -41,6 +43,8 @@ ExactHessians exact_hessians(const Plan& plan, const Method& method) {
 
 PlanOptions plan_options(const Method& method) {
   PlanOptions options;
+  options.step = step_solvers().require(method.step_solver.name, "/step_solver/name").needs;
+  options.end_check = method.step_solver.saddle != SaddleRule::ignore;
   options.linear = method.linear;
   return options;
 }

@@ -95,10 +95,16 @@ double NewtonSystem::bound_motion(IterationReport& report) {
   return state_.potential->bound(state_.x, state_.end, state_.dx, report);
 }
 
-std::optional<EnergyChange> NewtonSystem::try_motion(double alpha) {
+bool NewtonSystem::try_feasible(double alpha) {
   const ScopedPhase timer(clock(), Phase::line_search);
   move(alpha, state_.trial);
-  return state_.potential->try_state(state_.x, state_.trial, state_.g);
+  return state_.potential->admits(state_.x, state_.trial);
+}
+
+std::optional<EnergyChange> NewtonSystem::try_motion(double alpha) {
+  if (!try_feasible(alpha)) return std::nullopt;
+  const ScopedPhase timer(clock(), Phase::line_search);
+  return state_.potential->change(state_.x, state_.trial);
 }
 
 void NewtonSystem::accept() {
@@ -114,7 +120,7 @@ void NewtonSystem::go_to(const Positions& x) {
   state_.end.upload(numbers_of(x));
   state_.potential->prepare(state_.x, state_.end, state_.dx, false);
   state_.trial.upload(numbers_of(x));
-  if (!state_.potential->try_state(state_.x, state_.trial, state_.g)) {
+  if (!state_.potential->admits(state_.x, state_.trial)) {
     throw std::logic_error("a state that is gone to is not feasible");
   }
   accept();
@@ -157,11 +163,20 @@ NewtonSystem& NewtonSystem::on_host() {
   return *host_;
 }
 
-Diagnosis& NewtonSystem::diagnosis() {
+HostPotential& NewtonSystem::host_potential() {
   auto* potential = dynamic_cast<HostPotential*>(state_.potential.get());
   if (!potential) throw std::logic_error("terms and matrices are read on the host: on_host()");
-  if (!diagnosis_) diagnosis_ = std::make_unique<Diagnosis>(*potential, state_);
+  return *potential;
+}
+
+Diagnosis& NewtonSystem::diagnosis() {
+  if (!diagnosis_) diagnosis_ = std::make_unique<Diagnosis>(host_potential(), state_);
   return *diagnosis_;
+}
+
+ConstraintSystem& NewtonSystem::constraints() {
+  if (!constraints_) constraints_ = std::make_unique<ConstraintSystem>(host_potential(), state_, method_);
+  return *constraints_;
 }
 
 }  // namespace bb

@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 
+#include "core/newton/constraint_system.hpp"
 #include "core/newton/diagnosis.hpp"
 #include "core/newton/newton_state.hpp"
 #include "core/newton/newton_view.hpp"
@@ -43,6 +44,7 @@ class NewtonSystem : public StepSystem {
   double bound_motion(IterationReport& report) override;
   bool make_detour(double bound, SolveReport& report) override;
   void restore_direction() override { state_.dx.swap(state_.aside); }
+  bool try_feasible(double alpha) override;
   std::optional<EnergyChange> try_motion(double alpha) override;
   void accept() override;
 
@@ -60,6 +62,8 @@ class NewtonSystem : public StepSystem {
   void adopt(const StepFrame& frame, NewtonSystem& other);
   /// Terms and matrices of the iterate. Errors: std::logic_error elsewhere than on the host.
   Diagnosis& diagnosis();
+  /// The step for a solver of constraints. Errors: std::logic_error elsewhere than on the host.
+  ConstraintSystem& constraints();
   IncrementalPotential& potential() { return *state_.potential; }
 
  private:
@@ -72,6 +76,7 @@ class NewtonSystem : public StepSystem {
   bool find_one_direction(SolveReport& report);
   void add_solution();
   void move(double alpha, Column& to);
+  HostPotential& host_potential();
 
   Method& method_;
   NewtonState state_;
@@ -83,6 +88,7 @@ class NewtonSystem : public StepSystem {
   Positions target_;
   MotionEnd end_ = MotionEnd::free;  // of the motion in progress
   std::unique_ptr<Diagnosis> diagnosis_;
+  std::unique_ptr<ConstraintSystem> constraints_;
   std::unique_ptr<NewtonSystem> host_;  // the copy of on_host()
 };
 

@@ -1,5 +1,7 @@
 #include "core/newton/newton_view.hpp"
 
+#include <fmt/format.h>
+
 #include "core/newton/element_name.hpp"
 #include "core/newton/host_potential.hpp"
 #include "core/newton/newton_system.hpp"
@@ -30,7 +32,7 @@ std::string NewtonView::describe_non_finite() const {
   const auto named = [this](const char* what, const Column& column) -> std::string {
     const exec::Index first = state_.vectors.first_not_finite(column);
     if (first < 0) return {};
-    return std::string(what) + " at vertex " + vertex_name(state_.scene, static_cast<int>(first / 3));
+    return fmt::format("{} at vertex {}", what, vertex_name(state_.scene, static_cast<int>(first / 3)));
   };
   if (std::string at = named("gradient", state_.g); !at.empty()) return at;
   if (std::string at = named("direction", state_.dx); !at.empty()) return at;

@@ -1,3 +1,5 @@
+#include <stdexcept>
+
 #include "core/newton/step_solver.hpp"
 #include "core/parameters/check.hpp"
 
@@ -14,6 +16,19 @@ const Registry<StepSolverEntry>& step_solvers() {
   });
 #undef ENTRY
   return all;
+}
+
+std::vector<SolverCounter> step_solver_counters() {
+  std::vector<SolverCounter> out;
+  for (const StepSolverEntry& entry : step_solvers()) {
+    for (const SolverCounter& counter : entry.counters) {
+      if (find_named(out, counter.name)) {
+        throw std::logic_error("two step solvers declare the counter " + counter.name);
+      }
+      out.push_back(counter);
+    }
+  }
+  return out;
 }
 
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options) {

@@ -51,12 +51,16 @@ struct StepReport : StepNumbers {
   long long ccd_capped_before = 0;  // of ccd_capped, those of attempts before the last
   int iterations_before = 0;        // of newton_iterations
   /// Counts what an attempt before this one cost.
-  void add_attempt(const StepReport& failed) {
+  void add_attempt(const StepReport& failed, const std::vector<SolverCounter>& counters = {}) {
     retries = failed.retries + 1;
     ccd_capped_before = failed.ccd_capped;
     iterations_before = failed.newton_iterations;
     newton_iterations += failed.newton_iterations;
     *this += failed;
+    for (const SolverCounter& counter : counters) {
+      if (counter.over_steps == OverSteps::sum)
+        solver.values[counter.name] += failed.solver.values.at(counter.name);
+    }
   }
 };
 

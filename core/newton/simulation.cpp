@@ -1,5 +1,8 @@
 #include "core/newton/simulation.hpp"
 
+#include <algorithm>
+#include <stdexcept>
+
 #include "core/archive/archive.hpp"
 #include "core/newton/iteration.hpp"
 
@@ -38,6 +41,13 @@ class ChargedObserver final : public StepObserver {
   PhaseClock& clock_;
 };
 
+/// All of the counters have a number, and nothing else has.
+bool declared(const std::vector<SolverCounter>& counters, const SolverCounts& counts) {
+  return counts.values.size() == counters.size() &&
+         std::all_of(counters.begin(), counters.end(),
+                     [&counts](const SolverCounter& each) { return counts.values.contains(each.name); });
+}
+
 }  // namespace
 
 Simulation::Simulation(const Scene& scene, Method& method, double dt, int n_steps)
@@ -51,10 +61,12 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
       n_steps_(n_steps),
       parts_(method.step_solver.retries),
       system_(std::make_unique<NewtonSystem>(scene, method, plan)),
+      entry_(step_solvers().require(method.step_solver.name, "/step_solver/name")),
       solver_(make_step_solver(method.step_solver)) {
-  if (!step_solvers().require(method.step_solver.name, "/step_solver/name").asked_to_converge) {
+  if (!entry_.asked_to_converge && entry_.needs.matrix) {
     end_residual_ = std::make_unique<EndResidual>(scene_, method_, plan_);
   }
+  solver_->require(*system_);
   history_.x = scene.x0;
   round_state(method.precision, history_.x);
   history_.v = scene.v0;
@@ -115,7 +127,11 @@ StepReport Simulation::attempt(StepObserver& observer) {
     for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, time_ + dt);
     round_state(method_.precision, target);
   };
-  return solver_->advance(*system_, task, prediction_, observer);
+  StepReport report = solver_->advance(*system_, task, prediction_, observer);
+  if (!declared(entry_.counters, report.solver)) {
+    throw std::logic_error("counters of a step that " + entry_.name + " does not declare, or lacks");
+  }
+  return report;
 }
 
 // Every attempt but the first begins as a run that goes on from an archive of the start would.
@@ -131,7 +147,7 @@ StepReport Simulation::attempt_until_converged(StepObserver& observer) {
     parts_.halve();
     observer.on_retry(step_);
     StepReport shorter = attempt(observer);
-    shorter.add_attempt(report);
+    shorter.add_attempt(report, entry_.counters);
     report = std::move(shorter);
   }
   return report;

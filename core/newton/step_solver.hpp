@@ -10,6 +10,8 @@
 #include "core/newton/report.hpp"
 #include "core/newton/step_system.hpp"
 #include "core/parameters/registry.hpp"
+#include "core/record/solver_counts.hpp"
+#include "core/terms/step_needs.hpp"
 
 namespace bb {
 
@@ -28,6 +30,8 @@ class StepSolver {
  public:
   virtual ~StepSolver() = default;
   virtual std::string_view name() const = 0;
+  /// Errors: ConfigError for what a system has that it cannot step.
+  virtual void require(StepSystem&) const {}
   /// Leaves the reached state in system.x(), and in `used` the prediction that it belongs to. The
   /// report's counters, status and dt_s are filled; the rest is the caller's.
   virtual StepReport advance(StepSystem& system, const StepTask& task, Prediction& used,
@@ -36,12 +40,15 @@ class StepSolver {
 
 struct StepSolverEntry {
   std::string name, doc;
-  std::vector<Parameter> parameters;  // its own, with defaults
-  bool bounds_steps = true;  // false: steps may pass through surfaces, barriers are read beyond their end
+  std::vector<Parameter> parameters;    // its own, with defaults
+  std::vector<SolverCounter> counters;  // that its steps fill in StepReport::solver, all of them
+  StepNeeds needs;
   bool asked_to_converge = true;  // false: a step is over by another rule than the size of its directions
   std::unique_ptr<StepSolver> (*make)(const StepSolverOptions& complete) = nullptr;
 };
 const Registry<StepSolverEntry>& step_solvers();
+/// Those of all of them, in the order of registry.inc. Errors: std::logic_error for a name that two declare.
+std::vector<SolverCounter> step_solver_counters();
 /// Errors: ConfigError for an unknown name. Ranges are checked where a config is read.
 std::unique_ptr<StepSolver> make_step_solver(const StepSolverOptions& options);
 

@@ -72,6 +72,7 @@ void get(const Place& place, const Json& j, PhaseTimes& out) {
     if (j.contains(name)) get(place / name, j[name], out.s[i]);
   }
 }
+void get(const Place& place, const Json& j, SolverCounts& out);
 template <class E>
 requires std::is_enum_v<E>
 void get(const Place& place, const Json& j, E& out) {
@@ -122,14 +123,20 @@ Number number_of(const Place& place, const Json& object, const FieldText& field)
 void get_field(const Place& place, const Json& object, const FieldText& field, Number& out) {
   out = number_of(place, object, field);
 }
+/// The same with the infinity that a reason says.
+double double_of(const Number& number) {
+  const std::string_view reason = number.finite() ? "" : number.status;
+  const double infinity = std::numeric_limits<double>::infinity();
+  return reason == "infinite" ? infinity : reason == "minus_infinite" ? -infinity : number.value;
+}
 void get_field(const Place& place, const Json& object, const FieldText& field, double& out) {
-  const Number number = number_of(place, object, field);
-  if (number.finite()) {
-    out = number.value;
-  } else {
-    const std::string_view reason = number.status;
-    const double infinity = std::numeric_limits<double>::infinity();
-    out = reason == "infinite" ? infinity : reason == "minus_infinite" ? -infinity : number.value;
+  out = double_of(number_of(place, object, field));
+}
+void get(const Place& place, const Json& j, SolverCounts& out) {
+  if (!j.is_object()) refuse(place, j, "an object");
+  for (const auto& [name, value] : j.items()) {
+    if (name.ends_with("_status")) continue;  // the reason of another
+    out.values[name] = double_of(number_of(place, j, {name.c_str(), ""}));
   }
 }
 template <class T>

@@ -17,6 +17,7 @@ namespace {
 using Json = nlohmann::ordered_json;
 
 constexpr const char* changed_meaning = "x-changed-meaning";
+constexpr const char* solver_counts = "SolverCounts";
 
 std::vector<std::string> words_in(const std::string& text) {
   std::istringstream in(text);
@@ -42,6 +43,21 @@ Json phases_schema() {
   }
   return {{"type", "object"},
           {"description", "seconds of every phase; a phase that took no time is left out"},
+          {"properties", properties},
+          {"additionalProperties", false}};
+}
+
+/// A step has those of its step solver alone.
+Json counters_schema(const std::vector<SolverCounter>& counters) {
+  Json properties = Json::object();
+  for (const SolverCounter& counter : counters) {
+    properties[counter.name] = {
+        {"type", {"number", "null"}},
+        {"description", counter.doc + "; over the steps the " + std::string(to_string(counter.over_steps))}};
+    properties[counter.name + "_status"] = {{"enum", words_in(non_finite_words)}};
+  }
+  return {{"type", "object"},
+          {"description", "counters of step solvers, each of those that its entry declares"},
           {"properties", properties},
           {"additionalProperties", false}};
 }
@@ -74,6 +90,8 @@ Json schema_of(Json& defs, const FieldText& field) {
     return {{"type", "object"}};
   } else if constexpr (std::same_as<T, PhaseTimes>) {
     return define("PhaseTimes", phases_schema);
+  } else if constexpr (std::same_as<T, SolverCounts>) {
+    return define(solver_counts, [] { return Json(); });  // run_document() knows which there are
   } else if constexpr (Record<T>) {
     return define(T::record_name, [&defs] { return record_schema<T>(defs); });
   } else if constexpr (requires { typename T::mapped_type; }) {
@@ -140,7 +158,11 @@ Json document(const char* title, std::span<const ChangedMeaning> changes) {
   return out;
 }
 
-Json run_document() { return document<RunRecord>("barrierbench run record", changed_in_run); }
+Json run_document(const std::vector<SolverCounter>& counters) {
+  Json out = document<RunRecord>("barrierbench run record", changed_in_run);
+  out["$defs"][solver_counts] = counters_schema(counters);
+  return out;
+}
 Json trace_document() { return document<TraceRow>("barrierbench trace line", changed_in_trace); }
 
 std::string joined(const Json& words) {
@@ -191,10 +213,14 @@ std::string dictionary(const Json& document) {
 
 }  // namespace
 
-std::string run_schema() { return lines(run_document(), "") + "\n"; }
+std::string run_schema(const std::vector<SolverCounter>& counters) {
+  return lines(run_document(counters), "") + "\n";
+}
 std::string trace_schema() { return lines(trace_document(), "") + "\n"; }
 
-std::string run_dictionary() { return dictionary(run_document()); }
+std::string run_dictionary(const std::vector<SolverCounter>& counters) {
+  return dictionary(run_document(counters));
+}
 std::string trace_dictionary() { return dictionary(trace_document()); }
 
 std::string_view unit_of(std::string_view name) {

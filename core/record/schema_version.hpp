@@ -7,7 +7,7 @@ namespace bb {
 /// MODEL.REVISION.ADDITION. The first number counts fields that are gone, and readers refuse another one; the second
 /// fields that mean something else (changed_in_run, changed_in_trace) or hold more words; the third those that were added.
 inline constexpr const char* run_schema_name = "barrierbench.run";
-inline constexpr const char* run_schema_version = "3.5.2";
+inline constexpr const char* run_schema_version = "3.6.0";
 static_assert(run_schema_version[0] == '3', "the pattern of SchemaId::version names the first number too");
 
 /// A field whose values are not compared with those of records before `since`.
@@ -30,6 +30,7 @@ inline constexpr ChangedMeaning changed_in_run[] = {
 inline constexpr ChangedMeaning changed_in_trace[] = {
     {"contraction", "3.5.0", "the ratio before counted as 0 where it is not known"},
     {"error_estimate_m", "3.5.0", "with that contraction; |dx| itself within rounding"},
+    {"energy_change_J", "3.6.0", "0 or the change of E where an update was judged by feasibility alone"},
     {"cond[].tier", "3.5.0", "2: our Lanczos round the factor, which is tier 4 now"},
 };
 

@@ -3,6 +3,7 @@
 
 #include <string>
 
+#include "core/record/solver_counts.hpp"
 #include "core/record/step_status.hpp"
 #include "core/record/trace_row.hpp"
 
@@ -38,6 +39,7 @@ struct StepRecord : WorkCounts {
            "not_converged not_estimated");
   BB_FIELD(Number, end_error_tolerances, "end_error_m over dt_s tol_velocity", "not_converged not_estimated");
   BB_FIELD(int, newton_iterations, "Newton iterations") = 0;
+  BB_FIELD(SolverCounts, solver, "what its step solver counts beside that");
   BB_FIELD(ContactCounts, contacts, "at its end");
   BB_FIELD(Number, gap_min_m, "smallest gap at its end", "no_contacts not_converged");
   BB_FIELD(Number, gap_min_rel, "smallest d / d_hat of that state", "no_contacts not_converged");

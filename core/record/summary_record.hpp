@@ -72,6 +72,7 @@ struct Summary : WorkCounts {
   BB_FIELD(Number, dt_min_s, "shortest step");
   BB_FIELD(long long, newton_iterations, "over all steps") = 0;
   BB_FIELD(Stats, newton_per_step, "Newton iterations of a step");
+  BB_FIELD(SolverCounts, solver, "what the step solver counts beside that, over the steps");
   BB_FIELD(std::string, convergence,
            "not_asked: the step solver stops by another rule, so that a step that is over need not be near a "
            "solution",

@@ -51,6 +51,9 @@ constexpr std::string_view to_string(SpectrumSide side) {
 template <>
 inline constexpr int n_words<SpectrumSide> = 2;
 
+/// Of an update that was judged by feasibility alone.
+inline constexpr const char* no_energies_compared = "not_compared";
+
 struct TermShare {
   BB_RECORD(TermShare, "the part of an eigenvalue that one term of E makes");
   BB_FIELD(std::string, term, "term of the registry");
@@ -160,7 +163,8 @@ struct TraceRow : WorkCounts {
   BB_FIELD(int, iteration, "of the step, from 0") = 0;
   BB_FIELD(double, t_s, "simulated time at the end of the step") = 0;
   BB_FIELD(double, energy_J, "E before the update, contact with the kappa of this iteration") = 0;
-  BB_FIELD(double, energy_change_J, "of the accepted update, compared as a difference") = 0;
+  BB_FIELD(Number, energy_change_J, "of the accepted update, compared as a difference; 0 without an update",
+           no_energies_compared) = 0;
   BB_FIELD(double, grad_inf_N, "largest entry of the gradient, free degrees of freedom") = 0;
   BB_FIELD(double, dx_inf_m, "largest entry of the full Newton direction, before alpha") = 0;
   BB_FIELD(double, decrement_J, "-g . dx / 2") = 0;

@@ -28,6 +28,12 @@ Json json_of(const PhaseTimes& times) {
   return j;
 }
 
+Json json_of(const SolverCounts& counts) {
+  Json j = Json::object();
+  for (const auto& [name, value] : counts.values) put(j, name, Number(value));
+  return j;
+}
+
 Json json_of(const JsonText& v) {
   Json j = Json::parse(v.text, nullptr, false);
   if (j.is_discarded()) throw std::invalid_argument("record: config is not JSON");

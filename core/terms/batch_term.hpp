@@ -18,8 +18,10 @@ class BatchTerm final : public Term {
   void clamp(const PositionsView& x) override {
     batch_->derivatives(x, Projection::psd, families_[0].clamped);
   }
-  void evaluate(const PositionsView& x, const TermContext&) override {
-    batch_->values(x, families_[0].trial_energy.data());
+  void evaluate(const PositionsView& x) override { batch_->values(x, families_[0].trial_energy.data()); }
+  bool offers_constraints() const override { return batch_->constraints() != nullptr; }
+  void add_constraints(const ConstraintRequest&, std::vector<const ConstraintBatch*>& out) override {
+    if (batch_->constraints()) out.push_back(batch_->constraints());
   }
 
  private:

@@ -153,22 +153,46 @@ bool ContactTerm::admits(const PositionsView& x, PhaseClock& clock) {
   return trial_.gap_min > 0 || options_.contact.literal;
 }
 
-void ContactTerm::evaluate(const PositionsView& x, const TermContext& context) {
-  {
-    const ScopedPhase timer(context.clock, Phase::stiffness);
-    stiffness_.freeze(trial_.rows, trial_.mollified, context.blocks, context.elastic);
-  }
-  fill_shape(trial_);
-  contact_energies(trial_.rows, families_[0].trial_energy, options_.precision);
-  mollified_energies(trial_.mollified, x, families_[1].trial_energy, options_.precision);
+void ContactTerm::freeze(const BlockSystem& blocks, const BlockSystem::Values& elastic, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::stiffness);
+  stiffness_.freeze(trial_.rows, trial_.mollified, blocks, elastic);
+}
+
+void ContactTerm::evaluate(ContactState& state, const PositionsView& x, std::vector<double>& rows,
+                           std::vector<double>& mollified) {
+  fill_shape(state);
+  contact_energies(state.rows, rows, options_.precision);
+  mollified_energies(state.mollified, x, mollified, options_.precision);
+}
+
+void ContactTerm::evaluate(const PositionsView& x) {
+  evaluate(trial_, x, families_[0].trial_energy, families_[1].trial_energy);
+}
+
+void ContactTerm::evaluate_iterate(const PositionsView& x) {
+  evaluate(state_, x, families_[0].local.energy, families_[1].local.energy);
 }
 
 void ContactTerm::accept(PhaseClock& clock) {
   const ScopedPhase timer(clock, Phase::stiffness);
-  Term::accept(clock);
   std::swap(state_, trial_);
   use_state();
   stiffness_.keep(state_.rows, state_.mollified);
+}
+
+void ContactTerm::add_constraints(const ConstraintRequest& request,
+                                  std::vector<const ConstraintBatch*>& out) {
+  {
+    const ScopedPhase timer(request.clock, Phase::broad_phase);
+    contacts_.update_candidates(request.x, request.x);
+  }
+  const ScopedPhase timer(request.clock, Phase::contact_rows);
+  ContactState& found = constrained_;
+  contacts_.find_rows(request.x, found.rows, found.mollified);
+  const bool compliant = request.inequalities == Inequalities::compliant;
+  if (compliant) stiffness_.freeze(found.rows, found.mollified, request.blocks, request.elastic);
+  constraints_.set(found.rows, found.mollified, request.x, compliant);
+  out.push_back(&constraints_);
 }
 
 const ContactState& contact_state(const TermList& terms) {

@@ -10,6 +10,7 @@
 #include "core/barrier/folded_barrier.hpp"
 #include "core/contact/contact_system.hpp"
 #include "core/scene/contact_plan.hpp"
+#include "core/terms/contact_constraints.hpp"
 #include "core/terms/policy_start.hpp"
 #include "core/terms/stiffness_update.hpp"
 #include "core/terms/term.hpp"
@@ -74,8 +75,12 @@ class ContactTerm final : public Term {
                   PositionsSpan force) const override;
   std::string describe_bound() const override;
   bool admits(const PositionsView& x, PhaseClock& clock) override;
-  void evaluate(const PositionsView& x, const TermContext& context) override;
+  void freeze(const BlockSystem& blocks, const BlockSystem::Values& elastic, PhaseClock& clock) override;
+  void evaluate(const PositionsView& x) override;
+  void evaluate_iterate(const PositionsView& x) override;
   void accept(PhaseClock& clock) override;
+  bool offers_constraints() const override { return true; }
+  void add_constraints(const ConstraintRequest& request, std::vector<const ConstraintBatch*>& out) override;
   void report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) override;
   void report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) override;
   void report_overload(const PositionsView& x, const PositionsView& others, const PositionsView& dx,
@@ -88,6 +93,8 @@ class ContactTerm final : public Term {
  private:
   void use_state();
   void fill_shape(ContactState& state);
+  void evaluate(ContactState& state, const PositionsView& x, std::vector<double>& rows,
+                std::vector<double>& mollified);
   void fill_local(const PositionsView& x, Projection projection);
   void start_policy(const PositionsView& x, const TermContext& context);
   StartSums start_sums(const PositionsView& others) const;
@@ -100,6 +107,8 @@ class ContactTerm final : public Term {
   StiffnessUpdate stiffness_;
   std::optional<FoldedBarrier> folded_;  // where the policy has a potential
   ContactState state_, trial_;
+  ContactState constrained_;  // rows that add_constraints() found last
+  ContactConstraints constraints_;
   StiffnessTime time_;
   double kappa_change_ = 0;
   bool first_iterate_ = true;

@@ -37,9 +37,7 @@ class ExternalForce final : public Term {
   void linearise(const PositionsView& x, const TermContext&) override {
     fill_energies(x, families_[0].local.energy);
   }
-  void evaluate(const PositionsView& x, const TermContext&) override {
-    fill_energies(x, families_[0].trial_energy);
-  }
+  void evaluate(const PositionsView& x) override { fill_energies(x, families_[0].trial_energy); }
   void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const override {
     const std::size_t start = out.size();
     out.resize(start + vertices_.size());

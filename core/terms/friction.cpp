@@ -66,7 +66,7 @@ class Friction final : public Term {
       });
     });
   }
-  void evaluate(const PositionsView& x, const TermContext&) override {
+  void evaluate(const PositionsView& x) override {
     with_value_scalar(options_.precision, [&]<class T>() {
       const Law<T> law = this->law<T>();
       for_each_element(size(), [&](std::size_t e) {

@@ -38,9 +38,7 @@ class Inertia final : public Term {
     parallel_items(weight_.size(), block_items,
                    [&](std::size_t i) { Vec3d::Map(&local.grad[3 * i]) = weight_[i] * off_target(x, i); });
   }
-  void evaluate(const PositionsView& x, const TermContext&) override {
-    fill_energies(x, families_[0].trial_energy);
-  }
+  void evaluate(const PositionsView& x) override { fill_energies(x, families_[0].trial_energy); }
 
   void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const override {
     const std::size_t start = out.size();

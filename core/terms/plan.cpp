@@ -9,16 +9,21 @@
 namespace bb {
 namespace {
 
+constexpr const char* no_matrix = "the step solver has no matrix";
+
 void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const PlanOptions& options) {
   const bool contact = plan.term("contact").needed;
-  plan.step_bound = plan_item(contact && options.collision_free_steps, "every step stays free of contact",
+  plan.step_bound = plan_item(contact && options.step.step_bound, "every step stays free of contact",
                               contact ? "the step solver has no step bound" : "nothing can touch");
+  plan.trial_energies = plan_item(options.step.energies, "the step solver compares E at trials",
+                                  "feasibility alone judges the trials of the step solver");
+  plan.end_check = plan_item(options.end_check, "step_solver.saddle", "step_solver.saddle is ignore");
   const bool contact_reads = contact && terms.stiffness && terms.stiffness->needs_hessian();
   const bool limit_reads =
       plan.term("strain_limit").needed && terms.limit_stiffness && terms.limit_stiffness->needs_hessian();
-  plan.policy_submatrix =
-      plan_item(contact_reads || limit_reads, "a stiffness policy reads the elastic matrix",
-                "no stiffness policy of a term in use reads it");
+  plan.policy_submatrix = plan_item(
+      options.step.matrix && (contact_reads || limit_reads), "a stiffness policy reads the elastic matrix",
+      options.step.matrix ? "no stiffness policy of a term in use reads it" : no_matrix);
   bool moving = false;
   for (const Pin& pin : scene.pins) {
     moving = moving || !scene.motions[static_cast<std::size_t>(pin.motion)].is_static();
@@ -42,17 +47,20 @@ PlanItem plan_float(Precision precision) {
 
 void plan_passes(Plan& plan, const PlanOptions& options) {
   plan.linear = options.linear;
-  plan.linear_solver = {true, plan.linear.name + ", " + options.linear_reason};
-  plan.preconditioner =
-      plan_item(preconditioner_of(plan.linear) != "none",
-                preconditioner_of(plan.linear) + ", of the linear solver", "the linear solver has none");
-  plan.conditioning = plan_item(options.diagnose, "passes.diagnose", "passes.diagnose is off");
+  const bool solves = options.step.matrix;
+  plan.linear_solver = plan_item(solves, plan.linear.name + ", " + options.linear_reason, no_matrix);
+  plan.preconditioner = plan_item(solves && preconditioner_of(plan.linear) != "none",
+                                  preconditioner_of(plan.linear) + ", of the linear solver",
+                                  solves ? "the linear solver has none" : no_matrix);
+  plan.conditioning =
+      plan_item(solves && options.diagnose, "passes.diagnose", solves ? "passes.diagnose is off" : no_matrix);
   plan.audit = plan_item(options.audit, "passes.audit", "passes.audit is off");
   plan.trace =
       plan_item(options.trace, "a run is observed",
                 "only the pass time: passes.diagnose, passes.audit or output.frames_every leave one");
   plan.frames = plan_item(options.frames, "output.frames_every", "output.frames_every is 0");
-  plan.matrices = plan_item(options.matrices, "output.matrices", "output.matrices is off");
+  plan.matrices =
+      plan_item(solves && options.matrices, "output.matrices", solves ? "output.matrices is off" : no_matrix);
 }
 
 }  // namespace
@@ -72,6 +80,8 @@ std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
                          {"obstacles", &contacts.obstacles},
                          {"broad_phase", &contacts.broad_phase},
                          {"step_bound", &step_bound},
+                         {"trial_energies", &trial_energies},
+                         {"end_check", &end_check},
                          {"mollifier", &contacts.mollifier},
                          {"policy_submatrix", &policy_submatrix},
                          {"pins", &pins},

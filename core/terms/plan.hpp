@@ -12,13 +12,15 @@
 #include "core/scene/contact_plan.hpp"
 #include "core/scene/scene.hpp"
 #include "core/terms/registry.hpp"
+#include "core/terms/step_needs.hpp"
 
 namespace bb {
 
 /// What the options outside the terms decide.
 struct PlanOptions {
-  bool collision_free_steps = true;  // false for a step solver without a step bound
-  LinearOptions linear;              // a registered solver
+  StepNeeds step;         // of the step solver
+  bool end_check = true;  // the end of a step is asked whether it is a minimum
+  LinearOptions linear;   // a registered solver
   std::string linear_reason = "as asked for";
   bool diagnose = false, audit = false, trace = false, frames = false, matrices = false;
 };
@@ -27,6 +29,8 @@ struct Plan {
   std::vector<PlanItem> terms;  // of term_entries(), in their order
   ContactPlan contacts;         // what contact is made of
   PlanItem step_bound;          // ACCD along every step
+  PlanItem trial_energies;      // E at the states that a line search tries
+  PlanItem end_check;           // whether a step ends in a minimum of E
   PlanItem policy_submatrix;    // H, which a stiffness policy reads
   PlanItem pins;                // eliminated degrees of freedom
   PlanItem pin_lifting;         // prescribed motion on the right-hand side

@@ -120,7 +120,7 @@ bool StrainLimitTerm::admits(const PositionsView& x, PhaseClock&) {
   return options_.limit.literal || batch_.min_gap() > 0;
 }
 
-void StrainLimitTerm::evaluate(const PositionsView& x, const TermContext&) {
+void StrainLimitTerm::evaluate(const PositionsView& x) {
   std::vector<double>& energy = families_[0].trial_energy;
   if (folded_) {
     batch_.values(x, *folded_, kappa_.data(), energy.data());

@@ -28,7 +28,7 @@ class StrainLimitTerm final : public Term {
   double bound(const Motion& motion, IterateNumbers& report, PhaseClock& clock) override;
   std::string describe_bound() const override { return "the strain limit"; }
   bool admits(const PositionsView& x, PhaseClock& clock) override;
-  void evaluate(const PositionsView& x, const TermContext& context) override;
+  void evaluate(const PositionsView& x) override;
   void report(const PositionsView& x, IterateNumbers& out, PhaseClock& clock) override;
   void report_end(const PositionsView& x, StepNumbers& out, PhaseClock& clock) override;
   void report_overload(const PositionsView& x, const PositionsView& others, const PositionsView& dx,

@@ -42,8 +42,13 @@ void Term::change(const PositionsView&, const PositionsView&, EnergyParts& out) 
   }
 }
 
-void Term::accept(PhaseClock&) {
+void Term::take_energies() {
   for (TermFamily& family : families_) std::swap(family.local.energy, family.trial_energy);
+}
+
+void Term::evaluate_iterate(const PositionsView& x) {
+  evaluate(x);
+  take_energies();
 }
 
 }  // namespace bb

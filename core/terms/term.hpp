@@ -9,6 +9,7 @@
 #include <string_view>
 #include <vector>
 
+#include "core/energy/constraint_batch.hpp"
 #include "core/energy/element_batch.hpp"
 #include "core/linear/block_system.hpp"
 #include "core/math/types.hpp"
@@ -30,11 +31,11 @@ struct StepFrame {
   double load_factor = 1;  // of the external force
 };
 
-/// What a term may read of the others while it is linearised at an iterate, or evaluated at a trial state.
+/// What a term may read of the others while it is linearised at an iterate.
 struct TermContext {
   const BlockSystem& blocks;           // pattern of the iterate's matrix
   const BlockSystem::Values& elastic;  // H at the iterate; empty unless the plan has policy_submatrix
-  PositionsView gradient;              // N, at the iterate: of the terms before this one (of all, in a trial)
+  PositionsView gradient;              // N, of the terms before this one
   Projection projection;               // of the Hessian of every element
   PhaseClock& clock;
 };
@@ -60,6 +61,18 @@ struct EnergyPart {
   double change, magnitude;  // J; rounding noise is some multiple of eps times the magnitudes
 };
 using EnergyParts = std::vector<EnergyPart>;
+
+/// Whether inequalities are rigid, or as compliant as the stiffness says that the term has.
+enum class Inequalities { rigid, compliant };
+
+/// What constraints are asked for, and what may be read for it.
+struct ConstraintRequest {
+  PositionsView x;  // [3 x n] m, where those that come and go are found
+  Inequalities inequalities;
+  const BlockSystem& blocks;
+  const BlockSystem::Values& elastic;  // H, as in TermContext
+  PhaseClock& clock;
+};
 
 class Term {
  public:
@@ -134,12 +147,26 @@ class Term {
   // --- a trial state x, every number of it finite
   /// Whether x is feasible.
   virtual bool admits(const PositionsView& /*x*/, PhaseClock&) { return true; }
-  /// Energies at the trial, after admits(). What changes with the iterate only, like kappa, stays as it is.
-  virtual void evaluate(const PositionsView& x, const TermContext& context) = 0;
+  /// All terms admit the trial: what it brings that the rest of the step keeps, like the kappa of pairs that turn up.
+  /// elastic: H at the iterate, as in TermContext.
+  virtual void freeze(const BlockSystem& /*blocks*/, const BlockSystem::Values& /*elastic*/, PhaseClock&) {}
+  /// Energies at the trial, after freeze(), where they are asked for. What changes with the iterate only, like kappa, stays
+  /// as it is.
+  virtual void evaluate(const PositionsView& x) = 0;
   /// The parts of E(trial x1) - E(iterate x0), in the order of the elements. Appends.
   virtual void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const;
-  /// The trial becomes the iterate.
-  virtual void accept(PhaseClock& clock);
+  /// The trial becomes the iterate. take_energies() comes next where it was evaluated.
+  virtual void accept(PhaseClock&) {}
+  /// The energies of the trial are those of the iterate.
+  void take_energies();
+  /// Energies of the iterate x, which was accepted without them.
+  virtual void evaluate_iterate(const PositionsView& x);
+
+  // --- constraints, for a step solver that asks for them in the place of all above, but for loads of vertices
+  /// Whether constraints stand for this term.
+  virtual bool offers_constraints() const { return false; }
+  /// Appends them: always as many batches in the same order, which stay the term's, until the next call.
+  virtual void add_constraints(const ConstraintRequest&, std::vector<const ConstraintBatch*>& /*out*/) {}
 
   // --- what is said of it, at the iterate x
   virtual void report(const PositionsView& /*x*/, IterateNumbers&, PhaseClock&) {}

@@ -7,6 +7,7 @@
 #include "experiments/config/parse.hpp"
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/linear_choice.hpp"
+#include "experiments/run/plan.hpp"
 #include "experiments/run/start_check.hpp"
 
 namespace bb::cli {
@@ -16,6 +17,7 @@ int check(const RunVerb& verb) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
   check_device_forms(config, scene);
+  check_step_solver_forms(config, scene);
   if (const auto failure = start_failure(config, scene, {&interrupted()})) {
     throw ConfigError(verb.config + "#/scene", failure->detail, "a start without intersections");
   }

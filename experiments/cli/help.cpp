@@ -4,6 +4,7 @@
 #include <nlohmann/json.hpp>
 
 #include "core/math/error.hpp"
+#include "core/newton/step_solver.hpp"
 #include "core/parameters/check.hpp"
 #include "core/parameters/registry.hpp"
 #include "core/record/schema.hpp"
@@ -21,7 +22,8 @@ struct Format {
 };
 constexpr std::array formats{Format{"config", config_list, nullptr, nullptr},
                              Format{"sweep", sweep_list, nullptr, nullptr},
-                             Format{"record", nullptr, run_dictionary, run_schema},
+                             Format{"record", nullptr, [] { return run_dictionary(step_solver_counters()); },
+                                    [] { return run_schema(step_solver_counters()); }},
                              Format{"trace", nullptr, trace_dictionary, trace_schema}};
 
 /// The default as it would be given, or in words, or that there has to be a value, or nothing.

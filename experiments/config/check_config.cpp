@@ -6,6 +6,7 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
+#include "core/newton/step_solver.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/enum_words.hpp"
@@ -42,16 +43,21 @@ void check_exponent(const std::string& section, const std::string& shape, const 
 
 void check_step_solver(const RunConfig& config, const Complain& complain) {
   const StepSolverConfig& solver = config.step_solver;
-  const bool literal = solver.name == "article_literal";
+  const StepNeeds needs = needs_of(config);
+  const bool literal = !needs.step_bound;
   if ((solver.name == "accumulated_toi" || literal) && config.integrator.name != "implicit_euler") {
     complain("/integrator/name", '"' + config.integrator.name + '"',
              "implicit_euler: the step solver is " + solver.name);
   }
   if (literal && config.formulation.argument != Argument::gap) {
-    complain("/formulation/argument", "\"squared_gap\"", "gap: the step solver is article_literal");
+    complain("/formulation/argument", "\"squared_gap\"", "gap: the step solver is " + solver.name);
   }
   if (literal && config.strain_limit.argument != Argument::gap) {
-    complain("/strain_limit/argument", "\"squared_gap\"", "gap: the step solver is article_literal");
+    complain("/strain_limit/argument", "\"squared_gap\"", "gap: the step solver is " + solver.name);
+  }
+  if (solver.saddle == SaddleRule::report && !needs.matrix) {
+    complain("/step_solver/saddle", "\"report\"",
+             "ignore: the step solver " + solver.name + " has no matrix");
   }
   if (solver.saddle == SaddleRule::escape && solver.name != "line_search") {
     complain("/step_solver/saddle", "\"escape\"",
@@ -90,7 +96,7 @@ void check_policy(const std::string& section, const PolicyConfig& policy, Policy
 
 /// A policy whose kappa has a potential asks for a shape that has one too.
 void check_potential(const std::string& section, const std::string& shape, Argument argument,
-                     const PolicyConfig& policy, bool literal, const Complain& complain) {
+                     const PolicyConfig& policy, const RunConfig& config, const Complain& complain) {
   const auto derivative = policy.parameters.find("derivative");
   if (derivative == policy.parameters.end() ||
       derivative->second != ParameterValue(std::string("included"))) {
@@ -102,19 +108,19 @@ void check_potential(const std::string& section, const std::string& shape, Argum
     complain(pointer, fmt::format("\"included\" with {} on {}", shape, to_string(argument)),
              "dropped, or argument gap and one of the shapes with a potential: " + shapes_with_potential());
   }
-  if (literal) complain(pointer, "\"included\"", "dropped: the step solver is article_literal");
+  if (!needs_of(config).step_bound)
+    complain(pointer, "\"included\"", "dropped: the step solver is " + config.step_solver.name);
 }
 
 void check_policies(const RunConfig& config, const Complain& complain) {
-  const bool literal = config.step_solver.name == "article_literal";
   const FormulationConfig& contact = config.formulation;
   check_policy("/formulation", contact.stiffness_policy, PolicyUse::contact,
                given_kappa(contact.stiffness_policy), complain);
-  check_potential("/formulation", contact.shape, contact.argument, contact.stiffness_policy, literal,
+  check_potential("/formulation", contact.shape, contact.argument, contact.stiffness_policy, config,
                   complain);
   const StrainLimitConfig& limit = config.strain_limit;
   if (!limit.enabled) return;
-  check_potential("/strain_limit", limit.shape, limit.argument, limit.stiffness_policy, literal, complain);
+  check_potential("/strain_limit", limit.shape, limit.argument, limit.stiffness_policy, config, complain);
   check_policy("/strain_limit", limit.stiffness_policy, PolicyUse::limit, given_k_s(limit.stiffness_policy),
                complain);
 }
@@ -289,8 +295,8 @@ void check_device(const RunConfig& config, const Complain& complain) {
     complain("/contact/hessian_mode", '"' + word_of(config.contact.hessian_mode) + '"',
              "gauss_newton or projected_full " + on);
   }
-  if (config.step_solver.name == "article_literal") {
-    complain("/step_solver/name", "\"article_literal\"", "another step solver " + on);
+  if (!needs_of(config).step_bound) {
+    complain("/step_solver/name", '"' + config.step_solver.name + '"', "another step solver " + on);
   }
   const LinearSolverEntry* solver = find_named(linear_solvers(), config.linear_solver.name);
   if (!solver || solver->matrix != MatrixPlace::executor) {
@@ -305,6 +311,11 @@ void check_device(const RunConfig& config, const Complain& complain) {
 }
 
 }  // namespace
+
+StepNeeds needs_of(const RunConfig& config) {
+  const StepSolverEntry* entry = step_solvers().find(config.step_solver.name);
+  return entry ? entry->needs : StepNeeds{};
+}
 
 bool follows_article(const SceneConfig& scene) {
   const auto protocol = scene.parameters.find("protocol");

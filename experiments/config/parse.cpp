@@ -43,11 +43,11 @@ double default_tolerance(const RunConfig& config) {
 /// What is left out: a step solver that tests energies goes down from any state, the others keep to
 /// matrices that are positive semi-definite term by term.
 void fill_hessians(const json& document, RunConfig& config) {
-  const bool line_search = config.step_solver.name == "line_search";
-  if (line_search && !child(document, "contact").contains("hessian_mode")) {
+  const bool minimum = needs_of(config).minimum;
+  if (minimum && !child(document, "contact").contains("hessian_mode")) {
     config.contact.hessian_mode = HessianMode::projected_full;
   }
-  const StepHessian fallback = line_search ? StepHessian::blend : StepHessian::clamped;
+  const StepHessian fallback = minimum ? StepHessian::blend : StepHessian::clamped;
   for (const HessianChoice& choice : hessian_choices()) {
     config.hessian.parameters.try_emplace(choice.name, std::string(to_string(fallback)));
   }
@@ -87,8 +87,8 @@ RunConfig read_document(json document, const std::string& source, std::vector<Vi
   if (!child(document, "step_solver").contains("tol_velocity_m_per_s")) {
     config.step_solver.tol_velocity = default_tolerance(config);
   }
-  if (!child(document, "step_solver").contains("saddle") && config.step_solver.name != "line_search") {
-    config.step_solver.saddle = SaddleRule::ignore;  // they are not asked for a minimum
+  if (!child(document, "step_solver").contains("saddle") && !needs_of(config).minimum) {
+    config.step_solver.saddle = SaddleRule::ignore;
   }
   fill_hessians(document, config);
   check_contradictions(config, source, violations);

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "core/math/error.hpp"
+#include "core/terms/step_needs.hpp"
 #include "experiments/config/run_config.hpp"
 #include "experiments/scenes/procedural_scene.hpp"
 
@@ -42,6 +43,9 @@ void settle_strain_limit(const nlohmann::json& object, const Reader& reader,
                          const FormulationConfig& formulation, std::optional<double> default_limit,
                          StrainLimitConfig& limit);
 void settle_matching(const nlohmann::json& object, const Reader& reader, bool literal, RunConfig& config);
+
+/// What the step solver of a config needs; all of an unknown one, which has a violation already.
+StepNeeds needs_of(const RunConfig& config);
 
 /// Whether the scene follows the protocol of the drape article.
 bool follows_article(const SceneConfig& scene);

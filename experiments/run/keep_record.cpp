@@ -21,4 +21,6 @@ void keep(Archive& archive, PhaseTimes& times) { archive(times.s); }
 
 void keep(Archive& archive, JsonText& text) { archive(text.text); }
 
+void keep(Archive& archive, SolverCounts& counts) { archive(counts.values); }
+
 }  // namespace bb

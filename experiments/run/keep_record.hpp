@@ -10,6 +10,7 @@ namespace bb {
 void keep(Archive& archive, Number& number);
 void keep(Archive& archive, PhaseTimes& times);
 void keep(Archive& archive, JsonText& text);
+void keep(Archive& archive, SolverCounts& counts);
 
 template <Record T>
 void keep(Archive& archive, T& record) {

@@ -62,7 +62,7 @@ Method make_method(const RunConfig& config, const Calibration& calibration) {
     method.limit_stiffness = make_limit_policy(config.strain_limit.stiffness_policy, calibration);
   }
   method.contact.literal = method.limit.literal =
-      !step_solvers().require(config.step_solver.name, "/step_solver/name").bounds_steps;
+      !step_solvers().require(config.step_solver.name, "/step_solver/name").needs.step_bound;
   method.precision = config.precision;
   method.contact.in_float = method.limit.in_float = values_in_float(config.precision);
   method.hessian_mode = config.contact.hessian_mode;

@@ -1,6 +1,8 @@
 #include "experiments/run/plan.hpp"
 
 #include "core/linear/linear_solver.hpp"
+#include "core/math/error.hpp"
+#include "core/newton/newton_system.hpp"
 #include "core/newton/step_solver.hpp"
 #include "experiments/run/method.hpp"
 
@@ -23,8 +25,8 @@ bool has_observed_run(const RunConfig& config) {
 
 Plan plan_of(const RunConfig& config, const Scene& scene) {
   PlanOptions options;
-  options.collision_free_steps =
-      step_solvers().require(config.step_solver.name, "/step_solver/name").bounds_steps;
+  options.step = step_solvers().require(config.step_solver.name, "/step_solver/name").needs;
+  options.end_check = config.step_solver.saddle != SaddleRule::ignore;
   options.linear = {config.linear_solver.name, config.linear_solver.parameters};
   options.linear_reason = config.linear_solver_reason;
   options.diagnose = config.passes.diagnose;
@@ -33,6 +35,19 @@ Plan plan_of(const RunConfig& config, const Scene& scene) {
   options.frames = config.output.frames_every > 0;
   options.matrices = config.output.matrices;
   return make_plan(scene, uncalibrated(config), options);
+}
+
+void check_step_solver_forms(const RunConfig& config, const Scene& scene) {
+  if (step_solvers().require(config.step_solver.name, "/step_solver/name").needs.matrix) return;
+  Method method = uncalibrated(config);
+  NewtonSystem system(scene, method, plan_of(config, scene));
+  try {
+    make_step_solver(method.step_solver)->require(system);
+  } catch (const ConfigError& error) {
+    std::vector<Violation> violations = error.violations();
+    for (Violation& v : violations) v.where = config.source + "#" + v.where;
+    throw ConfigError(std::move(violations));
+  }
 }
 
 }  // namespace bb

@@ -13,4 +13,8 @@ bool has_observed_run(const RunConfig& config);
 /// Requires a decided linear solver (linear_choice.hpp).
 Plan plan_of(const RunConfig& config, const Scene& scene);
 
+/// Errors: ConfigError for what the scene has that the step solver cannot step. Cost: the terms of the scene, for a step
+/// solver without matrix; nothing for others.
+void check_step_solver_forms(const RunConfig& config, const Scene& scene);
+
 }  // namespace bb

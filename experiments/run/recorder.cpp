@@ -96,9 +96,9 @@ void Recorder::LastState::keep(Archive& archive) { archive(step, x, fields.gap_r
 
 void Recorder::finish() {
   write_last();
-  summarize_steps(record_);
-  const bool asked = step_solvers().require(config_.step_solver.name, "/step_solver/name").asked_to_converge;
-  record_.summary.convergence = asked ? "asked" : "not_asked";
+  const StepSolverEntry& solver = step_solvers().require(config_.step_solver.name, "/step_solver/name");
+  summarize_steps(solver.counters, record_);
+  record_.summary.convergence = solver.asked_to_converge ? "asked" : "not_asked";
   record_.summary.linear_per_solve = summarize(linear_);
   condition_.fill(record_.summary);
   record_.summary.contact_gaps = gaps_.summary();

@@ -2,7 +2,7 @@
 
 namespace bb {
 
-void summarize_steps(RunRecord& record) {
+void summarize_steps(const std::vector<SolverCounter>& counters, RunRecord& record) {
   Summary& summary = record.summary;
   summary.saddle_curvature_N_per_m = Number::missing("none_found");
   std::vector<double> newton, contacts, gaps, errors;
@@ -11,6 +11,7 @@ void summarize_steps(RunRecord& record) {
     summary.steps_capped += step.status == StepStatus::iteration_cap;
     summary.newton_iterations += step.newton_iterations;
     summary += step;
+    summary.solver.add(counters, step.solver);
     newton.push_back(step.newton_iterations);
     contacts.push_back(static_cast<double>(step.contacts.total()));
     if (step.gap_min_rel.finite()) gaps.push_back(step.gap_min_rel.value);

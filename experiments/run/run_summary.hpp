@@ -5,7 +5,7 @@
 
 namespace bb {
 
-/// Sums, extremes and order statistics of record.steps into record.summary.
-void summarize_steps(RunRecord& record);
+/// Sums, extremes and order statistics of record.steps into record.summary. counters: those of its step solver.
+void summarize_steps(const std::vector<SolverCounter>& counters, RunRecord& record);
 
 }  // namespace bb

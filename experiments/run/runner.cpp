@@ -228,6 +228,7 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   // before anything is written: what config and files can tell is refused here
   const Scene scene = build_scene(config);
   require_device(config, scene);
+  check_step_solver_forms(config, scene);
   require_usable(config.linear_solver.name);
   const std::string started_utc = utc_now();
   const FolderLock lock(options.folder);

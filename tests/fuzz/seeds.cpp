@@ -11,6 +11,7 @@
 #include <sstream>
 #include <stdexcept>
 
+#include "core/newton/step_solver.hpp"
 #include "core/record/schema.hpp"
 #include "core/record/writer.hpp"
 #include "experiments/config/config_list.hpp"
@@ -208,7 +209,7 @@ std::vector<std::string> words_of(const std::string& target) {
   Texts out;
   if (target == "config") collect(config_list(), out);
   if (target == "sweep") collect(sweep_list(), out);
-  if (target == "record") out = of_schema(run_schema());
+  if (target == "record") out = of_schema(run_schema(step_solver_counters()));
   if (target == "trace") out = of_schema(trace_schema());
   if (target == "eval") {
     std::ostringstream schema;

@@ -41,8 +41,9 @@ class ScriptedSystem final : public StepSystem, public StepView {
   explicit ScriptedSystem(std::vector<ScriptedIteration> script, ScriptedState state = {})
       : script_(std::move(script)), scene_(particle_over_plane(1, 1, 0.01)), state_(std::move(state)) {}
 
-  std::vector<double> tried;  // every alpha, in the order of trials
-  std::vector<double> aimed;  // lengths of escapes
+  std::vector<double> tried;           // every alpha whose energy was asked for, in the order of trials
+  std::vector<double> feasible_asked;  // those of which feasibility alone was
+  std::vector<double> aimed;           // lengths of escapes
   int accepted = 0, checks = 0;
 
   void begin_step(const Positions&, const Prediction&, double, double) override { place_ = -1; }
@@ -86,12 +87,13 @@ class ScriptedSystem final : public StepSystem, public StepView {
   bool make_detour(double, SolveReport&) override { return detouring_ = now().detour_bound > 0; }
   void restore_direction() override { escaping_ = detouring_ = false; }
   std::string describe_bound() const override { return "the script"; }
+  bool try_feasible(double alpha) override {
+    feasible_asked.push_back(alpha);
+    return change_at(alpha).has_value();
+  }
   Change try_motion(double alpha) override {
     tried.push_back(alpha);
-    const auto& change = escaping_ ? now().escape_change : now().change;
-    if (change) return change(alpha);
-    if (escaping_) return std::nullopt;
-    return EnergyChange{now().slope * alpha * (2 - alpha) / 2, 1e-3};
+    return change_at(alpha);
   }
   void accept() override {
     ++accepted;
@@ -119,6 +121,12 @@ class ScriptedSystem final : public StepSystem, public StepView {
   NewtonSystem& on_host() override { throw std::logic_error("a script has no matrices"); }
 
  private:
+  Change change_at(double alpha) const {
+    const auto& change = escaping_ ? now().escape_change : now().change;
+    if (change) return change(alpha);
+    if (escaping_) return std::nullopt;
+    return EnergyChange{now().slope * alpha * (2 - alpha) / 2, 1e-3};
+  }
   const ScriptedIteration& now() const { return script_[static_cast<std::size_t>(std::max(place_, 0))]; }
 
   std::vector<ScriptedIteration> script_;

@@ -45,6 +45,13 @@ inline std::optional<EnergyChange> try_state(NewtonSystem& system, const Positio
   return system.try_motion(1);
 }
 
+/// The same by feasibility alone.
+inline bool is_feasible(NewtonSystem& system, const Positions& x) {
+  system.set_direction(x - system.view().x());
+  system.prepare_motion(MotionEnd::free, false);
+  return system.try_feasible(1);
+}
+
 /// Newton direction towards a target, both [3 x n] m.
 inline SolveReport solve(NewtonSystem& system, const Positions& target, Positions& dx) {
   system.set_target(target);

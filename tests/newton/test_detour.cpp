@@ -67,7 +67,7 @@ TEST(Detour, counts_its_solve_and_its_queries_and_is_no_whole_direction) {
       ++seen;
       whole += now.alpha == 1 && after.iteration > 0;
       EXPECT_LE(now.alpha, now.alpha_ccd);
-      EXPECT_LT(now.energy_change_J, 0);
+      EXPECT_LT(now.energy_change_J.value, 0);
       EXPECT_FALSE(after.contraction.finite()) << load << " " << now.iteration;
     }
   }

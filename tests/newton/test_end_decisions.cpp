@@ -137,6 +137,22 @@ TEST(EndDecisions, InfeasibleTrialsAreHalvedAndBoundsAreKept) {
   EXPECT_EQ(step.system.tried, (std::vector<double>{0.4, 0.2, 0.1}));
   EXPECT_EQ(step.iterations[0].alpha, 0.1);
   EXPECT_EQ(step.system.accepted, 1);
+  EXPECT_TRUE(step.system.feasible_asked.empty());
+}
+
+/// A pin that moves does work: until it is where it has to be E may grow, and is not asked for.
+TEST(EndDecisions, ShortOfAPoseFeasibilityAloneIsAsked) {
+  ScriptedIteration one{.dx = 1, .bound = 0.5};
+  one.at_target = false;
+  one.change = [](double alpha) {
+    return alpha > 0.15 ? std::nullopt : std::optional<EnergyChange>({alpha, 1e-3});
+  };
+  const ScriptedStep step({one}, SaddleRule::ignore, 0.1, 1);
+  EXPECT_EQ(step.system.feasible_asked, (std::vector<double>{0.4, 0.2, 0.1}));
+  EXPECT_TRUE(step.system.tried.empty());
+  EXPECT_EQ(step.iterations[0].alpha, 0.1);
+  EXPECT_EQ(step.system.accepted, 1);
+  EXPECT_STREQ(step.iterations[0].energy_change_J.status, no_energies_compared);
 }
 
 /// While a vertex is short of its pose any feasible state is taken, uphill too.

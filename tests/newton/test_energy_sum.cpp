@@ -23,7 +23,7 @@ class Given final : public Term {
   bool on_vertices() const override { return vertices_; }
   bool fixed_stencils() const override { return fixed_; }
   void linearise(const PositionsView&, const TermContext&) override {}
-  void evaluate(const PositionsView&, const TermContext&) override {}
+  void evaluate(const PositionsView&) override {}
 
  private:
   bool vertices_, fixed_;

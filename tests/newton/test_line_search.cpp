@@ -30,14 +30,14 @@ class EnergyWatch final : public StepObserver {
  public:
   void on_iteration(const IterationReport& report) override {
     if (!report.rounding_accepts) {
-      EXPECT_LE(report.energy_change_J, 0) << report.step << "/" << report.iteration;
+      EXPECT_LE(report.energy_change_J.value, 0) << report.step << "/" << report.iteration;
     }
     if (report.rounding_accepts) {  // no descent by Armijo's measure
-      EXPECT_GT(report.energy_change_J, -1e-4 * report.alpha * 2 * report.decrement_J)
+      EXPECT_GT(report.energy_change_J.value, -1e-4 * report.alpha * 2 * report.decrement_J)
           << report.step << "/" << report.iteration;
       ++roundings;
     }
-    descents += report.energy_change_J < 0;
+    descents += report.energy_change_J.value < 0;
     contacts += report.contacts.total();
     stretched += report.max_stretch.value > 0.025;
   }
@@ -185,7 +185,7 @@ TEST(LineSearch, takes_the_first_halved_step_whose_fall_is_armijos_share_of_the_
       EXPECT_EQ(watch.first.alpha, c.alpha) << solver << " " << c.armijo;
       EXPECT_EQ(watch.first.line_search_trials, c.trials) << solver << " " << c.armijo;
       EXPECT_FALSE(watch.first.rounding_accepts) << solver << " " << c.armijo;
-      EXPECT_NEAR(watch.first.energy_change_J, -(c.alpha - c.alpha * c.alpha / 2) * decrement,
+      EXPECT_NEAR(watch.first.energy_change_J.value, -(c.alpha - c.alpha * c.alpha / 2) * decrement,
                   1e-5 * decrement)
           << solver << " " << c.armijo;
     }

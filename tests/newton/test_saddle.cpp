@@ -22,7 +22,7 @@ class Spectrum final : public StepObserver {
   }
   void on_iteration(const IterationReport& report) override {
     iterations.push_back(report);
-    energy = report.energy_J + report.energy_change_J;
+    energy = report.energy_J + report.energy_change_J.value;
   }
   double smallest = 0, energy = 0;
   std::size_t contacts = 0;
@@ -207,7 +207,7 @@ TEST(Saddle, every_escape_lowers_the_energy) {
       for (const IterationReport& iteration : driven.seen.iterations) {
         if (iteration.escapes == 0) continue;
         ++escapes;
-        EXPECT_LT(iteration.energy_change_J, 0) << kappa << " " << gap;
+        EXPECT_LT(iteration.energy_change_J.value, 0) << kappa << " " << gap;
         EXPECT_GT(iteration.alpha, 0);
       }
     }

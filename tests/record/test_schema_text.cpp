@@ -7,6 +7,7 @@
 #include <set>
 #include <sstream>
 
+#include "core/newton/step_solver.hpp"
 #include "core/record/run_record.hpp"
 #include "core/record/schema.hpp"
 #include "tests/folders.hpp"
@@ -22,12 +23,13 @@ std::string committed(const char* name) {
 }
 
 TEST(RecordSchema, TheCopyInTheTreeIsTheOneOfThisProgram) {
-  EXPECT_EQ(committed("run"), run_schema()) << "write it anew: ./bench help record --schema";
+  EXPECT_EQ(committed("run"), run_schema(step_solver_counters()))
+      << "write it anew: ./bench help record --schema";
   EXPECT_EQ(committed("trace"), trace_schema()) << "write it anew: ./bench help trace --schema";
 }
 
 TEST(RecordSchema, AFieldIsRequiredUnlessItMayBeLeftOut) {
-  const json run = json::parse(run_schema());
+  const json run = json::parse(run_schema(step_solver_counters()));
   const json& ids = run["$defs"]["Ids"];
   const std::set<std::string> required = ids["required"];
   EXPECT_EQ(required, (std::set<std::string>{"config_id", "run_id", "build_id", "machine_id"}));
@@ -37,7 +39,7 @@ TEST(RecordSchema, AFieldIsRequiredUnlessItMayBeLeftOut) {
 }
 
 TEST(RecordSchema, SaysWhyANumberMayBeAbsentAndWhatAWordMayBe) {
-  const json run = json::parse(run_schema());
+  const json run = json::parse(run_schema(step_solver_counters()));
   const json& step = run["$defs"]["StepRecord"]["properties"];
   EXPECT_EQ(step["gap_min_m"]["type"], json({"number", "null"}));
   EXPECT_EQ(step["gap_min_m_status"]["enum"],
@@ -73,13 +75,14 @@ TEST(RecordSchema, SaysWhichFieldsMeantSomethingElseBefore) {
               std::string::npos)
         << text;
   };
-  for (const ChangedMeaning& change : changed_in_run) expect_said(change, run_schema(), run_dictionary());
+  for (const ChangedMeaning& change : changed_in_run)
+    expect_said(change, run_schema(step_solver_counters()), run_dictionary(step_solver_counters()));
   for (const ChangedMeaning& change : changed_in_trace)
     expect_said(change, trace_schema(), trace_dictionary());
 }
 
 TEST(RecordDictionary, HasALineForEveryFieldWithItsMeaning) {
-  std::istringstream in(run_dictionary() + trace_dictionary());
+  std::istringstream in(run_dictionary(step_solver_counters()) + trace_dictionary());
   std::set<std::string> places;
   for (std::string line; std::getline(in, line);) {
     std::istringstream words(line);

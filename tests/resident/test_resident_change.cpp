@@ -32,7 +32,7 @@ struct Pair {
     EnergyParts out;
     for (const auto& term : cpu.terms) {
       EXPECT_TRUE(term->admits(to, cpu.clock));
-      term->evaluate(to, cpu.context(Projection::psd));
+      term->evaluate(to);
     }
     for (const auto& term : cpu.terms) term->change(x, to, out);
     return out;

@@ -130,6 +130,42 @@ TEST(ResidentSystem, BoundsAndTriesTheSameMotions) {
   EXPECT_NE(both.resident.view().x(), before);
 }
 
+/// The state that a step without energies ends with says what it would, energies of the iterate included.
+TEST(ResidentSystem, AcceptsWhatFeasibilityAloneJudged) {
+  for (const bool first_asks : {false, true}) {
+    Both known(test::touching(test::cloth_on_plate(), 0.012), touching_method),
+        late(test::touching(test::cloth_on_plate(), 0.012), touching_method);
+    for (Both* both : {&known, &late}) {
+      ASSERT_EQ(both->resident.find_direction().linear.status, LinearStatus::ok);
+      both->resident.scale_direction(30);
+      both->resident.prepare_motion(MotionEnd::free, true);
+      IterationReport report;
+      const double alpha = 0.5 * both->resident.bound_motion(report);
+      EXPECT_FALSE(both->resident.try_feasible(1e200));
+      if (both == &known) {
+        ASSERT_TRUE(both->resident.try_motion(alpha).has_value());
+      } else {
+        ASSERT_TRUE(both->resident.try_feasible(alpha));
+      }
+      both->resident.accept();
+    }
+    StepNumbers a, b;
+    if (first_asks) known.resident.view().report_end(a), late.resident.view().report_end(b);
+    for (const TermGroup group : {TermGroup::load, TermGroup::elastic, TermGroup::contact}) {
+      EXPECT_NE(known.resident.view().energy(group), 0);
+      EXPECT_EQ(late.resident.view().energy(group), known.resident.view().energy(group));
+    }
+    if (!first_asks) known.resident.view().report_end(a), late.resident.view().report_end(b);
+    ASSERT_GT(a.contacts.total(), 0U);
+    EXPECT_GT(a.contact_load_sum_N.value, 0);
+    EXPECT_EQ(b.contact_load_sum_N.value, a.contact_load_sum_N.value);
+    const auto from = known.resident.try_motion(1e-3), to = late.resident.try_motion(1e-3);
+    ASSERT_TRUE(from && to);
+    EXPECT_NE(from->change, 0);
+    EXPECT_EQ(to->change, from->change);
+  }
+}
+
 TEST(ResidentSystem, ShowsItsStateToTheCpu) {
   Both both(test::touching(test::cloth_on_plate(), 0.012), touching_method);
   ASSERT_EQ(both.resident.find_direction().linear.status, LinearStatus::ok);

@@ -21,7 +21,10 @@ struct AtIterate : TermsOf {
   void move_to(const Positions& to, Projection projection = Projection::psd) {
     x = to;
     trial(x);
-    for (const auto& term : terms) term->accept(clock);
+    for (const auto& term : terms) {
+      term->accept(clock);
+      term->take_energies();
+    }
     for (const auto& term : terms) term->linearise(x, context(projection));
   }
   static StepFrame frame(const Scene& scene) {
@@ -37,7 +40,8 @@ struct AtIterate : TermsOf {
     for (const auto& term : terms) {
       term->prepare({scene.x0, to, dx}, clock);
       ASSERT_TRUE(term->admits(to, clock)) << term->name();
-      term->evaluate(to, context());
+      term->freeze(context().blocks, context().elastic, clock);
+      term->evaluate(to);
     }
   }
 };

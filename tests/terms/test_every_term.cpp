@@ -51,7 +51,8 @@ TEST(EveryTerm, has_the_gradient_of_its_energy) {
         Positions to = at.x;
         to.data()[i] += side == 0 ? -h : h;
         ASSERT_TRUE(term->admits(to, at.clock));
-        term->evaluate(to, at.context());
+        term->freeze(at.context().blocks, at.context().elastic, at.clock);
+        term->evaluate(to);
         energy[side] = test::trial_energy(*term);
       }
       numeric.data()[i] = (energy[1] - energy[0]) / (2 * h);
@@ -127,7 +128,26 @@ TEST(EveryTerm, has_the_energy_of_the_trial_once_it_is_accepted) {
   for (const auto& term : at.terms) {
     const double energy = test::trial_energy(*term);
     term->accept(at.clock);
+    term->take_energies();
     EXPECT_EQ(test::iterate_energy(*term), energy) << term->name();
+  }
+}
+
+TEST(EveryTerm, has_the_same_energy_of_an_iterate_that_was_accepted_without) {
+  AtIterate at, other;
+  const Positions to = test::disturbed(at.scene, 0.006);
+  at.trial(to);
+  for (std::size_t i = 0; i < at.terms.size(); ++i) {
+    Term &known = **(at.terms.begin() + static_cast<std::ptrdiff_t>(i)),
+         &late = **(other.terms.begin() + static_cast<std::ptrdiff_t>(i));
+    const double before = test::iterate_energy(late);
+    late.prepare({other.scene.x0, to, Positions(to - other.scene.x0)}, other.clock);
+    ASSERT_TRUE(late.admits(to, other.clock)) << late.name();
+    late.freeze(other.context().blocks, other.context().elastic, other.clock);
+    late.accept(other.clock);
+    late.evaluate_iterate(to);
+    EXPECT_EQ(test::iterate_energy(late), test::trial_energy(known)) << late.name();
+    EXPECT_NE(test::iterate_energy(late), before) << late.name();
   }
 }
 

@@ -30,14 +30,14 @@ Plan plan_of(const Scene& scene, const TermOptions& terms = {}, const PlanOption
   return make_plan(scene, terms, options);
 }
 
-/// What is needed beside inertia, weight and a linear solver, which every scene here has.
+/// What is needed beside inertia, weight and what every step solver here asks for.
 std::set<std::string> needed(const Plan& plan) {
   std::set<std::string> names;
   for (const auto& [name, item] : plan.items()) {
     if (item->needed) names.emplace(name);
   }
-  for (const char* load : {"inertia", "external_force", "linear_solver"}) {
-    EXPECT_EQ(names.erase(load), 1U) << load;
+  for (const char* always : {"inertia", "external_force", "linear_solver", "trial_energies", "end_check"}) {
+    EXPECT_EQ(names.erase(always), 1U) << always;
   }
   return names;
 }
@@ -94,14 +94,15 @@ TEST(plan, gives_a_reason_for_every_item_and_lists_each_once) {
     EXPECT_TRUE(names.insert(name).second) << name;
     needed += item->needed;
   }
-  EXPECT_EQ(needed, 4U);  // inertia, weight, membrane, a linear solver
+  EXPECT_EQ(needed,
+            6U);  // inertia, weight, membrane, a linear solver, energies of trials, a check of the end
 }
 
 TEST(plan, skips_the_step_bound_of_a_solver_without_one) {
   TermOptions terms;
   terms.contact_options.mollifier = Mollifier::none;
   PlanOptions options;
-  options.collision_free_steps = false;
+  options.step.step_bound = false;
 
   const Plan plan = plan_of(scene_of({cloth("cloth")}), terms, options);
 
@@ -109,6 +110,32 @@ TEST(plan, skips_the_step_bound_of_a_solver_without_one) {
   EXPECT_FALSE(plan.step_bound.needed);
   EXPECT_EQ(plan.step_bound.reason, "the step solver has no step bound");
   EXPECT_EQ(plan.contacts.mollifier.reason, "contact.mollifier is none");
+}
+
+TEST(plan, skips_what_a_step_solver_does_without) {
+  TermOptions terms = term_options();
+  terms.limit_stiffness = test::elastic_limit();
+  BodySpec body = cloth("cloth");
+  body.material.limit = StrainLimitSpec{};
+  PlanOptions options;
+  options.linear.name = "pcg";
+  options.diagnose = options.matrices = true;
+  const Scene scene = scene_of({body});
+  const Plan all = plan_of(scene, terms, options);
+  options.step = {.matrix = false, .energies = false, .minimum = false, .step_bound = false};
+  options.end_check = false;
+
+  const Plan plan = plan_of(scene, terms, options);
+
+  for (PlanItem Plan::*item :
+       {&Plan::trial_energies, &Plan::end_check, &Plan::policy_submatrix, &Plan::step_bound,
+        &Plan::linear_solver, &Plan::preconditioner, &Plan::conditioning, &Plan::matrices}) {
+    EXPECT_TRUE((all.*item).needed) << (all.*item).reason;
+    EXPECT_FALSE((plan.*item).needed) << (plan.*item).reason;
+    EXPECT_NE((all.*item).reason, (plan.*item).reason);
+  }
+  EXPECT_EQ(plan.trial_energies.reason, "feasibility alone judges the trials of the step solver");
+  EXPECT_EQ(plan.linear_solver.reason, "the step solver has no matrix");
 }
 
 TEST(plan, of_a_planar_scene_locks_the_third_axis_and_has_no_edge_pairs) {

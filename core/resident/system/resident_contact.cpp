@@ -49,11 +49,13 @@ void ResidentContact::begin_step(const Column& x_n, double dt, double c) {
   listed_ = false;
   find_rows(x_n);
   take_trial();
+  evaluated_ = true;  // as far as rows without kappa can be
 }
 
 void ResidentContact::take_trial() {
   has_pattern_ = has_pattern_ && finder_.same_stencils(rows_, trial_);
   rows_.swap(trial_);
+  evaluated_ = trial_evaluated_;
   lent_ = false;
   energy_.reset();
 }
@@ -94,6 +96,7 @@ void ResidentContact::find_rows(const Column& x) {
     fill_lists();
   }
   finder_.find(x, candidates_, trial_);
+  trial_evaluated_ = false;
 }
 
 void ResidentContact::lend_columns() {
@@ -102,16 +105,24 @@ void ResidentContact::lend_columns() {
 }
 
 // No trial was accepted: the shared columns are those of another state.
-void ResidentContact::settle(const Column& x) {
+void ResidentContact::take_back(const Column& x) {
   if (!lent_) return;
   find_rows(x);
   trial_.lend(rows_);
-  lent_ = false;
-  barrier_.evaluate(executor_, rows_);
+  lent_ = evaluated_ = false;
+}
+
+void ResidentContact::settle(const Column& x) {
+  take_back(x);
+  if (!evaluated_) barrier_.evaluate(executor_, rows_);
+  evaluated_ = true;
 }
 
 Compensated ResidentContact::energy(const Column& x) {
-  if (!energy_) energy_ = sums_.energy(rows_, x, assembly_);
+  if (!energy_) {
+    settle(x);
+    energy_ = sums_.energy(rows_, x, assembly_);
+  }
   return *energy_;
 }
 
@@ -125,7 +136,7 @@ void ResidentContact::use_policy_kappa() {
 }
 
 void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Column& g) {
-  settle(x);
+  take_back(x);
   energy_.reset();
   if (frugal()) give_back_motion();
   pattern_changed_ = !has_pattern_;
@@ -138,6 +149,7 @@ void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Colu
   kappa_change_ = first_iterate_ ? 0 : change;
   first_iterate_ = false;
   barrier_.evaluate(executor_, rows_);
+  evaluated_ = true;
   assembly_.add_gradient(rows_, x, g);
 }
 
@@ -197,10 +209,14 @@ bool ResidentContact::admits(const Column& x, const Column& trial) {
   return trial_.feasible();
 }
 
-void ResidentContact::evaluate(const Column&, const MatrixPart& elastic) {
+void ResidentContact::freeze(const MatrixPart& elastic) {
   use_policy_kappa();
   stiffness_.freeze(trial_, rows_, elastic);
+}
+
+void ResidentContact::evaluate() {
   barrier_.evaluate(executor_, trial_);
+  trial_evaluated_ = true;
 }
 
 void ResidentContact::accept() {

@@ -66,7 +66,10 @@ class ResidentContact {
   std::string describe_bound() const;
   /// x: the iterate.
   bool admits(const Column& x, const Column& trial);
-  void evaluate(const Column& trial, const MatrixPart& elastic);
+  /// kappa of the trial, after admits().
+  void freeze(const MatrixPart& elastic);
+  /// Its barrier, after freeze(), where its energy is asked for.
+  void evaluate();
   Compensated trial_energy(const Column& trial) { return sums_.energy(trial_, trial, assembly_); }
   /// The trial becomes the iterate.
   void accept();
@@ -100,6 +103,7 @@ class ResidentContact {
   void find_rows(const Column& x);
   void lend_columns();
   void settle(const Column& x);
+  void take_back(const Column& x);
   void take_trial();
   void start_policy(const Column& x, const Column& others);
   void use_policy_kappa();
@@ -122,7 +126,8 @@ class ResidentContact {
   ResidentLeast curved_, straight_;  // HoldTimes
   StepEndGaps gaps_;
   ResidentRows rows_, trial_;
-  bool lent_ = false;  // the trial has the columns that the two share
+  bool lent_ = false;                                // the trial has the columns that the two share
+  bool evaluated_ = true, trial_evaluated_ = false;  // the rows have a barrier; those of the trial
   std::optional<Compensated> energy_;
   Index frugal_from_ = default_frugal_from;
   std::size_t list_budget_ = default_list_budget;

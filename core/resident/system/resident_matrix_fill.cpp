@@ -19,6 +19,7 @@ void ResidentPotential::linearise(const Column& x, Column& g) {
   {
     const ScopedPhase timer(clock(), Phase::elastic);
     elements_.linearise(x.data(), g.data());
+    energies_known_ = true;
   }
   if (contact_) {
     const ScopedPhase timer(clock(), Phase::contact_terms);

@@ -62,12 +62,14 @@ ResidentPotential::~ResidentPotential() = default;
 void ResidentPotential::begin_step(const StepColumns& step) {
   has_step_elastic_ = false;
   forcing_.begin_step();
+  energies_known_ = trial_evaluated_ = false;
   frame_ = {step.x_n.data(), step.x_tilde.data(), step.dt, step.c, step.load_factor};
   elements_.begin_step(frame_);
   if (contact_) contact_->begin_step(step.x_n, step.dt, step.c);
 }
 
 void ResidentPotential::change_step(const StepColumns& step) {
+  energies_known_ = false;
   frame_.dt = step.dt;
   frame_.c = step.c;
   elements_.change_frame(frame_);
@@ -117,20 +119,33 @@ bool ResidentPotential::make_room(const Column& x, const Column& dx, double boun
 }
 
 // Contact sees for itself that a number is not finite.
-std::optional<EnergyChange> ResidentPotential::try_state(const Column& x, Column& trial, const Column&) {
-  if (!contact_ && vectors_.first_not_finite(trial) >= 0) return std::nullopt;
-  if (!elements_.admits(trial.data())) return std::nullopt;
-  if (contact_) {
+bool ResidentPotential::admits(const Column& x, Column& trial) {
+  trial_evaluated_ = false;
+  if (!contact_ && vectors_.first_not_finite(trial) >= 0) return false;
+  if (!elements_.admits(trial.data())) return false;
+  if (!contact_) return true;
+  {
     const ScopedPhase rows(clock(), Phase::contact_rows);
-    if (!contact_->admits(x, trial)) return std::nullopt;
+    if (!contact_->admits(x, trial)) return false;
+  }
+  contact_->freeze(kept_elastic());
+  return true;
+}
+
+// The limit has been measured at the trial, where the energies of the iterate are known.
+EnergyChange ResidentPotential::change(const Column& x, const Column& trial) {
+  if (!energies_known_) {
+    know_energies(x);
+    elements_.admits(trial.data());
   }
   elements_.evaluate(trial.data());
+  trial_evaluated_ = true;
   sum_.clear();
   elements_.add_change(x.data(), trial.data(), sum_);
   const Compensated fixed = sum_.get();
   EnergyChange out{fixed.value(), fixed.magnitude};
   if (!contact_) return out;
-  contact_->evaluate(trial, kept_elastic());
+  contact_->evaluate();
   // rows come and go: their energies are compared as sums
   const auto before = contact_->energy(x), after = contact_->trial_energy(trial);
   const double change = (fixed.sum + (after.sum - before.sum)) + (fixed.carry + (after.carry - before.carry));
@@ -138,8 +153,20 @@ std::optional<EnergyChange> ResidentPotential::try_state(const Column& x, Column
 }
 
 void ResidentPotential::accept() {
-  elements_.accept();
+  if (trial_evaluated_) elements_.accept();
   if (contact_) contact_->accept();
+  energies_known_ = trial_evaluated_;
+  trial_evaluated_ = false;
+}
+
+// As on the host: a step that compares no energies ends with a state that has none.
+void ResidentPotential::know_energies(const Column& x) {
+  if (energies_known_) return;
+  const WholePhase timer(clock(), Phase::output);
+  elements_.admits(x.data());
+  elements_.evaluate(x.data());
+  elements_.accept();
+  energies_known_ = true;
 }
 
 void ResidentPotential::expect(const ExpectedContacts& expected) {

@@ -54,7 +54,8 @@ class ResidentPotential final : public IncrementalPotential {
   double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
   std::string describe_bound() const override { return holder_; }
   bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
-  std::optional<EnergyChange> try_state(const Column& x, Column& trial, const Column& g) override;
+  bool admits(const Column& x, Column& trial) override;
+  EnergyChange change(const Column& x, const Column& trial) override;
   void accept() override;
 
   double energy(TermSet set, const Column& x) override;
@@ -92,6 +93,7 @@ class ResidentPotential final : public IncrementalPotential {
   /// Requires contact_.
   RowTotals row_totals(const Column& x);
   void keep_contact(Archive& archive);
+  void know_energies(const Column& x);
 
   std::unique_ptr<exec::Executor> executor_;
   const Scene& scene_;
@@ -115,6 +117,7 @@ class ResidentPotential final : public IncrementalPotential {
   std::uint64_t pattern_id_ = 1;  // of the matrix
   std::string holder_;            // of the last bound
   double limit_kappa_change_ = 0;
+  bool energies_known_ = false, trial_evaluated_ = false;  // of the elements: at the iterate, at the trial
 };
 
 /// Goes through every stage of a step with so many contacts on an executor that only counts buffers, so that

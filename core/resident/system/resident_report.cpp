@@ -49,6 +49,7 @@ void fill_numbers(const RowTotals& rows, Numbers& out) {
 }  // namespace
 
 double ResidentPotential::energy(TermSet set, const Column& x) {
+  know_energies(x);
   sum_.clear();
   elements_.add_energy(set, x.data(), sum_);
   const double fixed = sum_.get().value();

@@ -1,0 +1,13 @@
+// What a step solver needs of the system that it calls: what it does without is not made (core/terms/plan.hpp).
+#pragma once
+
+namespace bb {
+
+struct StepNeeds {
+  bool matrix = true;      // Newton directions: Hessians, a linear solver
+  bool energies = true;    // changes of E at trials; false: feasibility alone judges them
+  bool minimum = true;     // steps end in a minimum of E: exact Hessians, and that one is looked at
+  bool step_bound = true;  // false: steps may pass through surfaces, barriers are read beyond their end
+};
+
+}  // namespace bb
