@@ -44,6 +44,14 @@ class EnergyBatch {
   /// Constraints whose energy is this one; null: it has no such form.
   virtual const ConstraintBatch* constraints() const { return nullptr; }
 
+  // --- rest shapes that move from step to step. Within a step they stay, so that E is one function of x.
+  /// What the batch remembers, always as many numbers; empty: nothing.
+  virtual std::span<const double> memory() const { return {}; }
+  /// Requires as many numbers as memory() has.
+  virtual void set_memory(std::span<const double>) {}
+  /// Turns `memory`, that of the batch, into the one with which the step after one of dt (s) that ended at x begins.
+  virtual void flow(const PositionsView& /*x*/, double /*dt*/, std::span<double> /*memory*/) const {}
+
   std::size_t size() const { return vertices().size() / static_cast<std::size_t>(width()); }
 };
 

@@ -3,6 +3,7 @@
 
 #include <cmath>
 
+#include "core/energy/stiffening.hpp"
 #include "core/energy/terms.hpp"
 #include "core/math/psd.hpp"
 
@@ -125,9 +126,9 @@ BB_HD T hinge_value(const Vec<T, 3> (&x)[4], T stiffness, T rest_angle) {
   return stiffness / T(2) * deviation * deviation;
 }
 
-/// hinge_terms of a deviation theta - theta0 that is known. Lanes: yes.
+/// Terms of a hinge whose energy w(theta) has been taken: `energy` w, `stiffness` w'' > 0 or 0, `deviation` w'/w''. Lanes: yes.
 template <class T>
-BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T deviation,
+BB_HD ElementTerms<T, 12> hinge_terms_of(const Vec<T, 3> (&x)[4], T energy, T stiffness, T deviation,
                                          Projection projection) {
   const HingeAngleTerms<T> angle = hinge_angle_terms<T>(x);
   const Mat<T, 9, 9> reduced = stiffness * (angle.grad * angle.grad.transpose() + deviation * angle.hess);
@@ -135,7 +136,7 @@ BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T
   difference << T(-1), T(-1), T(-1), T(1), T(0), T(0), T(0), T(1), T(0), T(0), T(0), T(1);
 
   ElementTerms<T, 12> out;
-  out.energy = stiffness / T(2) * deviation * deviation;
+  out.energy = energy;
   for (int i = 0; i < 4; ++i) {
     out.grad.template segment<3>(3 * i) = stiffness * deviation *
                                           (difference(i, 0) * angle.grad.template segment<3>(0) +
@@ -157,6 +158,13 @@ BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T
   return out;
 }
 
+/// hinge_terms of a deviation theta - theta0 that is known. Lanes: yes.
+template <class T>
+BB_HD ElementTerms<T, 12> hinge_terms_at(const Vec<T, 3> (&x)[4], T stiffness, T deviation,
+                                         Projection projection) {
+  return hinge_terms_of<T>(x, stiffness / T(2) * deviation * deviation, stiffness, deviation, projection);
+}
+
 /// Energy, gradient and Hessian k (grad theta grad theta^T + (theta - theta0) grad^2 theta). Projections are
 /// those of the 12 x 12 matrix, done on the 8 x 8 matrix left when its null vectors, three translations
 /// and the stretch along the edge, are split off. Not finite when a triangle has no area. Host-device: yes.
@@ -165,6 +173,16 @@ BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T re
                                       Projection projection) {
   const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
   return hinge_terms_at<T>(x, stiffness, deviation, projection);
+}
+
+/// The same with a stiffness that grows (stiffening.hpp): `exponential` J at rest, `exponent` 1/rad.
+template <class T>
+BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T exponential, T exponent,
+                                      T rest_angle, Projection projection) {
+  const T deviation = hinge_deviation<T>(hinge_angle<T>(x), rest_angle);
+  if (!(exponential > T(0))) return hinge_terms_at<T>(x, stiffness, deviation, projection);
+  const Stiffened<T> w = stiffened<T>(deviation, stiffness, exponential, exponent);
+  return hinge_terms_of<T>(x, w.energy, w.curvature, w.slope / w.curvature, projection);
 }
 
 }  // namespace bb

@@ -1,6 +1,7 @@
 // Loops over hinges.
 #include "core/energy/hinge_batch.hpp"
 
+#include "core/energy/creep.hpp"
 #include "core/energy/element_loop.hpp"
 #include "core/energy/hinge.hpp"
 #include "core/math/lanes.hpp"
@@ -17,14 +18,16 @@ template <class T>
 struct HingeGroup {
   using Real = Lanes<T, kLanes>;
   Vec<Real, 3> x[4];
-  Real stiffness, deviation;
+  Real energy, stiffness, deviation;
 
-  void set(std::size_t lane, const Vec<T, 3> (&points)[4], T k, T turned) {
+  /// turned: by how much from rest. bent: what that costs.
+  void set(std::size_t lane, const Vec<T, 3> (&points)[4], T turned, const Stiffened<T>& bent, bool linear) {
     for (int i = 0; i < 4; ++i) {
       for (int c = 0; c < 3; ++c) x[i][c].v[lane] = points[i][c];
     }
-    stiffness.v[lane] = k;
-    deviation.v[lane] = turned;
+    energy.v[lane] = bent.energy;
+    stiffness.v[lane] = bent.curvature;
+    deviation.v[lane] = linear || !(bent.curvature > T(0)) ? turned : bent.slope / bent.curvature;
   }
 };
 
@@ -56,7 +59,7 @@ HingeBatch::HingeBatch(std::span<const std::array<int, 4>> hinges, std::vector<d
 void HingeBatch::values(const PositionsView& x, double* energy) const {
   const auto value = [&]<class T>(std::size_t e) {
     const Points<4, T> p(x, vertices_, e);
-    return hinge_value<T>(p.x, static_cast<T>(stiffness_[e]), static_cast<T>(rest_angle_[e]));
+    return bent<T>(e, hinge_deviation<T>(hinge_angle<T>(p.x), static_cast<T>(rest_angle_[e]))).energy;
   };
   store_energies(size(), precision_, value, energy);
 }
@@ -75,11 +78,49 @@ void HingeBatch::fill(const PositionsView& x, Projection projection, PassParts p
     for (std::size_t lane = 0; lane < kLanes; ++lane) {
       const std::size_t e = first + std::min(lane, n - 1);  // lanes beyond the end repeat the last hinge
       const Points<4, T> p(x, vertices_, e);
-      const T rest = static_cast<T>(rest_angle_[e]);
-      group.set(lane, p.x, static_cast<T>(stiffness_[e]), hinge_deviation<T>(hinge_angle<T>(p.x), rest));
+      const T turned = hinge_deviation<T>(hinge_angle<T>(p.x), static_cast<T>(rest_angle_[e]));
+      group.set(lane, p.x, turned, bent<T>(e, turned), exponential_.empty());
     }
-    store<Real>(hinge_terms_at<Real>(group.x, group.stiffness, group.deviation, projection), first, n, parts,
-                out);
+    store<Real>(hinge_terms_of<Real>(group.x, group.energy, group.stiffness, group.deviation, projection),
+                first, n, parts, out);
+  });
+}
+
+template <class T>
+Stiffened<T> HingeBatch::bent(std::size_t e, T deviation) const {
+  const T k = static_cast<T>(stiffness_[e]);
+  if (exponential_.empty()) return {k / T(2) * deviation * deviation, k * deviation, k};
+  return stiffened<T>(deviation, k, static_cast<T>(exponential_[e]), static_cast<T>(exponent_[e]));
+}
+
+void HingeBatch::set_stiffening(std::vector<double> exponential, std::vector<double> exponent) {
+  check_column("hinge/exponential", size(), exponential, false);
+  check_column("hinge/exponent", size(), exponent, true);
+  exponential_ = std::move(exponential);
+  exponent_ = std::move(exponent);
+}
+
+void HingeBatch::set_creep(std::vector<double> yield, std::vector<double> rate) {
+  check_column("hinge/yield", size(), yield, false);
+  check_column("hinge/creep", size(), rate, false);
+  yield_ = std::move(yield);
+  rate_ = std::move(rate);
+}
+
+std::span<const double> HingeBatch::memory() const {
+  return rate_.empty() ? std::span<const double>() : std::span<const double>(rest_angle_);
+}
+
+void HingeBatch::set_memory(std::span<const double> memory) {
+  rest_angle_.assign(memory.begin(), memory.end());
+}
+
+void HingeBatch::flow(const PositionsView& x, double dt, std::span<double> memory) const {
+  for_each_element(rate_.size(), [&](std::size_t e) {
+    const Points<4> p(x, vertices_, e);
+    const double turned = hinge_deviation<double>(hinge_angle<double>(p.x), rest_angle_[e]);
+    const double left = crept(turned, yield_[e], kept_after(rate_[e], dt));
+    if (left != turned && std::isfinite(left)) memory[e] += turned - left;
   });
 }
 

@@ -3,7 +3,9 @@
 
 #include <cmath>
 
+#include "core/energy/creep.hpp"
 #include "core/energy/element_loop.hpp"
+#include "core/math/svd.hpp"
 
 namespace bb {
 
@@ -62,6 +64,53 @@ void MembraneBatch::derivatives(const PositionsView& x, Projection projection, L
                     projection);
   };
   store_elements(size(), precision_, terms, out);
+}
+
+void MembraneBatch::scale_rest(std::span<const Vec2d> factors) {
+  if (factors.size() != rests_.size()) {
+    throw ConfigError("membrane/shrink", std::to_string(factors.size()) + " entries",
+                      std::to_string(rests_.size()) + ", one an element");
+  }
+  for (std::size_t e = 0; e < rests_.size(); ++e) {
+    rests_[e].dm_inv.col(0) /= factors[e][0];
+    rests_[e].dm_inv.col(1) /= factors[e][1];
+    rests_[e].area *= factors[e][0] * factors[e][1];
+  }
+}
+
+void MembraneBatch::set_creep(std::vector<double> yield, std::vector<double> rate) {
+  check_column("membrane/yield", rests_.size(), yield, false);
+  check_column("membrane/creep", rests_.size(), rate, false);
+  yield_ = std::move(yield);
+  rate_ = std::move(rate);
+  for (const TriangleRest<double>& rest : rests_) {
+    given_.push_back(rest.dm_inv);
+    plastic_inv_.insert(plastic_inv_.end(), {1, 0, 0, 1});
+  }
+}
+
+void MembraneBatch::set_memory(std::span<const double> memory) {
+  plastic_inv_.assign(memory.begin(), memory.end());
+  for (std::size_t e = 0; e < given_.size(); ++e) {
+    rests_[e].dm_inv = given_[e] * Mat<double, 2, 2>::Map(&plastic_inv_[4 * e]);
+  }
+}
+
+// F V diag(crept/sigma) V^T has the singular values that are left.
+void MembraneBatch::flow(const PositionsView& x, double dt, std::span<double> memory) const {
+  for_each_element(given_.size(), [&](std::size_t e) {
+    const Points<3> p(x, vertices_, e);
+    const auto svd = svd_3x2<double>(deformation_gradient<3>(rests_[e], p.x));
+    Vec2d factor;
+    for (int k = 0; k < 2; ++k) {
+      const double stretch = svd.sigma[k] - 1, left = crept(stretch, yield_[e], kept_after(rate_[e], dt));
+      factor[k] = left == stretch ? 1 : (1 + left) / svd.sigma[k];
+    }
+    if (factor == Vec2d(1, 1) || !factor.allFinite() || !(factor.minCoeff() > 0)) return;
+    const Mat<double, 2, 2> more = svd.V * factor.asDiagonal() * svd.V.transpose();
+    Eigen::Map<Mat<double, 2, 2>> plastic(&memory[4 * e]);
+    plastic = (plastic * more).eval();
+  });
 }
 
 }  // namespace bb

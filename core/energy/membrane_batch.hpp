@@ -32,12 +32,22 @@ class MembraneBatch final : public EnergyBatch {
   MembraneBatch(std::string_view model, std::span<const std::array<int, 3>> triangles,
                 const PositionsView& x_rest, std::vector<double> lame_mu, std::vector<double> lame_lambda,
                 bool planar = false, std::span<const Vec3d> warp = {}, Precision precision = Precision::full);
+  /// Scales the rest triangles by factors [n] > 0 along the warp direction and at right angles to it; areas with them.
+  /// Before set_creep. ConfigError: column of another length.
+  void scale_rest(std::span<const Vec2d> factors);
+  /// Lets rest triangles follow: singular values of F beyond 1 +- yield [n] (1) creep at rate [n] (1/s). F is that of the scaled rest
+  /// triangle times the inverse of a plastic part, which is what the batch remembers; areas at rest stay. ConfigError: column
+  /// of another length.
+  void set_creep(std::vector<double> yield, std::vector<double> rate);
   std::string_view name() const override { return model<double>().name; }
   int width() const override { return 3; }
   std::span<const int> vertices() const override { return vertices_; }
   std::span<const TriangleRest<double>> rests() const { return rests_; }
   void values(const PositionsView& x, double* energy) const override;
   void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override;
+  std::span<const double> memory() const override { return plastic_inv_; }
+  void set_memory(std::span<const double> memory) override;
+  void flow(const PositionsView& x, double dt, std::span<double> memory) const override;
 
  private:
   template <class T>
@@ -50,6 +60,8 @@ class MembraneBatch final : public EnergyBatch {
   std::vector<int> vertices_;
   std::vector<TriangleRest<double>> rests_;
   std::vector<double> lame_mu_, lame_lambda_;
+  std::vector<Mat<double, 2, 2>> given_;            // dm_inv before any creep; empty: none creeps
+  std::vector<double> yield_, rate_, plastic_inv_;  // plastic_inv_: [4 n], columns of 2 x 2
   Precision precision_;
 };
 

@@ -49,6 +49,7 @@ TriangleMesh grid_mesh(int n_x, int n_y, double size_x, double size_y) {
   for (int j = 0; j + 1 < n_y; ++j) {
     for (int i = 0; i + 1 < n_x; ++i) {
       const int a = j * n_x + i, b = a + 1, c = a + n_x, d = c + 1;
+      mesh.fans.push_back({static_cast<int>(mesh.triangles.size()), 2});
       mesh.triangles.push_back({a, b, d});
       mesh.triangles.push_back({a, d, c});
     }

@@ -118,6 +118,7 @@ class Assembler {
     for (std::size_t k = 2; k < polygon.size(); ++k) {
       whole += area_vector(mesh_.vertices, {polygon[0], polygon[k - 1], polygon[k]});
     }
+    const int first = static_cast<int>(mesh_.triangles.size());
     for (std::size_t k = 2; k < polygon.size(); ++k) {
       const std::array<int, 3> triangle{polygon[0], polygon[k - 1], polygon[k]};
       const Vec3d part = area_vector(mesh_.vertices, triangle);
@@ -132,6 +133,7 @@ class Assembler {
       }
       mesh_.triangles.push_back(triangle);
     }
+    if (polygon.size() > 3) mesh_.fans.push_back({first, static_cast<int>(polygon.size()) - 2});
   }
 
   /// Zero area up to the rounding of the cross product: below 4 eps of the squared longest edge, relative to

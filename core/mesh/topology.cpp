@@ -1,6 +1,7 @@
 #include "core/mesh/topology.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <numeric>
 #include <tuple>
 
@@ -43,7 +44,58 @@ int root_of(std::vector<int>& parent, int i) {
   return i;
 }
 
+using Edges = std::vector<std::array<int, 2>>;
+
+void sort_once(Edges& edges) {
+  std::sort(edges.begin(), edges.end());
+  edges.erase(std::unique(edges.begin(), edges.end()), edges.end());
+}
+
+std::array<int, 2> edge_of(int a, int b) { return {std::min(a, b), std::max(a, b)}; }
+
+/// Sides of all faces, and pairs of corners that are no side of their own face.
+struct FacePairs {
+  Edges sides, across;
+};
+
+FacePairs face_pairs(const TriangleMesh& mesh) {
+  FacePairs out;
+  std::vector<char> in_fan(mesh.triangles.size(), 0);
+  for (const auto& [first, n] : mesh.fans) {
+    std::vector<int> corners(mesh.triangles[static_cast<std::size_t>(first)].begin(),
+                             mesh.triangles[static_cast<std::size_t>(first)].end());
+    for (int t = first; t < first + n; ++t) {
+      in_fan[static_cast<std::size_t>(t)] = 1;
+      if (t > first) corners.push_back(mesh.triangles[static_cast<std::size_t>(t)][2]);
+    }
+    const std::size_t m = corners.size();
+    for (std::size_t i = 0; i < m; ++i) {
+      for (std::size_t j = i + 1; j < m; ++j) {
+        const bool side = j == i + 1 || (i == 0 && j + 1 == m);
+        (side ? out.sides : out.across).push_back(edge_of(corners[i], corners[j]));
+      }
+    }
+  }
+  for (std::size_t t = 0; t < mesh.triangles.size(); ++t) {
+    const auto& [a, b, c] = mesh.triangles[t];
+    if (in_fan[t] == 0) out.sides.insert(out.sides.end(), {edge_of(a, b), edge_of(b, c), edge_of(c, a)});
+  }
+  sort_once(out.sides);
+  sort_once(out.across);
+  return out;
+}
+
 }  // namespace
+
+std::vector<std::array<int, 2>> face_diagonals(const TriangleMesh& mesh) {
+  const FacePairs pairs = face_pairs(mesh);
+  Edges out;
+  std::set_difference(pairs.across.begin(), pairs.across.end(), pairs.sides.begin(), pairs.sides.end(),
+                      std::back_inserter(out));
+  return out;
+}
+
+std::vector<std::array<int, 2>> face_sides(const TriangleMesh& mesh) { return face_pairs(mesh).sides; }
 
 std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh) {
   std::vector<std::array<int, 2>> edges;

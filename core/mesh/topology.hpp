@@ -12,6 +12,13 @@ namespace bb {
 /// Every edge of a triangle or a tetrahedron and every segment once, as (smaller, larger) index, sorted. Cost O(n log n).
 std::vector<std::array<int, 2>> unique_edges(const TriangleMesh& mesh);
 
+/// Pairs of vertices of a face that are no side of it, of all faces of more than three corners (TriangleMesh::fans), and no
+/// side of another face; as (smaller, larger) index, sorted, each once. Cost: n (n - 3)/2 of a face of n corners.
+std::vector<std::array<int, 2>> face_diagonals(const TriangleMesh& mesh);
+
+/// Sides of all faces of triangles and of fans, the same way.
+std::vector<std::array<int, 2>> face_sides(const TriangleMesh& mesh);
+
 /// Edges of exactly one triangle, in the direction that the triangle runs through them, sorted
 /// by (smaller, larger).
 std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3>> triangles);

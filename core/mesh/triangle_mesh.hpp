@@ -13,6 +13,9 @@ struct TriangleMesh {
   Positions vertices = Positions(3, 0);       // [3 x n] m
   std::vector<std::array<int, 3>> triangles;  // counter-clockwise seen from outside
   std::vector<std::array<int, 2>> segments;   // lone edges
+  std::vector<std::array<int, 2>>
+      fans;  // of every face of more than three corners c0 c1 c2 ...: the first of its triangles
+             // (c0 c1 c2), (c0 c2 c3), ..., and how many there are
   std::vector<std::array<int, 4>>
       tetrahedra;  // corner 3 on the side to which 0 1 2 runs counter-clockwise: volume > 0
 

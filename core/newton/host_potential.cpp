@@ -67,8 +67,8 @@ bool HostPotential::renew_lag(const Column& x) {
   return renewed;
 }
 
-void HostPotential::end_step() {
-  for (const auto& term : terms_) term->end_step(clock());
+void HostPotential::end_step(const Column& x) {
+  for (const auto& term : terms_) term->end_step(points(x), clock());
 }
 
 void HostPotential::keep(Archive& archive) {

@@ -32,7 +32,7 @@ class HostPotential final : public IncrementalPotential {
   void begin_step(const StepColumns& step) override;
   void change_step(const StepColumns& step) override;
   bool renew_lag(const Column& x) override;
-  void end_step() override;
+  void end_step(const Column& x) override;
   void keep(Archive& archive) override;
   void keep_solver(Archive& archive) override;
   void drop_caches() override;

@@ -42,7 +42,7 @@ class IncrementalPotential {
   virtual void change_step(const StepColumns& step) = 0;
   /// The step has converged at x: whether terms take what they lag from there, so that it has to go on.
   virtual bool renew_lag(const Column& /*x*/) { return false; }
-  virtual void end_step() = 0;
+  virtual void end_step(const Column& x) = 0;
   /// What the terms remember from step to step.
   virtual void keep(Archive& archive) = 0;
   /// What earlier solves decide of later ones.

@@ -69,7 +69,7 @@ void NewtonSystem::restart_step(const Prediction& prediction, double dt) {
   state_.potential->change_step(step_columns());
 }
 
-void NewtonSystem::end_step() { state_.potential->end_step(); }
+void NewtonSystem::end_step() { state_.potential->end_step(state_.x); }
 
 void NewtonSystem::set_target(const Positions& target) {
   target_ = target;

@@ -12,6 +12,10 @@ class BatchTerm final : public Term {
   std::string_view name() const override { return name_; }
   TermGroup group() const override { return TermGroup::elastic; }
   Phase phase() const override { return Phase::elastic; }
+  void begin_step(const StepFrame& frame, PhaseClock& clock) override;
+  void change_frame(const StepFrame& frame) override { dt_ = frame.dt; }
+  void end_step(const PositionsView& x, PhaseClock& clock) override;
+  void keep(Archive& archive) override;
   void linearise(const PositionsView& x, const TermContext& context) override {
     batch_->derivatives(x, context.projection, families_[0].local);
   }
@@ -27,6 +31,9 @@ class BatchTerm final : public Term {
  private:
   std::string_view name_;
   std::unique_ptr<EnergyBatch> batch_;
+  double dt_ = 0;  // s, of the step
+  std::vector<double>
+      next_;  // memory of the batch from the next step on: whoever looks at a step that is over sees its own E
 };
 
 }  // namespace bb

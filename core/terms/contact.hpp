@@ -53,7 +53,7 @@ class ContactTerm final : public Term {
   void begin_step(const StepFrame& frame, PhaseClock& clock) override;
   void change_frame(const StepFrame& frame) override;
   /// Tells a policy that adapts which pairs had a row at two step ends in a row.
-  void end_step(PhaseClock& clock) override;
+  void end_step(const PositionsView& x, PhaseClock& clock) override;
   void adopt(const KnownStiffness& known) override {
     stiffness_.adopt(known);
     policy_start_.set_started(true);  // or not yet: that is for the other system to do

@@ -49,7 +49,7 @@ StartSums ContactTerm::start_sums(const PositionsView& others) const {
   return sums;
 }
 
-void ContactTerm::end_step(PhaseClock& clock) {
+void ContactTerm::end_step(const PositionsView&, PhaseClock& clock) {
   if (!stiffness_.policy().adapts()) return;
   const ScopedPhase timer(clock, Phase::stiffness);
   list_pair_gaps();

@@ -109,8 +109,8 @@ class Term {
   virtual void adopt_from(const Term&) {}
   /// The step has converged at the iterate x: what was taken from its start is taken from there, and the step goes on, if true.
   virtual bool renew_lag(const PositionsView& /*x*/) { return false; }
-  /// The step is over.
-  virtual void end_step(PhaseClock&) {}
+  /// The step is over and ended at x.
+  virtual void end_step(const PositionsView& /*x*/, PhaseClock&) {}
   /// What it remembers from step to step (core/archive). A term that begin_step makes anew has nothing.
   virtual void keep(Archive&) {}
 

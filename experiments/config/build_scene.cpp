@@ -2,8 +2,10 @@
 #include <fmt/format.h>
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <numbers>
 #include <random>
+#include <utility>
 
 #include "core/bodies/scene_builder.hpp"
 #include "core/bodies/scene_checks.hpp"
@@ -47,6 +49,31 @@ void apply(const TransformConfig& transform, Positions& x) {
   x.colwise() += transform.translation;
 }
 
+/// The rest shape takes the vertices of another mesh of the same elements; where the body was is where it starts.
+void take_rest_shape(const BodyConfig& body, const std::string& where, BodySpec& spec) {
+  TriangleMesh rest = make_mesh(body.rest_mesh, where);
+  const auto require_same = [&](const char* what, auto& found, auto& allowed) {
+    if (found == allowed) return;
+    if (found.size() != allowed.size()) {
+      throw ConfigError(where, fmt::format("{} {}", found.size(), what),
+                        fmt::format("{}, as the mesh of the body has", allowed.size()));
+    }
+    const auto [other, own] = std::mismatch(found.begin(), found.end(), allowed.begin());
+    throw ConfigError(where, fmt::format("{} {} of other vertices", what, other - found.begin()),
+                      "the elements of the mesh of the body, in their order");
+  };
+  if (rest.n_vertices() != spec.mesh.n_vertices()) {
+    throw ConfigError(where, fmt::format("{} vertices", rest.n_vertices()),
+                      fmt::format("{}, as the mesh of the body has", spec.mesh.n_vertices()));
+  }
+  require_same("triangles", rest.triangles, spec.mesh.triangles);
+  require_same("faces of more than three corners", rest.fans, spec.mesh.fans);
+  require_same("lone edges", rest.segments, spec.mesh.segments);
+  require_same("tetrahedra", rest.tetrahedra, spec.mesh.tetrahedra);
+  apply(body.transform, rest.vertices);
+  spec.start = std::exchange(spec.mesh.vertices, std::move(rest.vertices));
+}
+
 Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>& limit) {
   SceneBuilder builder("bodies", config.scene.planar, config.scene.gravity, config.source + "#/scene");
   builder.set_planar_pairs(config.scene.pairs);
@@ -55,6 +82,9 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     BodySpec spec = body.spec;
     spec.mesh = make_mesh(body.mesh, fmt::format("{}#/scene/bodies/{}/mesh", config.source, i));
     apply(body.transform, spec.mesh.vertices);
+    if (body.rest_mesh.given()) {
+      take_rest_shape(body, fmt::format("{}#/scene/bodies/{}/rest_mesh", config.source, i), spec);
+    }
     if (body.limited) spec.material.limit = limit;
     spec.d_hat = body.d_hat.value_or(config.formulation.d_hat);
     builder.add_body(spec);

@@ -27,19 +27,21 @@ void expand_shorthands(json& document) {
   if (formulation.is_string()) formulation = json{{"name", formulation}};
 }
 
+void absolute_mesh_path(json& body, const char* key, const std::string& folder) {
+  if (!body.is_object() || !body.contains(key) || !body[key].is_object()) return;
+  json& mesh = body[key];
+  if (!mesh.contains("file") || !mesh["file"].is_string() || mesh["file"].get<std::string>().empty()) return;
+  const std::string path =
+      fs::absolute(fs::path(folder) / mesh["file"].get<std::string>()).lexically_normal().string();
+  if (!is_utf8(path)) throw ConfigError(path, "a path that is not UTF-8", "UTF-8: records name their meshes");
+  mesh["file"] = path;
+}
+
 void absolute_mesh_paths(json& document, const std::string& folder) {
   const json::json_pointer bodies("/scene/bodies");
   if (!document.is_object() || !document.contains(bodies) || !document[bodies].is_array()) return;
   for (json& body : document[bodies]) {
-    if (!body.is_object() || !body.contains("mesh") || !body["mesh"].is_object()) continue;
-    json& mesh = body["mesh"];
-    if (!mesh.contains("file") || !mesh["file"].is_string() || mesh["file"].get<std::string>().empty())
-      continue;
-    const std::string path =
-        fs::absolute(fs::path(folder) / mesh["file"].get<std::string>()).lexically_normal().string();
-    if (!is_utf8(path))
-      throw ConfigError(path, "a path that is not UTF-8", "UTF-8: records name their meshes");
-    mesh["file"] = path;
+    for (const char* key : {"mesh", "rest_mesh"}) absolute_mesh_path(body, key, folder);
   }
 }
 

@@ -79,6 +79,7 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
                                           : "pins with a motion, or kind rigid",
              reader);
   read_mesh(child(object, "mesh"), pointer + "/mesh", reader, body.mesh);
+  read_mesh(child(object, "rest_mesh"), pointer + "/rest_mesh", reader, body.rest_mesh);
   settle_material(child(object, "material"), pointer + "/material", reader, spec.material);
   check_motion(spec.motion, pointer + "/motion", reader);
   for (std::size_t p = 0; p < spec.pins.size(); ++p) {

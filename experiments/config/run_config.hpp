@@ -46,11 +46,14 @@ struct MeshSource {
   ParameterMap parameters;  // of the generator, complete
   std::string file;         // absolute path
   std::string sha256;       // of the file's bytes, hex
+
+  bool given() const { return !generator.empty() || !file.empty(); }
 };
 
 /// A body of a scene given as JSON; `spec.mesh` is empty until build_scene reads or generates it.
 struct BodyConfig {
   MeshSource mesh;
+  MeshSource rest_mesh;  // whose vertices are the rest shape; none: those of mesh
   TransformConfig transform;
   BodySpec spec;                // without mesh and d_hat
   std::optional<double> d_hat;  // m; absent: formulation.d_hat

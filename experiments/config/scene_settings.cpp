@@ -11,14 +11,22 @@ namespace {
 
 using nlohmann::json;
 
-/// Read by read_scene, which opens its file.
-void add_mesh(Settings<BodyConfig>& out) {
-  out.add_row({"mesh", required(mesh_rule()), no_default, ""}, nullptr, [](const BodyConfig& body) {
-    if (!body.mesh.file.empty()) return json{{"file", body.mesh.file}, {"sha256", body.mesh.sha256}};
-    json made = to_json(body.mesh.parameters);
-    made["generator"] = body.mesh.generator;
-    return made;
-  });
+json mesh_json(const MeshSource& mesh) {
+  if (!mesh.given()) return {};
+  if (!mesh.file.empty()) return json{{"file", mesh.file}, {"sha256", mesh.sha256}};
+  json made = to_json(mesh.parameters);
+  made["generator"] = mesh.generator;
+  return made;
+}
+
+/// Read by read_scene, which opens their files.
+void add_meshes(Settings<BodyConfig>& out) {
+  out.add_row({"mesh", required(mesh_rule()), no_default, ""}, nullptr,
+              [](const BodyConfig& body) { return mesh_json(body.mesh); });
+  out.add_row({"rest_mesh", mesh_rule(), no_default,
+               "Mesh of the same elements whose vertices are the rest shape; `mesh` is where the body "
+               "starts. Left out: `mesh` is both."},
+              nullptr, [](const BodyConfig& body) { return mesh_json(body.rest_mesh); });
 }
 
 Rule listed(Kind kind, Rule element) {
@@ -148,7 +156,7 @@ json scene_json(const SceneConfig& scene) {
 }
 
 std::vector<std::string> keys_of_others(BodyKind kind) {
-  if (kind == BodyKind::rigid) return {"material", "velocity_m_per_s", "pins", "limited"};
+  if (kind == BodyKind::rigid) return {"rest_mesh", "material", "velocity_m_per_s", "pins", "limited"};
   return {"motion"};
 }
 std::vector<std::string> keys_of_others(ObstacleKind kind) {

@@ -33,7 +33,9 @@ void copy_one(const fs::path& folder, const InputKind& kind, std::string& file, 
 
 RunConfig name_from(const fs::path& folder, RunConfig config) {
   for (BodyConfig& body : config.scene.bodies) {
-    if (!body.mesh.file.empty()) body.mesh.file = relative_name(folder, body.mesh.file);
+    for (MeshSource* mesh : {&body.mesh, &body.rest_mesh}) {
+      if (!mesh->file.empty()) mesh->file = relative_name(folder, mesh->file);
+    }
   }
   return config;
 }
@@ -45,7 +47,9 @@ std::vector<PluginFile> name_from(const fs::path& folder, std::vector<PluginFile
 
 void copy_inputs(const fs::path& folder, RunConfig& config, std::vector<PluginFile>& plugins) {
   for (BodyConfig& body : config.scene.bodies) {
-    if (!body.mesh.file.empty()) copy_one(folder, mesh_file, body.mesh.file, body.mesh.sha256);
+    for (MeshSource* mesh : {&body.mesh, &body.rest_mesh}) {
+      if (!mesh->file.empty()) copy_one(folder, mesh_file, mesh->file, mesh->sha256);
+    }
   }
   for (PluginFile& plugin : plugins) copy_one(folder, plugin_file, plugin.file, plugin.sha256);
 }

@@ -205,7 +205,9 @@ RunRecord identified(const RunConfig& config, const RunOptions& options) {
   const RunConfig named = name_from(options.folder, config);
   record.config.text = resolved_json(named);
   for (const BodyConfig& body : named.scene.bodies) {
-    if (!body.mesh.file.empty()) record.scene.mesh_sha256[body.mesh.file] = body.mesh.sha256;
+    for (const MeshSource* mesh : {&body.mesh, &body.rest_mesh}) {
+      if (!mesh->file.empty()) record.scene.mesh_sha256[mesh->file] = mesh->sha256;
+    }
   }
   record.provenance = collect_provenance(options.argv, thread_count(config));
   record.provenance.plugins = name_from(options.folder, options.plugins);

@@ -36,6 +36,8 @@ QUERIES = [
     *({"kind": "energy", "model": model, "rest": SQUARE, "x": MOVED, "lame_mu": 3, "lame_lambda": 2}
       for model in ("corotational", "arap", "stvk", "stable_neo_hookean", "baraff_witkin")),
     {"kind": "energy", "model": "spring", "rest": SQUARE[:2], "x": MOVED[:2], "k": 8},
+    {"kind": "energy", "model": "cloth_spring", "rest": SQUARE[:2], "x": MOVED[:2], "tension": 8, "compression_exponential": 2, "exponent": 4},
+    {"kind": "energy", "model": "hinge", "x": [[0, 0, 0], [1, 0, 0], [0, 1, 0.2], [0, -1, 0]], "k": 2, "rest_angle": 0.1, "exponential": 1},
     {"kind": "energy", "model": "hinge", "x": [[0, 0, 0], [1, 0, 0], [0, 1, 0.2], [0, -1, 0]], "k": 2, "rest_angle": 0.1},
     {"kind": "energy", "model": "rod_bend", "x": SQUARE, "k": 2, "rest_angle": 0.1},
     {"kind": "energy", "model": "rod_bend", "rest": SQUARE, "x": [[0, 0, 0], [1, 0, 0], [3, 0, 0]], "k": 2, "rest_angle": 0.1, "precision": "float"},

@@ -56,6 +56,41 @@ TEST(EvalEnergy, SpringMembraneAndHinge) {
             std::string::npos);
 }
 
+/// 0.5 m at rest: 20 % longer, 20 % shorter; parts that grow e-fold every 0.25 of it.
+TEST(EvalEnergy, SpringOfCloth) {
+  const auto spring = [](double length) {
+    return json{{"kind", "energy"},
+                {"model", "cloth_spring"},
+                {"rest", {{0, 0, 0}, {0, 0.5, 0}}},
+                {"x", {{1, 0, 0}, {1, 0, length}}},
+                {"tension", 3},
+                {"tension_exponential", 2},
+                {"compression", 5},
+                {"exponent", 4}};
+  };
+  const json longer = ask(spring(0.6));
+  const double grown = std::exp(0.8) - 1;  // a = 8/m
+  expect_close(longer["energy"], 3 * 0.005 + 2 / 64.0 * (grown - 0.8));
+  expect_close(longer["gradient"][5], 3 * 0.1 + 2 / 8.0 * grown);
+  expect_close(ask(spring(0.4))["energy"], 5 * 0.005);
+  EXPECT_EQ(longer["hessian"].size(), 6u);
+  json bad = spring(0.6);
+  bad["rest"] = {{1, 1, 1}, {1, 1, 1}};
+  EXPECT_NE(refused(bad).find("/rest"), std::string::npos);
+}
+
+TEST(EvalEnergy, HingeThatGrowsStiffer) {
+  const json hinge = ask({{"kind", "energy"},
+                          {"model", "hinge"},
+                          {"x", {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, -1}}},
+                          {"k", 2},
+                          {"rest_angle", 0},
+                          {"exponential", 3},
+                          {"exponent", 0.5}});
+  const double y = std::numbers::pi / 4;
+  expect_close(hinge["energy"], std::numbers::pi * std::numbers::pi / 4 + 3 / 0.25 * (std::exp(y) - 1 - y));
+}
+
 json rod_bend(const json& points, double rest_angle) {
   return {{"kind", "energy"}, {"model", "rod_bend"}, {"x", points}, {"k", 2}, {"rest_angle", rest_angle}};
 }

@@ -14,16 +14,42 @@ class Hinges final : public Part {
  public:
   void add_keys(Settings<Material>& out) const override {
     out.add("bending_J", non_negative("J"), "Stiffness of every hinge.", &Material::bending);
+    out.add("bending_exponential_J", non_negative("J"),
+            "Beside bending_J, a stiffness that has this value at rest and grows exponentially with the "
+            "angle from it.",
+            &Material::bending_exponential);
+    out.add("bending_exponent_per_rad", positive("1/rad"),
+            "Growth of bending_exponential_J: e-fold every 1 over this.", &Material::bending_exponent);
+    out.add("bending_yield_rad", non_negative("rad"),
+            "Angle from rest beyond which the rest angle of a hinge follows. Needs bending_creep_per_s.",
+            &Material::bending_yield);
+    out.add(
+        "bending_creep_per_s", non_negative("1/s"),
+        "Rate at which what is beyond bending_yield_rad decays, since the rest angle follows. 0: it stays.",
+        &Material::bending_creep);
   }
   void check(const BodySpec& spec, bool planar, const Complaints& complain) const override {
-    const double bending = spec.material.bending;
-    if (planar && bending > 0) {
-      complain("/material/bending_J", fmt::format("{}", bending), "0: the scene is planar");
+    const Material& m = spec.material;
+    if (planar && m.bending > 0) {
+      complain("/material/bending_J", fmt::format("{}", m.bending), "0: the scene is planar");
+    }
+    if (planar && m.bending_exponential > 0) {
+      complain("/material/bending_exponential_J", fmt::format("{}", m.bending_exponential),
+               "0: the scene is planar");
+    }
+    if (m.bending_yield > 0 && m.bending_creep == 0) {
+      complain("/material/bending_yield_rad", fmt::format("{}", m.bending_yield),
+               "0 without bending_creep_per_s: nothing yields");
+    }
+    if (m.bending_creep > 0 && !m.hinges_bend()) {
+      complain("/material/bending_creep_per_s", fmt::format("{}", m.bending_creep),
+               "0 without bending_J or bending_exponential_J");
     }
   }
 
   void add_elements(const BodySpec& spec, BodyElements& to) const override {
-    if (spec.material.bending == 0) return;
+    const Material& m = spec.material;
+    if (!m.hinges_bend()) return;
     HingePart& part = to.scene.hinges;
     for (const auto& local : edge_hinges(spec.mesh.triangles)) {
       const auto hinge = to.in_scene(local);
@@ -31,8 +57,12 @@ class Hinges final : public Part {
       Vec3d x[4];
       for (std::size_t k = 0; k < 4; ++k) x[k] = spec.mesh.vertices.col(local[k]);
       part.hinges.push_back(hinge);
-      part.stiffness.push_back(spec.material.bending);
+      part.stiffness.push_back(m.bending);
       part.rest_angle.push_back(hinge_angle(x));
+      part.exponential.push_back(m.bending_exponential);
+      part.exponent.push_back(m.bending_exponent);
+      part.yield.push_back(m.bending_yield);
+      part.creep.push_back(m.bending_creep);
     }
   }
 
@@ -43,9 +73,16 @@ class Hinges final : public Part {
                    std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
     const HingePart& part = scene.hinges;
     if (part.hinges.empty()) return;
-    out.push_back(std::make_unique<HingeBatch>(part.hinges, part.stiffness, part.rest_angle, precision));
+    auto batch = std::make_unique<HingeBatch>(part.hinges, part.stiffness, part.rest_angle, precision);
+    if (any_positive(part.exponential)) batch->set_stiffening(part.exponential, part.exponent);
+    if (any_positive(part.creep)) batch->set_creep(part.yield, part.creep);
+    out.push_back(std::move(batch));
   }
   bool has_kernels() const override { return true; }
+  std::string_view lacks_kernels(const Scene& scene) const override {
+    if (any_positive(scene.hinges.exponential)) return "an exponential part";
+    return any_positive(scene.hinges.creep) ? "creep" : "";
+  }
 
   std::vector<std::string> element_names() const override { return {"hinge"}; }
   /// The rest angle is a field of its own, so `rest` may be left out.
@@ -55,9 +92,12 @@ class Hinges final : public Part {
       const FieldPoints<T, 4> x(fields, "x");
       const T k = static_cast<T>(fields.number("k", kNonNegative));
       const T angle = static_cast<T>(fields.number("rest_angle", kFinite));
+      const T q =
+          fields.has("exponential") ? static_cast<T>(fields.number("exponential", kNonNegative)) : T(0);
+      const T a = fields.has("exponent") ? static_cast<T>(fields.number("exponent", kPositive)) : T(2);
       fields.finish();
-      return element_answer<T, 12>(hinge_terms<T>(x.x, k, angle, Projection::none),
-                                   hinge_terms<T>(x.x, k, angle, Projection::psd));
+      return element_answer<T, 12>(hinge_terms<T>(x.x, k, q, a, angle, Projection::none),
+                                   hinge_terms<T>(x.x, k, q, a, angle, Projection::psd));
     });
   }
 };

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <nlohmann/json.hpp>
 
+#include "core/bodies/lumping.hpp"
 #include "core/bodies/part.hpp"
 #include "core/energy/membrane_batch.hpp"
 #include "core/math/svd.hpp"
@@ -39,16 +40,41 @@ void add_youngs(Settings<Material>& out) {
       [](const Material& m) { return m.thickness ? json() : json(m.youngs); });
 }
 
+/// Whether something of the material is along the warp axis.
+bool has_direction(const Material& m) { return is_anisotropic(m.model) || m.shrinks_along_warp(); }
+
 void check_warp_axis(const Complaints& complain, const Material& m, bool planar) {
   if (!m.warp_axis) return;
   const Vec3d& axis = *m.warp_axis;
   const std::string found = fmt::format("[{}, {}, {}]", axis[0], axis[1], axis[2]);
-  if (!is_anisotropic(m.model)) {
-    complain("/material/warp_axis", found, "nothing: the model " + m.model + " has no direction");
+  if (!has_direction(m)) {
+    complain("/material/warp_axis", found,
+             "nothing: the model " + m.model + " has no direction, and shrinking neither");
   } else if (!(std::abs(axis.norm() - 1) < 1e-9)) {
     complain("/material/warp_axis", found, "a unit vector");
   } else if (planar && axis[2] != 0) {
     complain("/material/warp_axis", found, "z = 0: the scene is planar");
+  }
+}
+
+/// Shrinking and creep where there is nothing that they act on, or something that they leave out.
+void check_rest(const Complaints& complain, const BodySpec& spec) {
+  const Material& m = spec.material;
+  const auto refuse = [&](const char* key, double found, const std::string& allowed) {
+    complain(std::string("/material/") + key, fmt::format("{}", found), allowed);
+  };
+  const char* shrink = m.shrink_warp != 1 ? "shrink_warp" : "shrink_weft";
+  const double factor = m.shrink_warp != 1 ? m.shrink_warp : m.shrink_weft;
+  if (m.shrinks() && spec.mesh.triangles.empty()) {
+    refuse(shrink, factor, "1: the body has no triangle");
+  } else if (m.shrinks() && m.springs > 0) {
+    refuse(shrink, factor, "1 with springs_N_per_m, whose lengths are those of the mesh");
+  }
+  if (m.membrane_yield > 0 && m.membrane_creep == 0) {
+    refuse("membrane_yield", m.membrane_yield, "0 without membrane_creep_per_s: nothing yields");
+  }
+  if (m.membrane_creep > 0 && m.model == "none") {
+    refuse("membrane_creep_per_s", m.membrane_creep, "0 without a membrane model");
   }
 }
 
@@ -61,6 +87,29 @@ void check_warp(const BodySpec& spec, const Vec3d& warp, const BodyElements& to)
     return to.complain("/material/warp_axis",
                        fmt::format("[{}, {}, {}], the normal of triangle {}", warp[0], warp[1], warp[2], t),
                        "an axis that is normal to no triangle of the rest shape");
+  }
+}
+
+/// Appends what a triangle of the scene at rest has in the columns that stay empty where no body needs them. The
+/// first edge as warp direction is that of an empty column.
+void append_options(const Material& m, const Scene& scene, MembranePart& part) {
+  const std::size_t n = part.triangles.size();
+  if (has_direction(m) || !part.warp.empty()) {
+    while (part.warp.size() < n) {
+      const auto& t = part.triangles[part.warp.size()];
+      part.warp.emplace_back(scene.rest.col(t[1]) - scene.rest.col(t[0]));
+    }
+    if (has_direction(m)) part.warp.back() = m.warp_axis.value_or(Vec3d::UnitX());
+  }
+  if (m.shrinks() || !part.shrink.empty()) {
+    part.shrink.resize(n, Vec2d(1, 1));
+    part.shrink.back() = Vec2d(m.shrink_warp, m.shrink_weft);
+  }
+  if (m.membrane_creep > 0 || !part.creep.empty()) {
+    part.yield.resize(n, 0.0);
+    part.creep.resize(n, 0.0);
+    part.yield.back() = m.membrane_yield;
+    part.creep.back() = m.membrane_creep;
   }
 }
 
@@ -126,7 +175,7 @@ class Membrane final : public Part {
     out.add("model", any_text(), "A membrane model (`bench list membranes`), or none (springs only).",
             &Material::model);
     out.add(
-        "warp_axis", computed(direction(), "x, where the model has a direction"),
+        "warp_axis", computed(direction(), "x, where the model or shrinking has a direction"),
         "Warp direction in the coordinates of the scene at rest, turned into the plane of every triangle.",
         &Material::warp_axis);
     add_youngs(out);
@@ -134,13 +183,32 @@ class Membrane final : public Part {
             &Material::thickness);
     out.add("poisson", open_high(open_low(number_in(-1, 1, "1"))), "Poisson's ratio, plane stress.",
             &Material::poisson);
+    out.add("shrink_warp", positive("1"),
+            "Factor on rest lengths of triangles and cloth springs along the warp direction; mass and strain "
+            "limit are of the mesh "
+            "as it is.",
+            &Material::shrink_warp);
+    out.add("shrink_weft", positive("1"), "The same at right angles to the warp direction.",
+            &Material::shrink_weft);
+    out.add(
+        "membrane_yield", non_negative("1"),
+        "Stretch |sigma - 1| beyond which the rest shape of a triangle follows. Needs membrane_creep_per_s.",
+        &Material::membrane_yield);
+    out.add("membrane_creep_per_s", non_negative("1/s"),
+            "Rate at which what is beyond membrane_yield decays, since the rest shape follows. 0: it stays.",
+            &Material::membrane_creep);
     out.add("density_kg_per_m2", non_negative("kg/m^2"), "Mass per area of triangles.", &Material::density);
+    out.add("lumping", word({"barycentric", "mixed_voronoi", "uniform"}),
+            "How that mass is split: a third of a triangle at each corner; what is closest to a corner "
+            "(obtuse: half, a quarter, "
+            "a quarter); the same at every vertex of a triangle.",
+            &Material::lumping);
   }
   std::string_view keys_doc() const override {
     return "Young's modulus either in Pa with a thickness, or already multiplied by the thickness in N/m.";
   }
   void settle(const GivenMaterial& given, const Complaints& complain, Material& m) const override {
-    if (!m.warp_axis && is_anisotropic(m.model)) m.warp_axis = Vec3d::UnitX();
+    if (!m.warp_axis && has_direction(m)) m.warp_axis = Vec3d::UnitX();
     if (!given.complete) return;  // one of the two may be there and wrong
     const bool pascal = given.object.contains("youngs_Pa"), thick = given.object.contains("thickness_m");
     if (pascal && given.object.contains("youngs_N_per_m")) {
@@ -154,6 +222,10 @@ class Membrane final : public Part {
     const Material& m = spec.material;
     complain.model("/material/model", m.model, membrane_models<double>().names());
     check_warp_axis(complain, m, planar);
+    check_rest(complain, spec);
+    if (m.lumping != Lumping::barycentric && spec.mesh.triangles.empty()) {
+      complain("/material/lumping", give(m.lumping).get<std::string>(), "nothing: the body has no triangle");
+    }
     complain.number("/material/youngs", m.youngs, m.youngs > 0, "a number > 0");  // under either name
   }
 
@@ -165,17 +237,12 @@ class Membrane final : public Part {
   }
 
   void add_masses(const BodySpec& spec, const AddMass& add) const override {
-    for (const auto& t : spec.mesh.triangles) {
-      const double third = spec.material.density * area_vector(spec.mesh.vertices, t).norm() / 3;
-      for (const int v : t) add(v, third);
-    }
+    lump_triangles(spec.mesh, spec.material.lumping, spec.material.density, add);
   }
   void add_elements(const BodySpec& spec, BodyElements& to) const override {
     const Material& material = spec.material;
     if (spec.mesh.triangles.empty()) return;
-    const bool directed = is_anisotropic(material.model);
-    const Vec3d warp = material.warp_axis.value_or(Vec3d::UnitX());
-    if (directed) check_warp(spec, warp, to);
+    if (has_direction(material)) check_warp(spec, material.warp_axis.value_or(Vec3d::UnitX()), to);
     if (material.model == "none") return;
     const LameParameters lame = shell_lame(material.youngs_per_width(), material.poisson);
     MembranePart& part = of_model(material.model, to.scene.membranes);
@@ -185,7 +252,7 @@ class Membrane final : public Part {
       part.triangles.push_back(t);
       part.lame_mu.push_back(lame.mu);
       part.lame_lambda.push_back(lame.lambda);
-      if (directed) part.warp.push_back(warp);
+      append_options(material, to.scene, part);
     }
   }
 
@@ -196,11 +263,19 @@ class Membrane final : public Part {
                    std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
     for (const MembranePart& part : scene.membranes) {
       if (part.triangles.empty()) continue;
-      out.push_back(std::make_unique<MembraneBatch>(part.model, part.triangles, scene.rest, part.lame_mu,
-                                                    part.lame_lambda, scene.planar, part.warp, precision));
+      auto batch = std::make_unique<MembraneBatch>(part.model, part.triangles, scene.rest, part.lame_mu,
+                                                   part.lame_lambda, scene.planar, part.warp, precision);
+      if (!part.shrink.empty()) batch->scale_rest(part.shrink);
+      if (!part.creep.empty()) batch->set_creep(part.yield, part.creep);
+      out.push_back(std::move(batch));
     }
   }
   bool has_kernels() const override { return true; }
+  std::string_view lacks_kernels(const Scene& scene) const override {
+    const bool creeps = std::any_of(scene.membranes.begin(), scene.membranes.end(),
+                                    [](const MembranePart& part) { return !part.creep.empty(); });
+    return creeps ? "creep" : "";
+  }
   void add_frame_fields(const Scene& scene, const Positions& x, FrameFields& out) const override {
     out.of_triangles.push_back({"stretch", stretches(scene, x)});
   }

@@ -86,8 +86,9 @@ std::vector<MadeFamily> make_elastic_families(exec::Executor& executor, const Sc
   std::vector<MadeFamily> out;
   for (const MembranePart& part : scene.membranes) {
     if (part.triangles.empty()) continue;
-    const MembraneBatch batch(part.model, part.triangles, scene.rest, part.lame_mu, part.lame_lambda,
-                              scene.planar, part.warp);
+    MembraneBatch batch(part.model, part.triangles, scene.rest, part.lame_mu, part.lame_lambda, scene.planar,
+                        part.warp);
+    if (!part.shrink.empty()) batch.scale_rest(part.shrink);
     out.push_back({membrane_family(executor, scene, batch, part), copy_of(batch.vertices())});
   }
   if (!scene.springs.edges.empty()) {

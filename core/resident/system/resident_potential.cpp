@@ -76,7 +76,7 @@ void ResidentPotential::change_step(const StepColumns& step) {
   if (contact_) contact_->change_time(step.dt, step.c);
 }
 
-void ResidentPotential::end_step() {
+void ResidentPotential::end_step(const Column&) {
   const ScopedPhase timer(clock(), Phase::stiffness);
   if (contact_) contact_->end_step();
 }

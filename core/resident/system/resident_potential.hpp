@@ -33,7 +33,7 @@ class ResidentPotential final : public IncrementalPotential {
 
   void begin_step(const StepColumns& step) override;
   void change_step(const StepColumns& step) override;
-  void end_step() override;
+  void end_step(const Column& x) override;
   void keep(Archive& archive) override;
   void drop_caches() override;
 

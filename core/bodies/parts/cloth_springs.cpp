@@ -1,0 +1,234 @@
+// Springs of cloth: on the sides of faces, and between corners of a face that are no side of it.
+#include <fmt/format.h>
+
+#include <algorithm>
+
+#include "core/bodies/part.hpp"
+#include "core/energy/cloth_spring.hpp"
+#include "core/energy/creep.hpp"
+#include "core/energy/element_loop.hpp"
+#include "core/mesh/topology.hpp"
+
+namespace bb {
+namespace {
+
+/// All springs of a scene. Remembers how many times as long as its rest length every spring rests.
+class ClothSpringBatch final : public EnergyBatch {
+ public:
+  ClothSpringBatch(const ClothSpringPart& part, Precision precision)
+      : part_(part),
+        ratio_(part.pairs.size(), 1.0),
+        creeps_(any_positive(part.creep)),
+        precision_(precision) {
+    for (const auto& pair : part.pairs) vertices_.insert(vertices_.end(), pair.begin(), pair.end());
+  }
+  std::string_view name() const override { return "cloth_spring"; }
+  int width() const override { return 2; }
+  std::span<const int> vertices() const override { return vertices_; }
+  void values(const PositionsView& x, double* energy) const override {
+    const auto value = [&]<class T>(std::size_t e) {
+      const Points<2, T> p(x, vertices_, e);
+      return cloth_spring_value<T>(p.x, static_cast<T>(rest_length(e)), law<T>(e));
+    };
+    store_energies(size(), precision_, value, energy);
+  }
+  void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override {
+    out.resize(size(), width());
+    const auto terms = [&]<class T>(std::size_t e) {
+      const Points<2, T> p(x, vertices_, e);
+      return cloth_spring_terms<T>(p.x, static_cast<T>(rest_length(e)), law<T>(e), projection);
+    };
+    store_elements(size(), precision_, terms, out);
+  }
+
+  std::span<const double> memory() const override {
+    return creeps_ ? std::span<const double>(ratio_) : std::span<const double>();
+  }
+  void set_memory(std::span<const double> memory) override { ratio_.assign(memory.begin(), memory.end()); }
+  void flow(const PositionsView& x, double dt, std::span<double> memory) const override {
+    for_each_element(size(), [&](std::size_t e) {
+      const Points<2> p(x, vertices_, e);
+      const double length = (p.x[1] - p.x[0]).norm(), elongation = length / rest_length(e) - 1;
+      const double left = crept(elongation, part_.yield[e], kept_after(part_.creep[e], dt));
+      const double ratio = length / (1 + left) / part_.rest_length[e];
+      if (left != elongation && std::isfinite(ratio) && ratio > 0) memory[e] = ratio;
+    });
+  }
+
+ private:
+  double rest_length(std::size_t e) const { return ratio_[e] * part_.rest_length[e]; }
+  template <class T>
+  SpringLaw<T> law(std::size_t e) const {
+    return {static_cast<T>(part_.tension[e]), static_cast<T>(part_.tension_growing[e]),
+            static_cast<T>(part_.compression[e]), static_cast<T>(part_.compression_growing[e]),
+            static_cast<T>(part_.exponent[e])};
+  }
+
+  const ClothSpringPart part_;
+  std::vector<int> vertices_;
+  std::vector<double> ratio_;
+  bool creeps_;
+  Precision precision_;
+};
+
+using Pair = std::array<int, 2>;
+
+/// Lengths at rest of pairs of vertices of a body that shrinks.
+class RestLengths {
+ public:
+  explicit RestLengths(const BodySpec& spec) : spec_(spec) {
+    if (!spec.material.shrinks_along_warp()) return;
+    // Normals of the faces around a vertex, weighted by area: a pair lies in the mean plane of its two.
+    normal_ = Positions::Zero(3, spec.mesh.n_vertices());
+    for (const auto& t : spec.mesh.triangles) {
+      const Vec3d area = area_vector(spec.mesh.vertices, t);
+      for (const int v : t) normal_.col(v) += area;
+    }
+  }
+  double of(const Pair& pair) const {
+    const Material& m = spec_.material;
+    const Vec3d difference = spec_.mesh.vertices.col(pair[1]) - spec_.mesh.vertices.col(pair[0]);
+    if (!m.shrinks()) return difference.norm();
+    if (!m.shrinks_along_warp()) return m.shrink_warp * difference.norm();
+    const Vec3d n = (normal_.col(pair[0]) + normal_.col(pair[1])).normalized();
+    const Vec3d axis = m.warp_axis.value_or(Vec3d::UnitX());
+    const double along = difference.dot((axis - n.dot(axis) * n).normalized());
+    const double across_sq = std::max(difference.squaredNorm() - along * along, 0.0);
+    return std::sqrt(m.shrink_warp * m.shrink_warp * along * along +
+                     m.shrink_weft * m.shrink_weft * across_sq);
+  }
+
+ private:
+  const BodySpec& spec_;
+  Positions normal_;
+};
+
+constexpr int most_corners = 100;  // of a face with diagonals: their number grows with the square
+
+class ClothSprings final : public Part {
+ public:
+  void add_keys(Settings<Material>& out) const override {
+    const auto stiffness = [&out](const char* key, const std::string& of, auto member, auto growing) {
+      const std::string linear = std::string(key) + "_N_per_m";
+      out.add(linear, non_negative("N/m"), of, member);
+      out.add(std::string(key) + "_exponential_N_per_m", non_negative("N/m"),
+              "Beside " + linear + ", a stiffness that has this value at rest and grows with cloth_exponent.",
+              growing);
+    };
+    stiffness("cloth_tension", "Stiffness of a spring on every side of a face that is longer than at rest.",
+              &Material::cloth_tension, &Material::cloth_tension_growing);
+    stiffness("cloth_compression", "The same of one that is shorter than at rest.",
+              &Material::cloth_compression, &Material::cloth_compression_growing);
+    stiffness("cloth_shear",
+              "Stiffness, either way, of springs between corners of a face that are no side of it (faces of "
+              "more than three corners: "
+              "of OBJ and PLY files, and of the generator grid).",
+              &Material::cloth_shear, &Material::cloth_shear_growing);
+    out.add("cloth_exponent", positive("1"),
+            "Growth of exponential parts: e-fold with every 1 over this of relative elongation.",
+            &Material::cloth_exponent);
+    out.add("cloth_yield", non_negative("1"),
+            "Relative elongation |l/l0 - 1| beyond which a rest length follows. Needs cloth_creep_per_s.",
+            &Material::cloth_yield);
+    out.add("cloth_creep_per_s", non_negative("1/s"),
+            "Rate at which what is beyond cloth_yield decays, since the rest length follows. 0: it stays.",
+            &Material::cloth_creep);
+  }
+  std::string_view keys_doc() const override {
+    return "Keys that begin with cloth_ are of springs on the faces of a shell; mass comes from "
+           "density_kg_per_m2, bending from bending_J.";
+  }
+  void check(const BodySpec& spec, bool, const Complaints& complain) const override {
+    const Material& m = spec.material;
+    const auto refuse = [&](const char* key, double found, const std::string& allowed) {
+      complain(std::string("/material/") + key, fmt::format("{}", found), allowed);
+    };
+    const double shear = std::max(m.cloth_shear, m.cloth_shear_growing);
+    int corners = 3;
+    for (const auto& fan : spec.mesh.fans) corners = std::max(corners, fan[1] + 2);
+    if (m.has_diagonals() && corners == 3) {
+      refuse("cloth_shear_N_per_m", shear, "0: no face of the mesh has more than three corners");
+    } else if (m.has_diagonals() && corners > most_corners) {
+      refuse("cloth_shear_N_per_m", shear,
+             fmt::format("0 with a face of {} corners; at most {} otherwise", corners, most_corners));
+    }
+    if (m.has_sides() && spec.mesh.triangles.empty()) {
+      refuse("cloth_tension_N_per_m", std::max(m.cloth_tension, m.cloth_compression),
+             "0: the body has no face");
+    }
+    if (m.cloth_yield > 0 && m.cloth_creep == 0) {
+      refuse("cloth_yield", m.cloth_yield, "0 without cloth_creep_per_s: nothing yields");
+    }
+    if (m.cloth_creep > 0 && !m.has_sides() && !m.has_diagonals()) {
+      refuse("cloth_creep_per_s", m.cloth_creep, "0 without a cloth spring");
+    }
+  }
+
+  void add_elements(const BodySpec& spec, BodyElements& to) const override {
+    const Material& m = spec.material;
+    if (!m.has_sides() && !m.has_diagonals()) return;
+    const RestLengths rest(spec);
+    ClothSpringPart& part = to.scene.cloth_springs;
+    const auto add = [&](const Pair& local, double tension, double tension_growing, double compression,
+                         double compression_growing) {
+      const Pair pair = to.in_scene(local);
+      if (to.all_prescribed(pair)) return;
+      part.pairs.push_back(pair);
+      part.rest_length.push_back(rest.of(local));
+      part.tension.push_back(tension);
+      part.tension_growing.push_back(tension_growing);
+      part.compression.push_back(compression);
+      part.compression_growing.push_back(compression_growing);
+      part.exponent.push_back(m.cloth_exponent);
+      part.yield.push_back(m.cloth_yield);
+      part.creep.push_back(m.cloth_creep);
+    };
+    if (m.has_sides()) {
+      for (const Pair& side : face_sides(spec.mesh)) {
+        add(side, m.cloth_tension, m.cloth_tension_growing, m.cloth_compression, m.cloth_compression_growing);
+      }
+    }
+    if (!m.has_diagonals()) return;
+    for (const Pair& diagonal : face_diagonals(spec.mesh)) {
+      add(diagonal, m.cloth_shear, m.cloth_shear_growing, m.cloth_shear, m.cloth_shear_growing);
+    }
+  }
+
+  std::size_t size(const Scene& scene) const override { return scene.cloth_springs.pairs.size(); }
+  std::string_view elements() const override { return "cloth springs"; }
+  std::string_view no_elements() const override { return "no spring of cloth"; }
+  void add_batches(const Scene& scene, Precision precision,
+                   std::vector<std::unique_ptr<EnergyBatch>>& out) const override {
+    if (scene.cloth_springs.pairs.empty()) return;
+    out.push_back(std::make_unique<ClothSpringBatch>(scene.cloth_springs, precision));
+  }
+
+  std::vector<std::string> element_names() const override { return {"cloth_spring"}; }
+  ElementAnswer element(const std::string&, Fields& fields) const override {
+    return in_scalar_of(fields, [&]<class T>() {
+      const FieldPoints<T, 2> rest(fields, "rest"), x(fields, "x");
+      const auto number = [&](const char* name) {
+        return fields.has(name) ? static_cast<T>(fields.number(name, kNonNegative)) : T(0);
+      };
+      SpringLaw<T> law{number("tension"), number("tension_exponential"), number("compression"),
+                       number("compression_exponential"), T(10)};
+      if (fields.has("exponent")) law.exponent = static_cast<T>(fields.number("exponent", kPositive));
+      const T length = (rest.x[1] - rest.x[0]).norm();
+      if (!fields.wrong() && !(length > T(0))) {
+        fields.complain("rest", "two points that coincide", "a rest length > 0");
+      }
+      fields.finish();
+      return element_answer<T, 6>(cloth_spring_terms<T>(x.x, length, law, Projection::none),
+                                  cloth_spring_terms<T>(x.x, length, law, Projection::psd));
+    });
+  }
+};
+
+}  // namespace
+
+const Part& parts::cloth_springs::part() {
+  static const ClothSprings part;
+  return part;
+}
+
+}  // namespace bb

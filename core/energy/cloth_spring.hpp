@@ -1,0 +1,54 @@
+// A spring that resists tension and compression differently, each with a linear part and one that grows exponentially.
+#pragma once
+
+#include "core/energy/stiffening.hpp"
+#include "core/energy/terms.hpp"
+
+namespace bb {
+
+/// Stiffness of a spring longer (tension) and shorter (compression) than at rest, N/m; the growing parts are those at rest length
+/// and grow e-fold with every 1/exponent of relative elongation.
+template <class T>
+struct SpringLaw {
+  T tension, tension_growing, compression, compression_growing;
+  T exponent;  // 1, > 0
+};
+
+/// w(u) of u = l - l0 (stiffening.hpp), by its sign. Requires l0 > 0. Host-device: yes.
+template <class T>
+BB_HD Stiffened<T> spring_profile(T elongation, T rest_length, const SpringLaw<T>& law) {
+  const bool shorter = elongation < T(0);
+  return stiffened<T>(elongation, shorter ? law.compression : law.tension,
+                      shorter ? law.compression_growing : law.tension_growing, law.exponent / rest_length);
+}
+
+/// Energy, J. Host-device: yes.
+template <class T>
+BB_HD T cloth_spring_value(const Vec<T, 3> (&x)[2], T rest_length, const SpringLaw<T>& law) {
+  return spring_profile<T>((x[1] - x[0]).norm() - rest_length, rest_length, law).energy;
+}
+
+/// Energy, gradient and Hessian w'' n n^T + w'/l (1 - n n^T), n the unit direction; the transverse part is negative in compression.
+/// At rest length the curvature is that of tension; at l = 0, a cusp, gradient and Hessian are 0. Host-device: yes. Total.
+template <class T>
+BB_HD ElementTerms<T, 6> cloth_spring_terms(const Vec<T, 3> (&x)[2], T rest_length, const SpringLaw<T>& law,
+                                            Projection projection) {
+  const Vec<T, 3> difference = x[1] - x[0];
+  const T length = difference.norm();
+  const Stiffened<T> w = spring_profile<T>(length - rest_length, rest_length, law);
+  const bool there = length > T(0);
+  const Vec<T, 3> n = there ? Vec<T, 3>(difference / length) : Vec<T, 3>(Vec<T, 3>::Zero());
+  const T transverse = there ? project_eigenvalue(w.slope / length, projection) : T(0);
+  const Vec<T, 3> force = w.slope * n;
+  Mat<T, 3, 3> block =
+      transverse * Mat<T, 3, 3>::Identity() + (w.curvature - transverse) * (n * n.transpose());
+  mirror_lower<T, 3>(block);
+
+  ElementTerms<T, 6> out;
+  out.energy = w.energy;
+  out.grad << -force, force;
+  out.hess << block, -block, -block, block;
+  return out;
+}
+
+}  // namespace bb
