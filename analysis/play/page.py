@@ -91,8 +91,8 @@ def box(films: list[Film]) -> tuple[np.ndarray, np.ndarray]:
     for film in films:
         for o in film.scene["obstacles"]:
             if o["kind"] == "sphere" and not o.get("inside"):
-                arms = o["radius_m"] * np.array([[-1.0] * 3, [1.0] * 3])
-                points.append(np.asarray(o["point_m"], float) + arms)
+                at = film.positions[:, o["vertex"]] if "vertex" in o else np.array([o["point_m"]], float)
+                points += [at - o["radius_m"], at + o["radius_m"]]
     return np.min([p.min(axis=0) for p in points], axis=0), np.max([p.max(axis=0) for p in points], axis=0)
 
 

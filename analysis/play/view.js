@@ -50,16 +50,25 @@ class View {
     this.frame = 0;
     this.colour = "";
     this.rodIndices = tubeIndices(film.n_edges);
+    this.moving = [];  // obstacles: object, and the obstacle
   }
 
-  /** Obstacles, once. */
+  /** Obstacles, once; those that move are reloaded with every frame. */
   obstacles() {
     const {middle, radius, planar, obstacle_colour} = this.words;
     return Promise.all(this.film.obstacles.map((o, k) => {
-      const {vertices, indices} = obstacleShape(o, planar, middle, 1.6 * radius);
-      return this.plot.load({objects: [this.surface(OBSTACLE + k, shaped(new Float32Array(vertices), 3),
-        shaped(new Uint32Array(indices), 3), {color: parseInt(obstacle_colour.slice(1), 16), side: o.inside && !planar ? "back" : "double"})]});
+      const {indices} = obstacleShape(o, planar, middle, 1.6 * radius);
+      const object = this.surface(OBSTACLE + k, this.obstacleVertices(o),
+        shaped(new Uint32Array(indices), 3), {color: parseInt(obstacle_colour.slice(1), 16), side: o.inside && !planar ? "back" : "double"});
+      if (o.vertex !== undefined) this.moving.push([object, o]);
+      return this.plot.load({objects: [object]});
     }));
+  }
+
+  obstacleVertices(o) {
+    const {middle, radius, planar} = this.words, x = this.positions[this.frame];
+    const there = o.vertex === undefined ? o : {...o, point_m: Array.from(x.subarray(3 * o.vertex, 3 * o.vertex + 3))};
+    return shaped(new Float32Array(obstacleShape(there, planar, middle, 1.6 * radius).vertices), 3);
   }
 
   surface(id, vertices, indices, more) {
@@ -127,6 +136,11 @@ class View {
     this.frame = frame;
     for (const object of this.objects) {
       const state = object.id === MESH ? this.state() : this.rods();
+      Object.assign(object, state);
+      await this.plot.reload(object, state);
+    }
+    for (const [object, o] of this.moving) {
+      const state = {vertices: this.obstacleVertices(o)};
       Object.assign(object, state);
       await this.plot.reload(object, state);
     }

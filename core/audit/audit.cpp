@@ -11,15 +11,20 @@
 namespace bb::audit {
 namespace {
 
-void require_obstacles(const std::vector<AuditObstacle>& obstacles) {
-  for (std::size_t i = 0; i < obstacles.size(); ++i) {
-    const AuditObstacle& o = obstacles[i];
+void require_obstacles(const AuditMesh& mesh) {
+  for (std::size_t i = 0; i < mesh.obstacles.size(); ++i) {
+    const AuditObstacle& o = mesh.obstacles[i];
     const std::string where = "audit obstacle " + std::to_string(i);
     if (o.kind != ObstacleKind::plane && !(o.radius > 0.0 && o.radius < 1e100)) {
       throw ConfigError(where, "radius " + std::to_string(o.radius), "a finite number > 0");
     }
     if (o.kind != ObstacleKind::sphere && !(o.axis.allFinite() && o.axis.norm() > 0.0)) {
       throw ConfigError(where, "axis or normal without direction", "a finite vector that is not zero");
+    }
+    const bool given =
+        static_cast<std::size_t>(o.vertex) < mesh.prescribed.size() && mesh.is_prescribed(o.vertex);
+    if (o.moves() && !given) {
+      throw ConfigError(where, "moves with vertex " + std::to_string(o.vertex), "a prescribed vertex");
     }
     if (!o.point.allFinite()) throw ConfigError(where, "point that is not finite", "three finite numbers");
   }
@@ -49,8 +54,10 @@ void require_indices(const AuditMesh& mesh, const std::vector<int>& vertices) {
 Audit::Audit(AuditMesh mesh) : mesh_(std::move(mesh)), vertices_(colliding_vertices(mesh_)) {
   require_indices(mesh_, vertices_);
   ledger_.self_test_passed = predicates_self_test();
-  ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()), 0, {}};
-  set_obstacles(mesh_.obstacles);
+  require_obstacles(mesh_);
+  primitives_ = obstacle_primitives(mesh_);
+  ledger_.subjects = {mesh_.edges.cols(), mesh_.triangles.cols(), static_cast<long>(vertices_.size()),
+                      static_cast<long>(mesh_.obstacles.size()), primitives_.needed(mesh_.obstacles)};
 }
 
 void Audit::check_state(const Positions& x, int step) {
@@ -59,14 +66,6 @@ void Audit::check_state(const Positions& x, int step) {
 
 void Audit::check_motion(const Positions& x0, const Positions& x1, int step, double tolerance) {
   ledger_.add(audit_motion(mesh_, vertices_, primitives_, x0, x1, tolerance), step);
-}
-
-void Audit::set_obstacles(std::vector<AuditObstacle> obstacles) {
-  require_obstacles(obstacles);
-  mesh_.obstacles = std::move(obstacles);
-  primitives_ = obstacle_primitives(mesh_);
-  ledger_.subjects.obstacles = static_cast<long>(mesh_.obstacles.size());
-  ledger_.subjects.at_obstacles = primitives_.needed(mesh_.obstacles);
 }
 
 }  // namespace bb::audit

@@ -32,9 +32,6 @@ class Audit {
     return surface_gap(mesh_, vertices_, primitives_, x, reach);
   }
 
-  /// For obstacles that move between motions: the pose in which the next checks judge.
-  void set_obstacles(std::vector<AuditObstacle> obstacles);
-
   const AuditLedger& ledger() const { return ledger_; }
   /// Goes on from an earlier ledger of an audit of the same mesh: what was judged since never happened.
   void restore(const AuditLedger& earlier) { ledger_ = earlier; }

@@ -36,11 +36,13 @@ class ObstacleJudge {
   ObstacleJudge(const AuditMesh& mesh, const Positions& x0, const Positions& x1, bool moving)
       : mesh_(mesh), x0_(x0), x1_(x1), moving_(moving) {}
 
-  ObstacleAudit all(const ObstaclePrimitives& p) const {
+  ObstacleAudit all(const ObstaclePrimitives& primitives) const {
     ObstacleAudit out;
     for (int o = 0; o < static_cast<int>(mesh_.obstacles.size()); ++o) {
+      const AuditObstacle& obstacle = mesh_.obstacles[static_cast<std::size_t>(o)];
+      const PrimitiveLists& p = primitives.of(obstacle);
       const auto vertex = [](int v) { return std::array{v}; };
-      if (mesh_.obstacles[static_cast<std::size_t>(o)].allows_a_convex_set()) {
+      if (obstacle.allows_a_convex_set()) {
         out.merge(over<1>(p.vertices, PairKind::vertex_obstacle, o, &ObstacleCounts::vertices, vertex));
         continue;
       }
@@ -57,30 +59,37 @@ class ObstacleJudge {
   }
 
  private:
+  /// Where an obstacle is at both ends.
+  struct Poses {
+    AuditObstacle begin, end;
+  };
   template <std::size_t N, class Ids>
   ObstacleAudit over(const std::vector<int>& list, PairKind kind, int o, long ObstacleCounts::*count,
                      Ids&& ids_of) const {
+    const AuditObstacle& given = mesh_.obstacles[static_cast<std::size_t>(o)];
+    const Poses poses{given.in(x0_), given.in(x1_)};
+    const bool still = poses.begin.point == poses.end.point;
     return tally_over<ObstacleAudit>(list.size(), [&](std::size_t i, ObstacleAudit& sum) {
       const std::array<int, N> ids = ids_of(list[i]);
-      if (moving_ && std::none_of(ids.begin(), ids.end(), [this](int v) { return moves(v); })) return;
+      if (moving_ && still && std::none_of(ids.begin(), ids.end(), [this](int v) { return moves(v); }))
+        return;
       ++(sum.judged.*count);
-      const AuditObstacle& obstacle = mesh_.obstacles[static_cast<std::size_t>(o)];
-      const Verdict verdict = judge_one(obstacle, ids);
-      if (verdict != Verdict::certified) note(verdict, ids, {kind, list[i], o}, obstacle, sum);
+      const Verdict verdict = judge_one(poses, ids);
+      if (verdict != Verdict::certified) note(verdict, ids, {kind, list[i], o}, poses, sum);
     });
   }
 
   template <std::size_t N>
-  Verdict judge_one(const AuditObstacle& o, const std::array<int, N>& ids) const {
+  Verdict judge_one(const Poses& o, const std::array<int, N>& ids) const {
     std::array<Vec3d, N> a, b;
     for (std::size_t k = 0; k < N; ++k) a[k] = at(x0_, ids[k]), b[k] = at(x1_, ids[k]);
     bool beyond = false;
     if constexpr (N == 1) {
-      beyond = moving_ ? obstacle_hit(o, a[0], b[0]) : obstacle_side(o, a[0]) < 0;
+      beyond = moving_ ? obstacle_hit(o.begin, o.end, a[0], b[0]) : obstacle_side(o.begin, a[0]) < 0;
     } else {
-      if (moving_) return judge_past_obstacle<N>(o, a, b);
-      if constexpr (N == 2) beyond = obstacle_hit(o, a[0], a[1]);
-      if constexpr (N == 3) beyond = obstacle_cuts(o, a[0], a[1], a[2]);
+      if (moving_) return judge_past_obstacle<N>(o.begin, o.end, a, b);
+      if constexpr (N == 2) beyond = obstacle_hit(o.begin, o.begin, a[0], a[1]);
+      if constexpr (N == 3) beyond = obstacle_cuts(o.begin, a[0], a[1], a[2]);
     }
     return beyond ? Verdict::violation : Verdict::certified;
   }
@@ -88,11 +97,11 @@ class ObstacleJudge {
   /// A vertex that is beyond the obstacle itself is named in the place of its primitive, a prescribed one first: it
   /// is the scene's.
   template <std::size_t N>
-  void note(Verdict verdict, const std::array<int, N>& ids, PairName name, const AuditObstacle& o,
+  void note(Verdict verdict, const std::array<int, N>& ids, PairName name, const Poses& o,
             ObstacleAudit& sum) const {
     int free_vertex = -1, given_vertex = -1;
     for (const int v : ids) {
-      if (!obstacle_hit(o, at(x0_, v), at(x1_, v))) continue;
+      if (!obstacle_hit(o.begin, o.end, at(x0_, v), at(x1_, v))) continue;
       int& lowest = mesh_.is_prescribed(v) ? given_vertex : free_vertex;
       lowest = lowest < 0 ? v : std::min(lowest, v);
     }
@@ -125,19 +134,20 @@ class ObstacleJudge {
 ObstacleCounts ObstaclePrimitives::needed(const std::vector<AuditObstacle>& obstacles) const {
   ObstacleCounts out;
   for (const AuditObstacle& o : obstacles) {
+    const PrimitiveLists& p = of(o);
     if (o.allows_a_convex_set()) {
-      out.vertices += static_cast<long>(vertices.size());
+      out.vertices += static_cast<long>(p.vertices.size());
     } else {
-      out.add({static_cast<long>(lone_vertices.size()), static_cast<long>(lone_edges.size()),
-               static_cast<long>(triangles.size())});
+      out.add({static_cast<long>(p.lone_vertices.size()), static_cast<long>(p.lone_edges.size()),
+               static_cast<long>(p.triangles.size())});
     }
   }
   return out;
 }
 
-ObstaclePrimitives obstacle_primitives(const AuditMesh& mesh) {
-  ObstaclePrimitives out;
-  if (mesh.obstacles.empty()) return out;
+/// moving: the obstacle comes to what is fixed.
+static PrimitiveLists primitive_lists(const AuditMesh& mesh, bool moving) {
+  PrimitiveLists out;
   const std::vector<Edge> of_triangles = sides(mesh.triangles);
   const std::vector<int> colliding = colliding_vertices(mesh);
   const auto n = static_cast<std::size_t>(colliding.empty() ? 0 : colliding.back() + 1);
@@ -145,7 +155,7 @@ ObstaclePrimitives obstacle_primitives(const AuditMesh& mesh) {
       n, mesh.triangles.size() > 0 ? static_cast<std::size_t>(mesh.triangles.maxCoeff()) + 1 : 0);
   std::vector<char> covered(n_all, 0), beside_free(n_all, 0);
   const auto cover = [&](const auto& ids) {
-    const bool judged = !wholly_fixed(mesh, ids);
+    const bool judged = moving || !wholly_fixed(mesh, ids);
     for (const int v : ids) {
       covered[static_cast<std::size_t>(v)] = 1;
       if (judged) beside_free[static_cast<std::size_t>(v)] = 1;
@@ -162,10 +172,20 @@ ObstaclePrimitives obstacle_primitives(const AuditMesh& mesh) {
   }
   for (const int v : colliding) {
     const auto i = static_cast<std::size_t>(v);
-    if (!mesh.is_fixed(v) || beside_free[i]) out.vertices.push_back(v);
-    if (!mesh.is_fixed(v) && !covered[i]) out.lone_vertices.push_back(v);
+    const bool judged = moving || !mesh.is_fixed(v);
+    if (judged || beside_free[i]) out.vertices.push_back(v);
+    if (judged && !covered[i]) out.lone_vertices.push_back(v);
   }
   return out;
+}
+
+ObstaclePrimitives obstacle_primitives(const AuditMesh& mesh) {
+  const auto any = [&mesh](bool moving) {
+    return std::any_of(mesh.obstacles.begin(), mesh.obstacles.end(),
+                       [moving](const AuditObstacle& o) { return o.moves() == moving; });
+  };
+  return {any(false) ? primitive_lists(mesh, false) : PrimitiveLists{},
+          any(true) ? primitive_lists(mesh, true) : PrimitiveLists{}};
 }
 
 void ObstacleAudit::merge(const ObstacleAudit& other) {

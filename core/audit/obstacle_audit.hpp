@@ -18,13 +18,21 @@ struct ObstacleCounts {
   }
 };
 
-/// What has to be asked so that no point of the surface is left out. Primitives whose vertices are all fixed are not
-/// judged: they and the obstacle are both given.
-struct ObstaclePrimitives {
+/// What has to be asked so that no point of the surface is left out.
+struct PrimitiveLists {
   std::vector<int> vertices;       // against planes and `inside`: the allowed set is convex
   std::vector<int> lone_vertices;  // outside spheres and cylinders: on no edge and no triangle
   std::vector<int> lone_edges;     // the same: sides of no triangle
   std::vector<int> triangles;      // the same; of planar scenes the elements
+};
+
+/// Of obstacles that stand still, and of those that move. Primitives whose vertices are all fixed are not judged against
+/// the former: both are given, and still.
+struct ObstaclePrimitives {
+  PrimitiveLists of_still, of_moving;
+  const PrimitiveLists& of(const AuditObstacle& obstacle) const {
+    return obstacle.moves() ? of_moving : of_still;
+  }
   /// That one check of a state asks, over all obstacles.
   ObstacleCounts needed(const std::vector<AuditObstacle>& obstacles) const;
 };
@@ -44,7 +52,7 @@ struct ObstacleAudit {
 ObstacleAudit audit_obstacles(const AuditMesh& mesh, const ObstaclePrimitives& primitives,
                               const Positions& x);
 
-/// The motion x0 -> x1, of the primitives of which a vertex moves; vertices exactly, the others as
+/// The motion x0 -> x1, of the primitives of which a vertex moves, or past which the obstacle does; vertices exactly, the others as
 /// judge_past_obstacle() says.
 ObstacleAudit audit_obstacles(const AuditMesh& mesh, const ObstaclePrimitives& primitives,
                               const Positions& x0, const Positions& x1);

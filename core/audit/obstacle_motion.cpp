@@ -24,11 +24,12 @@ class PastObstacle {
   using Corners = std::array<Vec3d, N>;
   using ExactCorners = std::array<Rational3, N>;
 
-  PastObstacle(const AuditObstacle& o, const Corners& x0, const Corners& x1)
-      : o_(o), x0_(x0), x1_(x1), arm_(o), reach_(arm_.radius) {
+  PastObstacle(const AuditObstacle& begin, const AuditObstacle& end, const Corners& x0, const Corners& x1)
+      : o_(begin), o_end_(end), x0_(x0), x1_(x1), arm_(begin), reach_(arm_.radius) {
+    const FloatArms arm_end(end);
     for (std::size_t k = 0; k < N; ++k) {
-      begin_[k] = arm_(x0[k]), end_[k] = arm_(x1[k]);
-      reach_ += arm_.reach(x0[k]) + arm_.reach(x1[k]);
+      begin_[k] = arm_(x0[k]), end_[k] = arm_end(x1[k]);
+      reach_ += arm_.reach(x0[k]) + arm_end.reach(x1[k]);
       speed_ = std::max(speed_, (end_[k] - begin_[k]).norm());
     }
   }
@@ -78,23 +79,19 @@ class PastObstacle {
     return true;
   }
 
+  /// The arms at that time.
   ExactCorners exact_at(std::int64_t t) const {
     const mpq_class s = exact_time(t), r = 1 - s;
     ExactCorners out;
     for (std::size_t k = 0; k < N; ++k) {
-      const Rational3 a = exact(x0_[k]), b = exact(x1_[k]);
+      const Rational3 a = exact_arm(o_, exact(x0_[k])), b = exact_arm(o_end_, exact(x1_[k]));
       for (std::size_t i = 0; i < 3; ++i) out[k][i] = r * a[i] + s * b[i];
     }
     return out;
   }
   bool beyond_at(std::int64_t t) {
     ++exact_tests_;
-    return comes_near(exact_at(t));
-  }
-  bool comes_near(const ExactCorners& x) const {
-    std::array<Rational3, N> w;
-    for (std::size_t k = 0; k < N; ++k) w[k] = exact_arm(o_, x[k]);
-    return simplex_comes_near(w, exact_radius_sq(o_));
+    return simplex_comes_near(exact_at(t), exact_radius_sq(o_));
   }
 
   bool separates_exactly(const Vec3d& direction, const TimeSpan& span) {
@@ -102,15 +99,15 @@ class PastObstacle {
     const Rational3 m = exact(direction);
     const mpq_class least_sq = exact_radius_sq(o_) * dot(m, m);
     for (const std::int64_t t : {span.begin, span.end}) {
-      for (const Rational3& x : exact_at(t)) {
-        const mpq_class height = dot(m, exact_arm(o_, x));
+      for (const Rational3& arm : exact_at(t)) {
+        const mpq_class height = dot(m, arm);
         if (sgn(height) <= 0 || height * height <= least_sq) return false;
       }
     }
     return true;
   }
 
-  const AuditObstacle& o_;
+  const AuditObstacle &o_, &o_end_;
   const Corners &x0_, &x1_;
   FloatArms arm_;
   Corners begin_, end_;  // arms
@@ -121,14 +118,14 @@ class PastObstacle {
 }  // namespace
 
 template <std::size_t N>
-Verdict judge_past_obstacle(const AuditObstacle& o, const std::array<Vec3d, N>& x0,
-                            const std::array<Vec3d, N>& x1) {
-  return PastObstacle<N>(o, x0, x1).run();
+Verdict judge_past_obstacle(const AuditObstacle& begin, const AuditObstacle& end,
+                            const std::array<Vec3d, N>& x0, const std::array<Vec3d, N>& x1) {
+  return PastObstacle<N>(begin, end, x0, x1).run();
 }
 
-template Verdict judge_past_obstacle<2>(const AuditObstacle&, const std::array<Vec3d, 2>&,
-                                        const std::array<Vec3d, 2>&);
-template Verdict judge_past_obstacle<3>(const AuditObstacle&, const std::array<Vec3d, 3>&,
-                                        const std::array<Vec3d, 3>&);
+template Verdict judge_past_obstacle<2>(const AuditObstacle&, const AuditObstacle&,
+                                        const std::array<Vec3d, 2>&, const std::array<Vec3d, 2>&);
+template Verdict judge_past_obstacle<3>(const AuditObstacle&, const AuditObstacle&,
+                                        const std::array<Vec3d, 3>&, const std::array<Vec3d, 3>&);
 
 }  // namespace bb::audit

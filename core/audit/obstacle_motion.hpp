@@ -1,5 +1,5 @@
-// An edge or a triangle in straight motion past a sphere or a cylinder that it has to stay outside of: certified
-// free, proven to go in, or neither. Shares nothing with the solver's step bound.
+// An edge or a triangle in straight motion past a sphere or a cylinder that it has to stay outside of, and that may move
+// too: certified free, proven to go in, or neither. Shares nothing with the solver's step bound.
 #pragma once
 
 #include <array>
@@ -9,7 +9,8 @@
 
 namespace bb::audit {
 
-/// Judges the motion x0 -> x1 (m, linear) of an edge (N = 2) or a triangle (N = 3) against a still obstacle.
+/// Judges the motion x0 -> x1 (m, linear) of an edge (N = 2) or a triangle (N = 3) against an obstacle that goes straight
+/// from `begin` to `end` meanwhile; only their points may differ.
 ///   certified: proven that no point of it is on or beyond the surface for any t in [0, 1].
 ///   violation: proven by exact signs that at some t one of its points is strictly beyond.
 ///   unproven:  neither; a mere touch, or more spans of time than the cap.
@@ -17,12 +18,12 @@ namespace bb::audit {
 /// tangent plane separates, 1 us a span of time else; a motion of length l along a surface of radius r at the gap d
 /// takes about l / sqrt(r d) spans.
 template <std::size_t N>
-Verdict judge_past_obstacle(const AuditObstacle& obstacle, const std::array<Vec3d, N>& x0,
-                            const std::array<Vec3d, N>& x1);
+Verdict judge_past_obstacle(const AuditObstacle& begin, const AuditObstacle& end,
+                            const std::array<Vec3d, N>& x0, const std::array<Vec3d, N>& x1);
 
-extern template Verdict judge_past_obstacle<2>(const AuditObstacle&, const std::array<Vec3d, 2>&,
-                                               const std::array<Vec3d, 2>&);
-extern template Verdict judge_past_obstacle<3>(const AuditObstacle&, const std::array<Vec3d, 3>&,
-                                               const std::array<Vec3d, 3>&);
+extern template Verdict judge_past_obstacle<2>(const AuditObstacle&, const AuditObstacle&,
+                                               const std::array<Vec3d, 2>&, const std::array<Vec3d, 2>&);
+extern template Verdict judge_past_obstacle<3>(const AuditObstacle&, const AuditObstacle&,
+                                               const std::array<Vec3d, 3>&, const std::array<Vec3d, 3>&);
 
 }  // namespace bb::audit

@@ -40,14 +40,18 @@ int plane_side(const AuditObstacle& o, const Vec3d& x) {
 }
 
 /// True if one tangent plane has all points on its far side, in floating point with its allowance.
+/// o: the obstacle of each point.
 template <std::size_t N>
-bool tangent_plane_separates(const AuditObstacle& o, const std::array<Vec3d, N>& x) {
-  const FloatArms arm(o);
+bool tangent_plane_separates(const std::array<const AuditObstacle*, N>& o, const std::array<Vec3d, N>& x) {
   std::array<Vec3d, N> w;
-  double reach = arm.radius;
-  for (std::size_t k = 0; k < N; ++k) w[k] = arm(x[k]), reach += arm.reach(x[k]);
+  const FloatArms first(*o[0]);
+  double reach = first.radius;
+  for (std::size_t k = 0; k < N; ++k) {
+    const FloatArms arm(*o[k]);
+    w[k] = arm(x[k]), reach += arm.reach(x[k]);
+  }
   const Vec3d m = closest_to_origin(w);
-  const double least = arm.radius * m.norm() + quadric_filter * m.norm() * reach;
+  const double least = first.radius * m.norm() + quadric_filter * m.norm() * reach;
   if (!(least < 1e300 && least > quadric_underflow)) return false;
   for (const Vec3d& corner : w) {
     if (!(m.dot(corner) > least)) return false;
@@ -63,17 +67,18 @@ int obstacle_side(const AuditObstacle& o, const Vec3d& x) {
   return o.inside ? -side : side;
 }
 
-bool obstacle_hit(const AuditObstacle& o, const Vec3d& x0, const Vec3d& x1) {
-  if (o.allows_a_convex_set()) return obstacle_side(o, x0) < 0 || obstacle_side(o, x1) < 0;
-  if (tangent_plane_separates(o, std::array{x0, x1})) return false;
-  return simplex_comes_near(std::array{exact_arm(o, exact(x0)), exact_arm(o, exact(x1))}, exact_radius_sq(o));
+bool obstacle_hit(const AuditObstacle& begin, const AuditObstacle& end, const Vec3d& x0, const Vec3d& x1) {
+  if (begin.allows_a_convex_set()) return obstacle_side(begin, x0) < 0 || obstacle_side(end, x1) < 0;
+  if (tangent_plane_separates(std::array{&begin, &end}, std::array{x0, x1})) return false;
+  return simplex_comes_near(std::array{exact_arm(begin, exact(x0)), exact_arm(end, exact(x1))},
+                            exact_radius_sq(begin));
 }
 
 bool obstacle_cuts(const AuditObstacle& o, const Vec3d& a, const Vec3d& b, const Vec3d& c) {
   if (o.allows_a_convex_set()) {
     return obstacle_side(o, a) < 0 || obstacle_side(o, b) < 0 || obstacle_side(o, c) < 0;
   }
-  if (tangent_plane_separates(o, std::array{a, b, c})) return false;
+  if (tangent_plane_separates(std::array{&o, &o, &o}, std::array{a, b, c})) return false;
   const std::array<Rational3, 3> arms{exact_arm(o, exact(a)), exact_arm(o, exact(b)), exact_arm(o, exact(c))};
   return simplex_comes_near(arms, exact_radius_sq(o));
 }

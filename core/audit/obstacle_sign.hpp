@@ -11,8 +11,8 @@ namespace bb::audit {
 int obstacle_side(const AuditObstacle& obstacle, const Vec3d& x);
 
 /// True if a point of the closed segment x0 x1 is strictly beyond the surface: an edge, or the straight path of a
-/// vertex. Exact.
-bool obstacle_hit(const AuditObstacle& obstacle, const Vec3d& x0, const Vec3d& x1);
+/// vertex, past an obstacle that goes straight from `begin` to `end` meanwhile (an edge: both the same). Exact.
+bool obstacle_hit(const AuditObstacle& begin, const AuditObstacle& end, const Vec3d& x0, const Vec3d& x1);
 
 /// True if a point of the closed triangle a b c, which may have no area, is strictly beyond the surface. Exact for
 /// finite input. Cost: about 50 ns where a plane separates the triangle from the obstacle, else tens of microseconds.

@@ -18,9 +18,17 @@ struct AuditObstacle {
   Vec3d axis = Vec3d::UnitZ();  // plane: normal towards the allowed side; cylinder: direction; sphere: unused
   double radius = 0.0;          // m; plane: unused
   bool inside = false;          // sphere, cylinder: the surface must stay inside instead of outside
+  int vertex = -1;  // given, whose position is `point`: the obstacle moves with it; -1: it stands still
 
   /// The allowed set is convex: a surface is in it when its vertices are.
   bool allows_a_convex_set() const { return kind == ObstacleKind::plane || inside; }
+  bool moves() const { return vertex >= 0; }
+  /// Where it is in the state x [3 n_vertices], m.
+  AuditObstacle in(const Positions& x) const {
+    AuditObstacle out = *this;
+    if (moves()) out.point = x.col(vertex);
+    return out;
+  }
 };
 
 /// The whole surface of the bodies, whatever pairs a contact model makes of it. Pairs that share a vertex are

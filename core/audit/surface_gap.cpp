@@ -22,9 +22,11 @@ class GapMeasure {
   GapMeasure(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x, double reach)
       : mesh_(mesh), vertices_(vertices), x_(x), reach_(reach) {}
 
-  double to_obstacles(const ObstaclePrimitives& p) const {
+  double to_obstacles(const ObstaclePrimitives& primitives) const {
     Least out;
-    for (const AuditObstacle& o : mesh_.obstacles) {
+    for (const AuditObstacle& given : mesh_.obstacles) {
+      const AuditObstacle o = given.in(x_);
+      const PrimitiveLists& p = primitives.of(given);
       if (o.allows_a_convex_set()) {
         out.merge(over(p.vertices, [&](int v) { return vertex_to(o, v); }));
         continue;

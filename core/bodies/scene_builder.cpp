@@ -191,7 +191,27 @@ void SceneBuilder::add_obstacle(const Obstacle& obstacle) {
   scene_.obstacles.push_back(obstacle);
 }
 
+/// Without mass, elements and surface. Its contact distances are those of the first vertex, so that no least or largest one
+/// changes; nothing reads them.
+void SceneBuilder::append_obstacle_vertices() {
+  for (Obstacle& obstacle : scene_.obstacles) {
+    if (obstacle.motion.is_static()) continue;
+    obstacle.vertex = scene_.n_vertices();
+    scene_.body.push_back(static_cast<int>(scene_.bodies.size()));
+    scene_.bodies.push_back({obstacle.name, obstacle.vertex, 1, std::nullopt});
+    append_columns(scene_.rest, obstacle.point);
+    append_columns(scene_.x0, obstacle.point);
+    append_columns(scene_.v0, Vec3d(Vec3d::Zero()));
+    scene_.mass.push_back(0);
+    scene_.d_hat.push_back(scene_.d_hat.front());
+    scene_.offset.push_back(0);
+    pin_of_.push_back(-1);
+    pin_vertex(obstacle.name, obstacle.vertex, motion_index(obstacle.motion));
+  }
+}
+
 Scene SceneBuilder::finish() {
+  if (scene_.n_vertices() > 0) append_obstacle_vertices();
   check_scene(scene_, pin_of_, where_, violations_);
   if (!violations_.empty()) throw ConfigError(std::move(violations_));
   return std::move(scene_);

@@ -23,6 +23,8 @@ class SceneBuilder {
   /// Appends a body: what every part (part.hpp) makes of its mesh and material. The mass of a vertex is 0 when it is prescribed.
   /// Elements all of whose vertices are prescribed hold no unknown and are left out.
   void add_body(const BodySpec& spec);
+  /// One with a motion gets a vertex that stands for its point, behind those of all bodies, and is a body of that vertex
+  /// alone. Its `vertex` is set here.
   void add_obstacle(const Obstacle& obstacle);
 
   /// Errors: ConfigError with all violations: no free vertex, free vertex without mass, non-finite
@@ -42,6 +44,7 @@ class SceneBuilder {
   void append_masses(const BodySpec& spec, int first);
   void append_elements(const BodySpec& spec, int first);
   void append_surface(const BodySpec& spec, int first);
+  void append_obstacle_vertices();
 
   Scene scene_;
   std::string where_;

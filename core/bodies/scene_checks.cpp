@@ -159,12 +159,25 @@ void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& wh
   if (obstacle.friction) {
     report.number("/friction", *obstacle.friction, *obstacle.friction >= 0, "a number >= 0");
   }
+  check_motion(report, "/motion", obstacle.motion);
+  const bool turns = obstacle.kind != ObstacleKind::sphere && obstacle.motion.angular_velocity != 0;
+  if (turns && obstacle.motion.axis.cross(obstacle.axis).norm() > 1e-9) {
+    report("/motion", "a rotation that turns its axis",
+           obstacle.kind == ObstacleKind::plane ? "a rotation about the plane's normal"
+                                                : "a rotation about the direction of the cylinder's axis");
+  }
   if (!planar) return;
   if (obstacle.kind == ObstacleKind::plane && obstacle.axis[2] != 0) {
     report("/axis", "a normal with a z component", "a normal in the x-y plane: the scene is planar");
   }
   if (obstacle.kind == ObstacleKind::sphere && obstacle.point[2] != 0) {
     report("/point", "a centre with z != 0", "z = 0: the scene is planar");
+  }
+  if (obstacle.motion.velocity[2] != 0)
+    report("/motion", "a velocity with a z component", "0: the scene is planar");
+  if (obstacle.motion.angular_velocity != 0 &&
+      obstacle.motion.axis.cross(Vec3d(Vec3d::UnitZ())).norm() > 1e-9) {
+    report("/motion", "a rotation out of the plane", "a rotation about z: the scene is planar");
   }
 }
 

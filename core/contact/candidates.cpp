@@ -216,13 +216,14 @@ void BroadPhase::update_obstacles(const Primitives<N>& primitives, const Positio
     for (std::size_t i = begin; i < end; ++i) {
       if (!primitives.free[i]) continue;
       for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-        const AnalyticSurface<double>& obstacle = obstacles_[o];
+        const AnalyticSurface<double> obstacle = posed(obstacles_[o], x0), last = posed(obstacles_[o], x1);
         if (!pairs_with<N>(obstacle, surface_.planar, primitives.lone[i] != 0)) continue;
-        const double reach =
-            primitives.side[i].d_hat + primitives.side[i].offset + of_states +
-            distance_rounding(precision_, obstacle.point.cwiseAbs().maxCoeff() + obstacle.radius);
+        const double reach = primitives.side[i].d_hat + primitives.side[i].offset + of_states +
+                             distance_rounding(precision_, std::max(obstacle.point.cwiseAbs().maxCoeff(),
+                                                                    last.point.cwiseAbs().maxCoeff()) +
+                                                               obstacle.radius);
         const auto& vertex = primitives.vertices[i];
-        if (may_reach<N>(obstacle, gather(x0, vertex), gather(x1, vertex), reach))
+        if (may_reach<N>(obstacle, last, gather(x0, vertex), gather(x1, vertex), reach))
           near.push_back({static_cast<int>(i), static_cast<int>(o)});
       }
     }

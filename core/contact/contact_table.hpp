@@ -38,7 +38,8 @@ using PairId = std::uint64_t;
 struct ContactTable {
   std::vector<ContactKind> kind;
   std::vector<ContactKey> key;
-  /// [4 n] all vertices in role order (p t0 t1 t2, ea0 ea1 eb0 eb1; of an obstacle's row its one to three), -1 padded
+  /// [4 n] all vertices in role order (p t0 t1 t2, ea0 ea1 eb0 eb1; of an obstacle's row its one to three, then that of an
+  /// obstacle that moves), -1 padded
   std::vector<int> stencil;
   std::vector<double> stencil_weight;  // [4 n] w_i in the same order
   std::vector<int> vertex;             // [4 n] free vertices only, compact, -1 padded
@@ -72,7 +73,8 @@ struct ContactTable {
 /// full gradient, PSD-projected Hessian.
 struct MollifiedTable {
   std::vector<ContactKey> key;
-  std::vector<int> stencil;              // [4 n] ea0 ea1 eb0 eb1; e0 e1 -1 -1 of an edge and an axis
+  std::vector<int>
+      stencil;  // [4 n] ea0 ea1 eb0 eb1; e0 e1, vertex of the obstacle or -1, -1 of an edge and an axis
   std::vector<double> stencil_weight;    // [4 n] w_i in the same order, 0 padded
   std::vector<int> vertex;               // [4 n] = stencil, -1 where the vertex is given
   std::vector<double> eps;               // [n] threshold on |ea x eb|^2, m^4; on |e x axis|^2, m^2
@@ -86,7 +88,9 @@ struct MollifiedTable {
   std::vector<int> n_free;       // [n]
   std::vector<double> normal;    // [3 n]
 
-  bool of_axis(std::size_t r) const { return stencil[4 * r + 2] < 0; }
+  bool of_axis(std::size_t r) const {
+    return axis[3 * r] != 0 || axis[3 * r + 1] != 0 || axis[3 * r + 2] != 0;
+  }
   std::size_t size() const { return d.size(); }
   void resize(std::size_t n);
 };

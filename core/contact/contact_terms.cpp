@@ -124,8 +124,10 @@ void add_given_motion(const MollifiedTable& rows, const PositionsView& x, const 
                       PositionsSpan force) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     Vec<double, 12> moved = Vec<double, 12>::Zero();
+    const int obstacle = rows.of_axis(r) ? rows.stencil[4 * r + 2] : -1;
     for (int k = 0; k < (rows.of_axis(r) ? 2 : 4); ++k) {
       moved.segment<3>(3 * k) = motion.col(rows.stencil[4 * r + static_cast<std::size_t>(k)]);
+      if (obstacle >= 0) moved.segment<3>(3 * k) -= motion.col(obstacle);
     }
     if (moved.isZero(0)) continue;
     const Vec<double, 12> change = mollified_derivatives<double>(rows, r, x).hessian * moved;

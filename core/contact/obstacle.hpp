@@ -17,17 +17,24 @@ struct AnalyticSurface {
   Vec<T, 3> point, axis;
   T radius;
   bool inside;
+  int vertex = -1;  // of the scene, whose position is `point` (posed); -1: the obstacle stands still
 };
 
 template <class T>
 AnalyticSurface<T> analytic_surface(const Obstacle& o) {
-  return {o.kind, o.point.cast<T>(), o.axis.cast<T>(), static_cast<T>(o.radius), o.inside};
+  return {o.kind, o.point.cast<T>(), o.axis.cast<T>(), static_cast<T>(o.radius), o.inside, o.vertex};
+}
+
+/// The obstacle where it is in the state x, m.
+inline AnalyticSurface<double> posed(AnalyticSurface<double> s, const PositionsView& x) {
+  if (s.vertex >= 0) s.point = x.col(s.vertex);
+  return s;
 }
 
 /// The same obstacle in the scalar T.
 template <class T>
 AnalyticSurface<T> surface_in(const AnalyticSurface<double>& s) {
-  return {s.kind, s.point.cast<T>(), s.axis.cast<T>(), static_cast<T>(s.radius), s.inside};
+  return {s.kind, s.point.cast<T>(), s.axis.cast<T>(), static_cast<T>(s.radius), s.inside, s.vertex};
 }
 
 /// Gap of a point, positive on the allowed side, and its derivatives:
@@ -62,21 +69,24 @@ BB_HD inline SurfaceGap<T> surface_gap(const AnalyticSurface<T>& s, const Vec<T,
   return {sign * (rho - s.radius), r * (sign / rho), sign / rho, flat};
 }
 
-/// A time in [0, 1] before which the gap of x0 + t (x1 - x0) stays above `level` (m), 1 when it always does.
+/// A time in [0, 1] before which the gap of x0 + t (x1 - x0) stays above `level` (m), 1 when it always does, over an
+/// obstacle that goes straight from `s` to `end`, its pose at t = 1, and does not turn.
 /// The first root, moved early by its own rounding; 0 when the gap at x0 is not above the level.
 /// Host-device, no allocation.
 template <class T>
-BB_HD inline T first_time_at(const AnalyticSurface<T>& s, const Vec<T, 3>& x0, const Vec<T, 3>& x1, T level) {
+BB_HD inline T first_time_at(const AnalyticSurface<T>& s, const AnalyticSurface<T>& end, const Vec<T, 3>& x0,
+                             const Vec<T, 3>& x1, T level) {
   using std::abs;
   using std::sqrt;
   constexpr T eps = std::numeric_limits<T>::epsilon();
-  const Vec<T, 3> q0 = x0 - s.point, v = x1 - x0;
+  const Vec<T, 3> moved = end.point - s.point;  // exactly 0 where nothing moves
+  const Vec<T, 3> q0 = x0 - s.point, v = (x1 - x0) - moved;
   const T start = surface_gap<T>(s, x0).d - level;
   if (!(start > 0)) return T(0);
   const T early = 1 - 16 * eps;  // the formulas below are a dozen roundings
   if (s.kind == ObstacleKind::plane) {
-    const T end = surface_gap<T>(s, x1).d - level;
-    return end > 0 ? T(1) : early * (start / (start - end));
+    const T last = surface_gap<T>(end, x1).d - level;
+    return last > 0 ? T(1) : early * (start / (start - last));
   }
   // |r0 + t u|^2 = bound^2 as a t^2 + 2 b t + c = 0, c by a difference of squares
   const Vec<T, 3> r0 = detail::radial_part<T>(s, q0), u = detail::radial_part<T>(s, v);

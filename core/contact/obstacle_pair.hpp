@@ -1,6 +1,7 @@
 // Edges and triangles outside a sphere or a cylinder: which of them make pairs, their candidates, rows and times.
-// Such a pair is that of its primitive with a point which is given and still: the centre, or in the plane across a
-// cylinder's axis the point where the axis crosses it. Host-device, no allocation.
+// Such a pair is that of its primitive with a point which is given: the centre, or in the plane across a cylinder's axis
+// the point where the axis crosses it. An obstacle that moves has a pose at either end of a motion, `s` and `end`, and
+// goes straight between them. Host-device, no allocation.
 #pragma once
 
 #include "core/contact/obstacle_motion.hpp"
@@ -54,17 +55,18 @@ BB_HD Mat<T, 3, N + 1> about_centre(const AnalyticSurface<T>& s, const Mat<T, 3,
 }
 
 /// Whether a primitive may come within `reach` (m) of the obstacle on x0 -> x1. The gap of a point falls by at most the
-/// way gone, and from the middle of a primitive to its farthest vertex by at most their distance: a bound for any
+/// way gone relative to the obstacle, and from the middle of a primitive to its farthest vertex by at most their distance: a bound for any
 /// obstacle; 1e-12 covers rounding.
 template <int N>
-BB_HD bool may_reach(const AnalyticSurface<double>& s, const Mat<double, 3, N>& x0,
-                     const Mat<double, 3, N>& x1, double reach) {
+BB_HD bool may_reach(const AnalyticSurface<double>& s, const AnalyticSurface<double>& end,
+                     const Mat<double, 3, N>& x0, const Mat<double, 3, N>& x1, double reach) {
   using std::sqrt;
+  const Vec3d moved = end.point - s.point;
   Vec3d middle = x0.col(0);
   for (int k = 1; k < N; ++k) middle += (x0.col(k) - x0.col(0)) / N;
   double extent_sq = 0, way_sq = 0, all = 0;
   for (int k = 0; k < N; ++k) {
-    const double e = (x0.col(k) - middle).squaredNorm(), w = (x1.col(k) - x0.col(k)).squaredNorm();
+    const double e = (x0.col(k) - middle).squaredNorm(), w = (x1.col(k) - x0.col(k) - moved).squaredNorm();
     extent_sq = e > extent_sq ? e : extent_sq;
     way_sq = w > way_sq ? w : way_sq;
     all += e + w;
@@ -115,22 +117,25 @@ BB_HD Closest<T, 3> on_whole_edge(Closest<T, 3> closest) {
 
 /// What the obstacle itself adds to the least stop level of queries in the scalar T: twice 16 ulps of its size, m.
 template <class T>
-BB_HD double stop_floor(const AnalyticSurface<double>& s) {
-  const double at = s.point.cwiseAbs().maxCoeff();
+BB_HD double stop_floor(const AnalyticSurface<double>& s, const AnalyticSurface<double>& end) {
+  const double first = s.point.cwiseAbs().maxCoeff(), last = end.point.cwiseAbs().maxCoeff();
+  const double at = first > last ? first : last;
   return 32 * static_cast<double>(std::numeric_limits<T>::epsilon()) * (at > s.radius ? at : s.radius);
 }
 
 /// A time before which the pair is proven to stay above its stop level; no better than needed to be above `enough`.
 /// T: the scalar of the query; what is proven is in double. stop: stop level as far as it is that of the motion, m.
 template <int N, class T>
-BB_HD double obstacle_proven_time(const AnalyticSurface<double>& s, const Mat<double, 3, N>& x0,
-                                  const Mat<double, 3, N>& x1, double offset, double stop, double enough) {
+BB_HD double obstacle_proven_time(const AnalyticSurface<double>& s, const AnalyticSurface<double>& end,
+                                  const Mat<double, 3, N>& x0, const Mat<double, 3, N>& x1, double offset,
+                                  double stop, double enough) {
   constexpr PairKind K = centre_pair<N>;
-  const double own = stop_floor<T>(s);
+  const double own = stop_floor<T>(s, end);
   double reach = offset + 2 * (stop > own ? stop : own);
   // across an axis is a difference of lengths that may be larger than what is left
-  for (int k = 0; k < N; ++k) reach += 1e-12 * ((x0.col(k) - s.point).norm() + (x1.col(k) - s.point).norm());
-  const Mat<double, 3, N + 1> from = about_centre<N, double>(s, x0), to = about_centre<N, double>(s, x1);
+  for (int k = 0; k < N; ++k)
+    reach += 1e-12 * ((x0.col(k) - s.point).norm() + (x1.col(k) - end.point).norm());
+  const Mat<double, 3, N + 1> from = about_centre<N, double>(s, x0), to = about_centre<N, double>(end, x1);
   PairLanes<K, double> points, motion;
   for (int k = 0; k <= N; ++k) {
     for (int c = 0; c < 3; ++c) {
@@ -143,12 +148,14 @@ BB_HD double obstacle_proven_time(const AnalyticSurface<double>& s, const Mat<do
 
 /// accd() of a primitive and the obstacle.
 template <int N, class T>
-BB_HD AccdResult<T> obstacle_accd(const AnalyticSurface<T>& s, const Mat<T, 3, N>& x0, const Mat<T, 3, N>& x1,
-                                  T offset, T park, int max_probes, T enough) {
-  const T sizes[] = {x1.cwiseAbs().maxCoeff(), s.point.cwiseAbs().maxCoeff()};
+BB_HD AccdResult<T> obstacle_accd(const AnalyticSurface<T>& s, const AnalyticSurface<T>& end,
+                                  const Mat<T, 3, N>& x0, const Mat<T, 3, N>& x1, T offset, T park,
+                                  int max_probes, T enough) {
+  const T sizes[] = {x1.cwiseAbs().maxCoeff(), s.point.cwiseAbs().maxCoeff(),
+                     end.point.cwiseAbs().maxCoeff()};
   T largest = x0.cwiseAbs().maxCoeff();
   for (const T size : sizes) largest = largest < size ? size : largest;
-  return accd<centre_pair<N>, T>(about_centre<N, T>(s, x0), about_centre<N, T>(s, x1), offset + s.radius,
+  return accd<centre_pair<N>, T>(about_centre<N, T>(s, x0), about_centre<N, T>(end, x1), offset + s.radius,
                                  park, max_probes, enough, largest);
 }
 

@@ -21,9 +21,9 @@ std::optional<Overlap> pair_overlap(const Surface& surface, const PositionsView&
 }
 
 template <int N>
-std::optional<Overlap> obstacle_overlap(const Primitives<N>& primitives,
-                                        const AnalyticSurface<double>& obstacle, const PositionsView& x,
-                                        IndexPair index) {
+std::optional<Overlap> obstacle_overlap(const Primitives<N>& primitives, const AnalyticSurface<double>& given,
+                                        const PositionsView& x, IndexPair index) {
+  const AnalyticSurface<double> obstacle = posed(given, x);
   const std::size_t i = static_cast<std::size_t>(index.first);
   const auto& vertex = primitives.vertices[i];
   const Mat<double, 3, N> at = gather(x, vertex);
@@ -56,7 +56,7 @@ std::optional<Overlap> first_pierced(const Surface& surface,
                                      const std::vector<AnalyticSurface<double>>& obstacles,
                                      const PositionsView& x) {
   for (std::size_t o = 0; o < obstacles.size(); ++o) {
-    const AnalyticSurface<double>& obstacle = obstacles[o];
+    const AnalyticSurface<double> obstacle = posed(obstacles[o], x);
     const bool line = is_line(obstacle, surface.planar);
     if (is_convex(obstacle) || (!surface.planar && !line) || (surface.planar && line)) continue;
     const Vec3d axis = obstacle.kind == ObstacleKind::cylinder ? obstacle.axis : Vec3d(Vec3d::UnitZ());

@@ -33,6 +33,16 @@ bool RowBuilder::moves(const ContactRow& row) const {
   return false;
 }
 
+/// An obstacle that moves is a point of its row: relative motion alone opens the gap.
+void RowBuilder::add_obstacle_vertex(const AnalyticSurface<double>& obstacle, ContactRow& row) {
+  if (obstacle.vertex < 0) return;
+  std::size_t k = 0;
+  double sum = 0;
+  for (; row.stencil[k] >= 0; ++k) sum += row.weight[k];
+  row.stencil[k] = obstacle.vertex;
+  row.weight[k] = -sum;
+}
+
 template <PairKind K, class T>
 void RowBuilder::add_pairs(const PositionsView& x, const std::vector<IndexPair>& pairs, std::size_t begin,
                            std::size_t end, Part& part) const {
@@ -86,7 +96,8 @@ template <class T>
 void RowBuilder::add_obstacle(const PositionsView& x, IndexPair pair, Part& part) const {
   const std::size_t i = static_cast<std::size_t>(pair.first);
   const int v = surface_.points.vertices[i][0];
-  const auto obstacle = surface_in<T>(obstacles_[static_cast<std::size_t>(pair.second)]);
+  const AnalyticSurface<double> exact = posed(obstacles_[static_cast<std::size_t>(pair.second)], x);
+  const auto obstacle = surface_in<T>(exact);
   const SurfaceGap<T> gap = surface_gap<T>(obstacle, x.col(v).template cast<T>());
   const Side law = surface_.points.side[i];
   const T d = gap.d - static_cast<T>(law.offset);
@@ -97,6 +108,7 @@ void RowBuilder::add_obstacle(const PositionsView& x, IndexPair pair, Part& part
   row.key = obstacle_key(pair.second, std::array{v});
   row.stencil[0] = v;
   row.weight[0] = 1;
+  add_obstacle_vertex(exact, row);
   row.normal = gap.normal.template cast<double>();
   row.d = d;
   row.d_hat = law.d_hat;
@@ -113,7 +125,7 @@ void RowBuilder::add_obstacle_pair(const PositionsView& x, const Primitives<N>& 
   const std::size_t i = static_cast<std::size_t>(pair.first);
   const auto& vertex = primitives.vertices[i];
   const Side law = primitives.side[i];
-  const AnalyticSurface<double>& exact = obstacles_[static_cast<std::size_t>(pair.second)];
+  const AnalyticSurface<double> exact = posed(obstacles_[static_cast<std::size_t>(pair.second)], x);
   const Mat<double, 3, N> at = gather(x, vertex);
   const double largest = std::max(at.cwiseAbs().maxCoeff(), exact.point.cwiseAbs().maxCoeff());
   const double reach = law.d_hat + law.offset + distance_rounding(precision_, largest + exact.radius);
@@ -150,9 +162,10 @@ void RowBuilder::add_obstacle_pair(const PositionsView& x, const Primitives<N>& 
   row.curvature = 1 / closest.d;
   if (exact.kind == ObstacleKind::cylinder) row.flat = obstacle.axis.template cast<double>();
   if (!moves(row)) return;
+  add_obstacle_vertex(exact, row);
   part.min_gap = std::min(part.min_gap, row.d);
   if (eps > 0) {
-    part.mollified.push_back({row, eps, pair.second});
+    part.mollified.push_back({row, eps, exact.point});
   } else {
     part.rows.push_back(row);
   }
@@ -312,11 +325,9 @@ void RowBuilder::fill_mollified(std::size_t n_parts, MollifiedTable& out) {
       out.stencil_weight[4 * at + k] = row.weight[k];
       out.vertex[4 * at + k] = v >= 0 && surface_.vertex_free[static_cast<std::size_t>(v)] ? v : -1;
     }
-    const int o = sorted_mollified_[at].obstacle;
     for (std::size_t k = 0; k < 3; ++k) {
       out.axis[3 * at + k] = row.flat[static_cast<int>(k)];
-      out.axis_point[3 * at + k] =
-          o < 0 ? 0 : obstacles_[static_cast<std::size_t>(o)].point[static_cast<int>(k)];
+      out.axis_point[3 * at + k] = sorted_mollified_[at].axis_point[static_cast<int>(k)];
     }
     out.n_free[at] = compact_free(row, &out.free_vertex[4 * at], &out.weight[4 * at]);
     for (std::size_t k = 0; k < 3; ++k) out.normal[3 * at + k] = row.normal[static_cast<int>(k)];

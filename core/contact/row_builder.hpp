@@ -37,7 +37,7 @@ class RowBuilder {
   struct MollifiedRow {
     ContactRow row;  // all four vertices, weights of the clamped closest points; of an edge and an axis two
     double eps;
-    int obstacle = -1;
+    Vec3d axis_point = Vec3d::Zero();  // of that axis, m
   };
   struct Part {
     std::vector<ContactRow> rows;
@@ -62,6 +62,7 @@ class RowBuilder {
   template <int N, class T>
   void add_obstacle_pair(const PositionsView& x, const Primitives<N>& primitives, IndexPair pair,
                          Part& part) const;
+  static void add_obstacle_vertex(const AnalyticSurface<double>& obstacle, ContactRow& row);
   bool moves(const ContactRow& row) const;
   int compact_free(const ContactRow& row, int* vertex, double* weight) const;
   void sort_rows(std::size_t n_parts);

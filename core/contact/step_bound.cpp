@@ -170,22 +170,24 @@ FirstContact StepBoundFinder::ask_obstacle(const Primitives<N>& primitives, Inde
   const std::size_t i = static_cast<std::size_t>(pair.first);
   const auto& vertex = primitives.vertices[i];
   const Side law = primitives.side[i];
-  const AnalyticSurface<double>& exact = obstacles_[static_cast<std::size_t>(pair.second)];
-  const auto obstacle = surface_in<T>(exact);
+  const AnalyticSurface<double>& given = obstacles_[static_cast<std::size_t>(pair.second)];
+  const AnalyticSurface<double> exact = posed(given, motion.x0), exact_end = posed(given, motion.x1);
+  const AnalyticSurface<T> obstacle = surface_in<T>(exact), end = surface_in<T>(exact_end);
   const T offset = static_cast<T>(law.offset), park = static_cast<T>(level_.park * law.d_hat);
   FirstContact found{1, obstacle_pairs_of<N>, index};
   if constexpr (N == 1) {
-    found.toi = obstacle_toi(obstacle, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
+    found.toi = obstacle_toi(obstacle, end, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
                              offset, park);
   } else {
     const double level = level_.park * law.d_hat;
     const double stop =
         std::max(level, floor(vertex, law.offset, level));  // the obstacle's own is added there
-    const double proven = obstacle_proven_time<N, T>(
-        exact, gather(motion.x0, vertex), gather(motion.x1, vertex), law.offset, stop, part.first.toi);
+    const double proven =
+        obstacle_proven_time<N, T>(exact, exact_end, gather(motion.x0, vertex), gather(motion.x1, vertex),
+                                   law.offset, stop, part.first.toi);
     if (proven > part.first.toi) return found;
     const AccdResult<T> r =
-        obstacle_accd<N, T>(obstacle, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
+        obstacle_accd<N, T>(obstacle, end, gather_in<T>(motion.x0, vertex), gather_in<T>(motion.x1, vertex),
                             offset, park, level_.max_probes, static_cast<T>(part.first.toi));
     if (r.hit) found.toi = r.toi;
     ++part.queries;

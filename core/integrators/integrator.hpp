@@ -17,11 +17,13 @@ struct History {
   double dt_prev = 0;  // s, length of the step that ended at x; 0: as the next one
   Positions x, v, a;   // [3 x n] m, m/s, m/s^2
   Positions x_prev, v_prev;
+  double t = 0;  // s, of x
 };
 
 struct Prediction {
   double c = 1;       // inertia weight M/(c h^2); 0 means no inertia (quasi-static)
   Positions x_tilde;  // [3 x n] m; holds no force
+  double t_end = 0;   // s, at the end of the step: set by what starts the step, not by an integrator
 };
 
 class Integrator {

@@ -94,6 +94,7 @@ class AccumulatedToi final : public StepSolver {
     {
       const ScopedPhase timer(system.clock(), Phase::prediction);
       task.integrator->predict(*task.history, step.dt_s, used);
+      used.t_end = task.history->t + step.dt_s;
       system.restart_step(used, step.dt_s);
       aim_at_poses(system, task, step.dt_s);
     }

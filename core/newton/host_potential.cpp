@@ -47,7 +47,7 @@ void HostPotential::set_fixed_families(const Method& method) {
 }
 
 void HostPotential::begin_step(const StepColumns& step) {
-  frame_ = {points(step.x_n), points(step.x_tilde), step.dt, step.c, step.load_factor};
+  frame_ = {points(step.x_n), points(step.x_tilde), step.dt, step.c, step.load_factor, step.t_end};
   energies_known_ = trial_evaluated_ = false;
   if (solver_) solver_->begin_step();
   for (const auto& term : terms_) term->begin_step(frame_, clock());
@@ -58,6 +58,7 @@ void HostPotential::change_step(const StepColumns& step) {
   frame_.dt = step.dt;
   frame_.c = step.c;
   energies_known_ = false;
+  frame_.t_end = step.t_end;
   for (const auto& term : terms_) term->change_frame(frame_);
 }
 

@@ -21,10 +21,11 @@ struct KnownStiffness;
 
 using Column = exec::Buffer<double>;
 
-/// One time step: where it starts and leads without force, s, inertia weight c, factor of the external force.
+/// One time step: where it starts and leads without force, s, inertia weight c, factor of the external force, and the time
+/// at its end, s.
 struct StepColumns {
   const Column &x_n, &x_tilde;
-  double dt = 0, c = 1, load_factor = 1;
+  double dt = 0, c = 1, load_factor = 1, t_end = 0;
 };
 
 class IncrementalPotential {

@@ -46,6 +46,7 @@ void aim_at_poses(StepSystem& system, const StepTask& task, double dt) {
 StepReport start_step(StepSystem& system, const StepTask& task, Prediction& used) {
   const ScopedPhase timer(system.clock(), Phase::prediction);
   task.integrator->predict(*task.history, task.dt, used);
+  used.t_end = task.history->t + task.dt;
   system.begin_step(task.history->x, used, task.dt, task.load_factor);
   aim_at_poses(system, task, task.dt);
   StepReport step;
@@ -148,7 +149,8 @@ std::string describe_short_pin(const StepSystem& system, const StepTask& task) {
     if (system.view().x().col(pin.vertex) == target.col(pin.vertex)) continue;
     const int body = scene.body[static_cast<std::size_t>(pin.vertex)];
     return "pinned vertex " + std::to_string(pin.vertex) + " of body '" +
-           scene.bodies[static_cast<std::size_t>(body)].name + "' cannot reach its pose";
+           scene.bodies[static_cast<std::size_t>(body)].name + "' cannot reach its pose, " +
+           describe_bound(system);
   }
   return {};
 }

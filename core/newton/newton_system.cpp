@@ -44,7 +44,9 @@ NewtonSystem::NewtonSystem(const Scene& scene, Method& method)
 
 NewtonSystem::~NewtonSystem() = default;
 
-StepColumns NewtonSystem::step_columns() const { return {state_.x_n, state_.x_tilde, dt_, c_, load_factor_}; }
+StepColumns NewtonSystem::step_columns() const {
+  return {state_.x_n, state_.x_tilde, dt_, c_, load_factor_, t_end_};
+}
 
 void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction, double dt,
                               double load_factor) {
@@ -55,6 +57,7 @@ void NewtonSystem::begin_step(const Positions& x_n, const Prediction& prediction
   view_.forget();
   dt_ = dt;
   c_ = prediction.c;
+  t_end_ = prediction.t_end;
   load_factor_ = load_factor;
   state_.level.reset();
   served_at_once_ = false;
@@ -66,6 +69,7 @@ void NewtonSystem::restart_step(const Prediction& prediction, double dt) {
   state_.x_tilde.upload(numbers_of(prediction.x_tilde));
   dt_ = dt;
   c_ = prediction.c;
+  t_end_ = prediction.t_end;
   state_.potential->change_step(step_columns());
 }
 
@@ -139,7 +143,7 @@ void NewtonSystem::mirror(const Positions& target, const HessianLevel& level, co
 }
 
 void NewtonSystem::adopt(const StepFrame& frame, NewtonSystem& other) {
-  begin_step(frame.x_n, {frame.c, frame.x_tilde}, frame.dt, frame.load_factor);
+  begin_step(frame.x_n, {frame.c, frame.x_tilde, frame.t_end}, frame.dt, frame.load_factor);
   dynamic_cast<HostPotential&>(potential()).adopt(dynamic_cast<const HostPotential&>(other.potential()));
   const Positions x = other.view_.x();
   mirror(x, other.state_.level, x);
@@ -156,7 +160,7 @@ NewtonSystem& NewtonSystem::on_host() {
   keep(memory);
   Archive again(memory.bytes());
   host_->keep(again);
-  host_->begin_step(copy_of(state_.x_n), {c_, copy_of(state_.x_tilde)}, dt_, load_factor_);
+  host_->begin_step(copy_of(state_.x_n), {c_, copy_of(state_.x_tilde), t_end_}, dt_, load_factor_);
   dynamic_cast<HostPotential&>(host_->potential()).adopt(state_.potential->known_stiffness());
   host_->mirror(target_, state_.level, view_.x());
   host_->set_direction(copy_of(state_.dx));

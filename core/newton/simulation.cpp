@@ -78,7 +78,7 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
 void Simulation::keep(Archive& archive) {
   archive.section("simulation");
   archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,
-          history_.v_prev, time_, step_, nominal_, nominal_start_, parts_);
+          history_.v_prev, history_.t, step_, nominal_, nominal_start_, parts_);
   system_->keep(archive);
   if (archive.reads()) drop_caches();
   Archive solver;  // apart, since a system on a device has none
@@ -100,7 +100,7 @@ StepReport Simulation::step(StepObserver& observer) {
   StepReport report = attempt_until_converged(charged);
 
   remember(system_->view().x(), report.dt_s);
-  report.t_s = time_;
+  report.t_s = history_.t;
   measure_end(*system_, report);
   if (end_residual_ && report.status == StepStatus::converged) measure_residual(report);
   for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {
@@ -124,7 +124,7 @@ StepReport Simulation::attempt(StepObserver& observer) {
   task.history = &history_;
   task.integrator = method_.integrator.get();
   task.pose = [this](double dt, Positions& target) {
-    for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, time_ + dt);
+    for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, history_.t + dt);
     round_state(method_.precision, target);
   };
   StepReport report = solver_->advance(*system_, task, prediction_, observer);
@@ -158,6 +158,7 @@ void Simulation::start_acceleration() {
   Prediction at_rest;
   method_.integrator->predict(history_, dt_, at_rest);  // for its c
   at_rest.x_tilde = history_.x;
+  at_rest.t_end = history_.t;
   system_->begin_step(history_.x, at_rest, dt_, 1.0);
   system_->assemble();
   for (Eigen::Index i = 0; i < history_.a.cols(); ++i) {
@@ -171,7 +172,8 @@ void Simulation::start_acceleration() {
 
 // The last prediction is the one that the end belongs to.
 void Simulation::measure_residual(StepReport& report) {
-  const StepFrame frame{history_.x_prev, prediction_.x_tilde, report.dt_s, prediction_.c, load_factor_};
+  const StepFrame frame{history_.x_prev, prediction_.x_tilde, report.dt_s,
+                        prediction_.c,   load_factor_,        prediction_.t_end};
   report.end_error_m = end_residual_->measure(*system_, frame);
   if (report.end_error_m.finite()) {
     report.end_error_tolerances = report.end_error_m.value / (report.dt_s * method_.step_solver.tol_velocity);
@@ -198,14 +200,14 @@ void Simulation::remember(const PositionsView& x, double dt_used) {
 void Simulation::advance_time(double dt_used) {
   const bool reached = dt_used == parts_.length(dt_);
   if (!reached) {
-    time_ += dt_used;
+    history_.t += dt_used;
   } else {
-    time_ = nominal_start_ + (parts_.ends_here() ? dt_ : parts_.end() * dt_);
+    history_.t = nominal_start_ + (parts_.ends_here() ? dt_ : parts_.end() * dt_);
   }
   parts_.next(reached);
   if (!parts_.at_start()) return;
   ++nominal_;
-  nominal_start_ = time_;
+  nominal_start_ = history_.t;
 }
 
 }  // namespace bb

@@ -35,7 +35,7 @@ class Simulation {
   NewtonSystem& step_system() { return *system_; }
   /// The state as the CPU sees it.
   NewtonSystem& system() { return system_->on_host(); }
-  double time() const { return time_; }
+  double time() const { return history_.t; }
   /// Nominal steps that are over.
   int nominal_steps() const { return nominal_; }
 
@@ -50,7 +50,7 @@ class Simulation {
   const Scene& scene_;
   Method& method_;
   const Plan plan_;
-  double dt_ = 0, time_ = 0;
+  double dt_ = 0;
   int n_steps_ = 0, step_ = 0, nominal_ = 0;  // step_: every part counts
   double nominal_start_ = 0;                  // s
   double load_factor_ = 1;                    // of the last attempt

@@ -78,7 +78,11 @@ Bodies count_bodies(const Scene& scene, const Flags& is_free, const PrimitiveCou
   // so many vertices of one body never make a pair
   const int few = scene.planar ? 1 : lone.n > 0 ? 2 : 3;
   Bodies out;
+  const std::set<int> surface(scene.surface_vertices.begin(), scene.surface_vertices.end());
   for (const Body& body : scene.bodies) {
+    const auto first = surface.lower_bound(body.first_vertex);
+    if (first == surface.end() || *first >= body.first_vertex + body.n_vertices)
+      continue;  // an obstacle's point
     const auto begin = is_free.begin() + body.first_vertex;
     const bool deformable = std::any_of(begin, begin + body.n_vertices, [](char f) { return f != 0; });
     ++(deformable ? out.deformable : out.given);

@@ -6,6 +6,11 @@
 
 namespace bb {
 
+Mat3d RigidMotion::turn(double t) const {
+  const double s = std::clamp(t, start, end) - start;
+  return Eigen::AngleAxisd(angular_velocity * s, axis).toRotationMatrix();
+}
+
 Vec3d pin_pose(const Scene& scene, const Pin& pin, double t) {
   const RigidMotion& motion = scene.motions[static_cast<std::size_t>(pin.motion)];
   Vec3d x0 = scene.x0.col(pin.vertex);

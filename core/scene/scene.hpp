@@ -24,6 +24,8 @@ struct RigidMotion {
   double start = 0;                                      // s
   double end = std::numeric_limits<double>::infinity();  // s
   bool is_static() const { return velocity.isZero(0) && angular_velocity == 0; }
+  /// R(angle(t)).
+  Mat3d turn(double t) const;
 };
 
 /// A vertex whose position is prescribed exactly (static mesh, driven mesh, pin). Also the names
@@ -56,6 +58,8 @@ struct Obstacle {
   double radius = 0;            // m
   bool inside = false;          // the allowed side is the inside (sphere, cylinder)
   std::optional<double> friction = std::nullopt;  // coefficient; absent: that of the run
+  RigidMotion motion = {};                        // of its point; turns neither normal nor axis
+  int vertex = -1;  // that stands for the point of an obstacle that moves, one of Scene::pins
 };
 
 enum class PlanarPairs { vertex_vertex, point_edge };

@@ -39,9 +39,15 @@ class Friction final : public Term {
     solved_ = 0;
     take_lag(x_n_);
   }
-  void change_frame(const StepFrame& frame) override { eps_ = options_.friction.eps_v * frame.dt; }
+  void change_frame(const StepFrame& frame) override {
+    eps_ = options_.friction.eps_v * frame.dt;
+    t_end_ = frame.t_end;
+    dt_ = frame.dt;
+    find_spins();
+  }
   void adopt_from(const Term& other) override {
     const auto& same = static_cast<const Friction&>(other);
+    lagged_ = same.lagged_;
     take_rows(same.contacts_);
     strength_ = same.strength_;
     loads_known_ = same.loads_known_;
@@ -109,18 +115,20 @@ class Friction final : public Term {
   struct Row {
     const int* vertex;
     Vec<T, 4> weight;
-    Vec<T, 3> normal;
+    Vec<T, 3> normal, spin;
     T strength;  // mu times load, N
     Row(const Friction& of, std::size_t e)
         : vertex(&of.vertices_[4 * e]),
           weight(Vec<double, 4>::Map(&of.contacts_.weight[4 * of.row_[e]]).template cast<T>()),
           normal(Vec3d::Map(&of.contacts_.normal[3 * of.row_[e]]).template cast<T>()),
+          spin(of.spin_[e].template cast<T>()),
           strength(static_cast<T>(of.strength_[e])) {}
     Vec<T, 3> slide(const PositionsView& x, const PositionsView& x_n) const {
       Vec<T, 3> motion = Vec<T, 3>::Zero();
       for (int k = 0; k < 4 && vertex[k] >= 0; ++k) {
         motion += weight[k] * (x.col(vertex[k]) - x_n.col(vertex[k])).template cast<T>();
       }
+      motion -= spin;
       return slide_of<T>(motion, normal);
     }
   };
@@ -152,9 +160,35 @@ class Friction final : public Term {
       vertices_.insert(vertices_.end(), &contacts_.stencil[4 * r], &contacts_.stencil[4 * r] + 4);
     }
     strength_.assign(row_.size(), 0.0);
+    find_spins();
     families_[0].stencils = {4, vertices_};
     families_[0].local.resize(row_.size(), 4);
     families_[0].trial_energy.resize(row_.size());
+  }
+
+  /// What the turn of an obstacle takes its surface along by in this step where each element is, beside the way of its
+  /// point.
+  void find_spins() {
+    spin_.assign(row_.size(), Vec3d::Zero());
+    for (std::size_t e = 0; e < row_.size(); ++e) {
+      const int obstacle = contacts_.obstacle[row_[e]];
+      if (obstacle < 0) continue;
+      const Obstacle& o = scene_.obstacles[static_cast<std::size_t>(obstacle)];
+      if (o.motion.angular_velocity == 0) continue;
+      const Vec3d arm = arm_of(row_[e], o);
+      spin_[e] = o.motion.turn(t_end_) * (o.motion.turn(t_end_ - dt_).transpose() * arm) - arm;
+    }
+  }
+  /// From the point of an obstacle that moves to its surface at a row, m.
+  Vec3d arm_of(std::size_t r, const Obstacle& o) const {
+    Vec3d arm = Vec3d::Zero();  // to the other side of the row
+    for (std::size_t k = 4 * r; k < 4 * r + 4 && contacts_.stencil[k] >= 0; ++k) {
+      arm += contacts_.weight[k] * lagged_.col(contacts_.stencil[k]);
+    }
+    if (o.kind == ObstacleKind::plane) return arm - o.axis.dot(arm) * o.axis;
+    const Vec3d along =
+        o.kind == ObstacleKind::cylinder ? Vec3d(o.axis.dot(arm) * o.axis) : Vec3d(Vec3d::Zero());
+    return along + o.radius * (arm - along).normalized();
   }
 
   // The bodies of a row are those of its first and its last vertex.
@@ -189,10 +223,12 @@ class Friction final : public Term {
   const TermOptions& options_;
   std::vector<const Term*> before_;
   double eps_ = 0;                     // m
+  double t_end_ = 0, dt_ = 0;          // s
   Positions x_n_, lagged_;             // m, where slides begin, and where the rows are of
   ContactLoads contacts_;              // there
   std::vector<std::size_t> row_;       // [n] the contact of each element
   std::vector<double> mu_, strength_;  // [n] 1; mu times load, N
+  std::vector<Vec3d> spin_;            // [n] m
   std::vector<int> vertices_;          // [4 n]
   bool loads_known_ = false;
   int solved_ = 0;  // times that this step converged

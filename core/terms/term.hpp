@@ -29,6 +29,7 @@ struct StepFrame {
   double dt = 0;           // s
   double c = 1;            // inertia weight M/(c dt^2); 0 when quasi-static
   double load_factor = 1;  // of the external force
+  double t_end = 0;        // s, when the step is over: what is given as a function of time is taken there
 };
 
 /// What a term may read of the others while it is linearised at an iterate.

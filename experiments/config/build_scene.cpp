@@ -98,7 +98,10 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
 void translate(const Vec3d& by, Scene& scene) {
   if (by.isZero(0)) return;
   scene.x0.colwise() += by;
-  for (Obstacle& obstacle : scene.obstacles) obstacle.point += by;
+  for (Obstacle& obstacle : scene.obstacles) {
+    obstacle.point += by;
+    obstacle.motion.center += by;
+  }
   for (RigidMotion& motion : scene.motions) motion.center += by;
 }
 

@@ -288,6 +288,11 @@ void check_device(const RunConfig& config, const Complain& complain) {
   if (config.device == Device::cpu) return;
   const std::string on = fmt::format("with device {}", word_of(config.device));
   refuse_friction(config, "0 " + on + ": friction runs with device cpu only", complain);
+  for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+    if (config.scene.obstacles[i].motion.is_static()) continue;
+    complain(fmt::format("/scene/obstacles/{}/motion", i), "an obstacle that moves",
+             "no motion " + on + ": its kernels know obstacles that stand still");
+  }
   if (config.precision != Precision::full) {
     complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);
   }

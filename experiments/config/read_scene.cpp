@@ -100,6 +100,7 @@ void check_obstacle(const json& object, const std::string& pointer, const Reader
   if (obstacle.kind != ObstacleKind::plane && !object.contains("radius_m")) {
     reader.missing(pointer + "/radius_m", "a number > 0 (m)");
   }
+  check_motion(obstacle.motion, pointer + "/motion", reader);
 }
 
 void check_names(const SceneConfig& scene, const Reader& reader) {

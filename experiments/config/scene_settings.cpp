@@ -142,6 +142,7 @@ json untranslated_json(const SceneConfig& scene) {
   }
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     for (const std::string& key : keys_of_others(scene.obstacles[i].kind)) out["obstacles"][i].erase(key);
+    if (scene.obstacles[i].motion.is_static()) out["obstacles"][i].erase("motion");
   }
   return out;
 }

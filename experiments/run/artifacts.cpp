@@ -27,6 +27,7 @@ json to_json(const Vec3d& v) { return json::array({v[0], v[1], v[2]}); }
 json to_json(const Obstacle& o) {
   constexpr const char* kinds[] = {"plane", "sphere", "cylinder"};
   json out = {{"name", o.name}, {"kind", kinds[static_cast<int>(o.kind)]}, {"point_m", to_json(o.point)}};
+  if (o.vertex >= 0) out["vertex"] = o.vertex;  // of the frames: where point_m is there
   if (o.kind != ObstacleKind::sphere) out["axis"] = to_json(o.axis);
   if (o.kind == ObstacleKind::plane) return out;
   out["radius_m"] = o.radius;
@@ -36,7 +37,13 @@ json to_json(const Obstacle& o) {
 
 std::string scene_json(const Scene& scene) {
   json out = {{"planar", scene.planar}, {"bodies", json::array()}, {"obstacles", json::array()}};
-  for (const Body& body : scene.bodies) out["bodies"].push_back(body.name);
+  const auto is_obstacle = [&scene](const Body& body) {
+    return std::any_of(scene.obstacles.begin(), scene.obstacles.end(),
+                       [&body](const Obstacle& o) { return o.vertex == body.first_vertex; });
+  };
+  for (const Body& body : scene.bodies) {
+    if (!is_obstacle(body)) out["bodies"].push_back(body.name);
+  }
   for (const Obstacle& obstacle : scene.obstacles) out["obstacles"].push_back(to_json(obstacle));
   return out.dump(2) + "\n";
 }

@@ -20,6 +20,7 @@ audit::AuditObstacle to_audit(const Obstacle& obstacle) {
   out.axis = obstacle.axis;
   out.radius = obstacle.radius;
   out.inside = obstacle.inside;
+  out.vertex = obstacle.vertex;
   return out;
 }
 

@@ -5,6 +5,7 @@ namespace bb {
 void PilotReplay::begin(const Positions& x, int step) {
   prediction_.c = c(step);
   prediction_.x_tilde = x;
+  prediction_.t_end = (step + 1) * pilot_.config.time.dt;
   system_.begin_step(x, prediction_, pilot_.config.time.dt, 1.0);
 }
 

@@ -32,7 +32,9 @@ audit::AuditMesh prescribed_part(const audit::AuditMesh& mesh) {
   out.triangles.conservativeResize(3, n_triangles);
   out.points.clear();
   for (int v = 0; v < static_cast<int>(mesh.prescribed.size()); ++v) {
-    if (mesh.is_prescribed(v)) out.points.push_back(v);
+    const bool of_obstacle = std::any_of(mesh.obstacles.begin(), mesh.obstacles.end(),
+                                         [v](const audit::AuditObstacle& o) { return o.vertex == v; });
+    if (mesh.is_prescribed(v) && !of_obstacle) out.points.push_back(v);
   }
   return out;
 }
@@ -53,6 +55,7 @@ std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene&
                                            const RunLimits& limits) {
   if (!prescribed_may_cross(scene)) return std::nullopt;
   const audit::AuditMesh mesh = prescribed_part(make_audit_mesh(scene, config.time.dt));
+  if (mesh.points.empty()) return std::nullopt;  // no more than obstacles are given
   audit::Audit judge(mesh);
   const double tolerance = audit_tolerance(scene, config.contact.ccd_park);
   double last_end = 0;  // from then on every motion has ended

@@ -104,16 +104,5 @@ TEST(Audit, obstacle_is_judged_along_the_motion) {
   EXPECT_EQ(found.violations, 0);
 }
 
-TEST(Audit, moved_obstacle_is_judged_in_its_new_pose) {
-  AuditMesh mesh = sheet_and_triangle();
-  mesh.obstacles = {{ObstacleKind::plane, Vec3d(0, 0, -1), Vec3d::UnitZ(), 0.0, false}};
-  Audit audit(mesh);
-  audit.check_state(sheet_and_triangle_at(0.5), 0);
-  EXPECT_TRUE(audit.ledger().ok());
-  audit.set_obstacles({{ObstacleKind::plane, Vec3d(0, 0, 0.25), Vec3d::UnitZ(), 0.0, false}});
-  audit.check_state(sheet_and_triangle_at(0.5), 1);
-  EXPECT_EQ(audit.ledger().obstacle_violations, 4);
-}
-
 }  // namespace
 }  // namespace bb::audit::audit_obstacles_test

@@ -83,14 +83,14 @@ void expect_ends(ObstacleKind kind, int& beyond, int& outside) {
   const AuditObstacle o = unit(kind);
   for (const double away : {1.0, 64.0, 4096.0}) {
     const auto far = at_height<N>(1 + away), near = at_height<N>(1 + 0x1p-44);
-    EXPECT_EQ(judge_past_obstacle<N>(o, near, far), Verdict::certified) << N << away;
-    EXPECT_EQ(judge_past_obstacle<N>(o, far, near), Verdict::certified) << N << away;
+    EXPECT_EQ(judge_past_obstacle<N>(o, o, near, far), Verdict::certified) << N << away;
+    EXPECT_EQ(judge_past_obstacle<N>(o, o, far, near), Verdict::certified) << N << away;
     ++outside;
     const auto inside = at_height<N>(1 - 0x1p-53);
-    EXPECT_EQ(judge_past_obstacle<N>(o, inside, far), Verdict::violation) << N << " leaves by " << away;
-    EXPECT_EQ(judge_past_obstacle<N>(o, far, inside), Verdict::violation) << N << " comes by " << away;
-    EXPECT_NE(judge_past_obstacle<N>(o, at_height<N>(1), far), Verdict::violation) << "a touch";
-    EXPECT_NE(judge_past_obstacle<N>(o, at_height<N>(1), far), Verdict::certified) << "a touch";
+    EXPECT_EQ(judge_past_obstacle<N>(o, o, inside, far), Verdict::violation) << N << " leaves by " << away;
+    EXPECT_EQ(judge_past_obstacle<N>(o, o, far, inside), Verdict::violation) << N << " comes by " << away;
+    EXPECT_NE(judge_past_obstacle<N>(o, o, at_height<N>(1), far), Verdict::violation) << "a touch";
+    EXPECT_NE(judge_past_obstacle<N>(o, o, at_height<N>(1), far), Verdict::certified) << "a touch";
     ++beyond;
   }
 }
@@ -124,9 +124,9 @@ void expect_exact(std::mt19937& random, int& certified, int& hit) {
     const Vec3d ends[] = {length * (u + 0.3 * v), -length * (u + 0.3 * v) * 0.7, length * (v - 0.2 * u)};
     for (std::size_t k = 0; k < N; ++k) x[k] = foot + ends[k];
     bool beyond = false;
-    if constexpr (N == 2) beyond = obstacle_hit(o, x[0], x[1]);
+    if constexpr (N == 2) beyond = obstacle_hit(o, o, x[0], x[1]);
     if constexpr (N == 3) beyond = obstacle_cuts(o, x[0], x[1], x[2]);
-    const Verdict verdict = judge_past_obstacle<N>(o, x, x);
+    const Verdict verdict = judge_past_obstacle<N>(o, o, x, x);
     EXPECT_EQ(verdict == Verdict::violation, beyond) << i << " length " << length << " off " << off;
     if (beyond) {
       EXPECT_NE(verdict, Verdict::certified);

@@ -41,12 +41,12 @@ TEST(ObstacleSide, cylinder_is_infinite_and_takes_any_axis_length) {
 
 TEST(ObstacleHit, chord_through_a_ball_between_free_ends_is_found) {
   const AuditObstacle ball = sphere(Vec3d::Zero(), 1.0, false);
-  EXPECT_TRUE(obstacle_hit(ball, {-2, 0.5, 0}, {2, 0.5, 0}));
-  EXPECT_FALSE(obstacle_hit(ball, {-2, 1.0, 0}, {2, 1.0, 0}));  // grazes exactly
-  EXPECT_TRUE(obstacle_hit(ball, {-2, std::nextafter(1.0, 0.0), 0}, {2, std::nextafter(1.0, 0.0), 0}));
-  EXPECT_FALSE(obstacle_hit(ball, {-2, 0.5, 0}, {-1.5, 0.5, 0}));
-  EXPECT_TRUE(obstacle_hit(ball, {0, 0, 0}, {2, 0, 0}));
-  EXPECT_TRUE(obstacle_hit(ball, {2, 0, 0}, {0.5, 0, 0}));
+  EXPECT_TRUE(obstacle_hit(ball, ball, {-2, 0.5, 0}, {2, 0.5, 0}));
+  EXPECT_FALSE(obstacle_hit(ball, ball, {-2, 1.0, 0}, {2, 1.0, 0}));  // grazes exactly
+  EXPECT_TRUE(obstacle_hit(ball, ball, {-2, std::nextafter(1.0, 0.0), 0}, {2, std::nextafter(1.0, 0.0), 0}));
+  EXPECT_FALSE(obstacle_hit(ball, ball, {-2, 0.5, 0}, {-1.5, 0.5, 0}));
+  EXPECT_TRUE(obstacle_hit(ball, ball, {0, 0, 0}, {2, 0, 0}));
+  EXPECT_TRUE(obstacle_hit(ball, ball, {2, 0, 0}, {0.5, 0, 0}));
 }
 
 TEST(ObstacleHit, chord_past_a_tilted_cylinder_far_along_its_axis) {
@@ -55,14 +55,14 @@ TEST(ObstacleHit, chord_past_a_tilted_cylinder_far_along_its_axis) {
   const Vec3d across(2, -1, 0),
       side(2, 4, -5);  // orthogonal to the axis and to each other; |side| = 3 sqrt 5
   const Vec3d far = c.point + 300.0 * axis;
-  EXPECT_TRUE(obstacle_hit(c, far - 3.0 * across + 0.1 * side, far + 3.0 * across + 0.1 * side));
-  EXPECT_FALSE(obstacle_hit(c, far - 3.0 * across + 0.2 * side, far + 3.0 * across + 0.2 * side));
+  EXPECT_TRUE(obstacle_hit(c, c, far - 3.0 * across + 0.1 * side, far + 3.0 * across + 0.1 * side));
+  EXPECT_FALSE(obstacle_hit(c, c, far - 3.0 * across + 0.2 * side, far + 3.0 * across + 0.2 * side));
 }
 
 TEST(ObstacleHit, inside_sets_are_convex) {
   const AuditObstacle ball = sphere(Vec3d::Zero(), 1.0, true);
-  EXPECT_FALSE(obstacle_hit(ball, {-0.9, 0, 0}, {0.9, 0, 0}));
-  EXPECT_TRUE(obstacle_hit(ball, {-0.9, 0, 0}, {1.1, 0, 0}));
+  EXPECT_FALSE(obstacle_hit(ball, ball, {-0.9, 0, 0}, {0.9, 0, 0}));
+  EXPECT_TRUE(obstacle_hit(ball, ball, {-0.9, 0, 0}, {1.1, 0, 0}));
 }
 
 TEST(ObstacleHit, agrees_with_the_distance_of_the_chord_on_random_chords) {
@@ -76,7 +76,7 @@ TEST(ObstacleHit, agrees_with_the_distance_of_the_chord_on_random_chords) {
     const double t = std::clamp(-a.dot(d) / d.squaredNorm(), 0.0, 1.0);
     const double distance = (a + t * d).norm();
     if (std::abs(distance - 1.0) < 1e-9) continue;
-    ASSERT_EQ(obstacle_hit(ball, a, b), distance < 1.0);
+    ASSERT_EQ(obstacle_hit(ball, ball, a, b), distance < 1.0);
     ++(distance < 1.0 ? hits : misses);
   }
   EXPECT_GT(hits, 300);

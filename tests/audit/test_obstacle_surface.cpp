@@ -82,7 +82,7 @@ TEST(ObstacleCuts, a_coarse_triangle_over_a_ball_has_its_vertices_and_edges_outs
   const AuditObstacle ball = sphere(1.0);
   const Triangle t{Vec3d(-4, -4, 0.9), Vec3d(4, -4, 0.9), Vec3d(0, 6, 0.9)};
   EXPECT_TRUE(every_vertex_is_free(ball, t));
-  for (std::size_t k = 0; k < 3; ++k) EXPECT_FALSE(obstacle_hit(ball, t[k], t[(k + 1) % 3]));
+  for (std::size_t k = 0; k < 3; ++k) EXPECT_FALSE(obstacle_hit(ball, ball, t[k], t[(k + 1) % 3]));
   EXPECT_TRUE(cuts(ball, t));
   const AuditObstacle rod{ObstacleKind::cylinder, Vec3d::Zero(), Vec3d(0, 0, 2), 0.5, false};
   EXPECT_TRUE(every_vertex_is_free(rod, t));
@@ -217,7 +217,7 @@ void compare_with_samples(ObstacleKind kind) {
     std::array<Vec3d, N> x0, x1;
     const Vec3d shift = 0.7 * point();
     for (std::size_t k = 0; k < N; ++k) x0[k] = point() + shift, x1[k] = x0[k] + 0.7 * point();
-    const Verdict verdict = judge_past_obstacle<N>(o, x0, x1);
+    const Verdict verdict = judge_past_obstacle<N>(o, o, x0, x1);
     const double least = least_on_the_way<N>(o, x0, x1);
     ++seen[static_cast<int>(verdict)];
     if (least < o.radius - 1e-9) {
@@ -226,7 +226,7 @@ void compare_with_samples(ObstacleKind kind) {
     if (least > o.radius + 0.15) {
       ASSERT_EQ(verdict, Verdict::certified) << least;
     }
-    const Verdict back = judge_past_obstacle<N>(o, x1, x0);
+    const Verdict back = judge_past_obstacle<N>(o, o, x1, x0);
     ASSERT_EQ(verdict, back);
   }
   EXPECT_GT(seen[static_cast<int>(Verdict::certified)], 200);
@@ -256,7 +256,7 @@ TEST(PastObstacle, a_triangle_that_slides_over_a_ball_is_decided_down_to_small_g
     for (std::size_t k = 0; k < 3; ++k) x0[k] = middle[k] - way, x1[k] = middle[k] + way;
     x0[0] = foot - way, x1[0] = foot + way;
     ASSERT_FALSE(cuts(ball, x0) || cuts(ball, x1));
-    const Verdict verdict = judge_past_obstacle<3>(ball, x0, x1);
+    const Verdict verdict = judge_past_obstacle<3>(ball, ball, x0, x1);
     ASSERT_EQ(verdict, gap > 0 ? Verdict::certified : Verdict::violation) << gap;
     ++(gap > 0 ? certified : violations);
   }
@@ -272,10 +272,11 @@ TEST(PastObstacle, exact_ends_and_a_mere_touch) {
     for (Vec3d& x : t) x[2] = z;
     return t;
   };
-  EXPECT_EQ(judge_past_obstacle<3>(ball, far, down_to(5.0)), Verdict::unproven);
-  EXPECT_EQ(judge_past_obstacle<3>(ball, far, down_to(std::nextafter(5.0, 0.0))), Verdict::violation);
-  EXPECT_EQ(judge_past_obstacle<3>(ball, far, down_to(5.0 + 1e-9)), Verdict::certified);
-  EXPECT_EQ(judge_past_obstacle<3>(ball, far, down_to(-9)), Verdict::violation) << "through the whole ball";
+  EXPECT_EQ(judge_past_obstacle<3>(ball, ball, far, down_to(5.0)), Verdict::unproven);
+  EXPECT_EQ(judge_past_obstacle<3>(ball, ball, far, down_to(std::nextafter(5.0, 0.0))), Verdict::violation);
+  EXPECT_EQ(judge_past_obstacle<3>(ball, ball, far, down_to(5.0 + 1e-9)), Verdict::certified);
+  EXPECT_EQ(judge_past_obstacle<3>(ball, ball, far, down_to(-9)), Verdict::violation)
+      << "through the whole ball";
 }
 
 }  // namespace

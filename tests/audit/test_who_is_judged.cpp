@@ -121,7 +121,7 @@ TEST(WhoIsJudged, AVertexThatPassesThroughAnObstacleIsNamed) {
     }
     int lowest = -1;
     for (int v = 2; v >= 0; --v) {
-      if (obstacle_hit(o, x0.col(v), x1.col(v))) lowest = v;
+      if (obstacle_hit(o, o, x0.col(v), x1.col(v))) lowest = v;
     }
     const MotionAudit found = audit_motion(mesh, x0, x1, tolerance);
     ASSERT_EQ(found.obstacle_unproven, 0);

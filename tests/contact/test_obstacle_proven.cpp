@@ -15,8 +15,8 @@ double proven(const Scene& scene, const TruePair& pair, const Positions& x0, con
   std::array<int, N> vertex;
   std::copy_n(pair.first.begin(), N, vertex.begin());
   const auto surface = analytic_surface<double>(scene.obstacles[at(pair.obstacle)]);
-  return obstacle_proven_time<N, double>(surface, gather(x0, vertex), gather(x1, vertex), pair.offset, stop,
-                                         1);
+  return obstacle_proven_time<N, double>(surface, surface, gather(x0, vertex), gather(x1, vertex),
+                                         pair.offset, stop, 1);
 }
 
 /// The first of 600 times at which the gap is below `level`; 2: none.

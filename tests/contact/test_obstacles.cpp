@@ -30,8 +30,8 @@ double falling(double height, double park, double far) {
   Obstacle floor;
   floor.point = Vec3d(far, 0, 0);
   floor.axis = Vec3d::UnitZ();
-  return obstacle_toi(analytic_surface<double>(floor), Vec3d(far, 0, height), Vec3d(far, 0, -height), 0,
-                      park);
+  return obstacle_toi(analytic_surface<double>(floor), analytic_surface<double>(floor), Vec3d(far, 0, height),
+                      Vec3d(far, 0, -height), 0, park);
 }
 
 TEST(Obstacle, AVertexStopsAtTheParkOrAtHalfItsGap) {
@@ -105,7 +105,7 @@ TEST(Obstacle, FirstTimeIsNeverLateAndExact) {
     for (int sample = 0; sample < 400; ++sample) {
       const Vec3d x0(unit(rng), unit(rng), unit(rng)), x1(unit(rng), unit(rng), unit(rng));
       if (!(surface_gap<double>(s, x0).d > level)) continue;
-      const double t = first_time_at<double>(s, x0, x1, level);
+      const double t = first_time_at<double>(s, s, x0, x1, level);
       const auto gap = [&](double time) { return surface_gap<double>(s, Vec3d(x0 + time * (x1 - x0))).d; };
       for (int k = 0; k < 200; ++k) ASSERT_GT(gap(t * k / 200), level);
       if (t < 1) {
@@ -128,7 +128,7 @@ TEST(Obstacle, GrazingMotionsStopOnlyWhenTheyReachTheLevel) {
   o.radius = 1;
   const auto s = analytic_surface<double>(o);
   const auto pass = [&](double height) {
-    return first_time_at<double>(s, Vec3d(-2, 0, height), Vec3d(2, 0, height), 0.0);
+    return first_time_at<double>(s, s, Vec3d(-2, 0, height), Vec3d(2, 0, height), 0.0);
   };
   EXPECT_EQ(pass(1 + 1e-9), 1);
   EXPECT_NEAR(pass(1 - 1e-9), 0.5, 1e-4);
@@ -140,8 +140,8 @@ TEST(Obstacle, TimeZeroWhenTheStartIsNotAboveTheLevel) {
     const auto s = analytic_surface<double>(o);
     const Vec3d axis = o.kind == ObstacleKind::cylinder ? Vec3d(2, -2, 1) / 3.0 : o.axis;
     const Vec3d on = o.point + o.radius * axis;
-    EXPECT_EQ(first_time_at<double>(s, on, Vec3d(on + axis), 0.01), 0);
-    EXPECT_EQ(first_time_at<double>(s, Vec3d(on + (o.inside ? -1.0 : 1.0) * axis), on, 0.5) < 1, true);
+    EXPECT_EQ(first_time_at<double>(s, s, on, Vec3d(on + axis), 0.01), 0);
+    EXPECT_EQ(first_time_at<double>(s, s, Vec3d(on + (o.inside ? -1.0 : 1.0) * axis), on, 0.5) < 1, true);
   }
 }
 
@@ -149,7 +149,7 @@ TEST(Obstacle, NoMotionNeverHits) {
   for (const Obstacle& o : all_kinds()) {
     const auto s = analytic_surface<double>(o);
     const Vec3d x = o.inside ? Vec3d(o.point + Vec3d(0.1, 0, 0)) : Vec3d(4, 4, 4);
-    EXPECT_EQ(first_time_at<double>(s, x, x, 0.01), 1);
+    EXPECT_EQ(first_time_at<double>(s, s, x, x, 0.01), 1);
   }
 }
 

@@ -46,10 +46,10 @@ StepBound every_candidate(const Scene& scene, const Positions& x1) {
           const double park = options.ccd_park * law.d_hat;
           const auto kind = static_cast<ContactKind>(static_cast<int>(ContactKind::obstacle) + N - 1);
           if constexpr (N == 1) {
-            take(obstacle_toi(obstacle, from, to, law.offset, park), kind,
+            take(obstacle_toi(obstacle, obstacle, from, to, law.offset, park), kind,
                  obstacle_key(index.second, vertex));
           } else {
-            const auto r = obstacle_accd<N, double>(obstacle, from, to, law.offset, park, 4096, 1);
+            const auto r = obstacle_accd<N, double>(obstacle, obstacle, from, to, law.offset, park, 4096, 1);
             ++out.queries;
             take(r.hit ? r.toi : 1, kind, obstacle_key(index.second, vertex));
           }

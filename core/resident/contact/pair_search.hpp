@@ -103,7 +103,7 @@ BB_HD bool may_reach(const SurfaceView& s, Index i, int o, const double* x0, con
   const AnalyticSurface<double> obstacle = s.obstacles[o].surface();
   if (of.free[i] == 0 || !pairs_with<N>(obstacle, s.planar, of.lone[i] != 0)) return false;
   const int* const vertex = of.vertex + N * i;
-  return bb::may_reach<N>(obstacle, points_of<N>(x0, vertex), points_of<N>(x1, vertex),
+  return bb::may_reach<N>(obstacle, obstacle, points_of<N>(x0, vertex), points_of<N>(x1, vertex),
                           of.d_hat[i] + of.offset[i]);
 }
 
