@@ -5,7 +5,8 @@
 //
 //   dlambda = -(C + compliance lambda)/(sum W |grad C|^2 + compliance),   dx = W grad C dlambda
 //
-// Where nothing changes any more that is the implicit Euler step of the energies C^2/(2 compliance). Contact is C = d >= 0
+// Where nothing changes any more, C = -compliance lambda. That is the implicit Euler step of the energies C^2/(2 compliance) as
+// far as gradients do not turn within the step: a change acts along the gradient of its moment. Contact is C = d >= 0
 // without compliance: the barrier is not felt, and nothing keeps a step from passing through a surface. Newton matrices,
 // step bound and energies are not asked for. Iterations are sweeps.
 #include <algorithm>
