@@ -5,7 +5,8 @@
 //
 //   dlambda = -(C + compliance lambda)/(sum W |grad C|^2 + compliance),   dx = W grad C dlambda
 //
-// Where nothing changes any more that is the implicit Euler step of the energies C^2/(2 compliance). Contact is C = d >= 0
+// Where nothing changes any more, C = -compliance lambda. That is the implicit Euler step of the energies C^2/(2 compliance) as
+// far as gradients do not turn within the step: a change acts along the gradient of its moment. Contact is C = d >= 0
 // without compliance: the barrier is not felt, and nothing keeps a step from passing through a surface. Newton matrices,
 // step bound and energies are not asked for. Iterations are sweeps.
 #include <algorithm>
@@ -61,11 +62,11 @@ class Xpbd final : public StepSolver {
   void carry_over(const std::vector<const ConstraintBatch*>& batches) {
     multipliers_.resize(batches.size());
     for (std::size_t b = 0; b < batches.size(); ++b) {
-      const std::vector<double> before = std::move(multipliers_[b]);
+      before_.swap(multipliers_[b]);
       multipliers_[b].assign(batches[b]->size(), 0.0);
-      for (std::size_t e = 0; e < multipliers_[b].size() && !before.empty(); ++e) {
+      for (std::size_t e = 0; e < multipliers_[b].size() && !before_.empty(); ++e) {
         const std::ptrdiff_t was = batches[b]->before(e);
-        if (was >= 0) multipliers_[b][e] = before[static_cast<std::size_t>(was)];
+        if (was >= 0) multipliers_[b][e] = before_[static_cast<std::size_t>(was)];
       }
     }
   }
@@ -122,6 +123,7 @@ class Xpbd final : public StepSolver {
   StepSolverOptions options_;
   ConstraintSystem::FreeMotion state_;
   std::vector<std::vector<double>> multipliers_;  // N, of every batch
+  std::vector<double> before_;                    // those of one batch in the sweep before
   std::vector<double> gradient_;                  // of one constraint
 };
 

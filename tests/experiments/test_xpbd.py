@@ -1,7 +1,6 @@
 """The step solver xpbd through the program: a hanging chain, what its record says, what the plan leaves out, what is refused."""
 
 import json
-import math
 from pathlib import Path
 
 import pytest
@@ -18,13 +17,15 @@ def run(program: str, out: Path, *words: str) -> dict:
     return json.loads((out / "run.json").read_text())
 
 
-def test_a_chain_ends_where_newton_ends_and_the_record_says_who_counted_what(program, tmp_path):
-    newton = run(program, tmp_path / "newton")
-    xpbd = run(program, tmp_path / "xpbd", *XPBD, "--set", "/step_solver/max_iterations=4000")
+STILL = ["--set", "/scene/bodies/0/pins/1/motion/velocity_m_per_s=[0,0,0]"]
+
+
+def test_a_chain_sags_as_newton_has_it_and_the_record_says_who_counted_what(program, tmp_path):
+    newton = run(program, tmp_path / "newton", *STILL)
+    xpbd = run(program, tmp_path / "xpbd", *STILL, *XPBD, "--set", "/step_solver/max_iterations=4000")
     assert (newton["status"]["outcome"], xpbd["status"]["outcome"]) == ("ok", "ok"), xpbd["status"]
-    assert newton["steps"][-1]["elastic_J"] > 1e-9
-    for energy in ("kinetic_J", "elastic_J", "gravity_J"):
-        assert xpbd["steps"][-1][energy] == pytest.approx(newton["steps"][-1][energy], rel=1e-6)
+    assert newton["steps"][-1]["kinetic_J"] > 1e-3
+    assert xpbd["steps"][-1]["kinetic_J"] == pytest.approx(newton["steps"][-1]["kinetic_J"], rel=0.01)
     for step in xpbd["steps"]:
         assert step["newton_iterations"] == 0 and step["linear_solves"] == 0
         assert step["solver"]["xpbd_sweeps"] == 4000 and step["solver"]["xpbd_constraints"] == 16
@@ -32,18 +33,22 @@ def test_a_chain_ends_where_newton_ends_and_the_record_says_who_counted_what(pro
     assert xpbd["summary"]["solver"]["xpbd_sweeps"] == 12000
     assert xpbd["summary"]["solver"]["xpbd_correction_m"] == max(s["solver"]["xpbd_correction_m"] for s in xpbd["steps"])
     assert xpbd["summary"]["convergence"] == "not_asked"
-    assert set(newton["summary"]["solver"]) == {"feasibility_trials"}
-    assert newton["summary"]["solver"]["feasibility_trials"] == sum(s["solver"]["feasibility_trials"] for s in newton["steps"]) > 0
-    assert math.isfinite(xpbd["summary"]["solver"]["xpbd_correction_m"])
+
+
+def test_trials_short_of_a_pose_are_counted_and_compare_no_energies(program, tmp_path):
+    record = run(program, tmp_path, "--set", "/passes/diagnose=true")
+    assert set(record["summary"]["solver"]) == {"feasibility_trials"}
+    assert record["summary"]["solver"]["feasibility_trials"] == sum(s["solver"]["feasibility_trials"] for s in record["steps"]) > 0
+    rows = [json.loads(line) for line in (tmp_path / "trace.jsonl").read_text().splitlines()]
+    unknown = [row for row in rows if row["energy_change_J"] is None]
+    assert 0 < len(unknown) < len(rows) and {row["energy_change_J_status"] for row in unknown} == {"not_compared"}
 
 
 def test_the_plan_leaves_out_what_it_does_without(program):
     said = bench(program, "explain", CHAIN, *XPBD).stdout
-    _, _, left_out = said.partition("step_bound")  # the first of what is not needed
-    for item in ("linear_solver", "trial_energies", "end_check"):
+    for item, reason in [("linear_solver", "no matrix"), ("trial_energies", "feasibility alone"), ("end_check", "saddle is ignore")]:
         line = next(line for line in said.splitlines() if line.split()[:1] == [item])
-        assert "step solver" in line or "step_solver" in line, line
-    assert "feasibility alone judges the trials" in left_out
+        assert reason in line, line
     assert "feasibility alone" not in bench(program, "explain", CHAIN).stdout
 
 
