@@ -103,7 +103,7 @@ def python_tests(preset: str, summary: Summary) -> int:
         "-n",
         str(job_count()),
         "--dist",
-        "loadfile",
+        "worksteal",
         str(ROOT / "tests"),
     ]
     code = _into(

@@ -23,17 +23,18 @@ def places(rows: list[dict], limit: str) -> list[tuple[str, str]]:
     return list(dict.fromkeys((r["scene"], r["resolution"]) for r in rows if r["limit"] == limit))
 
 
-def path(rows: list[dict], place: tuple[str, str], limit: str, shape: str, metric: str) -> list[Point]:
-    """theta is the parameter: a smaller target means a softer contact. A run that failed breaks the path."""
-    mine = [
-        r
-        for r in rows
-        if (r["scene"], r["resolution"]) == place and r["limit"] == limit and r["shape"] == shape
-    ]
-    return [
-        Point(r["theta"], r["gap"], r[metric]) if r["outcome"] == "ok" else Point(r["theta"], None, None)
-        for r in mine
-    ]
+def paths(rows: list[dict], limit: str, shape: str, metric: str) -> dict[tuple[str, str], list[Point]]:
+    """Of a shape in every place. theta is the parameter: a smaller target means a softer contact. A run that
+    failed breaks the path.
+    """
+    found: dict[tuple[str, str], list[Point]] = {place: [] for place in places(rows, limit)}
+    for r in rows:
+        if r["limit"] == limit and r["shape"] == shape:
+            whole = r["outcome"] == "ok"
+            found[r["scene"], r["resolution"]].append(
+                Point(r["theta"], r["gap"], r[metric]) if whole else Point(r["theta"], None, None)
+            )
+    return found
 
 
 @dataclass(frozen=True)
@@ -54,9 +55,10 @@ def ratio_at(rows: list[dict], limit: str, shape: str, metric: str, gap: float) 
     None where no scene has both.
     """
     by_scene: dict[str, list[float]] = {}
-    for place in places(rows, limit):
+    of_shape, of_log = (paths(rows, limit, s, metric) for s in (shape, REFERENCE))
+    for place in of_shape:
         by_scene.setdefault(place[0], [])
-        mine, log = (value_at(path(rows, place, limit, s, metric), gap) for s in (shape, REFERENCE))
+        mine, log = value_at(of_shape[place], gap), value_at(of_log[place], gap)
         if mine is not None and log is not None:
             by_scene[place[0]].append(math.log(mine / log))
     return _over_scenes(by_scene)
@@ -76,12 +78,10 @@ def at_theta(rows: list[dict], limit: str, shape: str, metric: str, theta: float
     runs ended well.
     """
     by_scene: dict[str, list[float]] = {}
-    for place in places(rows, limit):
+    both = [paths(rows, limit, s, metric) for s in (shape, REFERENCE)]
+    for place in both[0]:
         by_scene.setdefault(place[0], [])
-        values = [
-            next((p.value for p in path(rows, place, limit, s, metric) if p.scale == theta), None)
-            for s in (shape, REFERENCE)
-        ]
+        values = [next((p.value for p in of[place] if p.scale == theta), None) for of in both]
         if all(values):
             by_scene[place[0]].append(math.log(values[0] / values[1]))
     return _over_scenes(by_scene)
@@ -194,7 +194,7 @@ def unreached(rows: list[dict], targets: list[float]) -> list[tuple[str, str, fl
     found = []
     for limit in dict.fromkeys(r["limit"] for r in rows):
         for shape in dict.fromkeys(r["shape"] for r in rows if r["limit"] == limit):
-            ranges = [reached(path(rows, place, limit, shape, "gap")) for place in places(rows, limit)]
+            ranges = [reached(path) for path in paths(rows, limit, shape, "gap").values()]
             found += [
                 (limit, shape, target)
                 for target in targets

@@ -13,7 +13,7 @@ import numpy as np
 import pandas as pd
 
 from ..errors import UserError
-from ..json_file import read_of_schema
+from ..json_file import read_object, read_of_schema
 from ..places import ROOT
 from ..records import Records, condition_of, counted, load
 from ..table import summary_table
@@ -120,6 +120,14 @@ def _about(runs: pd.DataFrame) -> dict:
     }
 
 
+def _long(folder: Path) -> dict:
+    """What the sentences on demo_long say of its sweep: simulated seconds, and of one iteration in how many
+    there are condition numbers.
+    """
+    settings = read_object(folder / "demo_long" / "sweep.json")["set"]
+    return {"duration_s": settings["/time/duration_s"], "every": settings["/diagnose/every"]}
+
+
 def gather(folder: Path) -> dict:
     """The numbers of all records of the demo below `folder`. Raises RecordError without any, UserError where
     a sweep is missing.
@@ -129,7 +137,8 @@ def gather(folder: Path) -> dict:
         raise UserError("\n".join(records.unreadable))
     if missing := [name for name in GROUPS if name not in set(records.runs["group"])]:
         raise UserError(f"{folder}: no records of {', '.join(missing)}; ./bench demo makes them")
-    return {"schema": NAME, "about": _about(records.runs), "runs": _rows(records, summary_table(records))}
+    about = _about(records.runs) | {"long": _long(folder)}
+    return {"schema": NAME, "about": about, "runs": _rows(records, summary_table(records))}
 
 
 def write(numbers: dict, path: Path = FILE) -> None:

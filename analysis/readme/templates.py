@@ -123,11 +123,11 @@ def _log_against_cubic(numbers: dict) -> str:
         _draped(numbers, *of)
         for of in (("formula", "with the sphere as a formula"), ("mesh", "with the sphere as a mesh"))
     ]
+    duration = numbers["about"]["long"]["duration_s"]
     text = (
-        "Five cloth layers drape over a sphere for 0.3 s, with equal contact forces under the largest load"
-        " and a strain limit. Of the condition numbers over the run (cond: how hard a linear system is): "
-        + "; ".join(words for words, _ in found)
-        + "."
+        f"Five cloth layers drape over a sphere for {duration:g} s, with equal contact forces under the"
+        " largest load and a strain limit. Of the condition numbers over the run (cond: how hard a linear"
+        " system is): " + "; ".join(words for words, _ in found) + "."
     )
     unlike = [name for name, (_, verdict) in zip(("formula", "mesh"), found) if verdict != "comparable"]
     return text + (
@@ -183,9 +183,9 @@ def _step_ends(numbers: dict, sphere: str) -> str:
 def drape_sentences(numbers: dict) -> list[str]:
     """What the figure of the longer drape shows."""
     text = (
-        "Seen there, on that slice (a load matched at 0.1 d_hat, a strain limit, condition numbers of every"
-        " third iteration, layers that still move at the end): of the time steps that end in contact, the"
-        " log's last condition number is smaller by more than 1%"
+        "Seen there, on that slice (a load matched at 0.1 d_hat, a strain limit, condition numbers of one"
+        f" iteration in {numbers['about']['long']['every']}, layers that still move at the end): of the time"
+        " steps that end in contact, the log's last condition number is smaller by more than 1%"
         f" {' and '.join(_step_ends(numbers, sphere) for sphere in ('formula', 'mesh'))}. Single iterations"
         " reach further (result 2)."
     )

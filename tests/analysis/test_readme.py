@@ -29,7 +29,8 @@ def kept(**changed):
             row("demo_drape", "cubic_dynamic published", step_solver="accumulated_toi", steps=120),
             row("demo_drape", "cubic_dynamic", outcome="newton_stall", steps=10, gap_min_rel=None, **changed),
             row("demo_drape", "cubic_dynamic x s", scale=2.41, verdict="not_comparable"), row("demo_article", "log", step_solver="article_literal", crossings=7)]
-    about = {"processor": "Some CPU", "cores": "2", "blas_kernel": "Haswell", "compiler": "g++ 12", "flags": "-O2", "commit": "0123456789abcdef", "days": "2026-01-02", "runs": 5}
+    about = {"processor": "Some CPU", "cores": "2", "blas_kernel": "Haswell", "compiler": "g++ 12", "flags": "-O2", "commit": "0123456789abcdef", "days": "2026-01-02", "runs": 5,
+             "long": {"duration_s": 0.25, "every": 7}}
     return {"schema": numbers.NAME, "about": about, "runs": runs}
 
 
@@ -220,17 +221,31 @@ def test_every_snippet_of_the_pages_works(program, page):
     assert snippets.faults(text, page) == []
 
 
-def test_the_pages_have_the_numbers_that_are_kept():
-    parts = {name for page in readme.PAGES for name in templates.blocks((ROOT / page).read_text())}
-    assert parts == set(templates.TEMPLATES)
+@pytest.fixture(scope="module")
+def kept_numbers() -> dict:
+    """Of the repository: gathering its gap map takes most of the time of this file."""
     if not numbers.FILE.is_file():
         pytest.skip("results/demo.json is not kept yet: ./bench demo, then ./bench readme --write")
-    assert readme.stale(ROOT, readme.kept()) == []
+    return readme.kept()
 
 
-def test_the_gap_map_says_how_much_of_it_is_there(tmp_path):
-    found = gap_map.gather()
+def test_the_pages_have_the_numbers_that_are_kept(kept_numbers):
+    parts = {name for page in readme.PAGES for name in templates.blocks((ROOT / page).read_text())}
+    assert parts == set(templates.TEMPLATES)
+    assert readme.stale(ROOT, kept_numbers) == []
+
+
+def test_the_gap_map_says_how_much_of_it_is_there(kept_numbers, tmp_path):
+    found = kept_numbers["gap_map"]
     assert len(found) == 4 and found[0].startswith("With no strain limit") and " cells " in found[3] and " unknowns" in found[3]
     assert all(len(line) <= 100 for line in gap_map.lines(found, 100)) and gap_map.lines(["one"], 100) == ["- one"]
     with pytest.raises(UserError, match="gap-map --quick"):
         gap_map.gather(tmp_path / "none.json")
+
+
+def test_the_page_says_how_long_and_how_often_the_longer_drape_was_looked_at(tmp_path):
+    (tmp_path / "demo_long").mkdir()
+    (tmp_path / "demo_long/sweep.json").write_text((ROOT / "configs/sweeps/demo_long.json").read_text())
+    spec = json.loads((ROOT / "configs/sweeps/demo_long.json").read_text())["set"]
+    assert numbers._long(tmp_path) == {"duration_s": spec["/time/duration_s"], "every": spec["/diagnose/every"]}
+    assert "drape over a sphere for 0.25 s" in " ".join(templates.result_sentences(kept())) and "of one iteration in 7" in " ".join(templates.drape_sentences(kept()))
