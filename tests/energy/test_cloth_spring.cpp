@@ -1,6 +1,8 @@
 // Springs of cloth: exact derivatives in tension and compression against long double differences, their jump, projections.
 #include <gtest/gtest.h>
 
+#include <Eigen/Eigenvalues>
+
 #include "core/energy/cloth_spring.hpp"
 #include "core/energy/spring.hpp"
 #include "tests/energy/energy_cases.hpp"
