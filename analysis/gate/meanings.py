@@ -19,9 +19,21 @@ FAMILIES: dict[str, tuple[str, ...]] = {
     "audit.obstacle_queries": (),
     "audit.crossings": (),
     "audit.touches": (),
+    "summary.contacts": ("contacts_median",),
+    "summary.stiffness.kappa_start_N_per_m": ("kappa_start",),
+    "summary.stiffness.kappa_end_N_per_m": ("kappa_end",),
+    "steps[].contacts": (),
+    "steps[].kappa_min_N_per_m": (),
+    "steps[].kappa_max_N_per_m": (),
+    "matching.contacts_considered": (),
+    "matching.contacts_left_out": (),
     "trace contraction": (),
     "trace error_estimate_m": ("error_estimate",),
     "trace cond[].tier": (),
+    "trace contacts": (),
+    "trace kappa_min_N_per_m": (),
+    "trace kappa_max_N_per_m": (),
+    "trace contact_curvature_max_N_per_m": (),
 }
 PRESENT = ".".join(map(str, OURS))
 

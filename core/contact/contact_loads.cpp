@@ -1,7 +1,5 @@
 #include "core/contact/contact_loads.hpp"
 
-#include <algorithm>
-
 #include "core/contact/contact_terms.hpp"
 
 namespace bb {
@@ -16,7 +14,7 @@ void add_row(const Table& rows, std::size_t r, ContactLoads& out) {
   append(rows.stencil, 4, out.stencil);
   append(rows.stencil_weight, 4, out.weight);
   append(rows.normal, 3, out.normal);
-  out.obstacle.push_back(obstacle_of(*std::min_element(rows.key[r].begin(), rows.key[r].end())));
+  out.obstacle.push_back(pair_obstacle(rows.pair[r]));
 }
 
 }  // namespace
@@ -29,7 +27,7 @@ void ContactLoads::clear() {
 void add_loads(const ContactTable& rows, ContactLoads& out) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
     add_row(rows, r, out);
-    out.load.push_back(-rows.multiplicity[r] * rows.kappa[r] * rows.db[r]);
+    out.load.push_back(-rows.kappa[r] * rows.db[r]);
   }
 }
 
@@ -37,7 +35,7 @@ void add_loads(const MollifiedTable& rows, const PositionsView& x, ContactLoads&
   for (std::size_t r = 0; r < rows.size(); ++r) {
     add_row(rows, r, out);
     const double e = mollifier_of(rows, r, x);
-    out.load.push_back(-rows.multiplicity[r] * rows.kappa[r] * e * rows.db[r]);
+    out.load.push_back(-rows.kappa[r] * e * rows.db[r]);
   }
 }
 

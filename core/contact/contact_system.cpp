@@ -25,7 +25,7 @@ struct ContactSystem::Data {
         surface(s),
         obstacles(analytic_surfaces(s)),
         broad_phase(surface, obstacles, plan, o.precision),
-        builder(scene, surface, obstacles, plan, o.precision),
+        builder(surface, obstacles, plan, o.precision),
         bound(surface, obstacles, {o.ccd_park, o.ccd_max_probes}, o.precision) {}
 
   const Scene& scene;

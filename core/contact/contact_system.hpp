@@ -28,7 +28,7 @@ struct ContactOptions {
 /// free, and so every vertex and edge that is no side of a triangle: the edge-edge rows of parallel rods vanish
 /// with their mollifier; planar: every pair of vertices that no mesh edge joins, or every vertex and boundary edge of which
 /// the vertex is neither an end nor the third corner of a triangle with that edge. B is the sum over these
-/// pairs; where the closest feature of several is the same, they are one row with a multiplicity. In 3D the
+/// pairs, one row each. In 3D the
 /// closest feature of a pair can be a vertex and an edge of its own triangle (two triangles that share the
 /// edge): that row is kept, because without it B would jump when the closest point crosses the edge, and the
 /// step bound, which keeps every pair, would act where no force does. The rest rule keeps it off until
@@ -56,7 +56,7 @@ class ContactSystem {
   /// Which candidates there are depends on those rows; alpha and rows do not. Motions finite.
   void update_candidates_to_bound(const PositionsView& x0, const PositionsView& x1);
 
-  /// Rows with d < d_hat_row at x, merged with multiplicity, sorted; kappa, b, db, d2b are left at 0.
+  /// One row a pair with d < d_hat at x (row_rule.hpp), in the order of the pairs; kappa, b, db, d2b are left at 0.
   /// Requires x to be such a state of the last update_candidates. Returns the smallest gap over all
   /// rows (infinity without rows); a value <= 0 means that x is not feasible. x that is not finite: no
   /// rows and -infinity.

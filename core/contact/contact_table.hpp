@@ -1,13 +1,13 @@
-// The contact table: one row a contact, columns of numbers. Geometry fills d and the weights, the stiffness
+// The contact table: one row a pair, columns of numbers. Geometry fills d and the weights, the stiffness
 // policy fills kappa, the shape fills b, b', b''; everything after is common code and knows no formulation.
 #pragma once
 
-#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <vector>
 
 #include "core/barrier/stiffness_policy.hpp"
+#include "core/contact/contact_key.hpp"
 #include "core/math/types.hpp"
 
 namespace bb {
@@ -24,20 +24,21 @@ enum class ContactKind : std::uint8_t {
 };
 constexpr bool is_obstacle(ContactKind kind) { return kind >= ContactKind::obstacle; }
 
-/// Identity of a contact across iterations: sorted ids of all its vertices, given ones included, -1 padded in
-/// front; an obstacle o appears as -2 - o.
-using ContactKey = std::array<int, 4>;
-constexpr int id_of_obstacle(int obstacle) { return -2 - obstacle; }
-/// The obstacle of an entry of a key; -1 where it is a vertex or padding.
-constexpr int obstacle_of(int id) { return id < -1 ? -2 - id : -1; }
+/// Of row r of either table.
+template <class Table>
+ContactKey key_of(const Table& rows, std::size_t r) {
+  std::array<int, 4> own;
+  for (std::size_t k = 0; k < 4; ++k) {  // the weight of an obstacle that moves is negative, those of its pair are not
+    const bool stands = pair_obstacle(rows.pair[r]) >= 0 && rows.stencil_weight[4 * r + k] < 0;
+    own[k] = stands ? -1 : rows.stencil[4 * r + k];
+  }
+  return row_key(rows.pair[r], own);
+}
 
-/// Identity of one candidate pair over a whole run, whatever features realise it; compare only.
-using PairId = std::uint64_t;
-
-/// Rows are sorted by (key, kind), so that two tables can be joined by a merge.
+/// One row a candidate pair that is closer than its activation distance (row_rule.hpp), in the order of the pairs.
 struct ContactTable {
   std::vector<ContactKind> kind;
-  std::vector<ContactKey> key;
+  std::vector<PairId> pair;  // [n] ascending
   /// [4 n] all vertices in role order (p t0 t1 t2, ea0 ea1 eb0 eb1; of an obstacle's row its one to three, then that of an
   /// obstacle that moves), -1 padded
   std::vector<int> stencil;
@@ -49,11 +50,7 @@ struct ContactTable {
   /// [n] m; d = |r| - offset. Rows of an obstacle with an edge or a triangle: r from its centre or axis, its radius in
   /// the offset.
   std::vector<double> d, d_hat, offset;
-  std::vector<double> multiplicity;  // [n] number of pairs that realise the row
-  std::vector<std::size_t>
-      pair_begin;  // [n + 1] those pairs are pair[pair_begin[r]] to pair[pair_begin[r + 1] - 1]
-  std::vector<PairId> pair;
-  std::vector<KappaParts> parts;  // [n] kappa as a function of d, mean over the pairs
+  std::vector<KappaParts> parts;  // [n] kappa as a function of d
   std::vector<double> kappa;      // [n] N/m, parts at d
   /// [n] N/m: what kappa the row came with when its iterate was accepted; 0: it was not there before. Empty
   /// of meaning in rows that no stiffness was given to.
@@ -66,28 +63,29 @@ struct ContactTable {
   std::vector<double> flat;       // [3 n] axis of a cylinder, else 0
 
   std::size_t size() const { return d.size(); }
+  ContactKey key(std::size_t r) const { return key_of(*this, r); }
   void resize(std::size_t n);
 };
 
 /// Edge-edge rows close to parallel, and those of an edge and a cylinder's axis: B gains the mollifier e(x); e b(d),
-/// full gradient, PSD-projected Hessian.
+/// full gradient, PSD-projected Hessian. In the order of the pairs, of which a ContactTable has none at the same state.
 struct MollifiedTable {
-  std::vector<ContactKey> key;
-  std::vector<int>
-      stencil;  // [4 n] ea0 ea1 eb0 eb1; e0 e1, vertex of the obstacle or -1, -1 of an edge and an axis
+  /// [4 n] ea0 ea1 eb0 eb1; of an edge and an axis e0 e1, that of an obstacle that moves or -1, -1
+  std::vector<int> stencil;
   std::vector<double> stencil_weight;    // [4 n] w_i in the same order, 0 padded
   std::vector<int> vertex;               // [4 n] = stencil, -1 where the vertex is given
   std::vector<double> eps;               // [n] threshold on |ea x eb|^2, m^4; on |e x axis|^2, m^2
   std::vector<double> axis, axis_point;  // [3 n] unit, and a point of it, m; 0 in rows of two edges
-  std::vector<PairId> pair;              // [n]
+  std::vector<PairId> pair;              // [n] ascending
   std::vector<KappaParts> parts;
-  std::vector<double> d, d_hat, offset, multiplicity, kappa, kappa_before, b, db, d2b;  // as above
+  std::vector<double> d, d_hat, offset, kappa, kappa_before, b, db, d2b;  // as above
   // what a policy reads of a row: compact free columns, as in ContactTable
   std::vector<int> free_vertex;  // [4 n]
   std::vector<double> weight;    // [4 n]
   std::vector<int> n_free;       // [n]
   std::vector<double> normal;    // [3 n]
 
+  ContactKey key(std::size_t r) const { return key_of(*this, r); }
   bool of_axis(std::size_t r) const {
     return axis[3 * r] != 0 || axis[3 * r + 1] != 0 || axis[3 * r + 2] != 0;
   }

@@ -58,11 +58,11 @@ T mollifier_value(const MollifiedTable& rows, std::size_t r, const PositionsView
                          : edge_edge_mollifier_value<T>(mollified_points<T>(rows, r, x), eps);
 }
 
-/// Of m kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
+/// Of kappa e(x) b(d(x)) in all four points, as they stand in the stencil.
 template <class T>
 MollifiedDerivatives<T> mollified_derivatives(const MollifiedTable& rows, std::size_t r,
                                               const PositionsView& x) {
-  const T scale = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r), eps = entry<T>(rows.eps, r);
+  const T scale = entry<T>(rows.kappa, r), eps = entry<T>(rows.eps, r);
   const T b = scale * entry<T>(rows.b, r), db = scale * entry<T>(rows.db, r),
           d2b = scale * entry<T>(rows.d2b, r);
   if (rows.of_axis(r)) {
@@ -113,7 +113,7 @@ void add_given_motion(const ContactTable& rows, const PositionsView& motion, Pos
       if (vertex >= 0) closing += rows.stencil_weight[4 * r + k] * normal.dot(motion.col(vertex));
     }
     if (closing == 0) continue;
-    const double curvature = rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r];
+    const double curvature = rows.kappa[r] * rows.d2b[r];
     for (std::size_t k = 0; k < 4 && rows.vertex[4 * r + k] >= 0; ++k) {
       force.col(rows.vertex[4 * r + k]) += (curvature * closing * rows.weight[4 * r + k]) * normal;
     }
@@ -142,7 +142,7 @@ void contact_energies(const ContactTable& rows, std::vector<double>& energy, Pre
   energy.resize(rows.size());
   with_value_scalar(precision, [&]<class T>() {
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      energy[r] = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r) * entry<T>(rows.b, r);
+      energy[r] = entry<T>(rows.kappa, r) * entry<T>(rows.b, r);
     }
   });
 }
@@ -157,7 +157,7 @@ void mollified_energies(const MollifiedTable& rows, const PositionsView& x, std:
   with_value_scalar(precision, [&]<class T>() {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const T e = mollifier_value<T>(rows, r, x);
-      energy[r] = entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r) * e * entry<T>(rows.b, r);
+      energy[r] = entry<T>(rows.kappa, r) * e * entry<T>(rows.b, r);
     }
   });
 }

@@ -33,7 +33,7 @@ inline AnalyticSurface<double> posed(AnalyticSurface<double> s, const PositionsV
 
 /// The same obstacle in the scalar T.
 template <class T>
-AnalyticSurface<T> surface_in(const AnalyticSurface<double>& s) {
+BB_HD inline AnalyticSurface<T> surface_in(const AnalyticSurface<double>& s) {
   return {s.kind, s.point.cast<T>(), s.axis.cast<T>(), static_cast<T>(s.radius), s.inside, s.vertex};
 }
 

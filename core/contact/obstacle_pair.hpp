@@ -83,6 +83,16 @@ BB_HD bool far_from_centre(const AnalyticSurface<double>& s, const Mat<double, 3
   return farther_than<centre_pair<N>>(points, s.radius + reach);
 }
 
+/// The row of a vertex over an obstacle. offset: thickness, m.
+template <class T>
+BB_HD PairRow obstacle_row(int vertex, const SurfaceGap<T>& gap, T offset) {
+  return {ContactKind::obstacle,
+          {vertex, -1, -1, -1},
+          {1, 0, 0, 0},
+          gap.normal.template cast<double>(),
+          static_cast<double>(gap.d - offset)};
+}
+
 /// The row of a pair, on the vertices of the feature that is closest; the normal points away from the centre.
 /// offset: thickness, m.
 template <int N, class T>

@@ -3,9 +3,9 @@
 #include <algorithm>
 
 #include "core/contact/chunks.hpp"
-#include "core/contact/contact_row.hpp"
 #include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_geometry.hpp"
+#include "core/contact/pair_row.hpp"
 
 namespace bb {
 namespace {

@@ -9,6 +9,14 @@
 
 namespace bb {
 
+/// Kind of a row on the insides of both primitives.
+template <PairKind K>
+constexpr ContactKind contact_kind() {
+  constexpr ContactKind kinds[] = {ContactKind::point_point, ContactKind::point_edge,
+                                   ContactKind::point_triangle, ContactKind::edge_edge};
+  return kinds[static_cast<int>(K)];
+}
+
 /// Local points of a feature in role order (point before edge), -1 padded.
 struct FeaturePoints {
   int of[4];
@@ -53,7 +61,7 @@ BB_HD constexpr FeaturePoints feature_points(Region region) {
   return {{0, 1, 2, 3}};
 }
 
-/// Of a ContactRow what a pair alone says; names as there.
+/// Of a row what its closest points say.
 struct PairRow {
   ContactKind kind;
   int stencil[4];    // -1 padded
@@ -101,7 +109,7 @@ BB_HD inline PairRow pair_row(const int* vertex, const T* weights, const Vec<T, 
   return row;
 }
 
-/// Activation distance of a pair of one body with these points at rest: see row_d_hat().
+/// Activation distance of a pair of one body with these points at rest: see activation_distance() in row_rule.hpp.
 template <PairKind K>
 BB_HD inline double d_hat_at_rest(const Side& law, const Mat<double, 3, pair_points(K)>& rest) {
   const double reach = rest_rule_factor * law.d_hat;
@@ -109,12 +117,5 @@ BB_HD inline double d_hat_at_rest(const Side& law, const Mat<double, 3, pair_poi
   const double gap = closest_points<K, double>(rest).d - law.offset;
   return gap > 0 && gap < reach ? gap / rest_rule_factor : law.d_hat;
 }
-
-// Primitives keep their index for a run, and there are at most most_primitives of each.
-BB_HD constexpr PairId pair_id(int kind, PairId first, PairId second) {
-  return (static_cast<PairId>(kind) << 60) | (first << 30) | second;
-}
-/// Kind of a point and an obstacle, after the four of PairKind; then of an edge, of a triangle and an obstacle.
-constexpr int obstacle_pairs = 4;
 
 }  // namespace bb

@@ -1,4 +1,4 @@
-// Which pairs of one body are no candidates because they are close at rest (row_d_hat in contact_row.hpp): one arithmetic
+// Which pairs of one body are no candidates because they are close at rest (activation_distance in row_rule.hpp): one arithmetic
 // for the CPU and for kernels, so that the lists of candidates of both are equal.
 #pragma once
 
@@ -36,7 +36,7 @@ BB_HD double least_apart_sq(const Mat<double, 3, pair_points(K)>& x) {
 
 }  // namespace detail
 
-/// Whether a pair of one body, which the rest rule gives a smaller d_hat (row_d_hat), is proven to stay farther apart
+/// Whether a pair of one body, which the rest rule gives a smaller d_hat (activation_distance), is proven to stay farther apart
 /// than that on x0 -> x1, and farther than any level at which ACCD may stop it, which is most_ccd_park d_hat or some ulps. Such a
 /// pair has no row and does not bound the motion. false where the rule does not act, or nothing is proven.
 /// @param eps of the scalar in which distances are evaluated

@@ -18,8 +18,8 @@ struct RowShape {
   Vec<T, 3> n;     // unit normal
   Vec<T, 3> q[F];  // orthonormal directions in which the closest points slide
   T distance;      // of the closest points, m
-  T stretch;       // m kappa b'', N/m
-  T push;          // m kappa b', N
+  T stretch;       // kappa b'', N/m
+  T push;          // kappa b', N
   T bend = T(1);   // F = 1: 0 where moving across n and q_0 turns no normal, as along the axis of a cylinder
 };
 
@@ -55,7 +55,7 @@ struct WeightBasis {
 
 /// The block that every pair of points of a row shares whose closest points slide nowhere, apart from w_i w_j:
 ///   stretch n n^T + push curvature (I - n n^T - flat flat^T),
-/// both eigenspaces projected. stretch = m kappa b'', push = m kappa b', curvature 1/d or the obstacle's (1/m), flat the
+/// both eigenspaces projected. stretch = kappa b'', push = kappa b', curvature 1/d or the obstacle's (1/m), flat the
 /// axis of a cylinder or 0.   Host-device.
 template <class T>
 BB_HD inline Mat<T, 3, 3> fixed_points_block(const Vec<T, 3>& n, const Vec<T, 3>& flat, T stretch,

@@ -3,12 +3,12 @@
 #include <array>
 
 #include "core/contact/chunks.hpp"
-#include "core/contact/contact_row.hpp"
 #include "core/contact/contact_terms.hpp"
 #include "core/contact/gap_along.hpp"
 #include "core/contact/numeric_projection.hpp"
 #include "core/contact/obstacle_shape.hpp"
 #include "core/contact/pair_lanes.hpp"
+#include "core/contact/pair_row.hpp"
 #include "core/contact/row_columns.hpp"
 #include "core/contact/row_hessian.hpp"
 #include "core/geometry/distance_derivatives.hpp"
@@ -26,7 +26,7 @@ constexpr int n_sliding(ContactKind kind) {
 
 template <class T>
 T scale_of(const ContactTable& rows, std::size_t r) {
-  return entry<T>(rows.multiplicity, r) * entry<T>(rows.kappa, r);
+  return entry<T>(rows.kappa, r);
 }
 
 template <class T>

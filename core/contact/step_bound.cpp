@@ -1,9 +1,9 @@
 #include "core/contact/step_bound.hpp"
+#include "core/contact/pair_row.hpp"
 
 #include <algorithm>
 
 #include "core/contact/chunks.hpp"
-#include "core/contact/contact_row.hpp"
 #include "core/contact/obstacle_pair.hpp"
 #include "core/contact/pair_lanes.hpp"
 #include "core/geometry/accd.hpp"

@@ -8,7 +8,7 @@ namespace bb {
 
 namespace {
 
-/// Exact for equal values: pairs of one feature must agree bit for bit to be merged.
+/// Exact for equal values.
 double mean(const double* values, int n) {
   double excess = 0;
   for (int i = 1; i < n; ++i) excess += values[i] - values[0];

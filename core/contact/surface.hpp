@@ -60,6 +60,18 @@ struct Surface {
   PlanarPairs planar_pairs;
   double element_size = 0;  // m: 16 median edges at rest and contact reaches
 
+  bool is_free(int v) const { return vertex_free[static_cast<std::size_t>(v)] != 0; }
+  bool same_body(int v, int w) const {
+    return body[static_cast<std::size_t>(v)] == body[static_cast<std::size_t>(w)];
+  }
+  /// Of N vertices, m.
+  template <int N>
+  Mat<double, 3, N> rest_points(const int* vertex) const {
+    Mat<double, 3, N> out;
+    for (int k = 0; k < N; ++k) out.col(k) = rest.col(vertex[k]);
+    return out;
+  }
+
   /// Planar: true when no pair of these may exist. Two vertices: one mesh edge joins them. A vertex (second
   /// argument list) and an edge: the edge's own, or the third vertex of a triangle that has the edge.
   bool connected(int vertex, int other) const;

@@ -132,7 +132,7 @@ void NewtonSystem::aim_at_escape(double length) {
   scale_direction((slope > 0 ? -length : length) / largest);
 }
 
-// With d_i(x + s) = d_i + slope_i - loss_i + grad d_i . s, s with A s = sum of m kappa b'' (what is missing) grad d_i makes
+// With d_i(x + s) = d_i + slope_i - loss_i + grad d_i . s, s with A s = sum of kappa b'' (what is missing) grad d_i makes
 // up for the loss where the barrier is stiff, at the least cost to the other terms. A state that is asked for its end
 // makes no detour, so the column of escapes is free.
 bool NewtonSystem::make_detour(double bound, SolveReport& report) {

@@ -26,7 +26,7 @@ struct MatchingRecord {
   BB_FIELD(long long, contacts_left_out,
            "contacts whose force follows kappa, so that it is no load, over the same step ends") = 0;
   BB_FIELD(std::string, left_out_contact, "that with the largest force of them; empty: none");
-  BB_FIELD(Number, left_out_N, "its force, per unit multiplicity");
+  BB_FIELD(Number, left_out_N, "its force");
   BB_FIELD(std::string, limit_element, "the pilot's limited element that asked for the most; empty: none");
   BB_FIELD(Number, limit_step, "step of the pilot at whose end it did");
   BB_FIELD(long long, elements_considered, "limited elements with a load, over the same step ends") = 0;
@@ -35,7 +35,7 @@ struct MatchingRecord {
   BB_FIELD(std::string, left_out_element, "that with the largest force of them; empty: none");
   BB_FIELD(Number, left_out_N_per_m, "its force over its width");
   BB_FIELD(Number, theta, "fraction of d_hat at which equal_force matches");
-  BB_FIELD(Number, load_N, "per unit multiplicity; of a pilot, the load of `contact`");
+  BB_FIELD(Number, load_N, "of a pair; of a pilot, the load of `contact`");
   BB_FIELD(Number, d_hat_m, "at which the load was matched: of `contact`, else the formulation's");
   BB_FIELD(Number, limit_load_N_per_m, "of the strain limit; of a pilot, the load of `limit_element`");
   BB_FIELD(Number, curvature_N_per_m, "that equal_curvature matched");

@@ -16,7 +16,7 @@ namespace bb {
   PHASE(elastic, "membranes, springs, hinges: gradients and Hessians")                                     \
   PHASE(strain_limit, "S at an iterate: its stiffness, gradients, Hessians, loads")                        \
   PHASE(broad_phase, "candidate pairs")                                                                    \
-  PHASE(contact_rows, "closest points, merging")                                                           \
+  PHASE(contact_rows, "closest points, rows")                                                              \
   PHASE(stiffness, "kappa: policy and memory")                                                             \
   PHASE(contact_terms, "shape, local gradients and Hessians of B")                                         \
   PHASE(assembly, "gathers into gradient and block matrix, inertia, prescribed motion, restriction")       \

@@ -25,6 +25,14 @@ inline constexpr ChangedMeaning changed_in_run[] = {
     {"audit.obstacle_queries", "3.5.0", "vertices alone, and their paths"},
     {"audit.crossings", "3.5.0", "without touches that no small displacement takes apart"},
     {"audit.touches", "3.5.0", "all pairs at distance 0"},
+    {"summary.contacts", "3.6.0", "pairs with one closest feature counted once"},
+    {"summary.stiffness.kappa_start_N_per_m", "3.6.0", "from masses of contacts with pairs with one closest feature counted once"},
+    {"summary.stiffness.kappa_end_N_per_m", "3.6.0", "from that start"},
+    {"steps[].contacts", "3.6.0", "pairs with one closest feature counted once"},
+    {"steps[].kappa_min_N_per_m", "3.6.0", "of pairs with one closest feature their mean"},
+    {"steps[].kappa_max_N_per_m", "3.6.0", "of pairs with one closest feature their mean"},
+    {"matching.contacts_considered", "3.6.0", "pairs with one closest feature counted once"},
+    {"matching.contacts_left_out", "3.6.0", "pairs with one closest feature counted once"},
 };
 
 inline constexpr ChangedMeaning changed_in_trace[] = {
@@ -32,6 +40,10 @@ inline constexpr ChangedMeaning changed_in_trace[] = {
     {"error_estimate_m", "3.5.0", "with that contraction; |dx| itself within rounding"},
     {"energy_change_J", "3.6.0", "0 or the change of E where an update was judged by feasibility alone"},
     {"cond[].tier", "3.5.0", "2: our Lanczos round the factor, which is tier 4 now"},
+    {"contacts", "3.6.0", "pairs with one closest feature counted once"},
+    {"kappa_min_N_per_m", "3.6.0", "of pairs with one closest feature their mean"},
+    {"kappa_max_N_per_m", "3.6.0", "of pairs with one closest feature their mean"},
+    {"contact_curvature_max_N_per_m", "3.6.0", "of pairs with one closest feature their sum"},
 };
 
 }  // namespace bb

@@ -50,18 +50,18 @@ struct StepRecord : WorkCounts {
   BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat of the same states", "no_contacts");
   BB_FIELD(double, alpha_ccd_min, "smallest bound of ACCD") = 1;
   BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element at its end", "no_limit");
-  BB_FIELD(Number, kappa_min_N_per_m, "smallest kappa of a row at its end", "no_contacts");
-  BB_FIELD(Number, kappa_max_N_per_m, "largest kappa of a row at its end", "no_contacts");
-  BB_FIELD(Number, contact_load_max_N, "largest kappa |b'| per unit multiplicity at its end", "no_contacts");
-  BB_FIELD(Number, contact_load_sum_N, "sum of m kappa |b'| at its end, without mollified rows",
-           "no_contacts");
+  BB_FIELD(Number, kappa_min_N_per_m, "smallest kappa of a pair at its end", "no_contacts");
+  BB_FIELD(Number, kappa_max_N_per_m, "largest kappa of a pair at its end", "no_contacts");
+  BB_FIELD(Number, contact_load_max_N, "largest kappa |b'| of a pair at its end", "no_contacts");
+  BB_FIELD(Number, contact_load_sum_N, "sum of kappa |b'| at its end, without mollified rows", "no_contacts");
   BB_FIELD(int, friction_sticking, "contacts with friction that slid by less than eps_v dt in it") = 0;
   BB_FIELD(int, friction_sliding, "contacts with friction that slid farther") = 0;
   BB_FIELD(Number, friction_dissipation_J, "sum over these of friction force times slide", "no_friction");
   BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma at its end", "no_limit");
-  BB_FIELD(Number, contact_overload,
-           "largest load / capacity of a row where no progress was made; 0: unbounded capacity, or no load",
-           no_load_measured);
+  BB_FIELD(
+      Number, contact_overload,
+      "largest load / capacity of a contact where no progress was made; 0: unbounded capacity, or no load",
+      no_load_measured);
   BB_FIELD(Number, limit_overload, "the same of a limited element", no_load_measured);
   BB_FIELD(double, kinetic_J, "kinetic energy at its end") = 0;
   BB_FIELD(double, elastic_J, "elastic energy at its end") = 0;

@@ -49,11 +49,10 @@ struct Conditioning {
 using CondMap = std::map<std::string, Conditioning>;
 
 struct PairGaps {
-  BB_RECORD(
-      PairGaps,
-      "d / d_hat of the contacts between two bodies at converged step ends, each with the weight m kappa "
-      "|b'| times the length of its step");
-  BB_FIELD(double, load_N, "sum of m kappa |b'|, mean over the time of all converged steps") = 0;
+  BB_RECORD(PairGaps,
+            "d / d_hat of the contacts between two bodies at converged step ends, each with the weight kappa "
+            "|b'| times the length of its step");
+  BB_FIELD(double, load_N, "sum of kappa |b'|, mean over the time of all converged steps") = 0;
   BB_FIELD(double, load_share, "of the load of all pairs") = 0;
   BB_FIELD(double, time_share, "of the time of converged steps, those at whose end there was load") = 0;
   BB_FIELD(double, gap_rel_p05, "5 % of the load is carried at smaller gaps; right to 1.1 %") = 0;
@@ -82,7 +81,7 @@ struct Summary : WorkCounts {
   BB_FIELD(Number, saddle_curvature_N_per_m, "smallest of the steps", "none_found");
   BB_FIELD(Stats, linear_per_solve, "iterations of the linear solver");
   BB_FIELD(Stats, probe_pcg, "probe_pcg_iterations of the trace");
-  BB_FIELD(Stats, contacts, "rows at the end of a step");
+  BB_FIELD(Stats, contacts, "pairs in contact at the end of a step");
   BB_FIELD(Stats, gap_min_rel, "smallest d / d_hat of each converged step end");
   BB_FIELD(Number, gap_min_m, "smallest gap over converged step ends");
   BB_FIELD(Number, gap_min_ulps,

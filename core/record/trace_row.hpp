@@ -107,7 +107,7 @@ struct ConditionSample {
 };
 
 struct ContactCounts {
-  BB_RECORD(ContactCounts, "contact rows by the kind of their pair");
+  BB_RECORD(ContactCounts, "pairs in contact, by the feature that is closest");
   BB_FIELD(std::size_t, point_point, "two vertices") = 0;
   BB_FIELD(std::size_t, point_edge, "vertex and edge") = 0;
   BB_FIELD(std::size_t, point_triangle, "vertex and triangle") = 0;
@@ -195,8 +195,8 @@ struct TraceRow : WorkCounts {
   BB_FIELD(ContactCounts, contacts, "of this iterate");
   BB_FIELD(Number, gap_min_iterates_m, "smallest gap of this iterate", "no_contacts");
   BB_FIELD(Number, gap_min_iterates_rel, "smallest d / d_hat of this iterate", "no_contacts");
-  BB_FIELD(Number, kappa_min_N_per_m, "smallest kappa of a row", "no_contacts");
-  BB_FIELD(Number, kappa_max_N_per_m, "largest kappa of a row", "no_contacts");
+  BB_FIELD(Number, kappa_min_N_per_m, "smallest kappa of a pair", "no_contacts");
+  BB_FIELD(Number, kappa_max_N_per_m, "largest kappa of a pair", "no_contacts");
   BB_FIELD(Number, kappa_change_rel,
            "largest max/min - 1 of a contact's kappa since the line search before; above 0 for iterations on "
            "end: the refresh of kappa cycles",
@@ -206,8 +206,8 @@ struct TraceRow : WorkCounts {
   BB_FIELD(Number, limit_gap_min_rel,
            "smallest distance of an element to its limit over its width; 1 or more: none is active",
            "no_limit");
-  BB_FIELD(Number, contact_curvature_max_N_per_m, "largest m kappa b''", "no_contacts");
-  BB_FIELD(Number, contact_load_max_N, "largest kappa |b'| per unit multiplicity", "no_contacts");
+  BB_FIELD(Number, contact_curvature_max_N_per_m, "largest kappa b'' of a pair", "no_contacts");
+  BB_FIELD(Number, contact_load_max_N, "largest kappa |b'| of a pair", "no_contacts");
   BB_FIELD(Number, max_stretch, "largest sigma - 1 of a limited element", "no_limit");
   BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma", "no_limit");
   BB_FIELD(std::vector<ConditionSample>, cond, "condition estimates; empty when not due");

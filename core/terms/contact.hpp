@@ -59,9 +59,7 @@ class ContactTerm final : public Term {
     policy_start_.set_started(true);  // or not yet: that is for the other system to do
   }
   void adopt_from(const Term& other) override {
-    KnownStiffness known;
-    static_cast<const ContactTerm&>(other).stiffness_.known(known);
-    adopt(known);
+    adopt(static_cast<const ContactTerm&>(other).stiffness_.known());
   }
   void keep(Archive& archive) override;
   void linearise(const PositionsView& x, const TermContext& context) override;

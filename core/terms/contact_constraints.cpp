@@ -1,14 +1,6 @@
 #include "core/terms/contact_constraints.hpp"
 
 namespace bb {
-namespace {
-
-constexpr int mollified_kind = -1;
-int kind_of(const ContactTable& rows, std::size_t r) { return static_cast<int>(rows.kind[r]); }
-int kind_of(const MollifiedTable&, std::size_t) { return mollified_kind; }
-
-}  // namespace
-
 template <class Table>
 void ContactConstraints::add(const Table& rows, const PositionsView& x, bool compliant) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -23,7 +15,7 @@ void ContactConstraints::add(const Table& rows, const PositionsView& x, bool com
     }
     normal_.insert(normal_.end(), normal.data(), normal.data() + 3);
     level_.push_back(level);
-    compliance_.push_back(compliant ? 1 / (rows.multiplicity[r] * rows.kappa[r]) : 0.0);
+    compliance_.push_back(compliant ? 1 / rows.kappa[r] : 0.0);
   }
 }
 
@@ -32,12 +24,11 @@ void ContactConstraints::set(const ContactTable& rows, const MollifiedTable& mol
   vertices_.clear(), weight_.clear(), normal_.clear(), level_.clear(), compliance_.clear(), before_.clear();
   add(rows, x, compliant);
   add(mollified, x, compliant);
-  std::map<Identity, std::ptrdiff_t> now;
+  std::map<PairId, std::ptrdiff_t> now;
   const auto note = [&](const auto& table) {
-    for (std::size_t r = 0; r < table.size(); ++r) {
-      const Identity identity{table.key[r], kind_of(table, r)};
-      const auto found = index_.find(identity);
-      now[identity] = static_cast<std::ptrdiff_t>(before_.size());
+    for (const PairId pair : table.pair) {
+      const auto found = index_.find(pair);
+      now[pair] = static_cast<std::ptrdiff_t>(before_.size());
       before_.push_back(found == index_.end() ? -1 : found->second);
     }
   };

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <map>
-#include <utility>
 #include <vector>
 
 #include "core/contact/contact_table.hpp"
@@ -14,7 +13,7 @@ namespace bb {
 /// plane, to first order of the motion since of others.
 class ContactConstraints final : public ConstraintBatch {
  public:
-  /// Rows of the state x [3 x n] m. compliant: inverse stiffness 1/(m kappa), m/N, of the kappa that the rows have; else 0.
+  /// Rows of the state x [3 x n] m. compliant: inverse stiffness 1/kappa, m/N, of the kappa that the rows have; else 0.
   void set(const ContactTable& rows, const MollifiedTable& mollified, const PositionsView& x, bool compliant);
 
   std::string_view name() const override { return "contact"; }
@@ -27,7 +26,6 @@ class ContactConstraints final : public ConstraintBatch {
   std::ptrdiff_t before(std::size_t e) const override { return before_[e]; }
 
  private:
-  using Identity = std::pair<ContactKey, int>;  // key and kind of a row
   template <class Table>
   void add(const Table& rows, const PositionsView& x, bool compliant);
 
@@ -37,7 +35,7 @@ class ContactConstraints final : public ConstraintBatch {
   std::vector<double> level_;           // [n] m, C - n . sum w_i x_i
   std::vector<double> compliance_;      // [n] m/N
   std::vector<std::ptrdiff_t> before_;  // [n]
-  std::map<Identity, std::ptrdiff_t> index_;
+  std::map<PairId, std::ptrdiff_t> index_;  // of the pair of each
 };
 
 }  // namespace bb

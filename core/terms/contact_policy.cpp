@@ -78,9 +78,7 @@ void ContactTerm::list_pair_gaps() {
   const ContactTable& rows = state_.rows;
   gaps_.clear();
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t i = rows.pair_begin[r]; i < rows.pair_begin[r + 1]; ++i) {
-      gaps_.push_back({rows.pair[i], rows.d[r], park * rows.d_hat[r]});
-    }
+    gaps_.push_back({rows.pair[r], rows.d[r], park * rows.d_hat[r]});
   }
   const MollifiedTable& mollified = state_.mollified;
   for (std::size_t r = 0; r < mollified.size(); ++r) {

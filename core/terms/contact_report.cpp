@@ -2,6 +2,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <map>
+#include <utility>
 
 #include "core/contact/pair_name.hpp"
 #include "core/terms/barrier_load.hpp"
@@ -55,9 +57,9 @@ RowNumbers measure(const ContactState& state) {
   });
   const ContactTable& rows = state.rows;
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    out.curvature_max = std::max(out.curvature_max, rows.multiplicity[r] * rows.kappa[r] * rows.d2b[r]);
+    out.curvature_max = std::max(out.curvature_max, rows.kappa[r] * rows.d2b[r]);
     out.load_max = std::max(out.load_max, -rows.kappa[r] * rows.db[r]);
-    out.load_sum -= rows.multiplicity[r] * rows.kappa[r] * rows.db[r];
+    out.load_sum -= rows.kappa[r] * rows.db[r];
   }
   return out;
 }
@@ -65,9 +67,18 @@ RowNumbers measure(const ContactState& state) {
 void list_loads(const ContactTable& rows, std::vector<ContactLoad>& out) {
   out.clear();
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    const double load = -rows.multiplicity[r] * rows.kappa[r] * rows.db[r];
-    if (load > 0) out.push_back({rows.key[r], rows.d[r] / rows.d_hat[r], load});
+    const double load = -rows.kappa[r] * rows.db[r];
+    if (load > 0) out.push_back({rows.key(r), rows.d[r] / rows.d_hat[r], load});
   }
+}
+
+using Feature = std::pair<ContactKey, ContactKind>;
+
+// Stiffness of all rows of a feature, N/m: they share what is put on it.
+std::map<Feature, double> stiffness_of_features(const ContactTable& rows) {
+  std::map<Feature, double> out;
+  for (std::size_t r = 0; r < rows.size(); ++r) out[{rows.key(r), rows.kind[r]}] += rows.kappa[r];
+  return out;
 }
 
 // What an iterate and the end of a step both say, where there are rows.
@@ -118,6 +129,7 @@ void ContactTerm::report_overload(const PositionsView&, const PositionsView& oth
   if (barrier.shape.infinite_at_zero || folded_) return;
   const ContactTable& rows = state_.rows;
   LargestSlope slope(barrier);
+  const std::map<Feature, double> stiffness = stiffness_of_features(rows);
   double largest = 0;
   for (std::size_t r = 0; r < rows.size(); ++r) {
     const Eigen::Map<const Vec3d> normal(&rows.normal[3 * r]);
@@ -129,12 +141,12 @@ void ContactTerm::report_overload(const PositionsView&, const PositionsView& oth
       weight_sq += weight * weight;
     }
     const double capacity = slope(rows.d_hat[r]);  // for kappa = 1
-    const double load = push / weight_sq / (rows.multiplicity[r] * rows.kappa[r]);
+    const double load = push / weight_sq / stiffness.at({rows.key(r), rows.kind[r]});
     const double model = newton_force(barrier, rows.d[r], rows.d[r] + opening, rows.d_hat[r]);
     const double times = std::max(load, model) / capacity;
     if (!(times > largest)) continue;
     largest = times;
-    out.contact_overload_at = pair_name(scene_, rows.key[r], rows.kind[r]);
+    out.contact_overload_at = pair_name(scene_, rows.key(r), rows.kind[r]);
   }
   out.contact_overload = largest;
 }

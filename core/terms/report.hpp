@@ -25,7 +25,7 @@ struct IterateNumbers : TraceRow {
 struct ContactLoad {
   ContactKey key;
   double gap_rel = 0;  // d/d_hat
-  double load_N = 0;   // m kappa |b'| > 0
+  double load_N = 0;   // kappa |b'| > 0
 };
 
 struct StepNumbers : StepRecord {

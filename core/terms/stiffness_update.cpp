@@ -93,7 +93,7 @@ void StiffnessUpdate::gather(const Table& table, std::span<const int> rows, cons
   }
 }
 
-// The parts of these rows, as one new pair would have them.
+// Parts and kappa of these rows.
 template <class Table>
 void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const Hessian& hessian, bool at_d_hat) {
   if (rows.empty()) return;
@@ -107,7 +107,11 @@ void StiffnessUpdate::fill(Table& table, std::span<const int> rows, const Hessia
     policy_.fill(batch, kappa_.data());
     for (std::size_t i = 0; i < rows.size(); ++i) parts_[i].fixed = kappa_[i];
   }
-  for (std::size_t i = 0; i < rows.size(); ++i) table.parts[static_cast<std::size_t>(rows[i])] = parts_[i];
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    const auto r = static_cast<std::size_t>(rows[i]);
+    table.parts[r] = parts_[i];
+    table.kappa[r] = parts_[i].at(table.d[r]);
+  }
 }
 
 void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,
@@ -115,7 +119,6 @@ void StiffnessUpdate::fill_missing(ContactTable& rows, MollifiedTable& mollified
   const Hessian hessian = hessian_of(blocks, elastic);
   fill(rows, missing_, hessian, at_d_hat);
   fill(mollified, missing_mollified_, hessian, at_d_hat);
-  memory_.complete(rows, missing_, mollified, missing_mollified_);
 }
 
 double StiffnessUpdate::refresh(ContactTable& rows, MollifiedTable& mollified, const BlockSystem& blocks,

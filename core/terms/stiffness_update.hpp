@@ -50,7 +50,7 @@ class StiffnessUpdate {
 
   /// The kappa that pairs have in the step that another system is in. After begin_step().
   void adopt(const KnownStiffness& known) { memory_.adopt(known); }
-  void known(KnownStiffness& out) const { memory_.known(out); }
+  const KnownStiffness& known() const { return memory_.known(); }
 
   StiffnessPolicy& policy() { return policy_; }
 

@@ -43,8 +43,8 @@ bool all_touch(const Scene& scene, const ContactTable& rows) {
       lower.insert(-1);
       continue;
     }
-    const int first = body(rows.key[r][3]);
-    for (const int vertex : rows.key[r]) {
+    const int first = body(rows.key(r)[3]);
+    for (const int vertex : rows.key(r)) {
       if (vertex >= 0 && body(vertex) != first) lower.insert(std::min(first, body(vertex)));
     }
   }

@@ -63,7 +63,7 @@ ContactFields contact_fields(const ContactState& state, int n_vertices) {
   ContactFields fields{std::vector<double>(n, 1.0), std::vector<double>(n, 0.0)};
   const auto gather = [&fields](const auto& rows) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      for (const int id : rows.key[r]) {  // given vertices included; an obstacle is negative
+      for (const int id : rows.key(r)) {  // given vertices included; an obstacle is negative
         if (id < 0) continue;
         double& gap = fields.gap_rel[static_cast<std::size_t>(id)];
         gap = std::min(gap, rows.d[r] / rows.d_hat[r]);
@@ -74,7 +74,7 @@ ContactFields contact_fields(const ContactState& state, int n_vertices) {
   gather(state.mollified);
   const auto add_load = [&fields](const auto& rows, const std::vector<int>& vertex) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
-      const double force = -rows.multiplicity[r] * rows.kappa[r] * rows.db[r];
+      const double force = -rows.kappa[r] * rows.db[r];
       for (std::size_t k = 4 * r; k < 4 * r + 4; ++k) {
         if (vertex[k] >= 0)
           fields.load[static_cast<std::size_t>(vertex[k])] += std::abs(rows.weight[k]) * force;

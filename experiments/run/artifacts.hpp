@@ -14,11 +14,11 @@ namespace bb {
 /// What contact does to each vertex in one state.
 struct ContactFields {
   std::vector<double> gap_rel;  // [n vertices] smallest d/d_hat of the rows at the vertex; 1 without a row
-  std::vector<double> load;     // [n vertices] N, sum of |w_i| m kappa |b'| over those rows; 0 without a row
+  std::vector<double> load;     // [n vertices] N, sum of |w_i| kappa |b'| over those rows; 0 without a row
 };
 
 /// Both fields from the rows of a state. A nearly parallel edge pair has a gap, but, as in the records, no
-/// load of its own: its mollifier scales m kappa |b'|.   Cost: O(vertices + rows).
+/// load of its own: its mollifier scales kappa |b'|.   Cost: O(vertices + rows).
 ContactFields contact_fields(const ContactState& state, int n_vertices);
 
 /// Files of one run below `folder`/frames and `folder`/matrices.

@@ -28,7 +28,7 @@ class LogHistogram {
   double weight_ = 0;
 };
 
-/// d/d_hat of the rows at converged step ends, each with m kappa |b'| times the length of its step.
+/// d/d_hat of the rows at converged step ends, each with kappa |b'| times the length of its step.
 class ContactGaps {
  public:
   /// The scene must outlive it.

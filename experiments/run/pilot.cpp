@@ -103,7 +103,7 @@ void show(const RunConfig& config, const RunOptions& options, const StepReport& 
 void add_answers(const Pilot& pilot, const StiffnessAnswers& answers, const ContactTable& rows,
                  StrainLimitBatch* limit, const Scene& scene, const Positions& x, AnswerSums& out) {
   for (std::size_t r = 0; r < rows.size(); ++r)
-    out.add_contact(rows, r, -rows.multiplicity[r] * rows.kappa[r] * rows.db[r], answers.contact[r]);
+    out.add_contact(rows, r, -rows.kappa[r] * rows.db[r], answers.contact[r]);
   if (!limit) return;
   limit->measure(x);
   for (std::size_t e = 0; e < limit->size(); ++e) {

@@ -122,7 +122,7 @@ Demand contact_demand(const Pilot& pilot, const Scene& scene, const MatchedStiff
     for (std::size_t r = 0; r < rows.size(); ++r) {
       const double load = -*pilot.stiffness.kappa * log.eval(rows.d[r], rows.d_hat[r]).db;
       if (!(load > 0)) continue;
-      const auto where = [&] { return pair_name(scene, rows.key[r], rows.kind[r]); };
+      const auto where = [&] { return pair_name(scene, rows.key(r), rows.kind[r]); };
       const double answer = pilot.answers.of_contact(rows, r);
       if (!is_load(answer, load, step, where, out)) continue;
       const double kappa = own ? own_kappa(*own, static_cast<int>(r), u, dt, replay.c(step), replay) : 1;

@@ -15,7 +15,7 @@ using MatchedStiffness = std::function<double(double load, double width)>;
 /// The contact or limited element with the largest demand.
 struct Demand {
   double largest = 0;        // N/m, the matched stiffness; 1 with a policy: that over the policy's own
-  double load = 0;           // N per unit multiplicity, or N/m
+  double load = 0;           // N of a pair, or N/m
   double width = 0;          // its d_hat (m), or the width of its limit (1)
   double answer = 0;         // d log force/d log stiffness (stiffness_answer.hpp)
   int step = -1;             // of the pilot, at whose end it carried the load
@@ -23,7 +23,7 @@ struct Demand {
   long long considered = 0;  // loads that were compared, over all steps; 0: all of the above is void
   // forces that follow their stiffness, as between given bodies at a fixed distance, are no loads
   long long left_out = 0;    // over all steps; 0: the rest is void
-  double left_out_load = 0;  // the largest of them, N per unit multiplicity, or N/m
+  double left_out_load = 0;  // the largest of them, N of a pair, or N/m
   int left_out_step = -1;
   std::string left_out_where;
 };

@@ -27,7 +27,7 @@ std::string element_name(const Diagnosis& system, const Term& term, std::size_t 
   const Scene& scene = system.scene();
   if (term.group() == TermGroup::contact && family == 0) {
     const ContactTable& rows = contact_state(system.terms()).rows;
-    return std::string(term.name()) + ": " + pair_name(scene, rows.key[element], rows.kind[element]);
+    return std::string(term.name()) + ": " + pair_name(scene, rows.key(element), rows.kind[element]);
   }
   std::string out(term.name());
   const Stencils& stencils = term.families()[family].stencils;

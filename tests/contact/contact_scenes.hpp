@@ -122,12 +122,18 @@ inline Rows rows_at(ContactSystem& contacts, const Positions& x) {
   return out;
 }
 
-/// Index of the row with these sorted vertices and kind, -1 when there is none.
+/// Index of the first row with these sorted vertices and kind, -1 when there is none.
 inline int find_row(const ContactTable& t, const ContactKey& key, ContactKind kind) {
   for (std::size_t r = 0; r < t.size(); ++r) {
-    if (t.key[r] == key && t.kind[r] == kind) return static_cast<int>(r);
+    if (t.key(r) == key && t.kind[r] == kind) return static_cast<int>(r);
   }
   return -1;
+}
+
+inline std::vector<ContactKey> keys_of(const ContactTable& t) {
+  std::vector<ContactKey> out;
+  for (std::size_t r = 0; r < t.size(); ++r) out.push_back(t.key(r));
+  return out;
 }
 
 /// A shape of the tests' own: (d_hat - d)^2, or (d_hat - d)^3 where smoothness is needed.

@@ -83,7 +83,6 @@ int main(int argc, char** argv) {
   std::ofstream out(argv[2], std::ios::binary);
   write(out, rows.stencil.data(), rows.stencil.size());
   write(out, rows.d.data(), rows.size());
-  write(out, rows.multiplicity.data(), rows.size());
   write(out, mollified.stencil.data(), mollified.stencil.size());
   write(out, mollified.d.data(), mollified.size());
   write(out, gradient.data(), static_cast<std::size_t>(gradient.size()));

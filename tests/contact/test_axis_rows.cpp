@@ -49,7 +49,7 @@ Counts expect_nothing_left_out(const Scene& scene) {
   ContactSystem planned(scene, {}), all(scene, {}, everything(scene));
   const Rows found = rows_at(planned, scene.x0), expected = rows_at(all, scene.x0);
   EXPECT_EQ(found.table.d, expected.table.d);
-  EXPECT_EQ(found.table.multiplicity, expected.table.multiplicity);
+  EXPECT_EQ(found.table.pair, expected.table.pair);
   EXPECT_EQ(found.mollified.d, expected.mollified.d);
   EXPECT_EQ(found.mollified.eps, expected.mollified.eps);
   EXPECT_EQ(found.min_gap, expected.min_gap);

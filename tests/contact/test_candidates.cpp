@@ -3,9 +3,9 @@
 #include <oneapi/tbb/global_control.h>
 
 #include "core/contact/candidates.hpp"
-#include "core/contact/contact_row.hpp"
 #include "core/contact/pair_geometry.hpp"
 #include "core/contact/pair_row.hpp"
+#include "core/contact/row_rule.hpp"
 #include "core/geometry/accd.hpp"
 #include "tests/contact/contact_scenes.hpp"
 
@@ -36,7 +36,7 @@ std::vector<IndexPair> close_pairs(const Scene& scene, const A& a, const B& b, c
       for (double t : {0.0, 0.3, 0.7, 1.0}) {
         const Positions x = x0 + t * (x1 - x0);
         const double gap = closest_points<K, double>(gather(x, pair.vertex)).d - pair.law.offset;
-        if (gap > row_d_hat<K>(scene, pair)) continue;
+        if (gap > activation_distance<K>(surface, pair.vertex.data(), pair.law)) continue;
         out.push_back(index);
         break;
       }
@@ -101,7 +101,8 @@ std::size_t expect_all_that_matter(const Scene& scene, const std::vector<IndexPa
       const IndexPair index{static_cast<int>(i), static_cast<int>(j)};
       const ContactPair<K> pair = contact_pair<K>(surface, index);
       const auto from = gather(scene.x0, pair.vertex), to = gather(x1, pair.vertex);
-      const double park = ContactOptions().ccd_park * pair.law.d_hat, row = row_d_hat<K>(scene, pair);
+      const double park = ContactOptions().ccd_park * pair.law.d_hat,
+                   row = activation_distance<K>(surface, pair.vertex.data(), pair.law);
       bool matters = accd<K, double>(from, to, pair.law.offset, park).hit;
       for (const double t : {0.0, 0.5, 1.0}) {
         const auto x = ((1 - t) * from + t * to).eval();

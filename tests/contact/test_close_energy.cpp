@@ -81,8 +81,9 @@ using Features = std::vector<std::pair<ContactKey, ContactKind>>;
 Features features(ContactSystem& contacts, const Positions& x) {
   Features out;
   const Rows rows = rows_at(contacts, x);
-  for (std::size_t r = 0; r < rows.table.size(); ++r) out.push_back({rows.table.key[r], rows.table.kind[r]});
-  for (const ContactKey& key : rows.mollified.key) out.push_back({key, ContactKind::edge_edge});
+  for (std::size_t r = 0; r < rows.table.size(); ++r) out.push_back({rows.table.key(r), rows.table.kind[r]});
+  for (std::size_t r = 0; r < rows.mollified.size(); ++r)
+    out.push_back({rows.mollified.key(r), ContactKind::edge_edge});
   return out;
 }
 

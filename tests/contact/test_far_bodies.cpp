@@ -16,27 +16,28 @@ std::size_t n_pairs(const ContactSystem::Counts& c) { return c.point_triangle + 
 /// A row by the numbers that its vertices have without far bodies.
 struct NearRow {
   std::vector<double> weight;
-  double d, d_hat, multiplicity;
+  double d, d_hat;
   Vec3d normal;
   bool operator==(const NearRow&) const = default;
 };
-std::map<std::pair<ContactKind, ContactKey>, NearRow> near_rows(const FarScene& far, const ContactTable& t) {
-  std::map<std::pair<ContactKind, ContactKey>, NearRow> out;
+/// Pairs of one feature in their order.
+using RowsByKey = std::multimap<std::pair<ContactKind, ContactKey>, NearRow>;
+RowsByKey near_rows(const FarScene& far, const ContactTable& t) {
+  RowsByKey out;
   for (std::size_t r = 0; r < t.size(); ++r) {
-    ContactKey key = t.key[r];
+    ContactKey key = t.key(r);
     for (int& v : key) v = v < 0 ? v : far.original[at(v)];
-    out[{t.kind[r], key}] = {{&t.stencil_weight[4 * r], &t.stencil_weight[4 * r] + 4},
-                             t.d[r],
-                             t.d_hat[r],
-                             t.multiplicity[r],
-                             Vec3d::Map(&t.normal[3 * r])};
+    out.emplace(std::pair{t.kind[r], key}, NearRow{{&t.stencil_weight[4 * r], &t.stencil_weight[4 * r] + 4},
+                                                   t.d[r],
+                                                   t.d_hat[r],
+                                                   Vec3d::Map(&t.normal[3 * r])});
   }
   return out;
 }
 
 struct Found {
   std::size_t candidates;
-  std::map<std::pair<ContactKind, ContactKey>, NearRow> rows;
+  RowsByKey rows;
   double min_gap;
   StepBound bound;
 };

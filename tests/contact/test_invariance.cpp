@@ -28,8 +28,7 @@ Found look(const Subject& s) {
   const Rows rows = rows_at(contacts, s.scene.x0);
   Found out{bound.alpha, barrier(contacts, s.scene.x0, 1.0, TestShape::cubic), rows.min_gap, {}, bound.key,
             bound.kind};
-  for (std::size_t r = 0; r < rows.table.size(); ++r)
-    out.gaps.insert(out.gaps.end(), static_cast<std::size_t>(rows.table.multiplicity[r]), rows.table.d[r]);
+  out.gaps = rows.table.d;
   out.gaps.insert(out.gaps.end(), rows.mollified.d.begin(), rows.mollified.d.end());
   std::sort(out.gaps.begin(), out.gaps.end());
   return out;

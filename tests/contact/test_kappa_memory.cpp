@@ -4,7 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
+#include <map>
 
 #include "tests/contact/contact_scenes.hpp"
 
@@ -32,20 +32,9 @@ double barrier_energy(const Rows& rows) {
   double energy = 0;
   for (std::size_t r = 0; r < rows.table.size(); ++r) {
     const double depth = rows.table.d_hat[r] - rows.table.d[r];
-    energy += rows.table.multiplicity[r] * rows.table.kappa[r] * depth * depth;
+    energy += rows.table.kappa[r] * depth * depth;
   }
   return energy;
-}
-
-/// A memory in which one pair of the only row has kappa = 7; `one` becomes the row with that pair alone.
-KappaMemory knows_one_pair(const Rows& rows, std::size_t pair, Rows& one) {
-  one = rows;
-  one.table.pair = {rows.table.pair[pair]};
-  one.table.pair_begin = {0, 1};
-  one.table.parts[0] = {7, 0};
-  KappaMemory memory;
-  memory.store(one.table, one.mollified);
-  return memory;
 }
 
 TEST(KappaMemory, BIsContinuousWhereAPointSlidesOverAnEdge) {
@@ -72,51 +61,31 @@ TEST(KappaMemory, BIsContinuousWhereAPointSlidesOverAnEdge) {
   EXPECT_NEAR(barrier_energy(after), barrier_energy(before), 1e-8);
 }
 
-TEST(KappaMemory, ARowOfKnownAndNewPairsHasTheirMean) {
+TEST(KappaMemory, OfPairsWithOneFeatureIsThatOfEach) {
   const Scene scene = point_over_fan();
   ContactSystem contacts(scene, {});
-  Rows rows = at(contacts, scene, 0);  // over the edge: both triangles' pairs in one row
-  ASSERT_EQ(rows.table.size(), 1U);
-  ASSERT_EQ(rows.table.multiplicity[0], 2);
-  Rows one;
-  KappaMemory memory = knows_one_pair(rows, 0, one);
-
-  std::vector<int> missing, missing_mollified;
-  memory.recall(rows.table, rows.mollified, missing, missing_mollified);
-  ASSERT_EQ(missing, std::vector<int>{0});
-  rows.table.parts[0] = {3, 0.01};  // what the policy gives the new pair
-  memory.complete(rows.table, missing, rows.mollified, missing_mollified);
-  const double fallen = 0.01 / std::pow(rows.table.d[0], 2);
-  EXPECT_EQ(rows.table.parts[0].fixed, 5);
-  EXPECT_EQ(rows.table.parts[0].per_gap_sq, 0.005);
-  EXPECT_DOUBLE_EQ(rows.table.kappa[0], 5 + fallen / 2);
-
-  memory.store(rows.table, rows.mollified);  // the new pair is known with 3, not with the mean
+  Rows rows = at(contacts, scene, 0);  // over the edge: both triangles' pairs are closest there
+  ASSERT_EQ(rows.table.size(), 2U);
+  ASSERT_EQ(rows.table.key(0), rows.table.key(1));
+  rows.table.parts[1] = {7, 0.02};
+  Rows one = rows;  // the second pair alone
   one.table.pair = {rows.table.pair[1]};
-  memory.recall(one.table, one.mollified, missing, missing_mollified);
-  EXPECT_TRUE(missing.empty());
-  EXPECT_DOUBLE_EQ(one.table.kappa[0], 3 + fallen);
-}
-
-/// A point above the corner of three triangles; one of the three pairs is known.
-TEST(KappaMemory, EveryNewPairOfARowCounts) {
-  Scene scene;
-  add_body(scene, "point", {Vec3d(0, 0, 0.05)}, {}, 0.1);
-  scene.surface_vertices = {0};
-  add_body(scene, "fan", {Vec3d(0, 0, 0), Vec3d(1, 0, -1), Vec3d(-1, 1, -1), Vec3d(-1, -1, -1)},
-           {{0, 1, 2}, {0, 2, 3}, {0, 3, 1}}, 0.1);
-  ContactSystem contacts(scene, {});
-  Rows rows = rows_at(contacts, scene.x0);
-  ASSERT_EQ(rows.table.size(), 1U);
-  ASSERT_EQ(rows.table.multiplicity[0], 3);
-  Rows one;
-  const KappaMemory memory = knows_one_pair(rows, 1, one);
+  one.table.parts = {rows.table.parts[1]};
+  one.table.d = {rows.table.d[1]};
+  one.table.kappa = {0};
+  KappaMemory memory;
+  memory.store(one.table, one.mollified);
 
   std::vector<int> missing, missing_mollified;
   memory.recall(rows.table, rows.mollified, missing, missing_mollified);
-  rows.table.parts[0] = {3, 0};
-  memory.complete(rows.table, missing, rows.mollified, missing_mollified);
-  EXPECT_DOUBLE_EQ(rows.table.kappa[0], (7 + 3 + 3) / 3.0);
+  EXPECT_EQ(missing, std::vector<int>{0});
+  EXPECT_DOUBLE_EQ(rows.table.kappa[1], 7 + 0.02 / std::pow(rows.table.d[1], 2));
+  rows.table.parts[0] = {3, 0};  // what the policy gives the new pair
+  memory.store(rows.table, rows.mollified);
+  ASSERT_EQ(memory.known().pair, rows.table.pair);
+  EXPECT_EQ(memory.known().parts[0].fixed, 3);
+  EXPECT_EQ(memory.known().parts[1].fixed, 7);
+  EXPECT_EQ(memory.known().parts[1].per_gap_sq, 0.02);
 }
 
 template <class Table>
@@ -135,25 +104,13 @@ Rows numbered(ContactSystem& contacts, const Positions& x) {
   return rows;
 }
 
-/// Sum of the kappa that the pairs of a row had in `stored`, and how many were there.
-std::pair<double, int> known_share(const Rows& stored, const ContactTable& table, std::size_t row) {
-  double sum = 0;
-  int n = 0;
-  for (std::size_t i = table.pair_begin[row]; i < table.pair_begin[row + 1]; ++i) {
-    for (std::size_t r = 0; r < stored.table.size(); ++r) {
-      for (std::size_t k = stored.table.pair_begin[r]; k < stored.table.pair_begin[r + 1]; ++k) {
-        if (stored.table.pair[k] != table.pair[i]) continue;
-        sum += stored.table.kappa[r];
-        ++n;
-      }
-    }
-    for (std::size_t r = 0; r < stored.mollified.size(); ++r) {
-      if (stored.mollified.pair[r] != table.pair[i]) continue;
-      sum += stored.mollified.kappa[r];
-      ++n;
-    }
-  }
-  return {sum, n};
+/// kappa of every pair of both tables.
+std::map<PairId, double> kappa_of(const Rows& rows) {
+  std::map<PairId, double> out;
+  for (std::size_t r = 0; r < rows.table.size(); ++r) out[rows.table.pair[r]] = rows.table.kappa[r];
+  for (std::size_t r = 0; r < rows.mollified.size(); ++r)
+    out[rows.mollified.pair[r]] = rows.mollified.kappa[r];
+  return out;
 }
 
 Scene two_sheets() {
@@ -187,14 +144,26 @@ TEST(KappaMemory, GivesBackWhatItStoredAndReportsTheRest) {
   memory.recall(other.table, other.mollified, missing, missing_mollified);
   EXPECT_GT(missing.size(), 0U);
   EXPECT_LT(missing.size(), other.table.size());
-  for (std::size_t r = 0; r < other.table.size(); ++r) {
-    const bool reported = std::binary_search(missing.begin(), missing.end(), static_cast<int>(r));
-    const auto [sum, n] = known_share(stored, other.table, r);
-    EXPECT_EQ(reported, static_cast<double>(n) < other.table.multiplicity[r]);
-    if (!reported) {
-      EXPECT_EQ(other.table.kappa[r], sum / n);
+  const std::map<PairId, double> known = kappa_of(stored);
+  const auto expect_known = [&known](const auto& table, const std::vector<int>& reported) {
+    for (std::size_t r = 0; r < table.size(); ++r) {
+      const auto found = known.find(table.pair[r]);
+      EXPECT_EQ(std::binary_search(reported.begin(), reported.end(), static_cast<int>(r)),
+                found == known.end());
+      if (found != known.end()) {
+        EXPECT_EQ(table.kappa[r], found->second);
+      }
     }
-  }
+  };
+  expect_known(other.table, missing);
+  expect_known(other.mollified, missing_mollified);
+
+  // with the new ones it knows all pairs of both states, ascending
+  memory.store(other.table, other.mollified);
+  const std::vector<PairId>& pairs = memory.known().pair;
+  EXPECT_TRUE(std::is_sorted(pairs.begin(), pairs.end()));
+  EXPECT_EQ(std::adjacent_find(pairs.begin(), pairs.end()), pairs.end());
+  EXPECT_EQ(pairs.size(), known.size() + missing.size() + missing_mollified.size());
 }
 
 TEST(KappaMemory, KnownRowsKeepTheirFirstValueUntilCleared) {

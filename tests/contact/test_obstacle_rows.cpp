@@ -4,7 +4,7 @@
 #include "core/contact/pair_name.hpp"
 #include "tests/contact/barrier_gradient.hpp"
 #include "tests/contact/obstacle_scenes.hpp"
-#include "tests/contact/one_row.hpp"
+#include "tests/contact/one_feature.hpp"
 
 namespace bb::test::obstacle_rows_test {
 namespace {
@@ -79,7 +79,7 @@ TEST(ObstacleRows, SayWhatTheirColumnsPromise) {
       }
       EXPECT_NEAR(sum, 1, 1e-14);
       int o = -1;
-      for (const int id : t.key[r]) o = id < -1 ? -2 - id : o;
+      for (const int id : t.key(r)) o = id < -1 ? -2 - id : o;
       const Obstacle& obstacle = scene.obstacles[at(o)];
       const Vec3d n = Vec3d::Map(&t.normal[3 * r]), flat = Vec3d::Map(&t.flat[3 * r]);
       EXPECT_NEAR(gap_of_point(obstacle, foot) - thickness(scene, vertices[0]), t.d[r], 1e-13);
@@ -101,13 +101,12 @@ TEST(ObstacleRows, OfABallAreOneAPairOfWhatIsPartOfNothingLarger) {
            {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}}, 0.1);
   scene.obstacles = {round_obstacle(ObstacleKind::sphere, Vec3d::Zero(), 1)};
   ContactSystem contacts(scene, {});
-  expect_one_row(rows_at(contacts, scene.x0), ContactKind::obstacle, 4, 0.05);
+  expect_one_feature(rows_at(contacts, scene.x0), ContactKind::obstacle, 4, 0.05);
   // the same fan over a bar along y: two sides stand across it, two lie nearly along it, and the corner itself
   scene.obstacles = {round_obstacle(ObstacleKind::cylinder, Vec3d::Zero(), 1, Vec3d::UnitY())};
   ContactSystem along(scene, {});
   const Rows at_bar = rows_at(along, scene.x0);
-  ASSERT_EQ(at_bar.table.size(), 1U);
-  EXPECT_EQ(at_bar.table.multiplicity[0], 3);
+  expect_one_feature(at_bar, ContactKind::obstacle, 3, at_bar.table.d.at(0));
   EXPECT_EQ(at_bar.mollified.size(), 2U);
 }
 
@@ -200,7 +199,7 @@ double roughness(ObstacleKind kind, Mollifier mollifier, int n_steps, std::set<C
     const double turn = 0.2 * s;  // about z: at s = 0 a side is along x
     const Mat3d r = Eigen::AngleAxisd(turn, Vec3d::UnitZ()).toRotationMatrix();
     x = r * x;
-    for (const ContactKey& key : rows_at(contacts, x).table.key) keys.insert(key);
+    for (const ContactKey& key : keys_of(rows_at(contacts, x).table)) keys.insert(key);
     const VecXd g = gradient_of(contacts, x);
     size = std::max(size, g.norm());
     if (k > 0) worst = std::max(worst, (g - last).norm());

@@ -34,7 +34,7 @@ LongMatrix whole_hessian(const ContactTable& t, std::size_t r, const Positions& 
   closest.r = closest.d * Vec3d::Map(&t.normal[3 * r]);
   closest.region = interior;
   const auto d = distance_derivatives<double, n>(gather(x, vertex), closest);
-  const Long scale = Long(t.multiplicity[r]) * t.kappa[r];
+  const Long scale = t.kappa[r];
   const LongMatrix gradient = d.gradient.template cast<Long>();
   const LongMatrix full = scale * t.d2b[r] * (gradient * gradient.transpose()) +
                           scale * t.db[r] * d.hessian.template cast<Long>();
@@ -71,7 +71,7 @@ LongMatrix obstacle_hessian(const ContactTable& t, std::size_t r, const Position
     points.col(0) -= closest.weights[k + 1] * points.col(k + 1);
   }
   const auto d = distance_derivatives<double, N + 1>(points, closest);
-  const Long scale = Long(t.multiplicity[r]) * t.kappa[r];
+  const Long scale = t.kappa[r];
   LongMatrix out = LongMatrix::Zero(12, 12);
   for (int j = 0, sj = 0; j < N; ++j) {
     if (sj == t.n_free[r] || t.stencil[4 * r + at(j)] != t.vertex[4 * r + at(sj)]) continue;
@@ -107,7 +107,7 @@ LongMatrix whole_hessian(const ContactTable& t, std::size_t r, const Positions& 
       break;
   }
   LongMatrix out = LongMatrix::Zero(12, 12);
-  const Long scale = Long(t.multiplicity[r]) * t.kappa[r];
+  const Long scale = t.kappa[r];
   const Eigen::Matrix<Long, 3, 1> n = Vec3d::Map(&t.normal[3 * r]).cast<Long>(),
                                   flat = Vec3d::Map(&t.flat[3 * r]).cast<Long>();
   const Eigen::Matrix<Long, 3, 3> one = Eigen::Matrix<Long, 3, 3>::Identity();
@@ -227,9 +227,9 @@ ContactTable one_row(const ContactTable& t, std::size_t r) {
     copy(t.*column, out.*column, 4);
   copy(t.n_free, out.n_free, 1);
   for (const auto column : {&ContactTable::normal, &ContactTable::flat}) copy(t.*column, out.*column, 3);
-  for (const auto column : {&ContactTable::d, &ContactTable::d_hat, &ContactTable::offset,
-                            &ContactTable::multiplicity, &ContactTable::kappa, &ContactTable::b,
-                            &ContactTable::db, &ContactTable::d2b, &ContactTable::curvature})
+  for (const auto column :
+       {&ContactTable::d, &ContactTable::d_hat, &ContactTable::offset, &ContactTable::kappa, &ContactTable::b,
+        &ContactTable::db, &ContactTable::d2b, &ContactTable::curvature})
     copy(t.*column, out.*column, 1);
   return out;
 }

@@ -2,8 +2,8 @@
 #include <gtest/gtest.h>
 
 #include "core/contact/candidates.hpp"
-#include "core/contact/contact_row.hpp"
 #include "core/contact/obstacle_pair.hpp"
+#include "core/contact/pair_row.hpp"
 #include "core/geometry/accd.hpp"
 #include "tests/contact/bound_of.hpp"
 
@@ -138,10 +138,9 @@ void expect_as_of_the_whole_motion(const Scene& scene, const Positions& x1, int*
     few.min_gap = part.find_rows(x, few.table, few.mollified);
     *n_rows += all.table.size();
     EXPECT_EQ(few.min_gap, all.min_gap);
-    EXPECT_EQ(few.table.key, all.table.key);
+    EXPECT_EQ(few.table.pair, all.table.pair);
     EXPECT_EQ(few.table.d, all.table.d);
-    EXPECT_EQ(few.table.multiplicity, all.table.multiplicity);
-    EXPECT_EQ(few.mollified.key, all.mollified.key);
+    EXPECT_EQ(few.mollified.pair, all.mollified.pair);
   }
   const auto n = [](const ContactSystem& contacts) {
     return contacts.candidate_counts().point_triangle + contacts.candidate_counts().edge_edge;

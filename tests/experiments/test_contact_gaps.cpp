@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "core/archive/archive.hpp"
-#include "core/contact/contact_row.hpp"
+#include "core/contact/contact_key.hpp"
 
 namespace bb::contact_gaps_test {
 namespace {

@@ -109,7 +109,7 @@ ContactsAtRest contacts_at_rest(double kappa) {
     for (std::size_t r = 0; r < rows.size(); ++r) {
       out.force.push_back(-rows.kappa[r] * rows.db[r]);
       out.answer.push_back(answers.contact[r]);
-      out.key.push_back(rows.key[r]);
+      out.key.push_back(rows.key(r));
     }
   });
   return out;

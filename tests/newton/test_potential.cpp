@@ -59,7 +59,7 @@ double largest_difference(const ContactTable& a, const ContactTable& b) {
   double out = 0;
   for (std::size_t r = 0; r < a.size(); ++r) {
     for (std::size_t s = 0; s < b.size(); ++s) {
-      if (a.key[r] != b.key[s] || a.kind[r] != b.kind[s]) continue;
+      if (a.pair[r] != b.pair[s]) continue;
       out = std::max(out, relative_change(a.parts[r].per_gap_sq, b.parts[s].per_gap_sq));
     }
   }

@@ -153,8 +153,10 @@ struct RunEnd {
   std::vector<StepStatus> status;
   std::vector<int> iterations, retries;
   std::vector<double> dt_s;
-  std::size_t contacts = 0;
-  double kappa_max = 0, limit_load_max = 0;  // N/m, of the last step that has one; of all steps
+  std::size_t contacts = 0;  // at the ends of all steps
+  double kappa_min = 0, kappa_max = 0,
+         limit_load_max = 0;  // N/m, of the last step that has one; of all steps
+  double kappa_start = 0;     // N/m, of a policy that starts itself
 };
 
 /// Goes on for so many steps, parts of steps counted.
@@ -168,6 +170,7 @@ inline RunEnd run_steps(Simulation& simulation, int steps) {
     end.retries.push_back(report.retries);
     end.dt_s.push_back(report.dt_s);
     end.contacts += report.contacts.total();
+    if (report.kappa_min_N_per_m.finite()) end.kappa_min = report.kappa_min_N_per_m.value;
     if (report.kappa_max_N_per_m.finite()) end.kappa_max = report.kappa_max_N_per_m.value;
     if (report.limit_load_max_N_per_m.finite())
       end.limit_load_max = std::max(end.limit_load_max, report.limit_load_max_N_per_m.value);
@@ -178,7 +181,9 @@ inline RunEnd run_steps(Simulation& simulation, int steps) {
 
 inline RunEnd run_steps(const Scene& scene, Method method, int steps, double dt = 0.01) {
   Simulation simulation(scene, method, dt, steps);
-  return run_steps(simulation, steps);
+  RunEnd end = run_steps(simulation, steps);
+  end.kappa_start = method.stiffness->state().kappa_start;
+  return end;
 }
 
 /// Both runs end within a tolerance (m), step by step with one status and length, and were in contact.
@@ -190,9 +195,11 @@ inline void expect_same_end(const RunEnd& resident, const RunEnd& cpu, double to
     EXPECT_NEAR(resident.dt_s[i], cpu.dt_s[i], 1e-6 * cpu.dt_s[i]) << "step " << i;
   }
   EXPECT_GT(cpu.contacts, 0u);
-  EXPECT_GE(resident.contacts, cpu.contacts);  // one a pair, which the CPU merges
+  EXPECT_EQ(resident.contacts, cpu.contacts);
   EXPECT_LT((resident.x - cpu.x).cwiseAbs().maxCoeff(), tolerance);
+  EXPECT_NEAR(resident.kappa_min, cpu.kappa_min, 1e-6 * cpu.kappa_min);
   EXPECT_NEAR(resident.kappa_max, cpu.kappa_max, 1e-6 * cpu.kappa_max);
+  EXPECT_NEAR(resident.kappa_start, cpu.kappa_start, 1e-6 * cpu.kappa_start);
 }
 
 /// The run on the CPU path, after comparing it with that of the resident pipeline.

@@ -1,8 +1,8 @@
 // Candidates found on an executor: those of the CPU path, of all pairs of boxes, and in any order the same.
 #include <gtest/gtest.h>
 
-#include "core/contact/contact_row.hpp"
 #include "core/contact/pair_geometry.hpp"
+#include "core/contact/row_rule.hpp"
 #include "core/exec/counting_executor.hpp"
 #include "tests/contact/far_bodies.hpp"
 #include "tests/contact/obstacle_scenes.hpp"
@@ -213,7 +213,7 @@ TEST(ResidentBroadPhase, HoldsEveryClosePair) {
           for (const double t : {0.0, 0.35, 1.0}) {
             const Positions x = scene.x0 + t * (x1 - scene.x0);
             close = close || closest_points<K, double>(gather(x, pair.vertex)).d <=
-                                 pair.law.offset + row_d_hat<K>(scene, pair);
+                                 pair.law.offset + activation_distance<K>(s, pair.vertex.data(), pair.law);
           }
           if (!close) continue;
           EXPECT_TRUE(std::binary_search(all.begin(), all.end(), index));

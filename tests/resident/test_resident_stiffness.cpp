@@ -88,32 +88,26 @@ struct ElasticOnExecutor {
   exec::Buffer<double> value;
 };
 
-/// m kappa of every stencil, which both paths must share: pairs of a stencil add up.
-using KappaSums = std::map<std::array<int, 5>, double>;
+/// kappa of every pair, and the kind of its row.
+using KappaOfPairs = std::map<std::pair<PairId, int>, double>;
 
-KappaSums sums_of(const Rows& rows) {
-  KappaSums out;
-  const auto add = [&](const auto& t, std::size_t r, int kind) {
-    const int* s = &t.stencil[4 * r];
-    out[{kind, s[0], s[1], s[2], s[3]}] += t.multiplicity[r] * t.kappa[r];
-  };
+KappaOfPairs kappa_of(const Rows& rows) {
+  KappaOfPairs out;
+  const auto add = [&](const auto& t, std::size_t r, int kind) { out[{t.pair[r], kind}] = t.kappa[r]; };
   for (std::size_t r = 0; r < rows.table.size(); ++r)
     add(rows.table, r, static_cast<int>(rows.table.kind[r]));
   for (std::size_t r = 0; r < rows.mollified.size(); ++r) add(rows.mollified, r, resident::mollified_kind);
   return out;
 }
 
-KappaSums sums_of(ResidentRows& rows) {
-  KappaSums out;
+KappaOfPairs kappa_of(ResidentRows& rows) {
+  KappaOfPairs out;
   const RowView v = rows.view();
-  for (Index r = 0; r < v.n; ++r) {
-    out[{v.kind[r], v.vertex[r], v.vertex[v.n + r], v.vertex[2 * v.n + r], v.vertex[3 * v.n + r]}] +=
-        v.kappa_of(r);
-  }
+  for (Index r = 0; r < v.n; ++r) out[{v.pair[r], v.kind[r]}] = v.kappa_of(r);
   return out;
 }
 
-double difference(const KappaSums& a, const KappaSums& b) {
+double difference(const KappaOfPairs& a, const KappaOfPairs& b) {
   EXPECT_EQ(a.size(), b.size());
   EXPECT_GT(a.size(), 150U);
   double worst = 0;
@@ -180,7 +174,7 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
       EXPECT_NEAR(resident_change, change, 1e-10 * (1 + change));
     }
     n_changed += change > 0 && !std::isinf(change);
-    worst = std::max(worst, difference(sums_of(state), sums_of(on.rows)));
+    worst = std::max(worst, difference(kappa_of(state), kappa_of(on.rows)));
     bytes += bytes_of(on.rows);
   };
   const auto try_at = [&](const Positions& y) {
@@ -188,7 +182,7 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
     update.freeze(rows.table, rows.mollified, elastic.blocks, elastic.values);
     on.find(scene, y, trial);
     stiffness.freeze(trial, on.rows, there.part());
-    worst = std::max(worst, difference(sums_of(rows), sums_of(trial)));
+    worst = std::max(worst, difference(kappa_of(rows), kappa_of(trial)));
     bytes += bytes_of(trial);
     return rows;
   };

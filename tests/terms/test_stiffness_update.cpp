@@ -27,11 +27,10 @@ ContactTable rows_of(const std::vector<PairId>& pairs) {
   for (std::size_t r = 0; r < n; ++r) {
     rows.vertex[4 * r] = 0;
     for (std::size_t k = 1; k < 4; ++k) rows.vertex[4 * r + k] = -1;
-    rows.weight[4 * r] = rows.normal[3 * r + 2] = rows.multiplicity[r] = 1;
+    rows.weight[4 * r] = rows.normal[3 * r + 2] = 1;
     rows.n_free[r] = 1;
     rows.d[r] = 0.005;
     rows.d_hat[r] = 0.01;
-    rows.pair_begin[r + 1] = r + 1;
   }
   return rows;
 }

@@ -1,4 +1,4 @@
-// Candidate pairs and positions as kernels read them.
+// Candidate pairs as kernels read them.
 #pragma once
 
 #include "core/resident/contact/resident_surface.hpp"
@@ -30,16 +30,6 @@ BB_HD PairVertices<K> pair_vertices(const SurfaceView& s, Index i, Index j) {
   if constexpr (K == PairKind::point_edge) return detail::join<K>(s.points, i, s.edges, j);
   if constexpr (K == PairKind::point_triangle) return detail::join<K>(s.points, i, s.triangles, j);
   if constexpr (K == PairKind::edge_edge) return detail::join<K>(s.edges, i, s.edges, j);
-}
-
-/// Columns `vertex` of x [3n].
-template <int N>
-BB_HD Mat<double, 3, N> points_of(const double* x, const int* vertex) {
-  Mat<double, 3, N> out;
-  for (int k = 0; k < N; ++k) {
-    for (int c = 0; c < 3; ++c) out(c, k) = x[3 * static_cast<Index>(vertex[k]) + c];
-  }
-  return out;
 }
 
 }  // namespace bb::resident

@@ -1,9 +1,8 @@
 #include "core/resident/contact/resident_step_bound.hpp"
+#include "core/contact/contact_key.hpp"
 
 #include <algorithm>
 #include <limits>
-
-#include "core/contact/contact_row.hpp"
 
 namespace bb::resident {
 

@@ -13,6 +13,16 @@ namespace bb::resident {
 using exec::Index;
 using exec::Key;
 
+/// Columns `vertex` of x [3n].
+template <int N>
+BB_HD Mat<double, 3, N> points_of(const double* x, const int* vertex) {
+  Mat<double, 3, N> out;
+  for (int k = 0; k < N; ++k) {
+    for (int c = 0; c < 3; ++c) out(c, k) = x[3 * static_cast<Index>(vertex[k]) + c];
+  }
+  return out;
+}
+
 /// What a kernel reads of primitives with N vertices each.
 template <int N>
 struct PrimitiveView {
@@ -55,6 +65,14 @@ struct SurfaceView {
   const PlainObstacle* obstacles;
   int n_obstacles;
   bool planar;
+
+  // what row_rule.hpp asks
+  BB_HD bool is_free(int v) const { return vertex_free[v] != 0; }
+  BB_HD bool same_body(int v, int w) const { return body[v] == body[w]; }
+  template <int N>
+  BB_HD Mat<double, 3, N> rest_points(const int* of) const {
+    return points_of<N>(rest, of);
+  }
 
   template <int N>
   BB_HD const PrimitiveView<N>& primitives() const {

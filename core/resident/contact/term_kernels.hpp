@@ -39,9 +39,8 @@ BB_HD inline Mat<double, 3, 4> row_points(const RowView& rows, Index r, const do
 
 /// Offset of a pair that is not one with an obstacle, m.
 BB_HD inline double pair_offset(const SurfaceView& s, Key pair) {
-  constexpr Key mask = (Key{1} << 30) - 1;
-  const Index i = static_cast<Index>(pair >> 30 & mask), j = static_cast<Index>(pair & mask);
-  switch (static_cast<PairKind>(pair >> 60)) {
+  const int i = pair_first(pair), j = pair_second(pair);
+  switch (static_cast<PairKind>(pair_list(pair))) {
     case PairKind::point_point:
       return s.points.offset[i] + s.points.offset[j];
     case PairKind::point_edge:
@@ -56,12 +55,12 @@ BB_HD inline double pair_offset(const SurfaceView& s, Key pair) {
 
 /// The obstacle of a row that has one.
 BB_HD inline AnalyticSurface<double> obstacle_of(const SurfaceView& s, Key pair) {
-  return s.obstacles[pair & ((Key{1} << 30) - 1)].surface();
+  return s.obstacles[pair_second(pair)].surface();
 }
 
 /// Whether a mollified row is one of an edge and the axis of a cylinder.
 BB_HD inline bool of_axis(const RowView& rows, Index r) {
-  return static_cast<int>(rows.pair[r] >> 60) == obstacle_pairs_of<2>;
+  return pair_list(rows.pair[r]) == obstacle_pairs_of<2>;
 }
 
 template <int N>
@@ -256,9 +255,8 @@ struct SlidingHessians {
 
 /// Thickness of the primitive of an obstacle's row: that of an edge may come from a triangle, m.
 BB_HD inline double obstacle_offset(const SurfaceView& surface, Key pair) {
-  const Index primitive = static_cast<Index>(pair >> 30 & ((Key{1} << 30) - 1));
-  const bool edge = static_cast<int>(pair >> 60) == obstacle_pairs_of<2>;
-  return edge ? surface.edges.offset[primitive] : surface.triangles.offset[primitive];
+  const bool edge = pair_list(pair) == obstacle_pairs_of<2>;
+  return edge ? surface.edges.offset[pair_first(pair)] : surface.triangles.offset[pair_first(pair)];
 }
 
 /// That of a row of an obstacle and the inside of an edge (N = 2) or a triangle.

@@ -3,7 +3,7 @@
 #include <cmath>
 
 #include "core/archive/archive.hpp"
-#include "core/contact/contact_row.hpp"
+#include "core/contact/contact_key.hpp"
 #include "core/resident/system/resident_potential.hpp"
 #include "core/terms/contact.hpp"
 
@@ -23,11 +23,9 @@ ContactCounts counts_of(const RowTotals& rows) {
 }
 
 ContactKey key_of(const HostRows& rows, std::size_t r) {
-  constexpr Key index = (Key{1} << 30) - 1;
   const std::size_t n = rows.size();
-  ContactKey key = {rows.vertex[r], rows.vertex[n + r], rows.vertex[2 * n + r], rows.vertex[3 * n + r]};
-  if (rows.kind[r] == mollified_kind || !is_obstacle(static_cast<ContactKind>(rows.kind[r]))) return key;
-  return obstacle_key(static_cast<int>(rows.pair[r] & index), std::array{key[0], key[1], key[2]});
+  return row_key(rows.pair[r],
+                 {rows.vertex[r], rows.vertex[n + r], rows.vertex[2 * n + r], rows.vertex[3 * n + r]});
 }
 
 void list_loads(const HostRows& rows, std::vector<ContactLoad>& out) {

@@ -1,34 +1,30 @@
-// Rows of several pairs: merged with their number, so that B is continuous where the closest feature changes.
+// Rows of pairs with the same closest feature: one each, so that B is continuous where that changes.
 #include <gtest/gtest.h>
 
-#include "tests/contact/contact_scenes.hpp"
-#include "tests/contact/one_row.hpp"
+#include <set>
 
-namespace bb::test::rows_merged_test {
+#include "tests/contact/contact_scenes.hpp"
+#include "tests/contact/one_feature.hpp"
+
+namespace bb::test::rows_of_one_feature_test {
 namespace {
 
 constexpr double d_hat = 0.1;
 
-TEST(Rows, PairsOfOneFeatureAreMergedWithTheirNumber) {
+TEST(Rows, EveryPairOfOneFeatureHasItsOwn) {
   // above vertex 12 (2, 2): six triangles have it as their closest point
   const Scene over_vertex = point_over_grid(Vec3d(2, 2, 0.05), d_hat);
   ContactSystem contacts(over_vertex, {});
   const Rows at_vertex = rows_at(contacts, over_vertex.x0);
-  double multiplicity = 0;
-  for (double m : at_vertex.table.multiplicity) multiplicity += m;
-  EXPECT_EQ(multiplicity, 6);
-  const int pp = find_row(at_vertex.table, {-1, -1, 12, 25}, ContactKind::point_point);
-  ASSERT_GE(pp, 0);
-  EXPECT_EQ(at_vertex.table.multiplicity[at(pp)], 6);
+  expect_one_feature(at_vertex, ContactKind::point_point, 6, 0.05);
+  EXPECT_EQ(at_vertex.table.key(0), (ContactKey{-1, -1, 12, 25}));
 
   // above the straight edge 11-12, nearer to one side: that triangle's interior, and the edge for the other
   const Scene beside = point_over_grid(Vec3d(1.5, 2.001, 0.05), d_hat);
   ContactSystem contacts2(beside, {});
   const Rows rows = rows_at(contacts2, beside.x0);
   EXPECT_EQ(rows.table.size(), 2U);
-  const int pe = find_row(rows.table, {-1, 11, 12, 25}, ContactKind::point_edge);
-  ASSERT_GE(pe, 0);
-  EXPECT_EQ(rows.table.multiplicity[at(pe)], 1);
+  EXPECT_GE(find_row(rows.table, {-1, 11, 12, 25}, ContactKind::point_edge), 0);
 }
 
 TEST(Rows, BarrierIsContinuousWhereTheClosestFeatureChanges) {
@@ -47,7 +43,7 @@ TEST(Rows, BarrierIsContinuousWhereTheClosestFeatureChanges) {
       return x;
     };
     // bisect for every place where the keys change, then compare B on both sides of it
-    const auto keys = [&](double t) { return rows_at(contacts, state(t)).table.key; };
+    const auto keys = [&](double t) { return keys_of(rows_at(contacts, state(t)).table); };
     double left = 0;
     for (int k = 1; k <= 20; ++k) {
       double lo = left, hi = k / 20.0;
@@ -94,25 +90,19 @@ TEST(Rows, EdgesCrossingAGridKeepBContinuous) {
   EXPECT_LT(largest_step, 20 * 2 * d_hat * 0.7 / n);
 }
 
-TEST(Rows, DifferentActivationDistancesAreNotMerged) {
+TEST(Rows, OfOneFeatureHaveTheActivationDistancesOfTheirPairs) {
   // six triangles share the closest vertex; their mean activation distances differ
   Scene scene = point_over_grid(Vec3d(2, 2, 0.05), d_hat);
   scene.d_hat[12] = 0.2;
   scene.d_hat[6] = 0.17;  // corner of two of the six triangles round vertex 12
   ContactSystem contacts(scene, {});
   const Rows rows = rows_at(contacts, scene.x0);
-  double total = 0;
-  int n = 0;
-  for (std::size_t r = 0; r < rows.table.size(); ++r) {
-    EXPECT_EQ(rows.table.key[r], (ContactKey{-1, -1, 12, 25}));
-    total += rows.table.multiplicity[r];
-    ++n;
-  }
-  EXPECT_EQ(total, 6);
-  EXPECT_GE(n, 2);
+  expect_one_feature(rows, ContactKind::point_point, 6, 0.05);
+  const std::set<double> distances(rows.table.d_hat.begin(), rows.table.d_hat.end());
+  EXPECT_GE(distances.size(), 2U);
 }
 
-TEST(Rows, PlanarPointEdgeMergesAtACorner) {
+TEST(Rows, PlanarPointEdgeHasTwoAtACorner) {
   Scene scene;
   scene.planar = true;
   scene.planar_pairs = PlanarPairs::point_edge;
@@ -120,8 +110,8 @@ TEST(Rows, PlanarPointEdgeMergesAtACorner) {
   scene.surface_edges = {{0, 1}, {0, 2}};
   add_body(scene, "point", {Vec3d(-0.03, -0.04, 0)}, {}, d_hat);
   ContactSystem contacts(scene, {});
-  expect_one_row(rows_at(contacts, scene.x0), ContactKind::point_point, 2, 0.05);
+  expect_one_feature(rows_at(contacts, scene.x0), ContactKind::point_point, 2, 0.05);
 }
 
 }  // namespace
-}  // namespace bb::test::rows_merged_test
+}  // namespace bb::test::rows_of_one_feature_test
