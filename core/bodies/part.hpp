@@ -73,8 +73,6 @@ class Part {
   virtual std::string_view no_elements() const = 0;
   /// One batch a term of E; none without elements.
   virtual void add_batches(const Scene&, Precision, std::vector<std::unique_ptr<EnergyBatch>>& out) const = 0;
-  /// Whether core/resident/elements has kernels for them.
-  virtual bool has_kernels() const { return false; }
   virtual void add_frame_fields(const Scene&, const Positions& /*x*/, FrameFields&) const {}
 
   // --- a single element, as `eval` asks for it
@@ -88,6 +86,7 @@ class Part {
 struct PartEntry {
   std::string_view name, doc;
   const Part& part;
+  bool has_kernels = false;  // whether its term is made on an executor
 };
 
 /// In the order of registry.inc.

@@ -45,7 +45,6 @@ class Hinges final : public Part {
     if (part.hinges.empty()) return;
     out.push_back(std::make_unique<HingeBatch>(part.hinges, part.stiffness, part.rest_angle, precision));
   }
-  bool has_kernels() const override { return true; }
 
   std::vector<std::string> element_names() const override { return {"hinge"}; }
   /// The rest angle is a field of its own, so `rest` may be left out.

@@ -200,7 +200,6 @@ class Membrane final : public Part {
                                                     part.lame_lambda, scene.planar, part.warp, precision));
     }
   }
-  bool has_kernels() const override { return true; }
   void add_frame_fields(const Scene& scene, const Positions& x, FrameFields& out) const override {
     out.of_triangles.push_back({"stretch", stretches(scene, x)});
   }
