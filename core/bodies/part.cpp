@@ -12,9 +12,13 @@ namespace bb {
 
 std::span<const PartEntry> part_entries() {
   static const PartEntry all[] = {
-#define PART(name, doc, ...) {#name, doc, parts::name::part()},
+#define BB_IS_kernels true
+#define BB_IS_host_only false
+#define PART(name, doc, convex, where, ...) {#name, doc, parts::name::part(), BB_IS_##where},
 #include "core/scene/parts/registry.inc"
 #undef PART
+#undef BB_IS_kernels
+#undef BB_IS_host_only
   };
   return all;
 }
@@ -22,7 +26,7 @@ std::span<const PartEntry> part_entries() {
 void require_kernels(std::span<const PartEntry> entries, const Scene& scene, const std::string& where) {
   std::vector<std::string_view> with_kernels;
   for (const PartEntry& entry : entries) {
-    if (entry.part.has_kernels()) with_kernels.push_back(entry.name);
+    if (entry.has_kernels) with_kernels.push_back(entry.name);
   }
   for (const PartEntry& entry : entries) {
     const std::size_t n = entry.part.size(scene);
@@ -31,7 +35,7 @@ void require_kernels(std::span<const PartEntry> entries, const Scene& scene, con
       throw ConfigError(where, fmt::format("{} with {}, which has no kernels", entry.part.elements(), lacks),
                         fmt::format("{} without it", entry.part.elements()));
     }
-    if (entry.part.has_kernels()) continue;
+    if (entry.has_kernels) continue;
     throw ConfigError(where, fmt::format("{} {}, a part without kernels", n, entry.part.elements()),
                       fmt::format("elements of {}", fmt::join(with_kernels, ", ")));
   }

@@ -73,8 +73,6 @@ class Part {
   virtual std::string_view no_elements() const = 0;
   /// One batch a term of E; none without elements.
   virtual void add_batches(const Scene&, Precision, std::vector<std::unique_ptr<EnergyBatch>>& out) const = 0;
-  /// Whether core/resident/elements has kernels for them.
-  virtual bool has_kernels() const { return false; }
   /// What of the elements of this scene there are no kernels for, where there are some for others; empty: nothing.
   virtual std::string_view lacks_kernels(const Scene&) const { return {}; }
   virtual void add_frame_fields(const Scene&, const Positions& /*x*/, FrameFields&) const {}
@@ -90,6 +88,7 @@ class Part {
 struct PartEntry {
   std::string_view name, doc;
   const Part& part;
+  bool has_kernels = false;  // whether its term is made on an executor
 };
 
 /// In the order of registry.inc.

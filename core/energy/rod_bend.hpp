@@ -5,6 +5,7 @@
 #include <limits>
 
 #include "core/energy/terms.hpp"
+#include "core/math/congruence.hpp"
 #include "core/math/psd.hpp"
 
 namespace bb {
@@ -148,7 +149,7 @@ BB_HD Mat<T, 9, 9> rod_point_hessian(const RodCorner<T>& corner, const RodHessia
       to_across.template block<3, 1>(3 * i, k) = basis(i, k) * corner.across;
     }
   }
-  Mat<T, 9, 9> out = to_plane * in_plane * to_plane.transpose() + to_across * across * to_across.transpose();
+  Mat<T, 9, 9> out = congruence<T, 9, 4>(to_plane, in_plane) + congruence<T, 9, 2>(to_across, across);
   mirror_lower<T, 9>(out);
   return out;
 }

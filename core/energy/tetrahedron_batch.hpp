@@ -38,6 +38,7 @@ class TetrahedronBatch final : public EnergyBatch {
   std::string_view name() const override { return model<double>().name; }
   int width() const override { return 4; }
   std::span<const int> vertices() const override { return vertices_; }
+  std::span<const TetrahedronRest<double>> rests() const { return rests_; }
   void values(const PositionsView& x, double* energy) const override;
   void derivatives(const PositionsView& x, Projection projection, LocalTerms& out) const override;
 

@@ -40,7 +40,7 @@ struct Status {
 /// Elements of every part, part by part.
 struct PartSizes {
   BB_RECORD_LIST(PartSizes, "elements of the scene");
-#define PART(name, term, convex, field, ...) BB_FIELD(std::size_t, field, __VA_ARGS__) = 0;
+#define PART(name, term, convex, where, field, ...) BB_FIELD(std::size_t, field, __VA_ARGS__) = 0;
 #include "core/scene/parts/registry.inc"
 #undef PART
 };

@@ -14,15 +14,9 @@ namespace bb {
 
 std::span<const TermEntry> term_entries() {
   static constexpr TermEntry all[] = {
-#define ENTRY(name, doc, convex, kernels) \
-  {#name, doc, convex, [] { return kernels; }, needs_##name, make_##name},
-#define PART(name, doc, convex, ...)                 \
-  {#name,                                            \
-   doc,                                              \
-   convex,                                           \
-   [] { return parts::name::part().has_kernels(); }, \
-   needs_part<parts::name::part>,                    \
-   make_part<parts::name::part>},
+#define ENTRY(name, doc, convex, ...) {#name, doc, convex, needs_##name, make_##name},
+#define PART(name, doc, convex, ...) \
+  {#name, doc, convex, needs_part<parts::name::part>, make_part<parts::name::part>},
 #include "core/terms/registry.inc"
 #undef ENTRY
 #undef PART

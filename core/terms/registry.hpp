@@ -31,8 +31,7 @@ struct TermInputs {
 /// One line of registry.inc; the file of that name defines needs_<name>() and make_<name>().
 struct TermEntry {
   std::string_view name, doc;
-  bool convex;            // no element's Hessian has a negative eigenvalue, at any state
-  bool (*has_kernels)();  // whether a potential on an executor (core/resident) has it
+  bool convex;  // no element's Hessian has a negative eigenvalue, at any state
   PlanItem (*needs)(const TermNeeds&);
   /// Adds the terms, one or more, behind those of the lines before, which they may read. Called when the plan says that they are
   /// needed.

@@ -8,12 +8,11 @@
 
 #include "core/bodies/part.hpp"
 #include "core/cuda/device.hpp"
-#include "core/exec/counting_executor.hpp"
 #include "core/exec/host_executor.hpp"
 #include "core/math/error.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
 #include "core/resident/contact/resident_stiffness.hpp"
-#include "core/resident/elements/resident_limit.hpp"
+#include "core/resident/elements/limit_forms.hpp"
 #include "core/solvers/linear_solvers.hpp"
 #include "experiments/run/method.hpp"
 
@@ -113,9 +112,9 @@ void check_device_forms(const RunConfig& config, const Scene& scene) {
   resident::require_kernel(*method.stiffness, config.source + "#/formulation/stiffness_policy/name");
   at_config(config, "/formulation",
             [&] { resident::ResidentBarrier(method.contact, method.stiffness->has_potential()); });
-  exec::CountingExecutor executor;
-  std::vector<int> unread;
-  at_config(config, "/strain_limit", [&] { resident::make_limit(executor, scene, method, unread); });
+  if (method.strain_limit && !scene.limit.triangles.empty()) {
+    at_config(config, "/strain_limit", [&] { resident::require_limit_kernels(method); });
+  }
 }
 
 void require_device(const RunConfig& config, const Scene& scene) {

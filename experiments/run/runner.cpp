@@ -63,7 +63,7 @@ void fill_scene(const Scene& scene, RunRecord& record) {
   size.vertices = static_cast<std::size_t>(scene.n_vertices());
   const std::size_t per_vertex = scene.planar ? 2 : 3;
   size.free_dofs = per_vertex * (size.vertices - scene.pins.size());
-#define PART(name, term, convex, field, ...) size.field = parts::name::part().size(scene);
+#define PART(name, term, convex, where, field, ...) size.field = parts::name::part().size(scene);
 #include "core/scene/parts/registry.inc"
 #undef PART
   size.obstacles = scene.obstacles.size();

@@ -121,15 +121,6 @@ TEST(SolidBodies, materials_out_of_range_are_refused) {
   EXPECT_NE(complaint({body}).find("/material/solid_youngs_Pa"), std::string::npos);
 }
 
-TEST(SolidBodies, no_kernel_is_there_for_them) {
-  try {
-    require_kernels(part_entries(), scene_of({block("block")}), "/device");
-    FAIL() << "accepted";
-  } catch (const ConfigError& error) {
-    EXPECT_EQ(error.violations().front().found, "48 tetrahedra, a part without kernels");
-  }
-}
-
 TEST(SolidBodies, frames_say_the_smallest_volume_ratio_at_every_vertex) {
   const Scene scene = scene_of({cloth("cloth", 3), block("block")});
   Positions x = scene.x0;

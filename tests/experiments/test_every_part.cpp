@@ -250,7 +250,7 @@ TEST(RequireKernels, names_a_part_that_no_kernel_is_there_for) {
     FAIL() << "accepted";
   } catch (const ConfigError& error) {
     EXPECT_EQ(error.violations().front().found, "1 plain things, a part without kernels");
-    EXPECT_EQ(error.violations().front().allowed, "elements of membrane, springs, hinges");
+    EXPECT_EQ(error.violations().front().allowed, "elements of membrane, springs, hinges, rods, tetrahedra");
   }
 }
 

@@ -1,8 +1,9 @@
-// Resident elements of a scene with their vectors, as tests ask them.
+// The terms of a scene with stencils that stay on an executor, with their vectors, as tests ask them.
 #pragma once
 
 #include "core/exec/host_executor.hpp"
-#include "core/resident/elements/resident_elements.hpp"
+#include "core/resident/elements/element_terms.hpp"
+#include "core/resident/elements/hessian_request.hpp"
 #include "tests/resident/cpu_elements.hpp"
 
 namespace bb::test {
@@ -12,59 +13,127 @@ inline std::span<const double> numbers_of(const Positions& x) {
 }
 
 struct OnExecutor {
+  exec::Executor& executor;
+  Plan plan;
+  resident::VectorTools vectors;
+  exec::Buffer<double> mass;
+  resident::ElementMatrix elements;
+  resident::ResidentTermList terms;
   exec::Buffer<double> x_n, x_tilde, x, trial, dx, g;
-  resident::ResidentElements elements;
   resident::ResidentSum sum;
+  PhaseClock clock;
 
-  OnExecutor(exec::Executor& executor, const Scene& scene, const TermOptions& options, const StepFrame& frame,
-             exec::Index piece = resident::ResidentElements::default_piece)
-      : x_n(executor, "start"),
-        x_tilde(executor, "prediction"),
-        x(executor, "iterate"),
-        trial(executor, "trial"),
-        dx(executor, "direction"),
-        g(executor, "gradient", scene.rest.size()),
-        elements(executor, scene, options, piece),
-        sum(executor) {
+  /// Without contact.
+  OnExecutor(exec::Executor& on, const Scene& scene, const TermOptions& options, const StepFrame& frame,
+             exec::Index piece = resident::ElementMatrix::default_piece)
+      : OnExecutor(on, scene, options, piece) {
     x_n.upload(numbers_of(frame.x_n));
     x_tilde.upload(numbers_of(frame.x_tilde));
-    elements.begin_step(resident_frame(frame));
+    for (const auto& term : terms) term->begin_step(resident_frame(frame));
+  }
+  /// Before a step.
+  OnExecutor(exec::Executor& on, const Scene& scene, const TermOptions& options,
+             exec::Index piece = resident::ElementMatrix::default_piece)
+      : executor(on),
+        plan(make_plan(scene, options, {})),
+        vectors(on, std::vector<std::uint8_t>(3 * scene.mass.size()), scene.pins),
+        mass(on, "vertex masses"),
+        elements(on, scene.n_vertices(), piece),
+        x_n(on, "start"),
+        x_tilde(on, "prediction"),
+        x(on, "iterate"),
+        trial(on, "trial"),
+        dx(on, "direction"),
+        g(on, "gradient", scene.rest.size()),
+        sum(on) {
+    mass.upload(scene.mass);
+    make_terms({on, scene, options, plan.contacts, vectors, mass, elements});
+    elements.finish();
+  }
+  void make_terms(const resident::ResidentInputs& inputs) {
+    const auto make = [&](const char* name, resident::MakeResident& of) {
+      if (plan.term(name).needed) of(inputs, terms);
+    };
+    make("inertia", resident::make_resident_inertia);
+    make("external_force", resident::make_resident_external_force);
+#define PART(name, ...) make(#name, resident::make_resident_##name);
+#include "core/scene/parts/registry.inc"
+#undef PART
+    make("strain_limit", resident::make_resident_strain_limit);
   }
   resident::ResidentFrame resident_frame(const StepFrame& frame) const {
-    return {x_n.data(), x_tilde.data(), frame.dt, frame.c, frame.load_factor};
+    return {&x_n, &x_tilde, frame.dt, frame.c, frame.load_factor};
   }
-  /// kappa of the limit, gradient and energies at x. Returns how far kappa has moved.
+  /// H, kappa of the limit, gradient and energies at x. Returns how far kappa of the limit has moved; 0 without one.
   double linearise(const Positions& at) {
     x.upload(numbers_of(at));
-    elements.clear_matrix();
-    elements.add_matrix(TermGroup::elastic, x.data(), resident::clamped_hessian);
-    const double moved = elements.refresh_limit(x.data());
-    elements.linearise(x.data(), g.data());
-    return moved;
+    fill(TermGroup::elastic, {});
+    g.fill_zero();
+    for (const auto& term : terms) term->linearise(x, {elements.part(), elements.n_blocks(), clock}, g);
+    const IterateNumbers said = report();
+    return said.limit_kappa_change_rel.finite() ? said.limit_kappa_change_rel.value : 0;
   }
   void fill(TermSet set, const resident::HessianRequest& request) {
-    elements.clear_matrix();
-    elements.add_matrix(set, x.data(), [&](std::string_view) { return request; });
+    elements.clear();
+    add(set, request);
+  }
+  /// Elastic terms first.
+  void add(TermSet set, const resident::HessianRequest& request) {
+    for (const bool elastic : {true, false}) {
+      for (const auto& term : terms) {
+        if (set.has(term->group()) && (term->group() == TermGroup::elastic) == elastic)
+          term->add_matrix(x, request);
+      }
+    }
+    elements.mirror();
   }
   resident::Compensated energy(TermSet set) {
     sum.clear();
-    elements.add_energy(set, x.data(), sum);
+    resident::ResidentEnergy energy{sum};
+    for (const auto& term : terms) {
+      if (set.has(term->group())) term->add_energy(x, energy);
+    }
     return sum.get();
   }
   bool evaluate(const Positions& at) {
     trial.upload(numbers_of(at));
-    if (!elements.admits(trial.data())) return false;
-    elements.evaluate(trial.data());
+    for (const auto& term : terms) {
+      if (!term->admits(x, trial, clock)) return false;
+    }
+    for (const auto& term : terms) term->evaluate(trial);
     return true;
   }
   resident::Compensated change() {
     sum.clear();
-    elements.add_change(x.data(), trial.data(), sum);
+    resident::ResidentChange change{sum};
+    for (const auto& term : terms) term->add_change(x, trial, change);
     return sum.get();
   }
-  double bound(const Positions& direction, double park) {
+  void accept() {
+    for (const auto& term : terms) term->accept();
+    x.swap(trial);
+  }
+  /// options.contact_options.ccd_park is read.
+  double bound(const Positions& direction) {
     dx.upload(numbers_of(direction));
-    return elements.bound(x.data(), dx.data(), park);
+    IterateNumbers report;
+    double smallest = 1;
+    for (const auto& term : terms) smallest = std::min(smallest, term->bound({x, trial, dx}, report, clock));
+    return smallest;
+  }
+  IterateNumbers report() {
+    IterateNumbers out;
+    for (const auto& term : terms) term->report(x, out, clock);
+    return out;
+  }
+  /// The first element with an energy that is not finite, with the name of its term; empty without one.
+  std::pair<std::string, exec::Index> first_not_finite() {
+    resident::ResidentLeast least(executor);
+    for (const auto& term : terms) {
+      const exec::Index element = term->first_not_finite(least);
+      if (element >= 0) return {std::string(term->name()), element};
+    }
+    return {"", -1};
   }
   Positions gradient() const {
     Positions out(3, elements.n_vertices());
@@ -73,7 +142,7 @@ struct OnExecutor {
   }
   /// All numbers of all blocks, in their order.
   std::vector<double> matrix() const {
-    const resident::MatrixPart part = elements.matrix();
+    const resident::MatrixPart part = elements.part();
     std::vector<double> out;
     for (exec::Index j = 0; j < elements.n_blocks(); ++j) {
       for (int c = 0; c < 9; ++c) out.push_back(part.value[resident::value_index(j, c)]);
@@ -81,6 +150,32 @@ struct OnExecutor {
     return out;
   }
 };
+
+inline double largest(const Positions& a) { return a.cwiseAbs().maxCoeff(); }
+
+/// Largest difference between the blocks, over the largest number; counts what was compared.
+struct Difference {
+  double relative = 0;
+  int n_nonzero = 0;
+};
+inline Difference compare(const OnExecutor& resident, const CpuElements& cpu) {
+  const resident::MatrixPart part = resident.elements.part();
+  double difference = 0, size = 0;
+  int n_nonzero = 0;
+  for (int r = 0; r < cpu.scene.n_vertices(); ++r) {
+    for (exec::Index j = part.row_begin[r]; j < part.row_begin[r + 1]; ++j) {
+      EXPECT_TRUE(j == part.row_begin[r] || part.column[j - 1] < part.column[j]);
+      const Mat3d expected = cpu.block(r, part.column[j]);
+      for (int c = 0; c < 9; ++c) {
+        const double number = part.value[resident::value_index(j, c)];
+        difference = std::max(difference, std::abs(number - expected.data()[c]));
+        size = std::max(size, std::abs(expected.data()[c]));
+        n_nonzero += number != 0;
+      }
+    }
+  }
+  return {difference / size, n_nonzero};
+}
 
 /// The five orders of a host executor.
 inline std::vector<std::unique_ptr<exec::HostExecutor>> all_orders() {

@@ -116,8 +116,7 @@ TEST(ResidentChange, BelongsToTheIterateThatWasAccepted) {
   const Positions to = pair.x + wave(pair.scene, 1e-3);
   ASSERT_TRUE(pair.resident.evaluate(to));
   const double there = pair.resident.change().value();
-  pair.resident.elements.accept();
-  pair.resident.x.swap(pair.resident.trial);
+  pair.resident.accept();
   ASSERT_TRUE(pair.resident.evaluate(pair.x));
   const resident::Compensated back = pair.resident.change();
   EXPECT_NE(there, 0);

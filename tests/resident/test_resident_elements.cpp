@@ -12,32 +12,6 @@ using namespace bb::test;
 // Hinges of the CPU path are computed four at a time, which rounds otherwise; all else is the same arithmetic.
 constexpr double hinge_rounding = 1e-14;
 
-double largest(const Positions& a) { return a.cwiseAbs().maxCoeff(); }
-
-/// Largest difference between the blocks, over the largest number; counts what was compared.
-struct Difference {
-  double relative = 0;
-  int n_nonzero = 0;
-};
-Difference compare(const OnExecutor& resident, const CpuElements& cpu) {
-  const resident::MatrixPart part = resident.elements.matrix();
-  double difference = 0, size = 0;
-  int n_nonzero = 0;
-  for (int r = 0; r < cpu.scene.n_vertices(); ++r) {
-    for (exec::Index j = part.row_begin[r]; j < part.row_begin[r + 1]; ++j) {
-      EXPECT_TRUE(j == part.row_begin[r] || part.column[j - 1] < part.column[j]);
-      const Mat3d expected = cpu.block(r, part.column[j]);
-      for (int c = 0; c < 9; ++c) {
-        const double number = part.value[resident::value_index(j, c)];
-        difference = std::max(difference, std::abs(number - expected.data()[c]));
-        size = std::max(size, std::abs(expected.data()[c]));
-        n_nonzero += number != 0;
-      }
-    }
-  }
-  return {difference / size, n_nonzero};
-}
-
 struct Case {
   const char* model;
   bool planar;
@@ -78,7 +52,7 @@ TEST(ResidentElements, HaveTheGradientAndEnergiesOfTheTerms) {
       EXPECT_NEAR(sum.value(), static_cast<double>(expected), 1e-14 * static_cast<double>(magnitude));
       EXPECT_NEAR(sum.magnitude, static_cast<double>(magnitude), 1e-13 * static_cast<double>(magnitude));
     }
-    EXPECT_EQ(resident.elements.first_not_finite().element, -1);
+    EXPECT_EQ(resident.first_not_finite().second, -1);
   }
   std::printf("largest relative difference of gradients: %.2g\n", worst);
 }
@@ -182,7 +156,7 @@ TEST(ResidentElements, SumTheGroupsThatAreAskedFor) {
   }
   // what was elastic stays while the rest is added
   resident.fill(TermGroup::elastic, {});
-  resident.elements.add_matrix(TermGroup::load, resident.x.data(), resident::clamped_hessian);
+  resident.add(TermGroup::load, {});
   EXPECT_EQ(resident.matrix(), seen.back());
 }
 
@@ -190,6 +164,7 @@ TEST(ResidentElements, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
   const Scene scene = cloth_scene("baraff_witkin", false);
   TermOptions options = element_options("log");
   options.limit_stiffness = elastic_limit();
+  options.contact_options.ccd_park = 1e-3;
   const StepFrame frame = step_frame(scene);
   const Positions x = strained(scene), dx = wave(scene, 0.3);
   struct Found {
@@ -208,11 +183,11 @@ TEST(ResidentElements, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
     EXPECT_TRUE(resident.evaluate(x + 1e-3 * dx));
     const resident::Compensated change = resident.change();
     out.change = change.sum, out.carry = change.carry;
-    out.bound = resident.bound(dx, 1e-3);
+    out.bound = resident.bound(dx);
     return out;
   };
   exec::HostExecutor first;
-  const Found expected = find(first, resident::ResidentElements::default_piece);
+  const Found expected = find(first, resident::ElementMatrix::default_piece);
   EXPECT_NE(expected.change, 0);
   EXPECT_GT(expected.bound, 0);
   EXPECT_LT(expected.bound, 1);
@@ -224,12 +199,9 @@ TEST(ResidentElements, RefuseWhatHasNoKernel) {
   const Scene scene = cloth_scene("arap", false, 3);
   exec::HostExecutor executor;
   TermOptions options = element_options();
-  options.precision = Precision::mixed;
-  EXPECT_THROW(resident::ResidentElements(executor, scene, options), ConfigError);
-  options.precision = Precision::full;
   options.limit.shape.name = "mine";
   try {
-    resident::ResidentElements elements(executor, scene, options);
+    const OnExecutor resident(executor, scene, options);
     FAIL();
   } catch (const ConfigError& error) {
     EXPECT_NE(std::string(error.what()).find("mine"), std::string::npos);
@@ -242,7 +214,7 @@ TEST(ResidentElements, AreCountedWithoutMemory) {
   const TermOptions options = element_options();
   exec::HostExecutor host;
   exec::CountingExecutor counting;
-  const resident::ResidentElements there(host, scene, options), counted(counting, scene, options);
+  const OnExecutor there(host, scene, options), counted(counting, scene, options);
   EXPECT_GT(host.memory().bytes(), 10000u);
   EXPECT_EQ(host.memory().by_name(), counting.memory().by_name());
   for (const char* name : {"element matrix values", "limit stiffness", "hinge vertices"}) {
@@ -259,9 +231,9 @@ TEST(ResidentElements, NameTheFirstElementThatIsNoNumber) {
   Positions x = strained(scene);
   x(0, 5) = std::nan("");
   resident.linearise(x);
-  const auto bad = resident.elements.first_not_finite();
-  EXPECT_EQ(bad.term, "membrane");
-  const auto& triangle = scene.membranes[0].triangles[static_cast<std::size_t>(bad.element)];
+  const auto [term, element] = resident.first_not_finite();
+  EXPECT_EQ(term, "membrane");
+  const auto& triangle = scene.membranes[0].triangles[static_cast<std::size_t>(element)];
   EXPECT_TRUE(triangle[0] == 5 || triangle[1] == 5 || triangle[2] == 5);
 }
 

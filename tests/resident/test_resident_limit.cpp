@@ -3,7 +3,6 @@
 #include <optional>
 
 #include "core/math/error.hpp"
-#include "core/resident/elements/resident_limit.hpp"
 #include "tests/barriers/host_policy.hpp"
 #include "tests/resident/on_executor.hpp"
 
@@ -66,13 +65,13 @@ TEST(ResidentLimit, HasTheTermsOfTheCpuForEveryRule) {
         const Term& term = cpu.terms[cpu.terms.size() - 1];
         ASSERT_EQ(term.name(), "strain_limit");
         const_cast<Term&>(term).report(x, report, cpu.clock);
-        const resident::LimitNumbers numbers = resident.elements.limit_numbers(resident.x.data());
-        ASSERT_GT(numbers.load_max, 0);
-        ASSERT_GT(numbers.gap_min_rel, 0);
-        EXPECT_EQ(numbers.max_stretch, report.max_stretch.value);
-        EXPECT_EQ(numbers.gap_min_rel, report.limit_gap_min_rel.value);
-        EXPECT_NEAR(numbers.load_max, report.limit_load_max_N_per_m.value,
-                    std::max(tolerance, 1e-14) * numbers.load_max);
+        const IterateNumbers numbers = resident.report();
+        const double load_max = numbers.limit_load_max_N_per_m.value;
+        ASSERT_GT(load_max, 0);
+        ASSERT_GT(numbers.limit_gap_min_rel.value, 0);
+        EXPECT_EQ(numbers.max_stretch.value, report.max_stretch.value);
+        EXPECT_EQ(numbers.limit_gap_min_rel.value, report.limit_gap_min_rel.value);
+        EXPECT_NEAR(load_max, report.limit_load_max_N_per_m.value, std::max(tolerance, 1e-14) * load_max);
         EXPECT_NEAR(moved, report.limit_kappa_change_rel.value, tolerance * (1 + moved));
         const bool moves = rule.elastic && rule.elastic->refresh == Refresh::per_iteration && size > 0.007;
         EXPECT_EQ(moved > 1e-6, moves) << rule.shape;
@@ -107,7 +106,7 @@ TEST(ResidentLimit, BoundsAStepAsTheCpuDoes) {
         const Positions dx = wave(scene, size), x1 = x + dx;
         IterateNumbers report;
         const double expected = term.bound({x, x1, dx}, report, cpu.clock);
-        const double found = resident.bound(dx, park);
+        const double found = resident.bound(dx);
         EXPECT_EQ(found, expected) << size << " " << park;
         n_below += found > 0 && found < 1;
         EXPECT_TRUE(resident.evaluate(x + found * dx));
@@ -160,6 +159,37 @@ TEST(ResidentLimit, LiteralAndSquaredGapAreThoseOfTheCpu) {
   EXPECT_EQ(n_beyond, 6);
 }
 
+// What was measured of a refused trial is not taken for the iterate, and what was measured of an accepted one is.
+TEST(ResidentLimit, IsMeasuredWhereItIsAsked) {
+  const Scene scene = cloth_scene("arap", false);
+  for (const bool elastic : {false, true}) {
+    TermOptions options = element_options();
+    if (elastic) options.limit_stiffness = elastic_limit();
+    const StepFrame frame = step_frame(scene);
+    exec::HostExecutor executor;
+    OnExecutor resident(executor, scene, options, frame), fresh(executor, scene, options, frame);
+    const Positions x = strained(scene), to = strained(scene, 0.009);
+    resident.linearise(x);
+    resident.fill(TermSet::all(), {});
+    const std::vector<double> matrix = resident.matrix();
+    const double stretch = resident.report().max_stretch.value;
+    ASSERT_TRUE(resident.evaluate(to));
+    EXPECT_EQ(resident.report().max_stretch.value, stretch);
+    ASSERT_TRUE(resident.evaluate(to));
+    resident.fill(TermSet::all(), {});
+    EXPECT_EQ(resident.matrix(), matrix);
+    ASSERT_TRUE(resident.evaluate(to));
+    resident.accept();
+    EXPECT_NE(resident.report().max_stretch.value, stretch);
+    resident.linearise(to);
+    fresh.linearise(x), fresh.linearise(to);
+    EXPECT_EQ(resident.gradient(), fresh.gradient());
+    fresh.fill(TermSet::all(), {}), resident.fill(TermSet::all(), {});
+    EXPECT_EQ(resident.matrix(), fresh.matrix());
+    EXPECT_NE(resident.matrix(), matrix);
+  }
+}
+
 TEST(ResidentLimit, IsLeftOutWhereNothingIsLimited) {
   const Scene scene = cloth_scene("arap", true, 4);
   TermOptions options = element_options();
@@ -167,9 +197,8 @@ TEST(ResidentLimit, IsLeftOutWhereNothingIsLimited) {
   exec::HostExecutor executor;
   OnExecutor resident(executor, scene, options, step_frame(scene));
   EXPECT_EQ(resident.linearise(scene.x0), 0);
-  EXPECT_EQ(resident.bound(wave(scene, 10), 0), 1);
-  EXPECT_FALSE(resident.elements.limit_reads_matrix());
-  EXPECT_EQ(resident.elements.limit_numbers(resident.x.data()).max_stretch, 0);
+  EXPECT_EQ(resident.bound(wave(scene, 10)), 1);
+  EXPECT_FALSE(resident.report().max_stretch.finite());
 }
 
 TEST(ResidentLimit, RefusesAPolicyWithoutKernelByItsName) {
@@ -177,9 +206,8 @@ TEST(ResidentLimit, RefusesAPolicyWithoutKernelByItsName) {
   TermOptions options = element_options();
   options.limit_stiffness = std::make_unique<HostPolicy>();
   exec::HostExecutor executor;
-  std::vector<int> vertices;
   try {
-    resident::make_limit(executor, scene, options, vertices);
+    const OnExecutor resident(executor, scene, options);
     FAIL() << "not refused";
   } catch (const ConfigError& error) {
     EXPECT_EQ(error.violations()[0].where, "stiffness_policy/name");

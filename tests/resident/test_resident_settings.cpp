@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "core/mesh/solid_generators.hpp"
 #include "tests/barriers/limit_policies.hpp"
 #include "tests/resident/system_cases.hpp"
 
@@ -148,6 +149,40 @@ TEST(ResidentSettings, OptionsOfContact) {
   }
 }
 
+/// A rod and a block of two models that fall on a floor.
+Scene rod_and_blocks() {
+  SceneBuilder builder("rod and blocks", false, Vec3d(0, 0, -10), "test");
+  BodySpec rod;
+  rod.name = "rod";
+  rod.mesh = rod_mesh(6, Vec3d(0, 0, 0.015), Vec3d(0.3, 0.02, 0.025));
+  rod.material.line_density = 0.1;
+  rod.material.rod_stretching = 30;
+  rod.material.rod_bending = 1e-3;
+  rod.d_hat = 0.02;
+  PinSpec end;
+  end.indices = {0};
+  rod.pins = {end};
+  builder.add_body(rod);
+  for (const char* model : {"stable_neo_hookean", "corotational"}) {
+    BodySpec block;
+    block.name = model;
+    block.mesh = solid_box_mesh({1, 2, 1}, Vec3d(0.1, 0.2, 0.1));
+    block.mesh.vertices.row(1).array() += *model == 's' ? 0.4 : 0.8;
+    block.mesh.vertices.row(2).array() += 0.065;
+    block.material.solid_model = model;
+    block.material.solid_youngs = 2e3;
+    block.material.solid_density = 20;
+    block.d_hat = 0.02;
+    builder.add_body(block);
+  }
+  Obstacle floor;
+  floor.name = "floor";
+  builder.add_obstacle(floor);
+  return builder.finish();
+}
+
+TEST(ResidentSettings, RodsAndSolids) { expect_same_run(rod_and_blocks(), cubic, 8, tolerance); }
+
 TEST(ResidentSettings, FrictionHasNoKernels) {
   Method method = cubic();
   method.friction.mu = 0.3;
@@ -159,6 +194,14 @@ TEST(ResidentSettings, FrictionHasNoKernels) {
   } catch (const ConfigError& error) {
     EXPECT_EQ(error.violations()[0].where, "/device");
   }
+}
+
+TEST(ResidentSettings, OtherPrecisionsHaveNoKernels) {
+  Method method = cubic();
+  method.precision = Precision::mixed;
+  test::run_resident(method);
+  const Scene scene = test::cloth_on_plate();
+  EXPECT_THROW(Simulation(scene, method, 0.01, 1), ConfigError);
 }
 
 TEST(ResidentSettings, StiffnessOfTheStrainLimit) {

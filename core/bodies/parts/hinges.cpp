@@ -78,7 +78,6 @@ class Hinges final : public Part {
     if (any_positive(part.creep)) batch->set_creep(part.yield, part.creep);
     out.push_back(std::move(batch));
   }
-  bool has_kernels() const override { return true; }
   std::string_view lacks_kernels(const Scene& scene) const override {
     if (any_positive(scene.hinges.exponential)) return "an exponential part";
     return any_positive(scene.hinges.creep) ? "creep" : "";

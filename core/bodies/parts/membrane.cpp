@@ -270,7 +270,6 @@ class Membrane final : public Part {
       out.push_back(std::move(batch));
     }
   }
-  bool has_kernels() const override { return true; }
   std::string_view lacks_kernels(const Scene& scene) const override {
     const bool creeps = std::any_of(scene.membranes.begin(), scene.membranes.end(),
                                     [](const MembranePart& part) { return !part.creep.empty(); });

@@ -79,7 +79,6 @@ class Springs final : public Part {
     if (part.edges.empty()) return;
     out.push_back(std::make_unique<SpringBatch>(part.edges, scene.rest, part.stiffness, precision));
   }
-  bool has_kernels() const override { return true; }
 
   std::vector<std::string> element_names() const override { return {"spring"}; }
   ElementAnswer element(const std::string&, Fields& fields) const override {

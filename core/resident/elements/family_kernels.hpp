@@ -3,7 +3,9 @@
 
 #include "core/energy/hinge.hpp"
 #include "core/energy/membrane_list.hpp"
+#include "core/energy/rod_bend.hpp"
 #include "core/energy/spring.hpp"
+#include "core/energy/tetrahedron.hpp"
 #include "core/energy/triangle_membrane.hpp"
 #include "core/resident/elements/element_kernels.hpp"
 
@@ -69,6 +71,46 @@ struct Hinges : ElementVertices<4> {
     Vec3d p[4];
     points(x, e, p);
     return hinge_terms<double>(p, stiffness[e], rest_angle[e], projection);
+  }
+};
+
+/// Corners of rods, bent at the middle vertex.
+struct Rods : ElementVertices<3> {
+  const double* stiffness;   // [n] J
+  const double* rest_angle;  // [n] rad
+  BB_HD double value(const double* x, Index e) const {
+    Vec3d p[3];
+    points(x, e, p);
+    return rod_bend_value<double>(p, stiffness[e], rest_angle[e]);
+  }
+  BB_HD ElementTerms<double, 9> terms(const double* x, Index e, Projection projection) const {
+    Vec3d p[3];
+    points(x, e, p);
+    return rod_bend_terms<double>(p, stiffness[e], rest_angle[e], projection);
+  }
+};
+
+/// Model: a name of core/energy/solids.inc in bb::solid.
+template <class Model>
+struct Tetrahedra : ElementVertices<4> {
+  const double* dm_inv;                 // [9, n] 1/m, column-major entries
+  const double* volume;                 // [n] m^3, at rest
+  const double *lame_mu, *lame_lambda;  // [n] Pa
+  BB_HD TetrahedronRest<double> rest(Index e) const {
+    TetrahedronRest<double> out;
+    for (int k = 0; k < 9; ++k) out.dm_inv.data()[k] = dm_inv[k * n + e];
+    out.volume = volume[e];
+    return out;
+  }
+  BB_HD double value(const double* x, Index e) const {
+    Vec3d p[4];
+    points(x, e, p);
+    return tetrahedron_value<Model, double>(rest(e), p, lame_mu[e], lame_lambda[e]);
+  }
+  BB_HD ElementTerms<double, 12> terms(const double* x, Index e, Projection projection) const {
+    Vec3d p[4];
+    points(x, e, p);
+    return tetrahedron_terms<Model, double>(rest(e), p, lame_mu[e], lame_lambda[e], projection);
   }
 };
 

@@ -24,13 +24,13 @@ struct Loads {
   }
 };
 
-/// g = gradient of the loads.
+/// g += gradient of the loads.
 struct LoadGradient {
   Loads loads;
   const double* x;
   double* g;  // [3 n] N
   BB_HD void operator()(Index v) const {
-    Vec3d out = Vec3d::Zero();
+    Vec3d out = point_at(g, v);
     out += loads.weight(v) * loads.off_target(x, v);
     if (loads.has_weight) out += -loads.force(v);
     for (int k = 0; k < 3; ++k) g[3 * v + k] = out[k];

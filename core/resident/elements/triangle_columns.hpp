@@ -3,7 +3,7 @@
 
 #include <string>
 
-#include "core/resident/elements/element_family.hpp"
+#include "core/resident/elements/element_term.hpp"
 #include "core/resident/elements/family_kernels.hpp"
 
 namespace bb::resident {

@@ -8,32 +8,31 @@
 
 namespace bb::resident {
 
-ResidentContact::ResidentContact(exec::Executor& executor, const Scene& scene, TermOptions& options,
-                                 const ContactPlan& plan, const exec::Buffer<std::uint8_t>& fixed)
-    : executor_(executor),
-      scene_(scene),
-      options_(options),
-      fixed_(fixed),
-      surface_(scene),
-      resident_surface_(executor, scene, surface_),
-      candidates_(executor),
-      broad_phase_(executor, resident_surface_, surface_, plan),
-      step_bound_(executor, resident_surface_,
-                  {options.contact_options.ccd_park, options.contact_options.ccd_max_probes}),
-      finder_(executor, resident_surface_, plan.mollifier.needed),
-      stiffness_(executor, *options.stiffness, scene.mass),
-      barrier_(options.contact, options.stiffness->has_potential()),
-      assembly_(executor, resident_surface_, scene.n_vertices()),
-      sums_(executor),
-      curved_(executor),
-      straight_(executor),
-      gaps_(executor),
-      rows_(executor, columns_of(*options.stiffness)),
-      trial_(executor, columns_of(*options.stiffness)),
-      part_(executor, "contact gradient"),
-      mass_(executor, "contact masses") {
-  mass_.upload(scene.mass);
-}
+ResidentContact::ResidentContact(const ResidentInputs& inputs)
+    : executor_(inputs.executor),
+      scene_(inputs.scene),
+      options_(inputs.options),
+      vectors_(inputs.vectors),
+      mass_(inputs.mass),
+      surface_(scene_),
+      resident_surface_(executor_, scene_, surface_),
+      candidates_(executor_),
+      broad_phase_(executor_, resident_surface_, surface_, inputs.contacts),
+      step_bound_(executor_, resident_surface_,
+                  {options_.contact_options.ccd_park, options_.contact_options.ccd_max_probes}),
+      finder_(executor_, resident_surface_, inputs.contacts.mollifier.needed),
+      stiffness_(executor_, *options_.stiffness, scene_.mass),
+      barrier_(options_.contact, options_.stiffness->has_potential()),
+      assembly_(executor_, resident_surface_, scene_.n_vertices()),
+      sums_(executor_),
+      curved_(executor_),
+      straight_(executor_),
+      gaps_(executor_),
+      rows_(executor_, columns_of(*options_.stiffness)),
+      trial_(executor_, columns_of(*options_.stiffness)),
+      part_(executor_, "contact gradient"),
+      elastic_value_(executor_, "elastic matrix of the iterate"),
+      totals_(executor_) {}
 
 void ResidentContact::expect(const ExpectedContacts& expected) {
   broad_phase_.expect(expected.candidates);
@@ -41,13 +40,14 @@ void ResidentContact::expect(const ExpectedContacts& expected) {
   assembly_.expect(expected);
 }
 
-void ResidentContact::begin_step(const Column& x_n, double dt, double c) {
+void ResidentContact::begin_step(const ResidentFrame& frame) {
   stiffness_.begin_step();
-  change_time(dt, c);
+  has_step_elastic_ = false;
+  change_frame(frame);
   first_iterate_ = true;
   if (frugal()) assembly_.free_matrix();
   listed_ = false;
-  find_rows(x_n);
+  find_rows(*frame.x_n);
   take_trial();
   evaluated_ = true;  // as far as rows without kappa can be
 }
@@ -60,10 +60,11 @@ void ResidentContact::take_trial() {
   energy_.reset();
 }
 
-void ResidentContact::prepare(const Column& x0, const Column& x1) {
+void ResidentContact::prepare(const ResidentMotion& motion, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::broad_phase);
   if (frugal()) assembly_.free_matrix();
   const std::size_t lists =
-      broad_phase_.count(x0, x1).bytes();  // takes memory, so before what is left is asked
+      broad_phase_.count(motion.x0, motion.x1).bytes();  // takes memory, so before what is left is asked
   listed_ = lists <= list_budget();
   in_trees_ = !listed_;
   if (listed_) {
@@ -126,8 +127,8 @@ Compensated ResidentContact::energy(const Column& x) {
   return *energy_;
 }
 
-void ResidentContact::change_time(double dt, double c) {
-  time_ = {dt, c};
+void ResidentContact::change_frame(const ResidentFrame& frame) {
+  time_ = {frame.dt, frame.c};
   stiffness_.set_time(time_);
 }
 
@@ -135,7 +136,22 @@ void ResidentContact::use_policy_kappa() {
   if (options_.stiffness->uniform()) stiffness_.set_uniform(options_.stiffness->state().kappa);
 }
 
-void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Column& g) {
+// Of a policy with a potential H of the step's first iterate, all through the step.
+void ResidentContact::keep_elastic(const ResidentContext& context) {
+  const StiffnessPolicy& policy = *options_.stiffness;
+  elastic_ = context.elastic;
+  if (!policy.needs_hessian()) return;
+  if (!policy.has_potential() || !has_step_elastic_) {
+    has_step_elastic_ = true;
+    elastic_value_.resize(value_count(context.n_blocks));
+    executor_.copy(elastic_value_.data(), elastic_.value,
+                   static_cast<std::size_t>(elastic_value_.size()) * sizeof(double));
+  }
+  elastic_.value = elastic_value_.data();
+}
+
+void ResidentContact::linearise(const Column& x, const ResidentContext& context, Column& g) {
+  keep_elastic(context);
   take_back(x);
   energy_.reset();
   if (frugal()) give_back_motion();
@@ -145,12 +161,19 @@ void ResidentContact::linearise(const Column& x, const MatrixPart& elastic, Colu
   has_pattern_ = true;
   start_policy(x, g);
   use_policy_kappa();
-  const double change = stiffness_.refresh(rows_, elastic);
+  const double change = stiffness_.refresh(rows_, elastic_);
   kappa_change_ = first_iterate_ ? 0 : change;
   first_iterate_ = false;
   barrier_.evaluate(executor_, rows_);
   evaluated_ = true;
   assembly_.add_gradient(rows_, x, g);
+}
+
+void ResidentContact::add_matrix(const Column& x, const HessianRequest& request) {
+  settle(x);
+  const bool blended = request.t > 0;
+  matrix_ =
+      assembly_.matrix(rows_, x, {options_.hessian_mode, request.first, blended, blended ? request.t : 1});
 }
 
 void ResidentContact::give_back_motion() {
@@ -167,28 +190,33 @@ void ResidentContact::start_policy(const Column& x, const Column& others) {
   part_.resize(others.size());
   part_.fill_zero();
   assembly_.add_gradient(rows_, x, part_);
-  const StartSums sums{sums_.product(part_, others, fixed_), sums_.product(part_, part_, fixed_),
-                       sums_.mean_mass(rows_, mass_)};
+  const StartSums sums{sums_.product(part_, others, vectors_.fixed()),
+                       sums_.product(part_, part_, vectors_.fixed()), sums_.mean_mass(rows_, mass_)};
   if (executor_.counts_only()) return policy_start_.set_started(true);
   policy_start_.start(policy, scene_, options_.contact, sums, time_);
 }
 
-const StepBound& ResidentContact::bound(const Column& x0, const Column& x1) {
+void ResidentContact::find_bound(const Column& x0, const Column& x1) {
   if (listed_) {
     bound_ = step_bound_.find(candidates_, x0, x1);
-    return bound_;
+    return;
   }
   if (!in_trees_) broad_phase_.count(x0, x1);  // a state was looked at since
   in_trees_ = true;
   bound_ = step_bound_.find_without_list(broad_phase_.source(), x0, x1);
-  return bound_;
+}
+
+double ResidentContact::bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::step_bound);
+  find_bound(motion.x0, motion.x1);
+  out.bound = bound_;
+  return out.alpha_ccd = bound_.alpha;
 }
 
 // The barrier of the rows is lost meanwhile.
 bool ResidentContact::make_room(const Column& x, const Column& dx, double bound, Column& force) {
   settle(x);
   curved_.clear(), straight_.clear();
-  force.fill_zero();
   executor_.each(rows_.size(), DetourRows{rows_.view(), resident_surface_.view(), x.data(), dx.data(),
                                           curved_.data(), straight_.data()});
   const bool held = HoldTimes{curved_.smallest(), straight_.smallest()}.by_curvature(bound);
@@ -203,20 +231,26 @@ bool ResidentContact::make_room(const Column& x, const Column& dx, double bound,
 
 std::string ResidentContact::describe_bound() const { return pair_name(scene_, bound_.key, bound_.kind); }
 
-bool ResidentContact::admits(const Column& x, const Column& trial) {
+bool ResidentContact::admits(const Column& x, const Column& trial, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::contact_rows);
   energy(x);  // while its rows have all columns
   find_rows(trial);
   return trial_.feasible();
 }
 
-void ResidentContact::freeze(const MatrixPart& elastic) {
+void ResidentContact::freeze() {
   use_policy_kappa();
-  stiffness_.freeze(trial_, rows_, elastic);
+  stiffness_.freeze(trial_, rows_, elastic_);
 }
 
-void ResidentContact::evaluate() {
+void ResidentContact::evaluate(const Column&) {
   barrier_.evaluate(executor_, trial_);
   trial_evaluated_ = true;
+}
+
+void ResidentContact::add_change(const Column& x, const Column& trial, ResidentChange& out) {
+  out.before = out.before + energy(x);
+  out.after = out.after + sums_.energy(trial_, trial, assembly_);
 }
 
 void ResidentContact::accept() {
@@ -224,10 +258,15 @@ void ResidentContact::accept() {
   stiffness_.keep(rows_);
 }
 
-void ResidentContact::end_step() {
+void ResidentContact::end_step(PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::stiffness);
   StiffnessPolicy& policy = *options_.stiffness;
   if (!policy.adapts()) return;
   policy.end_step(gaps_.end_step(rows_, options_.contact_options.ccd_park));
+}
+
+void make_resident_contact(const ResidentInputs& inputs, ResidentTermList& terms) {
+  terms.add(std::make_unique<ResidentContact>(inputs));
 }
 
 }  // namespace bb::resident

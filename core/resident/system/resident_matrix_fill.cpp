@@ -1,6 +1,9 @@
 // Gradient and matrix of the iterate, products and solves with it.
+#include <algorithm>
+#include <cmath>
 #include <stdexcept>
 
+#include "core/resident/elements/hessian_request.hpp"
 #include "core/resident/linear/pcg_kernels.hpp"
 #include "core/resident/system/resident_potential.hpp"
 
@@ -10,57 +13,28 @@ void ResidentPotential::linearise(const Column& x, Column& g) {
   if (plan_.policy_submatrix.needed) {
     const ScopedPhase timer(clock(), Phase::elastic);
     fill_elastic(x);
-    keep_elastic();
   }
-  {
-    const ScopedPhase timer(clock(), Phase::strain_limit);
-    limit_kappa_change_ = elements_.refresh_limit(x.data());
+  g.fill_zero();
+  const ResidentContext context{elements_.part(), elements_.n_blocks(), clock()};
+  for (const auto& term : terms_) {
+    const ScopedPhase timer(clock(), term->phase());
+    term->linearise(x, context, g);
   }
-  {
-    const ScopedPhase timer(clock(), Phase::elastic);
-    elements_.linearise(x.data(), g.data());
-    energies_known_ = true;
-  }
-  if (contact_) {
-    const ScopedPhase timer(clock(), Phase::contact_terms);
-    contact_->linearise(x, kept_elastic(), g);
-  }
+  energies_known_ = true;
   if (pattern_changed()) ++pattern_id_;
+}
+
+bool ResidentPotential::pattern_changed() const {
+  return std::any_of(terms_.begin(), terms_.end(), [](const auto& term) { return term->pattern_changed(); });
 }
 
 // H, which stiffness policies read: every elastic element clamped.
 void ResidentPotential::fill_elastic(const Column& x) {
-  elements_.clear_matrix();
-  elements_.add_matrix(TermGroup::elastic, x.data(), clamped_hessian);
-}
-
-// What kappa of contacts is made of: the H of the iterate, which trial states ask for when the matrix holds all terms
-// again; of a policy with a potential that of the step's first iterate, all through it.
-void ResidentPotential::keep_elastic() {
-  if (!contact_ || !contact_->needs_hessian()) return;
-  if (contact_->policy().has_potential() && has_step_elastic_) return;
-  has_step_elastic_ = true;
-  const MatrixPart matrix = elements_.matrix();
-  elastic_value_.resize(value_count(elements_.n_blocks()));
-  executor_->copy(elastic_value_.data(), matrix.value,
-                  static_cast<std::size_t>(elastic_value_.size()) * sizeof(double));
-}
-
-MatrixPart ResidentPotential::kept_elastic() const {
-  MatrixPart part = elements_.matrix();
-  if (elastic_value_.size() > 0) part.value = elastic_value_.data();
-  return part;
-}
-
-HessianChoice ResidentPotential::contact_choice(double t) const {
-  const StepHessian choice = method_.hessian_of("contact");
-  HessianChoice out{method_.hessian_mode, first_projection(choice), false, 1};
-  const bool begins_exact = choice == StepHessian::blend || choice == StepHessian::exact_or_clamped;
-  if (!begins_exact || t == 0) return out;
-  out.projection = Projection::psd;
-  out.blended = choice == StepHessian::blend && t < 1;
-  out.t = t;
-  return out;
+  elements_.clear();
+  for (const auto& term : terms_) {
+    if (term->group() == TermGroup::elastic) term->add_matrix(x, {});
+  }
+  elements_.mirror();
 }
 
 void ResidentPotential::fill_matrix(const Column& x, const HessianLevel& level, const Column& force) {
@@ -72,19 +46,35 @@ void ResidentPotential::fill_exact(const Column& x, const Column& force) {
   fill(x, {0, infinity, force.data()});
 }
 
+// H first, as on the host.
 void ResidentPotential::fill(const Column& x, const Filled& level) {
   const ScopedPhase timer(clock(), Phase::assembly);
-  elements_.clear_matrix();
-  elements_.add_matrix(TermSet::all(), x.data(), [&](std::string_view term) {
-    return hessian_request(method_.hessian_of(term), level.t, level.threshold, level.force);
-  });
-  if (contact_) contact_matrix_ = contact_->matrix(x, contact_choice(level.t));
+  elements_.clear();
+  for (const bool elastic : {true, false}) {
+    for (const auto& term : terms_) {
+      if ((term->group() == TermGroup::elastic) != elastic) continue;
+      term->add_matrix(
+          x, hessian_request(method_.hessian_of(term->name()), level.t, level.threshold, level.force));
+    }
+  }
+  elements_.mirror();
 }
 
-ResidentMatrix ResidentPotential::matrix() const { return {{elements_.matrix(), contact_matrix_}}; }
+ResidentMatrix ResidentPotential::matrix() const {
+  ResidentMatrix out{{elements_.part(), {}}};
+  for (const auto& term : terms_) {
+    const MatrixPart own = term->changing_matrix().part;
+    if (!own.row_begin) continue;
+    if (out.part[1].row_begin) throw std::logic_error("two terms whose stencils come and go");
+    out.part[1] = own;
+  }
+  return out;
+}
 
 std::size_t ResidentPotential::nnz() const {
-  return 9 * static_cast<std::size_t>(elements_.n_blocks() + (contact_ ? contact_->n_blocks() : 0)) / 2;
+  Index n = elements_.n_blocks();
+  for (const auto& term : terms_) n += term->changing_matrix().n_blocks;
+  return 9 * static_cast<std::size_t>(n) / 2;
 }
 
 double ResidentPotential::add_tikhonov(double, double) {
@@ -98,7 +88,7 @@ void ResidentPotential::multiply(const Column& v, Column& out) {
 }
 
 void ResidentPotential::add_given_motion(const Column& x, const Column& motion, Column& force) {
-  if (contact_) contact_->add_given_motion(x, motion, force);
+  for (const auto& term : terms_) term->add_given_motion(x, motion, force);
 }
 
 void ResidentPotential::solve(const Column& b, Column& step, SolveReport& report) {

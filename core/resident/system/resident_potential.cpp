@@ -1,11 +1,12 @@
-// Set-up, the step and its motions. The matrix is in resident_matrix_fill.cpp, what is said of the state in
-// resident_report.cpp.
+// Set-up, the step and its motions, and what is said of a state. The matrix is in resident_matrix_fill.cpp.
 #include "core/resident/system/resident_potential.hpp"
 
 #include <algorithm>
 
+#include "core/contact/kappa_memory.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/newton_system.hpp"
+#include "core/resident/system/term_list.hpp"
 #include "core/solvers/linear_solvers.hpp"
 
 namespace bb::resident {
@@ -22,13 +23,9 @@ ParameterMap linear_parameters(const Method& method) {
   return own_parameters(entry.parameters, method.linear.parameters, "/linear_solver");
 }
 
-/// A term that the plan needs and no kernel computes would be left out of E.
-void require_kernels(const Plan& plan) {
-  for (const TermEntry& entry : term_entries()) {
-    if (!plan.term(entry.name).needed || entry.has_kernels()) continue;
-    throw ConfigError("/device", std::string(entry.name) + ", a term without kernels",
-                      "a scene without it, or device cpu");
-  }
+void require_double(const Method& method) {
+  if (method.precision == Precision::full) return;
+  throw ConfigError("precision", "of the terms", "double: kernels have no other");
 }
 
 }  // namespace
@@ -38,21 +35,20 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
                                      PhaseClock& clock)
     : IncrementalPotential(clock),
       executor_(std::move(executor)),
-      scene_(scene),
       method_(method),
       plan_(plan),
       vectors_(*executor_, fixed, scene.pins),
-      elements_(*executor_, scene, method),
+      mass_(*executor_, "vertex masses"),
+      elements_(*executor_, scene.n_vertices()),
       forcing_(linear_parameters(method)),
       max_pcg_iterations_(integer(linear_parameters(method), "max_iterations")),
-      elastic_value_(*executor_, "elastic matrix of the iterate"),
       product_partial_(*executor_, "partial products", Partition::most_blocks),
       sum_(*executor_),
-      row_totals_(*executor_) {
-  require_kernels(plan);
-  if (plan.term("contact").needed) {
-    contact_ = std::make_unique<ResidentContact>(*executor_, scene, method, plan.contacts, vectors_.fixed());
-  }
+      least_(*executor_) {
+  require_double(method);
+  mass_.upload(scene.mass);
+  terms_ = make_resident_terms(plan, {*executor_, scene, method, plan.contacts, vectors_, mass_, elements_});
+  elements_.finish();
   pcg_ = std::make_unique<ResidentPcg>(*executor_, scene.n_vertices(),
                                        make_preconditioner(*executor_, linear_parameters(method)));
 }
@@ -60,101 +56,90 @@ ResidentPotential::ResidentPotential(std::unique_ptr<exec::Executor> executor, c
 ResidentPotential::~ResidentPotential() = default;
 
 void ResidentPotential::begin_step(const StepColumns& step) {
-  has_step_elastic_ = false;
   forcing_.begin_step();
   energies_known_ = trial_evaluated_ = false;
-  frame_ = {step.x_n.data(), step.x_tilde.data(), step.dt, step.c, step.load_factor};
-  elements_.begin_step(frame_);
-  if (contact_) contact_->begin_step(step.x_n, step.dt, step.c);
+  for (const auto& term : terms_) term->begin_step(frame(step));
 }
 
 void ResidentPotential::change_step(const StepColumns& step) {
   energies_known_ = false;
-  frame_.dt = step.dt;
-  frame_.c = step.c;
-  elements_.change_frame(frame_);
-  if (contact_) contact_->change_time(step.dt, step.c);
+  for (const auto& term : terms_) term->change_frame(frame(step));
 }
 
 void ResidentPotential::end_step(const Column&) {
-  const ScopedPhase timer(clock(), Phase::stiffness);
-  if (contact_) contact_->end_step();
+  for (const auto& term : terms_) term->end_step(clock());
+}
+
+void ResidentPotential::keep(Archive& archive) {
+  for (const auto& term : terms_) term->keep(archive);
 }
 
 // The clusters of a preconditioner go with the pattern that they were made for.
 void ResidentPotential::drop_caches() {
-  contact_matrix_ = {};
+  for (const auto& term : terms_) term->drop_caches();
   ++pattern_id_;
 }
 
-void ResidentPotential::prepare(const Column& x0, const Column& x1, const Column&, bool) {
-  const ScopedPhase timer(clock(), Phase::broad_phase);
-  if (contact_) contact_->prepare(x0, x1);
+void ResidentPotential::prepare(const Column& x0, const Column& x1, const Column& dx, bool) {
+  for (const auto& term : terms_) term->prepare({x0, x1, dx}, clock());
 }
 
 double ResidentPotential::bound(const Column& x0, const Column& x1, const Column& dx,
                                 IterationReport& report) {
   double smallest = 1;
-  holder_.clear();
-  if (plan_.term("strain_limit").needed) {
-    const ScopedPhase timer(clock(), Phase::strain_bound);
-    smallest = report.alpha_strain = elements_.bound(x0.data(), dx.data(), method_.contact_options.ccd_park);
-    if (smallest < 1) holder_ = "the strain limit";
-  }
-  if (contact_) {
-    const ScopedPhase timer(clock(), Phase::step_bound);
-    report.bound = contact_->bound(x0, x1);
-    report.alpha_ccd = report.bound.alpha;
-    if (report.bound.alpha < 1 && report.bound.alpha <= smallest) holder_ = contact_->describe_bound();
-    smallest = std::min(smallest, report.bound.alpha);
+  holder_ = nullptr;
+  for (const auto& term : terms_) {
+    const double said = term->bound({x0, x1, dx}, report, clock());
+    const double alpha = said >= 0 ? said : 0;  // what is no number proves nothing
+    if (!(alpha < 1) || alpha > smallest) continue;
+    smallest = alpha;
+    holder_ = term.get();
   }
   return smallest;
 }
 
 // The values of the matrix may have been given back.
 bool ResidentPotential::make_room(const Column& x, const Column& dx, double bound, Column& force) {
-  if (!contact_ || !contact_->make_room(x, dx, bound, force)) return false;
-  fill(x, level_);
-  return true;
+  force.fill_zero();
+  bool held = false;
+  for (const auto& term : terms_) held = term->make_room(x, dx, bound, force) || held;
+  if (held) fill(x, level_);
+  return held;
 }
 
-// Contact sees for itself that a number is not finite.
+bool ResidentPotential::is_finite(const Column& trial) {
+  const bool seen =
+      std::any_of(terms_.begin(), terms_.end(), [](const auto& term) { return term->sees_non_finite(); });
+  return seen || vectors_.first_not_finite(trial) < 0;
+}
+
 bool ResidentPotential::admits(const Column& x, Column& trial) {
   trial_evaluated_ = false;
-  if (!contact_ && vectors_.first_not_finite(trial) >= 0) return false;
-  if (!elements_.admits(trial.data())) return false;
-  if (!contact_) return true;
-  {
-    const ScopedPhase rows(clock(), Phase::contact_rows);
-    if (!contact_->admits(x, trial)) return false;
+  if (!is_finite(trial)) return false;
+  for (const auto& term : terms_) {
+    if (!term->admits(x, trial, clock())) return false;
   }
-  contact_->freeze(kept_elastic());
+  for (const auto& term : terms_) term->freeze();
   return true;
 }
 
-// The limit has been measured at the trial, where the energies of the iterate are known.
 EnergyChange ResidentPotential::change(const Column& x, const Column& trial) {
-  if (!energies_known_) {
-    know_energies(x);
-    elements_.admits(trial.data());
-  }
-  elements_.evaluate(trial.data());
+  know_energies(x);
+  for (const auto& term : terms_) term->evaluate(trial);
   trial_evaluated_ = true;
   sum_.clear();
-  elements_.add_change(x.data(), trial.data(), sum_);
-  const Compensated fixed = sum_.get();
-  EnergyChange out{fixed.value(), fixed.magnitude};
-  if (!contact_) return out;
-  contact_->evaluate();
-  // rows come and go: their energies are compared as sums
-  const auto before = contact_->energy(x), after = contact_->trial_energy(trial);
-  const double change = (fixed.sum + (after.sum - before.sum)) + (fixed.carry + (after.carry - before.carry));
-  return EnergyChange{change, fixed.magnitude + before.magnitude + after.magnitude};
+  ResidentChange change{sum_};
+  for (const auto& term : terms_) term->add_change(x, trial, change);
+  const Compensated parts = sum_.get(), &before = change.before, &after = change.after;
+  return EnergyChange{(parts.sum + (after.sum - before.sum)) + (parts.carry + (after.carry - before.carry)),
+                      parts.magnitude + before.magnitude + after.magnitude};
 }
 
 void ResidentPotential::accept() {
-  if (trial_evaluated_) elements_.accept();
-  if (contact_) contact_->accept();
+  for (const auto& term : terms_) {
+    term->accept();
+    if (trial_evaluated_) term->take_energies();
+  }
   energies_known_ = trial_evaluated_;
   trial_evaluated_ = false;
 }
@@ -163,14 +148,52 @@ void ResidentPotential::accept() {
 void ResidentPotential::know_energies(const Column& x) {
   if (energies_known_) return;
   const WholePhase timer(clock(), Phase::output);
-  elements_.admits(x.data());
-  elements_.evaluate(x.data());
-  elements_.accept();
+  for (const auto& term : terms_) term->evaluate_iterate(x);
   energies_known_ = true;
 }
 
+double ResidentPotential::energy(TermSet set, const Column& x) {
+  know_energies(x);
+  sum_.clear();
+  ResidentEnergy energy{sum_};
+  for (const auto& term : terms_) {
+    if (set.has(term->group())) term->add_energy(x, energy);
+  }
+  return sum_.get().value() + energy.rows.value();
+}
+
+void ResidentPotential::report(const Column& x, IterateNumbers& out) {
+  for (const auto& term : terms_) term->report(x, out, clock());
+}
+
+void ResidentPotential::report_end(const Column& x, StepNumbers& out) {
+  for (const auto& term : terms_) term->report_end(x, out);
+}
+
+std::string ResidentPotential::describe_non_finite() {
+  for (const auto& term : terms_) {
+    const Index element = term->first_not_finite(least_);
+    if (element >= 0) return "element " + std::to_string(element) + " of term " + std::string(term->name());
+  }
+  return {};
+}
+
+KnownStiffness ResidentPotential::known_stiffness() const {
+  KnownStiffness out;
+  for (const auto& term : terms_) term->add_known(out);
+  return out;
+}
+
 void ResidentPotential::expect(const ExpectedContacts& expected) {
-  if (contact_) contact_->expect(expected);
+  for (const auto& term : terms_) term->expect(expected);
+}
+
+void ResidentPotential::set_frugal_from(Index rows) {
+  for (const auto& term : terms_) term->set_frugal_from(rows);
+}
+
+void ResidentPotential::set_list_budget(std::size_t bytes) {
+  for (const auto& term : terms_) term->set_list_budget(bytes);
 }
 
 void count_memory(NewtonSystem& system, ResidentPotential& potential, const Scene& scene,

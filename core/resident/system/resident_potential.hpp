@@ -1,5 +1,5 @@
-// E in an executor's memory (docs/device.md): elements, limit and contact as kernels, conjugate gradients on the matrix
-// where it was assembled. Numbers alone go to the host.
+// E in an executor's memory (docs/device.md): a list of terms as kernels, of which it knows none by name, and conjugate
+// gradients on the matrix where it was assembled. Numbers alone go to the host.
 #pragma once
 
 #include <memory>
@@ -9,11 +9,9 @@
 #include "core/linear/forcing.hpp"
 #include "core/newton/incremental_potential.hpp"
 #include "core/newton/method.hpp"
-#include "core/resident/elements/resident_elements.hpp"
+#include "core/resident/contact/expected_contacts.hpp"
+#include "core/resident/elements/term_inputs.hpp"
 #include "core/resident/linear/resident_pcg.hpp"
-#include "core/resident/sums/vectors.hpp"
-#include "core/resident/system/resident_contact.hpp"
-#include "core/resident/system/row_totals.hpp"
 #include "core/terms/plan.hpp"
 
 namespace bb {
@@ -38,7 +36,7 @@ class ResidentPotential final : public IncrementalPotential {
   void drop_caches() override;
 
   void linearise(const Column& x, Column& g) override;
-  bool pattern_changed() const override { return contact_ && contact_->pattern_changed(); }
+  bool pattern_changed() const override;
   void fill_matrix(const Column& x, const HessianLevel& level, const Column& force) override;
   void fill_exact(const Column& x, const Column& force) override;
   /// Errors: std::logic_error always: only article_literal asks, which runs on the host.
@@ -52,7 +50,7 @@ class ResidentPotential final : public IncrementalPotential {
 
   void prepare(const Column& x0, const Column& x1, const Column& dx, bool to_bound) override;
   double bound(const Column& x0, const Column& x1, const Column& dx, IterationReport& report) override;
-  std::string describe_bound() const override { return holder_; }
+  std::string describe_bound() const override { return holder_ ? holder_->describe_bound() : std::string(); }
   bool make_room(const Column& x, const Column& dx, double bound, Column& force) override;
   bool admits(const Column& x, Column& trial) override;
   EnergyChange change(const Column& x, const Column& trial) override;
@@ -66,14 +64,10 @@ class ResidentPotential final : public IncrementalPotential {
 
   /// On an executor that only counts buffers: what the rows are to be taken for.
   void expect(const ExpectedContacts& expected);
-  /// As ResidentContact::set_frugal_from.
-  void set_frugal_from(Index rows) {
-    if (contact_) contact_->set_frugal_from(rows);
-  }
-  /// As ResidentContact::set_list_budget.
-  void set_list_budget(std::size_t bytes) {
-    if (contact_) contact_->set_list_budget(bytes);
-  }
+  /// As ResidentTerm::set_frugal_from.
+  void set_frugal_from(Index rows);
+  /// As ResidentTerm::set_list_budget.
+  void set_list_budget(std::size_t bytes);
   /// Who holds how much memory.
   const exec::MemoryLedger& memory() const { return executor_->memory(); }
 
@@ -84,40 +78,33 @@ class ResidentPotential final : public IncrementalPotential {
     double t = 0, threshold = infinity;
     const double* force = nullptr;
   };
+  ResidentFrame frame(const StepColumns& step) const {
+    return {&step.x_n, &step.x_tilde, step.dt, step.c, step.load_factor};
+  }
   ResidentMatrix matrix() const;
   void fill(const Column& x, const Filled& level);
   void fill_elastic(const Column& x);
-  void keep_elastic();
-  MatrixPart kept_elastic() const;
-  HessianChoice contact_choice(double t) const;
-  /// Requires contact_.
-  RowTotals row_totals(const Column& x);
-  void keep_contact(Archive& archive);
+  bool is_finite(const Column& trial);
   void know_energies(const Column& x);
 
   std::unique_ptr<exec::Executor> executor_;
-  const Scene& scene_;
   Method& method_;
   const Plan& plan_;
   VectorTools vectors_;
-  ResidentElements elements_;
-  std::unique_ptr<ResidentContact> contact_;  // where something can touch
+  Buffer<double> mass_;
+  ElementMatrix elements_;  // of all terms with stencils that stay
+  ResidentTermList terms_;
   std::unique_ptr<ResidentPcg> pcg_;
   Forcing forcing_;
   int max_pcg_iterations_;
 
-  Column elastic_value_;  // H that stiffness policies read
-  bool has_step_elastic_ = false;
-  exec::Buffer<double> product_partial_;
+  Buffer<double> product_partial_;
   ResidentSum sum_;
-  ResidentSums<RowTotals> row_totals_;
-  MatrixPart contact_matrix_{};
-  Filled level_;  // of the last fill_matrix()
-  ResidentFrame frame_;
-  std::uint64_t pattern_id_ = 1;  // of the matrix
-  std::string holder_;            // of the last bound
-  double limit_kappa_change_ = 0;
-  bool energies_known_ = false, trial_evaluated_ = false;  // of the elements: at the iterate, at the trial
+  ResidentLeast least_;
+  Filled level_;                          // of the last fill_matrix()
+  std::uint64_t pattern_id_ = 1;          // of the matrix
+  const ResidentTerm* holder_ = nullptr;  // of the last bound
+  bool energies_known_ = false, trial_evaluated_ = false;  // at the iterate, at the trial
 };
 
 /// Goes through every stage of a step with so many contacts on an executor that only counts buffers, so that

@@ -1,0 +1,70 @@
+// Inertia and weight on an executor: one term for both, whose elements are the vertices.
+#include "core/archive/archive.hpp"
+#include "core/resident/elements/element_terms.hpp"
+#include "core/resident/elements/load_kernels.hpp"
+
+namespace bb::resident {
+namespace {
+
+class LoadTerm final : public ResidentTerm {
+ public:
+  explicit LoadTerm(const ResidentInputs& inputs)
+      : executor_(inputs.executor), matrix_(inputs.matrix), n_vertices_(inputs.mass.size()) {
+    loads_.mass = inputs.mass.data();
+  }
+  void add_weight(const Vec3d& gravity) {
+    for (int k = 0; k < 3; ++k) loads_.gravity[k] = gravity[k];
+    loads_.has_weight = true;
+  }
+
+  std::string_view name() const override { return "inertia"; }
+  TermGroup group() const override { return TermGroup::load; }
+  Phase phase() const override { return Phase::assembly; }
+  void begin_step(const ResidentFrame& frame) override {
+    loads_.x_n = frame.x_n->data();
+    loads_.load_factor = frame.load_factor;
+    change_frame(frame);
+  }
+  void change_frame(const ResidentFrame& frame) override {
+    loads_.x_tilde = frame.x_tilde->data();
+    loads_.dt = frame.dt, loads_.c = frame.c;
+  }
+  void keep(Archive& archive) override {
+    ResidentTerm::keep(archive);
+    if (loads_.has_weight) archive.section("external_force");
+  }
+
+  void linearise(const Column& x, const ResidentContext&, Column& g) override {
+    executor_.each(n_vertices_, LoadGradient{loads_, x.data(), g.data()});
+  }
+  void add_matrix(const Column&, const HessianRequest&) override {
+    const MatrixPart part = matrix_.part();
+    executor_.each(n_vertices_, InertiaDiagonal{loads_, part.row_begin, part.column, matrix_.value()});
+  }
+  void evaluate(const Column&) override {}
+  void add_change(const Column& x, const Column& trial, ResidentChange& out) override {
+    out.parts.add(n_vertices_, LoadChanges{loads_, x.data(), trial.data()});
+  }
+  void add_energy(const Column& x, ResidentEnergy& out) override {
+    out.parts.add(n_vertices_, LoadEnergies{loads_, x.data()});
+  }
+
+ private:
+  exec::Executor& executor_;
+  ElementMatrix& matrix_;
+  Index n_vertices_;
+  Loads loads_{};
+};
+
+}  // namespace
+
+void make_resident_inertia(const ResidentInputs& inputs, ResidentTermList& terms) {
+  terms.add(std::make_unique<LoadTerm>(inputs));
+}
+
+// Without a vertex there is no term to carry it.
+void make_resident_external_force(const ResidentInputs& inputs, ResidentTermList& terms) {
+  if (LoadTerm* loads = terms.find<LoadTerm>()) loads->add_weight(inputs.scene.gravity);
+}
+
+}  // namespace bb::resident

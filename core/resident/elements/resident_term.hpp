@@ -1,0 +1,146 @@
+// A term of E in an executor's memory: what the sum (resident_terms.hpp) knows of it. It is made by
+// make_resident_<name>, the name that of its line in core/terms/registry.inc; what Term (core/terms/term.hpp) is on the host.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "core/exec/buffer.hpp"
+#include "core/record/phase_times.hpp"
+#include "core/resident/elements/element_kernels.hpp"
+#include "core/resident/linear/resident_matrix.hpp"
+#include "core/resident/sums/resident_sum.hpp"
+#include "core/terms/report.hpp"
+#include "core/terms/term_set.hpp"
+
+namespace bb {
+class Archive;
+struct KnownStiffness;
+}  // namespace bb
+
+namespace bb::resident {
+
+using exec::Buffer;
+/// [3 n_vertices] of the executor.
+using Column = Buffer<double>;
+struct ExpectedContacts;
+
+/// One time step, the same for all terms. Columns (m) are valid for the step.
+struct ResidentFrame {
+  const Column *x_n = nullptr, *x_tilde = nullptr;  // start of the step and prediction
+  double dt = 0, c = 1, load_factor = 1;            // as in StepFrame
+};
+
+/// x0 -> x1, x1 - x0 = dx up to rounding, m; x1 is exact at prescribed vertices.
+struct ResidentMotion {
+  const Column &x0, &x1, &dx;
+};
+
+/// What a term may read while it is linearised.
+struct ResidentContext {
+  MatrixPart
+      elastic;     // both triangles of H at the iterate; its values only where the plan has policy_submatrix
+  Index n_blocks;  // of it
+  PhaseClock& clock;
+};
+
+/// E(trial) - E(iterate): parts of elements that stay are compared one by one; where rows come and go, their energies
+/// are compared as sums.
+struct ResidentChange {
+  ResidentSum& parts;
+  Compensated before = Compensated::zero(), after = Compensated::zero();
+};
+struct ResidentEnergy {
+  ResidentSum& parts;
+  Compensated rows = Compensated::zero();
+};
+
+/// The matrix of a term whose stencils come and go, both triangles.
+struct ChangingMatrix {
+  MatrixPart part{};
+  Index n_blocks = 0;
+};
+
+class ResidentTerm {
+ public:
+  ResidentTerm() = default;
+  ResidentTerm(const ResidentTerm&) = delete;
+  ResidentTerm& operator=(const ResidentTerm&) = delete;
+  virtual ~ResidentTerm() = default;
+
+  virtual std::string_view name() const = 0;
+  virtual TermGroup group() const = 0;
+  /// What linearising is charged to.
+  virtual Phase phase() const = 0;
+
+  // --- a step
+  /// A step from frame.x_n begins: it is the iterate now.
+  virtual void begin_step(const ResidentFrame& frame) { change_frame(frame); }
+  /// The same step and iterate with another prediction and length.
+  virtual void change_frame(const ResidentFrame&) {}
+  virtual void end_step(PhaseClock&) {}
+  /// The sections of its lines of registry.inc, with what it remembers from step to step, as the host's terms keep them.
+  virtual void keep(Archive& archive);
+  /// Forgets the pattern of a matrix that comes and goes: between steps.
+  virtual void drop_caches() {}
+
+  // --- an iterate x
+  /// Energies and gradient at x; g (N), the gradient of the terms before, gets that of this term.
+  virtual void linearise(const Column& x, const ResidentContext& context, Column& g) = 0;
+  /// Adds its Hessian to the matrix of fixed stencils, or makes its own. After linearise(x).
+  virtual void add_matrix(const Column& /*x*/, const HessianRequest&) {}
+  /// Null where stencils stay. Valid until the next add_matrix() or prepare().
+  virtual ChangingMatrix changing_matrix() const { return {}; }
+  /// Whether the last linearise() made another pattern of that.
+  virtual bool pattern_changed() const { return false; }
+  /// As Term::add_given_motion.
+  virtual void add_given_motion(const Column& /*x*/, const Column& /*motion*/, Column& /*force*/) {}
+
+  // --- a motion
+  virtual void prepare(const ResidentMotion&, PhaseClock&) {}
+  /// As Term::bound.
+  virtual double bound(const ResidentMotion&, IterateNumbers&, PhaseClock&) { return 1; }
+  /// What held the last bound() below 1.
+  virtual std::string describe_bound() const { return {}; }
+  /// As Term::add_detour; it may give values of matrices back.
+  virtual bool make_room(const Column& /*x*/, const Column& /*dx*/, double /*bound*/, Column& /*force*/) {
+    return false;
+  }
+
+  // --- a trial state; x: the iterate
+  /// Whether admits() refuses a state with a number that is not finite.
+  virtual bool sees_non_finite() const { return false; }
+  virtual bool admits(const Column& /*x*/, const Column& /*trial*/, PhaseClock&) { return true; }
+  /// All terms admit the trial: as Term::freeze.
+  virtual void freeze() {}
+  /// Energies at the trial, after freeze(), where they are asked for.
+  virtual void evaluate(const Column& trial) = 0;
+  virtual void add_change(const Column& x, const Column& trial, ResidentChange& out) = 0;
+  /// The trial becomes the iterate. take_energies() comes next where it was evaluated.
+  virtual void accept() {}
+  /// The energies of the trial are those of the iterate.
+  virtual void take_energies() {}
+  /// Energies of the iterate x, which was accepted without them.
+  virtual void evaluate_iterate(const Column& /*x*/) {}
+
+  // --- what is said of it, at the iterate x
+  virtual void add_energy(const Column& x, ResidentEnergy& out) = 0;
+  virtual void report(const Column& /*x*/, IterateNumbers&, PhaseClock&) {}
+  virtual void report_end(const Column& /*x*/, StepNumbers&) {}
+  /// First element with an energy that is not finite; -1 without one.
+  virtual Index first_not_finite(ResidentLeast&) { return -1; }
+  /// Stiffness of pairs that is frozen for the step, for the copy on the host.
+  virtual void add_known(KnownStiffness&) const {}
+
+  // --- memory
+  /// What an executor that only counts buffers is to take the contacts for.
+  virtual void expect(const ExpectedContacts&) {}
+  /// From so many rows on, what a stage does not read is given back before it. Results do not depend on it.
+  virtual void set_frugal_from(Index /*rows*/) {}
+  /// Bytes that lists of candidates may take. Results do not depend on it.
+  virtual void set_list_budget(std::size_t /*bytes*/) {}
+};
+
+}  // namespace bb::resident

@@ -1,0 +1,258 @@
+// The strain limit on an executor: a family of elements whose barrier and stiffness change with the state.
+#include "barriers/shapes/shape_list.hpp"
+#include "barriers/stiffness/item_policy.hpp"
+#include "barriers/stiffness/policy_list.hpp"
+#include "core/energy/strain_limit_batch.hpp"
+#include "core/math/error.hpp"
+#include "core/resident/elements/element_terms.hpp"
+#include "core/resident/elements/limit_forms.hpp"
+#include "core/resident/elements/limit_kernels.hpp"
+#include "core/resident/elements/triangle_columns.hpp"
+
+namespace bb::resident {
+namespace {
+
+using LaunchShape = void (*)(exec::Executor&, const LimitColumns&, const BarrierFunction&, const KappaParts*);
+
+template <class S>
+void launch_shape(exec::Executor& executor, const LimitColumns& limit, const BarrierFunction& barrier,
+                  const KappaParts* parts) {
+  executor.each(2 * limit.n, LimitShape<S>{limit, barrier.argument, barrier.literal, parts});
+}
+
+LaunchShape shape_kernel(const BarrierFunction& barrier) {
+#define SHAPE(id, Struct) \
+  if (barrier.shape.name == #id && !barrier.shape.self) return &launch_shape<shapes::Struct>;
+  BB_FOR_EACH_SHAPE(SHAPE)
+#undef SHAPE
+  throw ConfigError("shape", barrier.shape.name,
+                    "a shape of barriers/shapes: a plugin's and another exponent have no kernel");
+}
+
+/// What everything but the sums is computed from is measured: singular values, pseudo-gaps and barrier terms of one state.
+template <int R>
+class LimitTerm final : public TermOf<Limit<R>> {
+  using Base = TermOf<Limit<R>>;
+  using Base::elements_, Base::executor_, Base::size;
+
+ public:
+  LimitTerm(const ResidentInputs& inputs, const StrainLimitBatch& batch);
+
+  void begin_step(const ResidentFrame& frame) override {
+    fresh_ = false, first_ = true;
+    measured_ = State::none;
+    x_n_ = frame.x_n->data();
+    change_frame(frame);
+  }
+  void change_frame(const ResidentFrame& frame) override { time_ = {frame.dt, frame.c}; }
+
+  void linearise(const Column& x, const ResidentContext& context, Column& g) override {
+    refresh(x, context.elastic);
+    Base::linearise(x, context, g);
+  }
+  void add_matrix(const Column& x, const HessianRequest& request) override {
+    measure_iterate(x);
+    Base::add_matrix(x, request);
+  }
+
+  double bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) override;
+  std::string describe_bound() const override { return "the strain limit"; }
+  bool admits(const Column& x, const Column& trial, PhaseClock& clock) override;
+  void evaluate(const Column& trial) override {
+    if (measured_ != State::trial) measure_trial(trial);  // the iterate was asked for since
+    Base::evaluate(trial);
+  }
+  void evaluate_iterate(const Column& x) override {
+    measure_iterate(x);
+    Base::evaluate_iterate(x);
+  }
+  void accept() override {
+    measured_ = measured_ == State::trial ? State::iterate : State::none;
+  }
+
+  void report(const Column& x, IterateNumbers& out, PhaseClock& clock) override;
+  void report_end(const Column& x, StepNumbers& out) override;
+
+ private:
+  enum class State { none, iterate, trial };
+  struct Numbers {
+    double max_stretch, load_max, gap_min_rel;  // 1, N/m, 1: of the width
+  };
+
+  const StiffnessPolicy& policy() const { return *options_.limit_stiffness; }
+  KappaParts* parts() { return policy().has_potential() ? parts_.data() : nullptr; }
+  void set_columns(Index n);
+  void refresh(const Column& x, const MatrixPart& elastic);
+  void fill_kappa(const MatrixPart& elastic);
+  Numbers numbers(const Column& x);
+  void measure_stretch(const Column& x) { executor_.each(size(), MeasureStretch<R>{elements_, x.data()}); }
+  /// Barrier terms at the measured pseudo-gaps.
+  void fill_barrier() { launch_shape_(executor_, elements_, options_.limit, parts()); }
+  void measure_iterate(const Column& x) {
+    if (measured_ == State::iterate) return;
+    measure_stretch(x);
+    fill_barrier();
+    measured_ = State::iterate;
+  }
+
+  void measure_trial(const Column& trial) {
+    measure_stretch(trial);
+    fill_barrier();
+    measured_ = State::trial;
+  }
+
+  const TermOptions& options_;
+  const Buffer<double>& vertex_mass_;
+  LaunchShape launch_shape_;
+  TriangleColumns triangles_;
+  Buffer<double> band_, mass_, state_, kappa_, before_;
+  Buffer<KappaParts> parts_;
+  ResidentLeast least_;
+  ResidentLeasts<3> numbers_;
+  StiffnessTime time_;
+  const double* x_n_ = nullptr;
+  State measured_ = State::none;
+  bool fresh_ = false, first_ = true;  // kappa is that of this step; no iterate of the step was refreshed
+  double kappa_change_ = 0;            // of the last linearise()
+};
+
+Index n_of(const StrainLimitBatch& batch) { return static_cast<Index>(batch.size()); }
+
+template <int R>
+LimitTerm<R>::LimitTerm(const ResidentInputs& inputs, const StrainLimitBatch& batch)
+    : Base(inputs, "strain_limit", batch.vertices(), TermGroup::limit, Phase::strain_limit),
+      options_(inputs.options),
+      vertex_mass_(inputs.mass),
+      launch_shape_(shape_kernel(options_.limit)),
+      triangles_(executor_, "limit", batch.vertices(), batch.rests()),
+      band_(executor_, "limit bands"),
+      mass_(executor_, "limit element masses"),
+      state_(executor_, "limit stretches and barrier terms", 10 * n_of(batch)),
+      kappa_(executor_, "limit stiffness", n_of(batch)),
+      before_(executor_, "limit stiffness before"),
+      parts_(executor_, "limit stiffness parts"),
+      least_(executor_),
+      numbers_(executor_) {
+  const StrainLimitPart& part = inputs.scene.limit;
+  upload_pair(part.onset, part.width, band_);
+  if (!policy().uniform()) {
+    mass_.upload(part.mass);
+    before_.resize(n_of(batch));
+  }
+  if (policy().has_potential()) parts_.resize(n_of(batch));
+  set_columns(n_of(batch));
+}
+
+template <int R>
+void LimitTerm<R>::set_columns(Index n) {
+  elements_.of = triangles_.vertex.data();
+  elements_.n = n;
+  elements_.rest = triangles_.rest();
+  elements_.onset = band_.data(), elements_.band_width = band_.data() + n;
+  double* column = state_.data();
+  for (double** pointer : {&elements_.sigma, &elements_.gap, &elements_.b, &elements_.db, &elements_.d2b}) {
+    *pointer = column;
+    column += 2 * n;
+  }
+  elements_.kappa = kappa_.data();
+}
+
+// kappa at the iterate, as its rule has it, and its largest relative change among active elements; 0 where the rule
+// keeps it.
+template <int R>
+void LimitTerm<R>::refresh(const Column& x, const MatrixPart& elastic) {
+  const bool first = first_, keep = fresh_ && policy().frozen_in_step();
+  first_ = false, fresh_ = true;
+  measure_stretch(x);
+  if (!keep) fill_kappa(elastic);
+  fill_barrier();
+  measured_ = State::iterate;
+  kappa_change_ = 0;
+  if (keep || first || policy().uniform() || policy().has_potential()) return;
+  least_.clear();
+  least_.add(size(), LimitKappaChange{elements_, before_.data()});
+  kappa_change_ = least_.largest();
+}
+
+template <int R>
+void LimitTerm<R>::fill_kappa(const MatrixPart& elastic) {
+  LimitPolicies::with(policy(), [&]<class P>(const ScaledPolicy<P>& values) {
+    executor_.each(
+        size(), ElementKappa<P>{elements_, values, policy().needs_hessian(), time_, x_n_, vertex_mass_.data(),
+                                mass_.data(), elastic, parts(), before_.data()});
+  });
+}
+
+template <int R>
+double LimitTerm<R>::bound(const ResidentMotion& motion, IterateNumbers& out, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::strain_bound);
+  if (executor_.counts_only()) return out.alpha_strain = 1;
+  // A second look: one element's bound may, by rounding alone, be beyond another's limit.
+  for (double alpha = 1;;) {
+    least_.clear();
+    executor_.each(size(), StretchBound<R>{elements_, motion.x0.data(), motion.dx.data(), alpha,
+                                           options_.contact_options.ccd_park, least_.data()});
+    const Key key = least_.get();
+    if (key == ResidentLeast::none) return out.alpha_strain = alpha;
+    alpha = exec::from_ordered_bits(key);
+    if (alpha == 0) return out.alpha_strain = 0;
+  }
+}
+
+template <int R>
+bool LimitTerm<R>::admits(const Column&, const Column& trial, PhaseClock&) {
+  measure_trial(trial);
+  if (options_.limit.literal) return true;
+  least_.clear();
+  executor_.each(size(), FirstBeyondLimit{elements_, least_.data()});
+  return least_.first() < 0;
+}
+
+template <int R>
+typename LimitTerm<R>::Numbers LimitTerm<R>::numbers(const Column& x) {
+  measure_iterate(x);
+  numbers_.clear();
+  numbers_.add(0, size(), LimitStretch{elements_});
+  numbers_.add(1, 2 * size(), LimitLoad{elements_});
+  numbers_.add(2, size(), LimitRelativeGap{elements_});
+  const auto least = numbers_.get();
+  return {least.largest(0) - 1, least.largest(1), least.smallest(2)};
+}
+
+template <int R>
+void LimitTerm<R>::report(const Column& x, IterateNumbers& out, PhaseClock& clock) {
+  const ScopedPhase timer(clock, Phase::strain_limit);
+  const Numbers found = numbers(x);
+  out.max_stretch = found.max_stretch;
+  out.limit_load_max_N_per_m = found.load_max;
+  out.limit_kappa_change_rel = kappa_change_;
+  out.limit_gap_min_rel = found.gap_min_rel;
+}
+
+template <int R>
+void LimitTerm<R>::report_end(const Column& x, StepNumbers& out) {
+  const Numbers found = numbers(x);
+  out.max_stretch = found.max_stretch;
+  out.limit_load_max_N_per_m = found.load_max;
+}
+
+}  // namespace
+
+void require_limit_kernels(const TermOptions& options) {
+  shape_kernel(options.limit);
+  LimitPolicies::require(*options.limit_stiffness, "stiffness_policy/name");
+}
+
+void make_resident_strain_limit(const ResidentInputs& inputs, ResidentTermList& terms) {
+  require_limit_kernels(inputs.options);
+  const Scene& scene = inputs.scene;
+  const StrainLimitPart& part = scene.limit;
+  const StrainLimitBatch batch(part.triangles, scene.rest, part.onset, part.width, scene.planar);
+  if (scene.planar) {
+    terms.add(std::make_unique<LimitTerm<2>>(inputs, batch));
+  } else {
+    terms.add(std::make_unique<LimitTerm<3>>(inputs, batch));
+  }
+}
+
+}  // namespace bb::resident

@@ -1,0 +1,40 @@
+#include "core/resident/system/term_list.hpp"
+
+#include <string>
+
+#include "core/math/error.hpp"
+#include "core/resident/elements/element_terms.hpp"
+#include "core/resident/system/resident_contact.hpp"
+
+namespace bb::resident {
+namespace {
+
+/// One a line of registry.inc, in its order; null where the line says host_only.
+#define BB_MAKE_kernels(name) &make_resident_##name
+#define BB_MAKE_host_only(name) nullptr
+#define ENTRY(name, doc, convex, where) BB_MAKE_##where(name),
+#define PART(name, doc, convex, where, ...) BB_MAKE_##where(name),
+constexpr MakeResident* makers[] = {
+#include "core/terms/registry.inc"
+};
+#undef ENTRY
+#undef PART
+#undef BB_MAKE_kernels
+#undef BB_MAKE_host_only
+
+}  // namespace
+
+ResidentTermList make_resident_terms(const Plan& plan, const ResidentInputs& inputs) {
+  ResidentTermList terms;
+  for (std::size_t i = 0; i < plan.terms.size(); ++i) {
+    if (!plan.terms[i].needed) continue;
+    if (!makers[i]) {  // it would be left out of E
+      throw ConfigError("/device", std::string(term_entries()[i].name) + ", a term without kernels",
+                        "a scene without it, or device cpu");
+    }
+    makers[i](inputs, terms);
+  }
+  return terms;
+}
+
+}  // namespace bb::resident

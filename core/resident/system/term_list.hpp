@@ -1,0 +1,13 @@
+// The terms of E on an executor, from the list that has those of the host (core/terms/registry.inc).
+#pragma once
+
+#include "core/resident/elements/term_inputs.hpp"
+#include "core/terms/plan.hpp"
+
+namespace bb::resident {
+
+/// The terms that the plan needs, in the order of registry.inc. Errors: ConfigError at /device for a term whose line says
+/// host_only, and those of each term; OutOfMemory.
+ResidentTermList make_resident_terms(const Plan& plan, const ResidentInputs& inputs);
+
+}  // namespace bb::resident
