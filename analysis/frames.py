@@ -108,8 +108,8 @@ def frame_of(record: dict, run: str | Path, step: int) -> Frame:
 
 
 def read_scene(record: dict, run: str | Path) -> dict:
-    """frames/scene.json: `bodies` (names), `obstacles` (kind, point_m, axis, radius_m, inside; of one that moves
-    `vertex`, which stands for its point in the frames), `planar`. Raises UserError, RecordError.
+    """frames/scene.json: `bodies` (names), `obstacles` (kind, point_m, axis, radius_m, inside; of one that
+    moves `vertex`, which stands for its point in the frames), `planar`. Raises UserError, RecordError.
     """
     path = bound_file(record, Path(run), "frames/scene.json")
     return read_object(path)

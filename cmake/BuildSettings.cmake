@@ -43,7 +43,7 @@ endif()
 # What decides the generated code beside the build type; records name it (core/record). The fused multiply-add
 # setting is fixed: results must not depend on what the compiler contracts, and the exact predicates of the audit
 # are wrong if it does. Nobody reads errno after mathematics, nor the floating-point flags; keeping them up to date
-# forbids vector square roots. No value changes.
+# forbids vector square roots; neither changes a value.
 # Eigen writes its sums and products out one by one, as nvcc's code has them: with its own vectors they have another order, and
 # the bits of the program would not be those of a card.
 set(BB_CODE_FLAGS -ffp-contract=off -DEIGEN_DONT_VECTORIZE -fPIC ${BB_MARCH_FLAG} -fno-math-errno -fno-trapping-math)

@@ -37,6 +37,12 @@ class Motion:
         shape, as in every scene of bodies. Vertices of a procedural scene have the mass of one material, 1
         kg/m^2: its centres of mass are right, its momenta are not known.
         """
+        for body in self.record["config"]["scene"].get("bodies", []):
+            lumping = body.get("material", {}).get("lumping", "barycentric")
+            if body.get("rest_mesh") or lumping != "barycentric":
+                raise UserError(
+                    f"{body['name']}: masses are known where mesh is the rest shape, lumping barycentric"
+                )
         start = self.frames[0]
         given = [body.get("material", {}) for body in self.record["config"]["scene"].get("bodies", [])] or [
             {"density_kg_per_m2": 1.0}

@@ -59,12 +59,13 @@ def skipped_cpp(log: str) -> list[str]:
 
 
 def ptx_share(log: str) -> list[str]:
-    """A line of the summary about the tests that run nvcc's PTX: how many, and their share of the time of all."""
+    """A line of the summary about the tests that run nvcc's PTX: how many, and their share of the time."""
     seconds = {name: float(s) for name, s in re.findall(r"Test +#\d+: (\S+) .*?([\d.]+) sec", log)}
     ptx = [s for name, s in seconds.items() if name.startswith("ptx.")]
     if not ptx:
         return []
-    return [f"PTX      {len(ptx)} C++ tests run PTX: {sum(ptx):.0f} of {sum(seconds.values()):.0f} s of one core"]
+    of_all = sum(seconds.values())
+    return [f"PTX      {len(ptx)} C++ tests run PTX: {sum(ptx):.0f} of {of_all:.0f} s of one core"]
 
 
 def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
@@ -103,7 +104,7 @@ def python_tests(preset: str, summary: Summary) -> int:
         "-n",
         str(job_count()),
         "--dist",
-        "worksteal",
+        "loadfile",
         str(ROOT / "tests"),
     ]
     code = _into(

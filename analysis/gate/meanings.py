@@ -29,6 +29,7 @@ FAMILIES: dict[str, tuple[str, ...]] = {
     "matching.contacts_left_out": (),
     "trace contraction": (),
     "trace error_estimate_m": ("error_estimate",),
+    "trace energy_change_J": (),
     "trace cond[].tier": (),
     "trace contacts": (),
     "trace kappa_min_N_per_m": (),

@@ -198,7 +198,7 @@ void SceneBuilder::append_obstacle_vertices() {
     if (obstacle.motion.is_static()) continue;
     obstacle.vertex = scene_.n_vertices();
     scene_.body.push_back(static_cast<int>(scene_.bodies.size()));
-    scene_.bodies.push_back({obstacle.name, obstacle.vertex, 1, std::nullopt});
+    scene_.bodies.push_back({obstacle.name, obstacle.vertex, 1, obstacle.friction});
     append_columns(scene_.rest, obstacle.point);
     append_columns(scene_.x0, obstacle.point);
     append_columns(scene_.v0, Vec3d(Vec3d::Zero()));

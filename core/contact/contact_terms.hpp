@@ -23,7 +23,7 @@ enum class HessianMode {
 constexpr bool is_numeric(HessianMode mode) { return mode >= HessianMode::projected_numeric; }
 
 /// Local gradients [12 n] and Hessians [90 n, lower blocks of 4 points] of the rows on the compact free
-/// slots (slots beyond n_free are 0), frokappa, b', b'' in the table: kappa b' w_i n and kappa b'' w_i
+/// slots (slots beyond n_free are 0), from kappa, b', b'' in the table: kappa b' w_i n and kappa b'' w_i
 /// w_j n n^T, plus kappa b' grad^2 d in the other modes. The block of a row's free points is projected;
 /// without grad^2 d it is positive semi-definite as it is. x: [3 x n]. precision: the scalars of either. Resizes the outputs, no other
 /// allocation.
@@ -36,13 +36,13 @@ void mollified_terms(const MollifiedTable& rows, const PositionsView& x, Project
 /// Adds to the free columns of `force` [3 x n] (N) how the gradient of B at x changes, to first order, when
 /// its given vertices move by `motion` [3 x n] (m, 0 at free vertices): they have no block in the matrix.
 /// Rows of both tables count; a ContactTable's by kappa b'' w_i w_j n n^T in either Hessian mode, a
-/// mollified row's by its whole Hessian. Frokappa, b', b'' in the tables. Cost O(rows).
+/// mollified row's by its whole Hessian. From kappa, b', b'' in the tables. Cost O(rows).
 void add_given_motion(const ContactTable& rows, const PositionsView& motion, PositionsSpan force);
 void add_given_motion(const MollifiedTable& rows, const PositionsView& x, const PositionsView& motion,
                       PositionsSpan force);
 /// Adds to `force` [3 x n] (N) kappa b'' w_i n times what the gap of every row misses (gap_along.hpp) along dx
 /// [3 x n] (m, 0 at given vertices): with it on the right-hand side of Newton's system the gaps at x + dx are those
-/// that their slopes say. Rows without mollifier alone. Returns when they hold dx. Frokappa and b'' in the table, in
+/// that their slopes say. Rows without mollifier alone. Returns when they hold dx. From kappa and b'' in the table, in
 /// double. Cost O(rows).
 HoldTimes add_detour(const ContactTable& rows, const PositionsView& x, const PositionsView& dx,
                      PositionsSpan force);

@@ -6,13 +6,9 @@
 namespace bb {
 
 /// A B A^T, B square. Host-device.
-/// With Eigen's vectors it is Eigen's product, whose bits results have; without them (a card, and the host code that is held
-/// against one) the sums run in the order of their index.
+/// Its sums run in the order of their index.
 template <class T, int N, int K>
 BB_HD Mat<T, N, N> congruence(const Mat<T, N, K>& a, const Mat<T, K, K>& b) {
-#ifdef EIGEN_VECTORIZE
-  return a * b * a.transpose();
-#else
   Mat<T, N, N> out;
   for (int i = 0; i < N; ++i) {
     T row[K];
@@ -27,7 +23,6 @@ BB_HD Mat<T, N, N> congruence(const Mat<T, N, K>& a, const Mat<T, K, K>& b) {
     }
   }
   return out;
-#endif
 }
 
 }  // namespace bb

@@ -46,6 +46,10 @@ ConstraintSystem::FreeMotion ConstraintSystem::free_motion(const Positions& give
   FreeMotion out{given, Positions::Zero(3, from.cols())};
   for (Eigen::Index i = 0; i < from.size(); ++i) {
     if (state_.fixed[static_cast<std::size_t>(i)] != 0) continue;
+    if (!(stiffness.data()[i] > 0)) {
+      throw ConfigError("/step_solver", "constraints where a vertex has no inertia",
+                        "an integrator with inertia, and vertices with mass");
+    }
     out.inverse.data()[i] = 1 / stiffness.data()[i];
     out.x.data()[i] = from.data()[i] + force.data()[i] / stiffness.data()[i];
   }

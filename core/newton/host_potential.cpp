@@ -65,6 +65,7 @@ void HostPotential::change_step(const StepColumns& step) {
 bool HostPotential::renew_lag(const Column& x) {
   bool renewed = false;
   for (const auto& term : terms_) renewed = term->renew_lag(points(x)) || renewed;
+  energies_known_ = energies_known_ && !renewed;
   return renewed;
 }
 

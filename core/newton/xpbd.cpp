@@ -8,7 +8,7 @@
 // Where nothing changes any more, C = -compliance lambda. That is the implicit Euler step of the energies C^2/(2 compliance) as
 // far as gradients do not turn within the step: a change acts along the gradient of its moment. Contact is C = d >= 0
 // without compliance: the barrier is not felt, and nothing keeps a step from passing through a surface. Newton matrices,
-// step bound and energies are not asked for. Iterations are sweeps.
+// step bound and energies are not asked for. max_iterations is the number of sweeps.
 #include <algorithm>
 #include <cmath>
 
@@ -49,6 +49,7 @@ class Xpbd final : public StepSolver {
         correction = std::max(correction, solve(*batches[b], multipliers_[b]));
         count += static_cast<double>(batches[b]->size());
       }
+      if (!state_.x.allFinite()) break;
     }
     step.solver.values = {{"xpbd_constraints", count},
                           {"xpbd_correction_m", correction},

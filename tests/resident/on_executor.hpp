@@ -56,9 +56,13 @@ struct OnExecutor {
     };
     make("inertia", resident::make_resident_inertia);
     make("external_force", resident::make_resident_external_force);
-#define PART(name, ...) make(#name, resident::make_resident_##name);
+#define BB_MAKE_kernels(name) make(#name, resident::make_resident_##name);
+#define BB_MAKE_host_only(name)
+#define PART(name, doc, convex, where, ...) BB_MAKE_##where(name)
 #include "core/scene/parts/registry.inc"
 #undef PART
+#undef BB_MAKE_kernels
+#undef BB_MAKE_host_only
     make("strain_limit", resident::make_resident_strain_limit);
   }
   resident::ResidentFrame resident_frame(const StepFrame& frame) const {

@@ -142,7 +142,7 @@ TEST(ResidentParts, ChangeAsTheTermsDo) {
     const Positions to = both.x + wave(one.scene, 1e-3);
     ASSERT_TRUE(both.resident.evaluate(to));
     EnergyParts parts;
-    for (const auto& term : both.cpu.terms) term->evaluate(to, both.cpu.context(Projection::psd));
+    for (const auto& term : both.cpu.terms) term->evaluate(to);
     for (const auto& term : both.cpu.terms) term->change(both.x, to, parts);
     long double change = 0, magnitude = 0;
     for (const EnergyPart& part : parts) change += part.change, magnitude += part.magnitude;

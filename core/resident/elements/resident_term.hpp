@@ -1,4 +1,4 @@
-// A term of E in an executor's memory: what the sum (resident_terms.hpp) knows of it. It is made by
+// A term of E in an executor's memory: what the sum (ResidentPotential) knows of it. It is made by
 // make_resident_<name>, the name that of its line in core/terms/registry.inc; what Term (core/terms/term.hpp) is on the host.
 #pragma once
 
