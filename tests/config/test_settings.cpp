@@ -26,11 +26,12 @@ struct Place {
   json config;
 };
 
-/// Two bodies, one of each kind, and an obstacle that has every setting.
+/// Two bodies, one of each kind, and an obstacle, that have every setting.
 json full_bodies() {
   json config = bodies_config();
   config["scene"]["bodies"].push_back(
       {{"name", "plate"}, {"kind", "rigid"}, {"mesh", {{"generator", "grid"}}}});
+  config["scene"]["bodies"][0]["rest_mesh"] = {{"generator", "grid"}};
   config["scene"]["obstacles"] = {{{"name", "pole"}, {"kind", "cylinder"}, {"radius_m", 1}}};
   return config;
 }

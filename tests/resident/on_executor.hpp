@@ -114,7 +114,7 @@ struct OnExecutor {
     return sum.get();
   }
   void accept() {
-    for (const auto& term : terms) term->accept();
+    for (const auto& term : terms) term->accept(), term->take_energies();
     x.swap(trial);
   }
   /// options.contact_options.ccd_park is read.

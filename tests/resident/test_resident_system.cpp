@@ -160,11 +160,14 @@ TEST(ResidentSystem, SaysTheSameOfContactsNumberByNumber) {
   const std::function<Method()> methods[] = {
       touching_method, [] { return test::method_with_policy("log", "ipc_adaptive", {}); },
       [&] { return test::method_with_policy("cubic", "elasticity_inclusive", lagged); }};
-  for (const auto& method : methods) {
-    compare(test::touching(test::cloth_on_plate(), 0.012), method);
-    compare(test::touching(test::two_sheets(), 0.01), method);
-    compare(test::touching(test::two_sheets(), 0.004), method);
-    compare(test::touching(test::cloth_on_balls_and_bar(), 0.02), method);
+  const Scene scenes[] = {test::touching(test::cloth_on_plate(), 0.012),
+                          test::touching(test::two_sheets(), 0.01), test::touching(test::two_sheets(), 0.004),
+                          test::touching(test::cloth_on_balls_and_bar(), 0.02)};
+  for (std::size_t m = 0; m < std::size(methods); ++m) {
+    for (std::size_t s = 0; s < std::size(scenes); ++s) {
+      SCOPED_TRACE("method " + std::to_string(m) + ", scene " + std::to_string(s));
+      compare(scenes[s], methods[m]);
+    }
   }
   EXPECT_GT(n_shared, 3);  // pairs with one closest feature
 }

@@ -41,6 +41,8 @@ inline Scene scene_with_everything() {
     body.material.youngs = 20;
     body.material.bending = 0.01;
     body.material.springs = 3;
+    body.material.cloth_tension = 2;
+    body.material.cloth_compression = 1;
     body.material.rod_bending = 0.004;
     body.material.limit = StrainLimitSpec{0.001, 0.2};
     body.d_hat = d_hat;

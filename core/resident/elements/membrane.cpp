@@ -42,7 +42,8 @@ void add_model(const ResidentInputs& inputs, const MembraneBatch& batch, const M
 
 void add_part(const ResidentInputs& inputs, const MembranePart& part, ResidentTermList& terms) {
   if (!part.creep.empty()) {
-    throw ConfigError("/device", "membrane with creep, which has no kernels", "membrane without it, or device cpu");
+    throw ConfigError("/device", "membrane with creep, which has no kernels",
+                      "membrane without it, or device cpu");
   }
   MembraneBatch batch(part.model, part.triangles, inputs.scene.rest, part.lame_mu, part.lame_lambda,
                       inputs.scene.planar, part.warp);

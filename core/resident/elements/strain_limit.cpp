@@ -66,9 +66,7 @@ class LimitTerm final : public TermOf<Limit<R>> {
     measure_iterate(x);
     Base::evaluate_iterate(x);
   }
-  void accept() override {
-    measured_ = measured_ == State::trial ? State::iterate : State::none;
-  }
+  void accept() override { measured_ = measured_ == State::trial ? State::iterate : State::none; }
 
   void report(const Column& x, IterateNumbers& out, PhaseClock& clock) override;
   void report_end(const Column& x, StepNumbers& out) override;
