@@ -29,12 +29,12 @@ class ContactConstraints final : public ConstraintBatch {
   template <class Table>
   void add(const Table& rows, const PositionsView& x, bool compliant);
 
-  std::vector<int> vertices_;           // [4 n]
-  std::vector<double> weight_;          // [4 n] 1
-  std::vector<double> normal_;          // [3 n] 1
-  std::vector<double> level_;           // [n] m, C - n . sum w_i x_i
-  std::vector<double> compliance_;      // [n] m/N
-  std::vector<std::ptrdiff_t> before_;  // [n]
+  std::vector<int> vertices_;               // [4 n]
+  std::vector<double> weight_;              // [4 n] 1
+  std::vector<double> normal_;              // [3 n] 1
+  std::vector<double> level_;               // [n] m, C - n . sum w_i x_i
+  std::vector<double> compliance_;          // [n] m/N
+  std::vector<std::ptrdiff_t> before_;      // [n]
   std::map<PairId, std::ptrdiff_t> index_;  // of the pair of each
 };
 

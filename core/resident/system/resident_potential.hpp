@@ -101,9 +101,9 @@ class ResidentPotential final : public IncrementalPotential {
   Buffer<double> product_partial_;
   ResidentSum sum_;
   ResidentLeast least_;
-  Filled level_;                          // of the last fill_matrix()
-  std::uint64_t pattern_id_ = 1;          // of the matrix
-  const ResidentTerm* holder_ = nullptr;  // of the last bound
+  Filled level_;                                           // of the last fill_matrix()
+  std::uint64_t pattern_id_ = 1;                           // of the matrix
+  const ResidentTerm* holder_ = nullptr;                   // of the last bound
   bool energies_known_ = false, trial_evaluated_ = false;  // at the iterate, at the trial
 };
 
