@@ -112,7 +112,14 @@ class Toolkit:
     def run(self, stage: str) -> dict:
         start = time.perf_counter()
         items, value = getattr(self, stage)()
-        return {"stage": stage, "s": time.perf_counter() - start, "items": items, "value": value}
+        seconds = time.perf_counter() - start
+        if stage == "rows":
+            items = self.pairs()
+        return {"stage": stage, "s": seconds, "items": items, "value": value}
+
+    def pairs(self) -> int:
+        """The toolkit merges the pairs of one feature into a collision whose weight is their number."""
+        return round(sum(self.collisions[k].weight for k in range(len(self.collisions))))
 
 
 def disagreement(ours: dict, theirs: dict) -> str | None:
@@ -121,7 +128,7 @@ def disagreement(ours: dict, theirs: dict) -> str | None:
     """
     stage = ours["stage"]
     if stage == "rows" and ours["items"] != theirs["items"]:
-        return f"{ours['items']} rows, toolkit {theirs['items']}"
+        return f"{ours['items']} pairs, toolkit {theirs['items']}"
     if stage in ("gradient_and_hessian", "energies"):
         if not abs(ours["value"] - theirs["value"]) <= 1e-9 * abs(theirs["value"]):
             return f"{stage}: {ours['value']}, toolkit {theirs['value']}"

@@ -29,7 +29,7 @@ CASES = {
     "elasticity_inclusive": {"/formulation": "cubic_dynamic_lagged"},
     "device host": {"/device": "host"},
     "device host, ipc_adaptive": {"/device": "host", "/formulation": "ipc2020"},
-    "creep": {"/scene": CREEPING},
+    "creep": {"/scene": CREEPING, "/formulation/d_hat_m": 0.01, "/time/dt_s": 0.01},
     "bdf2": {"/integrator/name": "bdf2"},
     "newmark": {"/integrator/name": "newmark"},
     "bdf2 with retries": {"/integrator/name": "bdf2", "/step_solver/retries": 8, "/step_solver/max_iterations": 5},
