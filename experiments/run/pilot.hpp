@@ -27,7 +27,7 @@ struct Pilot {
   StaticLoads rest;
   std::vector<double> c;            // inertia weight of the integrator in each converged step
   std::vector<Positions> x;         // m, at the start, then at the end of each converged step
-  std::vector<std::string> memory;  // archives of what terms remember when each of those steps begins
+  std::vector<std::string> memory;  // archives of what terms remember as each of them begins; or empty
   AnswerSums answers;               // over the ends of all converged steps
   int unanswered = 0;               // steps whose answers could not be computed: their forces count as loads
   std::string config_id;

@@ -8,8 +8,10 @@ void PilotReplay::begin(const Positions& x, int step) {
   prediction_.c = c(step);
   prediction_.x_tilde = x;
   prediction_.t_end = (step + 1) * pilot_.config.time.dt;
-  Archive memory(pilot_.memory[static_cast<std::size_t>(step)]);
-  system_.keep(memory);
+  if (!pilot_.memory.empty()) {
+    Archive memory(pilot_.memory[static_cast<std::size_t>(step)]);
+    system_.keep(memory);
+  }
   system_.begin_step(x, prediction_, pilot_.config.time.dt, 1.0);
 }
 

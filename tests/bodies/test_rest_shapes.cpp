@@ -97,10 +97,20 @@ TEST(RestShapes, AreRefusedByNameWhereTheyMeanNothing) {
                  "/material/cloth_yield: found 0.1");
   expect_refused([](Material& m) { m.cloth_creep = 0.1; }, "0 without a cloth spring");
   expect_refused([](Material& m) { m.shrink_weft = 0; }, "shrink_weft");
+  expect_refused([](Material& m) { m.shrink_weft = 0.9, m.model = "none"; },
+                 "/material/shrink_weft: found 0.9; allowed: 1 without a membrane model");
+  expect_refused([](Material& m) { m.bending_exponent = 3, m.bending = 1; },
+                 "/material/bending_exponent_per_rad: found 3");
+  expect_refused([](Material& m) { m.cloth_exponent = 3, m.cloth_tension = 1; },
+                 "/material/cloth_exponent: found 3");
   BodySpec ball = cloth("ball");
   ball.mesh = icosphere_mesh(1, 1);
-  ball.material.cloth_shear = 2;
-  EXPECT_NE(complaint({ball}).find("no face of the mesh has more than three corners"), std::string::npos);
+  ball.material.cloth_shear = 2, ball.material.cloth_shear_growing = 3;
+  for (const char* said :
+       {"/cloth_shear_N_per_m: found 2; allowed: 0: no face of the mesh has more than three corners",
+        "/cloth_shear_exponential_N_per_m: found 3"}) {
+    EXPECT_NE(complaint({ball}).find(said), std::string::npos) << complaint({ball});
+  }
   EXPECT_EQ(refused([](Material& m) {
               m.shrink_warp = 0.9, m.membrane_creep = 1, m.membrane_yield = 0.1, m.bending_exponential = 1;
               m.bending_creep = 1, m.cloth_shear = 1, m.cloth_creep = 1;

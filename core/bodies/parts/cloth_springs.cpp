@@ -140,21 +140,35 @@ class ClothSprings final : public Part {
   }
   void check(const BodySpec& spec, bool, const Complaints& complain) const override {
     const Material& m = spec.material;
+    using Given = std::pair<const char*, double>;
     const auto refuse = [&](const char* key, double found, const std::string& allowed) {
       complain(std::string("/material/") + key, fmt::format("{}", found), allowed);
     };
-    const double shear = std::max(m.cloth_shear, m.cloth_shear_growing);
+    const auto refuse_all = [&](std::initializer_list<Given> given, const std::string& allowed) {
+      for (const auto& [key, found] : given) {
+        if (found > 0) refuse(key, found, allowed);
+      }
+    };
+    const std::initializer_list<Given> shear = {{"cloth_shear_N_per_m", m.cloth_shear},
+                                                {"cloth_shear_exponential_N_per_m", m.cloth_shear_growing}};
     int corners = 3;
     for (const auto& fan : spec.mesh.fans) corners = std::max(corners, fan[1] + 2);
-    if (m.has_diagonals() && corners == 3) {
-      refuse("cloth_shear_N_per_m", shear, "0: no face of the mesh has more than three corners");
-    } else if (m.has_diagonals() && corners > most_corners) {
-      refuse("cloth_shear_N_per_m", shear,
-             fmt::format("0 with a face of {} corners; at most {} otherwise", corners, most_corners));
+    if (corners == 3) {
+      refuse_all(shear, "0: no face of the mesh has more than three corners");
+    } else if (corners > most_corners) {
+      refuse_all(shear,
+                 fmt::format("0 with a face of {} corners; at most {} otherwise", corners, most_corners));
     }
-    if (m.has_sides() && spec.mesh.triangles.empty()) {
-      refuse("cloth_tension_N_per_m", std::max(m.cloth_tension, m.cloth_compression),
-             "0: the body has no face");
+    if (spec.mesh.triangles.empty()) {
+      refuse_all({{"cloth_tension_N_per_m", m.cloth_tension},
+                  {"cloth_tension_exponential_N_per_m", m.cloth_tension_growing},
+                  {"cloth_compression_N_per_m", m.cloth_compression},
+                  {"cloth_compression_exponential_N_per_m", m.cloth_compression_growing}},
+                 "0: the body has no face");
+    }
+    if (m.cloth_exponent != Material().cloth_exponent && m.cloth_tension_growing == 0 &&
+        m.cloth_compression_growing == 0 && m.cloth_shear_growing == 0) {
+      refuse("cloth_exponent", m.cloth_exponent, "nothing without an exponential stiffness of cloth springs");
     }
     if (m.cloth_yield > 0 && m.cloth_creep == 0) {
       refuse("cloth_yield", m.cloth_yield, "0 without cloth_creep_per_s: nothing yields");

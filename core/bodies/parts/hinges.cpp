@@ -37,6 +37,10 @@ class Hinges final : public Part {
       complain("/material/bending_exponential_J", fmt::format("{}", m.bending_exponential),
                "0: the scene is planar");
     }
+    if (m.bending_exponent != Material().bending_exponent && !(m.bending_exponential > 0)) {
+      complain("/material/bending_exponent_per_rad", fmt::format("{}", m.bending_exponent),
+               "nothing without bending_exponential_J");
+    }
     if (m.bending_yield > 0 && m.bending_creep == 0) {
       complain("/material/bending_yield_rad", fmt::format("{}", m.bending_yield),
                "0 without bending_creep_per_s: nothing yields");

@@ -69,12 +69,14 @@ void check_rest(const Complaints& complain, const BodySpec& spec) {
     refuse(shrink, factor, "1: the body has no triangle");
   } else if (m.shrinks() && m.springs > 0) {
     refuse(shrink, factor, "1 with springs_N_per_m, whose lengths are those of the mesh");
+  } else if (m.shrinks() && m.model == "none" && !m.has_sides() && !m.has_diagonals()) {
+    refuse(shrink, factor, "1 without a membrane model and without springs of cloth: nothing shrinks");
   }
   if (m.membrane_yield > 0 && m.membrane_creep == 0) {
     refuse("membrane_yield", m.membrane_yield, "0 without membrane_creep_per_s: nothing yields");
   }
-  if (m.membrane_creep > 0 && m.model == "none") {
-    refuse("membrane_creep_per_s", m.membrane_creep, "0 without a membrane model");
+  if (m.membrane_creep > 0 && (m.model == "none" || spec.mesh.triangles.empty())) {
+    refuse("membrane_creep_per_s", m.membrane_creep, "0 without a membrane model and triangles");
   }
 }
 
