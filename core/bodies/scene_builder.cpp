@@ -135,7 +135,7 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
       continue;
     }
     const int motion = motion_index(spec.pins[p].motion);
-    Pull pull{{}, motion, spec.pins[p].pull.value_or(0), spec.pins[p].pull_factors};
+    Pull pull{{}, motion, spec.pins[p].pull.value_or(0), spec.pins[p].pull_factors, spec.pins[p].pull_span};
     for (const int v : selected) {
       if (v >= spec.mesh.n_vertices()) {
         complain(fmt::format("pins/{} of body \"{}\"", p, spec.name), fmt::format("vertex {}", v),
@@ -193,6 +193,7 @@ void SceneBuilder::append_surface(const BodySpec& spec, int first) {
     return vertices;
   };
   for (const auto& t : surface.mesh.triangles) scene_.surface_triangles.push_back(in_scene(t));
+  if (spec.pressure != 0) append_pressure(spec, surface.mesh.triangles, first);
   if (!scene_.planar) {
     for (const auto& e : unique_edges(surface.mesh)) scene_.surface_edges.push_back(in_scene(e));
   } else {  // whatever pairs contact makes of them

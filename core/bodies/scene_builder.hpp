@@ -1,6 +1,8 @@
 // From bodies to a Scene: appends vertices, lumps masses, collects elements, the collision surface and pins.
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -22,10 +24,13 @@ class SceneBuilder {
   /// Gravity as a function of time, in the place of that of the constructor; empty: that stays.
   void set_gravity(std::vector<GravityKey> keys);
   void set_air(const Air& air) { scene_.air = air; }
+  void set_damping(const VelocityDamping& damping) { scene_.damping = damping; }
 
   /// Appends a body: what every part (part.hpp) makes of its mesh and material. The mass of a vertex is 0 when it is prescribed.
   /// Elements all of whose vertices are prescribed hold no unknown and are left out.
   void add_body(const BodySpec& spec);
+  /// After the bodies that it joins. where: that of its setting, below `where` of the constructor.
+  void add_stitch(const StitchSpec& stitch, const std::string& where);
   /// One with a motion gets a vertex that stands for its point, behind those of all bodies, and is a body of that vertex
   /// alone. Its `vertex` is set here.
   void add_obstacle(const Obstacle& obstacle);
@@ -48,6 +53,8 @@ class SceneBuilder {
   void append_masses(const BodySpec& spec, int first);
   void append_elements(const BodySpec& spec, int first);
   void append_surface(const BodySpec& spec, int first);
+  void append_pressure(const BodySpec& spec, std::span<const std::array<int, 3>> surface, int first);
+  std::vector<int> stitched(const std::string& body, const std::vector<int>& own, const std::string& where);
   void append_obstacle_vertices();
 
   Scene scene_;

@@ -88,8 +88,9 @@ void check_step(const Complaints& report, const std::string& what, const MotionS
   report.number(what + "/scale", motion.scale, motion.scale > 0, "a number > 0");
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     const Keyframe& key = motion.keyframes[k];
-    const bool good = key.translation.allFinite() && std::isfinite(key.angle) && std::isfinite(key.time);
-    if (!good) report(what + "/keyframes", "a non-finite keyframe", "finite numbers");
+    const bool good =
+        within_bounds(key.translation) && std::isfinite(key.angle) && std::isfinite(key.time);
+    if (!good) report(what + "/keyframes", "a keyframe that is not finite or too far out", allowed_coordinates());
     report.number(what + "/keyframes/scale", key.scale, key.scale > 0, "a number > 0");
     if (k > 0 && !(key.time > motion.keyframes[k - 1].time)) {
       report(what + "/keyframes", fmt::format("time {:g} after {:g}", key.time, motion.keyframes[k - 1].time),
@@ -102,9 +103,28 @@ void check_motion(const Complaints& report, const std::string& what, const Rigid
   motion.for_each_step([&](const MotionStep& step) { check_step(report, what, step); });
 }
 
+/// Of what is where its motion says: it begins where it is.
+void check_given_motion(const Complaints& report, const std::string& what, const RigidMotion& motion) {
+  check_motion(report, what, motion);
+  motion.for_each_step([&](const MotionStep& step) {
+    if (step.keyframes.empty() || step.begins_at_start()) return;
+    report(what + "/keyframes", "another place than that of the start at the time 0",
+           "no way, no angle and scale 1 at the time 0: vertices that are prescribed do not jump");
+  });
+}
+
+void check_pull(const Complaints& report, const PinSpec& pin) {
+  const PullSpan& span = pin.pull_span;
+  if (pin.pull) report.number("/pins/pull", *pin.pull, *pin.pull > 0, "a number > 0");
+  if (!(span.release > span.hold)) {
+    report("/pins/release", fmt::format("{:g}", span.release),
+           fmt::format("a number > {:g}, when it begins to hold (s)", span.hold));
+  }
+}
+
 /// An obstacle keeps its size, its normal and its axis.
 void check_obstacle_motion(const Complaints& report, const Obstacle& obstacle, bool planar) {
-  check_motion(report, "/motion", obstacle.motion);
+  check_given_motion(report, "/motion", obstacle.motion);
   if (obstacle.motion.changes_size()) report("/motion", "a scale", "1: obstacles keep their size");
   obstacle.motion.for_each_step([&](const MotionStep& step) {
     const bool turns = step.most_turning() > 0;
@@ -178,12 +198,12 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
   if (!spec.velocity.allFinite()) report("/velocity", "a non-finite value", "finite numbers");
   if (planar && spec.velocity[2] != 0) report("/velocity", "a z component", "0: the scene is planar");
   if (spec.kind == BodyKind::rigid) {
-    check_motion(report, "/motion", spec.motion);
+    check_given_motion(report, "/motion", spec.motion);
   } else {
     check_material(report, spec, planar);
     for (const PinSpec& pin : spec.pins) {
-      check_motion(report, "/pins/motion", pin.motion);
-      if (pin.pull) report.number("/pins/pull", *pin.pull, *pin.pull > 0, "a number > 0");
+      (pin.pull ? check_motion : check_given_motion)(report, "/pins/motion", pin.motion);
+      check_pull(report, pin);
     }
   }
 }

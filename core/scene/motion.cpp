@@ -93,6 +93,11 @@ bool MotionStep::changes_size() const {
          std::any_of(keyframes.begin(), keyframes.end(), [](const Keyframe& k) { return k.scale != 1; });
 }
 
+bool MotionStep::begins_at_start() const {
+  const Keyframe at = pose(0);
+  return at.translation.isZero(0) && at.angle == 0 && at.scale == 1;
+}
+
 double MotionStep::last_change() const {
   if (!keyframes.empty()) return keyframes.back().time;
   return is_static() ? 0 : end;

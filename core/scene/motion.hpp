@@ -43,6 +43,8 @@ struct MotionStep {
   /// The largest |angular velocity|, rad/s.
   double most_turning() const;
   bool changes_size() const;
+  /// At the time 0 every point is where it starts.
+  bool begins_at_start() const;
   /// From when on nothing changes, s.
   double last_change() const;
 

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -26,12 +27,37 @@ struct PullKey {
   double time = 0;  // s
   double value = 1;
 };
+/// The time in which a pull acts, s.
+struct PullSpan {
+  double hold = -std::numeric_limits<double>::infinity();
+  double release = std::numeric_limits<double>::infinity();
+};
 /// Free vertices that springs pull to where a motion takes them from their start.
 struct Pull {
   std::vector<int> vertices;
   int motion = 0;                // index into Scene::motions
   double stiffness = 0;          // N/m, of each spring
   std::vector<PullKey> factors;  // empty: 1 always
+  PullSpan span = {};
+};
+
+/// Springs without length between single vertices.
+struct Stitches {
+  std::vector<std::array<int, 2>> pairs;
+  std::vector<double> stiffness;  // [n] N/m
+};
+
+/// Triangles of closed surfaces that a pressure from within acts on.
+struct Inflation {
+  std::vector<std::array<int, 3>> triangles;
+  std::vector<double> pressure;  // [n] Pa
+};
+
+/// Velocities are multiplied by these to the power of the step's length in s, when it is over.
+struct VelocityDamping {
+  double factor = 1;                                    // of free vertices, in (0, 1]
+  std::optional<double> near_obstacles = std::nullopt;  // of those nearer to an obstacle than d_hat; absent: factor
+  bool acts() const { return factor != 1 || near_obstacles.value_or(1) != 1; }
 };
 
 struct GravityKey {
@@ -92,6 +118,9 @@ struct Scene : parts::AllColumns {
   Vec3d gravity = Vec3d::Zero();         // m/s^2
   std::vector<GravityKey> gravity_keys;  // gravity as a function of time; its first value is `gravity`
   Air air;
+  VelocityDamping damping;
+  Stitches stitches;
+  Inflation inflation;
 
   StrainLimitPart limit;
 

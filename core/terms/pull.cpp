@@ -13,6 +13,13 @@ std::vector<int> pulled_vertices(const Scene& scene) {
   return out;
 }
 
+/// Of the stiffness in a step. One whose middle is not within the span has none, whatever its ends are rounded to.
+double factor_of(const Pull& pull, const StepFrame& frame) {
+  const double middle = frame.t_end - frame.dt / 2;
+  if (!(middle > pull.span.hold && middle < pull.span.release)) return 0;
+  return pull.factors.empty() ? 1 : value_at(pull.factors, frame.t_end);
+}
+
 class PullTerm final : public VertexQuadratic {
  public:
   explicit PullTerm(const Scene& scene) : VertexQuadratic(pulled_vertices(scene)), scene_(scene) {}
@@ -22,7 +29,7 @@ class PullTerm final : public VertexQuadratic {
     std::size_t e = 0;
     for (const Pull& pull : scene_.pulls) {
       const RigidMotion& motion = scene_.motions[static_cast<std::size_t>(pull.motion)];
-      const double factor = pull.factors.empty() ? 1 : value_at(pull.factors, frame.t_end);
+      const double factor = factor_of(pull, frame);
       const Mat3d stiffness = pull.stiffness * factor * Mat3d::Identity();
       for (const int v : pull.vertices) set(e++, motion(scene_.x0.col(v), frame.t_end), stiffness);
     }

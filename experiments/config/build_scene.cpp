@@ -79,6 +79,7 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
   builder.set_planar_pairs(config.scene.pairs);
   builder.set_gravity(config.scene.gravity_keys);
   builder.set_air(config.scene.air);
+  builder.set_damping(config.scene.damping);
   for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
     const BodyConfig& body = config.scene.bodies[i];
     BodySpec spec = body.spec;
@@ -90,6 +91,9 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     if (body.limited) spec.material.limit = limit;
     spec.d_hat = body.d_hat.value_or(config.formulation.d_hat);
     builder.add_body(spec);
+  }
+  for (std::size_t i = 0; i < config.scene.stitches.size(); ++i) {
+    builder.add_stitch(config.scene.stitches[i], fmt::format("/stitches/{}", i));
   }
   for (const Obstacle& obstacle : config.scene.obstacles) builder.add_obstacle(obstacle);
   return builder.finish();

@@ -102,6 +102,25 @@ void check_box(const PinSpec& pin, const std::string& pointer, const Reader& rea
   }
 }
 
+/// Degrees of freedom that are prescribed are so for a whole run.
+void check_pull(const PinSpec& pin, const std::string& where, const Reader& reader) {
+  const auto [hold, release] = pin.pull_span;
+  if (!(release > hold)) {
+    reader.complain(where + "/release_s", fmt::format("{}", release),
+                    fmt::format("a number > {}, when it begins to hold (s)", hold));
+  }
+  if (pin.pull) return;
+  if (!pin.pull_factors.empty()) {
+    reader.complain(where + "/pull_factors", "factors of no pull", "pull_N_per_m beside them");
+  }
+  for (const auto& [key, time] : {std::pair{"/hold_s", hold}, std::pair{"/release_s", release}}) {
+    if (std::isfinite(time)) {
+      reader.complain(where + key, fmt::format("{}", time),
+                      "pull_N_per_m beside it: vertices that are prescribed are so for the whole run");
+    }
+  }
+}
+
 void settle_body(const json& object, const std::string& pointer, const Reader& reader, BodyConfig& body) {
   BodySpec& spec = body.spec;
   check_kind(object, keys_of_others(spec.kind), word_of(spec.kind) + " body", pointer,
@@ -118,9 +137,7 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
     check_motion(pin.motion, where + "/motion", reader);
     check_box(pin, where + "/box_m", reader);
     check_times(pin.pull_factors, where + "/pull_factors", reader);
-    if (!pin.pull && !pin.pull_factors.empty()) {
-      reader.complain(where + "/pull_factors", "factors of no pull", "pull_N_per_m beside them");
-    }
+    check_pull(pin, where, reader);
     if (pin.indices.empty() && !pin.box && !pin.top_row && !pin.all) {
       reader.missing(where, "at least one of indices, box_m, top_row, all");
     }

@@ -69,7 +69,9 @@ struct SceneConfig {
   PlanarPairs pairs = PlanarPairs::point_edge;  // "bodies" only, like all that follows
   std::vector<GravityKey> gravity_keys;         // instead of gravity, which is its first value
   Air air;
+  VelocityDamping damping;
   std::vector<BodyConfig> bodies;
+  std::vector<StitchSpec> stitches;
   std::vector<Obstacle> obstacles;
 };
 

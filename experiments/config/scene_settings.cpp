@@ -164,6 +164,7 @@ void leave_out_defaults(json& motion) {
 
 void leave_out_defaults_of_body(json& body) {
   if (body.contains("motion")) leave_out_defaults(body["motion"]);
+  if (body.contains("pressure_Pa") && body["pressure_Pa"] == 0) body.erase("pressure_Pa");
   if (!body.contains("pins")) return;
   for (json& pin : body["pins"]) {
     leave_out_defaults(pin["motion"]);
@@ -181,6 +182,8 @@ void leave_out_what_is_still(const SceneConfig& scene, json& out) {
   }
   out.erase(scene.gravity_keys.empty() ? "gravity_schedule" : "gravity_m_per_s2");
   if (scene.air.normal == 0 && scene.air.tangential == 0) out.erase("air");
+  if (!scene.damping.acts()) out.erase("velocity_damping");
+  if (scene.stitches.empty()) out.erase("stitches");
 }
 
 json untranslated_json(const SceneConfig& scene) {
@@ -211,7 +214,8 @@ json scene_json(const SceneConfig& scene) {
 }
 
 std::vector<std::string> keys_of_others(BodyKind kind) {
-  if (kind == BodyKind::rigid) return {"rest_mesh", "material", "velocity_m_per_s", "pins", "limited"};
+  if (kind == BodyKind::rigid)
+    return {"rest_mesh", "material", "velocity_m_per_s", "pins", "limited", "pressure_Pa"};
   return {"motion"};
 }
 std::vector<std::string> keys_of_others(ObstacleKind kind) {

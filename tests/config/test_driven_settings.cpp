@@ -90,25 +90,148 @@ TEST(DrivenSettings, ThatContradictEachOtherAreRefused) {
   expect_violation(config, "/scene/air/wind_m_per_s", "a wind beside wind_schedule", "one of both");
 }
 
-TEST(DrivenSettings, ObstaclesKeepTheirSizeAndTheirAxis) {
-  const auto refused = [](const json& config) -> std::string {
-    try {
-      build_scene(parsed(config));
-    } catch (const ConfigError& error) {
-      return error.what();
+/// What building the scene of a config says, which reading it does not refuse.
+std::string refusal(const json& config) {
+  try {
+    build_scene(parsed(config));
+  } catch (const ConfigError& error) {
+    return error.what();
+  }
+  return "";
+}
+
+TEST(DrivenSettings, OnlyPullsAreHeldAndReleased) {
+  json config = bodies_config();
+  json& pin = config["scene"]["bodies"][0]["pins"][0];
+  pin["release_s"] = 1;
+  expect_violation(config, "/scene/bodies/0/pins/0/release_s", "1", "pull_N_per_m beside it");
+  pin["pull_N_per_m"] = 3;
+  pin["hold_s"] = 2;
+  expect_violation(config, "/scene/bodies/0/pins/0/release_s", "1", "a number > 2, when it begins to hold");
+  pin["hold_s"] = 0.5;
+  const Scene scene = build_scene(parsed(config));
+  EXPECT_EQ(scene.pulls.at(0).span.hold, 0.5);
+  EXPECT_EQ(scene.pulls.at(0).span.release, 1);
+  const json resolved = json::parse(resolved_json(parsed(config)));
+  EXPECT_EQ(json::parse(resolved_json(parsed(resolved))), resolved);
+}
+
+TEST(DrivenSettings, WhatIsPrescribedBeginsWhereItIs) {
+  json config = bodies_config();
+  json& pin = config["scene"]["bodies"][0]["pins"][0];
+  pin["motion"] = {{"keyframes", {{{"time_s", 0}, {"translate_m", {0, 0, 1}}}, {{"time_s", 1}}}}};
+  EXPECT_NE(refusal(config).find("vertices that are prescribed do not jump"), std::string::npos)
+      << refusal(config);
+  pin["pull_N_per_m"] = 3;
+  EXPECT_EQ(refusal(config), "");
+  pin.erase("pull_N_per_m");
+  pin["motion"]["keyframes"][0]["time_s"] = 0.5;
+  EXPECT_NE(refusal(config).find("do not jump"), std::string::npos) << "constant before the first";
+}
+
+json stitched_config() {
+  json config = bodies_config();
+  json other = config["scene"]["bodies"][0];
+  other["name"] = "patch";
+  other["transform"] = {{"translate_m", {0, 0, 1}}};
+  config["scene"]["bodies"].push_back(other);
+  config["scene"]["stitches"] = {{{"a", "cloth"},
+                                  {"a_vertices", {0, 1}},
+                                  {"b", "patch"},
+                                  {"b_vertices", {0, 1}},
+                                  {"stiffness_N_per_m", 9}}};
+  return config;
+}
+
+TEST(DrivenSettings, StitchesJoinVerticesThatAreThere) {
+  json config = stitched_config();
+  EXPECT_EQ(build_scene(parsed(config)).stitches.pairs, (std::vector<std::array<int, 2>>{{0, 4}, {1, 5}}));
+  const json resolved = json::parse(resolved_json(parsed(config)));
+  EXPECT_EQ(json::parse(resolved_json(parsed(resolved))), resolved);
+  json& stitch = config["scene"]["stitches"][0];
+  const auto expect_refusal = [&](const char* place, const char* found, const char* allowed) {
+    const std::string text = refusal(config);
+    for (const std::string part :
+         {std::string("a.json#/scene/stitches/0/") + place, std::string(found), std::string(allowed)}) {
+      EXPECT_NE(text.find(part), std::string::npos) << part << " is not in " << text;
     }
-    return "";
   };
+  stitch["b_vertices"] = {0, 4};
+  expect_refusal("b_vertices", "vertex 4", "0 to 3 of body \"patch\"");
+  stitch["b_vertices"] = {0};
+  expect_refusal("b_vertices", "1 vertices", "as many as a_vertices, 2");
+  stitch["b_vertices"] = {0, 1};
+  stitch["b"] = "sleeve";
+  expect_refusal("b", "sleeve", "the name of a body: cloth, patch");
+  stitch["b"] = "cloth";
+  expect_refusal("b_vertices/0", "0", "another vertex than that of a");
+  stitch["b"] = "patch";
+  stitch["a_vertices"] = {2, 1};
+  stitch["b_vertices"] = {2, 1};
+  expect_refusal("b_vertices/0", "2", "a stitch with a vertex that is not prescribed");
+  stitch["stiffness_N_per_m"] = 0;
+  expect_violation(config, "/scene/stitches/0/stiffness_N_per_m", "0", "a number > 0");
+}
+
+TEST(DrivenSettings, DampingIsAPartOfOneAndNotForTwoSteps) {
+  json config = bodies_config();
+  config["scene"]["velocity_damping"] = {{"factor_per_s", 0.2}};
+  EXPECT_EQ(build_scene(parsed(config)).damping.factor, 0.2);
+  const json resolved = json::parse(resolved_json(parsed(config)));
+  EXPECT_EQ(resolved["scene"]["velocity_damping"], json::parse(R"({"factor_per_s": 0.2})"));
+  config["integrator"] = {{"name", "bdf2"}};
+  expect_violation(config, "/integrator/name", "\"bdf2\"", "/scene/velocity_damping changes its velocities");
+  config.erase("integrator");
+  config["scene"]["velocity_damping"]["near_obstacles_factor_per_s"] = 0;
+  expect_violation(config, "/scene/velocity_damping/near_obstacles_factor_per_s", "0", "> 0");
+}
+
+TEST(DrivenSettings, APressureHasAHessianOfItsOwn) {
+  json config = bodies_config();
+  EXPECT_FALSE(json::parse(resolved_json(parsed(config)))["hessian"].contains("inflation"));
+  json& body = config["scene"]["bodies"][0];
+  EXPECT_FALSE(json::parse(resolved_json(parsed(config)))["scene"]["bodies"][0].contains("pressure_Pa"));
+  body["pressure_Pa"] = 5;
+  EXPECT_NE(refusal(config).find("does not close"), std::string::npos);
+  body["mesh"] = {{"generator", "solid_box"}, {"n_x", 1}, {"n_y", 1}, {"n_z", 1}};
+  body["pins"] = json::array();
+  EXPECT_EQ(refusal(config), "");
+  const json resolved = json::parse(resolved_json(parsed(config)));
+  EXPECT_TRUE(resolved["hessian"].contains("inflation"));
+  EXPECT_EQ(json::parse(resolved_json(parsed(resolved))), resolved);
+}
+
+TEST(DrivenSettings, ADeviceRefusesTermsThatItDoesNotHave) {
+  json config = bodies_config();
+  config["device"] = "host";
+  config["linear_solver"] = {{"name", "pcg_resident"}};
+  const json plain = config;
+  json& pin = config["scene"]["bodies"][0]["pins"][0];
+  pin["pull_N_per_m"] = 3;
+  expect_violation(config, "/scene/bodies/0/pins/0/pull_N_per_m", "3", "no pull with device host");
+  config = plain;
+  config["scene"]["air"] = {{"normal_N_s_per_m3", 1}};
+  expect_violation(config, "/scene/air", "drag of the air", "no drag with device host");
+  config = stitched_config();
+  config["device"] = "host";
+  config["linear_solver"] = {{"name", "pcg_resident"}};
+  expect_violation(config, "/scene/stitches", "stitches", "none with device host");
+  config = plain;
+  config["scene"]["bodies"][0]["pressure_Pa"] = 5;
+  expect_violation(config, "/scene/bodies/0/pressure_Pa", "5", "0 with device host");
+}
+
+TEST(DrivenSettings, ObstaclesKeepTheirSizeAndTheirAxis) {
   const json turn = {{"axis", {1, 0, 0}}, {"angular_velocity_rad_per_s", 1}};
-  EXPECT_EQ(refused(with_obstacle(turn)), "") << "a ball turns as it likes";
-  EXPECT_NE(refused(with_obstacle(turn, "plane")).find("a rotation about the plane's normal"),
+  EXPECT_EQ(refusal(with_obstacle(turn)), "") << "a ball turns as it likes";
+  EXPECT_NE(refusal(with_obstacle(turn, "plane")).find("a rotation about the plane's normal"),
             std::string::npos);
-  EXPECT_NE(refused(with_obstacle(turn, "cylinder")).find("the direction of the cylinder's axis"),
+  EXPECT_NE(refusal(with_obstacle(turn, "cylinder")).find("the direction of the cylinder's axis"),
             std::string::npos);
   const json about_z = {{"angular_velocity_rad_per_s", 1}};
-  EXPECT_EQ(refused(with_obstacle(about_z, "plane")), "");
-  EXPECT_EQ(refused(with_obstacle(about_z, "cylinder")), "");
-  EXPECT_NE(refused(with_obstacle({{"scale", 2}, {"end_s", 1}})).find("obstacles keep their size"),
+  EXPECT_EQ(refusal(with_obstacle(about_z, "plane")), "");
+  EXPECT_EQ(refusal(with_obstacle(about_z, "cylinder")), "");
+  EXPECT_NE(refusal(with_obstacle({{"scale", 2}, {"end_s", 1}})).find("obstacles keep their size"),
             std::string::npos);
 }
 
