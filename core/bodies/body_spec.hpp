@@ -57,7 +57,7 @@ struct BodySpec {
   double d_hat = 0;                // m, > 0
   double offset = 0;               // m, >= 0
   std::optional<double> friction;  // coefficient, >= 0; absent: that of the run
-  double pressure = 0;             // Pa, from within, > 0 presses outwards; other than 0 the surface has to be closed
+  double pressure = 0;             // Pa, from within; other than 0 only with a closed surface
 };
 
 }  // namespace bb

@@ -56,7 +56,7 @@ struct Inflation {
 /// Velocities are multiplied by these to the power of the step's length in s, when it is over.
 struct VelocityDamping {
   double factor = 1;                                    // of free vertices, in (0, 1]
-  std::optional<double> near_obstacles = std::nullopt;  // of those nearer to an obstacle than d_hat; absent: factor
+  std::optional<double> near_obstacles = std::nullopt;  // nearer to an obstacle than d_hat; absent: factor
   bool acts() const { return factor != 1 || near_obstacles.value_or(1) != 1; }
 };
 
