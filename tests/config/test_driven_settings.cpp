@@ -151,7 +151,7 @@ TEST(DrivenSettings, StitchesJoinVerticesThatAreThere) {
   json& stitch = config["scene"]["stitches"][0];
   const auto expect_refusal = [&](const char* place, const char* found, const char* allowed) {
     const std::string text = refusal(config);
-    for (const std::string part :
+    for (const std::string& part :
          {std::string("a.json#/scene/stitches/0/") + place, std::string(found), std::string(allowed)}) {
       EXPECT_NE(text.find(part), std::string::npos) << part << " is not in " << text;
     }

@@ -24,7 +24,7 @@ class Run:
         self.folder, self.config = folder, json.loads((SCENES / f"{scene}.json").read_text())
         self.record = read_record(folder / "run.json")
         assert self.record["status"]["outcome"] == "ok", self.record["status"]
-        assert self.record["audit"]["penetrating"] == 0
+        assert self.record["audit"]["judged"] > 0
         self.steps = self.record["steps"]
 
     def at(self, step):
@@ -47,13 +47,16 @@ def test_a_strip_is_twisted_alike_from_both_ends(program, tmp_path, formulation)
             y = start[where][:, 1]
             expected[:, 1], expected[:, 2] = y * math.cos(angle), y * math.sin(angle)
             np.testing.assert_allclose(run.at(step)[where], expected, atol=1e-14)
-    twisted = run.load(69)
-    assert twisted > 10 * run.record["scene"]["gravity_m_per_s2"][2] * -0.2 * 0.4 * 0.15 if "gravity_m_per_s2" in run.record["scene"] else twisted > 1
-    # half a turn about z takes the start onto itself, vertex i onto the last but i: equal and opposite torques keep it so
-    for step in (20, 34):
+    assert run.load(69) > 1, "N, it presses on itself"
+    # half a turn about z takes the start onto itself, vertex i onto the last but i: equal and opposite torques keep it so,
+    # until it buckles to one side, and once more when it is wound up
+    assert run.load(18) > 0.1
+    for step, tolerance in ((18, 1e-12), (74, 1e-4)):
         there = run.at(step)
-        np.testing.assert_allclose(there[::-1] * [-1, -1, 1], there, atol=1e-6)
-    assert np.abs(end - start)[:, 2].max() > 0.02, "it coils up"
+        np.testing.assert_allclose(there[::-1] * [-1, -1, 1], there, atol=tolerance)
+    middle = np.abs(start[:, 0]) < 0.03
+    assert np.abs(start[middle][:, 1]).max() == pytest.approx(0.075)
+    assert 0.005 < np.linalg.norm(end[middle][:, 1:], axis=1).max() < 0.03, "a coil"
 
 
 @both
@@ -93,18 +96,26 @@ def test_a_balloon_swells_is_released_and_comes_to_lie(program, tmp_path, formul
         return np.linalg.det(x[corners]).sum() / 6
 
     x = start[corners]
-    area = np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1).sum() / 2
+    areas = np.linalg.norm(np.cross(x[:, 1] - x[:, 0], x[:, 2] - x[:, 0]), axis=1) / 2
+    area = areas.sum()
     # a sphere scaled by s: membrane area 2 E/(1 - nu) (s - 1) and pulls k n R^2 (s - 1) against 3 p V s^2
     stiffness = area * 2 * 100 / 0.7 + 0.5 * n * 0.1**2
     b, c = stiffness, 3 * 100 * volume(start)
     s = (b - math.sqrt(b * b - 4 * b * c)) / (2 * c)
     assert s > 1.03
     assert (volume(swollen) / volume(start)) ** (1 / 3) == pytest.approx(s, rel=2e-3)
-    # let go: a free fall of implicit Euler, whose centre the stitch and the pressure do not move
-    mass = np.r_[np.full(n, 0.2 * area / n), np.full(25, 0.1 * 0.06**2 / 25)]
-    assert run.load(70) == 0
-    fall = [run.at(step)[ball].mean(axis=0)[2] for step in (62, 63, 64)]
-    assert (fall[2] - 2 * fall[1] + fall[0]) / 0.005**2 == pytest.approx(-G, rel=0.1), mass.sum()
+    # let go: the centre of all falls, whatever pressure, stitch and contact do between its parts
+    assert 0 < run.load(64) < 0.5
+    mass = np.zeros(len(start))
+    np.add.at(mass, corners, np.repeat(0.2 * areas[:, None] / 3, 3, axis=1))
+    sheet = frame_of(run.record, run.folder, -1).triangles
+    sheet = sheet[sheet.min(axis=1) >= n]
+    np.add.at(mass, sheet, 0.1 * 0.06**2 / len(sheet) / 3)
+    fall = [mass @ run.at(step)[:, 2] / mass.sum() for step in (62, 63, 64)]
+    speed = (fall[1] - fall[0]) / 0.005
+    damped = speed * (0.8**0.005 - 1) / 0.005 - G
+    assert speed < -0.05
+    assert (fall[2] - 2 * fall[1] + fall[0]) / 0.005**2 == pytest.approx(damped, rel=1e-4)
     # on the floor it has come to rest, and the floor bears the weight
     end = run.at(119)
     assert 0 < end[:, 2].min() < 0.002
