@@ -6,8 +6,15 @@ namespace {
 
 constexpr const char* motion = "/scene/bodies/0/pins/0/motion";
 
-json with_obstacle(const json& obstacle_motion, const char* kind = "sphere") {
+/// One square whose two upper vertices are pinned.
+json driven_config() {
   json config = bodies_config();
+  config["scene"]["bodies"][0]["pins"] = {{{"indices", {2, 3}}}};
+  return config;
+}
+
+json with_obstacle(const json& obstacle_motion, const char* kind = "sphere") {
+  json config = driven_config();
   json obstacle = {{"name", "ball"}, {"kind", kind}, {"point_m", {0, 0, -3}}, {"motion", obstacle_motion}};
   if (obstacle["kind"] != "plane") obstacle["radius_m"] = 0.5;
   config["scene"]["obstacles"] = {obstacle};
@@ -51,7 +58,7 @@ TEST(DrivenSettings, ThatAreAbsentAreNotWritten) {
 }
 
 TEST(DrivenSettings, TimesIncrease) {
-  json config = bodies_config();
+  json config = driven_config();
   json& pin = config["scene"]["bodies"][0]["pins"][0];
   pin["motion"] = {{"keyframes", {{{"time_s", 1}}, {{"time_s", 0.5}}}}};
   expect_violation(config, std::string(motion) + "/keyframes/1/time_s", "0.5",
@@ -62,14 +69,14 @@ TEST(DrivenSettings, TimesIncrease) {
   pin["pull_N_per_m"] = 3;
   pin["pull_factors"] = {{{"time_s", 1}, {"factor", 1}}, {{"time_s", 1}, {"factor", 0}}};
   expect_violation(config, "/scene/bodies/0/pins/0/pull_factors/1/time_s", "1", "a number > 1");
-  config = bodies_config();
+  config = driven_config();
   config["scene"]["gravity_schedule"] = {{{"time_s", 1}, {"gravity_m_per_s2", {0, 0, -9}}},
                                          {{"time_s", 0}, {"gravity_m_per_s2", {0, 0, 9}}}};
   expect_violation(config, "/scene/gravity_schedule/1/time_s", "0", "a number > 1");
 }
 
 TEST(DrivenSettings, ThatContradictEachOtherAreRefused) {
-  json config = bodies_config();
+  json config = driven_config();
   json& pin = config["scene"]["bodies"][0]["pins"][0];
   pin["motion"] = {{"velocity_m_per_s", {1, 0, 0}}, {"keyframes", {{{"time_s", 1}}}}};
   expect_violation(config, motion, "rates or a scale beside keyframes", "one of both");
@@ -80,11 +87,11 @@ TEST(DrivenSettings, ThatContradictEachOtherAreRefused) {
   pin.erase("motion");
   pin["pull_factors"] = {{{"time_s", 1}, {"factor", 1}}};
   expect_violation(config, "/scene/bodies/0/pins/0/pull_factors", "factors of no pull", "pull_N_per_m");
-  config = bodies_config();
+  config = driven_config();
   config["scene"]["gravity_m_per_s2"] = {0, 0, -9};
   config["scene"]["gravity_schedule"] = {{{"time_s", 1}, {"gravity_m_per_s2", {0, 0, -9}}}};
   expect_violation(config, "/scene/gravity_m_per_s2", "[0,0,-9]", "nothing beside gravity_schedule");
-  config = bodies_config();
+  config = driven_config();
   config["scene"]["air"] = {{"wind_m_per_s", {1, 0, 0}},
                             {"wind_schedule", {{{"time_s", 1}, {"wind_m_per_s", {0, 0, -9}}}}}};
   expect_violation(config, "/scene/air/wind_m_per_s", "a wind beside wind_schedule", "one of both");
@@ -101,7 +108,7 @@ std::string refusal(const json& config) {
 }
 
 TEST(DrivenSettings, OnlyPullsAreHeldAndReleased) {
-  json config = bodies_config();
+  json config = driven_config();
   json& pin = config["scene"]["bodies"][0]["pins"][0];
   pin["release_s"] = 1;
   expect_violation(config, "/scene/bodies/0/pins/0/release_s", "1", "pull_N_per_m beside it");
@@ -117,7 +124,7 @@ TEST(DrivenSettings, OnlyPullsAreHeldAndReleased) {
 }
 
 TEST(DrivenSettings, WhatIsPrescribedBeginsWhereItIs) {
-  json config = bodies_config();
+  json config = driven_config();
   json& pin = config["scene"]["bodies"][0]["pins"][0];
   pin["motion"] = {{"keyframes", {{{"time_s", 0}, {"translate_m", {0, 0, 1}}}, {{"time_s", 1}}}}};
   EXPECT_NE(refusal(config).find("vertices that are prescribed do not jump"), std::string::npos)
@@ -130,7 +137,7 @@ TEST(DrivenSettings, WhatIsPrescribedBeginsWhereItIs) {
 }
 
 json stitched_config() {
-  json config = bodies_config();
+  json config = driven_config();
   json other = config["scene"]["bodies"][0];
   other["name"] = "patch";
   other["transform"] = {{"translate_m", {0, 0, 1}}};
@@ -174,7 +181,7 @@ TEST(DrivenSettings, StitchesJoinVerticesThatAreThere) {
 }
 
 TEST(DrivenSettings, DampingIsAPartOfOneAndNotForTwoSteps) {
-  json config = bodies_config();
+  json config = driven_config();
   config["scene"]["velocity_damping"] = {{"factor_per_s", 0.2}};
   EXPECT_EQ(build_scene(parsed(config)).damping.factor, 0.2);
   const json resolved = json::parse(resolved_json(parsed(config)));
@@ -187,7 +194,7 @@ TEST(DrivenSettings, DampingIsAPartOfOneAndNotForTwoSteps) {
 }
 
 TEST(DrivenSettings, APressureHasAHessianOfItsOwn) {
-  json config = bodies_config();
+  json config = driven_config();
   EXPECT_FALSE(json::parse(resolved_json(parsed(config)))["hessian"].contains("inflation"));
   json& body = config["scene"]["bodies"][0];
   EXPECT_FALSE(json::parse(resolved_json(parsed(config)))["scene"]["bodies"][0].contains("pressure_Pa"));
@@ -202,7 +209,7 @@ TEST(DrivenSettings, APressureHasAHessianOfItsOwn) {
 }
 
 TEST(DrivenSettings, ADeviceRefusesTermsThatItDoesNotHave) {
-  json config = bodies_config();
+  json config = driven_config();
   config["device"] = "host";
   config["linear_solver"] = {{"name", "pcg_resident"}};
   const json plain = config;

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/mesh/topology.hpp"
 #include "tests/terms/at_iterate.hpp"
 
 namespace bb::driven_terms_test {
