@@ -24,13 +24,23 @@ struct Material : parts::AllKeys {
   std::optional<StrainLimitSpec> limit;  // absent: no limit
 };
 
-/// Which vertices of a body are prescribed; a vertex is selected when any of the given ways selects it.
+/// Which vertices of a body are prescribed, or pulled; a vertex is selected when any of the given ways selects it.
 struct PinSpec {
   std::vector<int> indices;                 // of the body's own vertices
   std::optional<std::array<Vec3d, 2>> box;  // closed box (min, max) in start positions, m
   bool top_row = false;                     // vertices with the largest start y (planar) or z, exactly
   bool all = false;
-  RigidMotion motion;  // static by default
+  RigidMotion motion;                 // static by default
+  std::optional<double> pull;         // N/m, of springs from free vertices to there; absent: they are there
+  std::vector<PullKey> pull_factors;  // of it; empty: 1
+  PullSpan pull_span;                 // in which it acts
+};
+
+/// Springs without length between vertices of two bodies, or of one: each of a_vertices to that of b_vertices in its place.
+struct StitchSpec {
+  std::string a, b;                         // names of the bodies
+  std::vector<int> a_vertices, b_vertices;  // of their own meshes
+  double stiffness = 0;                     // N/m, of each spring, > 0
 };
 
 enum class BodyKind { deformable, rigid };  // rigid: every vertex prescribed, no mass, no elements
@@ -47,6 +57,7 @@ struct BodySpec {
   double d_hat = 0;                // m, > 0
   double offset = 0;               // m, >= 0
   std::optional<double> friction;  // coefficient, >= 0; absent: that of the run
+  double pressure = 0;             // Pa, from within; other than 0 only with a closed surface
 };
 
 }  // namespace bb

@@ -1,6 +1,8 @@
 // From bodies to a Scene: appends vertices, lumps masses, collects elements, the collision surface and pins.
 #pragma once
 
+#include <array>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -19,10 +21,16 @@ class SceneBuilder {
 
   /// Planar scenes only; before the first body.
   void set_planar_pairs(PlanarPairs pairs) { scene_.planar_pairs = pairs; }
+  /// Gravity as a function of time, in the place of that of the constructor; empty: that stays.
+  void set_gravity(std::vector<GravityKey> keys);
+  void set_air(const Air& air) { scene_.air = air; }
+  void set_damping(const VelocityDamping& damping) { scene_.damping = damping; }
 
   /// Appends a body: what every part (part.hpp) makes of its mesh and material. The mass of a vertex is 0 when it is prescribed.
   /// Elements all of whose vertices are prescribed hold no unknown and are left out.
   void add_body(const BodySpec& spec);
+  /// After the bodies that it joins. where: that of its setting, below `where` of the constructor.
+  void add_stitch(const StitchSpec& stitch, const std::string& where);
   /// One with a motion gets a vertex that stands for its point, behind those of all bodies, and is a body of that vertex
   /// alone. Its `vertex` is set here.
   void add_obstacle(const Obstacle& obstacle);
@@ -40,10 +48,13 @@ class SceneBuilder {
   void append_vertices(const BodySpec& spec, const Positions& start);
   void append_pins(const BodySpec& spec, const Positions& start, int first);
   void pin_vertex(const std::string& body, int vertex, int motion);
+  void check_pulls(const std::string& body);
   int motion_index(const RigidMotion& motion);
   void append_masses(const BodySpec& spec, int first);
   void append_elements(const BodySpec& spec, int first);
   void append_surface(const BodySpec& spec, int first);
+  void append_pressure(const BodySpec& spec, std::span<const std::array<int, 3>> surface, int first);
+  std::vector<int> stitched(const std::string& body, const std::vector<int>& own, const std::string& where);
   void append_obstacle_vertices();
 
   Scene scene_;

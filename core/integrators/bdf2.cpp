@@ -13,6 +13,7 @@ bool starts(const History& history, double dt) {
 class Bdf2 final : public Integrator {
  public:
   std::string_view name() const override { return "bdf2"; }
+  bool one_step() const override { return false; }
   void predict(const History& history, double dt, Prediction& out) const override {
     if (starts(history, dt)) {
       out.c = 1;

@@ -34,6 +34,10 @@ class Integrator {
   virtual bool quasi_static() const { return false; }
   /// True when a_0 must be computed from the forces at the start and a kept.
   virtual bool needs_acceleration() const { return false; }
+  /// The part of the weight that acts in a step.
+  virtual double weight_factor() const { return 1; }
+  /// False when steps read x_prev or v_prev: a velocity that is changed at the end of a step is then not all that the next begins with.
+  virtual bool one_step() const { return true; }
   /// Fills `out` without allocating after the first call. dt in s.
   virtual void predict(const History& history, double dt, Prediction& out) const = 0;
   /// Velocity at the end of the step that reached x, and acceleration where needs_acceleration: others leave a as it

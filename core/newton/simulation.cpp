@@ -5,6 +5,7 @@
 
 #include "core/archive/archive.hpp"
 #include "core/newton/iteration.hpp"
+#include "core/newton/velocity_damping.hpp"
 
 namespace bb {
 
@@ -119,7 +120,8 @@ StepReport Simulation::attempt(StepObserver& observer) {
   StepTask task;
   task.step = step_;
   task.dt = parts_.length(dt_);
-  task.load_factor = method_.integrator->quasi_static() ? (nominal_ + parts_.end()) / n_steps_ : 1.0;
+  task.load_factor = method_.integrator->weight_factor();
+  if (method_.integrator->quasi_static()) task.load_factor *= (nominal_ + parts_.end()) / n_steps_;
   load_factor_ = task.load_factor;
   task.history = &history_;
   task.integrator = method_.integrator.get();
@@ -184,6 +186,7 @@ void Simulation::remember(const PositionsView& x, double dt_used) {
   const ScopedPhase timer(system_->clock(), Phase::prediction);
   if (dt_used > 0) {
     method_.integrator->finish(history_, dt_used, prediction_, x, v_next_, a_next_);
+    damp_velocities(scene_, x, dt_used, v_next_);
     history_.v_prev.swap(history_.v);
     history_.v = v_next_;
     if (method_.integrator->needs_acceleration()) history_.a = a_next_;

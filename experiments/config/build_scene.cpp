@@ -77,6 +77,9 @@ void take_rest_shape(const BodyConfig& body, const std::string& where, BodySpec&
 Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>& limit) {
   SceneBuilder builder("bodies", config.scene.planar, config.scene.gravity, config.source + "#/scene");
   builder.set_planar_pairs(config.scene.pairs);
+  builder.set_gravity(config.scene.gravity_keys);
+  builder.set_air(config.scene.air);
+  builder.set_damping(config.scene.damping);
   for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
     const BodyConfig& body = config.scene.bodies[i];
     BodySpec spec = body.spec;
@@ -89,6 +92,9 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     spec.d_hat = body.d_hat.value_or(config.formulation.d_hat);
     builder.add_body(spec);
   }
+  for (std::size_t i = 0; i < config.scene.stitches.size(); ++i) {
+    builder.add_stitch(config.scene.stitches[i], fmt::format("/stitches/{}", i));
+  }
   for (const Obstacle& obstacle : config.scene.obstacles) builder.add_obstacle(obstacle);
   return builder.finish();
 }
@@ -100,9 +106,9 @@ void translate(const Vec3d& by, Scene& scene) {
   scene.x0.colwise() += by;
   for (Obstacle& obstacle : scene.obstacles) {
     obstacle.point += by;
-    obstacle.motion.center += by;
+    obstacle.motion.translate(by);
   }
-  for (RigidMotion& motion : scene.motions) motion.center += by;
+  for (RigidMotion& motion : scene.motions) motion.translate(by);
 }
 
 /// Uniform in [-1, 1) from the top 53 bits, the same on every platform.

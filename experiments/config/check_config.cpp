@@ -6,6 +6,7 @@
 
 #include "barriers/shapes/registry.hpp"
 #include "core/barrier/folded_barrier.hpp"
+#include "core/integrators/registry.hpp"
 #include "core/newton/step_solver.hpp"
 #include "core/terms/step_hessian.hpp"
 #include "experiments/config/complain.hpp"
@@ -64,6 +65,15 @@ void check_step_solver(const RunConfig& config, const Complain& complain) {
     complain("/step_solver/min_newton_steps", fmt::format("{}", min_newton_steps),
              fmt::format("an integer <= max_iterations = {}", solver.max_iterations));
   }
+}
+
+/// Steps that read the positions before the last carry the velocity on that was taken off.
+void check_damping(const RunConfig& config, const Complain& complain) {
+  const IntegratorConfig& chosen = config.integrator;
+  if (!config.scene.damping.acts() || !integrators().find(chosen.name)) return;
+  if (make_integrator(chosen.name, chosen.parameters)->one_step()) return;
+  complain("/integrator/name", '"' + chosen.name + '"',
+           "one whose steps read the last state alone: /scene/velocity_damping changes its velocities");
 }
 
 /// The article's solver adds its own term to a matrix that has to be positive semi-definite.
@@ -282,6 +292,7 @@ void check_contradictions(const RunConfig& config, const std::string& source,
     check_exponent("/strain_limit", config.strain_limit.shape, complain);
   }
   check_step_solver(config, complain);
+  check_damping(config, complain);
   check_hessians(config, complain);
   check_policies(config, complain);
   check_adaptive_start(config, complain);

@@ -21,6 +21,26 @@ void refuse_friction(const RunConfig& config, const std::string& allowed, const 
   }
 }
 
+/// Terms that no executor has.
+void refuse_driven(const SceneConfig& scene, const std::string& on, const Complain& complain) {
+  const std::string here = on + ": it runs with device cpu only";
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    const BodySpec& body = scene.bodies[i].spec;
+    for (std::size_t p = 0; p < body.pins.size(); ++p) {
+      if (!body.pins[p].pull) continue;
+      complain(fmt::format("/scene/bodies/{}/pins/{}/pull_N_per_m", i, p),
+               fmt::format("{}", *body.pins[p].pull), "no pull " + here);
+    }
+    if (body.pressure != 0) {
+      complain(fmt::format("/scene/bodies/{}/pressure_Pa", i), fmt::format("{}", body.pressure), "0 " + here);
+    }
+  }
+  if (scene.air.normal > 0 || scene.air.tangential > 0) {
+    complain("/scene/air", "drag of the air", "no drag " + here);
+  }
+  if (!scene.stitches.empty()) complain("/scene/stitches", "stitches", "none " + here);
+}
+
 void check_device(const RunConfig& config, const Complain& complain) {
   if (config.device == Device::cpu) return;
   const std::string on = fmt::format("with device {}", word_of(config.device));
@@ -29,6 +49,10 @@ void check_device(const RunConfig& config, const Complain& complain) {
     if (config.scene.obstacles[i].motion.is_static()) continue;
     complain(fmt::format("/scene/obstacles/{}/motion", i), "an obstacle that moves",
              "no motion " + on + ": its kernels know obstacles that stand still");
+  }
+  refuse_driven(config.scene, on, complain);
+  if (!config.scene.gravity_keys.empty()) {
+    complain("/scene/gravity_schedule", "gravity over time", "gravity_m_per_s2 " + on);
   }
   if (config.precision != Precision::full) {
     complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);

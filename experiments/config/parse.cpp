@@ -1,5 +1,6 @@
 #include "experiments/config/parse.hpp"
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -111,7 +112,15 @@ RunConfig load_config(const std::string& path, std::span<const std::string> over
   return parse_config(read_input_file(path, config_file), path, folder.empty() ? "." : folder, overrides);
 }
 
-std::string resolved_json(const RunConfig& config) { return settings_of<RunConfig>().write(config).dump(2); }
+/// A scene without pressure has no choice of its Hessian, and the id that it had before there was one.
+std::string resolved_json(const RunConfig& config) {
+  json out = settings_of<RunConfig>().write(config);
+  const auto presses = [](const BodyConfig& body) { return body.spec.pressure != 0; };
+  if (std::none_of(config.scene.bodies.begin(), config.scene.bodies.end(), presses)) {
+    out["hessian"].erase("inflation");
+  }
+  return out.dump(2);
+}
 
 std::string config_id(const RunConfig& config) { return config_id(std::string_view(resolved_json(config))); }
 

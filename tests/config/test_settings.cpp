@@ -26,6 +26,19 @@ struct Place {
   json config;
 };
 
+/// One entry, with what it needs, in every list of a scene whose entries need something.
+void add_lists(json& scene) {
+  const json first = {{"time_s", 0}}, motion = {{"keyframes", {first}}, {"then", {{{"keyframes", {first}}}}}};
+  json& pin = scene["bodies"][0]["pins"][0];
+  pin["pull_N_per_m"] = 1;
+  pin["pull_factors"] = {{{"time_s", 0}, {"factor", 1}}};
+  pin["motion"] = scene["bodies"][1]["motion"] = scene["obstacles"][0]["motion"] = motion;
+  scene["gravity_schedule"] = {{{"time_s", 0}, {"gravity_m_per_s2", {0, 0, -9}}}};
+  scene["air"]["wind_schedule"] = {{{"time_s", 0}, {"wind_m_per_s", {0, 0, 1}}}};
+  scene["stitches"] = {
+      {{"a", "cloth"}, {"a_vertices", {0}}, {"b", "cloth"}, {"b_vertices", {3}}, {"stiffness_N_per_m", 1}}};
+}
+
 /// Two bodies, one of each kind, and an obstacle, that have every setting.
 json full_bodies() {
   json config = bodies_config();
@@ -33,6 +46,7 @@ json full_bodies() {
       {{"name", "plate"}, {"kind", "rigid"}, {"mesh", {{"generator", "grid"}}}});
   config["scene"]["bodies"][0]["rest_mesh"] = {{"generator", "grid"}};
   config["scene"]["obstacles"] = {{{"name", "pole"}, {"kind", "cylinder"}, {"radius_m", 1}}};
+  add_lists(config["scene"]);
   return config;
 }
 

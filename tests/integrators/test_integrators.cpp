@@ -30,7 +30,8 @@ struct Particle {
     integrator.predict(history, dt, prediction);
     const double weight = 1 / (prediction.c * dt * dt);
     Positions x = prediction.x_tilde;
-    x.row(0).array() = (weight * prediction.x_tilde.row(0).array() + f0) / (weight + k);
+    const double load = integrator.weight_factor() * f0;
+    x.row(0).array() = (weight * prediction.x_tilde.row(0).array() + load) / (weight + k);
     integrator.finish(history, dt, prediction, x, v, a);
     history.x_prev = history.x;
     history.v_prev = history.v;
@@ -48,7 +49,9 @@ double oscillator_error(const Integrator& integrator, int steps) {
   return std::abs(particle.history.x(0) - std::cos(2.0));
 }
 
-int expected_order(std::string_view name) { return name == "implicit_euler" ? 1 : 2; }
+int expected_order(std::string_view name) {
+  return name == "implicit_euler" || name == "half_gravity" ? 1 : 2;
+}
 
 TEST(Integrators, reach_their_order_on_the_oscillator) {
   int tested = 0;
@@ -72,11 +75,29 @@ TEST(Integrators, velocity_is_consistent_with_the_force) {
     Particle particle(0, -9.81, 0, 3);
     const double dt = 0.01;
     for (int i = 0; i < 50; ++i) particle.step(*integrator, dt);
-    EXPECT_NEAR(particle.history.v(0), 3 - 9.81 * 0.5, 1e-10) << entry.name;
+    EXPECT_NEAR(particle.history.v(0), 3 - integrator->weight_factor() * 9.81 * 0.5, 1e-10) << entry.name;
     EXPECT_NEAR(particle.history.a(0), integrator->needs_acceleration() ? -9.81 : 0, 1e-9) << entry.name;
     with_acceleration += integrator->needs_acceleration() ? 1 : 0;
   }
   EXPECT_EQ(with_acceleration, 1);
+}
+
+TEST(Integrators, half_gravity_predicts_what_its_source_does_and_falls_with_half_of_it) {
+  const auto integrator = make_integrator("half_gravity");
+  for (const double dt : {0.1, 0.001}) {
+    Particle particle(0, -9.81, 2, 3);
+    particle.step(*integrator, dt);
+    EXPECT_NEAR(particle.history.x(0), 2 + 3 * dt - 9.81 * dt * dt / 2, 1e-14);
+    EXPECT_NEAR(particle.history.v(0), 3 - 9.81 * dt / 2, 1e-12);
+    const int steps = static_cast<int>(std::lround(1 / dt));
+    for (int i = 1; i < steps; ++i) particle.step(*integrator, dt);
+    EXPECT_NEAR(particle.history.v(0), 3 - 9.81 / 2, 1e-9) << "of g after one second";
+  }
+  for (const IntegratorEntry& entry : integrators()) {
+    const auto each = make_integrator(entry.name);
+    EXPECT_EQ(each->weight_factor(), entry.name == "half_gravity" ? 0.5 : 1) << entry.name;
+    EXPECT_EQ(each->one_step(), entry.name != "bdf2") << entry.name;
+  }
 }
 
 TEST(Integrators, newmark_keeps_the_energy_of_the_oscillator_and_implicit_euler_does_not) {

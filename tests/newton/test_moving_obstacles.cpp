@@ -193,6 +193,40 @@ TEST(MovingObstacles, that_spin_take_along_what_lies_on_them) {
   }
 }
 
+/// The same turn of a ball under a particle by a rate, by keyframes, and in two operations of which the second turns the other
+/// way: friction sees the turn of all of them.
+TEST(MovingObstacles, take_along_the_same_whichever_way_their_turn_is_said) {
+  constexpr double mass = 0.2, radius = 2, height = 0.5 * d_hat;
+  RigidMotion by_rate;
+  by_rate.axis = Vec3d::UnitY();
+  by_rate.center = Vec3d(0, 0, -radius);
+  by_rate.angular_velocity = 3 / radius;
+  RigidMotion by_keyframes = by_rate;
+  by_keyframes.angular_velocity = 0;
+  by_keyframes.keyframes = {{0, Vec3d::Zero(), 0, 1}, {2, Vec3d::Zero(), 2 * 3 / radius, 1}};
+  RigidMotion in_two = by_rate;
+  in_two.angular_velocity = 5 / radius;
+  in_two.then = {static_cast<const MotionStep&>(by_rate)};
+  in_two.then[0].angular_velocity = -2 / radius;
+  std::vector<Vec3d> velocities;
+  for (const RigidMotion& motion : {by_rate, by_keyframes, in_two}) {
+    Scene scene = test::particle_over_plane(mass, height, d_hat);
+    scene.obstacles[0].kind = ObstacleKind::sphere;
+    scene.obstacles[0].radius = radius;
+    scene.obstacles[0].point = motion.center;
+    scene = test::with_moving_obstacles(std::move(scene), Vec3d::Zero());
+    scene.motions.back() = scene.obstacles[0].motion = motion;
+    Method method = test::fixed_method("cubic", 10 * mass / (2 / d_hat * height * height));
+    method.step_solver.tol_velocity = 1e-9;
+    method.friction.mu = 0.3;
+    Steps run(std::move(scene), std::move(method), 20);
+    run.go(20);
+    velocities.push_back(run.simulation.history().v.col(0));
+  }
+  ASSERT_GT(velocities[0][0], 0.4);
+  for (const Vec3d& v : velocities) EXPECT_LT((v - velocities[0]).norm(), 1e-7);
+}
+
 TEST(MovingObstacles, a_ball_pushes_a_pinned_cloth_out_of_its_way) {
   SceneBuilder builder("pushed", false, Vec3d::Zero(), "test");
   BodySpec cloth = test::cloth_spec(7, 0, d_hat);

@@ -50,7 +50,7 @@ TEST(Simulation, hands_every_integrator_the_history_that_it_asks_for) {
     StepObserver nobody;
     for (int i = 1; i <= 6; ++i) {
       const StepReport report = simulation.step(nobody);
-      hand.step(scene.gravity);
+      hand.step(method.integrator->weight_factor() * scene.gravity);
       ASSERT_EQ(report.status, StepStatus::converged);
       EXPECT_LT((simulation.history().x - hand.history.x).norm(), 1e-12) << entry.name << " " << i;
       EXPECT_LT((simulation.history().v - hand.history.v).norm(), 1e-9) << entry.name << " " << i;

@@ -44,7 +44,7 @@ double along(const ConstraintBatch& batch, std::size_t e, const std::vector<doub
   return sum;
 }
 
-TEST(Constraints, are_offered_by_springs_and_contact_alone) {
+TEST(Constraints, are_offered_by_springs_stitches_and_contact_alone) {
   AtIterate at;
   std::set<std::string> names;
   for (const auto& term : at.terms) {
@@ -53,7 +53,7 @@ TEST(Constraints, are_offered_by_springs_and_contact_alone) {
     EXPECT_EQ(term->offers_constraints(), !batches.empty()) << term->name();
     if (!batches.empty()) names.emplace(term->name());
   }
-  EXPECT_EQ(names, (std::set<std::string>{"contact", "springs"}));
+  EXPECT_EQ(names, (std::set<std::string>{"contact", "springs", "stitch"}));
 }
 
 TEST(Constraints, of_springs_have_their_energies_and_closed_forms) {

@@ -1,0 +1,201 @@
+// Pulls, drag of the air, stitches and inflation against their closed forms; their derivatives against each other are those of
+// test_every_term.cpp and test_projections.cpp.
+#include <gtest/gtest.h>
+
+#include <Eigen/Geometry>
+
+#include "core/mesh/topology.hpp"
+#include "tests/terms/at_iterate.hpp"
+
+namespace bb::driven_terms_test {
+namespace {
+
+constexpr double dt = 0.05;
+
+StepFrame frame_of(const Scene& scene, double t_end) {
+  StepFrame out;
+  out.x_n = out.x_tilde = scene.x0;
+  out.dt = dt;
+  out.t_end = t_end;
+  return out;
+}
+
+/// A term of a scene, linearised at x with its exact Hessian.
+struct Linearised {
+  test::TermsOf all;
+  const Term* term = nullptr;
+  Linearised(const Scene& scene, const char* name, const Positions& x, double t_end = dt)
+      : all(scene, scene.x0, frame_of(scene, t_end)) {
+    for (const auto& each : all.terms) {
+      if (each->name() != name) continue;
+      each->linearise(x, all.context(Projection::none));
+      term = each.get();
+    }
+  }
+  const TermFamily& family() const { return term->families()[0]; }
+  Positions gradient() const { return test::gradient_of(*term, all.scene.n_vertices()); }
+};
+
+BodySpec triangle() {
+  BodySpec out;
+  out.name = "triangle";
+  out.mesh.vertices.resize(3, 3);
+  out.mesh.vertices << 0, 0.9, 0.2, 0.1, 0, 0.8, 0, 0.3, -0.2;
+  out.mesh.triangles = {{0, 1, 2}};
+  out.d_hat = 1e-3;
+  return out;
+}
+
+Scene built(const BodySpec& body, const Air& air = {}) {
+  SceneBuilder builder("scene", false, Vec3d(0, 0, -10), "test");
+  builder.set_air(air);
+  builder.add_body(body);
+  return builder.finish();
+}
+
+TEST(AirDrag, is_the_force_of_the_relative_velocity_split_at_the_normal) {
+  const Air air{0.7, 0.2, Vec3d(1, -2, 0.5), {}};
+  const Scene scene = built(triangle(), air);
+  Positions x = scene.x0;
+  x.row(0).array() += 0.01;
+  x(2, 1) += 0.03;
+  const Linearised drag(scene, "air_drag", x);
+  ASSERT_NE(drag.term, nullptr);
+  const Vec3d twice =
+      Vec3d(scene.x0.col(1) - scene.x0.col(0)).cross(Vec3d(scene.x0.col(2) - scene.x0.col(0)));
+  const double area = twice.norm() / 2;
+  const Vec3d n = twice.normalized();
+  for (int v = 0; v < 3; ++v) {
+    const Vec3d u = (x.col(v) - scene.x0.col(v)) / dt - air.wind, along = n.dot(u) * n;
+    const Vec3d force = -area / 3 * (0.7 * along + 0.2 * (u - along));
+    ASSERT_GT(force.norm(), 0.05);
+    EXPECT_LT((drag.gradient().col(v) + force).norm(), 1e-14);
+    const Mat3d matrix = area / (3 * dt) * (0.2 * Mat3d::Identity() + 0.5 * n * n.transpose());
+    EXPECT_LT((Mat3d::Map(&drag.family().local.hess[9 * static_cast<std::size_t>(v)]) - matrix).norm(),
+              1e-13);
+  }
+}
+
+TEST(AirDrag, takes_the_wind_of_the_end_of_the_step) {
+  Air air{0.7, 0.7, Vec3d::Zero(), {{0, Vec3d::Zero()}, {1, Vec3d(0, 0, 4)}}};
+  const Scene scene = built(triangle(), air);
+  const Linearised drag(scene, "air_drag", scene.x0, 0.5);
+  const double area = drag.gradient().row(2).sum() / (0.7 * -2);
+  const Vec3d twice =
+      Vec3d(scene.x0.col(1) - scene.x0.col(0)).cross(Vec3d(scene.x0.col(2) - scene.x0.col(0)));
+  EXPECT_NEAR(area, twice.norm() / 2, 1e-14);
+}
+
+TEST(Pull, is_a_spring_to_the_pose_of_its_time_with_the_stiffness_of_its_time) {
+  BodySpec body = triangle();
+  PinSpec& pin = body.pins.emplace_back();
+  pin.indices = {1};
+  pin.pull = 40;
+  pin.pull_factors = {{0, 1}, {1, 0}};
+  pin.motion.velocity = Vec3d(0, 2, 0);
+  const Scene scene = built(body);
+  Positions x = scene.x0;
+  x(0, 1) += 0.3;
+  const Linearised pull(scene, "pull", x, 0.25);
+  ASSERT_NE(pull.term, nullptr);
+  const Vec3d off(0.3, -0.5, 0);
+  EXPECT_LT((pull.gradient().col(1) - 30 * off).norm(), 1e-13);
+  EXPECT_NEAR(pull.family().local.energy[0], 15 * off.squaredNorm(), 1e-14);
+  EXPECT_LT((Mat3d::Map(pull.family().local.hess.data()) - 30 * Mat3d::Identity()).norm(), 1e-13);
+}
+
+TEST(Pull, acts_in_the_steps_whose_middle_is_between_hold_and_release) {
+  BodySpec body = triangle();
+  PinSpec& pin = body.pins.emplace_back();
+  pin.indices = {1};
+  pin.pull = 40;
+  pin.pull_span = {0.1, 0.3};
+  const Scene scene = built(body);
+  Positions x = scene.x0;
+  x(0, 1) += 0.3;
+  const auto force = [&](int step) {
+    double t_end = 0;
+    for (int i = 0; i < step; ++i) t_end += dt;  // as a run adds them up
+    return Linearised(scene, "pull", x, t_end).gradient().norm();
+  };
+  for (const int step : {1, 2, 7, 8}) EXPECT_EQ(force(step), 0) << step;
+  for (const int step : {3, 4, 5, 6}) EXPECT_NEAR(force(step), 12, 1e-12) << step;
+}
+
+TEST(Stitch, is_the_square_of_the_distance) {
+  SceneBuilder builder("scene", false, Vec3d(0, 0, -10), "test");
+  BodySpec one = triangle(), other = triangle();
+  other.name = "other";
+  other.mesh.vertices.row(2).array() += 1;
+  builder.add_body(one);
+  builder.add_body(other);
+  builder.add_stitch({"other", "triangle", {2, 0}, {1, 0}, 6}, "/stitches/0");
+  const Scene scene = builder.finish();
+  EXPECT_EQ(scene.stitches.pairs, (std::vector<std::array<int, 2>>{{5, 1}, {3, 0}}));
+  Positions x = scene.x0;
+  x.col(3) = x.col(0);  // at the length 0 too
+  const Linearised stitch(scene, "stitch", x);
+  ASSERT_NE(stitch.term, nullptr);
+  const Vec3d apart = x.col(1) - x.col(5);
+  EXPECT_LT((stitch.gradient().col(1) - 6 * apart).norm(), 1e-13);
+  EXPECT_LT((stitch.gradient().col(5) + 6 * apart).norm(), 1e-13);
+  EXPECT_EQ(stitch.gradient().col(3), Vec3d(0, 0, 0));
+  EXPECT_NEAR(stitch.family().local.energy[0], 3 * apart.squaredNorm(), 1e-13);
+  for (const std::size_t e : {0, 1}) {
+    const double* blocks = &stitch.family().local.hess[27 * e];
+    EXPECT_LT((Mat3d::Map(blocks) - 6 * Mat3d::Identity()).norm(), 1e-13);
+    EXPECT_LT((Mat3d::Map(blocks + 9) + 6 * Mat3d::Identity()).norm(), 1e-13);
+    EXPECT_LT((Mat3d::Map(blocks + 18) - 6 * Mat3d::Identity()).norm(), 1e-13);
+  }
+}
+
+TEST(Inflation, is_the_pressure_times_the_volume) {
+  BodySpec box;
+  box.name = "box";
+  box.mesh = solid_box_mesh({2, 1, 1}, Vec3d(0.5, 0.4, 0.3));
+  box.d_hat = 1e-3;
+  box.pressure = 20;
+  const Scene scene = built(box);
+  Positions x = scene.x0;
+  x.row(1) *= 1.5;
+  x.row(0) += 0.2 * x.row(2);  // shear keeps the volume
+  const Linearised inflation(scene, "inflation", x);
+  ASSERT_NE(inflation.term, nullptr);
+  const double volume = 0.5 * 0.4 * 0.3 * 1.5;
+  EXPECT_NEAR(test::iterate_energy(*inflation.term), -20 * volume, 1e-13);
+  const Positions gradient = inflation.gradient();
+  EXPECT_LT(gradient.rowwise().sum().norm(), 1e-13);
+  const Positions off = x.colwise() - scene.x0.rowwise().mean();
+  EXPECT_NEAR(gradient.cwiseProduct(off).sum(), 3 * -20 * volume, 1e-12) << "a cubic form";
+  EXPECT_NEAR(test::curvature_along(*inflation.term, off), 6 * -20 * volume, 1e-12);
+  const Positions sideways = Positions::Zero(3, x.cols()).colwise() + Vec3d(1, 2, 3);
+  EXPECT_NEAR(test::curvature_along(*inflation.term, sideways), 0, 1e-12);
+}
+
+TEST(Inflation, presses_outwards_whichever_way_the_surface_is_seen) {
+  BodySpec box;
+  box.name = "box";
+  box.mesh = solid_box_mesh({1, 1, 1}, Vec3d(0.5, 0.4, 0.3));
+  box.mesh.tetrahedra.clear();
+  box.mesh.triangles = solid_faces(solid_box_mesh({1, 1, 1}, Vec3d(0.5, 0.4, 0.3)).tetrahedra).surface;
+  box.material.density = 1;
+  box.d_hat = 1e-3;
+  box.pressure = 20;
+  const double outward = test::iterate_energy(*Linearised(built(box), "inflation", box.mesh.vertices).term);
+  for (auto& t : box.mesh.triangles) std::swap(t[1], t[2]);
+  const double inward = test::iterate_energy(*Linearised(built(box), "inflation", box.mesh.vertices).term);
+  EXPECT_NEAR(outward, -20 * 0.06, 1e-13);
+  EXPECT_NEAR(inward, outward, 1e-13);
+  box.mesh.triangles.pop_back();
+  try {
+    built(box);
+    FAIL() << "no error";
+  } catch (const ConfigError& error) {
+    const std::string text = error.what();
+    EXPECT_NE(text.find("body \"box\"/pressure"), std::string::npos) << text;
+    EXPECT_NE(text.find("does not close at the edge of vertices"), std::string::npos) << text;
+  }
+}
+
+}  // namespace
+}  // namespace bb::driven_terms_test
