@@ -115,6 +115,11 @@ def read_scene(record: dict, run: str | Path) -> dict:
     return read_object(path)
 
 
+def points_of_bodies(scene: dict, vertices: np.ndarray) -> np.ndarray:
+    """[..., n, 3] m: `vertices` [..., m, 3] without those that stand for obstacles, which come last."""
+    return vertices[..., : vertices.shape[-2] - sum("vertex" in o for o in scene["obstacles"]), :]
+
+
 def scene_at(scene: dict, frame: Frame) -> dict:
     """A scene of read_scene() with its obstacles where they are in a frame."""
     there = [

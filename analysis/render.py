@@ -16,7 +16,7 @@ from matplotlib.patches import Patch
 from . import style
 from .captions import caption
 from .errors import UserError, tells
-from .frames import Frame, frame_of, frame_paths, read_scene, scene_at
+from .frames import Frame, frame_of, frame_paths, points_of_bodies, read_scene, scene_at
 from .front.arguments import parser_of
 from .obstacle_rays import Hits, hits, primitive_gaps, signed_gap
 from .rasterizer import Camera, DepthBuffer, corner_normals
@@ -363,7 +363,7 @@ def render(
         )
     frame = frame_of(record, run, step)
     scene = scene_at(scene, frame)
-    focus = np.concatenate([frame.vertices, _round_obstacles(scene)])
+    focus = np.concatenate([points_of_bodies(scene, frame.vertices), _round_obstacles(scene)])
     camera = _camera(focus, scene["planar"], view, size)
     reach = float(np.linalg.norm(focus - camera.target, axis=1).max())
     surfaces, scale = _assemble(frame, scene, color, reach)

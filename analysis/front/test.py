@@ -19,7 +19,7 @@ from . import rooms
 from .building import build, folder, job_count, say, setup
 
 OWN = ("--sanitize", "--browser")  # what ctest does not see
-NAMED_SKIPS = 20  # C++ tests that the summary names
+NAMED_TESTS = 20  # C++ tests that the summary names
 
 
 class Summary:
@@ -47,14 +47,22 @@ def _into(log: Path, words: list[str], **more) -> int:
         return subprocess.run(words, stdout=out, stderr=subprocess.STDOUT, check=False, **more).returncode
 
 
-def skipped_cpp(log: str) -> list[str]:
-    """Lines of the summary about tests that ctest skipped."""
-    lines = [line for line in log.splitlines() if "***Skipped" in line]
-    names = [re.sub(r" \.*\*\*\*Skipped.*", "", re.sub(r"^.*Test +#[0-9]+: ", "", line)) for line in lines]
-    return (
-        [f"SKIPPED  {len(names)} C++ tests:", *(f"           {name}" for name in names[:NAMED_SKIPS])]
-        if names
-        else []
+def not_passed_cpp(log: str) -> list[str]:
+    """Lines of the summary about tests that ctest skipped, and about those that failed."""
+    lines = []
+    for mark, word in (("Skipped", "SKIPPED"), ("(?!Skipped)", "FAILED ")):
+        names = re.findall(rf"(?m)^.*Test +#\d+: (.*?) \.*\*\*\*{mark}", log)
+        if names:
+            lines += [f"{word}  {len(names)} C++ tests:", *(f"           {name}" for name in names[:NAMED_TESTS])]
+    return lines
+
+
+def without_passed(log: str) -> str:
+    """The lines of ctest that are not of a test that started or passed."""
+    return "\n".join(
+        line
+        for line in log.splitlines()
+        if not re.match(r" *Start +\d+: |.*Test +#\d+: .* Passed +[\d.]+ sec", line)
     )
 
 
@@ -84,8 +92,8 @@ def cpp_tests(preset: str, arguments: list[str], summary: Summary) -> int:
         ],
     )
     text = log.read_text(errors="replace")
-    print("\n".join(text.splitlines()[-6:]) if code == 0 else text, flush=True)
-    summary.lines += ptx_share(text) + skipped_cpp(text)
+    print("\n".join(text.splitlines()[-6:]) if code == 0 else without_passed(text), flush=True)
+    summary.lines += ptx_share(text) + not_passed_cpp(text)
     return code
 
 
@@ -98,7 +106,7 @@ def python_tests(preset: str, summary: Summary) -> int:
         "-c",
         str(ROOT / "pytest.ini"),
         "-q",
-        "-rs",
+        "-rsfE",
         "-p",
         "no:cacheprovider",
         "-n",
@@ -115,9 +123,10 @@ def python_tests(preset: str, summary: Summary) -> int:
     text = log.read_text(errors="replace")
     print(text, flush=True)
     summary.lines += [
-        f"SKIPPED  {line.removeprefix('SKIPPED ')}"
+        f"{word}  {line.removeprefix(word)}"
         for line in text.splitlines()
-        if line.startswith("SKIPPED")
+        for word in ("SKIPPED", "FAILED", "ERROR")
+        if line.startswith(f"{word} ")
     ]
     return code
 

@@ -18,6 +18,7 @@ from pathlib import Path
 import numpy as np
 
 from ..errors import UserError
+from ..frames import points_of_bodies
 from ..render import BODY_COLORS, OBSTACLE_COLOR
 from .film import Film, shaded_mesh
 from .scales import FIELDS, NOT_COMPUTED, scale
@@ -87,7 +88,7 @@ def _film_data(film: Film) -> tuple[dict, bytes]:
 
 def box(films: list[Film]) -> tuple[np.ndarray, np.ndarray]:
     """Lowest and highest coordinates (m) of all that the films show: bodies in every frame, and spheres."""
-    points = [film.positions.reshape(-1, 3) for film in films]
+    points = [points_of_bodies(film.scene, film.positions).reshape(-1, 3) for film in films]
     for film in films:
         for o in film.scene["obstacles"]:
             if o["kind"] == "sphere" and not o.get("inside"):

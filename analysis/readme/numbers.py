@@ -124,8 +124,12 @@ def _long(folder: Path) -> dict:
     """What the sentences on demo_long say of its sweep: simulated seconds, and of one iteration in how many
     there are condition numbers.
     """
-    settings = read_object(folder / "demo_long" / "sweep.json")["set"]
-    return {"duration_s": settings["/time/duration_s"], "every": settings["/diagnose/every"]}
+    file = folder / "demo_long" / "sweep.json"
+    settings = read_object(file).get("set", {})
+    try:
+        return {"duration_s": settings["/time/duration_s"], "every": settings["/diagnose/every"]}
+    except KeyError as missing:
+        raise UserError(f"{file}: set has no {missing}; ./bench demo makes it anew") from None
 
 
 def gather(folder: Path) -> dict:

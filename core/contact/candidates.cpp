@@ -208,6 +208,8 @@ void BroadPhase::update_obstacles(const Primitives<N>& primitives, const Positio
   out.clear();
   if (!plan_.obstacles.needed) return;
   const double of_states = state_rounding(x0, x1);
+  pose(obstacles_, x0, first_poses_);
+  pose(obstacles_, x1, last_poses_);
   if (near_obstacles_.size() < n_chunks(primitives.size()))
     near_obstacles_.resize(n_chunks(primitives.size()));
   for_each_chunk(primitives.size(), [&](std::size_t chunk, std::size_t begin, std::size_t end) {
@@ -216,7 +218,7 @@ void BroadPhase::update_obstacles(const Primitives<N>& primitives, const Positio
     for (std::size_t i = begin; i < end; ++i) {
       if (!primitives.free[i]) continue;
       for (std::size_t o = 0; o < obstacles_.size(); ++o) {
-        const AnalyticSurface<double> obstacle = posed(obstacles_[o], x0), last = posed(obstacles_[o], x1);
+        const AnalyticSurface<double>&obstacle = first_poses_[o], &last = last_poses_[o];
         if (!pairs_with<N>(obstacle, surface_.planar, primitives.lone[i] != 0)) continue;
         const double reach = primitives.side[i].d_hat + primitives.side[i].offset + of_states +
                              distance_rounding(precision_, std::max(obstacle.point.cwiseAbs().maxCoeff(),

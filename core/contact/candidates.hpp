@@ -70,7 +70,7 @@ class BroadPhase {
                         std::vector<IndexPair>& out);
 
   const Surface& surface_;
-  std::vector<AnalyticSurface<double>> obstacles_;
+  std::vector<AnalyticSurface<double>> obstacles_, first_poses_, last_poses_;  // the last two of a motion
   Tree points_, edges_, triangles_, lone_edges_;
   std::vector<std::uint8_t> lone_free_;
   PairFinder finder_;

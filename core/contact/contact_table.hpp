@@ -28,9 +28,9 @@ constexpr bool is_obstacle(ContactKind kind) { return kind >= ContactKind::obsta
 template <class Table>
 ContactKey key_of(const Table& rows, std::size_t r) {
   std::array<int, 4> own;
-  for (std::size_t k = 0; k < 4;
-       ++k) {  // the weight of an obstacle that moves is negative, those of its pair are not
-    const bool stands = pair_obstacle(rows.pair[r]) >= 0 && rows.stencil_weight[4 * r + k] < 0;
+  for (std::size_t k = 0; k < 4; ++k) {
+    // the weight of an obstacle that moves is -1, those of its pair are between 0 and 1
+    const bool stands = pair_obstacle(rows.pair[r]) >= 0 && rows.stencil_weight[4 * r + k] < -0.5;
     own[k] = stands ? -1 : rows.stencil[4 * r + k];
   }
   return row_key(rows.pair[r], own);

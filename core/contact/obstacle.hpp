@@ -4,6 +4,7 @@
 
 #include <cmath>
 #include <limits>
+#include <vector>
 
 #include "core/math/types.hpp"
 #include "core/scene/scene.hpp"
@@ -29,6 +30,13 @@ AnalyticSurface<T> analytic_surface(const Obstacle& o) {
 inline AnalyticSurface<double> posed(AnalyticSurface<double> s, const PositionsView& x) {
   if (s.vertex >= 0) s.point = x.col(s.vertex);
   return s;
+}
+
+/// All of them, into `out`.
+inline void pose(const std::vector<AnalyticSurface<double>>& obstacles, const PositionsView& x,
+                 std::vector<AnalyticSurface<double>>& out) {
+  out.clear();
+  for (const AnalyticSurface<double>& s : obstacles) out.push_back(posed(s, x));
 }
 
 /// The same obstacle in the scalar T.

@@ -92,7 +92,7 @@ void RowBuilder::add_obstacle_pair(const PositionsView& x, const Primitives<N>& 
   const std::size_t i = static_cast<std::size_t>(pair.first);
   const auto& vertex = primitives.vertices[i];
   const Side law = primitives.side[i];
-  const AnalyticSurface<double> obstacle = posed(obstacles_[static_cast<std::size_t>(pair.second)], x);
+  const AnalyticSurface<double>& obstacle = posed_[static_cast<std::size_t>(pair.second)];
   const Mat<double, 3, N> at = gather(x, vertex);
   if constexpr (N > 1) {
     const double largest = std::max(at.cwiseAbs().maxCoeff(), obstacle.point.cwiseAbs().maxCoeff());
@@ -118,6 +118,7 @@ double RowBuilder::build(const PositionsView& x, const Candidates& candidates, C
     return -std::numeric_limits<double>::infinity();
   }
   far_.set_state(x);
+  pose(obstacles_, x, posed_);
   std::size_t n_parts = 0;
   const auto in_parts = [&](const std::vector<IndexPair>& pairs, const auto& add_range) {
     const std::size_t n = n_chunks(pairs.size());
@@ -147,7 +148,7 @@ double RowBuilder::build(const PositionsView& x, const Candidates& candidates, C
   });
 
   n_parts_ = n_parts;
-  fill_tables(x, rows, mollified);
+  fill_tables(rows, mollified);
   double min_gap = std::numeric_limits<double>::infinity();
   for (std::size_t k = 0; k < n_parts; ++k) min_gap = std::min(min_gap, parts_[k].min_gap);
   return min_gap;
@@ -168,7 +169,7 @@ void RowBuilder::near_pairs(Candidates& out) const {
 }
 
 // The parts are in the order of the pairs, and so are the tables.
-void RowBuilder::fill_tables(const PositionsView& x, ContactTable& rows, MollifiedTable& mollified) {
+void RowBuilder::fill_tables(ContactTable& rows, MollifiedTable& mollified) {
   first_.assign(1, {0, 0});
   for (std::size_t k = 0; k < n_parts_; ++k) {
     const First next = first_.back();
@@ -182,8 +183,7 @@ void RowBuilder::fill_tables(const PositionsView& x, ContactTable& rows, Mollifi
     at = first_[k].mollified;
     for (const PartRow& each : parts_[k].mollified) {
       const int o = pair_obstacle(each.pair);
-      const Vec3d axis_point =
-          o < 0 ? Vec3d(Vec3d::Zero()) : posed(obstacles_[static_cast<std::size_t>(o)], x).point;
+      const Vec3d axis_point = o < 0 ? Vec3d(Vec3d::Zero()) : posed_[static_cast<std::size_t>(o)].point;
       fill(each.row, each.pair, axis_point, at++, mollified);
     }
   });

@@ -56,10 +56,11 @@ class RowBuilder {
   template <int N, class T>
   void add_obstacle_pair(const PositionsView& x, const Primitives<N>& primitives, IndexPair pair,
                          Part& part) const;
-  void fill_tables(const PositionsView& x, ContactTable& rows, MollifiedTable& mollified);
+  void fill_tables(ContactTable& rows, MollifiedTable& mollified);
 
   const Surface& surface_;
   const std::vector<AnalyticSurface<double>>& obstacles_;
+  std::vector<AnalyticSurface<double>> posed_;  // where they are in the state of the last build
   const bool mollified_;
   const Precision precision_;
   FarTest far_;

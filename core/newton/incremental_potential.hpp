@@ -84,7 +84,7 @@ class IncrementalPotential {
   /// curvature is what holds it. The matrix is that of the last fill_matrix() again, whatever was filled since.
   virtual bool make_room(const Column& x, const Column& dx, double bound, Column& force) = 0;
   /// Whether the trial, which is rounded to the precision of the run first, is finite and feasible, and what the terms
-  /// keep of it then. No energy is evaluated.
+  /// keep of it then. No energy of the trial is evaluated.
   virtual bool admits(const Column& x, Column& trial) = 0;
   /// E(trial) - E(x) of the trial that was admitted last.
   virtual EnergyChange change(const Column& x, const Column& trial) = 0;

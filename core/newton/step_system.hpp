@@ -91,7 +91,7 @@ class StepSystem {
   virtual bool make_detour(double bound, SolveReport& report) = 0;
   /// dx as it was before make_detour() or aim_at_escape().
   virtual void restore_direction() = 0;
-  /// Whether x + alpha dx, rounded to the precision of the run, is finite and feasible. No energy is evaluated.
+  /// Whether x + alpha dx, rounded to the precision of the run, is finite and feasible. No energy there is evaluated.
   virtual bool try_feasible(double alpha) = 0;
   /// Evaluates E there too. Returns the change against the iterate; an infeasible state has none.
   virtual std::optional<EnergyChange> try_motion(double alpha) = 0;

@@ -88,6 +88,12 @@ struct Scene : parts::AllColumns {
   std::vector<Pin> pins;  // one entry a prescribed vertex, each vertex at most once
 
   int n_vertices() const { return static_cast<int>(rest.cols()); }
+  /// Without those that stand for obstacles that move, which come last.
+  int n_body_vertices() const {
+    int n = n_vertices();
+    for (const Obstacle& o : obstacles) n -= o.vertex >= 0 ? 1 : 0;
+    return n;
+  }
 };
 
 /// Pose of a prescribed vertex at time t (s).

@@ -1,6 +1,7 @@
 #include "core/terms/contact_constraints.hpp"
 
 namespace bb {
+
 template <class Table>
 void ContactConstraints::add(const Table& rows, const PositionsView& x, bool compliant) {
   for (std::size_t r = 0; r < rows.size(); ++r) {
@@ -24,17 +25,24 @@ void ContactConstraints::set(const ContactTable& rows, const MollifiedTable& mol
   vertices_.clear(), weight_.clear(), normal_.clear(), level_.clear(), compliance_.clear(), before_.clear();
   add(rows, x, compliant);
   add(mollified, x, compliant);
-  std::map<PairId, std::ptrdiff_t> now;
-  const auto note = [&](const auto& table) {
-    for (const PairId pair : table.pair) {
-      const auto found = index_.find(pair);
-      now[pair] = static_cast<std::ptrdiff_t>(before_.size());
-      before_.push_back(found == index_.end() ? -1 : found->second);
-    }
-  };
-  note(rows);
-  note(mollified);
-  index_ = std::move(now);
+  find_before(rows.pair, mollified.pair);
+}
+
+// Both tables ascend, and no pair is in both.
+void ContactConstraints::find_before(const std::vector<PairId>& rows, const std::vector<PairId>& mollified) {
+  now_.clear();
+  before_.assign(rows.size() + mollified.size(), -1);
+  auto old = places_.begin();
+  for (std::size_t a = 0, b = 0; a < rows.size() || b < mollified.size();) {
+    const bool of_rows = b == mollified.size() || (a < rows.size() && rows[a] < mollified[b]);
+    const Place place = of_rows ? Place{rows[a], a} : Place{mollified[b], rows.size() + b};
+    ++(of_rows ? a : b);
+    now_.push_back(place);
+    while (old != places_.end() && old->pair < place.pair) ++old;
+    if (old != places_.end() && old->pair == place.pair)
+      before_[place.at] = static_cast<std::ptrdiff_t>(old->at);
+  }
+  places_.swap(now_);
 }
 
 double ContactConstraints::value(std::size_t e, const PositionsView& x, double* gradient) const {

@@ -1,7 +1,6 @@
 // The gaps of contact as constraints: d >= 0, one a row, whatever the barrier is.
 #pragma once
 
-#include <map>
 #include <vector>
 
 #include "core/contact/contact_table.hpp"
@@ -26,16 +25,22 @@ class ContactConstraints final : public ConstraintBatch {
   std::ptrdiff_t before(std::size_t e) const override { return before_[e]; }
 
  private:
+  /// Where the constraint of a pair is.
+  struct Place {
+    PairId pair;
+    std::size_t at;
+  };
+  void find_before(const std::vector<PairId>& rows, const std::vector<PairId>& mollified);
   template <class Table>
   void add(const Table& rows, const PositionsView& x, bool compliant);
 
-  std::vector<int> vertices_;               // [4 n]
-  std::vector<double> weight_;              // [4 n] 1
-  std::vector<double> normal_;              // [3 n] 1
-  std::vector<double> level_;               // [n] m, C - n . sum w_i x_i
-  std::vector<double> compliance_;          // [n] m/N
-  std::vector<std::ptrdiff_t> before_;      // [n]
-  std::map<PairId, std::ptrdiff_t> index_;  // of the pair of each
+  std::vector<int> vertices_;           // [4 n]
+  std::vector<double> weight_;          // [4 n] 1
+  std::vector<double> normal_;          // [3 n] 1
+  std::vector<double> level_;           // [n] m, C - n . sum w_i x_i
+  std::vector<double> compliance_;      // [n] m/N
+  std::vector<std::ptrdiff_t> before_;  // [n]
+  std::vector<Place> places_, now_;     // in the order of the pairs
 };
 
 }  // namespace bb

@@ -3,7 +3,7 @@
 #include <cmath>
 #include <limits>
 #include <map>
-#include <utility>
+#include <tuple>
 
 #include "core/contact/pair_name.hpp"
 #include "core/terms/barrier_load.hpp"
@@ -72,12 +72,17 @@ void list_loads(const ContactTable& rows, std::vector<ContactLoad>& out) {
   }
 }
 
-using Feature = std::pair<ContactKey, ContactKind>;
+/// What the rows of pairs with one closest feature share; their capacity goes with d_hat and offset.
+using Feature = std::tuple<ContactKey, ContactKind, double, double>;
+
+Feature feature_of(const ContactTable& rows, std::size_t r) {
+  return {rows.key(r), rows.kind[r], rows.d_hat[r], rows.offset[r]};
+}
 
 // Stiffness of all rows of a feature, N/m: they share what is put on it.
 std::map<Feature, double> stiffness_of_features(const ContactTable& rows) {
   std::map<Feature, double> out;
-  for (std::size_t r = 0; r < rows.size(); ++r) out[{rows.key(r), rows.kind[r]}] += rows.kappa[r];
+  for (std::size_t r = 0; r < rows.size(); ++r) out[feature_of(rows, r)] += rows.kappa[r];
   return out;
 }
 
@@ -141,7 +146,7 @@ void ContactTerm::report_overload(const PositionsView&, const PositionsView& oth
       weight_sq += weight * weight;
     }
     const double capacity = slope(rows.d_hat[r]);  // for kappa = 1
-    const double load = push / weight_sq / stiffness.at({rows.key(r), rows.kind[r]});
+    const double load = push / weight_sq / stiffness.at(feature_of(rows, r));
     const double model = newton_force(barrier, rows.d[r], rows.d[r] + opening, rows.d_hat[r]);
     const double times = std::max(load, model) / capacity;
     if (!(times > largest)) continue;

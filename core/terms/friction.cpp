@@ -37,6 +37,7 @@ class Friction final : public Term {
     x_n_ = frame.x_n;
     change_frame(frame);
     solved_ = 0;
+    t_lag_ = frame.t_end - frame.dt;
     take_lag(x_n_);
   }
   void change_frame(const StepFrame& frame) override {
@@ -48,6 +49,7 @@ class Friction final : public Term {
   void adopt_from(const Term& other) override {
     const auto& same = static_cast<const Friction&>(other);
     lagged_ = same.lagged_;
+    t_lag_ = same.t_lag_;
     take_rows(same.contacts_);
     strength_ = same.strength_;
     loads_known_ = same.loads_known_;
@@ -55,6 +57,7 @@ class Friction final : public Term {
   bool renew_lag(const PositionsView& x) override {
     if (++solved_ >= options_.friction.lag_iterations) return false;
     const bool had_rows = size() > 0;
+    t_lag_ = t_end_;
     take_lag(x);
     return had_rows || size() > 0;
   }
@@ -176,7 +179,8 @@ class Friction final : public Term {
       const Obstacle& o = scene_.obstacles[static_cast<std::size_t>(obstacle)];
       if (o.motion.angular_velocity == 0) continue;
       const Vec3d arm = arm_of(row_[e], o);
-      spin_[e] = o.motion.turn(t_end_) * (o.motion.turn(t_end_ - dt_).transpose() * arm) - arm;
+      const Vec3d unturned = o.motion.turn(t_lag_).transpose() * arm;
+      spin_[e] = o.motion.turn(t_end_) * unturned - o.motion.turn(t_end_ - dt_) * unturned;
     }
   }
   /// From the point of an obstacle that moves to its surface at a row, m.
@@ -224,6 +228,7 @@ class Friction final : public Term {
   std::vector<const Term*> before_;
   double eps_ = 0;                     // m
   double t_end_ = 0, dt_ = 0;          // s
+  double t_lag_ = 0;                   // s, of lagged_
   Positions x_n_, lagged_;             // m, where slides begin, and where the rows are of
   ContactLoads contacts_;              // there
   std::vector<std::size_t> row_;       // [n] the contact of each element

@@ -14,6 +14,7 @@
 #include "core/linear/block_system.hpp"
 #include "core/math/types.hpp"
 #include "core/record/phase_times.hpp"
+#include "core/terms/list_of_terms.hpp"
 #include "core/terms/report.hpp"
 #include "core/terms/term_set.hpp"
 
@@ -184,25 +185,6 @@ class Term {
   std::vector<TermFamily> families_;
 };
 
-/// The terms of a run in the order of registry.inc, which is that of the sums.
-class TermList {
- public:
-  void add(std::unique_ptr<Term> term) { terms_.push_back(std::move(term)); }
-  auto begin() const { return terms_.begin(); }
-  auto end() const { return terms_.end(); }
-  std::size_t size() const { return terms_.size(); }
-  const Term& operator[](std::size_t i) const { return *terms_[i]; }
-  /// The first term of that class, or null.
-  template <class T>
-  T* find() const {
-    for (const auto& term : terms_) {
-      if (T* found = dynamic_cast<T*>(term.get())) return found;
-    }
-    return nullptr;
-  }
-
- private:
-  std::vector<std::unique_ptr<Term>> terms_;
-};
+using TermList = ListOfTerms<Term>;
 
 }  // namespace bb

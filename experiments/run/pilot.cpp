@@ -7,6 +7,7 @@
 
 #include "barriers/matching.hpp"
 #include "barriers/shapes/registry.hpp"
+#include "core/archive/archive.hpp"
 #include "core/math/error.hpp"
 #include "core/newton/simulation.hpp"
 #include "core/record/phase_times.hpp"
@@ -136,7 +137,9 @@ void answer(Pilot& pilot, const Scene& scene, const RunOptions& options) {
 
 std::size_t Pilot::bytes() const {
   const std::size_t states = x.empty() ? 0 : x.size() * static_cast<std::size_t>(x[0].size());
-  return states * sizeof(double) + answers.bytes();
+  std::size_t remembered = 0;
+  for (const std::string& archive : memory) remembered += archive.size();
+  return states * sizeof(double) + remembered + answers.bytes();
 }
 
 BarrierFunction log_barrier() { return {require_shape("log"), Argument::gap}; }
@@ -183,6 +186,8 @@ std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& giv
                              fmt::format("before its step {} of {}", step, pilot.config.time.steps));
     Prediction prediction;
     method.integrator->predict(simulation.history(), dt, prediction);
+    Archive memory;
+    simulation.step_system().keep(memory);
     const StepReport report = simulation.step(nobody);
     show(config, options, report, start_s);
     if (report.status != StepStatus::converged) {  // its state is in no balance: no load can be read from it
@@ -192,6 +197,7 @@ std::shared_ptr<const Pilot> run_pilot(const RunConfig& config, const Scene& giv
     }
     pilot.x.push_back(simulation.history().x);
     pilot.c.push_back(prediction.c);
+    pilot.memory.push_back(memory.bytes());
   }
   answer(pilot, scene, options);
   return cache.keep(std::move(pilot));

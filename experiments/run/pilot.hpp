@@ -19,15 +19,17 @@ struct StaticLoads {
   double limit = 0;    // N/m, weight over the side of a square of the limited area; 0 without a limit
 };
 
-/// What the pilot leaves. Memory: 24 bytes a vertex and step, 16 a vertex and a limited element.
+/// What the pilot leaves. Memory: 24 bytes a vertex and step, what terms remember a step (rest shapes that creep), 16 a
+/// vertex and a limited element.
 struct Pilot {
   RunConfig config;       // its own
   Calibration stiffness;  // kappa and k_s of its log barriers
   StaticLoads rest;
-  std::vector<double> c;     // inertia weight of the integrator in each converged step
-  std::vector<Positions> x;  // m, at the start, then at the end of each converged step
-  AnswerSums answers;        // over the ends of all converged steps
-  int unanswered = 0;        // steps whose answers could not be computed: their forces count as loads
+  std::vector<double> c;            // inertia weight of the integrator in each converged step
+  std::vector<Positions> x;         // m, at the start, then at the end of each converged step
+  std::vector<std::string> memory;  // archives of what terms remember when each of those steps begins
+  AnswerSums answers;               // over the ends of all converged steps
+  int unanswered = 0;               // steps whose answers could not be computed: their forces count as loads
   std::string config_id;
   std::string stopped;  // why it ended early; empty when it did not
 

@@ -1,11 +1,15 @@
 #include "experiments/run/pilot_replay.hpp"
 
+#include "core/archive/archive.hpp"
+
 namespace bb {
 
 void PilotReplay::begin(const Positions& x, int step) {
   prediction_.c = c(step);
   prediction_.x_tilde = x;
   prediction_.t_end = (step + 1) * pilot_.config.time.dt;
+  Archive memory(pilot_.memory[static_cast<std::size_t>(step)]);
+  system_.keep(memory);
   system_.begin_step(x, prediction_, pilot_.config.time.dt, 1.0);
 }
 

@@ -60,14 +60,16 @@ void fill_method(const RunConfig& config, RunRecord& record) {
 
 void fill_scene(const Scene& scene, RunRecord& record) {
   SceneSize& size = record.scene;
-  size.vertices = static_cast<std::size_t>(scene.n_vertices());
+  const Eigen::Index of_bodies = scene.n_body_vertices();
+  size.vertices = static_cast<std::size_t>(of_bodies);
   const std::size_t per_vertex = scene.planar ? 2 : 3;
-  size.free_dofs = per_vertex * (size.vertices - scene.pins.size());
+  size.free_dofs = per_vertex * (static_cast<std::size_t>(scene.n_vertices()) - scene.pins.size());
 #define PART(name, term, convex, where, field, ...) size.field = parts::name::part().size(scene);
 #include "core/scene/parts/registry.inc"
 #undef PART
   size.obstacles = scene.obstacles.size();
-  size.extent_m = (scene.x0.rowwise().maxCoeff() - scene.x0.rowwise().minCoeff()).maxCoeff();
+  const auto start = scene.x0.leftCols(of_bodies);
+  size.extent_m = (start.rowwise().maxCoeff() - start.rowwise().minCoeff()).maxCoeff();
 }
 
 void fill_plan(const RunConfig& config, const Plan& plan, RunRecord& record) {

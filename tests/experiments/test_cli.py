@@ -16,7 +16,7 @@ import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCK = str(ROOT / "configs/scenes/resting_block_1d.json")
-VERBS = ["run", "sweep", "check", "explain", "list", "eval", "demo"]
+VERBS = ["run", "sweep", "check", "explain", "list", "eval"]
 GRID = {"generator": "grid", "n_x": 2, "n_y": 2}
 
 

@@ -49,6 +49,7 @@ def test_a_run_that_is_cut_goes_on_to_the_same_end(program, tmp_path):
     assert whole.returncode == 0, whole.stderr
     cut = bench(program, "run", config, "--out", tmp_path / "cut", "--time-limit", 1e-3)
     assert cut.returncode == 0, cut.stderr
+    assert json.loads((tmp_path / "cut/run.json").read_text())["status"]["outcome"] == "timeout"
     for _ in range(50):
         done = bench(program, "run", config, "--out", tmp_path / "cut", "--resume")
         assert done.returncode == 0, done.stderr
@@ -80,4 +81,4 @@ def test_planes_and_cylinders_move_too(program, tmp_path, kind):
         ball["point_m"] = [0, 0, 0.1]
     record = run(program, tmp_path, config)
     assert record["status"]["outcome"] == "ok", record["status"]
-    assert record["summary"]["contact_gaps"]
+    assert "ball|cloth" in record["summary"]["contact_gaps"]

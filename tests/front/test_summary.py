@@ -1,6 +1,6 @@
 """What the summary of `bench test` reads from ctest's log."""
 
-from analysis.front.test import ptx_share, skipped_cpp
+from analysis.front.test import not_passed_cpp, ptx_share, without_passed
 
 LOG = """\
  1/4 Test  #1: Accd.StopsAtItsLevel ..............   Passed    0.50 sec
@@ -18,5 +18,16 @@ def test_without_ptx_tests_nothing_is_said():
     assert ptx_share(LOG.replace("ptx.", "own.")) == []
 
 
-def test_a_skip_is_named():
-    assert skipped_cpp(LOG) == ["SKIPPED  1 C++ tests:", "           Device.Runs"]
+def test_what_was_skipped_and_what_failed_is_named():
+    assert not_passed_cpp(LOG) == [
+        "SKIPPED  1 C++ tests:",
+        "           Device.Runs",
+        "FAILED   1 C++ tests:",
+        "           ptx.kernel_table",
+    ]
+
+
+def test_a_log_without_what_passed():
+    log = "      Start  1: Accd.StopsAtItsLevel\n" + LOG + "accd.cpp:3: Failure\n"
+    assert [line.split()[-1] for line in without_passed(log).splitlines()] == ["sec", "sec", "Failure"]
+    assert "Passed" not in without_passed(log)

@@ -56,6 +56,13 @@ TEST(SolverCounters, SumsAreOfAllAttemptsAndTheRestIsOfTheLast) {
   last.solver.values = {{"a", 3}, {"b", 4}, {"c", 7}};
   last.add_attempt(failed, counters);
   EXPECT_EQ(last.solver.values, (std::map<std::string, double>{{"a", 5}, {"b", 4}, {"c", 7}}));
+
+  Scene scene = test::particle_over_plane(0.2, 0.012, 0.01);
+  scene.v0(2, 0) = -30;  // free for less than a quarter of each of three lengths
+  const StepReport step = step_of("accumulated_toi", scene, 2, 1);
+  ASSERT_EQ(step.retries, 2);
+  EXPECT_EQ(step.solver.values.at("toi_iterations"), step.newton_iterations);
+  EXPECT_EQ(step.newton_iterations, 3);
 }
 
 TEST(SolverCounters, OverStepsAreSumLargestOrSmallest) {

@@ -7,59 +7,20 @@
 #include <functional>
 
 #include "tests/newton/saddle_scenes.hpp"
+#include "tests/resident/both_systems.hpp"
 #include "tests/resident/system_cases.hpp"
 
 namespace bb::resident_system_test {
 namespace {
 
+using test::Both;
 using test::expect_same_run;
 using test::run_resident;
 using test::run_steps;
 using test::RunEnd;
+using test::touching_method;
 
 constexpr double dt = 0.01;
-
-/// Both systems at the start of a step of a scene that is in contact.
-struct Both {
-  Scene scene;
-  Method of_cpu, of_resident;
-  Plan plan;
-  NewtonSystem cpu;
-  test::ResidentSystem resident;
-
-  Both(Scene in, const std::function<Method()>& method)
-      : scene(std::move(in)),
-        of_cpu(method()),
-        of_resident(method()),
-        plan(solved(of_cpu, of_resident)),
-        cpu(scene, of_cpu, plan),
-        resident(std::make_unique<exec::HostExecutor>(), scene, of_resident, plan) {
-    Prediction falling;
-    falling.x_tilde = scene.x0;
-    falling.x_tilde.row(2).array() -= 2e-3;
-    Positions target = scene.x0;
-    target.row(0).array() += 5e-4;
-    for (StepSystem* system : systems()) {
-      system->begin_step(scene.x0, falling, dt, 1);
-      system->set_target(target);
-      system->assemble();
-    }
-  }
-  std::array<StepSystem*, 2> systems() { return {&cpu, &resident}; }
-
- private:
-  Plan solved(Method& a, Method& b) {
-    test::use_resident_solver(a, 1e-13);
-    test::use_resident_solver(b, 1e-13);
-    return make_plan(scene, a, plan_options(a));
-  }
-};
-
-Method touching_method() {
-  Method method = test::fixed_method("cubic", 40);
-  method.hessian_mode = HessianMode::projected_full;
-  return method;
-}
 
 double relative(const Positions& a, const Positions& b) {
   return (a - b).cwiseAbs().maxCoeff() / b.cwiseAbs().maxCoeff();
@@ -98,78 +59,6 @@ TEST(ResidentSystem, HasTheNumbersOfTheIterate) {
   EXPECT_TRUE(plate.resident.view().at_target());  // held
   Both sheets(test::touching(test::two_sheets(), 0.01), touching_method);
   expect_same_iterate(sheets);
-}
-
-void expect_near(const Number& found, const Number& expected, const char* what) {
-  ASSERT_TRUE(found.finite() && expected.finite()) << what;
-  ASSERT_GT(expected.value, 0) << what;
-  EXPECT_NEAR(found.value, expected.value, 1e-12 * expected.value) << what;
-}
-
-/// What an iterate and the end of a step both say of contacts.
-template <class Numbers>
-void expect_same_contacts(const Numbers& found, const Numbers& expected) {
-  EXPECT_EQ(found.contacts.point_point, expected.contacts.point_point);
-  EXPECT_EQ(found.contacts.point_edge, expected.contacts.point_edge);
-  EXPECT_EQ(found.contacts.point_triangle, expected.contacts.point_triangle);
-  EXPECT_EQ(found.contacts.edge_edge, expected.contacts.edge_edge);
-  EXPECT_EQ(found.contacts.obstacle, expected.contacts.obstacle);
-  EXPECT_EQ(found.contacts.mollified, expected.contacts.mollified);
-  ASSERT_GT(expected.contacts.total(), 0u);
-  expect_near(found.kappa_min_N_per_m, expected.kappa_min_N_per_m, "kappa_min");
-  expect_near(found.kappa_max_N_per_m, expected.kappa_max_N_per_m, "kappa_max");
-  expect_near(found.contact_load_max_N, expected.contact_load_max_N, "load_max");
-  expect_near(found.gap_min_iterates_m, expected.gap_min_iterates_m, "gap_min_iterates");
-}
-
-void expect_same_reports(Both& both, int& n_shared) {
-  IterateNumbers iterate[2];
-  StepNumbers end[2];
-  for (const std::size_t k : {0, 1}) {
-    both.systems()[k]->view().report(iterate[k]);
-    both.systems()[k]->view().report_end(end[k]);
-    end[k].gap_min_iterates_m = end[k].gap_min_m;
-  }
-  expect_same_contacts(iterate[1], iterate[0]);
-  expect_same_contacts(end[1], end[0]);
-  expect_near(iterate[1].contact_curvature_max_N_per_m, iterate[0].contact_curvature_max_N_per_m,
-              "curvature");
-  expect_near(end[1].contact_load_sum_N, end[0].contact_load_sum_N, "load_sum");
-  expect_near(end[1].gap_min_rel, end[0].gap_min_rel, "gap_min_rel");
-  ASSERT_EQ(end[1].contact_loads.size(), end[0].contact_loads.size());
-  for (std::size_t i = 0; i < end[0].contact_loads.size(); ++i) {  // in one order: that of the pairs
-    const ContactLoad &a = end[0].contact_loads[i], &b = end[1].contact_loads[i];
-    EXPECT_EQ(b.key, a.key);
-    EXPECT_EQ(b.gap_rel, a.gap_rel);
-    EXPECT_NEAR(b.load_N, a.load_N, 1e-12 * a.load_N);
-    n_shared += i > 0 && a.key == end[0].contact_loads[i - 1].key;
-  }
-}
-
-TEST(ResidentSystem, SaysTheSameOfContactsNumberByNumber) {
-  int n_shared = 0;
-  const auto compare = [&n_shared](const Scene& scene, const std::function<Method()>& method) {
-    Both both(scene, method);
-    expect_same_reports(both, n_shared);
-    EXPECT_EQ(both.of_resident.stiffness->state().kappa_start > 0,
-              both.of_cpu.stiffness->state().kappa_start > 0);
-    EXPECT_NEAR(both.of_resident.stiffness->state().kappa_start, both.of_cpu.stiffness->state().kappa_start,
-                1e-12 * both.of_cpu.stiffness->state().kappa_start);
-  };
-  const ParameterMap lagged = {{"mass_term", std::string("inertia")}, {"refresh", std::string("per_step")}};
-  const std::function<Method()> methods[] = {
-      touching_method, [] { return test::method_with_policy("log", "ipc_adaptive", {}); },
-      [&] { return test::method_with_policy("cubic", "elasticity_inclusive", lagged); }};
-  const Scene scenes[] = {test::touching(test::cloth_on_plate(), 0.012),
-                          test::touching(test::two_sheets(), 0.01),
-                          test::touching(test::cloth_on_balls_and_bar(), 0.02)};
-  for (std::size_t m = 0; m < std::size(methods); ++m) {
-    for (std::size_t s = 0; s < std::size(scenes); ++s) {
-      SCOPED_TRACE("method " + std::to_string(m) + ", scene " + std::to_string(s));
-      compare(scenes[s], methods[m]);
-    }
-  }
-  EXPECT_GT(n_shared, 3);  // pairs with one closest feature
 }
 
 TEST(ResidentSystem, BoundsAndTriesTheSameMotions) {
