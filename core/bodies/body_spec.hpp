@@ -24,13 +24,15 @@ struct Material : parts::AllKeys {
   std::optional<StrainLimitSpec> limit;  // absent: no limit
 };
 
-/// Which vertices of a body are prescribed; a vertex is selected when any of the given ways selects it.
+/// Which vertices of a body are prescribed, or pulled; a vertex is selected when any of the given ways selects it.
 struct PinSpec {
   std::vector<int> indices;                 // of the body's own vertices
   std::optional<std::array<Vec3d, 2>> box;  // closed box (min, max) in start positions, m
   bool top_row = false;                     // vertices with the largest start y (planar) or z, exactly
   bool all = false;
-  RigidMotion motion;  // static by default
+  RigidMotion motion;                 // static by default
+  std::optional<double> pull;         // N/m, of springs from free vertices to there; absent: they are there
+  std::vector<PullKey> pull_factors;  // of it; empty: 1
 };
 
 enum class BodyKind { deformable, rigid };  // rigid: every vertex prescribed, no mass, no elements

@@ -19,10 +19,4 @@ std::vector<int> select_vertices(const PinSpec& spec, const Positions& start, bo
   return selected;
 }
 
-bool same_motion(const RigidMotion& a, const RigidMotion& b) {
-  if (a.is_static() && b.is_static()) return true;
-  return a.velocity == b.velocity && a.center == b.center && a.axis == b.axis &&
-         a.angular_velocity == b.angular_velocity && a.start == b.start && a.end == b.end;
-}
-
 }  // namespace bb

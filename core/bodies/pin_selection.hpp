@@ -1,4 +1,4 @@
-// Which vertices a PinSpec means, and when two motions are one. Private to core/scene.
+// Which vertices a PinSpec means. Private to core/bodies.
 #pragma once
 
 #include <vector>
@@ -9,8 +9,5 @@ namespace bb {
 
 /// Sorted, unique; indices are passed on unchecked. start: [3 x n] m.
 std::vector<int> select_vertices(const PinSpec& spec, const Positions& start, bool planar);
-
-/// Every number equal.
-bool same_motion(const RigidMotion& a, const RigidMotion& b);
 
 }  // namespace bb

@@ -14,12 +14,6 @@
 namespace bb {
 namespace {
 
-/// Velocity that a prescribed vertex has at the start of the run.
-Vec3d start_velocity(const RigidMotion& motion, const Vec3d& x) {
-  if (motion.start > 0 || motion.end <= 0) return Vec3d::Zero();
-  return motion.velocity + motion.angular_velocity * motion.axis.cross(Vec3d(x - motion.center));
-}
-
 void append_columns(Positions& all, const Positions& more) {
   const Eigen::Index n = all.cols();
   all.conservativeResize(3, n + more.cols());
@@ -38,6 +32,16 @@ SceneBuilder::SceneBuilder(std::string name, bool planar, const Vec3d& gravity, 
   scene_.v0.resize(3, 0);
   if (!gravity.allFinite()) complain("gravity", "a non-finite value", "finite numbers");
   if (planar && gravity[2] != 0) complain("gravity", "a z component", "x and y only: the scene is planar");
+}
+
+void SceneBuilder::set_gravity(std::vector<GravityKey> keys) {
+  for (const GravityKey& key : keys) {
+    if (scene_.planar && key.value[2] != 0) {
+      complain("gravity", "a z component", "x and y only: the scene is planar");
+    }
+  }
+  if (!keys.empty()) scene_.gravity = keys.front().value;
+  scene_.gravity_keys = std::move(keys);
 }
 
 void SceneBuilder::complain(const std::string& what, std::string found, std::string allowed) {
@@ -114,7 +118,7 @@ void SceneBuilder::pin_vertex(const std::string& body, int vertex, int motion) {
   pin = static_cast<int>(scene_.pins.size());
   scene_.pins.push_back({vertex, motion});
   scene_.v0.col(vertex) =
-      start_velocity(scene_.motions[static_cast<std::size_t>(motion)], scene_.x0.col(vertex));
+      scene_.motions[static_cast<std::size_t>(motion)].start_velocity(scene_.x0.col(vertex));
 }
 
 void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int first) {
@@ -131,13 +135,28 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
       continue;
     }
     const int motion = motion_index(spec.pins[p].motion);
+    Pull pull{{}, motion, spec.pins[p].pull.value_or(0), spec.pins[p].pull_factors};
     for (const int v : selected) {
-      if (v < spec.mesh.n_vertices()) {
-        pin_vertex(spec.name, first + v, motion);
-      } else {
+      if (v >= spec.mesh.n_vertices()) {
         complain(fmt::format("pins/{} of body \"{}\"", p, spec.name), fmt::format("vertex {}", v),
                  fmt::format("0 to {}", spec.mesh.n_vertices() - 1));
+      } else if (spec.pins[p].pull) {
+        pull.vertices.push_back(first + v);
+      } else {
+        pin_vertex(spec.name, first + v, motion);
       }
+    }
+    if (spec.pins[p].pull) scene_.pulls.push_back(std::move(pull));
+  }
+  check_pulls(spec.name);
+}
+
+void SceneBuilder::check_pulls(const std::string& body) {
+  for (const Pull& pull : scene_.pulls) {
+    for (const int v : pull.vertices) {
+      if (pin_of_[static_cast<std::size_t>(v)] < 0) continue;
+      return complain("pins of body \"" + body + '"', fmt::format("scene vertex {} prescribed and pulled", v),
+                      "one of both");
     }
   }
 }

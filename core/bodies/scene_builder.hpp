@@ -19,6 +19,9 @@ class SceneBuilder {
 
   /// Planar scenes only; before the first body.
   void set_planar_pairs(PlanarPairs pairs) { scene_.planar_pairs = pairs; }
+  /// Gravity as a function of time, in the place of that of the constructor; empty: that stays.
+  void set_gravity(std::vector<GravityKey> keys);
+  void set_air(const Air& air) { scene_.air = air; }
 
   /// Appends a body: what every part (part.hpp) makes of its mesh and material. The mass of a vertex is 0 when it is prescribed.
   /// Elements all of whose vertices are prescribed hold no unknown and are left out.
@@ -40,6 +43,7 @@ class SceneBuilder {
   void append_vertices(const BodySpec& spec, const Positions& start);
   void append_pins(const BodySpec& spec, const Positions& start, int first);
   void pin_vertex(const std::string& body, int vertex, int motion);
+  void check_pulls(const std::string& body);
   int motion_index(const RigidMotion& motion);
   void append_masses(const BodySpec& spec, int first);
   void append_elements(const BodySpec& spec, int first);

@@ -75,12 +75,53 @@ void check_mesh(const Complaints& report, const BodySpec& spec, bool planar) {
   }
 }
 
-void check_motion(const Complaints& report, const std::string& what, const RigidMotion& motion) {
+void check_step(const Complaints& report, const std::string& what, const MotionStep& motion) {
   const bool finite = motion.velocity.allFinite() && motion.center.allFinite() && motion.axis.allFinite() &&
                       std::isfinite(motion.angular_velocity) && std::isfinite(motion.start);
   if (!finite || std::isnan(motion.end)) report(what, "a non-finite motion", "finite numbers");
   if (!(motion.end >= motion.start)) report(what, "an end before the start", "end >= start");
   if (std::abs(motion.axis.norm() - 1) > 1e-9) report(what, "an axis of another length", "a unit axis");
+  const bool to_an_end = motion.smooth || motion.scale != 1;
+  if (to_an_end && motion.keyframes.empty() && !(motion.end > motion.start && std::isfinite(motion.end))) {
+    report(what, "a scale, or smooth, without an end", "a finite end > start");
+  }
+  report.number(what + "/scale", motion.scale, motion.scale > 0, "a number > 0");
+  for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
+    const Keyframe& key = motion.keyframes[k];
+    const bool good = key.translation.allFinite() && std::isfinite(key.angle) && std::isfinite(key.time);
+    if (!good) report(what + "/keyframes", "a non-finite keyframe", "finite numbers");
+    report.number(what + "/keyframes/scale", key.scale, key.scale > 0, "a number > 0");
+    if (k > 0 && !(key.time > motion.keyframes[k - 1].time)) {
+      report(what + "/keyframes", fmt::format("time {:g} after {:g}", key.time, motion.keyframes[k - 1].time),
+             "times that increase (s)");
+    }
+  }
+}
+
+void check_motion(const Complaints& report, const std::string& what, const RigidMotion& motion) {
+  motion.for_each_step([&](const MotionStep& step) { check_step(report, what, step); });
+}
+
+/// An obstacle keeps its size, its normal and its axis.
+void check_obstacle_motion(const Complaints& report, const Obstacle& obstacle, bool planar) {
+  check_motion(report, "/motion", obstacle.motion);
+  if (obstacle.motion.changes_size()) report("/motion", "a scale", "1: obstacles keep their size");
+  obstacle.motion.for_each_step([&](const MotionStep& step) {
+    const bool turns = step.most_turning() > 0;
+    if (turns && obstacle.kind != ObstacleKind::sphere && step.axis.cross(obstacle.axis).norm() > 1e-9) {
+      report("/motion", "a rotation that turns its axis",
+             obstacle.kind == ObstacleKind::plane ? "a rotation about the plane's normal"
+                                                  : "a rotation about the direction of the cylinder's axis");
+    }
+    if (!planar) return;
+    const bool out_of_plane =
+        step.velocity[2] != 0 || std::any_of(step.keyframes.begin(), step.keyframes.end(),
+                                             [](const Keyframe& k) { return k.translation[2] != 0; });
+    if (out_of_plane) report("/motion", "a way with a z component", "0: the scene is planar");
+    if (turns && step.axis.cross(Vec3d(Vec3d::UnitZ())).norm() > 1e-9) {
+      report("/motion", "a rotation out of the plane", "a rotation about z: the scene is planar");
+    }
+  });
 }
 
 /// How far apart two free vertices of a body are, across the axis of a cylinder, at least, m: the farthest from the first,
@@ -140,7 +181,10 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
     check_motion(report, "/motion", spec.motion);
   } else {
     check_material(report, spec, planar);
-    for (const PinSpec& pin : spec.pins) check_motion(report, "/pins/motion", pin.motion);
+    for (const PinSpec& pin : spec.pins) {
+      check_motion(report, "/pins/motion", pin.motion);
+      if (pin.pull) report.number("/pins/pull", *pin.pull, *pin.pull > 0, "a number > 0");
+    }
   }
 }
 
@@ -159,25 +203,13 @@ void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& wh
   if (obstacle.friction) {
     report.number("/friction", *obstacle.friction, *obstacle.friction >= 0, "a number >= 0");
   }
-  check_motion(report, "/motion", obstacle.motion);
-  const bool turns = obstacle.kind != ObstacleKind::sphere && obstacle.motion.angular_velocity != 0;
-  if (turns && obstacle.motion.axis.cross(obstacle.axis).norm() > 1e-9) {
-    report("/motion", "a rotation that turns its axis",
-           obstacle.kind == ObstacleKind::plane ? "a rotation about the plane's normal"
-                                                : "a rotation about the direction of the cylinder's axis");
-  }
+  check_obstacle_motion(report, obstacle, planar);
   if (!planar) return;
   if (obstacle.kind == ObstacleKind::plane && obstacle.axis[2] != 0) {
     report("/axis", "a normal with a z component", "a normal in the x-y plane: the scene is planar");
   }
   if (obstacle.kind == ObstacleKind::sphere && obstacle.point[2] != 0) {
     report("/point", "a centre with z != 0", "z = 0: the scene is planar");
-  }
-  if (obstacle.motion.velocity[2] != 0)
-    report("/motion", "a velocity with a z component", "0: the scene is planar");
-  if (obstacle.motion.angular_velocity != 0 &&
-      obstacle.motion.axis.cross(Vec3d(Vec3d::UnitZ())).norm() > 1e-9) {
-    report("/motion", "a rotation out of the plane", "a rotation about z: the scene is planar");
   }
 }
 

@@ -4,35 +4,49 @@
 
 #include <array>
 #include <cstdint>
-#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "core/math/types.hpp"
 #include "core/scene/all_parts.hpp"
+#include "core/scene/motion.hpp"
 
 namespace bb {
-
-/// Rigid motion of driven vertices: x(t) = c + R(angle(t)) (x0 - c) + velocity * s(t), s(t) = clamp(t, start,
-/// end) - start, angle(t) = angular_velocity * s(t), rotation about `axis` through `center`.
-struct RigidMotion {
-  Vec3d velocity = Vec3d::Zero();                        // m/s
-  Vec3d center = Vec3d::Zero();                          // m
-  Vec3d axis = Vec3d::UnitZ();                           // unit
-  double angular_velocity = 0;                           // rad/s
-  double start = 0;                                      // s
-  double end = std::numeric_limits<double>::infinity();  // s
-  bool is_static() const { return velocity.isZero(0) && angular_velocity == 0; }
-  /// R(angle(t)).
-  Mat3d turn(double t) const;
-};
 
 /// A vertex whose position is prescribed exactly (static mesh, driven mesh, pin). Also the names
 /// that errors use.
 struct Pin {
   int vertex = 0;
   int motion = 0;  // index into Scene::motions
+};
+
+/// Stiffness of a pull at a time, as a factor >= 0.
+struct PullKey {
+  double time = 0;  // s
+  double value = 1;
+};
+/// Free vertices that springs pull to where a motion takes them from their start.
+struct Pull {
+  std::vector<int> vertices;
+  int motion = 0;                // index into Scene::motions
+  double stiffness = 0;          // N/m, of each spring
+  std::vector<PullKey> factors;  // empty: 1 always
+};
+
+struct GravityKey {
+  double time = 0;              // s
+  Vec3d value = Vec3d::Zero();  // m/s^2
+};
+struct WindKey {
+  double time = 0;              // s
+  Vec3d value = Vec3d::Zero();  // m/s
+};
+/// Drag of the air on triangles, both sides together, along their normal and across it.
+struct Air {
+  double normal = 0, tangential = 0;  // N s/m^3, >= 0
+  Vec3d wind = Vec3d::Zero();         // m/s
+  std::vector<WindKey> wind_keys;     // instead of wind
 };
 
 struct Body {
@@ -71,11 +85,13 @@ struct Scene : parts::AllColumns {
   PlanarPairs planar_pairs = PlanarPairs::point_edge;
 
   std::vector<Body> bodies;
-  Positions rest, x0, v0;             // [3 x n] rest, start (m), start velocity (m/s)
-  std::vector<double> mass;           // [n] lumped, kg; 0 for vertices that are given
-  std::vector<int> body;              // [n]
-  std::vector<double> d_hat, offset;  // [n] m
-  Vec3d gravity = Vec3d::Zero();      // m/s^2
+  Positions rest, x0, v0;                // [3 x n] rest, start (m), start velocity (m/s)
+  std::vector<double> mass;              // [n] lumped, kg; 0 for vertices that are given
+  std::vector<int> body;                 // [n]
+  std::vector<double> d_hat, offset;     // [n] m
+  Vec3d gravity = Vec3d::Zero();         // m/s^2
+  std::vector<GravityKey> gravity_keys;  // gravity as a function of time; its first value is `gravity`
+  Air air;
 
   StrainLimitPart limit;
 
@@ -86,6 +102,7 @@ struct Scene : parts::AllColumns {
 
   std::vector<RigidMotion> motions;
   std::vector<Pin> pins;  // one entry a prescribed vertex, each vertex at most once
+  std::vector<Pull> pulls;
 
   int n_vertices() const { return static_cast<int>(rest.cols()); }
   /// Without those that stand for obstacles that move, which come last.
@@ -98,5 +115,7 @@ struct Scene : parts::AllColumns {
 
 /// Pose of a prescribed vertex at time t (s).
 Vec3d pin_pose(const Scene& scene, const Pin& pin, double t);
+/// Gravity at time t (s), m/s^2.
+Vec3d gravity_at(const Scene& scene, double t);
 
 }  // namespace bb

@@ -1,4 +1,5 @@
 // Work of the weight: -f . (x - x_n), one element a vertex. No Hessian.
+#include <algorithm>
 #include <numeric>
 
 #include "core/energy/vertex_loads.hpp"
@@ -27,9 +28,9 @@ class ExternalForce final : public Term {
   void begin_step(const StepFrame& frame, PhaseClock&) override {
     x_n_ = frame.x_n;
     force_.resize(3, x_n_.cols());
+    const Vec3d gravity = gravity_at(scene_, frame.t_end);
     for (Eigen::Index i = 0; i < x_n_.cols(); ++i) {
-      force_.col(i) =
-          weight_force(frame.load_factor, scene_.mass[static_cast<std::size_t>(i)], scene_.gravity);
+      force_.col(i) = weight_force(frame.load_factor, scene_.mass[static_cast<std::size_t>(i)], gravity);
     }
     Positions::Map(families_[0].local.grad.data(), 3, x_n_.cols()) = -force_;
   }
@@ -63,7 +64,11 @@ class ExternalForce final : public Term {
 }  // namespace
 
 PlanItem needs_external_force(const TermNeeds& needs) {
-  return plan_item(!needs.scene.gravity.isZero(0), "the scene has gravity", "no gravity");
+  const Scene& scene = needs.scene;
+  const bool some =
+      !scene.gravity.isZero(0) || std::any_of(scene.gravity_keys.begin(), scene.gravity_keys.end(),
+                                              [](const GravityKey& key) { return !key.value.isZero(0); });
+  return plan_item(some, "the scene has gravity", "no gravity");
 }
 
 void make_external_force(const TermInputs& inputs, TermList& terms) {

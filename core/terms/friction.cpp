@@ -177,7 +177,7 @@ class Friction final : public Term {
       const int obstacle = contacts_.obstacle[row_[e]];
       if (obstacle < 0) continue;
       const Obstacle& o = scene_.obstacles[static_cast<std::size_t>(obstacle)];
-      if (o.motion.angular_velocity == 0) continue;
+      if (o.motion.most_turning() == 0) continue;
       const Vec3d arm = arm_of(row_[e], o);
       const Vec3d unturned = o.motion.turn(t_lag_).transpose() * arm;
       spin_[e] = o.motion.turn(t_end_) * unturned - o.motion.turn(t_end_ - dt_) * unturned;

@@ -77,6 +77,8 @@ void take_rest_shape(const BodyConfig& body, const std::string& where, BodySpec&
 Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>& limit) {
   SceneBuilder builder("bodies", config.scene.planar, config.scene.gravity, config.source + "#/scene");
   builder.set_planar_pairs(config.scene.pairs);
+  builder.set_gravity(config.scene.gravity_keys);
+  builder.set_air(config.scene.air);
   for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
     const BodyConfig& body = config.scene.bodies[i];
     BodySpec spec = body.spec;
@@ -100,9 +102,9 @@ void translate(const Vec3d& by, Scene& scene) {
   scene.x0.colwise() += by;
   for (Obstacle& obstacle : scene.obstacles) {
     obstacle.point += by;
-    obstacle.motion.center += by;
+    obstacle.motion.translate(by);
   }
-  for (RigidMotion& motion : scene.motions) motion.center += by;
+  for (RigidMotion& motion : scene.motions) motion.translate(by);
 }
 
 /// Uniform in [-1, 1) from the top 53 bits, the same on every platform.

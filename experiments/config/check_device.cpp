@@ -30,6 +30,9 @@ void check_device(const RunConfig& config, const Complain& complain) {
     complain(fmt::format("/scene/obstacles/{}/motion", i), "an obstacle that moves",
              "no motion " + on + ": its kernels know obstacles that stand still");
   }
+  if (!config.scene.gravity_keys.empty()) {
+    complain("/scene/gravity_schedule", "gravity over time", "gravity_m_per_s2 " + on);
+  }
   if (config.precision != Precision::full) {
     complain("/precision", '"' + word_of(config.precision) + '"', "double " + on);
   }

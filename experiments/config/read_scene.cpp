@@ -2,6 +2,7 @@
 // settings alone cannot judge of them.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <set>
 
 #include "core/bodies/part.hpp"
@@ -41,10 +42,39 @@ void read_mesh(const json& object, const std::string& pointer, const Reader& rea
   mesh.parameters = to_map(mesh_generators().require(mesh.generator, pointer).parameters, object);
 }
 
+/// Times of keys.
+template <class K>
+void check_times(const std::vector<K>& keys, const std::string& pointer, const Reader& reader) {
+  for (std::size_t k = 1; k < keys.size(); ++k) {
+    if (keys[k].time > keys[k - 1].time) continue;
+    reader.complain(fmt::format("{}/{}/time_s", pointer, k), fmt::format("{}", keys[k].time),
+                    fmt::format("a number > {}, the time before (s)", keys[k - 1].time));
+  }
+}
+
+void check_step(const MotionStep& motion, const std::string& pointer, const Reader& reader) {
+  check_times(motion.keyframes, pointer + "/keyframes", reader);
+  const bool rates = !motion.velocity.isZero(0) || motion.angular_velocity != 0 || motion.scale != 1;
+  if (!motion.keyframes.empty()) {
+    if (rates) reader.complain(pointer, "rates or a scale beside keyframes", "one of both");
+    return;
+  }
+  if (!(motion.end >= motion.start)) {
+    reader.complain(pointer + "/end_s", fmt::format("{}", motion.end),
+                    fmt::format("a number >= {} (s)", motion.start));
+  }
+  const bool to_an_end = motion.smooth || motion.scale != 1;
+  if (to_an_end && !(motion.end > motion.start && std::isfinite(motion.end))) {
+    reader.complain(pointer + "/end_s", std::isfinite(motion.end) ? fmt::format("{}", motion.end) : "nothing",
+                    fmt::format("a number > {} (s): scale and smooth need one", motion.start));
+  }
+}
+
 void check_motion(const RigidMotion& motion, const std::string& pointer, const Reader& reader) {
-  if (motion.end >= motion.start) return;
-  reader.complain(pointer + "/end_s", fmt::format("{}", motion.end),
-                  fmt::format("a number >= {} (s)", motion.start));
+  check_step(motion, pointer, reader);
+  for (std::size_t i = 0; i < motion.then.size(); ++i) {
+    check_step(motion.then[i], fmt::format("{}/then/{}", pointer, i), reader);
+  }
 }
 
 void settle_material(const json& object, const std::string& pointer, const Reader& reader, Material& m) {
@@ -87,6 +117,10 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
     const std::string where = fmt::format("{}/pins/{}", pointer, p);
     check_motion(pin.motion, where + "/motion", reader);
     check_box(pin, where + "/box_m", reader);
+    check_times(pin.pull_factors, where + "/pull_factors", reader);
+    if (!pin.pull && !pin.pull_factors.empty()) {
+      reader.complain(where + "/pull_factors", "factors of no pull", "pull_N_per_m beside them");
+    }
     if (pin.indices.empty() && !pin.box && !pin.top_row && !pin.all) {
       reader.missing(where, "at least one of indices, box_m, top_row, all");
     }
@@ -114,11 +148,26 @@ void check_names(const SceneConfig& scene, const Reader& reader) {
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) check(scene.obstacles[i].name, "obstacles", i);
 }
 
+void read_schedules(const json& object, const Reader& reader, SceneConfig& scene) {
+  check_times(scene.gravity_keys, "/scene/gravity_schedule", reader);
+  check_times(scene.air.wind_keys, "/scene/air/wind_schedule", reader);
+  if (!scene.air.wind.isZero(0) && !scene.air.wind_keys.empty()) {
+    reader.complain("/scene/air/wind_m_per_s", "a wind beside wind_schedule", "one of both");
+  }
+  if (scene.gravity_keys.empty()) return;
+  if (object.contains("gravity_m_per_s2")) {
+    reader.complain("/scene/gravity_m_per_s2", object["gravity_m_per_s2"].dump(),
+                    "nothing beside gravity_schedule");
+  }
+  scene.gravity = scene.gravity_keys.front().value;
+}
+
 void read_bodies(const json& object, const Reader& reader, SceneConfig& scene) {
   scene.planar = object.value("planar", false);
   scene.gravity = scene.planar ? Vec3d(0, -9.81, 0) : Vec3d(0, 0, -9.81);
   settings_of<SceneConfig>().read(object, scene);
   scene.name = "bodies";
+  read_schedules(object, reader, scene);
   if (object.contains("pairs") && !scene.planar) {
     reader.complain("/scene/pairs", object["pairs"].dump(), "nothing: the scene is not planar");
   }

@@ -67,6 +67,8 @@ struct SceneConfig {
   Vec3d gravity = Vec3d(0, 0, -9.81);           // m/s^2; registered scene: from its parameter
   Vec3d translation = Vec3d::Zero();            // m, of all that has a place, after the scene is made
   PlanarPairs pairs = PlanarPairs::point_edge;  // "bodies" only, like all that follows
+  std::vector<GravityKey> gravity_keys;         // instead of gravity, which is its first value
+  Air air;
   std::vector<BodyConfig> bodies;
   std::vector<Obstacle> obstacles;
 };

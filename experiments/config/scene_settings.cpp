@@ -29,6 +29,30 @@ void add_meshes(Settings<BodyConfig>& out) {
               nullptr, [](const BodyConfig& body) { return mesh_json(body.rest_mesh); });
 }
 
+/// Of a MotionStep, and of the first operation of a RigidMotion.
+template <class S>
+void add_motion_rows(Settings<S>& out) {
+  const auto row = [&out](auto member, const char* name, Rule rule, const char* doc) {
+    out.add(
+        name, std::move(rule), doc, [member](auto& s) -> auto& { return s.*member; });
+  };
+  row(&MotionStep::velocity, "velocity_m_per_s", any_vector("m/s"), "Linear velocity.");
+  row(&MotionStep::center, "center_m", any_vector("m"), "A point of the axis.");
+  row(&MotionStep::axis, "axis", direction(), "Axis of the rotation.");
+  row(&MotionStep::angular_velocity, "angular_velocity_rad_per_s", any_number("rad/s"),
+      "About axis through center_m.");
+  row(&MotionStep::start, "start_s", any_number("s"), "Start of the motion.");
+  row(&MotionStep::end, "end_s", computed(any_number("s"), "never"), "End of the motion.");
+  row(&MotionStep::scale, "scale", positive("1"),
+      "Factor on distances from center_m that is reached at end_s.");
+  row(&MotionStep::smooth, "smooth", flag(),
+      "From start_s to end_s, or from keyframe to keyframe, as 3 f^2 - 2 f^3 instead of f, the part of the "
+      "time.");
+  out.nest_all(
+      "keyframes", "Where the motion is at given times, linear between them; instead of rates and scale.",
+      10000, settings_of<Keyframe>(), [](auto& s) -> auto& { return s.keyframes; });
+}
+
 Rule listed(Kind kind, Rule element) {
   element.kind = kind;
   return element;
@@ -129,6 +153,36 @@ Rule mesh_rule() { return ruled_by(mesh_list); }
 
 namespace {
 
+/// A motion as it was written before there were operations and keyframes, where it has none.
+void leave_out_defaults(json& motion) {
+  if (motion["scale"] == 1) motion.erase("scale");
+  if (motion["smooth"] == false) motion.erase("smooth");
+  for (const char* list : {"keyframes", "then"}) {
+    if (motion[list].empty()) motion.erase(list);
+  }
+}
+
+void leave_out_defaults_of_body(json& body) {
+  if (body.contains("motion")) leave_out_defaults(body["motion"]);
+  if (!body.contains("pins")) return;
+  for (json& pin : body["pins"]) {
+    leave_out_defaults(pin["motion"]);
+    if (pin["pull_factors"].empty()) pin.erase("pull_factors");
+  }
+}
+
+/// What moves nothing is not written, so that a scene without it has the id that it had before there was such a key.
+void leave_out_what_is_still(const SceneConfig& scene, json& out) {
+  for (json& body : out["bodies"]) leave_out_defaults_of_body(body);
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    json& obstacle = out["obstacles"][i];
+    leave_out_defaults(obstacle["motion"]);
+    if (scene.obstacles[i].motion.is_static()) obstacle.erase("motion");
+  }
+  out.erase(scene.gravity_keys.empty() ? "gravity_schedule" : "gravity_m_per_s2");
+  if (scene.air.normal == 0 && scene.air.tangential == 0) out.erase("air");
+}
+
 json untranslated_json(const SceneConfig& scene) {
   if (scene.name != "bodies") {
     json out = to_json(scene.parameters);
@@ -142,8 +196,8 @@ json untranslated_json(const SceneConfig& scene) {
   }
   for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
     for (const std::string& key : keys_of_others(scene.obstacles[i].kind)) out["obstacles"][i].erase(key);
-    if (scene.obstacles[i].motion.is_static()) out["obstacles"][i].erase("motion");
   }
+  leave_out_what_is_still(scene, out);
   return out;
 }
 

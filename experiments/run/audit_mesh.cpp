@@ -1,7 +1,6 @@
 #include "experiments/run/audit_mesh.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <map>
 
 #include "core/mesh/topology.hpp"
@@ -74,12 +73,6 @@ std::vector<int> points_of(const Scene& scene, const std::vector<Edge>& edges) {
   return out;
 }
 
-bool same_motion(const RigidMotion& a, const RigidMotion& b) {
-  if (a.is_static() && b.is_static()) return true;
-  return a.velocity == b.velocity && a.center == b.center && a.axis == b.axis &&
-         a.angular_velocity == b.angular_velocity && a.start == b.start && a.end == b.end;
-}
-
 // Of each motion: the first that is the same, or -1 where a step turns it too far.
 std::vector<int> rigid_bodies(const std::vector<RigidMotion>& motions, double dt) {
   constexpr double quarter_turn = 1.5707963267948966;
@@ -87,7 +80,7 @@ std::vector<int> rigid_bodies(const std::vector<RigidMotion>& motions, double dt
   for (const RigidMotion& motion : motions) {
     const auto same = std::find_if(motions.begin(), motions.end(),
                                    [&motion](const RigidMotion& m) { return same_motion(m, motion); });
-    const bool keeps_shape = std::abs(motion.angular_velocity) * dt <= quarter_turn;
+    const bool keeps_shape = !motion.changes_size() && motion.most_turning() * dt <= quarter_turn;
     out.push_back(keeps_shape || motion.is_static() ? static_cast<int>(same - motions.begin()) : -1);
   }
   return out;

@@ -60,7 +60,7 @@ std::optional<Verdict> prescribed_crossing(const RunConfig& config, const Scene&
   const double tolerance = audit_tolerance(scene, config.contact.ccd_park);
   double last_end = 0;  // from then on every motion has ended
   for (const RigidMotion& motion : scene.motions) {
-    if (!motion.is_static()) last_end = std::max(last_end, motion.end);
+    last_end = std::max(last_end, motion.last_change());
   }
   Positions x0 = scene.x0, x1 = x0;
   for (int step = 0; step < config.time.steps && step * config.time.dt < last_end; ++step) {

@@ -26,7 +26,8 @@ inline TermOptions term_options() {
 }
 
 /// Two small cloths with bending, springs and a strain limit, the lower one close above a floor, the upper
-/// one close above the lower, each with a rod of two segments on its side; a solid block far from both.
+/// one close above the lower, each with a rod of two segments on its side and a corner that is pulled; a solid block far from
+/// both; wind.
 inline Scene scene_with_everything() {
   constexpr double d_hat = 0.05;
   SceneBuilder builder("everything", false, Vec3d(0, 0, -10), "test");
@@ -46,8 +47,12 @@ inline Scene scene_with_everything() {
     body.material.rod_bending = 0.004;
     body.material.limit = StrainLimitSpec{0.001, 0.2};
     body.d_hat = d_hat;
+    PinSpec& pull = body.pins.emplace_back();
+    pull.indices = {2};
+    pull.pull = 5;
     builder.add_body(body);
   }
+  builder.set_air({0.3, 0.1, Vec3d(0.5, 0, 0.2), {}});
   BodySpec block;
   block.name = "block";
   block.mesh = solid_box_mesh({1, 1, 1}, Vec3d(0.5, 0.4, 0.3));

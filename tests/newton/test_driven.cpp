@@ -1,0 +1,129 @@
+// Soft pins, the air and gravity over time, against closed forms.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "tests/newton/small_scenes.hpp"
+
+namespace bb::driven_test {
+namespace {
+
+/// A particle of 0.2 kg far from everything, which a spring of 50 N/m pulls.
+Scene pulled_particle(const Vec3d& velocity) {
+  Scene scene = test::particle_over_plane(0.2, 100, 0.01);
+  scene.motions.emplace_back();
+  scene.motions[0].velocity = velocity;
+  scene.pulls = {{{0}, 0, 50, {}}};
+  return scene;
+}
+
+struct Steps {
+  Scene scene;
+  Method method = test::fixed_method("log", 1);
+  double dt;
+  Simulation simulation;
+  Steps(Scene of, double step, int steps)
+      : scene(std::move(of)), method(tight()), dt(step), simulation(scene, method, dt, steps) {}
+  static Method tight() {
+    Method method = test::fixed_method("log", 1);
+    method.step_solver.tol_velocity = 1e-11;
+    return method;
+  }
+  void go(int steps) {
+    StepObserver observer;
+    for (int i = 0; i < steps; ++i) {
+      const StepReport report = simulation.step(observer);
+      ASSERT_EQ(report.status, StepStatus::converged) << report.detail;
+    }
+  }
+};
+
+TEST(Pull, carries_a_weight_behind_its_pose) {
+  Steps run(pulled_particle(Vec3d(0.3, 0, 0.1)), 0.01, 1000);
+  run.go(1000);
+  const Positions& x = run.simulation.history().x;
+  EXPECT_NEAR(x(0, 0), 0.3 * 10, 1e-8);
+  EXPECT_NEAR(x(2, 0), 100 + 0.1 * 10 - 0.2 * 10 / 50, 1e-8) << "m g/k below";
+  EXPECT_NEAR(run.simulation.history().v(2, 0), 0.1, 1e-7);
+}
+
+TEST(Pull, lets_go_when_its_stiffness_ends) {
+  Scene scene = pulled_particle(Vec3d::Zero());
+  scene.pulls[0].factors = {{1, 1}, {1.005, 0}};
+  Steps run(std::move(scene), 0.01, 300);
+  run.go(100);
+  const double at_rest = run.simulation.history().x(2, 0);
+  run.go(50);
+  const double speed = run.simulation.history().v(2, 0);
+  run.go(20);
+  EXPECT_NEAR(run.simulation.history().v(2, 0) - speed, -10 * 0.2, 1e-9) << "it falls freely";
+  EXPECT_LT(run.simulation.history().x(2, 0), at_rest - 0.5);
+}
+
+constexpr double c_n = 0.6, c_t = 0.15, density = 0.3;
+
+/// A sheet that is free in the air.
+Scene sheet(const Vec3d& gravity, const Vec3d& velocity) {
+  SceneBuilder builder("sheet", false, gravity, "test");
+  BodySpec cloth = test::cloth_spec(3, 0, 0.001);
+  cloth.velocity = velocity;
+  builder.add_body(cloth);
+  Scene scene = builder.finish();
+  scene.air.normal = c_n;
+  scene.air.tangential = c_t;
+  return scene;
+}
+
+double speed_after(double time, double dt) {
+  const int steps = static_cast<int>(std::lround(time / dt));
+  Steps run(sheet(Vec3d(0, 0, -10), Vec3d::Zero()), dt, steps);
+  run.go(steps);
+  return -run.simulation.history().v.row(2).mean();
+}
+
+TEST(AirDrag, ends_at_the_closed_form_whatever_the_time_step) {
+  const double terminal = density * 10 / c_n;
+  for (const double dt : {0.04, 0.01}) EXPECT_NEAR(speed_after(12, dt), terminal, 1e-8 * terminal);
+  const double exact = terminal * (1 - std::exp(-c_n / density * 0.4));
+  const double coarse = speed_after(0.4, 0.04) - exact, fine = speed_after(0.4, 0.01) - exact;
+  EXPECT_GT(std::abs(coarse), 0.01 * exact);
+  EXPECT_NEAR(coarse / fine, 4, 0.5) << "first order, as the integrator is";
+}
+
+TEST(AirDrag, takes_what_slides_along_its_plane_with_the_other_coefficient) {
+  Steps run(sheet(Vec3d::Zero(), Vec3d(2, 0, 0)), 0.01, 100);
+  run.go(100);
+  EXPECT_NEAR(run.simulation.history().v.row(0).mean(), 2 * std::pow(1 + c_t / density * 0.01, -100), 1e-8);
+}
+
+TEST(AirDrag, carries_a_sheet_with_a_wind_that_changes) {
+  Scene scene = sheet(Vec3d::Zero(), Vec3d::Zero());
+  scene.air.wind_keys = {{0, Vec3d(0, 0, 0)}, {1, Vec3d(0, 0, 3)}};
+  Steps run(std::move(scene), 0.01, 1500);
+  double expected = 0;  // v (1 + c h) = v_n + c h w(t)
+  for (int i = 1; i <= 50; ++i) {
+    const double ch = c_n / density * 0.01;
+    expected = (expected + ch * 3 * i * 0.01) / (1 + ch);
+  }
+  run.go(50);
+  EXPECT_NEAR(run.simulation.history().v.row(2).mean(), expected, 1e-8);
+  run.go(1450);
+  EXPECT_NEAR(run.simulation.history().v.row(2).mean(), 3, 1e-8);
+}
+
+TEST(Gravity, follows_its_keys) {
+  Scene scene = test::particle_over_plane(0.2, 100, 0.01);
+  scene.gravity_keys = {{0.1, Vec3d(0, 0, -10)}, {0.2, Vec3d(2, 0, 10)}};
+  scene.gravity = scene.gravity_keys[0].value;
+  Steps run(std::move(scene), 0.01, 30);
+  Vec3d expected = Vec3d::Zero();
+  for (int i = 1; i <= 30; ++i) {
+    const double f = std::clamp((i * 0.01 - 0.1) / 0.1, 0.0, 1.0);
+    expected += 0.01 * Vec3d(2 * f, 0, -10 + 20 * f);
+  }
+  run.go(30);
+  EXPECT_LT((run.simulation.history().v.col(0) - expected).norm(), 1e-9);
+}
+
+}  // namespace
+}  // namespace bb::driven_test
