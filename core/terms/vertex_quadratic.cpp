@@ -26,7 +26,7 @@ void VertexQuadratic::linearise(const PositionsView& x, const TermContext&) {
   });
 }
 
-void VertexQuadratic::evaluate(const PositionsView& x, const TermContext&) {
+void VertexQuadratic::evaluate(const PositionsView& x) {
   std::vector<double>& energy = families_[0].trial_energy;
   parallel_items(n_elements(), block_items, [&](std::size_t e) {
     const Vec3d from = off(x, e);

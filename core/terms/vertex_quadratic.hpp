@@ -15,7 +15,7 @@ class VertexQuadratic : public Term {
   Phase phase() const override { return Phase::assembly; }
 
   void linearise(const PositionsView& x, const TermContext&) override;
-  void evaluate(const PositionsView& x, const TermContext&) override;
+  void evaluate(const PositionsView& x) override;
   /// A square of differences, not a difference of squares.
   void change(const PositionsView& x0, const PositionsView& x1, EnergyParts& out) const override;
 

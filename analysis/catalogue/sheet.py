@@ -1,0 +1,36 @@
+"""One picture of all scenes: the last state of a run of each, drawn by ./bench render."""
+
+from __future__ import annotations
+
+import math
+import tempfile
+from pathlib import Path
+
+from .. import style
+from ..render import render
+
+from matplotlib import image  # noqa: E402  after style, which chooses how to draw
+from matplotlib import pyplot as plt  # noqa: E402
+
+COLUMNS = 5
+PIXELS = (520, 400)
+
+
+def contact_sheet(runs: dict[str, Path], out: Path) -> Path:
+    """A still for each scene -> folder of a run with frames, with its name above it."""
+    rows = math.ceil(len(runs) / COLUMNS)
+    fig, axes = plt.subplots(
+        rows, COLUMNS, figsize=(2 * style.WIDE_IN, 2 * style.WIDE_IN * rows / COLUMNS * 0.85), squeeze=False
+    )
+    for axis in axes.flat:
+        axis.set_axis_off()
+    with tempfile.TemporaryDirectory() as scratch:
+        for axis, (name, folder) in zip(axes.flat, runs.items()):
+            still = render(folder, out=Path(scratch) / f"{name}.png", size=PIXELS)
+            axis.imshow(image.imread(still))
+            axis.set_title(name, fontsize=10)
+    fig.subplots_adjust(0.01, 0.01, 0.99, 0.97, 0.02, 0.08)
+    out.parent.mkdir(parents=True, exist_ok=True)
+    fig.savefig(out, dpi=130, metadata={"Software": None})
+    plt.close(fig)
+    return out
