@@ -42,18 +42,23 @@ def no_crossing(record: dict) -> Finding:
     return Finding(not bad, f"{words} in {audit['motions']} motions")
 
 
-def contacts_active(record: dict, between: str = "*") -> Finding:
-    """Contacts at step ends, gaps below d_hat and a load; `between`: of pairs of bodies whose name is like this."""
+def _is_between(pair: str, pattern: str) -> bool:
+    """The sides of a pair have no order."""
+    a, _, b = pair.partition("|")
+    return any(fnmatchcase(one, pattern) for one in (f"{a}|{b}", f"{b}|{a}"))
+
+
+def contacts_active(record: dict, between: str = "*|*") -> Finding:
+    """Contacts at step ends, gaps below d_hat and a load; `between`: of pairs of bodies whose names are like this."""
     most, gap = record["summary"]["contacts"]["max"], record["summary"]["gap_min_rel"]["min"]
     if most is None or gap is None:
         return Finding(None, "no step with contacts")
-    pairs = [pair for pair in record["summary"]["contact_gaps"] if fnmatchcase(pair, between)]
-    load = sum(record["summary"]["contact_gaps"][pair]["load_N"] or 0 for pair in pairs)
-    if not pairs:
+    gaps = record["summary"]["contact_gaps"]
+    loads = [gaps[pair]["load_N"] or 0 for pair in gaps if _is_between(pair, between)]
+    if not loads:
         return Finding(None, f"no load between {between}")
-    return Finding(
-        most > 0 and gap < 1 and load > 0, f"{most:.0f} contacts, gap {gap:.2g} d_hat, {load:.3g} N"
-    )
+    saw = f"{between}: {sum(loads):.3g} N; in all {most:.0f} contacts, gap {gap:.2g} d_hat"
+    return Finding(most > 0 and gap < 1 and sum(loads) > 0, saw)
 
 
 def contact_work(record: dict) -> Finding:

@@ -19,9 +19,8 @@ PIXELS = (520, 400)
 def contact_sheet(runs: dict[str, Path], out: Path) -> Path:
     """A still for each scene -> folder of a run with frames, with its name above it."""
     rows = math.ceil(len(runs) / COLUMNS)
-    fig, axes = plt.subplots(
-        rows, COLUMNS, figsize=(2 * style.WIDE_IN, 2 * style.WIDE_IN * rows / COLUMNS * 0.85), squeeze=False
-    )
+    size = (2 * style.WIDE_IN, 2 * style.WIDE_IN * rows / COLUMNS * 0.85)
+    fig, axes = plt.subplots(rows, COLUMNS, figsize=size, squeeze=False, layout="constrained")
     for axis in axes.flat:
         axis.set_axis_off()
     with tempfile.TemporaryDirectory() as scratch:
@@ -29,7 +28,6 @@ def contact_sheet(runs: dict[str, Path], out: Path) -> Path:
             still = render(folder, out=Path(scratch) / f"{name}.png", size=PIXELS)
             axis.imshow(image.imread(still))
             axis.set_title(name, fontsize=10)
-    fig.subplots_adjust(0.01, 0.01, 0.99, 0.97, 0.02, 0.08)
     out.parent.mkdir(parents=True, exist_ok=True)
     fig.savefig(out, dpi=130, metadata={"Software": None})
     plt.close(fig)
