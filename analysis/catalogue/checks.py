@@ -1,6 +1,6 @@
-"""What a scene of the catalogue is expected to show, each a named check of the record of a run. A check says whether
-it holds and what it saw; without a subject (no friction in the scene, no step) it does not hold. A check is one
-function here and one line of CHECKS.
+"""What a scene of the catalogue is expected to show, each a named check of the record of a run. A check
+says whether it holds and what it saw; without a subject (no friction in the scene, no step) it does not
+hold. A check is one function here and one line of CHECKS.
 """
 
 from __future__ import annotations
@@ -49,7 +49,9 @@ def _is_between(pair: str, pattern: str) -> bool:
 
 
 def contacts_active(record: dict, between: str = "*|*") -> Finding:
-    """Contacts at step ends, gaps below d_hat and a load; `between`: of pairs of bodies whose names are like this."""
+    """Contacts at step ends, gaps below d_hat and a load; `between`: of pairs of bodies whose names are
+    like this.
+    """
     most, gap = record["summary"]["contacts"]["max"], record["summary"]["gap_min_rel"]["min"]
     if most is None or gap is None:
         return Finding(None, "no step with contacts")

@@ -17,8 +17,8 @@ _COUNTS = re.compile(r"^  (\d+) vertices .*\n  surface: (\d+) triangles, (\d+) e
 
 @dataclass(frozen=True)
 class Counts:
-    """Of a whole scene: vertices, and triangles and edges of all surfaces; `edges` are those of rods where there is no
-    triangle.
+    """Of a whole scene: vertices, and triangles and edges of all surfaces; `edges` are those of rods where
+    there is no triangle.
     """
 
     vertices: int
@@ -36,8 +36,8 @@ class Counts:
 
 
 def counts_of(entry: Entry, size: str) -> Counts:
-    """What `explain` says of the config. Errors: UserError with what the program says: a scene that does not fit into
-    memory among them.
+    """What `explain` says of the config. Errors: UserError with what the program says: a scene that does
+    not fit into memory among them.
     """
     with tempfile.TemporaryDirectory() as scratch:
         file = Path(scratch) / f"{entry.name}.json"

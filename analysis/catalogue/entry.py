@@ -1,4 +1,6 @@
-"""A scene of the catalogue: configs/catalogue/NAME.json, and the ordinary configs that it makes at its two sizes."""
+"""A scene of the catalogue: configs/catalogue/NAME.json, and the ordinary configs that it makes at its two
+sizes.
+"""
 
 from __future__ import annotations
 

@@ -1,5 +1,5 @@
-"""The formulations that the catalogue is run with. Fixed stiffnesses are matched to the loads that a scene names, so that no
-pilot runs; a policy that makes its own stiffness is as it is.
+"""The formulations that the catalogue is run with. Fixed stiffnesses are matched to the loads that a scene
+names, so that no pilot runs; a policy that makes its own stiffness is as it is.
 """
 
 from __future__ import annotations
@@ -19,8 +19,8 @@ FORMULATIONS = {
     "cubic_dynamic_consistent": {"/formulation/name": "cubic_dynamic_consistent", **OWN_STIFFNESS},
 }
 ABOUT = {
-    "cubic_dynamic_toi": "kappa anew in every iteration and steps that end at an accumulated time of impact, as Ando"
-    " 2024 published both, in double precision",
+    "cubic_dynamic_toi": "kappa anew in every iteration and steps that end at an accumulated time"
+    " of impact, as Ando 2024 published both, in double precision",
 }
 PAIR = ("log", "cubic_dynamic_consistent")  # of ./bench robust, where none are named
 

@@ -1,5 +1,6 @@
-"""Where the copies of a body stand. A body of the catalogue may have `copies`: {"layout": NAME, parameters}; the rigid
-motion of each copy comes after the body's own `transform`. A layout is one function here and one line of LAYOUTS.
+"""Where the copies of a body stand. A body of the catalogue may have `copies`: {"layout": NAME,
+parameters}; the rigid motion of each copy comes after the body's own `transform`. A layout is one function
+here and one line of LAYOUTS.
 """
 
 from __future__ import annotations
@@ -37,8 +38,9 @@ SPIRAL_POINTS = 4096
 
 
 def spiral(count: int, spacing_m: float) -> Iterator[Place]:
-    """The first `count` places farther than the spacing from the one before, on two turns whose radius falls from 1 m to
-    0.5 m; x of a body points along it. Formula of the scene domino of Ando 2024, with z up.
+    """The first `count` places farther than the spacing from the one before, on two turns whose radius
+    falls from 1 m to 0.5 m; x of a body points along it. Formula of the scene domino of Ando 2024, with z
+    up.
     """
     last, made = None, 0
     for i in reversed(range(SPIRAL_POINTS)):
@@ -54,8 +56,9 @@ def spiral(count: int, spacing_m: float) -> Iterator[Place]:
 
 
 def house_of_cards(rows: int, height_m: float, lean_deg: float, gap_m: float) -> Iterator[Place]:
-    """Of cards in the y-z plane, `height` along z: rows of pairs that lean against each other, `rows` of them in the lowest,
-    one fewer in each above; flat cards on neighbouring pairs, every second one a gap higher; next cards are `gap` apart.
+    """Of cards in the y-z plane, `height` along z: rows of pairs that lean against each other, `rows` of
+    them in the lowest, one fewer in each above; flat cards on neighbouring pairs, every second one a gap
+    higher; next cards are `gap` apart.
     """
     lean = math.radians(lean_deg)
     half_width, half_height = 0.5 * height_m * math.sin(lean), 0.5 * height_m * math.cos(lean)

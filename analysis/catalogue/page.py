@@ -1,6 +1,6 @@
-"""Runs every mini scene of the catalogue under the formulations (records that are there are skipped), holds each record
-against what its scene expects, and writes results/catalogue.json, results/CATALOGUE.md and docs/catalogue.png, a still of
-the end of every scene. With names it runs these alone and keeps the rest.
+"""Runs every mini scene of the catalogue under the formulations (records that are there are skipped), holds
+each record against what its scene expects, and writes results/catalogue.json, results/CATALOGUE.md and
+docs/catalogue.png, a still of the end of every scene. With names it runs these alone and keeps the rest.
 
 Exit codes: 0 everything as expected, 1 something is not, 2 bad input.
 """

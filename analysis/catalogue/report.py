@@ -12,7 +12,9 @@ def _text(words: str) -> str:
 
 
 def _cell(row: dict | None) -> str:
-    """Outcome and seconds; bold where it is not `ok`, or a check is red. A rejected scene is as it should be."""
+    """Outcome and seconds; bold where it is not `ok`, or a check is red. A rejected scene is as it should
+    be.
+    """
     if row is None:
         return "-"
     text = f"{row['outcome']}, {row['seconds']:g} s"
@@ -36,14 +38,19 @@ def markdown_page(asked: list[Entry], scenes: dict[str, dict], robust: dict[str,
     text = [
         "# Catalogue",
         "",
-        f"Written by `./bench catalogue`. {dates}, {machines}; commit {commits}. The scenes of configs/catalogue at the"
-        f" size mini, {len(here)} of {len(asked)}; {len(rows)} runs, {sum(not row['red'] for row in rows)} of which end as"
-        " expected.",
+        (
+            f"Written by `./bench catalogue`. {dates}, {machines}; commit {commits}. The scenes of"
+            f" configs/catalogue at the size mini, {len(here)} of {len(asked)}; {len(rows)} runs,"
+            f" {sum(not row['red'] for row in rows)} of which end as expected."
+        ),
         "",
-        "A cell has the outcome and seconds from start to end. It is bold where an expectation of the scene is red: not"
-        " fulfilled, or without a subject. Fixed stiffnesses are matched to the loads that a scene names; "
-        + "; ".join(f"`{label}`: {words}" for label, words in ABOUT.items())
-        + ".",
+        (
+            "A cell has the outcome and seconds from start to end, other programs beside it. It is bold where"
+            " an expectation of the scene is red: not fulfilled, or without a subject. Fixed stiffnesses are"
+            " matched to the loads that a scene names; "
+            + "; ".join(f"`{label}`: {words}" for label, words in ABOUT.items())
+            + "."
+        ),
         "",
         "![The end of every mini scene](../docs/catalogue.png)",
         "",

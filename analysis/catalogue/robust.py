@@ -1,7 +1,7 @@
-"""Runs mini scenes of the catalogue from jittered starts: every start coordinate of a free vertex is moved by a uniform
-number within the jitter that the scene names, by the seeds 1, 2 and so on, which the records keep. A scene passes when
-every seed ends `ok` without a crossing; one that must be rejected, when every seed is. Prints a table and keeps it in
-results/robust.json.
+"""Runs mini scenes of the catalogue from jittered starts: every start coordinate of a free vertex is moved
+by a uniform number within the jitter that the scene names, by the seeds 1, 2 and so on, which the records
+keep. A scene passes when every seed ends `ok` without a crossing; one that must be rejected, when every
+seed is. Prints a table and keeps it in results/robust.json.
 
 Exit codes: 0 all passed, 1 some did not, 2 bad input.
 """

@@ -1,4 +1,6 @@
-"""Runs of a scene under formulations and from jittered starts: one sweep a scene, whose finished records are kept."""
+"""Runs of a scene under formulations and from jittered starts: one sweep a scene, whose finished records
+are kept.
+"""
 
 from __future__ import annotations
 
@@ -17,7 +19,8 @@ from .formulations import cases
 RUNS = ROOT / "results" / "runs" / "catalogue"
 LAST_FRAME = 1_000_000  # /output/frames_every: the start and the last state alone
 LIMIT_S = 120  # of one run
-ONE_PASS = {"/passes": {"time": False, "diagnose": False, "audit": True}}  # times of single steps are not asked for
+# Times of single steps are not asked for, so that one pass serves.
+ONE_PASS = {"/passes": {"time": False, "diagnose": False, "audit": True}}
 
 
 @dataclass(frozen=True)
@@ -31,8 +34,8 @@ class Done:
 
 
 def run_scene(entry: Entry, labels: list[str], folder: Path, seeds: list[int] | None = None) -> list[Done]:
-    """The mini scene under every formulation, from its own start with a frame of its end, or from jittered starts. Errors: UserError with what the
-    program says.
+    """The mini scene under every formulation, from its own start with a frame of its end, or from jittered
+    starts. Errors: UserError with what the program says.
     """
     base, file, out = folder / f"{entry.name}.json", folder / f"{entry.name}.sweep.json", folder / entry.name
     write_config(entry, base, MINI)

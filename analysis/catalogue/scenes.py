@@ -1,5 +1,5 @@
-"""The scenes of the catalogue, with their sizes as the program builds them. --write makes the ordinary config of one, at
-the size mini or, with --full, at that of its source, for ./bench run.
+"""The scenes of the catalogue, with their sizes as the program builds them. --write makes the ordinary
+config of one, at the size mini or, with --full, at that of its source, for ./bench run.
 
 Exit codes: 0, 1 a size is not the one that the scene states of its source, 2 bad input.
 """

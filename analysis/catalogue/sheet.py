@@ -6,11 +6,11 @@ import math
 import tempfile
 from pathlib import Path
 
+import matplotlib.image as image
+import matplotlib.pyplot as plt
+
 from .. import style
 from ..render import render
-
-from matplotlib import image  # noqa: E402  after style, which chooses how to draw
-from matplotlib import pyplot as plt  # noqa: E402
 
 COLUMNS = 5
 PIXELS = (520, 400)

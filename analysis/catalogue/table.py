@@ -1,4 +1,6 @@
-"""What is kept of the runs of the catalogue: results/catalogue.json. Scenes that were not run keep what they had."""
+"""What is kept of the runs of the catalogue: results/catalogue.json. Scenes that were not run keep what
+they had.
+"""
 
 from __future__ import annotations
 
