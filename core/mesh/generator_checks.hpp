@@ -9,6 +9,8 @@
 
 namespace bb {
 
+constexpr int max_count = 20000;  // n x n triangles still count within int
+
 inline void require_count(const char* where, int found, int low, int high) {
   if (found < low || found > high)
     throw ConfigError(where, fmt::format("{}", found), fmt::format("{} to {}", low, high));

@@ -10,8 +10,6 @@
 namespace bb {
 namespace {
 
-constexpr int max_count = 20000;  // n x n triangles still count within int
-
 TriangleMesh from_points(const std::vector<Vec3d>& points) {
   TriangleMesh mesh;
   mesh.vertices.resize(3, static_cast<Eigen::Index>(points.size()));

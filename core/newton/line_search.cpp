@@ -67,7 +67,9 @@ class LineSearch final : public StepSolver {
       if (moved) show_motion(system, task.step, observer);
       // the estimate is that of the whole direction; a part of one that is below the tolerance will do too
       const bool enough = report.alpha == 1 || report.dx_inf_m < tolerance;
-      if (small && enough && (report.contraction.finite() || as_modelled(report))) {
+      // Of a body at rest without a force, E is rounding and so is the direction.
+      const bool nothing_left = !moved && bound_ >= collapsed_step && report.dx_beyond_m == 0;
+      if (small && (nothing_left || (enough && (report.contraction.finite() || as_modelled(report))))) {
         if (system.renew_lag()) {  // another minimum is looked for, by what is left of the iterations
           collapsed = 0;
           if (iteration + 1 < options_.max_iterations) error_.reset();

@@ -132,8 +132,10 @@ int explain(const RunVerb& verb, const ContactDemand& demand) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
   const Plan plan = plan_of(config, scene);
-  fmt::print("{}\n  {} vertices ({} prescribed), {}{} steps of {} s\n\n", run_label(config),
-             scene.n_vertices(), scene.pins.size(), elements_text(scene), config.time.steps, config.time.dt);
+  fmt::print("{}\n  {} vertices ({} prescribed), {}{} steps of {} s\n", run_label(config), scene.n_vertices(),
+             scene.pins.size(), elements_text(scene), config.time.steps, config.time.dt);
+  fmt::print("  surface: {} triangles, {} edges\n\n", scene.surface_triangles.size(),
+             scene.surface_edges.size());
   print_method(config);
   print_formulation(config);
   for (const bool needed : {true, false}) {

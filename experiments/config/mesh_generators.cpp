@@ -2,6 +2,7 @@
 
 #include "core/mesh/generators.hpp"
 #include "core/mesh/solid_generators.hpp"
+#include "core/mesh/strand_generators.hpp"
 
 namespace bb {
 
@@ -30,6 +31,17 @@ const Registry<MeshGenerator>& mesh_generators() {
        [](const ParameterMap& p) {
          return cylinder_mesh(integer(p, "n_around"), integer(p, "n_along"), number(p, "radius_m"),
                               number(p, "length_m"), boolean(p, "closed"));
+       }},
+      {"cone",
+       "closed cone, tip at the origin, base below; rings close at the tip",
+       {{"n_around", count(3, 20000), 16, "vertices of a ring"},
+        {"n_rings", count(1, 20000), 8, "rings between tip and base; their distance grows with the square"},
+        {"n_base", count(0, 20000), 1, "rings inside the base"},
+        {"height_m", positive("m"), 1, "height"},
+        {"radius_m", positive("m"), 0.2, "radius of the base"}},
+       [](const ParameterMap& p) {
+         return cone_mesh(integer(p, "n_around"), integer(p, "n_rings"), integer(p, "n_base"),
+                          number(p, "height_m"), number(p, "radius_m"));
        }},
       {"box",
        "axis-aligned box",
@@ -61,6 +73,42 @@ const Registry<MeshGenerator>& mesh_generators() {
        [](const ParameterMap& p) {
          return helix_mesh(integer(p, "n_segments"), number(p, "n_turns"), number(p, "radius_m"),
                            number(p, "pitch_m"));
+       }},
+      {"woven_tube",
+       "tube about z woven of lone edges: straight strands, and rings that go over one and under the next",
+       {{"n_axial", count(4, 20000), 12, "straight strands, an even number"},
+        {"n_along", count(2, 20000), 24, "vertices of a strand"},
+        {"n_rings", count(1, 20000), 8, "rings of 3 n_axial vertices"},
+        {"radius_m", positive("m"), 0.05, "radius of the tube"},
+        {"length_m", positive("m"), 0.12, "length"},
+        {"amplitude_m", positive("m"), 4.8e-3, "by which the radius of a ring swings"}},
+       [](const ParameterMap& p) {
+         return woven_tube_mesh({integer(p, "n_axial"), integer(p, "n_along"), integer(p, "n_rings"),
+                                 number(p, "radius_m"), number(p, "length_m"), number(p, "amplitude_m")});
+       }},
+      {"knit",
+       "plain knit of lone edges in the x-y plane: strands along x whose loops hook those of their "
+       "neighbours",
+       {{"n_rows", count(1, 20000), 4, "strands"},
+        {"n_loops", count(1, 20000), 4, "loops of a strand"},
+        {"n_per_loop", count(8, 1000), 20, "vertices of a loop"},
+        {"loop_m", positive("m"), 1.0 / 26, "width of a loop"},
+        {"row_m", positive("m"), 1.0 / 52, "distance of strands; a loop reaches 0.85 of it up and down"},
+        {"depth_m", positive("m"), 3.9e-3, "amplitude across the plane"}},
+       [](const ParameterMap& p) {
+         return knit_mesh({integer(p, "n_rows"), integer(p, "n_loops"), integer(p, "n_per_loop"),
+                           number(p, "loop_m"), number(p, "row_m"), number(p, "depth_m")});
+       }},
+      {"knotted_strip",
+       "strip of triangles with an open overhand knot, from end to end along x",
+       {{"n_along", count(8, 20000), 100, "vertices along the strip"},
+        {"n_across", count(2, 20000), 3, "vertices across"},
+        {"length_m", positive("m"), 1, "from end to end"},
+        {"width_m", positive("m"), 0.05, "width"},
+        {"lift", positive("1"), 0.1, "how far crossings are apart"}},
+       [](const ParameterMap& p) {
+         return knotted_strip_mesh({integer(p, "n_along"), integer(p, "n_across"), number(p, "length_m"),
+                                    number(p, "width_m"), number(p, "lift")});
        }},
       {"solid_box",
        "axis-aligned box of tetrahedra, six a cell",

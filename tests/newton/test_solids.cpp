@@ -153,6 +153,26 @@ double relative_fall(int n) {
   return fall / count / expected;
 }
 
+/// Nothing pulls at it, so energies and directions are rounding, and no comparison of the two says anything.
+TEST(SolidMotion, a_body_at_rest_without_a_force_stays_there) {
+  BodySpec body;
+  body.name = "ball";
+  body.mesh = solid_ball_mesh(3, 0.47);
+  body.mesh.vertices.row(0).array() += 0.485;
+  body.d_hat = 1e-2;
+  for (const std::string model : {"corotational", "stable_neo_hookean", "arap", "stvk"}) {
+    body.material.solid_model = model;
+    const Scene scene = scene_of(body);
+    Method method = fixed_method("log", 1);
+    Simulation simulation(scene, method, 0.01, 3);
+    StepObserver observer;
+    for (int step = 0; step < 3; ++step) {
+      ASSERT_EQ(simulation.step(observer).status, StepStatus::converged) << model << ", step " << step;
+    }
+    EXPECT_LT((simulation.history().x - scene.x0).cwiseAbs().maxCoeff(), 1e-15) << model;
+  }
+}
+
 /// Linear tetrahedra are too stiff in bending, by what falls with the square of their size. Timoshenko's beam, which shears too, falls
 /// 0.8 % further.
 TEST(SolidBeam, a_cantilever_converges_to_euler_and_bernoulli) {

@@ -1,0 +1,49 @@
+"""How large a scene is, as the program builds it."""
+
+from __future__ import annotations
+
+import json
+import re
+import tempfile
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from ..errors import UserError
+from ..program import started
+from .entry import Entry, write_config
+
+_COUNTS = re.compile(r"^  (\d+) vertices .*\n  surface: (\d+) triangles, (\d+) edges$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Counts:
+    """Of a whole scene: vertices, and triangles and edges of all surfaces; `edges` are those of rods where
+    there is no triangle.
+    """
+
+    vertices: int
+    faces: int
+    edges: int
+
+    def unlike(self, stated: dict) -> str:
+        """Which of the counts that a scene states are others; empty where none is."""
+        own = {**asdict(self), "segments": self.edges if self.faces == 0 else None}
+        return ", ".join(
+            f"{key} {own[key]}, stated {stated[key]}"
+            for key in ("vertices", "faces", "segments")
+            if key in stated and stated[key] != own[key]
+        )
+
+
+def counts_of(entry: Entry, size: str) -> Counts:
+    """What `explain` says of the config. Errors: UserError with what the program says: a scene that does
+    not fit into memory among them.
+    """
+    with tempfile.TemporaryDirectory() as scratch:
+        file = Path(scratch) / f"{entry.name}.json"
+        write_config(entry, file, size)
+        done = started("explain", str(file))
+    if done.returncode != 0 or not (found := _COUNTS.search(done.stdout)):
+        said = (done.stderr.strip() or done.stdout.strip()).replace(str(file), "").splitlines()
+        raise UserError(f"{entry.path} ({size}): {json.dumps(said[0] if said else 'nothing was said')}")
+    return Counts(*map(int, found.groups()))

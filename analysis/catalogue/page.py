@@ -1,0 +1,101 @@
+"""Runs every mini scene of the catalogue under the formulations (records that are there are skipped), holds
+each record against what its scene expects, and writes results/catalogue.json, results/CATALOGUE.md and
+docs/catalogue.png, a still of the end of every scene. With names it runs these alone and keeps the rest.
+
+Exit codes: 0 everything as expected, 1 something is not, 2 bad input.
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from pathlib import Path
+
+from ..errors import tells
+from ..front.arguments import parser_of
+from ..places import ROOT
+from ..text_table import aligned
+from ..whole_file import write_whole
+from . import robust, sheet, table
+from .entry import Entry, entries, names
+from .formulations import FORMULATIONS
+from .report import markdown_page
+from .runs import RUNS, Done, run_scene
+
+PAGE, PICTURE = ROOT / "results" / "CATALOGUE.md", ROOT / "docs" / "catalogue.png"
+STILLS = "log"  # the formulation of the picture
+
+
+def _arguments(argv: list[str]) -> argparse.Namespace:
+    parser = parser_of("catalogue", __doc__, "./bench catalogue twist drape --formulations log")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="configs/catalogue/NAME.json (default: all)")
+    parser.add_argument(
+        "--formulations",
+        nargs="+",
+        default=list(FORMULATIONS),
+        metavar="NAME",
+        help=f"default: {' '.join(FORMULATIONS)}",
+    )
+    parser.add_argument(
+        "--no-run", action="store_true", help="run nothing: write the page of results/catalogue.json"
+    )
+    parser.add_argument(
+        "--sheet", action="store_true", help="draw docs/catalogue.png anew, of the records of log"
+    )
+    parser.add_argument(
+        "--runs",
+        type=Path,
+        default=RUNS,
+        metavar="DIR",
+        help="folder of the records (default: results/runs/catalogue)",
+    )
+    return parser.parse_args(argv)
+
+
+def write_page(scenes: dict[str, dict], page: Path = PAGE) -> None:
+    """Of everything that is kept."""
+    known = entries([])
+    robust_rows = {name: rows for name, rows in robust.read().items() if name in names()}
+    write_whole(page, markdown_page(known, scenes, robust_rows))
+
+
+def _line(name: str, row: dict) -> list[str]:
+    said = "; ".join(row["red"]) or "as expected"
+    return [name, row["formulation"], row["outcome"], f"{row['seconds']:g} s", f"{row['newton']}", said[:150]]
+
+
+def _say(entry: Entry, runs: list[Done], kept: dict) -> None:
+    labels = {done.formulation for done in runs}
+    rows = [_line(entry.name, row) for row in kept["rows"] if row["formulation"] in labels]
+    print("\n".join(aligned([""] * 6, rows)[1:]), flush=True)
+
+
+def _draw(runs: Path) -> None:
+    """Of the scenes that start, in the order of their names."""
+    found = {}
+    for entry in entries([]):
+        if not entry.is_rejected:
+            (done,) = run_scene(entry, [STILLS], runs)
+            found[entry.name] = done.folder
+    print(sheet.contact_sheet(found, PICTURE))
+
+
+@tells("catalogue")
+def main(argv: list[str]) -> int:
+    args = _arguments(argv)
+    asked, scenes, red = entries(args.names), table.read(), 0
+    for entry in [] if args.no_run else asked:
+        print(f"catalogue: {entry.name}", file=sys.stderr)
+        runs = run_scene(entry, args.formulations, args.runs)
+        scenes[entry.name] = table.kept_of(entry, runs, scenes.get(entry.name))
+        _say(entry, runs, scenes[entry.name])
+        table.write(scenes)
+        write_page(scenes)
+    if args.sheet:
+        _draw(args.runs)
+    if args.no_run:
+        write_page(scenes)
+    red = sum(
+        bool(row["red"]) for entry in asked if entry.name in scenes for row in scenes[entry.name]["rows"]
+    )
+    return 1 if red else 0

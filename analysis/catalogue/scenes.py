@@ -1,0 +1,79 @@
+"""The scenes of the catalogue, with their sizes as the program builds them. --write makes the ordinary
+config of one, at the size mini or, with --full, at that of its source, for ./bench run.
+
+Exit codes: 0, 1 a size is not the one that the scene states of its source, 2 bad input.
+"""
+
+from __future__ import annotations
+
+import argparse
+from pathlib import Path
+
+from ..errors import UserError, tells
+from ..front.arguments import parser_of
+from ..text_table import aligned
+from .counts import counts_of
+from .entry import FULL, MINI, Entry, entries, write_config
+
+
+def _arguments(argv: list[str]) -> argparse.Namespace:
+    parser = parser_of("scenes", __doc__, "./bench scenes twist --write twist.json --full")
+    parser.add_argument("names", nargs="*", metavar="NAME", help="configs/catalogue/NAME.json (default: all)")
+    parser.add_argument(
+        "--write", type=Path, metavar="FILE", help="write the config of the one scene that is named"
+    )
+    parser.add_argument("--full", action="store_true", help="at the size of the source")
+    parser.add_argument("--list", action="store_true", help="names and titles alone, nothing is built")
+    return parser.parse_args(argv)
+
+
+def _cell(entry: Entry, size: str) -> tuple[str, str]:
+    """vertices/faces, and what is wrong with them."""
+    try:
+        counts = counts_of(entry, size)
+    except UserError as error:
+        return "-", str(error)
+    wrong = counts.unlike(entry.data[size])
+    return f"{counts.vertices}/{counts.faces}", f"{entry.path}#/{size}: {wrong}" if wrong else ""
+
+
+def _print_table(asked: list[Entry]) -> int:
+    rows, complaints = [], []
+    for entry in asked:
+        cells = [_cell(entry, size) for size in (MINI, FULL)]
+        rows.append([entry.name, *(text for text, _ in cells), entry.data["stresses"]])
+        complaints += [wrong for _, wrong in cells if wrong]
+    print("\n".join(aligned(["scene", "mini", "full", "what it stresses"], rows, {1, 2})))
+    print("mini, full: vertices/faces of the whole scene")
+    for wrong in complaints:
+        print(wrong)
+    return 1 if complaints else 0
+
+
+def _print_one(entry: Entry) -> None:
+    print(f"{entry.name}: {entry.data['title']}\nfrom      {entry.data['source']}")
+    for word in entry.data["deviations"]:
+        print(f"deviates  {word}")
+    for expected in entry.data["expect"]:
+        own = ", ".join(f"{k} {v}" for k, v in expected.items() if k not in ("check", "because"))
+        print(f"expects   {expected['check']}{f' ({own})' if own else ''}: {expected['because']}")
+
+
+@tells("scenes")
+def main(argv: list[str]) -> int:
+    args = _arguments(argv)
+    asked = entries(args.names)
+    if args.write:
+        if len(args.names) != 1:
+            raise UserError("--write: one NAME is needed")
+        write_config(asked[0], args.write, FULL if args.full else MINI)
+        print(args.write)
+        return 0
+    if args.full:
+        raise UserError("--full: --write FILE is needed with it")
+    if args.list:
+        print("\n".join(aligned(["scene", "title"], [[one.name, one.data["title"]] for one in asked])))
+        return 0
+    if len(args.names) == 1:
+        _print_one(asked[0])
+    return _print_table(asked)
