@@ -55,7 +55,7 @@ def read_cases(folder: Path) -> list[Case]:
     data = read_of_schema(
         folder / "cases.json",
         SCHEMA,
-        f"; ./bench plan SPEC --out {folder} --write lists the cases of a sweep there, and so does ./bench sweep",
+        f"; ./bench plan SPEC --out {folder} --write lists the cases there, and so does ./bench sweep",
     )
     return [
         Case(

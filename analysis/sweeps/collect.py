@@ -117,7 +117,7 @@ def _check_out(out: Path) -> None:
         raise UserError(f"{out}: found the suffix {out.suffix!r}; .csv or .parquet is needed")
     if out.suffix == ".parquet" and not importlib.util.find_spec("pyarrow"):
         raise UserError(
-            f"{out}: Parquet is written by pyarrow, which is none of the packages of ./bench setup; install it"
+            f"{out}: Parquet is written by pyarrow, which ./bench setup does not install; put it"
             " into .venv (.venv/bin/pip install pyarrow), or name a .csv"
         )
 

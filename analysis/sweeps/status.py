@@ -1,5 +1,5 @@
 """Where the runs of a sweep are: over with their outcomes, running, dead (their process is gone, or has given
-no sign of life for a minute), stopped with a checkpoint, or waiting. `./bench sweep` goes on with all of them.
+no sign of life for a minute), stopped with a checkpoint, or waiting. `./bench sweep` goes on with all.
 
 Exit codes: 0 every run is over, 1 not every run, 2 no list of cases in the folder.
 """
