@@ -45,9 +45,9 @@ Several calls may work in one folder at the same time: no run is made twice. Exi
 /// Runs that other processes are at.
 RecordError in_use_text(const Sweep& sweep, const SweepTally& tally) {
   const auto first = sweep.folder(tally.in_use.front());
-  return {fmt::format("{} of {} runs are made by other processes, the first in {}: in use by {}; try again "
-                      "when they have ended",
-                      tally.in_use.size(), sweep.chosen.size(), first.string(), lock_holder(first)),
+  return {fmt::format("{} of {} {}, the first in {}: in use by {}; try again when they have ended",
+                      tally.in_use.size(), sweep.chosen.size(), made_by_others, first.string(),
+                      lock_holder(first)),
           false};
 }
 

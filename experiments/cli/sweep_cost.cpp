@@ -16,7 +16,7 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-constexpr double iterations_a_step = 8, seconds_an_unknown = 4.5e-6;
+constexpr double start_s = 0.03, iterations_a_step = 8, seconds_an_unknown = 4.5e-6;
 
 /// How alike two runs are beyond the name of their scene.
 int likeness(const RunSize& a, const RunSize& b) {
@@ -97,8 +97,8 @@ ExpectedCost CostBook::expected(const RunSize& size) const {
     rates.push_back(core_s / (other.steps * other.unknowns));
   }
   if (!rates.empty()) return {median(rates) * size.steps * size.unknowns, CostSource::same_scene};
-  return {size.passes * size.steps * iterations_a_step * (seconds_an_unknown * size.unknowns + size.solve_s),
-          CostSource::model};
+  const double iteration_s = seconds_an_unknown * size.unknowns + size.solve_s;
+  return {start_s + size.passes * size.steps * iterations_a_step * iteration_s, CostSource::model};
 }
 
 }  // namespace bb::cli

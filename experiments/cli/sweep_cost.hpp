@@ -28,7 +28,7 @@ struct ExpectedCost {
   CostSource source = CostSource::model;
 };
 
-/// Records of earlier runs, and a model where they say nothing: seconds = passes x steps x 8 iterations a step x (4.5e-6 s an
+/// Records of earlier runs, and a model where they say nothing: seconds = 0.03 + passes x steps x 8 iterations a step x (4.5e-6 s an
 /// unknown + a linear solve). Both numbers are medians over the runs of results/work_precision.json and results/baselines; they
 /// are within a factor of 4 there. Condition estimates and audits are not in it.
 class CostBook {

@@ -182,7 +182,7 @@ class SweepRun {
     if (end.code == exit_bad_input) {
       refused_row(i);
       tally_.complaints += end.err;
-    } else if (end.code == exit_try_again && is_held(i)) {
+    } else if (end.code == exit_try_again && end.err.find(made_by_others) != std::string::npos) {
       tally_.in_use.push_back(i);
       print(row);
     } else {
@@ -195,11 +195,6 @@ class SweepRun {
       print(fmt::format("{:<44} no record: its process {}", sweep_.note(i), how));
       tally_.complaints += fmt::format("{}: its process {}\n{}", sweep_.note(i), how, end.err);
     }
-  }
-
-  bool is_held(std::size_t i) const {
-    std::error_code unreachable;
-    return std::filesystem::exists(sweep_.folder(i) / "bench.lock", unreachable);
   }
 
   /// Another look at what others were at.

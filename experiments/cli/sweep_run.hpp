@@ -8,6 +8,9 @@
 
 namespace bb::cli {
 
+/// What a call says whose only fault is that others are at its runs.
+inline constexpr const char* made_by_others = "runs are made by other processes";
+
 /// What became of the cases of one call.
 struct SweepTally {
   std::size_t kept = 0;             // records that are there
