@@ -23,15 +23,15 @@ from .records import run_row
 
 @dataclass(frozen=True)
 class System:
-    """H x = b of one Newton iteration. n: rows; blocks of 3 (in the plane 2) rows are the vertices."""
+    """H x = b of one Newton iteration. n: rows; a block of rows is a vertex."""
 
     step: int
     iteration: int
     form: str  # solved, clamped or exact
     matrix: sparse.csc_matrix  # [n, n], N/m, symmetric
     rhs: np.ndarray  # [n], N
-    coordinates_m: np.ndarray  # [vertices, 3]
-    block_start: np.ndarray  # [vertices] first row of each vertex
+    coordinates_m: np.ndarray  # [blocks, 3]
+    block_start: np.ndarray  # [blocks + 1] first row of each block, and n
 
 
 class Run:

@@ -34,7 +34,7 @@ def test_a_system_has_one_right_hand_side_and_its_vertices(folder):
     for system in systems:
         n = system.matrix.shape[0]
         assert system.rhs.shape == (n,) and np.abs(system.rhs).max() > 0 and abs(system.matrix - system.matrix.T).max() == 0
-        assert system.coordinates_m.shape == (len(system.block_start), 3) and system.block_start[-1] < n
+        assert system.coordinates_m.shape == (len(system.block_start) - 1, 3) and system.block_start[-1] == n
 
 
 def test_a_matrix_that_is_not_the_one_of_the_record_is_refused(folder):

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 from sweep_files import SHAPES, STEPS, bench, records, refused, results, started, verb, wait_until, write_sweep
 
-LONG = {"/time/steps": 1500, "/output/checkpoint_every": 20}
+LONG = {"/time/steps": 600, "/output/checkpoint_every": 20}
 
 
 def locks(out: Path) -> list[Path]:
@@ -27,7 +27,7 @@ def undisturbed(program, tmp_path_factory) -> dict:
     folder = tmp_path_factory.mktemp("undisturbed")
     assert bench(program, "sweep", write_sweep(folder, SHAPES, settings=LONG), "--out", folder / "out").returncode == 0
     found = results(folder / "out")
-    assert len(found) == 3 and all(len(one["steps"]) == 1500 for one in found.values())
+    assert len(found) == 3 and all(len(one["steps"]) == 600 for one in found.values())
     return found
 
 
