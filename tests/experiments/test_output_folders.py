@@ -113,8 +113,8 @@ def test_a_folder_has_one_writer(program, tmp_path, verb):
             time.sleep(0.01)
         time.sleep(0.2)
         second = bench(program, *arguments)
-        refused(second, str(out), f"in use by process {first.pid} on ", code=75)
-        assert first.poll() is None
+        assert second.returncode == 75 and f"in use by process {first.pid} on " in second.stderr and str(out) in second.stderr
+        assert first.poll() is None and not list(out.rglob("run.json"))
         first.kill()
         first.communicate()
     short = ["run", BLOCK, "--set", "/time/steps=1"] if verb == "run" else ["sweep", sweep_spec(tmp_path, [1])]
