@@ -181,10 +181,12 @@ def read_sweep(name: str, folder: Path = FOLDER) -> Sweep:
         or len(seeds) != 1
         or not all("cases" in axis for axis in axes[:2])
         or any("cases" in axis for axis in axes[2:])
+        or any("range" in axis or "zip" in axis for axis in axes)
+        or {"exclude", "repeat", "seed"} & set(data)
     ):
         raise UserError(
             f"{path}: needs the name of the file and the axes: scenes with levels, cases, {SEEDS}; what is"
-            " varied beside is an axis by pointer"
+            " varied beside is an axis by pointer; every combination is run, and every value is written out"
         )
     others = [k for k in range(2, len(axes)) if k != seeds[0]]
     cases, more = {}, {}

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <set>
 
 #include "core/input/names.hpp"
@@ -76,19 +77,17 @@ bool check_array(json& value, const Rule& rule, const std::string& where,
   return !zero && !twice ? true : report(value, allowed_text(rule), where, violations);
 }
 
-/// Whether the keys make up one of the forms and nothing of another.
+/// Whether the keys make up one of the forms, and nothing that is of other forms alone. Forms may share keys.
 bool has_form(const json& object, const ParameterList& list) {
-  const auto count = [&](const std::vector<std::string>& form) {
-    return std::count_if(form.begin(), form.end(),
-                         [&](const std::string& key) { return object.contains(key); });
-  };
-  std::size_t whole = 0, touched = 0;
+  const auto is_there = [&](const std::string& key) { return object.contains(key); };
+  std::set<std::string> given;
   for (const std::vector<std::string>& form : list.forms) {
-    const auto n = static_cast<std::size_t>(count(form));
-    whole += n == form.size() ? 1 : 0;
-    touched += n > 0 ? 1 : 0;
+    std::copy_if(form.begin(), form.end(), std::inserter(given, given.end()), is_there);
   }
-  return list.forms.empty() || (whole == 1 && touched == 1);
+  const auto is_it = [&](const std::vector<std::string>& form) {
+    return given == std::set<std::string>(form.begin(), form.end());
+  };
+  return list.forms.empty() || std::any_of(list.forms.begin(), list.forms.end(), is_it);
 }
 
 std::string keys_text(const json& object) {

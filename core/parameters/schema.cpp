@@ -1,4 +1,5 @@
 // JSON Schema out of a list.
+#include <algorithm>
 #include <cmath>
 
 #include "core/parameters/check.hpp"
@@ -81,8 +82,11 @@ Json rule_schema(const Rule& rule) {
 Json form_schema(const std::vector<std::vector<std::string>>& forms, std::size_t i) {
   Json others = Json::array();
   for (std::size_t k = 0; k < forms.size(); ++k) {
-    if (k == i) continue;
-    for (const std::string& key : forms[k]) others.push_back({{"required", {key}}});
+    for (const std::string& key : forms[k]) {
+      const bool own = std::find(forms[i].begin(), forms[i].end(), key) != forms[i].end();
+      const Json one = {{"required", {key}}};
+      if (!own && std::find(others.begin(), others.end(), one) == others.end()) others.push_back(one);
+    }
   }
   return {{"required", forms[i]}, {"not", {{"anyOf", others}}}};
 }

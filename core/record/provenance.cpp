@@ -136,4 +136,11 @@ std::string utc_now() {
   return std::string(text, n) + "." + milliseconds.substr(1) + "Z";
 }
 
+std::optional<double> seconds_of_utc(const std::string& text) {
+  std::tm parts{};
+  const char* rest = ::strptime(text.c_str(), "%Y-%m-%dT%H:%M:%S", &parts);
+  if (rest == nullptr) return {};
+  return static_cast<double>(::timegm(&parts)) + (*rest == '.' ? std::strtod(rest, nullptr) : 0);
+}
+
 }  // namespace bb

@@ -67,5 +67,7 @@ std::string config_id(std::string_view config_json);
 std::uint64_t peak_rss_bytes();
 /// Now, as 2024-01-31T12:00:00Z.
 std::string utc_now();
+/// Seconds since 1970 of such a text, nothing where it is none.
+std::optional<double> seconds_of_utc(const std::string& text);
 
 }  // namespace bb

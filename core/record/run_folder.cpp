@@ -29,7 +29,7 @@ bool is_unfinished_name(const std::string& name) {
 /// A file that was being written.
 bool is_temporary_name(const std::string& name) {
   static const std::regex pattern(
-      R"((run\.json|run\.json\.part|sweep\.json|probe|checkpoint\.bin)\.tmp\.\d+)");
+      R"((run\.json|run\.json\.part|sweep\.json|cases\.json|probe|checkpoint\.bin)\.tmp\.\d+)");
   return std::regex_match(name, pattern);
 }
 

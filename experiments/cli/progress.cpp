@@ -66,19 +66,31 @@ void ProgressLine::begin(const std::string& prefix) {
   latest_.clear();
 }
 
-void ProgressLine::show(const Progress& progress) {
-  if (mode_ == Mode::none) return;
+bool ProgressLine::is_due(bool last) {
   const double now = now_s();
-  if (mode_ == Mode::rewrite && now - last_s_ < 0.2 && progress.step < progress.steps) return;
+  if (mode_ == Mode::none || (mode_ == Mode::rewrite && now - last_s_ < 0.2 && !last)) return false;
   last_s_ = now;
+  return true;
+}
+
+void ProgressLine::put(std::string text) {
   const std::lock_guard lock(mutex_);
-  latest_ = fmt::format(
-      "{}{} [{}] step {}/{}  t {:.4g} of {:.4g} s  newton {}  contacts {}  gap {}  eta {:.0f} s", prefix_,
-      progress.label, progress.pass, progress.step, progress.steps, progress.t_s, progress.t_end_s,
-      progress.newton, progress.contacts, number_text(progress.gap, "{:.2e} m"), progress.eta_s);
+  latest_ = std::move(text);
   if (mode_ != Mode::rewrite) return;
   say("\r\033[K" + latest_);
   dirty_ = true;
+}
+
+void ProgressLine::show(const Progress& progress) {
+  if (!is_due(progress.step >= progress.steps)) return;
+  put(fmt::format("{}{} [{}] step {}/{}  t {:.4g} of {:.4g} s  newton {}  contacts {}  gap {}  eta {:.0f} s",
+                  prefix_, progress.label, progress.pass, progress.step, progress.steps, progress.t_s,
+                  progress.t_end_s, progress.newton, progress.contacts, number_text(progress.gap, "{:.2e} m"),
+                  progress.eta_s));
+}
+
+void ProgressLine::tell(const std::string& text) {
+  if (is_due(false)) put(text);
 }
 
 void ProgressLine::clear() {

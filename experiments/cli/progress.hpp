@@ -23,12 +23,16 @@ class ProgressLine {
   /// In front of every line from now on: which case of a sweep it is.
   void begin(const std::string& prefix);
   void show(const Progress& progress);
+  /// Any other text as the line.
+  void tell(const std::string& text);
   /// Takes the line away, so that other output starts on a clean one.
   void clear();
 
  private:
   enum class Mode { none, rewrite, plain };
   void tell_from_time_to_time();
+  bool is_due(bool last);
+  void put(std::string text);
 
   Mode mode_ = Mode::none;
   double every_s_ = 30, last_s_ = -1e300, begin_s_ = 0;

@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -10,6 +11,8 @@
 #include "core/input/names.hpp"
 #include "core/math/error.hpp"
 #include "core/parameters/check.hpp"
+#include "core/record/provenance.hpp"
+#include "experiments/cli/sweep_axes.hpp"
 #include "experiments/config/config_list.hpp"
 
 namespace bb {
@@ -17,140 +20,64 @@ namespace {
 
 using nlohmann::json;
 
-/// The entries of an axis: its values or its cases.
-const json& entries(const json& axis) { return axis.contains("cases") ? axis["cases"] : axis["values"]; }
-
 /// Combinations of all axes, as a double: the product may be beyond any integer.
-double count_cases(const json& axes) {
-  double count = 1;
-  for (const json& axis : axes) count *= static_cast<double>(entries(axis).size());
+double count_cases(const json& spec) {
+  double count = static_cast<double>(spec.value("repeat", 1));
+  for (const json& axis : spec["axes"]) count *= static_cast<double>(count_entries(axis));
   return count;
 }
 
-/// Indices of the cases of an axis with "reference": true.
-std::vector<std::size_t> marked_cases(const json& axis) {
-  std::vector<std::size_t> out;
-  for (std::size_t k = 0; axis.contains("cases") && k < axis["cases"].size(); ++k) {
-    if (axis["cases"][k].value("reference", false)) out.push_back(k);
+struct Axes {
+  std::vector<Axis> list;        // the repetitions of a repeated sweep last
+  std::vector<bool> of_problem;  // one an axis: it leaves alone what is compared
+  bool repeated = false;
+
+  void add(Axis axis) {
+    of_problem.push_back(!changes_formulation(axis));
+    list.push_back(std::move(axis));
+  }
+  std::size_t size() const { return list.size(); }
+  const Axis& operator[](std::size_t a) const { return list[a]; }
+};
+
+/// The entry of each axis in combination `index`; the last axis runs fastest.
+std::vector<std::size_t> digits_of(const Axes& axes, std::size_t index) {
+  std::vector<std::size_t> out(axes.size());
+  for (std::size_t a = axes.size(); a-- > 0;) {
+    out[a] = index % axes[a].size();
+    index /= axes[a].size();
   }
   return out;
 }
 
-/// The case that differs from `index` in the axes with a mark only, where it is the marked one; the last axis
-/// runs fastest. Nothing without any mark.
-std::optional<std::size_t> marked_reference(const json& axes, std::size_t index) {
-  std::size_t out = 0, stride = 1;
+/// Index of the entry of an axis with "reference": true.
+std::optional<std::size_t> marked_entry(const Axis& axis) {
+  const auto found =
+      std::find_if(axis.begin(), axis.end(), [](const AxisEntry& entry) { return entry.reference; });
+  return found == axis.end() ? std::nullopt : std::optional(static_cast<std::size_t>(found - axis.begin()));
+}
+
+/// The combination that differs in the axes with a mark only, where it is the marked one. Nothing without any mark.
+std::optional<std::size_t> marked_reference(const Axes& axes, const std::vector<std::size_t>& digits) {
+  std::size_t out = 0;
   bool any = false;
-  for (std::size_t a = axes.size(); a-- > 0;) {
-    const json& axis = axes[a];
-    const std::size_t n = entries(axis).size();
-    const std::vector<std::size_t> marked = marked_cases(axis);
-    any = any || !marked.empty();
-    out += stride * (marked.empty() ? index % n : marked.front());
-    index /= n;
-    stride *= n;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const auto marked = marked_entry(axes[a]);
+    any = any || marked;
+    out = out * axes[a].size() + marked.value_or(digits[a]);
   }
   return any ? std::optional(out) : std::nullopt;
 }
 
-/// Whether an axis changes what is compared (method, formulation, strain limit, matching), and not the problem that
-/// it is compared on. One entry that does is enough.
-bool changes_formulation(const json& axis) {
-  const auto compared = [](const std::string& pointer) {
-    for (const char* section : {"/method", "/formulation", "/strain_limit", "/matching"}) {
-      if (pointer == section || pointer.starts_with(std::string(section) + "/")) return true;
-    }
-    return false;
-  };
-  if (axis.contains("pointer")) return compared(axis["pointer"].get<std::string>());
-  for (const json& one : axis["cases"]) {
-    for (const auto& [pointer, value] : one["set"].items()) {
-      if (compared(pointer)) return true;
-    }
-  }
-  return false;
-}
-
-/// The number of the combination of all axes that change the problem; the last axis runs fastest.
-std::size_t group_of(const json& axes, std::size_t index) {
-  std::size_t out = 0, stride = 1;
-  for (std::size_t a = axes.size(); a-- > 0;) {
-    const std::size_t n = entries(axes[a]).size();
-    if (!changes_formulation(axes[a])) {
-      out += stride * (index % n);
-      stride *= n;
-    }
-    index /= n;
-  }
+/// Repetitions as an axis that sets nothing.
+Axis repetitions(std::size_t n) {
+  Axis out;
+  for (std::size_t k = 1; k <= n; ++k) out.push_back({fmt::format("r{}", k), json::object(), false});
   return out;
 }
 
-/// KEY=VALUE. What a folder name cannot hold (paths) is replaced.
-std::string value_label(const std::string& pointer, const json& value) {
-  std::string text = value.is_string() ? value.get<std::string>() : value.dump();
-  for (char& c : text) {
-    if (c == '/' || c == '\\' || static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '_';
-  }
-  for (std::size_t at; (at = text.find("..")) != std::string::npos;) text.replace(at, 2, "_");
-  return pointer.substr(pointer.rfind('/') + 1) + "=" + text;
-}
-
-/// A pointer as it stands in front of "=" in an override: with "=" in it, its end would become part of the value.
-void check_pointer(const std::string& where, const std::string& pointer, std::vector<Violation>& violations) {
-  bool sound = pointer.starts_with('/') && pointer.find('=') == std::string::npos;
-  try {
-    static_cast<void>(json::json_pointer(pointer));
-  } catch (const json::exception&) {
-    sound = false;
-  }
-  if (sound) return;
-  violations.push_back({where, '"' + shortened(pointer) + '"',
-                        "a JSON pointer into the config, such as /time/dt_s, without \"=\""});
-}
-
-void check_pointers(const std::string& where, const json& set, std::vector<Violation>& violations) {
-  for (const auto& [pointer, value] : set.items()) check_pointer(where, pointer, violations);
-}
-
-/// Every pointer that an axis sets.
-std::set<std::string> pointers_of(const json& axis) {
-  std::set<std::string> out;
-  if (axis.contains("pointer")) out.insert(axis["pointer"].get<std::string>());
-  if (!axis.contains("cases")) return out;
-  for (const json& one : axis["cases"]) {
-    for (const auto& [pointer, value] : one["set"].items()) out.insert(pointer);
-  }
-  return out;
-}
-
-/// Labels, pointers and marks of one axis. where: FILE#/axes/N.
-void check_axis(const std::string& where, const json& axis, std::vector<Violation>& violations) {
-  std::set<std::string> labels;
-  for (std::size_t k = 0; k < entries(axis).size(); ++k) {
-    const json& entry = entries(axis)[k];
-    const bool is_case = axis.contains("cases");
-    const std::string place = fmt::format("{}/{}/{}", where, is_case ? "cases" : "values", k);
-    const std::string label =
-        is_case ? entry["label"].get<std::string>() : value_label(axis["pointer"].get<std::string>(), entry);
-    if (is_case) {
-      check_plain_name(place + "/label", label, violations);
-      check_pointers(place + "/set", entry["set"], violations);
-    }
-    if (!labels.insert(label).second) {
-      violations.push_back({is_case ? place + "/label" : place, fmt::format("\"{}\" again", shortened(label)),
-                            "a label that no other entry of the axis has: records are told apart by it"});
-    }
-  }
-  if (axis.contains("pointer")) {
-    check_pointer(where + "/pointer", axis["pointer"].get<std::string>(), violations);
-  }
-  if (marked_cases(axis).size() > 1) {
-    violations.push_back({where, "more than one reference", "one case with reference: true"});
-  }
-}
-
-/// Everything that the file alone can tell, counted before anything is expanded.
-void check_spec(json spec, const std::string& path) {
+/// Everything that the file alone can tell, counted before anything is expanded. The axes.
+Axes checked_axes(json spec, const std::string& path) {
   std::vector<Violation> violations;
   Rule rule;
   rule.kind = Kind::object;
@@ -159,16 +86,16 @@ void check_spec(json spec, const std::string& path) {
   if (!violations.empty()) throw ConfigError(std::move(violations));
   check_plain_name(path + "#/name", spec["name"].get<std::string>(), violations);
   if (spec.contains("set")) check_pointers(path + "#/set", spec["set"], violations);
-  const json& axes = spec["axes"];
-  if (const double n = count_cases(axes); n > static_cast<double>(max_sweep_cases)) {
+  if (const double n = count_cases(spec); n > static_cast<double>(max_sweep_cases)) {
     throw ConfigError(path + "#/axes", fmt::format("{} combinations", n),
                       fmt::format("at most {} cases in one sweep", max_sweep_cases));
   }
+  Axes axes;
   std::map<std::string, std::size_t> axis_of;  // pointer -> the first axis that sets it
-  for (std::size_t i = 0; i < axes.size(); ++i) {
+  for (std::size_t i = 0; i < spec["axes"].size(); ++i) {
     const std::string where = fmt::format("{}#/axes/{}", path, i);
-    check_axis(where, axes[i], violations);
-    for (const std::string& pointer : pointers_of(axes[i])) {
+    axes.add(expand_axis(where, spec["axes"][i], violations));
+    for (const std::string& pointer : pointers_of(axes.list.back())) {
       if (const auto [earlier, is_new] = axis_of.emplace(pointer, i); !is_new) {
         violations.push_back(
             {where, fmt::format("\"{}\", which axis {} sets too", shortened(pointer), earlier->second),
@@ -176,32 +103,125 @@ void check_spec(json spec, const std::string& path) {
       }
     }
   }
+  for (const char* pointer : {"/seeds/main", "/seeds"}) {
+    if (!spec.contains("seed") ||
+        (!axis_of.contains(pointer) && !spec.value("set", json::object()).contains(pointer)))
+      continue;
+    violations.push_back({path + "#/seed",
+                          fmt::format("a seed beside \"{}\", which the file sets too", pointer),
+                          "one of the two: the runs have one seed"});
+  }
   if (!violations.empty()) throw ConfigError(std::move(violations));
+  if (const auto n = spec.value("repeat", std::size_t{1}); n > 1) {
+    axes.add(repetitions(n));
+    axes.repeated = true;
+  }
+  return axes;
 }
+
+/// A combination before it is kept or left out.
+struct Combination {
+  SweepCase one;
+  json values = json::object();  // pointer -> value, of all axes
+  std::set<std::string> labels;
+};
 
 void append_set(const json& set, std::vector<std::string>& overrides) {
   for (const auto& [pointer, value] : set.items()) overrides.push_back(pointer + "=" + value.dump());
 }
 
-// The cases so far, each extended by every entry of one axis.
-std::vector<SweepCase> extend(const std::vector<SweepCase>& cases, const json& axis) {
-  std::vector<SweepCase> out;
-  for (const SweepCase& base : cases) {
-    const auto add = [&](const std::string& label, const json& set) {
-      SweepCase next = base;
-      next.label += (next.label.empty() ? "" : " ") + label;
-      append_set(set, next.set);
-      for (const auto& [pointer, value] : set.items()) next.swept[pointer] = value.dump();
-      out.push_back(std::move(next));
-    };
-    if (axis.contains("pointer")) {
-      const auto pointer = axis["pointer"].get<std::string>();
-      for (const json& value : axis["values"]) add(value_label(pointer, value), json{{pointer, value}});
-    } else {
-      for (const json& one : axis["cases"]) add(one["label"].get<std::string>(), one["set"]);
+Combination combine(const Axes& axes, const std::vector<std::size_t>& digits) {
+  Combination out;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    const AxisEntry& entry = axes[a][digits[a]];
+    out.one.label += (out.one.label.empty() ? "" : " ") + entry.label;
+    append_set(entry.set, out.one.set);
+    out.values.update(entry.set);
+    out.labels.insert(entry.label);
+    if (axes.of_problem[a]) out.one.group = out.one.group * axes[a].size() + digits[a];
+  }
+  for (const auto& [pointer, value] : out.values.items()) out.one.swept[pointer] = value.dump();
+  if (axes.repeated) out.one.swept["repetition"] = std::to_string(digits.back() + 1);
+  return out;
+}
+
+/// The seed of a run: of `main`, the repetition and what the axes set that do not change the formulation. 48 bits of a SHA-256.
+std::uint64_t seed_of(std::uint64_t main, const Axes& axes, const std::vector<std::size_t>& digits,
+                      const SweepCase& one) {
+  std::map<std::string, std::string> of_problem;
+  for (std::size_t a = 0; a < axes.size(); ++a) {
+    if (!axes.of_problem[a]) continue;
+    for (const auto& [pointer, value] : axes[a][digits[a]].set.items()) of_problem[pointer] = value.dump();
+  }
+  if (const auto found = one.swept.find("repetition"); found != one.swept.end()) of_problem.insert(*found);
+  std::string text = std::to_string(main) + "\n";
+  for (const auto& [pointer, value] : of_problem) text += pointer + "=" + value + "\n";
+  return std::stoull(sha256_hex(text).substr(0, 12), nullptr, 16);
+}
+
+/// One rule of `exclude`.
+bool leaves_out(const json& rule, const Combination& combination) {
+  const json where = rule.value("where", json::object());
+  for (const auto& [pointer, wanted] : where.items()) {
+    if (!combination.values.contains(pointer)) return false;
+    const json& value = combination.values[pointer];
+    const bool one_of = wanted.is_array() && std::find(wanted.begin(), wanted.end(), value) != wanted.end();
+    if (value != wanted && !one_of) return false;
+  }
+  const json labels = rule.value("labels", json::array());
+  return std::all_of(labels.begin(), labels.end(), [&](const json& label) {
+    return label.is_string() && combination.labels.contains(label.get<std::string>());
+  });
+}
+
+/// A rule without a condition would leave out everything, one that meets nothing is a mistake.
+void check_exclusions(const json& rules, const std::vector<std::size_t>& met, const std::string& path,
+                      std::vector<Violation>& violations) {
+  for (std::size_t r = 0; r < rules.size(); ++r) {
+    if (met[r] > 0 && !rules[r].empty()) continue;
+    violations.push_back({fmt::format("{}#/exclude/{}", path, r),
+                          shortened(rules[r].dump()) + (met[r] > 0 ? "" : ", which no case is"),
+                          "pointers that axes set with values that they take there, or labels of their "
+                          "entries, which some case "
+                          "has together"});
+  }
+}
+
+/// Labels of all axes together, "a b" and "c" as "a" and "b c"; references that were left out.
+void check_cases(const SweepSpec& spec, const std::string& path, std::vector<Violation>& violations) {
+  std::set<std::string> labels;
+  for (const SweepCase& one : spec.cases) {
+    if (!labels.insert(one.label).second && violations.empty()) {
+      violations.push_back({path + "#/axes", fmt::format("two cases \"{}\"", shortened(one.label)),
+                            "labels whose combinations differ: records are told apart by them"});
     }
   }
-  return out;
+  if (spec.cases.empty()) {
+    violations.push_back({path + "#/exclude", "exclusions that leave no case", "at least one run"});
+  }
+}
+
+/// "3 x 4 x 2 repetitions".
+std::string shape_of(const Axes& axes) {
+  std::string out;
+  for (const Axis& axis : axes.list) out += fmt::format("{}{}", out.empty() ? "" : " x ", axis.size());
+  return out + (axes.repeated ? " repetitions" : "");
+}
+
+constexpr std::size_t left_out = static_cast<std::size_t>(-1);
+
+/// References as places in the list of cases. kept: of each combination, its place or left_out.
+void settle_references(const std::vector<std::size_t>& kept, const std::string& path, SweepSpec& spec,
+                       std::vector<Violation>& violations) {
+  for (SweepCase& one : spec.cases) {
+    if (!one.reference) continue;
+    one.reference = kept[*one.reference];
+    if (*one.reference != left_out) continue;
+    violations.push_back({path + "#/exclude",
+                          fmt::format("the reference of \"{}\" is left out", shortened(one.label)),
+                          "exclusions that keep what the other cases are compared with"});
+    return;
+  }
 }
 
 }  // namespace
@@ -210,24 +230,46 @@ SweepSpec parse_sweep(const std::string& text, const std::string& path) {
   SweepSpec out;
   out.text = text;
   const json spec = parse_json(text, path);
-  check_spec(spec, path);
+  const Axes axes = checked_axes(spec, path);
   out.name = spec["name"].get<std::string>();
   out.base = spec["base"].get<std::string>();
-
-  SweepCase first;
-  if (spec.contains("set")) append_set(spec["set"], first.set);
-  out.cases = {first};
-  for (const json& axis : spec["axes"]) out.cases = extend(out.cases, axis);
-  std::map<std::string, std::size_t> first_of;  // of all axes together: "a b" and "c" as "a" and "b c"
-  std::vector<Violation> violations;
-  for (std::size_t i = 0; i < out.cases.size(); ++i) {
-    if (!first_of.emplace(out.cases[i].label, i).second && violations.empty()) {
-      violations.push_back({path + "#/axes", fmt::format("two cases \"{}\"", shortened(out.cases[i].label)),
-                            "labels whose combinations differ: records are told apart by them"});
+  out.seeded = spec.contains("seed");
+  const json budget = spec.value("budget", json::object());
+  out.budget = {budget.value("core_s", 0.0), budget.value("run_s", 0.0)};
+  out.shape = shape_of(axes);
+  const auto n = static_cast<std::size_t>(count_cases(spec));
+  const json rules = spec.value("exclude", json::array());
+  std::vector<std::size_t> met(rules.size()), kept(n, left_out);
+  for (std::size_t i = 0; i < n; ++i) {
+    const std::vector<std::size_t> digits = digits_of(axes, i);
+    Combination combination = combine(axes, digits);
+    bool is_out = false;
+    for (std::size_t r = 0; r < rules.size(); ++r) {
+      if (!leaves_out(rules[r], combination)) continue;
+      ++met[r];
+      is_out = true;
     }
-    out.cases[i].reference = marked_reference(spec["axes"], i);
-    out.cases[i].group = group_of(spec["axes"], i);
+    if (is_out) continue;
+    SweepCase& one = combination.one;
+    if (out.seeded) {
+      const std::string seed = std::to_string(seed_of(spec["seed"].get<std::uint64_t>(), axes, digits, one));
+      one.set.push_back("/seeds/main=" + seed);
+      one.swept["/seeds/main"] = seed;
+    }
+    if (spec.contains("set")) {
+      std::vector<std::string> common;
+      append_set(spec["set"], common);
+      one.set.insert(one.set.begin(), common.begin(), common.end());
+    }
+    one.reference = marked_reference(axes, digits);
+    kept[i] = out.cases.size();
+    out.cases.push_back(std::move(one));
   }
+  out.excluded = n - out.cases.size();
+  std::vector<Violation> violations;
+  check_exclusions(rules, met, path, violations);
+  check_cases(out, path, violations);
+  if (violations.empty()) settle_references(kept, path, out, violations);
   if (!violations.empty()) throw ConfigError(std::move(violations));
   return out;
 }

@@ -5,6 +5,7 @@
 #include "core/input/names.hpp"
 #include "core/input/read_file.hpp"
 #include "core/math/error.hpp"
+#include "core/record/provenance.hpp"
 #include "experiments/cli/sweep_cases.hpp"
 #include "experiments/config/parse.hpp"
 #include "experiments/run/linear_choice.hpp"
@@ -28,38 +29,55 @@ void check_overrides(const SweepSpec& spec, const std::vector<std::string>& over
   }
 }
 
-/// Every case has to be a run of its own; the number of threads makes one.
-void check_distinct(const SweepSpec& spec, const std::string& path, std::vector<Violation>& violations) {
-  std::map<std::string, const std::string*> label_of_config;
-  for (const SweepCase& one : spec.cases) {
-    const auto [first, is_new] = label_of_config.emplace(resolved_json(one.config), &one.label);
-    if (is_new || violations.size() >= max_violations) continue;
-    violations.push_back({path + " [" + one.label + "]", "the same run as [" + *first->second + "]",
-                          "cases that differ in a setting"});
+/// What is wrong with a case, named by its label.
+void append_violations(const std::string& path, const SweepCase& one, const ConfigError& error,
+                       std::vector<Violation>& violations) {
+  for (Violation v : error.violations()) {
+    v.where = path + " [" + one.label.substr(0, max_name_bytes) + "] " + v.where;
+    violations.push_back(std::move(v));
   }
+}
+
+/// Reads the config of one case: its id, and the key that no other case may have, to which the number of threads belongs
+/// and the repetition.
+std::string resolve(const SweepSpec& spec, SweepCase& one, const SeenCase& seen) {
+  const RunConfig config = resolved(spec, one);
+  if (spec.seeded && config.seeds.jitter == 0) {
+    throw ConfigError("#/seeds/jitter_m", "0",
+                      "a number above 0 beside `seed` in the sweep file: nothing else reads the seed");
+  }
+  const std::string text = resolved_json(config);
+  one.config_id = config_id(std::string_view(text));
+  if (seen) seen(one, config);
+  const auto repetition = one.swept.find("repetition");
+  return sha256_hex(text) + (repetition == one.swept.end() ? "" : " " + repetition->second);
 }
 
 }  // namespace
 
-SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& overrides) {
+RunConfig resolved(const SweepSpec& spec, const SweepCase& one) { return load_run(spec.base, one.set); }
+
+SweepSpec load_sweep(const std::string& path, const std::vector<std::string>& overrides,
+                     std::optional<std::size_t> only, const SeenCase& seen) {
   SweepSpec out = parse_sweep(read_input_file(path, sweep_file), path);
-  const auto base = std::filesystem::path(path).parent_path() / out.base;
+  out.base = (std::filesystem::path(path).parent_path() / out.base).string();
   std::vector<Violation> violations;
   check_overrides(out, overrides, violations);
-  for (SweepCase& one : out.cases) {
-    if (violations.size() >= max_violations) break;
-    check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
+  std::map<std::string, const std::string*> label_of;  // key of a run -> the first case that is it
+  for (std::size_t i = 0; i < out.cases.size() && violations.size() < max_violations; ++i) {
+    SweepCase& one = out.cases[i];
     one.set.insert(one.set.end(), overrides.begin(), overrides.end());
+    if (only && *only != i) continue;
+    check_plain_name(path + " [" + one.label.substr(0, max_name_bytes) + "]", one.label, violations);
     try {
-      one.config = load_run(base.string(), one.set);
+      const auto [first, is_new] = label_of.emplace(resolve(out, one, seen), &one.label);
+      if (is_new) continue;
+      violations.push_back({path + " [" + one.label + "]", "the same run as [" + *first->second + "]",
+                            "cases that differ in a setting"});
     } catch (const ConfigError& error) {
-      for (Violation v : error.violations()) {
-        v.where = path + " [" + one.label.substr(0, max_name_bytes) + "] " + v.where;
-        violations.push_back(std::move(v));
-      }
+      append_violations(path, one, error, violations);
     }
   }
-  if (violations.empty()) check_distinct(out, path, violations);
   if (!violations.empty()) throw ConfigError(violations);
   return out;
 }

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -63,6 +64,9 @@ struct SweepVerb {
   bool dry_run = false;  // print the expanded list, run nothing
   bool again = false;    // run finished ids too
   bool keep_inputs = false;
+  int jobs = 1;                      // processes at a time; 1: this one
+  std::string shard;                 // "i/N"; empty: every case
+  std::optional<std::size_t> index;  // one case
   RunLimits limits;
 };
 /// Errors: ConfigError after the last case, of all cases that were refused.

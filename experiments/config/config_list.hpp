@@ -1,12 +1,16 @@
 // Every setting of a config and of a sweep file, for help and for the JSON Schema.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json_fwd.hpp>
 #include <string>
 
 #include "core/parameters/parameter.hpp"
 
 namespace bb {
+
+/// Most combinations of the axes of one sweep, and most axes that are zipped.
+inline constexpr std::size_t max_sweep_cases = 100000, max_zipped = 64;
 
 ParameterList config_list();
 ParameterList sweep_list();

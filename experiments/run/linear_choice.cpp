@@ -106,6 +106,17 @@ LinearModel model_of_this_machine() {
                   others.empty() ? "no machine" : fmt::format("{}", fmt::join(others, "; "))));
 }
 
+/// Of the matrix of the elements alone.
+LinearWork work_of(const RunConfig& config) {
+  const Scene scene = build_scene(config);
+  Calibration any;  // stiffness does not change a pattern
+  any.kappa = any.k_s = 1;
+  Method method = make_method(config, any);
+  method.linear = {};  // any solver will do: nothing is solved
+  NewtonSystem system(scene, method);
+  return linear_work(system.diagnosis().fixed_pattern());
+}
+
 }  // namespace
 
 LinearModel read_linear_model(const std::string& file) {
@@ -131,13 +142,7 @@ LinearModel read_linear_model(const std::string& file) {
 void decide_linear_solver(RunConfig& config) {
   if (config.linear_solver.name != linear_solver_auto) return;
   const LinearModel model = model_of_this_machine();
-  const Scene scene = build_scene(config);
-  Calibration any;  // stiffness does not change a pattern
-  any.kappa = any.k_s = 1;
-  Method method = make_method(config, any);
-  method.linear = {};  // any solver will do: nothing is solved
-  NewtonSystem system(scene, method);
-  const LinearWork work = linear_work(system.diagnosis().fixed_pattern());
+  const LinearWork work = work_of(config);
   const LinearCost& chosen = model.costs[cheapest(model.costs, work)];
   config.linear_solver.name = chosen.solver;
   if (!chosen.preconditioner.empty())
@@ -147,6 +152,22 @@ void decide_linear_solver(RunConfig& config) {
       "factor {:.3g}, {:.3g} operations",
       cost_text(model.costs, work), fs::path(model.file).filename().string(), work.unknowns, work.entries,
       work.factor_entries, work.factor_flop);
+}
+
+std::optional<double> expected_solve_s(const RunConfig& config) {
+  try {
+    const LinearModel model = model_of_this_machine();
+    const auto of_solver = [&](const std::string& name) {
+      return std::find_if(model.costs.begin(), model.costs.end(),
+                          [&](const LinearCost& cost) { return cost.solver == name; });
+    };
+    auto found = of_solver(config.linear_solver.name);
+    if (found == model.costs.end()) found = of_solver("cholmod");
+    if (found == model.costs.end()) return {};
+    return found->seconds(work_of(config));
+  } catch (const ConfigError&) {
+    return {};
+  }
 }
 
 RunConfig load_run(const std::string& path, std::span<const std::string> overrides) {

@@ -2,6 +2,7 @@
 // files of configs/linear_models, one a processor; ./bench fit-linear makes one.
 #pragma once
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -26,6 +27,11 @@ LinearModel read_linear_model(const std::string& file);
 /// Errors: ConfigError at /linear_solver/name without a model of this processor; those of read_linear_model and
 /// build_scene. Cost: a scene, an ordering and a symbolic analysis of its elements' matrix.
 void decide_linear_solver(RunConfig& config);
+
+/// Seconds that a solve of the matrix of the elements is expected to take with the solver of the config, by the model of this
+/// processor; of a solver that the model does not know, with cholmod. Nothing without a model of this processor, or where the
+/// scene cannot be built. Cost: as decide_linear_solver.
+std::optional<double> expected_solve_s(const RunConfig& config);
 
 /// load_config with the linear solver decided.
 RunConfig load_run(const std::string& path, std::span<const std::string> overrides);

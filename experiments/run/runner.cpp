@@ -171,23 +171,28 @@ std::optional<Resumed> resumed_from(Checkpoint& checkpoint, const RunRecord& ask
   return std::nullopt;
 }
 
-/// The record of this very run, where the folder has it and it is asked for.
+/// The record of this very run, where the folder has it and it is asked for: that of a process that was killed behind it, or
+/// of one that had the folder a moment ago.
 std::optional<RunRecord> recorded(const RunRecord& asked_for, const RunOptions& options) {
   if (options.resume == Resume::no) return std::nullopt;
-  auto stored = read_stored_run(options.folder / "run.json");
-  if (!stored || !why_run_again(stored->record, asked_for).empty()) return std::nullopt;
-  return std::move(stored->record);
+  try {
+    auto stored = read_stored_run(options.folder / "run.json");
+    if (stored && why_run_again(stored->record, asked_for).empty() && !trace_fault(*stored))
+      return std::move(stored->record);
+  } catch (const ConfigError&) {  // of another version: it gives way
+  }
+  return std::nullopt;
 }
 
 /// What a process that was killed had finished gets its names. The checkpoint of a run that is over goes first: nothing
-/// would ever go on from it. Returns whether there was a record to put in place.
-bool put_finished_in_place(const std::filesystem::path& folder, Checkpoint& checkpoint) {
+/// would ever go on from it.
+void put_finished_in_place(const std::filesystem::path& folder, Checkpoint& checkpoint) {
   try {
     const auto finished = read_run(pending_record(folder));
     if (finished && !was_cut(finished->status.outcome)) checkpoint.remove();
   } catch (const ConfigError&) {  // of another version: what lies there is judged as it is
   }
-  return put_in_place(folder);
+  put_in_place(folder);
 }
 
 int thread_count(const RunConfig& config) {
@@ -238,8 +243,8 @@ RunRecord run_config(const RunConfig& asked, const RunOptions& given) {
   const FolderLock lock(options.folder);
   const RunRecord asked_for = identified(config, options);  // inputs where they are now
   Checkpoint checkpoint(options.folder, asked_for.ids.build_id);
-  const bool completed = put_finished_in_place(options.folder, checkpoint);
-  if (auto record = completed ? recorded(asked_for, options) : std::nullopt) return *record;
+  put_finished_in_place(options.folder, checkpoint);
+  if (auto record = recorded(asked_for, options)) return *record;
   std::optional<Resumed> resumed = resumed_from(checkpoint, asked_for, options);
   resumed ? remove_temporaries(options.folder) : remove_unfinished(options.folder);
   check_writable(options.folder);

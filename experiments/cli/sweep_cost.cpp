@@ -1,0 +1,104 @@
+#include "experiments/cli/sweep_cost.hpp"
+
+#include <algorithm>
+#include <nlohmann/json.hpp>
+
+#include "core/math/error.hpp"
+#include "core/record/writer.hpp"
+#include "experiments/cli/sweep_folder.hpp"
+#include "experiments/config/parse.hpp"
+#include "experiments/run/linear_choice.hpp"
+#include "experiments/run/plan.hpp"
+
+namespace bb::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr double start_s = 0.03, iterations_a_step = 8, seconds_an_unknown = 4.5e-6;
+
+/// How alike two runs are beyond the name of their scene.
+int likeness(const RunSize& a, const RunSize& b) {
+  return 2 * (a.of_scene == b.of_scene ? 1 : 0) + (a.formulation == b.formulation ? 1 : 0);
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+RunSize size_of_record(const RunRecord& record) {
+  RunSize out;
+  out.config_id = config_id(record.config.text);
+  out.scene = record.labels.scene;
+  out.formulation = record.labels.formulation;
+  out.of_scene = json::parse(record.config.text).value("scene", json()).dump();
+  out.steps = static_cast<double>(record.steps.size());
+  out.unknowns = static_cast<double>(record.scene.free_dofs);
+  return out;
+}
+
+}  // namespace
+
+void CostBook::add_records(const fs::path& folder) {
+  std::error_code error;
+  std::vector<fs::path> files;
+  for (fs::recursive_directory_iterator it(folder, error), end; !error && it != end; it.increment(error)) {
+    if (it->path().filename() == "run.json") files.push_back(it->path());
+  }
+  std::sort(files.begin(), files.end());
+  for (const fs::path& file : files) {
+    try {
+      const auto record = read_run(file);
+      const double core_s = record ? core_seconds(*record) : 0;
+      if (core_s <= 0 || was_cut(record->status.outcome)) continue;
+      known_.push_back({size_of_record(*record), core_s});
+      of_config_[known_.back().size.config_id] = core_s;
+    } catch (const ConfigError&) {  // of another version
+    }
+  }
+}
+
+RunSize CostBook::size_of(const RunConfig& config) {
+  RunSize out;
+  const std::string text = resolved_json(config);
+  out.config_id = config_id(std::string_view(text));
+  out.scene = config.scene.name;
+  out.formulation = label_of(config.formulation);
+  out.of_scene = json::parse(text).value("scene", json()).dump();
+  out.steps = config.time.steps;
+  out.passes = (config.passes.time ? 1 : 0) + (has_observed_run(config) ? 1 : 0) +
+               (config.matching.rule != MatchingRule::as_given ? 1 : 0);
+  if (of_config_.contains(out.config_id)) return out;
+  const auto [found, is_new] = of_scene_and_solver_.try_emplace(out.of_scene + config.linear_solver.name);
+  if (is_new) {
+    const Scene scene = build_scene(config);
+    found->second.unknowns = (scene.planar ? 2.0 : 3.0) *
+                             static_cast<double>(scene.n_vertices() - static_cast<int>(scene.pins.size()));
+    found->second.solve_s = expected_solve_s(config).value_or(0);
+  }
+  out.unknowns = found->second.unknowns;
+  out.solve_s = found->second.solve_s;
+  return out;
+}
+
+ExpectedCost CostBook::expected(const RunSize& size) const {
+  if (const auto own = of_config_.find(size.config_id); own != of_config_.end())
+    return {own->second, CostSource::own_record};
+  std::vector<double> rates;
+  int best = -1;
+  for (const auto& [other, core_s] : known_) {
+    if (other.scene != size.scene || other.steps * other.unknowns <= 0 || likeness(size, other) < best)
+      continue;
+    if (likeness(size, other) > best) rates.clear();
+    best = likeness(size, other);
+    rates.push_back(core_s / (other.steps * other.unknowns));
+  }
+  if (!rates.empty()) return {median(rates) * size.steps * size.unknowns, CostSource::same_scene};
+  const double iteration_s = seconds_an_unknown * size.unknowns + size.solve_s;
+  return {start_s + size.passes * size.steps * iterations_a_step * iteration_s, CostSource::model};
+}
+
+}  // namespace bb::cli

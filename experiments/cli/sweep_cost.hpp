@@ -1,0 +1,55 @@
+// What a run is expected to take: from records of it or of its like, else from a model.
+#pragma once
+
+#include <filesystem>
+#include <map>
+#include <string>
+#include <vector>
+
+#include "core/record/run_record.hpp"
+#include "experiments/config/run_config.hpp"
+
+namespace bb::cli {
+
+/// What decides how long a run takes.
+struct RunSize {
+  std::string config_id, scene, formulation;
+  std::string of_scene;  // the settings of the scene, as text
+  double steps = 0, unknowns = 0;
+  int passes = 1;      // with the pilot of a matching rule
+  double solve_s = 0;  // a linear solve, where this processor has a model; else 0
+};
+
+/// Where an expectation is from: a record of this very config; of the same scene, the nearer the better; the model.
+enum class CostSource { own_record, same_scene, model };
+
+struct ExpectedCost {
+  double core_s = 0;
+  CostSource source = CostSource::model;
+};
+
+/// Records of earlier runs, and a model where they say nothing: seconds = 0.03 + passes x steps x 8 iterations a step x (4.5e-6 s an
+/// unknown + a linear solve). Both numbers are medians over the runs of results/work_precision.json and results/baselines; they
+/// are within a factor of 4 there. Condition estimates and audits are not in it.
+class CostBook {
+ public:
+  /// Every run.json below a folder; what cannot be read is passed over. Cost: reading them.
+  void add_records(const std::filesystem::path& folder);
+  /// Sizes are made from configs; scenes of the same settings are built once. Errors: ConfigError, as build_scene.
+  RunSize size_of(const RunConfig& config);
+  /// A record of the same config as it stands; else the median over records of the same scene of their core seconds a step and
+  /// unknown, those with the same settings of it before others, then those of the same formulation.
+  ExpectedCost expected(const RunSize& size) const;
+  std::size_t records() const { return known_.size(); }
+
+ private:
+  struct Known {
+    RunSize size;
+    double core_s;
+  };
+  std::vector<Known> known_;
+  std::map<std::string, double> of_config_;             // config_id -> core s
+  std::map<std::string, RunSize> of_scene_and_solver_;  // unknowns, solve_s
+};
+
+}  // namespace bb::cli

@@ -1,0 +1,61 @@
+"""The recipes of examples/cluster, with stand-ins for GNU parallel and Slurm that run their jobs here, one after the other."""
+
+import os
+import subprocess
+import sys
+
+import pytest
+from sweep_files import ROOT, SHAPES, STEPS, records, verb, write_sweep
+
+STAND_INS = {
+    "parallel": '''words=(); while [ $# -gt 0 ]; do case "$1" in --jobs|--joblog|--retries) shift 2;; *) words+=("$1"); shift;; esac; done
+while read -r line; do "${words[@]//\\{\\}/$line}" < /dev/null || exit 1; done''',
+    "srun": '[ "$1" = --ntasks=1 ] && shift; exec "$@"',
+    "scontrol": 'echo "scontrol $*" >> "$CALLS"',
+    "sbatch": '''echo "sbatch $*" >> "$CALLS"
+last=0; wrap=""
+while [ $# -gt 0 ]; do case "$1" in
+  --array=1-*) last="${1#--array=1-}"; shift;; --wrap) wrap="$2"; shift 2;; --wrap=*) wrap="${1#--wrap=}"; shift;; -*) shift;; *) break;; esac; done
+if [ -n "$wrap" ]; then bash -c "$wrap" > /dev/null; else
+for k in $(seq "$last"); do SLURM_ARRAY_JOB_ID=7 SLURM_ARRAY_TASK_ID=$k "$@" > /dev/null; echo "task $k $?" >> "$CALLS"; done; fi
+echo 7''',
+}
+
+
+@pytest.fixture
+def environment(program, tmp_path):
+    """With the stand-ins before everything else, and ./bench without its builds."""
+    tools = tmp_path / "tools"
+    tools.mkdir()
+    for name, text in {**STAND_INS, "bench": f'case "$1" in status|collect) exec {sys.executable} {ROOT}/analysis "$@";; *) exec {program} "$@";; esac'}.items():
+        (tools / name).write_text(f"#!/usr/bin/env bash\n{text}\n")
+        (tools / name).chmod(0o755)
+    return {**os.environ, "PATH": f"{tools}:{os.environ['PATH']}", "BENCH": str(tools / "bench"), "CALLS": str(tmp_path / "calls")}
+
+
+def called(script: str, *words, environment) -> str:
+    done = subprocess.run([ROOT / "examples/cluster" / script, *map(str, words)], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+@pytest.mark.parametrize("script, words", [("parallel.sh", [2]), ("slurm.sh", [2])])
+def test_a_recipe_makes_every_record_and_judges_them(tmp_path, environment, script, words):
+    file, out = write_sweep(tmp_path, STEPS, SHAPES, settings={"/time/dt_s": 0.01}), tmp_path / "out"
+    said = called(script, file, out, *words, environment=environment)
+    assert "own: 6 runs (2 x 3), 0 there" in said
+    assert len(records(out)) == 6 and verb("status", out).returncode == 0
+    assert all(record["comparability"]["reference_run"] for record in records(out).values())
+    words_of = {word for record in records(out).values() for word in record["provenance"]["argv"]}
+    assert ("--index" in words_of) == (script == "parallel.sh") and ("--shard" in words_of) == (script == "slurm.sh")
+    again = called(script, file, out, *words, environment=environment)
+    assert "6 there" in again
+
+
+def test_a_task_whose_time_is_over_goes_back_into_the_queue(tmp_path, environment):
+    stopped = tmp_path / "stopped"
+    stopped.write_text("#!/usr/bin/env bash\nexit 75\n")
+    stopped.chmod(0o755)
+    task = [ROOT / "examples/cluster/slurm_task.sh", stopped, "s.json", "out", "4"]
+    done = subprocess.run(task, env={**environment, "SLURM_ARRAY_JOB_ID": "7", "SLURM_ARRAY_TASK_ID": "3"}, check=False)
+    assert done.returncode == 75 and (tmp_path / "calls").read_text() == "scontrol requeue 7_3\n"
