@@ -28,6 +28,10 @@ void check_material(const Complaints& complain, const BodySpec& spec, bool plana
   complain.number("/limit/width", limit->width, limit->width > 0, "a number > 0");
 }
 
+void check_restitution(const Complaints& report, const std::optional<double>& e) {
+  if (e) report.number("/restitution", *e, *e >= 0 && *e <= 1, "a number in [0, 1]");
+}
+
 /// Every corner is a vertex, every volume positive, and no face belongs to three.
 void check_tetrahedra(const Complaints& report, const TriangleMesh& mesh) {
   for (std::size_t t = 0; t < mesh.tetrahedra.size(); ++t) {
@@ -88,9 +92,9 @@ void check_step(const Complaints& report, const std::string& what, const MotionS
   report.number(what + "/scale", motion.scale, motion.scale > 0, "a number > 0");
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     const Keyframe& key = motion.keyframes[k];
-    const bool good =
-        within_bounds(key.translation) && std::isfinite(key.angle) && std::isfinite(key.time);
-    if (!good) report(what + "/keyframes", "a keyframe that is not finite or too far out", allowed_coordinates());
+    const bool good = within_bounds(key.translation) && std::isfinite(key.angle) && std::isfinite(key.time);
+    if (!good)
+      report(what + "/keyframes", "a keyframe that is not finite or too far out", allowed_coordinates());
     report.number(what + "/keyframes/scale", key.scale, key.scale > 0, "a number > 0");
     if (k > 0 && !(key.time > motion.keyframes[k - 1].time)) {
       report(what + "/keyframes", fmt::format("time {:g} after {:g}", key.time, motion.keyframes[k - 1].time),
@@ -195,6 +199,7 @@ void check_body(const BodySpec& spec, bool planar, const std::string& where, std
   report.number("/d_hat", spec.d_hat, spec.d_hat > 0, "a number > 0");
   report.number("/offset", spec.offset, spec.offset >= 0, "a number >= 0");
   if (spec.friction) report.number("/friction", *spec.friction, *spec.friction >= 0, "a number >= 0");
+  check_restitution(report, spec.restitution);
   if (!spec.velocity.allFinite()) report("/velocity", "a non-finite value", "finite numbers");
   if (planar && spec.velocity[2] != 0) report("/velocity", "a z component", "0: the scene is planar");
   if (spec.kind == BodyKind::rigid) {
@@ -223,6 +228,7 @@ void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& wh
   if (obstacle.friction) {
     report.number("/friction", *obstacle.friction, *obstacle.friction >= 0, "a number >= 0");
   }
+  check_restitution(report, obstacle.restitution);
   check_obstacle_motion(report, obstacle, planar);
   if (!planar) return;
   if (obstacle.kind == ObstacleKind::plane && obstacle.axis[2] != 0) {

@@ -13,6 +13,7 @@ struct ContactLoads {
   std::vector<int> stencil;    // [4 n] all vertices, given ones too, first primitive first, -1 padded
   std::vector<double> weight;  // [4 n] w_i, 0 padded: a motion dx opens the gap by sum w_i n . dx_i
   std::vector<double> normal;  // [3 n] unit
+  std::vector<PairId> pair;    // [n]
   std::vector<int> obstacle;   // [n] number of the obstacle that presses; -1: another surface
   std::vector<double> load;    // [n] N, kappa |b'|; of mollified rows e times that
 

@@ -18,7 +18,7 @@ BB_HD inline Vec<T, 3> slide_of(const Vec<T, 3>& motion, const Vec<T, 3>& normal
 
 /// In the relative motion of the closest points.
 template <class T>
-struct FrictionTerms {
+struct MotionTerms {
   T energy;           // J
   Vec<T, 3> grad;     // N
   Mat<T, 3, 3> hess;  // N/m, symmetric bit for bit, no eigenvalue below rounding: exact and clamped are one
@@ -28,10 +28,10 @@ struct FrictionTerms {
 /// (f2 t t^T + f1/y b b^T), t along the slide and b across it; both are the same for slides that are nothing beside eps, which
 /// have no direction. Host-device. Total.
 template <class T>
-BB_HD inline FrictionTerms<T> friction_terms(const Vec<T, 3>& slide, T y, const Vec<T, 3>& normal, T strength,
+BB_HD inline MotionTerms<T> friction_terms(const Vec<T, 3>& slide, T y, const Vec<T, 3>& normal, T strength,
                                              const FrictionProfile<T>& profile) {
   const T turning = strength * profile.f1_over_y, along = strength * profile.f2;
-  FrictionTerms<T> out{strength * profile.f0, turning * slide, {}};
+  MotionTerms<T> out{strength * profile.f0, turning * slide, {}};
   if (y * profile.f1_over_y > std::numeric_limits<T>::epsilon()) {
     const Vec<T, 3> t = slide / y, b = normal.cross(t);
     out.hess = along * (t * t.transpose()) + turning * (b * b.transpose());
@@ -44,7 +44,7 @@ BB_HD inline FrictionTerms<T> friction_terms(const Vec<T, 3>& slide, T y, const 
 
 /// The same in N points, of whose motions sum w_i dx_i is the relative one: gradient w_i g, blocks w_i w_j H. Host-device.
 template <class T, int N>
-BB_HD inline ElementTerms<T, 3 * N> friction_in_points(const FrictionTerms<T>& terms,
+BB_HD inline ElementTerms<T, 3 * N> motion_in_points(const MotionTerms<T>& terms,
                                                        const Vec<T, N>& weights) {
   ElementTerms<T, 3 * N> out;
   out.energy = terms.energy;

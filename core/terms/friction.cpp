@@ -9,15 +9,11 @@
 #include "core/energy/element_loop.hpp"
 #include "core/energy/friction.hpp"
 #include "core/energy/friction_law.hpp"
+#include "core/terms/contact_sides.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
 namespace {
-
-double combined(FrictionRule rule, double a, double b) {
-  if (rule == FrictionRule::mean) return (a + b) / 2;
-  return rule == FrictionRule::min ? std::min(a, b) : std::max(a, b);
-}
 
 class Friction final : public Term {
  public:
@@ -71,7 +67,7 @@ class Friction final : public Term {
         const Vec<T, 3> slide = row.slide(x, x_n_);
         const T y = slide.norm();
         const auto terms = friction_terms<T>(slide, y, row.normal, row.strength, law(y));
-        store_terms<T, 12>(friction_in_points<T, 4>(terms, row.weight), e, parts, families_[0].local);
+        store_terms<T, 12>(motion_in_points<T, 4>(terms, row.weight), e, parts, families_[0].local);
       });
     });
   }
@@ -195,23 +191,9 @@ class Friction final : public Term {
     return along + o.radius * (arm - along).normalized();
   }
 
-  // The bodies of a row are those of its first and its last vertex.
   double coefficient(std::size_t r) const {
-    const auto of = [this](const std::optional<double>& own) { return own.value_or(options_.friction.mu); };
-    const auto of_body = [&](int vertex) {
-      const int body = scene_.body[static_cast<std::size_t>(vertex)];
-      return of(scene_.bodies[static_cast<std::size_t>(body)].friction);
-    };
-    const int* vertex = &contacts_.stencil[4 * r];
-    const int obstacle = contacts_.obstacle[r];
-    const double first = of_body(vertex[0]);
-    if (obstacle >= 0) {
-      return combined(options_.friction.combine, first,
-                      of(scene_.obstacles[static_cast<std::size_t>(obstacle)].friction));
-    }
-    const auto last = std::find_if(std::reverse_iterator(vertex + 4), std::reverse_iterator(vertex),
-                                   [](int id) { return id >= 0; });
-    return combined(options_.friction.combine, first, of_body(*last));
+    const auto of = [this](const auto& side) { return side.friction.value_or(options_.friction.mu); };
+    return combined_of_sides(scene_, contacts_, r, options_.friction.combine, of);
   }
 
   // The terms before have been linearised where the rows are of.
@@ -248,7 +230,7 @@ PlanItem needs_friction(const TermNeeds& needs) {
   const auto& obstacles = needs.scene.obstacles;
   const bool some =
       std::any_of(bodies.begin(), bodies.end(), rubs) ||
-      (options.combine != FrictionRule::min && std::any_of(obstacles.begin(), obstacles.end(), rubs));
+      (options.combine != CombineRule::min && std::any_of(obstacles.begin(), obstacles.end(), rubs));
   return plan_item(needs.contacts.any() && some, options.law,
                    needs.contacts.any() ? "no coefficient of friction is > 0" : "nothing can touch");
 }

@@ -13,13 +13,13 @@
 
 namespace bb {
 
-/// How two coefficients of friction make one.
-enum class FrictionRule { min, max, mean };
+/// How the coefficients of two sides make that of their contact.
+enum class CombineRule { min, max, mean };
 
 struct FrictionOptions {
   std::string law = "smoothed_coulomb";  // of core/energy/friction_laws/registry.inc
   double mu = 0;                         // of bodies and obstacles that have none of their own
-  FrictionRule combine = FrictionRule::min;
+  CombineRule combine = CombineRule::min;
   int lag_iterations = 1;  // times that a step is solved, with loads of its start and of the ends before
   double eps_v = 1e-3;     // m/s, sliding speed from which the force is whole
 };

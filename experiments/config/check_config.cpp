@@ -303,6 +303,8 @@ void check_contradictions(const RunConfig& config, const std::string& source,
   if (!config.method.empty()) {
     refuse_friction(config, "0 with method " + config.method + ", whose file says nothing of friction",
                     complain);
+    refuse_restitution(config, "1 with method " + config.method + ", whose file says nothing of it",
+                       complain);
   }
   check_device(config, complain);
   if (config.output.matrices && !config.passes.diagnose) {

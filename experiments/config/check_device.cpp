@@ -21,6 +21,19 @@ void refuse_friction(const RunConfig& config, const std::string& allowed, const 
   }
 }
 
+void refuse_restitution(const RunConfig& config, const std::string& allowed, const Complain& complain) {
+  const auto refuse = [&](const char* list, std::size_t i, const std::optional<double>& e) {
+    if (e && *e < 1)
+      complain(fmt::format("/scene/{}/{}/restitution", list, i), fmt::format("{}", *e), allowed);
+  };
+  for (std::size_t i = 0; i < config.scene.bodies.size(); ++i) {
+    refuse("bodies", i, config.scene.bodies[i].spec.restitution);
+  }
+  for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
+    refuse("obstacles", i, config.scene.obstacles[i].restitution);
+  }
+}
+
 /// Terms that no executor has.
 void refuse_driven(const SceneConfig& scene, const std::string& on, const Complain& complain) {
   const std::string here = on + ": it runs with device cpu only";
@@ -45,6 +58,7 @@ void check_device(const RunConfig& config, const Complain& complain) {
   if (config.device == Device::cpu) return;
   const std::string on = fmt::format("with device {}", word_of(config.device));
   refuse_friction(config, "0 " + on + ": friction runs with device cpu only", complain);
+  refuse_restitution(config, "1 " + on + ": it is damped with device cpu only", complain);
   for (std::size_t i = 0; i < config.scene.obstacles.size(); ++i) {
     if (config.scene.obstacles[i].motion.is_static()) continue;
     complain(fmt::format("/scene/obstacles/{}/motion", i), "an obstacle that moves",

@@ -19,6 +19,8 @@ struct Complain {
   }
 };
 
+/// Says of every restitution below 1 what is allowed.
+void refuse_restitution(const RunConfig& config, const std::string& allowed, const Complain& complain);
 /// Says of every coefficient of friction above 0 what is allowed.
 void refuse_friction(const RunConfig& config, const std::string& allowed, const Complain& complain);
 /// What kernels do not have (check_device.cpp).

@@ -27,8 +27,8 @@ inline EnumWords<MatchingRule> words_of(MatchingRule) {
 inline EnumWords<Mollifier> words_of(Mollifier) {
   return {{Mollifier::ipc, "ipc"}, {Mollifier::none, "none"}};
 }
-inline EnumWords<FrictionRule> words_of(FrictionRule) {
-  return {{FrictionRule::min, "min"}, {FrictionRule::max, "max"}, {FrictionRule::mean, "mean"}};
+inline EnumWords<CombineRule> words_of(CombineRule) {
+  return {{CombineRule::min, "min"}, {CombineRule::max, "max"}, {CombineRule::mean, "mean"}};
 }
 inline EnumWords<HessianMode> words_of(HessianMode) {
   return {{HessianMode::gauss_newton, "gauss_newton"},

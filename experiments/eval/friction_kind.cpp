@@ -28,7 +28,7 @@ Answer answer::friction(Query& q) {
     const T y = slide.norm();
     const FrictionProfile<T> profile = friction_laws_in<T>().require(law, "/law").eval(y, eps);
     const auto terms =
-        friction_in_points<T, n>(friction_terms<T>(slide, y, normal, mu * load, profile), closest.weights);
+        motion_in_points<T, n>(friction_terms<T>(slide, y, normal, mu * load, profile), closest.weights);
     Answer a;
     a.number("slide", static_cast<double>(y));
     a.number("energy", static_cast<double>(terms.energy));

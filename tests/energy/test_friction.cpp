@@ -27,7 +27,7 @@ ElementTerms<T, 12> terms_of(const FrictionLaw<T>& law, const Vec<T, 12>& motion
   for (int i = 0; i < 4; ++i) relative += T(weights[i]) * motion.template segment<3>(3 * i);
   const Vec<T, 3> n = normal.cast<T>(), slide = slide_of<T>(relative, n);
   const T y = slide.norm();
-  return friction_in_points<T, 4>(friction_terms<T>(slide, y, n, T(strength), law.eval(y, T(eps))),
+  return motion_in_points<T, 4>(friction_terms<T>(slide, y, n, T(strength), law.eval(y, T(eps))),
                                   weights.cast<T>());
 }
 

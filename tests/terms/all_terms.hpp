@@ -47,6 +47,7 @@ inline Scene scene_with_everything() {
     body.material.rod_bending = 0.004;
     body.material.limit = StrainLimitSpec{0.001, 0.2};
     body.d_hat = d_hat;
+    body.restitution = 0.5;
     PinSpec& pull = body.pins.emplace_back();
     pull.indices = {2};
     pull.pull = 5;

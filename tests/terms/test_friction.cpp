@@ -130,11 +130,11 @@ TEST(Friction, CombinesTheCoefficientsOfTheTwoSides) {
   scene.bodies[1].friction = 0.6;
   scene.obstacles[0].friction = 0.8;
   struct Expected {
-    FrictionRule rule;
+    CombineRule rule;
     double with_floor, between;
   };
-  for (const Expected& e : {Expected{FrictionRule::min, 0.2, 0.2}, Expected{FrictionRule::max, 0.8, 0.6},
-                            Expected{FrictionRule::mean, 0.5, 0.4}}) {
+  for (const Expected& e : {Expected{CombineRule::min, 0.2, 0.2}, Expected{CombineRule::max, 0.8, 0.6},
+                            Expected{CombineRule::mean, 0.5, 0.4}}) {
     AtStart at(scene, [&](TermOptions& options) { options.friction.combine = e.rule; });
     at.linearise();
     const ContactLoads loads = at.loads();
@@ -163,11 +163,11 @@ TEST(Friction, LeavesOutWhatHasNoCoefficientAndIsMadeOnlyWhereSomeContactCanRub)
   EXPECT_FALSE(needed(scene));
   scene.obstacles[0].friction = 0.5;
   EXPECT_FALSE(needed(scene));  // the smaller one is 0
-  options.friction.combine = FrictionRule::mean;
+  options.friction.combine = CombineRule::mean;
   EXPECT_TRUE(needed(scene));
   scene.obstacles[0].friction.reset();
   scene.bodies[1].friction = 0.1;
-  options.friction.combine = FrictionRule::min;
+  options.friction.combine = CombineRule::min;
   EXPECT_TRUE(needed(scene));
 }
 

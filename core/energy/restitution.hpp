@@ -1,0 +1,26 @@
+// Restitution: how much a contact has to damp so that two bodies part with a given share of the speed at which they met.
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+
+namespace bb {
+
+/// A contact pushes with load (1 + a v) (Hunt and Crossley 1975, J. Appl. Mech. 42): v is the speed at which the gap closes, m/s,
+/// and the load depends on the gap alone. Then m v dv/(1 + a v) is -load dgap, and on the way in and on the way out the same work
+/// is done, so that v_in and e v_in obey y - log(1 + y) = -e y - log(1 - e y) with y = a v_in, whatever load and mass are.
+/// @param e  share of the speed that is kept, 1; below 0.01 taken for 0.01
+/// @return   y, 1: 0 for e >= 1, about 1/e for small e
+inline double restitution_damping(double e) {
+  if (e >= 1) return 0;
+  const double kept = std::max(e, 0.01);
+  const auto excess = [kept](double y) { return (y - std::log1p(y)) + (kept * y + std::log1p(-kept * y)); };
+  double low = 0, high = 1 / kept;  // above 0 near 0, falls without bound towards 1/e
+  for (int k = 0; k < 100; ++k) {
+    const double middle = (low + high) / 2;
+    (excess(middle) > 0 ? low : high) = middle;
+  }
+  return low;
+}
+
+}  // namespace bb
