@@ -44,8 +44,8 @@ def case_argument(parser: argparse.ArgumentParser) -> None:
 
 
 def read_set(name: str) -> list[Case]:
-    """Every scene with every formulation of the set, then with those of its own. Raises UserError with file
-    and place.
+    """Every scene with every formulation of the set, then with those of its own, of which one with the same
+    name takes the place of that of the set. Raises UserError with file and place.
     """
     path = FOLDER / f"{name}.json"
     if not path.is_file():
@@ -60,7 +60,9 @@ def read_set(name: str) -> list[Case]:
             scene.get("resumed", False),
         )
         for scene in data.get("scenes", [])
-        for formulation in [*data.get("formulations", []), *scene.get("formulations", [])]
+        for formulation in {
+            f["name"]: f for f in [*data.get("formulations", []), *scene.get("formulations", [])]
+        }.values()
     ]
     if not cases:
         raise UserError(f"{path}: no case: it needs scenes and formulations")
