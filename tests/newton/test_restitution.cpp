@@ -38,10 +38,10 @@ TEST(Restitution, IsTheShareOfSpeedThatABounceKeepsWithEveryShape) {
     const char* name;
     double kappa;
   };
-  for (const Shape& shape : {Shape{"log", 50}, Shape{"quadratic", 3000}, Shape{"cubic", 4e5}}) {
+  for (const Shape& shape : {Shape{"log", 3000}, Shape{"quadratic", 3000}, Shape{"cubic", 4e5}}) {
     SCOPED_TRACE(shape.name);
     EXPECT_NEAR(bounce(shape.name, shape.kappa, 1, 2e-5).kept, 1, 0.01);
-    for (const double e : {0.8, 0.5, 0.2}) {
+    for (const double e : {0.8, 0.3}) {
       const Bounce fine = bounce(shape.name, shape.kappa, e, 2e-5);
       ASSERT_GT(fine.in_contact, 100);
       EXPECT_NEAR(fine.kept, e, 0.03) << "restitution " << e;
