@@ -50,15 +50,15 @@ def _round_times(obstacle: dict, origin: np.ndarray, way: np.ndarray) -> list[np
 
 def hits(obstacle: dict, camera: Camera, width: int, height: int, center: np.ndarray, reach: float) -> Hits:
     """The surface of an obstacle that a camera sees. A plane is shown as a square and a cylinder as a tube of
-    half length `reach` (m) round the point nearest `center`; of an obstacle that bodies are inside of the far
-    side is shown.
+    half length `reach` (m) round the point nearest `center`; a plane is seen from its allowed side alone, and
+    of an obstacle that bodies are inside of the far side is shown.
     """
     origin, way = camera.rays(width, height)
     point = np.array(obstacle["point_m"], float)
     axis = np.array(obstacle.get("axis", (0, 0, 1)), float)
     if obstacle["kind"] == "plane":
         with np.errstate(invalid="ignore", divide="ignore"):
-            times = [((point - origin) @ axis) / (way @ axis)]
+            times = [np.where(way @ axis < 0, ((point - origin) @ axis) / (way @ axis), np.nan)]
     else:
         times = _round_times(obstacle, origin, way)
         times = times[1:] if obstacle.get("inside") else times

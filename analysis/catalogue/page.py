@@ -24,6 +24,7 @@ from .runs import RUNS, Done, run_scene
 
 PAGE, PICTURE = ROOT / "results" / "CATALOGUE.md", ROOT / "docs" / "catalogue.png"
 STILLS = "log"  # the formulation of the picture
+VIEW = (-60.0, 22.0)  # degrees, of a scene that has none of its own
 
 
 def _arguments(argv: list[str]) -> argparse.Namespace:
@@ -76,7 +77,7 @@ def _draw(runs: Path) -> None:
     for entry in entries([]):
         if not entry.is_rejected:
             (done,) = run_scene(entry, [STILLS], runs)
-            found[entry.name] = done.folder
+            found[entry.name] = done.folder, tuple(entry.data.get("view_deg", VIEW))
     print(sheet.contact_sheet(found, PICTURE))
 
 

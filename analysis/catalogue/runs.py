@@ -18,7 +18,7 @@ from .formulations import cases
 
 RUNS = ROOT / "results" / "runs" / "catalogue"
 LAST_FRAME = 1_000_000  # /output/frames_every: the start and the last state alone
-LIMIT_S = 120  # of one run
+LIMIT_S = 600  # of one run
 # Times of single steps are not asked for, so that one pass serves.
 ONE_PASS = {"/passes": {"time": False, "diagnose": False, "audit": True}}
 

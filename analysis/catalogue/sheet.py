@@ -16,16 +16,18 @@ COLUMNS = 5
 PIXELS = (520, 400)
 
 
-def contact_sheet(runs: dict[str, Path], out: Path) -> Path:
-    """A still for each scene -> folder of a run with frames, with its name above it."""
+def contact_sheet(runs: dict[str, tuple[Path, tuple]], out: Path) -> Path:
+    """A still for each scene -> folder of a run with frames and view (degrees, as ./bench render has it),
+    with its name above it.
+    """
     rows = math.ceil(len(runs) / COLUMNS)
     size = (2 * style.WIDE_IN, 2 * style.WIDE_IN * rows / COLUMNS * 0.85)
     fig, axes = plt.subplots(rows, COLUMNS, figsize=size, squeeze=False, layout="constrained")
     for axis in axes.flat:
         axis.set_axis_off()
     with tempfile.TemporaryDirectory() as scratch:
-        for axis, (name, folder) in zip(axes.flat, runs.items()):
-            still = render(folder, out=Path(scratch) / f"{name}.png", size=PIXELS)
+        for axis, (name, (folder, view)) in zip(axes.flat, runs.items()):
+            still = render(folder, out=Path(scratch) / f"{name}.png", view=view, size=PIXELS)
             axis.imshow(image.imread(still))
             axis.set_title(name, fontsize=10)
     out.parent.mkdir(parents=True, exist_ok=True)

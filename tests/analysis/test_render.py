@@ -104,7 +104,7 @@ def test_the_nearer_triangle_owns_the_pixel():
 @pytest.mark.parametrize("obstacle", [
     {"kind": "sphere", "point_m": [1, 2, 3], "radius_m": 0.5},
     {"kind": "cylinder", "point_m": [1, 2, 3], "axis": [0, 0.6, 0.8], "radius_m": 0.5},
-    {"kind": "plane", "point_m": [1, 2, 3], "axis": [0, 0.6, 0.8]},
+    {"kind": "plane", "point_m": [1, 2, 3], "axis": [0, 0.28, 0.96]},
 ])
 @pytest.mark.parametrize("perspective", [True, False])
 def test_rays_meet_an_obstacle_on_its_surface_and_as_deep_as_its_points_are(obstacle, perspective):
@@ -123,6 +123,14 @@ def test_rays_meet_an_obstacle_on_its_surface_and_as_deep_as_its_points_are(obst
     behind = x - 1e-3 * (x - camera.eye) if perspective else x - 1e-3 * (center - camera.eye)  # nothing in front of it
     if obstacle["kind"] != "plane":
         assert (signed_gap(obstacle, behind) > 0).all()
+
+
+@pytest.mark.parametrize("perspective", [True, False])
+def test_a_plane_is_not_seen_from_behind(perspective):
+    camera = Camera(np.array([0.0, -4, 2]), np.zeros(3), np.array([0.0, 0, 1]), 60.0, (50.0, 40.0), perspective)
+    for side, seen in ((1, True), (-1, False)):  # the wall y = -1 between the camera and the centre, and turned round
+        wall = {"kind": "plane", "point_m": [0, -1, 0], "axis": [0, -side, 0]}
+        assert np.isfinite(hits(wall, camera, 100, 80, np.zeros(3), 2.0).depth).any() == seen
 
 
 def test_gaps_of_triangles_and_edges_agree_with_samples():
