@@ -32,10 +32,12 @@ def test_whole_numbers_of_a_range_are_integers(program, tmp_path):
 
 
 def test_zipped_axes_go_along_with_one_another(program, tmp_path):
-    zipped = {"zip": [STEPS, {"pointer": "/time/dt_s", "values": [0.01, 0.005]}]}
-    assert labels(program, write_sweep(tmp_path, zipped, {"pointer": "/formulation", "values": ["log", "cubic"]})) == [
-        "steps=2_dt_s=0.01_formulation=log", "steps=2_dt_s=0.01_formulation=cubic",
-        "steps=3_dt_s=0.005_formulation=log", "steps=3_dt_s=0.005_formulation=cubic"]
+    zipped = {"zip": [STEPS, {"pointer": "/time/dt_s", "range": {"from": 0.01, "to": 0.005, "count": 2}}]}
+    assert bench(program, "sweep", write_sweep(tmp_path, zipped, {"pointer": "/formulation", "values": ["log", "cubic"]}), "--out", tmp_path / "out").returncode == 0
+    found = {label: (record["config"]["time"]["steps"], record["config"]["time"]["dt_s"], record["labels"]["swept"]["/time/dt_s"])
+             for label, record in records(tmp_path / "out").items()}
+    assert found == {f"steps={steps} dt_s={dt} formulation={name}": (steps, float(dt), dt)
+                     for steps, dt in ((2, "0.01"), (3, "0.005")) for name in ("log", "cubic")}
 
 
 @pytest.mark.parametrize("rule, left", [
