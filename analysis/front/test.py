@@ -53,7 +53,10 @@ def not_passed_cpp(log: str) -> list[str]:
     for mark, word in (("Skipped", "SKIPPED"), ("(?!Skipped)", "FAILED ")):
         names = re.findall(rf"(?m)^.*Test +#\d+: (.*?) \.*\*\*\*{mark}", log)
         if names:
-            lines += [f"{word}  {len(names)} C++ tests:", *(f"           {name}" for name in names[:NAMED_TESTS])]
+            lines += [
+                f"{word}  {len(names)} C++ tests:",
+                *(f"           {name}" for name in names[:NAMED_TESTS]),
+            ]
     return lines
 
 
