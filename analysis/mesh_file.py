@@ -31,13 +31,13 @@ class Cells(NamedTuple):
     tetrahedra: np.ndarray  # [n, 4]
 
 
-def read_cells(path: Path) -> Cells:
-    """Errors: UserError for a format that is not read here, a file that is none, and cells that the program
-    has not.
+def read_cells(path: Path, readers: dict = READERS) -> Cells:
+    """readers: extension -> function of meshio. Errors: UserError for a format that is not read here, a file
+    that is none, and cells that the program has not.
     """
-    reader = READERS.get(path.suffix.lower())
+    reader = readers.get(path.suffix.lower())
     if reader is None:
-        raise UserError(f"{path}: extension {path.suffix!r}; allowed: {', '.join(READERS)}")
+        raise UserError(f"{path}: extension {path.suffix!r}; allowed: {', '.join(readers)}")
     if not path.is_file():
         raise UserError(f"{path}: no such file")
     try:

@@ -89,7 +89,7 @@ def hits(obstacle: dict, camera: Camera, width: int, height: int, center: np.nda
 # --- how far a surface is from an obstacle
 
 
-def _closest_on_segment(a: np.ndarray, b: np.ndarray) -> np.ndarray:
+def _segment_distances(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     """[n] distance of the origin to segments."""
     side = b - a
     length_sq = np.maximum((side * side).sum(-1), 1e-300)
@@ -97,7 +97,7 @@ def _closest_on_segment(a: np.ndarray, b: np.ndarray) -> np.ndarray:
     return np.linalg.norm(a + t[:, None] * side, axis=-1)
 
 
-def _closest_on_triangle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
+def triangle_distances(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndarray:
     """[n] distance of the origin to triangles."""
     n = np.cross(b - a, c - a)
     inside = np.ones(len(a), bool)
@@ -106,7 +106,7 @@ def _closest_on_triangle(a: np.ndarray, b: np.ndarray, c: np.ndarray) -> np.ndar
     length = np.linalg.norm(n, axis=-1)
     height = np.abs((n * a).sum(-1)) / np.maximum(length, 1e-300)
     sides = np.minimum(
-        np.minimum(_closest_on_segment(a, b), _closest_on_segment(b, c)), _closest_on_segment(c, a)
+        np.minimum(_segment_distances(a, b), _segment_distances(b, c)), _segment_distances(c, a)
     )
     return np.where(inside & (length > 0), height, sides)
 
@@ -119,8 +119,8 @@ def primitive_gaps(obstacle: dict, corners: np.ndarray) -> np.ndarray:
         return signed_gap(obstacle, corners).min(axis=1)
     arms = _radial(obstacle, corners - np.array(obstacle["point_m"], float))
     distance = (
-        _closest_on_segment(*arms.transpose(1, 0, 2))
+        _segment_distances(*arms.transpose(1, 0, 2))
         if arms.shape[1] == 2
-        else _closest_on_triangle(*arms.transpose(1, 0, 2))
+        else triangle_distances(*arms.transpose(1, 0, 2))
     )
     return distance - obstacle["radius_m"]

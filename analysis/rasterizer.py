@@ -10,9 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-CREASE_DEG = (
-    40.0  # angle between the normal of a triangle and the mean of its vertex that makes an edge sharp
-)
+CREASE_DEG = 40.0  # angle between normals from which on an edge is sharp
 
 
 @dataclass(frozen=True)
@@ -103,34 +101,53 @@ class DepthBuffer:
             self.weights[window][seen] = np.stack([1 - u - v, u, v], axis=-1)[seen]
 
 
-def _unit(v: np.ndarray) -> np.ndarray:
+def unit(v: np.ndarray) -> np.ndarray:
+    """Vectors [..., 3] of length 1 in the same directions; 0 stays 0."""
     length = np.linalg.norm(v, axis=-1, keepdims=True)
     return np.divide(v, length, out=np.zeros_like(v), where=length > 0)
 
 
-def _corner_normals(x: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-    """[m, 3, 3] unit normals at the corners of every triangle: the mean over the triangles of the vertex,
-    weighted by area, and the triangle's own.
-    """
-    area = np.cross(x[triangles[:, 1]] - x[triangles[:, 0]], x[triangles[:, 2]] - x[triangles[:, 0]])
-    sums = np.zeros_like(x)
-    for corner in range(3):
-        np.add.at(sums, triangles[:, corner], area)
-    return _unit(sums)[triangles], np.repeat(_unit(area)[:, None, :], 3, axis=1)
-
-
-def _differ(smooth: np.ndarray, own: np.ndarray) -> np.ndarray:
-    return np.einsum("mkc,mkc->mk", smooth, own) < np.cos(np.radians(CREASE_DEG))
+def _areas(x: np.ndarray, triangles: np.ndarray) -> np.ndarray:
+    """[m, 3] normals of triangles, as long as twice their area."""
+    return np.cross(x[triangles[:, 1]] - x[triangles[:, 0]], x[triangles[:, 2]] - x[triangles[:, 0]])
 
 
 def sharp_corners(x: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """[m, 3] whether a triangle's own normal differs from the mean at the corner by more than CREASE_DEG."""
-    return _differ(*_corner_normals(x, triangles))
-
-
-def corner_normals(x: np.ndarray, triangles: np.ndarray) -> np.ndarray:
-    """[m, 3, 3] unit normals at the corners of every triangle: the mean over the triangles of the vertex,
-    or the triangle's own at a sharp corner (a sharp edge stays sharp).
+    """[m, 3] whether a triangle's own normal differs from the mean over the triangles of the vertex, weighted
+    by area, by more than CREASE_DEG.
     """
-    smooth, own = _corner_normals(x, triangles)
-    return np.where(_differ(smooth, own)[..., None], own, smooth)
+    areas, sums = _areas(x, triangles), np.zeros_like(x)
+    for corner in range(3):
+        np.add.at(sums, triangles[:, corner], areas)
+    cosines = np.einsum("mkc,mc->mk", unit(sums)[triangles], unit(areas))
+    return cosines < np.cos(np.radians(CREASE_DEG))
+
+
+def smoothed_corners(x: np.ndarray, triangles: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Pairs of corners (3 t + k is corner k of triangle t) that are one smooth surface: of one vertex, and of
+    triangles whose normals differ by no more than CREASE_DEG. Every corner is paired with itself.
+    """
+    vertex = triangles.reshape(-1)
+    order = np.argsort(vertex, kind="stable")
+    count = np.bincount(vertex, minlength=len(x))
+    first = np.cumsum(count) - count
+    one = np.repeat(np.arange(len(vertex)), count[vertex])
+    within = np.arange(len(one)) - np.repeat(np.cumsum(count[vertex]) - count[vertex], count[vertex])
+    other = order[first[vertex[one]] + within]
+    normals = unit(_areas(x, triangles))
+    alike = np.einsum("pc,pc->p", normals[one // 3], normals[other // 3]) >= np.cos(np.radians(CREASE_DEG))
+    alike |= one == other
+    return one[alike], other[alike]
+
+
+def corner_normals(
+    x: np.ndarray, triangles: np.ndarray, pairs: tuple[np.ndarray, np.ndarray] | None = None
+) -> np.ndarray:
+    """[m, 3, 3] unit normals at the corners of every triangle: the mean over the triangles that are one
+    smooth surface with it there, weighted by area (a sharp edge stays sharp). pairs: smoothed_corners() of
+    another state; None: of x.
+    """
+    one, other = smoothed_corners(x, triangles) if pairs is None else pairs
+    sums = np.zeros((3 * len(triangles), 3))
+    np.add.at(sums, one, _areas(x, triangles)[other // 3])
+    return unit(sums).reshape(-1, 3, 3)

@@ -60,7 +60,8 @@ def times_of(record: dict, steps: list[int], run: Path) -> list[float]:
     return [ends[step] for step in steps]
 
 
-def _check_same_bodies(frame: Frame, first: Frame, path: Path) -> None:
+def check_same_bodies(frame: Frame, first: Frame, path: Path) -> None:
+    """Errors: UserError: other elements than in the first frame, or a position that is not finite."""
     for name in ("triangles", "edges"):
         if not np.array_equal(getattr(frame, name), getattr(first, name)):
             raise UserError(
@@ -121,7 +122,7 @@ def filmed(source: Source, every: int = 1) -> Film:
     paths, frames = frame_paths(record, run), []
     for step, frame in zip(steps, frames_of(record, run, steps)):
         frames.append(frame)
-        _check_same_bodies(frame, frames[0], paths[step])
+        check_same_bodies(frame, frames[0], paths[step])
     n, m = len(frames[0].vertices), len(frames[0].triangles)
     return Film(
         run=str(run),

@@ -1,0 +1,202 @@
+"""Files of the frames of a run for other tools: ./bench frames RUN OUT --format obj|ply|pc2|vtu."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import shutil
+from pathlib import Path
+
+import meshio
+import numpy as np
+
+from ..errors import UserError, tells
+from ..frames import read_frame
+from ..front.arguments import parser_of
+from ..mesh_file import Cells, read_cells
+from .binding import Binding, Fit, bound_mesh, refined
+from .formats import WRITERS, write
+from .sequence import Run, bodies, obstacles, opened, simulated, triangles_of
+
+
+def _read_ply(file: str) -> meshio.Mesh:
+    """A frame of a run too, of which meshio reads no edges and no fields of faces."""
+    try:
+        frame = read_frame(file)
+    except ValueError:  # UserError, or elements of other names
+        return meshio.ply.read(file)
+    return meshio.Mesh(frame.vertices, [("triangle", frame.triangles)])
+
+
+READERS = {".obj": meshio.obj.read, ".ply": _read_ply}
+REACH = 0.05  # of the diagonal of a body's box: how far a vertex may be from its surface
+MOST_TIMES = 6  # 4^6 = 4096 triangles for one
+ABOUT = """
+OUT becomes a folder. obj, ply, vtu: a file a frame, frame_000000.obj, ...; pc2: frame.pc2 and frame.obj, its
+first state. obstacles.obj, ...: the analytic obstacles as triangles. times.csv: number, step and time (s) of
+every frame. frames.pvd, of vtu: what ParaView opens. Rods are lines, solids their surface. Lengths are m."""
+
+
+def _body_with_surface(run: Run, name: str) -> tuple[int, np.ndarray]:
+    body = run.body(name)
+    chosen = triangles_of(run.start, body)
+    if len(chosen) == 0:
+        raise UserError(f"--body: {name} has no triangles; allowed: a body with a surface")
+    return body, chosen
+
+
+def _limit(run: Run, chosen: np.ndarray, asked: float | None) -> float:
+    x = run.start.vertices[np.unique(run.start.triangles[chosen])]
+    return REACH * float(np.linalg.norm(np.ptp(x, axis=0))) if asked is None else asked
+
+
+def _check_close(file: Path, fit: Fit, limit: float, name: str) -> None:
+    far = int(np.argmax(fit.distance_m))
+    if fit.distance_m[far] > limit:
+        raise UserError(
+            f"{file}: vertex {far} is {fit.distance_m[far]:.6g} m from the surface of {name} at the start;"
+            f" allowed: {limit:.6g} m (--reach)"
+        )
+
+
+def with_mesh(
+    run: Run, file: Path, name: str, smooth: bool, reach: float | None
+) -> tuple[list[Binding], str]:
+    """Bindings of all bodies, that of one from a file, and a sentence on it. Errors: UserError: a file that
+    is none, a body that is none, a vertex that is too far away.
+    """
+    body, chosen = _body_with_surface(run, name)
+    if run.steps[0] != -1:
+        raise UserError(f"{run.folder}: no frame of the start, which a mesh is bound to")
+    cells: Cells = read_cells(file, READERS)
+    bound, fit = bound_mesh(
+        cells.points, cells.triangles, run.start.vertices, run.start.triangles, chosen, smooth
+    )
+    limit = _limit(run, chosen, reach)
+    _check_close(file, fit, limit, name)
+    parts = [bound if k == body else simulated(run.start, k) for k, _ in enumerate(run.scene["bodies"])]
+    return parts, (
+        f"{file}: {len(cells.points)} vertices and {len(cells.triangles)} triangles bound to {name}; largest"
+        f" distance {fit.distance_m.max():.6g} m (allowed: {limit:.6g}), largest error at the start"
+        f" {fit.error_m:.3g} m"
+    )
+
+
+def with_finer(run: Run, times: int, name: str | None, smooth: bool) -> list[Binding]:
+    """Bindings of all bodies, those of one or of all with triangles refined. Errors: UserError."""
+    only = None if name is None else _body_with_surface(run, name)[0]
+    parts = []
+    for body, _ in enumerate(run.scene["bodies"]):
+        part = simulated(run.start, body)
+        if len(part.source) and only in (None, body):
+            part = refined(run.start.vertices, run.start.triangles, part.source, times, smooth)
+        parts.append(part)
+    return parts
+
+
+def export(run: Run, parts: list[Binding], kind: str, out: Path) -> str:
+    """Writes the folder `out`, beside it first, then in its place; returns what is in it. Errors: UserError
+    where it exists.
+    """
+    if out.exists() or out.is_symlink():
+        raise UserError(f"{out}: there already; allowed: a folder that is not there yet")
+    sequences = [s for s in (bodies(run, parts), obstacles(run)) if s is not None]
+    out.parent.mkdir(parents=True, exist_ok=True)
+    part = out.with_name(f"{out.name}.tmp.{os.getpid()}")
+    try:
+        part.mkdir()
+        write(sequences, kind, part)
+        part.rename(out)
+    finally:
+        shutil.rmtree(part, ignore_errors=True)
+    mesh = sequences[0].mesh
+    return (
+        f"{out}: {len(run.steps)} frames ({kind}) of {len(mesh.of_points)} points, {len(mesh.triangles)}"
+        f" triangles, {len(mesh.edges)} edges of rods"
+    )
+
+
+def _positive(text: str) -> float:
+    value = float(text)
+    if not 0 < value < float("inf"):
+        raise ValueError(text)
+    return value
+
+
+_positive.__name__ = "length above 0 (m)"
+
+
+def _times(text: str) -> int:
+    value = int(text)
+    if not 1 <= value <= MOST_TIMES:
+        raise ValueError(text)
+    return value
+
+
+_times.__name__ = f"number from 1 to {MOST_TIMES}"
+
+
+def parse(argv: list[str]) -> argparse.Namespace:
+    parser = parser_of(
+        "frames",
+        ABOUT,
+        "./bench frames results/runs/drape out/drape --format obj --subdivide 2 --smooth",
+        "./bench frames results/runs/duck out/duck --format pc2 --render-mesh fine.obj --body duck --smooth",
+    )
+    parser.add_argument("run", type=Path, metavar="RUN", help="folder of run.json")
+    parser.add_argument("out", type=Path, metavar="OUT", help="a folder that is not there yet")
+    parser.add_argument("--format", choices=WRITERS, required=True, help="what other tool reads it")
+    finer = parser.add_mutually_exclusive_group()
+    finer.add_argument(
+        "--render-mesh",
+        type=Path,
+        metavar="FILE",
+        help=f"a mesh of triangles ({', '.join(READERS)}) in the place that --body has at the start: it"
+        " follows the surface of the body and is written in its place",
+    )
+    finer.add_argument(
+        "--subdivide",
+        type=_times,
+        metavar="N",
+        help=f"cut every triangle (of --body, or of all) into 4, N times (1 to {MOST_TIMES})",
+    )
+    parser.add_argument("--body", metavar="NAME", help="the body that is drawn finer")
+    parser.add_argument(
+        "--smooth",
+        action="store_true",
+        help="normals between those of the vertices instead of those of the triangles; with --subdivide a"
+        " surface that is curved between the vertices, except at edges that are sharp at the start",
+    )
+    parser.add_argument(
+        "--reach",
+        type=_positive,
+        metavar="M",
+        help="largest distance (m) of a vertex of --render-mesh from the surface (default:"
+        f" {REACH:g} of the diagonal of the body's box)",
+    )
+    return parser.parse_args(argv)
+
+
+def _check_together(given: argparse.Namespace) -> None:
+    if given.render_mesh and not given.body:
+        raise UserError("--render-mesh: no --body; allowed: with the name of the body that it follows")
+    if given.reach and not given.render_mesh:
+        raise UserError("--reach: nothing to bind; allowed: with --render-mesh")
+    if (given.body or given.smooth) and not (given.render_mesh or given.subdivide):
+        option = "--body" if given.body else "--smooth"
+        raise UserError(f"{option}: nothing is drawn finer; allowed: with --render-mesh or --subdivide")
+
+
+@tells("frames")
+def main(argv: list[str]) -> int:
+    given = parse(argv)
+    _check_together(given)
+    run, note = opened(given.run), ""
+    if given.render_mesh:
+        parts, note = with_mesh(run, given.render_mesh, given.body, given.smooth, given.reach)
+    elif given.subdivide:
+        parts = with_finer(run, given.subdivide, given.body, given.smooth)
+    else:
+        parts = [simulated(run.start, body) for body, _ in enumerate(run.scene["bodies"])]
+    print("\n".join(line for line in (note, export(run, parts, given.format, given.out)) if line))
+    return 0
