@@ -88,9 +88,9 @@ void check_step(const Complaints& report, const std::string& what, const MotionS
   report.number(what + "/scale", motion.scale, motion.scale > 0, "a number > 0");
   for (std::size_t k = 0; k < motion.keyframes.size(); ++k) {
     const Keyframe& key = motion.keyframes[k];
-    const bool good =
-        within_bounds(key.translation) && std::isfinite(key.angle) && std::isfinite(key.time);
-    if (!good) report(what + "/keyframes", "a keyframe that is not finite or too far out", allowed_coordinates());
+    const bool good = within_bounds(key.translation) && std::isfinite(key.angle) && std::isfinite(key.time);
+    if (!good)
+      report(what + "/keyframes", "a keyframe that is not finite or too far out", allowed_coordinates());
     report.number(what + "/keyframes/scale", key.scale, key.scale > 0, "a number > 0");
     if (k > 0 && !(key.time > motion.keyframes[k - 1].time)) {
       report(what + "/keyframes", fmt::format("time {:g} after {:g}", key.time, motion.keyframes[k - 1].time),
