@@ -47,10 +47,12 @@ void SceneBuilder::add_stitch(const StitchSpec& stitch, const std::string& below
     return;
   }
   for (std::size_t i = 0; i < a.size(); ++i) {
-    const bool held = pin_of_[static_cast<std::size_t>(a[i])] >= 0 && pin_of_[static_cast<std::size_t>(b[i])] >= 0;
+    const bool held =
+        pin_of_[static_cast<std::size_t>(a[i])] >= 0 && pin_of_[static_cast<std::size_t>(b[i])] >= 0;
     if (a[i] == b[i] || held) {
-      violations_.push_back({fmt::format("{}/b_vertices/{}", where, i), fmt::format("{}", stitch.b_vertices[i]),
-                             held ? "a stitch with a vertex that is not prescribed" : "another vertex than that of a"});
+      violations_.push_back(
+          {fmt::format("{}/b_vertices/{}", where, i), fmt::format("{}", stitch.b_vertices[i]),
+           held ? "a stitch with a vertex that is not prescribed" : "another vertex than that of a"});
       continue;
     }
     scene_.stitches.pairs.push_back({a[i], b[i]});
@@ -59,7 +61,8 @@ void SceneBuilder::add_stitch(const StitchSpec& stitch, const std::string& below
 }
 
 /// A volume is enclosed where every edge is run through once in each direction.
-void SceneBuilder::append_pressure(const BodySpec& spec, std::span<const std::array<int, 3>> surface, int first) {
+void SceneBuilder::append_pressure(const BodySpec& spec, std::span<const std::array<int, 3>> surface,
+                                   int first) {
   const std::string what = "body \"" + spec.name + "\"/pressure";
   if (!std::isfinite(spec.pressure)) return complain(what, "a non-finite pressure", "a finite number");
   std::vector<std::array<int, 2>> sides;
@@ -73,8 +76,10 @@ void SceneBuilder::append_pressure(const BodySpec& spec, std::span<const std::ar
   };
   for (const auto& side : sides) {
     if (run(side) == 1 && run({side[1], side[0]}) == 1) continue;
-    return complain(what, fmt::format("a surface that does not close at the edge of vertices {} and {}", side[0], side[1]),
-                    "a surface each of whose edges belongs to two triangles that run through it in opposite directions");
+    return complain(
+        what,
+        fmt::format("a surface that does not close at the edge of vertices {} and {}", side[0], side[1]),
+        "a surface each of whose edges belongs to two triangles that run through it in opposite directions");
   }
   if (sides.empty()) return complain(what, "no surface", "a body with triangles");
   const Positions& x = spec.mesh.vertices;

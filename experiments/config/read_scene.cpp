@@ -109,7 +109,7 @@ void check_pull(const PinSpec& pin, const std::string& where, const Reader& read
     reader.complain(where + "/release_s", fmt::format("{}", release),
                     fmt::format("a number > {}, when it begins to hold (s)", hold));
   }
-  if (pin.pull) return;
+  if (pin.pull || !reader.complete) return;  // a wrong pull was one
   if (!pin.pull_factors.empty()) {
     reader.complain(where + "/pull_factors", "factors of no pull", "pull_N_per_m beside them");
   }

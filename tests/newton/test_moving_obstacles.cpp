@@ -200,14 +200,14 @@ TEST(MovingObstacles, take_along_the_same_whichever_way_their_turn_is_said) {
   RigidMotion by_rate;
   by_rate.axis = Vec3d::UnitY();
   by_rate.center = Vec3d(0, 0, -radius);
-  by_rate.angular_velocity = 3 / radius;
+  by_rate.angular_velocity = 0.3 / radius;
   RigidMotion by_keyframes = by_rate;
   by_keyframes.angular_velocity = 0;
-  by_keyframes.keyframes = {{0, Vec3d::Zero(), 0, 1}, {2, Vec3d::Zero(), 2 * 3 / radius, 1}};
+  by_keyframes.keyframes = {{0, Vec3d::Zero(), 0, 1}, {2, Vec3d::Zero(), 2 * 0.3 / radius, 1}};
   RigidMotion in_two = by_rate;
-  in_two.angular_velocity = 5 / radius;
+  in_two.angular_velocity = 0.5 / radius;
   in_two.then = {static_cast<const MotionStep&>(by_rate)};
-  in_two.then[0].angular_velocity = -2 / radius;
+  in_two.then[0].angular_velocity = -0.2 / radius;
   std::vector<Vec3d> velocities;
   for (const RigidMotion& motion : {by_rate, by_keyframes, in_two}) {
     Scene scene = test::particle_over_plane(mass, height, d_hat);
@@ -217,14 +217,15 @@ TEST(MovingObstacles, take_along_the_same_whichever_way_their_turn_is_said) {
     scene = test::with_moving_obstacles(std::move(scene), Vec3d::Zero());
     scene.motions.back() = scene.obstacles[0].motion = motion;
     Method method = test::fixed_method("cubic", 10 * mass / (2 / d_hat * height * height));
-    method.step_solver.tol_velocity = 1e-9;
+    method.step_solver.tol_velocity = 1e-7;
     method.friction.mu = 0.3;
+    method.friction.eps_v = 0.02;
     Steps run(std::move(scene), std::move(method), 20);
     run.go(20);
     velocities.push_back(run.simulation.history().v.col(0));
   }
-  ASSERT_GT(velocities[0][0], 0.4);
-  for (const Vec3d& v : velocities) EXPECT_LT((v - velocities[0]).norm(), 1e-7);
+  EXPECT_NEAR(velocities[0][0], 0.3, 0.02) << "it sticks to the surface";
+  for (const Vec3d& v : velocities) EXPECT_LT((v - velocities[0]).norm(), 1e-5);
 }
 
 TEST(MovingObstacles, a_ball_pushes_a_pinned_cloth_out_of_its_way) {
