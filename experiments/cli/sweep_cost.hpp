@@ -29,14 +29,14 @@ struct ExpectedCost {
 };
 
 /// Records of earlier runs, and a model where they say nothing: seconds = 0.03 + passes x steps x 8 iterations a step x (4.5e-6 s an
-/// unknown + a linear solve). Both numbers are medians over the runs of results/work_precision.json and results/baselines; they
-/// are within a factor of 4 there. Condition estimates and audits are not in it.
+/// unknown + a linear solve). Both numbers are medians over the runs of results/work_precision.json and results/baselines; the
+/// seconds of an iteration are within a factor of 6 there. Condition estimates and audits are not in it.
 class CostBook {
  public:
   /// Every run.json below a folder; what cannot be read is passed over. Cost: reading them.
   void add_records(const std::filesystem::path& folder);
   /// Sizes are made from configs; scenes of the same settings are built once. Errors: ConfigError, as build_scene.
-  RunSize size_of(const RunConfig& config);
+  RunSize size_of(const RunConfig& config, const std::string& config_id, const std::string& resolved_text);
   /// A record of the same config as it stands; else the median over records of the same scene of their core seconds a step and
   /// unknown, those with the same settings of it before others, then those of the same formulation.
   ExpectedCost expected(const RunSize& size) const;
