@@ -4,6 +4,8 @@ gap|stretch|load|body].
 
 from __future__ import annotations
 
+import io
+from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -17,11 +19,15 @@ from . import style
 from .captions import caption
 from .errors import UserError, tells
 from .frames import Frame, frame_of, frame_paths, points_of_bodies, read_scene, scene_at
+from .frames_out.obstacle_mesh import obstacle_mesh
+from .frames_out.sequence import finer_frame
 from .front.arguments import parser_of
-from .obstacle_rays import Hits, hits, primitive_gaps, signed_gap
-from .rasterizer import Camera, DepthBuffer, corner_normals
+from .obstacle_rays import primitive_gaps
+from .picture import OBSTACLE_COLOR, Surfaces, camera_of, picture
 from .record_file import read_record
 from .records import run_row
+from .rod_tubes import tubes
+from .whole_file import write_whole_bytes
 
 BODY_COLORS = (
     "#0072B2",
@@ -33,11 +39,8 @@ BODY_COLORS = (
     "#F0E442",
     "#999999",
 )  # Okabe-Ito
-OBSTACLE_COLOR = "#C9C9C9"
-OVERSAMPLING = 2  # pixels of the depth buffer for a pixel of the picture, each way
-LIGHT = np.array([0.35, -0.5, 1.0]) / np.linalg.norm([0.35, -0.5, 1.0])  # direction towards it
-AMBIENT, SHADOWED = 0.45, 0.55  # brightness away from the light; share of the light that a shadow leaves
-LINE_ALPHA, LINE_PIXELS = 0.28, 1.2  # sides of the triangles of bodies
+MOST_TIMES = 4  # 4^4 = 256 triangles for one
+THINNEST = 0.006  # radius of a rod for a metre of reach: thinner ones would have no pixels
 
 
 @dataclass(frozen=True)
@@ -62,18 +65,6 @@ COLORINGS = {
 }
 
 
-@dataclass
-class Surfaces:
-    """All that is drawn: points (m), triangles, the colour of every corner of a triangle, and the
-    obstacles."""
-
-    points: np.ndarray  # [n, 3]
-    triangles: np.ndarray  # [m, 3]
-    corner_colors: np.ndarray  # [m, 3, 3] r g b in 0..1
-    n_body_triangles: int
-    obstacles: list[dict]  # of scene.json
-
-
 def _values(frame: Frame, coloring: Coloring) -> np.ndarray:
     """[m, 3]: the field at the corners of every triangle. Raises UserError when the frame has none."""
     fields = frame.of_vertices if coloring.element == "vertex" else frame.of_triangles
@@ -94,154 +85,51 @@ def _scale(values: np.ndarray, coloring: Coloring) -> Normalize:
 def _body_colors(frame: Frame, color: str) -> tuple[np.ndarray, Normalize | None]:
     """[m, 3, 3] colours of the corners, and the scale behind them (None for bodies)."""
     if color == "body":
-        palette = np.array([to_rgb(c) for c in BODY_COLORS])
-        return np.repeat(palette[frame.of_triangles["body"] % len(palette)][:, None, :], 3, axis=1), None
+        return np.repeat(_palette(frame.of_triangles["body"])[:, None, :], 3, axis=1), None
     coloring = COLORINGS[color]
     values = _values(frame, coloring)
     scale = _scale(values, coloring)
     return plt.get_cmap(coloring.colors)(scale(values))[..., :3], scale
 
 
-def _rod_tubes(frame: Frame, radius: float) -> tuple[np.ndarray, np.ndarray]:
-    """Three-sided tubes around the edges, so that rods have pixels."""
-    points, triangles = [], []
-    for a, b in frame.vertices[frame.edges]:
-        axis = (b - a) / max(np.linalg.norm(b - a), 1e-300)
-        u = np.cross(axis, np.eye(3)[np.argmin(np.abs(axis))])
-        u /= np.linalg.norm(u)
-        v = np.cross(axis, u)
-        first = 6 * len(points)
-        points.append(
-            [end + radius * (np.cos(t) * u + np.sin(t) * v) for end in (a, b) for t in (0, 2.0944, 4.18879)]
-        )
-        for k in range(3):
-            i, j = first + k, first + (k + 1) % 3
-            triangles += [[i, j, i + 3], [j, j + 3, i + 3]]
-    return np.array(points).reshape(-1, 3), np.array(triangles, int).reshape(-1, 3)
+def _palette(bodies: np.ndarray) -> np.ndarray:
+    """[n, 3] colours of bodies by their number."""
+    return np.array([to_rgb(c) for c in BODY_COLORS])[np.asarray(bodies) % len(BODY_COLORS)]
 
 
-def _assemble(frame: Frame, scene: dict, color: str, reach: float) -> tuple[Surfaces, Normalize | None]:
+def _assemble(
+    frame: Frame, scene: dict, color: str, reach: float, radii: np.ndarray | None = None, times: int = 0
+) -> tuple[Surfaces, Normalize | None]:
+    """radii: [n] m of rods, at their vertices. times: how often the frame was subdivided; sides of its
+    triangles are drawn where it was not.
+    """
     colors, scale = _body_colors(frame, color)
     points, triangles, corners = [frame.vertices], [frame.triangles], [colors]
     if len(frame.edges):
-        tube, sides = _rod_tubes(frame, 0.006 * reach)
-        body = frame.of_vertices["body"][frame.edges[:, 0]].repeat(6)
-        palette = np.array([to_rgb(c) for c in BODY_COLORS])
-        rgb = palette[body % len(palette)][:, None, :] if color == "body" else np.zeros(3)
+        radii = np.maximum(0 if radii is None else radii, np.full(len(frame.vertices), THINNEST * reach))
+        made, sides, of = tubes(frame.vertices, frame.edges, radii, 2**times)
+        rgb = _palette(frame.of_vertices["body"][of])[:, None, :] if color == "body" else np.zeros(3)
         triangles.append(sides + len(frame.vertices))
-        points.append(tube)
+        points.append(made)
         corners.append(np.broadcast_to(rgb, (len(sides), 3, 3)))
     return (
         Surfaces(
             np.concatenate(points),
             np.concatenate(triangles),
             np.concatenate(corners),
-            len(frame.triangles),
+            0 if times else len(frame.triangles),
             scene["obstacles"],
         ),
         scale,
     )
 
 
-def _shadow(
-    surfaces: Surfaces, at: np.ndarray, center: np.ndarray, reach: float, pixels: int = 900
-) -> np.ndarray:
-    """True for the points `at` that a triangle or an obstacle hides from the light."""
-    camera = Camera(
-        center + 10 * reach * LIGHT,
-        center,
-        np.array([0.0, 1.0, 0.0]),
-        pixels / (5 * reach),
-        (pixels / 2, pixels / 2),
-        False,
-    )
-    buffer = DepthBuffer(pixels, pixels)
-    buffer.draw(camera.project(surfaces.points), surfaces.triangles)
-    for obstacle in surfaces.obstacles:
-        if not obstacle.get("inside"):
-            buffer.depth = np.maximum(
-                buffer.depth, hits(obstacle, camera, pixels, pixels, center, 1.6 * reach).depth
-            )
-    seen = camera.project(at)
-    column, row = np.floor(seen[:, 0]).astype(int), np.floor(seen[:, 1]).astype(int)
-    inside = (column >= 0) & (column < pixels) & (row >= 0) & (row < pixels)
-    hidden = np.zeros(len(at), bool)
-    hidden[inside] = buffer.depth[row[inside], column[inside]] > seen[inside, 2] + 0.02 * reach
-    return hidden
-
-
-def _lines(buffer: DepthBuffer, projected: np.ndarray, surfaces: Surfaces, pixel: tuple) -> np.ndarray:
-    """Share of each pixel that a side of a body's triangle covers, about."""
-    owner, weights = buffer.owner[pixel], buffer.weights[pixel]
-    p = projected[surfaces.triangles[owner]][..., :2]
-    opposite = np.linalg.norm(p[:, (2, 0, 1)] - p[:, (1, 2, 0)], axis=-1)
-    area = np.abs(np.cross(p[:, 1] - p[:, 0], p[:, 2] - p[:, 0]))
-    distance = (weights * (area[:, None] / np.maximum(opposite, 1e-9))).min(axis=1)
-    near = np.clip(1.5 - distance / (LINE_PIXELS * OVERSAMPLING / 2), 0, 1)
-    return LINE_ALPHA * near * (owner < surfaces.n_body_triangles)
-
-
-def _shade(
-    color: np.ndarray, x: np.ndarray, normal: np.ndarray, camera: Camera, shadow: np.ndarray
-) -> np.ndarray:
-    """[n, 3] colours under the light."""
-    normal = normal * np.sign(np.einsum("nc,nc->n", normal, camera.eye - x))[:, None]  # towards the camera
-    light = np.clip(normal @ LIGHT, 0, None) * np.where(shadow, SHADOWED, 1)
-    return color * (AMBIENT + (1 - AMBIENT) * light)[:, None]
-
-
-def _draw_obstacles(
-    image: np.ndarray,
-    buffer: DepthBuffer,
-    surfaces: Surfaces,
-    camera: Camera,
-    center: np.ndarray,
-    reach: float,
-) -> None:
-    """Where an obstacle is nearer than all that was drawn before; those pixels of the buffer become the
-    obstacle's.
-    """
-    height, width = buffer.owner.shape
-    for obstacle in surfaces.obstacles:
-        hit: Hits = hits(obstacle, camera, width, height, center, 1.6 * reach)
-        front = hit.depth > buffer.depth
-        x = hit.points[front]
-        grey = np.broadcast_to(np.array(to_rgb(OBSTACLE_COLOR)), x.shape)
-        image[front] = _shade(grey, x, hit.normals[front], camera, _shadow(surfaces, x, center, reach))
-        buffer.depth[front], buffer.owner[front] = hit.depth[front], -1
-
-
-def _fill_obstacles(image: np.ndarray, surfaces: Surfaces, camera: Camera) -> None:
-    """Planar scenes: what the obstacles forbid, under the bodies, so that what enters them is seen."""
-    height, width = image.shape[:2]
-    x = camera.rays(width, height)[0].copy()
-    x[..., 2] = 0
-    for obstacle in surfaces.obstacles:
-        image[signed_gap(obstacle, x) < 0] = to_rgb(OBSTACLE_COLOR)
-
-
-def _picture(
-    surfaces: Surfaces, camera: Camera, size: tuple[int, int], planar: bool, center: np.ndarray, reach: float
-) -> np.ndarray:
-    """[height, width, 3] in 0..1: shaded by one light, with shadows; planar scenes flat."""
-    buffer = DepthBuffer(size[0] * OVERSAMPLING, size[1] * OVERSAMPLING)
-    projected = camera.project(surfaces.points)
-    buffer.draw(projected, surfaces.triangles)
-    image = np.ones((*buffer.owner.shape, 3))
-    if planar:
-        _fill_obstacles(image, surfaces, camera)
-    else:
-        _draw_obstacles(image, buffer, surfaces, camera, center, reach)
-    pixel = np.nonzero(buffer.owner >= 0)
-    owner, weights = buffer.owner[pixel], buffer.weights[pixel]
-    color = np.einsum("nk,nkc->nc", weights, surfaces.corner_colors[owner])
-    if not planar:
-        x = np.einsum("nk,nkc->nc", weights, surfaces.points[surfaces.triangles[owner]])
-        normal = np.einsum("nk,nkc->nc", weights, corner_normals(surfaces.points, surfaces.triangles)[owner])
-        color = _shade(color, x, normal, camera, _shadow(surfaces, x, center, reach))
-    image[pixel] = color * (1 - _lines(buffer, projected, surfaces, pixel))[:, None]
-    height, width = size[1], size[0]
-    return image.reshape(height, OVERSAMPLING, width, OVERSAMPLING, 3).mean(axis=(1, 3)).clip(0, 1)
+def _rod_radii(record: dict, scene: dict, frame: Frame) -> np.ndarray:
+    """[n] m: the offset of the body of each vertex, at which its contact begins; 0 where it has none."""
+    given = record["config"]["scene"].get("bodies") or []
+    offsets = {body.get("name"): body.get("offset_m") or 0.0 for body in given}
+    of_bodies = np.array([offsets.get(name, 0.0) for name in scene["bodies"]] or [0.0])
+    return of_bodies[np.minimum(frame.of_vertices["body"], len(of_bodies) - 1)]
 
 
 def _at_obstacles(frame: Frame, scene: dict) -> str:
@@ -271,40 +159,9 @@ def _at_obstacles(frame: Frame, scene: dict) -> str:
 
 
 def _round_obstacles(scene: dict) -> np.ndarray:
-    """Ends of the spheres, so that they are in the picture; planes and cylinders have none."""
+    """Points of the spheres, so that they are in the picture; planes and cylinders have none."""
     spheres = [o for o in scene["obstacles"] if o["kind"] == "sphere" and not o["inside"]]
-    return np.array(
-        [
-            np.array(o["point_m"]) + s * o["radius_m"] * np.eye(3)[k]
-            for o in spheres
-            for k in range(3)
-            for s in (-1, 1)
-        ]
-    ).reshape(-1, 3)
-
-
-def _camera(focus: np.ndarray, planar: bool, view: tuple[float, float], size: tuple[int, int]) -> Camera:
-    """A camera in direction `view` (azimuth, elevation in degrees) that has all points of `focus` in the
-    picture.
-    """
-    center = (focus.min(axis=0) + focus.max(axis=0)) / 2
-    reach = float(np.linalg.norm(focus - center, axis=1).max())
-    azimuth, elevation = np.radians(view)
-    direction = np.array(
-        [np.cos(elevation) * np.cos(azimuth), np.cos(elevation) * np.sin(azimuth), np.sin(elevation)]
-    )
-    up = np.array([0.0, 0.0, 1.0])
-    if planar:
-        direction, up = np.array([0.0, 0.0, 1.0]), np.array([0.0, 1.0, 0.0])
-    elif abs(direction[2]) > 0.999:
-        up = np.array([0.0, 1.0, 0.0])
-    eye = center + 4 * reach * direction
-    width, height = (OVERSAMPLING * s for s in size)
-    unit = Camera(eye, center, up, 1.0, (0.0, 0.0), not planar).project(focus)[:, :2]
-    low, high = unit.min(axis=0), unit.max(axis=0)
-    scale = 0.92 * float(np.min(np.array([width, height]) / np.maximum(high - low, 1e-9)))
-    middle = scale * (low + high) / 2
-    return Camera(eye, center, up, scale, (width / 2 - middle[0], height / 2 - middle[1]), not planar)
+    return np.concatenate([np.zeros((0, 3)), *(obstacle_mesh(o, np.zeros(3), 0.0)[0] for o in spheres)])
 
 
 def _annotate(fig, scene: dict, frame: Frame, color: str, scale: Normalize | None) -> None:
@@ -339,56 +196,99 @@ def _when(record: dict, step: int) -> str:
     )
 
 
+@dataclass(frozen=True)
+class Look:
+    """How a still is drawn."""
+
+    color: str = "body"
+    view: tuple[float, float] = (-60.0, 22.0)  # azimuth and elevation of the camera, degrees
+    size: tuple[int, int] = (1000, 720)  # pixels of the picture without legend
+    subdivide: int = 0  # how often triangles are cut, for a surface that is curved between the vertices
+    bare: bool = False  # the picture alone, without title and legend
+
+
+def _drawn(record: dict, run: Path, step: int, look: Look) -> tuple[np.ndarray, Normalize | None]:
+    """[height, width, 3] pixels, and the scale of the colours."""
+    frame = frame_of(record, run, step)
+    scene = scene_at(read_scene(record, run), frame)
+    focus = np.concatenate([points_of_bodies(scene, frame.vertices), _round_obstacles(scene)])
+    camera = camera_of(focus, scene["planar"], look.view, look.size)
+    reach = float(np.linalg.norm(focus - camera.target, axis=1).max())
+    if look.subdivide:
+        start = frame_of(record, run, min(frame_paths(record, run)))
+        frame = finer_frame(start, frame, len(scene["bodies"]), look.subdivide)
+    radii = _rod_radii(record, scene, frame)
+    surfaces, scale = _assemble(frame, scene, look.color, reach, radii, look.subdivide)
+    return picture(surfaces, camera, look.size, scene["planar"], camera.target, reach), scale
+
+
+def _save(path: Path, pixels: np.ndarray) -> None:
+    """Errors: OSError. Whole or not there."""
+    out = io.BytesIO()
+    plt.imsave(out, pixels, format="png", metadata={"Software": None}, pil_kwargs={"optimize": True})
+    write_whole_bytes(path, out.getvalue())
+
+
+def _save_annotated(path: Path, pixels: np.ndarray, title: str, annotate: Callable) -> None:
+    height, width = pixels.shape[:2]
+    fig, axis = plt.subplots(
+        figsize=(style.WIDE_IN, style.WIDE_IN * height / width + 0.2), layout="constrained"
+    )
+    axis.imshow(pixels, interpolation="antialiased")
+    axis.set_axis_off()
+    axis.set_title(title)
+    annotate(fig)
+    fig.savefig(path, metadata={"Software": None})
+    plt.close(fig)
+
+
+def _shown(look: Look) -> str:
+    """The sentence of the caption on what is seen."""
+    colored = (
+        "bodies in one colour each" if look.color == "body" else f"colour: {COLORINGS[look.color].label}"
+    )
+    surface = (
+        f"triangles cut {look.subdivide} times, curved between the vertices of the simulation"
+        if look.subdivide
+        else "sides of triangles as thin lines"
+    )
+    return f"Shown: {colored}; analytic obstacles grey, at their true size; {surface}."
+
+
 def render(
     run: str | Path,
     step: int | None = None,
-    color: str = "body",
     out: str | Path | None = None,
-    view: tuple[float, float] = (-60.0, 22.0),
-    size: tuple[int, int] = (1000, 720),
+    look: Look | None = None,
+    title: str = "",
 ) -> Path:
     """Writes a PNG of one frame and its caption; returns the PNG.
 
-    run: folder of run.json. step: a step with a frame, -1 for the start; None: the last one. view: azimuth
-    and elevation of the camera, degrees. size: pixels of the picture without legend. Raises UserError,
-    RecordError.
+    run: folder of run.json. step: a step with a frame, -1 for the start; None: the last one. title: what is
+    shown, instead of scene and formulation. Raises UserError, RecordError.
     """
-    run = Path(run).parent if Path(run).name == "run.json" else Path(run)
+    run, look = Path(run).parent if Path(run).name == "run.json" else Path(run), look or Look()
     record = read_record(run / "run.json")
-    paths, scene = frame_paths(record, run), read_scene(record, run)
+    paths = frame_paths(record, run)
     step = max(paths) if step is None else step
     if step not in paths:
         raise UserError(
             f"{run}: no frame of step {step}; there are {', '.join(map(str, paths))} (-1: the start)"
         )
+    pixels, scale = _drawn(record, run, step, look)
     frame = frame_of(record, run, step)
-    scene = scene_at(scene, frame)
-    focus = np.concatenate([points_of_bodies(scene, frame.vertices), _round_obstacles(scene)])
-    camera = _camera(focus, scene["planar"], view, size)
-    reach = float(np.linalg.norm(focus - camera.target, axis=1).max())
-    surfaces, scale = _assemble(frame, scene, color, reach)
-    picture = _picture(surfaces, camera, size, scene["planar"], camera.target, reach)
-    fig, axis = plt.subplots(
-        figsize=(style.WIDE_IN, style.WIDE_IN * size[1] / size[0] + 0.2), layout="constrained"
-    )
-    axis.imshow(picture, interpolation="antialiased")
-    axis.set_axis_off()
-    what = f"{record['labels']['scene']}, {record['labels']['formulation']}, {_when(record, step)}"
-    axis.set_title(what)
-    _annotate(fig, scene, frame, color, scale)
+    scene = scene_at(read_scene(record, run), frame)
+    title = title or f"{record['labels']['scene']}, {record['labels']['formulation']}"
+    what = f"{title}, {_when(record, step)}"
     name = "start" if step < 0 else f"step_{step:06}"
-    path = Path(out) if out else run / f"{name}_{color}.png"
+    path = Path(out) if out else run / f"{name}_{look.color}.png"
     path.parent.mkdir(parents=True, exist_ok=True)
-    fig.savefig(path, metadata={"Software": None})
-    plt.close(fig)
-    colored = "bodies in one colour each" if color == "body" else f"colour: {COLORINGS[color].label}"
-    path.with_suffix(".txt").write_text(
-        caption(
-            f"{what}. Shown: {colored}; analytic obstacles grey, at their true size; sides of triangles as"
-            f" thin lines. {_at_obstacles(frame, scene)}".rstrip(),
-            [run_row(record)],
-        )
-    )
+    if look.bare:
+        _save(path, pixels)
+    else:
+        _save_annotated(path, pixels, what, lambda fig: _annotate(fig, scene, frame, look.color, scale))
+    text = f"{what}. {_shown(look)} {_at_obstacles(frame, scene)}".rstrip()
+    path.with_suffix(".txt").write_text(caption(text, [run_row(record)]))
     return path
 
 
@@ -417,8 +317,19 @@ def main(arguments: list[str]) -> int:
         metavar=("WIDTH", "HEIGHT"),
         help="pixels (default: 1000 720)",
     )
+    parser.add_argument(
+        "--subdivide",
+        type=int,
+        choices=range(1, MOST_TIMES + 1),
+        default=0,
+        metavar="N",
+        help=f"cut every triangle into 4, N times (1 to {MOST_TIMES}), for a surface that is curved between"
+        " its vertices and smooth at rods; gaps are judged without",
+    )
+    parser.add_argument("--bare", action="store_true", help="the picture alone, without title and legend")
     given = parser.parse_args(arguments)
     if min(given.size) < 16 or max(given.size) > 8000:
         raise UserError("--size: from 16 to 8000 pixels")
-    print(render(given.run, given.step, given.color, given.out, tuple(given.view), tuple(given.size)))
+    look = Look(given.color, tuple(given.view), tuple(given.size), given.subdivide, given.bare)
+    print(render(given.run, given.step, given.out, look))
     return 0

@@ -12,7 +12,7 @@ from ..errors import UserError
 from ..frames import Frame, frame_of, frame_paths, frames_of, points_of_bodies, read_scene, scene_at
 from ..play.film import check_same_bodies, times_of
 from ..record_file import read_record
-from .binding import Binding, joined, whole
+from .binding import Binding, joined, refined, whole
 from .obstacle_mesh import obstacle_mesh
 
 COUNTED = ("body",)  # fields that are numbers of something: not between their neighbours'
@@ -150,6 +150,23 @@ def bodies(run: Run, parts: list[Binding]) -> Sequence:
             )
 
     return Sequence("frame", mesh, True, run.steps, run.times_s, states)
+
+
+def finer_frame(start: Frame, frame: Frame, n_bodies: int, times: int) -> Frame:
+    """A frame with every triangle cut into 4, `times` times, on a surface that is curved between the
+    vertices, smooth where the start is."""
+    parts = []
+    for body in range(n_bodies):
+        part = simulated(start, body)
+        if len(part.source):
+            part = refined(start.vertices, start.triangles, part.source, times, True)
+        parts.append(part)
+    bound = joined(parts)
+    of_vertices = {name: bound.values(values) for name, values in frame.of_vertices.items()}
+    of_vertices["body"] = np.asarray(frame.of_vertices["body"])[bound.corners[:, 0]]
+    of_triangles = {name: np.asarray(v)[bound.source] for name, v in frame.of_triangles.items()}
+    points = bound.points(frame.vertices, start.triangles)
+    return Frame(points, bound.triangles, _edges_of(start, bound), of_vertices, of_triangles)
 
 
 def obstacles(run: Run) -> Sequence | None:

@@ -13,6 +13,7 @@ from analysis.errors import UserError
 from analysis import render
 from analysis.frames import Frame, frame_paths, read_frame, read_scene
 from analysis.obstacle_rays import hits, primitive_gaps, signed_gap
+from analysis.picture import picture
 from analysis.rasterizer import Camera, DepthBuffer
 from analysis.record_file import read_record
 from tests.falling_cloth import CLOTH_ON_BALL
@@ -165,7 +166,7 @@ def test_an_obstacle_that_a_triangle_cuts_shows_through_it_and_no_other(z, shows
     camera = Camera(np.array([0.0, 0, 9]), np.zeros(3), np.array([0.0, 1, 0]), 3000.0, (60.0, 60.0))
     surfaces, _ = render._assemble(frame, scene, "body", 4.0)
     surfaces.corner_colors[:] = (0, 0, 1)
-    image = render._picture(surfaces, camera, (60, 60), False, np.zeros(3), 4.0)
+    image = picture(surfaces, camera, (60, 60), False, np.zeros(3), 4.0)
     grey = np.ptp(image, axis=-1) < 0.05
     assert grey[30, 30] == shows and not grey[2, 2]
 
@@ -183,16 +184,17 @@ def test_planar_stills_show_bodies_over_what_obstacles_forbid():
     camera = Camera(np.array([0.0, 0, 9]), np.zeros(3), np.array([0.0, 1, 0]), 10.0, (60.0, 60.0), False)
     surfaces, _ = render._assemble(frame, scene, "body", 4.0)
     surfaces.triangles = surfaces.triangles[:0]
-    image = render._picture(surfaces, camera, (60, 60), True, np.zeros(3), 4.0)
+    image = picture(surfaces, camera, (60, 60), True, np.zeros(3), 4.0)
     assert image[30, 30].max() < 0.9 and image[2, 2].min() == 1  # the disk
-    full = render._picture(render._assemble(frame, scene, "body", 4.0)[0], camera, (60, 60), True, np.zeros(3), 4.0)
+    full = picture(render._assemble(frame, scene, "body", 4.0)[0], camera, (60, 60), True, np.zeros(3), 4.0)
     assert np.ptp(full[30, 30]) > 0.2  # the sheet is drawn over it
 
 
 @pytest.mark.parametrize("color", ["body", "gap", "load", "stretch"])
 def test_a_still_is_written_with_its_caption_and_is_the_same_twice(run, tmp_path, color):
-    one = render.render(run, color=color, out=tmp_path / "one.png", size=SMALL)
-    two = render.render(run / "run.json", step=4, color=color, out=tmp_path / "two.png", size=SMALL)
+    look = render.Look(color=color, size=SMALL)
+    one = render.render(run, out=tmp_path / "one.png", look=look)
+    two = render.render(run / "run.json", step=4, out=tmp_path / "two.png", look=look)
     assert one.read_bytes() == two.read_bytes()
     caption = one.with_suffix(".txt").read_text()
     assert "inside an obstacle" in " ".join(caption.split()).lower() and "end of step 4, t = 0.05 s" in caption and "d_hat_m 0.005" in caption and "Machine:" in caption
@@ -210,6 +212,34 @@ def test_colours_follow_the_field(run):
     away = colors[~touched]
     assert np.ptp(away, axis=0).max() == 0  # one colour without contact
     assert np.abs(colors[touched] - away[0]).max(axis=1).min() > 0
+
+
+def test_a_finer_still_is_the_picture_alone_and_says_that_it_is_finer(run, tmp_path):
+    finer = render.render(run, out=tmp_path / "a.png", look=render.Look(size=SMALL, subdivide=2, bare=True), title="a cloth")
+    assert plt.imread(finer).shape[:2] == SMALL[::-1]
+    said = " ".join(finer.with_suffix(".txt").read_text().split())
+    assert said.startswith("a cloth, end of step 4, t = 0.05 s.") and "cut 2 times, curved between" in said and "thin lines" not in said
+
+
+def test_rods_are_as_thick_as_their_contact_says(run):
+    record, scene, paths = opened(run)
+    frame = read_frame(paths[4])
+    record["config"]["scene"]["bodies"][1]["offset_m"] = 0.004
+    assert list(render._rod_radii(record, scene, frame)) == [0.0] * 36 + [0.004] * 4
+    thin, thick = (render._assemble(frame, scene, "body", 0.3, radii)[0] for radii in (None, render._rod_radii(record, scene, frame)))
+    for surfaces, radius in ((thin, 0.006 * 0.3), (thick, 0.004)):
+        ring = surfaces.points[40:52]
+        np.testing.assert_allclose(np.linalg.norm(ring - frame.vertices[36], axis=1), radius, rtol=1e-9)
+
+
+def test_a_plane_fades_into_the_white_round_it():
+    frame, scene = _triangle_over_a_ball(3.0)
+    scene["obstacles"] = [{"name": "floor", "kind": "plane", "point_m": [0, 0, 0], "axis": [0, 0, 1]}]
+    surfaces, _ = render._assemble(frame, scene, "body", 4.0)
+    surfaces.triangles, surfaces.corner_colors = surfaces.triangles[:0], surfaces.corner_colors[:0]
+    camera = Camera(np.array([0.0, 0, 30]), np.zeros(3), np.array([0.0, 1, 0]), 130.0, (60.0, 60.0))
+    image = picture(surfaces, camera, (60, 60), False, np.zeros(3), 4.0).mean(axis=2)
+    assert image[30, 30] < 0.88 and image[30, 58] > 0.99 and (np.diff(image[30, 30:]) >= -1e-9).all()
 
 
 def test_what_cannot_be_drawn_is_said(run, tmp_path, capsys):

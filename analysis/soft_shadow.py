@@ -1,0 +1,100 @@
+"""Shadows of one light with a soft edge, that is wider the further the thing that throws them is away.
+
+Percentage-closer soft shadows (Fernando 2005): of every point, the mean distance of what is in front of it
+within the widest edge gives the width of the edge there, and the share of the light is that of samples in
+it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+
+from .rasterizer import Camera, DepthBuffer
+
+MOST_PIXELS = 1400  # of the map, each way
+SPAN = 5.0  # metres of the map for a metre of reach
+LIGHT_SIZE = 0.22  # width of the edge for a metre between a thing and its shadow
+WIDEST, SLIMMEST = 0.06, 0.004  # half widths of an edge for a metre of reach
+BIAS = 0.004  # metres for a metre of reach: what is in front by less is the surface itself
+SAMPLES, TURNS = 20, 5  # of a disc, and discs of neighbouring points
+STEEPEST = 4.0  # tangent of the steepest surface whose slope is taken into account
+GOLDEN_ANGLE = np.pi * (3 - np.sqrt(5))
+
+
+@dataclass(frozen=True)
+class ShadowMap:
+    """What the light sees."""
+
+    camera: Camera  # orthographic
+    depth: np.ndarray  # [pixels, pixels], metres, larger is nearer
+    reach: float
+
+    def lit(self, x: np.ndarray, normal: np.ndarray) -> np.ndarray:
+        """[n] share of the light, 0 to 1, that reaches points x [n, 3] m with unit normals [n, 3].
+
+        Cost: up to 2 SAMPLES look-ups a point.
+        """
+        seen = self.camera.project(x)
+        local = normal @ self.camera.axes().T
+        away = np.where(np.abs(local[:, 2:]) < 1e-3, 1e-3, local[:, 2:])
+        slope = np.clip(local[:, :2] / away, -STEEPEST, STEEPEST)  # m of depth for a m across the map
+        widest = WIDEST * self.reach
+        over, count = np.zeros(len(x)), np.zeros(len(x))
+        turn = np.arange(len(x)) % TURNS  # neighbours look at different samples
+        for offset in np.moveaxis(_discs(), 1, 0):
+            gap, nearer = self._before(seen, slope, widest * offset[turn])
+            over += np.where(nearer, gap, 0)
+            count += nearer
+        some = np.flatnonzero(count > 0)
+        width = LIGHT_SIZE * over[some] / count[some]
+        width = np.clip(width, SLIMMEST * self.reach, widest)
+        dark = np.zeros(len(x))
+        for offset in np.moveaxis(_discs(), 1, 0):
+            dark[some] += self._before(seen[some], slope[some], width[:, None] * offset[turn[some]])[1]
+        return 1 - dark / SAMPLES
+
+    def _before(self, seen, slope, offset) -> tuple[np.ndarray, np.ndarray]:
+        """[n] by how much (m) what the map has at an offset [n, 2] m is in front of the plane of the surface,
+        and whether it is something else than that.
+        """
+        column, row = np.floor(seen[:, :2] + offset * self.camera.scale).astype(int).T
+        inside = (column >= 0) & (column < len(self.depth)) & (row >= 0) & (row < len(self.depth))
+        there = np.full(len(seen), -np.inf)
+        there[inside] = self.depth[row[inside], column[inside]]
+        gap = there - (seen[:, 2] + (slope * offset).sum(axis=1))
+        return gap, gap > BIAS * self.reach * (1 + np.abs(slope).sum(axis=1))
+
+
+def _discs() -> np.ndarray:
+    """[TURNS, SAMPLES, 2] samples that are even over the unit disc (Vogel's spiral), turned."""
+    k = np.arange(SAMPLES)
+    r, angle = np.sqrt((k + 0.5) / SAMPLES), k * GOLDEN_ANGLE + 2 * np.pi / TURNS * np.arange(TURNS)[:, None]
+    return np.stack([r * np.cos(angle), r * np.sin(angle)], axis=2)
+
+
+def shadow_map(
+    points: np.ndarray,
+    triangles: np.ndarray,
+    others: Callable[[Camera, int], list[np.ndarray]],
+    to_light: np.ndarray,
+    center: np.ndarray,
+    reach: float,
+    pixels: int = MOST_PIXELS,
+) -> ShadowMap:
+    """Of triangles and of what `others` draws: depths [pixels, pixels] by a camera. to_light: unit vector."""
+    camera = Camera(
+        center + 10 * reach * to_light,
+        center,
+        np.array([0.0, 1.0, 0.0]),
+        pixels / (SPAN * reach),
+        (pixels / 2, pixels / 2),
+        False,
+    )
+    buffer = DepthBuffer(pixels, pixels)
+    buffer.draw(camera.project(points), triangles)
+    for depth in others(camera, pixels):
+        buffer.depth = np.maximum(buffer.depth, depth)
+    return ShadowMap(camera, buffer.depth, reach)
