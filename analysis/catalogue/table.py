@@ -35,7 +35,9 @@ class Row:
 
 
 def row_of(entry: Entry, done: Done) -> Row:
-    """The outcome, and every expectation held against the record; that it ends `ok` is one of every scene that starts."""
+    """The outcome, and every expectation held against the record; that it ends `ok` is one of every scene
+    that starts.
+    """
     record = done.record
     status, found = record["status"], judge(record, entry.data["expect"])
     outcome = "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
