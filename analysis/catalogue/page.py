@@ -71,11 +71,12 @@ def _say(entry: Entry, runs: list[Done], kept: dict) -> None:
     print("\n".join(aligned([""] * 6, rows)[1:]), flush=True)
 
 
-def _draw(runs: Path) -> None:
-    """Of the scenes that start, in the order of their names."""
+def _draw(runs: Path, scenes: dict[str, dict]) -> None:
+    """Of the scenes that start and have a result with this formulation, in the order of their names."""
     found = {}
     for entry in entries([]):
-        if not entry.is_rejected:
+        has = any(row["formulation"] == STILLS for row in scenes.get(entry.name, {"rows": []})["rows"])
+        if has and not entry.is_rejected:
             (done,) = run_scene(entry, [STILLS], runs)
             found[entry.name] = done.folder, tuple(entry.data.get("view_deg", VIEW))
     print(sheet.contact_sheet(found, PICTURE))
@@ -84,7 +85,7 @@ def _draw(runs: Path) -> None:
 @tells("catalogue")
 def main(argv: list[str]) -> int:
     args = _arguments(argv)
-    asked, scenes, red = entries(args.names), table.read(), 0
+    asked, scenes = entries(args.names), table.read()
     for entry in [] if args.no_run else asked:
         print(f"catalogue: {entry.name}", file=sys.stderr)
         runs = run_scene(entry, args.formulations, args.runs)
@@ -93,10 +94,8 @@ def main(argv: list[str]) -> int:
         table.write(scenes)
         write_page(scenes)
     if args.sheet:
-        _draw(args.runs)
+        _draw(args.runs, scenes)
     if args.no_run:
         write_page(scenes)
-    red = sum(
-        bool(row["red"]) for entry in asked if entry.name in scenes for row in scenes[entry.name]["rows"]
-    )
-    return 1 if red else 0
+    kept = [scenes[entry.name] for entry in asked if entry.name in scenes]
+    return 1 if any(row["red"] for one in kept for row in one["rows"]) else 0

@@ -15,7 +15,7 @@ from ..text_table import aligned
 from .counts import counts_of
 from .entry import FULL, MINI, Entry, entries, write_config
 
-LARGE = 500_000  # vertices, from which on a scene is built only where it is named: it takes minutes and gigabytes
+LARGE = 500_000  # vertices, from which on a scene is built only where it is named
 
 
 def _arguments(argv: list[str]) -> argparse.Namespace:
@@ -49,7 +49,7 @@ def _print_table(asked: list[Entry], build_large: bool) -> int:
         rows.append([entry.name, *(text for text, _ in cells), entry.data["stresses"]])
         complaints += [wrong for _, wrong in cells if wrong]
     print("\n".join(aligned(["scene", "mini", "full", "what it stresses"], rows, {1, 2})))
-    print("mini, full: vertices/faces of the whole scene; in brackets as its file states them, not built: name it")
+    print("mini, full: vertices/faces of the whole scene; in brackets: stated, and built where it is named")
     for wrong in complaints:
         print(wrong)
     return 1 if complaints else 0

@@ -18,7 +18,6 @@ from .runs import Done
 
 FILE = ROOT / "results" / "catalogue.json"
 NAME = "barrierbench.catalogue_results/1"
-FAILED, RED, AS_EXPECTED = "failed", "red", "as expected"
 
 
 @dataclass
@@ -34,22 +33,22 @@ class Row:
     seen: list = field(default_factory=list)  # of checks that hold
     run: str = ""
 
-    @property
-    def ends_well(self) -> bool:
-        return self.outcome == "ok"
-
 
 def row_of(entry: Entry, done: Done) -> Row:
-    """The outcome, and every expectation held against the record."""
+    """The outcome, and every expectation held against the record; that it ends `ok` is one of every scene
+    that starts.
+    """
     record = done.record
     status, found = record["status"], judge(record, entry.data["expect"])
+    outcome = "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"]
+    ends = [] if outcome == "ok" or entry.is_rejected else [f"ends_ok: {outcome}"]
     return Row(
         done.formulation,
-        "not_valid" if status["outcome"] == "ok" and not status["valid"] else status["outcome"],
+        outcome,
         status["detail"],
         round(seconds_of_run(record), 1),
         record["summary"]["newton_iterations"],
-        [f"{name}: {finding.saw}" for name, finding in found if finding.red],
+        [*ends, *(f"{name}: {finding.saw}" for name, finding in found if finding.red)],
         [f"{name}: {finding.saw}" for name, finding in found if not finding.red],
         record["ids"]["run_id"][:ID_DIGITS],
     )

@@ -39,6 +39,8 @@ def test_a_fast_scene_shows_what_it_expects(tmp_path, name):
     row = table.row_of(entry, run)
     assert row.outcome == "ok" and not row.red, row.red
     assert len(row.seen) == len(entry.data["expect"])
+    run.record["status"]["outcome"] = "newton_stall"
+    assert table.row_of(entry, run).red == ["ends_ok: newton_stall"]
 
 
 def test_every_scene_is_small_and_the_program_takes_it():
