@@ -58,10 +58,9 @@ int plan(const PlanVerb& verb, const CommonOptions& common) {
     book.add_records(folder);
   }
   std::vector<RunSize> sizes;
-  const SeenCase note_size = [&](const SweepCase& one, const RunConfig& config, const std::string& text) {
-    sizes.push_back(book.size_of(config, one.config_id, text));
-  };
-  Sweep sweep = open_sweep(verb.sweep, common, note_size);
+  Sweep sweep = open_sweep(verb.sweep, common, [&](const SweepCase&, const RunConfig& config) {
+    sizes.push_back(book.size_of(config));
+  });
   sweep.options.argv = common.argv;
   sweep.options.plugins = common.loaded;
   if (verb.records.empty()) book.add_records(sweep.out);

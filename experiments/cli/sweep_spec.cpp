@@ -48,7 +48,7 @@ std::string resolve(const SweepSpec& spec, SweepCase& one, const SeenCase& seen)
   }
   const std::string text = resolved_json(config);
   one.config_id = config_id(std::string_view(text));
-  if (seen) seen(one, config, text);
+  if (seen) seen(one, config);
   const auto repetition = one.swept.find("repetition");
   return sha256_hex(text) + (repetition == one.swept.end() ? "" : " " + repetition->second);
 }

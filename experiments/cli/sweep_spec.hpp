@@ -43,8 +43,7 @@ struct SweepSpec {
 /// The config of one case. Errors: ConfigError, as load_run.
 RunConfig resolved(const SweepSpec& spec, const SweepCase& one);
 
-/// A case with its config_id, its config, and that as resolved_json.
-using SeenCase = std::function<void(const SweepCase&, const RunConfig&, const std::string&)>;
+using SeenCase = std::function<void(const SweepCase&, const RunConfig&)>;
 
 /// Reads a sweep file (configs/schema/sweep.schema.json) and resolves every case, so that a mistake in the
 /// last one is found before the first one runs. A case of an axis with "reference": true (one an axis at
