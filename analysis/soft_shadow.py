@@ -65,7 +65,9 @@ class ShadowMap:
         there = np.full(len(seen), -np.inf)
         there[inside] = self.depth[row[inside], column[inside]]
         gap = there - (seen[:, 2] + (slope * offset).sum(axis=1))
-        return gap, gap > BIAS * self.reach * (1 + np.abs(slope).sum(axis=1))
+        bias = BIAS * self.reach
+        steep = max(bias, 0.6 / self.camera.scale)  # a point is within half a pixel of where the map was made
+        return gap, gap > bias + steep * np.abs(slope).sum(axis=1)
 
 
 def _discs() -> np.ndarray:
