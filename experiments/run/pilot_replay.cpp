@@ -12,7 +12,7 @@ void PilotReplay::begin(const Positions& x, int step) {
     Archive memory(pilot_.memory[static_cast<std::size_t>(step)]);
     system_.keep(memory);
   }
-  system_.begin_step(x, prediction_, pilot_.config.time.dt, 1.0);
+  system_.begin_step(x, prediction_, pilot_.config.time.dt, method_.integrator->weight_factor());
 }
 
 void PilotReplay::find_rows(int step, Refresh refresh) {
