@@ -13,7 +13,7 @@ from .. import style
 from ..render import render
 
 COLUMNS = 5
-PIXELS = (520, 400)
+PIXELS = (360, 280)
 
 
 def contact_sheet(runs: dict[str, tuple[Path, tuple]], out: Path) -> Path:
