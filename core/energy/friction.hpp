@@ -29,7 +29,7 @@ struct MotionTerms {
 /// have no direction. Host-device. Total.
 template <class T>
 BB_HD inline MotionTerms<T> friction_terms(const Vec<T, 3>& slide, T y, const Vec<T, 3>& normal, T strength,
-                                             const FrictionProfile<T>& profile) {
+                                           const FrictionProfile<T>& profile) {
   const T turning = strength * profile.f1_over_y, along = strength * profile.f2;
   MotionTerms<T> out{strength * profile.f0, turning * slide, {}};
   if (y * profile.f1_over_y > std::numeric_limits<T>::epsilon()) {
@@ -44,8 +44,7 @@ BB_HD inline MotionTerms<T> friction_terms(const Vec<T, 3>& slide, T y, const Ve
 
 /// The same in N points, of whose motions sum w_i dx_i is the relative one: gradient w_i g, blocks w_i w_j H. Host-device.
 template <class T, int N>
-BB_HD inline ElementTerms<T, 3 * N> motion_in_points(const MotionTerms<T>& terms,
-                                                       const Vec<T, N>& weights) {
+BB_HD inline ElementTerms<T, 3 * N> motion_in_points(const MotionTerms<T>& terms, const Vec<T, N>& weights) {
   ElementTerms<T, 3 * N> out;
   out.energy = terms.energy;
   for (int i = 0; i < N; ++i) {

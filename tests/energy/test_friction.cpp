@@ -28,7 +28,7 @@ ElementTerms<T, 12> terms_of(const FrictionLaw<T>& law, const Vec<T, 12>& motion
   const Vec<T, 3> n = normal.cast<T>(), slide = slide_of<T>(relative, n);
   const T y = slide.norm();
   return motion_in_points<T, 4>(friction_terms<T>(slide, y, n, T(strength), law.eval(y, T(eps))),
-                                  weights.cast<T>());
+                                weights.cast<T>());
 }
 
 /// Motions whose slide is `length`, with some motion along the normal that costs nothing.
