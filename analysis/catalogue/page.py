@@ -57,7 +57,7 @@ def write_page(scenes: dict[str, dict], page: Path = PAGE) -> None:
     """Of everything that is kept."""
     known = entries([])
     robust_rows = {name: rows for name, rows in robust.read().items() if name in names()}
-    write_whole(page, markdown_page(known, scenes, robust_rows))
+    write_whole(page, markdown_page(known, scenes, robust_rows, PICTURE.is_file()))
 
 
 def _line(name: str, row: dict) -> list[str]:

@@ -27,8 +27,11 @@ def _by_label(kept: dict) -> dict[str, dict]:
     return {row["formulation"]: row for row in kept["rows"]}
 
 
-def markdown_page(asked: list[Entry], scenes: dict[str, dict], robust: dict[str, list[dict]]) -> str:
+def markdown_page(
+    asked: list[Entry], scenes: dict[str, dict], robust: dict[str, list[dict]], has_picture: bool
+) -> str:
     """The whole page, of all scenes that there are results of."""
+    picture = ["![The end of every mini scene](../docs/catalogue.png)", ""] if has_picture else []
     here = [entry for entry in asked if entry.name in scenes]
     abouts = [scenes[entry.name]["about"] for entry in here]
     dates, machines, commits = (
@@ -52,8 +55,7 @@ def markdown_page(asked: list[Entry], scenes: dict[str, dict], robust: dict[str,
             + "."
         ),
         "",
-        "![The end of every mini scene](../docs/catalogue.png)",
-        "",
+        *picture,
         "## Outcomes",
         "",
         *markdown(
