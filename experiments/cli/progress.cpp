@@ -104,6 +104,7 @@ const std::atomic<bool>& interrupted() { return stop; }
 void install_interrupt() {
   std::signal(SIGINT, on_signal);
   std::signal(SIGTERM, on_signal);
+  std::signal(sweep_died, [](int) { stop.store(true); });
   // under nohup a hang-up is ignored, and stays so
   if (std::signal(SIGHUP, on_signal) == SIG_IGN) std::signal(SIGHUP, SIG_IGN);
 }

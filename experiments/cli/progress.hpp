@@ -3,6 +3,7 @@
 
 #include <atomic>
 #include <condition_variable>
+#include <csignal>
 #include <functional>
 #include <mutex>
 #include <string>
@@ -44,7 +45,11 @@ class ProgressLine {
   std::thread teller_;  // a step may take longer than the time between two lines
 };
 
-/// Set by SIGINT, SIGTERM and SIGHUP once install_interrupt() was called.
+/// What the system sends a run whose sweep has died: once for every thread that the sweep had, so that, unlike the others, it
+/// asks for nothing more when it comes again.
+constexpr int sweep_died = SIGUSR1;
+
+/// Set by SIGINT, SIGTERM, SIGHUP and sweep_died once install_interrupt() was called.
 const std::atomic<bool>& interrupted();
 void install_interrupt();
 

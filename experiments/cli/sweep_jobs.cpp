@@ -10,6 +10,7 @@
 #include <csignal>
 
 #include "core/record/writer.hpp"
+#include "experiments/cli/progress.hpp"
 
 namespace bb::cli {
 namespace {
@@ -27,7 +28,7 @@ std::string taken(int file) {
 /// Between fork and exec: only what may be called there.
 [[noreturn]] void become(std::vector<char*>& words, int out, int err, pid_t parent) {
   ::setpgid(0, 0);
-  ::prctl(PR_SET_PDEATHSIG, SIGTERM);
+  ::prctl(PR_SET_PDEATHSIG, sweep_died);
   if (::getppid() != parent) ::_exit(75);
   ::dup2(out, STDOUT_FILENO);
   ::dup2(err, STDERR_FILENO);
