@@ -15,7 +15,7 @@ DRAPE = {
     "matching": {"rule": "equal_force"}, "time": {"steps": 12}, "passes": {"time": True, "audit": True},
     "output": {"checkpoint_every": 2}, "threads": 1}
 CREEPING = {
-    "bodies": [{"name": "cloth", "mesh": {"generator": "grid", "n_x": 6, "n_y": 6}, "transform": {"translate_m": [0, 0, 0.32]},
+    "bodies": [{"name": "cloth", "mesh": {"generator": "grid", "n_x": 12, "n_y": 12}, "transform": {"translate_m": [0, 0, 0.32]},
                 "material": {"youngs_N_per_m": 50, "membrane_creep_per_s": 5, "bending_J": 1e-3, "bending_creep_per_s": 5,
                              "bending_yield_rad": 0.01, "cloth_tension_N_per_m": 20, "cloth_shear_N_per_m": 5, "cloth_creep_per_s": 5}}],
     "obstacles": [{"name": "ball", "kind": "sphere", "radius_m": 0.3}]}
@@ -29,7 +29,7 @@ CASES = {
     "elasticity_inclusive": {"/formulation": "cubic_dynamic_lagged"},
     "device host": {"/device": "host"},
     "device host, ipc_adaptive": {"/device": "host", "/formulation": "ipc2020"},
-    "creep": {"/scene": CREEPING, "/formulation/d_hat_m": 0.01, "/time/dt_s": 0.01},
+    "creep": {"/scene": CREEPING, "/formulation/d_hat_m": 0.01, "/time/dt_s": 0.01, "/time/steps": 60},
     "bdf2": {"/integrator/name": "bdf2"},
     "newmark": {"/integrator/name": "newmark"},
     "bdf2 with retries": {"/integrator/name": "bdf2", "/step_solver/retries": 8, "/step_solver/max_iterations": 5},
