@@ -112,7 +112,9 @@ def _operations(config: dict, name: str) -> list[dict]:
 
 
 def turned(record: dict, body: str, turns: float) -> Finding:
-    """The largest turn, in turns, that an operation on the body or its pins made until the last step."""
+    """The largest turn, in turns, that the config asks of the body or its pins until the last step of the
+    run. Prescribed vertices are where it says, or the step has not ended; no position is read here.
+    """
     spins = [step for step in _operations(record["config"], body) if step.get("angular_velocity_rad_per_s")]
     if not spins or not record["steps"]:
         return Finding(None, f"nothing turns {body}, or no step")

@@ -128,7 +128,8 @@ def _robust(robust: dict[str, list[dict]]) -> list[str]:
     return [
         "## Jittered starts",
         "",
-        "Written by `./bench robust`: a seed passes when its run ends `ok` without a crossing.",
+        "Written by `./bench robust`: a seed passes when its run ends `ok` without a crossing, or, of a scene"
+        " that must be rejected, when it is.",
         "",
         *markdown(head, lines),
         "",

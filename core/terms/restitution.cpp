@@ -17,7 +17,11 @@ namespace {
 
 constexpr double least_speed = 1e-2;  // m/s; pairs that meet slower are damped as those that meet with it
 
-double restitution_of(const std::optional<double>& own) { return own.value_or(1); }
+/// What a side asks for, in units of 1 over the speed at which a pair met.
+template <class Side>
+double damping_of(const Side& side) {
+  return restitution_damping(side.restitution.value_or(1));
+}
 
 /// A pair that is in contact, and the speed at which it met.
 struct Met {
@@ -31,6 +35,8 @@ class Restitution final : public Term {
   Restitution(const Scene& scene, const TermOptions& options, const TermList& before)
       : scene_(scene), precision_(options.precision) {
     for (const auto& term : before) before_.push_back(term.get());
+    for (const Body& body : scene.bodies) of_body_.push_back(damping_of(body));
+    for (const Obstacle& obstacle : scene.obstacles) of_obstacle_.push_back(damping_of(obstacle));
     families_.resize(1);
   }
   std::string_view name() const override { return "restitution"; }
@@ -90,6 +96,17 @@ class Restitution final : public Term {
   }
 
  private:
+  /// Of a body or an obstacle of the scene.
+  struct Sides {
+    const Restitution& term;
+    double operator()(const Body& side) const {
+      return term.of_body_[static_cast<std::size_t>(&side - term.scene_.bodies.data())];
+    }
+    double operator()(const Obstacle& side) const {
+      return term.of_obstacle_[static_cast<std::size_t>(&side - term.scene_.obstacles.data())];
+    }
+  };
+
   ContactLoads contacts_now() const {
     ContactLoads out;
     for (const Term* term : before_) term->add_loads(x_n_, out);
@@ -99,13 +116,14 @@ class Restitution final : public Term {
   /// Those that are damped become elements.
   void take_rows(ContactLoads contacts) {
     contacts_ = std::move(contacts);
-    row_.clear(), vertices_.clear(), share_.clear();
-    const auto of = [](const auto& side) { return restitution_of(side.restitution); };
+    row_.clear(), vertices_.clear(), asked_.clear();
+    const Sides sides{*this};
     for (std::size_t r = 0; r < contacts_.size(); ++r) {
-      const double e = combined_of_sides(scene_, contacts_, r, CombineRule::min, of);
-      if (e >= 1) continue;
+      // the lesser restitution damps more
+      const double asked = combined_of_sides(scene_, contacts_, r, CombineRule::max, sides);
+      if (asked == 0) continue;
       row_.push_back(r);
-      share_.push_back(e);
+      asked_.push_back(asked);
       vertices_.insert(vertices_.end(), &contacts_.stencil[4 * r], &contacts_.stencil[4 * r] + 4);
     }
     damping_.assign(row_.size(), 0.0);
@@ -150,7 +168,7 @@ class Restitution final : public Term {
       throw std::logic_error("the rows of a step changed before their loads");
     for (std::size_t e = 0; e < row_.size(); ++e) {
       const std::size_t r = row_[e];
-      damping_[e] = now.load[r] * restitution_damping(share_[e]) / speed_at_meeting(contacts_.pair[r]);
+      damping_[e] = now.load[r] * asked_[e] / speed_at_meeting(contacts_.pair[r]);
     }
     loads_known_ = true;
   }
@@ -170,21 +188,22 @@ class Restitution final : public Term {
   const Scene& scene_;
   Precision precision_;
   std::vector<const Term*> before_;
-  double dt_ = 0;                 // s
-  Positions x_n_, speed_;         // m at the start of the step, m/s of the step before
-  ContactLoads contacts_;         // at x_n
-  std::vector<std::size_t> row_;  // [n] the contact of each element
-  std::vector<double> share_;     // [n] restitution
-  std::vector<double> damping_;   // [n] N s/m
-  std::vector<int> vertices_;     // [4 n]
-  std::vector<Met> met_;          // pairs ascending
+  double dt_ = 0;                              // s
+  Positions x_n_, speed_;                      // m at the start of the step, m/s of the step before
+  ContactLoads contacts_;                      // at x_n
+  std::vector<std::size_t> row_;               // [n] the contact of each element
+  std::vector<double> asked_;                  // [n] 1: damping_of its sides
+  std::vector<double> of_body_, of_obstacle_;  // the same of each, 1
+  std::vector<double> damping_;                // [n] N s/m
+  std::vector<int> vertices_;                  // [4 n]
+  std::vector<Met> met_;                       // pairs ascending
   bool loads_known_ = false;
 };
 
 }  // namespace
 
 PlanItem needs_restitution(const TermNeeds& needs) {
-  const auto damps = [](const auto& one) { return restitution_of(one.restitution) < 1; };
+  const auto damps = [](const auto& one) { return one.restitution.value_or(1) < 1; };
   const auto& bodies = needs.scene.bodies;
   const auto& obstacles = needs.scene.obstacles;
   const bool some = std::any_of(bodies.begin(), bodies.end(), damps) ||
