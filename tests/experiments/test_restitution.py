@@ -15,7 +15,7 @@ def peak(program: str, folder: Path, *words: str) -> float:
     """Height of the first peak after the contact, as a share of the height of fall, both from where the contact begins."""
     d_hat = json.loads(SCENE.read_text())["formulation"]["d_hat_m"]
     done = subprocess.run(
-        [program, "run", str(SCENE), "--out", str(folder), "--progress", "none", "--set", "/output/frames_every=1", *words],
+        [program, "run", str(SCENE), "--out", str(folder), "--progress", "none", "--set", "/output/frames_every=20", *words],
         capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
     motion = read_motion(folder)
