@@ -60,12 +60,16 @@ Audit::Audit(AuditMesh mesh) : mesh_(std::move(mesh)), vertices_(colliding_verti
                       static_cast<long>(mesh_.obstacles.size()), primitives_.needed(mesh_.obstacles)};
 }
 
-void Audit::check_state(const Positions& x, int step) {
-  ledger_.add(audit_state(mesh_, primitives_, x, ledger_.states == 0), step);
+StateAudit Audit::check_state(const Positions& x, int step) {
+  const StateAudit found = audit_state(mesh_, primitives_, x, ledger_.states == 0);
+  ledger_.add(found, step);
+  return found;
 }
 
-void Audit::check_motion(const Positions& x0, const Positions& x1, int step, double tolerance) {
-  ledger_.add(audit_motion(mesh_, vertices_, primitives_, x0, x1, tolerance), step);
+MotionAudit Audit::check_motion(const Positions& x0, const Positions& x1, int step, double tolerance) {
+  const MotionAudit found = audit_motion(mesh_, vertices_, primitives_, x0, x1, tolerance);
+  ledger_.add(found, step);
+  return found;
 }
 
 }  // namespace bb::audit

@@ -17,11 +17,12 @@ class Audit {
   explicit Audit(AuditMesh mesh);
 
   /// Judges x [3 n_vertices], m. The first call includes pairs within one rigid body, later calls skip them.
-  void check_state(const Positions& x, int step);
+  /// Returns what this state adds to the ledger.
+  StateAudit check_state(const Positions& x, int step);
 
   /// Judges the linear motion x0 -> x1, m, both ends as committed. @param tolerance m, a tenth of
-  /// the park distance
-  void check_motion(const Positions& x0, const Positions& x1, int step, double tolerance);
+  /// the park distance. Returns what this motion adds to the ledger.
+  MotionAudit check_motion(const Positions& x0, const Positions& x1, int step, double tolerance);
 
   /// Tells of a state that the run reached and that is not the end of the last judged motion: an audit with
   /// such a hole is never ok.
@@ -32,6 +33,13 @@ class Audit {
     return surface_gap(mesh_, vertices_, primitives_, x, reach);
   }
 
+  /// Gap of each colliding vertex to the surface, see surface_gap.hpp.
+  std::vector<double> vertex_gaps_of(const Positions& x, double reach) const {
+    return vertex_gaps(mesh_, vertices_, x, reach);
+  }
+
+  const AuditMesh& mesh() const { return mesh_; }
+  const std::vector<int>& vertices() const { return vertices_; }  // those that collide, ascending
   const AuditLedger& ledger() const { return ledger_; }
   /// Goes on from an earlier ledger of an audit of the same mesh: what was judged since never happened.
   void restore(const AuditLedger& earlier) { ledger_ = earlier; }

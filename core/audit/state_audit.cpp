@@ -2,6 +2,7 @@
 #include "core/audit/state_audit.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "core/audit/box_tree.hpp"
 #include "core/audit/obstacle_tally.hpp"
@@ -99,8 +100,18 @@ class StateJudge {
     const auto p = mesh_.edges.col(e);
     const auto q = mesh_.triangles.col(t);
     if (exempt(p, q)) return;
-    count(segment_triangle(x_.col(p[0]), x_.col(p[1]), x_.col(q[0]), x_.col(q[1]), x_.col(q[2])),
-          {PairKind::edge_triangle, e, t}, mesh_.all_prescribed(p) && mesh_.all_prescribed(q), sum);
+    const Crossing found =
+        segment_triangle(x_.col(p[0]), x_.col(p[1]), x_.col(q[0]), x_.col(q[1]), x_.col(q[2]));
+    const PairName name{PairKind::edge_triangle, e, t};
+    count(found, name, mesh_.all_prescribed(p) && mesh_.all_prescribed(q), sum);
+    if (found == Crossing::crossing) sum.keep_deeper(name, reach_through(p, q));
+  }
+  double reach_through(const Eigen::Vector2i& p, const Eigen::Vector3i& q) const {
+    const Vec3d normal = (x_.col(q[1]) - x_.col(q[0])).cross(x_.col(q[2]) - x_.col(q[0]));
+    const double size = normal.norm();
+    if (!(size > 0.0)) return 0.0;
+    const auto height = [&](int v) { return std::abs(normal.dot(x_.col(v) - x_.col(q[0]))) / size; };
+    return std::min(height(p[0]), height(p[1]));
   }
   void edge_edge_2d(int e, int f, StateAudit& sum) const {
     const auto p = mesh_.edges.col(e), q = mesh_.edges.col(f);
@@ -121,6 +132,13 @@ void StateAudit::add_crossing(const PairName& name, bool prescribed) {
   keep_first(prescribed ? first_fault : first_bad, name);
 }
 
+// Of equally deep ones the lower name, so that no order of threads shows.
+void StateAudit::keep_deeper(const std::optional<PairName>& name, double depth_m) {
+  if (!name) return;
+  const bool deeper = !deepest || depth_m > deepest_m || (depth_m == deepest_m && *name < *deepest);
+  if (deeper) deepest = name, deepest_m = depth_m;
+}
+
 void StateAudit::merge(const StateAudit& other) {
   pairs += other.pairs, queries += other.queries;
   crossings += other.crossings, touches += other.touches;
@@ -132,6 +150,7 @@ void StateAudit::merge(const StateAudit& other) {
   touching.insert(touching.end(), other.touching.begin(), other.touching.end());
   keep_first(first_bad, other.first_bad);
   keep_first(first_fault, other.first_fault);
+  keep_deeper(other.deepest, other.deepest_m);
 }
 
 StateAudit audit_state(const AuditMesh& mesh, const ObstaclePrimitives& primitives, const Positions& x,

@@ -24,7 +24,10 @@ struct StateAudit {
   std::vector<PairName> touching;       // while pairs are collected; then decided, and empty
   std::optional<PairName> first_bad;    // the lowest in PairName's order, touches aside
   std::optional<PairName> first_fault;  // the same of the scene's faults, which are in no other count
+  std::optional<PairName> deepest;      // crossing of edge and triangle (3D), and how far the edge reaches
+  double deepest_m = 0.0;               // through the triangle's plane, at its nearer end; rounded, m
   void add_crossing(const PairName& name, bool prescribed);
+  void keep_deeper(const std::optional<PairName>& name, double depth_m);
   void merge(const StateAudit& other);
 };
 

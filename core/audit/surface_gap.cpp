@@ -1,5 +1,7 @@
 #include "core/audit/surface_gap.hpp"
 
+#include <oneapi/tbb/parallel_for.h>
+
 #include <algorithm>
 #include <array>
 
@@ -46,17 +48,21 @@ class GapMeasure {
 
   double between() const {
     Least out;
-    if (mesh_.planar) {
-      out.merge(vertex_to_all(mesh_.edges, [this](const Vec3d& p, const auto& e) {
-        return closest_to_origin(at(e[0]) - p, at(e[1]) - p).norm();
-      }));
-    } else {
-      out.merge(vertex_to_all(mesh_.triangles, [this](const Vec3d& p, const auto& t) {
-        return closest_to_origin(at(t[0]) - p, at(t[1]) - p, at(t[2]) - p).norm();
-      }));
-      out.merge(edge_to_edge());
-    }
+    for (const double gap : of_vertices()) out.take(gap);
+    if (!mesh_.planar) out.merge(edge_to_edge());
     return out.gap;
+  }
+
+  /// One number for each vertex, as vertex_gaps says.
+  std::vector<double> of_vertices() const {
+    if (mesh_.planar) {
+      return vertex_to_all(mesh_.edges, [this](const Vec3d& p, const auto& e) {
+        return closest_to_origin(at(e[0]) - p, at(e[1]) - p).norm();
+      });
+    }
+    return vertex_to_all(mesh_.triangles, [this](const Vec3d& p, const auto& t) {
+      return closest_to_origin(at(t[0]) - p, at(t[1]) - p, at(t[2]) - p).norm();
+    });
   }
 
  private:
@@ -95,19 +101,23 @@ class GapMeasure {
   }
 
   template <class Ids, class F>
-  Least vertex_to_all(const Ids& primitives, F&& distance) const {
+  std::vector<double> vertex_to_all(const Ids& primitives, F&& distance) const {
     const BoxTree tree(boxes(primitives));
-    return tally_over<Least>(vertices_.size(), [&](std::size_t i, Least& sum) {
+    std::vector<double> out(vertices_.size());
+    tbb::parallel_for(std::size_t{0}, out.size(), [&](std::size_t i) {
       const int v = vertices_[i];
+      Least least;
       const Eigen::Matrix<int, 1, 1> alone(v);
       tree.query(box(alone), [&](int f) {
         const auto ids = primitives.col(f);
         const bool own =
             mesh_.planar && !mesh_.opposite.empty() && mesh_.opposite[static_cast<std::size_t>(f)] == v;
         if (own || left_out(alone, ids)) return;
-        take(distance(at(v), ids) - thickness(alone) - thickness(ids), sum);
+        take(distance(at(v), ids) - thickness(alone) - thickness(ids), least);
       });
+      out[i] = least.gap;
     });
+    return out;
   }
   Least edge_to_edge() const {
     const BoxTree tree(boxes(mesh_.edges));
@@ -159,6 +169,11 @@ SurfaceGap surface_gap(const AuditMesh& mesh, const std::vector<int>& vertices,
                        const ObstaclePrimitives& primitives, const Positions& x, double reach) {
   const GapMeasure measure(mesh, vertices, x, reach);
   return {measure.to_obstacles(primitives), measure.between()};
+}
+
+std::vector<double> vertex_gaps(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x,
+                                double reach) {
+  return GapMeasure(mesh, vertices, x, reach).of_vertices();
 }
 
 }  // namespace bb::audit

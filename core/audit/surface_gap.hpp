@@ -26,4 +26,10 @@ struct SurfaceGap {
 SurfaceGap surface_gap(const AuditMesh& mesh, const std::vector<int>& vertices,
                        const ObstaclePrimitives& primitives, const Positions& x, double reach);
 
+/// Of each of `vertices` the gap (m, thickness taken off) to the closest triangle (planar: edge) of which it is no
+/// corner and that is not prescribed together with it; infinity: none nearer than `reach`. Infinity for all where there
+/// is no triangle. Cost: that of `between` without its edges.
+std::vector<double> vertex_gaps(const AuditMesh& mesh, const std::vector<int>& vertices, const Positions& x,
+                                double reach);
+
 }  // namespace bb::audit

@@ -13,6 +13,7 @@
 namespace bb::cli {
 
 inline constexpr int exit_ok = 0;
+inline constexpr int exit_not_clean = 1;  // what was judged penetrates, or could not be proven not to: audit
 inline constexpr int exit_bad_input = 2;
 inline constexpr int exit_no_repeat =
     3;  // a record did not repeat itself, and nothing that it names explains it

@@ -1,14 +1,11 @@
 #include "experiments/run/audit_mesh.hpp"
 
 #include <algorithm>
-#include <map>
 
-#include "core/mesh/topology.hpp"
+#include "core/audit/surface_edges.hpp"
 
 namespace bb {
 namespace {
-
-using Edge = std::array<int, 2>;
 
 audit::AuditObstacle to_audit(const Obstacle& obstacle) {
   audit::AuditObstacle out;
@@ -20,56 +17,6 @@ audit::AuditObstacle to_audit(const Obstacle& obstacle) {
   out.radius = obstacle.radius;
   out.inside = obstacle.inside;
   out.vertex = obstacle.vertex;
-  return out;
-}
-
-template <std::size_t n>
-Eigen::Matrix<int, static_cast<int>(n), Eigen::Dynamic> columns(const std::vector<std::array<int, n>>& list) {
-  Eigen::Matrix<int, static_cast<int>(n), Eigen::Dynamic> out(n, static_cast<Eigen::Index>(list.size()));
-  for (std::size_t i = 0; i < list.size(); ++i) {
-    for (std::size_t k = 0; k < n; ++k)
-      out(static_cast<Eigen::Index>(k), static_cast<Eigen::Index>(i)) = list[i][k];
-  }
-  return out;
-}
-
-Edge ascending(int a, int b) { return a < b ? Edge{a, b} : Edge{b, a}; }
-
-// Third vertex of the triangles that have the edge; of a boundary edge there is one.
-std::map<Edge, int> third_vertices(const std::vector<std::array<int, 3>>& triangles) {
-  std::map<Edge, int> out;
-  for (const auto& t : triangles) {
-    for (std::size_t k = 0; k < 3; ++k) out[ascending(t[k], t[(k + 1) % 3])] = t[(k + 2) % 3];
-  }
-  return out;
-}
-
-// From the triangles themselves, and rods from what the scene lists: each edge once, ascending.
-std::vector<Edge> edges_of(const Scene& scene) {
-  std::vector<Edge> out;
-  if (scene.planar) {
-    for (const auto& e : boundary_edges(scene.surface_triangles)) out.push_back(ascending(e[0], e[1]));
-  } else {
-    for (const auto& t : scene.surface_triangles) {
-      for (std::size_t k = 0; k < 3; ++k) out.push_back(ascending(t[k], t[(k + 1) % 3]));
-    }
-  }
-  for (const auto& e : scene.surface_edges) out.push_back(ascending(e[0], e[1]));
-  std::sort(out.begin(), out.end());
-  out.erase(std::unique(out.begin(), out.end()), out.end());
-  return out;
-}
-
-// Vertices of the surface and of no edge; in space every vertex of a triangle has one.
-std::vector<int> points_of(const Scene& scene, const std::vector<Edge>& edges) {
-  std::vector<char> covered(static_cast<std::size_t>(scene.n_vertices()), 0);
-  for (const Edge& e : edges) {
-    for (const int v : e) covered[static_cast<std::size_t>(v)] = 1;
-  }
-  std::vector<int> out;
-  for (const int v : scene.surface_vertices) {
-    if (!covered[static_cast<std::size_t>(v)]) out.push_back(v);
-  }
   return out;
 }
 
@@ -91,16 +38,8 @@ std::vector<int> rigid_bodies(const std::vector<RigidMotion>& motions, double dt
 audit::AuditMesh make_audit_mesh(const Scene& scene, double dt) {
   audit::AuditMesh mesh;
   mesh.planar = scene.planar;
-  const std::vector<Edge> edges = edges_of(scene);
-  mesh.edges = columns(edges);
-  mesh.points = points_of(scene, edges);
-  if (scene.planar) {
-    const std::map<Edge, int> third = third_vertices(scene.surface_triangles);
-    for (const Edge& e : edges) {
-      const auto found = third.find(e);
-      mesh.opposite.push_back(found == third.end() ? -1 : found->second);
-    }
-  }
+  audit::set_edges(scene.surface_triangles, scene.surface_edges, mesh);
+  audit::set_points(scene.surface_vertices, scene.n_vertices(), mesh);
   mesh.fixed.assign(static_cast<std::size_t>(scene.n_vertices()), 0);
   mesh.prescribed = mesh.fixed;
   mesh.motion.assign(mesh.fixed.size(), -1);
@@ -116,7 +55,7 @@ audit::AuditMesh make_audit_mesh(const Scene& scene, double dt) {
   if (scene.planar) {  // judged for inversion: what is prescribed cannot invert
     std::erase_if(triangles, [&mesh](const auto& t) { return mesh.all_prescribed(t); });
   }
-  mesh.triangles = columns(triangles);
+  mesh.triangles = audit::as_columns(triangles);
   for (const Obstacle& obstacle : scene.obstacles) mesh.obstacles.push_back(to_audit(obstacle));
   return mesh;
 }

@@ -2,22 +2,10 @@
 
 #include <fmt/format.h>
 
-#include <array>
-#include <span>
+#include "core/audit/pair_text.hpp"
 
 namespace bb {
 namespace {
-
-std::string name_of(const Scene& scene, std::span<const int> vertices) {
-  const Body& body =
-      scene.bodies[static_cast<std::size_t>(scene.body[static_cast<std::size_t>(vertices.front())])];
-  std::string text = body.name + "[";
-  for (const int v : vertices) {
-    if (text.back() != '[') text += ' ';
-    text += std::to_string(v - body.first_vertex);
-  }
-  return text + "]";
-}
 
 std::string when(int step) { return step < 0 ? "at the start" : fmt::format("in step {}", step); }
 
@@ -69,39 +57,13 @@ std::string unproven(const audit::AuditLedger& ledger) {
 }  // namespace
 
 std::string describe(const Scene& scene, const audit::AuditMesh& mesh, const audit::PairName& pair) {
-  const auto edge = [&](int i) {
-    return "edge " + name_of(scene, std::array{mesh.edges(0, i), mesh.edges(1, i)});
-  };
-  const auto triangle = [&](int i) {
-    return "triangle " +
-           name_of(scene, std::array{mesh.triangles(0, i), mesh.triangles(1, i), mesh.triangles(2, i)});
-  };
-  const auto vertex = [&](int v) { return "vertex " + name_of(scene, std::array{v}); };
-  const auto obstacle = [&](int i) { return scene.obstacles[static_cast<std::size_t>(i)].name; };
-  const std::string enters =
-      pair.proven ? " enters obstacle " : " cannot be certified not to enter obstacle ";
-  const std::string passes = pair.proven ? " passes through " : " cannot be certified not to pass through ";
-  switch (pair.kind) {
-    case audit::PairKind::edge_triangle:
-      return edge(pair.first) + " crosses " + triangle(pair.second);
-    case audit::PairKind::edge_edge_2d:
-      return edge(pair.first) + " crosses " + edge(pair.second);
-    case audit::PairKind::vertex_triangle:
-      return vertex(pair.first) + passes + triangle(pair.second);
-    case audit::PairKind::edge_edge:
-      return edge(pair.first) + passes + edge(pair.second);
-    case audit::PairKind::vertex_edge_2d:
-      return vertex(pair.first) + passes + edge(pair.second);
-    case audit::PairKind::vertex_obstacle:
-      return vertex(pair.first) + " is on the wrong side of obstacle " + obstacle(pair.second);
-    case audit::PairKind::edge_obstacle:
-      return edge(pair.first) + enters + obstacle(pair.second);
-    case audit::PairKind::triangle_obstacle:
-      return triangle(pair.first) + enters + obstacle(pair.second);
-    case audit::PairKind::inverted:
-      return triangle(pair.first) + " is inverted";
+  audit::SubjectNames names;
+  for (const Body& body : scene.bodies) {
+    names.bodies.push_back(body.name);
+    names.first_vertex.push_back(body.first_vertex);
   }
-  return {};
+  for (const Obstacle& obstacle : scene.obstacles) names.obstacles.push_back(obstacle.name);
+  return audit::describe(mesh, pair, names);
 }
 
 Verdict judge_audit(const Scene& scene, const audit::AuditMesh& mesh, const audit::AuditLedger& ledger) {

@@ -128,5 +128,30 @@ TEST(ClosestPoint, segments_agree_with_samples_and_need_no_length) {
   EXPECT_GT(parallel, 30);
 }
 
+TEST(SurfaceGap, of_each_vertex_is_that_of_its_closest_triangle) {
+  std::mt19937 random(5);
+  int finite = 0;
+  for (int i = 0; i < 100; ++i) {
+    const Pair pair = random_pair(random);
+    const std::vector<int> all = colliding_vertices(pair.mesh);
+    const std::vector<double> gaps = vertex_gaps(pair.mesh, all, pair.x, 0.8);
+    ASSERT_EQ(gaps.size(), 6u);
+    for (const int v : all) {
+      double least = 1e9;
+      for (const Vec3d& p : samples(pair.x, v < 3 ? 3 : 0, 40))
+        least = std::min(least, (p - pair.x.col(v)).norm());
+      const double gap = gaps[static_cast<std::size_t>(v)];
+      if (std::isinf(gap)) {
+        EXPECT_GE(least, 0.8);
+        continue;
+      }
+      EXPECT_LE(gap, least + 1e-12);
+      EXPECT_GT(gap, least - 0.05);
+      ++finite;
+    }
+  }
+  EXPECT_GT(finite, 100);
+}
+
 }  // namespace
 }  // namespace bb::audit::surface_gap_test

@@ -1,0 +1,25 @@
+// The edges of a surface, made of its triangles and of what stands alone.
+#pragma once
+
+#include <array>
+#include <vector>
+
+#include "core/audit/surface.hpp"
+
+namespace bb::audit {
+
+using EdgeVertices = std::array<int, 2>;      // ascending
+using TriangleVertices = std::array<int, 3>;  // counter-clockwise where the side matters
+
+/// Fills edges and, of planar scenes, opposite vertices: every edge once, ascending. In space the edges of triangles
+/// and the segments; in the plane the segments and edges of exactly one triangle. Cost: O(n log n).
+void set_edges(const std::vector<TriangleVertices>& triangles, const std::vector<EdgeVertices>& segments,
+               AuditMesh& mesh);
+
+/// Fills the points: those of `vertices` that are on no edge of the mesh.
+void set_points(const std::vector<int>& vertices, int n_vertices, AuditMesh& mesh);
+
+/// [3 n]
+Eigen::Matrix3Xi as_columns(const std::vector<TriangleVertices>& triangles);
+
+}  // namespace bb::audit
