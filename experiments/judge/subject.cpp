@@ -150,6 +150,11 @@ void read_obstacles(Keys& keys, Subject& out) {
     if (round && !(obstacle.radius > 0)) throw ConfigError(where + "/radius_m", "no radius", "a number > 0");
     if (!(obstacle.axis.norm() > 0))
       throw ConfigError(where + "/axis", "no direction", "a vector that is not zero");
+    if (const json* vertex = given.find("vertex")) {
+      obstacle.vertex = Keys::integer_of(*vertex, where + "/vertex", 0, out.n_vertices - 1);
+      out.mesh.prescribed.resize(static_cast<std::size_t>(out.n_vertices), 0);
+      out.mesh.prescribed[static_cast<std::size_t>(obstacle.vertex)] = 1;
+    }
     out.mesh.obstacles.push_back(obstacle);
     const json* name = given.find("name");
     if (name && !name->is_string()) throw ConfigError(where + "/name", shown(*name), "a name");
@@ -173,6 +178,17 @@ void read_vertices(Keys& keys, Subject& out) {
     throw ConfigError(keys.at("half_thickness_m"), fmt::format("{} numbers", found), fmt::format("{}", n));
 }
 
+/// Vertices of no triangle and no segment; those that obstacles move with are no part of the surface.
+void set_particles(Subject& out) {
+  std::vector<int> all(static_cast<std::size_t>(out.n_vertices));
+  std::iota(all.begin(), all.end(), 0);
+  std::erase_if(all, [&out](int v) {
+    const auto& obstacles = out.mesh.obstacles;
+    return std::any_of(obstacles.begin(), obstacles.end(), [v](const auto& o) { return o.vertex == v; });
+  });
+  audit::set_points(all, out.n_vertices, out.mesh);
+}
+
 }  // namespace
 
 Subject read_subject(const std::string& path) {
@@ -188,13 +204,11 @@ Subject read_subject(const std::string& path) {
   const auto triangles = rows<3>(keys, "triangles", out.n_vertices);
   const auto segments = rows<2>(keys, "segments", out.n_vertices);
   audit::set_edges(triangles, segments, out.mesh);
-  std::vector<int> all(static_cast<std::size_t>(out.n_vertices));
-  std::iota(all.begin(), all.end(), 0);
-  audit::set_points(all, out.n_vertices, out.mesh);
   out.mesh.triangles = audit::as_columns(triangles);
   read_bodies(keys, out);
   read_obstacles(keys, out);
   read_vertices(keys, out);
+  set_particles(out);
   keys.finish();
   if (triangles.empty() && segments.empty() && out.mesh.obstacles.empty()) {
     throw ConfigError(path, "no triangle, no segment and no obstacle",

@@ -68,6 +68,15 @@ TEST(Subject, planar_edges_are_those_of_one_triangle) {
   EXPECT_EQ(found.mesh.opposite.front(), 2) << "of the side 0 1";
 }
 
+TEST(Subject, a_vertex_that_an_obstacle_moves_with_is_no_particle) {
+  json document = two_triangles_and_a_rod();
+  document["obstacles"][0]["vertex"] = 6;
+  const Subject found = read(document);
+  EXPECT_TRUE(found.mesh.points.empty());
+  EXPECT_TRUE(found.mesh.is_prescribed(6));
+  EXPECT_EQ(found.mesh.obstacles[0].vertex, 6);
+}
+
 TEST(Subject, refusals_name_their_place) {
   const auto changed = [](const char* pointer, const json& value) {
     json document = two_triangles_and_a_rod();

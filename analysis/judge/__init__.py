@@ -1,0 +1,1 @@
+"""`bench judge`: the trajectory of any program before the exact audit of this one."""

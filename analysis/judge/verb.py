@@ -1,0 +1,201 @@
+"""./bench judge TRAJECTORY: one record (judgement.json), one page (judgement.html), exit 0 clean, 1 not."""
+
+from __future__ import annotations
+
+import argparse
+import json
+import shlex
+import sys
+import time
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ..errors import UserError, tells
+from ..front.arguments import parser_of
+from ..whole_file import write_whole
+from .about import About, about_of, with_cells
+from .ask import audited, subject_of
+from .page import page_of
+from .physics import Physics
+from .readers import read_trajectory
+from .trajectory import Trajectory, checked, with_parts
+from .verdict import VERDICTS, findings, verdict_of
+
+CLEAN, NOT_CLEAN = 0, 1
+MOST_METRES = 100.0  # beyond it coordinates are asked about: millimetres look like that
+DOC = """TRAJECTORY: a folder of numbered OBJ, PLY or VTU frames, a .pvd collection, .pc2, .npz, or a run of
+barrierbench. What its files do not say (obstacles, rods, thickness, densities): --about FILE
+(configs/schema/judge.schema.json). Every frame is judged by exact signs, and the straight line from each
+frame to the next as a motion. Exit 0: clean, 1: not, 2: cannot be judged."""
+
+
+def parse(argv: list[str]) -> argparse.Namespace:
+    parser = parser_of(
+        "judge", DOC, "./bench judge out/frames --about scene.json --reference results/runs/drape"
+    )
+    parser.add_argument("trajectory", type=Path)
+    parser.add_argument("--about", type=Path, metavar="FILE.json")
+    parser.add_argument(
+        "--topology", type=Path, metavar="MESH", help="for .pc2 and .npz: a mesh file of the same vertices"
+    )
+    parser.add_argument(
+        "--reference", type=Path, metavar="TRAJECTORY", help="another one of the same vertices: how far apart"
+    )
+    parser.add_argument(
+        "--scale", type=float, default=1.0, help="of all coordinates of the frames; 0.001: they are in mm"
+    )
+    parser.add_argument(
+        "--reach",
+        type=float,
+        metavar="M",
+        help="gaps above it are not measured (default: a tenth of the mean edge)",
+    )
+    parser.add_argument(
+        "--states-only", action="store_true", help="what happens between frames does not decide"
+    )
+    parser.add_argument(
+        "--out",
+        type=Path,
+        default=Path("judgement"),
+        help="folder of judgement.json and .html (default: judgement)",
+    )
+    options = parser.parse_args(argv)
+    for name in ("scale", "reach"):
+        value = getattr(options, name)
+        if value is not None and not (np.isfinite(value) and value > 0):
+            raise UserError(f"--{name} {value}: a finite number above 0 is needed")
+    return options
+
+
+def scaled(trajectory: Trajectory, scale: float) -> Trajectory:
+    if scale == 1.0:
+        return trajectory
+    return replace(trajectory, frames=lambda: (x * scale for x in trajectory.frames()))
+
+
+def read(options: argparse.Namespace) -> tuple[Trajectory, About]:
+    """The trajectory with all that is known of it. Errors: UserError."""
+    found = scaled(read_trajectory(options.trajectory, options.topology), options.scale)
+    data, found = with_cells(found, options.about)
+    topology, notes = with_parts(checked(found).topology)
+    found = replace(found, topology=topology, notes=found.notes + notes)
+    if topology.polygons:
+        cut = "polygons of more than three corners were cut into triangles from their first corner"
+        found = replace(found, notes=(*found.notes, f"{topology.polygons} {cut}"))
+    return found, about_of(data, options.about, found)
+
+
+def times_of(trajectory: Trajectory, about: About) -> np.ndarray | None:
+    if about.dt_s is not None:
+        return about.dt_s * np.arange(len(trajectory.labels))
+    return None if trajectory.times_s is None else np.array(trajectory.times_s)
+
+
+class Watch:
+    """What is measured of the frames while they go to the program."""
+
+    def __init__(self, trajectory: Trajectory, about: About, reference: Trajectory | None):
+        self.trajectory, self.about = trajectory, about
+        self.physics: Physics | None = None
+        self.rows: list[dict] = []
+        self.reference = reference.frames() if reference else None
+        self.largest_m = 0.0
+        self.closed: list[str] = []
+
+    def __call__(self, number: int, x: np.ndarray) -> None:
+        t = self.trajectory
+        if self.physics is None:
+            self.physics = Physics(t.topology, self.about, x, times_of(t, self.about))
+            self.closed = self.physics.closed_bodies()
+            self.largest_m = float(np.ptp(x, axis=0).max())
+        row = self.physics.of(number, x, self.closed)
+        if self.reference is not None and (other := next(self.reference, None)) is not None:
+            apart = np.linalg.norm(x - other, axis=1)
+            row |= {"apart_max_m": float(apart.max()), "apart_rms_m": float(np.sqrt((apart**2).mean()))}
+        self.rows.append(row)
+
+
+def reference_of(options: argparse.Namespace, trajectory: Trajectory) -> Trajectory | None:
+    if options.reference is None:
+        return None
+    found = read_trajectory(options.reference, options.topology)
+    n, m = trajectory.topology.n_vertices, found.topology.n_vertices
+    if n != m:
+        raise UserError(f"{options.reference}: {m} vertices; the trajectory has {n}")
+    if len(found.labels) != len(trajectory.labels):
+        have = f"{len(found.labels)} frames; the trajectory has {len(trajectory.labels)}"
+        raise UserError(f"{options.reference}: {have}")
+    return found
+
+
+def judged(options: argparse.Namespace) -> dict:
+    """The record. Errors: UserError."""
+    start = time.perf_counter()
+    trajectory, about = read(options)
+    watch = Watch(trajectory, about, reference_of(options, trajectory))
+    first = next(trajectory.frames())
+    subject = subject_of(trajectory, about, first, options.reach)
+    frames, total, reading_s = audited(trajectory, subject, watch)
+    notes = list(trajectory.notes)
+    if watch.largest_m > MOST_METRES:
+        notes.append(f"the first frame is {watch.largest_m:g} m wide: if its unit is mm, --scale 0.001")
+    for frame, row, label in zip(frames, watch.rows, trajectory.labels):
+        frame |= row | {"label": label}
+    times = times_of(trajectory, about)
+    return {
+        "schema": "barrierbench.judgement/1",
+        "verdict": verdict_of(total, frames, options.states_only),
+        "states_only": options.states_only,
+        "trajectory": {
+            "source": trajectory.source,
+            "format": trajectory.format,
+            "frames": len(frames),
+            "first": trajectory.labels[0],
+            "last": trajectory.labels[-1],
+            "bodies": list(trajectory.topology.names),
+            "times_s": None if times is None else times.tolist(),
+        },
+        "reach_m": subject["reach_m"],
+        "total": total,
+        "findings": findings(frames, trajectory.labels),
+        "frames": frames,
+        "notes": notes,
+        "reading_s": reading_s,
+        "whole_s": time.perf_counter() - start,
+    }
+
+
+def said(record: dict) -> str:
+    """What is printed: verdict, what was judged, the first findings."""
+    total = record["total"]
+    closed = len(total["closed_bodies"])
+    lines = [
+        f"{record['verdict']}: {VERDICTS[record['verdict']]}",
+        f"judged: {total['frames']} frames of {total['triangles']} triangles, {total['edges']} edges, "
+        f"{total['vertices']} vertices and {total['obstacles']} obstacles; {total['state_pairs']} pairs in"
+        f" states, {total['motion_pairs']} in motions; {total['sides_asked']} vertices against {closed}"
+        " closed bodies",
+    ]
+    rows = record["findings"]
+    for row in rows[:5]:
+        depth = f", {row['depth_m']:.3g} m deep" if row["depth_m"] else ""
+        lines.append(
+            f"{row['frame']}: {row['count']} {row['what']}{': ' + row['pair'] if row['pair'] else ''}{depth}"
+        )
+    if len(rows) > 5:
+        lines.append(f"and {len(rows) - 5} more rows")
+    return "\n".join([*lines, *(f"note: {note}" for note in record["notes"])])
+
+
+@tells("judge")
+def main(argv: list[str]) -> int:
+    options = parse(argv)
+    record = judged(options) | {"command": shlex.join(["./bench", "judge", *argv])}
+    text = json.dumps(record, indent=1, allow_nan=False)
+    write_whole(options.out / "judgement.json", text + "\n")
+    write_whole(options.out / "judgement.html", page_of(record))
+    print(said(record))
+    print(f"{options.out / 'judgement.html'}", file=sys.stderr)
+    return CLEAN if record["verdict"] == "clean" else NOT_CLEAN
