@@ -45,27 +45,33 @@ function(bb_ptx_translation name ptx option)
   target_include_directories(${name} PRIVATE "${PROJECT_SOURCE_DIR}")
 endfunction()
 
-# bb_ptx_test(NAME LEAST n MODULES ... [USES ...] SOURCES ... [ROOMS libraries ...] [SKIP cases]): test_NAME,
+# bb_ptx_test(NAME LEAST n MODULES ... [USES ...] SOURCES ... [CASES target] [ROOMS libraries ...] [SKIP cases]): test_NAME,
 # one test of ctest without the cases of a pattern of GoogleTest, which also fails when less than LEAST per cent of the
-# instructions of one of its MODULES ran; those that it only USES are judged elsewhere. test_NAME_faults, built on demand:
-# the same with switches for inject_faults.py.
+# instructions of one of its MODULES ran; those that it only USES are judged elsewhere. CASES: another test, whose objects
+# are linked once more. test_NAME_faults, built on demand: the same with switches for inject_faults.py.
 function(bb_ptx_test name)
-  cmake_parse_arguments(ARG "" "LEAST;SKIP" "MODULES;USES;SOURCES;ROOMS" ${ARGN})
+  cmake_parse_arguments(ARG "" "CASES;LEAST;SKIP" "MODULES;USES;SOURCES;ROOMS" ${ARGN})
   add_library(${name}_cases OBJECT ${ARG_SOURCES} "${PROJECT_SOURCE_DIR}/tests/ptx/main.cpp")
   set_target_properties(${name}_cases PROPERTIES UNITY_BUILD ON)
   target_link_libraries(${name}_cases PRIVATE bb_joined)
-  target_link_libraries(${name}_cases PUBLIC bb_settings Eigen3::Eigen GTest::gtest TBB::tbb nlohmann_json::nlohmann_json fmt::fmt)
+  target_link_libraries(${name}_cases PUBLIC bb_test_pch)
+  target_precompile_headers(${name}_cases REUSE_FROM bb_test_pch)
   target_compile_definitions(${name}_cases PRIVATE BB_PTX_LEAST=${ARG_LEAST} "BB_PTX_SKIP=\"${ARG_SKIP}\""
     "BB_PTX_MODULES=\"$<JOIN:${ARG_MODULES}, >\"")
   target_include_directories(${name}_cases PRIVATE "${PROJECT_BINARY_DIR}/generated")
+  set(objects $<TARGET_OBJECTS:${name}_cases>)
+  if(ARG_CASES)
+    list(APPEND objects $<TARGET_OBJECTS:${ARG_CASES}>)
+  endif()
   foreach(kind "" _faults)
     set(modules ${ARG_MODULES} ${ARG_USES})
     list(TRANSFORM modules APPEND "${kind}")
-    add_executable(test_${name}${kind} $<TARGET_OBJECTS:${name}_cases>)
+    add_executable(test_${name}${kind} ${objects})
     set_target_properties(test_${name}${kind} PROPERTIES LINKER_LANGUAGE CXX)
     target_link_libraries(test_${name}${kind} PRIVATE ${modules} bb_ptx_machine ${ARG_ROOMS} GTest::gtest TBB::tbb fmt::fmt)
   endforeach()
   set_target_properties(test_${name}_faults PROPERTIES EXCLUDE_FROM_ALL ON)
   add_test(NAME ptx.${name} COMMAND test_${name})
-  set_tests_properties(ptx.${name} PROPERTIES TIMEOUT 600)
+  # The longest of all: they begin first, so that none is left alone at the end.
+  set_tests_properties(ptx.${name} PROPERTIES TIMEOUT 600 COST 1000)
 endfunction()

@@ -1,14 +1,23 @@
 # A room is one folder of the tree: one static library with explicit sources, or headers only.
 
-# One precompiled header (standard library and Eigen) that every room reuses.
+# Two precompiled headers: standard library and Eigen, which every room reuses; and the same with what tests include beside.
 file(WRITE "${PROJECT_BINARY_DIR}/pch/empty.cpp.in" "namespace bb {}\n")
 configure_file("${PROJECT_BINARY_DIR}/pch/empty.cpp.in" "${PROJECT_BINARY_DIR}/pch/empty.cpp" COPYONLY)
-add_library(bb_pch STATIC "${PROJECT_BINARY_DIR}/pch/empty.cpp")
-target_link_libraries(bb_pch PUBLIC bb_settings Eigen3::Eigen)
-target_compile_options(bb_pch PUBLIC $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
-target_precompile_headers(bb_pch PRIVATE
-  <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> <algorithm> <array> <cmath> <cstdint> <functional> <memory>
-  <optional> <span> <string> <string_view> <utility> <vector>)
+function(bb_precompile name)
+  add_library(${name} STATIC "${PROJECT_BINARY_DIR}/pch/empty.cpp")
+  target_link_libraries(${name} PUBLIC bb_settings Eigen3::Eigen)
+  target_compile_options(${name} PUBLIC $<$<COMPILE_LANGUAGE:CXX>:-fpch-preprocess>)
+  target_precompile_headers(${name} PRIVATE
+    <Eigen/Core> <Eigen/Geometry> <Eigen/SparseCore> <algorithm> <array> <cmath> <cstdint> <functional> <memory>
+    <optional> <span> <string> <string_view> <utility> <vector> ${ARGN})
+endfunction()
+bb_precompile(bb_pch)
+if(BB_TESTS)
+  # Not nlohmann/json.hpp: its operators of literals would have every test translate a parser, a second of g++ each.
+  bb_precompile(bb_test_pch <gtest/gtest.h> <tbb/global_control.h> <tbb/parallel_for.h> <tbb/parallel_reduce.h>
+    <filesystem> <fstream> <limits> <map> <numeric> <random> <set> <sstream>)
+  target_link_libraries(bb_test_pch PUBLIC GTest::gtest TBB::tbb fmt::fmt nlohmann_json::nlohmann_json)
+endif()
 
 # bb_declare_room(NAME FOLDER [DEPS ...]): the files below FOLDER include no room but those that DEPS names as bb_<room>.
 function(bb_declare_room name folder)
@@ -104,8 +113,8 @@ target_compile_options(bb_joined INTERFACE -Wno-shadow -Wshadow=local -Wno-array
 function(bb_test name)
   cmake_parse_arguments(ARG "" "" "SOURCES;DEPS" ${ARGN})
   add_executable(test_${name} ${ARG_SOURCES})
-  target_link_libraries(test_${name} PRIVATE bb_pch ${ARG_DEPS} GTest::gtest GTest::gtest_main)
-  target_precompile_headers(test_${name} REUSE_FROM bb_pch)
+  target_link_libraries(test_${name} PRIVATE bb_test_pch ${ARG_DEPS} GTest::gtest GTest::gtest_main)
+  target_precompile_headers(test_${name} REUSE_FROM bb_test_pch)
   target_include_directories(test_${name} PRIVATE "${PROJECT_BINARY_DIR}/generated")
   if(CMAKE_UNITY_BUILD)
     target_link_libraries(test_${name} PRIVATE bb_joined)

@@ -16,8 +16,7 @@ struct MollifiedDerivatives {
 /// Of e(x) b(d(x)) in the four points ea0 ea1 eb0 eb1. eps: threshold of the mollifier, m^4; b, db, d2b: barrier and
 /// its derivatives in d, stiffness included.
 template <class T>
-BB_HD inline MollifiedDerivatives<T> mollified_derivatives(const Mat<T, 3, 4>& points, T eps, T b, T db,
-                                                           T d2b) {
+BB_HD MollifiedDerivatives<T> mollified_derivatives(const Mat<T, 3, 4>& points, T eps, T b, T db, T d2b) {
   const auto e = edge_edge_mollifier<T>(points, eps);
   const auto d = distance_derivatives<T, 4>(points, closest_edge_edge<T>(points));
   const Vec<T, 12> g = b * e.gradient + (db * e.value) * d.gradient;
@@ -31,8 +30,8 @@ BB_HD inline MollifiedDerivatives<T> mollified_derivatives(const Mat<T, 3, 4>& p
 /// The same of an edge and an axis, in e0 e1; what belongs to the other two points is 0. points: as those of
 /// edge_axis_mollifier.hpp; axis: unit. Everything but the axis is across it, and so are all derivatives.
 template <class T>
-BB_HD inline MollifiedDerivatives<T> mollified_derivatives(const Mat<T, 3, 3>& points, const Vec<T, 3>& axis,
-                                                           T eps, T b, T db, T d2b) {
+BB_HD MollifiedDerivatives<T> mollified_derivatives(const Mat<T, 3, 3>& points, const Vec<T, 3>& axis, T eps,
+                                                    T b, T db, T d2b) {
   const Vec<T, 3> edge = points.col(2) - points.col(1);
   const detail::MollifierTerms<T> terms(edge.squaredNorm(), eps);
   const auto d = distance_derivatives<T, 3>(points, closest_point_edge<T>(points));
@@ -59,7 +58,7 @@ BB_HD inline MollifiedDerivatives<T> mollified_derivatives(const Mat<T, 3, 3>& p
 
 /// Leading block of 3 n_free x 3 n_free projected, the rest is 0 and stays so.
 template <class T>
-BB_HD inline void project_leading(int n_free, Projection projection, Mat<T, 12, 12>& h) {
+BB_HD void project_leading(int n_free, Projection projection, Mat<T, 12, 12>& h) {
   switch (n_free) {
     case 1:
       h.template topLeftCorner<3, 3>() = project<T, 3>(h.template topLeftCorner<3, 3>(), projection);
@@ -74,5 +73,21 @@ BB_HD inline void project_leading(int n_free, Projection projection, Mat<T, 12, 
       h = project<T, 12>(h, projection);
   }
 }
+
+// Compiled once for these scalars, in mollified_terms.cpp: kernels that call them are in headers of many files.
+#ifndef __CUDACC__
+extern template MollifiedDerivatives<float> mollified_derivatives<float>(const Mat<float, 3, 4>&, float,
+                                                                         float, float, float);
+extern template MollifiedDerivatives<float> mollified_derivatives<float>(const Mat<float, 3, 3>&,
+                                                                         const Vec<float, 3>&, float, float,
+                                                                         float, float);
+extern template void project_leading<float>(int, Projection, Mat<float, 12, 12>&);
+extern template MollifiedDerivatives<double> mollified_derivatives<double>(const Mat<double, 3, 4>&, double,
+                                                                           double, double, double);
+extern template MollifiedDerivatives<double> mollified_derivatives<double>(const Mat<double, 3, 3>&,
+                                                                           const Vec<double, 3>&, double,
+                                                                           double, double, double);
+extern template void project_leading<double>(int, Projection, Mat<double, 12, 12>&);
+#endif
 
 }  // namespace bb

@@ -51,4 +51,12 @@ BB_HD ElementTerms<T, 6> cloth_spring_terms(const Vec<T, 3> (&x)[2], T rest_leng
   return out;
 }
 
+// Compiled once for these scalars, in element_terms.cpp: kernels that call it are in headers of many files.
+#ifndef __CUDACC__
+extern template ElementTerms<float, 6> cloth_spring_terms<float>(const Vec<float, 3> (&)[2], float,
+                                                                 const SpringLaw<float>&, Projection);
+extern template ElementTerms<double, 6> cloth_spring_terms<double>(const Vec<double, 3> (&)[2], double,
+                                                                   const SpringLaw<double>&, Projection);
+#endif
+
 }  // namespace bb

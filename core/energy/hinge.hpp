@@ -185,4 +185,16 @@ BB_HD ElementTerms<T, 12> hinge_terms(const Vec<T, 3> (&x)[4], T stiffness, T ex
   return hinge_terms_of<T>(x, w.energy, w.curvature, w.slope / w.curvature, projection);
 }
 
+// Compiled once for these scalars, in element_terms.cpp: kernels that call it are in headers of many files.
+#ifndef __CUDACC__
+extern template ElementTerms<float, 12> hinge_terms<float>(const Vec<float, 3> (&)[4], float, float,
+                                                           Projection);
+extern template ElementTerms<float, 12> hinge_terms<float>(const Vec<float, 3> (&)[4], float, float, float,
+                                                           float, Projection);
+extern template ElementTerms<double, 12> hinge_terms<double>(const Vec<double, 3> (&)[4], double, double,
+                                                             Projection);
+extern template ElementTerms<double, 12> hinge_terms<double>(const Vec<double, 3> (&)[4], double, double,
+                                                             double, double, Projection);
+#endif
+
 }  // namespace bb

@@ -187,4 +187,12 @@ BB_HD ElementTerms<T, 9> rod_bend_terms(const Vec<T, 3> (&x)[3], T stiffness, T 
   return out;
 }
 
+// Compiled once for these scalars, in element_terms.cpp: kernels that call it are in headers of many files.
+#ifndef __CUDACC__
+extern template ElementTerms<float, 9> rod_bend_terms<float>(const Vec<float, 3> (&)[3], float, float,
+                                                             Projection);
+extern template ElementTerms<double, 9> rod_bend_terms<double>(const Vec<double, 3> (&)[3], double, double,
+                                                               Projection);
+#endif
+
 }  // namespace bb

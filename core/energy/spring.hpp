@@ -46,4 +46,12 @@ BB_HD ElementTerms<T, 6> spring_terms(const Vec<T, 3> (&x)[2], T stiffness, T re
   return out;
 }
 
+// Compiled once for these scalars, in element_terms.cpp: kernels that call it are in headers of many files.
+#ifndef __CUDACC__
+extern template ElementTerms<float, 6> spring_terms<float>(const Vec<float, 3> (&)[2], float, float,
+                                                           Projection);
+extern template ElementTerms<double, 6> spring_terms<double>(const Vec<double, 3> (&)[2], double, double,
+                                                             Projection);
+#endif
+
 }  // namespace bb

@@ -97,7 +97,8 @@ BuildValidity summary_of(const std::vector<BlockCheck>& checks, const std::strin
   return out;
 }
 
-StoredBlock block_of_this_build(const std::filesystem::path& folder, const std::vector<PluginFile>& plugins) {
+StoredBlock block_of_this_build(const std::filesystem::path& folder, const std::vector<PluginFile>& plugins,
+                                const std::function<std::vector<BlockCheck>()>& compute) {
   const BuildKey build = this_build(plugins);
   StoredBlock out;
   out.file = folder / (build.sha256.substr(0, 16) + ".json");
@@ -106,7 +107,7 @@ StoredBlock block_of_this_build(const std::filesystem::path& folder, const std::
     out.kept = true;
     return out;
   }
-  const std::vector<BlockCheck> checks = compute_block();
+  const std::vector<BlockCheck> checks = compute();
   out.report = report_text(build, checks);
   out.validity = summary_of(checks, out.report);
   try {

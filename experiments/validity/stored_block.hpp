@@ -2,6 +2,7 @@
 #pragma once
 
 #include <filesystem>
+#include <functional>
 #include <string>
 #include <vector>
 
@@ -24,14 +25,15 @@ BuildValidity summary_of(const std::vector<BlockCheck>& checks, const std::strin
 
 /// Of this build: read from `folder`/<key>.json, else computed and written there; an unreadable or foreign file is
 /// replaced. Where `folder` cannot be written the block is computed all the same, and `kept` is false.
-/// Errors: none.   Cost: milliseconds, the first time of a build that of compute_block().
+/// Errors: none.   Cost: milliseconds, the first time of a build that of `compute`, which tests replace.
 struct StoredBlock {
   BuildValidity validity;
   std::string report;  // JSON
   std::filesystem::path file;
   bool kept = false;
 };
-StoredBlock block_of_this_build(const std::filesystem::path& folder, const std::vector<PluginFile>& plugins);
+StoredBlock block_of_this_build(const std::filesystem::path& folder, const std::vector<PluginFile>& plugins,
+                                const std::function<std::vector<BlockCheck>()>& compute = compute_block);
 
 /// Beside the program: validity/ in its folder.
 std::filesystem::path validity_folder();

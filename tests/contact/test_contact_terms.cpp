@@ -1,10 +1,9 @@
 // Local gradients and Hessians of the rows against finite differences of the energy, kappa fixed.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "core/math/lower_blocks.hpp"
 #include "tests/contact/contact_scenes.hpp"
+#include "tests/oracle/dense.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
 namespace bb::test::contact_terms_test {
@@ -95,10 +94,8 @@ double projected_error(ContactSystem& contacts, const Scene& scene, const Matrix
       numeric.middleRows<3>(3 * p.vertex).setZero();
       numeric.middleCols<3>(3 * p.vertex).setZero();
     }
-    const Eigen::SelfAdjointEigenSolver<Matrix> eigen(0.5 * (numeric + numeric.transpose()));
-    lowest = eigen.eigenvalues()[0];
-    const Matrix reference = eigen.eigenvectors() * eigen.eigenvalues().cwiseMax(0).asDiagonal() *
-                             eigen.eigenvectors().transpose();
+    const Matrix symmetric = 0.5 * (numeric + numeric.transpose()), reference = clamped(symmetric);
+    lowest = eigenvalues(symmetric)[0];
     best = std::min(best, (reference - hessian).norm() / reference.norm());
   }
   *n_indefinite += lowest < -1e-3;

@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <random>
 #include <vector>
 
 #include "core/math/lower_blocks.hpp"
+#include "tests/oracle/dense.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
 namespace bb::test::numeric_projection_test {
@@ -16,7 +16,6 @@ namespace {
 constexpr std::size_t n_numbers = n_lower_numbers(4);
 constexpr HessianMode modes[] = {HessianMode::projected_numeric, HessianMode::projected_lapack,
                                  HessianMode::projected_low_rank};
-using LongMatrix = Eigen::Matrix<long double, 12, 12>;
 
 /// n symmetric matrices with random entries, the k-th of rank 1 + k % 12: half of the eigenvalues are negative.
 std::vector<double> random_hessians(std::size_t n) {
@@ -34,12 +33,12 @@ std::vector<double> random_hessians(std::size_t n) {
   return out;
 }
 
-LongMatrix expected(const LongMatrix& h, Projection projection, bool* negative) {
-  const Eigen::SelfAdjointEigenSolver<LongMatrix> eigen(h);
-  *negative = eigen.eigenvalues()[0] < -1;
-  const auto values = projection == Projection::psd ? eigen.eigenvalues().cwiseMax(0.0L).eval()
-                                                    : eigen.eigenvalues().cwiseAbs().eval();
-  return eigen.eigenvectors() * values.asDiagonal() * eigen.eigenvectors().transpose();
+MatXl expected(const MatXl& h, Projection projection, bool* negative) {
+  Spectrum own = spectrum(h);
+  *negative = own.values[0] < -1;
+  for (Long& value : own.values)
+    value = projection == Projection::psd ? std::max(value, 0.0L) : std::abs(value);
+  return compose(own.vectors, own.values, own.vectors);
 }
 
 TEST(NumericProjection, AgreesWithEigenInLongDouble) {
@@ -51,9 +50,9 @@ TEST(NumericProjection, AgreesWithEigenInLongDouble) {
       project_numerically(mode, projection, n, hess.data());
       for (std::size_t k = 0; k < n; ++k) {
         bool negative = false;
-        const LongMatrix before = from_lower_blocks(&exact[n_numbers * k], 4).cast<long double>();
-        const LongMatrix after = from_lower_blocks(&hess[n_numbers * k], 4).cast<long double>();
-        const LongMatrix truth = expected(before, projection, &negative);
+        const MatXl before = from_lower_blocks(&exact[n_numbers * k], 4).cast<long double>();
+        const MatXl after = from_lower_blocks(&hess[n_numbers * k], 4).cast<long double>();
+        const MatXl truth = expected(before, projection, &negative);
         EXPECT_TRUE(negative) << k;
         EXPECT_LE((after - truth).norm(), 1e-13L * before.norm()) << k;
         EXPECT_EQ(after.norm() > 1, projection == Projection::absolute || k % 12 > 0) << k;

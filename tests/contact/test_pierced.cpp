@@ -2,26 +2,22 @@
 // and only where a corner can move, wherever the obstacle is.
 #include <gtest/gtest.h>
 
-#include <Eigen/LU>
-
 #include "tests/contact/close_bodies.hpp"
+#include "tests/oracle/dense.hpp"
 
 namespace bb::test::pierced_test {
 namespace {
 
 /// Whether the axis crosses the inside of a triangle, by the weights of the crossing.
 bool crosses(const Obstacle& o, const Vec3d& axis, const Positions& x, const std::array<int, 3>& triangle) {
-  using Matrix = Eigen::Matrix<long double, 4, 4>;
-  Matrix a = Matrix::Zero();
+  MatXl a = MatXl::Zero(4, 4);
   for (int k = 0; k < 3; ++k) {
     a.block<3, 1>(0, k) = (x.col(triangle[at(k)]) - o.point).cast<long double>();
     a(3, k) = 1;
   }
   a.block<3, 1>(0, 3) = -axis.cast<long double>();
-  const Eigen::FullPivLU<Matrix> lu(a);
-  if (!lu.isInvertible()) return false;
-  const Eigen::Matrix<long double, 4, 1> w = lu.solve(Eigen::Matrix<long double, 4, 1>::Unit(3));
-  return w.head<3>().minCoeff() > 0;
+  const auto w = only_solution(a, VecXl::Unit(4, 3));
+  return w && w->head<3>().minCoeff() > 0;
 }
 
 /// The bar of a scene goes through a triangle with a free corner.

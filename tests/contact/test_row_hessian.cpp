@@ -2,20 +2,19 @@
 #include <gtest/gtest.h>
 #include <oneapi/tbb/global_control.h>
 
-#include <Eigen/Eigenvalues>
 #include <map>
 
 #include "core/contact/pair_geometry.hpp"
 #include "core/geometry/distance_derivatives.hpp"
 #include "core/math/lower_blocks.hpp"
 #include "tests/contact/contact_scenes.hpp"
+#include "tests/oracle/dense.hpp"
 #include "tests/oracle/lower_blocks.hpp"
 
 namespace bb::test::row_hessian_test {
 namespace {
 
-using Long = long double;
-using LongMatrix = Eigen::Matrix<Long, Eigen::Dynamic, Eigen::Dynamic>;
+using LongMatrix = MatXl;
 constexpr double d_hat = 0.05;
 constexpr HessianMode numeric_modes[] = {HessianMode::projected_numeric, HessianMode::projected_lapack,
                                          HessianMode::projected_low_rank};
@@ -118,14 +117,14 @@ LongMatrix whole_hessian(const ContactTable& t, std::size_t r, const Positions& 
 }
 
 LongMatrix projected(const LongMatrix& h, Projection projection, Long* lowest) {
-  const Eigen::SelfAdjointEigenSolver<LongMatrix> eigen(h);
-  LongMatrix values = eigen.eigenvalues();
+  Spectrum own = spectrum(h);
+  VecXl& values = own.values;
   *lowest = values(0) / std::max(std::abs(values(0)), std::abs(values(11)));
   if (projection == Projection::none) return h;
   for (Eigen::Index k = 0; k < 12; ++k) {
     if (values(k) < 0) values(k) = projection == Projection::psd ? 0 : -values(k);
   }
-  return eigen.eigenvectors() * values.col(0).asDiagonal() * eigen.eigenvectors().transpose();
+  return compose(own.vectors, values, own.vectors);
 }
 
 /// Soups with free and given vertices of several sizes of triangles, and obstacles of every kind.

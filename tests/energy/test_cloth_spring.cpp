@@ -1,8 +1,6 @@
 // Springs of cloth: exact derivatives in tension and compression against long double differences, their jump, projections.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "core/energy/cloth_spring.hpp"
 #include "core/energy/spring.hpp"
 #include "tests/energy/energy_cases.hpp"
@@ -71,7 +69,7 @@ TEST(ClothSpring, ClampsWhatCompressionMakesNegative) {
   const Points<double, 2> p(state(0.3));
   const auto eigenvalues = [&](Projection projection) {
     const auto terms = cloth_spring_terms<double>(p.x, rest_length, law<double>(), projection);
-    return Vec<double, 6>(Eigen::SelfAdjointEigenSolver<Mat<double, 6, 6>>(terms.hess).eigenvalues());
+    return test::eigenvalues(MatXd(terms.hess));
   };
   EXPECT_LT(eigenvalues(Projection::none).minCoeff(), -10);
   EXPECT_GT(eigenvalues(Projection::psd).minCoeff(), -1e-12);

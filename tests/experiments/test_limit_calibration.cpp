@@ -1,10 +1,10 @@
 // Matching of the strain limit: what its stiffness carries of the loads that the pilot met.
-#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 
 #include "tests/barriers/limit_policies.hpp"
 #include "tests/experiments/calibrated.hpp"
+#include "tests/oracle/dense.hpp"
 
 namespace bb::limit_calibration_test {
 namespace {
@@ -64,7 +64,8 @@ TEST(Calibration, TheScaleOfADynamicLimitIsThatOfItsNeediestElement) {
                 .head<2>();
       }
       const double width = c.scene.limit.width[e], area = std::abs(rest.determinant()) / 2;
-      const double sigma = Eigen::JacobiSVD<Eigen::Matrix2d>(now * rest.inverse()).singularValues()[0];
+      const double sigma =
+          static_cast<double>(test::singular_values((now * rest.inverse()).cast<long double>())[0]);
       const double y = width - (sigma - 1 - c.scene.limit.onset[e]);
       if (!(y < width)) continue;
       ++active;

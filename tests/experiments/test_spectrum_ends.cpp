@@ -1,13 +1,13 @@
 // Which elements, bodies and vertices the ends of the spectrum are said to live on, where that is known.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
 #include <algorithm>
 
 #include "core/newton/simulation.hpp"
 #include "experiments/run/spectrum_ends.hpp"
 #include "tests/linear/systems.hpp"
 #include "tests/newton/small_scenes.hpp"
+#include "tests/oracle/dense.hpp"
 
 namespace bb::spectrum_ends_test {
 namespace {
@@ -29,7 +29,7 @@ struct EndsOf final : StepObserver {
     if (iteration > 0) return;
     Diagnosis& system = step_system.on_host().diagnosis();
     const ReducedSystem& matrix = system.clamped(set);
-    dense = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(bb::dense(matrix)).eigenvalues();
+    dense = test::eigenvalues(bb::dense(matrix));
     const auto vectors = end_vectors(matrix, scaling, 5);
     ends.clear();
     if (vectors) ends = describe_ends(system, set, *vectors);

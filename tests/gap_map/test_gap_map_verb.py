@@ -78,6 +78,12 @@ def real(program, tmp_path_factory):
     patch.undo()
 
 
+@pytest.fixture
+def undrawn(monkeypatch):
+    """What is kept and what is said does not come from the figures, which take most of a call's time; `real` has them."""
+    monkeypatch.setattr(entry.figure, "draw_all", lambda *_: [])
+
+
 def test_a_block_rests_at_its_target_and_a_theta_beyond_the_peak_is_named(real):
     folder, _ = real
     found = {(r["shape"], r["theta"]): r for r in table.read(folder / "out/gap_map.json").rows}
@@ -105,7 +111,7 @@ def test_page_and_figures_come_from_the_kept_numbers_alone(real, tmp_path):
     assert (tmp_path / "again.json").read_text() == (folder / "out/gap_map.json").read_text()
 
 
-def test_finished_runs_are_not_made_again_and_missing_ones_are_named(real, monkeypatch, tmp_path):
+def test_finished_runs_are_not_made_again_and_missing_ones_are_named(real, undrawn):
     folder, words = real
     before = {path: path.stat().st_mtime_ns for path in (folder / "runs").rglob("run.json")}
     assert before and entry.main(words) == 0 and {path: path.stat().st_mtime_ns for path in (folder / "runs").rglob("run.json")} == before
@@ -133,7 +139,7 @@ def test_the_store_of_another_map_is_not_written_over(real, tmp_path, capsys):
     assert "'mine'" in capsys.readouterr().err and (folder / "out/gap_map.json").read_bytes() == before
 
 
-def test_rows_of_earlier_calls_are_kept_while_their_settings_are_the_same(real, tmp_path):
+def test_rows_of_earlier_calls_are_kept_while_their_settings_are_the_same(real, undrawn, tmp_path):
     """Records are gone as on another machine: nothing is run again, until a setting or --anew asks for it."""
     folder, words = real
     out = tmp_path / "out"
@@ -149,7 +155,7 @@ def test_rows_of_earlier_calls_are_kept_while_their_settings_are_the_same(real, 
     assert entry.main([str(longer), "--no-run", "--runs", str(tmp_path / "none"), "--results", str(out)]) == 2  # none of them counts
 
 
-def test_a_part_of_a_map_says_what_is_not_run_and_goes_on(real, tmp_path, capsys):
+def test_a_part_of_a_map_says_what_is_not_run_and_goes_on(real, undrawn, tmp_path, capsys):
     folder, words = real
     mine = [words[0], "--runs", str(tmp_path / "runs"), "--results", str(tmp_path / "out")]
     (tmp_path / "runs").mkdir(), (tmp_path / "out").mkdir()

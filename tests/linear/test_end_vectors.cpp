@@ -1,11 +1,10 @@
 // The eigenvectors at both ends against dense ones.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "core/linear/block_scaling.hpp"
 #include "core/linear/end_vectors.hpp"
 #include "tests/linear/systems.hpp"
+#include "tests/oracle/dense.hpp"
 
 namespace bb::end_vectors_test {
 namespace {
@@ -31,13 +30,13 @@ TEST(EndVectors, are_those_of_the_dense_matrix_for_every_scaling) {
       blocks.multiply_lower(column);
       d.col(k) = column;
     }
-    const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> dense(a, d);
+    const test::Spectrum dense = test::spectrum(a.cast<long double>(), d.cast<long double>());
     const auto ends = end_vectors(system, scaling, 7);
     ASSERT_TRUE(ends) << to_string(scaling);
     for (const auto& [end, i] : {std::pair{&ends->smallest, 0}, std::pair{&ends->largest, 59}}) {
-      EXPECT_NEAR(end->lambda / dense.eigenvalues()[i], 1, 1e-9) << to_string(scaling);
+      EXPECT_NEAR(end->lambda / static_cast<double>(dense.values[i]), 1, 1e-9) << to_string(scaling);
       EXPECT_NEAR(end->vector.norm(), 1, 1e-14);
-      EXPECT_LT(turned(end->unscaled, dense.eigenvectors().col(i)), 1e-5) << to_string(scaling);
+      EXPECT_LT(turned(end->unscaled, dense.vectors.col(i).cast<double>()), 1e-5) << to_string(scaling);
       EXPECT_NEAR(end->unscaled.dot(a * end->unscaled) / end->lambda, 1, 1e-9) << to_string(scaling);
     }
   }

@@ -1,9 +1,8 @@
 // A step ends in a minimum of E or says that it does not: the certificate against the spectrum of the exact matrix.
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
 #include "tests/newton/saddle_scenes.hpp"
+#include "tests/oracle/dense.hpp"
 
 namespace bb::saddle_test {
 namespace {
@@ -17,7 +16,7 @@ class Spectrum final : public StepObserver {
     NewtonSystem& system = step_system.on_host();
     const Eigen::MatrixXd full =
         Eigen::MatrixXd(system.diagnosis().exact().lower).selfadjointView<Eigen::Lower>();
-    smallest = Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(full, Eigen::EigenvaluesOnly).eigenvalues()[0];
+    smallest = eigenvalues(full)[0];
     contacts = std::max(contacts, rows_of(system).size());
   }
   void on_iteration(const IterationReport& report) override {

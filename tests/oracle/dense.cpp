@@ -15,19 +15,34 @@ VecXd eigenvalues(const MatXd& a, const MatXd& d) {
   return solver.eigenvalues().cast<double>();
 }
 
+Spectrum spectrum(const MatXl& a) {
+  const Eigen::SelfAdjointEigenSolver<MatXl> solver(a);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+Spectrum spectrum(const MatXl& a, const MatXl& d) {
+  const Eigen::GeneralizedSelfAdjointEigenSolver<MatXl> solver(a, d);
+  return {solver.eigenvalues(), solver.eigenvectors()};
+}
+
 VecXl singular_values(const MatXl& a) { return Eigen::JacobiSVD<MatXl>(a).singularValues(); }
 
 Long determinant(const MatXl& a) { return a.determinant(); }
 
 MatXd clamped(const MatXd& a) {
-  const Eigen::SelfAdjointEigenSolver<MatXl> solver(a.cast<Long>());
-  const VecXl values = solver.eigenvalues().cwiseMax(0.0L);
-  return compose(solver.eigenvectors(), values, solver.eigenvectors()).cast<double>();
+  const Spectrum own = spectrum(a.cast<Long>());
+  return compose(own.vectors, own.values.cwiseMax(0.0L), own.vectors).cast<double>();
 }
 
 VecXd solve(const MatXd& a, const VecXd& b) {
   return a.cast<Long>().ldlt().solve(b.cast<Long>()).cast<double>();
 }
+
+std::optional<VecXl> only_solution(const MatXl& a, const VecXl& b) {
+  const Eigen::FullPivLU<MatXl> lu(a);
+  return lu.isInvertible() ? std::optional<VecXl>(lu.solve(b)) : std::nullopt;
+}
+
+MatXd inverse(const MatXd& a) { return MatXl(a.cast<Long>()).inverse().cast<double>(); }
 
 VecXl least_squares(const MatXl& a, const VecXl& b) { return a.colPivHouseholderQr().solve(b); }
 

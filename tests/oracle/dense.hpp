@@ -2,6 +2,8 @@
 // algorithm of core/.
 #pragma once
 
+#include <optional>
+
 #include "core/math/types.hpp"
 
 namespace bb::test {
@@ -16,6 +18,13 @@ VecXd eigenvalues(const MatXd& a);
 VecXl eigenvalues(const MatXl& a);
 /// Those of a x = lambda d x, d symmetric positive definite.
 VecXd eigenvalues(const MatXd& a, const MatXd& d);
+/// Values ascending, vectors in columns: a v = value v, or of two matrices a v = value d v with v^T d v = 1.
+struct Spectrum {
+  VecXl values;
+  MatXl vectors;
+};
+Spectrum spectrum(const MatXl& a);
+Spectrum spectrum(const MatXl& a, const MatXl& d);
 /// Descending.
 VecXl singular_values(const MatXl& a);
 Long determinant(const MatXl& a);
@@ -24,6 +33,9 @@ Long determinant(const MatXl& a);
 MatXd clamped(const MatXd& a);
 /// a x = b, a symmetric.
 VecXd solve(const MatXd& a, const VecXd& b);
+/// The x with a x = b, a square; none where a is singular.
+std::optional<VecXl> only_solution(const MatXl& a, const VecXl& b);
+MatXd inverse(const MatXd& a);
 /// The x of least |a x - b|; a of any rank and shape.
 VecXl least_squares(const MatXl& a, const VecXl& b);
 

@@ -44,7 +44,7 @@ constexpr std::size_t gap = 256;  // as cudaMalloc aligns
 std::string PtxExecutor::new_name() const {
   std::map<std::string, std::size_t> held;
   for (const auto& [begin, name] : names_) held[name] += allocations_.at(begin);
-  for (const auto& [name, bytes] : memory().by_name()) {
+  for (const auto& [name, bytes] : names().by_name()) {
     if (bytes > held[name]) return name;
   }
   return "";

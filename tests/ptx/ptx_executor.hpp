@@ -21,6 +21,8 @@ class PtxExecutor : public bb::exec::HostExecutor {
   void run(const bb::exec::KernelInfo& kernel, bb::exec::Index n, const void* f) override;
   void* allocate_bytes(std::size_t bytes) override;
   void release_bytes(void* memory) override;
+  /// What says how allocations are named.
+  virtual const bb::exec::MemoryLedger& names() const { return memory(); }
   /// Begin and bytes of all that is allocated.
   const std::map<unsigned char*, std::size_t>& allocations() const { return allocations_; }
 

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "tests/resident/contact_motion.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test {
 
@@ -20,7 +21,7 @@ inline BothBounds bounds(exec::Executor& executor, ResidentMotion& motion, const
           bound.find_without_list(motion.broad_phase.source(), motion.x0, motion.x1)};
 }
 inline BothBounds bounds(const Scene& scene, const Positions& x1, const BoundBatches& batches = {}) {
-  exec::HostExecutor executor;
+  TestedExecutor executor;
   ResidentMotion motion(executor, scene, scene.x0, x1);
   return bounds(executor, motion, batches);
 }

@@ -10,10 +10,10 @@
 #include "core/resident/contact/contact_assembly.hpp"
 #include "core/resident/contact/row_finder.hpp"
 #include "tests/contact/contact_scenes.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test {
 
-using exec::HostExecutor;
 using exec::Index;
 using exec::Key;
 

@@ -5,6 +5,7 @@
 #include "core/resident/elements/element_terms.hpp"
 #include "core/resident/elements/hessian_request.hpp"
 #include "tests/resident/cpu_elements.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test {
 
@@ -182,13 +183,13 @@ inline Difference compare(const OnExecutor& resident, const CpuElements& cpu) {
 }
 
 /// The five orders of a host executor.
-inline std::vector<std::unique_ptr<exec::HostExecutor>> all_orders() {
-  std::vector<std::unique_ptr<exec::HostExecutor>> out;
+inline std::vector<std::unique_ptr<TestedExecutor>> all_orders() {
+  std::vector<std::unique_ptr<TestedExecutor>> out;
   for (const exec::Order order :
        {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
-    out.push_back(std::make_unique<exec::HostExecutor>(order, 3));
+    out.push_back(std::make_unique<TestedExecutor>(order, 3));
   }
-  out.push_back(std::make_unique<exec::HostExecutor>(exec::Order::shuffled, 17));
+  out.push_back(std::make_unique<TestedExecutor>(exec::Order::shuffled, 17));
   return out;
 }
 

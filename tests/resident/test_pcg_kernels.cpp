@@ -10,13 +10,14 @@
 #include "core/resident/linear/pcg_kernels.hpp"
 #include "core/resident/linear/schwarz_kernels.hpp"
 #include "tests/resident/linear_cases.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident::pcg_kernels_test {
 namespace {
 
 using exec::Buffer;
-using exec::HostExecutor;
 using exec::Order;
+using test::TestedExecutor;
 using Numbers = std::vector<double>;
 
 std::size_t at(Index i) { return static_cast<std::size_t>(i); }
@@ -66,7 +67,7 @@ void expect_near(const Numbers& got, const Numbers& expected, double tolerance) 
 }
 
 struct PcgKernels : testing::TestWithParam<Order> {
-  HostExecutor executor{GetParam(), 7};
+  TestedExecutor executor{GetParam(), 7};
   Buffer<double> p{executor, "p"}, q{executor, "q"}, x{executor, "x"}, r{executor, "r"}, z{executor, "z", n};
   Buffer<double> inverse{executor, "inverse"}, pq{executor, "pq"}, rz{executor, "rz", 3},
       rr{executor, "rr", 3};
@@ -170,7 +171,7 @@ INSTANTIATE_TEST_SUITE_P(Orders, PcgKernels,
 /// Also a number above the diagonal, whose mirror image is finite.
 TEST(FactorizeDiagonal, LooksAtEveryNumber) {
   for (int bad = 0; bad < 9; ++bad) {
-    HostExecutor executor(Order::forward);
+    TestedExecutor executor(Order::forward);
     Mat3d block = Mat3d::Identity();
     block(bad / 3, bad % 3) = std::numeric_limits<double>::infinity();
     const OwnedPart part(executor, {0, 1, 2}, {0, 1}, {Mat3d::Identity(), block});

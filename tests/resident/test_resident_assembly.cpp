@@ -5,6 +5,7 @@
 
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/resident/assembled.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test::resident_assembly_test {
 namespace {
@@ -39,7 +40,7 @@ TEST(ResidentAssembly, AddsUpWhatTheCpuPathDoes) {
       for (const Projection projection : {Projection::none, Projection::psd, Projection::absolute}) {
         const Reference expected = reference_of(s.scene, s.x, motion, mode, projection);
         n_mollified += expected.n_mollified, n_curved += expected.n_curved;
-        HostExecutor executor;
+        TestedExecutor executor;
         const Assembled got = assemble(executor, s.scene, s.x, motion, {mode, projection});
         ASSERT_GE(got.n_rows, 40);
         EXPECT_GT(expected.energy, 0);
@@ -73,7 +74,7 @@ TEST(ResidentAssembly, DoesNotDependOnTheOrderOfItems) {
     std::string reference;
     unsigned seed = 1;
     for (const exec::Order order : all_orders) {
-      HostExecutor executor(order, seed++);
+      TestedExecutor executor(order, seed++);
       const Assembled got =
           assemble(executor, s.scene, s.x, motion_of_given(s.scene), {mode, Projection::psd});
       EXPECT_GT(got.matrix.norm(), 0);
@@ -89,7 +90,7 @@ TEST(ResidentAssembly, DoesNotDependOnItsChunks) {
     std::string reference;
     for (const AssemblyOptions& options :
          {AssemblyOptions{}, AssemblyOptions{1, 1}, AssemblyOptions{64, 7}, AssemblyOptions{1000, 100}}) {
-      HostExecutor executor;
+      TestedExecutor executor;
       const Assembled got =
           assemble(executor, s.scene, s.x, motion_of_given(s.scene), {mode, Projection::psd}, options);
       ASSERT_GT(got.n_blocks, 300);
@@ -101,7 +102,7 @@ TEST(ResidentAssembly, DoesNotDependOnItsChunks) {
 
 TEST(ResidentAssembly, HoldsTheDiagonalOfEveryTouchedVertexAndBothTriangles) {
   const Subject s = subjects().front();
-  HostExecutor executor(exec::Order::shuffled);
+  TestedExecutor executor(exec::Order::shuffled);
   OnExecutor on(executor, s.scene, s.x);
   ContactAssembly assembly(executor, on.resident, s.scene.n_vertices());
   assembly.set_pattern(on.rows);
@@ -138,7 +139,7 @@ TEST(ResidentAssembly, OfNoRowsIsNothing) {
   Positions far = scene.x0;
   for (int v = 0; v < scene.n_vertices(); ++v) far.col(v) += 100.0 * v * Vec3d(1, 1, 1);
   scene.obstacles.clear();
-  HostExecutor executor;
+  TestedExecutor executor;
   const Assembled got = assemble(executor, scene, far, motion_of_given(scene), {});
   EXPECT_EQ(got.n_rows, 0);
   EXPECT_EQ(got.n_blocks, 0);
@@ -147,7 +148,7 @@ TEST(ResidentAssembly, OfNoRowsIsNothing) {
 
 TEST(ResidentAssembly, RefusesAProjectionWithoutAKernel) {
   const Subject s = subjects().front();
-  HostExecutor executor;
+  TestedExecutor executor;
   for (const HessianMode mode :
        {HessianMode::projected_numeric, HessianMode::projected_lapack, HessianMode::projected_low_rank}) {
     EXPECT_THROW(assemble(executor, s.scene, s.x, motion_of_given(s.scene), {mode}), std::invalid_argument);
@@ -169,7 +170,7 @@ TEST(ContactSums, AreExactToRoundingAndTheSameInAnyOrder) {
   }
   double first = 0;
   for (const exec::Order order : all_orders) {
-    HostExecutor executor(order);
+    TestedExecutor executor(order);
     exec::Buffer<double> x(executor, "a"), y(executor, "b");
     exec::Buffer<std::uint8_t> mask(executor, "fixed");
     x.upload(a), y.upload(b), mask.upload(fixed);
@@ -182,7 +183,7 @@ TEST(ContactSums, AreExactToRoundingAndTheSameInAnyOrder) {
 
 TEST(ContactSums, GiveTheMeanMassOfTheRows) {
   const Scene scene = full_scene(2);
-  HostExecutor executor;
+  TestedExecutor executor;
   OnExecutor on(executor, scene, scene.x0);
   double mass = 0;
   int count = 0;

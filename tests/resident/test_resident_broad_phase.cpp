@@ -8,6 +8,7 @@
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/contact/rods.hpp"
 #include "tests/resident/contact_motion.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test::resident_broad_phase_test {
 namespace {
@@ -28,7 +29,7 @@ std::size_t expect_same(const Candidates& found, const Candidates& expected) {
 }
 
 Candidates found(const Scene& scene, const Positions& x0, const Positions& x1) {
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   ResidentMotion motion(executor, scene, x0, x1);
   motion.update();
   return lists_of(motion.candidates);
@@ -83,7 +84,7 @@ TEST(ResidentBroadPhase, FindsWhatTheCpuPathFindsBesideFarBodies) {
   cases.insert(cases.begin(), FarBodies{});
   for (const FarBodies& bodies : cases) {
     const FarScene far = shuffled_sheets(bodies);
-    exec::HostExecutor executor;
+    test::TestedExecutor executor;
     ResidentMotion motion(executor, far.scene, far.scene.x0, far.x1);
     motion.update();
     const Candidates expected = cpu_candidates(far.scene, far.scene.x0, far.x1);
@@ -171,7 +172,7 @@ TEST(ResidentBroadPhase, FindsAllPairsOfBoxes) {
   for (unsigned seed = 1; seed <= 12; ++seed) {
     const Scene scene = soup_scene(seed, 40);
     const Positions x1 = moved(scene, 0.1, seed);
-    exec::HostExecutor executor;
+    test::TestedExecutor executor;
     ResidentMotion motion(executor, scene, scene.x0, x1);
     motion.update();
     const auto frame = frame_of(motion.surface, scene.x0, x1);
@@ -289,7 +290,7 @@ TEST(ResidentBroadPhase, IsTheSameInAnyOrder) {
   for (const auto order :
        {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
     for (unsigned seed = 1; seed <= (order == exec::Order::shuffled ? 2 : 1); ++seed) {
-      exec::HostExecutor executor(order, seed);
+      test::TestedExecutor executor(order, seed);
       ResidentMotion motion(executor, scene, scene.x0, x1);
       motion.update();
       EXPECT_GT(expect_same(lists_of(motion.candidates), expected), 1000U);
@@ -299,7 +300,7 @@ TEST(ResidentBroadPhase, IsTheSameInAnyOrder) {
 
 TEST(ResidentBroadPhase, FollowsTheSceneFromMotionToMotion) {
   const Scene scene = soup_scene(4, 50);
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   ResidentMotion motion(executor, scene, scene.x0, scene.x0);
   std::size_t most = 0, least = 1000000;
   for (const double size : {0.01, 1.0, 0.0, 0.2, 1e-6}) {
@@ -317,7 +318,7 @@ TEST(ResidentBroadPhase, FollowsTheSceneFromMotionToMotion) {
 
 TEST(ResidentBroadPhase, CountsBeforeAnyListIsThere) {
   const Scene scene = soup_scene(2, 100);
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   ResidentMotion motion(executor, scene, scene.x0, moved(scene, 0.3, 1));
   const auto counts = motion.broad_phase.count(motion.x0, motion.x1);
   EXPECT_EQ(motion.candidates.edge_edge.size(), 0);
@@ -339,7 +340,7 @@ TEST(ResidentBroadPhase, CountsBeforeAnyListIsThere) {
 TEST(ResidentBroadPhase, NeedsTheMemoryThatACountForetells) {
   const Scene scene = soup_scene(1, 80);
   const Positions x1 = moved(scene, 0.1, 2);
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   ResidentMotion motion(executor, scene, scene.x0, x1);
   motion.update();
   const Candidates lists = lists_of(motion.candidates);

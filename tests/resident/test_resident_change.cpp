@@ -2,6 +2,7 @@
 #include <cmath>
 
 #include "tests/resident/on_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident_change_test {
 namespace {
@@ -15,7 +16,7 @@ struct Pair {
   StepFrame frame;
   Positions x;
   CpuElements cpu;
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   OnExecutor resident;
 
   explicit Pair(bool planar, const char* model = "stable_neo_hookean")
@@ -92,7 +93,7 @@ TEST(ResidentChange, KeepsTheDigitsOfTheLoads) {
   const TermOptions options = element_options();
   StepFrame frame = step_frame(scene);
   frame.x_tilde.array() += 1e6;
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   OnExecutor resident(executor, scene, options, frame);
   resident.linearise(scene.x0);
   Positions to = scene.x0;

@@ -3,6 +3,7 @@
 #include "tests/resident/assembled.hpp"
 #include "tests/resident/both_bounds.hpp"
 #include "tests/resident/rows_pair_by_pair.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test::resident_close_test {
 namespace {
@@ -34,7 +35,7 @@ TEST(ResidentClose, HasTheRowsOfTheCpuPath) {
     ContactSystem contacts(scene, {});
     const Rows reference = rows_at(contacts, x);
     if (reference.table.size() + reference.mollified.size() == 0) return;
-    HostExecutor executor;
+    TestedExecutor executor;
     OnExecutor on(executor, scene, x);
     compare(scene, on.rows, reference, n_kinds);
     ++n;
@@ -76,7 +77,7 @@ TEST(ResidentClose, IsThatOfTheCpuPathAcrossEmptyStretches) {
     for (double& d : scene.d_hat) d *= 10;
     for (const double size : {1e-3, 0.1})
       expect_that_of_the_cpu_path(scene, moved(scene, size, 3), n_of_kind);
-    HostExecutor executor;
+    TestedExecutor executor;
     ContactSystem contacts(scene, {});
     OnExecutor on(executor, scene, scene.x0);
     compare(scene, on.rows, rows_at(contacts, scene.x0), n_kinds);
@@ -93,7 +94,7 @@ TEST(ResidentClose, AddsUpGradientAndMatrixOfTheCpuPath) {
     for (const Projection projection : {Projection::none, Projection::psd}) {
       const Reference expected = reference_of(scene, x, motion, HessianMode::projected_full, projection);
       if (!(expected.gradient.norm() > 0)) return;
-      HostExecutor executor;
+      TestedExecutor executor;
       const Assembled got = assemble(executor, scene, x, motion, {HessianMode::projected_full, projection});
       EXPECT_GT(got.n_rows, 0);
       EXPECT_NEAR(got.energy, expected.energy, 1e-11 * expected.energy);

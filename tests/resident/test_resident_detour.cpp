@@ -7,6 +7,7 @@
 #include "core/resident/sums/resident_sum.hpp"
 #include "tests/contact/obstacle_scenes.hpp"
 #include "tests/resident/contact_on_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test::resident_detour_test {
 namespace {
@@ -72,7 +73,7 @@ TEST(ResidentDetour, IsThatOfTheCpuPathInAnyOrder) {
         n_straight += expected.held.straight > 0 && std::isfinite(expected.held.straight);
         std::string first;
         for (const exec::Order order : all_orders) {
-          HostExecutor executor(order, seed);
+          TestedExecutor executor(order, seed);
           const Room got = on_executor(executor, scene, x, dx);
           // pairs of one row are added up one by one
           EXPECT_LT((got.force - expected.force).norm(), 1e-11 * expected.force.norm()) << size;

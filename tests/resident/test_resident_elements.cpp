@@ -4,6 +4,7 @@
 #include "core/energy/membrane_model.hpp"
 #include "core/exec/counting_executor.hpp"
 #include "tests/resident/on_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident_elements_test {
 namespace {
@@ -34,7 +35,7 @@ TEST(ResidentElements, HaveTheGradientAndEnergiesOfTheTerms) {
     const Positions x = strained(scene);
     CpuElements cpu(scene, options, frame);
     cpu.linearise(x, StepHessian::clamped);
-    exec::HostExecutor executor;
+    test::TestedExecutor executor;
     OnExecutor resident(executor, scene, options, frame);
     resident.linearise(x);
     ASSERT_GT(largest(cpu.gradient), 0.1);
@@ -66,7 +67,7 @@ TEST(ResidentElements, HaveTheMatrixOfTheTerms) {
     TermOptions options = element_options();
     const StepFrame frame = step_frame(scene);
     const Positions x = strained(scene);
-    exec::HostExecutor executor;
+    test::TestedExecutor executor;
     OnExecutor resident(executor, scene, options, frame);
     resident.linearise(x);
     std::vector<double> force;
@@ -106,7 +107,7 @@ TEST(ResidentElements, HingesAgreeToRounding) {
   TermOptions options = element_options();
   StepFrame frame = step_frame(scene);
   frame.c = 0;
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   OnExecutor resident(executor, scene, options, frame);
   for (const double folds : {0.3, 1.0}) {  // m, some triangles turn over
     const Positions x = strained(scene, folds);
@@ -140,7 +141,7 @@ TEST(ResidentElements, SumTheGroupsThatAreAskedFor) {
   const StepFrame frame = step_frame(scene);
   CpuElements cpu(scene, options, frame);
   cpu.linearise(strained(scene), StepHessian::clamped);
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   OnExecutor resident(executor, scene, options, frame);
   resident.linearise(strained(scene));
   std::vector<std::vector<double>> seen;
@@ -186,7 +187,7 @@ TEST(ResidentElements, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
     out.bound = resident.bound(dx);
     return out;
   };
-  exec::HostExecutor first;
+  test::TestedExecutor first;
   const Found expected = find(first, resident::ElementMatrix::default_piece);
   EXPECT_NE(expected.change, 0);
   EXPECT_GT(expected.bound, 0);
@@ -197,7 +198,7 @@ TEST(ResidentElements, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
 
 TEST(ResidentElements, RefuseWhatHasNoKernel) {
   const Scene scene = cloth_scene("arap", false, 3);
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   TermOptions options = element_options();
   options.limit.shape.name = "mine";
   try {
@@ -212,7 +213,7 @@ TEST(ResidentElements, RefuseWhatHasNoKernel) {
 TEST(ResidentElements, AreCountedWithoutMemory) {
   const Scene scene = cloth_scene("arap", false, 8);
   const TermOptions options = element_options();
-  exec::HostExecutor host;
+  test::TestedExecutor host;
   exec::CountingExecutor counting;
   const OnExecutor there(host, scene, options), counted(counting, scene, options);
   EXPECT_GT(host.memory().bytes(), 10000u);
@@ -226,7 +227,7 @@ TEST(ResidentElements, NameTheFirstElementThatIsNoNumber) {
   const Scene scene = cloth_scene("arap", true, 4);
   const TermOptions options = element_options();
   const StepFrame frame = step_frame(scene);
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   OnExecutor resident(executor, scene, options, frame);
   Positions x = strained(scene);
   x(0, 5) = std::nan("");

@@ -5,6 +5,7 @@
 #include "core/math/error.hpp"
 #include "tests/barriers/host_policy.hpp"
 #include "tests/resident/on_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident_limit_test {
 namespace {
@@ -54,7 +55,7 @@ TEST(ResidentLimit, HasTheTermsOfTheCpuForEveryRule) {
       TermOptions options = element_options(rule.shape);
       options.limit_stiffness = rule.policy();
       CpuElements cpu(scene, options, frame);
-      exec::HostExecutor executor;
+      test::TestedExecutor executor;
       OnExecutor resident(executor, scene, options, frame);
       const double tolerance = planar ? rule.tolerance : std::max(rule.tolerance, 1e-12);
       for (const double size : {0.006, 0.009}) {
@@ -94,7 +95,7 @@ TEST(ResidentLimit, BoundsAStepAsTheCpuDoes) {
     TermOptions options = element_options();
     const StepFrame frame = step_frame(scene);
     CpuElements cpu(scene, options, frame);
-    exec::HostExecutor executor;
+    test::TestedExecutor executor;
     OnExecutor resident(executor, scene, options, frame);
     const Positions x = strained(scene);
     cpu.linearise(x, StepHessian::clamped);
@@ -120,7 +121,7 @@ TEST(ResidentLimit, BoundsAStepAsTheCpuDoes) {
 TEST(ResidentLimit, RefusesStatesBeyondIt) {
   const Scene scene = cloth_scene("arap", true, 4);
   TermOptions options = element_options();
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   OnExecutor resident(executor, scene, options, step_frame(scene));
   resident.linearise(strained(scene));
   Positions beyond = scene.x0;
@@ -146,7 +147,7 @@ TEST(ResidentLimit, LiteralAndSquaredGapAreThoseOfTheCpu) {
       Positions x = strained(scene);
       if (literal) x.row(0) *= 1.3, ++n_beyond;
       CpuElements cpu(scene, options, frame);
-      exec::HostExecutor executor;
+      test::TestedExecutor executor;
       OnExecutor resident(executor, scene, options, frame);
       cpu.linearise(x, StepHessian::clamped);
       resident.linearise(x);
@@ -166,7 +167,7 @@ TEST(ResidentLimit, IsMeasuredWhereItIsAsked) {
     TermOptions options = element_options();
     if (elastic) options.limit_stiffness = elastic_limit();
     const StepFrame frame = step_frame(scene);
-    exec::HostExecutor executor;
+    test::TestedExecutor executor;
     OnExecutor resident(executor, scene, options, frame), fresh(executor, scene, options, frame);
     const Positions x = strained(scene), to = strained(scene, 0.009);
     resident.linearise(x);
@@ -194,7 +195,7 @@ TEST(ResidentLimit, IsLeftOutWhereNothingIsLimited) {
   const Scene scene = cloth_scene("arap", true, 4);
   TermOptions options = element_options();
   options.strain_limit = false;
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   OnExecutor resident(executor, scene, options, step_frame(scene));
   EXPECT_EQ(resident.linearise(scene.x0), 0);
   EXPECT_EQ(resident.bound(wave(scene, 10)), 1);
@@ -205,7 +206,7 @@ TEST(ResidentLimit, RefusesAPolicyWithoutKernelByItsName) {
   const Scene scene = cloth_scene("corotational", false);
   TermOptions options = element_options();
   options.limit_stiffness = std::make_unique<HostPolicy>();
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   try {
     const OnExecutor resident(executor, scene, options);
     FAIL() << "not refused";

@@ -4,6 +4,7 @@
 #include "core/energy/tetrahedron_batch.hpp"
 #include "core/mesh/solid_generators.hpp"
 #include "tests/resident/on_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident_parts_test {
 namespace {
@@ -78,7 +79,7 @@ struct Both {
   StepFrame frame;
   Positions x;
   CpuElements cpu;
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   OnExecutor resident;
 
   explicit Both(const Case& of, StepHessian choice = StepHessian::clamped)
@@ -175,7 +176,7 @@ TEST(ResidentParts, HaveTheSameBitsInEveryOrderAndForEveryPiece) {
 TEST(ResidentParts, NameTheFirstElementThatIsNoNumber) {
   const Scene rods = scene_of({helix()});
   const TermOptions options = element_options();
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   OnExecutor bent(executor, rods, options, step_frame(rods));
   Positions x = rods.x0;
   x.col(9) = x.col(8);

@@ -6,6 +6,7 @@
 #include "core/exec/counting_executor.hpp"
 #include "tests/contact/rods.hpp"
 #include "tests/resident/rows_pair_by_pair.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test::resident_rows_test {
 namespace {
@@ -25,7 +26,7 @@ TEST(ResidentRowFinder, HasTheRowsOfTheContactSystemPairByPair) {
     const std::vector<ContactKey> all = keys_of(reference.table);
     const std::multiset<ContactKey> keys(all.begin(), all.end());
     for (const ContactKey& key : all) n_shared += keys.count(key) > 1;
-    HostExecutor executor;
+    TestedExecutor executor;
     OnExecutor on(executor, scene, x);
     compare(scene, on.rows, reference, n_kinds);
   }
@@ -38,7 +39,7 @@ TEST(ResidentRowFinder, HasThoseOfRods) {
   for (unsigned seed = 1; seed <= 6; ++seed) {
     const Scene scene = rods_and_sheet(seed, 0.04);
     ContactSystem contacts(scene, {});
-    HostExecutor executor;
+    TestedExecutor executor;
     OnExecutor on(executor, scene, scene.x0);
     const Rows reference = rows_at(contacts, scene.x0);
     compare(scene, on.rows, reference, n_kinds);
@@ -52,7 +53,7 @@ TEST(ResidentRowFinder, HasThoseOfPlanarScenes) {
   for (const PlanarPairs pairs : {PlanarPairs::vertex_vertex, PlanarPairs::point_edge}) {
     const Scene scene = planar_layers(pairs, 3);
     ContactSystem contacts(scene, {});
-    HostExecutor executor;
+    TestedExecutor executor;
     OnExecutor on(executor, scene, scene.x0);
     compare(scene, on.rows, rows_at(contacts, scene.x0), n_kinds);
   }
@@ -66,7 +67,7 @@ TEST(ResidentRowFinder, GivesTheSameBitsInAnyOrder) {
   std::string reference;
   unsigned seed = 1;
   for (const exec::Order order : all_orders) {
-    HostExecutor executor(order, seed++);
+    TestedExecutor executor(order, seed++);
     OnExecutor on(executor, scene, x);
     ASSERT_GT(on.rows.size(), 300);
     const std::string bytes = bytes_of(on.rows);
@@ -79,7 +80,7 @@ TEST(ResidentRowFinder, NamesGapsBelowZeroAndStatesThatAreNotFinite) {
   Scene scene;
   add_body(scene, "free", {Vec3d(0, 0, 0.05), Vec3d(1, 0, -0.02), Vec3d(2, 0, -0.01)}, {}, 0.1);
   scene.obstacles.push_back({});  // the plane z = 0
-  HostExecutor executor;
+  TestedExecutor executor;
   OnExecutor on(executor, scene, scene.x0);
   EXPECT_EQ(on.rows.size(), 3);
   EXPECT_EQ(on.rows.min_gap, -0.02);
@@ -105,7 +106,7 @@ TEST(ResidentRowFinder, NamesGapsBelowZeroAndStatesThatAreNotFinite) {
 
 TEST(ResidentRowFinder, TellsStencilsApart) {
   const Scene scene = full_scene(2);
-  HostExecutor executor;
+  TestedExecutor executor;
   const Positions x = shaken(scene);
   OnExecutor a(executor, scene, x);
   OnExecutor b(executor, scene, random_motion(x, 1e-13, 5));
@@ -130,7 +131,7 @@ TEST(ResidentRows, TakeAtMost140BytesEach) {
     EXPECT_GE(each, 122);
     EXPECT_LE(each, 140);
     // nothing hides behind the counted columns
-    HostExecutor host;
+    TestedExecutor host;
     exec::CountingExecutor counting;
     ResidentRows filled(host, columns), counted(counting, columns);
     filled.resize(100000), counted.resize(100000);

@@ -8,13 +8,14 @@
 #include "core/solvers/linear_solvers.hpp"
 #include "tests/oracle/dense.hpp"
 #include "tests/resident/linear_cases.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident::resident_schwarz_test {
 namespace {
 
 using exec::Buffer;
-using exec::HostExecutor;
 using exec::Order;
+using test::TestedExecutor;
 
 struct Solved {
   LinearReport report;
@@ -25,7 +26,7 @@ struct Solved {
 
 Solved solve(const ReducedSystem& system, const std::vector<FixedMask>& fixed, Order order = Order::threads,
              bool split = true, int cluster = 8) {
-  HostExecutor executor(order);
+  TestedExecutor executor(order);
   const OwnedSystem owned(executor, system, fixed, split);
   Buffer<double> rhs(executor, "b"), x(executor, "x", 3 * owned.n());
   rhs.upload(plain(random_vector(system.lower.rows(), 4)));
@@ -88,7 +89,7 @@ Eigen::MatrixXd inverse(exec::Executor& executor, Schwarz& schwarz, const OwnedS
 TEST(ResidentSchwarz, IsSymmetricPositiveDefinite) {
   const ReducedSystem system = folded_grid(12, 1e3);
   for (const auto& fixed : {no_fixed(144), some_fixed(144)}) {
-    HostExecutor executor(Order::shuffled);
+    TestedExecutor executor(Order::shuffled);
     const OwnedSystem owned(executor, system, fixed, true);
     Schwarz schwarz(executor, 4);
     const Eigen::MatrixXd m = inverse(executor, schwarz, owned);
@@ -104,7 +105,7 @@ TEST(ResidentSchwarz, IsSymmetricPositiveDefinite) {
 TEST(ResidentSchwarz, IsExactWhereOneClusterHoldsAll) {
   for (const auto& fixed : {no_fixed(9), some_fixed(9)}) {
     const ReducedSystem system = grid_system(3, 0.1, 1);
-    HostExecutor executor(Order::reverse);
+    TestedExecutor executor(Order::reverse);
     const OwnedSystem owned(executor, system, fixed, true);
     Schwarz schwarz(executor, 11);
     const Eigen::MatrixXd m = inverse(executor, schwarz, owned), a = restricted(system, fixed);
@@ -146,7 +147,7 @@ Eigen::MatrixXd dense_schwarz(const Eigen::MatrixXd& a, const Eigen::MatrixXd& s
         p(rows.back(), 3 * k + c) = 1 - fixed[rows.back()];
       }
     }
-    const Eigen::MatrixXd local = whole(rows, rows), inverse_local = local.inverse();
+    const Eigen::MatrixXd local = whole(rows, rows), inverse_local = test::inverse(local);
     out(rows, rows) = inverse_local;
   }
   if (clusters.size() == n) return out;
@@ -160,7 +161,7 @@ Eigen::MatrixXd dense_schwarz(const Eigen::MatrixXd& a, const Eigen::MatrixXd& s
 TEST(ResidentSchwarz, IsTheSumOverItsLevels) {
   for (const auto& mask : {no_fixed(49), some_fixed(49)}) {
     ReducedSystem system = grid_system(7, 0.3, 1);
-    HostExecutor executor;
+    TestedExecutor executor;
     const OwnedSystem owned(executor, system, mask, false);
     Schwarz schwarz(executor, 4);
     const Eigen::MatrixXd m = inverse(executor, schwarz, owned, 1);

@@ -6,6 +6,7 @@
 #include "core/math/error.hpp"
 #include "core/resident/contact/resident_barrier.hpp"
 #include "tests/resident/contact_on_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test::resident_shapes_test {
 namespace {
@@ -35,7 +36,7 @@ TEST(ResidentBarrier, EvaluatesEveryShapeOfTheRegistry) {
   int n_shapes = 0;
   for (const Shape& shape : all_shapes()) {
     for (const Argument argument : {Argument::gap, Argument::squared_gap}) {
-      HostExecutor executor(exec::Order::shuffled);
+      TestedExecutor executor(exec::Order::shuffled);
       ResidentRows rows(executor, KappaColumns::kept);
       fill(rows);
       const BarrierFunction barrier{shape, argument};
@@ -69,7 +70,7 @@ TEST(ResidentBarrier, FoldsTheStiffnessIntoShapesWithAPotential) {
       EXPECT_THROW(ResidentBarrier(barrier, true), ConfigError) << shape.name;
       continue;
     }
-    HostExecutor executor;
+    TestedExecutor executor;
     ResidentRows rows(executor, KappaColumns::potential);
     fill(rows);
     ResidentBarrier(barrier, true).evaluate(executor, rows);

@@ -10,6 +10,7 @@
 #include "tests/contact/rods.hpp"
 #include "tests/folders.hpp"
 #include "tests/resident/both_bounds.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test::resident_step_bound_test {
 namespace {
@@ -24,7 +25,7 @@ TEST(ResidentStepBound, IsThatOfTheCpuPathOfRodsAndBesideFarBodies) {
   }
   EXPECT_GT(n_of_kind[static_cast<std::size_t>(ContactKind::point_edge)], 0);
   for (const double sink : {1e-3, 0.02}) {
-    exec::HostExecutor executor;
+    test::TestedExecutor executor;
     const FarScene near = sheets_and_far(12, sink, {});
     ResidentMotion alone(executor, near.scene, near.scene.x0, near.x1);
     const BothBounds expected = bounds(executor, alone);
@@ -177,7 +178,7 @@ TEST(ResidentStepBound, IsTheSameInAnyOrderWithItsCounters) {
   for (const auto order :
        {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
     for (unsigned seed = 1; seed <= (order == exec::Order::shuffled ? 2 : 1); ++seed) {
-      exec::HostExecutor executor(order, seed);
+      test::TestedExecutor executor(order, seed);
       ResidentMotion motion(executor, scene, scene.x0, x1);
       found.push_back(bounds(executor, motion, {512, 16, 128}));
     }
@@ -240,7 +241,7 @@ TEST(ResidentStepBound, IsThatOfTheCpuPathBetweenTwoFramesOfACloth) {
   const Positions x1 = after.vertices;
   ASSERT_EQ(x1.cols(), scene.x0.cols());
   const Candidates expected = cpu_candidates(scene, scene.x0, x1);
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   ResidentMotion motion(executor, scene, scene.x0, x1);
   const BothBounds found = bounds(executor, motion);
   EXPECT_EQ(pairs_of(motion.candidates.point_triangle), expected.point_triangle);

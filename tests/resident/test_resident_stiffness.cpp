@@ -11,6 +11,7 @@
 #include "core/terms/stiffness_update.hpp"
 #include "tests/barriers/host_policy.hpp"
 #include "tests/resident/contact_on_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test::resident_stiffness_test {
 namespace {
@@ -155,7 +156,7 @@ void follow(const Policy& p, exec::Order order, double& worst, std::string& byte
   StiffnessUpdate update(*policy, scene.mass);
   update.set_time({0.01, 1});
 
-  HostExecutor executor(order);
+  TestedExecutor executor(order);
   const ElasticOnExecutor there(executor, elastic);
   ResidentStiffness stiffness(executor, *policy, scene.mass);
   stiffness.set_time({0.01, 1});
@@ -234,7 +235,7 @@ TEST(ResidentStiffness, GivesTheSameBitsInAnyOrder) {
 TEST(ResidentStiffness, ReadsTheMatrixBlockByBlock) {
   const Scene scene = full_scene(1);
   const Elastic elastic(scene);
-  HostExecutor executor;
+  TestedExecutor executor;
   PolicyConfig config{"elasticity_inclusive", 1, {}};
   config.parameters.emplace("mass_term", "none");
   const auto policy = make_policy(config);
@@ -270,7 +271,7 @@ TEST(ResidentStiffness, ReadsTheMatrixBlockByBlock) {
 
 TEST(StepEndGaps, ListsPairsOfTwoStepEndsWhoseGapShrank) {
   const Scene scene = full_scene(5);
-  HostExecutor executor(exec::Order::shuffled);
+  TestedExecutor executor(exec::Order::shuffled);
   OnExecutor on(executor, scene, scene.x0);
   resident::StepEndGaps gaps(executor);
   EXPECT_TRUE(gaps.end_step(on.rows, 1e-6).empty());
@@ -305,7 +306,7 @@ TEST(ResidentStiffness, RefusesAPolicyWithoutKernelByItsName) {
     EXPECT_EQ(error.violations()[0].found, "host_only");
   }
   const Scene scene = full_scene(3);
-  HostExecutor executor;
+  TestedExecutor executor;
   EXPECT_THROW(ResidentStiffness(executor, HostPolicy(), scene.mass), ConfigError);
   const auto fixed = make_policy({"fixed", 1, {{"kappa_N_per_m", 3.0}}});  // one kappa needs no kernel
   EXPECT_NO_THROW(ResidentStiffness(executor, *fixed, scene.mass));

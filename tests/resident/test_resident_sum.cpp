@@ -8,6 +8,7 @@
 #include <random>
 
 #include "tests/resident/on_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident::resident_sum_test {
 namespace {
@@ -42,7 +43,7 @@ TEST(ResidentSum, LosesNothingOfACancellingSum) {
       plain += v;
     }
     exact += carry;
-    exec::HostExecutor executor;
+    test::TestedExecutor executor;
     exec::Buffer<double> column(executor, "column");
     column.upload(values);
     ResidentSum sum(executor);
@@ -59,7 +60,7 @@ TEST(ResidentSum, LosesNothingOfACancellingSum) {
 }
 
 TEST(ResidentSum, AddsWhatComesAndTakesWhatGoes) {
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   exec::Buffer<double> from(executor, "from"), to(executor, "to");
   from.upload(std::vector<double>{1e16, 3, 5});
   to.upload(std::vector<double>{1e16, 2, 7, 0.5});
@@ -95,7 +96,7 @@ TEST(ResidentSum, TakesMoreItemsThanThreads) {
   }
   std::vector<FixedMask> fixed(n / 3 + 1);
   for (std::size_t v = 0; v < fixed.size(); ++v) fixed[v] = v % 2 == 0 ? 0 : 7;
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   exec::Buffer<double> a(executor, "a"), b(executor, "b");
   exec::Buffer<FixedMask> mask(executor, "mask");
   a.upload(values), b.upload(others), mask.upload(fixed);
@@ -130,7 +131,7 @@ TEST(ResidentSum, HasTheSameBitsInEveryOrder) {
 TEST(ResidentLeast, FindsTheLargestAndTheSmallest) {
   for (const std::size_t n : {1u, 300u, 300000u}) {
     std::vector<double> values = cancelling(n);
-    exec::HostExecutor executor(exec::Order::shuffled);
+    test::TestedExecutor executor(exec::Order::shuffled);
     exec::Buffer<double> column(executor, "column");
     column.upload(values);
     ResidentLeast least(executor);

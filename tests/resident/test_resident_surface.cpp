@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "core/exec/host_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace {
 
@@ -23,7 +24,7 @@ TEST(ResidentSurface, HoldsTheSurface) {
   scene.pins.push_back({3, 0});
   scene.obstacles.emplace_back();
   const Surface surface(scene);
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   const resident::ResidentSurface resident(executor, scene, surface);
   const resident::SurfaceView view = resident.view();
   ASSERT_EQ(view.triangles.n, 2);

@@ -4,6 +4,7 @@
 
 #include "tests/contact/rods.hpp"
 #include "tests/resident/rows_pair_by_pair.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::test::resident_thickness_test {
 namespace {
@@ -20,7 +21,7 @@ Obstacle obstacle(ObstacleKind kind, const Vec3d& point, const Vec3d& axis) {
 std::array<int, 8> kinds_of(const Scene& scene) {
   std::array<int, 8> out{};
   ContactSystem contacts(scene, {});
-  HostExecutor executor;
+  TestedExecutor executor;
   OnExecutor on(executor, scene, scene.x0);
   compare(scene, on.rows, rows_at(contacts, scene.x0), out);
   return out;

@@ -7,13 +7,14 @@
 
 #include "core/exec/host_executor.hpp"
 #include "core/resident/sums/resident_sum.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident::sum_kernels_test {
 namespace {
 
 using exec::Buffer;
-using exec::HostExecutor;
 using exec::Order;
+using test::TestedExecutor;
 
 struct Columns {
   std::vector<double> a, b;
@@ -50,7 +51,7 @@ TEST(SumKernels, MultiplyOverTheFreeDegreesOfFreedom) {
     }
     std::vector<Compensated> seen;
     for (const Order order : {Order::forward, Order::reverse, Order::shuffled}) {
-      HostExecutor executor(order, 5);
+      TestedExecutor executor(order, 5);
       seen.push_back(free_dot(executor, columns, 2));
       EXPECT_NEAR(seen.back().value(), static_cast<double>(2 * expected),
                   1e-15 * static_cast<double>(magnitude))

@@ -12,6 +12,7 @@
 #include "core/exec/host_executor.hpp"
 #include "core/resident/sums/resident_sum.hpp"
 #include "core/resident/system/row_totals.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident::system_kernels_test {
 namespace {
@@ -31,7 +32,7 @@ exec::Buffer<double> on(exec::Executor& executor, const std::vector<double>& val
 }
 
 TEST(SystemKernels, Columns) {
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   const std::size_t n = 3 * 101;
   const std::vector<double> a = random_numbers(n, 1), c = random_numbers(n, 2);
   const auto g = on(executor, a), lifted = on(executor, c);
@@ -49,7 +50,7 @@ TEST(SystemKernels, Columns) {
 }
 
 TEST(SystemKernels, TotalsOfManyBlocks) {
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   std::vector<RowTotals> parts(most_partials, RowTotals::zero());
   for (std::size_t b = 0; b < parts.size(); ++b) parts[b].load.add(static_cast<double>(b) + 0.5);
   exec::Buffer<RowTotals> partial(executor, "parts"), total(executor, "total");
@@ -119,7 +120,7 @@ Compensated product(exec::Executor& executor, const std::vector<double>& a, cons
 }
 
 TEST(SystemKernels, TotalsOfRowsAreThoseOfALoop) {
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   SomeRows rows(executor);
   for (const bool uniform : {false, true}) {
     const RowTotals found = totals(executor, rows.view(uniform));
@@ -154,7 +155,7 @@ TEST(SystemKernels, TotalsOfRowsAreTheSameInEveryOrder) {
   std::vector<RowTotals> found;
   for (const exec::Order order :
        {exec::Order::threads, exec::Order::forward, exec::Order::reverse, exec::Order::shuffled}) {
-    exec::HostExecutor executor(order, 5);
+    test::TestedExecutor executor(order, 5);
     SomeRows rows(executor);
     found.push_back(totals(executor, rows.view(false)));
     EXPECT_EQ(std::memcmp(&found.back(), &found.front(), sizeof(RowTotals)), 0);
@@ -163,7 +164,7 @@ TEST(SystemKernels, TotalsOfRowsAreTheSameInEveryOrder) {
 }
 
 TEST(SystemKernels, TotalsOfNoRowsAndOfNoNumbers) {
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   RowView none{};
   const RowTotals empty = totals(executor, none);
   EXPECT_EQ(smallest_of(empty.kappa_min), std::numeric_limits<double>::infinity());
@@ -179,7 +180,7 @@ TEST(SystemKernels, TotalsOfNoRowsAndOfNoNumbers) {
 }
 
 TEST(SystemKernels, ProductOverFreeNumbers) {
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   const std::size_t n = 101;
   const std::vector<double> a = random_numbers(3 * n, 8), b = random_numbers(3 * n, 9);
   std::vector<FixedMask> fixed(n);

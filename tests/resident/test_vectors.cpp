@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "tests/resident/on_executor.hpp"
+#include "tests/resident/tested_executor.hpp"
 
 namespace bb::resident::vectors_test {
 namespace {
@@ -15,7 +16,7 @@ using namespace bb::test;
 struct Vectors {
   Scene scene = cloth_scene("arap", false, 6);
   std::vector<std::uint8_t> fixed = std::vector<std::uint8_t>(3 * scene.mass.size(), 0);
-  exec::HostExecutor executor{exec::Order::shuffled};
+  test::TestedExecutor executor{exec::Order::shuffled};
   exec::Buffer<double> x{executor, "x"}, dx{executor, "dx"}, out{executor, "out"};
   Positions x_host = strained(scene), dx_host = wave(scene, 0.2), target = scene.x0;
 
@@ -136,7 +137,7 @@ TEST(Vectors, LongestOfMany) {
   std::vector<double> values(3 * n);
   for (std::size_t i = 0; i < values.size(); ++i) values[i] = std::sin(static_cast<double>(i));
   values[3 * (n - 2)] = 3, values[3 * (n - 2) + 1] = 4, values[3 * (n - 2) + 2] = 0;
-  exec::HostExecutor executor;
+  test::TestedExecutor executor;
   exec::Buffer<double> column(executor, "many vectors");
   column.upload(values);
   ResidentLeast least(executor);

@@ -3,8 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include <Eigen/Eigenvalues>
-
+#include "tests/oracle/dense.hpp"
 #include "tests/terms/all_terms.hpp"
 
 namespace bb::test {
@@ -53,7 +52,7 @@ inline Eigen::VectorXd eigenvalues(int width, const double* blocks) {
     for (int a = b; a < width; ++a, blocks += 9)
       lower.block<3, 3>(3 * a, 3 * b) = Mat<double, 3, 3>::Map(blocks);
   }
-  return Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(lower, Eigen::EigenvaluesOnly).eigenvalues();
+  return eigenvalues(lower);
 }
 
 inline Positions gradient_of(const Term& term, Eigen::Index n_vertices) {

@@ -43,7 +43,14 @@ TEST_F(StoredBlocks, the_second_time_the_report_is_read) {
 }
 
 TEST_F(StoredBlocks, a_report_that_is_damaged_or_of_another_build_is_made_anew) {
-  const StoredBlock made = block_of_this_build(folder_, {});
+  int n_computed = 0;
+  const std::vector<BlockCheck> checks = compute_block();
+  const auto compute = [&] {
+    ++n_computed;
+    return checks;
+  };
+  const StoredBlock made = block_of_this_build(folder_, {}, compute);
+  EXPECT_EQ(n_computed, 1);
   nlohmann::json other = nlohmann::json::parse(made.report);
   other["build"] = "another";
   nlohmann::json empty = nlohmann::json::parse(made.report), short_one = empty, wrong_type = empty,
@@ -59,7 +66,9 @@ TEST_F(StoredBlocks, a_report_that_is_damaged_or_of_another_build_is_made_anew) 
         short_one.dump(), wrong_type.dump(), nameless.dump(), none.dump(), std::string(R"({"schema": 3})"),
         std::string(R"({"checks": [1]})")}) {
     write_atomically(made.file, text);
-    const StoredBlock again = block_of_this_build(folder_, {});
+    n_computed = 0;
+    const StoredBlock again = block_of_this_build(folder_, {}, compute);
+    EXPECT_EQ(n_computed, 1);
     EXPECT_TRUE(again.validity.valid) << text.substr(0, 60);
     EXPECT_EQ(again.validity.checks, made.validity.checks);
     EXPECT_NE(text_of(made.file), text);

@@ -10,8 +10,7 @@ from analysis.accuracy.errors import NAMES
 from analysis.accuracy.reference import CLOSED_FORMS
 from analysis.errors import UserError
 from analysis.record_file import RecordError
-from analysis.work_precision import verb
-from analysis.work_precision import report
+from analysis.work_precision import figure, report, verb
 from analysis.places import ROOT, SCHEMAS
 from analysis.work_precision.spec import ANCHOR, AXES, read_spec
 
@@ -36,7 +35,13 @@ def run(program, tmp_path, monkeypatch):
     return lambda spec, *words: verb.main([str(write(tmp_path, spec)), "--runs", str(tmp_path / "runs"), "--out", str(tmp_path / "out"), *words])
 
 
-def test_a_small_spec_is_run_judged_and_kept(run, tmp_path, capsys):
+@pytest.fixture
+def draw_no_more(monkeypatch):
+    """From its call on: what is kept and what is said does not come from the figures, which take most of a call's time."""
+    return lambda: [monkeypatch.setattr(figure, name, lambda *_: []) for name in ("draw", "draw_profile")]
+
+
+def test_a_small_spec_is_run_judged_and_kept(run, draw_no_more, tmp_path, capsys):
     assert run(SPEC) == 0
     said = capsys.readouterr()
     assert "stack: 12 runs" in said.err and "third" in said.out
@@ -55,6 +60,7 @@ def test_a_small_spec_is_run_judged_and_kept(run, tmp_path, capsys):
     assert {p.name for p in (tmp_path / "out").glob("*.png")} == {"work_precision_stack.png", "work_precision_profile.png"}
     records = sorted((tmp_path / "runs").rglob("run.json"))
     assert len(records) == 12
+    draw_no_more()
     assert run({**SPEC, "scenes": [{**SCENE, "anchor": {**SCENE["anchor"], "d_hat_m": 0.003}}]}) == 0  # records of another anchor lie beside them and do not count
     assert len(list((tmp_path / "runs").rglob("run.json"))) == 24 and run(SPEC) == 0
     before = [r.stat().st_mtime_ns for r in records]
@@ -62,7 +68,8 @@ def test_a_small_spec_is_run_judged_and_kept(run, tmp_path, capsys):
     assert run(SPEC, "--no-run") == 0 and (tmp_path / "out/WORK_PRECISION.md").read_text() == page
 
 
-def test_refined_references_have_a_band_for_every_time_step(run, tmp_path):
+def test_refined_references_have_a_band_for_every_time_step(run, draw_no_more, tmp_path):
+    draw_no_more()
     assert run({**SPEC, "formulations": ["log"], "scenes": [STRIP]}) == 0
     scene = json.loads((tmp_path / "out/work_precision.json").read_text())["scenes"][0]
     assert [ref["dt_factor"] for ref in scene["references"]] == [1, 2]
@@ -79,7 +86,8 @@ def test_a_reference_that_fails_is_told(run, tmp_path, capsys):
     assert not (tmp_path / "out/work_precision.json").exists()
 
 
-def test_missing_records_and_bad_numbers_are_told(run, tmp_path, capsys):
+def test_missing_records_and_bad_numbers_are_told(run, draw_no_more, tmp_path, capsys):
+    draw_no_more()
     small = {**SPEC, "formulations": ["log"], "scenes": [{**SCENE, "vary": {}}]}
     assert run(small) == 0
     spec = read_spec(tmp_path / "spec.json")
@@ -186,7 +194,7 @@ def test_a_gravity_that_a_scene_cannot_set_is_told_with_its_place(tmp_path, give
     assert f"{file}#/{said}" in str(told.value)
 
 
-def test_numbers_of_another_spec_are_refused(tmp_path, capsys):
+def test_numbers_of_another_spec_are_refused(draw_no_more, tmp_path, capsys):
     """A page of numbers that the spec no longer asks for would say what was never run."""
     file = write(tmp_path, SPEC)
     out = tmp_path / "out"
@@ -201,6 +209,7 @@ def test_numbers_of_another_spec_are_refused(tmp_path, capsys):
         assert "/spec_sha256: found" in said and f"its numbers are of another spec; ./bench work-precision {file}" in said and read_spec(file).sha256 in said
         assert not (out / "WORK_PRECISION.md").exists() and not list(out.glob("*.png"))
     (out / "work_precision.json").write_text(json.dumps({**kept, "spec_sha256": read_spec(file).sha256}))
+    draw_no_more()
     assert verb.main(words) == 0 and (out / "WORK_PRECISION.md").is_file()
 
 
