@@ -33,14 +33,24 @@ struct PinSpec {
   RigidMotion motion;                 // static by default
   std::optional<double> pull;         // N/m, of springs from free vertices to there; absent: they are there
   std::vector<PullKey> pull_factors;  // of it; empty: 1
-  PullSpan pull_span;                 // in which it acts
+  HoldSpan span;                      // in which it holds or pulls
 };
 
-/// Springs without length between vertices of two bodies, or of one: each of a_vertices to that of b_vertices in its place.
+/// Springs between vertices of two bodies, or of one: each of a_vertices to that of b_vertices in its place.
 struct StitchSpec {
   std::string a, b;                         // names of the bodies
   std::vector<int> a_vertices, b_vertices;  // of their own meshes
   double stiffness = 0;                     // N/m, of each spring, > 0
+  double rest_length = 0;                   // m, >= 0
+};
+
+/// What is asked of a pair: a CollisionKind, or the one that follows from whether the two surfaces close.
+enum class CollisionChoice { automatic, ccd, static_test, proximity, off };
+
+/// What contact does with two bodies, a body and an obstacle, or a body with itself.
+struct CollisionSpec {
+  std::string a, b;  // names
+  CollisionChoice choice = CollisionChoice::automatic;
 };
 
 enum class BodyKind { deformable, rigid };  // rigid: every vertex prescribed, no mass, no elements
@@ -59,6 +69,8 @@ struct BodySpec {
   std::optional<double> friction;     // coefficient, >= 0; absent: that of the run
   std::optional<double> restitution;  // in [0, 1]; absent: 1
   double pressure = 0;                // Pa, from within; other than 0 only with a closed surface
+  std::vector<PressureKey> pressure_keys;  // instead, over time
+  std::string collision_group;             // bodies of different groups do not collide; empty: of none
 };
 
 }  // namespace bb

@@ -97,6 +97,8 @@ void SceneBuilder::append_vertices(const BodySpec& spec, const Positions& start)
   scene_.d_hat.resize(scene_.d_hat.size() + n, spec.d_hat);
   scene_.offset.resize(scene_.offset.size() + n, spec.offset);
   pin_of_.resize(pin_of_.size() + n, -1);
+  held_.resize(pin_of_.size(), -1);
+  groups_.push_back(spec.collision_group);
 }
 
 int SceneBuilder::motion_index(const RigidMotion& motion) {
@@ -107,25 +109,30 @@ int SceneBuilder::motion_index(const RigidMotion& motion) {
   return static_cast<int>(scene_.motions.size()) - 1;
 }
 
-void SceneBuilder::pin_vertex(const std::string& body, int vertex, int motion) {
-  int& pin = pin_of_[static_cast<std::size_t>(vertex)];
-  if (pin >= 0) {
-    if (scene_.pins[static_cast<std::size_t>(pin)].motion != motion) {
-      complain("pins of body \"" + body + '"', fmt::format("two motions for scene vertex {}", vertex),
-               "one motion");
+void SceneBuilder::pin_vertex(const std::string& body, const Pin& pin) {
+  const auto v = static_cast<std::size_t>(pin.vertex);
+  if (pin_of_[v] >= 0) {
+    const Pin& other = scene_.pins[static_cast<std::size_t>(pin_of_[v])];
+    const bool same_span = other.span.hold == pin.span.hold && other.span.release == pin.span.release;
+    if (other.motion != pin.motion || !same_span) {
+      complain("pins of body \"" + body + '"',
+               fmt::format("two {} for scene vertex {}", same_span ? "motions" : "spans of time", pin.vertex),
+               "one motion, hold_s and release_s");
     }
     return;
   }
-  pin = static_cast<int>(scene_.pins.size());
-  scene_.pins.push_back({vertex, motion});
-  scene_.v0.col(vertex) =
-      scene_.motions[static_cast<std::size_t>(motion)].start_velocity(scene_.x0.col(vertex));
+  pin_of_[v] = static_cast<int>(scene_.pins.size());
+  if (pin.span.always()) held_[v] = pin_of_[v];
+  scene_.pins.push_back(pin);
+  if (pin.span.hold > 0) return;  // it starts free
+  scene_.v0.col(pin.vertex) =
+      scene_.motions[static_cast<std::size_t>(pin.motion)].start_velocity(scene_.x0.col(pin.vertex));
 }
 
 void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int first) {
   if (spec.kind == BodyKind::rigid) {
     const int motion = motion_index(spec.motion);
-    for (int v = 0; v < spec.mesh.n_vertices(); ++v) pin_vertex(spec.name, first + v, motion);
+    for (int v = 0; v < spec.mesh.n_vertices(); ++v) pin_vertex(spec.name, {first + v, motion});
     return;
   }
   for (std::size_t p = 0; p < spec.pins.size(); ++p) {
@@ -136,7 +143,7 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
       continue;
     }
     const int motion = motion_index(spec.pins[p].motion);
-    Pull pull{{}, motion, spec.pins[p].pull.value_or(0), spec.pins[p].pull_factors, spec.pins[p].pull_span};
+    Pull pull{{}, motion, spec.pins[p].pull.value_or(0), spec.pins[p].pull_factors, spec.pins[p].span};
     for (const int v : selected) {
       if (v >= spec.mesh.n_vertices()) {
         complain(fmt::format("pins/{} of body \"{}\"", p, spec.name), fmt::format("vertex {}", v),
@@ -144,7 +151,7 @@ void SceneBuilder::append_pins(const BodySpec& spec, const Positions& start, int
       } else if (spec.pins[p].pull) {
         pull.vertices.push_back(first + v);
       } else {
-        pin_vertex(spec.name, first + v, motion);
+        pin_vertex(spec.name, {first + v, motion, spec.pins[p].span});
       }
     }
     if (spec.pins[p].pull) scene_.pulls.push_back(std::move(pull));
@@ -165,14 +172,14 @@ void SceneBuilder::check_pulls(const std::string& body) {
 void SceneBuilder::append_masses(const BodySpec& spec, int first) {
   const AddMass add = [&](int v, double mass) {
     const auto vertex = static_cast<std::size_t>(first) + static_cast<std::size_t>(v);
-    if (pin_of_[vertex] < 0) scene_.mass[vertex] += mass;
+    if (held_[vertex] < 0) scene_.mass[vertex] += mass;
   };
   for (const PartEntry& entry : part_entries()) entry.part.add_masses(spec, add);
 }
 
 void SceneBuilder::append_elements(const BodySpec& spec, int first) {
   const Complaints complain{fmt::format("{}: body \"{}\"", where_, spec.name), violations_};
-  BodyElements to{scene_, first, pin_of_, complain};
+  BodyElements to{scene_, first, held_, complain};
   for (const PartEntry& entry : part_entries()) entry.part.add_elements(spec, to);
   if (!spec.material.limit) return;
   for (const auto& local : spec.mesh.triangles) {
@@ -194,7 +201,9 @@ void SceneBuilder::append_surface(const BodySpec& spec, int first) {
     return vertices;
   };
   for (const auto& t : surface.mesh.triangles) scene_.surface_triangles.push_back(in_scene(t));
-  if (spec.pressure != 0) append_pressure(spec, surface.mesh.triangles, first);
+  closed_.push_back(surface.mesh.segments.empty() && !surface.mesh.triangles.empty() &&
+                    !open_side(surface.mesh.triangles));
+  if (spec.pressure != 0 || !spec.pressure_keys.empty()) append_pressure(spec, surface.mesh.triangles, first);
   if (!scene_.planar) {
     for (const auto& e : unique_edges(surface.mesh)) scene_.surface_edges.push_back(in_scene(e));
   } else {  // whatever pairs contact makes of them
@@ -227,13 +236,15 @@ void SceneBuilder::append_obstacle_vertices() {
     scene_.d_hat.push_back(scene_.d_hat.front());
     scene_.offset.push_back(0);
     pin_of_.push_back(-1);
-    pin_vertex(obstacle.name, obstacle.vertex, motion_index(obstacle.motion));
+    held_.push_back(-1);
+    pin_vertex(obstacle.name, {obstacle.vertex, motion_index(obstacle.motion)});
   }
 }
 
 Scene SceneBuilder::finish() {
   if (scene_.n_vertices() > 0) append_obstacle_vertices();
-  check_scene(scene_, pin_of_, where_, violations_);
+  if (violations_.empty()) append_collisions();
+  check_scene(scene_, held_, where_, violations_);
   if (!violations_.empty()) throw ConfigError(std::move(violations_));
   return std::move(scene_);
 }

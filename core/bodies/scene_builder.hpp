@@ -31,6 +31,8 @@ class SceneBuilder {
   void add_body(const BodySpec& spec);
   /// After the bodies that it joins. where: that of its setting, below `where` of the constructor.
   void add_stitch(const StitchSpec& stitch, const std::string& where);
+  /// Of bodies and obstacles that may come later: finish() looks for them. where: as of add_stitch.
+  void add_collision(const CollisionSpec& collision, const std::string& where);
   /// One with a motion gets a vertex that stands for its point, behind those of all bodies, and is a body of that vertex
   /// alone. Its `vertex` is set here.
   void add_obstacle(const Obstacle& obstacle);
@@ -47,7 +49,7 @@ class SceneBuilder {
   void require_room(const BodySpec& spec) const;
   void append_vertices(const BodySpec& spec, const Positions& start);
   void append_pins(const BodySpec& spec, const Positions& start, int first);
-  void pin_vertex(const std::string& body, int vertex, int motion);
+  void pin_vertex(const std::string& body, const Pin& pin);
   void check_pulls(const std::string& body);
   int motion_index(const RigidMotion& motion);
   void append_masses(const BodySpec& spec, int first);
@@ -56,11 +58,23 @@ class SceneBuilder {
   void append_pressure(const BodySpec& spec, std::span<const std::array<int, 3>> surface, int first);
   std::vector<int> stitched(const std::string& body, const std::vector<int>& own, const std::string& where);
   void append_obstacle_vertices();
+  void append_groups();
+  void append_collisions();
+  int owner(const std::string& name, const std::string& where);
+  bool can_move(int owner) const;
+  bool has_triangles(int owner) const;
+  std::string owner_name(int owner) const;
+  CollisionPair decide(const CollisionSpec& spec, int a, int b) const;
 
   Scene scene_;
   std::string where_;
   std::vector<std::string> names_;
   std::vector<int> pin_of_;  // [n_vertices] index into scene_.pins, -1 free
+  std::vector<int> held_;    // the same of pins that hold for the whole run
+  std::vector<char> closed_;              // [bodies] whether the surface closes
+  std::vector<std::string> groups_;       // [bodies]
+  std::vector<CollisionSpec> collisions_;
+  std::vector<std::string> collisions_at_;  // where each is
   std::vector<Violation> violations_;
 };
 

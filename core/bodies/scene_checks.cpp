@@ -118,7 +118,7 @@ void check_given_motion(const Complaints& report, const std::string& what, const
 }
 
 void check_pull(const Complaints& report, const PinSpec& pin) {
-  const PullSpan& span = pin.pull_span;
+  const HoldSpan& span = pin.span;
   if (pin.pull) report.number("/pins/pull", *pin.pull, *pin.pull > 0, "a number > 0");
   if (!(span.release > span.hold)) {
     report("/pins/release", fmt::format("{:g}", span.release),
@@ -244,8 +244,8 @@ void check_scene(const Scene& scene, const std::vector<int>& pin_of, const std::
   const Complaints report{where + ": ", out};
   if (scene.bodies.empty() && out.empty()) return report("scene", "no body", "at least one deformable body");
   if (!out.empty()) return;  // bodies were left out: what follows would mislead
-  if (std::count(pin_of.begin(), pin_of.end(), -1) == 0) {
-    report("scene", "no free vertex", "at least one vertex that is not prescribed");
+  if (static_cast<int>(scene.pins.size()) == scene.n_vertices()) {
+    report("scene", "no free vertex", "at least one vertex that is never prescribed");
   }
   for (const Body& body : scene.bodies) {
     int n_bad = 0, first_bad = -1;

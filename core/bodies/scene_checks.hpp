@@ -16,7 +16,7 @@ bool within_bounds(const Positions& x);
 void check_body(const BodySpec& spec, bool planar, const std::string& where, std::vector<Violation>& out);
 void check_obstacle(const Obstacle& obstacle, bool planar, const std::string& where,
                     std::vector<Violation>& out);
-/// pin_of: [n_vertices] -1 where free.
+/// pin_of: [n_vertices] -1 where free, at some time at least.
 void check_scene(const Scene& scene, const std::vector<int>& pin_of, const std::string& where,
                  std::vector<Violation>& out);
 

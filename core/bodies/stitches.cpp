@@ -38,6 +38,9 @@ void SceneBuilder::add_stitch(const StitchSpec& stitch, const std::string& below
   if (!(stitch.stiffness > 0) || !std::isfinite(stitch.stiffness)) {
     violations_.push_back({where + "/stiffness", fmt::format("{:g}", stitch.stiffness), "a number > 0"});
   }
+  if (!(stitch.rest_length >= 0) || !std::isfinite(stitch.rest_length)) {
+    violations_.push_back({where + "/rest_length", fmt::format("{:g}", stitch.rest_length), "a number >= 0"});
+  }
   const std::vector<int> a = stitched(stitch.a, stitch.a_vertices, where + "/a");
   const std::vector<int> b = stitched(stitch.b, stitch.b_vertices, where + "/b");
   if (!violations_.empty()) return;
@@ -48,7 +51,7 @@ void SceneBuilder::add_stitch(const StitchSpec& stitch, const std::string& below
   }
   for (std::size_t i = 0; i < a.size(); ++i) {
     const bool held =
-        pin_of_[static_cast<std::size_t>(a[i])] >= 0 && pin_of_[static_cast<std::size_t>(b[i])] >= 0;
+        held_[static_cast<std::size_t>(a[i])] >= 0 && held_[static_cast<std::size_t>(b[i])] >= 0;
     if (a[i] == b[i] || held) {
       violations_.push_back(
           {fmt::format("{}/b_vertices/{}", where, i), fmt::format("{}", stitch.b_vertices[i]),
@@ -57,31 +60,26 @@ void SceneBuilder::add_stitch(const StitchSpec& stitch, const std::string& below
     }
     scene_.stitches.pairs.push_back({a[i], b[i]});
     scene_.stitches.stiffness.push_back(stitch.stiffness);
+    scene_.stitches.rest_length.push_back(stitch.rest_length);
   }
 }
 
-/// A volume is enclosed where every edge is run through once in each direction.
+/// A volume is enclosed where there is no open side.
 void SceneBuilder::append_pressure(const BodySpec& spec, std::span<const std::array<int, 3>> surface,
                                    int first) {
   const std::string what = "body \"" + spec.name + "\"/pressure";
-  if (!std::isfinite(spec.pressure)) return complain(what, "a non-finite pressure", "a finite number");
-  std::vector<std::array<int, 2>> sides;
-  for (const auto& t : surface) {
-    for (std::size_t k = 0; k < 3; ++k) sides.push_back({t[k], t[(k + 1) % 3]});
-  }
-  std::sort(sides.begin(), sides.end());
-  const auto run = [&sides](const std::array<int, 2>& side) {
-    const auto [from, to] = std::equal_range(sides.begin(), sides.end(), side);
-    return to - from;
-  };
-  for (const auto& side : sides) {
-    if (run(side) == 1 && run({side[1], side[0]}) == 1) continue;
+  const bool finite = std::all_of(spec.pressure_keys.begin(), spec.pressure_keys.end(),
+                                  [](const PressureKey& key) { return std::isfinite(key.value); });
+  if (!std::isfinite(spec.pressure) || !finite)
+    return complain(what, "a non-finite pressure", "a finite number");
+  if (const auto side = open_side(surface)) {
     return complain(
         what,
-        fmt::format("a surface that does not close at the edge of vertices {} and {}", side[0], side[1]),
+        fmt::format("a surface that does not close at the edge of vertices {} and {}", (*side)[0],
+                    (*side)[1]),
         "a surface each of whose edges belongs to two triangles that run through it in opposite directions");
   }
-  if (sides.empty()) return complain(what, "no surface", "a body with triangles");
+  if (surface.empty()) return complain(what, "no surface", "a body with triangles");
   const Positions& x = spec.mesh.vertices;
   double volume = 0;
   for (const auto& [a, b, c] : surface) {
@@ -89,9 +87,14 @@ void SceneBuilder::append_pressure(const BodySpec& spec, std::span<const std::ar
     volume += (x.col(a) - o).dot((x.col(b) - o).cross(x.col(c) - o)) / 6;
   }
   if (volume == 0) return complain(what, "a surface that encloses no volume", "a volume other than 0");
+  Inflation& inflation = scene_.inflation;
+  const int keys = spec.pressure_keys.empty() ? -1 : static_cast<int>(inflation.key_lists.size());
+  if (keys >= 0) inflation.key_lists.push_back(spec.pressure_keys);
+  const double pressure = keys >= 0 ? 1 : spec.pressure;
   for (const auto& [a, b, c] : surface) {
-    scene_.inflation.triangles.push_back({first + a, first + b, first + c});
-    scene_.inflation.pressure.push_back(volume > 0 ? spec.pressure : -spec.pressure);
+    inflation.triangles.push_back({first + a, first + b, first + c});
+    inflation.pressure.push_back(volume > 0 ? pressure : -pressure);
+    inflation.keys.push_back(keys);
   }
 }
 

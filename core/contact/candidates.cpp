@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <iterator>
 #include <limits>
 
 #include "core/contact/chunks.hpp"
@@ -35,10 +36,15 @@ Vec3d common_motion(const Primitives<1>& points, const PositionsView& x0, const 
 
 BroadPhase::BroadPhase(const Surface& surface, std::vector<AnalyticSurface<double>> obstacles,
                        const ContactPlan& plan, Precision precision)
-    : surface_(surface), obstacles_(std::move(obstacles)), plan_(plan), precision_(precision) {
+    : surface_(surface),
+      obstacles_(std::move(obstacles)),
+      plan_(plan),
+      chosen_(surface.collisions.chosen()),
+      tests_states_(surface.collisions.has(CollisionKind::static_test)),
+      precision_(precision) {
   points_.needed = plan.point_point || plan.point_edge || plan.point_triangle;
-  edges_.needed = plan.point_edge || plan.edge_edge;
-  triangles_.needed = plan.point_triangle;
+  edges_.needed = plan.point_edge || plan.edge_edge || tests_states_;
+  triangles_.needed = plan.point_triangle || tests_states_;
   lone_edges_.needed = plan.point_edge && !surface.planar;
   for (const int e : surface.lone_edges)
     lone_free_.push_back(surface.edges.free[static_cast<std::size_t>(e)]);
@@ -134,6 +140,8 @@ void BroadPhase::find(const Bvh& a, const Bvh& b, const PositionsView& x0, const
         p.second = second_of(p.second);
         if (!may_pair(p)) return false;
         const ContactPair<K> pair = contact_pair<K>(surface_, p);
+        if (chosen_ && surface_.kind_of(pair.vertex[0], pair.vertex[pair_split(K)]) == CollisionKind::off)
+          return false;
         const auto body = [&](int k) { return surface_.body[static_cast<std::size_t>(pair.vertex[k])]; };
         return body(0) != body(pair_split(K)) ||
                !apart_by_rest_rule<K>(pair.law, bb::gather(surface_.rest, pair.vertex),
@@ -162,6 +170,20 @@ void BroadPhase::update(const PositionsView& x0, const PositionsView& x1, Candid
     update_obstacles<N>(of, x0, x1, pairs);
   });
   find_pairs(x0, x1, out);
+  if (tests_states_ && plan_.broad_phase.needed) find_intersections(out);
+}
+
+void BroadPhase::find_intersections(Candidates& out) {
+  const Surface& s = surface_;
+  finder_.find(
+      edges_.bvh, triangles_.bvh,
+      [&s](IndexPair p) {
+        const auto& edge = s.edges.vertices[static_cast<std::size_t>(p.first)];
+        const auto& triangle = s.triangles.vertices[static_cast<std::size_t>(p.second)];
+        return s.kind_of(edge[0], triangle[0]) == CollisionKind::static_test &&
+               s.disjoint(edge[0], triangle) && s.disjoint(edge[1], triangle);
+      },
+      out.edge_triangle);
 }
 
 /// Of surface primitives, from the trees.
@@ -220,6 +242,9 @@ void BroadPhase::update_obstacles(const Primitives<N>& primitives, const Positio
       for (std::size_t o = 0; o < obstacles_.size(); ++o) {
         const AnalyticSurface<double>&obstacle = first_poses_[o], &last = last_poses_[o];
         if (!pairs_with<N>(obstacle, surface_.planar, primitives.lone[i] != 0)) continue;
+        if (chosen_ &&
+            surface_.kind_at_obstacle(primitives.vertices[i][0], static_cast<int>(o)) == CollisionKind::off)
+          continue;
         const double reach = primitives.side[i].d_hat + primitives.side[i].offset + of_states +
                              distance_rounding(precision_, std::max(obstacle.point.cwiseAbs().maxCoeff(),
                                                                     last.point.cwiseAbs().maxCoeff()) +
@@ -232,6 +257,34 @@ void BroadPhase::update_obstacles(const Primitives<N>& primitives, const Positio
   });
   for (std::size_t chunk = 0; chunk < n_chunks(primitives.size()); ++chunk)
     out.insert(out.end(), near_obstacles_[chunk].begin(), near_obstacles_[chunk].end());
+}
+
+void select_swept(const Surface& surface, const Candidates& all, Candidates& out) {
+  const auto copy = [](const std::vector<IndexPair>& from, std::vector<IndexPair>& to, const auto& kind) {
+    to.clear();
+    std::copy_if(from.begin(), from.end(), std::back_inserter(to),
+                 [&kind](IndexPair pair) { return kind(pair) == CollisionKind::ccd; });
+  };
+  const auto first_of = [](const auto& primitives, int i) {
+    return primitives.vertices[static_cast<std::size_t>(i)][0];
+  };
+  const auto between = [&](const auto& a, const auto& b) {
+    return [&surface, &first_of, first = &a, second = &b](IndexPair p) {
+      return surface.kind_of(first_of(*first, p.first), first_of(*second, p.second));
+    };
+  };
+  const auto at_obstacle = [&](const auto& primitives) {
+    return [&surface, &first_of, of = &primitives](IndexPair p) {
+      return surface.kind_at_obstacle(first_of(*of, p.first), p.second);
+    };
+  };
+  copy(all.point_point, out.point_point, between(surface.points, surface.points));
+  copy(all.point_edge, out.point_edge, between(surface.points, surface.edges));
+  copy(all.point_triangle, out.point_triangle, between(surface.points, surface.triangles));
+  copy(all.edge_edge, out.edge_edge, between(surface.edges, surface.edges));
+  copy(all.obstacle, out.obstacle, at_obstacle(surface.points));
+  copy(all.obstacle_edge, out.obstacle_edge, at_obstacle(surface.edges));
+  copy(all.obstacle_triangle, out.obstacle_triangle, at_obstacle(surface.triangles));
 }
 
 }  // namespace bb

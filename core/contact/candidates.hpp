@@ -17,6 +17,8 @@ namespace bb {
 struct Candidates {
   std::vector<IndexPair> point_point, point_edge, point_triangle, edge_edge, obstacle, obstacle_edge,
       obstacle_triangle;
+  /// Of pairs of bodies whose states are tested (CollisionKind::static_test): what may intersect, beside the above.
+  std::vector<IndexPair> edge_triangle;
 };
 
 /// Calls f.template operator()<N>(primitives with N vertices, their pairs with obstacles), in a fixed order.
@@ -26,6 +28,9 @@ void for_each_obstacle_list(const Surface& surface, CandidateLists& c, const F& 
   f.template operator()<2>(surface.edges, c.obstacle_edge);
   f.template operator()<3>(surface.triangles, c.obstacle_triangle);
 }
+
+/// Into `out` those of pairs that bound motions (CollisionKind::ccd).
+void select_swept(const Surface& surface, const Candidates& all, Candidates& out);
 
 /// Keeps one tree per kind of primitive that pairs of the plan need, one of the edges without triangles where there are
 /// any, and no other.
@@ -38,7 +43,7 @@ class BroadPhase {
   /// True when some pair or obstacle contact can exist at all.
   bool active() const { return plan_.any(); }
   /// All pairs with a free vertex, not adjacent, that may have a row or bound the motion x0 -> x1, and more. A pair that
-  /// the rest rule keeps from both is left out (rest_rule.hpp).
+  /// the rest rule keeps from both is left out (rest_rule.hpp), and so is one of bodies that are `off`.
   /// All vertices move together: a state is (1 - t) x0 + t x1 with one t.
   void update(const PositionsView& x0, const PositionsView& x1, Candidates& out);
 
@@ -62,6 +67,7 @@ class BroadPhase {
   void fit(Tree& tree, const Primitives<N>& primitives) const;
   void fit_edges();
   void find_pairs(const PositionsView& x0, const PositionsView& x1, Candidates& out);
+  void find_intersections(Candidates& out);
   template <PairKind K, class Second, class MayPair>
   void find(const Bvh& a, const Bvh& b, const PositionsView& x0, const PositionsView& x1,
             const Second& second_of, const MayPair& may_pair, std::vector<IndexPair>& out);
@@ -78,6 +84,7 @@ class BroadPhase {
   std::vector<double> moved_, sample_[3];               // buffers of frame
   std::vector<std::vector<IndexPair>> near_obstacles_;  // of each chunk
   const ContactPlan plan_;
+  const bool chosen_, tests_states_;  // of the collisions of the surface
   const Precision precision_;
 };
 

@@ -1,8 +1,10 @@
 #include "core/contact/contact_system.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #include "core/contact/candidates.hpp"
+#include "core/contact/intersection.hpp"
 #include "core/contact/pair_name.hpp"
 #include "core/contact/row_builder.hpp"
 
@@ -34,11 +36,18 @@ struct ContactSystem::Data {
   const std::vector<AnalyticSurface<double>> obstacles;
   BroadPhase broad_phase;
   Candidates candidates;
+  Candidates swept;      // of them those that bound motions, where not all do
   Candidates near;       // pairs of the last rows
   Positions stop;        // where they stop a motion
   StepBound near_asked;  // its counters are part of those of the next bound
   RowBuilder builder;
   StepBoundFinder bound;
+
+  const Candidates& bounding(const Candidates& all) {
+    if (!surface.collisions.chosen()) return all;
+    select_swept(surface, all, swept);
+    return swept;
+  }
 };
 
 ContactSystem::ContactSystem(const Scene& scene, const ContactOptions& options, const ContactPlan& plan)
@@ -59,7 +68,7 @@ void ContactSystem::update_candidates_to_bound(const PositionsView& x0, const Po
   Data& data = *data_;
   if (!(x0.allFinite() && x1.allFinite())) return update_candidates(x0, x1);
   data.builder.near_pairs(data.near);
-  const StepBound near = data.bound.find(data.near, x0, x1);
+  const StepBound near = data.bound.find(data.bounding(data.near), x0, x1);
   // A query that ran out of probes may end where its pair is no candidate.
   if (near.alpha == 1 || near.capped > 0) return update_candidates(x0, x1);
   data.near_asked = near;
@@ -69,7 +78,9 @@ void ContactSystem::update_candidates_to_bound(const PositionsView& x0, const Po
 }
 
 double ContactSystem::find_rows(const PositionsView& x, ContactTable& rows, MollifiedTable& mollified) const {
-  return data_->builder.build(x, data_->candidates, rows, mollified);
+  const double gap = data_->builder.build(x, data_->candidates, rows, mollified);
+  const bool apart = !any_intersection(data_->surface, data_->candidates.edge_triangle, x);
+  return apart ? gap : -std::numeric_limits<double>::infinity();
 }
 
 StepBound ContactSystem::step_bound(const PositionsView& x0, const PositionsView& x1) const {
@@ -78,7 +89,7 @@ StepBound ContactSystem::step_bound(const PositionsView& x0, const PositionsView
     stop.alpha = 0;
     return stop;
   }
-  StepBound bound = data_->bound.find(data_->candidates, x0, x1);
+  StepBound bound = data_->bound.find(data_->bounding(data_->candidates), x0, x1);
   bound.queries += data_->near_asked.queries;
   bound.probes += data_->near_asked.probes;
   return bound;

@@ -56,14 +56,14 @@ class ContactSystem {
   /// Which candidates there are depends on those rows; alpha and rows do not. Motions finite.
   void update_candidates_to_bound(const PositionsView& x0, const PositionsView& x1);
 
-  /// One row a pair with d < d_hat at x (row_rule.hpp), in the order of the pairs; kappa, b, db, d2b are left at 0.
+  /// One row a pair that is not `off` (scene/collisions.hpp) with d < d_hat at x (row_rule.hpp), in the order of the pairs; kappa, b, db, d2b are left at 0.
   /// Requires x to be such a state of the last update_candidates. Returns the smallest gap over all
   /// rows (infinity without rows); a value <= 0 means that x is not feasible. x that is not finite: no
-  /// rows and -infinity.
+  /// rows and -infinity. -infinity too where surfaces intersect at x whose states are tested.
   double find_rows(const PositionsView& x, ContactTable& rows, MollifiedTable& mollified) const;
 
-  /// All non-adjacent pairs, whatever rule keeps them from having a row. A motion that is not
-  /// finite: alpha 0.
+  /// All non-adjacent pairs of bodies that collide as `ccd`, whatever rule keeps them from having a row. A motion that
+  /// is not finite: alpha 0.
   StepBound step_bound(const PositionsView& x0, const PositionsView& x1) const;
 
   struct Counts {  // obstacle: with points, edges and triangles

@@ -59,9 +59,13 @@ std::optional<Overlap> first_pierced(const Surface& surface,
     const AnalyticSurface<double> obstacle = posed(obstacles[o], x);
     const bool line = is_line(obstacle, surface.planar);
     if (is_convex(obstacle) || (!surface.planar && !line) || (surface.planar && line)) continue;
+    const auto is_off = [&](int v) {
+      return surface.collisions.chosen() &&
+             surface.kind_at_obstacle(v, static_cast<int>(o)) == CollisionKind::off;
+    };
     const Vec3d axis = obstacle.kind == ObstacleKind::cylinder ? obstacle.axis : Vec3d(Vec3d::UnitZ());
     for (const auto& triangle : surface.filled) {
-      if (!holds_axis(obstacle, axis, gather(x, triangle))) continue;
+      if (is_off(triangle[0]) || !holds_axis(obstacle, axis, gather(x, triangle))) continue;
       return Overlap{
           ContactKind::obstacle_triangle, obstacle_key(static_cast<int>(o), triangle), -obstacle.radius, {}};
     }

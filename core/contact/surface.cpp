@@ -73,10 +73,14 @@ void check_primitive_count(const char* kind, std::size_t n, std::size_t most) {
 Surface::Surface(const Scene& scene)
     : vertex_free(static_cast<std::size_t>(scene.n_vertices()), 1),
       body(scene.body),
+      n_bodies(static_cast<int>(scene.bodies.size())),
+      collisions(scene.collisions),
       rest(scene.rest),
       planar(scene.planar),
       planar_pairs(scene.planar_pairs) {
-  for (const Pin& pin : scene.pins) vertex_free[static_cast<std::size_t>(pin.vertex)] = 0;
+  for (const Pin& pin : scene.pins) {
+    if (pin.span.always()) vertex_free[static_cast<std::size_t>(pin.vertex)] = 0;
+  }
 
   std::vector<int> vertices = scene.surface_vertices;
   sort_unique(vertices);

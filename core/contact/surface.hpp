@@ -49,6 +49,8 @@ struct Surface {
 
   std::vector<std::uint8_t> vertex_free;  // [n_vertices]
   std::vector<int> body;                  // [n_vertices]
+  int n_bodies;
+  Collisions collisions;
   Positions rest;                         // [3 x n_vertices] m
   Primitives<1> points;
   Primitives<2> edges;
@@ -63,6 +65,13 @@ struct Surface {
   bool is_free(int v) const { return vertex_free[static_cast<std::size_t>(v)] != 0; }
   bool same_body(int v, int w) const {
     return body[static_cast<std::size_t>(v)] == body[static_cast<std::size_t>(w)];
+  }
+  /// What the bodies of two vertices do, and of a vertex and an obstacle by its number.
+  CollisionKind kind_of(int v, int w) const {
+    return collisions.kind(body[static_cast<std::size_t>(v)], body[static_cast<std::size_t>(w)]);
+  }
+  CollisionKind kind_at_obstacle(int v, int obstacle) const {
+    return collisions.kind(body[static_cast<std::size_t>(v)], n_bodies + obstacle);
   }
   /// Of N vertices, m.
   template <int N>

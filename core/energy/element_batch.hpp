@@ -44,6 +44,9 @@ class EnergyBatch {
   /// Constraints whose energy is this one; null: it has no such form.
   virtual const ConstraintBatch* constraints() const { return nullptr; }
 
+  /// What is given as a function of time is that of t (s) from now on. Before the first call it is that of the start, 0.
+  virtual void set_time(double /*t*/) {}
+
   // --- rest shapes that move from step to step. Within a step they stay, so that E is one function of x.
   /// What the batch remembers, always as many numbers; empty: nothing.
   virtual std::span<const double> memory() const { return {}; }

@@ -6,6 +6,7 @@
 #include "core/energy/creep.hpp"
 #include "core/energy/element_loop.hpp"
 #include "core/math/svd.hpp"
+#include "core/scene/motion.hpp"
 
 namespace bb {
 
@@ -83,22 +84,47 @@ void MembraneBatch::set_creep(std::vector<double> yield, std::vector<double> rat
   check_column("membrane/creep", rests_.size(), rate, false);
   yield_ = std::move(yield);
   rate_ = std::move(rate);
-  for (const TriangleRest<double>& rest : rests_) {
-    given_.push_back(rest.dm_inv);
-    plastic_inv_.insert(plastic_inv_.end(), {1, 0, 0, 1});
+  if (given_.empty()) given_ = rests_;
+  for (std::size_t e = 0; e < rests_.size(); ++e) plastic_inv_.insert(plastic_inv_.end(), {1, 0, 0, 1});
+}
+
+void MembraneBatch::set_shrink(ShrinkSchedule schedule) {
+  if (schedule.list.empty()) return;
+  schedule.list.resize(rests_.size(), -1);
+  shrink_ = std::move(schedule);
+  given_ = rests_;
+  set_time(0);
+}
+
+void MembraneBatch::set_time(double t) {
+  if (shrink_.list.empty()) return;
+  factor_.clear();
+  for (const auto& keys : shrink_.lists) factor_.push_back(value_at(keys, t));
+  for (std::size_t e = 0; e < given_.size(); ++e) place(e);
+}
+
+/// The rest triangle of e from what was given, the factor of the time and what has crept.
+void MembraneBatch::place(std::size_t e) {
+  TriangleRest<double>& rest = rests_[e];
+  rest = given_[e];
+  const int list = shrink_.list.empty() ? -1 : shrink_.list[e];
+  if (list >= 0) {
+    const double factor = factor_[static_cast<std::size_t>(list)];
+    rest.dm_inv /= factor;
+    rest.area *= factor * factor;
   }
+  if (!plastic_inv_.empty())
+    rest.dm_inv = (rest.dm_inv * Mat<double, 2, 2>::Map(&plastic_inv_[4 * e])).eval();
 }
 
 void MembraneBatch::set_memory(std::span<const double> memory) {
   plastic_inv_.assign(memory.begin(), memory.end());
-  for (std::size_t e = 0; e < given_.size(); ++e) {
-    rests_[e].dm_inv = given_[e] * Mat<double, 2, 2>::Map(&plastic_inv_[4 * e]);
-  }
+  for (std::size_t e = 0; e < given_.size(); ++e) place(e);
 }
 
 // F V diag(crept/sigma) V^T has the singular values that are left.
 void MembraneBatch::flow(const PositionsView& x, double dt, std::span<double> memory) const {
-  for_each_element(given_.size(), [&](std::size_t e) {
+  for_each_element(yield_.size(), [&](std::size_t e) {
     const Points<3> p(x, vertices_, e);
     const auto svd = svd_3x2<double>(deformation_gradient<3>(rests_[e], p.x));
     Vec2d factor;

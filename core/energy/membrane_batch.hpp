@@ -7,6 +7,7 @@
 #include "core/energy/element_batch.hpp"
 #include "core/energy/membrane_model.hpp"
 #include "core/math/precision.hpp"
+#include "core/scene/parts/shrink_key.hpp"
 
 namespace bb {
 
@@ -35,10 +36,13 @@ class MembraneBatch final : public EnergyBatch {
   /// Scales the rest triangles by factors [n] > 0 along the warp direction and at right angles to it; areas with them.
   /// Before set_creep. ConfigError: column of another length.
   void scale_rest(std::span<const Vec2d> factors);
+  /// Further factors on the rest lengths, over time; before set_creep. ConfigError: column of another length.
+  void set_shrink(ShrinkSchedule schedule);
   /// Lets rest triangles follow: singular values of F beyond 1 +- yield [n] (1) creep at rate [n] (1/s). F is that of the scaled rest
   /// triangle times the inverse of a plastic part, which is what the batch remembers; areas at rest stay. ConfigError: column
   /// of another length.
   void set_creep(std::vector<double> yield, std::vector<double> rate);
+  void set_time(double t) override;
   std::string_view name() const override { return model<double>().name; }
   int width() const override { return 3; }
   std::span<const int> vertices() const override { return vertices_; }
@@ -60,7 +64,11 @@ class MembraneBatch final : public EnergyBatch {
   std::vector<int> vertices_;
   std::vector<TriangleRest<double>> rests_;
   std::vector<double> lame_mu_, lame_lambda_;
-  std::vector<Mat<double, 2, 2>> given_;            // dm_inv before any creep; empty: none creeps
+  void place(std::size_t e);
+
+  std::vector<TriangleRest<double>> given_;         // before any creep and shrinking over time; empty: no such thing
+  ShrinkSchedule shrink_;
+  std::vector<double> factor_;                      // of each list of it, 1
   std::vector<double> yield_, rate_, plastic_inv_;  // plastic_inv_: [4 n], columns of 2 x 2
   Precision precision_;
 };

@@ -20,14 +20,26 @@ double SpringConstraints::value(std::size_t e, const PositionsView& x, double* g
   return out;
 }
 
+namespace {
+
+std::vector<double> lengths(std::span<const std::array<int, 2>> edges, const PositionsView& x) {
+  std::vector<double> out;
+  for (const auto& [a, b] : edges) out.push_back((x.col(b) - x.col(a)).norm());
+  return out;
+}
+
+}  // namespace
+
 SpringBatch::SpringBatch(std::span<const std::array<int, 2>> edges, const PositionsView& x_rest,
                          std::vector<double> stiffness, Precision precision)
-    : stiffness_(std::move(stiffness)), precision_(precision) {
+    : SpringBatch(edges, lengths(edges, x_rest), std::move(stiffness), precision) {}
+
+SpringBatch::SpringBatch(std::span<const std::array<int, 2>> edges, std::vector<double> rest_length,
+                         std::vector<double> stiffness, Precision precision)
+    : stiffness_(std::move(stiffness)), rest_length_(std::move(rest_length)), precision_(precision) {
   check_column("spring/stiffness", edges.size(), stiffness_, false);
-  for (const auto& [a, b] : edges) {
-    vertices_.insert(vertices_.end(), {a, b});
-    rest_length_.push_back((x_rest.col(b) - x_rest.col(a)).norm());
-  }
+  check_column("spring/rest_length", edges.size(), rest_length_, false);
+  for (const auto& edge : edges) vertices_.insert(vertices_.end(), edge.begin(), edge.end());
   constraints_.emplace(vertices_, rest_length_, stiffness_);
 }
 

@@ -36,6 +36,9 @@ class SpringBatch final : public EnergyBatch {
   /// of another length.
   SpringBatch(std::span<const std::array<int, 2>> edges, const PositionsView& x_rest,
               std::vector<double> stiffness, Precision precision = Precision::full);
+  /// @param rest_length [n] m
+  SpringBatch(std::span<const std::array<int, 2>> edges, std::vector<double> rest_length,
+              std::vector<double> stiffness, Precision precision = Precision::full);
   std::string_view name() const override { return "spring"; }
   int width() const override { return 2; }
   std::span<const int> vertices() const override { return vertices_; }

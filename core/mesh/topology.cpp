@@ -129,6 +129,22 @@ std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3
   return edges;
 }
 
+std::optional<std::array<int, 2>> open_side(std::span<const std::array<int, 3>> triangles) {
+  std::vector<std::array<int, 2>> sides;
+  for (const auto& t : triangles) {
+    for (std::size_t k = 0; k < 3; ++k) sides.push_back({t[k], t[(k + 1) % 3]});
+  }
+  std::sort(sides.begin(), sides.end());
+  const auto run = [&sides](const std::array<int, 2>& side) {
+    const auto [from, to] = std::equal_range(sides.begin(), sides.end(), side);
+    return to - from;
+  };
+  for (const auto& side : sides) {
+    if (run(side) != 1 || run({side[1], side[0]}) != 1) return side;
+  }
+  return std::nullopt;
+}
+
 std::vector<std::array<int, 4>> edge_hinges(std::span<const std::array<int, 3>> triangles) {
   const std::vector<TriangleSide> sides = sorted_sides(triangles);
   std::vector<std::array<int, 4>> hinges;

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <array>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -22,6 +23,10 @@ std::vector<std::array<int, 2>> face_sides(const TriangleMesh& mesh);
 /// Edges of exactly one triangle, in the direction that the triangle runs through them, sorted
 /// by (smaller, larger).
 std::vector<std::array<int, 2>> boundary_edges(std::span<const std::array<int, 3>> triangles);
+
+/// An edge that triangles do not run through exactly once in each direction, in the direction of one of them; none: the
+/// surface is closed, or there is no triangle. Cost O(n log n).
+std::optional<std::array<int, 2>> open_side(std::span<const std::array<int, 3>> triangles);
 
 /// e0 e1 v0 v1 of every edge with exactly two triangles: triangle 0 runs e0 -> e1 and has v0 opposite,
 /// triangle 1 has v1 opposite. Sorted by edge. An edge of three or more triangles (non-manifold) gives one

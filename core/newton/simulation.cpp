@@ -56,18 +56,15 @@ Simulation::Simulation(const Scene& scene, Method& method, double dt, int n_step
 
 Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, double dt, int n_steps)
     : scene_(scene),
+      held_(scene, dt / 2),
       method_(method),
       plan_(plan),
       dt_(dt),
       n_steps_(n_steps),
       parts_(method.step_solver.retries),
-      system_(std::make_unique<NewtonSystem>(scene, method, plan)),
       entry_(step_solvers().require(method.step_solver.name, "/step_solver/name")),
       solver_(make_step_solver(method.step_solver)) {
-  if (!entry_.asked_to_converge && entry_.needs.matrix) {
-    end_residual_ = std::make_unique<EndResidual>(scene_, method_, plan_);
-  }
-  solver_->require(*system_);
+  make_system();
   history_.x = scene.x0;
   round_state(method.precision, history_.x);
   history_.v = scene.v0;
@@ -76,10 +73,37 @@ Simulation::Simulation(const Scene& scene, Method& method, const Plan& plan, dou
   history_.v_prev = history_.v;
 }
 
+void Simulation::make_system() {
+  system_ = std::make_unique<NewtonSystem>(held_.now(), method_, plan_);
+  if (!entry_.asked_to_converge && entry_.needs.matrix) {
+    end_residual_ = std::make_unique<EndResidual>(held_.now(), method_, plan_);
+  }
+  solver_->require(*system_);
+}
+
+// Degrees of freedom, masses and surfaces that can move are those of a system: another one takes over what the terms remember,
+// as a run does that goes on elsewhere.
+void Simulation::hold_pins(std::vector<int> holding) {
+  if (holding == held_.holding()) return;
+  Archive memory;
+  system_->keep(memory);
+  end_residual_.reset();
+  system_.reset();
+  held_.hold(std::move(holding));
+  make_system();
+  Archive again(memory.bytes());
+  system_->keep(again);
+}
+
 void Simulation::keep(Archive& archive) {
   archive.section("simulation");
   archive(history_.steps, history_.dt_prev, history_.x, history_.v, history_.a, history_.x_prev,
           history_.v_prev, history_.t, step_, nominal_, nominal_start_, parts_);
+  if (held_.changes()) {
+    std::vector<int> holding = held_.holding();
+    archive(holding);
+    hold_pins(std::move(holding));
+  }
   system_->keep(archive);
   if (archive.reads()) drop_caches();
   Archive solver;  // apart, since a system on a device has none
@@ -94,6 +118,7 @@ void Simulation::keep(Archive& archive) {
 void Simulation::drop_caches() { system_->drop_caches(); }
 
 StepReport Simulation::step(StepObserver& observer) {
+  if (held_.changes() && parts_.at_start()) hold_pins(holding_pins(scene_, nominal_start_ + dt_ / 2));
   PhaseClock& clock = system_->clock();
   clock.restart(Phase::step_control);
   ChargedObserver charged(observer, clock);
@@ -105,7 +130,7 @@ StepReport Simulation::step(StepObserver& observer) {
   measure_end(*system_, report);
   if (end_residual_ && report.status == StepStatus::converged) measure_residual(report);
   for (Eigen::Index i = 0; i < history_.v.cols(); ++i) {
-    report.kinetic_J += 0.5 * scene_.mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
+    report.kinetic_J += 0.5 * held_.now().mass[static_cast<std::size_t>(i)] * history_.v.col(i).squaredNorm();
   }
   system_->end_step();
   report.time = clock.read();
@@ -126,7 +151,7 @@ StepReport Simulation::attempt(StepObserver& observer) {
   task.history = &history_;
   task.integrator = method_.integrator.get();
   task.pose = [this](double dt, Positions& target) {
-    for (const Pin& pin : scene_.pins) target.col(pin.vertex) = pin_pose(scene_, pin, history_.t + dt);
+    for (const Pin& pin : held_.now().pins) target.col(pin.vertex) = pin_pose(scene_, pin, history_.t + dt);
     round_state(method_.precision, target);
   };
   StepReport report = solver_->advance(*system_, task, prediction_, observer);
@@ -164,7 +189,7 @@ void Simulation::start_acceleration() {
   system_->begin_step(history_.x, at_rest, dt_, 1.0);
   system_->assemble();
   for (Eigen::Index i = 0; i < history_.a.cols(); ++i) {
-    const double mass = scene_.mass[static_cast<std::size_t>(i)];
+    const double mass = held_.now().mass[static_cast<std::size_t>(i)];
     for (Eigen::Index k = 0; k < 3; ++k) {
       const bool fixed = system_->view().fixed()[static_cast<std::size_t>(3 * i + k)] != 0;
       history_.a(k, i) = fixed ? 0 : -system_->view().gradient()(k, i) / mass;
@@ -186,7 +211,7 @@ void Simulation::remember(const PositionsView& x, double dt_used) {
   const ScopedPhase timer(system_->clock(), Phase::prediction);
   if (dt_used > 0) {
     method_.integrator->finish(history_, dt_used, prediction_, x, v_next_, a_next_);
-    damp_velocities(scene_, x, dt_used, v_next_);
+    damp_velocities(held_.now(), x, dt_used, v_next_);
     history_.v_prev.swap(history_.v);
     history_.v = v_next_;
     if (method_.integrator->needs_acceleration()) history_.a = a_next_;

@@ -9,6 +9,7 @@
 #include "core/newton/newton_system.hpp"
 #include "core/newton/step_parts.hpp"
 #include "core/newton/step_solver.hpp"
+#include "core/scene/held_scene.hpp"
 
 namespace bb {
 
@@ -40,6 +41,8 @@ class Simulation {
   int nominal_steps() const { return nominal_; }
 
  private:
+  void make_system();
+  void hold_pins(std::vector<int> holding);
   void start_acceleration();
   StepReport attempt(StepObserver& observer);
   StepReport attempt_until_converged(StepObserver& observer);
@@ -48,6 +51,7 @@ class Simulation {
   void advance_time(double dt_used);
 
   const Scene& scene_;
+  HeldScene held_;  // of it, with the pins of the step
   Method& method_;
   const Plan plan_;
   double dt_ = 0;

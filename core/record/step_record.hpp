@@ -57,6 +57,9 @@ struct StepRecord : WorkCounts {
   BB_FIELD(int, friction_sticking, "contacts with friction that slid by less than eps_v dt in it") = 0;
   BB_FIELD(int, friction_sliding, "contacts with friction that slid farther") = 0;
   BB_FIELD(Number, friction_dissipation_J, "sum over these of friction force times slide", "no_friction");
+  BB_FIELD(Number, restitution_dissipation_J,
+           "sum over contacts of what restitution takes of the speed of their gaps, force times way",
+           "no_restitution");
   BB_FIELD(Number, limit_load_max_N_per_m, "largest (1/area) dS_e/dsigma at its end", "no_limit");
   BB_FIELD(
       Number, contact_overload,

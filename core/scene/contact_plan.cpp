@@ -108,6 +108,36 @@ void plan_pairs(const Scene& scene, const PrimitiveCount& points, const Primitiv
   plan.point_edge = lone.n > 0 && points.n > 2 && (points.free || lone.free);
 }
 
+/// How many pairs do less than collide in full; "1 static, 2 off" of those that the scene names.
+PlanItem plan_collisions(const Collisions& of) {
+  std::string text;
+  for (const auto& [kind, word] : {std::pair{CollisionKind::ccd, "ccd"},
+                                   {CollisionKind::static_test, "static"},
+                                   {CollisionKind::proximity, "proximity"},
+                                   {CollisionKind::off, "off"}}) {
+    const auto n = std::count_if(of.pairs.begin(), of.pairs.end(),
+                                 [kind = kind](const CollisionPair& p) { return p.kind == kind; });
+    if (n > 0) text += fmt::format("{}{} {}", text.empty() ? "pairs of bodies: " : ", ", n, word);
+  }
+  if (!of.group.empty()) text += text.empty() ? "collision groups" : ", and collision groups";
+  return plan_item(of.chosen(), text, "every pair of bodies collides in full (ccd)");
+}
+
+/// Whether a body that can move has a body, itself or another, that it is not `off` with.
+bool bodies_meet(const Scene& scene, const Flags& is_free) {
+  if (!scene.collisions.chosen()) return true;
+  const int n = static_cast<int>(scene.bodies.size());
+  for (int a = 0; a < n; ++a) {
+    const Body& body = scene.bodies[static_cast<std::size_t>(a)];
+    const auto begin = is_free.begin() + body.first_vertex;
+    if (std::none_of(begin, begin + body.n_vertices, [](char f) { return f != 0; })) continue;
+    for (int b = 0; b < n; ++b) {
+      if (scene.collisions.kind(a, b) != CollisionKind::off) return true;
+    }
+  }
+  return false;
+}
+
 // In a planar scene a cylinder that stands on the plane is a disk.
 bool has_axis_outside(const Scene& scene) {
   return std::any_of(scene.obstacles.begin(), scene.obstacles.end(), [&](const Obstacle& o) {
@@ -135,23 +165,29 @@ PlanItem plan_item(bool needed, std::string yes, std::string no) {
 
 ContactPlan plan_contact(const Scene& scene, Mollifier mollifier) {
   Flags is_free(static_cast<std::size_t>(scene.n_vertices()), 1);
-  for (const Pin& pin : scene.pins) is_free[static_cast<std::size_t>(pin.vertex)] = 0;
+  for (const Pin& pin : scene.pins) {
+    if (pin.span.always()) is_free[static_cast<std::size_t>(pin.vertex)] = 0;
+  }
   const PrimitiveCount points = count_points(scene, is_free);
   const PrimitiveCount lone = count_lone_edges(scene, is_free);
   const Bodies bodies = count_bodies(scene, is_free, lone);
   ContactPlan plan;
-  plan_pairs(scene, points, lone, is_free, plan);
+  plan.collisions = plan_collisions(scene.collisions);
+  const bool meet = bodies_meet(scene, is_free);
+  if (meet) plan_pairs(scene, points, lone, is_free, plan);
   const bool pairs = plan.point_point || plan.point_edge || plan.point_triangle || plan.edge_edge;
-  plan.broad_phase = plan_item(pairs, "pairs of surfaces", "no pair of surfaces");
+  plan.broad_phase =
+      plan_item(pairs, "pairs of surfaces", meet ? "no pair of surfaces" : "all pairs of bodies are off");
   const bool mollify = mollifier != Mollifier::none;
   const bool axes = has_axis_outside(scene) && count_edges(scene, is_free).free;
   plan.mollifier =
       plan_item((plan.edge_edge || axes) && mollify,
                 plan.edge_edge ? "edge pairs may be parallel" : "edges may be parallel to a cylinder",
                 mollify ? "no edge-edge pairs" : "contact.mollifier is none");
-  plan.self_contact = plan_item(pairs && (bodies.pairs_in_one || bodies.deformable > 1),
-                                fmt::format("{} deformable bodies", bodies.deformable),
-                                "one deformable body without two elements that share no vertex");
+  plan.self_contact = plan_item(
+      pairs && (bodies.pairs_in_one || bodies.deformable > 1),
+      fmt::format("{} deformable bodies", bodies.deformable),
+      meet ? "one deformable body without two elements that share no vertex" : "all pairs of bodies are off");
   plan.given_surfaces = plan_item(pairs && bodies.given > 0 && bodies.deformable > 0,
                                   fmt::format("{} prescribed bodies", bodies.given), "no prescribed body");
   plan.obstacles = plan_item(!scene.obstacles.empty() && points.free,

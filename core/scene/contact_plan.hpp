@@ -26,6 +26,7 @@ struct ContactPlan {
   PlanItem self_contact;    // a deformable body against itself or another one
   PlanItem given_surfaces;  // static or driven meshes: columns of contacts without unknowns
   PlanItem obstacles;       // analytic obstacles
+  PlanItem collisions;      // pairs of bodies that do less than collide in full
   // kinds of pairs of surfaces, with at least one free vertex and none in common
   bool point_point = false, point_edge = false, point_triangle = false, edge_edge = false;
 

@@ -7,6 +7,25 @@ Vec3d pin_pose(const Scene& scene, const Pin& pin, double t) {
   return scene.motions[static_cast<std::size_t>(pin.motion)](scene.x0.col(pin.vertex), t);
 }
 
+std::vector<int> holding_pins(const Scene& scene, double middle) {
+  std::vector<int> out;
+  for (std::size_t i = 0; i < scene.pins.size(); ++i) {
+    if (scene.pins[i].span.holds(middle)) out.push_back(static_cast<int>(i));
+  }
+  return out;
+}
+
+Scene held_scene(const Scene& scene, const std::vector<int>& holding) {
+  Scene out = scene;
+  out.pins.clear();
+  for (const int i : holding) {
+    const Pin& pin = scene.pins[static_cast<std::size_t>(i)];
+    out.pins.push_back({pin.vertex, pin.motion});
+    out.mass[static_cast<std::size_t>(pin.vertex)] = 0;
+  }
+  return out;
+}
+
 Vec3d gravity_at(const Scene& scene, double t) {
   return scene.gravity_keys.empty() ? scene.gravity : value_at(scene.gravity_keys, t);
 }

@@ -11,15 +11,27 @@
 
 #include "core/math/types.hpp"
 #include "core/scene/all_parts.hpp"
+#include "core/scene/collisions.hpp"
 #include "core/scene/motion.hpp"
 
 namespace bb {
 
+/// The time in which a pin holds or pulls, s. A step is in it when its middle is.
+struct HoldSpan {
+  double hold = -std::numeric_limits<double>::infinity();
+  double release = std::numeric_limits<double>::infinity();
+
+  bool always() const { return !(hold > 0) && release == std::numeric_limits<double>::infinity(); }
+  bool holds(double middle) const { return middle > hold && middle < release; }
+};
+
 /// A vertex whose position is prescribed exactly (static mesh, driven mesh, pin). Also the names
-/// that errors use.
+/// that errors use. One that is not held for the whole run counts as free in all that belongs to a run: masses, elements,
+/// contact, audit.
 struct Pin {
   int vertex = 0;
   int motion = 0;  // index into Scene::motions
+  HoldSpan span = {};
 };
 
 /// Stiffness of a pull at a time, as a factor >= 0.
@@ -27,30 +39,33 @@ struct PullKey {
   double time = 0;  // s
   double value = 1;
 };
-/// The time in which a pull acts, s.
-struct PullSpan {
-  double hold = -std::numeric_limits<double>::infinity();
-  double release = std::numeric_limits<double>::infinity();
-};
 /// Free vertices that springs pull to where a motion takes them from their start.
 struct Pull {
   std::vector<int> vertices;
   int motion = 0;                // index into Scene::motions
   double stiffness = 0;          // N/m, of each spring
   std::vector<PullKey> factors;  // empty: 1 always
-  PullSpan span = {};
+  HoldSpan span = {};
 };
 
-/// Springs without length between single vertices.
+/// Springs between single vertices.
 struct Stitches {
   std::vector<std::array<int, 2>> pairs;
-  std::vector<double> stiffness;  // [n] N/m
+  std::vector<double> stiffness;    // [n] N/m
+  std::vector<double> rest_length;  // [n] m
 };
 
+/// Pressure at a time.
+struct PressureKey {
+  double time = 0;   // s
+  double value = 0;  // Pa
+};
 /// Triangles of closed surfaces that a pressure from within acts on.
 struct Inflation {
   std::vector<std::array<int, 3>> triangles;
-  std::vector<double> pressure;  // [n] Pa
+  std::vector<double> pressure;  // [n] Pa; 1 or -1 of a triangle with keys
+  std::vector<int> keys;         // [n] into key_lists, -1: constant
+  std::vector<std::vector<PressureKey>> key_lists;
 };
 
 /// Velocities are multiplied by these to the power of the step's length in s, when it is over.
@@ -100,6 +115,7 @@ struct Obstacle {
   bool inside = false;          // the allowed side is the inside (sphere, cylinder)
   std::optional<double> friction = std::nullopt;     // coefficient; absent: that of the run
   std::optional<double> restitution = std::nullopt;  // as that of a body
+  std::string collision_group = {};                  // of Collisions; empty: none
   RigidMotion motion = {};                           // of its point; turns neither normal nor axis
   int vertex = -1;  // that stands for the point of an obstacle that moves, one of Scene::pins
 };
@@ -130,6 +146,7 @@ struct Scene : parts::AllColumns {
   std::vector<std::array<int, 2>> surface_edges;  // of triangles and rods; planar: boundary edges and rods
   std::vector<int> surface_vertices;
   std::vector<Obstacle> obstacles;
+  Collisions collisions;
 
   std::vector<RigidMotion> motions;
   std::vector<Pin> pins;  // one entry a prescribed vertex, each vertex at most once
@@ -146,6 +163,10 @@ struct Scene : parts::AllColumns {
 
 /// Pose of a prescribed vertex at time t (s).
 Vec3d pin_pose(const Scene& scene, const Pin& pin, double t);
+/// Which pins hold in a step whose middle is at that time (s), as indices into Scene::pins, ascending.
+std::vector<int> holding_pins(const Scene& scene, double middle);
+/// The scene while these pins hold and no other, as if it were so for the whole run: what is held has no mass.
+Scene held_scene(const Scene& scene, const std::vector<int>& holding);
 /// Gravity at time t (s), m/s^2.
 Vec3d gravity_at(const Scene& scene, double t);
 

@@ -18,6 +18,11 @@ void BatchTerm::begin_step(const StepFrame& frame, PhaseClock&) {
   change_frame(frame);
 }
 
+void BatchTerm::change_frame(const StepFrame& frame) {
+  dt_ = frame.dt;
+  batch_->set_time(frame.t_end);
+}
+
 void BatchTerm::end_step(const PositionsView& x, PhaseClock& clock) {
   const std::span<const double> now = batch_->memory();
   if (now.empty()) return;

@@ -13,7 +13,7 @@ class BatchTerm final : public Term {
   TermGroup group() const override { return TermGroup::elastic; }
   Phase phase() const override { return Phase::elastic; }
   void begin_step(const StepFrame& frame, PhaseClock& clock) override;
-  void change_frame(const StepFrame& frame) override { dt_ = frame.dt; }
+  void change_frame(const StepFrame& frame) override;
   void end_step(const PositionsView& x, PhaseClock& clock) override;
   void keep(Archive& archive) override;
   void linearise(const PositionsView& x, const TermContext& context) override {

@@ -3,95 +3,74 @@
 #include <fmt/format.h>
 
 #include <algorithm>
-#include <stdexcept>
 
-#include "core/contact/contact_loads.hpp"
-#include "core/energy/element_loop.hpp"
-#include "core/energy/friction.hpp"
 #include "core/energy/friction_law.hpp"
 #include "core/terms/contact_sides.hpp"
+#include "core/terms/lagged_contacts.hpp"
 #include "core/terms/registry.hpp"
 
 namespace bb {
 namespace {
 
-class Friction final : public Term {
+class Friction final : public LaggedContacts {
  public:
-  /// All arguments outlive the term. before: the terms whose contacts rub.
   Friction(const Scene& scene, const TermOptions& options, const TermList& before)
-      : scene_(scene), options_(options) {
-    for (const auto& term : before) before_.push_back(term.get());
-    families_.resize(1);
-  }
+      : LaggedContacts(scene, options.precision, before), options_(options.friction) {}
   std::string_view name() const override { return "friction"; }
-  TermGroup group() const override { return TermGroup::friction; }
-  Phase phase() const override { return Phase::contact_terms; }
-  bool fixed_stencils() const override { return false; }
 
   void begin_step(const StepFrame& frame, PhaseClock& clock) override {
     const ScopedPhase timer(clock, Phase::contact_terms);
-    x_n_ = frame.x_n;
-    change_frame(frame);
+    begin_at(frame.x_n);
+    take_frame(frame);
     solved_ = 0;
     t_lag_ = frame.t_end - frame.dt;
-    take_lag(x_n_);
+    take_rows(frame.x_n);
+    find_spins();
   }
   void change_frame(const StepFrame& frame) override {
-    eps_ = options_.friction.eps_v * frame.dt;
-    t_end_ = frame.t_end;
-    dt_ = frame.dt;
+    take_frame(frame);
     find_spins();
   }
   void adopt_from(const Term& other) override {
-    const auto& same = static_cast<const Friction&>(other);
-    lagged_ = same.lagged_;
-    t_lag_ = same.t_lag_;
-    take_rows(same.contacts_);
-    strength_ = same.strength_;
-    loads_known_ = same.loads_known_;
+    t_lag_ = static_cast<const Friction&>(other).t_lag_;
+    LaggedContacts::adopt_from(other);
+    find_spins();
   }
   bool renew_lag(const PositionsView& x) override {
-    if (++solved_ >= options_.friction.lag_iterations) return false;
+    if (++solved_ >= options_.lag_iterations) return false;
     const bool had_rows = size() > 0;
     t_lag_ = t_end_;
-    take_lag(x);
+    take_rows(x);
+    find_spins();
     return had_rows || size() > 0;
   }
 
   void linearise(const PositionsView& x, const TermContext&) override {
-    if (!loads_known_) learn_loads();
-    for_each_pass(options_.precision, [&]<class T>(PassParts parts) {
+    learn_loads();
+    for_each_pass(precision(), [&]<class T>(PassParts parts) {
       const Law<T> law = this->law<T>();
-      for_each_element(size(), [&](std::size_t e) {
-        const Row<T> row(*this, e);
-        const Vec<T, 3> slide = row.slide(x, x_n_);
-        const T y = slide.norm();
-        const auto terms = friction_terms<T>(slide, y, row.normal, row.strength, law(y));
-        store_terms<T, 12>(motion_in_points<T, 4>(terms, row.weight), e, parts, families_[0].local);
+      store_motion_terms<T>(parts, [&](std::size_t e) {
+        const Vec<T, 3> along = slide<T>(e, x);
+        const T y = along.norm();
+        return friction_terms<T>(along, y, normal<T>(e), static_cast<T>(strength(e)), law(y));
       });
     });
   }
   void evaluate(const PositionsView& x) override {
-    with_value_scalar(options_.precision, [&]<class T>() {
+    with_value_scalar(precision(), [&]<class T>() {
       const Law<T> law = this->law<T>();
-      for_each_element(size(), [&](std::size_t e) {
-        const Row<T> row(*this, e);
-        families_[0].trial_energy[e] = row.strength * law(row.slide(x, x_n_).norm()).f0;
-      });
+      store_trial([&](std::size_t e) { return static_cast<T>(strength(e)) * law(slide<T>(e, x).norm()).f0; });
     });
-  }
-  void change(const PositionsView&, const PositionsView&, EnergyParts& out) const override {
-    compare_elements(families_[0], out);  // the rows of a step stay
   }
 
   void report_end(const PositionsView& x, StepNumbers& out, PhaseClock&) override {
-    if (!loads_known_) return;  // the step ended where a lag was taken anew
+    if (!loads_known()) return;  // the step ended where a lag was taken anew
     const Law<double> law = this->law<double>();
     double work = 0;
     for (std::size_t e = 0; e < size(); ++e) {
-      if (!(strength_[e] > 0)) continue;
-      const double y = Row<double>(*this, e).slide(x, x_n_).norm();
-      work += strength_[e] * law(y).f1_over_y * y * y;
+      if (!(strength(e) > 0)) continue;
+      const double y = slide<double>(e, x).norm();
+      work += strength(e) * law(y).f1_over_y * y * y;
       ++(y < eps_ ? out.friction_sticking : out.friction_sliding);
     }
     out.friction_dissipation_J = work;
@@ -106,84 +85,39 @@ class Friction final : public Term {
   };
   template <class T>
   Law<T> law() const {
-    return {friction_laws_in<T>().require(options_.friction.law, "/friction/law").eval, static_cast<T>(eps_)};
+    return {friction_laws_in<T>().require(options_.law, "/friction/law").eval, static_cast<T>(eps_)};
   }
 
-  /// Element e in the scalar T.
+  void take_frame(const StepFrame& frame) {
+    eps_ = options_.eps_v * frame.dt;
+    t_end_ = frame.t_end;
+    dt_ = frame.dt;
+  }
+
   template <class T>
-  struct Row {
-    const int* vertex;
-    Vec<T, 4> weight;
-    Vec<T, 3> normal, spin;
-    T strength;  // mu times load, N
-    Row(const Friction& of, std::size_t e)
-        : vertex(&of.vertices_[4 * e]),
-          weight(Vec<double, 4>::Map(&of.contacts_.weight[4 * of.row_[e]]).template cast<T>()),
-          normal(Vec3d::Map(&of.contacts_.normal[3 * of.row_[e]]).template cast<T>()),
-          spin(of.spin_[e].template cast<T>()),
-          strength(static_cast<T>(of.strength_[e])) {}
-    Vec<T, 3> slide(const PositionsView& x, const PositionsView& x_n) const {
-      Vec<T, 3> motion = Vec<T, 3>::Zero();
-      for (int k = 0; k < 4 && vertex[k] >= 0; ++k) {
-        motion += weight[k] * (x.col(vertex[k]) - x_n.col(vertex[k])).template cast<T>();
-      }
-      motion -= spin;
-      return slide_of<T>(motion, normal);
-    }
-  };
-
-  ContactLoads contacts_now() const {
-    ContactLoads out;
-    for (const Term* term : before_) term->add_loads(lagged_, out);
-    return out;
-  }
-
-  /// Rows of the iterate x; their loads are known once the terms before have been linearised there.
-  void take_lag(const PositionsView& x) {
-    lagged_ = x;
-    take_rows(contacts_now());
-    loads_known_ = false;
-  }
-
-  /// Those with friction become elements.
-  void take_rows(ContactLoads contacts) {
-    contacts_ = std::move(contacts);
-    row_.clear();
-    mu_.clear();
-    vertices_.clear();
-    for (std::size_t r = 0; r < contacts_.size(); ++r) {
-      const double mu = coefficient(r);
-      if (mu == 0) continue;
-      row_.push_back(r);
-      mu_.push_back(mu);
-      vertices_.insert(vertices_.end(), &contacts_.stencil[4 * r], &contacts_.stencil[4 * r] + 4);
-    }
-    strength_.assign(row_.size(), 0.0);
-    find_spins();
-    families_[0].stencils = {4, vertices_};
-    families_[0].local.resize(row_.size(), 4);
-    families_[0].trial_energy.resize(row_.size());
+  Vec<T, 3> slide(std::size_t e, const PositionsView& x) const {
+    return slide_of<T>(motion<T>(e, x) - spin_[e].template cast<T>(), normal<T>(e));
   }
 
   /// What the turn of an obstacle takes its surface along by in this step where each element is, beside the way of its
   /// point.
   void find_spins() {
-    spin_.assign(row_.size(), Vec3d::Zero());
-    for (std::size_t e = 0; e < row_.size(); ++e) {
-      const int obstacle = contacts_.obstacle[row_[e]];
+    spin_.assign(size(), Vec3d::Zero());
+    for (std::size_t e = 0; e < size(); ++e) {
+      const int obstacle = contacts().obstacle[contact(e)];
       if (obstacle < 0) continue;
-      const Obstacle& o = scene_.obstacles[static_cast<std::size_t>(obstacle)];
+      const Obstacle& o = scene().obstacles[static_cast<std::size_t>(obstacle)];
       if (o.motion.most_turning() == 0) continue;
-      const Vec3d arm = arm_of(row_[e], o);
+      const Vec3d arm = arm_of(contact(e), o);
       const Vec3d unturned = o.motion.turn(t_lag_).transpose() * arm;
       spin_[e] = o.motion.turn(t_end_) * unturned - o.motion.turn(t_end_ - dt_) * unturned;
     }
   }
-  /// From the point of an obstacle that moves to its surface at a row, m.
+  /// From the point of an obstacle that moves to its surface at a contact, m.
   Vec3d arm_of(std::size_t r, const Obstacle& o) const {
-    Vec3d arm = Vec3d::Zero();  // to the other side of the row
-    for (std::size_t k = 4 * r; k < 4 * r + 4 && contacts_.stencil[k] >= 0; ++k) {
-      arm += contacts_.weight[k] * lagged_.col(contacts_.stencil[k]);
+    Vec3d arm = Vec3d::Zero();  // to the other side of the contact
+    for (std::size_t k = 4 * r; k < 4 * r + 4 && contacts().stencil[k] >= 0; ++k) {
+      arm += contacts().weight[k] * lagged().col(contacts().stencil[k]);
     }
     if (o.kind == ObstacleKind::plane) return arm - o.axis.dot(arm) * o.axis;
     const Vec3d along =
@@ -191,34 +125,17 @@ class Friction final : public Term {
     return along + o.radius * (arm - along).normalized();
   }
 
-  double coefficient(std::size_t r) const {
-    const auto of = [this](const auto& side) { return side.friction.value_or(options_.friction.mu); };
-    return combined_of_sides(scene_, contacts_, r, options_.friction.combine, of);
+  double coefficient(std::size_t r) const override {
+    const auto of = [this](const auto& side) { return side.friction.value_or(options_.mu); };
+    return combined_of_sides(scene(), contacts(), r, options_.combine, of);
   }
 
-  // The terms before have been linearised where the rows are of.
-  void learn_loads() {
-    const ContactLoads now = contacts_now();
-    if (now.stencil != contacts_.stencil)
-      throw std::logic_error("the rows of a lag changed before their loads");
-    for (std::size_t e = 0; e < row_.size(); ++e) strength_[e] = mu_[e] * now.load[row_[e]];
-    loads_known_ = true;
-  }
-
-  const Scene& scene_;
-  const TermOptions& options_;
-  std::vector<const Term*> before_;
-  double eps_ = 0;                     // m
-  double t_end_ = 0, dt_ = 0;          // s
-  double t_lag_ = 0;                   // s, of lagged_
-  Positions x_n_, lagged_;             // m, where slides begin, and where the rows are of
-  ContactLoads contacts_;              // there
-  std::vector<std::size_t> row_;       // [n] the contact of each element
-  std::vector<double> mu_, strength_;  // [n] 1; mu times load, N
-  std::vector<Vec3d> spin_;            // [n] m
-  std::vector<int> vertices_;          // [4 n]
-  bool loads_known_ = false;
-  int solved_ = 0;  // times that this step converged
+  const FrictionOptions& options_;
+  double eps_ = 0;             // m
+  double t_end_ = 0, dt_ = 0;  // s
+  double t_lag_ = 0;           // s, of lagged()
+  std::vector<Vec3d> spin_;    // [n] m
+  int solved_ = 0;             // times that this step converged
 };
 
 }  // namespace

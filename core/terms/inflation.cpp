@@ -24,11 +24,21 @@ class InflationTerm final : public Term {
   Phase phase() const override { return Phase::assembly; }
 
   void begin_step(const StepFrame& frame, PhaseClock&) override {
+    change_frame(frame);
     centre_.resize(3, static_cast<Eigen::Index>(scene_.bodies.size()));
     for (std::size_t b = 0; b < scene_.bodies.size(); ++b) {
       const Body& body = scene_.bodies[b];
       centre_.col(static_cast<Eigen::Index>(b)) =
           frame.x_n.middleCols(body.first_vertex, body.n_vertices).rowwise().mean();
+    }
+  }
+  void change_frame(const StepFrame& frame) override {
+    const Inflation& of = scene_.inflation;
+    pressure_ = of.pressure;
+    std::vector<double> now;
+    for (const auto& keys : of.key_lists) now.push_back(value_at(keys, frame.t_end));
+    for (std::size_t e = 0; e < size_of() && !now.empty(); ++e) {
+      if (of.keys[e] >= 0) pressure_[e] *= now[static_cast<std::size_t>(of.keys[e])];
     }
   }
   void linearise(const PositionsView& x, const TermContext& context) override {
@@ -48,7 +58,7 @@ class InflationTerm final : public Term {
   std::size_t size_of() const { return scene_.inflation.triangles.size(); }
   template <class T>
   T pressure(std::size_t e) const {
-    return static_cast<T>(scene_.inflation.pressure[e]);
+    return static_cast<T>(pressure_[e]);
   }
   /// Corners of triangle e off the centre of its body.
   template <class T>
@@ -70,8 +80,9 @@ class InflationTerm final : public Term {
 
   const Scene& scene_;
   Precision precision_;
-  std::vector<int> vertices_;  // [3 n]
-  Positions centre_;           // [3 x bodies] m
+  std::vector<int> vertices_;     // [3 n]
+  Positions centre_;              // [3 x bodies] m
+  std::vector<double> pressure_;  // [n] Pa, of the step
 };
 
 }  // namespace

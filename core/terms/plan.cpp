@@ -13,8 +13,11 @@ constexpr const char* no_matrix = "the step solver has no matrix";
 
 void plan_steps(Plan& plan, const Scene& scene, const TermOptions& terms, const PlanOptions& options) {
   const bool contact = plan.term("contact").needed;
-  plan.step_bound = plan_item(contact && options.step.step_bound, "every step stays free of contact",
-                              contact ? "the step solver has no step bound" : "nothing can touch");
+  plan.step_bound =
+      plan_item(contact && options.step.step_bound,
+                scene.collisions.chosen() ? "every step of pairs that collide as ccd stays free of contact"
+                                          : "every step stays free of contact",
+                contact ? "the step solver has no step bound" : "nothing can touch");
   plan.trial_energies = plan_item(options.step.energies, "the step solver compares E at trials",
                                   "feasibility alone judges the trials of the step solver");
   plan.end_check = plan_item(options.end_check, "step_solver.saddle", "step_solver.saddle is ignore");
@@ -78,6 +81,7 @@ std::vector<std::pair<std::string_view, const PlanItem*>> Plan::items() const {
   out.insert(out.end(), {{"self_contact", &contacts.self_contact},
                          {"given_surfaces", &contacts.given_surfaces},
                          {"obstacles", &contacts.obstacles},
+                         {"collisions", &contacts.collisions},
                          {"broad_phase", &contacts.broad_phase},
                          {"step_bound", &step_bound},
                          {"trial_energies", &trial_energies},

@@ -48,6 +48,7 @@ StepNumbers::StepNumbers() {
   gap_min_m = gap_min_rel = gap_min_ulps = gap_min_iterates_m = gap_min_iterates_rel = kappa_min_N_per_m =
       kappa_max_N_per_m = contact_load_max_N = contact_load_sum_N = Number::missing("no_contacts");
   friction_dissipation_J = Number::missing("no_friction");
+  restitution_dissipation_J = Number::missing("no_restitution");
   max_stretch = limit_load_max_N_per_m = Number::missing("no_limit");
   saddle_curvature_N_per_m = Number::missing("none_found");
   end_error_m = end_error_tolerances = Number::missing("not_estimated");

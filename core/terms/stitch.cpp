@@ -1,4 +1,4 @@
-// Stitches: k/2 |x_b - x_a|^2, springs whose rest length is 0.
+// Stitches: k/2 (|x_b - x_a| - l0)^2.
 #include <fmt/format.h>
 
 #include "core/energy/spring_batch.hpp"
@@ -14,10 +14,9 @@ PlanItem needs_stitch(const TermNeeds& needs) {
 
 void make_stitch(const TermInputs& inputs, TermList& terms) {
   const Stitches& stitches = inputs.scene.stitches;
-  const Positions together = Positions::Zero(3, inputs.scene.n_vertices());  // all rest lengths are 0
   terms.add(std::make_unique<BatchTerm>(
-      "stitch",
-      std::make_unique<SpringBatch>(stitches.pairs, together, stitches.stiffness, inputs.options.precision)));
+      "stitch", std::make_unique<SpringBatch>(stitches.pairs, stitches.rest_length, stitches.stiffness,
+                                              inputs.options.precision)));
 }
 
 }  // namespace bb

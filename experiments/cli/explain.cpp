@@ -2,6 +2,7 @@
 // setting with its default filled in.
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -13,8 +14,10 @@
 #include "core/math/error.hpp"
 #include "experiments/cli/options.hpp"
 #include "experiments/config/document.hpp"
+#include "experiments/config/enum_words.hpp"
 #include "experiments/config/methods.hpp"
 #include "experiments/config/parse.hpp"
+#include "experiments/run/collision_lines.hpp"
 #include "experiments/run/device_memory.hpp"
 #include "experiments/run/device_run.hpp"
 #include "experiments/run/linear_choice.hpp"
@@ -128,6 +131,17 @@ std::string elements_text(const Scene& scene) {
   return out;
 }
 
+void print_collisions(const Scene& scene) {
+  constexpr std::size_t most = 200;
+  const std::vector<CollisionLine> lines = collision_lines(scene);
+  if (lines.empty()) return;
+  fmt::print("\npairs of bodies\n");
+  for (std::size_t i = 0; i < std::min(most, lines.size()); ++i) {
+    fmt::print("  {:<40} {:<10} {}\n", lines[i].pair, word_of(lines[i].kind), lines[i].reason);
+  }
+  if (lines.size() > most) fmt::print("  and {} more\n", lines.size() - most);
+}
+
 int explain(const RunVerb& verb, const ContactDemand& demand) {
   const RunConfig config = load_run(verb.config, verb.set);
   const Scene scene = build_scene(config);
@@ -144,6 +158,7 @@ int explain(const RunVerb& verb, const ContactDemand& demand) {
       if (item->needed == needed) fmt::print("  {:<18} {}\n", name, item->reason);
     }
   }
+  print_collisions(scene);
   if (config.device != Device::cpu) print_memory(count_device_memory(config, scene, plan, demand));
   print_settings(verb, config);
   return exit_ok;

@@ -96,6 +96,9 @@ Scene build_bodies(const RunConfig& config, const std::optional<StrainLimitSpec>
     builder.add_stitch(config.scene.stitches[i], fmt::format("/stitches/{}", i));
   }
   for (const Obstacle& obstacle : config.scene.obstacles) builder.add_obstacle(obstacle);
+  for (std::size_t i = 0; i < config.scene.collisions.size(); ++i) {
+    builder.add_collision(config.scene.collisions[i], fmt::format("/collisions/{}", i));
+  }
   return builder.finish();
 }
 
@@ -117,7 +120,9 @@ double unit_noise(std::mt19937_64& random) { return 2 * (static_cast<double>(ran
 void jitter(const SeedsConfig& seeds, Scene& scene) {
   if (seeds.jitter == 0) return;
   std::vector<char> is_free(static_cast<std::size_t>(scene.n_vertices()), 1);
-  for (const Pin& pin : scene.pins) is_free[static_cast<std::size_t>(pin.vertex)] = 0;
+  for (const Pin& pin : scene.pins) {
+    if (!(pin.span.hold > 0)) is_free[static_cast<std::size_t>(pin.vertex)] = 0;
+  }
   std::mt19937_64 random(seeds.main);
   for (int v = 0; v < scene.n_vertices(); ++v) {
     for (int k = 0; k < (scene.planar ? 2 : 3); ++k) {
@@ -138,7 +143,8 @@ void check_places(const RunConfig& config, const Scene& scene) {
   if (!within_bounds(scene.x0)) refuse("a vertex that starts too far out (seeds.jitter_m)");
   const double end = config.time.dt * config.time.steps;
   for (const Pin& pin : scene.pins) {
-    if (!within_bounds(pin_pose(scene, pin, end))) refuse("a prescribed vertex that is driven too far out");
+    if (!within_bounds(pin_pose(scene, pin, std::min(end, pin.span.release))))
+      refuse("a prescribed vertex that is driven too far out");
   }
 }
 

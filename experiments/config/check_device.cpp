@@ -40,6 +40,11 @@ void refuse_driven(const SceneConfig& scene, const std::string& on, const Compla
   for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
     const BodySpec& body = scene.bodies[i].spec;
     for (std::size_t p = 0; p < body.pins.size(); ++p) {
+      const HoldSpan& span = body.pins[p].span;
+      if (!body.pins[p].pull && !span.always()) {
+        complain(fmt::format("/scene/bodies/{}/pins/{}/{}", i, p, span.hold > 0 ? "hold_s" : "release_s"),
+                 "vertices that are prescribed for a time", "for the whole run " + here);
+      }
       if (!body.pins[p].pull) continue;
       complain(fmt::format("/scene/bodies/{}/pins/{}/pull_N_per_m", i, p),
                fmt::format("{}", *body.pins[p].pull), "no pull " + here);
@@ -47,11 +52,30 @@ void refuse_driven(const SceneConfig& scene, const std::string& on, const Compla
     if (body.pressure != 0) {
       complain(fmt::format("/scene/bodies/{}/pressure_Pa", i), fmt::format("{}", body.pressure), "0 " + here);
     }
+    if (!body.pressure_keys.empty()) {
+      complain(fmt::format("/scene/bodies/{}/pressure_schedule", i), "a pressure", "none " + here);
+    }
   }
   if (scene.air.normal > 0 || scene.air.tangential > 0) {
     complain("/scene/air", "drag of the air", "no drag " + here);
   }
   if (!scene.stitches.empty()) complain("/scene/stitches", "stitches", "none " + here);
+}
+
+/// Kernels pair all bodies.
+void refuse_collisions(const SceneConfig& scene, const std::string& on, const Complain& complain) {
+  const std::string here = on + ": its kernels collide all pairs as ccd";
+  if (!scene.collisions.empty()) complain("/scene/collisions", "a choice", "none " + here);
+  const auto refuse = [&](const char* list, std::size_t i, const std::string& group) {
+    if (group.empty()) return;
+    complain(fmt::format("/scene/{}/{}/collision_group", list, i), '"' + group + '"', "none " + here);
+  };
+  for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+    refuse("bodies", i, scene.bodies[i].spec.collision_group);
+  }
+  for (std::size_t i = 0; i < scene.obstacles.size(); ++i) {
+    refuse("obstacles", i, scene.obstacles[i].collision_group);
+  }
 }
 
 void check_device(const RunConfig& config, const Complain& complain) {
@@ -65,6 +89,7 @@ void check_device(const RunConfig& config, const Complain& complain) {
              "no motion " + on + ": its kernels know obstacles that stand still");
   }
   refuse_driven(config.scene, on, complain);
+  refuse_collisions(config.scene, on, complain);
   if (!config.scene.gravity_keys.empty()) {
     complain("/scene/gravity_schedule", "gravity over time", "gravity_m_per_s2 " + on);
   }

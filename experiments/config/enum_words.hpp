@@ -49,6 +49,19 @@ inline EnumWords<Precision> words_of(Precision) {
 inline EnumWords<BodyKind> words_of(BodyKind) {
   return {{BodyKind::deformable, "deformable"}, {BodyKind::rigid, "rigid"}};
 }
+inline EnumWords<CollisionKind> words_of(CollisionKind) {
+  return {{CollisionKind::ccd, "ccd"},
+          {CollisionKind::static_test, "static"},
+          {CollisionKind::proximity, "proximity"},
+          {CollisionKind::off, "off"}};
+}
+inline EnumWords<CollisionChoice> words_of(CollisionChoice) {
+  return {{CollisionChoice::automatic, "auto"},
+          {CollisionChoice::ccd, "ccd"},
+          {CollisionChoice::static_test, "static"},
+          {CollisionChoice::proximity, "proximity"},
+          {CollisionChoice::off, "off"}};
+}
 inline EnumWords<PlanarPairs> words_of(PlanarPairs) {
   return {{PlanarPairs::point_edge, "point_edge"}, {PlanarPairs::vertex_vertex, "vertex_vertex"}};
 }

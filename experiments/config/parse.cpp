@@ -112,12 +112,19 @@ RunConfig load_config(const std::string& path, std::span<const std::string> over
   return parse_config(read_input_file(path, config_file), path, folder.empty() ? "." : folder, overrides);
 }
 
-/// A scene without pressure has no choice of its Hessian, and the id that it had before there was one.
+/// A scene without pressure, or without stitches that have a length, has no choice of their Hessian, and the id that it had
+/// before there was one.
 std::string resolved_json(const RunConfig& config) {
   json out = settings_of<RunConfig>().write(config);
-  const auto presses = [](const BodyConfig& body) { return body.spec.pressure != 0; };
+  const auto presses = [](const BodyConfig& body) {
+    return body.spec.pressure != 0 || !body.spec.pressure_keys.empty();
+  };
   if (std::none_of(config.scene.bodies.begin(), config.scene.bodies.end(), presses)) {
     out["hessian"].erase("inflation");
+  }
+  const auto has_length = [](const StitchSpec& stitch) { return stitch.rest_length > 0; };
+  if (std::none_of(config.scene.stitches.begin(), config.scene.stitches.end(), has_length)) {
+    out["hessian"].erase("stitch");
   }
   return out.dump(2);
 }

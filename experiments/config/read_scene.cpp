@@ -102,22 +102,18 @@ void check_box(const PinSpec& pin, const std::string& pointer, const Reader& rea
   }
 }
 
-/// Degrees of freedom that are prescribed are so for a whole run.
-void check_pull(const PinSpec& pin, const std::string& where, const Reader& reader) {
-  const auto [hold, release] = pin.pull_span;
+void check_span(const PinSpec& pin, const std::string& where, const Reader& reader) {
+  const auto [hold, release] = pin.span;
   if (!(release > hold)) {
     reader.complain(where + "/release_s", fmt::format("{}", release),
                     fmt::format("a number > {}, when it begins to hold (s)", hold));
   }
+}
+
+void check_pull(const PinSpec& pin, const std::string& where, const Reader& reader) {
   if (pin.pull || !reader.complete) return;  // a wrong pull was one
   if (!pin.pull_factors.empty()) {
     reader.complain(where + "/pull_factors", "factors of no pull", "pull_N_per_m beside them");
-  }
-  for (const auto& [key, time] : {std::pair{"/hold_s", hold}, std::pair{"/release_s", release}}) {
-    if (std::isfinite(time)) {
-      reader.complain(where + key, fmt::format("{}", time),
-                      "pull_N_per_m beside it: vertices that are prescribed are so for the whole run");
-    }
   }
 }
 
@@ -131,12 +127,18 @@ void settle_body(const json& object, const std::string& pointer, const Reader& r
   read_mesh(child(object, "rest_mesh"), pointer + "/rest_mesh", reader, body.rest_mesh);
   settle_material(child(object, "material"), pointer + "/material", reader, spec.material);
   check_motion(spec.motion, pointer + "/motion", reader);
+  check_times(spec.pressure_keys, pointer + "/pressure_schedule", reader);
+  if (spec.pressure != 0 && !spec.pressure_keys.empty()) {
+    reader.complain(pointer + "/pressure_Pa", "a pressure beside pressure_schedule", "one of both");
+  }
+  check_times(spec.material.shrink_keys, pointer + "/material/shrink_schedule", reader);
   for (std::size_t p = 0; p < spec.pins.size(); ++p) {
     const PinSpec& pin = spec.pins[p];
     const std::string where = fmt::format("{}/pins/{}", pointer, p);
     check_motion(pin.motion, where + "/motion", reader);
     check_box(pin, where + "/box_m", reader);
     check_times(pin.pull_factors, where + "/pull_factors", reader);
+    check_span(pin, where, reader);
     check_pull(pin, where, reader);
     if (pin.indices.empty() && !pin.box && !pin.top_row && !pin.all) {
       reader.missing(where, "at least one of indices, box_m, top_row, all");

@@ -73,6 +73,7 @@ struct SceneConfig {
   std::vector<BodyConfig> bodies;
   std::vector<StitchSpec> stitches;
   std::vector<Obstacle> obstacles;
+  std::vector<CollisionSpec> collisions;
 };
 
 /// Its name, or that of its shape where it has none.

@@ -165,6 +165,11 @@ void leave_out_defaults(json& motion) {
 void leave_out_defaults_of_body(json& body) {
   if (body.contains("motion")) leave_out_defaults(body["motion"]);
   if (body.contains("pressure_Pa") && body["pressure_Pa"] == 0) body.erase("pressure_Pa");
+  if (body.contains("pressure_schedule")) {
+    body.erase(body["pressure_schedule"].empty() ? "pressure_schedule" : "pressure_Pa");
+  }
+  if (body.contains("material") && body["material"]["shrink_schedule"].empty())
+    body["material"].erase("shrink_schedule");
   if (!body.contains("pins")) return;
   for (json& pin : body["pins"]) {
     leave_out_defaults(pin["motion"]);
@@ -184,6 +189,10 @@ void leave_out_what_is_still(const SceneConfig& scene, json& out) {
   if (scene.air.normal == 0 && scene.air.tangential == 0) out.erase("air");
   if (!scene.damping.acts()) out.erase("velocity_damping");
   if (scene.stitches.empty()) out.erase("stitches");
+  for (std::size_t i = 0; i < scene.stitches.size(); ++i) {
+    if (scene.stitches[i].rest_length == 0) out["stitches"][i].erase("rest_length_m");
+  }
+  if (scene.collisions.empty()) out.erase("collisions");
 }
 
 json untranslated_json(const SceneConfig& scene) {
@@ -215,7 +224,8 @@ json scene_json(const SceneConfig& scene) {
 
 std::vector<std::string> keys_of_others(BodyKind kind) {
   if (kind == BodyKind::rigid)
-    return {"rest_mesh", "material", "velocity_m_per_s", "pins", "limited", "pressure_Pa"};
+    return {"rest_mesh", "material",    "velocity_m_per_s", "pins",
+            "limited",   "pressure_Pa", "pressure_schedule"};
   return {"motion"};
 }
 std::vector<std::string> keys_of_others(ObstacleKind kind) {

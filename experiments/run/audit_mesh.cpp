@@ -46,6 +46,7 @@ audit::AuditMesh make_audit_mesh(const Scene& scene, double dt) {
   mesh.thickness = scene.offset;
   const std::vector<int> bodies = rigid_bodies(scene.motions, dt);
   for (const Pin& pin : scene.pins) {
+    if (!pin.span.always()) continue;  // judged as what moves freely
     const auto v = static_cast<std::size_t>(pin.vertex);
     mesh.prescribed[v] = 1;
     mesh.motion[v] = bodies[static_cast<std::size_t>(pin.motion)];

@@ -2,8 +2,11 @@
 // its steps.
 #pragma once
 
+#include <memory>
+
 #include "core/barrier/stiffness_policy.hpp"
 #include "core/newton/newton_system.hpp"
+#include "core/scene/held_scene.hpp"
 #include "core/terms/contact.hpp"
 #include "experiments/run/pilot.hpp"
 
@@ -15,8 +18,9 @@ class PilotReplay {
   PilotReplay(const Pilot& pilot, const Scene& scene)
       : pilot_(pilot),
         method_(make_method(pilot.config, pilot.stiffness)),
-        system_(scene, method_),
-        diagnosis_(system_.diagnosis()) {}
+        scene_(scene),
+        held_(scene, pilot.config.time.dt / 2),
+        system_(std::make_unique<NewtonSystem>(held_.now(), method_)) {}
 
   /// The rows of the end of this step.
   void find_rows(int step) { begin(end(step), step); }
@@ -28,20 +32,23 @@ class PilotReplay {
   const Positions& start(int step) const { return pilot_.x[static_cast<std::size_t>(step)]; }
   const Positions& end(int step) const { return pilot_.x[static_cast<std::size_t>(step) + 1]; }
   double c(int step) const { return pilot_.c[static_cast<std::size_t>(step)]; }
-  const ContactTable& rows() const { return contact_state(diagnosis_.terms()).rows; }
+  const ContactTable& rows() const { return contact_state(diagnosis().terms()).rows; }
   /// Requires rows.
-  ContactTerm& contact() const { return *diagnosis_.terms().find<ContactTerm>(); }
+  ContactTerm& contact() const { return *diagnosis().terms().find<ContactTerm>(); }
   /// H of the last find_rows with a refresh, and the system whose pattern it has.
   const BlockSystem::Values& elastic() const { return elastic_; }
-  const BlockSystem& blocks() const { return diagnosis_.blocks(); }
+  const BlockSystem& blocks() const { return diagnosis().blocks(); }
 
  private:
   void begin(const Positions& x, int step);
+  void hold_pins(int step);
+  Diagnosis& diagnosis() const { return system_->diagnosis(); }
 
   const Pilot& pilot_;
   Method method_;
-  NewtonSystem system_;
-  Diagnosis& diagnosis_;
+  const Scene& scene_;
+  HeldScene held_;  // of it, with the pins of the step
+  std::unique_ptr<NewtonSystem> system_;
   Prediction prediction_;
   BlockSystem::Values elastic_;
 };

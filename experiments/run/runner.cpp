@@ -63,7 +63,8 @@ void fill_scene(const Scene& scene, RunRecord& record) {
   const Eigen::Index of_bodies = scene.n_body_vertices();
   size.vertices = static_cast<std::size_t>(of_bodies);
   const std::size_t per_vertex = scene.planar ? 2 : 3;
-  size.free_dofs = per_vertex * (static_cast<std::size_t>(scene.n_vertices()) - scene.pins.size());
+  size.free_dofs =
+      per_vertex * (static_cast<std::size_t>(scene.n_vertices()) - holding_pins(scene, 0).size());
 #define PART(name, term, convex, where, field, ...) size.field = parts::name::part().size(scene);
 #include "core/scene/parts/registry.inc"
 #undef PART

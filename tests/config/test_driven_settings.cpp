@@ -107,11 +107,26 @@ std::string refusal(const json& config) {
   return "";
 }
 
-TEST(DrivenSettings, OnlyPullsAreHeldAndReleased) {
+TEST(DrivenSettings, PinsAndPullsAreHeldAndReleased) {
   json config = driven_config();
   json& pin = config["scene"]["bodies"][0]["pins"][0];
+  EXPECT_TRUE(build_scene(parsed(config)).pins.at(0).span.always());
   pin["release_s"] = 1;
-  expect_violation(config, "/scene/bodies/0/pins/0/release_s", "1", "pull_N_per_m beside it");
+  const Scene pinned = build_scene(parsed(config));
+  EXPECT_EQ(pinned.pins.at(1).span.release, 1);
+  EXPECT_FALSE(pinned.pins.at(1).span.always());
+  EXPECT_GT(pinned.mass[2], 0) << "a vertex that will be free";
+  config["device"] = "host";
+  bool refused = false;
+  for (const Violation& v : violations_of(config.dump())) {
+    refused = refused || (v.where == "a.json#/scene/bodies/0/pins/0/release_s" &&
+                          v.allowed.find("device cpu only") != std::string::npos);
+  }
+  EXPECT_TRUE(refused);
+  config.erase("device");
+  pin["release_s"] = -1;
+  EXPECT_TRUE(violations_of(with(config, "/scene/bodies/0/pins/0/hold_s", 0).dump()).size() == 1);
+  pin["release_s"] = 1;
   pin["pull_N_per_m"] = 3;
   pin["hold_s"] = 2;
   expect_violation(config, "/scene/bodies/0/pins/0/release_s", "1", "a number > 2, when it begins to hold");

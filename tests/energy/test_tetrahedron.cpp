@@ -255,5 +255,16 @@ TEST(TetrahedronBatch, names_the_rest_tetrahedron_that_is_inverted_or_flat) {
   EXPECT_THROW(make(), ConfigError);
 }
 
+// What the term -mu/2 log(|F|^2 + 1) of the paper is for: docs/design.md, Solids.
+TEST(Solids, StableNeoHookeanWithoutItsLogarithmHoldsAPoint) {
+  const VecXl point = VecXl::Zero(9);
+  const auto terms = terms_at<solid::stable_neo_hookean, double>(point, Projection::none);
+  EXPECT_NEAR(terms.psi, (lame_lambda - lame_mu) / 2, 1e-15);
+  EXPECT_EQ(terms.pk1.norm(), 0);
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix<double, 9, 9>> eigen(terms.hess);
+  EXPECT_NEAR(eigen.eigenvalues().minCoeff(), lame_mu, 1e-13) << "a local minimum";
+  EXPECT_NEAR(eigen.eigenvalues().maxCoeff(), lame_mu, 1e-13);
+}
+
 }  // namespace
 }  // namespace bb::test::tetrahedron_test

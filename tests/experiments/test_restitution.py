@@ -35,3 +35,19 @@ def test_half_of_the_speed_is_a_quarter_of_the_height(program, tmp_path):
 
 def test_without_it_the_height_is_kept(program, tmp_path):
     assert peak(program, tmp_path / "run", "--set", "/scene/obstacles/0/restitution=1") == pytest.approx(1, abs=0.03)
+
+
+def test_what_it_takes_is_what_the_bounce_loses(program, tmp_path):
+    """The step says what restitution took; the integrator takes some too, as a bounce without restitution shows."""
+    def of(name: str, e: float) -> tuple[float, list]:
+        folder = tmp_path / name
+        peak(program, folder, "--set", f"/scene/obstacles/0/restitution={e}")
+        steps = json.loads((folder / "run.json").read_text())["steps"]
+        energies = [step["kinetic_J"] + step["gravity_J"] + step["contact_J"] + step["elastic_J"] for step in steps]
+        return energies[0] - energies[-1], [step["restitution_dissipation_J"] for step in steps]
+
+    lost, taken = of("half", 0.5)
+    lost_without, none = of("all", 1)
+    assert all(work is None for work in none), "nothing is damped"
+    assert all(work >= 0 for work in taken) and sum(work > 0 for work in taken) > 50
+    assert sum(taken) == pytest.approx(lost - lost_without, rel=0.05)

@@ -4,6 +4,7 @@
 
 #include <Eigen/Geometry>
 
+#include "core/mesh/generators.hpp"
 #include "core/mesh/topology.hpp"
 #include "tests/terms/at_iterate.hpp"
 
@@ -109,7 +110,7 @@ TEST(Pull, acts_in_the_steps_whose_middle_is_between_hold_and_release) {
   PinSpec& pin = body.pins.emplace_back();
   pin.indices = {1};
   pin.pull = 40;
-  pin.pull_span = {0.1, 0.3};
+  pin.span = {0.1, 0.3};
   const Scene scene = built(body);
   Positions x = scene.x0;
   x(0, 1) += 0.3;
@@ -120,6 +121,75 @@ TEST(Pull, acts_in_the_steps_whose_middle_is_between_hold_and_release) {
   };
   for (const int step : {1, 2, 7, 8}) EXPECT_EQ(force(step), 0) << step;
   for (const int step : {3, 4, 5, 6}) EXPECT_NEAR(force(step), 12, 1e-12) << step;
+}
+
+TEST(Stitch, has_a_length_where_it_pulls_nobody) {
+  SceneBuilder builder("scene", false, Vec3d(0, 0, -10), "test");
+  BodySpec one = triangle(), other = triangle();
+  other.name = "other";
+  other.mesh.vertices.row(2).array() += 1;
+  builder.add_body(one);
+  builder.add_body(other);
+  builder.add_stitch({"other", "triangle", {0}, {0}, 6, 0.75}, "/stitches/0");
+  const Scene scene = builder.finish();
+  const Linearised at_start(scene, "stitch", scene.x0);
+  ASSERT_NE(at_start.term, nullptr);
+  EXPECT_NEAR(at_start.gradient()(2, 3), 6 * 0.25, 1e-14);
+  EXPECT_NEAR(at_start.family().local.energy[0], 3 * 0.25 * 0.25, 1e-15);
+  Positions x = scene.x0;
+  x(2, 3) = x(2, 0) + 0.5;
+  EXPECT_NEAR(Linearised(scene, "stitch", x).gradient()(2, 3), -6 * 0.25, 1e-14) << "it pushes too";
+  x(2, 3) = x(2, 0) + 0.75;
+  EXPECT_NEAR(Linearised(scene, "stitch", x).gradient().norm(), 0, 1e-14);
+}
+
+TEST(Shrinking, over_time_is_that_of_the_factor_at_the_end_of_the_step) {
+  for (const char* part : {"membrane", "cloth_springs"}) {
+    for (const double creep : {0.0, 3.0}) {
+      BodySpec body = triangle();
+      if (std::string(part) == "cloth_springs") {
+        body.material.model = "none";
+        body.material.cloth_tension = body.material.cloth_compression = 20;
+        body.material.cloth_creep = creep;
+      } else {
+        body.material.model = "corotational";
+        body.material.membrane_creep = creep;
+      }
+      BodySpec constant = body;
+      constant.material.shrink_warp = 0.9 * 0.8;
+      constant.material.shrink_weft = 1.1 * 0.8;
+      body.material.shrink_warp = 0.9;
+      body.material.shrink_weft = 1.1;
+      body.material.shrink_keys = {{0, 1}, {1, 0.6}};
+      const Scene scene = built(body), shrunk = built(constant);
+      Positions x = scene.x0;
+      x(0, 1) += 0.2;
+      const Linearised now(scene, part, x, 0.5), expected(shrunk, part, x);
+      ASSERT_NE(now.term, nullptr);
+      ASSERT_GT(expected.gradient().norm(), 0.1);
+      EXPECT_LT((now.gradient() - expected.gradient()).norm(), 1e-12 * expected.gradient().norm()) << part;
+      const Linearised later(scene, part, x, 1);
+      EXPECT_GT((later.gradient() - expected.gradient()).norm(), 0.01) << part;
+    }
+  }
+}
+
+TEST(Inflation, follows_its_keys) {
+  BodySpec body = triangle();
+  body.name = "ball";
+  body.mesh = icosphere_mesh(1, 0.5);
+  const auto at_half = [](BodySpec spec) {
+    const Scene scene = built(spec);
+    const Linearised inflation(scene, "inflation", scene.x0, 0.5);
+    EXPECT_NE(inflation.term, nullptr);
+    return Positions(inflation.gradient());
+  };
+  BodySpec constant = body;
+  constant.pressure = 30;
+  body.pressure_keys = {{0, 20}, {1, 40}};
+  const Positions expected = at_half(constant);
+  EXPECT_GT(expected.norm(), 1);
+  EXPECT_LT((at_half(body) - expected).norm(), 1e-12);
 }
 
 TEST(Stitch, is_the_square_of_the_distance) {

@@ -20,6 +20,7 @@ class ClothSpringBatch final : public EnergyBatch {
         ratio_(part.pairs.size(), 1.0),
         creeps_(any_positive(part.creep)),
         precision_(precision) {
+    set_time(0);
     for (const auto& pair : part.pairs) vertices_.insert(vertices_.end(), pair.begin(), pair.end());
   }
   std::string_view name() const override { return "cloth_spring"; }
@@ -41,6 +42,10 @@ class ClothSpringBatch final : public EnergyBatch {
     store_elements(size(), precision_, terms, out);
   }
 
+  void set_time(double t) override {
+    factor_.clear();
+    for (const auto& keys : part_.shrink_keys.lists) factor_.push_back(value_at(keys, t));
+  }
   std::span<const double> memory() const override {
     return creeps_ ? std::span<const double>(ratio_) : std::span<const double>();
   }
@@ -50,13 +55,17 @@ class ClothSpringBatch final : public EnergyBatch {
       const Points<2> p(x, vertices_, e);
       const double length = (p.x[1] - p.x[0]).norm(), elongation = length / rest_length(e) - 1;
       const double left = crept(elongation, part_.yield[e], kept_after(part_.creep[e], dt));
-      const double ratio = length / (1 + left) / part_.rest_length[e];
+      const double ratio = length / (1 + left) / (shrink(e) * part_.rest_length[e]);
       if (left != elongation && std::isfinite(ratio) && ratio > 0) memory[e] = ratio;
     });
   }
 
  private:
-  double rest_length(std::size_t e) const { return ratio_[e] * part_.rest_length[e]; }
+  double rest_length(std::size_t e) const { return shrink(e) * (ratio_[e] * part_.rest_length[e]); }
+  double shrink(std::size_t e) const {
+    const std::vector<int>& list = part_.shrink_keys.list;
+    return list.empty() || list[e] < 0 ? 1 : factor_[static_cast<std::size_t>(list[e])];
+  }
   template <class T>
   SpringLaw<T> law(std::size_t e) const {
     return {static_cast<T>(part_.tension[e]), static_cast<T>(part_.tension_growing[e]),
@@ -67,6 +76,7 @@ class ClothSpringBatch final : public EnergyBatch {
   const ClothSpringPart part_;
   std::vector<int> vertices_;
   std::vector<double> ratio_;
+  std::vector<double> factor_;  // of each list of shrink_keys, 1
   bool creeps_;
   Precision precision_;
 };
@@ -88,7 +98,7 @@ class RestLengths {
   double of(const Pair& pair) const {
     const Material& m = spec_.material;
     const Vec3d difference = spec_.mesh.vertices.col(pair[1]) - spec_.mesh.vertices.col(pair[0]);
-    if (!m.shrinks()) return difference.norm();
+    if (m.shrink_warp == 1 && m.shrink_weft == 1) return difference.norm();
     if (!m.shrinks_along_warp()) return m.shrink_warp * difference.norm();
     const Vec3d n = (normal_.col(pair[0]) + normal_.col(pair[1])).normalized();
     const Vec3d axis = m.warp_axis.value_or(Vec3d::UnitX());
@@ -189,6 +199,7 @@ class ClothSprings final : public Part {
       if (to.all_prescribed(pair)) return;
       part.pairs.push_back(pair);
       part.rest_length.push_back(rest.of(local));
+      part.shrink_keys.append(part.pairs.size(), m.shrink_keys);
       part.tension.push_back(tension);
       part.tension_growing.push_back(tension_growing);
       part.compression.push_back(compression);

@@ -40,6 +40,19 @@ void add_youngs(Settings<Material>& out) {
       [](const Material& m) { return m.thickness ? json() : json(m.youngs); });
 }
 
+}  // namespace
+
+template <>
+Settings<ShrinkKey> list_of() {
+  Settings<ShrinkKey> out("Factor on rest lengths at a time.");
+  out.add("time_s", required(any_number("s")), "Later than that of the key before.", &ShrinkKey::time);
+  out.add("factor", required(positive("1")),
+          "Linear between keys, constant before the first and after the last.", &ShrinkKey::value);
+  return out;
+}
+
+namespace {
+
 /// Whether something of the material is along the warp axis.
 bool has_direction(const Material& m) { return is_anisotropic(m.model) || m.shrinks_along_warp(); }
 
@@ -63,8 +76,15 @@ void check_rest(const Complaints& complain, const BodySpec& spec) {
   const auto refuse = [&](const char* key, double found, const std::string& allowed) {
     complain(std::string("/material/") + key, fmt::format("{}", found), allowed);
   };
-  const char* shrink = m.shrink_warp != 1 ? "shrink_warp" : "shrink_weft";
-  const double factor = m.shrink_warp != 1 ? m.shrink_warp : m.shrink_weft;
+  const bool by_keys = m.shrink_warp == 1 && m.shrink_weft == 1 && !m.shrink_keys.empty();
+  const char* shrink = by_keys ? "shrink_schedule" : m.shrink_warp != 1 ? "shrink_warp" : "shrink_weft";
+  const double factor = by_keys              ? m.shrink_keys.front().value
+                        : m.shrink_warp != 1 ? m.shrink_warp
+                                             : m.shrink_weft;
+  for (const ShrinkKey& key : m.shrink_keys) {
+    if (key.value > 0 && std::isfinite(key.value)) continue;
+    refuse("shrink_schedule", key.value, "factors > 0");
+  }
   if (m.shrinks() && spec.mesh.triangles.empty()) {
     refuse(shrink, factor, "1: the body has no triangle");
   } else if (m.shrinks() && m.springs > 0) {
@@ -107,6 +127,7 @@ void append_options(const Material& m, const Scene& scene, MembranePart& part) {
     part.shrink.resize(n, Vec2d(1, 1));
     part.shrink.back() = Vec2d(m.shrink_warp, m.shrink_weft);
   }
+  part.shrink_keys.append(n, m.shrink_keys);
   if (m.membrane_creep > 0 || !part.creep.empty()) {
     part.yield.resize(n, 0.0);
     part.creep.resize(n, 0.0);
@@ -192,6 +213,9 @@ class Membrane final : public Part {
             &Material::shrink_warp);
     out.add("shrink_weft", positive("1"), "The same at right angles to the warp direction.",
             &Material::shrink_weft);
+    out.nest_all(
+        "shrink_schedule", "A factor on both over time.", 10000, settings_of<ShrinkKey>(),
+        [](auto& m) -> auto& { return m.shrink_keys; });
     out.add(
         "membrane_yield", non_negative("1"),
         "Stretch |sigma - 1| beyond which the rest shape of a triangle follows. Needs membrane_creep_per_s.",
@@ -268,6 +292,7 @@ class Membrane final : public Part {
       auto batch = std::make_unique<MembraneBatch>(part.model, part.triangles, scene.rest, part.lame_mu,
                                                    part.lame_lambda, scene.planar, part.warp, precision);
       if (!part.shrink.empty()) batch->scale_rest(part.shrink);
+      batch->set_shrink(part.shrink_keys);
       if (!part.creep.empty()) batch->set_creep(part.yield, part.creep);
       out.push_back(std::move(batch));
     }
@@ -275,7 +300,9 @@ class Membrane final : public Part {
   std::string_view lacks_kernels(const Scene& scene) const override {
     const bool creeps = std::any_of(scene.membranes.begin(), scene.membranes.end(),
                                     [](const MembranePart& part) { return !part.creep.empty(); });
-    return creeps ? "creep" : "";
+    const bool shrinks = std::any_of(scene.membranes.begin(), scene.membranes.end(),
+                                     [](const MembranePart& part) { return !part.shrink_keys.list.empty(); });
+    return creeps ? "creep" : shrinks ? "shrinking over time" : "";
   }
   void add_frame_fields(const Scene& scene, const Positions& x, FrameFields& out) const override {
     out.of_triangles.push_back({"stretch", stretches(scene, x)});

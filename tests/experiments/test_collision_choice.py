@@ -1,0 +1,91 @@
+"""Choices of collision in whole runs: what is chosen is said, and no choice hides a crossing."""
+
+import json
+from pathlib import Path
+
+import pytest
+from test_cli import bench, refused, write
+
+
+def cloths(folder: Path, collisions: list[dict], *, speed: float = -1.0, dt: float = 0.01, steps: int = 12, **scene) -> Path:
+    """A small cloth 5 cm above a large one, both without weight, thrown through it or onto it."""
+    def cloth(name: str, n: int, size: float, z: float) -> dict:
+        return {"name": name, "mesh": {"generator": "grid", "n_x": n, "n_y": n, "size_x_m": size, "size_y_m": size},
+                "transform": {"translate_m": [0.013 * z, 0.029 * z, z]}, "material": {"model": "corotational"}}
+
+    small = cloth("small", 3, 0.2, 0.05) | {"velocity_m_per_s": [0, 0, speed]}
+    large = cloth("large", 4, 0.7, 0.0) | {"pins": [{"indices": [0, 3, 12, 15]}]}
+    return write(folder / "cloths.json", {
+        "schema": "barrierbench.config/1",
+        "scene": {"bodies": [small, large], "gravity_m_per_s2": [0, 0, 0], "collisions": collisions} | scene,
+        "formulation": {"name": "log", "d_hat_m": 0.01}, "matching": {"rule": "as_given"},
+        "time": {"dt_s": dt, "steps": steps}})
+
+
+def run(program: str, folder: Path, config: Path) -> dict:
+    done = bench(program, "run", config, "--out", folder / "run", "--progress", "none",
+                 "--set", "/formulation/stiffness_policy/kappa_N_per_m=200", "--set", "/threads=1")
+    assert done.returncode == 0, done.stderr
+    return json.loads((folder / "run" / "run.json").read_text())
+
+
+def pair(kind: str) -> list[dict]:
+    return [{"a": "small", "b": "large", "kind": kind}]
+
+
+def touched(record: dict) -> int:
+    return sum(step["contacts"]["total"] for step in record["steps"])
+
+
+def test_in_full_they_hold_each_other(program, tmp_path):
+    record = run(program, tmp_path, cloths(tmp_path, pair("ccd")))
+    assert record["status"]["outcome"] == "ok" and touched(record) > 0
+    other = tmp_path / "other"
+    other.mkdir()
+    plain = run(program, other, cloths(other, []))
+    assert plain["summary"]["state_hash"] == record["summary"]["state_hash"], "ccd is what is not chosen"
+
+
+@pytest.mark.parametrize("kind", ["off", "proximity", "static"])
+def test_less_than_that_never_hides_a_crossing(program, tmp_path, kind):
+    """Thrown so fast that a step is longer than the reach of the rows: 20 cm a step."""
+    record = run(program, tmp_path, cloths(tmp_path, pair(kind), speed=-20.0))
+    assert record["status"]["outcome"] == "penetration", record["status"]
+    assert "passes through" in record["status"]["detail"] or "crosses" in record["status"]["detail"]
+    assert record["audit"]["violations"] + record["audit"]["crossings"] > 0
+
+
+def test_off_has_no_contact(program, tmp_path):
+    record = run(program, tmp_path, cloths(tmp_path, pair("off")))
+    assert record["status"]["outcome"] == "penetration" and touched(record) == 0
+    plan = {line["item"]: line for line in record["plan"]}
+    assert plan["collisions"]["active"] and plan["collisions"]["reason"] == "pairs of bodies: 1 off"
+
+
+def test_a_state_that_intersects_is_not_accepted(program, tmp_path):
+    """At 1 m/s a step of 10 ms ends in the middle of the other cloth; static stops there, proximity does not know."""
+    record = run(program, tmp_path, cloths(tmp_path, pair("static")))
+    assert record["audit"]["crossings"] == 0 and touched(record) > 0
+
+
+def test_a_start_through_each_other_is_refused_by_the_audit(program, tmp_path):
+    config = json.loads(cloths(tmp_path, pair("off")).read_text())
+    config["scene"]["bodies"][0]["transform"] = {"angle_deg": 90, "axis": [1, 0, 0], "translate_m": [0.01, 0.02, 0.01]}
+    record = run(program, tmp_path, write(tmp_path / "crossed.json", config))
+    assert record["status"]["outcome"] == "initial_intersection"
+
+
+def test_explain_says_what_every_pair_does_and_why(program, tmp_path):
+    config = cloths(tmp_path, pair("auto") + [{"a": "large", "b": "large", "kind": "off"}])
+    text = bench(program, "explain", config).stdout
+    said = text.split("pairs of bodies\n")[1].split("\n\n")[0].splitlines()
+    lines = {name: rest for name, *rest in (line.split(maxsplit=2) for line in said)}
+    assert lines["large|small"] == ["ccd", "auto: the surface of small is open"]
+    assert lines["large|large"] == ["off", "as given"]
+    assert lines["small|small"] == ["ccd", "by default"]
+    assert "pairs of bodies\n" not in bench(program, "explain", cloths(tmp_path, [])).stdout
+
+
+def test_a_name_that_is_not_there(program, tmp_path):
+    refused(bench(program, "check", cloths(tmp_path, [{"a": "smal", "b": "large", "kind": "off"}])),
+            "/scene/collisions/0/a", "small, large")
