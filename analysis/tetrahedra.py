@@ -7,7 +7,11 @@ installed by whoever wants it: analysis/requirements-tetrahedra.txt.
 
 from __future__ import annotations
 
+import contextlib
 import math
+import os
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
@@ -43,6 +47,18 @@ def require_closed(path: Path, triangles: np.ndarray) -> None:
             )
 
 
+@contextlib.contextmanager
+def _folder_of_its_own() -> Iterator[None]:
+    """The working folder meanwhile: TetGen leaves files there of a surface that crosses itself."""
+    before = Path.cwd()
+    with tempfile.TemporaryDirectory() as scratch:
+        os.chdir(scratch)
+        try:
+            yield
+        finally:
+            os.chdir(before)
+
+
 def filled(
     path: Path, points: np.ndarray, triangles: np.ndarray, edge: float | None
 ) -> tuple[np.ndarray, np.ndarray]:
@@ -59,8 +75,9 @@ def filled(
             f"--tetrahedra: the package tetgen (MIT; TetGen within it AGPL-3.0) is not installed: {INSTALL}"
         ) from None
     limit = {"fixedvolume": True, "maxvolume": edge**3 / (6 * math.sqrt(2))} if edge else {}
-    try:
-        made = tetgen.TetGen(points, triangles.astype(np.int32)).tetrahedralize(nobisect=True, **limit)
-    except RuntimeError as error:
-        raise UserError(f"{path}: TetGen makes no tetrahedra of it, does it cross itself? {error}") from None
+    with _folder_of_its_own():
+        try:
+            made = tetgen.TetGen(points, triangles.astype(np.int32)).tetrahedralize(nobisect=True, **limit)
+        except RuntimeError as error:
+            raise UserError(f"{path}: TetGen makes no tetrahedra of it, does it cross itself? {error}") from None
     return made[0], made[1].astype(np.int64)

@@ -80,9 +80,13 @@ def test_edges_within_are_as_long_as_asked(tmp_path):
 
 
 @needs_tetgen
-def test_a_surface_that_crosses_itself_is_refused(tmp_path, capsys):
+def test_a_surface_that_crosses_itself_is_refused(tmp_path, capsys, monkeypatch):
+    """And nothing is left where the verb was called."""
+    (tmp_path / "here").mkdir()
+    monkeypatch.chdir(tmp_path / "here")
     two = written(tmp_path / "two.ply", np.concatenate([POINTS, POINTS + [0.5, 0, 0]]), np.concatenate([FACES, FACES + 100]))
     assert fill(two)[0] == 2 and "does it cross itself" in capsys.readouterr().err
+    assert Path.cwd() == tmp_path / "here" and not list(Path.cwd().iterdir())
 
 
 @pytest.mark.parametrize("faces, message", [
