@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
 import numpy as np
@@ -118,6 +118,27 @@ def read_scene(record: dict, run: str | Path) -> dict:
 def points_of_bodies(scene: dict, vertices: np.ndarray) -> np.ndarray:
     """[..., n, 3] m: `vertices` [..., m, 3] without those that stand for obstacles, which come last."""
     return vertices[..., : vertices.shape[-2] - sum("vertex" in o for o in scene["obstacles"]), :]
+
+
+def without_bodies(frame: Frame, scene: dict, names: Iterable[str]) -> Frame:
+    """Without the triangles and edges of the bodies of these names; vertices keep their numbers. Errors:
+    UserError for a name that no body has.
+    """
+    known = list(scene["bodies"])
+    if unknown := [name for name in names if name not in known]:
+        raise UserError(f"body {unknown[0]!r}: one of {', '.join(known)}")
+    hidden = [known.index(name) for name in names]
+    if not hidden:
+        return frame
+    bodies = np.asarray(frame.of_vertices["body"])
+    triangles = ~np.isin(bodies[frame.triangles[:, 0]], hidden)
+    edges = ~np.isin(bodies[frame.edges[:, 0]], hidden)
+    return replace(
+        frame,
+        triangles=frame.triangles[triangles],
+        edges=frame.edges[edges],
+        of_triangles={name: values[triangles] for name, values in frame.of_triangles.items()},
+    )
 
 
 def scene_at(scene: dict, frame: Frame) -> dict:

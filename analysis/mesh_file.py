@@ -1,5 +1,5 @@
 """Meshes of Gmsh (MSH 2.2 and 4.1) and of VTK (VTU) as PLY that the program reads: triangles, lone edges,
-tetrahedra.
+tetrahedra; and tetrahedra within a closed surface.
 """
 
 from __future__ import annotations
@@ -15,9 +15,11 @@ import numpy as np
 
 from .errors import UserError, tells
 from .front.arguments import parser_of
+from .tetrahedra import INSTALL, filled
 from .whole_file import write_whole_bytes
 
 READERS = {".msh": meshio.gmsh.read, ".vtu": meshio.vtu.read}
+SURFACES = {**READERS, ".ply": meshio.ply.read, ".obj": meshio.obj.read, ".stl": meshio.stl.read}
 KEPT = {"line": 2, "triangle": 3, "tetra": 4}  # cells and their corners
 IGNORED = {"vertex"}  # points that a geometry names
 
@@ -131,14 +133,47 @@ def ply_bytes(cells: Cells) -> bytes:
 
 def parse(argv: list[str]) -> argparse.Namespace:
     parser = parser_of("mesh", "Lengths are taken as m.")
-    parser.add_argument("source", type=Path, metavar="IN", help=f"one of {', '.join(READERS)}")
+    parser.add_argument(
+        "source",
+        type=Path,
+        metavar="IN",
+        help=f"one of {', '.join(READERS)}; with --tetrahedra also of {', '.join(sorted(SURFACES.keys() - READERS))}",
+    )
     parser.add_argument("target", type=Path, metavar="OUT.ply")
     parser.add_argument(
         "--skin",
         action="store_true",
         help="keep triangles that are faces of tetrahedra, as a membrane on the solid",
     )
-    return parser.parse_args(argv)
+    parser.add_argument(
+        "--tetrahedra",
+        action="store_true",
+        help="fill the closed surface IN, which stays as it is, by TetGen (AGPL-3.0;"
+        f" {INSTALL} installs it); a surface within another is filled too",
+    )
+    parser.add_argument(
+        "--edge", type=float, metavar="LENGTH", help="with --tetrahedra: about the length of edges within (m)"
+    )
+    options = parser.parse_args(argv)
+    if options.edge is not None and not (options.tetrahedra and 0 < options.edge < float("inf")):
+        raise UserError("--edge: a length > 0 (m), and --tetrahedra with it")
+    if options.skin and options.tetrahedra:
+        raise UserError("--skin and --tetrahedra contradict each other")
+    return options
+
+
+def solid_of(path: Path, edge: float | None) -> Cells:
+    """Tetrahedra within the surface in a file. Errors: UserError, as read_cells and `filled`; one for lone
+    edges and tetrahedra in the file.
+    """
+    surface = read_cells(path, SURFACES)
+    if len(surface.lines) or len(surface.tetrahedra):
+        raise UserError(
+            f"{path}: {len(surface.lines)} lone edges and {len(surface.tetrahedra)} tetrahedra beside the"
+            " triangles; --tetrahedra needs triangles alone"
+        )
+    points, tetrahedra = filled(path, surface.points, surface.triangles, edge)
+    return checked(path, Cells(points, surface.lines, surface.triangles[:0], tetrahedra))
 
 
 @tells("mesh")
@@ -146,7 +181,7 @@ def main(argv: list[str]) -> int:
     options = parse(argv)
     if options.target.suffix.lower() != ".ply":
         raise UserError(f"{options.target}: extension {options.target.suffix!r}; allowed: .ply")
-    given = read_cells(options.source)
+    given = solid_of(options.source, options.edge) if options.tetrahedra else read_cells(options.source)
     cells = without_loose_points(without_sides(given, options.skin))
     write_whole_bytes(options.target, ply_bytes(cells))
     dropped = len(given.triangles) - len(cells.triangles)

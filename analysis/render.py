@@ -18,7 +18,7 @@ from matplotlib.patches import Patch
 from . import style
 from .captions import caption
 from .errors import UserError, tells
-from .frames import Frame, frame_of, frame_paths, points_of_bodies, read_scene, scene_at
+from .frames import Frame, frame_of, frame_paths, points_of_bodies, read_scene, scene_at, without_bodies
 from .frames_out.obstacle_mesh import obstacle_mesh
 from .frames_out.sequence import finer_frame
 from .front.arguments import parser_of
@@ -205,18 +205,30 @@ class Look:
     size: tuple[int, int] = (1000, 720)  # pixels of the picture without legend
     subdivide: int = 0  # how often triangles are cut, for a surface that is curved between the vertices
     bare: bool = False  # the picture alone, without title and legend
+    hidden: tuple[str, ...] = ()  # bodies that are not drawn
+
+
+def _points_drawn(frame: Frame, scene: dict, look: Look) -> np.ndarray:
+    """[n, 3] m: the vertices that the picture has to hold."""
+    points = points_of_bodies(scene, frame.vertices)
+    if not look.hidden:
+        return points
+    shown = without_bodies(frame, scene, look.hidden)
+    used = np.unique(np.concatenate([shown.triangles.ravel(), shown.edges.ravel()]).astype(int))
+    return points[used[used < len(points)]]
 
 
 def _drawn(record: dict, run: Path, step: int, look: Look) -> tuple[np.ndarray, Normalize | None]:
     """[height, width, 3] pixels, and the scale of the colours."""
     frame = frame_of(record, run, step)
     scene = scene_at(read_scene(record, run), frame)
-    focus = np.concatenate([points_of_bodies(scene, frame.vertices), _round_obstacles(scene)])
+    focus = np.concatenate([_points_drawn(frame, scene, look), _round_obstacles(scene)])
     camera = camera_of(focus, scene["planar"], look.view, look.size)
     reach = float(np.linalg.norm(focus - camera.target, axis=1).max())
     if look.subdivide:
         start = frame_of(record, run, min(frame_paths(record, run)))
         frame = finer_frame(start, frame, len(scene["bodies"]), look.subdivide)
+    frame = without_bodies(frame, scene, look.hidden)
     radii = _rod_radii(record, scene, frame)
     surfaces, scale = _assemble(frame, scene, look.color, reach, radii, look.subdivide)
     return picture(surfaces, camera, look.size, scene["planar"], camera.target, reach), scale
@@ -252,7 +264,8 @@ def _shown(look: Look) -> str:
         if look.subdivide
         else "sides of triangles as thin lines"
     )
-    return f"Shown: {colored}; analytic obstacles grey, at their true size; {surface}."
+    hidden = f"; not drawn: {', '.join(look.hidden)}" if look.hidden else ""
+    return f"Shown: {colored}; analytic obstacles grey, at their true size; {surface}{hidden}."
 
 
 def render(
@@ -327,9 +340,14 @@ def main(arguments: list[str]) -> int:
         " its vertices and smooth at rods; gaps are judged without",
     )
     parser.add_argument("--bare", action="store_true", help="the picture alone, without title and legend")
+    parser.add_argument(
+        "--hide", nargs="+", default=(), metavar="BODY", help="bodies that are not drawn, such as a container"
+    )
     given = parser.parse_args(arguments)
     if min(given.size) < 16 or max(given.size) > 8000:
         raise UserError("--size: from 16 to 8000 pixels")
-    look = Look(given.color, tuple(given.view), tuple(given.size), given.subdivide, given.bare)
+    look = Look(
+        given.color, tuple(given.view), tuple(given.size), given.subdivide, given.bare, tuple(given.hide)
+    )
     print(render(given.run, given.step, given.out, look))
     return 0

@@ -24,7 +24,6 @@ from .runs import RUNS, Done, run_scene
 
 PAGE, PICTURE = ROOT / "results" / "CATALOGUE.md", ROOT / "docs" / "catalogue.png"
 STILLS = "log"  # the formulation of the picture
-VIEW = (-60.0, 22.0)  # degrees, of a scene that has none of its own
 
 
 def _arguments(argv: list[str]) -> argparse.Namespace:
@@ -78,7 +77,7 @@ def _draw(runs: Path, scenes: dict[str, dict]) -> None:
         has = any(row["formulation"] == STILLS for row in scenes.get(entry.name, {"rows": []})["rows"])
         if has and not entry.is_rejected:
             (done,) = run_scene(entry, [STILLS], runs)
-            found[entry.name] = done.folder, tuple(entry.data.get("view_deg", VIEW))
+            found[entry.name] = done.folder, sheet.look_of(entry.data)
     print(sheet.contact_sheet(found, PICTURE))
 
 

@@ -10,8 +10,9 @@ from fnmatch import fnmatchcase
 from pathlib import Path
 
 from .. import fields
+from ..catalogue.entry import read_entry, write_config
 from ..errors import UserError
-from ..json_file import read_of_schema
+from ..json_file import read_object, read_of_schema
 from ..places import ROOT
 from ..spec_file import read_spec
 
@@ -24,6 +25,7 @@ ONE = "-"  # the case of a test without axes
 BESIDE = ("not_valid", "refused", "crash")
 OUTCOMES = tuple(fields.schema("run")["$defs"]["Status"]["properties"]["outcome"]["enum"]) + BESIDE
 NEVER_NAMED = ("penetration", "unproven", "oom", "timeout", "crash", "not_valid", "refused", "ok")
+CATALOGUE = "barrierbench.catalogue/1"
 NAMED = "named"  # in an expectation: any failure but these
 
 
@@ -63,6 +65,17 @@ class Test:
     @property
     def id(self) -> str:
         return self.data["id"]
+
+    def write_base(self, folder: Path) -> Path:
+        """The config that its cases change: a file, or the mini scene of the catalogue that `base` names,
+        which is written into `folder`.
+        """
+        base = (self.path.parent / self.data["base"]).resolve()
+        if read_object(base).get("schema") != CATALOGUE:
+            return base
+        file = folder / "base.json"
+        write_config(read_entry(base.stem, base.parent), file)
+        return file
 
     @property
     def contacts(self) -> bool:

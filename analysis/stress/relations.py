@@ -52,7 +52,7 @@ def check(test: Test, entry: dict, k: int) -> None:
     for group in entry.get("groups", []):
         if missing := [label for label in group if label not in labels]:
             raise UserError(f"{place}/groups: {missing[0]!r} is no case; cases: {', '.join(labels)}")
-        if len(group) < 2:
+        if len(group) < 2 and kind != "bound":
             raise UserError(f"{place}/groups: two cases at least")
     if kind != "bound" and not entry.get("groups"):
         raise UserError(f"{place}/groups: needed")

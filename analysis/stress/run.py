@@ -51,6 +51,8 @@ class Row:
     gap_end_rel: float | None = None
     load_end_N: float | None = None
     max_stretch: float | None = None
+    kinetic_end_J: float | None = None
+    gravity_work_J: float | None = None  # from the end of the first step to that of the last
     state_hash: str = ""
     expected: tuple = ()
     reason: str = ""
@@ -67,6 +69,8 @@ METRICS = (
     "gap_end_rel",
     "load_end_N",
     "max_stretch",
+    "kinetic_end_J",
+    "gravity_work_J",
     "state_hash",
 )
 
@@ -96,8 +100,8 @@ def known(need: dict, schema: dict) -> bool:
     return allowed is None or need["value"] in allowed
 
 
-def spec_of(test: Test, formulation: Formulation, case: Case) -> dict:
-    """The sweep of this one case."""
+def spec_of(test: Test, formulation: Formulation, case: Case, folder: Path) -> dict:
+    """The sweep of this one case, which lies in `folder`."""
     settings = {
         **formulation.set,
         **ALWAYS,
@@ -108,7 +112,7 @@ def spec_of(test: Test, formulation: Formulation, case: Case) -> dict:
     return {
         "schema": "barrierbench.sweep/1",
         "name": f"stress {test.id}",
-        "base": str((test.path.parent / test.data["base"]).resolve()),
+        "base": str(test.write_base(folder)),
         "axes": [
             {"cases": [{"label": f"{formulation.label} {case.label}".replace("/", " per "), "set": settings}]}
         ],
@@ -121,6 +125,11 @@ def _folder(text: str) -> str:
 
 def _number(value):
     return value if isinstance(value, (int, float)) and not isinstance(value, bool) else None
+
+
+def _fall(steps: list[dict]) -> float | None:
+    ends = [_number(step.get("gravity_J")) for step in (steps[:1] + steps[-1:])]
+    return None if not ends or None in ends else ends[0] - ends[1]
 
 
 def row_of(record: dict, test: str, case: str, formulation: str) -> Row:
@@ -146,6 +155,8 @@ def row_of(record: dict, test: str, case: str, formulation: str) -> Row:
         gap_end_rel=_number(last.get("gap_min_rel")),
         load_end_N=_number(last.get("contact_load_sum_N")),
         max_stretch=_number(summary["max_stretch"]),
+        kinetic_end_J=_number(last.get("kinetic_J")),
+        gravity_work_J=_fall(steps),
         state_hash=summary["state_hash"],
     )
 
@@ -166,7 +177,7 @@ def run_case(test: Test, formulation: Formulation, case: Case, folder: Path, lim
     """One run, or its record if it is there. Raises UserError when the test itself is wrong."""
     place = folder / test.id / _folder(formulation.label) / _folder(case.label)
     spec = place / "spec.json"
-    write_whole(spec, json.dumps(spec_of(test, formulation, case), indent=1) + "\n")
+    write_whole(spec, json.dumps(spec_of(test, formulation, case, place), indent=1) + "\n")
 
     def blank(outcome, detail):
         return Row(test.id, case.label, formulation.label, outcome, detail)
