@@ -107,9 +107,9 @@ def packed_library() -> str:
     return _packed(library()[0].encode())
 
 
-def page(films: list[Film], colour: str, notes: list[str], packed: str = "") -> str:
-    """The HTML of one film, or of two side by side. notes: sentences that the page shows. packed: what stands
-    in the place of the library, for a page that has it already.
+def page(films: list[Film], colour: str, notes: list[str], shared_library: str = "") -> str:
+    """The HTML of one film, or of two side by side. notes: sentences that the page shows. shared_library:
+    what stands in the place of the library, for a page that has it already.
     """
     packed = [_film_data(film) for film in films]
     low, high = box(films)
@@ -140,7 +140,7 @@ def page(films: list[Film], colour: str, notes: list[str], packed: str = "") -> 
         "licences": licences.replace("&", "&amp;").replace("<", "&lt;"),
         "words": _for_script(json.dumps(words, allow_nan=False)),
         "films": data,
-        "library": packed or packed_library(),
+        "library": shared_library or packed_library(),
         "scripts": "\n".join((HERE / name).read_text() for name in SCRIPTS),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda slot: values[slot[1]], text)

@@ -58,7 +58,7 @@ def _player(runs: tuple[Entry, ...]) -> Player:
     kept = sum(len(film.steps) for film in films)
     if left := sum(film.left_out for film in films):
         notes.append(f"{kept} of {kept + left} frames are in this page; ./bench play shows all.")
-    text = page(films, "gap", notes, packed=SLOT)
+    text = page(films, "gap", notes, shared_library=SLOT)
     title = " beside ".join(run.name for run in runs)
     about = f"{counted(kept, 'frame')}. {' '.join(notes)}".strip()
     return Player(title, about, base64.b64encode(zlib.compress(text.encode(), 9)).decode("ascii"))
