@@ -72,12 +72,18 @@ class Beside:
 
     group: str
     contender: str
-    reference: str  # empty: none
+    reference: str  # empty: it is the reference, or has none
     runs: list[Entry]
     factors: dict[str, Factor]  # key of METRICS -> over the comparable pairs that have both numbers
 
     def count(self, verdict: str) -> int:
         return sum(run.row.get("comparability_verdict") == verdict for run in self.runs)
+
+    @property
+    def is_reference(self) -> bool:
+        return not self.reference and any(
+            run.row.get("comparability_reference_run_id") == run.row["run_id"] for run in self.runs
+        )
 
     @property
     def good(self) -> int:

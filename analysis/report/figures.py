@@ -5,12 +5,14 @@ for larger groups one that puts a mark for each run.
 from __future__ import annotations
 
 import base64
+import glob
 import struct
 import tempfile
 import textwrap
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from .. import series
 from ..errors import UserError
 from ..figures import condition, gaps, iterations
 from ..records import Records, load
@@ -33,6 +35,16 @@ class Figure:
     settings: str  # of its runs, machine and day
 
 
+    @property
+    def first(self) -> str:
+        """The first sentence of the caption."""
+        return self.caption.split(". ", 1)[0].rstrip(".") + "."
+
+    @property
+    def rest(self) -> str:
+        return self.caption.partition(". ")[2]
+
+
 @dataclass
 class Figures:
     shown: list[Figure] = field(default_factory=list)
@@ -48,14 +60,26 @@ def figure_of(group: str, png: Path) -> Figure:
     return Figure(group, uri, width, height, " ".join(shown.split()), " ".join(settings.split()))
 
 
+def _pictures(paths: list[Path]) -> list[Path]:
+    """Those that a page shows: eigenvalues stay with ./bench figures."""
+    return [path for path in paths if path.suffix == ".png" and not path.stem.endswith(condition.EIGENVALUES)]
+
+
 def _over_time(records: Records, group: str, out: Path) -> list[Path]:
-    return [path for module in OVER_TIME for path in module.figure(records, group, out) if path.suffix == ".png"]
+    return _pictures([path for module in OVER_TIME for path in module.figure(records, group, out)])
 
 
 def _kept(group: str, where: Path) -> list[Path]:
     """What ./bench figures has drawn of a group, in the order of OVER_TIME."""
-    names = [module.__name__.rsplit(".", 1)[1] for module in OVER_TIME]
-    return [path for name in names for path in sorted(where.glob(f"{name}_{group}*.png"))]
+    names = [f"{module.__name__.rsplit('.', 1)[1]}_{group}" for module in OVER_TIME]
+    return _pictures(
+        [
+            path
+            for name in names
+            for path in sorted(where.glob(f"{glob.escape(name)}*.png"))
+            if path.stem == name or path.stem.startswith(name + series.MORE)
+        ]
+    )
 
 
 def drawn(folder: Folder, kept: Path | None = None) -> Figures:

@@ -52,6 +52,12 @@ def about(folder: Folder) -> str:
     )
 
 
+def title(folder: Folder) -> str:
+    """The path in this repository; of a folder elsewhere the name, since a page is sent to others."""
+    path = tables.shown_path(folder.root)
+    return path.name or path.resolve().name if path.is_absolute() else str(path)
+
+
 def commands(folder: Folder) -> list[str]:
     """Of the whole page: its sweeps, the figures, the page."""
     root = tables.shown_path(folder.root)
@@ -66,7 +72,7 @@ def page(folder: Folder, out: Path, figures: Figures, players: Players) -> str:
     }
     return filled(
         "page.html",
-        title=str(tables.shown_path(folder.root)),
+        title=title(folder),
         about=about(folder),
         sections=[(key, name) for key, name in SECTIONS if there.get(key, True)],
         verdict=verdict.verdict(folder),

@@ -189,14 +189,14 @@ def _factor(factor: Factor | None) -> Cell:
 
 
 def _beside(one: Beside) -> list[Cell]:
-    shown = [metric for metric in METRICS]
+    reference = one.reference or ("is the reference" if one.is_reference else "none in this folder")
     return [
         Cell(one.contender, colour=look(one.runs[0].row["formulation"]).color),
         Cell(one.group),
-        Cell(one.reference or "- (is it, or has none)"),
+        Cell(reference),
         Cell(f"{one.good} of {len(one.runs)}", one.good, "good" if one.good == len(one.runs) else "bad"),
         Cell(str(one.count("comparable")), one.count("comparable")),
-        *(_factor(one.factors.get(metric.key)) for metric in shown),
+        *(_factor(one.factors.get(metric.key)) for metric in METRICS),
     ]
 
 

@@ -12,12 +12,13 @@ from pathlib import Path
 from ..errors import UserError, tells
 from ..front.arguments import parser_of
 from ..whole_file import write_whole
-from . import figures, players
+from . import diff_page, figures, players
+from .diff import diff_of
 from .gather import gathered
 from .page import page
 from .verdict import headline
 
-NAME = "report.html"
+NAME, NAME_OF_TWO = "report.html", "report_against_{}.html"
 
 
 def write_page(out: Path, text: str) -> None:
@@ -39,6 +40,13 @@ def report(folder: Path, out: Path, drawn: Path | None = None, most_players: int
     text = page(found, out, figures.drawn(found, drawn), players.made(found, most_players))
     write_page(out, text)
     return f"{headline(found).text}\n{out} ({out.stat().st_size / 1e6:.1f} MB)"
+
+
+def report_of_two(a: Path, b: Path, out: Path) -> str:
+    """The same of what differs between two folders. Errors: UserError, RecordError."""
+    diff = diff_of(gathered(a), gathered(b))
+    write_page(out, diff_page.page(diff, out))
+    return f"{diff_page.verdict(diff)[0].text}\n{out} ({out.stat().st_size / 1e6:.1f} MB)"
 
 
 def _count(text: str) -> int:
@@ -67,5 +75,9 @@ def main(argv: list[str]) -> int:
         help=f"scenes in motion at most; each takes up to 3 MB (default: {players.MOST})",
     )
     args = parser.parse_args(argv)
-    print(report(args.folder, args.out or args.folder / NAME, most_players=args.players))
+    if args.other is None:
+        print(report(args.folder, args.out or args.folder / NAME, most_players=args.players))
+        return 0
+    out = args.out or args.other / NAME_OF_TWO.format(args.folder.resolve().name)
+    print(report_of_two(args.folder, args.other, out))
     return 0

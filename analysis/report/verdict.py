@@ -77,7 +77,8 @@ def crossings(folder: Folder) -> list[Sentence]:
 
 
 def comparability(folder: Folder) -> list[Sentence]:
-    words = Counter(run.row.get("comparability_verdict") for run in folder.entries)
+    others = [run for run in folder.entries if folder.reference_of(run) is not run]
+    words = Counter(run.row.get("comparability_verdict") for run in others)
     judged = words["comparable"] + words["not_comparable"]
     if not judged:
         return [
@@ -87,7 +88,7 @@ def comparability(folder: Folder) -> list[Sentence]:
             )
         ]
     ratios = {
-        run.row["comparability_max_ratio"] for run in folder.entries if run.row.get("comparability_max_ratio")
+        run.row["comparability_max_ratio"] for run in others if run.row.get("comparability_max_ratio")
     }
     within = listed([f"{ratio:g}" for ratio in sorted(ratios)])
     text = (
@@ -96,10 +97,9 @@ def comparability(folder: Folder) -> list[Sentence]:
         f" a factor {within} of the reference's)"
     )
     if words["not_comparable"]:
-        text += (
-            f"; {words['not_comparable']} {_are(words['not_comparable'])} not, and no factor is given for them"
-        )
-    rules = [rule for run in folder.entries if (rule := earlier_rule(run.row))]
+        apart = [run.name for run in others if run.row.get("comparability_verdict") == "not_comparable"]
+        text += f"; {len(apart)} {_are(len(apart))} not, and no factor is given for them: {listed(apart)}"
+    rules = [rule for run in others if (rule := earlier_rule(run.row))]
     if rules:
         text += f"; {len(rules)} were judged by the rule before {rules[0]['since']}"
     return [Sentence(f"{text}.")]
@@ -166,13 +166,18 @@ def _about_scenes(folder: Folder) -> list[str]:
         scenes.setdefault(run.row["scene"], set()).add(run.row.get("scene_vertices"))
     said = []
     if len(scenes) < CLAIM_SCENES:
+        count = "One scene" if len(scenes) == 1 else f"{len(scenes)} scenes"
         said.append(
-            f"{counted(len(scenes), 'scene').capitalize()} ({listed(list(scenes))}): nothing is said about"
-            f" others; a claim of this project needs {CLAIM_SCENES} (./bench claims)."
+            f"{count} ({listed(list(scenes))}): nothing is said about others; a claim of this project needs"
+            f" {CLAIM_SCENES} (./bench claims)."
         )
-    single = [f"{name} {sizes.copy().pop()}" for name, sizes in scenes.items() if len(sizes) == 1]
+    single = [
+        f"{name}: {next(iter(sizes))} vertices"
+        for name, sizes in scenes.items()
+        if len(sizes) == 1 and None not in sizes
+    ]
     if single:
-        said.append(f"One mesh of {listed(single)} vertices: nothing is said about finer or coarser ones.")
+        said.append(f"One mesh a scene ({listed(single)}): nothing is said about finer or coarser ones.")
     return said
 
 
