@@ -41,7 +41,7 @@ def test_every_sweep_runs_once_beside_another_and_then_the_figures_and_the_page(
     assert drawn == (tmp_path, None) and page == (tmp_path, tmp_path / "report.html", tmp_path / "figures")
     said = capsys.readouterr()
     *tables, verdict = said.out.split("\n\n")
-    assert sorted(tables) == sorted(f"table of {name}" for name in demo.SWEEPS) and verdict == "the verdict\n"
+    assert sorted(tables) == sorted(f"table of {name}" for name in demo.SWEEPS) and verdict.strip() == "the verdict"
     assert f"open file://{tmp_path}/report.html" in said.err
 
 
