@@ -5,6 +5,7 @@ from __future__ import annotations
 
 import json
 import sys
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -62,15 +63,15 @@ def _plugins(record: dict, folder: Path) -> tuple[tuple[str, str], ...]:
     return tuple((str((folder / plugin["file"]).resolve()), plugin["sha256"]) for plugin in plugins)
 
 
-def load(root: str | Path) -> Records:
-    """Every record below `root`, in the order of their paths.
+def load(root: str | Path, files: Iterable[Path] | None = None) -> Records:
+    """Every record below `root`, or these of them, in the order of their paths.
 
     A record that record_file.py refuses, or whose trace is not the one that it names, is left out:
     `unreadable` and a line on stderr say why. Raises RecordError when no record can be read.
     """
     root = Path(root)
     runs, steps, trace, cond, unreadable = [], [], [], [], []
-    for path in sorted(root.rglob("run.json")):
+    for path in sorted(root.rglob("run.json") if files is None else files):
         try:
             record = read_record(path)
             lines = read_trace(record, path.parent)

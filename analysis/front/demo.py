@@ -1,5 +1,5 @@
-"""Runs the sweeps of the README, as many at a time as there are cores, then makes their figures and their
-table. Records that this program has made are not run again.
+"""Runs the sweeps of the README, as many at a time as there are cores, then makes their figures, their table
+and the page that says what they show. Records that this program has made are not run again.
 
 Exit codes: 0 all is there, 1 a run does not keep what the demonstration promises, else that of the sweep that
 failed first.
@@ -68,4 +68,8 @@ def main(argv: list[str]) -> int:
         raise UserError(f"--jobs: found {args.jobs}; a number from 1 on is needed")
     if code := run_all(args.out, args.jobs):
         return code
-    return importlib.import_module("analysis.figures.demo").make(args.out, None)
+    code = importlib.import_module("analysis.figures.demo").make(args.out, None)
+    report, page = importlib.import_module("analysis.report.verb"), args.out / "report.html"
+    print("\n" + report.report(args.out, page, args.out / "figures"))
+    say(f"open {page.resolve().as_uri()}")
+    return code

@@ -25,10 +25,11 @@ class Verb(NamedTuple):
 
 # fmt: off
 TABLE = (
-    Verb("demo", "run", PROGRAM, "front.demo", "", "setup, build, the demonstration sweep, its figures and its table", "./bench demo"),
+    Verb("demo", "run", PROGRAM, "front.demo", "", "setup, build, the demonstration sweep, its figures, its table and the page that says what they show", "./bench demo"),
     Verb("status", "run", ENVIRONMENT, "sweeps.status", "DIR [--watch]", "where the runs of a sweep are: over, running, dead, stopped or waiting; 0 when all are over", "./bench status results/runs/demo/demo_strip --watch"),
     Verb("collect", "look", ENVIRONMENT, "sweeps.collect", "DIR OUT.csv", "the records of a sweep as one tidy table, units in its column names, and a dictionary of its columns", "./bench collect results/runs/demo/demo_strip strip.csv"),
     Verb("figures", "look", ENVIRONMENT, "figures.verb", "RUNS [OUT]", "figures and table of the records below a folder, or of the file of ./bench steps --out", "./bench figures results/runs/demo"),
+    Verb("report", "look", ENVIRONMENT, "report.verb", "DIR [DIR2]", "one HTML page, which needs no network, of the records below a folder: verdict, failures, comparison, figures, players, every run with its command, methods; of two folders what differs", "./bench report results/runs/demo"),
     Verb("render", "look", ENVIRONMENT, "render", "RUN", "a still (PNG) of one step of a run that kept frames (--set /output/frames_every=1)", "./bench render results/runs/drape --color gap"),
     Verb("play", "look", ENVIRONMENT, "play.verb", "RUN [RUN2]", "one HTML file, which needs no network, that plays a run that kept frames (--set /output/frames_every=1), or two side by side", "./bench play results/runs/drape-log results/runs/drape-cubic --colour gap"),
     Verb("scenes", "look", PROGRAM, "catalogue.scenes", "[NAME...]", "the scenes of the catalogue (configs/catalogue): what each stresses, its size as mini and as in its source; --write makes its config", "./bench scenes twist --write twist.json", without=("--write", "--list")),

@@ -102,12 +102,19 @@ def _for_script(text: str) -> str:
     return text.replace("<", "\\u003c")
 
 
-def page(films: list[Film], colour: str, notes: list[str]) -> str:
-    """The HTML of one film, or of two side by side. notes: sentences that the page shows."""
+def packed_library() -> str:
+    """The library as it stands in a page. Errors: UserError where it is not installed."""
+    return _packed(library()[0].encode())
+
+
+def page(films: list[Film], colour: str, notes: list[str], shared_library: str = "") -> str:
+    """The HTML of one film, or of two side by side. notes: sentences that the page shows. shared_library:
+    what stands in the place of the library, for a page that has it already.
+    """
     packed = [_film_data(film) for film in films]
     low, high = box(films)
     radius = max(float(np.linalg.norm(high - low)) / 2, 1e-6)
-    source, licences = library()
+    licences = library()[1]
     words = {
         "colour": colour,
         "scales": {name: scale(films, name) for name in FIELDS},
@@ -133,7 +140,7 @@ def page(films: list[Film], colour: str, notes: list[str]) -> str:
         "licences": licences.replace("&", "&amp;").replace("<", "&lt;"),
         "words": _for_script(json.dumps(words, allow_nan=False)),
         "films": data,
-        "library": _packed(source.encode()),
+        "library": shared_library or packed_library(),
         "scripts": "\n".join((HERE / name).read_text() for name in SCRIPTS),
     }
     return re.sub(r"\{\{(\w+)\}\}", lambda slot: values[slot[1]], text)

@@ -4,6 +4,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 from ..errors import UserError, tells
@@ -25,17 +26,25 @@ def _film_bytes(sources: list[Source], every: int) -> int:
     return sum(len(kept(source.steps, every)) * source.frame_bytes for source in sources)
 
 
+def every_within(sources: list[Source], fits: Callable[[int], bool]) -> int:
+    """The first of every 1, 2, 3, ... frames whose bytes fit; if none does only the first and the last frame
+    are left.
+    """
+    every, most = 1, max(len(source.steps) for source in sources)
+    while not fits(_film_bytes(sources, every)) and every < most:
+        every += 1
+    return every
+
+
 def chosen_every(sources: list[Source], asked: int | None, limit_mb: float) -> tuple[int, str]:
     """Every how many frames a page keeps, and a sentence where the limit decides. Errors: UserError: not even
     the first and the last frame fit.
     """
     if asked is not None:
         return asked, ""
-    every, limit = 1, 1e6 * limit_mb
-    most = max(len(source.steps) for source in sources)
+    limit = 1e6 * limit_mb
     whole = page_bytes(_film_bytes(sources, 1))
-    while page_bytes(_film_bytes(sources, every)) > limit and every < most:
-        every += 1
+    every = every_within(sources, lambda count: page_bytes(count) <= limit)
     if (least := page_bytes(_film_bytes(sources, every))) > limit:
         raise UserError(
             f"--limit-mb: found {limit_mb:g}; allowed: {least / 1e6:.1f} or more, what the first and the"

@@ -11,6 +11,7 @@ from analysis.figures import demo as figures
 from analysis.front import demo
 from analysis.places import ROOT
 from analysis.readme.numbers import GROUPS
+from analysis.report import verb as report
 
 
 @pytest.fixture
@@ -28,16 +29,20 @@ def calls(monkeypatch):
 
     monkeypatch.setattr(demo, "run_sweep", run_sweep)
     monkeypatch.setattr(figures, "make", lambda runs, out: made.append((runs, out)) or 1)
+    monkeypatch.setattr(report, "report", lambda *words: made.append(words) or "the verdict")
     return made, codes
 
 
-def test_every_sweep_runs_once_beside_another_and_then_the_figures(calls, tmp_path, capsys):
+def test_every_sweep_runs_once_beside_another_and_then_the_figures_and_the_page(calls, tmp_path, capsys):
     made, _ = calls
     assert demo.main(["--out", str(tmp_path), "--jobs", "2"]) == 1  # that of the figures
-    *sweeps, drawn = made
+    *sweeps, drawn, page = made
     assert {(file.stem, out) for file, out, _ in sweeps} == {(name, tmp_path / name) for name in demo.SWEEPS} and len(sweeps) == len(demo.SWEEPS) == 5
-    assert drawn == (tmp_path, None)
-    assert sorted(capsys.readouterr().out.split("\n\n")[:-1]) == sorted(f"table of {name}" for name in demo.SWEEPS)
+    assert drawn == (tmp_path, None) and page == (tmp_path, tmp_path / "report.html", tmp_path / "figures")
+    said = capsys.readouterr()
+    *tables, verdict = said.out.split("\n\n")
+    assert sorted(tables) == sorted(f"table of {name}" for name in demo.SWEEPS) and verdict.strip() == "the verdict"
+    assert f"open file://{tmp_path}/report.html" in said.err
 
 
 def test_a_sweep_that_fails_is_said_and_nothing_is_drawn(calls, tmp_path, capsys):

@@ -1,0 +1,284 @@
+"""The tables of a report as rows of cells; page.html draws them, page.js sorts and filters them."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from dataclasses import dataclass, field
+from pathlib import Path
+from urllib.parse import quote
+
+from ..places import ROOT
+from ..style import look
+from .comparison import METRICS, RAW, SCALED, Beside, Factor, compared
+from .gather import Entry, Folder
+from .words import COMPARED, meaning, number
+
+MOST_POINTERS = 6  # swept settings that get a column
+
+
+@dataclass(frozen=True)
+class Column:
+    heading: str
+    meaning: str = ""
+    is_number: bool = False
+    filtered: bool = False  # has a choice of its values above the table
+
+
+@dataclass(frozen=True)
+class Cell:
+    """sort: the number that it is sorted by; without one its text is."""
+
+    text: str
+    sort: float | None = None
+    tone: str = ""  # good, bad
+    href: str = ""
+    colour: str = ""  # of a formulation
+    command: str = ""  # is shown with a button that copies it
+    copies: str = ""  # what the button is called
+
+
+@dataclass(frozen=True)
+class Table:
+    """The first cell of a row is its head."""
+
+    key: str
+    caption: str
+    columns: list[Column]
+    rows: list[list[Cell]] = field(default_factory=list)
+    is_filtered: bool = False
+
+    def choices(self, index: int) -> list[str]:
+        return sorted({row[index].text for row in self.rows})
+
+
+def numeric(value: float | None, digits: int = 3) -> Cell:
+    return Cell(number(value, digits), None if value is None else float(value))
+
+
+def shown_path(path: Path) -> Path:
+    """As ./bench takes it: from the root of the repository where it lies in it."""
+    whole = path.resolve()
+    return whole.relative_to(ROOT) if whole.is_relative_to(ROOT) else path
+
+
+def command_of(entry: Entry) -> str:
+    """The line that makes the record again, in a folder of its own, and compares the two."""
+    return f"./bench run {shlex.quote(str(shown_path(entry.path)))}"
+
+
+def _command(entry: Entry) -> Cell:
+    return Cell("", command=command_of(entry), copies=f"Copy the command of {entry.run}")
+
+
+def link_to(path: Path, page: Path) -> str:
+    """From the page to a file, as long as both stay where they are."""
+    return quote(Path(os.path.relpath(path.resolve(), page.resolve().parent)).as_posix())
+
+
+def _record(entry: Entry, page: Path) -> Cell:
+    return Cell(Path(entry.run).name, href=link_to(entry.path, page))
+
+
+def _head(entry: Entry) -> Cell:
+    return Cell(entry.row["series"], colour=look(entry.row["formulation"]).color)
+
+
+def outcome(entry: Entry) -> Cell:
+    word = entry.row["outcome"]
+    if word == "ok" and not entry.row["valid"]:
+        return Cell("ok, not valid", tone="bad")
+    return Cell(word, tone="good" if word == "ok" else "bad")
+
+
+RECORD = Column("record", "folder of its run.json; the link works while the page lies beside the records")
+COMMAND = Column("command", "makes the record again in a folder of its own and says whether it is the same")
+
+
+def _why(entry: Entry) -> str:
+    if entry.row["outcome"] == "ok":
+        return f"failed checks of its validity: {', '.join(entry.failed_checks) or 'not named'}"
+    return meaning(entry.row["outcome"])
+
+
+def _how_far(entry: Entry) -> Cell:
+    steps = entry.row.get("steps")
+    return Cell("-") if steps is None else Cell(f"{steps} of {entry.settings.get('/time/steps', '?')}", steps)
+
+
+def failures(folder: Folder, page: Path) -> Table:
+    """Runs that do not count, runs without a record, and files that cannot be read."""
+    table = Table(
+        "failures",
+        "What did not end ok, is not valid, has no record or cannot be read",
+        [
+            Column("run"),
+            Column("group", "its sweep, or its scene", filtered=True),
+            Column("outcome", "the one word that a run ends with", filtered=True),
+            Column("what it means"),
+            Column("what the record says"),
+            Column("steps", "made, of those that were asked for", is_number=True),
+            RECORD,
+            COMMAND,
+        ],
+    )
+    for entry in folder.entries:
+        if not entry.good:
+            said = Cell(entry.row.get("detail") or "-")
+            why = Cell(_why(entry))
+            table.rows.append(
+                [
+                    _head(entry),
+                    Cell(entry.group),
+                    outcome(entry),
+                    why,
+                    said,
+                    _how_far(entry),
+                    _record(entry, page),
+                    _command(entry),
+                ]
+            )
+    none = Cell("-")
+    for one in folder.absent:
+        why = Cell(f"{one.state}; ./bench status says more, and ./bench sweep goes on with it")
+        lead = [Cell(one.label), Cell(one.group), Cell("no record", tone="bad"), why]
+        table.rows.append([*lead, Cell(one.detail or "-"), none, none, none])
+    for fault in folder.unreadable:
+        lead = [Cell("a file"), none, Cell("unreadable", tone="bad"), Cell("it is in no other number of this page")]
+        table.rows.append([*lead, Cell(fault), none, none, none])
+    return table
+
+
+def not_compared(folder: Folder, page: Path) -> Table:
+    """Runs that count, and whose numbers must not be held against their reference."""
+    table = Table(
+        "apart",
+        "Ended ok, and may not be compared with the reference",
+        [
+            Column("run"),
+            Column("group", filtered=True),
+            Column("why", "the sentence of the record"),
+            Column("pair", "of bodies whose gaps are farthest apart"),
+            Column("factor", "gap over that of the reference", is_number=True),
+            RECORD,
+            COMMAND,
+        ],
+    )
+    for entry in folder.entries:
+        if entry.good and entry.row.get("comparability_verdict") == "not_comparable":
+            row = entry.row
+            table.rows.append(
+                [
+                    _head(entry),
+                    Cell(entry.group),
+                    Cell(row.get("comparability_reason") or "-"),
+                    Cell(row.get("comparability_pair") or "-"),
+                    numeric(row.get("comparability_pair_ratio")),
+                    _record(entry, page),
+                    _command(entry),
+                ]
+            )
+    return table
+
+
+def _factor(factor: Factor | None) -> Cell:
+    if factor is None:
+        return Cell("-")
+    spread = f" ({number(factor.low, 2)} to {number(factor.high, 2)})" if factor.n > 1 else ""
+    return Cell(number(factor.mean, 2) + spread, factor.mean)
+
+
+def _beside(one: Beside) -> list[Cell]:
+    reference = one.reference or ("is the reference" if one.is_reference else "none in this folder")
+    return [
+        Cell(one.contender, colour=look(one.runs[0].row["formulation"]).color),
+        Cell(one.group),
+        Cell(reference),
+        Cell(f"{one.good} of {len(one.runs)}", one.good, "good" if one.good == len(one.runs) else "bad"),
+        Cell(str(one.count("comparable")), one.count("comparable")),
+        *(_factor(one.factors.get(metric.key)) for metric in METRICS),
+    ]
+
+
+def comparison(folder: Folder) -> Table:
+    return Table(
+        "comparison",
+        "Numbers over those of the reference: geometric mean over the comparable pairs, smallest and largest of"
+        " them; above 1 is more",
+        [
+            Column("formulation"),
+            Column("group", filtered=True),
+            Column("reference"),
+            Column("ok", "ended ok and valid, of all runs", is_number=True),
+            Column("comparable", "runs that the program calls comparable", is_number=True),
+            *(Column(f"{metric.heading}, x", metric.meaning, is_number=True) for metric in METRICS),
+        ],
+        [_beside(one) for one in compared(folder)],
+    )
+
+
+def pointers(entries: list[Entry]) -> list[str]:
+    """Swept settings with more than one value, the first few."""
+    names = sorted({name for entry in entries for name in entry.row if name.startswith("/")})
+    varied = [name for name in names if len({str(entry.row.get(name)) for entry in entries}) > 1]
+    return varied[:MOST_POINTERS]
+
+
+def _setting(value) -> Cell:
+    if isinstance(value, (int, float)) and not isinstance(value, bool):
+        return Cell(f"{value:g}", float(value))
+    return Cell("-" if value is None else str(value))
+
+
+def runs(folder: Folder, page: Path) -> Table:
+    swept = pointers(folder.entries)
+    table = Table(
+        "runs",
+        "Every run, failures included",
+        [
+            Column("run"),
+            Column("group", "its sweep, or its scene", filtered=True),
+            Column("formulation", filtered=True),
+            Column("outcome", "the one word that a run ends with", filtered=True),
+            Column("compared", "with the reference that its record names", filtered=True),
+            Column("cond raw", METRICS[0].meaning, is_number=True),
+            Column("largest", "largest of the same", is_number=True),
+            Column("cond bJ", METRICS[1].meaning, is_number=True),
+            Column("Newton", "iterations over all steps", is_number=True),
+            Column("PCG", METRICS[3].meaning, is_number=True),
+            Column("gap / d_hat", "smallest gap at the end of a converged step", is_number=True),
+            Column("crossings", "and motions through each other, by the audit; -: not audited", is_number=True),
+            Column("time s", METRICS[4].meaning, is_number=True),
+            Column("unknowns", is_number=True),
+            *(Column(name, "swept setting") for name in swept),
+            RECORD,
+            COMMAND,
+        ],
+        is_filtered=True,
+    )
+    for entry in folder.entries:
+        row = entry.row
+        faults = entry.faults
+        word = row.get("comparability_verdict") or ""
+        table.rows.append(
+            [
+                _head(entry),
+                Cell(entry.group),
+                Cell(row["formulation"]),
+                outcome(entry),
+                Cell(COMPARED.get(word, word or "-")),
+                numeric(entry.cond(RAW)),
+                numeric(entry.cond(RAW, "max")),
+                numeric(entry.cond(SCALED)),
+                numeric(row.get("newton_iterations"), 6),
+                numeric(row.get("probe_pcg_median"), 4),
+                numeric(row.get("gap_min_rel_min")),
+                Cell("-" if faults is None else str(faults), faults, "bad" if faults else ""),
+                numeric(entry.wall_s),
+                numeric(row.get("scene_free_dofs"), 9),
+                *(_setting(row.get(name)) for name in swept),
+                _record(entry, page),
+                _command(entry),
+            ]
+        )
+    return table
