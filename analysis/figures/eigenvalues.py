@@ -23,9 +23,9 @@ LOOKS = (
     ("#E69F00", (0, (3, 1, 1, 1))),
 )
 SHOWN = (
-    "Newton matrices of results/matrices: the share of the eigenvalues that are at most so large. A step from"
-    " 0 that is far to the left of the rest is a small cluster, which conjugate gradients take a few iterations"
-    " for; a slope over decades is what costs them. {below}"
+    "Newton matrices of results/matrices: the share of the eigenvalues that are at most so large. Conjugate"
+    " gradients take about one iteration for an eigenvalue that stands alone, at either end; many eigenvalues"
+    " spread over decades cost them more. {below}"
 )
 
 

@@ -43,7 +43,7 @@ def trials(runs: pd.DataFrame, cost: str) -> pd.DataFrame:
         {
             "formulation": runs["formulation"],
             "problem": problems,
-            "cost": pd.to_numeric(runs[cost]),
+            "cost": pd.to_numeric(runs[cost]).astype(float),
             "solved": solved,
             "apart": solved & (runs["comparability_verdict"] == "not_comparable"),
             "outcome": runs["outcome"],

@@ -25,10 +25,12 @@ LABELS = {
     "log10_cond full/block_jacobi median": "cond, block Jacobi, median",
     "probe_pcg_median": "PCG iterations, median",
 }
-MARKERS = "os^Dv*pP"
+DASHES = ("-", "--", ":", "-.")
+APART = 0.1  # between lines of two cases, in distances of commits
+LEAST = 1.1  # an axis reaches at least so far from 1
 SHOWN = (
     "What ./bench accept kept in results/baselines, commit after commit, over the first value of each case;"
-    " colour: formulation, marker: scene. A line begins with the commit that brought its case. Bars: the"
+    " colour and marker: formulation, dash: scene. A line begins with the commit that brought its case. Bars: the"
     " envelope that the gate holds it to."
 )
 
@@ -57,20 +59,24 @@ def relative(found: pd.DataFrame, metric: str) -> pd.DataFrame:
 
 
 def draw(axis, found: pd.DataFrame) -> None:
-    scenes = list(dict.fromkeys(case.rpartition("-")[0] for case in found["case"]))
-    for case, mine in found.groupby("case", sort=False):
-        look = style.look(formulation_of(case))
+    """Cases a little apart, so that their envelopes do not lie on one another."""
+    cases = list(dict.fromkeys(found["case"]))
+    scenes = list(dict.fromkeys(case.rpartition("-")[0] for case in cases))
+    for k, case in enumerate(cases):
+        mine, look = found[found["case"] == case], style.look(formulation_of(case))
         axis.errorbar(
-            mine["at"],
+            mine["at"] + APART * (k - (len(cases) - 1) / 2),
             mine["value"],
             yerr=np.clip([mine["value"] - mine["lower"], mine["upper"] - mine["value"]], 0, None),
             color=look.color,
-            linestyle=look.dash,
-            marker=MARKERS[scenes.index(case.rpartition("-")[0]) % len(MARKERS)],
+            marker=look.marker,
+            linestyle=DASHES[scenes.index(case.rpartition("-")[0]) % len(DASHES)],
             linewidth=0.8,
             elinewidth=0.5,
             label=case,
         )
+    low, high = min(found["lower"].min(), 1 / LEAST), max(found["upper"].max(), LEAST)
+    axis.set_ylim(low - 0.05 * (high - low), high + 0.05 * (high - low))
 
 
 def figure(subject: pd.DataFrame, drawing: Drawing) -> list[Path]:
@@ -90,7 +96,6 @@ def figure(subject: pd.DataFrame, drawing: Drawing) -> list[Path]:
             axis.set_ylabel("over the first")
         if axis.get_subplotspec().is_last_row():
             axis.set_xlabel("commit, day")
-        style.keep_span(axis)
     style.letter_panels(axes)
     handles, labels = max((axis.get_legend_handles_labels() for axis in axes), key=lambda h: len(h[1]))
     fig.legend(handles, labels, loc="outside lower center", ncols=4, frameon=False)
