@@ -218,6 +218,22 @@ def draw_failure(axis, x: float, y: float, color: str) -> None:
     )
 
 
+def failures_above(axis, places, color: str) -> None:
+    """Crosses at the upper edge: runs that failed and have no number, at their places on the other axis."""
+    for x in places:
+        axis.plot(
+            [x],
+            [0.97],
+            transform=axis.get_xaxis_transform(),
+            linestyle="none",
+            marker="x",
+            markersize=5,
+            markeredgewidth=1.2,
+            color=color,
+            gid=FAILURE,
+        )
+
+
 def marker_sentence(runs: pd.DataFrame) -> str:
     """What the markers of a figure mean, for its caption."""
     rule = hollow_rule(runs).replace("\n", " ").replace(r"$\hat{d}$", "d_hat")

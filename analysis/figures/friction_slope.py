@@ -13,15 +13,14 @@ import pandas as pd
 from .. import style
 from ..captions import Facts
 from ..run import Run
-from . import slopes
 from .drawing import Drawing, common, formulations, outcomes
 from .resolution import weight
 from .subjects import SweepRecords
 
 SHOWN = (
-    "A patch that is let go on a slope of {angle:.4g} degrees. Left: its speed at the end (from its kinetic"
-    " energy) over the time that has gone, which is the acceleration of a patch that slides throughout; line:"
-    " g (sin - mu cos), and 0 from tan on. Right: the speed at the end of those that should stick, which creep"
+    "A patch that is let go on a slope of {angle:.4g} degrees. Left: its mean acceleration over the second"
+    " half of the run (from its kinetic energy), since the first friction force is of the gaps at the start;"
+    " line: g (sin - mu cos), and 0 from tan on. Right: the speed at the end of those that should stick, which creep"
     " because friction is smoothed below eps_v (grey line). Dotted: tan of the slope. Crosses at the upper"
     " edge: runs that failed. Largest distance from the line on the left: {worst}."
 )
@@ -53,45 +52,49 @@ def table(runs: list[tuple[pd.Series, Run]]) -> pd.DataFrame:
     rows = []
     for row, run in runs:
         slope, mu = slope_of(run.config), float(run.config["friction"]["mu"])
-        speed = time = np.nan
-        if row["outcome"] == "ok" and len(run.steps):
-            last = run.steps.iloc[-1]
+        speed = acceleration = np.nan
+        if row["outcome"] == "ok" and len(run.steps) >= 2:
+            middle, last = run.steps.iloc[len(run.steps) // 2 - 1], run.steps.iloc[-1]
             mass = weight(run.config) / slope.gravity
-            speed, time = math.sqrt(2 * last["kinetic_J"] / mass), float(last["t_s"])
+            before, speed = (math.sqrt(2 * step["kinetic_J"] / mass) for step in (middle, last))
+            acceleration = (speed - before) / (last["t_s"] - middle["t_s"])
         rows.append(
             {"formulation": row["formulation"], "outcome": row["outcome"], "mu": mu, "tan": slope.tan}
-            | {"speed_m_per_s": speed, "acceleration_m_per_s2": speed / time}
+            | {"speed_m_per_s": speed, "acceleration_m_per_s2": acceleration}
             | {"closed_form_m_per_s2": float(slope.acceleration(mu)), "eps_v_m_per_s": slope.eps_v}
         )
     return pd.DataFrame(rows)
+
+
+def _draw_each(axis, found: pd.DataFrame, column: str, lines: bool) -> None:
+    """Hollow markers, larger for each formulation, so that equal numbers are seen round one another."""
+    for k, name in enumerate(formulations(found)):
+        mine, look = found[found["formulation"] == name].sort_values("mu"), style.look(name)
+        good = mine.dropna(subset=column)
+        axis.plot(
+            good["mu"],
+            good[column],
+            linestyle=look.dash if lines else "none",
+            marker=look.marker,
+            markersize=2.5 + 2.2 * k,
+            color=look.color,
+            markerfacecolor="none",
+            label=name,
+        )
+        style.failures_above(axis, mine.loc[mine["outcome"] != "ok", "mu"], look.color)
 
 
 def draw_sliding(axis, found: pd.DataFrame, slope: Slope) -> None:
     across = np.linspace(found["mu"].min(), found["mu"].max(), 200)
     axis.plot(across, slope.acceleration(across), color="#666666", linewidth=0.8, gid=style.REFERENCE)
     axis.axvline(slope.tan, color="#666666", linestyle=":", linewidth=0.8, gid=style.REFERENCE)
-    for name in formulations(found):
-        mine = found[found["formulation"] == name].sort_values("mu")
-        look, good = style.look(name), mine.dropna(subset="acceleration_m_per_s2")
-        axis.plot(
-            good["mu"],
-            good["acceleration_m_per_s2"],
-            linestyle="none",
-            marker=look.marker,
-            color=look.color,
-            markerfacecolor="none",
-            label=name,
-        )
-        slopes.draw(axis, [], [], name, mine.loc[mine["outcome"] != "ok", "mu"])
-        axis.lines[-1].set_label("")
+    _draw_each(axis, found, "acceleration_m_per_s2", lines=False)
 
 
 def draw_creep(axis, found: pd.DataFrame, slope: Slope) -> None:
     axis.set_yscale("log")
-    for name in formulations(found):
-        mine = found[(found["formulation"] == name) & (found["mu"] > slope.tan)].sort_values("mu")
-        good = mine[mine["speed_m_per_s"] > 0]
-        slopes.draw(axis, good["mu"], good["speed_m_per_s"], name, mine.loc[mine["outcome"] != "ok", "mu"])
+    sticking = found[(found["mu"] > slope.tan) & ~(found["speed_m_per_s"] <= 0)]
+    _draw_each(axis, sticking, "speed_m_per_s", lines=True)
     axis.axhline(slope.eps_v, color="#666666", linewidth=0.8, gid=style.REFERENCE)
 
 
@@ -116,7 +119,7 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     words = f"{off.max():.2g} m/s^2, {worst['formulation']} at mu {worst['mu']:g}"
     facts = Facts(
         f"{outcomes(runs)}; {found['mu'].nunique()} coefficients",
-        "of one run each",
+        "of one run each; acceleration: change of speed over the second half of the run over its time",
         "closed form of a rigid block",
         common(
             runs,

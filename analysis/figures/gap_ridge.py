@@ -16,7 +16,7 @@ from .subjects import SweepRecords
 
 BINS = 8  # a decade
 LEAST = -8.0  # log10 of the smallest gap / d_hat that has a bin of its own
-HEIGHT = 1.6  # of the highest ridge, in distances of ridges
+HEIGHT = 0.92  # of the highest ridge, in distances of ridges
 SHOWN = (
     "Share of the vertices in contact whose smallest gap is there, in {bins} bins a decade of gap / d_hat (1:"
     " contact begins): a ridge a frame, at its time, all of one scale; vertical marks: medians. A frame"
@@ -65,19 +65,16 @@ def table(subject: SweepRecords) -> tuple[pd.DataFrame, float]:
 
 
 def draw(axis, found: pd.DataFrame, spacing: float, highest: float) -> None:
-    """The ridges of one run; the late frames in front of the earlier ones above them."""
+    """The ridges of one run. spacing: of two of them in time; highest: the share that is as high as that."""
     look = style.look(found["formulation"].iloc[0])
-    for k, (t, ridge) in enumerate(sorted(found.groupby("t_s"), reverse=True)):
+    for t, ridge in found.groupby("t_s", sort=True):
         height = ridge["share"].to_numpy() / highest * HEIGHT * spacing
-        across = 10 ** ridge["log10_gap_rel"].to_numpy()
-        axis.fill_between(
-            across, t, t + height, step="mid", color=look.color, alpha=0.45, linewidth=0, zorder=k
-        )
-        axis.plot(across, t + height, drawstyle="steps-mid", color=look.color, linewidth=0.7, zorder=k)
+        first = ridge["log10_gap_rel"].iloc[0] - 0.5 / BINS
+        edges = 10 ** (first + np.arange(len(ridge) + 1) / BINS)
+        axis.stairs(t + height, edges, baseline=t, fill=True, color=look.color, alpha=0.45)
+        axis.stairs(t + height, edges, baseline=t, color=look.color, linewidth=0.7)
         if ridge["in_contact"].iloc[0]:
-            axis.plot(
-                [ridge["median"].iloc[0]] * 2, [t, t + 0.35 * spacing], color="black", linewidth=1, zorder=k
-            )
+            axis.plot([ridge["median"].iloc[0]] * 2, [t, t + 0.35 * spacing], color="black", linewidth=1)
     axis.set_xscale("log")
 
 
@@ -100,11 +97,12 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
         mine = numbers[numbers["formulation"] == name]
         draw(axis, mine, spacing, numbers["share"].max())
         outcome = mine["outcome"].iloc[0]
-        words = name.replace("_consistent", "\nconsistent")
-        axis.set_title(words if outcome == "ok" else f"{words}\n{outcome}", fontsize=7)
+        words = name.replace("_", "\n")
+        axis.set_title(words if outcome == "ok" else f"{words}\n{outcome}", fontsize=6)
         axis.set_xlabel(r"gap / $\hat d$")
         axis.set_xlim(10**low, 1)
     axes[0, 0].set_ylabel("time (s)")
+    style.letter_panels(axes)
     runs = subject.records.runs
     facts = Facts(
         f"{numbers.groupby(['formulation', 'step']).ngroups} frames of {outcomes(runs)}",

@@ -59,6 +59,7 @@ def _set_axes(axes) -> None:
     axes[0].set(xlabel="time (s)", ylabel="Newton iterations")
     axes[1].set(xlabel="Newton iterations of a step", ylabel="share of steps", ylim=(0, 1.02))
     axes[2].set(xlabel="block-Jacobi PCG iterations", ylabel="share of matrices", ylim=(0, 1.02))
+    axes[0].locator_params(axis="x", nbins=4)
     style.log_if_decades(axes[0])
     if axes[0].get_yscale() == "log":
         axes[1].set_xscale("log")

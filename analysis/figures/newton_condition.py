@@ -16,7 +16,7 @@ from .subjects import SweepRecords
 
 SCALINGS = (("none", "raw"), ("block_jacobi", "block Jacobi"))
 SHOWN = (
-    "Every Newton iteration of time step {step}, in which the runs take most iterations together. (a) and (b)"
+    "Every Newton iteration of time step {step}, in which the median run takes most. (a) and (b)"
     " the condition number of the Newton matrix with every element clamped, as it is and scaled by block"
     " Jacobi; (c) its smallest and largest eigenvalue, raw, the band between them filled. Forks: bounds, the"
     " true number is at least as large. {failed}"
@@ -38,20 +38,21 @@ def table(records: Records, step: int) -> pd.DataFrame:
 
 
 def draw_condition(axis, found: pd.DataFrame, row: pd.Series) -> None:
-    style.draw(axis, found["iteration"].to_numpy(), found["cond"].to_numpy(), row)
+    style.draw(axis, found["iteration"].to_numpy() + 1, found["cond"].to_numpy(), row)
     bound = found[found["status"] != "ok"]
     color = style.look(row["formulation"]).color
-    axis.plot(bound["iteration"], bound["cond"], linestyle="none", marker="2", markersize=6, color=color)
+    axis.plot(bound["iteration"] + 1, bound["cond"], linestyle="none", marker="2", markersize=6, color=color)
 
 
 def draw_ends(axis, found: pd.DataFrame, row: pd.Series) -> None:
     look = style.look(row["formulation"])
     sure = found.dropna(subset=["lambda_min", "lambda_max"])
     low, high = sure["lambda_min"].astype(float), sure["lambda_max"].astype(float)
-    axis.fill_between(sure["iteration"], low, high, color=look.color, alpha=0.07, linewidth=0)
+    at = sure["iteration"] + 1
+    axis.fill_between(at, low, high, color=look.color, alpha=0.07, linewidth=0)
     for end in (low, high):
         axis.plot(
-            sure["iteration"],
+            at,
             end,
             color=look.color,
             linestyle=look.dash,
@@ -74,8 +75,9 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
             draw_condition(axis, mine[mine["scaling"] == scaling], row)
         draw_ends(axes[2], mine[mine["scaling"] == "none"], row)
     for axis, title in zip(axes, [title for _, title in SCALINGS] + ["both ends, raw"]):
-        axis.set(yscale="log", xlabel="Newton iteration", title=title)
+        axis.set(yscale="log", title=title)
         style.keep_span(axis)
+    one_step.count_from_one(axes, numbers)
     axes[0].set_ylabel("condition number")
     axes[2].set_ylabel("eigenvalue (N/m)")
     style.letter_panels(axes)

@@ -31,12 +31,17 @@ SHOWN = (
 )
 
 
+def _seconds(value) -> float:
+    """0 where a run has no such phase."""
+    return 0.0 if pd.isna(value) else float(value)
+
+
 def table(runs: pd.DataFrame) -> pd.DataFrame:
     """A row a run and phase: ms a Newton iteration."""
     rows = []
     for _, row in runs.iterrows():
         for phase, (columns, _, _) in PHASES.items():
-            seconds = sum(float(row[f"time_{column}_s"] or 0) for column in columns)
+            seconds = sum(_seconds(row[f"time_{column}_s"]) for column in columns)
             rows.append(
                 {"formulation": row["formulation"], "solver": row["linear_solver"], "phase": phase}
                 | {"outcome": row["outcome"], "unknowns": row["scene_free_dofs"], "seconds": seconds}

@@ -16,6 +16,7 @@ from .subjects import SweepRecords
 REFERENCE = "double"
 DASHES = {"float": "-", "mixed": "--"}
 FEW_ULPS = 10.0
+APART = 0.08  # crosses of two formulations, in distances of places
 OPTIONS = {"offset": "/scene/translate_m"}
 SHOWN = (
     "The same scene moved away from the origin. Left: largest distance of a vertex at the end of a run from"
@@ -80,18 +81,9 @@ def draw(axis, found: pd.DataFrame, column: str) -> None:
             at = [places.index(offset) for offset in mine["offset_m"]]
             label = name if precision == mine["precision"].iloc[0] == "float" else f"{name}, {precision}"
             axis.plot(at, mine[column], color=look.color, linestyle=dash, marker=look.marker, label=label)
-            for k in (k for k, outcome in zip(at, mine["outcome"]) if outcome != "ok"):
-                axis.plot(
-                    [k + 0.08 * (formulations(found).index(name) - 1)],
-                    [0.96],
-                    transform=axis.get_xaxis_transform(),
-                    linestyle="none",
-                    marker="x",
-                    markersize=5,
-                    markeredgewidth=1.2,
-                    color=look.color,
-                    gid=style.FAILURE,
-                )
+            aside = APART * (formulations(found).index(name) - 1)
+            failed = [k + aside for k, outcome in zip(at, mine["outcome"]) if outcome != "ok"]
+            style.failures_above(axis, failed, look.color)
     axis.set(yscale="log", xlabel="distance from the origin (m)")
     axis.set_xticks(range(len(places)), [f"{place:g}" for place in places])
 

@@ -16,8 +16,14 @@ from ..robustness import Trial, profile
 from .drawing import OF_RUNS, Drawing, common, formulations, outcomes
 from .subjects import SweepRecords
 
-COSTS = {"newton_iterations": "Newton iterations", "linear_solves": "linear solves", "solve_s": "seconds"}
-OPTIONS = {"costs": ["newton_iterations", "solve_s"]}
+COSTS = {
+    "newton_iterations": "Newton iterations",
+    "linear_solves": "linear solves",
+    "line_search_trials": "line search trials",
+    "ccd_queries": "CCD queries",
+    "solve_s": "seconds",
+}
+OPTIONS = {"costs": ["newton_iterations", "line_search_trials"]}
 SOLVED = (
     "A problem is a scene of the sweep, and is solved by a run that ends ok and valid; {apart} of the {solved}"
     " solved runs are not comparable with the log: their contacts rest at other gaps"
@@ -169,7 +175,7 @@ def performance_profile(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     first = next(iter(of.values()))
     pairs = pairwise(first)
     draw_pairs(axes[-1], pairs)
-    axes[-1].set_title(f"{costs[0]}: row / column", fontsize=7)
+    axes[-1].set_xlabel(f"{costs[0]}: row / column")
     style.legend_below(fig, axes[0])
     statistic = "ratio to the least cost of a problem; cells: geometric mean of the ratio, and n"
     numbers = pd.concat([numbers, pairs.assign(cost=next(iter(of)))], ignore_index=True)

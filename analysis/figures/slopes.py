@@ -27,18 +27,7 @@ def draw(axis, x, y, formulation: str, failed=()) -> None:
     """
     look = style.look(formulation)
     axis.plot(x, y, color=look.color, linestyle=look.dash, marker=look.marker, label=formulation)
-    for at in failed:
-        axis.plot(
-            [at],
-            [0.97],
-            transform=axis.get_xaxis_transform(),
-            linestyle="none",
-            marker="x",
-            markersize=5,
-            markeredgewidth=1.2,
-            color=look.color,
-            gid=style.FAILURE,
-        )
+    style.failures_above(axis, failed, look.color)
 
 
 def note(axis, of: dict[str, float | None], corner: str = "upper left") -> None:

@@ -20,7 +20,7 @@ PANELS = {
     "alpha": "accepted fraction",
 }
 SHOWN = (
-    "Every Newton iteration of time step {step}, in which the runs take most iterations together: the largest"
+    "Every Newton iteration of time step {step}, in which the median run takes most: the largest"
     " fraction of the Newton direction that CCD allows (a), that the strain limit allows (b), and the fraction"
     " that is taken (c). 1: the whole direction. {failed}"
 )
@@ -36,7 +36,7 @@ def table(records: Records, step: int) -> pd.DataFrame:
 
 def draw(axis, found: pd.DataFrame, column: str, row: pd.Series) -> None:
     known = found[pd.to_numeric(found[column]).notna()]
-    style.draw(axis, known["iteration"].to_numpy(), known[column].to_numpy(dtype=float), row)
+    style.draw(axis, known["iteration"].to_numpy() + 1, known[column].to_numpy(dtype=float), row)
 
 
 def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
@@ -55,9 +55,10 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
             draw(axis, numbers[numbers["run"] == row["run"]], column, row)
     small = numbers[list(PANELS)].min().min() < 0.05
     for axis, title in zip(axes, PANELS.values()):
-        axis.set(xlabel="Newton iteration", title=title, yscale="log" if small else "linear")
+        axis.set(title=title, yscale="log" if small else "linear")
         if not small:
             axis.set_ylim(0, 1.06)
+    one_step.count_from_one(axes, numbers)
     axes[0].set_ylabel("fraction of the direction")
     style.letter_panels(axes)
     style.legend_below(fig, axes[0], records.runs)

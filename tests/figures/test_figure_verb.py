@@ -119,10 +119,10 @@ def test_a_folder_that_cannot_be_written_is_said_before_anything_is_run(tmp_path
     assert not (tmp_path / "runs").exists()
 
 
-EMPTY_RUNS = pd.DataFrame(columns=["run", "series", "group", "formulation", "outcome", "valid", "newton_iterations", "linear_solves", "solve_s", "steps", "linear_solver",
+EMPTY_RUNS = pd.DataFrame(columns=["run", "series", "group", "formulation", "outcome", "valid", "newton_iterations", "linear_solves", "line_search_trials", "solve_s", "steps", "linear_solver",
                                    "linear_iterations", "scene_free_dofs", "comparability_verdict"])
 EMPTY = SweepRecords("none", Records(EMPTY_RUNS, *[pd.DataFrame()] * 3), Path("nowhere"))
-FAILED_RUN = {"run": "a", "series": "strip log", "group": "g", "formulation": "log", "outcome": "nan", "valid": False, "newton_iterations": 1, "linear_solves": 1, "solve_s": 1.0,
+FAILED_RUN = {"run": "a", "series": "strip log", "group": "g", "formulation": "log", "outcome": "nan", "valid": False, "newton_iterations": 1, "linear_solves": 1, "line_search_trials": 1, "solve_s": 1.0,
               "steps": 1, "linear_solver": "pcg", "linear_iterations": 1, "scene_free_dofs": 9, "comparability_verdict": "not_valid"}
 FAILED = SweepRecords("none", Records(pd.DataFrame([FAILED_RUN]), *[pd.DataFrame()] * 3), Path("nowhere"))
 
