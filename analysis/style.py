@@ -218,12 +218,14 @@ def draw_failure(axis, x: float, y: float, color: str) -> None:
     )
 
 
-def failures_above(axis, places, color: str) -> None:
-    """Crosses at the upper edge: runs that failed and have no number, at their places on the other axis."""
+def failures_above(axis, places, color: str, row: int = 0) -> None:
+    """Crosses at the upper edge: runs that failed and have no number, at their places on the other axis; of
+    several series each in a row of its own, the first on top.
+    """
     for x in places:
         axis.plot(
             [x],
-            [0.97],
+            [0.97 - 0.05 * row],
             transform=axis.get_xaxis_transform(),
             linestyle="none",
             marker="x",

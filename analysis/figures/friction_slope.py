@@ -81,7 +81,7 @@ def _draw_each(axis, found: pd.DataFrame, column: str, lines: bool) -> None:
             markerfacecolor="none",
             label=name,
         )
-        style.failures_above(axis, mine.loc[mine["outcome"] != "ok", "mu"], look.color)
+        style.failures_above(axis, mine.loc[mine["outcome"] != "ok", "mu"], look.color, k)
 
 
 def draw_sliding(axis, found: pd.DataFrame, slope: Slope) -> None:

@@ -52,7 +52,9 @@ def figure(records: Records, group: str, out: Path, name: str = "") -> list[Path
         style.keep_span(axis)
         style.reference_line(axis, 1, r"$\hat d$: contact begins")
         if (theta := _matched_at(runs)) is not None:
-            style.reference_line(axis, theta, rf"{theta:g} $\hat d$: forces are matched here", ":", below=True)
+            style.reference_line(
+                axis, theta, rf"{theta:g} $\hat d$: forces are matched here", ":", below=True
+            )
         axis.set(xlabel="time (s)", ylabel=r"smallest gap / $\hat d$", title=group)
         style.legend_below(fig, axis, runs)
         table = pd.concat(numbers).assign(group=group)[COLUMNS] if numbers else pd.DataFrame(columns=COLUMNS)

@@ -16,7 +16,6 @@ from .subjects import SweepRecords
 REFERENCE = "double"
 DASHES = {"float": "-", "mixed": "--"}
 FEW_ULPS = 10.0
-APART = 0.08  # crosses of two formulations, in distances of places
 OPTIONS = {"offset": "/scene/translate_m"}
 SHOWN = (
     "The same scene moved away from the origin. Left: largest distance of a vertex at the end of a run from"
@@ -81,9 +80,8 @@ def draw(axis, found: pd.DataFrame, column: str) -> None:
             at = [places.index(offset) for offset in mine["offset_m"]]
             label = name if precision == mine["precision"].iloc[0] == "float" else f"{name}, {precision}"
             axis.plot(at, mine[column], color=look.color, linestyle=dash, marker=look.marker, label=label)
-            aside = APART * (formulations(found).index(name) - 1)
-            failed = [k + aside for k, outcome in zip(at, mine["outcome"]) if outcome != "ok"]
-            style.failures_above(axis, failed, look.color)
+            failed = [k for k, outcome in zip(at, mine["outcome"]) if outcome != "ok"]
+            style.failures_above(axis, failed, look.color, formulations(found).index(name))
     axis.set(yscale="log", xlabel="distance from the origin (m)")
     axis.set_xticks(range(len(places)), [f"{place:g}" for place in places])
 
@@ -107,7 +105,7 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     axes[1].set(ylabel="smallest gap (ulps)")
     for axis in axes:
         low, high = axis.get_ylim()
-        axis.set_ylim(low, high * (high / low) ** 0.12)
+        axis.set_ylim(low, high * (high / low) ** 0.2)
     style.letter_panels(axes)
     style.legend_below(fig, axes[0])
     failed = found[found["outcome"] != "ok"]

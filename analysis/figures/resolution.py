@@ -87,10 +87,11 @@ def heights(runs: list[tuple[pd.Series, Run]]) -> Heights:
 
 def draw(axis, found: pd.DataFrame, column: str) -> dict[str, float | None]:
     of = {}
-    for name in formulations(found):
+    for row, name in enumerate(formulations(found)):
         mine = found[found["formulation"] == name].sort_values("cell_m")
         good = mine[mine[column] > 0]
-        slopes.draw(axis, good["cell_m"], good[column], name, mine.loc[mine["outcome"] != "ok", "cell_m"])
+        failed = mine.loc[mine["outcome"] != "ok", "cell_m"]
+        slopes.draw(axis, good["cell_m"], good[column], name, failed, row)
         of[name] = slopes.slope(good["cell_m"], good[column])
     axis.set(xscale="log", yscale="log", xlabel="side of a cell (m)")
     style.keep_span(axis)

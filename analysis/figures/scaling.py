@@ -47,11 +47,11 @@ def table(runs: pd.DataFrame) -> pd.DataFrame:
 def draw(axis, found: pd.DataFrame, column: str) -> dict[str, float | None]:
     """The lines of one solver; their slopes."""
     found_slopes = {}
-    for name in formulations(found):
+    for row, name in enumerate(formulations(found)):
         mine = found[found["formulation"] == name].sort_values("unknowns")
         good = mine[np.isfinite(mine[column]) & (mine[column] > 0)]
         failed = mine.loc[mine["outcome"] != "ok", "unknowns"]
-        slopes.draw(axis, good["unknowns"], good[column], name, failed)
+        slopes.draw(axis, good["unknowns"], good[column], name, failed, row)
         found_slopes[name] = slopes.slope(good["unknowns"], good[column])
     axis.set(xscale="log", yscale="log")
     style.keep_span(axis)

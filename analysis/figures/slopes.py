@@ -21,13 +21,13 @@ def words(of: dict[str, float | None]) -> str:
     return "\n".join(f"{name}: {'-' if value is None else f'{value:.2f}'}" for name, value in of.items())
 
 
-def draw(axis, x, y, formulation: str, failed=()) -> None:
+def draw(axis, x, y, formulation: str, failed=(), row: int = 0) -> None:
     """Points of one formulation with a line through them, in order. failed: x of runs without a y, crosses
-    at the upper edge.
+    in this row at the upper edge.
     """
     look = style.look(formulation)
     axis.plot(x, y, color=look.color, linestyle=look.dash, marker=look.marker, label=formulation)
-    style.failures_above(axis, failed, look.color)
+    style.failures_above(axis, failed, look.color, row)
 
 
 def note(axis, of: dict[str, float | None], corner: str = "upper left") -> None:

@@ -20,10 +20,21 @@ PANELS = {
     "alpha": "accepted fraction",
 }
 SHOWN = (
-    "Every Newton iteration of time step {step}, in which the median run takes most: the largest"
+    "Every Newton iteration of time step {step}, in which steps are held back most: the largest"
     " fraction of the Newton direction that CCD allows (a), that the strain limit allows (b), and the fraction"
     " that is taken (c). 1: the whole direction. {failed}"
 )
+
+
+def held_back(trace: pd.DataFrame) -> int | None:
+    """The step, the same for all runs, whose smallest accepted fraction is least in the mean over the runs,
+    the first of several; only steps of every run. None without one.
+    """
+    if trace.empty or "alpha" not in trace:
+        return None
+    least = trace.assign(alpha=pd.to_numeric(trace["alpha"])).groupby(["step", "run"])["alpha"].min()
+    means = least.unstack("run").dropna().mean(axis=1)
+    return None if means.empty else int(means.idxmin())
 
 
 def table(records: Records, step: int) -> pd.DataFrame:
@@ -41,7 +52,7 @@ def draw(axis, found: pd.DataFrame, column: str, row: pd.Series) -> None:
 
 def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     records = subject.records
-    step = one_step.busiest(records)
+    step = held_back(records.trace)
     if step is None:
         raise drawing.nothing("no step has iterations in every run")
     numbers = table(records, step).assign(step=step)

@@ -46,7 +46,7 @@ def test_no_name_is_an_error_and_the_list_needs_none(capsys):
     assert rebuild.main(["--list"]) == 0
     lines = capsys.readouterr().out.splitlines()
     assert len(lines) == 1 + len(known())
-    assert any(line.split()[:3] == ["success_frontier", "3.33", "configs/sweeps/figure_grid.json"] for line in lines)
+    assert any(line.split()[:3] == ["preconditioned", "3.33", "configs/sweeps/figure_runs.json"] for line in lines)
 
 
 def test_all_is_every_figure_once():

@@ -11,7 +11,7 @@ from matplotlib.colors import LogNorm
 from analysis import pgfplots
 from analysis.captions import Facts
 from analysis.figures import (eigenvalues, friction_slope, gap_ridge, heat_map, one_step, phase_times, preconditioned, profiles, resolution, scaling,
-                              slopes, success_frontier, trend)
+                              slopes, step_lengths, success_frontier, trend)
 from analysis.records import load
 from synthetic import write_set
 
@@ -192,6 +192,14 @@ def test_the_busiest_step_is_one_that_every_run_has():
     assert one_step.busiest(None, rows) == 1
     assert one_step.busiest(None, rows[rows["run"] == "a"]) == 0
     assert one_step.busiest(None, pd.DataFrame()) is None
+
+
+def test_the_step_that_is_held_back_most():
+    rows = pd.DataFrame({"run": list("aabbab"), "step": [0, 0, 0, 0, 1, 1], "alpha": [1.0, 0.1, 1.0, 1.0, 0.5, 0.5]})
+
+    assert step_lengths.held_back(rows) == 1  # means 0.55 and 0.5
+    assert step_lengths.held_back(rows[:4]) == 0
+    assert step_lengths.held_back(pd.DataFrame()) is None
 
 
 def test_phase_times_are_sums_of_phases_over_iterations():
