@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import matplotlib.pyplot as plt
+import numpy as np
 import pandas as pd
 
 from .. import style
@@ -16,11 +17,21 @@ from .subjects import SweepRecords
 
 SCALINGS = (("none", "raw"), ("block_jacobi", "block Jacobi"))
 SHOWN = (
-    "Every Newton iteration of time step {step}, in which the median run takes most. (a) and (b)"
+    "Every Newton iteration of time step {step}, in which the condition numbers, as they are, are largest. (a) and (b)"
     " the condition number of the Newton matrix with every element clamped, as it is and scaled by block"
     " Jacobi; (c) its smallest and largest eigenvalue, raw, the band between them filled. Forks: bounds, the"
     " true number is at least as large. {failed}"
 )
+
+
+def worst(cond: pd.DataFrame) -> int | None:
+    """The step whose largest condition number of a run, unscaled, is largest in the geometric mean over the
+    runs; None where no step has some in every run.
+    """
+    if cond.empty:
+        return None
+    raw = cond[(cond["scaling"] == "none") & (cond["stage"] == "full") & cond["cond"].notna()]
+    return one_step.least(-np.log(pd.to_numeric(raw["cond"])), raw)
 
 
 def table(records: Records, step: int) -> pd.DataFrame:
@@ -37,8 +48,9 @@ def table(records: Records, step: int) -> pd.DataFrame:
     return found.assign(cond=found["cond"].astype(float).where(~singular, LARGEST_COND))
 
 
-def draw_condition(axis, found: pd.DataFrame, row: pd.Series) -> None:
-    style.draw(axis, found["iteration"].to_numpy() + 1, found["cond"].to_numpy(), row)
+def draw_condition(axis, found: pd.DataFrame, row: pd.Series, is_end: bool) -> None:
+    """is_end: the step is the last one of the run."""
+    style.draw(axis, found["iteration"].to_numpy() + 1, found["cond"].to_numpy(), row, is_end)
     bound = found[found["status"] != "ok"]
     color = style.look(row["formulation"]).color
     axis.plot(bound["iteration"] + 1, bound["cond"], linestyle="none", marker="2", markersize=6, color=color)
@@ -64,7 +76,7 @@ def draw_ends(axis, found: pd.DataFrame, row: pd.Series) -> None:
 
 def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     records = subject.records
-    step = one_step.busiest(records, records.cond if not records.cond.empty else pd.DataFrame())
+    step = worst(records.cond)
     if step is None:
         raise drawing.nothing("no step of these runs has condition estimates in every run")
     numbers = table(records, step).assign(step=step)
@@ -72,7 +84,8 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     for _, row in style.runs_of(records.runs, records.runs["group"].iloc[0]).iterrows():
         mine = numbers[numbers["run"] == row["run"]]
         for axis, (scaling, _) in zip(axes, SCALINGS):
-            draw_condition(axis, mine[mine["scaling"] == scaling], row)
+            is_end = one_step.ends_in(records, row["run"], step)
+            draw_condition(axis, mine[mine["scaling"] == scaling], row, is_end)
         draw_ends(axes[2], mine[mine["scaling"] == "none"], row)
     for axis, title in zip(axes, [title for _, title in SCALINGS] + ["both ends, raw"]):
         axis.set(yscale="log", title=title)

@@ -1,23 +1,25 @@
-"""Which time step of several runs figures of iterations show, and its rows of the trace."""
+"""Which time step of several runs figures of iterations show, and how."""
 
 from __future__ import annotations
 
 import pandas as pd
+from matplotlib.ticker import MaxNLocator
 
 from ..records import Records
 
 UNEVEN = 4.0
 
 
-def busiest(records: Records, by: pd.DataFrame | None = None) -> int | None:
-    """The step, the same for all runs, in which the median run has most rows, the first of several; only
-    steps that every run has rows of. by: rows with `run` and `step`, default the trace. None without one.
+def least(numbers: pd.Series, rows: pd.DataFrame) -> int | None:
+    """The step, the same for all runs, whose smallest number of a run is least in the mean over the runs, the
+    first of several; only steps that every run has numbers of. rows: `run` and `step` of each number. None
+    without one.
     """
-    rows = records.trace if by is None else by
     if rows.empty:
         return None
-    counts = rows.groupby(["step", "run"]).size().unstack("run").dropna()
-    return None if counts.empty else int(counts.median(axis=1).idxmax())
+    of_run = pd.to_numeric(numbers).groupby([rows["step"], rows["run"]]).min()
+    means = of_run.unstack("run").dropna().mean(axis=1)
+    return None if means.empty else int(means.idxmin())
 
 
 def of_step(records: Records, run: str, step: int) -> pd.DataFrame:
@@ -35,3 +37,11 @@ def count_from_one(axes, found: pd.DataFrame) -> None:
         axis.set_xlabel("Newton iteration, from 1")
         if counts.max() > UNEVEN * counts.median():
             axis.set_xscale("log")
+        else:
+            axis.xaxis.set_major_locator(MaxNLocator(6, integer=True))
+
+
+def ends_in(records: Records, run: str, step: int) -> bool:
+    """Whether it is the last step of the run, in which a run that failed did so."""
+    found = records.trace
+    return bool(step == found.loc[found["run"] == run, "step"].max())

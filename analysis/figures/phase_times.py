@@ -22,7 +22,8 @@ PHASES = {  # name -> columns of a record without `time_` and `_s`, colour (Okab
     "linear system": (("linear_analyze", "linear_factor", "linear_solve"), "#0072B2", "///"),
     "CCD": (("step_bound",), "#009E73", ""),
     "line search": (("line_search",), "#CC79A7", "xxx"),
-    "rest": (("prediction", "end_check", "step_control"), "#DDDDDD", ""),
+    "end check": (("end_check",), "#000000", "||"),
+    "rest": (("prediction", "step_control"), "#DDDDDD", ""),
 }
 SHOWN = (
     "Milliseconds of processor time on a clock of the program, a Newton iteration, by phase; without output"

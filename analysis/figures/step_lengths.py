@@ -26,17 +26,6 @@ SHOWN = (
 )
 
 
-def held_back(trace: pd.DataFrame) -> int | None:
-    """The step, the same for all runs, whose smallest accepted fraction is least in the mean over the runs,
-    the first of several; only steps of every run. None without one.
-    """
-    if trace.empty or "alpha" not in trace:
-        return None
-    least = trace.assign(alpha=pd.to_numeric(trace["alpha"])).groupby(["step", "run"])["alpha"].min()
-    means = least.unstack("run").dropna().mean(axis=1)
-    return None if means.empty else int(means.idxmin())
-
-
 def table(records: Records, step: int) -> pd.DataFrame:
     parts = []
     for _, row in records.runs.iterrows():
@@ -45,14 +34,16 @@ def table(records: Records, step: int) -> pd.DataFrame:
     return pd.concat(parts, ignore_index=True)
 
 
-def draw(axis, found: pd.DataFrame, column: str, row: pd.Series) -> None:
+def draw(axis, found: pd.DataFrame, column: str, row: pd.Series, is_end: bool) -> None:
+    """is_end: the step is the last one of the run."""
     known = found[pd.to_numeric(found[column]).notna()]
-    style.draw(axis, known["iteration"].to_numpy() + 1, known[column].to_numpy(dtype=float), row)
+    style.draw(axis, known["iteration"].to_numpy() + 1, known[column].to_numpy(dtype=float), row, is_end)
 
 
 def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     records = subject.records
-    step = held_back(records.trace)
+    trace = records.trace
+    step = one_step.least(trace["alpha"], trace) if "alpha" in trace else None
     if step is None:
         raise drawing.nothing("no step has iterations in every run")
     numbers = table(records, step).assign(step=step)
@@ -63,7 +54,8 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     )
     for _, row in style.runs_of(records.runs, records.runs["group"].iloc[0]).iterrows():
         for axis, column in zip(axes, PANELS):
-            draw(axis, numbers[numbers["run"] == row["run"]], column, row)
+            is_end = one_step.ends_in(records, row["run"], step)
+            draw(axis, numbers[numbers["run"] == row["run"]], column, row, is_end)
     small = numbers[list(PANELS)].min().min() < 0.05
     for axis, title in zip(axes, PANELS.values()):
         axis.set(title=title, yscale="log" if small else "linear")

@@ -10,8 +10,8 @@ from matplotlib.colors import LogNorm
 
 from analysis import pgfplots
 from analysis.captions import Facts
-from analysis.figures import (eigenvalues, friction_slope, gap_ridge, heat_map, one_step, phase_times, preconditioned, profiles, resolution, scaling,
-                              slopes, step_lengths, success_frontier, trend)
+from analysis.figures import (eigenvalues, friction_slope, gap_ridge, heat_map, newton_condition, one_step, phase_times, preconditioned, profiles, resolution, scaling,
+                              slopes, success_frontier, trend)
 from analysis.records import load
 from synthetic import write_set
 
@@ -186,20 +186,19 @@ def test_points_of_the_preconditioned_matrix_are_the_traces(tmp_path):
     assert preconditioned.ranks(found)["log"] == pytest.approx(1)
 
 
-def test_the_busiest_step_is_one_that_every_run_has():
-    rows = pd.DataFrame({"run": ["a"] * 9 + ["b"] * 3, "step": [0] * 5 + [1] * 2 + [2] * 2 + [1] * 2 + [2]})
-
-    assert one_step.busiest(None, rows) == 1
-    assert one_step.busiest(None, rows[rows["run"] == "a"]) == 0
-    assert one_step.busiest(None, pd.DataFrame()) is None
-
-
 def test_the_step_that_is_held_back_most():
-    rows = pd.DataFrame({"run": list("aabbab"), "step": [0, 0, 0, 0, 1, 1], "alpha": [1.0, 0.1, 1.0, 1.0, 0.5, 0.5]})
+    rows = pd.DataFrame({"run": list("aabbabb"), "step": [0, 0, 0, 0, 1, 1, 2], "alpha": [1.0, 0.1, 1.0, 1.0, 0.5, 0.5, 0.01]})
 
-    assert step_lengths.held_back(rows) == 1  # means 0.55 and 0.5
-    assert step_lengths.held_back(rows[:4]) == 0
-    assert step_lengths.held_back(pd.DataFrame()) is None
+    assert one_step.least(rows["alpha"], rows) == 1  # means 0.55 and 0.5; step 2 is of one run alone
+    assert one_step.least(rows["alpha"][:4], rows[:4]) == 0
+    assert one_step.least(pd.Series(dtype=float), pd.DataFrame()) is None
+
+
+def test_the_step_with_the_largest_condition_numbers():
+    cond = pd.DataFrame({"run": list("abab"), "step": [0, 0, 1, 1], "cond": [10.0, 1000.0, 90.0, 90.0], "scaling": "none", "stage": "full"})
+
+    assert newton_condition.worst(cond) == 0  # geometric means 100 and 90
+    assert newton_condition.worst(cond.assign(scaling="block_jacobi")) is None
 
 
 def test_phase_times_are_sums_of_phases_over_iterations():
