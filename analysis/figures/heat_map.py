@@ -111,9 +111,9 @@ def draw(axis, cells: pd.DataFrame, norm: LogNorm):
 
 def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
     runs, options = subject.records.runs, drawing.options
-    cells = table(runs, options["x"], options["y"])
-    if cells.empty:
+    if runs.empty or not {options["x"], options["y"]} <= set(runs):
         raise drawing.nothing(f"no run has {options['x']} and {options['y']}")
+    cells = table(runs, options["x"], options["y"])
     names = formulations(runs)
     most = max(2.0, np.nanmax(cells["iterations"], initial=0.0))
     norm = LogNorm(max(0.5, np.nanmin(cells["iterations"], initial=most / 2)), most)
