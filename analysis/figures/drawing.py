@@ -30,9 +30,12 @@ class Drawing:
     def save(
         self, fig, numbers: pd.DataFrame, shown: str, facts: Facts, runs: pd.DataFrame | None = None
     ) -> list[Path]:
-        """Errors: UserError without numbers."""
+        """Errors: UserError without numbers, or with more formulations than a figure holds."""
         if numbers.empty:
             raise self.nothing("no number is there")
+        if "formulation" in numbers and numbers["formulation"].nunique() > series.MOST:
+            found = ", ".join(numbers["formulation"].dropna().unique())
+            raise UserError(f"figure {self.name}: found {found}; at most {series.MOST} formulations are needed")
         return style.save(fig, self.stem, numbers, f"{self.title}. {shown} {facts.sentence()}", runs)
 
     def state(self, paths: list[Path], facts: Facts) -> list[Path]:

@@ -8,6 +8,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 
+from analysis.captions import Facts
 from analysis.errors import UserError
 from analysis.figures import heat_map, newton_condition, phase_times, preconditioned, profiles, rebuild, scaling, sources, step_lengths, success_frontier, trend
 from analysis.figures.drawing import Drawing
@@ -141,6 +142,12 @@ def test_a_trend_of_one_commit_is_refused(tmp_path):
     one = pd.DataFrame([{"at": 0, "commit": "a", "day": "2026-01-01", "case": "strip-log", "metric": "newton_iterations", "value": 1.0, "lower": 1.0, "upper": 1.0}])
     with pytest.raises(UserError, match="no case has baselines of two commits"):
         trend.figure(one, Drawing("mine", "Title", tmp_path / "mine", 7.0, trend.OPTIONS))
+
+
+def test_six_formulations_are_too_many_for_a_figure(tmp_path):
+    numbers = pd.DataFrame({"formulation": list("abcdef")})
+    with pytest.raises(UserError, match="found a, b, c, d, e, f; at most 5 formulations"):
+        Drawing("mine", "Title", tmp_path / "mine", 7.0, {}).save(None, numbers, "", Facts("1", "1", "1", "1"))
 
 
 def pixels(png: Path) -> int:
