@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import textwrap
 from collections.abc import Iterable
+from dataclasses import dataclass
 
 SETTINGS = (
     "scene",
@@ -25,6 +26,25 @@ PLACE = (
     "provenance_blas_kernel",
     "provenance_git_commit",
 )
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What the caption of every figure of the comparison says beside what is shown. Errors: ValueError where
+    one is left empty.
+    """
+
+    n: str  # of what the numbers are, and how many
+    statistic: str  # what a number is of them
+    reference: str  # what they are compared with
+    slice: str  # which scenes, levels and settings they are of
+
+    def __post_init__(self):
+        if empty := [name for name, value in self.__dict__.items() if not value.strip()]:
+            raise ValueError(f"a caption without {', '.join(empty)}")
+
+    def sentence(self) -> str:
+        return " ".join(f"{name.capitalize()}: {value}." for name, value in self.__dict__.items())
 
 
 def _distinct(rows: Iterable[dict], column: str) -> str:

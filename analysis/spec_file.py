@@ -1,6 +1,6 @@
 """The one reader of specs: JSON files of what to run and to judge (claims, gap maps, Pareto sweeps,
-work-precision studies, stress tests, sets of gates, the corpus of matrices), held against their JSON Schema
-in configs/schema/. What no schema can say, a reader checks after it.
+work-precision studies, stress tests, sets of gates, the corpus of matrices, figures), held against their
+JSON Schema in configs/schema/. What no schema can say, a reader checks after it.
 """
 
 from __future__ import annotations

@@ -17,6 +17,7 @@ import numpy as np  # noqa: E402
 import pandas as pd  # noqa: E402
 from matplotlib.colors import to_hex, to_rgb  # noqa: E402
 
+from . import pgfplots  # noqa: E402
 from .captions import caption  # noqa: E402
 from .record_file import other_meanings  # noqa: E402
 from .ticks import make_readable  # noqa: E402
@@ -46,6 +47,7 @@ MARKERS = (
     " that failed; the legend has its outcome."
 )
 FAILURE = "failure"  # gid of that cross
+SUFFIXES = (".png", ".pdf", ".csv", ".txt", ".svg", ".dat")  # of the files of a figure
 
 logging.getLogger("fontTools").setLevel(logging.ERROR)  # it comments on the missing date of the PDF
 
@@ -216,6 +218,24 @@ def draw_failure(axis, x: float, y: float, color: str) -> None:
     )
 
 
+def failures_above(axis, places, color: str, row: int = 0) -> None:
+    """Crosses at the upper edge: runs that failed and have no number, at their places on the other axis; of
+    several series each in a row of its own, the first on top.
+    """
+    for x in places:
+        axis.plot(
+            [x],
+            [0.97 - 0.05 * row],
+            transform=axis.get_xaxis_transform(),
+            linestyle="none",
+            marker="x",
+            markersize=5,
+            markeredgewidth=1.2,
+            color=color,
+            gid=FAILURE,
+        )
+
+
 def marker_sentence(runs: pd.DataFrame) -> str:
     """What the markers of a figure mean, for its caption."""
     rule = hollow_rule(runs).replace("\n", " ").replace(r"$\hat{d}$", "d_hat")
@@ -330,17 +350,20 @@ def keep_span(axis, which: str = "y") -> None:
 
 
 def save(fig, stem: Path, numbers: pd.DataFrame, shown: str, runs: pd.DataFrame | None = None) -> list[Path]:
-    """stem.png, stem.pdf, stem.csv and the caption stem.txt; the same bytes for the same records.
+    """stem.png, stem.pdf, stem.csv, the caption stem.txt, stem.svg, and stem.dat, the numbers as pgfplots
+    reads them; the same bytes for the same records.
 
     shown: sentences on what the figure shows; runs: where settings, machine and day are taken from.
     """
     stem.parent.mkdir(parents=True, exist_ok=True)
     make_readable(fig.axes)
-    paths = [stem.with_name(stem.name + suffix) for suffix in (".png", ".pdf", ".csv", ".txt")]
+    paths = [stem.with_name(stem.name + suffix) for suffix in SUFFIXES]
     fig.savefig(paths[0], metadata={"Software": None})
     fig.set_layout_engine("none")  # the picture is laid out; doing it again takes a third of all the time
     fig.savefig(paths[1], metadata={"CreationDate": None, "Producer": None, "Creator": None})
     numbers.to_csv(paths[2], index=False)
     paths[3].write_text(caption(shown, [] if runs is None else runs.to_dict("records")))
+    fig.savefig(paths[4], metadata={"Date": None, "Creator": None})
+    paths[5].write_text(pgfplots.text(numbers))
     plt.close(fig)
     return paths

@@ -12,8 +12,10 @@ import numpy as np
 import pandas as pd
 
 from .. import style
+from ..captions import Facts
 from ..program import evaluated, started
 from ..record_file import sha256_of
+from .drawing import Drawing
 
 OF_NO_RUN = {
     "log": ("log", "gap"),
@@ -105,9 +107,15 @@ def figure(out: Path, runs: pd.DataFrame | None = None) -> list[Path]:
             " drawn",
             file=sys.stderr,
         )
+    fig, table = draw(shapes, plugins, style.WIDE_IN)
+    return style.save(fig, out / "barrier_shapes", table, SHOWN)
+
+
+def draw(shapes: dict[str, tuple[str, str]], plugins: list[str], width_in: float):
+    """The figure, and the numbers that are drawn. Errors: UserError for a shape that is not known."""
     u = np.concatenate([np.geomspace(1e-3, 0.05, 25, endpoint=False), np.linspace(0.05, 0.99, 60)])
     table = values(u, shapes, plugins)
-    fig, axes = plt.subplots(1, 4, figsize=(style.WIDE_IN, 2.3), layout="constrained")
+    fig, axes = plt.subplots(1, 4, figsize=(width_in, 2.3), layout="constrained")
     for name, rows in table.groupby("name", sort=False):
         look = style.look(str(name))
         for axis, (field, _) in zip(axes, PANELS):
@@ -125,4 +133,16 @@ def figure(out: Path, runs: pd.DataFrame | None = None) -> list[Path]:
     axes[3].set_xscale("log")
     style.letter_panels(axes)
     style.legend_below(fig, axes[0])
-    return style.save(fig, out / "barrier_shapes", table, SHOWN)
+    return fig, table
+
+
+def of_shapes(names: tuple[str, ...], drawing: Drawing) -> list[Path]:
+    """The figure of these shapes on the gap."""
+    fig, table = draw({name: (name, "gap") for name in names}, [], drawing.width_in)
+    facts = Facts(
+        f"{len(names)} shapes at {table['u'].nunique()} gaps",
+        "none: closed forms",
+        "none; the Newton step of a lone contact is d_hat/rho",
+        "stiffness 1, d_hat 1, on the gap",
+    )
+    return drawing.save(fig, table, SHOWN, facts)

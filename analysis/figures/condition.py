@@ -172,12 +172,13 @@ def _draw(group: Group, runs: pd.DataFrame, shown: list[Panel], says: list[str],
     )
 
 
-def figure(records: Records, group: str, out: Path) -> list[Path]:
-    """condition_GROUP, what it has no room for in condition_GROUP_more, and the eigenvalues of its series in
-    a third; their files.
+def figure(records: Records, group: str, out: Path, name: str = "") -> list[Path]:
+    """`name` (condition_GROUP), what it has no room for in NAME_more, and the eigenvalues of its series in a
+    third; their files.
     """
     runs = style.runs_of(records.runs, group)
-    found, name, paths = Group(group, runs, _estimates(records, group, runs)), f"condition_{group}", []
+    found, paths = Group(group, runs, _estimates(records, group, runs)), []
+    name = name or f"condition_{group}"
     for part, some in series.parts_of_runs(runs, name):
         main = part.suffix == ""
         kept, left_out = _chosen(found, some, [panel for panel in ALL if main or panel.field == "cond"])

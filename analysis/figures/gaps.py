@@ -39,11 +39,11 @@ def _draw_run(axis, records: Records, row: pd.Series) -> list[pd.DataFrame]:
     return [touching[["run", "step", "t_s", "gap_min_m", "gap_min_rel"]].assign(series=row["series"])]
 
 
-def figure(records: Records, group: str, out: Path) -> list[Path]:
-    """gaps_GROUP, and its supplement where there are more series than one figure holds."""
-    runs, paths = style.runs_of(records.runs, group), []
-    for part, some in series.parts_of_runs(runs, f"gaps_{group}"):
-        fig, axis = plt.subplots(figsize=(5.6, 4.2), layout="constrained")
+def figure(records: Records, group: str, out: Path, name: str = "") -> list[Path]:
+    """`name` (gaps_GROUP), and its supplement where there are more series than one figure holds."""
+    runs, paths, name = style.runs_of(records.runs, group), [], name or f"gaps_{group}"
+    for part, some in series.parts_of_runs(runs, name):
+        fig, axis = plt.subplots(figsize=(style.WIDE_IN, 4.2), layout="constrained")
         numbers = [table for _, row in some.iterrows() for table in _draw_run(axis, records, row)]
         if any(len(table) for table in numbers):
             axis.set_yscale("log")
@@ -52,10 +52,12 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
         style.keep_span(axis)
         style.reference_line(axis, 1, r"$\hat d$: contact begins")
         if (theta := _matched_at(runs)) is not None:
-            style.reference_line(axis, theta, rf"{theta:g} $\hat d$: forces are matched here", ":")
+            style.reference_line(
+                axis, theta, rf"{theta:g} $\hat d$: forces are matched here", ":", below=True
+            )
         axis.set(xlabel="time (s)", ylabel=r"smallest gap / $\hat d$", title=group)
         style.legend_below(fig, axis, runs)
         table = pd.concat(numbers).assign(group=group)[COLUMNS] if numbers else pd.DataFrame(columns=COLUMNS)
         shown = " ".join(filter(None, [SHOWN.format(group=group), part.says, style.marker_sentence(runs)]))
-        paths += style.save(fig, out / f"gaps_{group}{part.suffix}", table, shown, some)
+        paths += style.save(fig, out / f"{name}{part.suffix}", table, shown, some)
     return paths

@@ -59,6 +59,7 @@ def _set_axes(axes) -> None:
     axes[0].set(xlabel="time (s)", ylabel="Newton iterations")
     axes[1].set(xlabel="Newton iterations of a step", ylabel="share of steps", ylim=(0, 1.02))
     axes[2].set(xlabel="block-Jacobi PCG iterations", ylabel="share of matrices", ylim=(0, 1.02))
+    axes[0].locator_params(axis="x", nbins=4)
     style.log_if_decades(axes[0])
     if axes[0].get_yscale() == "log":
         axes[1].set_xscale("log")
@@ -70,10 +71,10 @@ def _set_axes(axes) -> None:
         style.not_measured(axes[2])
 
 
-def figure(records: Records, group: str, out: Path) -> list[Path]:
-    """iterations_GROUP, and its supplement where there are more series than one figure holds."""
-    runs, paths = style.runs_of(records.runs, group), []
-    for part, some in series.parts_of_runs(runs, f"iterations_{group}"):
+def figure(records: Records, group: str, out: Path, name: str = "") -> list[Path]:
+    """`name` (iterations_GROUP), and its supplement where there are more series than one figure holds."""
+    runs, paths, name = style.runs_of(records.runs, group), [], name or f"iterations_{group}"
+    for part, some in series.parts_of_runs(runs, name):
         fig, axes = plt.subplots(1, 3, figsize=(style.WIDE_IN, 3.2), layout="constrained")
         numbers = [table for _, row in some.iterrows() for table in _draw_run(axes, records, row)]
         _set_axes(axes)
@@ -81,5 +82,5 @@ def figure(records: Records, group: str, out: Path) -> list[Path]:
         style.legend_below(fig, axes[0], runs)
         table = pd.concat(numbers).assign(group=group)[COLUMNS] if numbers else pd.DataFrame(columns=COLUMNS)
         shown = " ".join(filter(None, [SHOWN.format(group=group), part.says, style.marker_sentence(runs)]))
-        paths += style.save(fig, out / f"iterations_{group}{part.suffix}", table, shown, some)
+        paths += style.save(fig, out / f"{name}{part.suffix}", table, shown, some)
     return paths

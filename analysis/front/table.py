@@ -51,6 +51,7 @@ TABLE = (
     Verb("catalogue", "judge", PROGRAM, "catalogue.page", "[NAME...]", "the mini scenes of the catalogue under five formulations, against what each expects: results/CATALOGUE.md, docs/catalogue.png", "./bench catalogue drape --formulations log"),
     Verb("robust", "judge", PROGRAM, "catalogue.robust", "SCENE...", "scenes of the catalogue from jittered starts: passes where every seed ends ok without a crossing", "./bench robust drape --seeds 10"),
     Verb("readme", "make", PROGRAM, "readme.verb", "--check | --write | --fill", "runs or parses every snippet of README.md and docs/results.md; fills their numbers from the records of the demo, or from those that are kept", "./bench readme --check"),
+    Verb("figure", "make", PROGRAM, "figures.rebuild", "NAME... [--quick]", "a figure of the comparison, rebuilt byte for byte from its spec configs/figures/NAME.json: PNG, PDF, SVG, numbers, caption", "./bench figure work_precision --quick"),
     Verb("pictures", "make", PROGRAM, "pictures", "", "the stills at the top of README, docs/picture_*.png, from runs of seconds", "./bench pictures"),
     Verb("matrix-corpus", "make", PROGRAM, "matrix_corpus", "[--table]", "the hard systems of results/matrices from configs/matrices/corpus.json, and their table", "./bench matrix-corpus --table"),
     Verb("condition-table", "make", PROGRAM, "condition_table", "", "results/CONDITION.md: what Spectra and our Lanczos take for the condition numbers of the demo and of results/matrices, and how far they differ", "./bench condition-table"),

@@ -144,7 +144,7 @@ def draw_map(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     fig, axes = plt.subplots(
         len(METRICS),
         len(limits),
-        figsize=(max(style.WIDE_IN, 2.45 * len(limits)), 1.75 * len(METRICS) + 0.6),
+        figsize=(style.WIDE_IN, 1.75 * len(METRICS) + 0.6),
         layout="constrained",
         sharex=True,
         squeeze=False,

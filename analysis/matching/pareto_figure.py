@@ -148,7 +148,7 @@ def draw(runs: Runs, scene: str, stem: Path) -> list[Path]:
                 for name, title in PANELS.items()
             ]
         )
-        fig, axes = panels.grid(len(kept), style.WIDE_IN * 1.35, 2.2)
+        fig, axes = panels.grid(len(kept), style.WIDE_IN, 2.0)
         for axis, name in zip(axes, [name for name, title in PANELS.items() if title in kept]):
             _draw_panel(axis, runs, scene, name, part.names)
             axis.set_xlabel(rf"{runs.about['gap']} gap / $\hat d$")

@@ -74,13 +74,13 @@ def made(spec: Spec, runs: Path) -> dict:
     }
 
 
-def _rounded(value):
+def rounded(value):
     """Six digits are what a machine repeats of a time, and more than a figure shows."""
     if isinstance(value, float):
         return float(f"{value:.6g}")
     if isinstance(value, dict):
-        return {key: _rounded(v) for key, v in value.items()}
-    return [_rounded(v) for v in value] if isinstance(value, list) else value
+        return {key: rounded(v) for key, v in value.items()}
+    return [rounded(v) for v in value] if isinstance(value, list) else value
 
 
 def table_text(table: dict) -> str:
@@ -121,7 +121,7 @@ def main(argv: list[str]) -> int:
         docs = results / "docs" if args.out is None else results
     file = results / "work_precision.json"
     if not args.no_run:
-        write_whole(file, table_text(_rounded(made(spec, args.runs))))
+        write_whole(file, table_text(rounded(made(spec, args.runs))))
     table = read_table(file)
     if table.get("spec_sha256") != spec.sha256:
         raise UserError(

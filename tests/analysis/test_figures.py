@@ -26,7 +26,7 @@ def test_files_exist_and_are_the_same_twice(records, tmp_path, module):
     paths = module.figure(records, "strip", tmp_path / "a")
     again = module.figure(records, "strip", tmp_path / "b")
 
-    assert [p.suffix for p in paths] == [".png", ".pdf", ".csv", ".txt"]
+    assert [p.suffix for p in paths] == [".png", ".pdf", ".csv", ".txt", ".svg", ".dat"]
     for one, two in zip(paths, again):
         assert one.stat().st_size > 100
         assert hashlib.sha256(one.read_bytes()).digest() == hashlib.sha256(two.read_bytes()).digest(), one

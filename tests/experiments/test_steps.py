@@ -53,7 +53,7 @@ def test_the_table_says_what_the_file_holds(study):
 def test_the_figure_draws_every_iteration(study, tmp_path):
     data = newton_steps.read_steps(study[1])
     paths = newton_steps.figure(data, tmp_path / "steps")
-    assert [path.suffix for path in paths] == [".png", ".pdf", ".csv", ".txt"] and all(path.stat().st_size > 0 for path in paths)
+    assert [path.suffix for path in paths] == [".png", ".pdf", ".csv", ".txt", ".svg", ".dat"] and all(path.stat().st_size > 0 for path in paths)
     rows = (tmp_path / "steps.csv").read_text().splitlines()
     assert len(rows) - 1 == sum(trial["newton_iterations"] for trial in data["trials"]) > 20
 
