@@ -30,7 +30,7 @@ def write_sweep(factorial: Factorial, scene: str, folder: Path) -> Path:
         "base": str(base),
         "set": factorial.sweep["set"],
         "axes": [{"cases": cases}],
-        "budget": factorial.sweep.get("budget", {"run_s": 60}),
+        "budget": factorial.sweep["budget"],
     }
     file = folder / f"{scene}.json"
     write_whole(file, json.dumps(data, indent=1) + "\n")
@@ -38,7 +38,7 @@ def write_sweep(factorial: Factorial, scene: str, folder: Path) -> Path:
 
 
 def run_scene(factorial: Factorial, scene: str, folder: Path) -> None:
-    """Shard after shard, as a cluster would run them at once. Errors: UserError with what the program says."""
+    """Shard after shard; a cluster runs them at once. Errors: UserError with what the program says."""
     file, shards = write_sweep(factorial, scene, folder), factorial.spec["shards"]
     for shard in range(1, shards + 1):
         done = run_sweep(file, folder / scene, "--shard", f"{shard}/{shards}", "--progress", "none")
