@@ -5,7 +5,9 @@ exchanged for other allowed ones, drawn likewise, wherever that makes the array 
 round of exchanges finds nothing. Unbalance is the sum, over all pairs of factors, of the squared counts of
 pairs of levels, each times the number of level pairs: least where every pair of levels stands together
 equally often (the J2 criterion of Xu 2002, Technometrics 44(4), without weights). It is an integer, so the
-draw is the same on every machine.
+draw is the same on every machine. A pair of factors of which exclusions forbid a pair of levels counts as
+often as there are pairs of factors: otherwise the balance of single levels wins, all runs with implicit Euler
+take the step solver that only implicit Euler has, and the two are not told apart.
 
 Scenes have arrays of their own, so that the interactions that an array mixes into a main effect differ
 from scene to scene: they widen the interval over scenes and do not shift its middle in one direction.
@@ -26,9 +28,12 @@ ROUNDS = 4
 class _Counts:
     """How often pairs of levels stand together in an array."""
 
-    def __init__(self, sizes: tuple[int, ...]):
+    def __init__(self, sizes: tuple[int, ...], candidates: list[Combination]):
         self.pairs = list(combinations(range(len(sizes)), 2))
-        self.weight = {(a, b): sizes[a] * sizes[b] for a, b in self.pairs}
+        self.weight = {}
+        for a, b in self.pairs:
+            whole = len({(one[a], one[b]) for one in candidates}) == sizes[a] * sizes[b]
+            self.weight[a, b] = sizes[a] * sizes[b] * (1 if whole else len(self.pairs))
         self.count: dict[tuple[int, int, int, int], int] = {}
 
     def keys(self, one: Combination):
@@ -55,7 +60,7 @@ def drawn(factorial: Factorial, scene: str) -> list[Combination]:
         )
     draw = random.Random(f"{factorial.spec['seed']} {scene}")
     chosen = draw.sample(candidates, n)
-    counts, inside = _Counts(factorial.sizes), set(chosen)
+    counts, inside = _Counts(factorial.sizes, candidates), set(chosen)
     for one in chosen:
         counts.add(one, 1)
     for _ in range(ROUNDS):
@@ -74,11 +79,10 @@ def drawn(factorial: Factorial, scene: str) -> list[Combination]:
     return sorted(chosen)
 
 
-def unbalance(factorial: Factorial, array: list[Combination]) -> float:
-    """Over that of an array in which every pair of levels stands together equally often, which exclusions
-    may forbid; at least 1.
-    """
-    counts = _Counts(factorial.sizes)
+def seldom(factorial: Factorial, array: list[Combination]) -> int:
+    """How often the rarest allowed pair of levels stands together."""
+    candidates = factorial.allowed()
+    counts = _Counts(factorial.sizes, candidates)
     for one in array:
         counts.add(one, 1)
-    return counts.unbalance() / (len(counts.pairs) * len(array) ** 2)
+    return min(counts.count.get(key, 0) for one in candidates for key in counts.keys(one))

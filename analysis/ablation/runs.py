@@ -37,21 +37,20 @@ def write_sweep(factorial: Factorial, scene: str, folder: Path) -> Path:
     return file
 
 
-def run_scene(factorial: Factorial, scene: str, folder: Path) -> None:
-    """Shard after shard; a cluster runs them at once. Errors: UserError with what the program says."""
+def run_shard(factorial: Factorial, scene: str, shard: int, folder: Path) -> None:
+    """One of the shards of a scene, from 1. Errors: UserError with what the program says."""
     file, shards = write_sweep(factorial, scene, folder), factorial.spec["shards"]
-    for shard in range(1, shards + 1):
-        done = run_sweep(file, folder / scene, "--shard", f"{shard}/{shards}", "--progress", "none")
-        if done.returncode != 0:
-            first = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
-            raise UserError(f"{file}: shard {shard}/{shards} ended with {done.returncode}: {first}")
-        print(f"ablation: {scene}, shard {shard} of {shards}", file=sys.stderr, flush=True)
+    done = run_sweep(file, folder / scene, "--shard", f"{shard}/{shards}", "--progress", "none")
+    if done.returncode != 0:
+        first = (done.stderr.strip() or done.stdout.strip() or "it said nothing").splitlines()[0]
+        raise UserError(f"{file}: shard {shard}/{shards} ended with {done.returncode}: {first}")
+    print(f"ablation: {scene}, shard {shard} of {shards}", file=sys.stderr, flush=True)
 
 
-def records_of(folder: Path, scene: str) -> dict[str, dict]:
+def records_of(folder: Path) -> dict[str, dict]:
     """label -> record, of the cases that have one of their own config. Errors: UserError."""
     out = {}
-    for case in read_cases(folder / scene):
+    for case in read_cases(folder):
         if not case.record.is_file():
             continue
         try:
