@@ -25,6 +25,7 @@ MADE = (
     "results/matrices",
 )  # what commands leave; `*` in a name: of a run of the reader's own
 SECONDS = 120
+TOOLS = tuple("apt-get cd cp docker echo g++ git mkdir module pip python3 sbatch snakemake source".split())
 
 
 @dataclass(frozen=True)
@@ -119,11 +120,7 @@ def _shell_faults(snippet: Snippet) -> list[str]:
             elif words[0].endswith("bench") and len(words) > 1:
                 fault = _command_fault(words) or _config_fault(words)
             else:
-                fault = (
-                    ""
-                    if (ROOT / words[0]).exists() or words[0] in ("echo", "python3", "cp", "cd", "git", "pip")
-                    else f"{words[0]}: not there"
-                )
+                fault = "" if (ROOT / words[0]).exists() or words[0] in TOOLS else f"{words[0]}: not there"
             if fault:
                 faults.append(f"{snippet.page}:{snippet.line + k}: {command.strip()}: {fault}")
     return faults

@@ -9,6 +9,7 @@ import textwrap
 
 from ..errors import UserError
 from ..text_table import markdown as table_lines
+from .cost import table
 from .map import lines
 from .slices import sentence
 
@@ -203,8 +204,9 @@ def result_sentences(numbers: dict) -> list[str]:
 
 
 PARTS = {
-    "README.md": ("result", "slices", "drape", "gap_map"),
-    "docs/results.md": ("demo",),
+    "README.md": ("result", "slices"),
+    "docs/results.md": ("demo", "drape", "gap_map"),
+    "docs/jobs/cluster.md": ("cost",),
 }  # page -> its generated parts
 TEMPLATES = {
     "demo": demo_table,
@@ -212,6 +214,7 @@ TEMPLATES = {
     "drape": drape_sentences,
     "slices": lambda numbers: sentence(numbers["slices"], WIDTH),
     "gap_map": lambda numbers: lines(numbers["gap_map"], WIDTH),
+    "cost": lambda numbers: table(numbers["cost"]),
 }
 
 

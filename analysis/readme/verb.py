@@ -1,5 +1,5 @@
 """Makes the numbers of README.md and docs/results.md from the records of ./bench demo and the kept numbers of
-./bench claims, and checks them and every snippet.
+./bench claims, and checks them and every snippet of these pages, docs/jobs and the other pages of docs.
 
 Exit codes: 0 written, or all is well, 1 something is not as the page says, 2 there is nothing to make it
 from.
@@ -15,6 +15,7 @@ from ..places import ROOT
 from ..program import built_program
 from ..whole_file import write_whole
 from . import figures
+from .cost import gather as gather_cost
 from .map import gather as gather_map
 from .numbers import FILE, RUNS, gather, read, write
 from .slices import gather as gather_slices
@@ -22,13 +23,29 @@ from .snippets import faults
 from .templates import PARTS, filled, lacking
 
 PAGES = tuple(PARTS)
+# Pages whose snippets are checked and which have no generated numbers.
+MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/README.md")
+# Pages whose snippets are checked and which have no generated numbers.
+MORE = ("CONTRIBUTING.md", "docs/*.md", "docs/jobs/*.md", "examples/cluster/README.md")
 
 
 def kept() -> dict:
-    """The numbers of the demo, those of the claims' slices, and the sentences of the gap map. Errors:
+    """The numbers of the demo, those of the claims' slices, the sentences of the gap map, and what studies take. Errors:
     UserError where one is missing.
     """
-    return read() | {"slices": gather_slices(), "gap_map": gather_map()}
+    return read() | {"slices": gather_slices(), "gap_map": gather_map(), "cost": gather_cost()}
+
+
+def pages_with_snippets(root: Path) -> list[str]:
+    """From the root, the generated ones first."""
+    found = sorted(str(path.relative_to(root)) for pattern in MORE for path in root.glob(pattern))
+    return [*PAGES, *(page for page in found if page not in PAGES)]
+
+
+def pages_with_snippets(root: Path) -> list[str]:
+    """From the root, the generated ones first."""
+    found = sorted(str(path.relative_to(root)) for pattern in MORE for path in root.glob(pattern))
+    return [*PAGES, *(page for page in found if page not in PAGES)]
 
 
 def stale(root: Path, numbers: dict) -> list[str]:
@@ -36,7 +53,7 @@ def stale(root: Path, numbers: dict) -> list[str]:
     texts = {page: (root / page).read_text() for page in PAGES}
     absent = [line for page, text in texts.items() for line in lacking(text, page)]
     return absent + [
-        f"{page}: its numbers are not those of results/demo.json, claims.json and gap_map.json; ./bench"
+        f"{page}: its numbers are not those of results/demo.json and of the other results; ./bench"
         " readme --fill writes them"
         for page, text in texts.items()
         if filled(text, numbers, page) != text
@@ -102,7 +119,7 @@ def main(argv: list[str]) -> int:
         return 0
     built_program()
     found = (
-        [fault for page in PAGES for fault in faults((ROOT / page).read_text(), page)]
+        [fault for page in pages_with_snippets(ROOT) for fault in faults((ROOT / page).read_text(), page)]
         + stale(ROOT, kept())
         + figures.absent(ROOT / "docs")
     )

@@ -4,6 +4,8 @@ import json
 import math
 from pathlib import Path
 
+import re
+
 import pytest
 
 from analysis.errors import UserError
@@ -214,11 +216,24 @@ def test_a_snippet_that_does_not_work_is_named_with_its_line(program, wrong, pla
         assert len(found) == 1 and found[0].startswith(place) and said in found[0], found
 
 
-@pytest.mark.parametrize("page", readme.PAGES)
+@pytest.mark.parametrize("page", readme.pages_with_snippets(ROOT))
 def test_every_snippet_of_the_pages_works(program, page):
     text = (ROOT / page).read_text()
-    assert snippets.snippets(text, page) or page != "README.md"
+    assert snippets.snippets(text, page) or not page.startswith(("README.md", "docs/jobs/", "CONTRIBUTING.md"))
     assert snippets.faults(text, page) == []
+
+
+def test_a_link_of_a_page_leads_somewhere():
+    """Files of this repository that README, docs and docs/jobs name as links."""
+    links = [(page, link) for page in readme.pages_with_snippets(ROOT) for link in re.findall(r"\]\(([^)#:]+)[^):]*\)", (ROOT / page).read_text())]
+    assert len(links) > 40
+    assert [(page, link) for page, link in links if not ((ROOT / page).parent / link).exists()] == []
+
+
+def test_the_readme_fits_on_a_few_screens():
+    lines = (ROOT / "README.md").read_text().splitlines()
+    assert len(lines) <= 160 and len(list((ROOT / "docs/jobs").glob("*.md"))) >= 8
+    assert all(f"(docs/jobs/{path.name})" in "\n".join(lines) for path in (ROOT / "docs/jobs").glob("*.md"))
 
 
 @pytest.fixture(scope="module")

@@ -321,7 +321,7 @@ def test_eval_ends_at_an_interrupt(program):
     assert waiting.returncode == -signal.SIGINT
 
 
-def test_the_sweep_of_readme_is_the_one_of_the_help(program):
-    text, readme = bench(program, "sweep", "--help").stdout, (ROOT / "README.md").read_text()
+def test_the_sweep_of_the_page_is_the_one_of_the_help(program):
+    text, page = bench(program, "sweep", "--help").stdout, (ROOT / "docs/jobs/run-an-ablation.md").read_text()
     shown = text[text.index("{\n"):text.index("\n}\n") + 2]
-    assert f"```json\n{shown}\n```" in readme
+    assert f"```json\n{shown}\n```" in page

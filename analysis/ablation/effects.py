@@ -1,0 +1,158 @@
+"""Main effects and interactions of the factors, with the scenes as samples (docs/laboratory.md, Ablation).
+
+In a scene, numbers are fitted by least squares with one column a level that is not the first of its factor;
+an interaction adds the products of the columns of two factors. What the runs of a scene do not tell apart
+has no value there: its column is no combination of rows.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from itertools import combinations
+
+import numpy as np
+
+from ..claims.estimate import sign_test, student
+from .factors import Factorial
+from .table import METRICS, Table, got_through, levels_of
+
+LEAST_SCENES = 5
+LEAST_FREEDOM = 10
+LEVEL = 0.05
+SHARES = {"ok": got_through, "common": lambda row: not row["failed"]}
+TESTED = 1e-8  # of a column: how much of it the rows may leave undetermined
+
+
+@dataclass(frozen=True)
+class Term:
+    """One column: (factor, level), or two of them for an interaction."""
+
+    parts: tuple[tuple[int, int], ...]
+
+    def of(self, levels: tuple[int, ...]) -> float:
+        return float(all(levels[f] == level for f, level in self.parts))
+
+
+@dataclass(frozen=True)
+class Effect:
+    """scenes: name -> logarithm of a ratio, or difference of shares. holm: p times Holm's factor among the
+    effects of its number; None below LEAST_SCENES scenes.
+    """
+
+    metric: str
+    term: Term
+    scenes: dict[str, float]
+    mean: float | None = None
+    low: float | None = None
+    high: float | None = None
+    p: float | None = None
+    holm: float | None = None
+
+    @property
+    def decided(self) -> bool:
+        return self.holm is not None and self.holm < LEVEL
+
+    @property
+    def signs(self) -> tuple[int, int]:
+        """Scenes in which it is above and below nothing."""
+        values = self.scenes.values()
+        return sum(v > 0 for v in values), sum(v < 0 for v in values)
+
+    @property
+    def sign_p(self) -> float:
+        return sign_test(*self.signs)
+
+
+@dataclass
+class Study:
+    """main and pairs: metric -> effects, in the order of the factors."""
+
+    main: dict[str, list[Effect]] = field(default_factory=dict)
+    pairs: dict[str, list[Effect]] = field(default_factory=dict)
+
+
+def main_terms(factorial: Factorial) -> list[Term]:
+    return [Term(((f, level),)) for f, n in enumerate(factorial.sizes) for level in range(1, n)]
+
+
+def pair_terms(factorial: Factorial, a: int, b: int) -> list[Term]:
+    sizes = factorial.sizes
+    return [Term(((a, i), (b, j))) for i in range(1, sizes[a]) for j in range(1, sizes[b])]
+
+
+def values_of(table: Table, scene: str, metric: str) -> list[tuple[dict, float]]:
+    """Rows that have the number: its logarithm; of a share 0 or 1, of every run."""
+    rows = [row for row in table.rows if row["scene"] == scene]
+    if metric in SHARES:
+        return [(row, float(SHARES[metric](row))) for row in rows]
+    return [(row, float(np.log(row[metric]))) for row in rows if got_through(row) and row[metric]]
+
+
+def fitted(
+    levels: list[tuple[int, ...]], y: list[float], terms: list[Term], wanted: list[Term], freedom: int = 0
+) -> dict[Term, float]:
+    """Coefficients of `wanted` that the rows determine, with a constant. Empty where fewer than `freedom`
+    degrees are left for the residual.
+    """
+    if not y:
+        return {}
+    x = np.column_stack([np.ones(len(y)), *([term.of(one) for one in levels] for term in terms)])
+    inverse = np.linalg.pinv(x, rcond=1e-10)
+    resolution = inverse @ x  # of columns: the identity where all are determined
+    if len(y) - round(float(np.trace(resolution))) < freedom:
+        return {}
+    solution = inverse @ np.asarray(y)
+    off = np.abs(resolution - np.eye(x.shape[1])).max(axis=1)
+    return {
+        term: float(solution[k + 1]) for k, term in enumerate(terms) if term in wanted and off[k + 1] < TESTED
+    }
+
+
+def over_scenes(metric: str, term: Term, scenes: dict[str, float]) -> Effect:
+    """Mean and interval of the scene values. Where all are the same there is nothing to test."""
+    values = np.array(list(scenes.values()))
+    if len(values) < 2:
+        return Effect(metric, term, scenes, float(values[0]) if len(values) else None)
+    low, high = student(values)
+    p, spread = None, values.std(ddof=1)
+    if len(values) >= LEAST_SCENES and spread > 0:
+        from scipy.stats import ttest_1samp
+
+        p = float(ttest_1samp(values, 0.0).pvalue)
+    return Effect(metric, term, scenes, float(values.mean()), float(low), float(high), p)
+
+
+def with_holm(effects: list[Effect]) -> list[Effect]:
+    """p times the number of effects not yet passed, from the smallest one on, never falling."""
+    tested = sorted((e for e in effects if e.p is not None), key=lambda e: e.p)
+    holm, least = {}, 0.0
+    for k, effect in enumerate(tested):
+        least = max(least, min(1.0, effect.p * (len(tested) - k)))
+        holm[effect.term] = least
+    return [Effect(*(getattr(e, n) for n in Effect.__match_args__[:-1]), holm.get(e.term)) for e in effects]
+
+
+def _of(factorial: Factorial, table: Table, metric: str, wanted: list[Term], freedom: int) -> list[Effect]:
+    mains = main_terms(factorial)
+    terms = mains + [term for term in wanted if term not in mains]
+    found: dict[Term, dict[str, float]] = {term: {} for term in wanted}
+    for scene in factorial.scenes.labels:
+        pairs = values_of(table, scene, metric)
+        levels = [levels_of(factorial, row) for row, _ in pairs]
+        for term, value in fitted(levels, [y for _, y in pairs], terms, wanted, freedom).items():
+            found[term][scene] = value
+    return [over_scenes(metric, term, scenes) for term, scenes in found.items()]
+
+
+def study(factorial: Factorial, table: Table) -> Study:
+    """Every number's main effects, and its interactions pair of factors by pair."""
+    out = Study()
+    for metric in (*METRICS, *SHARES):
+        out.main[metric] = with_holm(_of(factorial, table, metric, main_terms(factorial), 0))
+        pairs = [
+            effect
+            for a, b in combinations(range(len(factorial.factors)), 2)
+            for effect in _of(factorial, table, metric, pair_terms(factorial, a, b), LEAST_FREEDOM)
+        ]
+        out.pairs[metric] = with_holm(pairs)
+    return out

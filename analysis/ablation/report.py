@@ -1,0 +1,210 @@
+"""The page of an ablation: results/ABLATION.md. Every sentence is made of numbers and names its slice."""
+
+from __future__ import annotations
+
+import math
+from collections import Counter
+
+from ..text_table import markdown
+from .design import drawn, seldom
+from .effects import LEAST_SCENES, LEVEL, SHARES, Effect, Study, Term
+from .factors import Factorial
+from .table import Table, got_through
+
+WORDS = {
+    "newton": "Newton iterations of a run",
+    "bj_p95": "95th percentile of the condition number after block Jacobi",
+    "pcg": "median of PCG iterations on the same systems",
+    "gap": "smallest gap in d_hat at a step end",
+    "ok": "share of runs that end ok and valid",
+    "common": "share with the common success",
+}
+SLICE = "without a strain limit, fixed stiffnesses matched to the load of the scene at 0.1 d_hat"
+
+
+def name_of(factorial: Factorial, term: Term) -> str:
+    """`cubic`, or `cubic x float`."""
+    return " x ".join(factorial.factors[f].labels[level] for f, level in term.parts)
+
+
+def against(factorial: Factorial, term: Term) -> str:
+    return " x ".join(factorial.factors[f].labels[0] for f, _ in term.parts)
+
+
+def value_of(effect: Effect) -> str:
+    """A ratio or a difference of shares, with its interval."""
+    if effect.mean is None:
+        return "no scene tells it"
+    share = effect.metric in SHARES
+    one = (lambda v: f"{v:+.2f}") if share else (lambda v: f"{math.exp(v):.3g}")
+    if effect.low is None:
+        return one(effect.mean)
+    return f"{one(effect.mean)} [{one(effect.low)}, {one(effect.high)}]"
+
+
+def _verdict(effect: Effect) -> str:
+    if not effect.decided:
+        return "not decided" if len(effect.scenes) >= LEAST_SCENES else f"{len(effect.scenes)} scenes"
+    return "**decided**"
+
+
+def _largest(effects: list[Effect], n: int) -> list[Effect]:
+    return sorted((e for e in effects if e.decided), key=lambda e: -abs(e.mean))[:n]
+
+
+def _named(factorial: Factorial, effects: list[Effect]) -> str:
+    return "; ".join(
+        f"`{name_of(factorial, e.term)}` {value_of(e)} times `{against(factorial, e.term)}`"
+        if e.metric not in SHARES
+        else f"`{name_of(factorial, e.term)}` {value_of(e)} beside `{against(factorial, e.term)}`"
+        for e in effects
+    )
+
+
+def sentences(factorial: Factorial, table: Table, study: Study) -> list[str]:
+    """Three: who gets through, what the work depends on, and which interactions there are."""
+    runs, through = len(table.rows), sum(map(got_through, table.rows))
+    scenes = len({row["scene"] for row in table.rows})
+    where = f"Over {scenes} scenes {SLICE}"
+    shares, ok = study.main["ok"], _largest(study.main["ok"], 3)
+    first = (
+        f"{where}, {through} of {runs} runs end `ok` and valid, and {sum(e.decided for e in shares)} of"
+        f" {len(shares)} main effects on that share are decided"
+        + (f" ({_named(factorial, ok)})." if ok else ": no level is told from the first one of its factor.")
+    )
+    parts = []
+    for metric in ("newton", "bj_p95"):
+        effects, found = study.main[metric], _largest(study.main[metric], 3)
+        parts.append(
+            f"of the {WORDS[metric]} {len([e for e in effects if e.decided])} of {len(effects)} main effects"
+            " are decided" + (f" ({_named(factorial, found)})" if found else "")
+        )
+    second = f"{where}, in runs that end `ok` and valid, {', and '.join(parts)}; the others are not decided."
+    pairs = [e for metric in ("newton", "bj_p95", "ok") for e in study.pairs[metric]]
+    tested, decided = [e for e in pairs if e.p is not None], _largest(pairs, 3)
+    third = f"{where}, of {len(tested)} interactions of two levels on these three numbers that at least"
+    third += f" {LEAST_SCENES} scenes tell, {sum(e.decided for e in tested)} are decided"
+    third += f" ({_named(factorial, decided)})" if decided else ""
+    return [first, second, third + "; what is not decided is not shown to be absent."]
+
+
+def _main_table(factorial: Factorial, study: Study, metric: str) -> list[str]:
+    rows = []
+    for effect in study.main[metric]:
+        up, down = effect.signs
+        rows.append(
+            [
+                factorial.factors[effect.term.parts[0][0]].name,
+                f"{name_of(factorial, effect.term)} against {against(factorial, effect.term)}",
+                value_of(effect),
+                f"{up} up, {down} down, p {effect.sign_p:.2g}",
+                "" if effect.holm is None else f"{effect.holm:.2g}",
+                _verdict(effect),
+            ]
+        )
+    kind = "difference" if metric in SHARES else "ratio"
+    head = ["factor", "level", f"{kind} [95%]", "scenes, sign test", "p (Holm)", ""]
+    return [f"### {WORDS[metric]}", "", *markdown(head, rows), ""]
+
+
+def _outcomes(table: Table) -> list[str]:
+    scenes = list(dict.fromkeys(row["scene"] for row in table.rows))
+    rows = []
+    for scene in scenes:
+        mine = [row for row in table.rows if row["scene"] == scene]
+        words = Counter(
+            row["outcome"] if row["outcome"] != "ok" or row["valid"] else "not valid" for row in mine
+        )
+        rows.append(
+            [
+                scene,
+                str(len(mine)),
+                ", ".join(f"{word} {n}" for word, n in words.most_common()),
+                str(sum(not row["failed"] for row in mine)),
+                f"{sum(row['core_s'] for row in mine):.0f}",
+            ]
+        )
+    head = ["scene", "runs", "outcomes", "common success", "core s"]
+    return ["## Outcomes", "", *markdown(head, rows), ""]
+
+
+def _interactions(factorial: Factorial, study: Study) -> list[str]:
+    found = [e for metric in WORDS for e in study.pairs[metric] if e.decided]
+    rows = [
+        [
+            WORDS[e.metric],
+            f"{name_of(factorial, e.term)} against {against(factorial, e.term)}",
+            value_of(e),
+            f"{e.holm:.2g}",
+        ]
+        for e in sorted(found, key=lambda e: (list(WORDS).index(e.metric), -abs(e.mean)))
+    ]
+    shown = (
+        markdown(["number", "levels", "[95%]", "p (Holm)"], rows) if rows else ["Not decided: all of them."]
+    )
+    return ["## Interactions that are decided", "", *shown, ""]
+
+
+def page(factorial: Factorial, table: Table, study: Study) -> str:
+    """The whole page."""
+    about, spec = table.about, factorial.spec
+    allowed, every = len(factorial.allowed()), math.prod(factorial.sizes)
+    n_scenes = len(factorial.scenes.levels)
+    asked = spec["combinations"] * n_scenes
+    missing = asked - len(table.rows)
+    axes = ", ".join(f"{f.name} ({', '.join(f.levels)})" for f in factorial.factors)
+    arrays = [seldom(factorial, drawn(factorial, scene)) for scene in factorial.scenes.labels]
+    core = sum(row["core_s"] for row in table.rows)
+    mean = core / max(len(table.rows), 1)
+    text = [
+        "# Ablation",
+        "",
+        (
+            f"Written by `./bench ablation`. {about['date']}, {about['machine']}; commit {about['commit']},"
+            f" build {about['build']}. Rules: docs/laboratory.md, Ablation; they were committed before the"
+            " first run."
+        ),
+        "",
+        *(f"{k}. {sentence}" for k, sentence in enumerate(sentences(factorial, table, study), 1)),
+        "",
+        "![main effects and interactions](../docs/ablation.png)",
+        "",
+        "## What was run",
+        "",
+        (
+            f"`{factorial.sweep_path.relative_to(factorial.path.parents[2])}` has {every * n_scenes}"
+            f" combinations of {n_scenes} scenes ({', '.join(factorial.scenes.levels)}) and {axes};"
+            f" {allowed * n_scenes} of them are allowed. The fraction has {spec['combinations']} in each"
+            f" scene; the rarest allowed pair of levels of two factors is in {min(arrays)} to {max(arrays)} of them."
+            f" {len(table.rows)} of"
+            f" {asked} runs are there"
+            + (f"; {missing} are not run yet, and `./bench ablation` goes on with them" if missing else "")
+            + f". An effect is decided at p < {LEVEL:g} after Holm over all effects of a number."
+        ),
+        "",
+        (
+            f"Cost: {core:.0f} core seconds for these {len(table.rows)} runs, {mean:.2f} each, from start to"
+            f" end of a run on a machine that did other things too. At that mean the {allowed * n_scenes}"
+            f" allowed combinations take {mean * allowed * n_scenes / 3600:.1f} core hours"
+            + (f"; `./bench plan` says {about['plan']}" if about.get("plan") else "")
+            + "."
+        ),
+        "",
+        "Excluded:",
+        "",
+        *(
+            f"- {' with '.join(entry['labels'])}: {reason}."
+            for entry, reason in zip(factorial.sweep["exclude"], spec["excluded"], strict=True)
+        ),
+        "",
+        "Left out:",
+        "",
+        *(f"- {level}: {reason}." for level, reason in spec["left_out"].items()),
+        "",
+        *_outcomes(table),
+        "## Main effects",
+        "",
+        *(line for metric in WORDS for line in _main_table(factorial, study, metric)),
+        *_interactions(factorial, study),
+    ]
+    return "\n".join(text)
