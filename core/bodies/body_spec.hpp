@@ -58,17 +58,17 @@ enum class BodyKind { deformable, rigid };  // rigid: every vertex prescribed, n
 struct BodySpec {
   std::string name;
   BodyKind kind = BodyKind::deformable;
-  TriangleMesh mesh;                  // rest shape, m
-  std::optional<Positions> start;     // start positions where they differ from the rest shape, m
-  Material material;                  // deformable only
-  Vec3d velocity = Vec3d::Zero();     // m/s, free vertices
-  RigidMotion motion;                 // rigid only
-  std::vector<PinSpec> pins;          // deformable only
-  double d_hat = 0;                   // m, > 0
-  double offset = 0;                  // m, >= 0
-  std::optional<double> friction;     // coefficient, >= 0; absent: that of the run
-  std::optional<double> restitution;  // in [0, 1]; absent: 1
-  double pressure = 0;                // Pa, from within; other than 0 only with a closed surface
+  TriangleMesh mesh;                       // rest shape, m
+  std::optional<Positions> start;          // start positions where they differ from the rest shape, m
+  Material material;                       // deformable only
+  Vec3d velocity = Vec3d::Zero();          // m/s, free vertices
+  RigidMotion motion;                      // rigid only
+  std::vector<PinSpec> pins;               // deformable only
+  double d_hat = 0;                        // m, > 0
+  double offset = 0;                       // m, >= 0
+  std::optional<double> friction;          // coefficient, >= 0; absent: that of the run
+  std::optional<double> restitution;       // in [0, 1]; absent: 1
+  double pressure = 0;                     // Pa, from within; other than 0 only with a closed surface
   std::vector<PressureKey> pressure_keys;  // instead, over time
   std::string collision_group;             // bodies of different groups do not collide; empty: of none
 };

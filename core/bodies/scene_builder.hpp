@@ -69,10 +69,10 @@ class SceneBuilder {
   Scene scene_;
   std::string where_;
   std::vector<std::string> names_;
-  std::vector<int> pin_of_;  // [n_vertices] index into scene_.pins, -1 free
-  std::vector<int> held_;    // the same of pins that hold for the whole run
-  std::vector<char> closed_;              // [bodies] whether the surface closes
-  std::vector<std::string> groups_;       // [bodies]
+  std::vector<int> pin_of_;          // [n_vertices] index into scene_.pins, -1 free
+  std::vector<int> held_;            // the same of pins that hold for the whole run
+  std::vector<char> closed_;         // [bodies] whether the surface closes
+  std::vector<std::string> groups_;  // [bodies]
   std::vector<CollisionSpec> collisions_;
   std::vector<std::string> collisions_at_;  // where each is
   std::vector<Violation> violations_;

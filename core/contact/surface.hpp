@@ -51,7 +51,7 @@ struct Surface {
   std::vector<int> body;                  // [n_vertices]
   int n_bodies;
   Collisions collisions;
-  Positions rest;                         // [3 x n_vertices] m
+  Positions rest;  // [3 x n_vertices] m
   Primitives<1> points;
   Primitives<2> edges;
   Primitives<3> triangles;

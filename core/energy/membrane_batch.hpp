@@ -66,7 +66,7 @@ class MembraneBatch final : public EnergyBatch {
   std::vector<double> lame_mu_, lame_lambda_;
   void place(std::size_t e);
 
-  std::vector<TriangleRest<double>> given_;         // before any creep and shrinking over time; empty: no such thing
+  std::vector<TriangleRest<double>> given_;  // before any creep and shrinking over time; empty: no such thing
   ShrinkSchedule shrink_;
   std::vector<double> factor_;                      // of each list of it, 1
   std::vector<double> yield_, rate_, plastic_inv_;  // plastic_inv_: [4 n], columns of 2 x 2

@@ -36,10 +36,12 @@ struct Collisions {
   /// The entry of a pair of owners; null: it has none.
   const CollisionPair* find(int a, int b) const {
     const auto key = std::minmax(a, b);
-    const auto found = std::lower_bound(pairs.begin(), pairs.end(), key, [](const CollisionPair& p, const auto& k) {
-      return std::tie(p.first, p.second) < std::tie(k.first, k.second);
-    });
-    return found != pairs.end() && found->first == key.first && found->second == key.second ? &*found : nullptr;
+    const auto found =
+        std::lower_bound(pairs.begin(), pairs.end(), key, [](const CollisionPair& p, const auto& k) {
+          return std::tie(p.first, p.second) < std::tie(k.first, k.second);
+        });
+    return found != pairs.end() && found->first == key.first && found->second == key.second ? &*found
+                                                                                            : nullptr;
   }
   /// Both are of a group, and of different ones.
   bool apart_by_group(int a, int b) const {

@@ -77,7 +77,8 @@ TEST(CollisionKinds, StaticRefusesStatesThatIntersectAndNoMotion) {
 }
 
 TEST(CollisionKinds, OffHasNoCandidates) {
-  const Scene scene = triangle_over_sheet(near, CollisionKind::off);
+  Scene scene = triangle_over_sheet(near, CollisionKind::off);
+  scene.collisions.pairs.insert(scene.collisions.pairs.begin(), {0, 0, CollisionKind::off, "as given"});
   const Answer through = ask(scene, halfway);
   EXPECT_EQ(through.rows_at_start, 0u);
   EXPECT_EQ(through.bound, 1);

@@ -191,7 +191,7 @@ Scene two_particles() {
 
 TEST(Stitch, draws_two_together_as_the_reduced_mass_says) {
   Scene scene = two_particles();
-  scene.stitches = {{{0, 1}}, {8}};
+  scene.stitches = {{{0, 1}}, {8}, {0}};
   const double dt = 0.01, mass = 0.2 * 0.6 / 0.8;
   double distance = 3, speed = 0;
   for (int i = 0; i < 100; ++i) {  // implicit Euler of one oscillator

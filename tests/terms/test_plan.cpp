@@ -79,9 +79,9 @@ TEST(plan, follows_every_option) {
   for (const auto& [name, item] : plan.items()) {
     if (!item->needed) missing.insert(std::string(name));
   }
-  EXPECT_EQ(missing,
-            (std::set<std::string>{"air_drag", "cloth_springs", "float_arithmetic", "inflation", "obstacles",
-                                   "planar_lock", "pull", "restitution", "stitch", "tetrahedra"}));
+  EXPECT_EQ(missing, (std::set<std::string>{"air_drag", "cloth_springs", "collisions", "float_arithmetic",
+                                            "inflation", "obstacles", "planar_lock", "pull", "restitution",
+                                            "stitch", "tetrahedra"}));
   terms.precision = Precision::single;
   EXPECT_TRUE(plan_of(scene_of({body, box}), terms, options).float_arithmetic.needed);
 }
