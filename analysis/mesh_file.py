@@ -137,7 +137,7 @@ def parse(argv: list[str]) -> argparse.Namespace:
         "source",
         type=Path,
         metavar="IN",
-        help=f"one of {', '.join(READERS)}; with --tetrahedra also of {', '.join(sorted(SURFACES.keys() - READERS))}",
+        help=f"one of {', '.join(READERS)}; with --tetrahedra of {', '.join(SURFACES)}",
     )
     parser.add_argument("target", type=Path, metavar="OUT.ply")
     parser.add_argument(

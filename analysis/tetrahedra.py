@@ -1,8 +1,8 @@
-"""Tetrahedra within a closed surface, made by TetGen: ./bench mesh SURFACE OUT.ply --tetrahedra. The surface stays
-as it is, every vertex and triangle of it; vertices are added within.
+"""Tetrahedra within a closed surface, made by TetGen: ./bench mesh SURFACE OUT.ply --tetrahedra. The surface
+stays as it is, every vertex and triangle of it; vertices are added within.
 
-The package `tetgen` (MIT) has TetGen within it (AGPL-3.0, or a licence of WIAS). It is no part of this project and is
-installed by whoever wants it: analysis/requirements-tetrahedra.txt.
+The package `tetgen` (MIT) has TetGen within it (AGPL-3.0, or a licence of WIAS). It is no part of this
+project and is installed by whoever wants it: analysis/requirements-tetrahedra.txt.
 """
 
 from __future__ import annotations
@@ -43,7 +43,8 @@ def require_closed(path: Path, triangles: np.ndarray) -> None:
             a, b = edges[wrong][0]
             raise UserError(
                 f"{path}: the surface is {what}: edge {a} {b} is of {count[wrong][0]} triangle"
-                f"{'s' if count[wrong][0] > 1 else ''}, {int(wrong.sum())} edges are so; allowed: 2 of every edge"
+                f"{'s' if count[wrong][0] > 1 else ''}, {int(wrong.sum())} edges are so;"
+                " allowed: 2 of every edge"
             )
 
 
@@ -79,5 +80,6 @@ def filled(
         try:
             made = tetgen.TetGen(points, triangles.astype(np.int32)).tetrahedralize(nobisect=True, **limit)
         except RuntimeError as error:
-            raise UserError(f"{path}: TetGen makes no tetrahedra of it, does it cross itself? {error}") from None
+            why = f"TetGen makes no tetrahedra of it, does it cross itself? {error}"
+            raise UserError(f"{path}: {why}") from None
     return made[0], made[1].astype(np.int64)
