@@ -52,7 +52,9 @@ METRICS = (
         "median of block-Jacobi PCG on the diagnosed matrices, to 1e-6",
         _at("probe_pcg_median"),
     ),
-    Metric("wall", "time s", "time", "seconds of the pass `time`, one repetition a record", lambda e: e.wall_s),
+    Metric(
+        "wall", "time s", "time", "seconds of the pass `time`, one repetition a record", lambda e: e.wall_s
+    ),
 )
 
 

@@ -1,5 +1,5 @@
-"""Two folders of records beside each other: runs of one config are paired, and each pair is judged by the rules of
-./bench compare (analysis/gate/compare.py), the first folder being the reference.
+"""Two folders of records beside each other: runs of one config are paired, and each pair is judged by the
+rules of ./bench compare (analysis/gate/compare.py), the first folder being the reference.
 """
 
 from __future__ import annotations
@@ -59,8 +59,8 @@ class Pair:
 
 @dataclass(frozen=True)
 class Change:
-    """A metric over all pairs that have it. factor: second over first, geometric mean over pairs where both are
-    above 0; None without such a pair.
+    """A metric over all pairs that have it. factor: second over first, geometric mean over pairs where both
+    are above 0; None without such a pair.
     """
 
     metric: str
@@ -107,9 +107,7 @@ def _judge(pair: Pair) -> None:
     except UserError as error:
         pair.fault = str(error)
         return
-    pair.as_before = {
-        f.metric for f in invariants.judge(pair.old.run, old, foreign=True) if f.verdict in RED
-    }
+    pair.as_before = {f.metric for f in invariants.judge(pair.old.run, old, foreign=True) if f.verdict in RED}
     before, now = measure(old), measure(new)
     pair.metrics = {metric.name: metric for metric in (*before, *now)}
     pair.values = {metric.name: (before[metric], now[metric]) for metric in before if metric in now}
@@ -120,8 +118,10 @@ def diff_of(a: Folder, b: Folder) -> Diff:
     pairs, only_a, only_b = paired(a, b)
     if not pairs:
         raise UserError(
-            f"{a.root} and {b.root} have no config in common ({len(only_a)} and {len(only_b)} records); allowed:"
-            " folders with runs of the same config_id (./bench compare --different-configs compares two others)"
+            f"{a.root} and {b.root} have no config in common ({len(only_a)} and {len(only_b)} records);"
+            f" allowed:"
+            " folders with runs of the same config_id (./bench compare --different-configs compares two"
+            " others)"
         )
     for pair in pairs:
         _judge(pair)

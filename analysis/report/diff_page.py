@@ -34,7 +34,9 @@ def verdict(diff: Diff) -> list[Sentence]:
     if red:
         first = Sentence(f"In {len(red)} of {said} something regressed.", BAD)
     elif faults:
-        first = Sentence(f"Nothing regressed where it could be judged; {len(faults)} of {said} could not.", BAD)
+        first = Sentence(
+            f"Nothing regressed where it could be judged; {len(faults)} of {said} could not.", BAD
+        )
     else:
         first = Sentence(f"Nothing regressed in {said} of one config each.", GOOD)
     return [first, *_outcomes(pairs), *_bits(pairs), *_moves(diff), *_lonely(diff)]
@@ -59,7 +61,9 @@ def _bits(pairs: list[Pair]) -> list[Sentence]:
         ]
     same = sum(pair.same_bits for pair in asked)
     tone = GOOD if same == len(asked) else BAD
-    return [Sentence(f"{same} of {counted(len(asked), 'final state')} of one build are equal bit for bit.", tone)]
+    return [
+        Sentence(f"{same} of {counted(len(asked), 'final state')} of one build are equal bit for bit.", tone)
+    ]
 
 
 def _moves(diff: Diff) -> list[Sentence]:
@@ -71,7 +75,9 @@ def _moves(diff: Diff) -> list[Sentence]:
 
 def _lonely(diff: Diff) -> list[Sentence]:
     return [
-        Sentence(f"{counted(len(some), 'run').capitalize()} {'is' if len(some) == 1 else 'are'} only in {name}.")
+        Sentence(
+            f"{counted(len(some), 'run').capitalize()} {'is' if len(some) == 1 else 'are'} only in {name}."
+        )
         for some, name in ((diff.only_a, diff.a.root.name), (diff.only_b, diff.b.root.name))
         if some
     ]
@@ -79,17 +85,22 @@ def _lonely(diff: Diff) -> list[Sentence]:
 
 def limits(diff: Diff) -> list[str]:
     said = [
-        "Tolerances are those of ./bench compare, made round one run of the first folder: they are no envelope of"
+        "Tolerances are those of ./bench compare, made round one run of the first folder: they are no"
+        " envelope of"
         " how much the numbers scatter (./bench calibrate measures one).",
         "Times are shown and judge nothing.",
     ]
     for column, what in (("build_id", "build"), ("machine_id", "machine")):
         old, new = ({e.row[column] for e in f.entries} for f in (diff.a, diff.b))
         if old != new:
-            said.append(f"The {what} of the two folders is not the same, so rounding and counts may move with it.")
+            said.append(
+                f"The {what} of the two folders is not the same, so rounding and counts may move with it."
+            )
     lost = len(diff.a.unreadable) + len(diff.b.unreadable)
     if lost:
-        said.append(f"{counted(lost, 'file')} could not be read and {'is' if lost == 1 else 'are'} in no pair.")
+        said.append(
+            f"{counted(lost, 'file')} could not be read and {'is' if lost == 1 else 'are'} in no pair."
+        )
     return said
 
 
@@ -154,7 +165,11 @@ def metrics(diff: Diff) -> Table:
             Column("same", is_number=True),
             Column("lower", is_number=True),
             Column("higher", is_number=True),
-            Column("factor", "geometric mean; of log10 numbers that of what they are the logarithm of", is_number=True),
+            Column(
+                "factor",
+                "geometric mean; of log10 numbers that of what they are the logarithm of",
+                is_number=True,
+            ),
             Column("farthest", "factor of the pair that moved most", is_number=True),
             Column("its run"),
             Column("red", "pairs in which it regressed", is_number=True),
@@ -184,7 +199,9 @@ def pairs(diff: Diff, page: Path) -> Table:
             Column("group", filtered=True),
             Column("outcome before", filtered=True),
             Column("outcome now", filtered=True),
-            Column("state", "equal bits of the final state, where build and machine are the same", filtered=True),
+            Column(
+                "state", "equal bits of the final state, where build and machine are the same", filtered=True
+            ),
             Column("red", "numbers that regressed", is_number=True),
             *(
                 Column(f"{metric.heading} {which}", metric.meaning, is_number=True)
@@ -229,7 +246,9 @@ def lonely(diff: Diff, page: Path) -> Table:
             link = Cell(Path(entry.run).name, href=link_to(entry.path, page))
             table.rows.append([_head(entry), Cell(name), outcome(entry), link, _command(entry)])
         for fault in folder.unreadable:
-            table.rows.append([Cell("a file"), Cell(name), Cell("unreadable", tone="bad"), Cell(fault), NO_NUMBER])
+            table.rows.append(
+                [Cell("a file"), Cell(name), Cell("unreadable", tone="bad"), Cell(fault), NO_NUMBER]
+            )
     return table
 
 

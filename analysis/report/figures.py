@@ -1,5 +1,5 @@
-"""The figures of a report as data URIs: those of ./bench figures for groups whose runs one figure can hold, and
-for larger groups one that puts a mark for each run.
+"""The figures of a report as data URIs: those of ./bench figures for groups whose runs one figure can hold,
+and for larger groups one that puts a mark for each run.
 """
 
 from __future__ import annotations
@@ -33,7 +33,6 @@ class Figure:
     height: int
     caption: str  # what is shown; the text for those who do not see it, too
     settings: str  # of its runs, machine and day
-
 
     @property
     def first(self) -> str:
@@ -111,7 +110,8 @@ def drawn(folder: Folder, kept: Path | None = None) -> Figures:
             )
     if large:
         found.notes.append(
-            f"Groups of more than {MOST_RUNS} runs ({listed(large)}) have a mark for each run instead of lines"
+            f"Groups of more than {MOST_RUNS} runs ({listed(large)}) have a mark for each run instead of"
+            f" lines"
             " over time."
         )
     return found

@@ -171,6 +171,8 @@ def gathered(root: Path) -> Folder:
     if not found.entries:
         faults = found.unreadable[:SHOWN_FAULTS]
         raise UserError(
-            "\n".join([f"{root}: no record that can be read; allowed: a folder with run.json below it", *faults])
+            "\n".join(
+                [f"{root}: no record that can be read; allowed: a folder with run.json below it", *faults]
+            )
         )
     return found

@@ -12,7 +12,8 @@ from .comparison import METRICS
 from .gather import Entry
 
 SHOWN = (
-    "{group}: (a) to (c) cost of each run against its smallest gap at the end of a converged step, in units of"
+    "{group}: (a) to (c) cost of each run against its smallest gap at the end of a converged step, in"
+    " units of"
     " d_hat: median condition number after block-Jacobi scaling, Newton iterations over all steps, median PCG"
     " iterations on the diagnosed matrices. A mark is a run. {failed}"
 )

@@ -47,7 +47,9 @@ def _scenes(entries: list[Entry]) -> str:
         scenes.setdefault(entry.row["scene"], []).append(entry)
     parts = []
     for name, runs in scenes.items():
-        sizes = sorted({run.row["scene_free_dofs"] for run in runs if run.row.get("scene_free_dofs") is not None})
+        sizes = sorted(
+            {run.row["scene_free_dofs"] for run in runs if run.row.get("scene_free_dofs") is not None}
+        )
         span = f"{sizes[0]} to {sizes[-1]}" if len(sizes) > 1 else _text(sizes[0]) if sizes else "unknown"
         parts.append(f"{name} ({counted(len(runs), 'run')}, {span} unknowns)")
     return listed(parts, 12)
@@ -63,7 +65,8 @@ def _formulations(entries: list[Entry]) -> str:
 def _method(said: Said) -> list[str]:
     published = [entry for entry in said.entries if entry.row.get("method")]
     text = [
-        f"Formulations: {_formulations(said.entries)}. The width of the barrier d_hat is {said.of('d_hat_m')} m."
+        f"Formulations: {_formulations(said.entries)}. The width of the barrier d_hat is"
+        f" {said.of('d_hat_m')} m."
     ]
     if published:
         words = _values([entry.row["method"] for entry in published])
@@ -85,7 +88,8 @@ def _solver(said: Said) -> list[str]:
         f"Linear solver {said.of('linear_solver')}, preconditioner {said.of('preconditioner')}.",
         f"Passes: time {said.of('passes_time')}, diagnose {said.of('passes_diagnose')}, audit"
         f" {said.of('passes_audit')}. The passes diagnose and audit share a second run, whose times are not"
-        f" reported. Condition numbers of every diagnosed iteration (one in {said.of('/diagnose/every')}, tier"
+        f" reported. Condition numbers of every diagnosed iteration (one in {said.of('/diagnose/every')},"
+        f" tier"
         f" {said.of('/diagnose/tier')}).",
     ]
 
@@ -97,7 +101,8 @@ def _machine(said: Said) -> list[str]:
     dirty = sum(bool(entry.row.get("provenance_git_dirty")) for entry in said.entries)
     return [
         f"Run on {day} (UTC) on {said.of('machine_cpu_model')}, {said.of('machine_cores')} cores,"
-        f" {said.of('machine_os')}, {said.of('machine_kernel')}; {said.of('provenance_threads')} threads; BLAS"
+        f" {said.of('machine_os')}, {said.of('machine_kernel')}; {said.of('provenance_threads')} threads;"
+        f" BLAS"
         f" kernel {said.of('provenance_blas_kernel')}.",
         f"barrierbench {said.of('provenance_tool_version')}, commit {_values(commits)}"
         + (f" (files differed from it in {counted(dirty, 'run')})" if dirty else "")
@@ -111,7 +116,8 @@ def text(folder: Folder) -> list[str]:
     said, good = Said(folder.entries), sum(entry.good for entry in folder.entries)
     total = len(folder.entries)
     begin = (
-        f"{counted(total, 'run').capitalize()} of {counted(len(folder.groups), 'sweep or scene', 'sweeps or scenes')}"
+        f"{counted(total, 'run').capitalize()} of"
+        f" {counted(len(folder.groups), 'sweep or scene', 'sweeps or scenes')}"
         f" ({listed(list(folder.groups))}); {good} ended ok and valid, and failures are kept in every count."
         f" Scenes: {_scenes(folder.entries)}."
     )

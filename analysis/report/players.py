@@ -1,5 +1,5 @@
-"""Players of scenes inside a report: for runs that kept frames, a run beside its reference where both have some.
-The library that draws stands in the page once.
+"""Players of scenes inside a report: for runs that kept frames, a run beside its reference where both have
+some. The library that draws stands in the page once.
 """
 
 from __future__ import annotations

@@ -144,7 +144,12 @@ def failures(folder: Folder, page: Path) -> Table:
         lead = [Cell(one.label), Cell(one.group), Cell("no record", tone="bad"), why]
         table.rows.append([*lead, Cell(one.detail or "-"), none, none, none])
     for fault in folder.unreadable:
-        lead = [Cell("a file"), none, Cell("unreadable", tone="bad"), Cell("it is in no other number of this page")]
+        lead = [
+            Cell("a file"),
+            none,
+            Cell("unreadable", tone="bad"),
+            Cell("it is in no other number of this page"),
+        ]
         table.rows.append([*lead, Cell(fault), none, none, none])
     return table
 
@@ -203,7 +208,8 @@ def _beside(one: Beside) -> list[Cell]:
 def comparison(folder: Folder) -> Table:
     return Table(
         "comparison",
-        "Numbers over those of the reference: geometric mean over the comparable pairs, smallest and largest of"
+        "Numbers over those of the reference: geometric mean over the comparable pairs, smallest and"
+        " largest of"
         " them; above 1 is more",
         [
             Column("formulation"),
@@ -247,7 +253,9 @@ def runs(folder: Folder, page: Path) -> Table:
             Column("Newton", "iterations over all steps", is_number=True),
             Column("PCG", METRICS[3].meaning, is_number=True),
             Column("gap / d_hat", "smallest gap at the end of a converged step", is_number=True),
-            Column("crossings", "and motions through each other, by the audit; -: not audited", is_number=True),
+            Column(
+                "crossings", "and motions through each other, by the audit; -: not audited", is_number=True
+            ),
             Column("time s", METRICS[4].meaning, is_number=True),
             Column("unknowns", is_number=True),
             *(Column(name, "swept setting") for name in swept),

@@ -33,12 +33,14 @@ def headline(folder: Folder) -> Sentence:
     if not bad and not lost:
         all_of = "The run" if len(runs) == 1 else f"All {len(runs)} runs"
         return Sentence(f"{all_of} ended ok and {_are(len(runs))} valid.", GOOD)
-    text = f"{len(runs) - len(bad)} of {counted(len(runs), 'run')} ended ok and {_are(len(runs) - len(bad))} valid"
+    good = len(runs) - len(bad)
+    text = f"{good} of {counted(len(runs), 'run')} ended ok and {_are(good)} valid"
     words = Counter(run.row["outcome"] if run.row["outcome"] != "ok" else "ok but not valid" for run in bad)
     if bad:
         text += "; " + listed([f"{n} ended {word}" for word, n in words.most_common()])
     parts = [
-        f"{counted(len(folder.absent), 'run')} of the sweeps {'has' if len(folder.absent) == 1 else 'have'} no"
+        f"{counted(len(folder.absent), 'run')} of the sweeps"
+        f" {'has' if len(folder.absent) == 1 else 'have'} no"
         " record yet"
     ] * bool(folder.absent)
     parts += [f"{counted(len(folder.unreadable), 'file')} cannot be read"] * bool(folder.unreadable)
@@ -53,7 +55,8 @@ def crossings(folder: Folder) -> list[Sentence]:
     if through:
         said.append(
             Sentence(
-                f"In {len(through)} of {counted(len(audited), 'audited run')} a surface passes through another:"
+                f"In {len(through)} of {counted(len(audited), 'audited run')} a surface passes through"
+                f" another:"
                 f" {listed([f'{run.name} ({run.faults})' for run in through])}.",
                 BAD,
             )
@@ -72,7 +75,9 @@ def crossings(folder: Folder) -> list[Sentence]:
         names = listed([run.name for run in unproven])
         said.append(Sentence(f"Not every motion could be certified in {names}.", BAD))
     if dark := len(folder.entries) - len(audited):
-        said.append(Sentence(f"Of {counted(dark, 'run')} nothing is known about crossings: not audited.", BAD))
+        said.append(
+            Sentence(f"Of {counted(dark, 'run')} nothing is known about crossings: not audited.", BAD)
+        )
     return said
 
 
@@ -87,13 +92,12 @@ def comparability(folder: Folder) -> list[Sentence]:
                 " when it ends."
             )
         ]
-    ratios = {
-        run.row["comparability_max_ratio"] for run in others if run.row.get("comparability_max_ratio")
-    }
+    ratios = {run.row["comparability_max_ratio"] for run in others if run.row.get("comparability_max_ratio")}
     within = listed([f"{ratio:g}" for ratio in sorted(ratios)])
     text = (
         f"Of {counted(judged, 'run')} that the program compared with a reference {words['comparable']}"
-        f" {_are(words['comparable'])} comparable with it (contacts of every pair of bodies rest at gaps within"
+        f" {_are(words['comparable'])} comparable with it (contacts of every pair of bodies rest at gaps"
+        f" within"
         f" a factor {within} of the reference's)"
     )
     if words["not_comparable"]:
@@ -148,7 +152,9 @@ def ratios(folder: Folder) -> list[Sentence]:
             words = [text for one in mine if one.reference == reference and (text := _beside_words(one))]
             if words:
                 said.append(
-                    Sentence(f"{group} ({_slice(entries)}), over the reference {reference}: {'; '.join(words)}.")
+                    Sentence(
+                        f"{group} ({_slice(entries)}), over the reference {reference}: {'; '.join(words)}."
+                    )
                 )
     if len(said) > MOST_GROUPS:
         rest = len(said) - MOST_GROUPS
@@ -188,7 +194,9 @@ def _about_slices(folder: Folder) -> list[str]:
         if len(values) == 1:
             said.append(f"{what} {values[0]:g}")
     text = [f"One slice: {listed(said)}; at others the factors may be other ones."] if said else []
-    starts = {(run.settings.get("/seeds/main"), run.settings.get("/seeds/jitter_m")) for run in folder.entries}
+    starts = {
+        (run.settings.get("/seeds/main"), run.settings.get("/seeds/jitter_m")) for run in folder.entries
+    }
     if len(starts) == 1:
         text.append("Every case ran from one start: how much its numbers scatter is not known.")
     friction = {run.settings.get("/friction/mu") for run in folder.entries}
@@ -212,11 +220,14 @@ def _about_costs(folder: Folder) -> list[str]:
     if machines == 1:
         said.append("One class of processors: on another rounding differs, and counts of iterations with it.")
     if machines > 1 or builds > 1:
-        said.append(f"Records of {counted(builds, 'build')} and {counted(machines, 'machine')} are side by side.")
+        said.append(
+            f"Records of {counted(builds, 'build')} and {counted(machines, 'machine')} are side by side."
+        )
     loose = [run for run in folder.entries if run.row.get("convergence") == "not_asked"]
     if loose:
         said.append(
-            f"{counted(len(loose), 'run').capitalize()} {_are(len(loose))} not asked to converge in a step, so"
+            f"{counted(len(loose), 'run').capitalize()} {_are(len(loose))} not asked to converge in a"
+            f" step, so"
             f" fewer iterations there are not the same work: {listed([run.name for run in loose])}."
         )
     return said
