@@ -35,7 +35,9 @@ class Drawing:
             raise self.nothing("no number is there")
         if "formulation" in numbers and numbers["formulation"].nunique() > series.MOST:
             found = ", ".join(numbers["formulation"].dropna().unique())
-            raise UserError(f"figure {self.name}: found {found}; at most {series.MOST} formulations are needed")
+            raise UserError(
+                f"figure {self.name}: found {found}; at most {series.MOST} formulations are needed"
+            )
         return style.save(fig, self.stem, numbers, f"{self.title}. {shown} {facts.sentence()}", runs)
 
     def state(self, paths: list[Path], facts: Facts) -> list[Path]:

@@ -8,7 +8,6 @@ import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
 
-from .. import style
 from ..captions import Facts
 from .drawing import Drawing
 from .subjects import Spectrum

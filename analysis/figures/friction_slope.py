@@ -18,11 +18,12 @@ from .resolution import weight
 from .subjects import SweepRecords
 
 SHOWN = (
-    "A patch that is let go on a slope of {angle:.4g} degrees. Left: its mean acceleration over the second"
-    " half of the run (from its kinetic energy), since the first friction force is of the gaps at the start;"
-    " line: g (sin - mu cos), and 0 from tan on. Right: the speed at the end of those that should stick, which creep"
-    " because friction is smoothed below eps_v (grey line). Dotted: tan of the slope. Crosses at the upper"
-    " edge: runs that failed. Largest distance from the line on the left: {worst}."
+    "A patch that is let go on a slope of {angle:.4g} degrees. Left: its mean acceleration over the"
+    " second half of the run (from its kinetic energy), since the first friction force is of the gaps at"
+    " the start; line: g (sin - mu cos), and 0 from tan on. Right: the speed at the end of those that"
+    " should stick, which creep because friction is smoothed below eps_v (grey line). Dotted: tan of the"
+    " slope. Crosses at the upper edge: runs that failed. Largest distance from the line on the left:"
+    " {worst}."
 )
 
 

@@ -43,9 +43,9 @@ LETTERS = {
 }
 FAILED = "#bdbdbd"
 SHOWN = (
-    "A cell is {x} (across) and {y} (up); its letter the outcome: {letters}; a number behind a letter: so many"
-    " of the {n} runs of the cell ended so, where not all did. Colour: Newton iterations a step where every"
-    " run ends ok; grey, hatched: some run failed."
+    "A cell is {x} (across) and {y} (up); its letter the outcome: {letters}; a number behind a letter: so"
+    " many of the {n} runs of the cell ended so, where not all did. Colour: Newton iterations a step where"
+    " every run ends ok; grey, hatched: some run failed."
 )
 
 

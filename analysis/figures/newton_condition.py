@@ -17,10 +17,10 @@ from .subjects import SweepRecords
 
 SCALINGS = (("none", "raw"), ("block_jacobi", "block Jacobi"))
 SHOWN = (
-    "Every Newton iteration of time step {step}, in which the condition numbers, as they are, are largest. (a) and (b)"
-    " the condition number of the Newton matrix with every element clamped, as it is and scaled by block"
-    " Jacobi; (c) its smallest and largest eigenvalue, raw, the band between them filled. Forks: bounds, the"
-    " true number is at least as large. {failed}"
+    "Every Newton iteration of time step {step}, in which the condition numbers, as they are, are"
+    " largest. (a) and (b) the condition number of the Newton matrix with every element clamped, as it is"
+    " and scaled by block Jacobi; (c) its smallest and largest eigenvalue, raw, the band between them"
+    " filled. Forks: bounds, the true number is at least as large. {failed}"
 )
 
 

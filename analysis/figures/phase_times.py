@@ -7,12 +7,12 @@ from pathlib import Path
 import matplotlib.pyplot as plt
 import pandas as pd
 
-from .. import style
 from ..captions import Facts
 from .drawing import Drawing, common, formulations, outcomes
 from .subjects import SweepRecords
 
 OPTIONS = {"level": "/scene/n", "per": "newton_iterations"}
+SLICE = {"scene": "scene", "scene_free_dofs": "unknowns", "steps": "steps"}
 PHASES = {  # name -> columns of a record without `time_` and `_s`, colour (Okabe-Ito), hatch
     "elasticity": (("elastic",), "#56B4E9", ""),
     "strain limit": (("strain_limit", "strain_bound"), "#F0E442", ""),
@@ -102,6 +102,6 @@ def figure(subject: SweepRecords, drawing: Drawing) -> list[Path]:
         f"1 repetition of {outcomes(largest)}",
         "sum of a phase over the run / its Newton iterations",
         "none",
-        f"{level} {largest[level].iloc[0]:g}, {common(largest, {'scene': 'scene', 'scene_free_dofs': 'unknowns', 'steps': 'steps'})}",
+        f"{level} {largest[level].iloc[0]:g}, {common(largest, SLICE)}",
     )
     return drawing.save(fig, numbers, SHOWN, facts, largest)

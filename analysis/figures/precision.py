@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import matplotlib.pyplot as plt
@@ -63,8 +64,6 @@ def table(subject: SweepRecords, offset: str) -> pd.DataFrame:
 
 def _numbers(place) -> list[float]:
     """Of a swept place, which a table keeps as JSON text."""
-    import json
-
     return json.loads(place) if isinstance(place, str) else place
 
 

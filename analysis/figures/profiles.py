@@ -13,7 +13,7 @@ import pandas as pd
 from .. import panels, style
 from ..captions import Facts
 from ..robustness import Trial, profile
-from .drawing import OF_RUNS, Drawing, common, formulations, outcomes
+from .drawing import Drawing, common, formulations, outcomes
 from .subjects import SweepRecords
 
 COSTS = {
@@ -25,8 +25,8 @@ COSTS = {
 }
 OPTIONS = {"costs": ["newton_iterations", "line_search_trials"]}
 SOLVED = (
-    "A problem is a scene of the sweep, and is solved by a run that ends ok and valid; {apart} of the {solved}"
-    " solved runs are not comparable with the log: their contacts rest at other gaps"
+    "A problem is a scene of the sweep, and is solved by a run that ends ok and valid; {apart} of the"
+    " {solved} solved runs are not comparable with the log: their contacts rest at other gaps"
 )
 PERFORMANCE = (
     "Share of the problems that a formulation solves at no more than so many times the least cost that any of"
@@ -142,7 +142,8 @@ def _facts(runs: pd.DataFrame, found: pd.DataFrame, statistic: str) -> Facts:
         f"{problems} problems, {outcomes(runs)}",
         statistic,
         "the cheapest formulation of each problem" if "ratio" in statistic else "none",
-        f"problems {', '.join(dict.fromkeys(found['problem']))}; {common(runs, {'scene_free_dofs': 'unknowns'})};"
+        f"problems {', '.join(dict.fromkeys(found['problem']))};"
+        f" {common(runs, {'scene_free_dofs': 'unknowns'})};"
         f" {SOLVED.format(apart=int(found['apart'].sum()), solved=int(found['solved'].sum()))}",
     )
 

@@ -21,8 +21,8 @@ SHOWN = (
     " the reference over the size of the scene, against the side of a cell. Left: the reference is the same"
     " formulation on its finest mesh, which shows the error of the mesh alone. Right: it is the middle of all"
     " formulations on their finest meshes, and grey is how far these are from it: barriers of the same width"
-    " differ by so much, and what lies in the grey is not ranked. Crosses at the upper edge: runs that failed,"
-    " or ended early."
+    " differ by so much, and what lies in the grey is not ranked. Crosses at the upper edge: runs that"
+    " failed, or ended early."
 )
 
 

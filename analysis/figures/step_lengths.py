@@ -21,8 +21,8 @@ PANELS = {
 }
 SHOWN = (
     "Every Newton iteration of time step {step}, in which steps are held back most: the largest"
-    " fraction of the Newton direction that CCD allows (a), that the strain limit allows (b), and the fraction"
-    " that is taken (c). 1: the whole direction. {failed}"
+    " fraction of the Newton direction that CCD allows (a), that the strain limit allows (b), and the"
+    " fraction that is taken (c). 1: the whole direction. {failed}"
 )
 
 

@@ -126,7 +126,8 @@ def pareto_fronts(runs, drawing: Drawing) -> list[Path]:
     for scene in runs.scenes:
         rows = [row for row in runs.rows if row["scene"] == scene]
         try:
-            drawn = pareto_figure.draw(runs, scene, drawing.stem.with_name(f"{drawing.stem.name}_{scene}"))
+            stem = drawing.stem.with_name(f"{drawing.stem.name}_{scene}")
+            drawn = pareto_figure.draw(runs, scene, stem, drawing.width_in)
         except ValueError as error:
             raise drawing.nothing(str(error)) from None
         facts = Facts(
@@ -134,7 +135,8 @@ def pareto_fronts(runs, drawing: Drawing) -> list[Path]:
             f" {runs.about['starts']} starts",
             "geometric mean over starts",
             "none; compare along a vertical line",
-            f"scene {scene}, {runs.about['unknowns']} unknowns, {runs.about['rule']}, vary {runs.about['vary']}",
+            f"scene {scene}, {runs.about['unknowns']} unknowns, {runs.about['rule']},"
+            f" vary {runs.about['vary']}",
         )
         paths += drawing.state(drawn, facts)
     return paths
@@ -151,7 +153,7 @@ def gap_maps(found, drawing: Drawing) -> list[Path]:
         f"scenes {', '.join(found.about['scenes'])}; {found.about['unknowns'][0]} to"
         f" {found.about['unknowns'][1]} unknowns; limit {', '.join(found.limits)}",
     )
-    return drawing.state(gap_figure.draw_all(found, drawing.stem.parent), facts)
+    return drawing.state(gap_figure.draw_all(found, drawing.stem.parent, drawing.width_in), facts)
 
 
 def work_precisions(table: dict, drawing: Drawing) -> list[Path]:

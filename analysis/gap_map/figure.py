@@ -25,6 +25,7 @@ METRICS = (
     ("pcg", "PCG iterations"),
     ("newton", "Newton iterations"),
 )
+COLUMN_IN = 2.45  # of one limit mode, on the page of the study
 TITLES = {"on": "limit on", "contact": "limit the same in every run", "off": "no strain limit"}
 SHOWN = (
     "What a run takes against the gap that its contacts reach: the load-weighted median of d/d_hat at step"
@@ -139,12 +140,13 @@ def _part(found: Map) -> str:
     )
 
 
-def draw_map(found: Map, shapes: list[str], stem: Path) -> list[Path]:
+def draw_map(found: Map, shapes: list[str], stem: Path, width_in: float | None = None) -> list[Path]:
+    """width_in: of the figure; None: what the modes of its page need."""
     limits = found.limits
     fig, axes = plt.subplots(
         len(METRICS),
         len(limits),
-        figsize=(style.WIDE_IN, 1.75 * len(METRICS) + 0.6),
+        figsize=(width_in or max(style.WIDE_IN, COLUMN_IN * len(limits)), 1.75 * len(METRICS) + 0.6),
         layout="constrained",
         sharex=True,
         squeeze=False,
@@ -293,14 +295,14 @@ def draw_law(found: Map, shapes: list[str], stem: Path) -> list[Path]:
     )
 
 
-def draw_all(found: Map, folder: Path) -> list[Path]:
+def draw_all(found: Map, folder: Path, width_in: float | None = None) -> list[Path]:
     """gap_map and gap_law, and each with _more where there are more shapes than one figure holds; all their
-    files. Asks `eval` for rho.
+    files. width_in: as in draw_map. Asks `eval` for rho.
     """
     folder.mkdir(parents=True, exist_ok=True)
     rest = [s for s in found.shapes if s not in found.main]
-    paths = draw_map(found, list(found.main), folder / "gap_map")
+    paths = draw_map(found, list(found.main), folder / "gap_map", width_in)
     if rest:
-        paths += draw_map(found, [REFERENCE, *rest], folder / "gap_map_more")
+        paths += draw_map(found, [REFERENCE, *rest], folder / "gap_map_more", width_in)
         paths += draw_law(found, rest, folder / "gap_law_more")
     return paths + draw_law(found, list(found.main), folder / "gap_law")

@@ -22,6 +22,7 @@ PANELS = {
     "seconds": "seconds",
     "scale": "stiffness / matched",
 }
+PAGE_IN = style.WIDE_IN * 1.35  # wider on the page of the study than in a journal
 SHOWN = (
     "{scene}: what a run takes against the {gap} gap at its step ends, in units of d_hat. Along a line the"
     " stiffness of one formulation grows over {decades:g} decades round the value that equal force gives it"
@@ -132,9 +133,9 @@ def _draw_panel(axis, runs: Runs, scene: str, name: str, formulations: tuple[str
     style.keep_span(axis)
 
 
-def draw(runs: Runs, scene: str, stem: Path) -> list[Path]:
-    """stem.png and its company, and stem_more with the formulations that it has no room for. Errors:
-    ValueError when no run of the scene reached a gap.
+def draw(runs: Runs, scene: str, stem: Path, width_in: float = PAGE_IN) -> list[Path]:
+    """stem.png and its company, and stem_more with the formulations that it has no room for. width_in: of the
+    figure. Errors: ValueError when no run of the scene reached a gap.
     """
     if not any(_is_good(row) for row in runs.rows if row["scene"] == scene):
         raise ValueError(f"{scene}: no run reached a gap: there is nothing to draw")
@@ -148,7 +149,7 @@ def draw(runs: Runs, scene: str, stem: Path) -> list[Path]:
                 for name, title in PANELS.items()
             ]
         )
-        fig, axes = panels.grid(len(kept), style.WIDE_IN, 2.0)
+        fig, axes = panels.grid(len(kept), width_in, 2.2)
         for axis, name in zip(axes, [name for name, title in PANELS.items() if title in kept]):
             _draw_panel(axis, runs, scene, name, part.names)
             axis.set_xlabel(rf"{runs.about['gap']} gap / $\hat d$")
