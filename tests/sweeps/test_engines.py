@@ -53,8 +53,7 @@ def by_slurm(spec: Path, out: Path, environment: dict) -> None:
 def by_snakemake_on_slurm(spec: Path, out: Path, environment: dict) -> None:
     if snakemake() is None:
         pytest.skip("Snakemake is not installed (examples/cluster/snakemake.sh SPEC DIR SHARDS installs it)")
-    options = ["--executor", "slurm", "--jobs", 2, "--slurm-no-account", "--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", 2,
-               "--default-resources", "slurm_partition=all"]
+    options = ["--executor", "slurm", "--jobs", 2, "--slurm-no-account", "--slurm-status-command", "squeue", "--slurm-init-seconds-before-status-checks", 2]
     called([TWO_NODES, out.parent / "slurm", CLUSTER / "snakemake.sh", spec, out, 2, *options], {**environment, "SNAKEMAKE": snakemake(), "USER": "root"})
 
 
